@@ -1,0 +1,25 @@
+# ligature_options: what every target of ours is compiled with.
+add_library(ligature_options INTERFACE)
+target_compile_features(ligature_options INTERFACE cxx_std_20)
+target_include_directories(ligature_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_definitions(ligature_options INTERFACE LIGATURE_VERSION="${PROJECT_VERSION}")
+target_compile_options(ligature_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor
+  $<$<BOOL:${LIGATURE_WERROR}>:-Werror>
+  -fno-math-errno -ffp-contract=fast)
+
+# Code generation is portable: the same binary runs on every x86-64 made since 2013, and under valgrind.
+# Eigen's alignment depends on these flags, so they are set for the whole build, not per target.
+if(NOT LIGATURE_ARCH STREQUAL "default")
+  add_compile_options(-march=${LIGATURE_ARCH})
+elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  add_compile_options(-march=x86-64-v3)
+endif()
+
+if(LIGATURE_SANITIZE)
+  add_compile_options(-fsanitize=${LIGATURE_SANITIZE} -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${LIGATURE_SANITIZE})
+  if(LIGATURE_SANITIZE MATCHES "undefined")
+    add_compile_options(-fno-sanitize-recover=undefined)
+  endif()
+endif()

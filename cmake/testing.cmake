@@ -1,0 +1,18 @@
+# ligature_add_test(NAME target SOURCES files... LIBS libraries...)
+# Builds one GoogleTest executable and registers each of its TESTs with ctest.
+if(LIGATURE_TESTS)
+  enable_testing()
+  find_package(GTest REQUIRED)
+  include(GoogleTest)
+endif()
+
+function(ligature_add_test)
+  cmake_parse_arguments(ARG "" "NAME" "SOURCES;LIBS;LABELS" ${ARGN})
+  if(NOT LIGATURE_TESTS)
+    return()
+  endif()
+  add_executable(${ARG_NAME} ${ARG_SOURCES})
+  target_link_libraries(${ARG_NAME} PRIVATE ligature_options ${ARG_LIBS} GTest::gtest_main)
+  target_compile_definitions(${ARG_NAME} PRIVATE LIGATURE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  gtest_discover_tests(${ARG_NAME} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS "${ARG_LABELS}")
+endfunction()
