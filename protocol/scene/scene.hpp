@@ -1,0 +1,94 @@
+#pragma once
+// A scene as plain numbers: what scene files say (scene_file.hpp reads them) and every program understands.
+// SI units; vectors are x, y, z in the world frame W (x right, y away from the person, z up).
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ligature::scene {
+
+using Vec = std::array<double, 3>;
+
+enum class Model : std::uint8_t { kPaper1, kPaper2, kPaper3, kPaper4, kPaper5, kRod };
+enum class ContactSolver : std::uint8_t { kNone, kPaper, kImplicit };
+
+/// The paper's Table I, per node; used by paper-1 .. paper-5.
+struct PaperParameters {
+  double node_mass_kg = 0.05;     ///< m
+  double stretch_N = 800.0;       ///< k_l: force per unit strain, i.e. EA
+  double stretch_damping = 1.0;   ///< k_d, N s/m
+  double bend = 10.0;             ///< k_ts, N m (torque is k_ts alpha / pi)
+  double bend_damping = 0.05;     ///< k_td, N m s
+  double swivel_damping = 0.2;    ///< k_sw, N s
+};
+
+struct Suture {
+  Model model = Model::kPaper4;
+  int nodes = 50;
+  double length_m = 5.0;
+  double radius_m = 0.05;
+  std::string initial = "hanging";       ///< "hanging": straight down from node 0; else the file it was read from
+  std::vector<Vec> initial_polyline_m;   ///< empty when hanging; else laid out at rest length
+  PaperParameters paper;
+};
+
+struct Contact {
+  ContactSolver solver = ContactSolver::kImplicit;
+  double friction = 0.3;                   ///< kinetic Coulomb coefficient
+  std::optional<double> static_friction;   ///< same as friction when absent
+};
+
+struct FixedNode {
+  int node = 0;                    ///< -1 is the last
+  Vec position_m{0.0, 0.0, 0.0};
+  std::optional<Vec> direction;    ///< clamps the tangent too
+};
+
+struct Load {
+  int node = 0;
+  Vec force_N{0.0, 0.0, 0.0};
+};
+
+struct World {
+  Vec gravity_m_per_s2{0.0, 0.0, -9.8};
+  std::vector<FixedNode> fixed;
+  std::vector<Load> loads;
+  std::optional<double> desk_height_m;
+  bool grippers_collide = true;
+};
+
+struct Time {
+  double tick_s = 0.001;
+  int substeps = 1;
+};
+
+struct Hands {
+  double coupling_N_per_m = 1200.0;
+  double coupling_N_s_per_m = 6.0;
+  double force_scale = 0.003;   ///< world newtons -> device newtons
+  double max_force_N = 3.3;     ///< at the device
+  bool propagation = false;
+  double min_length = 0.9;      ///< of rest length
+  double max_length = 1.1;
+  double workspace_scale = 20.0;           ///< world metres per device metre
+  Vec workspace_origin_m{0.0, 0.0, 0.0};   ///< world point of the device's home pose
+};
+
+struct Scene {
+  Suture suture;
+  Contact contact;
+  World world;
+  Time time;
+  Hands hands;
+};
+
+/// One line a person can act on: where, what was found, what is allowed.
+struct Error {
+  std::string text;
+};
+
+}  // namespace ligature::scene
