@@ -1,0 +1,87 @@
+"""Who may include whom. What the table does not list is forbidden.
+
+The rules keep the real-time thread honest by construction: what cannot be included cannot be called.
+Run: python3 tests/architecture/include_rules.py [ROOT]; exit 1 and one line per violation.
+"""
+
+import pathlib
+import re
+import sys
+
+OURS = ("protocol/", "firmware/", "sim_device/", "host/")
+SCENE_STRUCT = "protocol/scene/scene.hpp"
+
+# folder: (our folders it may include besides itself, third-party and OS headers it may include)
+RULES = {
+    "protocol/can": ([], []),
+    "protocol/scene": ([], ["toml++/"]),
+    "firmware/rt": ([], []),
+    "firmware/physics": (["firmware/rt", SCENE_STRUCT], ["Eigen/"]),
+    "firmware/control": (["firmware/rt", "firmware/physics", SCENE_STRUCT], ["Eigen/", "ruckig/"]),
+    "firmware/platform": (["firmware/rt", "protocol/can"], ["OS"]),
+    "firmware/telemetry": (["firmware/rt", "ligature_msg"], ["lcm/", "OS"]),
+    "firmware/cycle.hpp": (["firmware/rt", "firmware/control", "firmware/physics", "protocol/can"], []),
+    "firmware/app": (["firmware", "protocol"], ["CLI/", "spdlog/", "OS"]),
+    "sim_device": (["protocol/can", "protocol/scene"], ["ruckig/", "Eigen/", "CLI/", "spdlog/", "nlohmann/", "OS"]),
+    "host/knot": ([], ["Eigen/"]),
+    "host/lab": (["firmware/physics", "firmware/rt", "protocol/scene", "host/knot"], ["CLI/", "nlohmann/", "Eigen/", "OS"]),
+    "host": (["protocol/scene", "host/knot", "ligature_msg"], ["lcm/", "CLI/", "nlohmann/", "spdlog/", "OS"]),
+}
+
+# Headers of the operating system and of what it does: files, clocks, threads, sockets, streams.
+OS_HEADERS = re.compile(
+    r"^(sys|linux|net|netinet|arpa)/|^(unistd|fcntl|poll|pthread|sched|signal|time|errno|dirent|termios|glob|malloc)\.h$"
+    r"|^(fstream|iostream|filesystem|thread|mutex|condition_variable|future|csignal|ctime|cstdio|syncstream|semaphore)$"
+)
+# A folder below "real-time or pure" may use no OS header at all; chrono is a type, not a clock, and stays allowed.
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
+
+
+def folder_of(path):
+    """The most specific rule that governs a file, or None."""
+    matches = [f for f in RULES if path == f or path.startswith(f + "/")]
+    return max(matches, key=len) if matches else None
+
+
+def violations(path, text):
+    """Lines 'file: includes X, which FOLDER may not' of one source file."""
+    folder = folder_of(path)
+    if folder is None:
+        return [f"{path}: lies in no folder of the include table"]
+    ours, others = RULES[folder]
+    found = []
+    for _, header in INCLUDE.findall(text):
+        if header.startswith(OURS) or header.startswith("ligature_msg/"):
+            own = folder_of(header) == folder
+            good = own or any(header == o or header.startswith(o + "/") for o in ours)
+        elif "/" in header and not OS_HEADERS.match(header):
+            good = any(header.startswith(o) for o in others)
+        elif OS_HEADERS.match(header):
+            good = "OS" in others or (folder == "protocol/scene" and header in ("fstream", "filesystem"))
+        else:
+            good = True
+        if not good:
+            found.append(f"{path}: includes {header}, which {folder} may not")
+    return found
+
+
+def self_check():
+    """The rules must be able to fail."""
+    assert violations("firmware/physics/a.cpp", "#include <fstream>\n")
+    assert violations("firmware/control/a.cpp", '#include "protocol/can/units.hpp"\n')
+    assert violations("sim_device/a.cpp", '#include "firmware/rt/spsc_ring.hpp"\n')
+    assert violations("protocol/can/a.hpp", "#include <Eigen/Core>\n")
+    assert not violations("firmware/physics/a.cpp", '#include <Eigen/Core>\n#include "firmware/rt/payload.hpp"\n')
+
+
+def main():
+    self_check()
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
+    files = [p for top in OURS for p in (root / top).rglob("*") if p.suffix in (".hpp", ".cpp", ".h")]
+    found = [v for p in sorted(files) for v in violations(p.relative_to(root).as_posix(), p.read_text())]
+    print("\n".join(found) if found else f"include rules hold in {len(files)} files")
+    return 1 if found or not files else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
