@@ -1,0 +1,132 @@
+"""The whole rig as processes on the local: bus, for tests: devices, firmware, recorder and an LCM listener.
+
+Nothing here asserts wall-clock time: every wait is for a condition, with a bound that only ends a hang.
+"""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+ROOT = pathlib.Path(os.environ["LIGATURE_SOURCE"])
+BIN = pathlib.Path(os.environ["LIGATURE_BIN"])
+sys.path.insert(0, os.environ["LIGATURE_LCM_PYTHON"])
+
+import lcm  # noqa: E402
+from ligature_msg import status_t, tick_batch_t  # noqa: E402
+
+HANDS = ("left", "right")
+STATE_FORCE, STATE_FAULT = 4, 6
+FLAG_PERIOD_LOST = 1
+LCM_URL = "udpm://239.255.76.67:7667?ttl=0"
+
+
+def run(program, *args, timeout=60):
+    """Runs one of our programs to its end."""
+    return subprocess.run([BIN / program, *map(str, args)], capture_output=True, text=True, timeout=timeout, cwd=ROOT)
+
+
+class Listener(threading.Thread):
+    """An independent LCM peer that keeps the ticks and the last status the firmware sent."""
+
+    def __init__(self):
+        super().__init__(daemon=True)
+        self.ticks, self.status, self.stop = [], None, False
+        self._lcm = lcm.LCM(LCM_URL)
+        self._lcm.subscribe("LIGATURE_TICKS", self._on_ticks).set_queue_capacity(1000)
+        self._lcm.subscribe("LIGATURE_STATUS", self._on_status)
+
+    def _on_ticks(self, _, data):
+        self.ticks.extend(tick_batch_t.decode(data).ticks)
+
+    def _on_status(self, _, data):
+        self.status = status_t.decode(data)
+
+    def run(self):
+        while not self.stop:
+            self._lcm.handle_timeout(100)
+
+
+class Rig:
+    """Two devices, the firmware and, on request, the recorder. Use as a context manager; everything it started ends with it."""
+
+    def __init__(self, operator="scenes/operators/overhand.csv", scene="scenes/paper.toml", watchdog_ms=200, record=False, extra=()):
+        self.folder = tempfile.TemporaryDirectory(prefix="rig-")
+        self.path = pathlib.Path(self.folder.name)
+        self.operator, self.scene, self.watchdog_ms, self.with_recorder, self.extra = operator, scene, watchdog_ms, record, extra
+        self.processes, self.listener = {}, Listener()
+        bus = os.environ.get("LIGATURE_BUS", "")
+        self.bus = dict(zip(HANDS, bus.split(","))) if bus else {h: f"local:{self.path / h}" for h in HANDS}
+
+    def __enter__(self):
+        self.listener.start()
+        for hand in HANDS:
+            self.start_device(hand)
+        if self.with_recorder:
+            self.start("recorder", "ligature-host", "record", "--out", self.log)
+        self.start_firmware()
+        return self
+
+    @property
+    def log(self):
+        return self.path / "rig.lcmlog"
+
+    def start(self, name, program, *args):
+        output = open(self.path / f"{name}.log", "a")
+        self.processes[name] = subprocess.Popen([BIN / program, *map(str, args)], stdout=output, stderr=output, cwd=ROOT)
+
+    def start_device(self, hand):
+        self.start(hand, "ligature-device", "--hand", hand, "--bus", self.bus[hand], "--scene", self.scene,
+                   "--operator", self.operator, "--stats", self.path / f"{hand}.json")
+
+    def start_firmware(self):
+        self.start("firmware", "ligature-firmware", "run", "--scene", self.scene, "--left", self.bus["left"],
+                   "--right", self.bus["right"], "--arm", "--watchdog-ms", self.watchdog_ms, *self.extra)
+
+    def kill(self, name):
+        self.processes[name].send_signal(signal.SIGKILL)
+        self.processes[name].wait()
+
+    def end(self, name, how=signal.SIGTERM, bound_s=20):
+        """Ends one process politely and returns its exit code; a hang is an error."""
+        process = self.processes[name]
+        if process.poll() is None:
+            process.send_signal(how)
+        return process.wait(timeout=bound_s)
+
+    def alive(self, name):
+        return self.processes[name].poll() is None
+
+    def wait_for(self, condition, what, bound_s=30):
+        """Waits until condition(self) holds."""
+        end = time.monotonic() + bound_s
+        while not condition(self):
+            if time.monotonic() > end:
+                raise AssertionError(f"{what} did not come within {bound_s} s\n{self.words()}")
+            threading.Event().wait(0.01)
+
+    def state_is(self, state):
+        return bool(self.listener.ticks) and self.listener.ticks[-1].state == state
+
+    def device_stats(self, hand):
+        """Ends a device and reads what it says about itself."""
+        self.end(hand)
+        return json.loads((self.path / f"{hand}.json").read_text())
+
+    def words(self):
+        """What every process printed, for failure messages."""
+        return "\n".join(f"--- {p.name}\n{p.read_text()[-2000:]}" for p in sorted(self.path.glob("*.log")))
+
+    def __exit__(self, *_):
+        for process in self.processes.values():
+            if process.poll() is None:
+                process.kill()
+            process.wait()
+        self.listener.stop = True
+        self.listener.join()
+        self.folder.cleanup()

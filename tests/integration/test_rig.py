@@ -1,0 +1,87 @@
+"""The rig end to end, as separate processes: it ties a knot, and any one process may die."""
+
+import json
+import math
+import unittest
+
+from rig import FLAG_PERIOD_LOST, HANDS, STATE_FAULT, STATE_FORCE, Rig, run
+
+MAX_FORCE_N = 3.3
+
+
+def torque_of(tick):
+    return [t for hand in tick.torque_permille for t in hand]
+
+
+class WholeRig(unittest.TestCase):
+    def test_ties_the_overhand_and_every_tick_is_recorded(self):
+        with Rig(record=True, extra=("--duration", 23)) as rig:
+            code = rig.processes["firmware"].wait(timeout=120)
+            self.assertEqual(code, 0, rig.words())
+            self.assertEqual(rig.end("recorder"), 0, rig.words())
+            report = json.loads(run("ligature-host", "report", rig.log, "--json").stdout)
+            knot = json.loads(run("ligature-host", "knot", rig.log, "--json").stdout)
+            forces = rig.path / "forces.csv"
+            self.assertEqual(run("ligature-host", "export", rig.log, "--forces", forces).returncode, 0)
+            rows = [line for line in forces.read_text().splitlines() if line and not line.startswith("#")][1:]
+            ticks = rig.listener.ticks
+        self.assertEqual(knot["type"], "3_1")
+        self.assertEqual(report["samples"]["lost"], 0)
+        self.assertEqual(report["samples"]["recorded"], len(rows))
+        self.assertAlmostEqual(len(rows), 23000, delta=100)  # a tick a period, lost periods flagged, ramp-down included
+        numbers = [t.tick for t in ticks]
+        self.assertEqual(numbers, list(range(numbers[0], numbers[0] + len(numbers))), "an independent listener saw a hole")
+        magnitudes = [math.hypot(*t.f_device_N[h]) for t in ticks for h in (0, 1)]
+        self.assertLessEqual(max(magnitudes), MAX_FORCE_N * (1 + 1e-9))
+        self.assertGreater(max(magnitudes), 0.01, "the hands felt nothing")
+
+
+class Deaths(unittest.TestCase):
+    def test_a_dead_hand_faults_the_firmware_and_frees_the_other(self):
+        for victim in HANDS:
+            with self.subTest(victim=victim), Rig() as rig:
+                rig.wait_for(lambda r: r.state_is(STATE_FORCE), "force")
+                rig.kill(victim)
+                rig.wait_for(lambda r: r.state_is(STATE_FAULT), "the fault")
+                rig.wait_for(lambda r: r.listener.status is not None and r.listener.status.fault != 0, "a status with the fault")
+                executed = [t for t in rig.listener.ticks if t.state == STATE_FAULT and not t.flags & FLAG_PERIOD_LOST]
+                self.assertTrue(all(t == 0 for tick in executed for t in torque_of(tick)), "torque in a faulted tick")
+                self.assertTrue(rig.alive("firmware"))
+                survivor = HANDS[1 - HANDS.index(victim)]
+                self.assertEqual(rig.device_stats(survivor)["final_torque_permille"], [0, 0, 0])
+                self.assertEqual(rig.end("firmware"), 3, rig.words())
+
+    def test_a_dead_recorder_does_not_disturb_the_firmware(self):
+        with Rig(record=True) as rig:
+            rig.wait_for(lambda r: r.state_is(STATE_FORCE), "force")
+            rig.kill("recorder")
+            seen = rig.listener.ticks[-1].tick
+            rig.wait_for(lambda r: r.listener.ticks[-1].tick > seen + 500, "another 500 ticks")
+            self.assertTrue(rig.state_is(STATE_FORCE))
+            self.assertEqual(run("ligature-host", "export", rig.log, "--forces", rig.path / "f.csv").returncode, 0)
+            self.assertEqual(rig.end("firmware"), 0, rig.words())
+
+    def test_a_dead_firmware_leaves_the_drives_without_torque_and_a_new_one_can_start(self):
+        with Rig() as rig:
+            rig.wait_for(lambda r: r.state_is(STATE_FORCE), "force")
+            rig.kill("firmware")
+            rig.listener.ticks.clear()
+            rig.start_firmware()
+            rig.wait_for(lambda r: r.state_is(STATE_FORCE) or r.listener.ticks[-1:] and r.listener.ticks[-1].state == 2,
+                         "a second firmware on the same hands")
+            self.assertEqual(rig.end("firmware"), 0, rig.words())
+            for hand in HANDS:
+                stats = rig.device_stats(hand)
+                self.assertEqual(stats["final_torque_permille"], [0, 0, 0])
+
+    def test_drives_zero_torque_by_their_own_watchdog(self):
+        with Rig(watchdog_ms=50) as rig:
+            rig.wait_for(lambda r: r.state_is(STATE_FORCE), "force")
+            rig.kill("firmware")
+            for hand in HANDS:
+                stats = rig.device_stats(hand)
+                self.assertEqual(stats["final_torque_permille"], [0, 0, 0])
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
