@@ -15,6 +15,9 @@ using Vec = std::array<double, 3>;
 
 enum class Model : std::uint8_t { kPaper1, kPaper2, kPaper3, kPaper4, kPaper5, kRod };
 enum class ContactSolver : std::uint8_t { kNone, kPaper, kImplicit };
+enum class BroadPhase : std::uint8_t { kAuto, kBrute, kSweep, kBvh };
+enum class SwivelDamper : std::uint8_t { kInternal, kPaper };     ///< four-point dihedral rate, or the paper's (13)-(15)
+enum class QuadraticStretch : std::uint8_t { kStiff, kPrinted };  ///< model 5: constant that stretches less, or Table I's
 
 /// The paper's Table I, per node; used by paper-1 .. paper-5.
 struct PaperParameters {
@@ -24,6 +27,8 @@ struct PaperParameters {
   double bend = 10.0;             ///< k_ts, N m (torque is k_ts alpha / pi)
   double bend_damping = 0.05;     ///< k_td, N m s
   double swivel_damping = 0.2;    ///< k_sw, N s
+  SwivelDamper swivel = SwivelDamper::kInternal;
+  QuadraticStretch quadratic_stretch = QuadraticStretch::kStiff;
 };
 
 struct Suture {
@@ -40,6 +45,9 @@ struct Contact {
   ContactSolver solver = ContactSolver::kImplicit;
   double friction = 0.3;                   ///< kinetic Coulomb coefficient
   std::optional<double> static_friction;   ///< same as friction when absent
+  double repulsion_N_per_m = 100.0;        ///< k_rs, solver = paper only
+  double repulsion_N_s_per_m = 5.0;        ///< k_rd, solver = paper only
+  BroadPhase broad_phase = BroadPhase::kAuto;
 };
 
 struct FixedNode {

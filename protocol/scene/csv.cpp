@@ -1,0 +1,71 @@
+#include "protocol/scene/csv.hpp"
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+namespace ligature::scene {
+namespace {
+
+std::string_view trim(std::string_view s) {
+  constexpr std::string_view kBlank = " \t\r";
+  const auto first = s.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return s.substr(first, s.find_last_not_of(kBlank) - first + 1);
+}
+
+std::vector<std::string> split(std::string_view line) {
+  std::vector<std::string> cells;
+  for (;;) {
+    const auto comma = line.find(',');
+    cells.emplace_back(trim(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return cells;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+}  // namespace
+
+Error at_line(const std::filesystem::path& path, std::size_t line, std::string_view what) {
+  return {path.string() + ":" + std::to_string(line) + ": " + std::string(what)};
+}
+
+bool parse_number(std::string_view cell, double& out) noexcept {
+  if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), out);
+  return error == std::errc{} && end == cell.data() + cell.size() && std::isfinite(out);
+}
+
+std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& path, std::string_view header) {
+  std::ifstream file(path);
+  if (!file || std::filesystem::is_directory(path)) {
+    return Error{path.string() + ": cannot be read: " + std::strerror(errno ? errno : EISDIR)};
+  }
+  const auto columns = split(header);
+  std::vector<CsvRow> rows;
+  std::string text;
+  bool header_seen = false;
+  for (std::size_t line = 1; std::getline(file, text); ++line) {
+    const auto body = trim(std::string_view(text).substr(0, text.find('#')));
+    if (body.empty()) continue;
+    auto cells = split(body);
+    if (!header_seen) {
+      if (cells != columns) {
+        return at_line(path, line, "found '" + std::string(body) + "', allowed the header '" + std::string(header) + "'");
+      }
+      header_seen = true;
+    } else if (cells.size() != columns.size()) {
+      return at_line(path, line, "found " + std::to_string(cells.size()) + " columns, allowed " +
+                                     std::to_string(columns.size()) + " (" + std::string(header) + ")");
+    } else {
+      rows.push_back({line, std::move(cells)});
+    }
+  }
+  if (rows.empty()) return Error{path.string() + ": found no rows, allowed one or more below '" + std::string(header) + "'"};
+  return rows;
+}
+
+}  // namespace ligature::scene

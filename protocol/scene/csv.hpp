@@ -1,0 +1,31 @@
+#pragma once
+// The one small CSV reader behind gripper scripts and polylines: strict, and exact about the line it refuses.
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "protocol/scene/scene.hpp"
+
+namespace ligature::scene {
+
+struct CsvRow {
+  std::size_t line = 0;  ///< in the file, from 1
+  std::vector<std::string> cells;
+};
+
+/// Reads a CSV file: `#` starts a comment, empty lines are skipped, blanks around cells are dropped, the first line
+/// that is left must be `header` (as written, blanks aside), and every row must have as many cells as it.
+/// @return the rows below the header (at least one), or one line that names file, line, what was found and what is allowed.
+[[nodiscard]] std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& path, std::string_view header);
+
+/// A finite decimal number and nothing else, or false.
+[[nodiscard]] bool parse_number(std::string_view cell, double& out) noexcept;
+
+/// "FILE:LINE: what"
+[[nodiscard]] Error at_line(const std::filesystem::path& path, std::size_t line, std::string_view what);
+
+}  // namespace ligature::scene

@@ -1,0 +1,47 @@
+#pragma once
+// What two hands do over time: the operator's script that a simulated device or the offline lab plays.
+//   time,hand,x,y,z,grip        s, L or R, m, m, m, 0 or 1      `#` starts a comment
+
+#include <array>
+#include <filesystem>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "protocol/scene/scene.hpp"
+
+namespace ligature::scene {
+
+/// At time_s the hand is at p_W_m; from then on it grips or not, until the next key.
+struct GripKey {
+  double time_s = 0.0;
+  Vec p_W_m{};
+  bool grip = false;
+};
+
+struct GripperScript {
+  std::vector<GripKey> keys[2];  ///< 0 = L, 1 = R; times strictly increase within a hand; empty: the hand is absent
+};
+
+struct ToolPose {
+  Vec p_W_m{};
+  Vec v_W_m_per_s{};
+  bool grip = false;
+};
+
+/// Where a hand without a script waits: so far away that it touches nothing.
+inline constexpr Vec kParked_W_m{0.0, 0.0, -1000.0};
+
+/// Reads a script. Refused, with file and line: wrong header or column count, a cell that is not a finite number, a
+/// negative time, a hand other than L or R, a grip other than 0 or 1, a time that does not increase within its hand.
+[[nodiscard]] std::variant<GripperScript, Error> load_gripper_script(const std::filesystem::path& path);
+
+/// Pose at time t: between keys p = a + (b - a) s(u), s(u) = 3u^2 - 2u^3 (smoothstep: every key is a rest point), held
+/// before the first key and after the last one; grip is that of the last key with time <= t, open before the first.
+/// @param keys one hand's keys in rising time; empty gives kParked_W_m.
+[[nodiscard]] ToolPose sample(std::span<const GripKey> keys, double t_s) noexcept;
+
+/// When the last key of either hand is due, s.
+[[nodiscard]] double end_time_s(const GripperScript& script) noexcept;
+
+}  // namespace ligature::scene

@@ -1,0 +1,187 @@
+#include "protocol/scene/scene_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "protocol/scene/polyline.hpp"
+#include "protocol/scene/strict_table.hpp"
+
+namespace ligature::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kFar_m = 1e6;         // coordinates
+constexpr Range kCoefficient{0.0, 1e12};  // stiffness and damping: wide, the stability map explores it
+
+constexpr std::pair<const char*, Model> kModels[] = {{"paper-1", Model::kPaper1}, {"paper-2", Model::kPaper2},
+                                                     {"paper-3", Model::kPaper3}, {"paper-4", Model::kPaper4},
+                                                     {"paper-5", Model::kPaper5}};
+constexpr std::pair<const char*, ContactSolver> kSolvers[] = {
+    {"none", ContactSolver::kNone}, {"paper", ContactSolver::kPaper}, {"implicit", ContactSolver::kImplicit}};
+constexpr std::pair<const char*, BroadPhase> kBroadPhases[] = {
+    {"auto", BroadPhase::kAuto}, {"brute", BroadPhase::kBrute}, {"sweep", BroadPhase::kSweep}, {"bvh", BroadPhase::kBvh}};
+constexpr std::pair<const char*, SwivelDamper> kSwivels[] = {{"internal", SwivelDamper::kInternal},
+                                                             {"paper", SwivelDamper::kPaper}};
+constexpr std::pair<const char*, QuadraticStretch> kQuadratics[] = {{"stiff", QuadraticStretch::kStiff},
+                                                                    {"printed", QuadraticStretch::kPrinted}};
+
+void read_suture(StrictTable& t, const fs::path& folder, Suture& s) {
+  t.choice("model", s.model, kModels, " (the rod model is not part of this version)");
+  t.integer("nodes", s.nodes, 2, 5000);
+  t.number("length_m", s.length_m, {0.0, 1e4, true});
+  t.number("radius_m", s.radius_m, {0.0, 1e3, true});
+  t.text("initial", s.initial);
+  t.number("node_mass_kg", s.paper.node_mass_kg, {0.0, 1e6, true});
+  t.number("stretch_N", s.paper.stretch_N, kCoefficient);
+  t.number("stretch_damping", s.paper.stretch_damping, kCoefficient);
+  t.number("bend", s.paper.bend, kCoefficient);
+  t.number("bend_damping", s.paper.bend_damping, kCoefficient);
+  t.number("swivel_damping", s.paper.swivel_damping, kCoefficient);
+  t.choice("swivel", s.paper.swivel, kSwivels);
+  t.choice("quadratic_stretch", s.paper.quadratic_stretch, kQuadratics);
+  if (t.failed() || s.initial == "hanging") return;
+  const fs::path file = t.was_overridden("initial") ? fs::path(s.initial) : folder / s.initial;
+  auto read = load_polyline(file);
+  if (auto* error = std::get_if<Error>(&read)) return t.refuse("initial", "\"hanging\" or a CSV polyline (" + error->text + ")");
+  s.initial_polyline_m = lay_out(std::get<std::vector<Vec>>(read), s.nodes, s.length_m / (s.nodes - 1));
+}
+
+void read_contact(StrictTable& t, Contact& c) {
+  t.choice("solver", c.solver, kSolvers);
+  t.number("friction", c.friction, {0.0, 1e3});
+  t.number("static_friction", c.static_friction, {0.0, 1e3});
+  t.number("repulsion_N_per_m", c.repulsion_N_per_m, kCoefficient);
+  t.number("repulsion_N_s_per_m", c.repulsion_N_s_per_m, kCoefficient);
+  t.choice("broad_phase", c.broad_phase, kBroadPhases);
+  if (c.static_friction && *c.static_friction < c.friction) t.refuse("static_friction", "contact.friction or more");
+}
+
+void read_world(StrictTable& t, int nodes, World& w) {
+  t.vector("gravity_m_per_s2", w.gravity_m_per_s2, 1e6);
+  std::set<int> seen;
+  t.tables("fixed", [&](StrictTable& f) {
+    FixedNode fixed;
+    f.require("node");
+    f.require("position_m");
+    f.integer("node", fixed.node, -1, nodes - 1);
+    f.vector("position_m", fixed.position_m, kFar_m);
+    f.vector("direction", fixed.direction, kFar_m);
+    if (fixed.direction == Vec{0.0, 0.0, 0.0}) f.refuse("direction", "a vector with a length");
+    if (!seen.insert(fixed.node < 0 ? nodes - 1 : fixed.node).second) f.refuse("node", "a node that is not fixed already");
+    w.fixed.push_back(fixed);
+  });
+  t.tables("loads", [&](StrictTable& l) {
+    Load load;
+    l.require("node");
+    l.require("force_N");
+    l.integer("node", load.node, -1, nodes - 1);
+    l.vector("force_N", load.force_N, 1e9);
+    w.loads.push_back(load);
+  });
+  t.number("desk_height_m", w.desk_height_m, {-kFar_m, kFar_m});
+  t.boolean("grippers_collide", w.grippers_collide);
+}
+
+void read_time(StrictTable& t, Time& time) {
+  t.number("tick_s", time.tick_s, {1e-7, 1.0});
+  t.integer("substeps", time.substeps, 1, 10000);
+}
+
+void read_hands(StrictTable& t, Hands& h) {
+  t.number("coupling_N_per_m", h.coupling_N_per_m, kCoefficient);
+  t.number("coupling_N_s_per_m", h.coupling_N_s_per_m, kCoefficient);
+  t.number("force_scale", h.force_scale, {0.0, 1e3});
+  t.number("max_force_N", h.max_force_N, {0.0, 100.0});
+  t.boolean("propagation", h.propagation);
+  t.number("min_length", h.min_length, {0.0, 1.0, true});
+  t.number("max_length", h.max_length, {1.0, 100.0});
+  t.number("workspace_scale", h.workspace_scale, {0.0, 1e6, true});
+  t.vector("workspace_origin_m", h.workspace_origin_m, kFar_m);
+}
+
+std::string trim(const std::string& s) {
+  const auto a = s.find_first_not_of(" \t"), b = s.find_last_not_of(" \t");
+  return a == std::string::npos ? "" : s.substr(a, b - a + 1);
+}
+
+/// Puts one `key=value` into the tree, creating tables on the way; false when it is not of that form.
+bool override_key(toml::table& root, const std::string& text, ReadContext& context) {
+  const auto equals = text.find('=');
+  const auto key = trim(text.substr(0, equals));
+  const auto bad = [&](const std::string& why) {
+    context.error = Error{"--set " + text + ": " + why};
+    return false;
+  };
+  if (equals == std::string::npos || key.empty()) return bad("allowed key=value, for example suture.nodes=35");
+  toml::table value;
+  try {
+    value = toml::parse("v = " + text.substr(equals + 1));
+  } catch (const toml::parse_error& error) {
+    const auto plain = trim(text.substr(equals + 1));
+    if (plain.empty() || plain.find_first_of("[]{}\"'=,") != std::string::npos) {
+      return bad("the value is not TOML: " + std::string(error.description()));
+    }
+    value = toml::table{{"v", plain}};  // suture.model=paper-1 without the quotes that a shell eats
+  }
+  if (value.size() != 1) return bad("allowed one value");
+  toml::table* table = &root;
+  std::size_t from = 0;
+  for (auto dot = key.find('.'); dot != std::string::npos; from = dot + 1, dot = key.find('.', from)) {
+    const auto part = key.substr(from, dot - from);
+    if (!table->contains(part)) table->insert(part, toml::table{});
+    table = (*table)[part].as_table();
+    if (!table) return bad("'" + key.substr(0, dot) + "' is not a table");
+  }
+  table->insert_or_assign(key.substr(from), std::move(*value.get("v")));
+  context.overridden[key] = text;
+  return true;
+}
+
+std::variant<toml::table, Error> parse_file(const fs::path& path) {
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file || fs::is_directory(path)) {
+    return Error{path.string() + ": cannot be read: " + std::strerror(errno ? errno : EISDIR)};
+  }
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  try {
+    return toml::parse(text, path.string());
+  } catch (const toml::parse_error& e) {
+    return Error{path.string() + ":" + std::to_string(e.source().begin.line) + ": not TOML: " + std::string(e.description())};
+  }
+}
+
+}  // namespace
+
+const char* name(Model model) noexcept {
+  for (const auto& [label, value] : kModels) {
+    if (value == model) return label;
+  }
+  return "rod";
+}
+
+std::variant<Scene, Error> load_scene(const fs::path& path, std::span<const std::string> overrides) {
+  auto parsed = parse_file(path);
+  if (auto* error = std::get_if<Error>(&parsed)) return *error;
+  auto& root = std::get<toml::table>(parsed);
+  ReadContext context{path.string(), {}, {}};
+  for (const auto& text : overrides) {
+    if (!override_key(root, text, context)) return *context.error;
+  }
+  Scene scene;
+  StrictTable top(root, "", context);
+  top.table("suture", [&](StrictTable& t) { read_suture(t, path.parent_path(), scene.suture); });
+  top.table("contact", [&](StrictTable& t) { read_contact(t, scene.contact); });
+  top.table("world", [&](StrictTable& t) { read_world(t, scene.suture.nodes, scene.world); });
+  top.table("time", [&](StrictTable& t) { read_time(t, scene.time); });
+  top.table("hands", [&](StrictTable& t) { read_hands(t, scene.hands); });
+  top.finish();
+  if (context.error) return *context.error;
+  return scene;
+}
+
+}  // namespace ligature::scene

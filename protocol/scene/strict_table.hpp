@@ -1,0 +1,227 @@
+#pragma once
+// Private to scene_file.cpp: a TOML table read key by key, that refuses whatever nobody asked for.
+
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <toml++/toml.h>
+#include <utility>
+#include <vector>
+
+#include "protocol/scene/scene.hpp"
+
+namespace ligature::scene {
+
+/// Where values came from and the first thing wrong with them; everything read after an error is ignored.
+struct ReadContext {
+  std::string file;
+  std::map<std::string, std::string> overridden;  ///< dotted key -> the text of its --set
+  std::optional<Error> error;
+
+  [[nodiscard]] bool is_overridden(const std::string& key) const { return overridden.contains(root_of(key)); }
+
+  void refuse(const std::string& key, const toml::node& where, const std::string& what) {
+    if (error) return;
+    auto set = overridden.find(root_of(key));
+    if (set == overridden.end() && where.source().begin.line == 0) {  // a table that only an override brought into being
+      set = overridden.lower_bound(key + ".");
+    }
+    const auto place = set != overridden.end() ? "--set " + set->second
+                                               : file + ":" + std::to_string(where.source().begin.line);
+    error = Error{place + ": " + what};
+  }
+
+ private:
+  /// The override that `key` lies in: itself or a prefix of it that ends at a dot or bracket; itself when none.
+  [[nodiscard]] std::string root_of(const std::string& key) const {
+    for (const auto& [prefix, text] : overridden) {
+      const bool inside = key.size() > prefix.size() && key.starts_with(prefix) &&
+                          (key[prefix.size()] == '.' || key[prefix.size()] == '[');
+      if (inside) return prefix;
+    }
+    return key;
+  }
+};
+
+/// What a number may be: [low, high], or (low, high] when the low end is open.
+struct Range {
+  double low;
+  double high;
+  bool open_low = false;
+
+  [[nodiscard]] bool holds(double v) const { return (open_low ? v > low : v >= low) && v <= high; }
+  [[nodiscard]] std::string text() const {
+    std::ostringstream s;
+    if (open_low) s << "more than " << low << " up to " << high;
+    else s << low << " .. " << high;
+    return s.str();
+  }
+};
+
+class StrictTable {
+ public:
+  StrictTable(const toml::table& table, std::string path, ReadContext& context)
+      : table_(table), path_(std::move(path)), context_(context) {}
+
+  void number(std::string_view key, double& out, Range range) {
+    const auto* node = take(key);
+    if (!node) return;
+    const auto value = node->value<double>();
+    if (!node->is_number() || !value || !std::isfinite(*value) || !range.holds(*value)) {
+      return refuse(key, *node, "number " + range.text());
+    }
+    out = *value;
+  }
+
+  void number(std::string_view key, std::optional<double>& out, Range range) {
+    if (!table_.contains(key)) return void(take(key));
+    double value = range.high;
+    number(key, value, range);
+    out = value;
+  }
+
+  void integer(std::string_view key, int& out, int low, int high) {
+    const auto* node = take(key);
+    if (!node) return;
+    const auto value = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
+    if (!value || *value < low || *value > high) {
+      return refuse(key, *node, "integer " + std::to_string(low) + " .. " + std::to_string(high));
+    }
+    out = static_cast<int>(*value);
+  }
+
+  void boolean(std::string_view key, bool& out) {
+    const auto* node = take(key);
+    if (!node) return;
+    if (!node->is_boolean()) return refuse(key, *node, "true or false");
+    out = *node->value<bool>();
+  }
+
+  void text(std::string_view key, std::string& out) {
+    const auto* node = take(key);
+    if (!node) return;
+    if (!node->is_string() || node->value<std::string>()->empty()) return refuse(key, *node, "a text");
+    out = *node->value<std::string>();
+  }
+
+  /// One of the names of a table of {name, value}.
+  template <class Enum, std::size_t N>
+  void choice(std::string_view key, Enum& out, const std::pair<const char*, Enum> (&names)[N], const char* note = "") {
+    const auto* node = take(key);
+    if (!node) return;
+    std::string allowed;
+    for (const auto& [label, value] : names) {
+      if (node->is_string() && *node->value<std::string>() == label) return void(out = value);
+      allowed += (allowed.empty() ? "\"" : ", \"") + std::string(label) + "\"";
+    }
+    refuse(key, *node, "one of " + allowed + note);
+  }
+
+  void vector(std::string_view key, Vec& out, double limit) {
+    const auto* node = take(key);
+    if (!node) return;
+    const auto* array = node->as_array();
+    Vec v{};
+    bool good = array && array->size() == 3;
+    for (std::size_t i = 0; good && i < 3; ++i) {
+      const auto value = (*array)[i].is_number() ? (*array)[i].value<double>() : std::nullopt;
+      good = value && std::isfinite(*value) && std::abs(*value) <= limit;
+      if (good) v[i] = *value;
+    }
+    std::ostringstream allowed;
+    allowed << "three numbers [x, y, z], each -" << limit << " .. " << limit;
+    if (!good) return refuse(key, *node, allowed.str());
+    out = v;
+  }
+
+  void vector(std::string_view key, std::optional<Vec>& out, double limit) {
+    if (!table_.contains(key)) return void(take(key));
+    Vec v{};
+    vector(key, v, limit);
+    out = v;
+  }
+
+  /// Calls read(StrictTable&) for the table under `key`, if there.
+  template <class Read>
+  void table(std::string_view key, Read read) {
+    const auto* node = take(key);
+    if (!node) return;
+    if (!node->is_table()) return refuse(key, *node, "a table");
+    StrictTable inner(*node->as_table(), full(key), context_);
+    read(inner);
+    inner.finish();
+  }
+
+  /// Calls read(StrictTable&) for each table of the array under `key`, if there.
+  template <class Read>
+  void tables(std::string_view key, Read read) {
+    const auto* node = take(key);
+    if (!node) return;
+    const auto* array = node->as_array();
+    for (std::size_t i = 0; array && i < array->size(); ++i) {
+      if (!(*array)[i].is_table()) array = nullptr;
+    }
+    if (!array) return refuse(key, *node, "an array of tables [{...}, ...]");
+    for (std::size_t i = 0; i < array->size(); ++i) {
+      StrictTable inner(*(*array)[i].as_table(), full(key) + "[" + std::to_string(i) + "]", context_);
+      read(inner);
+      inner.finish();
+    }
+  }
+
+  /// Refuses a key that must be there and is not.
+  void require(std::string_view key) {
+    if (!table_.contains(key)) context_.refuse(path_, table_, "'" + path_ + "': key '" + std::string(key) + "' is missing");
+  }
+
+  /// Refuses the first key that was never asked for.
+  void finish() {
+    for (const auto& [key, node] : table_) {
+      if (asked_.contains(std::string(key.str()))) continue;
+      std::string allowed;
+      for (const auto& k : asked_) allowed += (allowed.empty() ? "" : ", ") + k;
+      const char* kind = node.is_table() ? "table" : "key";
+      context_.refuse(full(key.str()), node, std::string("unknown ") + kind + " '" + full(key.str()) + "', allowed " + allowed);
+    }
+  }
+
+  void refuse(std::string_view key, const toml::node& node, const std::string& allowed) {
+    std::ostringstream found;
+    node.visit([&](const auto& value) { found << value; });
+    context_.refuse(full(key), node, "key '" + full(key) + "': found " + one_line(found.str()) + ", allowed " + allowed);
+  }
+
+  /// The same for a rule that ties keys together, after they were read.
+  void refuse(std::string_view key, const std::string& allowed) {
+    if (const auto* node = table_.get(key)) refuse(key, *node, allowed);
+  }
+
+  [[nodiscard]] bool was_overridden(std::string_view key) const { return context_.is_overridden(full(key)); }
+  [[nodiscard]] bool failed() const { return context_.error.has_value(); }
+
+ private:
+  const toml::node* take(std::string_view key) {
+    asked_.insert(std::string(key));
+    return context_.error ? nullptr : table_.get(key);
+  }
+  [[nodiscard]] std::string full(std::string_view key) const {
+    return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
+  }
+  static std::string one_line(std::string s) {
+    for (auto& c : s) {
+      if (c == '\n' || c == '\r') c = ' ';
+    }
+    return s.size() > 80 ? s.substr(0, 77) + "..." : s;
+  }
+
+  const toml::table& table_;
+  std::string path_;
+  ReadContext& context_;
+  std::set<std::string> asked_;
+};
+
+}  // namespace ligature::scene

@@ -1,0 +1,75 @@
+#include "protocol/scene/gripper_script.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace ligature::scene {
+namespace {
+
+std::string write(const std::string& text) {
+  const auto path = ::testing::TempDir() + "grippers.csv";
+  std::ofstream(path) << text;
+  return path;
+}
+
+std::string why_refused(const std::string& rows) {
+  const auto read = load_gripper_script(write("# a comment\ntime,hand,x,y,z,grip\n" + rows));
+  const auto* error = std::get_if<Error>(&read);
+  return error ? error->text : "";
+}
+
+TEST(GripperScript, ReadsTheShippedOverhandScript) {
+  const auto read = load_gripper_script(LIGATURE_SOURCE_DIR "/scenes/operators/overhand.csv");
+  ASSERT_TRUE(std::holds_alternative<GripperScript>(read)) << std::get<Error>(read).text;
+  const auto& script = std::get<GripperScript>(read);
+  EXPECT_EQ(script.keys[0].size(), 11u);
+  EXPECT_EQ(end_time_s(script), 21.0);
+}
+
+TEST(GripperScript, RefusesABadRowByItsLine) {
+  const struct { const char* rows; const char* says; } kCases[] = {
+      {"0,L,0,0,0\n", ":3: found 5 columns"},
+      {"0,L,0,0,0,1,\n", ":3: found 7 columns"},
+      {"0,L,0,0,0,1\nx,L,0,0,0,1\n", ":4: column 'time': found 'x'"},
+      {"0,L,0,nan,0,1\n", ":3: column 'y': found 'nan'"},
+      {"0,L,0,0,inf,1\n", ":3: column 'z'"},
+      {"0,L,,0,0,1\n", ":3: column 'x': found ''"},
+      {"0,L,1e999,0,0,1\n", ":3: column 'x'"},
+      {"0,l,0,0,0,1\n", ":3: column 'hand': found 'l', allowed L or R"},
+      {"0,L,0,0,0,2\n", ":3: column 'grip': found '2', allowed 0 or 1"},
+      {"-1,L,0,0,0,1\n", ":3: column 'time': found -1"},
+      {"1,L,0,0,0,1\n0,R,0,0,0,1\n1,L,0,0,0,1\n", ":5: column 'time': found 1, allowed later"},
+      {"", "found no rows"},
+  };
+  for (const auto& c : kCases) EXPECT_NE(why_refused(c.rows).find(c.says), std::string::npos) << c.rows << why_refused(c.rows);
+  const auto header = load_gripper_script(write("t,hand,x,y,z,grip\n0,L,0,0,0,1\n"));
+  EXPECT_NE(std::get<Error>(header).text.find(":1: found 't,hand,x,y,z,grip', allowed the header"), std::string::npos);
+  EXPECT_NE(std::get<Error>(load_gripper_script("no/such.csv")).text.find("cannot be read"), std::string::npos);
+}
+
+TEST(GripperScript, SampleRestsAtKeysAndHoldsOutside) {
+  const std::vector<GripKey> keys{{1.0, {0, 0, 0}, true}, {3.0, {2, 0, -4}, false}};
+  EXPECT_FALSE(sample(keys, 0.5).grip);
+  EXPECT_TRUE(sample(keys, 1.0).grip);
+  EXPECT_EQ(sample(keys, 2.0).p_W_m, (Vec{1, 0, -2}));
+  EXPECT_EQ(sample(keys, 2.0).v_W_m_per_s, (Vec{1.5, 0, -3}));
+  EXPECT_EQ(sample(keys, 1.0).v_W_m_per_s, (Vec{0, 0, 0}));
+  EXPECT_EQ(sample(keys, 9.0).p_W_m, (Vec{2, 0, -4}));
+  EXPECT_FALSE(sample(keys, 9.0).grip);
+  EXPECT_EQ(sample({}, 1.0).p_W_m, kParked_W_m);
+}
+
+TEST(GripperScript, SampledVelocityIsTheDerivativeOfThePosition) {
+  const std::vector<GripKey> keys{{0.0, {0, 0, 0}, true}, {0.7, {1, -2, 3}, true}, {1.1, {4, 0, 1}, true}};
+  for (double t = 0.05; t < 1.1; t += 0.05) {
+    const double h = 1e-6;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double slope = (sample(keys, t + h).p_W_m[i] - sample(keys, t - h).p_W_m[i]) / (2 * h);
+      EXPECT_NEAR(sample(keys, t).v_W_m_per_s[i], slope, 1e-3);  // t = 0.7 is a key: smooth there too
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ligature::scene

@@ -1,0 +1,117 @@
+#include "protocol/scene/scene_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace ligature::scene {
+namespace {
+
+/// A file in the test's temporary folder.
+std::string write(const std::string& name, const std::string& text) {
+  const auto path = ::testing::TempDir() + name;
+  std::ofstream(path) << text;
+  return path;
+}
+
+/// What is wrong with a scene of this text, "" when nothing is.
+std::string why_refused(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  const auto read = load_scene(write("scene.toml", text), overrides);
+  const auto* error = std::get_if<Error>(&read);
+  return error ? error->text : "";
+}
+
+TEST(SceneFile, ReadsTheShippedScenes) {
+  for (const char* name : {"paper.toml", "desk.toml"}) {
+    const auto read = load_scene(std::string(LIGATURE_SOURCE_DIR "/scenes/") + name);
+    ASSERT_TRUE(std::holds_alternative<Scene>(read)) << std::get<Error>(read).text;
+    const auto& s = std::get<Scene>(read);
+    EXPECT_EQ(s.suture.nodes, 50);
+    EXPECT_EQ(s.suture.paper.node_mass_kg, 0.05);
+    EXPECT_EQ(s.hands.coupling_N_per_m, 1200.0);
+    ASSERT_EQ(s.world.fixed.size(), 1u);
+    EXPECT_EQ(s.world.fixed[0].position_m, (Vec{0.0, 0.0, 5.5}));
+  }
+}
+
+TEST(SceneFile, AnEmptyFileIsTheDefaultScene) {
+  const auto read = load_scene(write("empty.toml", ""));
+  ASSERT_TRUE(std::holds_alternative<Scene>(read));
+  EXPECT_EQ(std::get<Scene>(read).suture.nodes, 50);
+}
+
+TEST(SceneFile, NamesFileLineKeyFoundAndAllowed) {
+  const auto why = why_refused("[suture]\n\nnodes = 1\n");
+  EXPECT_EQ(why, ::testing::TempDir() + "scene.toml:3: key 'suture.nodes': found 1, allowed integer 2 .. 5000");
+}
+
+TEST(SceneFile, EveryRefusalIsOneLineWithItsLineNumber) {
+  const struct { const char* text; int line; const char* key; } kCases[] = {
+      {"[suture]\nlenght_m = 5.0\n", 2, "suture.lenght_m"},
+      {"[sutura]\nnodes = 5\n", 1, "sutura"},
+      {"nodes = 5\n", 1, "nodes"},
+      {"[suture]\nnodes = 5.0\n", 2, "suture.nodes"},
+      {"[suture]\nnodes = \"5\"\n", 2, "suture.nodes"},
+      {"[suture]\nlength_m = nan\n", 2, "suture.length_m"},
+      {"[suture]\nlength_m = inf\n", 2, "suture.length_m"},
+      {"[suture]\nradius_m = 0\n", 2, "suture.radius_m"},
+      {"[suture]\nmodel = \"paper-6\"\n", 2, "paper-1"},
+      {"[suture]\nmodel = \"rod\"\n", 2, "rod model"},
+      {"[suture]\ninitial = \"no-such.csv\"\n", 2, "no-such.csv"},
+      {"[world]\ngravity_m_per_s2 = [0, 0]\n", 2, "world.gravity_m_per_s2"},
+      {"[world]\ngravity_m_per_s2 = [0, 0, nan]\n", 2, "world.gravity_m_per_s2"},
+      {"[world]\nfixed = [{node = 50, position_m = [0, 0, 0]}]\n", 2, "world.fixed[0].node"},
+      {"[world]\nfixed = [{node = 0}]\n", 2, "position_m"},
+      {"[world]\nfixed = [{node = 49, position_m = [0,0,0]}, {node = -1, position_m = [0,0,0]}]\n", 2, "world.fixed[1].node"},
+      {"[world]\nfixed = 3\n", 2, "world.fixed"},
+      {"[world]\ngrippers_collide = 1\n", 2, "world.grippers_collide"},
+      {"[contact]\nfriction = -1\n", 2, "contact.friction"},
+      {"[contact]\nfriction = 0.5\nstatic_friction = 0.2\n", 3, "contact.static_friction"},
+      {"[time]\ntick_s = 0\n", 2, "time.tick_s"},
+      {"[time\ntick_s = 0\n", 1, "TOML"},
+      {"[time]\ntick_s = 0.001\ntick_s = 0.002\n", 3, "TOML"},
+  };
+  for (const auto& c : kCases) {
+    const auto why = why_refused(c.text);
+    EXPECT_NE(why.find("scene.toml:" + std::to_string(c.line) + ":"), std::string::npos) << c.text << why;
+    EXPECT_NE(why.find(c.key), std::string::npos) << c.text << why;
+    EXPECT_EQ(why.find('\n'), std::string::npos) << why;
+  }
+}
+
+TEST(SceneFile, RefusesAMissingFileAndAFolder) {
+  EXPECT_NE(std::get<Error>(load_scene("no/such.toml")).text.find("no/such.toml: cannot be read"), std::string::npos);
+  EXPECT_NE(std::get<Error>(load_scene(::testing::TempDir())).text.find("cannot be read"), std::string::npos);
+}
+
+TEST(SceneFile, OverridesReachEveryKindOfKey) {
+  const std::vector<std::string> set{"suture.nodes=35", "contact.friction = 1", "suture.model=paper-1",
+                                     "world.loads=[{node=-1, force_N=[0,0,-1e-3]}]", "world.desk_height_m=0.5"};
+  const auto read = load_scene(write("empty.toml", ""), set);
+  ASSERT_TRUE(std::holds_alternative<Scene>(read)) << std::get<Error>(read).text;
+  const auto& s = std::get<Scene>(read);
+  EXPECT_EQ(s.suture.nodes, 35);
+  EXPECT_EQ(s.contact.friction, 1.0);
+  EXPECT_EQ(s.suture.model, Model::kPaper1);
+  ASSERT_EQ(s.world.loads.size(), 1u);
+  EXPECT_EQ(s.world.loads[0].force_N[2], -1e-3);
+  EXPECT_EQ(s.world.desk_height_m, 0.5);
+}
+
+TEST(SceneFile, OverridesAreCheckedLikeTheFileAndNamedAsOverrides) {
+  for (const char* set : {"suture.nodes=1", "suture.nods=5", "suture.nodes", "=3", "suture.nodes=", "suture.nodes=nan",
+                          "suture=3", "suture.nodes.deep=3", "world.loads=[{node=-1, force=[0,0,0]}]", "time.tick_s=[1"}) {
+    const auto why = why_refused("", {set});
+    EXPECT_EQ(why.find(std::string("--set ") + set), 0u) << set << " -> " << why;
+  }
+}
+
+TEST(SceneFile, LaysAPolylineOutAtRestLengthNextToTheSceneFile) {
+  write("line.csv", "x,y,z\n0,0,0\n10,0,0\n");
+  const auto read = load_scene(write("with_line.toml", "[suture]\nnodes = 3\nlength_m = 4\ninitial = \"line.csv\"\n"));
+  ASSERT_TRUE(std::holds_alternative<Scene>(read)) << std::get<Error>(read).text;
+  EXPECT_EQ(std::get<Scene>(read).suture.initial_polyline_m, (std::vector<Vec>{{0, 0, 0}, {2, 0, 0}, {4, 0, 0}}));
+}
+
+}  // namespace
+}  // namespace ligature::scene
