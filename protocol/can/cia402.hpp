@@ -1,0 +1,172 @@
+#pragma once
+// The CiA 402 drive state machine as data: states by statusword, commands by controlword, transitions as a table and a
+// pure function. The drive runs next(); the master reads state_of() and sends controlword_towards_operation().
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+namespace ligature::can::cia402 {
+
+enum class State : std::uint8_t {
+  kNotReadyToSwitchOn,
+  kSwitchOnDisabled,
+  kReadyToSwitchOn,
+  kSwitchedOn,
+  kOperationEnabled,
+  kQuickStopActive,
+  kFaultReactionActive,
+  kFault,
+};
+
+/// Commands as the controlword carries them, and the drive's own events.
+enum class Event : std::uint8_t {
+  kInitialised,        // drive's own: self test done
+  kShutdown,           // xxxx x110
+  kSwitchOn,           // xxxx 0111; "disable operation" when operation is enabled
+  kEnableOperation,    // xxxx 1111
+  kDisableVoltage,     // xxxx xx0x
+  kQuickStop,          // xxxx x01x
+  kFaultReset,         // rising edge of bit 7
+  kFaultDetected,      // drive's own
+  kFaultReactionDone,  // drive's own: torque is zero
+};
+
+struct StatusPattern {
+  State state;
+  std::uint16_t mask;
+  std::uint16_t value;
+};
+inline constexpr std::array kStatusPatterns{
+    StatusPattern{State::kNotReadyToSwitchOn, 0x004F, 0x0000},  StatusPattern{State::kSwitchOnDisabled, 0x004F, 0x0040},
+    StatusPattern{State::kReadyToSwitchOn, 0x006F, 0x0021},     StatusPattern{State::kSwitchedOn, 0x006F, 0x0023},
+    StatusPattern{State::kOperationEnabled, 0x006F, 0x0027},    StatusPattern{State::kQuickStopActive, 0x006F, 0x0007},
+    StatusPattern{State::kFaultReactionActive, 0x004F, 0x000F}, StatusPattern{State::kFault, 0x004F, 0x0008},
+};
+
+// Statusword bits outside the state pattern.
+inline constexpr std::uint16_t kVoltageEnabledBit = 1U << 4;
+inline constexpr std::uint16_t kRemoteBit = 1U << 9;
+inline constexpr std::uint16_t kInternalLimitBit = 1U << 11;  ///< torque demand clipped at 0x6072
+inline constexpr std::uint16_t kFollowsTargetBit = 1U << 12;  ///< CST: target torque is acted upon
+
+/// State a statusword shows; nothing for a pattern the standard does not define.
+[[nodiscard]] constexpr std::optional<State> state_of(std::uint16_t statusword) noexcept {
+  for (const StatusPattern& p : kStatusPatterns) {
+    if ((statusword & p.mask) == p.value) return p.state;
+  }
+  return std::nullopt;
+}
+
+[[nodiscard]] constexpr std::uint16_t statusword_of(State state) noexcept {
+  for (const StatusPattern& p : kStatusPatterns) {
+    if (p.state == state) return p.value;
+  }
+  return 0;
+}
+
+inline constexpr std::uint16_t kControlDisableVoltage = 0x0000;
+inline constexpr std::uint16_t kControlQuickStop = 0x0002;
+inline constexpr std::uint16_t kControlShutdown = 0x0006;
+inline constexpr std::uint16_t kControlSwitchOn = 0x0007;
+inline constexpr std::uint16_t kControlEnableOperation = 0x000F;
+inline constexpr std::uint16_t kControlFaultReset = 0x0080;
+
+struct ControlPattern {
+  Event event;
+  std::uint16_t mask;
+  std::uint16_t value;
+};
+inline constexpr std::array kControlPatterns{
+    ControlPattern{Event::kShutdown, 0x0087, 0x0006},        ControlPattern{Event::kSwitchOn, 0x008F, 0x0007},
+    ControlPattern{Event::kEnableOperation, 0x008F, 0x000F}, ControlPattern{Event::kDisableVoltage, 0x0082, 0x0000},
+    ControlPattern{Event::kQuickStop, 0x0086, 0x0002},
+};
+
+/// Command of a controlword; fault reset needs the edge, hence the word before it.
+[[nodiscard]] constexpr std::optional<Event> event_of(std::uint16_t before, std::uint16_t controlword) noexcept {
+  if ((controlword & kControlFaultReset) != 0 && (before & kControlFaultReset) == 0) return Event::kFaultReset;
+  for (const ControlPattern& p : kControlPatterns) {
+    if ((controlword & p.mask) == p.value) return p.event;
+  }
+  return std::nullopt;
+}
+
+struct Transition {
+  State from;
+  Event on;
+  State to;
+};
+inline constexpr std::array kTransitions{
+    Transition{State::kNotReadyToSwitchOn, Event::kInitialised, State::kSwitchOnDisabled},  // 1
+    Transition{State::kSwitchOnDisabled, Event::kShutdown, State::kReadyToSwitchOn},        // 2
+    Transition{State::kReadyToSwitchOn, Event::kSwitchOn, State::kSwitchedOn},              // 3
+    Transition{State::kReadyToSwitchOn, Event::kEnableOperation, State::kSwitchedOn},       // 3, then 4 at the next one
+    Transition{State::kSwitchedOn, Event::kEnableOperation, State::kOperationEnabled},      // 4
+    Transition{State::kOperationEnabled, Event::kSwitchOn, State::kSwitchedOn},             // 5
+    Transition{State::kSwitchedOn, Event::kShutdown, State::kReadyToSwitchOn},              // 6
+    Transition{State::kReadyToSwitchOn, Event::kDisableVoltage, State::kSwitchOnDisabled},  // 7
+    Transition{State::kReadyToSwitchOn, Event::kQuickStop, State::kSwitchOnDisabled},       // 7
+    Transition{State::kOperationEnabled, Event::kShutdown, State::kReadyToSwitchOn},        // 8
+    Transition{State::kOperationEnabled, Event::kDisableVoltage, State::kSwitchOnDisabled},  // 9
+    Transition{State::kSwitchedOn, Event::kDisableVoltage, State::kSwitchOnDisabled},        // 10
+    Transition{State::kSwitchedOn, Event::kQuickStop, State::kSwitchOnDisabled},             // 10
+    Transition{State::kOperationEnabled, Event::kQuickStop, State::kQuickStopActive},        // 11
+    Transition{State::kQuickStopActive, Event::kDisableVoltage, State::kSwitchOnDisabled},   // 12
+    Transition{State::kFaultReactionActive, Event::kFaultReactionDone, State::kFault},       // 14
+    Transition{State::kFault, Event::kFaultReset, State::kSwitchOnDisabled},                 // 15
+};
+
+[[nodiscard]] constexpr State next(State s, Event e) noexcept {
+  if (e == Event::kFaultDetected) return s == State::kFault ? s : State::kFaultReactionActive;  // 13, from anywhere
+  for (const Transition& t : kTransitions) {
+    if (t.from == s && t.on == e) return t.to;
+  }
+  return s;  // a pair not listed changes nothing
+}
+
+/// Only one state lets torque through.
+[[nodiscard]] constexpr bool may_produce_torque(State s) noexcept { return s == State::kOperationEnabled; }
+
+/// Controlword that brings a drive one step nearer to Operation Enabled. A fault is not reset from here: whether to
+/// reset one is the caller's decision, by kControlFaultReset.
+[[nodiscard]] constexpr std::uint16_t controlword_towards_operation(State s) noexcept {
+  switch (s) {
+    case State::kSwitchOnDisabled:
+      return kControlShutdown;
+    case State::kReadyToSwitchOn:
+      return kControlSwitchOn;
+    case State::kSwitchedOn:
+      return kControlEnableOperation;
+    case State::kOperationEnabled:
+      return kControlEnableOperation;
+    default:
+      return kControlDisableVoltage;
+  }
+}
+
+static_assert([] {  // the two directions of the statusword table agree
+  for (const StatusPattern& p : kStatusPatterns) {
+    if (state_of(statusword_of(p.state)) != p.state) return false;
+  }
+  return true;
+}());
+static_assert([] {  // a fault latches: of all events only a reset leaves it
+  for (int e = 0; e <= static_cast<int>(Event::kFaultReactionDone); ++e) {
+    if (static_cast<Event>(e) != Event::kFaultReset && next(State::kFault, static_cast<Event>(e)) != State::kFault)
+      return false;
+  }
+  return next(State::kFault, Event::kFaultReset) == State::kSwitchOnDisabled;
+}());
+static_assert([] {  // from Switch On Disabled the master's words reach Operation Enabled in three steps
+  State s = State::kSwitchOnDisabled;
+  std::uint16_t before = 0;
+  for (int i = 0; i < 3; ++i) {
+    const std::uint16_t word = controlword_towards_operation(s);
+    s = next(s, *event_of(before, word));
+    before = word;
+  }
+  return s == State::kOperationEnabled;
+}());
+
+}  // namespace ligature::can::cia402

@@ -1,0 +1,37 @@
+#pragma once
+// The image of a frame in one packet of a `local:` bus: the 16 bytes of Linux' struct can_frame
+// (identifier u32 in host order, length u8, three bytes unused, eight data bytes), so that tools can share code.
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+
+#include "protocol/can/frame.hpp"
+
+namespace ligature::can {
+
+inline constexpr std::size_t kLocalPacketBytes = 16;
+using LocalPacket = std::array<std::uint8_t, kLocalPacketBytes>;
+
+[[nodiscard]] inline LocalPacket to_packet(const Frame& f) noexcept {
+  LocalPacket p{};
+  std::memcpy(p.data(), &f.id, 4);
+  p[4] = f.dlc;
+  std::memcpy(p.data() + 8, f.data.data(), 8);
+  return p;
+}
+
+/// Nothing for another size, more than 8 bytes of data, or anything but a data frame with an 11-bit identifier.
+[[nodiscard]] inline std::optional<Frame> from_packet(std::span<const std::uint8_t> p) noexcept {
+  if (p.size() != kLocalPacketBytes || p[4] > kMaxDlc) return std::nullopt;
+  Frame f;
+  std::memcpy(&f.id, p.data(), 4);
+  if (f.id > kMaxId) return std::nullopt;  // the upper bits flag extended, remote and error frames
+  f.dlc = p[4];
+  std::memcpy(f.data.data(), p.data() + 8, f.dlc);
+  return f;
+}
+
+}  // namespace ligature::can
