@@ -19,6 +19,15 @@ enum class BroadPhase : std::uint8_t { kAuto, kBrute, kSweep, kBvh };
 enum class SwivelDamper : std::uint8_t { kInternal, kPaper };     ///< four-point dihedral rate, or the paper's (13)-(15)
 enum class QuadraticStretch : std::uint8_t { kStiff, kPrinted };  ///< model 5: constant that stretches less, or Table I's
 
+/// How dampers act: on the velocities they leave behind (stable at any step), or as printed, on those they find.
+enum class Damping : std::uint8_t { kImplicit, kExplicit };
+/// Order of the Euler update: velocity first, or position and velocity both from the old state.
+enum class Integrator : std::uint8_t { kSemiImplicit, kForward };
+/// Swivel damper: on the rate of the four-point dihedral angle (internal), or (13)-(15) with the sign that damps.
+enum class Swivel : std::uint8_t { kInternal, kPaper };
+/// Model 5's stretch constant: the one that makes it stretch less than model 4, or k_l as printed.
+enum class Quadratic : std::uint8_t { kStiff, kPrinted };
+
 /// The paper's Table I, per node; used by paper-1 .. paper-5.
 struct PaperParameters {
   double node_mass_kg = 0.05;     ///< m
@@ -27,6 +36,14 @@ struct PaperParameters {
   double bend = 10.0;             ///< k_ts, N m (torque is k_ts alpha / pi)
   double bend_damping = 0.05;     ///< k_td, N m s
   double swivel_damping = 0.2;    ///< k_sw, N s
+  /// Node count at which the values above hold, 2 .. 5000. When given, another `nodes` simulates the same thread: mass,
+  /// EA, EI and losses per length are kept. When absent, the values are per node whatever `nodes` is, as in the paper.
+  std::optional<int> reference_nodes;       ///< key suture.reference_nodes
+  Damping damping = Damping::kImplicit;     ///< key suture.damping = "implicit" | "explicit"
+  Integrator integrator = Integrator::kSemiImplicit;  ///< key suture.integrator = "semi-implicit" | "forward"
+  Swivel swivel = Swivel::kInternal;        ///< key suture.swivel = "internal" | "paper"
+  Quadratic quadratic = Quadratic::kStiff;  ///< key suture.quadratic = "stiff" | "printed"; model paper-5 only
+  double air_drag_per_s = 0.0;              ///< key suture.air_drag_per_s: a = -c v, 0 .. 1e6
   SwivelDamper swivel = SwivelDamper::kInternal;
   QuadraticStretch quadratic_stretch = QuadraticStretch::kStiff;
 };
@@ -43,8 +60,11 @@ struct Suture {
 
 struct Contact {
   ContactSolver solver = ContactSolver::kImplicit;
-  double friction = 0.3;                   ///< kinetic Coulomb coefficient
+  double friction = 0.3;                   ///< kinetic Coulomb coefficient; key contact.friction
   std::optional<double> static_friction;   ///< same as friction when absent
+  double repulsion_N_per_m = 100.0;        ///< k_rs of (2), solver "paper" only
+  double repulsion_N_s_per_m = 5.0;        ///< k_rd of (2), solver "paper" only
+  bool friction_cap = true;                ///< solver "paper": friction stops slip at most; false: as printed
   double repulsion_N_per_m = 100.0;        ///< k_rs, solver = paper only
   double repulsion_N_s_per_m = 5.0;        ///< k_rd, solver = paper only
   BroadPhase broad_phase = BroadPhase::kAuto;

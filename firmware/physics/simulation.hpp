@@ -1,0 +1,89 @@
+#pragma once
+// The simulated thread as the rest of the program sees it: two tools in, nodes and hand forces out.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <variant>
+
+#include "firmware/physics/types.hpp"
+#include "protocol/scene/scene.hpp"
+
+namespace ligature::physics {
+
+enum class Hand : std::uint8_t { kLeft = 0, kRight = 1 };
+
+/// What a hand does during one tick; world metres and metres per second.
+struct ToolInput {
+  Vec3 p_WT = Vec3::Zero();
+  Vec3 v_WT = Vec3::Zero();
+  bool grip = false;
+};
+
+/// Which of the paper's conditions (section IV) governs a hand's force.
+enum class Propagation : std::uint8_t {
+  kNone,  ///< not holding, or propagation is off
+  kA,     ///< both neighbouring segments are within their limits: the force stays in the springs
+  kB,     ///< a neighbouring segment sits on its limit: axial force passes on
+  kC,     ///< as B, while the other hand holds too
+};
+
+/// A hand's grasp of the thread. Plain values of the last tick.
+struct HandContact {
+  int node = -1;                ///< grasped node, -1 none
+  Vec3 p_WG = Vec3::Zero();     ///< its position, m
+  Vec3 v_WG = Vec3::Zero();     ///< its velocity, m/s
+  Vec3 f_W = Vec3::Zero();      ///< force ON THE HAND, world newtons, before any device scaling
+  Propagation condition = Propagation::kNone;
+};
+
+/// State of health after a tick.
+struct Diagnostics {
+  double kinetic_J = 0.0;
+  double potential_J = 0.0;       ///< gravity (zero at z = 0), stretch, bending
+  double max_stretch = 0.0;       ///< max l / l_rest - 1
+  double min_gap_m = 0.0;         ///< surface gap of the closest non-neighbour pair, negative: overlap; +inf: none near
+  int contacts = 0;               ///< contacts that carried an impulse in the last step
+  bool contact_cap_hit = false;   ///< more contacts than there was room for
+  bool finite = true;             ///< false: the state is frozen at the last finite one; see bad_node
+  int bad_node = -1;              ///< first node that went non-finite or out of range
+  std::int64_t bad_tick = -1;     ///< tick at which it did
+};
+
+/// A thread in its world. Copyable: a copy goes its own way (planners try pulls on copies).
+class Simulation {
+ public:
+  /// Builds everything a run needs; the only function that allocates. The string says why it was refused.
+  static std::variant<Simulation, std::string> make(const scene::Scene& scene);
+
+  Simulation(const Simulation& other);
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(const Simulation& other);
+  Simulation& operator=(Simulation&&) noexcept;
+  ~Simulation();
+
+  /// Advances by one scene.time.tick_s in scene.time.substeps equal steps. Never allocates, never throws; once
+  /// `diagnostics().finite` is false it does nothing.
+  void tick(const std::array<ToolInput, 2>& tools) noexcept;
+
+  [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept;       ///< positions, m
+  [[nodiscard]] std::span<const Vec3> velocities_W() const noexcept;  ///< m/s
+  [[nodiscard]] const HandContact& hand(Hand h) const noexcept;
+  [[nodiscard]] const Diagnostics& diagnostics() const noexcept;
+
+  /// Back to the initial state of the scene, hands open.
+  void reset() noexcept;
+
+  /// Replaces the shape and the motion (experiments, restarts); hands open. Fixed nodes stay where they are.
+  /// @param p_W, v_W  as many as there are nodes; v_W may be empty for rest.
+  void set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept;
+
+ private:
+  struct Impl;
+  explicit Simulation(std::unique_ptr<Impl> impl) noexcept;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace ligature::physics
