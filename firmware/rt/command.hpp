@@ -1,0 +1,20 @@
+#pragma once
+// Requests to the real-time thread.
+
+#include <cstdint>
+
+#include "firmware/rt/payload.hpp"
+
+namespace ligature::rt {
+
+/// Values as in protocol/lcm/command_t.lcm.
+enum class CommandKind : std::int8_t { kNone = 0, kArm = 1, kDisarm = 2, kStop = 3, kResetFault = 4, kResetThread = 5 };
+
+struct Command {
+  std::int64_t id = 0;
+  CommandKind kind = CommandKind::kNone;
+};
+
+static_assert(Payload<Command>);
+
+}  // namespace ligature::rt

@@ -1,0 +1,78 @@
+#pragma once
+// How long every cycle took: mean, deviation and quantiles of all of them in constant memory.
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace ligature::rt {
+
+/// Statistics of durations in nanoseconds. Exact count, minimum, maximum, mean and variance (Welford's recurrence, which
+/// does not cancel), and a histogram with bins of equal relative width for quantiles: within a power of two there
+/// are 32 bins, so a quantile is at most 1/32 too high, never too low. 16 kB; O(1) a sample; no allocation.
+class DurationStatistics {
+ public:
+  void add(std::int64_t value_ns) noexcept {
+    const std::int64_t v = std::max<std::int64_t>(value_ns, 0);
+    ++count_;
+    const double step = static_cast<double>(v) - mean_;
+    mean_ += step / static_cast<double>(count_);
+    squares_ += step * (static_cast<double>(v) - mean_);
+    min_ = count_ == 1 ? v : std::min(min_, v);
+    max_ = std::max(max_, v);
+    ++bins_[bin_of(static_cast<std::uint64_t>(v))];
+  }
+
+  [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+  [[nodiscard]] std::int64_t min_ns() const noexcept { return min_; }
+  [[nodiscard]] std::int64_t max_ns() const noexcept { return max_; }
+  [[nodiscard]] double mean_ns() const noexcept { return mean_; }
+  [[nodiscard]] double deviation_ns() const noexcept {
+    return count_ < 2 ? 0.0 : std::sqrt(squares_ / static_cast<double>(count_ - 1));
+  }
+
+  /// @param q in 0 .. 1. @return the upper edge of the bin that holds the q-quantile, at most max_ns(); 0 when empty.
+  [[nodiscard]] std::int64_t quantile_ns(double q) const noexcept {
+    if (count_ == 0) return 0;
+    const double wanted = std::clamp(q, 0.0, 1.0) * static_cast<double>(count_);
+    std::uint64_t seen = 0;
+    for (std::size_t i = 0; i < bins_.size(); ++i) {
+      seen += bins_[i];
+      if (seen > 0 && static_cast<double>(seen) >= wanted) return std::min(upper_edge(i), max_);
+    }
+    return max_;
+  }
+
+ private:
+  static constexpr std::size_t kSub = 32;  // bins per power of two
+  static constexpr std::size_t kBins = kSub * 60;
+
+  static std::size_t bin_of(std::uint64_t v) noexcept {
+    if (v < kSub) return static_cast<std::size_t>(v);
+    const auto shift = static_cast<std::size_t>(std::bit_width(v)) - 6;  // keeps the six leading bits
+    return shift * kSub + static_cast<std::size_t>(v >> shift);
+  }
+  static std::int64_t upper_edge(std::size_t i) noexcept {
+    if (i < 2 * kSub) return static_cast<std::int64_t>(i);
+    const std::size_t shift = i / kSub - 1;
+    return static_cast<std::int64_t>(((static_cast<std::uint64_t>(i - shift * kSub) + 1) << shift) - 1);
+  }
+
+  std::uint64_t count_ = 0;
+  std::int64_t min_ = 0, max_ = 0;
+  double mean_ = 0.0, squares_ = 0.0;
+  std::array<std::uint64_t, kBins> bins_{};
+};
+
+/// Every cycle of a run. "Missed": finished after its period's end. "Lost": a period in which nothing was done.
+struct CycleTiming {
+  DurationStatistics wakeup;     ///< scheduled until awake
+  DurationStatistics control;    ///< awake until the RPDOs were written
+  DurationStatistics execution;  ///< awake until the whole tick was done
+  std::uint64_t deadline_misses = 0;
+  std::uint64_t periods_lost = 0;
+};
+
+}  // namespace ligature::rt

@@ -1,0 +1,51 @@
+#pragma once
+// What the control law sees of the rig, and what it may ask of it. SI units; index 0 = left hand, 1 = right.
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/rt/payload.hpp"
+
+namespace ligature::rt {
+
+inline constexpr std::size_t kHands = 2;
+inline constexpr std::size_t kJoints = 3;
+
+/// One hand as of the last complete set of joint messages.
+struct HandReading {
+  std::array<double, kJoints> q_rad{};  ///< waist, shoulder, forearm (absolute)
+  bool grip = false;
+  bool dead_man = false;
+  bool valid = false;            ///< a complete set has arrived since the start
+  bool enabled = false;          ///< every drive is in Operation enabled
+  bool drive_fault = false;      ///< a drive is in Fault, sent an emergency or fell out of NMT operational
+  bool bus_lost = false;         ///< the bus itself is gone
+  std::int32_t age_ticks = 0;    ///< periods since the last complete set; 0 = sampled at this period's SYNC
+};
+
+struct RigReading {
+  std::array<HandReading, kHands> hand{};
+};
+
+/// What the drives of a hand should be doing besides torque.
+enum class DriveRequest : std::uint8_t {
+  kHold,     ///< power stage off; a drive in Fault stays there
+  kEnable,   ///< go to Operation enabled, leaving Fault by a fault reset
+  kOperate,  ///< stay in Operation enabled; a drive that falls into Fault stays there
+};
+
+struct HandCommand {
+  std::array<double, kJoints> torque_Nm{};
+  DriveRequest request = DriveRequest::kHold;
+};
+
+struct RigCommand {
+  std::array<HandCommand, kHands> hand{};
+};
+
+/// Target torques as sent, per mille of rated torque.
+using WireTorque = std::array<std::array<std::int16_t, kJoints>, kHands>;
+
+static_assert(Payload<RigReading> && Payload<RigCommand>);
+
+}  // namespace ligature::rt

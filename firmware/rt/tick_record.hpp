@@ -1,0 +1,66 @@
+#pragma once
+// What the real-time thread tells the others: one record a period, and the thread's shape now and then.
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/rt/payload.hpp"
+#include "firmware/rt/rig_io.hpp"
+
+namespace ligature::rt {
+
+/// Bits of TickRecord::flags; values as in protocol/lcm/tick_t.lcm.
+enum TickFlag : std::int32_t {
+  kPeriodLost = 1,
+  kDeadlineMissed = 2,
+  kLeftStale = 4,
+  kRightStale = 8,
+  kLeftLimited = 16,
+  kRightLimited = 32,
+  kContactCap = 64,
+};
+
+using Triple = std::array<double, 3>;
+
+/// One control period; fields, units and frames as in protocol/lcm/tick_t.lcm, plus `armed`.
+struct TickRecord {
+  std::int64_t tick = 0;
+  std::int64_t scheduled_ns = 0;
+  std::int32_t wakeup_latency_ns = 0;
+  std::int32_t control_ns = 0;
+  std::int32_t execution_ns = 0;
+  std::int32_t flags = 0;
+  std::int8_t state = 0;
+  std::int16_t fault = 0;
+  bool armed = false;
+
+  std::array<Triple, kHands> p_WT_m{};
+  std::array<Triple, kHands> v_WT_m_per_s{};
+  std::array<Triple, kHands> f_world_N{};
+  std::array<Triple, kHands> f_device_N{};
+  WireTorque torque_permille{};
+  std::array<std::int16_t, kHands> grasped_node{-1, -1};
+  std::array<bool, kHands> grip{};
+  std::array<bool, kHands> dead_man{};
+  std::array<std::int16_t, kHands> tpdo_age_ticks{};
+
+  double kinetic_J = 0.0;
+  double potential_J = 0.0;
+  double max_stretch = 0.0;
+  double min_gap_m = 0.0;
+  std::int16_t contacts = 0;
+};
+
+inline constexpr std::size_t kMaxNodes = 5000;
+
+/// The centreline in W at one tick.
+struct ThreadSnapshot {
+  std::int64_t tick = 0;
+  std::int32_t count = 0;  ///< nodes in use, ≤ kMaxNodes
+  std::array<std::int16_t, kHands> grasped_node{-1, -1};
+  std::array<std::array<float, 3>, kMaxNodes> p_W_m{};
+};
+
+static_assert(Payload<TickRecord> && Payload<ThreadSnapshot>);
+
+}  // namespace ligature::rt
