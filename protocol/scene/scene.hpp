@@ -23,10 +23,6 @@ enum class QuadraticStretch : std::uint8_t { kStiff, kPrinted };  ///< model 5: 
 enum class Damping : std::uint8_t { kImplicit, kExplicit };
 /// Order of the Euler update: velocity first, or position and velocity both from the old state.
 enum class Integrator : std::uint8_t { kSemiImplicit, kForward };
-/// Swivel damper: on the rate of the four-point dihedral angle (internal), or (13)-(15) with the sign that damps.
-enum class Swivel : std::uint8_t { kInternal, kPaper };
-/// Model 5's stretch constant: the one that makes it stretch less than model 4, or k_l as printed.
-enum class Quadratic : std::uint8_t { kStiff, kPrinted };
 
 /// The paper's Table I, per node; used by paper-1 .. paper-5.
 struct PaperParameters {
@@ -41,8 +37,6 @@ struct PaperParameters {
   std::optional<int> reference_nodes;       ///< key suture.reference_nodes
   Damping damping = Damping::kImplicit;     ///< key suture.damping = "implicit" | "explicit"
   Integrator integrator = Integrator::kSemiImplicit;  ///< key suture.integrator = "semi-implicit" | "forward"
-  Swivel swivel = Swivel::kInternal;        ///< key suture.swivel = "internal" | "paper"
-  Quadratic quadratic = Quadratic::kStiff;  ///< key suture.quadratic = "stiff" | "printed"; model paper-5 only
   double air_drag_per_s = 0.0;              ///< key suture.air_drag_per_s: a = -c v, 0 .. 1e6
   SwivelDamper swivel = SwivelDamper::kInternal;
   QuadraticStretch quadratic_stretch = QuadraticStretch::kStiff;
@@ -64,9 +58,7 @@ struct Contact {
   std::optional<double> static_friction;   ///< same as friction when absent
   double repulsion_N_per_m = 100.0;        ///< k_rs of (2), solver "paper" only
   double repulsion_N_s_per_m = 5.0;        ///< k_rd of (2), solver "paper" only
-  bool friction_cap = true;                ///< solver "paper": friction stops slip at most; false: as printed
-  double repulsion_N_per_m = 100.0;        ///< k_rs, solver = paper only
-  double repulsion_N_s_per_m = 5.0;        ///< k_rd, solver = paper only
+  bool friction_cap = true;                ///< key contact.friction_cap; solver "paper": at most stop slip; false: as printed
   BroadPhase broad_phase = BroadPhase::kAuto;
 };
 
