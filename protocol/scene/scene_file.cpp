@@ -26,6 +26,9 @@ constexpr std::pair<const char*, BroadPhase> kBroadPhases[] = {
     {"auto", BroadPhase::kAuto}, {"brute", BroadPhase::kBrute}, {"sweep", BroadPhase::kSweep}, {"bvh", BroadPhase::kBvh}};
 constexpr std::pair<const char*, SwivelDamper> kSwivels[] = {{"internal", SwivelDamper::kInternal},
                                                              {"paper", SwivelDamper::kPaper}};
+constexpr std::pair<const char*, Damping> kDampings[] = {{"implicit", Damping::kImplicit}, {"explicit", Damping::kExplicit}};
+constexpr std::pair<const char*, Integrator> kIntegrators[] = {{"semi-implicit", Integrator::kSemiImplicit},
+                                                               {"forward", Integrator::kForward}};
 constexpr std::pair<const char*, QuadraticStretch> kQuadratics[] = {{"stiff", QuadraticStretch::kStiff},
                                                                     {"printed", QuadraticStretch::kPrinted}};
 
@@ -41,6 +44,10 @@ void read_suture(StrictTable& t, const fs::path& folder, Suture& s) {
   t.number("bend", s.paper.bend, kCoefficient);
   t.number("bend_damping", s.paper.bend_damping, kCoefficient);
   t.number("swivel_damping", s.paper.swivel_damping, kCoefficient);
+  t.integer("reference_nodes", s.paper.reference_nodes, 2, 5000);
+  t.choice("damping", s.paper.damping, kDampings);
+  t.choice("integrator", s.paper.integrator, kIntegrators);
+  t.number("air_drag_per_s", s.paper.air_drag_per_s, {0.0, 1e6});
   t.choice("swivel", s.paper.swivel, kSwivels);
   t.choice("quadratic_stretch", s.paper.quadratic_stretch, kQuadratics);
   if (t.failed() || s.initial == "hanging") return;
@@ -56,6 +63,7 @@ void read_contact(StrictTable& t, Contact& c) {
   t.number("static_friction", c.static_friction, {0.0, 1e3});
   t.number("repulsion_N_per_m", c.repulsion_N_per_m, kCoefficient);
   t.number("repulsion_N_s_per_m", c.repulsion_N_s_per_m, kCoefficient);
+  t.boolean("friction_cap", c.friction_cap);
   t.choice("broad_phase", c.broad_phase, kBroadPhases);
   if (c.static_friction && *c.static_friction < c.friction) t.refuse("static_friction", "contact.friction or more");
 }

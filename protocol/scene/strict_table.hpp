@@ -94,6 +94,13 @@ class StrictTable {
     out = static_cast<int>(*value);
   }
 
+  void integer(std::string_view key, std::optional<int>& out, int low, int high) {
+    if (!table_.contains(key)) return void(take(key));
+    int value = low;
+    integer(key, value, low, high);
+    out = value;
+  }
+
   void boolean(std::string_view key, bool& out) {
     const auto* node = take(key);
     if (!node) return;

@@ -1,0 +1,74 @@
+#include "host/knot/diagram.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace ligature::knot {
+namespace {
+
+/// Deletes crossings a and b and renumbers the rest.
+void erase(Diagram& d, std::size_t a, std::size_t b) {
+  constexpr auto kGone = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> renamed(d.crossings(), kGone);
+  std::vector<int> signs;
+  for (std::size_t c = 0; c < d.crossings(); ++c) {
+    if (c == a || c == b) continue;
+    renamed[c] = signs.size();
+    signs.push_back(d.signs[c]);
+  }
+  std::erase_if(d.passes, [&](const Pass& p) { return renamed[p.crossing] == kGone; });
+  for (auto& p : d.passes) p.crossing = renamed[p.crossing];
+  d.signs = std::move(signs);
+}
+
+/// c A c B with no crossing shared by A and B: turn A over by half a turn, and c is gone. Seen from behind, A's
+/// crossings keep their signs and swap over with under.
+bool undo_one_nugatory(Diagram& d) {
+  const std::size_t n = d.passes.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    std::vector<int> seen(d.crossings(), 0);
+    int open = 0;
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const auto c = d.passes[j].crossing;
+      if (c == d.passes[i].crossing) {
+        if (open != 0) break;
+        for (std::size_t k = i + 1; k < j; ++k) d.passes[k].over = !d.passes[k].over;
+        erase(d, c, c);
+        return true;
+      }
+      open += seen[c]++ == 0 ? 1 : -1;
+    }
+  }
+  return false;
+}
+
+/// Two crossings of opposite sign, neighbours on an over strand and on an under strand: the strands come apart.
+bool undo_one_clasp(Diagram& d) {
+  const std::size_t n = d.passes.size();
+  if (n < 4) return false;
+  std::vector<std::size_t> at_under(d.crossings());
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!d.passes[i].over) at_under[d.passes[i].crossing] = i;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const Pass &p = d.passes[i], &q = d.passes[(i + 1) % n];
+    if (!p.over || !q.over || d.signs[p.crossing] == d.signs[q.crossing]) continue;
+    const std::size_t u = at_under[p.crossing], v = at_under[q.crossing];
+    if ((u + 1) % n != v && (v + 1) % n != u) continue;
+    erase(d, p.crossing, q.crossing);
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+int writhe(const Diagram& d) noexcept { return std::accumulate(d.signs.begin(), d.signs.end(), 0); }
+
+void reduce(Diagram& d) {
+  while (undo_one_nugatory(d) || undo_one_clasp(d)) {
+  }
+}
+
+}  // namespace ligature::knot

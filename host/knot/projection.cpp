@@ -1,0 +1,87 @@
+#include "host/knot/projection.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "host/knot/closure.hpp"
+
+namespace ligature::knot {
+namespace {
+
+struct Meeting {
+  double at;  ///< edge index + position on it
+  Pass pass;
+};
+
+double cross(const Point& a, const Point& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+enum class Meet { kApart, kCross, kDegenerate };
+
+/// Where the images of the edges p + s d and q + t e cross, 0 < s, t < 1; z is the height above the plane.
+Meet meet(const Point& p, const Point& d, const Point& q, const Point& e, double& s, double& t) {
+  constexpr double kEdge = 1e-9;
+  const double det = cross(d, e);
+  const double scale = std::sqrt((d.x() * d.x() + d.y() * d.y()) * (e.x() * e.x() + e.y() * e.y()));
+  if (std::abs(det) <= 1e-12 * scale) {  // parallel: apart, unless they lie on one line
+    const Point pq = q - p;
+    const double off = std::abs(cross(pq, d)), width = std::hypot(d.x(), d.y()) * (std::hypot(pq.x(), pq.y()) + 1e-300);
+    return off > 1e-9 * width ? Meet::kApart : Meet::kDegenerate;
+  }
+  s = cross(q - p, e) / det;
+  t = cross(q - p, d) / det;
+  const auto outside = [](double u) { return u < -kEdge || u > 1.0 + kEdge; };
+  const auto inside = [](double u) { return u > kEdge && u < 1.0 - kEdge; };
+  if (outside(s) || outside(t)) return Meet::kApart;
+  return inside(s) && inside(t) ? Meet::kCross : Meet::kDegenerate;
+}
+
+}  // namespace
+
+std::optional<Diagram> project(std::span<const Point> corners, const Point& direction) {
+  const std::size_t n = corners.size();
+  const Point right = direction.unitOrthogonal(), up = direction.cross(right);
+  std::vector<Point> flat(n), step(n);
+  for (std::size_t i = 0; i < n; ++i) flat[i] = {right.dot(corners[i]), up.dot(corners[i]), direction.dot(corners[i])};
+  for (std::size_t i = 0; i < n; ++i) step[i] = flat[(i + 1) % n] - flat[i];
+  Diagram diagram;
+  std::vector<Meeting> meetings;
+  for (std::size_t i = 0; i + 2 < n; ++i) {
+    for (std::size_t j = i + 2; j < n; ++j) {
+      if (i == 0 && j + 1 == n) continue;  // neighbours across the seam
+      double s = 0.0, t = 0.0;
+      const Meet how = meet(flat[i], step[i], flat[j], step[j], s, t);
+      if (how == Meet::kApart) continue;
+      const double above = flat[i].z() + s * step[i].z() - flat[j].z() - t * step[j].z();
+      if (how == Meet::kDegenerate || above == 0.0) return std::nullopt;
+      const bool i_over = above > 0.0;
+      const double turn = i_over ? cross(step[i], step[j]) : cross(step[j], step[i]);
+      const std::size_t c = diagram.crossings();
+      diagram.signs.push_back(turn > 0.0 ? 1 : -1);
+      meetings.push_back({static_cast<double>(i) + s, {c, i_over}});
+      meetings.push_back({static_cast<double>(j) + t, {c, !i_over}});
+    }
+  }
+  std::sort(meetings.begin(), meetings.end(), [](const Meeting& a, const Meeting& b) { return a.at < b.at; });
+  for (std::size_t k = 0; k < meetings.size(); ++k) {
+    if (k > 0 && meetings[k].at - meetings[k - 1].at < 1e-12 * static_cast<double>(n)) return std::nullopt;  // triple point
+    diagram.passes.push_back(meetings[k].pass);
+  }
+  return diagram;
+}
+
+std::optional<Diagram> simplest_view(std::span<const Point> corners, int views) {
+  std::optional<Diagram> best;
+  for (int k = 0; k < views; ++k) {
+    auto diagram = project(corners, spread_direction(k, views));
+    if (!diagram) continue;
+    constexpr std::size_t kHopeless = 120;  // reducing is cubic: leave such a view to a better one, if there is one
+    if (best && diagram->crossings() > kHopeless) continue;
+    reduce(*diagram);
+    if (!best || diagram->crossings() < best->crossings()) best = std::move(diagram);
+    if (best->crossings() < 3) break;  // fewer than three crossings: the unknot, whatever they are
+  }
+  return best;
+}
+
+}  // namespace ligature::knot

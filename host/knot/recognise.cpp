@@ -1,0 +1,85 @@
+#include "host/knot/recognise.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/knot/alexander.hpp"
+#include "host/knot/closure.hpp"
+#include "host/knot/jones.hpp"
+#include "host/knot/knot_table.hpp"
+#include "host/knot/projection.hpp"
+
+namespace ligature::knot {
+namespace {
+
+constexpr std::size_t kExact = 29;  // crossings up to which every invariant is exact
+
+KnotResult unknown() { return {"unknown", "none", 0, {}, {}, 0}; }
+
+KnotResult from_diagram(const Diagram& d) {
+  KnotResult r = unknown();
+  r.crossings = d.crossings();
+  if (d.crossings() > kExact) return r;
+  r.alexander = alexander(d);
+  r.determinant = determinant(r.alexander);
+  r.jones = jones(d);
+  if (auto name = name_of(r.alexander, r.jones, r.crossings)) {
+    r.type = name->type;
+    r.handedness = name->handedness;
+  }
+  return r;
+}
+
+/// A closed polygon's knot: simplify, look, and when it has no name yet, shake it loose and look again.
+KnotResult recognise_ring(std::vector<Point> ring) {
+  constexpr int kRounds = 12, kShakes = 8, kViews = 40;
+  Polygon polygon(std::move(ring));
+  polygon.cut_corners();
+  std::mt19937 random(7);
+  KnotResult best = unknown();
+  std::size_t fewest = static_cast<std::size_t>(-1);
+  for (int round = 0; round < kRounds; ++round) {
+    if (polygon.corners().size() < 6) return from_diagram({});  // a knot needs six sticks
+    if (const auto diagram = simplest_view(polygon.corners(), kViews); diagram && diagram->crossings() < fewest) {
+      fewest = diagram->crossings();
+      best = from_diagram(*diagram);
+      if (best.type != "unknown") return best;
+    }
+    for (int k = 0; k < kShakes; ++k) polygon.shake(random);
+    polygon.cut_corners();
+  }
+  return best;
+}
+
+KnotResult recognise_open(std::span<const Point> thread) {
+  constexpr int kWays = 9, kEnough = 3;
+  std::vector<KnotResult> votes{recognise_ring(
+      close_outward(thread, outward(thread, thread.front()), outward(thread, thread.back())))};
+  const auto same = [](const KnotResult& a) {
+    return [&a](const KnotResult& b) { return a.type == b.type && a.handedness == b.handedness && a.alexander == b.alexander; };
+  };
+  const auto count = [&](const KnotResult& r) { return std::count_if(votes.begin(), votes.end(), same(r)); };
+  while (votes.size() < kWays) {
+    const int k = static_cast<int>(votes.size()) - 1;
+    const Point d = spread_direction((k * 3) % (kWays - 1), kWays - 1);
+    votes.push_back(recognise_ring(close_outward(thread, d, d)));
+    if (votes.size() == kEnough && count(votes[0]) == kEnough) break;
+  }
+  // max_element keeps the first of equals: on a tie the outward closure's answer wins.
+  return *std::max_element(votes.begin(), votes.end(),
+                           [&](const KnotResult& a, const KnotResult& b) { return count(a) < count(b); });
+}
+
+}  // namespace
+
+KnotResult recognise(std::span<const std::array<double, 3>> points, bool closed) {
+  std::vector<Point> thread;
+  for (const auto& p : points) {
+    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) return unknown();
+    thread.emplace_back(p[0], p[1], p[2]);
+  }
+  if (thread.size() < 4) return from_diagram({});
+  return closed ? recognise_ring(std::move(thread)) : recognise_open(thread);
+}
+
+}  // namespace ligature::knot

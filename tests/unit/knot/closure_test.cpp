@@ -1,0 +1,36 @@
+#include "host/knot/closure.hpp"
+
+#include <gtest/gtest.h>
+
+namespace ligature::knot {
+namespace {
+
+TEST(Closure, JoinsFarOutsideWhateverTheDirections) {
+  const std::vector<Point> thread{{-1, 0, 0}, {0, 1, 0}, {1, 0, 0}};
+  for (const Point& first : {Point(-1, 0, 0), Point(0, 0, 1), Point(1, 0, 0)}) {
+    const auto ring = close_outward(thread, first, Point(1, 0, 0));
+    ASSERT_GT(ring.size(), thread.size());
+    for (std::size_t k = thread.size(); k + 1 < ring.size(); ++k) {
+      EXPECT_GT((0.5 * (ring[k] + ring[k + 1])).norm(), 10.0);  // the chord stays away from the thread
+      EXPECT_TRUE(ring[k].allFinite());
+    }
+  }
+}
+
+TEST(Closure, SpreadDirectionsAreUnitVectorsThatBalance) {
+  Point sum = Point::Zero();
+  for (int k = 0; k < 50; ++k) {
+    EXPECT_NEAR(spread_direction(k, 50).norm(), 1.0, 1e-12);
+    sum += spread_direction(k, 50);
+  }
+  EXPECT_LT(sum.norm(), 1.0);
+}
+
+TEST(Closure, OutwardIsAUnitVectorEvenFromTheCentre) {
+  const std::vector<Point> thread{{-1, 0, 0}, {1, 0, 0}};
+  EXPECT_EQ(outward(thread, Point(1, 0, 0)), Point(1, 0, 0));
+  EXPECT_EQ(outward(thread, Point(0, 0, 0)), Point(0, 0, 1));
+}
+
+}  // namespace
+}  // namespace ligature::knot

@@ -1,0 +1,171 @@
+#include "host/knot/recognise.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <iostream>
+
+#include "host/knot/knot_table.hpp"
+#include "tests/unit/knot/shapes.hpp"
+
+namespace ligature::knot {
+namespace {
+
+using namespace shapes;
+
+/// "3_1 right"
+std::string named(const Polyline& line, bool closed = true) {
+  const auto r = recognise(line, closed);
+  return r.type + " " + r.handedness;
+}
+
+TEST(Recognise, HandednessFollowsTheWrithe) {
+  EXPECT_EQ(named(trefoil(100)), "3_1 right");
+  EXPECT_EQ(named(trefoil(100, -1)), "3_1 left");
+  const auto r = recognise(trefoil(100), true);
+  EXPECT_EQ(r.determinant, 3);
+  EXPECT_EQ(r.alexander, (std::vector<int>{1, -1, 1}));
+  EXPECT_EQ(r.crossings, 3u);
+  EXPECT_EQ(r.jones, (Laurent{1, {1, 0, 1, -1}}));  // t + t^3 - t^4
+}
+
+TEST(Recognise, TorusKnots) {
+  EXPECT_EQ(named(torus_knot(1, 60)), "0_1 none");
+  EXPECT_EQ(named(torus_knot(3, 80)), "3_1 right");
+  EXPECT_EQ(named(torus_knot(5, 120)), "5_1 right");
+  EXPECT_EQ(named(torus_knot(-5, 120)), "5_1 left");
+  EXPECT_EQ(named(torus_knot(7, 160)), "7_1 right");
+  EXPECT_EQ(named(torus_knot(-7, 160)), "7_1 left");
+  EXPECT_EQ(recognise(torus_knot(9, 200), true).type, "unknown");
+  EXPECT_EQ(recognise(torus_knot(9, 200), true).determinant, 9);
+}
+
+struct Braid {
+  const char* type;
+  const char* hand;
+  int strands;
+  std::vector<int> word;
+};
+
+const std::vector<Braid>& braids() {
+  static const std::vector<Braid> kBraids{
+      {"3_1", "right", 2, {1, 1, 1}},
+      {"4_1", "amphichiral", 3, {1, -2, 1, -2}},
+      {"5_1", "right", 2, {1, 1, 1, 1, 1}},
+      {"5_2", "right", 3, {1, 1, 1, 2, -1, 2}},
+      {"6_1", "right", 4, {1, 1, 2, -1, -3, 2, -3}},
+      {"6_2", "right", 3, {1, 1, 1, -2, 1, -2}},
+      {"6_3", "amphichiral", 3, {1, 1, -2, 1, -2, -2}},
+      {"7_1", "right", 2, {1, 1, 1, 1, 1, 1, 1}},
+      {"7_2", "right", 4, {1, 1, 1, 2, -1, 2, 3, -2, 3}},
+      {"7_3", "right", 3, {1, 1, 1, 1, 1, 2, -1, 2}},
+      {"7_4", "right", 4, {1, 1, 2, -1, 2, 2, 3, -2, 3}},
+      {"7_5", "right", 3, {1, 1, 1, 1, 2, -1, 2, 2}},
+      {"7_6", "right", 4, {1, 1, -2, 1, 3, -2, 3}},
+      {"7_7", "right", 4, {1, -2, 1, -2, 3, -2, 3}},
+      {"3_1#3_1", "right", 3, {1, 1, 1, 2, 2, 2}},
+      {"3_1#3_1", "amphichiral", 3, {1, 1, 1, -2, -2, -2}},
+      {"3_1#4_1", "right", 4, {1, 1, 1, 2, -3, 2, -3}},
+      {"3_1#5_1", "mixed", 3, {1, 1, 1, -2, -2, -2, -2, -2}},
+      {"3_1#3_1#3_1", "left", 4, {-1, -1, -1, -2, -2, -2, -3, -3, -3}},
+      {"0_1", "none", 4, {1, -2, 3}},
+  };
+  return kBraids;
+}
+
+std::string other(const std::string& hand) { return hand == "right" ? "left" : hand == "left" ? "right" : hand; }
+
+TEST(Recognise, ClosedBraidsFromTheClassicalTableAndTheirMirrorImages) {
+  std::mt19937 random(3);
+  for (const auto& b : braids()) {
+    const auto line = posed(refined(braid_closure(b.word, b.strands), 3), random, 1e-3);
+    EXPECT_EQ(named(line), std::string(b.type) + " " + b.hand);
+    EXPECT_EQ(named(mirrored(line)), std::string(b.type) + " " + other(b.hand));
+  }
+}
+
+TEST(Recognise, DoesNotDependOnPoseNoiseStartOrDirection) {
+  std::mt19937 random(5);
+  for (int k = 0; k < 60; ++k) {
+    auto a = posed(trefoil(70, -1), random, 0.02), b = posed(figure_eight(90), random, 0.02);
+    std::rotate(a.begin(), a.begin() + 7 * (k % 10), a.end());
+    std::reverse(b.begin(), b.end());
+    EXPECT_EQ(named(a), "3_1 left");
+    EXPECT_EQ(named(b), "4_1 amphichiral");
+  }
+}
+
+TEST(Recognise, TangledUnknotsAreUnknots) {
+  std::mt19937 random(11);
+  for (int k = 0; k < 40; ++k) {
+    const auto line = posed(tangled_unknot(150, random), random, 0.0);
+    EXPECT_EQ(named(line), "0_1 none");
+  }
+}
+
+TEST(Recognise, ADoubledThreadTiedInATrefoilIsAnUnknot) {
+  std::mt19937 random(13);
+  for (int k = 0; k < 20; ++k) {
+    const auto line = posed(doubled_trefoil(60, 0.3 * k), random, 0.0);
+    EXPECT_EQ(named(line), "0_1 none");
+  }
+}
+
+TEST(Recognise, OpenThreadsWithTheirEndsOutside) {
+  for (const int hand : {1, -1}) {
+    auto line = trefoil(61, hand);
+    // Cut where the curve is farthest out, and lead both ends away.
+    std::rotate(line.begin(), line.begin() + 10, line.end());
+    const auto a = line.front(), b = line.back();
+    line.insert(line.begin(), {2 * a[0], 2 * a[1], 2 * a[2]});
+    line.push_back({2.2 * b[0], 2.2 * b[1], 2 * b[2]});
+    EXPECT_EQ(named(line, false), hand > 0 ? "3_1 right" : "3_1 left");
+  }
+  Polyline straight;
+  for (int k = 0; k < 50; ++k) straight.push_back({0, 0, 5.5 - 0.1 * k});
+  EXPECT_EQ(named(straight, false), "0_1 none");
+}
+
+TEST(Recognise, DegenerateInput) {
+  EXPECT_EQ(named({}), "0_1 none");
+  EXPECT_EQ(named({{0, 0, 0}}, false), "0_1 none");
+  EXPECT_EQ(named(Polyline(20, {1, 1, 1}), false), "0_1 none");
+  EXPECT_EQ(named(Polyline(20, {1, 1, 1})), "0_1 none");
+  auto line = trefoil(60);
+  line.push_back(line.front());  // closed twice
+  EXPECT_EQ(named(line), "3_1 right");
+  Polyline doubled;
+  for (const auto& p : trefoil(60)) doubled.push_back(p), doubled.push_back(p);
+  EXPECT_EQ(named(doubled), "3_1 right");
+  line[3][1] = std::nan("");
+  EXPECT_EQ(named(line), "unknown none");
+}
+
+TEST(Recognise, PrintsItsCost) {
+  std::mt19937 random(2);
+  for (const int n : {50, 200, 500}) {
+    double worst_ms = 0, sum_ms = 0;
+    const int runs = 20;
+    for (int k = 0; k < runs; ++k) {
+      auto line = posed(k % 2 ? trefoil(n) : figure_eight(n), random, 0.01);
+      const auto from = std::chrono::steady_clock::now();
+      const auto r = recognise(line, false);
+      const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - from).count();
+      worst_ms = std::max(worst_ms, ms), sum_ms += ms;
+      EXPECT_FALSE(r.type.empty());
+    }
+    std::cout << "recognise, open, n = " << n << ": mean " << sum_ms / runs << " ms, worst " << worst_ms << " ms\n";
+  }
+}
+
+TEST(KnotTable, NamesNothingWhereTwoKnotsShareTheirPolynomials) {
+  const std::vector<int> a{1, -1, 1, -1, 1};
+  const Laurent v{2, {1, 0, 1, -1, 1, -1}};
+  EXPECT_EQ(name_of(a, v, 9)->type, "5_1");
+  EXPECT_FALSE(name_of(a, v, 10));  // might be 10_132
+  EXPECT_FALSE(name_of({1, -1, 1}, {1, {1, 0, 1, -1}}, 11));
+  EXPECT_FALSE(name_of({9, 9}, {0, {7}}, 4));
+}
+
+}  // namespace
+}  // namespace ligature::knot
