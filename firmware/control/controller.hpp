@@ -1,0 +1,108 @@
+#pragma once
+// Both hands' control law: what the joints say in, what the drives shall do out. One call a period.
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/control/engagement.hpp"
+#include "firmware/control/faults.hpp"
+#include "firmware/control/state_machine.hpp"
+#include "firmware/control/velocity_filter.hpp"
+#include "firmware/control/virtual_coupling.hpp"
+#include "firmware/control/workspace_map.hpp"
+#include "firmware/physics/simulation.hpp"
+#include "firmware/rt/command.hpp"
+#include "firmware/rt/rig_io.hpp"
+#include "protocol/scene/scene.hpp"
+
+namespace ligature::control {
+
+inline constexpr double kPeriod_s = 1e-3;
+
+struct Settings {
+  std::int32_t watchdog_ticks = 20;  ///< age of joint messages, or periods lost in a row, that is a fault
+  bool armed = false;                ///< at start; a fault and a disarm take it back
+};
+
+/// All that a tick depends on.
+struct TickInput {
+  std::int64_t tick = 0;  ///< number of the period; a jump means lost periods
+  rt::RigReading reading;
+  std::array<Grasp, rt::kHands> grasp;  ///< of the thread's last tick
+  bool thread_finite = true;
+};
+
+/// One hand after a tick.
+struct HandState {
+  Vec3 p_WT = Vec3::Zero();
+  Vec3 v_WT = Vec3::Zero();
+  Vec3 f_device_N = Vec3::Zero();  ///< after scale, limits and gain; what the torques produce
+  double gain = 0.0;
+  bool limited = false;
+  std::int64_t age_ticks = 0;      ///< periods since the sample that p_WT comes from
+  bool dead_man = false;
+  bool grip = false;
+};
+
+/// Real time: tick() is O(1), allocates nothing, throws nothing, calls no system. Deterministic in its inputs.
+class Controller {
+ public:
+  static constexpr int kCalibrationTicks = 50;  ///< of possible poses in a row
+  static constexpr int kPowerDownTicks = 20;    ///< of "power stage off" sent before the run ends
+
+  Controller(const scene::Hands& hands, const Settings& settings) noexcept;
+
+  /// A request of the host or the operator; acts in the next tick.
+  void command(rt::CommandKind kind) noexcept;
+
+  /// Begins the end: forces ramp to zero, drives are switched off, then is_finished().
+  void shut_down() noexcept { shutting_down_ = true; }
+  [[nodiscard]] bool is_finished() const noexcept { return powered_down_ticks_ >= kPowerDownTicks; }
+
+  [[nodiscard]] rt::RigCommand tick(const TickInput& in) noexcept;
+
+  [[nodiscard]] State state() const noexcept { return state_; }
+  [[nodiscard]] Fault fault() const noexcept { return fault_; }
+  [[nodiscard]] bool armed() const noexcept { return armed_; }
+  [[nodiscard]] const HandState& hand(std::size_t h) const noexcept { return hands_[h].state; }
+
+  /// The two tools as the thread shall see them in this tick.
+  [[nodiscard]] std::array<physics::ToolInput, rt::kHands> tools() const noexcept;
+
+ private:
+  struct Hand {
+    HandState state;
+    VelocityFilter velocity{kPeriod_s};
+    Engagement engagement;
+    Vec3 v_DT = Vec3::Zero();
+    Vec3 f_full_N = Vec3::Zero();    // device force at gain 1
+    bool finite = true;
+    std::int64_t sample_tick = -1;
+    JointAngles q_rad{};
+  };
+
+  void observe(Hand& hand, const rt::HandReading& reading, const Grasp& grasp, std::int64_t tick) noexcept;
+  [[nodiscard]] Fault find_fault(const TickInput& in) const noexcept;
+  [[nodiscard]] Fault find_hand_fault(const Hand& hand, const rt::HandReading& reading) const noexcept;
+  [[nodiscard]] bool drives_are_up(const rt::RigReading& reading) const noexcept;
+  void step_state(const TickInput& in) noexcept;
+  void step_gains() noexcept;
+  [[nodiscard]] rt::DriveRequest drive_request() const noexcept;
+  [[nodiscard]] bool any_full() const noexcept;
+  [[nodiscard]] bool all_zero() const noexcept;
+
+  WorkspaceMap map_;
+  VirtualCoupling coupling_;
+  Settings settings_;
+  std::array<Hand, rt::kHands> hands_{};
+  State state_ = State::kOff;
+  Fault fault_ = Fault::kNone;
+  bool armed_;
+  bool reset_requested_ = false;
+  bool shutting_down_ = false;
+  int plausible_ticks_ = 0;
+  int powered_down_ticks_ = 0;
+  std::int64_t last_tick_ = -1;
+};
+
+}  // namespace ligature::control

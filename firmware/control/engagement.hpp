@@ -1,0 +1,46 @@
+#pragma once
+// How much of the computed force one hand gets, so that nothing ever kicks.
+
+#include <algorithm>
+
+namespace ligature::control {
+
+/// Gain of one hand, 0 .. 1. From zero it starts only after the hand was still and the force small for a while; it
+/// then rises to 1 in 0.5 s as long as it is wanted (armed and dead-man pressed), and falls to 0 in 50 ms when not.
+/// Periods of 1 ms. O(1).
+class Engagement {
+ public:
+  static constexpr int kCalmTicks = 20;
+  static constexpr double kStill_m_per_s = 0.05;  ///< device tip; the filter's noise is 0.003
+  static constexpr double kSmallForce_N = 0.5;    ///< device force the hand would get at once; 15 % of the peak
+  static constexpr int kRiseTicks = 500;
+  static constexpr int kFallTicks = 50;
+
+  void tick(bool wanted, double speed_m_per_s, double force_N) noexcept {
+    if (!wanted) {
+      calm_ticks_ = 0;
+      gain_ = std::max(0.0, gain_ - 1.0 / kFallTicks);
+      return;
+    }
+    if (gain_ == 0.0 && calm_ticks_ < kCalmTicks) {
+      const bool calm = speed_m_per_s < kStill_m_per_s && force_N < kSmallForce_N;
+      calm_ticks_ = calm ? calm_ticks_ + 1 : 0;
+      return;
+    }
+    gain_ = std::min(1.0, gain_ + 1.0 / kRiseTicks);
+    if (gain_ > 1.0 - 0.5 / kRiseTicks) gain_ = 1.0;
+  }
+
+  void drop() noexcept {
+    gain_ = 0.0;
+    calm_ticks_ = 0;
+  }
+
+  [[nodiscard]] double gain() const noexcept { return gain_; }
+
+ private:
+  double gain_ = 0.0;
+  int calm_ticks_ = 0;
+};
+
+}  // namespace ligature::control

@@ -1,0 +1,33 @@
+#pragma once
+// Fault numbers: part of the interface (docs/architecture.md), never reused for another meaning.
+
+#include <cstdint>
+
+namespace ligature::control {
+
+enum class Fault : std::int16_t {
+  kNone = 0,
+  kBusLost = 10,          ///< a hand's bus is gone: peer closed, interface down
+  kTpdoTooOld = 11,       ///< no complete set of joint messages within the watchdog time
+  kDriveFault = 12,       ///< a drive is in Fault, sent EMCY, or left Operation enabled by itself
+  kNonFinite = 20,        ///< a force or position is not a number
+  kVelocityLimit = 21,    ///< tip faster than kVelocityLimit_m_per_s
+  kOverrun = 30,          ///< the loop lost as many periods in a row as the watchdog allows
+  kPhysicsDiverged = 40,  ///< the thread's state is not finite
+};
+
+[[nodiscard]] constexpr const char* name(Fault f) noexcept {
+  switch (f) {
+    case Fault::kNone: return "none";
+    case Fault::kBusLost: return "bus lost";
+    case Fault::kTpdoTooOld: return "joint messages too old";
+    case Fault::kDriveFault: return "drive fault";
+    case Fault::kNonFinite: return "force or position is not finite";
+    case Fault::kVelocityLimit: return "velocity limit";
+    case Fault::kOverrun: return "control loop overrun";
+    case Fault::kPhysicsDiverged: return "thread simulation diverged";
+  }
+  return "unknown";
+}
+
+}  // namespace ligature::control

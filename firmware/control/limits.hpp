@@ -1,0 +1,26 @@
+#pragma once
+// Limits are reported, faults are latched: a saturated force is normal life, a force that is no number is not.
+
+#include "firmware/physics/types.hpp"
+
+namespace ligature::control {
+
+inline constexpr double kHardwareForce_N = 3.3;         ///< peak of an Omni-class device; no scene may ask for more
+inline constexpr double kVelocityLimit_m_per_s = 2.0;   ///< filtered tip speed; a person's fast stroke is about 1 m/s
+
+struct LimitedForce {
+  physics::Vec3 f_N = physics::Vec3::Zero();
+  bool limited = false;
+  bool finite = true;
+};
+
+/// Keeps the direction and clips the magnitude: |f| ≤ max_N. Not-a-number and infinity become zero and are told.
+[[nodiscard]] inline LimitedForce saturate(const physics::Vec3& f_N, double max_N) noexcept {
+  if (!f_N.allFinite()) return {physics::Vec3::Zero(), false, false};
+  const double magnitude_N = f_N.norm();
+  if (magnitude_N <= max_N) return {f_N, false, true};
+  const physics::Vec3 direction = f_N / f_N.cwiseAbs().maxCoeff();  // the norm itself may overflow
+  return {direction * (max_N / direction.norm()), true, true};
+}
+
+}  // namespace ligature::control

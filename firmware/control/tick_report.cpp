@@ -1,0 +1,57 @@
+#include "firmware/control/tick_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligature::control {
+namespace {
+
+constexpr double kNoGap_m = 1e9;  // "none near" on the wire, where infinity would not survive every reader
+
+rt::Triple triple(const Vec3& v) noexcept { return {v.x(), v.y(), v.z()}; }
+
+}  // namespace
+
+void report(const Controller& controller, rt::TickRecord& record) noexcept {
+  record.state = static_cast<std::int8_t>(controller.state());
+  record.fault = static_cast<std::int16_t>(controller.fault());
+  record.armed = controller.armed();
+  for (std::size_t h = 0; h < rt::kHands; ++h) {
+    const HandState& s = controller.hand(h);
+    record.p_WT_m[h] = triple(s.p_WT);
+    record.v_WT_m_per_s[h] = triple(s.v_WT);
+    record.f_device_N[h] = triple(s.f_device_N);
+    record.grip[h] = s.grip;
+    record.dead_man[h] = s.dead_man;
+    record.tpdo_age_ticks[h] = static_cast<std::int16_t>(std::min<std::int64_t>(s.age_ticks, INT16_MAX));
+    if (s.age_ticks > 0) record.flags |= h == 0 ? rt::kLeftStale : rt::kRightStale;
+    if (s.limited) record.flags |= h == 0 ? rt::kLeftLimited : rt::kRightLimited;
+  }
+}
+
+void report(const physics::Diagnostics& thread, rt::TickRecord& record) noexcept {
+  record.kinetic_J = thread.kinetic_J;
+  record.potential_J = thread.potential_J;
+  record.max_stretch = thread.max_stretch;
+  record.min_gap_m = std::isfinite(thread.min_gap_m) ? thread.min_gap_m : kNoGap_m;
+  record.contacts = static_cast<std::int16_t>(std::min<int>(thread.contacts, INT16_MAX));
+  if (thread.contact_cap_hit) record.flags |= rt::kContactCap;
+}
+
+void report(const physics::HandContact& contact, std::size_t hand, rt::TickRecord& record) noexcept {
+  record.f_world_N[hand] = triple(contact.f_W);
+  record.grasped_node[hand] = static_cast<std::int16_t>(contact.node);
+}
+
+void report(std::span<const physics::Vec3> nodes_W, const rt::TickRecord& record, rt::ThreadSnapshot& snapshot) noexcept {
+  snapshot.tick = record.tick;
+  snapshot.grasped_node = record.grasped_node;
+  snapshot.count = static_cast<std::int32_t>(std::min(nodes_W.size(), rt::kMaxNodes));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(snapshot.count); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      snapshot.p_W_m[i][a] = static_cast<float>(nodes_W[i][static_cast<Eigen::Index>(a)]);
+    }
+  }
+}
+
+}  // namespace ligature::control

@@ -1,0 +1,23 @@
+#pragma once
+// The desk-sized device moves tools in a world that may be larger.
+
+#include "firmware/control/kinematics.hpp"
+#include "protocol/scene/scene.hpp"
+
+namespace ligature::control {
+
+/// p_WT = origin + scale (p_DT - p_DT_home),  v_WT = scale v_DT;  axes of D and W are parallel, so a force needs no
+/// rotation (its scale is force_scale, a separate choice: energy is not preserved across the map).
+struct WorkspaceMap {
+  double scale = 1.0;
+  Vec3 origin_W_m = Vec3::Zero();
+
+  explicit WorkspaceMap(const scene::Hands& h)
+      : scale(h.workspace_scale),
+        origin_W_m(h.workspace_origin_m[0], h.workspace_origin_m[1], h.workspace_origin_m[2]) {}
+
+  [[nodiscard]] Vec3 position(const Vec3& p_DT_m) const noexcept { return origin_W_m + scale * (p_DT_m - kHome_DT_m); }
+  [[nodiscard]] Vec3 velocity(const Vec3& v_DT_m_per_s) const noexcept { return scale * v_DT_m_per_s; }
+};
+
+}  // namespace ligature::control

@@ -1,0 +1,163 @@
+#pragma once
+// THE loop. Linux stands behind Bus and Clock in the program, fakes in virtual time stand there in tests.
+
+#include <atomic>
+#include <chrono>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+
+#include "firmware/control/controller.hpp"
+#include "firmware/control/tick_report.hpp"
+#include "firmware/physics/simulation.hpp"
+#include "firmware/rt/command.hpp"
+#include "firmware/rt/cycle_timing.hpp"
+#include "firmware/rt/latest_value.hpp"
+#include "firmware/rt/spsc_ring.hpp"
+#include "firmware/rt/tick_record.hpp"
+
+namespace ligature {
+
+using Nanoseconds = std::chrono::nanoseconds;  ///< time points are nanoseconds of one monotonic clock
+
+template <class C>
+concept Clock = requires(C c, Nanoseconds at) {
+  { c.now() } noexcept -> std::same_as<Nanoseconds>;
+  { c.sleep_until(at) } noexcept;
+};
+template <class B>
+concept Bus = requires(B b, Nanoseconds deadline, const rt::RigCommand& command) {
+  { b.send_sync() } noexcept;                                              // every drive samples and acts now
+  { b.read_tpdos(deadline) } noexcept -> std::same_as<rt::RigReading>;     // returns early when all have come
+  { b.write_rpdos(command) } noexcept -> std::same_as<rt::WireTorque>;     // acts at the next SYNC
+};
+
+/// The real-time thread's edges to the others.
+struct Outlets {
+  rt::SpscRing<rt::TickRecord> records{8192};  ///< one a period; 8 s of slack for telemetry
+  rt::LatestValue<rt::ThreadSnapshot> shape;
+  rt::SpscRing<rt::Command> commands{64};
+  std::atomic<bool> stop{false};
+};
+
+/// One period after the other until the controller has shut the rig down. Period k is due at start + k T; whole periods
+/// that pass unused are counted, recorded and skipped, never made up for. No allocation, lock, log or exception in run().
+template <Bus BusT, Clock ClockT>
+class Cycle {
+ public:
+  static constexpr Nanoseconds kPeriod = std::chrono::milliseconds(1);
+  static constexpr Nanoseconds kTpdoWait = std::chrono::microseconds(600);  // bus needs ≤ 460, RPDOs 285 more
+  static constexpr std::int64_t kTicksPerShape = 8;
+
+  Cycle(BusT& bus, ClockT& clock, control::Controller& controller, physics::Simulation& thread, Outlets& out) noexcept
+      : bus_(bus), clock_(clock), controller_(controller), thread_(thread), out_(out) {}
+
+  void end_after(std::int64_t ticks) noexcept { last_tick_ = ticks; }
+  [[nodiscard]] const rt::CycleTiming& timing() const noexcept { return timing_; }
+  [[nodiscard]] std::int64_t periods() const noexcept { return tick_; }
+
+  void run() noexcept {
+    wake_at_ = clock_.now() + kPeriod;
+    while (!controller_.is_finished()) {
+      clock_.sleep_until(wake_at_);  // absolute: jitter does not accumulate
+      const auto woke = clock_.now();
+      skip((woke - wake_at_) / kPeriod);  // slept through
+
+      take_commands();
+      bus_.send_sync();  // every axis samples, and acts on the last tick's torque
+      const rt::RigReading reading = bus_.read_tpdos(woke + kTpdoWait);
+      const rt::WireTorque torque = bus_.write_rpdos(controller_.tick(input(reading)));
+      const auto controlled = clock_.now();
+      thread_.tick(controller_.tools());  // the rest of the period is the thread's
+      const auto done = clock_.now();
+
+      publish(woke, controlled, done, torque);
+      const auto missed = (done - wake_at_) / kPeriod;
+      advance();
+      skip(missed);
+    }
+  }
+
+ private:
+  void take_commands() noexcept {
+    if (out_.stop.load(std::memory_order_relaxed) || tick_ >= last_tick_) controller_.shut_down();
+    for (rt::Command c; out_.commands.pop(c);) {
+      controller_.command(c.kind);
+      if (c.kind == rt::CommandKind::kResetThread) thread_.reset();
+    }
+  }
+
+  control::TickInput input(const rt::RigReading& reading) const noexcept {
+    return {tick_, reading,
+            {control::grasp_of(thread_.hand(physics::Hand::kLeft)), control::grasp_of(thread_.hand(physics::Hand::kRight))},
+            thread_.diagnostics().finite};
+  }
+
+  void publish(Nanoseconds woke, Nanoseconds controlled, Nanoseconds done, const rt::WireTorque& torque) noexcept {
+    timing_.wakeup.add((woke - wake_at_).count());
+    timing_.control.add((controlled - woke).count());
+    timing_.execution.add((done - woke).count());
+    const bool missed = done >= wake_at_ + kPeriod;
+    timing_.deadline_misses += missed;
+
+    record_ = {};
+    record_.tick = tick_;
+    record_.scheduled_ns = wake_at_.count();
+    record_.wakeup_latency_ns = narrow(woke - wake_at_);
+    record_.control_ns = narrow(controlled - woke);
+    record_.execution_ns = narrow(done - woke);
+    record_.flags = missed ? rt::kDeadlineMissed : 0;
+    record_.torque_permille = torque;
+    control::report(controller_, record_);
+    control::report(thread_.diagnostics(), record_);
+    control::report(thread_.hand(physics::Hand::kLeft), 0, record_);
+    control::report(thread_.hand(physics::Hand::kRight), 1, record_);
+    out_.records.push(record_);
+    if (tick_ % kTicksPerShape == 0) {
+      control::report(thread_.nodes_W(), record_, out_.shape.back());
+      out_.shape.publish();
+    }
+  }
+
+  void advance() noexcept {
+    ++tick_;
+    wake_at_ += kPeriod;
+  }
+
+  /// Lost periods: the last values again, flagged. What the ring cannot hold is counted as dropped in one go.
+  void skip(std::int64_t periods) noexcept {
+    const auto room = static_cast<std::int64_t>(out_.records.capacity());
+    for (std::int64_t i = 0; i < periods; ++i, advance()) {
+      if (i >= room) {
+        out_.records.count_dropped(static_cast<std::uint64_t>(periods - i));
+        tick_ += periods - i;
+        wake_at_ += (periods - i) * kPeriod;
+        break;
+      }
+      record_.tick = tick_;
+      record_.scheduled_ns = wake_at_.count();
+      record_.flags |= rt::kPeriodLost;
+      record_.flags &= ~rt::kDeadlineMissed;  // that was the executed one's
+      out_.records.push(record_);
+    }
+    timing_.periods_lost += static_cast<std::uint64_t>(periods);
+  }
+
+  static std::int32_t narrow(Nanoseconds t) noexcept {
+    constexpr auto kMax = Nanoseconds(std::numeric_limits<std::int32_t>::max());
+    return static_cast<std::int32_t>(std::min(t, kMax).count());
+  }
+
+  BusT& bus_;
+  ClockT& clock_;
+  control::Controller& controller_;
+  physics::Simulation& thread_;
+  Outlets& out_;
+  rt::CycleTiming timing_;
+  rt::TickRecord record_;
+  Nanoseconds wake_at_{};
+  std::int64_t tick_ = 0;
+  std::int64_t last_tick_ = std::numeric_limits<std::int64_t>::max();
+};
+
+}  // namespace ligature
