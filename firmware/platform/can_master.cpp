@@ -1,0 +1,79 @@
+#include "firmware/platform/can_master.hpp"
+
+#include <cstdio>
+
+#include "protocol/can/device_profile.hpp"
+#include "protocol/can/nmt.hpp"
+
+namespace ligature::platform {
+namespace {
+
+std::string describe(can::NodeId node, const can::Object& object, const std::string& what) {
+  char at[48];
+  std::snprintf(at, sizeof at, "node %d, object 0x%04X:%02X: ", static_cast<int>(node.value), object.index, object.sub);
+  return at + what;
+}
+
+std::string abort_text(std::uint32_t code) {
+  char text[48];
+  std::snprintf(text, sizeof text, "refused by the drive, abort code 0x%08X", code);
+  return text;
+}
+
+/// Reads a number that must be the one the unit conversions were built with.
+std::optional<std::string> expect(CanBus& bus, BusWait& wait, can::NodeId node, const can::Object& object,
+                                  std::uint32_t wanted, Nanoseconds patience) {
+  const auto answer = transfer(bus, wait, can::sdo_read(node, object), patience).sdo;
+  if (!answer) return describe(node, object, "no answer");
+  if (answer->kind != can::SdoKind::kValue) return describe(node, object, abort_text(answer->value));
+  if (answer->value == wanted) return std::nullopt;
+  return describe(node, object, "found " + std::to_string(answer->value) + ", allowed " + std::to_string(wanted));
+}
+
+std::optional<std::string> configure(CanBus& bus, BusWait& wait, can::NodeId node, const can::StartupTimes& times,
+                                     Nanoseconds patience) {
+  if (auto e = expect(bus, wait, node, can::od::kRatedTorque, can::profile::kRatedTorque_mNm, patience)) return e;
+  if (auto e = expect(bus, wait, node, can::od::kEncoderIncrements,
+                      static_cast<std::uint32_t>(can::profile::kCountsPerRevolution), patience)) {
+    return e;
+  }
+  for (const can::SdoWrite& w : can::startup_plan(node, times)) {
+    const auto answer = transfer(bus, wait, can::sdo_write(node, w.object, w.value, w.bytes), patience).sdo;
+    if (!answer) return describe(node, w.object, "no answer");
+    if (answer->kind != can::SdoKind::kWritten) return describe(node, w.object, abort_text(answer->value));
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+SdoAnswer transfer(CanBus& bus, BusWait& wait, const can::Frame& request, Nanoseconds patience) {
+  const auto asked = can::decode_sdo(request);
+  const Nanoseconds deadline = wait.now() + patience;
+  if (!asked || !bus.send(request)) return {};
+  do {
+    can::Frame frame;
+    Receive got;
+    while ((got = bus.receive(frame)) == Receive::kFrame) {
+      const auto address = can::address_of(frame.id);
+      if (!address || address->service != can::Service::kSdoResponse) continue;
+      const auto answer = can::decode_sdo(frame);
+      if (answer && answer->node == asked->node && answer->object == asked->object) return {answer};
+    }
+    if (got == Receive::kLost) return {};
+  } while (wait.wait(deadline));
+  return {};
+}
+
+std::optional<std::string> configure_drives(CanBus& bus, BusWait& wait, const can::StartupTimes& times,
+                                            Nanoseconds patience) {
+  if (!bus.send(can::encode_nmt(can::NmtCommand::kEnterPreOperational))) return "the bus takes no frames";
+  for (const can::NodeId node : can::profile::kJointNodes) {
+    if (auto error = configure(bus, wait, node, times, patience)) return error;
+  }
+  return std::nullopt;
+}
+
+bool start_drives(CanBus& bus) noexcept { return bus.send(can::encode_nmt(can::NmtCommand::kStart)); }
+
+}  // namespace ligature::platform

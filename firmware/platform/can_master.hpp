@@ -1,0 +1,30 @@
+#pragma once
+// Bringing the three drives of a hand from power-on to cyclic operation; before the loop, may take its time.
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "firmware/platform/bus_wait.hpp"
+#include "firmware/platform/can_bus.hpp"
+#include "protocol/can/sdo.hpp"
+#include "protocol/can/startup.hpp"
+
+namespace ligature::platform {
+
+/// One expedited transfer: request out, matching answer in; others' frames on the bus are skipped.
+struct SdoAnswer {
+  std::optional<can::Sdo> sdo;  ///< nothing: no answer in time, or the bus is gone
+};
+[[nodiscard]] SdoAnswer transfer(CanBus& bus, BusWait& wait, const can::Frame& request, Nanoseconds patience);
+
+/// Puts the nodes into pre-operational, checks that rated torque and encoder are the ones the units are computed
+/// with, and writes startup_plan() (mapping, watchdogs, torque limit, cyclic synchronous torque mode).
+/// @return why it failed, one line, or nothing. The bus is left in pre-operational: no torque is possible.
+[[nodiscard]] std::optional<std::string> configure_drives(CanBus& bus, BusWait& wait, const can::StartupTimes& times,
+                                                          Nanoseconds patience = std::chrono::milliseconds(500));
+
+/// NMT start: from now on the drives answer SYNC with TPDOs. They stay switched off until asked.
+bool start_drives(CanBus& bus) noexcept;
+
+}  // namespace ligature::platform

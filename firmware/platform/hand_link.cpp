@@ -1,0 +1,115 @@
+#include "firmware/platform/hand_link.hpp"
+
+#include <limits>
+
+#include "protocol/can/emcy.hpp"
+#include "protocol/can/heartbeat.hpp"
+#include "protocol/can/nmt.hpp"
+#include "protocol/can/units.hpp"
+
+namespace ligature::platform {
+namespace {
+
+constexpr unsigned kAllJoints = (1U << rt::kJoints) - 1U;
+
+/// Index of a joint's node, or kJoints for a stranger.
+constexpr std::size_t joint_of(can::NodeId node) noexcept {
+  for (std::size_t j = 0; j < rt::kJoints; ++j) {
+    if (can::profile::kJointNodes[j] == node) return j;
+  }
+  return rt::kJoints;
+}
+
+}  // namespace
+
+can::cia402::State HandLink::Node::state() const noexcept {
+  return can::cia402::state_of(latest.statusword).value_or(can::cia402::State::kNotReadyToSwitchOn);
+}
+
+void HandLink::send_sync() noexcept {
+  drain();
+  arrived_ = 0;
+  if (age_ticks_ < std::numeric_limits<std::int32_t>::max()) ++age_ticks_;
+  bus_.send(can::sync_frame());
+  if (--periods_to_heartbeat_ <= 0) {
+    bus_.send(can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}));
+    periods_to_heartbeat_ = kHeartbeatPeriods;
+  }
+}
+
+void HandLink::drain() noexcept {
+  can::Frame frame;
+  for (int i = 0; i < kMaxFrames && bus_.receive(frame) == Receive::kFrame; ++i) take(frame);
+}
+
+void HandLink::take(const can::Frame& frame) noexcept {
+  const auto address = can::address_of(frame.id);
+  if (!address) return;
+  const std::size_t joint = joint_of(address->node);
+  if (joint == rt::kJoints) return;
+  switch (address->service) {
+    case can::Service::kTpdo1:
+      if (const auto tpdo = can::decode_tpdo1(address->node, frame)) take_tpdo(joint, *tpdo);
+      break;
+    case can::Service::kEmcy:
+      if (const auto emergency = can::decode_emergency(frame)) nodes_[joint].emergency = emergency->code;
+      break;
+    case can::Service::kHeartbeat:
+      if (const auto beat = can::decode_heartbeat(frame)) {
+        nodes_[joint].operational = beat->state == can::NmtState::kOperational;
+      }
+      break;
+    default:
+      break;
+  }
+}
+
+/// Joints are used as a set sampled at one SYNC, or not at all: mixed ages would be a pose that never was.
+void HandLink::take_tpdo(std::size_t joint, const can::Tpdo1& tpdo) noexcept {
+  pending_[joint] = tpdo;
+  arrived_ |= 1U << joint;
+  if (arrived_ != kAllJoints) return;
+  for (std::size_t j = 0; j < rt::kJoints; ++j) nodes_[j].latest = pending_[j];
+  arrived_ = 0;
+  valid_ = true;
+  age_ticks_ = 0;
+}
+
+rt::HandReading HandLink::reading() const noexcept {
+  using can::cia402::State;
+  rt::HandReading r;
+  r.bus_lost = bus_.is_lost();
+  r.valid = valid_;
+  r.age_ticks = age_ticks_;
+  r.enabled = valid_;
+  for (std::size_t j = 0; j < rt::kJoints; ++j) {
+    const Node& node = nodes_[j];
+    const State state = node.state();
+    r.q_rad[j] = can::angle_rad(node.latest.position_counts);
+    r.enabled = r.enabled && state == State::kOperationEnabled;
+    r.drive_fault = r.drive_fault || node.emergency != can::emcy::kNoError || !node.operational ||
+                    (valid_ && (state == State::kFault || state == State::kFaultReactionActive));
+    if (can::profile::has_stylus_buttons(can::profile::kJointNodes[j])) {
+      r.grip = (node.latest.buttons & can::profile::kButtonGrip) != 0;
+      r.dead_man = (node.latest.buttons & can::profile::kButtonDeadMan) != 0;
+    }
+  }
+  return r;
+}
+
+std::array<std::int16_t, rt::kJoints> HandLink::write(const rt::HandCommand& command) noexcept {
+  std::array<std::int16_t, rt::kJoints> sent{};
+  for (std::size_t j = 0; j < rt::kJoints; ++j) {
+    Node& node = nodes_[j];
+    const auto state = node.state();
+    if (command.request == rt::DriveRequest::kEnable && state == can::cia402::State::kOperationEnabled) {
+      node.emergency = can::emcy::kNoError;  // it came back up: what it complained of is over
+    }
+    node.controlword = controlword(command.request, state, node.controlword);
+    const std::int16_t torque = bus_.is_lost() ? std::int16_t{0} : can::permille_of(command.torque_Nm[j]);
+    if (bus_.send(can::encode(can::profile::kJointNodes[j], can::Rpdo1{node.controlword, torque}))) sent[j] = torque;
+  }
+  return sent;
+}
+
+}  // namespace ligature::platform

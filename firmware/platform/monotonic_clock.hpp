@@ -1,0 +1,33 @@
+#pragma once
+// The one clock of the loop.
+
+#include <time.h>
+
+#include <cerrno>
+#include <chrono>
+
+namespace ligature::platform {
+
+using Nanoseconds = std::chrono::nanoseconds;
+
+/// CLOCK_MONOTONIC; sleeps to absolute times, so that what a cycle took does not shift the next one.
+class MonotonicClock {
+ public:
+  [[nodiscard]] Nanoseconds now() noexcept {
+    timespec t{};
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return std::chrono::seconds(t.tv_sec) + Nanoseconds(t.tv_nsec);
+  }
+
+  void sleep_until(Nanoseconds at) noexcept {
+    const timespec t = to_timespec(at);
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
+    }
+  }
+
+  [[nodiscard]] static timespec to_timespec(Nanoseconds t) noexcept {
+    return {static_cast<time_t>(t.count() / 1'000'000'000), static_cast<long>(t.count() % 1'000'000'000)};
+  }
+};
+
+}  // namespace ligature::platform

@@ -1,0 +1,99 @@
+#include "firmware/platform/realtime.hpp"
+
+#include <malloc.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+namespace ligature::platform {
+namespace {
+
+constexpr int kPriority = 80;  // above threaded interrupts (50), below the kernel's own (99)
+constexpr std::size_t kStackReserve = 256 * 1024;
+constexpr std::size_t kHeapReserve = 8 * 1024 * 1024;
+constexpr std::size_t kPage = 4096;
+
+[[gnu::noinline]] void touch_stack() noexcept {
+  unsigned char stack[kStackReserve];
+  for (std::size_t i = 0; i < kStackReserve; i += kPage) stack[i] = 0;
+  asm volatile("" : : "r"(stack) : "memory");  // the writes must happen
+}
+
+std::string refused(const char* what, int error, const char* remedy) {
+  return std::string(what) + " refused (" + std::strerror(error) + "); remedy: " + remedy;
+}
+
+}  // namespace
+
+Refusals lock_memory() {
+  Refusals refusals;
+  if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
+    refusals.push_back(refused("locked memory (mlockall)", errno, "memlock unlimited in limits.conf, or CAP_IPC_LOCK"));
+  }
+  const bool kept = mallopt(M_TRIM_THRESHOLD, -1) == 1 && mallopt(M_MMAP_MAX, 0) == 1;
+  if (!kept) refusals.push_back("heap that keeps its pages (mallopt) refused; remedy: glibc's allocator");
+  if (auto* reserve = static_cast<volatile unsigned char*>(std::malloc(kHeapReserve)); reserve != nullptr) {
+    for (std::size_t i = 0; i < kHeapReserve; i += kPage) reserve[i] = 0;
+    std::free(const_cast<unsigned char*>(reserve));
+  }
+  return refusals;
+}
+
+Refusals make_realtime(int core) {
+  Refusals refusals;
+  cpu_set_t only;
+  CPU_ZERO(&only);
+  CPU_SET(static_cast<std::size_t>(core), &only);
+  if (const int e = pthread_setaffinity_np(pthread_self(), sizeof only, &only); e != 0) {
+    refusals.push_back(refused("own core (affinity)", e, "allow the core to this process"));
+  }
+  sched_param priority{};
+  priority.sched_priority = kPriority;
+  if (const int e = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority); e != 0) {
+    refusals.push_back(refused("SCHED_FIFO", e, "rtprio 80 in limits.conf, or CAP_SYS_NICE"));
+  }
+  if (prctl(PR_SET_TIMERSLACK, 1UL) != 0) refusals.push_back(refused("exact timers (timer slack)", errno, "none"));
+  touch_stack();
+  return refusals;
+}
+
+void flush_denormals() noexcept {
+#if defined(__x86_64__)
+  _mm_setcsr(_mm_getcsr() | 0x8040U);  // FTZ: results, DAZ: operands
+#elif defined(__aarch64__)
+  std::uint64_t fpcr = 0;
+  asm volatile("mrs %0, fpcr" : "=r"(fpcr));
+  asm volatile("msr fpcr, %0" ::"r"(fpcr | (std::uint64_t{1} << 24)));
+#endif
+}
+
+int realtime_core() {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  sched_getaffinity(0, sizeof allowed, &allowed);
+  for (int core = CPU_SETSIZE - 1; core > 0; --core) {
+    if (CPU_ISSET(static_cast<std::size_t>(core), &allowed)) return core;
+  }
+  return 0;
+}
+
+void keep_off(int core) noexcept {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  sched_getaffinity(0, sizeof allowed, &allowed);
+  if (CPU_COUNT(&allowed) < 2) return;
+  CPU_CLR(static_cast<std::size_t>(core), &allowed);
+  pthread_setaffinity_np(pthread_self(), sizeof allowed, &allowed);
+}
+
+}  // namespace ligature::platform

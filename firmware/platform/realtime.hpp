@@ -1,0 +1,29 @@
+#pragma once
+// What a machine must grant for a real-time thread, asked for item by item.
+
+#include <string>
+#include <vector>
+
+namespace ligature::platform {
+
+/// One line for each thing that was refused, naming it, the cause and the remedy; empty: all granted.
+using Refusals = std::vector<std::string>;
+
+/// For the whole process, before the loop starts: locks present and future pages into memory, keeps freed heap from
+/// going back to the system, and touches a heap reserve, so that no page fault waits in the loop.
+[[nodiscard]] Refusals lock_memory();
+
+/// For the calling thread: pinned to `core`, SCHED_FIFO, stack touched, exact timers.
+[[nodiscard]] Refusals make_realtime(int core);
+
+/// For the calling thread, granted always: denormals are zero. A thread at rest decays into them, and
+/// each costs a hundred cycles; a force below 1e-308 N is nobody's.
+void flush_denormals() noexcept;
+
+/// The last core this process may use: interrupts and other work gather on the first.
+[[nodiscard]] int realtime_core();
+
+/// For the calling thread (and those it starts): every allowed core but that one; all of them when it is the only one.
+void keep_off(int core) noexcept;
+
+}  // namespace ligature::platform

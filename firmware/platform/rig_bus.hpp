@@ -1,0 +1,23 @@
+#pragma once
+// Both hands' buses as the loop sees them.
+
+#include "firmware/platform/bus_wait.hpp"
+#include "firmware/platform/hand_link.hpp"
+
+namespace ligature::platform {
+
+class RigBus {
+ public:
+  RigBus(CanBus& left, CanBus& right, BusWait& wait) noexcept : hands_{HandLink(left), HandLink(right)}, wait_(wait) {}
+
+  void send_sync() noexcept;
+  /// Returns as soon as both hands have answered, at the latest at the deadline.
+  [[nodiscard]] rt::RigReading read_tpdos(Nanoseconds deadline) noexcept;
+  rt::WireTorque write_rpdos(const rt::RigCommand& command) noexcept;
+
+ private:
+  std::array<HandLink, rt::kHands> hands_;
+  BusWait& wait_;
+};
+
+}  // namespace ligature::platform
