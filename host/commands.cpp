@@ -1,0 +1,160 @@
+#include "host/commands.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "host/errors.hpp"
+#include "host/export_csv.hpp"
+#include "host/knot_command.hpp"
+#include "host/plot.hpp"
+#include "host/record.hpp"
+#include "host/report.hpp"
+#include "host/send.hpp"
+
+namespace ligature::host {
+namespace {
+
+/// Options of one subcommand, kept as long as the parser.
+template <class Options>
+std::shared_ptr<Options> kept(CLI::App&) {
+  return std::make_shared<Options>();
+}
+
+void refuse_same_file(const std::string& log, const std::string& target) {
+  std::error_code none;
+  if (!target.empty() && std::filesystem::equivalent(log, target, none))
+    throw BadInput(target + ": is the log itself; allowed: another name");
+}
+
+void add_url(CLI::App& command, std::string& url) {
+  command.add_option("--lcm-url", url, "LCM network; ttl=0 keeps every packet on this machine")->capture_default_str();
+}
+
+}  // namespace
+
+void add_record(CLI::App& app) {
+  auto* command = app.add_subcommand("record", "Record every message of the rig into an LCM log");
+  const auto options = kept<RecordOptions>(app);
+  command->add_option("--out", options->out, "log to write (lcm-logplayer plays it)")->required();
+  add_url(*command, options->lcm_url);
+  command->add_option("--duration", options->duration_s, "seconds; without it until Ctrl-C or SIGTERM")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--force", options->force, "replace an existing file");
+  command->add_flag("--quiet", options->quiet, "no progress");
+  command->footer(
+      "Counts every tick while it writes and names those that never came. It does not end when the firmware does: a\n"
+      "restarted firmware becomes a further session of the same log. At most 0.3 s are lost when it is killed.\n"
+      "Exit code 3 when the disk refuses, the network cannot be opened, or nothing at all came.\n\n"
+      "Example:\n  ligature-host record --out knot.lcmlog --duration 25\n"
+      "  recorded 25000 of 25000 ticks, 0 lost; 1500 shapes, 3017 messages in all");
+  command->callback([options] { record(*options); });
+}
+
+void add_export(CLI::App& app) {
+  struct Options {
+    std::string log;
+    ExportTargets targets;
+  };
+  auto* command = app.add_subcommand("export", "Write the ticks and shapes of a log as CSV");
+  const auto options = kept<Options>(app);
+  command->add_option("log", options->log, "LCM log of 'record'")->required();
+  command->add_option("--forces", options->targets.forces, "forces, grasp and state of every tick");
+  command->add_option("--shape", options->targets.shape, "the thread's nodes at 60 Hz");
+  command->add_option("--ticks", options->targets.ticks, "every field of every tick");
+  command->footer(forces_columns_help() + shape_columns_help() + ticks_columns_help() +
+                  "Each tick once, in order of arrival. A cut-off log is exported up to its last whole event, and that is\n"
+                  "said. Files appear complete or not at all.\n\n"
+                  "Example:\n  ligature-host export knot.lcmlog --forces forces.csv --shape shape.csv");
+  command->callback([options] {
+    const auto& [forces, shape, ticks] = options->targets;
+    if (forces.empty() && shape.empty() && ticks.empty())
+      throw BadInput("export: found nothing to write, allowed one or more of --forces, --shape, --ticks");
+    for (const auto& target : {forces, shape, ticks}) refuse_same_file(options->log, target);
+    const auto result = export_csv(options->log, options->targets);
+    if (!result.damage.empty())
+      std::fprintf(stderr, "ligature-host: %s: %s\n", options->log.c_str(), result.damage.c_str());
+    std::printf("exported %lld ticks and %lld shapes", static_cast<long long>(result.tick_rows),
+                static_cast<long long>(result.shapes));
+    if (result.duplicates_left_out)
+      std::printf(", left out %lld duplicates", static_cast<long long>(result.duplicates_left_out));
+    if (result.unreadable_messages)
+      std::printf(", %lld unreadable messages", static_cast<long long>(result.unreadable_messages));
+    std::printf("\n");
+  });
+}
+
+void add_plot(CLI::App& app) {
+  struct Options {
+    std::string log, out;
+  };
+  auto* command = app.add_subcommand("plot", "Draw the force on each hand against time");
+  const auto options = kept<Options>(app);
+  command->add_option("log", options->log, "LCM log of 'record'")->required();
+  command->add_option("--out", options->out, "picture to write: .png, .svg or .pdf")->required();
+  command->footer(
+      "Draws |F| per hand, the device's limit, grasp and release, and the controller's state. Spikes are never thinned\n"
+      "away. Uses matplotlib of the Python set up by scripts/setup; LIGATURE_PYTHON names another one.\n\n"
+      "Example:\n  ligature-host plot knot.lcmlog --out forces.png");
+  command->callback([options] {
+    refuse_same_file(options->log, options->out);
+    plot(options->log, options->out);
+    std::printf("drew %s\n", options->out.c_str());
+  });
+}
+
+void add_report(CLI::App& app) {
+  struct Options {
+    std::string log;
+    bool json = false;
+  };
+  auto* command = app.add_subcommand("report", "Say how a run went: rate, deadlines, forces, losses, knot");
+  const auto options = kept<Options>(app);
+  command->add_option("log", options->log, "LCM log of 'record'")->required();
+  command->add_flag("--json", options->json, "as one JSON object");
+  command->footer(
+      "Percentiles are nearest-rank over all executed ticks. Mean force is over the ticks with a grasp. The knot is named\n"
+      "ten times a second of the recording.\n\n"
+      "Example:\n  ligature-host report knot.lcmlog --json | jq .execution_us.p99");
+  command->callback([options] {
+    const LogSummary summary = summarise(options->log);
+    std::fputs((options->json ? report_json(summary) : report_table(summary)).c_str(), stdout);
+  });
+}
+
+void add_knot(CLI::App& app) {
+  auto* command = app.add_subcommand("knot", "Name the knot of a polyline or of a recorded thread");
+  const auto options = kept<KnotOptions>(app);
+  command->add_option("file", options->file, "CSV with columns x,y,z (or x_m,y_m,z_m), a shape.csv, or an LCM log")
+      ->required();
+  auto* closed = command->add_flag("--closed", options->closed, "the last point joins the first");
+  command->add_flag("--open", options->open, "it does not")->excludes(closed);
+  command->add_option("--at", options->at_s, "time of the shape, s: the nearest one (default: the last one)");
+  command->add_flag("--json", options->json, "as one JSON line");
+  command->footer(
+      "Without --closed and --open a polyline is closed when its last point repeats its first. A knot that cannot be\n"
+      "named is 'unknown', with its invariants. Alexander coefficients stand from the lowest power.\n\n"
+      "Example:\n  ligature-host knot knot.lcmlog --json\n"
+      "  {\"type\":\"3_1\",\"handedness\":\"left\",\"determinant\":3,\"alexander\":[1,-1,1]}");
+  command->callback([options] { std::fputs(describe_knot(*options).c_str(), stdout); });
+}
+
+void add_send(CLI::App& app) {
+  struct Options {
+    std::string word, lcm_url{kDefaultLcmUrl};
+  };
+  auto* command = app.add_subcommand("send", "Send the firmware a command and print its answer");
+  const auto options = kept<Options>(app);
+  command->add_option("command", options->word, "arm, disarm, stop, reset-fault or reset-thread")
+      ->required()
+      ->check(CLI::IsMember({"arm", "disarm", "stop", "reset-fault", "reset-thread"}));
+  add_url(*command, options->lcm_url);
+  command->footer(
+      "Waits up to 1 s; exit code 3 when the firmware refuses or does not answer. No command can by itself put force on\n"
+      "a hand: that needs the dead-man button of the device as well.\n\n"
+      "Example:\n  ligature-host send stop");
+  command->callback([options] { send(options->word, options->lcm_url); });
+}
+
+}  // namespace ligature::host

@@ -1,0 +1,100 @@
+#include "host/export_csv.hpp"
+
+#include <memory>
+#include <optional>
+
+#include "host/atomic_file.hpp"
+#include "host/csv_tables.hpp"
+#include "host/errors.hpp"
+#include "host/log_reader.hpp"
+#include "host/rig_facts.hpp"
+#include "host/session_tally.hpp"
+#include "host/stop_signal.hpp"
+
+namespace ligature::host {
+namespace {
+
+std::unique_ptr<AtomicFile> open_table(const std::string& path, const std::string& header) {
+  if (path.empty()) return nullptr;
+  auto file = std::make_unique<AtomicFile>(path);
+  file->write(header);
+  return file;
+}
+
+class Exporter {
+ public:
+  Exporter(RigFacts facts, const ExportTargets& targets)
+      : facts_(std::move(facts)),
+        forces_(open_table(targets.forces, forces_header())),
+        shape_(open_table(targets.shape, shape_header())),
+        ticks_(open_table(targets.ticks, ticks_header())) {}
+
+  void take(const LogEvent& event) {
+    if (event.channel == kTicksChannel) {
+      if (const auto batch = decode<ligature_msg::tick_batch_t>(event.data)) return take(*batch);
+    } else if (event.channel == kThreadChannel) {
+      if (const auto thread = decode<ligature_msg::thread_t>(event.data)) return take(*thread);
+    } else if (is_readable(event.channel, event.data)) {
+      return;
+    }
+    ++result_.unreadable_messages;
+  }
+
+  ExportResult commit() {
+    for (auto* table : {forces_.get(), shape_.get(), ticks_.get()})
+      if (table) table->commit();
+    return result_;
+  }
+
+  [[nodiscard]] const ExportResult& result() const { return result_; }
+
+ private:
+  void take(const ligature_msg::tick_batch_t& batch) {
+    const int session = tally_.find_or_add(batch.session);
+    if (session < 0) {
+      ++result_.unreadable_messages;
+      return;
+    }
+    for (const auto& tick : batch.ticks) {
+      if (!tally_[session].ticks.add(tick.tick)) {
+        ++result_.duplicates_left_out;
+        continue;
+      }
+      ++result_.tick_rows;
+      if (forces_) forces_->write(forces_row(row_, tick, facts_.time_s(tick.tick), session + 1));
+      if (ticks_) ticks_->write(ticks_row(row_, tick, facts_.time_s(tick.tick), session + 1));
+    }
+  }
+
+  void take(const ligature_msg::thread_t& thread) {
+    ++result_.shapes;
+    if (!shape_) return;
+    for (int node = 0; node < thread.count; ++node)
+      shape_->write(shape_row(row_, thread, facts_.time_s(thread.tick), node));
+  }
+
+  RigFacts facts_;
+  std::unique_ptr<AtomicFile> forces_, shape_, ticks_;
+  SessionTally tally_;
+  CsvRow row_;
+  ExportResult result_;
+};
+
+}  // namespace
+
+ExportResult export_csv(const std::string& log_path, const ExportTargets& targets) {
+  Exporter exporter(read_rig_facts(log_path), targets);
+  LogReader log(log_path);
+  while (const LogEvent* event = log.next()) {
+    exporter.take(*event);
+    if (stop_requested()) throw RunFailed("export stopped by a signal; nothing was written");
+  }
+  if (exporter.result().tick_rows == 0)
+    throw BadInput(log_path + ": holds no readable tick in " + std::to_string(log.events()) +
+                   " events; allowed: a log with messages on " + std::string(kTicksChannel));
+  ExportResult result = exporter.commit();
+  result.damage = log.damage();
+  return result;
+}
+
+}  // namespace ligature::host

@@ -1,0 +1,27 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+namespace ligature::host {
+
+/// Where to write; an empty name is not written.
+struct ExportTargets {
+  std::string forces, shape, ticks;
+};
+
+struct ExportResult {
+  std::int64_t tick_rows = 0, shapes = 0, duplicates_left_out = 0, unreadable_messages = 0;
+  std::string damage;  // of the log, empty for a sound one
+};
+
+/// What the columns mean, for --help.
+[[nodiscard]] std::string forces_columns_help();
+[[nodiscard]] std::string ticks_columns_help();
+[[nodiscard]] std::string shape_columns_help();
+
+/// Writes CSV tables of a log, front to back in constant memory. Each tick number of a session once, in order of
+/// arrival. Each file appears complete or not at all.
+/// @throws BadInput for a file that is no log or holds no tick; RunFailed for a full disk or a stop request.
+ExportResult export_csv(const std::string& log_path, const ExportTargets& targets);
+
+}  // namespace ligature::host

@@ -1,0 +1,44 @@
+#include "host/knot_command.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "host/errors.hpp"
+#include "host/knot/recognise.hpp"
+#include "host/polyline_file.hpp"
+#include "host/text.hpp"
+
+namespace ligature::host {
+namespace {
+
+std::string json_line(const knot::KnotResult& found) {
+  const nlohmann::ordered_json json = {{"type", found.type}, {"handedness", found.handedness},
+                                       {"determinant", found.determinant}, {"alexander", found.alexander}};
+  return json.dump() + "\n";
+}
+
+std::string words(const knot::KnotResult& found, const Polyline& line) {
+  std::string result = found.type;
+  if (found.handedness != "none") result += " " + found.handedness;
+  result += text("  (determinant %d, Alexander polynomial", found.determinant);
+  for (const int coefficient : found.alexander) result += text(" %d", coefficient);
+  result += text("; %zu points", line.points.size());
+  if (line.time_s) result += text(" at %.3f s", *line.time_s);
+  return result + ")\n";
+}
+
+}  // namespace
+
+std::string describe_knot(const KnotOptions& options) {
+  Polyline line = is_lcm_log(options.file) ? read_polyline_log(options.file, options.at_s)
+                                           : read_polyline_csv(options.file, options.at_s);
+  if (options.at_s && !line.time_s) throw BadInput(options.file + ": --at needs a column t_s, found none");
+  const bool ends_meet = line.points.front() == line.points.back();
+  const bool closed = options.closed || (!options.open && ends_meet);
+  if (closed && ends_meet) line.points.pop_back();
+  if (line.points.size() < 3)
+    throw BadInput(options.file + ": found " + std::to_string(line.points.size()) + " different points, allowed 3 or more");
+  const knot::KnotResult found = knot::recognise(line.points, closed);
+  return options.json ? json_line(found) : words(found, line);
+}
+
+}  // namespace ligature::host

@@ -1,0 +1,19 @@
+#pragma once
+#include <optional>
+#include <string>
+
+namespace ligature::host {
+
+struct KnotOptions {
+  std::string file{};            // CSV polyline or LCM log
+  bool closed = false;          // --closed: the last point joins the first
+  bool open = false;            // --open: it does not, even where the two coincide
+  std::optional<double> at_s{};  // which shape, where there are many; the last one without
+  bool json = false;
+};
+
+/// Names the knot of a file. @return the line to print.
+/// Without --closed and --open a polyline is closed when its last point repeats its first. @throws BadInput.
+[[nodiscard]] std::string describe_knot(const KnotOptions& options);
+
+}  // namespace ligature::host

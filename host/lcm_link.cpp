@@ -1,0 +1,103 @@
+#include "host/lcm_link.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <exception>
+#include <lcm/lcm-cpp.hpp>
+#include <utility>
+
+#include "host/errors.hpp"
+
+namespace ligature::host {
+namespace {
+
+/// Our queue between the library's thread and receive(): over a minute of everything the rig sends.
+constexpr int kQueuedMessages = 16384;
+
+/// Keeps the library's page of text off stderr while it opens the network: we say the same in one line.
+class QuietStderr {
+ public:
+  QuietStderr() : saved_(dup(STDERR_FILENO)), null_(open("/dev/null", O_WRONLY)) { dup2(null_, STDERR_FILENO); }
+  ~QuietStderr() {
+    dup2(saved_, STDERR_FILENO);
+    close(saved_);
+    close(null_);
+  }
+  QuietStderr(const QuietStderr&) = delete;
+  QuietStderr& operator=(const QuietStderr&) = delete;
+
+ private:
+  int saved_, null_;
+};
+
+/// Threads made while this lives never take a signal: it is ours to see.
+class SignalsBlocked {
+ public:
+  SignalsBlocked() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  ~SignalsBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalsBlocked(const SignalsBlocked&) = delete;
+  SignalsBlocked& operator=(const SignalsBlocked&) = delete;
+
+ private:
+  sigset_t before_ = {};
+};
+
+}  // namespace
+
+struct LcmLink::Receiver {
+  Handler handler;
+  std::exception_ptr failure;  // of the handler: it must not cross the library's C frames
+
+  void on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept {
+    if (failure) return;
+    try {
+      handler({buffer->recv_utime, channel, Bytes(static_cast<const std::byte*>(buffer->data), buffer->data_size)});
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  }
+};
+
+LcmLink::LcmLink(const std::string& url, const std::string& channels, Handler handler)
+    : receiver_(std::make_unique<Receiver>(Receiver{std::move(handler), nullptr})) {
+  const bool is_multicast = url.starts_with("udpm://");
+  if (!is_multicast && !url.starts_with("tcpq://") && !url.starts_with("memq://"))
+    throw BadInput("--lcm-url: found '" + url + "', allowed udpm://ADDRESS:PORT[?ttl=N&recv_buf_size=BYTES]");
+  const SignalsBlocked in_the_library;
+  lcm::Subscription* subscription = nullptr;
+  {
+    const QuietStderr one_line_is_enough;
+    lcm_ = std::make_unique<lcm::LCM>(url);
+    if (lcm_->good()) subscription = lcm_->subscribe(channels, &Receiver::on_message, receiver_.get());
+  }
+  if (!subscription)
+    throw RunFailed("cannot open " + url + ": wrong address or port, or no multicast route; remedy: run inside "
+                    "scripts/private-net, or 'ip link set lo up; ip route add 224.0.0.0/4 dev lo' as root");
+  subscription->setQueueCapacity(kQueuedMessages);
+}
+
+LcmLink::~LcmLink() = default;
+
+int LcmLink::receive(int timeout_ms) {
+  pollfd waiting{.fd = lcm_->getFileno(), .events = POLLIN, .revents = 0};
+  int handled = 0;
+  while (poll(&waiting, 1, handled ? 0 : timeout_ms) > 0) {
+    if (lcm_->handle() != 0) throw RunFailed("LCM: receiving failed");
+    if (receiver_->failure) std::rethrow_exception(receiver_->failure);
+    if (++handled == 256) break;  // let the caller look at the clock
+  }
+  return handled;
+}
+
+void LcmLink::publish(std::string_view channel, const void* data, unsigned size) {
+  if (lcm_->publish(std::string(channel), data, size) != 0) throw RunFailed("LCM: sending failed");
+}
+
+}  // namespace ligature::host

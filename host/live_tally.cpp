@@ -1,0 +1,80 @@
+#include "host/live_tally.hpp"
+
+#include "host/names.hpp"
+#include "host/text.hpp"
+#include "host/tick_statistics.hpp"
+
+namespace ligature::host {
+namespace {
+
+/// "lost in session 1: ticks 100..119, 400 (21; 0 of them dropped inside the firmware)" or nothing.
+std::string describe_losses(const Session& session, int number, std::size_t max_ranges) {
+  if (session.ticks.missing() == 0) return {};
+  std::string line = text("lost in session %d: ticks ", number);
+  const auto holes = session.ticks.missing_ranges();
+  for (std::size_t i = 0; i < holes.size() && i < max_ranges; ++i) {
+    line += text("%s%lld", i ? ", " : "", static_cast<long long>(holes[i].first));
+    if (holes[i].size() > 1) line += text("..%lld", static_cast<long long>(holes[i].last));
+  }
+  if (holes.size() > max_ranges) line += text(" and %zu more holes", holes.size() - max_ranges);
+  return line + text(" (%lld in all; %lld dropped inside the firmware)\n",
+                     static_cast<long long>(session.ticks.missing()), static_cast<long long>(session.ring_dropped));
+}
+
+}  // namespace
+
+void LiveTally::add(std::string_view channel, Bytes message) {
+  ++messages_;
+  if (channel == kTicksChannel) {
+    const auto batch = decode<ligature_msg::tick_batch_t>(message);
+    batch ? add(*batch) : void(++unreadable_);
+  } else if (!is_readable(channel, message)) {
+    ++unreadable_;
+  } else if (channel == kThreadChannel) {
+    ++shapes_;
+  }
+}
+
+void LiveTally::add(const ligature_msg::tick_batch_t& batch) {
+  const int index = sessions_.find_or_add(batch.session);
+  if (index < 0) {
+    ++unreadable_;
+    return;
+  }
+  Session& session = sessions_[index];
+  session.ring_dropped = batch.ring_dropped;
+  for (const auto& tick : batch.ticks) session.ticks.add(tick.tick);
+  if (batch.ticks.empty()) return;
+  const auto& newest = batch.ticks.back();
+  state_ = newest.state;
+  fault_ = newest.fault;
+  for (std::size_t hand = 0; hand < 2; ++hand) force_N_[hand] = magnitude(newest.f_device_N[hand]);
+}
+
+std::string LiveTally::progress_line(double elapsed_s, double ticks_per_s) const {
+  std::string line = text("%7.1f s  %lld ticks  %.0f/s  %lld lost", elapsed_s,
+                          static_cast<long long>(sessions_.received()), ticks_per_s,
+                          static_cast<long long>(sessions_.missing()));
+  if (sessions_.restarts() > 0) line += text("  %zu restarts", sessions_.restarts());
+  if (sessions_.received() == 0) return line + "  waiting for the firmware";
+  line += text("  %-7s left %.2f N  right %.2f N", state_name(state_).data(), force_N_[0], force_N_[1]);
+  if (fault_ != 0) line += text("  FAULT %d", fault_);
+  return line;
+}
+
+std::string LiveTally::summary(std::size_t max_ranges) const {
+  const auto received = sessions_.received(), missing = sessions_.missing();
+  std::string lines = text("recorded %lld of %lld ticks, %lld lost", static_cast<long long>(received),
+                           static_cast<long long>(received + missing), static_cast<long long>(missing));
+  lines += text("; %lld shapes, %lld messages in all\n", static_cast<long long>(shapes_),
+                static_cast<long long>(messages_));
+  if (sessions_.restarts() > 0) lines += text("sessions: %zu (the firmware was restarted)\n", sessions_.sessions().size());
+  if (sessions_.duplicates() > 0)
+    lines += text("duplicates: %lld ticks came twice\n", static_cast<long long>(sessions_.duplicates()));
+  if (unreadable_ > 0) lines += text("unreadable: %lld messages, kept as they came\n", static_cast<long long>(unreadable_));
+  int number = 0;
+  for (const auto& session : sessions_.sessions()) lines += describe_losses(session, ++number, max_ranges);
+  return lines;
+}
+
+}  // namespace ligature::host

@@ -1,0 +1,108 @@
+#include "host/log_summary.hpp"
+
+#include <limits>
+
+#include "host/errors.hpp"
+#include "host/log_reader.hpp"
+#include "host/stop_signal.hpp"
+#include "host/thread_knot.hpp"
+
+namespace ligature::host {
+namespace {
+
+class Summariser {
+ public:
+  Summariser(RigFacts facts, double knot_every_s) : knot_every_s_(knot_every_s) { summary.facts = std::move(facts); }
+
+  void take(const LogEvent& event) {
+    if (event.channel == kTicksChannel) {
+      if (const auto batch = decode<ligature_msg::tick_batch_t>(event.data)) return take(*batch);
+    } else if (event.channel == kThreadChannel) {
+      if (const auto thread = decode<ligature_msg::thread_t>(event.data)) return take(*thread);
+    } else if (event.channel == kStatusChannel) {
+      if (auto status = decode<ligature_msg::status_t>(event.data)) {
+        summary.last_status = std::move(status);
+        return;
+      }
+    } else if (is_readable(event.channel, event.data)) {
+      return;
+    }
+    ++summary.unreadable_messages;
+  }
+
+  /// The last shape counts, wherever the sampling stood.
+  void finish() {
+    if (last_shape_.count > 0) name(last_shape_);
+  }
+
+  LogSummary summary;
+
+ private:
+  void take(const ligature_msg::tick_batch_t& batch) {
+    const int index = summary.tally.find_or_add(batch.session);
+    if (index < 0) {
+      ++summary.unreadable_messages;
+      return;
+    }
+    if (index != session_) {
+      session_ = index;
+      next_knot_s_ = -std::numeric_limits<double>::infinity();  // its clock starts again
+      summary.ticks.start_session();
+    }
+    Session& session = summary.tally[index];
+    session.ring_dropped = batch.ring_dropped;
+    for (const auto& tick : batch.ticks)
+      if (session.ticks.add(tick.tick)) summary.ticks.add(tick);
+  }
+
+  void take(const ligature_msg::thread_t& thread) {
+    ++summary.shapes;
+    last_shape_ = thread;
+    if (summary.facts.time_s(thread.tick) < next_knot_s_) return;
+    next_knot_s_ = summary.facts.time_s(thread.tick) + knot_every_s_;
+    name(thread);
+  }
+
+  void name(const ligature_msg::thread_t& thread) {
+    knot::KnotResult knot = name_knot(thread);
+    auto& knots = summary.knots;
+    if (!knots.empty() && knots.back().type == knot.type && knots.back().handedness == knot.handedness) return;
+    knots.push_back({summary.facts.time_s(thread.tick), std::move(knot.type), std::move(knot.handedness)});
+  }
+
+  double knot_every_s_;
+  double next_knot_s_ = -std::numeric_limits<double>::infinity();
+  int session_ = -1;
+  ligature_msg::thread_t last_shape_{};
+};
+
+}  // namespace
+
+double LogSummary::duration_s() const {
+  std::int64_t periods = 0;
+  for (const auto& session : tally.sessions())
+    if (!session.ticks.is_empty()) periods += session.ticks.last() - session.ticks.first() + 1;
+  return facts.time_s(periods);
+}
+
+double LogSummary::knot_first_s() const {
+  for (const auto& span : knots)
+    if (span.type == knots.back().type && span.handedness == knots.back().handedness) return span.from_s;
+  return -1.0;
+}
+
+LogSummary summarise(const std::string& log_path, double knot_every_s) {
+  Summariser summariser(read_rig_facts(log_path), knot_every_s);
+  LogReader log(log_path);
+  while (const LogEvent* event = log.next()) {
+    summariser.take(*event);
+    if (stop_requested()) throw RunFailed("stopped by a signal");
+  }
+  summariser.finish();
+  summariser.summary.damage = log.damage();
+  if (summariser.summary.tally.received() == 0)
+    throw BadInput(log_path + ": holds no readable tick; allowed: a log with messages on " + std::string(kTicksChannel));
+  return std::move(summariser.summary);
+}
+
+}  // namespace ligature::host

@@ -1,0 +1,55 @@
+// ligature-host: records the rig, reads recordings, names knots, sends commands.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "host/commands.hpp"
+#include "host/errors.hpp"
+#include "host/stop_signal.hpp"
+
+namespace {
+
+/// One line on stderr.
+int complain(const std::string& what, int exit_code) {
+  std::fflush(stdout);
+  std::fprintf(stderr, "ligature-host: %s\n", what.c_str());
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace ligature::host;
+  CLI::App app{"Records the haptic rig, reads its recordings, names knots and sends commands."};
+  app.name("ligature-host");
+  app.set_version_flag("--version", "ligature-host " LIGATURE_VERSION);
+  app.require_subcommand(1);
+  add_record(app);
+  add_export(app);
+  add_plot(app);
+  add_report(app);
+  add_knot(app);
+  add_send(app);
+  app.footer(
+      "Example: record a run, look at it, name the knot\n"
+      "  ligature-host record --out knot.lcmlog\n"
+      "  ligature-host report knot.lcmlog\n"
+      "  ligature-host plot knot.lcmlog --out forces.png\n"
+      "  ligature-host knot knot.lcmlog\n"
+      "'ligature-host COMMAND --help' explains each.\n"
+      "Exit code: 0 done, 2 bad usage or bad input, 3 the work itself failed.");
+  catch_stop_signals();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    return complain(std::string(error.what()) + " (see --help)", 2);
+  } catch (const BadInput& error) {
+    return complain(error.what(), 2);
+  } catch (const std::exception& error) {
+    return complain(error.what(), 3);
+  }
+  if (std::fflush(stdout) != 0) return complain("standard output cannot be written", 3);
+  return 0;
+}

@@ -1,0 +1,105 @@
+#include "host/messages.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace ligature::host {
+namespace {
+
+constexpr std::size_t kHash = 8, kInt64 = 8, kInt32 = 4, kInt8 = 1, kFloat = 4;  // bytes on the wire
+constexpr std::int64_t kLargestTick = std::int64_t{1} << 53;  // exact in a double: 285 000 years at 1 kHz
+
+/// The big-endian int32 at an offset; nothing when the message ends before it.
+std::optional<std::int32_t> int32_at(Bytes message, std::size_t offset) {
+  if (message.size() < offset + kInt32) return std::nullopt;
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < kInt32; ++i) value = value << 8U | std::to_integer<std::uint32_t>(message[offset + i]);
+  return static_cast<std::int32_t>(value);
+}
+
+/// Whether `count` at that offset announces exactly the elements that follow it, before a tail of fixed size.
+bool array_fits(Bytes message, std::size_t count_offset, std::size_t element_size, std::size_t tail_size) {
+  const auto count = int32_at(message, count_offset);
+  if (!count || *count < 0) return false;
+  return message.size() == count_offset + kInt32 + static_cast<std::size_t>(*count) * element_size + tail_size;
+}
+
+/// Whether `count` consecutive strings (length with terminator, bytes, 0) lie inside the message.
+bool strings_fit(Bytes message, std::size_t offset, int count) {
+  for (int i = 0; i < count; ++i) {
+    const auto length = int32_at(message, offset);
+    if (!length || *length < 1) return false;
+    offset += kInt32 + static_cast<std::size_t>(*length);
+    if (offset > message.size()) return false;
+  }
+  return true;
+}
+
+template <class M>
+std::optional<M> decode_checked(Bytes message) {
+  if (message.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) return std::nullopt;
+  M decoded;
+  const int size = static_cast<int>(message.size());
+  if (decoded.decode(message.data(), 0, size) != size) return std::nullopt;
+  return decoded;
+}
+
+bool is_tick_number(std::int64_t tick) { return tick >= 0 && tick < kLargestTick; }
+
+}  // namespace
+
+template <>
+std::optional<ligature_msg::tick_batch_t> decode(Bytes message) {
+  static const auto tick_size = static_cast<std::size_t>(ligature_msg::tick_t{}._getEncodedSizeNoHash());
+  if (!array_fits(message, kHash + 3 * kInt64, tick_size, 0)) return std::nullopt;
+  auto batch = decode_checked<ligature_msg::tick_batch_t>(message);
+  if (batch && !std::ranges::all_of(batch->ticks, is_tick_number, &ligature_msg::tick_t::tick)) return std::nullopt;
+  return batch;
+}
+
+template <>
+std::optional<ligature_msg::thread_t> decode(Bytes message) {
+  if (!array_fits(message, kHash + 2 * kInt64 + kFloat, 3 * kFloat, 2 * sizeof(std::int16_t))) return std::nullopt;
+  auto thread = decode_checked<ligature_msg::thread_t>(message);
+  if (thread && !is_tick_number(thread->tick)) return std::nullopt;
+  return thread;
+}
+
+template <>
+std::optional<ligature_msg::status_t> decode(Bytes message) {
+  if (!strings_fit(message, kHash + 2 * kInt64 + kInt32, 3)) return std::nullopt;
+  auto status = decode_checked<ligature_msg::status_t>(message);
+  if (status && !(std::isfinite(status->period_s) && status->period_s > 0.0)) return std::nullopt;
+  return status;
+}
+
+template <>
+std::optional<ligature_msg::event_t> decode(Bytes message) {
+  if (!strings_fit(message, kHash + 2 * kInt64 + 2 * kInt8 + kInt32, 1)) return std::nullopt;
+  return decode_checked<ligature_msg::event_t>(message);
+}
+
+template <>
+std::optional<ligature_msg::ack_t> decode(Bytes message) {
+  if (!strings_fit(message, kHash + 2 * kInt64 + kInt8, 1)) return std::nullopt;
+  return decode_checked<ligature_msg::ack_t>(message);
+}
+
+template <>
+std::optional<ligature_msg::command_t> decode(Bytes message) {
+  return decode_checked<ligature_msg::command_t>(message);
+}
+
+bool is_readable(std::string_view channel, Bytes message) {
+  if (channel == kTicksChannel) return decode<ligature_msg::tick_batch_t>(message).has_value();
+  if (channel == kThreadChannel) return decode<ligature_msg::thread_t>(message).has_value();
+  if (channel == kStatusChannel) return decode<ligature_msg::status_t>(message).has_value();
+  if (channel == kEventChannel) return decode<ligature_msg::event_t>(message).has_value();
+  if (channel == kAckChannel) return decode<ligature_msg::ack_t>(message).has_value();
+  if (channel == kCommandChannel) return decode<ligature_msg::command_t>(message).has_value();
+  return true;
+}
+
+}  // namespace ligature::host

@@ -1,0 +1,49 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "ligature_msg/ack_t.hpp"
+#include "ligature_msg/command_t.hpp"
+#include "ligature_msg/event_t.hpp"
+#include "ligature_msg/status_t.hpp"
+#include "ligature_msg/thread_t.hpp"
+#include "ligature_msg/tick_batch_t.hpp"
+
+namespace ligature::host {
+
+inline constexpr std::string_view kTicksChannel = "LIGATURE_TICKS";
+inline constexpr std::string_view kThreadChannel = "LIGATURE_THREAD";
+inline constexpr std::string_view kStatusChannel = "LIGATURE_STATUS";
+inline constexpr std::string_view kEventChannel = "LIGATURE_EVENT";
+inline constexpr std::string_view kCommandChannel = "LIGATURE_COMMAND";
+inline constexpr std::string_view kAckChannel = "LIGATURE_ACK";
+
+using Bytes = std::span<const std::byte>;
+
+/// Decodes a message that anybody on the network may have sent.
+/// The generated decoders trust the lengths inside a message; these check first that every array and string
+/// fits into the bytes that came, so a forged length can neither allocate gigabytes nor read past the end.
+/// Every byte must be used, and values that later code computes with must be plausible.
+/// @return nothing for a message that is not exactly one M.
+template <class M>
+[[nodiscard]] std::optional<M> decode(Bytes message);
+
+template <>
+std::optional<ligature_msg::tick_batch_t> decode(Bytes message);
+template <>
+std::optional<ligature_msg::thread_t> decode(Bytes message);
+template <>
+std::optional<ligature_msg::status_t> decode(Bytes message);
+template <>
+std::optional<ligature_msg::event_t> decode(Bytes message);
+template <>
+std::optional<ligature_msg::ack_t> decode(Bytes message);
+template <>
+std::optional<ligature_msg::command_t> decode(Bytes message);
+
+/// Whether a message of one of our channels can be read; true for channels that are not ours.
+[[nodiscard]] bool is_readable(std::string_view channel, Bytes message);
+
+}  // namespace ligature::host

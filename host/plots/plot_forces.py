@@ -1,0 +1,145 @@
+"""Draws forces.csv of `ligature-host export`: force on each hand against time.
+
+python3 plot_forces.py forces.csv --out forces.png [--title TEXT] [--limit N]
+Needs numpy and matplotlib. The picture appears under its name only when it is complete.
+"""
+
+import argparse
+import os
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+# Okabe-Ito: tells apart in every common kind of colour blindness, and in grey.
+HANDS = {"left": "#0072B2", "right": "#D55E00"}
+LIMIT = "#000000"
+STATES = {0: ("OFF", "#999999"), 1: ("CALIBRATE", "#56B4E9"), 2: ("IDLE", "#DDDDDD"), 3: ("ENGAGE", "#F0E442"),
+          4: ("FORCE", "#009E73"), 5: ("BRAKE", "#CC79A7"), 6: ("FAULT", "#882255")}
+POINTS = 6000  # drawn a curve: a few for every pixel column
+
+
+def read(path):
+    """Columns by name, in order of time; further sessions follow the ones before."""
+    with open(path, encoding="ascii") as file:
+        names = file.readline().strip().split(",")
+        table = np.loadtxt(file, delimiter=",", ndmin=2)
+    column = {name: table[:, i] for i, name in enumerate(names)}
+    time, offset = column["t_s"].copy(), 0.0
+    for session in np.unique(column["session"]):
+        rows = column["session"] == session
+        time[rows] += offset - time[rows].min() if session > 1 else 0.0
+        offset = time[rows].max()
+    order = np.argsort(time, kind="stable")
+    return {name: values[order] for name, values in column.items()}, time[order]
+
+
+def thinned(time, values):
+    """Smallest and largest value of every bin, so that no spike is lost."""
+    bins = len(values) // (POINTS // 2)
+    if bins < 2:
+        return time, values
+    whole = len(values) // bins * bins
+    blocks = values[:whole].reshape(-1, bins)
+    start = np.arange(0, whole, bins)
+    pick = np.sort(np.stack([start + blocks.argmin(1), start + blocks.argmax(1)], 1), axis=1).ravel()
+    pick = np.concatenate([pick, np.arange(whole, len(values))])
+    return time[pick], values[pick]
+
+
+def spans(values):
+    """(first row, row after the last, value) of every run of equal values."""
+    edges = np.flatnonzero(np.diff(values)) + 1
+    starts = np.concatenate([[0], edges])
+    ends = np.concatenate([edges, [len(values)]])
+    return [(a, b, values[a]) for a, b in zip(starts, ends)]
+
+
+def draw_hand(axes, column, time, hand, limit_N):
+    colour = HANDS[hand]
+    force_N = column[f"{hand}_device_f_N"]
+    node = column[f"{hand}_node"]
+    axes.plot(*thinned(time, force_N), color=colour, linewidth=1.1, label="|F| commanded to the device")
+    axes.axhline(limit_N, color=LIMIT, linestyle="--", linewidth=1.0, label=f"limit {limit_N:g} N")
+    marks = {"grasp": [], "release": []}
+    for first, after, held in spans(node):
+        if held < 0:
+            continue
+        axes.axvspan(time[first], time[after - 1], color=colour, alpha=0.08, linewidth=0)
+        if first > 0:
+            marks["grasp"].append(time[first])
+        if after < len(time):
+            marks["release"].append(time[after])
+        axes.annotate(f"node {int(held)}", (time[first], 1.0), xycoords=("data", "axes fraction"), xytext=(3, -11),
+                      textcoords="offset points", fontsize=7, color=colour)
+    top = limit_N * 1.12
+    for name, marker in (("grasp", "^"), ("release", "v")):
+        axes.vlines(marks[name], 0, top, color=colour, linewidth=0.6, linestyle=":")
+        axes.plot(marks[name], np.zeros(len(marks[name])), marker, color=colour, markeredgecolor="black", markersize=7,
+                  clip_on=False, linestyle="none", label=name, zorder=5)
+    peak = int(force_N.argmax())
+    held = node >= 0
+    mean = f", mean while holding {force_N[held].mean():.2f} N" if held.any() else ""
+    axes.set_title(f"{hand} hand: peak {force_N[peak]:.2f} N at {time[peak]:.2f} s{mean}", loc="left", fontsize=10)
+    axes.set_ylim(0, max(top, force_N[peak] * 1.05))
+    axes.set_ylabel("force magnitude, N")
+    axes.grid(True, color="#dddddd", linewidth=0.5)
+    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8, frameon=False)
+
+
+def draw_states(axes, column, time):
+    for first, after, state in spans(column["state"]):
+        name, colour = STATES.get(int(state), (f"state {int(state)}", "white"))
+        end = time[after] if after < len(time) else time[-1]
+        axes.axvspan(time[first], end, color=colour, linewidth=0)
+        if end - time[first] > 0.05 * (time[-1] - time[0]):
+            axes.text((time[first] + end) / 2, 0.5, name, ha="center", va="center", fontsize=8,
+                      transform=axes.get_xaxis_transform(),
+                      color="white" if name in ("FORCE", "FAULT") else "black")
+    seen = sorted({int(s) for s in column["state"]})
+    patches = [plt.Rectangle((0, 0), 1, 1, color=STATES[s][1], label=STATES[s][0]) for s in seen if s in STATES]
+    axes.legend(handles=patches, loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=7, frameon=False,
+                ncols=2 if len(patches) > 3 else 1)
+    axes.set_yticks([])
+    axes.set_ylabel("state", rotation=0, ha="right", va="center")
+    axes.set_xlabel("time since the firmware's start, s")
+
+
+def draw(path, out, title, limit_N):
+    column, time = read(path)
+    figure, axes = plt.subplots(3, 1, sharex=True, figsize=(12, 7), dpi=130, height_ratios=[6, 6, 0.8],
+                                layout="constrained")
+    for axis, hand in zip(axes, HANDS):
+        draw_hand(axis, column, time, hand, limit_N)
+    draw_states(axes[2], column, time)
+    axes[2].set_xlim(time[0], max(time[-1], time[0] + 1e-3))
+    figure.suptitle(f"Force on each hand, {title}: {len(time)} ticks")
+    part = f"{out}.part-{os.getpid()}"
+    try:
+        figure.savefig(part, format=os.path.splitext(out)[1].lstrip(".").lower() or "png")
+        os.replace(part, out)
+    finally:
+        if os.path.exists(part):
+            os.remove(part)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("forces")
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--title", default="recording")
+    parser.add_argument("--limit", type=float, default=3.3, help="force limit of the device, N")
+    arguments = parser.parse_args()
+    try:
+        draw(arguments.forces, arguments.out, arguments.title, arguments.limit)
+    except (OSError, ValueError) as error:
+        print(f"plot_forces: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,165 @@
+#include "host/polyline_file.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <string_view>
+
+#include "host/errors.hpp"
+#include "host/log_reader.hpp"
+#include "host/rig_facts.hpp"
+
+namespace ligature::host {
+namespace {
+
+std::string_view trimmed(std::string_view field) {
+  constexpr std::string_view kBlank = " \t\r\"";
+  const auto first = field.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return field.substr(first, field.find_last_not_of(kBlank) - first + 1);
+}
+
+std::vector<std::string_view> split(std::string_view line) {
+  std::vector<std::string_view> fields;
+  for (std::size_t start = 0;;) {
+    const auto comma = line.find(',', start);
+    fields.push_back(trimmed(line.substr(start, comma == std::string_view::npos ? comma : comma - start)));
+    if (comma == std::string_view::npos) return fields;
+    start = comma + 1;
+  }
+}
+
+std::optional<double> number(std::string_view field) {
+  double value = 0.0;
+  if (!field.empty() && field.front() == '+') field.remove_prefix(1);
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (error != std::errc{} || end != field.data() + field.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// Where the columns stand; -1 for one that is not there.
+struct Columns {
+  int x = 0, y = 1, z = 2, time = -1, node = -1, count = 3;
+};
+
+class PolylineReader {
+ public:
+  PolylineReader(const std::string& path, std::optional<double> at_s) : path_(path), at_s_(at_s) {}
+
+  void take(std::string_view line) {
+    ++line_number_;
+    if (const auto comment = line.find('#'); comment != std::string_view::npos) line = line.substr(0, comment);
+    if (trimmed(line).empty()) return;
+    const auto fields = split(line);
+    if (!columns_) {
+      const bool has_header = !number(fields.front());
+      columns_ = has_header ? columns_of(fields) : Columns{};
+      if (has_header) return;
+    }
+    take_row(fields);
+  }
+
+  Polyline finish() {
+    choose();
+    if (chosen_.points.size() < 3)
+      throw BadInput(path_ + ": found " + std::to_string(chosen_.points.size()) + " points, allowed 3 or more");
+    return std::move(chosen_);
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw BadInput(path_ + ":" + std::to_string(line_number_) + ": " + what);
+  }
+
+  Columns columns_of(const std::vector<std::string_view>& names) const {
+    Columns found{-1, -1, -1, -1, -1, static_cast<int>(names.size())};
+    for (int i = 0; i < found.count; ++i) {
+      const auto name = names[static_cast<std::size_t>(i)];
+      if (name == "x" || name == "x_m") found.x = i;
+      if (name == "y" || name == "y_m") found.y = i;
+      if (name == "z" || name == "z_m") found.z = i;
+      if (name == "t_s" || name == "time") found.time = i;
+      if (name == "node") found.node = i;
+    }
+    if (found.x < 0 || found.y < 0 || found.z < 0)
+      refuse("header '" + std::string(names.front()) + ",...' lacks a coordinate, allowed columns x,y,z or x_m,y_m,z_m "
+             "(and t_s, node)");
+    return found;
+  }
+
+  double value(const std::vector<std::string_view>& fields, int column) const {
+    const auto field = fields[static_cast<std::size_t>(column)];
+    const auto parsed = number(field);
+    if (!parsed) refuse("found '" + std::string(field) + "', allowed a finite number");
+    return *parsed;
+  }
+
+  void take_row(const std::vector<std::string_view>& fields) {
+    if (static_cast<int>(fields.size()) != columns_->count)
+      refuse("found " + std::to_string(fields.size()) + " fields, allowed " + std::to_string(columns_->count));
+    const std::array<double, 3> point{value(fields, columns_->x), value(fields, columns_->y), value(fields, columns_->z)};
+    if (columns_->time >= 0) {
+      const double time_s = value(fields, columns_->time);
+      if (current_.time_s != time_s) {
+        choose();
+        current_ = {{}, time_s};
+      }
+    }
+    if (columns_->node >= 0 && value(fields, columns_->node) != static_cast<double>(current_.points.size()))
+      refuse("found node " + std::string(fields[static_cast<std::size_t>(columns_->node)]) + ", allowed " +
+             std::to_string(current_.points.size()) + " (nodes rise by one from 0)");
+    current_.points.push_back(point);
+  }
+
+  /// Keeps the shape just read when it is a better answer than the one before.
+  void choose() {
+    if (current_.points.empty()) return;
+    const bool is_better = !at_s_ || !chosen_.time_s ||
+                           std::abs(*current_.time_s - *at_s_) < std::abs(*chosen_.time_s - *at_s_);
+    if (is_better) chosen_ = current_;
+  }
+
+  std::string path_;
+  std::optional<double> at_s_;
+  int line_number_ = 0;
+  std::optional<Columns> columns_;
+  Polyline current_, chosen_;
+};
+
+}  // namespace
+
+Polyline read_polyline_csv(const std::string& path, std::optional<double> at_s) {
+  std::ifstream file(path);
+  if (!file) throw BadInput(path + ": " + std::strerror(errno));
+  PolylineReader reader(path, at_s);
+  for (std::string line; std::getline(file, line);) reader.take(line);
+  return reader.finish();
+}
+
+Polyline read_polyline_log(const std::string& path, std::optional<double> at_s) {
+  const RigFacts facts = read_rig_facts(path);
+  LogReader log(path);
+  Polyline chosen;
+  while (const LogEvent* event = log.next()) {
+    if (event->channel != kThreadChannel) continue;
+    const auto thread = decode<ligature_msg::thread_t>(event->data);
+    if (!thread) continue;
+    const double time_s = facts.time_s(thread->tick);
+    if (at_s && chosen.time_s && std::abs(time_s - *at_s) >= std::abs(*chosen.time_s - *at_s)) continue;
+    chosen = {{}, time_s};
+    for (const auto& p : thread->p_W_m) chosen.points.push_back({p[0], p[1], p[2]});
+  }
+  if (chosen.points.size() < 3)
+    throw BadInput(path + ": holds no thread of 3 or more nodes; allowed: a log with messages on " +
+                   std::string(kThreadChannel));
+  return chosen;
+}
+
+bool is_lcm_log(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  char start[4] = {};
+  return file.read(start, 4) && std::string_view(start, 4) == "\xED\xA1\xDA\x01";
+}
+
+}  // namespace ligature::host

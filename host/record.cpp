@@ -1,0 +1,99 @@
+#include "host/record.hpp"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+
+#include "host/errors.hpp"
+#include "host/live_tally.hpp"
+#include "host/log_writer.hpp"
+#include "host/stop_signal.hpp"
+
+namespace ligature::host {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr auto kFlushEvery = milliseconds(250);        // what a SIGKILL may cost
+constexpr auto kTerminalEvery = milliseconds(250);     // progress on a terminal
+constexpr auto kPlainEvery = milliseconds(5000);       // and in a log file
+constexpr auto kLongestDrain = milliseconds(300);      // for messages still on their way after the stop
+constexpr int kQuiet_ms = 100;                         // nothing came for that long: nothing is on its way
+
+double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
+
+/// One line, rewritten in place on a terminal, a line every few seconds elsewhere.
+class Progress {
+ public:
+  Progress(bool quiet, Clock::time_point start) : quiet_(quiet), start_(start), shown_(start) {}
+
+  void show(const LiveTally& tally, Clock::time_point now) {
+    if (quiet_ || now - shown_ < (terminal_ ? kTerminalEvery : kPlainEvery)) return;
+    const auto received = tally.sessions().received();
+    const double rate = static_cast<double>(received - received_) / seconds(now - shown_);
+    const std::string line = tally.progress_line(seconds(now - start_), rate);
+    std::fprintf(stderr, terminal_ ? "\r%s\033[K" : "%s\n", line.c_str());
+    shown_ = now;
+    received_ = received;
+    open_line_ = terminal_;
+  }
+  ~Progress() {
+    if (open_line_) std::fputc('\n', stderr);
+  }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+ private:
+  bool quiet_, terminal_ = isatty(STDERR_FILENO) == 1, open_line_ = false;
+  Clock::time_point start_, shown_;
+  std::int64_t received_ = 0;
+};
+
+/// Receives, writes and counts until the end of the run.
+void record_until_stopped(LcmLink& link, LogWriter& log, const LiveTally& tally, const RecordOptions& options) {
+  const auto start = Clock::now();
+  auto flushed = start;
+  Progress progress(options.quiet, start);
+  for (auto now = start; !stop_requested(); now = Clock::now()) {
+    if (options.duration_s > 0.0 && seconds(now - start) >= options.duration_s) break;
+    link.receive(50);
+    if (now - flushed >= kFlushEvery) {
+      log.flush();
+      flushed = now;
+    }
+    progress.show(tally, now);
+  }
+  const auto stopped = Clock::now();
+  while (Clock::now() - stopped < kLongestDrain && link.receive(kQuiet_ms) > 0) {
+  }
+}
+
+}  // namespace
+
+void record(const RecordOptions& options) {
+  LiveTally tally;
+  LogWriter* open_log = nullptr;
+  LcmLink link(options.lcm_url, "LIGATURE_.*", [&](const Message& message) {
+    if (!open_log) return;
+    open_log->write(message.received_us, message.channel, message.data);
+    tally.add(message.channel, message.data);
+  });
+  LogWriter log(options.out, options.force);
+  open_log = &log;
+  try {
+    record_until_stopped(link, log, tally, options);
+    log.close();
+  } catch (const RunFailed&) {
+    std::fputs(tally.summary().c_str(), stdout);
+    throw;
+  }
+  std::fputs(tally.summary().c_str(), stdout);
+  std::printf("%s: %.1f MB\n", options.out.c_str(), static_cast<double>(log.bytes()) * 1e-6);
+  if (tally.messages() == 0)
+    throw RunFailed("no message came on " + options.lcm_url + "; is ligature-firmware running with the same --lcm-url "
+                    "in the same network namespace?");
+}
+
+}  // namespace ligature::host

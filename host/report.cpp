@@ -1,0 +1,116 @@
+#include "host/report.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "host/names.hpp"
+#include "host/text.hpp"
+
+namespace ligature::host {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Count = long long;
+
+double per_second(std::int64_t count, const LogSummary& s) { return static_cast<double>(count) / s.duration_s(); }
+
+/// Part of the recorded periods in which the loop ran, %.
+double executed_percent(const LogSummary& s) {
+  return 100.0 * static_cast<double>(s.ticks.executed()) / static_cast<double>(s.tally.received());
+}
+
+std::string row(const char* name, const std::string& value) { return text("  %-18s %s\n", name, value.c_str()); }
+
+std::string duration_row(const char* name, const Percentiles& p) {
+  return row(name, text("p50 %.1f us   p99 %.1f us   max %.1f us", p.p50_ns * 1e-3, p.p99_ns * 1e-3, p.max_ns * 1e-3));
+}
+
+std::string hand_row(const LogSummary& s, std::size_t hand) {
+  const auto& felt = s.ticks.hands()[hand];
+  std::string value = text("peak %.3f N", felt.peak_N);
+  if (felt.peak_tick >= 0) value += text(" at %.3f s", s.facts.time_s(felt.peak_tick));
+  value += text(", mean %.3f N over %.2f s of grasp", felt.mean_N(), s.facts.time_s(felt.grasp_ticks));
+  if (felt.limited_ticks > 0) value += text(", at the limit for %.3f s", s.facts.time_s(felt.limited_ticks));
+  return row(text("force %s", kHandNames[hand].data()).c_str(), value);
+}
+
+std::string knot_words(const LogSummary& s) {
+  if (s.knots.empty()) return "no shape recorded";
+  const auto& last = s.knots.back();
+  if (last.type == "0_1") return "0_1 (no knot)";
+  std::string words = last.type;
+  if (last.handedness != "none") words += " " + last.handedness;
+  words += text("; first tied at %.2f s", s.knot_first_s());
+  if (s.knot_since_s() > s.knot_first_s()) words += text(", unchanged since %.2f s", s.knot_since_s());
+  return words;
+}
+
+std::string fault_words(const LogSummary& s) {
+  if (s.ticks.faults().empty()) return "none";
+  std::string words;
+  for (const auto& entry : s.ticks.faults())
+    words += text("%s%d at %.3f s", words.empty() ? "" : ", ", entry.fault, s.facts.time_s(entry.tick));
+  return words;
+}
+
+Json microseconds(const Percentiles& p) {
+  return {{"p50", p.p50_ns * 1e-3}, {"p99", p.p99_ns * 1e-3}, {"max", p.max_ns * 1e-3}};
+}
+
+}  // namespace
+
+std::string report_table(const LogSummary& s) {
+  std::string table = text("run of %.3f s", s.duration_s());
+  if (s.facts.has_status) table += text(", scene %s, firmware %s", s.facts.scene_file.c_str(), s.facts.firmware_version.c_str());
+  table += "\n";
+  const auto received = s.tally.received(), missing = s.tally.missing();
+  table += row("samples", text("%lld recorded, %lld lost, %.1f per second", static_cast<Count>(received),
+                               static_cast<Count>(missing), per_second(received, s)));
+  table += row("rate held", text("%.1f ticks per second, %.3f %% of periods executed", per_second(s.ticks.executed(), s),
+                                 executed_percent(s)));
+  table += row("deadline misses", text("%lld finished late", static_cast<Count>(s.ticks.deadline_misses())));
+  table += row("periods lost", text("%lld skipped whole", static_cast<Count>(s.ticks.periods_lost())));
+  table += duration_row("wake-up latency", s.ticks.wakeup());
+  table += duration_row("control time", s.ticks.control());
+  table += duration_row("execution time", s.ticks.execution());
+  for (std::size_t hand = 0; hand < 2; ++hand) table += hand_row(s, hand);
+  table += row("force limit", text("%.2f N", s.facts.max_force_N));
+  table += row("faults", fault_words(s));
+  table += row("knot", knot_words(s));
+  if (s.tally.restarts() > 0) table += row("restarts", text("%zu of the firmware", s.tally.restarts()));
+  if (s.tally.duplicates() > 0) table += row("duplicates", text("%lld ticks", static_cast<Count>(s.tally.duplicates())));
+  if (s.unreadable_messages > 0)
+    table += row("unreadable", text("%lld messages", static_cast<Count>(s.unreadable_messages)));
+  if (!s.damage.empty()) table += row("log damaged", s.damage);
+  if (s.last_status && !s.last_status->realtime)
+    table += row("real time", "not granted: SCHED_FIFO or locked memory was refused, so timing is best effort");
+  return table;
+}
+
+std::string report_json(const LogSummary& s) {
+  Json hands, faults = Json::array(), history = Json::array(), knot = nullptr;
+  for (std::size_t hand = 0; hand < 2; ++hand) {
+    const auto& felt = s.ticks.hands()[hand];
+    hands[std::string(kHandNames[hand])] = {{"peak_N", felt.peak_N}, {"peak_s", s.facts.time_s(felt.peak_tick)},
+                                            {"mean_N", felt.mean_N()}, {"grasp_s", s.facts.time_s(felt.grasp_ticks)},
+                                            {"limited_ticks", felt.limited_ticks}};
+  }
+  for (const auto& entry : s.ticks.faults()) faults.push_back({{"t_s", s.facts.time_s(entry.tick)}, {"fault", entry.fault}});
+  for (const auto& span : s.knots) history.push_back({span.from_s, span.type});
+  if (!s.knots.empty())
+    knot = {{"type", s.knots.back().type}, {"handedness", s.knots.back().handedness},
+            {"first_tied_s", s.knot_first_s()}, {"unchanged_since_s", s.knot_since_s()}};
+  const Json json = {{"duration_s", s.duration_s()}, {"scene", s.facts.scene_file},
+                     {"firmware_version", s.facts.firmware_version}, {"ticks_recorded", s.tally.received()},
+                     {"ticks_lost", s.tally.missing()}, {"duplicates", s.tally.duplicates()},
+                     {"restarts", s.tally.restarts()}, {"unreadable_messages", s.unreadable_messages},
+                     {"recorded_per_s", per_second(s.tally.received(), s)},
+                     {"executed_per_s", per_second(s.ticks.executed(), s)}, {"executed_percent", executed_percent(s)},
+                     {"deadline_misses", s.ticks.deadline_misses()}, {"periods_lost", s.ticks.periods_lost()},
+                     {"wakeup_us", microseconds(s.ticks.wakeup())}, {"control_us", microseconds(s.ticks.control())},
+                     {"execution_us", microseconds(s.ticks.execution())}, {"hand_force", hands},
+                     {"max_force_N", s.facts.max_force_N}, {"faults", faults}, {"knot", knot},
+                     {"knot_history", history}, {"damage", s.damage}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace ligature::host

@@ -1,0 +1,17 @@
+#include "host/rig_facts.hpp"
+
+#include "host/log_reader.hpp"
+
+namespace ligature::host {
+
+RigFacts read_rig_facts(const std::string& log_path) {
+  LogReader log(log_path);
+  while (const LogEvent* event = log.next()) {
+    if (event->channel != kStatusChannel) continue;
+    if (const auto status = decode<ligature_msg::status_t>(event->data))
+      return {status->period_s, status->max_force_N, true, status->scene_file, status->firmware_version};
+  }
+  return {};
+}
+
+}  // namespace ligature::host

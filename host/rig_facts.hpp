@@ -1,0 +1,23 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+namespace ligature::host {
+
+/// What every reader of a log needs before its first tick.
+struct RigFacts {
+  double period_s = 1e-3;     // control period; the rig's default when the log holds no status
+  double max_force_N = 3.3;   // force limit at the device
+  bool has_status = false;    // false: the two above are defaults
+  std::string scene_file;
+  std::string firmware_version;
+
+  /// Time of a tick since its session's start.
+  [[nodiscard]] double time_s(std::int64_t tick) const { return static_cast<double>(tick) * period_s; }
+};
+
+/// Reads a log up to its first status (sent at 10 Hz, so near the start).
+/// @throws BadInput when the file is no LCM log.
+[[nodiscard]] RigFacts read_rig_facts(const std::string& log_path);
+
+}  // namespace ligature::host

@@ -1,0 +1,39 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "host/gap_counter.hpp"
+
+namespace ligature::host {
+
+/// What came of one run of the firmware.
+struct Session {
+  std::int64_t id = 0;            // CLOCK_REALTIME at its start, microseconds
+  std::int64_t ring_dropped = 0;  // ticks the firmware itself could not keep: part of those missing
+  GapCounter ticks;
+};
+
+/// Which ticks came and which did not, kept apart by session: a restarted firmware counts from zero again,
+/// and two that run at once by mistake do not look like thousands of gaps.
+class SessionTally {
+ public:
+  /// More runs in one recording than a rig could start: such a message is forged or broken.
+  static constexpr std::size_t kMaxSessions = 1000;
+
+  /// The session of that id, made when it is new. @return its index, or -1 when there are too many.
+  int find_or_add(std::int64_t id);
+  Session& operator[](int index) { return sessions_[static_cast<std::size_t>(index)]; }
+
+  [[nodiscard]] std::span<const Session> sessions() const { return sessions_; }
+  [[nodiscard]] std::int64_t received() const;
+  [[nodiscard]] std::int64_t missing() const;
+  [[nodiscard]] std::int64_t duplicates() const;
+  [[nodiscard]] std::size_t restarts() const { return sessions_.empty() ? 0 : sessions_.size() - 1; }
+
+ private:
+  std::vector<Session> sessions_;  // in order of their first message
+};
+
+}  // namespace ligature::host

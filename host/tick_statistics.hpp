@@ -1,0 +1,62 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "ligature_msg/tick_t.hpp"
+
+namespace ligature::host {
+
+/// What one hand felt.
+struct HandStatistics {
+  double peak_N = 0.0;               // largest |f_device|
+  std::int64_t peak_tick = -1;
+  double sum_N = 0.0;                // of |f_device| over the ticks with a grasp
+  std::int64_t grasp_ticks = 0;
+  std::int64_t limited_ticks = 0;    // force saturated at the limit
+  [[nodiscard]] double mean_N() const { return grasp_ticks ? sum_N / static_cast<double>(grasp_ticks) : 0.0; }
+};
+
+struct FaultEntry {
+  std::int64_t tick = 0;
+  std::int16_t fault = 0;
+};
+
+/// p50, p99 and largest value of one duration, ns.
+struct Percentiles {
+  std::int32_t p50_ns = 0, p99_ns = 0, max_ns = 0;
+};
+
+/// Timing and forces over ticks. Durations are kept whole (12 bytes a tick, 43 MB an hour) so that percentiles are
+/// exact. A period the loop lost carries the values of the last executed one: it counts as a period, not as a sample.
+class TickStatistics {
+ public:
+  void add(const ligature_msg::tick_t& tick);
+
+  /// Ticks of another session follow: a fault that was latched before is a new one if seen again.
+  void start_session() { last_fault_ = 0; }
+
+  [[nodiscard]] std::int64_t executed() const { return static_cast<std::int64_t>(wakeup_ns_.size()); }
+  [[nodiscard]] std::int64_t periods_lost() const { return periods_lost_; }
+  [[nodiscard]] std::int64_t deadline_misses() const { return deadline_misses_; }
+  [[nodiscard]] const std::array<HandStatistics, 2>& hands() const { return hands_; }
+  [[nodiscard]] const std::vector<FaultEntry>& faults() const { return faults_; }  ///< each change to a fault
+  [[nodiscard]] Percentiles wakeup() const { return percentiles_of(wakeup_ns_); }
+  [[nodiscard]] Percentiles control() const { return percentiles_of(control_ns_); }
+  [[nodiscard]] Percentiles execution() const { return percentiles_of(execution_ns_); }
+
+ private:
+  static Percentiles percentiles_of(std::vector<std::int32_t> samples);
+  void add_hand(std::size_t hand, const ligature_msg::tick_t& tick);
+
+  std::vector<std::int32_t> wakeup_ns_, control_ns_, execution_ns_;
+  std::int64_t periods_lost_ = 0, deadline_misses_ = 0;
+  std::array<HandStatistics, 2> hands_;
+  std::vector<FaultEntry> faults_;
+  std::int16_t last_fault_ = 0;
+};
+
+/// |f| of three components.
+[[nodiscard]] double magnitude(const double (&f)[3]);
+
+}  // namespace ligature::host

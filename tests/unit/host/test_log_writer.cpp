@@ -1,0 +1,71 @@
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <filesystem>
+
+#include "host/errors.hpp"
+#include "host/log_reader.hpp"
+#include "host/stop_signal.hpp"
+#include "synthetic_log.hpp"
+
+namespace ligature::host {
+namespace {
+
+TEST(LogWriter, ReplacesAFileOnlyWhenTold) {
+  const test::TestFolder folder;
+  const std::string path = folder.file("a.lcmlog");
+  test::write_text(path, "precious");
+  EXPECT_THROW(LogWriter(path, false), BadInput);
+  EXPECT_EQ(test::text_of(path), "precious");
+  LogWriter(path, true).close();
+  EXPECT_EQ(test::text_of(path), "");
+}
+
+TEST(LogWriter, RefusesAFolderThatIsNotThere) {
+  const test::TestFolder folder;
+  EXPECT_THROW(LogWriter(folder.file("no/where.lcmlog"), false), BadInput);
+}
+
+TEST(LogWriter, WhatWasFlushedIsInTheFile) {
+  const test::TestFolder folder;
+  LogWriter log(folder.file("a.lcmlog"), false);
+  test::write(log, kTicksChannel, test::batch_of(1, 0, 20));
+  log.flush();
+  EXPECT_EQ(static_cast<std::int64_t>(std::filesystem::file_size(folder.file("a.lcmlog"))), log.bytes());
+}
+
+TEST(LogWriter, AFullDiskIsAnError) {
+  if (!std::filesystem::exists("/dev/full")) FAIL() << "no /dev/full on this system";
+  LogWriter log("/dev/full", true);
+  EXPECT_THROW(
+      {
+        for (int i = 0; i < 1000; ++i) test::write(log, kTicksChannel, test::batch_of(1, i * 20, 20));
+        log.flush();
+      },
+      RunFailed);
+}
+
+TEST(LogWriter, AFileSizeLimitIsAnErrorAndKeepsWhatCameBefore) {
+  const test::TestFolder folder;
+  const std::string path = folder.file("a.lcmlog");
+  LogWriter log(path, false);
+  catch_stop_signals();  // SIGXFSZ ignored
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{.rlim_cur = 100'000, .rlim_max = before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  EXPECT_THROW(
+      for (int i = 0; i < 1000; ++i) {
+        test::write(log, kTicksChannel, test::batch_of(1, i * 20, 20));
+        log.flush();
+      },
+      RunFailed);
+  setrlimit(RLIMIT_FSIZE, &before);
+  LogReader kept(path);
+  int events = 0;
+  while (kept.next()) ++events;
+  EXPECT_GT(events, 5);
+}
+
+}  // namespace
+}  // namespace ligature::host
