@@ -1,0 +1,23 @@
+#pragma once
+// A point in time that may come. Time is an argument everywhere in the simulated device: tests own the clock.
+
+#include <chrono>
+
+namespace ligature::sim {
+
+using Time = std::chrono::nanoseconds;  ///< since any fixed origin; the running device uses CLOCK_MONOTONIC
+inline constexpr Time kNever = Time::max();
+
+class Deadline {
+ public:
+  void arm(Time at) noexcept { at_ = at; }
+  void disarm() noexcept { at_ = kNever; }
+  [[nodiscard]] bool is_armed() const noexcept { return at_ != kNever; }
+  [[nodiscard]] bool is_over(Time now) const noexcept { return now >= at_; }
+  [[nodiscard]] Time at() const noexcept { return at_; }
+
+ private:
+  Time at_ = kNever;
+};
+
+}  // namespace ligature::sim

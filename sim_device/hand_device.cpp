@@ -1,0 +1,111 @@
+#include "sim_device/hand_device.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace ligature::sim {
+
+HandDevice::HandDevice(OperatorPath path, Time now, bool charge_bus_time)
+    : wire_(charge_bus_time),
+      mechanics_(std::move(path), now),
+      drives_{DriveNode(can::kWaist), DriveNode(can::kShoulder), DriveNode(can::kElbow)},
+      now_(now) {
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    drives_[i].power_on(now, outgoing_);
+    send(i, now);
+  }
+}
+
+void HandDevice::submit(const can::Frame& frame, int client, Time when) { wire_.submit(frame, client, when); }
+
+void HandDevice::advance(Time now) {
+  while (const auto heard = wire_.advance(now)) hear(*heard);
+  poll(now);
+}
+
+/// Time first, then the frame: a watchdog that ran out before the frame came has won.
+void HandDevice::hear(const Transmission& heard) {
+  poll(heard.end);
+  const bool changes_torque = can::is_sync(heard.frame) || heard.frame.id == can::kNmtCobId.value;
+  if (changes_torque) move(heard.end);
+  note(heard.frame, heard.end);
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    if (static_cast<int>(i) == heard.sender) continue;
+    const bool stylus = can::profile::has_stylus_buttons(drives_[i].id());
+    const Sensed sensed{mechanics_.counts(static_cast<int>(i)), stylus ? mechanics_.buttons() : std::uint16_t{0}};
+    drives_[i].on_frame(heard.frame, heard.end, sensed, outgoing_);
+    send(i, heard.end);
+  }
+  const auto enabled = [](const DriveNode& d) { return d.state() == can::cia402::State::kOperationEnabled; };
+  if (can::is_sync(heard.frame) && std::all_of(drives_.begin(), drives_.end(), enabled))
+    mechanics_.start_script(heard.end);
+  deliveries_.push_back({heard.frame, heard.sender, heard.end});
+}
+
+void HandDevice::poll(Time now) {
+  now_ = std::max(now_, now);
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const Time due = drives_[i].next_deadline();
+    if (due > now_) continue;
+    move(due);  // torque until the watchdog's moment, none after it
+    drives_[i].poll(now_, outgoing_);
+    send(i, due);
+  }
+  if (now_ - bus_.last_sync > kPeriod) move(now_);  // nobody beats the time: do not let the mechanics fall behind
+}
+
+void HandDevice::move(Time now) noexcept {
+  const auto t = torque_permille();
+  mechanics_.advance(now, {can::torque_Nm(t[0]), can::torque_Nm(t[1]), can::torque_Nm(t[2])});
+}
+
+void HandDevice::send(std::size_t drive, Time now) {
+  for (const can::Frame& f : outgoing_) wire_.submit(f, static_cast<int>(drive), now);
+  outgoing_.clear();
+}
+
+void HandDevice::note(const can::Frame& frame, Time end) noexcept {
+  const auto address = can::address_of(frame.id);
+  if (address && address->service == can::Service::kRpdo1 && bus_.syncs > 0) {
+    bus_.worst_rpdo = std::max(bus_.worst_rpdo, end - bus_.last_sync);
+  }
+  if (!can::is_sync(frame)) return;
+  if (bus_.syncs++ == 0) {
+    bus_.first_sync = end;
+    bus_.busy_at_first_sync = wire_.stats().busy;
+  } else {
+    const auto periods = (end - bus_.last_sync + kPeriod / 2) / kPeriod;
+    if (periods > 1) bus_.missed_syncs += periods - 1;
+  }
+  bus_.last_sync = end;
+}
+
+Time HandDevice::wake_at(int listeners) const noexcept {
+  Time at = kNever;
+  for (const DriveNode& d : drives_) at = std::min(at, d.next_deadline());
+  const bool from_drive =
+      std::any_of(deliveries_.begin(), deliveries_.end(), [](const Delivery& d) { return d.sender < kFirstClient; });
+  if (listeners > 1 || from_drive || wire_.has_pending_below(kFirstClient)) {
+    Time burst = wire_.quiet_at();
+    if (burst == kNever && !deliveries_.empty()) burst = deliveries_.back().due;
+    at = std::min(at, burst);
+  }
+  return at;
+}
+
+void HandDevice::power_off() noexcept {
+  for (DriveNode& d : drives_) d.power_off();
+}
+
+std::array<std::int16_t, 3> HandDevice::torque_permille() const noexcept {
+  return {drives_[0].torque_permille(), drives_[1].torque_permille(), drives_[2].torque_permille()};
+}
+
+double HandDevice::bus_load() const noexcept {
+  const Time span = bus_.last_sync - bus_.first_sync;
+  if (span <= Time(0)) return 0.0;
+  return static_cast<double>((wire_.stats().busy - bus_.busy_at_first_sync).count()) /
+         static_cast<double>(span.count());
+}
+
+}  // namespace ligature::sim

@@ -1,0 +1,104 @@
+// ligature-device: wiring only. Read the inputs, open the bus, let the hand live until told to stop, say how it went.
+
+#include <csignal>
+#include <cstdio>
+#include <string>
+
+#include "protocol/scene/gripper_script.hpp"
+#include "protocol/scene/scene_file.hpp"
+#include "sim_device/event_loop.hpp"
+#include "sim_device/narrator.hpp"
+#include "sim_device/options.hpp"
+#include "sim_device/scheduling.hpp"
+#include "sim_device/stats_file.hpp"
+
+namespace {
+
+using namespace ligature;
+constexpr int kBadInput = 2, kRunFailed = 3;
+constexpr sim::Time kLongestSleep = std::chrono::milliseconds(100);
+constexpr sim::Time kFarewell =
+    std::chrono::milliseconds(200);  // the controller sees the dead-man go before the bus does
+
+volatile std::sig_atomic_t g_stop = 0;
+void on_signal(int) { g_stop = 1; }
+
+/// SIGINT and SIGTERM reach the process only while it sleeps. Returns the mask to sleep with.
+sigset_t take_signals() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  sigset_t blocked, before;
+  sigemptyset(&blocked);
+  sigaddset(&blocked, SIGINT);
+  sigaddset(&blocked, SIGTERM);
+  sigprocmask(SIG_BLOCK, &blocked, &before);
+  return before;
+}
+
+int refuse(const std::string& why) {
+  std::fprintf(stderr, "ligature-device: %s\n", why.c_str());
+  return kBadInput;
+}
+
+std::variant<sim::OperatorPath, std::string> read_path(const sim::Options& o) {
+  scene::Scene scene;
+  if (!o.scene.empty()) {
+    auto read = scene::load_scene(o.scene, o.overrides);
+    if (const auto* e = std::get_if<scene::Error>(&read)) return e->text;
+    scene = std::get<scene::Scene>(std::move(read));
+  }
+  scene::GripperScript script;
+  if (!o.script.empty()) {
+    auto read = scene::load_gripper_script(o.script);
+    if (const auto* e = std::get_if<scene::Error>(&read)) return e->text;
+    script = std::get<scene::GripperScript>(std::move(read));
+  }
+  auto path = sim::OperatorPath::make(script.keys[o.is_left ? 0 : 1], sim::WorkspaceMap(scene.hands));
+  if (const auto* why = std::get_if<std::string>(&path)) return o.script + ": " + *why;
+  return path;
+}
+
+void live(sim::HandDevice& device, sim::Port& port, sim::EventLoop& loop, sim::Narrator& narrator, bool exit_when_done,
+          const sigset_t& during_sleep) {
+  sim::Time end = sim::kNever;
+  while (g_stop == 0) {
+    loop.wait(kLongestSleep, during_sleep);
+    const sim::Time now = sim::now_monotonic();
+    loop.serve(now);
+    narrator.look(device, port.clients(), now);
+    if (exit_when_done && end == sim::kNever && device.mechanics().is_done()) end = now + kFarewell;
+    if (now >= end) return;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto parsed = sim::parse_options(argc, argv);
+  if (const int* code = std::get_if<int>(&parsed)) return *code;
+  const auto& options = std::get<sim::Options>(parsed);
+
+  auto path = read_path(options);
+  if (const auto* why = std::get_if<std::string>(&path)) return refuse(*why);
+  auto opened = sim::open_port(options.bus);
+  if (const auto* why = std::get_if<std::string>(&opened)) return refuse(*why);
+  sim::Port& port = *std::get<std::unique_ptr<sim::Port>>(opened);
+
+  sim::Narrator narrator(options.hand());
+  for (const std::string& line : sim::ask_for_scheduling(options.real_time, options.cpu)) narrator.say(line);
+  const sigset_t during_sleep = take_signals();
+  sim::HandDevice device(std::get<sim::OperatorPath>(std::move(path)), sim::now_monotonic(), !port.charges_bit_time());
+  sim::EventLoop loop(device, port);
+  narrator.say("on " + options.bus + ", waiting for a controller");
+  live(device, port, loop, narrator, options.exit_when_done, during_sleep);
+
+  device.power_off();
+  narrator.say("off");
+  if (options.stats.empty()) return 0;
+  const std::string text = sim::stats_json(options.hand(), device, loop.stats(), port.dropped_frames());
+  if (sim::write_file(options.stats, text)) return 0;
+  std::fprintf(stderr, "ligature-device: --stats %s: cannot be written\n", options.stats.c_str());
+  return kRunFailed;
+}

@@ -1,0 +1,47 @@
+#include "sim_device/mechanics.hpp"
+
+#include <limits>
+#include <utility>
+
+namespace ligature::sim {
+namespace {
+
+constexpr double kBeforeScript_s = -std::numeric_limits<double>::infinity();
+
+double seconds(Time t) noexcept { return std::chrono::duration<double>(t).count(); }
+
+}  // namespace
+
+Mechanics::Mechanics(OperatorPath path, Time now)
+    : path_(std::move(path)), plant_(joints_of_tip(path_.at(kBeforeScript_s).p_DH).value()), now_(now) {}
+
+void Mechanics::start_script(Time now) noexcept {
+  if (!has_started()) started_at_ = now;
+}
+
+double Mechanics::script_time_s() const noexcept {
+  return has_started() ? seconds(now_ - started_at_) : kBeforeScript_s;
+}
+
+void Mechanics::advance(Time now, const Vec3& motor_Nm) noexcept {
+  if (now <= now_) return;
+  const auto steps = (now - now_ + kPlantStep - Time(1)) / kPlantStep;
+  const Time from = now_, span = now - now_;
+  const double dt_s = seconds(span) / static_cast<double>(steps);
+  for (std::int64_t i = 1; i <= steps; ++i) {
+    now_ = from + span * i / steps;
+    const Intent wish = intent();
+    const Vec3 force = hand_.force_on_tip_D_N(wish.p_DH, wish.v_DH, plant_.tip_D_m(), plant_.tip_velocity_D_m_per_s());
+    plant_.step(motor_Nm, force, dt_s);
+  }
+}
+
+std::uint16_t Mechanics::buttons() const noexcept {
+  if (!has_started()) return 0;
+  const double t_s = script_time_s();
+  unsigned pressed = path_.at(t_s).grip ? can::profile::kButtonGrip : 0U;
+  if (t_s <= path_.end_s() + kDeadManAfterScript_s) pressed |= can::profile::kButtonDeadMan;
+  return static_cast<std::uint16_t>(pressed);
+}
+
+}  // namespace ligature::sim

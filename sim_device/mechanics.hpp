@@ -1,0 +1,46 @@
+#pragma once
+// Plant, fingers and operator as one thing that time moves: torques in, angles and buttons out.
+
+#include "protocol/can/units.hpp"
+#include "sim_device/deadline.hpp"
+#include "sim_device/hand.hpp"
+#include "sim_device/operator_path.hpp"
+#include "sim_device/plant.hpp"
+
+namespace ligature::sim {
+
+inline constexpr Time kPlantStep = std::chrono::microseconds(100);  ///< longest; an interval is cut into equal ones
+inline constexpr double kDeadManAfterScript_s = 1.0;
+
+class Mechanics {
+ public:
+  /// The device rests in the operator's first key pose, with the operator's hand on it. @pre that pose can be reached.
+  Mechanics(OperatorPath path, Time now);
+
+  /// The operator begins; later calls change nothing.
+  void start_script(Time now) noexcept;
+  /// Moves everything to `now` under constant motor torques; an earlier time changes nothing. About 0.3 us a step.
+  void advance(Time now, const Vec3& motor_Nm) noexcept;
+
+  [[nodiscard]] std::int32_t counts(int joint) const noexcept { return can::counts_of(plant_.q_rad()[joint]); }
+  [[nodiscard]] std::uint16_t buttons() const noexcept;
+  [[nodiscard]] bool has_started() const noexcept { return started_at_ != kNever; }
+  /// The script is over and the dead-man has been let go.
+  [[nodiscard]] bool is_done() const noexcept {
+    return has_started() && script_time_s() > path_.end_s() + kDeadManAfterScript_s;
+  }
+  [[nodiscard]] const Plant& plant() const noexcept { return plant_; }
+  [[nodiscard]] Intent intent() const noexcept { return path_.at(script_time_s()); }
+  /// Since the script's start; minus infinity before it.
+  [[nodiscard]] double script_time_s() const noexcept;
+  [[nodiscard]] double script_end_s() const noexcept { return path_.end_s(); }
+
+ private:
+  OperatorPath path_;
+  Hand hand_;
+  Plant plant_;
+  Time now_;
+  Time started_at_ = kNever;
+};
+
+}  // namespace ligature::sim

@@ -1,0 +1,76 @@
+#include "sim_device/operator_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "sim_device/plant.hpp"
+
+namespace ligature::sim {
+namespace {
+
+constexpr double kPeakVelocity = 1.5, kPeakAcceleration = 4.9, kPeakJerk = 180.0;  // in L/T, L/T², L/T³
+constexpr double kSlack = 1.005;  // the fastest motion is then shorter than T, and ruckig stretches it to T exactly
+constexpr double kLeastTravel_m = 1e-4;  // an axis that hardly moves still needs limits above zero
+
+std::string text(const char* format, double a, double b, double c, double d) {
+  char line[160];
+  std::snprintf(line, sizeof line, format, a, b, c, d);
+  return line;
+}
+
+bool plan(const Vec3& from, const Vec3& to, double duration_s, ruckig::Trajectory<3>& trajectory) {
+  ruckig::InputParameter<3> in;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    const double travel = std::max(std::abs(to[i] - from[i]), kLeastTravel_m) * kSlack;
+    in.current_position[axis] = from[i];
+    in.target_position[axis] = to[i];
+    in.max_velocity[axis] = kPeakVelocity * travel / duration_s;
+    in.max_acceleration[axis] = kPeakAcceleration * travel / (duration_s * duration_s);
+    in.max_jerk[axis] = kPeakJerk * travel / (duration_s * duration_s * duration_s);
+  }
+  in.minimum_duration = duration_s;
+  ruckig::Ruckig<3> planner;
+  return planner.calculate(in, trajectory) == ruckig::Result::Working;
+}
+
+}  // namespace
+
+std::variant<OperatorPath, std::string> OperatorPath::make(std::span<const scene::GripKey> keys,
+                                                           const WorkspaceMap& map) {
+  OperatorPath path;
+  for (const scene::GripKey& key : keys) {
+    const Vec3 p_D = map.to_device({key.p_W_m[0], key.p_W_m[1], key.p_W_m[2]});
+    const auto q = joints_of_tip(p_D);
+    if (!q || !Plant::is_within_stops(*q)) {
+      return text(
+          "key at time %g s lies at (%.3f, %.3f, %.3f) m for the device, out of its reach; "
+          "allowed: hands.workspace_scale and workspace_origin_m that bring it nearer",
+          key.time_s, p_D.x(), p_D.y(), p_D.z());
+    }
+    path.keys_.push_back({key.time_s, p_D, key.grip});
+  }
+  if (path.keys_.empty()) path.keys_.push_back({0.0, home_tip_D_m(), false});  // an idle hand rests at home
+  path.segments_.resize(path.keys_.size() - 1);
+  for (std::size_t i = 0; i < path.segments_.size(); ++i) {
+    const Key &from = path.keys_[i], &to = path.keys_[i + 1];
+    if (!plan(from.p_D, to.p_D, to.time_s - from.time_s, path.segments_[i])) {
+      return text("no jerk-limited motion from the key at %g s to that at %g s", from.time_s, to.time_s, 0.0, 0.0);
+    }
+  }
+  return path;
+}
+
+Intent OperatorPath::at(double t_s) const noexcept {
+  const auto after =
+      std::upper_bound(keys_.begin(), keys_.end(), t_s, [](double t, const Key& k) { return t < k.time_s; });
+  if (after == keys_.begin()) return {keys_.front().p_D, Vec3::Zero(), false};
+  const Key& from = *(after - 1);
+  if (after == keys_.end()) return {from.p_D, Vec3::Zero(), from.grip};
+  std::array<double, 3> p{}, v{}, a{};
+  segments_[static_cast<std::size_t>(after - keys_.begin() - 1)].at_time(t_s - from.time_s, p, v, a);
+  return {Vec3{p[0], p[1], p[2]}, Vec3{v[0], v[1], v[2]}, from.grip};
+}
+
+}  // namespace ligature::sim

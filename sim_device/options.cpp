@@ -1,0 +1,56 @@
+#include "sim_device/options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+namespace ligature::sim {
+namespace {
+
+constexpr const char* kAbout =
+    "One simulated haptic hand: three CiA 402 drives on a CAN bus, the mechanics they turn, and a human hand that "
+    "follows a script.\n"
+    "It answers a controller exactly as hardware would: the bus takes its time, encoders count, torque acts one SYNC "
+    "later, and\n"
+    "the drives take torque away by themselves when the controller falls silent.";
+constexpr const char* kExample =
+    "Example, with ligature-firmware started the same way on the other end:\n"
+    "  ligature-device --hand left --bus local:/tmp/left --scene scenes/paper.toml --operator "
+    "scenes/operators/overhand.csv\n"
+    "The script starts when all three drives are enabled for the first time and SYNC runs. The operator holds the "
+    "dead-man\n"
+    "from then until 1 s after the last key. docs/wire.md describes the bus.\n"
+    "Exit: 0 ended (SIGINT, SIGTERM or script), 2 bad usage or input, 3 the run failed.";
+
+}  // namespace
+
+std::variant<Options, int> parse_options(int argc, char** argv) {
+  Options o;
+  std::string hand;
+  CLI::App app(kAbout, "ligature-device");
+  app.footer(kExample);
+  app.set_version_flag("--version", "ligature-device " LIGATURE_VERSION);
+  app.add_option("--hand", hand, "Which hand of the script")->required()->check(CLI::IsMember({"left", "right"}));
+  app.add_option("--bus", o.bus, "local:/path/socket (made and served here) or socketcan:interface")->required();
+  app.add_option("--scene", o.scene,
+                 "Scene file; gives the workspace: hands.workspace_scale, hands.workspace_origin_m");
+  app.add_option("--set", o.overrides, "key=value over the scene, as often as needed")
+      ->needs("--scene")
+      ->allow_extra_args(false);
+  app.add_option("--operator", o.script,
+                 "Script, CSV: time,hand,x,y,z,grip in world metres; without it the hand rests");
+  app.add_flag("--exit-when-done", o.exit_when_done, "End after the script, once the dead-man is let go");
+  app.add_option("--stats", o.stats, "At the end, write JSON: SYNCs, bus load, watchdog trips, final torque");
+  app.add_flag("--rt", o.real_time, "Ask for SCHED_FIFO and locked memory; runs on with a warning when refused");
+  app.add_option("--cpu", o.cpu, "Stay on this CPU")->check(CLI::NonNegativeNumber);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);
+    std::cerr << "ligature-device: " << e.what() << " (see --help)\n";
+    return 2;
+  }
+  o.is_left = hand == "left";
+  return o;
+}
+
+}  // namespace ligature::sim

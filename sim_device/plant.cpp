@@ -1,0 +1,59 @@
+#include "sim_device/plant.hpp"
+
+#include <algorithm>
+
+namespace ligature::sim {
+namespace {
+
+/// Inelastic end stop: the joint stays at the end and gives up the speed that leads further out.
+void stop(double& q, double& omega, double low, double high) noexcept {
+  if (q < low) {
+    q = low;
+    omega = std::max(omega, 0.0);
+  } else if (q > high) {
+    q = high;
+    omega = std::min(omega, 0.0);
+  }
+}
+
+}  // namespace
+
+void Plant::step(const Vec3& motor_Nm, const Vec3& hand_force_D_N, double dt_s) noexcept {
+  const Vec3 hand_Nm = tip_jacobian_D(q_).transpose() * hand_force_D_N;
+  for (int j = 0; j < 3; ++j) {
+    const double motor = std::clamp(motor_Nm[j], -parameters_.max_torque_Nm, parameters_.max_torque_Nm);
+    const double per_inertia = dt_s / parameters_.inertia_kg_m2[j];
+    const double free =
+        (omega_[j] + per_inertia * (motor + hand_Nm[j])) / (1.0 + per_inertia * parameters_.viscous_Nm_s[j]);
+    const double dry = per_inertia * parameters_.coulomb_Nm[j];
+    omega_[j] = std::copysign(std::max(std::abs(free) - dry, 0.0), free);
+  }
+  q_ += dt_s * omega_;
+  stop_at_ends();
+}
+
+void Plant::stop_at_ends() noexcept {
+  const PlantParameters& p = parameters_;
+  stop(q_[0], omega_[0], -p.waist_stop_rad, p.waist_stop_rad);
+  stop(q_[1], omega_[1], p.shoulder_min_rad, p.shoulder_max_rad);
+  const double angle = q_[2] - q_[1];
+  const double clipped = std::clamp(angle, p.elbow_min_rad, p.elbow_max_rad);
+  if (angle == clipped) return;
+  q_[2] = q_[1] + clipped;
+  const double opening = omega_[2] - omega_[1];
+  if ((angle > clipped) != (opening > 0.0)) return;  // already on its way back
+  // The two links meet without rebound and share their angular momentum; energy can only fall.
+  const Vec3& inertia = p.inertia_kg_m2;
+  const double shared = (inertia[1] * omega_[1] + inertia[2] * omega_[2]) / (inertia[1] + inertia[2]);
+  omega_[1] = omega_[2] = shared;
+}
+
+double Plant::kinetic_J() const noexcept { return 0.5 * parameters_.inertia_kg_m2.dot(omega_.cwiseAbs2()); }
+
+bool Plant::is_within_stops(const Vec3& q_rad, const PlantParameters& p) noexcept {
+  const double elbow = q_rad[2] - q_rad[1];
+  return std::abs(q_rad[0]) <= p.waist_stop_rad && q_rad[1] >= p.shoulder_min_rad && q_rad[1] <= p.shoulder_max_rad &&
+         elbow >= p.elbow_min_rad && elbow <= p.elbow_max_rad;
+}
+
+}  // namespace ligature::sim

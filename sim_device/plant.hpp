@@ -1,0 +1,52 @@
+#pragma once
+// The moving parts of one device: three joints that motors and a hand turn.
+//   I_j dω_j/dt = τ_motor + (Jᵀ F_hand)_j − b_j ω_j − τc_j sign(ω_j),   dq/dt = ω,   within the joint stops.
+// Gravity is not in it: the real device is counterbalanced, and its residue (some 0.1 N) is left out. The inertia of
+// the links is taken as constant and diagonal, about 45 g at the tip in the home pose; Coriolis terms (below 1 mN at
+// the speeds of a hand) are left out with it.
+
+#include "sim_device/kinematics.hpp"
+
+namespace ligature::sim {
+
+struct PlantParameters {
+  // 45 g seen at the tip, times lever squared: 0.17 m (waist, home pose), 0.134 m, 0.1325 m.
+  Vec3 inertia_kg_m2{1.30e-3, 8.08e-4, 7.90e-4};
+  // Losses of the class, below the 0.26 N back-drive friction of its data sheet: 0.1 N and 0.3 N s/m at the tip.
+  Vec3 coulomb_Nm{0.0170, 0.0134, 0.0133};
+  Vec3 viscous_Nm_s{8.7e-3, 5.4e-3, 5.3e-3};
+  double max_torque_Nm = 0.9;  ///< 3000 per mille of 300 mN m
+  // Joint stops. The elbow's are on the angle between the links (q3 - q2), the linkage's own limit.
+  double waist_stop_rad = 0.98;
+  double shoulder_min_rad = -0.10, shoulder_max_rad = 1.80;
+  double elbow_min_rad = -0.81, elbow_max_rad = 1.25;
+};
+
+class Plant {
+ public:
+  explicit Plant(const Vec3& q_rad, const PlantParameters& parameters = {}) : parameters_(parameters), q_(q_rad) {}
+
+  /// One step of dt_s (0.1 ms or less). Semi-implicit Euler: velocity first, dry and viscous friction implicitly, so
+  /// that neither can reverse a joint and a joint at rest stays at rest below its Coulomb torque; then position; then
+  /// stops.
+  void step(const Vec3& motor_Nm, const Vec3& hand_force_D_N, double dt_s) noexcept;
+
+  [[nodiscard]] const Vec3& q_rad() const noexcept { return q_; }
+  [[nodiscard]] const Vec3& omega_rad_per_s() const noexcept { return omega_; }
+  [[nodiscard]] Vec3 tip_D_m() const noexcept { return sim::tip_D_m(q_); }
+  [[nodiscard]] Vec3 tip_velocity_D_m_per_s() const noexcept { return tip_jacobian_D(q_) * omega_; }
+  [[nodiscard]] double kinetic_J() const noexcept;
+  [[nodiscard]] const PlantParameters& parameters() const noexcept { return parameters_; }
+
+  /// True when the stops allow these angles.
+  [[nodiscard]] static bool is_within_stops(const Vec3& q_rad, const PlantParameters& p = {}) noexcept;
+
+ private:
+  void stop_at_ends() noexcept;
+
+  PlantParameters parameters_;
+  Vec3 q_;
+  Vec3 omega_ = Vec3::Zero();
+};
+
+}  // namespace ligature::sim

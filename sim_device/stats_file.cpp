@@ -1,0 +1,49 @@
+#include "sim_device/stats_file.hpp"
+
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace ligature::sim {
+namespace {
+
+double microseconds(Time t) { return std::chrono::duration<double, std::micro>(t).count(); }
+
+}  // namespace
+
+std::string stats_json(const std::string& hand, const HandDevice& device, const LoopStats& loop, long dropped_frames) {
+  nlohmann::ordered_json j;
+  std::int64_t trips = 0, syncs_without_rpdo = 0, replaced = 0;
+  for (const DriveNode& d : device.drives()) {
+    trips += d.stats().watchdog_trips;
+    syncs_without_rpdo += d.stats().syncs_without_rpdo;
+    replaced += d.stats().late_rpdos;
+  }
+  j["hand"] = hand;
+  j["syncs"] = device.bus_stats().syncs;
+  j["missed_syncs"] = device.bus_stats().missed_syncs;
+  j["bus_load"] = device.bus_load();  // share of time, 0 .. 1
+  j["frames"] = device.wire_stats().frames;
+  j["worst_bus_wait_us"] = microseconds(device.wire_stats().worst_wait);  // queued until sent
+  j["worst_rpdo_after_sync_us"] = microseconds(device.bus_stats().worst_rpdo);
+  j["syncs_without_rpdo"] = syncs_without_rpdo;  // drive-SYNCs while enabled
+  j["replaced_rpdos"] = replaced;                // came twice between two SYNCs
+  j["watchdog_trips"] = trips;                   // drives that zeroed torque by themselves
+  j["final_torque_permille"] = device.torque_permille();
+  j["script_done"] = device.mechanics().is_done();
+  j["wakeups"] = loop.wakeups;
+  j["worst_wakeup_lateness_us"] = microseconds(loop.worst_lateness);
+  j["stalls"] = loop.stalls;
+  j["dropped_frames"] = dropped_frames;  // a client did not read
+  return j.dump(2) + "\n";
+}
+
+bool write_file(const std::string& path, const std::string& text) {
+  const std::string beside = path + ".part";
+  std::ofstream file(beside, std::ios::trunc);
+  file << text;
+  file.close();
+  return file.good() && std::rename(beside.c_str(), path.c_str()) == 0;
+}
+
+}  // namespace ligature::sim
