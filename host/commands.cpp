@@ -40,7 +40,7 @@ void add_record(CLI::App& app) {
   command->add_option("--out", options->out, "log to write (lcm-logplayer plays it)")->required();
   add_url(*command, options->lcm_url);
   command->add_option("--duration", options->duration_s, "seconds; without it until Ctrl-C or SIGTERM")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(0.001, 1e7));
   command->add_flag("--force", options->force, "replace an existing file");
   command->add_flag("--quiet", options->quiet, "no progress");
   command->footer(

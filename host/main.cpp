@@ -17,6 +17,13 @@ int complain(const std::string& what, int exit_code) {
   return exit_code;
 }
 
+/// The parser alone would only say that a command is missing.
+bool has_command(const CLI::App& app, const std::string& word) {
+  for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    if (command->get_name() == word) return true;
+  return false;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -39,6 +46,8 @@ int main(int argc, char** argv) {
       "  ligature-host knot knot.lcmlog\n"
       "'ligature-host COMMAND --help' explains each.\n"
       "Exit code: 0 done, 2 bad usage or bad input, 3 the work itself failed.");
+  if (argc > 1 && argv[1][0] != '-' && !has_command(app, argv[1]))
+    return complain("found command '" + std::string(argv[1]) + "', allowed record, export, plot, report, knot, send", 2);
   catch_stop_signals();
   try {
     app.parse(argc, argv);

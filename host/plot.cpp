@@ -1,14 +1,19 @@
 #include "host/plot.hpp"
 
+#include <fcntl.h>
 #include <spawn.h>
 #include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <vector>
 
+#include "host/atomic_file.hpp"
 #include "host/errors.hpp"
 #include "host/export_csv.hpp"
 #include "host/rig_facts.hpp"
@@ -57,23 +62,45 @@ std::string find_script() {
   throw RunFailed("plot: plot_forces.py found neither at " + installed.string() + " nor in " LIGATURE_PLOTS_DIR);
 }
 
-/// Runs a program without a shell and waits for it. @return its exit code, 128 + n when signal n ended it.
-int run(std::vector<std::string> words) {
+/// Runs a program without a shell, its stderr into a file, and waits for it.
+/// @return its exit code, 128 + n when signal n ended it.
+int run(std::vector<std::string> words, const std::string& complaints) {
   std::vector<char*> arguments;
   for (auto& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
+  posix_spawn_file_actions_t redirect;
+  posix_spawn_file_actions_init(&redirect);
+  posix_spawn_file_actions_addopen(&redirect, STDERR_FILENO, complaints.c_str(), O_WRONLY | O_CREAT, 0600);
   pid_t child = 0;
-  if (const int error = posix_spawn(&child, arguments[0], nullptr, nullptr, arguments.data(), environ); error != 0)
-    throw RunFailed("plot: cannot start " + words[0]);
+  const int error = posix_spawn(&child, arguments[0], &redirect, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&redirect);
+  if (error != 0) throw RunFailed("plot: cannot start " + words[0] + ": " + std::strerror(error));
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+/// The last line of a text: where Python says what went wrong.
+std::string last_line(const std::string& path) {
+  std::ifstream file(path);
+  std::string last = "no reason given";
+  for (std::string line; std::getline(file, line);)
+    if (!line.empty()) last = line;
+  return last;
+}
+
+void refuse_bad_target(const std::string& out_path) {
+  const auto ending = fs::path(out_path).extension();
+  if (ending != ".png" && ending != ".svg" && ending != ".pdf")
+    throw BadInput(out_path + ": found ending '" + ending.string() + "', allowed .png, .svg or .pdf");
+  const AtomicFile can_be_made(out_path);
+}
+
 }  // namespace
 
 void plot(const std::string& log_path, const std::string& out_path) {
+  refuse_bad_target(out_path);
   const std::string python = find_python(), script = find_script();
   const RigFacts facts = read_rig_facts(log_path);
   const ScratchFolder scratch;
@@ -83,10 +110,11 @@ void plot(const std::string& log_path, const std::string& out_path) {
   const std::string title = facts.scene_file.empty() ? fs::path(log_path).filename().string()
                                                      : fs::path(facts.scene_file).filename().string();
   const int code = run({python, script, forces_csv, "--out", out_path, "--title", title, "--limit",
-                        text("%.17g", facts.max_force_N)});
+                        text("%.17g", facts.max_force_N)},
+                       scratch.file("complaints"));
   if (code != 0)
-    throw RunFailed("plot: " + python + " " + script + " ended with " + std::to_string(code) +
-                    "; remedy for a missing package: scripts/setup");
+    throw RunFailed("plot: " + python + " ended with " + std::to_string(code) + ": " +
+                    last_line(scratch.file("complaints")) + "; remedy for a missing package: scripts/setup");
 }
 
 }  // namespace ligature::host

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 
 #include "host/errors.hpp"
 #include "host/live_tally.hpp"
@@ -90,10 +91,13 @@ void record(const RecordOptions& options) {
     throw;
   }
   std::fputs(tally.summary().c_str(), stdout);
-  std::printf("%s: %.1f MB\n", options.out.c_str(), static_cast<double>(log.bytes()) * 1e-6);
-  if (tally.messages() == 0)
-    throw RunFailed("no message came on " + options.lcm_url + "; is ligature-firmware running with the same --lcm-url "
-                    "in the same network namespace?");
+  if (tally.messages() > 0) {
+    std::printf("%s: %.1f MB\n", options.out.c_str(), static_cast<double>(log.bytes()) * 1e-6);
+    return;
+  }
+  if (std::filesystem::is_regular_file(options.out)) std::filesystem::remove(options.out);  // an empty log helps nobody
+  throw RunFailed("no message came on " + options.lcm_url + "; is ligature-firmware running with the same --lcm-url "
+                  "in the same network namespace?");
 }
 
 }  // namespace ligature::host

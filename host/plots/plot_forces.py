@@ -58,6 +58,15 @@ def spans(values):
     return [(a, b, values[a]) for a, b in zip(starts, ends)]
 
 
+def mark_losses(axes, time):
+    """Hatches the time of samples that were not recorded, so that no line across a hole passes for data."""
+    steps = np.diff(time)
+    holes = np.flatnonzero(steps > 1.5 * np.median(steps)) if len(steps) else []
+    for i, hole in enumerate(holes):
+        axes.axvspan(time[hole], time[hole + 1], facecolor="none", edgecolor="#555555", hatch="////", linewidth=0,
+                     zorder=4, label="samples lost" if i == 0 else None)
+
+
 def draw_hand(axes, column, time, hand, limit_N):
     colour = HANDS[hand]
     force_N = column[f"{hand}_device_f_N"]
@@ -75,6 +84,7 @@ def draw_hand(axes, column, time, hand, limit_N):
             marks["release"].append(time[after])
         axes.annotate(f"node {int(held)}", (time[first], 1.0), xycoords=("data", "axes fraction"), xytext=(3, -11),
                       textcoords="offset points", fontsize=7, color=colour)
+    mark_losses(axes, time)
     top = limit_N * 1.12
     for name, marker in (("grasp", "^"), ("release", "v")):
         axes.vlines(marks[name], 0, top, color=colour, linewidth=0.6, linestyle=":")
@@ -136,7 +146,7 @@ def main():
     try:
         draw(arguments.forces, arguments.out, arguments.title, arguments.limit)
     except (OSError, ValueError) as error:
-        print(f"plot_forces: {error}", file=sys.stderr)
+        print(error, file=sys.stderr)
         return 1
     return 0
 
