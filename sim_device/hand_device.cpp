@@ -83,14 +83,17 @@ void HandDevice::note(const can::Frame& frame, Time end) noexcept {
 Time HandDevice::wake_at(int listeners) const noexcept {
   Time at = kNever;
   for (const DriveNode& d : drives_) at = std::min(at, d.next_deadline());
-  const bool from_drive =
-      std::any_of(deliveries_.begin(), deliveries_.end(), [](const Delivery& d) { return d.sender < kFirstClient; });
-  if (listeners > 1 || from_drive || wire_.has_pending_below(kFirstClient)) {
-    Time burst = wire_.quiet_at();
-    if (burst == kNever && !deliveries_.empty()) burst = deliveries_.back().due;
-    at = std::min(at, burst);
-  }
-  return at;
+  // What a lone controller sends and no drive answers (RPDO, its heartbeat) can wait for the frame after it.
+  const auto matters = [&](const can::Frame& f, int sender) {
+    const auto address = can::address_of(f.id);
+    const bool silent =
+        address && (address->service == can::Service::kRpdo1 || address->service == can::Service::kHeartbeat);
+    return listeners > 1 || sender < kFirstClient || !silent;
+  };
+  const bool to_send = std::any_of(deliveries_.begin(), deliveries_.end(),
+                                   [&](const Delivery& d) { return listeners > 1 || d.sender < kFirstClient; });
+  if (wire_.any_pending(matters)) return std::min(at, wire_.quiet_at());
+  return to_send ? std::min(at, deliveries_.back().due) : at;
 }
 
 void HandDevice::power_off() noexcept {

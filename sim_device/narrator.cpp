@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -16,9 +17,11 @@ void Narrator::say(const std::string& what) const {
 
 void Narrator::look(const HandDevice& device, int clients, Time now) {
   if (clients != std::exchange(clients_, clients)) say(std::to_string(clients) + " on the bus beside the drives");
-  std::int64_t trips = 0;
-  for (const DriveNode& d : device.drives()) trips += d.stats().watchdog_trips;
-  if (trips != std::exchange(trips_, trips)) say("controller silent, drives took their torque away");
+  const auto& drives = device.drives();
+  const bool faulted = std::any_of(drives.begin(), drives.end(),
+                                   [](const DriveNode& d) { return d.state() == can::cia402::State::kFault; });
+  if (faulted && !faulted_) say("controller silent, drives took their torque away");
+  faulted_ = faulted;
   const Mechanics& m = device.mechanics();
   if (m.has_started() && !std::exchange(started_, true)) say("drives enabled, script begins");
   if (started_ && m.is_done() && !std::exchange(done_, true)) say("script done, dead-man let go");

@@ -18,8 +18,7 @@ class Narrator {
   std::string hand_;
   bool is_terminal_;
   int clients_ = 0;
-  bool started_ = false, done_ = false;
-  std::int64_t trips_ = 0;
+  bool started_ = false, done_ = false, faulted_ = false;
   Time next_progress_{};
 };
 

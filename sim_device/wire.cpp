@@ -52,12 +52,6 @@ Time Wire::quiet_at() const noexcept {
   return any ? at : kNever;
 }
 
-bool Wire::has_pending_below(int senders) const noexcept {
-  const auto first = queues_.begin();
-  const auto last = first + std::min<std::ptrdiff_t>(senders, std::ssize(queues_));
-  return std::any_of(first, last, [](const auto& q) { return !q.empty(); });
-}
-
 void Wire::drop(int sender) noexcept {
   const auto index = static_cast<std::size_t>(sender);
   if (index < queues_.size()) queues_[index].clear();

@@ -40,8 +40,16 @@ class Wire {
   [[nodiscard]] std::optional<Transmission> advance(Time now);
   /// When the frames known so far will all have been heard if nobody adds one; kNever if the wire is idle.
   [[nodiscard]] Time quiet_at() const noexcept;
-  /// True when one of the first `senders` senders has something to say.
-  [[nodiscard]] bool has_pending_below(int senders) const noexcept;
+  /// True when a frame for which predicate(frame, sender) holds waits for the bus.
+  template <class Predicate>
+  [[nodiscard]] bool any_pending(Predicate predicate) const {
+    for (std::size_t sender = 0; sender < queues_.size(); ++sender) {
+      for (const Pending& p : queues_[sender]) {
+        if (predicate(p.frame, static_cast<int>(sender))) return true;
+      }
+    }
+    return false;
+  }
   /// Forgets what a sender that left has not yet sent.
   void drop(int sender) noexcept;
 

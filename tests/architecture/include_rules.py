@@ -14,6 +14,7 @@ SCENE_STRUCT = "protocol/scene/scene.hpp"
 # folder: (our folders it may include besides itself, third-party and OS headers it may include)
 RULES = {
     "protocol/can": ([], []),
+    "protocol/can/describe": (["protocol/can"], ["OS"]),
     "protocol/scene": ([], ["toml++/"]),
     "firmware/rt": ([], []),
     "firmware/physics": (["firmware/rt", SCENE_STRUCT], ["Eigen/"]),

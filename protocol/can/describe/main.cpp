@@ -1,0 +1,156 @@
+// ligature-can-describe: says what the wire looks like, in the languages other tools read. Prints to stdout only.
+//   eds NODE | dbc | constants | encode | decode
+// encode and decode work on lines of stdin, one frame a line, so that a test can drive thousands through one process:
+//   encode  "tpdo1 NODE statusword position torque buttons" or "rpdo1 NODE controlword torque"  ->  "ID DATA" in hex
+//   decode  "ID DATA" in hex  ->  the same words, or "none" for what is no PDO of the map
+
+#include <charconv>
+#include <cstdio>
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+#include "protocol/can/bit_time.hpp"
+#include "protocol/can/codec.hpp"
+#include "protocol/can/describe/dbc.hpp"
+#include "protocol/can/describe/eds.hpp"
+
+namespace {
+
+using namespace ligature::can;
+constexpr int kBadInput = 2;
+
+constexpr const char* kHelp =
+    "ligature-can-describe: the rig's CAN layout in the languages other tools read\n"
+    "  eds NODE    electronic data sheet of drive 1, 2 or 3\n"
+    "  dbc         all process data of one hand's bus\n"
+    "  constants   numbers of the codec, JSON\n"
+    "  encode      stdin lines 'tpdo1 NODE statusword position torque buttons', 'rpdo1 NODE controlword torque' -> 'ID "
+    "DATA'\n"
+    "  decode      the reverse\n"
+    "Example: ligature-can-describe dbc > hand.dbc && candump can0 | cantools decode hand.dbc\n"
+    "Exit: 0 done, 2 bad usage or input.\n";
+
+int refuse(const std::string& why) {
+  std::cerr << "ligature-can-describe: " << why << '\n';
+  return kBadInput;
+}
+
+bool is_joint(int node) { return node >= kWaist.value && node <= kElbow.value; }
+
+std::string hex(const Frame& f) {
+  char text[32];
+  int n = std::snprintf(text, sizeof text, "%03X ", f.id);
+  for (std::size_t i = 0; i < f.dlc; ++i)
+    n += std::snprintf(text + n, sizeof text - static_cast<std::size_t>(n), "%02X", f.data[i]);
+  return text;
+}
+
+/// "ID DATA" in hex; false when it is not.
+bool parse(const std::string& line, Frame& f) {
+  std::istringstream in(line);
+  std::string id, data;
+  in >> id >> data;
+  const auto read = [](std::string_view text, auto& value) {
+    const auto r = std::from_chars(text.data(), text.data() + text.size(), value, 16);
+    return r.ec == std::errc{} && r.ptr == text.data() + text.size();
+  };
+  if (!read(id, f.id) || f.id > kMaxId || data.size() % 2 != 0 || data.size() > 16) return false;
+  f.dlc = static_cast<std::uint8_t>(data.size() / 2);
+  for (std::size_t i = 0; i < f.dlc; ++i) {
+    if (!read(std::string_view(data).substr(2 * i, 2), f.data[i])) return false;
+  }
+  return true;
+}
+
+bool encode_line(const std::string& line) {
+  std::istringstream in(line);
+  std::string kind;
+  int node = 0;
+  long a = 0, b = 0, c = 0, d = 0;
+  in >> kind >> node >> a >> b;
+  const NodeId id{static_cast<std::uint8_t>(node)};
+  if (!in || !is_joint(node)) return false;
+  if (kind == "rpdo1") {
+    std::puts(hex(encode(id, Rpdo1{static_cast<std::uint16_t>(a), static_cast<std::int16_t>(b)})).c_str());
+    return true;
+  }
+  in >> c >> d;
+  if (!in || kind != "tpdo1") return false;
+  std::puts(hex(encode(id, Tpdo1{static_cast<std::uint16_t>(a), static_cast<std::int32_t>(b),
+                                 static_cast<std::int16_t>(c), static_cast<std::uint16_t>(d)}))
+                .c_str());
+  return true;
+}
+
+bool decode_line(const std::string& line) {
+  Frame f;
+  if (!parse(line, f)) return false;
+  for (const NodeId node : profile::kJointNodes) {
+    if (const auto p = decode_tpdo1(node, f)) {
+      std::printf("tpdo1 %d %u %d %d %u\n", node.value, unsigned{p->statusword}, p->position_counts,
+                  int{p->torque_permille}, unsigned{p->buttons});
+      return true;
+    }
+    if (const auto p = decode_rpdo1(node, f)) {
+      std::printf("rpdo1 %d %u %d\n", node.value, unsigned{p->controlword}, int{p->target_torque_permille});
+      return true;
+    }
+  }
+  std::puts("none");
+  return true;
+}
+
+int for_each_line(bool (*work)(const std::string&)) {
+  std::string line;
+  for (long number = 1; std::getline(std::cin, line); ++number) {
+    if (!work(line))
+      return refuse("stdin:" + std::to_string(number) + ": found '" + line + "', allowed the form that --help shows");
+  }
+  return 0;
+}
+
+void print_constants() {
+  std::printf(
+      "{\"counts_per_revolution\": %d, \"rated_torque_mNm\": %u, \"max_torque_permille\": %d, \"bit_rate\": %u,\n",
+      profile::kCountsPerRevolution, profile::kRatedTorque_mNm, profile::kMaxTorque_permille, profile::kBitRate);
+  std::printf(" \"min_cycle_bits\": %u, \"max_cycle_bits\": %u, \"fields\": [", kMinCycleBits, kMaxCycleBits);
+  const char* separator = "";
+  for (const Pdo pdo : {Pdo::kTpdo1, Pdo::kRpdo1}) {
+    for (const NodeId node : profile::kJointNodes) {
+      for (const PdoField& f : layout_of(pdo, node)) {
+        std::printf(
+            "%s\n  {\"pdo\": \"%s\", \"node\": %d, \"index\": %u, \"sub\": %u, \"bits\": %u, \"offset_bits\": %u, "
+            "\"signed\": %s, \"name\": \"%s\"}",
+            separator, pdo == Pdo::kTpdo1 ? "tpdo1" : "rpdo1", node.value, unsigned{f.object.index},
+            unsigned{f.object.sub}, unsigned{f.bits}, unsigned{f.offset_bits}, f.is_signed ? "true" : "false",
+            std::string(f.name).c_str());
+        separator = ",";
+      }
+    }
+  }
+  std::puts("]}");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string command = argc > 1 ? argv[1] : "";
+  if (command == "--help" || command == "-h") return std::fputs(kHelp, stdout) < 0;
+  if (command == "--version") return std::puts("ligature-can-describe " LIGATURE_VERSION) < 0;
+  if (command == "eds" && argc == 3) {
+    const std::string node = argv[2];
+    if (node.size() != 1 || !is_joint(node[0] - '0'))
+      return refuse("eds: found node '" + node + "', allowed 1, 2 or 3");
+    return std::fputs(eds_text(NodeId{static_cast<std::uint8_t>(node[0] - '0')}).c_str(), stdout) < 0;
+  }
+  if (argc != 2)
+    return refuse("found " + std::to_string(argc - 1) +
+                  " arguments, allowed: eds NODE, dbc, constants, encode, decode (see --help)");
+  if (command == "dbc") return std::fputs(dbc_text().c_str(), stdout) < 0;
+  if (command == "constants") return print_constants(), 0;
+  if (command == "encode") return for_each_line(encode_line);
+  if (command == "decode") return for_each_line(decode_line);
+  return refuse("found '" + command + "', allowed: eds NODE, dbc, constants, encode, decode (see --help)");
+}
