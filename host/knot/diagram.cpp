@@ -62,6 +62,21 @@ bool undo_one_clasp(Diagram& d) {
   return false;
 }
 
+/// The diagram made of some of d's passes; every crossing of theirs is met twice among them.
+Diagram part_of(const Diagram& d, std::vector<Pass> passes) {
+  Diagram part{std::move(passes), {}};
+  std::vector<std::size_t> renamed(d.crossings(), d.crossings());
+  for (auto& p : part.passes) {
+    auto& name = renamed[p.crossing];
+    if (name == d.crossings()) {
+      name = part.signs.size();
+      part.signs.push_back(d.signs[p.crossing]);
+    }
+    p.crossing = name;
+  }
+  return part;
+}
+
 }  // namespace
 
 int writhe(const Diagram& d) noexcept { return std::accumulate(d.signs.begin(), d.signs.end(), 0); }
@@ -69,6 +84,26 @@ int writhe(const Diagram& d) noexcept { return std::accumulate(d.signs.begin(), 
 void reduce(Diagram& d) {
   while (undo_one_nugatory(d) || undo_one_clasp(d)) {
   }
+}
+
+std::vector<Diagram> visible_factors(const Diagram& d) {
+  const std::size_t n = d.passes.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    std::vector<int> seen(d.crossings(), 0);
+    int open = 0;
+    for (std::size_t j = i; j < n; ++j) {
+      open += seen[d.passes[j].crossing]++ == 0 ? 1 : -1;
+      const std::size_t length = j + 1 - i;
+      if (open != 0 || length == n) continue;
+      const auto first = d.passes.begin() + static_cast<std::ptrdiff_t>(i), last = d.passes.begin() + static_cast<std::ptrdiff_t>(j + 1);
+      std::vector<Pass> rest(d.passes.begin(), first);
+      rest.insert(rest.end(), last, d.passes.end());
+      auto factors = visible_factors(part_of(d, {first, last}));
+      for (auto& f : visible_factors(part_of(d, std::move(rest)))) factors.push_back(std::move(f));
+      return factors;
+    }
+  }
+  return {d};
 }
 
 }  // namespace ligature::knot

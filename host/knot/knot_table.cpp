@@ -1,6 +1,8 @@
 #include "host/knot/knot_table.hpp"
 
+#include <algorithm>
 #include <map>
+#include <sstream>
 #include <utility>
 
 namespace ligature::knot {
@@ -37,6 +39,9 @@ const std::vector<Prime>& primes() {
 
 constexpr std::size_t kMostCrossings = 10;
 constexpr std::size_t kUnknotCrossings = 24;
+
+/// Names that another knot of so many crossings shares both polynomials with: 10_132 and 9_12.
+constexpr std::pair<const char*, std::size_t> kShared[] = {{"5_1", 10}, {"4_1#5_2", 9}};
 
 using Invariants = std::pair<std::vector<int>, Laurent>;
 using Table = std::map<Invariants, KnotName>;
@@ -87,8 +92,24 @@ std::optional<KnotName> name_of(const std::vector<int>& alexander, const Laurent
   if (crossings > kMostCrossings) return std::nullopt;
   const auto found = kTable.find({alexander, jones});
   if (found == kTable.end()) return std::nullopt;
-  if (found->second.type == "5_1" && crossings >= 10) return std::nullopt;
+  for (const auto& [type, from] : kShared) {
+    if (found->second.type == type && crossings >= from) return std::nullopt;
+  }
   return found->second;
+}
+
+KnotName sum_of(const KnotName& a, const KnotName& b) {
+  if (a.type == "0_1") return b;
+  if (b.type == "0_1") return a;
+  std::vector<std::string> parts;
+  for (const auto& name : {a.type, b.type}) {
+    std::istringstream text(name);
+    for (std::string part; std::getline(text, part, '#');) parts.push_back(part);
+  }
+  std::sort(parts.begin(), parts.end());  // one-digit crossing numbers: the order of the text is that of the table
+  std::string type;
+  for (const auto& part : parts) type += (type.empty() ? "" : "#") + part;
+  return {type, joined_hand(a.handedness, b.handedness)};
 }
 
 }  // namespace ligature::knot

@@ -21,4 +21,7 @@ struct KnotName {
 ///        there only the unknot is named, for which the Jones polynomial alone decides up to 24 crossings.
 [[nodiscard]] std::optional<KnotName> name_of(const std::vector<int>& alexander, const Laurent& jones, std::size_t crossings);
 
+/// The name of a sum of two named knots.
+[[nodiscard]] KnotName sum_of(const KnotName& a, const KnotName& b);
+
 }  // namespace ligature::knot

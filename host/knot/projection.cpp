@@ -75,9 +75,8 @@ std::optional<Diagram> simplest_view(std::span<const Point> corners, int views) 
   for (int k = 0; k < views; ++k) {
     auto diagram = project(corners, spread_direction(k, views));
     if (!diagram) continue;
-    constexpr std::size_t kHopeless = 120;  // reducing is cubic: leave such a view to a better one, if there is one
-    if (best && diagram->crossings() > kHopeless) continue;
-    reduce(*diagram);
+    constexpr std::size_t kHopeless = 120;  // reducing is cubic, and from so many crossings it would not name a knot
+    if (diagram->crossings() <= kHopeless) reduce(*diagram);
     if (!best || diagram->crossings() < best->crossings()) best = std::move(diagram);
     if (best->crossings() < 3) break;  // fewer than three crossings: the unknot, whatever they are
   }

@@ -12,9 +12,23 @@
 namespace ligature::knot {
 namespace {
 
-constexpr std::size_t kExact = 29;  // crossings up to which every invariant is exact
+constexpr std::size_t kExact = 29;      // crossings up to which every invariant is exact
+constexpr std::size_t kTangled = 300;   // corners left of a thread that no shaking will name in reasonable time
 
 KnotResult unknown() { return {"unknown", "none", 0, {}, {}, 0}; }
+
+/// Names the factors one by one where the diagram shows them side by side.
+std::optional<KnotName> name_by_factors(const Diagram& d) {
+  const auto factors = visible_factors(d);
+  if (factors.size() < 2) return std::nullopt;
+  KnotName sum{"0_1", "none"};
+  for (const auto& f : factors) {
+    const auto name = name_of(alexander(f), jones(f), f.crossings());
+    if (!name) return std::nullopt;
+    sum = sum_of(sum, *name);
+  }
+  return sum;
+}
 
 KnotResult from_diagram(const Diagram& d) {
   KnotResult r = unknown();
@@ -23,10 +37,13 @@ KnotResult from_diagram(const Diagram& d) {
   r.alexander = alexander(d);
   r.determinant = determinant(r.alexander);
   r.jones = jones(d);
-  if (auto name = name_of(r.alexander, r.jones, r.crossings)) {
-    r.type = name->type;
-    r.handedness = name->handedness;
-  }
+  auto name = name_by_factors(d);
+  if (!name) name = name_of(r.alexander, r.jones, r.crossings);
+  if (!name) return r;
+  // A sum of a knot and its own mirror image is amphichiral, although its parts have different hands.
+  if (name->handedness == "mixed" && r.jones == mirrored(r.jones)) name->handedness = "amphichiral";
+  r.type = name->type;
+  r.handedness = name->handedness;
   return r;
 }
 
@@ -40,6 +57,7 @@ KnotResult recognise_ring(std::vector<Point> ring) {
   std::size_t fewest = static_cast<std::size_t>(-1);
   for (int round = 0; round < kRounds; ++round) {
     if (polygon.corners().size() < 6) return from_diagram({});  // a knot needs six sticks
+    if (polygon.corners().size() > kTangled) return best;
     if (const auto diagram = simplest_view(polygon.corners(), kViews); diagram && diagram->crossings() < fewest) {
       fewest = diagram->crossings();
       best = from_diagram(*diagram);

@@ -68,6 +68,7 @@ const std::vector<Braid>& braids() {
       {"3_1#4_1", "right", 4, {1, 1, 1, 2, -3, 2, -3}},
       {"3_1#5_1", "mixed", 3, {1, 1, 1, -2, -2, -2, -2, -2}},
       {"3_1#3_1#3_1", "left", 4, {-1, -1, -1, -2, -2, -2, -3, -3, -3}},
+      {"4_1#5_2", "left", 5, {1, -2, 1, -2, -3, -3, -3, -4, 3, -4}},
       {"0_1", "none", 4, {1, -2, 3}},
   };
   return kBraids;
@@ -163,6 +164,8 @@ TEST(KnotTable, NamesNothingWhereTwoKnotsShareTheirPolynomials) {
   const Laurent v{2, {1, 0, 1, -1, 1, -1}};
   EXPECT_EQ(name_of(a, v, 9)->type, "5_1");
   EXPECT_FALSE(name_of(a, v, 10));  // might be 10_132
+  const auto sum = product(Laurent{-2, {1, -1, 1, -1, 1}}, Laurent{1, {1, -1, 2, -1, 1, -1}});
+  EXPECT_FALSE(name_of({2, -9, 13, -9, 2}, sum, 9));  // 4_1#5_2 or 9_12
   EXPECT_FALSE(name_of({1, -1, 1}, {1, {1, 0, 1, -1}}, 11));
   EXPECT_FALSE(name_of({9, 9}, {0, {7}}, 4));
 }
