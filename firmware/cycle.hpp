@@ -1,7 +1,7 @@
 #pragma once
 // THE loop. Linux stands behind Bus and Clock in the program, fakes in virtual time stand there in tests.
 
-#include <atomic>
+#include <algorithm>
 #include <chrono>
 #include <concepts>
 #include <cstdint>
@@ -10,11 +10,8 @@
 #include "firmware/control/controller.hpp"
 #include "firmware/control/tick_report.hpp"
 #include "firmware/physics/simulation.hpp"
-#include "firmware/rt/command.hpp"
 #include "firmware/rt/cycle_timing.hpp"
-#include "firmware/rt/latest_value.hpp"
-#include "firmware/rt/spsc_ring.hpp"
-#include "firmware/rt/tick_record.hpp"
+#include "firmware/rt/outlets.hpp"
 
 namespace ligature {
 
@@ -32,14 +29,6 @@ concept Bus = requires(B b, Nanoseconds deadline, const rt::RigCommand& command)
   { b.write_rpdos(command) } noexcept -> std::same_as<rt::WireTorque>;     // acts at the next SYNC
 };
 
-/// The real-time thread's edges to the others.
-struct Outlets {
-  rt::SpscRing<rt::TickRecord> records{8192};  ///< one a period; 8 s of slack for telemetry
-  rt::LatestValue<rt::ThreadSnapshot> shape;
-  rt::SpscRing<rt::Command> commands{64};
-  std::atomic<bool> stop{false};
-};
-
 /// One period after the other until the controller has shut the rig down. Period k is due at start + k T; whole periods
 /// that pass unused are counted, recorded and skipped, never made up for. No allocation, lock, log or exception in run().
 template <Bus BusT, Clock ClockT>
@@ -49,7 +38,7 @@ class Cycle {
   static constexpr Nanoseconds kTpdoWait = std::chrono::microseconds(600);  // bus needs ≤ 460, RPDOs 285 more
   static constexpr std::int64_t kTicksPerShape = 8;
 
-  Cycle(BusT& bus, ClockT& clock, control::Controller& controller, physics::Simulation& thread, Outlets& out) noexcept
+  Cycle(BusT& bus, ClockT& clock, control::Controller& controller, physics::Simulation& thread, rt::Outlets& out) noexcept
       : bus_(bus), clock_(clock), controller_(controller), thread_(thread), out_(out) {}
 
   void end_after(std::int64_t ticks) noexcept { last_tick_ = ticks; }
@@ -152,7 +141,7 @@ class Cycle {
   ClockT& clock_;
   control::Controller& controller_;
   physics::Simulation& thread_;
-  Outlets& out_;
+  rt::Outlets& out_;
   rt::CycleTiming timing_;
   rt::TickRecord record_;
   Nanoseconds wake_at_{};

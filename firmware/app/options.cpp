@@ -1,0 +1,74 @@
+#include "firmware/app/options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <map>
+
+namespace ligature::app {
+namespace {
+
+constexpr const char* kAbout =
+    "The controller of the rig: reads both hands over CAN, simulates the thread, gives the hands its force, 1000 times\n"
+    "a second, and tells about every period over LCM.";
+
+constexpr const char* kRunHelp = R"(Runs until --duration, SIGINT or SIGTERM; then forces ramp to zero, the drives are
+switched off and a table of the timing is printed. Force needs arming (--arm, or 'ligature-host send arm')
+AND the dead-man button of the hand. A fault takes force off both hands at once, is latched, and is left by
+'ligature-host send reset-fault'; docs/architecture.md lists the numbers.
+
+Example, with two simulated hands already running:
+  ligature-device --hand left  --bus local:/tmp/left  --scene scenes/paper.toml --operator scenes/operators/overhand.csv &
+  ligature-device --hand right --bus local:/tmp/right --scene scenes/paper.toml --operator scenes/operators/overhand.csv &
+  ligature-firmware run --scene scenes/paper.toml --left local:/tmp/left --right local:/tmp/right --arm --duration 23
+
+Exit: 0 done, 2 bad usage or bad scene, 3 a fault ended the run or the rig could not be started.)";
+
+void add_run(CLI::App& run, RunOptions& o) {
+  static const std::map<std::string, RtMode> kModes{
+      {"enforce", RtMode::kEnforce}, {"warn", RtMode::kWarn}, {"off", RtMode::kOff}};
+  run.footer(kRunHelp);
+  run.add_option("--scene", o.scene, "scene file (TOML): the thread, its world, the coupling to the hands")->required();
+  run.add_option("--set", o.overrides, "override a key of the scene: key=value, may be given again")->allow_extra_args(false);
+  run.add_option("--left", o.left, "bus of the left hand: local:/path/socket or socketcan:INTERFACE")->required();
+  run.add_option("--right", o.right, "bus of the right hand")->required();
+  run.add_flag("--arm", o.arm, "arm at start, as the local operator; else wait for the command");
+  run.add_option("--duration", o.duration_s, "end after so many seconds")->check(CLI::Range(0.001, 1e6));
+  run.add_option("--lcm-url", o.lcm_url, "LCM provider")->capture_default_str();
+  run.add_option("--rt", o.rt, "real-time scheduling and locked memory: enforce (or exit 3), warn, off")
+      ->transform(CLI::CheckedTransformer(kModes))
+      ->default_str("warn");
+  run.add_option("--watchdog-ms", o.watchdog_ms,
+                 "silence that is a fault: of a hand here, of the controller in the drives, of the loop itself")
+      ->check(CLI::Range(2, 10000))
+      ->capture_default_str();
+  run.add_option("--wait-s", o.wait_s, "how long to wait for the hands to be there")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  run.add_flag("--exit-on-fault", o.exit_on_fault, "end the run at the first fault instead of waiting for a reset");
+}
+
+std::string one_line(std::string text) {
+  for (char& c : text) c = c == '\n' ? ' ' : c;
+  return text;
+}
+
+}  // namespace
+
+std::variant<RunOptions, Exit> parse(int argc, char** argv) {
+  RunOptions options;
+  CLI::App app{kAbout, "ligature-firmware"};
+  app.set_version_flag("--version", std::string("ligature-firmware ") + LIGATURE_VERSION);
+  app.require_subcommand(1);
+  add_run(*app.add_subcommand("run", "run the rig"), options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return Exit{app.exit(e)};
+    std::fprintf(stderr, "ligature-firmware: %s (see --help)\n", one_line(e.what()).c_str());
+    return Exit{2};
+  }
+  return options;
+}
+
+}  // namespace ligature::app

@@ -1,0 +1,81 @@
+#include "firmware/app/rig_setup.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <sstream>
+
+#include "firmware/control/controller.hpp"
+#include "firmware/platform/can_master.hpp"
+#include "firmware/platform/socket_bus.hpp"
+#include "firmware/rt/tick_record.hpp"
+#include "protocol/scene/scene_file.hpp"
+
+namespace ligature::app {
+namespace {
+
+std::string text_of(const RunOptions& options) {
+  std::ostringstream text;
+  text << std::ifstream(options.scene).rdbuf();
+  for (const auto& o : options.overrides) text << "\n# --set " << o;
+  return text.str();
+}
+
+/// What a scene may ask of a lab run but not of a hand.
+std::string objection(const scene::Scene& s) {
+  const auto told = [](const char* key, double found, const std::string& allowed) {
+    std::ostringstream text;
+    text << "key '" << key << "': found " << found << ", allowed " << allowed << " when hands are connected";
+    return text.str();
+  };
+  if (s.time.tick_s != control::kPeriod_s) return told("time.tick_s", s.time.tick_s, "0.001");
+  if (s.hands.max_force_N > control::kHardwareForce_N) return told("hands.max_force_N", s.hands.max_force_N, "0 .. 3.3");
+  return {};
+}
+
+std::variant<std::unique_ptr<platform::CanBus>, Refusal> open_patiently(const std::string& url, double wait_s,
+                                                                        const Pause& pause) {
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::duration<double>(wait_s);
+  for (;;) {
+    auto opened = platform::open_can_bus(url);
+    if (auto* bus = std::get_if<std::unique_ptr<platform::CanBus>>(&opened)) return std::move(*bus);
+    const auto& error = std::get<platform::OpenError>(opened);
+    if (error.kind == platform::OpenFailure::kUsage) return Refusal{2, error.text};
+    if (pause() || std::chrono::steady_clock::now() >= give_up) return Refusal{3, error.text};
+  }
+}
+
+}  // namespace
+
+std::variant<Plan, Refusal> make_plan(const RunOptions& options) {
+  auto loaded = scene::load_scene(options.scene, options.overrides);
+  if (const auto* error = std::get_if<scene::Error>(&loaded)) return Refusal{2, error->text};
+  auto& scene = std::get<scene::Scene>(loaded);
+  if (const auto why = objection(scene); !why.empty()) return Refusal{2, options.scene + ": " + why};
+  auto made = physics::Simulation::make(scene);
+  if (const auto* why = std::get_if<std::string>(&made)) return Refusal{2, options.scene + ": " + *why};
+  return Plan{scene, std::move(std::get<physics::Simulation>(made)), text_of(options)};
+}
+
+std::variant<Buses, Refusal> open_buses(const RunOptions& options, const Pause& pause) {
+  Buses buses;
+  for (auto [url, bus] : {std::pair{&options.left, &buses.left}, std::pair{&options.right, &buses.right}}) {
+    auto opened = open_patiently(*url, options.wait_s, pause);
+    if (auto* refusal = std::get_if<Refusal>(&opened)) return *refusal;
+    *bus = std::move(std::get<0>(opened));
+  }
+  return buses;
+}
+
+std::optional<Refusal> configure(const Buses& buses, const RunOptions& options) {
+  can::StartupTimes times;
+  times.rpdo_timeout_ms = static_cast<std::uint16_t>(options.watchdog_ms);
+  times.heartbeat_timeout_ms = std::max(times.heartbeat_timeout_ms, times.rpdo_timeout_ms);
+  platform::PollWait wait(*buses.left, *buses.right);
+  for (auto [hand, bus] : {std::pair{"left", buses.left.get()}, std::pair{"right", buses.right.get()}}) {
+    if (const auto why = platform::configure_drives(*bus, wait, times)) return Refusal{3, std::string(hand) + " hand: " + *why};
+  }
+  return std::nullopt;
+}
+
+}  // namespace ligature::app

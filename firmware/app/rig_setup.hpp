@@ -1,0 +1,42 @@
+#pragma once
+// From names on the command line to things that work: the scene, the buses, the drives.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "firmware/app/options.hpp"
+#include "firmware/physics/simulation.hpp"
+#include "firmware/platform/can_bus.hpp"
+#include "protocol/scene/scene.hpp"
+
+namespace ligature::app {
+
+/// Why something could not be, and the exit code that says so.
+struct Refusal {
+  int exit_code;
+  std::string text;
+};
+
+struct Plan {
+  scene::Scene scene;
+  physics::Simulation thread;
+  std::string toml;  ///< the scene's text with the overrides as comments, for recordings
+};
+[[nodiscard]] std::variant<Plan, Refusal> make_plan(const RunOptions& options);
+
+struct Buses {
+  std::unique_ptr<platform::CanBus> left, right;
+};
+
+/// Pauses for a while; true when the program shall end.
+using Pause = std::function<bool()>;
+
+/// Opens both buses, trying again for options.wait_s: a hand may start later than we.
+[[nodiscard]] std::variant<Buses, Refusal> open_buses(const RunOptions& options, const Pause& pause);
+
+/// Start-up of all six drives up to pre-operational. @return why not.
+[[nodiscard]] std::optional<Refusal> configure(const Buses& buses, const RunOptions& options);
+
+}  // namespace ligature::app

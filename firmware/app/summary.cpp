@@ -1,0 +1,35 @@
+#include "firmware/app/summary.hpp"
+
+#include <cstdio>
+
+namespace ligature::app {
+namespace {
+
+std::string row(const char* what, const rt::DurationStatistics& s) {
+  char line[96];
+  const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
+  std::snprintf(line, sizeof line, "  %-10s %9.1f %9.1f %9.1f\n", what, us(s.quantile_ns(0.5)), us(s.quantile_ns(0.99)),
+                us(s.max_ns()));
+  return line;
+}
+
+}  // namespace
+
+std::string summary(const rt::CycleTiming& t, std::int64_t periods, std::uint64_t records_dropped) {
+  const auto executed = t.execution.count();
+  const double held_Hz = periods > 0 ? 1000.0 * static_cast<double>(executed) / static_cast<double>(periods) : 0.0;
+  char head[320];
+  std::snprintf(head, sizeof head,
+                "control loop, 1 kHz\n"
+                "  rate held        %10.2f Hz  (%llu of %lld periods executed)\n"
+                "  deadline misses  %10llu\n"
+                "  periods lost     %10llu\n"
+                "  records dropped  %10llu\n"
+                "  us               p50       p99       max\n",
+                held_Hz, static_cast<unsigned long long>(executed), static_cast<long long>(periods),
+                static_cast<unsigned long long>(t.deadline_misses), static_cast<unsigned long long>(t.periods_lost),
+                static_cast<unsigned long long>(records_dropped));
+  return head + row("wakeup", t.wakeup) + row("control", t.control) + row("execution", t.execution);
+}
+
+}  // namespace ligature::app

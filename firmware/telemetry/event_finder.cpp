@@ -1,0 +1,51 @@
+#include "firmware/telemetry/event_finder.hpp"
+
+namespace ligature::telemetry {
+namespace {
+
+constexpr const char* kHandNames[] = {"left", "right"};
+
+ligature_msg::event_t event(std::int64_t tick, std::int8_t kind, std::int8_t hand, std::int32_t code, std::string text) {
+  ligature_msg::event_t e{};
+  e.tick = tick;
+  e.kind = kind;
+  e.hand = hand;
+  e.code = code;
+  e.text = std::move(text);
+  return e;
+}
+
+}  // namespace
+
+std::vector<ligature_msg::event_t> EventFinder::next(const rt::TickRecord& r) {
+  using ligature_msg::event_t;
+  std::vector<event_t> events;
+  if ((r.flags & rt::kPeriodLost) != 0) return events;
+  if (r.fault != last_.fault && r.fault != 0) {
+    events.push_back(event(r.tick, event_t::KIND_FAULT, -1, r.fault,
+                           "fault " + std::to_string(r.fault) + ": " + names_.fault(r.fault)));
+  }
+  if (r.state != last_.state) {
+    events.push_back(event(r.tick, event_t::KIND_STATE, -1, r.state,
+                           std::string(names_.state(last_.state)) + " -> " + names_.state(r.state)));
+  }
+  for (std::size_t h = 0; h < rt::kHands; ++h) {
+    const auto hand = static_cast<std::int8_t>(h);
+    const std::string who = kHandNames[h];
+    const int was = last_.grasped_node[h], is = r.grasped_node[h];
+    if (was != is && was >= 0) {
+      events.push_back(event(r.tick, event_t::KIND_RELEASE, hand, was, who + " releases node " + std::to_string(was)));
+    }
+    if (was != is && is >= 0) {
+      events.push_back(event(r.tick, event_t::KIND_GRASP, hand, is, who + " grasps node " + std::to_string(is)));
+    }
+    const std::int32_t limited = h == 0 ? rt::kLeftLimited : rt::kRightLimited;
+    if ((r.flags & limited) != 0 && (last_.flags & limited) == 0) {
+      events.push_back(event(r.tick, event_t::KIND_LIMIT, hand, 0, who + " force reaches its limit"));
+    }
+  }
+  last_ = r;
+  return events;
+}
+
+}  // namespace ligature::telemetry

@@ -1,0 +1,54 @@
+#pragma once
+// The LCM end of telemetry. What LCM cannot do is counted and told; it never holds anything up.
+
+#include <lcm/lcm-cpp.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "firmware/telemetry/telemetry.hpp"
+
+namespace ligature::telemetry {
+
+class LcmLink final : public Sink {
+ public:
+  using OnCommand = std::function<ligature_msg::ack_t(const ligature_msg::command_t&)>;
+  using OnEvent = std::function<void(const ligature_msg::event_t&)>;
+
+  /// Opens the URL; may take seconds when multicast is misconfigured, so before the loop starts.
+  LcmLink(const std::string& url, OnEvent on_event);
+
+  [[nodiscard]] bool is_open() const noexcept { return open_; }
+  [[nodiscard]] std::int64_t failures() const noexcept { return failures_; }
+
+  /// Hears commands and answers each with an ack. @return false when LCM cannot listen.
+  bool listen(OnCommand on_command);
+
+  /// Waits for commands, at most so long; also the pause between two steps.
+  void wait(std::int64_t at_most_ms);
+
+  void send(const ligature_msg::tick_batch_t& m) override { publish("LIGATURE_TICKS", m); }
+  void send(const ligature_msg::thread_t& m) override { publish("LIGATURE_THREAD", m); }
+  void send(const ligature_msg::status_t& m) override { publish("LIGATURE_STATUS", m); }
+  void send(const ligature_msg::event_t& m) override {
+    publish("LIGATURE_EVENT", m);
+    on_event_(m);
+  }
+
+ private:
+  template <class Message>
+  void publish(const char* channel, const Message& m) {
+    if (!open_ || lcm_.publish(channel, &m) != 0) ++failures_;
+  }
+  void receive(const lcm::ReceiveBuffer*, const std::string&, const ligature_msg::command_t* command);
+
+  lcm::LCM lcm_;
+  bool open_;
+  bool listening_ = false;
+  std::int64_t failures_ = 0;
+  OnEvent on_event_;
+  OnCommand on_command_;
+};
+
+}  // namespace ligature::telemetry

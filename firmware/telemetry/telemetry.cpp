@@ -1,0 +1,103 @@
+#include "firmware/telemetry/telemetry.hpp"
+
+#include <utility>
+
+#include "firmware/telemetry/messages.hpp"
+
+namespace ligature::telemetry {
+
+Telemetry::Telemetry(Session session, const Names& names, rt::Outlets& outlets, Sink& sink)
+    : session_(std::move(session)), events_(names), outlets_(outlets), sink_(sink) {
+  batch_.ticks.reserve(kTicksPerBatch);
+}
+
+void Telemetry::step(std::int64_t now_us) {
+  for (rt::TickRecord record; outlets_.records.pop(record);) take(record, now_us);
+  if (now_us >= shape_due_us_ && outlets_.shape.refresh()) {
+    send_shape(now_us);
+    shape_due_us_ = now_us + kShapePeriod_us;
+  }
+  if (now_us >= status_due_us_) {
+    send_status(now_us);
+    status_due_us_ = now_us + kStatusPeriod_us;
+  }
+}
+
+void Telemetry::finish(std::int64_t now_us) {
+  for (rt::TickRecord record; outlets_.records.pop(record);) take(record, now_us);
+  if (!batch_.ticks.empty()) send_batch(now_us);
+  if (outlets_.shape.refresh()) send_shape(now_us);
+  send_status(now_us);
+}
+
+void Telemetry::take(const rt::TickRecord& record, std::int64_t now_us) {
+  misses_ += (record.flags & rt::kDeadlineMissed) != 0;
+  lost_ += (record.flags & rt::kPeriodLost) != 0;
+  for (auto& event : events_.next(record)) {
+    event.utime = now_us;
+    sink_.send(event);
+  }
+  batch_.ticks.push_back(to_message(record));
+  last_ = record;
+  if (batch_.ticks.size() == kTicksPerBatch) send_batch(now_us);
+}
+
+void Telemetry::send_batch(std::int64_t now_us) {
+  batch_.utime = now_us;
+  batch_.session = session_.id;
+  batch_.ring_dropped = static_cast<std::int64_t>(outlets_.records.dropped());
+  batch_.count = static_cast<std::int32_t>(batch_.ticks.size());
+  sink_.send(batch_);
+  batch_.ticks.clear();
+}
+
+void Telemetry::send_shape(std::int64_t now_us) {
+  sink_.send(to_message(outlets_.shape.front(), session_.radius_m, now_us));
+}
+
+void Telemetry::send_status(std::int64_t now_us) {
+  ligature_msg::status_t m{};
+  m.utime = now_us;
+  m.session = session_.id;
+  m.protocol_version = ligature_msg::status_t::VERSION;
+  m.firmware_version = session_.firmware_version;
+  m.scene_file = session_.scene_file;
+  m.scene_toml = session_.scene_toml;
+  m.period_s = session_.period_s;
+  m.max_force_N = session_.max_force_N;
+  m.tick = last_.tick;
+  m.state = last_.state;
+  m.fault = last_.fault;
+  m.deadline_misses = misses_;
+  m.periods_lost = lost_;
+  m.realtime = session_.realtime ? 1 : 0;
+  m.armed = last_.armed ? 1 : 0;
+  sink_.send(m);
+}
+
+std::string Telemetry::objection(std::int8_t kind) const {
+  using ligature_msg::command_t;
+  if (kind < command_t::KIND_ARM || kind > command_t::KIND_RESET_THREAD) {
+    return "unknown kind " + std::to_string(kind) + ", allowed 1 .. 5";
+  }
+  if (kind == command_t::KIND_ARM && last_.fault != 0) {
+    return "fault " + std::to_string(last_.fault) + " is latched: reset it first";
+  }
+  if (kind == command_t::KIND_RESET_FAULT && last_.fault == 0) return "there is no fault";
+  return {};
+}
+
+ligature_msg::ack_t Telemetry::handle(const ligature_msg::command_t& command, std::int64_t now_us) {
+  ligature_msg::ack_t ack{};
+  ack.utime = now_us;
+  ack.id = command.id;
+  ack.reason = objection(command.kind);
+  if (ack.reason.empty() && !outlets_.commands.push({command.id, static_cast<rt::CommandKind>(command.kind)})) {
+    ack.reason = "too many commands at once";
+  }
+  ack.accepted = ack.reason.empty() ? 1 : 0;
+  if (ack.accepted != 0) ack.reason = "done at the next tick";
+  return ack;
+}
+
+}  // namespace ligature::telemetry

@@ -1,0 +1,76 @@
+#pragma once
+// Drains what the real-time thread leaves and decides what is sent when. Time comes in as an argument.
+
+#include <cstdint>
+#include <string>
+
+#include "firmware/rt/outlets.hpp"
+#include "firmware/telemetry/event_finder.hpp"
+#include "ligature_msg/ack_t.hpp"
+#include "ligature_msg/command_t.hpp"
+#include "ligature_msg/event_t.hpp"
+#include "ligature_msg/status_t.hpp"
+#include "ligature_msg/thread_t.hpp"
+#include "ligature_msg/tick_batch_t.hpp"
+
+namespace ligature::telemetry {
+
+/// Where messages go. Implementations may lose them, but neither block for long nor throw.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  virtual void send(const ligature_msg::tick_batch_t& m) = 0;
+  virtual void send(const ligature_msg::thread_t& m) = 0;
+  virtual void send(const ligature_msg::status_t& m) = 0;
+  virtual void send(const ligature_msg::event_t& m) = 0;
+};
+
+/// What does not change during a run.
+struct Session {
+  std::int64_t id = 0;  ///< CLOCK_REALTIME at start, microseconds
+  std::string firmware_version;
+  std::string scene_file;
+  std::string scene_toml;
+  double period_s = 0.001;
+  double max_force_N = 0.0;
+  double radius_m = 0.0;
+  bool realtime = false;
+};
+
+/// One thread uses it. Every record goes into exactly one batch, in order; a batch has 20 of them, the last one what
+/// is left. Shapes at 60 Hz and status at 10 Hz, events at once.
+class Telemetry {
+ public:
+  static constexpr std::size_t kTicksPerBatch = 20;
+  static constexpr std::int64_t kShapePeriod_us = 1'000'000 / 60;
+  static constexpr std::int64_t kStatusPeriod_us = 100'000;
+
+  Telemetry(Session session, const Names& names, rt::Outlets& outlets, Sink& sink);
+
+  /// Takes everything that is there. @param now_us CLOCK_REALTIME, microseconds.
+  void step(std::int64_t now_us);
+
+  /// The last step: also what does not fill a batch, the last shape and a last status.
+  void finish(std::int64_t now_us);
+
+  /// Passes a request on, or says why not.
+  [[nodiscard]] ligature_msg::ack_t handle(const ligature_msg::command_t& command, std::int64_t now_us);
+
+ private:
+  void take(const rt::TickRecord& record, std::int64_t now_us);
+  void send_batch(std::int64_t now_us);
+  void send_shape(std::int64_t now_us);
+  void send_status(std::int64_t now_us);
+  [[nodiscard]] std::string objection(std::int8_t kind) const;
+
+  Session session_;
+  EventFinder events_;
+  rt::Outlets& outlets_;
+  Sink& sink_;
+  ligature_msg::tick_batch_t batch_{};
+  rt::TickRecord last_{};
+  std::int64_t misses_ = 0, lost_ = 0;
+  std::int64_t shape_due_us_ = 0, status_due_us_ = 0;
+};
+
+}  // namespace ligature::telemetry
