@@ -1,0 +1,49 @@
+// ligature-lab: the thread without the rig. Same physics library as the firmware, no clock, no bus.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "host/lab/outcome.hpp"
+#include "host/lab/run_command.hpp"
+#include "host/lab/stop_signal.hpp"
+
+namespace {
+
+constexpr const char* kAbout =
+    "Plays scenes offline, with the physics that the real-time firmware runs, as fast as the machine can.\n"
+    "Start with:  ligature-lab run scenes/paper.toml --grippers scenes/operators/overhand.csv --out out/overhand";
+
+/// One line, whatever the library put into it.
+void complain(std::string text) {
+  for (auto& c : text) {
+    if (c == '\n') c = ' ';
+  }
+  std::fprintf(stderr, "ligature-lab: %s\n", text.c_str());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace ligature::lab;
+  watch_stop_signals();
+  int exit_code = kDone;
+  CLI::App app(kAbout, "ligature-lab");
+  app.set_version_flag("--version", "ligature-lab " LIGATURE_VERSION);
+  app.require_subcommand(1);
+  add_run_command(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const Refusal& refusal) {
+    complain(refusal.what());
+    return refusal.code;
+  } catch (const CLI::Success& success) {
+    return app.exit(success);
+  } catch (const CLI::ParseError& error) {
+    complain(std::string(error.what()) + " (see ligature-lab --help)");
+    return kBadInput;
+  } catch (const std::exception& error) {
+    complain(error.what());
+    return kRunFailed;
+  }
+  return exit_code;
+}

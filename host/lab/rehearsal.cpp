@@ -1,0 +1,72 @@
+#include "host/lab/rehearsal.hpp"
+
+#include <ctime>
+
+#include <cmath>
+#include <utility>
+
+#include "host/lab/outcome.hpp"
+#include "protocol/scene/scene_file.hpp"
+
+namespace ligature::lab {
+namespace {
+
+/// CPU time of this thread, s: what a tick costs, whatever else the machine is doing.
+double thread_cpu_s() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+physics::ToolInput tool_at(const std::vector<scene::GripKey>& keys, double t_s) {
+  const auto pose = scene::sample(keys, t_s);
+  return {physics::Vec3(pose.p_W_m.data()), physics::Vec3(pose.v_W_m_per_s.data()), pose.grip};
+}
+
+}  // namespace
+
+scene::Scene load_scene_or_refuse(const std::string& path, const std::vector<std::string>& overrides) {
+  auto read = scene::load_scene(path, overrides);
+  if (const auto* error = std::get_if<scene::Error>(&read)) throw Refusal(error->text);
+  return std::get<scene::Scene>(std::move(read));
+}
+
+scene::GripperScript load_script_or_refuse(const std::string& path) {
+  auto read = scene::load_gripper_script(path);
+  if (const auto* error = std::get_if<scene::Error>(&read)) throw Refusal(error->text);
+  return std::get<scene::GripperScript>(std::move(read));
+}
+
+physics::Simulation make_or_refuse(const scene::Scene& scene, const std::string& scene_name) {
+  auto made = physics::Simulation::make(scene);
+  if (const auto* why = std::get_if<std::string>(&made)) throw Refusal(scene_name + ": " + *why);
+  return std::get<physics::Simulation>(std::move(made));
+}
+
+Rehearsal::Rehearsal(const scene::Scene& scene, scene::GripperScript script, const std::string& scene_name)
+    : scene_(scene), script_(std::move(script)), simulation_(make_or_refuse(scene, scene_name)), tick_s_(scene.time.tick_s) {}
+
+bool Rehearsal::tick() {
+  const double t_s = static_cast<double>(ticks_ + 1) * tick_s_;
+  const std::array<physics::ToolInput, 2> tools{tool_at(script_.keys[0], t_s), tool_at(script_.keys[1], t_s)};
+  const double from_s = thread_cpu_s();
+  simulation_.tick(tools);
+  last_tick_us_ = 1e6 * (thread_cpu_s() - from_s);
+  ++ticks_;
+  return simulation_.diagnostics().finite;
+}
+
+bool Rehearsal::run_until(double t_s) {
+  while (time_s() + 0.5 * tick_s_ < t_s) {
+    if (!tick()) return false;
+  }
+  return true;
+}
+
+knot::KnotResult knot_of(const physics::Simulation& simulation) {
+  std::vector<std::array<double, 3>> line;
+  for (const auto& p : simulation.nodes_W()) line.push_back({p.x(), p.y(), p.z()});
+  return knot::recognise(line, false);
+}
+
+}  // namespace ligature::lab

@@ -1,0 +1,57 @@
+#pragma once
+// A scene and an operator's script played through the physics, tick by tick, without a clock.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/physics/simulation.hpp"
+#include "host/knot/recognise.hpp"
+#include "protocol/scene/gripper_script.hpp"
+#include "protocol/scene/scene.hpp"
+
+namespace ligature::lab {
+
+/// Reads a scene or throws the one-line Refusal.
+[[nodiscard]] scene::Scene load_scene_or_refuse(const std::string& path, const std::vector<std::string>& overrides);
+
+/// Reads a script or throws the one-line Refusal.
+[[nodiscard]] scene::GripperScript load_script_or_refuse(const std::string& path);
+
+/// Builds the simulation or throws the one-line Refusal with the physics' own reason.
+[[nodiscard]] physics::Simulation make_or_refuse(const scene::Scene& scene, const std::string& scene_name);
+
+class Rehearsal {
+ public:
+  /// @param scene_name how messages call the scene;  @throws Refusal when the physics refuses the scene.
+  Rehearsal(const scene::Scene& scene, scene::GripperScript script, const std::string& scene_name = "scene");
+
+  /// One tick: both hands where the script has them at the end of the tick. False once the state is not finite.
+  bool tick();
+
+  /// Ticks until time t (to the nearest tick); false when the run diverged before.
+  bool run_until(double t_s);
+
+  [[nodiscard]] double time_s() const noexcept { return static_cast<double>(ticks_) * tick_s_; }
+  [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
+  [[nodiscard]] double last_tick_us() const noexcept { return last_tick_us_; }  ///< CPU time of this thread
+  [[nodiscard]] physics::Simulation& simulation() noexcept { return simulation_; }
+  [[nodiscard]] const physics::Simulation& simulation() const noexcept { return simulation_; }
+  [[nodiscard]] const scene::Scene& scene() const noexcept { return scene_; }
+  [[nodiscard]] const scene::GripperScript& script() const noexcept { return script_; }
+
+ private:
+  scene::Scene scene_;
+  scene::GripperScript script_;
+  physics::Simulation simulation_;
+  double tick_s_;
+  std::int64_t ticks_ = 0;
+  double last_tick_us_ = 0.0;
+};
+
+/// The knot of a thread with free ends.
+[[nodiscard]] knot::KnotResult knot_of(const physics::Simulation& simulation);
+
+}  // namespace ligature::lab

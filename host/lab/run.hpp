@@ -1,0 +1,45 @@
+#pragma once
+// One offline run: play it, write it down, sum it up.
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/lab/rehearsal.hpp"
+#include "host/lab/statistics.hpp"
+
+namespace ligature::lab {
+
+struct RunOptions {
+  std::filesystem::path folder;
+  double duration_s = 10.0;
+  double shape_every_s = 0.02;
+};
+
+/// What summary.json says.
+struct RunSummary {
+  std::string model;
+  int nodes = 0;
+  std::int64_t ticks = 0;
+  double duration_s = 0.0;
+  bool finite = true;
+  knot::KnotResult knot;
+  std::vector<std::pair<double, std::string>> knot_history;  ///< from t = 0 on, one entry a change, looked at every 20 ms
+  double max_stretch = 0.0;
+  double min_gap_m = 0.0;
+  double max_penetration_diameters = 0.0;
+  MaxMean left_N, right_N;  ///< force on the hand, world newtons
+  Spread step_us;
+  double realtime_factor = 0.0;  ///< simulated seconds per second of CPU spent in ticks
+  std::string failure;           ///< empty, or the line that names tick, node and likely cause
+};
+
+/// Runs to the end, to a stop signal, or to the first tick that is not finite (nothing of which is written), and writes
+/// trace.csv, shape.csv and summary.json.  @throws Refusal when a file cannot be written.
+RunSummary run(Rehearsal& rehearsal, const RunOptions& options);
+
+/// summary.json
+[[nodiscard]] std::string to_json(const RunSummary& summary);
+
+}  // namespace ligature::lab

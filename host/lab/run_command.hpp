@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace ligature::lab {
+
+/// `ligature-lab run`: adds the subcommand; its callback stores the exit code.
+void add_run_command(CLI::App& app, int& exit_code);
+
+}  // namespace ligature::lab

@@ -1,0 +1,83 @@
+#include "host/lab/run_files.hpp"
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include "host/lab/outcome.hpp"
+
+namespace ligature::lab {
+
+bool TraceRow::is_finite() const noexcept {
+  return left_N.allFinite() && right_N.allFinite() && std::isfinite(kinetic_J) && std::isfinite(potential_J) &&
+         std::isfinite(max_stretch) && std::isfinite(min_gap_m);
+}
+
+CsvFile::CsvFile(const std::filesystem::path& path, const char* header)
+    : file_(std::fopen(path.c_str(), "w"), &std::fclose), path_(path.string()) {
+  if (!file_) throw Refusal(path_ + ": cannot be written: " + std::strerror(errno));
+  std::fprintf(file_.get(), "%s\n", header);
+}
+
+void CsvFile::row(std::span<const double> cells) {
+  line_.clear();
+  for (const double cell : cells) {
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, cell).ptr;
+    if (!line_.empty()) line_ += ',';
+    line_.append(text, end);
+  }
+  line_ += '\n';
+  if (std::fwrite(line_.data(), 1, line_.size(), file_.get()) != line_.size()) {
+    throw Refusal(path_ + ": cannot be written: " + std::strerror(errno), kRunFailed);
+  }
+}
+
+void CsvFile::close() {
+  if (std::fclose(file_.release()) != 0) throw Refusal(path_ + ": cannot be written: " + std::strerror(errno), kRunFailed);
+}
+
+TraceFile::TraceFile(const std::filesystem::path& folder)
+    : file_(folder / "trace.csv",
+            "t_s,left_fx_N,left_fy_N,left_fz_N,right_fx_N,right_fy_N,right_fz_N,kinetic_J,potential_J,max_stretch,min_gap_m,"
+            "contacts,step_us") {}
+
+void TraceFile::add(const TraceRow& r) {
+  const double cells[] = {r.t_s,         r.left_N.x(),  r.left_N.y(),  r.left_N.z(),  r.right_N.x(),
+                          r.right_N.y(), r.right_N.z(), r.kinetic_J,   r.potential_J, r.max_stretch,
+                          r.min_gap_m,   static_cast<double>(r.contacts), r.step_us};
+  file_.row(cells);
+}
+
+ShapeFile::ShapeFile(const std::filesystem::path& folder) : file_(folder / "shape.csv", "t_s,node,x_m,y_m,z_m") {}
+
+void ShapeFile::add(double t_s, std::span<const physics::Vec3> nodes_W) {
+  for (std::size_t k = 0; k < nodes_W.size(); ++k) {
+    const double cells[] = {t_s, static_cast<double>(k), nodes_W[k].x(), nodes_W[k].y(), nodes_W[k].z()};
+    file_.row(cells);
+  }
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw Refusal("--out " + folder.string() + ": found " + (error ? error.message() : "a file") +
+                  ", allowed a folder that can be written");
+  }
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+  const auto part = std::filesystem::path(path.string() + ".part");
+  std::ofstream file(part);
+  file << text;
+  file.close();
+  std::error_code error;
+  if (file) std::filesystem::rename(part, path, error);
+  if (!file || error) throw Refusal(path.string() + ": cannot be written: " + std::strerror(errno), kRunFailed);
+}
+
+}  // namespace ligature::lab

@@ -1,0 +1,68 @@
+#pragma once
+// The two tables a run writes while it goes. Numbers are printed so that they read back exactly.
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "firmware/physics/simulation.hpp"
+
+namespace ligature::lab {
+
+struct TraceRow {
+  double t_s = 0.0;
+  physics::Vec3 left_N = physics::Vec3::Zero();   ///< on the hand, world newtons, before force_scale
+  physics::Vec3 right_N = physics::Vec3::Zero();
+  double kinetic_J = 0.0;
+  double potential_J = 0.0;
+  double max_stretch = 0.0;
+  double min_gap_m = 0.0;
+  int contacts = 0;
+  double step_us = 0.0;
+
+  [[nodiscard]] bool is_finite() const noexcept;
+};
+
+/// A CSV file opened for writing; throws Refusal when it cannot be, or (exit 3) when the disk fills.
+class CsvFile {
+ public:
+  CsvFile(const std::filesystem::path& path, const char* header);
+  /// One row; each number in its shortest exact form.
+  void row(std::span<const double> cells);
+  void close();
+
+ private:
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  std::string path_;
+  std::string line_;
+};
+
+class TraceFile {
+ public:
+  explicit TraceFile(const std::filesystem::path& folder);
+  void add(const TraceRow& row);
+  void close() { file_.close(); }
+
+ private:
+  CsvFile file_;
+};
+
+class ShapeFile {
+ public:
+  explicit ShapeFile(const std::filesystem::path& folder);
+  void add(double t_s, std::span<const physics::Vec3> nodes_W);
+  void close() { file_.close(); }
+
+ private:
+  CsvFile file_;
+};
+
+/// Makes the folder of a run, or throws Refusal.
+void make_folder(const std::filesystem::path& folder);
+
+/// Writes a text file in one go (beside it first, then renamed over it), or throws Refusal.
+void write_text(const std::filesystem::path& path, const std::string& text);
+
+}  // namespace ligature::lab

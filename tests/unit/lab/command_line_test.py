@@ -1,0 +1,86 @@
+"""ligature-lab as a user calls it: exit codes, one line on stderr, nothing half-written.
+
+Run: python3 command_line_test.py LIGATURE_LAB SCENES
+"""
+
+import csv
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+LAB, SCENES = sys.argv[1], pathlib.Path(sys.argv[2])
+PAPER = str(SCENES / "paper.toml")
+
+
+def lab(*args):
+    return subprocess.run([LAB, *map(str, args)], capture_output=True, text=True, timeout=120)
+
+
+def refused(folder, *args):
+    """Exit 2, one line, no folder made."""
+    out = folder / "refused"
+    done = lab("run", *args, "--out", out)
+    assert done.returncode == 2, (args, done)
+    assert done.stderr.count("\n") == 1, (args, done.stderr)
+    assert not out.exists(), args
+    return done.stderr
+
+
+def bad_input(folder):
+    scene = folder / "bad.toml"
+    for text, says in {
+        "[suture]\nnodes = 1\n": "bad.toml:2: key 'suture.nodes': found 1, allowed integer 2 .. 5000",
+        "[suture]\nlength_m = nan\n": "bad.toml:2: key 'suture.length_m'",
+        "[suture]\nwidth = 3\n": "bad.toml:2: unknown key 'suture.width'",
+        "[suture]\nradius_m = \"thin\"\n": "bad.toml:2: key 'suture.radius_m'",
+    }.items():
+        scene.write_text(text)
+        assert says in refused(folder, scene)
+    assert "cannot be read" in refused(folder, folder / "missing.toml")
+    assert "--set suture.nodes=1" in refused(folder, PAPER, "--set", "suture.nodes=1")
+    script = folder / "bad.csv"
+    script.write_text("time,hand,x,y,z,grip\n0,L,0,0,1,1\n1,L,0,0,1,7\n")
+    assert "bad.csv:3: column 'grip': found '7'" in refused(folder, PAPER, "--grippers", script)
+    assert "--duration" in refused(folder, PAPER, "--duration", "-1")
+    assert "--shape-every" in refused(folder, PAPER, "--shape-every", "0")
+    for args in ([], ["fly"], ["run"], ["run", PAPER, "--nonsense"]):
+        done = lab(*args)
+        assert done.returncode == 2 and done.stderr.count("\n") == 1, (args, done)
+
+
+def good_run(folder):
+    out = folder / "good"
+    done = lab("run", PAPER, "--set", "suture.nodes=20", "--duration", "0.5", "--out", out, "--shape-every", "0.1")
+    assert done.returncode == 0, done
+    with open(out / "trace.csv") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 500 and abs(float(rows[-1]["t_s"]) - 0.5) < 1e-9
+    assert all(math.isfinite(float(v)) for row in rows for v in row.values())
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["ticks"] == 500 and summary["finite"] and summary["nodes"] == 20
+    assert summary["knot"] == {"type": "0_1", "handedness": "none"}
+    assert summary["knot_history"] == [[0.0, "0_1"]]
+
+
+def failed_run(folder):
+    done = lab("run", PAPER, "--set", "time.tick_s=0.05", "--set", "suture.integrator=forward", "--duration", "500",
+               "--shape-every", "10", "--out", folder / "failed")
+    assert done.returncode == 3, done
+    assert done.stderr.count("\n") == 1 and "likely cause" in done.stderr, done.stderr
+    assert not json.loads((folder / "failed" / "summary.json").read_text())["finite"]
+
+
+def teaching():
+    assert lab("--version").stdout.startswith("ligature-lab ")
+    assert "Example" in lab("run", "--help").stdout
+
+
+with tempfile.TemporaryDirectory() as name:
+    bad_input(pathlib.Path(name))
+    good_run(pathlib.Path(name))
+    failed_run(pathlib.Path(name))
+teaching()
+print("ligature-lab: command line behaves")

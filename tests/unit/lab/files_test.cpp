@@ -1,0 +1,52 @@
+#include "host/lab/run_files.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "host/lab/outcome.hpp"
+
+namespace ligature::lab {
+namespace {
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+TEST(CsvFile, NumbersReadBackExactly) {
+  const std::filesystem::path path = ::testing::TempDir() + "numbers.csv";
+  const double cells[] = {0.1, -1e-300, 3.0, 1.0 / 3.0};
+  CsvFile file(path, "a,b,c,d");
+  file.row(cells);
+  file.close();
+  EXPECT_EQ(text_of(path), "a,b,c,d\n0.1,-1e-300,3,0.3333333333333333\n");
+}
+
+TEST(CsvFile, RefusesAPlaceItCannotWrite) {
+  EXPECT_THROW(CsvFile("no/such/folder/x.csv", "a"), Refusal);
+  EXPECT_THROW(make_folder("/proc/no"), Refusal);
+}
+
+TEST(WriteText, LeavesNoPartBehind) {
+  const std::filesystem::path path = ::testing::TempDir() + "summary.json";
+  write_text(path, "{}\n");
+  EXPECT_EQ(text_of(path), "{}\n");
+  EXPECT_FALSE(std::filesystem::exists(path.string() + ".part"));
+}
+
+TEST(TraceRow, KnowsWhenItIsNotFinite) {
+  TraceRow row;
+  EXPECT_TRUE(row.is_finite());
+  row.right_N.y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(row.is_finite());
+  row = {};
+  row.min_gap_m = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(row.is_finite());
+}
+
+}  // namespace
+}  // namespace ligature::lab

@@ -1,0 +1,70 @@
+#include "host/lab/run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "host/lab/outcome.hpp"
+
+namespace ligature::lab {
+namespace {
+
+const std::string kScene = LIGATURE_SOURCE_DIR "/scenes/paper.toml";
+const std::string kOverhand = LIGATURE_SOURCE_DIR "/scenes/operators/overhand.csv";
+
+std::vector<std::string> lines_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(Run, WritesOneTraceRowATickAndShapesOnTime) {
+  Rehearsal r(load_scene_or_refuse(kScene, {"suture.nodes=20"}), {});
+  const std::filesystem::path folder = ::testing::TempDir() + "run_files";
+  const auto s = run(r, {folder, 0.105, 0.02});
+  EXPECT_EQ(s.ticks, 105);
+  EXPECT_TRUE(s.finite);
+  EXPECT_EQ(s.knot.type, "0_1");
+  EXPECT_EQ(lines_of(folder / "trace.csv").size(), 1u + 105u);
+  const auto shape = lines_of(folder / "shape.csv");
+  EXPECT_EQ(shape.size(), 1u + 20u * (1 + 5 + 1));  // start, every 20 ms, end
+  EXPECT_EQ(shape.back().substr(0, 9), "0.105,19,");
+  EXPECT_TRUE(std::filesystem::exists(folder / "summary.json"));
+}
+
+TEST(Run, TheOverhandScriptTiesATrefoilThatStays) {
+  for (const char* nodes : {"suture.nodes=35", "suture.nodes=50"}) {
+    Rehearsal r(load_scene_or_refuse(kScene, {nodes, "contact.friction=0.3"}), load_script_or_refuse(kOverhand));
+    ASSERT_TRUE(r.run_until(21.0));
+    EXPECT_EQ(knot_of(r.simulation()).type, "3_1") << nodes << " at release";
+    ASSERT_TRUE(r.run_until(30.0));
+    EXPECT_EQ(knot_of(r.simulation()).type, "3_1") << nodes << " nine seconds after";
+  }
+}
+
+TEST(Run, ADivergingRunNamesTickNodeAndCauseAndWritesNothingNonFinite) {
+  Rehearsal r(load_scene_or_refuse(kScene, {"time.tick_s=0.05", "suture.integrator=forward"}), {});
+  const std::filesystem::path folder = ::testing::TempDir() + "run_diverged";
+  const auto s = run(r, {folder, 500.0, 10.0});
+  ASSERT_FALSE(s.finite);
+  EXPECT_NE(s.failure.find("diverged at tick"), std::string::npos) << s.failure;
+  EXPECT_NE(s.failure.find("node "), std::string::npos);
+  EXPECT_NE(s.failure.find("likely cause: "), std::string::npos);
+  for (const char* name : {"trace.csv", "shape.csv", "summary.json"}) {
+    for (const auto& line : lines_of(folder / name)) {
+      EXPECT_EQ(line.find("nan"), std::string::npos) << name << ": " << line;
+      EXPECT_EQ(line.find("inf"), std::string::npos) << name << ": " << line;
+    }
+  }
+}
+
+TEST(Run, RefusesBeforeItWrites) {
+  EXPECT_THROW((void)load_scene_or_refuse("no/such.toml", {}), Refusal);
+  EXPECT_THROW((void)load_script_or_refuse("no/such.csv"), Refusal);
+}
+
+}  // namespace
+}  // namespace ligature::lab
