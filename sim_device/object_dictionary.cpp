@@ -72,6 +72,7 @@ std::uint32_t ObjectDictionary::refusal(const can::ObjectRow& row, std::int64_t 
     const bool clears = o.sub == 0 && value == 0;
     if (!clears && value != row.initial) return can::sdo_abort::kCannotBeMapped;
   }
+  if (o == od::kControlword || o == od::kTargetTorque) return can::sdo_abort::kWrongDeviceState;
   const bool cob_id = o == od::kRpdo1CobId || o == od::kTpdo1CobId;
   if (cob_id && (value & 0x7FFF'FFFF) != row.initial) return can::sdo_abort::kValueOutOfRange;
   const bool type = o == od::kRpdo1TransmissionType || o == od::kTpdo1TransmissionType;

@@ -1,0 +1,85 @@
+#include "protocol/can/codec.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+#include <span>
+
+#include "protocol/can/local_wire.hpp"
+
+namespace ligature::can {
+namespace {
+
+template <class Int>
+Int pick(std::mt19937& random) {  // extremes as often as ordinary values
+  switch (random() % 4) {
+    case 0:
+      return std::numeric_limits<Int>::min();
+    case 1:
+      return std::numeric_limits<Int>::max();
+    case 2:
+      return Int{0};
+    default:
+      return static_cast<Int>(random());
+  }
+}
+
+TEST(Codec, Tpdo1SurvivesTheRoundTrip) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 20000; ++i) {
+    const NodeId node = profile::kJointNodes[random() % 3];
+    Tpdo1 p{pick<std::uint16_t>(random), pick<std::int32_t>(random), 0, 0};
+    if (profile::has_stylus_buttons(node)) {
+      p.buttons = pick<std::uint16_t>(random);
+    } else {
+      p.torque_permille = pick<std::int16_t>(random);
+    }
+    EXPECT_EQ(decode_tpdo1(node, encode(node, p)), p);
+  }
+}
+
+TEST(Codec, Rpdo1SurvivesTheRoundTrip) {
+  std::mt19937 random(2);
+  for (int i = 0; i < 20000; ++i) {
+    const NodeId node = profile::kJointNodes[random() % 3];
+    const Rpdo1 p{pick<std::uint16_t>(random), pick<std::int16_t>(random)};
+    EXPECT_EQ(decode_rpdo1(node, encode(node, p)), p);
+  }
+}
+
+TEST(Codec, RefusesAnotherNodesFrameAndAnotherLength) {
+  Frame f = encode(kWaist, Rpdo1{15, 100});
+  EXPECT_FALSE(decode_rpdo1(kShoulder, f));
+  EXPECT_FALSE(decode_tpdo1(kWaist, f));
+  f.dlc = 3;
+  EXPECT_FALSE(decode_rpdo1(kWaist, f));
+}
+
+TEST(Codec, TorqueAndButtonsTravelOnlyWhereTheMapSaysSo) {
+  const Tpdo1 both{0, 0, -5, 3};
+  EXPECT_EQ(decode_tpdo1(kWaist, encode(kWaist, both)), (Tpdo1{0, 0, -5, 0}));
+  EXPECT_EQ(decode_tpdo1(kElbow, encode(kElbow, both)), (Tpdo1{0, 0, 0, 3}));
+}
+
+TEST(LocalWire, AnyFrameSurvivesTheRoundTrip) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 5000; ++i) {
+    Frame f{static_cast<std::uint32_t>(random()) & kMaxId, static_cast<std::uint8_t>(random() % 9), {}};
+    for (std::size_t b = 0; b < f.dlc; ++b) f.data[b] = static_cast<std::uint8_t>(random());
+    EXPECT_EQ(from_packet(to_packet(f)), f);
+  }
+}
+
+TEST(LocalWire, RefusesWhatIsNoDataFrame) {
+  LocalPacket p = to_packet(Frame{0x181, 8, {}});
+  EXPECT_FALSE(from_packet(std::span(p).first(15)));
+  p[4] = 9;  // more data than classic CAN has
+  EXPECT_FALSE(from_packet(p));
+  p[4] = 8;
+  p[3] = 0x80;  // extended identifier flag
+  EXPECT_FALSE(from_packet(p));
+}
+
+}  // namespace
+}  // namespace ligature::can

@@ -1,0 +1,37 @@
+#include "protocol/can/units.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+namespace ligature::can {
+namespace {
+
+TEST(Units, AnglesComeBackWithinHalfACount) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> angle(-3.2, 3.2);
+  for (int i = 0; i < 10000; ++i) {
+    const double q = angle(random);
+    EXPECT_NEAR(angle_rad(counts_of(q)), q, 0.5 * kRadPerCount * (1 + 1e-9));
+  }
+}
+
+TEST(Units, TorqueComesBackWithinHalfAPermille) {
+  for (double torque = -0.9; torque <= 0.9; torque += 1e-4) {
+    EXPECT_NEAR(torque_Nm(permille_of(torque)), torque, 0.5 * kNmPerPermille * (1 + 1e-9));
+  }
+}
+
+TEST(Units, TorqueIsClippedAndNeverNotANumber) {
+  EXPECT_EQ(permille_of(std::numeric_limits<double>::quiet_NaN()), 0);
+  EXPECT_EQ(permille_of(std::numeric_limits<double>::infinity()), 3000);
+  EXPECT_EQ(permille_of(-std::numeric_limits<double>::infinity()), -3000);
+}
+
+TEST(Units, TorqueReachesTheForceLimitAtFullReach) {  // 3.3 N at 0.134 + 0.1325 m
+  EXPECT_LT(3.3 * (0.134 + 0.1325), torque_Nm(profile::kMaxTorque_permille));
+}
+
+}  // namespace
+}  // namespace ligature::can
