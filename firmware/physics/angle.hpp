@@ -1,0 +1,30 @@
+#pragma once
+
+#include "firmware/physics/vec.hpp"
+
+namespace ligature::physics {
+
+/// Angle between two unit vectors from the sine and cosine of it, without a branch: atan2(s, c) for s >= 0.
+///   alpha = 2 atan(s / (1 + |c|)),  pi minus that when c < 0;   atan by a polynomial of degree 17 in t^2 on [0, 1]
+///   (interpolated at the Chebyshev points).
+/// Instead of the paper's arcsin (or acos): those lose half the digits near a right angle (or when straight) and turn
+/// NaN as soon as rounding lifts their argument over 1, which the printed form does in 5 % of right-angled bends.
+/// @param s  >= 0    @param c  any sign; s^2 + c^2 near 1 (or both 0, which gives 0)
+/// @return rad in [0, pi]; absolute error below 4e-15. Cost: 18 multiply-adds and one division.
+template <class S>
+S bend_angle(S s, S c) noexcept {
+  constexpr double kTwiceAtan[] = {
+      1.9999999999999976,   -0.6666666666650657,  0.3999999998263839,    -0.28571427820853545,  0.22222204998844483,
+      -0.18181575936026106, 0.15382340135883932,  -0.13318239887286146,  0.11691175424767732,   -0.10255658049227419,
+      0.08754380021423046,  -0.06974900688985851, 0.04917832843612938,   -0.028917617473779387, 0.013285236797674021,
+      -0.0043967810220676,  0.000922294245279125, -9.144933505719492e-05};
+  constexpr double kPi = 3.14159265358979323846;
+  const S t = s / (1.0 + magnitude(c));
+  const S z = t * t;
+  S sum = z * kTwiceAtan[17] + kTwiceAtan[16];
+  for (int k = 15; k >= 0; --k) sum = sum * z + kTwiceAtan[k];
+  const S alpha = t * sum;
+  return c < 0.0 ? kPi - alpha : alpha;
+}
+
+}  // namespace ligature::physics

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "firmware/physics/bend_geometry.hpp"
+
+namespace ligature::physics {
+
+/// Rate of the bend angle, rad/s: the bracket of (10) and (11) up to sign,
+///   alpha' = grad_{i-1} . (v_{i-1} - v_i) + grad_{i+1} . (v_{i+1} - v_i)
+template <class S>
+S bend_rate(const V3<S>& grad_left, const V3<S>& grad_right, const V3<S>& v_left, const V3<S>& v_middle,
+            const V3<S>& v_right) noexcept {
+  return dot(grad_left, v_left - v_middle) + dot(grad_right, v_right - v_middle);
+}
+
+/// Torsional damper, equations (10)-(12), as a generalised force on the bend angle: M = -k_td alpha', N m.
+///   f_{i-1} = M grad_{i-1}, f_{i+1} = M grad_{i+1}, f_i = minus their sum. The paper's sign is the other one and feeds
+///   energy in (power > 0 in 100 % of random states); this one takes it out, and nothing in rigid motion.
+template <class S>
+S bend_damper_moment_N_m(S rate, double k_N_m_s) noexcept {
+  return -k_N_m_s * rate;
+}
+
+}  // namespace ligature::physics

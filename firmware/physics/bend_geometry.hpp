@@ -1,0 +1,64 @@
+#pragma once
+
+#include "firmware/physics/angle.hpp"
+
+namespace ligature::physics {
+
+/// How two joined segments bend: the angle, the axis, and how the angle changes with the three nodes.
+template <class S>
+struct Bend {
+  V3<S> axis;        ///< unit binormal u1 x u2 / |u1 x u2|; zero when exactly straight
+  S sine, cosine;    ///< of the angle
+  S angle;           ///< alpha, rad, 0 straight, pi folded back
+  V3<S> grad_left;   ///< d alpha / d P_{i-1} = -t_{i-1} / l_{i-1}, 1/m; t as in the paper, of unit length
+  V3<S> grad_right;  ///< d alpha / d P_{i+1} = -t_{i+1} / l_i, 1/m;   d alpha / d P_i is minus their sum
+};
+
+/// Any unit vector across u: the axis of a bend that is folded back exactly, where every axis is as good.
+inline V3<double> across(const V3<double>& u) noexcept {
+  const V3<double> helper = magnitude(u.x) < 0.6 ? V3<double>{1.0, 0.0, 0.0} : V3<double>{0.0, 1.0, 0.0};
+  const V3<double> a = cross(u, helper);
+  return (1.0 / norm(a)) * a;
+}
+inline V3<Pack> across(const V3<Pack>& u) noexcept {
+  V3<Pack> axis;
+  for (int k = 0; k < kLanes; ++k) {
+    const V3<double> a = across(V3<double>{u.x[k], u.y[k], u.z[k]});
+    axis.x[k] = a.x, axis.y[k] = a.y, axis.z[k] = a.z;
+  }
+  return axis;
+}
+
+/// Bend of the joint between two segments; the geometry behind (7)-(15).
+///   s = u1 x u2 / |u1 x u2|,  t_{i-1} = u1 x s,  t_{i+1} = u2 x s,  alpha = atan2(|u1 x u2|, u1 . u2)
+/// The paper calls t a unit vector but its formula has length sin alpha; here it has length 1, which is what makes (7)-(9)
+/// the gradient of an energy. s is made orthogonal to both segments a second time, because near straight (or folded)
+/// the cross product keeps only its leading digits; so torques cancel to rounding at every angle.
+/// @param u1, u2         unit segment directions, or zero where there is no segment (all results are then finite)
+/// @param inv_l1, inv_l2 inverse segment lengths, 1/m
+/// Folded back exactly the axis is chosen across u1. Cost: about 110 operations, one root, two divisions.
+template <class S>
+Bend<S> bend_of(const V3<S>& u1, const V3<S>& u2, S inv_l1, S inv_l2) noexcept {
+  constexpr double kNothing = 1e-30, kUnsure = 1e-12;
+  Bend<S> b;
+  b.cosine = dot(u1, u2);
+  const V3<S> n = cross(u1, u2);
+  b.sine = norm(n);
+  b.angle = bend_angle(b.sine, b.cosine);
+  const S floor = b.sine - b.sine + kNothing;
+  b.axis = (1.0 / larger(b.sine, floor)) * n;
+  const auto folded = (b.cosine < -0.5) & (b.sine < kUnsure);
+  if (any(folded)) [[unlikely]] {
+    const V3<S> a = across(u1);
+    b.axis = {folded ? a.x : b.axis.x, folded ? a.y : b.axis.y, folded ? a.z : b.axis.z};
+  }
+  const S one = floor - floor + 1.0;
+  const S side = b.cosine < 0.0 ? -one : one;
+  const V3<S> q = u1 + side * u2;  // along the bisector, or across it when folded: well away from zero
+  b.axis = b.axis - (0.5 * dot(q, b.axis) / (1.0 + magnitude(b.cosine))) * q;
+  b.grad_left = (-inv_l1) * cross(u1, b.axis);
+  b.grad_right = (-inv_l2) * cross(u2, b.axis);
+  return b;
+}
+
+}  // namespace ligature::physics

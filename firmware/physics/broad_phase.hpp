@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "firmware/physics/lanes.hpp"
+
+namespace ligature::physics {
+
+/// Two segments that may be near each other; first < second.
+struct SegmentPair {
+  std::int32_t first = 0, second = 0;
+  friend auto operator<=>(const SegmentPair&, const SegmentPair&) = default;
+};
+
+/// Bounding spheres of all segments: centres (m) and half lengths (m), in lanes; sized once.
+struct SegmentSpheres {
+  Lane3 centre;
+  Lane half_m;
+  int count = 0;
+
+  SegmentSpheres() = default;
+  explicit SegmentSpheres(int segments) : centre(segments), half_m(segments), count(segments) {}
+  void update(const Lane3& p) noexcept;
+};
+
+/// A fixed-capacity list: full means that further pairs are dropped and `overflow` is set.
+struct PairList {
+  std::vector<SegmentPair> pairs;  ///< reserved once
+  bool overflow = false;
+  void add(SegmentPair pair) noexcept {
+    if (pairs.size() < pairs.capacity())
+      pairs.push_back(pair);
+    else
+      overflow = true;
+  }
+};
+
+/// All pairs whose spheres, grown by reach_m / 2 each, overlap, and whose indices differ by at least skip; in rising order.
+/// Cost: n^2 / 2 tests, four at a time.
+void find_pairs_brute(const SegmentSpheres& s, double reach_m, int skip, PairList& out) noexcept;
+
+}  // namespace ligature::physics

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "firmware/physics/broad_phase.hpp"
+#include "firmware/physics/contact_row.hpp"
+#include "firmware/physics/thread.hpp"
+
+namespace ligature::physics {
+
+/// A capsule of the thread's radius that the thread feels and that does not feel the thread: a gripper, the frame's hook.
+struct Obstacle {
+  V3<double> p0_m{}, p1_m{}, v_m_per_s{};
+  int skip_first = 0, skip_last = -1;  ///< segments that it does not touch (those it holds)
+  bool present = false;
+};
+
+struct ContactSettings {
+  double stick = 0.3, slip = 0.3;  ///< static and kinetic friction
+  int skip = 2;                    ///< segments whose indices differ by less are neighbours along the thread
+  std::optional<double> desk_m;    ///< height of the desk
+};
+
+/// Two bodies worth watching: measured when they may have come close, remembered from step to step.
+struct Candidate {
+  enum class Kind : std::int8_t { kSegments, kObstacle, kDesk };
+  Kind kind = Kind::kSegments;
+  int first = 0;              ///< segment (desk: node)
+  int second = 0;             ///< segment, or number of the obstacle
+  double gap_m = 0.0;         ///< surface gap when last measured
+  double travel_m = 0.0;      ///< odometer when last measured; see ContactSolver::travel_m_
+  std::int64_t step = -1;     ///< when last measured
+  V3<double> normal{};        ///< unit, when last measured
+  Pack impulse{};             ///< of the last step, N s: the warm start
+};
+
+struct ContactReport {
+  int active = 0;
+  bool cap_hit = false;
+  double min_gap_m = 0.0;
+  int sweeps = 0;
+};
+
+/// Keeps the thread out of itself, of the desk and of obstacles, with static Coulomb friction.
+///   Velocity level: before positions move, impulses make every gap's rate at least -gap/dt (so a fast approach stops at
+///   touch instead of being noticed afterwards), inside the friction cone; projected Gauss-Seidel, warm-started.
+class ContactSolver {
+ public:
+  static constexpr int kObstacles = 8;
+
+  ContactSolver() = default;
+  ContactSolver(const ThreadModel& model, const ContactSettings& settings);
+
+  std::array<Obstacle, kObstacles>& obstacles() noexcept { return obstacles_; }
+
+  /// Changes the velocities so that no body enters another in the coming step of model.step_s.
+  void solve(const ThreadModel& model, ThreadState& state) noexcept;
+
+  /// Tells how far things moved: speed bound of the step just taken, m/s (nodes and obstacles).
+  void moved(double speed_m_per_s, double step_s) noexcept { travel_m_ += 2.0 * speed_m_per_s * step_s; }
+
+  [[nodiscard]] const ContactReport& report() const noexcept { return report_; }
+  void forget() noexcept;
+
+ private:
+  void find_candidates(const ThreadState& state) noexcept;
+  void keep(const ThreadState& state, Candidate candidate) noexcept;
+  void inherit_impulses() noexcept;
+  [[nodiscard]] ContactRow measure(const ThreadState& state, Candidate& c) const noexcept;
+  void orient(Candidate& c, const V3<double>& apart, double distance_m, const V3<double>& axis) const noexcept;
+  void make_rows(const ThreadModel& model, const ThreadState& state, double near_m) noexcept;
+  void sweep(double step_s) noexcept;
+
+  ContactSettings settings_;
+  double radius_m_ = 0.0;
+  int nodes_ = 0;
+  std::array<Obstacle, kObstacles> obstacles_{};
+  SegmentSpheres spheres_;
+  PairList pairs_;
+  std::vector<Candidate> candidates_, old_candidates_;
+  std::vector<ContactRow> rows_;
+  std::vector<NodeVelocity> velocity_;  ///< one more than nodes: the last is massless and at rest
+  double travel_m_ = 0.0;         ///< bound on how much any gap can have closed since the start
+  double found_at_m_ = 0.0;       ///< travel when candidates were last found
+  double margin_m_ = -1.0;        ///< gap up to which all pairs are candidates; < 0: none found yet
+  std::int64_t step_ = 0;
+  ContactReport report_;
+};
+
+}  // namespace ligature::physics

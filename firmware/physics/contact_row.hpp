@@ -1,0 +1,58 @@
+#pragma once
+
+#include "firmware/physics/pack.hpp"
+
+namespace ligature::physics {
+
+/// x, y, z, 0 of one node: what a contact reads and writes in one instruction; m/s.
+struct NodeVelocity {
+  Pack v{};
+};
+
+inline double dot3(Pack a, Pack b) noexcept {
+  const Pack p = a * b;
+  return p[0] + p[1] + p[2];
+}
+
+/// One contact between two points of the thread, or of the thread and something that does not feel it.
+///   u = sum_k weight_k v_k - v_outside: velocity of the first point relative to the second
+struct ContactRow {
+  Pack normal{};          ///< unit, from the second body to the first
+  Pack impulse{};         ///< N s, on the first body
+  Pack v_outside{};       ///< m/s, of a moving obstacle; zero between segments
+  int node[4]{};          ///< two of the first body, two of the second (a massless node where there is none)
+  double weight[4]{};     ///< barycentric, negative for the second body
+  double push[4]{};       ///< weight_k / m_k, 1/kg
+  double mass_kg = 0.0;   ///< 1 / sum_k weight_k^2 / m_k
+  double target_m_per_s = 0.0;  ///< lowest allowed normal velocity: -gap/dt while apart, a gentle recovery when overlapping
+  double stick = 0.0, slip = 0.0;  ///< static and kinetic friction coefficients
+  int candidate = -1;
+};
+
+/// Projects an impulse onto the Coulomb cone of its normal: inside the static cone it sticks (any tangential impulse that
+/// stops slip), outside it slides with the kinetic coefficient. Equations (1), (3) with the stick that the paper leaves
+/// to future work: there is no 0/0 at zero slip and friction never exceeds what stops it.
+inline Pack project_on_cone(Pack impulse, Pack normal, double stick, double slip) noexcept {
+  const double along = dot3(impulse, normal);
+  if (along <= 0.0) return Pack{};
+  const Pack across = impulse - along * normal;
+  const double size2 = dot3(across, across), room = stick * along;
+  if (size2 <= room * room) return impulse;
+  return along * normal + (slip * along / std::sqrt(size2)) * across;
+}
+
+/// One projected Gauss-Seidel visit: the impulse that gives this contact its target normal velocity and no slip, as far as
+/// the cone allows; applied to the velocities at once.
+/// @return squared change of the relative velocity, (m/s)^2
+inline double relax(ContactRow& r, NodeVelocity* v) noexcept {
+  Pack u = r.weight[0] * v[r.node[0]].v + r.weight[1] * v[r.node[1]].v;
+  u += r.weight[2] * v[r.node[2]].v + r.weight[3] * v[r.node[3]].v - r.v_outside;
+  const Pack wanted = r.impulse - r.mass_kg * (u - r.target_m_per_s * r.normal);
+  const Pack impulse = project_on_cone(wanted, r.normal, r.stick, r.slip);
+  const Pack change = impulse - r.impulse;
+  r.impulse = impulse;
+  for (int k = 0; k < 4; ++k) v[r.node[k]].v += r.push[k] * change;
+  return dot3(change, change) / (r.mass_kg * r.mass_kg);
+}
+
+}  // namespace ligature::physics

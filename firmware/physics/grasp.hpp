@@ -1,0 +1,38 @@
+#pragma once
+
+#include "firmware/physics/simulation.hpp"
+#include "firmware/physics/thread.hpp"
+
+namespace ligature::physics {
+
+/// Virtual coupling between a tool and the node it holds (paper III.A.2), thread side.
+///   f = K (p_T - p_G) + B (v_T - v_G) on the node, taken at the end of the step:
+///   f = (K (p_T - p - dt v) + B (v_T - v)) / (1 + (dt B + dt^2 K) / m),
+///   so that no K, B, m or step makes it unstable; at Table I the divisor is 1.14.
+/// The hand feels -f.
+struct Coupling {
+  double N_per_m = 0.0;
+  double N_s_per_m = 0.0;
+};
+
+/// Force on the held node, N; pure.
+[[nodiscard]] inline V3<double> coupling_force_N(const Coupling& c, double inverse_mass_per_kg, double step_s,
+                                                 const V3<double>& p_WT, const V3<double>& v_WT, const V3<double>& p,
+                                                 const V3<double>& v) noexcept {
+  const double divisor = 1.0 + (step_s * c.N_s_per_m + step_s * step_s * c.N_per_m) * inverse_mass_per_kg;
+  return (1.0 / divisor) * (c.N_per_m * (p_WT - p - step_s * v) + c.N_s_per_m * (v_WT - v));
+}
+
+/// What each hand holds. A hand that closes takes the nearest node that is neither fixed nor held; one that opens lets go.
+class Grasp {
+ public:
+  void update(const std::array<ToolInput, 2>& tools, const ThreadModel& model, const ThreadState& state) noexcept;
+  void release_all() noexcept { *this = Grasp{}; }
+  [[nodiscard]] int node(int hand) const noexcept { return node_[static_cast<std::size_t>(hand)]; }
+
+ private:
+  std::array<int, 2> node_{-1, -1};
+  std::array<bool, 2> closed_{false, false};
+};
+
+}  // namespace ligature::physics

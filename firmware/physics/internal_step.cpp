@@ -1,0 +1,219 @@
+#include "firmware/physics/internal_step.hpp"
+
+#include <type_traits>
+
+#include "firmware/physics/banded.hpp"
+#include "firmware/physics/bend_damper.hpp"
+#include "firmware/physics/bend_spring.hpp"
+#include "firmware/physics/stretch_damper.hpp"
+#include "firmware/physics/stretch_spring.hpp"
+#include "firmware/physics/swivel_damper.hpp"
+
+// Every loop runs over packs of four nodes and may compute up to three that are not there. Those have zero-length segments,
+// hence no direction, no axis and no gradient: whatever they compute is finite and multiplied by zero.
+
+namespace ligature::physics {
+namespace {
+
+constexpr double kShortest = 1e-9;  // of rest length: a shorter segment counts as this long where it divides
+
+// Swivel dampers share nodes with at most three others of either side: four colours, so the sum of their weighted
+// projections is at most the identity when each takes a quarter (1 / (1 + 4 k dt g^T M^-1 g)).
+constexpr double kColours = 4.0;
+
+/// Directions, lengths and the right-hand side of the stretch impulses: dt T_i + gain_i rate_i.
+template <Terms T>
+void measure_segments(const ThreadModel& m, const ThreadState& s, const Lane3& rate_v, InternalWorkspace& w) noexcept {
+  using Law = std::conditional_t<T.quadratic_stretch, QuadraticStretchLaw, LinearStretch>;
+  const double dt = m.step_s;
+  Pack most = splat(-1.0), energy = splat(0.0);
+  for (int i = 0; i < m.nodes - 1; i += kLanes) {
+    const auto seg = segment_of<Pack>(s.p.pack(i), s.p.pack(i + 1), splat(kShortest * m.rest_m));
+    const Pack strain = seg.length_m * (1.0 / m.rest_m) - 1.0;
+    const Pack rate = stretch_rate(seg.u, rate_v.pack(i), rate_v.pack(i + 1));
+    most = larger(most, strain);
+    energy += m.segment.pack(i) * Law::energy_J(strain, m.stretch_N, m.rest_m);
+    w.u.set(i, seg.u);
+    w.inv_length.set(i, seg.inv_length);
+    Pack gain = splat(m.stretch_N_s_per_m * dt);
+    // Model 5 gets stiffer without bound as it stretches, so there the spring is implicit as well.
+    if constexpr (T.quadratic_stretch && !T.explicit_damping)
+      gain += dt * dt * Law::slope_N_per_m(strain, m.stretch_N, m.rest_m);
+    w.pull.set(i, dt * Law::tension_N(strain, m.stretch_N) + gain * rate);
+    if constexpr (!T.explicit_damping) {
+      w.gain.set(i, gain);
+      w.diag.set(i, 1.0 + gain * (m.inverse_mass_per_kg.pack(i) + m.inverse_mass_per_kg.pack(i + 1)));
+    }
+  }
+  w.max_strain = largest(most);
+  w.stretch_J = sum(energy);
+}
+
+/// Makes the pulls right for the rates they leave behind, then applies them.
+template <Terms T>
+void apply_stretch(const ThreadModel& m, ThreadState& s, InternalWorkspace& w) noexcept {
+  if constexpr (!T.explicit_damping) {
+    for (int i = 1; i < m.nodes - 1; i += kLanes)
+      w.link.set(i, m.inverse_mass_per_kg.pack(i) * dot(w.u.pack(i - 1), w.u.pack(i)));
+    solve_tridiagonal(m.nodes - 1, w.diag.data(), w.gain.data(), w.link.data(), w.pull.data());
+  }
+  for (int i = 0; i < m.nodes; i += kLanes) {
+    const Pack k = m.inverse_mass_per_kg.pack(i);
+    s.v.set(i, s.v.pack(i) + (k * w.pull.pack(i)) * w.u.pack(i) - (k * w.pull.pack(i - 1)) * w.u.pack(i - 1));
+  }
+}
+
+/// Angles, axes and gradients of all bends, and the right-hand side of the bend impulses: dt (M_spring + M_damper).
+template <Terms T>
+void measure_bends(const ThreadModel& m, const Lane3& rate_v, InternalWorkspace& w) noexcept {
+  const double dt = m.step_s;
+  Pack energy = splat(0.0);
+  for (int i = 1; i < m.nodes - 1; i += kLanes) {
+    const Bend<Pack> b = bend_of(w.u.pack(i - 1), w.u.pack(i), w.inv_length.pack(i - 1), w.inv_length.pack(i));
+    energy += bend_energy_J(b.angle, m.bend_N_m);
+    w.left.set(i, b.grad_left);
+    w.right.set(i, b.grad_right);
+    if constexpr (T.swivel_internal || T.swivel_paper) {
+      w.axis.set(i, b.axis);
+      w.sine.set(i, b.sine);
+      w.cosine.set(i, b.cosine);
+    }
+    Pack moment = bend_moment_N_m(b.angle, m.bend_N_m);
+    if constexpr (T.bend_damper) {
+      const Pack rate = bend_rate(b.grad_left, b.grad_right, rate_v.pack(i - 1), rate_v.pack(i), rate_v.pack(i + 1));
+      moment += bend_damper_moment_N_m(rate, m.bend_N_m_s);
+    }
+    w.turn.set(i, dt * moment);
+  }
+  w.bend_J = sum(energy);
+}
+
+/// Matrix 1 + k dt G M^-1 G^T of the implicit bend damper (G: gradients of all angles), and its solution.
+void solve_turns(const ThreadModel& m, InternalWorkspace& w) noexcept {
+  const double k = m.bend_N_m_s * m.step_s;
+  const Lane& mass = m.inverse_mass_per_kg;
+  for (int i = 1; i < m.nodes - 1; i += kLanes) {
+    const V3<Pack> a = w.left.pack(i), c = w.right.pack(i), b = -(a + c);
+    const V3<Pack> a1 = w.left.pack(i + 1), b1 = -(a1 + w.right.pack(i + 1)), a2 = w.left.pack(i + 2);
+    const Pack w0 = mass.pack(i - 1), w1 = mass.pack(i), w2 = mass.pack(i + 1);
+    w.diag.set(i, 1.0 + k * (w0 * dot(a, a) + w1 * dot(b, b) + w2 * dot(c, c)));
+    w.one.set(i, k * (w1 * dot(b, a1) + w2 * dot(c, b1)));
+    w.two.set(i, k * (w2 * dot(c, a2)));
+  }
+  solve_pentadiagonal(m.nodes - 2, w.diag.data() + 1, w.one.data() + 1, w.two.data() + 1, w.turn.data() + 1);
+}
+
+template <Terms T>
+void apply_bend(const ThreadModel& m, ThreadState& s, InternalWorkspace& w) noexcept {
+  if constexpr (T.bend_damper && !T.explicit_damping) solve_turns(m, w);
+  for (int i = 0; i < m.nodes; i += kLanes) {
+    const Pack before = w.turn.pack(i - 1), here = w.turn.pack(i), after = w.turn.pack(i + 1);
+    const V3<Pack> push = before * w.right.pack(i - 1) - here * (w.left.pack(i) + w.right.pack(i)) + after * w.left.pack(i + 1);
+    s.v.set(i, s.v.pack(i) + m.inverse_mass_per_kg.pack(i) * push);
+  }
+}
+
+/// Impulse of a damper with coefficient k (times dt) at a rate, given its mobility g^T M^-1 g.
+template <Terms T>
+Pack damper_impulse(Pack k_dt, Pack rate, Pack mobility) noexcept {
+  if constexpr (T.explicit_damping) return -k_dt * rate;
+  return -k_dt * rate / (1.0 + kColours * k_dt * mobility);
+}
+
+template <Terms T>
+void measure_swivel(const ThreadModel& m, const Lane3& rate_v, InternalWorkspace& w) noexcept {
+  const Lane& mass = m.inverse_mass_per_kg;
+  for (int i = 1; i < m.nodes - 1; i += kLanes) {
+    SwivelRates<Pack> r = swivel_rates(w.axis.pack(i), rate_v.pack(i - 1), rate_v.pack(i), rate_v.pack(i + 1));
+    if constexpr (T.swivel_paper) {
+      const double k = m.swivel_N_s * m.step_s;
+      const Pack left = paper_swivel_N_s_per_m(w.sine.pack(i), w.inv_length.pack(i - 1), k);
+      const Pack right = paper_swivel_N_s_per_m(w.sine.pack(i), w.inv_length.pack(i), k);
+      r.left = damper_impulse<T>(left, r.left, mass.pack(i - 1) + mass.pack(i));
+      r.right = damper_impulse<T>(right, r.right, mass.pack(i + 1) + mass.pack(i));
+    }
+    w.swing_left.set(i, r.left);
+    w.swing_right.set(i, r.right);
+  }
+}
+
+/// Turns swivel rates into impulses along the axes of the two bends that a dihedral joins.
+template <Terms T>
+void couple_dihedrals(const ThreadModel& m, InternalWorkspace& w) noexcept {
+  const Lane& mass = m.inverse_mass_per_kg;
+  const Pack k = splat(m.swivel_N_s * m.rest_m * m.step_s);
+  const auto at = [&w](int i) {
+    return dihedral_of(w.sine.pack(i), w.cosine.pack(i), w.sine.pack(i + 1), w.cosine.pack(i + 1), w.inv_length.pack(i - 1),
+                       w.inv_length.pack(i), w.inv_length.pack(i + 1));
+  };
+  for (int i = 1; i < m.nodes - 2; i += kLanes) {
+    const Dihedral<Pack> d = at(i);
+    const Pack rate = dihedral_rate(d, {w.swing_left.pack(i), w.swing_right.pack(i)},
+                                    {w.swing_left.pack(i + 1), w.swing_right.pack(i + 1)});
+    const Pack mobility = dihedral_mobility(d, dot(w.axis.pack(i), w.axis.pack(i + 1)), mass.pack(i - 1), mass.pack(i),
+                                            mass.pack(i + 1), mass.pack(i + 2));
+    w.dihedral.set(i, damper_impulse<T>(k, rate, mobility));
+  }
+  // Bend i is the first of dihedral i and the second of dihedral i - 1.
+  for (int i = 1; i < m.nodes - 1; i += kLanes) {
+    const Dihedral<Pack> first = at(i), second = at(i - 1);
+    const Pack here = w.dihedral.pack(i), before = w.dihedral.pack(i - 1);
+    w.swing_left.set(i, here * first.p0 + before * second.q1);
+    w.swing_right.set(i, here * first.p2 + before * second.q3);
+  }
+}
+
+void apply_swivel(const ThreadModel& m, ThreadState& s, const InternalWorkspace& w) noexcept {
+  for (int i = 0; i < m.nodes; i += kLanes) {
+    const V3<Pack> push = w.swing_right.pack(i - 1) * w.axis.pack(i - 1) -
+                          (w.swing_left.pack(i) + w.swing_right.pack(i)) * w.axis.pack(i) +
+                          w.swing_left.pack(i + 1) * w.axis.pack(i + 1);
+    s.v.set(i, s.v.pack(i) + m.inverse_mass_per_kg.pack(i) * push);
+  }
+}
+
+template <Terms T>
+void internal_step(const ThreadModel& m, ThreadState& s, const Lane3& before_v, InternalWorkspace& w) noexcept {
+  const Lane3& rate_v = T.explicit_damping ? before_v : s.v;
+  measure_segments<T>(m, s, rate_v, w);
+  apply_stretch<T>(m, s, w);
+  if constexpr (T.bend) {
+    measure_bends<T>(m, rate_v, w);
+    apply_bend<T>(m, s, w);
+  }
+  if constexpr (T.swivel_internal || T.swivel_paper) {
+    measure_swivel<T>(m, rate_v, w);
+    if constexpr (T.swivel_internal) couple_dihedrals<T>(m, w);
+    apply_swivel(m, s, w);
+  }
+}
+
+template <bool explicit_damping>
+InternalStep choose(const scene::Suture& s) noexcept {
+  constexpr bool e = explicit_damping;
+  const bool paper = s.paper.swivel == scene::SwivelDamper::kPaper;
+  switch (s.model) {
+    case scene::Model::kPaper1: return internal_step<Terms{.explicit_damping = e}>;
+    case scene::Model::kPaper2: return internal_step<Terms{.bend = true, .explicit_damping = e}>;
+    case scene::Model::kPaper3: return internal_step<Terms{.bend = true, .bend_damper = true, .explicit_damping = e}>;
+    case scene::Model::kPaper4:
+      if (paper) return internal_step<Terms{.bend = true, .bend_damper = true, .swivel_paper = true, .explicit_damping = e}>;
+      return internal_step<Terms{.bend = true, .bend_damper = true, .swivel_internal = true, .explicit_damping = e}>;
+    case scene::Model::kPaper5:
+      if (paper)
+        return internal_step<Terms{
+            .quadratic_stretch = true, .bend = true, .bend_damper = true, .swivel_paper = true, .explicit_damping = e}>;
+      return internal_step<Terms{
+          .quadratic_stretch = true, .bend = true, .bend_damper = true, .swivel_internal = true, .explicit_damping = e}>;
+    case scene::Model::kRod: break;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+InternalStep choose_internal_step(const scene::Suture& s) noexcept {
+  return s.paper.damping == scene::Damping::kExplicit ? choose<true>(s) : choose<false>(s);
+}
+
+}  // namespace ligature::physics

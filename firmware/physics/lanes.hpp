@@ -1,0 +1,40 @@
+#pragma once
+// Numbers of all nodes side by side (structure of arrays), zero-padded at both ends so that loops over packs may read
+// one neighbour to the left, three to the right and write past the last node without a special case.
+
+#include <cstddef>
+#include <vector>
+
+#include "firmware/physics/vec.hpp"
+
+namespace ligature::physics {
+
+class Lane {
+ public:
+  Lane() = default;
+  explicit Lane(int count) : numbers_(static_cast<std::size_t>(count) + kFront + kBack, 0.0) {}
+
+  double* data() noexcept { return numbers_.data() + kFront; }
+  const double* data() const noexcept { return numbers_.data() + kFront; }
+  double& operator[](int i) noexcept { return data()[i]; }
+  double operator[](int i) const noexcept { return data()[i]; }
+  Pack pack(int i) const noexcept { return load(data() + i); }
+  void set(int i, Pack a) noexcept { store(data() + i, a); }
+
+ private:
+  static constexpr std::size_t kFront = 4, kBack = 12;
+  std::vector<double> numbers_;
+};
+
+struct Lane3 {
+  Lane x, y, z;
+  Lane3() = default;
+  explicit Lane3(int count) : x(count), y(count), z(count) {}
+
+  V3<Pack> pack(int i) const noexcept { return {x.pack(i), y.pack(i), z.pack(i)}; }
+  void set(int i, const V3<Pack>& a) noexcept { x.set(i, a.x), y.set(i, a.y), z.set(i, a.z); }
+  V3<double> at(int i) const noexcept { return {x[i], y[i], z[i]}; }
+  void put(int i, const V3<double>& a) noexcept { x[i] = a.x, y[i] = a.y, z[i] = a.z; }
+};
+
+}  // namespace ligature::physics

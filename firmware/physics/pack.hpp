@@ -1,0 +1,52 @@
+#pragma once
+// Four doubles that compute together. Laws are templates over their scalar, so that the same text is a pure function of
+// doubles in a test and four nodes at once in the loop. GCC/Clang vector types: any target, AVX2 on x86-64-v3.
+
+#include <cmath>
+#include <cstring>
+
+namespace ligature::physics {
+
+using Pack = double __attribute__((vector_size(32)));
+using PackMask = decltype(Pack{} < Pack{});
+inline constexpr int kLanes = 4;
+
+inline Pack splat(double a) noexcept { return Pack{a, a, a, a}; }
+
+/// Unaligned load and store: bends start at node 1, so most accesses are off the natural alignment.
+inline Pack load(const double* p) noexcept {
+  Pack a;
+  std::memcpy(&a, p, sizeof a);
+  return a;
+}
+inline void store(double* p, Pack a) noexcept { std::memcpy(p, &a, sizeof a); }
+
+inline double root(double a) noexcept { return std::sqrt(a); }
+inline Pack root(Pack a) noexcept {
+#if defined(__AVX__)
+  return Pack(__builtin_ia32_sqrtpd256(a));
+#else
+  return Pack{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+#endif
+}
+
+template <class S>
+S larger(S a, S b) noexcept {
+  return a > b ? a : b;
+}
+template <class S>
+S smaller(S a, S b) noexcept {
+  return a < b ? a : b;
+}
+template <class S>
+S magnitude(S a) noexcept {
+  return larger(a, -a);
+}
+
+inline bool any(bool m) noexcept { return m; }
+inline bool any(PackMask m) noexcept { return (m[0] | m[1] | m[2] | m[3]) != 0; }
+
+inline double sum(Pack a) noexcept { return (a[0] + a[1]) + (a[2] + a[3]); }
+inline double largest(Pack a) noexcept { return larger(larger(a[0], a[1]), larger(a[2], a[3])); }
+
+}  // namespace ligature::physics

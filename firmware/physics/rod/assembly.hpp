@@ -1,0 +1,25 @@
+#pragma once
+// The equation of one substep: linearised implicit Euler for the new velocities.
+
+#include "firmware/physics/rod/band_solver.hpp"
+#include "firmware/physics/rod/state.hpp"
+
+namespace ligature::physics::rod {
+
+/// Fills solver with A and r of  A v = r,
+///   A = M (1 + c dt) + dt (dt + tau_b) K_b + dt (dt + tau_s) K_ax + dt^2 K_geo + holds,
+///   r = M v0 + dt f(x0) + holds,
+/// where K_ax = (EA / l) u u^T, K_geo = max(T, 0) / |e| (I - u u^T) (dropped in compression: A stays positive definite)
+/// and f is gravity, loads, stretch, bending and, with `Twist`, the twisting moment on the centreline (twist.hpp).
+/// Supports enter as a large mass, hands as implicit spring and damper. O(n); no allocation.
+template <bool Twist>
+void assemble(const Material& material, const State& state, Vec gravity, double dt_s, Forces& forces,
+              BandSolver& solver) noexcept;
+
+/// Elastic and kinetic energy, J, and the largest strain of a segment.
+struct Energy {
+  double kinetic_J = 0.0, stretch_J = 0.0, bend_J = 0.0, gravity_J = 0.0, max_strain = 0.0;
+};
+[[nodiscard]] Energy energy(const Material& material, const State& state, Vec gravity) noexcept;
+
+}  // namespace ligature::physics::rod

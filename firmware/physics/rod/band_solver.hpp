@@ -1,0 +1,46 @@
+#pragma once
+// The linear system of one substep: block pentadiagonal, symmetric positive definite, solved from both ends inwards.
+
+#include <vector>
+
+#include "firmware/physics/rod/vec.hpp"
+
+namespace ligature::physics::rod {
+
+/// A v = r for n nodes with 3 x 3 blocks
+///   A(i, i) = diagonal[i],  A(i, i+1) = couple[i] (symmetric),  A(i, i+2) = skip[i] I.
+/// Block LDL^T. Nodes outside a window [first, last] are eliminated inwards, so that later right-hand sides that differ
+/// only inside the window cost only the window: what contacts need. With p, q the two nodes eliminated just before i
+/// (i-1, i-2 from the left; i+1, i+2 from the right):
+///   F_i = A_ip - A_iq G_p^T,  G_i = F_i S_p^-1,  S_i = A_ii - A_iq^2 S_q^-1 - G_i F_i^T.
+/// Since A_iq is a multiple of the identity a node costs about ninety multiply-adds. Real time: no allocation after
+/// resize(); O(n). @pre A positive definite.
+class BandSolver {
+ public:
+  void resize(int n);
+
+  std::vector<Mat> diagonal, couple;  ///< n and n - 1 blocks (sized n); factor() changes them inside the window
+  std::vector<double> skip;           ///< n - 2 scalars (sized n)
+  std::vector<Vec> rhs;               ///< n right-hand sides; as diagonal
+
+  /// Factorises and eliminates `rhs` up to the window. @pre 0 <= first < last < n.
+  void factor(int first, int last) noexcept;
+
+  /// Window part of A^-1 rhs_total where rhs_total = rhs + extra inside the window. Reads extra[first .. last], writes
+  /// out[first .. last]. @param base include rhs (true) or answer for extra alone (false).
+  void solve_window(const Vec* extra, Vec* out, bool base) noexcept;
+
+  /// Completes `v` outside the window from v[first .. last].
+  void solve_outside(Vec* v) const noexcept;
+
+ private:
+  void eliminate(int i, int p, int q, const Mat& a_ip, double a_iq) noexcept;
+
+  int n_ = 0, first_ = 0, last_ = 0;
+  std::vector<Mat> g_, gt_, s_inverse_;  // G_i, its transpose, S_i^-1
+  std::vector<Vec> y_;                   // eliminated right-hand side
+  std::vector<Vec> w_;                   // scratch of solve_window
+  Mat link_;                             // transposed G of node last_ towards the chain on its right
+};
+
+}  // namespace ligature::physics::rod

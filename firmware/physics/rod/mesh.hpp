@@ -1,0 +1,36 @@
+#pragma once
+// The nodes of a rod: where they sit along the thread, what mass they carry, and the constant bending matrix.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "firmware/physics/rod/material.hpp"
+
+namespace ligature::physics::rod {
+
+/// How a node's tangent is held.
+enum class Clamp : std::uint8_t { kFree, kClamped };
+
+/// Rest lengths l_j, lumped masses m_i = rho (l_{i-1} + l_i) / 2, and the scalar pentadiagonal bending matrix K_b of
+///   E_b = sum_i w_i / 2 |t_i - t_{i-1}|^2,  w_i = 2 EI / (l_{i-1} + l_i),  t_j = (x_{j+1} - x_j) / l_j,
+/// which is quadratic in the positions: linear force, the same constant matrix for x, y and z, and nothing special at
+/// unequal segments (a clamped end adds a half vertex of weight 2 EI / l with the clamp's direction for the missing
+/// tangent). Second order in l for smooth shapes; saturates in a fold (E <= 2 EI / l), so a knot needs l <= diameter.
+struct Mesh {
+  std::vector<double> s;        ///< n material coordinates, m, from 0 to the length
+  std::vector<double> rest;     ///< n - 1 rest lengths (sized n; the last is 0)
+  std::vector<double> inv_rest; ///< 1 / rest
+  std::vector<double> mass;     ///< n
+  std::vector<double> weight;   ///< w_i of vertex i; 0 at free ends
+  std::vector<double> kd, ke, kb; ///< K_b(i, i), (i, i+1), (i, i+2)
+  std::vector<Clamp> clamp;     ///< of node i; a clamped inner node has half vertices on both sides
+
+  [[nodiscard]] int nodes() const noexcept { return static_cast<int>(s.size()); }
+  void resize(int n);
+
+  /// Everything but `s` and `clamp`, from them. O(n), no allocation.
+  void rebuild(const Material& material) noexcept;
+};
+
+}  // namespace ligature::physics::rod

@@ -1,0 +1,60 @@
+#pragma once
+// How a rod moves, what holds it, and the scratch of its laws. Sized once.
+
+#include <array>
+#include <vector>
+
+#include "firmware/physics/rod/mesh.hpp"
+#include "firmware/physics/rod/vec.hpp"
+
+namespace ligature::physics::rod {
+
+/// Something that holds a node: a support of the scene, or a hand's gripper.
+struct Hold {
+  int node = -1;             ///< -1: holds nothing
+  bool rigid = false;        ///< position imposed (support) instead of a spring (hand)
+  bool directed = false;     ///< imposes the tangent too
+  bool holds_roll = false;   ///< the thread cannot turn about its axis here
+  double stiffness_N_per_m = 0.0, damping_N_s_per_m = 0.0;  ///< of a hand's coupling
+  Vec target{}, velocity{};  ///< where the holder is at the end of the substep, m, and how it moves
+  Vec force{};               ///< on the holder, N, of the last substep
+  Vec direction{};           ///< unit tangent imposed, when directed
+  Vec director{};            ///< unit normal glued to the thread here, when holds_roll
+  Vec tangent{};             ///< unit tangent the director belongs to
+};
+
+inline constexpr int kMaxHolds = 16;
+
+struct State {
+  Mesh mesh;
+  std::vector<Vec> x, v;      ///< n positions, m, and velocities, m/s
+  std::vector<Vec> load;      ///< n constant forces, N
+  std::vector<Vec> rest_bend; ///< n: part of t_i - t_{i-1} that is stress free
+  std::array<Hold, kMaxHolds> holds;
+  int hold_count = 0;
+
+  [[nodiscard]] int nodes() const noexcept { return mesh.nodes(); }
+  void resize(int n) {
+    mesh.resize(n);
+    for (auto* array : {&x, &v, &load, &rest_bend}) array->assign(static_cast<std::size_t>(n), Vec{});
+  }
+};
+
+/// Forces of the last assembly, kept for those who measure.
+struct Forces {
+  std::vector<Vec> tangent;     ///< e_j / l_j
+  std::vector<Vec> moment_in, moment_out;  ///< Q_i seen from the segment before and after node i, N m
+  std::vector<Vec> edge;        ///< P_j: the force segment j exerts on node j (and - on j + 1)
+  std::vector<Vec> twist;       ///< vertex binormal term
+  std::vector<double> tension;  ///< EA strain, N
+  std::vector<double> twist_moment;  ///< M of vertex i, N m
+
+  void resize(int n) {
+    const auto size = static_cast<std::size_t>(n);
+    for (auto* array : {&tangent, &moment_in, &moment_out, &edge, &twist}) array->assign(size, Vec{});
+    tension.assign(size, 0.0);
+    twist_moment.assign(size, 0.0);
+  }
+};
+
+}  // namespace ligature::physics::rod

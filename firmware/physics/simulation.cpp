@@ -1,0 +1,218 @@
+#include "firmware/physics/simulation.hpp"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "firmware/physics/build.hpp"
+#include "firmware/physics/internal_step.hpp"
+
+namespace ligature::physics {
+namespace {
+
+constexpr double kOutOfRange = 1e9;  // m/s or m: beyond any thread; a run that gets there has diverged
+
+V3<double> to_v3(const Vec3& a) noexcept { return {a.x(), a.y(), a.z()}; }
+Vec3 to_vec3(const V3<double>& a) noexcept { return {a.x, a.y, a.z}; }
+
+bool in_range(const V3<double>& a) noexcept {
+  return std::abs(a.x) < kOutOfRange && std::abs(a.y) < kOutOfRange && std::abs(a.z) < kOutOfRange;
+}
+
+}  // namespace
+
+struct Simulation::Impl {
+  ThreadModel model;
+  ThreadState initial, state, before;  // before: of the last finite tick
+  InternalWorkspace work;
+  InternalStep internal = nullptr;
+  bool has_contact = false, forward = false, explicit_damping = false;
+  ContactSolver contact;
+  Coupling coupling;
+  Grasp grasp;
+  V3<double> gravity{};
+  std::vector<std::pair<int, V3<double>>> loads;
+  int substeps = 1;
+  std::int64_t ticks = 0;
+  double kinetic_J = 0.0, weight_J = 0.0;
+  Lane3 rate_v;
+  std::array<HandContact, 2> hands{};
+  Diagnostics health{};
+  std::vector<Vec3> nodes_W, velocities_W;
+
+  void add_external(const std::array<ToolInput, 2>& tools) noexcept;
+  double integrate(const Lane3& v) noexcept;
+  void step(const std::array<ToolInput, 2>& tools) noexcept;
+  bool check() noexcept;
+  void publish() noexcept;
+  void restart() noexcept;
+};
+
+/// Gravity, drag, loads and hands: everything that is not the thread's own.
+void Simulation::Impl::add_external(const std::array<ToolInput, 2>& tools) noexcept {
+  const double dt = model.step_s;
+  const Pack keep = splat(1.0 / (1.0 + dt * model.drag_per_s));
+  const V3<Pack> fall{splat(dt * gravity.x), splat(dt * gravity.y), splat(dt * gravity.z)};
+  for (int i = 0; i < model.nodes; i += kLanes)
+    state.v.set(i, keep * (state.v.pack(i) + model.free.pack(i) * fall));
+  for (const auto& [node, force_N] : loads)
+    state.v.put(node, state.v.at(node) + (dt * model.inverse_mass_per_kg[node]) * force_N);
+  for (int h = 0; h < 2; ++h) {
+    const int node = grasp.node(h);
+    if (node < 0) continue;
+    const ToolInput& tool = tools[static_cast<std::size_t>(h)];
+    const double w = model.inverse_mass_per_kg[node];
+    const V3<double> f = coupling_force_N(coupling, w, dt, to_v3(tool.p_WT), to_v3(tool.v_WT), state.p.at(node), state.v.at(node));
+    state.v.put(node, state.v.at(node) + (dt * w) * f);
+    hands[static_cast<std::size_t>(h)].f_W -= (1.0 / substeps) * to_vec3(f);
+  }
+}
+
+/// Moves the nodes and sums up energies. @return the largest speed, m/s; NaN if any is.
+double Simulation::Impl::integrate(const Lane3& v_W) noexcept {
+  const Pack dt = splat(model.step_s);
+  Pack fastest2 = splat(0.0), motion = splat(0.0), weight = splat(0.0);
+  for (int i = 0; i < model.nodes; i += kLanes) {
+    const V3<Pack> v = v_W.pack(i), p = state.p.pack(i) + dt * v;
+    const Pack v2 = dot(v, v), free = model.free.pack(i);
+    fastest2 = larger(fastest2, v2);
+    motion += v2;
+    weight += free * (gravity.x * p.x + gravity.y * p.y + gravity.z * p.z);
+    state.p.set(i, p);
+  }
+  extend_last_node(state.p, model.nodes);
+  kinetic_J = 0.5 * model.mass_kg * sum(motion);
+  weight_J = -model.mass_kg * sum(weight);
+  return std::sqrt(largest(fastest2));
+}
+
+void Simulation::Impl::step(const std::array<ToolInput, 2>& tools) noexcept {
+  if (explicit_damping || forward) rate_v = state.v;  // same size: copies, does not allocate
+  add_external(tools);
+  internal(model, state, rate_v, work);
+  if (has_contact) contact.solve(model, state);
+  const double speed = integrate(forward ? rate_v : state.v);
+  if (has_contact) contact.moved(speed, model.step_s);
+}
+
+/// Finite and in range; if not, the state goes back to the last tick's and stays there.
+bool Simulation::Impl::check() noexcept {
+  if (kinetic_J < model.mass_kg * kOutOfRange * kOutOfRange && std::isfinite(weight_J)) return true;
+  for (int i = 0; i < model.nodes; ++i) {
+    if (in_range(state.p.at(i)) && in_range(state.v.at(i))) continue;
+    health.finite = false;
+    health.bad_node = i;
+    health.bad_tick = ticks;
+    state = before;
+    return false;
+  }
+  return true;
+}
+
+void Simulation::Impl::publish() noexcept {
+  for (int i = 0; i < model.nodes; ++i) {
+    nodes_W[static_cast<std::size_t>(i)] = to_vec3(state.p.at(i));
+    velocities_W[static_cast<std::size_t>(i)] = to_vec3(state.v.at(i));
+  }
+  for (int h = 0; h < 2; ++h) {
+    HandContact& c = hands[static_cast<std::size_t>(h)];
+    c.node = grasp.node(h);
+    if (c.node < 0) continue;
+    c.p_WG = to_vec3(state.p.at(c.node));
+    c.v_WG = to_vec3(state.v.at(c.node));
+  }
+  health.kinetic_J = kinetic_J;
+  health.potential_J = weight_J + work.stretch_J + work.bend_J;
+  health.max_stretch = work.max_strain;
+  const ContactReport& r = contact.report();
+  health.contacts = r.active;
+  health.contact_cap_hit = r.cap_hit;
+  health.min_gap_m = has_contact ? r.min_gap_m : std::numeric_limits<double>::infinity();
+}
+
+void Simulation::Impl::restart() noexcept {
+  grasp.release_all();
+  contact.forget();
+  hands = {};
+  health = {};
+  health.min_gap_m = std::numeric_limits<double>::infinity();
+  ticks = 0;
+  publish();
+}
+
+std::variant<Simulation, std::string> Simulation::make(const scene::Scene& scene) {
+  auto built = build_thread(scene);
+  if (auto* why = std::get_if<std::string>(&built)) return std::move(*why);
+  auto& thread = std::get<BuiltThread>(built);
+  auto impl = std::make_unique<Impl>();
+  const auto n = static_cast<std::size_t>(thread.model.nodes);
+  impl->internal = choose_internal_step(scene.suture);
+  impl->has_contact = scene.contact.solver != scene::ContactSolver::kNone;
+  impl->forward = scene.suture.paper.integrator == scene::Integrator::kForward;
+  impl->explicit_damping = scene.suture.paper.damping == scene::Damping::kExplicit;
+  if (impl->has_contact) impl->contact = ContactSolver(thread.model, build_contact(scene, thread.model));
+  impl->coupling = {scene.hands.coupling_N_per_m, scene.hands.coupling_N_s_per_m};
+  const auto& g = scene.world.gravity_m_per_s2;
+  impl->gravity = {g[0], g[1], g[2]};
+  for (const auto& load : scene.world.loads)
+    impl->loads.emplace_back(load.node < 0 ? static_cast<int>(n) - 1 : load.node,
+                             V3<double>{load.force_N[0], load.force_N[1], load.force_N[2]});
+  impl->substeps = scene.time.substeps;
+  impl->work = InternalWorkspace(thread.model.nodes);
+  impl->rate_v = Lane3(thread.model.nodes);
+  impl->nodes_W.resize(n);
+  impl->velocities_W.resize(n);
+  impl->initial = impl->state = impl->before = std::move(thread.initial);
+  impl->model = std::move(thread.model);
+  impl->restart();
+  return Simulation(std::move(impl));
+}
+
+void Simulation::tick(const std::array<ToolInput, 2>& tools) noexcept {
+  Impl& s = *impl_;
+  if (!s.health.finite) return;
+  s.before = s.state;
+  s.grasp.update(tools, s.model, s.state);
+  for (HandContact& c : s.hands) c = {};
+  bool fine = true;
+  for (int k = 0; k < s.substeps && fine; ++k) {
+    s.step(tools);
+    fine = s.check();
+  }
+  ++s.ticks;
+  if (fine) s.publish();
+}
+
+void Simulation::reset() noexcept {
+  impl_->state = impl_->initial;
+  impl_->restart();
+}
+
+void Simulation::set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept {
+  Impl& s = *impl_;
+  for (int i = 0; i < s.model.nodes; ++i) {
+    if (s.model.free[i] == 0.0) continue;
+    const auto k = static_cast<std::size_t>(i);
+    if (k < p_W.size()) s.state.p.put(i, to_v3(p_W[k]));
+    s.state.v.put(i, k < v_W.size() ? to_v3(v_W[k]) : V3<double>{});
+  }
+  extend_last_node(s.state.p, s.model.nodes);
+  s.restart();
+}
+
+std::span<const Vec3> Simulation::nodes_W() const noexcept { return impl_->nodes_W; }
+std::span<const Vec3> Simulation::velocities_W() const noexcept { return impl_->velocities_W; }
+const HandContact& Simulation::hand(Hand h) const noexcept { return impl_->hands[static_cast<std::size_t>(h)]; }
+const Diagnostics& Simulation::diagnostics() const noexcept { return impl_->health; }
+
+Simulation::Simulation(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
+Simulation::Simulation(const Simulation& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
+Simulation& Simulation::operator=(const Simulation& other) {
+  if (this != &other) impl_ = std::make_unique<Impl>(*other.impl_);
+  return *this;
+}
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
+}  // namespace ligature::physics

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "firmware/physics/bend_geometry.hpp"
+
+namespace ligature::physics {
+
+/// How fast the two ends of a bend leave its plane: velocities along the unit axis relative to the middle node, m/s.
+template <class S>
+struct SwivelRates {
+  S left, right;
+};
+template <class S>
+SwivelRates<S> swivel_rates(const V3<S>& axis, const V3<S>& v_left, const V3<S>& v_middle,
+                            const V3<S>& v_right) noexcept {
+  return {dot(axis, v_left - v_middle), dot(axis, v_right - v_middle)};
+}
+
+/// The paper's swivel damper, equations (13)-(15), with the sign that damps:
+///   f_{i-1} = -k_sw ((v_{i-1} - v_i) . s) s / l_{i-1},   f_{i+1} likewise over l_i,   f_i = minus their sum,
+///   s = e_{i-1} x e_i, of length sin alpha as its formula says (so the coefficient carries sin^2).
+/// As printed (plus sign) it is a motor. Even so three points have only three internal motions (two lengths and an angle),
+/// so no swivel force between three points is internal: it leaves a torque and brakes rigid rotation, i.e. acts as a drag.
+/// @return coefficient of the unit axis per unit swivel rate, N s/m
+template <class S>
+S paper_swivel_N_s_per_m(S sine, S inv_length, double k_N_s) noexcept {
+  return k_N_s * sine * sine * inv_length;
+}
+
+/// The internal swivel damper: on the rate of the dihedral angle phi of four nodes, weighted to stay finite when straight.
+///   rate = w phi',  w = sin(alpha_1) sin(alpha_2);   force on node j: -k (w phi') (w d phi/dP_j)
+///   w grad phi lies along the two axes s1 (nodes 0, 1, 2) and s2 (nodes 1, 2, 3):
+///     node 0:  p0 s1    node 1: p1 s1 + q1 s2    node 2: p2 s1 + q2 s2    node 3: q3 s2
+///     p0 = -sin2 / l1, p2 = -sin2 cos1 / l2, p1 = -(p0 + p2);   q3 = sin1 / l3, q1 = sin1 cos2 / l2, q2 = -(q1 + q3)
+/// Internal: no net force or torque, nothing in rigid motion, power -k rate^2. k = k_sw l_r, N m s, so that at a right angle
+/// the force on an end node is the paper's.
+template <class S>
+struct Dihedral {
+  S p0, p2, q1, q3;
+};
+template <class S>
+Dihedral<S> dihedral_of(S sin1, S cos1, S sin2, S cos2, S inv_l1, S inv_l2, S inv_l3) noexcept {
+  return {-sin2 * inv_l1, -sin2 * cos1 * inv_l2, sin1 * cos2 * inv_l2, sin1 * inv_l3};
+}
+
+template <class S>
+S dihedral_rate(const Dihedral<S>& d, const SwivelRates<S>& first, const SwivelRates<S>& second) noexcept {
+  return d.p0 * first.left + d.p2 * first.right + d.q1 * second.left + d.q3 * second.right;
+}
+
+/// g^T M^-1 g of the dihedral's gradient, for the implicit damper.
+/// @param axes  s1 . s2    @param w0..w3  inverse masses of the four nodes, 1/kg
+template <class S>
+S dihedral_mobility(const Dihedral<S>& d, S axes, S w0, S w1, S w2, S w3) noexcept {
+  const S p1 = -(d.p0 + d.p2), q2 = -(d.q1 + d.q3);
+  return w0 * d.p0 * d.p0 + w1 * (p1 * p1 + d.q1 * d.q1 + 2.0 * axes * p1 * d.q1) +
+         w2 * (d.p2 * d.p2 + q2 * q2 + 2.0 * axes * d.p2 * q2) + w3 * d.q3 * d.q3;
+}
+
+}  // namespace ligature::physics

@@ -1,0 +1,58 @@
+#pragma once
+// What a thread is (ThreadModel, constant), how it moves (ThreadState) and scratch sized once (InternalWorkspace).
+
+#include "firmware/physics/lanes.hpp"
+
+namespace ligature::physics {
+
+/// Constants of one simulated thread, per node; SI.
+struct ThreadModel {
+  int nodes = 0;
+  double rest_m = 0.0;             ///< l_r
+  double radius_m = 0.0;
+  double mass_kg = 0.0;            ///< of one node
+  double stretch_N = 0.0;          ///< k_l (model 5: already scaled)
+  double stretch_N_s_per_m = 0.0;  ///< k_d
+  double bend_N_m = 0.0;           ///< k_ts
+  double bend_N_m_s = 0.0;         ///< k_td
+  double swivel_N_s = 0.0;         ///< k_sw
+  double drag_per_s = 0.0;         ///< a = -c v
+  double step_s = 0.0;
+  Lane inverse_mass_per_kg;        ///< 0 for fixed nodes
+  Lane free;                       ///< 1, or 0 for fixed nodes
+  Lane segment;                    ///< 1 where there is a segment i .. i + 1, else 0
+};
+
+struct ThreadState {
+  Lane3 p;  ///< m
+  Lane3 v;  ///< m/s
+};
+
+/// Everything a step computes on the way; index i of a bend is its middle node, of a segment its left node.
+struct InternalWorkspace {
+  Lane3 u;                     ///< segment directions, (4)
+  Lane inv_length;             ///< 1/m
+  Lane pull;                   ///< stretch impulse, N s, positive pulls
+  Lane gain, link;             ///< of the implicit stretch damper: impulse per rate, kg; coupling of neighbours, 1/kg
+  Lane diag, one, two;         ///< banded matrices of the implicit dampers
+  Lane3 axis, left, right;     ///< of each bend; see Bend
+  Lane sine, cosine;
+  Lane turn;                   ///< bend impulse, N m s
+  Lane swing_left, swing_right;  ///< swivel rates, then swivel impulses along the axis
+  Lane dihedral;
+  double max_strain = 0.0;
+  double stretch_J = 0.0, bend_J = 0.0;
+
+  InternalWorkspace() = default;
+  explicit InternalWorkspace(int n)
+      : u(n), inv_length(n), pull(n), gain(n), link(n), diag(n), one(n), two(n), axis(n), left(n), right(n), sine(n), cosine(n), turn(n),
+        swing_left(n), swing_right(n), dihedral(n) {}
+};
+
+/// Repeats the last node behind the last one, so that the segment that is not there has length zero and no direction.
+inline void extend_last_node(Lane3& p, int nodes) noexcept {
+  const V3<double> last = p.at(nodes - 1);
+  for (int k = 0; k < kLanes; ++k) p.put(nodes + k, last);
+}
+
+}  // namespace ligature::physics
