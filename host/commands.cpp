@@ -45,7 +45,7 @@ void add_record(CLI::App& app) {
   command->add_flag("--quiet", options->quiet, "no progress");
   command->footer(
       "Counts every tick while it writes and names those that never came. It does not end when the firmware does: a\n"
-      "restarted firmware becomes a further session of the same log. At most 0.3 s are lost when it is killed.\n"
+      "restarted firmware becomes a further session of the same log. A killed recorder leaves all it had received.\n"
       "Exit code 3 when the disk refuses, the network cannot be opened, or nothing at all came.\n\n"
       "Example:\n  ligature-host record --out knot.lcmlog --duration 25\n"
       "  recorded 25000 of 25000 ticks, 0 lost; 1500 shapes, 3017 messages in all");

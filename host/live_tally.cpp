@@ -7,10 +7,13 @@
 namespace ligature::host {
 namespace {
 
-/// "lost in session 1: ticks 100..119, 400 (21; 0 of them dropped inside the firmware)" or nothing.
+/// "lost in session 1: ticks 100..119, 400 (21; 0 of them dropped inside the firmware)", or nothing.
 std::string describe_losses(const Session& session, int number, std::size_t max_ranges) {
-  if (session.ticks.missing() == 0) return {};
-  std::string line = text("lost in session %d: ticks ", number);
+  std::string line;
+  if (session.ticks.first() > 1)  // what ran before the recorder is not lost, but it is not there either
+    line = text("session %d was joined at tick %lld\n", number, static_cast<long long>(session.ticks.first()));
+  if (session.ticks.missing() == 0) return line;
+  line += text("lost in session %d: ticks ", number);
   const auto holes = session.ticks.missing_ranges();
   for (std::size_t i = 0; i < holes.size() && i < max_ranges; ++i) {
     line += text("%s%lld", i ? ", " : "", static_cast<long long>(holes[i].first));

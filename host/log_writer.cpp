@@ -42,17 +42,12 @@ void LogWriter::write(std::int64_t timestamp_us, std::string_view channel, Bytes
   event.channel = channel;
   event.datalen = static_cast<std::int32_t>(data.size());
   event.data = const_cast<std::byte*>(data.data());  // the library only reads it
-  if (file_->writeEvent(&event) != 0) fail();
+  if (file_->writeEvent(&event) != 0 || std::fflush(file_->getFilePtr()) != 0) fail();
   bytes_ += kHeaderSize + static_cast<std::int64_t>(channel.size() + data.size());
-}
-
-void LogWriter::flush() {
-  if (std::fflush(file_->getFilePtr()) != 0) fail();
 }
 
 void LogWriter::close() {
   if (!file_) return;
-  flush();
   // A device like /dev/null has nothing to sync (EINVAL); on a file this is where a full disk may show.
   if (fdatasync(fileno(file_->getFilePtr())) != 0 && errno != EINVAL && errno != EROFS) fail();
   file_.reset();

@@ -17,7 +17,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr auto kFlushEvery = milliseconds(250);        // what a SIGKILL may cost
 constexpr auto kTerminalEvery = milliseconds(250);     // progress on a terminal
 constexpr auto kPlainEvery = milliseconds(5000);       // and in a log file
 constexpr auto kLongestDrain = milliseconds(300);      // for messages still on their way after the stop
@@ -28,16 +27,14 @@ double seconds(Clock::duration d) { return std::chrono::duration<double>(d).coun
 /// One line, rewritten in place on a terminal, a line every few seconds elsewhere.
 class Progress {
  public:
-  Progress(bool quiet, Clock::time_point start) : quiet_(quiet), start_(start), shown_(start) {}
+  Progress(bool quiet, Clock::time_point start) : quiet_(quiet), start_(start), shown_(start), measured_(start) {}
 
   void show(const LiveTally& tally, Clock::time_point now) {
     if (quiet_ || now - shown_ < (terminal_ ? kTerminalEvery : kPlainEvery)) return;
-    const auto received = tally.sessions().received();
-    const double rate = static_cast<double>(received - received_) / seconds(now - shown_);
-    const std::string line = tally.progress_line(seconds(now - start_), rate);
+    measure_rate(tally.sessions().received(), now);
+    const std::string line = tally.progress_line(seconds(now - start_), ticks_per_s_);
     std::fprintf(stderr, terminal_ ? "\r%s\033[K" : "%s\n", line.c_str());
     shown_ = now;
-    received_ = received;
     open_line_ = terminal_;
   }
   ~Progress() {
@@ -47,23 +44,27 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
  private:
+  /// Over a second or more, because ticks come in batches.
+  void measure_rate(std::int64_t received, Clock::time_point now) {
+    if (now - measured_ < milliseconds(1000)) return;
+    ticks_per_s_ = static_cast<double>(received - received_) / seconds(now - measured_);
+    measured_ = now;
+    received_ = received;
+  }
+
   bool quiet_, terminal_ = isatty(STDERR_FILENO) == 1, open_line_ = false;
-  Clock::time_point start_, shown_;
+  Clock::time_point start_, shown_, measured_;
   std::int64_t received_ = 0;
+  double ticks_per_s_ = 0.0;
 };
 
-/// Receives, writes and counts until the end of the run.
-void record_until_stopped(LcmLink& link, LogWriter& log, const LiveTally& tally, const RecordOptions& options) {
+/// Receives until the end of the run; the link's handler writes and counts.
+void record_until_stopped(LcmLink& link, const LiveTally& tally, const RecordOptions& options) {
   const auto start = Clock::now();
-  auto flushed = start;
   Progress progress(options.quiet, start);
   for (auto now = start; !stop_requested(); now = Clock::now()) {
     if (options.duration_s > 0.0 && seconds(now - start) >= options.duration_s) break;
     link.receive(50);
-    if (now - flushed >= kFlushEvery) {
-      log.flush();
-      flushed = now;
-    }
     progress.show(tally, now);
   }
   const auto stopped = Clock::now();
@@ -84,7 +85,7 @@ void record(const RecordOptions& options) {
   LogWriter log(options.out, options.force);
   open_log = &log;
   try {
-    record_until_stopped(link, log, tally, options);
+    record_until_stopped(link, tally, options);
     log.close();
   } catch (const RunFailed&) {
     std::fputs(tally.summary().c_str(), stdout);

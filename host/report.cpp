@@ -14,6 +14,9 @@ using Count = long long;
 /// Samples that arrived here per second of the run.
 double recorded_per_s(const LogSummary& s) { return static_cast<double>(s.tally.received()) / s.duration_s(); }
 
+/// First recorded tick of the first session; what ran before the recorder is not there, and not lost.
+std::int64_t first_tick(const LogSummary& s) { return s.tally.sessions().front().ticks.first(); }
+
 /// Part of the recorded periods in which the loop ran, %.
 double executed_percent(const LogSummary& s) {
   return 100.0 * static_cast<double>(s.ticks.executed()) / static_cast<double>(s.tally.received());
@@ -80,6 +83,8 @@ std::string report_table(const LogSummary& s) {
   table += row("force limit", text("%.2f N", s.facts.max_force_N));
   table += row("faults", fault_words(s));
   table += row("knot", knot_words(s));
+  if (const auto first = first_tick(s); first > 1)
+    table += row("joined late", text("recording begins at tick %lld", static_cast<Count>(first)));
   if (s.tally.restarts() > 0) table += row("restarts", text("%zu of the firmware", s.tally.restarts()));
   if (s.tally.duplicates() > 0) table += row("duplicates", text("%lld ticks", static_cast<Count>(s.tally.duplicates())));
   if (s.unreadable_messages > 0)
@@ -105,7 +110,7 @@ std::string report_json(const LogSummary& s) {
             {"first_tied_s", s.knot_first_s()}, {"unchanged_since_s", s.knot_since_s()}};
   const Json json = {{"duration_s", s.duration_s()}, {"scene", s.facts.scene_file},
                      {"firmware_version", s.facts.firmware_version}, {"ticks_recorded", s.tally.received()},
-                     {"ticks_lost", s.tally.missing()}, {"duplicates", s.tally.duplicates()},
+                     {"ticks_lost", s.tally.missing()}, {"first_tick", first_tick(s)}, {"duplicates", s.tally.duplicates()},
                      {"restarts", s.tally.restarts()}, {"unreadable_messages", s.unreadable_messages},
                      {"recorded_per_s", recorded_per_s(s)},
                      {"executed_per_s", rate_held_per_s(s)}, {"executed_percent", executed_percent(s)},

@@ -40,6 +40,13 @@ TEST(LiveTally, SaysThatTheFirmwareWasRestarted) {
   EXPECT_NE(tally.progress_line(1.0, 1000.0).find("1 restarts"), std::string::npos);
 }
 
+TEST(LiveTally, SaysThatItJoinedLate) {
+  LiveTally tally;
+  add(tally, test::batch_of(1, 500, 20));
+  EXPECT_EQ(tally.sessions().missing(), 0);
+  EXPECT_NE(tally.summary().find("session 1 was joined at tick 500"), std::string::npos);
+}
+
 TEST(LiveTally, ManyHolesAreCutShort) {
   LiveTally tally;
   for (int i = 0; i < 30; ++i) add(tally, test::batch_of(1, 3 * i, 2));

@@ -1,0 +1,72 @@
+// The program as a person runs it: exit codes, and one line on stderr for whatever is wrong.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "synthetic_log.hpp"
+
+namespace ligature::host {
+namespace {
+
+class Program : public ::testing::Test {
+ protected:
+  /// Runs `ligature-host WORDS` in the test's folder; stdout and stderr go into files there.
+  int run(const std::string& words) {
+    const std::string line = "cd '" + folder_.path().string() + "' && '" LIGATURE_HOST_PROGRAM "' " + words + " >out 2>err";
+    const int status = std::system(line.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string out() const { return test::text_of(folder_.file("out")); }
+  std::string err() const { return test::text_of(folder_.file("err")); }
+
+  test::TestFolder folder_;
+};
+
+TEST_F(Program, RefusesBadInputWithOneLineAndTwo) {
+  test::write_text(folder_.file("text.csv"), "x,y,z\n1,2,3\n1,b,3\n");
+  test::write_text(folder_.file("there.lcmlog"), "precious");
+  for (const char* words :
+       {"", "nonsense", "record", "record --out there.lcmlog", "record --out new.lcmlog --lcm-url nonsense",
+        "record --out new.lcmlog --duration -1", "record --out no/where.lcmlog", "export text.csv --forces f.csv",
+        "export missing.lcmlog --forces f.csv", "export there.lcmlog", "plot text.csv --out f.png", "report text.csv",
+        "knot text.csv", "knot missing.csv", "knot text.csv --open --closed", "knot text.csv --at x", "send nonsense",
+        "report there.lcmlog extra", "--nonsense"}) {
+    EXPECT_EQ(run(words), 2) << words;
+    EXPECT_EQ(std::ranges::count(err(), '\n'), 1) << words << ": " << err();
+    EXPECT_EQ(out(), "") << words;
+  }
+  EXPECT_EQ(test::text_of(folder_.file("there.lcmlog")), "precious");
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("new.lcmlog")));
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("f.csv")));
+}
+
+TEST_F(Program, HelpTeachesEveryCommandByExample) {
+  EXPECT_EQ(run("--help"), 0);
+  EXPECT_NE(out().find("Example"), std::string::npos);
+  for (const char* command : {"record", "export", "plot", "report", "knot", "send"}) {
+    EXPECT_EQ(run(std::string(command) + " --help"), 0);
+    EXPECT_NE(out().find(std::string("ligature-host ") + command), std::string::npos) << command;
+  }
+  EXPECT_EQ(run("--version"), 0);
+  EXPECT_TRUE(out().starts_with("ligature-host "));
+}
+
+TEST_F(Program, ExportsReportsAndNamesTheKnotOfALog) {
+  LogWriter log(folder_.file("a.lcmlog"), false);
+  test::write(log, kTicksChannel, test::batch_of(1, 0, 20));
+  test::write(log, kThreadChannel, test::thread_of(0, test::overhand_points(100)));
+  log.close();
+  EXPECT_EQ(run("export a.lcmlog --forces f.csv --shape s.csv --ticks t.csv"), 0);
+  EXPECT_EQ(out(), "exported 20 ticks and 1 shapes\n");
+  EXPECT_EQ(run("report a.lcmlog"), 0);
+  EXPECT_NE(out().find("20 recorded, 0 lost"), std::string::npos);
+  EXPECT_EQ(run("knot a.lcmlog --json"), 0);
+  EXPECT_TRUE(out().starts_with("{\"type\":\"3_1\"")) << out();
+  EXPECT_EQ(run("knot s.csv"), 0);
+  EXPECT_TRUE(out().starts_with("3_1")) << out();
+}
+
+}  // namespace
+}  // namespace ligature::host
