@@ -1,0 +1,81 @@
+// Start-up by SDO against drives that answer, refuse, are something else, or are silent.
+#include "firmware/platform/can_master.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "protocol/can/nmt.hpp"
+#include "tests/unit/platform/fake_bus.hpp"
+
+namespace ligature::platform {
+namespace {
+
+class CanMasterTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    values[can::od::kRatedTorque] = can::profile::kRatedTorque_mNm;
+    values[can::od::kEncoderIncrements] = static_cast<std::uint32_t>(can::profile::kCountsPerRevolution);
+    bus.on_send = [this](const can::Frame& f) { answer(f); };
+  }
+  void answer(const can::Frame& f) {
+    const auto request = can::decode_sdo(f);
+    if (!request || request->node == silent) return;
+    can::Sdo reply{can::SdoKind::kWritten, request->node, request->object, 0, 0};
+    if (request->object == refused) {
+      reply = {can::SdoKind::kAbort, request->node, request->object, can::sdo_abort::kReadOnly, 0};
+    } else if (request->kind == can::SdoKind::kRead) {
+      reply = {can::SdoKind::kValue, request->node, request->object, values[request->object], 4};
+    } else {
+      ++writes[request->node.value];
+      written[request->object] = request->value;
+    }
+    // Somebody else's answer comes first, and must be passed over.
+    bus.inbox.push_back(can::encode(can::Sdo{can::SdoKind::kWritten, can::NodeId{99}, request->object, 0, 0}));
+    bus.inbox.push_back(can::encode(reply));
+  }
+  std::optional<std::string> configure() { return configure_drives(bus, wait, {50, 300, 100}); }
+
+  FakeBus bus;
+  FakeWait wait;
+  std::map<can::Object, std::uint32_t> values, written;
+  std::map<int, int> writes;
+  can::NodeId silent{0};
+  can::Object refused{};
+};
+
+TEST_F(CanMasterTest, WritesTheWholePlanToEveryDrive) {
+  EXPECT_EQ(configure(), std::nullopt);
+  for (const auto node : can::profile::kJointNodes) {
+    EXPECT_EQ(writes[node.value], static_cast<int>(can::startup_plan(node).count));
+  }
+  EXPECT_EQ(written[can::od::kModeOfOperation], 10U);
+  EXPECT_EQ(written[can::od::kRpdo1EventTimer], 50U);
+  EXPECT_EQ(bus.sent.front(), can::encode_nmt(can::NmtCommand::kEnterPreOperational));
+  for (const auto& f : bus.sent) EXPECT_NE(f, can::encode_nmt(can::NmtCommand::kStart));
+}
+
+TEST_F(CanMasterTest, ASilentDriveIsNamed) {
+  silent = can::kShoulder;
+  EXPECT_EQ(configure(), "node 2, object 0x6076:00: no answer");
+  EXPECT_GE(wait.time, std::chrono::milliseconds(500));
+}
+
+TEST_F(CanMasterTest, ARefusalIsNamedWithItsCode) {
+  refused = can::od::kMaxTorque;
+  EXPECT_EQ(configure(), "node 1, object 0x6072:00: refused by the drive, abort code 0x06010002");
+}
+
+TEST_F(CanMasterTest, ADriveOfAnotherSizeIsRefused) {  // per mille of something else would be another force
+  values[can::od::kRatedTorque] = 1000;
+  EXPECT_EQ(configure(), "node 1, object 0x6076:00: found 1000, allowed 300");
+}
+
+TEST_F(CanMasterTest, ALostBusEndsAtOnce) {
+  bus.on_send = [this](const can::Frame&) { bus.lost = true; };
+  EXPECT_TRUE(configure().has_value());
+  EXPECT_LT(wait.time, std::chrono::milliseconds(1));
+}
+
+}  // namespace
+}  // namespace ligature::platform

@@ -1,0 +1,194 @@
+// One hand's cyclic traffic against frames made by hand: sets, ages, drive states, trouble.
+#include "firmware/platform/hand_link.hpp"
+
+#include <gtest/gtest.h>
+
+#include "firmware/platform/rig_bus.hpp"
+#include "protocol/can/emcy.hpp"
+#include "protocol/can/heartbeat.hpp"
+#include "protocol/can/nmt.hpp"
+#include "protocol/can/units.hpp"
+#include "tests/unit/platform/fake_bus.hpp"
+
+namespace ligature::platform {
+namespace {
+
+using can::cia402::State;
+constexpr auto kNodes = can::profile::kJointNodes;
+
+class HandLinkTest : public ::testing::Test {
+ protected:
+  void answer(std::size_t joint, State state = State::kOperationEnabled, std::int32_t counts = 100,
+              std::uint16_t buttons = 0) {
+    bus.inbox.push_back(can::encode(kNodes[joint], can::Tpdo1{can::cia402::statusword_of(state), counts, 0, buttons}));
+  }
+  void answer_all(State state = State::kOperationEnabled, std::int32_t counts = 100, std::uint16_t buttons = 0) {
+    for (std::size_t j = 0; j < 3; ++j) answer(j, state, counts, buttons);
+  }
+  rt::HandReading period() {
+    link.send_sync();
+    answer_all();
+    link.drain();
+    return link.reading();
+  }
+  can::Rpdo1 last_rpdo(std::size_t joint) const {
+    for (auto f = bus.sent.rbegin(); f != bus.sent.rend(); ++f) {
+      if (const auto rpdo = can::decode_rpdo1(kNodes[joint], *f)) return *rpdo;
+    }
+    return {};
+  }
+  FakeBus bus;
+  HandLink link{bus};
+};
+
+TEST_F(HandLinkTest, ACompleteSetIsFreshAndInSiUnits) {
+  link.send_sync();
+  answer_all(State::kOperationEnabled, 4096, can::profile::kButtonGrip | can::profile::kButtonDeadMan);
+  EXPECT_FALSE(link.is_settled());
+  link.drain();
+  EXPECT_TRUE(link.is_settled());
+  const auto r = link.reading();
+  EXPECT_TRUE(r.valid && r.enabled && r.grip && r.dead_man);
+  EXPECT_FALSE(r.drive_fault || r.bus_lost);
+  EXPECT_EQ(r.age_ticks, 0);
+  EXPECT_DOUBLE_EQ(r.q_rad[2], can::angle_rad(4096));
+}
+
+TEST_F(HandLinkTest, TwoOfThreeAreNoPose) {  // the old set is held and its age counted
+  period();
+  link.send_sync();
+  answer(0, State::kOperationEnabled, 999);
+  answer(2, State::kOperationEnabled, 999);
+  link.drain();
+  EXPECT_FALSE(link.is_settled());
+  EXPECT_EQ(link.reading().age_ticks, 1);
+  EXPECT_DOUBLE_EQ(link.reading().q_rad[0], can::angle_rad(100));
+}
+
+TEST_F(HandLinkTest, ASetThatCameTooLateCountsAsOnePeriodOld) {
+  period();
+  link.send_sync();
+  link.drain();
+  answer_all(State::kOperationEnabled, 200);  // after the deadline
+  link.send_sync();
+  EXPECT_EQ(link.reading().age_ticks, 1);
+  EXPECT_DOUBLE_EQ(link.reading().q_rad[0], can::angle_rad(200));
+}
+
+TEST_F(HandLinkTest, AgeGrowsByOneAPeriodOfSilence) {
+  period();
+  for (int age = 1; age < 5; ++age) {
+    link.send_sync();
+    EXPECT_EQ(link.reading().age_ticks, age);
+  }
+}
+
+TEST_F(HandLinkTest, ADriveThatDropsOutOrFaultsIsSeen) {
+  period();
+  link.send_sync();
+  answer(0);
+  answer(1, State::kSwitchedOn);
+  answer(2);
+  link.drain();
+  EXPECT_FALSE(link.reading().enabled);
+  EXPECT_FALSE(link.reading().drive_fault);
+  link.send_sync();
+  answer(0);
+  answer(1, State::kFault);
+  answer(2);
+  link.drain();
+  EXPECT_TRUE(link.reading().drive_fault);
+}
+
+TEST_F(HandLinkTest, AnEmergencyCountsUntilItIsOver) {
+  period();
+  bus.inbox.push_back(can::encode(can::Emergency{kNodes[1], can::emcy::kRpdoTimeout, can::emcy::kGenericBit}));
+  EXPECT_TRUE(period().drive_fault);
+  bus.inbox.push_back(can::encode(can::Emergency{kNodes[1], can::emcy::kNoError, 0}));
+  EXPECT_FALSE(period().drive_fault);
+}
+
+TEST_F(HandLinkTest, ANodeThatRebootedIsTrouble) {
+  period();
+  bus.inbox.push_back(can::encode(can::Heartbeat{kNodes[0], can::NmtState::kBootUp}));
+  EXPECT_TRUE(period().drive_fault);
+}
+
+TEST_F(HandLinkTest, ALostBusIsSeenAtOnce) {
+  period();
+  bus.lost = true;
+  link.send_sync();
+  EXPECT_TRUE(link.is_settled());  // nothing to wait for
+  EXPECT_TRUE(link.reading().bus_lost);
+  EXPECT_EQ(link.write({{0.1, 0.1, 0.1}, rt::DriveRequest::kOperate}), (std::array<std::int16_t, 3>{}));
+}
+
+TEST_F(HandLinkTest, WritesPerMilleAndSaysWhatItSent) {
+  period();
+  const auto sent = link.write({{0.03, -0.3, 9.0}, rt::DriveRequest::kOperate});
+  EXPECT_EQ(sent, (std::array<std::int16_t, 3>{100, -1000, 3000}));
+  EXPECT_EQ(last_rpdo(1).target_torque_permille, -1000);
+  EXPECT_EQ(last_rpdo(1).controlword, can::cia402::kControlEnableOperation);
+}
+
+TEST_F(HandLinkTest, BringsADriveUpAndDown) {  // the drive is protocol's own state machine, two periods of delay
+  State drive = State::kFault;
+  std::uint16_t before = 0;
+  const auto run = [&](rt::DriveRequest request, int periods) {
+    for (int i = 0; i < periods; ++i) {
+      link.send_sync();
+      answer_all(drive);
+      link.drain();
+      const std::uint16_t word = last_rpdo(0).controlword;
+      if (const auto event = can::cia402::event_of(before, word)) drive = can::cia402::next(drive, *event);
+      before = word;
+      link.write({{}, request});
+    }
+  };
+  run(rt::DriveRequest::kOperate, 10);
+  EXPECT_EQ(drive, State::kFault);  // operating resets nothing
+  run(rt::DriveRequest::kEnable, 15);
+  EXPECT_EQ(drive, State::kOperationEnabled);
+  run(rt::DriveRequest::kHold, 3);
+  EXPECT_FALSE(can::cia402::may_produce_torque(drive));
+}
+
+TEST_F(HandLinkTest, SendsTheMastersHeartbeatNowAndThen) {
+  for (int i = 0; i < 100; ++i) link.send_sync();
+  int beats = 0;
+  for (const auto& f : bus.sent) {
+    const auto beat = can::decode_heartbeat(f);
+    beats += beat && beat->node == can::kMasterNode;
+  }
+  EXPECT_EQ(beats, 2);
+}
+
+TEST(RigBus, ReturnsAsSoonAsBothHandsAnswered) {
+  FakeBus left, right;
+  FakeWait wait;
+  RigBus rig(left, right, wait);
+  rig.send_sync();
+  wait.on_wait = [&] {
+    for (FakeBus* bus : {&left, &right}) {
+      if (wait.time == Nanoseconds(bus == &left ? 200'000 : 400'000)) {
+        for (const auto node : kNodes) bus->inbox.push_back(can::encode(node, can::Tpdo1{0x27, 0, 0, 0}));
+      }
+    }
+  };
+  const auto reading = rig.read_tpdos(std::chrono::microseconds(600));
+  EXPECT_EQ(wait.time, std::chrono::microseconds(400));
+  EXPECT_EQ(reading.hand[0].age_ticks, 0);
+  EXPECT_EQ(reading.hand[1].age_ticks, 0);
+}
+
+TEST(RigBus, DoesNotWaitBeyondTheDeadline) {
+  FakeBus left, right;
+  FakeWait wait;
+  RigBus rig(left, right, wait);
+  rig.send_sync();
+  EXPECT_FALSE(rig.read_tpdos(std::chrono::microseconds(600)).hand[0].valid);
+  EXPECT_EQ(wait.time, std::chrono::microseconds(600));
+}
+
+}  // namespace
+}  // namespace ligature::platform
