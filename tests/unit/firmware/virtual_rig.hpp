@@ -1,0 +1,99 @@
+#pragma once
+// A rig in virtual time: drives that obey at once, a clock that moves when somebody works or sleeps.
+
+#include <deque>
+#include <map>
+#include <vector>
+
+#include "firmware/cycle.hpp"
+
+namespace ligature {
+
+class VirtualClock {
+ public:
+  Nanoseconds now() noexcept { return time; }
+  void sleep_until(Nanoseconds at) noexcept {
+    time = std::max(time, at) + late_by;
+    late_by = Nanoseconds::zero();
+    woken.push_back(time);
+  }
+  Nanoseconds time{0};
+  Nanoseconds late_by{0};  // of the next wake-up only
+  std::vector<Nanoseconds> woken;
+};
+
+inline constexpr control::JointAngles kRestingArm{0.0, 0.5, 0.6};
+
+/// Drives that are up at once and keep what the wire says: a torque written in a period acts at the next SYNC.
+class VirtualBus {
+ public:
+  explicit VirtualBus(VirtualClock& clock) : clock_(clock) {
+    for (auto& r : reading.hand) {
+      r.q_rad = kRestingArm;
+      r.valid = r.enabled = r.dead_man = true;
+    }
+  }
+  void send_sync() noexcept {
+    acting = written;
+    ++syncs;
+  }
+  rt::RigReading read_tpdos(Nanoseconds) noexcept {
+    clock_.time += std::chrono::microseconds(460);
+    if (const auto it = stalls.find(syncs); it != stalls.end()) clock_.time += it->second;
+    sampled_at.push_back(clock_.time);
+    return reading;
+  }
+  rt::WireTorque write_rpdos(const rt::RigCommand& command) noexcept {
+    written = command;
+    rt::WireTorque wire{};
+    for (std::size_t h = 0; h < rt::kHands; ++h) {
+      for (std::size_t j = 0; j < rt::kJoints; ++j) {
+        wire[h][j] = static_cast<std::int16_t>(command.hand[h].torque_Nm[j] * 1e4);
+      }
+    }
+    return wire;
+  }
+
+  rt::RigReading reading;
+  rt::RigCommand written, acting;
+  std::int64_t syncs = 0;
+  std::map<std::int64_t, Nanoseconds> stalls;  // at the n-th SYNC (from 1), the tick takes so much longer
+  std::vector<Nanoseconds> sampled_at;
+
+ private:
+  VirtualClock& clock_;
+};
+
+inline scene::Scene small_scene() {
+  scene::Scene s;
+  s.suture.nodes = 10;
+  s.suture.length_m = 1.0;
+  s.suture.radius_m = 0.01;
+  s.world.fixed = {{0, {0.0, 0.0, 5.5}, std::nullopt}};
+  s.world.grippers_collide = false;
+  s.hands.workspace_scale = 20.0;
+  const control::Vec3 tip_W = 20.0 * (control::tip_position(kRestingArm) - control::kHome_DT_m);
+  s.hands.workspace_origin_m = {0.02 - tip_W.x(), -tip_W.y(), 4.8 - tip_W.z()};  // both tools 2 cm beside the thread
+  return s;
+}
+
+/// Everything a cycle needs, and a way to collect what it leaves.
+struct VirtualRig {
+  explicit VirtualRig(const scene::Scene& scene = small_scene(), control::Settings settings = {20, true})
+      : thread(std::get<physics::Simulation>(physics::Simulation::make(scene))), controller(scene.hands, settings) {}
+
+  std::vector<rt::TickRecord> records() {
+    std::vector<rt::TickRecord> all;
+    for (rt::TickRecord r; outlets->records.pop(r);) all.push_back(r);
+    return all;
+  }
+
+  VirtualClock clock;
+  VirtualBus bus{clock};
+  physics::Simulation thread;
+  control::Controller controller;
+  std::unique_ptr<rt::Outlets> outlets = std::make_unique<rt::Outlets>();
+  Cycle<VirtualBus, VirtualClock> cycle{bus, clock, controller, thread, *outlets};
+};
+
+}  // namespace ligature

@@ -1,0 +1,177 @@
+// What goes out for what came in, with time as an argument and a sink that remembers.
+#include "firmware/telemetry/telemetry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "firmware/telemetry/lcm_link.hpp"
+
+namespace ligature::telemetry {
+namespace {
+
+constexpr Names kNames{[](int s) { return s == 0 ? "OFF" : "ON"; }, [](int) { return "broken"; }};
+
+class Memory final : public Sink {
+ public:
+  void send(const ligature_msg::tick_batch_t& m) override { batches.push_back(m); }
+  void send(const ligature_msg::thread_t& m) override { shapes.push_back(m); }
+  void send(const ligature_msg::status_t& m) override { statuses.push_back(m); }
+  void send(const ligature_msg::event_t& m) override { events.push_back(m); }
+  std::vector<ligature_msg::tick_batch_t> batches;
+  std::vector<ligature_msg::thread_t> shapes;
+  std::vector<ligature_msg::status_t> statuses;
+  std::vector<ligature_msg::event_t> events;
+};
+
+class TelemetryTest : public ::testing::Test {
+ protected:
+  void push(std::int64_t tick) {
+    record.tick = tick;
+    outlets->records.push(record);
+  }
+  ligature_msg::command_t command(std::int8_t kind) {
+    ligature_msg::command_t c{};
+    c.id = 7;
+    c.kind = kind;
+    return c;
+  }
+  std::unique_ptr<rt::Outlets> outlets = std::make_unique<rt::Outlets>();
+  Memory sink;
+  Session session{42, "1.2.3", "a.toml", "text", 0.001, 3.3, 0.05, true};
+  Telemetry telemetry{session, kNames, *outlets, sink};
+  rt::TickRecord record;
+};
+
+TEST_F(TelemetryTest, EveryRecordGoesIntoExactlyOneBatchInOrder) {
+  for (std::int64_t t = 0; t < 45; ++t) push(t);
+  telemetry.step(0);
+  ASSERT_EQ(sink.batches.size(), 2U);
+  telemetry.finish(1);
+  ASSERT_EQ(sink.batches.size(), 3U);
+  std::int64_t expected = 0;
+  for (const auto& batch : sink.batches) {
+    EXPECT_EQ(batch.session, 42);
+    EXPECT_EQ(batch.count, static_cast<std::int32_t>(batch.ticks.size()));
+    for (const auto& t : batch.ticks) EXPECT_EQ(t.tick, expected++);
+  }
+  EXPECT_EQ(expected, 45);
+}
+
+TEST_F(TelemetryTest, MessagesCarryEveryField) {
+  record.p_WT_m[1] = {1, 2, 3};
+  record.f_device_N[0] = {0.1, 0.2, 0.3};
+  record.torque_permille[1] = {4, 5, 6};
+  record.grip[1] = true;
+  record.dead_man[0] = true;
+  record.tpdo_age_ticks = {8, 9};
+  record.contacts = 11;
+  record.min_gap_m = 1e9;
+  push(0);
+  telemetry.finish(0);
+  const auto& m = sink.batches.at(0).ticks.at(0);
+  EXPECT_EQ(m.p_WT_m[1][2], 3.0);
+  EXPECT_EQ(m.f_device_N[0][1], 0.2);
+  EXPECT_EQ(m.torque_permille[1][2], 6);
+  EXPECT_EQ(m.grip[1], 1);
+  EXPECT_EQ(m.dead_man[0], 1);
+  EXPECT_EQ(m.tpdo_age_ticks[1], 9);
+  EXPECT_EQ(m.contacts, 11);
+  EXPECT_EQ(m.min_gap_m, 1e9);
+  EXPECT_EQ(m.grasped_node[0], -1);
+}
+
+TEST_F(TelemetryTest, DroppedRecordsAreTold) {
+  const auto room = static_cast<std::int64_t>(outlets->records.capacity());
+  for (std::int64_t t = 0; t < room + 5; ++t) push(t);
+  telemetry.finish(0);
+  EXPECT_EQ(sink.batches.back().ring_dropped, 5);
+}
+
+TEST_F(TelemetryTest, ShapesComeAtSixtyHertzAndOnlyWhenNew) {
+  outlets->shape.back().count = 2;
+  outlets->shape.back().p_W_m[1] = {1.0F, 2.0F, 3.0F};
+  outlets->shape.publish();
+  telemetry.step(0);
+  telemetry.step(20'000);  // nothing new
+  ASSERT_EQ(sink.shapes.size(), 1U);
+  EXPECT_EQ(sink.shapes[0].count, 2);
+  EXPECT_EQ(sink.shapes[0].p_W_m[1][2], 3.0F);
+  for (std::int64_t us = 30'000; us < 1'030'000; us += 5'000) {
+    outlets->shape.publish();
+    telemetry.step(us);
+  }
+  EXPECT_NEAR(static_cast<double>(sink.shapes.size()), 51.0, 10.0);  // every 20 ms: the first step after 16.7
+}
+
+TEST_F(TelemetryTest, StatusCountsMissesAndLostPeriods) {
+  record.flags = rt::kDeadlineMissed;
+  push(0);
+  record.flags = rt::kPeriodLost;
+  push(1);
+  push(2);
+  telemetry.step(0);
+  telemetry.step(50'000);
+  telemetry.step(100'000);
+  ASSERT_EQ(sink.statuses.size(), 2U);
+  EXPECT_EQ(sink.statuses[1].deadline_misses, 1);
+  EXPECT_EQ(sink.statuses[1].periods_lost, 2);
+  EXPECT_EQ(sink.statuses[1].scene_toml, "text");
+  EXPECT_EQ(sink.statuses[1].realtime, 1);
+}
+
+TEST_F(TelemetryTest, EventsAreReadOutOfTheRecords) {
+  push(0);
+  record.state = 6;
+  record.fault = 11;
+  record.grasped_node[1] = 17;
+  record.flags = rt::kLeftLimited;
+  push(1);
+  record.flags = rt::kLeftLimited | rt::kPeriodLost;  // held values are no news
+  push(2);
+  record.flags = 0;
+  record.grasped_node[1] = -1;
+  push(3);
+  telemetry.step(5);
+  ASSERT_EQ(sink.events.size(), 5U);
+  using ligature_msg::event_t;
+  const std::int8_t kinds[] = {event_t::KIND_FAULT, event_t::KIND_STATE, event_t::KIND_LIMIT, event_t::KIND_GRASP,
+                               event_t::KIND_RELEASE};
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(sink.events[i].kind, kinds[i]) << i;
+  EXPECT_EQ(sink.events[0].text, "fault 11: broken");
+  EXPECT_EQ(sink.events[3].code, 17);
+  EXPECT_EQ(sink.events[4].tick, 3);
+}
+
+TEST_F(TelemetryTest, CommandsArePassedOnAndAnswered) {
+  const auto ack = telemetry.handle(command(ligature_msg::command_t::KIND_ARM), 9);
+  EXPECT_EQ(ack.accepted, 1);
+  EXPECT_EQ(ack.id, 7);
+  rt::Command passed;
+  ASSERT_TRUE(outlets->commands.pop(passed));
+  EXPECT_EQ(passed.kind, rt::CommandKind::kArm);
+}
+
+TEST_F(TelemetryTest, SenselessCommandsAreRefusedWithAReason) {
+  EXPECT_EQ(telemetry.handle(command(99), 0).accepted, 0);
+  EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_RESET_FAULT), 0).reason, "there is no fault");
+  record.fault = 10;
+  push(0);
+  telemetry.step(0);
+  EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_ARM), 0).accepted, 0);
+  EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_RESET_FAULT), 0).accepted, 1);
+  for (int i = 0; i < 100; ++i) (void)telemetry.handle(command(ligature_msg::command_t::KIND_STOP), 0);
+  EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_STOP), 0).reason, "too many commands at once");
+}
+
+TEST(LcmLink, AUrlThatCannotBeOpenedOnlyCounts) {
+  LcmLink link("nosuchprovider://", [](const auto&) {});
+  EXPECT_FALSE(link.is_open());
+  EXPECT_FALSE(link.listen([](const auto&) { return ligature_msg::ack_t{}; }));
+  link.send(ligature_msg::status_t{});
+  EXPECT_EQ(link.failures(), 1);
+  link.wait(0);
+}
+
+}  // namespace
+}  // namespace ligature::telemetry
