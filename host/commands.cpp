@@ -63,10 +63,11 @@ void add_export(CLI::App& app) {
   command->add_option("--forces", options->targets.forces, "forces, grasp and state of every tick");
   command->add_option("--shape", options->targets.shape, "the thread's nodes at 60 Hz");
   command->add_option("--ticks", options->targets.ticks, "every field of every tick");
-  command->footer(forces_columns_help() + shape_columns_help() + ticks_columns_help() +
-                  "Each tick once, in order of arrival. A cut-off log is exported up to its last whole event, and that is\n"
-                  "said. Files appear complete or not at all.\n\n"
-                  "Example:\n  ligature-host export knot.lcmlog --forces forces.csv --shape shape.csv");
+  command->footer(
+      forces_columns_help() + shape_columns_help() + ticks_columns_help() +
+      "Each tick once, in order of arrival. A cut-off log is exported up to its last whole event, and that is\n"
+      "said. Files appear complete or not at all.\n\n"
+      "Example:\n  ligature-host export knot.lcmlog --forces forces.csv --shape shape.csv");
   command->callback([options] {
     const auto& [forces, shape, ticks] = options->targets;
     if (forces.empty() && shape.empty() && ticks.empty())
@@ -94,7 +95,8 @@ void add_plot(CLI::App& app) {
   command->add_option("log", options->log, "LCM log of 'record'")->required();
   command->add_option("--out", options->out, "picture to write: .png, .svg or .pdf")->required();
   command->footer(
-      "Draws |F| per hand, the device's limit, grasp and release, and the controller's state. Spikes are never thinned\n"
+      "Draws |F| per hand, the device's limit, grasp and release, and the controller's state. Spikes are never "
+      "thinned\n"
       "away. Uses matplotlib of the Python set up by scripts/setup; LIGATURE_PYTHON names another one.\n\n"
       "Example:\n  ligature-host plot knot.lcmlog --out forces.png");
   command->callback([options] {
@@ -114,7 +116,8 @@ void add_report(CLI::App& app) {
   command->add_option("log", options->log, "LCM log of 'record'")->required();
   command->add_flag("--json", options->json, "as one JSON object");
   command->footer(
-      "Percentiles are nearest-rank over all executed ticks. Mean force is over the ticks with a grasp. The knot is named\n"
+      "Percentiles are nearest-rank over all executed ticks. Mean force is over the ticks with a grasp. The knot is "
+      "named\n"
       "ten times a second of the recording.\n\n"
       "Example:\n  ligature-host report knot.lcmlog --json | jq .execution_us.p99");
   command->callback([options] {
@@ -151,7 +154,8 @@ void add_send(CLI::App& app) {
       ->check(CLI::IsMember({"arm", "disarm", "stop", "reset-fault", "reset-thread"}));
   add_url(*command, options->lcm_url);
   command->footer(
-      "Waits up to 1 s; exit code 3 when the firmware refuses or does not answer. No command can by itself put force on\n"
+      "Waits up to 1 s; exit code 3 when the firmware refuses or does not answer. No command can by itself put force "
+      "on\n"
       "a hand: that needs the dead-man button of the device as well.\n\n"
       "Example:\n  ligature-host send stop");
   command->callback([options] { send(options->word, options->lcm_url); });

@@ -10,8 +10,7 @@ namespace ligature::host {
 class CsvRow {
  public:
   template <class T>
-    requires std::integral<T> || std::floating_point<T>
-  CsvRow& add(T value) {
+  requires std::integral<T> || std::floating_point<T> CsvRow& add(T value) {
     char digits[32];
     const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
     return add(std::string_view(digits, static_cast<std::size_t>(end - digits)));

@@ -80,7 +80,8 @@ const std::string& ticks_row(CsvRow& row, const ligature_msg::tick_t& tick, doub
 }
 
 std::string ticks_columns_help() {
-  return "ticks.csv, one row a tick: every field of tick_t (protocol/lcm/tick_t.lcm) with its unit in the column's name:\n"
+  return "ticks.csv, one row a tick: every field of tick_t (protocol/lcm/tick_t.lcm) with its unit in the column's "
+         "name:\n"
          "  times in ns (scheduled: CLOCK_MONOTONIC; the others from the wake-up), tool tip position and velocity in\n"
          "  the world, forces, joint torques in per mille of rated, age of the last TPDO set in ticks, energies in J,\n"
          "  max_stretch = largest l/l_rest - 1, min_gap_m (negative: overlap, 1e9: none near), active contacts.\n";

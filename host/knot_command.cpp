@@ -11,8 +11,10 @@ namespace ligature::host {
 namespace {
 
 std::string json_line(const knot::KnotResult& found) {
-  const nlohmann::ordered_json json = {{"type", found.type}, {"handedness", found.handedness},
-                                       {"determinant", found.determinant}, {"alexander", found.alexander}};
+  const nlohmann::ordered_json json = {{"type", found.type},
+                                       {"handedness", found.handedness},
+                                       {"determinant", found.determinant},
+                                       {"alexander", found.alexander}};
   return json.dump() + "\n";
 }
 
@@ -36,7 +38,8 @@ std::string describe_knot(const KnotOptions& options) {
   const bool closed = options.closed || (!options.open && ends_meet);
   if (closed && ends_meet) line.points.pop_back();
   if (line.points.size() < 3)
-    throw BadInput(options.file + ": found " + std::to_string(line.points.size()) + " different points, allowed 3 or more");
+    throw BadInput(options.file + ": found " + std::to_string(line.points.size()) +
+                   " different points, allowed 3 or more");
   const knot::KnotResult found = knot::recognise(line.points, closed);
   return options.json ? json_line(found) : words(found, line);
 }

@@ -6,8 +6,8 @@ namespace ligature::host {
 
 struct KnotOptions {
   std::string file{};            // CSV polyline or LCM log
-  bool closed = false;          // --closed: the last point joins the first
-  bool open = false;            // --open: it does not, even where the two coincide
+  bool closed = false;           // --closed: the last point joins the first
+  bool open = false;             // --open: it does not, even where the two coincide
   std::optional<double> at_s{};  // which shape, where there are many; the last one without
   bool json = false;
 };

@@ -78,7 +78,8 @@ LcmLink::LcmLink(const std::string& url, const std::string& channels, Handler ha
     if (lcm_->good()) subscription = lcm_->subscribe(channels, &Receiver::on_message, receiver_.get());
   }
   if (!subscription)
-    throw RunFailed("cannot open " + url + ": wrong address or port, or no multicast route; remedy: run inside "
+    throw RunFailed("cannot open " + url +
+                    ": wrong address or port, or no multicast route; remedy: run inside "
                     "scripts/private-net, or 'ip link set lo up; ip route add 224.0.0.0/4 dev lo' as root");
   subscription->setQueueCapacity(kQueuedMessages);
 }

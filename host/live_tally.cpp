@@ -55,9 +55,9 @@ void LiveTally::add(const ligature_msg::tick_batch_t& batch) {
 }
 
 std::string LiveTally::progress_line(double elapsed_s, double ticks_per_s) const {
-  std::string line = text("%7.1f s  %lld ticks  %.0f/s  %lld lost", elapsed_s,
-                          static_cast<long long>(sessions_.received()), ticks_per_s,
-                          static_cast<long long>(sessions_.missing()));
+  std::string line =
+      text("%7.1f s  %lld ticks  %.0f/s  %lld lost", elapsed_s, static_cast<long long>(sessions_.received()),
+           ticks_per_s, static_cast<long long>(sessions_.missing()));
   if (sessions_.restarts() > 0) line += text("  %zu restarts", sessions_.restarts());
   if (sessions_.received() == 0) return line + "  waiting for the firmware";
   line += text("  %-7s left %.2f N  right %.2f N", state_name(state_).data(), force_N_[0], force_N_[1]);
@@ -69,12 +69,14 @@ std::string LiveTally::summary(std::size_t max_ranges) const {
   const auto received = sessions_.received(), missing = sessions_.missing();
   std::string lines = text("recorded %lld of %lld ticks, %lld lost", static_cast<long long>(received),
                            static_cast<long long>(received + missing), static_cast<long long>(missing));
-  lines += text("; %lld shapes, %lld messages in all\n", static_cast<long long>(shapes_),
-                static_cast<long long>(messages_));
-  if (sessions_.restarts() > 0) lines += text("sessions: %zu (the firmware was restarted)\n", sessions_.sessions().size());
+  lines +=
+      text("; %lld shapes, %lld messages in all\n", static_cast<long long>(shapes_), static_cast<long long>(messages_));
+  if (sessions_.restarts() > 0)
+    lines += text("sessions: %zu (the firmware was restarted)\n", sessions_.sessions().size());
   if (sessions_.duplicates() > 0)
     lines += text("duplicates: %lld ticks came twice\n", static_cast<long long>(sessions_.duplicates()));
-  if (unreadable_ > 0) lines += text("unreadable: %lld messages, kept as they came\n", static_cast<long long>(unreadable_));
+  if (unreadable_ > 0)
+    lines += text("unreadable: %lld messages, kept as they came\n", static_cast<long long>(unreadable_));
   int number = 0;
   for (const auto& session : sessions_.sessions()) lines += describe_losses(session, ++number, max_ranges);
   return lines;

@@ -27,7 +27,8 @@ T big_endian(const unsigned char* bytes) {
 LogReader::LogReader(const std::string& path) {
   std::error_code why;
   if (!std::filesystem::is_regular_file(path, why))
-    throw BadInput(path + ": " + (why ? why.message() : "not a file") + "; allowed: an LCM log of ligature-host record");
+    throw BadInput(path + ": " + (why ? why.message() : "not a file") +
+                   "; allowed: an LCM log of ligature-host record");
   file_.reset(std::fopen(path.c_str(), "rb"));
   if (!file_) throw BadInput(path + ": " + std::strerror(errno));
   size_ = static_cast<std::int64_t>(std::filesystem::file_size(path));
@@ -35,7 +36,8 @@ LogReader::LogReader(const std::string& path) {
   const bool has_start = std::fread(start.data(), 1, start.size(), file_.get()) == start.size();
   if (size_ == 0) throw BadInput(path + ": empty file; allowed: an LCM log of ligature-host record");
   if (!has_start || big_endian<std::uint32_t>(start.data()) != kSync)
-    throw BadInput(path + ": not an LCM log (does not begin with ED A1 DA 01); allowed: a file of ligature-host record");
+    throw BadInput(path +
+                   ": not an LCM log (does not begin with ED A1 DA 01); allowed: a file of ligature-host record");
 }
 
 const LogEvent* LogReader::next() {

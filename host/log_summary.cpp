@@ -101,7 +101,8 @@ LogSummary summarise(const std::string& log_path, double knot_every_s) {
   summariser.finish();
   summariser.summary.damage = log.damage();
   if (summariser.summary.tally.received() == 0)
-    throw BadInput(log_path + ": holds no readable tick; allowed: a log with messages on " + std::string(kTicksChannel));
+    throw BadInput(log_path + ": holds no readable tick; allowed: a log with messages on " +
+                   std::string(kTicksChannel));
   return std::move(summariser.summary);
 }
 

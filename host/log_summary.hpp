@@ -23,10 +23,10 @@ struct LogSummary {
   RigFacts facts;
   SessionTally tally;
   TickStatistics ticks;
-  std::vector<KnotSpan> knots;              // changes over time, oldest first
+  std::vector<KnotSpan> knots;  // changes over time, oldest first
   std::optional<ligature_msg::status_t> last_status;
   std::int64_t unreadable_messages = 0, shapes = 0;
-  std::string damage;                       // of the log, empty for a sound one
+  std::string damage;  // of the log, empty for a sound one
 
   /// Time on the controller's clock that the recorded ticks span, summed over sessions.
   [[nodiscard]] double duration_s() const;

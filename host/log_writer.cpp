@@ -54,7 +54,8 @@ void LogWriter::close() {
 }
 
 void LogWriter::fail() const {
-  throw RunFailed(path_ + ": writing failed: " + std::strerror(errno) + "; the log ends there, what came before is kept");
+  throw RunFailed(path_ + ": writing failed: " + std::strerror(errno) +
+                  "; the log ends there, what came before is kept");
 }
 
 }  // namespace ligature::host

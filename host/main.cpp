@@ -47,7 +47,8 @@ int main(int argc, char** argv) {
       "'ligature-host COMMAND --help' explains each.\n"
       "Exit code: 0 done, 2 bad usage or bad input, 3 the work itself failed.");
   if (argc > 1 && argv[1][0] != '-' && !has_command(app, argv[1]))
-    return complain("found command '" + std::string(argv[1]) + "', allowed record, export, plot, report, knot, send", 2);
+    return complain("found command '" + std::string(argv[1]) + "', allowed record, export, plot, report, knot, send",
+                    2);
   catch_stop_signals();
   try {
     app.parse(argc, argv);

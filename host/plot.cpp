@@ -48,7 +48,8 @@ std::string find_python() {
   const char* chosen = getenv("LIGATURE_PYTHON");
   const std::string python = chosen && *chosen ? chosen : LIGATURE_DEFAULT_PYTHON;
   if (access(python.c_str(), X_OK) == 0) return python;
-  throw BadInput("plot: no Python at " + python + "; remedy: run scripts/setup, or set LIGATURE_PYTHON to one that has "
+  throw BadInput("plot: no Python at " + python +
+                 "; remedy: run scripts/setup, or set LIGATURE_PYTHON to one that has "
                  "the packages of requirements.txt");
 }
 
@@ -106,12 +107,13 @@ void plot(const std::string& log_path, const std::string& out_path) {
   const ScratchFolder scratch;
   const std::string forces_csv = scratch.file("forces.csv");
   const auto exported = export_csv(log_path, {.forces = forces_csv, .shape = {}, .ticks = {}});
-  if (!exported.damage.empty()) std::fprintf(stderr, "ligature-host: %s: %s\n", log_path.c_str(), exported.damage.c_str());
+  if (!exported.damage.empty())
+    std::fprintf(stderr, "ligature-host: %s: %s\n", log_path.c_str(), exported.damage.c_str());
   const std::string title = facts.scene_file.empty() ? fs::path(log_path).filename().string()
                                                      : fs::path(facts.scene_file).filename().string();
-  const int code = run({python, script, forces_csv, "--out", out_path, "--title", title, "--limit",
-                        text("%.17g", facts.max_force_N)},
-                       scratch.file("complaints"));
+  const int code = run(
+      {python, script, forces_csv, "--out", out_path, "--title", title, "--limit", text("%.17g", facts.max_force_N)},
+      scratch.file("complaints"));
   if (code != 0)
     throw RunFailed("plot: " + python + " ended with " + std::to_string(code) + ": " +
                     last_line(scratch.file("complaints")) + "; remedy for a missing package: scripts/setup");

@@ -83,7 +83,8 @@ class PolylineReader {
       if (name == "node") found.node = i;
     }
     if (found.x < 0 || found.y < 0 || found.z < 0)
-      refuse("header '" + std::string(names.front()) + ",...' lacks a coordinate, allowed columns x,y,z or x_m,y_m,z_m "
+      refuse("header '" + std::string(names.front()) +
+             ",...' lacks a coordinate, allowed columns x,y,z or x_m,y_m,z_m "
              "(and t_s, node)");
     return found;
   }
@@ -98,7 +99,8 @@ class PolylineReader {
   void take_row(const std::vector<std::string_view>& fields) {
     if (static_cast<int>(fields.size()) != columns_->count)
       refuse("found " + std::to_string(fields.size()) + " fields, allowed " + std::to_string(columns_->count));
-    const std::array<double, 3> point{value(fields, columns_->x), value(fields, columns_->y), value(fields, columns_->z)};
+    const std::array<double, 3> point{value(fields, columns_->x), value(fields, columns_->y),
+                                      value(fields, columns_->z)};
     if (columns_->time >= 0) {
       const double time_s = value(fields, columns_->time);
       if (current_.time_s != time_s) {
@@ -115,8 +117,8 @@ class PolylineReader {
   /// Keeps the shape just read when it is a better answer than the one before.
   void choose() {
     if (current_.points.empty()) return;
-    const bool is_better = !at_s_ || !chosen_.time_s ||
-                           std::abs(*current_.time_s - *at_s_) < std::abs(*chosen_.time_s - *at_s_);
+    const bool is_better =
+        !at_s_ || !chosen_.time_s || std::abs(*current_.time_s - *at_s_) < std::abs(*chosen_.time_s - *at_s_);
     if (is_better) chosen_ = current_;
   }
 

@@ -17,10 +17,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr auto kTerminalEvery = milliseconds(250);     // progress on a terminal
-constexpr auto kPlainEvery = milliseconds(5000);       // and in a log file
-constexpr auto kLongestDrain = milliseconds(300);      // for messages still on their way after the stop
-constexpr int kQuiet_ms = 100;                         // nothing came for that long: nothing is on its way
+constexpr auto kTerminalEvery = milliseconds(250);  // progress on a terminal
+constexpr auto kPlainEvery = milliseconds(5000);    // and in a log file
+constexpr auto kLongestDrain = milliseconds(300);   // for messages still on their way after the stop
+constexpr int kQuiet_ms = 100;                      // nothing came for that long: nothing is on its way
 
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
@@ -97,7 +97,8 @@ void record(const RecordOptions& options) {
     return;
   }
   if (std::filesystem::is_regular_file(options.out)) std::filesystem::remove(options.out);  // an empty log helps nobody
-  throw RunFailed("no message came on " + options.lcm_url + "; is ligature-firmware running with the same --lcm-url "
+  throw RunFailed("no message came on " + options.lcm_url +
+                  "; is ligature-firmware running with the same --lcm-url "
                   "in the same network namespace?");
 }
 

@@ -67,13 +67,14 @@ Json microseconds(const Percentiles& p) {
 
 std::string report_table(const LogSummary& s) {
   std::string table = text("run of %.3f s", s.duration_s());
-  if (s.facts.has_status) table += text(", scene %s, firmware %s", s.facts.scene_file.c_str(), s.facts.firmware_version.c_str());
+  if (s.facts.has_status)
+    table += text(", scene %s, firmware %s", s.facts.scene_file.c_str(), s.facts.firmware_version.c_str());
   table += "\n";
   const auto received = s.tally.received(), missing = s.tally.missing();
   table += row("samples", text("%lld recorded, %lld lost, %.1f per second", static_cast<Count>(received),
                                static_cast<Count>(missing), recorded_per_s(s)));
-  table += row("rate held", text("%.1f ticks per second, %.3f %% of periods executed", rate_held_per_s(s),
-                                 executed_percent(s)));
+  table += row("rate held",
+               text("%.1f ticks per second, %.3f %% of periods executed", rate_held_per_s(s), executed_percent(s)));
   table += row("deadline misses", text("%lld finished late", static_cast<Count>(s.ticks.deadline_misses())));
   table += row("periods lost", text("%lld skipped whole", static_cast<Count>(s.ticks.periods_lost())));
   table += duration_row("wake-up latency", s.ticks.wakeup());
@@ -86,7 +87,8 @@ std::string report_table(const LogSummary& s) {
   if (const auto first = first_tick(s); first > 1)
     table += row("joined late", text("recording begins at tick %lld", static_cast<Count>(first)));
   if (s.tally.restarts() > 0) table += row("restarts", text("%zu of the firmware", s.tally.restarts()));
-  if (s.tally.duplicates() > 0) table += row("duplicates", text("%lld ticks", static_cast<Count>(s.tally.duplicates())));
+  if (s.tally.duplicates() > 0)
+    table += row("duplicates", text("%lld ticks", static_cast<Count>(s.tally.duplicates())));
   if (s.unreadable_messages > 0)
     table += row("unreadable", text("%lld messages", static_cast<Count>(s.unreadable_messages)));
   if (!s.damage.empty()) table += row("log damaged", s.damage);
@@ -99,26 +101,43 @@ std::string report_json(const LogSummary& s) {
   Json hands, faults = Json::array(), history = Json::array(), knot = nullptr;
   for (std::size_t hand = 0; hand < 2; ++hand) {
     const auto& felt = s.ticks.hands()[hand];
-    hands[std::string(kHandNames[hand])] = {{"peak_N", felt.peak_N}, {"peak_s", s.facts.time_s(felt.peak_tick)},
-                                            {"mean_N", felt.mean_N()}, {"grasp_s", s.facts.time_s(felt.grasp_ticks)},
+    hands[std::string(kHandNames[hand])] = {{"peak_N", felt.peak_N},
+                                            {"peak_s", s.facts.time_s(felt.peak_tick)},
+                                            {"mean_N", felt.mean_N()},
+                                            {"grasp_s", s.facts.time_s(felt.grasp_ticks)},
                                             {"limited_ticks", felt.limited_ticks}};
   }
-  for (const auto& entry : s.ticks.faults()) faults.push_back({{"t_s", s.facts.time_s(entry.tick)}, {"fault", entry.fault}});
+  for (const auto& entry : s.ticks.faults())
+    faults.push_back({{"t_s", s.facts.time_s(entry.tick)}, {"fault", entry.fault}});
   for (const auto& span : s.knots) history.push_back({span.from_s, span.type});
   if (!s.knots.empty())
-    knot = {{"type", s.knots.back().type}, {"handedness", s.knots.back().handedness},
-            {"first_tied_s", s.knot_first_s()}, {"unchanged_since_s", s.knot_since_s()}};
-  const Json json = {{"duration_s", s.duration_s()}, {"scene", s.facts.scene_file},
-                     {"firmware_version", s.facts.firmware_version}, {"ticks_recorded", s.tally.received()},
-                     {"ticks_lost", s.tally.missing()}, {"first_tick", first_tick(s)}, {"duplicates", s.tally.duplicates()},
-                     {"restarts", s.tally.restarts()}, {"unreadable_messages", s.unreadable_messages},
+    knot = {{"type", s.knots.back().type},
+            {"handedness", s.knots.back().handedness},
+            {"first_tied_s", s.knot_first_s()},
+            {"unchanged_since_s", s.knot_since_s()}};
+  const Json json = {{"duration_s", s.duration_s()},
+                     {"scene", s.facts.scene_file},
+                     {"firmware_version", s.facts.firmware_version},
+                     {"ticks_recorded", s.tally.received()},
+                     {"ticks_lost", s.tally.missing()},
+                     {"first_tick", first_tick(s)},
+                     {"duplicates", s.tally.duplicates()},
+                     {"restarts", s.tally.restarts()},
+                     {"unreadable_messages", s.unreadable_messages},
                      {"recorded_per_s", recorded_per_s(s)},
-                     {"executed_per_s", rate_held_per_s(s)}, {"executed_percent", executed_percent(s)},
-                     {"deadline_misses", s.ticks.deadline_misses()}, {"periods_lost", s.ticks.periods_lost()},
-                     {"wakeup_us", microseconds(s.ticks.wakeup())}, {"control_us", microseconds(s.ticks.control())},
-                     {"execution_us", microseconds(s.ticks.execution())}, {"hand_force", hands},
-                     {"max_force_N", s.facts.max_force_N}, {"faults", faults}, {"knot", knot},
-                     {"knot_history", history}, {"damage", s.damage}};
+                     {"executed_per_s", rate_held_per_s(s)},
+                     {"executed_percent", executed_percent(s)},
+                     {"deadline_misses", s.ticks.deadline_misses()},
+                     {"periods_lost", s.ticks.periods_lost()},
+                     {"wakeup_us", microseconds(s.ticks.wakeup())},
+                     {"control_us", microseconds(s.ticks.control())},
+                     {"execution_us", microseconds(s.ticks.execution())},
+                     {"hand_force", hands},
+                     {"max_force_N", s.facts.max_force_N},
+                     {"faults", faults},
+                     {"knot", knot},
+                     {"knot_history", history},
+                     {"damage", s.damage}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

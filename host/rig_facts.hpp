@@ -6,9 +6,9 @@ namespace ligature::host {
 
 /// What every reader of a log needs before its first tick.
 struct RigFacts {
-  double period_s = 1e-3;     // control period; the rig's default when the log holds no status
-  double max_force_N = 3.3;   // force limit at the device
-  bool has_status = false;    // false: the two above are defaults
+  double period_s = 1e-3;    // control period; the rig's default when the log holds no status
+  double max_force_N = 3.3;  // force limit at the device
+  bool has_status = false;   // false: the two above are defaults
   std::string scene_file;
   std::string firmware_version;
 

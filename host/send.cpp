@@ -40,7 +40,8 @@ std::optional<std::int8_t> command_kind(std::string_view word) {
 
 void send(std::string_view word, const std::string& lcm_url) {
   const auto kind = command_kind(word);
-  if (!kind) throw BadInput("send: found '" + std::string(word) + "', allowed arm, disarm, stop, reset-fault, reset-thread");
+  if (!kind)
+    throw BadInput("send: found '" + std::string(word) + "', allowed arm, disarm, stop, reset-fault, reset-thread");
   Command command{};
   command.utime = command.id = now_us();
   command.kind = *kind;
@@ -60,7 +61,8 @@ void send(std::string_view word, const std::string& lcm_url) {
   }
   const std::string what(word);
   if (!answer)
-    throw RunFailed(what + ": no answer within 1 s; is ligature-firmware running with the same --lcm-url in the same "
+    throw RunFailed(what +
+                    ": no answer within 1 s; is ligature-firmware running with the same --lcm-url in the same "
                     "network namespace?");
   if (!answer->accepted) throw RunFailed(what + " refused: " + answer->reason);
   std::printf("%s accepted%s%s\n", what.c_str(), answer->reason.empty() ? "" : ": ", answer->reason.c_str());

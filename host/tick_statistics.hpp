@@ -9,11 +9,11 @@ namespace ligature::host {
 
 /// What one hand felt.
 struct HandStatistics {
-  double peak_N = 0.0;               // largest |f_device|
+  double peak_N = 0.0;  // largest |f_device|
   std::int64_t peak_tick = -1;
-  double sum_N = 0.0;                // of |f_device| over the ticks with a grasp
+  double sum_N = 0.0;  // of |f_device| over the ticks with a grasp
   std::int64_t grasp_ticks = 0;
-  std::int64_t limited_ticks = 0;    // force saturated at the limit
+  std::int64_t limited_ticks = 0;  // force saturated at the limit
   [[nodiscard]] double mean_N() const { return grasp_ticks ? sum_N / static_cast<double>(grasp_ticks) : 0.0; }
 };
 

@@ -21,7 +21,8 @@ std::string write_log(const test::TestFolder& folder) {
 /// Reads all; the first ticks of the batches that came.
 std::vector<std::int64_t> first_ticks(LogReader& log) {
   std::vector<std::int64_t> ticks;
-  while (const LogEvent* event = log.next()) ticks.push_back(decode<ligature_msg::tick_batch_t>(event->data)->ticks[0].tick);
+  while (const LogEvent* event = log.next())
+    ticks.push_back(decode<ligature_msg::tick_batch_t>(event->data)->ticks[0].tick);
   return ticks;
 }
 
@@ -56,7 +57,7 @@ TEST(LogReader, GoesOnBehindABrokenEvent) {
   const test::TestFolder folder;
   std::string bytes = test::text_of(write_log(folder));
   const std::size_t event_size = bytes.size() / kEvents;
-  bytes[3 * event_size] = 'x';                                 // a sync word
+  bytes[3 * event_size] = 'x';                                   // a sync word
   bytes.replace(6 * event_size + 24, 4, "\x7F\xFF\xFF\xFF", 4);  // a data length
   test::write_text(folder.file("broken.lcmlog"), bytes);
   LogReader log(folder.file("broken.lcmlog"));

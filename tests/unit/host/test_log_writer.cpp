@@ -49,9 +49,8 @@ TEST(LogWriter, AFileSizeLimitIsAnErrorAndKeepsWhatCameBefore) {
   const rlimit small{.rlim_cur = 100'000, .rlim_max = before.rlim_max};
   setrlimit(RLIMIT_FSIZE, &small);
   int written = 0;
-  EXPECT_THROW(
-      for (; written < 1000; ++written) test::write(log, kTicksChannel, test::batch_of(1, written * 20, 20)),
-      RunFailed);
+  EXPECT_THROW(for (; written < 1000; ++written) test::write(log, kTicksChannel, test::batch_of(1, written * 20, 20)),
+               RunFailed);
   setrlimit(RLIMIT_FSIZE, &before);
   LogReader kept(path);
   int events = 0;

@@ -82,15 +82,17 @@ TEST(Messages, RefusesImplausibleValues) {
 
 TEST(Messages, SurvivesRandomAndMutatedBytesOnEveryChannel) {
   std::mt19937 random(3);
-  const std::vector<Bytes_> seeds{encoded(test::batch_of(7, 0, 3)), encoded(test::thread_of(0, test::straight_points(5))),
-                                  encoded(some_status()), encoded(ligature_msg::event_t{}),
-                                  encoded(ligature_msg::ack_t{}), encoded(ligature_msg::command_t{})};
+  const std::vector<Bytes_> seeds{
+      encoded(test::batch_of(7, 0, 3)), encoded(test::thread_of(0, test::straight_points(5))),
+      encoded(some_status()),           encoded(ligature_msg::event_t{}),
+      encoded(ligature_msg::ack_t{}),   encoded(ligature_msg::command_t{})};
   for (int round = 0; round < 3000; ++round) {
     Bytes_ bytes = seeds[random() % seeds.size()];
     for (auto changes = random() % 8; changes > 0; --changes)
       bytes[8 + random() % (bytes.size() - 8)] = static_cast<std::byte>(random());  // behind the type's hash
     if (random() % 4 == 0) bytes.resize(random() % (2 * bytes.size()));
-    for (const auto channel : {kTicksChannel, kThreadChannel, kStatusChannel, kEventChannel, kAckChannel, kCommandChannel})
+    for (const auto channel :
+         {kTicksChannel, kThreadChannel, kStatusChannel, kEventChannel, kAckChannel, kCommandChannel})
       static_cast<void>(is_readable(channel, bytes));
   }
 }

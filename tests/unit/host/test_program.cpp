@@ -14,7 +14,8 @@ class Program : public ::testing::Test {
  protected:
   /// Runs `ligature-host WORDS` in the test's folder; stdout and stderr go into files there.
   int run(const std::string& words) {
-    const std::string line = "cd '" + folder_.path().string() + "' && '" LIGATURE_HOST_PROGRAM "' " + words + " >out 2>err";
+    const std::string line =
+        "cd '" + folder_.path().string() + "' && '" LIGATURE_HOST_PROGRAM "' " + words + " >out 2>err";
     const int status = std::system(line.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
