@@ -35,7 +35,8 @@ template <Bus BusT, Clock ClockT>
 class Cycle {
  public:
   static constexpr Nanoseconds kPeriod = std::chrono::milliseconds(1);
-  static constexpr Nanoseconds kTpdoWait = std::chrono::microseconds(600);  // bus needs ≤ 460, RPDOs 285 more
+  /// From SYNC; the bus needs at most 460 us for SYNC and TPDOs, and 285 for the RPDOs before the next SYNC.
+  static constexpr Nanoseconds kTpdoWait = std::chrono::microseconds(680);
   static constexpr std::int64_t kTicksPerShape = 8;
 
   Cycle(BusT& bus, ClockT& clock, control::Controller& controller, physics::Simulation& thread, rt::Outlets& out) noexcept
