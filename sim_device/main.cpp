@@ -80,6 +80,9 @@ int main(int argc, char** argv) {
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   const auto& options = std::get<sim::Options>(parsed);
 
+  if (!options.stats.empty() && !sim::can_write(options.stats)) {
+    return refuse("--stats: cannot write '" + options.stats + "', allowed a file in a folder that exists");
+  }
   auto path = read_path(options);
   if (const auto* why = std::get_if<std::string>(&path)) return refuse(*why);
   auto opened = sim::open_port(options.bus);

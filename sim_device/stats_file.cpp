@@ -1,6 +1,9 @@
 #include "sim_device/stats_file.hpp"
 
+#include <unistd.h>
+
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -36,6 +39,11 @@ std::string stats_json(const std::string& hand, const HandDevice& device, const 
   j["stalls"] = loop.stalls;
   j["dropped_frames"] = dropped_frames;  // a client did not read
   return j.dump(2) + "\n";
+}
+
+bool can_write(const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  return access(folder.c_str(), W_OK | X_OK) == 0 && !std::filesystem::is_directory(path);
 }
 
 bool write_file(const std::string& path, const std::string& text) {

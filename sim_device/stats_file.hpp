@@ -12,6 +12,9 @@ namespace ligature::sim {
 [[nodiscard]] std::string stats_json(const std::string& hand, const HandDevice& device, const LoopStats& loop,
                                      long dropped_frames);
 
+/// True when a file can be made at path: asked before the run, so that it is not lost after it.
+[[nodiscard]] bool can_write(const std::string& path);
+
 /// Writes the whole text or nothing: a file beside it first, then a rename. False when it could not.
 [[nodiscard]] bool write_file(const std::string& path, const std::string& text);
 
