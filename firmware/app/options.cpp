@@ -24,9 +24,10 @@ Example, with two simulated hands already running:
 
 Exit: 0 done, 2 bad usage or bad scene, 3 a fault ended the run or the rig could not be started.)";
 
+const std::map<std::string, RtMode> kModes{
+    {"enforce", RtMode::kEnforce}, {"warn", RtMode::kWarn}, {"off", RtMode::kOff}};
+
 void add_run(CLI::App& run, RunOptions& o) {
-  static const std::map<std::string, RtMode> kModes{
-      {"enforce", RtMode::kEnforce}, {"warn", RtMode::kWarn}, {"off", RtMode::kOff}};
   run.footer(kRunHelp);
   run.add_option("--scene", o.scene, "scene file (TOML): the thread, its world, the coupling to the hands")->required();
   run.add_option("--set", o.overrides, "override a key of the scene: key=value, may be given again")->allow_extra_args(false);
@@ -35,8 +36,10 @@ void add_run(CLI::App& run, RunOptions& o) {
   run.add_flag("--arm", o.arm, "arm at start, as the local operator; else wait for the command");
   run.add_option("--duration", o.duration_s, "end after so many seconds")->check(CLI::Range(0.001, 1e6));
   run.add_option("--lcm-url", o.lcm_url, "LCM provider")->capture_default_str();
-  run.add_option("--rt", o.rt, "real-time scheduling and locked memory: enforce (or exit 3), warn, off")
-      ->transform(CLI::CheckedTransformer(kModes))
+  run.add_option_function<std::string>(
+         "--rt", [&o](const std::string& mode) { o.rt = kModes.at(mode); },
+         "real-time scheduling and locked memory: enforce (or exit 3), warn, off")
+      ->check(CLI::IsMember({"enforce", "warn", "off"}))
       ->default_str("warn");
   run.add_option("--watchdog-ms", o.watchdog_ms,
                  "silence that is a fault: of a hand here, of the controller in the drives, of the loop itself")

@@ -80,17 +80,77 @@ void tell(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, const std::
   if (link.failures() > 0) spdlog::warn("LCM: {} messages could not be sent", link.failures());
 }
 
-/// The real-time thread: asks for its rights, reports what was refused, and waits for the word to start.
-void beat(RigCycle& cycle, bool ask, int core, std::promise<platform::Refusals>& rights, std::future<bool> go) {
-  platform::flush_denormals();
-  rights.set_value(ask ? platform::make_realtime(core) : platform::Refusals{});
-  if (go.get()) cycle.run();
-}
+/// Everything on the real-time side, and the thread that runs it. The thread asks for its rights at once, says what was
+/// refused, and waits for the word to start; it never starts without one.
+class RealTimeSide {
+ public:
+  RealTimeSide(const RunOptions& options, Plan& plan, const Buses& buses, rt::Outlets& outlets)
+      : wait_(*buses.left, *buses.right),
+        bus_(*buses.left, *buses.right, wait_),
+        controller_(plan.scene.hands, {options.watchdog_ms, options.arm}),
+        cycle_(bus_, clock_, controller_, plan.thread, outlets) {
+    if (options.duration_s) cycle_.end_after(std::llround(*options.duration_s / control::kPeriod_s));
+  }
+  ~RealTimeSide() { end(); }
 
-platform::Refusals report(platform::Refusals memory, const platform::Refusals& thread) {
-  memory.insert(memory.end(), thread.begin(), thread.end());
-  for (const auto& r : memory) spdlog::warn("real time: {}", r);
-  return memory;
+  /// @return what was refused, each already logged.
+  platform::Refusals prepare(bool ask, int core) {
+    platform::Refusals refused = ask ? platform::lock_memory() : platform::Refusals{};
+    thread_ = std::thread([this, ask, core] {
+      platform::flush_denormals();
+      rights_.set_value(ask ? platform::make_realtime(core) : platform::Refusals{});
+      if (go_.get_future().get()) cycle_.run();
+      beating_ = false;
+    });
+    for (const auto& r : rights_.get_future().get()) refused.push_back(r);
+    for (const auto& r : refused) spdlog::warn("real time: {}", r);
+    return refused;
+  }
+  void start() {
+    started_ = true;
+    go_.set_value(true);
+  }
+  void end() {
+    if (!thread_.joinable()) return;
+    if (!started_) go_.set_value(false);
+    thread_.join();
+  }
+  [[nodiscard]] bool is_beating() const noexcept { return beating_; }
+  [[nodiscard]] const RigCycle& cycle() const noexcept { return cycle_; }  // after end()
+  [[nodiscard]] control::Fault fault() const noexcept { return controller_.fault(); }
+
+ private:
+  platform::PollWait wait_;
+  platform::RigBus bus_;
+  platform::MonotonicClock clock_;
+  control::Controller controller_;
+  RigCycle cycle_;
+  std::promise<platform::Refusals> rights_;
+  std::promise<bool> go_;
+  std::atomic<bool> beating_{true};
+  bool started_ = false;
+  std::thread thread_;
+};
+
+/// The run proper: telemetry beside the loop until one of them says that it is over. @return the exit code.
+int run_loop(RealTimeSide& side, telemetry::LcmLink& link, telemetry::Telemetry& telemetry, const Buses& buses,
+             rt::Outlets& outlets, const StopSignals& signals) {
+  std::atomic<bool> done{false};
+  std::thread teller([&] { tell(link, telemetry, done); });
+  platform::start_drives(*buses.left);
+  platform::start_drives(*buses.right);
+  side.start();
+  while (side.is_beating()) {
+    if (signals.wait()) outlets.stop = true;
+  }
+  side.end();
+  done = true;
+  teller.join();
+  const auto& cycle = side.cycle();
+  std::fputs(summary(cycle.timing(), cycle.periods(), outlets.records.dropped()).c_str(), stdout);
+  const auto fault = side.fault();
+  if (fault == control::Fault::kNone) return 0;
+  return fail({3, "ended in fault " + std::to_string(static_cast<int>(fault)) + ": " + control::name(fault)});
 }
 
 }  // namespace
@@ -101,8 +161,9 @@ int run(const RunOptions& options) {
   Plan& plan = std::get<Plan>(planned);
 
   const StopSignals signals;
+  const bool ask = options.rt != RtMode::kOff;
   const int core = platform::realtime_core();
-  if (options.rt != RtMode::kOff) platform::keep_off(core);
+  if (ask) platform::keep_off(core);
 
   const auto outlets = std::make_unique<rt::Outlets>();
   telemetry::LcmLink link(options.lcm_url, [&](const ligature_msg::event_t& e) {
@@ -116,51 +177,17 @@ int run(const RunOptions& options) {
   if (interrupted) return 0;
   if (const auto* refusal = std::get_if<Refusal>(&opened)) return fail(*refusal);
   const Buses& buses = std::get<Buses>(opened);
-  platform::PollWait wait(*buses.left, *buses.right);
-  platform::RigBus bus(*buses.left, *buses.right, wait);
-  platform::MonotonicClock clock;
-  control::Controller controller(plan.scene.hands, {options.watchdog_ms, options.arm});
-  const auto cycle = std::make_unique<RigCycle>(bus, clock, controller, plan.thread, *outlets);
-  if (options.duration_s) cycle->end_after(std::llround(*options.duration_s / control::kPeriod_s));
 
-  std::promise<platform::Refusals> rights;
-  std::promise<bool> go;
-  const bool ask = options.rt != RtMode::kOff;
-  const auto memory = ask ? platform::lock_memory() : platform::Refusals{};
-  std::atomic<bool> beating{true};
-  std::thread real_time([&] {
-    beat(*cycle, ask, core, rights, go.get_future());
-    beating = false;
-  });
-  const auto refused = report(memory, rights.get_future().get());
-  std::optional<Refusal> no_start = configure(buses, options);
-  if (options.rt == RtMode::kEnforce && !refused.empty()) no_start = Refusal{3, "--rt=enforce: " + refused.front()};
-  if (no_start) {
-    go.set_value(false);
-    real_time.join();
-    return fail(*no_start);
-  }
+  const auto side = std::make_unique<RealTimeSide>(options, plan, buses, *outlets);
+  const auto refused = side->prepare(ask, core);
+  if (options.rt == RtMode::kEnforce && !refused.empty()) return fail({3, "--rt=enforce: " + refused.front()});
+  if (const auto refusal = configure(buses, options)) return fail(*refusal);
 
   telemetry::Telemetry telemetry(session(plan, options, ask && refused.empty()), kNames, *outlets, link);
-  if (!link.listen([&](const auto& command) { return telemetry.handle(command, utime_now()); }) && link.is_open()) {
+  if (!link.listen([&](const auto& c) { return telemetry.handle(c, utime_now()); }) && link.is_open()) {
     spdlog::warn("LCM: cannot listen for commands on {}", options.lcm_url);
   }
-  std::atomic<bool> done{false};
-  std::thread teller([&] { tell(link, telemetry, done); });
-  platform::start_drives(*buses.left);
-  platform::start_drives(*buses.right);
-  go.set_value(true);
-
-  while (beating) {
-    if (signals.wait()) outlets->stop = true;
-  }
-  real_time.join();
-  done = true;
-  teller.join();
-  std::fputs(summary(cycle->timing(), cycle->periods(), outlets->records.dropped()).c_str(), stdout);
-  if (controller.fault() == control::Fault::kNone) return 0;
-  const auto fault = controller.fault();
-  return fail({3, "ended in fault " + std::to_string(static_cast<int>(fault)) + ": " + control::name(fault)});
+  return run_loop(*side, link, telemetry, buses, *outlets, signals);
 }
 
 }  // namespace ligature::app
