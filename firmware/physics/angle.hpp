@@ -12,7 +12,7 @@ namespace ligature::physics {
 /// @param s  >= 0    @param c  any sign; s^2 + c^2 near 1 (or both 0, which gives 0)
 /// @return rad in [0, pi]; absolute error below 4e-15. Cost: 18 multiply-adds and one division.
 template <class S>
-S bend_angle(S s, S c) noexcept {
+[[gnu::always_inline]] inline S bend_angle(S s, S c) noexcept {
   constexpr double kTwiceAtan[] = {
       1.9999999999999976,   -0.6666666666650657,  0.3999999998263839,    -0.28571427820853545,  0.22222204998844483,
       -0.18181575936026106, 0.15382340135883932,  -0.13318239887286146,  0.11691175424767732,   -0.10255658049227419,
@@ -22,6 +22,7 @@ S bend_angle(S s, S c) noexcept {
   const S t = s / (1.0 + magnitude(c));
   const S z = t * t;
   S sum = z * kTwiceAtan[17] + kTwiceAtan[16];
+#pragma GCC unroll 16
   for (int k = 15; k >= 0; --k) sum = sum * z + kTwiceAtan[k];
   const S alpha = t * sum;
   return c < 0.0 ? kPi - alpha : alpha;

@@ -13,6 +13,7 @@ inline void solve_tridiagonal(int n, double* diag, const double* gain, const dou
   double inverse = 1.0 / diag[0];
   diag[0] = inverse;
   double before = rhs[0];
+#pragma GCC unroll 4
   for (int i = 1; i < n; ++i) {
     const double lower = gain[i] * link[i];
     const double l = lower * inverse;
@@ -23,6 +24,7 @@ inline void solve_tridiagonal(int n, double* diag, const double* gain, const dou
   }
   double next = rhs[n - 1] * diag[n - 1];
   rhs[n - 1] = next;
+#pragma GCC unroll 4
   for (int i = n - 2; i >= 0; --i) {
     next = (rhs[i] + gain[i] * link[i + 1] * next) * diag[i];
     rhs[i] = next;
@@ -37,6 +39,7 @@ inline void solve_pentadiagonal(int n, double* diag, double* one, double* two, d
   double one1 = 0.0;                // reduced first off-diagonal of row i-1
   double two1 = 0.0, two2 = 0.0;    // second off-diagonals of rows i-1, i-2
   double y1 = 0.0, y2 = 0.0;
+#pragma GCC unroll 4
   for (int i = 0; i < n; ++i) {
     const double l1 = one1 * inv1, l2 = two2 * inv2;
     const double inverse = 1.0 / (diag[i] - l1 * one1 - l2 * two2);
@@ -46,8 +49,9 @@ inline void solve_pentadiagonal(int n, double* diag, double* one, double* two, d
     inv2 = inv1, inv1 = inverse, one1 = reduced, two2 = two1, two1 = two[i], y2 = y1, y1 = y;
   }
   double x1 = 0.0, x2 = 0.0;
+#pragma GCC unroll 4
   for (int i = n - 1; i >= 0; --i) {
-    const double x = (rhs[i] - (i + 1 < n ? one[i] * x1 : 0.0) - (i + 2 < n ? two[i] * x2 : 0.0)) * diag[i];
+    const double x = (rhs[i] - one[i] * x1 - two[i] * x2) * diag[i];  // x1 = x2 = 0 past the end: one, two need only be finite
     rhs[i] = x;
     x2 = x1, x1 = x;
   }

@@ -20,7 +20,7 @@ inline V3<double> across(const V3<double>& u) noexcept {
   const V3<double> a = cross(u, helper);
   return (1.0 / norm(a)) * a;
 }
-inline V3<Pack> across(const V3<Pack>& u) noexcept {
+[[gnu::noinline]] inline V3<Pack> across(const V3<Pack>& u) noexcept {
   V3<Pack> axis;
   for (int k = 0; k < kLanes; ++k) {
     const V3<double> a = across(V3<double>{u.x[k], u.y[k], u.z[k]});
@@ -38,7 +38,7 @@ inline V3<Pack> across(const V3<Pack>& u) noexcept {
 /// @param inv_l1, inv_l2 inverse segment lengths, 1/m
 /// Folded back exactly the axis is chosen across u1. Cost: about 110 operations, one root, two divisions.
 template <class S>
-Bend<S> bend_of(const V3<S>& u1, const V3<S>& u2, S inv_l1, S inv_l2) noexcept {
+[[gnu::always_inline]] inline Bend<S> bend_of(const V3<S>& u1, const V3<S>& u2, S inv_l1, S inv_l2) noexcept {
   constexpr double kNothing = 1e-30, kUnsure = 1e-12;
   Bend<S> b;
   b.cosine = dot(u1, u2);

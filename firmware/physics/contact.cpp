@@ -65,8 +65,7 @@ void ContactSolver::orient(Candidate& c, const V3<double>& apart, double distanc
 }
 
 /// Measures a candidate and returns where its contact would be; weights and nodes only.
-ContactRow ContactSolver::measure(const ThreadState& s, Candidate& c) const noexcept {
-  ContactRow row;
+void ContactSolver::measure(const ThreadState& s, Candidate& c, ContactRow& row) const noexcept {
   const int i = c.first, j = c.second, nobody = nodes_;
   if (c.kind == Candidate::Kind::kDesk) {
     c.gap_m = s.p.z[i] - *settings_.desk_m - radius_m_;
@@ -74,8 +73,9 @@ ContactRow ContactSolver::measure(const ThreadState& s, Candidate& c) const noex
     c.step = step_;
     c.travel_m = travel_m_;
     row.node[0] = i, row.node[1] = row.node[2] = row.node[3] = nobody;
-    row.weight[0] = 1.0;
-    return row;
+    row.weight[0] = 1.0, row.weight[1] = row.weight[2] = row.weight[3] = 0.0;
+    row.v_outside = Pack{};
+    return;
   }
   const bool outside = c.kind == Candidate::Kind::kObstacle;
   const Obstacle* o = outside ? &obstacles_[static_cast<std::size_t>(j)] : nullptr;
@@ -86,16 +86,13 @@ ContactRow ContactSolver::measure(const ThreadState& s, Candidate& c) const noex
   row.node[0] = i, row.node[1] = i + 1;
   row.weight[0] = 1.0 - near.a, row.weight[1] = near.a;
   row.node[2] = outside ? nobody : j, row.node[3] = outside ? nobody : j + 1;
-  if (outside) {
-    row.v_outside = to_pack(o->v_m_per_s);
-  } else {
-    row.weight[2] = near.b - 1.0, row.weight[3] = -near.b;
-  }
-  return row;
+  row.weight[2] = outside ? 0.0 : near.b - 1.0, row.weight[3] = outside ? 0.0 : -near.b;
+  row.v_outside = outside ? to_pack(o->v_m_per_s) : Pack{};
 }
 
 void ContactSolver::keep(const ThreadState& state, Candidate c) noexcept {
-  (void)measure(state, c);
+  ContactRow unused;
+  measure(state, c, unused);
   c.step = -1;  // its side is known from now on, not from before
   if (!(c.gap_m < margin_m_)) return;
   if (candidates_.size() < candidates_.capacity())
@@ -147,35 +144,43 @@ void ContactSolver::make_rows(const ThreadModel& m, const ThreadState& s, double
   report_.min_gap_m = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     Candidate& c = candidates_[k];
-    report_.min_gap_m = std::min(report_.min_gap_m, c.gap_m);
+    report_.min_gap_m = smaller(report_.min_gap_m, c.gap_m);
     if (c.gap_m - (travel_m_ - c.travel_m) > near_m) continue;  // cannot have come close since it was last measured
     if (c.kind == Candidate::Kind::kObstacle) {
       const Obstacle& o = obstacles_[static_cast<std::size_t>(c.second)];
       if (!o.present || (c.first >= o.skip_first && c.first <= o.skip_last)) continue;
     }
-    ContactRow row = measure(s, c);
-    report_.min_gap_m = std::min(report_.min_gap_m, c.gap_m);
-    if (c.gap_m > near_m) {
+    if (rows_.size() == rows_.capacity()) {
+      report_.cap_hit = true;
+      return;
+    }
+    ContactRow& row = rows_.emplace_back();
+    measure(s, c, row);
+    report_.min_gap_m = smaller(report_.min_gap_m, c.gap_m);
+    if (c.gap_m > near_m || !finish_row(m, c, row)) {
       c.impulse = Pack{};
+      rows_.pop_back();
       continue;
     }
-    double mobility = 0.0;
-    for (int e = 0; e < 4; ++e) {
-      const double w = row.node[e] < nodes_ ? m.inverse_mass_per_kg[row.node[e]] : 0.0;
-      row.push[e] = row.weight[e] * w;
-      mobility += row.push[e] * row.weight[e];
-    }
-    if (!(mobility > 0.0)) continue;
-    row.mass_kg = 1.0 / mobility;
-    row.normal = to_pack(c.normal);
-    row.stick = settings_.stick, row.slip = settings_.slip;
-    row.target_m_per_s = -c.gap_m / m.step_s;
-    if (c.gap_m < 0.0)
-      row.target_m_per_s = std::min(-kRecovery * c.gap_m, kFastestRecovery * radius_m_) / m.step_s;
-    row.impulse = project_on_cone(c.impulse, row.normal, row.stick, row.slip);
     row.candidate = static_cast<int>(k);
-    rows_.push_back(row);
   }
+}
+
+/// Masses, target and warm start of a measured row. @return whether anything in it can move
+bool ContactSolver::finish_row(const ThreadModel& m, const Candidate& c, ContactRow& row) const noexcept {
+  double mobility = 0.0;
+  for (int e = 0; e < 4; ++e) {
+    row.push[e] = row.weight[e] * m.inverse_mass_per_kg[row.node[e]];  // nobody is past the last node: 0
+    mobility += row.push[e] * row.weight[e];
+  }
+  if (!(mobility > 0.0)) return false;
+  row.mass_kg = 1.0 / mobility;
+  row.normal = to_pack(c.normal);
+  row.stick = settings_.stick, row.slip = settings_.slip;
+  row.target_m_per_s = -c.gap_m / m.step_s;
+  if (c.gap_m < 0.0) row.target_m_per_s = smaller(-kRecovery * c.gap_m, kFastestRecovery * radius_m_) / m.step_s;
+  row.impulse = project_on_cone(c.impulse, row.normal, row.stick, row.slip);
+  return true;
 }
 
 void ContactSolver::sweep(double step_s) noexcept {
@@ -192,19 +197,24 @@ void ContactSolver::sweep(double step_s) noexcept {
   }
 }
 
+void ContactSolver::gather_velocities(const ThreadState& s) noexcept {
+  for (const ContactRow& r : rows_)
+    for (int k = 0; k < 4; ++k) velocity_[static_cast<std::size_t>(r.node[k])].v = to_pack(s.v.at(r.node[k]));
+}
+
 void ContactSolver::solve(const ThreadModel& m, ThreadState& s) noexcept {
   ++step_;
   report_.cap_hit = false;
-  double fastest2 = 0.0;
-  for (int i = 0; i < nodes_; ++i) {
-    const Pack v{s.v.x[i], s.v.y[i], s.v.z[i], 0.0};
-    velocity_[static_cast<std::size_t>(i)].v = v;
-    fastest2 = larger(fastest2, dot3(v, v));
+  Pack speeds2 = splat(0.0);
+  for (int i = 0; i < nodes_; i += kLanes) {
+    const V3<Pack> v = s.v.pack(i);
+    speeds2 = larger(speeds2, dot(v, v));
   }
+  double fastest2 = largest(speeds2);
   for (const Obstacle& o : obstacles_)
     if (o.present) fastest2 = larger(fastest2, dot(o.v_m_per_s, o.v_m_per_s));
   // Impulses may speed nodes up within the step, hence twice the way that the free motion could close.
-  const double near_m = 4.0 * std::sqrt(fastest2) * m.step_s + 0.1 * radius_m_;
+  const double near_m = 2.0 * std::sqrt(fastest2) * m.step_s + 0.02 * radius_m_;
   if (margin_m_ < 0.0 || travel_m_ - found_at_m_ + near_m > margin_m_) {
     margin_m_ = radius_m_ + 4.0 * near_m;
     find_candidates(s);
@@ -212,6 +222,7 @@ void ContactSolver::solve(const ThreadModel& m, ThreadState& s) noexcept {
   make_rows(m, s, near_m);
   report_.active = 0;
   if (rows_.empty()) return;
+  gather_velocities(s);
   sweep(m.step_s);
   for (const ContactRow& r : rows_) {
     candidates_[static_cast<std::size_t>(r.candidate)].impulse = r.impulse;

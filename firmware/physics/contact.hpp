@@ -68,7 +68,9 @@ class ContactSolver {
   void find_candidates(const ThreadState& state) noexcept;
   void keep(const ThreadState& state, Candidate candidate) noexcept;
   void inherit_impulses() noexcept;
-  [[nodiscard]] ContactRow measure(const ThreadState& state, Candidate& c) const noexcept;
+  void measure(const ThreadState& state, Candidate& c, ContactRow& row) const noexcept;
+  [[nodiscard]] bool finish_row(const ThreadModel& model, const Candidate& c, ContactRow& row) const noexcept;
+  void gather_velocities(const ThreadState& state) noexcept;
   void orient(Candidate& c, const V3<double>& apart, double distance_m, const V3<double>& axis) const noexcept;
   void make_rows(const ThreadModel& model, const ThreadState& state, double near_m) noexcept;
   void sweep(double step_s) noexcept;

@@ -16,17 +16,18 @@ inline double dot3(Pack a, Pack b) noexcept {
 
 /// One contact between two points of the thread, or of the thread and something that does not feel it.
 ///   u = sum_k weight_k v_k - v_outside: velocity of the first point relative to the second
+/// Filled whole by its maker, so nothing is cleared first.
 struct ContactRow {
-  Pack normal{};          ///< unit, from the second body to the first
-  Pack impulse{};         ///< N s, on the first body
-  Pack v_outside{};       ///< m/s, of a moving obstacle; zero between segments
-  int node[4]{};          ///< two of the first body, two of the second (a massless node where there is none)
-  double weight[4]{};     ///< barycentric, negative for the second body
-  double push[4]{};       ///< weight_k / m_k, 1/kg
-  double mass_kg = 0.0;   ///< 1 / sum_k weight_k^2 / m_k
-  double target_m_per_s = 0.0;  ///< lowest allowed normal velocity: -gap/dt while apart, a gentle recovery when overlapping
-  double stick = 0.0, slip = 0.0;  ///< static and kinetic friction coefficients
-  int candidate = -1;
+  Pack normal;            ///< unit, from the second body to the first
+  Pack impulse;           ///< N s, on the first body
+  Pack v_outside;         ///< m/s, of a moving obstacle; zero between segments
+  int node[4];            ///< two of the first body, two of the second (a massless node where there is none)
+  double weight[4];       ///< barycentric, negative for the second body
+  double push[4];         ///< weight_k / m_k, 1/kg
+  double mass_kg;         ///< 1 / sum_k weight_k^2 / m_k
+  double target_m_per_s;  ///< lowest allowed normal velocity: -gap/dt while apart, a gentle recovery when overlapping
+  double stick, slip;     ///< static and kinetic friction coefficients
+  int candidate;          ///< whose memory keeps the impulse
 };
 
 /// Projects an impulse onto the Coulomb cone of its normal: inside the static cone it sticks (any tangential impulse that

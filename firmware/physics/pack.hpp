@@ -3,7 +3,6 @@
 // doubles in a test and four nodes at once in the loop. GCC/Clang vector types: any target, AVX2 on x86-64-v3.
 
 #include <cmath>
-#include <cstring>
 
 namespace ligature::physics {
 
@@ -13,13 +12,11 @@ inline constexpr int kLanes = 4;
 
 inline Pack splat(double a) noexcept { return Pack{a, a, a, a}; }
 
-/// Unaligned load and store: bends start at node 1, so most accesses are off the natural alignment.
-inline Pack load(const double* p) noexcept {
-  Pack a;
-  std::memcpy(&a, p, sizeof a);
-  return a;
-}
-inline void store(double* p, Pack a) noexcept { std::memcpy(p, &a, sizeof a); }
+/// Unaligned load and store: bends start at node 1, so most accesses are off the natural alignment. (A vector type shares
+/// the alias set of its elements, so the compiler may keep lane pointers in registers across stores.)
+using LoosePack = double __attribute__((vector_size(32), aligned(8)));
+inline Pack load(const double* p) noexcept { return *reinterpret_cast<const LoosePack*>(p); }
+inline void store(double* p, Pack a) noexcept { *reinterpret_cast<LoosePack*>(p) = a; }
 
 inline double root(double a) noexcept { return std::sqrt(a); }
 inline Pack root(Pack a) noexcept {

@@ -68,8 +68,9 @@ class Simulation {
   /// `diagnostics().finite` is false it does nothing.
   void tick(const std::array<ToolInput, 2>& tools) noexcept;
 
-  [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept;       ///< positions, m
-  [[nodiscard]] std::span<const Vec3> velocities_W() const noexcept;  ///< m/s
+  /// Positions, m, and velocities, m/s. Converted when first asked for after a tick, so ask from the thread that ticks.
+  [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept;
+  [[nodiscard]] std::span<const Vec3> velocities_W() const noexcept;
   [[nodiscard]] const HandContact& hand(Hand h) const noexcept;
   [[nodiscard]] const Diagnostics& diagnostics() const noexcept;
 
