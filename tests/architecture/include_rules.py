@@ -25,8 +25,10 @@ RULES = {
     "firmware/app": (["firmware", "protocol"], ["CLI/", "spdlog/", "OS"]),
     "sim_device": (["protocol/can", "protocol/scene"], ["ruckig/", "Eigen/", "CLI/", "spdlog/", "nlohmann/", "OS"]),
     "host/knot": ([], ["Eigen/"]),
+    "host/view": (["host", "protocol/scene", "host/knot", "ligature_msg"], ["lcm/", "CLI/", "nlohmann/", "boost/", "OS"]),
     "host/lab": (["firmware/physics", "firmware/rt", "protocol/scene", "host/knot"], ["CLI/", "nlohmann/", "Eigen/", "OS"]),
-    "host": (["protocol/scene", "host/knot", "ligature_msg"], ["lcm/", "CLI/", "nlohmann/", "spdlog/", "OS"]),
+    "host": (["protocol/scene", "host/knot", "host/view", "ligature_msg"], ["lcm/", "CLI/", "nlohmann/", "spdlog/", "OS"]),
+    "host/view": (["host", "protocol/scene", "ligature_msg"], ["boost/", "CLI/", "nlohmann/", "OS"]),
 }
 
 # Headers of the operating system and of what it does: files, clocks, threads, sockets, streams.

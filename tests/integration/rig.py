@@ -21,7 +21,7 @@ import lcm  # noqa: E402
 from ligature_msg import status_t, tick_batch_t  # noqa: E402
 
 HANDS = ("left", "right")
-STATE_FORCE, STATE_FAULT = 4, 6
+STATE_ENGAGE, STATE_FORCE, STATE_FAULT = 3, 4, 6
 FLAG_PERIOD_LOST = 1
 LCM_URL = "udpm://239.255.76.67:7667?ttl=0"
 
@@ -77,8 +77,8 @@ class Rig:
         return self.path / "rig.lcmlog"
 
     def start(self, name, program, *args):
-        output = open(self.path / f"{name}.log", "a")
-        self.processes[name] = subprocess.Popen([BIN / program, *map(str, args)], stdout=output, stderr=output, cwd=ROOT)
+        with open(self.path / f"{name}.log", "a") as output:
+            self.processes[name] = subprocess.Popen([BIN / program, *map(str, args)], stdout=output, stderr=output, cwd=ROOT)
 
     def start_device(self, hand):
         self.start(hand, "ligature-device", "--hand", hand, "--bus", self.bus[hand], "--scene", self.scene,
