@@ -79,6 +79,7 @@ struct World {
   std::vector<Load> loads;
   std::optional<double> desk_height_m;
   bool grippers_collide = true;
+  bool frame_collides = true;   ///< a hook above each fixed node
 };
 
 struct Time {

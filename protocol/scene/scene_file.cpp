@@ -92,6 +92,7 @@ void read_world(StrictTable& t, int nodes, World& w) {
   });
   t.number("desk_height_m", w.desk_height_m, {-kFar_m, kFar_m});
   t.boolean("grippers_collide", w.grippers_collide);
+  t.boolean("frame_collides", w.frame_collides);
 }
 
 void read_time(StrictTable& t, Time& time) {
