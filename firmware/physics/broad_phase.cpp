@@ -27,4 +27,18 @@ void find_pairs_brute(const SegmentSpheres& s, double reach_m, int skip, PairLis
   }
 }
 
+void find_near_sphere(const SegmentSpheres& s, const V3<double>& centre, double half_m, double reach_m, PairList& out) noexcept {
+  out.pairs.clear();
+  out.overflow = false;
+  const V3<Pack> c{splat(centre.x), splat(centre.y), splat(centre.z)};
+  for (int j = 0; j < s.count; j += kLanes) {
+    const V3<Pack> apart = s.centre.pack(j) - c;
+    const Pack limit = s.half_m.pack(j) + (reach_m + half_m);
+    const PackMask near = dot(apart, apart) <= limit * limit;
+    if (!any(near)) continue;
+    for (int k = 0; k < kLanes && j + k < s.count; ++k)
+      if (near[k]) out.add({j + k, j + k});
+  }
+}
+
 }  // namespace ligature::physics

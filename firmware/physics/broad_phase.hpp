@@ -40,4 +40,7 @@ struct PairList {
 /// Cost: n^2 / 2 tests, four at a time.
 void find_pairs_brute(const SegmentSpheres& s, double reach_m, int skip, PairList& out) noexcept;
 
+/// All segments whose sphere, grown by reach_m, overlaps one given sphere; as pairs {segment, segment}.
+void find_near_sphere(const SegmentSpheres& s, const V3<double>& centre, double half_m, double reach_m, PairList& out) noexcept;
+
 }  // namespace ligature::physics

@@ -20,7 +20,8 @@ bool same_bodies(const Candidate& a, const Candidate& b) noexcept {
   return a.kind == b.kind && a.first == b.first && a.second == b.second;
 }
 bool in_order(const Candidate& a, const Candidate& b) noexcept {
-  return std::tuple(a.kind, a.first, a.second) < std::tuple(b.kind, b.first, b.second);
+  return std::tuple(a.kind, a.second * (a.kind == Candidate::Kind::kObstacle), a.first, a.second) <
+         std::tuple(b.kind, b.second * (b.kind == Candidate::Kind::kObstacle), b.first, b.second);
 }
 
 Pack to_pack(const V3<double>& a) noexcept { return Pack{a.x, a.y, a.z, 0.0}; }
@@ -110,6 +111,17 @@ void ContactSolver::inherit_impulses() noexcept {
   }
 }
 
+void ContactSolver::find_near_obstacle(const ThreadState& s, int k) noexcept {
+  const Obstacle& o = obstacles_[static_cast<std::size_t>(k)];
+  if (!o.present) return;
+  find_near_sphere(spheres_, 0.5 * (o.p0_m + o.p1_m), 0.5 * norm(o.p1_m - o.p0_m), 2.0 * radius_m_ + margin_m_, pairs_);
+  for (const SegmentPair& pair : pairs_.pairs) {
+    Candidate c;
+    c.kind = Candidate::Kind::kObstacle, c.first = pair.first, c.second = k;
+    keep(s, c);
+  }
+}
+
 void ContactSolver::find_candidates(const ThreadState& s) noexcept {
   std::swap(candidates_, old_candidates_);
   candidates_.clear();
@@ -121,14 +133,7 @@ void ContactSolver::find_candidates(const ThreadState& s) noexcept {
     c.first = pair.first, c.second = pair.second;
     keep(s, c);
   }
-  for (int i = 0; i < nodes_ - 1; ++i)
-    for (int k = 0; k < kObstacles; ++k) {
-      const Obstacle& o = obstacles_[static_cast<std::size_t>(k)];
-      if (!o.present) continue;
-      Candidate c;
-      c.kind = Candidate::Kind::kObstacle, c.first = i, c.second = k;
-      keep(s, c);
-    }
+  for (int k = 0; k < kObstacles; ++k) find_near_obstacle(s, k);
   for (int i = 0; settings_.desk_m && i < nodes_; ++i) {
     if (s.p.z[i] - *settings_.desk_m - radius_m_ >= margin_m_) continue;
     Candidate c;
@@ -144,7 +149,8 @@ void ContactSolver::make_rows(const ThreadModel& m, const ThreadState& s, double
   report_.min_gap_m = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     Candidate& c = candidates_[k];
-    report_.min_gap_m = smaller(report_.min_gap_m, c.gap_m);
+    const bool own = c.kind == Candidate::Kind::kSegments;
+    if (own) report_.min_gap_m = smaller(report_.min_gap_m, c.gap_m);
     if (c.gap_m - (travel_m_ - c.travel_m) > near_m) continue;  // cannot have come close since it was last measured
     if (c.kind == Candidate::Kind::kObstacle) {
       const Obstacle& o = obstacles_[static_cast<std::size_t>(c.second)];
@@ -156,7 +162,7 @@ void ContactSolver::make_rows(const ThreadModel& m, const ThreadState& s, double
     }
     ContactRow& row = rows_.emplace_back();
     measure(s, c, row);
-    report_.min_gap_m = smaller(report_.min_gap_m, c.gap_m);
+    if (own) report_.min_gap_m = smaller(report_.min_gap_m, c.gap_m);
     if (c.gap_m > near_m || !finish_row(m, c, row)) {
       c.impulse = Pack{};
       rows_.pop_back();
@@ -211,8 +217,15 @@ void ContactSolver::solve(const ThreadModel& m, ThreadState& s) noexcept {
     speeds2 = larger(speeds2, dot(v, v));
   }
   double fastest2 = largest(speeds2);
-  for (const Obstacle& o : obstacles_)
-    if (o.present) fastest2 = larger(fastest2, dot(o.v_m_per_s, o.v_m_per_s));
+  for (std::size_t k = 0; k < kObstacles; ++k) {
+    const Obstacle& o = obstacles_[k];
+    if (o.present != known_[k].present) margin_m_ = -1.0;  // came or went: look for candidates anew
+    if (o.present) {
+      fastest2 = larger(fastest2, dot(o.v_m_per_s, o.v_m_per_s));
+      travel_m_ += norm(o.p0_m - known_[k].p0_m);
+    }
+    known_[k] = o;
+  }
   // Impulses may speed nodes up within the step, hence twice the way that the free motion could close.
   const double near_m = 2.0 * std::sqrt(fastest2) * m.step_s + 0.02 * radius_m_;
   if (margin_m_ < 0.0 || travel_m_ - found_at_m_ + near_m > margin_m_) {

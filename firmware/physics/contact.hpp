@@ -58,7 +58,7 @@ class ContactSolver {
   /// Changes the velocities so that no body enters another in the coming step of model.step_s.
   void solve(const ThreadModel& model, ThreadState& state) noexcept;
 
-  /// Tells how far things moved: speed bound of the step just taken, m/s (nodes and obstacles).
+  /// Tells how far things moved: speed bound of the nodes in the step just taken, m/s.
   void moved(double speed_m_per_s, double step_s) noexcept { travel_m_ += 2.0 * speed_m_per_s * step_s; }
 
   [[nodiscard]] const ContactReport& report() const noexcept { return report_; }
@@ -66,6 +66,7 @@ class ContactSolver {
 
  private:
   void find_candidates(const ThreadState& state) noexcept;
+  void find_near_obstacle(const ThreadState& state, int obstacle) noexcept;
   void keep(const ThreadState& state, Candidate candidate) noexcept;
   void inherit_impulses() noexcept;
   void measure(const ThreadState& state, Candidate& c, ContactRow& row) const noexcept;
@@ -78,7 +79,7 @@ class ContactSolver {
   ContactSettings settings_;
   double radius_m_ = 0.0;
   int nodes_ = 0;
-  std::array<Obstacle, kObstacles> obstacles_{};
+  std::array<Obstacle, kObstacles> obstacles_{}, known_{};  ///< now, and in the last step
   SegmentSpheres spheres_;
   PairList pairs_;
   std::vector<Candidate> candidates_, old_candidates_;

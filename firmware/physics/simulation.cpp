@@ -6,6 +6,9 @@
 
 #include "firmware/physics/build.hpp"
 #include "firmware/physics/internal_step.hpp"
+#include "firmware/physics/obstacles.hpp"
+#include "firmware/physics/paper_contact.hpp"
+#include "firmware/physics/propagation.hpp"
 
 namespace ligature::physics {
 namespace {
@@ -26,8 +29,12 @@ struct Simulation::Impl {
   ThreadState initial, state, before;  // before: of the last finite tick
   InternalWorkspace work;
   InternalStep internal = nullptr;
-  bool has_contact = false, forward = false, explicit_damping = false;
-  ContactSolver contact;
+  bool forward = false, explicit_damping = false, has_limits = false;
+  scene::ContactSolver contact_kind = scene::ContactSolver::kNone;
+  ContactSolver contact;        // implicit
+  PaperContact paper_contact;   // for comparison
+  ObstacleCourse course;        // grippers and the frame's hooks
+  LengthLimits limits;
   Coupling coupling;
   Grasp grasp;
   V3<double> gravity{};
@@ -44,9 +51,12 @@ struct Simulation::Impl {
   void add_external(const std::array<ToolInput, 2>& tools) noexcept;
   double integrate(const Lane3& v) noexcept;
   void step(const std::array<ToolInput, 2>& tools) noexcept;
+  double fastest() const noexcept;
+  Propagation condition(int node, bool other_holds) const noexcept;
   void remember() noexcept;
   bool check() noexcept;
   void publish() noexcept;
+  void publish_contacts() noexcept;
   static void unpack(const Lane3& from, std::vector<Vec3>& to, bool& stale) noexcept;
   void restart() noexcept;
 };
@@ -93,9 +103,18 @@ void Simulation::Impl::step(const std::array<ToolInput, 2>& tools) noexcept {
   if (explicit_damping || forward) rate_v = state.v;  // same size: copies, does not allocate
   add_external(tools);
   internal(model, state, rate_v, work);
-  if (has_contact) contact.solve(model, state);
-  const double speed = integrate(forward ? rate_v : state.v);
-  if (has_contact) contact.moved(speed, model.step_s);
+  if (has_limits) limits.warm_start(model, state, work.u);
+  if (contact_kind == scene::ContactSolver::kImplicit) contact.solve(model, state);
+  if (contact_kind == scene::ContactSolver::kPaper) paper_contact.solve(model, state);
+  double speed = integrate(forward ? rate_v : state.v);
+  if (has_limits && limits.enforce(model, state) > 0) speed = fastest();
+  if (contact_kind == scene::ContactSolver::kImplicit) contact.moved(speed, model.step_s);
+}
+
+double Simulation::Impl::fastest() const noexcept {
+  Pack fastest2 = splat(0.0);
+  for (int i = 0; i < model.nodes; i += kLanes) fastest2 = larger(fastest2, dot(state.v.pack(i), state.v.pack(i)));
+  return std::sqrt(largest(fastest2));
 }
 
 /// Keeps the state that a tick starts from. In packs: six calls of memcpy cost four times as much at 50 nodes.
@@ -129,6 +148,28 @@ void Simulation::Impl::unpack(const Lane3& from, std::vector<Vec3>& to, bool& st
   stale = false;
 }
 
+void Simulation::Impl::publish_contacts() noexcept {
+  health.contacts = 0;
+  health.contact_cap_hit = false;
+  health.min_gap_m = std::numeric_limits<double>::infinity();
+  if (contact_kind == scene::ContactSolver::kImplicit) {
+    const ContactReport& r = contact.report();
+    health.contacts = r.active, health.contact_cap_hit = r.cap_hit, health.min_gap_m = r.min_gap_m;
+  } else if (contact_kind == scene::ContactSolver::kPaper) {
+    health.contacts = paper_contact.active();
+    health.contact_cap_hit = paper_contact.cap_hit();
+    health.min_gap_m = paper_contact.min_gap_m();
+  }
+}
+
+/// Paper section IV: does the hand's force stay in the springs (A) or pass along a segment on its limit (B, C)?
+Propagation Simulation::Impl::condition(int node, bool other_holds) const noexcept {
+  if (!has_limits) return Propagation::kNone;
+  const bool passes = (node > 0 && limits.passed_N(node - 1) != 0.0) || (node + 1 < model.nodes && limits.passed_N(node) != 0.0);
+  if (!passes) return Propagation::kA;
+  return other_holds ? Propagation::kC : Propagation::kB;
+}
+
 void Simulation::Impl::publish() noexcept {
   nodes_stale = velocities_stale = true;
   for (int h = 0; h < 2; ++h) {
@@ -137,19 +178,19 @@ void Simulation::Impl::publish() noexcept {
     if (c.node < 0) continue;
     c.p_WG = to_vec3(state.p.at(c.node));
     c.v_WG = to_vec3(state.v.at(c.node));
+    c.condition = condition(c.node, grasp.node(1 - h) >= 0);
   }
   health.kinetic_J = kinetic_J;
   health.potential_J = weight_J + work.stretch_J + work.bend_J;
   health.max_stretch = work.max_strain;
-  const ContactReport& r = contact.report();
-  health.contacts = r.active;
-  health.contact_cap_hit = r.cap_hit;
-  health.min_gap_m = has_contact ? r.min_gap_m : std::numeric_limits<double>::infinity();
+  publish_contacts();
 }
 
 void Simulation::Impl::restart() noexcept {
   grasp.release_all();
   contact.forget();
+  course.reset();
+  limits.forget();
   hands = {};
   health = {};
   health.min_gap_m = std::numeric_limits<double>::infinity();
@@ -164,10 +205,19 @@ std::variant<Simulation, std::string> Simulation::make(const scene::Scene& scene
   auto impl = std::make_unique<Impl>();
   const auto n = static_cast<std::size_t>(thread.model.nodes);
   impl->internal = choose_internal_step(scene.suture);
-  impl->has_contact = scene.contact.solver != scene::ContactSolver::kNone;
+  impl->contact_kind = scene.contact.solver;
+  impl->has_limits = scene.hands.propagation;
   impl->forward = scene.suture.paper.integrator == scene::Integrator::kForward;
   impl->explicit_damping = scene.suture.paper.damping == scene::Damping::kExplicit;
-  if (impl->has_contact) impl->contact = ContactSolver(thread.model, build_contact(scene, thread.model));
+  const ContactSettings contact = build_contact(scene, thread.model);
+  if (impl->contact_kind == scene::ContactSolver::kImplicit) {
+    impl->contact = ContactSolver(thread.model, contact);
+    impl->course = ObstacleCourse(scene, thread.model, contact);
+  }
+  if (impl->contact_kind == scene::ContactSolver::kPaper)
+    impl->paper_contact = PaperContact(thread.model, {{scene.contact.repulsion_N_per_m, scene.contact.repulsion_N_s_per_m},
+                                                      contact.stick, contact.slip, contact.skip, scene.contact.friction_cap});
+  if (impl->has_limits) impl->limits = LengthLimits(thread.model, scene.hands.min_length, scene.hands.max_length);
   impl->coupling = {scene.hands.coupling_N_per_m, scene.hands.coupling_N_s_per_m};
   const auto& g = scene.world.gravity_m_per_s2;
   impl->gravity = {g[0], g[1], g[2]};
@@ -190,6 +240,8 @@ void Simulation::tick(const std::array<ToolInput, 2>& tools) noexcept {
   if (!s.health.finite) return;
   s.remember();
   s.grasp.update(tools, s.model, s.state);
+  if (s.contact_kind == scene::ContactSolver::kImplicit)
+    s.course.update(tools, s.grasp, s.model, s.state, s.contact.obstacles());
   for (HandContact& c : s.hands) c = {};
   bool fine = true;
   for (int k = 0; k < s.substeps && fine; ++k) {

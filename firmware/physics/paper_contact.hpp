@@ -1,0 +1,41 @@
+#pragma once
+
+#include "firmware/physics/broad_phase.hpp"
+#include "firmware/physics/repulsion.hpp"
+#include "firmware/physics/thread.hpp"
+
+namespace ligature::physics {
+
+/// The paper's self-contact, section V.A with (1)-(3) and (18)-(22), for comparison: every pair that overlaps gets the
+/// impulse of its repulsion and friction, then is shifted apart. It acts after the fact, so fast threads pass through each
+/// other; the implicit solver is the one to use.
+struct PaperContactSettings {
+  Repulsion repulsion;
+  double stick = 10.0, slip = 10.0;
+  int skip = 2;
+  bool capped = true;  ///< repulsion never attracts, friction at most stops slip; false: as printed
+};
+
+class PaperContact {
+ public:
+  PaperContact() = default;
+  PaperContact(const ThreadModel& model, const PaperContactSettings& settings);
+
+  /// Impulses into the velocities and separation into the positions of all overlapping pairs, one after the other.
+  void solve(const ThreadModel& model, ThreadState& state) noexcept;
+
+  [[nodiscard]] int active() const noexcept { return active_; }
+  [[nodiscard]] double min_gap_m() const noexcept { return min_gap_m_; }
+  [[nodiscard]] bool cap_hit() const noexcept { return pairs_.overflow; }
+
+ private:
+  void respond(const ThreadModel& model, ThreadState& state, const SegmentPair& pair) noexcept;
+
+  PaperContactSettings settings_;
+  SegmentSpheres spheres_;
+  PairList pairs_;
+  int active_ = 0;
+  double min_gap_m_ = 0.0;
+};
+
+}  // namespace ligature::physics

@@ -1,0 +1,129 @@
+#include "firmware/physics/propagation.hpp"
+
+#include "firmware/physics/banded.hpp"
+#include "firmware/physics/stretch_spring.hpp"
+
+namespace ligature::physics {
+namespace {
+constexpr int kMostIterations = 40;
+constexpr double kStiffer = 1e-12;  // relative, on the diagonal: a taut straight thread between fixed nodes is singular
+}  // namespace
+
+LengthLimits::LengthLimits(const ThreadModel& m, double min_length, double max_length)
+    : rest_m_(m.rest_m), shortest_m_(min_length * m.rest_m), longest_m_(max_length * m.rest_m), step_s_(m.step_s),
+      segments_(m.nodes - 1), u_(m.nodes), length_(m.nodes), diag_(m.nodes), gain_(m.nodes), link_(m.nodes), lambda_(m.nodes),
+      impulse_(m.nodes), bound_(static_cast<std::size_t>(m.nodes), Bound::kInside) {}
+
+void LengthLimits::forget() noexcept {
+  for (int i = 0; i < segments_; ++i) impulse_[i] = 0.0;
+  holding_ = false;
+}
+
+void LengthLimits::warm_start(const ThreadModel& m, ThreadState& s, const Lane3& u) noexcept {
+  if (!holding_) return;
+  for (int i = 0; i < m.nodes; i += kLanes) {
+    const Pack w = m.inverse_mass_per_kg.pack(i);
+    s.v.set(i, s.v.pack(i) + (w * impulse_.pack(i)) * u.pack(i) - (w * impulse_.pack(i - 1)) * u.pack(i - 1));
+  }
+}
+
+/// Directions and lengths. @return whether a segment is outside its limits by more than the tolerance
+bool LengthLimits::measure(const ThreadModel& m, const ThreadState& s) noexcept {
+  const Pack low = splat(shortest_m_ - kTolerance * rest_m_), high = splat(longest_m_ + kTolerance * rest_m_);
+  bool outside = false;
+  for (int i = 0; i < segments_; i += kLanes) {
+    const auto seg = segment_of<Pack>(s.p.pack(i), s.p.pack(i + 1), splat(1e-9 * m.rest_m));
+    u_.set(i, seg.u);
+    length_.set(i, seg.length_m);
+    const PackMask beyond = (seg.length_m > high) | (seg.length_m < low);
+    if (!any(beyond)) continue;
+    for (int k = 0; k < kLanes && i + k < segments_; ++k) {
+      if (!beyond[k]) continue;
+      outside = true;
+      bound_[static_cast<std::size_t>(i + k)] = seg.length_m[k] > rest_m_ ? Bound::kLongest : Bound::kShortest;
+    }
+  }
+  return outside;
+}
+
+/// A limit pulls at the longest and pushes at the shortest length, never the other way round.
+void LengthLimits::let_go_of_pushed(int i) noexcept {
+  Bound& bound = bound_[static_cast<std::size_t>(i)];
+  const double total = impulse_[i] + lambda_[i] / step_s_;
+  if ((bound == Bound::kLongest && total < 0.0) || (bound == Bound::kShortest && total > 0.0)) {
+    lambda_[i] = -impulse_[i] * step_s_;
+    bound = Bound::kInside;
+  }
+}
+
+/// One Newton step: the tridiagonal system of all held segments, whose solution moves positions and velocities alike.
+void LengthLimits::correct(const ThreadModel& m, ThreadState& s) noexcept {
+  const Lane& w = m.inverse_mass_per_kg;
+  for (int i = 0; i < segments_; ++i) {
+    const Bound bound = bound_[static_cast<std::size_t>(i)];
+    const double mobility = w[i] + w[i + 1];
+    const bool held = bound != Bound::kInside && mobility > 0.0;
+    gain_[i] = held ? 1.0 : 0.0;
+    diag_[i] = held ? mobility * (1.0 + kStiffer) : 1.0;
+    lambda_[i] = held ? length_[i] - (bound == Bound::kLongest ? longest_m_ : shortest_m_) : 0.0;
+    link_[i] = i > 0 ? w[i] * dot(u_.at(i - 1), u_.at(i)) : 0.0;
+  }
+  solve_tridiagonal(segments_, diag_.data(), gain_.data(), link_.data(), lambda_.data());
+  for (int i = 0; i < segments_; ++i) {
+    let_go_of_pushed(i);
+    impulse_[i] += lambda_[i] / step_s_;
+    const V3<double> push = lambda_[i] * u_.at(i);
+    s.p.put(i, s.p.at(i) + w[i] * push);
+    s.p.put(i + 1, s.p.at(i + 1) - w[i + 1] * push);
+    s.v.put(i, s.v.at(i) + (w[i] / step_s_) * push);
+    s.v.put(i + 1, s.v.at(i + 1) - (w[i + 1] / step_s_) * push);
+  }
+  extend_last_node(s.p, m.nodes);
+}
+
+/// Puts a node as far from its neighbour as the limits allow, in the direction where it is; what would take it farther
+/// out of them is taken from its velocity (and nothing added: this is a rescue, it must not do work).
+void LengthLimits::place(const ThreadModel& m, ThreadState& s, int from, int to) noexcept {
+  if (m.free[to] == 0.0) return;
+  const V3<double> e = s.p.at(to) - s.p.at(from);
+  const double length = norm(e);
+  const double wanted = smaller(larger(length, shortest_m_), longest_m_);
+  if (wanted == length) return;
+  const V3<double> u = length > 0.0 ? (1.0 / length) * e : V3<double>{0.0, 0.0, -1.0};
+  s.p.put(to, s.p.at(from) + wanted * u);
+  const double rate = dot(u, s.v.at(to) - s.v.at(from));
+  if ((rate > 0.0) == (length > wanted)) s.v.put(to, s.v.at(to) - rate * u);
+}
+
+/// When Newton gives up (a hand that teleports, two fixed nodes): node by node from the first fixed one, which always ends.
+void LengthLimits::walk_outwards(const ThreadModel& m, ThreadState& s) noexcept {
+  int start = 0;
+  while (start < segments_ && m.free[start] != 0.0) ++start;
+  if (m.free[start] != 0.0) start = 0;
+  for (int i = start; i < segments_; ++i) place(m, s, i, i + 1);
+  for (int i = start; i > 0; --i) place(m, s, i, i - 1);
+  extend_last_node(s.p, m.nodes);
+}
+
+int LengthLimits::enforce(const ThreadModel& m, ThreadState& s) noexcept {
+  for (int i = 0; holding_ && i < segments_; ++i)
+    bound_[static_cast<std::size_t>(i)] = impulse_[i] > 0.0   ? Bound::kLongest
+                                          : impulse_[i] < 0.0 ? Bound::kShortest
+                                                              : Bound::kInside;
+  bool outside = measure(m, s);
+  if (!outside && !holding_) return 0;
+  int n = 0;
+  for (; n < kMostIterations && (outside || n == 0); ++n) {
+    correct(m, s);
+    outside = measure(m, s);
+  }
+  if (outside) walk_outwards(m, s);
+  holding_ = false;
+  for (int i = 0; i < segments_; ++i) {
+    holding_ |= impulse_[i] != 0.0;
+    bound_[static_cast<std::size_t>(i)] = Bound::kInside;
+  }
+  return n;
+}
+
+}  // namespace ligature::physics

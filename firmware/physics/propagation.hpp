@@ -1,0 +1,63 @@
+#pragma once
+
+#include "firmware/physics/thread.hpp"
+
+namespace ligature::physics {
+
+/// Component of the hand's force along a segment, equation (16): f_p = (f_h . e_i) e_i, N. This is the part that a taut
+/// segment passes on.
+inline V3<double> axial_part_N(const V3<double>& f_hand, const V3<double>& e) noexcept { return dot(f_hand, e) * e; }
+
+/// Equation (17) as printed: f_m = (f_h . e_m) e_m with e_m = (e_i x f_h)/|e_i x f_h| x e_i, i.e. the part ACROSS the segment.
+///   Kept to show that it is wrong: f_h = (3, 0, 4) on e = z gives (3, 0, 0), while a taut thread passes (0, 0, 4); a pure
+///   pull is 0/0 (here: zero). The simulation uses (16), through LengthLimits. ("Equation (5)" in its text should be (4).)
+inline V3<double> printed_propagation_N(const V3<double>& f_hand, const V3<double>& e) noexcept {
+  const V3<double> n = cross(e, f_hand);
+  const double size = norm(n);
+  if (!(size > 0.0)) return {0.0, 0.0, 0.0};
+  const V3<double> em = (1.0 / size) * cross(n, e);
+  return dot(f_hand, em) * em;
+}
+
+/// Force propagation along the thread, paper section IV, as one solve for both hands.
+///   Condition A: a segment strictly inside (l_min, l_max) passes nothing; its spring carries what it can.
+///   Condition B: a segment on its limit is rigid, so the axial force passes through it: tension at l_max, push at l_min.
+///   Condition C: two hands are two loads of the same tridiagonal system G M^-1 G^T lambda = violation, not two passes.
+/// Lengths are held by Newton on the positions (the system is solved anew with the new directions), so that no segment is
+/// outside its limits by more than kTolerance of rest length after a step, whatever pulls.
+class LengthLimits {
+ public:
+  static constexpr double kTolerance = 1e-7;
+
+  LengthLimits() = default;
+  LengthLimits(const ThreadModel& model, double min_length, double max_length);
+
+  /// Velocity level, before contacts: applies last step's tensions again, so that contacts feel the pull that passes through.
+  void warm_start(const ThreadModel& model, ThreadState& state, const Lane3& directions) noexcept;
+
+  /// Position level, after positions moved: corrects them and the velocities. @return Newton iterations used
+  int enforce(const ThreadModel& model, ThreadState& state) noexcept;
+
+  /// Force that segment i passed on beside its spring, N (mean of the last step), positive in tension; 0 in condition A.
+  [[nodiscard]] double passed_N(int segment) const noexcept { return impulse_[segment] / step_s_; }
+  void forget() noexcept;
+
+ private:
+  /// Where a segment is: inside its limits, held at the longest or at the shortest length, or let go in this step.
+  enum class Bound : signed char { kInside, kLongest, kShortest };
+
+  [[nodiscard]] bool measure(const ThreadModel& model, const ThreadState& state) noexcept;
+  void correct(const ThreadModel& model, ThreadState& state) noexcept;
+  void let_go_of_pushed(int segment) noexcept;
+  void walk_outwards(const ThreadModel& model, ThreadState& state) noexcept;
+  void place(const ThreadModel& model, ThreadState& state, int from, int to) noexcept;
+
+  double rest_m_ = 0.0, shortest_m_ = 0.0, longest_m_ = 0.0, step_s_ = 1.0;
+  int segments_ = 0;
+  bool holding_ = false;  // some segment carries an impulse
+  Lane3 u_;
+  Lane length_, diag_, gain_, link_, lambda_, impulse_;
+  std::vector<Bound> bound_;
+};
+
+}  // namespace ligature::physics
