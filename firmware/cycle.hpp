@@ -19,18 +19,24 @@ using Nanoseconds = std::chrono::nanoseconds;  ///< time points are nanoseconds 
 
 template <class C>
 concept Clock = requires(C c, Nanoseconds at) {
-  { c.now() } noexcept -> std::same_as<Nanoseconds>;
-  { c.sleep_until(at) } noexcept;
+  { c.now() }
+  noexcept->std::same_as<Nanoseconds>;
+  { c.sleep_until(at) }
+  noexcept;
 };
 template <class B>
 concept Bus = requires(B b, Nanoseconds deadline, const rt::RigCommand& command) {
-  { b.send_sync() } noexcept;                                              // every drive samples and acts now
-  { b.read_tpdos(deadline) } noexcept -> std::same_as<rt::RigReading>;     // returns early when all have come
-  { b.write_rpdos(command) } noexcept -> std::same_as<rt::WireTorque>;     // acts at the next SYNC
+  { b.send_sync() }
+  noexcept;  // every drive samples and acts now
+  { b.read_tpdos(deadline) }
+  noexcept->std::same_as<rt::RigReading>;  // returns early when all have come
+  { b.write_rpdos(command) }
+  noexcept->std::same_as<rt::WireTorque>;  // acts at the next SYNC
 };
 
 /// One period after the other until the controller has shut the rig down. Period k is due at start + k T; whole periods
-/// that pass unused are counted, recorded and skipped, never made up for. No allocation, lock, log or exception in run().
+/// that pass unused are counted, recorded and skipped, never made up for. No allocation, lock, log or exception in
+/// run().
 template <Bus BusT, Clock ClockT>
 class Cycle {
  public:
@@ -39,7 +45,8 @@ class Cycle {
   static constexpr Nanoseconds kTpdoWait = std::chrono::microseconds(680);
   static constexpr std::int64_t kTicksPerShape = 8;
 
-  Cycle(BusT& bus, ClockT& clock, control::Controller& controller, physics::Simulation& thread, rt::Outlets& out) noexcept
+  Cycle(BusT& bus, ClockT& clock, control::Controller& controller, physics::Simulation& thread,
+        rt::Outlets& out) noexcept
       : bus_(bus), clock_(clock), controller_(controller), thread_(thread), out_(out) {}
 
   void end_after(std::int64_t ticks) noexcept { last_tick_ = ticks; }
@@ -78,9 +85,11 @@ class Cycle {
   }
 
   control::TickInput input(const rt::RigReading& reading) const noexcept {
-    return {tick_, reading,
-            {control::grasp_of(thread_.hand(physics::Hand::kLeft)), control::grasp_of(thread_.hand(physics::Hand::kRight))},
-            thread_.diagnostics().finite};
+    return {
+        tick_,
+        reading,
+        {control::grasp_of(thread_.hand(physics::Hand::kLeft)), control::grasp_of(thread_.hand(physics::Hand::kRight))},
+        thread_.diagnostics().finite};
   }
 
   void publish(Nanoseconds woke, Nanoseconds controlled, Nanoseconds done, const rt::WireTorque& torque) noexcept {

@@ -9,7 +9,8 @@ namespace ligature::app {
 namespace {
 
 constexpr const char* kAbout =
-    "The controller of the rig: reads both hands over CAN, simulates the thread, gives the hands its force, 1000 times\n"
+    "The controller of the rig: reads both hands over CAN, simulates the thread, gives the hands its force, 1000 "
+    "times\n"
     "a second, and tells about every period over LCM.";
 
 constexpr const char* kRunHelp = R"(Runs until --duration, SIGINT or SIGTERM; then forces ramp to zero, the drives are
@@ -30,7 +31,8 @@ const std::map<std::string, RtMode> kModes{
 void add_run(CLI::App& run, RunOptions& o) {
   run.footer(kRunHelp);
   run.add_option("--scene", o.scene, "scene file (TOML): the thread, its world, the coupling to the hands")->required();
-  run.add_option("--set", o.overrides, "override a key of the scene: key=value, may be given again")->allow_extra_args(false);
+  run.add_option("--set", o.overrides, "override a key of the scene: key=value, may be given again")
+      ->allow_extra_args(false);
   run.add_option("--left", o.left, "bus of the left hand: local:/path/socket or socketcan:INTERFACE")->required();
   run.add_option("--right", o.right, "bus of the right hand")->required();
   run.add_flag("--arm", o.arm, "arm at start, as the local operator; else wait for the command");

@@ -27,7 +27,8 @@ struct Exit {
   int code;
 };
 
-/// @return what to run, or the exit code when everything is said: help and version (0), bad usage (2, one line on stderr).
+/// @return what to run, or the exit code when everything is said: help and version (0), bad usage (2, one line on
+/// stderr).
 [[nodiscard]] std::variant<RunOptions, Exit> parse(int argc, char** argv);
 
 }  // namespace ligature::app

@@ -29,7 +29,8 @@ std::string objection(const scene::Scene& s) {
     return text.str();
   };
   if (s.time.tick_s != control::kPeriod_s) return told("time.tick_s", s.time.tick_s, "0.001");
-  if (s.hands.max_force_N > control::kHardwareForce_N) return told("hands.max_force_N", s.hands.max_force_N, "0 .. 3.3");
+  if (s.hands.max_force_N > control::kHardwareForce_N)
+    return told("hands.max_force_N", s.hands.max_force_N, "0 .. 3.3");
   return {};
 }
 
@@ -73,7 +74,8 @@ std::optional<Refusal> configure(const Buses& buses, const RunOptions& options) 
   times.heartbeat_timeout_ms = std::max(times.heartbeat_timeout_ms, times.rpdo_timeout_ms);
   platform::PollWait wait(*buses.left, *buses.right);
   for (auto [hand, bus] : {std::pair{"left", buses.left.get()}, std::pair{"right", buses.right.get()}}) {
-    if (const auto why = platform::configure_drives(*bus, wait, times)) return Refusal{3, std::string(hand) + " hand: " + *why};
+    if (const auto why = platform::configure_drives(*bus, wait, times))
+      return Refusal{3, std::string(hand) + " hand: " + *why};
   }
   return std::nullopt;
 }

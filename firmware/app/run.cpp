@@ -25,7 +25,8 @@ namespace {
 using RigCycle = Cycle<platform::RigBus, platform::MonotonicClock>;
 
 std::int64_t utime_now() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 /// SIGINT and SIGTERM, taken by waiting for them in the main thread: no handler, nothing asynchronous anywhere.
@@ -66,8 +67,14 @@ constexpr telemetry::Names kNames{
 };
 
 telemetry::Session session(const Plan& plan, const RunOptions& options, bool realtime) {
-  return {utime_now(), LIGATURE_VERSION, options.scene, plan.toml, control::kPeriod_s, plan.scene.hands.max_force_N,
-          plan.scene.suture.radius_m, realtime};
+  return {utime_now(),
+          LIGATURE_VERSION,
+          options.scene,
+          plan.toml,
+          control::kPeriod_s,
+          plan.scene.hands.max_force_N,
+          plan.scene.suture.radius_m,
+          realtime};
 }
 
 /// The telemetry thread: until `done`, then what is left.

@@ -129,21 +129,29 @@ void Controller::step_state(const TickInput& in) noexcept {
     case State::kCalibrate: {
       const bool plausible = std::ranges::all_of(hands_, [](const Hand& h) { return is_plausible(h.q_rad); });
       plausible_ticks_ = plausible ? plausible_ticks_ + 1 : 0;
-      if (shutting_down_) state_ = next(state_, Event::kPowerDown);
-      else if (plausible_ticks_ >= kCalibrationTicks) state_ = next(state_, Event::kCalibrated);
+      if (shutting_down_)
+        state_ = next(state_, Event::kPowerDown);
+      else if (plausible_ticks_ >= kCalibrationTicks)
+        state_ = next(state_, Event::kCalibrated);
       break;
     }
     case State::kIdle:
-      if (shutting_down_) state_ = next(state_, Event::kPowerDown);
-      else if (push) state_ = next(state_, Event::kArm);
+      if (shutting_down_)
+        state_ = next(state_, Event::kPowerDown);
+      else if (push)
+        state_ = next(state_, Event::kArm);
       break;
     case State::kEngage:
-      if (!push) state_ = next(state_, Event::kDisarm);
-      else if (any_full()) state_ = next(state_, Event::kEngaged);
+      if (!push)
+        state_ = next(state_, Event::kDisarm);
+      else if (any_full())
+        state_ = next(state_, Event::kEngaged);
       break;
     case State::kForce:
-      if (!push) state_ = next(state_, Event::kDisarm);
-      else if (all_zero()) state_ = next(state_, Event::kLetGo);
+      if (!push)
+        state_ = next(state_, Event::kDisarm);
+      else if (all_zero())
+        state_ = next(state_, Event::kLetGo);
       break;
     case State::kBrake:
       if (all_zero()) state_ = next(state_, Event::kStopped);

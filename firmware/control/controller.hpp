@@ -39,7 +39,7 @@ struct HandState {
   Vec3 f_device_N = Vec3::Zero();  ///< after scale, limits and gain; what the torques produce
   double gain = 0.0;
   bool limited = false;
-  std::int64_t age_ticks = 0;      ///< periods since the sample that p_WT comes from
+  std::int64_t age_ticks = 0;  ///< periods since the sample that p_WT comes from
   bool dead_man = false;
   bool grip = false;
 };
@@ -75,7 +75,7 @@ class Controller {
     VelocityFilter velocity{kPeriod_s};
     Engagement engagement;
     Vec3 v_DT = Vec3::Zero();
-    Vec3 f_full_N = Vec3::Zero();    // device force at gain 1
+    Vec3 f_full_N = Vec3::Zero();  // device force at gain 1
     bool finite = true;
     std::int64_t sample_tick = -1;
     JointAngles q_rad{};

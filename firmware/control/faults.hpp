@@ -18,14 +18,22 @@ enum class Fault : std::int16_t {
 
 [[nodiscard]] constexpr const char* name(Fault f) noexcept {
   switch (f) {
-    case Fault::kNone: return "none";
-    case Fault::kBusLost: return "bus lost";
-    case Fault::kTpdoTooOld: return "joint messages too old";
-    case Fault::kDriveFault: return "drive fault";
-    case Fault::kNonFinite: return "force or position is not finite";
-    case Fault::kVelocityLimit: return "velocity limit";
-    case Fault::kOverrun: return "control loop overrun";
-    case Fault::kPhysicsDiverged: return "thread simulation diverged";
+    case Fault::kNone:
+      return "none";
+    case Fault::kBusLost:
+      return "bus lost";
+    case Fault::kTpdoTooOld:
+      return "joint messages too old";
+    case Fault::kDriveFault:
+      return "drive fault";
+    case Fault::kNonFinite:
+      return "force or position is not finite";
+    case Fault::kVelocityLimit:
+      return "velocity limit";
+    case Fault::kOverrun:
+      return "control loop overrun";
+    case Fault::kPhysicsDiverged:
+      return "thread simulation diverged";
   }
   return "unknown";
 }

@@ -17,8 +17,8 @@ Mat3 tip_jacobian(const JointAngles& q_rad) noexcept {
   const double drho_dq2 = -kUpperArm_m * std::sin(q2);
   const double drho_dq3 = kForearm_m * std::cos(q3);
   Mat3 J;
-  J << rho * c1, drho_dq2 * s1, drho_dq3 * s1,     //
-      rho * s1, -drho_dq2 * c1, -drho_dq3 * c1,    //
+  J << rho * c1, drho_dq2 * s1, drho_dq3 * s1,   //
+      rho * s1, -drho_dq2 * c1, -drho_dq3 * c1,  //
       0.0, kUpperArm_m * std::cos(q2), kForearm_m * std::sin(q3);
   return J;
 }

@@ -11,9 +11,9 @@ using physics::Vec3;
 using Mat3 = Eigen::Matrix3d;
 using JointAngles = std::array<double, 3>;  ///< waist q1, shoulder q2, forearm q3 against the horizontal; rad
 
-inline constexpr double kUpperArm_m = 0.134;   ///< l1
-inline constexpr double kForearm_m = 0.1325;   ///< l2 = 0.080 + 0.0525, to the gimbal's centre
-inline const Vec3 kHome_DT_m{0.0, -0.17, 0.0}; ///< tip position that maps to the workspace's origin
+inline constexpr double kUpperArm_m = 0.134;    ///< l1
+inline constexpr double kForearm_m = 0.1325;    ///< l2 = 0.080 + 0.0525, to the gimbal's centre
+inline const Vec3 kHome_DT_m{0.0, -0.17, 0.0};  ///< tip position that maps to the workspace's origin
 
 /// Tip T in the device base D (x right, y away from the person, z up).
 ///   rho = l1 cos q2 + l2 sin q3        reach, horizontally, out of the waist axis towards the person

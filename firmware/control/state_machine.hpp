@@ -18,7 +18,18 @@ enum class State : std::uint8_t {
 };
 inline constexpr int kStates = 7;
 
-enum class Event : std::uint8_t { kDrivesUp, kCalibrated, kArm, kEngaged, kLetGo, kDisarm, kStopped, kPowerDown, kFault, kReset };
+enum class Event : std::uint8_t {
+  kDrivesUp,
+  kCalibrated,
+  kArm,
+  kEngaged,
+  kLetGo,
+  kDisarm,
+  kStopped,
+  kPowerDown,
+  kFault,
+  kReset
+};
 inline constexpr int kEvents = 10;
 
 struct Transition {
@@ -63,7 +74,8 @@ static_assert([] {  // a fault is reached from every state and left by a reset o
     if (next(static_cast<State>(s), Event::kFault) != State::kFault) return false;
   }
   for (int e = 0; e < kEvents; ++e) {
-    if (static_cast<Event>(e) != Event::kReset && next(State::kFault, static_cast<Event>(e)) != State::kFault) return false;
+    if (static_cast<Event>(e) != Event::kReset && next(State::kFault, static_cast<Event>(e)) != State::kFault)
+      return false;
   }
   return true;
 }());

@@ -43,7 +43,8 @@ void report(const physics::HandContact& contact, std::size_t hand, rt::TickRecor
   record.grasped_node[hand] = static_cast<std::int16_t>(contact.node);
 }
 
-void report(std::span<const physics::Vec3> nodes_W, const rt::TickRecord& record, rt::ThreadSnapshot& snapshot) noexcept {
+void report(std::span<const physics::Vec3> nodes_W, const rt::TickRecord& record,
+            rt::ThreadSnapshot& snapshot) noexcept {
   snapshot.tick = record.tick;
   snapshot.grasped_node = record.grasped_node;
   snapshot.count = static_cast<std::int32_t>(std::min(nodes_W.size(), rt::kMaxNodes));

@@ -18,6 +18,7 @@ void report(const physics::Diagnostics& thread, rt::TickRecord& record) noexcept
 void report(const physics::HandContact& contact, std::size_t hand, rt::TickRecord& record) noexcept;
 
 /// The shape, as many nodes as fit.
-void report(std::span<const physics::Vec3> nodes_W, const rt::TickRecord& record, rt::ThreadSnapshot& snapshot) noexcept;
+void report(std::span<const physics::Vec3> nodes_W, const rt::TickRecord& record,
+            rt::ThreadSnapshot& snapshot) noexcept;
 
 }  // namespace ligature::control

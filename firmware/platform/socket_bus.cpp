@@ -36,7 +36,8 @@ Opened open_local(const std::string& url, const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.empty() || path.size() >= sizeof address.sun_path) {
-    return refuse(OpenFailure::kUsage, url, "path has " + std::to_string(path.size()) + " characters, allowed 1 .. 107");
+    return refuse(OpenFailure::kUsage, url,
+                  "path has " + std::to_string(path.size()) + " characters, allowed 1 .. 107");
   }
   std::memcpy(address.sun_path, path.data(), path.size());
   const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
@@ -71,7 +72,8 @@ Opened open_can_bus(const std::string& url) {
 
 SocketBus::~SocketBus() { close(fd_); }
 
-/// @return false always, for use as a result. Full queues pass; everything else means that the peer or interface is gone.
+/// @return false always, for use as a result. Full queues pass; everything else means that the peer or interface is
+/// gone.
 bool SocketBus::note(int error) noexcept {
   if (error != EAGAIN && error != EWOULDBLOCK && error != ENOBUFS && error != EINTR) lost_ = true;
   return false;

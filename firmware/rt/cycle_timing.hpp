@@ -9,8 +9,8 @@
 
 namespace ligature::rt {
 
-/// Statistics of durations in nanoseconds. Exact count, minimum, maximum, mean and variance (Welford's recurrence, which
-/// does not cancel), and a histogram with bins of equal relative width for quantiles: within a power of two there
+/// Statistics of durations in nanoseconds. Exact count, minimum, maximum, mean and variance (Welford's recurrence,
+/// which does not cancel), and a histogram with bins of equal relative width for quantiles: within a power of two there
 /// are 32 bins, so a quantile is at most 1/32 too high, never too low. 16 kB; O(1) a sample; no allocation.
 class DurationStatistics {
  public:

@@ -25,8 +25,8 @@ class LatestValue {
 
   /// Writer only: makes back() the newest value.
   void publish() noexcept {
-    back_ = static_cast<std::uint8_t>(middle_.exchange(static_cast<std::uint8_t>(back_ | kNews),
-                                                       std::memory_order_acq_rel) & kSlot);
+    back_ = static_cast<std::uint8_t>(
+        middle_.exchange(static_cast<std::uint8_t>(back_ | kNews), std::memory_order_acq_rel) & kSlot);
   }
 
   /// Writer only: publishes a copy.

@@ -16,11 +16,11 @@ struct HandReading {
   std::array<double, kJoints> q_rad{};  ///< waist, shoulder, forearm (absolute)
   bool grip = false;
   bool dead_man = false;
-  bool valid = false;            ///< a complete set has arrived since the start
-  bool enabled = false;          ///< every drive is in Operation enabled
-  bool drive_fault = false;      ///< a drive is in Fault, sent an emergency or fell out of NMT operational
-  bool bus_lost = false;         ///< the bus itself is gone
-  std::int32_t age_ticks = 0;    ///< periods since the last complete set; 0 = sampled at this period's SYNC
+  bool valid = false;          ///< a complete set has arrived since the start
+  bool enabled = false;        ///< every drive is in Operation enabled
+  bool drive_fault = false;    ///< a drive is in Fault, sent an emergency or fell out of NMT operational
+  bool bus_lost = false;       ///< the bus itself is gone
+  std::int32_t age_ticks = 0;  ///< periods since the last complete set; 0 = sampled at this period's SYNC
 };
 
 struct RigReading {

@@ -5,7 +5,8 @@ namespace {
 
 constexpr const char* kHandNames[] = {"left", "right"};
 
-ligature_msg::event_t event(std::int64_t tick, std::int8_t kind, std::int8_t hand, std::int32_t code, std::string text) {
+ligature_msg::event_t event(std::int64_t tick, std::int8_t kind, std::int8_t hand, std::int32_t code,
+                            std::string text) {
   ligature_msg::event_t e{};
   e.tick = tick;
   e.kind = kind;

@@ -8,6 +8,7 @@
 namespace ligature::telemetry {
 
 [[nodiscard]] ligature_msg::tick_t to_message(const rt::TickRecord& record);
-[[nodiscard]] ligature_msg::thread_t to_message(const rt::ThreadSnapshot& snapshot, double radius_m, std::int64_t utime);
+[[nodiscard]] ligature_msg::thread_t to_message(const rt::ThreadSnapshot& snapshot, double radius_m,
+                                                std::int64_t utime);
 
 }  // namespace ligature::telemetry

@@ -131,7 +131,8 @@ TEST(NoAllocation, TheWholeCycleWithASmallThread) { expect_quiet(small_scene());
 TEST(NoAllocation, TheWholeCycleWithEveryModelAndSolver) {
   for (const auto model : {scene::Model::kPaper1, scene::Model::kPaper2, scene::Model::kPaper3, scene::Model::kPaper4,
                            scene::Model::kPaper5}) {
-    for (const auto solver : {scene::ContactSolver::kNone, scene::ContactSolver::kPaper, scene::ContactSolver::kImplicit}) {
+    for (const auto solver :
+         {scene::ContactSolver::kNone, scene::ContactSolver::kPaper, scene::ContactSolver::kImplicit}) {
       scene::Scene s = small_scene();
       s.suture.model = model;
       s.contact.solver = solver;

@@ -42,9 +42,7 @@ TEST(Kinematics, ForearmAngleIsAbsolute) {  // moving the shoulder alone transla
   EXPECT_NEAR(shift.z(), kUpperArm_m * (std::sin(0.9) - std::sin(0.2)), 1e-15);
 }
 
-TEST(Kinematics, TurningTheWaistLeftMovesTheTipAlongX) {
-  EXPECT_GT(tip_position({0.1, 0.3, 0.5}).x(), 0.0);
-}
+TEST(Kinematics, TurningTheWaistLeftMovesTheTipAlongX) { EXPECT_GT(tip_position({0.1, 0.3, 0.5}).x(), 0.0); }
 
 TEST(Kinematics, JacobianIsTheDerivative) {  // central difference, step ~ eps^(1/3), error ~ eps^(2/3)
   constexpr double h = 6e-6;

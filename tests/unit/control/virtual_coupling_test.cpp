@@ -22,7 +22,8 @@ scene::Hands hands() {
 }
 
 TEST(VirtualCoupling, AnEmptyHandFeelsNothing) {
-  EXPECT_EQ(VirtualCoupling(hands()).force({false, Vec3(1, 1, 1), Vec3::Zero()}, Vec3::Zero(), Vec3::Zero()).f_N, Vec3::Zero());
+  EXPECT_EQ(VirtualCoupling(hands()).force({false, Vec3(1, 1, 1), Vec3::Zero()}, Vec3::Zero(), Vec3::Zero()).f_N,
+            Vec3::Zero());
 }
 
 TEST(VirtualCoupling, PullsTowardsTheNode) {  // node 0.1 m above: 1200 x 0.1 x 0.003 = 0.36 N upwards

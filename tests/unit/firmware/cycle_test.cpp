@@ -161,9 +161,8 @@ TEST(Cycle, StopsByItsFlagAndTakesCommandsByTheRing) {
   rig.bus.stalls[400] = 0ms;
   rig.cycle.end_after(1000);
   rig.cycle.run();
-  EXPECT_TRUE(std::ranges::any_of(rig.records(), [](const auto& r) {
-    return r.state == static_cast<std::int8_t>(control::State::kEngage);
-  }));
+  EXPECT_TRUE(std::ranges::any_of(
+      rig.records(), [](const auto& r) { return r.state == static_cast<std::int8_t>(control::State::kEngage); }));
 
   VirtualRig stopped;
   stopped.outlets->stop = true;

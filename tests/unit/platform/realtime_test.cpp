@@ -17,7 +17,8 @@ TEST(Realtime, FlushesDenormals) {
     volatile double small = std::numeric_limits<double>::min();
     volatile double half = small / 2.0;
     EXPECT_EQ(half, 0.0);
-  }).join();
+  })
+      .join();
 #endif
 }
 
