@@ -137,7 +137,6 @@ inline constexpr std::array kTransitions{
     case State::kReadyToSwitchOn:
       return kControlSwitchOn;
     case State::kSwitchedOn:
-      return kControlEnableOperation;
     case State::kOperationEnabled:
       return kControlEnableOperation;
     default:

@@ -37,8 +37,7 @@ enum class Service : std::uint8_t { kNmt, kSync, kEmcy, kTpdo1, kRpdo1, kSdoResp
   switch (s) {
     case Service::kNmt:
       return 0x000;
-    case Service::kSync:
-      return 0x080;
+    case Service::kSync:  // node 0 of EMCY's range
     case Service::kEmcy:
       return 0x080;
     case Service::kTpdo1:
