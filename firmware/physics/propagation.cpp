@@ -117,7 +117,10 @@ int LengthLimits::enforce(const ThreadModel& m, ThreadState& s) noexcept {
     correct(m, s);
     outside = measure(m, s);
   }
-  if (outside) walk_outwards(m, s);
+  if (outside) {
+    walk_outwards(m, s);
+    forget();  // tensions that lead nowhere are no start for the next step
+  }
   holding_ = false;
   for (int i = 0; i < segments_; ++i) {
     holding_ |= impulse_[i] != 0.0;

@@ -134,6 +134,7 @@ bool Simulation::Impl::check() noexcept {
     health.finite = false;
     health.bad_node = i;
     health.bad_tick = ticks;
+    hands = {};  // no force is the safe one to leave behind
     state = before;
     nodes_stale = velocities_stale = true;
     return false;

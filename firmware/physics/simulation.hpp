@@ -47,7 +47,7 @@ struct Diagnostics {
   double min_gap_m = 0.0;         ///< surface gap of the closest non-neighbour pair, negative: overlap; +inf: none near
   int contacts = 0;               ///< contacts that carried an impulse in the last step
   bool contact_cap_hit = false;   ///< more contacts than there was room for
-  bool finite = true;             ///< false: the state is frozen at the last finite one; see bad_node
+  bool finite = true;             ///< false: frozen at the last finite state, hands open and without force
   int bad_node = -1;              ///< first node that went non-finite or out of range
   std::int64_t bad_tick = -1;     ///< tick at which it did
 };

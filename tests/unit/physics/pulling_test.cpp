@@ -1,0 +1,133 @@
+// Pulling a half-tight trefoil apart, letting go suddenly, and force propagation under such pulls.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/unit/physics/script_run.hpp"
+
+namespace ligature::physics {
+namespace {
+
+using test::knot_of;
+using test::make;
+using test::overhand;
+using test::paper_scene;
+using test::play;
+
+constexpr double kHalfTight_s = 11.0;  // the overhand script has tied the knot and is about to tighten it
+
+struct Pull {
+  Simulation sim;
+  std::array<Vec3, 2> hands;
+  Vec3 apart;  // unit, from the left to the right hand
+};
+
+/// A half-tight trefoil, tied at friction 0.3, both hands closed on it, in a scene of its own.
+Pull half_tight(int nodes, const std::vector<std::string>& overrides) {
+  const std::string n = "suture.nodes=" + std::to_string(nodes);
+  Simulation tied = make(paper_scene({n}));
+  play(tied, overhand(), 0.0, kHalfTight_s);
+  std::vector<std::string> all{n};
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  Pull pull{make(paper_scene(all)), {tied.hand(Hand::kLeft).p_WG, tied.hand(Hand::kRight).p_WG}, {}};
+  pull.sim.set_state(tied.nodes_W(), tied.velocities_W());
+  pull.apart = (pull.hands[1] - pull.hands[0]).normalized();
+  return pull;
+}
+
+/// One tick with both hands moving apart at `speed` each.
+void tick(Pull& pull, double speed, bool grip = true) {
+  pull.hands[0] -= 1e-3 * speed * pull.apart;
+  pull.hands[1] += 1e-3 * speed * pull.apart;
+  pull.sim.tick({ToolInput{pull.hands[0], -speed * pull.apart, grip}, ToolInput{pull.hands[1], speed * pull.apart, grip}});
+}
+
+double larger_force_N(const Simulation& sim) {
+  return std::max(sim.hand(Hand::kLeft).f_W.norm(), sim.hand(Hand::kRight).f_W.norm());
+}
+
+TEST(Pulling, NoCrossingIsLostAtAnySpeedAndFriction) {
+  for (const int nodes : {35, 50})
+    for (const char* friction : {"0", "0.1", "0.3", "1", "10"})
+      for (const double speed : {0.1, 0.5, 2.0, 5.0}) {
+        Pull pull = half_tight(nodes, {std::string("contact.friction=") + friction});
+        ASSERT_EQ(knot_of(pull.sim).type, "3_1");
+        const int ticks = static_cast<int>(1500.0 / speed);  // 3 m between the hands
+        std::string knot = "3_1";
+        for (int k = 0; k < ticks && knot == "3_1"; ++k) {
+          tick(pull, speed);
+          if (k % 10 == 9) knot = knot_of(pull.sim).type;
+        }
+        EXPECT_EQ(knot, "3_1") << nodes << " nodes, friction " << friction << ", " << speed << " m/s";
+        EXPECT_TRUE(pull.sim.diagnostics().finite);
+        EXPECT_GT(larger_force_N(pull.sim), 100.0);  // it was a pull, not a stroke
+      }
+}
+
+TEST(Pulling, OverlapStaysBelowTwoPercentOfTheDiameter) {
+  for (const double speed : {0.1, 5.0}) {
+    Pull pull = half_tight(50, {});
+    double deepest_m = 0.0;
+    for (int k = 0; k < static_cast<int>(1500.0 / speed); ++k) {
+      tick(pull, speed);
+      deepest_m = std::min(deepest_m, pull.sim.diagnostics().min_gap_m);
+    }
+    EXPECT_GT(deepest_m, -0.02 * 0.1) << speed << " m/s";
+  }
+}
+
+TEST(Pulling, ALetGoFromAHundredNewtonsStaysFinite) {
+  for (const int nodes : {20, 35, 50}) {
+    Pull pull = half_tight(nodes, {});
+    for (int k = 0; k < 20000 && larger_force_N(pull.sim) < 100.0; ++k) tick(pull, 0.5);
+    ASSERT_GE(larger_force_N(pull.sim), 100.0);
+    for (int k = 0; k < 5000; ++k) tick(pull, 0.0, false);
+    EXPECT_TRUE(pull.sim.diagnostics().finite) << nodes << " nodes";
+    EXPECT_LT(pull.sim.diagnostics().max_stretch, 0.3) << nodes << " nodes";
+  }
+}
+
+// l_min, l_max of the scene (0.9, 1.1); lengths from the published positions themselves.
+TEST(Propagation, NoSegmentLeavesItsLimitsUpTo5MetresPerSecondAnd500Newtons) {
+  for (const int nodes : {20, 35, 50})
+    for (const double speed : {0.1, 0.5, 2.0, 5.0}) {
+      Pull pull = half_tight(nodes, {"hands.propagation=true"});
+      const double rest_m = 5.0 / (nodes - 1);
+      double least = 1.0, most = 1.0;
+      for (int k = 0; k < 30000 && larger_force_N(pull.sim) < 500.0; ++k) {
+        tick(pull, speed);
+        const auto p = pull.sim.nodes_W();
+        for (std::size_t i = 0; i + 1 < p.size(); ++i) {
+          least = std::min(least, (p[i + 1] - p[i]).norm() / rest_m);
+          most = std::max(most, (p[i + 1] - p[i]).norm() / rest_m);
+        }
+      }
+      EXPECT_GE(larger_force_N(pull.sim), 500.0) << nodes << " nodes, " << speed << " m/s";
+      EXPECT_LE(most, 1.1 + 1e-6) << nodes << " nodes, " << speed << " m/s";
+      EXPECT_GE(least, 0.9 - 1e-6) << nodes << " nodes, " << speed << " m/s";
+      EXPECT_EQ(knot_of(pull.sim).type, "3_1") << nodes << " nodes, " << speed << " m/s";
+      EXPECT_EQ(pull.sim.hand(Hand::kLeft).condition, Propagation::kC);
+    }
+}
+
+TEST(Propagation, ASlackThreadPassesNothingOn) {
+  Simulation sim = make(paper_scene({"hands.propagation=true", "suture.stretch_N=1e5", "time.substeps=20"}));
+  const ToolInput still{Vec3(0.0, 0.0, 2.0), Vec3::Zero(), true}, away{Vec3(9, 9, 9), Vec3::Zero(), false};
+  for (int k = 0; k < 100; ++k) sim.tick({still, away});
+  EXPECT_EQ(sim.hand(Hand::kLeft).condition, Propagation::kA);
+}
+
+TEST(Propagation, OneHandThatPullsTautIsConditionB) {
+  Simulation sim = make(paper_scene({"hands.propagation=true"}));
+  const ToolInput away{Vec3(9, 9, 9), Vec3::Zero(), false};
+  for (int k = 0; k < 2000; ++k) {
+    const double z = 0.5 - std::min(1.0, 1e-3 * k);
+    sim.tick({ToolInput{Vec3(0.0, 0.0, z), Vec3(0, 0, k < 1000 ? -1.0 : 0.0), true}, away});
+  }
+  EXPECT_EQ(sim.hand(Hand::kLeft).condition, Propagation::kB);
+  // Statics: the frame carries what the hand pulls plus the weight; every segment is at its limit.
+  EXPECT_GT(sim.hand(Hand::kLeft).f_W.z(), 300.0);
+}
+
+}  // namespace
+}  // namespace ligature::physics
