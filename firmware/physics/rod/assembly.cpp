@@ -7,52 +7,51 @@ namespace {
 
 constexpr double kSupportMass_kg = 1e6;  // moves a millionth of a nanometre a substep under 1 N
 
-// Stretch of every segment: tangent e / l, tension EA (|e| / l - 1), its pull into `edge`, its stiffness into the matrix.
-void add_stretch(const Material& m, const State& state, double dt, Forces& f, BandSolver& a) noexcept {
+// Tangents e / l, units u and tensions EA (|e| / l - 1) of every segment.
+void measure(const Material& m, const State& state, Forces& f) noexcept {
   const Mesh& mesh = state.mesh;
   const std::size_t n = mesh.s.size();
-  const double axial = dt * (dt + m.stretch_tau_s) * m.EA_N;
-  Mat before{};
-  for (std::size_t j = 0; j < n; ++j) {
-    Mat here{};
-    if (j + 1 < n) {
-      const Vec e = state.x[j + 1] - state.x[j];
-      const double inv_length = 1.0 / norm(e);
-      const Vec u = inv_length * e;
-      const double tension = m.EA_N * (1.0 / (inv_length * mesh.rest[j]) - 1.0);
-      f.tangent[j] = mesh.inv_rest[j] * e;
-      f.tension[j] = tension;
-      f.edge[j] = tension * u;
-      const double across = dt * dt * std::max(tension, 0.0) * inv_length;
-      here = dyad(u, axial * mesh.inv_rest[j] - across, across);
-    }
-    const Mat both = before + here;
-    a.diagonal[j] = both;
-    a.couple[j] = -1.0 * here;
-    before = here;
+  for (std::size_t j = 0; j + 1 < n; ++j) {
+    const Vec e = state.x[j + 1] - state.x[j];
+    const double length2 = dot(e, e), inverse = 1.0 / std::sqrt(length2);
+    f.tangent[j] = mesh.inv_rest[j] * e;
+    f.unit[j] = inverse * e;
+    f.tension[j] = m.EA_N * (length2 * inverse * mesh.inv_rest[j] - 1.0 - state.rest_strain[j]);
   }
 }
 
-// Bending moments w (t_i - t_{i-1} - rest) and the transverse force they put on segments.
+// kappa b of a vertex [Bergou 2008]: 2 a x c / (1 + a . c) of unit tangents.
+Vec binormal(Vec a, Vec c) noexcept { return 2.0 / (1.0 + dot(a, c)) * cross(a, c); }
+
+// What every vertex passes to its two segments: the bending moment Q = w (t_i - t_{i-1} - rest), whose difference along a
+// segment is the transverse force, and half the twist term M kappa b, which acts on both segments alike.
 template <bool Twist>
-void add_bending(const Material& m, const State& state, Forces& f) noexcept {
+void vertices(const Material& m, const State& state, Forces& f) noexcept {
   const Mesh& mesh = state.mesh;
   const std::size_t n = mesh.s.size();
   f.moment_in[0] = f.moment_out[0] = f.moment_in[n - 1] = f.moment_out[n - 1] = Vec{};
   for (std::size_t i = 1; i + 1 < n; ++i) {
     const Vec q = mesh.weight[i] * (f.tangent[i] - f.tangent[i - 1] - state.rest_bend[i]);
     f.moment_in[i] = f.moment_out[i] = q;
+    if constexpr (Twist) {
+      const Vec half = 0.5 * f.twist_moment[i] * binormal(f.unit[i - 1], f.unit[i]);
+      f.moment_in[i] -= half;
+      f.moment_out[i] += half;
+    }
   }
   for (int h = 0; h < state.hold_count; ++h) {
     const Hold& hold = state.holds[static_cast<std::size_t>(h)];
     if (hold.node < 0 || !hold.directed) continue;
     const auto i = static_cast<std::size_t>(hold.node);
-    if (i > 0) f.moment_in[i] = 2.0 * m.EI_N_m2 * mesh.inv_rest[i - 1] * (hold.direction - f.tangent[i - 1]);
-    if (i + 1 < n) f.moment_out[i] = 2.0 * m.EI_N_m2 * mesh.inv_rest[i] * (f.tangent[i] - hold.direction);
-  }
-  for (std::size_t j = 0; j + 1 < n; ++j) f.edge[j] -= mesh.inv_rest[j] * (f.moment_in[j + 1] - f.moment_out[j]);
-  if constexpr (Twist) {
-    for (std::size_t j = 0; j + 1 < n; ++j) f.edge[j] += 0.5 * mesh.inv_rest[j] * (f.twist[j] + f.twist[j + 1]);
+    const Vec d = hold.direction;
+    if (i > 0) {
+      f.moment_in[i] = 2.0 * m.EI_N_m2 * mesh.inv_rest[i - 1] * (d - f.tangent[i - 1]);
+      if (Twist && i + 1 == n) f.moment_in[i] -= 0.5 * f.twist_moment[i] * binormal(f.unit[i - 1], d);
+    }
+    if (i + 1 < n) {
+      f.moment_out[i] = 2.0 * m.EI_N_m2 * mesh.inv_rest[i] * (f.tangent[i] - d);
+      if (Twist && i == 0) f.moment_out[i] += 0.5 * f.twist_moment[i] * binormal(d, f.unit[i]);
+    }
   }
 }
 
@@ -72,29 +71,6 @@ void add_holds(const State& state, double dt, BandSolver& a) noexcept {
   }
 }
 
-// kappa b of a vertex [Bergou 2008]: 2 a x c / (1 + a . c) of unit tangents.
-Vec binormal(Vec a, Vec c) noexcept { return 2.0 / (1.0 + dot(a, c)) * cross(a, c); }
-
-// Force of the twisting moment: -M grad(turn), grad on the ends of segment j = M (kb_j + kb_{j+1}) / 2 l_j.
-void add_twist(const State& state, Forces& f) noexcept {
-  const std::size_t n = state.mesh.s.size();
-  const auto unit = [&](std::size_t j) { return 1.0 / norm(f.tangent[j]) * f.tangent[j]; };
-  for (auto& t : f.twist) t = Vec{};
-  Vec before = unit(0);
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    const Vec after = unit(i);
-    f.twist[i] = f.twist_moment[i] * binormal(before, after);
-    before = after;
-  }
-  for (int h = 0; h < state.hold_count; ++h) {
-    const Hold& hold = state.holds[static_cast<std::size_t>(h)];
-    if (hold.node < 0 || !hold.directed) continue;
-    const auto i = static_cast<std::size_t>(hold.node);
-    if (i == 0) f.twist[0] = f.twist_moment[0] * binormal(hold.direction, unit(0));
-    if (i + 1 == n) f.twist[i] = f.twist_moment[i] * binormal(unit(i - 1), hold.direction);
-  }
-}
-
 }  // namespace
 
 template <bool Twist>
@@ -102,20 +78,28 @@ void assemble(const Material& material, const State& state, Vec gravity, double 
               BandSolver& solver) noexcept {
   const Mesh& mesh = state.mesh;
   const std::size_t n = mesh.s.size();
-  add_stretch(material, state, dt_s, forces, solver);
-  if constexpr (Twist) add_twist(state, forces);
-  add_bending<Twist>(material, state, forces);
-  const double bend = dt_s * (dt_s + material.bend_tau_s);
+  measure(material, state, forces);
+  vertices<Twist>(material, state, forces);
+  const double bend = dt_s * (dt_s + material.bend_tau_s), axial = dt_s * (dt_s + material.stretch_tau_s) * material.EA_N;
   const double inertia = 1.0 + material.drag_per_s * dt_s;
   Vec before{};
+  Mat stiff_before{};
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec here = i + 1 < n ? forces.edge[i] : Vec{};
+    Vec here{};
+    Mat stiff{};
+    if (i + 1 < n) {
+      const double tension = forces.tension[i], l = mesh.inv_rest[i];
+      here = tension * forces.unit[i] - l * (forces.moment_in[i + 1] - forces.moment_out[i]);
+      const double across = dt_s * dt_s * std::max(tension, 0.0) * l;  // |e| taken as l: strains are per cents
+      stiff = dyad(forces.unit[i], axial * l - across, across);
+      solver.couple[i] = scaled_identity(bend * mesh.ke[i]) - stiff;
+    }
     const double m = mesh.mass[i];
-    solver.diagonal[i] = solver.diagonal[i] + scaled_identity(m * inertia + bend * mesh.kd[i]);
-    solver.couple[i] = solver.couple[i] + scaled_identity(bend * mesh.ke[i]);
+    solver.diagonal[i] = stiff_before + stiff + scaled_identity(m * inertia + bend * mesh.kd[i]);
     solver.skip[i] = bend * mesh.kb[i];
     solver.rhs[i] = m * (state.v[i] + dt_s * gravity) + dt_s * (here - before + state.load[i]);
-    before = here;
+    forces.edge[i] = before = here;
+    stiff_before = stiff;
   }
   add_holds(state, dt_s, solver);
 }

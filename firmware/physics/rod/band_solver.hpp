@@ -12,7 +12,9 @@ namespace ligature::physics::rod {
 /// Block LDL^T. Nodes outside a window [first, last] are eliminated inwards, so that later right-hand sides that differ
 /// only inside the window cost only the window: what contacts need. With p, q the two nodes eliminated just before i
 /// (i-1, i-2 from the left; i+1, i+2 from the right):
-///   F_i = A_ip - A_iq G_p^T,  G_i = F_i S_p^-1,  S_i = A_ii - A_iq^2 S_q^-1 - G_i F_i^T.
+///   F_i = A_ip - A_iq H_p,  H_i = S_p^-1 F_i^T,  S_i = A_ii - A_iq^2 S_q^-1 - F_i H_i,
+///   z_i = S_i^-1 (r_i - F_i z_p - A_iq z_q).
+/// S is made exactly symmetric at every step: a skew rounding error would double from node to node.
 /// Since A_iq is a multiple of the identity a node costs about ninety multiply-adds. Real time: no allocation after
 /// resize(); O(n). @pre A positive definite.
 class BandSolver {
@@ -34,13 +36,12 @@ class BandSolver {
   void solve_outside(Vec* v) const noexcept;
 
  private:
-  void eliminate(int i, int p, int q, const Mat& a_ip, double a_iq) noexcept;
 
   int n_ = 0, first_ = 0, last_ = 0;
-  std::vector<Mat> g_, gt_, s_inverse_;  // G_i, its transpose, S_i^-1
-  std::vector<Vec> y_;                   // eliminated right-hand side
-  std::vector<Vec> w_;                   // scratch of solve_window
-  Mat link_;                             // transposed G of node last_ towards the chain on its right
+  std::vector<Mat> f_, h_, s_inverse_;  // F_i, H_i, S_i^-1
+  std::vector<Vec> z_;                  // eliminated right-hand side
+  std::vector<Vec> w_;                  // scratch of solve_window
+  Mat link_;                            // H of node last_ towards the chain on its right
 };
 
 }  // namespace ligature::physics::rod

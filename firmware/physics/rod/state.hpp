@@ -30,6 +30,7 @@ struct State {
   std::vector<Vec> x, v;      ///< n positions, m, and velocities, m/s
   std::vector<Vec> load;      ///< n constant forces, N
   std::vector<Vec> rest_bend; ///< n: part of t_i - t_{i-1} that is stress free
+  std::vector<double> rest_strain; ///< n - 1 (sized n): part of l / l_rest - 1 that is stress free
   std::array<Hold, kMaxHolds> holds;
   int hold_count = 0;
 
@@ -37,21 +38,21 @@ struct State {
   void resize(int n) {
     mesh.resize(n);
     for (auto* array : {&x, &v, &load, &rest_bend}) array->assign(static_cast<std::size_t>(n), Vec{});
+    rest_strain.assign(static_cast<std::size_t>(n), 0.0);
   }
 };
 
 /// Forces of the last assembly, kept for those who measure.
 struct Forces {
-  std::vector<Vec> tangent;     ///< e_j / l_j
-  std::vector<Vec> moment_in, moment_out;  ///< Q_i seen from the segment before and after node i, N m
+  std::vector<Vec> tangent, unit; ///< e_j / l_j and e_j / |e_j|
+  std::vector<Vec> moment_in, moment_out;  ///< of vertex i on the segment before and after it, N m: bending -+ half twist
   std::vector<Vec> edge;        ///< P_j: the force segment j exerts on node j (and - on j + 1)
-  std::vector<Vec> twist;       ///< vertex binormal term
   std::vector<double> tension;  ///< EA strain, N
   std::vector<double> twist_moment;  ///< M of vertex i, N m
 
   void resize(int n) {
     const auto size = static_cast<std::size_t>(n);
-    for (auto* array : {&tangent, &moment_in, &moment_out, &edge, &twist}) array->assign(size, Vec{});
+    for (auto* array : {&tangent, &unit, &moment_in, &moment_out, &edge}) array->assign(size, Vec{});
     tension.assign(size, 0.0);
     twist_moment.assign(size, 0.0);
   }

@@ -53,12 +53,14 @@ struct Mat {
   return {{a.c[0] + b.c[0], a.c[1] + b.c[1], a.c[2] + b.c[2]}};
 }
 [[nodiscard]] inline Mat operator*(const Mat& a, const Mat& b) noexcept { return {{a * b.c[0], a * b.c[1], a * b.c[2]}}; }
-[[nodiscard]] inline Mat scaled_identity(double s) noexcept { return {{make(s, 0, 0), make(0, s, 0), make(0, 0, s)}}; }
+/// Unit vectors; s * kAxis[k] keeps a scalar in one register (valgrind 3.19 cannot read the move that make(s, 0, 0) becomes).
+inline constexpr Lanes kAxisX = {1, 0, 0, 0}, kAxisY = {0, 1, 0, 0}, kAxisZ = {0, 0, 1, 0};
+[[nodiscard]] inline Mat scaled_identity(double s) noexcept { return {{{s * kAxisX}, {s * kAxisY}, {s * kAxisZ}}}; }
 
 /// alpha u u^T + beta I.
 [[nodiscard]] inline Mat dyad(Vec u, double alpha, double beta) noexcept {
   const Vec w = alpha * u;
-  return {{u[0] * w + make(beta, 0, 0), u[1] * w + make(0, beta, 0), u[2] * w + make(0, 0, beta)}};
+  return {{{u[0] * w.v + beta * kAxisX}, {u[1] * w.v + beta * kAxisY}, {u[2] * w.v + beta * kAxisZ}}};
 }
 
 [[nodiscard]] inline Mat transposed(const Mat& a) noexcept {
@@ -73,8 +75,18 @@ struct Mat {
   return r;
 }
 
-/// Inverse of a symmetric positive definite matrix, by cofactors.
-[[nodiscard]] inline Mat inverse_spd(const Mat& a) noexcept {
+/// The symmetric matrix with the lower triangle of `a`.
+[[nodiscard]] inline Mat mirrored(const Mat& a) noexcept {
+  constexpr LaneIndex kSecond = {1, 5, 6, 7}, kThird = {2, 6, 4, 7};
+  const Lanes c1 = __builtin_shuffle(a.c[0].v, a.c[1].v, kSecond);  // a10 a11 a21
+  const Lanes c2 = __builtin_shuffle(a.c[0].v, a.c[1].v, kThird);   // a20 a21 .
+  constexpr LaneIndex kDiagonal = {0, 1, 6, 3};
+  return {{a.c[0], {c1}, {__builtin_shuffle(c2, a.c[2].v, kDiagonal)}}};
+}
+
+/// Inverse of a symmetric positive definite matrix, by cofactors; only the lower triangle is read.
+[[nodiscard]] inline Mat inverse_spd(const Mat& full) noexcept {
+  const Mat a = mirrored(full);
   const Vec r0 = cross(a.c[1], a.c[2]);
   const Vec r1 = cross(a.c[2], a.c[0]);
   const Vec r2 = cross(a.c[0], a.c[1]);

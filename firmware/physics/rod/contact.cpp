@@ -1,0 +1,167 @@
+#include "firmware/physics/rod/contact.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace ligature::physics::rod {
+
+void ContactSet::reserve(int nodes, int bodies, int window) {
+  const auto n = static_cast<std::size_t>(nodes);
+  contacts_.reserve(static_cast<std::size_t>(kMaxContacts));
+  pairs.reserve(24 * n + 1024);
+  floor_impulse.assign(n, Vec{});
+  body_impulse.assign(n * static_cast<std::size_t>(bodies), Vec{});
+  columns_.assign(static_cast<std::size_t>(kMaxContacts) * static_cast<std::size_t>(window + 4), 0.0);
+  for (auto* array : {&change_, &extra_, &step_}) array->assign(n, Vec{});
+}
+
+// Columns B = C^-1 J^T, the contact's own number J B, the wanted normal velocity, and the old impulse turned to today's
+// normal and cone.
+void ContactSet::prepare(const ContactMetric& metric, int first, int last, const Numerics& numerics, double dt_s) noexcept {
+  const auto nodes = static_cast<std::size_t>(last - first + 1), offset = static_cast<std::size_t>(first - metric.first());
+  stride_ = nodes;
+  per_second_ = 1.0 / dt_s;
+  double* column = columns_.data();
+  for (auto& c : contacts_) {
+    const double* r0 = metric.row(c.node[0]) + offset;
+    if (c.count == 4) {
+      const double *r1 = metric.row(c.node[1]) + offset, *r2 = metric.row(c.node[2]) + offset,
+                   *r3 = metric.row(c.node[3]) + offset;
+      for (std::size_t j = 0; j < nodes; ++j) column[j] = c.w[0] * r0[j] + c.w[1] * r1[j] + c.w[2] * r2[j] + c.w[3] * r3[j];
+    } else if (c.count == 2) {
+      const double* r1 = metric.row(c.node[1]) + offset;
+      for (std::size_t j = 0; j < nodes; ++j) column[j] = c.w[0] * r0[j] + c.w[1] * r1[j];
+    } else {
+      for (std::size_t j = 0; j < nodes; ++j) column[j] = c.w[0] * r0[j];
+    }
+    double own = 0.0;
+    for (int k = 0; k < c.count; ++k) own += c.w[k] * column[c.node[k] - first];
+    c.inv_w = 1.0 / own;
+    column += nodes;
+    c.target = c.gap_m > 0.0 ? -c.gap_m / dt_s
+                             : std::min(-numerics.recovery * c.gap_m / dt_s, numerics.max_recovery_m_per_s);
+    const double pn = std::max(dot(c.p, c.n), 0.0);
+    const Vec pt = c.p - dot(c.p, c.n) * c.n;
+    const double size = norm(pt), most = c.mu * pn;
+    c.p = pn * c.n + (size > most ? most / size : 1.0) * pt;
+  }
+}
+
+template <bool Friction>
+double ContactSet::sweep(int first, int nodes, const Vec* v, bool backwards) noexcept {
+  double along = 0.0;
+  Vec* change = change_.data();
+  const int count = static_cast<int>(contacts_.size());
+  for (int k = 0; k < count; ++k) {
+    const int index = backwards ? count - 1 - k : k;
+    Contact& c = contacts_[static_cast<std::size_t>(index)];
+    Vec u = -c.surface;
+    for (int j = 0; j < c.count; ++j) u += c.w[j] * (v[c.node[j]] + change[c.node[j] - first]);
+    const Vec wish = c.p - c.inv_w * (u - c.target * c.n);
+    double pn = dot(wish, c.n);
+    Vec p{};
+    if (pn > 0.0) {
+      if constexpr (Friction) {
+        const Vec pt = wish - pn * c.n;
+        const double size2 = dot(pt, pt), most = c.mu * pn;
+        p = pn * c.n + (size2 > most * most ? most / std::sqrt(size2) : 1.0) * pt;
+      } else {
+        p = pn * c.n;
+      }
+    } else if (dot(c.p, c.p) == 0.0) {
+      c.step = Vec{};
+      continue;
+    }
+    const Vec delta = p - c.p;
+    along += dot(delta, c.step);
+    c.step = delta;
+    c.p = p;
+    for (int j = 0; j < c.count; ++j) extra_[static_cast<std::size_t>(c.node[j])] += c.w[j] * delta;
+    const double* column = columns_.data() + static_cast<std::size_t>(index) * stride_;
+    for (int j = 0; j < nodes; ++j) change[j] += column[j] * delta;
+  }
+  return along;
+}
+
+template <bool Friction>
+void ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const Numerics& numerics, double dt_s, int first,
+                        int last, Vec* v, ContactReport& report) noexcept {
+  const int nodes = last - first + 1;
+  const auto clear = [&](std::vector<Vec>& array) {
+    std::fill(array.begin() + first, array.begin() + last + 1, Vec{});
+  };
+  prepare(metric, first, last, numerics, dt_s);
+  clear(extra_);
+  for (const auto& c : contacts_) {
+    for (int k = 0; k < c.count; ++k) extra_[static_cast<std::size_t>(c.node[k])] += c.w[k] * c.p;
+  }
+  solver.solve_window(extra_.data(), v, true);
+  const double settled2 = numerics.settled_m_per_s * numerics.settled_m_per_s;
+  double t = 1.0;
+  for (auto& c : contacts_) c.step = Vec{};
+  for (int pass = 0; pass < numerics.max_passes; ++pass) {
+    ++report.passes;
+    clear(extra_);
+    std::fill(change_.begin(), change_.begin() + nodes, Vec{});
+    const double along = sweep<Friction>(first, nodes, v, (pass & 1) != 0);
+    solver.solve_window(extra_.data(), step_.data(), false);
+    double largest2 = 0.0;
+    for (int i = first; i <= last; ++i) {
+      const Vec step = step_[static_cast<std::size_t>(i)];
+      v[i] += step;
+      largest2 = std::max(largest2, dot(step, step));
+    }
+    if (largest2 < settled2) break;
+    if (pass + 1 == numerics.max_passes) break;
+    if (along < 0.0) t = 1.0;
+    const double next = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * t * t)), ahead = numerics.momentum * (t - 1.0) / next;
+    t = next;
+    if (ahead <= 0.0) continue;
+    for (auto& c : contacts_) c.p += ahead * c.step;
+    for (int i = first; i <= last; ++i) v[i] += ahead * step_[static_cast<std::size_t>(i)];
+  }
+}
+
+void ContactSet::store() noexcept {
+  for (const auto& c : contacts_) *c.keep = c.p;
+}
+
+void ContactSet::relabel(const std::vector<double>& s) noexcept {
+  const auto segment = [&](double at) {
+    const auto next = std::upper_bound(s.begin() + 1, s.end() - 1, at);
+    return static_cast<std::int32_t>(next - s.begin()) - 1;
+  };
+  for (auto& pair : pairs) {
+    if (dot(pair.impulse, pair.impulse) == 0.0) continue;
+    pair.a = segment(pair.s_a);
+    pair.b = segment(pair.s_b);
+  }
+}
+
+double ContactSet::safe_fraction(const Vec* v, double dt_s) const noexcept {
+  double fraction = 1.0;
+  for (const auto& c : contacts_) {
+    const double room = 0.9 * (c.gap_m + c.reach_m);
+    double fastest2 = 0.0;
+    if (c.count == 4) {
+      for (int i = 0; i < 2; ++i) {
+        for (int j = 2; j < 4; ++j) {
+          const Vec u = v[c.node[i]] - v[c.node[j]];
+          fastest2 = std::max(fastest2, dot(u, u));
+        }
+      }
+    } else {
+      for (int i = 0; i < c.count; ++i) {
+        const Vec u = v[c.node[i]] - c.surface;
+        fastest2 = std::max(fastest2, dot(u, u));
+      }
+    }
+    if (fastest2 * dt_s * dt_s > room * room) fraction = std::min(fraction, room / (std::sqrt(fastest2) * dt_s));
+  }
+  return fraction;
+}
+
+template void ContactSet::settle<true>(BandSolver&, const ContactMetric&, const Numerics&, double, int, int, Vec*, ContactReport&) noexcept;
+template void ContactSet::settle<false>(BandSolver&, const ContactMetric&, const Numerics&, double, int, int, Vec*, ContactReport&) noexcept;
+
+}  // namespace ligature::physics::rod

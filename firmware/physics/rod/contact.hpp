@@ -1,0 +1,115 @@
+#pragma once
+// Contacts of the thread with itself and with fixed bodies, solved together with the rod in every substep.
+
+#include <cstdint>
+#include <vector>
+
+#include "firmware/physics/rod/band_solver.hpp"
+#include "firmware/physics/rod/broad_phase.hpp"
+#include "firmware/physics/rod/contact_metric.hpp"
+
+namespace ligature::physics::rod {
+
+/// A rigid capsule in the world: a peg, or a gripper's jaw. An infinite plane is a `floor_m`.
+struct Body {
+  Vec p0{}, p1{};         ///< axis, m
+  double radius_m = 0.0;
+  Vec velocity{};
+  double friction = 0.3;
+};
+
+/// One touching pair. The relative point velocity is u = sum_k w_k v[node_k] - surface; the impulse p acts on node k as w_k p.
+struct Contact {
+  std::int32_t node[4] = {0, 0, 0, 0};
+  double w[4] = {0, 0, 0, 0};
+  Vec n{};              ///< unit normal, direction of a separating u
+  Vec surface{};        ///< velocity of the body's surface, m/s
+  Vec p{};              ///< impulse, N s; p . n >= 0
+  Vec step{};           ///< its change in the last pass
+  double gap_m = 0.0;   ///< surface distance, negative: overlap
+  double target = 0.0;  ///< least normal velocity, m/s
+  double inv_w = 0.0;   ///< 1 / (J C^-1 J^T)
+  double mu = 0.0;
+  std::int32_t count = 4;      ///< nodes in use
+  double reach_m = 0.0; ///< centre distance at which the pair touches
+  Vec* keep = nullptr;  ///< where the impulse is kept between substeps
+};
+
+/// What happened in a substep or, summed by the caller, in a tick.
+struct ContactReport {
+  int contacts = 0;        ///< with an impulse
+  int passes = 0;
+  double min_gap_m = 1e9;  ///< of thread-thread contacts before the substep
+  double largest_impulse = 0.0;
+  bool cap_hit = false;
+};
+
+inline constexpr int kMaxContacts = 384;
+
+/// Contacts of one rod. Collect, then settle; everything is preallocated.
+///
+/// A contact wants u_n >= -gap / dt when apart (nothing before they meet), u_n >= min(-beta gap / dt, limit) when
+/// overlapping, and u_t = 0 with |p_t| <= mu p_n: true static friction, no slip tolerance.
+///
+/// settle(): p and v start from the last substep's impulses. Each pass runs one projected Gauss-Seidel sweep in the metric C
+/// (contact_metric.hpp), then pushes the change of p through the true matrix A. It ends when no velocity changes by more
+/// than `settled_m_per_s`, or after max_passes. Each pass costs the contact window alone.
+class ContactSet {
+ public:
+  void reserve(int nodes, int bodies, int window);
+
+  /// Watched thread-thread pairs; rebuilt by BroadPhase.
+  std::vector<Candidate> pairs;
+
+  void begin() noexcept { contacts_.clear(), window_first_ = 1 << 30, window_last_ = -1; }
+
+  /// Measures due pairs; those nearer than `look_m` beyond touching become contacts.
+  void collect_thread(const State& state, double travel_m, double look_m, double mu, ContactReport& report) noexcept;
+  /// Every node against the plane z = floor_m.
+  void collect_floor(const State& state, double floor_m, double radius_m, double look_m, double mu,
+                     ContactReport& report) noexcept;
+  /// Every segment against a capsule.
+  void collect_body(const State& state, const Body& body, int index, double radius_m, double look_m,
+                    ContactReport& report) noexcept;
+
+  [[nodiscard]] bool empty() const noexcept { return contacts_.empty(); }
+  [[nodiscard]] int window_first() const noexcept { return window_first_; }
+  [[nodiscard]] int window_last() const noexcept { return window_last_; }
+
+  /// Solves for the window's velocities v with all contacts. @pre solver.factor(window), metric covers the window.
+  template <bool Friction>
+  void settle(BandSolver& solver, const ContactMetric& metric, const Numerics& numerics, double dt_s, int first,
+              int last, Vec* v, ContactReport& report) noexcept;
+
+  /// After nodes moved along the thread: pairs with an impulse find their segments again by material coordinate.
+  void relabel(const std::vector<double>& s) noexcept;
+
+  /// Turns impulses of the last substep into forces, 1/s.
+  [[nodiscard]] double per_second() const noexcept { return per_second_; }
+
+  /// Keeps the impulses for the next substep.
+  void store() noexcept;
+
+  /// Largest alpha <= 1 with which no measured pair moves by more than 0.9 of its centre distance.
+  [[nodiscard]] double safe_fraction(const Vec* v, double dt_s) const noexcept;
+
+  [[nodiscard]] const std::vector<Contact>& contacts() const noexcept { return contacts_; }
+
+  std::vector<Vec> floor_impulse;  ///< per node
+  std::vector<Vec> body_impulse;   ///< per body and segment
+
+ private:
+  void add(const Contact& contact, ContactReport& report) noexcept;
+  void prepare(const ContactMetric& metric, int first, int last, const Numerics& numerics, double dt_s) noexcept;
+  template <bool Friction>
+  double sweep(int first, int nodes, const Vec* v, bool backwards) noexcept;
+
+  std::vector<Contact> contacts_;
+  std::vector<double> columns_;     // C^-1 J^T of every contact on the window
+  std::vector<Vec> change_, extra_, step_;
+  std::size_t stride_ = 0;
+  double per_second_ = 0.0;
+  int window_first_ = 0, window_last_ = -1;
+};
+
+}  // namespace ligature::physics::rod

@@ -1,0 +1,84 @@
+#include "firmware/physics/rod/contact_metric.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace ligature::physics::rod {
+
+void ContactMetric::reserve(int nodes, int window) {
+  capacity_ = std::min(nodes, window);
+  const auto w = static_cast<std::size_t>(capacity_) + 4;
+  table_.assign(w * w, 0.0);
+  for (auto* array : {&d_, &l1_, &l2_}) array->assign(static_cast<std::size_t>(nodes) + 2, 0.0);
+}
+
+void ContactMetric::prepare(const Mesh& mesh, const Material& material, double dt_s, int first, int last) noexcept {
+  assert(0 <= first && first < last && last < mesh.nodes() && last - first < capacity_);
+  first_ = first;
+  last_ = last;
+  const auto n = static_cast<std::size_t>(mesh.nodes()), a = static_cast<std::size_t>(first), z = static_cast<std::size_t>(last);
+  const double bend = dt_s * (dt_s + material.bend_tau_s), inertia = 1.0 + material.drag_per_s * dt_s;
+  const auto diag = [&](std::size_t i) { return mesh.mass[i] * inertia + bend * mesh.kd[i]; };
+  // Right of the window, backwards: only d, f (coupling to the next node inwards) are needed.
+  double d1 = 0.0, d2 = 0.0, f1 = 0.0;  // d of i+1 and i+2; elimination factor of i+1 towards i+2
+  double on_last = 0.0, on_before = 0.0, on_pair = 0.0;
+  for (std::size_t i = n; i-- > z;) {
+    const double skip = i + 2 < n ? bend * mesh.kb[i] : 0.0;
+    const double f = i + 1 < n ? bend * mesh.ke[i] - (i + 2 < n ? skip * f1 : 0.0) : 0.0;
+    const double g = i + 1 < n ? f / d1 : 0.0;
+    const double less = g * f + (i + 2 < n ? skip * skip / d2 : 0.0);
+    if (i == z) {
+      on_last = less;
+      if (z + 1 < n && z > 0) {
+        const double b = bend * mesh.kb[z - 1];
+        on_before = b * b / d1;
+        on_pair = b * g;
+      }
+      break;
+    }
+    d2 = d1;
+    d1 = diag(i) - less;
+    f1 = g;
+  }
+  // Left of the window and the window itself, forwards.
+  for (std::size_t i = 0; i <= z; ++i) {
+    const double skip = i > 1 ? bend * mesh.kb[i - 2] : 0.0;
+    double f = i > 0 ? bend * mesh.ke[i - 1] : 0.0;
+    if (i == z && i > 0) f -= on_pair;
+    if (i > 1) f -= skip * l1_[i - 1];
+    l1_[i] = i > 0 ? f / d_[i - 1] : 0.0;
+    l2_[i] = i > 1 ? skip / d_[i - 2] : 0.0;
+    d_[i] = diag(i) - l1_[i] * f - l2_[i] * skip;
+    if (i + 1 == z) d_[i] -= on_before;
+    if (i == z) d_[i] -= on_last;
+  }
+  // Columns of the inverse, all at once: row operations on the identity.
+  const std::size_t w = z - a + 1;
+  stride_ = (w + 3) & ~std::size_t{3};
+  const auto row_at = [&](std::size_t i) { return table_.data() + i * stride_; };
+  for (std::size_t i = 0; i < w; ++i) {
+    double* r = row_at(i);
+    std::fill(r, r + stride_, 0.0);
+    r[i] = 1.0;
+    if (i > 0) {
+      const double* p = row_at(i - 1);
+      const double g = l1_[a + i];
+      for (std::size_t j = 0; j < i; ++j) r[j] -= g * p[j];
+    }
+    if (i > 1) {
+      const double* p = row_at(i - 2);
+      const double g = l2_[a + i];
+      for (std::size_t j = 0; j + 1 < i; ++j) r[j] -= g * p[j];
+    }
+  }
+  for (std::size_t i = w; i-- > 0;) {
+    double* r = row_at(i);
+    const double inv = 1.0 / d_[a + i];
+    const double* p = i + 1 < w ? row_at(i + 1) : r;
+    const double* q = i + 2 < w ? row_at(i + 2) : r;
+    const double g = i + 1 < w ? l1_[a + i + 1] : 0.0, h = i + 2 < w ? l2_[a + i + 2] : 0.0;
+    for (std::size_t j = 0; j < stride_; ++j) r[j] = inv * r[j] - g * p[j] - h * q[j];
+  }
+}
+
+}  // namespace ligature::physics::rod

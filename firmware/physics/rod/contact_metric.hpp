@@ -1,0 +1,39 @@
+#pragma once
+// The constant metric in which contacts are solved.
+
+#include <vector>
+
+#include "firmware/physics/rod/mesh.hpp"
+
+namespace ligature::physics::rod {
+
+/// C = M (1 + c dt) + dt (dt + tau_b) K_b: the matrix A of a substep (assembly.hpp) without its stretch, geometric and
+/// hold terms. C is a scalar pentadiagonal matrix times the 3 x 3 identity and constant while mesh and dt are. Because
+/// A >= C, J A^-1 J^T <= J C^-1 J^T: an impulse step computed with C never over-shoots (a majorise-minimise argument for
+/// the frictionless problem), and normal and friction of a contact share one number.
+class ContactMetric {
+ public:
+  void reserve(int nodes, int window);
+
+  /// C^-1 on the nodes [first, last]. O(n + w^2), no allocation. @pre last - first < capacity.
+  void prepare(const Mesh& mesh, const Material& material, double dt_s, int first, int last) noexcept;
+
+  [[nodiscard]] bool covers(int first, int last) const noexcept { return first_ <= first && last <= last_; }
+  void invalidate() noexcept { first_ = 1, last_ = 0; }
+  [[nodiscard]] int first() const noexcept { return first_; }
+  [[nodiscard]] int last() const noexcept { return last_; }
+  [[nodiscard]] int capacity() const noexcept { return capacity_; }
+
+  /// Row of C^-1 of a node; entry j belongs to node first() + j.
+  [[nodiscard]] const double* row(int node) const noexcept {
+    return table_.data() + static_cast<std::size_t>(node - first_) * stride_;
+  }
+
+ private:
+  int capacity_ = 0, first_ = 1, last_ = 0;
+  std::size_t stride_ = 0;
+  std::vector<double> table_;
+  std::vector<double> d_, l1_, l2_;  // scalar LDL^T
+};
+
+}  // namespace ligature::physics::rod

@@ -1,0 +1,214 @@
+#include "firmware/physics/rod/refine.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligature::physics::rod {
+namespace {
+
+constexpr double kTurn = 0.35;        // rad per node
+constexpr double kBendLength = 0.4;   // of sqrt(EI / T)
+constexpr double kGrading = 0.2;
+constexpr double kWorth = 1.5;        // a change must better the worst by this factor
+constexpr double kFade = 0.8;         // of the stress-free offsets, per tick
+
+// Moves array[from + 1 ..] one place: opens a slot at `at`, or closes it. Sizes stay n: the slot at the end is spare.
+template <class T>
+void open_slot(std::vector<T>& array, std::size_t at) noexcept {
+  std::move_backward(array.begin() + static_cast<std::ptrdiff_t>(at), array.end() - 1, array.end());
+}
+template <class T>
+void close_slot(std::vector<T>& array, std::size_t at) noexcept {
+  std::move(array.begin() + static_cast<std::ptrdiff_t>(at) + 1, array.end(), array.begin() + static_cast<std::ptrdiff_t>(at));
+}
+
+template <class F>
+void every_array(State& s, F f) noexcept {
+  f(s.x);
+  f(s.v);
+  f(s.load);
+}
+
+}  // namespace
+
+bool Refine::start(const Material& material, double wanted_m, State& state) {
+  const std::size_t n = state.x.size();
+  const int coarse = std::max(2, static_cast<int>(std::lround(material.length_m / (wanted_m * (1 << kLevels)))));
+  unit_m_ = material.length_m / (coarse << kLevels);
+  if (n < static_cast<std::size_t>(coarse) + 1 || n > static_cast<std::size_t>(coarse << kLevels) + 1) return false;
+  at_.clear();
+  at_.reserve(n);
+  for (int i = 0; i <= coarse; ++i) at_.push_back(i << kLevels);
+  for (int length = 1 << kLevels; at_.size() < n; length /= 2) {  // longest first, from the middle outwards
+    const std::int32_t middle = at_.back() / 2;
+    std::vector<std::int32_t> more;
+    for (std::size_t i = 0; i + 1 < at_.size(); ++i) {
+      if (at_[i + 1] - at_[i] == length) more.push_back(at_[i] + length / 2);
+    }
+    std::sort(more.begin(), more.end(), [&](auto a, auto b) { return std::abs(a - middle) < std::abs(b - middle); });
+    more.resize(std::min(more.size(), n - at_.size()));
+    at_.insert(at_.end(), more.begin(), more.end());
+    std::sort(at_.begin(), at_.end());
+  }
+  for (std::size_t i = 0; i < n; ++i) state.mesh.s[i] = unit_m_ * at_[i];
+  wanted_.assign(n, 0.0);
+  free_.assign(n, 1);
+  moment_.assign(n, Vec{});
+  tension_.assign(n, 0.0);
+  return true;
+}
+
+void Refine::want(const Material& material, const State& state, const Forces& forces, const ContactSet& contacts) noexcept {
+  const Mesh& mesh = state.mesh;
+  const std::size_t n = mesh.s.size();
+  const double coarsest = unit_m_ * (1 << kLevels);
+  std::fill(wanted_.begin(), wanted_.end(), coarsest);
+  std::fill(free_.begin(), free_.end(), 1);
+  free_[0] = free_[n - 1] = 0;
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const Vec bend = forces.tangent[i] - forces.tangent[i - 1];
+    const double length = kTurn * 0.5 * (mesh.rest[i - 1] + mesh.rest[i]) / (norm(bend) + 1e-9);
+    wanted_[i - 1] = std::min(wanted_[i - 1], length);
+    wanted_[i] = std::min(wanted_[i], length);
+    if (dot(state.load[i], state.load[i]) > 0.0) free_[i] = 0;
+  }
+  for (int h = 0; h < state.hold_count; ++h) {
+    const int node = state.holds[static_cast<std::size_t>(h)].node;
+    if (node >= 0) free_[static_cast<std::size_t>(node)] = 0;
+  }
+  for (const auto& c : contacts.contacts()) {
+    for (int k = 0; k < c.count; ++k) free_[static_cast<std::size_t>(c.node[k])] = 0;
+    const double force = norm(c.p) * contacts.per_second();
+    if (force == 0.0) continue;
+    for (int k = 0; k < c.count; k += 2) {
+      const auto j = std::min(static_cast<std::size_t>(c.node[k]), n - 2);
+      const double pull = std::max({force, forces.tension[j], 1e-9});
+      wanted_[j] = std::min(wanted_[j], kBendLength * std::sqrt(material.EI_N_m2 / pull));
+    }
+  }
+  for (auto& w : wanted_) w = std::max(w, unit_m_);
+  for (std::size_t j = 1; j + 1 < n; ++j) {
+    wanted_[j] = std::min(wanted_[j], wanted_[j - 1] + kGrading * 0.5 * (mesh.rest[j - 1] + mesh.rest[j]));
+  }
+  for (std::size_t j = n - 2; j-- > 0;) {
+    wanted_[j] = std::min(wanted_[j], wanted_[j + 1] + kGrading * 0.5 * (mesh.rest[j + 1] + mesh.rest[j]));
+  }
+}
+
+int Refine::worst_segment() const noexcept {
+  double most = 0.0;
+  int worst = -1;
+  for (std::size_t j = 0; j + 1 < at_.size(); ++j) {
+    const int length = at_[j + 1] - at_[j];
+    const double ratio = length * unit_m_ / wanted_[j];
+    if (length > 1 && ratio > most) most = ratio, worst = static_cast<int>(j);
+  }
+  return worst;
+}
+
+int Refine::best_merge() const noexcept {
+  double least = 1e9;
+  int best = -1;
+  for (std::size_t i = 1; i + 1 < at_.size(); ++i) {
+    const int before = at_[i] - at_[i - 1], after = at_[i + 1] - at_[i];
+    if (!free_[i] || before != after || before >= (1 << kLevels) || at_[i - 1] % (2 * before) != 0) continue;
+    const double ratio = 2 * before * unit_m_ / std::min(wanted_[i - 1], wanted_[i]);
+    if (ratio < least) least = ratio, best = static_cast<int>(i);
+  }
+  return best;
+}
+
+// Node i goes; its two segments become one.
+void Refine::merge(const Material& material, State& state, int node) noexcept {
+  const auto i = static_cast<std::size_t>(node);
+  const double half = 0.5 * material.density_kg_per_m * (state.mesh.s[i] - state.mesh.s[i - 1]);  // = ours / 2
+  for (const std::size_t k : {i - 1, i + 1}) {
+    const double before = k > 0 ? state.mesh.s[k] - state.mesh.s[k - 1] : 0.0;
+    const double after = k + 1 < at_.size() ? state.mesh.s[k + 1] - state.mesh.s[k] : 0.0;
+    const double mass = 0.5 * material.density_kg_per_m * (before + after);
+    state.v[k] = (1.0 / (mass + half)) * (mass * state.v[k] + half * state.v[i]);
+  }
+  tension_[i - 1] = 0.5 * (tension_[i - 1] + tension_[i]);
+  close_slot(tension_, i);
+  close_slot(moment_, i);
+  close_slot(at_, i);
+  close_slot(wanted_, i);
+  close_slot(free_, i);
+  close_slot(state.mesh.s, i);
+  every_array(state, [&](auto& array) { close_slot(array, i); });
+  for (int h = 0; h < state.hold_count; ++h) {
+    auto& hold = state.holds[static_cast<std::size_t>(h)];
+    if (hold.node > node) --hold.node;
+  }
+}
+
+// A node in the middle of a segment, on its chord.
+void Refine::split(const Material&, State& state, int segment) noexcept {
+  const auto j = static_cast<std::size_t>(segment), i = j + 1;
+  const auto insert = [&](auto& array, auto value) {
+    open_slot(array, i);
+    array[i] = value;
+  };
+  insert(at_, (at_[j] + at_[i]) / 2);
+  insert(state.mesh.s, unit_m_ * at_[i]);
+  insert(state.x, 0.5 * (state.x[j] + state.x[i]));
+  insert(state.v, 0.5 * (state.v[j] + state.v[i]));
+  insert(state.load, Vec{});
+  insert(moment_, 0.5 * (moment_[j] + moment_[i]));
+  insert(tension_, tension_[j]);
+  insert(wanted_, wanted_[j]);
+  insert(free_, char{1});
+  for (int h = 0; h < state.hold_count; ++h) {
+    auto& hold = state.holds[static_cast<std::size_t>(h)];
+    if (hold.node > segment) ++hold.node;
+  }
+}
+
+bool Refine::update(const Material& material, State& state, const Forces& forces, ContactSet& contacts) noexcept {
+  for (auto& q : state.rest_bend) q = kFade * q;
+  for (auto& e : state.rest_strain) e *= kFade;
+  want(material, state, forces, contacts);
+  const std::size_t n = at_.size();
+  bool changed = false;
+  for (int k = 0; k < kChangesPerTick; ++k) {
+    const int segment = worst_segment(), node = best_merge();
+    if (segment < 0 || node < 0 || segment == node || segment + 1 == node) break;
+    const auto j = static_cast<std::size_t>(segment), i = static_cast<std::size_t>(node);
+    const double bad = (at_[j + 1] - at_[j]) * unit_m_ / wanted_[j];
+    const double merged = (at_[i + 1] - at_[i - 1]) * unit_m_ / std::min(wanted_[i - 1], wanted_[i]);
+    if (bad <= 1.0 || bad < kWorth * merged) break;
+    if (!changed) {
+      for (std::size_t q = 0; q + 1 < n; ++q) {
+        tension_[q] = material.EA_N * (norm(state.x[q + 1] - state.x[q]) * state.mesh.inv_rest[q] - 1.0 - state.rest_strain[q]);
+      }
+      moment_[0] = moment_[n - 1] = Vec{};
+      for (std::size_t q = 1; q + 1 < n; ++q) {
+        const Vec turn = state.mesh.inv_rest[q] * (state.x[q + 1] - state.x[q]) -
+                         state.mesh.inv_rest[q - 1] * (state.x[q] - state.x[q - 1]) - state.rest_bend[q];
+        moment_[q] = state.mesh.weight[q] * turn;
+      }
+    }
+    changed = true;
+    merge(material, state, node);
+    split(material, state, segment > node ? segment - 1 : segment);
+  }
+  if (!changed) return false;
+  contacts.relabel(state.mesh.s);
+  return true;
+}
+
+void Refine::keep_stress(const Material& material, State& state) noexcept {
+  const Mesh& mesh = state.mesh;
+  const std::size_t n = at_.size();
+  for (std::size_t j = 0; j + 1 < n; ++j) {
+    const double strain = norm(state.x[j + 1] - state.x[j]) * mesh.inv_rest[j] - 1.0;
+    state.rest_strain[j] = strain - tension_[j] / material.EA_N;
+  }
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    if (mesh.weight[i] == 0.0) continue;
+    const Vec turn = mesh.inv_rest[i] * (state.x[i + 1] - state.x[i]) - mesh.inv_rest[i - 1] * (state.x[i] - state.x[i - 1]);
+    state.rest_bend[i] = turn - (1.0 / mesh.weight[i]) * moment_[i];
+  }
+}
+
+}  // namespace ligature::physics::rod

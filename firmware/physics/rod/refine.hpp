@@ -1,0 +1,54 @@
+#pragma once
+// Nodes where they are needed: a fixed number of them, moved along the thread by splitting here and merging there.
+
+#include <cstdint>
+#include <vector>
+
+#include "firmware/physics/rod/contact.hpp"
+
+namespace ligature::physics::rod {
+
+/// A dyadic mesh: every segment is unit x 2^k long, unit being the finest wanted (about a diameter), 0 <= k <= kLevels.
+/// Wanted length of a segment, the least of
+///   0.35 / curvature,
+///   0.4 sqrt(EI / T) at a contact, T its force or the tension: the length over which a pulled thread bends away,
+///   the wanted length of a place nearby + 0.2 x distance (grading),
+/// and never below a unit. Where the longest segment, relative to what is wanted, is much worse off than a merged pair
+/// elsewhere would be, that pair is merged and the segment split. Nothing jumps:
+/// - a new node lies on the chord of its segment, so the thread's shape, gaps and stretch are untouched;
+/// - a merge shares the node's momentum out, and only nearly straight, free nodes away from contacts are merged;
+/// - bending moments and tension stay what they were: what the new polygon would change is kept as a stress-free offset
+///   (State::rest_bend, rest_strain) that fades within some ticks.
+class Refine {
+ public:
+  /// Lays out n nodes: units for the finest length wanted_m, coarse segments, then splits of the longest.
+  /// @return false when n is too small or too large for the length.
+  bool start(const Material& material, double wanted_m, State& state);
+
+  /// One tick's worth of changes. @return true when nodes moved. O(n); no allocation.
+  bool update(const Material& material, State& state, const Forces& forces, ContactSet& contacts) noexcept;
+
+  /// After update() returned true and the mesh was rebuilt: offsets that keep moments and tensions.
+  void keep_stress(const Material& material, State& state) noexcept;
+
+  [[nodiscard]] double unit_m() const noexcept { return unit_m_; }
+
+  static constexpr int kLevels = 4;
+  static constexpr int kChangesPerTick = 6;
+
+ private:
+  void want(const Material& material, const State& state, const Forces& forces, const ContactSet& contacts) noexcept;
+  [[nodiscard]] int worst_segment() const noexcept;
+  [[nodiscard]] int best_merge() const noexcept;
+  void merge(const Material& material, State& state, int node) noexcept;
+  void split(const Material& material, State& state, int segment) noexcept;
+
+  double unit_m_ = 0.0;
+  std::vector<std::int32_t> at_;  // node positions in units
+  std::vector<double> wanted_;    // per segment, m
+  std::vector<char> free_;        // node may be merged
+  std::vector<Vec> moment_;       // Q of every vertex
+  std::vector<double> tension_;
+};
+
+}  // namespace ligature::physics::rod

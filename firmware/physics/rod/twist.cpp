@@ -1,0 +1,117 @@
+#include "firmware/physics/rod/twist.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace ligature::physics::rod {
+namespace {
+
+Vec unit(Vec a) noexcept { return (1.0 / norm(a)) * a; }
+
+Vec edge(const State& state, int j) noexcept {
+  const auto k = static_cast<std::size_t>(j);
+  return unit(state.x[k + 1] - state.x[k]);
+}
+
+Vec tangent_at(const State& state, const Hold& hold) noexcept {
+  if (hold.directed) return hold.direction;
+  if (hold.node == 0) return edge(state, 0);
+  if (hold.node == state.nodes() - 1) return edge(state, hold.node - 1);
+  return unit(edge(state, hold.node - 1) + edge(state, hold.node));
+}
+
+// u carried along the centreline from one hold's tangent to another's.
+Vec carried(const State& state, const Hold& from, const Hold& to) noexcept {
+  Vec u = from.director, t = from.tangent;
+  for (int j = from.node; j < to.node; ++j) {
+    const Vec e = edge(state, j);
+    u = transport(u, t, e);
+    t = e;
+  }
+  return transport(u, t, to.tangent);
+}
+
+double angle_about(Vec axis, Vec from, Vec to) noexcept { return std::atan2(dot(axis, cross(from, to)), dot(from, to)); }
+
+const Hold& hold_of(const State& state, int k) noexcept { return state.holds[static_cast<std::size_t>(k)]; }
+
+}  // namespace
+
+double Twist::raw_turn(const State& state, int from, int to) const noexcept {
+  const Hold& b = hold_of(state, to);
+  return angle_about(b.tangent, carried(state, hold_of(state, from), b), b.director);
+}
+
+void Twist::roll(Hold& hold, double angle_rad) noexcept {
+  hold.director = std::cos(angle_rad) * hold.director + std::sin(angle_rad) * cross(hold.tangent, hold.director);
+}
+
+void Twist::attach(State& state, int hold) noexcept {
+  Hold& h = state.holds[static_cast<std::size_t>(hold)];
+  h.holds_roll = true;
+  h.tangent = tangent_at(state, h);
+  int k = 0;
+  while (k < count_ && hold_of(state, order_[static_cast<std::size_t>(k)]).node < h.node) ++k;
+  const auto at = static_cast<std::size_t>(k);
+  for (auto i = static_cast<std::size_t>(count_); i > at; --i) {
+    order_[i] = order_[i - 1];
+    turn_[i] = turn_[i - 1];
+  }
+  order_[at] = hold;
+  ++count_;
+  turn_[at] = 0.0;
+  const Vec any = std::abs(h.tangent[0]) < 0.7 ? make(1, 0, 0) : make(0, 1, 0);
+  h.director = unit(cross(h.tangent, any));
+  if (k == 0 || k + 1 == count_) {  // a new end: its span starts untwisted
+    if (k > 0) h.director = carried(state, hold_of(state, order_[at - 1]), h), turn_[at - 1] = 0.0;
+    if (k == 0 && count_ > 1) turn_[0] = raw_turn(state, order_[0], order_[1]), roll(h, turn_[0]), turn_[0] = 0.0;
+    return;
+  }
+  const Hold& a = hold_of(state, order_[at - 1]);
+  const Hold& b = hold_of(state, order_[at + 1]);
+  const auto s = [&](const Hold& g) { return state.mesh.s[static_cast<std::size_t>(g.node)]; };
+  const double whole = turn_[at - 1], share = whole * (s(h) - s(a)) / (s(b) - s(a));
+  h.director = carried(state, a, h);
+  roll(h, share);
+  turn_[at - 1] = share;
+  turn_[at] = whole - share;
+}
+
+void Twist::detach(State& state, int hold) noexcept {
+  state.holds[static_cast<std::size_t>(hold)].holds_roll = false;
+  int k = 0;
+  while (k < count_ && order_[static_cast<std::size_t>(k)] != hold) ++k;
+  if (k == count_) return;
+  if (k > 0) turn_[static_cast<std::size_t>(k - 1)] += turn_[static_cast<std::size_t>(k)];
+  for (auto i = static_cast<std::size_t>(k); i + 1 < static_cast<std::size_t>(count_); ++i) {
+    order_[i] = order_[i + 1];
+    turn_[i] = turn_[i + 1];
+  }
+  --count_;
+}
+
+void Twist::update(const Material& material, State& state, Forces& forces) noexcept {
+  energy_J_ = 0.0;
+  for (auto& m : forces.twist_moment) m = 0.0;
+  for (int k = 0; k < count_; ++k) {
+    Hold& h = state.holds[static_cast<std::size_t>(order_[static_cast<std::size_t>(k)])];
+    const Vec now = tangent_at(state, h);
+    h.director = transport(h.director, h.tangent, now);
+    h.director = unit(h.director - dot(h.director, now) * now);
+    h.tangent = now;
+  }
+  for (int k = 0; k + 1 < count_; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const Hold& a = hold_of(state, order_[at]);
+    const Hold& b = hold_of(state, order_[at + 1]);
+    const double raw = raw_turn(state, order_[at], order_[at + 1]);
+    turn_[at] += std::remainder(raw - turn_[at], 2.0 * std::numbers::pi);
+    const auto from = static_cast<std::size_t>(a.node), to = static_cast<std::size_t>(b.node);
+    const double span_m = state.mesh.s[to] - state.mesh.s[from];
+    moment_[at] = material.GJ_N_m2 * turn_[at] / span_m;
+    energy_J_ += 0.5 * moment_[at] * turn_[at];
+    for (std::size_t i = from; i <= to; ++i) forces.twist_moment[i] = moment_[at];
+  }
+}
+
+}  // namespace ligature::physics::rod
