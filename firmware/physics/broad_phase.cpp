@@ -17,9 +17,7 @@ void find_pairs_brute(const SegmentSpheres& s, double reach_m, int skip, PairLis
     const V3<Pack> c{splat(s.centre.x[i]), splat(s.centre.y[i]), splat(s.centre.z[i])};
     const Pack reach = splat(reach_m + s.half_m[i]);
     for (int j = i + skip; j < s.count; j += kLanes) {
-      const V3<Pack> apart = s.centre.pack(j) - c;
-      const Pack limit = reach + s.half_m.pack(j);
-      const PackMask near = dot(apart, apart) <= limit * limit;
+      const PackMask near = spheres_near(c, reach, s, j);
       if (!any(near)) [[likely]] continue;
       for (int k = 0; k < kLanes && j + k < s.count; ++k)
         if (near[k]) out.add({i, j + k});
@@ -32,9 +30,7 @@ void find_near_sphere(const SegmentSpheres& s, const V3<double>& centre, double 
   out.overflow = false;
   const V3<Pack> c{splat(centre.x), splat(centre.y), splat(centre.z)};
   for (int j = 0; j < s.count; j += kLanes) {
-    const V3<Pack> apart = s.centre.pack(j) - c;
-    const Pack limit = s.half_m.pack(j) + (reach_m + half_m);
-    const PackMask near = dot(apart, apart) <= limit * limit;
+    const PackMask near = spheres_near(c, splat(reach_m + half_m), s, j);
     if (!any(near)) continue;
     for (int k = 0; k < kLanes && j + k < s.count; ++k)
       if (near[k]) out.add({j + k, j + k});

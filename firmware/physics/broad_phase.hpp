@@ -36,7 +36,19 @@ struct PairList {
   }
 };
 
-/// All pairs whose spheres, grown by reach_m / 2 each, overlap, and whose indices differ by at least skip; in rising order.
+/// Whether two spheres are within reach of each other: |c_i - c_j| <= h_i + h_j + reach. Every broad phase decides by this
+/// one expression on packs, so that all of them agree to the last bit.
+inline PackMask spheres_near(const V3<Pack>& ci, Pack hi_and_reach, const SegmentSpheres& s, int j) noexcept {
+  const V3<Pack> apart = s.centre.pack(j) - ci;
+  const Pack limit = hi_and_reach + s.half_m.pack(j);
+  return dot(apart, apart) <= limit * limit;
+}
+inline bool segments_near(const SegmentSpheres& s, int i, int j, double reach_m) noexcept {
+  const V3<Pack> c{splat(s.centre.x[i]), splat(s.centre.y[i]), splat(s.centre.z[i])};
+  return spheres_near(c, splat(reach_m + s.half_m[i]), s, j)[0] != 0;
+}
+
+/// All pairs whose spheres are within reach_m of each other, and whose indices differ by at least skip; in rising order.
 /// Cost: n^2 / 2 tests, four at a time.
 void find_pairs_brute(const SegmentSpheres& s, double reach_m, int skip, PairList& out) noexcept;
 

@@ -7,6 +7,8 @@
 namespace ligature::physics {
 namespace {
 
+constexpr int kBruteUpTo = 150;  // nodes; above, the sweep is cheaper (docs/physics.md, "Broad phases")
+
 V3<double> to_v3(const scene::Vec& a) { return {a[0], a[1], a[2]}; }
 
 /// Table I per node, or the same thread per length spread over another number of nodes.
@@ -100,6 +102,9 @@ ContactSettings build_contact(const scene::Scene& scene, const ThreadModel& m) {
   c.skip = 1 + static_cast<int>(std::ceil(kPi * m.radius_m / m.rest_m - 1e-9));
   if (c.skip < 2) c.skip = 2;
   c.desk_m = scene.world.desk_height_m;
+  c.broad_phase = scene.contact.broad_phase;
+  if (c.broad_phase == scene::BroadPhase::kAuto)
+    c.broad_phase = m.nodes <= kBruteUpTo ? scene::BroadPhase::kBrute : scene::BroadPhase::kSweep;
   return c;
 }
 

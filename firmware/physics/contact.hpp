@@ -5,8 +5,11 @@
 #include <vector>
 
 #include "firmware/physics/broad_phase.hpp"
+#include "firmware/physics/bvh.hpp"
 #include "firmware/physics/contact_row.hpp"
+#include "firmware/physics/sweep.hpp"
 #include "firmware/physics/thread.hpp"
+#include "protocol/scene/scene.hpp"
 
 namespace ligature::physics {
 
@@ -21,6 +24,7 @@ struct ContactSettings {
   double stick = 0.3, slip = 0.3;  ///< static and kinetic friction
   int skip = 2;                    ///< segments whose indices differ by less are neighbours along the thread
   std::optional<double> desk_m;    ///< height of the desk
+  scene::BroadPhase broad_phase = scene::BroadPhase::kBrute;  ///< which search; kAuto is resolved before
 };
 
 /// Two bodies worth watching: measured when they may have come close, remembered from step to step.
@@ -66,6 +70,7 @@ class ContactSolver {
 
  private:
   void find_candidates(const ThreadState& state) noexcept;
+  void find_pairs(double reach_m) noexcept;
   void find_near_obstacle(const ThreadState& state, int obstacle) noexcept;
   void keep(const ThreadState& state, Candidate candidate) noexcept;
   void inherit_impulses() noexcept;
@@ -73,6 +78,10 @@ class ContactSolver {
   [[nodiscard]] bool finish_row(const ThreadModel& model, const Candidate& c, ContactRow& row) const noexcept;
   void gather_velocities(const ThreadState& state) noexcept;
   void orient(Candidate& c, const V3<double>& apart, double distance_m, const V3<double>& axis) const noexcept;
+  void index_candidates() noexcept;
+  void remember(int candidate) noexcept;
+  [[nodiscard]] double fastest(const ThreadState& state) noexcept;
+  void try_row(const ThreadModel& model, const ThreadState& state, double near_m, int candidate) noexcept;
   void make_rows(const ThreadModel& model, const ThreadState& state, double near_m) noexcept;
   void sweep(double step_s) noexcept;
 
@@ -81,8 +90,12 @@ class ContactSolver {
   int nodes_ = 0;
   std::array<Obstacle, kObstacles> obstacles_{}, known_{};  ///< now, and in the last step
   SegmentSpheres spheres_;
+  Sweep sweep_;
+  SphereTree tree_;
   PairList pairs_;
   std::vector<Candidate> candidates_, old_candidates_;
+  Lane due_m_;  ///< per candidate: odometer reading before which it cannot have gap zero
+  Lane gap_m_;  ///< per candidate: gap when last measured; infinite for the desk and obstacles
   std::vector<ContactRow> rows_;
   std::vector<NodeVelocity> velocity_;  ///< one more than nodes: the last is massless and at rest
   double travel_m_ = 0.0;         ///< bound on how much any gap can have closed since the start

@@ -1,8 +1,10 @@
 #pragma once
 
-#include "firmware/physics/pack.hpp"
+#include "firmware/physics/vec.hpp"
 
 namespace ligature::physics {
+
+inline Pack to_pack(const V3<double>& a) noexcept { return Pack{a.x, a.y, a.z, 0.0}; }
 
 /// x, y, z, 0 of one node: what a contact reads and writes in one instruction; m/s.
 struct NodeVelocity {

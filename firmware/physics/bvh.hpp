@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "firmware/physics/broad_phase.hpp"
+
+namespace ligature::physics {
+
+/// The paper's broad phase (V.A): a hierarchy of bounding spheres built from the bottom up, segment by segment along the
+/// thread, and explored against itself from the top down. Neighbours along the thread are near in space too, so the tree's
+/// shape never changes; only its spheres do. Cost: n to build, n log n and more to explore a thread that touches itself.
+class SphereTree {
+ public:
+  SphereTree() = default;
+  explicit SphereTree(int segments);
+
+  /// The same pairs, in the same order, as find_pairs_brute.
+  void find_pairs(const SegmentSpheres& s, double reach_m, int skip, PairList& out) noexcept;
+
+ private:
+  struct Ball {
+    V3<double> centre{};
+    double radius_m = -1.0;  ///< negative: nothing below
+    int first = 0, last = -1;
+  };
+  struct Search {
+    const SegmentSpheres& spheres;
+    double reach_m;
+    int skip;
+    PairList& out;
+  };
+  void build(const SegmentSpheres& s) noexcept;
+  void within(std::size_t node, const Search& search) const noexcept;
+  void between(std::size_t a, std::size_t b, const Search& search) const noexcept;
+
+  std::size_t leaves_ = 1;   ///< a power of two
+  std::vector<Ball> balls_;  ///< children of k are 2k and 2k + 1; leaves from leaves_ on
+};
+
+}  // namespace ligature::physics

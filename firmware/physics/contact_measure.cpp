@@ -1,0 +1,57 @@
+#include "firmware/physics/closest_points.hpp"
+#include "firmware/physics/contact.hpp"
+
+// Narrow phase: how far a candidate is apart, where, and on which side.
+
+namespace ligature::physics {
+namespace {
+constexpr double kRoundOff = 1e-9;  // of radius: centre lines this close have no direction from one to the other
+}
+
+/// Sets the candidate's normal and gap. Two centre lines that were near one step ago cannot have changed sides since
+/// unless they went through each other: then the old side is kept and the overlap counted as deeper than a diameter.
+void ContactSolver::orient(Candidate& c, const V3<double>& apart, double distance_m, const V3<double>& axis) const noexcept {
+  const bool fresh = c.step >= 0 && c.step + 1 >= step_;
+  if (distance_m > kRoundOff * radius_m_) {
+    const V3<double> n = (1.0 / distance_m) * apart;
+    const bool crossed = fresh && distance_m < radius_m_ && c.gap_m < radius_m_ && dot(n, c.normal) < 0.0;
+    if (!crossed) c.normal = n;
+    c.gap_m = (crossed ? -distance_m : distance_m) - 2.0 * radius_m_;
+  } else {
+    if (!fresh) {
+      const double size = norm(axis);
+      c.normal = size > 0.0 ? (1.0 / size) * axis : V3<double>{0.0, 0.0, 1.0};
+    }
+    c.gap_m = -2.0 * radius_m_;
+  }
+  c.step = step_;
+  c.travel_m = travel_m_;
+}
+
+/// Measures a candidate and returns where its contact would be; weights and nodes only.
+void ContactSolver::measure(const ThreadState& s, Candidate& c, ContactRow& row) const noexcept {
+  const int i = c.first, j = c.second, nobody = nodes_;
+  if (c.kind == Candidate::Kind::kDesk) {
+    c.gap_m = s.p.z[i] - *settings_.desk_m - radius_m_;
+    c.normal = {0.0, 0.0, 1.0};
+    c.step = step_;
+    c.travel_m = travel_m_;
+    row.node[0] = i, row.node[1] = row.node[2] = row.node[3] = nobody;
+    row.weight[0] = 1.0, row.weight[1] = row.weight[2] = row.weight[3] = 0.0;
+    row.v_outside = Pack{};
+    return;
+  }
+  const bool outside = c.kind == Candidate::Kind::kObstacle;
+  const Obstacle* o = outside ? &obstacles_[static_cast<std::size_t>(j)] : nullptr;
+  const V3<double> p1 = s.p.at(i), q1 = s.p.at(i + 1);
+  const V3<double> p2 = outside ? o->p0_m : s.p.at(j), q2 = outside ? o->p1_m : s.p.at(j + 1);
+  const ClosestPoints near = closest_points(p1, q1, p2, q2);
+  orient(c, near.apart, near.distance_m, cross(q1 - p1, q2 - p2));
+  row.node[0] = i, row.node[1] = i + 1;
+  row.weight[0] = 1.0 - near.a, row.weight[1] = near.a;
+  row.node[2] = outside ? nobody : j, row.node[3] = outside ? nobody : j + 1;
+  row.weight[2] = outside ? 0.0 : near.b - 1.0, row.weight[3] = outside ? 0.0 : -near.b;
+  row.v_outside = outside ? to_pack(o->v_m_per_s) : Pack{};
+}
+
+}  // namespace ligature::physics
