@@ -48,13 +48,12 @@ void BandSolver::resize(int n) {
   skip.resize(size);
 }
 
-void BandSolver::factor(int first, int last) noexcept {
-  assert(0 <= first && first <= last && last < n_);
-  assert(first < last || first == 0 || last == n_ - 1);
-  first_ = first;
-  last_ = last;
+void BandSolver::factor(int core) noexcept {
+  assert(0 <= core && core + 1 < n_);
+  core_ = core;
   const Arrays a{diagonal.data(), rhs.data(), f_.data(), h_.data(), s_inverse_.data(), z_.data()};
-  Mat* const e = couple.data();
+  Mat *const d = diagonal.data(), *const e = couple.data();
+  Vec* const r = rhs.data();
   double* const b = skip.data();
   const auto left = [&](std::ptrdiff_t i) {
     if (i > 1) {
@@ -74,76 +73,101 @@ void BandSolver::factor(int first, int last) noexcept {
       eliminate<0>(a, i, 0, 0, e[i], 0.0);
     }
   };
-  // Both ends in one loop: two independent chains of dependent arithmetic keep the core busy.
-  const int lefts = first, rights = n_ - 1 - last;
+  const int lefts = core, rights = n_ - 2 - core;
   for (int k = 0; k < std::max(lefts, rights); ++k) {
     if (k < lefts) left(k);
     if (k < rights) right(n_ - 1 - k);
   }
-  // The right-hand chain's Schur complement falls on the last two nodes of the window, which is why it has two.
+  // The right-hand chain's Schur complement falls on both core nodes.
   if (rights > 0) {
-    const std::ptrdiff_t l = last, p = l + 1;
+    const std::ptrdiff_t l = core + 1, p = l + 1;
     Mat f = e[l];
     if (rights > 1) {
-      f = f - b[l] * h_[static_cast<std::size_t>(p)];
-      diagonal[static_cast<std::size_t>(l)] = a.diagonal[l] - (b[l] * b[l]) * a.s_inverse[p + 1];
-      rhs[static_cast<std::size_t>(l)] -= b[l] * a.z[p + 1];
+      f = f - b[l] * a.h[p];
+      d[l] = d[l] - (b[l] * b[l]) * a.s_inverse[p + 1];
+      r[l] -= b[l] * a.z[p + 1];
     }
+    link_f_ = f;
     link_ = times_transposed(a.s_inverse[p], f);
-    diagonal[static_cast<std::size_t>(l)] = a.diagonal[l] - f * link_;
-    rhs[static_cast<std::size_t>(l)] -= f * a.z[p];
-    if (l > 0) {
-      const double c = b[l - 1];
-      diagonal[static_cast<std::size_t>(l - 1)] = a.diagonal[l - 1] - (c * c) * a.s_inverse[p];
-      e[l - 1] = e[l - 1] - c * transposed(link_);  // A(last, last - 1): not symmetric any more
-      rhs[static_cast<std::size_t>(l - 1)] -= c * a.z[p];
-    }
+    d[l] = d[l] - f * link_;
+    r[l] -= f * a.z[p];
+    const double c = b[l - 1];
+    d[l - 1] = d[l - 1] - (c * c) * a.s_inverse[p];
+    e[l - 1] = e[l - 1] - c * transposed(link_);  // A(core + 1, core): not symmetric any more
+    r[l - 1] -= c * a.z[p];
   }
-  for (int i = first; i <= last; ++i) left(i);
+  left(core);
+  left(core + 1);
 }
 
-void BandSolver::solve_window(const Vec* extra, Vec* out, bool base) noexcept {
+void BandSolver::solve(int first, int last, const Vec* extra, Vec* out, bool base) noexcept {
+  assert(first <= core_ && core_ + 1 <= last);
   const Mat *f = f_.data(), *h = h_.data(), *s_inverse = s_inverse_.data();
-  Vec* w = w_.data();
   const double* b = skip.data();
+  Vec* w = w_.data();
+  const std::ptrdiff_t core = core_, l = core + 1, lefts = core - first, rights = last - l;
   if (extra != nullptr) {
-    Vec z1{}, z2{};
-    for (std::ptrdiff_t i = first_; i <= last_; ++i) {
-      Vec r = extra[i];
-      if (i > first_) r -= f[i] * z1;
-      if (i > first_ + 1) r -= b[i - 2] * z2;
-      z2 = z1;
-      z1 = s_inverse[i] * r;
-      w[i] = z1;
+    Vec p1{}, p2{}, q1{}, q2{};  // w of the one and two nodes before, on the left and on the right
+    for (std::ptrdiff_t k = 0; k < std::max(lefts, rights); ++k) {
+      if (k < lefts) {
+        const std::ptrdiff_t i = first + k;
+        Vec r = extra[i];
+        if (k > 0) r -= f[i] * p1;
+        if (k > 1) r -= b[i - 2] * p2;
+        p2 = p1;
+        w[i] = p1 = s_inverse[i] * r;
+      }
+      if (k < rights) {
+        const std::ptrdiff_t i = last - k;
+        Vec r = extra[i];
+        if (k > 0) r -= f[i] * q1;
+        if (k > 1) r -= b[i] * q2;
+        q2 = q1;
+        w[i] = q1 = s_inverse[i] * r;
+      }
     }
+    Vec r = extra[core], t = extra[l];
+    if (lefts > 0) r -= f[core] * p1;
+    if (lefts > 1) r -= b[core - 2] * p2;
+    if (rights > 0) r -= b[core] * q1, t -= link_f_ * q1;
+    if (rights > 1) t -= b[l] * q2;
+    if (lefts > 0) t -= b[l - 2] * p1;
+    w[core] = s_inverse[core] * r;
+    w[l] = s_inverse[l] * (t - f[l] * w[core]);
+  } else {
+    std::fill(w + first, w + last + 1, Vec{});
   }
-  for (std::ptrdiff_t i = last_; i >= first_; --i) {
-    Vec x = extra != nullptr ? w[i] : Vec{};
-    if (base) x += z_[static_cast<std::size_t>(i)];
-    if (i + 2 <= last_) x -= b[i] * (s_inverse[i] * out[i + 2]);
-    if (i + 1 <= last_) x -= h[i + 1] * out[i + 1];
-    out[i] = x;
+  if (base) {
+    for (std::ptrdiff_t i = first; i <= last; ++i) w[i] += z_[static_cast<std::size_t>(i)];
+  }
+  out[l] = w[l];
+  out[core] = w[core] - h[l] * out[l];
+  for (std::ptrdiff_t k = 0; k < std::max(lefts, rights); ++k) {
+    if (k < lefts) {
+      const std::ptrdiff_t i = core - 1 - k;
+      out[i] = (w[i] - b[i] * (s_inverse[i] * out[i + 2])) - h[i + 1] * out[i + 1];
+    }
+    if (k < rights) {
+      const std::ptrdiff_t i = l + 1 + k;
+      out[i] = (w[i] - b[i - 2] * (s_inverse[i] * out[i - 2])) - (k == 0 ? link_ : h[i - 1]) * out[i - 1];
+    }
   }
 }
 
-void BandSolver::solve_outside(Vec* v) const noexcept {
+void BandSolver::solve_outside(int first, int last, Vec* v) const noexcept {
   const Mat *h = h_.data(), *s_inverse = s_inverse_.data();
   const Vec* z = z_.data();
   const double* b = skip.data();
-  const auto left = [&](std::ptrdiff_t i) {
-    Vec x = z[i] - h[i + 1] * v[i + 1];
-    if (i + 2 < n_) x -= b[i] * (s_inverse[i] * v[i + 2]);
-    v[i] = x;
-  };
-  const auto right = [&](std::ptrdiff_t i) {
-    Vec x = z[i] - (i == last_ + 1 ? link_ : h[i - 1]) * v[i - 1];
-    if (i > 1) x -= b[i - 2] * (s_inverse[i] * v[i - 2]);
-    v[i] = x;
-  };
-  const std::ptrdiff_t lefts = first_, rights = n_ - 1 - last_;
+  const std::ptrdiff_t l = core_ + 1, lefts = first, rights = n_ - 1 - last;
   for (std::ptrdiff_t k = 0; k < std::max(lefts, rights); ++k) {
-    if (k < lefts) left(first_ - 1 - k);
-    if (k < rights) right(last_ + 1 + k);
+    if (k < lefts) {
+      const std::ptrdiff_t i = first - 1 - k;
+      v[i] = (z[i] - b[i] * (s_inverse[i] * v[i + 2])) - h[i + 1] * v[i + 1];
+    }
+    if (k < rights) {
+      const std::ptrdiff_t i = last + 1 + k;
+      v[i] = (z[i] - b[i - 2] * (s_inverse[i] * v[i - 2])) - (i == l + 1 ? link_ : h[i - 1]) * v[i - 1];
+    }
   }
 }
 

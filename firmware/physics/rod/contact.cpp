@@ -9,10 +9,13 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   const auto n = static_cast<std::size_t>(nodes);
   contacts_.reserve(static_cast<std::size_t>(kMaxContacts));
   pairs.reserve(24 * n + 1024);
+  watched_.reserve(8 * n + 1024);
   floor_impulse.assign(n, Vec{});
   body_impulse.assign(n * static_cast<std::size_t>(bodies), Vec{});
   columns_.assign(static_cast<std::size_t>(kMaxContacts) * static_cast<std::size_t>(window + 4), 0.0);
   for (auto* array : {&change_, &extra_, &step_}) array->assign(n, Vec{});
+  for (auto* array : {&p_, &residual_}) array->assign(static_cast<std::size_t>(kMaxContacts), Vec{});
+  mixing_.reserve(static_cast<std::size_t>(kMaxContacts), n);
 }
 
 // Columns B = C^-1 J^T, the contact's own number J B, the wanted normal velocity, and the old impulse turned to today's
@@ -48,12 +51,10 @@ void ContactSet::prepare(const ContactMetric& metric, int first, int last, const
 }
 
 template <bool Friction>
-double ContactSet::sweep(int first, int nodes, const Vec* v, bool backwards) noexcept {
-  double along = 0.0;
+void ContactSet::sweep(int first, int nodes, const Vec* v) noexcept {
   Vec* change = change_.data();
   const int count = static_cast<int>(contacts_.size());
-  for (int k = 0; k < count; ++k) {
-    const int index = backwards ? count - 1 - k : k;
+  for (int index = 0; index < count; ++index) {
     Contact& c = contacts_[static_cast<std::size_t>(index)];
     Vec u = -c.surface;
     for (int j = 0; j < c.count; ++j) u += c.w[j] * (v[c.node[j]] + change[c.node[j] - first]);
@@ -69,18 +70,14 @@ double ContactSet::sweep(int first, int nodes, const Vec* v, bool backwards) noe
         p = pn * c.n;
       }
     } else if (dot(c.p, c.p) == 0.0) {
-      c.step = Vec{};
       continue;
     }
     const Vec delta = p - c.p;
-    along += dot(delta, c.step);
-    c.step = delta;
     c.p = p;
     for (int j = 0; j < c.count; ++j) extra_[static_cast<std::size_t>(c.node[j])] += c.w[j] * delta;
     const double* column = columns_.data() + static_cast<std::size_t>(index) * stride_;
     for (int j = 0; j < nodes; ++j) change[j] += column[j] * delta;
   }
-  return along;
 }
 
 template <bool Friction>
@@ -95,30 +92,30 @@ void ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const N
   for (const auto& c : contacts_) {
     for (int k = 0; k < c.count; ++k) extra_[static_cast<std::size_t>(c.node[k])] += c.w[k] * c.p;
   }
-  solver.solve_window(extra_.data(), v, true);
+  solver.solve(first, last, extra_.data(), v, true);
   const double settled2 = numerics.settled_m_per_s * numerics.settled_m_per_s;
-  double t = 1.0;
-  for (auto& c : contacts_) c.step = Vec{};
+  const std::size_t count = contacts_.size();
+  mixing_.restart();
   for (int pass = 0; pass < numerics.max_passes; ++pass) {
     ++report.passes;
     clear(extra_);
     std::fill(change_.begin(), change_.begin() + nodes, Vec{});
-    const double along = sweep<Friction>(first, nodes, v, (pass & 1) != 0);
-    solver.solve_window(extra_.data(), step_.data(), false);
+    for (std::size_t k = 0; k < count; ++k) residual_[k] = contacts_[k].p;
+    sweep<Friction>(first, nodes, v);
+    solver.solve(first, last, extra_.data(), step_.data(), false);
     double largest2 = 0.0;
     for (int i = first; i <= last; ++i) {
       const Vec step = step_[static_cast<std::size_t>(i)];
       v[i] += step;
       largest2 = std::max(largest2, dot(step, step));
     }
-    if (largest2 < settled2) break;
-    if (pass + 1 == numerics.max_passes) break;
-    if (along < 0.0) t = 1.0;
-    const double next = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * t * t)), ahead = numerics.momentum * (t - 1.0) / next;
-    t = next;
-    if (ahead <= 0.0) continue;
-    for (auto& c : contacts_) c.p += ahead * c.step;
-    for (int i = first; i <= last; ++i) v[i] += ahead * step_[static_cast<std::size_t>(i)];
+    if (largest2 < settled2 || pass + 1 == numerics.max_passes) break;
+    for (std::size_t k = 0; k < count; ++k) {
+      p_[k] = contacts_[k].p;
+      residual_[k] = p_[k] - residual_[k];
+    }
+    mixing_.step(p_.data(), residual_.data(), count, v + first, static_cast<std::size_t>(nodes));
+    for (std::size_t k = 0; k < count; ++k) contacts_[k].p = p_[k];
   }
 }
 
@@ -140,24 +137,25 @@ void ContactSet::relabel(const std::vector<double>& s) noexcept {
 
 double ContactSet::safe_fraction(const Vec* v, double dt_s) const noexcept {
   double fraction = 1.0;
+  const auto check = [&](Vec u, double distance) {
+    const double room = 0.9 * distance, motion2 = dot(u, u) * dt_s * dt_s;
+    if (motion2 > room * room) fraction = std::min(fraction, room / std::sqrt(motion2));
+  };
+  const auto check_pair = [&](std::int32_t a, std::int32_t b, double distance) {  // all four ends against each other
+    check(v[b] - v[a], distance);
+    check(v[b + 1] - v[a], distance);
+    check(v[b] - v[a + 1], distance);
+    check(v[b + 1] - v[a + 1], distance);
+  };
   for (const auto& c : contacts_) {
-    const double room = 0.9 * (c.gap_m + c.reach_m);
-    double fastest2 = 0.0;
+    const double distance = c.gap_m + c.reach_m;
     if (c.count == 4) {
-      for (int i = 0; i < 2; ++i) {
-        for (int j = 2; j < 4; ++j) {
-          const Vec u = v[c.node[i]] - v[c.node[j]];
-          fastest2 = std::max(fastest2, dot(u, u));
-        }
-      }
+      check_pair(c.node[0], c.node[2], distance);
     } else {
-      for (int i = 0; i < c.count; ++i) {
-        const Vec u = v[c.node[i]] - c.surface;
-        fastest2 = std::max(fastest2, dot(u, u));
-      }
+      for (int i = 0; i < c.count; ++i) check(v[c.node[i]] - c.surface, distance);
     }
-    if (fastest2 * dt_s * dt_s > room * room) fraction = std::min(fraction, room / (std::sqrt(fastest2) * dt_s));
   }
+  for (const auto& w : watched_) check_pair(w.a, w.b, w.distance_m);
   return fraction;
 }
 

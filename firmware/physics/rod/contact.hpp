@@ -7,6 +7,7 @@
 #include "firmware/physics/rod/band_solver.hpp"
 #include "firmware/physics/rod/broad_phase.hpp"
 #include "firmware/physics/rod/contact_metric.hpp"
+#include "firmware/physics/rod/mixing.hpp"
 
 namespace ligature::physics::rod {
 
@@ -25,7 +26,6 @@ struct Contact {
   Vec n{};              ///< unit normal, direction of a separating u
   Vec surface{};        ///< velocity of the body's surface, m/s
   Vec p{};              ///< impulse, N s; p . n >= 0
-  Vec step{};           ///< its change in the last pass
   double gap_m = 0.0;   ///< surface distance, negative: overlap
   double target = 0.0;  ///< least normal velocity, m/s
   double inv_w = 0.0;   ///< 1 / (J C^-1 J^T)
@@ -52,7 +52,8 @@ inline constexpr int kMaxContacts = 384;
 /// overlapping, and u_t = 0 with |p_t| <= mu p_n: true static friction, no slip tolerance.
 ///
 /// settle(): p and v start from the last substep's impulses. Each pass runs one projected Gauss-Seidel sweep in the metric C
-/// (contact_metric.hpp), then pushes the change of p through the true matrix A. It ends when no velocity changes by more
+/// (contact_metric.hpp), then pushes the change of p through the true matrix A; passes are mixed (mixing.hpp), because C knows
+/// nothing of stretch and alone would need hundreds along the thread's axis. It ends when no velocity changes by more
 /// than `settled_m_per_s`, or after max_passes. Each pass costs the contact window alone.
 class ContactSet {
  public:
@@ -61,10 +62,11 @@ class ContactSet {
   /// Watched thread-thread pairs; rebuilt by BroadPhase.
   std::vector<Candidate> pairs;
 
-  void begin() noexcept { contacts_.clear(), window_first_ = 1 << 30, window_last_ = -1; }
+  void begin() noexcept { contacts_.clear(), watched_.clear(), window_first_ = 1 << 30, window_last_ = -1; }
 
-  /// Measures due pairs; those nearer than `look_m` beyond touching become contacts.
-  void collect_thread(const State& state, double travel_m, double look_m, double mu, ContactReport& report) noexcept;
+  /// Measures pairs that may have come within look_m; those within near_m + 2 dt x relative speed become contacts.
+  void collect_thread(const State& state, double travel_m, double look_m, double near_m, double dt_s, double mu,
+                      ContactReport& report) noexcept;
   /// Every node against the plane z = floor_m.
   void collect_floor(const State& state, double floor_m, double radius_m, double look_m, double mu,
                      ContactReport& report) noexcept;
@@ -76,7 +78,7 @@ class ContactSet {
   [[nodiscard]] int window_first() const noexcept { return window_first_; }
   [[nodiscard]] int window_last() const noexcept { return window_last_; }
 
-  /// Solves for the window's velocities v with all contacts. @pre solver.factor(window), metric covers the window.
+  /// Solves for the window's velocities v with all contacts. @pre the solver's core lies in the window, the metric covers it.
   template <bool Friction>
   void settle(BandSolver& solver, const ContactMetric& metric, const Numerics& numerics, double dt_s, int first,
               int last, Vec* v, ContactReport& report) noexcept;
@@ -102,11 +104,20 @@ class ContactSet {
   void add(const Contact& contact, ContactReport& report) noexcept;
   void prepare(const ContactMetric& metric, int first, int last, const Numerics& numerics, double dt_s) noexcept;
   template <bool Friction>
-  double sweep(int first, int nodes, const Vec* v, bool backwards) noexcept;
+  void sweep(int first, int nodes, const Vec* v) noexcept;
+
+  /// A pair that is near but no contact in this substep; only the guard looks at it again.
+  struct Watched {
+    std::int32_t a, b;
+    double distance_m;
+  };
 
   std::vector<Contact> contacts_;
+  std::vector<Watched> watched_;
   std::vector<double> columns_;     // C^-1 J^T of every contact on the window
   std::vector<Vec> change_, extra_, step_;
+  std::vector<Vec> p_, residual_;  // impulses and their change in a pass, as the mixing wants them
+  Mixing mixing_;
   std::size_t stride_ = 0;
   double per_second_ = 0.0;
   int window_first_ = 0, window_last_ = -1;

@@ -19,7 +19,7 @@ void ContactSet::add(const Contact& contact, ContactReport& report) noexcept {
   }
 }
 
-void ContactSet::collect_thread(const State& state, double travel_m, double look_m, double mu,
+void ContactSet::collect_thread(const State& state, double travel_m, double look_m, double near_m, double dt_s, double mu,
                                 ContactReport& report) noexcept {
   for (auto& pair : pairs) {
     if (pair.due - 2.0 * travel_m > look_m) {
@@ -31,8 +31,15 @@ void ContactSet::collect_thread(const State& state, double travel_m, double look
     const double distance = std::sqrt(c.distance2), gap = distance - pair.reach_m;
     pair.due = gap + 2.0 * travel_m;
     report.min_gap_m = std::min(report.min_gap_m, gap);
-    if (gap > look_m) {
+    // Far enough for one substep at today's relative speed (half the broad bound of look_m is usually wasted).
+    const Vec u = (1.0 - c.t) * state.v[b] + c.t * state.v[b + 1] - (1.0 - c.s) * state.v[a] - c.s * state.v[a + 1];
+    if (gap > near_m + 2.0 * dt_s * norm(u)) {
       pair.impulse = Vec{};
+      if (watched_.size() < watched_.capacity()) {
+        watched_.push_back({pair.a, pair.b, distance});
+      } else {
+        report.cap_hit = true;
+      }
       continue;
     }
     pair.s_a = state.mesh.s[a] + c.s * state.mesh.rest[a];

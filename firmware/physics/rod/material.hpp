@@ -25,7 +25,6 @@ struct Numerics {
   double fast_m_per_s = 0.5;    ///< hand speed up to which `substeps` do
   int max_passes = 8;           ///< true solves per substep while contacts settle
   double settled_m_per_s = 3e-3; ///< a pass that changes no velocity by more ends them
-  double momentum = 1.0;        ///< share of the accelerated step between passes
   double recovery = 0.3;        ///< share of a penetration taken back per substep
   double max_recovery_m_per_s = 0.5;
 };

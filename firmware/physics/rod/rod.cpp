@@ -111,15 +111,16 @@ void Rod::substep(double dt_s) noexcept {
   constexpr bool kTouches = (Bits & (kContact | kWorld)) != 0;
   assemble<(Bits & kTwist) != 0>(material_, state_, gravity, dt_s, forces_, solver_);
   const int n = state_.nodes();
-  int first = n / 2, last = first + 1;
+  int first = (n - 2) / 2, last = first + 1;
   [[maybe_unused]] ContactReport seen;
-  [[maybe_unused]] double look = 0.0;
+  [[maybe_unused]] double look = 0.0, near = 0.0;
   if constexpr (kTouches) {
     contacts_.begin();
-    look = 0.2 * material_.radius_m + 3.0 * fastest() * dt_s;
+    near = 0.2 * material_.radius_m;
+    look = near + 4.0 * fastest() * dt_s;
     if constexpr ((Bits & kContact) != 0) {
       if (stale_ || 2.0 * travel_m_ + look > margin_m_) broad_phase();
-      contacts_.collect_thread(state_, travel_m_, look, material_.friction, seen);
+      contacts_.collect_thread(state_, travel_m_, look, near, dt_s, material_.friction, seen);
     }
     if constexpr ((Bits & kWorld) != 0) {
       if (has_floor) contacts_.collect_floor(state_, floor_m, material_.radius_m, look, floor_friction, seen);
@@ -133,7 +134,7 @@ void Rod::substep(double dt_s) noexcept {
       if (first == last) (last + 1 < n ? last : first) += last + 1 < n ? 1 : -1;
     }
   }
-  solver_.factor(first, last);
+  solver_.factor((first + last) / 2);
   bool free = true;
   if constexpr (kTouches) {
     if (!contacts_.empty()) {
@@ -146,13 +147,13 @@ void Rod::substep(double dt_s) noexcept {
       contacts_.store();
     }
   }
-  if (free) solver_.solve_window(nullptr, state_.v.data(), true);
-  solver_.solve_outside(state_.v.data());
+  if (free) solver_.solve(first, last, nullptr, state_.v.data(), true);
+  solver_.solve_outside(first, last, state_.v.data());
   double step_s = dt_s;
   if constexpr (kTouches) {
     const double speed = fastest();
     double fraction = contacts_.safe_fraction(state_.v.data(), dt_s);
-    const double unseen = 0.45 * (material_.radius_m + look);  // pairs beyond `look` keep at least this each
+    const double unseen = 0.45 * (2.0 * material_.radius_m + look);  // what each half of an unmeasured pair may move
     if (speed * dt_s > unseen) fraction = std::min(fraction, unseen / (speed * dt_s));
     report_.guard_events += fraction < 1.0;
     step_s *= fraction;
