@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "host/lab/experiment_command.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/run_command.hpp"
 #include "host/lab/stop_signal.hpp"
@@ -31,6 +32,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "ligature-lab " LIGATURE_VERSION);
   app.require_subcommand(1);
   add_run_command(app, exit_code);
+  add_experiment_commands(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const Refusal& refusal) {

@@ -1,0 +1,102 @@
+#include "host/lab/experiment_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <system_error>
+
+#include "host/lab/experiments/experiment.hpp"
+#include "host/lab/outcome.hpp"
+#include "host/lab/run_files.hpp"
+
+namespace ligature::lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Entry {
+  const char* name;
+  int (*run)(const Bench&);
+};
+
+constexpr Entry kExperiments[] = {{"models", experiment_models},         {"knotting", experiment_knotting},
+                                  {"pulling", experiment_pulling},       {"unknotting", experiment_unknotting},
+                                  {"stability", experiment_stability}};
+
+constexpr const char* kFooter = R"(
+Each experiment of the paper gives a table (CSV, printed), a picture (PNG) and a verdict: one PASS or FAIL line a claim,
+with the number that decides it. A picture needs the Python that scripts/setup installs (or $LIGATURE_PYTHON).
+  models      the five models of Table II: what bends, rings, orbits, stretches
+  knotting    trefoil and figure-eight tied by two hands, mirrored, released, ten seconds later
+  pulling     one-hand and two-hand pulls, force per haptic frame, the paper's conditions A, B, C
+  unknotting  a figure-eight on the desk undone by the right node and jammed by a wrong one; which pulls untie; a planner
+  stability   the largest stable step of every model
+  all         one after another
+
+Exit: 0 all claims hold; 2 usage or scenes refused; 3 a claim fails.
+
+Example
+  ligature-lab experiment knotting --out out/knotting)";
+
+/// The scenes folder: as given, else ./scenes, else installed beside the program, else of the source tree.
+fs::path find_scenes(const std::string& given) {
+  std::error_code none;
+  const auto installed = fs::read_symlink("/proc/self/exe", none).parent_path().parent_path() / "share/ligature/scenes";
+  for (const auto& folder : {fs::path(given), fs::path("scenes"), installed, fs::path(LIGATURE_SCENES_DIR)}) {
+    if (!folder.empty() && fs::exists(folder / "paper.toml", none)) return folder;
+    if (!given.empty()) break;
+  }
+  throw Refusal("--scenes " + given + ": found no paper.toml, allowed a folder of scenes");
+}
+
+struct Arguments {
+  std::string name = "all";
+  std::string out;
+  std::string scenes;
+};
+
+int execute(const Arguments& a, const std::vector<Entry>& entries) {
+  const Bench bench{find_scenes(a.scenes), a.out};
+  make_folder(bench.out);
+  int worst = kDone;
+  for (const auto& entry : entries) worst = std::max(worst, entry.run(bench));
+  return worst;
+}
+
+void add_folders(CLI::App& app, Arguments& a, const std::string& out) {
+  a.out = out;
+  app.add_option("--out", a.out, "Folder for tables and pictures")->type_name("DIR")->capture_default_str();
+  app.add_option("--scenes", a.scenes, "Folder of scenes [./scenes, else the installed one]")->type_name("DIR");
+}
+
+void add_alone(CLI::App& app, int& exit_code, Entry entry, const char* about) {
+  auto a = std::make_shared<Arguments>();
+  auto* command = app.add_subcommand(entry.name, about);
+  add_folders(*command, *a, std::string("out/") + entry.name);
+  command->footer(std::string("\nExample\n  ligature-lab ") + entry.name + " --out out/" + entry.name);
+  command->callback([a, entry, &exit_code] { exit_code = execute(*a, {entry}); });
+}
+
+}  // namespace
+
+void add_experiment_commands(CLI::App& app, int& exit_code) {
+  auto a = std::make_shared<Arguments>();
+  auto* command = app.add_subcommand("experiment", "The paper's experiments: table, picture, verdict");
+  std::vector<std::string> names{"all"};
+  for (const auto& e : kExperiments) names.emplace_back(e.name);
+  command->add_option("name", a->name, "models, knotting, pulling, unknotting, stability or all")->required()->check(CLI::IsMember(names));
+  add_folders(*command, *a, "out/experiment");
+  command->footer(kFooter);
+  command->callback([a, &exit_code] {
+    std::vector<Entry> chosen;
+    for (const auto& e : kExperiments) {
+      if (a->name == "all" || a->name == e.name) chosen.push_back(e);
+    }
+    exit_code = execute(*a, chosen);
+  });
+  add_alone(app, exit_code, {"stability", experiment_stability}, "The largest stable step of every model");
+  add_alone(app, exit_code, {"extremes", experiment_extremes}, "A map of what stays finite, over twelve decades of parameters");
+  add_alone(app, exit_code, {"bench", experiment_cost}, "What a tick costs, N = 20 .. 1000");
+}
+
+}  // namespace ligature::lab
