@@ -9,7 +9,9 @@ namespace {
 constexpr std::uint64_t kPrime = (std::uint64_t{1} << 61) - 1;
 __extension__ using Wide = unsigned __int128;
 
-std::uint64_t times(std::uint64_t a, std::uint64_t b) { return static_cast<std::uint64_t>(static_cast<Wide>(a) * b % kPrime); }
+std::uint64_t times(std::uint64_t a, std::uint64_t b) {
+  return static_cast<std::uint64_t>(static_cast<Wide>(a) * b % kPrime);
+}
 std::uint64_t plus(std::uint64_t a, std::uint64_t b) { return (a + b) % kPrime; }
 std::uint64_t minus(std::uint64_t a, std::uint64_t b) { return (a + kPrime - b) % kPrime; }
 
@@ -104,7 +106,8 @@ std::vector<int> alexander(const Diagram& d) {
   for (std::size_t t = 0; t < d.crossings(); ++t) values.push_back(minor_at(d, arcs, t));
   std::vector<int> c;
   for (const auto residue : interpolate(std::move(values))) {
-    const auto value = residue > kPrime / 2 ? -static_cast<std::int64_t>(kPrime - residue) : static_cast<std::int64_t>(residue);
+    const auto value =
+        residue > kPrime / 2 ? -static_cast<std::int64_t>(kPrime - residue) : static_cast<std::int64_t>(residue);
     if (!c.empty() || value != 0) c.push_back(static_cast<int>(value));
   }
   while (!c.empty() && c.back() == 0) c.pop_back();

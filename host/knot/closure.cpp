@@ -34,7 +34,8 @@ std::vector<Point> close_outward(std::span<const Point> thread, const Point& fir
   for (const auto& p : thread) radius = std::max(radius, (p - centre).norm());
   const double far = 20.0 * radius;
   std::vector<Point> ring(thread.begin(), thread.end());
-  const Point from = (ring.back() + far * last - centre).normalized(), to = (ring.front() + far * first - centre).normalized();
+  const Point from = (ring.back() + far * last - centre).normalized(),
+              to = (ring.front() + far * first - centre).normalized();
   // Great circle from -> to; any circle will do when they are opposite.
   Point axis = from.cross(to);
   if (axis.norm() < 1e-6) axis = from.unitOrthogonal();

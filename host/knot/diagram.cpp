@@ -95,7 +95,8 @@ std::vector<Diagram> visible_factors(const Diagram& d) {
       open += seen[d.passes[j].crossing]++ == 0 ? 1 : -1;
       const std::size_t length = j + 1 - i;
       if (open != 0 || length == n) continue;
-      const auto first = d.passes.begin() + static_cast<std::ptrdiff_t>(i), last = d.passes.begin() + static_cast<std::ptrdiff_t>(j + 1);
+      const auto first = d.passes.begin() + static_cast<std::ptrdiff_t>(i),
+                 last = d.passes.begin() + static_cast<std::ptrdiff_t>(j + 1);
       std::vector<Pass> rest(d.passes.begin(), first);
       rest.insert(rest.end(), last, d.passes.end());
       auto factors = visible_factors(part_of(d, {first, last}));

@@ -28,8 +28,9 @@ struct Diagram {
 /// clasps that do not hold (Reidemeister II), until there are none. Keeps the knot type. Cost O(n^3).
 void reduce(Diagram& d);
 
-/// The factors that a diagram shows side by side: it is cut wherever a stretch of the walk meets only itself. One entry,
-/// the diagram itself, when there is no such stretch. A reduced alternating diagram shows all its factors [Menasco 1984].
+/// The factors that a diagram shows side by side: it is cut wherever a stretch of the walk meets only itself. One
+/// entry, the diagram itself, when there is no such stretch. A reduced alternating diagram shows all its factors
+/// [Menasco 1984].
 [[nodiscard]] std::vector<Diagram> visible_factors(const Diagram& d);
 
 }  // namespace ligature::knot

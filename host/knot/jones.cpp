@@ -24,8 +24,10 @@ std::vector<Corner> corners_of(const Diagram& d) {
   std::vector<Corner> corners;
   for (std::size_t c = 0; c < d.crossings(); ++c) {
     const int u = at[c][0], o = at[c][1], u_out = (u + 1) % edges, o_out = (o + 1) % edges;
-    if (d.signs[c] > 0) corners.push_back({u, o_out, u_out, o});
-    else corners.push_back({u, o, u_out, o_out});
+    if (d.signs[c] > 0)
+      corners.push_back({u, o_out, u_out, o});
+    else
+      corners.push_back({u, o, u_out, o_out});
   }
   return corners;
 }

@@ -28,7 +28,8 @@ class Polygon {
 
  private:
   /// Does one of the `count` edges that start at corners first, first + 1, .. (cyclic) pierce the triangle?
-  [[nodiscard]] bool is_pierced(const Point& a, const Point& b, const Point& c, std::size_t first, std::size_t count) const;
+  [[nodiscard]] bool is_pierced(const Point& a, const Point& b, const Point& c, std::size_t first,
+                                std::size_t count) const;
 
   std::vector<Point> corners_;
 };

@@ -12,8 +12,8 @@
 namespace ligature::knot {
 namespace {
 
-constexpr std::size_t kExact = 29;      // crossings up to which every invariant is exact
-constexpr std::size_t kTangled = 300;   // corners left of a thread that no shaking will name in reasonable time
+constexpr std::size_t kExact = 29;     // crossings up to which every invariant is exact
+constexpr std::size_t kTangled = 300;  // corners left of a thread that no shaking will name in reasonable time
 
 KnotResult unknown() { return {"unknown", "none", 0, {}, {}, 0}; }
 
@@ -71,10 +71,12 @@ KnotResult recognise_ring(std::vector<Point> ring) {
 
 KnotResult recognise_open(std::span<const Point> thread) {
   constexpr int kWays = 9, kEnough = 3;
-  std::vector<KnotResult> votes{recognise_ring(
-      close_outward(thread, outward(thread, thread.front()), outward(thread, thread.back())))};
+  std::vector<KnotResult> votes{
+      recognise_ring(close_outward(thread, outward(thread, thread.front()), outward(thread, thread.back())))};
   const auto same = [](const KnotResult& a) {
-    return [&a](const KnotResult& b) { return a.type == b.type && a.handedness == b.handedness && a.alexander == b.alexander; };
+    return [&a](const KnotResult& b) {
+      return a.type == b.type && a.handedness == b.handedness && a.alexander == b.alexander;
+    };
   };
   const auto count = [&](const KnotResult& r) { return std::count_if(votes.begin(), votes.end(), same(r)); };
   while (votes.size() < kWays) {

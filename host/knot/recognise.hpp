@@ -17,7 +17,7 @@ struct KnotResult {
   int determinant = 1;         ///< |Delta(-1)|
   std::vector<int> alexander;  ///< from t^0 up, first coefficient positive; empty when nothing could be computed
   Laurent jones;
-  std::size_t crossings = 0;   ///< of the simplest diagram found; the crossing number of the named knots, as a rule
+  std::size_t crossings = 0;  ///< of the simplest diagram found; the crossing number of the named knots, as a rule
 };
 
 /// Names the knot of a polyline.

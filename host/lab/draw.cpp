@@ -25,7 +25,8 @@ std::string python() {
 /// Beside an installed program, else in the source tree it was built from.
 fs::path script_path(const std::string& name) {
   std::error_code none;
-  const auto installed = fs::read_symlink("/proc/self/exe", none).parent_path().parent_path() / "share/ligature/plots" / name;
+  const auto installed =
+      fs::read_symlink("/proc/self/exe", none).parent_path().parent_path() / "share/ligature/plots" / name;
   return fs::exists(installed, none) ? installed : fs::path(LIGATURE_LAB_PLOTS_DIR) / name;
 }
 
@@ -34,8 +35,9 @@ fs::path script_path(const std::string& name) {
 void draw(const std::string& script, const std::vector<fs::path>& data, const fs::path& picture) {
   const auto program = python();
   if (program.empty()) {
-    std::printf("no picture %s: no Python with matplotlib (run scripts/setup, or set LIGATURE_PYTHON); the table is there\n",
-                picture.c_str());
+    std::printf(
+        "no picture %s: no Python with matplotlib (run scripts/setup, or set LIGATURE_PYTHON); the table is there\n",
+        picture.c_str());
     return;
   }
   std::vector<std::string> words{program, script_path(script).string()};
@@ -47,8 +49,10 @@ void draw(const std::string& script, const std::vector<fs::path>& data, const fs
   pid_t child = 0;
   int status = -1;
   if (posix_spawn(&child, program.c_str(), nullptr, nullptr, argv.data(), environ) == 0) waitpid(child, &status, 0);
-  if (status == 0) std::printf("picture %s\n", picture.c_str());
-  else std::printf("no picture %s: %s failed; the table is there\n", picture.c_str(), script.c_str());
+  if (status == 0)
+    std::printf("picture %s\n", picture.c_str());
+  else
+    std::printf("no picture %s: %s failed; the table is there\n", picture.c_str(), script.c_str());
 }
 
 }  // namespace ligature::lab

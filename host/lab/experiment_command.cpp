@@ -19,8 +19,10 @@ struct Entry {
   int (*run)(const Bench&);
 };
 
-constexpr Entry kExperiments[] = {{"models", experiment_models},         {"knotting", experiment_knotting},
-                                  {"pulling", experiment_pulling},       {"unknotting", experiment_unknotting},
+constexpr Entry kExperiments[] = {{"models", experiment_models},
+                                  {"knotting", experiment_knotting},
+                                  {"pulling", experiment_pulling},
+                                  {"unknotting", experiment_unknotting},
                                   {"stability", experiment_stability}};
 
 constexpr const char* kFooter = R"(
@@ -84,7 +86,9 @@ void add_experiment_commands(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("experiment", "The paper's experiments: table, picture, verdict");
   std::vector<std::string> names{"all"};
   for (const auto& e : kExperiments) names.emplace_back(e.name);
-  command->add_option("name", a->name, "models, knotting, pulling, unknotting, stability or all")->required()->check(CLI::IsMember(names));
+  command->add_option("name", a->name, "models, knotting, pulling, unknotting, stability or all")
+      ->required()
+      ->check(CLI::IsMember(names));
   add_folders(*command, *a, "out/experiment");
   command->footer(kFooter);
   command->callback([a, &exit_code] {
@@ -95,7 +99,8 @@ void add_experiment_commands(CLI::App& app, int& exit_code) {
     exit_code = execute(*a, chosen);
   });
   add_alone(app, exit_code, {"stability", experiment_stability}, "The largest stable step of every model");
-  add_alone(app, exit_code, {"extremes", experiment_extremes}, "A map of what stays finite, over twelve decades of parameters");
+  add_alone(app, exit_code, {"extremes", experiment_extremes},
+            "A map of what stays finite, over twelve decades of parameters");
   add_alone(app, exit_code, {"bench", experiment_cost}, "What a tick costs, N = 20 .. 1000");
 }
 

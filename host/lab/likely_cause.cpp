@@ -52,7 +52,8 @@ std::string likely_cause(const scene::Scene& s) {
          << " s): shorten time.tick_s or raise time.substeps";
   } else {
     text << "no term oversteps its own limit at a step of " << dt_s
-         << " s: a hand that jumps, a force out of scale, or a start with coincident nodes; look at the last rows of trace.csv";
+         << " s: a hand that jumps, a force out of scale, or a start with coincident nodes; look at the last rows of "
+            "trace.csv";
   }
   return text.str();
 }

@@ -25,7 +25,8 @@ void Progress::show(double share, const std::string& text) {
   if (!terminal_) return;
   constexpr int kWidth = 30;
   const int full = static_cast<int>(std::clamp(share, 0.0, 1.0) * kWidth);
-  const std::string bar = std::string(static_cast<std::size_t>(full), '#') + std::string(static_cast<std::size_t>(kWidth - full), '.');
+  const std::string bar =
+      std::string(static_cast<std::size_t>(full), '#') + std::string(static_cast<std::size_t>(kWidth - full), '.');
   std::fprintf(stderr, "\r\033[K[%s] %3.0f %%  %s", bar.c_str(), 100.0 * share, text.c_str());
   std::fflush(stderr);
   shown_ = true;

@@ -44,7 +44,10 @@ physics::Simulation make_or_refuse(const scene::Scene& scene, const std::string&
 }
 
 Rehearsal::Rehearsal(const scene::Scene& scene, scene::GripperScript script, const std::string& scene_name)
-    : scene_(scene), script_(std::move(script)), simulation_(make_or_refuse(scene, scene_name)), tick_s_(scene.time.tick_s) {}
+    : scene_(scene),
+      script_(std::move(script)),
+      simulation_(make_or_refuse(scene, scene_name)),
+      tick_s_(scene.time.tick_s) {}
 
 bool Rehearsal::tick() {
   const double t_s = static_cast<double>(ticks_ + 1) * tick_s_;

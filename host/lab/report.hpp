@@ -46,6 +46,7 @@ class Verdict {
 [[nodiscard]] std::string digits(double value, int significant = 3);
 
 /// Draws a picture by `python host/lab/plots/SCRIPT DATA.. PICTURE`; says so aloud when there is no Python to do it.
-void draw(const std::string& script, const std::vector<std::filesystem::path>& data, const std::filesystem::path& picture);
+void draw(const std::string& script, const std::vector<std::filesystem::path>& data,
+          const std::filesystem::path& picture);
 
 }  // namespace ligature::lab

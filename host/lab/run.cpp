@@ -37,8 +37,15 @@ double finite_gap(double gap_m, const scene::Scene& s) { return std::min(gap_m, 
 TraceRow row_of(const Rehearsal& r) {
   const auto& sim = r.simulation();
   const auto& d = sim.diagnostics();
-  return {r.time_s(), sim.hand(physics::Hand::kLeft).f_W, sim.hand(physics::Hand::kRight).f_W, d.kinetic_J, d.potential_J,
-          d.max_stretch, finite_gap(d.min_gap_m, r.scene()), d.contacts, r.last_tick_us()};
+  return {r.time_s(),
+          sim.hand(physics::Hand::kLeft).f_W,
+          sim.hand(physics::Hand::kRight).f_W,
+          d.kinetic_J,
+          d.potential_J,
+          d.max_stretch,
+          finite_gap(d.min_gap_m, r.scene()),
+          d.contacts,
+          r.last_tick_us()};
 }
 
 std::string divergence(const Rehearsal& r) {
@@ -135,7 +142,8 @@ std::string to_json(const RunSummary& s) {
       {"min_gap_m", s.min_gap_m},
       {"max_penetration_diameters", s.max_penetration_diameters},
       {"hand_force_N",
-       {{"left", {{"max", s.left_N.max}, {"mean", s.left_N.mean()}}}, {"right", {{"max", s.right_N.max}, {"mean", s.right_N.mean()}}}}},
+       {{"left", {{"max", s.left_N.max}, {"mean", s.left_N.mean()}}},
+        {"right", {{"max", s.right_N.max}, {"mean", s.right_N.mean()}}}}},
       {"step_us", {{"median", s.step_us.median}, {"p99", s.step_us.p99}, {"max", s.step_us.max}}},
       {"realtime_factor", s.realtime_factor},
   };

@@ -25,7 +25,8 @@ struct RunSummary {
   double duration_s = 0.0;
   bool finite = true;
   knot::KnotResult knot;
-  std::vector<std::pair<double, std::string>> knot_history;  ///< from t = 0 on, one entry a change, looked at every 20 ms
+  std::vector<std::pair<double, std::string>>
+      knot_history;  ///< from t = 0 on, one entry a change, looked at every 20 ms
   double max_stretch = 0.0;
   double min_gap_m = 0.0;
   double max_penetration_diameters = 0.0;

@@ -44,16 +44,17 @@ double default_duration_s(const scene::GripperScript& script) {
 }
 
 void print(const RunSummary& s, const std::string& folder) {
-  std::printf("%s, %d nodes, %lld ticks, %.3f s\n", s.model.c_str(), s.nodes, static_cast<long long>(s.ticks), s.duration_s);
+  std::printf("%s, %d nodes, %lld ticks, %.3f s\n", s.model.c_str(), s.nodes, static_cast<long long>(s.ticks),
+              s.duration_s);
   std::printf("knot        %s (%s)\n", s.knot.type.c_str(), s.knot.handedness.c_str());
   std::printf("history    ");
   for (const auto& [t_s, type] : s.knot_history) std::printf(" %.2f s: %s", t_s, type.c_str());
-  std::printf("\nhand force  left max %.1f mean %.1f N, right max %.1f mean %.1f N (world)\n", s.left_N.max, s.left_N.mean(),
-              s.right_N.max, s.right_N.mean());
+  std::printf("\nhand force  left max %.1f mean %.1f N, right max %.1f mean %.1f N (world)\n", s.left_N.max,
+              s.left_N.mean(), s.right_N.max, s.right_N.mean());
   std::printf("stretch     at most %.2f %%; strands overlap at most %.3f diameters\n", 100.0 * s.max_stretch,
               s.max_penetration_diameters);
-  std::printf("tick        median %.2f us, p99 %.2f us, max %.1f us; %.0f times real time\n", s.step_us.median, s.step_us.p99,
-              s.step_us.max, s.realtime_factor);
+  std::printf("tick        median %.2f us, p99 %.2f us, max %.1f us; %.0f times real time\n", s.step_us.median,
+              s.step_us.p99, s.step_us.max, s.realtime_factor);
   std::printf("files       %s/{trace.csv,shape.csv,summary.json}\n", folder.c_str());
 }
 
@@ -62,8 +63,8 @@ int execute(const Arguments& a) {
   const auto script = a.grippers.empty() ? scene::GripperScript{} : load_script_or_refuse(a.grippers);
   const double duration_s = a.duration_s.value_or(default_duration_s(script));
   if (!(duration_s >= scene.time.tick_s && duration_s <= 1e6)) {
-    throw Refusal("--duration: found " + std::to_string(duration_s) + ", allowed one tick (" + std::to_string(scene.time.tick_s) +
-                  " s) .. 1e6 s");
+    throw Refusal("--duration: found " + std::to_string(duration_s) + ", allowed one tick (" +
+                  std::to_string(scene.time.tick_s) + " s) .. 1e6 s");
   }
   if (!(a.shape_every_s > 0.0 && std::isfinite(a.shape_every_s))) {
     throw Refusal("--shape-every: found " + std::to_string(a.shape_every_s) + ", allowed more than 0 s");
@@ -82,11 +83,15 @@ void add_run_command(CLI::App& app, int& exit_code) {
   auto a = std::make_shared<Arguments>();
   run->add_option("scene", a->scene, "Scene file (TOML)")->required();
   run->add_option("--set", a->overrides, "key=value over the scene's own, any key, value as TOML writes it; repeatable")
-      ->type_name("KEY=VALUE")->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   run->add_option("--grippers", a->grippers, "Operator's script: CSV time,hand,x,y,z,grip")->type_name("FILE");
   run->add_option("--duration", a->duration_s, "Simulated seconds [script's end + 9, or 10]")->type_name("S");
   run->add_option("--out", a->out, "Folder for the three files")->type_name("DIR")->capture_default_str();
-  run->add_option("--shape-every", a->shape_every_s, "Seconds between shapes in shape.csv")->type_name("S")->capture_default_str();
+  run->add_option("--shape-every", a->shape_every_s, "Seconds between shapes in shape.csv")
+      ->type_name("S")
+      ->capture_default_str();
   run->footer(kFooter);
   run->callback([a, &exit_code] { exit_code = execute(*a); });
 }

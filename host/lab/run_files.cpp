@@ -37,18 +37,21 @@ void CsvFile::row(std::span<const double> cells) {
 }
 
 void CsvFile::close() {
-  if (std::fclose(file_.release()) != 0) throw Refusal(path_ + ": cannot be written: " + std::strerror(errno), kRunFailed);
+  if (std::fclose(file_.release()) != 0)
+    throw Refusal(path_ + ": cannot be written: " + std::strerror(errno), kRunFailed);
 }
 
 TraceFile::TraceFile(const std::filesystem::path& folder)
     : file_(folder / "trace.csv",
-            "t_s,left_fx_N,left_fy_N,left_fz_N,right_fx_N,right_fy_N,right_fz_N,kinetic_J,potential_J,max_stretch,min_gap_m,"
+            "t_s,left_fx_N,left_fy_N,left_fz_N,right_fx_N,right_fy_N,right_fz_N,kinetic_J,potential_J,max_stretch,min_"
+            "gap_m,"
             "contacts,step_us") {}
 
 void TraceFile::add(const TraceRow& r) {
-  const double cells[] = {r.t_s,         r.left_N.x(),  r.left_N.y(),  r.left_N.z(),  r.right_N.x(),
-                          r.right_N.y(), r.right_N.z(), r.kinetic_J,   r.potential_J, r.max_stretch,
-                          r.min_gap_m,   static_cast<double>(r.contacts), r.step_us};
+  const double cells[] = {r.t_s,         r.left_N.x(),  r.left_N.y(),  r.left_N.z(),
+                          r.right_N.x(), r.right_N.y(), r.right_N.z(), r.kinetic_J,
+                          r.potential_J, r.max_stretch, r.min_gap_m,   static_cast<double>(r.contacts),
+                          r.step_us};
   file_.row(cells);
 }
 

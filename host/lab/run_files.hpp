@@ -13,7 +13,7 @@ namespace ligature::lab {
 
 struct TraceRow {
   double t_s = 0.0;
-  physics::Vec3 left_N = physics::Vec3::Zero();   ///< on the hand, world newtons, before force_scale
+  physics::Vec3 left_N = physics::Vec3::Zero();  ///< on the hand, world newtons, before force_scale
   physics::Vec3 right_N = physics::Vec3::Zero();
   double kinetic_J = 0.0;
   double potential_J = 0.0;

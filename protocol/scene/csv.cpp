@@ -54,17 +54,20 @@ std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& p
     auto cells = split(body);
     if (!header_seen) {
       if (cells != columns) {
-        return at_line(path, line, "found '" + std::string(body) + "', allowed the header '" + std::string(header) + "'");
+        return at_line(path, line,
+                       "found '" + std::string(body) + "', allowed the header '" + std::string(header) + "'");
       }
       header_seen = true;
     } else if (cells.size() != columns.size()) {
-      return at_line(path, line, "found " + std::to_string(cells.size()) + " columns, allowed " +
-                                     std::to_string(columns.size()) + " (" + std::string(header) + ")");
+      return at_line(path, line,
+                     "found " + std::to_string(cells.size()) + " columns, allowed " + std::to_string(columns.size()) +
+                         " (" + std::string(header) + ")");
     } else {
       rows.push_back({line, std::move(cells)});
     }
   }
-  if (rows.empty()) return Error{path.string() + ": found no rows, allowed one or more below '" + std::string(header) + "'"};
+  if (rows.empty())
+    return Error{path.string() + ": found no rows, allowed one or more below '" + std::string(header) + "'"};
   return rows;
 }
 

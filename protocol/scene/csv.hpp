@@ -19,8 +19,10 @@ struct CsvRow {
 
 /// Reads a CSV file: `#` starts a comment, empty lines are skipped, blanks around cells are dropped, the first line
 /// that is left must be `header` (as written, blanks aside), and every row must have as many cells as it.
-/// @return the rows below the header (at least one), or one line that names file, line, what was found and what is allowed.
-[[nodiscard]] std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& path, std::string_view header);
+/// @return the rows below the header (at least one), or one line that names file, line, what was found and what is
+/// allowed.
+[[nodiscard]] std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& path,
+                                                                std::string_view header);
 
 /// A finite decimal number and nothing else, or false.
 [[nodiscard]] bool parse_number(std::string_view cell, double& out) noexcept;

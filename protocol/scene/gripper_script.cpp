@@ -41,8 +41,9 @@ std::variant<GripperScript, Error> load_gripper_script(const std::filesystem::pa
     if (auto why = read_row(row, hand, key); !why.empty()) return at_line(path, row.line, why);
     auto& keys = script.keys[hand];
     if (!keys.empty() && key.time_s <= keys.back().time_s) {
-      return at_line(path, row.line, "column 'time': found " + row.cells[0] + ", allowed later than the row of hand " +
-                                         row.cells[1] + " before it");
+      return at_line(path, row.line,
+                     "column 'time': found " + row.cells[0] + ", allowed later than the row of hand " + row.cells[1] +
+                         " before it");
     }
     keys.push_back(key);
   }

@@ -42,8 +42,8 @@ std::variant<std::vector<Vec>, Error> load_polyline(const std::filesystem::path&
 
 std::vector<Vec> lay_out(std::span<const Vec> points, int n, double rest_m) {
   std::vector<Vec> nodes{points.front()};
-  std::size_t k = 1;              // the segment points[k - 1] .. points[k] is searched next
-  double from = 0.0;              // where on it, 0 .. 1
+  std::size_t k = 1;  // the segment points[k - 1] .. points[k] is searched next
+  double from = 0.0;  // where on it, 0 .. 1
   const Vec onward = end_direction(points);
   while (nodes.size() < static_cast<std::size_t>(n)) {
     const Vec c = nodes.back();

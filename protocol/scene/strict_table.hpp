@@ -1,6 +1,7 @@
 #pragma once
 // Private to scene_file.cpp: a TOML table read key by key, that refuses whatever nobody asked for.
 
+#include <toml++/toml.h>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -8,7 +9,6 @@
 #include <sstream>
 #include <string>
 #include <string_view>
-#include <toml++/toml.h>
 #include <utility>
 #include <vector>
 
@@ -27,11 +27,12 @@ struct ReadContext {
   void refuse(const std::string& key, const toml::node& where, const std::string& what) {
     if (error) return;
     auto set = overridden.find(root_of(key));
-    if (set == overridden.end() && where.source().begin.line == 0) {  // a table that only an override brought into being
+    if (set == overridden.end() &&
+        where.source().begin.line == 0) {  // a table that only an override brought into being
       set = overridden.lower_bound(key + ".");
     }
-    const auto place = set != overridden.end() ? "--set " + set->second
-                                               : file + ":" + std::to_string(where.source().begin.line);
+    const auto place =
+        set != overridden.end() ? "--set " + set->second : file + ":" + std::to_string(where.source().begin.line);
     error = Error{place + ": " + what};
   }
 
@@ -56,8 +57,10 @@ struct Range {
   [[nodiscard]] bool holds(double v) const { return (open_low ? v > low : v >= low) && v <= high; }
   [[nodiscard]] std::string text() const {
     std::ostringstream s;
-    if (open_low) s << "more than " << low << " up to " << high;
-    else s << low << " .. " << high;
+    if (open_low)
+      s << "more than " << low << " up to " << high;
+    else
+      s << low << " .. " << high;
     return s.str();
   }
 };
@@ -182,7 +185,8 @@ class StrictTable {
 
   /// Refuses a key that must be there and is not.
   void require(std::string_view key) {
-    if (!table_.contains(key)) context_.refuse(path_, table_, "'" + path_ + "': key '" + std::string(key) + "' is missing");
+    if (!table_.contains(key))
+      context_.refuse(path_, table_, "'" + path_ + "': key '" + std::string(key) + "' is missing");
   }
 
   /// Refuses the first key that was never asked for.
@@ -192,14 +196,16 @@ class StrictTable {
       std::string allowed;
       for (const auto& k : asked_) allowed += (allowed.empty() ? "" : ", ") + k;
       const char* kind = node.is_table() ? "table" : "key";
-      context_.refuse(full(key.str()), node, std::string("unknown ") + kind + " '" + full(key.str()) + "', allowed " + allowed);
+      context_.refuse(full(key.str()), node,
+                      std::string("unknown ") + kind + " '" + full(key.str()) + "', allowed " + allowed);
     }
   }
 
   void refuse(std::string_view key, const toml::node& node, const std::string& allowed) {
     std::ostringstream found;
     node.visit([&](const auto& value) { found << value; });
-    context_.refuse(full(key), node, "key '" + full(key) + "': found " + one_line(found.str()) + ", allowed " + allowed);
+    context_.refuse(full(key), node,
+                    "key '" + full(key) + "': found " + one_line(found.str()) + ", allowed " + allowed);
   }
 
   /// The same for a rule that ties keys together, after they were read.

@@ -55,7 +55,8 @@ Cost measure(const scene::Scene& scene) {
 int experiment_cost(const Bench& bench) {
   auto scene = load_scene_or_refuse((bench.scenes / "paper.toml").string(), {"suture.reference_nodes=50"});
   scene.world.fixed.clear();
-  std::printf("bench: CPU time of a tick, us (%d ticks after %d to warm up; the same thread at every N)\n", kTimed, kWarmUp);
+  std::printf("bench: CPU time of a tick, us (%d ticks after %d to warm up; the same thread at every N)\n", kTimed,
+              kWarmUp);
   Table table({"nodes", "case", "step_s", "contacts", "median_us", "p99_us", "max_us"});
   Verdict v("bench");
   double free_100 = 0.0, free_1000 = 0.0;
@@ -67,10 +68,13 @@ int experiment_cost(const Bench& bench) {
       scene.time.tick_s = n <= 50 ? 1e-3 : 1e-3 * std::pow(50.0 / n, 2);
       for (const bool coiled : {false, true}) {
         progress.show(n / 1000.0, "N = " + std::to_string(n));
-        if (coiled) lay_coiled(scene);
-        else lay_level(scene);
+        if (coiled)
+          lay_coiled(scene);
+        else
+          lay_level(scene);
         const auto c = measure(scene);
-        table.row({double(n), std::string(coiled ? "coiled" : "free"), scene.time.tick_s, c.contacts, c.us.median, c.us.p99, c.us.max});
+        table.row({double(n), std::string(coiled ? "coiled" : "free"), scene.time.tick_s, c.contacts, c.us.median,
+                   c.us.p99, c.us.max});
         finite = finite && c.finite;
         if (!coiled && n == 100) free_100 = c.us.median;
         if (!coiled && n == 1000) free_1000 = c.us.median;
@@ -82,7 +86,8 @@ int experiment_cost(const Bench& bench) {
   draw("bench.py", {bench.out / "bench.csv"}, bench.out / "bench.png");
   const double growth = free_1000 / free_100, allowed = 10.0 * std::log(1000.0) / std::log(100.0);
   v.claim(finite, "every case stays finite", finite ? "yes" : "no", "yes");
-  v.claim(growth <= allowed, "cost at N = 1000 over cost at N = 100, free", digits(growth), "up to " + digits(allowed) + " (N log N)");
+  v.claim(growth <= allowed, "cost at N = 1000 over cost at N = 100, free", digits(growth),
+          "up to " + digits(allowed) + " (N log N)");
   return v.conclude(bench.out);
 }
 

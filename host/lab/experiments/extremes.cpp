@@ -19,7 +19,7 @@ constexpr double kSteps_s[] = {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1};
 
 /// How a trial ended.
 struct Ending {
-  std::string word;      ///< "finite", "stopped", "refused", or "LEAKED": a non-finite number got out
+  std::string word;  ///< "finite", "stopped", "refused", or "LEAKED": a non-finite number got out
   double tick = 0.0;
   double node = 0.0;
   std::string cause;
@@ -31,7 +31,8 @@ bool all_finite(const physics::Simulation& sim) {
   }
   const auto& d = sim.diagnostics();
   return sim.hand(physics::Hand::kLeft).f_W.allFinite() && sim.hand(physics::Hand::kRight).f_W.allFinite() &&
-         std::isfinite(d.kinetic_J) && std::isfinite(d.potential_J) && std::isfinite(d.max_stretch) && !std::isnan(d.min_gap_m);
+         std::isfinite(d.kinetic_J) && std::isfinite(d.potential_J) && std::isfinite(d.max_stretch) &&
+         !std::isnan(d.min_gap_m);
 }
 
 /// The right hand takes the tip and draws it aside; the left takes the middle. Scaled to the ticks of the trial.
@@ -94,9 +95,15 @@ std::vector<std::pair<std::string, Ending>> odd_cases(const scene::Scene& base) 
     for (int k = 0; k < s.suture.nodes; ++k) s.suture.initial_polyline_m.push_back(at(k));
   };
   with("all nodes in one point", kTicks, [&](scene::Scene& s) { place(s, [](int) { return scene::Vec{0, 0, 5.5}; }); });
-  with("two nodes in one point", kTicks, [&](scene::Scene& s) { place(s, [](int k) { return scene::Vec{0, 0, 5.5 - 0.1 * (k == 20 ? 19 : k)}; }); });
-  with("folded back on itself", kTicks, [&](scene::Scene& s) { place(s, [](int k) { return scene::Vec{0, 0, 5.5 - 0.1 * (k < 25 ? k : 50 - k)}; }); });
-  with("folded at every node", kTicks, [&](scene::Scene& s) { place(s, [](int k) { return scene::Vec{0, 0, 5.5 - 0.1 * (k % 2)}; }); });
+  with("two nodes in one point", kTicks, [&](scene::Scene& s) {
+    place(s, [](int k) { return scene::Vec{0, 0, 5.5 - 0.1 * (k == 20 ? 19 : k)}; });
+  });
+  with("folded back on itself", kTicks, [&](scene::Scene& s) {
+    place(s, [](int k) { return scene::Vec{0, 0, 5.5 - 0.1 * (k < 25 ? k : 50 - k)}; });
+  });
+  with("folded at every node", kTicks, [&](scene::Scene& s) {
+    place(s, [](int k) { return scene::Vec{0, 0, 5.5 - 0.1 * (k % 2)}; });
+  });
   with("gravity 1e4", kTicks, [](scene::Scene& s) { s.world.gravity_m_per_s2 = {0, 0, -1e4}; });
   with("2 nodes", kTicks, [](scene::Scene& s) { s.suture.nodes = 2; });
   with("3 nodes", kTicks, [](scene::Scene& s) { s.suture.nodes = 3; });
@@ -131,7 +138,8 @@ int experiment_extremes(const Bench& bench) {
     const auto all = dials();
     for (std::size_t k = 0; k < all.size(); ++k) {
       for (int decade = all[k].low; decade <= all[k].high; ++decade) {
-        progress.show(static_cast<double>(k) / static_cast<double>(all.size()), std::string(all[k].name) + " x 1e" + std::to_string(decade));
+        progress.show(static_cast<double>(k) / static_cast<double>(all.size()),
+                      std::string(all[k].name) + " x 1e" + std::to_string(decade));
         for (const double step_s : kSteps_s) {
           auto s = base;
           all[k].turn(s, std::pow(10.0, decade));
@@ -153,7 +161,8 @@ int experiment_extremes(const Bench& bench) {
   odd.write(bench.out / "extremes-odd.csv");
   draw("extremes.py", {bench.out / "extremes.csv"}, bench.out / "extremes.png");
   Verdict v("extremes");
-  std::printf("%d trials: %d finite, %d stopped, %d refused\n", trials, finite, trials - finite - refused - leaked, refused);
+  std::printf("%d trials: %d finite, %d stopped, %d refused\n", trials, finite, trials - finite - refused - leaked,
+              refused);
   v.claim(leaked == 0, "trials in which a non-finite number got out", std::to_string(leaked), "0");
   v.claim(unnamed == 0, "stops that did not name tick and node", std::to_string(unnamed), "0");
   v.claim(table_one, "Table I at 1 ms", table_one ? "finite" : "not finite", "finite");

@@ -7,7 +7,8 @@ void lay_level(scene::Scene& s) {
   const double rest_m = s.suture.length_m / (s.suture.nodes - 1);
   s.suture.initial = "level";
   s.suture.initial_polyline_m.clear();
-  for (int k = 0; k < s.suture.nodes; ++k) s.suture.initial_polyline_m.push_back({from[0] + k * rest_m, from[1], from[2]});
+  for (int k = 0; k < s.suture.nodes; ++k)
+    s.suture.initial_polyline_m.push_back({from[0] + k * rest_m, from[1], from[2]});
 }
 
 }  // namespace ligature::lab

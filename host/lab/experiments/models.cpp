@@ -19,10 +19,10 @@ constexpr double kStep_s = 0.0002;  // small enough for the integrator to add no
 using physics::Vec3;
 
 struct Measured {
-  double bend_J = 0.0;          ///< energy to fold the straight thread by 90 degrees at one node
-  double ring_left = 0.0;       ///< energy left 1 s after a zigzag kick, of the kick's
-  double orbit_left = 0.0;      ///< energy left after 20 s on a conical orbit, of the orbit's
-  double stretch = 0.0;         ///< of the hanging thread at rest
+  double bend_J = 0.0;      ///< energy to fold the straight thread by 90 degrees at one node
+  double ring_left = 0.0;   ///< energy left 1 s after a zigzag kick, of the kick's
+  double orbit_left = 0.0;  ///< energy left after 20 s on a conical orbit, of the orbit's
+  double stretch = 0.0;     ///< of the hanging thread at rest
 };
 
 scene::Scene with(scene::Scene s, scene::Model model) {
@@ -32,7 +32,9 @@ scene::Scene with(scene::Scene s, scene::Model model) {
   return s;
 }
 
-double energy(const Rehearsal& r) { return r.simulation().diagnostics().kinetic_J + r.simulation().diagnostics().potential_J; }
+double energy(const Rehearsal& r) {
+  return r.simulation().diagnostics().kinetic_J + r.simulation().diagnostics().potential_J;
+}
 
 /// The hanging thread at rest: its length comes from a run under heavy air drag.
 std::vector<Vec3> rest_shape(scene::Scene s) {
@@ -44,7 +46,8 @@ std::vector<Vec3> rest_shape(scene::Scene s) {
 }
 
 /// Energy above rest that is left after t, of what the thread had when it started with this shape and these velocities.
-double energy_left(const scene::Scene& s, const std::vector<Vec3>& rest, const std::vector<Vec3>& p, const std::vector<Vec3>& v, double t_s) {
+double energy_left(const scene::Scene& s, const std::vector<Vec3>& rest, const std::vector<Vec3>& p,
+                   const std::vector<Vec3>& v, double t_s) {
   Rehearsal still(s, {}), kicked(s, {});
   still.simulation().set_state(rest, {});
   kicked.simulation().set_state(p, v);
@@ -78,8 +81,8 @@ double bend_energy(scene::Scene s) {
 Measured measure(const scene::Scene& s) {
   const auto rest = rest_shape(s);
   const double l = s.suture.length_m / (s.suture.nodes - 1);
-  // Zigzag: every node kicked aside, neighbours oppositely. Orbit: the thread bent out to one side, tip by 1.5 m, and every
-  // node kicked across that plane, so it circles instead of swinging.
+  // Zigzag: every node kicked aside, neighbours oppositely. Orbit: the thread bent out to one side, tip by 1.5 m, and
+  // every node kicked across that plane, so it circles instead of swinging.
   std::vector<Vec3> zigzag, bent, orbit;
   const double omega = std::sqrt(9.8 / s.suture.length_m) * 1.2;
   for (std::size_t k = 0; k < rest.size(); ++k) {
@@ -123,7 +126,8 @@ int experiment_models(const Bench& bench) {
     const auto s = with(base, kModels[k]);
     m[k] = measure(s);
     record_shapes(s, shapes, static_cast<double>(k + 1));
-    table.row({std::string(scene::name(kModels[k])), m[k].bend_J, m[k].ring_left, m[k].orbit_left, 100.0 * m[k].stretch});
+    table.row(
+        {std::string(scene::name(kModels[k])), m[k].bend_J, m[k].ring_left, m[k].orbit_left, 100.0 * m[k].stretch});
   }
   shapes.close();
   table.print();
@@ -135,8 +139,8 @@ int experiment_models(const Bench& bench) {
   v.claim(m[1].ring_left > 0.8, "model 2 rings on: energy left 1 s after a kick", digits(m[1].ring_left), "above 0.8");
   v.claim(m[2].ring_left < 0.05, "model 3 damps the ringing: energy left", digits(m[2].ring_left), "below 0.05");
   v.claim(m[2].orbit_left > 0.6, "model 3 orbits on: energy left after 20 s", digits(m[2].orbit_left), "above 0.6");
-  v.claim(m[3].orbit_left < 0.5 * m[2].orbit_left, "model 4 stops the orbit: energy left after 20 s", digits(m[3].orbit_left),
-          "below half of model 3's");
+  v.claim(m[3].orbit_left < 0.5 * m[2].orbit_left, "model 4 stops the orbit: energy left after 20 s",
+          digits(m[3].orbit_left), "below half of model 3's");
   v.claim(m[4].stretch < m[3].stretch, "model 5 stretches less than model 4, percent",
           digits(100 * m[4].stretch) + " against " + digits(100 * m[3].stretch), "less");
   return v.conclude(bench.out);

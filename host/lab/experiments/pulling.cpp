@@ -23,23 +23,39 @@ struct Pull {
 /// One hand takes the thread 1 m above its tip, draws it aside, and back; the other is away.
 Pull one_hand() {
   return {"one-hand",
-          {{{}, {{0.2, {0, 0, 1.5}, false}, {0.5, {0, 0, 1.5}, true}, {3.0, {2.2, 0, 2.0}, true}, {5.0, {4.6, 0, 3.0}, true},
-                 {5.5, {4.6, 0, 3.0}, true}, {8.0, {0.5, 0, 1.6}, true}, {8.5, {0.5, 0, 1.6}, false}}}}};
+          {{{},
+            {{0.2, {0, 0, 1.5}, false},
+             {0.5, {0, 0, 1.5}, true},
+             {3.0, {2.2, 0, 2.0}, true},
+             {5.0, {4.6, 0, 3.0}, true},
+             {5.5, {4.6, 0, 3.0}, true},
+             {8.0, {0.5, 0, 1.6}, true},
+             {8.5, {0.5, 0, 1.6}, false}}}}};
 }
 
 /// Two hands take the thread a metre apart and draw it taut between them.
 Pull two_hands() {
   return {"two-hand",
-          {{{{0.2, {0, 0, 3.0}, false}, {0.5, {0, 0, 3.0}, true}, {3.0, {-0.5, 0, 3.4}, true}, {5.0, {-0.95, 0, 3.4}, true},
-             {5.5, {-0.95, 0, 3.4}, true}, {8.0, {-0.2, 0, 3.2}, true}, {8.5, {-0.2, 0, 3.2}, false}},
-            {{0.2, {0, 0, 1.5}, false}, {0.5, {0, 0, 1.5}, true}, {3.0, {0.5, 0, 2.8}, true}, {5.0, {0.95, 0, 3.4}, true},
-             {5.5, {0.95, 0, 3.4}, true}, {8.0, {0.2, 0, 1.8}, true}, {8.5, {0.2, 0, 1.8}, false}}}}};
+          {{{{0.2, {0, 0, 3.0}, false},
+             {0.5, {0, 0, 3.0}, true},
+             {3.0, {-0.5, 0, 3.4}, true},
+             {5.0, {-0.95, 0, 3.4}, true},
+             {5.5, {-0.95, 0, 3.4}, true},
+             {8.0, {-0.2, 0, 3.2}, true},
+             {8.5, {-0.2, 0, 3.2}, false}},
+            {{0.2, {0, 0, 1.5}, false},
+             {0.5, {0, 0, 1.5}, true},
+             {3.0, {0.5, 0, 2.8}, true},
+             {5.0, {0.95, 0, 3.4}, true},
+             {5.5, {0.95, 0, 3.4}, true},
+             {8.0, {0.2, 0, 1.8}, true},
+             {8.5, {0.2, 0, 1.8}, false}}}}};
 }
 
 struct Felt {
-  double peak_N = 0.0;            ///< at the device, after scaling and limiting
-  double peak_unlimited_N = 0.0;  ///< after scaling, before limiting
-  std::array<int, 4> frames{};    ///< how many frames each condition governed
+  double peak_N = 0.0;                   ///< at the device, after scaling and limiting
+  double peak_unlimited_N = 0.0;         ///< after scaling, before limiting
+  std::array<int, 4> frames{};           ///< how many frames each condition governed
   double longest = 0.0, shortest = 2.0;  ///< segment length of rest
   bool finite = true;
 };
@@ -68,7 +84,8 @@ Felt play(const Pull& pull, const scene::Scene& scene, CsvFile& file, double num
       felt.longest = std::max(felt.longest, length);
       felt.shortest = std::min(felt.shortest, length);
     }
-    const double cells[] = {number, static_cast<double>(r.ticks()), device_N[0], device_N[1], static_cast<double>(condition)};
+    const double cells[] = {number, static_cast<double>(r.ticks()), device_N[0], device_N[1],
+                            static_cast<double>(condition)};
     file.row(cells);
   }
   return felt;
@@ -78,9 +95,10 @@ Felt play(const Pull& pull, const scene::Scene& scene, CsvFile& file, double num
 
 int experiment_pulling(const Bench& bench) {
   const auto scene = load_scene_or_refuse((bench.scenes / "paper.toml").string(), {"hands.propagation=true"});
-  std::printf("pulling: force at the devices (world force x %.3g, at most %.1f N), one haptic frame a tick\n", scene.hands.force_scale,
-              scene.hands.max_force_N);
-  Table table({"pull", "peak_N", "peak_before_limit_N", "frames_A", "frames_B", "frames_C", "longest_of_rest", "shortest_of_rest"});
+  std::printf("pulling: force at the devices (world force x %.3g, at most %.1f N), one haptic frame a tick\n",
+              scene.hands.force_scale, scene.hands.max_force_N);
+  Table table({"pull", "peak_N", "peak_before_limit_N", "frames_A", "frames_B", "frames_C", "longest_of_rest",
+               "shortest_of_rest"});
   Verdict v("pulling");
   CsvFile file(bench.out / "pulling-frames.csv", "pull,frame,left_N,right_N,condition");
   double number = 0.0;
@@ -88,14 +106,18 @@ int experiment_pulling(const Bench& bench) {
     const auto f = play(pull, scene, file, number++);
     const std::string who(pull.name);
     const bool two = !pull.script.keys[0].empty();
-    table.row({who, f.peak_N, f.peak_unlimited_N, double(f.frames[1]), double(f.frames[2]), double(f.frames[3]), f.longest, f.shortest});
-    v.claim(f.finite && f.peak_N <= scene.hands.max_force_N + 1e-12, who + ": largest force at a device, N", digits(f.peak_N), "up to 3.3");
+    table.row({who, f.peak_N, f.peak_unlimited_N, double(f.frames[1]), double(f.frames[2]), double(f.frames[3]),
+               f.longest, f.shortest});
+    v.claim(f.finite && f.peak_N <= scene.hands.max_force_N + 1e-12, who + ": largest force at a device, N",
+            digits(f.peak_N), "up to 3.3");
     v.claim(f.peak_N > 0.05, who + ": it is felt, N", digits(f.peak_N), "above 0.05");
     v.claim(f.frames[1] > 0 && f.frames[2] + f.frames[3] > 0, who + ": frames under A, and under B or C",
             std::to_string(f.frames[1]) + ", " + std::to_string(f.frames[2] + f.frames[3]), "both some");
-    v.claim((f.frames[3] > 0) == two, who + ": frames under C, which needs two hands", std::to_string(f.frames[3]), two ? "some" : "none");
-    v.claim(f.longest <= scene.hands.max_length + 1e-6 && f.shortest >= scene.hands.min_length - 1e-6, who + ": segments, of rest length",
-            digits(f.shortest, 7) + " .. " + digits(f.longest, 7), digits(scene.hands.min_length) + " .. " + digits(scene.hands.max_length));
+    v.claim((f.frames[3] > 0) == two, who + ": frames under C, which needs two hands", std::to_string(f.frames[3]),
+            two ? "some" : "none");
+    v.claim(f.longest <= scene.hands.max_length + 1e-6 && f.shortest >= scene.hands.min_length - 1e-6,
+            who + ": segments, of rest length", digits(f.shortest, 7) + " .. " + digits(f.longest, 7),
+            digits(scene.hands.min_length) + " .. " + digits(scene.hands.max_length));
   }
   file.close();
   table.print();

@@ -15,8 +15,8 @@
 namespace ligature::lab {
 namespace {
 
-constexpr double kSwing_s = 20.0;    // one trial: from level, let go, swing
-constexpr double kMaxGain = 0.02;    // of M g L: what an integrator that does not blow up may wobble
+constexpr double kSwing_s = 20.0;  // one trial: from level, let go, swing
+constexpr double kMaxGain = 0.02;  // of M g L: what an integrator that does not blow up may wobble
 constexpr int kNodes[] = {20, 35, 50, 100};
 constexpr std::array kModels{scene::Model::kPaper1, scene::Model::kPaper2, scene::Model::kPaper3, scene::Model::kPaper4,
                              scene::Model::kPaper5};
@@ -58,7 +58,11 @@ struct Reference {
 /// reference there. With bend damping the limit is sharp: k_d l / k_l.
 constexpr Reference kReferences[] = {
     {scene::Integrator::kSemiImplicit,
-     {{{3.66, 2.86, 2.32, 1.67}, {3.66, 2.86, 2.32, 1.67}, {3.66, 2.74, 1.36, 0.32}, {3.66, 2.74, 1.36, 0.32}, {0, 0, 0, 0}}}},
+     {{{3.66, 2.86, 2.32, 1.67},
+       {3.66, 2.86, 2.32, 1.67},
+       {3.66, 2.74, 1.36, 0.32},
+       {3.66, 2.74, 1.36, 0.32},
+       {0, 0, 0, 0}}}},
     {scene::Integrator::kForward,
      {{{0, 0, 0, 0}, {0, 0, 0, 0}, {0.33, 0.18, 0.13, 0.06}, {0.33, 0.18, 0.13, 0.06}, {0, 0, 0, 0}}}},
 };
@@ -76,9 +80,11 @@ double add_explicit(const scene::Scene& base, const Reference& ref, Table& table
   const bool forward = ref.integrator == scene::Integrator::kForward;
   double worst = 0.0;
   for (std::size_t m = 0; m < kModels.size(); ++m) {
-    std::vector<Cell> row{std::string(scene::name(kModels[m])), std::string(forward ? "forward, explicit" : "semi-implicit, explicit")};
+    std::vector<Cell> row{std::string(scene::name(kModels[m])),
+                          std::string(forward ? "forward, explicit" : "semi-implicit, explicit")};
     for (std::size_t n = 0; n < std::size(kNodes); ++n) {
-      progress.show(static_cast<double>(4 * m + n) / 20.0, std::string(scene::name(kModels[m])) + ", N = " + std::to_string(kNodes[n]));
+      progress.show(static_cast<double>(4 * m + n) / 20.0,
+                    std::string(scene::name(kModels[m])) + ", N = " + std::to_string(kNodes[n]));
       auto s = scene_for(base, kModels[m], kNodes[n]);
       s.suture.paper.damping = scene::Damping::kExplicit;
       s.suture.paper.integrator = ref.integrator;
@@ -126,11 +132,13 @@ int experiment_stability(const Bench& bench) {
   table.print();
   table.write(bench.out / "stability.csv");
   draw("stability.py", {bench.out / "stability.csv"}, bench.out / "stability.png");
-  verdict.claim(margin >= 2.0, "Table I with implicit dampers, model 4, N = 20, 35, 50, is stable beyond 1 ms by", digits(margin) + " times",
-                "2 or more");
-  verdict.claim(semi <= 0.15, "semi-implicit Euler with explicit dampers, models 1 to 4, differs from the prototype by at most",
+  verdict.claim(margin >= 2.0, "Table I with implicit dampers, model 4, N = 20, 35, 50, is stable beyond 1 ms by",
+                digits(margin) + " times", "2 or more");
+  verdict.claim(semi <= 0.15,
+                "semi-implicit Euler with explicit dampers, models 1 to 4, differs from the prototype by at most",
                 digits(100 * semi) + " %", "15 %");
-  verdict.claim(forward <= 0.15, "forward Euler, models 3 and 4, differs from the prototype by at most", digits(100 * forward) + " %", "15 %");
+  verdict.claim(forward <= 0.15, "forward Euler, models 3 and 4, differs from the prototype by at most",
+                digits(100 * forward) + " %", "15 %");
   return verdict.conclude(bench.out);
 }
 

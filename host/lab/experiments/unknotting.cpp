@@ -18,7 +18,7 @@ using physics::Vec3;
 
 constexpr double kSettle_s = 5.0;
 const Pull kWrong{49, {1.0, 0.0, 0.0}};  // the tail's own end, drawn on the way it already runs
-constexpr int kKnots = 10;                   // of each kind, for the planner
+constexpr int kKnots = 10;               // of each kind, for the planner
 constexpr int kEnough = 8;
 
 /// The loop that is left when the planner's or a wrong node is pulled on the desk; shapes for the picture.
@@ -31,7 +31,8 @@ void pull_on_desk(const Bench& bench, Table& table, Verdict& v) {
   const auto before = knot_of(r.simulation());
   const auto core = core_of(shape);
   double size_m = 0.0;
-  for (int k = core.first + 1; k <= core.last; ++k) size_m += (shape[std::size_t(k)] - shape[std::size_t(k - 1)]).norm();
+  for (int k = core.first + 1; k <= core.last; ++k)
+    size_m += (shape[std::size_t(k)] - shape[std::size_t(k - 1)]).norm();
   const auto plan = plan_pull(shape, scene);
   CsvFile file(bench.out / "unknotting-desk.csv", "picture,node,x_m,y_m,z_m");
   const auto take = [&](double picture, std::span<const Vec3> nodes) {
@@ -42,18 +43,22 @@ void pull_on_desk(const Bench& bench, Table& table, Verdict& v) {
   };
   take(0.0, shape);
   v.claim(before.type == "4_1", "desk: the knot to undo", before.type, "4_1");
-  v.claim(plan.has_value(), "desk: the planner names a pull", plan ? "node " + std::to_string(plan->pull.node) : "none", "one");
+  v.claim(plan.has_value(), "desk: the planner names a pull", plan ? "node " + std::to_string(plan->pull.node) : "none",
+          "one");
   if (plan) {
     auto thread = thread_of_shape(shape, scene);
     const auto right = do_pull(thread, scene, plan->pull);
     take(1.0, thread.nodes_W());
-    table.row({std::string("desk, right node"), double(plan->pull.node), before.type, right.knot.type, right.peak_N, 0.0});
-    v.claim(right.knot.type == "0_1", "desk: after pulling node " + std::to_string(plan->pull.node), right.knot.type, "0_1");
+    table.row(
+        {std::string("desk, right node"), double(plan->pull.node), before.type, right.knot.type, right.peak_N, 0.0});
+    v.claim(right.knot.type == "0_1", "desk: after pulling node " + std::to_string(plan->pull.node), right.knot.type,
+            "0_1");
   }
   auto thread = thread_of_shape(shape, scene);
   const auto wrong = do_pull(thread, scene, kWrong);
   take(2.0, thread.nodes_W());
-  table.row({std::string("desk, wrong node"), double(kWrong.node), before.type, wrong.knot.type, wrong.peak_N, wrong.knot_size_m});
+  table.row({std::string("desk, wrong node"), double(kWrong.node), before.type, wrong.knot.type, wrong.peak_N,
+             wrong.knot_size_m});
   v.claim(wrong.knot.type == "4_1" && wrong.knot_size_m < 0.85 * size_m,
           "desk: after pulling node " + std::to_string(kWrong.node) + " the knot, and the thread in it, m",
           wrong.knot.type + ", " + digits(wrong.knot_size_m) + " of " + digits(size_m), "4_1, tighter by 15 % or more");
@@ -77,7 +82,8 @@ int map_pulls(const LooseKnot& knot, Table& map, Progress& progress) {
 }
 
 /// The planner sees the shape, names a pull, and the thread itself is pulled.
-int undo_ten(const std::string& scene, const scene::GripperScript& script, const std::string& type, Table& plans, Progress& progress) {
+int undo_ten(const std::string& scene, const scene::GripperScript& script, const std::string& type, Table& plans,
+             Progress& progress) {
   int undone = 0, drawn = 0;
   for (int k = 0; k < kKnots && !stop_requested(); ++k) {
     progress.show(double(k) / kKnots, "planner, " + type + " number " + std::to_string(k + 1));
@@ -92,7 +98,8 @@ int undo_ten(const std::string& scene, const scene::GripperScript& script, const
     const auto result = do_pull(knot.thread, knot.scene, plan->pull);
     const auto& d = plan->pull.direction;
     std::string way = "(" + digits(d.x()) + " " + digits(d.y()) + " " + digits(d.z()) + ")";
-    plans.row({type, double(k + 1), double(knot.scene.suture.nodes), double(plan->pull.node), way, double(plan->tried), result.knot.type});
+    plans.row({type, double(k + 1), double(knot.scene.suture.nodes), double(plan->pull.node), way, double(plan->tried),
+               result.knot.type});
     undone += result.knot.type == "0_1";
   }
   return undone;
@@ -101,7 +108,8 @@ int undo_ten(const std::string& scene, const scene::GripperScript& script, const
 }  // namespace
 
 int experiment_unknotting(const Bench& bench) {
-  std::printf("unknotting: one hand, a straight pull of %.1f m in %.0f s, the frame fixed\n", kPullLength_m, kPullLength_m / kPullSpeed_m_per_s);
+  std::printf("unknotting: one hand, a straight pull of %.1f m in %.0f s, the frame fixed\n", kPullLength_m,
+              kPullLength_m / kPullSpeed_m_per_s);
   Verdict v("unknotting");
   Table desk({"case", "node", "before", "after", "peak_N", "thread_in_knot_m"});
   Table map({"knot", "node", "direction", "after", "peak_N"});
@@ -115,10 +123,11 @@ int experiment_unknotting(const Bench& bench) {
       int drawn = 0;
       const auto loose = tie_loosely(scene, script, type, 0, drawn);
       const int untie = map_pulls(loose, map, progress), pulls = 6 * (loose.scene.suture.nodes - 1);
-      v.claim(untie > 0 && untie < pulls, std::string(type) + ": pulls that untie, of " + std::to_string(pulls), std::to_string(untie),
-              "some, not all");
+      v.claim(untie > 0 && untie < pulls, std::string(type) + ": pulls that untie, of " + std::to_string(pulls),
+              std::to_string(untie), "some, not all");
       const int undone = undo_ten(scene, script, type, plans, progress);
-      v.claim(undone >= kEnough, std::string(type) + ": loose knots undone by the planned pull, of " + std::to_string(kKnots),
+      v.claim(undone >= kEnough,
+              std::string(type) + ": loose knots undone by the planned pull, of " + std::to_string(kKnots),
               std::to_string(undone), std::to_string(kEnough) + " or more");
     }
   }
@@ -127,7 +136,8 @@ int experiment_unknotting(const Bench& bench) {
   desk.write(bench.out / "unknotting.csv");
   map.write(bench.out / "unknotting-map.csv");
   plans.write(bench.out / "unknotting-plans.csv");
-  draw("unknotting.py", {bench.out / "unknotting-map.csv", bench.out / "unknotting-desk.csv"}, bench.out / "unknotting.png");
+  draw("unknotting.py", {bench.out / "unknotting-map.csv", bench.out / "unknotting-desk.csv"},
+       bench.out / "unknotting.png");
   return v.conclude(bench.out);
 }
 

@@ -74,7 +74,8 @@ Core core_of(std::span<const Vec3> nodes_W) {
 }
 
 std::span<const Vec3> six_directions() {
-  static const std::array<Vec3, 6> kDirections{Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)};
+  static const std::array<Vec3, 6> kDirections{Vec3(1, 0, 0),  Vec3(-1, 0, 0), Vec3(0, 1, 0),
+                                               Vec3(0, -1, 0), Vec3(0, 0, 1),  Vec3(0, 0, -1)};
   return kDirections;
 }
 

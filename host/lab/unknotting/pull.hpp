@@ -16,9 +16,9 @@ struct Pull {
 };
 
 struct PullResult {
-  knot::KnotResult knot;       ///< after the pull and a second of rest
-  double peak_N = 0.0;         ///< largest hand force, world
-  double knot_size_m = 0.0;    ///< length of thread in the knot afterwards; 0 when there is none
+  knot::KnotResult knot;     ///< after the pull and a second of rest
+  double peak_N = 0.0;       ///< largest hand force, world
+  double knot_size_m = 0.0;  ///< length of thread in the knot afterwards; 0 when there is none
   bool finite = true;
 };
 
@@ -34,8 +34,9 @@ inline constexpr double kPullSpeed_m_per_s = 0.6;  ///< mean; the hand starts an
 /// The same pull on the thread itself.
 PullResult do_pull(physics::Simulation& thread, const scene::Scene& scene, const Pull& pull);
 
-/// Where the knot sits: the shortest stretch of nodes first .. last such that the thread before `first` and after `last`
-/// can be cut off and the knot is still there. Empty (first > last) when there is no knot. Cost O(n) recognitions.
+/// Where the knot sits: the shortest stretch of nodes first .. last such that the thread before `first` and after
+/// `last` can be cut off and the knot is still there. Empty (first > last) when there is no knot. Cost O(n)
+/// recognitions.
 struct Core {
   int first = 0;
   int last = -1;

@@ -21,8 +21,8 @@ Polyline closed_curve(int n, F f) {
   return line;
 }
 
-/// The trefoil in its usual pose. The sign of z is the hand: with + sin 3t it is right-handed (Gauss' integral gives the
-/// writhe +3.4), with the - sin 3t that is often printed it is left-handed.
+/// The trefoil in its usual pose. The sign of z is the hand: with + sin 3t it is right-handed (Gauss' integral gives
+/// the writhe +3.4), with the - sin 3t that is often printed it is left-handed.
 inline Polyline trefoil(int n, int hand = 1) {
   return closed_curve(n, [hand](double t) {
     return std::array{std::sin(t) + 2 * std::sin(2 * t), std::cos(t) - 2 * std::cos(2 * t), hand * std::sin(3 * t)};
@@ -108,8 +108,8 @@ inline Polyline refined(const Polyline& line, int n) {
   return fine;
 }
 
-/// A long bight tied in a trefoil: out along a trefoil with a gap, and back beside it, the two strands twisted about each
-/// other. Pulling the bight back through undoes it, so it is the unknot, with a dozen crossings and more.
+/// A long bight tied in a trefoil: out along a trefoil with a gap, and back beside it, the two strands twisted about
+/// each other. Pulling the bight back through undoes it, so it is the unknot, with a dozen crossings and more.
 inline Polyline doubled_trefoil(int n, double twist) {
   constexpr double kGap = 0.5, kApart = 0.08;
   const auto at = [&](double t, double side) {

@@ -28,7 +28,10 @@ TEST(GripperScript, ReadsTheShippedOverhandScript) {
 }
 
 TEST(GripperScript, RefusesABadRowByItsLine) {
-  const struct { const char* rows; const char* says; } kCases[] = {
+  const struct {
+    const char* rows;
+    const char* says;
+  } kCases[] = {
       {"0,L,0,0,0\n", ":3: found 5 columns"},
       {"0,L,0,0,0,1,\n", ":3: found 7 columns"},
       {"0,L,0,0,0,1\nx,L,0,0,0,1\n", ":4: column 'time': found 'x'"},
@@ -42,7 +45,8 @@ TEST(GripperScript, RefusesABadRowByItsLine) {
       {"1,L,0,0,0,1\n0,R,0,0,0,1\n1,L,0,0,0,1\n", ":5: column 'time': found 1, allowed later"},
       {"", "found no rows"},
   };
-  for (const auto& c : kCases) EXPECT_NE(why_refused(c.rows).find(c.says), std::string::npos) << c.rows << why_refused(c.rows);
+  for (const auto& c : kCases)
+    EXPECT_NE(why_refused(c.rows).find(c.says), std::string::npos) << c.rows << why_refused(c.rows);
   const auto header = load_gripper_script(write("t,hand,x,y,z,grip\n0,L,0,0,0,1\n"));
   EXPECT_NE(std::get<Error>(header).text.find(":1: found 't,hand,x,y,z,grip', allowed the header"), std::string::npos);
   EXPECT_NE(std::get<Error>(load_gripper_script("no/such.csv")).text.find("cannot be read"), std::string::npos);
