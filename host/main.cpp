@@ -7,6 +7,7 @@
 #include "host/commands.hpp"
 #include "host/errors.hpp"
 #include "host/stop_signal.hpp"
+#include "host/view/commands.hpp"
 
 namespace {
 
@@ -38,6 +39,8 @@ int main(int argc, char** argv) {
   add_report(app);
   add_knot(app);
   add_send(app);
+  view::add_view(app);
+  view::add_replay(app);
   app.footer(
       "Example: record a run, look at it, name the knot\n"
       "  ligature-host record --out knot.lcmlog\n"
@@ -47,7 +50,9 @@ int main(int argc, char** argv) {
       "'ligature-host COMMAND --help' explains each.\n"
       "Exit code: 0 done, 2 bad usage or bad input, 3 the work itself failed.");
   if (argc > 1 && argv[1][0] != '-' && !has_command(app, argv[1]))
-    return complain("found command '" + std::string(argv[1]) + "', allowed record, export, plot, report, knot, send",
+    return complain("found command '" + std::string(argv[1]) +
+                        "', allowed record, export, plot, report, knot, send, view, "
+                        "replay",
                     2);
   catch_stop_signals();
   try {

@@ -1,0 +1,71 @@
+#include "host/view/access.hpp"
+
+#include <arpa/inet.h>
+#include <sys/random.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+#include "host/errors.hpp"
+
+namespace ligature::host::view {
+namespace {
+
+constexpr std::size_t kShortestToken = 16, kLongestToken = 256;
+
+bool is_address(const std::string& name) {
+  std::array<unsigned char, 16> binary{};
+  return inet_pton(AF_INET, name.c_str(), binary.data()) == 1 || inet_pton(AF_INET6, name.c_str(), binary.data()) == 1;
+}
+
+/// "name:port", "name", "[v6]:port" -> the name.
+std::string without_port(std::string_view host) {
+  if (host.starts_with('[')) return std::string(host.substr(1, host.find(']') - 1));
+  return std::string(host.substr(0, host.find(':')));
+}
+
+}  // namespace
+
+std::string make_token() {
+  std::array<unsigned char, 16> bits{};
+  if (getrandom(bits.data(), bits.size(), 0) != static_cast<ssize_t>(bits.size()))
+    throw RunFailed("the kernel gives no random numbers for the token");
+  std::string token;
+  for (const unsigned byte : bits) {
+    token += "0123456789abcdef"[byte >> 4U];
+    token += "0123456789abcdef"[byte & 15U];
+  }
+  return token;
+}
+
+std::string read_token_file(const std::string& path) {
+  std::ifstream file(path);
+  std::string token;
+  if (!file || !std::getline(file, token)) throw BadInput("--token-file: cannot read '" + path + "'");
+  const bool is_printable = std::ranges::all_of(token, [](char c) { return c > ' ' && c <= '~'; });
+  if (token.size() < kShortestToken || token.size() > kLongestToken || !is_printable)
+    throw BadInput("--token-file: " + path + ": found " + std::to_string(token.size()) +
+                   " characters in its first line, allowed 16 .. 256 printable ones without blanks");
+  return token;
+}
+
+bool is_token(std::string_view found, std::string_view expected) noexcept {
+  if (expected.empty() || found.size() != expected.size()) return false;
+  unsigned differs = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) differs |= static_cast<unsigned>(found[i] ^ expected[i]);
+  return differs == 0;
+}
+
+bool is_own_host(std::string_view host_header, std::string_view machine_name) {
+  const std::string name = without_port(host_header);
+  return name == "localhost" || is_address(name) || (!machine_name.empty() && name == machine_name);
+}
+
+bool is_own_origin(std::string_view origin, std::string_view host_header) {
+  if (origin.empty()) return true;
+  constexpr std::string_view kScheme = "http://";
+  return origin.starts_with(kScheme) && origin.substr(kScheme.size()) == host_header && !host_header.empty();
+}
+
+}  // namespace ligature::host::view

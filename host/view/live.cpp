@@ -1,0 +1,85 @@
+#include "host/view/live.hpp"
+
+#include <atomic>
+#include <boost/asio/ip/address.hpp>
+#include <cstdio>
+#include <exception>
+#include <thread>
+
+#include "host/errors.hpp"
+#include "host/lcm_link.hpp"
+#include "host/stop_signal.hpp"
+#include "host/view/command_desk.hpp"
+#include "host/view/knot_watch.hpp"
+
+namespace ligature::host::view {
+namespace {
+
+void publish(LcmLink& link, const ligature_msg::command_t& command) {
+  std::vector<char> bytes(static_cast<std::size_t>(command.getEncodedSize()));
+  command.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  link.publish(kCommandChannel, bytes.data(), static_cast<unsigned>(bytes.size()));
+}
+
+}  // namespace
+
+Access access_for(const ServerOptions& server, const std::string& token_file) {
+  boost::system::error_code error;
+  const bool is_here = boost::asio::ip::make_address(server.listen, error).is_loopback() && !error;
+  if (!token_file.empty()) return {read_token_file(token_file), false};
+  return is_here ? Access{make_token(), true} : Access{};
+}
+
+void announce(const Server& server, const ServerOptions& options, const Access& access) {
+  const std::string host = options.listen.find(':') == std::string::npos ? options.listen : "[" + options.listen + "]";
+  std::printf("open http://%s:%u/\n", host.c_str(), static_cast<unsigned>(server.port()));
+  if (access.token.empty())
+    std::printf("listening beyond this machine without --token-file: pages may look, not command\n");
+  else if (!access.gives_token)
+    std::printf("commands need the token: add #token= and the first line of the token file to the address\n");
+  std::fflush(stdout);
+}
+
+void view_live(const ViewOptions& options) {
+  const Access access = access_for(options.server, options.token_file);
+  Picture picture;
+  picture.set("view", {{"mode", "live"}, {"version", LIGATURE_VERSION}, {"may_command", !access.token.empty()}});
+  CommandDesk* desk_for_acks = nullptr;
+  LcmLink link(options.lcm_url, "LIGATURE_.*", [&](const Message& message) {
+    if (message.channel == kAckChannel) {
+      if (const auto ack = decode<ligature_msg::ack_t>(message.data); ack && desk_for_acks)
+        desk_for_acks->take_ack(*ack);
+    } else {
+      picture.take(message.channel, message.data, Picture::Clock::now());
+    }
+  });
+  CommandDesk desk(access, [&link](const auto& command) { publish(link, command); });
+  desk_for_acks = &desk;
+
+  std::exception_ptr failure;
+  std::atomic<bool> is_deaf = false;
+  const auto on_message = [&](std::uint64_t page, const nlohmann::json& message) {
+    return desk.request(page, message, CommandDesk::Clock::now());
+  };
+  const auto on_tick = [&](bool& more) {
+    more = !stop_requested() && !is_deaf;
+    return desk.answers(CommandDesk::Clock::now());
+  };
+  Server server(options.server, access, picture, {on_message, on_tick});
+  announce(server, options.server, access);
+  {
+    const KnotWatch knots(picture);
+    const std::jthread hearing([&](const std::stop_token& stop) {
+      try {
+        while (!stop.stop_requested()) link.receive(50);
+      } catch (...) {
+        failure = std::current_exception();
+        is_deaf = true;
+      }
+    });
+    server.run();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace ligature::host::view

@@ -1,0 +1,57 @@
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+#include <vector>
+
+#include "host/view/log_map.hpp"
+#include "host/view/trace_row.hpp"
+
+namespace ligature::host::view {
+
+/// Goes once through a whole log in the background, while it is already being played: what to jump to, which knot
+/// when, and the traces as bins for the long windows.
+class LogSurvey {
+ public:
+  static constexpr std::size_t kMostBins = 12 * 72'000, kMostMarks = 5'000, kOverview = 600;
+  static constexpr double kKnotPeriod_s = 0.2;
+
+  explicit LogSurvey(const LogMap& map);
+
+  [[nodiscard]] double progress() const { return progress_; }  ///< 0 .. 1
+
+  /// Marks {t_s, kind, hand, text} in order of time, and the largest force of each hand in kOverview equal
+  /// stretches of the log, N. Complete when progress() is 1.
+  [[nodiscard]] nlohmann::json marks() const;
+
+  /// The bins of the run of the firmware that is on at t, up to t, at most ten minutes of them.
+  [[nodiscard]] std::vector<TraceBin> history(double t_s) const;
+
+ private:
+  struct TimedBin {
+    double t_s;
+    std::int64_t session;
+    TraceBin bin;
+  };
+  void go(const std::stop_token& stop);
+  void take_batch(double t_s, const std::vector<std::byte>& payload);
+  void take_event(double t_s, const std::vector<std::byte>& payload);
+  void take_shape(double t_s, const std::vector<std::byte>& payload);
+  void add_mark(double t_s, int kind, int hand, const std::string& text);
+
+  const LogMap& map_;
+  mutable std::mutex mutex_;
+  std::vector<TimedBin> bins_;
+  nlohmann::json marks_ = nlohmann::json::array();
+  std::vector<float> overview_[2]{std::vector<float>(kOverview), std::vector<float>(kOverview)};
+  BinMaker bin_maker_;
+  std::int64_t session_ = -1;
+  double knot_due_s_ = 0.0;
+  std::string knot_ = "0_1 none";
+  std::atomic<double> progress_ = 0.0;
+  std::jthread thread_;
+};
+
+}  // namespace ligature::host::view

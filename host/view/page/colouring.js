@@ -1,0 +1,89 @@
+// Colours of the thread: what each shows, computed from the shape alone. Scales are from blue-black to yellow
+// (cividis-like), which reads the same for every kind of colour vision and in grey.
+const PLAIN = srgb(0xe9, 0xcf, 0x9b), ACCENT = srgb(0xff, 0x6a, 0x3d), HELD = [srgb(0x56, 0xb4, 0xe9), srgb(0xe6, 0x9f, 0x00)];
+const SCALE = [[0x2f, 0x4d, 0x8f], [0x57, 0x6b, 0x9a], [0x83, 0x8c, 0x8e], [0xb8, 0xa9, 0x72], [0xff, 0xe5, 0x4a]].map((c) => srgb(...c));
+export const SCALE_CSS = 'linear-gradient(90deg, #2f4d8f, #576b9a, #838c8e, #b8a972, #ffe54a)';
+
+function srgb(...rgb) { return rgb.map((v) => ((v / 255 + 0.055) / 1.055) ** 2.4); }
+
+function onScale(share) {
+  const at = Math.min(Math.max(share, 0), 0.9999) * (SCALE.length - 1), k = Math.floor(at), t = at - k;
+  return SCALE[k].map((v, j) => v + (SCALE[k + 1][j] - v) * t);
+}
+
+/** @returns {{colours: Float32Array, legend: null | {title, low, high}}} colours n x 3. */
+export function colourThread(mode, shape, { restLength_m, core } = {}) {
+  const p = shape.p_W, n = p.length / 3, colours = new Float32Array(p.length);
+  const paint = (i, c) => colours.set(c, 3 * i);
+  let legend = null;
+  for (let i = 0; i < n; ++i) paint(i, PLAIN);
+  if (mode === 'curvature') {
+    const most = 1 / (2 * shape.radius_m); // a bend as tight as the thread is thick
+    for (let i = 0; i < n; ++i) paint(i, onScale(curvature(p, i, n) / most));
+    legend = { title: 'curvature', low: '0', high: `${format(most)} 1/m` };
+  } else if (mode === 'stretch' && restLength_m > 0) {
+    const rest = restLength_m / (n - 1), span = 0.05;
+    for (let i = 0; i < n; ++i) {
+      const a = Math.max(i - 1, 0), b = Math.min(i + 1, n - 1);
+      let length = 0;
+      for (let k = a; k < b; ++k) length += distance(p, k, k + 1);
+      paint(i, onScale(0.5 + (length / ((b - a) * rest) - 1) / (2 * span)));
+    }
+    legend = { title: 'stretch', low: '−5 %', high: '+5 %' };
+  } else if (mode === 'contact') {
+    for (const i of touching(p, n, shape.radius_m)) paint(i, ACCENT);
+    legend = { title: 'orange: strand within a tenth of its diameter of another' };
+  } else if (mode === 'knot') {
+    if (core) for (let i = core[0]; i <= core[1] && i < n; ++i) paint(i, ACCENT);
+    legend = { title: 'orange: shortest piece that holds the knot' };
+  }
+  shape.grasped.forEach((node, hand) => { if (node >= 0 && node < n) paint(node, HELD[hand]); });
+  return { colours, legend };
+}
+
+function distance(p, a, b) { return Math.hypot(p[3 * a] - p[3 * b], p[3 * a + 1] - p[3 * b + 1], p[3 * a + 2] - p[3 * b + 2]); }
+
+/** Turning angle at a node over the mean length of its two edges, 1/m. */
+function curvature(p, i, n) {
+  if (i === 0 || i === n - 1) return 0;
+  const a = distance(p, i - 1, i), b = distance(p, i, i + 1);
+  let dot = 0;
+  for (let j = 0; j < 3; ++j) dot += (p[3 * i + j] - p[3 * i - 3 + j]) * (p[3 * i + 3 + j] - p[3 * i + j]);
+  const angle = Math.acos(Math.min(1, Math.max(-1, dot / (a * b || 1))));
+  return (2 * angle) / (a + b || 1);
+}
+
+/** Nodes of edges that come within 1.1 diameters of an edge that is not near along the thread. Cells keep it linear. */
+function touching(p, n, radius) {
+  let longest = 0;
+  for (let i = 0; i + 1 < n; ++i) longest = Math.max(longest, distance(p, i, i + 1));
+  const reach = 2.2 * radius, size = reach + longest, apart = Math.max(2, Math.ceil((3 * reach) / (longest || 1)));
+  const cells = new Map(), found = new Set();
+  const cellOf = (i, j) => Math.floor((p[3 * i + j] + p[3 * i + 3 + j]) / 2 / size);
+  for (let i = 0; i + 1 < n; ++i) {
+    const c = [0, 1, 2].map((j) => cellOf(i, j));
+    for (let k = 0; k < 27; ++k) {
+      const others = cells.get(`${c[0] + (k % 3) - 1},${c[1] + (Math.floor(k / 3) % 3) - 1},${c[2] + Math.floor(k / 9) - 1}`) ?? [];
+      for (const o of others) if (i - o > apart && edgeDistance(p, i, o) < reach) [i, i + 1, o, o + 1].forEach((m) => found.add(m));
+    }
+    const key = c.join();
+    if (cells.has(key)) cells.get(key).push(i); else cells.set(key, [i]);
+  }
+  return found;
+}
+
+/** Smallest distance of edge i to edge k: the closest points of two segments (Ericson, Real-Time Collision Detection 5.1.9). */
+function edgeDistance(p, i, k) {
+  const d1 = [], d2 = [], r = [];
+  for (let j = 0; j < 3; ++j) {
+    d1.push(p[3 * i + 3 + j] - p[3 * i + j]); d2.push(p[3 * k + 3 + j] - p[3 * k + j]); r.push(p[3 * i + j] - p[3 * k + j]);
+  }
+  const dot = (u, v) => u[0] * v[0] + u[1] * v[1] + u[2] * v[2], clamp = (v) => Math.min(1, Math.max(0, v));
+  const a = dot(d1, d1), e = dot(d2, d2), f = dot(d2, r), c = dot(d1, r), b = dot(d1, d2), denominator = a * e - b * b;
+  let s = denominator > 1e-12 * a * e ? clamp((b * f - c * e) / denominator) : 0;
+  const t = clamp((b * s + f) / (e || 1));
+  s = clamp((b * t - c) / (a || 1));
+  return Math.hypot(...[0, 1, 2].map((j) => r[j] + s * d1[j] - t * d2[j]));
+}
+
+function format(value) { return value >= 100 ? value.toFixed(0) : value.toPrecision(3); }

@@ -1,0 +1,30 @@
+// Wake-up latency of the control loop as bars with logarithmic heights, so that one bad tick among a million is seen.
+import { C } from './frame.js';
+
+const BOUNDS_us = [2, 5, 10, 20, 50, 100, 200, 500, 1000];
+
+export function drawHistogram(canvas, store, from, period_s) {
+  const ctx = canvas.getContext('2d'), ratio = devicePixelRatio;
+  const { counts, max } = store.histogram(C.wakeup_ns, BOUNDS_us.map((us) => us * 1000), from);
+  const width = canvas.width / ratio, height = canvas.height / ratio, left = 50, bottom = 17, top = 36;
+  ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
+  ctx.clearRect(0, 0, width, height);
+  const most = Math.max(10, ...counts), cell = (width - left - 8) / counts.length, tall = height - bottom - top;
+  ctx.font = '11px sans-serif';
+  ctx.textAlign = 'center';
+  counts.forEach((count, i) => {
+    const x = left + i * cell, h = count ? Math.max(3, (tall * Math.log10(1 + count)) / Math.log10(1 + most)) : 0;
+    const isLate = i > 0 && BOUNDS_us[i - 1] * 1e-6 >= period_s;
+    ctx.fillStyle = isLate ? '#ff5c47' : '#7b8da6';
+    ctx.fillRect(x + 2, height - bottom - h, cell - 4, h);
+    ctx.fillStyle = '#9aa6b6';
+    ctx.fillText(i < BOUNDS_us.length ? `<${BOUNDS_us[i]}` : `≥${BOUNDS_us.at(-1)}`, x + cell / 2, height - 4);
+    if (count) {
+      ctx.fillStyle = '#e8ecf2';
+      ctx.fillText(count >= 10000 ? `${(count / 1000).toFixed(0)}k` : count, x + cell / 2, height - bottom - h - 3);
+    }
+  });
+  ctx.textAlign = 'right';
+  ctx.fillStyle = '#e8ecf2';
+  ctx.fillText(`max ${(max / 1000).toFixed(0)} µs`, width - 10, 12);
+}

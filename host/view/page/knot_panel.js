@@ -1,0 +1,52 @@
+// The knot's name, what is known of it, and the strip of when it changed.
+const $ = (id) => document.getElementById(id);
+const COMMON = { '0_1': 'no knot', '3_1': 'trefoil (overhand)', '4_1': 'figure-eight', '5_1': 'cinquefoil', '5_2': 'three-twist', '6_1': 'stevedore',
+  '3_1#3_1 left': 'granny', '3_1#3_1 right': 'granny', '3_1#3_1 mixed': 'square (reef)' };
+const TINTS = ['#56b4e9', '#e69f00', '#2fbf8f', '#cc79a7', '#f0e442', '#d55e00'];
+const STRIP_S = 120;
+
+export class KnotPanel {
+  constructor() { this.history = []; this.tints = new Map([['0_1', '#3a4658'], ['unknown', '#8a8f98']]); }
+
+  clear() { this.history = []; }
+
+  update(knot, period_s) {
+    if (!knot) return;
+    const name = $('knot-name');
+    name.dataset.type = knot.type;
+    name.dataset.handedness = knot.handedness;
+    name.innerHTML = knot.type.split('#').map((part) => part.replace(/_(\d+)/, '<sub>$1</sub>')).join(' # ');
+    const hand = ['left', 'right'].includes(knot.handedness) ? `${knot.handedness}-handed` : knot.handedness === 'none' ? '' : knot.handedness;
+    const common = COMMON[`${knot.type} ${knot.handedness}`] ?? COMMON[knot.type] ?? '';
+    const least = knot.type === 'unknown' ? null : knot.type.split('#').reduce((sum, part) => sum + (part === '0_1' ? 0 : parseInt(part, 10)), 0);
+    $('knot-note').textContent = [hand, common, knot.type === '0_1' ? '' : `crossings ${knot.crossings}${least === null ? '' : ` (least ${least})`}`,
+      knot.core_diameters ? `${knot.core_diameters.toFixed(0)} diameters long` : ''].filter(Boolean).join(' · ');
+    const label = `${knot.type} ${knot.handedness}`, last = this.history.at(-1);
+    if (last && knot.tick < last.from) this.history = [];
+    if (this.history.at(-1)?.label !== label) this.history.push({ label, type: knot.type, from: knot.tick });
+    if (this.history.length > 500) this.history.shift();
+    this.#strip(knot.tick, STRIP_S / period_s);
+  }
+
+  #tint(type) {
+    if (!this.tints.has(type)) this.tints.set(type, TINTS[(this.tints.size - 2) % TINTS.length]);
+    return this.tints.get(type);
+  }
+
+  /** Newest at the right end. */
+  #strip(now, span) {
+    const canvas = $('knot-strip'), ctx = canvas.getContext('2d');
+    canvas.width = canvas.clientWidth;
+    ctx.fillStyle = '#1b212b';
+    ctx.fillRect(0, 0, canvas.width, canvas.height);
+    ctx.font = '10px sans-serif';
+    this.history.forEach(({ type, from }, i) => {
+      const until = this.history[i + 1]?.from ?? now, x = canvas.width * (1 - (now - from) / span), end = canvas.width * (1 - (now - until) / span);
+      if (end < 0) return;
+      ctx.fillStyle = this.#tint(type);
+      ctx.fillRect(Math.max(0, x), 0, Math.max(1, end - Math.max(0, x)), canvas.height);
+      ctx.fillStyle = type === '0_1' ? '#c9d2de' : '#101418';
+      if (end - Math.max(0, x) > 26) ctx.fillText(type, Math.max(0, x) + 3, 11);
+    });
+  }
+}

@@ -1,0 +1,159 @@
+// Wires the page: frames in, panels and pictures out.
+import { Link } from './link.js';
+import { Scene } from './scene.js';
+import { SCALE_CSS } from './colouring.js';
+import { TraceStore } from './trace_store.js';
+import { Traces, WINDOWS_S, describeRow } from './traces.js';
+import { KnotPanel } from './knot_panel.js';
+import { ReplayBar } from './replay_bar.js';
+import { isTyping, setUpControls } from './controls.js';
+import { sceneFacts, showAge, showHands, showState, showStatus } from './state_panel.js';
+
+const $ = (id) => document.getElementById(id);
+const store = new TraceStore(), scene = new Scene($('canvas')), knots = new KnotPanel();
+const latest = { now: null, shape: null, knot: null, epoch: null, isReplay: false, isNew: false };
+const events = [];
+const page = { frames: 0, draws: 0, firstThread_ms: null, latest, store, scene }; // what tests and the curious look at
+window.ligature = page;
+
+const traces = new Traces($('plots'), store, (row) => {
+  $('cursor').textContent = describeRow(row, traces.period_s);
+  $('cursor').dataset.row = row ? JSON.stringify([...row]) : '';
+});
+const link = new Link(onFrame), replay = new ReplayBar(link);
+page.link = link;
+
+function onFrame(frame) {
+  ++page.frames;
+  if (frame.now.epoch !== latest.epoch) {
+    latest.epoch = frame.now.epoch;
+    store.clear();
+    knots.clear();
+    events.length = 0;
+    if (traces.isPaused) traces.pause(false);
+  }
+  latest.now = frame.now;
+  latest.heard = performance.now();
+  if (frame.shape) { latest.shape = frame.shape; page.firstThread_ms ??= performance.now(); }
+  if (frame.bins) store.addBins(frame.bins);
+  if (frame.rows) store.addRows(frame.rows);
+  if (frame.text) onText(frame.text);
+  latest.isNew = true;
+}
+
+function onText({ view, status, knot, replay: position, marks, events: more }) {
+  if (view) showView(view);
+  if (status) {
+    showStatus(status);
+    scene.setFacts(sceneFacts(status));
+    traces.period_s = status.period_s;
+    traces.limit_N = status.max_force_N;
+  }
+  if (knot) { latest.knot = knot; knots.update(knot, traces.period_s); }
+  if (position) replay.update(position);
+  if (marks) replay.setMarks(marks);
+  if (more) showEvents(more);
+}
+
+function showView(view) {
+  latest.isReplay = view.mode === 'replay';
+  document.body.classList.toggle('is-replay', latest.isReplay);
+  $('replay').hidden = !latest.isReplay;
+  $('controls').hidden = latest.isReplay;
+  document.title = latest.isReplay ? `${view.file} – Ligature` : 'Ligature';
+  for (const button of $('controls').children) button.disabled = !view.may_command;
+  if (!view.may_command && !latest.isReplay) $('controls').title = 'This view may only look';
+}
+
+function showEvents(more) {
+  events.push(...more);
+  events.splice(0, events.length - 40);
+  $('events').replaceChildren(...events.slice(-12).reverse().map((event) => {
+    const item = document.createElement('li');
+    item.textContent = `${(event.tick * traces.period_s).toFixed(2)} s ${event.text}`;
+    if (event.kind === 2) item.className = 'fault-event';
+    return item;
+  }));
+}
+
+let tracesDue = 0;
+function draw(time) {
+  requestAnimationFrame(draw);
+  showAge(latest.now?.age_ms ?? -1, link.silent_ms, latest.isReplay);
+  if (latest.isNew) {
+    latest.isNew = false;
+    showState(latest.now);
+    showHands(latest.now);
+    showLegend(scene.update(latest.shape, latest.now, latest.knot?.core));
+  }
+  scene.draw(time);
+  ++page.draws;
+  if (time >= tracesDue) {
+    traces.draw();
+    tracesDue = time + (traces.window_s <= 10 ? 50 : 200); // long windows move slowly: no need to redraw them often
+  }
+}
+
+function showLegend(legend) {
+  $('legend').hidden = !legend;
+  const text = legend ? `${legend.title}|${legend.low ?? ''}|${legend.high ?? ''}` : '';
+  if ($('legend').dataset.text === text) return;
+  $('legend').dataset.text = text;
+  $('legend').innerHTML = legend ? `<b>${legend.title}</b>${legend.low ? `<i style="background:${SCALE_CSS}"></i><span>${legend.low}<span></span>${legend.high}</span>` : ''}` : '';
+}
+
+function setWindow(seconds) {
+  traces.window_s = seconds;
+  tracesDue = 0;
+  for (const button of $('windows').children) button.classList.toggle('on', Number(button.value) === seconds);
+}
+
+function setUpTraces() {
+  for (const seconds of WINDOWS_S) {
+    const button = document.createElement('button');
+    button.value = seconds;
+    button.textContent = seconds < 60 ? `${seconds} s` : `${seconds / 60} min`;
+    button.addEventListener('click', () => setWindow(seconds));
+    $('windows').append(button);
+  }
+  setWindow(10);
+  $('pause').addEventListener('click', togglePause);
+  $('components').addEventListener('change', () => traces.showComponents($('components').checked));
+  traces.showComponents(false);
+}
+
+function togglePause() {
+  traces.pause(!traces.isPaused);
+  $('pause').classList.toggle('on', traces.isPaused);
+  $('pause').textContent = traces.isPaused ? 'Run' : 'Pause';
+  tracesDue = 0;
+}
+
+function setUpScene() {
+  for (const button of document.querySelectorAll('[data-view]')) button.addEventListener('click', () => scene.view(button.dataset.view));
+  $('follow').addEventListener('change', () => { scene.follow = $('follow').checked; });
+  $('colour').addEventListener('change', () => { scene.colour = $('colour').value; latest.isNew = true; });
+  $('stereo').addEventListener('change', () => { scene.isStereo = $('stereo').checked; scene.isDirty = true; });
+}
+
+function setUpKeys() {
+  const step = (by) => setWindow(WINDOWS_S[Math.min(Math.max(WINDOWS_S.indexOf(traces.window_s) + by, 0), WINDOWS_S.length - 1)]);
+  const keys = { 1: () => scene.view('front'), 2: () => scene.view('side'), 3: () => scene.view('top'), 4: () => scene.view('iso'), f: () => scene.view('fit'),
+    k: () => $('follow').click(), p: togglePause, '+': () => step(1), '-': () => step(-1), '?': openHelp };
+  addEventListener('keydown', (event) => { if (!isTyping(event) && !$('help').open) keys[event.key.toLowerCase()]?.(); });
+}
+
+function openHelp() { if (!$('help').open) $('help').showModal(); }
+
+function setUpHelp() {
+  $('help-open').addEventListener('click', openHelp);
+  $('help').addEventListener('close', () => localStorage.setItem('ligature-help-seen', '1'));
+  if (!localStorage.getItem('ligature-help-seen')) openHelp();
+}
+
+setUpControls(link, () => latest.isReplay);
+setUpTraces();
+setUpScene();
+setUpKeys();
+setUpHelp();
+requestAnimationFrame(draw);

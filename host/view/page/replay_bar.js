@@ -1,0 +1,80 @@
+// The bar of a recording: play, speed, scrub, jump to marks; forces and knots of the whole recording behind it.
+import { isTyping } from './controls.js';
+
+const $ = (id) => document.getElementById(id);
+const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10];
+const KIND = { state: 1, fault: 2, grasp: 3, release: 4, limit: 5, knot: 100 };
+const TINT = { [KIND.fault]: '#ff5c47', [KIND.grasp]: '#2fbf8f', [KIND.release]: '#9aa6b6', [KIND.knot]: '#cc79a7' };
+
+export class ReplayBar {
+  constructor(link) {
+    this.link = link;
+    this.state = { position_s: 0, duration_s: 0, playing: false, speed: 1 };
+    this.marks = [];
+    for (const speed of SPEEDS) $('speed').add(new Option(`${speed}×`, speed, speed === 1, speed === 1));
+    $('play').addEventListener('click', () => this.toggle());
+    $('speed').addEventListener('change', () => link.send({ speed: Number($('speed').value) }));
+    $('scrub').addEventListener('input', () => { this.scrubbed = performance.now(); this.seek(Number($('scrub').value)); });
+    $('previous').addEventListener('click', () => this.jump(-1));
+    $('next').addEventListener('click', () => this.jump(1));
+    addEventListener('keydown', (event) => this.#key(event), { capture: true });
+    new ResizeObserver(() => this.#drawOverview()).observe($('overview'));
+  }
+
+  get isOn() { return !$('replay').hidden; }
+
+  #key(event) {
+    if (!this.isOn || isTyping(event) || $('help').open) return;
+    const actions = { Enter: () => this.toggle(), ' ': () => this.toggle(), ArrowLeft: () => this.seek(this.state.position_s - (event.shiftKey ? 5 : 0.5)),
+      ArrowRight: () => this.seek(this.state.position_s + (event.shiftKey ? 5 : 0.5)), '[': () => this.jump(-1), ']': () => this.jump(1) };
+    if (!actions[event.key]) return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    actions[event.key]();
+  }
+
+  toggle() { this.link.send({ play: !this.state.playing }); }
+  seek(t_s) { this.link.send({ seek_s: Math.min(Math.max(t_s, 0), this.state.duration_s) }); }
+
+  jump(direction) {
+    const at = this.state.position_s, marks = this.marks.filter((m) => TINT[m.kind]);
+    const mark = direction > 0 ? marks.find((m) => m.t_s > at + 0.02) : marks.findLast((m) => m.t_s < at - 0.3);
+    if (mark) this.seek(mark.t_s);
+  }
+
+  update(state) {
+    this.state = state;
+    $('scrub').max = state.duration_s;
+    if (!(performance.now() - this.scrubbed < 300)) $('scrub').value = state.position_s;
+    $('play').textContent = state.playing ? 'Hold' : 'Play';
+    $('speed').value = state.speed;
+    $('clock').textContent = `${state.position_s.toFixed(2)} / ${state.duration_s.toFixed(2)} s${state.survey < 1 ? ` · reading ${Math.round(100 * state.survey)} %` : ''}`;
+  }
+
+  setMarks(marks) {
+    this.marks = marks.marks;
+    this.forces = [marks.left_N, marks.right_N];
+    $('marks').replaceChildren(...this.marks.filter((m) => TINT[m.kind]).slice(0, 400).map((mark) => {
+      const button = document.createElement('button');
+      button.title = `${mark.t_s.toFixed(2)} s: ${mark.text}`;
+      button.tabIndex = -1;
+      button.style.left = `calc(8px + (100% - 16px) * ${mark.t_s / this.state.duration_s})`;
+      button.style.setProperty('--tint', TINT[mark.kind]);
+      button.addEventListener('click', () => this.seek(mark.t_s));
+      return button;
+    }));
+    this.#drawOverview();
+  }
+
+  #drawOverview() {
+    const canvas = $('overview'), ctx = canvas.getContext('2d');
+    canvas.width = canvas.clientWidth;
+    canvas.height = canvas.clientHeight;
+    if (!this.forces) return;
+    const most = Math.max(0.1, ...this.forces.flat());
+    this.forces.forEach((force, hand) => {
+      ctx.fillStyle = hand ? '#e69f0099' : '#56b4e999';
+      force.forEach((f, i) => ctx.fillRect((i * canvas.width) / force.length, canvas.height * (1 - f / most), Math.ceil(canvas.width / force.length), (canvas.height * f) / most));
+    });
+  }
+}

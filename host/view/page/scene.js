@@ -1,0 +1,244 @@
+// The three-dimensional picture: thread, hands, desk, frame; camera and light.
+import * as THREE from './three.module.js';
+import { OrbitControls } from './OrbitControls.js';
+import { Tube } from './tube.js';
+import { Hand } from './hands.js';
+import { colourThread } from './colouring.js';
+
+const QUALITIES = [{}, { ratio: 1, shadow: 1024 }, { ratio: 0.6, shadow: 512 }];
+const VIEWS = { front: [0, -1, 0.12], side: [1, 0, 0.12], top: [0, -0.02, 1], iso: [0.62, -0.9, 0.42] };
+
+export class Scene {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = THREE.PCFShadowMap;
+    this.renderer.setScissorTest(true);
+    this.scene = new THREE.Scene();
+    this.scene.background = new THREE.Color(0x222a35);
+    this.camera = new THREE.PerspectiveCamera(35, 1, 0.001, 1000);
+    this.camera.up.set(0, 0, 1);
+    this.stereo = new THREE.StereoCamera();
+    this.isStereo = false;
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = false;
+    this.controls.addEventListener('start', () => { this.touched = true; });
+    this.controls.addEventListener('change', () => { this.isDirty = true; });
+    this.#addLight();
+    this.#addSurroundings();
+    this.tube = new Tube(this.scene);
+    this.hands = [0, 1].map((i) => new Hand(this.scene, i));
+    this.colour = 'plain';
+    this.follow = false;
+    this.facts = { deskHeight_m: null, restLength_m: 0, fixed: [], maxForce_N: 3.3 };
+    new ResizeObserver(() => { this.isDirty = true; }).observe(canvas);
+  }
+
+  #addLight() {
+    this.scene.add(new THREE.HemisphereLight(0xdfe9ff, 0x3a3228, 1.25));
+    this.sun = new THREE.DirectionalLight(0xfff4e0, 2.4);
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(2048, 2048);
+    this.sun.shadow.bias = -0.0006;
+    this.sun.shadow.normalBias = 0.02;
+    this.fill = new THREE.DirectionalLight(0xbfd4ff, 0.5);
+    this.scene.add(this.sun, this.sun.target, this.fill);
+  }
+
+  #addSurroundings() {
+    this.desk = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), new THREE.MeshStandardMaterial({ color: 0x46505e, roughness: 0.95 }));
+    this.desk.receiveShadow = true;
+    this.grid = new THREE.GridHelper(1, 20, 0x6f7d90, 0x5a6675);
+    this.grid.rotation.x = Math.PI / 2;
+    this.axes = new THREE.Group();
+    [['x', 0xd55e00, [1, 0, 0]], ['y', 0x009e73, [0, 1, 0]], ['z', 0x0072b2, [0, 0, 1]]].forEach(([name, colour, direction]) => {
+      const d = new THREE.Vector3(...direction);
+      this.axes.add(new THREE.ArrowHelper(d, new THREE.Vector3(), 1, colour, 0.22, 0.11));
+      const label = nameSprite(name);
+      label.position.copy(d.multiplyScalar(1.2));
+      this.axes.add(label);
+    });
+    this.posts = new THREE.Group();
+    this.scene.add(this.desk, this.grid, this.axes, this.posts);
+  }
+
+  /** Facts of the scene file that the picture needs. */
+  setFacts(facts) {
+    const is = JSON.stringify(facts);
+    if (is === this.factsText) return;
+    this.factsText = is;
+    this.facts = { ...this.facts, ...facts };
+    if (this.shape) this.#layOut(this.shape);
+    this.isDirty = true;
+  }
+
+  /** @param now the newest tick's hands; @param core nodes of the knot or undefined. @returns legend. */
+  update(shape, now, core) {
+    this.isDirty = true;
+    let legend = null;
+    if (shape) {
+      const painted = colourThread(this.colour, shape, { restLength_m: this.facts.restLength_m, core });
+      legend = painted.legend;
+      this.tube.update(shape.p_W, shape.radius_m, painted.colours);
+      if (!this.shape || this.shape.p_W.length !== shape.p_W.length || this.shape.radius_m !== shape.radius_m) this.#layOut(shape);
+      this.shape = shape;
+      this.core = core;
+      this.#keepInPicture(shape);
+    }
+    if (now?.hands && this.extent) {
+      const size = Math.max(1.6 * (this.shape?.radius_m ?? 0), 0.013 * this.extent);
+      now.hands.forEach((hand, i) => this.hands[i].update(hand, size, (0.3 * this.extent) / this.facts.maxForce_N));
+    }
+    if (this.follow && this.shape) this.#followKnot();
+    return legend;
+  }
+
+  /** Desk, frame, light and camera in the size of this thread. */
+  #layOut(shape) {
+    const box = boxOf(shape.p_W);
+    let length = 0;
+    for (let i = 3; i < shape.p_W.length; i += 3) length += Math.hypot(shape.p_W[i] - shape.p_W[i - 3], shape.p_W[i + 1] - shape.p_W[i - 2], shape.p_W[i + 2] - shape.p_W[i - 1]);
+    this.extent = length;
+    const centre = box.getCenter(new THREE.Vector3());
+    const floor = this.facts.deskHeight_m ?? Math.min(0, box.min.z - 0.02 * length) * (box.min.z < 0 ? 1 : 0);
+    this.desk.position.set(centre.x, centre.y, floor);
+    this.desk.scale.setScalar(4 * length);
+    this.grid.position.set(centre.x, centre.y, floor + 1e-4 * length);
+    this.grid.scale.setScalar(2 * length);
+    this.axes.position.set(centre.x - 0.45 * length, centre.y + 0.3 * length, floor + 2e-3 * length);
+    this.axes.scale.setScalar(0.09 * length);
+    this.#putPosts(length);
+    this.#putLight(centre, length);
+    this.controls.minDistance = 6 * shape.radius_m;
+    this.controls.maxDistance = 8 * length;
+    this.seen = new THREE.Box3();
+    this.framed = new THREE.Box3();
+  }
+
+  #putPosts(length) {
+    this.posts.clear();
+    for (const p of this.facts.fixed) {
+      const knob = new THREE.Mesh(new THREE.OctahedronGeometry(0.012 * length), new THREE.MeshStandardMaterial({ color: 0xb8c2cf, roughness: 0.5 }));
+      knob.position.set(...p);
+      knob.castShadow = true;
+      this.posts.add(knob);
+    }
+  }
+
+  #putLight(centre, length) {
+    this.sun.position.set(centre.x - 0.5 * length, centre.y - 0.6 * length, centre.z + 1.5 * length);
+    this.sun.target.position.copy(centre);
+    this.fill.position.set(centre.x + length, centre.y - length, centre.z + 0.2 * length);
+    const camera = this.sun.shadow.camera, half = 0.8 * length;
+    Object.assign(camera, { left: -half, right: half, top: half, bottom: -half, near: 0.01 * length, far: 6 * length });
+    camera.updateProjectionMatrix();
+    this.sun.shadow.normalBias = 0.0012 * length;
+  }
+
+  /** Until a person moves the camera: steps back when the thread goes where the picture does not. */
+  #keepInPicture(shape) {
+    if (this.touched || this.follow) return;
+    this.seen.union(boxOf(shape.p_W));
+    if (this.framed.containsBox(this.seen)) return;
+    this.view('iso', this.seen);
+    this.touched = false;
+    this.framed.copy(this.seen).expandByScalar(0.02 * this.extent);
+  }
+
+  /** A standard view, or 'fit': the same direction with everything in the picture. */
+  view(name, box = this.shape && boxOf(this.shape.p_W)) {
+    if (!box) return;
+    this.touched = true;
+    const centre = box.getCenter(new THREE.Vector3());
+    const radius = Math.max(0.5 * box.getSize(new THREE.Vector3()).length(), 0.1 * this.extent);
+    const direction = VIEWS[name] ? new THREE.Vector3(...VIEWS[name]) : this.camera.position.clone().sub(this.controls.target);
+    this.camera.near = 0.002 * this.extent;
+    this.camera.far = 30 * this.extent;
+    const narrow = Math.min(1, this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight));
+    const distance = (1.06 * radius) / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;
+    this.controls.target.copy(centre);
+    this.camera.position.copy(centre).addScaledVector(direction.normalize(), distance);
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+  }
+
+  /** The knot, or the held nodes when there is none, moves to the middle; distance and direction stay. */
+  #followKnot() {
+    const p = this.shape.p_W, nodes = [];
+    if (this.core) for (let i = this.core[0]; i <= this.core[1]; ++i) nodes.push(i);
+    else nodes.push(...this.shape.grasped.filter((i) => i >= 0));
+    if (!nodes.length) return;
+    const middle = new THREE.Vector3();
+    for (const i of nodes) middle.add(new THREE.Vector3(p[3 * i], p[3 * i + 1], p[3 * i + 2]));
+    const step = middle.divideScalar(nodes.length).sub(this.controls.target).multiplyScalar(0.2);
+    this.controls.target.add(step);
+    this.camera.position.add(step);
+    this.controls.update();
+  }
+
+  /** Draws when something changed. @param time of this animation frame, ms. */
+  draw(time) {
+    this.#keepPace(time);
+    if (!this.isDirty) return;
+    this.isDirty = false;
+    const { clientWidth: width, clientHeight: height } = this.canvas, renderer = this.renderer;
+    if (!width || !height) return;
+    const ratio = renderer.getPixelRatio();
+    if (this.canvas.width !== Math.floor(width * ratio) || this.canvas.height !== Math.floor(height * ratio)) renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    const eyes = this.isStereo ? this.#eyes() : [[this.camera, 0, width]];
+    for (const [eye, left, wide] of eyes) {
+      renderer.setViewport(left, 0, wide, height);
+      renderer.setScissor(left, 0, wide, height);
+      renderer.render(this.scene, eye);
+    }
+  }
+
+  /** On a machine that cannot draw 15 pictures a second, coarser pictures instead of rarer ones. */
+  #keepPace(time) {
+    const step = Math.min(time - (this.lastTime ?? time), 1000);
+    this.lastTime = time;
+    this.pace = 0.9 * (this.pace ?? 16) + 0.1 * step;
+    if (this.pace < 66 || this.quality === QUALITIES.length - 1 || document.hidden) return;
+    this.quality = (this.quality ?? 0) + 1;
+    this.pace = 16;
+    const { ratio, shadow } = QUALITIES[this.quality];
+    this.renderer.setPixelRatio(ratio);
+    this.sun.shadow.mapSize.set(shadow, shadow);
+    this.sun.shadow.map?.dispose();
+    this.sun.shadow.map = null;
+    this.isDirty = true;
+  }
+
+  #eyes() {
+    const half = this.canvas.clientWidth / 2;
+    this.camera.updateMatrixWorld();
+    this.stereo.aspect = 0.5;
+    this.stereo.eyeSep = 0.03 * this.camera.position.distanceTo(this.controls.target);
+    this.camera.focus = this.camera.position.distanceTo(this.controls.target);
+    this.stereo.update(this.camera);
+    return [[this.stereo.cameraL, 0, half], [this.stereo.cameraR, half, half]];
+  }
+}
+
+function boxOf(p) {
+  const box = new THREE.Box3(), point = new THREE.Vector3();
+  for (let i = 0; i < p.length; i += 3) box.expandByPoint(point.set(p[i], p[i + 1], p[i + 2]));
+  return box;
+}
+
+function nameSprite(name) {
+  const canvas = Object.assign(document.createElement('canvas'), { width: 64, height: 64 });
+  const context = canvas.getContext('2d');
+  context.font = 'bold 46px sans-serif';
+  context.fillStyle = '#e8ecf2';
+  context.textAlign = 'center';
+  context.textBaseline = 'middle';
+  context.fillText(name, 32, 30);
+  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: new THREE.CanvasTexture(canvas) }));
+  sprite.scale.setScalar(0.45);
+  return sprite;
+}

@@ -1,0 +1,140 @@
+// Forces and timing against time (uPlot), and the histogram of wake-up latency.
+import uPlot from './uPlot.esm.js';
+import { C, STATES } from './frame.js';
+import { drawHistogram } from './histogram.js';
+
+export const WINDOWS_S = [1, 5, 10, 30, 60, 300, 600];
+const COLUMNS = [C.left, C.leftX, C.leftY, C.leftZ, C.right, C.rightX, C.rightY, C.rightZ, C.execution_ns, C.control_ns, C.flags, C.fault];
+const FLAG = { lost: 1, missed: 2, limited: [16, 32] };
+const AXIS = { x: '#ff9d7a', y: '#7fd1ae', z: '#b9a5ff' };
+const GREY = '#9aa6b6';
+
+export class Traces {
+  /** @param onCursor called with the row under the cursor, or null. */
+  constructor(host, store, onCursor) {
+    Object.assign(this, { host, store, onCursor, window_s: 10, period_s: 1e-3, limit_N: null, end: null, components: false });
+    this.plots = [
+      this.#plot('left force', 'N', [0, 1, 2, 3], '#56b4e9', 0),
+      this.#plot('right force', 'N', [4, 5, 6, 7], '#e69f00', 1),
+      this.#plot('tick', 'µs: whole, control only', [8, 9], '#e8ecf2', null),
+    ];
+    this.histogram = document.createElement('canvas');
+    const box = this.#box('wake-up latency', 'µs, log count over the window');
+    box.append(this.histogram);
+    this.resize();
+    new ResizeObserver(() => this.resize()).observe(host);
+  }
+
+  #box(title, unit) {
+    const box = document.createElement('div');
+    box.className = 'plot';
+    box.innerHTML = `<h2>${title} <em>${unit}</em></h2>`;
+    this.host.append(box);
+    return box;
+  }
+
+  #plot(title, unit, columns, colour, hand) {
+    const box = this.#box(title, unit);
+    const names = ['|F|', 'x', 'y', 'z'];
+    const series = [{}, ...columns.map((_, i) => ({
+      stroke: i === 0 ? colour : hand === null ? GREY : AXIS[names[i]], width: i === 0 ? 1.6 : 1,
+      dash: hand !== null && i ? [[], [6, 3], [2, 2], [8, 2, 2, 2]][i] : undefined, points: { show: false },
+    }))];
+    const axis = { stroke: GREY, grid: { stroke: '#2b3441', width: 1 }, ticks: { stroke: '#2b3441', size: 4 }, font: '11px sans-serif' };
+    const plot = new uPlot({
+      width: 400, height: 150, series, legend: { show: false }, padding: [8, 8, 0, 0],
+      cursor: { sync: { key: 'ligature' }, drag: { x: false, y: false }, points: { size: 6 } },
+      scales: { x: { time: false, auto: false }, y: { range: (_, low, high) => niceRange(low, high, hand === null ? 100 : 0.1) } },
+      axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((t) => `${+t.toFixed(3)}`) }, { ...axis, size: 50 }],
+      hooks: {
+        draw: [(u) => this.#drawMarks(u, hand)],
+        setCursor: [(u) => { if (u === this.pointed) this.#readCursor(u); }],
+      },
+    }, [[0], ...columns.map(() => [0])], box);
+    plot.over.addEventListener('pointerenter', () => { this.pointed = plot; });
+    plot.over.addEventListener('pointerleave', () => { this.pointed = null; this.onCursor(null); });
+    return { plot, columns, hand, box };
+  }
+
+  #readCursor(u) {
+    const t_s = u.cursor.left >= 0 ? u.posToVal(u.cursor.left, 'x') : null;
+    this.onCursor(t_s === null ? null : this.store.nearest(Math.round(t_s / this.period_s)));
+  }
+
+  /** Limits, misses and faults, and the force limit as a line. */
+  #drawMarks(u, hand) {
+    const { ctx, bbox } = u, flags = this.data?.[11], faults = this.data?.[12], x = this.data?.[0];
+    if (!x) return;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    for (let i = 0; i < x.length; ++i) {
+      if (!flags[i] && !faults[i]) continue;
+      const at = u.valToPos(x[i], 'x', true);
+      if (faults[i]) { ctx.fillStyle = '#ff5c4755'; ctx.fillRect(at - 1, bbox.top, 2.5, bbox.height); }
+      if (hand === null && flags[i] & (FLAG.lost | FLAG.missed)) triangle(ctx, at, bbox.top + 1, '#ff5c47', 6);
+      if (hand !== null && flags[i] & FLAG.limited[hand]) triangle(ctx, at, bbox.top + 1, '#f0e442', 5);
+    }
+    const level = hand === null ? this.period_s * 1e6 : this.limit_N;
+    const y = level ? u.valToPos(level, 'y', true) : -1;
+    if (y > bbox.top && y < bbox.top + bbox.height) {
+      ctx.strokeStyle = '#f0e44299';
+      ctx.setLineDash([5, 5]);
+      ctx.beginPath(); ctx.moveTo(bbox.left, y); ctx.lineTo(bbox.left + bbox.width, y); ctx.stroke();
+    }
+    ctx.restore();
+  }
+
+  resize() {
+    for (const { plot, box } of this.plots) plot.setSize({ width: Math.max(200, box.clientWidth), height: Math.max(70, box.clientHeight) });
+    const box = this.histogram.parentElement;
+    this.histogram.width = box.clientWidth * devicePixelRatio;
+    this.histogram.height = box.clientHeight * devicePixelRatio;
+    this.histogram.style.cssText = `width:${box.clientWidth}px;height:${box.clientHeight}px`;
+  }
+
+  showComponents(on) {
+    this.components = on;
+    for (const { plot, columns, hand } of this.plots)
+      if (hand !== null) for (let i = 1; i < columns.length; ++i) plot.setSeries(i + 1, { show: on });
+  }
+
+  /** Holds the traces at this moment, or lets them run. */
+  pause(on) { this.end = on ? this.store.lastTick : null; }
+  get isPaused() { return this.end !== null; }
+
+  draw() {
+    const end = (this.end ?? this.store.lastTick ?? 0) + 1, from = end - this.window_s / this.period_s;
+    const data = this.store.series(from, end, this.plots[0].plot.bbox.width / devicePixelRatio, COLUMNS);
+    data[0] = Array.from(data[0], (tick) => tick * this.period_s);
+    for (const k of [9, 10]) data[k] = Array.from(data[k], (ns) => (ns === null ? null : ns / 1000));
+    this.data = data;
+    for (const { plot, columns } of this.plots) {
+      plot.batch(() => {
+        plot.setData([data[0], ...columns.map((c) => data[c + 1])], false);
+        plot.setScale('x', { min: from * this.period_s, max: end * this.period_s });
+      });
+      if (plot === this.pointed) this.#readCursor(plot);
+    }
+    drawHistogram(this.histogram, this.store, Math.max(from, end - 60 / this.period_s), this.period_s);
+  }
+}
+
+function triangle(ctx, x, y, colour, size) {
+  ctx.fillStyle = colour;
+  ctx.beginPath(); ctx.moveTo(x - size, y); ctx.lineTo(x + size, y); ctx.lineTo(x, y + 1.6 * size); ctx.fill();
+}
+
+function niceRange(low, high, least) {
+  const top = Math.max(least, (high ?? 0) * 1.12), bottom = (low ?? 0) < 0 ? low * 1.12 : 0;
+  return [bottom, top];
+}
+
+/** One line with the exact values of a tick: the shortest digits that are read back as the same number. */
+export function describeRow(row, period_s) {
+  if (!row) return '';
+  const fault = row[C.fault] ? ` · fault ${row[C.fault]}` : '';
+  return `t ${(row[C.tick] * period_s).toFixed(3)} s · left ${row[C.left]} N · right ${row[C.right]} N · `
+    + `tick ${row[C.tick]}: ${(row[C.execution_ns] / 1000).toFixed(1)} µs, ${STATES[row[C.state]] ?? '?'}${fault}`;
+}

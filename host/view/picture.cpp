@@ -1,0 +1,173 @@
+#include "host/view/picture.hpp"
+
+#include <algorithm>
+
+#include "host/view/rig_json.hpp"
+
+namespace ligature::host::view {
+namespace {
+
+using nlohmann::json;
+
+double milliseconds(Picture::Clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
+
+}  // namespace
+
+void Picture::take(std::string_view channel, Bytes data, Clock::time_point now) {
+  const std::scoped_lock lock(mutex_);
+  if (channel == kTicksChannel) {
+    const auto batch = decode<ligature_msg::tick_batch_t>(data);
+    if (!batch) return void(++unreadable_);
+    heard_ = now;
+    take_batch(*batch);
+  } else if (channel == kThreadChannel) {
+    auto thread = decode<ligature_msg::thread_t>(data);
+    if (!thread || !is_drawable(*thread)) return void(++unreadable_);
+    thread_ = std::move(*thread);
+    ++shape_version_;
+  } else if (channel == kStatusChannel) {
+    const auto status = decode<ligature_msg::status_t>(data);
+    if (!status || status->scene_toml.size() > kLargestStatusText) return void(++unreadable_);
+    set_locked("status", to_json(*status));
+  } else if (channel == kEventChannel) {
+    const auto event = decode<ligature_msg::event_t>(data);
+    if (!event) return void(++unreadable_);
+    events_.push(to_json(*event));
+  }
+}
+
+void Picture::take_batch(const ligature_msg::tick_batch_t& batch) {
+  if (batch.session != session_) {
+    if (session_ != -1) start_again_locked();
+    session_ = batch.session;
+  }
+  for (const auto& tick : batch.ticks) {
+    if (last_ && tick.tick <= last_->tick) continue;  // sent twice
+    const TraceRow row = trace_row(tick);
+    rows_.push(row);
+    TraceBin done;
+    if (bin_maker_.add(row, done)) bins_.push(done);
+    last_ = tick;
+  }
+}
+
+void Picture::start_again_locked() {
+  ++epoch_;
+  rows_.clear();
+  bins_.clear();
+  bin_maker_.clear();
+  events_.clear();
+  last_.reset();
+}
+
+void Picture::start_again(const std::vector<TraceBin>& history) {
+  const std::scoped_lock lock(mutex_);
+  start_again_locked();
+  session_ = -1;
+  for (const auto& bin : history) bins_.push(bin);
+}
+
+void Picture::hold(Clock::time_point now) {
+  const std::scoped_lock lock(mutex_);
+  if (heard_) heard_ = now;
+}
+
+void Picture::set(const std::string& topic, json what) {
+  const std::scoped_lock lock(mutex_);
+  set_locked(topic, std::move(what));
+}
+
+void Picture::set_locked(const std::string& topic, json what) {
+  auto& [version, is] = topics_[topic];
+  ++version;
+  is = std::move(what);
+}
+
+void Picture::add_event(json event) {
+  const std::scoped_lock lock(mutex_);
+  events_.push(event);
+}
+
+std::optional<ligature_msg::thread_t> Picture::newer_shape(std::int64_t& known) const {
+  const std::scoped_lock lock(mutex_);
+  if (known == shape_version_) return std::nullopt;
+  known = shape_version_;
+  return thread_;
+}
+
+std::int64_t Picture::unreadable() const {
+  const std::scoped_lock lock(mutex_);
+  return unreadable_;
+}
+
+std::vector<std::byte> Picture::frame_for(Place& place, const json& answers, Clock::time_point now) const {
+  const std::scoped_lock lock(mutex_);
+  FrameWriter frame(++place.frame);
+  if (place.epoch != epoch_) {  // the page starts again
+    place = {.epoch = epoch_, .bin = bins_.begin(), .event = events_.begin(), .topics = {}, .frame = place.frame};
+    place.row = std::max(rows_.begin(), rows_.end() - kRowsAtFirst);
+  }
+  json text = changes_since(place);
+  if (!answers.empty()) text["answers"] = answers;
+  if (!text.empty()) {
+    frame.begin(Section::kText);
+    frame.add_text(text.dump(-1, ' ', false, json::error_handler_t::replace));
+    frame.end();
+  }
+  write_now(frame, now);
+  if (place.shape != shape_version_ && thread_.count > 0) write_shape(frame);
+  place.shape = shape_version_;
+  write_traces(frame, place);
+  return frame.take();
+}
+
+void Picture::write_now(FrameWriter& frame, Clock::time_point now) const {
+  frame.begin(Section::kNow);
+  frame.add(static_cast<double>(epoch_));
+  frame.add(heard_ ? milliseconds(now - *heard_) : -1.0);  // age of the newest ticks, ms; -1: never heard
+  if (last_) write_tick(frame, *last_);
+  frame.end();
+}
+
+void Picture::write_shape(FrameWriter& frame) const {
+  frame.begin(Section::kShape);
+  frame.add(static_cast<double>(thread_.tick));
+  frame.add(static_cast<double>(thread_.radius_m));
+  frame.add(static_cast<double>(thread_.grasped_node[0]));
+  frame.add(static_cast<double>(thread_.grasped_node[1]));
+  for (const auto& p : thread_.p_W_m) frame.add_bytes(p.data(), 3 * sizeof(float));
+  frame.end();
+}
+
+void Picture::write_traces(FrameWriter& frame, Place& place) const {
+  place.row = std::max(place.row, rows_.begin());
+  if (rows_.end() - place.row > kRowsAtFirst)  // a page that fell behind: the latest wins, the bins fill the hole
+    place.row = rows_.end() - kRowsPerFrame;
+  const auto last_row = std::min(rows_.end(), place.row + kRowsPerFrame);
+  if (place.row < last_row) {
+    frame.begin(Section::kRows);
+    for (; place.row < last_row; ++place.row) frame.add(rows_[place.row]);
+    frame.end();
+  }
+  place.bin = std::max(place.bin, bins_.begin());
+  const auto last_bin = std::min(bins_.end(), place.bin + kBinsPerFrame);
+  if (place.bin < last_bin) {
+    frame.begin(Section::kBins);
+    for (; place.bin < last_bin; ++place.bin) frame.add(bins_[place.bin]);
+    frame.end();
+  }
+}
+
+json Picture::changes_since(Place& place) const {
+  json text = json::object();
+  for (const auto& [name, topic] : topics_) {
+    auto& known = place.topics[name];
+    if (known != topic.version) text[name] = topic.what;
+    known = topic.version;
+  }
+  place.event = std::max(place.event, events_.begin());
+  for (; place.event < events_.end(); ++place.event) text["events"].push_back(events_[place.event]);
+  return text;
+}
+
+}  // namespace ligature::host::view

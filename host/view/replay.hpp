@@ -1,0 +1,16 @@
+#pragma once
+#include <string>
+
+#include "host/view/server.hpp"
+
+namespace ligature::host::view {
+
+struct ReplayOptions {
+  std::string log;
+  ServerOptions server;
+};
+
+/// Shows a recording until a signal comes. @throws BadInput, RunFailed.
+void replay(const ReplayOptions& options);
+
+}  // namespace ligature::host::view

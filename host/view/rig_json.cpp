@@ -1,0 +1,52 @@
+#include "host/view/rig_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligature::host::view {
+
+nlohmann::json to_json(const ligature_msg::status_t& s) {
+  return {{"session", s.session},
+          {"protocol_version", s.protocol_version},
+          {"firmware_version", s.firmware_version},
+          {"scene_file", s.scene_file},
+          {"scene_toml", s.scene_toml},
+          {"period_s", s.period_s},
+          {"max_force_N", s.max_force_N},
+          {"tick", s.tick},
+          {"state", s.state},
+          {"fault", s.fault},
+          {"deadline_misses", s.deadline_misses},
+          {"periods_lost", s.periods_lost},
+          {"realtime", s.realtime != 0},
+          {"armed", s.armed != 0}};
+}
+
+nlohmann::json to_json(const ligature_msg::event_t& e) {
+  return {{"tick", e.tick}, {"kind", e.kind}, {"hand", e.hand}, {"code", e.code}, {"text", e.text.substr(0, 200)}};
+}
+
+void write_tick(FrameWriter& frame, const ligature_msg::tick_t& tick) {
+  frame.add(static_cast<double>(tick.tick));
+  frame.add(static_cast<double>(tick.state));
+  frame.add(static_cast<double>(tick.fault));
+  frame.add(static_cast<double>(tick.flags));
+  for (std::size_t hand = 0; hand < 2; ++hand) {
+    frame.add(tick.p_WT_m[hand]);
+    frame.add(tick.f_device_N[hand]);
+    frame.add(tick.f_world_N[hand]);
+    frame.add(static_cast<double>(tick.grip[hand]));
+    frame.add(static_cast<double>(tick.dead_man[hand]));
+    frame.add(static_cast<double>(tick.grasped_node[hand]));
+    frame.add(static_cast<double>(tick.tpdo_age_ticks[hand]));
+  }
+}
+
+bool is_drawable(const ligature_msg::thread_t& thread) {
+  constexpr std::size_t kMostNodes = 5000;  // suture.nodes of the scene file ends there
+  const auto is_finite = [](const auto& p) { return std::ranges::all_of(p, [](float x) { return std::isfinite(x); }); };
+  return thread.p_W_m.size() >= 2 && thread.p_W_m.size() <= kMostNodes && std::isfinite(thread.radius_m) &&
+         thread.radius_m > 0.0F && std::ranges::all_of(thread.p_W_m, is_finite);
+}
+
+}  // namespace ligature::host::view

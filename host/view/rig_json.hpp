@@ -1,0 +1,25 @@
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "host/view/frame.hpp"
+#include "ligature_msg/event_t.hpp"
+#include "ligature_msg/status_t.hpp"
+#include "ligature_msg/thread_t.hpp"
+#include "ligature_msg/tick_t.hpp"
+
+namespace ligature::host::view {
+
+/// Kind of an event that the host itself found, beside those of event_t.
+inline constexpr int kKnotEvent = 100;
+
+/// What the page is told of a message; field names and units as in the .lcm files.
+[[nodiscard]] nlohmann::json to_json(const ligature_msg::status_t& status);
+[[nodiscard]] nlohmann::json to_json(const ligature_msg::event_t& event);
+
+/// State, hands and counters of one tick as doubles, in the order that page/frame.js reads.
+void write_tick(FrameWriter& frame, const ligature_msg::tick_t& tick);
+
+/// Finite positions, a radius, and no more nodes than the firmware can have.
+[[nodiscard]] bool is_drawable(const ligature_msg::thread_t& thread);
+
+}  // namespace ligature::host::view

@@ -1,0 +1,62 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "ligature_msg/tick_t.hpp"
+
+namespace ligature::host::view {
+
+/// What the page's traces know of one tick, in the order of the wire (docs/view.md; page/columns.js has the same list).
+enum Column : std::size_t {
+  kTick,
+  kLeftX,  // f_device_N of the left hand: x, y, z and magnitude
+  kLeftY,
+  kLeftZ,
+  kLeft,
+  kRightX,
+  kRightY,
+  kRightZ,
+  kRight,
+  kWakeup_ns,
+  kControl_ns,
+  kExecution_ns,
+  kFlags,
+  kState,
+  kFault,
+  kKinetic_J,
+  kPotential_J,
+  kMaxStretch,
+  kMinGap_m,
+  kContacts,
+  kLeftNode,
+  kRightNode,
+  kColumns
+};
+
+/// Doubles throughout: every field of tick_t that is shown fits without loss, so that a value read in the page is the
+/// exported one to the last bit.
+using TraceRow = std::array<double, kColumns>;
+
+[[nodiscard]] TraceRow trace_row(const ligature_msg::tick_t& tick);
+
+/// Smallest and largest value of each column over kTicksPerBin consecutive tick numbers (by tick / kTicksPerBin).
+/// kFlags: `low` and, joined by or, `high`; so that one late tick among fifty is never hidden.
+struct TraceBin {
+  std::array<float, kColumns> low{}, high{};
+};
+inline constexpr std::int64_t kTicksPerBin = 50;
+
+/// Collects rows into bins.
+class BinMaker {
+ public:
+  /// @return whether a bin was finished by the start of the next one; then `done` is it.
+  bool add(const TraceRow& row, TraceBin& done);
+  void clear() { number_ = -1; }
+
+ private:
+  TraceBin open_;
+  std::int64_t number_ = -1;
+};
+
+}  // namespace ligature::host::view
