@@ -7,6 +7,7 @@
 #include <set>
 
 #include "protocol/scene/polyline.hpp"
+#include "protocol/scene/rod_keys.hpp"
 #include "protocol/scene/strict_table.hpp"
 
 namespace ligature::scene {
@@ -14,28 +15,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kFar_m = 1e6;         // coordinates
+constexpr double kFar_m = 1e6;            // coordinates
 constexpr Range kCoefficient{0.0, 1e12};  // stiffness and damping: wide, the stability map explores it
 
 constexpr std::pair<const char*, Model> kModels[] = {{"paper-1", Model::kPaper1}, {"paper-2", Model::kPaper2},
                                                      {"paper-3", Model::kPaper3}, {"paper-4", Model::kPaper4},
-                                                     {"paper-5", Model::kPaper5}};
+                                                     {"paper-5", Model::kPaper5}, {"rod", Model::kRod}};
 constexpr std::pair<const char*, ContactSolver> kSolvers[] = {
     {"none", ContactSolver::kNone}, {"paper", ContactSolver::kPaper}, {"implicit", ContactSolver::kImplicit}};
-constexpr std::pair<const char*, BroadPhase> kBroadPhases[] = {
-    {"auto", BroadPhase::kAuto}, {"brute", BroadPhase::kBrute}, {"sweep", BroadPhase::kSweep}, {"bvh", BroadPhase::kBvh}};
+constexpr std::pair<const char*, BroadPhase> kBroadPhases[] = {{"auto", BroadPhase::kAuto},
+                                                               {"brute", BroadPhase::kBrute},
+                                                               {"sweep", BroadPhase::kSweep},
+                                                               {"bvh", BroadPhase::kBvh}};
 constexpr std::pair<const char*, SwivelDamper> kSwivels[] = {{"internal", SwivelDamper::kInternal},
                                                              {"paper", SwivelDamper::kPaper}};
-constexpr std::pair<const char*, Damping> kDampings[] = {{"implicit", Damping::kImplicit}, {"explicit", Damping::kExplicit}};
+constexpr std::pair<const char*, Damping> kDampings[] = {{"implicit", Damping::kImplicit},
+                                                         {"explicit", Damping::kExplicit}};
 constexpr std::pair<const char*, Integrator> kIntegrators[] = {{"semi-implicit", Integrator::kSemiImplicit},
                                                                {"forward", Integrator::kForward}};
 constexpr std::pair<const char*, QuadraticStretch> kQuadratics[] = {{"stiff", QuadraticStretch::kStiff},
                                                                     {"printed", QuadraticStretch::kPrinted}};
 
 void read_suture(StrictTable& t, const fs::path& folder, Suture& s) {
-  t.choice("model", s.model, kModels, " (the rod model is not part of this version)");
+  t.choice("model", s.model, kModels);
   t.integer("nodes", s.nodes, 2, 5000);
   t.number("length_m", s.length_m, {0.0, 1e4, true});
+  read_rod(t, s.rod, s.radius_m);
   t.number("radius_m", s.radius_m, {0.0, 1e3, true});
   t.text("initial", s.initial);
   t.number("node_mass_kg", s.paper.node_mass_kg, {0.0, 1e6, true});
@@ -48,12 +53,14 @@ void read_suture(StrictTable& t, const fs::path& folder, Suture& s) {
   t.choice("damping", s.paper.damping, kDampings);
   t.choice("integrator", s.paper.integrator, kIntegrators);
   t.number("air_drag_per_s", s.paper.air_drag_per_s, {0.0, 1e6});
+  t.number("air_drag_per_s", s.rod.air_drag_per_s, {0.0, 1e6});
   t.choice("swivel", s.paper.swivel, kSwivels);
   t.choice("quadratic_stretch", s.paper.quadratic_stretch, kQuadratics);
   if (t.failed() || s.initial == "hanging") return;
   const fs::path file = t.was_overridden("initial") ? fs::path(s.initial) : folder / s.initial;
   auto read = load_polyline(file);
-  if (auto* error = std::get_if<Error>(&read)) return t.refuse("initial", "\"hanging\" or a CSV polyline (" + error->text + ")");
+  if (auto* error = std::get_if<Error>(&read))
+    return t.refuse("initial", "\"hanging\" or a CSV polyline (" + error->text + ")");
   s.initial_polyline_m = lay_out(std::get<std::vector<Vec>>(read), s.nodes, s.length_m / (s.nodes - 1));
 }
 
@@ -79,7 +86,8 @@ void read_world(StrictTable& t, int nodes, World& w) {
     f.vector("position_m", fixed.position_m, kFar_m);
     f.vector("direction", fixed.direction, kFar_m);
     if (fixed.direction == Vec{0.0, 0.0, 0.0}) f.refuse("direction", "a vector with a length");
-    if (!seen.insert(fixed.node < 0 ? nodes - 1 : fixed.node).second) f.refuse("node", "a node that is not fixed already");
+    if (!seen.insert(fixed.node < 0 ? nodes - 1 : fixed.node).second)
+      f.refuse("node", "a node that is not fixed already");
     w.fixed.push_back(fixed);
   });
   t.tables("loads", [&](StrictTable& l) {
@@ -90,6 +98,7 @@ void read_world(StrictTable& t, int nodes, World& w) {
     l.vector("force_N", load.force_N, 1e9);
     w.loads.push_back(load);
   });
+  read_pegs(t, w);
   t.number("desk_height_m", w.desk_height_m, {-kFar_m, kFar_m});
   t.boolean("grippers_collide", w.grippers_collide);
   t.boolean("frame_collides", w.frame_collides);
@@ -160,7 +169,8 @@ std::variant<toml::table, Error> parse_file(const fs::path& path) {
   try {
     return toml::parse(text, path.string());
   } catch (const toml::parse_error& e) {
-    return Error{path.string() + ":" + std::to_string(e.source().begin.line) + ": not TOML: " + std::string(e.description())};
+    return Error{path.string() + ":" + std::to_string(e.source().begin.line) +
+                 ": not TOML: " + std::string(e.description())};
   }
 }
 
@@ -170,7 +180,7 @@ const char* name(Model model) noexcept {
   for (const auto& [label, value] : kModels) {
     if (value == model) return label;
   }
-  return "rod";
+  return "unknown";
 }
 
 std::variant<Scene, Error> load_scene(const fs::path& path, std::span<const std::string> overrides) {

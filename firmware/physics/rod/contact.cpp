@@ -18,6 +18,17 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   mixing_.reserve(static_cast<std::size_t>(kMaxContacts), n);
 }
 
+ContactSet& ContactSet::operator=(const ContactSet& other) {
+  if (this == &other) return *this;
+  begin();
+  pairs.reserve(other.pairs.capacity());
+  pairs = other.pairs;
+  floor_impulse = other.floor_impulse;
+  body_impulse = other.body_impulse;
+  per_second_ = other.per_second_;
+  return *this;
+}
+
 // Columns B = C^-1 J^T, the contact's own number J B, the wanted normal velocity, and the old impulse turned to today's
 // normal and cone.
 void ContactSet::prepare(const ContactMetric& metric, int first, int last, const Numerics& numerics, double dt_s) noexcept {
@@ -81,8 +92,8 @@ void ContactSet::sweep(int first, int nodes, const Vec* v) noexcept {
 }
 
 template <bool Friction>
-void ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const Numerics& numerics, double dt_s, int first,
-                        int last, Vec* v, ContactReport& report) noexcept {
+void ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const Numerics& numerics, int passes, double dt_s,
+                        int first, int last, Vec* v, ContactReport& report) noexcept {
   const int nodes = last - first + 1;
   const auto clear = [&](std::vector<Vec>& array) {
     std::fill(array.begin() + first, array.begin() + last + 1, Vec{});
@@ -96,7 +107,7 @@ void ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const N
   const double settled2 = numerics.settled_m_per_s * numerics.settled_m_per_s;
   const std::size_t count = contacts_.size();
   mixing_.restart();
-  for (int pass = 0; pass < numerics.max_passes; ++pass) {
+  for (int pass = 0; pass < passes; ++pass) {
     ++report.passes;
     clear(extra_);
     std::fill(change_.begin(), change_.begin() + nodes, Vec{});
@@ -109,7 +120,7 @@ void ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const N
       v[i] += step;
       largest2 = std::max(largest2, dot(step, step));
     }
-    if (largest2 < settled2 || pass + 1 == numerics.max_passes) break;
+    if (largest2 < settled2 || pass + 1 == passes) break;
     for (std::size_t k = 0; k < count; ++k) {
       p_[k] = contacts_[k].p;
       residual_[k] = p_[k] - residual_[k];
@@ -135,31 +146,9 @@ void ContactSet::relabel(const std::vector<double>& s) noexcept {
   }
 }
 
-double ContactSet::safe_fraction(const Vec* v, double dt_s) const noexcept {
-  double fraction = 1.0;
-  const auto check = [&](Vec u, double distance) {
-    const double room = 0.9 * distance, motion2 = dot(u, u) * dt_s * dt_s;
-    if (motion2 > room * room) fraction = std::min(fraction, room / std::sqrt(motion2));
-  };
-  const auto check_pair = [&](std::int32_t a, std::int32_t b, double distance) {  // all four ends against each other
-    check(v[b] - v[a], distance);
-    check(v[b + 1] - v[a], distance);
-    check(v[b] - v[a + 1], distance);
-    check(v[b + 1] - v[a + 1], distance);
-  };
-  for (const auto& c : contacts_) {
-    const double distance = c.gap_m + c.reach_m;
-    if (c.count == 4) {
-      check_pair(c.node[0], c.node[2], distance);
-    } else {
-      for (int i = 0; i < c.count; ++i) check(v[c.node[i]] - c.surface, distance);
-    }
-  }
-  for (const auto& w : watched_) check_pair(w.a, w.b, w.distance_m);
-  return fraction;
-}
-
-template void ContactSet::settle<true>(BandSolver&, const ContactMetric&, const Numerics&, double, int, int, Vec*, ContactReport&) noexcept;
-template void ContactSet::settle<false>(BandSolver&, const ContactMetric&, const Numerics&, double, int, int, Vec*, ContactReport&) noexcept;
+template void ContactSet::settle<true>(BandSolver&, const ContactMetric&, const Numerics&, int, double, int, int, Vec*,
+                                       ContactReport&) noexcept;
+template void ContactSet::settle<false>(BandSolver&, const ContactMetric&, const Numerics&, int, double, int, int, Vec*,
+                                       ContactReport&) noexcept;
 
 }  // namespace ligature::physics::rod

@@ -54,9 +54,17 @@ inline constexpr int kMaxContacts = 384;
 /// settle(): p and v start from the last substep's impulses. Each pass runs one projected Gauss-Seidel sweep in the metric C
 /// (contact_metric.hpp), then pushes the change of p through the true matrix A; passes are mixed (mixing.hpp), because C knows
 /// nothing of stretch and alone would need hundreds along the thread's axis. It ends when no velocity changes by more
-/// than `settled_m_per_s`, or after max_passes. Each pass costs the contact window alone.
+/// than `settled_m_per_s`, or after `passes`. Each pass costs the contact window alone.
 class ContactSet {
  public:
+  ContactSet() = default;
+  ContactSet(const ContactSet& other) = delete;  // contacts point into the lists
+  /// Impulses and pairs; the contacts of the last substep are not copied. @pre both reserved alike, or other is larger.
+  ContactSet& operator=(const ContactSet& other);
+  ContactSet(ContactSet&&) noexcept = default;
+  ContactSet& operator=(ContactSet&&) noexcept = default;
+  ~ContactSet() = default;
+
   void reserve(int nodes, int bodies, int window);
 
   /// Watched thread-thread pairs; rebuilt by BroadPhase.
@@ -80,8 +88,8 @@ class ContactSet {
 
   /// Solves for the window's velocities v with all contacts. @pre the solver's core lies in the window, the metric covers it.
   template <bool Friction>
-  void settle(BandSolver& solver, const ContactMetric& metric, const Numerics& numerics, double dt_s, int first,
-              int last, Vec* v, ContactReport& report) noexcept;
+  void settle(BandSolver& solver, const ContactMetric& metric, const Numerics& numerics, int passes, double dt_s,
+              int first, int last, Vec* v, ContactReport& report) noexcept;
 
   /// After nodes moved along the thread: pairs with an impulse find their segments again by material coordinate.
   void relabel(const std::vector<double>& s) noexcept;
@@ -94,6 +102,9 @@ class ContactSet {
 
   /// Largest alpha <= 1 with which no measured pair moves by more than 0.9 of its centre distance.
   [[nodiscard]] double safe_fraction(const Vec* v, double dt_s) const noexcept;
+
+  /// The same for every pair of the list, measured now.
+  [[nodiscard]] double measured_fraction(const State& state, const Vec* v, double dt_s) const noexcept;
 
   [[nodiscard]] const std::vector<Contact>& contacts() const noexcept { return contacts_; }
 

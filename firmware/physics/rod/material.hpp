@@ -11,7 +11,7 @@ struct Material {
   double EA_N = 71.0;          ///< axial stiffness
   double EI_N_m2 = 4e-7;       ///< bending stiffness B
   double GJ_N_m2 = 2.86e-7;    ///< twisting stiffness C
-  double stretch_tau_s = 2e-3; ///< Kelvin-Voigt time: damping force = tau x stiffness x rate
+  double stretch_tau_s = 5e-4; ///< Kelvin-Voigt time: damping force = tau x stiffness x rate
   double bend_tau_s = 2e-3;
   double drag_per_s = 5.0;     ///< air: a = -c v
   double friction = 0.3;       ///< Coulomb coefficient, static = kinetic
@@ -23,8 +23,9 @@ struct Numerics {
   int substeps = 16;            ///< of a tick at rest; more when the hands move fast
   int max_substeps = 24;
   double fast_m_per_s = 0.5;    ///< hand speed up to which `substeps` do
-  int max_passes = 8;           ///< true solves per substep while contacts settle
-  double settled_m_per_s = 3e-3; ///< a pass that changes no velocity by more ends them
+  int max_passes = 40;          ///< true solves per substep while contacts settle
+  int passes_per_tick = 192;    ///< and per tick: when they are used up, each substep left gets four
+  double settled_m_per_s = 5e-3; ///< a pass that changes no velocity by more ends them
   double recovery = 0.3;        ///< share of a penetration taken back per substep
   double max_recovery_m_per_s = 0.5;
 };

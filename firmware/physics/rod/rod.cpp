@@ -32,6 +32,31 @@ Rod::Rod(const Material& material, const Numerics& numerics, const Parts& parts,
   moved();
 }
 
+// Copies of vectors have no spare room; ours must, or a tick would allocate.
+Rod::Rod(const Rod& other) : Rod(other.material_, other.numerics_, other.parts_, other.state_.nodes(), static_cast<int>(other.bodies.capacity())) {
+  *this = other;
+}
+
+Rod& Rod::operator=(const Rod& other) {
+  if (this == &other) return *this;
+  gravity = other.gravity;
+  floor_m = other.floor_m, floor_friction = other.floor_friction, has_floor = other.has_floor;
+  bodies.reserve(other.bodies.capacity());
+  bodies = other.bodies;
+  material_ = other.material_, numerics_ = other.numerics_, parts_ = other.parts_;
+  state_ = other.state_;
+  forces_ = other.forces_;
+  contacts_ = other.contacts_;
+  twist_ = other.twist_;
+  refine_ = other.refine_;
+  report_ = other.report_;
+  substep_ = other.substep_;
+  solver_.resize(state_.nodes());
+  metric_.invalidate();
+  stale_ = true;
+  return *this;
+}
+
 void Rod::moved() noexcept {
   for (auto& c : state_.mesh.clamp) c = Clamp::kFree;
   for (int h = 0; h < state_.hold_count; ++h) {
@@ -96,9 +121,9 @@ double Rod::fastest() const noexcept {
   return std::sqrt(most2);
 }
 
-void Rod::broad_phase() noexcept {
+void Rod::broad_phase(double dt_s) noexcept {
   const double diameter = 2.0 * material_.radius_m;
-  margin_m_ = 0.5 * diameter + 2.6 * fastest() * numerics_.tick_s;
+  margin_m_ = 0.5 * diameter + 2.6 * fastest() * std::max(0.25 * numerics_.tick_s, dt_s);
   travel_m_ = 0.0;
   stale_ = false;
   report_.cap_hit |= !broad_.build(state_, diameter, margin_m_, contacts_.pairs);
@@ -119,7 +144,7 @@ void Rod::substep(double dt_s) noexcept {
     near = 0.2 * material_.radius_m;
     look = near + 4.0 * fastest() * dt_s;
     if constexpr ((Bits & kContact) != 0) {
-      if (stale_ || 2.0 * travel_m_ + look > margin_m_) broad_phase();
+      if (stale_ || 2.0 * travel_m_ + look > margin_m_) broad_phase(dt_s);
       contacts_.collect_thread(state_, travel_m_, look, near, dt_s, material_.friction, seen);
     }
     if constexpr ((Bits & kWorld) != 0) {
@@ -143,7 +168,8 @@ void Rod::substep(double dt_s) noexcept {
         metric_dt_ = dt_s;
         metric_.prepare(state_.mesh, material_, dt_s, std::max(first - 2, 0), std::min(last + 2, n - 1));
       }
-      contacts_.settle<(Bits & kFriction) != 0>(solver_, metric_, numerics_, dt_s, first, last, state_.v.data(), seen);
+      const int passes = std::clamp(numerics_.passes_per_tick - report_.passes, 4, numerics_.max_passes);
+      contacts_.settle<(Bits & kFriction) != 0>(solver_, metric_, numerics_, passes, dt_s, first, last, state_.v.data(), seen);
       contacts_.store();
     }
   }
@@ -154,7 +180,10 @@ void Rod::substep(double dt_s) noexcept {
     const double speed = fastest();
     double fraction = contacts_.safe_fraction(state_.v.data(), dt_s);
     const double unseen = 0.45 * (2.0 * material_.radius_m + look);  // what each half of an unmeasured pair may move
-    if (speed * dt_s > unseen) fraction = std::min(fraction, unseen / (speed * dt_s));
+    if (speed * dt_s > unseen && (Bits & kContact) != 0) {  // a jerk, such as a release: look again, at today's speed
+      broad_phase(dt_s);
+      fraction = std::min(fraction, contacts_.measured_fraction(state_, state_.v.data(), dt_s));
+    }
     report_.guard_events += fraction < 1.0;
     step_s *= fraction;
     travel_m_ += speed * step_s;

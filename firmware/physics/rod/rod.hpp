@@ -33,6 +33,12 @@ class Rod {
   /// @param n nodes, >= 3, equally spaced to begin with; straight along +x from the origin, at rest.
   Rod(const Material& material, const Numerics& numerics, const Parts& parts, int n, int bodies = 0);
 
+  Rod(const Rod& other);
+  Rod& operator=(const Rod& other);
+  Rod(Rod&&) noexcept = default;
+  Rod& operator=(Rod&&) noexcept = default;
+  ~Rod() = default;
+
   Vec gravity{};
   double floor_m = 0.0, floor_friction = 0.3;
   bool has_floor = false;
@@ -43,6 +49,7 @@ class Rod {
   [[nodiscard]] const Material& material() const noexcept { return material_; }
   [[nodiscard]] Numerics& numerics() noexcept { return numerics_; }
   [[nodiscard]] Twist& twist() noexcept { return twist_; }
+  [[nodiscard]] const Twist& twist() const noexcept { return twist_; }
   [[nodiscard]] const Forces& forces() const noexcept { return forces_; }
   [[nodiscard]] const ContactSet& contact_set() const noexcept { return contacts_; }
 
@@ -67,7 +74,7 @@ class Rod {
   template <unsigned Bits>
   void substep(double dt_s) noexcept;
   static Substep pick(const Parts& parts) noexcept;
-  void broad_phase() noexcept;
+  void broad_phase(double dt_s) noexcept;
   [[nodiscard]] double fastest() const noexcept;
   int add_hold(const Hold& hold) noexcept;
 

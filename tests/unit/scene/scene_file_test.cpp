@@ -46,7 +46,11 @@ TEST(SceneFile, NamesFileLineKeyFoundAndAllowed) {
 }
 
 TEST(SceneFile, EveryRefusalIsOneLineWithItsLineNumber) {
-  const struct { const char* text; int line; const char* key; } kCases[] = {
+  const struct {
+    const char* text;
+    int line;
+    const char* key;
+  } kCases[] = {
       {"[suture]\nlenght_m = 5.0\n", 2, "suture.lenght_m"},
       {"[sutura]\nnodes = 5\n", 1, "sutura"},
       {"nodes = 5\n", 1, "nodes"},
@@ -56,13 +60,14 @@ TEST(SceneFile, EveryRefusalIsOneLineWithItsLineNumber) {
       {"[suture]\nlength_m = inf\n", 2, "suture.length_m"},
       {"[suture]\nradius_m = 0\n", 2, "suture.radius_m"},
       {"[suture]\nmodel = \"paper-6\"\n", 2, "paper-1"},
-      {"[suture]\nmodel = \"rod\"\n", 2, "rod model"},
+      {"[suture]\nmodel = \"rope\"\n", 2, "\"rod\""},
       {"[suture]\ninitial = \"no-such.csv\"\n", 2, "no-such.csv"},
       {"[world]\ngravity_m_per_s2 = [0, 0]\n", 2, "world.gravity_m_per_s2"},
       {"[world]\ngravity_m_per_s2 = [0, 0, nan]\n", 2, "world.gravity_m_per_s2"},
       {"[world]\nfixed = [{node = 50, position_m = [0, 0, 0]}]\n", 2, "world.fixed[0].node"},
       {"[world]\nfixed = [{node = 0}]\n", 2, "position_m"},
-      {"[world]\nfixed = [{node = 49, position_m = [0,0,0]}, {node = -1, position_m = [0,0,0]}]\n", 2, "world.fixed[1].node"},
+      {"[world]\nfixed = [{node = 49, position_m = [0,0,0]}, {node = -1, position_m = [0,0,0]}]\n", 2,
+       "world.fixed[1].node"},
       {"[world]\nfixed = 3\n", 2, "world.fixed"},
       {"[world]\ngrippers_collide = 1\n", 2, "world.grippers_collide"},
       {"[contact]\nfriction = -1\n", 2, "contact.friction"},
@@ -99,8 +104,9 @@ TEST(SceneFile, OverridesReachEveryKindOfKey) {
 }
 
 TEST(SceneFile, OverridesAreCheckedLikeTheFileAndNamedAsOverrides) {
-  for (const char* set : {"suture.nodes=1", "suture.nods=5", "suture.nodes", "=3", "suture.nodes=", "suture.nodes=nan",
-                          "suture=3", "suture.nodes.deep=3", "world.loads=[{node=-1, force=[0,0,0]}]", "time.tick_s=[1"}) {
+  for (const char* set :
+       {"suture.nodes=1", "suture.nods=5", "suture.nodes", "=3", "suture.nodes=", "suture.nodes=nan", "suture=3",
+        "suture.nodes.deep=3", "world.loads=[{node=-1, force=[0,0,0]}]", "time.tick_s=[1"}) {
     const auto why = why_refused("", {set});
     EXPECT_EQ(why.find(std::string("--set ") + set), 0u) << set << " -> " << why;
   }

@@ -1,0 +1,55 @@
+// The guard: no pair of segments may move, relative to each other, by more than its distance.
+
+#include <algorithm>
+
+#include "firmware/physics/rod/closest.hpp"
+#include "firmware/physics/rod/contact.hpp"
+
+namespace ligature::physics::rod {
+namespace {
+
+/// Smallest share of a substep's motion that anything seen so far may make.
+struct Share {
+  const Vec* v;
+  double dt_s;
+  double least = 1.0;
+
+  void motion(Vec u, double distance) noexcept {
+    const double room = 0.9 * distance, motion2 = dot(u, u) * dt_s * dt_s;
+    if (motion2 > room * room) least = std::min(least, room / std::sqrt(motion2));
+  }
+  void pair(std::int32_t a, std::int32_t b, double distance) noexcept {  // points in between move no more than the ends
+    motion(v[b] - v[a], distance);
+    motion(v[b + 1] - v[a], distance);
+    motion(v[b] - v[a + 1], distance);
+    motion(v[b + 1] - v[a + 1], distance);
+  }
+};
+
+}  // namespace
+
+double ContactSet::safe_fraction(const Vec* v, double dt_s) const noexcept {
+  Share share{v, dt_s};
+  for (const auto& c : contacts_) {
+    const double distance = c.gap_m + c.reach_m;
+    if (c.count == 4) {
+      share.pair(c.node[0], c.node[2], distance);
+    } else {
+      for (int i = 0; i < c.count; ++i) share.motion(v[c.node[i]] - c.surface, distance);
+    }
+  }
+  for (const auto& w : watched_) share.pair(w.a, w.b, w.distance_m);
+  return share.least;
+}
+
+double ContactSet::measured_fraction(const State& state, const Vec* v, double dt_s) const noexcept {
+  Share share{v, dt_s};
+  for (const auto& pair : pairs) {
+    const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+    const Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
+    share.pair(pair.a, pair.b, std::sqrt(c.distance2));
+  }
+  return share.least;
+}
+
+}  // namespace ligature::physics::rod

@@ -1,0 +1,180 @@
+#include "firmware/physics/rod/rod_simulation.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "firmware/physics/rod/from_scene.hpp"
+
+namespace ligature::physics::rod {
+namespace {
+
+constexpr double kOutOfRange = 1e9;  // m or m/s: a run that gets there has diverged
+constexpr double kReach = 4.0;       // a gripper is a capsule of the thread's radius, four radii long, towards the person
+
+Vec vec(const Vec3& a) noexcept { return make(a.x(), a.y(), a.z()); }
+Vec3 vec3(Vec a) noexcept { return {a[0], a[1], a[2]}; }
+
+}  // namespace
+
+std::variant<RodSimulation, std::string> RodSimulation::make(const scene::Scene& scene) {
+  auto built = rod_of(scene);
+  if (auto* why = std::get_if<std::string>(&built)) return *why;
+  return RodSimulation(scene, std::get<Rod>(std::move(built)));
+}
+
+RodSimulation::RodSimulation(const scene::Scene& scene, Rod rod)
+    : initial_(rod),
+      rod_(std::move(rod)),
+      coupling_N_per_m_(scene.hands.coupling_N_per_m),
+      coupling_N_s_per_m_(scene.hands.coupling_N_s_per_m),
+      grippers_(scene.world.grippers_collide && parts_of(scene).world) {
+  gripper_body_ = static_cast<int>(rod_.bodies.size());
+  if (grippers_) {
+    const Body away{rod::make(1e6, 0, 0), rod::make(1e6, 0, 0), scene.suture.radius_m, Vec{}, scene.contact.friction};
+    for (Rod* r : {&initial_, &rod_}) r->bodies.insert(r->bodies.end(), 2, away);
+  }
+  const std::size_t n = rod_.state().x.size();
+  x_before_.resize(n);
+  v_before_.resize(n);
+  nodes_.resize(n);
+  velocities_.resize(n);
+  reset();
+}
+
+void RodSimulation::reset() noexcept {
+  rod_ = initial_;
+  hold_ = {-1, -1};
+  closed_ = {false, false};
+  inside_ = {true, true};
+  hands_ = {};
+  health_ = {};
+  ticks_ = 0;
+  publish();
+}
+
+void RodSimulation::set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept {
+  rod_ = initial_;
+  hold_ = {-1, -1};
+  State& state = rod_.state();
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    bool fixed = false;
+    for (int h = 0; h < state.hold_count; ++h) fixed |= state.holds[static_cast<std::size_t>(h)].node == static_cast<int>(i);
+    if (fixed) continue;
+    if (i < p_W.size()) state.x[i] = vec(p_W[i]);
+    state.v[i] = i < v_W.size() ? vec(v_W[i]) : Vec{};
+  }
+  rod_.moved();
+  health_ = {};
+  hands_ = {};
+  publish();
+}
+
+int RodSimulation::nearest_free(Vec p) const noexcept {
+  const State& state = rod_.state();
+  double least2 = std::numeric_limits<double>::infinity();
+  int best = -1;
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    const Vec off = state.x[i] - p;
+    const double d2 = dot(off, off);
+    if (d2 >= least2) continue;
+    bool taken = false;
+    for (int h = 0; h < state.hold_count; ++h) taken |= state.holds[static_cast<std::size_t>(h)].node == static_cast<int>(i);
+    if (!taken) least2 = d2, best = static_cast<int>(i);
+  }
+  return best;
+}
+
+void RodSimulation::update_grasp(const std::array<ToolInput, 2>& tools) noexcept {
+  for (std::size_t h = 0; h < 2; ++h) {
+    const Vec tool = vec(tools[h].p_WT);
+    if (tools[h].grip && !closed_[h]) {
+      const int node = nearest_free(tool);
+      if (node >= 0) hold_[h] = rod_.grip(node, coupling_N_per_m_, coupling_N_s_per_m_, tool);
+    } else if (!tools[h].grip && hold_[h] >= 0) {
+      rod_.release(hold_[h]);
+      hold_[h] = -1;
+      inside_[h] = true;
+    }
+    closed_[h] = tools[h].grip;
+    if (hold_[h] >= 0) goals_[static_cast<std::size_t>(hold_[h])] = tool;
+  }
+}
+
+// A gripper that holds does not touch; one that has let go touches again once it is clear of the thread.
+void RodSimulation::update_grippers(const std::array<ToolInput, 2>& tools) noexcept {
+  const double radius = rod_.material().radius_m;
+  for (std::size_t h = 0; h < 2; ++h) {
+    Body& body = rod_.bodies[static_cast<std::size_t>(gripper_body_) + h];
+    const Vec tip = vec(tools[h].p_WT), tail = tip - rod::make(0, kReach * radius, 0);
+    if (inside_[h]) {
+      inside_[h] = false;
+      for (const auto& x : rod_.state().x) inside_[h] |= norm(x - 0.5 * (tip + tail)) < (kReach + 4.0) * radius;
+    }
+    if (hold_[h] >= 0 || inside_[h]) {
+      body.p0 = body.p1 = rod::make(1e6, 0, 0);
+      body.velocity = Vec{};
+    } else {
+      body.p0 = tip;
+      body.p1 = tail;
+      body.velocity = vec(tools[h].v_WT);
+    }
+  }
+}
+
+bool RodSimulation::is_finite() noexcept {
+  const State& state = rod_.state();
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    double most = 0.0;
+    for (int k = 0; k < 3; ++k) most += std::abs(state.x[i][k]) + std::abs(state.v[i][k]);
+    if (most < kOutOfRange) continue;  // false for NaN
+    health_.finite = false;
+    health_.bad_node = static_cast<int>(i);
+    health_.bad_tick = ticks_;
+    return false;
+  }
+  return true;
+}
+
+void RodSimulation::tick(const std::array<ToolInput, 2>& tools) noexcept {
+  if (!health_.finite) return;
+  State& state = rod_.state();
+  x_before_ = state.x;  // same size: copies, does not allocate
+  v_before_ = state.v;
+  for (int h = 0; h < state.hold_count; ++h) goals_[static_cast<std::size_t>(h)] = state.holds[static_cast<std::size_t>(h)].target;
+  update_grasp(tools);
+  if (grippers_) update_grippers(tools);
+  rod_.tick(goals_);
+  ++ticks_;
+  if (is_finite()) return publish();
+  hands_ = {};  // no force is the safe one to leave behind
+  state.x = x_before_;
+  state.v = v_before_;
+}
+
+void RodSimulation::publish() noexcept {
+  const State& state = rod_.state();
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    nodes_[i] = vec3(state.x[i]);
+    velocities_[i] = vec3(state.v[i]);
+  }
+  for (std::size_t h = 0; h < 2; ++h) {
+    HandContact& c = hands_[h];
+    c = {};
+    if (hold_[h] < 0) continue;
+    const Hold& hold = state.holds[static_cast<std::size_t>(hold_[h])];
+    c.node = hold.node;
+    c.p_WG = nodes_[static_cast<std::size_t>(hold.node)];
+    c.v_WG = velocities_[static_cast<std::size_t>(hold.node)];
+    c.f_W = vec3(hold.force);
+  }
+  const Energy e = rod_.energy();
+  const TickReport& r = rod_.report();
+  health_.kinetic_J = e.kinetic_J;
+  health_.potential_J = e.gravity_J + e.stretch_J + e.bend_J + rod_.twist().energy_J();
+  health_.max_stretch = e.max_strain;
+  health_.min_gap_m = r.min_gap_m < 1e8 ? r.min_gap_m : std::numeric_limits<double>::infinity();
+  health_.contacts = r.contacts;
+  health_.contact_cap_hit = r.cap_hit;
+}
+
+}  // namespace ligature::physics::rod

@@ -1,0 +1,56 @@
+#pragma once
+// The rod behind the facade of firmware/physics/simulation.hpp: a scene in, two tools, nodes and hand forces out.
+
+#include <array>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "firmware/physics/rod/rod.hpp"
+#include "firmware/physics/simulation.hpp"
+#include "protocol/scene/scene.hpp"
+
+namespace ligature::physics::rod {
+
+/// Same contract as physics::Simulation. With spacing "adaptive" a node index is not a material point: nodes move along the
+/// thread to where they are needed (refine.hpp); their number stays.
+class RodSimulation {
+ public:
+  static std::variant<RodSimulation, std::string> make(const scene::Scene& scene);
+
+  void tick(const std::array<ToolInput, 2>& tools) noexcept;
+  [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept { return nodes_; }
+  [[nodiscard]] std::span<const Vec3> velocities_W() const noexcept { return velocities_; }
+  [[nodiscard]] const HandContact& hand(Hand h) const noexcept { return hands_[static_cast<std::size_t>(h)]; }
+  [[nodiscard]] const Diagnostics& diagnostics() const noexcept { return health_; }
+  void reset() noexcept;
+  void set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept;
+
+  /// The rod itself, for those who look deeper than the facade.
+  [[nodiscard]] const Rod& rod() const noexcept { return rod_; }
+  [[nodiscard]] Rod& rod() noexcept { return rod_; }
+
+ private:
+  RodSimulation(const scene::Scene& scene, Rod rod);
+  void update_grasp(const std::array<ToolInput, 2>& tools) noexcept;
+  void update_grippers(const std::array<ToolInput, 2>& tools) noexcept;
+  [[nodiscard]] int nearest_free(Vec p) const noexcept;
+  void publish() noexcept;
+  [[nodiscard]] bool is_finite() noexcept;
+
+  Rod initial_, rod_;
+  double coupling_N_per_m_ = 0.0, coupling_N_s_per_m_ = 0.0;
+  bool grippers_ = false;
+  int gripper_body_ = 0;  // index of the left gripper's capsule
+  std::array<int, 2> hold_{-1, -1};
+  std::array<bool, 2> closed_{false, false}, inside_{true, true};
+  std::array<Vec, kMaxHolds> goals_{};
+  std::array<HandContact, 2> hands_{};
+  Diagnostics health_{};
+  std::int64_t ticks_ = 0;
+  std::vector<Vec> x_before_, v_before_;
+  std::vector<Vec3> nodes_, velocities_;
+};
+
+}  // namespace ligature::physics::rod

@@ -1,0 +1,64 @@
+#include "protocol/scene/rod_keys.hpp"
+
+#include <numbers>
+
+namespace ligature::scene {
+namespace {
+
+constexpr double kPoisson = 0.4;
+
+constexpr std::pair<const char*, Spacing> kSpacings[] = {{"uniform", Spacing::kUniform}, {"adaptive", Spacing::kAdaptive}};
+constexpr std::pair<const char*, Accuracy> kAccuracies[] = {
+    {"fast", Accuracy::kFast}, {"balanced", Accuracy::kBalanced}, {"fine", Accuracy::kFine}};
+
+// Solid round section: A = pi d^2 / 4, I = pi d^4 / 64, J = 2 I, G = E / 2 (1 + nu).
+void apply(const RodPreset& p, RodParameters& rod, double& radius_m) {
+  const double d2 = p.diameter_m * p.diameter_m, area_m2 = std::numbers::pi * d2 / 4.0;
+  radius_m = 0.5 * p.diameter_m;
+  rod.density_kg_per_m = p.density_kg_per_m3 * area_m2;
+  rod.EA_N = p.modulus_Pa * area_m2;
+  rod.EI_N_m2 = p.bend_share * p.modulus_Pa * area_m2 * d2 / 16.0;
+  rod.GJ_N_m2 = rod.EI_N_m2 / (1.0 + kPoisson);
+}
+
+}  // namespace
+
+void read_rod(StrictTable& t, RodParameters& rod, double& radius_m) {
+  std::string preset;
+  t.text("preset", preset);
+  if (!preset.empty()) {
+    std::string names;
+    bool found = false;
+    for (const auto& p : kRodPresets) {
+      names += std::string(names.empty() ? "" : ", ") + p.name;
+      if (preset != p.name) continue;
+      apply(p, rod, radius_m);
+      found = true;
+    }
+    if (!found) return t.refuse("preset", "one of " + names);
+  }
+  const Range positive{0.0, 1e12, true}, coefficient{0.0, 1e12};
+  t.number("density_kg_per_m", rod.density_kg_per_m, {0.0, 1e6, true});
+  t.number("EA_N", rod.EA_N, positive);
+  t.number("EI_N_m2", rod.EI_N_m2, coefficient);
+  t.number("GJ_N_m2", rod.GJ_N_m2, coefficient);
+  t.number("damping_s", rod.damping_s, {0.0, 1e3});
+  t.number("stretch_damping_s", rod.stretch_damping_s, {0.0, 1e3});
+  t.choice("spacing", rod.spacing, kSpacings);
+  t.choice("accuracy", rod.accuracy, kAccuracies);
+}
+
+void read_pegs(StrictTable& t, World& world) {
+  t.tables("pegs", [&](StrictTable& p) {
+    Peg peg;
+    p.require("from_m");
+    p.require("to_m");
+    p.require("radius_m");
+    p.vector("from_m", peg.from_m, 1e6);
+    p.vector("to_m", peg.to_m, 1e6);
+    p.number("radius_m", peg.radius_m, {0.0, 1e3, true});
+    world.pegs.push_back(peg);
+  });
+}
+
+}  // namespace ligature::scene
