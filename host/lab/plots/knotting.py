@@ -25,7 +25,7 @@ for line, (script, times) in enumerate(sorted(shapes.items())):
         axis.set_xlim(-1.5, 1.5)
         axis.set_ylim(-1.5, 1.5)
         axis.set_zlim(0.5, 5.6)
-        axis.set_box_aspect((3, 3, 5))
+        axis.set_box_aspect((3, 3, 5), zoom=1.7)
         axis.view_init(12, -75)
         axis.set_axis_off()
         axis.set_title(f"{NAMES[script]}\n{t:.1f} s" if column == 0 else f"{t:.1f} s", fontsize=9)

@@ -14,6 +14,7 @@ using physics::Vec3;
 std::vector<Pull> ranked(std::span<const Vec3> shape_W) {
   const int n = static_cast<int>(shape_W.size());
   const auto core = core_of(shape_W);
+  if (core.first > core.last) return {};  // nothing to undo
   const auto at = [&](int k) { return shape_W[static_cast<std::size_t>(std::clamp(k, 0, n - 1))]; };
   const Vec3 along_tail = (at(core.last + 3) - at(core.last - 1)).normalized();
   struct Scored {

@@ -68,9 +68,15 @@ Core core_of(std::span<const Vec3> nodes_W) {
   };
   Core core{0, n - 1};
   // Step by step, not by bisection: a cut in mid-knot may look like another knot before it looks like none.
-  while (keeps(core.first, core.last - 1)) --core.last;
-  while (keeps(core.first + 1, core.last)) ++core.first;
-  return core;
+  for (;;) {
+    if (keeps(core.first, core.last - 1)) {
+      --core.last;
+    } else if (keeps(core.first + 1, core.last)) {
+      ++core.first;
+    } else {
+      return core;
+    }
+  }
 }
 
 std::span<const Vec3> six_directions() {
