@@ -62,13 +62,17 @@ class Cycle {
 
       take_commands();
       bus_.send_sync();  // every axis samples, and acts on the last tick's torque
+      const auto synced = clock_.now();
       const rt::RigReading reading = bus_.read_tpdos(woke + kTpdoWait);
-      const rt::WireTorque torque = bus_.write_rpdos(controller_.tick(input(reading)));
+      const auto sampled = clock_.now();
+      const rt::RigCommand command = controller_.tick(input(reading));
+      const auto decided = clock_.now();
+      const rt::WireTorque torque = bus_.write_rpdos(command);
       const auto controlled = clock_.now();
       thread_.tick(controller_.tools());  // the rest of the period is the thread's
       const auto done = clock_.now();
 
-      publish(woke, controlled, done, torque);
+      publish({woke, synced, sampled, decided, controlled, done}, torque);
       const auto missed = (done - wake_at_) / kPeriod;
       advance();
       skip(missed);
@@ -76,6 +80,11 @@ class Cycle {
   }
 
  private:
+  /// When each phase of a tick ended.
+  struct Phases {
+    Nanoseconds woke, synced, sampled, decided, controlled, done;
+  };
+
   void take_commands() noexcept {
     if (out_.stop.load(std::memory_order_relaxed) || tick_ >= last_tick_) controller_.shut_down();
     for (rt::Command c; out_.commands.pop(c);) {
@@ -92,19 +101,22 @@ class Cycle {
         thread_.diagnostics().finite};
   }
 
-  void publish(Nanoseconds woke, Nanoseconds controlled, Nanoseconds done, const rt::WireTorque& torque) noexcept {
-    timing_.wakeup.add((woke - wake_at_).count());
-    timing_.control.add((controlled - woke).count());
-    timing_.execution.add((done - woke).count());
-    const bool missed = done >= wake_at_ + kPeriod;
+  void publish(const Phases& at, const rt::WireTorque& torque) noexcept {
+    timing_.wakeup.add((at.woke - wake_at_).count());
+    timing_.control.add((at.controlled - at.woke).count());
+    timing_.execution.add((at.done - at.woke).count());
+    const bool missed = at.done >= wake_at_ + kPeriod;
     timing_.deadline_misses += missed;
 
     record_ = {};
     record_.tick = tick_;
     record_.scheduled_ns = wake_at_.count();
-    record_.wakeup_latency_ns = narrow(woke - wake_at_);
-    record_.control_ns = narrow(controlled - woke);
-    record_.execution_ns = narrow(done - woke);
+    record_.wakeup_latency_ns = narrow(at.woke - wake_at_);
+    record_.sync_ns = narrow(at.synced - at.woke);
+    record_.tpdo_ns = narrow(at.sampled - at.woke);
+    record_.law_ns = narrow(at.decided - at.woke);
+    record_.control_ns = narrow(at.controlled - at.woke);
+    record_.execution_ns = narrow(at.done - at.woke);
     record_.flags = missed ? rt::kDeadlineMissed : 0;
     record_.torque_permille = torque;
     control::report(controller_, record_);

@@ -55,7 +55,7 @@ std::string forces_columns_help() {
 }
 
 std::string ticks_header() {
-  std::string header = "tick,t_s,scheduled_ns,wakeup_latency_ns,control_ns,execution_ns,flags,state,fault";
+  std::string header = "tick,t_s,scheduled_ns,wakeup_latency_ns,sync_ns,tpdo_ns,law_ns,control_ns,execution_ns,flags,state,fault";
   for (const auto hand_name : kHandNames) {
     const std::string hand(hand_name);
     header += xyz(hand, "p_WT", "_m") + xyz(hand, "v_WT", "_m_per_s") + xyz(hand, "world_f", "_N") +
@@ -67,7 +67,8 @@ std::string ticks_header() {
 }
 
 const std::string& ticks_row(CsvRow& row, const ligature_msg::tick_t& tick, double t_s, int session) {
-  row.add(tick.tick).add(t_s).add(tick.scheduled_ns).add(tick.wakeup_latency_ns).add(tick.control_ns);
+  row.add(tick.tick).add(t_s).add(tick.scheduled_ns).add(tick.wakeup_latency_ns);
+  row.add(tick.sync_ns).add(tick.tpdo_ns).add(tick.law_ns).add(tick.control_ns);
   row.add(tick.execution_ns).add(tick.flags).add(static_cast<int>(tick.state)).add(tick.fault);
   for (std::size_t hand = 0; hand < 2; ++hand) {
     row.add_all(tick.p_WT_m[hand]).add_all(tick.v_WT_m_per_s[hand]);

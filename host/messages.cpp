@@ -69,7 +69,7 @@ std::optional<ligature_msg::thread_t> decode(Bytes message) {
 
 template <>
 std::optional<ligature_msg::status_t> decode(Bytes message) {
-  if (!strings_fit(message, kHash + 2 * kInt64 + kInt32, 3)) return std::nullopt;
+  if (!strings_fit(message, kHash + 2 * kInt64 + kInt32, 4)) return std::nullopt;
   auto status = decode_checked<ligature_msg::status_t>(message);
   if (status && !(std::isfinite(status->period_s) && status->period_s > 0.0)) return std::nullopt;
   return status;

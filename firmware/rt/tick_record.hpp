@@ -27,6 +27,9 @@ struct TickRecord {
   std::int64_t tick = 0;
   std::int64_t scheduled_ns = 0;
   std::int32_t wakeup_latency_ns = 0;
+  std::int32_t sync_ns = 0;
+  std::int32_t tpdo_ns = 0;
+  std::int32_t law_ns = 0;
   std::int32_t control_ns = 0;
   std::int32_t execution_ns = 0;
   std::int32_t flags = 0;

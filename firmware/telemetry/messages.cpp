@@ -21,6 +21,9 @@ ligature_msg::tick_t to_message(const rt::TickRecord& r) {
   m.tick = r.tick;
   m.scheduled_ns = r.scheduled_ns;
   m.wakeup_latency_ns = r.wakeup_latency_ns;
+  m.sync_ns = r.sync_ns;
+  m.tpdo_ns = r.tpdo_ns;
+  m.law_ns = r.law_ns;
   m.control_ns = r.control_ns;
   m.execution_ns = r.execution_ns;
   m.flags = r.flags;

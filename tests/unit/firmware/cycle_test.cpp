@@ -34,6 +34,21 @@ TEST(Cycle, WakesAtMultiplesOfThePeriodAndRecordsEach) {
   EXPECT_EQ(rig.cycle.periods(), static_cast<std::int64_t>(records.size()));
 }
 
+TEST(Cycle, EveryRecordSaysWhenItsPhasesEnded) {
+  VirtualRig rig;
+  rig.bus.stalls[20] = 100us;
+  rig.cycle.end_after(30);
+  rig.cycle.run();
+  for (const auto& r : rig.records()) {
+    const std::int32_t waited_ns = r.tick == 19 ? 560'000 : 460'000;  // in virtual time only waiting takes any
+    EXPECT_EQ(r.sync_ns, 0);
+    EXPECT_EQ(r.tpdo_ns, waited_ns);
+    EXPECT_EQ(r.law_ns, waited_ns);
+    EXPECT_EQ(r.control_ns, waited_ns);
+    EXPECT_EQ(r.execution_ns, waited_ns);
+  }
+}
+
 TEST(Cycle, SkipsAndCountsLostPeriodsAfterAStall) {  // the tick at 10 ms ends at 13.7 ms: 11, 12 and 13 are lost
   VirtualRig rig;
   rig.bus.stalls[10] = 3240us;
