@@ -46,6 +46,7 @@ void add_record(CLI::App& app) {
   command->footer(
       "Counts every tick while it writes and names those that never came. It does not end when the firmware does: a\n"
       "restarted firmware becomes a further session of the same log. A killed recorder leaves all it had received.\n"
+      "What the network loses is fetched from the firmware's flight recorder when that is on this machine.\n"
       "Exit code 3 when the disk refuses, the network cannot be opened, or nothing at all came.\n\n"
       "Example:\n  ligature-host record --out knot.lcmlog --duration 25\n"
       "  recorded 25000 of 25000 ticks, 0 lost; 1500 shapes, 3017 messages in all");
@@ -59,13 +60,14 @@ void add_export(CLI::App& app) {
   };
   auto* command = app.add_subcommand("export", "Write the ticks and shapes of a log as CSV");
   const auto options = kept<Options>(app);
-  command->add_option("log", options->log, "LCM log of 'record'")->required();
+  command->add_option("log", options->log, "LCM log of 'record', or a flight recorder file")->required();
   command->add_option("--forces", options->targets.forces, "forces, grasp and state of every tick");
   command->add_option("--shape", options->targets.shape, "the thread's nodes at 60 Hz");
   command->add_option("--ticks", options->targets.ticks, "every field of every tick");
   command->footer(
       forces_columns_help() + shape_columns_help() + ticks_columns_help() +
-      "Each tick once, in order of arrival. A cut-off log is exported up to its last whole event, and that is\n"
+      "The log may also be a flight recorder file of the firmware, or one that it saved with a fault: it has ticks and\n"
+      "no shapes. Each tick once, in order; missing ones are named. A cut-off log is exported up to its last whole event, and that is\n"
       "said. Files appear complete or not at all.\n\n"
       "Example:\n  ligature-host export knot.lcmlog --forces forces.csv --shape shape.csv");
   command->callback([options] {
@@ -82,6 +84,8 @@ void add_export(CLI::App& app) {
       std::printf(", left out %lld duplicates", static_cast<long long>(result.duplicates_left_out));
     if (result.unreadable_messages)
       std::printf(", %lld unreadable messages", static_cast<long long>(result.unreadable_messages));
+    if (result.missing)
+      std::printf("; %lld ticks are missing: %s", static_cast<long long>(result.missing), result.missing_ticks.c_str());
     std::printf("\n");
   });
 }

@@ -5,8 +5,11 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <optional>
 
 #include "host/errors.hpp"
+#include "host/gap_filler.hpp"
 #include "host/live_tally.hpp"
 #include "host/log_writer.hpp"
 #include "host/stop_signal.hpp"
@@ -19,6 +22,7 @@ using std::chrono::milliseconds;
 
 constexpr auto kTerminalEvery = milliseconds(250);  // progress on a terminal
 constexpr auto kPlainEvery = milliseconds(5000);    // and in a log file
+constexpr auto kFillEvery = milliseconds(1000);     // gaps, from the flight recorder
 constexpr auto kLongestDrain = milliseconds(300);   // for messages still on their way after the stop
 constexpr int kQuiet_ms = 100;                      // nothing came for that long: nothing is on its way
 
@@ -58,40 +62,81 @@ class Progress {
   double ticks_per_s_ = 0.0;
 };
 
-/// Receives until the end of the run; the link's handler writes and counts.
-void record_until_stopped(LcmLink& link, const LiveTally& tally, const RecordOptions& options) {
+/// Receives until the end of the run; the link's handler writes and counts, `fill` closes gaps.
+void record_until_stopped(LcmLink& link, const LiveTally& tally, const RecordOptions& options,
+                          const std::function<void()>& fill) {
   const auto start = Clock::now();
+  auto filled = start;
   Progress progress(options.quiet, start);
   for (auto now = start; !stop_requested(); now = Clock::now()) {
     if (options.duration_s > 0.0 && seconds(now - start) >= options.duration_s) break;
     link.receive(50);
+    if (now - filled >= kFillEvery) {
+      fill();
+      filled = now;
+    }
     progress.show(tally, now);
   }
   const auto stopped = Clock::now();
   while (Clock::now() - stopped < kLongestDrain && link.receive(kQuiet_ms) > 0) {
   }
+  fill();
 }
+
+/// What goes into the log: everything heard, and what the flight recorder has of what was not.
+class Recording {
+ public:
+  Recording(LogWriter& log, LiveTally& tally) : log_(log), tally_(tally) {}
+
+  void take(const Message& message) {
+    log_.write(message.received_us, message.channel, message.data);
+    tally_.add(message.channel, message.data);
+    if (message.channel != kStatusChannel) return;
+    if (const auto status = decode<ligature_msg::status_t>(message.data)) filler_.note(*status);
+  }
+  void fill() {
+    filled_ += filler_.fill(tally_.sessions(), [this](const ligature_msg::tick_batch_t& batch) {
+      bytes_.resize(static_cast<std::size_t>(batch.getEncodedSize()));
+      batch.encode(bytes_.data(), 0, static_cast<int>(bytes_.size()));
+      const auto now = std::chrono::system_clock::now().time_since_epoch();
+      log_.write(std::chrono::duration_cast<std::chrono::microseconds>(now).count(), kTicksChannel, bytes_);
+      waiting_.push_back(bytes_);
+    });
+    for (const auto& bytes : waiting_) tally_.add(kTicksChannel, bytes);  // not while its gaps are being read
+    waiting_.clear();
+  }
+  void say() const {
+    if (filled_ > 0) std::printf("%lld of the ticks came from the flight recorder\n", static_cast<long long>(filled_));
+  }
+
+ private:
+  LogWriter& log_;
+  LiveTally& tally_;
+  GapFiller filler_;
+  std::vector<std::byte> bytes_;
+  std::vector<std::vector<std::byte>> waiting_;
+  std::int64_t filled_ = 0;
+};
 
 }  // namespace
 
 void record(const RecordOptions& options) {
   LiveTally tally;
-  LogWriter* open_log = nullptr;
+  std::optional<Recording> recording;  // the network comes first: without it no file is made
   LcmLink link(options.lcm_url, "LIGATURE_.*", [&](const Message& message) {
-    if (!open_log) return;
-    open_log->write(message.received_us, message.channel, message.data);
-    tally.add(message.channel, message.data);
+    if (recording) recording->take(message);
   });
   LogWriter log(options.out, options.force);
-  open_log = &log;
+  recording.emplace(log, tally);
   try {
-    record_until_stopped(link, tally, options);
+    record_until_stopped(link, tally, options, [&] { recording->fill(); });
     log.close();
   } catch (const RunFailed&) {
     std::fputs(tally.summary().c_str(), stdout);
     throw;
   }
   std::fputs(tally.summary().c_str(), stdout);
+  recording->say();
   if (tally.messages() > 0) {
     std::printf("%s: %.1f MB\n", options.out.c_str(), static_cast<double>(log.bytes()) * 1e-6);
     return;

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
+#include <cstdlib>
 #include <map>
 
 namespace ligature::app {
@@ -28,7 +29,16 @@ Exit: 0 done, 2 bad usage or bad scene, 3 a fault ended the run or the rig could
 const std::map<std::string, RtMode> kModes{
     {"enforce", RtMode::kEnforce}, {"warn", RtMode::kWarn}, {"off", RtMode::kOff}};
 
+/// Where programs keep what they know between runs (XDG base directories).
+std::string default_recorder() {
+  if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state == '/')
+    return std::string(state) + "/ligature/flight.rec";
+  const char* home = std::getenv("HOME");
+  return home != nullptr && *home == '/' ? std::string(home) + "/.local/state/ligature/flight.rec" : "none";
+}
+
 void add_run(CLI::App& run, RunOptions& o) {
+  o.recorder = default_recorder();
   run.footer(kRunHelp);
   run.add_option("--scene", o.scene, "scene file (TOML): the thread, its world, the coupling to the hands")->required();
   run.add_option("--set", o.overrides, "override a key of the scene: key=value, may be given again")
@@ -46,6 +56,12 @@ void add_run(CLI::App& run, RunOptions& o) {
   run.add_option("--watchdog-ms", o.watchdog_ms,
                  "silence that is a fault: of a hand here, of the controller in the drives, of the loop itself")
       ->check(CLI::Range(2, 10000))
+      ->capture_default_str();
+  run.add_option("--recorder", o.recorder,
+                 "flight recorder: every tick to this file, read by 'ligature-host export'; none = off")
+      ->capture_default_str();
+  run.add_option("--recorder-s", o.recorder_s, "seconds that it goes back, 0.4 MB each")
+      ->check(CLI::Range(5, 3600))
       ->capture_default_str();
   run.add_option("--wait-s", o.wait_s, "how long to wait for the hands to be there")
       ->check(CLI::Range(0.0, 3600.0))

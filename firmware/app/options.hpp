@@ -21,6 +21,8 @@ struct RunOptions {
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
   RtMode rt = RtMode::kWarn;
   int watchdog_ms = 20;
+  std::string recorder;    ///< flight recorder file; "none" for none
+  int recorder_s = 120;    ///< how far back it goes
 };
 
 struct Exit {

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <future>
 #include <thread>
 
@@ -17,6 +18,7 @@
 #include "firmware/platform/can_master.hpp"
 #include "firmware/platform/realtime.hpp"
 #include "firmware/platform/rig_bus.hpp"
+#include "firmware/telemetry/flight_recorder.hpp"
 #include "firmware/telemetry/lcm_link.hpp"
 
 namespace ligature::app {
@@ -66,15 +68,36 @@ constexpr telemetry::Names kNames{
     [](int f) { return control::name(static_cast<control::Fault>(f)); },
 };
 
-telemetry::Session session(const Plan& plan, const RunOptions& options, bool realtime) {
-  return {utime_now(),
+/// The recorder, or nothing: a rig without one is worse off, but not less safe.
+std::unique_ptr<telemetry::FlightRecorder> open_recorder(const Plan& plan, const RunOptions& options,
+                                                         std::int64_t session) {
+  if (options.recorder == "none") return nullptr;
+  const auto path = std::filesystem::absolute(options.recorder);
+  std::error_code ignored;  // open() tells
+  std::filesystem::create_directories(path.parent_path(), ignored);
+  auto opened = telemetry::FlightRecorder::open(path.string(),
+                                                {session, control::kPeriod_s, plan.scene.hands.max_force_N,
+                                                 LIGATURE_VERSION, options.scene, plan.toml},
+                                                std::int64_t{1000} * options.recorder_s);
+  if (const auto* why = std::get_if<std::string>(&opened)) {
+    spdlog::warn("{}; running without", *why);
+    return nullptr;
+  }
+  return std::move(std::get<0>(opened));
+}
+
+telemetry::Session session(const Plan& plan, const RunOptions& options, std::int64_t id, bool realtime,
+                           const telemetry::FlightRecorder* recorder) {
+  return {id,
           LIGATURE_VERSION,
           options.scene,
           plan.toml,
           control::kPeriod_s,
           plan.scene.hands.max_force_N,
           plan.scene.suture.radius_m,
-          realtime};
+          realtime,
+          true,
+          recorder != nullptr ? recorder->path() : std::string()};
 }
 
 /// The telemetry thread: until `done`, then what is left.
@@ -185,12 +208,15 @@ int run(const RunOptions& options) {
   if (const auto* refusal = std::get_if<Refusal>(&opened)) return fail(*refusal);
   const Buses& buses = std::get<Buses>(opened);
 
+  const std::int64_t id = utime_now();
+  const auto recorder = open_recorder(plan, options, id);
   const auto side = std::make_unique<RealTimeSide>(options, plan, buses, *outlets);
   const auto refused = side->prepare(ask, core);
   if (options.rt == RtMode::kEnforce && !refused.empty()) return fail({3, "--rt=enforce: " + refused.front()});
   if (const auto refusal = configure(buses, options)) return fail(*refusal);
 
-  telemetry::Telemetry telemetry(session(plan, options, ask && refused.empty()), kNames, *outlets, link);
+  telemetry::Telemetry telemetry(session(plan, options, id, ask && refused.empty(), recorder.get()), kNames, *outlets,
+                                 link, recorder.get());
   if (!link.listen([&](const auto& c) { return telemetry.handle(c, utime_now()); }) && link.is_open()) {
     spdlog::warn("LCM: cannot listen for commands on {}", options.lcm_url);
   }

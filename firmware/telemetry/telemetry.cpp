@@ -6,8 +6,8 @@
 
 namespace ligature::telemetry {
 
-Telemetry::Telemetry(Session session, const Names& names, rt::Outlets& outlets, Sink& sink)
-    : session_(std::move(session)), events_(names), outlets_(outlets), sink_(sink) {
+Telemetry::Telemetry(Session session, const Names& names, rt::Outlets& outlets, Sink& sink, FlightRecorder* recorder)
+    : session_(std::move(session)), events_(names), outlets_(outlets), sink_(sink), recorder_(recorder) {
   batch_.ticks.reserve(kTicksPerBatch);
 }
 
@@ -33,13 +33,21 @@ void Telemetry::finish(std::int64_t now_us) {
 void Telemetry::take(const rt::TickRecord& record, std::int64_t now_us) {
   misses_ += (record.flags & rt::kDeadlineMissed) != 0;
   lost_ += (record.flags & rt::kPeriodLost) != 0;
+  batch_.ticks.push_back(to_message(record));
+  if (recorder_ != nullptr) recorder_->write(batch_.ticks.back());  // first, so that whoever sees a gap can fill it
   for (auto& event : events_.next(record)) {
     event.utime = now_us;
+    if (event.kind == ligature_msg::event_t::KIND_FAULT) save_fault(event);
     sink_.send(event);
   }
-  batch_.ticks.push_back(to_message(record));
   last_ = record;
   if (batch_.ticks.size() == kTicksPerBatch) send_batch(now_us);
+}
+
+void Telemetry::save_fault(ligature_msg::event_t& event) {
+  if (recorder_ == nullptr) return;
+  const std::string file = recorder_->save_last(kTicksPerFault, event.code);
+  event.text += file.empty() ? "; the ticks before it could not be saved" : "; the ticks before it: " + file;
 }
 
 void Telemetry::send_batch(std::int64_t now_us) {
@@ -63,6 +71,7 @@ void Telemetry::send_status(std::int64_t now_us) {
   m.firmware_version = session_.firmware_version;
   m.scene_file = session_.scene_file;
   m.scene_toml = session_.scene_toml;
+  m.recorder_file = session_.recorder_file;
   m.period_s = session_.period_s;
   m.max_force_N = session_.max_force_N;
   m.tick = last_.tick;
@@ -72,6 +81,7 @@ void Telemetry::send_status(std::int64_t now_us) {
   m.periods_lost = lost_;
   m.realtime = session_.realtime ? 1 : 0;
   m.armed = last_.armed ? 1 : 0;
+  m.admitted = session_.admitted ? 1 : 0;
   sink_.send(m);
 }
 

@@ -6,6 +6,7 @@
 
 #include "firmware/rt/outlets.hpp"
 #include "firmware/telemetry/event_finder.hpp"
+#include "firmware/telemetry/flight_recorder.hpp"
 #include "ligature_msg/ack_t.hpp"
 #include "ligature_msg/command_t.hpp"
 #include "ligature_msg/event_t.hpp"
@@ -35,17 +36,23 @@ struct Session {
   double max_force_N = 0.0;
   double radius_m = 0.0;
   bool realtime = false;
+  bool admitted = true;
+  std::string recorder_file;  ///< empty: none
 };
 
-/// One thread uses it. Every record goes into exactly one batch, in order; a batch has 20 of them, the last one what
-/// is left. Shapes at 60 Hz and status at 10 Hz, events at once.
+/// One thread uses it. Every record goes into the flight recorder and then into exactly one batch, in order; a batch has
+/// 20 of them, the last one what is left. Shapes at 60 Hz and status at 10 Hz, events at once. A fault saves the ticks
+/// before it to a file of their own, which its event names.
 class Telemetry {
  public:
   static constexpr std::size_t kTicksPerBatch = 20;
   static constexpr std::int64_t kShapePeriod_us = 1'000'000 / 60;
   static constexpr std::int64_t kStatusPeriod_us = 100'000;
+  static constexpr std::int64_t kTicksPerFault = 2000;
 
-  Telemetry(Session session, const Names& names, rt::Outlets& outlets, Sink& sink);
+  /// @param recorder may be missing.
+  Telemetry(Session session, const Names& names, rt::Outlets& outlets, Sink& sink,
+            FlightRecorder* recorder = nullptr);
 
   /// Takes everything that is there. @param now_us CLOCK_REALTIME, microseconds.
   void step(std::int64_t now_us);
@@ -58,6 +65,7 @@ class Telemetry {
 
  private:
   void take(const rt::TickRecord& record, std::int64_t now_us);
+  void save_fault(ligature_msg::event_t& event);
   void send_batch(std::int64_t now_us);
   void send_shape(std::int64_t now_us);
   void send_status(std::int64_t now_us);
@@ -67,6 +75,7 @@ class Telemetry {
   EventFinder events_;
   rt::Outlets& outlets_;
   Sink& sink_;
+  FlightRecorder* recorder_;
   ligature_msg::tick_batch_t batch_{};
   rt::TickRecord last_{};
   std::int64_t misses_ = 0, lost_ = 0;

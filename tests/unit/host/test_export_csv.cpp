@@ -96,6 +96,19 @@ TEST_F(ExportCsv, LeavesNothingWhenItRefuses) {
     EXPECT_EQ(entry.path().extension(), ".lcmlog") << entry.path();
 }
 
+TEST_F(ExportCsv, TicksThatCameLateStandInTheirPlace) {
+  LogWriter log(folder_.file("a.lcmlog"), true);
+  for (const int first : {0, 40, 60, 20, 100}) test::write(log, kTicksChannel, test::batch_of(1, first, 20));
+  log.close();
+  const auto result = export_csv(folder_.file("a.lcmlog"), targets());
+  EXPECT_EQ(result.tick_rows, 100);
+  EXPECT_EQ(result.missing_ticks, "80..99");
+  const auto lines = test::lines_of(folder_.file("t.csv"));
+  ASSERT_EQ(lines.size(), 101U);
+  for (std::size_t i = 1; i < lines.size(); ++i)
+    EXPECT_TRUE(lines[i].starts_with(std::to_string(i <= 80 ? i - 1 : i + 19) + ",")) << lines[i];
+}
+
 TEST(CsvRow, NumbersReadBackToTheSameBits) {
   CsvRow row;
   for (const double value : {0.1, 1e-300, -3.3, 123456789.123456789, 5e-324}) {

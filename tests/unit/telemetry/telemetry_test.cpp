@@ -38,7 +38,7 @@ class TelemetryTest : public ::testing::Test {
   }
   std::unique_ptr<rt::Outlets> outlets = std::make_unique<rt::Outlets>();
   Memory sink;
-  Session session{42, "1.2.3", "a.toml", "text", 0.001, 3.3, 0.05, true};
+  Session session{42, "1.2.3", "a.toml", "text", 0.001, 3.3, 0.05, true, false, "flight.rec"};
   Telemetry telemetry{session, kNames, *outlets, sink};
   rt::TickRecord record;
 };
@@ -118,6 +118,8 @@ TEST_F(TelemetryTest, StatusCountsMissesAndLostPeriods) {
   EXPECT_EQ(sink.statuses[1].periods_lost, 2);
   EXPECT_EQ(sink.statuses[1].scene_toml, "text");
   EXPECT_EQ(sink.statuses[1].realtime, 1);
+  EXPECT_EQ(sink.statuses[1].admitted, 0);
+  EXPECT_EQ(sink.statuses[1].recorder_file, "flight.rec");
 }
 
 TEST_F(TelemetryTest, EventsAreReadOutOfTheRecords) {

@@ -1,0 +1,78 @@
+#pragma once
+// Layout of a flight recorder file: a header, then a ring of slots, each with one tick. Little-endian.
+//
+//   0       Header, kHeaderBytes, with a CRC of its own
+//   + i S   slot i of S = slot_bytes: SlotHead, then `bytes` of payload: a tick_t in LCM encoding, without its hash
+//
+// Record number q (from 1) lies in slot (q - 1) mod slots. The CRC of a slot covers number, length and payload, so that
+// a slot that was being written when everything stopped, or that the disk lost, is seen as such: at most one of them by
+// the death of the writer, whatever its moment. Nothing else is ever rewritten, so there is no index to repair.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string_view>
+#include <type_traits>
+
+#include "protocol/recorder/crc32.hpp"
+
+namespace ligature::recorder {
+
+inline constexpr std::array<char, 8> kMagic{'L', 'G', 'F', 'L', 'I', 'G', 'H', 'T'};
+inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::size_t kHeaderBytes = 65536;
+inline constexpr std::int64_t kMaxSlots = 4'000'000;
+inline constexpr std::uint32_t kMaxSlotBytes = 4096;
+
+struct Header {
+  std::array<char, 8> magic = kMagic;
+  std::uint32_t version = kVersion;
+  std::uint32_t slot_bytes = 0;
+  std::int64_t slots = 0;
+  std::int64_t tick_hash = 0;  ///< LCM's hash of tick_t: a changed message has another one
+  std::int64_t session = 0;    ///< as in tick_batch_t: CLOCK_REALTIME at the run's start, microseconds
+  double period_s = 0.0;
+  double max_force_N = 0.0;
+  std::int32_t fault = 0;      ///< in a file saved with a fault: its number; else 0
+  std::uint32_t toml_bytes = 0;
+  std::array<char, 32> firmware_version{};
+  std::array<char, 256> scene_file{};
+  std::array<char, 61440> scene_toml{};  ///< cut off when longer
+  std::uint32_t crc = 0;                 ///< of everything before it
+};
+static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) <= kHeaderBytes);
+
+struct SlotHead {
+  std::uint64_t sequence = 0;  ///< 0: never written
+  std::uint32_t bytes = 0;
+  std::uint32_t crc = 0;
+};
+static_assert(sizeof(SlotHead) == 16);
+
+[[nodiscard]] inline std::uint32_t crc_of(const Header& header) noexcept {
+  return crc32(std::as_bytes(std::span(&header, 1)).first(offsetof(Header, crc)));
+}
+
+[[nodiscard]] inline std::uint32_t crc_of(const SlotHead& head, std::span<const std::byte> payload) noexcept {
+  return crc32(payload, crc32(std::as_bytes(std::span(&head, 1)).first(offsetof(SlotHead, crc))));
+}
+
+[[nodiscard]] constexpr std::size_t slot_of(std::uint64_t sequence, std::int64_t slots) noexcept {
+  return static_cast<std::size_t>((sequence - 1) % static_cast<std::uint64_t>(slots));
+}
+
+/// The room that a tick needs, rounded up to whole cache lines.
+[[nodiscard]] constexpr std::uint32_t slot_bytes_for(std::size_t payload) noexcept {
+  return static_cast<std::uint32_t>((sizeof(SlotHead) + payload + 63) / 64 * 64);
+}
+
+/// Copies as much as fits, zero-terminated.
+template <std::size_t N>
+void put_text(std::array<char, N>& to, std::string_view text) noexcept {
+  to = {};
+  std::memcpy(to.data(), text.data(), text.size() < N ? text.size() : N - 1);
+}
+
+}  // namespace ligature::recorder
