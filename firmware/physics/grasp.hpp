@@ -6,9 +6,9 @@
 namespace ligature::physics {
 
 /// Virtual coupling between a tool and the node it holds (paper III.A.2), thread side.
-///   f = K (p_T - p_G) + B (v_T - v_G) on the node, taken at the end of the step:
-///   f = (K (p_T - p - dt v) + B (v_T - v)) / (1 + (dt B + dt^2 K) / m),
-///   so that no K, B, m or step makes it unstable; at Table I the divisor is 1.14.
+///   f = K' (p_T - p_G) + B' (v_T - v_G) on the node;  B' = B / (1 + dt B / m),  K' = min(K, m / (2 dt^2))
+/// B' is the damper taken at the end of the step; K' is K unless K is out of proportion (Table I: dt^2 K / m = 0.024). So
+/// neither a strong damper nor a stiff spring is unstable, and a hand at rest feels exactly K times the distance.
 /// The hand feels -f.
 struct Coupling {
   double N_per_m = 0.0;
@@ -19,8 +19,9 @@ struct Coupling {
 [[nodiscard]] inline V3<double> coupling_force_N(const Coupling& c, double inverse_mass_per_kg, double step_s,
                                                  const V3<double>& p_WT, const V3<double>& v_WT, const V3<double>& p,
                                                  const V3<double>& v) noexcept {
-  const double divisor = 1.0 + (step_s * c.N_s_per_m + step_s * step_s * c.N_per_m) * inverse_mass_per_kg;
-  return (1.0 / divisor) * (c.N_per_m * (p_WT - p - step_s * v) + c.N_s_per_m * (v_WT - v));
+  const double spring = smaller(c.N_per_m, 0.5 / (inverse_mass_per_kg * step_s * step_s));
+  const double damper = c.N_s_per_m / (1.0 + step_s * c.N_s_per_m * inverse_mass_per_kg);
+  return spring * (p_WT - p) + damper * (v_WT - v);
 }
 
 /// What each hand holds. A hand that closes takes the nearest node that is neither fixed nor held; one that opens lets go.

@@ -21,16 +21,15 @@ constexpr double kShortest = 1e-9;  // of rest length: a shorter segment counts 
 // projections is at most the identity when each takes a quarter (1 / (1 + 4 k dt g^T M^-1 g)).
 constexpr double kColours = 4.0;
 
-/// Directions, lengths and the right-hand side of the stretch impulses: dt T_i + gain_i rate_i.
+/// Directions and lengths, the springs' stretch impulses dt T_i, and how much a rate adds to each: gain_i.
 template <Terms T>
-void measure_segments(const ThreadModel& m, const ThreadState& s, const Lane3& rate_v, InternalWorkspace& w) noexcept {
+void measure_segments(const ThreadModel& m, const ThreadState& s, InternalWorkspace& w) noexcept {
   using Law = std::conditional_t<T.quadratic_stretch, QuadraticStretchLaw, LinearStretch>;
   const double dt = m.step_s;
   Pack most = splat(-1.0), energy = splat(0.0);
   for (int i = 0; i < m.nodes - 1; i += kLanes) {
     const auto seg = segment_of<Pack>(s.p.pack(i), s.p.pack(i + 1), splat(kShortest * m.rest_m));
     const Pack strain = seg.length_m * (1.0 / m.rest_m) - 1.0;
-    const Pack rate = stretch_rate(seg.u, rate_v.pack(i), rate_v.pack(i + 1));
     most = larger(most, strain);
     energy += m.segment.pack(i) * Law::energy_J(strain, m.stretch_N, m.rest_m);
     w.u.set(i, seg.u);
@@ -39,33 +38,38 @@ void measure_segments(const ThreadModel& m, const ThreadState& s, const Lane3& r
     // Model 5 gets stiffer without bound as it stretches, so there the spring is implicit as well.
     if constexpr (T.quadratic_stretch && !T.explicit_damping)
       gain += dt * dt * Law::slope_N_per_m(strain, m.stretch_N, m.rest_m);
-    w.pull.set(i, dt * Law::tension_N(strain, m.stretch_N) + gain * rate);
-    if constexpr (!T.explicit_damping) {
-      w.gain.set(i, gain);
-      w.diag.set(i, 1.0 + gain * (m.inverse_mass_per_kg.pack(i) + m.inverse_mass_per_kg.pack(i + 1)));
-    }
+    w.pull.set(i, dt * Law::tension_N(strain, m.stretch_N));
+    w.gain.set(i, gain);
   }
   w.max_strain = largest(most);
   w.stretch_J = sum(energy);
 }
 
-/// Makes the pulls right for the rates they leave behind, then applies them.
+/// Adds the damper to the pulls, right for the rates that the pulls leave behind, and applies them.
+///   pull_i = dt T_i + gain_i rate_i(v after)
 template <Terms T>
-void apply_stretch(const ThreadModel& m, ThreadState& s, InternalWorkspace& w) noexcept {
-  if constexpr (!T.explicit_damping) {
-    for (int i = 1; i < m.nodes - 1; i += kLanes)
-      w.link.set(i, m.inverse_mass_per_kg.pack(i) * dot(w.u.pack(i - 1), w.u.pack(i)));
-    solve_tridiagonal(m.nodes - 1, w.diag.data(), w.gain.data(), w.link.data(), w.pull.data());
+void apply_stretch(const ThreadModel& m, ThreadState& s, const Lane3& rate_v, InternalWorkspace& w) noexcept {
+  const Lane& mass = m.inverse_mass_per_kg;
+  for (int i = 0; i < m.nodes - 1; i += kLanes) {
+    const V3<Pack> u = w.u.pack(i);
+    const Pack gain = w.gain.pack(i);
+    w.pull.set(i, w.pull.pack(i) + gain * stretch_rate(u, rate_v.pack(i), rate_v.pack(i + 1)));
+    if constexpr (!T.explicit_damping) {
+      w.diag.set(i, 1.0 + gain * (mass.pack(i) + mass.pack(i + 1)));
+      w.link.set(i, mass.pack(i) * dot(w.u.pack(i - 1), u));
+    }
   }
+  if constexpr (!T.explicit_damping)
+    solve_tridiagonal(m.nodes - 1, w.diag.data(), w.gain.data(), w.link.data(), w.pull.data());
   for (int i = 0; i < m.nodes; i += kLanes) {
-    const Pack k = m.inverse_mass_per_kg.pack(i);
+    const Pack k = mass.pack(i);
     s.v.set(i, s.v.pack(i) + (k * w.pull.pack(i)) * w.u.pack(i) - (k * w.pull.pack(i - 1)) * w.u.pack(i - 1));
   }
 }
 
-/// Angles, axes and gradients of all bends, and the right-hand side of the bend impulses: dt (M_spring + M_damper).
+/// Angles, axes and gradients of all bends, and the springs' bend impulses dt M_i.
 template <Terms T>
-void measure_bends(const ThreadModel& m, const Lane3& rate_v, InternalWorkspace& w) noexcept {
+void measure_bends(const ThreadModel& m, InternalWorkspace& w) noexcept {
   const double dt = m.step_s;
   Pack energy = splat(0.0);
   for (int i = 1; i < m.nodes - 1; i += kLanes) {
@@ -78,39 +82,40 @@ void measure_bends(const ThreadModel& m, const Lane3& rate_v, InternalWorkspace&
       w.sine.set(i, b.sine);
       w.cosine.set(i, b.cosine);
     }
-    Pack moment = bend_moment_N_m(b.angle, m.bend_N_m);
-    if constexpr (T.bend_damper) {
-      const Pack rate = bend_rate(b.grad_left, b.grad_right, rate_v.pack(i - 1), rate_v.pack(i), rate_v.pack(i + 1));
-      moment += bend_damper_moment_N_m(rate, m.bend_N_m_s);
-    }
-    w.turn.set(i, dt * moment);
+    w.turn.set(i, dt * bend_moment_N_m(b.angle, m.bend_N_m));
   }
   w.bend_J = sum(energy);
 }
 
-/// Matrix 1 + k dt G M^-1 G^T of the implicit bend damper (G: gradients of all angles), and its solution.
-void solve_turns(const ThreadModel& m, InternalWorkspace& w) noexcept {
-  const double k = m.bend_N_m_s * m.step_s;
-  const Lane& mass = m.inverse_mass_per_kg;
-  for (int i = 1; i < m.nodes - 1; i += kLanes) {
-    const V3<Pack> a = w.left.pack(i), c = w.right.pack(i), b = -(a + c);
-    const V3<Pack> a1 = w.left.pack(i + 1), b1 = -(a1 + w.right.pack(i + 1)), a2 = w.left.pack(i + 2);
-    const Pack w0 = mass.pack(i - 1), w1 = mass.pack(i), w2 = mass.pack(i + 1);
-    w.diag.set(i, 1.0 + k * (w0 * dot(a, a) + w1 * dot(b, b) + w2 * dot(c, c)));
-    w.one.set(i, k * (w1 * dot(b, a1) + w2 * dot(c, b1)));
-    w.two.set(i, k * (w2 * dot(c, a2)));
-  }
-  solve_pentadiagonal(m.nodes - 2, w.diag.data() + 1, w.one.data() + 1, w.two.data() + 1, w.turn.data() + 1);
-}
-
-template <Terms T>
-void apply_bend(const ThreadModel& m, ThreadState& s, InternalWorkspace& w) noexcept {
-  if constexpr (T.bend_damper && !T.explicit_damping) solve_turns(m, w);
+/// Velocities changed by the bend impulses in w.turn.
+void apply_turns(const ThreadModel& m, ThreadState& s, const InternalWorkspace& w) noexcept {
   for (int i = 0; i < m.nodes; i += kLanes) {
     const Pack before = w.turn.pack(i - 1), here = w.turn.pack(i), after = w.turn.pack(i + 1);
     const V3<Pack> push = before * w.right.pack(i - 1) - here * (w.left.pack(i) + w.right.pack(i)) + after * w.left.pack(i + 1);
     s.v.set(i, s.v.pack(i) + m.inverse_mass_per_kg.pack(i) * push);
   }
+}
+
+/// Impulses of the bend dampers: explicit -k dt rate, or, implicit, the solution of the pentadiagonal system
+///   (1 + k dt G M^-1 G^T) turn = -k dt rate,   G: gradients of all angles.
+template <Terms T>
+void damp_bends(const ThreadModel& m, ThreadState& s, const Lane3& rate_v, InternalWorkspace& w) noexcept {
+  const double k = m.bend_N_m_s * m.step_s;
+  const Lane& mass = m.inverse_mass_per_kg;
+  for (int i = 1; i < m.nodes - 1; i += kLanes) {
+    const V3<Pack> a = w.left.pack(i), c = w.right.pack(i);
+    w.turn.set(i, bend_damper_moment_N_m(bend_rate(a, c, rate_v.pack(i - 1), rate_v.pack(i), rate_v.pack(i + 1)), k));
+    if constexpr (!T.explicit_damping) {
+      const V3<Pack> b = -(a + c), a1 = w.left.pack(i + 1), b1 = -(a1 + w.right.pack(i + 1)), a2 = w.left.pack(i + 2);
+      const Pack w0 = mass.pack(i - 1), w1 = mass.pack(i), w2 = mass.pack(i + 1);
+      w.diag.set(i, 1.0 + k * (w0 * dot(a, a) + w1 * dot(b, b) + w2 * dot(c, c)));
+      w.one.set(i, k * (w1 * dot(b, a1) + w2 * dot(c, b1)));
+      w.two.set(i, k * (w2 * dot(c, a2)));
+    }
+  }
+  if constexpr (!T.explicit_damping)
+    solve_pentadiagonal(m.nodes - 2, w.diag.data() + 1, w.one.data() + 1, w.two.data() + 1, w.turn.data() + 1);
+  apply_turns(m, s, w);
 }
 
 /// Impulse of a damper with coefficient k (times dt) at a rate, given its mobility g^T M^-1 g.
@@ -137,54 +142,59 @@ void measure_swivel(const ThreadModel& m, const Lane3& rate_v, InternalWorkspace
   }
 }
 
-/// Turns swivel rates into impulses along the axes of the two bends that a dihedral joins.
+/// Turns swivel rates into impulses along the axes of the two bends that a dihedral joins: bend i is the first of dihedral
+/// i (swing_left, swing_right, overwriting its rates, which nobody needs any more) and the second of dihedral i - 1.
 template <Terms T>
 void couple_dihedrals(const ThreadModel& m, InternalWorkspace& w) noexcept {
   const Lane& mass = m.inverse_mass_per_kg;
   const Pack k = splat(m.swivel_N_s * m.rest_m * m.step_s);
-  const auto at = [&w](int i) {
-    return dihedral_of(w.sine.pack(i), w.cosine.pack(i), w.sine.pack(i + 1), w.cosine.pack(i + 1), w.inv_length.pack(i - 1),
-                       w.inv_length.pack(i), w.inv_length.pack(i + 1));
-  };
-  for (int i = 1; i < m.nodes - 2; i += kLanes) {
-    const Dihedral<Pack> d = at(i);
+  for (int i = 1; i < m.nodes - 1; i += kLanes) {
+    const auto d = dihedral_of(w.sine.pack(i), w.cosine.pack(i), w.sine.pack(i + 1), w.cosine.pack(i + 1),
+                               w.inv_length.pack(i - 1), w.inv_length.pack(i), w.inv_length.pack(i + 1));
     const Pack rate = dihedral_rate(d, {w.swing_left.pack(i), w.swing_right.pack(i)},
                                     {w.swing_left.pack(i + 1), w.swing_right.pack(i + 1)});
     const Pack mobility = dihedral_mobility(d, dot(w.axis.pack(i), w.axis.pack(i + 1)), mass.pack(i - 1), mass.pack(i),
                                             mass.pack(i + 1), mass.pack(i + 2));
-    w.dihedral.set(i, damper_impulse<T>(k, rate, mobility));
-  }
-  // Bend i is the first of dihedral i and the second of dihedral i - 1.
-  for (int i = 1; i < m.nodes - 1; i += kLanes) {
-    const Dihedral<Pack> first = at(i), second = at(i - 1);
-    const Pack here = w.dihedral.pack(i), before = w.dihedral.pack(i - 1);
-    w.swing_left.set(i, here * first.p0 + before * second.q1);
-    w.swing_right.set(i, here * first.p2 + before * second.q3);
-  }
-}
-
-void apply_swivel(const ThreadModel& m, ThreadState& s, const InternalWorkspace& w) noexcept {
-  for (int i = 0; i < m.nodes; i += kLanes) {
-    const V3<Pack> push = w.swing_right.pack(i - 1) * w.axis.pack(i - 1) -
-                          (w.swing_left.pack(i) + w.swing_right.pack(i)) * w.axis.pack(i) +
-                          w.swing_left.pack(i + 1) * w.axis.pack(i + 1);
-    s.v.set(i, s.v.pack(i) + m.inverse_mass_per_kg.pack(i) * push);
+    const Pack impulse = damper_impulse<T>(k, rate, mobility);
+    w.swing_left.set(i, impulse * d.p0);
+    w.swing_right.set(i, impulse * d.p2);
+    w.next_left.set(i, impulse * d.q1);
+    w.next_right.set(i, impulse * d.q3);
   }
 }
 
 template <Terms T>
+void apply_swivel(const ThreadModel& m, ThreadState& s, const InternalWorkspace& w) noexcept {
+  const auto left = [&w](int i) {
+    if constexpr (T.swivel_internal) return w.swing_left.pack(i) + w.next_left.pack(i - 1);
+    return w.swing_left.pack(i);
+  };
+  const auto right = [&w](int i) {
+    if constexpr (T.swivel_internal) return w.swing_right.pack(i) + w.next_right.pack(i - 1);
+    return w.swing_right.pack(i);
+  };
+  for (int i = 0; i < m.nodes; i += kLanes) {
+    const V3<Pack> push = right(i - 1) * w.axis.pack(i - 1) - (left(i) + right(i)) * w.axis.pack(i) +
+                          left(i + 1) * w.axis.pack(i + 1);
+    s.v.set(i, s.v.pack(i) + m.inverse_mass_per_kg.pack(i) * push);
+  }
+}
+
+/// Springs first, then dampers: at rest the dampers then see velocities of zero, so that damping cannot shift a balance.
+template <Terms T>
 void internal_step(const ThreadModel& m, ThreadState& s, const Lane3& before_v, InternalWorkspace& w) noexcept {
   const Lane3& rate_v = T.explicit_damping ? before_v : s.v;
-  measure_segments<T>(m, s, rate_v, w);
-  apply_stretch<T>(m, s, w);
+  measure_segments<T>(m, s, w);
   if constexpr (T.bend) {
-    measure_bends<T>(m, rate_v, w);
-    apply_bend<T>(m, s, w);
+    measure_bends<T>(m, w);
+    apply_turns(m, s, w);
   }
+  apply_stretch<T>(m, s, rate_v, w);
+  if constexpr (T.bend_damper) damp_bends<T>(m, s, rate_v, w);
   if constexpr (T.swivel_internal || T.swivel_paper) {
     measure_swivel<T>(m, rate_v, w);
     if constexpr (T.swivel_internal) couple_dihedrals<T>(m, w);
-    apply_swivel(m, s, w);
+    apply_swivel<T>(m, s, w);
   }
 }
 

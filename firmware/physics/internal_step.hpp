@@ -15,7 +15,7 @@ struct Terms {
   bool explicit_damping = false;
 };
 
-/// Applies the impulses of one step's internal forces to the velocities: stretch, bend, swivel, in this order.
+/// Applies the impulses of one step's internal forces to the velocities: springs, then stretch, bend and swivel dampers.
 /// Dampers are implicit: each kind solves for impulses that are right for the velocities they leave behind (stretch: a
 /// tridiagonal system, bend: a pentadiagonal one; swivel: one weighted Jacobi step that never overshoots). So they take
 /// energy out at any coefficient and any step, and conserve both momenta. With explicit_damping they act as printed.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "firmware/physics/build.hpp"
@@ -9,6 +10,7 @@
 #include "firmware/physics/obstacles.hpp"
 #include "firmware/physics/paper_contact.hpp"
 #include "firmware/physics/propagation.hpp"
+#include "firmware/physics/rod/rod_simulation.hpp"
 
 namespace ligature::physics {
 namespace {
@@ -25,6 +27,7 @@ bool in_range(const V3<double>& a) noexcept {
 }  // namespace
 
 struct Simulation::Impl {
+  std::optional<rod::RodSimulation> rod;  // model "rod": everything below stays empty
   ThreadModel model;
   ThreadState initial, state, before;  // before: of the last finite tick
   InternalWorkspace work;
@@ -48,6 +51,7 @@ struct Simulation::Impl {
   std::vector<Vec3> nodes_W, velocities_W;  // made when asked for
   bool nodes_stale = true, velocities_stale = true;
 
+  std::array<V3<double>, 2> hand_forces_N(const std::array<ToolInput, 2>& tools) noexcept;
   void add_external(const std::array<ToolInput, 2>& tools) noexcept;
   double integrate(const Lane3& v) noexcept;
   void step(const std::array<ToolInput, 2>& tools) noexcept;
@@ -61,24 +65,33 @@ struct Simulation::Impl {
   void restart() noexcept;
 };
 
-/// Gravity, drag, loads and hands: everything that is not the thread's own.
+/// Force of each hand's coupling on its node, from the motion at the beginning of the step.
+std::array<V3<double>, 2> Simulation::Impl::hand_forces_N(const std::array<ToolInput, 2>& tools) noexcept {
+  std::array<V3<double>, 2> force{};
+  for (std::size_t h = 0; h < 2; ++h) {
+    const int node = grasp.node(static_cast<int>(h));
+    if (node < 0) continue;
+    force[h] = coupling_force_N(coupling, model.inverse_mass_per_kg[node], model.step_s, to_v3(tools[h].p_WT),
+                                to_v3(tools[h].v_WT), state.p.at(node), state.v.at(node));
+    hands[h].f_W -= (1.0 / substeps) * to_vec3(force[h]);
+  }
+  return force;
+}
+
+/// Drag, gravity, loads and hands: everything that is not the thread's own. Each acts on the motion that there was, none on
+/// what another one is adding, so that no damping shifts a balance.
 void Simulation::Impl::add_external(const std::array<ToolInput, 2>& tools) noexcept {
   const double dt = model.step_s;
+  const auto force = hand_forces_N(tools);
   const Pack keep = splat(1.0 / (1.0 + dt * model.drag_per_s));
   const V3<Pack> fall{splat(dt * gravity.x), splat(dt * gravity.y), splat(dt * gravity.z)};
-  for (int i = 0; i < model.nodes; i += kLanes)
-    state.v.set(i, keep * (state.v.pack(i) + model.free.pack(i) * fall));
-  for (const auto& [node, force_N] : loads)
-    state.v.put(node, state.v.at(node) + (dt * model.inverse_mass_per_kg[node]) * force_N);
-  for (int h = 0; h < 2; ++h) {
-    const int node = grasp.node(h);
-    if (node < 0) continue;
-    const ToolInput& tool = tools[static_cast<std::size_t>(h)];
-    const double w = model.inverse_mass_per_kg[node];
-    const V3<double> f = coupling_force_N(coupling, w, dt, to_v3(tool.p_WT), to_v3(tool.v_WT), state.p.at(node), state.v.at(node));
-    state.v.put(node, state.v.at(node) + (dt * w) * f);
-    hands[static_cast<std::size_t>(h)].f_W -= (1.0 / substeps) * to_vec3(f);
-  }
+  for (int i = 0; i < model.nodes; i += kLanes) state.v.set(i, keep * state.v.pack(i) + model.free.pack(i) * fall);
+  const auto push = [this, dt](int node, const V3<double>& f) {
+    state.v.put(node, state.v.at(node) + (dt * model.inverse_mass_per_kg[node]) * f);
+  };
+  for (const auto& [node, force_N] : loads) push(node, force_N);
+  for (std::size_t h = 0; h < 2; ++h)
+    if (const int node = grasp.node(static_cast<int>(h)); node >= 0) push(node, force[h]);
 }
 
 /// Moves the nodes and sums up energies. @return the largest speed, m/s; NaN if any is.
@@ -200,6 +213,13 @@ void Simulation::Impl::restart() noexcept {
 }
 
 std::variant<Simulation, std::string> Simulation::make(const scene::Scene& scene) {
+  if (scene.suture.model == scene::Model::kRod) {
+    auto rod = rod::RodSimulation::make(scene);
+    if (auto* why = std::get_if<std::string>(&rod)) return std::move(*why);
+    auto impl = std::make_unique<Impl>();
+    impl->rod.emplace(std::get<rod::RodSimulation>(std::move(rod)));
+    return Simulation(std::move(impl));
+  }
   auto built = build_thread(scene);
   if (auto* why = std::get_if<std::string>(&built)) return std::move(*why);
   auto& thread = std::get<BuiltThread>(built);
@@ -238,6 +258,7 @@ std::variant<Simulation, std::string> Simulation::make(const scene::Scene& scene
 
 void Simulation::tick(const std::array<ToolInput, 2>& tools) noexcept {
   Impl& s = *impl_;
+  if (s.rod) return s.rod->tick(tools);
   if (!s.health.finite) return;
   s.remember();
   s.grasp.update(tools, s.model, s.state);
@@ -254,12 +275,14 @@ void Simulation::tick(const std::array<ToolInput, 2>& tools) noexcept {
 }
 
 void Simulation::reset() noexcept {
+  if (impl_->rod) return impl_->rod->reset();
   impl_->state = impl_->initial;
   impl_->restart();
 }
 
 void Simulation::set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept {
   Impl& s = *impl_;
+  if (s.rod) return s.rod->set_state(p_W, v_W);
   for (int i = 0; i < s.model.nodes; ++i) {
     if (s.model.free[i] == 0.0) continue;
     const auto k = static_cast<std::size_t>(i);
@@ -271,15 +294,19 @@ void Simulation::set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W)
 }
 
 std::span<const Vec3> Simulation::nodes_W() const noexcept {
+  if (impl_->rod) return impl_->rod->nodes_W();
   Impl::unpack(impl_->state.p, impl_->nodes_W, impl_->nodes_stale);
   return impl_->nodes_W;
 }
 std::span<const Vec3> Simulation::velocities_W() const noexcept {
+  if (impl_->rod) return impl_->rod->velocities_W();
   Impl::unpack(impl_->state.v, impl_->velocities_W, impl_->velocities_stale);
   return impl_->velocities_W;
 }
-const HandContact& Simulation::hand(Hand h) const noexcept { return impl_->hands[static_cast<std::size_t>(h)]; }
-const Diagnostics& Simulation::diagnostics() const noexcept { return impl_->health; }
+const HandContact& Simulation::hand(Hand h) const noexcept {
+  return impl_->rod ? impl_->rod->hand(h) : impl_->hands[static_cast<std::size_t>(h)];
+}
+const Diagnostics& Simulation::diagnostics() const noexcept { return impl_->rod ? impl_->rod->diagnostics() : impl_->health; }
 
 Simulation::Simulation(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
 Simulation::Simulation(const Simulation& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}

@@ -38,15 +38,15 @@ struct InternalWorkspace {
   Lane3 axis, left, right;     ///< of each bend; see Bend
   Lane sine, cosine;
   Lane turn;                   ///< bend impulse, N m s
-  Lane swing_left, swing_right;  ///< swivel rates, then swivel impulses along the axis
-  Lane dihedral;
+  Lane swing_left, swing_right;  ///< swivel rates, then swivel impulses along the axis, at the nodes before and after
+  Lane next_left, next_right;    ///< what the dihedral adds to those of the next bend
   double max_strain = 0.0;
   double stretch_J = 0.0, bend_J = 0.0;
 
   InternalWorkspace() = default;
   explicit InternalWorkspace(int n)
       : u(n), inv_length(n), pull(n), gain(n), link(n), diag(n), one(n), two(n), axis(n), left(n), right(n), sine(n), cosine(n), turn(n),
-        swing_left(n), swing_right(n), dihedral(n) {}
+        swing_left(n), swing_right(n), next_left(n), next_right(n) {}
 };
 
 /// Repeats the last node behind the last one, so that the segment that is not there has length zero and no direction.

@@ -34,7 +34,7 @@ Simulation coil(int nodes, const std::vector<std::string>& extra) {
     p.emplace_back(turn_m * std::cos(angle), turn_m * std::sin(angle), 2.05 * radius_m * angle / 6.283185307179586);
   }
   std::vector<Vec3> v;  // squeezed along the axis, so that turns meet
-  for (const Vec3& x : p) v.emplace_back(0.0, 0.0, 0.2 * (p.back().z() * 0.5 - x.z()) / p.back().z());
+  for (const Vec3& x : p) v.emplace_back(0.0, 0.0, 4.0 * radius_m * (p.back().z() * 0.5 - x.z()) / p.back().z());
   sim.set_state(p, v);
   return sim;
 }

@@ -1,0 +1,119 @@
+// Equations (1)-(3), (16)-(22) and the separation of V.A as pure functions, printed and corrected.
+#include <gtest/gtest.h>
+
+#include "firmware/physics/contact_row.hpp"
+#include "firmware/physics/friction.hpp"
+#include "firmware/physics/gravity.hpp"
+#include "firmware/physics/propagation.hpp"
+#include "firmware/physics/repulsion.hpp"
+#include "firmware/physics/separation.hpp"
+#include "tests/unit/physics/random_states.hpp"
+
+namespace ligature::physics {
+namespace {
+
+using test::V;
+
+TEST(Gravity, IsMassTimesItsVector) {
+  const V f = gravity_N(0.05, V{0.0, 0.0, -9.8});
+  EXPECT_DOUBLE_EQ(f.z, -0.49);
+}
+
+TEST(Repulsion, PushesWhenOverlappingAndNeverPullsWhenClamped) {
+  const Repulsion k;
+  EXPECT_DOUBLE_EQ(repulsion_N(k, 0.05, 0.08, 0.0), 2.0);
+  EXPECT_DOUBLE_EQ(repulsion_N(k, 0.05, 0.08, -1.0), 7.0);
+  EXPECT_DOUBLE_EQ(repulsion_N(k, 0.05, 0.08, 1.0), 0.0);           // separating: the damper would pull
+  EXPECT_DOUBLE_EQ(repulsion_N(k, 0.05, 0.08, 1.0, false), -3.0);  // as printed
+}
+
+TEST(CoulombFriction, PointsAgainstTheSlipWithMuTimesTheNormalForce) {
+  test::Random random(1);
+  for (int k = 0; k < 2000; ++k) {
+    const V v = random.vector(), n = (1.0 / norm(v)) * random.vector();
+    const V normal = (1.0 / norm(n)) * n;
+    const V f = coulomb_friction_N(0.3, 2.0, v, normal);
+    EXPECT_NEAR(norm(f), 0.6, 1e-12);
+    EXPECT_NEAR(dot(f, normal), 0.0, 1e-12);
+    EXPECT_LE(dot(f, v), 0.0);
+  }
+  EXPECT_EQ(norm(coulomb_friction_N(0.3, 2.0, {0, 0, 1}, {0, 0, 1})), 0.0);  // no slip, no 0/0
+}
+
+TEST(CappedFriction, StopsSlipButNeverReversesIt) {
+  test::Random random(2);
+  for (int k = 0; k < 2000; ++k) {
+    const V v = random.vector(), normal = {0, 0, 1};
+    const double m = random.log_in(1e-3, 1e3), i = random.log_in(1e-3, 1e3), mu = random.in(0.0, 10.0);
+    const V after = v + (1.0 / m) * capped_friction_N_s(mu, 0.8 * mu, i, m, v, normal);
+    EXPECT_GE(dot(slip_velocity(after, normal), slip_velocity(v, normal)), -1e-12);
+    EXPECT_LE(norm(slip_velocity(after, normal)), norm(slip_velocity(v, normal)) + 1e-12);
+    EXPECT_LE(m * norm(after - v), std::max(mu, 0.8 * mu) * i * (1 + 1e-12));
+  }
+}
+
+TEST(ViscousFriction, IsProportionalToTheSlipAlone) {
+  const V f = viscous_friction_N(2.0, {1, 0, 5}, {0, 0, 1});
+  EXPECT_DOUBLE_EQ(f.x, -2.0);
+  EXPECT_DOUBLE_EQ(f.z, 0.0);
+}
+
+TEST(ImpulseResponse, ConservesBothMomentaAndGivesOneToTwoTimesTheImpulse) {
+  test::Random random(3);
+  for (int k = 0; k < 2000; ++k) {
+    const auto s = random.nodes(4);
+    const double a = random.in(0, 1), b = random.in(0, 1), i = random.in(0, 1), m = random.in(0.01, 1);
+    const V n = (1.0 / norm(s.p[0])) * s.p[0];
+    const Shares share = shares(a, b);
+    const double part[4] = {share.a, share.b, share.c, share.d};
+    const double applied = bridson_impulse_N_s(i, a, b);
+    EXPECT_GE(applied, i * (1 - 1e-12));
+    EXPECT_LE(applied, 2 * i * (1 + 1e-12));
+    V linear{0, 0, 0}, angular{0, 0, 0};
+    for (std::size_t e = 0; e < 4; ++e) {
+      const V change = velocity_after(s.v[e], part[e], applied, 1.0 / m, n) - s.v[e];
+      linear = linear + m * change, angular = angular + m * cross(s.p[e], change);
+    }
+    // C and E are apart along n in a contact, so equal impulses there have no torque; here: torque is exactly theirs.
+    const V c = (1 - a) * s.p[0] + a * s.p[1], e = (1 - b) * s.p[2] + b * s.p[3];
+    EXPECT_LE(norm(linear), 1e-12);
+    EXPECT_LE(norm(angular - cross(c - e, applied * n)), 1e-12);
+  }
+}
+
+TEST(Separation, OpensTheGapToTheSafetyMarginAndKeepsTheCentreOfMass) {
+  test::Random random(4);
+  for (int k = 0; k < 2000; ++k) {
+    const double a = random.in(0, 1), b = random.in(0, 1), d = random.in(0, 0.1), eps = 1e-3;
+    const Shares s = shares(a, b), w{20, 20, 20, 20};
+    const double each = separation_m(0.05, d, eps);
+    const Shares f = separating_shifts(each, s, w);
+    EXPECT_NEAR(s.a * f.a + s.b * f.b + s.c * f.c + s.d * f.d, 0.1 - d + eps, 1e-12);  // C moves away from E by this much
+    EXPECT_NEAR(f.a + f.b + f.c + f.d, 0.0, 1e-12);
+  }
+  EXPECT_EQ(separation_m(0.05, 0.11, 1e-3), 0.0);
+}
+
+TEST(Propagation, PassesTheAxialPartWhereThePrintedEquationPassesTheOther) {
+  const V f{3, 0, 4}, e{0, 0, 1};
+  EXPECT_DOUBLE_EQ(axial_part_N(f, e).z, 4.0);
+  EXPECT_DOUBLE_EQ(printed_propagation_N(f, e).x, 3.0);  // across a taut thread: wrong
+  EXPECT_DOUBLE_EQ(printed_propagation_N(f, e).z, 0.0);
+  EXPECT_EQ(norm(printed_propagation_N({0, 0, 4}, e)), 0.0);
+}
+
+// The cone projection is what a contact does with friction: sticking inside, sliding outside, nothing when pulled apart.
+TEST(FrictionCone, SticksInsideSlidesOutsideAndNeverPulls) {
+  const Pack n{0, 0, 1, 0};
+  const Pack inside = project_on_cone(Pack{0.2, 0, 1, 0}, n, 0.3, 0.25);
+  EXPECT_DOUBLE_EQ(inside[0], 0.2);
+  const Pack outside = project_on_cone(Pack{0.4, 0, 1, 0}, n, 0.3, 0.25);
+  EXPECT_DOUBLE_EQ(outside[0], 0.25);
+  EXPECT_DOUBLE_EQ(outside[2], 1.0);
+  const Pack pulled = project_on_cone(Pack{0.4, 0, -1, 0}, n, 0.3, 0.25);
+  EXPECT_DOUBLE_EQ(pulled[0], 0.0);
+  EXPECT_DOUBLE_EQ(pulled[2], 0.0);
+}
+
+}  // namespace
+}  // namespace ligature::physics
