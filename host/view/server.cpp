@@ -107,10 +107,10 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 }  // namespace
 
 struct Server::Parts {
+  Shared shared;  // first, so that it outlives the connections, which end with io
   asio::io_context io{1};
   tcp::acceptor acceptor{io};
   asio::steady_timer timer{io};
-  Shared shared;
   Clock::time_point due = Clock::now();
 
   void accept() {

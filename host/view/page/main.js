@@ -79,7 +79,9 @@ function showEvents(more) {
 let tracesDue = 0;
 function draw(time) {
   requestAnimationFrame(draw);
-  showAge(latest.now?.age_ms ?? -1, link.silent_ms, latest.isReplay);
+  const isOld = showAge(latest.now?.age_ms ?? -1, link.silent_ms, latest.isReplay);
+  if (isOld && !page.isOld) page.staleAt_ms = Math.max(latest.now?.age_ms ?? 0, link.silent_ms);
+  page.isOld = isOld;
   if (latest.isNew) {
     latest.isNew = false;
     showState(latest.now);

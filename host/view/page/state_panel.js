@@ -27,7 +27,8 @@ export function showState(now) {
   }
 }
 
-/** @param age_ms of the newest ticks as the host knows it, -1 none yet; @param silent_ms since the host's last frame. */
+/** @param age_ms of the newest ticks as the host knows it, -1 none yet; @param silent_ms since the host's last frame.
+ *  @returns whether the picture is old. */
 export function showAge(age_ms, silent_ms, isReplay) {
   let text = '';
   if (silent_ms > STALE_MS) text = `No word from the host for ${seconds(silent_ms)}: is ligature-host running?`;
@@ -36,6 +37,7 @@ export function showAge(age_ms, silent_ms, isReplay) {
   $('stale').hidden = !text;
   $('stale').textContent = text;
   document.body.classList.toggle('is-stale', text !== '');
+  return text !== '';
 }
 
 function seconds(ms) { return ms < 10_000 ? `${(ms / 1000).toFixed(1)} s` : `${Math.round(ms / 1000)} s`; }

@@ -69,10 +69,17 @@ export class Traces {
     ctx.beginPath();
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
+    ctx.fillStyle = '#ff5c4740';
+    for (let i = 0; i < x.length; ++i) { // a stretch with a fault is one band
+      if (!faults[i]) continue;
+      const first = i;
+      while (i + 1 < x.length && faults[i + 1]) ++i;
+      const from = u.valToPos(x[first], 'x', true), until = u.valToPos(x[i], 'x', true);
+      ctx.fillRect(from, bbox.top, Math.max(2, until - from), bbox.height);
+    }
     for (let i = 0; i < x.length; ++i) {
-      if (!flags[i] && !faults[i]) continue;
+      if (!flags[i]) continue;
       const at = u.valToPos(x[i], 'x', true);
-      if (faults[i]) { ctx.fillStyle = '#ff5c4755'; ctx.fillRect(at - 1, bbox.top, 2.5, bbox.height); }
       if (hand === null && flags[i] & (FLAG.lost | FLAG.missed)) triangle(ctx, at, bbox.top + 1, '#ff5c47', 6);
       if (hand !== null && flags[i] & FLAG.limited[hand]) triangle(ctx, at, bbox.top + 1, '#f0e442', 5);
     }

@@ -1,0 +1,170 @@
+"""A rig for tests of the page: publishes what ligature-firmware would, and obeys lines on standard input.
+
+    fault N     latch fault N        knot | unknot   the thread's shape        spike F   one tick with F newton
+    quiet       send nothing more    go              send again                restart   another session
+It says "ready" when it publishes and "command NAME" for each command that it hears. Nothing here is physics.
+"""
+
+import argparse
+import math
+import os
+import select
+import sys
+import time
+
+import lcm
+from ligature_msg import ack_t, command_t, event_t, status_t, thread_t, tick_batch_t, tick_t
+
+KNOT_NODES, RADIUS_M = 120, 0.03
+COMMANDS = {1: "arm", 2: "disarm", 3: "stop", 4: "reset-fault", 5: "reset-thread"}
+SCENE = """[suture]
+model = "paper-4"
+nodes = 120
+length_m = 5.0
+radius_m = 0.03
+[world]
+fixed = [{node = 0, position_m = [-1.6, 0.0, 2.6]}]
+desk_height_m = 0.0
+"""
+
+
+def trefoil(n):
+    """The long trefoil (t^3 - 3t, t^4 - 4t^2, t^5 - 10t) [Shastri 1992] with its ends drawn out."""
+    points = []
+    for i in range(n):
+        t = -2.12 + 4.24 * i / (n - 1)
+        points.append([(t**3 - 3 * t) * 0.33, (t**4 - 4 * t * t) * 0.09, 1.7 + (t**5 - 10 * t) * 0.06])
+    return points
+
+
+def unknot(n):
+    """A hanging bow in a plane."""
+    return [[-1.6 + 3.2 * i / (n - 1), 0.0, 2.6 - 1.8 * math.sin(math.pi * i / (n - 1))] for i in range(n)]
+
+
+class Rig:
+    def __init__(self, url):
+        self.lcm = lcm.LCM(url)
+        self.lcm.subscribe("LIGATURE_COMMAND", self.on_command)
+        self.state, self.fault, self.armed = 2, 0, False
+        self.shape, self.spike, self.quiet = unknot(KNOT_NODES), 0.0, False
+        self.restart()
+
+    def restart(self):
+        self.session, self.tick = int(time.time() * 1e6), 0
+
+    def on_command(self, _, data):
+        kind = COMMANDS.get(command_t.decode(data).kind, "?")
+        print("command", kind, flush=True)
+        ack = ack_t()
+        ack.id, ack.accepted, ack.reason = command_t.decode(data).id, 1, "done"
+        if kind == "arm" and self.fault:
+            ack.accepted, ack.reason = 0, f"fault {self.fault} is latched"
+        elif kind == "arm":
+            self.go_to(4)
+        elif kind in ("disarm", "stop"):
+            self.go_to(2 if not self.fault else 6)
+        elif kind == "reset-fault":
+            self.fault = 0
+            self.go_to(2)
+        self.lcm.publish("LIGATURE_ACK", ack.encode())
+
+    def go_to(self, state):
+        if state != self.state:
+            self.event(1, state, f"state {self.state} -> {state}")
+        self.state, self.armed = state, state in (3, 4)
+
+    def event(self, kind, code, text, hand=-1):
+        event = event_t()
+        event.tick, event.kind, event.hand, event.code, event.text = self.tick, kind, hand, code, text
+        self.lcm.publish("LIGATURE_EVENT", event.encode())
+
+    def obey(self, line):
+        word, _, value = line.strip().partition(" ")
+        if word == "fault":
+            self.fault = int(value)
+            self.event(2, self.fault, f"fault {self.fault}")
+            self.go_to(6)
+        elif word in ("knot", "unknot"):
+            self.shape = trefoil(KNOT_NODES) if word == "knot" else unknot(KNOT_NODES)
+        elif word == "spike":
+            self.spike = float(value)
+        elif word in ("quiet", "go"):
+            self.quiet = word == "quiet"
+        elif word == "restart":
+            self.restart()
+
+    def one_tick(self):
+        tick = tick_t()
+        t = self.tick * 1e-3
+        tick.tick, tick.scheduled_ns = self.tick, self.tick * 1_000_000
+        tick.wakeup_latency_ns = 3000 + (self.tick * 7919 % 4000) + (60_000 if self.tick % 997 == 0 else 0)
+        tick.control_ns, tick.execution_ns = 90_000, 260_000 + 20_000 * (self.tick % 5)
+        tick.state, tick.fault, tick.flags = self.state, self.fault, 0
+        held = [40, 80]
+        gain = 1.0 if self.state == 4 else 0.0
+        for hand in range(2):
+            tick.p_WT_m[hand] = list(self.shape[held[hand]])
+            force = gain * (1.1 + 0.7 * math.sin(1.3 * t + 2 * hand)) + (self.spike if hand == 0 else 0.0)
+            tick.f_device_N[hand] = [force * (-0.6 if hand == 0 else 0.8), force * 0.1 * math.sin(3 * t), force * 0.6]
+            tick.grasped_node[hand], tick.grip[hand], tick.dead_man[hand] = held[hand], 1, int(self.armed)
+        if self.spike > 3.3:
+            tick.flags |= 16
+        tick.min_gap_m = 0.01
+        self.spike = 0.0
+        self.tick += 1
+        return tick
+
+    def publish(self, due_ticks):
+        batch = tick_batch_t()
+        batch.session = self.session
+        batch.ticks = [self.one_tick() for _ in range(due_ticks)]
+        batch.count = len(batch.ticks)
+        self.lcm.publish("LIGATURE_TICKS", batch.encode())
+        thread = thread_t()
+        thread.tick, thread.radius_m, thread.count = self.tick, RADIUS_M, KNOT_NODES
+        sway = 0.02 * math.sin(self.tick * 2e-3)
+        thread.p_W_m = [[x + sway * math.sin(5 * z), y, z] for x, y, z in self.shape]
+        thread.grasped_node = [40, 80]
+        self.lcm.publish("LIGATURE_THREAD", thread.encode())
+
+    def publish_status(self):
+        status = status_t()
+        status.session, status.protocol_version, status.firmware_version = self.session, 1, "test"
+        status.scene_file, status.scene_toml = "scenes/fake.toml", SCENE
+        status.period_s, status.max_force_N, status.tick = 1e-3, 3.3, self.tick
+        status.state, status.fault, status.realtime, status.armed = self.state, self.fault, 1, int(self.armed)
+        self.lcm.publish("LIGATURE_STATUS", status.encode())
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--lcm-url", default="udpm://239.255.76.67:7667?ttl=0")
+    rig = Rig(parser.parse_args().lcm_url)
+    print("ready", flush=True)
+    began = time.monotonic()
+    sent, round_number = 0, 0
+    while True:
+        ready, _, _ = select.select([sys.stdin, rig.lcm.fileno()], [], [], 0.02)
+        if rig.lcm.fileno() in ready:
+            rig.lcm.handle()
+        if sys.stdin in ready:
+            heard = os.read(sys.stdin.fileno(), 4096).decode()  # not readline: a second line would hide in its buffer
+            if not heard:
+                return
+            for line in heard.splitlines():
+                rig.obey(line)
+        due = min(int((time.monotonic() - began) * 1000) - sent, 40)
+        if due < 15:
+            continue
+        sent = int((time.monotonic() - began) * 1000)
+        if rig.quiet:
+            continue
+        rig.publish(due)
+        if round_number % 5 == 0:
+            rig.publish_status()
+        round_number += 1
+
+
+if __name__ == "__main__":
+    main()

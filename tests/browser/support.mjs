@@ -1,0 +1,134 @@
+// Programs, a browser and raw WebSocket peers for the tests of the page.
+import { spawn } from 'node:child_process';
+import { createServer } from 'node:http';
+import { connect } from 'node:net';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { loadavg, cpus, tmpdir } from 'node:os';
+import { join } from 'node:path';
+
+const PATIENCE_MS = 20_000;
+
+export function arguments_() {
+  const given = {};
+  for (let i = 2; i < process.argv.length; i += 2) given[process.argv[i].replace(/^--/, '')] = process.argv[i + 1];
+  return given;
+}
+
+/** Waits until a condition holds in the page. */
+export function until(page, condition) { return page.waitForFunction(condition, null, { timeout: PATIENCE_MS }); }
+
+/** A program of ours whose words are remembered. */
+export class Program {
+  constructor(command, args) {
+    this.heard = '';
+    this.child = spawn(command, args, { stdio: ['pipe', 'pipe', 'inherit'] });
+    this.child.stdout.on('data', (data) => { this.heard += data; this.news?.(); });
+    this.end_ = new Promise((resolve) => this.child.on('exit', (code) => { this.news?.(); resolve(code); }));
+  }
+
+  /** @returns the first group of the pattern, or all of it, once it has been said. */
+  async says(pattern) {
+    const until_ms = Date.now() + PATIENCE_MS;
+    for (;;) {
+      const found = this.heard.match(pattern);
+      if (found) return found[1] ?? found[0];
+      const left_ms = until_ms - Date.now();
+      if (left_ms <= 0 || this.child.exitCode !== null) throw new Error(`never said ${pattern}: ${this.heard}`);
+      await new Promise((resolve) => { this.news = resolve; setTimeout(resolve, left_ms); });
+    }
+  }
+
+  tell(line) { this.child.stdin.write(`${line}\n`); }
+  /** Ends it in order; @returns its exit code. */
+  stop() { this.child.kill('SIGTERM'); return this.end_; }
+  ended() { return this.end_; }
+  peakMemory_kB() { return Number(readFileSync(`/proc/${this.child.pid}/status`, 'utf8').match(/VmHWM:\s+(\d+)/)[1]); }
+}
+
+export class Browser {
+  static async start() {
+    const { modules } = arguments_();
+    const { chromium } = createRequire(join(modules, 'x.js'))('playwright-core');
+    const browser = new Browser();
+    browser.complaints = [];
+    browser.servers = [];
+    browser.profile = mkdtempSync(join(tmpdir(), 'ligature-chromium-'));
+    browser.context = await chromium.launchPersistentContext(browser.profile, {
+      executablePath: process.env.LIGATURE_CHROMIUM ?? '/usr/bin/chromium', headless: true, viewport: { width: 1280, height: 800 },
+      args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
+        '--disable-sync', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+    });
+    return browser;
+  }
+
+  /** A page of ours: everything that it complains of in the console is a failure. */
+  async open(url) {
+    const page = await this.context.newPage();
+    page.setDefaultTimeout(PATIENCE_MS);
+    page.on('pageerror', (error) => this.complaints.push(`${error.stack}`));
+    page.on('console', (message) => { if (['error', 'warning'].includes(message.type()) && !/GPU stall|ReadPixels/.test(message.text())) this.complaints.push(message.text()); });
+    await page.goto(url);
+    return page;
+  }
+
+  async openHtml(url) {
+    const page = await this.context.newPage();
+    await page.goto(url);
+    return page;
+  }
+
+  /** Serves one page from another port, that is another origin. @returns the port. */
+  serve(html) {
+    const server = createServer((_, response) => response.setHeader('Content-Type', 'text/html').end(html));
+    this.servers.push(server);
+    return new Promise((resolve) => server.listen(0, '127.0.0.1', () => resolve(server.address().port)));
+  }
+
+  /** More runs than there are processors: a limit of wall time would then measure the neighbours. */
+  isMachineBusy() { return loadavg()[0] > cpus().length; }
+
+  async stop() {
+    for (const server of this.servers) server.close();
+    await this.context.close();
+    rmSync(this.profile, { recursive: true, force: true });
+  }
+}
+
+/** A WebSocket peer on a bare socket: it can do what no browser does. */
+export function clientOf(at, { reads = true } = {}) {
+  const [hostname, port] = at.split(':');
+  const socket = connect(Number(port), hostname);
+  let received = Buffer.alloc(0), news = () => {}, isClosed = false;
+  socket.on('error', () => {});
+  socket.on('close', () => { isClosed = true; news(); });
+  socket.on('data', (data) => { received = Buffer.concat([received, data]); news(); });
+  socket.write(`GET /socket HTTP/1.1\r\nHost: ${at}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n`);
+  const waitFor = async (condition) => {
+    const until_ms = Date.now() + PATIENCE_MS;
+    while (!condition()) {
+      if (Date.now() > until_ms) throw new Error('the peer waited in vain');
+      await new Promise((resolve) => { news = resolve; setTimeout(resolve, 500); });
+    }
+  };
+  const peer = {
+    /** One masked text frame. */
+    send(text) {
+      const payload = Buffer.from(text), mask = Buffer.from([1, 2, 3, 4]);
+      const head = payload.length < 126 ? Buffer.from([0x81, 0x80 | payload.length]) : Buffer.from([0x81, 0xfe, payload.length >> 8, payload.length & 255]);
+      socket.write(Buffer.concat([head, mask, payload.map((byte, i) => byte ^ mask[i % 4])]));
+    },
+    /** The beginning of a text frame that says it is this long, and a megabyte of it. */
+    sendHeaderOf(size) {
+      const head = Buffer.alloc(14);
+      head.set([0x81, 0xff]);
+      head.writeBigUInt64BE(BigInt(size), 2);
+      socket.write(Buffer.concat([head, Buffer.alloc(1 << 20)]));
+    },
+    closed: () => waitFor(() => isClosed),
+    /** Waits until something that came holds an answer; @returns all that came, as text. */
+    text: async () => { await waitFor(() => received.includes('"answers"')); return received.toString('latin1'); },
+    end: () => socket.destroy(),
+  };
+  return waitFor(() => received.includes('\r\n\r\n') || isClosed).then(() => { if (!reads) socket.pause(); return peer; });
+}
