@@ -35,9 +35,9 @@ inline void solve_tridiagonal(int n, double* diag, const double* gain, const dou
 /// @param diag, one, two  overwritten (inverse pivots, columns of L D)   @param rhs  overwritten by x
 /// Cost: 17 n operations, n divisions.
 inline void solve_pentadiagonal(int n, double* diag, double* one, double* two, double* rhs) noexcept {
-  double inv1 = 0.0, inv2 = 0.0;    // inverse pivots of rows i-1, i-2
-  double one1 = 0.0;                // reduced first off-diagonal of row i-1
-  double two1 = 0.0, two2 = 0.0;    // second off-diagonals of rows i-1, i-2
+  double inv1 = 0.0, inv2 = 0.0;  // inverse pivots of rows i-1, i-2
+  double one1 = 0.0;              // reduced first off-diagonal of row i-1
+  double two1 = 0.0, two2 = 0.0;  // second off-diagonals of rows i-1, i-2
   double y1 = 0.0, y2 = 0.0;
 #pragma GCC unroll 4
   for (int i = 0; i < n; ++i) {
@@ -51,7 +51,8 @@ inline void solve_pentadiagonal(int n, double* diag, double* one, double* two, d
   double x1 = 0.0, x2 = 0.0;
 #pragma GCC unroll 4
   for (int i = n - 1; i >= 0; --i) {
-    const double x = (rhs[i] - one[i] * x1 - two[i] * x2) * diag[i];  // x1 = x2 = 0 past the end: one, two need only be finite
+    const double x =
+        (rhs[i] - one[i] * x1 - two[i] * x2) * diag[i];  // x1 = x2 = 0 past the end: one, two need only be finite
     rhs[i] = x;
     x2 = x1, x1 = x;
   }

@@ -31,9 +31,9 @@ inline V3<double> across(const V3<double>& u) noexcept {
 
 /// Bend of the joint between two segments; the geometry behind (7)-(15).
 ///   s = u1 x u2 / |u1 x u2|,  t_{i-1} = u1 x s,  t_{i+1} = u2 x s,  alpha = atan2(|u1 x u2|, u1 . u2)
-/// The paper calls t a unit vector but its formula has length sin alpha; here it has length 1, which is what makes (7)-(9)
-/// the gradient of an energy. s is made orthogonal to both segments a second time, because near straight (or folded)
-/// the cross product keeps only its leading digits; so torques cancel to rounding at every angle.
+/// The paper calls t a unit vector but its formula has length sin alpha; here it has length 1, which is what makes
+/// (7)-(9) the gradient of an energy. s is made orthogonal to both segments a second time, because near straight (or
+/// folded) the cross product keeps only its leading digits; so torques cancel to rounding at every angle.
 /// @param u1, u2         unit segment directions, or zero where there is no segment (all results are then finite)
 /// @param inv_l1, inv_l2 inverse segment lengths, 1/m
 /// Folded back exactly the axis is chosen across u1. Cost: about 110 operations, one root, two divisions.

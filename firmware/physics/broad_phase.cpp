@@ -18,14 +18,16 @@ void find_pairs_brute(const SegmentSpheres& s, double reach_m, int skip, PairLis
     const Pack reach = splat(reach_m + s.half_m[i]);
     for (int j = i + skip; j < s.count; j += kLanes) {
       const PackMask near = spheres_near(c, reach, s, j);
-      if (!any(near)) [[likely]] continue;
+      if (!any(near)) [[likely]]
+        continue;
       for (int k = 0; k < kLanes && j + k < s.count; ++k)
         if (near[k]) out.add({i, j + k});
     }
   }
 }
 
-void find_near_sphere(const SegmentSpheres& s, const V3<double>& centre, double half_m, double reach_m, PairList& out) noexcept {
+void find_near_sphere(const SegmentSpheres& s, const V3<double>& centre, double half_m, double reach_m,
+                      PairList& out) noexcept {
   out.pairs.clear();
   out.overflow = false;
   const V3<Pack> c{splat(centre.x), splat(centre.y), splat(centre.z)};

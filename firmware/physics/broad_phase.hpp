@@ -36,8 +36,8 @@ struct PairList {
   }
 };
 
-/// Whether two spheres are within reach of each other: |c_i - c_j| <= h_i + h_j + reach. Every broad phase decides by this
-/// one expression on packs, so that all of them agree to the last bit.
+/// Whether two spheres are within reach of each other: |c_i - c_j| <= h_i + h_j + reach. Every broad phase decides by
+/// this one expression on packs, so that all of them agree to the last bit.
 inline PackMask spheres_near(const V3<Pack>& ci, Pack hi_and_reach, const SegmentSpheres& s, int j) noexcept {
   const V3<Pack> apart = s.centre.pack(j) - ci;
   const Pack limit = hi_and_reach + s.half_m.pack(j);
@@ -48,11 +48,12 @@ inline bool segments_near(const SegmentSpheres& s, int i, int j, double reach_m)
   return spheres_near(c, splat(reach_m + s.half_m[i]), s, j)[0] != 0;
 }
 
-/// All pairs whose spheres are within reach_m of each other, and whose indices differ by at least skip; in rising order.
-/// Cost: n^2 / 2 tests, four at a time.
+/// All pairs whose spheres are within reach_m of each other, and whose indices differ by at least skip; in rising
+/// order. Cost: n^2 / 2 tests, four at a time.
 void find_pairs_brute(const SegmentSpheres& s, double reach_m, int skip, PairList& out) noexcept;
 
 /// All segments whose sphere, grown by reach_m, overlaps one given sphere; as pairs {segment, segment}.
-void find_near_sphere(const SegmentSpheres& s, const V3<double>& centre, double half_m, double reach_m, PairList& out) noexcept;
+void find_near_sphere(const SegmentSpheres& s, const V3<double>& centre, double half_m, double reach_m,
+                      PairList& out) noexcept;
 
 }  // namespace ligature::physics

@@ -72,10 +72,13 @@ std::variant<BuiltThread, std::string> build_thread(const scene::Scene& scene) {
   const scene::Suture& s = scene.suture;
   if (s.model == scene::Model::kRod) return "model 'rod' is not part of this version";
   if (s.nodes < 2) return "a thread has at least 2 nodes, found " + std::to_string(s.nodes);
-  if (!(s.length_m > 0.0 && s.radius_m > 0.0 && s.paper.node_mass_kg > 0.0)) return std::string("length, radius and mass must be positive");
-  if (!(scene.time.tick_s > 0.0) || scene.time.substeps < 1) return std::string("the tick must be positive, with at least one substep");
+  if (!(s.length_m > 0.0 && s.radius_m > 0.0 && s.paper.node_mass_kg > 0.0))
+    return std::string("length, radius and mass must be positive");
+  if (!(scene.time.tick_s > 0.0) || scene.time.substeps < 1)
+    return std::string("the tick must be positive, with at least one substep");
   if (!s.initial_polyline_m.empty() && s.initial_polyline_m.size() != static_cast<std::size_t>(s.nodes))
-    return "the initial shape has " + std::to_string(s.initial_polyline_m.size()) + " points for " + std::to_string(s.nodes) + " nodes";
+    return "the initial shape has " + std::to_string(s.initial_polyline_m.size()) + " points for " +
+           std::to_string(s.nodes) + " nodes";
 
   BuiltThread t;
   ThreadModel& m = t.model;
@@ -98,7 +101,8 @@ ContactSettings build_contact(const scene::Scene& scene, const ThreadModel& m) {
   ContactSettings c;
   c.slip = scene.contact.friction;
   c.stick = scene.contact.static_friction.value_or(c.slip);
-  // A thread of radius r cannot turn back on itself within an arc of pi r: pairs closer along the thread are neighbours.
+  // A thread of radius r cannot turn back on itself within an arc of pi r: pairs closer along the thread are
+  // neighbours.
   c.skip = 1 + static_cast<int>(std::ceil(kPi * m.radius_m / m.rest_m - 1e-9));
   if (c.skip < 2) c.skip = 2;
   c.desk_m = scene.world.desk_height_m;

@@ -6,9 +6,10 @@
 
 namespace ligature::physics {
 
-/// The paper's broad phase (V.A): a hierarchy of bounding spheres built from the bottom up, segment by segment along the
-/// thread, and explored against itself from the top down. Neighbours along the thread are near in space too, so the tree's
-/// shape never changes; only its spheres do. Cost: n to build, n log n and more to explore a thread that touches itself.
+/// The paper's broad phase (V.A): a hierarchy of bounding spheres built from the bottom up, segment by segment along
+/// the thread, and explored against itself from the top down. Neighbours along the thread are near in space too, so the
+/// tree's shape never changes; only its spheres do. Cost: n to build, n log n and more to explore a thread that touches
+/// itself.
 class SphereTree {
  public:
   SphereTree() = default;

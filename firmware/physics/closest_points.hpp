@@ -6,9 +6,9 @@ namespace ligature::physics {
 
 /// Where two segments are nearest: fractions along each, and the vector from the second to the first.
 struct ClosestPoints {
-  double a = 0.0;         ///< fraction along P1 Q1, 0 .. 1
-  double b = 0.0;         ///< fraction along P2 Q2, 0 .. 1
-  V3<double> apart{};     ///< point on the first minus point on the second, m
+  double a = 0.0;      ///< fraction along P1 Q1, 0 .. 1
+  double b = 0.0;      ///< fraction along P2 Q2, 0 .. 1
+  V3<double> apart{};  ///< point on the first minus point on the second, m
   double distance_m = 0.0;
 };
 

@@ -15,8 +15,12 @@ constexpr double kFastestRecovery = 0.01;  // ... but at most this many radii pe
 }  // namespace
 
 ContactSolver::ContactSolver(const ThreadModel& model, const ContactSettings& settings)
-    : settings_(settings), radius_m_(model.radius_m), nodes_(model.nodes), spheres_(model.nodes - 1),
-      sweep_(model.nodes - 1), tree_(model.nodes - 1) {
+    : settings_(settings),
+      radius_m_(model.radius_m),
+      nodes_(model.nodes),
+      spheres_(model.nodes - 1),
+      sweep_(model.nodes - 1),
+      tree_(model.nodes - 1) {
   const auto room = static_cast<std::size_t>(24 * model.nodes + 64);
   pairs_.pairs.reserve(4 * room);
   candidates_.reserve(room);
@@ -33,8 +37,8 @@ void ContactSolver::forget() noexcept {
   report_ = {};
 }
 
-/// A row for every candidate that could touch in the coming step. One comparison per four candidates rules out the rest:
-/// a gap measured at odometer reading t cannot be below gap + t - travel now.
+/// A row for every candidate that could touch in the coming step. One comparison per four candidates rules out the
+/// rest: a gap measured at odometer reading t cannot be below gap + t - travel now.
 void ContactSolver::make_rows(const ThreadModel& m, const ThreadState& s, double near_m) noexcept {
   rows_.clear();
   const Pack limit = splat(near_m + travel_m_);

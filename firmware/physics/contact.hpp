@@ -13,7 +13,8 @@
 
 namespace ligature::physics {
 
-/// A capsule of the thread's radius that the thread feels and that does not feel the thread: a gripper, the frame's hook.
+/// A capsule of the thread's radius that the thread feels and that does not feel the thread: a gripper, the frame's
+/// hook.
 struct Obstacle {
   V3<double> p0_m{}, p1_m{}, v_m_per_s{};
   int skip_first = 0, skip_last = -1;  ///< segments that it does not touch (those it holds)
@@ -31,13 +32,13 @@ struct ContactSettings {
 struct Candidate {
   enum class Kind : std::int8_t { kSegments, kObstacle, kDesk };
   Kind kind = Kind::kSegments;
-  int first = 0;              ///< segment (desk: node)
-  int second = 0;             ///< segment, or number of the obstacle
-  double gap_m = 0.0;         ///< surface gap when last measured
-  double travel_m = 0.0;      ///< odometer when last measured; see ContactSolver::travel_m_
-  std::int64_t step = -1;     ///< when last measured
-  V3<double> normal{};        ///< unit, when last measured
-  Pack impulse{};             ///< of the last step, N s: the warm start
+  int first = 0;           ///< segment (desk: node)
+  int second = 0;          ///< segment, or number of the obstacle
+  double gap_m = 0.0;      ///< surface gap when last measured
+  double travel_m = 0.0;   ///< odometer when last measured; see ContactSolver::travel_m_
+  std::int64_t step = -1;  ///< when last measured
+  V3<double> normal{};     ///< unit, when last measured
+  Pack impulse{};          ///< of the last step, N s: the warm start
 };
 
 struct ContactReport {
@@ -48,8 +49,8 @@ struct ContactReport {
 };
 
 /// Keeps the thread out of itself, of the desk and of obstacles, with static Coulomb friction.
-///   Velocity level: before positions move, impulses make every gap's rate at least -gap/dt (so a fast approach stops at
-///   touch instead of being noticed afterwards), inside the friction cone; projected Gauss-Seidel, warm-started.
+///   Velocity level: before positions move, impulses make every gap's rate at least -gap/dt (so a fast approach stops
+///   at touch instead of being noticed afterwards), inside the friction cone; projected Gauss-Seidel, warm-started.
 class ContactSolver {
  public:
   static constexpr int kObstacles = 8;
@@ -98,9 +99,9 @@ class ContactSolver {
   Lane gap_m_;  ///< per candidate: gap when last measured; infinite for the desk and obstacles
   std::vector<ContactRow> rows_;
   std::vector<NodeVelocity> velocity_;  ///< one more than nodes: the last is massless and at rest
-  double travel_m_ = 0.0;         ///< bound on how much any gap can have closed since the start
-  double found_at_m_ = 0.0;       ///< travel when candidates were last found
-  double margin_m_ = -1.0;        ///< gap up to which all pairs are candidates; < 0: none found yet
+  double travel_m_ = 0.0;               ///< bound on how much any gap can have closed since the start
+  double found_at_m_ = 0.0;             ///< travel when candidates were last found
+  double margin_m_ = -1.0;              ///< gap up to which all pairs are candidates; < 0: none found yet
   std::int64_t step_ = 0;
   ContactReport report_;
 };

@@ -41,10 +41,13 @@ void ContactSolver::inherit_impulses() noexcept {
 
 void ContactSolver::find_pairs(double reach_m) noexcept {
   switch (settings_.broad_phase) {
-    case scene::BroadPhase::kSweep: return sweep_.find_pairs(spheres_, reach_m, settings_.skip, pairs_);
-    case scene::BroadPhase::kBvh: return tree_.find_pairs(spheres_, reach_m, settings_.skip, pairs_);
+    case scene::BroadPhase::kSweep:
+      return sweep_.find_pairs(spheres_, reach_m, settings_.skip, pairs_);
+    case scene::BroadPhase::kBvh:
+      return tree_.find_pairs(spheres_, reach_m, settings_.skip, pairs_);
     case scene::BroadPhase::kAuto:
-    case scene::BroadPhase::kBrute: return find_pairs_brute(spheres_, reach_m, settings_.skip, pairs_);
+    case scene::BroadPhase::kBrute:
+      return find_pairs_brute(spheres_, reach_m, settings_.skip, pairs_);
   }
 }
 

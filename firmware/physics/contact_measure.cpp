@@ -10,7 +10,8 @@ constexpr double kRoundOff = 1e-9;  // of radius: centre lines this close have n
 
 /// Sets the candidate's normal and gap. Two centre lines that were near one step ago cannot have changed sides since
 /// unless they went through each other: then the old side is kept and the overlap counted as deeper than a diameter.
-void ContactSolver::orient(Candidate& c, const V3<double>& apart, double distance_m, const V3<double>& axis) const noexcept {
+void ContactSolver::orient(Candidate& c, const V3<double>& apart, double distance_m,
+                           const V3<double>& axis) const noexcept {
   const bool fresh = c.step >= 0 && c.step + 1 >= step_;
   if (distance_m > kRoundOff * radius_m_) {
     const V3<double> n = (1.0 / distance_m) * apart;

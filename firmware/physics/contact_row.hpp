@@ -32,9 +32,9 @@ struct ContactRow {
   int candidate;          ///< whose memory keeps the impulse
 };
 
-/// Projects an impulse onto the Coulomb cone of its normal: inside the static cone it sticks (any tangential impulse that
-/// stops slip), outside it slides with the kinetic coefficient. Equations (1), (3) with the stick that the paper leaves
-/// to future work: there is no 0/0 at zero slip and friction never exceeds what stops it.
+/// Projects an impulse onto the Coulomb cone of its normal: inside the static cone it sticks (any tangential impulse
+/// that stops slip), outside it slides with the kinetic coefficient. Equations (1), (3) with the stick that the paper
+/// leaves to future work: there is no 0/0 at zero slip and friction never exceeds what stops it.
 inline Pack project_on_cone(Pack impulse, Pack normal, double stick, double slip) noexcept {
   const double along = dot3(impulse, normal);
   if (along <= 0.0) return Pack{};
@@ -44,8 +44,8 @@ inline Pack project_on_cone(Pack impulse, Pack normal, double stick, double slip
   return along * normal + (slip * along / std::sqrt(size2)) * across;
 }
 
-/// One projected Gauss-Seidel visit: the impulse that gives this contact its target normal velocity and no slip, as far as
-/// the cone allows; applied to the velocities at once.
+/// One projected Gauss-Seidel visit: the impulse that gives this contact its target normal velocity and no slip, as far
+/// as the cone allows; applied to the velocities at once.
 /// @return squared change of the relative velocity, (m/s)^2
 inline double relax(ContactRow& r, NodeVelocity* v) noexcept {
   Pack u = r.weight[0] * v[r.node[0]].v + r.weight[1] * v[r.node[1]].v;

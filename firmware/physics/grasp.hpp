@@ -7,8 +7,8 @@ namespace ligature::physics {
 
 /// Virtual coupling between a tool and the node it holds (paper III.A.2), thread side.
 ///   f = K' (p_T - p_G) + B' (v_T - v_G) on the node;  B' = B / (1 + dt B / m),  K' = min(K, m / (2 dt^2))
-/// B' is the damper taken at the end of the step; K' is K unless K is out of proportion (Table I: dt^2 K / m = 0.024). So
-/// neither a strong damper nor a stiff spring is unstable, and a hand at rest feels exactly K times the distance.
+/// B' is the damper taken at the end of the step; K' is K unless K is out of proportion (Table I: dt^2 K / m = 0.024).
+/// So neither a strong damper nor a stiff spring is unstable, and a hand at rest feels exactly K times the distance.
 /// The hand feels -f.
 struct Coupling {
   double N_per_m = 0.0;
@@ -24,7 +24,8 @@ struct Coupling {
   return spring * (p_WT - p) + damper * (v_WT - v);
 }
 
-/// What each hand holds. A hand that closes takes the nearest node that is neither fixed nor held; one that opens lets go.
+/// What each hand holds. A hand that closes takes the nearest node that is neither fixed nor held; one that opens lets
+/// go.
 class Grasp {
  public:
   void update(const std::array<ToolInput, 2>& tools, const ThreadModel& model, const ThreadState& state) noexcept;

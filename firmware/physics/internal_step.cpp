@@ -9,8 +9,8 @@
 #include "firmware/physics/stretch_spring.hpp"
 #include "firmware/physics/swivel_damper.hpp"
 
-// Every loop runs over packs of four nodes and may compute up to three that are not there. Those have zero-length segments,
-// hence no direction, no axis and no gradient: whatever they compute is finite and multiplied by zero.
+// Every loop runs over packs of four nodes and may compute up to three that are not there. Those have zero-length
+// segments, hence no direction, no axis and no gradient: whatever they compute is finite and multiplied by zero.
 
 namespace ligature::physics {
 namespace {
@@ -91,7 +91,8 @@ void measure_bends(const ThreadModel& m, InternalWorkspace& w) noexcept {
 void apply_turns(const ThreadModel& m, ThreadState& s, const InternalWorkspace& w) noexcept {
   for (int i = 0; i < m.nodes; i += kLanes) {
     const Pack before = w.turn.pack(i - 1), here = w.turn.pack(i), after = w.turn.pack(i + 1);
-    const V3<Pack> push = before * w.right.pack(i - 1) - here * (w.left.pack(i) + w.right.pack(i)) + after * w.left.pack(i + 1);
+    const V3<Pack> push =
+        before * w.right.pack(i - 1) - here * (w.left.pack(i) + w.right.pack(i)) + after * w.left.pack(i + 1);
     s.v.set(i, s.v.pack(i) + m.inverse_mass_per_kg.pack(i) * push);
   }
 }
@@ -132,8 +133,8 @@ void measure_swivel(const ThreadModel& m, const Lane3& rate_v, InternalWorkspace
     SwivelRates<Pack> r = swivel_rates(w.axis.pack(i), rate_v.pack(i - 1), rate_v.pack(i), rate_v.pack(i + 1));
     if constexpr (T.swivel_paper) {
       const double k = m.swivel_N_s * m.step_s;
-      const Pack left = paper_swivel_N_s_per_m(w.sine.pack(i), w.inv_length.pack(i - 1), k);
-      const Pack right = paper_swivel_N_s_per_m(w.sine.pack(i), w.inv_length.pack(i), k);
+      const Pack left = paper_swivel_N_s_per_m(w.inv_length.pack(i - 1), k);
+      const Pack right = paper_swivel_N_s_per_m(w.inv_length.pack(i), k);
       r.left = damper_impulse<T>(left, r.left, mass.pack(i - 1) + mass.pack(i));
       r.right = damper_impulse<T>(right, r.right, mass.pack(i + 1) + mass.pack(i));
     }
@@ -142,8 +143,9 @@ void measure_swivel(const ThreadModel& m, const Lane3& rate_v, InternalWorkspace
   }
 }
 
-/// Turns swivel rates into impulses along the axes of the two bends that a dihedral joins: bend i is the first of dihedral
-/// i (swing_left, swing_right, overwriting its rates, which nobody needs any more) and the second of dihedral i - 1.
+/// Turns swivel rates into impulses along the axes of the two bends that a dihedral joins: bend i is the first of
+/// dihedral i (swing_left, swing_right, overwriting its rates, which nobody needs any more) and the second of dihedral
+/// i - 1.
 template <Terms T>
 void couple_dihedrals(const ThreadModel& m, InternalWorkspace& w) noexcept {
   const Lane& mass = m.inverse_mass_per_kg;
@@ -174,13 +176,14 @@ void apply_swivel(const ThreadModel& m, ThreadState& s, const InternalWorkspace&
     return w.swing_right.pack(i);
   };
   for (int i = 0; i < m.nodes; i += kLanes) {
-    const V3<Pack> push = right(i - 1) * w.axis.pack(i - 1) - (left(i) + right(i)) * w.axis.pack(i) +
-                          left(i + 1) * w.axis.pack(i + 1);
+    const V3<Pack> push =
+        right(i - 1) * w.axis.pack(i - 1) - (left(i) + right(i)) * w.axis.pack(i) + left(i + 1) * w.axis.pack(i + 1);
     s.v.set(i, s.v.pack(i) + m.inverse_mass_per_kg.pack(i) * push);
   }
 }
 
-/// Springs first, then dampers: at rest the dampers then see velocities of zero, so that damping cannot shift a balance.
+/// Springs first, then dampers: at rest the dampers then see velocities of zero, so that damping cannot shift a
+/// balance.
 template <Terms T>
 void internal_step(const ThreadModel& m, ThreadState& s, const Lane3& before_v, InternalWorkspace& w) noexcept {
   const Lane3& rate_v = T.explicit_damping ? before_v : s.v;
@@ -203,19 +206,27 @@ InternalStep choose(const scene::Suture& s) noexcept {
   constexpr bool e = explicit_damping;
   const bool paper = s.paper.swivel == scene::SwivelDamper::kPaper;
   switch (s.model) {
-    case scene::Model::kPaper1: return internal_step<Terms{.explicit_damping = e}>;
-    case scene::Model::kPaper2: return internal_step<Terms{.bend = true, .explicit_damping = e}>;
-    case scene::Model::kPaper3: return internal_step<Terms{.bend = true, .bend_damper = true, .explicit_damping = e}>;
+    case scene::Model::kPaper1:
+      return internal_step<Terms{.explicit_damping = e}>;
+    case scene::Model::kPaper2:
+      return internal_step<Terms{.bend = true, .explicit_damping = e}>;
+    case scene::Model::kPaper3:
+      return internal_step<Terms{.bend = true, .bend_damper = true, .explicit_damping = e}>;
     case scene::Model::kPaper4:
-      if (paper) return internal_step<Terms{.bend = true, .bend_damper = true, .swivel_paper = true, .explicit_damping = e}>;
+      if (paper)
+        return internal_step<Terms{.bend = true, .bend_damper = true, .swivel_paper = true, .explicit_damping = e}>;
       return internal_step<Terms{.bend = true, .bend_damper = true, .swivel_internal = true, .explicit_damping = e}>;
     case scene::Model::kPaper5:
       if (paper)
         return internal_step<Terms{
             .quadratic_stretch = true, .bend = true, .bend_damper = true, .swivel_paper = true, .explicit_damping = e}>;
-      return internal_step<Terms{
-          .quadratic_stretch = true, .bend = true, .bend_damper = true, .swivel_internal = true, .explicit_damping = e}>;
-    case scene::Model::kRod: break;
+      return internal_step<Terms{.quadratic_stretch = true,
+                                 .bend = true,
+                                 .bend_damper = true,
+                                 .swivel_internal = true,
+                                 .explicit_damping = e}>;
+    case scene::Model::kRod:
+      break;
   }
   return nullptr;
 }

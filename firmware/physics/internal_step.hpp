@@ -15,10 +15,11 @@ struct Terms {
   bool explicit_damping = false;
 };
 
-/// Applies the impulses of one step's internal forces to the velocities: springs, then stretch, bend and swivel dampers.
-/// Dampers are implicit: each kind solves for impulses that are right for the velocities they leave behind (stretch: a
-/// tridiagonal system, bend: a pentadiagonal one; swivel: one weighted Jacobi step that never overshoots). So they take
-/// energy out at any coefficient and any step, and conserve both momenta. With explicit_damping they act as printed.
+/// Applies the impulses of one step's internal forces to the velocities: springs, then stretch, bend and swivel
+/// dampers. Dampers are implicit: each kind solves for impulses that are right for the velocities they leave behind
+/// (stretch: a tridiagonal system, bend: a pentadiagonal one; swivel: one weighted Jacobi step that never overshoots).
+/// So they take energy out at any coefficient and any step, and conserve both momenta. With explicit_damping they act
+/// as printed.
 /// @param rate_v  velocities that explicit dampers see (those at the beginning of the step); unused otherwise
 using InternalStep = void (*)(const ThreadModel&, ThreadState&, const Lane3& rate_v, InternalWorkspace&) noexcept;
 

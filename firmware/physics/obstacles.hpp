@@ -9,10 +9,10 @@
 
 namespace ligature::physics {
 
-/// What the thread meets in its world besides itself and the desk: two grippers and the hooks of the frame, all capsules of
-/// the thread's own radius.
-///   Gripper: from the tool tip 4 radii towards the person (-y). It does not touch the segments around the node it holds. A
-///   hand that lets go is inside the thread, so its gripper touches nothing again until it has come clear.
+/// What the thread meets in its world besides itself and the desk: two grippers and the hooks of the frame, all
+/// capsules of the thread's own radius.
+///   Gripper: from the tool tip 4 radii towards the person (-y). It does not touch the segments around the node it
+///   holds. A hand that lets go is inside the thread, so its gripper touches nothing again until it has come clear.
 ///   Hook: from each fixed node 4 radii upwards (against gravity); it does not touch the segments around that node.
 class ObstacleCourse {
  public:
@@ -20,8 +20,8 @@ class ObstacleCourse {
   ObstacleCourse(const scene::Scene& scene, const ThreadModel& model, const ContactSettings& contact);
 
   /// Moves the grippers to the tools. Call once per tick, after the grasp.
-  void update(const std::array<ToolInput, 2>& tools, const Grasp& grasp, const ThreadModel& model, const ThreadState& state,
-              std::array<Obstacle, ContactSolver::kObstacles>& out) noexcept;
+  void update(const std::array<ToolInput, 2>& tools, const Grasp& grasp, const ThreadModel& model,
+              const ThreadState& state, std::array<Obstacle, ContactSolver::kObstacles>& out) noexcept;
   void reset() noexcept { inside_ = {true, true}; }
 
  private:

@@ -12,8 +12,8 @@ inline constexpr int kLanes = 4;
 
 inline Pack splat(double a) noexcept { return Pack{a, a, a, a}; }
 
-/// Unaligned load and store: bends start at node 1, so most accesses are off the natural alignment. (A vector type shares
-/// the alias set of its elements, so the compiler may keep lane pointers in registers across stores.)
+/// Unaligned load and store: bends start at node 1, so most accesses are off the natural alignment. (A vector type
+/// shares the alias set of its elements, so the compiler may keep lane pointers in registers across stores.)
 using LoosePack = double __attribute__((vector_size(32), aligned(8)));
 inline Pack load(const double* p) noexcept { return *reinterpret_cast<const LoosePack*>(p); }
 inline void store(double* p, Pack a) noexcept { *reinterpret_cast<LoosePack*>(p) = a; }

@@ -8,7 +8,8 @@
 
 namespace ligature::physics {
 namespace {
-constexpr double kSafety = 0.01;  // eps of the separation, in radii: the paper's "slight safety margin", not given there
+constexpr double kSafety =
+    0.01;  // eps of the separation, in radii: the paper's "slight safety margin", not given there
 }
 
 PaperContact::PaperContact(const ThreadModel& model, const PaperContactSettings& settings)
@@ -34,11 +35,13 @@ void PaperContact::respond(const ThreadModel& m, ThreadState& s, const SegmentPa
   }
   if (!(mobility > 0.0)) return;
   const double force = repulsion_N(settings_.repulsion, m.radius_m, near.distance_m, dot(v, n), settings_.capped);
-  const double normal = bridson_impulse_N_s(settings_.capped ? force * m.step_s : magnitude(force) * m.step_s, near.a, near.b);
-  const V3<double> friction =
-      settings_.capped ? capped_friction_N_s(settings_.stick, settings_.slip, normal, 1.0 / mobility, v, n)
-                       : m.step_s * coulomb_friction_N(settings_.slip, force, v, n);
-  const Shares shift = separating_shifts(separation_m(m.radius_m, near.distance_m, kSafety * m.radius_m), share, {w[0], w[1], w[2], w[3]});
+  const double normal =
+      bridson_impulse_N_s(settings_.capped ? force * m.step_s : magnitude(force) * m.step_s, near.a, near.b);
+  const V3<double> friction = settings_.capped
+                                  ? capped_friction_N_s(settings_.stick, settings_.slip, normal, 1.0 / mobility, v, n)
+                                  : m.step_s * coulomb_friction_N(settings_.slip, force, v, n);
+  const Shares shift = separating_shifts(separation_m(m.radius_m, near.distance_m, kSafety * m.radius_m), share,
+                                         {w[0], w[1], w[2], w[3]});
   const double move[4] = {shift.a, shift.b, shift.c, shift.d};
   for (int k = 0; k < 4; ++k) {
     const V3<double> pushed = velocity_after(s.v.at(node[k]), part[k], normal, w[k], n);

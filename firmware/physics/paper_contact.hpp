@@ -7,8 +7,8 @@
 namespace ligature::physics {
 
 /// The paper's self-contact, section V.A with (1)-(3) and (18)-(22), for comparison: every pair that overlaps gets the
-/// impulse of its repulsion and friction, then is shifted apart. It acts after the fact, so fast threads pass through each
-/// other; the implicit solver is the one to use.
+/// impulse of its repulsion and friction, then is shifted apart. It acts after the fact, so fast threads pass through
+/// each other; the implicit solver is the one to use.
 struct PaperContactSettings {
   Repulsion repulsion;
   double stick = 10.0, slip = 10.0;

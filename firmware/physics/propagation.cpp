@@ -10,9 +10,19 @@ constexpr double kStiffer = 1e-12;  // relative, on the diagonal: a taut straigh
 }  // namespace
 
 LengthLimits::LengthLimits(const ThreadModel& m, double min_length, double max_length)
-    : rest_m_(m.rest_m), shortest_m_(min_length * m.rest_m), longest_m_(max_length * m.rest_m), step_s_(m.step_s),
-      segments_(m.nodes - 1), u_(m.nodes), length_(m.nodes), diag_(m.nodes), gain_(m.nodes), link_(m.nodes), lambda_(m.nodes),
-      impulse_(m.nodes), bound_(static_cast<std::size_t>(m.nodes), Bound::kInside) {}
+    : rest_m_(m.rest_m),
+      shortest_m_(min_length * m.rest_m),
+      longest_m_(max_length * m.rest_m),
+      step_s_(m.step_s),
+      segments_(m.nodes - 1),
+      u_(m.nodes),
+      length_(m.nodes),
+      diag_(m.nodes),
+      gain_(m.nodes),
+      link_(m.nodes),
+      lambda_(m.nodes),
+      impulse_(m.nodes),
+      bound_(static_cast<std::size_t>(m.nodes), Bound::kInside) {}
 
 void LengthLimits::forget() noexcept {
   for (int i = 0; i < segments_; ++i) impulse_[i] = 0.0;
@@ -95,7 +105,8 @@ void LengthLimits::place(const ThreadModel& m, ThreadState& s, int from, int to)
   if ((rate > 0.0) == (length > wanted)) s.v.put(to, s.v.at(to) - rate * u);
 }
 
-/// When Newton gives up (a hand that teleports, two fixed nodes): node by node from the first fixed one, which always ends.
+/// When Newton gives up (a hand that teleports, two fixed nodes): node by node from the first fixed one, which always
+/// ends.
 void LengthLimits::walk_outwards(const ThreadModel& m, ThreadState& s) noexcept {
   int start = 0;
   while (start < segments_ && m.free[start] != 0.0) ++start;

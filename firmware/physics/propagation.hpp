@@ -8,9 +8,11 @@ namespace ligature::physics {
 /// segment passes on.
 inline V3<double> axial_part_N(const V3<double>& f_hand, const V3<double>& e) noexcept { return dot(f_hand, e) * e; }
 
-/// Equation (17) as printed: f_m = (f_h . e_m) e_m with e_m = (e_i x f_h)/|e_i x f_h| x e_i, i.e. the part ACROSS the segment.
-///   Kept to show that it is wrong: f_h = (3, 0, 4) on e = z gives (3, 0, 0), while a taut thread passes (0, 0, 4); a pure
-///   pull is 0/0 (here: zero). The simulation uses (16), through LengthLimits. ("Equation (5)" in its text should be (4).)
+/// Equation (17) as printed: f_m = (f_h . e_m) e_m with e_m = (e_i x f_h)/|e_i x f_h| x e_i, i.e. the part ACROSS the
+/// segment.
+///   Kept to show that it is wrong: f_h = (3, 0, 4) on e = z gives (3, 0, 0), while a taut thread passes (0, 0, 4); a
+///   pure pull is 0/0 (here: zero). The simulation uses (16), through LengthLimits. ("Equation (5)" in its text should
+///   be (4).)
 inline V3<double> printed_propagation_N(const V3<double>& f_hand, const V3<double>& e) noexcept {
   const V3<double> n = cross(e, f_hand);
   const double size = norm(n);
@@ -21,10 +23,11 @@ inline V3<double> printed_propagation_N(const V3<double>& f_hand, const V3<doubl
 
 /// Force propagation along the thread, paper section IV, as one solve for both hands.
 ///   Condition A: a segment strictly inside (l_min, l_max) passes nothing; its spring carries what it can.
-///   Condition B: a segment on its limit is rigid, so the axial force passes through it: tension at l_max, push at l_min.
-///   Condition C: two hands are two loads of the same tridiagonal system G M^-1 G^T lambda = violation, not two passes.
-/// Lengths are held by Newton on the positions (the system is solved anew with the new directions), so that no segment is
-/// outside its limits by more than kTolerance of rest length after a step, whatever pulls.
+///   Condition B: a segment on its limit is rigid, so the axial force passes through it: tension at l_max, push at
+///   l_min. Condition C: two hands are two loads of the same tridiagonal system G M^-1 G^T lambda = violation, not two
+///   passes.
+/// Lengths are held by Newton on the positions (the system is solved anew with the new directions), so that no segment
+/// is outside its limits by more than kTolerance of rest length after a step, whatever pulls.
 class LengthLimits {
  public:
   static constexpr double kTolerance = 1e-7;
@@ -32,13 +35,15 @@ class LengthLimits {
   LengthLimits() = default;
   LengthLimits(const ThreadModel& model, double min_length, double max_length);
 
-  /// Velocity level, before contacts: applies last step's tensions again, so that contacts feel the pull that passes through.
+  /// Velocity level, before contacts: applies last step's tensions again, so that contacts feel the pull that passes
+  /// through.
   void warm_start(const ThreadModel& model, ThreadState& state, const Lane3& directions) noexcept;
 
   /// Position level, after positions moved: corrects them and the velocities. @return Newton iterations used
   int enforce(const ThreadModel& model, ThreadState& state) noexcept;
 
-  /// Force that segment i passed on beside its spring, N (mean of the last step), positive in tension; 0 in condition A.
+  /// Force that segment i passed on beside its spring, N (mean of the last step), positive in tension; 0 in condition
+  /// A.
   [[nodiscard]] double passed_N(int segment) const noexcept { return impulse_[segment] / step_s_; }
   void forget() noexcept;
 

@@ -34,9 +34,9 @@ struct Simulation::Impl {
   InternalStep internal = nullptr;
   bool forward = false, explicit_damping = false, has_limits = false;
   scene::ContactSolver contact_kind = scene::ContactSolver::kNone;
-  ContactSolver contact;        // implicit
-  PaperContact paper_contact;   // for comparison
-  ObstacleCourse course;        // grippers and the frame's hooks
+  ContactSolver contact;       // implicit
+  PaperContact paper_contact;  // for comparison
+  ObstacleCourse course;       // grippers and the frame's hooks
   LengthLimits limits;
   Coupling coupling;
   Grasp grasp;
@@ -78,8 +78,8 @@ std::array<V3<double>, 2> Simulation::Impl::hand_forces_N(const std::array<ToolI
   return force;
 }
 
-/// Drag, gravity, loads and hands: everything that is not the thread's own. Each acts on the motion that there was, none on
-/// what another one is adding, so that no damping shifts a balance.
+/// Drag, gravity, loads and hands: everything that is not the thread's own. Each acts on the motion that there was,
+/// none on what another one is adding, so that no damping shifts a balance.
 void Simulation::Impl::add_external(const std::array<ToolInput, 2>& tools) noexcept {
   const double dt = model.step_s;
   const auto force = hand_forces_N(tools);
@@ -179,7 +179,8 @@ void Simulation::Impl::publish_contacts() noexcept {
 /// Paper section IV: does the hand's force stay in the springs (A) or pass along a segment on its limit (B, C)?
 Propagation Simulation::Impl::condition(int node, bool other_holds) const noexcept {
   if (!has_limits) return Propagation::kNone;
-  const bool passes = (node > 0 && limits.passed_N(node - 1) != 0.0) || (node + 1 < model.nodes && limits.passed_N(node) != 0.0);
+  const bool passes =
+      (node > 0 && limits.passed_N(node - 1) != 0.0) || (node + 1 < model.nodes && limits.passed_N(node) != 0.0);
   if (!passes) return Propagation::kA;
   return other_holds ? Propagation::kC : Propagation::kB;
 }
@@ -236,8 +237,12 @@ std::variant<Simulation, std::string> Simulation::make(const scene::Scene& scene
     impl->course = ObstacleCourse(scene, thread.model, contact);
   }
   if (impl->contact_kind == scene::ContactSolver::kPaper)
-    impl->paper_contact = PaperContact(thread.model, {{scene.contact.repulsion_N_per_m, scene.contact.repulsion_N_s_per_m},
-                                                      contact.stick, contact.slip, contact.skip, scene.contact.friction_cap});
+    impl->paper_contact =
+        PaperContact(thread.model, {{scene.contact.repulsion_N_per_m, scene.contact.repulsion_N_s_per_m},
+                                    contact.stick,
+                                    contact.slip,
+                                    contact.skip,
+                                    scene.contact.friction_cap});
   if (impl->has_limits) impl->limits = LengthLimits(thread.model, scene.hands.min_length, scene.hands.max_length);
   impl->coupling = {scene.hands.coupling_N_per_m, scene.hands.coupling_N_s_per_m};
   const auto& g = scene.world.gravity_m_per_s2;
@@ -306,7 +311,9 @@ std::span<const Vec3> Simulation::velocities_W() const noexcept {
 const HandContact& Simulation::hand(Hand h) const noexcept {
   return impl_->rod ? impl_->rod->hand(h) : impl_->hands[static_cast<std::size_t>(h)];
 }
-const Diagnostics& Simulation::diagnostics() const noexcept { return impl_->rod ? impl_->rod->diagnostics() : impl_->health; }
+const Diagnostics& Simulation::diagnostics() const noexcept {
+  return impl_->rod ? impl_->rod->diagnostics() : impl_->health;
+}
 
 Simulation::Simulation(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
 Simulation::Simulation(const Simulation& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}

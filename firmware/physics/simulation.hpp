@@ -32,24 +32,24 @@ enum class Propagation : std::uint8_t {
 
 /// A hand's grasp of the thread. Plain values of the last tick.
 struct HandContact {
-  int node = -1;                ///< grasped node, -1 none
-  Vec3 p_WG = Vec3::Zero();     ///< its position, m
-  Vec3 v_WG = Vec3::Zero();     ///< its velocity, m/s
-  Vec3 f_W = Vec3::Zero();      ///< force ON THE HAND, world newtons, before any device scaling
+  int node = -1;             ///< grasped node, -1 none
+  Vec3 p_WG = Vec3::Zero();  ///< its position, m
+  Vec3 v_WG = Vec3::Zero();  ///< its velocity, m/s
+  Vec3 f_W = Vec3::Zero();   ///< force ON THE HAND, world newtons, before any device scaling
   Propagation condition = Propagation::kNone;
 };
 
 /// State of health after a tick.
 struct Diagnostics {
   double kinetic_J = 0.0;
-  double potential_J = 0.0;       ///< gravity (zero at z = 0), stretch, bending
-  double max_stretch = 0.0;       ///< max l / l_rest - 1
-  double min_gap_m = 0.0;         ///< surface gap of the closest non-neighbour pair, negative: overlap; +inf: none near
-  int contacts = 0;               ///< contacts that carried an impulse in the last step
-  bool contact_cap_hit = false;   ///< more contacts than there was room for
-  bool finite = true;             ///< false: frozen at the last finite state, hands open and without force
-  int bad_node = -1;              ///< first node that went non-finite or out of range
-  std::int64_t bad_tick = -1;     ///< tick at which it did
+  double potential_J = 0.0;      ///< gravity (zero at z = 0), stretch, bending
+  double max_stretch = 0.0;      ///< max l / l_rest - 1
+  double min_gap_m = 0.0;        ///< surface gap of the closest non-neighbour pair, negative: overlap; +inf: none near
+  int contacts = 0;              ///< contacts that carried an impulse in the last step
+  bool contact_cap_hit = false;  ///< more contacts than there was room for
+  bool finite = true;            ///< false: frozen at the last finite state, hands open and without force
+  int bad_node = -1;             ///< first node that went non-finite or out of range
+  std::int64_t bad_tick = -1;    ///< tick at which it did
 };
 
 /// A thread in its world. Copyable: a copy goes its own way (planners try pulls on copies).

@@ -9,9 +9,9 @@ namespace ligature::physics {
 /// A segment of zero length has no direction: u = 0, so no force acts along it. Cost: one root, one division.
 template <class S>
 struct Segment {
-  V3<S> u;        ///< unit vector from P_i to P_{i+1}
-  S length_m;     ///< l_i
-  S inv_length;   ///< 1 / l_i, 1/m; bounded by 1 / floor_m
+  V3<S> u;       ///< unit vector from P_i to P_{i+1}
+  S length_m;    ///< l_i
+  S inv_length;  ///< 1 / l_i, 1/m; bounded by 1 / floor_m
 };
 
 /// @param floor_m  lengths below it count as this long where they divide; far below any real length
@@ -26,8 +26,8 @@ Segment<S> segment_of(const V3<S>& p_left, const V3<S>& p_right, S floor_m) noex
 }
 
 /// Linear spring, equation (5), models 1-4: T = k_l (l - l_r) / l_r, N, positive pulls the two nodes together.
-///   Force +T e on P_i and -T e on P_{i+1}. The paper does not state the reaction; without it 3.4 times the largest force
-///   would be left over. k_l is a force per unit strain, i.e. EA.   Energy k_l l_r strain^2 / 2.
+///   Force +T e on P_i and -T e on P_{i+1}. The paper does not state the reaction; without it 3.4 times the largest
+///   force would be left over. k_l is a force per unit strain, i.e. EA.   Energy k_l l_r strain^2 / 2.
 struct LinearStretch {
   template <class S>
   static S tension_N(S strain, double k_N) noexcept {
@@ -45,8 +45,9 @@ struct LinearStretch {
 };
 
 /// Model 5: the force goes with the square of the strain, keeping its sign: T = k_l |strain| strain.
-///   With the printed k_l it stretches more, not less (strain^2 < strain below 100 %): 11.7 % against 1.5 % for the hanging
-///   thread of Table I. See kStiffQuadratic for the constant that does what the paper says. Energy k_l l_r |strain|^3 / 3.
+///   With the printed k_l it stretches more, not less (strain^2 < strain below 100 %): 11.7 % against 1.5 % for the
+///   hanging thread of Table I. See kStiffQuadratic for the constant that does what the paper says. Energy k_l l_r
+///   |strain|^3 / 3.
 struct QuadraticStretchLaw {
   template <class S>
   static S tension_N(S strain, double k_N) noexcept {

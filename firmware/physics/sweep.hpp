@@ -6,9 +6,9 @@
 
 namespace ligature::physics {
 
-/// Sweep and prune: segments sorted by their lower end along the axis on which the thread is most spread out; only those
-/// whose intervals overlap are tested. The order is kept from call to call, so that sorting is nearly free while the thread
-/// moves little. Cost: n log n at worst for sorting, plus the overlapping intervals.
+/// Sweep and prune: segments sorted by their lower end along the axis on which the thread is most spread out; only
+/// those whose intervals overlap are tested. The order is kept from call to call, so that sorting is nearly free while
+/// the thread moves little. Cost: n log n at worst for sorting, plus the overlapping intervals.
 class Sweep {
  public:
   Sweep() = default;

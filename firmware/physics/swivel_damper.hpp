@@ -17,22 +17,25 @@ SwivelRates<S> swivel_rates(const V3<S>& axis, const V3<S>& v_left, const V3<S>&
 
 /// The paper's swivel damper, equations (13)-(15), with the sign that damps:
 ///   f_{i-1} = -k_sw ((v_{i-1} - v_i) . s) s / l_{i-1},   f_{i+1} likewise over l_i,   f_i = minus their sum,
-///   s = e_{i-1} x e_i, of length sin alpha as its formula says (so the coefficient carries sin^2).
-/// As printed (plus sign) it is a motor. Even so three points have only three internal motions (two lengths and an angle),
-/// so no swivel force between three points is internal: it leaves a torque and brakes rigid rotation, i.e. acts as a drag.
+///   s = e_{i-1} x e_i made a unit vector, as the text calls it (the formula has length sin alpha); zero when exactly
+///   straight.
+/// As printed (plus sign) it is a motor. Even so three points have only three internal motions (two lengths and an
+/// angle), so no swivel force between three points is internal: it leaves a torque and brakes rigid rotation, i.e. acts
+/// as a drag.
 /// @return coefficient of the unit axis per unit swivel rate, N s/m
 template <class S>
-S paper_swivel_N_s_per_m(S sine, S inv_length, double k_N_s) noexcept {
-  return k_N_s * sine * sine * inv_length;
+S paper_swivel_N_s_per_m(S inv_length, double k_N_s) noexcept {
+  return k_N_s * inv_length;
 }
 
-/// The internal swivel damper: on the rate of the dihedral angle phi of four nodes, weighted to stay finite when straight.
+/// The internal swivel damper: on the rate of the dihedral angle phi of four nodes, weighted to stay finite when
+/// straight.
 ///   rate = w phi',  w = sin(alpha_1) sin(alpha_2);   force on node j: -k (w phi') (w d phi/dP_j)
 ///   w grad phi lies along the two axes s1 (nodes 0, 1, 2) and s2 (nodes 1, 2, 3):
 ///     node 0:  p0 s1    node 1: p1 s1 + q1 s2    node 2: p2 s1 + q2 s2    node 3: q3 s2
 ///     p0 = -sin2 / l1, p2 = -sin2 cos1 / l2, p1 = -(p0 + p2);   q3 = sin1 / l3, q1 = sin1 cos2 / l2, q2 = -(q1 + q3)
-/// Internal: no net force or torque, nothing in rigid motion, power -k rate^2. k = k_sw l_r, N m s, so that at a right angle
-/// the force on an end node is the paper's.
+/// Internal: no net force or torque, nothing in rigid motion, power -k rate^2. k = k_sw l_r, N m s, so that at a right
+/// angle the force on an end node is the paper's.
 template <class S>
 struct Dihedral {
   S p0, p2, q1, q3;

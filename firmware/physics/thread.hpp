@@ -8,7 +8,7 @@ namespace ligature::physics {
 /// Constants of one simulated thread, per node; SI.
 struct ThreadModel {
   int nodes = 0;
-  double rest_m = 0.0;             ///< l_r
+  double rest_m = 0.0;  ///< l_r
   double radius_m = 0.0;
   double mass_kg = 0.0;            ///< of one node
   double stretch_N = 0.0;          ///< k_l (model 5: already scaled)
@@ -18,9 +18,9 @@ struct ThreadModel {
   double swivel_N_s = 0.0;         ///< k_sw
   double drag_per_s = 0.0;         ///< a = -c v
   double step_s = 0.0;
-  Lane inverse_mass_per_kg;        ///< 0 for fixed nodes
-  Lane free;                       ///< 1, or 0 for fixed nodes
-  Lane segment;                    ///< 1 where there is a segment i .. i + 1, else 0
+  Lane inverse_mass_per_kg;  ///< 0 for fixed nodes
+  Lane free;                 ///< 1, or 0 for fixed nodes
+  Lane segment;              ///< 1 where there is a segment i .. i + 1, else 0
 };
 
 struct ThreadState {
@@ -30,14 +30,14 @@ struct ThreadState {
 
 /// Everything a step computes on the way; index i of a bend is its middle node, of a segment its left node.
 struct InternalWorkspace {
-  Lane3 u;                     ///< segment directions, (4)
-  Lane inv_length;             ///< 1/m
-  Lane pull;                   ///< stretch impulse, N s, positive pulls
-  Lane gain, link;             ///< of the implicit stretch damper: impulse per rate, kg; coupling of neighbours, 1/kg
-  Lane diag, one, two;         ///< banded matrices of the implicit dampers
-  Lane3 axis, left, right;     ///< of each bend; see Bend
+  Lane3 u;                  ///< segment directions, (4)
+  Lane inv_length;          ///< 1/m
+  Lane pull;                ///< stretch impulse, N s, positive pulls
+  Lane gain, link;          ///< of the implicit stretch damper: impulse per rate, kg; coupling of neighbours, 1/kg
+  Lane diag, one, two;      ///< banded matrices of the implicit dampers
+  Lane3 axis, left, right;  ///< of each bend; see Bend
   Lane sine, cosine;
-  Lane turn;                   ///< bend impulse, N m s
+  Lane turn;                     ///< bend impulse, N m s
   Lane swing_left, swing_right;  ///< swivel rates, then swivel impulses along the axis, at the nodes before and after
   Lane next_left, next_right;    ///< what the dihedral adds to those of the next bend
   double max_strain = 0.0;
@@ -45,8 +45,24 @@ struct InternalWorkspace {
 
   InternalWorkspace() = default;
   explicit InternalWorkspace(int n)
-      : u(n), inv_length(n), pull(n), gain(n), link(n), diag(n), one(n), two(n), axis(n), left(n), right(n), sine(n), cosine(n), turn(n),
-        swing_left(n), swing_right(n), next_left(n), next_right(n) {}
+      : u(n),
+        inv_length(n),
+        pull(n),
+        gain(n),
+        link(n),
+        diag(n),
+        one(n),
+        two(n),
+        axis(n),
+        left(n),
+        right(n),
+        sine(n),
+        cosine(n),
+        turn(n),
+        swing_left(n),
+        swing_right(n),
+        next_left(n),
+        next_right(n) {}
 };
 
 /// Repeats the last node behind the last one, so that the segment that is not there has length zero and no direction.

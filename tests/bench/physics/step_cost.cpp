@@ -1,7 +1,9 @@
 // What a tick costs. Never run by ctest.
-//   physics-step-cost table                            us per step: median, p99, max for N = 20 .. 1000 and broad phases
-//   physics-step-cost one SCENARIO NODES TICKS [key=value ..]   one warmed-up run for callgrind; see instructions.py
-//     SCENARIO: tied (the overhand script, from 9 s on: a loosely tied trefoil), tightened (from 10 s), coil (a touching coil)
+//   physics-step-cost table                            us per step: median, p99, max for N = 20 .. 1000 and broad
+//   phases physics-step-cost one SCENARIO NODES TICKS [key=value ..]   one warmed-up run for callgrind; see
+//   instructions.py
+//     SCENARIO: tied (the overhand script, from 9 s on: a loosely tied trefoil), tightened (from 10 s), coil (a
+//     touching coil)
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -84,8 +86,8 @@ void row(const char* scenario, int nodes, const char* what, const std::vector<st
     contacts += run.sim.diagnostics().contacts / 2000.0;
   }
   std::sort(us.begin(), us.end());
-  std::printf("%-10s %5d  %-8s %9.2f %9.2f %9.2f   %6.1f %s\n", scenario, nodes, what, us[1000], us[1980], us[1999], contacts,
-              run.sim.diagnostics().finite ? "" : "stopped");
+  std::printf("%-10s %5d  %-8s %9.2f %9.2f %9.2f   %6.1f %s\n", scenario, nodes, what, us[1000], us[1980], us[1999],
+              contacts, run.sim.diagnostics().finite ? "" : "stopped");
 }
 
 int table() {
@@ -93,7 +95,8 @@ int table() {
   for (const int n : {20, 35, 50}) row("tightened", n, "auto", {});
   for (const int n : {20, 50, 100, 200, 500, 1000})
     for (const char* what : {"none", "brute", "bvh", "sweep", "auto"})
-      row("coil", n, what, {std::strcmp(what, "none") == 0 ? "contact.solver=none" : std::string("contact.broad_phase=") + what});
+      row("coil", n, what,
+          {std::strcmp(what, "none") == 0 ? "contact.solver=none" : std::string("contact.broad_phase=") + what});
   return 0;
 }
 

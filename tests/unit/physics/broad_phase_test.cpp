@@ -17,12 +17,23 @@ Lane3 shape(int k, int n, test::Random& random) {
   V at = random.vector(3.0);
   for (int i = 0; i < n; ++i) {
     switch (k % 8) {
-      case 0: break;                                                                       // all in one point
-      case 1: at = {0.1 * i, 0.0, 0.0}; break;                                             // straight, exactly regular
-      case 2: at = {0.1 * (i % 2), 0.0, 0.0}; break;                                       // folded back and forth
-      case 3: at = {0.3 * std::cos(0.4 * i), 0.3 * std::sin(0.4 * i), 0.002 * i}; break;   // coil
-      case 4: at = random.vector(0.3); break;                                              // long segments in a heap
-      default: at = at + random.vector(0.12); break;                                       // random walk
+      case 0:
+        break;  // all in one point
+      case 1:
+        at = {0.1 * i, 0.0, 0.0};
+        break;  // straight, exactly regular
+      case 2:
+        at = {0.1 * (i % 2), 0.0, 0.0};
+        break;  // folded back and forth
+      case 3:
+        at = {0.3 * std::cos(0.4 * i), 0.3 * std::sin(0.4 * i), 0.002 * i};
+        break;  // coil
+      case 4:
+        at = random.vector(0.3);
+        break;  // long segments in a heap
+      default:
+        at = at + random.vector(0.12);
+        break;  // random walk
     }
     p.put(i, at);
   }

@@ -23,7 +23,7 @@ TEST(Repulsion, PushesWhenOverlappingAndNeverPullsWhenClamped) {
   const Repulsion k;
   EXPECT_DOUBLE_EQ(repulsion_N(k, 0.05, 0.08, 0.0), 2.0);
   EXPECT_DOUBLE_EQ(repulsion_N(k, 0.05, 0.08, -1.0), 7.0);
-  EXPECT_DOUBLE_EQ(repulsion_N(k, 0.05, 0.08, 1.0), 0.0);           // separating: the damper would pull
+  EXPECT_DOUBLE_EQ(repulsion_N(k, 0.05, 0.08, 1.0), 0.0);          // separating: the damper would pull
   EXPECT_DOUBLE_EQ(repulsion_N(k, 0.05, 0.08, 1.0, false), -3.0);  // as printed
 }
 
@@ -88,7 +88,8 @@ TEST(Separation, OpensTheGapToTheSafetyMarginAndKeepsTheCentreOfMass) {
     const Shares s = shares(a, b), w{20, 20, 20, 20};
     const double each = separation_m(0.05, d, eps);
     const Shares f = separating_shifts(each, s, w);
-    EXPECT_NEAR(s.a * f.a + s.b * f.b + s.c * f.c + s.d * f.d, 0.1 - d + eps, 1e-12);  // C moves away from E by this much
+    EXPECT_NEAR(s.a * f.a + s.b * f.b + s.c * f.c + s.d * f.d, 0.1 - d + eps,
+                1e-12);  // C moves away from E by this much
     EXPECT_NEAR(f.a + f.b + f.c + f.d, 0.0, 1e-12);
   }
   EXPECT_EQ(separation_m(0.05, 0.11, 1e-3), 0.0);
@@ -102,7 +103,8 @@ TEST(Propagation, PassesTheAxialPartWhereThePrintedEquationPassesTheOther) {
   EXPECT_EQ(norm(printed_propagation_N({0, 0, 4}, e)), 0.0);
 }
 
-// The cone projection is what a contact does with friction: sticking inside, sliding outside, nothing when pulled apart.
+// The cone projection is what a contact does with friction: sticking inside, sliding outside, nothing when pulled
+// apart.
 TEST(FrictionCone, SticksInsideSlidesOutsideAndNeverPulls) {
   const Pack n{0, 0, 1, 0};
   const Pack inside = project_on_cone(Pack{0.2, 0, 1, 0}, n, 0.3, 0.25);

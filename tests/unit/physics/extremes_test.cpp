@@ -19,8 +19,10 @@ bool all_finite(const Simulation& sim) {
   for (const Vec3& v : sim.velocities_W())
     if (!v.allFinite()) return false;
   const Diagnostics& d = sim.diagnostics();
-  bool fine = std::isfinite(d.kinetic_J) && std::isfinite(d.potential_J) && std::isfinite(d.max_stretch) && !std::isnan(d.min_gap_m);
-  for (const Hand h : {Hand::kLeft, Hand::kRight}) fine = fine && sim.hand(h).f_W.allFinite() && sim.hand(h).p_WG.allFinite();
+  bool fine = std::isfinite(d.kinetic_J) && std::isfinite(d.potential_J) && std::isfinite(d.max_stretch) &&
+              !std::isnan(d.min_gap_m);
+  for (const Hand h : {Hand::kLeft, Hand::kRight})
+    fine = fine && sim.hand(h).f_W.allFinite() && sim.hand(h).p_WG.allFinite();
   return fine;
 }
 
@@ -42,7 +44,10 @@ TEST(Extremes, StiffnessAndDampingOverTwelveDecades) {
   for (const char* key : {"stretch_N", "stretch_damping", "bend", "bend_damping", "swivel_damping"})
     for (const double factor : {0.0, 1e-6, 1e-3, 1e3, 1e6})
       for (const char* model : {"paper-1", "paper-4", "paper-5"}) {
-        const double table = std::string(key) == "stretch_N" ? 800 : std::string(key) == "bend" ? 10 : std::string(key) == "stretch_damping" ? 1 : 0.1;
+        const double table = std::string(key) == "stretch_N"         ? 800
+                             : std::string(key) == "bend"            ? 10
+                             : std::string(key) == "stretch_damping" ? 1
+                                                                     : 0.1;
         const std::string set = std::string("suture.") + key + "=" + std::to_string(table * factor);
         Simulation sim = make(paper_scene({set, std::string("suture.model=") + model}));
         expect_finite_or_stopped(sim, set + " " + model);
@@ -50,10 +55,11 @@ TEST(Extremes, StiffnessAndDampingOverTwelveDecades) {
 }
 
 TEST(Extremes, MassesStepsSizesAndGravity) {
-  for (const std::string set : {"suture.node_mass_kg=1e-6", "suture.node_mass_kg=1e3", "time.tick_s=1e-6", "time.tick_s=0.1",
-                                "world.gravity_m_per_s2=[0.0,0.0,-1e4]", "world.gravity_m_per_s2=[1e4,0.0,0.0]", "suture.nodes=2",
-                                "suture.nodes=3", "suture.nodes=4", "suture.nodes=2000", "suture.radius_m=10.0",
-                                "suture.radius_m=1e-6", "contact.friction=1e3"}) {
+  for (const std::string set :
+       {"suture.node_mass_kg=1e-6", "suture.node_mass_kg=1e3", "time.tick_s=1e-6", "time.tick_s=0.1",
+        "world.gravity_m_per_s2=[0.0,0.0,-1e4]", "world.gravity_m_per_s2=[1e4,0.0,0.0]", "suture.nodes=2",
+        "suture.nodes=3", "suture.nodes=4", "suture.nodes=2000", "suture.radius_m=10.0", "suture.radius_m=1e-6",
+        "contact.friction=1e3"}) {
     for (const char* contact : {"contact.solver=none", "contact.solver=paper", "contact.solver=implicit"}) {
       Simulation sim = make(paper_scene({set, contact, "world.grippers_collide=true", "world.desk_height_m=0.0"}));
       expect_finite_or_stopped(sim, set + " " + contact);
@@ -67,7 +73,8 @@ TEST(Extremes, CoincidentAndFoldedNodes) {
   for (const int kind : {0, 1, 2}) {
     Simulation sim = make(paper_scene());
     std::vector<Vec3> p(50, Vec3(0, 0, 5.5));
-    for (int i = 0; i < 50 && kind > 0; ++i) p[static_cast<std::size_t>(i)].x() = kind == 1 ? 0.1 * (i % 2) : 0.1 * (i / 2);
+    for (int i = 0; i < 50 && kind > 0; ++i)
+      p[static_cast<std::size_t>(i)].x() = kind == 1 ? 0.1 * (i % 2) : 0.1 * (i / 2);
     sim.set_state(p, {});
     expect_finite_or_stopped(sim, "kind " + std::to_string(kind));
   }

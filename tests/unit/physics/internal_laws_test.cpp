@@ -54,15 +54,16 @@ Forces dihedral_damping(const Nodes& s) {
   const auto b1 = bend(s, 0), b2 = bend(s, 1);
   const auto l1 = segment(s, 0), l2 = segment(s, 1), l3 = segment(s, 2);
   const auto d = dihedral_of(b1.sine, b1.cosine, b2.sine, b2.cosine, l1.inv_length, l2.inv_length, l3.inv_length);
-  const double m = -0.2 * dihedral_rate(d, swivel_rates(b1.axis, s.v[0], s.v[1], s.v[2]), swivel_rates(b2.axis, s.v[1], s.v[2], s.v[3]));
+  const double m = -0.2 * dihedral_rate(d, swivel_rates(b1.axis, s.v[0], s.v[1], s.v[2]),
+                                        swivel_rates(b2.axis, s.v[1], s.v[2], s.v[3]));
   const V a = (m * d.p0) * b1.axis, c = (m * d.p2) * b1.axis, e = (m * d.q1) * b2.axis, g = (m * d.q3) * b2.axis;
   return {a, e - (a + c), c - (e + g), g};
 }
 Forces paper_swivel(const Nodes& s) {
   const auto b = bend(s);
   const auto r = swivel_rates(b.axis, s.v[0], s.v[1], s.v[2]);
-  const V left = (-paper_swivel_N_s_per_m(b.sine, segment(s, 0).inv_length, 0.2) * r.left) * b.axis;
-  const V right = (-paper_swivel_N_s_per_m(b.sine, segment(s, 1).inv_length, 0.2) * r.right) * b.axis;
+  const V left = (-paper_swivel_N_s_per_m(segment(s, 0).inv_length, 0.2) * r.left) * b.axis;
+  const V right = (-paper_swivel_N_s_per_m(segment(s, 1).inv_length, 0.2) * r.right) * b.axis;
   return {left, -(left + right), right};
 }
 
@@ -94,8 +95,8 @@ void expect_idle_in_rigid_motion(int n, const Law& law) {
     EXPECT_LE(test::largest_of(law(s)), 1e-12 * std::max(1.0, moving));
   }
 }
-/// Central difference with step ~eps^(1/3): error ~eps^(2/3) of the energy over the step. States whose bend is within 0.01
-/// of straight or folded are left out: there the energy has a kink or the difference straddles it.
+/// Central difference with step ~eps^(1/3): error ~eps^(2/3) of the energy over the step. States whose bend is within
+/// 0.01 of straight or folded are left out: there the energy has a kink or the difference straddles it.
 void expect_minus_gradient(int n, const Law& law, const std::function<double(const Nodes&)>& energy) {
   test::Random random(10);
   constexpr double h = 6e-6;
@@ -114,7 +115,9 @@ void expect_minus_gradient(int n, const Law& law, const std::function<double(con
 }
 
 TEST(LinearSpring, LeavesNoForceOrTorqueOver) { expect_internal(2, stretch<LinearStretch>); }
-TEST(LinearSpring, EqualsMinusGradientOfItsEnergy) { expect_minus_gradient(2, stretch<LinearStretch>, stretch_energy<LinearStretch>); }
+TEST(LinearSpring, EqualsMinusGradientOfItsEnergy) {
+  expect_minus_gradient(2, stretch<LinearStretch>, stretch_energy<LinearStretch>);
+}
 TEST(QuadraticSpring, LeavesNoForceOrTorqueOver) { expect_internal(2, stretch<QuadraticStretchLaw>); }
 TEST(QuadraticSpring, EqualsMinusGradientOfItsEnergy) {
   expect_minus_gradient(2, stretch<QuadraticStretchLaw>, stretch_energy<QuadraticStretchLaw>);
@@ -154,7 +157,8 @@ TEST(BendSpring, PushesFoldedSegmentsApartAtFullForce) {
 }
 TEST(BendSpring, HasLinearStiffnessWhenStraight) {
   Nodes s;
-  s.p = {{0, 0, 0}, {1, 0, 0}, {2, 1e-7, 0}};  // alpha = 1e-7, so |f| = (k / pi) 1e-7; the printed t would give its square
+  s.p = {
+      {0, 0, 0}, {1, 0, 0}, {2, 1e-7, 0}};  // alpha = 1e-7, so |f| = (k / pi) 1e-7; the printed t would give its square
   EXPECT_NEAR(norm(bend_spring(s)[2]) / (10.0 / 3.141592653589793 * 1e-7), 1.0, 1e-9);
 }
 TEST(DihedralDamper, TakesTheFullRateOfTheDihedralAngleAtRightAngles) {

@@ -46,8 +46,8 @@ scene::Suture suture(scene::Model model) {
   s.model = model;
   return s;
 }
-constexpr scene::Model kModels[] = {scene::Model::kPaper1, scene::Model::kPaper2, scene::Model::kPaper3, scene::Model::kPaper4,
-                                    scene::Model::kPaper5};
+constexpr scene::Model kModels[] = {scene::Model::kPaper1, scene::Model::kPaper2, scene::Model::kPaper3,
+                                    scene::Model::kPaper4, scene::Model::kPaper5};
 
 TEST(InternalStep, ConservesBothMomentaInEveryModel) {
   test::Random random(1);

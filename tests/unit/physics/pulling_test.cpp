@@ -39,7 +39,8 @@ Pull half_tight(int nodes, const std::vector<std::string>& overrides) {
 void tick(Pull& pull, double speed, bool grip = true) {
   pull.hands[0] -= 1e-3 * speed * pull.apart;
   pull.hands[1] += 1e-3 * speed * pull.apart;
-  pull.sim.tick({ToolInput{pull.hands[0], -speed * pull.apart, grip}, ToolInput{pull.hands[1], speed * pull.apart, grip}});
+  pull.sim.tick(
+      {ToolInput{pull.hands[0], -speed * pull.apart, grip}, ToolInput{pull.hands[1], speed * pull.apart, grip}});
 }
 
 double larger_force_N(const Simulation& sim) {

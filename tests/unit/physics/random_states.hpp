@@ -35,7 +35,8 @@ class Random {
 inline std::vector<Nodes> degenerate_nodes(int n, unsigned seed) {
   Random random(seed);
   std::vector<Nodes> all;
-  for (const double turn : {0.0, 1e-15, 1e-9, 1e-5, 1.5707963267948966, 3.141592653589793 - 1e-5, 3.141592653589793 - 1e-9, 3.141592653589793}) {
+  for (const double turn : {0.0, 1e-15, 1e-9, 1e-5, 1.5707963267948966, 3.141592653589793 - 1e-5,
+                            3.141592653589793 - 1e-9, 3.141592653589793}) {
     for (int twist = 0; twist < 3; ++twist) {
       Nodes s;
       V p{0.0, 0.0, 0.0}, d{1.0, 0.0, 0.0}, side{0.0, twist == 1 ? 0.6 : 1.0, twist == 1 ? 0.8 : 0.0};

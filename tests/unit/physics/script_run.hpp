@@ -41,9 +41,9 @@ inline knot::KnotResult knot_of(const Simulation& sim) {
 
 /// How a script is changed before it is played.
 struct Variation {
-  double speed = 1.0;       ///< 1.25 is a quarter faster
-  double turn_rad = 0.0;    ///< about the vertical
-  bool mirrored = false;    ///< y -> -y
+  double speed = 1.0;     ///< 1.25 is a quarter faster
+  double turn_rad = 0.0;  ///< about the vertical
+  bool mirrored = false;  ///< y -> -y
 };
 
 inline ToolInput tool_at(const std::vector<scene::GripKey>& keys, double t_s, const Variation& how = {}) {
@@ -56,7 +56,8 @@ inline ToolInput tool_at(const std::vector<scene::GripKey>& keys, double t_s, co
 }
 
 /// Plays the script from t = from to t = to in ticks of 1 ms.
-inline void play(Simulation& sim, const scene::GripperScript& script, double from_s, double to_s, const Variation& how = {}) {
+inline void play(Simulation& sim, const scene::GripperScript& script, double from_s, double to_s,
+                 const Variation& how = {}) {
   for (int k = static_cast<int>(std::lround(from_s * 1000)); k < static_cast<int>(std::lround(to_s * 1000)); ++k) {
     const double t = (k + 1) * 1e-3;
     sim.tick({tool_at(script.keys[0], t, how), tool_at(script.keys[1], t, how)});

@@ -35,13 +35,14 @@ TEST(HangingThread, ExtendsByItsWeightOverStiffness) {
 // Model 5 with its default constant stretches less than model 4, with the printed one more (paper V.C claims less).
 TEST(HangingThread, StretchesLessInModel5OnlyWithTheStiffConstant) {
   const auto tip = [](const char* model, const char* constant) {
-    Simulation sim = make(paper_scene({std::string("suture.model=") + model, std::string("suture.quadratic_stretch=") + constant,
-                                       "suture.air_drag_per_s=5.0"}));
+    Simulation sim =
+        make(paper_scene({std::string("suture.model=") + model, std::string("suture.quadratic_stretch=") + constant,
+                          "suture.air_drag_per_s=5.0"}));
     settle(sim, 20.0);
     return 0.5 - sim.nodes_W().back().z();
   };
   const double four = tip("paper-4", "stiff"), stiff = tip("paper-5", "stiff"), printed = tip("paper-5", "printed");
-  EXPECT_NEAR(four / 5.0, 0.0153, 1e-3);      // 1.5 % and 11.7 %: the prototype's figures for N = 50
+  EXPECT_NEAR(four / 5.0, 0.0153, 1e-3);  // 1.5 % and 11.7 %: the prototype's figures for N = 50
   EXPECT_NEAR(printed / 5.0, 0.117, 2e-3);
   EXPECT_LT(stiff, 0.85 * four);
 }
@@ -60,20 +61,22 @@ TEST(Refinement, KeepsTheThreadWhenNodesChange) {
   EXPECT_NEAR(tip[2] / tip[1], 1.0, 0.02);
 }
 
-// A clamped thread without gravity under an end load: bending stiffness EI = k_ts l_r / pi is kept by reference_nodes, so
-// the small deflection F L^3 / (3 EI) does not depend on `nodes` either.
+// A clamped thread without gravity under an end load: bending stiffness EI = k_ts l_r / pi is kept by reference_nodes,
+// so the small deflection F L^3 / (3 EI) does not depend on `nodes` either.
 TEST(Refinement, KeepsTheBendingStiffness) {
   for (const int nodes : {26, 51}) {
-    Simulation sim = make(paper_scene({"suture.nodes=" + std::to_string(nodes), "suture.reference_nodes=51",
-                                       "world.fixed=[{node=0, position_m=[0.0,0.0,0.0], direction=[1.0,0.0,0.0]}]",
-                                       "world.gravity_m_per_s2=[0.0,0.0,0.0]", "world.loads=[{node=-1, force_N=[0.0,0.0,-1e-2]}]",
-                                       "suture.air_drag_per_s=2.0", "contact.solver=none", "suture.bend=1000.0", "time.substeps=4"}));
+    Simulation sim = make(
+        paper_scene({"suture.nodes=" + std::to_string(nodes), "suture.reference_nodes=51",
+                     "world.fixed=[{node=0, position_m=[0.0,0.0,0.0], direction=[1.0,0.0,0.0]}]",
+                     "world.gravity_m_per_s2=[0.0,0.0,0.0]", "world.loads=[{node=-1, force_N=[0.0,0.0,-1e-2]}]",
+                     "suture.air_drag_per_s=2.0", "contact.solver=none", "suture.bend=1000.0", "time.substeps=4"}));
     std::vector<Vec3> straight;
     for (int i = 0; i < nodes; ++i) straight.emplace_back(5.0 * i / (nodes - 1), 0.0, 0.0);
     sim.set_state(straight, {});
     settle(sim, 20.0);
     const double rest = 5.0 / (nodes - 1), free_m = 5.0 - 0.5 * rest, EI = 1000.0 * 0.1 / 3.14159265358979;
-    EXPECT_NEAR(-sim.nodes_W().back().z() / (1e-2 * free_m * free_m * free_m / (3.0 * EI)), 1.0, 0.02) << nodes << " nodes";
+    EXPECT_NEAR(-sim.nodes_W().back().z() / (1e-2 * free_m * free_m * free_m / (3.0 * EI)), 1.0, 0.02)
+        << nodes << " nodes";
   }
 }
 
@@ -85,7 +88,8 @@ TEST(Clamp, HoldsNodeAndTangent) {
 }
 
 TEST(Load, AHangingWeightAddsToTheTension) {
-  Simulation sim = make(paper_scene({"suture.nodes=2", "world.loads=[{node=-1, force_N=[0.0,0.0,-8.0]}]", "suture.air_drag_per_s=5.0"}));
+  Simulation sim = make(
+      paper_scene({"suture.nodes=2", "world.loads=[{node=-1, force_N=[0.0,0.0,-8.0]}]", "suture.air_drag_per_s=5.0"}));
   settle(sim, 20.0);
   EXPECT_NEAR(5.5 - sim.nodes_W()[1].z(), 5.0 * (1 + (8.0 + 0.49) / 800.0), 1e-6);
 }
@@ -118,7 +122,8 @@ TEST(Desk, StaticFrictionHoldsUpToItsConeAndNotBeyond) {
 TEST(Gripper, PushesTheThreadAsideButNotTheOneItHolds) {
   Simulation sim = make(paper_scene({"world.grippers_collide=true"}));
   const auto tools = [](double x) {
-    return std::array{ToolInput{Vec3(x, 0.0, 3.0), Vec3(0.5, 0, 0), false}, ToolInput{Vec3(9, 9, 9), Vec3::Zero(), false}};
+    return std::array{ToolInput{Vec3(x, 0.0, 3.0), Vec3(0.5, 0, 0), false},
+                      ToolInput{Vec3(9, 9, 9), Vec3::Zero(), false}};
   };
   for (int k = 0; k < 2000; ++k) sim.tick(tools(-0.5 + 0.5e-3 * k));
   double at = 0.0;
@@ -128,7 +133,8 @@ TEST(Gripper, PushesTheThreadAsideButNotTheOneItHolds) {
   EXPECT_GT(sim.diagnostics().contacts, 0);
 
   Simulation held = make(paper_scene({"world.grippers_collide=true"}));
-  for (int k = 0; k < 1000; ++k) held.tick({ToolInput{Vec3(0, 0, 3), Vec3::Zero(), true}, ToolInput{Vec3(9, 9, 9), Vec3::Zero(), false}});
+  for (int k = 0; k < 1000; ++k)
+    held.tick({ToolInput{Vec3(0, 0, 3), Vec3::Zero(), true}, ToolInput{Vec3(9, 9, 9), Vec3::Zero(), false}});
   EXPECT_EQ(held.diagnostics().contacts, 0);
   held.tick({ToolInput{Vec3(0, 0, 3), Vec3::Zero(), false}, ToolInput{Vec3(9, 9, 9), Vec3::Zero(), false}});
   EXPECT_EQ(held.diagnostics().contacts, 0);  // lets go without kicking the thread away
@@ -137,13 +143,17 @@ TEST(Gripper, PushesTheThreadAsideButNotTheOneItHolds) {
 TEST(Frame, ItsHookStopsAThreadThrownOverIt) {
   for (const auto& [collides, stopped] : {std::pair{"true", true}, std::pair{"false", false}}) {
     // The tail lies across the hook, 0.1 m above the fixed node, and falls: onto the hook's side or through it.
-    Simulation sim = make(paper_scene({std::string("world.frame_collides=") + collides, "world.gravity_m_per_s2=[9.8,0.0,-1e-9]"}));
+    Simulation sim =
+        make(paper_scene({std::string("world.frame_collides=") + collides, "world.gravity_m_per_s2=[9.8,0.0,-1e-9]"}));
     std::vector<Vec3> p;
     for (int i = 0; i < 50; ++i) {
       const double s = 5.0 / 49 * i;
-      if (s < 1.0) p.emplace_back(0.0, s, 5.5);
-      else if (s < 1.2) p.emplace_back(-(s - 1.0), 1.0, 5.5);
-      else p.emplace_back(-0.2, 1.0 - (s - 1.2), 5.6);
+      if (s < 1.0)
+        p.emplace_back(0.0, s, 5.5);
+      else if (s < 1.2)
+        p.emplace_back(-(s - 1.0), 1.0, 5.5);
+      else
+        p.emplace_back(-0.2, 1.0 - (s - 1.2), 5.6);
     }
     sim.set_state(p, {});
     double least = 1.0;
