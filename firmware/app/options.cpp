@@ -24,10 +24,23 @@ Example, with two simulated hands already running:
   ligature-device --hand right --bus local:/tmp/right --scene scenes/paper.toml --operator scenes/operators/overhand.csv &
   ligature-firmware run --scene scenes/paper.toml --left local:/tmp/left --right local:/tmp/right --arm --duration 23
 
-Exit: 0 done, 2 bad usage or bad scene, 3 a fault ended the run or the rig could not be started.)";
+Exit: 0 done, 2 bad usage or bad scene, 3 a fault ended the run, the scene does not fit into the period, or the rig
+could not be started.)";
 
 const std::map<std::string, RtMode> kModes{
     {"enforce", RtMode::kEnforce}, {"warn", RtMode::kWarn}, {"off", RtMode::kOff}};
+
+void add_scene(CLI::App& command, std::string& scene, std::vector<std::string>& overrides) {
+  command.add_option("--scene", scene, "scene file (TOML): the thread, its world, the coupling to the hands")->required();
+  command.add_option("--set", overrides, "override a key of the scene: key=value, may be given again")
+      ->allow_extra_args(false);
+}
+
+void add_budget(CLI::App& command, double& percent) {
+  command.add_option("--budget", percent, "share of the period that computing may take, percent")
+      ->check(CLI::Range(1.0, 100.0))
+      ->capture_default_str();
+}
 
 /// Where programs keep what they know between runs (XDG base directories).
 std::string default_recorder() {
@@ -40,9 +53,7 @@ std::string default_recorder() {
 void add_run(CLI::App& run, RunOptions& o) {
   o.recorder = default_recorder();
   run.footer(kRunHelp);
-  run.add_option("--scene", o.scene, "scene file (TOML): the thread, its world, the coupling to the hands")->required();
-  run.add_option("--set", o.overrides, "override a key of the scene: key=value, may be given again")
-      ->allow_extra_args(false);
+  add_scene(run, o.scene, o.overrides);
   run.add_option("--left", o.left, "bus of the left hand: local:/path/socket or socketcan:INTERFACE")->required();
   run.add_option("--right", o.right, "bus of the right hand")->required();
   run.add_flag("--arm", o.arm, "arm at start, as the local operator; else wait for the command");
@@ -66,7 +77,47 @@ void add_run(CLI::App& run, RunOptions& o) {
   run.add_option("--wait-s", o.wait_s, "how long to wait for the hands to be there")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
+  add_budget(run, o.budget_percent);
+  run.add_flag("--force", o.force, "run a scene that does not fit (see 'admit'); the recording says so");
   run.add_flag("--exit-on-fault", o.exit_on_fault, "end the run at the first fault instead of waiting for a reset");
+}
+
+constexpr const char* kAdmitHelp = R"(Lays the thread out in its most expensive shapes (wound up, pressed together until the contact lists are
+full, held by both hands), and takes the worst tick: CPU time with cold caches on the core of the loop. It must stay
+below the budget, and together with the bus's time below the period. 'run' does the same in short before it starts.
+
+Example:
+  ligature-firmware admit --scene scenes/paper.toml --set suture.nodes=200
+
+Exit: 0 the scene fits, 2 bad usage or bad scene, 3 it does not; the largest 'nodes' that would is printed.)";
+
+constexpr const char* kDoctorHelp = R"(One row a check, with the command that mends what is wrong; then the loop's wake-ups without its work. Run it as
+the user that will run the rig, with the machine loaded as it will be.
+
+Example:
+  ligature-firmware doctor --can can0 --can can1 --seconds 10
+
+Exit: 0 no FAIL, 2 bad usage, 3 at least one FAIL.)";
+
+void add_admit(CLI::App& admit, AdmitOptions& o) {
+  admit.footer(kAdmitHelp);
+  add_scene(admit, o.scene, o.overrides);
+  add_budget(admit, o.budget_percent);
+  admit.add_option("--seconds", o.seconds, "how long to try")->check(CLI::Range(0.1, 3600.0))->capture_default_str();
+}
+
+void add_doctor(CLI::App& doctor, DoctorOptions& o) {
+  doctor.footer(kDoctorHelp);
+  doctor.add_option("--seconds", o.seconds, "how long to measure wake-ups; 0 = only the table")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->capture_default_str();
+  doctor.add_option("--can", o.can, "SocketCAN interface to look at, may be given again")
+      ->allow_extra_args(false)
+      ->check([](const std::string& name) {
+        const bool good = !name.empty() && name.size() < 16 && name.find_first_not_of(
+            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-") == std::string::npos && name[0] != '-';
+        return good ? std::string() : "found '" + name + "', allowed the name of a network interface";
+      });
 }
 
 std::string one_line(std::string text) {
@@ -76,12 +127,16 @@ std::string one_line(std::string text) {
 
 }  // namespace
 
-std::variant<RunOptions, Exit> parse(int argc, char** argv) {
-  RunOptions options;
+std::variant<Command, Exit> parse(int argc, char** argv) {
+  RunOptions run;
+  AdmitOptions admit;
+  DoctorOptions doctor;
   CLI::App app{kAbout, "ligature-firmware"};
   app.set_version_flag("--version", std::string("ligature-firmware ") + LIGATURE_VERSION);
   app.require_subcommand(1);
-  add_run(*app.add_subcommand("run", "run the rig"), options);
+  add_run(*app.add_subcommand("run", "run the rig"), run);
+  add_admit(*app.add_subcommand("admit", "measure whether a scene's worst tick fits into the period"), admit);
+  add_doctor(*app.add_subcommand("doctor", "check whether this machine can hold the rate"), doctor);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -89,7 +144,9 @@ std::variant<RunOptions, Exit> parse(int argc, char** argv) {
     std::fprintf(stderr, "ligature-firmware: %s (see --help)\n", one_line(e.what()).c_str());
     return Exit{2};
   }
-  return options;
+  if (app.got_subcommand("admit")) return Command(admit);
+  if (app.got_subcommand("doctor")) return Command(doctor);
+  return Command(run);
 }
 
 }  // namespace ligature::app

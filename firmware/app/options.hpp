@@ -23,14 +23,30 @@ struct RunOptions {
   int watchdog_ms = 20;
   std::string recorder;    ///< flight recorder file; "none" for none
   int recorder_s = 120;    ///< how far back it goes
+  bool force = false;      ///< also a scene that does not fit
+  double budget_percent = 60.0;
 };
+
+struct AdmitOptions {
+  std::string scene;
+  std::vector<std::string> overrides;
+  double seconds = 3.0;
+  double budget_percent = 60.0;
+};
+
+struct DoctorOptions {
+  double seconds = 10.0;
+  std::vector<std::string> can;  ///< interfaces to look at
+};
+
+using Command = std::variant<RunOptions, AdmitOptions, DoctorOptions>;
 
 struct Exit {
   int code;
 };
 
-/// @return what to run, or the exit code when everything is said: help and version (0), bad usage (2, one line on
+/// @return what to do, or the exit code when everything is said: help and version (0), bad usage (2, one line on
 /// stderr).
-[[nodiscard]] std::variant<RunOptions, Exit> parse(int argc, char** argv);
+[[nodiscard]] std::variant<Command, Exit> parse(int argc, char** argv);
 
 }  // namespace ligature::app

@@ -12,6 +12,7 @@
 #include <future>
 #include <thread>
 
+#include "firmware/app/admit_command.hpp"
 #include "firmware/app/rig_setup.hpp"
 #include "firmware/app/summary.hpp"
 #include "firmware/cycle.hpp"
@@ -23,6 +24,8 @@
 
 namespace ligature::app {
 namespace {
+
+constexpr double kAdmission_s = 0.3;
 
 using RigCycle = Cycle<platform::RigBus, platform::MonotonicClock>;
 
@@ -87,7 +90,7 @@ std::unique_ptr<telemetry::FlightRecorder> open_recorder(const Plan& plan, const
 }
 
 telemetry::Session session(const Plan& plan, const RunOptions& options, std::int64_t id, bool realtime,
-                           const telemetry::FlightRecorder* recorder) {
+                           bool admitted, const telemetry::FlightRecorder* recorder) {
   return {id,
           LIGATURE_VERSION,
           options.scene,
@@ -96,7 +99,7 @@ telemetry::Session session(const Plan& plan, const RunOptions& options, std::int
           plan.scene.hands.max_force_N,
           plan.scene.suture.radius_m,
           realtime,
-          true,
+          admitted,
           recorder != nullptr ? recorder->path() : std::string()};
 }
 
@@ -195,6 +198,13 @@ int run(const RunOptions& options) {
   const int core = platform::realtime_core();
   if (ask) platform::keep_off(core);
 
+  const auto excess = objection_of(admit(plan.scene, kAdmission_s, core, options.budget_percent), plan.scene, core);
+  if (excess && !options.force) return fail(*excess);
+  if (excess) {
+    spdlog::warn("--force: {}", excess->text);
+    plan.toml += "\n# --force: " + excess->text + "\n";
+  }
+
   const auto outlets = std::make_unique<rt::Outlets>();
   telemetry::LcmLink link(options.lcm_url, [&](const ligature_msg::event_t& e) {
     log(e);
@@ -215,7 +225,7 @@ int run(const RunOptions& options) {
   if (options.rt == RtMode::kEnforce && !refused.empty()) return fail({3, "--rt=enforce: " + refused.front()});
   if (const auto refusal = configure(buses, options)) return fail(*refusal);
 
-  telemetry::Telemetry telemetry(session(plan, options, id, ask && refused.empty(), recorder.get()), kNames, *outlets,
+  telemetry::Telemetry telemetry(session(plan, options, id, ask && refused.empty(), !excess, recorder.get()), kNames, *outlets,
                                  link, recorder.get());
   if (!link.listen([&](const auto& c) { return telemetry.handle(c, utime_now()); }) && link.is_open()) {
     spdlog::warn("LCM: cannot listen for commands on {}", options.lcm_url);

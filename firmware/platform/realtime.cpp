@@ -77,6 +77,13 @@ void flush_denormals() noexcept {
 #endif
 }
 
+bool stay_on(int core) noexcept {
+  cpu_set_t only;
+  CPU_ZERO(&only);
+  CPU_SET(static_cast<std::size_t>(core), &only);
+  return pthread_setaffinity_np(pthread_self(), sizeof only, &only) == 0;
+}
+
 int realtime_core() {
   cpu_set_t allowed;
   CPU_ZERO(&allowed);

@@ -20,6 +20,9 @@ using Refusals = std::vector<std::string>;
 /// each costs a hundred cycles; a force below 1e-308 N is nobody's.
 void flush_denormals() noexcept;
 
+/// For the calling thread: that core and no other. @return false when it is not allowed there.
+bool stay_on(int core) noexcept;
+
 /// The last core this process may use: interrupts and other work gather on the first.
 [[nodiscard]] int realtime_core();
 

@@ -1,0 +1,48 @@
+#pragma once
+// Whether a scene's worst tick fits into the period, measured on the core that will run it, before anybody is armed.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "protocol/scene/scene.hpp"
+
+namespace ligature::app {
+
+inline constexpr double kDefaultBudget_percent = 60.0;
+
+/// What the worst tick costs. Times are CPU time of the measuring thread with cold caches, the smallest of several
+/// runs of the same tick (so that other work on the core does not count; that is doctor's matter), the largest of all
+/// ticks tried.
+struct WorstCase {
+  double thread_us = 0.0;   ///< one tick of the thread's physics
+  double control_us = 0.0;  ///< control law and record
+  bool contact_cap_hit = false;
+  int most_contacts = 0;
+  int ticks = 0;  ///< different ones that were tried
+};
+
+struct Admission {
+  WorstCase worst;
+  double budget_percent = kDefaultBudget_percent;
+  /// SYNC and TPDOs of a bus at its longest (bits, stuffed), during which the loop waits and computes nothing.
+  double bus_us = 0.0;
+  [[nodiscard]] double computing_us() const noexcept { return worst.thread_us + worst.control_us; }
+  [[nodiscard]] double budget_us() const noexcept { return 10.0 * budget_percent; }
+  /// Within the budget, and together with the bus within the period.
+  [[nodiscard]] bool fits() const noexcept {
+    return computing_us() <= budget_us() && bus_us + computing_us() <= 1000.0;
+  }
+};
+
+/// @param scene one that physics::Simulation::make() accepts. @param seconds to spend. @param core to measure on.
+[[nodiscard]] Admission admit(const scene::Scene& scene, double seconds, int core,
+                              double budget_percent = kDefaultBudget_percent);
+
+/// The largest `nodes` of this scene that fits, by bisection, `seconds` in all; nothing when not even 2 do.
+[[nodiscard]] std::optional<int> largest_nodes(scene::Scene scene, double seconds, int core, double budget_percent);
+
+/// Phase by phase against the budget, a table of fixed width.
+[[nodiscard]] std::string table(const Admission& admission);
+
+}  // namespace ligature::app

@@ -1,0 +1,48 @@
+#include "firmware/app/admit_command.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "firmware/platform/realtime.hpp"
+
+namespace ligature::app {
+namespace {
+
+constexpr double kSearch_s = 2.0;
+
+}  // namespace
+
+std::optional<Refusal> objection_of(const Admission& admission, const scene::Scene& scene, int core) {
+  if (admission.fits()) return std::nullopt;
+  char text[160];
+  std::snprintf(text, sizeof text, "the scene does not fit: found %.0f us of computing in the worst tick, allowed %.0f; ",
+                admission.computing_us(), std::min(admission.budget_us(), 1000.0 - admission.bus_us));
+  const auto nodes = largest_nodes(scene, kSearch_s, core, admission.budget_percent);
+  return Refusal{3, text + (nodes ? "largest suture.nodes that would: " + std::to_string(*nodes)
+                                  : std::string("no suture.nodes would"))};
+}
+
+int admit_scene(const AdmitOptions& options) {
+  RunOptions like_run;
+  like_run.scene = options.scene;
+  like_run.overrides = options.overrides;
+  const auto planned = make_plan(like_run);
+  if (const auto* refusal = std::get_if<Refusal>(&planned)) {
+    std::fprintf(stderr, "ligature-firmware: %s\n", refusal->text.c_str());
+    return refusal->exit_code;
+  }
+  const auto& scene = std::get<Plan>(planned).scene;
+  const int core = platform::realtime_core();
+  const Admission admission = admit(scene, options.seconds, core, options.budget_percent);
+  std::fputs(table(admission).c_str(), stdout);
+  const auto objection = objection_of(admission, scene, core);
+  if (!objection) {
+    std::puts("admitted");
+    return 0;
+  }
+  std::fflush(stdout);
+  std::fprintf(stderr, "ligature-firmware: %s\n", objection->text.c_str());
+  return objection->exit_code;
+}
+
+}  // namespace ligature::app

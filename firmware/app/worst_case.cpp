@@ -1,0 +1,61 @@
+#include "firmware/app/worst_case.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligature::app {
+namespace {
+
+using physics::Vec3;
+
+/// Corners of the winding: rows along x, stacked in y, layers in z, without a jump anywhere.
+std::vector<Vec3> corners(double length_m, double spacing_m) {
+  const int rows = std::max(2, static_cast<int>(std::cbrt(length_m / spacing_m)));
+  const double row_m = std::max(2.0 * spacing_m, rows * spacing_m);
+  std::vector<Vec3> path;
+  double wound_m = 0.0;
+  for (int line = 0; wound_m < length_m; ++line) {
+    const int layer = line / rows, in_layer = line % rows;
+    const double y = spacing_m * (layer % 2 == 0 ? in_layer : rows - 1 - in_layer), z = spacing_m * layer;
+    const bool forth = line % 2 == 0;
+    path.emplace_back(forth ? 0.0 : row_m, y, z);
+    path.emplace_back(forth ? row_m : 0.0, y, z);
+    wound_m += row_m + spacing_m;
+  }
+  return path;
+}
+
+}  // namespace
+
+std::vector<Vec3> wound_up(int nodes, double l_rest_m, double spacing_m, const Vec3& centre_W_m) {
+  const auto path = corners((nodes + 1) * l_rest_m, spacing_m);
+  std::vector<Vec3> p_W;
+  std::size_t piece = 0;
+  double into_m = 0.0;  // the next node, from the start of the piece
+  while (static_cast<int>(p_W.size()) < nodes) {
+    const Vec3 along = path[piece + 1] - path[piece];
+    const double piece_m = along.norm();
+    if (into_m > piece_m && piece + 2 < path.size()) {
+      into_m -= piece_m;
+      ++piece;
+      continue;
+    }
+    p_W.push_back(centre_W_m + path[piece] + (into_m / piece_m) * along);
+    into_m += l_rest_m;
+  }
+  return p_W;
+}
+
+std::vector<std::vector<Vec3>> worst_shapes(const scene::Scene& scene) {
+  const double l_rest_m = scene.suture.length_m / (scene.suture.nodes - 1);
+  const double touching_m = 2.0 * scene.suture.radius_m;
+  const auto& fixed = scene.world.fixed;
+  const Vec3 centre_W_m = fixed.empty() ? Vec3(0.0, 0.0, 1.0)
+                                        : Vec3(fixed[0].position_m[0], fixed[0].position_m[1], fixed[0].position_m[2]);
+  std::vector<std::vector<Vec3>> shapes{{}};
+  for (const double pressed : {1.0, 0.9, 0.7, 0.5})
+    shapes.push_back(wound_up(scene.suture.nodes, l_rest_m, pressed * touching_m, centre_W_m));
+  return shapes;
+}
+
+}  // namespace ligature::app

@@ -1,0 +1,230 @@
+#include "firmware/platform/machine.hpp"
+
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace ligature::platform {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr int kPriority = 80;
+constexpr long kReceiveBuffer = 4'194'304;
+constexpr unsigned kMulticast = 0xEFFF4C43;  // 239.255.76.67, the default LCM group
+constexpr unsigned kCapIpcLock = 14, kCapSysNice = 23;
+constexpr long kWorstIdleExit_us = 20;
+
+std::string text_of(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  std::string s = text.str();
+  while (!s.empty() && (s.back() == '\n' || s.back() == ' ')) s.pop_back();
+  return s;
+}
+
+Check good(const char* what, std::string found) { return {Grade::kOk, what, std::move(found), {}}; }
+
+std::string cpu(int core) { return "sys/devices/system/cpu/cpu" + std::to_string(core) + "/"; }
+
+Check kernel(const std::string& root) {
+  const std::string release = text_of(root + "proc/sys/kernel/osrelease");
+  if (text_of(root + "sys/kernel/realtime") == "1") return good("kernel", release + ", PREEMPT_RT");
+  return {Grade::kFail, "kernel", release + ", not PREEMPT_RT", "apt install linux-image-rt-amd64 && reboot"};
+}
+
+/// The soft limit in proc/self/limits; "unlimited" as a very large number.
+long limit(const std::string& root, const std::string& name) {
+  std::istringstream lines(text_of(root + "proc/self/limits"));
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with(name)) continue;
+    const std::string rest = line.substr(name.size());
+    return rest.find_first_not_of(' ') == rest.find("unlimited") ? 1L << 62 : std::atol(rest.c_str());
+  }
+  return 0;
+}
+
+bool has_capability(const std::string& root, unsigned number) {
+  std::istringstream lines(text_of(root + "proc/self/status"));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("CapEff:")) return (std::strtoull(line.c_str() + 7, nullptr, 16) >> number & 1U) != 0;
+  }
+  return false;
+}
+
+std::string amount(long value) { return value >= 1L << 62 ? "unlimited" : std::to_string(value); }
+
+constexpr const char* kLimits = "install limits.d/ligature.conf, join group 'realtime', log in again";
+
+Check priority_limit(const std::string& root) {
+  if (has_capability(root, kCapSysNice)) return good("real-time priority", "allowed by CAP_SYS_NICE");
+  const long allowed = limit(root, "Max realtime priority");
+  if (allowed >= kPriority) return good("real-time priority", "up to " + amount(allowed));
+  return {Grade::kFail, "real-time priority", "up to " + amount(allowed) + ", wanted 80", kLimits};
+}
+
+Check memory_limit(const std::string& root) {
+  if (has_capability(root, kCapIpcLock)) return good("locked memory", "allowed by CAP_IPC_LOCK");
+  const long allowed = limit(root, "Max locked memory");
+  if (allowed >= 1L << 62) return good("locked memory", "unlimited");
+  return {Grade::kFail, "locked memory", amount(allowed) + " bytes, wanted unlimited", kLimits};
+}
+
+/// A core list of the kernel that shall hold ours.
+Check core_list(const std::string& root, const char* what, const std::string& file, const std::string& option, int core) {
+  const std::string list = text_of(root + file);
+  const std::string number = std::to_string(core);
+  if (list_holds(list, core)) return good(what, "core " + number + " in " + list);
+  return {Grade::kWarn, what, "core " + number + " not in '" + list + "'",
+          "kernel command line: " + option + "=" + number + " (GRUB_CMDLINE_LINUX, update-grub, reboot)"};
+}
+
+Check rcu(const std::string& root, int core) {
+  const std::string line = " " + text_of(root + "proc/cmdline") + " ";
+  const auto at = line.find(" rcu_nocbs=");
+  const std::string number = std::to_string(core);
+  if (at != std::string::npos) {
+    const auto from = at + 11;
+    if (list_holds(line.substr(from, line.find(' ', from) - from), core)) return good("RCU callbacks", "off core " + number);
+  }
+  return {Grade::kWarn, "RCU callbacks", "may run on core " + number,
+          "kernel command line: rcu_nocbs=" + number + " (GRUB_CMDLINE_LINUX, update-grub, reboot)"};
+}
+
+Check governor(const std::string& root, int core) {
+  const std::string file = root + cpu(core) + "cpufreq/scaling_governor";
+  if (!fs::exists(file)) return good("frequency", "not scaled by this kernel");
+  const std::string found = text_of(file);
+  if (found == "performance") return good("frequency", "governor performance");
+  return {Grade::kWarn, "frequency", "governor " + found, "cpupower -c " + std::to_string(core) + " frequency-set -g performance"};
+}
+
+/// Idle states that take long to leave add to every wake-up.
+Check idle(const std::string& root, int core) {
+  std::error_code none;
+  std::string slow;
+  for (const auto& state : fs::directory_iterator(root + cpu(core) + "cpuidle", none)) {
+    const std::string s = state.path().string();
+    if (text_of(s + "/disable") == "1" || std::atol(text_of(s + "/latency").c_str()) <= kWorstIdleExit_us) continue;
+    slow += (slow.empty() ? "" : ", ") + text_of(s + "/name") + " " + text_of(s + "/latency") + " us";
+  }
+  if (slow.empty()) return good("idle states", "none slower than 20 us");
+  return {Grade::kWarn, "idle states", slow, "cpupower -c " + std::to_string(core) + " idle-set -D 20"};
+}
+
+Check clock_source(const std::string& root) {
+  const std::string found = text_of(root + "sys/devices/system/clocksource/clocksource0/current_clocksource");
+  if (found != "hpet" && found != "acpi_pm" && found != "jiffies") return good("clock source", found.empty() ? "default" : found);
+  return {Grade::kWarn, "clock source", found + ", slow to read", "kernel command line: tsc=reliable"};
+}
+
+Check multicast(const std::string& root) {
+  const std::string by = route_of(text_of(root + "proc/net/route"), kMulticast);
+  if (by == "lo") return good("LCM multicast", "by lo");
+  if (!by.empty()) return {Grade::kWarn, "LCM multicast", "by " + by + " (ttl=0 keeps it on this machine)", "ip route add 224.0.0.0/4 dev lo"};
+  return {Grade::kFail, "LCM multicast", "no route", "ip link set lo up && ip route add 224.0.0.0/4 dev lo"};
+}
+
+Check receive_buffer(const std::string& root) {
+  const std::string found = text_of(root + "proc/sys/net/core/rmem_max");
+  if (std::atol(found.c_str()) >= kReceiveBuffer) return good("receive buffer", "up to " + found + " bytes");
+  return {Grade::kWarn, "receive buffer", "up to " + (found.empty() ? "?" : found) + " bytes", "sysctl -w net.core.rmem_max=4194304"};
+}
+
+/// Number after a word in a text, or -1.
+double number_after(const std::string& text, const std::string& word) {
+  const auto at = text.find(word);
+  return at == std::string::npos ? -1.0 : std::atof(text.c_str() + at + word.size());
+}
+
+/// Interrupts of the interface that may come to the core.
+Check interrupts(const std::string& root, const std::string& interface, int core) {
+  std::istringstream lines(text_of(root + "proc/interrupts"));
+  for (std::string line; std::getline(lines, line);) {
+    if ((line + " ").find(" " + interface + " ") == std::string::npos) continue;
+    const std::string number = std::to_string(std::atoi(line.c_str()));
+    if (list_holds(text_of(root + "proc/irq/" + number + "/smp_affinity_list"), core))
+      return {Grade::kWarn, "CAN interrupt", interface + ": irq " + number + " may come to core " + std::to_string(core),
+              "echo 0 > /proc/irq/" + number + "/smp_affinity_list"};
+    return good("CAN interrupt", interface + ": irq " + number + " kept off core " + std::to_string(core));
+  }
+  return good("CAN interrupt", interface + ": none of its own");
+}
+
+}  // namespace
+
+bool list_holds(const std::string& list, int core) {
+  std::istringstream parts(list);
+  for (std::string part; std::getline(parts, part, ',');) {
+    if (part.empty() || part[0] < '0' || part[0] > '9') continue;
+    const int first = std::atoi(part.c_str());
+    const auto dash = part.find('-');
+    const int last = dash == std::string::npos ? first : std::atoi(part.c_str() + dash + 1);
+    if (core >= first && core <= last) return true;
+  }
+  return false;
+}
+
+std::string route_of(const std::string& route_table, unsigned address) {
+  std::istringstream lines(route_table);
+  std::string line, best;
+  unsigned best_mask = 0;
+  std::getline(lines, line);  // column names
+  while (std::getline(lines, line)) {
+    std::istringstream fields(line);
+    std::string interface, skipped;
+    unsigned destination = 0, mask = 0;
+    fields >> interface >> std::hex >> destination;
+    for (int i = 0; i < 5; ++i) fields >> skipped;  // gateway, flags, counters, metric
+    fields >> mask;
+    if (!fields) continue;
+    destination = __builtin_bswap32(destination), mask = __builtin_bswap32(mask);  // printed in network order
+    if ((address & mask) == destination && (best.empty() || mask > best_mask)) best = interface, best_mask = mask;
+  }
+  return best;
+}
+
+std::vector<Check> check_machine(const Machine& machine, int core) {
+  const std::string& root = machine.root;
+  return {kernel(root),
+          priority_limit(root),
+          memory_limit(root),
+          core_list(root, "own core", "sys/devices/system/cpu/isolated", "isolcpus", core),
+          core_list(root, "timer ticks", "sys/devices/system/cpu/nohz_full", "nohz_full", core),
+          rcu(root, core),
+          governor(root, core),
+          idle(root, core),
+          clock_source(root),
+          multicast(root),
+          receive_buffer(root)};
+}
+
+std::vector<Check> check_can(const Machine& machine, const std::string& interface, int core) {
+  const std::string folder = machine.root + "sys/class/net/" + interface;
+  if (!fs::exists(folder)) return {{Grade::kFail, "CAN", interface + ": no such interface", "ip link show type can"}};
+  std::vector<Check> checks;
+  const bool up = (std::strtoul(text_of(folder + "/flags").c_str(), nullptr, 16) & 1U) != 0;
+  checks.push_back(up ? good("CAN", interface + ": up")
+                      : Check{Grade::kFail, "CAN", interface + ": down", "ip link set " + interface + " up"});
+  const std::string details = machine.ip_details(interface);
+  if (details.find("vcan") != std::string::npos) {
+    checks.push_back(good("CAN bit rate", interface + ": virtual, has none"));
+  } else {
+    const double rate = number_after(details, " bitrate "), point = number_after(details, " sample-point ");
+    std::ostringstream found;
+    found << interface << ": " << rate << " bit/s, sample point " << point;
+    const bool fine = rate == 1e6 && point >= 0.75 && point <= 0.875;
+    checks.push_back({fine ? Grade::kOk : Grade::kFail, "CAN bit rate", found.str(),
+                      fine ? "" : "ip link set " + interface + " down && ip link set " + interface +
+                                      " up type can bitrate 1000000 sample-point 0.8"});
+  }
+  const std::string queue = text_of(folder + "/tx_queue_len");
+  checks.push_back(std::atol(queue.c_str()) >= 64
+                       ? good("CAN queue", interface + ": " + queue)
+                       : Check{Grade::kWarn, "CAN queue", interface + ": " + queue + ", wanted 64", "ip link set " + interface + " txqueuelen 64"});
+  checks.push_back(interrupts(machine.root, interface, core));
+  return checks;
+}
+
+}  // namespace ligature::platform

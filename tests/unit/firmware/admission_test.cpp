@@ -1,0 +1,97 @@
+// Admission: the shapes are as bad as they claim, and the verdict follows the cost.
+#include "firmware/app/admission.hpp"
+
+#include <gtest/gtest.h>
+
+#include "firmware/app/doctor.hpp"
+#include "firmware/app/worst_case.hpp"
+#include "firmware/physics/simulation.hpp"
+#include "firmware/platform/realtime.hpp"
+#include "protocol/scene/scene_file.hpp"
+
+namespace ligature::app {
+namespace {
+
+scene::Scene paper(int nodes) {
+  auto s = std::get<scene::Scene>(
+      scene::load_scene(std::string(LIGATURE_SOURCE_DIR) + "/scenes/paper.toml",
+                        std::vector<std::string>{"suture.nodes=" + std::to_string(nodes)}));
+  return s;
+}
+
+TEST(WorstCase, AWoundThreadKeepsItsNodesAndIsAsDenseAsAsked) {
+  const auto p_W = wound_up(200, 0.1, 0.1, {0.0, 0.0, 1.0});
+  ASSERT_EQ(p_W.size(), 200U);
+  for (std::size_t i = 1; i < p_W.size(); ++i) EXPECT_LE((p_W[i] - p_W[i - 1]).norm(), 0.1 + 1e-12) << i;
+  double closest_m = 1.0;
+  for (std::size_t i = 0; i < p_W.size(); ++i) {
+    EXPECT_TRUE(p_W[i].allFinite());
+    for (std::size_t j = i + 4; j < p_W.size(); ++j) closest_m = std::min(closest_m, (p_W[i] - p_W[j]).norm());
+  }
+  EXPECT_GT(closest_m, 0.07);
+  EXPECT_LT(closest_m, 0.13);
+}
+
+TEST(WorstCase, PressedTogetherItFillsTheContactLists) {
+  const auto scene = paper(50);
+  auto thread = std::get<physics::Simulation>(physics::Simulation::make(scene));
+  int most = 0;
+  for (const auto& shape : worst_shapes(scene)) {
+    thread.reset();
+    if (!shape.empty()) thread.set_state(shape, {});
+    thread.tick({});
+    most = std::max(most, thread.diagnostics().contacts);
+  }
+  EXPECT_GE(most, 50) << "more than one contact a node";
+}
+
+TEST(Admission, AFewNodesFitAndTooManyDoNot) {
+  const int core = platform::realtime_core();
+  const auto small = admit(paper(20), 0.1, core);
+  EXPECT_TRUE(small.fits()) << table(small);
+  EXPECT_GT(small.worst.thread_us, 0.0);
+  EXPECT_GT(small.worst.control_us, 0.0);
+  EXPECT_NEAR(small.bus_us, 530.0, 80.0);
+  const auto large = admit(paper(600), 0.1, core);
+  EXPECT_FALSE(large.fits()) << table(large);
+  EXPECT_GT(large.worst.thread_us, small.worst.thread_us);
+}
+
+TEST(Admission, NamesTheLargestThreadThatFits) {
+  const int core = platform::realtime_core();
+  const auto nodes = largest_nodes(paper(600), 1.0, core, 60.0);
+  ASSERT_TRUE(nodes);
+  EXPECT_GE(*nodes, 20);
+  EXPECT_LT(*nodes, 600);
+}
+
+TEST(Admission, TheBusCountsAgainstThePeriodNotAgainstTheBudget) {
+  Admission a;
+  a.bus_us = 450.0;
+  a.worst.thread_us = 560.0;
+  EXPECT_FALSE(a.fits());  // within 600, but not with the bus
+  a.worst.thread_us = 540.0;
+  EXPECT_TRUE(a.fits());
+  a.bus_us = 100.0;
+  a.worst.thread_us = 610.0;
+  EXPECT_FALSE(a.fits());
+}
+
+TEST(Doctor, JudgesByTheWorstWakeUp) {
+  rt::DurationStatistics s;
+  for (int i = 0; i < 1000; ++i) s.add(5'000);
+  EXPECT_EQ(judge(s).grade, platform::Grade::kOk);
+  s.add(150'000);
+  EXPECT_EQ(judge(s).grade, platform::Grade::kWarn);
+  s.add(2'000'000);
+  const auto check = judge(s);
+  EXPECT_EQ(check.grade, platform::Grade::kFail);
+  EXPECT_NE(check.remedy, "");
+  const std::string text = table({check, {platform::Grade::kOk, "kernel", "fine", {}}});
+  EXPECT_NE(text.find("FAIL  wake-up latency"), std::string::npos);
+  EXPECT_NE(text.find("OK    kernel"), std::string::npos);
+  EXPECT_NE(histogram(s, {1, 0, 3}).find("1002 in all"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ligature::app

@@ -1,0 +1,129 @@
+// The doctor's eyes, on machines made of files.
+#include "firmware/platform/machine.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+namespace ligature::platform {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MachineTest : public ::testing::Test {
+ protected:
+  MachineTest() {
+    std::string name = (fs::temp_directory_path() / "ligature-machine-XXXXXX").string();
+    folder = ::mkdtemp(name.data());
+    machine.root = folder + "/";
+    machine.ip_details = [this](const std::string&) { return details; };
+  }
+  ~MachineTest() override { fs::remove_all(folder); }
+
+  void put(const std::string& file, const std::string& text) {
+    fs::create_directories(fs::path(folder + "/" + file).parent_path());
+    std::ofstream(folder + "/" + file) << text << "\n";
+  }
+  static Grade grade(const std::vector<Check>& checks, const std::string& what) {
+    const auto at = std::ranges::find(checks, what, &Check::what);
+    EXPECT_NE(at, checks.end()) << what;
+    EXPECT_EQ(at->grade == Grade::kOk, at->remedy.empty()) << what;
+    return at->grade;
+  }
+  void put_good_machine() {
+    put("proc/sys/kernel/osrelease", "6.1.0-rt");
+    put("sys/kernel/realtime", "1");
+    put("proc/self/limits",
+        "Limit                     Soft Limit           Hard Limit           Units\n"
+        "Max locked memory         unlimited            unlimited            bytes\n"
+        "Max realtime priority     90                   90");
+    put("sys/devices/system/cpu/isolated", "2-3");
+    put("sys/devices/system/cpu/nohz_full", "3");
+    put("proc/cmdline", "quiet rcu_nocbs=1,3 nohz_full=3");
+    put("sys/devices/system/cpu/cpu3/cpufreq/scaling_governor", "performance");
+    put("sys/devices/system/cpu/cpu3/cpuidle/state1/latency", "10");
+    put("sys/devices/system/cpu/cpu3/cpuidle/state1/disable", "0");
+    put("sys/devices/system/clocksource/clocksource0/current_clocksource", "tsc");
+    put("proc/net/route",
+        "Iface\tDestination\tGateway \tFlags\tRefCnt\tUse\tMetric\tMask\t\tMTU\tWindow\tIRTT\n"
+        "eth0\t00000000\t0100A8C0\t0003\t0\t0\t0\t00000000\t0\t0\t0\n"
+        "lo\t000000E0\t00000000\t0001\t0\t0\t0\t000000F0\t0\t0\t0");
+    put("proc/sys/net/core/rmem_max", "4194304");
+  }
+
+  std::string folder, details;
+  Machine machine;
+};
+
+TEST_F(MachineTest, AGoodMachineIsGoodInEveryRow) {
+  put_good_machine();
+  for (const auto& check : check_machine(machine, 3)) EXPECT_EQ(check.grade, Grade::kOk) << check.what << check.found;
+}
+
+TEST_F(MachineTest, EachFlawIsFoundInItsRowWithARemedy) {
+  const struct {
+    const char *file, *text, *row;
+    Grade grade;
+  } flaws[] = {
+      {"sys/kernel/realtime", "0", "kernel", Grade::kFail},
+      {"proc/self/limits", "Max locked memory         65536   unlimited   bytes", "locked memory", Grade::kFail},
+      {"proc/self/limits", "Max realtime priority     0   0", "real-time priority", Grade::kFail},
+      {"sys/devices/system/cpu/isolated", "1-2", "own core", Grade::kWarn},
+      {"sys/devices/system/cpu/nohz_full", "(null)", "timer ticks", Grade::kWarn},
+      {"proc/cmdline", "quiet", "RCU callbacks", Grade::kWarn},
+      {"sys/devices/system/cpu/cpu3/cpufreq/scaling_governor", "powersave", "frequency", Grade::kWarn},
+      {"sys/devices/system/cpu/cpu3/cpuidle/state1/latency", "133", "idle states", Grade::kWarn},
+      {"sys/devices/system/clocksource/clocksource0/current_clocksource", "hpet", "clock source", Grade::kWarn},
+      {"proc/net/route", "Iface", "LCM multicast", Grade::kFail},
+      {"proc/sys/net/core/rmem_max", "212992", "receive buffer", Grade::kWarn},
+  };
+  for (const auto& flaw : flaws) {
+    put_good_machine();
+    put(flaw.file, flaw.text);
+    EXPECT_EQ(grade(check_machine(machine, 3), flaw.row), flaw.grade) << flaw.row;
+  }
+}
+
+TEST_F(MachineTest, CapabilitiesStandInForLimits) {
+  put("proc/self/status", "Name:\tx\nCapEff:\t0000000000804000");
+  const auto checks = check_machine(machine, 0);
+  EXPECT_EQ(grade(checks, "real-time priority"), Grade::kOk);
+  EXPECT_EQ(grade(checks, "locked memory"), Grade::kOk);
+}
+
+TEST_F(MachineTest, AnEmptyMachineIsReadWithoutHarm) {
+  EXPECT_EQ(grade(check_machine(machine, 0), "kernel"), Grade::kFail);
+  EXPECT_EQ(check_can(machine, "can0", 0).at(0).grade, Grade::kFail);
+}
+
+TEST_F(MachineTest, CanInterfaces) {
+  put("sys/class/net/can0/flags", "0x40081");
+  put("sys/class/net/can0/tx_queue_len", "100");
+  put("proc/interrupts", "           CPU0       CPU1\n 17:   5   6   IO-APIC   17-fasteoi   can0");
+  put("proc/irq/17/smp_affinity_list", "0");
+  details = "can state ERROR-ACTIVE \n\t bitrate 1000000 sample-point 0.800 \n";
+  for (const auto& check : check_can(machine, "can0", 1)) EXPECT_EQ(check.grade, Grade::kOk) << check.what;
+  details = "can state ERROR-ACTIVE \n\t bitrate 500000 sample-point 0.875 \n";
+  put("sys/class/net/can0/flags", "0x40080");
+  put("sys/class/net/can0/tx_queue_len", "10");
+  put("proc/irq/17/smp_affinity_list", "0-3");
+  const auto checks = check_can(machine, "can0", 1);
+  EXPECT_EQ(grade(checks, "CAN"), Grade::kFail);
+  EXPECT_EQ(grade(checks, "CAN bit rate"), Grade::kFail);
+  EXPECT_EQ(grade(checks, "CAN queue"), Grade::kWarn);
+  EXPECT_EQ(grade(checks, "CAN interrupt"), Grade::kWarn);
+}
+
+TEST(Machine, ReadsCoreListsAndRoutes) {
+  EXPECT_TRUE(list_holds("0,2-5", 4));
+  EXPECT_FALSE(list_holds("0,2-5", 1));
+  EXPECT_FALSE(list_holds("", 0));
+  const std::string table = "head\neth0\t00000000\t0\t3\t0\t0\t0\t00000000\t0\t0\t0\n";
+  EXPECT_EQ(route_of(table, 0xEFFF4C43), "eth0");
+  EXPECT_EQ(route_of("head\n", 0xEFFF4C43), "");
+}
+
+}  // namespace
+}  // namespace ligature::platform
