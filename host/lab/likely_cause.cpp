@@ -42,6 +42,14 @@ std::vector<Limit> limits(const scene::Scene& s) {
 
 std::string likely_cause(const scene::Scene& s) {
   const double dt_s = s.time.tick_s / s.time.substeps;
+  if (s.suture.model == scene::Model::kRod) {
+    std::ostringstream rod;
+    rod.precision(2);
+    rod << "the rod is stepped implicitly, so rather a hand that jumps, a thread that moves more than its radius in a "
+           "step of "
+        << dt_s << " s, or a start that overlaps itself: shorten time.tick_s, or look at the last rows of trace.csv";
+    return rod.str();
+  }
   const auto all = limits(s);
   const auto worst = std::min_element(all.begin(), all.end(),
                                       [](const Limit& a, const Limit& b) { return a.largest_dt_s < b.largest_dt_s; });

@@ -118,7 +118,8 @@ void record_shapes(const scene::Scene& s, CsvFile& file, double number) {
 
 int experiment_models(const Bench& bench) {
   std::printf("models: what each adds (N = 50, step %.1f ms, the paper's swivel damper)\n", 1e3 * kStep_s);
-  const auto base = load_scene_or_refuse((bench.scenes / "paper.toml").string(), {"suture.swivel=paper", "suture.air_drag_per_s=0.0"});
+  const auto base = load_scene_or_refuse((bench.scenes / "paper.toml").string(),
+                                         {"suture.swivel=paper", "suture.air_drag_per_s=0.0"});
   Table table({"model", "fold_90deg_J", "ringing_left_after_1s", "orbit_left_after_20s", "static_stretch_percent"});
   std::array<Measured, 5> m;
   CsvFile shapes(bench.out / "models-shapes.csv", "model,t_s,node,x_m,y_m,z_m");

@@ -87,6 +87,7 @@ double add_explicit(const scene::Scene& base, const Reference& ref, Table& table
                     std::string(scene::name(kModels[m])) + ", N = " + std::to_string(kNodes[n]));
       auto s = scene_for(base, kModels[m], kNodes[n]);
       s.suture.paper.damping = scene::Damping::kExplicit;
+      s.suture.paper.swivel = scene::SwivelDamper::kPaper;
       s.suture.paper.integrator = ref.integrator;
       s.suture.paper.quadratic_stretch = scene::QuadraticStretch::kPrinted;
       const double low_ms = forward ? 0.02 : 0.1;
@@ -118,7 +119,7 @@ double add_default(const scene::Scene& base, Table& table, Progress& progress) {
 }  // namespace
 
 int experiment_stability(const Bench& bench) {
-  const auto base = load_scene_or_refuse((bench.scenes / "paper.toml").string(), {});
+  const auto base = load_scene_or_refuse((bench.scenes / "paper.toml").string(), {"suture.air_drag_per_s=0"});
   std::printf("stability: the largest step, ms, that survives a swing of %.0f s from level\n", kSwing_s);
   Table table({"model", "scheme", "N=20_ms", "N=35_ms", "N=50_ms", "N=100_ms"});
   Verdict verdict("stability");

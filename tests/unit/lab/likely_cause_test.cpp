@@ -31,5 +31,11 @@ TEST(LikelyCause, SaysSoWhenNoTermOversteps) {
   EXPECT_NE(likely_cause({}).find("no term oversteps"), std::string::npos);
 }
 
+TEST(LikelyCause, SpeaksOfTheRodWhenItIsOne) {
+  scene::Scene s;
+  s.suture.model = scene::Model::kRod;
+  EXPECT_NE(likely_cause(s).find("the rod is stepped implicitly"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace ligature::lab
