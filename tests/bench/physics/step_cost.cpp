@@ -23,11 +23,16 @@ using test::paper_scene;
 /// What callgrind counts: instructions.py collects inside this function only.
 [[gnu::noinline]] void measured_tick(Simulation& sim, const std::array<ToolInput, 2>& tools) { sim.tick(tools); }
 
-/// A thread of N nodes with segments as long as it is thick, coiled so that neighbouring turns just touch; gravity off.
+/// A thread of N nodes with segments as long as it is thick, coiled so that neighbouring turns just touch; neither
+/// gravity nor bending stiffness, so that it stays one.
 Simulation coil(int nodes, const std::vector<std::string>& extra) {
   const double rest_m = 5.0 / (nodes - 1), radius_m = 0.5 * rest_m, turn_m = 4.0 * rest_m;
-  std::vector<std::string> o{"suture.nodes=" + std::to_string(nodes), "suture.radius_m=" + std::to_string(radius_m),
-                             "world.gravity_m_per_s2=[0.0,0.0,0.0]", "world.fixed=[]", "time.tick_s=1e-5"};
+  std::vector<std::string> o{"suture.nodes=" + std::to_string(nodes),
+                             "suture.radius_m=" + std::to_string(radius_m),
+                             "world.gravity_m_per_s2=[0.0,0.0,0.0]",
+                             "world.fixed=[]",
+                             "suture.bend=0.0",
+                             "time.tick_s=1e-5"};
   o.insert(o.end(), extra.begin(), extra.end());
   Simulation sim = make(paper_scene(o));
   std::vector<Vec3> p;
