@@ -7,7 +7,7 @@
 namespace ligature::physics {
 namespace {
 
-constexpr int kBruteUpTo = 150;  // nodes; above, the sweep is cheaper (docs/physics.md, "Broad phases")
+constexpr int kBruteUpTo = 600;  // nodes; above, the sweep is cheaper (docs/physics.md, "Broad phases")
 
 V3<double> to_v3(const scene::Vec& a) { return {a[0], a[1], a[2]}; }
 
