@@ -41,6 +41,7 @@ rt::RigCommand Controller::tick(const TickInput& in) noexcept {
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     Hand& hand = hands_[h];
     hand.state.gain = hand.engagement.gain();
+    hand.state.limited = hand.full_is_limited && hand.state.gain >= 1.0 && may_push(state_);
     hand.state.f_device_N = may_push(state_) ? Vec3(hand.state.gain * hand.f_full_N) : Vec3(Vec3::Zero());
     const Vec3 torque_Nm = joint_torque(hand.q_rad, hand.state.f_device_N);
     for (std::size_t j = 0; j < rt::kJoints; ++j) {
@@ -75,7 +76,7 @@ void Controller::observe(Hand& hand, const rt::HandReading& reading, const Grasp
   const LimitedForce force = coupling_.force(grasp, s.p_WT, s.v_WT);
   hand.f_full_N = force.f_N;
   hand.finite = force.finite && s.p_WT.allFinite() && s.v_WT.allFinite();
-  s.limited = force.limited;
+  hand.full_is_limited = force.limited;
 }
 
 /// The fault of this tick, the most telling first. While the drives are on their way up (OFF) only a lost bus counts.

@@ -38,7 +38,7 @@ struct HandState {
   Vec3 v_WT = Vec3::Zero();
   Vec3 f_device_N = Vec3::Zero();  ///< after scale, limits and gain; what the torques produce
   double gain = 0.0;
-  bool limited = false;
+  bool limited = false;  ///< the force above stands at the limit: the law wanted more, and the gain is 1
   std::int64_t age_ticks = 0;  ///< periods since the sample that p_WT comes from
   bool dead_man = false;
   bool grip = false;
@@ -76,6 +76,7 @@ class Controller {
     Engagement engagement;
     Vec3 v_DT = Vec3::Zero();
     Vec3 f_full_N = Vec3::Zero();  // device force at gain 1
+    bool full_is_limited = false;
     bool finite = true;
     std::int64_t sample_tick = -1;
     JointAngles q_rad{};

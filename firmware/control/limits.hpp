@@ -1,6 +1,8 @@
 #pragma once
 // Limits are reported, faults are latched: a saturated force is normal life, a force that is no number is not.
 
+#include <limits>
+
 #include "firmware/physics/types.hpp"
 
 namespace ligature::control {
@@ -14,13 +16,16 @@ struct LimitedForce {
   bool finite = true;
 };
 
-/// Keeps the direction and clips the magnitude: |f| ≤ max_N. Not-a-number and infinity become zero and are told.
+/// Keeps the direction and clips the magnitude: |f| ≤ max_N, also when f's own rounding counts against it (hence a few
+/// ulps less than max_N). What the motors make of it differs by the wire's resolution: torques are rounded to 1 per
+/// mille, 0.3 mN m, which is at most 2 mN at the tip. Not-a-number and infinity become zero and are told.
 [[nodiscard]] inline LimitedForce saturate(const physics::Vec3& f_N, double max_N) noexcept {
   if (!f_N.allFinite()) return {physics::Vec3::Zero(), false, false};
   const double magnitude_N = f_N.norm();
   if (magnitude_N <= max_N) return {f_N, false, true};
   const physics::Vec3 direction = f_N / f_N.cwiseAbs().maxCoeff();  // the norm itself may overflow
-  return {direction * (max_N / direction.norm()), true, true};
+  constexpr double kRounding = 1.0 - 4.0 * std::numeric_limits<double>::epsilon();
+  return {direction * (max_N * kRounding / direction.norm()), true, true};
 }
 
 }  // namespace ligature::control

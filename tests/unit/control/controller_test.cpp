@@ -83,8 +83,20 @@ TEST(Controller, NeverExceedsTheForceLimitAndReportsIt) {
   rig.offset_m = 50.0;
   rig.tick();
   EXPECT_NEAR(rig.controller.hand(0).f_device_N.norm(), 3.3, 1e-9);
+  EXPECT_LE(rig.controller.hand(0).f_device_N.norm(), 3.3);
   EXPECT_TRUE(rig.controller.hand(0).limited);
   EXPECT_EQ(rig.controller.fault(), Fault::kNone);  // a limit is not a fault
+}
+
+TEST(Controller, AForceBelowTheLimitIsNotCalledLimited) {  // while the gain still rises, or without arming
+  Rig rig;
+  rig.to_force();
+  rig.offset_m = 50.0;
+  rig.in.reading.hand[0].dead_man = false;
+  rig.tick();
+  EXPECT_LT(rig.controller.hand(0).f_device_N.norm(), 3.3);
+  EXPECT_FALSE(rig.controller.hand(0).limited);
+  EXPECT_TRUE(rig.controller.hand(1).limited);
 }
 
 TEST(Controller, NeedsBothArmingAndThatHandsDeadMan) {

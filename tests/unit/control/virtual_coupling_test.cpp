@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include <limits>
 
 #include "firmware/control/workspace_map.hpp"
@@ -19,6 +22,18 @@ scene::Hands hands() {
   h.force_scale = 0.003;
   h.max_force_N = 3.3;
   return h;
+}
+
+TEST(Saturate, NeverAboveTheLimitHoweverItIsMeasured) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal(0.0, 20.0);
+  for (int i = 0; i < 100'000; ++i) {
+    const Vec3 wanted(normal(random), normal(random), normal(random));
+    const auto f = saturate(wanted, 3.3).f_N;
+    ASSERT_LE(f.norm(), 3.3);
+    ASSERT_LE(std::hypot(f.x(), f.y(), f.z()), 3.3);
+    ASSERT_LE(std::sqrt(f.x() * f.x() + f.y() * f.y() + f.z() * f.z()), 3.3);
+  }
 }
 
 TEST(VirtualCoupling, AnEmptyHandFeelsNothing) {
