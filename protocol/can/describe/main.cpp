@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cstdio>
 #include <iostream>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -30,7 +31,7 @@ constexpr const char* kHelp =
     "DATA'\n"
     "  decode      the reverse\n"
     "Example: ligature-can-describe dbc > hand.dbc && candump can0 | cantools decode hand.dbc\n"
-    "Exit: 0 done, 2 bad usage or input.\n";
+    "Exit: 0 done, 2 bad usage or input, 3 standard output cannot be written.\n";
 
 int refuse(const std::string& why) {
   std::cerr << "ligature-can-describe: " << why << '\n';
@@ -64,49 +65,83 @@ bool parse(const std::string& line, Frame& f) {
   return true;
 }
 
-bool encode_line(const std::string& line) {
-  std::istringstream in(line);
-  std::string kind;
-  int node = 0;
-  long a = 0, b = 0, c = 0, d = 0;
-  in >> kind >> node >> a >> b;
-  const NodeId id{static_cast<std::uint8_t>(node)};
-  if (!in || !is_joint(node)) return false;
-  if (kind == "rpdo1") {
-    std::puts(hex(encode(id, Rpdo1{static_cast<std::uint16_t>(a), static_cast<std::int16_t>(b)})).c_str());
-    return true;
-  }
-  in >> c >> d;
-  if (!in || kind != "tpdo1") return false;
-  std::puts(hex(encode(id, Tpdo1{static_cast<std::uint16_t>(a), static_cast<std::int32_t>(b),
-                                 static_cast<std::int16_t>(c), static_cast<std::uint16_t>(d)}))
-                .c_str());
-  return true;
+constexpr const char* kForm = "allowed the form that --help shows";
+
+/// Reads a field's number into `out`. @return nothing, or why it is none that fits.
+template <class T>
+std::string read_field(std::istringstream& in, const char* name, T& out) {
+  std::string word;
+  if (!(in >> word)) return std::string("found no ") + name + ", " + kForm;
+  const auto r = std::from_chars(word.data(), word.data() + word.size(), out);
+  if (r.ec == std::errc{} && r.ptr == word.data() + word.size()) return {};
+  return std::string(name) + ": found '" + word.substr(0, 40) + "', allowed integer " +
+         std::to_string(std::numeric_limits<T>::min()) + " .. " + std::to_string(std::numeric_limits<T>::max());
 }
 
-bool decode_line(const std::string& line) {
+/// Each line's work returns nothing, or what is wrong with the line.
+std::string encode_line(const std::string& line) {
+  std::istringstream in(line);
+  std::string kind, word, why;
+  in >> kind;
+  const bool is_rpdo = kind == "rpdo1";
+  int node = 0;
+  if (!is_rpdo && kind != "tpdo1") return "found '" + line.substr(0, 80) + "', " + kForm;
+  if (why = read_field(in, "node", node); !why.empty()) return why;
+  if (!is_joint(node)) return "node: found " + std::to_string(node) + ", allowed 1, 2 or 3";
+  const NodeId id{static_cast<std::uint8_t>(node)};
+  Rpdo1 rpdo;
+  Tpdo1 tpdo;
+  if (is_rpdo) {
+    why = read_field(in, "controlword", rpdo.controlword);
+    if (why.empty()) why = read_field(in, "torque", rpdo.target_torque_permille);
+  } else {
+    why = read_field(in, "statusword", tpdo.statusword);
+    if (why.empty()) why = read_field(in, "position", tpdo.position_counts);
+    if (why.empty()) why = read_field(in, "torque", tpdo.torque_permille);
+    if (why.empty()) why = read_field(in, "buttons", tpdo.buttons);
+  }
+  if (!why.empty()) return why;
+  if (in >> word) return "found '" + word.substr(0, 40) + "' after the last field, " + kForm;
+  std::puts(hex(is_rpdo ? encode(id, rpdo) : encode(id, tpdo)).c_str());
+  return {};
+}
+
+/// The PDO that an identifier carries has a fixed length.
+std::string objection_to_length(const Frame& f) {
+  const auto address = address_of(f.id);
+  if (!address || !is_joint(address->node.value)) return {};
+  const bool is_tpdo = address->service == Service::kTpdo1;
+  const std::uint8_t length = is_tpdo ? 8 : 4;
+  if ((!is_tpdo && address->service != Service::kRpdo1) || f.dlc >= length) return {};
+  return "found " + std::to_string(f.dlc) + " bytes, allowed " + std::to_string(length);
+}
+
+std::string decode_line(const std::string& line) {
   Frame f;
-  if (!parse(line, f)) return false;
+  if (!parse(line, f)) return "found '" + line.substr(0, 80) + "', " + kForm;
+  if (auto why = objection_to_length(f); !why.empty()) return why;
   for (const NodeId node : profile::kJointNodes) {
     if (const auto p = decode_tpdo1(node, f)) {
       std::printf("tpdo1 %d %u %d %d %u\n", node.value, unsigned{p->statusword}, p->position_counts,
                   int{p->torque_permille}, unsigned{p->buttons});
-      return true;
+      return {};
     }
     if (const auto p = decode_rpdo1(node, f)) {
       std::printf("rpdo1 %d %u %d\n", node.value, unsigned{p->controlword}, int{p->target_torque_permille});
-      return true;
+      return {};
     }
   }
   std::puts("none");
-  return true;
+  return {};
 }
 
-int for_each_line(bool (*work)(const std::string&)) {
+int for_each_line(std::string (*work)(const std::string&)) {
   std::string line;
   for (long number = 1; std::getline(std::cin, line); ++number) {
-    if (!work(line))
-      return refuse("stdin:" + std::to_string(number) + ": found '" + line + "', allowed the form that --help shows");
+    if (const auto why = work(line); !why.empty()) {
+      std::fflush(stdout);
+      return refuse("stdin:" + std::to_string(number) + ": " + why);
+    }
   }
   return 0;
 }
@@ -135,7 +170,9 @@ void print_constants() {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+namespace {
+
+int obey(int argc, char** argv) {
   const std::string command = argc > 1 ? argv[1] : "";
   if (command == "--help" || command == "-h") return std::fputs(kHelp, stdout) < 0;
   if (command == "--version") return std::puts("ligature-can-describe " LIGATURE_VERSION) < 0;
@@ -153,4 +190,13 @@ int main(int argc, char** argv) {
   if (command == "encode") return for_each_line(encode_line);
   if (command == "decode") return for_each_line(decode_line);
   return refuse("found '" + command + "', allowed: eds NODE, dbc, constants, encode, decode (see --help)");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int code = obey(argc, argv);
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  std::cerr << "ligature-can-describe: standard output cannot be written\n";
+  return 3;
 }
