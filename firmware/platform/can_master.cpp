@@ -45,6 +45,24 @@ std::optional<std::string> configure(CanBus& bus, BusWait& wait, can::NodeId nod
   return std::nullopt;
 }
 
+/// What makes a frame one that drives never send, or null.
+const char* only_a_master_sends(const can::Frame& frame) {
+  const auto address = can::address_of(frame.id);
+  if (!address) return nullptr;
+  switch (address->service) {
+    case can::Service::kSync:
+      return "SYNC";
+    case can::Service::kNmt:
+      return "NMT commands";
+    case can::Service::kRpdo1:
+      return "RPDOs";
+    case can::Service::kHeartbeat:
+      return address->node == can::kMasterNode ? "the master's heartbeat" : nullptr;
+    default:
+      return nullptr;
+  }
+}
+
 }  // namespace
 
 SdoAnswer transfer(CanBus& bus, BusWait& wait, const can::Frame& request, Nanoseconds patience) {
@@ -75,5 +93,28 @@ std::optional<std::string> configure_drives(CanBus& bus, BusWait& wait, const ca
 }
 
 bool start_drives(CanBus& bus) noexcept { return bus.send(can::encode_nmt(can::NmtCommand::kStart)); }
+
+void release_drives(CanBus& bus, BusWait& wait, Nanoseconds patience) {
+  bus.send(can::encode_nmt(can::NmtCommand::kEnterPreOperational));
+  for (const can::NodeId node : can::profile::kJointNodes)
+    (void)transfer(bus, wait, can::sdo_write(node, can::od::kConsumerHeartbeat, 0, 4), patience);
+}
+
+std::optional<std::string> other_master(CanBus& bus, BusWait& wait, Nanoseconds listening) {
+  const Nanoseconds deadline = wait.now() + listening;
+  do {
+    can::Frame frame;
+    Receive got;
+    while ((got = bus.receive(frame)) == Receive::kFrame) {
+      if (const char* what = only_a_master_sends(frame)) {
+        char text[80];
+        std::snprintf(text, sizeof text, "another controller is on this bus: it sends %s (0x%03X)", what, frame.id);
+        return text;
+      }
+    }
+    if (got == Receive::kLost) return std::nullopt;  // told by whoever uses the bus next
+  } while (wait.wait(deadline));
+  return std::nullopt;
+}
 
 }  // namespace ligature::platform

@@ -4,6 +4,7 @@
 #include <linux/can/raw.h>
 #include <net/if.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -40,6 +41,12 @@ Opened open_local(const std::string& url, const std::string& path) {
                   "path has " + std::to_string(path.size()) + " characters, allowed 1 .. 107");
   }
   std::memcpy(address.sun_path, path.data(), path.size());
+  struct stat found {};
+  if (stat(path.c_str(), &found) == 0 && !S_ISSOCK(found.st_mode)) {
+    return refuse(OpenFailure::kUsage, url,
+                  std::string("is ") + (S_ISDIR(found.st_mode) ? "a folder" : "no socket") +
+                      ", allowed the socket that ligature-device made, or will make");
+  }
   const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (fd < 0) return refuse(OpenFailure::kNotThere, url, std::strerror(errno));
   return connected(fd, url, address, false);
@@ -50,13 +57,13 @@ Opened open_socketcan(const std::string& url, const std::string& interface) {
     return refuse(OpenFailure::kUsage, url, "no such name for an interface");
   }
   const int fd = socket(AF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
-  if (fd < 0) return refuse(OpenFailure::kNotThere, url, std::string("no CAN in this kernel: ") + std::strerror(errno));
+  if (fd < 0) return refuse(OpenFailure::kUsage, url, std::string("no CAN in this kernel: ") + std::strerror(errno));
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = static_cast<int>(if_nametoindex(interface.c_str()));
   if (address.can_ifindex == 0) {
     close(fd);
-    return refuse(OpenFailure::kNotThere, url, "no interface of that name");
+    return refuse(OpenFailure::kUsage, url, "no interface of that name, allowed one that 'ip link' lists");
   }
   return connected(fd, url, address, true);
 }

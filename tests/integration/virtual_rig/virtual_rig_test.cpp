@@ -55,6 +55,22 @@ TEST(VirtualRig, TheSameRunTwiceIsTheSameToTheLastBit) {
   }
 }
 
+TEST(VirtualRig, ACleanEndIsNoFaultToTheDrives) {
+  SimulatedRig rig(paper(), overhand());
+  ASSERT_EQ(rig.run(1500), std::nullopt);
+  for (DeviceBus* bus : {&rig.left, &rig.right}) platform::release_drives(*bus, rig.wait);
+  rig.time += std::chrono::seconds(2);
+  for (DeviceBus* bus : {&rig.left, &rig.right}) {
+    bus->device.advance(rig.time);
+    for (const auto& drive : bus->device.drives()) {
+      EXPECT_EQ(drive.nmt_state(), can::NmtState::kPreOperational);
+      EXPECT_EQ(drive.state(), can::cia402::State::kSwitchOnDisabled);
+      EXPECT_EQ(drive.stats().watchdog_trips, 0);
+      EXPECT_EQ(drive.torque_permille(), 0);
+    }
+  }
+}
+
 TEST(VirtualRig, AHandThatDiesFreesTheOtherInTheSameTick) {
   SimulatedRig rig(paper(), overhand());
   rig.cut_left_at = 1500;

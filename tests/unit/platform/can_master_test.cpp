@@ -5,6 +5,8 @@
 
 #include <map>
 
+#include "protocol/can/codec.hpp"
+#include "protocol/can/heartbeat.hpp"
 #include "protocol/can/nmt.hpp"
 #include "tests/unit/platform/fake_bus.hpp"
 
@@ -69,6 +71,36 @@ TEST_F(CanMasterTest, ARefusalIsNamedWithItsCode) {
 TEST_F(CanMasterTest, ADriveOfAnotherSizeIsRefused) {  // per mille of something else would be another force
   values[can::od::kRatedTorque] = 1000;
   EXPECT_EQ(configure(), "node 1, object 0x6076:00: found 1000, allowed 300");
+}
+
+TEST_F(CanMasterTest, HearsAnotherControllerBeforeItSpeaks) {
+  const can::Frame of_a_master[] = {can::sync_frame(),
+                                    can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}),
+                                    can::encode(can::kElbow, can::Rpdo1{}), can::encode_nmt(can::NmtCommand::kStart)};
+  for (const auto& frame : of_a_master) {
+    wait.on_wait = [&] {
+      if (wait.time == std::chrono::milliseconds(5)) bus.inbox.push_back(frame);
+    };
+    wait.time = Nanoseconds(0);
+    EXPECT_TRUE(other_master(bus, wait).has_value()) << frame.id;
+  }
+  EXPECT_TRUE(bus.sent.empty());
+}
+
+TEST_F(CanMasterTest, DrivesAloneAreNoOtherController) {
+  wait.on_wait = [&] {
+    bus.inbox.push_back(can::encode(can::Heartbeat{can::kElbow, can::NmtState::kOperational}));
+    bus.inbox.push_back(can::encode(can::kElbow, can::Tpdo1{}));
+  };
+  EXPECT_EQ(other_master(bus, wait), std::nullopt);
+  EXPECT_GE(wait.time, std::chrono::milliseconds(60));  // longer than the pause between two heartbeats
+}
+
+TEST_F(CanMasterTest, LeavesTheDrivesPreOperationalAndUnwatched) {
+  release_drives(bus, wait);
+  EXPECT_EQ(bus.sent.front(), can::encode_nmt(can::NmtCommand::kEnterPreOperational));
+  for (const auto node : can::profile::kJointNodes) EXPECT_EQ(writes[node.value], 1);
+  EXPECT_EQ(written[can::od::kConsumerHeartbeat], 0U);
 }
 
 TEST_F(CanMasterTest, ALostBusEndsAtOnce) {

@@ -81,7 +81,9 @@ TEST(OpenCanBus, TellsBadUsageFromWhatIsNotThereYet) {
   EXPECT_EQ(failure_of("local:/" + std::string(200, 'x')), OpenFailure::kUsage);
   EXPECT_EQ(failure_of("socketcan:a-name-that-is-far-too-long"), OpenFailure::kUsage);
   EXPECT_EQ(failure_of("local:/nowhere/at/all"), OpenFailure::kNotThere);
-  EXPECT_EQ(failure_of("socketcan:nosuchcan9"), OpenFailure::kNotThere);
+  EXPECT_EQ(failure_of("socketcan:nosuchcan9"), OpenFailure::kUsage);
+  EXPECT_EQ(failure_of("local:/tmp"), OpenFailure::kUsage);  // a folder, and a file, will never be a socket
+  EXPECT_EQ(failure_of("local:/proc/self/stat"), OpenFailure::kUsage);
 }
 
 }  // namespace
