@@ -7,7 +7,8 @@ namespace {
 
 constexpr double kPoisson = 0.4;
 
-constexpr std::pair<const char*, Spacing> kSpacings[] = {{"uniform", Spacing::kUniform}, {"adaptive", Spacing::kAdaptive}};
+constexpr std::pair<const char*, Spacing> kSpacings[] = {{"uniform", Spacing::kUniform},
+                                                         {"adaptive", Spacing::kAdaptive}};
 constexpr std::pair<const char*, Accuracy> kAccuracies[] = {
     {"fast", Accuracy::kFast}, {"balanced", Accuracy::kBalanced}, {"fine", Accuracy::kFine}};
 

@@ -10,26 +10,26 @@ namespace ligature::scene {
 /// A thread that can be bought, as far as it is known. Values marked "assumed" have no source that we could read.
 struct RodPreset {
   const char* name;
-  double diameter_m;         ///< middle of the USP range
+  double diameter_m;  ///< middle of the USP range
   double density_kg_per_m3;
   double modulus_Pa;
-  double bend_share;         ///< EI over that of a solid rod: 1 for a monofilament, less for a braid
+  double bend_share;  ///< EI over that of a solid rod: 1 for a monofilament, less for a braid
 };
 
-/// Densities: Morton & Hearle, Physical Properties of Textile Fibres, table 5.1. Moduli: nylon 6.6 fibre of medium tenacity,
-/// ibid. table 13.2; silk and polyglactin sutures: Naleway et al., J. Biomed. Mater. Res. B 103 (2015) 735. Assumed:
-/// polypropylene's modulus, polyglactin's density, the bend share of braids, and Poisson's ratio 0.4 in GJ.
+/// Densities: Morton & Hearle, Physical Properties of Textile Fibres, table 5.1. Moduli: nylon 6.6 fibre of medium
+/// tenacity, ibid. table 13.2; silk and polyglactin sutures: Naleway et al., J. Biomed. Mater. Res. B 103 (2015) 735.
+/// Assumed: polypropylene's modulus, polyglactin's density, the bend share of braids, and Poisson's ratio 0.4 in GJ.
 inline constexpr RodPreset kRodPresets[] = {
-    {"nylon-2-0", 0.325e-3, 1140.0, 3.42e9, 1.0},          {"nylon-3-0", 0.225e-3, 1140.0, 3.42e9, 1.0},
-    {"nylon-4-0", 0.175e-3, 1140.0, 3.42e9, 1.0},          {"nylon-5-0", 0.125e-3, 1140.0, 3.42e9, 1.0},
-    {"polypropylene-2-0", 0.325e-3, 910.0, 3.0e9, 1.0},    {"polypropylene-3-0", 0.225e-3, 910.0, 3.0e9, 1.0},
-    {"polypropylene-4-0", 0.175e-3, 910.0, 3.0e9, 1.0},    {"polypropylene-5-0", 0.125e-3, 910.0, 3.0e9, 1.0},
-    {"silk-2-0", 0.325e-3, 1340.0, 8.70e9, 0.1},           {"silk-3-0", 0.225e-3, 1340.0, 8.70e9, 0.1},
-    {"silk-4-0", 0.175e-3, 1340.0, 8.70e9, 0.1},           {"polyglactin-2-0", 0.325e-3, 1400.0, 9.32e9, 0.1},
-    {"polyglactin-3-0", 0.225e-3, 1400.0, 9.32e9, 0.1},    {"polyglactin-4-0", 0.175e-3, 1400.0, 9.32e9, 0.1}};
+    {"nylon-2-0", 0.325e-3, 1140.0, 3.42e9, 1.0},       {"nylon-3-0", 0.225e-3, 1140.0, 3.42e9, 1.0},
+    {"nylon-4-0", 0.175e-3, 1140.0, 3.42e9, 1.0},       {"nylon-5-0", 0.125e-3, 1140.0, 3.42e9, 1.0},
+    {"polypropylene-2-0", 0.325e-3, 910.0, 3.0e9, 1.0}, {"polypropylene-3-0", 0.225e-3, 910.0, 3.0e9, 1.0},
+    {"polypropylene-4-0", 0.175e-3, 910.0, 3.0e9, 1.0}, {"polypropylene-5-0", 0.125e-3, 910.0, 3.0e9, 1.0},
+    {"silk-2-0", 0.325e-3, 1340.0, 8.70e9, 0.1},        {"silk-3-0", 0.225e-3, 1340.0, 8.70e9, 0.1},
+    {"silk-4-0", 0.175e-3, 1340.0, 8.70e9, 0.1},        {"polyglactin-2-0", 0.325e-3, 1400.0, 9.32e9, 0.1},
+    {"polyglactin-3-0", 0.225e-3, 1400.0, 9.32e9, 0.1}, {"polyglactin-4-0", 0.175e-3, 1400.0, 9.32e9, 0.1}};
 
-/// Reads the rod's keys of [suture]: `preset` first, then whatever is given beside it. @param radius_m, length_m set by a preset
-/// where the file does not give them.
+/// Reads the rod's keys of [suture]: `preset` first, then whatever is given beside it. @param radius_m, length_m set by
+/// a preset where the file does not give them.
 void read_rod(StrictTable& t, RodParameters& rod, double& radius_m);
 
 /// world.pegs.

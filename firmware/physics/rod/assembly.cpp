@@ -23,8 +23,8 @@ void measure(const Material& m, const State& state, Forces& f) noexcept {
 // kappa b of a vertex [Bergou 2008]: 2 a x c / (1 + a . c) of unit tangents.
 Vec binormal(Vec a, Vec c) noexcept { return 2.0 / (1.0 + dot(a, c)) * cross(a, c); }
 
-// What every vertex passes to its two segments: the bending moment Q = w (t_i - t_{i-1} - rest), whose difference along a
-// segment is the transverse force, and half the twist term M kappa b, which acts on both segments alike.
+// What every vertex passes to its two segments: the bending moment Q = w (t_i - t_{i-1} - rest), whose difference along
+// a segment is the transverse force, and half the twist term M kappa b, which acts on both segments alike.
 template <bool Twist>
 void vertices(const Material& m, const State& state, Forces& f) noexcept {
   const Mesh& mesh = state.mesh;
@@ -80,7 +80,8 @@ void assemble(const Material& material, const State& state, Vec gravity, double 
   const std::size_t n = mesh.s.size();
   measure(material, state, forces);
   vertices<Twist>(material, state, forces);
-  const double bend = dt_s * (dt_s + material.bend_tau_s), axial = dt_s * (dt_s + material.stretch_tau_s) * material.EA_N;
+  const double bend = dt_s * (dt_s + material.bend_tau_s),
+               axial = dt_s * (dt_s + material.stretch_tau_s) * material.EA_N;
   const double inertia = 1.0 + material.drag_per_s * dt_s;
   Vec before{};
   Mat stiff_before{};

@@ -38,7 +38,6 @@ class BandSolver {
   void solve_outside(int first, int last, Vec* v) const noexcept;
 
  private:
-
   int n_ = 0, core_ = 0;
   std::vector<Mat> f_, h_, s_inverse_;  // F_i, H_i, S_i^-1
   std::vector<Vec> z_;                  // eliminated right-hand side

@@ -15,7 +15,7 @@ struct Candidate {
   double reach_m = 0.0;  ///< centre distance at which they touch
   double due = 0.0;      ///< gap when last measured + 2 x travel then: minus 2 x travel now, a lower bound of the gap
   double s_a = 0.0, s_b = 0.0;  ///< material coordinates of the closest points, m
-  Vec impulse{};         ///< of the last substep, on b's side, N s
+  Vec impulse{};                ///< of the last substep, on b's side, N s
 };
 
 /// Pairs within reach + margin. Blocks of eight neighbouring segments first, by bounding spheres, then the segments, so

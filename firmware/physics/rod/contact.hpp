@@ -13,31 +13,35 @@ namespace ligature::physics::rod {
 
 /// A rigid capsule in the world: a peg, or a gripper's jaw. An infinite plane is a `floor_m`.
 struct Body {
-  Vec p0{}, p1{};         ///< axis, m
+  Vec p0{}, p1{};  ///< axis, m
   double radius_m = 0.0;
   Vec velocity{};
   double friction = 0.3;
 };
 
-/// One touching pair. The relative point velocity is u = sum_k w_k v[node_k] - surface; the impulse p acts on node k as w_k p.
+/// One touching pair. The relative point velocity is u = sum_k w_k v[node_k] - surface; the impulse p acts on node k as
+/// w_k p.
 struct Contact {
   std::int32_t node[4] = {0, 0, 0, 0};
   double w[4] = {0, 0, 0, 0};
-  Vec n{};              ///< unit normal, direction of a separating u
-  Vec surface{};        ///< velocity of the body's surface, m/s
-  Vec p{};              ///< impulse, N s; p . n >= 0
-  double gap_m = 0.0;   ///< surface distance, negative: overlap
-  double target = 0.0;  ///< least normal velocity, m/s
-  double inv_w = 0.0;   ///< 1 / (J C^-1 J^T)
+  Vec n{};                  ///< unit normal, direction of a separating u
+  Vec surface{};            ///< velocity of the body's surface, m/s
+  Vec p{};                  ///< impulse, N s; p . n >= 0
+  Vec u_free{};             ///< u without any impulse
+  double gap_m = 0.0;       ///< surface distance, negative: overlap
+  double target = 0.0;      ///< least normal velocity, m/s
+  double inv_w = 0.0;       ///< 1 / (J C^-1 J^T)
+  double soft = 0.0;        ///< give of the normal: u_n + soft p_n >= target, 1/kg
+  double inv_soft_w = 0.0;  ///< 1 / (J C^-1 J^T + soft)
   double mu = 0.0;
-  std::int32_t count = 4;      ///< nodes in use
-  double reach_m = 0.0; ///< centre distance at which the pair touches
-  Vec* keep = nullptr;  ///< where the impulse is kept between substeps
+  std::int32_t count = 4;  ///< nodes in use
+  double reach_m = 0.0;    ///< centre distance at which the pair touches
+  Vec* keep = nullptr;     ///< where the impulse is kept between substeps
 };
 
 /// What happened in a substep or, summed by the caller, in a tick.
 struct ContactReport {
-  int contacts = 0;        ///< with an impulse
+  int contacts = 0;  ///< with an impulse
   int passes = 0;
   double min_gap_m = 1e9;  ///< of thread-thread contacts before the substep
   double largest_impulse = 0.0;
@@ -51,10 +55,10 @@ inline constexpr int kMaxContacts = 384;
 /// A contact wants u_n >= -gap / dt when apart (nothing before they meet), u_n >= min(-beta gap / dt, limit) when
 /// overlapping, and u_t = 0 with |p_t| <= mu p_n: true static friction, no slip tolerance.
 ///
-/// settle(): p and v start from the last substep's impulses. Each pass runs one projected Gauss-Seidel sweep in the metric C
-/// (contact_metric.hpp), then pushes the change of p through the true matrix A; passes are mixed (mixing.hpp), because C knows
-/// nothing of stretch and alone would need hundreds along the thread's axis. It ends when no velocity changes by more
-/// than `settled_m_per_s`, or after `passes`. Each pass costs the contact window alone.
+/// settle(): p and v start from the last substep's impulses. Each pass runs one projected Gauss-Seidel sweep in the
+/// metric C (contact_metric.hpp), then pushes the change of p through the true matrix A; passes are mixed (mixing.hpp),
+/// because C knows nothing of stretch and alone would need hundreds along the thread's axis. It ends when no velocity
+/// changes by more than `settled_m_per_s`, or after `passes`. Each pass costs the contact window alone.
 class ContactSet {
  public:
   ContactSet() = default;
@@ -86,10 +90,11 @@ class ContactSet {
   [[nodiscard]] int window_first() const noexcept { return window_first_; }
   [[nodiscard]] int window_last() const noexcept { return window_last_; }
 
-  /// Solves for the window's velocities v with all contacts. @pre the solver's core lies in the window, the metric covers it.
+  /// Solves for the window's velocities v with all contacts. @pre the solver's core lies in the window, the metric
+  /// covers it.
   template <bool Friction>
-  void settle(BandSolver& solver, const ContactMetric& metric, const Numerics& numerics, int passes, double dt_s,
-              int first, int last, Vec* v, ContactReport& report) noexcept;
+  void settle(BandSolver& solver, const ContactMetric& metric, const Numerics& numerics, int passes,
+              double settled_m_per_s, double dt_s, int first, int last, Vec* v, ContactReport& report) noexcept;
 
   /// After nodes moved along the thread: pairs with an impulse find their segments again by material coordinate.
   void relabel(const std::vector<double>& s) noexcept;
@@ -114,8 +119,12 @@ class ContactSet {
  private:
   void add(const Contact& contact, ContactReport& report) noexcept;
   void prepare(const ContactMetric& metric, int first, int last, const Numerics& numerics, double dt_s) noexcept;
+  [[nodiscard]] double merit(const Vec* v) const noexcept;
+  void push(double share) noexcept;                        ///< adds J^T p to extra_
+  double add(int first, int last, Vec* v) const noexcept;  ///< v += step_; @return its largest square
+  /// @return the largest squared velocity error found, m^2/s^2.
   template <bool Friction>
-  void sweep(int first, int nodes, const Vec* v) noexcept;
+  double sweep(int first, int nodes, const Vec* v) noexcept;
 
   /// A pair that is near but no contact in this substep; only the guard looks at it again.
   struct Watched {
@@ -125,9 +134,9 @@ class ContactSet {
 
   std::vector<Contact> contacts_;
   std::vector<Watched> watched_;
-  std::vector<double> columns_;     // C^-1 J^T of every contact on the window
+  std::vector<double> columns_;  // C^-1 J^T of every contact on the window
   std::vector<Vec> change_, extra_, step_;
-  std::vector<Vec> p_, residual_;  // impulses and their change in a pass, as the mixing wants them
+  std::vector<Vec> p_, plain_, residual_;  // impulses and their change in a pass, as the mixing wants them
   Mixing mixing_;
   std::size_t stride_ = 0;
   double per_second_ = 0.0;

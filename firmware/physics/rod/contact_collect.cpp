@@ -19,8 +19,8 @@ void ContactSet::add(const Contact& contact, ContactReport& report) noexcept {
   }
 }
 
-void ContactSet::collect_thread(const State& state, double travel_m, double look_m, double near_m, double dt_s, double mu,
-                                ContactReport& report) noexcept {
+void ContactSet::collect_thread(const State& state, double travel_m, double look_m, double near_m, double dt_s,
+                                double mu, ContactReport& report) noexcept {
   for (auto& pair : pairs) {
     if (pair.due - 2.0 * travel_m > look_m) {
       pair.impulse = Vec{};

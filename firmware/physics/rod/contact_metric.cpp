@@ -16,7 +16,8 @@ void ContactMetric::prepare(const Mesh& mesh, const Material& material, double d
   assert(0 <= first && first < last && last < mesh.nodes() && last - first < capacity_);
   first_ = first;
   last_ = last;
-  const auto n = static_cast<std::size_t>(mesh.nodes()), a = static_cast<std::size_t>(first), z = static_cast<std::size_t>(last);
+  const auto n = static_cast<std::size_t>(mesh.nodes()), a = static_cast<std::size_t>(first),
+             z = static_cast<std::size_t>(last);
   const double bend = dt_s * (dt_s + material.bend_tau_s), inertia = 1.0 + material.drag_per_s * dt_s;
   const auto diag = [&](std::size_t i) { return mesh.mass[i] * inertia + bend * mesh.kd[i]; };
   // Right of the window, backwards: only d, f (coupling to the next node inwards) are needed.

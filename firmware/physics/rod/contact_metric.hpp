@@ -9,8 +9,8 @@ namespace ligature::physics::rod {
 
 /// C = M (1 + c dt) + dt (dt + tau_b) K_b: the matrix A of a substep (assembly.hpp) without its stretch, geometric and
 /// hold terms. C is a scalar pentadiagonal matrix times the 3 x 3 identity and constant while mesh and dt are. Because
-/// A >= C, J A^-1 J^T <= J C^-1 J^T: an impulse step computed with C never over-shoots (a majorise-minimise argument for
-/// the frictionless problem), and normal and friction of a contact share one number.
+/// A >= C, J A^-1 J^T <= J C^-1 J^T: an impulse step computed with C never over-shoots (a majorise-minimise argument
+/// for the frictionless problem), and normal and friction of a contact share one number.
 class ContactMetric {
  public:
   void reserve(int nodes, int window);

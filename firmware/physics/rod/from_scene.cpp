@@ -24,7 +24,8 @@ Material material_of(const scene::Scene& scene) noexcept {
   return m;
 }
 
-// A point of the initial shape: the polyline of the scene, node k at material coordinate k L / (nodes - 1), or straight down.
+// A point of the initial shape: the polyline of the scene, node k at material coordinate k L / (nodes - 1), or straight
+// down.
 Vec initial_point(const scene::Scene& scene, double s) noexcept {
   const auto& line = scene.suture.initial_polyline_m;
   if (line.size() < 2) {
@@ -49,14 +50,14 @@ Numerics numerics_of(const scene::Scene& scene) noexcept {
     case scene::Accuracy::kFast:
       n.substeps = 10;
       n.max_substeps = 16;
-      n.settled_m_per_s = 1e-2;
+      n.settled_m_per_s = 5e-3;
       break;
     case scene::Accuracy::kBalanced:
       break;
     case scene::Accuracy::kFine:
       n.substeps = n.max_substeps = 40;
-      n.settled_m_per_s = 1e-3;
-      n.passes_per_tick = 1600;
+      n.settled_m_per_s = 3e-4;
+      n.max_passes = n.passes_per_substep = 40;
       break;
   }
   n.substeps = std::max(n.substeps, scene.time.substeps);
@@ -70,7 +71,8 @@ Parts parts_of(const scene::Scene& scene) noexcept {
   for (const auto& f : scene.world.fixed) roll += f.direction.has_value();
   p.twist = scene.suture.rod.GJ_N_m2 > 0.0 && roll + 2 >= 2;
   p.contact = scene.contact.solver != scene::ContactSolver::kNone;
-  p.world = p.contact && (scene.world.desk_height_m.has_value() || !scene.world.pegs.empty() || scene.world.grippers_collide);
+  p.world =
+      p.contact && (scene.world.desk_height_m.has_value() || !scene.world.pegs.empty() || scene.world.grippers_collide);
   p.friction = p.contact && scene.contact.friction > 0.0;
   p.adaptive = scene.suture.rod.spacing == scene::Spacing::kAdaptive;
   return p;
@@ -79,7 +81,8 @@ Parts parts_of(const scene::Scene& scene) noexcept {
 std::variant<Rod, std::string> rod_of(const scene::Scene& scene) {
   const int n = scene.suture.nodes;
   if (n < 4) return "suture.nodes: found " + std::to_string(n) + ", the rod model needs 4 or more";
-  if (scene.contact.solver == scene::ContactSolver::kPaper) return "contact.solver: found \"paper\", the rod model has \"none\" and \"implicit\"";
+  if (scene.contact.solver == scene::ContactSolver::kPaper)
+    return "contact.solver: found \"paper\", the rod model has \"none\" and \"implicit\"";
   const int bodies = static_cast<int>(scene.world.pegs.size()) + 2;
   Rod rod(material_of(scene), numerics_of(scene), parts_of(scene), n, bodies);
   State& state = rod.state();
@@ -99,9 +102,11 @@ std::variant<Rod, std::string> rod_of(const scene::Scene& scene) {
     if (i > 0 && (i == n || s - all[static_cast<std::size_t>(i - 1)] < all[static_cast<std::size_t>(i)] - s)) --i;
     return i;
   };
-  for (const auto& load : scene.world.loads) state.load[static_cast<std::size_t>(mesh_node(load.node))] += vec(load.force_N);
+  for (const auto& load : scene.world.loads)
+    state.load[static_cast<std::size_t>(mesh_node(load.node))] += vec(load.force_N);
   if (scene.world.fixed.size() + 2 > kMaxHolds) {
-    return "world.fixed: found " + std::to_string(scene.world.fixed.size()) + " nodes, the rod model takes " + std::to_string(kMaxHolds - 2);
+    return "world.fixed: found " + std::to_string(scene.world.fixed.size()) + " nodes, the rod model takes " +
+           std::to_string(kMaxHolds - 2);
   }
   for (const auto& f : scene.world.fixed) {
     const int node = mesh_node(f.node);

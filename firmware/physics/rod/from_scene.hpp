@@ -15,7 +15,8 @@ namespace ligature::physics::rod {
 /// Parts that the scene asks for and no others.
 [[nodiscard]] Parts parts_of(const scene::Scene& scene) noexcept;
 
-/// @return the rod in its initial shape, held by the scene's supports, with room for two gripper capsules after the pegs; or why not.
+/// @return the rod in its initial shape, held by the scene's supports, with room for two gripper capsules after the
+/// pegs; or why not.
 [[nodiscard]] std::variant<Rod, std::string> rod_of(const scene::Scene& scene);
 
 }  // namespace ligature::physics::rod

@@ -8,26 +8,28 @@ struct Material {
   double length_m = 0.3;
   double radius_m = 1.5e-4;
   double density_kg_per_m = 8e-5;
-  double EA_N = 71.0;          ///< axial stiffness
-  double EI_N_m2 = 4e-7;       ///< bending stiffness B
-  double GJ_N_m2 = 2.86e-7;    ///< twisting stiffness C
-  double stretch_tau_s = 5e-4; ///< Kelvin-Voigt time: damping force = tau x stiffness x rate
+  double EA_N = 71.0;           ///< axial stiffness
+  double EI_N_m2 = 4e-7;        ///< bending stiffness B
+  double GJ_N_m2 = 2.86e-7;     ///< twisting stiffness C
+  double stretch_tau_s = 5e-4;  ///< Kelvin-Voigt time: damping force = tau x stiffness x rate
   double bend_tau_s = 2e-3;
-  double drag_per_s = 5.0;     ///< air: a = -c v
-  double friction = 0.3;       ///< Coulomb coefficient, static = kinetic
+  double drag_per_s = 5.0;  ///< air: a = -c v
+  double friction = 0.3;    ///< Coulomb coefficient, static = kinetic
 };
 
 /// How a tick is cut and how hard contacts are solved. Every field is a trade of time for accuracy (docs/rod.md).
 struct Numerics {
   double tick_s = 1e-3;
-  int substeps = 16;            ///< of a tick at rest; more when the hands move fast
+  int substeps = 16;  ///< of a tick at rest; more when the hands move fast
   int max_substeps = 24;
-  double fast_m_per_s = 0.5;    ///< hand speed up to which `substeps` do
-  int max_passes = 40;          ///< true solves per substep while contacts settle
-  int passes_per_tick = 192;    ///< and per tick: when they are used up, each substep left gets four
-  double settled_m_per_s = 5e-3; ///< a pass that changes no velocity by more ends them
-  double recovery = 0.3;        ///< share of a penetration taken back per substep
+  double fast_m_per_s = 0.5;      ///< hand speed up to which `substeps` do
+  int max_passes = 40;            ///< true solves per substep while contacts settle
+  int passes_per_substep = 12;    ///< on average over a tick; when they are used up, each substep left gets four
+  double settled_m_per_s = 1e-3;  ///< a pass that changes no velocity by more ends them,
+  double settled_share = 0.012;   ///< or than this share of the hands' speed
+  double recovery = 0.3;          ///< share of a penetration taken back per substep
   double max_recovery_m_per_s = 0.5;
+  double contact_N_per_m = 6e5;  ///< give of a contact under load
 };
 
 }  // namespace ligature::physics::rod

@@ -18,13 +18,13 @@ enum class Clamp : std::uint8_t { kFree, kClamped };
 /// unequal segments (a clamped end adds a half vertex of weight 2 EI / l with the clamp's direction for the missing
 /// tangent). Second order in l for smooth shapes; saturates in a fold (E <= 2 EI / l), so a knot needs l <= diameter.
 struct Mesh {
-  std::vector<double> s;        ///< n material coordinates, m, from 0 to the length
-  std::vector<double> rest;     ///< n - 1 rest lengths (sized n; the last is 0)
-  std::vector<double> inv_rest; ///< 1 / rest
-  std::vector<double> mass;     ///< n
-  std::vector<double> weight;   ///< w_i of vertex i; 0 at free ends
-  std::vector<double> kd, ke, kb; ///< K_b(i, i), (i, i+1), (i, i+2)
-  std::vector<Clamp> clamp;     ///< of node i; a clamped inner node has half vertices on both sides
+  std::vector<double> s;           ///< n material coordinates, m, from 0 to the length
+  std::vector<double> rest;        ///< n - 1 rest lengths (sized n; the last is 0)
+  std::vector<double> inv_rest;    ///< 1 / rest
+  std::vector<double> mass;        ///< n
+  std::vector<double> weight;      ///< w_i of vertex i; 0 at free ends
+  std::vector<double> kd, ke, kb;  ///< K_b(i, i), (i, i+1), (i, i+2)
+  std::vector<Clamp> clamp;        ///< of node i; a clamped inner node has half vertices on both sides
 
   [[nodiscard]] int nodes() const noexcept { return static_cast<int>(s.size()); }
   void resize(int n);

@@ -5,8 +5,7 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr double kGrowth = 4.0;         // squared residual beyond this much of the last one: start again
-constexpr double kRidge = 1e-8;         // of the trace; keeps nearly equal residuals from giving huge weights
+constexpr double kRidge = 1e-6;  // of the trace; keeps nearly equal residuals from giving huge weights
 
 using Square = std::array<std::array<double, Mixing::kDepth>, Mixing::kDepth>;
 
@@ -27,27 +26,21 @@ void solve(Square& a, std::array<double, Mixing::kDepth>& b, std::size_t n) noex
 
 }  // namespace
 
-void Mixing::reserve(std::size_t impulses, std::size_t velocities) {
+void Mixing::reserve(std::size_t impulses) {
   for (auto& past : past_) {
     past.p.resize(impulses);
     past.r.resize(impulses);
-    past.v.resize(velocities);
   }
 }
 
-void Mixing::step(Vec* p, const Vec* r, std::size_t impulses, Vec* v, std::size_t velocities) noexcept {
-  double size2 = 0.0;
-  for (std::size_t i = 0; i < impulses; ++i) size2 += dot(r[i], r[i]);
-  if (size2 > kGrowth * last2_) held_ = 0;
-  last2_ = size2;
+bool Mixing::step(Vec* p, const Vec* r, std::size_t impulses) noexcept {
   newest_ = (newest_ + 1) % (kDepth + 1);
   Past& now = past_[static_cast<std::size_t>(newest_)];
   std::copy(p, p + impulses, now.p.begin());
   std::copy(r, r + impulses, now.r.begin());
-  std::copy(v, v + velocities, now.v.begin());
   const auto depth = static_cast<std::size_t>(held_);
   held_ = std::min(held_ + 1, kDepth);
-  if (depth == 0) return;
+  if (depth == 0) return false;
 
   const auto before = [&](std::size_t j) -> const Past& {
     return past_[static_cast<std::size_t>((newest_ + kDepth - static_cast<int>(j)) % (kDepth + 1))];
@@ -64,7 +57,7 @@ void Mixing::step(Vec* p, const Vec* r, std::size_t impulses, Vec* v, std::size_
   }
   double trace = 0.0;
   for (std::size_t j = 0; j < depth; ++j) trace += a[j][j];
-  if (!(trace > 0.0)) return;
+  if (!(trace > 0.0)) return false;
   for (std::size_t j = 0; j < depth; ++j) {
     a[j][j] += kRidge * trace;
     for (std::size_t k = 0; k < j; ++k) a[k][j] = a[j][k];
@@ -73,8 +66,8 @@ void Mixing::step(Vec* p, const Vec* r, std::size_t impulses, Vec* v, std::size_
   for (std::size_t j = 0; j < depth; ++j) {
     const Past& old = before(j);
     for (std::size_t i = 0; i < impulses; ++i) p[i] -= theta[j] * (now.p[i] - old.p[i]);
-    for (std::size_t i = 0; i < velocities; ++i) v[i] -= theta[j] * (now.v[i] - old.v[i]);
   }
+  return true;
 }
 
 }  // namespace ligature::physics::rod

@@ -6,11 +6,11 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr double kTurn = 0.35;        // rad per node
-constexpr double kBendLength = 0.4;   // of sqrt(EI / T)
+constexpr double kTurn = 0.35;       // rad per node
+constexpr double kBendLength = 0.4;  // of sqrt(EI / T)
 constexpr double kGrading = 0.2;
-constexpr double kWorth = 1.5;        // a change must better the worst by this factor
-constexpr double kFade = 0.8;         // of the stress-free offsets, per tick
+constexpr double kWorth = 1.5;  // a change must better the worst by this factor
+constexpr double kFade = 0.8;   // of the stress-free offsets, per tick
 
 // Moves array[from + 1 ..] one place: opens a slot at `at`, or closes it. Sizes stay n: the slot at the end is spare.
 template <class T>
@@ -19,7 +19,8 @@ void open_slot(std::vector<T>& array, std::size_t at) noexcept {
 }
 template <class T>
 void close_slot(std::vector<T>& array, std::size_t at) noexcept {
-  std::move(array.begin() + static_cast<std::ptrdiff_t>(at) + 1, array.end(), array.begin() + static_cast<std::ptrdiff_t>(at));
+  std::move(array.begin() + static_cast<std::ptrdiff_t>(at) + 1, array.end(),
+            array.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
 template <class F>
@@ -58,7 +59,8 @@ bool Refine::start(const Material& material, double wanted_m, State& state) {
   return true;
 }
 
-void Refine::want(const Material& material, const State& state, const Forces& forces, const ContactSet& contacts) noexcept {
+void Refine::want(const Material& material, const State& state, const Forces& forces,
+                  const ContactSet& contacts) noexcept {
   const Mesh& mesh = state.mesh;
   const std::size_t n = mesh.s.size();
   const double coarsest = unit_m_ * (1 << kLevels);
@@ -179,7 +181,8 @@ bool Refine::update(const Material& material, State& state, const Forces& forces
     if (bad <= 1.0 || bad < kWorth * merged) break;
     if (!changed) {
       for (std::size_t q = 0; q + 1 < n; ++q) {
-        tension_[q] = material.EA_N * (norm(state.x[q + 1] - state.x[q]) * state.mesh.inv_rest[q] - 1.0 - state.rest_strain[q]);
+        tension_[q] =
+            material.EA_N * (norm(state.x[q + 1] - state.x[q]) * state.mesh.inv_rest[q] - 1.0 - state.rest_strain[q]);
       }
       moment_[0] = moment_[n - 1] = Vec{};
       for (std::size_t q = 1; q + 1 < n; ++q) {
@@ -206,7 +209,8 @@ void Refine::keep_stress(const Material& material, State& state) noexcept {
   }
   for (std::size_t i = 1; i + 1 < n; ++i) {
     if (mesh.weight[i] == 0.0) continue;
-    const Vec turn = mesh.inv_rest[i] * (state.x[i + 1] - state.x[i]) - mesh.inv_rest[i - 1] * (state.x[i] - state.x[i - 1]);
+    const Vec turn =
+        mesh.inv_rest[i] * (state.x[i + 1] - state.x[i]) - mesh.inv_rest[i - 1] * (state.x[i] - state.x[i - 1]);
     state.rest_bend[i] = turn - (1.0 / mesh.weight[i]) * moment_[i];
   }
 }

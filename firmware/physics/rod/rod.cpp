@@ -33,7 +33,9 @@ Rod::Rod(const Material& material, const Numerics& numerics, const Parts& parts,
 }
 
 // Copies of vectors have no spare room; ours must, or a tick would allocate.
-Rod::Rod(const Rod& other) : Rod(other.material_, other.numerics_, other.parts_, other.state_.nodes(), static_cast<int>(other.bodies.capacity())) {
+Rod::Rod(const Rod& other)
+    : Rod(other.material_, other.numerics_, other.parts_, other.state_.nodes(),
+          static_cast<int>(other.bodies.capacity())) {
   *this = other;
 }
 
@@ -168,8 +170,10 @@ void Rod::substep(double dt_s) noexcept {
         metric_dt_ = dt_s;
         metric_.prepare(state_.mesh, material_, dt_s, std::max(first - 2, 0), std::min(last + 2, n - 1));
       }
-      const int passes = std::clamp(numerics_.passes_per_tick - report_.passes, 4, numerics_.max_passes);
-      contacts_.settle<(Bits & kFriction) != 0>(solver_, metric_, numerics_, passes, dt_s, first, last, state_.v.data(), seen);
+      const int passes =
+          std::clamp(numerics_.passes_per_substep * report_.substeps - report_.passes, 4, numerics_.max_passes);
+      contacts_.settle<(Bits & kFriction) != 0>(solver_, metric_, numerics_, passes, settled_m_per_s_, dt_s, first,
+                                                last, state_.v.data(), seen);
       contacts_.store();
     }
   }
@@ -198,7 +202,8 @@ void Rod::substep(double dt_s) noexcept {
 Rod::Substep Rod::pick(const Parts& parts) noexcept {
   static constexpr auto kTable = []<std::size_t... I>(std::index_sequence<I...>) {
     return std::array<Substep, sizeof...(I)>{&Rod::substep<I>...};
-  }(std::make_index_sequence<16>{});
+  }
+  (std::make_index_sequence<16>{});
   return kTable[(parts.twist ? kTwist : 0) | (parts.contact ? kContact : 0) | (parts.friction ? kFriction : 0) |
                 (parts.world ? kWorld : 0)];
 }
@@ -225,6 +230,7 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
     refine_.keep_stress(material_, state_);
   }
   if (parts_.twist) twist_.update(material_, state_, forces_);
+  settled_m_per_s_ = numerics_.settled_m_per_s + numerics_.settled_share * hand_speed;
   report_.substeps = hand_speed > numerics_.fast_m_per_s ? numerics_.max_substeps : numerics_.substeps;
   const double dt = numerics_.tick_s / report_.substeps;
   for (int k = 0; k < report_.substeps; ++k) {
@@ -239,7 +245,8 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
     Hold& hold = state_.holds[static_cast<std::size_t>(h)];
     if (hold.node < 0 || hold.rigid) continue;
     const auto i = static_cast<std::size_t>(hold.node);
-    hold.force = hold.stiffness_N_per_m * (state_.x[i] - hold.target) + hold.damping_N_s_per_m * (state_.v[i] - hold.velocity);
+    hold.force =
+        hold.stiffness_N_per_m * (state_.x[i] - hold.target) + hold.damping_N_s_per_m * (state_.v[i] - hold.velocity);
   }
 }
 

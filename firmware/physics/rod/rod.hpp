@@ -14,16 +14,16 @@ namespace ligature::physics::rod {
 /// What a scene models. Each combination is its own compiled substep; what is absent is not executed.
 struct Parts {
   bool twist = true;
-  bool contact = true;   ///< of the thread with itself
+  bool contact = true;  ///< of the thread with itself
   bool friction = true;
-  bool world = false;    ///< floor and bodies
-  bool adaptive = false; ///< nodes move along the thread to where they are needed
+  bool world = false;     ///< floor and bodies
+  bool adaptive = false;  ///< nodes move along the thread to where they are needed
 };
 
 /// What a tick did. Plain values.
 struct TickReport {
   int substeps = 0, passes = 0, contacts = 0, guard_events = 0, broad_phases = 0, remeshes = 0;
-  double min_gap_m = 1e9;   ///< smallest thread-thread gap in any substep; negative: overlap
+  double min_gap_m = 1e9;  ///< smallest thread-thread gap in any substep; negative: overlap
   bool cap_hit = false;
 };
 
@@ -91,7 +91,7 @@ class Rod {
   Refine refine_;
   TickReport report_;
   Substep substep_;
-  double metric_dt_ = 0.0;
+  double metric_dt_ = 0.0, settled_m_per_s_ = 0.0;
   double travel_m_ = 0.0, margin_m_ = 0.0;  // motion bound since the broad phase, and what it allowed for
   bool stale_ = true;                       // broad phase must be made again
 };

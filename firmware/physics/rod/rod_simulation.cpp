@@ -9,7 +9,7 @@ namespace ligature::physics::rod {
 namespace {
 
 constexpr double kOutOfRange = 1e9;  // m or m/s: a run that gets there has diverged
-constexpr double kReach = 4.0;       // a gripper is a capsule of the thread's radius, four radii long, towards the person
+constexpr double kReach = 4.0;  // a gripper is a capsule of the thread's radius, four radii long, towards the person
 
 Vec vec(const Vec3& a) noexcept { return make(a.x(), a.y(), a.z()); }
 Vec3 vec3(Vec a) noexcept { return {a[0], a[1], a[2]}; }
@@ -58,7 +58,8 @@ void RodSimulation::set_state(std::span<const Vec3> p_W, std::span<const Vec3> v
   State& state = rod_.state();
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     bool fixed = false;
-    for (int h = 0; h < state.hold_count; ++h) fixed |= state.holds[static_cast<std::size_t>(h)].node == static_cast<int>(i);
+    for (int h = 0; h < state.hold_count; ++h)
+      fixed |= state.holds[static_cast<std::size_t>(h)].node == static_cast<int>(i);
     if (fixed) continue;
     if (i < p_W.size()) state.x[i] = vec(p_W[i]);
     state.v[i] = i < v_W.size() ? vec(v_W[i]) : Vec{};
@@ -78,7 +79,8 @@ int RodSimulation::nearest_free(Vec p) const noexcept {
     const double d2 = dot(off, off);
     if (d2 >= least2) continue;
     bool taken = false;
-    for (int h = 0; h < state.hold_count; ++h) taken |= state.holds[static_cast<std::size_t>(h)].node == static_cast<int>(i);
+    for (int h = 0; h < state.hold_count; ++h)
+      taken |= state.holds[static_cast<std::size_t>(h)].node == static_cast<int>(i);
     if (!taken) least2 = d2, best = static_cast<int>(i);
   }
   return best;
@@ -140,7 +142,8 @@ void RodSimulation::tick(const std::array<ToolInput, 2>& tools) noexcept {
   State& state = rod_.state();
   x_before_ = state.x;  // same size: copies, does not allocate
   v_before_ = state.v;
-  for (int h = 0; h < state.hold_count; ++h) goals_[static_cast<std::size_t>(h)] = state.holds[static_cast<std::size_t>(h)].target;
+  for (int h = 0; h < state.hold_count; ++h)
+    goals_[static_cast<std::size_t>(h)] = state.holds[static_cast<std::size_t>(h)].target;
   update_grasp(tools);
   if (grippers_) update_grippers(tools);
   rod_.tick(goals_);

@@ -13,8 +13,8 @@
 
 namespace ligature::physics::rod {
 
-/// Same contract as physics::Simulation. With spacing "adaptive" a node index is not a material point: nodes move along the
-/// thread to where they are needed (refine.hpp); their number stays.
+/// Same contract as physics::Simulation. With spacing "adaptive" a node index is not a material point: nodes move along
+/// the thread to where they are needed (refine.hpp); their number stays.
 class RodSimulation {
  public:
   static std::variant<RodSimulation, std::string> make(const scene::Scene& scene);

@@ -11,10 +11,10 @@ namespace ligature::physics::rod {
 
 /// Something that holds a node: a support of the scene, or a hand's gripper.
 struct Hold {
-  int node = -1;             ///< -1: holds nothing
-  bool rigid = false;        ///< position imposed (support) instead of a spring (hand)
-  bool directed = false;     ///< imposes the tangent too
-  bool holds_roll = false;   ///< the thread cannot turn about its axis here
+  int node = -1;                                            ///< -1: holds nothing
+  bool rigid = false;                                       ///< position imposed (support) instead of a spring (hand)
+  bool directed = false;                                    ///< imposes the tangent too
+  bool holds_roll = false;                                  ///< the thread cannot turn about its axis here
   double stiffness_N_per_m = 0.0, damping_N_s_per_m = 0.0;  ///< of a hand's coupling
   Vec target{}, velocity{};  ///< where the holder is at the end of the substep, m, and how it moves
   Vec force{};               ///< on the holder, N, of the last substep
@@ -27,10 +27,10 @@ inline constexpr int kMaxHolds = 16;
 
 struct State {
   Mesh mesh;
-  std::vector<Vec> x, v;      ///< n positions, m, and velocities, m/s
-  std::vector<Vec> load;      ///< n constant forces, N
-  std::vector<Vec> rest_bend; ///< n: part of t_i - t_{i-1} that is stress free
-  std::vector<double> rest_strain; ///< n - 1 (sized n): part of l / l_rest - 1 that is stress free
+  std::vector<Vec> x, v;            ///< n positions, m, and velocities, m/s
+  std::vector<Vec> load;            ///< n constant forces, N
+  std::vector<Vec> rest_bend;       ///< n: part of t_i - t_{i-1} that is stress free
+  std::vector<double> rest_strain;  ///< n - 1 (sized n): part of l / l_rest - 1 that is stress free
   std::array<Hold, kMaxHolds> holds;
   int hold_count = 0;
 
@@ -44,10 +44,11 @@ struct State {
 
 /// Forces of the last assembly, kept for those who measure.
 struct Forces {
-  std::vector<Vec> tangent, unit; ///< e_j / l_j and e_j / |e_j|
-  std::vector<Vec> moment_in, moment_out;  ///< of vertex i on the segment before and after it, N m: bending -+ half twist
-  std::vector<Vec> edge;        ///< P_j: the force segment j exerts on node j (and - on j + 1)
-  std::vector<double> tension;  ///< EA strain, N
+  std::vector<Vec> tangent, unit;  ///< e_j / l_j and e_j / |e_j|
+  std::vector<Vec> moment_in,
+      moment_out;                    ///< of vertex i on the segment before and after it, N m: bending -+ half twist
+  std::vector<Vec> edge;             ///< P_j: the force segment j exerts on node j (and - on j + 1)
+  std::vector<double> tension;       ///< EA strain, N
   std::vector<double> twist_moment;  ///< M of vertex i, N m
 
   void resize(int n) {

@@ -31,7 +31,9 @@ Vec carried(const State& state, const Hold& from, const Hold& to) noexcept {
   return transport(u, t, to.tangent);
 }
 
-double angle_about(Vec axis, Vec from, Vec to) noexcept { return std::atan2(dot(axis, cross(from, to)), dot(from, to)); }
+double angle_about(Vec axis, Vec from, Vec to) noexcept {
+  return std::atan2(dot(axis, cross(from, to)), dot(from, to));
+}
 
 const Hold& hold_of(const State& state, int k) noexcept { return state.holds[static_cast<std::size_t>(k)]; }
 

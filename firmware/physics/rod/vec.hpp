@@ -44,7 +44,9 @@ struct Mat {
   Vec c[3];
 };
 
-[[nodiscard]] inline Vec operator*(const Mat& a, Vec x) noexcept { return {a.c[0].v * x[0] + a.c[1].v * x[1] + a.c[2].v * x[2]}; }
+[[nodiscard]] inline Vec operator*(const Mat& a, Vec x) noexcept {
+  return {a.c[0].v * x[0] + a.c[1].v * x[1] + a.c[2].v * x[2]};
+}
 [[nodiscard]] inline Mat operator*(double s, const Mat& a) noexcept { return {{s * a.c[0], s * a.c[1], s * a.c[2]}}; }
 [[nodiscard]] inline Mat operator-(const Mat& a, const Mat& b) noexcept {
   return {{a.c[0] - b.c[0], a.c[1] - b.c[1], a.c[2] - b.c[2]}};
@@ -52,8 +54,11 @@ struct Mat {
 [[nodiscard]] inline Mat operator+(const Mat& a, const Mat& b) noexcept {
   return {{a.c[0] + b.c[0], a.c[1] + b.c[1], a.c[2] + b.c[2]}};
 }
-[[nodiscard]] inline Mat operator*(const Mat& a, const Mat& b) noexcept { return {{a * b.c[0], a * b.c[1], a * b.c[2]}}; }
-/// Unit vectors; s * kAxis[k] keeps a scalar in one register (valgrind 3.19 cannot read the move that make(s, 0, 0) becomes).
+[[nodiscard]] inline Mat operator*(const Mat& a, const Mat& b) noexcept {
+  return {{a * b.c[0], a * b.c[1], a * b.c[2]}};
+}
+/// Unit vectors; s * kAxis[k] keeps a scalar in one register (valgrind 3.19 cannot read the move that make(s, 0, 0)
+/// becomes).
 inline constexpr Lanes kAxisX = {1, 0, 0, 0}, kAxisY = {0, 1, 0, 0}, kAxisZ = {0, 0, 1, 0};
 [[nodiscard]] inline Mat scaled_identity(double s) noexcept { return {{{s * kAxisX}, {s * kAxisY}, {s * kAxisZ}}}; }
 

@@ -58,13 +58,15 @@ TEST(BandSolver, AgreesWithADenseSolverForEveryCoreAndWindow) {  // well conditi
         s.factor(core);
         s.solve(first, last, nullptr, v.data(), true);
         s.solve_outside(first, last, v.data());
-        for (int i = 0; i < 3 * n; ++i) ASSERT_NEAR(v[static_cast<std::size_t>(i / 3)][i % 3], truth(i), 1e-12) << n << " " << core << " " << width;
+        for (int i = 0; i < 3 * n; ++i)
+          ASSERT_NEAR(v[static_cast<std::size_t>(i / 3)][i % 3], truth(i), 1e-12) << n << " " << core << " " << width;
       }
     }
   }
 }
 
-TEST(BandSolver, AnswersForTheWindowAlone) {  // the response to a right-hand side inside the window is A^-1 restricted to it
+TEST(BandSolver,
+     AnswersForTheWindowAlone) {  // the response to a right-hand side inside the window is A^-1 restricted to it
   const int n = 40, first = 11, last = 23;
   BandSolver s = random_system(n, 5);
   const Dense d = dense(s, n);

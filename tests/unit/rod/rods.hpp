@@ -5,12 +5,12 @@
 
 namespace ligature::test {
 
+using physics::rod::make;
 using physics::rod::Material;
 using physics::rod::Numerics;
 using physics::rod::Parts;
 using physics::rod::Rod;
 using physics::rod::Vec;
-using physics::rod::make;
 
 inline constexpr Parts kBare{false, false, false, false, false};
 

@@ -58,7 +58,8 @@ TEST(Cantilever, FirstThreeFrequencies) {  // lumping lowers them by O(1 / N^2);
   }
 }
 
-TEST(HangingChain, HasTheFrequenciesOfItsMasses) {  // N masses at the ends of N links: zeros of Laguerre polynomials, exact
+TEST(HangingChain,
+     HasTheFrequenciesOfItsMasses) {  // N masses at the ends of N links: zeros of Laguerre polynomials, exact
   for (const auto& row : read_table("03_hanging_chain_modes_discrete.csv").rows) {
     const int masses = static_cast<int>(number(row, "N_masses")), mode = static_cast<int>(number(row, "mode"));
     if (masses < 10 || mode > 3) continue;
