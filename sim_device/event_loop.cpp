@@ -30,6 +30,7 @@ void EventLoop::serve(Time now) {
   }
   last_look_ = now;
   device_.advance(now);
+  if (faults_ != nullptr) faults_->apply(device_, now);
   std::vector<Delivery>& out = device_.deliveries();
   std::size_t sent = 0;
   for (; sent < out.size() && out[sent].due <= now; ++sent)

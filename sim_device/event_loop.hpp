@@ -4,6 +4,7 @@
 #include <csignal>
 #include <vector>
 
+#include "sim_device/fault_injector.hpp"
 #include "sim_device/hand_device.hpp"
 #include "sim_device/port.hpp"
 
@@ -20,7 +21,9 @@ struct LoopStats {
 
 class EventLoop {
  public:
-  EventLoop(HandDevice& device, Port& port) : device_(device), port_(port) {}
+  /// @param faults what shall go wrong on the way out; may be missing.
+  EventLoop(HandDevice& device, Port& port, FaultInjector* faults = nullptr)
+      : device_(device), port_(port), faults_(faults) {}
 
   /// One round: take frames in, let time pass in the device, send what is due.
   void serve(Time now);
@@ -31,6 +34,7 @@ class EventLoop {
  private:
   HandDevice& device_;
   Port& port_;
+  FaultInjector* faults_;
   LoopStats stats_;
   Time last_look_{};
   std::vector<Received> received_;

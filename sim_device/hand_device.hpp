@@ -16,6 +16,7 @@ struct Delivery {
   can::Frame frame;
   int sender = 0;  ///< the client that must not hear itself; below kFirstClient it is a drive
   Time due{};      ///< when its last bit has passed
+  bool passed_faults = false;  ///< a FaultInjector has looked at it
 };
 
 struct BusStats {

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string>
 
+#include "protocol/scene/fault_script.hpp"
 #include "protocol/scene/gripper_script.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "sim_device/event_loop.hpp"
@@ -60,6 +61,17 @@ std::variant<sim::OperatorPath, std::string> read_path(const sim::Options& o) {
   return path;
 }
 
+/// What shall go wrong: nothing, when no script is given.
+std::variant<std::optional<sim::FaultInjector>, std::string> read_faults(const sim::Options& o) {
+  if (o.faults.empty()) return std::optional<sim::FaultInjector>();
+  const auto read = scene::load_fault_script(o.faults);
+  if (const auto* e = std::get_if<scene::Error>(&read)) return e->text;
+  const auto& script = std::get<scene::FaultScript>(read);
+  if ((script.hand == 0) != o.is_left)
+    return o.faults + ": key 'fault.hand': found the other hand, allowed " + o.hand() + " for --hand " + o.hand();
+  return std::optional<sim::FaultInjector>(script);
+}
+
 void live(sim::HandDevice& device, sim::Port& port, sim::EventLoop& loop, sim::Narrator& narrator, bool exit_when_done,
           const sigset_t& during_sleep) {
   sim::Time end = sim::kNever;
@@ -85,6 +97,9 @@ int main(int argc, char** argv) {
   }
   auto path = read_path(options);
   if (const auto* why = std::get_if<std::string>(&path)) return refuse(*why);
+  auto faults = read_faults(options);
+  if (const auto* why = std::get_if<std::string>(&faults)) return refuse(*why);
+  auto& injector = std::get<std::optional<sim::FaultInjector>>(faults);
   auto opened = sim::open_port(options.bus);
   if (const auto* why = std::get_if<std::string>(&opened)) return refuse(*why);
   sim::Port& port = *std::get<std::unique_ptr<sim::Port>>(opened);
@@ -93,7 +108,7 @@ int main(int argc, char** argv) {
   for (const std::string& line : sim::ask_for_scheduling(options.real_time, options.cpu)) narrator.say(line);
   const sigset_t during_sleep = take_signals();
   sim::HandDevice device(std::get<sim::OperatorPath>(std::move(path)), sim::now_monotonic(), !port.charges_bit_time());
-  sim::EventLoop loop(device, port);
+  sim::EventLoop loop(device, port, injector ? &*injector : nullptr);
   narrator.say("on " + options.bus + ", waiting for a controller");
   live(device, port, loop, narrator, options.exit_when_done, during_sleep);
 

@@ -38,6 +38,7 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_option("--operator", o.script,
                  "Script, CSV: time,hand,x,y,z,grip in world metres; without it the hand rests");
+  app.add_option("--faults", o.faults, "Fault script (TOML, see scenes/faults): what shall go wrong, and when");
   app.add_flag("--exit-when-done", o.exit_when_done, "End after the script, once the dead-man is let go");
   app.add_option("--stats", o.stats, "At the end, write JSON: SYNCs, bus load, watchdog trips, final torque");
   app.add_flag("--rt", o.real_time, "Ask for SCHED_FIFO and locked memory; runs on with a warning when refused");

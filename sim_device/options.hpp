@@ -13,6 +13,7 @@ struct Options {
   std::string scene;   ///< empty: default workspace
   std::string script;  ///< empty: the hand rests
   std::string stats;   ///< empty: none
+  std::string faults;  ///< empty: nothing goes wrong
   std::vector<std::string> overrides;
   bool exit_when_done = false;
   bool real_time = false;

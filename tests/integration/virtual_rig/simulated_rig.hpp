@@ -8,6 +8,7 @@
 #include "firmware/platform/rig_bus.hpp"
 #include "protocol/scene/gripper_script.hpp"
 #include "protocol/scene/scene_file.hpp"
+#include "sim_device/fault_injector.hpp"
 #include "sim_device/hand_device.hpp"
 
 namespace ligature {
@@ -24,6 +25,7 @@ class DeviceBus final : public platform::CanBus {
   platform::Receive receive(can::Frame& frame) noexcept override {
     if (cut) return platform::Receive::kLost;
     device.advance(now_);
+    if (faults) faults->apply(device, now_);
     auto& out = device.deliveries();
     while (!out.empty() && out.front().due <= now_) {
       const sim::Delivery first = out.front();
@@ -38,6 +40,7 @@ class DeviceBus final : public platform::CanBus {
   [[nodiscard]] int descriptor() const noexcept override { return -1; }
 
   sim::HandDevice device;
+  std::optional<sim::FaultInjector> faults;
   bool cut = false;  // the hand's process was killed
 
  private:
@@ -73,7 +76,15 @@ struct SimulatedRig {
       if (rig.cut_left_at >= 0 && static_cast<std::int64_t>(rig.records.size()) >= rig.cut_left_at) rig.left.cut = true;
       rig.time = std::max(rig.time, at);
       for (DeviceBus* bus : {&rig.left, &rig.right}) bus->device.advance(at);
+      rig.look_at_drives();
+      if (static_cast<std::int64_t>(rig.records.size()) < rig.stall_at) return;
+      for (; rig.stall_for > Nanoseconds(0); rig.stall_for -= kPeriod) {
+        rig.time += kPeriod;
+        for (DeviceBus* bus : {&rig.left, &rig.right}) bus->device.advance(rig.time);
+        rig.look_at_drives();
+      }
     }
+    static constexpr Nanoseconds kPeriod = std::chrono::milliseconds(1);
     SimulatedRig& rig;
   };
 
@@ -90,8 +101,18 @@ struct SimulatedRig {
     return std::nullopt;
   }
 
+  void look_at_drives() {
+    const auto on = [](const DeviceBus& b) {
+      return std::ranges::any_of(b.device.torque_permille(), [](auto t) { return t != 0; });
+    };
+    drives_push.push_back(on(left) || on(right));
+  }
+
   Nanoseconds time{0};
+  std::vector<bool> drives_push;  // a motor has torque, at the end of the period before each SYNC
   std::int64_t cut_left_at = -1;  // tick at which the left hand's process dies
+  std::int64_t stall_at = 0;  // tick at which the real-time thread sleeps too long, once
+  Nanoseconds stall_for{0};
   physics::Simulation thread;
   DeviceBus left, right;
   Wait wait{*this};

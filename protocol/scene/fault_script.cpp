@@ -1,0 +1,54 @@
+#include "protocol/scene/fault_script.hpp"
+
+#include "protocol/scene/strict_table.hpp"
+
+namespace ligature::scene {
+namespace {
+
+constexpr std::pair<const char*, FaultKind> kKinds[] = {
+    {"lose", FaultKind::kLose},       {"delay", FaultKind::kDelay},   {"duplicate", FaultKind::kDuplicate},
+    {"reorder", FaultKind::kReorder}, {"corrupt", FaultKind::kCorrupt}, {"freeze", FaultKind::kFreeze},
+    {"jump", FaultKind::kJump},       {"reverse", FaultKind::kReverse}, {"button", FaultKind::kButton},
+    {"reboot", FaultKind::kReboot},   {"emergency", FaultKind::kEmergency}};
+constexpr std::pair<const char*, int> kHands[] = {{"left", 0}, {"right", 1}};
+
+void read_fault(StrictTable& t, FaultScript& s) {
+  t.require("title");
+  t.require("kind");
+  t.require("hand");
+  t.text("title", s.title);
+  t.choice("kind", s.kind, kKinds);
+  t.choice("hand", s.hand, kHands);
+  t.integer("node", s.node, 0, 3);
+  t.number("share", s.share, {0.0, 1.0});
+  t.number("from_s", s.from_s, {0.0, 1e6});
+  t.number("until_s", s.until_s, {0.0, 1e9});
+  t.number("delay_s", s.delay_s, {0.0, 10.0});
+  t.integer("counts", s.counts, -1000000, 1000000);
+  t.integer("seed", s.seed, 0, 1000000);
+}
+
+}  // namespace
+
+std::variant<FaultScript, Error> load_fault_script(const std::filesystem::path& path) {
+  ReadContext context{path.string(), {}, {}};
+  toml::table root;
+  try {
+    root = toml::parse_file(path.string());
+  } catch (const toml::parse_error& e) {
+    return Error{path.string() + ":" + std::to_string(e.source().begin.line) + ": " + std::string(e.description())};
+  }
+  FaultScript script;
+  StrictTable top(root, "", context);
+  top.require("fault");
+  top.table("fault", [&](StrictTable& t) { read_fault(t, script); });
+  top.table("expect", [&](StrictTable& t) {
+    t.integer("fault", script.expected_fault, 0, 99);
+    t.integer("within_ticks", script.within_ticks, 0, 1000);
+  });
+  top.finish();
+  if (context.error) return *context.error;
+  return script;
+}
+
+}  // namespace ligature::scene

@@ -1,0 +1,121 @@
+#include "sim_device/fault_injector.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "protocol/can/codec.hpp"
+#include "protocol/can/emcy.hpp"
+#include "protocol/can/nmt.hpp"
+
+namespace ligature::sim {
+namespace {
+
+using scene::FaultKind;
+
+constexpr std::uint16_t kGenericError = 0x1000;
+
+Time time_of(double seconds) { return Time(static_cast<std::int64_t>(seconds * 1e9)); }
+
+}  // namespace
+
+void FaultInjector::apply(HandDevice& device, Time now) {
+  if (device.bus_stats().syncs == 0) return;
+  if (onset_ == kNever) {
+    onset_ = device.bus_stats().first_sync + time_of(script_.from_s);
+    end_ = script_.until_s < 1e6 ? device.bus_stats().first_sync + time_of(script_.until_s) : kNever;
+  }
+  once(device, now);
+  auto& deliveries = device.deliveries();
+  std::vector<Delivery> changed;
+  for (Delivery& d : deliveries) {
+    const bool from_drive = d.sender < HandDevice::kFirstClient;
+    if (std::exchange(d.passed_faults, true) || !from_drive)
+      changed.push_back(d);
+    else
+      change(d, changed);
+  }
+  std::ranges::stable_sort(changed, {}, &Delivery::due);
+  deliveries = std::move(changed);
+}
+
+void FaultInjector::once(HandDevice& device, Time now) {
+  if (done_once_ || now < onset_) return;
+  done_once_ = true;
+  const can::NodeId node{static_cast<std::uint8_t>(std::max(script_.node, 1))};
+  if (script_.kind == FaultKind::kReboot)
+    device.submit(can::encode_nmt(can::NmtCommand::kResetNode, node), HandDevice::kMaxClients, now);
+  if (script_.kind == FaultKind::kEmergency)
+    device.submit(can::encode(can::Emergency{node, kGenericError, can::emcy::kGenericBit}), HandDevice::kMaxClients, now);
+}
+
+bool FaultInjector::is_hit(const Delivery& d) {
+  if (d.due < onset_ || d.due >= end_) return false;
+  const auto address = can::address_of(d.frame.id);
+  if (!address || (script_.node != 0 && address->node.value != script_.node)) return false;
+  return std::uniform_real_distribution<double>(0.0, 1.0)(random_) < script_.share;
+}
+
+void FaultInjector::change(const Delivery& delivery, std::vector<Delivery>& out) {
+  Delivery d = delivery;
+  const bool hit = is_hit(d);
+  d.frame = with_wrong_reading(d.frame, hit);
+  if (held_) {  // the one that was overtaken follows at once
+    out.push_back(d);
+    held_->due = d.due;
+    out.push_back(*held_);
+    held_.reset();
+    return;
+  }
+  if (!hit) return out.push_back(d);
+  switch (script_.kind) {
+    case FaultKind::kLose:
+      return;
+    case FaultKind::kDelay:
+      d.due += time_of(script_.delay_s);
+      return out.push_back(d);
+    case FaultKind::kDuplicate:
+      out.push_back(d);
+      return out.push_back(d);
+    case FaultKind::kReorder:
+      held_ = d;
+      return;
+    case FaultKind::kCorrupt:
+      if (d.frame.dlc > 0) d.frame.data[random_() % d.frame.dlc] ^= static_cast<std::uint8_t>(1U << (random_() % 8));
+      return out.push_back(d);
+    default:
+      return out.push_back(d);
+  }
+}
+
+/// What the joint message says when its sensor lies. Until the fault begins, remembers what is true.
+can::Frame FaultInjector::with_wrong_reading(const can::Frame& frame, bool active) {
+  const auto address = can::address_of(frame.id);
+  if (!address || address->service != can::Service::kTpdo1) return frame;
+  const std::size_t joint = address->node.value - 1U;
+  auto tpdo = can::decode_tpdo1(address->node, frame);
+  if (!tpdo || joint >= before_counts_.size()) return frame;
+  if (!active) {
+    before_counts_[joint] = tpdo->position_counts;
+    if (can::profile::has_stylus_buttons(address->node)) before_buttons_ = tpdo->buttons;
+    return frame;
+  }
+  switch (script_.kind) {
+    case FaultKind::kFreeze:
+      tpdo->position_counts = before_counts_[joint];
+      break;
+    case FaultKind::kJump:
+      tpdo->position_counts += script_.counts;
+      break;
+    case FaultKind::kReverse:
+      tpdo->position_counts = 2 * before_counts_[joint] - tpdo->position_counts;
+      break;
+    case FaultKind::kButton:
+      if (can::profile::has_stylus_buttons(address->node)) tpdo->buttons = before_buttons_;
+      break;
+    default:
+      return frame;
+  }
+  return can::encode(address->node, *tpdo);
+}
+
+}  // namespace ligature::sim
