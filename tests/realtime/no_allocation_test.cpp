@@ -6,7 +6,7 @@
 #include <atomic>
 #include <cstdlib>
 
-#include "tests/unit/firmware/virtual_rig.hpp"
+#include "tests/realtime/quiet_rig.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define LIGATURE_HOOKS 0  // the sanitizer owns malloc; Eigen's switch still watches
@@ -71,26 +71,6 @@ class NoAllocation {
     watching = false;
     Eigen::internal::set_is_malloc_allowed(true);
   }
-};
-
-/// The real bus would allocate nowhere; this one must not either, so the samples it notes are dropped.
-class QuietBus {
- public:
-  explicit QuietBus(VirtualBus& bus) : bus_(bus) {}
-  void send_sync() noexcept { bus_.send_sync(); }
-  rt::RigReading read_tpdos(Nanoseconds) noexcept { return bus_.reading; }
-  rt::WireTorque write_rpdos(const rt::RigCommand& c) noexcept { return bus_.write_rpdos(c); }
-
- private:
-  VirtualBus& bus_;
-};
-class QuietClock {
- public:
-  Nanoseconds now() noexcept { return time_; }
-  void sleep_until(Nanoseconds at) noexcept { time_ = at; }
-
- private:
-  Nanoseconds time_{0};
 };
 
 void expect_quiet(const scene::Scene& scene) {

@@ -1,0 +1,28 @@
+#pragma once
+// A bus and a clock that cost nothing, so that what a watched cycle does is the cycle's own doing.
+
+#include "tests/unit/firmware/virtual_rig.hpp"
+
+namespace ligature {
+
+/// The real bus would allocate nowhere; this one must not either, so the samples it notes are dropped.
+class QuietBus {
+ public:
+  explicit QuietBus(VirtualBus& bus) : bus_(bus) {}
+  void send_sync() noexcept { bus_.send_sync(); }
+  rt::RigReading read_tpdos(Nanoseconds) noexcept { return bus_.reading; }
+  rt::WireTorque write_rpdos(const rt::RigCommand& c) noexcept { return bus_.write_rpdos(c); }
+
+ private:
+  VirtualBus& bus_;
+};
+class QuietClock {
+ public:
+  Nanoseconds now() noexcept { return time_; }
+  void sleep_until(Nanoseconds at) noexcept { time_ = at; }
+
+ private:
+  Nanoseconds time_{0};
+};
+
+}  // namespace ligature

@@ -1,0 +1,121 @@
+// After start-up the loop asks nothing of the kernel but its bus and its clock: no page fault, no other system call, no
+// denormal, no exception. Each guard is first shown to bite.
+#include <gtest/gtest.h>
+#include <linux/seccomp.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "firmware/platform/realtime.hpp"
+#include "tests/realtime/quiet_rig.hpp"
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define LIGATURE_WATCHED 0  // a sanitizer's own memory faults and calls the kernel
+#else
+#define LIGATURE_WATCHED 1
+#endif
+
+namespace ligature {
+namespace {
+
+using QuietCycle = Cycle<QuietBus, QuietClock>;
+static_assert(noexcept(std::declval<QuietCycle&>().run()));
+static_assert(noexcept(std::declval<physics::Simulation&>().tick({})));
+static_assert(noexcept(std::declval<control::Controller&>().tick({})));
+
+struct QuietRun {
+  QuietRun() {
+    for (auto& hand : rig.bus.reading.hand) hand.grip = true;
+  }
+  VirtualRig rig;
+  QuietBus bus{rig.bus};
+  QuietClock clock;
+  QuietCycle cycle{bus, clock, rig.controller, rig.thread, *rig.outlets};
+};
+
+long page_faults() {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return usage.ru_minflt + usage.ru_majflt;
+}
+
+#if LIGATURE_WATCHED
+
+TEST(Undisturbed, NoPageFaultAfterStart) {
+  void* fresh = mmap(nullptr, 1 << 16, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  const long start = page_faults();
+  *static_cast<volatile char*>(fresh) = 1;
+  ASSERT_GT(page_faults(), start) << "the guard must see a first touch";
+  munmap(fresh, 1 << 16);
+
+  QuietRun warm, run;
+  warm.cycle.end_after(50);  // code and stack, once: what lock_memory() does in the program
+  warm.cycle.run();
+  run.cycle.end_after(5000);
+  const long before = page_faults();
+  run.cycle.run();
+  EXPECT_EQ(page_faults() - before, 0);
+  EXPECT_EQ(run.rig.controller.fault(), control::Fault::kNone);
+}
+
+/// Runs something in a process that may do nothing but exit, and says how that ended. Strict seccomp: the kernel kills
+/// at the first system call other than read, write and exit.
+template <class Work>
+int status_of_confined(Work&& work) {
+  const pid_t child = fork();
+  if (child == 0) {
+    if (prctl(PR_SET_SECCOMP, SECCOMP_MODE_STRICT) != 0) _exit(77);
+    work();
+    syscall(SYS_exit, 0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return status;
+}
+
+TEST(Undisturbed, NoSystemCallButBusAndClock) {
+  const int caught = status_of_confined([] { syscall(SYS_getppid); });
+  ASSERT_TRUE(WIFSIGNALED(caught) && WTERMSIG(caught) == SIGKILL) << "the guard must kill; status " << caught;
+  QuietRun run;
+  run.cycle.end_after(2000);
+  const int status = status_of_confined([&] { run.cycle.run(); });
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+}
+
+#endif
+
+TEST(Undisturbed, DenormalsAreZeroOnTheLoopsThread) {
+  volatile double tiny = std::numeric_limits<double>::denorm_min(), half = 0.5;
+  volatile double smallest = std::numeric_limits<double>::min();
+  EXPECT_GT(tiny + tiny, 0.0) << "the guard must see a denormal where they are kept";
+  double operand = 1.0, result = 1.0;
+  std::thread([&] {
+    platform::flush_denormals();
+    operand = tiny + tiny;     // denormals are zero
+    result = smallest * half;  // flushed to zero
+  }).join();
+  EXPECT_EQ(operand, 0.0);
+  EXPECT_EQ(result, 0.0);
+}
+
+/// A thread at rest for long ends in exact rest or in normal numbers, not in ever smaller ones.
+TEST(Undisturbed, AThreadAtRestHoldsNoDenormal) {
+  std::thread([] {
+    platform::flush_denormals();
+    VirtualRig rig;
+    for (int i = 0; i < 60'000; ++i) rig.thread.tick({});
+    for (const auto& v : rig.thread.velocities_W()) {
+      for (const double x : {v.x(), v.y(), v.z()}) EXPECT_NE(std::fpclassify(x), FP_SUBNORMAL);
+    }
+  }).join();
+}
+
+}  // namespace
+}  // namespace ligature
