@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "host/send.hpp"
+#include "host/view/json_text.hpp"
 
 namespace ligature::host::view {
 namespace {
@@ -18,16 +19,11 @@ std::int64_t now_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
 }
 
-std::string text_of(const json& message, const char* key) {
-  const auto found = message.find(key);
-  return found != message.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
 }  // namespace
 
 json CommandDesk::request(std::uint64_t page, const json& message, Clock::time_point now) {
   const std::string word = text_of(message, "command");
-  const json id = message.contains("id") && message["id"].is_number() ? message["id"] : json(nullptr);
+  const json id = id_of(message);
   const auto kind = command_kind(word);
   if (!kind) return answer(id, word.substr(0, 40), false, "no such command");
   if (access_.token.empty()) return answer(id, word, false, "this view may only look: it was started without a token");

@@ -27,6 +27,9 @@ void add_view(CLI::App& app) {
                       "file whose first line is the token that commands need; without it commands are given only "
                       "on this machine's own address");
   command->add_option("--lcm-url", options->lcm_url, "LCM network of the rig")->capture_default_str();
+  command->add_option("--recordings", options->recordings, "folder for what the page records; a page names the file")
+      ->check(CLI::ExistingDirectory)
+      ->capture_default_str();
   command->footer(
       "Prints the address to open. Works without internet, shows pages to up to 64 browsers and never slows the rig.\n"
       "Commands (arm, disarm, stop, resets) come only from this page itself: a page of another site is turned away.\n"
@@ -43,7 +46,7 @@ void add_replay(CLI::App& app) {
   add_address(*command, options->server);
   command->footer(
       "The same page with a bar to scrub, 0.1 to 10 times the speed, and marks to jump to: grasp, release, knot,\n"
-      "fault. The log is mapped, not loaded: an hour opens in about a second.\n\n"
+      "fault. The log is mapped, not loaded: an hour opens in about two seconds.\n\n"
       "Example:\n  ligature-host replay knot.lcmlog");
   command->callback([options] { replay(*options); });
 }

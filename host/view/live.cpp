@@ -11,6 +11,7 @@
 #include "host/stop_signal.hpp"
 #include "host/view/command_desk.hpp"
 #include "host/view/knot_watch.hpp"
+#include "host/view/page_recorder.hpp"
 
 namespace ligature::host::view {
 namespace {
@@ -44,8 +45,10 @@ void view_live(const ViewOptions& options) {
   const Access access = access_for(options.server, options.token_file);
   Picture picture;
   picture.set("view", {{"mode", "live"}, {"version", LIGATURE_VERSION}, {"may_command", !access.token.empty()}});
+  PageRecorder recorder(access, options.recordings, picture);
   CommandDesk* desk_for_acks = nullptr;
   LcmLink link(options.lcm_url, "LIGATURE_.*", [&](const Message& message) {
+    recorder.take(message);
     if (message.channel == kAckChannel) {
       if (const auto ack = decode<ligature_msg::ack_t>(message.data); ack && desk_for_acks)
         desk_for_acks->take_ack(*ack);
@@ -59,6 +62,7 @@ void view_live(const ViewOptions& options) {
   std::exception_ptr failure;
   std::atomic<bool> is_deaf = false;
   const auto on_message = [&](std::uint64_t page, const nlohmann::json& message) {
+    if (message.contains("record")) return recorder.request(message);
     return desk.request(page, message, CommandDesk::Clock::now());
   };
   const auto on_tick = [&](bool& more) {

@@ -9,6 +9,7 @@ struct ViewOptions {
   ServerOptions server;
   std::string token_file;
   std::string lcm_url;
+  std::string recordings = ".";  // folder for what the page records
 };
 
 /// Shows the live rig until a signal comes. @throws BadInput, RunFailed.

@@ -1,6 +1,7 @@
 #include "host/view/picture.hpp"
 
 #include <algorithm>
+#include <bit>
 
 #include "host/view/rig_json.hpp"
 
@@ -17,23 +18,29 @@ void Picture::take(std::string_view channel, Bytes data, Clock::time_point now) 
   const std::scoped_lock lock(mutex_);
   if (channel == kTicksChannel) {
     const auto batch = decode<ligature_msg::tick_batch_t>(data);
-    if (!batch) return void(++unreadable_);
+    if (!batch) return count_unreadable();
     heard_ = now;
     take_batch(*batch);
   } else if (channel == kThreadChannel) {
     auto thread = decode<ligature_msg::thread_t>(data);
-    if (!thread || !is_drawable(*thread)) return void(++unreadable_);
+    if (!thread || !is_drawable(*thread)) return count_unreadable();
     thread_ = std::move(*thread);
     ++shape_version_;
   } else if (channel == kStatusChannel) {
     const auto status = decode<ligature_msg::status_t>(data);
-    if (!status || status->scene_toml.size() > kLargestStatusText) return void(++unreadable_);
+    if (!status || status->scene_toml.size() > kLargestStatusText) return count_unreadable();
     set_locked("status", to_json(*status));
   } else if (channel == kEventChannel) {
     const auto event = decode<ligature_msg::event_t>(data);
-    if (!event) return void(++unreadable_);
+    if (!event) return count_unreadable();
     events_.push(to_json(*event));
   }
+}
+
+/// Pages are told at 1, 2, 4, .. : often enough to see that it goes on, too rarely to be a load.
+void Picture::count_unreadable() {
+  ++unreadable_;
+  if (std::has_single_bit(static_cast<std::uint64_t>(unreadable_))) set_locked("unreadable", unreadable_);
 }
 
 void Picture::take_batch(const ligature_msg::tick_batch_t& batch) {

@@ -56,6 +56,7 @@ class Picture {
   [[nodiscard]] std::int64_t unreadable() const;
 
  private:
+  void count_unreadable();
   void take_batch(const ligature_msg::tick_batch_t& batch);
   void start_again_locked();
   void set_locked(const std::string& topic, nlohmann::json what);

@@ -2,12 +2,13 @@
 //   node browser_test.mjs --host BIN --rig PYTHON:SCRIPT --modules DIR --out DIR     (inside scripts/private-net)
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdirSync, readFileSync } from 'node:fs';
+import { mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { Browser, Program, arguments_, clientOf, until } from './support.mjs';
 
 const { host, python, rig: rigScript, out } = arguments_();
 mkdirSync(out, { recursive: true });
+rmSync(join(out, 'page.lcmlog'), { force: true });
 const rig = new Program(python, [rigScript]);
 const browser = await Browser.start();
 let view, page;
@@ -15,7 +16,7 @@ let view, page;
 const steps = {
   'opens in under 2 s to the first thread': async () => {
     await rig.says(/ready/);
-    view = new Program(host, ['view', '--port', '0']);
+    view = new Program(host, ['view', '--port', '0', '--recordings', out]);
     page = await browser.open(await view.says(/open (\S+)/));
     await page.waitForFunction(() => ligature.firstThread_ms);
     const first_ms = await page.evaluate(() => ligature.firstThread_ms);
@@ -53,6 +54,20 @@ const steps = {
       }, seconds);
       assert.ok(seen > 9, `${seconds} s: ${seen}`);
     }
+  },
+  'records under a name, and nothing is lost': async () => {
+    await page.click('#record');
+    await page.fill('#record-name', 'page');
+    await page.fill('#record-notes', 'a note');
+    await page.click('#record-dialog button[value=start]');
+    await page.getByText('■ page.lcmlog').waitFor();
+    const from = await page.evaluate(() => ligature.store.lastTick);
+    await page.waitForFunction((tick) => ligature.store.lastTick > tick + 1000, from);
+    await page.click('#record');
+    await page.getByText(/recorded: page.lcmlog/).waitFor();
+    const report = JSON.parse(execFileSync(host, ['report', join(out, 'page.lcmlog'), '--json']));
+    assert.equal(report.ticks_lost, 0);
+    assert.ok(report.ticks_recorded > 1000);
   },
   'the space bar stops, whatever has the focus': async () => {
     await page.focus('#colour');

@@ -13,22 +13,45 @@ export function setUpControls(link, isReplay) {
   for (const [id, command] of Object.entries(COMMANDS)) $(id).addEventListener('click', () => give(command));
   // In the capture phase and before anything else: space stops, whatever has the focus.
   addEventListener('keydown', (event) => {
-    if (event.code === 'Space' && !isReplay()) {
+    if (event.code === 'Space' && !isReplay() && !isText(event.target)) {
       event.preventDefault();
       event.stopImmediatePropagation();
       if (!event.repeat) give('stop');
       return;
     }
-    if (isTyping(event) || $('help').open) return;
+    if (isTyping(event) || document.querySelector('dialog[open]')) return;
     const command = KEYS[event.key.toLowerCase()];
     if (command) { event.preventDefault(); give(command); }
   }, { capture: true });
-  addEventListener('keyup', (event) => { if (event.code === 'Space' && !isReplay()) event.preventDefault(); }, { capture: true });
+  addEventListener('keyup', (event) => { if (event.code === 'Space' && !isReplay() && !isText(event.target)) event.preventDefault(); }, { capture: true });
 }
+
+/** A name and notes may hold blanks; everywhere else space stops. */
+function isText(target) { return target.tagName === 'TEXTAREA'; }
 
 export function isTyping(event) {
   return event.ctrlKey || event.metaKey || event.altKey || ['SELECT', 'TEXTAREA'].includes(event.target.tagName)
     || (event.target.tagName === 'INPUT' && event.target.type === 'text');
+}
+
+/** The button that starts a recording with a name and notes, and ends it. */
+export function setUpRecording(link) {
+  const say = (answer, what) => toast(`${what}: ${answer.accepted ? answer.text : `refused – ${answer.text}`}`, !answer.accepted);
+  $('record').addEventListener('click', async () => {
+    if ($('record').dataset.on === 'true') return say(await link.request({ record: 'stop' }), 'recorded');
+    $('record-name').value = new Date().toISOString().slice(0, 19).replace(/[:T]/g, '-');
+    $('record-dialog').showModal();
+  });
+  $('record-dialog').addEventListener('close', async () => {
+    if ($('record-dialog').returnValue !== 'start') return;
+    say(await link.request({ record: 'start', name: $('record-name').value, notes: $('record-notes').value }), 'recording');
+  });
+}
+
+export function showRecording({ on, file, why }) {
+  $('record').dataset.on = on;
+  $('record').textContent = on ? `■ ${file}` : '● Record';
+  if (why) toast(`recording of ${file} ended: ${why}`, true);
 }
 
 export function toast(text, refused) {

@@ -46,12 +46,15 @@ export class Link {
   }
 
   /** Sends a command; resolves with {accepted, text}. */
-  command(command) {
+  command(command) { return this.request({ command }); }
+
+  /** Sends a request that is answered. */
+  request(message) {
     const id = this.nextId++;
     return new Promise((resolve) => {
-      if (!this.isOpen) return resolve({ command, accepted: false, text: 'not connected to the host' });
+      if (!this.isOpen) return resolve({ accepted: false, text: 'not connected to the host' });
       this.waiting.set(id, resolve);
-      this.send({ command, id, token: this.token });
+      this.send({ ...message, id, token: this.token });
     });
   }
 

@@ -3,10 +3,10 @@ import { Link } from './link.js';
 import { Scene } from './scene.js';
 import { SCALE_CSS } from './colouring.js';
 import { TraceStore } from './trace_store.js';
-import { Traces, WINDOWS_S, describeRow } from './traces.js';
+import { THIRD, Traces, WINDOWS_S, describeRow } from './traces.js';
 import { KnotPanel } from './knot_panel.js';
 import { ReplayBar } from './replay_bar.js';
-import { isTyping, setUpControls } from './controls.js';
+import { isTyping, setUpControls, setUpRecording, showRecording } from './controls.js';
 import { sceneFacts, showAge, showHands, showState, showStatus } from './state_panel.js';
 
 const $ = (id) => document.getElementById(id);
@@ -41,7 +41,7 @@ function onFrame(frame) {
   latest.isNew = true;
 }
 
-function onText({ view, status, knot, replay: position, marks, events: more }) {
+function onText({ view, status, unreadable, recording, knot, replay: position, marks, events: more }) {
   if (view) showView(view);
   if (status) {
     showStatus(status);
@@ -50,6 +50,8 @@ function onText({ view, status, knot, replay: position, marks, events: more }) {
     traces.limit_N = status.max_force_N;
   }
   if (knot) { latest.knot = knot; knots.update(knot, traces.period_s); }
+  if (unreadable) latest.unreadable = unreadable;
+  if (recording) showRecording(recording);
   if (position) replay.update(position);
   if (marks) replay.setMarks(marks);
   if (more) showEvents(more);
@@ -79,7 +81,7 @@ function showEvents(more) {
 let tracesDue = 0;
 function draw(time) {
   requestAnimationFrame(draw);
-  const isOld = showAge(latest.now?.age_ms ?? -1, link.silent_ms, latest.isReplay);
+  const isOld = showAge(latest.now?.age_ms ?? -1, link.silent_ms, latest);
   if (isOld && !page.isOld) page.staleAt_ms = Math.max(latest.now?.age_ms ?? 0, link.silent_ms);
   page.isOld = isOld;
   if (latest.isNew) {
@@ -122,6 +124,8 @@ function setUpTraces() {
   $('pause').addEventListener('click', togglePause);
   $('components').addEventListener('change', () => traces.showComponents($('components').checked));
   traces.showComponents(false);
+  for (const name of Object.keys(THIRD)) $('third').add(new Option(name, name));
+  $('third').addEventListener('change', () => { traces.showThird($('third').value); tracesDue = 0; });
 }
 
 function togglePause() {
@@ -142,7 +146,7 @@ function setUpKeys() {
   const step = (by) => setWindow(WINDOWS_S[Math.min(Math.max(WINDOWS_S.indexOf(traces.window_s) + by, 0), WINDOWS_S.length - 1)]);
   const keys = { 1: () => scene.view('front'), 2: () => scene.view('side'), 3: () => scene.view('top'), 4: () => scene.view('iso'), f: () => scene.view('fit'),
     k: () => $('follow').click(), p: togglePause, '+': () => step(1), '-': () => step(-1), '?': openHelp };
-  addEventListener('keydown', (event) => { if (!isTyping(event) && !$('help').open) keys[event.key.toLowerCase()]?.(); });
+  addEventListener('keydown', (event) => { if (!isTyping(event) && !document.querySelector('dialog[open]')) keys[event.key.toLowerCase()]?.(); });
 }
 
 function openHelp() { if (!$('help').open) $('help').showModal(); }
@@ -154,6 +158,7 @@ function setUpHelp() {
 }
 
 setUpControls(link, () => latest.isReplay);
+setUpRecording(link);
 setUpTraces();
 setUpScene();
 setUpKeys();

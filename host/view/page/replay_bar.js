@@ -24,7 +24,7 @@ export class ReplayBar {
   get isOn() { return !$('replay').hidden; }
 
   #key(event) {
-    if (!this.isOn || isTyping(event) || $('help').open) return;
+    if (!this.isOn || isTyping(event) || document.querySelector('dialog[open]')) return;
     const actions = { Enter: () => this.toggle(), ' ': () => this.toggle(), ArrowLeft: () => this.seek(this.state.position_s - (event.shiftKey ? 5 : 0.5)),
       ArrowRight: () => this.seek(this.state.position_s + (event.shiftKey ? 5 : 0.5)), '[': () => this.jump(-1), ']': () => this.jump(1) };
     if (!actions[event.key]) return;

@@ -29,9 +29,10 @@ export function showState(now) {
 
 /** @param age_ms of the newest ticks as the host knows it, -1 none yet; @param silent_ms since the host's last frame.
  *  @returns whether the picture is old. */
-export function showAge(age_ms, silent_ms, isReplay) {
+export function showAge(age_ms, silent_ms, { isReplay, unreadable }) {
   let text = '';
   if (silent_ms > STALE_MS) text = `No word from the host for ${seconds(silent_ms)}: is ligature-host running?`;
+  else if (age_ms < 0 && unreadable) text = 'Messages come that this host cannot read: firmware and host must be of the same version.';
   else if (age_ms < 0) text = isReplay ? '' : 'No ticks yet: is ligature-firmware running on this LCM network?';
   else if (age_ms > STALE_MS) text = `Old picture: no ticks for ${seconds(age_ms)}. The rig may be in any state.`;
   $('stale').hidden = !text;

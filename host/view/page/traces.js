@@ -4,7 +4,16 @@ import { C, STATES } from './frame.js';
 import { drawHistogram } from './histogram.js';
 
 export const WINDOWS_S = [1, 5, 10, 30, 60, 300, 600];
-const COLUMNS = [C.left, C.leftX, C.leftY, C.leftZ, C.right, C.rightX, C.rightY, C.rightZ, C.execution_ns, C.control_ns, C.flags, C.fault];
+/** What the third plot can show: two columns, a factor to the unit, least height. */
+export const THIRD = {
+  'tick time': { columns: [C.execution_ns, C.control_ns], factor: 1e-3, unit: 'µs: whole, control only', least: 100, isTime: true },
+  energy: { columns: [C.potential_J, C.kinetic_J], factor: 1, unit: 'J: potential, kinetic', least: 1e-3 },
+  stretch: { columns: [C.maxStretch, C.maxStretch], factor: 100, unit: '%, of the longest edge', least: 0.1 },
+  gap: { columns: [C.minGap_m, C.minGap_m], factor: 1000, unit: 'mm, smallest of the thread with itself; below zero: overlap', least: 1 },
+  contacts: { columns: [C.contacts, C.contacts], factor: 1, unit: 'number in action', least: 4 },
+};
+const FORCES = [C.left, C.leftX, C.leftY, C.leftZ, C.right, C.rightX, C.rightY, C.rightZ];
+const FAR = 1e8; // a gap of 1e9 m says that nothing is near
 const FLAG = { lost: 1, missed: 2, limited: [16, 32] };
 const AXIS = { x: '#ff9d7a', y: '#7fd1ae', z: '#b9a5ff' };
 const GREY = '#9aa6b6';
@@ -12,11 +21,11 @@ const GREY = '#9aa6b6';
 export class Traces {
   /** @param onCursor called with the row under the cursor, or null. */
   constructor(host, store, onCursor) {
-    Object.assign(this, { host, store, onCursor, window_s: 10, period_s: 1e-3, limit_N: null, end: null, components: false });
+    Object.assign(this, { host, store, onCursor, window_s: 10, period_s: 1e-3, limit_N: null, end: null, components: false, third: THIRD['tick time'] });
     this.plots = [
       this.#plot('left force', 'N', [0, 1, 2, 3], '#56b4e9', 0),
       this.#plot('right force', 'N', [4, 5, 6, 7], '#e69f00', 1),
-      this.#plot('tick', 'µs: whole, control only', [8, 9], '#e8ecf2', null),
+      this.#plot('tick time', this.third.unit, [8, 9], '#e8ecf2', null),
     ];
     this.histogram = document.createElement('canvas');
     const box = this.#box('wake-up latency', 'µs, log count over the window');
@@ -44,7 +53,7 @@ export class Traces {
     const plot = new uPlot({
       width: 400, height: 150, series, legend: { show: false }, padding: [8, 8, 0, 0],
       cursor: { sync: { key: 'ligature' }, drag: { x: false, y: false }, points: { size: 6 } },
-      scales: { x: { time: false, auto: false }, y: { range: (_, low, high) => niceRange(low, high, hand === null ? 100 : 0.1) } },
+      scales: { x: { time: false, auto: false }, y: { range: (_, low, high) => niceRange(low, high, hand === null ? this.third.least : 0.1) } },
       axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((t) => `${+t.toFixed(3)}`) }, { ...axis, size: 50 }],
       hooks: {
         draw: [(u) => this.#drawMarks(u, hand)],
@@ -83,7 +92,7 @@ export class Traces {
       if (hand === null && flags[i] & (FLAG.lost | FLAG.missed)) triangle(ctx, at, bbox.top + 1, '#ff5c47', 6);
       if (hand !== null && flags[i] & FLAG.limited[hand]) triangle(ctx, at, bbox.top + 1, '#f0e442', 5);
     }
-    const level = hand === null ? this.period_s * 1e6 : this.limit_N;
+    const level = hand !== null ? this.limit_N : this.third.isTime ? this.period_s * 1e6 : null;
     const y = level ? u.valToPos(level, 'y', true) : -1;
     if (y > bbox.top && y < bbox.top + bbox.height) {
       ctx.strokeStyle = '#f0e44299';
@@ -107,15 +116,21 @@ export class Traces {
       if (hand !== null) for (let i = 1; i < columns.length; ++i) plot.setSeries(i + 1, { show: on });
   }
 
+  showThird(name) {
+    this.third = THIRD[name];
+    this.plots[2].box.querySelector('h2').innerHTML = `${name} <em>${this.third.unit}</em>`;
+  }
+
   /** Holds the traces at this moment, or lets them run. */
   pause(on) { this.end = on ? this.store.lastTick : null; }
   get isPaused() { return this.end !== null; }
 
   draw() {
     const end = (this.end ?? this.store.lastTick ?? 0) + 1, from = end - this.window_s / this.period_s;
-    const data = this.store.series(from, end, this.plots[0].plot.bbox.width / devicePixelRatio, COLUMNS);
+    const data = this.store.series(from, end, this.plots[0].plot.bbox.width / devicePixelRatio,
+      [...FORCES, ...this.third.columns, C.flags, C.fault]);
     data[0] = Array.from(data[0], (tick) => tick * this.period_s);
-    for (const k of [9, 10]) data[k] = Array.from(data[k], (ns) => (ns === null ? null : ns / 1000));
+    for (const k of [9, 10]) data[k] = Array.from(data[k], (v) => (v === null || v > FAR && !this.third.isTime ? null : v * this.third.factor));
     this.data = data;
     for (const { plot, columns } of this.plots) {
       plot.batch(() => {

@@ -1,0 +1,47 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "host/lcm_link.hpp"
+#include "host/log_writer.hpp"
+#include "host/view/access.hpp"
+#include "host/view/picture.hpp"
+
+namespace ligature::host::view {
+
+/// Records the rig at a page's request, into a folder that was chosen at the start: a page names a file, never a place.
+class PageRecorder {
+ public:
+  static constexpr std::string_view kNotesChannel = "LIGATURE_NOTES";  // UTF-8 text, not an LCM type
+  static constexpr std::size_t kLongestName = 64, kLongestNotes = 2000;
+
+  PageRecorder(const Access& access, std::filesystem::path folder, Picture& picture);
+
+  /// {"record": "start", "name": "knot-1", "notes": "...", "id", "token"} or {"record": "stop", ...}. @return its
+  /// answer.
+  [[nodiscard]] nlohmann::json request(const nlohmann::json& message);
+
+  /// Writes what came while a recording runs; called by the thread that hears LCM. A full disk ends the recording.
+  void take(const Message& message);
+
+ private:
+  [[nodiscard]] std::string start(const std::string& name, const std::string& notes);
+  void stop(const std::string& why);
+  void tell(const std::string& why = "");
+
+  const Access& access_;
+  std::filesystem::path folder_;
+  Picture& picture_;
+  std::mutex mutex_;
+  std::unique_ptr<LogWriter> log_;
+  std::string file_;
+  std::int64_t messages_ = 0;
+};
+
+/// Whether a name is letters, digits, '-', '_' and '.', does not begin with '.', and is not too long.
+[[nodiscard]] bool is_file_name(std::string_view name);
+
+}  // namespace ligature::host::view

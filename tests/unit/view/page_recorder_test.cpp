@@ -1,0 +1,56 @@
+#include "host/view/page_recorder.hpp"
+
+#include <gtest/gtest.h>
+
+#include "host/log_reader.hpp"
+#include "tests/unit/host/synthetic_log.hpp"
+
+namespace ligature::host::view {
+namespace {
+
+using nlohmann::json;
+
+struct Recorder {
+  test::TestFolder folder;
+  Access access{"0123456789abcdef", true};
+  Picture picture;
+  PageRecorder recorder{access, folder.path(), picture};
+
+  json ask(const std::string& word, const std::string& name = "", const std::string& notes = "") {
+    return recorder.request({{"record", word}, {"name", name}, {"notes", notes}, {"id", 4}, {"token", access.token}});
+  }
+  void hear() {
+    const auto bytes = test::encoded(test::batch_of(1, 0, 20));
+    recorder.take({1'000'000, kTicksChannel, bytes});
+  }
+};
+
+TEST(PageRecorder, WritesWhatItHearsBetweenStartAndStop) {
+  Recorder r;
+  r.hear();
+  EXPECT_EQ(r.ask("start", "knot-1", "first try")["accepted"], true);
+  r.hear();
+  r.hear();
+  EXPECT_EQ(r.ask("stop")["accepted"], true);
+  r.hear();
+  LogReader log(r.folder.file("knot-1.lcmlog"));
+  std::vector<std::string> channels;
+  while (const auto* event = log.next()) channels.emplace_back(event->channel);
+  EXPECT_EQ(channels, (std::vector<std::string>{std::string(PageRecorder::kNotesChannel), std::string(kTicksChannel),
+                                                std::string(kTicksChannel)}));
+}
+
+TEST(PageRecorder, LeavesItsFolderNeverAndReplacesNothing) {
+  Recorder r;
+  for (const auto* name : {"../up", "/etc/x", "a/b", ".hidden", "", "a b", "x\n"})
+    EXPECT_EQ(r.ask("start", name)["accepted"], false) << name;
+  EXPECT_EQ(r.ask("start", "one")["accepted"], true);
+  EXPECT_EQ(r.ask("start", "two")["accepted"], false);  // one at a time
+  EXPECT_EQ(r.ask("stop")["accepted"], true);
+  EXPECT_EQ(r.ask("stop")["accepted"], false);
+  EXPECT_EQ(r.ask("start", "one")["accepted"], false);  // exists
+  EXPECT_EQ(r.recorder.request({{"record", "start"}, {"name", "three"}, {"token", "wrong"}})["accepted"], false);
+}
+
+}  // namespace
+}  // namespace ligature::host::view
