@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "firmware/physics/lanes.hpp"
+#include "firmware/physics/roomy_vector.hpp"
 
 namespace ligature::physics {
 
@@ -26,7 +27,7 @@ struct SegmentSpheres {
 
 /// A fixed-capacity list: full means that further pairs are dropped and `overflow` is set.
 struct PairList {
-  std::vector<SegmentPair> pairs;  ///< reserved once
+  RoomyVector<SegmentPair> pairs;  ///< reserved once
   bool overflow = false;
   void add(SegmentPair pair) noexcept {
     if (pairs.size() < pairs.capacity())

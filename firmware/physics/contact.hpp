@@ -7,6 +7,7 @@
 #include "firmware/physics/broad_phase.hpp"
 #include "firmware/physics/bvh.hpp"
 #include "firmware/physics/contact_row.hpp"
+#include "firmware/physics/roomy_vector.hpp"
 #include "firmware/physics/sweep.hpp"
 #include "firmware/physics/thread.hpp"
 #include "protocol/scene/scene.hpp"
@@ -94,10 +95,10 @@ class ContactSolver {
   Sweep sweep_;
   SphereTree tree_;
   PairList pairs_;
-  std::vector<Candidate> candidates_, old_candidates_;
+  RoomyVector<Candidate> candidates_, old_candidates_;
   Lane due_m_;  ///< per candidate: odometer reading before which it cannot have gap zero
   Lane gap_m_;  ///< per candidate: gap when last measured; infinite for the desk and obstacles
-  std::vector<ContactRow> rows_;
+  RoomyVector<ContactRow> rows_;
   std::vector<NodeVelocity> velocity_;  ///< one more than nodes: the last is massless and at rest
   double travel_m_ = 0.0;               ///< bound on how much any gap can have closed since the start
   double found_at_m_ = 0.0;             ///< travel when candidates were last found

@@ -187,6 +187,17 @@ TEST(Coupling, PullsTheHandBackTowardsTheNodeAtRestBySpringAlone) {
   EXPECT_GT(c.f_W.z(), 0.0);
 }
 
+TEST(Simulation, ACopyOfAKnottedThreadGoesOnExactlyLikeTheOriginal) {  // contacts and the room for them included
+  const auto script = test::overhand();
+  Simulation sim = make(paper_scene());
+  test::play(sim, script, 0.0, 16.0);
+  Simulation copy = sim;
+  test::play(sim, script, 16.0, 18.0);
+  test::play(copy, script, 16.0, 18.0);
+  EXPECT_GT(sim.diagnostics().contacts, 0);
+  for (std::size_t i = 0; i < sim.nodes_W().size(); ++i) EXPECT_EQ(copy.nodes_W()[i], sim.nodes_W()[i]);
+}
+
 TEST(Simulation, ResetAndCopyRepeatTheSameRunExactly) {
   const auto script = test::overhand();
   Simulation sim = make(paper_scene());
