@@ -21,6 +21,7 @@ FileDescriptor make_socket() {
 std::string clear_way(const sockaddr_un& address) {
   struct stat info {};
   if (lstat(address.sun_path, &info) != 0) return {};
+  if (S_ISDIR(info.st_mode)) return "is a folder, allowed a path in it that is free";
   if (!S_ISSOCK(info.st_mode)) return "is a file, allowed a path that is free or a left-over socket";
   const FileDescriptor probe = make_socket();
   const int connected = connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);

@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <iostream>
 #include <string>
 
 #include "protocol/scene/fault_script.hpp"
@@ -36,6 +37,13 @@ sigset_t take_signals() {
   sigaddset(&blocked, SIGTERM);
   sigprocmask(SIG_BLOCK, &blocked, &before);
   return before;
+}
+
+/// Exit code of a run that went well otherwise: what was said on stdout must have gone out.
+int done() {
+  if (std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
+  std::fputs("ligature-device: standard output cannot be written\n", stderr);
+  return kRunFailed;
 }
 
 int refuse(const std::string& why) {
@@ -89,12 +97,11 @@ void live(sim::HandDevice& device, sim::Port& port, sim::EventLoop& loop, sim::N
 
 int main(int argc, char** argv) {
   const auto parsed = sim::parse_options(argc, argv);
-  if (const int* code = std::get_if<int>(&parsed)) return *code;
+  if (const int* code = std::get_if<int>(&parsed)) return *code == 0 ? done() : *code;
   const auto& options = std::get<sim::Options>(parsed);
 
-  if (!options.stats.empty() && !sim::can_write(options.stats)) {
-    return refuse("--stats: cannot write '" + options.stats + "', allowed a file in a folder that exists");
-  }
+  if (const auto why = options.stats.empty() ? std::string() : sim::objection_to(options.stats); !why.empty())
+    return refuse("--stats " + options.stats + ": " + why);
   auto path = read_path(options);
   if (const auto* why = std::get_if<std::string>(&path)) return refuse(*why);
   auto faults = read_faults(options);
@@ -114,9 +121,9 @@ int main(int argc, char** argv) {
 
   device.power_off();
   narrator.say("off");
-  if (options.stats.empty()) return 0;
+  if (options.stats.empty()) return done();
   const std::string text = sim::stats_json(options.hand(), device, loop.stats(), port.dropped_frames());
-  if (sim::write_file(options.stats, text)) return 0;
+  if (sim::write_file(options.stats, text)) return done();
   std::fprintf(stderr, "ligature-device: --stats %s: cannot be written\n", options.stats.c_str());
   return kRunFailed;
 }

@@ -10,6 +10,16 @@
 namespace ligature::sim {
 namespace {
 
+namespace fs = std::filesystem;
+
+/// Symbolic links followed, also one that points at nothing yet.
+fs::path without_links(fs::path path) {
+  std::error_code none;
+  for (int i = 0; i < 40 && fs::is_symlink(fs::symlink_status(path, none)); ++i)
+    path = path.parent_path() / fs::read_symlink(path, none);
+  return path;
+}
+
 double microseconds(Time t) { return std::chrono::duration<double, std::micro>(t).count(); }
 
 }  // namespace
@@ -41,17 +51,26 @@ std::string stats_json(const std::string& hand, const HandDevice& device, const 
   return j.dump(2) + "\n";
 }
 
-bool can_write(const std::string& path) {
-  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-  return access(folder.c_str(), W_OK | X_OK) == 0 && !std::filesystem::is_directory(path);
+std::string objection_to(const std::string& path) {
+  const fs::path target = without_links(path);
+  std::error_code none;
+  const auto found = fs::status(target, none);
+  if (fs::exists(found) && !fs::is_regular_file(found)) return "is no regular file, allowed one or a new name";
+  const fs::path folder = fs::absolute(target, none).parent_path();
+  if (access(folder.c_str(), W_OK | X_OK) != 0) return "cannot be written, allowed a file in a folder that exists";
+  return {};
 }
 
 bool write_file(const std::string& path, const std::string& text) {
-  const std::string beside = path + ".part";
+  if (!objection_to(path).empty()) return false;  // it may have changed since the start
+  const fs::path target = without_links(path);
+  const std::string beside = target.string() + ".part-" + std::to_string(getpid());
   std::ofstream file(beside, std::ios::trunc);
   file << text;
   file.close();
-  return file.good() && std::rename(beside.c_str(), path.c_str()) == 0;
+  if (file.good() && std::rename(beside.c_str(), target.c_str()) == 0) return true;
+  std::remove(beside.c_str());
+  return false;
 }
 
 }  // namespace ligature::sim
