@@ -4,7 +4,8 @@
 usage: instructions.py PATH/TO/physics-step-cost
 
 Prints one line per scenario and exits 1 when a bar is missed: paper-4 at N = 50 takes at most 10,000 instructions without
-contact and 25,000 in a loosely tied trefoil; paper-1 at most half of paper-4; cost grows no faster than N log N.
+contact and 25,000 in a loosely tied trefoil; paper-1 at most half of paper-4; cost grows no faster than N log N; a
+scene without contact enters no function of the contact solver or its broad phases, one with contact does.
 """
 import math
 import re
@@ -13,6 +14,7 @@ import sys
 import tempfile
 
 TICKS = 300
+CONTACT = re.compile(r"ContactSolver|find_pairs|SphereTree|Sweep|SegmentSpheres")
 
 
 def count(program, scenario, nodes, *keys):
@@ -20,8 +22,11 @@ def count(program, scenario, nodes, *keys):
         run = subprocess.run(
             ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out.name}", "--toggle-collect=*measured_tick*",
              program, "one", scenario, str(nodes), str(TICKS), *keys], capture_output=True, text=True, check=True)
+        entered = {line for line in open(out.name) if line.startswith(("fn=", "cfn=")) and CONTACT.search(line)}
     total = int(re.search(r"Collected : (\d+)", run.stderr).group(1))
     print(f"{scenario:10} N {nodes:4}  {' '.join(keys):60} {total / TICKS:12,.0f}   {run.stdout.strip()}", flush=True)
+    if (not entered) != ("contact.solver=none" in keys):
+        raise SystemExit(f"contact code entered: {sorted(entered)}, with {' '.join(keys) or 'contact on'}")
     return total / TICKS
 
 
