@@ -116,7 +116,7 @@ function setUpTraces() {
   for (const seconds of WINDOWS_S) {
     const button = document.createElement('button');
     button.value = seconds;
-    button.textContent = seconds < 60 ? `${seconds} s` : `${seconds / 60} min`;
+    button.textContent = seconds < 60 ? `${seconds}s` : `${seconds / 60}min`;
     button.addEventListener('click', () => setWindow(seconds));
     $('windows').append(button);
   }
