@@ -29,6 +29,21 @@ std::vector<std::string> split(std::string_view line) {
 
 }  // namespace
 
+std::string shown(std::string_view text) {
+  constexpr std::size_t kMost = 60;
+  constexpr std::string_view kHex = "0123456789ABCDEF";
+  std::string result;
+  for (const char c : text) {
+    if (result.size() >= kMost) return result + "..";
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20 && byte != 0x7F)
+      result += c;
+    else
+      result.append("\\x").append(1, kHex[byte >> 4U]).append(1, kHex[byte & 15U]);
+  }
+  return result;
+}
+
 Error at_line(const std::filesystem::path& path, std::size_t line, std::string_view what) {
   return {path.string() + ":" + std::to_string(line) + ": " + std::string(what)};
 }
@@ -49,13 +64,14 @@ std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& p
   std::string text;
   bool header_seen = false;
   for (std::size_t line = 1; std::getline(file, text); ++line) {
+    if (line == 1 && text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // the byte order mark of UTF-8
     const auto body = trim(std::string_view(text).substr(0, text.find('#')));
     if (body.empty()) continue;
     auto cells = split(body);
     if (!header_seen) {
       if (cells != columns) {
         return at_line(path, line,
-                       "found '" + std::string(body) + "', allowed the header '" + std::string(header) + "'");
+                       "found '" + shown(body) + "', allowed the header '" + std::string(header) + "'");
       }
       header_seen = true;
     } else if (cells.size() != columns.size()) {

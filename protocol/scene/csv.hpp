@@ -27,6 +27,9 @@ struct CsvRow {
 /// A finite decimal number and nothing else, or false.
 [[nodiscard]] bool parse_number(std::string_view cell, double& out) noexcept;
 
+/// Foreign text as it may stand in a message: control characters as \xNN, at most 60 characters.
+[[nodiscard]] std::string shown(std::string_view text);
+
 /// "FILE:LINE: what"
 [[nodiscard]] Error at_line(const std::filesystem::path& path, std::size_t line, std::string_view what);
 

@@ -31,7 +31,7 @@ std::variant<std::vector<Vec>, Error> load_polyline(const std::filesystem::path&
     Vec p{};
     for (std::size_t i = 0; i < 3; ++i) {
       if (!parse_number(row.cells[i], p[i])) {
-        return at_line(path, row.line, "found '" + row.cells[i] + "', allowed a finite number");
+        return at_line(path, row.line, "found '" + shown(row.cells[i]) + "', allowed a finite number");
       }
     }
     points.push_back(p);

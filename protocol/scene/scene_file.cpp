@@ -187,6 +187,7 @@ std::variant<Scene, Error> load_scene(const fs::path& path, std::span<const std:
   auto parsed = parse_file(path);
   if (auto* error = std::get_if<Error>(&parsed)) return *error;
   auto& root = std::get<toml::table>(parsed);
+  const bool has_suture = root.contains("suture");
   ReadContext context{path.string(), {}, {}};
   for (const auto& text : overrides) {
     if (!override_key(root, text, context)) return *context.error;
@@ -200,6 +201,7 @@ std::variant<Scene, Error> load_scene(const fs::path& path, std::span<const std:
   top.table("hands", [&](StrictTable& t) { read_hands(t, scene.hands); });
   top.finish();
   if (context.error) return *context.error;
+  if (!has_suture) return Error{path.string() + ": no [suture] table, allowed a scene with one (it may be empty)"};
   return scene;
 }
 

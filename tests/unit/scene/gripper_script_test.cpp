@@ -52,6 +52,16 @@ TEST(GripperScript, RefusesABadRowByItsLine) {
   EXPECT_NE(std::get<Error>(load_gripper_script("no/such.csv")).text.find("cannot be read"), std::string::npos);
 }
 
+TEST(GripperScript, AByteOrderMarkIsNoData) {
+  const auto read = load_gripper_script(write("\xEF\xBB\xBFtime,hand,x,y,z,grip\n0,L,0,0,0,1\n"));
+  EXPECT_TRUE(std::holds_alternative<GripperScript>(read));
+}
+
+TEST(GripperScript, WhatIsQuotedIsShortAndHasNoControlCharacters) {
+  EXPECT_NE(why_refused("0,L,0,\x1B[2J,0,1\n").find("found '\\x1B[2J'"), std::string::npos);
+  EXPECT_LT(why_refused("0,L,0," + std::string(9000, '9') + ",0,1\n").size(), 250u);
+}
+
 TEST(GripperScript, SampleRestsAtKeysAndHoldsOutside) {
   const std::vector<GripKey> keys{{1.0, {0, 0, 0}, true}, {3.0, {2, 0, -4}, false}};
   EXPECT_FALSE(sample(keys, 0.5).grip);

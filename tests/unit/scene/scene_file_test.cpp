@@ -21,6 +21,12 @@ std::string why_refused(const std::string& text, const std::vector<std::string>&
   return error ? error->text : "";
 }
 
+TEST(SceneFile, AFileWithoutASutureIsNoScene) {
+  for (const char* text : {"", "# nothing\n", "[time]\ntick_s = 0.001\n"})
+    EXPECT_NE(why_refused(text).find("no [suture] table"), std::string::npos) << text;
+  EXPECT_EQ(why_refused("[suture]\n"), "");
+}
+
 TEST(SceneFile, ReadsTheShippedScenes) {
   for (const char* name : {"paper.toml", "desk.toml"}) {
     const auto read = load_scene(std::string(LIGATURE_SOURCE_DIR "/scenes/") + name);
@@ -34,8 +40,8 @@ TEST(SceneFile, ReadsTheShippedScenes) {
   }
 }
 
-TEST(SceneFile, AnEmptyFileIsTheDefaultScene) {
-  const auto read = load_scene(write("empty.toml", ""));
+TEST(SceneFile, AnEmptySutureIsTheDefaultScene) {
+  const auto read = load_scene(write("empty.toml", "[suture]\n"));
   ASSERT_TRUE(std::holds_alternative<Scene>(read));
   EXPECT_EQ(std::get<Scene>(read).suture.nodes, 50);
 }
@@ -92,7 +98,7 @@ TEST(SceneFile, RefusesAMissingFileAndAFolder) {
 TEST(SceneFile, OverridesReachEveryKindOfKey) {
   const std::vector<std::string> set{"suture.nodes=35", "contact.friction = 1", "suture.model=paper-1",
                                      "world.loads=[{node=-1, force_N=[0,0,-1e-3]}]", "world.desk_height_m=0.5"};
-  const auto read = load_scene(write("empty.toml", ""), set);
+  const auto read = load_scene(write("empty.toml", "[suture]\n"), set);
   ASSERT_TRUE(std::holds_alternative<Scene>(read)) << std::get<Error>(read).text;
   const auto& s = std::get<Scene>(read);
   EXPECT_EQ(s.suture.nodes, 35);
@@ -107,7 +113,7 @@ TEST(SceneFile, OverridesAreCheckedLikeTheFileAndNamedAsOverrides) {
   for (const char* set :
        {"suture.nodes=1", "suture.nods=5", "suture.nodes", "=3", "suture.nodes=", "suture.nodes=nan", "suture=3",
         "suture.nodes.deep=3", "world.loads=[{node=-1, force=[0,0,0]}]", "time.tick_s=[1"}) {
-    const auto why = why_refused("", {set});
+    const auto why = why_refused("[suture]\n", {set});
     EXPECT_EQ(why.find(std::string("--set ") + set), 0u) << set << " -> " << why;
   }
 }
