@@ -3,12 +3,22 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <cstdio>
+#include <iostream>
+
 #include "firmware/app/admit_command.hpp"
 #include "firmware/app/doctor.hpp"
 #include "firmware/app/options.hpp"
 #include "firmware/app/run.hpp"
 
 namespace {
+
+/// 0 when all that was printed has gone out.
+int told() {
+  if (std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
+  std::fputs("ligature-firmware: standard output cannot be written\n", stderr);
+  return 3;
+}
 
 int obey(const ligature::app::RunOptions& o) { return ligature::app::run(o); }
 int obey(const ligature::app::AdmitOptions& o) { return ligature::app::admit_scene(o); }
@@ -18,8 +28,9 @@ int obey(const ligature::app::DoctorOptions& o) { return ligature::app::doctor(o
 
 int main(int argc, char** argv) {
   const auto parsed = ligature::app::parse(argc, argv);
-  if (const auto* done = std::get_if<ligature::app::Exit>(&parsed)) return done->code;
+  if (const auto* done = std::get_if<ligature::app::Exit>(&parsed)) return done->code == 0 ? told() : done->code;
   spdlog::set_default_logger(spdlog::stderr_color_mt("firmware"));  // stdout is for the final table
   spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
-  return std::visit([](const auto& options) { return obey(options); }, std::get<ligature::app::Command>(parsed));
+  const int code = std::visit([](const auto& o) { return obey(o); }, std::get<ligature::app::Command>(parsed));
+  return code == 0 ? told() : code;
 }

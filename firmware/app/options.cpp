@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -30,6 +31,14 @@ could not be started.)";
 const std::map<std::string, RtMode> kModes{
     {"enforce", RtMode::kEnforce}, {"warn", RtMode::kWarn}, {"off", RtMode::kOff}};
 
+/// CLI11's ranges let nan pass: no comparison with it is true.
+std::string finite(const std::string& word) {
+  double value = 0.0;
+  if (CLI::detail::lexical_cast(word, value) && !std::isfinite(value))
+    return "found '" + word + "', allowed a finite number";
+  return {};
+}
+
 void add_scene(CLI::App& command, std::string& scene, std::vector<std::string>& overrides) {
   command.add_option("--scene", scene, "scene file (TOML): the thread, its world, the coupling to the hands")->required();
   command.add_option("--set", overrides, "override a key of the scene: key=value, may be given again")
@@ -38,6 +47,7 @@ void add_scene(CLI::App& command, std::string& scene, std::vector<std::string>& 
 
 void add_budget(CLI::App& command, double& percent) {
   command.add_option("--budget", percent, "share of the period that computing may take, percent")
+      ->check(finite)
       ->check(CLI::Range(1.0, 100.0))
       ->capture_default_str();
 }
@@ -57,8 +67,11 @@ void add_run(CLI::App& run, RunOptions& o) {
   run.add_option("--left", o.left, "bus of the left hand: local:/path/socket or socketcan:INTERFACE")->required();
   run.add_option("--right", o.right, "bus of the right hand")->required();
   run.add_flag("--arm", o.arm, "arm at start, as the local operator; else wait for the command");
-  run.add_option("--duration", o.duration_s, "end after so many seconds")->check(CLI::Range(0.001, 1e6));
+  run.add_option("--duration", o.duration_s, "end after so many seconds")
+      ->check(finite)
+      ->check(CLI::Range(0.001, 1e6));
   run.add_option("--lcm-url", o.lcm_url, "LCM provider")->capture_default_str();
+  run.add_flag("--no-telemetry", o.no_telemetry, "run without LCM: nobody sees the rig and no command reaches it");
   run.add_option_function<std::string>(
          "--rt", [&o](const std::string& mode) { o.rt = kModes.at(mode); },
          "real-time scheduling and locked memory: enforce (or exit 3), warn, off")
@@ -75,6 +88,7 @@ void add_run(CLI::App& run, RunOptions& o) {
       ->check(CLI::Range(5, 3600))
       ->capture_default_str();
   run.add_option("--wait-s", o.wait_s, "how long to wait for the hands to be there")
+      ->check(finite)
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
   add_budget(run, o.budget_percent);
@@ -103,12 +117,16 @@ void add_admit(CLI::App& admit, AdmitOptions& o) {
   admit.footer(kAdmitHelp);
   add_scene(admit, o.scene, o.overrides);
   add_budget(admit, o.budget_percent);
-  admit.add_option("--seconds", o.seconds, "how long to try")->check(CLI::Range(0.1, 3600.0))->capture_default_str();
+  admit.add_option("--seconds", o.seconds, "how long to try")
+      ->check(finite)
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
 }
 
 void add_doctor(CLI::App& doctor, DoctorOptions& o) {
   doctor.footer(kDoctorHelp);
   doctor.add_option("--seconds", o.seconds, "how long to measure wake-ups; 0 = only the table")
+      ->check(finite)
       ->check(CLI::Range(0.0, 86400.0))
       ->capture_default_str();
   doctor.add_option("--can", o.can, "SocketCAN interface to look at, may be given again")

@@ -19,6 +19,7 @@ struct RunOptions {
   std::optional<double> duration_s;
   double wait_s = 10.0;
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
+  bool no_telemetry = false;  ///< say nothing to anybody, hear no commands
   RtMode rt = RtMode::kWarn;
   int watchdog_ms = 20;
   std::string recorder;    ///< flight recorder file; "none" for none

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 
 #include "firmware/control/controller.hpp"
 #include "firmware/platform/can_master.hpp"
@@ -34,6 +36,19 @@ std::string objection(const scene::Scene& s) {
   return {};
 }
 
+/// The same name, or two names of the same socket.
+bool is_same_bus(const std::string& left, const std::string& right) {
+  constexpr std::string_view kLocal = "local:";
+  if (left.empty() || right.empty()) return false;  // `admit` has none
+  if (left == right) return true;
+  if (!left.starts_with(kLocal) || !right.starts_with(kLocal)) return false;
+  std::error_code none;
+  const auto path = [&](const std::string& url) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(url.substr(kLocal.size()), none), none);
+  };
+  return path(left) == path(right);
+}
+
 std::variant<std::unique_ptr<platform::CanBus>, Refusal> open_patiently(const std::string& url, double wait_s,
                                                                         const Pause& pause) {
   const auto give_up = std::chrono::steady_clock::now() + std::chrono::duration<double>(wait_s);
@@ -55,6 +70,8 @@ std::variant<Plan, Refusal> make_plan(const RunOptions& options) {
   if (const auto why = objection(scene); !why.empty()) return Refusal{2, options.scene + ": " + why};
   auto made = physics::Simulation::make(scene);
   if (const auto* why = std::get_if<std::string>(&made)) return Refusal{2, options.scene + ": " + *why};
+  if (is_same_bus(options.left, options.right))
+    return Refusal{2, "--left, --right: found '" + options.left + "' for both, allowed a bus for each hand"};
   return Plan{scene, std::move(std::get<physics::Simulation>(made)), text_of(options)};
 }
 
@@ -73,6 +90,10 @@ std::optional<Refusal> configure(const Buses& buses, const RunOptions& options) 
   times.rpdo_timeout_ms = static_cast<std::uint16_t>(options.watchdog_ms);
   times.heartbeat_timeout_ms = std::max(times.heartbeat_timeout_ms, times.rpdo_timeout_ms);
   platform::PollWait wait(*buses.left, *buses.right);
+  for (auto [hand, bus] : {std::pair{"left", buses.left.get()}, std::pair{"right", buses.right.get()}}) {
+    platform::PollWait alone(*bus, *bus);  // the other hand's frames, not read now, would wake us for nothing
+    if (const auto why = platform::other_master(*bus, alone)) return Refusal{3, std::string(hand) + " hand: " + *why};
+  }
   for (auto [hand, bus] : {std::pair{"left", buses.left.get()}, std::pair{"right", buses.right.get()}}) {
     if (const auto why = platform::configure_drives(*bus, wait, times))
       return Refusal{3, std::string(hand) + " hand: " + *why};

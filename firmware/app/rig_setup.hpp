@@ -36,7 +36,7 @@ using Pause = std::function<bool()>;
 /// Opens both buses, trying again for options.wait_s: a hand may start later than we.
 [[nodiscard]] std::variant<Buses, Refusal> open_buses(const RunOptions& options, const Pause& pause);
 
-/// Start-up of all six drives up to pre-operational. @return why not.
+/// Makes sure that nobody else commands the drives, then start-up of all six up to pre-operational. @return why not.
 [[nodiscard]] std::optional<Refusal> configure(const Buses& buses, const RunOptions& options);
 
 }  // namespace ligature::app

@@ -118,7 +118,8 @@ void tell(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, const std::
 class RealTimeSide {
  public:
   RealTimeSide(const RunOptions& options, Plan& plan, const Buses& buses, rt::Outlets& outlets)
-      : wait_(*buses.left, *buses.right),
+      : buses_(buses),
+        wait_(*buses.left, *buses.right),
         bus_(*buses.left, *buses.right, wait_),
         controller_(plan.scene.hands, {options.watchdog_ms, options.arm}),
         cycle_(bus_, clock_, controller_, plan.thread, outlets) {
@@ -132,7 +133,10 @@ class RealTimeSide {
     thread_ = std::thread([this, ask, core] {
       platform::flush_denormals();
       rights_.set_value(ask ? platform::make_realtime(core) : platform::Refusals{});
-      if (go_.get_future().get()) cycle_.run();
+      if (go_.get_future().get()) {
+        cycle_.run();
+        release();
+      }
       beating_ = false;
     });
     for (const auto& r : rights_.get_future().get()) refused.push_back(r);
@@ -153,6 +157,15 @@ class RealTimeSide {
   [[nodiscard]] control::Fault fault() const noexcept { return controller_.fault(); }
 
  private:
+  /// At once, before the drives could miss us. One hand at a time, waiting for that hand only.
+  void release() {
+    for (platform::CanBus* bus : {buses_.left.get(), buses_.right.get()}) {
+      platform::PollWait alone(*bus, *bus);
+      platform::release_drives(*bus, alone);
+    }
+  }
+
+  const Buses& buses_;
   platform::PollWait wait_;
   platform::RigBus bus_;
   platform::MonotonicClock clock_;
@@ -164,6 +177,12 @@ class RealTimeSide {
   bool started_ = false;
   std::thread thread_;
 };
+
+std::string no_telemetry(const std::string& url) {
+  return "cannot open " + url +
+         ": no multicast route, or the port is taken; remedy: run inside scripts/private-net, or 'ip link set lo up; ip "
+         "route add 224.0.0.0/4 dev lo' as root; --no-telemetry runs without anybody listening";
+}
 
 /// The run proper: telemetry beside the loop until one of them says that it is over. @return the exit code.
 int run_loop(RealTimeSide& side, telemetry::LcmLink& link, telemetry::Telemetry& telemetry, const Buses& buses,
@@ -189,6 +208,8 @@ int run_loop(RealTimeSide& side, telemetry::LcmLink& link, telemetry::Telemetry&
 }  // namespace
 
 int run(const RunOptions& options) {
+  if (const auto why = telemetry::objection_to_url(options.lcm_url); !why.empty())
+    return fail({2, "--lcm-url: " + why});
   auto planned = make_plan(options);
   if (const auto* refusal = std::get_if<Refusal>(&planned)) return fail(*refusal);
   Plan& plan = std::get<Plan>(planned);
@@ -206,11 +227,11 @@ int run(const RunOptions& options) {
   }
 
   const auto outlets = std::make_unique<rt::Outlets>();
-  telemetry::LcmLink link(options.lcm_url, [&](const ligature_msg::event_t& e) {
+  telemetry::LcmLink link(options.no_telemetry ? "memq://" : options.lcm_url, [&](const ligature_msg::event_t& e) {
     log(e);
     if (options.exit_on_fault && e.kind == ligature_msg::event_t::KIND_FAULT) outlets->stop = true;
   });
-  if (!link.is_open()) spdlog::warn("LCM: cannot open {}; running without telemetry", options.lcm_url);
+  if (!link.is_open()) return fail({3, no_telemetry(options.lcm_url)});
 
   bool interrupted = false;
   auto opened = open_buses(options, [&] { return interrupted = interrupted || signals.wait(); });
@@ -227,9 +248,7 @@ int run(const RunOptions& options) {
 
   telemetry::Telemetry telemetry(session(plan, options, id, ask && refused.empty(), !excess, recorder.get()), kNames, *outlets,
                                  link, recorder.get());
-  if (!link.listen([&](const auto& c) { return telemetry.handle(c, utime_now()); }) && link.is_open()) {
-    spdlog::warn("LCM: cannot listen for commands on {}", options.lcm_url);
-  }
+  link.listen([&](const auto& c) { return telemetry.handle(c, utime_now()); });
   return run_loop(*side, link, telemetry, buses, *outlets, signals);
 }
 

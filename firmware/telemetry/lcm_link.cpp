@@ -1,30 +1,79 @@
 #include "firmware/telemetry/lcm_link.hpp"
 
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <charconv>
 #include <chrono>
 #include <thread>
 #include <utility>
 
 namespace ligature::telemetry {
+namespace {
 
-LcmLink::LcmLink(const std::string& url, OnEvent on_event)
-    : lcm_(url), open_(lcm_.good()), on_event_(std::move(on_event)) {}
+/// Keeps the library's page of text off stderr while it opens the network: the program says the same in one line.
+class QuietStderr {
+ public:
+  QuietStderr() : saved_(dup(STDERR_FILENO)), null_(::open("/dev/null", O_WRONLY | O_CLOEXEC)) {
+    if (saved_ >= 0 && null_ >= 0) dup2(null_, STDERR_FILENO);
+  }
+  ~QuietStderr() {
+    if (saved_ >= 0) dup2(saved_, STDERR_FILENO);
+    close(saved_);
+    close(null_);
+  }
+  QuietStderr(const QuietStderr&) = delete;
+  QuietStderr& operator=(const QuietStderr&) = delete;
 
-bool LcmLink::listen(OnCommand on_command) {
+ private:
+  int saved_, null_;
+};
+
+}  // namespace
+
+std::string objection_to_url(const std::string& url) {
+  constexpr std::string_view kMulticast = "udpm://";
+  const std::string why = "found '" + url.substr(0, 80) + "', allowed udpm://224.0.0.0 .. 239.255.255.255:PORT[?ttl=N]";
+  if (url == "memq://") return {};
+  if (!url.starts_with(kMulticast)) return why;
+  const std::string place = url.substr(kMulticast.size(), url.find('?') - kMulticast.size());
+  if (place.empty()) return {};  // the library's own address
+  const auto colon = place.find(':');
+  in_addr address{};
+  if (inet_pton(AF_INET, place.substr(0, colon).c_str(), &address) != 1) return why;
+  if ((ntohl(address.s_addr) >> 28) != 0xE) return why;
+  if (colon == std::string::npos) return {};
+  int port = 0;
+  const char* const end = place.data() + place.size();
+  const auto read = std::from_chars(place.data() + colon + 1, end, port);
+  return read.ec == std::errc{} && read.ptr == end && port >= 1 && port <= 65535 ? std::string() : why;
+}
+
+LcmLink::LcmLink(const std::string& url, OnEvent on_event) : on_event_(std::move(on_event)) {
+  const QuietStderr one_line_is_enough;
+  lcm_ = std::make_unique<lcm::LCM>(url);
+  open_ = lcm_->good();
+  // Subscribing is what tries the network.
+  listening_ = open_ && lcm_->subscribe("LIGATURE_COMMAND", &LcmLink::receive, this) != nullptr;
+  open_ = listening_;
+}
+
+void LcmLink::listen(OnCommand on_command) {
+  while (listening_ && lcm_->handleTimeout(0) > 0) {
+  }
   on_command_ = std::move(on_command);
-  if (!open_) return false;
-  listening_ = lcm_.subscribe("LIGATURE_COMMAND", &LcmLink::receive, this) != nullptr;
-  return listening_;
 }
 
 void LcmLink::wait(std::int64_t at_most_ms) {
-  if (!listening_ || lcm_.handleTimeout(static_cast<int>(at_most_ms)) < 0) {
+  if (!listening_ || lcm_->handleTimeout(static_cast<int>(at_most_ms)) < 0) {
     listening_ = false;
     std::this_thread::sleep_for(std::chrono::milliseconds(at_most_ms));
   }
 }
 
 void LcmLink::receive(const lcm::ReceiveBuffer*, const std::string&, const ligature_msg::command_t* command) {
-  publish("LIGATURE_ACK", on_command_(*command));
+  if (on_command_) publish("LIGATURE_ACK", on_command_(*command));
 }
 
 }  // namespace ligature::telemetry

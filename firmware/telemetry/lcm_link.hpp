@@ -5,11 +5,15 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "firmware/telemetry/telemetry.hpp"
 
 namespace ligature::telemetry {
+
+/// Why a URL cannot be one, or empty: "udpm://ADDRESS:PORT[?..]" with a multicast address, or "memq://" (this process).
+[[nodiscard]] std::string objection_to_url(const std::string& url);
 
 class LcmLink final : public Sink {
  public:
@@ -19,11 +23,12 @@ class LcmLink final : public Sink {
   /// Opens the URL; may take seconds when multicast is misconfigured, so before the loop starts.
   LcmLink(const std::string& url, OnEvent on_event);
 
+  /// False when the URL is none, or the network refuses (no multicast route).
   [[nodiscard]] bool is_open() const noexcept { return open_; }
   [[nodiscard]] std::int64_t failures() const noexcept { return failures_; }
 
-  /// Hears commands and answers each with an ack. @return false when LCM cannot listen.
-  bool listen(OnCommand on_command);
+  /// Hears commands and answers each with an ack; those from before are forgotten.
+  void listen(OnCommand on_command);
 
   /// Waits for commands, at most so long; also the pause between two steps.
   void wait(std::int64_t at_most_ms);
@@ -39,12 +44,12 @@ class LcmLink final : public Sink {
  private:
   template <class Message>
   void publish(const char* channel, const Message& m) {
-    if (!open_ || lcm_.publish(channel, &m) != 0) ++failures_;
+    if (!open_ || lcm_->publish(channel, &m) != 0) ++failures_;
   }
   void receive(const lcm::ReceiveBuffer*, const std::string&, const ligature_msg::command_t* command);
 
-  lcm::LCM lcm_;
-  bool open_;
+  std::unique_ptr<lcm::LCM> lcm_;
+  bool open_ = false;
   bool listening_ = false;
   std::int64_t failures_ = 0;
   OnEvent on_event_;

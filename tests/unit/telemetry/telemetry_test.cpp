@@ -169,7 +169,7 @@ TEST_F(TelemetryTest, SenselessCommandsAreRefusedWithAReason) {
 TEST(LcmLink, AUrlThatCannotBeOpenedOnlyCounts) {
   LcmLink link("nosuchprovider://", [](const auto&) {});
   EXPECT_FALSE(link.is_open());
-  EXPECT_FALSE(link.listen([](const auto&) { return ligature_msg::ack_t{}; }));
+  link.listen([](const auto&) { return ligature_msg::ack_t{}; });
   link.send(ligature_msg::status_t{});
   EXPECT_EQ(link.failures(), 1);
   link.wait(0);
