@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "host/knot/alexander.hpp"
 #include "host/knot/closure.hpp"
@@ -90,6 +91,44 @@ KnotResult recognise_open(std::span<const Point> thread) {
                            [&](const KnotResult& a, const KnotResult& b) { return count(a) < count(b); });
 }
 
+/// Moves the points into the unit cube, so that squares and products neither overflow nor vanish.
+/// @return whether what is left of their precision can carry a knot: numbers near 1e14 are whole numbers of 1/64, and a
+///         thread of one metre there has lost its strands in rounding.
+bool normalise(std::vector<Point>& points) {
+  constexpr double kLeastExtent = 1e-290;  // below it numbers are no longer normal; 0: all points in one
+  constexpr double kCoarsest = 1e-8;       // resolution per extent; strands are told apart to 1e-9
+  Point low = points.front(), high = low;
+  for (const auto& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  const double half_extent = (0.5 * high - 0.5 * low).maxCoeff();  // halves first: the difference may overflow
+  const double largest = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+  if (half_extent < kLeastExtent) return false;
+  if (largest / half_extent * std::numeric_limits<double>::epsilon() > kCoarsest) return false;
+  for (auto& p : points) p = (0.5 * p - 0.5 * low) / half_extent;
+  return true;
+}
+
+/// How often a closed line that runs to and fro on one straight line turns back at its far end; 0 when it leaves the
+/// line. One such turn is a bridge number of 1, the unknot [Schubert 1954]; with more the strands lie in each other and
+/// nothing says how they would come apart.
+int turns_on_a_line(const std::vector<Point>& ring) {
+  constexpr double kOff = 1e-8;
+  const auto far = std::max_element(ring.begin(), ring.end(), [&](const Point& a, const Point& b) {
+    return (a - ring.front()).squaredNorm() < (b - ring.front()).squaredNorm();
+  });
+  const double length = (*far - ring.front()).norm();
+  if (length == 0.0) return 0;
+  const Point axis = (*far - ring.front()) / length;
+  std::vector<double> at;
+  for (const auto& p : ring) {
+    const Point d = p - ring.front();
+    if ((d - axis.dot(d) * axis).norm() > kOff) return 0;
+    if (at.empty() || std::abs(axis.dot(d) - at.back()) > kOff) at.push_back(axis.dot(d));
+  }
+  int turns = 0;
+  for (std::size_t i = 0, n = at.size(); i < n; ++i) turns += at[i] > at[(i + n - 1) % n] && at[i] >= at[(i + 1) % n];
+  return turns;
+}
+
 }  // namespace
 
 KnotResult recognise(std::span<const std::array<double, 3>> points, bool closed) {
@@ -99,6 +138,8 @@ KnotResult recognise(std::span<const std::array<double, 3>> points, bool closed)
     thread.emplace_back(p[0], p[1], p[2]);
   }
   if (thread.size() < 4) return from_diagram({});
+  if (!normalise(thread)) return unknown();
+  if (closed && turns_on_a_line(thread) > 1) return unknown();
   return closed ? recognise_ring(std::move(thread)) : recognise_open(thread);
 }
 

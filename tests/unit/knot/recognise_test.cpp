@@ -130,8 +130,8 @@ TEST(Recognise, OpenThreadsWithTheirEndsOutside) {
 TEST(Recognise, DegenerateInput) {
   EXPECT_EQ(named({}), "0_1 none");
   EXPECT_EQ(named({{0, 0, 0}}, false), "0_1 none");
-  EXPECT_EQ(named(Polyline(20, {1, 1, 1}), false), "0_1 none");
-  EXPECT_EQ(named(Polyline(20, {1, 1, 1})), "0_1 none");
+  EXPECT_EQ(named(Polyline(20, {1, 1, 1}), false), "unknown none");  // any shape, too far away, looks like this
+  EXPECT_EQ(named(Polyline(20, {1, 1, 1})), "unknown none");
   auto line = trefoil(60);
   line.push_back(line.front());  // closed twice
   EXPECT_EQ(named(line), "3_1 right");
@@ -140,6 +140,32 @@ TEST(Recognise, DegenerateInput) {
   EXPECT_EQ(named(doubled), "3_1 right");
   line[3][1] = std::nan("");
   EXPECT_EQ(named(line), "unknown none");
+}
+
+Polyline moved(Polyline line, double scale, double offset) {
+  for (auto& p : line)
+    for (auto& x : p) x = x * scale + offset;
+  return line;
+}
+
+TEST(Recognise, ScaleAndPlaceChangeNothingUntilPrecisionIsGone) {
+  for (const double scale : {1e-250, 1e-150, 1e-80, 1e-9, 1e9, 1e80, 1e150, 1e300}) {
+    EXPECT_EQ(named(moved(trefoil(60), scale, 0.0)), "3_1 right") << scale;
+    EXPECT_EQ(named(moved(figure_eight(60), scale, 0.0)), "4_1 amphichiral") << scale;
+  }
+  EXPECT_EQ(named(moved(trefoil(60), 1.0, 1e6)), "3_1 right");
+  for (const double offset : {1e14, -1e14, 1e15, 1e200}) EXPECT_EQ(named(moved(trefoil(60), 1.0, offset)), "unknown none");
+  EXPECT_EQ(named(moved(trefoil(60), 1e-310, 0.0)), "unknown none");
+}
+
+TEST(Recognise, AClosedLineThatLiesInItselfIsNotGuessed) {
+  Polyline there_and_back, twice;
+  for (int k = 0; k <= 20; ++k) there_and_back.push_back({1.0 * k, 2.0 * k, -0.5 * k});
+  for (int k = 19; k > 0; --k) there_and_back.push_back({1.0 * k, 2.0 * k, -0.5 * k});
+  EXPECT_EQ(named(there_and_back), "0_1 none");  // one far end: a bridge number of 1
+  for (int k = 0; k < 2; ++k) twice.insert(twice.end(), there_and_back.begin(), there_and_back.end());
+  EXPECT_EQ(named(twice), "unknown none");
+  EXPECT_TRUE(recognise(twice, true).alexander.empty());
 }
 
 TEST(Recognise, PrintsItsCost) {
