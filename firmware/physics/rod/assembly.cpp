@@ -16,6 +16,7 @@ void measure(const Material& m, const State& state, Forces& f) noexcept {
     const double length2 = dot(e, e), inverse = 1.0 / std::sqrt(length2);
     f.tangent[j] = mesh.inv_rest[j] * e;
     f.unit[j] = inverse * e;
+    f.shortening[j] = inverse * mesh.rest[j];
     f.tension[j] = m.EA_N * (length2 * inverse * mesh.inv_rest[j] - 1.0 - state.rest_strain[j]);
   }
 }
@@ -35,8 +36,8 @@ void vertices(const Material& m, const State& state, Forces& f) noexcept {
     f.moment_in[i] = f.moment_out[i] = q;
     if constexpr (Twist) {
       const Vec half = 0.5 * f.twist_moment[i] * binormal(f.unit[i - 1], f.unit[i]);
-      f.moment_in[i] -= half;
-      f.moment_out[i] += half;
+      f.moment_in[i] -= f.shortening[i - 1] * half;
+      f.moment_out[i] += f.shortening[i] * half;
     }
   }
   for (int h = 0; h < state.hold_count; ++h) {
@@ -46,11 +47,12 @@ void vertices(const Material& m, const State& state, Forces& f) noexcept {
     const Vec d = hold.direction;
     if (i > 0) {
       f.moment_in[i] = 2.0 * m.EI_N_m2 * mesh.inv_rest[i - 1] * (d - f.tangent[i - 1]);
-      if (Twist && i + 1 == n) f.moment_in[i] -= 0.5 * f.twist_moment[i] * binormal(f.unit[i - 1], d);
+      if (Twist && i + 1 == n)
+        f.moment_in[i] -= 0.5 * f.shortening[i - 1] * f.twist_moment[i] * binormal(f.unit[i - 1], d);
     }
     if (i + 1 < n) {
       f.moment_out[i] = 2.0 * m.EI_N_m2 * mesh.inv_rest[i] * (f.tangent[i] - d);
-      if (Twist && i == 0) f.moment_out[i] += 0.5 * f.twist_moment[i] * binormal(d, f.unit[i]);
+      if (Twist && i == 0) f.moment_out[i] += 0.5 * f.shortening[i] * f.twist_moment[i] * binormal(d, f.unit[i]);
     }
   }
 }

@@ -50,13 +50,13 @@ Numerics numerics_of(const scene::Scene& scene) noexcept {
     case scene::Accuracy::kFast:
       n.substeps = 10;
       n.max_substeps = 16;
-      n.settled_m_per_s = 5e-3;
+      n.settled_m_per_s = 1e-3;
       break;
     case scene::Accuracy::kBalanced:
       break;
     case scene::Accuracy::kFine:
       n.substeps = n.max_substeps = 40;
-      n.settled_m_per_s = 3e-4;
+      n.settled_m_per_s = 1e-5;
       n.max_passes = n.passes_per_substep = 40;
       break;
   }

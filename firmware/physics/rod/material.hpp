@@ -25,7 +25,7 @@ struct Numerics {
   double fast_m_per_s = 0.5;      ///< hand speed up to which `substeps` do
   int max_passes = 40;            ///< true solves per substep while contacts settle
   int passes_per_substep = 12;    ///< on average over a tick; when they are used up, each substep left gets four
-  double settled_m_per_s = 1e-3;  ///< a pass that changes no velocity by more ends them,
+  double settled_m_per_s = 3e-5;  ///< a pass that changes no velocity by more ends them,
   double settled_share = 0.012;   ///< or than this share of the hands' speed
   double recovery = 0.3;          ///< share of a penetration taken back per substep
   double max_recovery_m_per_s = 0.5;

@@ -48,12 +48,14 @@ struct Forces {
   std::vector<Vec> moment_in,
       moment_out;                    ///< of vertex i on the segment before and after it, N m: bending -+ half twist
   std::vector<Vec> edge;             ///< P_j: the force segment j exerts on node j (and - on j + 1)
+  std::vector<double> shortening;    ///< l_rest / |e|
   std::vector<double> tension;       ///< EA strain, N
   std::vector<double> twist_moment;  ///< M of vertex i, N m
 
   void resize(int n) {
     const auto size = static_cast<std::size_t>(n);
     for (auto* array : {&tangent, &unit, &moment_in, &moment_out, &edge}) array->assign(size, Vec{});
+    shortening.assign(size, 1.0);
     tension.assign(size, 0.0);
     twist_moment.assign(size, 0.0);
   }

@@ -20,7 +20,7 @@ inline Table read_table(const std::string& name) {
   if (!file) throw std::runtime_error("tests/reference/" + name + " is missing");
   const auto split = [](const std::string& line) {
     std::vector<std::string> cells;
-    std::stringstream in(line);
+    std::stringstream in(line.substr(0, line.find('\r')));
     for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
     return cells;
   };

@@ -1,0 +1,147 @@
+// The thread of scenes/suture-3-0-knot.toml behind the facade: pulled tight, held, let go; without allocating in a
+// tick.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <new>
+
+#include "firmware/physics/rod/rod_simulation.hpp"
+#include "host/knot/recognise.hpp"
+#include "protocol/scene/scene_file.hpp"
+
+namespace {
+std::atomic<long> allocations{0};
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* p = std::malloc(size)) return p;
+  throw std::bad_alloc{};
+}
+void* operator new(std::size_t size, std::align_val_t align) {
+  ++allocations;
+  const auto a = static_cast<std::size_t>(align);
+  if (void* p = std::aligned_alloc(a, (size + a - 1) / a * a)) return p;
+  throw std::bad_alloc{};
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+
+namespace ligature::test {
+namespace {
+
+using physics::Hand;
+using physics::ToolInput;
+using physics::Vec3;
+using physics::rod::RodSimulation;
+
+scene::Scene load(const char* name, std::vector<std::string> overrides = {}) {
+  auto read = scene::load_scene(std::string(LIGATURE_SOURCE_DIR) + "/scenes/" + name, overrides);
+  if (auto* error = std::get_if<scene::Error>(&read)) throw std::runtime_error(error->text);
+  return std::get<scene::Scene>(read);
+}
+
+RodSimulation simulation(const scene::Scene& scene) {
+  auto made = RodSimulation::make(scene);
+  if (auto* why = std::get_if<std::string>(&made)) throw std::runtime_error(*why);
+  return std::get<RodSimulation>(std::move(made));
+}
+
+std::string knot_of(const RodSimulation& sim) {
+  std::vector<std::array<double, 3>> points;
+  for (const auto& p : sim.nodes_W()) points.push_back({p.x(), p.y(), p.z()});
+  return knot::recognise(points, false).type;
+}
+
+struct Pull {
+  std::string knot;
+  double penetration = 0.0, hold_penetration = 0.0, force_N = 0.0, strain = 0.0;
+  long allocations = 0;
+  int guard = 0;
+};
+
+// Both hands apart at 0.2 m/s each until `force_N`, hold for 0.3 s, ease off, let one end go, wait.
+Pull pull(const scene::Scene& scene, double force_N, double wait_s) {
+  RodSimulation sim = simulation(scene);
+  const double diameter = 2.0 * scene.suture.radius_m;
+  std::array<ToolInput, 2> tools{};
+  tools[0].p_WT = sim.nodes_W().front();
+  tools[1].p_WT = sim.nodes_W().back();
+  tools[0].grip = tools[1].grip = true;
+  Pull result;
+  const long before = allocations;
+  const auto run = [&](double seconds, double speed, auto until) {
+    for (int k = 0; k < static_cast<int>(1000.0 * seconds); ++k) {
+      for (std::size_t h = 0; h < 2; ++h) {
+        const double v = h == 0 ? -speed : speed;
+        tools[h].v_WT = Vec3(v, 0, 0);
+        tools[h].p_WT.x() += 1e-3 * v;
+      }
+      sim.tick(tools);
+      result.guard += sim.rod().report().guard_events;
+      result.penetration = std::max(result.penetration, -sim.diagnostics().min_gap_m / diameter);
+      if (until(0.5 * (sim.hand(Hand::kLeft).f_W.x() - sim.hand(Hand::kRight).f_W.x()))) return;
+    }
+  };
+  const auto never = [](double) { return false; };
+  run(0.1, 0.0, never);
+  run(1.0, 0.2, [&](double f) { return f >= force_N; });
+  run(0.3, 0.0, never);
+  const double worst_so_far = std::exchange(result.penetration, 0.0);
+  run(0.2, 0.0, [&](double f) { return result.force_N = f, false; });
+  result.strain = sim.diagnostics().max_stretch;
+  result.hold_penetration = result.penetration;
+  result.penetration = std::max(result.penetration, worst_so_far);
+  run(3.0, -0.02, [&](double f) { return f < 0.02 * force_N; });
+  tools[1].grip = false;
+  run(wait_s, 0.0, never);
+  result.allocations = allocations - before;
+  result.knot = knot_of(sim);
+  return result;
+}
+
+TEST(Overhand, HoldsAfterAPullToFiveNewtons) {  // friction 0.3; penetration in diameters, stretch against T / EA
+  const Pull p = pull(load("suture-3-0-knot.toml"), 5.0, 1.0);
+  EXPECT_EQ(p.knot, "3_1");
+  EXPECT_EQ(p.guard, 0);
+  EXPECT_LT(p.penetration, 0.5);
+  EXPECT_LT(p.hold_penetration, 0.1);
+  EXPECT_NEAR(p.strain, p.force_N / 71.0, 0.002);
+  EXPECT_EQ(p.allocations, 0);
+}
+
+TEST(Overhand, OpensWithoutFriction) {  // mu = 0: nothing holds it once an end is free
+  const Pull p = pull(load("suture-3-0-knot.toml", {"contact.friction=0"}), 1.0, 1.5);
+  EXPECT_EQ(p.knot, "0_1");
+}
+
+TEST(RodScene, HangsStillAndCopiesGoTheirOwnWay) {  // a copy that is not touched does what the original did, bit by bit
+  RodSimulation sim = simulation(load("suture-3-0.toml"));
+  std::array<ToolInput, 2> open{};
+  open[0].p_WT = open[1].p_WT = Vec3(1, 1, 1);
+  for (int k = 0; k < 50; ++k) sim.tick(open);
+  RodSimulation other = sim;
+  for (int k = 0; k < 50; ++k) sim.tick(open);
+  for (int k = 0; k < 50; ++k) other.tick(open);
+  EXPECT_TRUE(sim.diagnostics().finite);
+  for (std::size_t i = 0; i < sim.nodes_W().size(); ++i) EXPECT_EQ(sim.nodes_W()[i], other.nodes_W()[i]) << i;
+  EXPECT_NEAR(sim.nodes_W().back().z(), 0.05, 1e-4);  // 0.35 m less 0.3 m, and 0.5 um of stretch
+  sim.reset();
+  EXPECT_EQ(sim.nodes_W().front(), Vec3(0, 0, 0.35));
+}
+
+TEST(RodScene, RefusesWhatItCannotDo) {  // one line, which key, what is allowed
+  auto few = load("suture-3-0.toml", {"suture.nodes=3"});
+  EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(few)));
+  auto paper = load("suture-3-0.toml", {"contact.solver=\"paper\""});
+  EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(paper)));
+}
+
+}  // namespace
+}  // namespace ligature::test
