@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <iostream>
 
 #include "host/lab/experiment_command.hpp"
 #include "host/lab/outcome.hpp"
@@ -39,12 +40,16 @@ int main(int argc, char** argv) {
     complain(refusal.what());
     return refusal.code;
   } catch (const CLI::Success& success) {
-    return app.exit(success);
+    app.exit(success);
   } catch (const CLI::ParseError& error) {
     complain(std::string(error.what()) + " (see ligature-lab --help)");
     return kBadInput;
   } catch (const std::exception& error) {
     complain(error.what());
+    return kRunFailed;
+  }
+  if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    complain("standard output cannot be written");
     return kRunFailed;
   }
   return exit_code;

@@ -2,6 +2,7 @@
 // A scene and an operator's script played through the physics, tick by tick, without a clock.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -34,7 +35,12 @@ class Rehearsal {
   /// Ticks until time t (to the nearest tick); false when the run diverged before.
   bool run_until(double t_s);
 
-  [[nodiscard]] double time_s() const noexcept { return static_cast<double>(ticks_) * tick_s_; }
+  /// Divided by a whole rate where there is one: 700 * 0.001 is 0.7000000000000001, 700 / 1000 is 0.7.
+  [[nodiscard]] double time_s() const noexcept {
+    const double rate_Hz = 1.0 / tick_s_, whole_Hz = std::round(rate_Hz);
+    const bool is_whole = std::abs(rate_Hz - whole_Hz) <= 1e-12 * rate_Hz;
+    return is_whole ? static_cast<double>(ticks_) / whole_Hz : static_cast<double>(ticks_) * tick_s_;
+  }
   [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
   [[nodiscard]] double last_tick_us() const noexcept { return last_tick_us_; }  ///< CPU time of this thread
   [[nodiscard]] physics::Simulation& simulation() noexcept { return simulation_; }

@@ -86,6 +86,7 @@ RunSummary run(Rehearsal& r, const RunOptions& options) {
   s.nodes = scene.suture.nodes;
   s.min_gap_m = scene.suture.length_m;
   make_folder(options.folder);
+  remove_old_outputs(options.folder);
   TraceFile trace(options.folder);
   ShapeFile shape(options.folder);
   Progress progress;
@@ -111,6 +112,7 @@ RunSummary run(Rehearsal& r, const RunOptions& options) {
     if (knot_due.is_due(r.time_s(), scene.time.tick_s)) look_at_knot(s, r);
     if (progress.is_due()) show(progress, s, r, options.duration_s);
   }
+  s.interrupted = s.finite && r.ticks() < ticks;
   s.ticks = s.finite ? r.ticks() : r.ticks() - 1;
   s.duration_s = static_cast<double>(s.ticks) * scene.time.tick_s;
   if (!shape_written) shape.add(s.duration_s, r.simulation().nodes_W());
@@ -136,6 +138,7 @@ std::string to_json(const RunSummary& s) {
       {"ticks", s.ticks},
       {"duration_s", s.duration_s},
       {"finite", s.finite},
+      {"interrupted", s.interrupted},
       {"knot", {{"type", s.knot.type}, {"handedness", s.knot.handedness}}},
       {"knot_history", history},
       {"max_stretch", s.max_stretch},

@@ -24,6 +24,7 @@ struct RunSummary {
   std::int64_t ticks = 0;
   double duration_s = 0.0;
   bool finite = true;
+  bool interrupted = false;  ///< by SIGINT or SIGTERM before its end
   knot::KnotResult knot;
   std::vector<std::pair<double, std::string>>
       knot_history;  ///< from t = 0 on, one entry a change, looked at every 20 ms

@@ -72,6 +72,7 @@ int execute(const Arguments& a) {
   Rehearsal rehearsal(scene, script, a.scene);
   const auto summary = run(rehearsal, {a.out, duration_s, a.shape_every_s});
   print(summary, a.out);
+  if (summary.interrupted) std::fprintf(stderr, "ligature-lab: interrupted at t = %.3f s\n", summary.duration_s);
   if (!summary.finite) throw Refusal(a.scene + ": " + summary.failure, kRunFailed);
   return kDone;
 }

@@ -17,9 +17,15 @@ bool TraceRow::is_finite() const noexcept {
 }
 
 CsvFile::CsvFile(const std::filesystem::path& path, const char* header)
-    : file_(std::fopen(path.c_str(), "w"), &std::fclose), path_(path.string()) {
+    : path_(path.string()), part_(path_ + ".part"), file_(std::fopen(part_.c_str(), "w"), &std::fclose) {
   if (!file_) throw Refusal(path_ + ": cannot be written: " + std::strerror(errno));
-  std::fprintf(file_.get(), "%s\n", header);
+  if (std::fprintf(file_.get(), "%s\n", header) < 0) fail();
+}
+
+CsvFile::~CsvFile() {
+  if (!file_) return;
+  file_.reset();
+  std::remove(part_.c_str());
 }
 
 void CsvFile::row(std::span<const double> cells) {
@@ -31,14 +37,20 @@ void CsvFile::row(std::span<const double> cells) {
     line_.append(text, end);
   }
   line_ += '\n';
-  if (std::fwrite(line_.data(), 1, line_.size(), file_.get()) != line_.size()) {
-    throw Refusal(path_ + ": cannot be written: " + std::strerror(errno), kRunFailed);
-  }
+  if (std::fwrite(line_.data(), 1, line_.size(), file_.get()) != line_.size()) fail();
 }
 
 void CsvFile::close() {
-  if (std::fclose(file_.release()) != 0)
-    throw Refusal(path_ + ": cannot be written: " + std::strerror(errno), kRunFailed);
+  if (std::fflush(file_.get()) != 0) fail();
+  file_.reset();
+  if (std::rename(part_.c_str(), path_.c_str()) != 0) fail();
+}
+
+void CsvFile::fail() {
+  const std::string why = std::strerror(errno);
+  file_.reset();
+  std::remove(part_.c_str());
+  throw Refusal(path_ + ": cannot be written: " + why + "; nothing was left under that name", kRunFailed);
 }
 
 TraceFile::TraceFile(const std::filesystem::path& folder)
@@ -73,14 +85,32 @@ void make_folder(const std::filesystem::path& folder) {
   }
 }
 
+void remove_old_outputs(const std::filesystem::path& folder) {
+  for (const char* name : {"summary.json", "trace.csv", "shape.csv"}) {
+    const auto path = folder / name;
+    std::error_code error;
+    const auto found = std::filesystem::symlink_status(path, error);
+    if (!std::filesystem::exists(found)) continue;
+    if (!std::filesystem::is_regular_file(found) && !std::filesystem::is_symlink(found))
+      throw Refusal(path.string() + ": is no file, allowed a regular file or a new name");
+    std::filesystem::remove(path, error);
+    if (error) throw Refusal(path.string() + ": cannot be replaced: " + error.message());
+  }
+}
+
 void write_text(const std::filesystem::path& path, const std::string& text) {
   const auto part = std::filesystem::path(path.string() + ".part");
+  errno = 0;
   std::ofstream file(part);
   file << text;
   file.close();
+  const std::string why = std::strerror(errno);
   std::error_code error;
   if (file) std::filesystem::rename(part, path, error);
-  if (!file || error) throw Refusal(path.string() + ": cannot be written: " + std::strerror(errno), kRunFailed);
+  if (file && !error) return;
+  std::error_code ignored;
+  std::filesystem::remove(part, ignored);
+  throw Refusal(path.string() + ": cannot be written: " + (error ? error.message() : why), kRunFailed);
 }
 
 }  // namespace ligature::lab

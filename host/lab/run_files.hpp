@@ -25,17 +25,23 @@ struct TraceRow {
   [[nodiscard]] bool is_finite() const noexcept;
 };
 
-/// A CSV file opened for writing; throws Refusal when it cannot be, or (exit 3) when the disk fills.
+/// A CSV file that has its name only when it is complete: written as NAME.part, renamed by close(), removed when that
+/// was not reached. Throws Refusal when it cannot be made, or (exit 3) when the disk fills.
 class CsvFile {
  public:
   CsvFile(const std::filesystem::path& path, const char* header);
+  ~CsvFile();
+  CsvFile(const CsvFile&) = delete;
+  CsvFile& operator=(const CsvFile&) = delete;
   /// One row; each number in its shortest exact form.
   void row(std::span<const double> cells);
   void close();
 
  private:
+  [[noreturn]] void fail();
+
+  std::string path_, part_;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
-  std::string path_;
   std::string line_;
 };
 
@@ -61,6 +67,10 @@ class ShapeFile {
 
 /// Makes the folder of a run, or throws Refusal.
 void make_folder(const std::filesystem::path& folder);
+
+/// Removes what an earlier run left in the folder, so that one that fails or is killed leaves nothing that looks like
+/// its own. @throws Refusal.
+void remove_old_outputs(const std::filesystem::path& folder);
 
 /// Writes a text file in one go (beside it first, then renamed over it), or throws Refusal.
 void write_text(const std::filesystem::path& path, const std::string& text);

@@ -15,6 +15,7 @@ void watch_stop_signals() {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of writing like a full disk
 }
 
 bool stop_requested() noexcept { return stop != 0; }

@@ -31,6 +31,31 @@ TEST(CsvFile, RefusesAPlaceItCannotWrite) {
   EXPECT_THROW(make_folder("/proc/no"), Refusal);
 }
 
+TEST(CsvFile, HasItsNameOnlyWhenComplete) {
+  const std::filesystem::path path = ::testing::TempDir() + "complete.csv";
+  std::filesystem::remove(path);
+  {
+    CsvFile killed(path, "a");
+    EXPECT_FALSE(std::filesystem::exists(path));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_FALSE(std::filesystem::exists(path.string() + ".part"));
+  CsvFile file(path, "a");
+  file.close();
+  EXPECT_TRUE(std::filesystem::exists(path));
+}
+
+TEST(RemoveOldOutputs, LeavesWhatIsNotOurs) {
+  const std::filesystem::path folder = ::testing::TempDir() + "old_outputs";
+  std::filesystem::create_directories(folder);
+  for (const char* name : {"summary.json", "trace.csv", "shape.csv", "notes.txt"}) std::ofstream(folder / name) << "old";
+  remove_old_outputs(folder);
+  EXPECT_FALSE(std::filesystem::exists(folder / "summary.json"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "trace.csv"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "notes.txt"));
+  std::filesystem::remove_all(folder);
+}
+
 TEST(WriteText, LeavesNoPartBehind) {
   const std::filesystem::path path = ::testing::TempDir() + "summary.json";
   write_text(path, "{}\n");
