@@ -11,8 +11,23 @@
 
 namespace ligature::host {
 
-AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
-  if (std::filesystem::is_directory(path_)) throw BadInput(path_ + ": is a folder; allowed: the name of a file");
+std::string file_to_write(const std::string& path) {
+  namespace fs = std::filesystem;
+  constexpr int kMostLinks = 40;  // as the kernel's own limit
+  std::error_code none;
+  fs::path target(path);
+  for (int i = 0; fs::is_symlink(fs::symlink_status(target, none)); ++i) {
+    if (i == kMostLinks) throw BadInput(path + ": is a circle of links; allowed: the name of a file");
+    target = target.parent_path() / fs::read_symlink(target, none);  // an absolute one replaces the whole
+  }
+  const auto found = fs::status(target, none);
+  if (fs::is_directory(found)) throw BadInput(path + ": is a folder; allowed: the name of a file");
+  if (fs::exists(found) && !fs::is_regular_file(found))
+    throw BadInput(path + ": is a device, pipe or socket; allowed: a regular file, or a new name");
+  return target.string();
+}
+
+AtomicFile::AtomicFile(std::string path) : path_(file_to_write(path)) {
   part_path_ = path_ + ".part-" + std::to_string(getpid());
   file_ = std::fopen(part_path_.c_str(), "wbx");
   if (!file_) throw BadInput(path_ + ": cannot be written: " + std::strerror(errno));

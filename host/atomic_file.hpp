@@ -4,8 +4,13 @@
 
 namespace ligature::host {
 
+/// Where writing to `path` really goes: symbolic links followed, also one that points at nothing yet.
+/// @throws BadInput when something is there that is no regular file (a device, a pipe, a folder): a file that appears
+/// by renaming would take its place.
+[[nodiscard]] std::string file_to_write(const std::string& path);
+
 /// A file that exists under its name only when it is complete: written as NAME.part-PID, renamed by commit(),
-/// removed when commit() was not reached.
+/// removed when commit() was not reached. A symbolic link stays one: its target is what is replaced.
 class AtomicFile {
  public:
   /// @throws BadInput when the file cannot be made.

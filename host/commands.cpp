@@ -1,6 +1,7 @@
 #include "host/commands.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -28,6 +29,14 @@ void refuse_same_file(const std::string& log, const std::string& target) {
     throw BadInput(target + ": is the log itself; allowed: another name");
 }
 
+/// CLI11's ranges let nan pass: no comparison with it is true.
+std::string finite(const std::string& word) {
+  double value = 0.0;
+  if (CLI::detail::lexical_cast(word, value) && !std::isfinite(value))
+    return "found '" + word + "', allowed a finite number";
+  return {};
+}
+
 void add_url(CLI::App& command, std::string& url) {
   command.add_option("--lcm-url", url, "LCM network; ttl=0 keeps every packet on this machine")->capture_default_str();
 }
@@ -40,6 +49,7 @@ void add_record(CLI::App& app) {
   command->add_option("--out", options->out, "log to write (lcm-logplayer plays it)")->required();
   add_url(*command, options->lcm_url);
   command->add_option("--duration", options->duration_s, "seconds; without it until Ctrl-C or SIGTERM")
+      ->check(finite)
       ->check(CLI::Range(0.001, 1e7));
   command->add_flag("--force", options->force, "replace an existing file");
   command->add_flag("--quiet", options->quiet, "no progress");
@@ -137,13 +147,15 @@ void add_knot(CLI::App& app) {
       ->required();
   auto* closed = command->add_flag("--closed", options->closed, "the last point joins the first");
   command->add_flag("--open", options->open, "it does not")->excludes(closed);
-  command->add_option("--at", options->at_s, "time of the shape, s: the nearest one (default: the last one)");
+  command->add_option("--at", options->at_s, "time of the shape, s: the nearest one (default: the last one)")
+      ->check(finite);
   command->add_flag("--json", options->json, "as one JSON line");
   command->footer(
       "Without --closed and --open a polyline is closed when its last point repeats its first. A knot that cannot be\n"
       "named is 'unknown', with its invariants. Alexander coefficients stand from the lowest power.\n\n"
+      "Right is the trefoil whose crossings count +3, the one that scripts/demo ties.\n\n"
       "Example:\n  ligature-host knot knot.lcmlog --json\n"
-      "  {\"type\":\"3_1\",\"handedness\":\"left\",\"determinant\":3,\"alexander\":[1,-1,1]}");
+      "  {\"type\":\"3_1\",\"handedness\":\"right\",\"determinant\":3,\"alexander\":[1,-1,1]}");
   command->callback([options] { std::fputs(describe_knot(*options).c_str(), stdout); });
 }
 

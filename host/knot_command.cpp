@@ -1,5 +1,6 @@
 #include "host/knot_command.hpp"
 
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "host/errors.hpp"
@@ -11,17 +12,24 @@ namespace ligature::host {
 namespace {
 
 std::string json_line(const knot::KnotResult& found) {
-  const nlohmann::ordered_json json = {{"type", found.type},
-                                       {"handedness", found.handedness},
-                                       {"determinant", found.determinant},
-                                       {"alexander", found.alexander}};
+  nlohmann::ordered_json json = {{"type", found.type},
+                                 {"handedness", found.handedness},
+                                 {"determinant", nullptr},
+                                 {"alexander", nullptr}};
+  if (!found.alexander.empty()) {  // else neither could be computed
+    json["determinant"] = found.determinant;
+    json["alexander"] = found.alexander;
+  }
   return json.dump() + "\n";
 }
 
 std::string words(const knot::KnotResult& found, const Polyline& line) {
   std::string result = found.type;
   if (found.handedness != "none") result += " " + found.handedness;
-  result += text("  (determinant %d, Alexander polynomial", found.determinant);
+  if (found.alexander.empty())
+    result += "  (no invariant could be computed";
+  else
+    result += text("  (determinant %d, Alexander polynomial", found.determinant);
   for (const int coefficient : found.alexander) result += text(" %d", coefficient);
   result += text("; %zu points", line.points.size());
   if (line.time_s) result += text(" at %.3f s", *line.time_s);
@@ -34,6 +42,9 @@ std::string describe_knot(const KnotOptions& options) {
   Polyline line = is_lcm_log(options.file) ? read_polyline_log(options.file, options.at_s)
                                            : read_polyline_csv(options.file, options.at_s);
   if (options.at_s && !line.time_s) throw BadInput(options.file + ": --at needs a column t_s, found none");
+  if (line.last_is_cut_off)
+    std::fprintf(stderr, "ligature-host: %s: the last shape is cut off; took %s whole one\n", options.file.c_str(),
+                 options.at_s ? "the nearest" : "the last");
   const bool ends_meet = line.points.front() == line.points.back();
   const bool closed = options.closed || (!options.open && ends_meet);
   if (closed && ends_meet) line.points.pop_back();

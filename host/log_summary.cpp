@@ -52,7 +52,7 @@ class Summariser {
     Session& session = summary.tally[index];
     session.ring_dropped = batch.ring_dropped;
     for (const auto& tick : batch.ticks)
-      if (session.ticks.add(tick.tick)) summary.ticks.add(tick);
+      if (summary.tally.add(index, tick.tick)) summary.ticks.add(tick);
   }
 
   void take(const ligature_msg::thread_t& thread) {

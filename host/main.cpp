@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <string>
 
 #include "host/commands.hpp"
@@ -17,6 +18,11 @@ int complain(const std::string& what, int exit_code) {
   std::fprintf(stderr, "ligature-host: %s\n", what.c_str());
   return exit_code;
 }
+
+constexpr const char* kUntold = "standard output cannot be written";
+
+/// Whether all that was printed has gone out; --help and --version use the stream.
+bool is_told() { return std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
 
 /// The parser alone would only say that a command is missing.
 bool has_command(const CLI::App& app, const std::string& word) {
@@ -58,13 +64,12 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    if (error.get_exit_code() == 0) return app.exit(error) == 0 && is_told() ? 0 : complain(kUntold, 3);
     return complain(std::string(error.what()) + " (see --help)", 2);
   } catch (const BadInput& error) {
     return complain(error.what(), 2);
   } catch (const std::exception& error) {
     return complain(error.what(), 3);
   }
-  if (std::fflush(stdout) != 0) return complain("standard output cannot be written", 3);
-  return 0;
+  return is_told() ? 0 : complain(kUntold, 3);
 }

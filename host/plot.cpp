@@ -91,17 +91,18 @@ std::string last_line(const std::string& path) {
   return last;
 }
 
-void refuse_bad_target(const std::string& out_path) {
+/// @return where the picture goes, links followed.
+std::string checked_target(const std::string& out_path) {
   const auto ending = fs::path(out_path).extension();
   if (ending != ".png" && ending != ".svg" && ending != ".pdf")
     throw BadInput(out_path + ": found ending '" + ending.string() + "', allowed .png, .svg or .pdf");
-  const AtomicFile can_be_made(out_path);
+  return AtomicFile(out_path).path();  // made and gone again: it can be made
 }
 
 }  // namespace
 
 void plot(const std::string& log_path, const std::string& out_path) {
-  refuse_bad_target(out_path);
+  const std::string target = checked_target(out_path);
   const std::string python = find_python(), script = find_script();
   const RigFacts facts = read_rig_facts(log_path);
   const ScratchFolder scratch;
@@ -112,7 +113,7 @@ void plot(const std::string& log_path, const std::string& out_path) {
   const std::string title = facts.scene_file.empty() ? fs::path(log_path).filename().string()
                                                      : fs::path(facts.scene_file).filename().string();
   const int code = run(
-      {python, script, forces_csv, "--out", out_path, "--title", title, "--limit", text("%.17g", facts.max_force_N)},
+      {python, script, forces_csv, "--out", target, "--title", title, "--limit", text("%.17g", facts.max_force_N)},
       scratch.file("complaints"));
   if (code != 0)
     throw RunFailed("plot: " + python + " ended with " + std::to_string(code) + ": " +

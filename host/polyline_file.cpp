@@ -1,17 +1,23 @@
 #include "host/polyline_file.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <string_view>
 
 #include "host/errors.hpp"
 #include "host/log_reader.hpp"
 #include "host/rig_facts.hpp"
+#include "host/text.hpp"
 
 namespace ligature::host {
 namespace {
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8; spreadsheets put it first
+constexpr std::size_t kMostBytes = 64U << 20;               // of one file; a pipe may never end
 
 std::string_view trimmed(std::string_view field) {
   constexpr std::string_view kBlank = " \t\r\"";
@@ -48,7 +54,7 @@ class PolylineReader {
   PolylineReader(const std::string& path, std::optional<double> at_s) : path_(path), at_s_(at_s) {}
 
   void take(std::string_view line) {
-    ++line_number_;
+    if (++line_number_ == 1 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
     if (const auto comment = line.find('#'); comment != std::string_view::npos) line = line.substr(0, comment);
     if (trimmed(line).empty()) return;
     const auto fields = split(line);
@@ -60,8 +66,19 @@ class PolylineReader {
     take_row(fields);
   }
 
+  /// The last line of a file, without its end: where a writer was killed, half a row of a shape.
+  void take_unended(std::string_view line) {
+    const bool half_a_row = columns_ && columns_->node >= 0 && !trimmed(line).empty() &&
+                            std::ranges::count(line, ',') + 1 < columns_->count;
+    half_a_row ? void(row_cut_off_ = true) : take(line);
+  }
+
   Polyline finish() {
-    choose();
+    // Shapes of one thread have equally many nodes: the last one may have been cut off with its file.
+    const bool cut_off = row_cut_off_ || (columns_ && columns_->node >= 0 && current_.points.size() < whole_nodes_);
+    if (cut_off && chosen_.points.empty()) throw BadInput(path_ + ": its only shape is cut off; allowed: a whole one");
+    if (!cut_off) choose();
+    chosen_.last_is_cut_off = cut_off;
     if (chosen_.points.size() < 3)
       throw BadInput(path_ + ": found " + std::to_string(chosen_.points.size()) + " points, allowed 3 or more");
     return std::move(chosen_);
@@ -83,7 +100,7 @@ class PolylineReader {
       if (name == "node") found.node = i;
     }
     if (found.x < 0 || found.y < 0 || found.z < 0)
-      refuse("header '" + std::string(names.front()) +
+      refuse("header '" + shown(names.front()) +
              ",...' lacks a coordinate, allowed columns x,y,z or x_m,y_m,z_m "
              "(and t_s, node)");
     return found;
@@ -92,7 +109,7 @@ class PolylineReader {
   double value(const std::vector<std::string_view>& fields, int column) const {
     const auto field = fields[static_cast<std::size_t>(column)];
     const auto parsed = number(field);
-    if (!parsed) refuse("found '" + std::string(field) + "', allowed a finite number");
+    if (!parsed) refuse("found '" + shown(field) + "', allowed a finite number");
     return *parsed;
   }
 
@@ -109,7 +126,7 @@ class PolylineReader {
       }
     }
     if (columns_->node >= 0 && value(fields, columns_->node) != static_cast<double>(current_.points.size()))
-      refuse("found node " + std::string(fields[static_cast<std::size_t>(columns_->node)]) + ", allowed " +
+      refuse("found node " + shown(fields[static_cast<std::size_t>(columns_->node)]) + ", allowed " +
              std::to_string(current_.points.size()) + " (nodes rise by one from 0)");
     current_.points.push_back(point);
   }
@@ -117,6 +134,7 @@ class PolylineReader {
   /// Keeps the shape just read when it is a better answer than the one before.
   void choose() {
     if (current_.points.empty()) return;
+    whole_nodes_ = current_.points.size();
     const bool is_better =
         !at_s_ || !chosen_.time_s || std::abs(*current_.time_s - *at_s_) < std::abs(*chosen_.time_s - *at_s_);
     if (is_better) chosen_ = current_;
@@ -127,15 +145,41 @@ class PolylineReader {
   int line_number_ = 0;
   std::optional<Columns> columns_;
   Polyline current_, chosen_;
+  std::size_t whole_nodes_ = 0;  // of the last finished shape
+  bool row_cut_off_ = false;
 };
+
+void refuse_what_is_no_text(const std::string& path) {
+  std::error_code none;
+  const auto found = std::filesystem::status(path, none);
+  if (std::filesystem::is_directory(found)) throw BadInput(path + ": is a folder; allowed: a file");
+  if (std::filesystem::is_character_file(found) || std::filesystem::is_block_file(found))
+    throw BadInput(path + ": is a device; allowed: a file or a pipe");
+}
+
+/// std::getline() that stops at `most` characters: a line may never end either.
+bool bounded_line(std::istream& in, std::string& line, std::size_t most) {
+  line.clear();
+  for (int c; line.size() < most && (c = in.get()) != std::istream::traits_type::eof();) {
+    if (c == '\n') return true;
+    line += static_cast<char>(c);
+  }
+  return !line.empty();
+}
 
 }  // namespace
 
 Polyline read_polyline_csv(const std::string& path, std::optional<double> at_s) {
+  refuse_what_is_no_text(path);
   std::ifstream file(path);
   if (!file) throw BadInput(path + ": " + std::strerror(errno));
   PolylineReader reader(path, at_s);
-  for (std::string line; std::getline(file, line);) reader.take(line);
+  std::size_t bytes = 0;
+  for (std::string line; bounded_line(file, line, kMostBytes - bytes);) {
+    bytes += line.size() + 1;
+    if (bytes >= kMostBytes) throw BadInput(path + ": found more than 64 MB, allowed at most that");
+    file.eof() ? reader.take_unended(line) : reader.take(line);
+  }
   return reader.finish();
 }
 
@@ -159,6 +203,8 @@ Polyline read_polyline_log(const std::string& path, std::optional<double> at_s) 
 }
 
 bool is_lcm_log(const std::string& path) {
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(path, none)) return false;  // a look would eat a pipe's first bytes
   std::ifstream file(path, std::ios::binary);
   char start[4] = {};
   return file.read(start, 4) && std::string_view(start, 4) == "\xED\xA1\xDA\x01";

@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 
+#include "host/atomic_file.hpp"
 #include "host/errors.hpp"
 #include "host/gap_filler.hpp"
 #include "host/live_tally.hpp"
@@ -126,7 +127,8 @@ void record(const RecordOptions& options) {
   LcmLink link(options.lcm_url, "LIGATURE_.*", [&](const Message& message) {
     if (recording) recording->take(message);
   });
-  LogWriter log(options.out, options.force);
+  const std::string out = options.force ? file_to_write(options.out) : options.out;
+  LogWriter log(out, options.force);
   recording.emplace(log, tally);
   try {
     record_until_stopped(link, tally, options, [&] { recording->fill(); });
@@ -141,7 +143,7 @@ void record(const RecordOptions& options) {
     std::printf("%s: %.1f MB\n", options.out.c_str(), static_cast<double>(log.bytes()) * 1e-6);
     return;
   }
-  if (std::filesystem::is_regular_file(options.out)) std::filesystem::remove(options.out);  // an empty log helps nobody
+  if (std::filesystem::is_regular_file(out)) std::filesystem::remove(out);  // an empty log helps nobody
   throw RunFailed("no message came on " + options.lcm_url +
                   "; is ligature-firmware running with the same --lcm-url "
                   "in the same network namespace?");

@@ -86,7 +86,10 @@ std::string report_table(const LogSummary& s) {
   table += row("knot", knot_words(s));
   if (const auto first = first_tick(s); first > 1)
     table += row("joined late", text("recording begins at tick %lld", static_cast<Count>(first)));
-  if (s.tally.restarts() > 0) table += row("restarts", text("%zu of the firmware", s.tally.restarts()));
+  if (s.tally.are_interleaved())
+    table += row("sessions", text("%zu at the same time", s.tally.sessions().size()));
+  else if (s.tally.restarts() > 0)
+    table += row("restarts", text("%zu of the firmware", s.tally.restarts()));
   if (s.tally.duplicates() > 0)
     table += row("duplicates", text("%lld ticks", static_cast<Count>(s.tally.duplicates())));
   if (s.unreadable_messages > 0)

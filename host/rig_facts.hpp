@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -12,8 +13,13 @@ struct RigFacts {
   std::string scene_file;
   std::string firmware_version;
 
-  /// Time of a tick since its session's start.
-  [[nodiscard]] double time_s(std::int64_t tick) const { return static_cast<double>(tick) * period_s; }
+  /// Time of a tick since its session's start. Divided by a whole rate, the double is the one nearest to the decimal
+  /// number (700 * 0.001 is 0.7000000000000001, 700 / 1000 is 0.7).
+  [[nodiscard]] double time_s(std::int64_t tick) const {
+    const double rate_Hz = 1.0 / period_s, whole_Hz = std::round(rate_Hz);
+    const bool is_whole = std::abs(rate_Hz - whole_Hz) <= 1e-12 * rate_Hz;
+    return is_whole ? static_cast<double>(tick) / whole_Hz : static_cast<double>(tick) * period_s;
+  }
 };
 
 /// Reads a log up to its first status (sent at 10 Hz, so near the start).

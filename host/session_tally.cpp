@@ -10,6 +10,14 @@ int SessionTally::find_or_add(std::int64_t id) {
   return static_cast<int>(sessions_.size()) - 1;
 }
 
+bool SessionTally::add(int index, std::int64_t tick) {
+  Session& session = sessions_[static_cast<std::size_t>(index)];
+  // A tick that fills a gap of an earlier session may come at any time; one that goes on with it may not.
+  const bool is_last = static_cast<std::size_t>(index) + 1 == sessions_.size();
+  if (!is_last && (session.ticks.is_empty() || tick > session.ticks.last())) interleaved_ = true;
+  return session.ticks.add(tick);
+}
+
 std::int64_t SessionTally::received() const {
   std::int64_t sum = 0;
   for (const auto& session : sessions_) sum += session.ticks.received();

@@ -24,16 +24,21 @@ class SessionTally {
 
   /// The session of that id, made when it is new. @return its index, or -1 when there are too many.
   int find_or_add(std::int64_t id);
+  /// Counts a tick of the session at `index`. @return false when it was there already.
+  bool add(int index, std::int64_t tick);
   Session& operator[](int index) { return sessions_[static_cast<std::size_t>(index)]; }
 
   [[nodiscard]] std::span<const Session> sessions() const { return sessions_; }
   [[nodiscard]] std::int64_t received() const;
   [[nodiscard]] std::int64_t missing() const;
   [[nodiscard]] std::int64_t duplicates() const;
+  /// Two firmwares sent at the same time: a session went on after a later one had begun.
+  [[nodiscard]] bool are_interleaved() const { return interleaved_; }
   [[nodiscard]] std::size_t restarts() const { return sessions_.empty() ? 0 : sessions_.size() - 1; }
 
  private:
   std::vector<Session> sessions_;  // in order of their first message
+  bool interleaved_ = false;
 };
 
 }  // namespace ligature::host

@@ -6,6 +6,7 @@
 #include "host/csv_row.hpp"
 #include "host/errors.hpp"
 #include "host/export_csv.hpp"
+#include "host/rig_facts.hpp"
 #include "synthetic_log.hpp"
 
 namespace ligature::host {
@@ -116,6 +117,13 @@ TEST(CsvRow, NumbersReadBackToTheSameBits) {
     EXPECT_EQ(std::strtod(line.c_str(), nullptr), value);
   }
   EXPECT_EQ(row.add(1).add("a").add(std::int16_t{-2}).finish(), "1,a,-2\n");
+}
+
+TEST(RigFacts, ATimeIsItsDecimalNumber) {
+  const RigFacts facts;
+  EXPECT_EQ(facts.time_s(700), 0.7);
+  for (std::int64_t tick = 0; tick < 100'000; tick += 7) EXPECT_EQ(facts.time_s(tick), static_cast<double>(tick) / 1000);
+  EXPECT_DOUBLE_EQ(RigFacts{.period_s = 0.0015}.time_s(2), 0.003);
 }
 
 }  // namespace

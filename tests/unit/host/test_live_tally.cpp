@@ -40,6 +40,22 @@ TEST(LiveTally, SaysThatTheFirmwareWasRestarted) {
   EXPECT_NE(tally.progress_line(1.0, 1000.0).find("1 restarts"), std::string::npos);
 }
 
+TEST(LiveTally, TwoFirmwaresAtOnceAreNoRestart) {
+  LiveTally tally;
+  for (int i = 0; i < 3; ++i) {
+    add(tally, test::batch_of(1, 20 * i, 20));
+    add(tally, test::batch_of(2, 20 * i, 20));
+  }
+  EXPECT_NE(tally.summary().find("several firmwares sent at the same time"), std::string::npos) << tally.summary();
+  EXPECT_EQ(tally.summary().find("restarted"), std::string::npos);
+  LiveTally filled_late;  // from the flight recorder, after a restart
+  add(filled_late, test::batch_of(1, 0, 20));
+  add(filled_late, test::batch_of(1, 40, 20));
+  add(filled_late, test::batch_of(2, 0, 20));
+  add(filled_late, test::batch_of(1, 20, 20));
+  EXPECT_NE(filled_late.summary().find("restarted"), std::string::npos);
+}
+
 TEST(LiveTally, SaysThatItJoinedLate) {
   LiveTally tally;
   add(tally, test::batch_of(1, 500, 20));

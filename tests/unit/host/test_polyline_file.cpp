@@ -53,6 +53,35 @@ TEST_F(PolylineFile, TakesTheLastShapeOrTheNearest) {
   EXPECT_EQ(read(kShapes, 99.0).points[0][0], 7.0);
 }
 
+TEST_F(PolylineFile, AShapeThatWasCutOffIsNotTaken) {
+  std::string cut(kShapes.substr(0, kShapes.rfind("1,2,9")));
+  const auto line = read(cut);
+  EXPECT_EQ(line.points[0][0], 4.0);
+  EXPECT_EQ(line.points.size(), 3U);
+  EXPECT_TRUE(line.last_is_cut_off);
+  EXPECT_FALSE(read(kShapes).last_is_cut_off);
+  EXPECT_EQ(read(cut + "1,2,9").points[0][0], 4.0);  // and within a row
+  EXPECT_EQ(read(cut, 99.0).points[0][0], 4.0);
+  EXPECT_EQ(refusal("t_s,node,x,y,z\n0,0,1,2,3\n0,1,1,2"), ": its only shape is cut off; allowed: a whole one");
+}
+
+TEST_F(PolylineFile, AByteOrderMarkIsNoData) {
+  EXPECT_EQ(read("\xEF\xBB\xBFx,y,z\n1,2,3\n4,5,6\n7,8,9\n").points.size(), 3U);
+  EXPECT_EQ(read("\xEF\xBB\xBF""1,2,3\n4,5,6\n7,8,9\n").points.size(), 3U);
+}
+
+TEST_F(PolylineFile, WhatIsQuotedFitsOnALine) {
+  EXPECT_EQ(refusal("x,y,z\n1,\x1B[31m,3\n"), ":2: found '\\x1B[31m', allowed a finite number");
+  EXPECT_LT(refusal("x,y,z\n1," + std::string(5000, 'a') + ",3\n").size(), 150U);
+}
+
+TEST_F(PolylineFile, RefusesFoldersAndTextsWithoutEnd) {
+  EXPECT_THROW(static_cast<void>(read_polyline_csv(folder_.path().string(), {})), BadInput);
+  EXPECT_THROW(static_cast<void>(read_polyline_csv("/dev/zero", {})), BadInput);  // only read
+  EXPECT_FALSE(is_lcm_log("/dev/zero"));
+  EXPECT_EQ(refusal(std::string((64U << 20) + 10, '7')), ": found more than 64 MB, allowed at most that");
+}
+
 TEST_F(PolylineFile, RefusesABadRowWithItsLine) {
   EXPECT_EQ(refusal("x,y,z\n1,2,3\n1,2\n"), ":3: found 2 fields, allowed 3");
   EXPECT_EQ(refusal("x,y,z\n# a\n1,two,3\n"), ":3: found 'two', allowed a finite number");
@@ -76,6 +105,13 @@ TEST_F(PolylineFile, ALogGivesItsLastOrNearestShape) {
   EXPECT_TRUE(is_lcm_log(path));
   EXPECT_EQ(read_polyline_log(path, {}).time_s, 2.0);
   EXPECT_EQ(read_polyline_log(path, 1.2).points.size(), 102U);
+}
+
+TEST_F(PolylineFile, AnInvariantThatCouldNotBeComputedIsNull) {
+  test::write_text(path_, "x,y,z\n0,0,0\n1,0,0\n0,0,0\n1,0,0\n");
+  EXPECT_EQ(describe_knot({.file = path_, .closed = true, .json = true}),
+            "{\"type\":\"unknown\",\"handedness\":\"none\",\"determinant\":null,\"alexander\":null}\n");
+  EXPECT_NE(describe_knot({.file = path_, .closed = true}).find("no invariant"), std::string::npos);
 }
 
 TEST_F(PolylineFile, TheKnotOfAFileIsPrintedAsTheDesignSays) {

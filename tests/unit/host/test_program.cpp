@@ -1,5 +1,6 @@
 // The program as a person runs it: exit codes, and one line on stderr for whatever is wrong.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -41,6 +42,35 @@ TEST_F(Program, RefusesBadInputWithOneLineAndTwo) {
   EXPECT_EQ(test::text_of(folder_.file("there.lcmlog")), "precious");
   EXPECT_FALSE(std::filesystem::exists(folder_.file("new.lcmlog")));
   EXPECT_FALSE(std::filesystem::exists(folder_.file("f.csv")));
+}
+
+TEST_F(Program, NeverReplacesWhatIsNoRegularFileAndWritesThroughLinks) {
+  LogWriter log(folder_.file("a.lcmlog"), false);
+  test::write(log, kTicksChannel, test::batch_of(1, 0, 20));
+  log.close();
+  ASSERT_EQ(mkfifo(folder_.file("pipe").c_str(), 0600), 0);
+  std::filesystem::create_symlink("pipe", folder_.file("to_pipe"));
+  for (const char* name : {"pipe", "to_pipe"}) {
+    EXPECT_EQ(run(std::string("export a.lcmlog --forces ") + name), 2);
+    EXPECT_EQ(std::ranges::count(err(), '\n'), 1) << err();
+  }
+  EXPECT_TRUE(std::filesystem::is_fifo(folder_.file("pipe")));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_.file("to_pipe")));
+  test::write_text(folder_.file("real.csv"), "old");
+  std::filesystem::create_symlink("real.csv", folder_.file("link.csv"));
+  std::filesystem::create_symlink("new.csv", folder_.file("dangling.csv"));
+  EXPECT_EQ(run("export a.lcmlog --forces link.csv --ticks dangling.csv"), 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_.file("link.csv")));
+  EXPECT_TRUE(test::text_of(folder_.file("real.csv")).starts_with("tick,"));
+  EXPECT_TRUE(test::text_of(folder_.file("new.csv")).starts_with("tick,"));
+}
+
+TEST_F(Program, RefusesNumbersThatAreNone) {
+  for (const char* words : {"record --out new.lcmlog --duration nan", "record --out new.lcmlog --duration inf",
+                            "knot there.csv --at nan", "knot there.csv --at inf"}) {
+    EXPECT_EQ(run(words), 2) << words;
+    EXPECT_NE(err().find("finite"), std::string::npos) << words << ": " << err();
+  }
 }
 
 TEST_F(Program, HelpTeachesEveryCommandByExample) {
