@@ -2,10 +2,11 @@
 
 import os
 import pathlib
+import subprocess
 import tempfile
 import unittest
 
-from rig import ROOT, run
+from rig import BIN, ROOT, run
 
 SCENE = (ROOT / "scenes/paper.toml").read_text()
 BAD_SCENES = {
@@ -69,6 +70,48 @@ class BadInput(unittest.TestCase):
                     continue  # it reads no script
                 with self.subTest(script=what, program=name):
                     self.refused(run(*command), "bad.csv", line)
+
+    def firmware(self, *more, left=None, right=None):
+        return run("ligature-firmware", "run", "--scene", "scenes/paper.toml", "--left", left or f"local:{self.path}/l",
+                   "--right", right or f"local:{self.path}/r", "--recorder", "none", "--wait-s", "0", "--force", *more)
+
+    def test_firmware_options(self):
+        self.refused(self.firmware("--duration", "nan"), "finite")
+        self.refused(self.firmware("--duration", "inf"), "finite")
+        self.refused(self.firmware("--wait-s", "nan"), "finite")
+        self.refused(self.firmware("--lcm-url", "nonsense"), "--lcm-url", "nonsense", "udpm://")
+        self.refused(self.firmware("--lcm-url", "udpm://10.0.0.1:7667"), "--lcm-url")
+        self.refused(self.firmware("--lcm-url", "udpm://239.255.76.67:nan"), "--lcm-url")
+        self.refused(self.firmware(left=f"local:{self.path}/x", right=f"local:{self.path}/../{self.path.name}/x"), "--left", "--right")
+        (self.path / "text").write_text("no socket")
+        for bad in (f"local:{self.path}", f"local:{self.path}/text", "socketcan:nosuchcan9"):
+            with self.subTest(bus=bad):
+                self.refused(self.firmware("--no-telemetry", left=bad), bad)
+
+    def test_targets_that_are_no_files(self):
+        os.mkfifo(self.path / "pipe")
+        os.symlink("pipe", self.path / "link")
+        for name in ("pipe", "link"):
+            with self.subTest(target=name):
+                self.refused(run("ligature-device", "--hand", "left", "--bus", f"local:{self.path}/bus", "--stats", self.path / name), name)
+        self.assertTrue((self.path / "pipe").is_fifo())
+        self.assertTrue((self.path / "link").is_symlink())
+        self.refused(run("ligature-device", "--hand", "left", "--bus", f"local:{self.path}"), "folder")
+
+    def test_a_full_standard_output(self):
+        for program in ("ligature-host", "ligature-lab", "ligature-firmware", "ligature-device", "ligature-can-describe"):
+            with self.subTest(program=program), open("/dev/full", "w") as full:
+                done = subprocess.run([BIN / program, "--help"], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+                self.assertEqual(done.returncode, 3, done.stderr)
+                self.assertIn("standard output", done.stderr)
+
+    def test_can_describe(self):
+        def fed(command, line):
+            return subprocess.run([BIN / "ligature-can-describe", command], input=line + "\n", capture_output=True, text=True, timeout=60)
+        self.refused(fed("encode", "rpdo1 1 15 40000"), "torque", "32767")
+        self.refused(fed("encode", "tpdo1 1 70000 0 0 0"), "statusword", "65535")
+        self.refused(fed("encode", "tpdo1 1 0 3000000000 0 0"), "position")
+        self.refused(fed("decode", "181 0011"), "2 bytes", "8")
 
     def test_host_files(self):
         other = self.path / "other.lcmlog"
