@@ -20,14 +20,14 @@ grid = figure.add_gridspec(2, 6)
 for line, knot in enumerate(["3_1", "4_1"]):
     axis = figure.add_subplot(grid[0, 3 * line : 3 * line + 3])
     mine = [p for p in pulls if p["knot"] == knot]
-    for after, colour in (("0_1", "tab:green"), ("", "tab:red")):
+    for after, colour in (("0_1", "#0072B2"), ("", "#E69F00")):  # told apart by colour-blind readers too
         chosen = [p for p in mine if (p["after"] == "0_1") == (after == "0_1")]
         axis.scatter([int(float(p["node"])) for p in chosen], [DIRECTIONS.index(p["direction"]) for p in chosen], marker="s", s=28,
                      color=colour, label="unties" if after else "stays knotted")
     axis.set_yticks(range(6), DIRECTIONS)
     axis.set_xlabel("node pulled")
     axis.set_title(f"{knot}: which pulls untie (frame at node 0)")
-    axis.legend(fontsize=8, loc="upper left")
+    axis.legend(fontsize=8, loc="lower center", bbox_to_anchor=(0.5, -0.32), ncol=2)
 for column, title in enumerate(TITLES):
     axis = figure.add_subplot(grid[1, 2 * column : 2 * column + 2], projection="3d")
     points = [[float(s[k]) for k in ("x_m", "y_m", "z_m")] for s in shapes if int(float(s["picture"])) == column]
