@@ -15,7 +15,7 @@ namespace ligature::host::view {
 /// when, and the traces as bins for the long windows.
 class LogSurvey {
  public:
-  static constexpr std::size_t kMostBins = 12 * 72'000, kMostMarks = 5'000, kOverview = 600;
+  static constexpr std::size_t kMostBins = 864'000 /* 12 h */, kMostMarks = 5'000, kOverview = 600;
   static constexpr double kKnotPeriod_s = 0.2;
 
   explicit LogSurvey(const LogMap& map);

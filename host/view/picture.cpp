@@ -90,7 +90,7 @@ void Picture::set_locked(const std::string& topic, json what) {
   is = std::move(what);
 }
 
-void Picture::add_event(json event) {
+void Picture::add_event(const json& event) {
   const std::scoped_lock lock(mutex_);
   events_.push(event);
 }

@@ -43,7 +43,7 @@ class Picture {
 
   /// What pages are told of a topic ("status", "knot", "view", "replay", "marks"), when it changes and at their start.
   void set(const std::string& topic, nlohmann::json what);
-  void add_event(nlohmann::json event);
+  void add_event(const nlohmann::json& event);
 
   /// The newest shape, or nothing when it is the one with number `known`, which is set.
   [[nodiscard]] std::optional<ligature_msg::thread_t> newer_shape(std::int64_t& known) const;
