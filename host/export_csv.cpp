@@ -112,7 +112,8 @@ class Exporter {
 
 /// A flight recorder's file: one session, ticks only.
 ExportResult export_flight(const std::string& path, const ExportTargets& targets) {
-  if (!targets.shape.empty()) throw BadInput(path + ": a flight recorder file holds no shapes; allowed --forces, --ticks");
+  if (!targets.shape.empty())
+    throw BadInput(path + ": a flight recorder file holds no shapes; allowed --forces, --ticks");
   const FlightReader recorder(path);
   if (recorder.ticks() == 0) throw BadInput(path + ": holds no tick");
   Exporter exporter(recorder.facts(), targets);

@@ -45,7 +45,8 @@ void FaultInjector::once(HandDevice& device, Time now) {
   if (script_.kind == FaultKind::kReboot)
     device.submit(can::encode_nmt(can::NmtCommand::kResetNode, node), HandDevice::kMaxClients, now);
   if (script_.kind == FaultKind::kEmergency)
-    device.submit(can::encode(can::Emergency{node, kGenericError, can::emcy::kGenericBit}), HandDevice::kMaxClients, now);
+    device.submit(can::encode(can::Emergency{node, kGenericError, can::emcy::kGenericBit}), HandDevice::kMaxClients,
+                  now);
 }
 
 bool FaultInjector::is_hit(const Delivery& d) {

@@ -145,7 +145,8 @@ Admission admit(const scene::Scene& scene, double seconds, int core, double budg
     platform::stay_on(core);
     platform::flush_denormals();
     result.worst = Meter(scene).run(seconds);
-  }).join();
+  })
+      .join();
   return result;
 }
 

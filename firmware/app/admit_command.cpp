@@ -15,7 +15,8 @@ constexpr double kSearch_s = 2.0;
 std::optional<Refusal> objection_of(const Admission& admission, const scene::Scene& scene, int core) {
   if (admission.fits()) return std::nullopt;
   char text[160];
-  std::snprintf(text, sizeof text, "the scene does not fit: found %.0f us of computing in the worst tick, allowed %.0f; ",
+  std::snprintf(text, sizeof text,
+                "the scene does not fit: found %.0f us of computing in the worst tick, allowed %.0f; ",
                 admission.computing_us(), std::min(admission.budget_us(), 1000.0 - admission.bus_us));
   const auto nodes = largest_nodes(scene, kSearch_s, core, admission.budget_percent);
   return Refusal{3, text + (nodes ? "largest suture.nodes that would: " + std::to_string(*nodes)

@@ -72,7 +72,8 @@ Check memory_limit(const std::string& root) {
 }
 
 /// A core list of the kernel that shall hold ours.
-Check core_list(const std::string& root, const char* what, const std::string& file, const std::string& option, int core) {
+Check core_list(const std::string& root, const char* what, const std::string& file, const std::string& option,
+                int core) {
   const std::string list = text_of(root + file);
   const std::string number = std::to_string(core);
   if (list_holds(list, core)) return good(what, "core " + number + " in " + list);
@@ -86,7 +87,8 @@ Check rcu(const std::string& root, int core) {
   const std::string number = std::to_string(core);
   if (at != std::string::npos) {
     const auto from = at + 11;
-    if (list_holds(line.substr(from, line.find(' ', from) - from), core)) return good("RCU callbacks", "off core " + number);
+    if (list_holds(line.substr(from, line.find(' ', from) - from), core))
+      return good("RCU callbacks", "off core " + number);
   }
   return {Grade::kWarn, "RCU callbacks", "may run on core " + number,
           "kernel command line: rcu_nocbs=" + number + " (GRUB_CMDLINE_LINUX, update-grub, reboot)"};
@@ -97,7 +99,8 @@ Check governor(const std::string& root, int core) {
   if (!fs::exists(file)) return good("frequency", "not scaled by this kernel");
   const std::string found = text_of(file);
   if (found == "performance") return good("frequency", "governor performance");
-  return {Grade::kWarn, "frequency", "governor " + found, "cpupower -c " + std::to_string(core) + " frequency-set -g performance"};
+  return {Grade::kWarn, "frequency", "governor " + found,
+          "cpupower -c " + std::to_string(core) + " frequency-set -g performance"};
 }
 
 /// Idle states that take long to leave add to every wake-up.
@@ -115,21 +118,25 @@ Check idle(const std::string& root, int core) {
 
 Check clock_source(const std::string& root) {
   const std::string found = text_of(root + "sys/devices/system/clocksource/clocksource0/current_clocksource");
-  if (found != "hpet" && found != "acpi_pm" && found != "jiffies") return good("clock source", found.empty() ? "default" : found);
+  if (found != "hpet" && found != "acpi_pm" && found != "jiffies")
+    return good("clock source", found.empty() ? "default" : found);
   return {Grade::kWarn, "clock source", found + ", slow to read", "kernel command line: tsc=reliable"};
 }
 
 Check multicast(const std::string& root) {
   const std::string by = route_of(text_of(root + "proc/net/route"), kMulticast);
   if (by == "lo") return good("LCM multicast", "by lo");
-  if (!by.empty()) return {Grade::kWarn, "LCM multicast", "by " + by + " (ttl=0 keeps it on this machine)", "ip route add 224.0.0.0/4 dev lo"};
+  if (!by.empty())
+    return {Grade::kWarn, "LCM multicast", "by " + by + " (ttl=0 keeps it on this machine)",
+            "ip route add 224.0.0.0/4 dev lo"};
   return {Grade::kFail, "LCM multicast", "no route", "ip link set lo up && ip route add 224.0.0.0/4 dev lo"};
 }
 
 Check receive_buffer(const std::string& root) {
   const std::string found = text_of(root + "proc/sys/net/core/rmem_max");
   if (std::atol(found.c_str()) >= kReceiveBuffer) return good("receive buffer", "up to " + found + " bytes");
-  return {Grade::kWarn, "receive buffer", "up to " + (found.empty() ? "?" : found) + " bytes", "sysctl -w net.core.rmem_max=4194304"};
+  return {Grade::kWarn, "receive buffer", "up to " + (found.empty() ? "?" : found) + " bytes",
+          "sysctl -w net.core.rmem_max=4194304"};
 }
 
 /// Number after a word in a text, or -1.
@@ -145,7 +152,8 @@ Check interrupts(const std::string& root, const std::string& interface, int core
     if ((line + " ").find(" " + interface + " ") == std::string::npos) continue;
     const std::string number = std::to_string(std::atoi(line.c_str()));
     if (list_holds(text_of(root + "proc/irq/" + number + "/smp_affinity_list"), core))
-      return {Grade::kWarn, "CAN interrupt", interface + ": irq " + number + " may come to core " + std::to_string(core),
+      return {Grade::kWarn, "CAN interrupt",
+              interface + ": irq " + number + " may come to core " + std::to_string(core),
               "echo 0 > /proc/irq/" + number + "/smp_affinity_list"};
     return good("CAN interrupt", interface + ": irq " + number + " kept off core " + std::to_string(core));
   }
@@ -216,13 +224,15 @@ std::vector<Check> check_can(const Machine& machine, const std::string& interfac
     found << interface << ": " << rate << " bit/s, sample point " << point;
     const bool fine = rate == 1e6 && point >= 0.75 && point <= 0.875;
     checks.push_back({fine ? Grade::kOk : Grade::kFail, "CAN bit rate", found.str(),
-                      fine ? "" : "ip link set " + interface + " down && ip link set " + interface +
-                                      " up type can bitrate 1000000 sample-point 0.8"});
+                      fine ? ""
+                           : "ip link set " + interface + " down && ip link set " + interface +
+                                 " up type can bitrate 1000000 sample-point 0.8"});
   }
   const std::string queue = text_of(folder + "/tx_queue_len");
   checks.push_back(std::atol(queue.c_str()) >= 64
                        ? good("CAN queue", interface + ": " + queue)
-                       : Check{Grade::kWarn, "CAN queue", interface + ": " + queue + ", wanted 64", "ip link set " + interface + " txqueuelen 64"});
+                       : Check{Grade::kWarn, "CAN queue", interface + ": " + queue + ", wanted 64",
+                               "ip link set " + interface + " txqueuelen 64"});
   checks.push_back(interrupts(machine.root, interface, core));
   return checks;
 }

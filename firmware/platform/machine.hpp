@@ -11,7 +11,7 @@ enum class Grade { kOk, kWarn, kFail };
 
 struct Check {
   Grade grade;
-  std::string what;   ///< "kernel", "locked memory", ..
+  std::string what;  ///< "kernel", "locked memory", ..
   std::string found;
   std::string remedy;  ///< a command or a line to add; empty when there is nothing to mend
 };

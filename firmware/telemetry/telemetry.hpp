@@ -40,9 +40,9 @@ struct Session {
   std::string recorder_file;  ///< empty: none
 };
 
-/// One thread uses it. Every record goes into the flight recorder and then into exactly one batch, in order; a batch has
-/// 20 of them, the last one what is left. Shapes at 60 Hz and status at 10 Hz, events at once. A fault saves the ticks
-/// before it to a file of their own, which its event names.
+/// One thread uses it. Every record goes into the flight recorder and then into exactly one batch, in order; a batch
+/// has 20 of them, the last one what is left. Shapes at 60 Hz and status at 10 Hz, events at once. A fault saves the
+/// ticks before it to a file of their own, which its event names.
 class Telemetry {
  public:
   static constexpr std::size_t kTicksPerBatch = 20;
@@ -51,8 +51,7 @@ class Telemetry {
   static constexpr std::int64_t kTicksPerFault = 2000;
 
   /// @param recorder may be missing.
-  Telemetry(Session session, const Names& names, rt::Outlets& outlets, Sink& sink,
-            FlightRecorder* recorder = nullptr);
+  Telemetry(Session session, const Names& names, rt::Outlets& outlets, Sink& sink, FlightRecorder* recorder = nullptr);
 
   /// Takes everything that is there. @param now_us CLOCK_REALTIME, microseconds.
   void step(std::int64_t now_us);

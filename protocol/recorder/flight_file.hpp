@@ -35,7 +35,7 @@ struct Header {
   std::int64_t session = 0;    ///< as in tick_batch_t: CLOCK_REALTIME at the run's start, microseconds
   double period_s = 0.0;
   double max_force_N = 0.0;
-  std::int32_t fault = 0;      ///< in a file saved with a fault: its number; else 0
+  std::int32_t fault = 0;  ///< in a file saved with a fault: its number; else 0
   std::uint32_t toml_bytes = 0;
   std::array<char, 32> firmware_version{};
   std::array<char, 256> scene_file{};

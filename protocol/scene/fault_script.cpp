@@ -6,9 +6,9 @@ namespace ligature::scene {
 namespace {
 
 constexpr std::pair<const char*, FaultKind> kKinds[] = {
-    {"lose", FaultKind::kLose},       {"delay", FaultKind::kDelay},   {"duplicate", FaultKind::kDuplicate},
-    {"reorder", FaultKind::kReorder}, {"corrupt", FaultKind::kCorrupt}, {"freeze", FaultKind::kFreeze},
-    {"jump", FaultKind::kJump},       {"reverse", FaultKind::kReverse}, {"button", FaultKind::kButton},
+    {"lose", FaultKind::kLose},       {"delay", FaultKind::kDelay},        {"duplicate", FaultKind::kDuplicate},
+    {"reorder", FaultKind::kReorder}, {"corrupt", FaultKind::kCorrupt},    {"freeze", FaultKind::kFreeze},
+    {"jump", FaultKind::kJump},       {"reverse", FaultKind::kReverse},    {"button", FaultKind::kButton},
     {"reboot", FaultKind::kReboot},   {"emergency", FaultKind::kEmergency}};
 constexpr std::pair<const char*, int> kHands[] = {{"left", 0}, {"right", 1}};
 

@@ -27,10 +27,10 @@ enum class FaultKind : std::uint8_t {
 struct FaultScript {
   std::string title;  ///< one line for people
   FaultKind kind = FaultKind::kLose;
-  int hand = 0;          ///< 0 left, 1 right
-  int node = 0;          ///< 1 .. 3; 0 = all of the hand's drives
-  double share = 1.0;    ///< of the frames, 0 .. 1
-  double from_s = 0.0;   ///< since the first SYNC
+  int hand = 0;         ///< 0 left, 1 right
+  int node = 0;         ///< 1 .. 3; 0 = all of the hand's drives
+  double share = 1.0;   ///< of the frames, 0 .. 1
+  double from_s = 0.0;  ///< since the first SYNC
   double until_s = 1e9;
   double delay_s = 0.0;
   int counts = 0;

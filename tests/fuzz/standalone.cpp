@@ -19,20 +19,30 @@ std::string mutated(std::string s, std::mt19937& random) {
     const std::size_t at = below(s.size());
     const std::size_t length = std::min(s.size() - at, 1 + below(16));
     switch (below(6)) {
-      case 0: s[at] = static_cast<char>(s[at] ^ (1 << below(8))); break;
-      case 1: s[at] = static_cast<char>(below(256)); break;
-      case 2: s.erase(at, length); break;
-      case 3: s.insert(at, s.substr(at, length)); break;
-      case 4: s.resize(at); break;
-      default: std::memset(s.data() + at, below(2) != 0 ? 0xFF : 0x7F, length); break;
+      case 0:
+        s[at] = static_cast<char>(s[at] ^ (1 << below(8)));
+        break;
+      case 1:
+        s[at] = static_cast<char>(below(256));
+        break;
+      case 2:
+        s.erase(at, length);
+        break;
+      case 3:
+        s.insert(at, s.substr(at, length));
+        break;
+      case 4:
+        s.resize(at);
+        break;
+      default:
+        std::memset(s.data() + at, below(2) != 0 ? 0xFF : 0x7F, length);
+        break;
     }
   }
   return s;
 }
 
-void eat(const std::string& s) {
-  LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(s.data()), s.size());
-}
+void eat(const std::string& s) { LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(s.data()), s.size()); }
 
 }  // namespace
 

@@ -25,16 +25,16 @@ constexpr std::int64_t kOnset = 1500, kTicks = 2200;
 
 /// A lost period's record holds the last values: nothing was commanded in it.
 bool pushes(const rt::TickRecord& r) {
-  return (r.flags & rt::kPeriodLost) == 0 &&
-         std::ranges::any_of(r.torque_permille,
-                             [](const auto& hand) { return std::ranges::any_of(hand, [](auto t) { return t != 0; }); });
+  return (r.flags & rt::kPeriodLost) == 0 && std::ranges::any_of(r.torque_permille, [](const auto& hand) {
+           return std::ranges::any_of(hand, [](auto t) { return t != 0; });
+         });
 }
 
 struct Outcome {
   int fault = 0;
-  std::int64_t ticks_to_fault = -1;   // from the onset; -1 none
-  std::int64_t ticks_to_zero = 0;     // from the onset until no motor of the rig has torque
-  double peak_N = 0.0;                // on either hand after the onset
+  std::int64_t ticks_to_fault = -1;  // from the onset; -1 none
+  std::int64_t ticks_to_zero = 0;    // from the onset until no motor of the rig has torque
+  double peak_N = 0.0;               // on either hand after the onset
   bool pushed_before = false;
 };
 
@@ -130,12 +130,16 @@ std::string text_of(const std::string& path) {
 const std::string kHead =
     "# Fault matrix\n\n"
     "Printed by `FaultMatrix.EveryCaseEndsAsItSays`: each script of `scenes/faults` befalls one hand of the simulated\n"
-    "rig 1.5 s after the first SYNC, while both hands tie the overhand in force, in virtual time. *Stated* and *seen*:\n"
-    "ticks of 1 ms from the onset until no motor of either hand has torque, as promised and as it was. In every row the\n"
+    "rig 1.5 s after the first SYNC, while both hands tie the overhand in force, in virtual time. *Stated* and "
+    "*seen*:\n"
+    "ticks of 1 ms from the onset until no motor of either hand has torque, as promised and as it was. In every row "
+    "the\n"
     "force stays below 3.3 N and every tick is recorded; a fault is latched, disarms, and takes both hands. While the\n"
     "controller sleeps or cannot be heard, the drives' own watchdog (20 ms) takes the torque.\n\n"
-    "What carries on does so on held or doubled samples. A frozen or reversed encoder and a stuck button tell a possible\n"
-    "story and are not recognised as faults: what bounds them is the force limit, and the velocity limit once they run\n"
+    "What carries on does so on held or doubled samples. A frozen or reversed encoder and a stuck button tell a "
+    "possible\n"
+    "story and are not recognised as faults: what bounds them is the force limit, and the velocity limit once they "
+    "run\n"
     "away. Wrong bits are a worst case: a CAN controller's own CRC drops such frames, which then count as lost.\n\n"
     "| script | what happens | fault | stated | seen |\n|---|---|---|---|---|\n";
 

@@ -111,7 +111,7 @@ struct SimulatedRig {
   Nanoseconds time{0};
   std::vector<bool> drives_push;  // a motor has torque, at the end of the period before each SYNC
   std::int64_t cut_left_at = -1;  // tick at which the left hand's process dies
-  std::int64_t stall_at = 0;  // tick at which the real-time thread sleeps too long, once
+  std::int64_t stall_at = 0;      // tick at which the real-time thread sleeps too long, once
   Nanoseconds stall_for{0};
   physics::Simulation thread;
   DeviceBus left, right;

@@ -13,9 +13,8 @@ namespace ligature::app {
 namespace {
 
 scene::Scene paper(int nodes) {
-  auto s = std::get<scene::Scene>(
-      scene::load_scene(std::string(LIGATURE_SOURCE_DIR) + "/scenes/paper.toml",
-                        std::vector<std::string>{"suture.nodes=" + std::to_string(nodes)}));
+  auto s = std::get<scene::Scene>(scene::load_scene(std::string(LIGATURE_SOURCE_DIR) + "/scenes/paper.toml",
+                                                    std::vector<std::string>{"suture.nodes=" + std::to_string(nodes)}));
   return s;
 }
 
