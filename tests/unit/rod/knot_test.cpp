@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <new>
+#include <utility>
 
 #include "firmware/physics/rod/rod_simulation.hpp"
 #include "host/knot/recognise.hpp"

@@ -1,0 +1,158 @@
+// Pulls the loose overhand of scenes/suture-3-0-knot.toml tight and prints one line a run: knot after the wait, guard
+// events, worst penetration (diameters) in pull / hold / after, strain against T / EA, largest turn per node and
+// longest contact segment in the hold, chatter of the hand force in the hold, thread-CPU time per tick.
+//
+// Usage: rod_pull_study SCENE [speed_m_per_s force_N sudden(0|1) hands(1|2) [key=value ...]]; without speed: the 24
+// runs of 0.05, 0.2, 0.5, 1 m/s x 1, 5, 10 N x gentle, sudden release.
+
+#include <ctime>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "firmware/physics/rod/rod_simulation.hpp"
+#include "host/knot/recognise.hpp"
+#include "protocol/scene/scene_file.hpp"
+
+using namespace ligature;
+using physics::rod::RodSimulation;
+
+namespace {
+
+double cpu_us() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
+}
+
+double quantile(std::vector<double> v, double q) {
+  std::sort(v.begin(), v.end());
+  return v.empty() ? 0.0 : v[std::min(v.size() - 1, static_cast<std::size_t>(q * static_cast<double>(v.size())))];
+}
+
+// rms about the 51-tick moving mean, over the mean.
+double chatter(const std::vector<double>& f) {
+  constexpr int kHalf = 25;
+  double mean = 0.0, sum = 0.0;
+  int count = 0;
+  for (const double x : f) mean += x / static_cast<double>(f.size());
+  for (int i = kHalf; i + kHalf < static_cast<int>(f.size()); ++i) {
+    double local = 0.0;
+    for (int k = -kHalf; k <= kHalf; ++k) local += f[static_cast<std::size_t>(i + k)] / (2 * kHalf + 1);
+    sum += std::pow(f[static_cast<std::size_t>(i)] - local, 2);
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) / mean : 0.0;
+}
+
+class Study {
+ public:
+  Study(const scene::Scene& scene, RodSimulation sim) : scene_(scene), sim_(std::move(sim)) {
+    tools_[0].p_WT = sim_.nodes_W().front();
+    tools_[1].p_WT = sim_.nodes_W().back();
+    tools_[0].grip = tools_[1].grip = true;
+  }
+
+  void run(double speed, double force_N, bool sudden, int hands) {
+    phase(0.1, 0.0, hands, 0.0);
+    phase(5.0, speed, hands, force_N);
+    const double pull = std::exchange(penetration_, 0.0);
+    phase(0.3, 0.0, hands, 0.0);
+    penetration_ = 0.0;
+    forces_.clear();
+    phase(0.7, 0.0, hands, 0.0);
+    const double hold = std::exchange(penetration_, 0.0), strain = sim_.diagnostics().max_stretch, tension = force();
+    const auto [turn, segment] = sharpness();
+    const double rms = chatter(forces_);
+    if (!sudden) phase(10.0, -0.02, 2, -0.02 * force_N);
+    tools_[1].grip = false;
+    phase(5.0, 0.0, hands, 0.0);
+    std::vector<std::array<double, 3>> points;
+    for (const auto& p : sim_.nodes_W()) points.push_back({p.x(), p.y(), p.z()});
+    std::printf(
+        "%4.2f m/s %4.1f N %s %d hand(s): %s guard %d penetration %.2f %.3f %.2f strain %.2f%% (T/EA %.2f%%) turn %.2f "
+        "segment %.2f d chatter %.4f%% us %.0f %.0f %.0f\n",
+        speed, force_N, sudden ? "sudden" : "gentle", hands, knot::recognise(points, false).type.c_str(), guard_, pull,
+        hold, penetration_, 100.0 * strain, 100.0 * tension / scene_.suture.rod.EA_N, turn, segment, 100.0 * rms,
+        quantile(us_, 0.5), quantile(us_, 0.99), quantile(us_, 1.0));
+  }
+
+ private:
+  double force() const {
+    return 0.5 * (sim_.hand(physics::Hand::kLeft).f_W.x() - sim_.hand(physics::Hand::kRight).f_W.x());
+  }
+
+  // until_N > 0: ends when pulled that hard; < 0: when eased below -until_N.
+  void phase(double seconds, double speed, int hands, double until_N) {
+    for (int k = 0; k < static_cast<int>(1000.0 * seconds); ++k) {
+      if (until_N > 0.0 && force() >= until_N) return;
+      if (until_N < 0.0 && force() <= -until_N) return;
+      for (std::size_t h = 0; h < 2; ++h) {
+        const double v = h == 1 ? speed : hands == 2 ? -speed : 0.0;
+        tools_[h].v_WT.x() = v;
+        tools_[h].p_WT.x() += 1e-3 * v;
+      }
+      const double before = cpu_us();
+      sim_.tick(tools_);
+      us_.push_back(cpu_us() - before);
+      guard_ += sim_.rod().report().guard_events;
+      penetration_ = std::max(penetration_, -sim_.diagnostics().min_gap_m / (2.0 * scene_.suture.radius_m));
+      forces_.push_back(force());
+    }
+  }
+
+  // Largest turn at a node in contact, rad, and longest segment in contact, diameters.
+  std::pair<double, double> sharpness() const {
+    double turn = 0.0, longest = 0.0;
+    const auto& state = sim_.rod().state();
+    for (const auto& c : sim_.rod().contact_set().contacts()) {
+      if (c.count != 4 || dot(c.p, c.p) == 0.0) continue;
+      for (const int k : {0, 2}) {
+        const auto i = static_cast<std::size_t>(c.node[k]);
+        if (i < 1 || i + 1 >= state.x.size()) continue;
+        const auto a = state.x[i] - state.x[i - 1], b = state.x[i + 1] - state.x[i];
+        turn = std::max(turn, std::atan2(norm(cross(a, b)), dot(a, b)));
+        longest = std::max(longest, state.mesh.rest[i] / (2.0 * scene_.suture.radius_m));
+      }
+    }
+    return {turn, longest};
+  }
+
+  scene::Scene scene_;
+  RodSimulation sim_;
+  std::array<physics::ToolInput, 2> tools_{};
+  std::vector<double> us_, forces_;
+  double penetration_ = 0.0;
+  int guard_ = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2)
+    return std::fprintf(stderr, "usage: rod_pull_study SCENE [speed force sudden hands [key=value ...]]\n"), 2;
+  const std::vector<std::string> overrides(argv + std::min(argc, 6), argv + argc);
+  auto read = scene::load_scene(argv[1], overrides);
+  if (auto* error = std::get_if<scene::Error>(&read)) return std::fprintf(stderr, "%s\n", error->text.c_str()), 2;
+  const auto& scene = std::get<scene::Scene>(read);
+  const auto run = [&](double speed, double force_N, bool sudden, int hands) {
+    auto made = RodSimulation::make(scene);
+    if (auto* why = std::get_if<std::string>(&made)) return std::fprintf(stderr, "%s\n", why->c_str()), false;
+    Study(scene, std::get<RodSimulation>(std::move(made))).run(speed, force_N, sudden, hands);
+    return true;
+  };
+  if (argc > 5) return run(std::atof(argv[2]), std::atof(argv[3]), std::atoi(argv[4]) != 0, std::atoi(argv[5])) ? 0 : 2;
+  for (const double speed : {0.05, 0.2, 0.5, 1.0}) {
+    for (const double force_N : {1.0, 5.0, 10.0}) {
+      for (const bool sudden : {false, true}) {
+        if (!run(speed, force_N, sudden, 2)) return 2;
+      }
+    }
+  }
+  return 0;
+}
