@@ -53,9 +53,11 @@ class Listener(threading.Thread):
 
 
 class Rig:
-    """Two devices, the firmware and, on request, the recorder. Use as a context manager; everything it started ends with it."""
+    """Two devices, the firmware and, on request, the recorder. Use as a context manager; everything it started ends with it.
 
-    def __init__(self, operator="scenes/operators/overhand.csv", scene="scenes/paper.toml", watchdog_ms=200, record=False, extra=()):
+    The watchdog is long, because a stall of the machine is not what these tests are about; the ones that are set their own."""
+
+    def __init__(self, operator="scenes/operators/overhand.csv", scene="scenes/paper.toml", watchdog_ms=1000, record=False, extra=()):
         self.folder = tempfile.TemporaryDirectory(prefix="rig-")
         self.path = pathlib.Path(self.folder.name)
         self.operator, self.scene, self.watchdog_ms, self.with_recorder, self.extra = operator, scene, watchdog_ms, record, extra

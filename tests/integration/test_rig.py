@@ -80,7 +80,7 @@ class Deaths(unittest.TestCase):
                 self.assertEqual(stats["final_torque_permille"], [0, 0, 0])
 
     def test_drives_zero_torque_by_their_own_watchdog(self):
-        with Rig(watchdog_ms=50) as rig:
+        with Rig(watchdog_ms=300) as rig:
             rig.wait_for(pushes_both_hands, "force on both hands")
             rig.kill("firmware")
             for hand in HANDS:
