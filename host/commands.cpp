@@ -74,12 +74,13 @@ void add_export(CLI::App& app) {
   command->add_option("--forces", options->targets.forces, "forces, grasp and state of every tick");
   command->add_option("--shape", options->targets.shape, "the thread's nodes at 60 Hz");
   command->add_option("--ticks", options->targets.ticks, "every field of every tick");
-  command->footer(
-      forces_columns_help() + shape_columns_help() + ticks_columns_help() +
-      "The log may also be a flight recorder file of the firmware, or one that it saved with a fault: it has ticks and\n"
-      "no shapes. Each tick once, in order; missing ones are named. A cut-off log is exported up to its last whole event, and that is\n"
-      "said. Files appear complete or not at all.\n\n"
-      "Example:\n  ligature-host export knot.lcmlog --forces forces.csv --shape shape.csv");
+  command->footer(forces_columns_help() + shape_columns_help() + ticks_columns_help() +
+                  "The log may also be a flight recorder file of the firmware, or one that it saved with a fault: it "
+                  "has ticks and\n"
+                  "no shapes. Each tick once, in order; missing ones are named. A cut-off log is exported up to its "
+                  "last whole event, and that is\n"
+                  "said. Files appear complete or not at all.\n\n"
+                  "Example:\n  ligature-host export knot.lcmlog --forces forces.csv --shape shape.csv");
   command->callback([options] {
     const auto& [forces, shape, ticks] = options->targets;
     if (forces.empty() && shape.empty() && ticks.empty())

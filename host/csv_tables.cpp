@@ -55,7 +55,8 @@ std::string forces_columns_help() {
 }
 
 std::string ticks_header() {
-  std::string header = "tick,t_s,scheduled_ns,wakeup_latency_ns,sync_ns,tpdo_ns,law_ns,control_ns,execution_ns,flags,state,fault";
+  std::string header =
+      "tick,t_s,scheduled_ns,wakeup_latency_ns,sync_ns,tpdo_ns,law_ns,control_ns,execution_ns,flags,state,fault";
   for (const auto hand_name : kHandNames) {
     const std::string hand(hand_name);
     header += xyz(hand, "p_WT", "_m") + xyz(hand, "v_WT", "_m_per_s") + xyz(hand, "world_f", "_N") +

@@ -12,10 +12,8 @@ namespace ligature::host {
 namespace {
 
 std::string json_line(const knot::KnotResult& found) {
-  nlohmann::ordered_json json = {{"type", found.type},
-                                 {"handedness", found.handedness},
-                                 {"determinant", nullptr},
-                                 {"alexander", nullptr}};
+  nlohmann::ordered_json json = {
+      {"type", found.type}, {"handedness", found.handedness}, {"determinant", nullptr}, {"alexander", nullptr}};
   if (!found.alexander.empty()) {  // else neither could be computed
     json["determinant"] = found.determinant;
     json["alexander"] = found.alexander;

@@ -58,8 +58,9 @@ std::string LiveTally::progress_line(double elapsed_s, double ticks_per_s) const
   std::string line =
       text("%7.1f s  %lld ticks  %.0f/s  %lld lost", elapsed_s, static_cast<long long>(sessions_.received()),
            ticks_per_s, static_cast<long long>(sessions_.missing()));
-  if (sessions_.restarts() > 0) line += sessions_.are_interleaved() ? text("  %zu FIRMWARES AT ONCE", sessions_.sessions().size())
-                                       : text("  %zu restarts", sessions_.restarts());
+  if (sessions_.restarts() > 0)
+    line += sessions_.are_interleaved() ? text("  %zu FIRMWARES AT ONCE", sessions_.sessions().size())
+                                        : text("  %zu restarts", sessions_.restarts());
   if (sessions_.received() == 0) return line + "  waiting for the firmware";
   line += text("  %-7s left %.2f N  right %.2f N", state_name(state_).data(), force_N_[0], force_N_[1]);
   if (fault_ != 0) line += text("  FAULT %d", fault_);
@@ -73,8 +74,9 @@ std::string LiveTally::summary(std::size_t max_ranges) const {
   lines +=
       text("; %lld shapes, %lld messages in all\n", static_cast<long long>(shapes_), static_cast<long long>(messages_));
   if (sessions_.restarts() > 0)
-    lines += text("sessions: %zu (%s)\n", sessions_.sessions().size(),
-                  sessions_.are_interleaved() ? "several firmwares sent at the same time" : "the firmware was restarted");
+    lines +=
+        text("sessions: %zu (%s)\n", sessions_.sessions().size(),
+             sessions_.are_interleaved() ? "several firmwares sent at the same time" : "the firmware was restarted");
   if (sessions_.duplicates() > 0)
     lines += text("duplicates: %lld ticks came twice\n", static_cast<long long>(sessions_.duplicates()));
   if (unreadable_ > 0)

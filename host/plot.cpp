@@ -112,9 +112,9 @@ void plot(const std::string& log_path, const std::string& out_path) {
     std::fprintf(stderr, "ligature-host: %s: %s\n", log_path.c_str(), exported.damage.c_str());
   const std::string title = facts.scene_file.empty() ? fs::path(log_path).filename().string()
                                                      : fs::path(facts.scene_file).filename().string();
-  const int code = run(
-      {python, script, forces_csv, "--out", target, "--title", title, "--limit", text("%.17g", facts.max_force_N)},
-      scratch.file("complaints"));
+  const int code =
+      run({python, script, forces_csv, "--out", target, "--title", title, "--limit", text("%.17g", facts.max_force_N)},
+          scratch.file("complaints"));
   if (code != 0)
     throw RunFailed("plot: " + python + " ended with " + std::to_string(code) + ": " +
                     last_line(scratch.file("complaints")) + "; remedy for a missing package: scripts/setup");

@@ -17,7 +17,7 @@ namespace ligature::host {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8; spreadsheets put it first
-constexpr std::size_t kMostBytes = 64U << 20;               // of one file; a pipe may never end
+constexpr std::size_t kMostBytes = 64U << 20;                // of one file; a pipe may never end
 
 std::string_view trimmed(std::string_view field) {
   constexpr std::string_view kBlank = " \t\r\"";

@@ -14,8 +14,8 @@ namespace ligature::sim {
 /// A frame that the outside hears: from a drive, or from another client.
 struct Delivery {
   can::Frame frame;
-  int sender = 0;  ///< the client that must not hear itself; below kFirstClient it is a drive
-  Time due{};      ///< when its last bit has passed
+  int sender = 0;              ///< the client that must not hear itself; below kFirstClient it is a drive
+  Time due{};                  ///< when its last bit has passed
   bool passed_faults = false;  ///< a FaultInjector has looked at it
 };
 

@@ -40,7 +40,8 @@ std::string finite(const std::string& word) {
 }
 
 void add_scene(CLI::App& command, std::string& scene, std::vector<std::string>& overrides) {
-  command.add_option("--scene", scene, "scene file (TOML): the thread, its world, the coupling to the hands")->required();
+  command.add_option("--scene", scene, "scene file (TOML): the thread, its world, the coupling to the hands")
+      ->required();
   command.add_option("--set", overrides, "override a key of the scene: key=value, may be given again")
       ->allow_extra_args(false);
 }
@@ -67,9 +68,7 @@ void add_run(CLI::App& run, RunOptions& o) {
   run.add_option("--left", o.left, "bus of the left hand: local:/path/socket or socketcan:INTERFACE")->required();
   run.add_option("--right", o.right, "bus of the right hand")->required();
   run.add_flag("--arm", o.arm, "arm at start, as the local operator; else wait for the command");
-  run.add_option("--duration", o.duration_s, "end after so many seconds")
-      ->check(finite)
-      ->check(CLI::Range(0.001, 1e6));
+  run.add_option("--duration", o.duration_s, "end after so many seconds")->check(finite)->check(CLI::Range(0.001, 1e6));
   run.add_option("--lcm-url", o.lcm_url, "LCM provider")->capture_default_str();
   run.add_flag("--no-telemetry", o.no_telemetry, "run without LCM: nobody sees the rig and no command reaches it");
   run.add_option_function<std::string>(
@@ -96,7 +95,8 @@ void add_run(CLI::App& run, RunOptions& o) {
   run.add_flag("--exit-on-fault", o.exit_on_fault, "end the run at the first fault instead of waiting for a reset");
 }
 
-constexpr const char* kAdmitHelp = R"(Lays the thread out in its most expensive shapes (wound up, pressed together until the contact lists are
+constexpr const char* kAdmitHelp =
+    R"(Lays the thread out in its most expensive shapes (wound up, pressed together until the contact lists are
 full, held by both hands), and takes the worst tick: CPU time with cold caches on the core of the loop. It must stay
 below the budget, and together with the bus's time below the period. 'run' does the same in short before it starts.
 
@@ -105,7 +105,8 @@ Example:
 
 Exit: 0 the scene fits, 2 bad usage or bad scene, 3 it does not; the largest 'nodes' that would is printed.)";
 
-constexpr const char* kDoctorHelp = R"(One row a check, with the command that mends what is wrong; then the loop's wake-ups without its work. Run it as
+constexpr const char* kDoctorHelp =
+    R"(One row a check, with the command that mends what is wrong; then the loop's wake-ups without its work. Run it as
 the user that will run the rig, with the machine loaded as it will be.
 
 Example:
@@ -132,8 +133,10 @@ void add_doctor(CLI::App& doctor, DoctorOptions& o) {
   doctor.add_option("--can", o.can, "SocketCAN interface to look at, may be given again")
       ->allow_extra_args(false)
       ->check([](const std::string& name) {
-        const bool good = !name.empty() && name.size() < 16 && name.find_first_not_of(
-            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-") == std::string::npos && name[0] != '-';
+        const bool good = !name.empty() && name.size() < 16 &&
+                          name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-") ==
+                              std::string::npos &&
+                          name[0] != '-';
         return good ? std::string() : "found '" + name + "', allowed the name of a network interface";
       });
 }

@@ -22,9 +22,9 @@ struct RunOptions {
   bool no_telemetry = false;  ///< say nothing to anybody, hear no commands
   RtMode rt = RtMode::kWarn;
   int watchdog_ms = 20;
-  std::string recorder;    ///< flight recorder file; "none" for none
-  int recorder_s = 120;    ///< how far back it goes
-  bool force = false;      ///< also a scene that does not fit
+  std::string recorder;  ///< flight recorder file; "none" for none
+  int recorder_s = 120;  ///< how far back it goes
+  bool force = false;    ///< also a scene that does not fit
   double budget_percent = 60.0;
 };
 

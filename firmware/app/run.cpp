@@ -78,10 +78,10 @@ std::unique_ptr<telemetry::FlightRecorder> open_recorder(const Plan& plan, const
   const auto path = std::filesystem::absolute(options.recorder);
   std::error_code ignored;  // open() tells
   std::filesystem::create_directories(path.parent_path(), ignored);
-  auto opened = telemetry::FlightRecorder::open(path.string(),
-                                                {session, control::kPeriod_s, plan.scene.hands.max_force_N,
-                                                 LIGATURE_VERSION, options.scene, plan.toml},
-                                                std::int64_t{1000} * options.recorder_s);
+  auto opened = telemetry::FlightRecorder::open(
+      path.string(),
+      {session, control::kPeriod_s, plan.scene.hands.max_force_N, LIGATURE_VERSION, options.scene, plan.toml},
+      std::int64_t{1000} * options.recorder_s);
   if (const auto* why = std::get_if<std::string>(&opened)) {
     spdlog::warn("{}; running without", *why);
     return nullptr;
@@ -89,8 +89,8 @@ std::unique_ptr<telemetry::FlightRecorder> open_recorder(const Plan& plan, const
   return std::move(std::get<0>(opened));
 }
 
-telemetry::Session session(const Plan& plan, const RunOptions& options, std::int64_t id, bool realtime,
-                           bool admitted, const telemetry::FlightRecorder* recorder) {
+telemetry::Session session(const Plan& plan, const RunOptions& options, std::int64_t id, bool realtime, bool admitted,
+                           const telemetry::FlightRecorder* recorder) {
   return {id,
           LIGATURE_VERSION,
           options.scene,
@@ -180,7 +180,8 @@ class RealTimeSide {
 
 std::string no_telemetry(const std::string& url) {
   return "cannot open " + url +
-         ": no multicast route, or the port is taken; remedy: run inside scripts/private-net, or 'ip link set lo up; ip "
+         ": no multicast route, or the port is taken; remedy: run inside scripts/private-net, or 'ip link set lo up; "
+         "ip "
          "route add 224.0.0.0/4 dev lo' as root; --no-telemetry runs without anybody listening";
 }
 
@@ -246,8 +247,8 @@ int run(const RunOptions& options) {
   if (options.rt == RtMode::kEnforce && !refused.empty()) return fail({3, "--rt=enforce: " + refused.front()});
   if (const auto refusal = configure(buses, options)) return fail(*refusal);
 
-  telemetry::Telemetry telemetry(session(plan, options, id, ask && refused.empty(), !excess, recorder.get()), kNames, *outlets,
-                                 link, recorder.get());
+  telemetry::Telemetry telemetry(session(plan, options, id, ask && refused.empty(), !excess, recorder.get()), kNames,
+                                 *outlets, link, recorder.get());
   link.listen([&](const auto& c) { return telemetry.handle(c, utime_now()); });
   return run_loop(*side, link, telemetry, buses, *outlets, signals);
 }

@@ -38,7 +38,7 @@ struct HandState {
   Vec3 v_WT = Vec3::Zero();
   Vec3 f_device_N = Vec3::Zero();  ///< after scale, limits and gain; what the torques produce
   double gain = 0.0;
-  bool limited = false;  ///< the force above stands at the limit: the law wanted more, and the gain is 1
+  bool limited = false;        ///< the force above stands at the limit: the law wanted more, and the gain is 1
   std::int64_t age_ticks = 0;  ///< periods since the sample that p_WT comes from
   bool dead_man = false;
   bool grip = false;

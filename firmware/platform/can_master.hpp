@@ -27,8 +27,8 @@ struct SdoAnswer {
 /// NMT start: from now on the drives answer SYNC with TPDOs. They stay switched off until asked.
 bool start_drives(CanBus& bus) noexcept;
 
-/// The end of a run: NMT pre-operational, where drives are disabled and need no RPDOs, then every drive's watch over our
-/// heartbeat off, so that our silence is no fault to them. What a drive does not answer is left as it is.
+/// The end of a run: NMT pre-operational, where drives are disabled and need no RPDOs, then every drive's watch over
+/// our heartbeat off, so that our silence is no fault to them. What a drive does not answer is left as it is.
 void release_drives(CanBus& bus, BusWait& wait, Nanoseconds patience = std::chrono::milliseconds(20));
 
 /// Listens before we speak: a bus has one master. @return what another one sent within `listening`, or nothing.

@@ -26,8 +26,8 @@ struct KnotResult {
 /// An open thread is closed in several ways (both ends outwards from the centre; both towards a common direction); two
 /// more that agree with the first settle it, else the majority of nine does.
 /// @param points m, in order; fewer than four are the unknot, a point that is not finite gives "unknown", and
-///               so do points so far from the origin that rounding has eaten their shape (all in one point, say), and a closed line that lies
-///               several times in itself.
+///               so do points so far from the origin that rounding has eaten their shape (all in one point, say), and a
+///               closed line that lies several times in itself.
 /// @param closed whether the last point is joined to the first (a repeated first point at the end does no harm).
 /// Deterministic. Cost about O(n^2); below 5 ms at n = 500 on a desktop core (tests print it).
 [[nodiscard]] KnotResult recognise(std::span<const std::array<double, 3>> points, bool closed);

@@ -70,8 +70,7 @@ std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& p
     auto cells = split(body);
     if (!header_seen) {
       if (cells != columns) {
-        return at_line(path, line,
-                       "found '" + shown(body) + "', allowed the header '" + std::string(header) + "'");
+        return at_line(path, line, "found '" + shown(body) + "', allowed the header '" + std::string(header) + "'");
       }
       header_seen = true;
     } else if (cells.size() != columns.size()) {

@@ -22,8 +22,10 @@ std::string read_row(const CsvRow& row, int& hand, GripKey& key) {
     }
   }
   if (key.time_s < 0.0) return "column 'time': found " + shown(row.cells[0]) + ", allowed 0 or more";
-  if (row.cells[1] != "L" && row.cells[1] != "R") return "column 'hand': found '" + shown(row.cells[1]) + "', allowed L or R";
-  if (row.cells[5] != "0" && row.cells[5] != "1") return "column 'grip': found '" + shown(row.cells[5]) + "', allowed 0 or 1";
+  if (row.cells[1] != "L" && row.cells[1] != "R")
+    return "column 'hand': found '" + shown(row.cells[1]) + "', allowed L or R";
+  if (row.cells[5] != "0" && row.cells[5] != "1")
+    return "column 'grip': found '" + shown(row.cells[5]) + "', allowed 0 or 1";
   hand = row.cells[1] == "L" ? 0 : 1;
   key.grip = row.cells[5] == "1";
   return {};
@@ -42,8 +44,8 @@ std::variant<GripperScript, Error> load_gripper_script(const std::filesystem::pa
     auto& keys = script.keys[hand];
     if (!keys.empty() && key.time_s <= keys.back().time_s) {
       return at_line(path, row.line,
-                     "column 'time': found " + shown(row.cells[0]) + ", allowed later than the row of hand " + row.cells[1] +
-                         " before it");
+                     "column 'time': found " + shown(row.cells[0]) + ", allowed later than the row of hand " +
+                         row.cells[1] + " before it");
     }
     keys.push_back(key);
   }

@@ -122,7 +122,8 @@ TEST(CsvRow, NumbersReadBackToTheSameBits) {
 TEST(RigFacts, ATimeIsItsDecimalNumber) {
   const RigFacts facts;
   EXPECT_EQ(facts.time_s(700), 0.7);
-  for (std::int64_t tick = 0; tick < 100'000; tick += 7) EXPECT_EQ(facts.time_s(tick), static_cast<double>(tick) / 1000);
+  for (std::int64_t tick = 0; tick < 100'000; tick += 7)
+    EXPECT_EQ(facts.time_s(tick), static_cast<double>(tick) / 1000);
   RigFacts odd;
   odd.period_s = 0.0015;
   EXPECT_DOUBLE_EQ(odd.time_s(2), 0.003);

@@ -67,7 +67,10 @@ TEST_F(PolylineFile, AShapeThatWasCutOffIsNotTaken) {
 
 TEST_F(PolylineFile, AByteOrderMarkIsNoData) {
   EXPECT_EQ(read("\xEF\xBB\xBFx,y,z\n1,2,3\n4,5,6\n7,8,9\n").points.size(), 3U);
-  EXPECT_EQ(read("\xEF\xBB\xBF""1,2,3\n4,5,6\n7,8,9\n").points.size(), 3U);
+  EXPECT_EQ(read("\xEF\xBB\xBF"
+                 "1,2,3\n4,5,6\n7,8,9\n")
+                .points.size(),
+            3U);
 }
 
 TEST_F(PolylineFile, WhatIsQuotedFitsOnALine) {

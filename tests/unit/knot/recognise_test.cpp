@@ -154,7 +154,8 @@ TEST(Recognise, ScaleAndPlaceChangeNothingUntilPrecisionIsGone) {
     EXPECT_EQ(named(moved(figure_eight(60), scale, 0.0)), "4_1 amphichiral") << scale;
   }
   EXPECT_EQ(named(moved(trefoil(60), 1.0, 1e6)), "3_1 right");
-  for (const double offset : {1e14, -1e14, 1e15, 1e200}) EXPECT_EQ(named(moved(trefoil(60), 1.0, offset)), "unknown none");
+  for (const double offset : {1e14, -1e14, 1e15, 1e200})
+    EXPECT_EQ(named(moved(trefoil(60), 1.0, offset)), "unknown none");
   EXPECT_EQ(named(moved(trefoil(60), 1e-310, 0.0)), "unknown none");
 }
 

@@ -48,7 +48,8 @@ TEST(CsvFile, HasItsNameOnlyWhenComplete) {
 TEST(RemoveOldOutputs, LeavesWhatIsNotOurs) {
   const std::filesystem::path folder = ::testing::TempDir() + "old_outputs";
   std::filesystem::create_directories(folder);
-  for (const char* name : {"summary.json", "trace.csv", "shape.csv", "notes.txt"}) std::ofstream(folder / name) << "old";
+  for (const char* name : {"summary.json", "trace.csv", "shape.csv", "notes.txt"})
+    std::ofstream(folder / name) << "old";
   remove_old_outputs(folder);
   EXPECT_FALSE(std::filesystem::exists(folder / "summary.json"));
   EXPECT_FALSE(std::filesystem::exists(folder / "trace.csv"));
