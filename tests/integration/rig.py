@@ -88,7 +88,7 @@ class Rig:
 
     def start_firmware(self):
         self.start("firmware", "ligature-firmware", "run", "--scene", self.scene, "--left", self.bus["left"],
-                   "--right", self.bus["right"], "--arm", "--watchdog-ms", self.watchdog_ms, *self.extra)
+                   "--right", self.bus["right"], "--arm", "--watchdog-ms", self.watchdog_ms, *self.extra, *os.environ.get("LIGATURE_RIG_ARGS", "").split())
 
     def kill(self, name):
         self.processes[name].send_signal(signal.SIGKILL)
