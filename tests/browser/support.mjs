@@ -4,7 +4,7 @@ import { createServer } from 'node:http';
 import { connect } from 'node:net';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import { loadavg, cpus, tmpdir } from 'node:os';
+import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
 const PATIENCE_MS = 20_000;
@@ -84,9 +84,6 @@ export class Browser {
     this.servers.push(server);
     return new Promise((resolve) => server.listen(0, '127.0.0.1', () => resolve(server.address().port)));
   }
-
-  /** More runs than there are processors: a limit of wall time would then measure the neighbours. */
-  isMachineBusy() { return loadavg()[0] > cpus().length; }
 
   async stop() {
     for (const server of this.servers) server.close();
