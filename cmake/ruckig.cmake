@@ -17,8 +17,9 @@ if(NOT EXISTS ${ruckig_dir}/CMakeLists.txt)
   file(MAKE_DIRECTORY ${LIGATURE_DEPS_DIR})
   file(WRITE ${LIGATURE_DEPS_DIR}/ruckig.txt "ruckig==${RUCKIG_VERSION} --hash=sha256:${RUCKIG_SHA256}\n")
   message(STATUS "ruckig: fetching the source of ${RUCKIG_VERSION} with pip")
+  # only ruckig itself from source: with ":all:" pip would compile its own build tools, CMake among them, for half an hour
   execute_process(
-    COMMAND ${PYTHON3} -m pip download --quiet --disable-pip-version-check --no-deps --no-binary :all:
+    COMMAND ${PYTHON3} -m pip download --quiet --disable-pip-version-check --no-deps --no-binary ruckig
             --require-hashes -r ${LIGATURE_DEPS_DIR}/ruckig.txt -d ${LIGATURE_DEPS_DIR}
     RESULT_VARIABLE failed ERROR_VARIABLE why)
   if(failed)
