@@ -83,6 +83,8 @@ std::variant<Rod, std::string> rod_of(const scene::Scene& scene) {
   if (n < 4) return "suture.nodes: found " + std::to_string(n) + ", the rod model needs 4 or more";
   if (scene.contact.solver == scene::ContactSolver::kPaper)
     return "contact.solver: found \"paper\", the rod model has \"none\" and \"implicit\"";
+  if (scene.contact.static_friction && *scene.contact.static_friction != scene.contact.friction)
+    return "contact.static_friction: the rod model has one coefficient for stick and slip; leave it out";
   const int bodies = static_cast<int>(scene.world.pegs.size()) + 2;
   Rod rod(material_of(scene), numerics_of(scene), parts_of(scene), n, bodies);
   State& state = rod.state();

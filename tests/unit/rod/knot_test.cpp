@@ -142,6 +142,8 @@ TEST(RodScene, RefusesWhatItCannotDo) {  // one line, which key, what is allowed
   EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(few)));
   auto paper = load("suture-3-0.toml", {"contact.solver=\"paper\""});
   EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(paper)));
+  auto two_coefficients = load("suture-3-0.toml", {"contact.static_friction=0.5"});
+  EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(two_coefficients)));
 }
 
 }  // namespace
