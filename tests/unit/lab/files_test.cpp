@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "host/lab/outcome.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -18,7 +19,7 @@ std::string text_of(const std::filesystem::path& path) {
 }
 
 TEST(CsvFile, NumbersReadBackExactly) {
-  const std::filesystem::path path = ::testing::TempDir() + "numbers.csv";
+  const std::filesystem::path path = test::temp_folder() + "numbers.csv";
   const double cells[] = {0.1, -1e-300, 3.0, 1.0 / 3.0};
   CsvFile file(path, "a,b,c,d");
   file.row(cells);
@@ -32,7 +33,7 @@ TEST(CsvFile, RefusesAPlaceItCannotWrite) {
 }
 
 TEST(CsvFile, HasItsNameOnlyWhenComplete) {
-  const std::filesystem::path path = ::testing::TempDir() + "complete.csv";
+  const std::filesystem::path path = test::temp_folder() + "complete.csv";
   std::filesystem::remove(path);
   {
     CsvFile killed(path, "a");
@@ -46,7 +47,7 @@ TEST(CsvFile, HasItsNameOnlyWhenComplete) {
 }
 
 TEST(RemoveOldOutputs, LeavesWhatIsNotOurs) {
-  const std::filesystem::path folder = ::testing::TempDir() + "old_outputs";
+  const std::filesystem::path folder = test::temp_folder() + "old_outputs";
   std::filesystem::create_directories(folder);
   for (const char* name : {"summary.json", "trace.csv", "shape.csv", "notes.txt"})
     std::ofstream(folder / name) << "old";
@@ -58,7 +59,7 @@ TEST(RemoveOldOutputs, LeavesWhatIsNotOurs) {
 }
 
 TEST(WriteText, LeavesNoPartBehind) {
-  const std::filesystem::path path = ::testing::TempDir() + "summary.json";
+  const std::filesystem::path path = test::temp_folder() + "summary.json";
   write_text(path, "{}\n");
   EXPECT_EQ(text_of(path), "{}\n");
   EXPECT_FALSE(std::filesystem::exists(path.string() + ".part"));

@@ -7,6 +7,7 @@
 
 #include "host/lab/outcome.hpp"
 #include "host/lab/script_moves.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -18,7 +19,7 @@ std::string text_of(const std::filesystem::path& path) {
 }
 
 TEST(Verdict, FailsWhenOneClaimDoes) {
-  const std::filesystem::path folder = ::testing::TempDir();
+  const std::filesystem::path folder = test::temp_folder();
   Verdict v("sample");
   v.claim(true, "the sky, seen from below", "blue", "blue");
   EXPECT_EQ(v.conclude(folder), kDone);
@@ -29,7 +30,7 @@ TEST(Verdict, FailsWhenOneClaimDoes) {
 }
 
 TEST(Table, KeepsNumbersAndTexts) {
-  const std::filesystem::path path = ::testing::TempDir() + "table.csv";
+  const std::filesystem::path path = test::temp_folder() + "table.csv";
   Table t({"name", "value"});
   t.row({std::string("a"), 0.125});
   t.write(path);

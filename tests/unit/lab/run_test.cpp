@@ -7,6 +7,7 @@
 #include <string>
 
 #include "host/lab/outcome.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -23,7 +24,7 @@ std::vector<std::string> lines_of(const std::filesystem::path& path) {
 
 TEST(Run, WritesOneTraceRowATickAndShapesOnTime) {
   Rehearsal r(load_scene_or_refuse(kScene, {"suture.nodes=20"}), {});
-  const std::filesystem::path folder = ::testing::TempDir() + "run_files";
+  const std::filesystem::path folder = test::temp_folder() + "run_files";
   const auto s = run(r, {folder, 0.105, 0.02});
   EXPECT_EQ(s.ticks, 105);
   EXPECT_TRUE(s.finite);
@@ -47,7 +48,7 @@ TEST(Run, TheOverhandScriptTiesATrefoilThatStays) {
 
 TEST(Run, ADivergingRunNamesTickNodeAndCauseAndWritesNothingNonFinite) {
   Rehearsal r(load_scene_or_refuse(kScene, {"time.tick_s=0.05", "suture.integrator=forward"}), {});
-  const std::filesystem::path folder = ::testing::TempDir() + "run_diverged";
+  const std::filesystem::path folder = test::temp_folder() + "run_diverged";
   const auto s = run(r, {folder, 500.0, 10.0});
   ASSERT_FALSE(s.finite);
   EXPECT_NE(s.failure.find("diverged at tick"), std::string::npos) << s.failure;

@@ -4,11 +4,13 @@
 
 #include <fstream>
 
+#include "tests/support/temp_folder.hpp"
+
 namespace ligature::scene {
 namespace {
 
 std::string write(const std::string& text) {
-  const auto path = ::testing::TempDir() + "grippers.csv";
+  const auto path = test::temp_folder() + "grippers.csv";
   std::ofstream(path) << text;
   return path;
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <fstream>
 
+#include "tests/support/temp_folder.hpp"
+
 namespace ligature::scene {
 namespace {
 
@@ -27,7 +29,7 @@ TEST(LayOut, ContinuesStraightPastTheEnd) {
 }
 
 TEST(LoadPolyline, RefusesByLine) {
-  const auto path = ::testing::TempDir() + "shape.csv";
+  const auto path = test::temp_folder() + "shape.csv";
   std::ofstream(path) << "x,y,z\n0,0,0\n0,zero,0\n";
   EXPECT_NE(std::get<Error>(load_polyline(path)).text.find(":3: found 'zero'"), std::string::npos);
   std::ofstream(path) << "x,y,z\n0,0,0\n";

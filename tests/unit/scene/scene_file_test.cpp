@@ -4,12 +4,14 @@
 
 #include <fstream>
 
+#include "tests/support/temp_folder.hpp"
+
 namespace ligature::scene {
 namespace {
 
 /// A file in the test's temporary folder.
 std::string write(const std::string& name, const std::string& text) {
-  const auto path = ::testing::TempDir() + name;
+  const auto path = test::temp_folder() + name;
   std::ofstream(path) << text;
   return path;
 }
@@ -49,7 +51,7 @@ TEST(SceneFile, AnEmptySutureIsTheDefaultScene) {
 
 TEST(SceneFile, NamesFileLineKeyFoundAndAllowed) {
   const auto why = why_refused("[suture]\n\nnodes = 1\n");
-  EXPECT_EQ(why, ::testing::TempDir() + "scene.toml:3: key 'suture.nodes': found 1, allowed integer 2 .. 5000");
+  EXPECT_EQ(why, test::temp_folder() + "scene.toml:3: key 'suture.nodes': found 1, allowed integer 2 .. 5000");
 }
 
 TEST(SceneFile, EveryRefusalIsOneLineWithItsLineNumber) {
@@ -93,7 +95,7 @@ TEST(SceneFile, EveryRefusalIsOneLineWithItsLineNumber) {
 
 TEST(SceneFile, RefusesAMissingFileAndAFolder) {
   EXPECT_NE(std::get<Error>(load_scene("no/such.toml")).text.find("no/such.toml: cannot be read"), std::string::npos);
-  EXPECT_NE(std::get<Error>(load_scene(::testing::TempDir())).text.find("cannot be read"), std::string::npos);
+  EXPECT_NE(std::get<Error>(load_scene(test::temp_folder())).text.find("cannot be read"), std::string::npos);
 }
 
 TEST(SceneFile, OverridesReachEveryKindOfKey) {

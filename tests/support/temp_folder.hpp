@@ -1,0 +1,30 @@
+#pragma once
+// A folder of this process's own: tests run side by side, and a shared file name would let one read another's file.
+
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+namespace ligature::test {
+
+/// Path of the folder, ending in '/'. Made at the first call, removed with the process.
+inline const std::string& temp_folder() {
+  struct Folder {
+    std::string path = (std::filesystem::temp_directory_path() / "ligature-test-XXXXXX").string();
+    Folder() {
+      if (mkdtemp(path.data()) == nullptr) throw std::runtime_error("no folder can be made in " + path);
+      path += '/';
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    ~Folder() {
+      std::error_code ignored;
+      std::filesystem::remove_all(path, ignored);
+    }
+  };
+  static const Folder folder;
+  return folder.path;
+}
+
+}  // namespace ligature::test
