@@ -17,22 +17,20 @@ namespace ligature {
 
 using Nanoseconds = std::chrono::nanoseconds;  ///< time points are nanoseconds of one monotonic clock
 
+// Version 14 of clang-format tears compound requirements apart.
+// clang-format off
 template <class C>
 concept Clock = requires(C c, Nanoseconds at) {
-  { c.now() }
-  noexcept->std::same_as<Nanoseconds>;
-  { c.sleep_until(at) }
-  noexcept;
+  { c.now() } noexcept -> std::same_as<Nanoseconds>;
+  { c.sleep_until(at) } noexcept;
 };
 template <class B>
 concept Bus = requires(B b, Nanoseconds deadline, const rt::RigCommand& command) {
-  { b.send_sync() }
-  noexcept;  // every drive samples and acts now
-  { b.read_tpdos(deadline) }
-  noexcept->std::same_as<rt::RigReading>;  // returns early when all have come
-  { b.write_rpdos(command) }
-  noexcept->std::same_as<rt::WireTorque>;  // acts at the next SYNC
+  { b.send_sync() } noexcept;                                           // every drive samples and acts now
+  { b.read_tpdos(deadline) } noexcept -> std::same_as<rt::RigReading>;  // returns early when all have come
+  { b.write_rpdos(command) } noexcept -> std::same_as<rt::WireTorque>;  // acts at the next SYNC
 };
+// clang-format on
 
 /// One period after the other until the controller has shut the rig down. Period k is due at start + k T; whole periods
 /// that pass unused are counted, recorded and skipped, never made up for. No allocation, lock, log or exception in
