@@ -12,7 +12,7 @@ inline constexpr std::array<std::string_view, 2> kHandNames{"left", "right"};
 /// Word for a STATE_ value of tick_t; "?" for a number that is none.
 [[nodiscard]] constexpr std::string_view state_name(std::int8_t state) {
   constexpr std::array<std::string_view, 7> names{"OFF", "CALIBRATE", "IDLE", "ENGAGE", "FORCE", "BRAKE", "FAULT"};
-  return state >= 0 && state < static_cast<std::int8_t>(names.size()) ? names[static_cast<std::size_t>(state)] : "?";
+  return state >= 0 && state < static_cast<std::int8_t>(names.size()) ? names[static_cast<std::uint8_t>(state)] : "?";
 }
 static_assert(state_name(4) == "FORCE");
 

@@ -97,7 +97,7 @@ std::string histogram(const rt::DurationStatistics& wakeup, const std::vector<st
   for (std::size_t i = 0; i < bins.size(); ++i) {
     char row[96];
     const bool last = i + 1 == bins.size();
-    std::snprintf(row, sizeof row, "  %s %5u  %14llu  ", last ? "from" : "   <", last ? 1U << (i - 1) : 1U << i,
+    std::snprintf(row, sizeof row, "  %s %5u  %14llu  ", last ? "from" : "   <", 1U << (last ? bins.size() - 2 : i),
                   static_cast<unsigned long long>(bins[i]));
     text += row + std::string((40 * bins[i] + most - 1) / most, '#') + "\n";
   }

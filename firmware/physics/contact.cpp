@@ -21,7 +21,7 @@ ContactSolver::ContactSolver(const ThreadModel& model, const ContactSettings& se
       spheres_(model.nodes - 1),
       sweep_(model.nodes - 1),
       tree_(model.nodes - 1) {
-  const auto room = static_cast<std::size_t>(24 * model.nodes + 64);
+  const auto room = 24 * static_cast<std::size_t>(model.nodes) + 64;
   pairs_.pairs.reserve(4 * room);
   candidates_.reserve(room);
   old_candidates_.reserve(room);

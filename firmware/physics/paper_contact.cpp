@@ -14,7 +14,7 @@ constexpr double kSafety =
 
 PaperContact::PaperContact(const ThreadModel& model, const PaperContactSettings& settings)
     : settings_(settings), spheres_(model.nodes - 1) {
-  pairs_.pairs.reserve(static_cast<std::size_t>(64 * model.nodes + 256));
+  pairs_.pairs.reserve(64 * static_cast<std::size_t>(model.nodes) + 256);
 }
 
 void PaperContact::respond(const ThreadModel& m, ThreadState& s, const SegmentPair& pair) noexcept {

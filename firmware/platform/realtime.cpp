@@ -19,8 +19,8 @@ namespace ligature::platform {
 namespace {
 
 constexpr int kPriority = 80;  // above threaded interrupts (50), below the kernel's own (99)
-constexpr std::size_t kStackReserve = 256 * 1024;
-constexpr std::size_t kHeapReserve = 8 * 1024 * 1024;
+constexpr std::size_t kStackReserve = std::size_t{256} * 1024;
+constexpr std::size_t kHeapReserve = std::size_t{8} * 1024 * 1024;
 constexpr std::size_t kPage = 4096;
 
 [[gnu::noinline]] void touch_stack() noexcept {

@@ -34,7 +34,7 @@ class QuietStderr {
 
 std::string objection_to_url(const std::string& url) {
   constexpr std::string_view kMulticast = "udpm://";
-  const std::string why = "found '" + url.substr(0, 80) + "', allowed udpm://224.0.0.0 .. 239.255.255.255:PORT[?ttl=N]";
+  std::string why = "found '" + url.substr(0, 80) + "', allowed udpm://224.0.0.0 .. 239.255.255.255:PORT[?ttl=N]";
   if (url == "memq://") return {};
   if (!url.starts_with(kMulticast)) return why;
   const std::string place = url.substr(kMulticast.size(), url.find('?') - kMulticast.size());
