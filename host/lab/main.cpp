@@ -8,6 +8,7 @@
 #include "host/lab/outcome.hpp"
 #include "host/lab/run_command.hpp"
 #include "host/lab/stop_signal.hpp"
+#include "host/lab/validate_command.hpp"
 
 namespace {
 
@@ -34,6 +35,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   add_run_command(app, exit_code);
   add_experiment_commands(app, exit_code);
+  add_validate_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const Refusal& refusal) {

@@ -1,0 +1,63 @@
+#include "host/lab/validate/cases.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligature::validate {
+namespace {
+
+using scene::Model;
+
+bool every(Model) { return true; }
+bool rod(Model m) { return m == Model::kRod; }
+bool bends(Model m) { return m != Model::kPaper1; }
+bool hookean(Model m) { return m != Model::kPaper5; }  // model 5 stretches by a quadratic law
+
+constexpr Case kCases[] = {
+    {"elastica-tip", "elliptic integrals, PL2/EI 0.1 .. 10", bends, elastica_tip_load, true},
+    {"elastica-heavy", "shooting, wL3/EI 0.1 .. 10", bends, elastica_heavy, true},
+    {"catenary", "closed form, sag and end tension", every, catenary, true},
+    {"elastic-string", "closed form, hung with and without a weight", hookean, elastic_string, true},
+    {"hanging-chain", "N equal masses: zeros of Laguerre polynomials", every, hanging_chain, true},
+    {"cantilever", "Euler-Bernoulli f1, f2, f3", bends, cantilever_frequencies, true},
+    {"cantilever-damping", "what the steps damp of modes 1-3; bar: mode 1 at fine", rod, cantilever_damping, false},
+    {"clamped-twist", "tan(x/2) = x/2", rod, clamped_twist, true},
+    {"michell-ring", "sqrt(3) B/C turns", rod, michell_ring, true},
+    {"localised-helix", "infinite twisted rod", rod, localised_helix, false},
+    {"capstan-polygonal", "16 or 64 contact segments", rod, capstan_polygonal, false},
+    {"capstan", "exp(mu theta)", rod, capstan_exponential, false},
+    {"incline", "atan(mu)", every, incline_threshold, false},
+    {"stopping-distance", "v^2 / 2 mu g", every, stopping_distance, false},
+    {"stick-creep", "half a degree below the threshold", every, stick_creep, false},
+    {"crossing-threads", "two elastic strands in balance", every, crossing_threads, true},
+    {"heavy-rod-lifted", "nonlinear boundary value problem", bends, heavy_rod_lifted, false},
+    {"loose-overhand", "elastic knot without friction, to first order", rod, loose_overhand, false},
+    {"overhand-hysteresis", "elastic knot tightened and loosened", rod, overhand_hysteresis, false},
+    {"tight-trefoil", "ideal closed trefoil 16.37", rod, tight_trefoil, false},
+    {"paper-shapes", "rod with Table I against paper-4 at rest", rod, paper_static_shapes, true},
+    {"paper-knots", "rod with Table I, the operators' scripts", rod, paper_knots, false},
+};
+
+}  // namespace
+
+Finding absolute(std::string what, double reference, double measured, double tolerance, std::string unit) {
+  return {std::move(what), reference, measured, std::abs(measured - reference), tolerance, std::move(unit)};
+}
+
+Finding relative(std::string what, double reference, double measured, double tolerance) {
+  return {std::move(what), reference, measured, std::abs(measured / reference - 1.0), tolerance, "relative"};
+}
+
+Finding within(std::string what, double least, double most, double measured) {
+  const double outside = measured < least ? least - measured : measured > most ? measured - most : 0.0;
+  return {std::move(what), least, measured, std::isnan(measured) ? measured : outside, 0.0, "outside"};
+}
+
+std::span<const Case> all_cases() { return kCases; }
+
+const Case* find_case(const std::string& name) {
+  const auto found = std::find_if(std::begin(kCases), std::end(kCases), [&](const Case& c) { return name == c.name; });
+  return found == std::end(kCases) ? nullptr : found;
+}
+
+}  // namespace ligature::validate

@@ -1,0 +1,231 @@
+#include "host/lab/validate_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "host/lab/outcome.hpp"
+#include "host/lab/progress.hpp"
+#include "host/lab/report.hpp"
+#include "host/lab/run_files.hpp"
+#include "host/lab/stop_signal.hpp"
+#include "host/lab/validate/cases.hpp"
+#include "host/lab/validate/convergence.hpp"
+#include "protocol/scene/scene_file.hpp"
+
+namespace ligature::lab {
+namespace {
+
+namespace v = ligature::validate;
+using Json = nlohmann::ordered_json;
+
+constexpr int kACaseFails = 1;
+
+constexpr const char* kFooter = R"(
+Each case is an experiment with a known answer (closed form, or computed elsewhere: tests/reference, built into the
+program). The table gives the worst figure of a case; --out keeps every one. A model that lacks a case's physics is not
+judged on it. The cases and what they compare with:
+)";
+
+constexpr const char* kExamples = R"(
+Exit: 0 every judged case within its tolerance; 1 a case fails; 2 usage.
+
+Examples
+  ligature-lab validate                                    the rod at 50 and at 200 nodes
+  ligature-lab validate --model paper-4 --nodes 50
+  ligature-lab validate --only capstan --nodes 200 --out out/validate
+  ligature-lab validate --convergence                      order in N and in substeps)";
+
+struct Arguments {
+  std::string model = "rod";
+  std::optional<int> nodes;
+  std::string only;
+  std::string out;
+  bool quick = false;
+  bool convergence = false;
+};
+
+std::vector<std::pair<std::string, scene::Model>> models() {
+  std::vector<std::pair<std::string, scene::Model>> all;
+  for (const auto m : {scene::Model::kPaper1, scene::Model::kPaper2, scene::Model::kPaper3, scene::Model::kPaper4,
+                       scene::Model::kPaper5, scene::Model::kRod}) {
+    all.emplace_back(scene::name(m), m);
+  }
+  return all;
+}
+
+scene::Model model_of(const std::string& name) {
+  for (const auto& [known, model] : models()) {
+    if (known == name) return model;
+  }
+  throw Refusal("--model: found " + name + ", allowed paper-1 .. paper-5, rod");
+}
+
+std::vector<int> nodes_of(const Arguments& a) {
+  if (!a.nodes) return {50, 200};
+  if (*a.nodes != 50 && *a.nodes != 200) {
+    throw Refusal("--nodes: found " + std::to_string(*a.nodes) + ", allowed 50, 200 (tolerances exist for these)");
+  }
+  return {*a.nodes};
+}
+
+/// What came of a case: not modelled, or findings.
+struct Outcome {
+  const v::Case* examined;
+  int nodes = 0;
+  bool modelled = true;
+  v::Findings findings;
+
+  [[nodiscard]] bool holds() const {
+    return std::all_of(findings.begin(), findings.end(), [](const v::Finding& f) { return f.holds(); }) &&
+           !(modelled && findings.empty());
+  }
+  /// The finding that is worst, seen from its own tolerance; NaN is worse than all.
+  [[nodiscard]] const v::Finding* worst() const {
+    const auto badness = [](const v::Finding& f) {
+      if (!(f.error == f.error)) return 1e300;
+      return f.error > f.tolerance ? 1.0 + f.error / std::max(f.tolerance, 1e-3) : f.error / std::max(f.tolerance, 1e-12);
+    };
+    const v::Finding* worst = nullptr;
+    for (const auto& f : findings) {
+      if (!worst || badness(f) > badness(*worst)) worst = &f;
+    }
+    return worst;
+  }
+};
+
+std::string percent_or_plain(double value, const std::string& unit) {
+  if (unit == "relative") return digits(100.0 * value) + " %";
+  if (unit == "of L") return digits(100.0 * value) + " % of L";
+  return digits(value) + (unit == "outside" ? "" : " " + unit);
+}
+
+void add_row(Table& table, const Outcome& o) {
+  const std::string n = std::to_string(o.nodes);
+  if (!o.modelled) {
+    table.row({std::string(o.examined->name), n, std::string("not modelled"), std::string("-"), std::string("-"),
+               std::string("-"), std::string("-"), std::string("-")});
+    return;
+  }
+  const auto* f = o.worst();
+  if (!f) {
+    table.row({std::string(o.examined->name), n, std::string("gave no figure"), std::string("-"), std::string("-"),
+               std::string("-"), std::string("-"), std::string("FAIL")});
+    return;
+  }
+  table.row({std::string(o.examined->name), n, f->what, digits(f->reference, 5), digits(f->measured, 5),
+             percent_or_plain(f->error, f->unit), percent_or_plain(f->tolerance, f->unit),
+             std::string(o.holds() ? "PASS" : "FAIL")});
+}
+
+void write_files(const std::string& folder, const std::string& model, const std::vector<Outcome>& outcomes) {
+  Table csv({"model", "case", "nodes", "what", "reference", "measured", "error", "tolerance", "unit", "verdict"});
+  Json json = Json::array();
+  for (const auto& o : outcomes) {
+    if (!o.modelled) {
+      csv.row({model, std::string(o.examined->name), double(o.nodes), std::string("not modelled"), std::string(),
+               std::string(), std::string(), std::string(), std::string(), std::string()});
+      json.push_back({{"model", model}, {"case", o.examined->name}, {"nodes", o.nodes}, {"verdict", "not modelled"}});
+    }
+    for (const auto& f : o.findings) {
+      const std::string verdict = f.holds() ? "PASS" : "FAIL";
+      csv.row({model, std::string(o.examined->name), double(o.nodes), f.what, f.reference, f.measured, f.error,
+               f.tolerance, f.unit, verdict});
+      json.push_back({{"model", model},
+                      {"case", o.examined->name},
+                      {"nodes", o.nodes},
+                      {"what", f.what},
+                      {"reference", f.reference},
+                      {"measured", f.measured},
+                      {"error", f.error},
+                      {"tolerance", f.tolerance},
+                      {"unit", f.unit},
+                      {"verdict", verdict}});
+    }
+  }
+  const std::filesystem::path out(folder);
+  csv.write(out / "validate.csv");
+  write_text(out / "validate.json", json.dump(1) + "\n");
+}
+
+int show_convergence(const std::string& out) {
+  Table table({"quantity", "resolution", "error", "order"});
+  {
+    Progress progress;
+    progress.show(0.0, "six ladders");
+    for (const auto& ladder : v::convergence()) {
+      for (std::size_t k = 0; k < ladder.error.size(); ++k) {
+        table.row({k == 0 ? ladder.what : std::string(), ladder.resolution[k], ladder.error[k],
+                   k == 0 ? Cell(digits(ladder.order())) : Cell(std::string())});
+      }
+    }
+  }
+  table.print();
+  if (!out.empty()) table.write(std::filesystem::path(out) / "convergence.csv");
+  return kDone;
+}
+
+int execute(const Arguments& a) {
+  const auto model = model_of(a.model);
+  const auto nodes = nodes_of(a);
+  if (!a.only.empty() && !v::find_case(a.only)) throw Refusal("--only: found " + a.only + ", allowed see validate --help");
+  if (!a.out.empty()) make_folder(a.out);
+  if (a.convergence) return show_convergence(a.out);
+  std::vector<Outcome> outcomes;
+  Table table({"case", "N", "worst figure", "reference", "measured", "error", "tolerance", "verdict"});
+  int failed = 0, judged = 0;
+  {
+    Progress progress;
+    const auto cases = v::all_cases();
+    double done = 0.0;
+    const double whole = static_cast<double>(cases.size() * nodes.size());
+    for (const auto& c : cases) {
+      for (const int n : nodes) {
+        progress.show(done++ / whole, std::string(c.name) + ", N = " + std::to_string(n));
+        if (!a.only.empty() && a.only != c.name) continue;
+        if (a.quick && !c.quick) continue;
+        if (stop_requested()) throw Refusal("validate: interrupted", kRunFailed);
+        Outcome o{&c, n, c.is_modelled(model), {}};
+        if (o.modelled) o.findings = c.examine({model, n});
+        judged += o.modelled;
+        failed += o.modelled && !o.holds();
+        add_row(table, o);
+        outcomes.push_back(std::move(o));
+      }
+    }
+  }
+  std::printf("model %s\n", a.model.c_str());
+  table.print();
+  std::printf("%d judged, %d failed, %zu not modelled\n", judged, failed, outcomes.size() - static_cast<std::size_t>(judged));
+  if (!a.out.empty()) {
+    write_files(a.out, a.model, outcomes);
+    std::printf("files %s/{validate.csv,validate.json}\n", a.out.c_str());
+  }
+  return failed == 0 ? kDone : kACaseFails;
+}
+
+}  // namespace
+
+void add_validate_command(CLI::App& app, int& exit_code) {
+  auto a = std::make_shared<Arguments>();
+  auto* command = app.add_subcommand("validate", "A model against experiments with a known answer");
+  command->add_option("--model", a->model, "paper-1 .. paper-5 or rod")->capture_default_str();
+  command->add_option("--nodes", a->nodes, "50 or 200 [both]")->type_name("N");
+  command->add_option("--only", a->only, "One case, by name")->type_name("CASE");
+  command->add_option("--out", a->out, "Folder for validate.csv and validate.json")->type_name("DIR");
+  command->add_flag("--quick", a->quick, "Only the cases that take a moment");
+  command->add_flag("--convergence", a->convergence, "Order in N and in substeps instead (rod)");
+  std::string footer = kFooter;
+  for (const auto& c : v::all_cases()) {
+    std::string name = c.name;
+    name.resize(22, ' ');
+    footer += "  " + name + c.about + "\n";
+  }
+  command->footer(footer + kExamples);
+  command->callback([a, &exit_code] { exit_code = execute(*a); });
+}
+
+}  // namespace ligature::lab
