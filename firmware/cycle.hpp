@@ -6,8 +6,10 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "firmware/control/controller.hpp"
+#include "firmware/control/plant.hpp"
 #include "firmware/control/tick_report.hpp"
 #include "firmware/physics/simulation.hpp"
 #include "firmware/rt/cycle_timing.hpp"
@@ -48,6 +50,8 @@ class Cycle {
       : bus_(bus), clock_(clock), controller_(controller), thread_(thread), out_(out) {}
 
   void end_after(std::int64_t ticks) noexcept { last_tick_ = ticks; }
+  /// Where other scenes and parameters come from.
+  void listen(control::PlantHandover& plants) noexcept { plants_ = &plants; }
   [[nodiscard]] const rt::CycleTiming& timing() const noexcept { return timing_; }
   [[nodiscard]] std::int64_t periods() const noexcept { return tick_; }
 
@@ -59,6 +63,7 @@ class Cycle {
       skip((woke - wake_at_) / kPeriod);  // slept through
 
       take_commands();
+      take_plant();
       bus_.send_sync();  // every axis samples, and acts on the last tick's torque
       const auto synced = clock_.now();
       const rt::RigReading reading = bus_.read_tpdos(woke + kTpdoWait);
@@ -89,6 +94,23 @@ class Cycle {
       controller_.command(c.kind);
       if (c.kind == rt::CommandKind::kResetThread) thread_.reset();
     }
+  }
+
+  /// Changes the thread by a swap of its insides: nothing is built or freed here. The old one goes back in the new
+  /// one's place. Another scene is taken only where no force may flow; parameters at any time.
+  void take_plant() noexcept {
+    control::Plant* plant = plants_ != nullptr ? plants_->take() : nullptr;
+    if (plant == nullptr) return;
+    plant->taken = plant->keeps_motion ? plant->thread.continue_from(thread_)
+                                       : !controller_.armed() && !control::may_push(controller_.state());
+    if (plant->taken) {
+      std::swap(thread_, plant->thread);
+      if (plant->keeps_motion)
+        controller_.change_force_scale(plant->hands.force_scale);
+      else
+        controller_.change_hands(plant->hands);
+    }
+    plants_->give_back(plant);
   }
 
   control::TickInput input(const rt::RigReading& reading) const noexcept {
@@ -162,6 +184,7 @@ class Cycle {
   control::Controller& controller_;
   physics::Simulation& thread_;
   rt::Outlets& out_;
+  control::PlantHandover* plants_ = nullptr;
   rt::CycleTiming timing_;
   rt::TickRecord record_;
   Nanoseconds wake_at_{};

@@ -90,6 +90,7 @@ void add_run(CLI::App& run, RunOptions& o) {
       ->check(finite)
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
+  run.add_option("--scenes", o.scenes, "folder of the scenes that a command may load (default: where --scene is)");
   add_budget(run, o.budget_percent);
   run.add_flag("--force", o.force, "run a scene that does not fit (see 'admit'); the recording says so");
   run.add_flag("--exit-on-fault", o.exit_on_fault, "end the run at the first fault instead of waiting for a reset");

@@ -24,6 +24,7 @@ struct RunOptions {
   int watchdog_ms = 20;
   std::string recorder;  ///< flight recorder file; "none" for none
   int recorder_s = 120;  ///< how far back it goes
+  std::string scenes;    ///< folder of the scenes that a command may load; empty: that of `scene`
   bool force = false;    ///< also a scene that does not fit
   double budget_percent = 60.0;
 };

@@ -16,10 +16,10 @@
 namespace ligature::app {
 namespace {
 
-std::string text_of(const RunOptions& options) {
+std::string text_of(const std::string& scene, const std::vector<std::string>& overrides) {
   std::ostringstream text;
-  text << std::ifstream(options.scene).rdbuf();
-  for (const auto& o : options.overrides) text << "\n# --set " << o;
+  text << std::ifstream(scene).rdbuf();
+  for (const auto& o : overrides) text << "\n# --set " << o;
   return text.str();
 }
 
@@ -63,16 +63,22 @@ std::variant<std::unique_ptr<platform::CanBus>, Refusal> open_patiently(const st
 
 }  // namespace
 
-std::variant<Plan, Refusal> make_plan(const RunOptions& options) {
-  auto loaded = scene::load_scene(options.scene, options.overrides);
+std::variant<Plan, Refusal> make_plan(const std::string& file, const std::vector<std::string>& overrides) {
+  auto loaded = scene::load_scene(file, overrides);
   if (const auto* error = std::get_if<scene::Error>(&loaded)) return Refusal{2, error->text};
   auto& scene = std::get<scene::Scene>(loaded);
-  if (const auto why = objection(scene); !why.empty()) return Refusal{2, options.scene + ": " + why};
+  if (const auto why = objection(scene); !why.empty()) return Refusal{2, file + ": " + why};
   auto made = physics::Simulation::make(scene);
-  if (const auto* why = std::get_if<std::string>(&made)) return Refusal{2, options.scene + ": " + *why};
+  if (const auto* why = std::get_if<std::string>(&made)) return Refusal{2, file + ": " + *why};
+  return Plan{scene, std::move(std::get<physics::Simulation>(made)), text_of(file, overrides)};
+}
+
+std::variant<Plan, Refusal> make_plan(const RunOptions& options) {
+  auto plan = make_plan(options.scene, options.overrides);
+  if (std::holds_alternative<Refusal>(plan)) return plan;
   if (is_same_bus(options.left, options.right))
     return Refusal{2, "--left, --right: found '" + options.left + "' for both, allowed a bus for each hand"};
-  return Plan{scene, std::move(std::get<physics::Simulation>(made)), text_of(options)};
+  return plan;
 }
 
 std::variant<Buses, Refusal> open_buses(const RunOptions& options, const Pause& pause) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "firmware/app/options.hpp"
 #include "firmware/physics/simulation.hpp"
@@ -25,6 +26,9 @@ struct Plan {
   std::string toml;  ///< the scene's text with the overrides as comments, for recordings
 };
 [[nodiscard]] std::variant<Plan, Refusal> make_plan(const RunOptions& options);
+/// The same for any scene file; exit codes do not matter then.
+[[nodiscard]] std::variant<Plan, Refusal> make_plan(const std::string& scene,
+                                                    const std::vector<std::string>& overrides);
 
 struct Buses {
   std::unique_ptr<platform::CanBus> left, right;

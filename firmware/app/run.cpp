@@ -14,6 +14,7 @@
 
 #include "firmware/app/admit_command.hpp"
 #include "firmware/app/rig_setup.hpp"
+#include "firmware/app/scene_desk.hpp"
 #include "firmware/app/summary.hpp"
 #include "firmware/cycle.hpp"
 #include "firmware/platform/can_master.hpp"
@@ -93,21 +94,32 @@ telemetry::Session session(const Plan& plan, const RunOptions& options, std::int
                            const telemetry::FlightRecorder* recorder) {
   return {id,
           LIGATURE_VERSION,
-          options.scene,
-          plan.toml,
+          {options.scene, plan.toml, plan.scene.hands.max_force_N, plan.scene.suture.radius_m},
           control::kPeriod_s,
-          plan.scene.hands.max_force_N,
-          plan.scene.suture.radius_m,
           realtime,
           admitted,
           recorder != nullptr ? recorder->path() : std::string()};
 }
 
+/// What has become of a change of scene or parameters, told.
+void tell_change(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, SceneDesk& desk) {
+  auto outcome = desk.poll();
+  if (!outcome) return;
+  const auto now = utime_now();
+  outcome->ack.utime = now;
+  if (const auto& c = outcome->changed) {
+    telemetry.scene_changed({c->file, c->toml, c->max_force_N, c->radius_m}, c->text, now);
+    telemetry.set_offer(desk.offer());
+  }
+  link.answer(outcome->ack);
+}
+
 /// The telemetry thread: until `done`, then what is left.
-void tell(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, const std::atomic<bool>& done) {
+void tell(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, SceneDesk& desk, const std::atomic<bool>& done) {
   while (!done) {
     link.wait(5);
     telemetry.step(utime_now());
+    tell_change(link, telemetry, desk);
   }
   telemetry.finish(utime_now());
   if (link.failures() > 0) spdlog::warn("LCM: {} messages could not be sent", link.failures());
@@ -117,12 +129,14 @@ void tell(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, const std::
 /// refused, and waits for the word to start; it never starts without one.
 class RealTimeSide {
  public:
-  RealTimeSide(const RunOptions& options, Plan& plan, const Buses& buses, rt::Outlets& outlets)
+  RealTimeSide(const RunOptions& options, Plan& plan, const Buses& buses, rt::Outlets& outlets,
+               control::PlantHandover& plants)
       : buses_(buses),
         wait_(*buses.left, *buses.right),
         bus_(*buses.left, *buses.right, wait_),
         controller_(plan.scene.hands, {options.watchdog_ms, options.arm}),
         cycle_(bus_, clock_, controller_, plan.thread, outlets) {
+    cycle_.listen(plants);
     if (options.duration_s) cycle_.end_after(std::llround(*options.duration_s / control::kPeriod_s));
   }
   ~RealTimeSide() { end(); }
@@ -186,10 +200,10 @@ std::string no_telemetry(const std::string& url) {
 }
 
 /// The run proper: telemetry beside the loop until one of them says that it is over. @return the exit code.
-int run_loop(RealTimeSide& side, telemetry::LcmLink& link, telemetry::Telemetry& telemetry, const Buses& buses,
-             rt::Outlets& outlets, const StopSignals& signals) {
+int run_loop(RealTimeSide& side, telemetry::LcmLink& link, telemetry::Telemetry& telemetry, SceneDesk& desk,
+             const Buses& buses, rt::Outlets& outlets, const StopSignals& signals) {
   std::atomic<bool> done{false};
-  std::thread teller([&] { tell(link, telemetry, done); });
+  std::thread teller([&] { tell(link, telemetry, desk, done); });
   platform::start_drives(*buses.left);
   platform::start_drives(*buses.right);
   side.start();
@@ -242,15 +256,21 @@ int run(const RunOptions& options) {
 
   const std::int64_t id = utime_now();
   const auto recorder = open_recorder(plan, options, id);
-  const auto side = std::make_unique<RealTimeSide>(options, plan, buses, *outlets);
+  SceneDesk desk(options, plan, core);
+  const auto side = std::make_unique<RealTimeSide>(options, plan, buses, *outlets, desk.handover());
   const auto refused = side->prepare(ask, core);
   if (options.rt == RtMode::kEnforce && !refused.empty()) return fail({3, "--rt=enforce: " + refused.front()});
   if (const auto refusal = configure(buses, options)) return fail(*refusal);
 
   telemetry::Telemetry telemetry(session(plan, options, id, ask && refused.empty(), !excess, recorder.get()), kNames,
                                  *outlets, link, recorder.get());
-  link.listen([&](const auto& c) { return telemetry.handle(c, utime_now()); });
-  return run_loop(*side, link, telemetry, buses, *outlets, signals);
+  telemetry.set_offer(desk.offer());
+  link.listen([&](const ligature_msg::command_t& c) -> std::optional<ligature_msg::ack_t> {
+    if (!SceneDesk::is_for(c)) return telemetry.handle(c, utime_now());
+    const auto& last = telemetry.last();
+    return desk.request(c, last.armed || control::may_push(static_cast<control::State>(last.state)));
+  });
+  return run_loop(*side, link, telemetry, desk, buses, *outlets, signals);
 }
 
 }  // namespace ligature::app

@@ -1,11 +1,12 @@
 #include "firmware/control/controller.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ligature::control {
 
 Controller::Controller(const scene::Hands& hands, const Settings& settings) noexcept
-    : map_(hands), coupling_(hands), settings_(settings), armed_(settings.armed) {
+    : map_(hands), coupling_(hands), scale_goal_(hands.force_scale), settings_(settings), armed_(settings.armed) {
   for (Hand& h : hands_) h.state.p_WT = map_.origin_W_m;
 }
 
@@ -30,7 +31,30 @@ void Controller::command(rt::CommandKind kind) noexcept {
   }
 }
 
+void Controller::change_hands(const scene::Hands& hands) noexcept {
+  map_ = WorkspaceMap(hands);
+  coupling_ = VirtualCoupling(hands);
+  scale_goal_ = hands.force_scale;
+  for (Hand& h : hands_) {
+    h.state.p_WT = h.sample_tick < 0 ? map_.origin_W_m : map_.position(tip_position(h.q_rad));
+    h.state.v_WT = map_.velocity(h.v_DT);
+  }
+}
+
+void Controller::change_force_scale(double force_scale) noexcept {
+  scale_goal_ = force_scale;
+  scale_step_ = std::abs(force_scale - coupling_.force_scale()) / kScaleTicks;
+}
+
+void Controller::step_force_scale() noexcept {
+  const double left = scale_goal_ - coupling_.force_scale();
+  const bool arrives = std::abs(left) <= scale_step_ * (1.0 + 1e-9);  // exactly, whatever the steps added up to
+  if (left == 0.0) return;
+  coupling_.set_force_scale(arrives ? scale_goal_ : coupling_.force_scale() + std::copysign(scale_step_, left));
+}
+
 rt::RigCommand Controller::tick(const TickInput& in) noexcept {
+  step_force_scale();
   for (std::size_t h = 0; h < rt::kHands; ++h) observe(hands_[h], in.reading.hand[h], in.grasp[h], in.tick);
   step_state(in);
   step_gains();

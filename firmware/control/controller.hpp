@@ -48,12 +48,18 @@ struct HandState {
 class Controller {
  public:
   static constexpr int kCalibrationTicks = 50;  ///< of possible poses in a row
+  static constexpr int kScaleTicks = 200;       ///< that a change of the force scale takes
   static constexpr int kPowerDownTicks = 20;    ///< of "power stage off" sent before the run ends
 
   Controller(const scene::Hands& hands, const Settings& settings) noexcept;
 
   /// A request of the host or the operator; acts in the next tick.
   void command(rt::CommandKind kind) noexcept;
+
+  /// Another scene's hands, at once. @pre no force may flow.
+  void change_hands(const scene::Hands& hands) noexcept;
+  /// Goes to another force scale over kScaleTicks, so that a held force changes without a jump.
+  void change_force_scale(double force_scale) noexcept;
 
   /// Begins the end: forces ramp to zero, drives are switched off, then is_finished().
   void shut_down() noexcept { shutting_down_ = true; }
@@ -88,12 +94,14 @@ class Controller {
   [[nodiscard]] bool drives_are_up(const rt::RigReading& reading) const noexcept;
   void step_state(const TickInput& in) noexcept;
   void step_gains() noexcept;
+  void step_force_scale() noexcept;
   [[nodiscard]] rt::DriveRequest drive_request() const noexcept;
   [[nodiscard]] bool any_full() const noexcept;
   [[nodiscard]] bool all_zero() const noexcept;
 
   WorkspaceMap map_;
   VirtualCoupling coupling_;
+  double scale_goal_, scale_step_ = 0.0;
   Settings settings_;
   std::array<Hand, rt::kHands> hands_{};
   State state_ = State::kOff;

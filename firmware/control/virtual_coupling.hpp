@@ -26,6 +26,9 @@ class VirtualCoupling {
         force_scale_(h.force_scale),
         max_force_N_(h.max_force_N) {}
 
+  [[nodiscard]] double force_scale() const noexcept { return force_scale_; }
+  void set_force_scale(double scale) noexcept { force_scale_ = scale; }
+
   [[nodiscard]] LimitedForce force(const Grasp& grasp, const physics::Vec3& p_WT_m,
                                    const physics::Vec3& v_WT_m_per_s) const noexcept;
 

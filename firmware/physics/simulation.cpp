@@ -285,6 +285,22 @@ void Simulation::reset() noexcept {
   impl_->restart();
 }
 
+bool Simulation::continue_from(const Simulation& other) noexcept {
+  Impl& s = *impl_;
+  const Impl& o = *other.impl_;
+  if (s.rod.has_value() != o.rod.has_value()) return false;
+  if (s.rod) return s.rod->continue_from(*o.rod);
+  if (s.model.nodes != o.model.nodes) return false;
+  s.restart();
+  s.state = s.before = o.state;
+  s.grasp = o.grasp;
+  s.health = o.health;
+  s.hands = o.hands;
+  s.ticks = o.ticks;
+  s.nodes_stale = s.velocities_stale = true;
+  return true;
+}
+
 void Simulation::set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept {
   Impl& s = *impl_;
   if (s.rod) return s.rod->set_state(p_W, v_W);

@@ -77,6 +77,10 @@ class Simulation {
   /// Back to the initial state of the scene, hands open.
   void reset() noexcept;
 
+  /// Takes over shape, motion and grasps of the same thread with other parameters. No allocation. @pre as many nodes
+  /// and the same kind of model, else nothing happens and the result is false.
+  [[nodiscard]] bool continue_from(const Simulation& other) noexcept;
+
   /// Replaces the shape and the motion (experiments, restarts); hands open. Fixed nodes stay where they are.
   /// @param p_W, v_W  as many as there are nodes; v_W may be empty for rest.
   void set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept;

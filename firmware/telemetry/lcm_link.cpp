@@ -73,7 +73,8 @@ void LcmLink::wait(std::int64_t at_most_ms) {
 }
 
 void LcmLink::receive(const lcm::ReceiveBuffer*, const std::string&, const ligature_msg::command_t* command) {
-  if (on_command_) publish("LIGATURE_ACK", on_command_(*command));
+  if (!on_command_) return;
+  if (const auto ack = on_command_(*command)) answer(*ack);
 }
 
 }  // namespace ligature::telemetry

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "firmware/telemetry/telemetry.hpp"
@@ -17,7 +18,8 @@ namespace ligature::telemetry {
 
 class LcmLink final : public Sink {
  public:
-  using OnCommand = std::function<ligature_msg::ack_t(const ligature_msg::command_t&)>;
+  /// The answer, or nothing when it takes a while: then answer() gives it.
+  using OnCommand = std::function<std::optional<ligature_msg::ack_t>(const ligature_msg::command_t&)>;
   using OnEvent = std::function<void(const ligature_msg::event_t&)>;
 
   /// Opens the URL; may take seconds when multicast is misconfigured, so before the loop starts.
@@ -33,9 +35,12 @@ class LcmLink final : public Sink {
   /// Waits for commands, at most so long; also the pause between two steps.
   void wait(std::int64_t at_most_ms);
 
+  void answer(const ligature_msg::ack_t& ack) { publish("LIGATURE_ACK", ack); }
+
   void send(const ligature_msg::tick_batch_t& m) override { publish("LIGATURE_TICKS", m); }
   void send(const ligature_msg::thread_t& m) override { publish("LIGATURE_THREAD", m); }
   void send(const ligature_msg::status_t& m) override { publish("LIGATURE_STATUS", m); }
+  void send(const ligature_msg::offer_t& m) override { publish("LIGATURE_OFFER", m); }
   void send(const ligature_msg::event_t& m) override {
     publish("LIGATURE_EVENT", m);
     on_event_(m);

@@ -21,6 +21,7 @@ void Telemetry::step(std::int64_t now_us) {
     send_status(now_us);
     status_due_us_ = now_us + kStatusPeriod_us;
   }
+  if (now_us >= offer_due_us_) send_offer(now_us);
 }
 
 void Telemetry::finish(std::int64_t now_us) {
@@ -60,7 +61,7 @@ void Telemetry::send_batch(std::int64_t now_us) {
 }
 
 void Telemetry::send_shape(std::int64_t now_us) {
-  sink_.send(to_message(outlets_.shape.front(), session_.radius_m, now_us));
+  sink_.send(to_message(outlets_.shape.front(), session_.scene.radius_m, now_us));
 }
 
 void Telemetry::send_status(std::int64_t now_us) {
@@ -69,11 +70,11 @@ void Telemetry::send_status(std::int64_t now_us) {
   m.session = session_.id;
   m.protocol_version = ligature_msg::status_t::VERSION;
   m.firmware_version = session_.firmware_version;
-  m.scene_file = session_.scene_file;
-  m.scene_toml = session_.scene_toml;
+  m.scene_file = session_.scene.scene_file;
+  m.scene_toml = session_.scene.scene_toml;
   m.recorder_file = session_.recorder_file;
   m.period_s = session_.period_s;
-  m.max_force_N = session_.max_force_N;
+  m.max_force_N = session_.scene.max_force_N;
   m.tick = last_.tick;
   m.state = last_.state;
   m.fault = last_.fault;
@@ -83,6 +84,32 @@ void Telemetry::send_status(std::int64_t now_us) {
   m.armed = last_.armed ? 1 : 0;
   m.admitted = session_.admitted ? 1 : 0;
   sink_.send(m);
+}
+
+void Telemetry::send_offer(std::int64_t now_us) {
+  offer_due_us_ = now_us + kOfferPeriod_us;
+  offer_.utime = now_us;
+  offer_.session = session_.id;
+  offer_.scene_count = static_cast<std::int32_t>(offer_.scenes.size());
+  offer_.parameter_count = static_cast<std::int32_t>(offer_.parameters.size());
+  sink_.send(offer_);
+}
+
+void Telemetry::set_offer(ligature_msg::offer_t offer) {
+  offer_ = std::move(offer);
+  offer_due_us_ = 0;
+}
+
+void Telemetry::scene_changed(const SceneFacts& facts, const std::string& text, std::int64_t now_us) {
+  session_.scene = facts;
+  ligature_msg::event_t event{};
+  event.utime = now_us;
+  event.tick = last_.tick;
+  event.kind = ligature_msg::event_t::KIND_CHANGE;
+  event.hand = -1;
+  event.text = text;
+  sink_.send(event);
+  send_status(now_us);
 }
 
 std::string Telemetry::objection(std::int8_t kind) const {

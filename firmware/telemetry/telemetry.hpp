@@ -10,6 +10,7 @@
 #include "ligature_msg/ack_t.hpp"
 #include "ligature_msg/command_t.hpp"
 #include "ligature_msg/event_t.hpp"
+#include "ligature_msg/offer_t.hpp"
 #include "ligature_msg/status_t.hpp"
 #include "ligature_msg/thread_t.hpp"
 #include "ligature_msg/tick_batch_t.hpp"
@@ -24,30 +25,37 @@ class Sink {
   virtual void send(const ligature_msg::thread_t& m) = 0;
   virtual void send(const ligature_msg::status_t& m) = 0;
   virtual void send(const ligature_msg::event_t& m) = 0;
+  virtual void send(const ligature_msg::offer_t& m) = 0;
 };
 
-/// What does not change during a run.
+/// What a change of scene changes.
+struct SceneFacts {
+  std::string scene_file;
+  std::string scene_toml;
+  double max_force_N = 0.0;
+  double radius_m = 0.0;
+};
+
+/// What does not change during a run, and the scene that it began with.
 struct Session {
   std::int64_t id = 0;  ///< CLOCK_REALTIME at start, microseconds
   std::string firmware_version;
-  std::string scene_file;
-  std::string scene_toml;
+  SceneFacts scene;
   double period_s = 0.001;
-  double max_force_N = 0.0;
-  double radius_m = 0.0;
   bool realtime = false;
   bool admitted = true;
   std::string recorder_file;  ///< empty: none
 };
 
 /// One thread uses it. Every record goes into the flight recorder and then into exactly one batch, in order; a batch
-/// has 20 of them, the last one what is left. Shapes at 60 Hz and status at 10 Hz, events at once. A fault saves the
-/// ticks before it to a file of their own, which its event names.
+/// has 20 of them, the last one what is left. Shapes at 60 Hz, status at 10 Hz, the offer at 1 Hz, events at once. A
+/// fault saves the ticks before it to a file of their own, which its event names.
 class Telemetry {
  public:
   static constexpr std::size_t kTicksPerBatch = 20;
   static constexpr std::int64_t kShapePeriod_us = 1'000'000 / 60;
   static constexpr std::int64_t kStatusPeriod_us = 100'000;
+  static constexpr std::int64_t kOfferPeriod_us = 1'000'000;
   static constexpr std::int64_t kTicksPerFault = 2000;
 
   /// @param recorder may be missing.
@@ -59,6 +67,15 @@ class Telemetry {
   /// The last step: also what does not fill a batch, the last shape and a last status.
   void finish(std::int64_t now_us);
 
+  /// The scenes and parameters that may be asked for; told from now on.
+  void set_offer(ligature_msg::offer_t offer);
+
+  /// Another scene or parameter is in force: told at once, with the words of the event.
+  void scene_changed(const SceneFacts& facts, const std::string& text, std::int64_t now_us);
+
+  /// The state after the newest record: what a request is judged by before the loop judges it.
+  [[nodiscard]] const rt::TickRecord& last() const noexcept { return last_; }
+
   /// Passes a request on, or says why not.
   [[nodiscard]] ligature_msg::ack_t handle(const ligature_msg::command_t& command, std::int64_t now_us);
 
@@ -68,6 +85,7 @@ class Telemetry {
   void send_batch(std::int64_t now_us);
   void send_shape(std::int64_t now_us);
   void send_status(std::int64_t now_us);
+  void send_offer(std::int64_t now_us);
   [[nodiscard]] std::string objection(std::int8_t kind) const;
 
   Session session_;
@@ -76,9 +94,10 @@ class Telemetry {
   Sink& sink_;
   FlightRecorder* recorder_;
   ligature_msg::tick_batch_t batch_{};
+  ligature_msg::offer_t offer_{};
   rt::TickRecord last_{};
   std::int64_t misses_ = 0, lost_ = 0;
-  std::int64_t shape_due_us_ = 0, status_due_us_ = 0;
+  std::int64_t shape_due_us_ = 0, status_due_us_ = 0, offer_due_us_ = 0;
 };
 
 }  // namespace ligature::telemetry

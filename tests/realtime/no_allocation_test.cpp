@@ -108,6 +108,34 @@ TEST(NoAllocation, TheGuardsBite) {
 
 TEST(NoAllocation, TheWholeCycleWithASmallThread) { expect_quiet(small_scene()); }
 
+TEST(NoAllocation, TakingAnotherSceneOrOtherParameters) {
+  for (const bool keeps_motion : {false, true}) {
+    for (const auto model : {scene::Model::kPaper4, scene::Model::kRod}) {
+      scene::Scene s = small_scene();
+      s.suture.model = model;
+      if (model == scene::Model::kRod) s.suture.radius_m = 1e-3;
+      VirtualRig rig(s, {20, false});
+      scene::Scene other = s;
+      other.contact.friction = 0.7;
+      control::Plant plant{std::get<physics::Simulation>(physics::Simulation::make(other)), other.hands, keeps_motion,
+                           false};
+      control::PlantHandover plants;
+      QuietBus bus(rig.bus);
+      QuietClock clock;
+      Cycle cycle(bus, clock, rig.controller, rig.thread, *rig.outlets);
+      cycle.listen(plants);
+      cycle.end_after(100);
+      plants.offer(&plant);
+      {
+        const NoAllocation guard;
+        cycle.run();
+      }
+      EXPECT_EQ(allocations, 0);
+      EXPECT_TRUE(plant.taken);
+    }
+  }
+}
+
 TEST(NoAllocation, TheWholeCycleWithEveryModelAndSolver) {
   for (const auto model : {scene::Model::kPaper1, scene::Model::kPaper2, scene::Model::kPaper3, scene::Model::kPaper4,
                            scene::Model::kPaper5}) {

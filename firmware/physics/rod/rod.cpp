@@ -59,6 +59,17 @@ Rod& Rod::operator=(const Rod& other) {
   return *this;
 }
 
+bool Rod::continue_from(const Rod& other) noexcept {
+  if (state_.nodes() != other.state_.nodes()) return false;
+  state_ = other.state_;
+  forces_ = other.forces_;
+  twist_ = other.twist_;
+  refine_ = other.refine_;
+  report_ = other.report_;
+  moved();
+  return true;
+}
+
 void Rod::moved() noexcept {
   for (auto& c : state_.mesh.clamp) c = Clamp::kFree;
   for (int h = 0; h < state_.hold_count; ++h) {

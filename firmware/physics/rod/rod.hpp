@@ -56,6 +56,10 @@ class Rod {
   /// After positions, clamps or spacing were changed from outside: constants of the mesh again, contacts forgotten.
   void moved() noexcept;
 
+  /// The motion, holds and twist of another rod, with this one's material. @return false, and nothing done, when it has
+  /// another number of nodes. No allocation.
+  [[nodiscard]] bool continue_from(const Rod& other) noexcept;
+
   /// Holds node: @return index of the hold. @pre fewer than kMaxHolds.
   int support(int node, Vec p) noexcept;
   int clamp(int node, Vec p, Vec direction) noexcept;

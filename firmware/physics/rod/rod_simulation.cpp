@@ -52,6 +52,18 @@ void RodSimulation::reset() noexcept {
   publish();
 }
 
+bool RodSimulation::continue_from(const RodSimulation& other) noexcept {
+  if (!rod_.continue_from(other.rod_)) return false;
+  hold_ = other.hold_, closed_ = other.closed_, inside_ = other.inside_;
+  goals_ = other.goals_;
+  hands_ = other.hands_;
+  health_ = other.health_;
+  ticks_ = other.ticks_;
+  nodes_ = other.nodes_;
+  velocities_ = other.velocities_;
+  return true;
+}
+
 void RodSimulation::set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept {
   rod_ = initial_;
   hold_ = {-1, -1};

@@ -25,6 +25,7 @@ class RodSimulation {
   [[nodiscard]] const HandContact& hand(Hand h) const noexcept { return hands_[static_cast<std::size_t>(h)]; }
   [[nodiscard]] const Diagnostics& diagnostics() const noexcept { return health_; }
   void reset() noexcept;
+  [[nodiscard]] bool continue_from(const RodSimulation& other) noexcept;
   void set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept;
 
   /// The rod itself, for those who look deeper than the facade.

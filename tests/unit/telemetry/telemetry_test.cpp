@@ -18,10 +18,12 @@ class Memory final : public Sink {
   void send(const ligature_msg::thread_t& m) override { shapes.push_back(m); }
   void send(const ligature_msg::status_t& m) override { statuses.push_back(m); }
   void send(const ligature_msg::event_t& m) override { events.push_back(m); }
+  void send(const ligature_msg::offer_t& m) override { offers.push_back(m); }
   std::vector<ligature_msg::tick_batch_t> batches;
   std::vector<ligature_msg::thread_t> shapes;
   std::vector<ligature_msg::status_t> statuses;
   std::vector<ligature_msg::event_t> events;
+  std::vector<ligature_msg::offer_t> offers;
 };
 
 class TelemetryTest : public ::testing::Test {
@@ -38,10 +40,34 @@ class TelemetryTest : public ::testing::Test {
   }
   std::unique_ptr<rt::Outlets> outlets = std::make_unique<rt::Outlets>();
   Memory sink;
-  Session session{42, "1.2.3", "a.toml", "text", 0.001, 3.3, 0.05, true, false, "flight.rec"};
+  Session session{42, "1.2.3", {"a.toml", "text", 3.3, 0.05}, 0.001, true, false, "flight.rec"};
   Telemetry telemetry{session, kNames, *outlets, sink};
   rt::TickRecord record;
 };
+
+TEST_F(TelemetryTest, AChangeOfSceneIsToldAtOnceAndInEveryStatusAfterIt) {
+  ligature_msg::offer_t offer{};
+  offer.scenes = {"a.toml", "b.toml"};
+  telemetry.set_offer(offer);
+  telemetry.step(0);
+  ASSERT_EQ(sink.offers.size(), 1U);
+  EXPECT_EQ(sink.offers[0].scene_count, 2);
+  EXPECT_EQ(sink.offers[0].session, 42);
+  telemetry.step(999'999);
+  EXPECT_EQ(sink.offers.size(), 1U);
+  telemetry.step(1'000'000);
+  EXPECT_EQ(sink.offers.size(), 2U);
+
+  push(5);
+  telemetry.step(1'000'001);
+  telemetry.scene_changed({"b.toml", "other", 1.5, 0.01}, "scene b.toml loaded", 1'000'002);
+  ASSERT_EQ(sink.events.back().kind, ligature_msg::event_t::KIND_CHANGE);
+  EXPECT_EQ(sink.events.back().tick, 5);
+  EXPECT_EQ(sink.events.back().text, "scene b.toml loaded");
+  EXPECT_EQ(sink.statuses.back().scene_file, "b.toml");
+  EXPECT_EQ(sink.statuses.back().scene_toml, "other");
+  EXPECT_EQ(sink.statuses.back().max_force_N, 1.5);
+}
 
 TEST_F(TelemetryTest, EveryRecordGoesIntoExactlyOneBatchInOrder) {
   for (std::int64_t t = 0; t < 45; ++t) push(t);

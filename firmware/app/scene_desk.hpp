@@ -1,0 +1,87 @@
+#pragma once
+// Changes of scene and of parameters while the rig runs: judged, built and measured here, taken over by the loop.
+
+#include <cstdint>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "firmware/app/live_parameters.hpp"
+#include "firmware/app/rig_setup.hpp"
+#include "firmware/control/plant.hpp"
+#include "ligature_msg/ack_t.hpp"
+#include "ligature_msg/command_t.hpp"
+#include "ligature_msg/offer_t.hpp"
+
+namespace ligature::app {
+
+/// A change that the loop has taken over.
+struct Changed {
+  std::string file, toml, text;  ///< text: one line for people
+  double max_force_N, radius_m;
+};
+
+/// The telemetry thread's; building and measuring happens in a thread of its own, and one change at a time. A plant is
+/// built, its worst tick must fit as at the start (unless --force), and a rehearsal must stay finite; only then is it
+/// handed over. The loop judges the state once more. Whatever comes back is destroyed here.
+class SceneDesk {
+ public:
+  /// @param plan of the start; its thread is not looked at.
+  SceneDesk(const RunOptions& options, const Plan& plan, int core);
+
+  [[nodiscard]] control::PlantHandover& handover() noexcept { return handover_; }
+
+  [[nodiscard]] static bool is_for(const ligature_msg::command_t& command) noexcept {
+    return command.kind == ligature_msg::command_t::KIND_LOAD_SCENE ||
+           command.kind == ligature_msg::command_t::KIND_SET_PARAMETER;
+  }
+
+  /// @param may_push whether force may flow now, as far as is known. @return a refusal, or nothing: poll() answers.
+  [[nodiscard]] std::optional<ligature_msg::ack_t> request(const ligature_msg::command_t& command, bool may_push);
+
+  /// What has become of the request: its answer, and the change when there was one.
+  struct Outcome {
+    ligature_msg::ack_t ack;
+    std::optional<Changed> changed;
+  };
+  [[nodiscard]] std::optional<Outcome> poll();
+
+  [[nodiscard]] ligature_msg::offer_t offer() const;
+
+ private:
+  struct Setup {  // what the loop runs
+    std::string file;
+    std::vector<std::string> overrides;
+    scene::Scene from_file, scene;
+  };
+  struct Built {
+    std::unique_ptr<control::Plant> plant;
+    Setup setup;
+    std::string toml;
+  };
+  [[nodiscard]] std::string prepare_scene(const std::string& name);
+  [[nodiscard]] std::string prepare_parameter(const std::string& key, double value);
+  [[nodiscard]] std::variant<Built, std::string> build(Setup setup, bool keeps_motion) const;
+  [[nodiscard]] Outcome answer(const std::string& why, std::optional<Changed> changed = {}) const;
+
+  RunOptions options_;
+  int core_;
+  std::vector<std::string> scenes_;
+  Setup now_;
+  control::PlantHandover handover_;
+
+  ligature_msg::command_t asked_{};
+  std::string words_;  // of what is asked
+  Setup next_;
+  std::future<std::variant<Built, std::string>> building_;
+  std::optional<Built> lent_;  // with the loop
+  bool busy_ = false;
+};
+
+/// Runs a copy for a while, both hands pulling to and fro. @return why it will not do, or empty.
+[[nodiscard]] std::string rehearse(const physics::Simulation& thread);
+
+}  // namespace ligature::app
