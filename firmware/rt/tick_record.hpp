@@ -20,6 +20,25 @@ enum TickFlag : std::int32_t {
   kContactCap = 64,
 };
 
+/// Bits of TickRecord::limits, one set a hand: what holds the force back now. A limit is no fault.
+enum LimitCode : std::int16_t {
+  kPeakLimit = 1,        ///< magnitude at max_force_N or the device's peak
+  kContinuousLimit = 2,  ///< the motors' thermal budget (I2t) is used up
+  kStepLimit = 4,        ///< change within one period
+  kSlewLimit = 8,        ///< rate of change over many periods
+  kVelocityBrake = 16,   ///< tip too fast: the rig goes to BRAKE
+  kPassivityLimit = 32,  ///< the port's energy account is short: the force is damped or reduced
+  kTorqueLimit = 64,     ///< a joint's drive is at its end
+};
+
+/// What the thread's solver gave up in this tick, in the order in which it does; values of TickRecord::degradation.
+enum class Degradation : std::int8_t {
+  kNone = 0,
+  kIterations = 1,   ///< iterations ended before the tolerance: contacts a little softer
+  kContacts = 2,     ///< contact list full: the shallowest contacts were left out
+  kCandidates = 3,   ///< list of near pairs full: far pairs were not looked at
+};
+
 using Triple = std::array<double, 3>;
 
 /// One control period; fields, units and frames as in protocol/lcm/tick_t.lcm, plus `armed`.
@@ -47,11 +66,24 @@ struct TickRecord {
   std::array<bool, kHands> dead_man{};
   std::array<std::int16_t, kHands> tpdo_age_ticks{};
 
+  // The hand's device port.
+  std::array<Triple, kHands> q_rad{};
+  std::array<Triple, kHands> f_wish_N{};
+  std::array<double, kHands> gain{};
+  std::array<double, kHands> port_energy_J{};
+  std::array<double, kHands> dissipated_J{};
+  std::array<double, kHands> injected_N_s_per_m{};
+  std::array<double, kHands> heat{};
+  std::array<std::int16_t, kHands> limits{};
+  std::array<bool, kHands> clutch{};
+  std::array<float, kHands> bus_load{};
+
   double kinetic_J = 0.0;
   double potential_J = 0.0;
   double max_stretch = 0.0;
   double min_gap_m = 0.0;
   std::int16_t contacts = 0;
+  std::int8_t degradation = 0;
 };
 
 inline constexpr std::size_t kMaxNodes = 5000;

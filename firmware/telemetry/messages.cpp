@@ -13,6 +13,9 @@ void copy(const std::array<rt::Triple, N>& from, double (&to)[N][3]) {
 
 // The record and the message name the same bits.
 static_assert(rt::kPeriodLost == 1 && rt::kDeadlineMissed == 2 && rt::kContactCap == 64);
+static_assert(rt::kPeakLimit == ligature_msg::tick_t::LIMIT_PEAK);
+static_assert(rt::kTorqueLimit == ligature_msg::tick_t::LIMIT_TORQUE);
+static_assert(static_cast<int>(rt::Degradation::kCandidates) == ligature_msg::tick_t::DEGRADED_CANDIDATES);
 
 }  // namespace
 
@@ -33,11 +36,21 @@ ligature_msg::tick_t to_message(const rt::TickRecord& r) {
   copy(r.v_WT_m_per_s, m.v_WT_m_per_s);
   copy(r.f_world_N, m.f_world_N);
   copy(r.f_device_N, m.f_device_N);
+  copy(r.q_rad, m.q_rad);
+  copy(r.f_wish_N, m.f_wish_N);
+  std::ranges::copy(r.gain, m.gain);
+  std::ranges::copy(r.port_energy_J, m.port_energy_J);
+  std::ranges::copy(r.dissipated_J, m.dissipated_J);
+  std::ranges::copy(r.injected_N_s_per_m, m.injected_N_s_per_m);
+  std::ranges::copy(r.heat, m.heat);
+  std::ranges::copy(r.limits, m.limits);
+  std::ranges::copy(r.bus_load, m.bus_load);
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     std::ranges::copy(r.torque_permille[h], m.torque_permille[h]);
     m.grasped_node[h] = r.grasped_node[h];
     m.grip[h] = r.grip[h] ? 1 : 0;
     m.dead_man[h] = r.dead_man[h] ? 1 : 0;
+    m.clutch[h] = r.clutch[h] ? 1 : 0;
     m.tpdo_age_ticks[h] = r.tpdo_age_ticks[h];
   }
   m.kinetic_J = r.kinetic_J;
@@ -45,6 +58,7 @@ ligature_msg::tick_t to_message(const rt::TickRecord& r) {
   m.max_stretch = r.max_stretch;
   m.min_gap_m = r.min_gap_m;
   m.contacts = r.contacts;
+  m.degradation = r.degradation;
   return m;
 }
 
