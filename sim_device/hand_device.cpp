@@ -6,8 +6,11 @@
 namespace ligature::sim {
 
 HandDevice::HandDevice(OperatorPath path, Time now, bool charge_bus_time)
+    : HandDevice(std::make_unique<OperatorPath>(std::move(path)), now, Body{}, charge_bus_time) {}
+
+HandDevice::HandDevice(std::unique_ptr<Intention> intention, Time now, const Body& body, bool charge_bus_time)
     : wire_(charge_bus_time),
-      mechanics_(std::move(path), now),
+      mechanics_(std::move(intention), now, body),
       drives_{DriveNode(can::kWaist), DriveNode(can::kShoulder), DriveNode(can::kElbow)},
       now_(now) {
   for (std::size_t i = 0; i < drives_.size(); ++i) {

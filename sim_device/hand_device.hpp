@@ -7,6 +7,7 @@
 
 #include "sim_device/drive_node.hpp"
 #include "sim_device/mechanics.hpp"
+#include "sim_device/operator_path.hpp"
 #include "sim_device/wire.hpp"
 
 namespace ligature::sim {
@@ -34,6 +35,7 @@ class HandDevice {
   static constexpr Time kPeriod = std::chrono::milliseconds(1);
 
   HandDevice(OperatorPath path, Time now, bool charge_bus_time = true);
+  HandDevice(std::unique_ptr<Intention> intention, Time now, const Body& body = {}, bool charge_bus_time = true);
 
   /// A client puts a frame into its queue at `when`; per client, time must not run backwards.
   void submit(const can::Frame& frame, int client, Time when);

@@ -12,8 +12,11 @@ double seconds(Time t) noexcept { return std::chrono::duration<double>(t).count(
 
 }  // namespace
 
-Mechanics::Mechanics(OperatorPath path, Time now)
-    : path_(std::move(path)), plant_(joints_of_tip(path_.at(kBeforeScript_s).p_DH).value()), now_(now) {}
+Mechanics::Mechanics(std::unique_ptr<Intention> intention, Time now, const Body& body)
+    : intention_(std::move(intention)),
+      hand_(body.hand),
+      plant_(joints_of_tip(intention_->start_D_m()).value(), body.plant),
+      now_(now) {}
 
 void Mechanics::start_script(Time now) noexcept {
   if (!has_started()) started_at_ = now;
@@ -30,8 +33,9 @@ void Mechanics::advance(Time now, const Vec3& motor_Nm) noexcept {
   const double dt_s = seconds(span) / static_cast<double>(steps);
   for (std::int64_t i = 1; i <= steps; ++i) {
     now_ = from + span * i / steps;
-    const Intent wish = intent();
-    const Vec3 force = hand_.force_on_tip_D_N(wish.p_DH, wish.v_DH, plant_.tip_D_m(), plant_.tip_velocity_D_m_per_s());
+    const Touch tip = touch();
+    const Intent wish = intention_->at(script_time_s(), tip);
+    const Vec3 force = hand_.force_on_tip_D_N(wish.p_DH, wish.v_DH, tip.p_DT, tip.v_DT);
     plant_.step(motor_Nm, force, dt_s);
   }
 }
@@ -39,8 +43,8 @@ void Mechanics::advance(Time now, const Vec3& motor_Nm) noexcept {
 std::uint16_t Mechanics::buttons() const noexcept {
   if (!has_started()) return 0;
   const double t_s = script_time_s();
-  unsigned pressed = path_.at(t_s).grip ? can::profile::kButtonGrip : 0U;
-  if (t_s <= path_.end_s() + kDeadManAfterScript_s) pressed |= can::profile::kButtonDeadMan;
+  unsigned pressed = intention_->at(t_s, touch()).grip ? can::profile::kButtonGrip : 0U;
+  if (t_s <= intention_->end_s() + kDeadManAfterScript_s) pressed |= can::profile::kButtonDeadMan;
   return static_cast<std::uint16_t>(pressed);
 }
 

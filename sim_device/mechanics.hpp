@@ -1,6 +1,8 @@
 #pragma once
 // Plant, fingers and operator as one thing that time moves: torques in, angles and buttons out.
 
+#include <memory>
+
 #include "protocol/can/units.hpp"
 #include "sim_device/deadline.hpp"
 #include "sim_device/hand.hpp"
@@ -12,10 +14,17 @@ namespace ligature::sim {
 inline constexpr Time kPlantStep = std::chrono::microseconds(100);  ///< longest; an interval is cut into equal ones
 inline constexpr double kDeadManAfterScript_s = 1.0;
 
+/// What the device is made of, and whose hand is on it.
+struct Body {
+  PlantParameters plant;
+  Hand hand;
+};
+
 class Mechanics {
  public:
-  /// The device rests in the operator's first key pose, with the operator's hand on it. @pre that pose can be reached.
-  Mechanics(OperatorPath path, Time now);
+  /// The device rests where the intention starts, with the hand on it. @pre that pose can be reached.
+  Mechanics(std::unique_ptr<Intention> intention, Time now, const Body& body = {});
+  Mechanics(OperatorPath path, Time now) : Mechanics(std::make_unique<OperatorPath>(std::move(path)), now) {}
 
   /// The operator begins; later calls change nothing.
   void start_script(Time now) noexcept;
@@ -27,16 +36,17 @@ class Mechanics {
   [[nodiscard]] bool has_started() const noexcept { return started_at_ != kNever; }
   /// The script is over and the dead-man has been let go.
   [[nodiscard]] bool is_done() const noexcept {
-    return has_started() && script_time_s() > path_.end_s() + kDeadManAfterScript_s;
+    return has_started() && script_time_s() > intention_->end_s() + kDeadManAfterScript_s;
   }
   [[nodiscard]] const Plant& plant() const noexcept { return plant_; }
-  [[nodiscard]] Intent intent() const noexcept { return path_.at(script_time_s()); }
+  [[nodiscard]] Intent intent() const noexcept { return intention_->at(script_time_s(), touch()); }
   /// Since the script's start; minus infinity before it.
   [[nodiscard]] double script_time_s() const noexcept;
-  [[nodiscard]] double script_end_s() const noexcept { return path_.end_s(); }
+  [[nodiscard]] double script_end_s() const noexcept { return intention_->end_s(); }
+  [[nodiscard]] Touch touch() const noexcept { return {plant_.tip_D_m(), plant_.tip_velocity_D_m_per_s()}; }
 
  private:
-  OperatorPath path_;
+  std::unique_ptr<Intention> intention_;
   Hand hand_;
   Plant plant_;
   Time now_;

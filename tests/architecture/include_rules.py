@@ -26,8 +26,9 @@ RULES = {
     "firmware/app": (["firmware", "protocol"], ["CLI/", "spdlog/", "OS"]),
     "sim_device": (["protocol/can", "protocol/scene"], ["ruckig/", "Eigen/", "CLI/", "spdlog/", "nlohmann/", "OS"]),
     "host/knot": ([], ["Eigen/"]),
-    "host/view": (["host", "protocol/scene", "host/knot", "ligature_msg"], ["lcm/", "CLI/", "nlohmann/", "boost/", "OS"]),
     "host/lab": (["firmware/physics", "firmware/rt", "protocol/scene", "host/knot"], ["CLI/", "nlohmann/", "Eigen/", "OS"]),
+    # The whole rig in one process and in virtual time: it is made of everything, and only the lab's rig may be.
+    "host/lab/rig": (["firmware", "sim_device", "protocol/can", "protocol/scene", "host", "ligature_msg"], ["Eigen/", "OS"]),
     "host": (["protocol/scene", "protocol/recorder", "host/knot", "host/view", "ligature_msg"], ["lcm/", "CLI/", "nlohmann/", "spdlog/", "OS"]),
     "host/view": (["host", "protocol/scene", "ligature_msg"], ["boost/", "CLI/", "nlohmann/", "OS"]),
 }

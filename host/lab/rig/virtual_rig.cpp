@@ -1,0 +1,140 @@
+#include "host/lab/rig/virtual_rig.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace ligature::lab {
+namespace {
+
+constexpr Nanoseconds kPeriod = std::chrono::milliseconds(1);
+constexpr Nanoseconds kGlance = std::chrono::microseconds(20);  // between two looks at the buses
+
+physics::Simulation thread_of(const scene::Scene& scene) {
+  auto made = physics::Simulation::make(scene);
+  if (const auto* why = std::get_if<std::string>(&made)) throw std::runtime_error(*why);
+  return std::get<physics::Simulation>(std::move(made));
+}
+
+VirtualRig::Intentions scripted(const RigSetup& setup, const scene::GripperScript& script) {
+  VirtualRig::Intentions hands;
+  for (std::size_t h = 0; h < 2; ++h) {
+    auto path = sim::OperatorPath::make(script.keys[h], sim::WorkspaceMap(setup.scene.hands));
+    if (const auto* why = std::get_if<std::string>(&path)) throw std::runtime_error(*why);
+    hands[h] = std::make_unique<sim::OperatorPath>(std::get<sim::OperatorPath>(std::move(path)));
+  }
+  return hands;
+}
+
+VirtualRig::Intentions held(const RigSetup& setup, const SeeingOperator& seeing) {
+  const sim::WorkspaceMap map(setup.scene.hands);
+  VirtualRig::Intentions hands;
+  for (std::size_t h = 0; h < 2; ++h) {
+    const sim::Vec3 start = map.to_device(seeing.start_W_m()[h]);
+    if (!sim::joints_of_tip(start)) throw std::runtime_error("the operator's hands start out of the devices' reach");
+    hands[h] = std::make_unique<sim::HeldIntention>(start);
+  }
+  return hands;
+}
+
+}  // namespace
+
+VirtualRig::VirtualRig(RigSetup s, const scene::GripperScript& script) : VirtualRig(s, scripted(s, script)) {}
+
+VirtualRig::VirtualRig(RigSetup s, SeeingOperator& seeing) : VirtualRig(s, held(s, seeing)) { seeing_ = &seeing; }
+
+VirtualRig::VirtualRig(RigSetup s, Intentions intentions)
+    : setup(std::move(s)),
+      thread(thread_of(setup.scene)),
+      left((held_[0] = dynamic_cast<sim::HeldIntention*>(intentions[0].get()), std::move(intentions[0])), setup.body[0],
+           time),
+      right((held_[1] = dynamic_cast<sim::HeldIntention*>(intentions[1].get()), std::move(intentions[1])),
+            setup.body[1], time),
+      controller(setup.scene.hands, setup.settings) {
+  left.lose_frames(setup.frame_loss, 2 * setup.seed);
+  right.lose_frames(setup.frame_loss, 2 * setup.seed + 1);
+}
+
+void VirtualRig::record(const std::string& path) {
+  recording_ = std::make_unique<Recording>(path, setup.scene, setup.scene_file);
+}
+
+std::optional<std::string> VirtualRig::run(std::int64_t ticks, bool end_when_done) {
+  end_when_done_ = end_when_done;
+  for (DeviceBus* b : {&left, &right}) {
+    if (auto why = platform::configure_drives(*b, wait, {})) return why;
+  }
+  platform::start_drives(left);
+  platform::start_drives(right);
+  cycle.end_after(ticks);
+  cycle.run();
+  take_records();
+  if (recording_) recording_->close();
+  return std::nullopt;
+}
+
+bool VirtualRig::is_done() const noexcept {
+  return left.device.mechanics().is_done() && right.device.mechanics().is_done();
+}
+
+bool VirtualRig::Wait::wait(Nanoseconds deadline) noexcept {
+  if (rig.time >= deadline) return false;
+  rig.time = std::min(deadline, rig.time + kGlance);
+  return true;
+}
+
+void VirtualRig::sleep_until(Nanoseconds at) noexcept {
+  take_records();
+  if (cut_left_at >= 0 && static_cast<std::int64_t>(records.size()) >= cut_left_at) left.cut = true;
+  if (seeing_ != nullptr) look_and_act();
+  time = std::max(time, at);
+  for (DeviceBus* b : {&left, &right}) b->device.advance(at);
+  look_at_drives();
+  if (each_tick) each_tick();
+  if (end_when_done_ && is_done()) cycle.end_after(0);
+  if (static_cast<std::int64_t>(records.size()) < stall_at) return;
+  for (; stall_for > Nanoseconds(0); stall_for -= kPeriod) {
+    time += kPeriod;
+    for (DeviceBus* b : {&left, &right}) b->device.advance(time);
+    look_at_drives();
+  }
+}
+
+void VirtualRig::take_records() {
+  for (rt::TickRecord r; outlets->records.pop(r);) {
+    if (recording_) recording_->take(r);
+    records.push_back(r);
+  }
+  if (recording_ && outlets->shape.refresh()) recording_->take(outlets->shape.front());
+}
+
+/// What a person would see on the screen and feel in the fingers, and what the hands do about it.
+void VirtualRig::look_and_act() {
+  const std::array<const sim::Mechanics*, 2> hands{&left.device.mechanics(), &right.device.mechanics()};
+  if (!hands[0]->has_started() || !hands[1]->has_started() || records.empty()) return;
+  const sim::WorkspaceMap map(setup.scene.hands);
+  sim::Sight sight;
+  sight.t_s = std::min(hands[0]->script_time_s(), hands[1]->script_time_s());
+  sight.thread_W = thread.nodes_W();
+  for (std::size_t h = 0; h < 2; ++h) {
+    const auto& f = records.back().f_device_N[h];
+    sight.tool_W[h] = map.to_world(hands[h]->plant().tip_D_m());
+    if (setup.scene.hands.force_scale > 0.0)
+      sight.force_W_N[h] = sim::Vec3(f[0], f[1], f[2]) / setup.scene.hands.force_scale;
+  }
+  const auto wishes = seeing_->act(sight);
+  for (std::size_t h = 0; h < 2; ++h) {
+    const auto& wish = wishes[h];
+    held_[h]->set(hands[h]->script_time_s(), {map.to_device(wish.p_W), wish.v_W / map.scale, wish.grip});
+    if (seeing_->is_done() && held_[h]->end_s() > hands[h]->script_time_s())
+      held_[h]->finish(hands[h]->script_time_s());
+  }
+}
+
+void VirtualRig::look_at_drives() {
+  const auto on = [](const DeviceBus& b) {
+    return std::ranges::any_of(b.device.torque_permille(), [](auto t) { return t != 0; });
+  };
+  drives_push.push_back(on(left) || on(right));
+}
+
+}  // namespace ligature::lab

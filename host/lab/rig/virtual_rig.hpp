@@ -1,0 +1,104 @@
+#pragma once
+// The firmware's real-time side and two simulated hands, joined by CAN frames, on one clock that is a number: faster
+// than real time, and the same to the last bit in every run.
+//
+//   VirtualRig rig({.scene = paper}, script);            // or a SeeingOperator, or any two intentions
+//   rig.record("run.lcmlog");                            // what `ligature-host record` would have written
+//   if (const auto why = rig.run(23000)) ...             // start-up, ticks, shut-down
+//   rig.records, rig.thread, rig.controller ...          // what came of it
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/cycle.hpp"
+#include "firmware/platform/can_master.hpp"
+#include "firmware/platform/rig_bus.hpp"
+#include "host/lab/rig/device_bus.hpp"
+#include "host/lab/rig/recording.hpp"
+#include "host/lab/rig/seeing_operator.hpp"
+#include "protocol/scene/gripper_script.hpp"
+#include "protocol/scene/scene.hpp"
+
+namespace ligature::lab {
+
+struct RigSetup {
+  scene::Scene scene;
+  std::array<sim::Body, 2> body{};       ///< devices and hands, left and right
+  control::Settings settings{20, true};  ///< armed from the start
+  double frame_loss = 0.0;               ///< share of process data frames that is lost, 0 .. 1
+  std::uint64_t seed = 1;                ///< of the losses
+  std::string scene_file = "scene";      ///< how a recording calls the scene
+};
+
+class VirtualRig {
+ public:
+  using Intentions = std::array<std::unique_ptr<sim::Intention>, 2>;
+
+  /// @throws std::runtime_error with one line when the physics refuses the scene or a key pose is out of reach.
+  VirtualRig(RigSetup setup, const scene::GripperScript& script);
+  /// @param seeing must outlive the rig.
+  VirtualRig(RigSetup setup, SeeingOperator& seeing);
+  VirtualRig(RigSetup setup, Intentions intentions);
+  VirtualRig(const VirtualRig&) = delete;
+  VirtualRig& operator=(const VirtualRig&) = delete;
+
+  /// Writes an LCM log of everything from here on. @throws when the file exists or cannot be made.
+  void record(const std::string& path);
+
+  /// Start-up, so many ticks (or fewer: `end_when_done` ends with the operator), shut-down, recording closed.
+  /// @return why it did not start, or nothing.
+  std::optional<std::string> run(std::int64_t ticks, bool end_when_done = false);
+
+  [[nodiscard]] bool is_done() const noexcept;  ///< both operators' hands have let go
+
+  struct Wait final : platform::BusWait {
+    explicit Wait(VirtualRig& r) : rig(r) {}
+    Nanoseconds now() noexcept override { return rig.time; }
+    bool wait(Nanoseconds deadline) noexcept override;
+    VirtualRig& rig;
+  };
+  struct Clock {
+    Nanoseconds now() noexcept { return rig.time; }
+    void sleep_until(Nanoseconds at) noexcept { rig.sleep_until(at); }
+    VirtualRig& rig;
+  };
+
+  const RigSetup setup;
+
+ private:
+  std::array<sim::HeldIntention*, 2> held_{};  // of a seeing operator; before the devices, which own them
+
+ public:
+  Nanoseconds time{0};
+  std::vector<bool> drives_push;  ///< a motor has torque, at the end of the period before each SYNC
+  std::int64_t cut_left_at = -1;  ///< tick at which the left hand's process dies
+  std::int64_t stall_at = 0;      ///< tick at which the real-time thread sleeps too long, once
+  Nanoseconds stall_for{0};
+  std::function<void()> each_tick;  ///< called between two ticks, the devices just before the next SYNC
+
+  physics::Simulation thread;
+  DeviceBus left, right;
+  Wait wait{*this};
+  platform::RigBus bus{left, right, wait};
+  Clock clock{*this};
+  control::Controller controller;
+  std::unique_ptr<rt::Outlets> outlets = std::make_unique<rt::Outlets>();
+  Cycle<platform::RigBus, Clock> cycle{bus, clock, controller, thread, *outlets};
+  std::vector<rt::TickRecord> records;
+
+ private:
+  void sleep_until(Nanoseconds at) noexcept;
+  void take_records();
+  void look_and_act();
+  void look_at_drives();
+
+  SeeingOperator* seeing_ = nullptr;
+  std::unique_ptr<Recording> recording_;
+  bool end_when_done_ = false;
+};
+
+}  // namespace ligature::lab

@@ -1,0 +1,59 @@
+#pragma once
+// What moves a hand from within: a script, an eye on the thread, a tremor, ill will.
+
+#include "sim_device/kinematics.hpp"
+
+namespace ligature::sim {
+
+/// Where the hand wants the stylus, in D, and what its fingers press.
+struct Intent {
+  Vec3 p_DH = Vec3::Zero();
+  Vec3 v_DH = Vec3::Zero();
+  bool grip = false;
+};
+
+/// Where the stylus is.
+struct Touch {
+  Vec3 p_DT = Vec3::Zero();
+  Vec3 v_DT = Vec3::Zero();
+};
+
+/// A pure function of time and touch, so that a run can be repeated to the last bit.
+class Intention {
+ public:
+  virtual ~Intention() = default;
+  /// @param t_s since the start, minus infinity before it. @param touch what the fingers feel of the stylus.
+  [[nodiscard]] virtual Intent at(double t_s, const Touch& touch) const noexcept = 0;
+  /// Nothing changes after this; the dead-man is let go a second later.
+  [[nodiscard]] virtual double end_s() const noexcept = 0;
+  /// Where the device rests before the start. @pre within its reach.
+  [[nodiscard]] virtual Vec3 start_D_m() const noexcept = 0;
+};
+
+/// What somebody else decided, once a millisecond; carried on at its velocity in between.
+class HeldIntention final : public Intention {
+ public:
+  explicit HeldIntention(const Vec3& start_D_m) : start_D_m_(start_D_m) { intent_.p_DH = start_D_m; }
+
+  void set(double t_s, const Intent& intent) noexcept {
+    since_s_ = t_s;
+    intent_ = intent;
+  }
+  void finish(double t_s) noexcept { end_s_ = t_s; }
+
+  [[nodiscard]] Intent at(double t_s, const Touch&) const noexcept override {
+    if (!(t_s > since_s_)) return intent_;
+    Intent now = intent_;
+    now.p_DH += (t_s - since_s_) * intent_.v_DH;
+    return now;
+  }
+  [[nodiscard]] double end_s() const noexcept override { return end_s_; }
+  [[nodiscard]] Vec3 start_D_m() const noexcept override { return start_D_m_; }
+
+ private:
+  Vec3 start_D_m_;
+  Intent intent_;
+  double since_s_ = 1e300, end_s_ = 1e300;
+};
+
+}  // namespace ligature::sim

@@ -1,0 +1,30 @@
+#pragma once
+// What an operator sees and feels, and what it wants its hands to do. World frame W, SI.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace ligature::sim {
+
+using Vec3 = Eigen::Vector3d;
+
+inline constexpr std::size_t kLeftHand = 0, kRightHand = 1;
+
+/// One look: the thread as a polyline from its first node on, and both tool tips.
+struct Sight {
+  double t_s = 0.0;
+  std::span<const Vec3> thread_W;
+  std::array<Vec3, 2> tool_W{Vec3::Zero(), Vec3::Zero()};
+  std::array<Vec3, 2> force_W_N{Vec3::Zero(), Vec3::Zero()};  ///< felt by each hand, world newtons; 0: nothing held
+};
+
+/// Where a hand wants its tool to be, and whether it squeezes.
+struct HandWish {
+  Vec3 p_W = Vec3::Zero();
+  Vec3 v_W = Vec3::Zero();
+  bool grip = false;
+};
+
+}  // namespace ligature::sim
