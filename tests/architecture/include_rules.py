@@ -10,21 +10,23 @@ import sys
 
 OURS = ("protocol/", "firmware/", "sim_device/", "host/")
 SCENE_STRUCT = "protocol/scene/scene.hpp"
+DEVICE_STRUCT = "protocol/device/device.hpp"
 
 # folder: (our folders it may include besides itself, third-party and OS headers it may include)
 RULES = {
     "protocol/can": ([], []),
     "protocol/can/describe": (["protocol/can"], ["OS"]),
     "protocol/scene": ([], ["toml++/"]),
+    "protocol/device": ([SCENE_STRUCT, "protocol/scene/strict_table.hpp"], ["toml++/", "OS"]),
     "protocol/recorder": ([], []),
     "firmware/rt": ([], []),
     "firmware/physics": (["firmware/rt", SCENE_STRUCT], ["Eigen/"]),
-    "firmware/control": (["firmware/rt", "firmware/physics", SCENE_STRUCT], ["Eigen/", "ruckig/"]),
-    "firmware/platform": (["firmware/rt", "protocol/can"], ["OS"]),
+    "firmware/control": (["firmware/rt", "firmware/physics", SCENE_STRUCT, DEVICE_STRUCT], ["Eigen/", "ruckig/"]),
+    "firmware/platform": (["firmware/rt", "protocol/can", DEVICE_STRUCT], ["OS"]),
     "firmware/telemetry": (["firmware/rt", "protocol/recorder", "ligature_msg"], ["lcm/", "OS"]),
     "firmware/cycle.hpp": (["firmware/rt", "firmware/control", "firmware/physics", "protocol/can"], []),
     "firmware/app": (["firmware", "protocol"], ["CLI/", "spdlog/", "OS"]),
-    "sim_device": (["protocol/can", "protocol/scene"], ["ruckig/", "Eigen/", "CLI/", "spdlog/", "nlohmann/", "OS"]),
+    "sim_device": (["protocol/can", "protocol/scene", "protocol/device"], ["ruckig/", "Eigen/", "CLI/", "spdlog/", "nlohmann/", "OS"]),
     "host/knot": ([], ["Eigen/"]),
     "host/lab": (["firmware/physics", "firmware/rt", "protocol/scene", "host/knot"], ["CLI/", "nlohmann/", "Eigen/", "OS"]),
     # The whole rig in one process and in virtual time: it is made of everything, and only the lab's rig may be.

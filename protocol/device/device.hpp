@@ -1,0 +1,60 @@
+#pragma once
+// What one must know of a haptic device to drive it: numbers only. Files: scenes/devices/*.toml (device_file.hpp reads
+// them). SI units; D is the device's base frame (x right, y away from the person, z up), T the tip.
+
+#include <array>
+#include <cstdint>
+#include <numbers>
+#include <string>
+
+namespace ligature::device {
+
+using Vec = std::array<double, 3>;
+
+/// Which function leads from joint angles to the tip; firmware and simulated device each have their own of each.
+enum class Kinematics : std::uint8_t {
+  kOmniSerial,  ///< waist, shoulder, forearm driven from the base: links[0] upper arm, links[1] forearm
+  kCartesian,   ///< three linear axes, each pulled by a drum: links[i] = drum radius, p = home + links * q
+};
+
+/// Where a number comes from.
+enum class Source : std::uint8_t { kAssumed, kDatasheet, kMeasured };
+
+struct Device {
+  std::string name;
+  Kinematics kinematics = Kinematics::kOmniSerial;
+
+  // Geometry.
+  Vec links_m{};
+  Vec home_tip_m{};  ///< tip position that maps to the scene's workspace_origin_m
+  Vec joint_min_rad{}, joint_max_rad{};  ///< stops; of an Omni's third joint: of the angle between the links, q3 - q2
+  Vec workspace_min_m{}, workspace_max_m{};  ///< box in D in which the tip is used
+
+  // Drives, seen from the joint.
+  int motor_counts = 0;          ///< encoder counts of one motor revolution, after quadrature
+  double gear = 1.0;             ///< motor revolutions per joint revolution
+  double rated_torque_Nm = 0.0;  ///< 0x6076
+  int max_torque_permille = 0;   ///< 0x6072
+  double delay_s = 0.0;          ///< from the sample of a position to the effect of the torque made of it
+
+  // What a hand feels of it when it is off, at the tip in the home pose.
+  double apparent_mass_kg = 0.0;
+  double damping_N_s_per_m = 0.0;  ///< b
+  double coulomb_N = 0.0;
+
+  // Limits.
+  double peak_force_N = 0.0;
+  double continuous_force_N = 0.0;
+  double thermal_time_s = 0.0;  ///< time constant of the motors' winding
+  double velocity_limit_m_per_s = 0.0;
+  double force_step_N = 0.0;              ///< largest change within one period
+  double force_slew_N_per_s = 0.0;        ///< largest rate of change over many periods
+  double hand_acceleration_m_per_s2 = 0.0;  ///< that a hand may give the tip; the passivity controller keeps room for it
+
+  [[nodiscard]] double counts_per_revolution() const noexcept { return motor_counts * gear; }
+  [[nodiscard]] double rad_per_count() const noexcept { return 2.0 * std::numbers::pi / counts_per_revolution(); }
+  [[nodiscard]] double Nm_per_permille() const noexcept { return rated_torque_Nm * 1e-3; }  ///< the torque quantum
+  [[nodiscard]] double max_torque_Nm() const noexcept { return Nm_per_permille() * max_torque_permille; }
+};
+
+}  // namespace ligature::device

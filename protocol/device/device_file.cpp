@@ -1,0 +1,165 @@
+#include "protocol/device/device_file.hpp"
+
+#include <fstream>
+#include <stdexcept>
+
+#include "protocol/device/omni_text.hpp"
+#include "protocol/scene/strict_table.hpp"
+
+namespace ligature::device {
+namespace {
+
+using scene::Error;
+using scene::Range;
+using scene::ReadContext;
+using scene::StrictTable;
+
+constexpr std::pair<const char*, Kinematics> kKinematics[] = {{"omni-serial", Kinematics::kOmniSerial},
+                                                              {"cartesian", Kinematics::kCartesian}};
+constexpr std::pair<const char*, Source> kSources[] = {
+    {"assumed", Source::kAssumed}, {"datasheet", Source::kDatasheet}, {"measured", Source::kMeasured}};
+constexpr Range kPositive{0.0, 1e6, true};
+constexpr Range kNotNegative{0.0, 1e6};
+constexpr double kFar = 100.0;  // m or rad
+
+/// Reads {value = .., source = ".."} entries and notes the sources.
+class Marked {
+ public:
+  Marked(StrictTable& table, std::string path, DeviceFile& out) : table_(table), path_(std::move(path)), out_(out) {}
+
+  void number(const char* key, double& v, Range range) {
+    entry(key, [&](StrictTable& t) { t.number("value", v, range); });
+  }
+  void integer(const char* key, int& v, int low, int high) {
+    entry(key, [&](StrictTable& t) { t.integer("value", v, low, high); });
+  }
+  void vector(const char* key, Vec& v) {
+    entry(key, [&](StrictTable& t) { t.vector("value", v, kFar); });
+  }
+
+ private:
+  template <class Read>
+  void entry(const char* key, Read read) {
+    table_.require(key);
+    table_.table(key, [&](StrictTable& t) {
+      t.require("value");
+      t.require("source");
+      read(t);
+      Source source = Source::kAssumed;
+      t.choice("source", source, kSources);
+      out_.sources.emplace_back(path_ + "." + key, source);
+    });
+  }
+
+  StrictTable& table_;
+  std::string path_;
+  DeviceFile& out_;
+};
+
+void read_identity(StrictTable& t, Device& d) {
+  t.require("name");
+  t.require("kinematics");
+  t.text("name", d.name);
+  t.choice("kinematics", d.kinematics, kKinematics);
+}
+
+void read_geometry(Marked t, Device& d) {
+  t.vector("links_m", d.links_m);
+  t.vector("home_tip_m", d.home_tip_m);
+  t.vector("joint_min_rad", d.joint_min_rad);
+  t.vector("joint_max_rad", d.joint_max_rad);
+  t.vector("workspace_min_m", d.workspace_min_m);
+  t.vector("workspace_max_m", d.workspace_max_m);
+}
+
+void read_drives(Marked t, Device& d) {
+  t.integer("motor_counts", d.motor_counts, 1, 1 << 30);
+  t.number("gear", d.gear, kPositive);
+  t.number("rated_torque_Nm", d.rated_torque_Nm, kPositive);
+  t.integer("max_torque_permille", d.max_torque_permille, 1, 32767);
+  t.number("delay_s", d.delay_s, {0.0, 1.0});
+}
+
+void read_feel(Marked t, Device& d) {
+  t.number("apparent_mass_kg", d.apparent_mass_kg, kPositive);
+  t.number("damping_N_s_per_m", d.damping_N_s_per_m, kNotNegative);
+  t.number("coulomb_N", d.coulomb_N, kNotNegative);
+}
+
+void read_limits(Marked t, Device& d) {
+  t.number("peak_force_N", d.peak_force_N, kPositive);
+  t.number("continuous_force_N", d.continuous_force_N, kPositive);
+  t.number("thermal_time_s", d.thermal_time_s, kPositive);
+  t.number("velocity_limit_m_per_s", d.velocity_limit_m_per_s, kPositive);
+  t.number("force_step_N", d.force_step_N, kPositive);
+  t.number("force_slew_N_per_s", d.force_slew_N_per_s, kPositive);
+  t.number("hand_acceleration_m_per_s2", d.hand_acceleration_m_per_s2, kPositive);
+}
+
+/// What ties values together.
+void check(StrictTable& geometry, StrictTable& limits, const Device& d) {
+  const int links = d.kinematics == Kinematics::kCartesian ? 3 : 2;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (static_cast<int>(i) < links && d.links_m[i] <= 0.0)
+      geometry.refuse("links_m", "the first " + std::to_string(links) + " more than 0");
+    if (d.joint_min_rad[i] >= d.joint_max_rad[i]) geometry.refuse("joint_max_rad", "more than joint_min_rad");
+    if (d.workspace_min_m[i] >= d.workspace_max_m[i]) geometry.refuse("workspace_max_m", "more than workspace_min_m");
+  }
+  if (d.continuous_force_N > d.peak_force_N) limits.refuse("continuous_force_N", "at most peak_force_N");
+}
+
+std::variant<DeviceFile, Error> read(const toml::table& root, const std::string& name) {
+  ReadContext context{name, {}, {}};
+  DeviceFile out;
+  Device& d = out.device;
+  StrictTable top(root, "", context);
+  for (const char* table : {"device", "geometry", "drives", "feel", "limits"}) {
+    if (!root.contains(table)) return Error{name + ": no [" + table + "] table, allowed a device record with one"};
+  }
+  top.table("device", [&](StrictTable& t) { read_identity(t, d); });
+  top.table("drives", [&](StrictTable& t) { read_drives(Marked(t, "drives", out), d); });
+  top.table("feel", [&](StrictTable& t) { read_feel(Marked(t, "feel", out), d); });
+  top.table("geometry", [&](StrictTable& g) {
+    read_geometry(Marked(g, "geometry", out), d);
+    top.table("limits", [&](StrictTable& l) {
+      read_limits(Marked(l, "limits", out), d);
+      if (!l.failed()) check(g, l, d);
+    });
+  });
+  top.finish();
+  if (context.error) return *context.error;
+  return out;
+}
+
+}  // namespace
+
+std::variant<DeviceFile, Error> parse_device(const std::string& text, const std::string& name) {
+  try {
+    return read(toml::parse(text, name), name);
+  } catch (const toml::parse_error& e) {
+    return Error{name + ":" + std::to_string(e.source().begin.line) + ": not TOML: " + std::string(e.description())};
+  }
+}
+
+std::variant<DeviceFile, Error> load_device_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path)) return Error{path.string() + ": cannot be read"};
+  return parse_device({std::istreambuf_iterator<char>(file), {}}, path.string());
+}
+
+std::variant<Device, Error> load_device(const std::filesystem::path& path) {
+  auto file = load_device_file(path);
+  if (auto* error = std::get_if<Error>(&file)) return *error;
+  return std::get<DeviceFile>(file).device;
+}
+
+const Device& omni() {
+  static const Device device = [] {
+    auto parsed = parse_device(kOmniText, "scenes/devices/omni.toml");
+    if (auto* error = std::get_if<Error>(&parsed)) throw std::logic_error(error->text);  // a test reads the same text
+    return std::get<DeviceFile>(parsed).device;
+  }();
+  return device;
+}
+
+}  // namespace ligature::device

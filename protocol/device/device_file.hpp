@@ -1,0 +1,32 @@
+#pragma once
+// Device records from TOML. Strict, as scenes are; each number says where it comes from:
+//   peak_force_N = {value = 3.3, source = "datasheet"}          source: "measured" | "datasheet" | "assumed"
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "protocol/device/device.hpp"
+#include "protocol/scene/scene.hpp"
+
+namespace ligature::device {
+
+/// A record and the source of each of its values, by dotted key, in the file's order.
+struct DeviceFile {
+  Device device;
+  std::vector<std::pair<std::string, Source>> sources;
+};
+
+/// @return the record, or the one line that says what is wrong: file, line, key, what was found, what is allowed. Every
+/// key must be there: a device has no defaults.
+[[nodiscard]] std::variant<DeviceFile, scene::Error> load_device_file(const std::filesystem::path& path);
+[[nodiscard]] std::variant<Device, scene::Error> load_device(const std::filesystem::path& path);
+/// The same from a text; `name` stands for the file in messages.
+[[nodiscard]] std::variant<DeviceFile, scene::Error> parse_device(const std::string& toml, const std::string& name);
+
+/// scenes/devices/omni.toml as it was when this was built: what programs use without --device.
+[[nodiscard]] const Device& omni();
+
+}  // namespace ligature::device
