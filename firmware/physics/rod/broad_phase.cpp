@@ -4,11 +4,18 @@
 #include <cmath>
 #include <numbers>
 
+#include "firmware/physics/rod/closest.hpp"
+
 namespace ligature::physics::rod {
 namespace {
 
 constexpr int kBlock = 8;
-constexpr float kSlack = 1.0001F;  // float rounding of centres and radii
+constexpr float kSlack = 1.0001F;       // float rounding of centres and radii
+constexpr std::size_t kTable = 2048;  // places for impulses: a few times the most contacts there can be
+
+std::size_t place_of(std::int32_t a, std::int32_t b) noexcept {
+  return (static_cast<std::size_t>(a) * 2654435761U + static_cast<std::size_t>(b) * 40503U) % kTable;
+}
 
 }  // namespace
 
@@ -17,12 +24,12 @@ void BroadPhase::reserve(int nodes, int pairs) {
   for (auto* array : {&x_, &y_, &z_, &r_}) array->assign(n, 0.0F);
   blocks_.resize(n / kBlock);
   capacity_ = pairs;
-  old_.reserve(static_cast<std::size_t>(pairs));
+  kept_.assign(kTable, Kept{});
 }
 
-bool BroadPhase::build(const State& state, double diameter_m, double margin_m, std::vector<Candidate>& list) noexcept {
-  const auto& s = state.mesh.s;
-  const std::size_t segments = s.size() - 1, blocks = (segments + kBlock - 1) / kBlock;
+// Spheres of segments and of blocks.
+void BroadPhase::place(const State& state, const Motion& motion, float horizon_s) noexcept {
+  const std::size_t segments = state.x.size() - 1, blocks = (segments + kBlock - 1) / kBlock;
   const Vec origin = state.x[0];  // floats are relative to the thread, so a far-away thread loses nothing
   for (std::size_t j = 0; j < blocks * kBlock; ++j) {
     if (j >= segments) {  // padding: far from everything
@@ -34,9 +41,8 @@ bool BroadPhase::build(const State& state, double diameter_m, double margin_m, s
     x_[j] = static_cast<float>(mid[0]);
     y_[j] = static_cast<float>(mid[1]);
     z_[j] = static_cast<float>(mid[2]);
-    r_[j] = static_cast<float>(norm(half)) * kSlack;
+    r_[j] = (static_cast<float>(norm(half)) + horizon_s * static_cast<float>(motion.speed(j))) * kSlack;
   }
-  const float reach = static_cast<float>(diameter_m + margin_m) * kSlack;
   for (std::size_t k = 0; k < blocks; ++k) {
     const std::size_t begin = k * kBlock, end = std::min(begin + kBlock, segments);
     Ball ball{0, 0, 0, 0};
@@ -44,36 +50,64 @@ bool BroadPhase::build(const State& state, double diameter_m, double margin_m, s
     const float scale = 1.0F / static_cast<float>(end - begin);
     ball.x *= scale, ball.y *= scale, ball.z *= scale;
     for (std::size_t j = begin; j < end; ++j) {
-      ball.r = std::max(ball.r, std::hypot(x_[j] - ball.x, y_[j] - ball.y, z_[j] - ball.z) + r_[j]);
+      const float x = x_[j] - ball.x, y = y_[j] - ball.y, z = z_[j] - ball.z;
+      ball.r = std::max(ball.r, std::sqrt(x * x + y * y + z * z) + r_[j]);
     }
     blocks_[k] = ball;
   }
+}
 
-  old_.clear();
+void BroadPhase::keep_impulses(const std::vector<Candidate>& list) noexcept {
+  for (auto& k : kept_) k.a = -1;
+  std::size_t held = 0;
   for (const auto& c : list) {
-    if (dot(c.impulse, c.impulse) > 0.0) old_.push_back(c);
+    if (dot(c.impulse, c.impulse) == 0.0 || held + 1 >= kTable) continue;
+    std::size_t at = place_of(c.a, c.b);
+    while (kept_[at].a >= 0 && (kept_[at].a != c.a || kept_[at].b != c.b)) at = (at + 1) % kTable;
+    if (kept_[at].a < 0) {
+      kept_[at] = {c.a, c.b, c.impulse};
+      ++held;
+    } else {
+      kept_[at].impulse += c.impulse;  // two, when their segments were merged
+    }
   }
+}
+
+Vec BroadPhase::kept_impulse(std::int32_t a, std::int32_t b) const noexcept {
+  std::size_t at = place_of(a, b);
+  while (kept_[at].a >= 0 && (kept_[at].a != a || kept_[at].b != b)) at = (at + 1) % kTable;
+  return kept_[at].a < 0 ? Vec{} : kept_[at].impulse;
+}
+
+bool BroadPhase::consider(const State& state, const Motion& motion, const Outlook& outlook, std::size_t a,
+                          std::size_t b, std::vector<Candidate>& list) const noexcept {
+  if (b < a + 2) return true;
+  const double d = outlook.diameter_m, arc = state.mesh.s[b] - state.mesh.s[a + 1];
+  if (arc < kLeastArc * d) return true;
+  const double reach = arc < 0.5 * std::numbers::pi * d ? d * std::sin(arc / d) : d;
+  const double limit = reach + outlook.skin_m + outlook.horizon_s * motion.rate(a, b);
+  const Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
+  if (c.distance2 > limit * limit) return true;
+  if (static_cast<int>(list.size()) >= capacity_) return false;
+  Candidate pair;
+  pair.a = static_cast<std::int32_t>(a);
+  pair.b = static_cast<std::int32_t>(b);
+  pair.reach_m = reach;
+  pair.due = std::sqrt(c.distance2) - reach;
+  pair.impulse = kept_impulse(pair.a, pair.b);
+  list.push_back(pair);
+  return true;
+}
+
+bool BroadPhase::build(const State& state, Motion& motion, const Outlook& outlook,
+                       std::vector<Candidate>& list) noexcept {
+  motion.restart();
+  keep_impulses(list);
   list.clear();
+  place(state, motion, static_cast<float>(outlook.horizon_s));
+  const std::size_t segments = state.x.size() - 1, blocks = (segments + kBlock - 1) / kBlock;
+  const float reach = static_cast<float>(outlook.diameter_m + outlook.skin_m) * kSlack;
   bool room = true;
-  const double close_arc = 0.6 * diameter_m, bent_arc = 0.5 * std::numbers::pi * diameter_m;
-  const auto consider = [&](std::size_t a, std::size_t b) {
-    if (b < a + 2) return;
-    const double arc = s[b] - s[a + 1];
-    if (arc < close_arc) return;
-    if (static_cast<int>(list.size()) >= capacity_) {
-      room = false;
-      return;
-    }
-    Candidate c;
-    c.a = static_cast<std::int32_t>(a);
-    c.b = static_cast<std::int32_t>(b);
-    c.reach_m = arc < bent_arc ? diameter_m * std::sin(arc / diameter_m) : diameter_m;
-    c.due = -1e9;
-    for (const auto& o : old_) {
-      if (o.a == c.a && o.b == c.b) c.impulse += o.impulse;  // two, when their segments were merged
-    }
-    list.push_back(c);
-  };
   for (std::size_t p = 0; p < blocks; ++p) {
     for (std::size_t q = p; q < blocks; ++q) {
       const float bx = blocks_[p].x - blocks_[q].x, by = blocks_[p].y - blocks_[q].y, bz = blocks_[p].z - blocks_[q].z;
@@ -87,7 +121,9 @@ bool BroadPhase::build(const State& state, double diameter_m, double margin_m, s
           const float near = r_[base + l] + r_[a] + reach;
           hits |= static_cast<unsigned>(dx * dx + dy * dy + dz * dz <= near * near) << l;
         }
-        for (; hits != 0; hits &= hits - 1) consider(a, base + static_cast<std::size_t>(__builtin_ctz(hits)));
+        for (; hits != 0; hits &= hits - 1) {
+          room &= consider(state, motion, outlook, a, base + static_cast<std::size_t>(__builtin_ctz(hits)), list);
+        }
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "firmware/physics/rod/motion.hpp"
 #include "firmware/physics/rod/state.hpp"
 
 namespace ligature::physics::rod {
@@ -13,30 +14,51 @@ struct Candidate {
   std::int32_t a = 0;    ///< segment of the thread
   std::int32_t b = 0;    ///< another segment, >= a + 2
   double reach_m = 0.0;  ///< centre distance at which they touch
-  double due = 0.0;      ///< gap when last measured + 2 x travel then: minus 2 x travel now, a lower bound of the gap
+  double due = 0.0;      ///< gap when last measured + Motion::gone then: minus gone now, a lower bound of the gap
   double s_a = 0.0, s_b = 0.0;  ///< material coordinates of the closest points, m
   Vec impulse{};                ///< of the last substep, on b's side, N s
 };
 
-/// Pairs within reach + margin. Blocks of eight neighbouring segments first, by bounding spheres, then the segments, so
-/// the cost grows like the thread's length, not its square, for all but a few hundred nanoseconds per 100 nodes.
+/// How far ahead a list looks: pairs within reach + skin + horizon x their rate of approach (motion.hpp) are on it.
+struct Outlook {
+  double diameter_m = 0.0, skin_m = 0.0, horizon_s = 0.0;
+};
+
+/// Blocks of eight neighbouring segments first, by bounding spheres, then the segments' spheres, then the exact
+/// distance of what is left, so the cost grows like the thread's length, not its square, for all but a few hundred
+/// nanoseconds per 100 nodes. Each pair is allowed its own motion: one fast end does not fill the list.
 /// Pairs nearer than 0.6 diameters along the thread are left out: they cannot pass each other without folding it;
 /// pairs an arc a < pi d / 2 apart touch at d sin(a / d), as near as a bent tube of constant thickness allows.
 class BroadPhase {
  public:
+  static constexpr double kLeastArc = 0.6;    ///< of a diameter, along the thread
+  static constexpr double kLeastReach = 0.56; /// sin(kLeastArc), rounded down: no pair on a list touches nearer
+
   void reserve(int nodes, int pairs);
 
-  /// Rebuilds `list`; impulses of pairs that stay are kept. @return false when there was no room for all pairs.
-  bool build(const State& state, double diameter_m, double margin_m, std::vector<Candidate>& list) noexcept;
+  /// Rebuilds `list`, every pair measured and counted from motion.restart() on; impulses of pairs that stay are kept.
+  /// @return false when there was no room for all pairs.
+  bool build(const State& state, Motion& motion, const Outlook& outlook, std::vector<Candidate>& list) noexcept;
 
  private:
   struct Ball {
     float x, y, z, r;
   };
+  void place(const State& state, const Motion& motion, float horizon_s) noexcept;
+  void keep_impulses(const std::vector<Candidate>& list) noexcept;
+  [[nodiscard]] Vec kept_impulse(std::int32_t a, std::int32_t b) const noexcept;
+  /// Adds the pair if it is near enough. @return false when there was no room.
+  bool consider(const State& state, const Motion& motion, const Outlook& outlook, std::size_t a, std::size_t b,
+                std::vector<Candidate>& list) const noexcept;
+
+  struct Kept {
+    std::int32_t a = -1, b = -1;
+    Vec impulse{};
+  };
   int capacity_ = 0;
-  std::vector<float> x_, y_, z_, r_;
+  std::vector<float> x_, y_, z_, r_;  // segment spheres, swollen by what each may move
   std::vector<Ball> blocks_;
-  std::vector<Candidate> old_;
+  std::vector<Kept> kept_;  // open addressing, a power of two
 };
 
 }  // namespace ligature::physics::rod

@@ -9,9 +9,10 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   const auto n = static_cast<std::size_t>(nodes);
   contacts_.reserve(static_cast<std::size_t>(kMaxContacts));
   pairs.reserve(24 * n + 1024);
-  watched_.reserve(8 * n + 1024);
+  watched_.reserve(pairs.capacity());
   floor_impulse.assign(n, Vec{});
   body_impulse.assign(n * static_cast<std::size_t>(bodies), Vec{});
+  body_due_.assign(static_cast<std::size_t>(bodies), -1.0);
   columns_.assign(static_cast<std::size_t>(kMaxContacts) * static_cast<std::size_t>(window + 4), 0.0);
   for (auto* array : {&change_, &extra_, &step_}) array->assign(n, Vec{});
   for (auto* array : {&p_, &plain_, &residual_}) array->assign(static_cast<std::size_t>(kMaxContacts), Vec{});

@@ -1,6 +1,7 @@
 #pragma once
 // Contacts of the thread with itself and with fixed bodies, solved together with the rod in every substep.
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -76,15 +77,19 @@ class ContactSet {
 
   void begin() noexcept { contacts_.clear(), watched_.clear(), window_first_ = 1 << 30, window_last_ = -1; }
 
-  /// Measures pairs that may have come within look_m; those within near_m + 2 dt x relative speed become contacts.
-  void collect_thread(const State& state, double travel_m, double look_m, double near_m, double dt_s, double mu,
+  /// Measures pairs that may have come within near_m + 2 dt x their rate (motion.hpp); those within near_m + 2 dt x
+  /// relative speed become contacts.
+  void collect_thread(const State& state, const Motion& motion, double near_m, double dt_s, double mu,
                       ContactReport& report) noexcept;
   /// Every node against the plane z = floor_m.
   void collect_floor(const State& state, double floor_m, double radius_m, double look_m, double mu,
                      ContactReport& report) noexcept;
-  /// Every segment against a capsule.
-  void collect_body(const State& state, const Body& body, int index, double radius_m, double look_m,
+  /// Every segment against a capsule; not even looked at while the thread, travel_m on its way in this tick, cannot
+  /// have reached it.
+  void collect_body(const State& state, const Body& body, int index, double radius_m, double look_m, double travel_m,
                     ContactReport& report) noexcept;
+  /// Bodies may have moved: look at each again.
+  void forget_bodies() noexcept { std::fill(body_due_.begin(), body_due_.end(), -1.0); }
 
   [[nodiscard]] bool empty() const noexcept { return contacts_.empty(); }
   [[nodiscard]] int window_first() const noexcept { return window_first_; }
@@ -106,10 +111,10 @@ class ContactSet {
   void store() noexcept;
 
   /// Largest alpha <= 1 with which no measured pair moves by more than 0.9 of its centre distance.
-  [[nodiscard]] double safe_fraction(const Vec* v, double dt_s) const noexcept;
+  [[nodiscard]] double safe_fraction(const Motion& motion, const Vec* v, double dt_s) const noexcept;
 
-  /// The same for every pair of the list, measured now.
-  [[nodiscard]] double measured_fraction(const State& state, const Vec* v, double dt_s) const noexcept;
+  /// The same for every pair of a list made at these positions and velocities.
+  [[nodiscard]] double safe_fraction_of_pairs(const Motion& motion, const Vec* v, double dt_s) const noexcept;
 
   [[nodiscard]] const std::vector<Contact>& contacts() const noexcept { return contacts_; }
 
@@ -138,6 +143,7 @@ class ContactSet {
   std::vector<Vec> change_, extra_, step_;
   std::vector<Vec> p_, plain_, residual_;  // impulses and their change in a pass, as the mixing wants them
   Mixing mixing_;
+  std::vector<double> body_due_;  // least gap of a body when last measured + travel then
   std::size_t stride_ = 0;
   double per_second_ = 0.0;
   int window_first_ = 0, window_last_ = -1;

@@ -19,27 +19,26 @@ void ContactSet::add(const Contact& contact, ContactReport& report) noexcept {
   }
 }
 
-void ContactSet::collect_thread(const State& state, double travel_m, double look_m, double near_m, double dt_s,
-                                double mu, ContactReport& report) noexcept {
+void ContactSet::collect_thread(const State& state, const Motion& motion, double near_m, double dt_s, double mu,
+                                ContactReport& report) noexcept {
   for (auto& pair : pairs) {
-    if (pair.due - 2.0 * travel_m > look_m) {
+    const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+    const double gone = motion.gone(a, b);
+    if (pair.due - gone > near_m + 2.0 * dt_s * motion.rate(a, b)) {  // cannot meet, even at twice today's speed
       pair.impulse = Vec{};
       continue;
     }
-    const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
     const Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
     const double distance = std::sqrt(c.distance2), gap = distance - pair.reach_m;
-    pair.due = gap + 2.0 * travel_m;
+    pair.due = gap + gone;
     report.min_gap_m = std::min(report.min_gap_m, gap);
-    // Far enough for one substep at today's relative speed (half the broad bound of look_m is usually wasted).
+    // Far enough for one substep at today's relative speed (half the bound of above is usually wasted).
     const Vec u = (1.0 - c.t) * state.v[b] + c.t * state.v[b + 1] - (1.0 - c.s) * state.v[a] - c.s * state.v[a + 1];
-    if (gap > near_m + 2.0 * dt_s * norm(u)) {
+    const bool full = contacts_.size() >= static_cast<std::size_t>(kMaxContacts);
+    if (full || gap > near_m + 2.0 * dt_s * norm(u)) {
+      report.cap_hit |= full;  // without room for a contact the guard still holds the pair
       pair.impulse = Vec{};
-      if (watched_.size() < watched_.capacity()) {
-        watched_.push_back({pair.a, pair.b, distance});
-      } else {
-        report.cap_hit = true;
-      }
+      watched_.push_back({pair.a, pair.b, distance});  // has room for every pair
       continue;
     }
     pair.s_a = state.mesh.s[a] + c.s * state.mesh.rest[a];
@@ -80,21 +79,28 @@ void ContactSet::collect_floor(const State& state, double floor_m, double radius
 }
 
 void ContactSet::collect_body(const State& state, const Body& body, int index, double radius_m, double look_m,
-                              ContactReport& report) noexcept {
+                              double travel_m, ContactReport& report) noexcept {
+  double& due = body_due_[static_cast<std::size_t>(index)];
+  if (due - travel_m > look_m) return;
   const std::size_t n = state.x.size();
   const double reach = body.radius_m + radius_m;
   const Vec middle = 0.5 * (body.p0 + body.p1);
   const double half = 0.5 * norm(body.p1 - body.p0);
+  double nearest2 = 1e300, longest = 0.0, least = 1e150;
   for (std::size_t j = 0; j + 1 < n; ++j) {
     Vec& keep = body_impulse[static_cast<std::size_t>(index) * n + j];
     const Vec off = 0.5 * (state.x[j] + state.x[j + 1]) - middle;
-    const double far = half + state.mesh.rest[j] + reach + look_m;  // generous: half a segment may be stretched
-    if (dot(off, off) > far * far) {
+    const double within = half + state.mesh.rest[j] + reach;  // generous: half a segment may be stretched
+    const double far = within + look_m, off2 = dot(off, off);
+    if (off2 > far * far) {
       keep = Vec{};
+      nearest2 = std::min(nearest2, off2);
+      longest = std::max(longest, within);
       continue;
     }
     const Closest c = closest(body.p0, body.p1, state.x[j], state.x[j + 1]);
     const double distance = std::sqrt(c.distance2), gap = distance - reach;
+    least = std::min(least, gap);
     if (gap > look_m) {
       keep = Vec{};
       continue;
@@ -112,6 +118,7 @@ void ContactSet::collect_body(const State& state, const Body& body, int index, d
     contact.keep = &keep;
     add(contact, report);
   }
+  due = std::min(least, std::sqrt(nearest2) - longest) + travel_m;
 }
 
 }  // namespace ligature::physics::rod

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "firmware/physics/rod/closest.hpp"
 #include "firmware/physics/rod/contact.hpp"
 
 namespace ligature::physics::rod {
@@ -18,8 +17,10 @@ struct Share {
     const double room = 0.9 * distance, motion2 = dot(u, u) * dt_s * dt_s;
     if (motion2 > room * room) least = std::min(least, room / std::sqrt(motion2));
   }
-  void pair(std::int32_t a, std::int32_t b, double distance) noexcept {  // points in between move no more than the ends
-    motion(v[b] - v[a], distance);
+  void pair(std::int32_t a, std::int32_t b, double distance, const Motion& m) noexcept {
+    const auto p = static_cast<std::size_t>(a), q = static_cast<std::size_t>(b);
+    if (m.rate(p, q) * dt_s <= 0.9 * distance) return;
+    motion(v[b] - v[a], distance);  // points in between move no more than the ends
     motion(v[b + 1] - v[a], distance);
     motion(v[b] - v[a + 1], distance);
     motion(v[b + 1] - v[a + 1], distance);
@@ -28,27 +29,23 @@ struct Share {
 
 }  // namespace
 
-double ContactSet::safe_fraction(const Vec* v, double dt_s) const noexcept {
+double ContactSet::safe_fraction(const Motion& motion, const Vec* v, double dt_s) const noexcept {
   Share share{v, dt_s};
   for (const auto& c : contacts_) {
     const double distance = c.gap_m + c.reach_m;
     if (c.count == 4) {
-      share.pair(c.node[0], c.node[2], distance);
+      share.pair(c.node[0], c.node[2], distance, motion);
     } else {
       for (int i = 0; i < c.count; ++i) share.motion(v[c.node[i]] - c.surface, distance);
     }
   }
-  for (const auto& w : watched_) share.pair(w.a, w.b, w.distance_m);
+  for (const auto& w : watched_) share.pair(w.a, w.b, w.distance_m, motion);
   return share.least;
 }
 
-double ContactSet::measured_fraction(const State& state, const Vec* v, double dt_s) const noexcept {
+double ContactSet::safe_fraction_of_pairs(const Motion& motion, const Vec* v, double dt_s) const noexcept {
   Share share{v, dt_s};
-  for (const auto& pair : pairs) {
-    const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-    const Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
-    share.pair(pair.a, pair.b, std::sqrt(c.distance2));
-  }
+  for (const auto& pair : pairs) share.pair(pair.a, pair.b, pair.due + pair.reach_m, motion);
   return share.least;
 }
 

@@ -78,8 +78,11 @@ class Rod {
   template <unsigned Bits>
   void substep(double dt_s) noexcept;
   static Substep pick(const Parts& parts) noexcept;
-  void broad_phase(double dt_s) noexcept;
-  [[nodiscard]] double fastest() const noexcept;
+  template <unsigned Bits>
+  ContactReport collect(double dt_s, double near_m, double look_m) noexcept;
+  template <unsigned Bits>
+  double guard(double dt_s, double near_m) noexcept;
+  void broad_phase() noexcept;
   int add_hold(const Hold& hold) noexcept;
 
   Material material_;
@@ -96,8 +99,10 @@ class Rod {
   TickReport report_;
   Substep substep_;
   double metric_dt_ = 0.0, settled_m_per_s_ = 0.0;
-  double travel_m_ = 0.0, margin_m_ = 0.0;  // motion bound since the broad phase, and what it allowed for
-  bool stale_ = true;                       // broad phase must be made again
+  Motion motion_;
+  double horizon_s_ = 0.0;      // how far the list of pairs looks ahead
+  double tick_travel_m_ = 0.0;  // what the fastest node may have gone since the tick began
+  bool stale_ = true;           // the list must be made again
 };
 
 }  // namespace ligature::physics::rod
