@@ -1,0 +1,91 @@
+#include "firmware/physics/rod/motion.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace ligature::physics::rod {
+namespace {
+
+// max over a < b of (P_b - P_a): the most that a bound which is a difference of prefix sums is exceeded by.
+struct Rise {
+  double least = 0.0, most = 0.0;
+  void next(double p) noexcept {
+    most = std::max(most, p - least);
+    least = std::min(least, p);
+  }
+};
+
+}  // namespace
+
+void Motion::reserve(int nodes) {
+  for (auto* array : {&speed_, &drift_, &speed_before_, &drift_before_, &speed_allowed_, &drift_allowed_, &travel_,
+                      &strayed_, &link_}) {
+    array->assign(static_cast<std::size_t>(nodes), 0.0);
+  }
+}
+
+void Motion::measure(const Vec* v) noexcept {
+  std::swap(speed_, speed_before_);
+  std::swap(drift_, drift_before_);
+  const std::size_t n = speed_.size();
+  double *speed = speed_.data(), *link = link_.data(), *drift = drift_.data();
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    const Vec apart = v[i + 1] - v[i];
+    speed[i] = dot(v[i], v[i]);
+    link[i] = dot(apart, apart);
+  }
+  speed[n - 1] = dot(v[n - 1], v[n - 1]);
+  double most = 0.0;
+  for (std::size_t i = 0; i < n; ++i) most = speed[i] > most ? speed[i] : most;
+  fastest_ = std::sqrt(most);
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    speed[i] = std::sqrt(speed[i] > speed[i + 1] ? speed[i] : speed[i + 1]);
+    link[i] = std::sqrt(link[i]);
+  }
+  double sum = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    drift[i] = sum;
+    sum += link[i];
+  }
+}
+
+void Motion::advance(double step_s) noexcept {
+  const std::size_t n = speed_.size();
+  double *travel = travel_.data(), *strayed = strayed_.data();
+  const double *speed = speed_.data(), *drift = drift_.data();
+  for (std::size_t i = 0; i < n; ++i) {
+    travel[i] += step_s * speed[i];
+    strayed[i] += step_s * drift[i];
+  }
+}
+
+void Motion::restart() noexcept {
+  std::fill(travel_.begin(), travel_.end(), 0.0);
+  std::fill(strayed_.begin(), strayed_.end(), 0.0);
+  std::copy(speed_.begin(), speed_.end(), speed_allowed_.begin());
+  std::copy(drift_.begin(), drift_.end(), drift_allowed_.begin());
+}
+
+// A pair's bound is the lesser of two sums, and so is what it was allowed; if each sum alone stays within what was
+// allowed, so does the lesser.
+bool Motion::used_up(double spare_m, double horizon_s, double ahead_s) const noexcept {
+  double one = 0.0;
+  Rise rise;
+  for (std::size_t i = 0; i < speed_.size(); ++i) {
+    one = std::max(one, travel_[i] + ahead_s * speed_[i] - horizon_s * speed_allowed_[i]);
+    rise.next(strayed_[i] + ahead_s * drift_[i] - horizon_s * drift_allowed_[i]);
+  }
+  return 2.0 * one > spare_m || rise.most > spare_m;
+}
+
+bool Motion::outran(double spare_m, double dt_s) const noexcept {
+  double one = 0.0;
+  Rise rise;
+  for (std::size_t i = 0; i < speed_.size(); ++i) {
+    one = std::max(one, speed_[i] - 2.0 * speed_before_[i]);
+    rise.next(drift_[i] - 2.0 * drift_before_[i]);
+  }
+  return dt_s * 2.0 * one > spare_m || dt_s * rise.most > spare_m;
+}
+
+}  // namespace ligature::physics::rod

@@ -1,0 +1,50 @@
+#pragma once
+// How far anything can have moved: bounds for every pair of segments at once, from one pass over the nodes.
+
+#include <algorithm>
+#include <vector>
+
+#include "firmware/physics/rod/vec.hpp"
+
+namespace ligature::physics::rod {
+
+/// Two bounds of the relative motion of segments a < b, whose points lie between their end nodes:
+///   speed_a + speed_b,                speed_j = max(|v_j|, |v_j+1|),        good for strands that meet;
+///   drift_{b+1} - drift_a,            drift_i = sum_{k<i} |v_{k+1} - v_k|,  good for neighbours, which move together.
+/// `rate` is the lesser of the two. Summed over substeps they bound what a pair has `gone` since restart(): for any two
+/// instants, gone(later) - gone(earlier) is at least the distance the pair has moved relative to each other (whichever
+/// of the two bounds is the lesser at either instant).
+class Motion {
+ public:
+  void reserve(int nodes);
+
+  /// Velocities of now. The ones before are kept for outran().
+  void measure(const Vec* v) noexcept;
+  /// Everything moved with the velocities last measured.
+  void advance(double step_s) noexcept;
+  /// Forgets what was gone, and takes today's rates as those allowed for by broad_phase margins.
+  void restart() noexcept;
+
+  [[nodiscard]] double speed(std::size_t segment) const noexcept { return speed_[segment]; }
+  [[nodiscard]] double rate(std::size_t a, std::size_t b) const noexcept {
+    return std::min(speed_[a] + speed_[b], drift_[b + 1] - drift_[a]);
+  }
+  [[nodiscard]] double gone(std::size_t a, std::size_t b) const noexcept {
+    return std::min(travel_[a] + travel_[b], strayed_[b + 1] - strayed_[a]);
+  }
+  [[nodiscard]] double fastest() const noexcept { return fastest_; }
+
+  /// May some pair have gone, or go in `ahead_s`, more than spare_m + horizon_s x its rate at restart()?
+  [[nodiscard]] bool used_up(double spare_m, double horizon_s, double ahead_s) const noexcept;
+
+  /// May some pair, in dt_s, move by more than spare_m + twice what its rate before the last measure() said?
+  [[nodiscard]] bool outran(double spare_m, double dt_s) const noexcept;
+
+ private:
+  std::vector<double> speed_, drift_, speed_before_, drift_before_, speed_allowed_, drift_allowed_;
+  std::vector<double> travel_, strayed_;  // time integrals of speed and drift
+  std::vector<double> link_;              // |v_{k+1} - v_k|
+  double fastest_ = 0.0;
+};
+
+}  // namespace ligature::physics::rod
