@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "host/errors.hpp"
 #include "host/export_csv.hpp"
@@ -162,20 +163,40 @@ void add_knot(CLI::App& app) {
 
 void add_send(CLI::App& app) {
   struct Options {
-    std::string word, lcm_url{kDefaultLcmUrl};
+    std::string word, text, lcm_url{kDefaultLcmUrl};
+    std::optional<double> value;
   };
   auto* command = app.add_subcommand("send", "Send the firmware a command and print its answer");
   const auto options = kept<Options>(app);
-  command->add_option("command", options->word, "arm, disarm, stop, reset-fault or reset-thread")
+  command->add_option("command", options->word, "arm, disarm, stop, reset-fault, reset-thread, load-scene or set")
       ->required()
-      ->check(CLI::IsMember({"arm", "disarm", "stop", "reset-fault", "reset-thread"}));
+      ->check(CLI::IsMember({"arm", "disarm", "stop", "reset-fault", "reset-thread", "load-scene", "set"}));
+  command->add_option("name", options->text, "load-scene: the scene file's name; set: the parameter's key");
+  command->add_option("value", options->value, "set: the parameter's value")->check(finite);
   add_url(*command, options->lcm_url);
   command->footer(
-      "Waits up to 1 s; exit code 3 when the firmware refuses or does not answer. No command can by itself put force "
+      "load-scene takes a file of the firmware's --scenes folder, in OFF and IDLE only, where no force can flow. set "
+      "changes\n"
+      "a parameter within its range, at any time. What may be asked for is in the refusal of what may not. Both are "
+      "built and\n"
+      "measured beside the running loop first, and refused when the worst tick would not fit.\n"
+      "Waits up to 1 s (load-scene, set: 10 s); exit code 3 when the firmware refuses or does not answer. No command "
+      "can by itself put force "
       "on\n"
       "a hand: that needs the dead-man button of the device as well.\n\n"
-      "Example:\n  ligature-host send stop");
-  command->callback([options] { send(options->word, options->lcm_url); });
+      "Example:\n  ligature-host send stop\n  ligature-host send load-scene desk.toml\n"
+      "  ligature-host send set contact.friction 0.5");
+  command->callback([options] {
+    const bool is_scene = options->word == "load-scene", is_set = options->word == "set";
+    const bool has_text = !options->text.empty(), has_value = options->value.has_value();
+    if (has_text != (is_scene || is_set) || has_value != is_set)
+      throw BadInput("send " + options->word + ": found " + std::to_string(has_text + has_value) +
+                     " further words, allowed " +
+                     (is_set     ? "a key and a value"
+                      : is_scene ? "the name of a scene"
+                                 : "none"));
+    send(options->word, options->text, options->value.value_or(0.0), options->lcm_url);
+  });
 }
 
 }  // namespace ligature::host

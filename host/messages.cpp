@@ -26,8 +26,8 @@ bool array_fits(Bytes message, std::size_t count_offset, std::size_t element_siz
   return message.size() == count_offset + kInt32 + static_cast<std::size_t>(*count) * element_size + tail_size;
 }
 
-/// Whether `count` consecutive strings (length with terminator, bytes, 0) lie inside the message.
-bool strings_fit(Bytes message, std::size_t offset, int count) {
+/// Moves the offset past `count` consecutive strings (length with terminator, bytes, 0); false when one ends outside.
+bool skip_strings(Bytes message, std::size_t& offset, int count) {
   for (int i = 0; i < count; ++i) {
     const auto length = int32_at(message, offset);
     if (!length || *length < 1) return false;
@@ -35,6 +35,23 @@ bool strings_fit(Bytes message, std::size_t offset, int count) {
     if (offset > message.size()) return false;
   }
   return true;
+}
+
+bool strings_fit(Bytes message, std::size_t offset, int count) { return skip_strings(message, offset, count); }
+
+/// Scenes, then parameters of three strings and three doubles each, to the message's end.
+bool offer_fits(Bytes message) {
+  std::size_t at = kHash + 2 * kInt64;
+  const auto scenes = int32_at(message, at);
+  at += kInt32;
+  if (!scenes || *scenes < 0 || !skip_strings(message, at, *scenes)) return false;
+  const auto parameters = int32_at(message, at);
+  at += kInt32;
+  if (!parameters || *parameters < 0) return false;
+  for (int i = 0; i < *parameters; ++i, at += 3 * sizeof(double)) {
+    if (!skip_strings(message, at, 3)) return false;
+  }
+  return at == message.size();
 }
 
 template <class M>
@@ -88,7 +105,19 @@ std::optional<ligature_msg::ack_t> decode(Bytes message) {
 }
 
 template <>
+std::optional<ligature_msg::offer_t> decode(Bytes message) {
+  if (!offer_fits(message)) return std::nullopt;
+  auto offer = decode_checked<ligature_msg::offer_t>(message);
+  const auto is_range = [](const ligature_msg::parameter_t& p) {
+    return std::isfinite(p.value) && std::isfinite(p.lowest) && std::isfinite(p.highest) && p.lowest <= p.highest;
+  };
+  if (offer && !std::ranges::all_of(offer->parameters, is_range)) return std::nullopt;
+  return offer;
+}
+
+template <>
 std::optional<ligature_msg::command_t> decode(Bytes message) {
+  if (!strings_fit(message, kHash + 2 * kInt64 + kInt8, 1)) return std::nullopt;
   return decode_checked<ligature_msg::command_t>(message);
 }
 
@@ -99,6 +128,7 @@ bool is_readable(std::string_view channel, Bytes message) {
   if (channel == kEventChannel) return decode<ligature_msg::event_t>(message).has_value();
   if (channel == kAckChannel) return decode<ligature_msg::ack_t>(message).has_value();
   if (channel == kCommandChannel) return decode<ligature_msg::command_t>(message).has_value();
+  if (channel == kOfferChannel) return decode<ligature_msg::offer_t>(message).has_value();
   return true;
 }
 

@@ -7,6 +7,7 @@
 #include "ligature_msg/ack_t.hpp"
 #include "ligature_msg/command_t.hpp"
 #include "ligature_msg/event_t.hpp"
+#include "ligature_msg/offer_t.hpp"
 #include "ligature_msg/status_t.hpp"
 #include "ligature_msg/thread_t.hpp"
 #include "ligature_msg/tick_batch_t.hpp"
@@ -19,6 +20,7 @@ inline constexpr std::string_view kStatusChannel = "LIGATURE_STATUS";
 inline constexpr std::string_view kEventChannel = "LIGATURE_EVENT";
 inline constexpr std::string_view kCommandChannel = "LIGATURE_COMMAND";
 inline constexpr std::string_view kAckChannel = "LIGATURE_ACK";
+inline constexpr std::string_view kOfferChannel = "LIGATURE_OFFER";
 
 using Bytes = std::span<const std::byte>;
 
@@ -42,6 +44,8 @@ template <>
 std::optional<ligature_msg::ack_t> decode(Bytes message);
 template <>
 std::optional<ligature_msg::command_t> decode(Bytes message);
+template <>
+std::optional<ligature_msg::offer_t> decode(Bytes message);
 
 /// Whether a message of one of our channels can be read; true for channels that are not ours.
 [[nodiscard]] bool is_readable(std::string_view channel, Bytes message);

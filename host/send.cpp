@@ -13,7 +13,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using Command = ligature_msg::command_t;
-constexpr auto kAnswerWithin = std::chrono::seconds(1);
 constexpr auto kRepeatEvery = std::chrono::milliseconds(100);
 
 std::int64_t now_us() {
@@ -35,16 +34,27 @@ std::optional<std::int8_t> command_kind(std::string_view word) {
   if (word == "stop") return Command::KIND_STOP;
   if (word == "reset-fault") return Command::KIND_RESET_FAULT;
   if (word == "reset-thread") return Command::KIND_RESET_THREAD;
+  if (word == "load-scene") return Command::KIND_LOAD_SCENE;
+  if (word == "set") return Command::KIND_SET_PARAMETER;
   return std::nullopt;
 }
 
-void send(std::string_view word, const std::string& lcm_url) {
+std::chrono::seconds answer_time(std::int8_t kind) {
+  const bool is_measured_first = kind == Command::KIND_LOAD_SCENE || kind == Command::KIND_SET_PARAMETER;
+  return std::chrono::seconds(is_measured_first ? 10 : 1);
+}
+
+void send(std::string_view word, const std::string& text, double value, const std::string& lcm_url) {
   const auto kind = command_kind(word);
   if (!kind)
-    throw BadInput("send: found '" + std::string(word) + "', allowed arm, disarm, stop, reset-fault, reset-thread");
+    throw BadInput("send: found '" + std::string(word) +
+                   "', allowed arm, disarm, stop, reset-fault, reset-thread, load-scene, set");
   Command command{};
   command.utime = command.id = now_us();
   command.kind = *kind;
+  command.text = text;
+  command.value = value;
+  const auto patience = answer_time(*kind);
 
   std::optional<ligature_msg::ack_t> answer;
   LcmLink link(lcm_url, std::string(kAckChannel), [&](const Message& message) {
@@ -52,7 +62,7 @@ void send(std::string_view word, const std::string& lcm_url) {
   });
   const auto start = Clock::now();
   publish(link, command);
-  for (auto sent = start; !answer && Clock::now() - start < kAnswerWithin && !stop_requested();) {
+  for (auto sent = start; !answer && Clock::now() - start < patience && !stop_requested();) {
     link.receive(50);
     if (!answer && *kind == Command::KIND_STOP && Clock::now() - sent >= kRepeatEvery) {
       publish(link, command);
@@ -61,8 +71,8 @@ void send(std::string_view word, const std::string& lcm_url) {
   }
   const std::string what(word);
   if (!answer)
-    throw RunFailed(what +
-                    ": no answer within 1 s; is ligature-firmware running with the same --lcm-url in the same "
+    throw RunFailed(what + ": no answer within " + std::to_string(patience.count()) +
+                    " s; is ligature-firmware running with the same --lcm-url in the same "
                     "network namespace?");
   if (!answer->accepted) throw RunFailed(what + " refused: " + answer->reason);
   std::printf("%s accepted%s%s\n", what.c_str(), answer->reason.empty() ? "" : ": ", answer->reason.c_str());

@@ -10,6 +10,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr std::size_t kLongestText = 100;
+
 json answer(const json& id, const std::string& word, bool accepted, const std::string& why) {
   return {{"id", id}, {"command", word}, {"accepted", accepted}, {"text", why}};
 }
@@ -36,6 +38,9 @@ json CommandDesk::request(std::uint64_t page, const json& message, Clock::time_p
   command.utime = now_us();
   command.id = last_id_ = std::max(last_id_ + 1, command.utime);
   command.kind = *kind;
+  command.text = text_of(message, "text").substr(0, kLongestText);
+  if (const auto value = message.find("value"); value != message.end() && value->is_number())
+    command.value = value->get<double>();
   waiting_[command.id] = {page, id, word, command, now, now};
   try {
     publish_(command);
@@ -59,8 +64,9 @@ std::multimap<std::uint64_t, json> CommandDesk::answers(Clock::time_point now) {
   const std::scoped_lock lock(mutex_);
   for (auto it = waiting_.begin(); it != waiting_.end();) {
     auto& w = it->second;
-    if (now - w.sent >= kAnswerWithin) {
-      ready_.emplace(w.page, answer(w.id, w.word, false, "no answer within 1 s: is the firmware running?"));
+    if (const auto patience = answer_time(w.command.kind); now - w.sent >= patience) {
+      const std::string time = std::to_string(patience.count());
+      ready_.emplace(w.page, answer(w.id, w.word, false, "no answer within " + time + " s: is the firmware running?"));
       it = waiting_.erase(it);
       continue;
     }

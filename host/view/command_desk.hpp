@@ -18,13 +18,13 @@ class CommandDesk {
  public:
   using Clock = std::chrono::steady_clock;
   using Publish = std::function<void(const ligature_msg::command_t&)>;
-  static constexpr auto kAnswerWithin = std::chrono::seconds(1);
   static constexpr auto kRepeatStopEvery = std::chrono::milliseconds(100);
   static constexpr std::size_t kMostWaiting = 64;
 
   CommandDesk(const Access& access, Publish publish) : access_(access), publish_(std::move(publish)) {}
 
-  /// A request {"command": "arm", "id": 7, "token": "..."} of a page. @return an answer when there is one at once.
+  /// A request {"command": "arm", "id": 7, "token": "..."} of a page; "load-scene" has a "text", "set" a "text" and a
+  /// "value". @return an answer when there is one at once.
   [[nodiscard]] nlohmann::json request(std::uint64_t page, const nlohmann::json& message, Clock::time_point now);
 
   /// What the firmware answered; called by the thread that hears LCM.

@@ -34,6 +34,10 @@ void Picture::take(std::string_view channel, Bytes data, Clock::time_point now) 
     const auto event = decode<ligature_msg::event_t>(data);
     if (!event) return count_unreadable();
     events_.push(to_json(*event));
+  } else if (channel == kOfferChannel) {
+    const auto offer = decode<ligature_msg::offer_t>(data);
+    if (!offer) return count_unreadable();
+    if (json told = to_json(*offer); topics_["offer"].what != told) set_locked("offer", std::move(told));
   }
 }
 

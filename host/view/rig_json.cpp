@@ -26,6 +26,22 @@ nlohmann::json to_json(const ligature_msg::event_t& e) {
   return {{"tick", e.tick}, {"kind", e.kind}, {"hand", e.hand}, {"code", e.code}, {"text", e.text.substr(0, 200)}};
 }
 
+nlohmann::json to_json(const ligature_msg::offer_t& o) {
+  constexpr std::size_t kMost = 200;
+  nlohmann::json scenes = nlohmann::json::array(), parameters = nlohmann::json::array();
+  for (std::size_t i = 0; i < std::min(kMost, o.scenes.size()); ++i) scenes.push_back(o.scenes[i].substr(0, 100));
+  for (std::size_t i = 0; i < std::min(kMost, o.parameters.size()); ++i) {
+    const auto& p = o.parameters[i];
+    parameters.push_back({{"key", p.key.substr(0, 100)},
+                          {"name", p.name.substr(0, 100)},
+                          {"unit", p.unit.substr(0, 20)},
+                          {"value", p.value},
+                          {"lowest", p.lowest},
+                          {"highest", p.highest}});
+  }
+  return {{"scenes", std::move(scenes)}, {"parameters", std::move(parameters)}};
+}
+
 void write_tick(FrameWriter& frame, const ligature_msg::tick_t& tick) {
   frame.add(static_cast<double>(tick.tick));
   frame.add(static_cast<double>(tick.state));

@@ -3,6 +3,7 @@
 
 #include "host/view/frame.hpp"
 #include "ligature_msg/event_t.hpp"
+#include "ligature_msg/offer_t.hpp"
 #include "ligature_msg/status_t.hpp"
 #include "ligature_msg/thread_t.hpp"
 #include "ligature_msg/tick_t.hpp"
@@ -15,6 +16,7 @@ inline constexpr int kKnotEvent = 100;
 /// What the page is told of a message; field names and units as in the .lcm files.
 [[nodiscard]] nlohmann::json to_json(const ligature_msg::status_t& status);
 [[nodiscard]] nlohmann::json to_json(const ligature_msg::event_t& event);
+[[nodiscard]] nlohmann::json to_json(const ligature_msg::offer_t& offer);
 
 /// State, hands and counters of one tick as doubles, in the order that page/frame.js reads.
 void write_tick(FrameWriter& frame, const ligature_msg::tick_t& tick);

@@ -75,6 +75,38 @@ const steps = {
     await until(page, () => document.getElementById('state').dataset.state === 'IDLE');
     await page.getByText('stop: done').waitFor();
   },
+  'the space bar stops while a note is being typed, and the note gets its blank': async () => {
+    await page.click('#arm');
+    await until(page, () => document.getElementById('state').dataset.state === 'FORCE');
+    await page.click('#record');
+    await page.focus('#record-notes');
+    await page.keyboard.type('a b');
+    await until(page, () => document.getElementById('state').dataset.state === 'IDLE');
+    assert.equal(await page.inputValue('#record-notes'), 'a b');
+    await page.click('#record-dialog button[value=cancel]');
+  },
+  'scenes and parameters: acknowledged, or refused with the reason': async () => {
+    await page.click('#change-open');
+    await page.fill('[data-key="contact.friction"] input[type=text]', '0.75');
+    await page.keyboard.press('Enter');
+    await page.getByText('friction: contact.friction=0.75').waitFor();
+    await page.fill('[data-key="contact.friction"] input[type=text]', '3');
+    await page.keyboard.press('Enter');
+    await page.getByText('friction: refused – contact.friction: found 3, allowed 0 .. 2').waitFor();
+    await page.waitForFunction(() => document.querySelector('[data-key="contact.friction"] input[type=text]').value === '0.75');
+    await page.selectOption('#scenes', 'desk.toml');
+    await page.screenshot({ path: join(out, 'change.png') });
+    await page.click('#load-scene');
+    await page.getByText('load scene: scene desk.toml loaded').waitFor();
+    await until(page, () => document.getElementById('scene-file').textContent.startsWith('desk.toml'));
+    await page.click('#arm');
+    await until(page, () => document.getElementById('state').dataset.state === 'FORCE');
+    await page.click('#load-scene');
+    await page.getByText('load scene: refused – force may flow: disarm first').waitFor();
+    await page.click('#stop');
+    await until(page, () => document.getElementById('state').dataset.state === 'IDLE');
+    await page.click('#change-close');
+  },
   'a fault shows its number, meaning and remedy; arming is refused with the reason': async () => {
     rig.tell('fault 30');
     await until(page, () => document.getElementById('state').dataset.state === 'FAULT');

@@ -13,10 +13,10 @@ import sys
 import time
 
 import lcm
-from ligature_msg import ack_t, command_t, event_t, status_t, thread_t, tick_batch_t, tick_t
+from ligature_msg import ack_t, command_t, event_t, offer_t, parameter_t, status_t, thread_t, tick_batch_t, tick_t
 
 KNOT_NODES, RADIUS_M = 120, 0.03
-COMMANDS = {1: "arm", 2: "disarm", 3: "stop", 4: "reset-fault", 5: "reset-thread"}
+COMMANDS = {1: "arm", 2: "disarm", 3: "stop", 4: "reset-fault", 5: "reset-thread", 6: "load-scene", 7: "set"}
 SCENE = """[suture]
 model = "paper-4"
 nodes = 120
@@ -48,16 +48,18 @@ class Rig:
         self.lcm.subscribe("LIGATURE_COMMAND", self.on_command)
         self.state, self.fault, self.armed = 2, 0, False
         self.shape, self.spike, self.quiet = unknot(KNOT_NODES), 0.0, False
+        self.scene, self.friction = "fake.toml", 0.3
         self.restart()
 
     def restart(self):
         self.session, self.tick = int(time.time() * 1e6), 0
 
     def on_command(self, _, data):
-        kind = COMMANDS.get(command_t.decode(data).kind, "?")
-        print("command", kind, flush=True)
+        command = command_t.decode(data)
+        kind = COMMANDS.get(command.kind, "?")
+        print("command", kind, command.text, flush=True)
         ack = ack_t()
-        ack.id, ack.accepted, ack.reason = command_t.decode(data).id, 1, "done"
+        ack.id, ack.accepted, ack.reason = command.id, 1, "done"
         if kind == "arm" and self.fault:
             ack.accepted, ack.reason = 0, f"fault {self.fault} is latched"
         elif kind == "arm":
@@ -67,7 +69,29 @@ class Rig:
         elif kind == "reset-fault":
             self.fault = 0
             self.go_to(2)
+        elif kind == "load-scene" and self.state not in (0, 2):
+            ack.accepted, ack.reason = 0, "force may flow: disarm first"
+        elif kind == "load-scene":
+            self.scene = command.text
+            ack.reason = f"scene {command.text} loaded"
+            self.event(6, 0, ack.reason)
+        elif kind == "set" and not 0 <= command.value <= 2:
+            ack.accepted, ack.reason = 0, f"{command.text}: found {command.value:g}, allowed 0 .. 2"
+        elif kind == "set":
+            self.friction = command.value
+            ack.reason = f"{command.text}={command.value:g}"
+            self.event(6, 0, ack.reason)
         self.lcm.publish("LIGATURE_ACK", ack.encode())
+        self.publish_offer()
+
+    def publish_offer(self):
+        offer = offer_t()
+        offer.session, offer.scenes, offer.scene_count = self.session, ["desk.toml", "fake.toml"], 2
+        friction, scale = parameter_t(), parameter_t()
+        friction.key, friction.name, friction.value, friction.lowest, friction.highest = "contact.friction", "friction", self.friction, 0.0, 2.0
+        scale.key, scale.name, scale.value, scale.lowest, scale.highest = "hands.force_scale", "force scale", 0.003, 0.00075, 0.012
+        offer.parameters, offer.parameter_count = [friction, scale], 2
+        self.lcm.publish("LIGATURE_OFFER", offer.encode())
 
     def go_to(self, state):
         if state != self.state:
@@ -131,7 +155,7 @@ class Rig:
     def publish_status(self):
         status = status_t()
         status.session, status.protocol_version, status.firmware_version = self.session, 1, "test"
-        status.scene_file, status.scene_toml = "scenes/fake.toml", SCENE
+        status.scene_file, status.scene_toml = f"scenes/{self.scene}", SCENE
         status.period_s, status.max_force_N, status.tick = 1e-3, 3.3, self.tick
         status.state, status.fault, status.realtime, status.armed = self.state, self.fault, 1, int(self.armed)
         self.lcm.publish("LIGATURE_STATUS", status.encode())
@@ -163,6 +187,8 @@ def main():
         rig.publish(due)
         if round_number % 5 == 0:
             rig.publish_status()
+        if round_number % 50 == 0:
+            rig.publish_offer()
         round_number += 1
 
 

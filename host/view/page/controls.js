@@ -13,10 +13,11 @@ export function setUpControls(link, isReplay) {
   for (const [id, command] of Object.entries(COMMANDS)) $(id).addEventListener('click', () => give(command));
   // In the capture phase and before anything else: space stops, whatever has the focus.
   addEventListener('keydown', (event) => {
-    if (event.code === 'Space' && !isReplay() && !isText(event.target)) {
+    if (event.code === 'Space' && !isReplay()) {
+      if (!event.repeat) give('stop');
+      if (isText(event.target)) return; // the blank is written as well
       event.preventDefault();
       event.stopImmediatePropagation();
-      if (!event.repeat) give('stop');
       return;
     }
     if (isTyping(event) || document.querySelector('dialog[open]')) return;
@@ -26,12 +27,10 @@ export function setUpControls(link, isReplay) {
   addEventListener('keyup', (event) => { if (event.code === 'Space' && !isReplay() && !isText(event.target)) event.preventDefault(); }, { capture: true });
 }
 
-/** A name and notes may hold blanks; everywhere else space stops. */
-function isText(target) { return target.tagName === 'TEXTAREA'; }
+function isText(target) { return target.tagName === 'TEXTAREA' || (target.tagName === 'INPUT' && target.type === 'text'); }
 
 export function isTyping(event) {
-  return event.ctrlKey || event.metaKey || event.altKey || ['SELECT', 'TEXTAREA'].includes(event.target.tagName)
-    || (event.target.tagName === 'INPUT' && event.target.type === 'text');
+  return event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === 'SELECT' || isText(event.target);
 }
 
 /** The button that starts a recording with a name and notes, and ends it. */
@@ -40,6 +39,7 @@ export function setUpRecording(link) {
   $('record').addEventListener('click', async () => {
     if ($('record').dataset.on === 'true') return say(await link.request({ record: 'stop' }), 'recorded');
     $('record-name').value = new Date().toISOString().slice(0, 19).replace(/[:T]/g, '-');
+    $('record-notes').value = '';
     $('record-dialog').showModal();
   });
   $('record-dialog').addEventListener('close', async () => {

@@ -6,6 +6,7 @@ import { TraceStore } from './trace_store.js';
 import { THIRD, Traces, WINDOWS_S, describeRow } from './traces.js';
 import { KnotPanel } from './knot_panel.js';
 import { ReplayBar } from './replay_bar.js';
+import { setUpChange, showOffer } from './change_panel.js';
 import { isTyping, setUpControls, setUpRecording, showRecording } from './controls.js';
 import { sceneFacts, showAge, showHands, showState, showStatus } from './state_panel.js';
 
@@ -41,7 +42,7 @@ function onFrame(frame) {
   latest.isNew = true;
 }
 
-function onText({ view, status, unreadable, recording, knot, replay: position, marks, events: more }) {
+function onText({ view, status, offer, unreadable, recording, knot, replay: position, marks, events: more }) {
   if (view) showView(view);
   if (status) {
     showStatus(status);
@@ -49,6 +50,7 @@ function onText({ view, status, unreadable, recording, knot, replay: position, m
     traces.period_s = status.period_s;
     traces.limit_N = status.max_force_N;
   }
+  if (offer) showOffer(offer);
   if (knot) { latest.knot = knot; knots.update(knot, traces.period_s); }
   if (unreadable) latest.unreadable = unreadable;
   if (recording) showRecording(recording);
@@ -145,7 +147,7 @@ function setUpScene() {
 function setUpKeys() {
   const step = (by) => setWindow(WINDOWS_S[Math.min(Math.max(WINDOWS_S.indexOf(traces.window_s) + by, 0), WINDOWS_S.length - 1)]);
   const keys = { 1: () => scene.view('front'), 2: () => scene.view('side'), 3: () => scene.view('top'), 4: () => scene.view('iso'), f: () => scene.view('fit'),
-    k: () => $('follow').click(), p: togglePause, '+': () => step(1), '-': () => step(-1), '?': openHelp };
+    k: () => $('follow').click(), p: togglePause, c: () => { if (!latest.isReplay) $('change-open').click(); }, '+': () => step(1), '-': () => step(-1), '?': openHelp };
   addEventListener('keydown', (event) => { if (!isTyping(event) && !document.querySelector('dialog[open]')) keys[event.key.toLowerCase()]?.(); });
 }
 
@@ -159,6 +161,7 @@ function setUpHelp() {
 
 setUpControls(link, () => latest.isReplay);
 setUpRecording(link);
+setUpChange(link);
 setUpTraces();
 setUpScene();
 setUpKeys();

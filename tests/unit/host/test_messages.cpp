@@ -23,6 +23,16 @@ ligature_msg::status_t some_status() {
   return status;
 }
 
+ligature_msg::offer_t some_offer() {
+  ligature_msg::offer_t offer{};
+  offer.scenes = {"paper.toml", "desk.toml"};
+  offer.scene_count = 2;
+  offer.parameters.resize(2);
+  offer.parameter_count = 2;
+  for (auto& p : offer.parameters) p.key = "contact.friction", p.name = "friction", p.value = 0.3, p.highest = 2.0;
+  return offer;
+}
+
 TEST(Messages, DecodesWhatWasEncoded) {
   const auto batch = decode<ligature_msg::tick_batch_t>(encoded(test::batch_of(7, 100, 20)));
   ASSERT_TRUE(batch);
@@ -36,6 +46,21 @@ TEST(Messages, DecodesWhatWasEncoded) {
   EXPECT_EQ(decode<ligature_msg::ack_t>(encoded(ack))->reason, "not armed");
   EXPECT_TRUE(decode<ligature_msg::event_t>(encoded(ligature_msg::event_t{})));
   EXPECT_TRUE(decode<ligature_msg::command_t>(encoded(ligature_msg::command_t{})));
+  EXPECT_EQ(decode<ligature_msg::offer_t>(encoded(some_offer()))->parameters[1].highest, 2.0);
+}
+
+TEST(Messages, RefusesEveryCutAndForgedCountOfAnOffer) {
+  const auto whole = encoded(some_offer());
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    EXPECT_FALSE(decode<ligature_msg::offer_t>(Bytes(whole).first(size)));
+  for (const std::uint32_t count : {0U, 1U, 3U, 0x7FFFFFFFU, 0x80000000U, 0xFFFFFFFFU}) {
+    auto forged = whole;
+    put_int32(forged, 24, count);
+    EXPECT_FALSE(decode<ligature_msg::offer_t>(forged)) << count;
+  }
+  auto upside_down = some_offer();
+  upside_down.parameters[0].lowest = 3.0;
+  EXPECT_FALSE(decode<ligature_msg::offer_t>(encoded(upside_down)));
 }
 
 TEST(Messages, RefusesForgedArrayLengths) {
@@ -82,17 +107,20 @@ TEST(Messages, RefusesImplausibleValues) {
 
 TEST(Messages, SurvivesRandomAndMutatedBytesOnEveryChannel) {
   std::mt19937 random(3);
-  const std::vector<Bytes_> seeds{
-      encoded(test::batch_of(7, 0, 3)), encoded(test::thread_of(0, test::straight_points(5))),
-      encoded(some_status()),           encoded(ligature_msg::event_t{}),
-      encoded(ligature_msg::ack_t{}),   encoded(ligature_msg::command_t{})};
+  const std::vector<Bytes_> seeds{encoded(test::batch_of(7, 0, 3)),
+                                  encoded(test::thread_of(0, test::straight_points(5))),
+                                  encoded(some_status()),
+                                  encoded(ligature_msg::event_t{}),
+                                  encoded(ligature_msg::ack_t{}),
+                                  encoded(ligature_msg::command_t{}),
+                                  encoded(some_offer())};
   for (int round = 0; round < 3000; ++round) {
     Bytes_ bytes = seeds[random() % seeds.size()];
     for (auto changes = random() % 8; changes > 0; --changes)
       bytes[8 + random() % (bytes.size() - 8)] = static_cast<std::byte>(random());  // behind the type's hash
     if (random() % 4 == 0) bytes.resize(random() % (2 * bytes.size()));
     for (const auto channel :
-         {kTicksChannel, kThreadChannel, kStatusChannel, kEventChannel, kAckChannel, kCommandChannel})
+         {kTicksChannel, kThreadChannel, kStatusChannel, kEventChannel, kAckChannel, kCommandChannel, kOfferChannel})
       static_cast<void>(is_readable(channel, bytes));
   }
 }

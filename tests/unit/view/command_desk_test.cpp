@@ -26,6 +26,26 @@ struct Desk {
   }
 };
 
+TEST(CommandDesk, PassesTextAndValueOnAndWaitsLongerForWhatIsMeasuredFirst) {
+  Desk d;
+  EXPECT_TRUE(
+      d.ask({{"command", "set"}, {"text", "contact.friction"}, {"value", 0.5}, {"id", 1}, {"token", d.access.token}})
+          .is_null());
+  EXPECT_TRUE(d.ask({{"command", "load-scene"},
+                     {"text", std::string(5000, 'x')},
+                     {"value", "nonsense"},
+                     {"id", 2},
+                     {"token", d.access.token}})
+                  .is_null());
+  ASSERT_EQ(d.sent.size(), 2U);
+  EXPECT_EQ(d.sent[0].kind, ligature_msg::command_t::KIND_SET_PARAMETER);
+  EXPECT_EQ(d.sent[0].text, "contact.friction");
+  EXPECT_EQ(d.sent[0].value, 0.5);
+  EXPECT_EQ(d.sent[1].text.size(), 100U);
+  EXPECT_TRUE(d.desk.answers(d.now + 9s).empty());
+  EXPECT_EQ(d.desk.answers(d.now + 10s).size(), 2U);
+}
+
 TEST(CommandDesk, PassesACommandOnAndItsAnswerBack) {
   Desk d;
   EXPECT_TRUE(d.ask({{"command", "arm"}, {"id", 7}, {"token", d.access.token}}).is_null());

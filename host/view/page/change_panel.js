@@ -1,0 +1,66 @@
+// Another scene, other parameters: the firmware says what may be asked for, and answers each request.
+import { toast } from './controls.js';
+
+const $ = (id) => document.getElementById(id);
+const STEPS = 200;
+const rows = new Map(); // by key
+
+export function setUpChange(link) {
+  const toggle = (on) => { $('change').hidden = !on; $('change-open').setAttribute('aria-expanded', on); };
+  $('change-open').addEventListener('click', () => toggle($('change').hidden));
+  $('change-close').addEventListener('click', () => toggle(false));
+  const ask = async (what, words) => {
+    const answer = await link.request(what);
+    toast(`${words}: ${answer.accepted ? answer.text : `refused – ${answer.text}`}`, !answer.accepted);
+    return answer.accepted;
+  };
+  $('load-scene').addEventListener('click', async () => {
+    $('load-scene').disabled = true;
+    await ask({ command: 'load-scene', text: $('scenes').value }, 'load scene');
+    $('load-scene').disabled = false;
+  });
+  setUpChange.ask = ask;
+}
+
+export function showOffer({ scenes, parameters }) {
+  const chosen = $('scenes').value;
+  $('scenes').replaceChildren(...scenes.map((name) => new Option(name, name)));
+  if (scenes.includes(chosen)) $('scenes').value = chosen;
+  for (const [key, row] of rows) if (!parameters.some((p) => p.key === key)) { row.box.remove(); rows.delete(key); }
+  for (const parameter of parameters) (rows.get(parameter.key) ?? makeRow(parameter.key)).show(parameter);
+}
+
+/** A slider and a number for one parameter: equal ratios are equal ways, unless the range begins at 0. */
+function makeRow(key) {
+  const box = document.createElement('div'), name = document.createElement('label'), slider = document.createElement('input');
+  const number = document.createElement('input'), unit = document.createElement('span');
+  Object.assign(slider, { type: 'range', min: 0, max: STEPS, step: 1 });
+  Object.assign(number, { type: 'text', inputMode: 'decimal', size: 9, id: `parameter-${key}` });
+  name.htmlFor = number.id;
+  slider.setAttribute('aria-label', key);
+  box.className = 'row parameter';
+  box.dataset.key = key;
+  box.append(name, slider, number, unit);
+  $('parameters').append(box);
+  let is = null;
+  const isLog = () => is.lowest > 0;
+  const toSlider = (v) => STEPS * (isLog() ? Math.log(v / is.lowest) / Math.log(is.highest / is.lowest) : (v - is.lowest) / (is.highest - is.lowest));
+  const fromSlider = (s) => Number((isLog() ? is.lowest * (is.highest / is.lowest) ** (s / STEPS) : is.lowest + (is.highest - is.lowest) * s / STEPS).toPrecision(3));
+  const settle = () => { number.value = is.value; slider.value = toSlider(is.value); };
+  const give = async (value) => {
+    if (!Number.isFinite(value)) { toast(`${is.name}: found '${number.value}', allowed a number`, true); return settle(); }
+    if (!await setUpChange.ask({ command: 'set', text: key, value }, is.name)) settle();
+  };
+  slider.addEventListener('input', () => { number.value = fromSlider(Number(slider.value)); });
+  slider.addEventListener('change', () => give(Math.min(is.highest, Math.max(is.lowest, fromSlider(Number(slider.value))))));
+  number.addEventListener('change', () => give(number.value.trim() === '' ? NaN : Number(number.value)));
+  const row = { box, show(parameter) {
+    is = parameter;
+    name.textContent = parameter.name;
+    unit.textContent = parameter.unit;
+    box.title = `${key}: ${parameter.lowest} .. ${parameter.highest} ${parameter.unit}`;
+    settle();
+  } };
+  rows.set(key, row);
+  return row;
+}
