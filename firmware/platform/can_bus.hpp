@@ -9,7 +9,7 @@ namespace ligature::platform {
 
 enum class Receive : std::uint8_t { kFrame, kNothing, kLost };
 
-/// Never blocks, never throws. Once lost, a bus stays lost.
+/// Never blocks, never throws. A bus that is lost takes no frames; one that can come back does so while it is read.
 class CanBus {
  public:
   virtual ~CanBus() = default;

@@ -1,7 +1,9 @@
 #include "firmware/platform/hand_link.hpp"
 
 #include <limits>
+#include <utility>
 
+#include "protocol/can/bit_time.hpp"
 #include "protocol/can/emcy.hpp"
 #include "protocol/can/heartbeat.hpp"
 #include "protocol/can/nmt.hpp"
@@ -28,11 +30,12 @@ can::cia402::State HandLink::Node::state() const noexcept {
 
 void HandLink::send_sync() noexcept {
   drain();
+  bits_of_last_period_ = std::exchange(bits_, 0U);
   arrived_ = 0;
   if (age_ticks_ < std::numeric_limits<std::int32_t>::max()) ++age_ticks_;
-  bus_.send(can::sync_frame());
+  send(can::sync_frame());
   if (--periods_to_heartbeat_ <= 0) {
-    bus_.send(can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}));
+    send(can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}));
     periods_to_heartbeat_ = kHeartbeatPeriods;
   }
 }
@@ -42,7 +45,14 @@ void HandLink::drain() noexcept {
   for (int i = 0; i < kMaxFrames && bus_.receive(frame) == Receive::kFrame; ++i) take(frame);
 }
 
+bool HandLink::send(const can::Frame& frame) noexcept {
+  if (!bus_.send(frame)) return false;
+  bits_ += can::frame_bits(frame);
+  return true;
+}
+
 void HandLink::take(const can::Frame& frame) noexcept {
+  bits_ += can::frame_bits(frame);
   const auto address = can::address_of(frame.id);
   if (!address) return;
   const std::size_t joint = joint_of(address->node);
@@ -81,11 +91,12 @@ rt::HandReading HandLink::reading() const noexcept {
   r.bus_lost = bus_.is_lost();
   r.valid = valid_;
   r.age_ticks = age_ticks_;
+  r.bus_bits = static_cast<std::int32_t>(bits_of_last_period_);
   r.enabled = valid_;
   for (std::size_t j = 0; j < rt::kJoints; ++j) {
     const Node& node = nodes_[j];
     const State state = node.state();
-    r.q_rad[j] = can::angle_rad(node.latest.position_counts);
+    r.q_rad[j] = node.latest.position_counts * rad_per_count_;
     r.enabled = r.enabled && state == State::kOperationEnabled;
     r.drive_fault = r.drive_fault || node.emergency != can::emcy::kNoError || !node.operational ||
                     (valid_ && (state == State::kFault || state == State::kFaultReactionActive));
@@ -97,6 +108,10 @@ rt::HandReading HandLink::reading() const noexcept {
   return r;
 }
 
+std::int16_t HandLink::permille_of(double torque_Nm) const noexcept {
+  return static_cast<std::int16_t>(can::round_clipped(torque_Nm / Nm_per_permille_, max_permille_));
+}
+
 std::array<std::int16_t, rt::kJoints> HandLink::write(const rt::HandCommand& command) noexcept {
   std::array<std::int16_t, rt::kJoints> sent{};
   for (std::size_t j = 0; j < rt::kJoints; ++j) {
@@ -106,8 +121,8 @@ std::array<std::int16_t, rt::kJoints> HandLink::write(const rt::HandCommand& com
       node.emergency = can::emcy::kNoError;  // it came back up: what it complained of is over
     }
     node.controlword = controlword(command.request, state, node.controlword);
-    const std::int16_t torque = bus_.is_lost() ? std::int16_t{0} : can::permille_of(command.torque_Nm[j]);
-    if (bus_.send(can::encode(can::profile::kJointNodes[j], can::Rpdo1{node.controlword, torque}))) sent[j] = torque;
+    const std::int16_t torque = bus_.is_lost() ? std::int16_t{0} : permille_of(command.torque_Nm[j]);
+    if (send(can::encode(can::profile::kJointNodes[j], can::Rpdo1{node.controlword, torque}))) sent[j] = torque;
   }
   return sent;
 }

@@ -8,6 +8,7 @@
 #include "firmware/rt/rig_io.hpp"
 #include "protocol/can/cia402.hpp"
 #include "protocol/can/codec.hpp"
+#include "protocol/device/device.hpp"
 
 namespace ligature::platform {
 
@@ -34,7 +35,11 @@ namespace ligature::platform {
 /// Real time: every call is bounded, allocates nothing, and does at most the bus' system calls.
 class HandLink {
  public:
-  explicit HandLink(CanBus& bus) noexcept : bus_(bus) {}
+  HandLink(CanBus& bus, const device::Device& device) noexcept
+      : bus_(bus),
+        rad_per_count_(device.rad_per_count()),
+        Nm_per_permille_(device.Nm_per_permille()),
+        max_permille_(device.max_torque_permille) {}
 
   /// Begins a period. What came too late for the last one is taken first, as one period old; then SYNC goes out, and
   /// now and then the master's heartbeat.
@@ -62,16 +67,21 @@ class HandLink {
     [[nodiscard]] can::cia402::State state() const noexcept;
   };
 
+  bool send(const can::Frame& frame) noexcept;
   void take(const can::Frame& frame) noexcept;
+  [[nodiscard]] std::int16_t permille_of(double torque_Nm) const noexcept;
   void take_tpdo(std::size_t joint, const can::Tpdo1& tpdo) noexcept;
 
   CanBus& bus_;
+  double rad_per_count_, Nm_per_permille_;
+  std::int32_t max_permille_;
   std::array<Node, rt::kJoints> nodes_{};
   std::array<can::Tpdo1, rt::kJoints> pending_{};
   unsigned arrived_ = 0;  // bit per joint since the last SYNC
   bool valid_ = false;
   std::int32_t age_ticks_ = 1;
   int periods_to_heartbeat_ = 0;
+  unsigned bits_ = 0, bits_of_last_period_ = 0;  // on the wire
 };
 
 }  // namespace ligature::platform

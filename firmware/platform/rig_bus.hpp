@@ -8,7 +8,8 @@ namespace ligature::platform {
 
 class RigBus {
  public:
-  RigBus(CanBus& left, CanBus& right, BusWait& wait) noexcept : hands_{HandLink(left), HandLink(right)}, wait_(wait) {}
+  RigBus(CanBus& left, CanBus& right, BusWait& wait, const device::Device& device = device::omni())
+      : hands_{HandLink(left, device), HandLink(right, device)}, wait_(wait) {}
 
   void send_sync() noexcept;
   /// Returns as soon as both hands have answered, at the latest at the deadline.

@@ -1,6 +1,7 @@
 #include "firmware/platform/socket_bus.hpp"
 
 #include <linux/can.h>
+#include <linux/can/error.h>
 #include <linux/can/raw.h>
 #include <net/if.h>
 #include <sys/socket.h>
@@ -10,9 +11,6 @@
 
 #include <cerrno>
 #include <cstring>
-
-#include "protocol/can/local_wire.hpp"
-
 namespace ligature::platform {
 namespace {
 
@@ -65,6 +63,12 @@ Opened open_socketcan(const std::string& url, const std::string& interface) {
     close(fd);
     return refuse(OpenFailure::kUsage, url, "no interface of that name, allowed one that 'ip link' lists");
   }
+  const can_err_mask_t wanted = CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;  // as frames, beside those of the drives
+  if (setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &wanted, sizeof wanted) != 0) {
+    const std::string why = std::strerror(errno);
+    close(fd);
+    return refuse(OpenFailure::kUsage, url, "no error frames from this interface: " + why);
+  }
   return connected(fd, url, address, true);
 }
 
@@ -79,15 +83,39 @@ Opened open_can_bus(const std::string& url) {
 
 SocketBus::~SocketBus() { close(fd_); }
 
-/// @return false always, for use as a result. Full queues pass; everything else means that the peer or interface is
-/// gone.
+/// @return false always, for use as a result. Full queues pass; an interface that is down may come up again; everything
+/// else means that the other end or the interface is gone.
 bool SocketBus::note(int error) noexcept {
-  if (error != EAGAIN && error != EWOULDBLOCK && error != ENOBUFS && error != EINTR) lost_ = true;
+  if (error == ENETDOWN)
+    lose(Loss::kDown);
+  else if (error != EAGAIN && error != EWOULDBLOCK && error != ENOBUFS && error != EINTR)
+    lose(Loss::kForGood);
   return false;
 }
 
+/// What waits in the socket was sent before the loss.
+void SocketBus::lose(Loss how) noexcept {
+  constexpr int kMost = 1024;  // far more than a period brings: bounded, whatever happens
+  can::LocalPacket dropped;
+  for (int i = 0; i < kMost && recv(fd_, dropped.data(), dropped.size(), MSG_DONTWAIT) > 0; ++i) {
+  }
+  loss_ = how;
+}
+
+/// Controller's own news. @return whether it was that, and not a frame of somebody.
+bool SocketBus::take_error_frame(const can::LocalPacket& packet) noexcept {
+  std::uint32_t id = 0;
+  std::memcpy(&id, packet.data(), sizeof id);
+  if ((id & CAN_ERR_FLAG) == 0) return false;
+  if ((id & CAN_ERR_BUSOFF) != 0)
+    lose(Loss::kBusOff);
+  else if ((id & CAN_ERR_RESTARTED) != 0 && loss_ == Loss::kBusOff)
+    loss_ = Loss::kNone;
+  return true;
+}
+
 bool SocketBus::send(const can::Frame& frame) noexcept {
-  if (lost_) return false;
+  if (is_lost()) return false;
   const can::LocalPacket packet = can::to_packet(frame);
   const ssize_t sent = ::send(fd_, packet.data(), packet.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   return sent == static_cast<ssize_t>(packet.size()) || note(sent < 0 ? errno : EAGAIN);
@@ -95,20 +123,26 @@ bool SocketBus::send(const can::Frame& frame) noexcept {
 
 Receive SocketBus::receive(can::Frame& frame) noexcept {
   can::LocalPacket packet;
-  while (!lost_) {
+  while (loss_ != Loss::kForGood) {
     const ssize_t got = recv(fd_, packet.data(), packet.size(), MSG_DONTWAIT);
     if (got < 0) {
       note(errno);
-      return lost_ ? Receive::kLost : Receive::kNothing;
+      return is_lost() ? Receive::kLost : Receive::kNothing;
     }
     if (got == 0) {
-      lost_ = true;  // the peer closed: killed, ended, or refused us
+      lose(Loss::kForGood);  // the peer closed: killed, ended, or refused us
       break;
     }
-    if (const auto decoded = can::from_packet({packet.data(), static_cast<std::size_t>(got)})) {
-      frame = *decoded;
-      return Receive::kFrame;
-    }  // an error or extended frame: none of ours
+    const auto bytes = std::span(packet).first(static_cast<std::size_t>(got));
+    if (got == static_cast<ssize_t>(packet.size()) && take_error_frame(packet)) {
+      if (is_lost()) return Receive::kLost;
+      continue;
+    }
+    const auto decoded = can::from_packet(bytes);
+    if (!decoded || loss_ == Loss::kBusOff) continue;  // an extended or remote frame is none of ours
+    loss_ = Loss::kNone;
+    frame = *decoded;
+    return Receive::kFrame;
   }
   return Receive::kLost;
 }

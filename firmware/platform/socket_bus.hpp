@@ -1,14 +1,19 @@
 #pragma once
 // The two back ends. Both are packet sockets that carry 16-byte frame images, so one class serves them.
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <variant>
 
 #include "firmware/platform/can_bus.hpp"
+#include "protocol/can/local_wire.hpp"
 
 namespace ligature::platform {
 
+/// A `local:` bus that is lost stays lost: its other end is gone. A CAN interface may come back: after being down with
+/// its first frame, after bus-off when its driver tells that it was restarted. What was queued before the loss is
+/// dropped. Whether force may come back is not asked here: the loss was a fault, and faults are latched.
 class SocketBus final : public CanBus {
  public:
   /// Owns the descriptor, which must be non-blocking.
@@ -19,14 +24,18 @@ class SocketBus final : public CanBus {
 
   bool send(const can::Frame& frame) noexcept override;
   Receive receive(can::Frame& frame) noexcept override;
-  [[nodiscard]] bool is_lost() const noexcept override { return lost_; }
+  [[nodiscard]] bool is_lost() const noexcept override { return loss_ != Loss::kNone; }
   [[nodiscard]] int descriptor() const noexcept override { return fd_; }
 
  private:
+  enum class Loss : std::uint8_t { kNone, kBusOff, kDown, kForGood };
+
   bool note(int error) noexcept;
+  void lose(Loss how) noexcept;
+  bool take_error_frame(const can::LocalPacket& packet) noexcept;
 
   int fd_;
-  bool lost_ = false;
+  Loss loss_ = Loss::kNone;
 };
 
 enum class OpenFailure : std::uint8_t {

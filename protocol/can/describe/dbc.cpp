@@ -5,6 +5,35 @@
 namespace ligature::can {
 namespace {
 
+/// A signal of the services beside the PDOs: unsigned, little endian, no unit.
+std::string plain_signal(const char* name, int first_bit, int bits) {
+  return " SG_ " + std::string(name) + " : " + std::to_string(first_bit) + "|" + std::to_string(bits) +
+         "@1+ (1,0) [0|0] \"\" Vector__XXX\n";
+}
+
+std::string head(std::uint32_t id, const std::string& name, int bytes, const std::string& sender) {
+  return "BO_ " + std::to_string(id) + " " + name + ": " + std::to_string(bytes) + " " + sender + "\n";
+}
+
+/// Of CiA 301: what a node says of itself, and how its objects are read and written.
+std::string services_of(NodeId node) {
+  const std::string drive = node_name(node.value);
+  const auto id = [node](Service s) { return cob_id(s, node).value; };
+  const std::string transfer = plain_signal("Specifier", 0, 8) + plain_signal("Index", 8, 16) +
+                               plain_signal("Subindex", 24, 8) + plain_signal("Value", 32, 32) + "\n";
+  return head(id(Service::kEmcy), drive + "_Emergency", 8, drive) + plain_signal("ErrorCode", 0, 16) +
+         plain_signal("ErrorRegister", 16, 8) + plain_signal("MakersOwn", 24, 40) + "\n" +
+         head(id(Service::kSdoResponse), drive + "_SdoResponse", 8, drive) + transfer +
+         head(id(Service::kSdoRequest), drive + "_SdoRequest", 8, "Controller") + transfer +
+         head(id(Service::kHeartbeat), drive + "_Heartbeat", 1, drive) + plain_signal("NmtState", 0, 8) + "\n";
+}
+
+std::string services_of_controller() {
+  return head(kNmtCobId.value, "Nmt", 2, "Controller") + plain_signal("Command", 0, 8) + plain_signal("Node", 8, 8) +
+         "\n" + head(cob_id(Service::kHeartbeat, kMasterNode).value, "Controller_Heartbeat", 1, "Controller") +
+         plain_signal("NmtState", 0, 8) + "\n";
+}
+
 std::string message(Pdo pdo, NodeId node) {
   const bool rpdo = pdo == Pdo::kRpdo1;
   const std::uint32_t id = cob_id(rpdo ? Service::kRpdo1 : Service::kTpdo1, node).value;
@@ -41,6 +70,8 @@ std::string dbc_text() {
   for (const Pdo pdo : {Pdo::kTpdo1, Pdo::kRpdo1}) {
     for (const NodeId node : profile::kJointNodes) text += message(pdo, node);
   }
+  text += services_of_controller();
+  for (const NodeId node : profile::kJointNodes) text += services_of(node);
   return text + "CM_ \"Made by ligature-can-describe from protocol/can/pdo_map.hpp. Do not edit.\";\n";
 }
 

@@ -89,6 +89,16 @@ class Readers(unittest.TestCase):
                 for variable, field in zip(pdo.map, expected, strict=True):
                     self.assertEqual(variable.raw, named[field["name"]], f"node {node}: {field['name']}")
 
+    def test_the_dbc_knows_every_service_of_the_bus(self):
+        frames = {0x000: "0101", 0x080: "", 0x77F: "05"}
+        for node in NODES:
+            frames |= {0x080 + node: "5082110000000000", 0x180 + node: "00" * 8, 0x200 + node: "00" * 4, 0x580 + node: "4F61600A00000000",
+                       0x600 + node: "2F6060000A000000", 0x700 + node: "7F"}
+        for identifier, data in frames.items():
+            self.dbc.get_message_by_frame_id(identifier).decode(bytes.fromhex(data), allow_truncated=False, allow_excess=False)
+        self.assertEqual({m.frame_id for m in self.dbc.messages}, set(frames))
+        self.assertEqual(self.dbc.decode_message(0x082, bytes.fromhex(frames[0x082]))["ErrorCode"], 0x8250)
+
     def test_dbc_and_eds_agree_on_every_signal(self):
         for field in self.constants["fields"]:
             message = self.dbc.get_message_by_name(f"{NODES[field['node']]}_{field['pdo'].upper()}")

@@ -13,6 +13,7 @@ import tempfile
 import time
 import unittest
 
+import can
 import canopen
 from local_bus import LocalBus
 
@@ -27,11 +28,13 @@ class Hand(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="hand-")
         self.addCleanup(folder.cleanup)
         self.path = pathlib.Path(folder.name)
-        self.device = subprocess.Popen([DEVICE, "--hand", "left", "--bus", f"local:{self.path / 'bus'}",
-                                        "--stats", self.path / "stats.json"], stdout=subprocess.DEVNULL)
+        interface = os.environ.get("LIGATURE_HAND_CAN")  # a SocketCAN interface that is up, instead of a local bus
+        bus = f"socketcan:{interface}" if interface else f"local:{self.path / 'bus'}"
+        with open(self.path / "device.log", "w") as log:
+            self.device = subprocess.Popen([DEVICE, "--hand", "left", "--bus", bus, "--stats", self.path / "stats.json"], stdout=log)
         self.addCleanup(self.end)
-        self.wait_for(lambda: (self.path / "bus").exists(), "the bus")
-        self.network = canopen.Network(LocalBus(self.path / "bus"))
+        self.wait_for(lambda: "waiting for a controller" in (self.path / "device.log").read_text(), "the bus")
+        self.network = canopen.Network(can.Bus(interface, interface="socketcan") if interface else LocalBus(self.path / "bus"))
         self.network.connect()
         for node in NODES:
             text = io.StringIO(subprocess.run([DESCRIBE, "eds", str(node)], capture_output=True, text=True, check=True).stdout)
@@ -129,6 +132,20 @@ class Hand(unittest.TestCase):
         self.enable()
         _, stats = self.end()
         self.assertEqual(stats["watchdog_trips"], 3)
+
+
+    def test_a_lost_heartbeat_of_the_master_is_told_by_emcy(self):
+        self.start_up()
+        for drive in self.drives:
+            drive.sdo[0x1016][1].raw = 127 << 16 | 1500  # ms; the watch begins with the first heartbeat
+        self.enable()
+        self.command(ENABLE, torque=200)
+        self.network.send_message(0x77F, [0x05])
+        self.wait_for(lambda: all(d.emcy.active for d in self.drives), "an EMCY of every drive")
+        self.assertEqual({d.emcy.active[-1].code for d in self.drives}, {0x8130})
+        self.assertEqual({s & 0x4F for s in self.state()}, {0x08})
+        _, stats = self.end()
+        self.assertEqual((stats["watchdog_trips"], stats["final_torque_permille"]), (3, [0, 0, 0]))
 
 
 class CommandLine(unittest.TestCase):

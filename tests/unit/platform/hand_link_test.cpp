@@ -38,7 +38,7 @@ class HandLinkTest : public ::testing::Test {
     return {};
   }
   FakeBus bus;
-  HandLink link{bus};
+  HandLink link{bus, device::omni()};
 };
 
 TEST_F(HandLinkTest, ACompleteSetIsFreshAndInSiUnits) {
