@@ -1,21 +1,62 @@
 #pragma once
-// The fingers: a spring and a damper without mass between where the operator wants to be and where the stylus is.
-//   F_D = K (p_DH − p_DT) + B (v_DH − v_DT)
-// H is the operator's intended point. Values are of a light stylus grip: stiff enough that the device follows within a
-// millimetre, soft enough that the thread's pull is seen as motion (3.3 N moves the tip by 4 mm).
+// The fingers and the arm behind them, from the intended point H to the stylus T, all in D:
+//
+//   H --[K, B]-- m --[pad]-- T         m ẍ = K (p_DH − x) + B (v_DH − ẋ) − F,   F = k (x − p_DT) + b (ẋ − v_DT)
+//
+// With m = 0 the arm's spring and damper act on the stylus itself. The values are of the size that studies of fingers,
+// wrist and stylus grips report (mass 5 .. 200 g, stiffness 50 .. 2000 N/m, damping 1 .. 25 N s/m); they are
+// assumptions of that size, not one person's numbers.
 
 #include "sim_device/kinematics.hpp"
 
 namespace ligature::sim {
 
 struct Hand {
+  // A light stylus grip: stiff enough that the device follows within a millimetre, soft enough that the thread's pull
+  // is seen as motion (3.3 N moves the tip by 4 mm).
   double stiffness_N_per_m = 800.0;
   double damping_N_s_per_m = 8.0;
+  double mass_kg = 0.0;
+  double pad_stiffness_N_per_m = 4000.0;  ///< of the fingertips; unused without mass
+  double pad_damping_N_s_per_m = 6.0;
 
-  [[nodiscard]] Vec3 force_on_tip_D_N(const Vec3& p_DH, const Vec3& v_DH, const Vec3& p_DT,
-                                      const Vec3& v_DT) const noexcept {
-    return stiffness_N_per_m * (p_DH - p_DT) + damping_N_s_per_m * (v_DH - v_DT);
+  /// From a hand that hardly holds on (0) to a clenched fist (1); geometric in between.
+  [[nodiscard]] static Hand holding(double tightness) noexcept {
+    const auto between = [t = tightness](double loose, double tight) { return loose * std::pow(tight / loose, t); };
+    return {between(80.0, 1600.0), between(2.0, 24.0), between(0.04, 0.20), between(1500.0, 6000.0),
+            between(3.0, 12.0)};
   }
+  /// Nobody touches the stylus.
+  [[nodiscard]] static Hand absent() noexcept { return {0.0, 0.0, 0.0, 0.0, 0.0}; }
+
+  [[nodiscard]] Vec3 arm_force_D_N(const Vec3& p_DH, const Vec3& v_DH, const Vec3& p_D,
+                                   const Vec3& v_D) const noexcept {
+    return stiffness_N_per_m * (p_DH - p_D) + damping_N_s_per_m * (v_DH - v_D);
+  }
+};
+
+/// One hand's state.
+class Fingers {
+ public:
+  Fingers(const Hand& hand, const Vec3& p_D) : hand_(hand), p_D_(p_D) {}
+
+  /// @return force on the stylus at (p_DT, v_DT), N, before the step; then moves the hand's mass by dt_s.
+  Vec3 step(const Vec3& p_DH, const Vec3& v_DH, const Vec3& p_DT, const Vec3& v_DT, double dt_s) noexcept {
+    if (hand_.mass_kg <= 0.0) return hand_.arm_force_D_N(p_DH, v_DH, p_DT, v_DT);
+    const Vec3 pad = hand_.pad_stiffness_N_per_m * (p_D_ - p_DT) + hand_.pad_damping_N_s_per_m * (v_D_ - v_DT);
+    v_D_ += dt_s / hand_.mass_kg * (hand_.arm_force_D_N(p_DH, v_DH, p_D_, v_D_) - pad);
+    p_D_ += dt_s * v_D_;
+    return pad;
+  }
+
+  [[nodiscard]] const Hand& hand() const noexcept { return hand_; }
+  [[nodiscard]] const Vec3& position_D_m() const noexcept { return p_D_; }
+  [[nodiscard]] const Vec3& velocity_D_m_per_s() const noexcept { return v_D_; }
+
+ private:
+  Hand hand_;
+  Vec3 p_D_;
+  Vec3 v_D_ = Vec3::Zero();
 };
 
 }  // namespace ligature::sim

@@ -14,8 +14,10 @@ double seconds(Time t) noexcept { return std::chrono::duration<double>(t).count(
 
 Mechanics::Mechanics(std::unique_ptr<Intention> intention, Time now, const Body& body)
     : intention_(std::move(intention)),
-      hand_(body.hand),
       plant_(joints_of_tip(intention_->start_D_m()).value(), body.plant),
+      stylus_(body.compliance, plant_.tip_D_m()),
+      fingers_(body.hand, plant_.tip_D_m()),
+      motors_(body.motors),
       now_(now) {}
 
 void Mechanics::start_script(Time now) noexcept {
@@ -35,8 +37,9 @@ void Mechanics::advance(Time now, const Vec3& motor_Nm) noexcept {
     now_ = from + span * i / steps;
     const Touch tip = touch();
     const Intent wish = intention_->at(script_time_s(), tip);
-    const Vec3 force = hand_.force_on_tip_D_N(wish.p_DH, wish.v_DH, tip.p_DT, tip.v_DT);
-    plant_.step(motor_Nm, force, dt_s);
+    hand_force_D_N_ = fingers_.step(wish.p_DH, wish.v_DH, tip.p_DT, tip.v_DT, dt_s);
+    const Vec3 on_linkage = stylus_.step(hand_force_D_N_, plant_.tip_D_m(), plant_.tip_velocity_D_m_per_s(), dt_s);
+    plant_.step(motors_.pass(motor_Nm, dt_s), on_linkage, dt_s);
   }
 }
 

@@ -6,8 +6,10 @@
 #include "protocol/can/units.hpp"
 #include "sim_device/deadline.hpp"
 #include "sim_device/hand.hpp"
+#include "sim_device/motor_heat.hpp"
 #include "sim_device/operator_path.hpp"
 #include "sim_device/plant.hpp"
+#include "sim_device/stylus.hpp"
 
 namespace ligature::sim {
 
@@ -16,8 +18,10 @@ inline constexpr double kDeadManAfterScript_s = 1.0;
 
 /// What the device is made of, and whose hand is on it.
 struct Body {
-  PlantParameters plant;
-  Hand hand;
+  PlantParameters plant{};
+  Hand hand{};
+  Compliance compliance{};
+  MotorRating motors{};
 };
 
 class Mechanics {
@@ -43,12 +47,23 @@ class Mechanics {
   /// Since the script's start; minus infinity before it.
   [[nodiscard]] double script_time_s() const noexcept;
   [[nodiscard]] double script_end_s() const noexcept { return intention_->end_s(); }
-  [[nodiscard]] Touch touch() const noexcept { return {plant_.tip_D_m(), plant_.tip_velocity_D_m_per_s()}; }
+  /// The stylus where the fingers hold it; with links that bend, not where the joints say that it is.
+  [[nodiscard]] Touch touch() const noexcept {
+    if (!stylus_.is_rigid()) return {stylus_.position_D_m(), stylus_.velocity_D_m_per_s()};
+    return {plant_.tip_D_m(), plant_.tip_velocity_D_m_per_s()};
+  }
+  [[nodiscard]] const MotorHeat& motors() const noexcept { return motors_; }
+  [[nodiscard]] const Fingers& fingers() const noexcept { return fingers_; }
+  /// On the stylus by the fingers in the last step, N.
+  [[nodiscard]] const Vec3& hand_force_D_N() const noexcept { return hand_force_D_N_; }
 
  private:
   std::unique_ptr<Intention> intention_;
-  Hand hand_;
   Plant plant_;
+  Stylus stylus_;
+  Fingers fingers_;
+  MotorHeat motors_;
+  Vec3 hand_force_D_N_ = Vec3::Zero();
   Time now_;
   Time started_at_ = kNever;
 };

@@ -5,6 +5,8 @@
 namespace ligature::sim {
 namespace {
 
+constexpr double kGravity_m_per_s2 = 9.81;
+
 /// Inelastic end stop: the joint stays at the end and gives up the speed that leads further out.
 void stop(double& q, double& omega, double low, double high) noexcept {
   if (q < low) {
@@ -19,12 +21,12 @@ void stop(double& q, double& omega, double low, double high) noexcept {
 }  // namespace
 
 void Plant::step(const Vec3& motor_Nm, const Vec3& hand_force_D_N, double dt_s) noexcept {
-  const Vec3 hand_Nm = tip_jacobian_D(q_).transpose() * hand_force_D_N;
+  const Vec3 outer_Nm = tip_jacobian_D(q_).transpose() * hand_force_D_N + gravity_Nm();
   for (int j = 0; j < 3; ++j) {
     const double motor = std::clamp(motor_Nm[j], -parameters_.max_torque_Nm, parameters_.max_torque_Nm);
     const double per_inertia = dt_s / parameters_.inertia_kg_m2[j];
     const double free =
-        (omega_[j] + per_inertia * (motor + hand_Nm[j])) / (1.0 + per_inertia * parameters_.viscous_Nm_s[j]);
+        (omega_[j] + per_inertia * (motor + outer_Nm[j])) / (1.0 + per_inertia * parameters_.viscous_Nm_s[j]);
     const double dry = per_inertia * parameters_.coulomb_Nm[j];
     omega_[j] = std::copysign(std::max(std::abs(free) - dry, 0.0), free);
   }
@@ -46,6 +48,16 @@ void Plant::stop_at_ends() noexcept {
   const Vec3& inertia = p.inertia_kg_m2;
   const double shared = (inertia[1] * omega_[1] + inertia[2] * omega_[2]) / (inertia[1] + inertia[2]);
   omega_[1] = omega_[2] = shared;
+}
+
+Vec3 Plant::gravity_Nm() const noexcept {
+  const double g = kGravity_m_per_s2 * (1.0 - parameters_.gravity_compensation);
+  return {0.0, -g * parameters_.upper_arm_kg_m * std::cos(q_[1]), -g * parameters_.forearm_kg_m * std::sin(q_[2])};
+}
+
+double Plant::potential_J() const noexcept {
+  const double g = kGravity_m_per_s2 * (1.0 - parameters_.gravity_compensation);
+  return g * (parameters_.upper_arm_kg_m * std::sin(q_[1]) - parameters_.forearm_kg_m * std::cos(q_[2]));
 }
 
 double Plant::kinetic_J() const noexcept { return 0.5 * parameters_.inertia_kg_m2.dot(omega_.cwiseAbs2()); }

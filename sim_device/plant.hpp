@@ -1,9 +1,9 @@
 #pragma once
 // The moving parts of one device: three joints that motors and a hand turn.
-//   I_j dω_j/dt = τ_motor + (Jᵀ F_hand)_j − b_j ω_j − τc_j sign(ω_j),   dq/dt = ω,   within the joint stops.
-// Gravity is not in it: the real device is counterbalanced, and its residue (some 0.1 N) is left out. The inertia of
-// the links is taken as constant and diagonal, about 45 g at the tip in the home pose; Coriolis terms (below 1 mN at
-// the speeds of a hand) are left out with it.
+//   I_j dω_j/dt = τ_motor + (Jᵀ F_hand)_j + (1 − c) τ_gravity,j − b_j ω_j − τc_j sign(ω_j),   dq/dt = ω,
+// within the joint stops. τ_gravity = −dV/dq with V = g (μ₂ sin q₂ − μ₃ cos q₃), μ the links' mass times lever; c is
+// the share that springs and counterweights take. The inertia of the links is taken as constant and diagonal, about 45
+// g at the tip in the home pose; Coriolis terms (below 1 mN at the speeds of a hand) are left out with it.
 
 #include "sim_device/kinematics.hpp"
 
@@ -16,6 +16,9 @@ struct PlantParameters {
   Vec3 coulomb_Nm{0.0170, 0.0134, 0.0133};
   Vec3 viscous_Nm_s{8.7e-3, 5.4e-3, 5.3e-3};
   double max_torque_Nm = 0.9;  ///< 3000 per mille of 300 mN m
+  // 45 g at each link's end. 0.8 would leave about 0.1 N at the tip, which the friction holds.
+  double upper_arm_kg_m = 6.0e-3, forearm_kg_m = 6.0e-3;
+  double gravity_compensation = 1.0;
   // Joint stops. The elbow's are on the angle between the links (q3 - q2), the linkage's own limit.
   double waist_stop_rad = 0.98;
   double shoulder_min_rad = -0.10, shoulder_max_rad = 1.80;
@@ -36,6 +39,10 @@ class Plant {
   [[nodiscard]] Vec3 tip_D_m() const noexcept { return sim::tip_D_m(q_); }
   [[nodiscard]] Vec3 tip_velocity_D_m_per_s() const noexcept { return tip_jacobian_D(q_) * omega_; }
   [[nodiscard]] double kinetic_J() const noexcept;
+  /// Of the weight that is not compensated.
+  [[nodiscard]] double potential_J() const noexcept;
+  /// Joint torques of the weight that is not compensated.
+  [[nodiscard]] Vec3 gravity_Nm() const noexcept;
   [[nodiscard]] const PlantParameters& parameters() const noexcept { return parameters_; }
 
   /// True when the stops allow these angles.

@@ -106,7 +106,7 @@ TEST(Hand,
   const double start_J = before_J;
   for (int i = 0; i < 20000; ++i) {
     plant.step(Vec3::Zero(),
-               hand.force_on_tip_D_N(anchor, Vec3::Zero(), plant.tip_D_m(), plant.tip_velocity_D_m_per_s()), kStep_s);
+               hand.arm_force_D_N(anchor, Vec3::Zero(), plant.tip_D_m(), plant.tip_velocity_D_m_per_s()), kStep_s);
     ASSERT_LE(energy(), before_J + 1e-4 * start_J);
     before_J = energy();
   }

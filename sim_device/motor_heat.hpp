@@ -1,0 +1,45 @@
+#pragma once
+// What a motor bears: its winding's temperature as a share h of what it may have, and the drive that guards it.
+//   dh/dt = ((τ / τ_continuous)² − h) / time constant
+// At h = 1 the drive holds the torque down to τ_continuous until h has fallen below 0.95 (I²t with hysteresis).
+
+#include <algorithm>
+#include <array>
+
+#include "sim_device/kinematics.hpp"
+
+namespace ligature::sim {
+
+struct MotorRating {
+  // 0.88 N continuous at the tip, times lever: 0.17 m (waist, home pose), 0.134 m, 0.1325 m.
+  Vec3 continuous_Nm{0.150, 0.118, 0.117};
+  double time_constant_s = 20.0;  ///< assumption: small motors in a closed housing
+};
+
+class MotorHeat {
+ public:
+  explicit MotorHeat(const MotorRating& rating = {}) : rating_(rating) {}
+
+  /// Torque that the drives let through for dt_s of `wanted_Nm`; the windings warm by it.
+  Vec3 pass(const Vec3& wanted_Nm, double dt_s) noexcept {
+    Vec3 passed = wanted_Nm;
+    for (int j = 0; j < 3; ++j) {
+      const double most = rating_.continuous_Nm[j];
+      if (heat_[j] >= 1.0) held_[j] = true;
+      if (heat_[j] < 0.95) held_[j] = false;
+      if (held_[j]) passed[j] = std::clamp(passed[j], -most, most);
+      const double load = passed[j] / most;
+      heat_[j] += dt_s / rating_.time_constant_s * (load * load - heat_[j]);
+    }
+    return passed;
+  }
+  [[nodiscard]] const Vec3& heat() const noexcept { return heat_; }
+  [[nodiscard]] bool is_holding() const noexcept { return held_[0] || held_[1] || held_[2]; }
+
+ private:
+  MotorRating rating_;
+  Vec3 heat_ = Vec3::Zero();
+  std::array<bool, 3> held_{};
+};
+
+}  // namespace ligature::sim
