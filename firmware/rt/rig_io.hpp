@@ -20,6 +20,7 @@ struct HandReading {
   bool enabled = false;        ///< every drive is in Operation enabled
   bool drive_fault = false;    ///< a drive is in Fault, sent an emergency or fell out of NMT operational
   bool bus_lost = false;       ///< the bus itself is gone
+  std::int32_t bus_bits = 0;   ///< on this hand's wire in the period before, stuff bits included
   std::int32_t age_ticks = 0;  ///< periods since the last complete set; 0 = sampled at this period's SYNC
 };
 

@@ -57,4 +57,8 @@ struct Device {
   [[nodiscard]] double max_torque_Nm() const noexcept { return Nm_per_permille() * max_torque_permille; }
 };
 
+/// The shipped Omni-class device, scenes/devices/omni.toml as it was when this was built: what programs use without
+/// --device. The first call parses it.
+[[nodiscard]] const Device& omni();
+
 }  // namespace ligature::device

@@ -26,7 +26,4 @@ struct DeviceFile {
 /// The same from a text; `name` stands for the file in messages.
 [[nodiscard]] std::variant<DeviceFile, scene::Error> parse_device(const std::string& toml, const std::string& name);
 
-/// scenes/devices/omni.toml as it was when this was built: what programs use without --device.
-[[nodiscard]] const Device& omni();
-
 }  // namespace ligature::device

@@ -54,7 +54,7 @@ std::vector<std::string> fuzz::seeds() {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace ligature;
   QueueBus bus;
-  platform::HandLink link(bus);
+  platform::HandLink link(bus, device::omni());
   for (; size >= kImage; data += kImage, size -= kImage) {
     can::Frame f{};
     std::memcpy(&f.id, data, 4);
