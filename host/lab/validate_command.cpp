@@ -41,6 +41,7 @@ Examples
 
 struct Arguments {
   std::string model = "rod";
+  std::string accuracy = "balanced";
   std::optional<int> nodes;
   std::string only;
   std::string out;
@@ -62,6 +63,13 @@ scene::Model model_of(const std::string& name) {
     if (known == name) return model;
   }
   throw Refusal("--model: found " + name + ", allowed paper-1 .. paper-5, rod");
+}
+
+scene::Accuracy accuracy_of(const std::string& name) {
+  if (name == "fast") return scene::Accuracy::kFast;
+  if (name == "balanced") return scene::Accuracy::kBalanced;
+  if (name == "fine") return scene::Accuracy::kFine;
+  throw Refusal("--accuracy: found " + name + ", allowed fast, balanced, fine");
 }
 
 std::vector<int> nodes_of(const Arguments& a) {
@@ -170,6 +178,7 @@ int show_convergence(const std::string& out) {
 
 int execute(const Arguments& a) {
   const auto model = model_of(a.model);
+  const auto accuracy = accuracy_of(a.accuracy);
   const auto nodes = nodes_of(a);
   if (!a.only.empty() && !v::find_case(a.only)) throw Refusal("--only: found " + a.only + ", allowed see validate --help");
   if (!a.out.empty()) make_folder(a.out);
@@ -188,8 +197,9 @@ int execute(const Arguments& a) {
         if (!a.only.empty() && a.only != c.name) continue;
         if (a.quick && !c.quick) continue;
         if (stop_requested()) throw Refusal("validate: interrupted", kRunFailed);
-        Outcome o{&c, n, c.is_modelled(model), {}};
-        if (o.modelled) o.findings = c.examine({model, n});
+        if (c.only_nodes > 0 && n != nodes.front()) continue;
+        Outcome o{&c, c.only_nodes > 0 ? c.only_nodes : n, c.is_modelled(model), {}};
+        if (o.modelled) o.findings = c.examine({model, o.nodes, accuracy});
         judged += o.modelled;
         failed += o.modelled && !o.holds();
         add_row(table, o);
@@ -213,6 +223,7 @@ void add_validate_command(CLI::App& app, int& exit_code) {
   auto a = std::make_shared<Arguments>();
   auto* command = app.add_subcommand("validate", "A model against experiments with a known answer");
   command->add_option("--model", a->model, "paper-1 .. paper-5 or rod")->capture_default_str();
+  command->add_option("--accuracy", a->accuracy, "The rod's: fast, balanced or fine")->capture_default_str();
   command->add_option("--nodes", a->nodes, "50 or 200 [both]")->type_name("N");
   command->add_option("--only", a->only, "One case, by name")->type_name("CASE");
   command->add_option("--out", a->out, "Folder for validate.csv and validate.json")->type_name("DIR");

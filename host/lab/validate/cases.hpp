@@ -13,6 +13,7 @@ namespace ligature::validate {
 struct Subject {
   scene::Model model = scene::Model::kRod;
   int nodes = 50;
+  scene::Accuracy accuracy = scene::Accuracy::kBalanced;  ///< of the rod
 };
 
 /// One number against its reference. The error is in the unit of the tolerance.
@@ -37,7 +38,8 @@ struct Case {
   const char* about;                ///< reference, in a few words
   bool (*is_modelled)(scene::Model);
   Findings (*examine)(const Subject&);
-  bool quick;  ///< part of the quick subset that the tests run at 50 nodes
+  int only_nodes;  ///< 0: at whatever is asked for; else the experiment has its own number of nodes
+  bool quick;      ///< takes a moment: the tests run it
 };
 
 /// In the order of the printed table.

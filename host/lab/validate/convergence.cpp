@@ -109,11 +109,11 @@ std::vector<Ladder> convergence() {
                        [](double k) { return chain_error(800, k); }));
   const auto truth = helix_truth();
   all.push_back(ladder("localised helix, largest angle, relative, in N", {100, 200, 400}, [&](double n) {
-    return std::abs(localised_helix_of(static_cast<int>(n), 1).angle_rad / truth.phi0_rad - 1.0);
+    return std::abs(localised_helix_of(static_cast<int>(n), 1, false).angle_rad / truth.phi0_rad - 1.0);
   }));
-  const double still = localised_helix_of(100, 8).angle_rad;
+  const double still = localised_helix_of(100, 8, false).angle_rad;
   all.push_back(ladder("the same at rest, N = 100, against 8 substeps: a balance knows no step", {1, 2, 4},
-                       [&](double k) { return std::abs(localised_helix_of(100, static_cast<int>(k)).angle_rad / still - 1.0); }));
+                       [&](double k) { return std::abs(localised_helix_of(100, static_cast<int>(k), false).angle_rad / still - 1.0); }));
   return all;
 }
 

@@ -11,7 +11,8 @@ struct Helix {
   double envelope_error = 0.0;  ///< largest |f - tanh^2(sigma s)|
 };
 /// @param substeps implicit steps per 0.1 s
-[[nodiscard]] Helix localised_helix_of(int n, int substeps);
+/// @param adaptive nodes gather in the bulge (where there are too many for that, they stay equally spaced)
+[[nodiscard]] Helix localised_helix_of(int n, int substeps, bool adaptive);
 
 /// Angle, moment and decay rate of the infinite rod's solution.
 struct HelixTruth {

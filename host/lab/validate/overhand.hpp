@@ -5,9 +5,9 @@
 
 namespace ligature::validate {
 
-/// Lays the thread as an open trefoil of three lobes, `unit_m` a unit (a lobe is about three units), tails along -x and +x,
-/// first and last node on the x axis. Its excess length is then near 26 units.
-void lay_overhand(scene::Scene& scene, double unit_m);
+/// Lays the thread as an overhand knot: tails along -x and +x, one loop of 2 pi loop_m above them, and three half turns of
+/// the two strands about each other along its foot. Its excess length is then near 2 pi loop_m.
+void lay_overhand(scene::Scene& scene, double loop_m);
 
 /// Excess length of a knotted thread held at its ends, m: what is missing between the hands.
 [[nodiscard]] double excess_m(const physics::Simulation& sim, double length_m);

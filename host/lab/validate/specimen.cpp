@@ -50,6 +50,7 @@ scene::Scene real_thread(const Subject& subject, double share, double friction) 
     s.suture.radius_m = 1.5e-4;
     s.suture.rod.GJ_N_m2 = 0.0;
     s.suture.rod.spacing = scene::Spacing::kUniform;
+    s.suture.rod.accuracy = subject.accuracy;
     s.hands.coupling_N_per_m = 1000.0;
     s.hands.coupling_N_s_per_m = 0.5;
   } else {  // Table I at 50 nodes, per length

@@ -1,51 +1,10 @@
 #pragma once
-// Rods for validation: unit properties, only the parts a case needs.
+// The bare rods of the validation, for tests of the rod's own parts.
 
-#include "firmware/physics/rod/rod.hpp"
+#include "host/lab/validate/rods.hpp"
 
 namespace ligature::test {
 
-using physics::rod::make;
-using physics::rod::Material;
-using physics::rod::Numerics;
-using physics::rod::Parts;
-using physics::rod::Rod;
-using physics::rod::Vec;
-
-inline constexpr Parts kBare{false, false, false, false, false};
-
-/// Length, density and bending stiffness 1; stretch 1e6 EI / L^2, so that its share of any result is 1e-6.
-inline Material unit_rod() {
-  Material m;
-  m.length_m = 1.0;
-  m.radius_m = 1e-3;
-  m.density_kg_per_m = 1.0;
-  m.EA_N = 1e6;
-  m.EI_N_m2 = 1.0;
-  m.GJ_N_m2 = 1.0;
-  m.stretch_tau_s = 0.0;
-  m.bend_tau_s = 0.0;
-  m.drag_per_s = 0.0;
-  return m;
-}
-
-/// One implicit Euler step a tick: as much damping as the step is long.
-inline Numerics steps_of(double tick_s) {
-  Numerics n;
-  n.tick_s = tick_s;
-  n.substeps = n.max_substeps = 1;
-  return n;
-}
-
-/// Runs until nothing moves faster than still_m_per_s. @return false when that takes more than `most` ticks.
-inline bool settle(Rod& rod, double still_m_per_s, int most) {
-  for (int k = 0; k < most; ++k) {
-    rod.tick();
-    double fastest = 0.0;
-    for (const auto& v : rod.state().v) fastest = std::max(fastest, norm(v));
-    if (k > 10 && fastest < still_m_per_s) return true;
-  }
-  return false;
-}
+using namespace ligature::validate;
 
 }  // namespace ligature::test

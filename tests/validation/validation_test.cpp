@@ -1,0 +1,85 @@
+// Every model against the quick cases of the validation, at 50 nodes; the rod at 200 too where that is quick.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "host/lab/validate/cases.hpp"
+#include "host/lab/validate/convergence.hpp"
+#include "host/lab/validate/reference.hpp"
+
+namespace ligature::validate {
+namespace {
+
+std::string test_name(const std::string& case_name, const char* suffix) {
+  std::string name;
+  for (const char c : case_name) name += c == '-' ? '_' : c;
+  return name + suffix;
+}
+
+void expect_all_within(const Case& c, const Subject& subject) {
+  const auto findings = c.examine(subject);
+  EXPECT_FALSE(findings.empty());
+  for (const auto& f : findings) {
+    EXPECT_TRUE(f.holds()) << f.what << ": " << f.measured << " for " << f.reference << ", error " << f.error << " "
+                           << f.unit << ", tolerance " << f.tolerance;
+  }
+}
+
+std::vector<Case> quick_cases() {
+  std::vector<Case> quick;
+  for (const auto& c : all_cases()) {
+    if (c.quick) quick.push_back(c);
+  }
+  return quick;
+}
+
+class TheRod : public testing::TestWithParam<Case> {};
+
+TEST_P(TheRod, AgreesAtFiftyNodes) { expect_all_within(GetParam(), {scene::Model::kRod, 50}); }
+
+INSTANTIATE_TEST_SUITE_P(Case, TheRod, testing::ValuesIn(quick_cases()),
+                         [](const auto& test) { return test_name(test.param.name, ""); });
+
+class TheRodOfTwoHundred : public testing::TestWithParam<const char*> {};
+
+TEST_P(TheRodOfTwoHundred, Agrees) { expect_all_within(*find_case(GetParam()), {scene::Model::kRod, 200}); }
+
+INSTANTIATE_TEST_SUITE_P(Case, TheRodOfTwoHundred,
+                         testing::Values("elastica-tip", "elastica-heavy", "catenary", "elastic-string", "hanging-chain",
+                                         "cantilever", "clamped-twist", "localised-helix"),
+                         [](const auto& test) { return test_name(test.param, ""); });
+
+TEST(TheRodAtFine, DoesNotCreep) {
+  expect_all_within(*find_case("stick-creep"), {scene::Model::kRod, 50, scene::Accuracy::kFine});
+}
+
+class PaperFour : public testing::TestWithParam<const char*> {};
+
+TEST_P(PaperFour, AgreesAtFiftyNodes) { expect_all_within(*find_case(GetParam()), {scene::Model::kPaper4, 50}); }
+
+INSTANTIATE_TEST_SUITE_P(Case, PaperFour, testing::Values("catenary", "elastic-string", "hanging-chain", "cantilever"),
+                         [](const auto& test) { return test_name(test.param, ""); });
+
+TEST(Finding, OutsideItsToleranceOrNotANumberDoesNotHold) {
+  EXPECT_TRUE(relative("", 2.0, 2.01, 0.006).holds());
+  EXPECT_FALSE(relative("", 2.0, 2.02, 0.006).holds());
+  EXPECT_FALSE(absolute("", 0.0, std::nan(""), 1.0, "").holds());
+  EXPECT_TRUE(within("", 16.4, 18.0, 17.0).holds());
+  EXPECT_FALSE(within("", 16.4, 18.0, 18.1).holds());
+  EXPECT_FALSE(within("", 16.4, 18.0, std::nan("")).holds());
+}
+
+TEST(Reference, QuotedHeadersKeepTheirCommas) {
+  const auto rows = reference_rows("07_elastic_knot_constants.csv");
+  EXPECT_NEAR(number(rows.front(), "sigma_radius_based=J/(2sqrt2)"), 0.4923, 1e-4);
+  EXPECT_THROW(static_cast<void>(reference_rows("none.csv")), std::runtime_error);
+}
+
+TEST(Ladder, OrderIsTheSlope) {
+  const Ladder second{"", {1, 2, 4, 8}, {1.0, 0.25, 0.0625, 0.015625}};
+  EXPECT_NEAR(second.order(), 2.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace ligature::validate
