@@ -1,0 +1,116 @@
+#include "sim_device/operator/knot_tier.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligature::sim {
+namespace {
+
+constexpr double kLook_s = 0.01;
+constexpr double kTremor_m = 1e-4;  // of a hand at rest, in the hand's own measure
+
+Vec3 vec(const scene::Vec& a) { return {a[0], a[1], a[2]}; }
+
+double mass_kg(const scene::Suture& s) {
+  return s.model == scene::Model::kRod ? s.rod.density_kg_per_m * s.length_m : s.paper.node_mass_kg * s.nodes;
+}
+
+Workplace workplace_of(const scene::Scene& scene, const Vec3& anchor_W) {
+  const auto& s = scene.suture;
+  const double g = vec(scene.world.gravity_m_per_s2).norm(), d = 2.0 * s.radius_m;
+  const double EA = s.model == scene::Model::kRod ? s.rod.EA_N : s.paper.stretch_N;
+  Workplace w;
+  w.anchor_W = anchor_W;
+  w.length_m = s.length_m;
+  w.diameter_m = d;
+  w.clearance_m = std::max(2.5 * d, 0.035 * s.length_m);
+  w.tension_N = 0.0155 * EA + mass_kg(s) * g;
+  w.speed_m_per_s = 0.1 * std::sqrt(std::max(g, 1.0) * s.length_m);
+  return w;
+}
+
+/// Uniform between two numbers, the same on every machine.
+class Dice {
+ public:
+  explicit Dice(std::uint32_t seed) : random_(seed * 2654435761U + 12345U) {}
+  double between(double low, double high) { return low + (high - low) * (static_cast<double>(random_()) / 4294967296.0); }
+  Vec3 vector(double size) {
+    const double x = between(-size, size), y = between(-size, size), z = between(-size, size);
+    return {x, y, z};
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+}  // namespace
+
+std::variant<KnotTier, std::string> KnotTier::make(const scene::Scene& scene, const std::string& name,
+                                                   std::uint32_t seed) {
+  const auto knot = knot_named(name);
+  if (!knot) {
+    std::string allowed;
+    for (const Knot& k : knots()) allowed += (allowed.empty() ? "" : ", ") + std::string(k.name);
+    return "knot: found \"" + name + "\", allowed " + allowed;
+  }
+  for (const auto& f : scene.world.fixed)
+    if (f.node == 0) return KnotTier(scene, *knot, workplace_of(scene, vec(f.position_m)), seed);
+  return "world.fixed: node 0 is not held; the operators tie a thread that hangs from its first node";
+}
+
+KnotTier::KnotTier(const scene::Scene& scene, const Knot& knot, const Workplace& place, std::uint32_t seed)
+    : knot_(knot),
+      place_(place),
+      hands_{MovingHand(scene.time.tick_s), MovingHand(scene.time.tick_s)},
+      tick_s_(scene.time.tick_s) {
+  Dice dice(seed);
+  place_.speed_m_per_s *= dice.between(0.85, 1.15);
+  const Vec3 home = vec(scene.hands.workspace_origin_m);
+  for (std::size_t h = 0; h < 2; ++h) {
+    const Vec3 start = home + dice.vector(0.05 * place.length_m) + Vec3(h == 0 ? -0.1 : 0.1, -0.1, 0.0) * place.length_m;
+    hands_[h].rest_at(start, place_.speed_m_per_s);
+    const double size = kTremor_m * scene.hands.workspace_scale * dice.between(0.5, 1.5);
+    tremor_[h] = {Vec3(size, size, size), 2.0 * M_PI * (Vec3(10, 10, 10) + dice.vector(2.0)),
+                  Vec3(M_PI, M_PI, M_PI) + dice.vector(M_PI)};
+    wish_[h] = {start, Vec3::Zero(), false};
+  }
+  start_s_ = dice.between(0.0, 0.5);
+  for (Move& m : plan(knot, place_)) {
+    plan_.push_back(std::move(m));
+    if (dice.between(0.0, 1.0) < 0.3) plan_.push_back(wait(dice.between(0.0, 0.3)));
+  }
+  ticks_a_look_ = std::max(1, static_cast<int>(std::lround(kLook_s / tick_s_)));
+}
+
+void KnotTier::look(const Sight& sight) {
+  thread_.look(sight.thread_W);
+  for (int steps = 0; steps < 4 && !is_done(); ++steps) {  // moves that are done at once need no look of their own
+    Move& move = plan_[next_];
+    const double since_s = t_s_ - began_s_;
+    const bool done = move.act({thread_, sight, place_, hands_, since_s});
+    if (!done && since_s < move.patience_s) return;
+    if (!done) missed_.push_back(move.name);
+    ++next_;
+    began_s_ = t_s_;
+  }
+}
+
+const std::array<HandWish, 2>& KnotTier::tick(const Sight& sight) {
+  t_s_ += tick_s_;
+  if (t_s_ >= start_s_ && sight.thread_W.size() >= 2 && until_look_-- <= 0) {
+    if (began_s_ == 0.0) began_s_ = t_s_;
+    until_look_ = ticks_a_look_ - 1;
+    look(sight);
+  }
+  for (std::size_t h = 0; h < 2; ++h) {
+    hands_[h].tick();
+    const Tremor& s = tremor_[h];
+    const auto angle = s.rate_rad_per_s.array() * t_s_ + s.phase.array();
+    wish_[h].p_W = hands_[h].p_W() + (s.amplitude_m.array() * angle.sin()).matrix();
+    wish_[h].v_W = hands_[h].v_W() + (s.amplitude_m.array() * s.rate_rad_per_s.array() * angle.cos()).matrix();
+    wish_[h].grip = hands_[h].grip;
+  }
+  return wish_;
+}
+
+}  // namespace ligature::sim

@@ -1,0 +1,52 @@
+#pragma once
+// An operator that ties a named knot by looking at the thread.
+
+#include <random>
+#include <string>
+#include <variant>
+
+#include "protocol/scene/scene.hpp"
+#include "sim_device/operator/knots.hpp"
+
+namespace ligature::sim {
+
+/// Ties one knot with two hands. Seeds differ in where the hands start, how fast they are, when they begin, how long
+/// they dwell and how they tremble (8-12 Hz). It looks 100 times a second; between looks the hands go on.
+class KnotTier {
+ public:
+  /// @return or why not: an unknown knot, or a scene in which node 0 is not held.
+  static std::variant<KnotTier, std::string> make(const scene::Scene& scene, const std::string& knot, std::uint32_t seed);
+
+  /// One tick: what both hands want now. @param sight may be older than now; nothing is assumed about how much.
+  const std::array<HandWish, 2>& tick(const Sight& sight);
+
+  [[nodiscard]] const std::array<HandWish, 2>& wish() const noexcept { return wish_; }
+  [[nodiscard]] bool is_done() const noexcept { return next_ >= plan_.size(); }
+  /// What it is doing, for those who watch.
+  [[nodiscard]] std::string doing() const { return is_done() ? "done" : plan_[next_].name; }
+  /// Moves that ran out of patience; empty when all went well.
+  [[nodiscard]] const std::vector<std::string>& missed() const noexcept { return missed_; }
+  [[nodiscard]] const Knot& knot() const noexcept { return knot_; }
+
+ private:
+  KnotTier(const scene::Scene& scene, const Knot& knot, const Workplace& place, std::uint32_t seed);
+  void look(const Sight& sight);
+
+  struct Tremor {
+    Vec3 amplitude_m, rate_rad_per_s, phase;
+  };
+
+  Knot knot_;
+  Workplace place_;
+  Moves plan_;
+  std::array<MovingHand, 2> hands_;
+  std::array<Tremor, 2> tremor_;
+  std::array<HandWish, 2> wish_{};
+  ThreadView thread_;
+  std::vector<std::string> missed_;
+  std::size_t next_ = 0;
+  double tick_s_, start_s_ = 0.0, began_s_ = 0.0, t_s_ = 0.0;
+  int until_look_ = 0, ticks_a_look_ = 10;
+};
+
+}  // namespace ligature::sim
