@@ -25,6 +25,8 @@ class AtomicFile {
   void commit();
 
   [[nodiscard]] const std::string& path() const { return path_; }
+  /// Where it is until commit(), for those who write it by other means; they have closed or flushed it before.
+  [[nodiscard]] const std::string& part_path() const { return part_path_; }
 
  private:
   [[noreturn]] void fail(const char* doing) const;

@@ -1,14 +1,17 @@
 #include "host/commands.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 
+#include "host/csv_tables.hpp"
 #include "host/errors.hpp"
-#include "host/export_csv.hpp"
+#include "host/export.hpp"
 #include "host/knot_command.hpp"
 #include "host/plot.hpp"
 #include "host/record.hpp"
@@ -69,25 +72,30 @@ void add_export(CLI::App& app) {
     std::string log;
     ExportTargets targets;
   };
-  auto* command = app.add_subcommand("export", "Write the ticks and shapes of a log as CSV");
+  auto* command = app.add_subcommand("export", "Write a log as CSV, HDF5 or MCAP");
   const auto options = kept<Options>(app);
   command->add_option("log", options->log, "LCM log of 'record', or a flight recorder file")->required();
-  command->add_option("--forces", options->targets.forces, "forces, grasp and state of every tick");
-  command->add_option("--shape", options->targets.shape, "the thread's nodes at 60 Hz");
-  command->add_option("--ticks", options->targets.ticks, "every field of every tick");
+  command->add_option("--forces", options->targets.csv.forces, "CSV: forces, grasp and state of every tick");
+  command->add_option("--shape", options->targets.csv.shape, "CSV: the thread's nodes at 60 Hz");
+  command->add_option("--ticks", options->targets.csv.ticks, "CSV: every field of every tick");
+  command->add_option("--hdf5", options->targets.hdf5, "HDF5: everything in one file (docs/analysis.md)");
+  command->add_option("--mcap", options->targets.mcap, "MCAP: for Foxglove, PlotJuggler and other viewers");
   command->footer(forces_columns_help() + shape_columns_help() + ticks_columns_help() +
+                  "Units are SI. Every file carries what its columns mean, the scene's text and the versions.\n"
                   "The log may also be a flight recorder file of the firmware, or one that it saved with a fault: it "
                   "has ticks and\n"
                   "no shapes. Each tick once, in order; missing ones are named. A cut-off log is exported up to its "
                   "last whole event, and that is\n"
                   "said. Files appear complete or not at all.\n\n"
-                  "Example:\n  ligature-host export knot.lcmlog --forces forces.csv --shape shape.csv");
+                  "Example:\n  ligature-host export knot.lcmlog --forces forces.csv --hdf5 knot.h5");
   command->callback([options] {
-    const auto& [forces, shape, ticks] = options->targets;
-    if (forces.empty() && shape.empty() && ticks.empty())
-      throw BadInput("export: found nothing to write, allowed one or more of --forces, --shape, --ticks");
-    for (const auto& target : {forces, shape, ticks}) refuse_same_file(options->log, target);
-    const auto result = export_csv(options->log, options->targets);
+    const auto& [csv, hdf5, mcap] = options->targets;
+    const std::initializer_list<std::string> targets{csv.forces, csv.shape, csv.ticks, hdf5, mcap};
+    if (std::ranges::all_of(targets, [](const auto& t) { return t.empty(); }))
+      throw BadInput(
+          "export: found nothing to write, allowed one or more of --forces, --shape, --ticks, --hdf5, --mcap");
+    for (const auto& target : targets) refuse_same_file(options->log, target);
+    const auto result = export_recording(options->log, options->targets);
     if (!result.damage.empty())
       std::fprintf(stderr, "ligature-host: %s: %s\n", options->log.c_str(), result.damage.c_str());
     std::printf("exported %lld ticks and %lld shapes", static_cast<long long>(result.tick_rows),
@@ -105,11 +113,14 @@ void add_export(CLI::App& app) {
 void add_plot(CLI::App& app) {
   struct Options {
     std::string log, out;
+    bool by_frame = false;
   };
   auto* command = app.add_subcommand("plot", "Draw the force on each hand against time");
   const auto options = kept<Options>(app);
   command->add_option("log", options->log, "LCM log of 'record'")->required();
   command->add_option("--out", options->out, "picture to write: .png, .svg or .pdf")->required();
+  command->add_flag("--frames", options->by_frame,
+                    "against the number of the haptic frame instead of time, as the paper's Table III");
   command->footer(
       "Draws |F| per hand, the device's limit, grasp and release, and the controller's state. Spikes are never "
       "thinned\n"
@@ -117,7 +128,32 @@ void add_plot(CLI::App& app) {
       "Example:\n  ligature-host plot knot.lcmlog --out forces.png");
   command->callback([options] {
     refuse_same_file(options->log, options->out);
-    plot(options->log, options->out);
+    plot(options->log, options->out, options->by_frame);
+    std::printf("drew %s\n", options->out.c_str());
+  });
+}
+
+void add_compare(CLI::App& app) {
+  struct Options {
+    std::string log_a, log_b, out, align = "start";
+    double shift_s = 0.0;
+  };
+  auto* command = app.add_subcommand("compare", "Draw the forces of two logs over each other and say what differs");
+  const auto options = kept<Options>(app);
+  command->add_option("a", options->log_a, "LCM log of 'record', or a flight recorder file")->required();
+  command->add_option("b", options->log_b, "another one")->required();
+  command->add_option("--out", options->out, "picture to write: .png, .svg or .pdf")->required();
+  command->add_option("--align", options->align, "what of both is time 0: their first tick, or their first grasp")
+      ->check(CLI::IsMember({"start", "grasp"}))
+      ->capture_default_str();
+  command->add_option("--shift", options->shift_s, "b later by so many seconds")->check(finite)->capture_default_str();
+  command->footer(
+      "|F| of each hand in both, and b minus a below. Prints peak, mean while holding and root mean square of the\n"
+      "difference where both have a tick. For one drawing of one log: plot.\n\n"
+      "Example:\n  ligature-host compare monday.lcmlog tuesday.lcmlog --align grasp --out both.png");
+  command->callback([options] {
+    for (const auto& log : {options->log_a, options->log_b}) refuse_same_file(log, options->out);
+    plot_comparison(options->log_a, options->log_b, options->out, options->align, options->shift_s);
     std::printf("drew %s\n", options->out.c_str());
   });
 }

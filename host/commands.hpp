@@ -10,6 +10,7 @@ namespace ligature::host {
 void add_record(CLI::App& app);
 void add_export(CLI::App& app);
 void add_plot(CLI::App& app);
+void add_compare(CLI::App& app);
 void add_report(CLI::App& app);
 void add_knot(CLI::App& app);
 void add_send(CLI::App& app);

@@ -2,6 +2,7 @@
 
 #include "host/export_csv.hpp"
 #include "host/names.hpp"
+#include "host/tick_columns.hpp"
 #include "host/tick_statistics.hpp"
 
 namespace ligature::host {
@@ -55,38 +56,30 @@ std::string forces_columns_help() {
 }
 
 std::string ticks_header() {
-  std::string header =
-      "tick,t_s,scheduled_ns,wakeup_latency_ns,sync_ns,tpdo_ns,law_ns,control_ns,execution_ns,flags,state,fault";
-  for (const auto hand_name : kHandNames) {
-    const std::string hand(hand_name);
-    header += xyz(hand, "p_WT", "_m") + xyz(hand, "v_WT", "_m_per_s") + xyz(hand, "world_f", "_N") +
-              xyz(hand, "device_f", "_N");
-    for (const char* joint : {"1", "2", "3"}) header += "," + hand + "_torque_" + joint + "_permille";
-    header += "," + hand + "_node," + hand + "_grip," + hand + "_dead_man," + hand + "_tpdo_age_ticks";
+  std::string header;
+  for (const TickColumn& column : tick_columns()) {
+    if (!header.empty()) header += ',';
+    header += column.name;
+    if (column.name == "tick") header += ",t_s";
   }
-  return header + ",kinetic_J,potential_J,max_stretch,min_gap_m,contacts,session\n";
+  return header + ",session\n";
 }
 
 const std::string& ticks_row(CsvRow& row, const ligature_msg::tick_t& tick, double t_s, int session) {
-  row.add(tick.tick).add(t_s).add(tick.scheduled_ns).add(tick.wakeup_latency_ns);
-  row.add(tick.sync_ns).add(tick.tpdo_ns).add(tick.law_ns).add(tick.control_ns);
-  row.add(tick.execution_ns).add(tick.flags).add(static_cast<int>(tick.state)).add(tick.fault);
-  for (std::size_t hand = 0; hand < 2; ++hand) {
-    row.add_all(tick.p_WT_m[hand]).add_all(tick.v_WT_m_per_s[hand]);
-    row.add_all(tick.f_world_N[hand]).add_all(tick.f_device_N[hand]).add_all(tick.torque_permille[hand]);
-    row.add(tick.grasped_node[hand]).add(static_cast<int>(tick.grip[hand]));
-    row.add(static_cast<int>(tick.dead_man[hand])).add(tick.tpdo_age_ticks[hand]);
+  for (const TickColumn& column : tick_columns()) {
+    std::visit([&](const auto& value) { row.add(value(tick)); }, column.value);
+    if (column.name == "tick") row.add(t_s);
   }
-  row.add(tick.kinetic_J).add(tick.potential_J).add(tick.max_stretch).add(tick.min_gap_m).add(tick.contacts);
   return row.add(session).finish();
 }
 
 std::string ticks_columns_help() {
   return "ticks.csv, one row a tick: every field of tick_t (protocol/lcm/tick_t.lcm) with its unit in the column's "
-         "name:\n"
-         "  times in ns (scheduled: CLOCK_MONOTONIC; the others from the wake-up), tool tip position and velocity in\n"
-         "  the world, forces, joint torques in per mille of rated, age of the last TPDO set in ticks, energies in J,\n"
-         "  max_stretch = largest l/l_rest - 1, min_gap_m (negative: overlap, 1e9: none near), active contacts.\n";
+         "name;\n"
+         "  each is explained in ticks.csv-metadata.json (CSV on the Web), as are the others' columns in theirs, "
+         "beside "
+         "the\n"
+         "  scene's text and the versions.\n";
 }
 
 std::string shape_header() { return "t_s,node,x_m,y_m,z_m\n"; }

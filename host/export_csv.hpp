@@ -1,29 +1,18 @@
 #pragma once
-#include <cstdint>
+#include <memory>
 #include <string>
+
+#include "host/export_sink.hpp"
 
 namespace ligature::host {
 
-/// Where to write; an empty name is not written.
-struct ExportTargets {
+/// Where to write tables; an empty name is not written.
+struct CsvTargets {
   std::string forces, shape, ticks;
 };
 
-struct ExportResult {
-  std::int64_t tick_rows = 0, shapes = 0, duplicates_left_out = 0, unreadable_messages = 0;
-  std::int64_t missing = 0;   // ticks between the first and the last of a session
-  std::string missing_ticks;  // "100..119, 400"; the first holes by number
-  std::string damage;         // of the log, empty for a sound one
-};
-
-/// What the columns mean, for --help.
-[[nodiscard]] std::string forces_columns_help();
-[[nodiscard]] std::string ticks_columns_help();
-[[nodiscard]] std::string shape_columns_help();
-
-/// Writes CSV tables of an LCM log (front to back in constant memory) or of a flight recorder file (which holds ticks
-/// and no shapes). Each tick number of a session once, in order (TickOrder). Each file appears complete or not at all.
-/// @throws BadInput for a file that is neither or holds no tick; RunFailed for a full disk or a stop request.
-ExportResult export_csv(const std::string& log_path, const ExportTargets& targets);
+/// CSV tables, and beside each TABLE-metadata.json (csv_metadata.hpp).
+[[nodiscard]] std::unique_ptr<ExportSink> make_csv_sink(const CsvTargets& targets, const RigFacts& facts,
+                                                        const std::string& source);
 
 }  // namespace ligature::host

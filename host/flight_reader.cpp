@@ -92,7 +92,12 @@ void FlightReader::visit(const std::function<void(const ligature_msg::tick_t&)>&
 }
 
 RigFacts FlightReader::facts() const {
-  return {header_.period_s, header_.max_force_N, true, text_in(header_.scene_file), text_in(header_.firmware_version)};
+  return {header_.period_s,
+          header_.max_force_N,
+          true,
+          text_in(header_.scene_file),
+          text_in(header_.scene_toml),
+          text_in(header_.firmware_version)};
 }
 
 }  // namespace ligature::host

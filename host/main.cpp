@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
   add_record(app);
   add_export(app);
   add_plot(app);
+  add_compare(app);
   add_report(app);
   add_knot(app);
   add_send(app);
@@ -57,7 +58,7 @@ int main(int argc, char** argv) {
       "Exit code: 0 done, 2 bad usage or bad input, 3 the work itself failed.");
   if (argc > 1 && argv[1][0] != '-' && !has_command(app, argv[1]))
     return complain("found command '" + std::string(argv[1]) +
-                        "', allowed record, export, plot, report, knot, send, view, "
+                        "', allowed record, export, plot, compare, report, knot, send, view, "
                         "replay",
                     2);
   catch_stop_signals();

@@ -11,7 +11,8 @@ RigFacts read_rig_facts(const std::string& log_path) {
   while (const LogEvent* event = log.next()) {
     if (event->channel != kStatusChannel) continue;
     if (const auto status = decode<ligature_msg::status_t>(event->data))
-      return {status->period_s, status->max_force_N, true, status->scene_file, status->firmware_version};
+      return {status->period_s,   status->max_force_N, true,
+              status->scene_file, status->scene_toml,  status->firmware_version};
   }
   return {};
 }

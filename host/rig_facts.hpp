@@ -10,7 +10,7 @@ struct RigFacts {
   double period_s = 1e-3;    // control period; the rig's default when the log holds no status
   double max_force_N = 3.3;  // force limit at the device
   bool has_status = false;   // false: the two above are defaults
-  std::string scene_file;
+  std::string scene_file, scene_toml;
   std::string firmware_version;
 
   /// Time of a tick since its session's start. Divided by a whole rate, the double is the one nearest to the decimal

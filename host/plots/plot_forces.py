@@ -5,6 +5,7 @@ Needs numpy and matplotlib. The picture appears under its name only when it is c
 """
 
 import argparse
+import json
 import os
 import sys
 
@@ -67,7 +68,31 @@ def mark_losses(axes, time):
                      zorder=4, label="samples lost" if i == 0 else None)
 
 
-def draw_hand(axes, column, time, hand, limit_N):
+def embedded(path):
+    """The scene and the versions of the table, for the picture's own metadata."""
+    try:
+        with open(path + "-metadata.json", encoding="utf-8") as file:
+            facts = json.load(file)
+    except OSError:
+        return {}
+    keys = ("dc:source", "ligature:host_version", "ligature:firmware_version", "ligature:scene_file", "ligature:scene_toml")
+    return {"Description": "\n".join(f"{key.split(':')[1]}: {facts.get(key, '')}" for key in keys)}
+
+
+def save(figure, out, metadata):
+    part = f"{out}.part-{os.getpid()}"
+    kind = os.path.splitext(out)[1].lstrip(".").lower() or "png"
+    if kind == "pdf":
+        metadata = {"Subject": text for text in metadata.values()}
+    try:
+        figure.savefig(part, format=kind, metadata=metadata)
+        os.replace(part, out)
+    finally:
+        if os.path.exists(part):
+            os.remove(part)
+
+
+def draw_hand(axes, column, time, hand, limit_N, frames):
     colour = HANDS[hand]
     force_N = column[f"{hand}_device_f_N"]
     node = column[f"{hand}_node"]
@@ -93,14 +118,14 @@ def draw_hand(axes, column, time, hand, limit_N):
     peak = int(force_N.argmax())
     held = node >= 0
     mean = f", mean while holding {force_N[held].mean():.2f} N" if held.any() else ""
-    axes.set_title(f"{hand} hand: peak {force_N[peak]:.2f} N at {time[peak]:.2f} s{mean}", loc="left", fontsize=10)
+    axes.set_title(f"{hand} hand: peak {force_N[peak]:.2f} N at {time[peak]:.{0 if frames else 2}f}{'' if frames else ' s'}{mean}", loc="left", fontsize=10)
     axes.set_ylim(0, max(top, force_N[peak] * 1.05))
     axes.set_ylabel("force magnitude, N")
     axes.grid(True, color="#dddddd", linewidth=0.5)
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8, frameon=False)
 
 
-def draw_states(axes, column, time):
+def draw_states(axes, column, time, frames):
     for first, after, state in spans(column["state"]):
         name, colour = STATES.get(int(state), (f"state {int(state)}", "white"))
         end = time[after] if after < len(time) else time[-1]
@@ -115,25 +140,21 @@ def draw_states(axes, column, time):
                 ncols=2 if len(patches) > 3 else 1)
     axes.set_yticks([])
     axes.set_ylabel("state", rotation=0, ha="right", va="center")
-    axes.set_xlabel("time since the firmware's start, s")
+    axes.set_xlabel("haptic frame" if frames else "time since the firmware's start, s")
 
 
-def draw(path, out, title, limit_N):
+def draw(path, out, title, limit_N, frames):
     column, time = read(path)
+    if frames:
+        time = column["tick"]
     figure, axes = plt.subplots(3, 1, sharex=True, figsize=(12, 7), dpi=130, height_ratios=[6, 6, 0.8],
                                 layout="constrained")
     for axis, hand in zip(axes, HANDS):
-        draw_hand(axis, column, time, hand, limit_N)
-    draw_states(axes[2], column, time)
+        draw_hand(axis, column, time, hand, limit_N, frames)
+    draw_states(axes[2], column, time, frames)
     axes[2].set_xlim(time[0], max(time[-1], time[0] + 1e-3))
     figure.suptitle(f"Force on each hand, {title}: {len(time)} ticks")
-    part = f"{out}.part-{os.getpid()}"
-    try:
-        figure.savefig(part, format=os.path.splitext(out)[1].lstrip(".").lower() or "png")
-        os.replace(part, out)
-    finally:
-        if os.path.exists(part):
-            os.remove(part)
+    save(figure, out, embedded(path))
 
 
 def main():
@@ -142,9 +163,10 @@ def main():
     parser.add_argument("--out", required=True)
     parser.add_argument("--title", default="recording")
     parser.add_argument("--limit", type=float, default=3.3, help="force limit of the device, N")
+    parser.add_argument("--frames", action="store_true", help="against the number of the haptic frame, as the paper's Table III")
     arguments = parser.parse_args()
     try:
-        draw(arguments.forces, arguments.out, arguments.title, arguments.limit)
+        draw(arguments.forces, arguments.out, arguments.title, arguments.limit, arguments.frames)
     except (OSError, ValueError) as error:
         print(error, file=sys.stderr)
         return 1

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "host/export_csv.hpp"
+#include "host/export.hpp"
 #include "host/knot_command.hpp"
 #include "tests/integration/virtual_rig/simulated_rig.hpp"
 #include "tests/support/temp_folder.hpp"
@@ -64,7 +64,7 @@ TEST(RigRecording, TheHostReadsEveryTickAndNamesTheKnot) {
   SimulatedRig rig(paper(), hands);
   rig.record(log);
   ASSERT_EQ(rig.run(23000), std::nullopt);
-  const auto exported = host::export_csv(log, {"", "", ticks});
+  const auto exported = host::export_recording(log, {.csv = {"", "", ticks}});
   EXPECT_EQ(exported.tick_rows, static_cast<std::int64_t>(rig.records.size()));
   EXPECT_EQ(exported.missing, 0);
   EXPECT_EQ(exported.unreadable_messages, 0);

@@ -26,7 +26,7 @@ std::string write_log(const test::TestFolder& folder) {
 
 TEST(Plot, DrawsAWholePicture) {
   const test::TestFolder folder;
-  plot(write_log(folder), folder.file("forces.png"));
+  plot(write_log(folder), folder.file("forces.png"), false);
   const std::string png = test::text_of(folder.file("forces.png"));
   EXPECT_TRUE(png.starts_with("\x89PNG"));
   EXPECT_NE(png.find("IEND"), std::string::npos);
@@ -38,7 +38,7 @@ TEST(Plot, SaysHowToGetAMissingPython) {
   const std::string log = write_log(folder);
   setenv("LIGATURE_PYTHON", "/no/python", 1);
   try {
-    plot(log, folder.file("forces.png"));
+    plot(log, folder.file("forces.png"), false);
     ADD_FAILURE();
   } catch (const BadInput& error) {
     EXPECT_NE(std::string(error.what()).find("scripts/setup"), std::string::npos);
@@ -50,8 +50,8 @@ TEST(Plot, SaysHowToGetAMissingPython) {
 TEST(Plot, RefusesPicturesItCannotDraw) {
   const test::TestFolder folder;
   const std::string log = write_log(folder);
-  EXPECT_THROW(plot(log, folder.file("forces.xyz")), BadInput);
-  EXPECT_THROW(plot(log, folder.file("no/forces.png")), BadInput);
+  EXPECT_THROW(plot(log, folder.file("forces.xyz"), false), BadInput);
+  EXPECT_THROW(plot(log, folder.file("no/forces.png"), false), BadInput);
 }
 
 }  // namespace

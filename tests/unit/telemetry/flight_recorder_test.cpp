@@ -13,7 +13,7 @@
 #include <random>
 
 #include "host/errors.hpp"
-#include "host/export_csv.hpp"
+#include "host/export.hpp"
 #include "host/flight_reader.hpp"
 #include "host/gap_filler.hpp"
 #include "tests/unit/host/synthetic_log.hpp"
@@ -126,12 +126,12 @@ TEST_F(FlightRecorderTest, ExportsAsCsv) {
   auto recorder = open_or_die(path, 100);
   for (std::int64_t t = 0; t < 20; ++t)
     if (t != 7 && t != 8) recorder->write(tick_of(t));
-  const auto result = host::export_csv(path, {folder.file("f.csv"), "", folder.file("t.csv")});
+  const auto result = host::export_recording(path, {.csv = {folder.file("f.csv"), "", folder.file("t.csv")}});
   EXPECT_EQ(result.tick_rows, 18);
   EXPECT_EQ(result.missing, 2);
   EXPECT_EQ(result.missing_ticks, "7..8");
   EXPECT_EQ(host::test::lines_of(folder.file("f.csv")).size(), 19U);
-  EXPECT_THROW(host::export_csv(path, {"", folder.file("s.csv"), ""}), host::BadInput);
+  EXPECT_THROW(host::export_recording(path, {.csv = {"", folder.file("s.csv"), ""}}), host::BadInput);
 }
 
 TEST_F(FlightRecorderTest, WhatTheNetworkLostIsFetchedOnce) {

@@ -5,7 +5,7 @@
 
 #include "host/csv_row.hpp"
 #include "host/errors.hpp"
-#include "host/export_csv.hpp"
+#include "host/export.hpp"
 #include "host/rig_facts.hpp"
 #include "synthetic_log.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 
 std::ptrdiff_t fields_in(const std::string& line) { return std::ranges::count(line, ',') + 1; }
 
-class ExportCsv : public ::testing::Test {
+class Export : public ::testing::Test {
  protected:
   std::string write_log() {
     LogWriter log(folder_.file("a.lcmlog"), true);
@@ -33,13 +33,15 @@ class ExportCsv : public ::testing::Test {
     log.close();
     return folder_.file("a.lcmlog");
   }
-  ExportTargets targets() const { return {folder_.file("f.csv"), folder_.file("s.csv"), folder_.file("t.csv")}; }
+  ExportTargets targets() const {
+    return {.csv = {folder_.file("f.csv"), folder_.file("s.csv"), folder_.file("t.csv")}};
+  }
 
   test::TestFolder folder_;
 };
 
-TEST_F(ExportCsv, WritesEveryTickOfEverySessionOnce) {
-  const auto result = export_csv(write_log(), targets());
+TEST_F(Export, WritesEveryTickOfEverySessionOnce) {
+  const auto result = export_recording(write_log(), targets());
   EXPECT_EQ(result.tick_rows, 25);
   EXPECT_EQ(result.duplicates_left_out, 20);
   EXPECT_EQ(result.unreadable_messages, 1);
@@ -55,8 +57,8 @@ TEST_F(ExportCsv, WritesEveryTickOfEverySessionOnce) {
   }
 }
 
-TEST_F(ExportCsv, ForcesStandInTheColumnsOfTheirNames) {
-  export_csv(write_log(), targets());
+TEST_F(Export, ForcesStandInTheColumnsOfTheirNames) {
+  export_recording(write_log(), targets());
   const auto lines = test::lines_of(folder_.file("f.csv"));
   EXPECT_TRUE(lines[0].starts_with(
       "tick,t_s,left_device_f_x_N,left_device_f_y_N,left_device_f_z_N,left_device_f_N,"
@@ -65,43 +67,43 @@ TEST_F(ExportCsv, ForcesStandInTheColumnsOfTheirNames) {
   EXPECT_NE(lines[4].find(",0,17,"), std::string::npos);
 }
 
-TEST_F(ExportCsv, ShapeIsTheDesignsTable) {
-  export_csv(write_log(), targets());
+TEST_F(Export, ShapeIsTheDesignsTable) {
+  export_recording(write_log(), targets());
   const auto lines = test::lines_of(folder_.file("s.csv"));
   ASSERT_EQ(lines.size(), 6U);
   EXPECT_EQ(lines[0], "t_s,node,x_m,y_m,z_m");
   EXPECT_EQ(lines[1], "0.02,0,0,0,5.5");
 }
 
-TEST_F(ExportCsv, ACutLogIsExportedUpToItsLastWholeEvent) {
+TEST_F(Export, ACutLogIsExportedUpToItsLastWholeEvent) {
   const std::string whole = test::text_of(write_log());
   test::write_text(folder_.file("cut.lcmlog"), whole.substr(0, whole.size() - 1));
-  const auto result = export_csv(folder_.file("cut.lcmlog"), targets());
+  const auto result = export_recording(folder_.file("cut.lcmlog"), targets());
   EXPECT_EQ(result.tick_rows, 20);
   EXPECT_NE(result.damage, "");
 }
 
-TEST_F(ExportCsv, LeavesNothingWhenItRefuses) {
+TEST_F(Export, LeavesNothingWhenItRefuses) {
   test::write_text(folder_.file("no.lcmlog"), "not a log");
-  EXPECT_THROW(export_csv(folder_.file("no.lcmlog"), targets()), BadInput);
+  EXPECT_THROW(export_recording(folder_.file("no.lcmlog"), targets()), BadInput);
   {
     LogWriter log(folder_.file("tickless.lcmlog"), false);
     test::write(log, kThreadChannel, test::thread_of(0, test::straight_points(5)));
     log.close();
   }
-  EXPECT_THROW(export_csv(folder_.file("tickless.lcmlog"), targets()), BadInput);
+  EXPECT_THROW(export_recording(folder_.file("tickless.lcmlog"), targets()), BadInput);
   auto unwritable = targets();
-  unwritable.ticks = folder_.file("no/where.csv");
-  EXPECT_THROW(export_csv(write_log(), unwritable), BadInput);
+  unwritable.csv.ticks = folder_.file("no/where.csv");
+  EXPECT_THROW(export_recording(write_log(), unwritable), BadInput);
   for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
     EXPECT_EQ(entry.path().extension(), ".lcmlog") << entry.path();
 }
 
-TEST_F(ExportCsv, TicksThatCameLateStandInTheirPlace) {
+TEST_F(Export, TicksThatCameLateStandInTheirPlace) {
   LogWriter log(folder_.file("a.lcmlog"), true);
   for (const int first : {0, 40, 60, 20, 100}) test::write(log, kTicksChannel, test::batch_of(1, first, 20));
   log.close();
-  const auto result = export_csv(folder_.file("a.lcmlog"), targets());
+  const auto result = export_recording(folder_.file("a.lcmlog"), targets());
   EXPECT_EQ(result.tick_rows, 100);
   EXPECT_EQ(result.missing_ticks, "80..99");
   const auto lines = test::lines_of(folder_.file("t.csv"));

@@ -1,0 +1,168 @@
+#include "host/export.hpp"
+
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "host/errors.hpp"
+#include "host/export_hdf5.hpp"
+#include "host/export_mcap.hpp"
+#include "host/flight_reader.hpp"
+#include "host/log_reader.hpp"
+#include "host/rig_facts.hpp"
+#include "host/session_tally.hpp"
+#include "host/stop_signal.hpp"
+#include "host/tick_order.hpp"
+
+namespace ligature::host {
+namespace {
+
+constexpr std::string_view kNotesChannel = "LIGATURE_NOTES";
+
+std::vector<std::unique_ptr<ExportSink>> make_sinks(const ExportTargets& targets, const RigFacts& facts,
+                                                    const std::string& source) {
+  std::vector<std::unique_ptr<ExportSink>> sinks;
+  const auto& [forces, shape, ticks] = targets.csv;
+  if (!forces.empty() || !shape.empty() || !ticks.empty()) sinks.push_back(make_csv_sink(targets.csv, facts, source));
+  if (!targets.hdf5.empty()) sinks.push_back(make_hdf5_sink(targets.hdf5, facts, source));
+  if (!targets.mcap.empty()) sinks.push_back(make_mcap_sink(targets.mcap, facts, source));
+  return sinks;
+}
+
+class Exporter {
+ public:
+  Exporter(RigFacts facts, const ExportTargets& targets, const std::string& source)
+      : facts_(std::move(facts)), sinks_(make_sinks(targets, facts_, source)) {}
+
+  void take(const LogEvent& event) {
+    if (event.channel == kTicksChannel) {
+      if (const auto batch = decode<ligature_msg::tick_batch_t>(event.data)) return take(*batch);
+    } else if (event.channel == kThreadChannel) {
+      if (const auto thread = decode<ligature_msg::thread_t>(event.data)) return take(*thread);
+    } else if (event.channel == kEventChannel) {
+      if (const auto message = decode<ligature_msg::event_t>(event.data)) return tell(*message, message->tick);
+    } else if (event.channel == kStatusChannel) {
+      if (const auto status = decode<ligature_msg::status_t>(event.data)) return take(*status);
+    } else if (event.channel == kNotesChannel) {
+      for (auto& sink : sinks_) sink->note({reinterpret_cast<const char*>(event.data.data()), event.data.size()});
+      return;
+    } else if (is_readable(event.channel, event.data)) {
+      return;
+    }
+    ++result_.unreadable_messages;
+  }
+
+  void take(const ligature_msg::tick_batch_t& batch) {
+    const int session = tally_.find_or_add(batch.session);
+    if (session < 0) {
+      ++result_.unreadable_messages;
+      return;
+    }
+    if (session != session_) end_session();
+    session_ = session;
+    for (const auto& tick : batch.ticks) {
+      if (tally_[session].ticks.add(tick.tick))
+        order_.add(tick, [this](const auto& t) { write(t); });
+      else
+        ++result_.duplicates_left_out;
+    }
+  }
+
+  ExportResult commit() {
+    end_session();
+    name_missing();
+    for (auto& sink : sinks_) sink->commit();
+    return result_;
+  }
+
+  [[nodiscard]] bool has_ticks() const { return tally_.received() > 0; }
+
+ private:
+  void end_session() {
+    order_.flush([this](const auto& t) { write(t); });
+  }
+
+  void write(const ligature_msg::tick_t& tick) {
+    ++result_.tick_rows;
+    for (auto& sink : sinks_) sink->add(tick, facts_.time_s(tick.tick), session_ + 1);
+  }
+
+  void name_missing() {
+    constexpr std::size_t kNamed = 10;
+    std::size_t named = 0;
+    for (const Session& session : tally_.sessions()) {
+      result_.missing += session.ticks.missing();
+      for (const TickRange& hole : session.ticks.missing_ranges()) {
+        if (++named > kNamed) break;
+        if (named > 1) result_.missing_ticks += ", ";
+        result_.missing_ticks += std::to_string(hole.first);
+        if (hole.size() > 1) result_.missing_ticks += ".." + std::to_string(hole.last);
+      }
+    }
+    if (named > kNamed) result_.missing_ticks += ", ..";
+  }
+
+  template <class Message>
+  void tell(const Message& message, std::int64_t tick) {
+    for (auto& sink : sinks_) sink->add(message, facts_.time_s(tick));
+  }
+
+  void take(const ligature_msg::thread_t& thread) {
+    ++result_.shapes;
+    tell(thread, thread.tick);
+  }
+
+  void take(const ligature_msg::status_t& status) {
+    if (status.scene_toml == scene_toml_ && status.scene_file == scene_file_) return;
+    scene_toml_ = status.scene_toml;
+    scene_file_ = status.scene_file;
+    tell(status, status.tick);
+  }
+
+  RigFacts facts_;
+  std::vector<std::unique_ptr<ExportSink>> sinks_;
+  std::string scene_file_, scene_toml_;
+  SessionTally tally_;
+  TickOrder order_;
+  int session_ = -1;
+  ExportResult result_;
+};
+
+/// A flight recorder's file: one session, ticks only.
+ExportResult export_flight(const std::string& path, const ExportTargets& targets) {
+  if (!targets.csv.shape.empty())
+    throw BadInput(path + ": a flight recorder file holds no shapes; allowed --forces, --ticks, --hdf5, --mcap");
+  const FlightReader recorder(path);
+  if (recorder.ticks() == 0) throw BadInput(path + ": holds no tick");
+  Exporter exporter(recorder.facts(), targets, path);
+  ligature_msg::tick_batch_t batch{};
+  batch.session = recorder.session();
+  recorder.visit([&](const ligature_msg::tick_t& tick) {
+    batch.ticks.assign(1, tick);
+    exporter.take(batch);
+  });
+  ExportResult result = exporter.commit();
+  if (recorder.damaged_slots() > 0) result.damage = std::to_string(recorder.damaged_slots()) + " slots were damaged";
+  return result;
+}
+
+}  // namespace
+
+ExportResult export_recording(const std::string& log_path, const ExportTargets& targets) {
+  if (is_flight_file(log_path)) return export_flight(log_path, targets);
+  Exporter exporter(read_rig_facts(log_path), targets, log_path);
+  LogReader log(log_path);
+  while (const LogEvent* event = log.next()) {
+    exporter.take(*event);
+    if (stop_requested()) throw RunFailed("export stopped by a signal; nothing was written");
+  }
+  if (!exporter.has_ticks())
+    throw BadInput(log_path + ": holds no readable tick in " + std::to_string(log.events()) +
+                   " events; allowed: a log with messages on " + std::string(kTicksChannel));
+  ExportResult result = exporter.commit();
+  result.damage = log.damage();
+  return result;
+}
+
+}  // namespace ligature::host

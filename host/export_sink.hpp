@@ -1,0 +1,28 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "host/rig_facts.hpp"
+#include "ligature_msg/event_t.hpp"
+#include "ligature_msg/status_t.hpp"
+#include "ligature_msg/thread_t.hpp"
+#include "ligature_msg/tick_t.hpp"
+
+namespace ligature::host {
+
+/// A format that a recording is exported to. Ticks come once each and in order; the rest as it was received.
+class ExportSink {
+ public:
+  virtual ~ExportSink() = default;
+  /// @param session 1, 2, .. in order of appearance.
+  virtual void add(const ligature_msg::tick_t& tick, double t_s, int session) = 0;
+  virtual void add(const ligature_msg::thread_t& thread, double t_s) { (void)thread, (void)t_s; }
+  virtual void add(const ligature_msg::event_t& event, double t_s) { (void)event, (void)t_s; }
+  /// The scene that is in force from here on; called when its text changes.
+  virtual void add(const ligature_msg::status_t& status, double t_s) { (void)status, (void)t_s; }
+  virtual void note(const std::string& text) { (void)text; }
+  /// Makes the file appear under its name. @throws RunFailed.
+  virtual void commit() = 0;
+};
+
+}  // namespace ligature::host

@@ -1,0 +1,89 @@
+#include "host/python_tool.hpp"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "host/errors.hpp"
+
+namespace ligature::host {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string find_python() {
+  const char* chosen = getenv("LIGATURE_PYTHON");
+  const std::string python = chosen && *chosen ? chosen : LIGATURE_DEFAULT_PYTHON;
+  if (access(python.c_str(), X_OK) == 0) return python;
+  throw BadInput("no Python at " + python +
+                 "; remedy: run scripts/setup, or set LIGATURE_PYTHON to one that has the packages of "
+                 "requirements.txt");
+}
+
+std::string find_script(const std::string& name) {
+  std::error_code none;
+  const fs::path installed =
+      fs::read_symlink("/proc/self/exe", none).parent_path().parent_path() / "share/ligature/plots" / name;
+  if (fs::exists(installed, none)) return installed.string();
+  const fs::path source = fs::path(LIGATURE_PLOTS_DIR) / name;
+  if (fs::exists(source, none)) return source.string();
+  throw RunFailed(name + " found neither at " + installed.string() + " nor in " LIGATURE_PLOTS_DIR);
+}
+
+/// @return its exit code, 128 + n when signal n ended it.
+int wait_for(std::vector<std::string> words, const std::string& complaints) {
+  std::vector<char*> arguments;
+  for (auto& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t redirect;
+  posix_spawn_file_actions_init(&redirect);
+  posix_spawn_file_actions_addopen(&redirect, STDERR_FILENO, complaints.c_str(), O_WRONLY | O_CREAT, 0600);
+  pid_t child = 0;
+  const int error = posix_spawn(&child, arguments[0], &redirect, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&redirect);
+  if (error != 0) throw RunFailed("cannot start " + words[0] + ": " + std::strerror(error));
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+/// The last line of a text: where Python says what went wrong.
+std::string last_line(const std::string& path) {
+  std::ifstream file(path);
+  std::string last = "no reason given";
+  for (std::string line; std::getline(file, line);)
+    if (!line.empty()) last = line;
+  return last;
+}
+
+}  // namespace
+
+ScratchFolder::ScratchFolder() {
+  std::string name = (fs::temp_directory_path() / "ligature-XXXXXX").string();
+  if (!mkdtemp(name.data())) throw RunFailed(name + ": cannot make a scratch folder");
+  path_ = name;
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+PythonTool::PythonTool(const char* script) : python_(find_python()), script_(find_script(script)) {}
+
+void PythonTool::run(const std::vector<std::string>& arguments, const std::string& complaints) const {
+  std::vector<std::string> words{python_, script_};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  if (const int code = wait_for(words, complaints); code != 0)
+    throw RunFailed(fs::path(script_).filename().string() + ": " + python_ + " ended with " + std::to_string(code) +
+                    ": " + last_line(complaints) + "; remedy for a missing package: scripts/setup");
+}
+
+}  // namespace ligature::host

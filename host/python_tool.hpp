@@ -1,0 +1,35 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ligature::host {
+
+/// A folder that is gone when this is.
+class ScratchFolder {
+ public:
+  /// @throws RunFailed.
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  [[nodiscard]] std::string file(const char* name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A Python script of ours (host/plots), beside an installed program or in the source tree that it was built from.
+class PythonTool {
+ public:
+  /// @throws BadInput without the Python of scripts/setup or LIGATURE_PYTHON; RunFailed without the script.
+  explicit PythonTool(const char* script);
+
+  /// Runs it without a shell, its stderr into the file `complaints`, and waits. @throws RunFailed with its last word.
+  void run(const std::vector<std::string>& arguments, const std::string& complaints) const;
+
+ private:
+  std::string python_, script_;
+};
+
+}  // namespace ligature::host

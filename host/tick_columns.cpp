@@ -1,0 +1,129 @@
+#include "host/tick_columns.hpp"
+
+#include "host/names.hpp"
+
+namespace ligature::host {
+namespace {
+
+using Tick = ligature_msg::tick_t;
+using Columns = std::vector<TickColumn>;
+
+template <class Field>
+void add(Columns& to, std::string name, std::string unit, std::string meaning, Field field) {
+  if constexpr (std::is_floating_point_v<decltype(field(Tick{}))>)
+    to.push_back({std::move(name), std::move(unit), std::move(meaning), TickColumn::Real(field)});
+  else
+    to.push_back({std::move(name), std::move(unit), std::move(meaning), TickColumn::Whole(field)});
+}
+
+/// Three components of a field, named hand_quantity_x_unit.
+template <class T>
+void add_vector(Columns& to, std::size_t hand, const char* quantity, const char* suffix, const char* unit,
+                const char* meaning, T (Tick::*field)[2][3]) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    add(to, std::string(kHandNames[hand]) + "_" + quantity + "_" + "xyz"[axis] + suffix, unit, meaning,
+        [=](const Tick& t) { return (t.*field)[hand][axis]; });
+  }
+}
+
+template <class T>
+void add_joints(Columns& to, std::size_t hand, const char* quantity, const char* suffix, const char* unit,
+                const char* meaning, T (Tick::*field)[2][3]) {
+  for (std::size_t joint = 0; joint < 3; ++joint) {
+    add(to, std::string(kHandNames[hand]) + "_" + quantity + "_" + "123"[joint] + suffix, unit, meaning,
+        [=](const Tick& t) { return (t.*field)[hand][joint]; });
+  }
+}
+
+template <class T>
+void add_scalar(Columns& to, std::size_t hand, const char* quantity, const char* unit, const char* meaning,
+                T (Tick::*field)[2]) {
+  add(to, std::string(kHandNames[hand]) + "_" + quantity, unit, meaning, [=](const Tick& t) {
+    if constexpr (std::is_floating_point_v<T>)
+      return static_cast<double>((t.*field)[hand]);
+    else
+      return static_cast<std::int64_t>((t.*field)[hand]);
+  });
+}
+
+template <class T>
+void add_plain(Columns& to, const char* name, const char* unit, const char* meaning, T Tick::*field) {
+  add(to, name, unit, meaning, [=](const Tick& t) {
+    if constexpr (std::is_floating_point_v<T>)
+      return static_cast<double>(t.*field);
+    else
+      return static_cast<std::int64_t>(t.*field);
+  });
+}
+
+void add_hand(Columns& c, std::size_t hand) {
+  add_vector(c, hand, "p_WT", "_m", "m", "tool tip in the world frame W (x right, y away, z up)", &Tick::p_WT_m);
+  add_vector(c, hand, "v_WT", "_m_per_s", "m/s", "its filtered velocity", &Tick::v_WT_m_per_s);
+  add_vector(c, hand, "world_f", "_N", "N", "force of the thread on the hand in world units, before force_scale",
+             &Tick::f_world_N);
+  add_vector(c, hand, "device_f", "_N", "N",
+             "force commanded to the device at the tip, after scale and limits; + pushes the hand along the axis",
+             &Tick::f_device_N);
+  add_joints(c, hand, "torque", "_permille", "1/1000 of rated", "target torque of a joint on the wire",
+             &Tick::torque_permille);
+  add_scalar(c, hand, "node", "", "thread node held, -1 none", &Tick::grasped_node);
+  add_scalar(c, hand, "grip", "", "grip button", &Tick::grip);
+  add_scalar(c, hand, "dead_man", "", "dead-man button", &Tick::dead_man);
+  add_scalar(c, hand, "tpdo_age_ticks", "ticks", "periods since the last complete set of TPDOs", &Tick::tpdo_age_ticks);
+}
+
+/// What the device port adds, behind the columns that there always were.
+void add_port(Columns& c, std::size_t hand) {
+  add_joints(c, hand, "q", "_rad", "rad", "joint angle: waist, shoulder, forearm (absolute)", &Tick::q_rad);
+  add_vector(c, hand, "wish_f", "_N", "N", "what the coupling asks of the device, before gain, limits and passivity",
+             &Tick::f_wish_N);
+  add_scalar(c, hand, "gain", "", "share of it that engagement lets through", &Tick::gain);
+  add_scalar(c, hand, "port_energy_J", "J", "account of the device port: put in by the hand minus given back",
+             &Tick::port_energy_J);
+  add_scalar(c, hand, "dissipated_J", "J", "energy taken out by the passivity controller, since start",
+             &Tick::dissipated_J);
+  add_scalar(c, hand, "injected_N_s_per_m", "N s/m", "damping that it injects", &Tick::injected_N_s_per_m);
+  add_scalar(c, hand, "heat", "", "I2t state of the motors; 1: the continuous limit begins to act", &Tick::heat);
+  add_scalar(c, hand, "limits", "", "sum of 1 peak, 2 continuous, 4 step, 8 slew, 16 velocity, 32 passivity, 64 torque",
+             &Tick::limits);
+  add_scalar(c, hand, "clutch", "", "1: the tool is parked while the hand moves on", &Tick::clutch);
+  add_scalar(c, hand, "bus_load", "", "share of the last period that the hand's bus was busy", &Tick::bus_load);
+}
+
+Columns make() {
+  Columns c;
+  add_plain(c, "tick", "ticks", "number of the control period since the firmware's start", &Tick::tick);
+  add_plain(c, "scheduled_ns", "ns", "CLOCK_MONOTONIC time at which the period was due", &Tick::scheduled_ns);
+  add_plain(c, "wakeup_latency_ns", "ns", "wake-up minus scheduled", &Tick::wakeup_latency_ns);
+  add_plain(c, "sync_ns", "ns", "wake-up until SYNC was handed to both buses", &Tick::sync_ns);
+  add_plain(c, "tpdo_ns", "ns", "wake-up until both hands' joints had come", &Tick::tpdo_ns);
+  add_plain(c, "law_ns", "ns", "wake-up until the torques were computed", &Tick::law_ns);
+  add_plain(c, "control_ns", "ns", "wake-up until both hands' RPDOs were written", &Tick::control_ns);
+  add_plain(c, "execution_ns", "ns", "wake-up until the whole tick was done", &Tick::execution_ns);
+  add_plain(c, "flags", "",
+            "sum of 1 period lost (values held), 2 deadline missed, 4/8 left/right stale, 16/32 left/right force "
+            "limited, 64 contact list full",
+            &Tick::flags);
+  add_plain(c, "state", "", "0 OFF 1 CALIBRATE 2 IDLE 3 ENGAGE 4 FORCE 5 BRAKE 6 FAULT", &Tick::state);
+  add_plain(c, "fault", "", "latched fault number, 0 none", &Tick::fault);
+  for (std::size_t hand = 0; hand < 2; ++hand) add_hand(c, hand);
+  add_plain(c, "kinetic_J", "J", "kinetic energy of the thread", &Tick::kinetic_J);
+  add_plain(c, "potential_J", "J", "potential energy: gravity, stretch, bending, twist", &Tick::potential_J);
+  add_plain(c, "max_stretch", "", "largest l / l_rest - 1", &Tick::max_stretch);
+  add_plain(c, "min_gap_m", "m", "smallest surface gap of the thread with itself; negative: overlap, 1e9: none near",
+            &Tick::min_gap_m);
+  add_plain(c, "contacts", "", "active contacts", &Tick::contacts);
+  for (std::size_t hand = 0; hand < 2; ++hand) add_port(c, hand);
+  add_plain(c, "degradation", "", "what the solver gave up: 0 nothing, 1 iterations, 2 contacts, 3 candidates",
+            &Tick::degradation);
+  return c;
+}
+
+}  // namespace
+
+const std::vector<TickColumn>& tick_columns() {
+  static const Columns columns = make();
+  return columns;
+}
+
+}  // namespace ligature::host

@@ -1,0 +1,27 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "ligature_msg/tick_t.hpp"
+
+namespace ligature::host {
+
+/// One field of a tick as a column: what files of every format call it, its unit and what it means.
+struct TickColumn {
+  using Whole = std::function<std::int64_t(const ligature_msg::tick_t&)>;
+  using Real = std::function<double(const ligature_msg::tick_t&)>;
+  std::string name, unit, meaning;  ///< unit empty: none
+  std::variant<Whole, Real> value;
+};
+
+/// Every field of tick_t (protocol/lcm/tick_t.lcm), in the order of ticks.csv. `tick` is the first; the time and the
+/// session, which no tick knows, are added by those who write.
+[[nodiscard]] const std::vector<TickColumn>& tick_columns();
+
+inline constexpr const char* kTimeMeaning = "tick times control period: since the firmware's start";
+inline constexpr const char* kSessionMeaning = "run of the firmware within the recording, from 1";
+
+}  // namespace ligature::host
