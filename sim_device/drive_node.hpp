@@ -33,7 +33,7 @@ struct DriveStats {
 /// sends to `out`. Time must not run backwards.
 class DriveNode {
  public:
-  explicit DriveNode(can::NodeId id) : id_(id), objects_(id) {}
+  explicit DriveNode(can::NodeId id, const DriveConstants& constants = {}) : id_(id), objects_(id, constants) {}
 
   void power_on(Time now, std::vector<can::Frame>& out);
   void on_frame(const can::Frame& frame, Time now, const Sensed& sensed, std::vector<can::Frame>& out);

@@ -11,7 +11,8 @@ HandDevice::HandDevice(OperatorPath path, Time now, bool charge_bus_time)
 HandDevice::HandDevice(std::unique_ptr<Intention> intention, Time now, const Body& body, bool charge_bus_time)
     : wire_(charge_bus_time),
       mechanics_(std::move(intention), now, body),
-      drives_{DriveNode(can::kWaist), DriveNode(can::kShoulder), DriveNode(can::kElbow)},
+      drives_{DriveNode(can::kWaist, body.drives), DriveNode(can::kShoulder, body.drives),
+              DriveNode(can::kElbow, body.drives)},
       now_(now) {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     drives_[i].power_on(now, outgoing_);
@@ -59,7 +60,8 @@ void HandDevice::poll(Time now) {
 
 void HandDevice::move(Time now) noexcept {
   const auto t = torque_permille();
-  mechanics_.advance(now, {can::torque_Nm(t[0]), can::torque_Nm(t[1]), can::torque_Nm(t[2])});
+  const DriveConstants& drive = mechanics_.body().drives;
+  mechanics_.advance(now, {drive.torque_Nm(t[0]), drive.torque_Nm(t[1]), drive.torque_Nm(t[2])});
 }
 
 void HandDevice::send(std::size_t drive, Time now) {

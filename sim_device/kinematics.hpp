@@ -1,57 +1,99 @@
 #pragma once
-// Geometry of the PHANTOM Omni-class linkage, derived here on its own: the controller has its own derivation, and a
-// test that runs both against each other would see a mistake in either.
+// Geometry of the linkages, derived here on their own: the controller has its own derivation, and a test that runs both
+// against each other would see a mistake in either.
 //
-// The upper arm (l1) rises by q2 from the horizontal; the forearm (l2) hangs from its end and is turned by q3 out of
-// the vertical. q3 is absolute: the parallelogram keeps the forearm's motor on the base. Both lie in a vertical plane
-// that q1 turns about the base's z axis. In that plane, with r outwards and z up, the tip is
+// Omni class: the upper arm (l1) rises by q2 from the horizontal; the forearm (l2) hangs from its end and is turned by
+// q3 out of the vertical. q3 is absolute: the parallelogram keeps the forearm's motor on the base. Both lie in a
+// vertical plane that q1 turns about the base's z axis. In that plane, with r outwards and z up, the tip is
 //   r = l1 cos q2 + l2 sin q3,   z = l1 sin q2 - l2 cos q3,   and in D   p_DT = (r sin q1, -r cos q1, z).
+// Cartesian: three axes at right angles, each wound off a drum of radius r_i:   p_DT,i = home_i + r_i q_i.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
+
+#include "protocol/device/device.hpp"
 
 namespace ligature::sim {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
+/// From joint angles to the tip and back, and how far the joints go.
+class Linkage {
+ public:
+  /// The Omni-class device.
+  Linkage() = default;
+  explicit Linkage(const device::Device& d)
+      : kind_(d.kinematics),
+        links_m_(d.links_m.data()),
+        home_m_(d.home_tip_m.data()),
+        min_rad_(d.joint_min_rad.data()),
+        max_rad_(d.joint_max_rad.data()) {}
+
+  [[nodiscard]] bool is_serial() const noexcept { return kind_ == device::Kinematics::kOmniSerial; }
+  /// Tip of a device at rest in the middle of its reach; the world's workspace_origin_m lies here.
+  [[nodiscard]] const Vec3& home_D_m() const noexcept { return home_m_; }
+  /// Stops; of a serial linkage's third joint they bound the angle between the links, q3 - q2.
+  [[nodiscard]] const Vec3& min_rad() const noexcept { return min_rad_; }
+  [[nodiscard]] const Vec3& max_rad() const noexcept { return max_rad_; }
+
+  [[nodiscard]] Vec3 tip_D_m(const Vec3& q) const noexcept {
+    if (!is_serial()) return home_m_ + links_m_.cwiseProduct(q);
+    const double r = links_m_[0] * std::cos(q[1]) + links_m_[1] * std::sin(q[2]);
+    const double z = links_m_[0] * std::sin(q[1]) - links_m_[1] * std::cos(q[2]);
+    return {r * std::sin(q[0]), -r * std::cos(q[0]), z};
+  }
+
+  /// Columns: velocity of the tip in D, m/s, for 1 rad/s of each joint. Joint torque of a tip force is J^T F.
+  [[nodiscard]] Mat3 jacobian_D(const Vec3& q) const noexcept {
+    if (!is_serial()) return links_m_.asDiagonal();
+    const Vec3 outwards{std::sin(q[0]), -std::cos(q[0]), 0.0};
+    const Vec3 sideways{std::cos(q[0]), std::sin(q[0]), 0.0};
+    const double r = links_m_[0] * std::cos(q[1]) + links_m_[1] * std::sin(q[2]);
+    Mat3 jacobian;
+    jacobian.col(0) = r * sideways;
+    jacobian.col(1) = links_m_[0] * (Vec3::UnitZ() * std::cos(q[1]) - outwards * std::sin(q[1]));
+    jacobian.col(2) = links_m_[1] * (Vec3::UnitZ() * std::sin(q[2]) + outwards * std::cos(q[2]));
+    return jacobian;
+  }
+
+  /// Joint angles of a tip position, a serial elbow up (it cannot fold the other way); nothing when out of reach. The
+  /// stops are another matter.
+  [[nodiscard]] std::optional<Vec3> joints(const Vec3& p_DT) const noexcept {
+    if (!is_serial()) return (p_DT - home_m_).cwiseQuotient(links_m_);
+    const double l1 = links_m_[0], l2 = links_m_[1];
+    const double r = std::hypot(p_DT.x(), p_DT.y());
+    const double reach = std::hypot(r, p_DT.z());
+    if (reach > l1 + l2 || reach < std::abs(l1 - l2) + 1e-6) return std::nullopt;
+    // Law of cosines: angle at the shoulder between the upper arm and the line to the tip.
+    const double cosine = (l1 * l1 + reach * reach - l2 * l2) / (2.0 * l1 * reach);
+    const double q2 = std::atan2(p_DT.z(), r) + std::acos(cosine);
+    const double forearm_out = r - l1 * std::cos(q2);
+    const double forearm_down = l1 * std::sin(q2) - p_DT.z();
+    return Vec3{std::atan2(p_DT.x(), -p_DT.y()), q2, std::atan2(forearm_out, forearm_down)};
+  }
+
+  [[nodiscard]] bool is_within_stops(const Vec3& q) const noexcept {
+    const Vec3 bounded = is_serial() ? Vec3(q[0], q[1], q[2] - q[1]) : q;
+    return (bounded.array() >= min_rad_.array()).all() && (bounded.array() <= max_rad_.array()).all();
+  }
+
+ private:
+  device::Kinematics kind_ = device::Kinematics::kOmniSerial;
+  Vec3 links_m_{0.134, 0.1325, 0.0};
+  Vec3 home_m_{0.0, -0.17, 0.0};
+  Vec3 min_rad_{-0.98, -0.10, -0.81}, max_rad_{0.98, 1.80, 1.25};
+};
+
+// The Omni-class linkage by itself.
 inline constexpr double kUpperArm_m = 0.134;
 inline constexpr double kForearm_m = 0.1325;
-
-/// Tip position of a device at rest in the middle of its reach; the world's workspace_origin_m lies here.
-[[nodiscard]] inline Vec3 home_tip_D_m() { return {0.0, -0.17, 0.0}; }
-
-[[nodiscard]] inline Vec3 tip_D_m(const Vec3& q_rad) noexcept {
-  const double r = kUpperArm_m * std::cos(q_rad[1]) + kForearm_m * std::sin(q_rad[2]);
-  const double z = kUpperArm_m * std::sin(q_rad[1]) - kForearm_m * std::cos(q_rad[2]);
-  return {r * std::sin(q_rad[0]), -r * std::cos(q_rad[0]), z};
-}
-
-/// Columns: velocity of the tip in D, m/s, for 1 rad/s of each joint. Joint torque of a tip force is J^T F.
-[[nodiscard]] inline Mat3 tip_jacobian_D(const Vec3& q_rad) noexcept {
-  const Vec3 outwards{std::sin(q_rad[0]), -std::cos(q_rad[0]), 0.0};
-  const Vec3 sideways{std::cos(q_rad[0]), std::sin(q_rad[0]), 0.0};
-  const double r = kUpperArm_m * std::cos(q_rad[1]) + kForearm_m * std::sin(q_rad[2]);
-  Mat3 jacobian;
-  jacobian.col(0) = r * sideways;
-  jacobian.col(1) = kUpperArm_m * (Vec3::UnitZ() * std::cos(q_rad[1]) - outwards * std::sin(q_rad[1]));
-  jacobian.col(2) = kForearm_m * (Vec3::UnitZ() * std::sin(q_rad[2]) + outwards * std::cos(q_rad[2]));
-  return jacobian;
-}
-
-/// Joint angles of a tip position with the elbow up (the linkage cannot fold the other way); nothing when out of reach.
-[[nodiscard]] inline std::optional<Vec3> joints_of_tip(const Vec3& p_DT) noexcept {
-  const double r = std::hypot(p_DT.x(), p_DT.y());
-  const double reach = std::hypot(r, p_DT.z());
-  if (reach > kUpperArm_m + kForearm_m || reach < std::abs(kUpperArm_m - kForearm_m) + 1e-6) return std::nullopt;
-  // Law of cosines: angle at the shoulder between the upper arm and the line to the tip.
-  const double cosine =
-      (kUpperArm_m * kUpperArm_m + reach * reach - kForearm_m * kForearm_m) / (2.0 * kUpperArm_m * reach);
-  const double q2 = std::atan2(p_DT.z(), r) + std::acos(cosine);
-  const double forearm_out = r - kUpperArm_m * std::cos(q2);
-  const double forearm_down = kUpperArm_m * std::sin(q2) - p_DT.z();
-  return Vec3{std::atan2(p_DT.x(), -p_DT.y()), q2, std::atan2(forearm_out, forearm_down)};
-}
+[[nodiscard]] inline Vec3 home_tip_D_m() { return Linkage().home_D_m(); }
+[[nodiscard]] inline Vec3 tip_D_m(const Vec3& q_rad) noexcept { return Linkage().tip_D_m(q_rad); }
+[[nodiscard]] inline Mat3 tip_jacobian_D(const Vec3& q_rad) noexcept { return Linkage().jacobian_D(q_rad); }
+[[nodiscard]] inline std::optional<Vec3> joints_of_tip(const Vec3& p_DT) noexcept { return Linkage().joints(p_DT); }
 
 }  // namespace ligature::sim

@@ -14,11 +14,24 @@ double seconds(Time t) noexcept { return std::chrono::duration<double>(t).count(
 
 Mechanics::Mechanics(std::unique_ptr<Intention> intention, Time now, const Body& body)
     : intention_(std::move(intention)),
-      plant_(joints_of_tip(intention_->start_D_m()).value(), body.plant),
+      body_(body),
+      plant_(body.plant.linkage.joints(intention_->start_D_m()).value(), body.plant),
       stylus_(body.compliance, plant_.tip_D_m()),
       fingers_(body.hand, plant_.tip_D_m()),
       motors_(body.motors),
       now_(now) {}
+
+Body Body::of(const device::Device& device) {
+  Body body;
+  body.plant = PlantParameters::of(device);
+  const Vec3 lever_m =
+      body.plant.linkage.jacobian_D(body.plant.linkage.joints(body.plant.linkage.home_D_m()).value()).colwise().norm();
+  body.motors = {device.continuous_force_N * lever_m, device.thermal_time_s};
+  body.drives.counts_per_revolution = static_cast<std::uint32_t>(std::lround(device.counts_per_revolution()));
+  body.drives.rated_torque_mNm = static_cast<std::uint32_t>(std::lround(device.rated_torque_Nm * 1e3));
+  body.drives.max_torque_permille = device.max_torque_permille;
+  return body;
+}
 
 void Mechanics::start_script(Time now) noexcept {
   if (!has_started()) started_at_ = now;

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "protocol/can/units.hpp"
 #include "sim_device/deadline.hpp"
+#include "sim_device/drive_constants.hpp"
 #include "sim_device/hand.hpp"
 #include "sim_device/motor_heat.hpp"
 #include "sim_device/operator_path.hpp"
@@ -22,6 +22,10 @@ struct Body {
   Hand hand{};
   Compliance compliance{};
   MotorRating motors{};
+  DriveConstants drives{};
+
+  /// A device as its record says, in a light hand.
+  [[nodiscard]] static Body of(const device::Device& device);
 };
 
 class Mechanics {
@@ -35,13 +39,14 @@ class Mechanics {
   /// Moves everything to `now` under constant motor torques; an earlier time changes nothing. About 0.3 us a step.
   void advance(Time now, const Vec3& motor_Nm) noexcept;
 
-  [[nodiscard]] std::int32_t counts(int joint) const noexcept { return can::counts_of(plant_.q_rad()[joint]); }
+  [[nodiscard]] std::int32_t counts(int joint) const noexcept { return body_.drives.counts_of(plant_.q_rad()[joint]); }
   [[nodiscard]] std::uint16_t buttons() const noexcept;
   [[nodiscard]] bool has_started() const noexcept { return started_at_ != kNever; }
   /// The script is over and the dead-man has been let go.
   [[nodiscard]] bool is_done() const noexcept {
     return has_started() && script_time_s() > intention_->end_s() + kDeadManAfterScript_s;
   }
+  [[nodiscard]] const Body& body() const noexcept { return body_; }
   [[nodiscard]] const Plant& plant() const noexcept { return plant_; }
   [[nodiscard]] Intent intent() const noexcept { return intention_->at(script_time_s(), touch()); }
   /// Since the script's start; minus infinity before it.
@@ -59,6 +64,7 @@ class Mechanics {
 
  private:
   std::unique_ptr<Intention> intention_;
+  Body body_;
   Plant plant_;
   Stylus stylus_;
   Fingers fingers_;

@@ -37,7 +37,13 @@ bool is_mapping(std::uint16_t index) noexcept {
 
 }  // namespace
 
-ObjectDictionary::ObjectDictionary(can::NodeId node) : table_(can::object_table(node)) { reset(); }
+ObjectDictionary::ObjectDictionary(can::NodeId node, const DriveConstants& constants)
+    : constants_(constants), table_(can::object_table(node)) {
+  table_.rows[row_of(od::kRatedTorque)].initial = constants.rated_torque_mNm;
+  table_.rows[row_of(od::kEncoderIncrements)].initial = constants.counts_per_revolution;
+  table_.rows[row_of(od::kMaxTorque)].initial = constants.max_torque_permille;
+  reset();
+}
 
 void ObjectDictionary::reset() noexcept {
   for (std::size_t i = 0; i < table_.count; ++i) values_[i] = table_.rows[i].initial;
@@ -80,7 +86,7 @@ std::uint32_t ObjectDictionary::refusal(const can::ObjectRow& row, std::int64_t 
   if (o == od::kModeOfOperation && value != 0 && value != can::profile::kCyclicSynchronousTorque) {
     return can::sdo_abort::kValueOutOfRange;
   }
-  if (o == od::kMaxTorque && value > can::profile::kMaxTorque_permille) return can::sdo_abort::kValueOutOfRange;
+  if (o == od::kMaxTorque && value > constants_.max_torque_permille) return can::sdo_abort::kValueOutOfRange;
   return 0;
 }
 

@@ -7,12 +7,13 @@
 
 #include "protocol/can/object_table.hpp"
 #include "protocol/can/sdo.hpp"
+#include "sim_device/drive_constants.hpp"
 
 namespace ligature::sim {
 
 class ObjectDictionary {
  public:
-  explicit ObjectDictionary(can::NodeId node);
+  explicit ObjectDictionary(can::NodeId node, const DriveConstants& constants = {});
 
   /// All objects, or those of the communication profile (index below 0x2000) only, back to their initial values.
   void reset() noexcept;
@@ -35,6 +36,7 @@ class ObjectDictionary {
   [[nodiscard]] std::uint32_t refusal(const can::ObjectRow& row, std::int64_t value) const noexcept;
   [[nodiscard]] std::size_t row_of(can::Object object) const noexcept;
 
+  DriveConstants constants_;
   can::ObjectTable table_;
   std::array<std::int64_t, 64> values_{};
 };

@@ -42,8 +42,8 @@ std::variant<OperatorPath, std::string> OperatorPath::make(std::span<const scene
   OperatorPath path;
   for (const scene::GripKey& key : keys) {
     const Vec3 p_D = map.to_device({key.p_W_m[0], key.p_W_m[1], key.p_W_m[2]});
-    const auto q = joints_of_tip(p_D);
-    if (!q || !Plant::is_within_stops(*q)) {
+    const auto q = map.linkage.joints(p_D);
+    if (!q || !map.linkage.is_within_stops(*q)) {
       return text(
           "key at time %g s lies at (%.3f, %.3f, %.3f) m for the device, out of its reach; "
           "allowed: hands.workspace_scale and workspace_origin_m that bring it nearer",
@@ -51,7 +51,7 @@ std::variant<OperatorPath, std::string> OperatorPath::make(std::span<const scene
     }
     path.keys_.push_back({key.time_s, p_D, key.grip});
   }
-  if (path.keys_.empty()) path.keys_.push_back({0.0, home_tip_D_m(), false});  // an idle hand rests at home
+  if (path.keys_.empty()) path.keys_.push_back({0.0, map.linkage.home_D_m(), false});  // an idle hand rests at home
   path.segments_.resize(path.keys_.size() - 1);
   for (std::size_t i = 0; i < path.segments_.size(); ++i) {
     const Key &from = path.keys_[i], &to = path.keys_[i + 1];

@@ -21,7 +21,7 @@ void stop(double& q, double& omega, double low, double high) noexcept {
 }  // namespace
 
 void Plant::step(const Vec3& motor_Nm, const Vec3& hand_force_D_N, double dt_s) noexcept {
-  const Vec3 outer_Nm = tip_jacobian_D(q_).transpose() * hand_force_D_N + gravity_Nm();
+  const Vec3 outer_Nm = parameters_.linkage.jacobian_D(q_).transpose() * hand_force_D_N + gravity_Nm();
   for (int j = 0; j < 3; ++j) {
     const double motor = std::clamp(motor_Nm[j], -parameters_.max_torque_Nm, parameters_.max_torque_Nm);
     const double per_inertia = dt_s / parameters_.inertia_kg_m2[j];
@@ -35,19 +35,31 @@ void Plant::step(const Vec3& motor_Nm, const Vec3& hand_force_D_N, double dt_s) 
 }
 
 void Plant::stop_at_ends() noexcept {
-  const PlantParameters& p = parameters_;
-  stop(q_[0], omega_[0], -p.waist_stop_rad, p.waist_stop_rad);
-  stop(q_[1], omega_[1], p.shoulder_min_rad, p.shoulder_max_rad);
+  const Vec3 &low = parameters_.linkage.min_rad(), &high = parameters_.linkage.max_rad();
+  stop(q_[0], omega_[0], low[0], high[0]);
+  stop(q_[1], omega_[1], low[1], high[1]);
+  if (!parameters_.linkage.is_serial()) return stop(q_[2], omega_[2], low[2], high[2]);
   const double angle = q_[2] - q_[1];
-  const double clipped = std::clamp(angle, p.elbow_min_rad, p.elbow_max_rad);
+  const double clipped = std::clamp(angle, low[2], high[2]);
   if (angle == clipped) return;
   q_[2] = q_[1] + clipped;
   const double opening = omega_[2] - omega_[1];
   if ((angle > clipped) != (opening > 0.0)) return;  // already on its way back
   // The two links meet without rebound and share their angular momentum; energy can only fall.
-  const Vec3& inertia = p.inertia_kg_m2;
+  const Vec3& inertia = parameters_.inertia_kg_m2;
   const double shared = (inertia[1] * omega_[1] + inertia[2] * omega_[2]) / (inertia[1] + inertia[2]);
   omega_[1] = omega_[2] = shared;
+}
+
+PlantParameters PlantParameters::of(const device::Device& device) {
+  PlantParameters p;
+  p.linkage = Linkage(device);
+  const Vec3 lever_m = p.linkage.jacobian_D(p.linkage.joints(p.linkage.home_D_m()).value()).colwise().norm();
+  p.inertia_kg_m2 = device.apparent_mass_kg * lever_m.cwiseAbs2();
+  p.coulomb_Nm = device.coulomb_N * lever_m;
+  p.viscous_Nm_s = device.damping_N_s_per_m * lever_m.cwiseAbs2();
+  p.max_torque_Nm = device.max_torque_Nm();
+  return p;
 }
 
 Vec3 Plant::gravity_Nm() const noexcept {
@@ -61,11 +73,5 @@ double Plant::potential_J() const noexcept {
 }
 
 double Plant::kinetic_J() const noexcept { return 0.5 * parameters_.inertia_kg_m2.dot(omega_.cwiseAbs2()); }
-
-bool Plant::is_within_stops(const Vec3& q_rad, const PlantParameters& p) noexcept {
-  const double elbow = q_rad[2] - q_rad[1];
-  return std::abs(q_rad[0]) <= p.waist_stop_rad && q_rad[1] >= p.shoulder_min_rad && q_rad[1] <= p.shoulder_max_rad &&
-         elbow >= p.elbow_min_rad && elbow <= p.elbow_max_rad;
-}
 
 }  // namespace ligature::sim

@@ -19,10 +19,11 @@ struct PlantParameters {
   // 45 g at each link's end. 0.8 would leave about 0.1 N at the tip, which the friction holds.
   double upper_arm_kg_m = 6.0e-3, forearm_kg_m = 6.0e-3;
   double gravity_compensation = 1.0;
-  // Joint stops. The elbow's are on the angle between the links (q3 - q2), the linkage's own limit.
-  double waist_stop_rad = 0.98;
-  double shoulder_min_rad = -0.10, shoulder_max_rad = 1.80;
-  double elbow_min_rad = -0.81, elbow_max_rad = 1.25;
+  Linkage linkage{};  ///< with its stops
+
+  /// Masses, losses and torques at the joints that give what the record says of the tip in its home pose. Weightless:
+  /// the record does not say.
+  [[nodiscard]] static PlantParameters of(const device::Device& device);
 };
 
 class Plant {
@@ -36,17 +37,14 @@ class Plant {
 
   [[nodiscard]] const Vec3& q_rad() const noexcept { return q_; }
   [[nodiscard]] const Vec3& omega_rad_per_s() const noexcept { return omega_; }
-  [[nodiscard]] Vec3 tip_D_m() const noexcept { return sim::tip_D_m(q_); }
-  [[nodiscard]] Vec3 tip_velocity_D_m_per_s() const noexcept { return tip_jacobian_D(q_) * omega_; }
+  [[nodiscard]] Vec3 tip_D_m() const noexcept { return parameters_.linkage.tip_D_m(q_); }
+  [[nodiscard]] Vec3 tip_velocity_D_m_per_s() const noexcept { return parameters_.linkage.jacobian_D(q_) * omega_; }
   [[nodiscard]] double kinetic_J() const noexcept;
   /// Of the weight that is not compensated.
   [[nodiscard]] double potential_J() const noexcept;
   /// Joint torques of the weight that is not compensated.
   [[nodiscard]] Vec3 gravity_Nm() const noexcept;
   [[nodiscard]] const PlantParameters& parameters() const noexcept { return parameters_; }
-
-  /// True when the stops allow these angles.
-  [[nodiscard]] static bool is_within_stops(const Vec3& q_rad, const PlantParameters& p = {}) noexcept;
 
  private:
   void stop_at_ends() noexcept;

@@ -10,12 +10,19 @@ struct WorkspaceMap {
   double scale = 20.0;  ///< world metres per device metre, > 0
   Vec3 origin_W_m = Vec3::Zero();
 
-  explicit WorkspaceMap(const scene::Hands& hands)
-      : scale(hands.workspace_scale),
-        origin_W_m(hands.workspace_origin_m[0], hands.workspace_origin_m[1], hands.workspace_origin_m[2]) {}
+  Linkage linkage{};
 
-  [[nodiscard]] Vec3 to_device(const Vec3& p_W) const noexcept { return home_tip_D_m() + (p_W - origin_W_m) / scale; }
-  [[nodiscard]] Vec3 to_world(const Vec3& p_D) const noexcept { return origin_W_m + scale * (p_D - home_tip_D_m()); }
+  explicit WorkspaceMap(const scene::Hands& hands, const Linkage& of_device = {})
+      : scale(hands.workspace_scale),
+        origin_W_m(hands.workspace_origin_m[0], hands.workspace_origin_m[1], hands.workspace_origin_m[2]),
+        linkage(of_device) {}
+
+  [[nodiscard]] Vec3 to_device(const Vec3& p_W) const noexcept {
+    return linkage.home_D_m() + (p_W - origin_W_m) / scale;
+  }
+  [[nodiscard]] Vec3 to_world(const Vec3& p_D) const noexcept {
+    return origin_W_m + scale * (p_D - linkage.home_D_m());
+  }
 };
 
 }  // namespace ligature::sim

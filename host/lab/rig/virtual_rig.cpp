@@ -18,7 +18,8 @@ physics::Simulation thread_of(const scene::Scene& scene) {
 VirtualRig::Intentions scripted(const RigSetup& setup, const scene::GripperScript& script) {
   VirtualRig::Intentions hands;
   for (std::size_t h = 0; h < 2; ++h) {
-    auto path = sim::OperatorPath::make(script.keys[h], sim::WorkspaceMap(setup.scene.hands));
+    auto path =
+        sim::OperatorPath::make(script.keys[h], sim::WorkspaceMap(setup.scene.hands, setup.body[h].plant.linkage));
     if (const auto* why = std::get_if<std::string>(&path)) throw std::runtime_error(*why);
     hands[h] = std::make_unique<sim::OperatorPath>(std::get<sim::OperatorPath>(std::move(path)));
   }
@@ -26,11 +27,11 @@ VirtualRig::Intentions scripted(const RigSetup& setup, const scene::GripperScrip
 }
 
 VirtualRig::Intentions held(const RigSetup& setup, const SeeingOperator& seeing) {
-  const sim::WorkspaceMap map(setup.scene.hands);
   VirtualRig::Intentions hands;
   for (std::size_t h = 0; h < 2; ++h) {
+    const sim::WorkspaceMap map(setup.scene.hands, setup.body[h].plant.linkage);
     const sim::Vec3 start = map.to_device(seeing.start_W_m()[h]);
-    if (!sim::joints_of_tip(start)) throw std::runtime_error("the operator's hands start out of the devices' reach");
+    if (!map.linkage.joints(start)) throw std::runtime_error("the operator's hands start out of the devices' reach");
     hands[h] = std::make_unique<sim::HeldIntention>(start);
   }
   return hands;
@@ -111,13 +112,13 @@ void VirtualRig::take_records() {
 void VirtualRig::look_and_act() {
   const std::array<const sim::Mechanics*, 2> hands{&left.device.mechanics(), &right.device.mechanics()};
   if (!hands[0]->has_started() || !hands[1]->has_started() || records.empty()) return;
-  const sim::WorkspaceMap map(setup.scene.hands);
+  const sim::WorkspaceMap map(setup.scene.hands, setup.body[0].plant.linkage);
   sim::Sight sight;
   sight.t_s = std::min(hands[0]->script_time_s(), hands[1]->script_time_s());
   sight.thread_W = thread.nodes_W();
   for (std::size_t h = 0; h < 2; ++h) {
     const auto& f = records.back().f_device_N[h];
-    sight.tool_W[h] = map.to_world(hands[h]->plant().tip_D_m());
+    sight.tool_W[h] = map.to_world(hands[h]->touch().p_DT);
     if (setup.scene.hands.force_scale > 0.0)
       sight.force_W_N[h] = sim::Vec3(f[0], f[1], f[2]) / setup.scene.hands.force_scale;
   }

@@ -27,11 +27,12 @@ namespace ligature::lab {
 
 struct RigSetup {
   scene::Scene scene;
-  std::array<sim::Body, 2> body{};       ///< devices and hands, left and right
-  control::Settings settings{20, true};  ///< armed from the start
-  double frame_loss = 0.0;               ///< share of process data frames that is lost, 0 .. 1
-  std::uint64_t seed = 1;                ///< of the losses
-  std::string scene_file = "scene";      ///< how a recording calls the scene
+  device::Device device = device::omni();                                       ///< of both hands
+  std::array<sim::Body, 2> body{sim::Body::of(device), sim::Body::of(device)};  ///< devices and hands, left and right
+  control::Settings settings{20, true};                                         ///< armed from the start
+  double frame_loss = 0.0;           ///< share of process data frames that is lost, 0 .. 1
+  std::uint64_t seed = 1;            ///< of the losses
+  std::string scene_file = "scene";  ///< how a recording calls the scene
 };
 
 class VirtualRig {

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "protocol/device/device_file.hpp"
 #include "sim_device/plant.hpp"
 
 namespace ligature::sim {
@@ -18,7 +19,7 @@ Vec3 random_joints(std::mt19937& random) {
 TEST(Kinematics, HomeIsWhereItIsSaidToBe) {
   const auto q = joints_of_tip(home_tip_D_m());
   ASSERT_TRUE(q);
-  EXPECT_TRUE(Plant::is_within_stops(*q));
+  EXPECT_TRUE(Linkage().is_within_stops(*q));
   EXPECT_NEAR((tip_D_m(*q) - Vec3(0.0, -0.17, 0.0)).norm(), 0.0, 1e-12);
 }
 
@@ -54,6 +55,42 @@ TEST(Kinematics, JacobianIsTheDerivativeOfTheTip) {  // central difference, erro
 TEST(Kinematics, OutOfReachIsRefused) {
   EXPECT_FALSE(joints_of_tip({0.0, -0.27, 0.0}));
   EXPECT_FALSE(joints_of_tip({0.0, 0.0, 0.0}));
+}
+
+TEST(Linkage, ACartesianDeviceComesBackToItsJointsAndItsJacobianIsItsSlope) {
+  const auto read = device::load_device(LIGATURE_SOURCE_DIR "/scenes/devices/cartesian.toml");
+  ASSERT_TRUE(std::holds_alternative<device::Device>(read)) << std::get<scene::Error>(read).text;
+  const auto& record = std::get<device::Device>(read);
+  const Linkage linkage(record);
+  const Vec3 q{0.5, -1.0, 2.0};
+  EXPECT_NEAR((*linkage.joints(linkage.tip_D_m(q)) - q).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((linkage.tip_D_m(q) - Vec3(0.01, -0.02, 0.04)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((linkage.jacobian_D(q) - Mat3(0.02 * Mat3::Identity())).norm(), 0.0, 1e-12);
+  EXPECT_TRUE(linkage.is_within_stops(q));
+  EXPECT_FALSE(linkage.is_within_stops({0.0, 7.1, 0.0}));
+}
+
+TEST(Linkage, TheShippedRecordIsTheDeviceThatIsBuiltIn) {
+  const PlantParameters built_in, record = PlantParameters::of(device::omni());
+  EXPECT_LT((record.inertia_kg_m2 - built_in.inertia_kg_m2).norm(), 1e-5);
+  EXPECT_LT((record.coulomb_Nm - built_in.coulomb_Nm).norm(), 1e-4);
+  EXPECT_LT((record.viscous_Nm_s - built_in.viscous_Nm_s).norm(), 1e-4);
+  EXPECT_DOUBLE_EQ(record.max_torque_Nm, built_in.max_torque_Nm);
+  for (const Vec3& q : {Vec3(0.1, 0.6, 0.5), Vec3(-0.7, 1.2, 1.5)}) {
+    EXPECT_NEAR((record.linkage.tip_D_m(q) - built_in.linkage.tip_D_m(q)).norm(), 0.0, 1e-12);
+    EXPECT_EQ(record.linkage.is_within_stops(q), built_in.linkage.is_within_stops(q));
+  }
+}
+
+TEST(Plant, AnyDevicePushesBackAsItsRecordSays) {  // mass and friction at the tip, each axis, in the home pose
+  const auto cartesian =
+      std::get<device::Device>(device::load_device(LIGATURE_SOURCE_DIR "/scenes/devices/cartesian.toml"));
+  const PlantParameters p = PlantParameters::of(cartesian);
+  for (int axis = 0; axis < 3; ++axis) {
+    Plant plant(*p.linkage.joints(p.linkage.home_D_m()), p);
+    plant.step(Vec3::Zero(), (1.0 + cartesian.coulomb_N) * Vec3::Unit(axis), 1e-6);  // 1 N beyond friction
+    EXPECT_NEAR(plant.tip_velocity_D_m_per_s()[axis], 1e-6 / cartesian.apparent_mass_kg, 1e-9);
+  }
 }
 
 }  // namespace

@@ -41,11 +41,11 @@ TEST(Plant, StaysWithinItsStopsUnderFullTorque) {
       Plant plant(home_joints());
       for (int i = 0; i < 5000; ++i) plant.step(sign * 5.0 * direction, Vec3::Zero(), kStep_s);
       const Vec3 q = plant.q_rad();
-      EXPECT_LE(std::abs(q[0]), plant.parameters().waist_stop_rad);
-      EXPECT_GE(q[1], plant.parameters().shoulder_min_rad);
-      EXPECT_LE(q[1], plant.parameters().shoulder_max_rad);
+      EXPECT_LE(std::abs(q[0]), plant.parameters().linkage.max_rad()[0]);
+      EXPECT_GE(q[1], plant.parameters().linkage.min_rad()[1]);
+      EXPECT_LE(q[1], plant.parameters().linkage.max_rad()[1]);
       EXPECT_NEAR(q[2] - q[1],
-                  std::clamp(q[2] - q[1], plant.parameters().elbow_min_rad, plant.parameters().elbow_max_rad), 1e-12);
+                  std::clamp(q[2] - q[1], plant.parameters().linkage.min_rad()[2], plant.parameters().linkage.max_rad()[2]), 1e-12);
     }
   }
 }

@@ -109,8 +109,10 @@ TEST(Realism, FrictionHoldsAHandsPullBelowItsBand) {  // 0.1 N at the tip
 TEST(Realism, WeightWithoutFrictionKeepsItsEnergy) {
   PlantParameters p = frictionless();
   p.gravity_compensation = 0.0;
-  p.shoulder_min_rad = p.elbow_min_rad = -50.0;
-  p.shoulder_max_rad = p.elbow_max_rad = 50.0;
+  device::Device free = device::omni();
+  free.joint_min_rad = {-50.0, -50.0, -50.0};
+  free.joint_max_rad = {50.0, 50.0, 50.0};
+  p.linkage = Linkage(free);
   Plant plant(*joints_of_tip(home_tip_D_m()), p);
   const double start_J = plant.kinetic_J() + plant.potential_J();
   double swing_J = 0.0;

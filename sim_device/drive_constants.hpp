@@ -1,0 +1,26 @@
+#pragma once
+// What a drive says of itself in its object dictionary, and what its counts and per mille are worth.
+
+#include <cstdint>
+#include <numbers>
+
+#include "protocol/can/units.hpp"
+
+namespace ligature::sim {
+
+struct DriveConstants {
+  std::uint32_t counts_per_revolution = can::profile::kCountsPerRevolution;  ///< of the joint
+  std::uint32_t rated_torque_mNm = can::profile::kRatedTorque_mNm;
+  std::int32_t max_torque_permille = can::profile::kMaxTorque_permille;
+
+  /// Of an absolute encoder whose count 0 is angle 0; nearest count.
+  [[nodiscard]] std::int32_t counts_of(double angle_rad) const noexcept {
+    const double rad_per_count = 2.0 * std::numbers::pi / counts_per_revolution;
+    return can::round_clipped(angle_rad / rad_per_count, 0x3FFF'FFFF);
+  }
+  [[nodiscard]] double torque_Nm(std::int16_t permille) const noexcept {
+    return permille * (rated_torque_mNm * 1e-3 * 1e-3);
+  }
+};
+
+}  // namespace ligature::sim
