@@ -5,6 +5,7 @@
 #include <iostream>
 #include <string>
 
+#include "protocol/device/device_file.hpp"
 #include "protocol/scene/fault_script.hpp"
 #include "protocol/scene/gripper_script.hpp"
 #include "protocol/scene/scene_file.hpp"
@@ -13,6 +14,7 @@
 #include "sim_device/options.hpp"
 #include "sim_device/scheduling.hpp"
 #include "sim_device/stats_file.hpp"
+#include "sim_device/unrest.hpp"
 
 namespace {
 
@@ -51,7 +53,30 @@ int refuse(const std::string& why) {
   return kBadInput;
 }
 
-std::variant<sim::OperatorPath, std::string> read_path(const sim::Options& o) {
+std::variant<sim::Body, std::string> read_body(const sim::Options& o) {
+  sim::Body body = sim::Body::of(device::omni());
+  if (!o.device.empty()) {
+    const auto read = device::load_device(o.device);
+    if (const auto* e = std::get_if<scene::Error>(&read)) return e->text;
+    body = sim::Body::of(std::get<device::Device>(read));
+  }
+  body.hand = sim::hand_of(o.hold).value();
+  if (o.links_bend) body.compliance = sim::Compliance::of_the_class();
+  body.plant.gravity_compensation = 1.0 - o.gravity_share;
+  return body;
+}
+
+/// The script, and what besides it moves the hand.
+std::unique_ptr<sim::Intention> intention_of(sim::OperatorPath path, const sim::Options& o) {
+  std::unique_ptr<sim::Intention> will = std::make_unique<sim::OperatorPath>(std::move(path));
+  if (o.tremor_mm > 0.0)
+    will = std::make_unique<sim::Trembling>(std::move(will), 1e-3 * o.tremor_mm, o.tremor_Hz, o.seed);
+  if (o.adversary_lead_s > 0.0)
+    will = std::make_unique<sim::Adversarial>(std::move(will), o.adversary_lead_s, 1e-3 * o.adversary_reach_mm);
+  return will;
+}
+
+std::variant<sim::OperatorPath, std::string> read_path(const sim::Options& o, const sim::Linkage& linkage) {
   scene::Scene scene;
   if (!o.scene.empty()) {
     auto read = scene::load_scene(o.scene, o.overrides);
@@ -64,7 +89,7 @@ std::variant<sim::OperatorPath, std::string> read_path(const sim::Options& o) {
     if (const auto* e = std::get_if<scene::Error>(&read)) return e->text;
     script = std::get<scene::GripperScript>(std::move(read));
   }
-  auto path = sim::OperatorPath::make(script.keys[o.is_left ? 0 : 1], sim::WorkspaceMap(scene.hands));
+  auto path = sim::OperatorPath::make(script.keys[o.is_left ? 0 : 1], sim::WorkspaceMap(scene.hands, linkage));
   if (const auto* why = std::get_if<std::string>(&path)) return o.script + ": " + *why;
   return path;
 }
@@ -102,7 +127,9 @@ int main(int argc, char** argv) {
 
   if (const auto why = options.stats.empty() ? std::string() : sim::objection_to(options.stats); !why.empty())
     return refuse("--stats " + options.stats + ": " + why);
-  auto path = read_path(options);
+  const auto body = read_body(options);
+  if (const auto* why = std::get_if<std::string>(&body)) return refuse(*why);
+  auto path = read_path(options, std::get<sim::Body>(body).plant.linkage);
   if (const auto* why = std::get_if<std::string>(&path)) return refuse(*why);
   auto faults = read_faults(options);
   if (const auto* why = std::get_if<std::string>(&faults)) return refuse(*why);
@@ -114,7 +141,8 @@ int main(int argc, char** argv) {
   sim::Narrator narrator(options.hand());
   for (const std::string& line : sim::ask_for_scheduling(options.real_time, options.cpu)) narrator.say(line);
   const sigset_t during_sleep = take_signals();
-  sim::HandDevice device(std::get<sim::OperatorPath>(std::move(path)), sim::now_monotonic(), !port.charges_bit_time());
+  sim::HandDevice device(intention_of(std::get<sim::OperatorPath>(std::move(path)), options), sim::now_monotonic(),
+                         std::get<sim::Body>(body), !port.charges_bit_time());
   sim::EventLoop loop(device, port, injector ? &*injector : nullptr);
   narrator.say("on " + options.bus + ", waiting for a controller");
   live(device, port, loop, narrator, options.exit_when_done, during_sleep);

@@ -19,9 +19,25 @@ constexpr const char* kExample =
     "The script starts when all three drives are enabled for the first time and SYNC runs. The operator holds the "
     "dead-man\n"
     "from then until 1 s after the last key. docs/wire.md describes the bus.\n"
+    "A clenched, trembling hand:  ... --hold clenched --tremor-mm 0.5 --tremor-hz 9\n"
     "Exit: 0 ended (SIGINT, SIGTERM or script), 2 bad usage or input, 3 the run failed.";
 
 }  // namespace
+
+std::optional<Hand> hand_of(const std::string& hold) {
+  if (hold.empty() || hold == "light") return Hand{};
+  if (hold == "none") return Hand::absent();
+  if (hold == "loose") return Hand::holding(0.0);
+  if (hold == "firm") return Hand::holding(0.5);
+  if (hold == "clenched") return Hand::holding(1.0);
+  try {
+    std::size_t used = 0;
+    const double tightness = std::stod(hold, &used);
+    if (used == hold.size() && tightness >= 0.0 && tightness <= 1.0) return Hand::holding(tightness);
+  } catch (const std::exception&) {  // no number: falls through
+  }
+  return std::nullopt;
+}
 
 std::variant<Options, int> parse_options(int argc, char** argv) {
   Options o;
@@ -43,6 +59,25 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
   app.add_option("--stats", o.stats, "At the end, write JSON: SYNCs, bus load, watchdog trips, final torque");
   app.add_flag("--rt", o.real_time, "Ask for SCHED_FIFO and locked memory; runs on with a warning when refused");
   app.add_option("--cpu", o.cpu, "Stay on this CPU")->check(CLI::NonNegativeNumber);
+  app.add_option("--device", o.device, "Device record (TOML, see scenes/devices); without it the Omni class");
+  const auto known_hold = [](const std::string& word) {
+    return hand_of(word) ? std::string() : "found '" + word + "', allowed loose, light, firm, clenched, none or 0 .. 1";
+  };
+  app.add_option("--hold", o.hold,
+                 "How the hand holds the stylus: loose, light, firm, clenched, none, or a tightness 0 .. 1 [light]")
+      ->check(CLI::Validator(known_hold, "HOLD"));
+  app.add_option("--tremor-mm", o.tremor_mm, "Amplitude by which the hand trembles")->check(CLI::Range(0.0, 10.0));
+  app.add_option("--tremor-hz", o.tremor_Hz, "How often")->check(CLI::Range(0.1, 100.0))->capture_default_str();
+  app.add_option("--adversary-s", o.adversary_lead_s,
+                 "The hand works against the device: it pushes on in the direction of motion, so many seconds ahead")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--adversary-mm", o.adversary_reach_mm, "At most so far ahead")
+      ->check(CLI::Range(0.1, 100.0))
+      ->capture_default_str();
+  app.add_flag("--links-bend", o.links_bend, "Links of the class's stiffness between the encoders and the stylus");
+  app.add_option("--gravity-share", o.gravity_share, "Share of the links' weight that nothing compensates")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--seed", o.seed, "Of the tremor's phases")->capture_default_str();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
