@@ -1,0 +1,98 @@
+"""`ligature-host knot` against labels known by construction and against topoly, which shares no code with it.
+
+test_knot_oracle.py [--cases N]     200 by default; more by hand
+"""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+import knot_shapes as shapes
+
+HOST = pathlib.Path(os.environ["LIGATURE_BIN"]) / "ligature-host"
+CASES = int(sys.argv.pop(sys.argv.index("--cases") + 1)) if "--cases" in sys.argv else 200
+
+
+def name(points, closed, folder):
+    path = folder / "line.csv"
+    path.write_text("x,y,z\n" + "\n".join(",".join(repr(float(x)) for x in p) for p in points) + "\n")
+    done = subprocess.run([HOST, "knot", path, "--closed" if closed else "--open", "--json"], capture_output=True, text=True, check=True)
+    said = json.loads(done.stdout)
+    return said["type"], said["handedness"]
+
+
+def disguise(points, rng, kind):
+    """What makes a knot hard to see; the type stays."""
+    if kind == 0:
+        return shapes.turned(shapes.refined(points, 4), rng, 0.02)
+    if kind == 1:
+        return shapes.turned(shapes.disguised(points, rng, 6 * len(points), 0.5), rng)
+    if kind == 2:
+        return shapes.turned(shapes.disguised(shapes.refined(points, 2), rng, 300, 0.8), rng, 1e-3)
+    return shapes.turned(shapes.refined(points, 500 // len(points) + 1), rng, 1e-3)
+
+
+def cases():
+    rng = np.random.default_rng(20)
+    labels = list(shapes.BRAIDS.items())
+    for number in range(CASES):
+        (knot, hand), (strands, word) = labels[number % len(labels)]
+        points = shapes.closed_braid(strands, word)
+        kind = number // len(labels) % 4
+        if rng.random() < 0.5:
+            points, hand = shapes.mirrored(points), shapes.OTHER.get(hand, hand)
+        points = disguise(points, rng, kind)
+        is_closed = rng.random() < 0.5
+        yield number, points if is_closed else shapes.opened(points, rng), is_closed, (knot, hand)
+
+
+class Oracle(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory(prefix="knots-")
+        self.folder = pathlib.Path(self.scratch.name)
+
+    def tearDown(self):
+        self.scratch.cleanup()
+
+    def test_known_knots_in_disguise(self):
+        wrong = []
+        for number, points, is_closed, label in cases():
+            said = name(points, is_closed, self.folder)
+            if said != label:
+                wrong.append((number, len(points), "closed" if is_closed else "open", label, said))
+        self.assertEqual(wrong, [])
+
+    def test_hard_unknots(self):
+        rng = np.random.default_rng(21)
+        for twist in (0.0, 2.0, 5.0):
+            self.assertEqual(name(shapes.turned(shapes.doubled_trefoil(60, twist), rng), True, self.folder), ("0_1", "none"))
+        for _ in range(4):
+            self.assertEqual(name(shapes.turned(shapes.smooth_unknot(rng, 200), rng), True, self.folder), ("0_1", "none"))
+
+    def test_random_polygons_are_what_topoly_calls_them_or_unknown(self):
+        try:
+            from topoly import Closure, homfly
+        except ImportError:
+            self.fail("topoly is missing; remedy: scripts/setup")
+        rng = np.random.default_rng(22)
+        unknown = 0
+        for number in range(CASES // 8):
+            steps = rng.normal(size=(40 + 2 * (number % 20), 3))
+            points = np.cumsum(steps - steps.mean(axis=0), axis=0)
+            theirs = homfly(points.tolist(), closure=Closure.CLOSED)
+            ours, _ = name(points, True, self.folder)
+            if ours == "unknown":
+                unknown += 1
+            else:
+                self.assertIn(ours, str(theirs).replace(" ", "").split("|"), number)
+        self.assertLess(unknown, CASES // 8)
+
+
+if __name__ == "__main__":
+    unittest.main()
