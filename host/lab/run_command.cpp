@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "host/lab/outcome.hpp"
+#include "host/lab/report.hpp"
 #include "host/lab/run.hpp"
 
 namespace ligature::lab {
@@ -63,11 +64,11 @@ int execute(const Arguments& a) {
   const auto script = a.grippers.empty() ? scene::GripperScript{} : load_script_or_refuse(a.grippers);
   const double duration_s = a.duration_s.value_or(default_duration_s(script));
   if (!(duration_s >= scene.time.tick_s && duration_s <= 1e6)) {
-    throw Refusal("--duration: found " + std::to_string(duration_s) + ", allowed one tick (" +
-                  std::to_string(scene.time.tick_s) + " s) .. 1e6 s");
+    throw Refusal("--duration: found " + digits(duration_s) + ", allowed one tick (" +
+                  digits(scene.time.tick_s) + " s) .. 1e6 s");
   }
   if (!(a.shape_every_s > 0.0 && std::isfinite(a.shape_every_s))) {
-    throw Refusal("--shape-every: found " + std::to_string(a.shape_every_s) + ", allowed more than 0 s");
+    throw Refusal("--shape-every: found " + digits(a.shape_every_s) + ", allowed more than 0 s");
   }
   Rehearsal rehearsal(scene, script, a.scene);
   const auto summary = run(rehearsal, {a.out, duration_s, a.shape_every_s});

@@ -167,7 +167,7 @@ int show_convergence(const std::string& out) {
     for (const auto& ladder : v::convergence()) {
       for (std::size_t k = 0; k < ladder.error.size(); ++k) {
         table.row({k == 0 ? ladder.what : std::string(), ladder.resolution[k], ladder.error[k],
-                   k == 0 ? Cell(digits(ladder.order())) : Cell(std::string())});
+                   k == 0 ? Cell(ladder.order() > 0.5 ? digits(ladder.order()) : std::string("none")) : Cell(std::string())});
       }
     }
   }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "host/lab/experiments/experiment.hpp"
+#include "host/lab/experiments/extremes.hpp"
 #include "host/lab/likely_cause.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/progress.hpp"
@@ -14,16 +15,10 @@
 namespace ligature::lab {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr int kTicks = 2000;
 constexpr double kSteps_s[] = {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1};
-
-/// How a trial ended.
-struct Ending {
-  std::string word;  ///< "finite", "stopped", "refused", or "LEAKED": a non-finite number got out
-  double tick = 0.0;
-  double node = 0.0;
-  std::string cause;
-};
 
 bool all_finite(const physics::Simulation& sim) {
   for (const auto& p : sim.nodes_W()) {
@@ -43,28 +38,6 @@ scene::GripperScript tug(double whole_s, double reach_m) {
   return s;
 }
 
-Ending trial(const scene::Scene& scene, const scene::GripperScript& script, int ticks = kTicks) {
-  try {
-    Rehearsal r(scene, script);
-    for (int k = 0; k < ticks; ++k) {
-      const bool good = r.tick();
-      if (!all_finite(r.simulation())) return {"LEAKED", double(k), -1.0, ""};
-      const auto& d = r.simulation().diagnostics();
-      if (!good) return {"stopped", double(d.bad_tick), double(d.bad_node), likely_cause(scene)};
-    }
-    return {"finite", double(ticks), -1.0, ""};
-  } catch (const Refusal& refusal) {
-    return {"refused", 0.0, -1.0, refusal.what()};
-  }
-}
-
-/// A parameter and how a factor acts on it.
-struct Dial {
-  const char* name;
-  int low, high;  ///< decades
-  std::function<void(scene::Scene&, double)> turn;
-};
-
 std::vector<Dial> dials() {
   return {
       {"stretch_N", -6, 6, [](scene::Scene& s, double f) { s.suture.paper.stretch_N *= f; }},
@@ -82,8 +55,8 @@ std::vector<Dial> dials() {
 }
 
 /// The odd ones: name and scene.
-std::vector<std::pair<std::string, Ending>> odd_cases(const scene::Scene& base) {
-  std::vector<std::pair<std::string, Ending>> all;
+OddEndings odd_cases(const scene::Scene& base) {
+  OddEndings all;
   const auto with = [&](const char* name, int ticks, const std::function<void(scene::Scene&)>& change) {
     auto s = base;
     change(s);
@@ -113,59 +86,92 @@ std::vector<std::pair<std::string, Ending>> odd_cases(const scene::Scene& base) 
   with("no stiffness at all", kTicks, [](scene::Scene& s) { s.suture.paper.stretch_N = s.suture.paper.bend = 0.0; });
   scene::GripperScript jump;
   jump.keys[1] = {{0.0, {0, 0, 0.5}, true}, {0.5, {0, 0, 0.5}, true}, {0.5 + 1e-9, {1.0, 0, 0.5}, true}};
-  all.emplace_back("hand jumps 1 m", trial(base, jump));
+  all.emplace_back("hand jumps 1 m", trial(base, jump, kTicks));
   return all;
 }
 
 }  // namespace
 
-int experiment_extremes(const Bench& bench) {
-  const auto base = load_scene_or_refuse((bench.scenes / "paper.toml").string(), {});
-  std::printf("extremes: %d ticks of a two-handed tug for each combination\n", kTicks);
-  Table map({"parameter", "factor", "step_s", "ending", "tick", "node", "likely_cause"});
-  Table odd({"case", "ending", "tick", "node", "likely_cause"});
-  int trials = 0, leaked = 0, refused = 0, unnamed = 0, finite = 0;
-  const auto count = [&](const Ending& e) {
-    ++trials;
-    leaked += e.word == "LEAKED";
-    refused += e.word == "refused";
-    finite += e.word == "finite";
-    unnamed += e.word == "stopped" && (e.tick < 0 || e.node < 0);
-  };
-  bool table_one = false;
-  {
-    Progress progress;
-    const auto all = dials();
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      for (int decade = all[k].low; decade <= all[k].high; ++decade) {
-        progress.show(static_cast<double>(k) / static_cast<double>(all.size()),
-                      std::string(all[k].name) + " x 1e" + std::to_string(decade));
-        for (const double step_s : kSteps_s) {
-          auto s = base;
-          all[k].turn(s, std::pow(10.0, decade));
-          s.time = {step_s, 1};
-          const auto e = trial(s, tug(kTicks * step_s, 1.0));
-          count(e);
-          if (decade == 0 && step_s == 1e-3) table_one = e.word == "finite";
-          map.row({std::string(all[k].name), std::pow(10.0, decade), step_s, e.word, e.tick, e.node, e.cause});
-        }
+Ending trial(const scene::Scene& scene, const scene::GripperScript& script, int ticks) {
+  try {
+    Rehearsal r(scene, script);
+    for (int k = 0; k < ticks; ++k) {
+      const bool good = r.tick();
+      if (!all_finite(r.simulation())) return {"LEAKED", double(k), -1.0, ""};
+      const auto& d = r.simulation().diagnostics();
+      if (!good) return {"stopped", double(d.bad_tick), double(d.bad_node), likely_cause(scene)};
+    }
+    return {"finite", double(ticks), -1.0, ""};
+  } catch (const Refusal& refusal) {
+    return {"refused", 0.0, -1.0, refusal.what()};
+  }
+}
+
+void ExtremesMap::count(const Ending& e) {
+  ++trials;
+  leaked += e.word == "LEAKED";
+  refused += e.word == "refused";
+  finite += e.word == "finite";
+  unnamed += e.word == "stopped" && (e.tick < 0 || e.node < 0);
+}
+
+void ExtremesMap::add(const char* parameter, double factor, double step_s, const Ending& e) {
+  count(e);
+  if (factor == 1.0 && step_s == 1e-3) as_shipped = e.word == "finite";
+  map.row({std::string(parameter), factor, step_s, e.word, e.tick, e.node, e.cause});
+}
+
+void ExtremesMap::add(const std::string& odd_case, const Ending& e) {
+  count(e);
+  odd.row({odd_case, e.word, e.tick, e.node, e.cause});
+}
+
+namespace {
+
+ExtremesMap paper_extremes(const fs::path& scenes) {
+  const auto base = load_scene_or_refuse((scenes / "paper.toml").string(), {});
+  ExtremesMap result;
+  Progress progress;
+  const auto all = dials();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    for (int decade = all[k].low; decade <= all[k].high; ++decade) {
+      progress.show(static_cast<double>(k) / static_cast<double>(all.size()),
+                    std::string(all[k].name) + " x 1e" + std::to_string(decade));
+      for (const double step_s : kSteps_s) {
+        auto s = base;
+        all[k].turn(s, std::pow(10.0, decade));
+        s.time = {step_s, 1};
+        result.add(all[k].name, std::pow(10.0, decade), step_s, trial(s, tug(kTicks * step_s, 1.0), kTicks));
       }
     }
-    for (const auto& [name, e] : odd_cases(base)) {
-      count(e);
-      odd.row({name, e.word, e.tick, e.node, e.cause});
-    }
   }
-  odd.print();
-  map.write(bench.out / "extremes.csv");
-  odd.write(bench.out / "extremes-odd.csv");
-  draw("extremes.py", {bench.out / "extremes.csv"}, bench.out / "extremes.png");
+  for (const auto& [name, e] : odd_cases(base)) result.add(name, e);
+  return result;
+}
+
+void conclude(Verdict& v, const std::string& who, const ExtremesMap& m) {
+  std::printf("%s: %d trials: %d finite, %d stopped, %d refused\n", who.c_str(), m.trials, m.finite,
+              m.trials - m.finite - m.refused - m.leaked, m.refused);
+  v.claim(m.leaked == 0, who + ": trials in which a non-finite number got out", std::to_string(m.leaked), "0");
+  v.claim(m.unnamed == 0, who + ": stops that did not name tick and node", std::to_string(m.unnamed), "0");
+  v.claim(m.as_shipped, who + ": as shipped, at 1 ms", m.as_shipped ? "finite" : "not finite", "finite");
+}
+
+}  // namespace
+
+int experiment_extremes(const Bench& bench) {
   Verdict v("extremes");
-  std::printf("%d trials: %d finite, %d stopped, %d refused\n", trials, finite, trials - finite - refused - leaked,
-              refused);
-  v.claim(leaked == 0, "trials in which a non-finite number got out", std::to_string(leaked), "0");
-  v.claim(unnamed == 0, "stops that did not name tick and node", std::to_string(unnamed), "0");
-  v.claim(table_one, "Table I at 1 ms", table_one ? "finite" : "not finite", "finite");
+  std::printf("extremes: a two-handed tug for each combination; paper-4 with Table I, the rod with its suture\n");
+  const std::pair<const char*, ExtremesMap> maps[] = {{"paper-4", paper_extremes(bench.scenes)},
+                                                      {"rod", rod_extremes(bench.scenes)}};
+  for (const auto& [who, m] : maps) {
+    const std::string name = std::string("extremes") + (who == maps[0].first ? "" : "-rod");
+    m.odd.print();
+    m.map.write(bench.out / (name + ".csv"));
+    m.odd.write(bench.out / (name + "-odd.csv"));
+    draw("extremes.py", {bench.out / (name + ".csv")}, bench.out / (name + ".png"));
+    conclude(v, who, m);
+  }
   return v.conclude(bench.out);
 }
 
