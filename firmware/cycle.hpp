@@ -6,6 +6,7 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "firmware/control/controller.hpp"
@@ -145,7 +146,10 @@ class Cycle {
     control::report(thread_.hand(physics::Hand::kRight), 1, record_);
     out_.records.push(record_);
     if (tick_ % kTicksPerShape == 0) {
-      control::report(thread_.nodes_W(), record_, out_.shape.back());
+      rt::ThreadSnapshot& shape = out_.shape.back();
+      control::report(thread_.nodes_W(), record_, shape);
+      const auto count = static_cast<std::size_t>(shape.count);
+      thread_.describe(std::span(shape.tension_N).first(count), std::span(shape.turn_rad).first(count));
       out_.shape.publish();
     }
   }

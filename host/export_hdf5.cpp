@@ -70,19 +70,26 @@ struct Shapes {
         first(group.id(), "first"),
         count(group.id(), "count"),
         radius(group.id(), "radius_m"),
-        p_W(group.id(), "p_W_m", 3) {
+        p_W(group.id(), "p_W_m", 3),
+        tension(group.id(), "tension_N"),
+        turn(group.id(), "turn_rad") {
     explain(time.id(), "s", kTimeMeaning);
     explain(tick.id(), "ticks", "period whose shape it is");
     explain(first.id(), "", "row of p_W_m at which the shape begins");
     explain(count.id(), "", "its nodes");
     explain(radius.id(), "m", "radius of the thread");
+    explain(tension.id(), "N", "of the edge after each node; positive pulls");
+    explain(turn.id(), "rad", "material frame against the twist-free one from node 0");
     explain(p_W.id(), "m", "nodes of all shapes, one after the other: x, y, z in the world frame W");
   }
-  void flush() { time.flush(), tick.flush(), first.flush(), count.flush(), radius.flush(), p_W.flush(); }
+  void flush() {
+    time.flush(), tick.flush(), first.flush(), count.flush(), radius.flush(), p_W.flush(), tension.flush(),
+        turn.flush();
+  }
   Handle group;
   Real time;
   Whole tick, first, count;
-  Series<float> radius, p_W;
+  Series<float> radius, p_W, tension, turn;
   std::int64_t rows = 0;
 };
 
@@ -155,6 +162,8 @@ class Hdf5Sink final : public ExportSink {
     shapes_.radius.add(thread.radius_m);
     for (const auto& p : thread.p_W_m)
       for (const float x : p) shapes_.p_W.add(x);
+    for (const float tension : thread.tension_N) shapes_.tension.add(tension);
+    for (const float turn : thread.turn_rad) shapes_.turn.add(turn);
     shapes_.rows += thread.count;
   }
 

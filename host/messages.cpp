@@ -78,7 +78,8 @@ std::optional<ligature_msg::tick_batch_t> decode(Bytes message) {
 
 template <>
 std::optional<ligature_msg::thread_t> decode(Bytes message) {
-  if (!array_fits(message, kHash + 2 * kInt64 + kFloat, 3 * kFloat, 2 * sizeof(std::int16_t))) return std::nullopt;
+  // Position, tension and turn of each node: three arrays of one length.
+  if (!array_fits(message, kHash + 2 * kInt64 + kFloat, 5 * kFloat, 2 * sizeof(std::int16_t))) return std::nullopt;
   auto thread = decode_checked<ligature_msg::thread_t>(message);
   if (thread && !is_tick_number(thread->tick)) return std::nullopt;
   return thread;

@@ -1,5 +1,6 @@
 #include "firmware/physics/simulation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -10,7 +11,9 @@
 #include "firmware/physics/obstacles.hpp"
 #include "firmware/physics/paper_contact.hpp"
 #include "firmware/physics/propagation.hpp"
+#include "firmware/physics/rod/describe.hpp"
 #include "firmware/physics/rod/rod_simulation.hpp"
+#include "firmware/physics/stretch_spring.hpp"
 
 namespace ligature::physics {
 namespace {
@@ -32,7 +35,7 @@ struct Simulation::Impl {
   ThreadState initial, state, before;  // before: of the last finite tick
   InternalWorkspace work;
   InternalStep internal = nullptr;
-  bool forward = false, explicit_damping = false, has_limits = false;
+  bool quadratic = false, forward = false, explicit_damping = false, has_limits = false;
   scene::ContactSolver contact_kind = scene::ContactSolver::kNone;
   ContactSolver contact;       // implicit
   PaperContact paper_contact;  // for comparison
@@ -229,6 +232,7 @@ std::variant<Simulation, std::string> Simulation::make(const scene::Scene& scene
   impl->internal = choose_internal_step(scene.suture);
   impl->contact_kind = scene.contact.solver;
   impl->has_limits = scene.hands.propagation;
+  impl->quadratic = scene.suture.model == scene::Model::kPaper5;
   impl->forward = scene.suture.paper.integrator == scene::Integrator::kForward;
   impl->explicit_damping = scene.suture.paper.damping == scene::Damping::kExplicit;
   const ContactSettings contact = build_contact(scene, thread.model);
@@ -323,6 +327,21 @@ std::span<const Vec3> Simulation::velocities_W() const noexcept {
   if (impl_->rod) return impl_->rod->velocities_W();
   Impl::unpack(impl_->state.v, impl_->velocities_W, impl_->velocities_stale);
   return impl_->velocities_W;
+}
+void Simulation::describe(std::span<float> tension_N, std::span<float> turn_rad) const noexcept {
+  if (impl_->rod) return rod::describe(impl_->rod->rod(), tension_N, turn_rad);
+  const Impl& s = *impl_;
+  std::ranges::fill(turn_rad, 0.0F);  // the paper's models have no twist
+  float tension = 0.0F;
+  for (std::size_t i = 0; i < tension_N.size(); ++i) {
+    const int node = static_cast<int>(i);
+    if (node + 1 < s.model.nodes) {
+      const double strain = norm(s.state.p.at(node + 1) - s.state.p.at(node)) / s.model.rest_m - 1.0;
+      tension = static_cast<float>(s.quadratic ? QuadraticStretchLaw::tension_N(strain, s.model.stretch_N)
+                                               : LinearStretch::tension_N(strain, s.model.stretch_N));
+    }
+    tension_N[i] = tension;
+  }
 }
 const HandContact& Simulation::hand(Hand h) const noexcept {
   return impl_->rod ? impl_->rod->hand(h) : impl_->hands[static_cast<std::size_t>(h)];

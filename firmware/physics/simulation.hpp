@@ -71,6 +71,10 @@ class Simulation {
   /// Positions, m, and velocities, m/s. Converted when first asked for after a tick, so ask from the thread that ticks.
   [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept;
   [[nodiscard]] std::span<const Vec3> velocities_W() const noexcept;
+  /// Tension of the edge after each node, N (the last node: of the edge before it), and the angle of the material frame
+  /// against the frame carried along without twist from node 0, rad. For those who look; costs O(n). Spans as long as
+  /// nodes_W() or shorter.
+  void describe(std::span<float> tension_N, std::span<float> turn_rad) const noexcept;
   [[nodiscard]] const HandContact& hand(Hand h) const noexcept;
   [[nodiscard]] const Diagnostics& diagnostics() const noexcept;
 

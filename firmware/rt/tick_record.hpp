@@ -94,6 +94,8 @@ struct ThreadSnapshot {
   std::int32_t count = 0;  ///< nodes in use, ≤ kMaxNodes
   std::array<std::int16_t, kHands> grasped_node{-1, -1};
   std::array<std::array<float, 3>, kMaxNodes> p_W_m{};
+  std::array<float, kMaxNodes> tension_N{};  ///< of the edge after each node
+  std::array<float, kMaxNodes> turn_rad{};   ///< of the material frame, against the twist-free one from node 0
 };
 
 static_assert(Payload<TickRecord> && Payload<ThreadSnapshot>);

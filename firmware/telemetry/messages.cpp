@@ -71,6 +71,8 @@ ligature_msg::thread_t to_message(const rt::ThreadSnapshot& s, double radius_m, 
   for (const auto& p : std::span(s.p_W_m).first(static_cast<std::size_t>(s.count))) {
     m.p_W_m.push_back({p[0], p[1], p[2]});
   }
+  m.tension_N.assign(s.tension_N.begin(), s.tension_N.begin() + s.count);
+  m.turn_rad.assign(s.turn_rad.begin(), s.turn_rad.begin() + s.count);
   std::ranges::copy(s.grasped_node, m.grasped_node);
   return m;
 }

@@ -147,6 +147,8 @@ void Picture::write_shape(FrameWriter& frame) const {
   frame.add(static_cast<double>(thread_.grasped_node[0]));
   frame.add(static_cast<double>(thread_.grasped_node[1]));
   for (const auto& p : thread_.p_W_m) frame.add_bytes(p.data(), 3 * sizeof(float));
+  for (const auto* values : {&thread_.tension_N, &thread_.turn_rad})
+    frame.add_bytes(values->data(), values->size() * sizeof(float));
   frame.end();
 }
 

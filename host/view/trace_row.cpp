@@ -1,6 +1,7 @@
 #include "host/view/trace_row.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "host/tick_statistics.hpp"
 
@@ -13,7 +14,13 @@ TraceRow trace_row(const ligature_msg::tick_t& tick) {
     const std::size_t at = hand == 0 ? kLeftX : kRightX;
     std::ranges::copy(tick.f_device_N[hand], row.begin() + static_cast<std::ptrdiff_t>(at));
     row[at + 3] = magnitude(tick.f_device_N[hand]);
-    row[hand == 0 ? kLeftNode : kRightNode] = tick.grasped_node[hand];
+    row[kLeftNode + hand] = tick.grasped_node[hand];
+    row[kLeftWorld + hand] = magnitude(tick.f_world_N[hand]);
+    row[kLeftPort_J + hand] = tick.port_energy_J[hand];
+    row[kLeftDissipated_J + hand] = tick.dissipated_J[hand];
+    row[kLeftBusLoad + hand] = static_cast<double>(tick.bus_load[hand]);
+    row[kLeftHeat + hand] = tick.heat[hand];
+    row[kLeftLimits + hand] = tick.limits[hand];
   }
   row[kWakeup_ns] = tick.wakeup_latency_ns;
   row[kControl_ns] = tick.control_ns;
@@ -40,12 +47,15 @@ bool BinMaker::add(const TraceRow& row, TraceBin& done) {
     open_.low[kTick] = open_.high[kTick] = static_cast<float>(number);  // the bin's number: exact in a float for 9 days
     return finished;
   }
-  const auto flags = static_cast<int>(open_.high[kFlags]) | static_cast<int>(row[kFlags]);
+  constexpr std::size_t kBits[] = {kFlags, kLeftLimits, kRightLimits};
+  std::array<int, std::size(kBits)> joined{};
+  for (std::size_t k = 0; k < joined.size(); ++k)
+    joined[k] = static_cast<int>(open_.high[kBits[k]]) | static_cast<int>(row[kBits[k]]);
   for (std::size_t c = kTick + 1; c < kColumns; ++c) {
     open_.low[c] = std::min(open_.low[c], static_cast<float>(row[c]));
     open_.high[c] = std::max(open_.high[c], static_cast<float>(row[c]));
   }
-  open_.high[kFlags] = static_cast<float>(flags);
+  for (std::size_t k = 0; k < joined.size(); ++k) open_.high[kBits[k]] = static_cast<float>(joined[k]);
   return false;
 }
 

@@ -7,7 +7,7 @@
 
 namespace ligature::host::view {
 
-/// What the page's traces know of one tick, in the order of the wire (docs/view.md; page/columns.js has the same list).
+/// What the page's traces know of one tick, in the order of the wire (docs/view.md; page/frame.js has the same list).
 enum Column : std::size_t {
   kTick,
   kLeftX,  // f_device_N of the left hand: x, y, z and magnitude
@@ -31,6 +31,18 @@ enum Column : std::size_t {
   kContacts,
   kLeftNode,
   kRightNode,
+  kLeftWorld,  // |f_world_N|: the thread's tension at the hand
+  kRightWorld,
+  kLeftPort_J,  // account of the device port, and what the passivity controller has taken out
+  kRightPort_J,
+  kLeftDissipated_J,
+  kRightDissipated_J,
+  kLeftBusLoad,
+  kRightBusLoad,
+  kLeftHeat,
+  kRightHeat,
+  kLeftLimits,  // LIMIT_ bits of tick_t
+  kRightLimits,
   kColumns
 };
 
@@ -41,7 +53,7 @@ using TraceRow = std::array<double, kColumns>;
 [[nodiscard]] TraceRow trace_row(const ligature_msg::tick_t& tick);
 
 /// Smallest and largest value of each column over kTicksPerBin consecutive tick numbers (by tick / kTicksPerBin).
-/// kFlags: `low` and, joined by or, `high`; so that one late tick among fifty is never hidden.
+/// kFlags and the limits: `low` and, joined by or, `high`; so that one late tick among fifty is never hidden.
 struct TraceBin {
   std::array<float, kColumns> low{}, high{};
 };

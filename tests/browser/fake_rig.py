@@ -135,6 +135,10 @@ class Rig:
         if self.spike > 3.3:
             tick.flags |= 16
         tick.min_gap_m = 0.01
+        tick.bus_load = [0.62, 0.64 + 0.02 * math.sin(t)]
+        tick.port_energy_J, tick.dissipated_J = [0.02 * math.sin(t), 0.01 * math.cos(t)], [1e-4 * t, 2e-4 * t]
+        tick.f_world_N = [[200 * f for f in hand] for hand in tick.f_device_N]
+        tick.gain, tick.heat = [gain, gain], [0.1, 0.2]
         self.spike = 0.0
         self.tick += 1
         return tick
@@ -149,6 +153,8 @@ class Rig:
         thread.tick, thread.radius_m, thread.count = self.tick, RADIUS_M, KNOT_NODES
         sway = 0.02 * math.sin(self.tick * 2e-3)
         thread.p_W_m = [[x + sway * math.sin(5 * z), y, z] for x, y, z in self.shape]
+        thread.tension_N = [5.0 * (i / KNOT_NODES) ** 2 for i in range(KNOT_NODES)]
+        thread.turn_rad = [0.15 * i for i in range(KNOT_NODES)]
         thread.grasped_node = [40, 80]
         self.lcm.publish("LIGATURE_THREAD", thread.encode())
 

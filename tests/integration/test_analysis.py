@@ -65,6 +65,7 @@ def write_log(path):
         thread = thread_t()
         thread.tick, thread.radius_m, thread.count = start, 0.05, 4 if start < 2000 else 6
         thread.p_W_m = [[0.1 * i, 0.0, 0.5] for i in range(thread.count)]
+        thread.tension_N, thread.turn_rad = [0.5] * thread.count, [0.0] * thread.count
         say("THREAD", thread, start)
     event = event_t()
     event.tick, event.kind, event.hand, event.code, event.text = 2000, 6, -1, 0, "scene two.toml loaded"

@@ -16,7 +16,7 @@ import numpy as np
 import knot_shapes as shapes
 
 HOST = pathlib.Path(os.environ["LIGATURE_BIN"]) / "ligature-host"
-CASES = int(sys.argv.pop(sys.argv.index("--cases") + 1)) if "--cases" in sys.argv else 200
+CASES = int(sys.argv[sys.argv.index("--cases") + 1]) if "--cases" in sys.argv else 200
 
 
 def name(points, closed, folder):
@@ -95,4 +95,4 @@ class Oracle(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(argv=sys.argv[:1])

@@ -3,7 +3,8 @@
 
 export const COLUMNS = ['tick', 'leftX', 'leftY', 'leftZ', 'left', 'rightX', 'rightY', 'rightZ', 'right', 'wakeup_ns',
   'control_ns', 'execution_ns', 'flags', 'state', 'fault', 'kinetic_J', 'potential_J', 'maxStretch', 'minGap_m',
-  'contacts', 'leftNode', 'rightNode'];
+  'contacts', 'leftNode', 'rightNode', 'leftWorld', 'rightWorld', 'leftPort_J', 'rightPort_J', 'leftDissipated_J', 'rightDissipated_J',
+  'leftBusLoad', 'rightBusLoad', 'leftHeat', 'rightHeat', 'leftLimits', 'rightLimits'];
 export const C = Object.fromEntries(COLUMNS.map((name, i) => [name, i]));
 export const WIDTH = COLUMNS.length;
 export const TICKS_PER_BIN = 50;
@@ -43,5 +44,6 @@ function readNow(v) {
 
 function readShape(buffer, start, size) {
   const head = new Float64Array(buffer, start, 4);
-  return { tick: head[0], radius_m: head[1], grasped: [head[2], head[3]], p_W: new Float32Array(buffer, start + 32, (size - 32) / 4) };
+  const n = (size - 32) / 20, floats = (from, count) => new Float32Array(buffer, start + 32 + 4 * from, count);
+  return { tick: head[0], radius_m: head[1], grasped: [head[2], head[3]], p_W: floats(0, 3 * n), tension_N: floats(3 * n, n), turn_rad: floats(4 * n, n) };
 }

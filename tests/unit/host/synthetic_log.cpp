@@ -46,6 +46,8 @@ ligature_msg::thread_t thread_of(std::int64_t tick, const std::vector<std::array
   thread.count = static_cast<std::int32_t>(points.size());
   for (const auto& p : points)
     thread.p_W_m.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+  thread.tension_N.resize(points.size());
+  thread.turn_rad.resize(points.size());
   thread.grasped_node[0] = thread.grasped_node[1] = -1;
   return thread;
 }
