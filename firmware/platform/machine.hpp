@@ -22,7 +22,7 @@ struct Machine {
   std::function<std::string(const std::string&)> ip_details;  ///< text of `ip -details link show INTERFACE`
 };
 
-/// Kernel, limits, core, caches of idle, clock source, network: everything that needs no bus.
+/// Kernel, limits, core, frequency, idle states, clock source, network: everything that needs no bus.
 [[nodiscard]] std::vector<Check> check_machine(const Machine& machine, int core);
 
 /// A CAN interface: up, 1 Mbit/s, sample point 75 .. 87.5 %, queue, and its interrupts off the core.

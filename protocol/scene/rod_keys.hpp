@@ -28,8 +28,8 @@ inline constexpr RodPreset kRodPresets[] = {
     {"silk-4-0", 0.175e-3, 1340.0, 8.70e9, 0.1},        {"polyglactin-2-0", 0.325e-3, 1400.0, 9.32e9, 0.1},
     {"polyglactin-3-0", 0.225e-3, 1400.0, 9.32e9, 0.1}, {"polyglactin-4-0", 0.175e-3, 1400.0, 9.32e9, 0.1}};
 
-/// Reads the rod's keys of [suture]: `preset` first, then whatever is given beside it. @param radius_m, length_m set by
-/// a preset where the file does not give them.
+/// Reads the rod's keys of [suture]: `preset` first, then whatever is given beside it.
+/// @param radius_m set by a preset; a `radius_m` of the file, read later, replaces it.
 void read_rod(StrictTable& t, RodParameters& rod, double& radius_m);
 
 /// world.pegs.

@@ -35,12 +35,12 @@ RULES = {
     "host/view": (["host", "protocol/scene", "ligature_msg"], ["boost/", "CLI/", "nlohmann/", "OS"]),
 }
 
-# Headers of the operating system and of what it does: files, clocks, threads, sockets, streams.
+# Headers of the operating system and of what it does: files, clocks, threads, sockets, streams. A folder without "OS" in its
+# row may use none of them; chrono is a type, not a clock, and stays allowed.
 OS_HEADERS = re.compile(
     r"^(sys|linux|net|netinet|arpa)/|^(unistd|fcntl|poll|pthread|sched|signal|time|errno|dirent|termios|glob|malloc)\.h$"
     r"|^(fstream|iostream|filesystem|thread|mutex|condition_variable|future|csignal|ctime|cstdio|syncstream|semaphore)$"
 )
-# A folder below "real-time or pure" may use no OS header at all; chrono is a type, not a clock, and stays allowed.
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 
 
