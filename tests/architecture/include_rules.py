@@ -25,12 +25,12 @@ RULES = {
     "firmware/platform": (["firmware/rt", "protocol/can", DEVICE_STRUCT], ["OS"]),
     "firmware/telemetry": (["firmware/rt", "protocol/recorder", "ligature_msg"], ["lcm/", "OS"]),
     "firmware/cycle.hpp": (["firmware/rt", "firmware/control", "firmware/physics", "protocol/can"], []),
-    "firmware/app": (["firmware", "protocol"], ["CLI/", "spdlog/", "OS"]),
+    "firmware/app": (["firmware", "protocol", "ligature_msg"], ["CLI/", "spdlog/", "OS"]),
     "sim_device": (["protocol/can", "protocol/scene", "protocol/device"], ["ruckig/", "Eigen/", "CLI/", "spdlog/", "nlohmann/", "OS"]),
     "host/knot": ([], ["Eigen/"]),
     "host/lab": (["firmware/physics", "firmware/rt", "protocol/scene", "host/knot"], ["CLI/", "nlohmann/", "Eigen/", "OS"]),
     # The whole rig in one process and in virtual time: it is made of everything, and only the lab's rig may be.
-    "host/lab/rig": (["firmware", "sim_device", "protocol/can", "protocol/scene", "host", "ligature_msg"], ["Eigen/", "OS"]),
+    "host/lab/rig": (["firmware", "sim_device", "protocol/can", "protocol/scene", "protocol/device", "host", "ligature_msg"], ["Eigen/", "OS"]),
     "host": (["protocol/scene", "protocol/recorder", "host/knot", "host/view", "ligature_msg"], ["lcm/", "CLI/", "nlohmann/", "spdlog/", "OS"]),
     "host/view": (["host", "protocol/scene", "ligature_msg"], ["boost/", "CLI/", "nlohmann/", "OS"]),
 }
