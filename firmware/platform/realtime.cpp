@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <string>
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -22,6 +24,13 @@ constexpr int kPriority = 80;  // above threaded interrupts (50), below the kern
 constexpr std::size_t kStackReserve = std::size_t{256} * 1024;
 constexpr std::size_t kHeapReserve = std::size_t{8} * 1024 * 1024;
 constexpr std::size_t kPage = 4096;
+
+/// The last number of a core list such as "1,3-5"; -1 when it is empty.
+int last_of(const std::string& list) {
+  const auto at = list.find_last_of(",-");
+  const std::string last = at == std::string::npos ? list : list.substr(at + 1);
+  return last.empty() ? -1 : std::atoi(last.c_str());
+}
 
 [[gnu::noinline]] void touch_stack() noexcept {
   unsigned char stack[kStackReserve];
@@ -84,7 +93,11 @@ bool stay_on(int core) noexcept {
   return pthread_setaffinity_np(pthread_self(), sizeof only, &only) == 0;
 }
 
+/// An isolated core is not among those a process starts with; it must be asked for.
 int realtime_core() {
+  std::string isolated;
+  std::getline(std::ifstream("/sys/devices/system/cpu/isolated"), isolated);
+  if (const int core = last_of(isolated); core > 0) return core;
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
   sched_getaffinity(0, sizeof allowed, &allowed);

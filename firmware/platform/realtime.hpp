@@ -23,7 +23,7 @@ void flush_denormals() noexcept;
 /// For the calling thread: that core and no other. @return false when it is not allowed there.
 bool stay_on(int core) noexcept;
 
-/// The last core this process may use: interrupts and other work gather on the first.
+/// The isolated core, or else the last one this process may use: interrupts and other work gather on the first.
 [[nodiscard]] int realtime_core();
 
 /// For the calling thread (and those it starts): every allowed core but that one; all of them when it is the only one.

@@ -1,0 +1,107 @@
+"""Three CiA 402 drives by python-canopen, slaves of ligature-firmware on vcan0: SDO, NMT, PDO, heartbeat and EMCY are
+its own. What came is written to /run/canopen.json. An interpreter is slow: a SYNC that waited is answered late, not dropped.
+"""
+
+import json
+import struct
+import sys
+import time
+
+import can
+import canopen
+
+NODES = (1, 2, 3)
+ELBOW = 3
+GRIP_AND_DEAD_MAN = 3
+SHUTDOWN, SWITCH_ON, ENABLE, FAULT_RESET, DISABLE = 0x06, 0x07, 0x0F, 0x80, 0x00
+NOT_READY, DISABLED, READY, SWITCHED_ON, ENABLED, FAULT = 0x00, 0x40, 0x21, 0x23, 0x27, 0x08
+RUN_S, AFTER_S = 3.0, 0.5
+
+
+class Drive:
+    def __init__(self, network, node):
+        self.id = node
+        self.local = canopen.LocalNode(node, canopen.import_od(f"/run/node-{node}.eds", node))
+        network.add_node(self.local)
+        self.state, self.counts = DISABLED, 0
+        self.rpdos, self.torques, self.written, self.states = 0, [], [], []
+        self.local.add_write_callback(self.on_write)
+
+    def on_write(self, index, subindex, od, data):
+        self.written.append([index, subindex, int.from_bytes(data, "little")])
+        self.states.append(self.local.nmt.state)
+
+    def on_rpdo(self, data):
+        """As mapped by the firmware: controlword, target torque."""
+        word, torque = struct.unpack("<Hh", data)
+        self.rpdos += 1
+        self.torques.append(torque)
+        step = {SHUTDOWN: READY, SWITCH_ON: SWITCHED_ON, ENABLE: ENABLED, DISABLE: DISABLED}.get(word & 0x8F)
+        if self.state != FAULT and step is not None:
+            self.state = step
+        elif self.state == FAULT and word & FAULT_RESET:
+            self.state = DISABLED
+
+    def image(self):
+        last = GRIP_AND_DEAD_MAN if self.id == ELBOW else 0
+        return struct.pack("<HiH", self.state | 0x210, self.counts, last)
+
+
+class Hand:
+    def __init__(self):
+        self.network = canopen.Network(can.Bus("vcan0", interface="socketcan"))
+        self.drives = [Drive(self.network, n) for n in NODES]
+        self.syncs, self.heartbeats, self.maps = 0, 0, {}
+        self.network.subscribe(0x080, self.on_sync)
+        self.network.subscribe(0x77F, self.on_heartbeat)
+        for drive in self.drives:
+            self.network.subscribe(0x200 + drive.id, lambda _, data, __, d=drive: d.on_rpdo(data))
+
+    def connect(self):
+        self.network.connect()
+        for drive in self.drives:
+            drive.local.nmt.state = "PRE-OPERATIONAL"
+
+    def on_heartbeat(self, *_):
+        self.heartbeats += 1
+
+    def on_sync(self, *_):
+        self.syncs += 1
+        for drive in self.drives:
+            if drive.local.nmt.state != "OPERATIONAL":
+                continue
+            if drive.id not in self.maps:  # what the firmware wrote over SDO, as canopen reads it
+                drive.local.tpdo[1].read(from_od=True)
+                tpdo = drive.local.tpdo[1]
+                self.maps[drive.id] = {"cob_id": tpdo.cob_id, "type": tpdo.trans_type, "map": [[v.index, v.subindex, v.length] for v in tpdo.map]}
+            if drive.id == 1:
+                drive.counts = min(self.syncs // 4, 400)  # the waist turns slowly: the thread pulls at the hand
+            self.network.send_message(0x180 + drive.id, drive.image())
+
+    def report(self, emergency_at):
+        drives = [{"node": d.id, "nmt": d.local.nmt.state, "state": d.state, "rpdos": d.rpdos, "written": d.written, "map": self.maps.get(d.id),
+                   "nmt_while_written": sorted(set(d.states)),
+                   "torque_before": max(map(abs, d.torques[:at]), default=0), "torque_at_end": d.torques[-1] if d.torques else None}
+                  for d, at in zip(self.drives, emergency_at, strict=True)]
+        return {"syncs": self.syncs, "heartbeats": self.heartbeats, "drives": drives}
+
+
+def main():
+    if "--look" in sys.argv:
+        return
+    hand = Hand()
+    hand.connect()
+    print("ready", flush=True)
+    while hand.syncs == 0 or not all(d.state == ENABLED for d in hand.drives):
+        time.sleep(0.05)
+    print("enabled", flush=True)
+    time.sleep(RUN_S)
+    at = [len(d.torques) for d in hand.drives]
+    hand.drives[1].local.emcy.send(0x2310, register=0x03)
+    time.sleep(AFTER_S)
+    with open("/run/canopen.json", "w") as out:
+        json.dump(hand.report(at), out)
+    print(f"syncs {hand.syncs}, heartbeats {hand.heartbeats}", flush=True)
+
+
+main()

@@ -1,0 +1,16 @@
+#!/bin/bash
+# The socket back ends' own tests, doctor on a kernel that can, and --rt=enforce where it must refuse.
+. tests/hil/inside/rig.sh
+echo "machine: back end on vcan"
+"$LIGATURE_TESTS/test_socketcan" > /hil/socketcan.log 2>&1 || { cat /hil/socketcan.log; exit 1; }
+echo "machine: doctor"
+ip link set can0 up txqueuelen 64 type can bitrate 1000000 sample-point 0.8
+"$LIGATURE_BIN/ligature-firmware" doctor --can vcan0 --can can0 --seconds 2 > /hil/doctor.log 2>&1 && code=0 || code=$?
+echo "$code" > /hil/doctor.code
+echo "machine: a real-time rig for nobody"
+chmod 777 /run
+hand left vcan0; hand right vcan1
+setpriv --reuid 65534 --clear-groups --bounding-set -all "$LIGATURE_BIN/ligature-firmware" run --scene scenes/paper.toml --left socketcan:vcan0 \
+  --right socketcan:vcan1 --force --rt=enforce --recorder none --duration 0.2 --watchdog-ms 10000 > /hil/enforce.log 2>&1 && code=0 || code=$?
+echo "$code" > /hil/enforce.code
+gone "$left_pid"; gone "$right_pid"

@@ -1,0 +1,56 @@
+# Sourced by the scenarios: a rig of processes in the guest. Where hardware would run beside the controller, the one
+# virtual CPU must run it before the controller, or the controller would hold up its own bus: the hands are at 85, the
+# loop at 80.
+set -eu
+export XDG_STATE_HOME=/run/state
+flight=/run/flight.rec
+
+# Files on the host are read before time counts: waiting for one takes no virtual time at all, or any amount.
+warm() {
+  local programs=("$LIGATURE_BIN"/ligature-{firmware,device,host} $(type -P "$@" bash sleep cat cp date rm mkdir))
+  { printf '%s\n' "${programs[@]}"; ldd "${programs[@]}" 2>/dev/null | grep -o '/[^ :]*' || true; } | sort -u | xargs cat > /dev/null
+}
+
+# hand left|right INTERFACE [ARGUMENT...]
+hand() {
+  local side=$1 interface=$2
+  shift 2
+  chrt -f 85 "$LIGATURE_BIN/ligature-device" --hand "$side" --bus "socketcan:$interface" --scene scenes/paper.toml \
+    --operator scenes/operators/overhand.csv --stats "/run/$side.json" "$@" > "/run/$side.log" 2>&1 &
+  printf -v "${side}_pid" %d $!
+}
+
+# firmware LEFT-INTERFACE RIGHT-INTERFACE [ARGUMENT...]; admission is forced: an emulated CPU fails it, and says so
+firmware() {
+  local left=$1 right=$2
+  shift 2
+  rm -f "$flight"*
+  "$LIGATURE_BIN/ligature-firmware" run --scene scenes/paper.toml --left "socketcan:$left" --right "socketcan:$right" \
+    --arm --force --rt=enforce --recorder "$flight" --recorder-s 30 "$@" > /run/firmware.log 2>&1 &
+  firmware_pid=$!
+}
+
+# Returns half a second after the rig has come to full force.
+in_force() {
+  local tries
+  for tries in {1..600}; do
+    ! grep -q 'ENGAGE -> FORCE' /run/firmware.log || { sleep 0.5; return 0; }
+    sleep 0.05
+  done
+  echo "the rig does not come to force"; cat /run/firmware.log; return 1
+}
+
+# Every frame of both virtual buses, in order, with its interface.
+listen() {
+  candump -L -D -r 67108864 "$@" > /run/can.log 2> /run/candump.log &
+  candump_pid=$!
+}
+
+# gone PID: ends it politely and waits
+gone() { kill -TERM "$1" 2>/dev/null || true; wait "$1" || true; }
+
+# keep NAME: what a run left, into the folder that stays
+keep() {
+  mkdir -p "/hil/$1"
+  cp "$flight"* /run/*.log /run/*.json "/hil/$1/" 2>/dev/null || true
+}

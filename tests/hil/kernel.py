@@ -1,0 +1,77 @@
+"""Debian's PREEMPT_RT kernel, unpacked into a folder: never installed, never booted on this machine itself."""
+
+import lzma
+import pathlib
+import shutil
+import subprocess
+
+XZ_MAGIC = b"\xfd7zXZ\x00"
+# What the guest needs, in no order; what these need is found in the modules themselves.
+MODULES = ("virtio_pci", "virtio_console", "virtio-rng", "9pnet_virtio", "9p", "overlay",
+           "can", "can-raw", "vcan", "kvaser_pci")
+
+
+def package():
+    """Name of the package with the newest kernel, which the meta package depends on."""
+    depends = subprocess.run(["apt-cache", "depends", "linux-image-rt-amd64"], capture_output=True, text=True)
+    names = [line.split()[-1] for line in depends.stdout.splitlines() if "Depends: linux-image-" in line]
+    if not names:
+        raise RuntimeError("apt knows no PREEMPT_RT kernel (linux-image-rt-amd64); as root: apt-get update")
+    return names[0]
+
+
+def fetch(cache):
+    """@return the folder with boot/ and lib/modules/ of the kernel; the package is downloaded once."""
+    name = package()
+    folder = cache / name
+    if (folder / "complete").exists():
+        return folder
+    print(f"hil: fetching {name}, 70 MB", flush=True)
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    got = subprocess.run(["apt-get", "download", "-q", name], cwd=folder, capture_output=True, text=True)
+    if got.returncode != 0:
+        raise RuntimeError(f"apt-get download {name}: {got.stderr.strip().splitlines()[-1]}")
+    archive = next(folder.glob("*.deb"))
+    subprocess.run(["dpkg-deb", "-x", archive.name, "."], cwd=folder, check=True)
+    archive.unlink()
+    unpack(next((folder / "boot").glob("vmlinuz-*")), folder / "vmlinux")
+    (folder / "complete").touch()
+    return folder
+
+
+def unpack(bzimage, to):
+    """The kernel as ELF: an emulated CPU would need seconds to unpack it at every start."""
+    data = bzimage.read_bytes()
+    at = data.find(XZ_MAGIC)
+    if at < 0:
+        raise RuntimeError(f"{bzimage}: not compressed with xz, which was expected")
+    to.write_bytes(lzma.LZMADecompressor(lzma.FORMAT_XZ).decompress(data[at:]))
+
+
+def needs(module):
+    """Names of the modules that one asks for, from its own .modinfo."""
+    data = module.read_bytes()
+    at = data.find(b"\0depends=")
+    at = at + 9 if at >= 0 else data.find(b"depends=") + 8
+    return [n for n in data[at:data.index(b"\0", at)].decode().split(",") if n]
+
+
+def modules(folder):
+    """Files of MODULES and all they need, in an order in which they can be loaded."""
+    found = {f.stem.replace("-", "_"): f for f in pathlib.Path(folder, "lib/modules").rglob("*.ko")}
+    order = []
+
+    def add(name):
+        file = found.get(name.replace("-", "_"))
+        if file is None:
+            raise RuntimeError(f"the kernel has no module {name}")
+        if file in order:
+            return
+        for other in needs(file):
+            add(other)
+        order.append(file)
+
+    for name in MODULES:
+        add(name)
+    return order

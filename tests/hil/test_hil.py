@@ -1,0 +1,276 @@
+"""What the guest proves. Each test boots it once; what a run left is judged out here, from the flight recorder, which
+holds every tick, and from candump, which shares no code with us. SYNC is sent once a tick: counting it numbers the ticks
+on the wire.
+
+Time in the guest is virtual (-icount): an instruction takes 1 ns and waiting takes none of this machine's time, so that a
+deadline is a property of the program and can be asserted.
+"""
+
+import csv
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import time
+import unittest
+
+import cantools
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+BIN = pathlib.Path(os.environ["LIGATURE_BIN"])
+OUT = ROOT / "build/hil"
+WATCHDOG_TICKS = 20
+LOST, MISSED = 1, 2
+IDLE, ENGAGE, FORCE, FAULT = 2, 3, 4, 6
+LONGEST_S = 400
+
+
+def guest(name, *options, timeout=LONGEST_S):
+    """Runs one scenario. @return the folder with what it left."""
+    out = OUT / name
+    if os.environ.get("LIGATURE_HIL_JUDGE_ONLY"):  # what the last run left
+        return out, 0
+    shutil.rmtree(out, ignore_errors=True)
+    out.mkdir(parents=True)
+    began = time.monotonic()
+    print(f"hil: {name} ..", flush=True)
+    with open(out / "guest.log", "w") as log:
+        process = subprocess.Popen([sys.executable, HERE / "guest.py", "--out", out, "--timeout", str(timeout), *options, "--",
+                                    "bash", f"tests/hil/inside/{name}.sh"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        with process.stdout as lines:
+            for line in lines:
+                log.write(line)
+                print("  " + line, end="", flush=True)
+        code = process.wait()
+    print(f"hil: {name}: exit {code}, {time.monotonic() - began:.0f} s", flush=True)
+    return out, code
+
+
+VIRTUAL = ("--icount", "0")
+
+
+def ticks_of(folder):
+    """The flight recorder as a list of rows."""
+    made = folder / "ticks.csv"
+    subprocess.run([BIN / "ligature-host", "export", folder / "flight.rec", "--ticks", made], check=True, capture_output=True, timeout=120)
+    with open(made) as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    return [{k: float(v) if "." in v or "e" in v else int(v) for k, v in row.items()} for row in rows]
+
+
+def pushes(row):
+    return any(row[f"{hand}_torque_{joint}_permille"] for hand in ("left", "right") for joint in (1, 2, 3))
+
+
+def wire_of(folder):
+    """candump's log: (interface, identifier, data) in order."""
+    line_of = re.compile(r"\((\d+\.\d+)\) +(\S+) ([0-9A-F]+)#([0-9A-F]*)")
+    return [(m[2], int(m[3], 16), bytes.fromhex(m[4])) for m in map(line_of.match, (folder / "can.log").read_text().splitlines()) if m]
+
+
+class Guest(unittest.TestCase):
+    def every_tick_is_there(self, rows):
+        self.assertEqual([r["tick"] for r in rows], list(range(len(rows))))
+
+
+class Overhand(Guest):
+    def test_ten_seconds_at_1_kHz_without_a_missed_deadline(self):
+        folder, code = guest("overhand", *VIRTUAL)
+        self.assertEqual(code, 0)
+        rows = ticks_of(folder / "overhand")
+        self.every_tick_is_there(rows)
+        self.assertGreaterEqual(len(rows), 10_000)
+        self.assertEqual(sum(r["flags"] & MISSED != 0 for r in rows), 0, "missed deadlines")
+        self.assertEqual(sum(r["flags"] & LOST != 0 for r in rows), 0, "overruns")
+        self.assertEqual({r["fault"] for r in rows}, {0})
+        self.assertGreater(sum(r["state"] == FORCE for r in rows), 9_000)
+        self.assertGreater(sum(map(pushes, rows)), 9_000, "torque went out")
+        started = [r for r in rows if r["state"] == FORCE]
+        self.assertEqual(sum(r["left_tpdo_age_ticks"] + r["right_tpdo_age_ticks"] for r in started), 0, "samples that came too late")
+        for what in ("wakeup_latency_ns", "tpdo_ns", "control_ns", "execution_ns"):
+            values = sorted(r[what] for r in started)
+            print(f"  {what:18} p50 {values[len(values) // 2] / 1e3:6.1f}  p99.9 {values[-len(values) // 1000] / 1e3:6.1f}  worst {values[-1] / 1e3:6.1f} us")
+        print(f"  {len(rows)} periods, {len(started)} in FORCE, 0 missed, 0 lost", flush=True)
+
+
+class Faults(Guest):
+    """Each blow finds the rig in force; `at` is the tick at which it can first be seen."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder, cls.code = guest("faults", *VIRTUAL)
+
+    def read(self, name, recorded=True):
+        self.assertEqual(self.code, 0)
+        folder = self.folder / name
+        wire = wire_of(folder)
+        left = [f for f in wire if f[0] != "vcan1"]
+        right = [f for f in wire if f[0] == "vcan1"]
+        rows = ticks_of(folder) if recorded else []
+        if rows:
+            self.every_tick_is_there(rows)
+        return rows, left, right
+
+    @staticmethod
+    def tick_before(rows, frames, position):
+        """The tick that had begun when frame number `position` was on the bus; a lost period sends no SYNC."""
+        executed = [r["tick"] for r in rows if not r["flags"] & LOST]
+        return executed[sum(f[1] == 0x080 for f in frames[:position + 1]) - 1]
+
+    @staticmethod
+    def position(frames, identifier, data=None):
+        return next(i for i, f in enumerate(frames) if f[1] == identifier and (data is None or f[2] == data))
+
+    def torque_on_the_wire(self, rows, frames, first_tick):
+        """Target torques of every RPDO from a tick on."""
+        executed = [r["tick"] for r in rows if not r["flags"] & LOST]
+        syncs, seen = 0, []
+        for _, identifier, data in frames:
+            syncs += identifier == 0x080
+            if syncs and executed[syncs - 1] >= first_tick and 0x201 <= identifier <= 0x203:
+                seen.append(int.from_bytes(data[2:4], "little", signed=True))
+        return seen
+
+    def ends_in(self, faults, rows, left, right, at, within):
+        """A fault of `faults`, latched from one of the first ticks after `at` on, and no torque of either hand in any
+        record or frame from there."""
+        before = rows[at - 2]
+        self.assertEqual((before["state"], pushes(before)), (FORCE, True), "the blow must find the rig in force")
+        first = next(r for r in rows if r["fault"] != 0)
+        print(f"  {self._testMethodName[5:]}: fault {first['fault']} at the tick +{first['tick'] - at}, stated {within[0]} .. {within[-1]}", flush=True)
+        self.assertIn(first["fault"], faults)
+        self.assertIn(first["tick"] - at, within)
+        for row in rows[first["tick"]:]:
+            self.assertEqual((row["fault"], row["state"], pushes(row)), (first["fault"], FAULT, False))
+        for frames in (left, right):
+            self.assertEqual(set(self.torque_on_the_wire(rows, frames, first["tick"])) - {0}, set(), "torque on the wire after the fault")
+
+    def test_a_killed_hand(self):
+        """Its watchdog runs from its last complete set of samples."""
+        rows, left, right = self.read("hand-killed")
+        last = max(i for i, f in enumerate(left) if 0x181 <= f[1] <= 0x183)
+        at = self.tick_before(rows, left, last)
+        lost = sum(r["flags"] & LOST != 0 for r in rows[at:at + WATCHDOG_TICKS])  # killing costs the one CPU a period
+        self.ends_in((11,), rows, left, right, at, range(WATCHDOG_TICKS - 1, WATCHDOG_TICKS + lost + 1))
+        first = next(r for r in rows if r["fault"] != 0)
+        self.assertEqual(first["left_tpdo_age_ticks"], WATCHDOG_TICKS)
+
+    def test_an_emergency_of_a_drive(self):
+        rows, left, right = self.read("emergency")
+        at = self.tick_before(rows, left, self.position(left, 0x082, bytes.fromhex("5082110000000000")))
+        self.ends_in((12,), rows, left, right, at, (0, 1))
+
+    def test_somebody_else_stops_a_drive(self):
+        """Its torque goes at once; we learn it from its heartbeat or from its silence."""
+        rows, left, right = self.read("stranger")
+        at = self.tick_before(rows, left, self.position(left, 0x000, bytes.fromhex("8002")))
+        self.ends_in((11, 12), rows, left, right, at, range(1, WATCHDOG_TICKS + 2))
+
+    def test_bus_off(self):
+        """A bus that is off takes no SYNC."""
+        rows, left, right = self.read("bus-off")
+        last = max(i for i, f in enumerate(left) if f[1] == 0x080)
+        self.ends_in((10,), rows, left, right, self.tick_before(rows, left, last), (0, 1))
+
+    def test_a_stopped_controller(self):
+        """SIGSTOP for 100 ms: the drives take the torque away by themselves, the controller wakes up into an overrun."""
+        rows, left, right = self.read("controller-stopped")
+        for frames in (left, right):
+            told = [f for f in frames if 0x081 <= f[1] <= 0x083 and f[2][:2] == bytes.fromhex("5082")]
+            self.assertEqual({f[1] for f in told}, {0x081, 0x082, 0x083}, "EMCY 0x8250: no RPDO for 20 ms")
+        lost = [r["tick"] for r in rows if r["flags"] & LOST]
+        print(f"  {len(lost)} periods lost", flush=True)
+        self.assertGreater(len(lost), 90)
+        self.assertEqual(lost, list(range(lost[0], lost[0] + len(lost))))
+        first = rows[lost[-1] + 1]
+        self.assertIn(first["fault"], (12, 30), "what it finds first: its drives in fault, or its own sleep")
+        self.assertEqual(first["state"], FAULT)
+        self.assertTrue(pushes(rows[lost[0] - 3]))
+        self.assertFalse(any(pushes(r) for r in rows[lost[-1] + 1:]))
+
+    def test_the_clock_on_the_wall_does_not_matter(self):
+        rows, _, _ = self.read("clock-step")
+        self.assertEqual({r["fault"] for r in rows}, {0})
+        self.assertEqual(sum(r["flags"] & (LOST | MISSED) != 0 for r in rows), 0)
+
+    def test_an_interface_that_goes_down_under_the_sja1000_driver(self):
+        """Its queue stops first; the news comes when the driver has closed it, or the watchdog is faster."""
+        rows, left, right = self.read("sja1000-pulled")
+        last = max(i for i, f in enumerate(left) if f[1] == 0x080)
+        self.ends_in((10, 11), rows, left, right, self.tick_before(rows, left, last), range(WATCHDOG_TICKS + 2))
+
+    def test_force_comes_back_by_order_only(self):
+        rows, _, _ = self.read("sja1000-pulled-and-back")
+        faulted = [r["tick"] for r in rows if r["state"] == FAULT]
+        self.assertGreater(len(faulted), 600, "0.2 s without a bus, 0.5 s with one: it stays a fault")
+        self.assertEqual(faulted, list(range(faulted[0], faulted[-1] + 1)))
+        after = rows[faulted[-1] + 1:]
+        disarmed = after[:next(i for i, r in enumerate(after) if r["state"] == ENGAGE)]
+        self.assertGreater(sum(r["state"] == IDLE for r in disarmed), 300, "enabled again after the reset, but not armed")
+        self.assertFalse(any(pushes(r) for r in disarmed))
+        self.assertTrue(any(r["state"] == FORCE for r in after), "the order to arm brings it back")
+
+    def test_candump_decodes_fully(self):
+        dbc = cantools.database.load_string(subprocess.run([BIN / "ligature-can-describe", "dbc"], capture_output=True, text=True, check=True).stdout, "dbc")
+        counts = {}
+        for _, identifier, data in wire_of(self.folder / "hand-killed"):
+            message = dbc.get_message_by_frame_id(identifier)
+            message.decode(data, allow_truncated=False, allow_excess=False)
+            counts[message.name] = counts.get(message.name, 0) + 1
+        print("  " + ", ".join(f"{n} {name}" for name, n in sorted(counts.items())), flush=True)
+        for name in ("Sync", "Nmt", "Controller_Heartbeat", *(f"{d}_{s}" for d in ("Waist", "Shoulder", "Elbow")
+                                                              for s in ("TPDO1", "RPDO1", "SdoRequest", "SdoResponse", "Heartbeat", "Emergency"))):
+            self.assertGreater(counts.get(name, 0), 0, name)
+
+
+class Canopen(Guest):
+    def test_python_canopen_is_the_master_of_a_hand(self):
+        _, code = guest("canopen_master")
+        self.assertEqual(code, 0)
+
+    def test_python_canopen_is_a_slave_of_the_firmware(self):
+        folder, code = guest("canopen_slave", *VIRTUAL)
+        self.assertEqual(code, 0)
+        told = json.loads((folder / "canopen-slave/canopen.json").read_text())
+        self.assertGreater(told["syncs"], 1000)
+        self.assertGreater(told["heartbeats"], 20)
+        for drive in told["drives"]:
+            node = drive["node"]
+            written = {(index, sub): value for index, sub, value in drive["written"]}
+            self.assertEqual(written[(0x6060, 0)], 10, "cyclic synchronous torque")
+            self.assertEqual(written[(0x1400, 5)], 10_000, "RPDO watchdog as asked for")
+            self.assertEqual(written[(0x1016, 1)] >> 16, 127)
+            self.assertEqual(drive["nmt_while_written"], ["PRE-OPERATIONAL"])
+            last = [0x2100, 1, 16] if node == 3 else [0x6077, 0, 16]
+            self.assertEqual(drive["map"], {"cob_id": 0x180 + node, "type": 1, "map": [[0x6041, 0, 16], [0x6064, 0, 32], last]})
+            self.assertGreater(drive["rpdos"], 1000)
+            self.assertEqual(drive["torque_at_end"], 0, "after the EMCY")
+        self.assertGreater(max(d["torque_before"] for d in told["drives"]), 0, "the thread pulled at the slow hand")
+        rows = ticks_of(folder / "canopen-slave")
+        self.every_tick_is_there(rows)
+        self.assertEqual({r["fault"] for r in rows}, {0, 12})
+        self.assertEqual(sum(r["flags"] & (LOST | MISSED) != 0 for r in rows), 0)
+
+
+class Machine(Guest):
+    def test_back_ends_doctor_and_enforce(self):
+        folder, code = guest("machine", "--cpus", "2", "--isolate")
+        self.assertEqual(code, 0)
+        ran = (folder / "socketcan.log").read_text()
+        self.assertIn("[  PASSED  ] 7 tests", ran)
+        rows = (folder / "doctor.log").read_text()
+        for row in ("OK    kernel .*PREEMPT_RT", "OK    own core .*core 1", "OK    timer ticks .*core 1", "OK    RCU callbacks",
+                    "OK    real-time priority", "OK    locked memory", "OK    LCM", "OK    CAN +vcan0: up", "OK    CAN bit rate .*virtual",
+                    "OK    CAN bit rate .*can0: 1e\\+06 bit/s, sample point 0.75", "wake-ups"):
+            self.assertRegex(rows, row)
+        self.assertIn((folder / "doctor.code").read_text().strip(), ("0", "3"), "3: an emulated machine is late")
+        self.assertEqual((folder / "enforce.code").read_text().strip(), "3")
+        self.assertRegex((folder / "enforce.log").read_text(), "--rt=enforce: .*(SCHED_FIFO|locked memory)")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)
