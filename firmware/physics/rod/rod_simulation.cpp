@@ -77,6 +77,9 @@ void RodSimulation::set_state(std::span<const Vec3> p_W, std::span<const Vec3> v
     state.v[i] = i < v_W.size() ? vec(v_W[i]) : Vec{};
   }
   rod_.moved();
+  closed_ = {false, false};
+  inside_ = {true, true};
+  ticks_ = 0;
   health_ = {};
   hands_ = {};
   publish();
