@@ -1,5 +1,7 @@
 #pragma once
 
+#include <numbers>
+
 #include "firmware/physics/vec.hpp"
 
 namespace ligature::physics {
@@ -18,14 +20,13 @@ template <class S>
       -0.18181575936026106, 0.15382340135883932,  -0.13318239887286146,  0.11691175424767732,   -0.10255658049227419,
       0.08754380021423046,  -0.06974900688985851, 0.04917832843612938,   -0.028917617473779387, 0.013285236797674021,
       -0.0043967810220676,  0.000922294245279125, -9.144933505719492e-05};
-  constexpr double kPi = 3.14159265358979323846;
   const S t = s / (1.0 + magnitude(c));
   const S z = t * t;
   S sum = z * kTwiceAtan[17] + kTwiceAtan[16];
 #pragma GCC unroll 16
   for (int k = 15; k >= 0; --k) sum = sum * z + kTwiceAtan[k];
   const S alpha = t * sum;
-  return c < 0.0 ? kPi - alpha : alpha;
+  return c < 0.0 ? std::numbers::pi - alpha : alpha;
 }
 
 }  // namespace ligature::physics

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <numbers>
+
 #include "firmware/physics/bend_geometry.hpp"
 
 namespace ligature::physics {
@@ -11,14 +13,12 @@ namespace ligature::physics {
 /// @param k_N_m  k_ts
 template <class S>
 S bend_moment_N_m(S angle, double k_N_m) noexcept {
-  constexpr double kPi = 3.14159265358979323846;
-  return (-k_N_m / kPi) * angle;
+  return (-k_N_m / std::numbers::pi) * angle;
 }
 
 template <class S>
 S bend_energy_J(S angle, double k_N_m) noexcept {
-  constexpr double kPi = 3.14159265358979323846;
-  return (0.5 * k_N_m / kPi) * angle * angle;
+  return (0.5 * k_N_m / std::numbers::pi) * angle * angle;
 }
 
 }  // namespace ligature::physics

@@ -1,6 +1,7 @@
 #include "firmware/physics/build.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "firmware/physics/stretch_spring.hpp"
 
@@ -70,7 +71,7 @@ void fix_nodes(const scene::Scene& scene, BuiltThread& t) {
 
 std::variant<BuiltThread, std::string> build_thread(const scene::Scene& scene) {
   const scene::Suture& s = scene.suture;
-  if (s.model == scene::Model::kRod) return "model 'rod' is not part of this version";
+  if (s.model == scene::Model::kRod) return "model 'rod' is none of the paper's: rod::rod_of() builds it";
   if (s.nodes < 2) return "a thread has at least 2 nodes, found " + std::to_string(s.nodes);
   if (!(s.length_m > 0.0 && s.radius_m > 0.0 && s.paper.node_mass_kg > 0.0))
     return std::string("length, radius and mass must be positive");
@@ -97,13 +98,12 @@ std::variant<BuiltThread, std::string> build_thread(const scene::Scene& scene) {
 }
 
 ContactSettings build_contact(const scene::Scene& scene, const ThreadModel& m) {
-  constexpr double kPi = 3.14159265358979323846;
   ContactSettings c;
   c.slip = scene.contact.friction;
   c.stick = scene.contact.static_friction.value_or(c.slip);
   // A thread of radius r cannot turn back on itself within an arc of pi r: pairs closer along the thread are
   // neighbours.
-  c.skip = 1 + static_cast<int>(std::ceil(kPi * m.radius_m / m.rest_m - 1e-9));
+  c.skip = 1 + static_cast<int>(std::ceil(std::numbers::pi * m.radius_m / m.rest_m - 1e-9));
   if (c.skip < 2) c.skip = 2;
   c.desk_m = scene.world.desk_height_m;
   c.broad_phase = scene.contact.broad_phase;

@@ -7,16 +7,31 @@
 namespace ligature::physics {
 namespace {
 constexpr double kReach = 4.0;  // length of grippers and hooks, in radii
+
+V3<double> gravity_of(const scene::Scene& scene) noexcept {
+  const auto& g = scene.world.gravity_m_per_s2;
+  return {g[0], g[1], g[2]};
+}
+
+/// Without gravity no hook has a direction.
+bool has_hooks(const scene::Scene& scene) noexcept {
+  return scene.world.frame_collides && norm(gravity_of(scene)) > 0.0;
+}
+
+}  // namespace
+
+std::string ObstacleCourse::objection(const scene::Scene& scene) {
+  if (!has_hooks(scene) || scene.world.fixed.size() <= kMostHooks) return {};
+  return "world.fixed: found " + std::to_string(scene.world.fixed.size()) + ", allowed " + std::to_string(kMostHooks) +
+         " with hooks (world.frame_collides = false lifts that)";
 }
 
 ObstacleCourse::ObstacleCourse(const scene::Scene& scene, const ThreadModel& m, const ContactSettings& contact)
     : grippers_(scene.world.grippers_collide), skip_(contact.skip) {
-  const auto& g = scene.world.gravity_m_per_s2;
-  const V3<double> down{g[0], g[1], g[2]};
+  if (!has_hooks(scene)) return;
+  const V3<double> down = gravity_of(scene);
   const double weight = norm(down);
-  if (!scene.world.frame_collides || !(weight > 0.0)) return;
   for (const scene::FixedNode& f : scene.world.fixed) {
-    if (hooks_.size() + 2 >= ContactSolver::kObstacles) break;
     const int node = f.node < 0 ? m.nodes - 1 : f.node;
     Obstacle hook;
     hook.p0_m = {f.position_m[0], f.position_m[1], f.position_m[2]};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "firmware/physics/contact.hpp"
@@ -16,7 +17,13 @@ namespace ligature::physics {
 ///   Hook: from each fixed node 4 radii upwards (against gravity); it does not touch the segments around that node.
 class ObstacleCourse {
  public:
+  static constexpr std::size_t kMostHooks = ContactSolver::kObstacles - 2;
+
+  /// Why there is no course for a scene, or empty: it has more hooks than the solver has room for.
+  [[nodiscard]] static std::string objection(const scene::Scene& scene);
+
   ObstacleCourse() = default;
+  /// @pre no objection.
   ObstacleCourse(const scene::Scene& scene, const ThreadModel& model, const ContactSettings& contact);
 
   /// Moves the grippers to the tools. Call once per tick, after the grasp.

@@ -1,0 +1,277 @@
+#include "firmware/physics/paper_simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "firmware/physics/build.hpp"
+#include "firmware/physics/stretch_spring.hpp"
+
+namespace ligature::physics {
+namespace {
+
+constexpr double kOutOfRange = 1e9;  // m/s or m: beyond any thread; a run that gets there has diverged
+
+V3<double> to_v3(const Vec3& a) noexcept { return {a.x(), a.y(), a.z()}; }
+V3<double> to_v3(const scene::Vec& a) noexcept { return {a[0], a[1], a[2]}; }
+Vec3 to_vec3(const V3<double>& a) noexcept { return {a.x, a.y, a.z}; }
+
+bool in_range(const V3<double>& a) noexcept {
+  return std::abs(a.x) < kOutOfRange && std::abs(a.y) < kOutOfRange && std::abs(a.z) < kOutOfRange;
+}
+
+}  // namespace
+
+/// Force of each hand's coupling on its node, from the motion at the beginning of the step.
+std::array<V3<double>, 2> PaperSimulation::hand_forces_N(const std::array<ToolInput, 2>& tools) noexcept {
+  std::array<V3<double>, 2> force{};
+  for (std::size_t h = 0; h < 2; ++h) {
+    const int node = grasp_.node(static_cast<int>(h));
+    if (node < 0) continue;
+    force[h] = coupling_force_N(coupling_, model_.inverse_mass_per_kg[node], model_.step_s, to_v3(tools[h].p_WT),
+                                to_v3(tools[h].v_WT), state_.p.at(node), state_.v.at(node));
+    hands_[h].f_W -= (1.0 / substeps_) * to_vec3(force[h]);
+  }
+  return force;
+}
+
+/// Drag, gravity, loads and hands: everything that is not the thread's own. Each acts on the motion that there was,
+/// none on what another one is adding, so that no damping shifts a balance.
+void PaperSimulation::add_external(const std::array<ToolInput, 2>& tools) noexcept {
+  const double dt = model_.step_s;
+  const auto force = hand_forces_N(tools);
+  const Pack keep = splat(1.0 / (1.0 + dt * model_.drag_per_s));
+  const V3<Pack> fall{splat(dt * gravity_.x), splat(dt * gravity_.y), splat(dt * gravity_.z)};
+  for (int i = 0; i < model_.nodes; i += kLanes) state_.v.set(i, keep * state_.v.pack(i) + model_.free.pack(i) * fall);
+  const auto push = [this, dt](int node, const V3<double>& f) {
+    state_.v.put(node, state_.v.at(node) + (dt * model_.inverse_mass_per_kg[node]) * f);
+  };
+  for (const auto& [node, force_N] : loads_) push(node, force_N);
+  for (std::size_t h = 0; h < 2; ++h)
+    if (const int node = grasp_.node(static_cast<int>(h)); node >= 0) push(node, force[h]);
+}
+
+/// Moves the nodes and sums up energies. @return the largest speed, m/s; NaN if any is.
+double PaperSimulation::integrate(const Lane3& v_W) noexcept {
+  const Pack dt = splat(model_.step_s);
+  Pack fastest2 = splat(0.0), motion = splat(0.0), weight = splat(0.0);
+  for (int i = 0; i < model_.nodes; i += kLanes) {
+    const V3<Pack> v = v_W.pack(i), p = state_.p.pack(i) + dt * v;
+    const Pack v2 = dot(v, v), free = model_.free.pack(i);
+    fastest2 = larger(fastest2, v2);
+    motion += v2;
+    weight += free * (gravity_.x * p.x + gravity_.y * p.y + gravity_.z * p.z);
+    state_.p.set(i, p);
+  }
+  extend_last_node(state_.p, model_.nodes);
+  kinetic_J_ = 0.5 * model_.mass_kg * sum(motion);
+  weight_J_ = -model_.mass_kg * sum(weight);
+  return std::sqrt(largest(fastest2));
+}
+
+void PaperSimulation::step(const std::array<ToolInput, 2>& tools) noexcept {
+  if (explicit_damping_ || forward_) rate_v_ = state_.v;  // same size: copies, does not allocate
+  add_external(tools);
+  internal_(model_, state_, rate_v_, work_);
+  if (has_limits_) limits_.warm_start(model_, state_, work_.u);
+  if (contact_kind_ == scene::ContactSolver::kImplicit) contact_.solve(model_, state_);
+  if (contact_kind_ == scene::ContactSolver::kPaper) paper_contact_.solve(model_, state_);
+  double speed = integrate(forward_ ? rate_v_ : state_.v);
+  if (has_limits_ && limits_.enforce(model_, state_) > 0) speed = fastest();
+  if (contact_kind_ == scene::ContactSolver::kImplicit) contact_.moved(speed, model_.step_s);
+}
+
+double PaperSimulation::fastest() const noexcept {
+  Pack fastest2 = splat(0.0);
+  for (int i = 0; i < model_.nodes; i += kLanes) fastest2 = larger(fastest2, dot(state_.v.pack(i), state_.v.pack(i)));
+  return std::sqrt(largest(fastest2));
+}
+
+/// Keeps the state that a tick starts from. In packs: six calls of memcpy cost four times as much at 50 nodes.
+void PaperSimulation::remember() noexcept {
+  for (int i = 0; i < model_.nodes; i += kLanes) {
+    before_.p.set(i, state_.p.pack(i));
+    before_.v.set(i, state_.v.pack(i));
+  }
+  extend_last_node(before_.p, model_.nodes);
+}
+
+/// Finite and in range; if not, the state goes back to the last tick's and stays there.
+bool PaperSimulation::check() noexcept {
+  if (kinetic_J_ < model_.mass_kg * kOutOfRange * kOutOfRange && std::isfinite(weight_J_)) return true;
+  for (int i = 0; i < model_.nodes; ++i) {
+    if (in_range(state_.p.at(i)) && in_range(state_.v.at(i))) continue;
+    health_.finite = false;
+    health_.bad_node = i;
+    health_.bad_tick = ticks_;
+    hands_ = {};  // no force is the safe one to leave behind
+    state_ = before_;
+    nodes_stale_ = velocities_stale_ = true;
+    return false;
+  }
+  return true;
+}
+
+/// Nodes as vectors, for those who look.
+std::span<const Vec3> PaperSimulation::unpacked(const Lane3& from, std::vector<Vec3>& to, bool& stale) noexcept {
+  for (std::size_t i = 0; stale && i < to.size(); ++i) to[i] = to_vec3(from.at(static_cast<int>(i)));
+  stale = false;
+  return to;
+}
+
+void PaperSimulation::publish_contacts() noexcept {
+  health_.contacts = 0;
+  health_.contact_cap_hit = false;
+  health_.min_gap_m = std::numeric_limits<double>::infinity();
+  if (contact_kind_ == scene::ContactSolver::kImplicit) {
+    const ContactReport& r = contact_.report();
+    health_.contacts = r.active, health_.contact_cap_hit = r.cap_hit, health_.min_gap_m = r.min_gap_m;
+  } else if (contact_kind_ == scene::ContactSolver::kPaper) {
+    health_.contacts = paper_contact_.active();
+    health_.contact_cap_hit = paper_contact_.cap_hit();
+    health_.min_gap_m = paper_contact_.min_gap_m();
+  }
+}
+
+/// Paper section IV: does the hand's force stay in the springs (A) or pass along a segment on its limit (B, C)?
+Propagation PaperSimulation::condition(int node, bool other_holds) const noexcept {
+  if (!has_limits_) return Propagation::kNone;
+  const bool passes =
+      (node > 0 && limits_.passed_N(node - 1) != 0.0) || (node + 1 < model_.nodes && limits_.passed_N(node) != 0.0);
+  if (!passes) return Propagation::kA;
+  return other_holds ? Propagation::kC : Propagation::kB;
+}
+
+void PaperSimulation::publish() noexcept {
+  nodes_stale_ = velocities_stale_ = true;
+  for (int h = 0; h < 2; ++h) {
+    HandContact& c = hands_[static_cast<std::size_t>(h)];
+    c.node = grasp_.node(h);
+    if (c.node < 0) continue;
+    c.p_WG = to_vec3(state_.p.at(c.node));
+    c.v_WG = to_vec3(state_.v.at(c.node));
+    c.condition = condition(c.node, grasp_.node(1 - h) >= 0);
+  }
+  health_.kinetic_J = kinetic_J_;
+  health_.potential_J = weight_J_ + work_.stretch_J + work_.bend_J;
+  health_.max_stretch = work_.max_strain;
+  publish_contacts();
+}
+
+void PaperSimulation::restart() noexcept {
+  grasp_.release_all();
+  contact_.forget();
+  course_.reset();
+  limits_.forget();
+  hands_ = {};
+  health_ = {};
+  health_.min_gap_m = std::numeric_limits<double>::infinity();
+  ticks_ = 0;
+  publish();
+}
+
+void PaperSimulation::set_contact(const scene::Scene& scene) {
+  const ContactSettings contact = build_contact(scene, model_);
+  contact_kind_ = scene.contact.solver;
+  if (contact_kind_ == scene::ContactSolver::kImplicit) {
+    contact_ = ContactSolver(model_, contact);
+    course_ = ObstacleCourse(scene, model_, contact);
+  }
+  if (contact_kind_ == scene::ContactSolver::kPaper)
+    paper_contact_ = PaperContact(model_, {{scene.contact.repulsion_N_per_m, scene.contact.repulsion_N_s_per_m},
+                                           contact.stick,
+                                           contact.slip,
+                                           contact.skip,
+                                           scene.contact.friction_cap});
+}
+
+std::variant<PaperSimulation, std::string> PaperSimulation::make(const scene::Scene& scene) {
+  if (scene.contact.solver == scene::ContactSolver::kImplicit) {
+    if (auto why = ObstacleCourse::objection(scene); !why.empty()) return why;
+  }
+  auto built = build_thread(scene);
+  if (auto* why = std::get_if<std::string>(&built)) return std::move(*why);
+  auto& thread = std::get<BuiltThread>(built);
+  const int n = thread.model.nodes;
+  PaperSimulation s;
+  s.model_ = std::move(thread.model);
+  s.initial_ = s.state_ = s.before_ = std::move(thread.initial);
+  s.internal_ = choose_internal_step(scene.suture);
+  s.has_limits_ = scene.hands.propagation;
+  s.quadratic_ = scene.suture.model == scene::Model::kPaper5;
+  s.forward_ = scene.suture.paper.integrator == scene::Integrator::kForward;
+  s.explicit_damping_ = scene.suture.paper.damping == scene::Damping::kExplicit;
+  s.set_contact(scene);
+  if (s.has_limits_) s.limits_ = LengthLimits(s.model_, scene.hands.min_length, scene.hands.max_length);
+  s.coupling_ = {scene.hands.coupling_N_per_m, scene.hands.coupling_N_s_per_m};
+  s.gravity_ = to_v3(scene.world.gravity_m_per_s2);
+  for (const auto& load : scene.world.loads)
+    s.loads_.emplace_back(load.node < 0 ? n - 1 : load.node, to_v3(load.force_N));
+  s.substeps_ = scene.time.substeps;
+  s.work_ = InternalWorkspace(n);
+  s.rate_v_ = Lane3(n);
+  s.nodes_W_.resize(static_cast<std::size_t>(n));
+  s.velocities_W_.resize(static_cast<std::size_t>(n));
+  s.restart();
+  return s;
+}
+
+void PaperSimulation::tick(const std::array<ToolInput, 2>& tools) noexcept {
+  if (!health_.finite) return;
+  remember();
+  grasp_.update(tools, model_, state_);
+  if (contact_kind_ == scene::ContactSolver::kImplicit)
+    course_.update(tools, grasp_, model_, state_, contact_.obstacles());
+  for (HandContact& c : hands_) c = {};
+  bool fine = true;
+  for (int k = 0; k < substeps_ && fine; ++k) {
+    step(tools);
+    fine = check();
+  }
+  ++ticks_;
+  if (fine) publish();
+}
+
+void PaperSimulation::describe(std::span<float> tension_N, std::span<float> turn_rad) const noexcept {
+  std::ranges::fill(turn_rad, 0.0F);  // the paper's models have no twist
+  float tension = 0.0F;
+  for (std::size_t i = 0; i < tension_N.size(); ++i) {
+    const int node = static_cast<int>(i);
+    if (node + 1 < model_.nodes) {
+      const double strain = norm(state_.p.at(node + 1) - state_.p.at(node)) / model_.rest_m - 1.0;
+      tension = static_cast<float>(quadratic_ ? QuadraticStretchLaw::tension_N(strain, model_.stretch_N)
+                                              : LinearStretch::tension_N(strain, model_.stretch_N));
+    }
+    tension_N[i] = tension;
+  }
+}
+
+void PaperSimulation::reset() noexcept {
+  state_ = initial_;
+  restart();
+}
+
+bool PaperSimulation::continue_from(const PaperSimulation& other) noexcept {
+  if (model_.nodes != other.model_.nodes) return false;
+  restart();
+  state_ = before_ = other.state_;
+  grasp_ = other.grasp_;
+  health_ = other.health_;
+  hands_ = other.hands_;
+  ticks_ = other.ticks_;
+  nodes_stale_ = velocities_stale_ = true;
+  return true;
+}
+
+void PaperSimulation::set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept {
+  for (int i = 0; i < model_.nodes; ++i) {
+    if (model_.free[i] == 0.0) continue;
+    const auto k = static_cast<std::size_t>(i);
+    if (k < p_W.size()) state_.p.put(i, to_v3(p_W[k]));
+    state_.v.put(i, k < v_W.size() ? to_v3(v_W[k]) : V3<double>{});
+  }
+  extend_last_node(state_.p, model_.nodes);
+  restart();
+}
+
+}  // namespace ligature::physics

@@ -1,0 +1,81 @@
+#pragma once
+// The paper's models behind the facade of simulation.hpp: a scene in, two tools, nodes and hand forces out.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "firmware/physics/contact.hpp"
+#include "firmware/physics/grasp.hpp"
+#include "firmware/physics/internal_step.hpp"
+#include "firmware/physics/obstacles.hpp"
+#include "firmware/physics/paper_contact.hpp"
+#include "firmware/physics/propagation.hpp"
+#include "firmware/physics/simulation.hpp"
+#include "firmware/physics/thread.hpp"
+#include "protocol/scene/scene.hpp"
+
+namespace ligature::physics {
+
+/// Models paper-1 .. paper-5. Same contract as Simulation.
+class PaperSimulation {
+ public:
+  static std::variant<PaperSimulation, std::string> make(const scene::Scene& scene);
+
+  void tick(const std::array<ToolInput, 2>& tools) noexcept;
+  [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept { return unpacked(state_.p, nodes_W_, nodes_stale_); }
+  [[nodiscard]] std::span<const Vec3> velocities_W() const noexcept {
+    return unpacked(state_.v, velocities_W_, velocities_stale_);
+  }
+  void describe(std::span<float> tension_N, std::span<float> turn_rad) const noexcept;
+  [[nodiscard]] const HandContact& hand(Hand h) const noexcept { return hands_[static_cast<std::size_t>(h)]; }
+  [[nodiscard]] const Diagnostics& diagnostics() const noexcept { return health_; }
+  void reset() noexcept;
+  [[nodiscard]] bool continue_from(const PaperSimulation& other) noexcept;
+  void set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept;
+
+ private:
+  PaperSimulation() = default;
+  void set_contact(const scene::Scene& scene);
+  [[nodiscard]] std::array<V3<double>, 2> hand_forces_N(const std::array<ToolInput, 2>& tools) noexcept;
+  void add_external(const std::array<ToolInput, 2>& tools) noexcept;
+  [[nodiscard]] double integrate(const Lane3& v_W) noexcept;
+  void step(const std::array<ToolInput, 2>& tools) noexcept;
+  [[nodiscard]] double fastest() const noexcept;
+  [[nodiscard]] Propagation condition(int node, bool other_holds) const noexcept;
+  void remember() noexcept;
+  [[nodiscard]] bool check() noexcept;
+  void publish() noexcept;
+  void publish_contacts() noexcept;
+  void restart() noexcept;
+  static std::span<const Vec3> unpacked(const Lane3& from, std::vector<Vec3>& to, bool& stale) noexcept;
+
+  ThreadModel model_;
+  ThreadState initial_, state_, before_;  // before: of the last finite tick
+  InternalWorkspace work_;
+  InternalStep internal_ = nullptr;
+  bool quadratic_ = false, forward_ = false, explicit_damping_ = false, has_limits_ = false;
+  scene::ContactSolver contact_kind_ = scene::ContactSolver::kNone;
+  ContactSolver contact_;       // implicit
+  PaperContact paper_contact_;  // for comparison
+  ObstacleCourse course_;       // grippers and the frame's hooks
+  LengthLimits limits_;
+  Coupling coupling_;
+  Grasp grasp_;
+  V3<double> gravity_{};
+  std::vector<std::pair<int, V3<double>>> loads_;
+  int substeps_ = 1;
+  std::int64_t ticks_ = 0;
+  double kinetic_J_ = 0.0, weight_J_ = 0.0;
+  Lane3 rate_v_;
+  std::array<HandContact, 2> hands_{};
+  Diagnostics health_{};
+  mutable std::vector<Vec3> nodes_W_, velocities_W_;  // made when asked for: most ticks nobody looks
+  mutable bool nodes_stale_ = true, velocities_stale_ = true;
+};
+
+}  // namespace ligature::physics
