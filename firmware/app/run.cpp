@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <future>
+#include <optional>
 #include <thread>
 
 #include "firmware/app/admit_command.hpp"
@@ -18,6 +19,7 @@
 #include "firmware/app/summary.hpp"
 #include "firmware/cycle.hpp"
 #include "firmware/platform/can_master.hpp"
+#include "firmware/platform/idle_guard.hpp"
 #include "firmware/platform/realtime.hpp"
 #include "firmware/platform/rig_bus.hpp"
 #include "firmware/telemetry/flight_recorder.hpp"
@@ -144,6 +146,7 @@ class RealTimeSide {
   /// @return what was refused, each already logged.
   platform::Refusals prepare(bool ask, int core) {
     platform::Refusals refused = ask ? platform::lock_memory() : platform::Refusals{};
+    if (ask) stay_awake();
     thread_ = std::thread([this, ask, core] {
       platform::flush_denormals();
       rights_.set_value(ask ? platform::make_realtime(core) : platform::Refusals{});
@@ -171,6 +174,12 @@ class RealTimeSide {
   [[nodiscard]] control::Fault fault() const noexcept { return controller_.fault(); }
 
  private:
+  /// Not one of the rights that --rt=enforce insists on: without it wake-ups are late, which doctor and the record show.
+  void stay_awake() {
+    awake_.emplace();
+    if (!awake_->refusal().empty()) spdlog::warn("real time: {}", awake_->refusal());
+  }
+
   /// At once, before the drives could miss us. One hand at a time, waiting for that hand only.
   void release() {
     for (platform::CanBus* bus : {buses_.left.get(), buses_.right.get()}) {
@@ -188,6 +197,7 @@ class RealTimeSide {
   std::promise<platform::Refusals> rights_;
   std::promise<bool> go_;
   std::atomic<bool> beating_{true};
+  std::optional<platform::IdleGuard> awake_;
   bool started_ = false;
   std::thread thread_;
 };

@@ -4,8 +4,14 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <thread>
+
+#include "firmware/platform/idle_guard.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace ligature::platform {
 namespace {
@@ -26,6 +32,20 @@ TEST(Realtime, EveryRefusalNamesItsRemedy) {
   std::thread([] {
     for (const auto& r : make_realtime(realtime_core())) EXPECT_NE(r.find("remedy"), std::string::npos) << r;
   }).join();
+}
+
+TEST(IdleGuard, AsksForZeroMicrosecondsAndHoldsTheRequest) {
+  const std::string device = test::temp_folder() + "cpu_dma_latency";
+  std::ofstream(device) << "";
+  const IdleGuard guard(device.c_str());
+  EXPECT_EQ(guard.refusal(), "");
+  EXPECT_EQ(std::filesystem::file_size(device), sizeof(std::int32_t));
+}
+
+TEST(IdleGuard, SaysWhyNotAndWhatHelps) {
+  const IdleGuard guard("/nowhere/cpu_dma_latency");
+  EXPECT_NE(guard.refusal().find("No such file"), std::string::npos);
+  EXPECT_NE(guard.refusal().find("remedy"), std::string::npos);
 }
 
 TEST(Realtime, OthersKeepOffTheRealTimeCore) {
