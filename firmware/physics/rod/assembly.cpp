@@ -87,22 +87,25 @@ void assemble(const Material& material, const State& state, Vec gravity, double 
   const double inertia = 1.0 + material.drag_per_s * dt_s;
   Vec before{};
   Mat stiff_before{};
+  double across_before = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     Vec here{};
     Mat stiff{};
+    double across = 0.0;
     if (i + 1 < n) {
       const double tension = forces.tension[i], l = mesh.inv_rest[i];
       here = tension * forces.unit[i] - l * (forces.moment_in[i + 1] - forces.moment_out[i]);
-      const double across = dt_s * dt_s * std::max(tension, 0.0) * l;  // |e| taken as l: strains are per cents
-      stiff = dyad(forces.unit[i], axial * l - across, across);
-      solver.couple[i] = scaled_identity(bend * mesh.ke[i]) - stiff;
+      across = dt_s * dt_s * std::max(tension, 0.0) * l;  // |e| taken as l: strains are per cents
+      stiff = dyad(forces.unit[i], axial * l - across);
+      put(solver.couple[i], scaled_identity(bend * mesh.ke[i] - across) - stiff);
     }
     const double m = mesh.mass[i];
-    solver.diagonal[i] = stiff_before + stiff + scaled_identity(m * inertia + bend * mesh.kd[i]);
+    put(solver.diagonal[i], stiff_before + stiff + scaled_identity(m * inertia + bend * mesh.kd[i] + across_before + across));
     solver.skip[i] = bend * mesh.kb[i];
     solver.rhs[i] = m * (state.v[i] + dt_s * gravity) + dt_s * (here - before + state.load[i]);
     forces.edge[i] = before = here;
     stiff_before = stiff;
+    across_before = across;
   }
   add_holds(state, dt_s, solver);
 }

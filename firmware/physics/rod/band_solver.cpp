@@ -16,7 +16,7 @@ struct Arrays {
 
 /// One step of the recurrence. @param p, q nodes eliminated just before i; Order: how many of them there are.
 template <int Order>
-inline void eliminate(const Arrays& a, std::ptrdiff_t i, std::ptrdiff_t p, std::ptrdiff_t q, const Mat& a_ip,
+[[gnu::always_inline]] inline void eliminate(const Arrays& a, std::ptrdiff_t i, std::ptrdiff_t p, std::ptrdiff_t q, const Mat& a_ip,
                       double a_iq) noexcept {
   Mat s = a.diagonal[i];
   Vec r = a.rhs[i];
@@ -27,15 +27,15 @@ inline void eliminate(const Arrays& a, std::ptrdiff_t i, std::ptrdiff_t p, std::
       s = s - (a_iq * a_iq) * a.s_inverse[q];
       r -= a_iq * a.z[q];
     }
-    a.f[i] = f;
-    const Mat h = times_transposed(a.s_inverse[p], a.f[i]);
-    a.h[i] = h;
-    s = s - f * a.h[i];
+    put(a.f[i], f);
+    const Mat h = times_transposed(a.s_inverse[p], f);
+    put(a.h[i], h);
+    s = s - f * h;
     r -= f * a.z[p];
   }
   const Mat inverse = inverse_spd(s);
-  a.s_inverse[i] = inverse;
-  a.z[i] = inverse * r;
+  put(a.s_inverse[i], inverse);
+  a.z[i].v = (inverse * r).v;
 }
 
 }  // namespace
@@ -56,28 +56,25 @@ void BandSolver::factor(int core) noexcept {
   Vec* const r = rhs.data();
   double* const b = skip.data();
   const auto left = [&](std::ptrdiff_t i) {
-    if (i > 1) {
-      eliminate<2>(a, i, i - 1, i - 2, e[i - 1], b[i - 2]);
+    if (i == 0) {
+      eliminate<0>(a, 0, 0, 0, e[0], 0.0);
     } else if (i == 1) {
       eliminate<1>(a, 1, 0, 0, e[0], 0.0);
     } else {
-      eliminate<0>(a, 0, 0, 0, e[0], 0.0);
+      eliminate<2>(a, i, i - 1, i - 2, e[i - 1], b[i - 2]);
     }
   };
-  const auto right = [&](std::ptrdiff_t i) {
-    if (i + 2 < n_) {
-      eliminate<2>(a, i, i + 1, i + 2, e[i], b[i]);
-    } else if (i + 1 < n_) {
-      eliminate<1>(a, i, i + 1, 0, e[i], 0.0);
-    } else {
-      eliminate<0>(a, i, 0, 0, e[i], 0.0);
-    }
-  };
-  const int lefts = core, rights = n_ - 2 - core;
-  for (int k = 0; k < std::max(lefts, rights); ++k) {
-    if (k < lefts) left(k);
-    if (k < rights) right(n_ - 1 - k);
+  const std::ptrdiff_t n = n_, lefts = core, rights = n - 2 - core;
+  for (std::ptrdiff_t i = 0; i < std::min<std::ptrdiff_t>(lefts, 2); ++i) left(i);
+  if (rights > 0) eliminate<0>(a, n - 1, 0, 0, e[n - 1], 0.0);
+  if (rights > 1) eliminate<1>(a, n - 2, n - 1, 0, e[n - 2], 0.0);
+  std::ptrdiff_t i = 2, j = n - 3;  // two chains side by side, as far as both go
+  for (; i < lefts && j > core + 1; ++i, --j) {
+    eliminate<2>(a, i, i - 1, i - 2, e[i - 1], b[i - 2]);
+    eliminate<2>(a, j, j + 1, j + 2, e[j], b[j]);
   }
+  for (; i < lefts; ++i) eliminate<2>(a, i, i - 1, i - 2, e[i - 1], b[i - 2]);
+  for (; j > core + 1; --j) eliminate<2>(a, j, j + 1, j + 2, e[j], b[j]);
   // The right-hand chain's Schur complement falls on both core nodes.
   if (rights > 0) {
     const std::ptrdiff_t l = core + 1, p = l + 1;

@@ -9,7 +9,7 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr int kBlock = 8;
+constexpr std::size_t kBlock = 8;
 constexpr float kSlack = 1.0001F;       // float rounding of centres and radii
 constexpr std::size_t kTable = 2048;  // places for impulses: a few times the most contacts there can be
 
@@ -20,7 +20,7 @@ std::size_t place_of(std::int32_t a, std::int32_t b) noexcept {
 }  // namespace
 
 void BroadPhase::reserve(int nodes, int pairs) {
-  const auto n = static_cast<std::size_t>((nodes + 2 * kBlock) / kBlock * kBlock);
+  const auto n = (static_cast<std::size_t>(nodes) + 2 * kBlock) / kBlock * kBlock;
   for (auto* array : {&x_, &y_, &z_, &r_}) array->assign(n, 0.0F);
   blocks_.resize(n / kBlock);
   capacity_ = pairs;
@@ -115,8 +115,11 @@ bool BroadPhase::build(const State& state, Motion& motion, const Outlook& outloo
       if (p != q && bx * bx + by * by + bz * bz > limit * limit) continue;
       for (std::size_t a = p * kBlock; a < std::min((p + 1) * kBlock, segments); ++a) {
         const std::size_t base = q * kBlock;
+        const float cx = blocks_[q].x - x_[a], cy = blocks_[q].y - y_[a], cz = blocks_[q].z - z_[a];
+        const float within = blocks_[q].r * kSlack + r_[a] + reach;
+        if (cx * cx + cy * cy + cz * cz > within * within) continue;
         unsigned hits = 0;
-        for (unsigned l = 0; l < kBlock; ++l) {
+        for (std::size_t l = 0; l < kBlock; ++l) {
           const float dx = x_[base + l] - x_[a], dy = y_[base + l] - y_[a], dz = z_[base + l] - z_[a];
           const float near = r_[base + l] + r_[a] + reach;
           hits |= static_cast<unsigned>(dx * dx + dy * dy + dz * dz <= near * near) << l;

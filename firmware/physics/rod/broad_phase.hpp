@@ -32,7 +32,7 @@ struct Outlook {
 class BroadPhase {
  public:
   static constexpr double kLeastArc = 0.6;    ///< of a diameter, along the thread
-  static constexpr double kLeastReach = 0.56; /// sin(kLeastArc), rounded down: no pair on a list touches nearer
+  static constexpr double kLeastReach = 0.56;  ///< sin(kLeastArc), rounded down: no pair on a list touches nearer
 
   void reserve(int nodes, int pairs);
 

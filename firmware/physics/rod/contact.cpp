@@ -14,7 +14,7 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   body_impulse.assign(n * static_cast<std::size_t>(bodies), Vec{});
   body_due_.assign(static_cast<std::size_t>(bodies), -1.0);
   columns_.assign(static_cast<std::size_t>(kMaxContacts) * static_cast<std::size_t>(window + 4), 0.0);
-  for (auto* array : {&change_, &extra_, &step_}) array->assign(n, Vec{});
+  for (auto* array : {&moved_, &extra_, &step_}) array->assign(n, Vec{});
   for (auto* array : {&p_, &plain_, &residual_}) array->assign(static_cast<std::size_t>(kMaxContacts), Vec{});
   mixing_.reserve(static_cast<std::size_t>(kMaxContacts));
 }
@@ -54,13 +54,13 @@ void ContactSet::push(double share) noexcept {
 }
 
 double ContactSet::add(int first, int last, Vec* v) const noexcept {
-  double largest2 = 0.0;
+  Lanes largest2{};
   for (int i = first; i <= last; ++i) {
-    const Vec step = step_[static_cast<std::size_t>(i)];
-    v[i] += step;
-    largest2 = std::max(largest2, dot(step, step));
+    const Lanes step = step_[static_cast<std::size_t>(i)].v, step2 = step * step;
+    v[i].v += step;
+    largest2 = step2 > largest2 ? step2 : largest2;
   }
-  return largest2;
+  return largest2[0] + largest2[1] + largest2[2];
 }
 
 ContactSet& ContactSet::operator=(const ContactSet& other) {
@@ -109,14 +109,14 @@ void ContactSet::prepare(const ContactMetric& metric, int first, int last, const
 }
 
 template <bool Friction>
-double ContactSet::sweep(int first, int nodes, const Vec* v) noexcept {
-  double worst2 = 0.0;
-  Vec* change = change_.data();
+void ContactSet::sweep(int first, int nodes, const Vec* v) noexcept {
+  Vec* const moved = moved_.data();  // velocities of the window as the metric sees them in the course of the sweep
+  for (int j = 0; j < nodes; ++j) moved[j].v = v[first + j].v;
   const int count = static_cast<int>(contacts_.size());
   for (int index = 0; index < count; ++index) {
     Contact& c = contacts_[static_cast<std::size_t>(index)];
     Vec u = -c.surface;
-    for (int j = 0; j < c.count; ++j) u += c.w[j] * (v[c.node[j]] + change[c.node[j] - first]);
+    for (int j = 0; j < c.count; ++j) u += c.w[j] * moved[c.node[j] - first];
     const double un = dot(u, c.n), pn_before = dot(c.p, c.n);
     const double pn = pn_before - c.inv_soft_w * (un + c.soft * pn_before - c.target);
     Vec p{};
@@ -132,13 +132,11 @@ double ContactSet::sweep(int first, int nodes, const Vec* v) noexcept {
       continue;
     }
     const Vec delta = p - c.p;
-    worst2 = std::max(worst2, dot(delta, delta) / (c.inv_w * c.inv_w));
     c.p = p;
     for (int j = 0; j < c.count; ++j) extra_[static_cast<std::size_t>(c.node[j])] += c.w[j] * delta;
     const double* column = columns_.data() + static_cast<std::size_t>(index) * stride_;
-    for (int j = 0; j < nodes; ++j) change[j] += column[j] * delta;
+    for (int j = 0; j < nodes; ++j) moved[j].v += column[j] * delta.v;
   }
-  return worst2;
 }
 
 template <bool Friction>
@@ -162,7 +160,6 @@ void ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const N
   for (int pass = 0; pass < passes; ++pass) {
     ++report.passes;
     clear(extra_);
-    std::fill(change_.begin(), change_.begin() + nodes, Vec{});
     for (std::size_t k = 0; k < count; ++k) residual_[k] = contacts_[k].p;
     sweep<Friction>(first, nodes, v);
     solver.solve(first, last, extra_.data(), step_.data(), false);

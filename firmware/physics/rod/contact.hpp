@@ -126,10 +126,10 @@ class ContactSet {
   void prepare(const ContactMetric& metric, int first, int last, const Numerics& numerics, double dt_s) noexcept;
   [[nodiscard]] double merit(const Vec* v) const noexcept;
   void push(double share) noexcept;                        ///< adds J^T p to extra_
-  double add(int first, int last, Vec* v) const noexcept;  ///< v += step_; @return its largest square
-  /// @return the largest squared velocity error found, m^2/s^2.
+  /// v += step_. @return the sum over axes of the largest squares: at least the square of the largest step.
+  double add(int first, int last, Vec* v) const noexcept;
   template <bool Friction>
-  double sweep(int first, int nodes, const Vec* v) noexcept;
+  void sweep(int first, int nodes, const Vec* v) noexcept;
 
   /// A pair that is near but no contact in this substep; only the guard looks at it again.
   struct Watched {
@@ -140,7 +140,7 @@ class ContactSet {
   std::vector<Contact> contacts_;
   std::vector<Watched> watched_;
   std::vector<double> columns_;  // C^-1 J^T of every contact on the window
-  std::vector<Vec> change_, extra_, step_;
+  std::vector<Vec> moved_, extra_, step_;
   std::vector<Vec> p_, plain_, residual_;  // impulses and their change in a pass, as the mixing wants them
   Mixing mixing_;
   std::vector<double> body_due_;  // least gap of a body when last measured + travel then

@@ -22,7 +22,7 @@ struct Numerics {
   double tick_s = 1e-3;
   int substeps = 16;  ///< of a tick at rest; more when the hands move fast
   int max_substeps = 24;
-  double fast_m_per_s = 0.5;      ///< hand speed up to which `substeps` do
+  double fast_m_per_s = 0.3;      ///< hand speed up to which `substeps` do
   int max_passes = 40;            ///< true solves per substep while contacts settle
   int passes_per_substep = 12;    ///< on average over a tick; when they are used up, each substep left gets four
   double settled_m_per_s = 3e-5;  ///< a pass that changes no velocity by more ends them,

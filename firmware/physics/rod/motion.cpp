@@ -29,12 +29,17 @@ void Motion::measure(const Vec* v) noexcept {
   std::swap(drift_, drift_before_);
   const std::size_t n = speed_.size();
   double *speed = speed_.data(), *link = link_.data(), *drift = drift_.data();
-  for (std::size_t i = 0; i + 1 < n; ++i) {
-    const Vec apart = v[i + 1] - v[i];
-    speed[i] = dot(v[i], v[i]);
-    link[i] = dot(apart, apart);
+  std::size_t k = 0;
+  for (; k + 4 < n; k += 4) {
+    const Lanes own = squares(v[k], v[k + 1], v[k + 2], v[k + 3]);
+    const Lanes apart = squares(v[k + 1] - v[k], v[k + 2] - v[k + 1], v[k + 3] - v[k + 2], v[k + 4] - v[k + 3]);
+    for (std::size_t l = 0; l < 4; ++l) speed[k + l] = own[l], link[k + l] = apart[l];
   }
-  speed[n - 1] = dot(v[n - 1], v[n - 1]);
+  for (; k < n; ++k) {
+    const Vec apart = k + 1 < n ? v[k + 1] - v[k] : Vec{};
+    speed[k] = dot(v[k], v[k]);
+    link[k] = dot(apart, apart);
+  }
   double most = 0.0;
   for (std::size_t i = 0; i < n; ++i) most = speed[i] > most ? speed[i] : most;
   fastest_ = std::sqrt(most);
@@ -50,6 +55,7 @@ void Motion::measure(const Vec* v) noexcept {
 }
 
 void Motion::advance(double step_s) noexcept {
+  furthest_ += step_s * fastest_;
   const std::size_t n = speed_.size();
   double *travel = travel_.data(), *strayed = strayed_.data();
   const double *speed = speed_.data(), *drift = drift_.data();
@@ -60,6 +66,7 @@ void Motion::advance(double step_s) noexcept {
 }
 
 void Motion::restart() noexcept {
+  furthest_ = 0.0;
   std::fill(travel_.begin(), travel_.end(), 0.0);
   std::fill(strayed_.begin(), strayed_.end(), 0.0);
   std::copy(speed_.begin(), speed_.end(), speed_allowed_.begin());
@@ -69,6 +76,7 @@ void Motion::restart() noexcept {
 // A pair's bound is the lesser of two sums, and so is what it was allowed; if each sum alone stays within what was
 // allowed, so does the lesser.
 bool Motion::used_up(double spare_m, double horizon_s, double ahead_s) const noexcept {
+  if (2.0 * (furthest_ + ahead_s * fastest_) <= spare_m) return false;
   double one = 0.0;
   Rise rise;
   for (std::size_t i = 0; i < speed_.size(); ++i) {
@@ -79,6 +87,7 @@ bool Motion::used_up(double spare_m, double horizon_s, double ahead_s) const noe
 }
 
 bool Motion::outran(double spare_m, double dt_s) const noexcept {
+  if (2.0 * dt_s * fastest_ <= spare_m) return false;
   double one = 0.0;
   Rise rise;
   for (std::size_t i = 0; i < speed_.size(); ++i) {

@@ -108,14 +108,14 @@ int Rod::clamp(int node, Vec p, Vec direction) noexcept {
   return h;
 }
 
-int Rod::grip(int node, double stiffness_N_per_m, double damping_N_s_per_m, Vec tool) noexcept {
+int Rod::grip(int node, double stiffness_N_per_m, double damping_N_s_per_m, Vec tool, bool holds_roll) noexcept {
   Hold hold;
   hold.node = node;
   hold.stiffness_N_per_m = stiffness_N_per_m;
   hold.damping_N_s_per_m = damping_N_s_per_m;
   hold.target = tool;
   const int h = add_hold(hold);
-  if (h >= 0 && parts_.twist) twist_.attach(state_, h);
+  if (h >= 0 && parts_.twist && holds_roll) twist_.attach(state_, h);
   return h;
 }
 
@@ -124,6 +124,7 @@ void Rod::release(int hold) noexcept {
   if (parts_.twist && h.holds_roll) twist_.detach(state_, hold);
   const bool directed = h.directed;
   h = Hold{};
+  released_ = true;
   if (directed) moved();
 }
 
@@ -150,7 +151,9 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
   }
   if (parts_.twist) twist_.update(material_, state_, forces_);
   settled_m_per_s_ = numerics_.settled_m_per_s + numerics_.settled_share * hand_speed;
-  report_.substeps = hand_speed > 1.001 * numerics_.fast_m_per_s ? numerics_.max_substeps : numerics_.substeps;
+  const bool fast = hand_speed > 1.001 * numerics_.fast_m_per_s || released_;  // letting go is the fastest of all
+  report_.substeps = fast ? numerics_.max_substeps : numerics_.substeps;
+  released_ = false;
   const double dt = numerics_.tick_s / report_.substeps;
   if (parts_.contact || parts_.world) {  // velocities and bodies may have been changed from outside
     motion_.measure(state_.v.data());

@@ -63,7 +63,7 @@ class Rod {
   /// Holds node: @return index of the hold. @pre fewer than kMaxHolds.
   int support(int node, Vec p) noexcept;
   int clamp(int node, Vec p, Vec direction) noexcept;
-  int grip(int node, double stiffness_N_per_m, double damping_N_s_per_m, Vec tool) noexcept;
+  int grip(int node, double stiffness_N_per_m, double damping_N_s_per_m, Vec tool, bool holds_roll = true) noexcept;
   void release(int hold) noexcept;
 
   /// Advances by numerics().tick_s. `goals` are the hold targets at the end of the tick (unmoved holds: their target).
@@ -102,6 +102,7 @@ class Rod {
   Motion motion_;
   double horizon_s_ = 0.0;      // how far the list of pairs looks ahead
   double tick_travel_m_ = 0.0;  // what the fastest node may have gone since the tick began
+  bool released_ = false;       // a hold let go since the last tick
   bool stale_ = true;           // the list must be made again
 };
 

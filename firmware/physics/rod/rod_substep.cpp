@@ -12,7 +12,7 @@ namespace {
 constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8;
 constexpr double kNear = 0.1;     // diameters within which a pair is a contact at any speed
 constexpr double kSkin = 0.5;     // diameters a list of pairs looks ahead at any speed
-constexpr double kHorizon = 0.6;  // ticks it looks ahead at today's speeds
+constexpr double kHorizon = 1.2;  // ticks it looks ahead at today's speeds
 
 }  // namespace
 

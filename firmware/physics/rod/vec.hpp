@@ -7,7 +7,6 @@
 namespace ligature::physics::rod {
 
 using Lanes = double __attribute__((vector_size(32)));
-using LaneIndex = long long __attribute__((vector_size(32)));
 
 /// A vector of the world frame; the fourth lane is padding (zero by convention).
 struct Vec {
@@ -30,73 +29,89 @@ inline Vec& operator-=(Vec& a, Vec b) noexcept { return a = a - b; }
   const Lanes p = a.v * b.v;
   return (p[0] + p[1]) + p[2];
 }
+/// |a|^2, |b|^2, |c|^2, |d|^2: a transposition and adds.
+[[nodiscard]] inline Lanes squares(Vec a, Vec b, Vec c, Vec d) noexcept {
+  const Lanes p = a.v * a.v, q = b.v * b.v, r = c.v * c.v, s = d.v * d.v;
+  const Lanes pq = __builtin_shufflevector(p, q, 0, 4, 2, 6) + __builtin_shufflevector(p, q, 1, 5, 3, 7);
+  const Lanes rs = __builtin_shufflevector(r, s, 0, 4, 2, 6) + __builtin_shufflevector(r, s, 1, 5, 3, 7);
+  return __builtin_shufflevector(pq, rs, 0, 1, 4, 5) + __builtin_shufflevector(pq, rs, 2, 3, 6, 7);
+}
 [[nodiscard]] inline double norm(Vec a) noexcept { return std::sqrt(dot(a, a)); }
 
 /// a x b: rotate(a * rotate(b) - rotate(a) * b), rotate = (y, z, x).
 [[nodiscard]] inline Vec cross(Vec a, Vec b) noexcept {
-  constexpr LaneIndex kYzx = {1, 2, 0, 3};
-  const Lanes c = a.v * __builtin_shuffle(b.v, kYzx) - __builtin_shuffle(a.v, kYzx) * b.v;
-  return {__builtin_shuffle(c, kYzx)};
+  const Lanes c = a.v * __builtin_shufflevector(b.v, b.v, 1, 2, 0, 3) - __builtin_shufflevector(a.v, a.v, 1, 2, 0, 3) * b.v;
+  return {__builtin_shufflevector(c, c, 1, 2, 0, 3)};
 }
 
-/// 3 x 3 matrix by columns.
+/// 3 x 3 matrix by columns. Three names and not an array: gcc 12 keeps arrays of registers in memory.
 struct Mat {
-  Vec c[3];
+  Vec x, y, z;
 };
 
+/// to = from, column by column: what gcc 12 makes of a plain copy goes through memory and general registers.
+inline void put(Mat& to, const Mat& from) noexcept {
+  to.x.v = from.x.v;
+  to.y.v = from.y.v;
+  to.z.v = from.z.v;
+}
+
+/// Lane k in all four lanes.
+template <int K>
+[[nodiscard]] inline Lanes all(Vec a) noexcept {
+  return __builtin_shufflevector(a.v, a.v, K, K, K, K);
+}
+
 [[nodiscard]] inline Vec operator*(const Mat& a, Vec x) noexcept {
-  return {a.c[0].v * x[0] + a.c[1].v * x[1] + a.c[2].v * x[2]};
+  return {a.x.v * all<0>(x) + a.y.v * all<1>(x) + a.z.v * all<2>(x)};
 }
-[[nodiscard]] inline Mat operator*(double s, const Mat& a) noexcept { return {{s * a.c[0], s * a.c[1], s * a.c[2]}}; }
-[[nodiscard]] inline Mat operator-(const Mat& a, const Mat& b) noexcept {
-  return {{a.c[0] - b.c[0], a.c[1] - b.c[1], a.c[2] - b.c[2]}};
-}
-[[nodiscard]] inline Mat operator+(const Mat& a, const Mat& b) noexcept {
-  return {{a.c[0] + b.c[0], a.c[1] + b.c[1], a.c[2] + b.c[2]}};
-}
-[[nodiscard]] inline Mat operator*(const Mat& a, const Mat& b) noexcept {
-  return {{a * b.c[0], a * b.c[1], a * b.c[2]}};
-}
+[[nodiscard]] inline Mat operator*(double s, const Mat& a) noexcept { return {s * a.x, s * a.y, s * a.z}; }
+[[nodiscard]] inline Mat operator-(const Mat& a, const Mat& b) noexcept { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+[[nodiscard]] inline Mat operator+(const Mat& a, const Mat& b) noexcept { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+[[nodiscard]] inline Mat operator*(const Mat& a, const Mat& b) noexcept { return {a * b.x, a * b.y, a * b.z}; }
 /// Unit vectors; s * kAxis[k] keeps a scalar in one register (valgrind 3.19 cannot read the move that make(s, 0, 0)
 /// becomes).
 inline constexpr Lanes kAxisX = {1, 0, 0, 0}, kAxisY = {0, 1, 0, 0}, kAxisZ = {0, 0, 1, 0};
-[[nodiscard]] inline Mat scaled_identity(double s) noexcept { return {{{s * kAxisX}, {s * kAxisY}, {s * kAxisZ}}}; }
+[[nodiscard]] inline Mat scaled_identity(double s) noexcept { return {{s * kAxisX}, {s * kAxisY}, {s * kAxisZ}}; }
+
+/// alpha u u^T.
+[[nodiscard]] inline Mat dyad(Vec u, double alpha) noexcept {
+  const Vec w = alpha * u;
+  return {{all<0>(u) * w.v}, {all<1>(u) * w.v}, {all<2>(u) * w.v}};
+}
 
 /// alpha u u^T + beta I.
 [[nodiscard]] inline Mat dyad(Vec u, double alpha, double beta) noexcept {
   const Vec w = alpha * u;
-  return {{{u[0] * w.v + beta * kAxisX}, {u[1] * w.v + beta * kAxisY}, {u[2] * w.v + beta * kAxisZ}}};
+  return {{all<0>(u) * w.v + beta * kAxisX}, {all<1>(u) * w.v + beta * kAxisY}, {all<2>(u) * w.v + beta * kAxisZ}};
 }
 
 [[nodiscard]] inline Mat transposed(const Mat& a) noexcept {
-  return {{make(a.c[0][0], a.c[1][0], a.c[2][0]), make(a.c[0][1], a.c[1][1], a.c[2][1]),
-           make(a.c[0][2], a.c[1][2], a.c[2][2])}};
+  return {make(a.x[0], a.y[0], a.z[0]), make(a.x[1], a.y[1], a.z[1]), make(a.x[2], a.y[2], a.z[2])};
 }
 
 /// a b^T = sum_k a_k b_k^T over columns k.
 [[nodiscard]] inline Mat times_transposed(const Mat& a, const Mat& b) noexcept {
-  Mat r;
-  for (int j = 0; j < 3; ++j) r.c[j] = {a.c[0].v * b.c[0][j] + a.c[1].v * b.c[1][j] + a.c[2].v * b.c[2][j]};
-  return r;
+  return {{a.x.v * all<0>(b.x) + a.y.v * all<0>(b.y) + a.z.v * all<0>(b.z)},
+          {a.x.v * all<1>(b.x) + a.y.v * all<1>(b.y) + a.z.v * all<1>(b.z)},
+          {a.x.v * all<2>(b.x) + a.y.v * all<2>(b.y) + a.z.v * all<2>(b.z)}};
 }
 
 /// The symmetric matrix with the lower triangle of `a`.
 [[nodiscard]] inline Mat mirrored(const Mat& a) noexcept {
-  constexpr LaneIndex kSecond = {1, 5, 6, 7}, kThird = {2, 6, 4, 7};
-  const Lanes c1 = __builtin_shuffle(a.c[0].v, a.c[1].v, kSecond);  // a10 a11 a21
-  const Lanes c2 = __builtin_shuffle(a.c[0].v, a.c[1].v, kThird);   // a20 a21 .
-  constexpr LaneIndex kDiagonal = {0, 1, 6, 3};
-  return {{a.c[0], {c1}, {__builtin_shuffle(c2, a.c[2].v, kDiagonal)}}};
+  const Lanes c1 = __builtin_shufflevector(a.x.v, a.y.v, 1, 5, 6, 7);  // a10 a11 a21
+  const Lanes c2 = __builtin_shufflevector(a.x.v, a.y.v, 2, 6, 4, 7);  // a20 a21 .
+  return {a.x, {c1}, {__builtin_shufflevector(c2, a.z.v, 0, 1, 6, 3)}};
 }
 
 /// Inverse of a symmetric positive definite matrix, by cofactors; only the lower triangle is read.
 [[nodiscard]] inline Mat inverse_spd(const Mat& full) noexcept {
   const Mat a = mirrored(full);
-  const Vec r0 = cross(a.c[1], a.c[2]);
-  const Vec r1 = cross(a.c[2], a.c[0]);
-  const Vec r2 = cross(a.c[0], a.c[1]);
-  const double scale = 1.0 / dot(a.c[0], r0);
-  return {{scale * r0, scale * r1, scale * r2}};
+  const Vec r0 = cross(a.y, a.z);
+  const Vec r1 = cross(a.z, a.x);
+  const Vec r2 = cross(a.x, a.y);
+  const double scale = 1.0 / dot(a.x, r0);
+  return {scale * r0, scale * r1, scale * r2};
 }
 
 }  // namespace ligature::physics::rod

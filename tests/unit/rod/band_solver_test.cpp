@@ -10,6 +10,8 @@
 namespace ligature::physics::rod {
 namespace {
 
+Vec column(const Mat& m, int k) { return k == 0 ? m.x : k == 1 ? m.y : m.z; }
+
 struct Dense {
   Eigen::MatrixXd a;
   Eigen::VectorXd r;
@@ -22,8 +24,8 @@ Dense dense(const BandSolver& s, int n) {
     for (int row = 0; row < 3; ++row) {
       d.r(3 * i + row) = s.rhs[k][row];
       for (int col = 0; col < 3; ++col) {
-        d.a(3 * i + row, 3 * i + col) = s.diagonal[k].c[col][row];
-        if (i + 1 < n) d.a(3 * i + row, 3 * i + 3 + col) = d.a(3 * i + 3 + col, 3 * i + row) = s.couple[k].c[col][row];
+        d.a(3 * i + row, 3 * i + col) = column(s.diagonal[k], col)[row];
+        if (i + 1 < n) d.a(3 * i + row, 3 * i + 3 + col) = d.a(3 * i + 3 + col, 3 * i + row) = column(s.couple[k], col)[row];
       }
       if (i + 2 < n) d.a(3 * i + row, 3 * i + 6 + row) = d.a(3 * i + 6 + row, 3 * i + row) = s.skip[k];
     }
