@@ -117,6 +117,8 @@ struct Time {
 struct Hands {
   double coupling_N_per_m = 1200.0;
   double coupling_N_s_per_m = 6.0;
+  double pinch_width_m = 0.0;           ///< jaws hold the nodes across their width, and their direction; 0: one node
+  std::optional<double> pinch_force_N;  ///< of each jaw on the thread: it slips at 2 mu times this; absent: never
   double force_scale = 0.003;  ///< world newtons -> device newtons
   double max_force_N = 3.3;    ///< at the device
   bool propagation = false;

@@ -112,6 +112,8 @@ void read_time(StrictTable& t, Time& time) {
 void read_hands(StrictTable& t, Hands& h) {
   t.number("coupling_N_per_m", h.coupling_N_per_m, kCoefficient);
   t.number("coupling_N_s_per_m", h.coupling_N_s_per_m, kCoefficient);
+  t.number("pinch_width_m", h.pinch_width_m, {0.0, kFar_m});
+  t.number("pinch_force_N", h.pinch_force_N, {0.0, 1e6, true});
   t.number("force_scale", h.force_scale, {0.0, 1e3});
   t.number("max_force_N", h.max_force_N, {0.0, 100.0});
   t.boolean("propagation", h.propagation);

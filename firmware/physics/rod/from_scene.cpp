@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/physics/rod/jaws.hpp"
+
 namespace ligature::physics::rod {
 namespace {
 
@@ -106,9 +108,10 @@ std::variant<Rod, std::string> rod_of(const scene::Scene& scene) {
   };
   for (const auto& load : scene.world.loads)
     state.load[static_cast<std::size_t>(mesh_node(load.node))] += vec(load.force_N);
-  if (scene.world.fixed.size() + 2 > kMaxHolds) {
+  const int of_hands = scene.hands.pinch_width_m > 0.0 ? 2 * Jaws::kMost : 2;
+  if (static_cast<int>(scene.world.fixed.size()) + of_hands > kMaxHolds) {
     return "world.fixed: found " + std::to_string(scene.world.fixed.size()) + " nodes, the rod model takes " +
-           std::to_string(kMaxHolds - 2);
+           std::to_string(kMaxHolds - of_hands);
   }
   for (const auto& f : scene.world.fixed) {
     const int node = mesh_node(f.node);

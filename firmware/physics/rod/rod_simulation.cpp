@@ -14,6 +14,12 @@ constexpr double kReach = 4.0;  // a gripper is a capsule of the thread's radius
 Vec vec(const Vec3& a) noexcept { return make(a.x(), a.y(), a.z()); }
 Vec3 vec3(Vec a) noexcept { return {a[0], a[1], a[2]}; }
 
+Jaws jaws_of(const scene::Scene& scene) noexcept {
+  const auto& h = scene.hands;
+  const double slip_N = h.pinch_force_N ? 2.0 * scene.contact.friction * *h.pinch_force_N : 0.0;  // two jaws
+  return Jaws({h.pinch_width_m, slip_N, h.coupling_N_per_m, h.coupling_N_s_per_m});
+}
+
 }  // namespace
 
 std::variant<RodSimulation, std::string> RodSimulation::make(const scene::Scene& scene) {
@@ -25,8 +31,7 @@ std::variant<RodSimulation, std::string> RodSimulation::make(const scene::Scene&
 RodSimulation::RodSimulation(const scene::Scene& scene, Rod rod)
     : initial_(rod),
       rod_(std::move(rod)),
-      coupling_N_per_m_(scene.hands.coupling_N_per_m),
-      coupling_N_s_per_m_(scene.hands.coupling_N_s_per_m),
+      jaws_{jaws_of(scene), jaws_of(scene)},
       grippers_(scene.world.grippers_collide && parts_of(scene).world) {
   gripper_body_ = static_cast<int>(rod_.bodies.size());
   if (grippers_) {
@@ -43,7 +48,7 @@ RodSimulation::RodSimulation(const scene::Scene& scene, Rod rod)
 
 void RodSimulation::reset() noexcept {
   rod_ = initial_;
-  hold_ = {-1, -1};
+  for (Jaws& j : jaws_) j.forget();
   closed_ = {false, false};
   inside_ = {true, true};
   hands_ = {};
@@ -54,7 +59,7 @@ void RodSimulation::reset() noexcept {
 
 bool RodSimulation::continue_from(const RodSimulation& other) noexcept {
   if (!rod_.continue_from(other.rod_)) return false;
-  hold_ = other.hold_, closed_ = other.closed_, inside_ = other.inside_;
+  jaws_ = other.jaws_, closed_ = other.closed_, inside_ = other.inside_;
   goals_ = other.goals_;
   hands_ = other.hands_;
   health_ = other.health_;
@@ -66,7 +71,7 @@ bool RodSimulation::continue_from(const RodSimulation& other) noexcept {
 
 void RodSimulation::set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept {
   rod_ = initial_;
-  hold_ = {-1, -1};
+  for (Jaws& j : jaws_) j.forget();
   State& state = rod_.state();
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     bool fixed = false;
@@ -105,15 +110,13 @@ void RodSimulation::update_grasp(const std::array<ToolInput, 2>& tools) noexcept
   for (std::size_t h = 0; h < 2; ++h) {
     const Vec tool = vec(tools[h].p_WT);
     if (tools[h].grip && !closed_[h]) {
-      const int node = nearest_free(tool);
-      if (node >= 0) hold_[h] = rod_.grip(node, coupling_N_per_m_, coupling_N_s_per_m_, tool);
-    } else if (!tools[h].grip && hold_[h] >= 0) {
-      rod_.release(hold_[h]);
-      hold_[h] = -1;
+      if (const int node = nearest_free(tool); node >= 0) jaws_[h].close(rod_, node, tool);
+    } else if (!tools[h].grip && jaws_[h].holds()) {
+      jaws_[h].open(rod_);
       inside_[h] = true;
     }
     closed_[h] = tools[h].grip;
-    if (hold_[h] >= 0) goals_[static_cast<std::size_t>(hold_[h])] = tool;
+    jaws_[h].follow(rod_, tool, goals_);
   }
 }
 
@@ -127,7 +130,7 @@ void RodSimulation::update_grippers(const std::array<ToolInput, 2>& tools) noexc
       inside_[h] = false;
       for (const auto& x : rod_.state().x) inside_[h] |= norm(x - 0.5 * (tip + tail)) < (kReach + 4.0) * radius;
     }
-    if (hold_[h] >= 0 || inside_[h]) {
+    if (jaws_[h].holds() || inside_[h]) {
       body.p0 = body.p1 = rod::make(1e6, 0, 0);
       body.velocity = Vec{};
     } else {
@@ -178,12 +181,12 @@ void RodSimulation::publish() noexcept {
   for (std::size_t h = 0; h < 2; ++h) {
     HandContact& c = hands_[h];
     c = {};
-    if (hold_[h] < 0) continue;
-    const Hold& hold = state.holds[static_cast<std::size_t>(hold_[h])];
+    if (!jaws_[h].holds()) continue;
+    const Hold& hold = state.holds[static_cast<std::size_t>(jaws_[h].middle(rod_))];
     c.node = hold.node;
     c.p_WG = nodes_[static_cast<std::size_t>(hold.node)];
     c.v_WG = velocities_[static_cast<std::size_t>(hold.node)];
-    c.f_W = vec3(hold.force);
+    c.f_W = vec3(jaws_[h].force(rod_));
   }
   const Energy e = rod_.energy();
   const TickReport& r = rod_.report();

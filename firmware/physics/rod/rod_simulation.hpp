@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "firmware/physics/rod/jaws.hpp"
 #include "firmware/physics/rod/rod.hpp"
 #include "firmware/physics/simulation.hpp"
 #include "protocol/scene/scene.hpp"
@@ -41,10 +42,9 @@ class RodSimulation {
   [[nodiscard]] bool is_finite() noexcept;
 
   Rod initial_, rod_;
-  double coupling_N_per_m_ = 0.0, coupling_N_s_per_m_ = 0.0;
+  std::array<Jaws, 2> jaws_;
   bool grippers_ = false;
   int gripper_body_ = 0;  // index of the left gripper's capsule
-  std::array<int, 2> hold_{-1, -1};
   std::array<bool, 2> closed_{false, false}, inside_{true, true};
   std::array<Vec, kMaxHolds> goals_{};
   std::array<HandContact, 2> hands_{};

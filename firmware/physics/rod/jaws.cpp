@@ -1,0 +1,124 @@
+#include "firmware/physics/rod/jaws.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligature::physics::rod {
+namespace {
+
+bool is_held(const State& state, int node) noexcept {
+  for (int h = 0; h < state.hold_count; ++h)
+    if (state.holds[static_cast<std::size_t>(h)].node == node) return true;
+  return false;
+}
+
+}  // namespace
+
+void Jaws::close(Rod& rod, int node, Vec tool) noexcept {
+  const State& state = rod.state();
+  const auto n = static_cast<int>(state.x.size());
+  const auto before = static_cast<std::size_t>(std::max(node - 1, 0));
+  const auto after = static_cast<std::size_t>(std::min(node + 1, n - 1));
+  const Vec chord = state.x[after] - state.x[before];
+  along_ = (1.0 / std::max(norm(chord), 1e-12)) * chord;
+  s_m_ = state.mesh.s[static_cast<std::size_t>(node)];
+  slipped_m_ = 0.0;
+  hold_[0] = rod.grip(node, settings_.stiffness_N_per_m, settings_.damping_N_s_per_m, tool);
+  count_ = hold_[0] >= 0 ? 1 : 0;
+}
+
+void Jaws::open(Rod& rod) noexcept {
+  for (int k = 0; k < count_; ++k) rod.release(hold_[static_cast<std::size_t>(k)]);
+  count_ = 0;
+}
+
+/// Lets go of nodes that are no longer between the jaws and takes those that have come in.
+void Jaws::choose(Rod& rod, Vec tool) noexcept {
+  const State& state = rod.state();
+  const auto& s = state.mesh.s;
+  const auto n = static_cast<int>(s.size());
+  const double half = 0.5 * settings_.width_m;
+  if (s_m_ < -half || s_m_ > s.back() + half) return open(rod);
+  int first = static_cast<int>(std::lower_bound(s.begin(), s.end(), s_m_ - half) - s.begin());
+  int last = static_cast<int>(std::upper_bound(s.begin(), s.end(), s_m_ + half) - s.begin()) - 1;
+  if (first > last) std::swap(first, last);  // no node inside: the two around
+  first = std::clamp(first, 0, n - 1), last = std::clamp(last, 0, n - 1);
+  if (settings_.width_m <= 0.0) {
+    const auto nearer = [&](int k) { return std::abs(s[static_cast<std::size_t>(k)] - s_m_); };
+    first = last = nearer(first) < nearer(last) ? first : last;
+  } else if (first == last) {
+    (last + 1 < n ? last : first) += last + 1 < n ? 1 : -1;
+  }
+  std::array<int, kMost> wanted{};
+  const int inside = last - first + 1, most = std::min(inside, kMost);
+  for (int k = 0; k < most; ++k)
+    wanted[static_cast<std::size_t>(k)] = most > 1 ? first + k * (inside - 1) / (most - 1) : first;
+  const auto end = wanted.begin() + most;
+  for (int k = count_ - 1; k >= 0; --k) {
+    auto& hold = hold_[static_cast<std::size_t>(k)];
+    if (std::find(wanted.begin(), end, state.holds[static_cast<std::size_t>(hold)].node) != end) continue;
+    if (count_ == 1 && std::all_of(wanted.begin(), end, [&](int node) { return is_held(state, node); })) continue;
+    rod.release(hold);
+    hold = hold_[static_cast<std::size_t>(--count_)];
+  }
+  for (auto node = wanted.begin(); node != end && count_ < kMost; ++node) {
+    if (is_held(state, *node)) continue;
+    const Vec target = tool + (s[static_cast<std::size_t>(*node)] - s_m_) * along_;
+    const int h = rod.grip(*node, 0.0, 0.0, target, count_ == 0);
+    if (h >= 0) hold_[static_cast<std::size_t>(count_++)] = h;
+  }
+  for (int k = 0; k < count_; ++k) {
+    Hold& hold = rod.state().holds[static_cast<std::size_t>(hold_[static_cast<std::size_t>(k)])];
+    hold.stiffness_N_per_m = settings_.stiffness_N_per_m / count_;
+    hold.damping_N_s_per_m = settings_.damping_N_s_per_m / count_;
+  }
+}
+
+/// Moves s_c so far that the coupling pulls along the thread by no more than slip_N.
+void Jaws::slip(const Rod& rod, Vec tool) noexcept {
+  if (settings_.slip_N <= 0.0 || count_ == 0) return;
+  const State& state = rod.state();
+  double stretch_m = 0.0;  // mean of the nodes' way ahead of their targets, along the thread
+  for (int k = 0; k < count_; ++k) {
+    const auto node =
+        static_cast<std::size_t>(state.holds[static_cast<std::size_t>(hold_[static_cast<std::size_t>(k)])].node);
+    stretch_m += (dot(state.x[node] - tool, along_) - (state.mesh.s[node] - s_m_)) / count_;
+  }
+  const double most_m = settings_.slip_N / settings_.stiffness_N_per_m;
+  const double over_m = stretch_m - std::clamp(stretch_m, -most_m, most_m);
+  s_m_ -= over_m;
+  slipped_m_ += over_m;
+}
+
+void Jaws::follow(Rod& rod, Vec tool, std::array<Vec, kMaxHolds>& goals) noexcept {
+  if (count_ == 0) return;
+  if (settings_.width_m > 0.0 || settings_.slip_N > 0.0) {
+    slip(rod, tool);
+    choose(rod, tool);
+  }
+  for (int k = 0; k < count_; ++k) {
+    const auto h = static_cast<std::size_t>(hold_[static_cast<std::size_t>(k)]);
+    const auto node = static_cast<std::size_t>(rod.state().holds[h].node);
+    goals[h] = tool + (rod.state().mesh.s[node] - s_m_) * along_;
+  }
+}
+
+int Jaws::middle(const Rod& rod) const noexcept {
+  const auto off = [&](int hold) {
+    const auto node = static_cast<std::size_t>(rod.state().holds[static_cast<std::size_t>(hold)].node);
+    return std::abs(rod.state().mesh.s[node] - s_m_);
+  };
+  int best = hold_[0];
+  for (int k = 1; k < count_; ++k)
+    if (off(hold_[static_cast<std::size_t>(k)]) < off(best)) best = hold_[static_cast<std::size_t>(k)];
+  return best;
+}
+
+Vec Jaws::force(const Rod& rod) const noexcept {
+  Vec sum{};
+  for (int k = 0; k < count_; ++k)
+    sum += rod.state().holds[static_cast<std::size_t>(hold_[static_cast<std::size_t>(k)])].force;
+  return sum;
+}
+
+}  // namespace ligature::physics::rod

@@ -1,0 +1,130 @@
+// Jaws of finite width: what they carry is shared and adds up, they slip at Coulomb's limit, and a thread can be handed
+// from one hand to the other.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <utility>
+
+#include "firmware/physics/rod/rod_simulation.hpp"
+#include "protocol/scene/scene_file.hpp"
+
+namespace ligature::test {
+namespace {
+
+using physics::Hand;
+using physics::ToolInput;
+using physics::Vec3;
+using physics::rod::RodSimulation;
+
+constexpr double kWeight_N = 8e-5 * 9.81;  // per metre
+
+scene::Scene thread(std::vector<std::string> overrides) {
+  overrides.insert(overrides.end(), {"suture.nodes=61", "suture.spacing=\"uniform\"", "world.grippers_collide=false",
+                                     "contact.solver=\"none\""});
+  auto read = scene::load_scene(std::string(LIGATURE_SOURCE_DIR) + "/scenes/suture-3-0.toml", overrides);
+  if (auto* error = std::get_if<scene::Error>(&read)) throw std::runtime_error(error->text);
+  return std::get<scene::Scene>(read);
+}
+
+RodSimulation simulation(const scene::Scene& scene) {
+  auto made = RodSimulation::make(scene);
+  if (auto* why = std::get_if<std::string>(&made)) throw std::runtime_error(*why);
+  return std::get<RodSimulation>(std::move(made));
+}
+
+std::array<ToolInput, 2> hands_at(Vec3 left, Vec3 right) {
+  std::array<ToolInput, 2> tools{};
+  tools[0].p_WT = left;
+  tools[1].p_WT = right;
+  return tools;
+}
+
+int held_nodes(const RodSimulation& sim) {
+  int count = 0;
+  const auto& state = sim.rod().state();
+  for (int h = 0; h < state.hold_count; ++h) {
+    const auto& hold = state.holds[static_cast<std::size_t>(h)];
+    count += hold.node >= 0 && !hold.rigid;
+  }
+  return count;
+}
+
+TEST(Jaws, WithoutWidthHoldOneNode) {
+  auto sim = simulation(thread({"hands.pinch_width_m=0.0"}));
+  auto tools = hands_at(sim.nodes_W()[30], Vec3(1, 1, 1));
+  tools[0].grip = true;
+  sim.tick(tools);
+  EXPECT_EQ(held_nodes(sim), 1);
+  EXPECT_EQ(sim.hand(Hand::kLeft).node, 30);
+}
+
+TEST(Jaws, ForcesOnTheNodesAddUpToTheLoad) {  // nothing fixed: three nodes between jaws carry the whole thread
+  auto sim = simulation(thread({"hands.pinch_width_m=0.011", "world.fixed=[]"}));
+  auto tools = hands_at(sim.nodes_W()[30], Vec3(1, 1, 1));
+  tools[0].grip = true;
+  for (int k = 0; k < 1500; ++k) sim.tick(tools);
+  EXPECT_EQ(held_nodes(sim), 3);
+  const Vec3 f = sim.hand(Hand::kLeft).f_W;
+  EXPECT_NEAR(f.z(), -0.3 * kWeight_N, 0.01 * 0.3 * kWeight_N);
+  EXPECT_NEAR(f.x(), 0.0, 1e-3 * kWeight_N);
+}
+
+TEST(Jaws, SlipAtCoulombsLimit) {  // 2 mu N = 0.6 N, pulled at 20 mm/s: the thread runs through at 0.6 N, within 2 %
+  auto sim = simulation(thread({"hands.pinch_width_m=0.004", "hands.pinch_force_N=1.0"}));
+  auto tools = hands_at(sim.nodes_W()[30], Vec3(1, 1, 1));
+  tools[0].grip = true;
+  double most = 0.0, last = 0.0;
+  for (int k = 0; k < 800; ++k) {
+    tools[0].v_WT = Vec3(0, 0, -0.02);
+    tools[0].p_WT.z() -= 2e-5;
+    sim.tick(tools);
+    last = sim.hand(Hand::kLeft).f_W.z();
+    most = std::max(most, last);
+  }
+  EXPECT_NEAR(most, 0.6, 0.012);
+  EXPECT_NEAR(last, 0.6, 0.012);
+  EXPECT_GT(sim.hand(Hand::kLeft).node, 31);  // it has run through by about 13 mm, two and a half nodes
+}
+
+TEST(Jaws, DoNotSlipBelowTheLimit) {
+  auto sim = simulation(thread({"hands.pinch_width_m=0.004", "hands.pinch_force_N=1.0"}));
+  auto tools = hands_at(sim.nodes_W()[30], Vec3(1, 1, 1));
+  tools[0].grip = true;
+  sim.tick(tools);
+  tools[0].p_WT.z() -= 1e-3;  // stretched by a millimetre: 71 N x 1 / 150 and the coupling's own give, some 0.3 N
+  for (int k = 0; k < 500; ++k) sim.tick(tools);
+  EXPECT_LT(sim.hand(Hand::kLeft).f_W.z(), 0.58);
+  EXPECT_GT(sim.hand(Hand::kLeft).f_W.z(), 0.1);
+  EXPECT_EQ(sim.hand(Hand::kLeft).node, 30);
+}
+
+TEST(Jaws, HandTheThreadOver) {  // nothing fixed; the right hand takes it beside the left, which then lets go
+  auto sim = simulation(thread({"hands.pinch_width_m=0.004", "world.fixed=[]"}));
+  auto tools = hands_at(sim.nodes_W()[20], sim.nodes_W()[26]);
+  tools[0].grip = true;
+  for (int k = 0; k < 100; ++k) sim.tick(tools);
+  tools[1].grip = true;
+  for (int k = 0; k < 50; ++k) sim.tick(tools);
+  tools[0].grip = false;
+  for (int k = 0; k < 500; ++k) sim.tick(tools);
+  EXPECT_EQ(sim.hand(Hand::kLeft).node, -1);
+  ASSERT_GE(sim.hand(Hand::kRight).node, 0);
+  EXPECT_LT((sim.hand(Hand::kRight).p_WG - tools[1].p_WT).norm(), 1e-3);
+}
+
+TEST(Jaws, HoldTheDirectionToo) {  // held upright at its free end, pushed from the side: two nodes turn back, one turns
+  const auto lean = [](const char* width) {
+    auto sim = simulation(thread(
+        {width, "world.fixed=[]", "world.gravity_m_per_s2=[0,0,0]", "world.loads=[{node=40, force_N=[1e-5,0,0]}]"}));
+    auto tools = hands_at(sim.nodes_W()[30], Vec3(1, 1, 1));
+    tools[0].grip = true;
+    for (int k = 0; k < 3000; ++k) sim.tick(tools);
+    return sim.nodes_W()[40].x();
+  };
+  EXPECT_LT(lean("hands.pinch_width_m=0.006"), 0.003);  // a cantilever of 47 mm: F l^3 / 3 EI = 0.9 mm
+  EXPECT_GT(lean("hands.pinch_width_m=0.0"), 0.01);
+}
+
+}  // namespace
+}  // namespace ligature::test
