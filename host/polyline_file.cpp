@@ -1,7 +1,6 @@
 #include "host/polyline_file.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -12,36 +11,18 @@
 #include "host/log_reader.hpp"
 #include "host/rig_facts.hpp"
 #include "host/text.hpp"
+#include "protocol/scene/cells.hpp"
 
 namespace ligature::host {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8; spreadsheets put it first
 constexpr std::size_t kMostBytes = 64U << 20;                // of one file; a pipe may never end
-
-std::string_view trimmed(std::string_view field) {
-  constexpr std::string_view kBlank = " \t\r\"";
-  const auto first = field.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return field.substr(first, field.find_last_not_of(kBlank) - first + 1);
-}
-
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (std::size_t start = 0;;) {
-    const auto comma = line.find(',', start);
-    fields.push_back(trimmed(line.substr(start, comma == std::string_view::npos ? comma : comma - start)));
-    if (comma == std::string_view::npos) return fields;
-    start = comma + 1;
-  }
-}
+constexpr std::string_view kBlanks = " \t\r\"";               // spreadsheets quote
 
 std::optional<double> number(std::string_view field) {
   double value = 0.0;
-  if (!field.empty() && field.front() == '+') field.remove_prefix(1);
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc{} || end != field.data() + field.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
+  return scene::parse_number(field, value) ? std::optional(value) : std::nullopt;
 }
 
 /// Where the columns stand; -1 for one that is not there.
@@ -56,8 +37,8 @@ class PolylineReader {
   void take(std::string_view line) {
     if (++line_number_ == 1 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
     if (const auto comment = line.find('#'); comment != std::string_view::npos) line = line.substr(0, comment);
-    if (trimmed(line).empty()) return;
-    const auto fields = split(line);
+    if (scene::trim(line, kBlanks).empty()) return;
+    const auto fields = scene::split(line, kBlanks);
     if (!columns_) {
       const bool has_header = !number(fields.front());
       columns_ = has_header ? columns_of(fields) : Columns{};
@@ -68,7 +49,7 @@ class PolylineReader {
 
   /// The last line of a file, without its end: where a writer was killed, half a row of a shape.
   void take_unended(std::string_view line) {
-    const bool half_a_row = columns_ && columns_->node >= 0 && !trimmed(line).empty() &&
+    const bool half_a_row = columns_ && columns_->node >= 0 && !scene::trim(line, kBlanks).empty() &&
                             std::ranges::count(line, ',') + 1 < columns_->count;
     half_a_row ? void(row_cut_off_ = true) : take(line);
   }

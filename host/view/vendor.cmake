@@ -1,8 +1,12 @@
-# Copies what the page needs out of node_modules: -D modules=DIR -D out=DIR. The add-on of three.js names it by a bare
-# word that only a bundler understands; it gets the file's name instead.
-file(READ ${modules}/three/examples/jsm/controls/OrbitControls.js text)
-string(REPLACE "from 'three';" "from './three.module.js';" text "${text}")
-file(WRITE ${out}/OrbitControls.js "${text}")
+# Copies what the page needs out of node_modules: -D modules=DIR -D out=DIR. Add-ons of three.js name it by a bare
+# word that only a bundler understands, and each other by folders that the page does not have; they get the files' names.
+foreach(addon controls/OrbitControls effects/AnaglyphEffect postprocessing/Pass utils/CameraUtils)
+  file(READ ${modules}/three/examples/jsm/${addon}.js text)
+  string(REPLACE "from 'three';" "from './three.module.js';" text "${text}")
+  string(REGEX REPLACE "from '\\.\\./[a-z]+/([A-Za-z]+\\.js)'" "from './\\1'" text "${text}")
+  get_filename_component(name ${addon} NAME)
+  file(WRITE ${out}/${name}.js "${text}")
+endforeach()
 file(COPY ${modules}/three/build/three.module.js ${modules}/three/build/three.core.js
           ${modules}/uplot/dist/uPlot.esm.js ${modules}/uplot/dist/uPlot.min.css DESTINATION ${out})
 file(TOUCH ${out}/three.module.js ${out}/three.core.js ${out}/uPlot.esm.js ${out}/uPlot.min.css)

@@ -1,34 +1,12 @@
 #include "protocol/scene/csv.hpp"
 
 #include <cerrno>
-#include <charconv>
-#include <cmath>
 #include <cstring>
 #include <fstream>
-#include <system_error>
+
+#include "protocol/scene/cells.hpp"
 
 namespace ligature::scene {
-namespace {
-
-std::string_view trim(std::string_view s) {
-  constexpr std::string_view kBlank = " \t\r";
-  const auto first = s.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return s.substr(first, s.find_last_not_of(kBlank) - first + 1);
-}
-
-std::vector<std::string> split(std::string_view line) {
-  std::vector<std::string> cells;
-  for (;;) {
-    const auto comma = line.find(',');
-    cells.emplace_back(trim(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return cells;
-    line.remove_prefix(comma + 1);
-  }
-}
-
-}  // namespace
-
 std::string shown(std::string_view text) {
   constexpr std::size_t kMost = 60;
   constexpr std::string_view kHex = "0123456789ABCDEF";
@@ -48,12 +26,6 @@ Error at_line(const std::filesystem::path& path, std::size_t line, std::string_v
   return {path.string() + ":" + std::to_string(line) + ": " + std::string(what)};
 }
 
-bool parse_number(std::string_view cell, double& out) noexcept {
-  if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), out);
-  return error == std::errc{} && end == cell.data() + cell.size() && std::isfinite(out);
-}
-
 std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& path, std::string_view header) {
   std::ifstream file(path);
   if (!file || std::filesystem::is_directory(path)) {
@@ -67,7 +39,7 @@ std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& p
     if (line == 1 && text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // the byte order mark of UTF-8
     const auto body = trim(std::string_view(text).substr(0, text.find('#')));
     if (body.empty()) continue;
-    auto cells = split(body);
+    const auto cells = split(body);
     if (!header_seen) {
       if (cells != columns) {
         return at_line(path, line, "found '" + shown(body) + "', allowed the header '" + std::string(header) + "'");
@@ -78,7 +50,7 @@ std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& p
                      "found " + std::to_string(cells.size()) + " columns, allowed " + std::to_string(columns.size()) +
                          " (" + std::string(header) + ")");
     } else {
-      rows.push_back({line, std::move(cells)});
+      rows.push_back({line, {cells.begin(), cells.end()}});
     }
   }
   if (rows.empty())

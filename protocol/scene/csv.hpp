@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "protocol/scene/cells.hpp"  // parse_number, for those who read rows
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::scene {
@@ -23,9 +24,6 @@ struct CsvRow {
 /// allowed.
 [[nodiscard]] std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& path,
                                                                 std::string_view header);
-
-/// A finite decimal number and nothing else, or false.
-[[nodiscard]] bool parse_number(std::string_view cell, double& out) noexcept;
 
 /// Foreign text as it may stand in a message: control characters as \xNN, at most 60 characters.
 [[nodiscard]] std::string shown(std::string_view text);

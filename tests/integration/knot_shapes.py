@@ -110,17 +110,15 @@ def disguised(points, rng, moves, reach):
 
 
 def opened(points, rng):
-    """Cut in its outermost edge, both ends drawn out to twice the size: what one holds is outside the knot."""
+    """Cut in its outermost corner, both ends drawn straight out to twice the size, where nothing is: the type stays."""
     centre = points.mean(axis=0)
-    ends = np.roll(points, -1, axis=0)
-    middle = 0.5 * (points + ends) - centre
-    cut = int(np.argmax((middle ** 2).sum(axis=1)))
-    line = np.roll(points, -(cut + 1), axis=0)
-    size = np.sqrt(((points - centre) ** 2).sum(axis=1).max())
-    out = middle[cut] / np.linalg.norm(middle[cut])
-    side = np.cross(out, rng.normal(size=3))
-    side *= 0.05 / np.linalg.norm(side)
-    return np.vstack([centre + 2.0 * size * (out + side), line, centre + 2.0 * size * (out - side)])
+    away = points - centre
+    cut = int(np.argmax((away ** 2).sum(axis=1)))
+    line = np.roll(points, -cut, axis=0)
+    first, last = line[0] + 1e-3 * (line[1] - line[0]), line[0] + 1e-3 * (line[-1] - line[0])
+    side = np.cross(away[cut], rng.normal(size=3))
+    side *= 0.05 * np.linalg.norm(away[cut]) / np.linalg.norm(side)
+    return np.vstack([first + away[cut] + side, first, line[1:], last, last + away[cut] - side])
 
 
 def smooth_unknot(rng, n):

@@ -34,7 +34,7 @@ def disguise(points, rng, kind):
     if kind == 1:
         return shapes.turned(shapes.disguised(points, rng, 6 * len(points), 0.5), rng)
     if kind == 2:
-        return shapes.turned(shapes.disguised(shapes.refined(points, 2), rng, 300, 0.8), rng, 1e-3)
+        return shapes.turned(shapes.disguised(shapes.refined(points, 2), rng, 300, 0.8), rng)  # noise could cut its near misses
     return shapes.turned(shapes.refined(points, 500 // len(points) + 1), rng, 1e-3)
 
 
@@ -66,7 +66,7 @@ class Oracle(unittest.TestCase):
             said = name(points, is_closed, self.folder)
             if said != label:
                 wrong.append((number, len(points), "closed" if is_closed else "open", label, said))
-        self.assertEqual(wrong, [])
+        self.assertEqual(wrong, [], "\n".join(map(str, wrong)))
 
     def test_hard_unknots(self):
         rng = np.random.default_rng(21)
@@ -86,6 +86,8 @@ class Oracle(unittest.TestCase):
             steps = rng.normal(size=(40 + 2 * (number % 20), 3))
             points = np.cumsum(steps - steps.mean(axis=0), axis=0)
             theirs = homfly(points.tolist(), closure=Closure.CLOSED)
+            if theirs == "TMC":  # too many crossings for it
+                continue
             ours, _ = name(points, True, self.folder)
             if ours == "unknown":
                 unknown += 1

@@ -30,6 +30,10 @@ export function colourThread(mode, shape, { restLength_m, core } = {}) {
       paint(i, onScale(0.5 + (length / ((b - a) * rest) - 1) / (2 * span)));
     }
     legend = { title: 'stretch', low: '−5 %', high: '+5 %' };
+  } else if (mode === 'tension') {
+    const most = Math.max(1e-9, ...shape.tension_N.map(Math.abs));
+    for (let i = 0; i < n; ++i) paint(i, onScale(Math.max(0, i ? Math.max(shape.tension_N[i - 1], shape.tension_N[i]) : shape.tension_N[0]) / most));
+    legend = { title: 'tension', low: '0', high: `${format(most)} N` };
   } else if (mode === 'contact') {
     for (const i of touching(p, n, shape.radius_m)) paint(i, ACCENT);
     legend = { title: 'orange: strand within a tenth of its diameter of another' };

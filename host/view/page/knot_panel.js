@@ -19,8 +19,8 @@ export class KnotPanel {
     const hand = ['left', 'right'].includes(knot.handedness) ? `${knot.handedness}-handed` : knot.handedness === 'none' ? '' : knot.handedness;
     const common = COMMON[`${knot.type} ${knot.handedness}`] ?? COMMON[knot.type] ?? '';
     const least = knot.type === 'unknown' ? null : knot.type.split('#').reduce((sum, part) => sum + (part === '0_1' ? 0 : parseInt(part, 10)), 0);
-    $('knot-note').textContent = [hand, common, knot.type === '0_1' ? '' : `crossings ${knot.crossings}${least === null ? '' : ` (least ${least})`}`,
-      knot.core_diameters ? `${knot.core_diameters.toFixed(0)} diameters long` : ''].filter(Boolean).join(' · ');
+    $('knot-note').textContent = [hand, common, knot.type === '0_1' || knot.crossings === null ? '' : `crossings ${knot.crossings}${least === null ? '' : ` (least ${least})`}`,
+      knot.core_diameters ? `tightness: ${knot.core_diameters.toFixed(0)} diameters of thread` : ''].filter(Boolean).join(' · ');
     const label = `${knot.type} ${knot.handedness}`, last = this.history.at(-1);
     if (last && knot.tick < last.from) this.history = [];
     if (this.history.at(-1)?.label !== label) this.history.push({ label, type: knot.type, from: knot.tick });

@@ -8,6 +8,8 @@ import { KnotPanel } from './knot_panel.js';
 import { ReplayBar } from './replay_bar.js';
 import { setUpChange, showOffer } from './change_panel.js';
 import { isTyping, setUpControls, setUpRecording, showRecording } from './controls.js';
+import { drawDiagram } from './knot_diagram.js';
+import { C } from './frame.js';
 import { sceneFacts, showAge, showHands, showState, showStatus } from './state_panel.js';
 
 const $ = (id) => document.getElementById(id);
@@ -40,7 +42,16 @@ function onFrame(frame) {
   if (frame.rows) store.addRows(frame.rows);
   if (frame.text) onText(frame.text);
   latest.isNew = true;
+  checkAge();
 }
+
+/** At each frame and by a timer: how old the picture is must not wait until it is drawn. */
+function checkAge() {
+  const isOld = showAge(latest.now?.age_ms ?? -1, link.silent_ms, latest);
+  if (isOld && !page.isOld) page.staleAt_ms = Math.max(latest.now?.age_ms ?? 0, link.silent_ms);
+  page.isOld = isOld;
+}
+setInterval(checkAge, 20);
 
 function onText({ view, status, offer, unreadable, recording, knot, replay: position, marks, events: more }) {
   if (view) showView(view);
@@ -80,17 +91,19 @@ function showEvents(more) {
   }));
 }
 
-let tracesDue = 0;
+let tracesDue = 0, diagramDue = 0;
 function draw(time) {
   requestAnimationFrame(draw);
-  const isOld = showAge(latest.now?.age_ms ?? -1, link.silent_ms, latest);
-  if (isOld && !page.isOld) page.staleAt_ms = Math.max(latest.now?.age_ms ?? 0, link.silent_ms);
-  page.isOld = isOld;
   if (latest.isNew) {
     latest.isNew = false;
     showState(latest.now);
-    showHands(latest.now);
+    const row = store.rowEnd > store.rowBegin ? store.row(store.rowEnd - 1) : null;
+    showHands(latest.now, row ? [row[C.leftLimits], row[C.rightLimits]] : undefined);
     showLegend(scene.update(latest.shape, latest.now, latest.knot?.core));
+  }
+  if (time >= diagramDue && latest.shape) {
+    page.crossings = drawDiagram($('knot-diagram'), latest.shape.p_W, latest.knot?.core, scene.camera);
+    diagramDue = time + 200;
   }
   scene.draw(time);
   ++page.draws;
@@ -141,7 +154,7 @@ function setUpScene() {
   for (const button of document.querySelectorAll('[data-view]')) button.addEventListener('click', () => scene.view(button.dataset.view));
   $('follow').addEventListener('change', () => { scene.follow = $('follow').checked; });
   $('colour').addEventListener('change', () => { scene.colour = $('colour').value; latest.isNew = true; });
-  $('stereo').addEventListener('change', () => { scene.isStereo = $('stereo').checked; scene.isDirty = true; });
+  $('stereo').addEventListener('change', () => { scene.setStereo($('stereo').value); });
 }
 
 function setUpKeys() {

@@ -3,8 +3,8 @@ import { isTyping } from './controls.js';
 
 const $ = (id) => document.getElementById(id);
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10];
-const KIND = { state: 1, fault: 2, grasp: 3, release: 4, limit: 5, knot: 100 };
-const TINT = { [KIND.fault]: '#ff5c47', [KIND.grasp]: '#2fbf8f', [KIND.release]: '#9aa6b6', [KIND.knot]: '#cc79a7' };
+const KIND = { state: 1, fault: 2, grasp: 3, release: 4, limit: 5, change: 6, knot: 100 };
+const TINT = { [KIND.fault]: '#ff5c47', [KIND.grasp]: '#2fbf8f', [KIND.release]: '#9aa6b6', [KIND.knot]: '#cc79a7', [KIND.change]: '#f0e442' };
 
 export class ReplayBar {
   constructor(link) {
@@ -37,7 +37,7 @@ export class ReplayBar {
   seek(t_s) { this.link.send({ seek_s: Math.min(Math.max(t_s, 0), this.state.duration_s) }); }
 
   jump(direction) {
-    const at = this.state.position_s, marks = this.marks.filter((m) => TINT[m.kind]);
+    const at = this.state.position_s, kind = KIND[$('mark-kind').value], marks = this.marks.filter((m) => (kind ? m.kind === kind : TINT[m.kind]));
     const mark = direction > 0 ? marks.find((m) => m.t_s > at + 0.02) : marks.findLast((m) => m.t_s < at - 0.3);
     if (mark) this.seek(mark.t_s);
   }

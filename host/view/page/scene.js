@@ -21,7 +21,7 @@ export class Scene {
     this.camera = new THREE.PerspectiveCamera(35, 1, 0.001, 1000);
     this.camera.up.set(0, 0, 1);
     this.stereo = new THREE.StereoCamera();
-    this.isStereo = false;
+    this.stereoMode = 'off';
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
     this.controls.addEventListener('start', () => { this.touched = true; });
@@ -81,7 +81,7 @@ export class Scene {
     if (shape) {
       const painted = colourThread(this.colour, shape, { restLength_m: this.facts.restLength_m, core });
       legend = painted.legend;
-      this.tube.update(shape.p_W, shape.radius_m, painted.colours);
+      this.tube.update(shape.p_W, shape.radius_m, painted.colours, shape.turn_rad);
       if (!this.shape || this.shape.p_W.length !== shape.p_W.length || this.shape.radius_m !== shape.radius_m) this.#layOut(shape);
       this.shape = shape;
       this.core = core;
@@ -189,12 +189,37 @@ export class Scene {
     if (this.canvas.width !== Math.floor(width * ratio) || this.canvas.height !== Math.floor(height * ratio)) renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    const eyes = this.isStereo ? this.#eyes() : [[this.camera, 0, width]];
+    if (this.stereoMode === 'anaglyph') return this.#drawAnaglyph(width, height);
+    const eyes = this.stereoMode === 'side' ? this.#eyes() : [[this.camera, 0, width]];
     for (const [eye, left, wide] of eyes) {
       renderer.setViewport(left, 0, wide, height);
       renderer.setScissor(left, 0, wide, height);
       renderer.render(this.scene, eye);
     }
+  }
+
+  /** 'off', 'side' or 'anaglyph'. */
+  async setStereo(mode) {
+    if (mode === 'anaglyph') this.AnaglyphEffect ??= (await import('./AnaglyphEffect.js')).AnaglyphEffect; // not before it is wanted
+    this.stereoMode = mode;
+    this.anaglyph?.dispose();
+    this.anaglyph = null;
+    this.isDirty = true;
+  }
+
+  #drawAnaglyph(width, height) {
+    const size = `${width}x${height}`;
+    if (!this.anaglyph || this.anaglyphSize !== size) {
+      this.anaglyph?.dispose();
+      this.anaglyph = new this.AnaglyphEffect(this.renderer, width, height);
+      this.anaglyphSize = size;
+    }
+    this.anaglyph.planeDistance = this.camera.position.distanceTo(this.controls.target);
+    this.anaglyph.eyeSep = 0.03 * this.anaglyph.planeDistance;
+    this.renderer.setScissorTest(false);
+    this.renderer.setViewport(0, 0, width, height);
+    this.anaglyph.render(this.scene, this.camera);
+    this.renderer.setScissorTest(true);
   }
 
   /** On a machine that cannot draw 15 pictures a second, coarser pictures instead of rarer ones. */

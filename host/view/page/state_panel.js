@@ -2,7 +2,7 @@
 import { STATES } from './frame.js';
 import { explainFault } from './faults.js';
 
-export const STALE_MS = 150;
+export const STALE_MS = 120; // shown within 200: a timer looks every 20
 const NOTES = {
   OFF: 'drives are off', CALIBRATE: 'looking at the encoders', IDLE: 'ready, no force', ENGAGE: 'armed: hold still, press the dead-man',
   FORCE: 'forces on', BRAKE: 'forces ramp to zero', FAULT: 'no force until reset',
@@ -51,11 +51,15 @@ export function showStatus(status) {
   $('scene-file').textContent = `${status.scene_file.split('/').pop()}, firmware ${status.firmware_version}`;
 }
 
-export function showHands(now) {
+const LIMITS = [[1, 'peak'], [2, 'heat'], [4, 'step'], [8, 'slew'], [16, 'speed'], [32, 'passivity'], [64, 'torque']];
+
+/** @param limits LIMIT_ bits of each hand: what holds its force back. */
+export function showHands(now, limits = [0, 0]) {
   now?.hands?.forEach((hand, i) => {
     const force = Math.hypot(...hand.f_device);
     $(i ? 'hand-right' : 'hand-left').textContent = `${force.toFixed(2)} N · ${hand.node >= 0 ? `holds node ${hand.node}` : hand.grip ? 'closed' : 'open'}`
-      + `${hand.deadMan ? ' · dead-man' : ''}${hand.age > 1 ? ` · ${hand.age} ticks old` : ''}`;
+      + `${hand.deadMan ? ' · dead-man' : ''}${hand.age > 1 ? ` · ${hand.age} ticks old` : ''}`
+      + LIMITS.filter(([bit]) => limits[i] & bit).map(([, word]) => ` · limited: ${word}`).join('');
   });
 }
 

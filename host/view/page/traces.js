@@ -7,6 +7,11 @@ export const WINDOWS_S = [1, 5, 10, 30, 60, 300, 600];
 /** What the third plot can show: two columns, a factor to the unit, least height. */
 export const THIRD = {
   'tick time': { columns: [C.execution_ns, C.control_ns], factor: 1e-3, unit: 'µs: whole, control only', least: 100, isTime: true },
+  tension: { columns: [C.leftWorld, C.rightWorld], factor: 1, unit: 'N, of the thread at the left hand; grey right', least: 1 },
+  passivity: { columns: [C.leftPort_J, C.rightPort_J], factor: 1000, unit: 'mJ, account of the device port: left; grey right', least: 1 },
+  'taken out': { columns: [C.leftDissipated_J, C.rightDissipated_J], factor: 1000, unit: 'mJ, by the passivity controller: left; grey right', least: 1 },
+  'bus load': { columns: [C.leftBusLoad, C.rightBusLoad], factor: 100, unit: '% of a period: left; grey right', least: 100 },
+  'motor heat': { columns: [C.leftHeat, C.rightHeat], factor: 100, unit: '% of the continuous limit: left; grey right', least: 100 },
   energy: { columns: [C.potential_J, C.kinetic_J], factor: 1, unit: 'J: potential, kinetic', least: 1e-3 },
   stretch: { columns: [C.maxStretch, C.maxStretch], factor: 100, unit: '%, of the longest edge', least: 0.1 },
   gap: { columns: [C.minGap_m, C.minGap_m], factor: 1000, unit: 'mm, smallest of the thread with itself; below zero: overlap', least: 1 },

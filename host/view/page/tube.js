@@ -2,6 +2,7 @@
 import * as THREE from './three.module.js';
 
 const SIDES = 14, MOST_RINGS = 4000;
+const STRIPE = 0.22; // how bright the stripe is that shows the twist
 const RIM = 0.09; // how far the dark rim stands out beyond the tube, in radii
 
 export class Tube {
@@ -23,12 +24,12 @@ export class Tube {
     this.rings = 0;
   }
 
-  /** @param p_W n x 3 node positions. @param colours n x 3, linear RGB. */
-  update(p_W, radius_m, colours) {
+  /** @param p_W n x 3 node positions. @param colours n x 3, linear RGB. @param turn_rad n: twist, drawn as a stripe. */
+  update(p_W, radius_m, colours, turn_rad) {
     const n = p_W.length / 3, per = Math.max(1, Math.min(10, Math.floor(MOST_RINGS / n)));
     const rings = (n - 1) * per + 1;
     if (rings !== this.rings) this.#allocate(rings);
-    this.#centreline(p_W, colours, n, per);
+    this.#centreline(p_W, colours, turn_rad, n, per);
     this.#skin(radius_m);
     this.grow.value = radius_m * RIM;
     for (const name of ['position', 'normal', 'color']) this.geometry.attributes[name].needsUpdate = true;
@@ -44,6 +45,7 @@ export class Tube {
     this.line?.dispose();
     this.centre = new Float32Array(3 * rings);
     this.tint = new Float32Array(3 * rings);
+    this.turn = new Float32Array(rings);
     const vertices = rings * SIDES + 2;
     this.geometry = new THREE.BufferGeometry();
     for (const name of ['position', 'normal', 'color'])
@@ -69,12 +71,13 @@ export class Tube {
   }
 
   /** Catmull-Rom curve through the nodes, `per` pieces an edge; colours go along linearly. */
-  #centreline(p, colours, n, per) {
+  #centreline(p, colours, turn, n, per) {
     const out = this.centre, tint = this.tint;
     for (let i = 0, o = 0; i < n; ++i) {
       const a = 3 * Math.max(i - 1, 0), b = 3 * i, c = 3 * Math.min(i + 1, n - 1), d = 3 * Math.min(i + 2, n - 1);
       for (let k = 0; k < (i + 1 < n ? per : 1); ++k, o += 3) {
         const t = k / per, t2 = t * t, t3 = t2 * t;
+        this.turn[o / 3] = turn[i] + (turn[Math.min(i + 1, n - 1)] - turn[i]) * t;
         for (let j = 0; j < 3; ++j) {
           out[o + j] = 0.5 * (2 * p[b + j] + (p[c + j] - p[a + j]) * t + (2 * p[a + j] - 5 * p[b + j] + 4 * p[c + j] - p[d + j]) * t2
             + (3 * p[b + j] - p[a + j] - 3 * p[c + j] + p[d + j]) * t3);
@@ -84,7 +87,8 @@ export class Tube {
     }
   }
 
-  /** A circle around each point, turned along the curve without twist (the smallest turn from tangent to tangent). */
+  /** A circle around each point, carried along the curve without twist (the smallest turn from tangent to tangent), then
+   *  turned by the thread's own: its first side is the stripe. */
   #skin(radius) {
     const x = this.centre, n = this.rings;
     const position = this.geometry.attributes.position.array, normal = this.geometry.attributes.normal.array;
@@ -106,9 +110,9 @@ export class Tube {
       ux /= size; uy /= size; uz /= size;
       const vx = ty * uz - tz * uy, vy = tz * ux - tx * uz, vz = tx * uy - ty * ux;
       for (let s = 0; s < SIDES; ++s) {
-        const angle = (2 * Math.PI * s) / SIDES, c = Math.cos(angle), q = Math.sin(angle), o = 3 * (i * SIDES + s);
+        const angle = (2 * Math.PI * s) / SIDES + this.turn[i], shade = s === 0 ? STRIPE : 1, c = Math.cos(angle), q = Math.sin(angle), o = 3 * (i * SIDES + s);
         normal[o] = c * ux + q * vx; normal[o + 1] = c * uy + q * vy; normal[o + 2] = c * uz + q * vz;
-        for (let j = 0; j < 3; ++j) { position[o + j] = x[3 * i + j] + radius * normal[o + j]; color[o + j] = this.tint[3 * i + j]; }
+        for (let j = 0; j < 3; ++j) { position[o + j] = x[3 * i + j] + radius * normal[o + j]; color[o + j] = shade * this.tint[3 * i + j]; }
       }
       if (i === 0 || i === n - 1) {
         const o = 3 * (n * SIDES + (i ? 1 : 0)), sign = i ? 1 : -1;
