@@ -6,6 +6,7 @@
 
 #include "host/lab/experiment_command.hpp"
 #include "host/lab/outcome.hpp"
+#include "host/lab/pareto_command.hpp"
 #include "host/lab/run_command.hpp"
 #include "host/lab/stop_signal.hpp"
 #include "host/lab/validate_command.hpp"
@@ -36,6 +37,7 @@ int main(int argc, char** argv) {
   add_run_command(app, exit_code);
   add_experiment_commands(app, exit_code);
   add_validate_command(app, exit_code);
+  add_pareto_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const Refusal& refusal) {
