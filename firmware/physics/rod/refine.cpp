@@ -10,6 +10,7 @@ constexpr double kTurn = 0.35;       // rad per node
 constexpr double kBendLength = 0.4;  // of sqrt(EI / T)
 constexpr double kGrading = 0.2;
 constexpr double kWorth = 1.5;  // a change must better the worst by this factor
+constexpr int kTries = 4;       // merges looked at for a change, so that a tangle costs no more than that
 constexpr double kFade = 0.8;   // of the stress-free offsets, per tick
 
 // Moves array[from + 1 ..] one place: opens a slot at `at`, or closes it. Sizes stay n: the slot at the end is spare.
@@ -108,8 +109,19 @@ int Refine::worst_segment() const noexcept {
   return worst;
 }
 
-int Refine::best_merge() const noexcept {
-  double least = 1e9;
+int Refine::best_merge(const Material& material, const State& state, const std::vector<Body>& bodies,
+                       double most) noexcept {
+  for (int tries = 0; tries < kTries; ++tries) {
+    const int best = cheapest_merge(most);
+    if (best < 0) return -1;
+    if (merge_is_clear(material, state, bodies, static_cast<std::size_t>(best))) return best;
+    free_[static_cast<std::size_t>(best)] = 0;
+  }
+  return -1;
+}
+
+int Refine::cheapest_merge(double most) const noexcept {
+  double least = most;
   int best = -1;
   for (std::size_t i = 1; i + 1 < at_.size(); ++i) {
     const int before = at_[i] - at_[i - 1], after = at_[i + 1] - at_[i];
@@ -166,19 +178,20 @@ void Refine::split(const Material&, State& state, int segment) noexcept {
   }
 }
 
-bool Refine::update(const Material& material, State& state, const Forces& forces, ContactSet& contacts) noexcept {
+bool Refine::update(const Material& material, State& state, const Forces& forces, ContactSet& contacts,
+                    const std::vector<Body>& bodies) noexcept {
   for (auto& q : state.rest_bend) q = kFade * q;
   for (auto& e : state.rest_strain) e *= kFade;
   want(material, state, forces, contacts);
   const std::size_t n = at_.size();
   bool changed = false;
   for (int k = 0; k < kChangesPerTick; ++k) {
-    const int segment = worst_segment(), node = best_merge();
-    if (segment < 0 || node < 0 || segment == node || segment + 1 == node) break;
-    const auto j = static_cast<std::size_t>(segment), i = static_cast<std::size_t>(node);
+    const int segment = worst_segment();
+    if (segment < 0) break;
+    const auto j = static_cast<std::size_t>(segment);
     const double bad = (at_[j + 1] - at_[j]) * unit_m_ / wanted_[j];
-    const double merged = (at_[i + 1] - at_[i - 1]) * unit_m_ / std::min(wanted_[i - 1], wanted_[i]);
-    if (bad <= 1.0 || bad < kWorth * merged) break;
+    const int node = bad > 1.0 ? best_merge(material, state, bodies, bad / kWorth) : -1;
+    if (node < 0 || segment == node || segment + 1 == node) break;
     if (!changed) {
       for (std::size_t q = 0; q + 1 < n; ++q) {
         tension_[q] =

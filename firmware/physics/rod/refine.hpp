@@ -17,6 +17,8 @@ namespace ligature::physics::rod {
 /// elsewhere would be, that pair is merged and the segment split. Nothing jumps:
 /// - a new node lies on the chord of its segment, so the thread's shape, gaps and stretch are untouched;
 /// - a merge shares the node's momentum out, and only nearly straight, free nodes away from contacts are merged;
+/// - a merge is refused when anything is so near that the two segments could pass or touch it on their way to the chord
+///   (merge_is_clear);
 /// - bending moments and tension stay what they were: what the new polygon would change is kept as a stress-free offset
 ///   (State::rest_bend, rest_strain) that fades within some ticks.
 class Refine {
@@ -26,7 +28,8 @@ class Refine {
   bool start(const Material& material, double wanted_m, State& state);
 
   /// One tick's worth of changes. @return true when nodes moved. O(n); no allocation.
-  bool update(const Material& material, State& state, const Forces& forces, ContactSet& contacts) noexcept;
+  bool update(const Material& material, State& state, const Forces& forces, ContactSet& contacts,
+              const std::vector<Body>& bodies) noexcept;
 
   /// After update() returned true and the mesh was rebuilt: offsets that keep moments and tensions.
   void keep_stress(const Material& material, State& state) noexcept;
@@ -39,7 +42,10 @@ class Refine {
  private:
   void want(const Material& material, const State& state, const Forces& forces, const ContactSet& contacts) noexcept;
   [[nodiscard]] int worst_segment() const noexcept;
-  [[nodiscard]] int best_merge() const noexcept;
+  /// Node whose merged pair is least too long, below `most` times what is wanted. @return -1 when there is none.
+  [[nodiscard]] int cheapest_merge(double most) const noexcept;
+  /// The same among those that may be merged; the others are struck off on the way.
+  int best_merge(const Material& material, const State& state, const std::vector<Body>& bodies, double most) noexcept;
   void merge(const Material& material, State& state, int node) noexcept;
   void split(const Material& material, State& state, int segment) noexcept;
 
@@ -50,5 +56,12 @@ class Refine {
   std::vector<Vec> moment_;       // Q of every vertex
   std::vector<double> tension_;
 };
+
+/// May segments node - 1 and node become their chord? Every point of them then moves by at most h, the distance of the
+/// node from the chord's material middle. So what is farther than h from both cannot be passed; asked for is h + the
+/// distance of touch, so that no contact begins with an overlap either. Neighbours along the thread, which are always
+/// near, need more than h alone. O(n), a bounding sphere for most.
+[[nodiscard]] bool merge_is_clear(const Material& material, const State& state, const std::vector<Body>& bodies,
+                                  std::size_t node) noexcept;
 
 }  // namespace ligature::physics::rod

@@ -128,6 +128,13 @@ void Rod::release(int hold) noexcept {
   if (directed) moved();
 }
 
+bool Rod::remesh() noexcept {
+  if (!parts_.adaptive || !refine_.update(material_, state_, forces_, contacts_, bodies)) return false;
+  moved();
+  refine_.keep_stress(material_, state_);
+  return true;
+}
+
 void Rod::tick() noexcept {
   std::array<Vec, kMaxHolds> goals;
   for (std::size_t h = 0; h < kMaxHolds; ++h) goals[h] = state_.holds[h].target;
@@ -144,11 +151,7 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
     state_.holds[h].velocity = (1.0 / numerics_.tick_s) * (goals[h] - starts[h]);
     hand_speed = std::max(hand_speed, norm(state_.holds[h].velocity));
   }
-  if (parts_.adaptive && refine_.update(material_, state_, forces_, contacts_)) {
-    ++report_.remeshes;
-    moved();
-    refine_.keep_stress(material_, state_);
-  }
+  if (!mesh_held_) report_.remeshes += remesh();
   if (parts_.twist) twist_.update(material_, state_, forces_);
   settled_m_per_s_ = numerics_.settled_m_per_s + numerics_.settled_share * hand_speed;
   const bool fast = hand_speed > 1.001 * numerics_.fast_m_per_s || released_;  // letting go is the fastest of all

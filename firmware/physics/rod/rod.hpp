@@ -70,6 +70,11 @@ class Rod {
   void tick(const std::array<Vec, kMaxHolds>& goals) noexcept;
   void tick() noexcept;
 
+  /// The first verb of a tick, on its own: nodes move along the thread. @return true when some did.
+  bool remesh() noexcept;
+  /// Keeps tick() from moving nodes along the thread, until told otherwise. For those who call remesh() themselves.
+  void hold_mesh(bool on) noexcept { mesh_held_ = on; }
+
   [[nodiscard]] const TickReport& report() const noexcept { return report_; }
   [[nodiscard]] Energy energy() const noexcept { return rod::energy(material_, state_, gravity); }
 
@@ -102,6 +107,7 @@ class Rod {
   Motion motion_;
   double horizon_s_ = 0.0;      // how far the list of pairs looks ahead
   double tick_travel_m_ = 0.0;  // what the fastest node may have gone since the tick began
+  bool mesh_held_ = false;
   bool released_ = false;       // a hold let go since the last tick
   bool stale_ = true;           // the list must be made again
 };

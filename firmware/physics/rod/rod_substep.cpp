@@ -91,7 +91,7 @@ void Rod::substep(double dt_s) noexcept {
         metric_.prepare(state_.mesh, material_, dt_s, std::max(first - 2, 0), std::min(last + 2, n - 1));
       }
       const int passes =
-          std::clamp(numerics_.passes_per_substep * report_.substeps - report_.passes, 4, numerics_.max_passes);
+          std::clamp(numerics_.passes_per_substep * numerics_.substeps - report_.passes, 4, numerics_.max_passes);
       contacts_.settle<(Bits & kFriction) != 0>(solver_, metric_, numerics_, passes, settled_m_per_s_, dt_s, first,
                                                 last, state_.v.data(), seen);
       contacts_.store();

@@ -1,0 +1,76 @@
+#pragma once
+// Did strands pass through each other? By means that share nothing with the solver: two segments are followed along
+// their straight motion, and at every instant at which they are coplanar it is asked whether they meet.
+
+#include <algorithm>
+#include <iterator>
+#include <vector>
+
+#include "firmware/physics/rod/closest.hpp"
+#include "firmware/physics/rod/state.hpp"
+
+namespace ligature::test {
+
+using physics::rod::closest;
+using physics::rod::State;
+using physics::rod::Vec;
+
+/// Two segments at an instant.
+struct Instant {
+  Vec a0, a1, b0, b1;
+};
+
+inline Instant between(const Instant& p, const Instant& q, double t) {
+  const auto mix = [t](Vec a, Vec b) { return (1.0 - t) * a + t * b; };
+  return {mix(p.a0, q.a0), mix(p.a1, q.a1), mix(p.b0, q.b0), mix(p.b1, q.b1)};
+}
+
+inline double volume(const Instant& m) { return dot(cross(m.a1 - m.a0, m.b1 - m.b0), m.b0 - m.a0); }
+
+// Did the segments meet on the way from p to q? Roots of the cubic volume(t) by sampling and bisection.
+inline bool crossed(const Instant& p, const Instant& q) {
+  constexpr int kSamples = 16;
+  double t0 = 0.0, v0 = volume(p);
+  for (int k = 1; k <= kSamples; ++k) {
+    const double t1 = static_cast<double>(k) / kSamples, v1 = volume(between(p, q, t1));
+    if ((v0 > 0.0) != (v1 > 0.0)) {
+      double low = t0, high = t1;
+      for (int i = 0; i < 50; ++i) {
+        const double mid = 0.5 * (low + high);
+        ((volume(between(p, q, mid)) > 0.0) == (v0 > 0.0) ? low : high) = mid;
+      }
+      const Instant m = between(p, q, 0.5 * (low + high));
+      if (closest(m.a0, m.a1, m.b0, m.b1).distance2 < 1e-18) return true;
+    }
+    t0 = t1, v0 = v1;
+  }
+  return false;
+}
+
+inline Vec point_at(const std::vector<double>& s, const std::vector<Vec>& x, double at) {
+  auto j = static_cast<std::size_t>(std::upper_bound(s.begin() + 1, s.end() - 1, at) - s.begin()) - 1;
+  const double share = (at - s[j]) / (s[j + 1] - s[j]);
+  return (1.0 - share) * x[j] + share * x[j + 1];
+}
+
+// Crossings when the polyline over s0 becomes the polyline over s1, each material point going straight.
+inline long crossings_of_remesh(const std::vector<double>& s0, const std::vector<Vec>& x0, const State& state) {
+  const auto& s1 = state.mesh.s;
+  std::vector<double> s;
+  std::set_union(s0.begin(), s0.end(), s1.begin(), s1.end(), std::back_inserter(s));
+  std::vector<Vec> from, to;
+  for (const double at : s) from.push_back(point_at(s0, x0, at)), to.push_back(point_at(s1, state.x, at));
+  const auto went = [&](std::size_t j) { return norm(to[j] - from[j]) + norm(to[j + 1] - from[j + 1]) > 1e-12; };
+  long found = 0;
+  for (std::size_t a = 0; a + 1 < s.size(); ++a) {
+    if (!went(a)) continue;
+    for (std::size_t b = 0; b + 1 < s.size(); ++b) {
+      if (b + 1 >= a && b <= a + 1) continue;
+      if (b > a || !went(b))
+        found += crossed({from[a], from[a + 1], from[b], from[b + 1]}, {to[a], to[a + 1], to[b], to[b + 1]});
+    }
+  }
+  return found;
+}
+
+}  // namespace ligature::test

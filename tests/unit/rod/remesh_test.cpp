@@ -1,0 +1,65 @@
+// Nodes that move along the thread: nothing is cut, momentum, length and the force on a hand stay.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "tests/support/crossings.hpp"
+#include "tests/unit/rod/rods.hpp"
+
+namespace ligature::test {
+namespace {
+
+// A wide helix whose turns pass close outside a straight strand of the same thread, and a tight coil that wants nodes:
+// merging two segments of the helix onto their chord would cut the strand where it runs between arc and chord.
+void helix_around_a_strand(Rod& rod, double phase, double inside_m) {
+  constexpr double kRadius = 6.4e-3, kPitch = 4e-3, kTurns = 3.5, kCoil = 1.2e-3;
+  std::vector<Vec> line;
+  for (int i = 0; i <= 700; ++i) {
+    const double turn = kTurns * i / 700.0, a = 2.0 * std::numbers::pi * turn;
+    line.push_back(make(kRadius * std::cos(a), kRadius * std::sin(a), kPitch * turn));
+  }
+  const double r = kRadius - inside_m;
+  const Vec foot = make(r * std::cos(phase), r * std::sin(phase), 0);
+  for (const double z : {20e-3, -10e-3}) line.push_back(foot + make(0, 0, z));
+  for (int i = 0; i <= 400; ++i) {
+    const double a = 2.0 * std::numbers::pi * 4.0 * i / 400.0;
+    line.push_back(foot + make(kCoil * (std::cos(a) - 1.0), kCoil * std::sin(a), -10e-3 - 1e-3 * 4.0 * i / 400.0));
+  }
+  std::vector<double> arc{0.0};
+  for (std::size_t i = 1; i < line.size(); ++i) arc.push_back(arc.back() + norm(line[i] - line[i - 1]));
+  State& state = rod.state();
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    state.x[i] = point_at(arc, line, state.mesh.s[i] / rod.material().length_m * arc.back());
+  }
+  rod.moved();
+}
+
+TEST(Remesh, CutsNothing) {  // 60 places of the strand between arc and chord; merges must happen, crossings must not
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> phase(0.0, 2.0 * std::numbers::pi), inside(1.12, 1.6);
+  long crossings = 0, remeshes = 0;
+  for (int k = 0; k < 60; ++k) {
+    Material m;
+    m.length_m = 0.235;
+    Rod rod(m, steps_of(1e-7), Parts{false, true, true, false, true}, 99);
+    helix_around_a_strand(rod, phase(random), inside(random) * 2.0 * m.radius_m);
+    rod.hold_mesh(true);
+    rod.tick();
+    for (int i = 0; i < 10; ++i) {
+      const std::vector<double> s = rod.state().mesh.s;
+      const std::vector<Vec> x = rod.state().x;
+      if (!rod.remesh()) break;
+      ++remeshes;
+      crossings += crossings_of_remesh(s, x, rod.state());
+      rod.tick();
+    }
+  }
+  EXPECT_GT(remeshes, 100);
+  EXPECT_EQ(crossings, 0);
+}
+
+}  // namespace
+}  // namespace ligature::test
