@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8; spreadsheets put it first
 constexpr std::size_t kMostBytes = 64U << 20;                // of one file; a pipe may never end
-constexpr std::string_view kBlanks = " \t\r\"";               // spreadsheets quote
+constexpr std::string_view kBlanks = " \t\r\"";              // spreadsheets quote
 
 std::optional<double> number(std::string_view field) {
   double value = 0.0;

@@ -50,7 +50,8 @@ bool LengthLimits::measure(const ThreadModel& m, const ThreadState& s) noexcept 
     for (int k = 0; k < kLanes && i + k < segments_; ++k) {
       if (!beyond[k]) continue;
       outside = true;
-      bound_[static_cast<std::size_t>(i) + static_cast<std::size_t>(k)] = seg.length_m[k] > rest_m_ ? Bound::kLongest : Bound::kShortest;
+      bound_[static_cast<std::size_t>(i) + static_cast<std::size_t>(k)] =
+          seg.length_m[k] > rest_m_ ? Bound::kLongest : Bound::kShortest;
     }
   }
   return outside;

@@ -150,8 +150,8 @@ std::vector<std::byte> FlightRecorder::image_of_last(std::uint64_t count, std::i
 std::string FlightRecorder::save_last(std::int64_t ticks, std::int32_t fault) {
   const auto count = std::min<std::int64_t>({ticks, header_.slots, static_cast<std::int64_t>(sequence_)});
   if (count <= 0 || saved_ >= kMaxSaved) return {};
-  std::string path = path_ + ".session-" + std::to_string(header_.session) + ".fault-" + std::to_string(fault) +
-                           "." + std::to_string(saved_ + 1);
+  std::string path = path_ + ".session-" + std::to_string(header_.session) + ".fault-" + std::to_string(fault) + "." +
+                     std::to_string(saved_ + 1);
   const std::string draft = path + ".tmp";
   const int fd = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (fd < 0) return {};

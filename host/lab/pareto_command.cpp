@@ -72,29 +72,65 @@ Cell optional_cell(bool there, double value) {
 }
 
 void write(const std::vector<Point>& points, const std::filesystem::path& path) {
-  Table t({"setting", "model", "nodes", "substeps", "passes", "preset", "median_us", "p99_us", "worst_us",
-           "median_instructions", "p99_instructions", "worst_instructions", "shape_of_L", "swing_of_L", "motion_of_L",
-           "knot_diameters", "penetration_diameters", "knot", "motion_front", "knot_front"});
+  Table t({"setting",
+           "model",
+           "nodes",
+           "substeps",
+           "passes",
+           "preset",
+           "median_us",
+           "p99_us",
+           "worst_us",
+           "median_instructions",
+           "p99_instructions",
+           "worst_instructions",
+           "shape_of_L",
+           "swing_of_L",
+           "motion_of_L",
+           "knot_diameters",
+           "penetration_diameters",
+           "knot",
+           "motion_front",
+           "knot_front"});
   for (const auto& p : points) {
     const auto& s = p.setting;
     const bool counted = p.instructions.has_value(), kept = !std::isnan(p.errors.knot);
     const Spread n = p.instructions.value_or(Spread{});
-    t.row({s.text(), std::string(scene::name(s.model)), double(s.nodes), double(s.substeps), double(s.passes), s.preset,
-           p.us.median, p.us.p99, p.us.max, optional_cell(counted, n.median), optional_cell(counted, n.p99),
-           optional_cell(counted, n.max), optional_cell(!std::isnan(p.errors.shape), p.errors.shape), p.errors.swing, motion_error(p), optional_cell(kept, p.errors.knot),
-           p.penetration, p.knot, double(p.on_swing_front), double(p.on_knot_front)});
+    t.row({s.text(),
+           std::string(scene::name(s.model)),
+           double(s.nodes),
+           double(s.substeps),
+           double(s.passes),
+           s.preset,
+           p.us.median,
+           p.us.p99,
+           p.us.max,
+           optional_cell(counted, n.median),
+           optional_cell(counted, n.p99),
+           optional_cell(counted, n.max),
+           optional_cell(!std::isnan(p.errors.shape), p.errors.shape),
+           p.errors.swing,
+           motion_error(p),
+           optional_cell(kept, p.errors.knot),
+           p.penetration,
+           p.knot,
+           double(p.on_swing_front),
+           double(p.on_knot_front)});
   }
   t.write(path);
 }
 
 void print_fronts(const std::vector<Point>& points) {
-  Table t({"setting", "median us", "p99", "worst", "M instr. median", "worst", "shape % L", "swing % L", "knot d", "penetration d", "front"});
+  Table t({"setting", "median us", "p99", "worst", "M instr. median", "worst", "shape % L", "swing % L", "knot d",
+           "penetration d", "front"});
   for (const auto& p : points) {
     if (!p.on_swing_front && !p.on_knot_front && p.setting.preset.empty()) continue;
     const bool counted = p.instructions.has_value();
     const std::string front = std::string(p.on_swing_front ? "motion " : "") + (p.on_knot_front ? "knot" : "");
-    t.row({p.setting.text(), p.us.median, p.us.p99, p.us.max, optional_cell(counted, 1e-6 * p.instructions.value_or(Spread{}).median),
-           optional_cell(counted, 1e-6 * p.instructions.value_or(Spread{}).max), optional_cell(!std::isnan(p.errors.shape), 100.0 * p.errors.shape), 100.0 * p.errors.swing,
+    t.row({p.setting.text(), p.us.median, p.us.p99, p.us.max,
+           optional_cell(counted, 1e-6 * p.instructions.value_or(Spread{}).median),
+           optional_cell(counted, 1e-6 * p.instructions.value_or(Spread{}).max),
+           optional_cell(!std::isnan(p.errors.shape), 100.0 * p.errors.shape), 100.0 * p.errors.swing,
            optional_cell(!std::isnan(p.errors.knot), p.errors.knot), p.penetration, front});
   }
   t.print();
@@ -105,8 +141,8 @@ int run_one(const Arguments& a) {
   const auto traces = run_trials(setting_of(a.one), a.ticks);
   const auto us = spread_of(traces.us);
   std::printf("%s: %zu ticks, median %.1f us, p99 %.1f us, worst %.1f us, knot %s, penetration %.3f diameters\n",
-              a.one.c_str(), traces.us.size(), us.median, us.p99, us.max, a.ticks > 0 ? "not looked at" : traces.knot.c_str(),
-              traces.penetration);
+              a.one.c_str(), traces.us.size(), us.median, us.p99, us.max,
+              a.ticks > 0 ? "not looked at" : traces.knot.c_str(), traces.penetration);
   return kDone;
 }
 
@@ -147,7 +183,8 @@ int execute(const Arguments& a) {
   const std::filesystem::path out(a.out);
   auto points = measure(all_settings(a.quick));
   mark_front(points, motion_error, [](Point& p) -> bool& { return p.on_swing_front; });
-  mark_front(points, [](const Point& p) { return p.errors.knot; }, [](Point& p) -> bool& { return p.on_knot_front; });
+  mark_front(
+      points, [](const Point& p) { return p.errors.knot; }, [](Point& p) -> bool& { return p.on_knot_front; });
   count(points);
   print_fronts(points);
   write(points, out / "pareto.csv");

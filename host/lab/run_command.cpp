@@ -17,6 +17,8 @@ struct Arguments {
   std::string scene;
   std::vector<std::string> overrides;
   std::string grippers;
+  std::string tie;
+  std::uint32_t seed = 1;
   std::optional<double> duration_s;
   std::string out = "out/lab";
   double shape_every_s = 0.02;
@@ -36,13 +38,17 @@ cause are named; the files hold everything before it).
 
 Example: an overhand knot tied in the paper's suture, with 35 nodes instead of 50
   ligature-lab run scenes/paper.toml --grippers scenes/operators/overhand.csv --duration 30 \
-      --set suture.nodes=35 --set contact.friction=0.3 --out out/overhand)";
+      --set suture.nodes=35 --set contact.friction=0.3 --out out/overhand
+and in a real one, by an operator that looks:
+  ligature-lab run scenes/suture-3-0.toml --tie overhand --seed 3 --duration 25 --out out/tied)";
 
 /// Long enough for the script and nine seconds after; ten seconds when no hand is there.
 double default_duration_s(const scene::GripperScript& script) {
   const double end_s = scene::end_time_s(script);
   return end_s > 0.0 ? end_s + 9.0 : 10.0;
 }
+
+constexpr double kTyingTakes_s = 60.0;  // more than any operator needs, with the knot watched for some time after
 
 void print(const RunSummary& s, const std::string& folder) {
   std::printf("%s, %d nodes, %lld ticks, %.3f s\n", s.model.c_str(), s.nodes, static_cast<long long>(s.ticks),
@@ -62,15 +68,20 @@ void print(const RunSummary& s, const std::string& folder) {
 int execute(const Arguments& a) {
   const auto scene = load_scene_or_refuse(a.scene, a.overrides);
   const auto script = a.grippers.empty() ? scene::GripperScript{} : load_script_or_refuse(a.grippers);
-  const double duration_s = a.duration_s.value_or(default_duration_s(script));
+  const double duration_s = a.duration_s.value_or(a.tie.empty() ? default_duration_s(script) : kTyingTakes_s);
   if (!(duration_s >= scene.time.tick_s && duration_s <= 1e6)) {
-    throw Refusal("--duration: found " + digits(duration_s) + ", allowed one tick (" +
-                  digits(scene.time.tick_s) + " s) .. 1e6 s");
+    throw Refusal("--duration: found " + digits(duration_s) + ", allowed one tick (" + digits(scene.time.tick_s) +
+                  " s) .. 1e6 s");
   }
   if (!(a.shape_every_s > 0.0 && std::isfinite(a.shape_every_s))) {
     throw Refusal("--shape-every: found " + digits(a.shape_every_s) + ", allowed more than 0 s");
   }
   Rehearsal rehearsal(scene, script, a.scene);
+  if (!a.tie.empty()) {
+    auto tier = sim::KnotTier::make(scene, a.tie, a.seed);
+    if (const auto* why = std::get_if<std::string>(&tier)) throw Refusal("--tie: " + *why);
+    rehearsal.let(std::get<sim::KnotTier>(std::move(tier)));
+  }
   const auto summary = run(rehearsal, {a.out, duration_s, a.shape_every_s});
   print(summary, a.out);
   if (summary.interrupted) std::fprintf(stderr, "ligature-lab: interrupted at t = %.3f s\n", summary.duration_s);
@@ -89,6 +100,10 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   run->add_option("--grippers", a->grippers, "Operator's script: CSV time,hand,x,y,z,grip")->type_name("FILE");
+  run->add_option("--tie", a->tie, "Instead of a script: an operator that looks at the thread ties this knot")
+      ->type_name("KNOT")
+      ->excludes("--grippers");
+  run->add_option("--seed", a->seed, "Which operator: pace, start, dwell, tremor")->capture_default_str();
   run->add_option("--duration", a->duration_s, "Simulated seconds [script's end + 9, or 10]")->type_name("S");
   run->add_option("--out", a->out, "Folder for the three files")->type_name("DIR")->capture_default_str();
   run->add_option("--shape-every", a->shape_every_s, "Seconds between shapes in shape.csv")

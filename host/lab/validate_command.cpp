@@ -95,7 +95,8 @@ struct Outcome {
   [[nodiscard]] const v::Finding* worst() const {
     const auto badness = [](const v::Finding& f) {
       if (!(f.error == f.error)) return 1e300;
-      return f.error > f.tolerance ? 1.0 + f.error / std::max(f.tolerance, 1e-3) : f.error / std::max(f.tolerance, 1e-12);
+      return f.error > f.tolerance ? 1.0 + f.error / std::max(f.tolerance, 1e-3)
+                                   : f.error / std::max(f.tolerance, 1e-12);
     };
     const v::Finding* worst = nullptr;
     for (const auto& f : findings) {
@@ -166,8 +167,9 @@ int show_convergence(const std::string& out) {
     progress.show(0.0, "six ladders");
     for (const auto& ladder : v::convergence()) {
       for (std::size_t k = 0; k < ladder.error.size(); ++k) {
-        table.row({k == 0 ? ladder.what : std::string(), ladder.resolution[k], ladder.error[k],
-                   k == 0 ? Cell(ladder.order() > 0.5 ? digits(ladder.order()) : std::string("none")) : Cell(std::string())});
+        table.row(
+            {k == 0 ? ladder.what : std::string(), ladder.resolution[k], ladder.error[k],
+             k == 0 ? Cell(ladder.order() > 0.5 ? digits(ladder.order()) : std::string("none")) : Cell(std::string())});
       }
     }
   }
@@ -180,7 +182,8 @@ int execute(const Arguments& a) {
   const auto model = model_of(a.model);
   const auto accuracy = accuracy_of(a.accuracy);
   const auto nodes = nodes_of(a);
-  if (!a.only.empty() && !v::find_case(a.only)) throw Refusal("--only: found " + a.only + ", allowed see validate --help");
+  if (!a.only.empty() && !v::find_case(a.only))
+    throw Refusal("--only: found " + a.only + ", allowed see validate --help");
   if (!a.out.empty()) make_folder(a.out);
   if (a.convergence) return show_convergence(a.out);
   std::vector<Outcome> outcomes;
@@ -209,7 +212,8 @@ int execute(const Arguments& a) {
   }
   std::printf("model %s\n", a.model.c_str());
   table.print();
-  std::printf("%d judged, %d failed, %zu not modelled\n", judged, failed, outcomes.size() - static_cast<std::size_t>(judged));
+  std::printf("%d judged, %d failed, %zu not modelled\n", judged, failed,
+              outcomes.size() - static_cast<std::size_t>(judged));
   if (!a.out.empty()) {
     write_files(a.out, a.model, outcomes);
     std::printf("files %s/{validate.csv,validate.json}\n", a.out.c_str());

@@ -20,7 +20,7 @@ struct GripKey {
 };
 
 // The implicit copy of the array below has a loop variable of the compiler's own, which the check takes for ours.
-struct GripperScript {  // NOLINT(bugprone-reserved-identifier)
+struct GripperScript {           // NOLINT(bugprone-reserved-identifier)
   std::vector<GripKey> keys[2];  ///< 0 = L, 1 = R; times strictly increase within a hand; empty: the hand is absent
 };
 

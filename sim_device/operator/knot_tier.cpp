@@ -33,7 +33,9 @@ Workplace workplace_of(const scene::Scene& scene, const Vec3& anchor_W) {
 class Dice {
  public:
   explicit Dice(std::uint32_t seed) : random_(seed * 2654435761U + 12345U) {}
-  double between(double low, double high) { return low + (high - low) * (static_cast<double>(random_()) / 4294967296.0); }
+  double between(double low, double high) {
+    return low + (high - low) * (static_cast<double>(random_()) / 4294967296.0);
+  }
   Vec3 vector(double size) {
     const double x = between(-size, size), y = between(-size, size), z = between(-size, size);
     return {x, y, z};
@@ -67,7 +69,8 @@ KnotTier::KnotTier(const scene::Scene& scene, const Knot& knot, const Workplace&
   place_.speed_m_per_s *= dice.between(0.85, 1.15);
   const Vec3 home = vec(scene.hands.workspace_origin_m);
   for (std::size_t h = 0; h < 2; ++h) {
-    const Vec3 start = home + dice.vector(0.05 * place.length_m) + Vec3(h == 0 ? -0.1 : 0.1, -0.1, 0.0) * place.length_m;
+    const Vec3 start =
+        home + dice.vector(0.05 * place.length_m) + Vec3(h == 0 ? -0.1 : 0.1, -0.1, 0.0) * place.length_m;
     hands_[h].rest_at(start, place_.speed_m_per_s);
     const double size = kTremor_m * scene.hands.workspace_scale * dice.between(0.5, 1.5);
     tremor_[h] = {Vec3(size, size, size), 2.0 * M_PI * (Vec3(10, 10, 10) + dice.vector(2.0)),

@@ -15,7 +15,8 @@ namespace ligature::sim {
 class KnotTier {
  public:
   /// @return or why not: an unknown knot, or a scene in which node 0 is not held.
-  static std::variant<KnotTier, std::string> make(const scene::Scene& scene, const std::string& knot, std::uint32_t seed);
+  static std::variant<KnotTier, std::string> make(const scene::Scene& scene, const std::string& knot,
+                                                  std::uint32_t seed);
 
   /// One tick: what both hands want now. @param sight may be older than now; nothing is assumed about how much.
   const std::array<HandWish, 2>& tick(const Sight& sight);

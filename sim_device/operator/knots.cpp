@@ -1,26 +1,20 @@
 #include "sim_device/operator/knots.hpp"
 
-#include <array>
 #include <algorithm>
+#include <array>
 
 namespace ligature::sim {
 namespace {
 
 constexpr Throw kOverhand[]{{1, false, 1}};
-constexpr Throw kFigureEight[]{{1, true, 1}};
-constexpr Throw kSquare[]{{1, false, 1}, {-1, false, 1}};
-constexpr Throw kGranny[]{{1, false, 1}, {1, false, 1}};
-constexpr Throw kSurgeons[]{{1, false, 2}, {-1, false, 1}};
 
-constexpr std::array<Knot, 5> kKnots{{{"overhand", "3_1", kOverhand},
-                                      {"figure-eight", "4_1", kFigureEight},
-                                      {"square", "3_1#3_1", kSquare},
-                                      {"granny", "3_1#3_1", kGranny},
-                                      {"surgeons", "3_1#5_1", kSurgeons}}};
+constexpr std::array<Knot, 1> kKnots{{{"overhand", "3_1", kOverhand}}};
 
 const Vec3 kSlant = Vec3(-0.75, 0.0, -0.66).normalized();  // the standing part runs down to the left
 
 const Vec3 kDown = Vec3(-0.1, 0.0, -1.0).normalized();
+
+constexpr double kWatch_s = 5.0;  // after letting go: does it stay?
 
 WhereAlong the_end() {
   return [](const Look& look) { return look.thread.length_m(); };
@@ -99,6 +93,7 @@ Moves plan(const Knot& knot, const Workplace& place) {
     m.push_back(ease());
   }
   m.push_back(let_go(kRightHand));
+  m.push_back(wait(kWatch_s));
   return m;
 }
 

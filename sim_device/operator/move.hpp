@@ -32,7 +32,8 @@ struct Look {
 
   /// The hand is where it was sent, to within `near_m`, in intention and in fact.
   [[nodiscard]] bool has_arrived(std::size_t hand, double near_m) const {
-    return hands[hand].to_go_m() < near_m && (sight.tool_W[hand] - hands[hand].p_W()).norm() < near_m + place.clearance_m;
+    return hands[hand].to_go_m() < near_m &&
+           (sight.tool_W[hand] - hands[hand].p_W()).norm() < near_m + place.clearance_m;
   }
 };
 

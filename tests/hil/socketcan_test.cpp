@@ -20,9 +20,7 @@ namespace {
 using platform::Receive;
 const can::Frame kFrame{0x181, 3, {1, 2, 3}};
 
-std::unique_ptr<platform::CanBus> opened() {
-  return std::move(std::get<0>(platform::open_can_bus("socketcan:vcan0")));
-}
+std::unique_ptr<platform::CanBus> opened() { return std::move(std::get<0>(platform::open_can_bus("socketcan:vcan0"))); }
 
 /// Somebody else on the bus, who may send what our own code never would.
 class Stranger {

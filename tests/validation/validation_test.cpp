@@ -46,8 +46,8 @@ class TheRodOfTwoHundred : public testing::TestWithParam<const char*> {};
 TEST_P(TheRodOfTwoHundred, Agrees) { expect_all_within(*find_case(GetParam()), {scene::Model::kRod, 200}); }
 
 INSTANTIATE_TEST_SUITE_P(Case, TheRodOfTwoHundred,
-                         testing::Values("elastica-tip", "elastica-heavy", "catenary", "elastic-string", "hanging-chain",
-                                         "cantilever", "clamped-twist", "localised-helix"),
+                         testing::Values("elastica-tip", "elastica-heavy", "catenary", "elastic-string",
+                                         "hanging-chain", "cantilever", "clamped-twist", "localised-helix"),
                          [](const auto& test) { return test_name(test.param, ""); });
 
 TEST(TheRodAtFine, DoesNotCreep) {

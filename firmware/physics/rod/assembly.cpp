@@ -100,7 +100,8 @@ void assemble(const Material& material, const State& state, Vec gravity, double 
       put(solver.couple[i], scaled_identity(bend * mesh.ke[i] - across) - stiff);
     }
     const double m = mesh.mass[i];
-    put(solver.diagonal[i], stiff_before + stiff + scaled_identity(m * inertia + bend * mesh.kd[i] + across_before + across));
+    put(solver.diagonal[i],
+        stiff_before + stiff + scaled_identity(m * inertia + bend * mesh.kd[i] + across_before + across));
     solver.skip[i] = bend * mesh.kb[i];
     solver.rhs[i] = m * (state.v[i] + dt_s * gravity) + dt_s * (here - before + state.load[i]);
     forces.edge[i] = before = here;

@@ -16,8 +16,8 @@ struct Arrays {
 
 /// One step of the recurrence. @param p, q nodes eliminated just before i; Order: how many of them there are.
 template <int Order>
-[[gnu::always_inline]] inline void eliminate(const Arrays& a, std::ptrdiff_t i, std::ptrdiff_t p, std::ptrdiff_t q, const Mat& a_ip,
-                      double a_iq) noexcept {
+[[gnu::always_inline]] inline void eliminate(const Arrays& a, std::ptrdiff_t i, std::ptrdiff_t p, std::ptrdiff_t q,
+                                             const Mat& a_ip, double a_iq) noexcept {
   Mat s = a.diagonal[i];
   Vec r = a.rhs[i];
   if constexpr (Order > 0) {

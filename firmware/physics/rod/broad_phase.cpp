@@ -10,7 +10,7 @@ namespace ligature::physics::rod {
 namespace {
 
 constexpr std::size_t kBlock = 8;
-constexpr float kSlack = 1.0001F;       // float rounding of centres and radii
+constexpr float kSlack = 1.0001F;     // float rounding of centres and radii
 constexpr std::size_t kTable = 2048;  // places for impulses: a few times the most contacts there can be
 
 std::size_t place_of(std::int32_t a, std::int32_t b) noexcept {

@@ -45,7 +45,8 @@ struct ExtremesMap {
   void count(const Ending& e);
 };
 
-/// The rod's map: scenes/suture-3-0.toml and suture-3-0-knot.toml, every dial over its decades at six steps, odd scenes.
+/// The rod's map: scenes/suture-3-0.toml and suture-3-0-knot.toml, every dial over its decades at six steps, odd
+/// scenes.
 [[nodiscard]] ExtremesMap rod_extremes(const std::filesystem::path& scenes);
 
 }  // namespace ligature::lab

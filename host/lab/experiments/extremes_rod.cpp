@@ -66,7 +66,9 @@ void add_odd_ones(ExtremesMap& result, const scene::Scene& base, const scene::Sc
   for (const int n : {2, 3, 4, 5, 20, 1000, 2000}) {
     with(("N = " + std::to_string(n)).c_str(), n > 500 ? 60 : kTicks, [&](scene::Scene& s) { s.suture.nodes = n; });
   }
-  with("all nodes in one point", kTicks, [&](scene::Scene& s) { place(s, [](int) { return scene::Vec{0, 0, 0.35}; }); });
+  with("all nodes in one point", kTicks, [&](scene::Scene& s) {
+    place(s, [](int) { return scene::Vec{0, 0, 0.35}; });
+  });
   with("two nodes in one point", kTicks, [&](scene::Scene& s) {
     place(s, [](int k) { return scene::Vec{0, 0, 0.35 - 0.3 / 153 * (k == 20 ? 19 : k)}; });
   });
@@ -76,21 +78,27 @@ void add_odd_ones(ExtremesMap& result, const scene::Scene& base, const scene::Sc
   with("folded at every node", kTicks, [&](scene::Scene& s) {
     place(s, [](int k) { return scene::Vec{0, 0, 0.35 - 0.3 / 153 * (k % 2)}; });
   });
-  with("laid out three times too long", kTicks,
-       [&](scene::Scene& s) { place(s, [](int k) { return scene::Vec{0, 0, 0.35 - 0.9 / 153 * k}; }); });
-  with("held at both ends, twice its length apart", kTicks,
-       [](scene::Scene& s) { s.world.fixed.push_back({-1, {0.6, 0, 0.35}, std::nullopt}); });
-  with("held at both ends, in one point", kTicks,
-       [](scene::Scene& s) { s.world.fixed.push_back({-1, {0, 0, 0.35}, std::nullopt}); });
-  with("clamped against its own direction", kTicks,
-       [](scene::Scene& s) { s.world.fixed = {{0, {0, 0, 0.35}, scene::Vec{0, 0, 1}}}; });
+  with("laid out three times too long", kTicks, [&](scene::Scene& s) {
+    place(s, [](int k) { return scene::Vec{0, 0, 0.35 - 0.9 / 153 * k}; });
+  });
+  with("held at both ends, twice its length apart", kTicks, [](scene::Scene& s) {
+    s.world.fixed.push_back({-1, {0.6, 0, 0.35}, std::nullopt});
+  });
+  with("held at both ends, in one point", kTicks, [](scene::Scene& s) {
+    s.world.fixed.push_back({-1, {0, 0, 0.35}, std::nullopt});
+  });
+  with("clamped against its own direction", kTicks, [](scene::Scene& s) {
+    s.world.fixed = {{0, {0, 0, 0.35}, scene::Vec{0, 0, 1}}};
+  });
   with("desk above the thread", kTicks, [](scene::Scene& s) { s.world.desk_height_m = 0.5; });
-  with("a peg through the thread", kTicks,
-       [](scene::Scene& s) { s.world.pegs.push_back({{0, -1, 0.2}, {0, 1, 0.2}, 0.01}); });
+  with("a peg through the thread", kTicks, [](scene::Scene& s) {
+    s.world.pegs.push_back({{0, -1, 0.2}, {0, 1, 0.2}, 0.01});
+  });
   with("gravity 1e4", kTicks, [](scene::Scene& s) { s.world.gravity_m_per_s2 = {0, 0, -1e4}; });
   with("friction 1000", kTicks, [](scene::Scene& s) { s.contact.friction = 1000; });
   with("diameter 2 cm", kTicks, [](scene::Scene& s) { s.suture.radius_m = 0.01; });
-  with("no stiffness at all", kTicks, [](scene::Scene& s) { s.suture.rod.EA_N = s.suture.rod.EI_N_m2 = s.suture.rod.GJ_N_m2 = 0; });
+  with("no stiffness at all", kTicks,
+       [](scene::Scene& s) { s.suture.rod.EA_N = s.suture.rod.EI_N_m2 = s.suture.rod.GJ_N_m2 = 0; });
   for (const double speed : {0.1, 1.0, 10.0, 100.0, 1e4}) {
     auto s = base;
     const double whole_s = kTicks * s.time.tick_s;

@@ -25,7 +25,8 @@ bool run_quietly(std::vector<std::string> words) {
   argv.push_back(nullptr);
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
-  for (const int fd : {STDOUT_FILENO, STDERR_FILENO}) posix_spawn_file_actions_addopen(&files, fd, "/dev/null", O_WRONLY, 0);
+  for (const int fd : {STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_addopen(&files, fd, "/dev/null", O_WRONLY, 0);
   pid_t child = 0;
   int status = -1;
   if (posix_spawnp(&child, argv[0], &files, nullptr, argv.data(), environ) == 0) waitpid(child, &status, 0);
@@ -51,10 +52,9 @@ std::optional<Spread> count_instructions(const Setting& setting, int ticks) {
   std::error_code none;
   const auto self = fs::read_symlink("/proc/self/exe", none).string();
   const std::string tick = "ligature::lab::measured_tick*";
-  const bool ran =
-      run_quietly({"valgrind", "--tool=callgrind", "--toggle-collect=" + tick, "--dump-after=" + tick,
-                   "--callgrind-out-file=" + (folder / "out").string(), self, "pareto", "--one", setting.text(), "--ticks",
-                   std::to_string(ticks)});
+  const bool ran = run_quietly({"valgrind", "--tool=callgrind", "--toggle-collect=" + tick, "--dump-after=" + tick,
+                                "--callgrind-out-file=" + (folder / "out").string(), self, "pareto", "--one",
+                                setting.text(), "--ticks", std::to_string(ticks)});
   std::vector<double> counts;
   if (ran) {
     for (const auto& file : fs::directory_iterator(folder, none)) {

@@ -38,7 +38,8 @@ Setting setting_of(const std::string& text) {
     if (!words.empty() && words[0] == scene::name(m)) s.model = m, known = true;
   }
   try {
-    if (known && words.size() == 3 && std::find(std::begin(kPresets), std::end(kPresets), words[2]) != std::end(kPresets)) {
+    if (known && words.size() == 3 &&
+        std::find(std::begin(kPresets), std::end(kPresets), words[2]) != std::end(kPresets)) {
       s.nodes = std::stoi(words[1]);
       s.preset = words[2];
       return s;
@@ -63,7 +64,8 @@ Setting finest(Model model) {
 
 std::vector<Setting> all_settings(bool quick) {
   std::vector<Setting> all;
-  const std::vector<int> nodes = quick ? std::vector<int>{50, 154} : std::vector<int>{20, 35, 50, 100, 154, 200, 350, 500};
+  const std::vector<int> nodes =
+      quick ? std::vector<int>{50, 154} : std::vector<int>{20, 35, 50, 100, 154, 200, 350, 500};
   for (const int n : nodes) {
     for (const Model m : kPaper) {
       const int least = stable_substeps(m, n);

@@ -64,6 +64,8 @@ int stable_substeps(scene::Model model, int nodes) {
   return scene.time.substeps;
 }
 
-[[gnu::noinline]] void measured_tick(Specimen& specimen, const validate::Tools& tools) noexcept { specimen.tick(tools); }
+[[gnu::noinline]] void measured_tick(Specimen& specimen, const validate::Tools& tools) noexcept {
+  specimen.tick(tools);
+}
 
 }  // namespace ligature::lab

@@ -81,8 +81,8 @@ void pull_knot(const Setting& setting, int cost_only, Traces& t) {
   t.knot = knot::recognise(points, false).type;
 }
 
-/// Worst finding of elastica and catenary, a share of L or of the quantity. The explicit models need minutes for it beyond
-/// 50 nodes: NaN.
+/// Worst finding of elastica and catenary, a share of L or of the quantity. The explicit models need minutes for it
+/// beyond 50 nodes: NaN.
 double static_error(const Setting& setting) {
   if (setting.model != scene::Model::kRod && setting.nodes > 50) return kNan;
   double worst = 0.0;

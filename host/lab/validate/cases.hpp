@@ -35,7 +35,7 @@ using Findings = std::vector<Finding>;
 
 struct Case {
   const char* name;
-  const char* about;                ///< reference, in a few words
+  const char* about;  ///< reference, in a few words
   bool (*is_modelled)(scene::Model);
   Findings (*examine)(const Subject&);
   int only_nodes;  ///< 0: at whatever is asked for; else the experiment has its own number of nodes
@@ -48,27 +48,27 @@ struct Case {
 [[nodiscard]] const Case* find_case(const std::string& name);
 
 // The experiments, by file.
-Findings elastica_tip_load(const Subject&);      // elastica.cpp
+Findings elastica_tip_load(const Subject&);  // elastica.cpp
 Findings elastica_heavy(const Subject&);
-Findings catenary(const Subject&);               // strings.cpp
+Findings catenary(const Subject&);  // strings.cpp
 Findings elastic_string(const Subject&);
-Findings hanging_chain(const Subject&);          // vibration.cpp
+Findings hanging_chain(const Subject&);  // vibration.cpp
 Findings cantilever_frequencies(const Subject&);
 Findings cantilever_damping(const Subject&);
-Findings clamped_twist(const Subject&);          // twist.cpp
+Findings clamped_twist(const Subject&);  // twist.cpp
 Findings michell_ring(const Subject&);
-Findings localised_helix(const Subject&);        // helix.cpp
-Findings capstan_polygonal(const Subject&);      // capstan.cpp
+Findings localised_helix(const Subject&);    // helix.cpp
+Findings capstan_polygonal(const Subject&);  // capstan.cpp
 Findings capstan_exponential(const Subject&);
-Findings incline_threshold(const Subject&);      // friction.cpp
+Findings incline_threshold(const Subject&);  // friction.cpp
 Findings stopping_distance(const Subject&);
 Findings stick_creep(const Subject&);
-Findings crossing_threads(const Subject&);       // contact.cpp
+Findings crossing_threads(const Subject&);  // contact.cpp
 Findings heavy_rod_lifted(const Subject&);
-Findings loose_overhand(const Subject&);         // overhand.cpp
+Findings loose_overhand(const Subject&);  // overhand.cpp
 Findings overhand_hysteresis(const Subject&);
-Findings tight_trefoil(const Subject&);          // trefoil.cpp
-Findings paper_static_shapes(const Subject&);    // paper_shapes.cpp
+Findings tight_trefoil(const Subject&);        // trefoil.cpp
+Findings paper_static_shapes(const Subject&);  // paper_shapes.cpp
 Findings paper_knots(const Subject&);
 
 }  // namespace ligature::validate

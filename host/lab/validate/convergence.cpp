@@ -42,7 +42,8 @@ Vec swung_tip(int substeps) {
   return rod.state().x.back();
 }
 
-/// First frequency of a hanging chain from the quarter period of its first mode: when the projection first crosses zero.
+/// First frequency of a hanging chain from the quarter period of its first mode: when the projection first crosses
+/// zero.
 double chain_error(int n, double steps_per_unit) {
   const double truth = 1.20241277885;  // j01 / 2 sqrt(g / L)
   const double dt = 1.0 / steps_per_unit;
@@ -112,8 +113,9 @@ std::vector<Ladder> convergence() {
     return std::abs(localised_helix_of(static_cast<int>(n), 1, false).angle_rad / fine - 1.0);
   }));
   const double still = localised_helix_of(100, 8, false).angle_rad;
-  all.push_back(ladder("the same at rest, N = 100, against 8 substeps: a balance knows no step", {1, 2, 4},
-                       [&](double k) { return std::abs(localised_helix_of(100, static_cast<int>(k), false).angle_rad / still - 1.0); }));
+  all.push_back(ladder(
+      "the same at rest, N = 100, against 8 substeps: a balance knows no step", {1, 2, 4},
+      [&](double k) { return std::abs(localised_helix_of(100, static_cast<int>(k), false).angle_rad / still - 1.0); }));
   return all;
 }
 

@@ -8,8 +8,8 @@ namespace ligature::validate {
 
 /// Errors of one quantity at resolutions that double.
 struct Ladder {
-  std::string what;                 ///< quantity and what is refined
-  std::vector<double> resolution;   ///< nodes, or substeps
+  std::string what;                ///< quantity and what is refined
+  std::vector<double> resolution;  ///< nodes, or substeps
   std::vector<double> error;
   /// Least-squares slope of -log(error) over log(resolution).
   [[nodiscard]] double order() const;

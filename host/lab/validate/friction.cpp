@@ -62,8 +62,8 @@ Findings stick_creep(const Subject& subject) {  // half a degree below the thres
     auto sim = build(scene);
     way_after(sim, 100);
     const double creep = std::abs(way_after(sim, 1000)) / (2.0 * scene.suture.radius_m);
-    all.push_back(absolute("mu = " + std::to_string(mu).substr(0, 3) + ": creep, diameters/s", 0.0, creep, 1e-3,
-                           "diameters/s"));
+    all.push_back(
+        absolute("mu = " + std::to_string(mu).substr(0, 3) + ": creep, diameters/s", 0.0, creep, 1e-3, "diameters/s"));
   }
   return all;
 }

@@ -6,7 +6,7 @@ namespace ligature::validate {
 
 /// What a twisted and shortened rod of n nodes settles into.
 struct Helix {
-  double angle_rad = 0.0;       ///< largest angle between tangent and axis, interpolated
+  double angle_rad = 0.0;  ///< largest angle between tangent and axis, interpolated
   double moment_Nm = 0.0;
   double envelope_error = 0.0;  ///< largest |f - tanh^2(sigma s)|
 };

@@ -88,7 +88,8 @@ void lay_overhand(scene::Scene& s, double loop_m) {
   // Three half turns while a strand passes the foot.
   const auto turn = [&](double at) { return 3.0 * kPi * std::clamp(0.5 * (at / half + 1.0), 0.0, 1.0); };
   lay(s, [&](double along) -> Vec3 {
-    const double first = along - tail, second = first - round;  // from the first and from the second passing of the foot
+    const double first = along - tail,
+                 second = first - round;  // from the first and from the second passing of the foot
     const double phase = first < 0.5 * round ? kPi + turn(first) : 2.0 * kPi + turn(second);
     const Vec3 centre = first < 0.0 ? Vec3(first, 0, 0) : second < 0.0 ? loop(first) : Vec3(second, 0, 0);
     return centre + aside * Vec3(0, std::cos(phase), std::sin(phase));
@@ -116,7 +117,8 @@ double EndPull::tension_N() const {
   return 0.5 * (sim_.hand(physics::Hand::kLeft).f_W.x() - sim_.hand(physics::Hand::kRight).f_W.x());
 }
 
-Findings loose_overhand(const Subject& subject) {  // first order in sqrt(a / R); the leading order alone is 9 % off at 0.01
+Findings loose_overhand(
+    const Subject& subject) {  // first order in sqrt(a / R); the leading order alone is 9 % off at 0.01
   Findings all;
   for (const double a_over_R : {0.01, 0.005}) {
     const auto row = row_of(a_over_R, 0.0);
@@ -127,13 +129,14 @@ Findings loose_overhand(const Subject& subject) {  // first order in sqrt(a / R)
   return all;
 }
 
-// Half the loop's width, mu sigma (a / R)^(3/2), is a leading order: the next one adds about 5 sqrt(a / R) of it (15 % at
-// 0.001, 48 % at 0.01; docs/accuracy.md), so the knot is as loose as a tolerance of 20 % asks for.
+// Half the loop's width, mu sigma (a / R)^(3/2), is a leading order: the next one adds about 5 sqrt(a / R) of it (15 %
+// at 0.001, 48 % at 0.01; docs/accuracy.md), so the knot is as loose as a tolerance of 20 % asks for.
 Findings overhand_hysteresis(const Subject& subject) {
   const double a_over_R = 0.001, mu = 0.02;
   double sigma = 0.0;
   for (const auto& row : reference_rows("07_elastic_knot_constants.csv")) {
-    if (number(row, "n(unknotting_number;1=trefoil,2=cinquefoil)") == 1) sigma = number(row, "sigma_radius_based=J/(2sqrt2)");
+    if (number(row, "n(unknotting_number;1=trefoil,2=cinquefoil)") == 1)
+      sigma = number(row, "sigma_radius_based=J/(2sqrt2)");
   }
   const double up = sliding_tension(subject, a_over_R, mu, 1), down = sliding_tension(subject, a_over_R, mu, -1);
   return {relative("a/R = 0.001, mu = 0.02: half the width of the loop, T a^2/B", mu * sigma * std::pow(a_over_R, 1.5),

@@ -5,8 +5,8 @@
 
 namespace ligature::validate {
 
-/// Lays the thread as an overhand knot: tails along -x and +x, one loop of 2 pi loop_m above them, and three half turns of
-/// the two strands about each other along its foot. Its excess length is then near 2 pi loop_m.
+/// Lays the thread as an overhand knot: tails along -x and +x, one loop of 2 pi loop_m above them, and three half turns
+/// of the two strands about each other along its foot. Its excess length is then near 2 pi loop_m.
 void lay_overhand(scene::Scene& scene, double loop_m);
 
 /// Excess length of a knotted thread held at its ends, m: what is missing between the hands.

@@ -75,13 +75,9 @@ void set_bending(scene::Scene& s, double EI_N_m2) {
 
 void set_stretch(scene::Scene& s, double EA_N) { s.suture.rod.EA_N = s.suture.paper.stretch_N = EA_N; }
 
-void set_drag(scene::Scene& s, double per_s) {
-  s.suture.rod.air_drag_per_s = s.suture.paper.air_drag_per_s = per_s;
-}
+void set_drag(scene::Scene& s, double per_s) { s.suture.rod.air_drag_per_s = s.suture.paper.air_drag_per_s = per_s; }
 
-void clamp_start(scene::Scene& s) {
-  s.world.fixed.push_back({0, {0, 0, 0}, scene::Vec{1, 0, 0}});
-}
+void clamp_start(scene::Scene& s) { s.world.fixed.push_back({0, {0, 0, 0}, scene::Vec{1, 0, 0}}); }
 
 double clamp_end_m(const scene::Scene& s) { return is_rod(s) ? 0.0 : 0.5 * segment_m(s); }
 

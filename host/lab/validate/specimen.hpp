@@ -15,8 +15,8 @@ using Tools = std::array<physics::ToolInput, 2>;
 [[nodiscard]] inline bool is_rod(const scene::Scene& s) noexcept { return s.suture.model == scene::Model::kRod; }
 
 /// Length, density and EI 1, EA so large that its share of any result is 1e-5; straight along +x from the origin; no
-/// gravity, contact, twist or damping but air drag `drag_per_s`. One tick lasts tick_s, in ten implicit steps (rod) or as
-/// many explicit ones as make_stable() finds (paper models).
+/// gravity, contact, twist or damping but air drag `drag_per_s`. One tick lasts tick_s, in ten implicit steps (rod) or
+/// as many explicit ones as make_stable() finds (paper models).
 [[nodiscard]] scene::Scene unit_thread(const Subject& subject, double tick_s, double drag_per_s);
 
 /// The thread of scenes/suture-3-0.toml (0.3 mm nylon), or of scenes/paper.toml for a paper model, of another length

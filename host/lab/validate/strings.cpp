@@ -56,8 +56,9 @@ Findings elastic_string(const Subject& subject) {  // closed form; lumped masses
     auto sim = build(scene);
     double extension = std::numeric_limits<double>::quiet_NaN();
     if (settle(sim, no_hands(), 1e-8, 4000)) extension = -sim.nodes_W().back().z() - 1.0;
-    all.push_back(relative("wL/EA = " + row.at("wL_over_EA") + ", tip " + row.at("tip_weight_over_wL") + " wL: extension/L",
-                           number(row, "position_over_L") - 1.0, extension, 5e-3));
+    all.push_back(
+        relative("wL/EA = " + row.at("wL_over_EA") + ", tip " + row.at("tip_weight_over_wL") + " wL: extension/L",
+                 number(row, "position_over_L") - 1.0, extension, 5e-3));
   }
   return all;
 }

@@ -44,10 +44,10 @@ double nearest_strands(const std::vector<Vec>& x, double length) {
   return least;
 }
 
-/// The rod has no closed form: the ends are clamped in line, so near that nothing fits between them (and so far that only
-/// the clamped nodes themselves touch), and the straight bridge between them counts as part of the knot. The thread's
-/// length shrinks until it is taut. At 50 nodes a segment of the tight knot is 0.34 diameters; contacts of segments less
-/// than 0.6 diameters apart are not watched, so more nodes would only add contacts.
+/// The rod has no closed form: the ends are clamped in line, so near that nothing fits between them (and so far that
+/// only the clamped nodes themselves touch), and the straight bridge between them counts as part of the knot. The
+/// thread's length shrinks until it is taut. At 50 nodes a segment of the tight knot is 0.34 diameters; contacts of
+/// segments less than 0.6 diameters apart are not watched, so more nodes would only add contacts.
 Tight tighten(int n) {
   Material m;
   const double bridge = 0.7 * 2.0 * kRadius, whole = 40.0 * 2.0 * kRadius;
@@ -64,7 +64,8 @@ Tight tighten(int n) {
   constexpr int kFine = 4000;
   std::vector<double> along(kFine + 1, 0.0);
   const auto place = [&](int k) { return curve(2.0 * std::numbers::pi * k / kFine); };
-  for (int k = 1; k <= kFine; ++k) along[static_cast<std::size_t>(k)] = along[static_cast<std::size_t>(k - 1)] + norm(place(k) - place(k - 1));
+  for (int k = 1; k <= kFine; ++k)
+    along[static_cast<std::size_t>(k)] = along[static_cast<std::size_t>(k - 1)] + norm(place(k) - place(k - 1));
   const double scale = whole / along.back();
   for (int i = 0, k = 0; i < n; ++i) {
     const double wanted = (along.back() - bridge / scale) * i / (n - 1);

@@ -1,12 +1,13 @@
-// Twist: two classic instabilities. A straight clamped rod and a ring are wound to 2 % under and over the critical moment.
+// Twist: two classic instabilities. A straight clamped rod and a ring are wound to 2 % under and over the critical
+// moment.
 
 #include <cmath>
 #include <numbers>
 #include <string>
 
+#include "host/lab/validate/cases.hpp"
 #include "host/lab/validate/reference.hpp"
 #include "host/lab/validate/rods.hpp"
-#include "host/lab/validate/cases.hpp"
 
 namespace ligature::validate {
 namespace {
@@ -86,21 +87,23 @@ Findings clamped_twist(const Subject& subject) {  // ML/B = 8.98682, root of tan
     if (number(row, "TL2_over_B") == 0.0) critical = number(row, "ML_over_B_clamped_clamped");
   }
   const double found = critical * threshold(0.95, 1.05, 7, [&](double share) {
-    return clamped_rod_growth(subject.nodes, share * critical) > 0.0;
-  });
+                         return clamped_rod_growth(subject.nodes, share * critical) > 0.0;
+                       });
   return {relative("ML/B at which the straight rod buckles", critical, found, 0.02)};
 }
 
-Findings michell_ring(const Subject& subject) {  // sqrt(3) B / C turns [Michell 1890]; clamped at one point: rigid motion
+Findings michell_ring(
+    const Subject& subject) {  // sqrt(3) B / C turns [Michell 1890]; clamped at one point: rigid motion
   Findings all;
   for (const auto& row : reference_rows("04_michell_ring.csv")) {
     const double ratio = number(row, "B_over_C(=EI/GJ=1+nu_for_circular)");
     if (ratio != 1.0 && ratio != 1.4) continue;
     const double found = number(row, "critical_twist_turns") * threshold(0.96, 1.04, 4, [&](double share) {
-      return twisted_ring_buckles(subject.nodes, share, ratio);
-    });
-    all.push_back(relative("B/C = " + row.at("B_over_C(=EI/GJ=1+nu_for_circular)") + ": turns at which the ring buckles",
-                           number(row, "critical_twist_turns"), found, 0.02));
+                           return twisted_ring_buckles(subject.nodes, share, ratio);
+                         });
+    all.push_back(
+        relative("B/C = " + row.at("B_over_C(=EI/GJ=1+nu_for_circular)") + ": turns at which the ring buckles",
+                 number(row, "critical_twist_turns"), found, 0.02));
   }
   return all;
 }

@@ -92,9 +92,7 @@ struct Ringing {
     lay(scene, [&](double at) { return Vec3(at, kSmall * length_m_ * shape(at), 0); });
     sim = build(scene);
   }
-  double shape(double s) const {
-    return cantilever_shape(beta_, std::max(0.0, s - clamp_end_m(scene)) / length_m_);
-  }
+  double shape(double s) const { return cantilever_shape(beta_, std::max(0.0, s - clamp_end_m(scene)) / length_m_); }
   /// Projection on the mode: others drop out.
   double amplitude() const {
     double q = 0.0;
@@ -127,8 +125,8 @@ Findings hanging_chain(const Subject& subject) {  // zeros of Laguerre polynomia
     const auto y = chain_shape(masses, omega);
     const double found = subject.model == scene::Model::kRod ? chain_frequency_of_rod(masses, omega, y)
                                                              : chain_frequency_of_paper(subject, omega, y);
-    all.push_back(relative(row.at("N_masses") + " masses, mode " + row.at("mode") + ": omega sqrt(L/g)", omega, found,
-                           5e-3));
+    all.push_back(
+        relative(row.at("N_masses") + " masses, mode " + row.at("mode") + ": omega sqrt(L/g)", omega, found, 5e-3));
   }
   return all;
 }
@@ -159,7 +157,8 @@ double numerical_damping(const Subject& subject, scene::Accuracy accuracy, int m
   Ringing ringing(scene, beta, length);
   const double from = std::abs(ringing.amplitude());
   // Whole periods later the amplitude is at its peak again, to second order in the error of the period.
-  const int periods = 4, ticks = static_cast<int>(std::lround(periods * 2.0 * std::numbers::pi / omega / scene.time.tick_s));
+  const int periods = 4,
+            ticks = static_cast<int>(std::lround(periods * 2.0 * std::numbers::pi / omega / scene.time.tick_s));
   double peak = 0.0;
   const int around = ticks / (4 * periods);
   for (int k = 0; k < ticks + around; ++k) {
@@ -171,9 +170,8 @@ double numerical_damping(const Subject& subject, scene::Accuracy accuracy, int m
 
 Findings cantilever_damping(const Subject& subject) {
   Findings all;
-  const std::pair<scene::Accuracy, const char*> levels[] = {{scene::Accuracy::kFast, "fast"},
-                                                            {scene::Accuracy::kBalanced, "balanced"},
-                                                            {scene::Accuracy::kFine, "fine"}};
+  const std::pair<scene::Accuracy, const char*> levels[] = {
+      {scene::Accuracy::kFast, "fast"}, {scene::Accuracy::kBalanced, "balanced"}, {scene::Accuracy::kFine, "fine"}};
   for (const auto& [accuracy, name] : levels) {
     for (int mode = 1; mode <= 3; ++mode) {
       const double zeta = numerical_damping(subject, accuracy, mode);

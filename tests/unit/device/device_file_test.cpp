@@ -59,10 +59,12 @@ TEST(DeviceFile, OmniSaysWhatTheWireWasMadeFor) {
 TEST(DeviceFile, RefusesInOneLineWithPlaceAndAllowed) {
   const std::string good = text_of(kFolder + "omni.toml");
   EXPECT_EQ(refusal(good), "taken");
-  const std::string unmarked = refusal(replaced(good, "peak_force_N = {value = 3.3, source = \"datasheet\"}", "peak_force_N = 3.3"));
+  const std::string unmarked =
+      refusal(replaced(good, "peak_force_N = {value = 3.3, source = \"datasheet\"}", "peak_force_N = 3.3"));
   EXPECT_NE(unmarked.find("limits.peak_force_N"), std::string::npos) << unmarked;
   EXPECT_NE(unmarked.find("d.toml:"), std::string::npos) << unmarked;
-  const std::string rumour = refusal(replaced(good, "value = 3.3, source = \"datasheet\"", "value = 3.3, source = \"rumour\""));
+  const std::string rumour =
+      refusal(replaced(good, "value = 3.3, source = \"datasheet\"", "value = 3.3, source = \"rumour\""));
   EXPECT_NE(rumour.find("one of \"assumed\", \"datasheet\", \"measured\""), std::string::npos) << rumour;
   const std::string missing = refusal(replaced(good, "gear = {value = 1.0, source = \"assumed\"}", ""));
   EXPECT_NE(missing.find("key 'gear' is missing"), std::string::npos) << missing;

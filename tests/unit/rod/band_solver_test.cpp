@@ -25,7 +25,8 @@ Dense dense(const BandSolver& s, int n) {
       d.r(3 * i + row) = s.rhs[k][row];
       for (int col = 0; col < 3; ++col) {
         d.a(3 * i + row, 3 * i + col) = column(s.diagonal[k], col)[row];
-        if (i + 1 < n) d.a(3 * i + row, 3 * i + 3 + col) = d.a(3 * i + 3 + col, 3 * i + row) = column(s.couple[k], col)[row];
+        if (i + 1 < n)
+          d.a(3 * i + row, 3 * i + 3 + col) = d.a(3 * i + 3 + col, 3 * i + row) = column(s.couple[k], col)[row];
       }
       if (i + 2 < n) d.a(3 * i + row, 3 * i + 6 + row) = d.a(3 * i + 6 + row, 3 * i + row) = s.skip[k];
     }

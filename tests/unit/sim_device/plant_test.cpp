@@ -44,8 +44,10 @@ TEST(Plant, StaysWithinItsStopsUnderFullTorque) {
       EXPECT_LE(std::abs(q[0]), plant.parameters().linkage.max_rad()[0]);
       EXPECT_GE(q[1], plant.parameters().linkage.min_rad()[1]);
       EXPECT_LE(q[1], plant.parameters().linkage.max_rad()[1]);
-      EXPECT_NEAR(q[2] - q[1],
-                  std::clamp(q[2] - q[1], plant.parameters().linkage.min_rad()[2], plant.parameters().linkage.max_rad()[2]), 1e-12);
+      EXPECT_NEAR(
+          q[2] - q[1],
+          std::clamp(q[2] - q[1], plant.parameters().linkage.min_rad()[2], plant.parameters().linkage.max_rad()[2]),
+          1e-12);
     }
   }
 }
@@ -105,8 +107,8 @@ TEST(Hand,
   double before_J = energy();
   const double start_J = before_J;
   for (int i = 0; i < 20000; ++i) {
-    plant.step(Vec3::Zero(),
-               hand.arm_force_D_N(anchor, Vec3::Zero(), plant.tip_D_m(), plant.tip_velocity_D_m_per_s()), kStep_s);
+    plant.step(Vec3::Zero(), hand.arm_force_D_N(anchor, Vec3::Zero(), plant.tip_D_m(), plant.tip_velocity_D_m_per_s()),
+               kStep_s);
     ASSERT_LE(energy(), before_J + 1e-4 * start_J);
     before_J = energy();
   }
