@@ -9,6 +9,8 @@
 #include <thread>
 #include <utility>
 
+#include "firmware/telemetry/messages.hpp"
+
 namespace ligature::telemetry {
 namespace {
 
@@ -72,8 +74,11 @@ void LcmLink::wait(std::int64_t at_most_ms) {
   }
 }
 
-void LcmLink::receive(const lcm::ReceiveBuffer*, const std::string&, const ligature_msg::command_t* command) {
+/// Decoded here and not by the library, whose generated decoder a hostile message can make throw.
+void LcmLink::receive(const lcm::ReceiveBuffer* received, const std::string&) {
   if (!on_command_) return;
+  const auto command = command_of({static_cast<const std::byte*>(received->data), received->data_size});
+  if (!command) return;
   if (const auto ack = on_command_(*command)) answer(*ack);
 }
 

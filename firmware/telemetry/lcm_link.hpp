@@ -51,7 +51,7 @@ class LcmLink final : public Sink {
   void publish(const char* channel, const Message& m) {
     if (!open_ || lcm_->publish(channel, &m) != 0) ++failures_;
   }
-  void receive(const lcm::ReceiveBuffer*, const std::string&, const ligature_msg::command_t* command);
+  void receive(const lcm::ReceiveBuffer* received, const std::string& channel);
 
   std::unique_ptr<lcm::LCM> lcm_;
   bool open_ = false;

@@ -1,7 +1,9 @@
 #include "firmware/telemetry/messages.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <span>
+#include <string>
 
 namespace ligature::telemetry {
 namespace {
@@ -75,6 +77,20 @@ ligature_msg::thread_t to_message(const rt::ThreadSnapshot& s, double radius_m, 
   m.turn_rad.assign(s.turn_rad.begin(), s.turn_rad.begin() + s.count);
   std::ranges::copy(s.grasped_node, m.grasped_node);
   return m;
+}
+
+std::optional<ligature_msg::command_t> command_of(std::span<const std::byte> message) {
+  constexpr std::size_t kLongest = 65'536;  // a name of a scene or parameter needs far less
+  if (message.size() > kLongest) return std::nullopt;
+  try {
+    ligature_msg::command_t command;
+    const auto size = static_cast<int>(message.size());
+    if (command.decode(message.data(), 0, size) != size) return std::nullopt;
+    if (command.text.find('\0') != std::string::npos) return std::nullopt;
+    return command;
+  } catch (const std::exception&) {  // a text of length 0, which must be 1 at least: its zero
+    return std::nullopt;
+  }
 }
 
 }  // namespace ligature::telemetry

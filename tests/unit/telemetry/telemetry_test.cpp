@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware/telemetry/lcm_link.hpp"
+#include "firmware/telemetry/messages.hpp"
 
 namespace ligature::telemetry {
 namespace {
@@ -190,6 +191,35 @@ TEST_F(TelemetryTest, SenselessCommandsAreRefusedWithAReason) {
   EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_RESET_FAULT), 0).accepted, 1);
   for (int i = 0; i < 100; ++i) (void)telemetry.handle(command(ligature_msg::command_t::KIND_STOP), 0);
   EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_STOP), 0).reason, "too many commands at once");
+}
+
+std::vector<std::byte> bytes_of(const ligature_msg::command_t& c) {
+  std::vector<std::byte> bytes(static_cast<std::size_t>(c.getEncodedSize()));
+  EXPECT_GT(c.encode(bytes.data(), 0, static_cast<int>(bytes.size())), 0);
+  return bytes;
+}
+
+TEST(CommandOf, TakesWhatWasEncodedAndNothingElse) {
+  ligature_msg::command_t c{};
+  c.id = 5;
+  c.text = "desk.toml";
+  const auto good = bytes_of(c);
+  ASSERT_TRUE(command_of(good));
+  EXPECT_EQ(command_of(good)->text, "desk.toml");
+  for (std::size_t n = 0; n < good.size(); ++n) EXPECT_FALSE(command_of(std::span(good).first(n))) << n << " bytes";
+  auto longer = good;
+  longer.push_back(std::byte{0});
+  EXPECT_FALSE(command_of(longer));
+  EXPECT_FALSE(command_of(std::vector<std::byte>(100'000)));
+}
+
+TEST(CommandOf, SurvivesEveryLengthThatATextCanClaim) {
+  constexpr std::size_t kTextLength = 8 + 8 + 8 + 1;  // hash, utime, id, kind
+  auto message = bytes_of({});
+  for (const unsigned claimed : {0U, 2U, 100U, 0x7FFF'FFFFU, 0x8000'0000U, 0xFFFF'FFFFU}) {
+    for (std::size_t i = 0; i < 4; ++i) message[kTextLength + i] = static_cast<std::byte>(claimed >> (24 - 8 * i));
+    EXPECT_FALSE(command_of(message)) << claimed;
+  }
 }
 
 TEST(LcmLink, AUrlThatCannotBeOpenedOnlyCounts) {
