@@ -57,6 +57,8 @@ class Mechanics {
     if (!stylus_.is_rigid()) return {stylus_.position_D_m(), stylus_.velocity_D_m_per_s()};
     return {plant_.tip_D_m(), plant_.tip_velocity_D_m_per_s()};
   }
+  /// What the motors have put into the linkage, J: the port's work, exact, whatever the encoders resolve.
+  [[nodiscard]] double motor_work_J() const noexcept { return motor_work_J_; }
   [[nodiscard]] const MotorHeat& motors() const noexcept { return motors_; }
   [[nodiscard]] const Fingers& fingers() const noexcept { return fingers_; }
   /// On the stylus by the fingers in the last step, N.
@@ -69,6 +71,7 @@ class Mechanics {
   Stylus stylus_;
   Fingers fingers_;
   MotorHeat motors_;
+  double motor_work_J_ = 0.0;
   Vec3 hand_force_D_N_ = Vec3::Zero();
   Time now_;
   Time started_at_ = kNever;

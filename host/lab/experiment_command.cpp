@@ -23,7 +23,8 @@ constexpr Entry kExperiments[] = {{"models", experiment_models},
                                   {"knotting", experiment_knotting},
                                   {"pulling", experiment_pulling},
                                   {"unknotting", experiment_unknotting},
-                                  {"stability", experiment_stability}};
+                                  {"stability", experiment_stability},
+                                  {"haptics", experiment_haptics}};
 
 constexpr const char* kFooter = R"(
 Each experiment of the paper gives a table (CSV, printed), a picture (PNG) and a verdict: one PASS or FAIL line a claim,
@@ -33,6 +34,7 @@ with the number that decides it. A picture needs the Python that scripts/setup i
   pulling     one-hand and two-hand pulls, force per haptic frame, the paper's conditions A, B, C
   unknotting  a figure-eight on the desk undone by the right node and jammed by a wrong one; which pulls untie; a planner
   stability   the largest stable step of every model
+  haptics     which walls the loop renders, energy at the ports, force fidelity, velocity noise; firmware code in the loop
   all         one after another
 
 Exit: 0 all claims hold; 2 usage or scenes refused; 3 a claim fails.
@@ -86,7 +88,7 @@ void add_experiment_commands(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("experiment", "The paper's experiments: table, picture, verdict");
   std::vector<std::string> names{"all"};
   for (const auto& e : kExperiments) names.emplace_back(e.name);
-  command->add_option("name", a->name, "models, knotting, pulling, unknotting, stability or all")
+  command->add_option("name", a->name, "models, knotting, pulling, unknotting, stability, haptics or all")
       ->required()
       ->check(CLI::IsMember(names));
   add_folders(*command, *a, "out/experiment");

@@ -22,6 +22,9 @@ int experiment_unknotting(const Bench& bench);
 int experiment_stability(const Bench& bench);
 int experiment_extremes(const Bench& bench);
 int experiment_cost(const Bench& bench);
+int experiment_haptics(const Bench& bench);
+/// @param quick the least that shows each claim, without pictures: for ctest.
+int experiment_haptics(const Bench& bench, bool quick);
 
 /// A thread of `nodes` nodes stretched out level from its fixed end, every segment at rest length.
 void lay_level(scene::Scene& scene);

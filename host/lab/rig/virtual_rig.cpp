@@ -9,21 +9,16 @@ namespace {
 constexpr Nanoseconds kPeriod = std::chrono::milliseconds(1);
 constexpr Nanoseconds kGlance = std::chrono::microseconds(20);  // between two looks at the buses
 
+control::Settings settings_of(const RigSetup& setup) {
+  control::Settings settings = setup.settings;
+  settings.device = setup.device;
+  return settings;
+}
+
 physics::Simulation thread_of(const scene::Scene& scene) {
   auto made = physics::Simulation::make(scene);
   if (const auto* why = std::get_if<std::string>(&made)) throw std::runtime_error(*why);
   return std::get<physics::Simulation>(std::move(made));
-}
-
-VirtualRig::Intentions scripted(const RigSetup& setup, const scene::GripperScript& script) {
-  VirtualRig::Intentions hands;
-  for (std::size_t h = 0; h < 2; ++h) {
-    auto path =
-        sim::OperatorPath::make(script.keys[h], sim::WorkspaceMap(setup.scene.hands, setup.body[h].plant.linkage));
-    if (const auto* why = std::get_if<std::string>(&path)) throw std::runtime_error(*why);
-    hands[h] = std::make_unique<sim::OperatorPath>(std::get<sim::OperatorPath>(std::move(path)));
-  }
-  return hands;
 }
 
 VirtualRig::Intentions held(const RigSetup& setup, const SeeingOperator& seeing) {
@@ -39,7 +34,18 @@ VirtualRig::Intentions held(const RigSetup& setup, const SeeingOperator& seeing)
 
 }  // namespace
 
-VirtualRig::VirtualRig(RigSetup s, const scene::GripperScript& script) : VirtualRig(s, scripted(s, script)) {}
+VirtualRig::Intentions scripted_hands(const RigSetup& setup, const scene::GripperScript& script) {
+  VirtualRig::Intentions hands;
+  for (std::size_t h = 0; h < 2; ++h) {
+    auto path =
+        sim::OperatorPath::make(script.keys[h], sim::WorkspaceMap(setup.scene.hands, setup.body[h].plant.linkage));
+    if (const auto* why = std::get_if<std::string>(&path)) throw std::runtime_error(*why);
+    hands[h] = std::make_unique<sim::OperatorPath>(std::get<sim::OperatorPath>(std::move(path)));
+  }
+  return hands;
+}
+
+VirtualRig::VirtualRig(RigSetup s, const scene::GripperScript& script) : VirtualRig(s, scripted_hands(s, script)) {}
 
 VirtualRig::VirtualRig(RigSetup s, SeeingOperator& seeing) : VirtualRig(s, held(s, seeing)) { seeing_ = &seeing; }
 
@@ -50,7 +56,7 @@ VirtualRig::VirtualRig(RigSetup s, Intentions intentions)
            time),
       right((held_[1] = dynamic_cast<sim::HeldIntention*>(intentions[1].get()), std::move(intentions[1])),
             setup.body[1], time),
-      controller(setup.scene.hands, setup.settings) {
+      controller(setup.scene.hands, settings_of(setup)) {
   left.lose_frames(setup.frame_loss, 2 * setup.seed);
   right.lose_frames(setup.frame_loss, 2 * setup.seed + 1);
 }

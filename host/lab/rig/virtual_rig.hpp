@@ -35,6 +35,10 @@ struct RigSetup {
   std::string scene_file = "scene";  ///< how a recording calls the scene
 };
 
+/// The script's hands. @throws std::runtime_error when a key pose is out of reach.
+[[nodiscard]] std::array<std::unique_ptr<sim::Intention>, 2> scripted_hands(const RigSetup& setup,
+                                                                            const scene::GripperScript& script);
+
 class VirtualRig {
  public:
   using Intentions = std::array<std::unique_ptr<sim::Intention>, 2>;
@@ -84,7 +88,7 @@ class VirtualRig {
   physics::Simulation thread;
   DeviceBus left, right;
   Wait wait{*this};
-  platform::RigBus bus{left, right, wait};
+  platform::RigBus bus{left, right, wait, setup.device};
   Clock clock{*this};
   control::Controller controller;
   std::unique_ptr<rt::Outlets> outlets = std::make_unique<rt::Outlets>();

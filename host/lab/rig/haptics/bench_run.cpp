@@ -1,0 +1,99 @@
+#include "host/lab/rig/haptics/bench_run.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace ligature::lab {
+namespace {
+
+constexpr double kT_s = 1e-3, kCorner_Hz = 30.0;
+
+sim::Vec3 tip_force(const DeviceBus& bus) {
+  const auto& m = bus.device.mechanics();
+  const auto permille = bus.device.torque_permille();
+  const auto& drive = m.body().drives;
+  const sim::Vec3 torque(drive.torque_Nm(permille[0]), drive.torque_Nm(permille[1]), drive.torque_Nm(permille[2]));
+  return m.plant().parameters().linkage.jacobian_D(m.plant().q_rad()).transpose().inverse() * torque;
+}
+
+}  // namespace
+
+Watched watch(VirtualRig& rig, std::int64_t ticks) {
+  Watched w;
+  rig.each_tick = [&] {
+    std::array<sim::Vec3, 2> force;
+    std::array<double, 2> size{}, port{};
+    const std::array<const DeviceBus*, 2> hands{&rig.left, &rig.right};
+    for (std::size_t h = 0; h < 2; ++h) {
+      force[h] = tip_force(*hands[h]);
+      size[h] = force[h].norm();
+      port[h] = -hands[h]->device.mechanics().motor_work_J();
+      w.lowest_port_J[h] = std::min(w.lowest_port_J[h], port[h]);
+      const auto permille = hands[h]->device.torque_permille();
+      const auto& drive = hands[h]->device.mechanics().body().drives;
+      double hidden = 0.0;
+      for (const auto t : permille)
+        hidden += std::abs(drive.torque_Nm(t)) * std::numbers::pi / drive.counts_per_revolution;
+      w.quantum_J[h] = std::max(w.quantum_J[h], hidden);
+    }
+    w.lowest_sum_J = std::min(w.lowest_sum_J, port[0] + port[1]);
+    w.rendered_N.push_back(force);
+    w.tip_force_N.push_back(size);
+    w.port_J.push_back(port);
+  };
+  if (const auto why = rig.run(ticks)) throw std::runtime_error("the rig did not start: " + *why);
+  rig.each_tick = nullptr;
+  const rt::TickRecord* before = nullptr;
+  for (const auto& r : rig.records) {
+    for (std::size_t h = 0; h < 2; ++h) {
+      const auto& f = r.f_device_N[h];
+      w.peak_N = std::max(w.peak_N, std::hypot(f[0], f[1], f[2]));
+      w.lowest_account_J[h] = std::min(w.lowest_account_J[h], r.port_energy_J[h]);
+      if (before == nullptr) continue;
+      const auto& g = before->f_device_N[h];
+      const bool cut = r.fault != 0 || (r.limits[h] & rt::kPassivityLimit) != 0;
+      double& step = cut ? w.largest_cut_N : w.largest_step_N;
+      step = std::max(step, std::hypot(f[0] - g[0], f[1] - g[1], f[2] - g[2]));
+    }
+    if (w.fault == 0) w.fault = r.fault;
+    before = &r;
+  }
+  return w;
+}
+
+double Watched::chatter_N(std::size_t hand, std::size_t first, std::size_t last) const {
+  const double a = 1.0 / (1.0 + 2.0 * std::numbers::pi * kCorner_Hz * kT_s);
+  std::array<sim::Vec3, 2> out{sim::Vec3::Zero(), sim::Vec3::Zero()}, in{};
+  last = std::min(last, rendered_N.size());
+  double sum = 0.0;
+  long count = 0;
+  for (std::size_t i = first; i < last; ++i) {
+    sim::Vec3 x = rendered_N[i][hand];
+    for (std::size_t s = 0; s < 2; ++s) {
+      if (i == first) in[s] = x;
+      out[s] = i == first ? sim::Vec3(sim::Vec3::Zero()) : sim::Vec3(a * (out[s] + x - in[s]));
+      in[s] = x;
+      x = out[s];
+    }
+    if (i < first + 100) continue;  // the filter's own start
+    sum += x.squaredNorm();
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0;
+}
+
+sim::Vec3 Watched::mean_N(std::size_t hand, std::size_t first, std::size_t last) const {
+  sim::Vec3 sum = sim::Vec3::Zero();
+  last = std::min(last, rendered_N.size());
+  for (std::size_t i = first; i < last; ++i) sum += rendered_N[i][hand];
+  return sum / static_cast<double>(std::max<std::size_t>(1, last - first));
+}
+
+double Watched::worst_chatter_N() const {
+  return std::max(chatter_N(0, 500, rendered_N.size()), chatter_N(1, 500, rendered_N.size()));
+}
+
+}  // namespace ligature::lab

@@ -1,0 +1,37 @@
+#pragma once
+// A run of the virtual rig watched at its ports.
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "host/lab/rig/virtual_rig.hpp"
+
+namespace ligature::lab {
+
+struct Watched {
+  std::array<double, 2> lowest_port_J{};     ///< least the hand has put into the rig, by the motors' true work
+  std::array<double, 2> lowest_account_J{};  ///< the same by the firmware's account, on counts
+  std::array<double, 2> quantum_J{};         ///< largest work that half a count of each joint hides
+  double lowest_sum_J = 0.0;                 ///< of both ports' true energy: the thread carries it from hand to hand
+  double peak_N = 0.0;
+  double largest_step_N = 0.0;               ///< of the force in one tick, where neither passivity nor a fault took it
+  double largest_cut_N = 0.0;                ///< where one of them did
+  int fault = 0;
+  std::vector<std::array<double, 2>> tip_force_N;    ///< magnitude of what the motors make at each tip, a tick
+  std::vector<std::array<sim::Vec3, 2>> rendered_N;  ///< the same as vectors
+  std::vector<std::array<double, 2>> port_J;
+
+  /// rms of the force's components above 30 Hz (first-order high-pass, twice) and mean magnitude, of ticks first ..
+  /// last.
+  [[nodiscard]] double chatter_N(std::size_t hand, std::size_t first, std::size_t last) const;
+  [[nodiscard]] sim::Vec3 mean_N(std::size_t hand, std::size_t first, std::size_t last) const;
+  /// Peak to peak speedless measure of trouble: rms of chatter over the whole run, worse hand.
+  [[nodiscard]] double worst_chatter_N() const;
+};
+
+/// Runs and watches. @param prepare may arrange faults before the start.
+[[nodiscard]] Watched watch(VirtualRig& rig, std::int64_t ticks);
+
+}  // namespace ligature::lab

@@ -1,0 +1,28 @@
+#include <cstdio>
+
+#include "host/lab/experiments/experiment.hpp"
+#include "host/lab/rig/haptics/haptics.hpp"
+
+namespace ligature::lab {
+
+int experiment_haptics(const Bench& bench) { return experiment_haptics(bench, false); }
+
+int experiment_haptics(const Bench& bench, bool quick) {
+  const HapticsBench b{bench.scenes, bench.out, quick};
+  Verdict v("haptics");
+  std::printf(
+      "haptics: walls, velocity, ports, fidelity; the firmware's own control code, simulated devices and hands\n");
+  measure_z_width(b, v);
+  measure_velocity(b, v);
+  measure_ports(b, v);
+  measure_fidelity(b, v);
+  if (!quick) {
+    draw("haptics_zwidth.py", {b.out / "haptics-zwidth.csv", b.out / "haptics-wall-reference.csv"},
+         b.out / "haptics-zwidth.png");
+    draw("haptics_ports.py", {b.out / "haptics-ports.csv", b.out / "haptics-ports-table.csv"},
+         b.out / "haptics-ports.png");
+  }
+  return v.conclude(bench.out);
+}
+
+}  // namespace ligature::lab

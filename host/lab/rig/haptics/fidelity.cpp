@@ -1,0 +1,86 @@
+// Does the hand feel what the thread does: tension, quiet, action and reaction.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "host/lab/rehearsal.hpp"
+#include "host/lab/rig/haptics/bench_run.hpp"
+#include "host/lab/rig/haptics/hands.hpp"
+#include "host/lab/rig/haptics/haptics.hpp"
+
+namespace ligature::lab {
+namespace {
+
+/// A straight weightless thread of the paper's model between two hands: its tension is its stiffness times its strain,
+/// whatever the coupling or the contacts do.
+void steady_pull(const HapticsBench& bench, Verdict& v) {
+  RigSetup setup;
+  setup.scene = load_scene_or_refuse((bench.scenes / "paper.toml").string(),
+                                     {"world.gravity_m_per_s2=[0,0,0]", "hands.force_scale=0.01"});
+  scene::GripperScript script;
+  for (std::size_t h = 0; h < 2; ++h) {
+    const double start = h == 0 ? 3.0 : 1.5, pull = h == 0 ? 0.15 : -0.15;
+    script.keys[h] = {{0.5, {0, 0, start}, false},
+                      {1.2, {0, 0, start}, true},
+                      {3.0, {0, 0, start + pull}, true},
+                      {7.5, {0, 0, start + pull}, true}};
+  }
+  VirtualRig rig(setup, script);
+  const Watched w = watch(rig, 6500);
+  const auto nodes = rig.thread.nodes_W();
+  const int a = rig.thread.hand(physics::Hand::kLeft).node, b = rig.thread.hand(physics::Hand::kRight).node;
+  const int first = std::min(a, b), last = std::max(a, b);
+  if (first < 0) {
+    v.claim(false, "Fidelity: both hands hold the thread", "no", "yes");
+    return;
+  }
+  const double rest_m = setup.scene.suture.length_m / (setup.scene.suture.nodes - 1);
+  double length_m = 0.0;
+  for (int i = first; i < last; ++i)
+    length_m += (nodes[static_cast<std::size_t>(i + 1)] - nodes[static_cast<std::size_t>(i)]).norm();
+  const double tension_N = setup.scene.suture.paper.stretch_N * (length_m / (rest_m * (last - first)) - 1.0);
+  const double expected_N = setup.scene.hands.force_scale * tension_N;
+  Table table({"hand", "thread_tension_N", "times_scale_N", "at_the_hand_N", "deviation"});
+  double worst = 0.0;
+  for (std::size_t h = 0; h < 2; ++h) {
+    const double felt_N = w.mean_N(h, 5000, 6400).norm();
+    worst = std::max(worst, std::abs(felt_N / expected_N - 1.0));
+    table.row({std::string(h == 0 ? "left" : "right"), tension_N, expected_N, felt_N, felt_N / expected_N - 1.0});
+  }
+  table.print();
+  table.write(bench.out / "haptics-steady-pull.csv");
+  v.claim(worst <= 0.02 && expected_N > 0.05, "Fidelity: steady pull, force at the hand against tension times scale",
+          digits(worst) + " at " + digits(expected_N) + " N", "up to 0.02");
+}
+
+/// The knotted suture drawn tight and held.
+void tight_knot(const HapticsBench& bench, Verdict& v) {
+  RigSetup setup;
+  setup.scene = load_scene_or_refuse((bench.scenes / "suture-3-0-knot.toml").string(), {});
+  const scene::GripperScript script = pull_and_release(0.128, 2.0, 4.0);
+  VirtualRig rig(setup, script);
+  const Watched w = watch(rig, 6900);
+  const std::size_t from = 4800, to = 6800;
+  const sim::Vec3 left = w.mean_N(0, from, to), right = w.mean_N(1, from, to);
+  const double mean_N = 0.5 * (left.norm() + right.norm());
+  const double chatter_N = std::max(w.chatter_N(0, from, to), w.chatter_N(1, from, to));
+  const double apart = (left + right).norm() / std::max(mean_N, 1e-9);
+  Table table({"left_N", "right_N", "sum_of_mean", "above_30Hz_mN", "share_of_mean", "largest_step_N"});
+  table.row({left.norm(), right.norm(), apart, 1e3 * chatter_N, chatter_N / mean_N, w.largest_step_N});
+  table.print();
+  table.write(bench.out / "haptics-tight-knot.csv");
+  v.claim(mean_N > 0.2 && apart <= 0.02, "Fidelity: two hands on a tight knot, difference from equal and opposite",
+          digits(apart) + " of " + digits(mean_N) + " N", "up to 0.02");
+  v.claim(chatter_N < 0.01 * mean_N && chatter_N < 0.020, "Fidelity: chatter above 30 Hz in a steady hold, mN rms",
+          digits(1e3 * chatter_N), "below 1 % of the mean and 20");
+}
+
+}  // namespace
+
+void measure_fidelity(const HapticsBench& bench, Verdict& v) {
+  steady_pull(bench, v);
+  tight_knot(bench, v);
+}
+
+}  // namespace ligature::lab

@@ -1,0 +1,46 @@
+#pragma once
+// Scripts and hands of the haptics runs, for the knotted suture of scenes/suture-3-0-knot.toml: world = device, 1 : 1.
+
+#include <memory>
+
+#include "host/lab/rig/virtual_rig.hpp"
+#include "sim_device/unrest.hpp"
+
+namespace ligature::lab {
+
+/// Both hands take the thread `hold_m` from the knot's middle, draw apart to `apart_m` each (a taut knot is near 0.13),
+/// rest there, come back, let go.
+[[nodiscard]] scene::GripperScript pull_and_release(double apart_m, double draw_s = 2.0, double rest_s = 1.5);
+/// Drawn apart and back in `beat_s`, again and again: the knot jams a little more each time.
+[[nodiscard]] scene::GripperScript jam(double apart_m, double beat_s, int times);
+/// The right hand lets go and takes hold again under tension, every 0.3 s.
+[[nodiscard]] scene::GripperScript slip(double apart_m);
+
+/// A hand that is elsewhere between two moments, at once.
+class Teleporting final : public sim::Intention {
+ public:
+  Teleporting(std::unique_ptr<sim::Intention> calm, double from_s, double to_s, const sim::Vec3& by_m)
+      : calm_(std::move(calm)), from_s_(from_s), to_s_(to_s), by_m_(by_m) {}
+  [[nodiscard]] sim::Intent at(double t_s, const sim::Touch& touch) const noexcept override {
+    sim::Intent now = calm_->at(t_s, touch);
+    if (t_s >= from_s_ && t_s < to_s_) now.p_DH += by_m_;
+    return now;
+  }
+  [[nodiscard]] double end_s() const noexcept override { return calm_->end_s(); }
+  [[nodiscard]] sim::Vec3 start_D_m() const noexcept override { return calm_->start_D_m(); }
+
+ private:
+  std::unique_ptr<sim::Intention> calm_;
+  double from_s_, to_s_;
+  sim::Vec3 by_m_;
+};
+
+/// Two scripted intentions, each wrapped by `wrap` (or as they are).
+template <class Wrap>
+[[nodiscard]] VirtualRig::Intentions wrapped(const RigSetup& setup, const scene::GripperScript& script, Wrap wrap) {
+  VirtualRig::Intentions hands = scripted_hands(setup, script);
+  for (auto& hand : hands) hand = wrap(std::move(hand));
+  return hands;
+}
+
+}  // namespace ligature::lab
