@@ -94,7 +94,8 @@ void DriveNode::on_nmt(const can::NmtMessage& message, Time now, std::vector<can
 
 void DriveNode::on_sync(const Sensed& sensed, std::vector<can::Frame>& out) {
   if (objects_.is_pdo_on(can::Pdo::kTpdo1)) {
-    out.push_back(can::encode(id_, can::Tpdo1{statusword(), sensed.position_counts, torque_permille_, sensed.buttons}));
+    const auto buttons = can::profile::with_life(sensed.buttons, ++life_);
+    out.push_back(can::encode(id_, can::Tpdo1{statusword(), sensed.position_counts, torque_permille_, buttons}));
   }
   if (has_received_) {
     has_received_ = false;

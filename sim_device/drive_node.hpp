@@ -73,6 +73,7 @@ class DriveNode {
   bool has_received_ = false;  ///< since the last SYNC
   can::Rpdo1 acting_;          ///< taken over from received_ at SYNC
   std::int16_t torque_permille_ = 0;
+  std::uint8_t life_ = 0;  // of the buttons
   bool is_limited_ = false;
   Deadline rpdo_watch_, master_watch_, own_heartbeat_;
   DriveStats stats_;

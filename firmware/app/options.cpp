@@ -67,6 +67,9 @@ void add_run(CLI::App& run, RunOptions& o) {
   add_scene(run, o.scene, o.overrides);
   run.add_option("--left", o.left, "bus of the left hand: local:/path/socket or socketcan:INTERFACE")->required();
   run.add_option("--right", o.right, "bus of the right hand")->required();
+  run.add_option("--device", o.device, "device record (TOML, see scenes/devices) of both hands; default: omni-class");
+  run.add_flag("--override-passivity", o.override_passivity,
+               "take a coupling stiffer than the device can render stably (docs/haptics.md)");
   run.add_flag("--arm", o.arm, "arm at start, as the local operator; else wait for the command");
   run.add_option("--duration", o.duration_s, "end after so many seconds")->check(finite)->check(CLI::Range(0.001, 1e6));
   run.add_option("--lcm-url", o.lcm_url, "LCM provider")->capture_default_str();

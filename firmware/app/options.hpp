@@ -13,6 +13,8 @@ enum class RtMode { kEnforce, kWarn, kOff };
 struct RunOptions {
   std::string scene;
   std::vector<std::string> overrides;
+  std::string device;  ///< record of both hands' devices; empty: the shipped Omni-class one
+  bool override_passivity = false;
   std::string left, right;
   bool arm = false;
   bool exit_on_fault = false;

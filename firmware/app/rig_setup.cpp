@@ -7,10 +7,12 @@
 #include <sstream>
 #include <string_view>
 
+#include "firmware/control/admissible.hpp"
 #include "firmware/control/controller.hpp"
 #include "firmware/platform/can_master.hpp"
 #include "firmware/platform/socket_bus.hpp"
 #include "firmware/rt/tick_record.hpp"
+#include "protocol/device/device_file.hpp"
 #include "protocol/scene/scene_file.hpp"
 
 namespace ligature::app {
@@ -23,17 +25,32 @@ std::string text_of(const std::string& scene, const std::vector<std::string>& ov
   return text.str();
 }
 
+/// A coupling that the device cannot render stably.
+std::string too_stiff(const scene::Hands& hands, const device::Device& device) {
+  const auto a = control::admissible(hands, device, control::kPeriod_s);
+  if (a.holds()) return {};
+  std::ostringstream text;
+  text << "coupling of " << a.K_N_per_m << " N/m at the device (hands.coupling_N_per_m, hands.device_N_per_m), allowed less than "
+       << a.largest_N_per_m << " N/m: b " << device.damping_N_s_per_m << " + B " << a.B_N_s_per_m << " N s/m over T/2 + delay "
+       << 1e3 * (0.5 * control::kPeriod_s + device.delay_s) << " ms of " << device.name
+       << "; or --override-passivity (docs/haptics.md)";
+  return text.str();
+}
+
 /// What a scene may ask of a lab run but not of a hand.
-std::string objection(const scene::Scene& s) {
+std::string objection(const scene::Scene& s, const device::Device& device) {
   const auto told = [](const char* key, double found, const std::string& allowed) {
     std::ostringstream text;
     text << "key '" << key << "': found " << found << ", allowed " << allowed << " when hands are connected";
     return text.str();
   };
   if (s.time.tick_s != control::kPeriod_s) return told("time.tick_s", s.time.tick_s, "0.001");
-  if (s.hands.max_force_N > control::kHardwareForce_N)
-    return told("hands.max_force_N", s.hands.max_force_N, "0 .. 3.3");
-  return {};
+  if (s.hands.max_force_N > device.peak_force_N) {
+    std::ostringstream most;
+    most << "0 .. " << device.peak_force_N;
+    return told("hands.max_force_N", s.hands.max_force_N, most.str());
+  }
+  return s.hands.override_passivity ? std::string() : too_stiff(s.hands, device);
 }
 
 /// The same name, or two names of the same socket.
@@ -63,18 +80,27 @@ std::variant<std::unique_ptr<platform::CanBus>, Refusal> open_patiently(const st
 
 }  // namespace
 
-std::variant<Plan, Refusal> make_plan(const std::string& file, const std::vector<std::string>& overrides) {
+std::variant<Plan, Refusal> make_plan(const std::string& file, const std::vector<std::string>& overrides,
+                                      const device::Device& device) {
   auto loaded = scene::load_scene(file, overrides);
   if (const auto* error = std::get_if<scene::Error>(&loaded)) return Refusal{2, error->text};
   auto& scene = std::get<scene::Scene>(loaded);
-  if (const auto why = objection(scene); !why.empty()) return Refusal{2, file + ": " + why};
+  if (const auto why = objection(scene, device); !why.empty()) return Refusal{2, file + ": " + why};
   auto made = physics::Simulation::make(scene);
   if (const auto* why = std::get_if<std::string>(&made)) return Refusal{2, file + ": " + *why};
-  return Plan{scene, std::move(std::get<physics::Simulation>(made)), text_of(file, overrides)};
+  return Plan{scene, std::move(std::get<physics::Simulation>(made)), device, text_of(file, overrides)};
 }
 
 std::variant<Plan, Refusal> make_plan(const RunOptions& options) {
-  auto plan = make_plan(options.scene, options.overrides);
+  device::Device device = device::omni();
+  if (!options.device.empty()) {
+    auto loaded = device::load_device(options.device);
+    if (const auto* error = std::get_if<scene::Error>(&loaded)) return Refusal{2, error->text};
+    device = std::get<device::Device>(loaded);
+  }
+  auto overrides = options.overrides;
+  if (options.override_passivity) overrides.emplace_back("hands.override_passivity=true");
+  auto plan = make_plan(options.scene, overrides, device);
   if (std::holds_alternative<Refusal>(plan)) return plan;
   if (is_same_bus(options.left, options.right))
     return Refusal{2, "--left, --right: found '" + options.left + "' for both, allowed a bus for each hand"};

@@ -10,6 +10,7 @@
 #include "firmware/app/options.hpp"
 #include "firmware/physics/simulation.hpp"
 #include "firmware/platform/can_bus.hpp"
+#include "protocol/device/device.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::app {
@@ -23,12 +24,14 @@ struct Refusal {
 struct Plan {
   scene::Scene scene;
   physics::Simulation thread;
+  device::Device device;
   std::string toml;  ///< the scene's text with the overrides as comments, for recordings
 };
 [[nodiscard]] std::variant<Plan, Refusal> make_plan(const RunOptions& options);
 /// The same for any scene file; exit codes do not matter then.
 [[nodiscard]] std::variant<Plan, Refusal> make_plan(const std::string& scene,
-                                                    const std::vector<std::string>& overrides);
+                                                    const std::vector<std::string>& overrides,
+                                                    const device::Device& device = device::omni());
 
 struct Buses {
   std::unique_ptr<platform::CanBus> left, right;

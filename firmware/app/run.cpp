@@ -135,8 +135,8 @@ class RealTimeSide {
                control::PlantHandover& plants)
       : buses_(buses),
         wait_(*buses.left, *buses.right),
-        bus_(*buses.left, *buses.right, wait_),
-        controller_(plan.scene.hands, {options.watchdog_ms, options.arm}),
+        bus_(*buses.left, *buses.right, wait_, plan.device),
+        controller_(plan.scene.hands, {options.watchdog_ms, options.arm, plan.device}),
         cycle_(bus_, clock_, controller_, plan.thread, outlets) {
     cycle_.listen(plants);
     if (options.duration_s) cycle_.end_after(std::llround(*options.duration_s / control::kPeriod_s));

@@ -59,7 +59,7 @@ std::string rehearse(const physics::Simulation& thread) {
 }
 
 SceneDesk::SceneDesk(const RunOptions& options, const Plan& plan, int core)
-    : options_(options), core_(core), now_{options.scene, options.overrides, plan.scene, plan.scene} {
+    : options_(options), device_(plan.device), core_(core), now_{options.scene, options.overrides, plan.scene, plan.scene} {
   const fs::path given = options.scenes.empty() ? fs::path(options.scene).parent_path() : fs::path(options.scenes);
   options_.scenes = given.empty() ? "." : given.string();
   scenes_ = scene_files(options_.scenes);
@@ -117,7 +117,7 @@ std::optional<ligature_msg::ack_t> SceneDesk::request(const ligature_msg::comman
 
 std::variant<SceneDesk::Built, std::string> SceneDesk::build(Setup setup, bool keeps_motion) const {
   platform::flush_denormals();
-  auto planned = make_plan(setup.file, setup.overrides);
+  auto planned = make_plan(setup.file, setup.overrides, device_);
   if (const auto* refusal = std::get_if<Refusal>(&planned)) return refusal->text;
   Plan& plan = std::get<Plan>(planned);
   if (const auto why = rehearse(plan.thread); !why.empty()) return why;

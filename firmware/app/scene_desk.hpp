@@ -68,6 +68,7 @@ class SceneDesk {
   [[nodiscard]] Outcome answer(const std::string& why, std::optional<Changed> changed = {}) const;
 
   RunOptions options_;
+  device::Device device_;
   int core_;
   std::vector<std::string> scenes_;
   Setup now_;

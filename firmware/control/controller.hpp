@@ -4,15 +4,10 @@
 #include <array>
 #include <cstdint>
 
-#include "firmware/control/engagement.hpp"
 #include "firmware/control/faults.hpp"
+#include "firmware/control/hand_control.hpp"
 #include "firmware/control/state_machine.hpp"
-#include "firmware/control/velocity_filter.hpp"
-#include "firmware/control/virtual_coupling.hpp"
-#include "firmware/control/workspace_map.hpp"
-#include "firmware/physics/simulation.hpp"
 #include "firmware/rt/command.hpp"
-#include "firmware/rt/rig_io.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::control {
@@ -22,6 +17,7 @@ inline constexpr double kPeriod_s = 1e-3;
 struct Settings {
   std::int32_t watchdog_ticks = 20;  ///< age of joint messages, or periods lost in a row, that is a fault
   bool armed = false;                ///< at start; a fault and a disarm take it back
+  device::Device device = device::omni();
 };
 
 /// All that a tick depends on.
@@ -30,18 +26,6 @@ struct TickInput {
   rt::RigReading reading;
   std::array<Grasp, rt::kHands> grasp;  ///< of the thread's last tick
   bool thread_finite = true;
-};
-
-/// One hand after a tick.
-struct HandState {
-  Vec3 p_WT = Vec3::Zero();
-  Vec3 v_WT = Vec3::Zero();
-  Vec3 f_device_N = Vec3::Zero();  ///< after scale, limits and gain; what the torques produce
-  double gain = 0.0;
-  bool limited = false;        ///< the force above stands at the limit: the law wanted more, and the gain is 1
-  std::int64_t age_ticks = 0;  ///< periods since the sample that p_WT comes from
-  bool dead_man = false;
-  bool grip = false;
 };
 
 /// Real time: tick() is O(1), allocates nothing, throws nothing, calls no system. Deterministic in its inputs.
@@ -70,45 +54,33 @@ class Controller {
   [[nodiscard]] State state() const noexcept { return state_; }
   [[nodiscard]] Fault fault() const noexcept { return fault_; }
   [[nodiscard]] bool armed() const noexcept { return armed_; }
-  [[nodiscard]] const HandState& hand(std::size_t h) const noexcept { return hands_[h].state; }
+  [[nodiscard]] const HandState& hand(std::size_t h) const noexcept { return hands_[h].state(); }
 
   /// The two tools as the thread shall see them in this tick.
   [[nodiscard]] std::array<physics::ToolInput, rt::kHands> tools() const noexcept;
 
  private:
-  struct Hand {
-    HandState state;
-    VelocityFilter velocity{kPeriod_s};
-    Engagement engagement;
-    Vec3 v_DT = Vec3::Zero();
-    Vec3 f_full_N = Vec3::Zero();  // device force at gain 1
-    bool full_is_limited = false;
-    bool finite = true;
-    std::int64_t sample_tick = -1;
-    JointAngles q_rad{};
-  };
-
-  void observe(Hand& hand, const rt::HandReading& reading, const Grasp& grasp, std::int64_t tick) noexcept;
   [[nodiscard]] Fault find_fault(const TickInput& in) const noexcept;
-  [[nodiscard]] Fault find_hand_fault(const Hand& hand, const rt::HandReading& reading) const noexcept;
+  [[nodiscard]] Fault find_hand_fault(const HandControl& hand, const rt::HandReading& reading) const noexcept;
   [[nodiscard]] bool drives_are_up(const rt::RigReading& reading) const noexcept;
   void step_state(const TickInput& in) noexcept;
   void step_gains() noexcept;
   void step_force_scale() noexcept;
+  [[nodiscard]] Push push() const noexcept;
+  [[nodiscard]] bool any_too_fast() const noexcept;
   [[nodiscard]] rt::DriveRequest drive_request() const noexcept;
   [[nodiscard]] bool any_full() const noexcept;
   [[nodiscard]] bool all_zero() const noexcept;
 
-  WorkspaceMap map_;
-  VirtualCoupling coupling_;
-  double scale_goal_, scale_step_ = 0.0;
   Settings settings_;
-  std::array<Hand, rt::kHands> hands_{};
+  std::array<HandControl, rt::kHands> hands_;
+  double scale_goal_, scale_step_ = 0.0;
   State state_ = State::kOff;
   Fault fault_ = Fault::kNone;
   bool armed_;
   bool reset_requested_ = false;
   bool shutting_down_ = false;
+  bool braking_ = false;  // BRAKE because a hand was too fast
   int plausible_ticks_ = 0;
   int powered_down_ticks_ = 0;
   std::int64_t last_tick_ = -1;

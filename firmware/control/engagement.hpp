@@ -1,13 +1,13 @@
 #pragma once
 // How much of the computed force one hand gets, so that nothing ever kicks.
 
-#include <algorithm>
+#include "firmware/control/motion.hpp"
 
 namespace ligature::control {
 
 /// Gain of one hand, 0 .. 1. From zero it starts only after the hand was still and the force small for a while; it
-/// then rises to 1 in 0.5 s as long as it is wanted (armed and dead-man pressed), and falls to 0 in 50 ms when not.
-/// Periods of 1 ms. O(1).
+/// then rises to 1 in 0.5 s as long as it is wanted (armed and dead-man pressed), and falls to 0 in 50 ms when not; both
+/// by a jerk-limited curve (motion.hpp). Periods of 1 ms. O(1).
 class Engagement {
  public:
   static constexpr int kCalmTicks = 20;
@@ -19,27 +19,27 @@ class Engagement {
   void tick(bool wanted, double speed_m_per_s, double force_N) noexcept {
     if (!wanted) {
       calm_ticks_ = 0;
-      gain_ = std::max(0.0, gain_ - 1.0 / kFallTicks);
+      ramp_.step(0.0, kFallTicks * kPeriod_s);
       return;
     }
-    if (gain_ == 0.0 && calm_ticks_ < kCalmTicks) {
+    if (gain() == 0.0 && calm_ticks_ < kCalmTicks) {
       const bool calm = speed_m_per_s < kStill_m_per_s && force_N < kSmallForce_N;
       calm_ticks_ = calm ? calm_ticks_ + 1 : 0;
       return;
     }
-    gain_ = std::min(1.0, gain_ + 1.0 / kRiseTicks);
-    if (gain_ > 1.0 - 0.5 / kRiseTicks) gain_ = 1.0;
+    ramp_.step(1.0, kRiseTicks * kPeriod_s);
   }
 
   void drop() noexcept {
-    gain_ = 0.0;
+    ramp_.settle(0.0);
     calm_ticks_ = 0;
   }
 
-  [[nodiscard]] double gain() const noexcept { return gain_; }
+  [[nodiscard]] double gain() const noexcept { return ramp_.value(); }
 
  private:
-  double gain_ = 0.0;
+  static constexpr double kPeriod_s = 1e-3;
+  Ramp ramp_{kPeriod_s};
   int calm_ticks_ = 0;
 };
 

@@ -11,7 +11,10 @@ enum class Fault : std::int16_t {
   kTpdoTooOld = 11,       ///< no complete set of joint messages within the watchdog time
   kDriveFault = 12,       ///< a drive is in Fault, sent EMCY, or left Operation enabled by itself
   kNonFinite = 20,        ///< a force or position is not a number
-  kVelocityLimit = 21,    ///< tip faster than kVelocityLimit_m_per_s
+  kVelocityLimit = 21,    ///< tip faster than kVelocityFault times the device's limit
+  kEncoderFrozen = 22,    ///< a joint stopped dead while the others moved on
+  kAxisReversed = 23,     ///< a joint turned back in one period while the others moved on
+  kButtonsStuck = 24,     ///< the buttons' own life sign stands still, or a pair of contacts disagrees
   kOverrun = 30,          ///< the loop lost as many periods in a row as the watchdog allows
   kPhysicsDiverged = 40,  ///< the thread's state is not finite
 };
@@ -30,6 +33,12 @@ enum class Fault : std::int16_t {
       return "force or position is not finite";
     case Fault::kVelocityLimit:
       return "velocity limit";
+    case Fault::kEncoderFrozen:
+      return "encoder frozen";
+    case Fault::kAxisReversed:
+      return "axis reversed";
+    case Fault::kButtonsStuck:
+      return "buttons stuck";
     case Fault::kOverrun:
       return "control loop overrun";
     case Fault::kPhysicsDiverged:

@@ -3,33 +3,66 @@
 #include <cmath>
 
 namespace ligature::control {
+namespace {
 
-Vec3 tip_position(const JointAngles& q_rad) noexcept {
+constexpr double kPlausible_rad = 0.25;
+
+Vec3 omni_position(const Vec3& l, const JointAngles& q_rad) noexcept {
   const auto [q1, q2, q3] = q_rad;
-  const double rho = kUpperArm_m * std::cos(q2) + kForearm_m * std::sin(q3);
-  return {rho * std::sin(q1), -rho * std::cos(q1), kUpperArm_m * std::sin(q2) - kForearm_m * std::cos(q3)};
+  const double rho = l[0] * std::cos(q2) + l[1] * std::sin(q3);
+  return {rho * std::sin(q1), -rho * std::cos(q1), l[0] * std::sin(q2) - l[1] * std::cos(q3)};
 }
 
-Mat3 tip_jacobian(const JointAngles& q_rad) noexcept {
+Mat3 omni_jacobian(const Vec3& l, const JointAngles& q_rad) noexcept {
   const auto [q1, q2, q3] = q_rad;
   const double s1 = std::sin(q1), c1 = std::cos(q1);
-  const double rho = kUpperArm_m * std::cos(q2) + kForearm_m * std::sin(q3);
-  const double drho_dq2 = -kUpperArm_m * std::sin(q2);
-  const double drho_dq3 = kForearm_m * std::cos(q3);
+  const double rho = l[0] * std::cos(q2) + l[1] * std::sin(q3);
+  const double drho_dq2 = -l[0] * std::sin(q2);
+  const double drho_dq3 = l[1] * std::cos(q3);
   Mat3 J;
   J << rho * c1, drho_dq2 * s1, drho_dq3 * s1,   //
       rho * s1, -drho_dq2 * c1, -drho_dq3 * c1,  //
-      0.0, kUpperArm_m * std::cos(q2), kForearm_m * std::sin(q3);
+      0.0, l[0] * std::cos(q2), l[1] * std::sin(q3);
   return J;
 }
 
-Vec3 joint_torque(const JointAngles& q_rad, const Vec3& f_D_N) noexcept {
-  return tip_jacobian(q_rad).transpose() * f_D_N;
+}  // namespace
+
+Linkage::Linkage(const device::Device& d) noexcept
+    : kind_(d.kinematics),
+      links_m_(vector_of(d.links_m)),
+      home_m_(vector_of(d.home_tip_m)),
+      min_rad_(d.joint_min_rad),
+      max_rad_(d.joint_max_rad) {}
+
+Vec3 Linkage::position(const JointAngles& q_rad) const noexcept {
+  if (kind_ == device::Kinematics::kOmniSerial) return omni_position(links_m_, q_rad);
+  return home_m_ + links_m_.cwiseProduct(vector_of(q_rad));
 }
 
-bool is_plausible(const JointAngles& q_rad) noexcept {
-  const auto within = [](double x, double low, double high) { return x >= low - 0.25 && x <= high + 0.25; };
-  return within(q_rad[0], -0.98, 0.98) && within(q_rad[1], 0.0, 1.75) && within(q_rad[2] - q_rad[1], -0.81, 1.25);
+Mat3 Linkage::jacobian(const JointAngles& q_rad) const noexcept {
+  if (kind_ == device::Kinematics::kOmniSerial) return omni_jacobian(links_m_, q_rad);
+  return links_m_.asDiagonal();
+}
+
+std::array<bool, 3> Linkage::far_from_stops(const JointAngles& q_rad) const noexcept {
+  constexpr double kFar_rad = 0.05;
+  JointAngles stop = q_rad;
+  if (kind_ == device::Kinematics::kOmniSerial) stop[2] -= q_rad[1];
+  std::array<bool, 3> far{};
+  for (std::size_t j = 0; j < far.size(); ++j) far[j] = stop[j] > min_rad_[j] + kFar_rad && stop[j] < max_rad_[j] - kFar_rad;
+  if (kind_ == device::Kinematics::kOmniSerial) far[1] = far[1] && far[2];  // the links' stop holds both
+  return far;
+}
+
+bool Linkage::is_plausible(const JointAngles& q_rad) const noexcept {
+  JointAngles stop = q_rad;
+  if (kind_ == device::Kinematics::kOmniSerial) stop[2] -= q_rad[1];  // the links' stop is on the angle between them
+  for (std::size_t j = 0; j < stop.size(); ++j) {
+    const bool within = stop[j] >= min_rad_[j] - kPlausible_rad && stop[j] <= max_rad_[j] + kPlausible_rad;
+    if (!within) return false;  // not a number is never within
+  }
+  return true;
 }
 
 }  // namespace ligature::control

@@ -1,38 +1,57 @@
 #pragma once
-// The linkage of a Phantom-Omni-class hand: joint angles to tip position, and the way forces go back.
+// From joint angles to the tip, and the way forces go back: one function pair per kind of device.
 
 #include <array>
 
 #include "firmware/physics/types.hpp"
+#include "protocol/device/device.hpp"
 
 namespace ligature::control {
 
 using physics::Vec3;
 using Mat3 = Eigen::Matrix3d;
-using JointAngles = std::array<double, 3>;  ///< waist q1, shoulder q2, forearm q3 against the horizontal; rad
+using JointAngles = std::array<double, 3>;  ///< as the drives count them; rad
 
-inline constexpr double kUpperArm_m = 0.134;    ///< l1
-inline constexpr double kForearm_m = 0.1325;    ///< l2 = 0.080 + 0.0525, to the gimbal's centre
-inline const Vec3 kHome_DT_m{0.0, -0.17, 0.0};  ///< tip position that maps to the workspace's origin
+[[nodiscard]] inline Vec3 vector_of(const std::array<double, 3>& a) noexcept { return {a[0], a[1], a[2]}; }
 
-/// Tip T in the device base D (x right, y away from the person, z up).
+/// Tip T in the device base D (x right, y away from the person, z up) and J = d p_DT / d q.
+///
+/// omni-serial: waist q1, shoulder q2, forearm q3 against the vertical; links l1, l2.
 ///   rho = l1 cos q2 + l2 sin q3        reach, horizontally, out of the waist axis towards the person
 ///   p_DT = (rho sin q1, -rho cos q1, l1 sin q2 - l2 cos q3)
 /// The parallel linkage drives the forearm from the base, so q3 is its absolute angle (0 hangs down) and does not
-/// contain q2. O(1), no allocation; not-a-number in, not-a-number out.
-[[nodiscard]] Vec3 tip_position(const JointAngles& q_rad) noexcept;
-
-/// J = d p_DT / d q, m/rad: v_DT = J dq/dt. By differentiating the line above:
+/// contain q2. By differentiating:
 ///   dp/dq1 = ( rho cos q1,           rho sin q1,           0         )
 ///   dp/dq2 = (-l1 sin q2 sin q1,     l1 sin q2 cos q1,     l1 cos q2 )
 ///   dp/dq3 = ( l2 cos q3 sin q1,    -l2 cos q3 cos q1,     l2 sin q3 )
-[[nodiscard]] Mat3 tip_jacobian(const JointAngles& q_rad) noexcept;
+/// cartesian: p_DT = home + (r1 q1, r2 q2, r3 q3), r the drums' radii.
+///
+/// All O(1), no allocation; not-a-number in, not-a-number out.
+class Linkage {
+ public:
+  explicit Linkage(const device::Device& device) noexcept;
 
-/// Joint torques that hold a tip force, tau = J^T f (virtual work: tau . dq = f . dp). N m.
-/// @param f_D_N force on the hand at the tip, N; + pushes the hand along +D.
-[[nodiscard]] Vec3 joint_torque(const JointAngles& q_rad, const Vec3& f_D_N) noexcept;
+  [[nodiscard]] Vec3 position(const JointAngles& q_rad) const noexcept;
+  [[nodiscard]] Mat3 jacobian(const JointAngles& q_rad) const noexcept;  ///< m/rad: v_DT = J dq/dt
 
-/// Whether the angles can be those of this linkage: mechanical ranges of the Omni with 0.25 rad of margin.
-[[nodiscard]] bool is_plausible(const JointAngles& q_rad) noexcept;
+  /// Joint torques that hold a tip force, tau = J^T f (virtual work: tau . dq = f . dp). N m.
+  /// @param f_D_N force on the hand at the tip, N; + pushes the hand along +D.
+  [[nodiscard]] Vec3 torque(const JointAngles& q_rad, const Vec3& f_D_N) const noexcept {
+    return jacobian(q_rad).transpose() * f_D_N;
+  }
+
+  /// Whether the angles can be those of this device: its stops with 0.25 rad of margin.
+  [[nodiscard]] bool is_plausible(const JointAngles& q_rad) const noexcept;
+
+  /// Per joint: more than 0.05 rad from its stops.
+  [[nodiscard]] std::array<bool, 3> far_from_stops(const JointAngles& q_rad) const noexcept;
+
+  [[nodiscard]] const Vec3& home_m() const noexcept { return home_m_; }  ///< maps to the workspace's origin
+
+ private:
+  device::Kinematics kind_;
+  Vec3 links_m_, home_m_;
+  JointAngles min_rad_, max_rad_;
+};
 
 }  // namespace ligature::control

@@ -7,8 +7,8 @@
 
 namespace ligature::control {
 
-inline constexpr double kHardwareForce_N = 3.3;        ///< peak of an Omni-class device; no scene may ask for more
-inline constexpr double kVelocityLimit_m_per_s = 2.0;  ///< filtered tip speed; a person's fast stroke is about 1 m/s
+/// Times the device's velocity limit: the limit brakes, as a hand may slip; this no hand does, but a broken encoder.
+inline constexpr double kVelocityFault = 1.5;
 
 struct LimitedForce {
   physics::Vec3 f_N = physics::Vec3::Zero();

@@ -24,13 +24,14 @@ enum class Event : std::uint8_t {
   kArm,
   kEngaged,
   kLetGo,
+  kTooFast,
   kDisarm,
   kStopped,
   kPowerDown,
   kFault,
   kReset
 };
-inline constexpr int kEvents = 10;
+inline constexpr int kEvents = 11;
 
 struct Transition {
   State from;
@@ -45,7 +46,9 @@ inline constexpr std::array kTransitions{
     Transition{State::kIdle, Event::kPowerDown, State::kOff},
     Transition{State::kEngage, Event::kEngaged, State::kForce},
     Transition{State::kEngage, Event::kDisarm, State::kBrake},
+    Transition{State::kEngage, Event::kTooFast, State::kBrake},
     Transition{State::kForce, Event::kLetGo, State::kEngage},
+    Transition{State::kForce, Event::kTooFast, State::kBrake},
     Transition{State::kForce, Event::kDisarm, State::kBrake},
     Transition{State::kBrake, Event::kStopped, State::kIdle},
     Transition{State::kFault, Event::kReset, State::kOff},

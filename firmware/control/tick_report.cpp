@@ -21,6 +21,16 @@ void report(const Controller& controller, rt::TickRecord& record) noexcept {
     record.p_WT_m[h] = triple(s.p_WT);
     record.v_WT_m_per_s[h] = triple(s.v_WT);
     record.f_device_N[h] = triple(s.f_device_N);
+    record.q_rad[h] = s.q_rad;
+    record.f_wish_N[h] = triple(s.f_wish_N);
+    record.gain[h] = s.gain;
+    record.port_energy_J[h] = s.port_energy_J;
+    record.dissipated_J[h] = s.dissipated_J;
+    record.injected_N_s_per_m[h] = s.injected_N_s_per_m;
+    record.heat[h] = s.heat;
+    record.limits[h] = s.limits;
+    record.clutch[h] = s.clutch;
+    record.bus_load[h] = s.bus_load;
     record.grip[h] = s.grip;
     record.dead_man[h] = s.dead_man;
     record.tpdo_age_ticks[h] = static_cast<std::int16_t>(std::min<std::int64_t>(s.age_ticks, INT16_MAX));
@@ -35,7 +45,9 @@ void report(const physics::Diagnostics& thread, rt::TickRecord& record) noexcept
   record.max_stretch = thread.max_stretch;
   record.min_gap_m = std::isfinite(thread.min_gap_m) ? thread.min_gap_m : kNoGap_m;
   record.contacts = static_cast<std::int16_t>(std::min<int>(thread.contacts, INT16_MAX));
-  if (thread.contact_cap_hit) record.flags |= rt::kContactCap;
+  if (!thread.contact_cap_hit) return;
+  record.flags |= rt::kContactCap;
+  record.degradation = static_cast<std::int8_t>(rt::Degradation::kContacts);
 }
 
 void report(const physics::HandContact& contact, std::size_t hand, rt::TickRecord& record) noexcept {

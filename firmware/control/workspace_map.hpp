@@ -11,12 +11,14 @@ namespace ligature::control {
 struct WorkspaceMap {
   double scale = 1.0;
   Vec3 origin_W_m = Vec3::Zero();
+  Vec3 home_DT_m = Vec3::Zero();
 
-  explicit WorkspaceMap(const scene::Hands& h)
+  WorkspaceMap(const scene::Hands& h, const Vec3& home_m)
       : scale(h.workspace_scale),
-        origin_W_m(h.workspace_origin_m[0], h.workspace_origin_m[1], h.workspace_origin_m[2]) {}
+        origin_W_m(h.workspace_origin_m[0], h.workspace_origin_m[1], h.workspace_origin_m[2]),
+        home_DT_m(home_m) {}
 
-  [[nodiscard]] Vec3 position(const Vec3& p_DT_m) const noexcept { return origin_W_m + scale * (p_DT_m - kHome_DT_m); }
+  [[nodiscard]] Vec3 position(const Vec3& p_DT_m) const noexcept { return origin_W_m + scale * (p_DT_m - home_DT_m); }
   [[nodiscard]] Vec3 velocity(const Vec3& v_DT_m_per_s) const noexcept { return scale * v_DT_m_per_s; }
 };
 

@@ -12,6 +12,7 @@
 namespace ligature::platform {
 namespace {
 
+constexpr float kPeriod_ns = 1e6F;
 constexpr unsigned kAllJoints = (1U << rt::kJoints) - 1U;
 
 /// Index of a joint's node, or kJoints for a stranger.
@@ -74,12 +75,23 @@ void HandLink::take(const can::Frame& frame) noexcept {
   }
 }
 
+void HandLink::note_life(std::uint16_t buttons) noexcept {
+  constexpr std::size_t kStylus = rt::kJoints - 1;
+  static_assert(can::profile::has_stylus_buttons(can::profile::kJointNodes[kStylus]));
+  const bool moved = can::profile::life_of(buttons) != can::profile::life_of(nodes_[kStylus].latest.buttons);
+  has_life_ = has_life_ || moved;
+  still_sets_ = moved ? 0 : still_sets_ + (still_sets_ < kStillSets);
+}
+
 /// Joints are used as a set sampled at one SYNC, or not at all: mixed ages would be a pose that never was.
 void HandLink::take_tpdo(std::size_t joint, const can::Tpdo1& tpdo) noexcept {
   pending_[joint] = tpdo;
   arrived_ |= 1U << joint;
   if (arrived_ != kAllJoints) return;
-  for (std::size_t j = 0; j < rt::kJoints; ++j) nodes_[j].latest = pending_[j];
+  for (std::size_t j = 0; j < rt::kJoints; ++j) {
+    if (can::profile::has_stylus_buttons(can::profile::kJointNodes[j]) && valid_) note_life(pending_[j].buttons);
+    nodes_[j].latest = pending_[j];
+  }
   arrived_ = 0;
   valid_ = true;
   age_ticks_ = 0;
@@ -91,8 +103,9 @@ rt::HandReading HandLink::reading() const noexcept {
   r.bus_lost = bus_.is_lost();
   r.valid = valid_;
   r.age_ticks = age_ticks_;
-  r.bus_bits = static_cast<std::int32_t>(bits_of_last_period_);
+  r.bus_load = static_cast<float>(can::bits_to_ns(bits_of_last_period_)) / kPeriod_ns;
   r.enabled = valid_;
+  r.buttons_stuck = has_life_ && still_sets_ >= kStillSets;
   for (std::size_t j = 0; j < rt::kJoints; ++j) {
     const Node& node = nodes_[j];
     const State state = node.state();
@@ -103,6 +116,7 @@ rt::HandReading HandLink::reading() const noexcept {
     if (can::profile::has_stylus_buttons(can::profile::kJointNodes[j])) {
       r.grip = (node.latest.buttons & can::profile::kButtonGrip) != 0;
       r.dead_man = (node.latest.buttons & can::profile::kButtonDeadMan) != 0;
+      r.clutch = (node.latest.buttons & can::profile::kButtonClutch) != 0;
     }
   }
   return r;

@@ -57,6 +57,7 @@ class HandLink {
 
  private:
   static constexpr int kMaxFrames = 64;         // a period on a 1 Mbit/s bus carries fewer than 22
+  static constexpr int kStillSets = 10;         // complete sets without a new life sign
   static constexpr int kHeartbeatPeriods = 50;  // half of the drives' default, so that one may be lost
 
   struct Node {
@@ -70,6 +71,7 @@ class HandLink {
   bool send(const can::Frame& frame) noexcept;
   void take(const can::Frame& frame) noexcept;
   [[nodiscard]] std::int16_t permille_of(double torque_Nm) const noexcept;
+  void note_life(std::uint16_t buttons) noexcept;
   void take_tpdo(std::size_t joint, const can::Tpdo1& tpdo) noexcept;
 
   CanBus& bus_;
@@ -79,6 +81,8 @@ class HandLink {
   std::array<can::Tpdo1, rt::kJoints> pending_{};
   unsigned arrived_ = 0;  // bit per joint since the last SYNC
   bool valid_ = false;
+  bool has_life_ = false;  // the buttons' life sign was seen to move; a drive without one is taken as it is
+  int still_sets_ = 0;
   std::int32_t age_ticks_ = 1;
   int periods_to_heartbeat_ = 0;
   unsigned bits_ = 0, bits_of_last_period_ = 0;  // on the wire

@@ -8,7 +8,18 @@
 namespace ligature::rt {
 
 /// Values as in protocol/lcm/command_t.lcm.
-enum class CommandKind : std::int8_t { kNone = 0, kArm = 1, kDisarm = 2, kStop = 3, kResetFault = 4, kResetThread = 5 };
+enum class CommandKind : std::int8_t {
+  kNone = 0,
+  kArm = 1,
+  kDisarm = 2,
+  kStop = 3,
+  kResetFault = 4,
+  kResetThread = 5,
+  kClutchLeft = 9,  ///< 6 and 7 never come here
+  kUnclutchLeft = 10,
+  kClutchRight = 11,
+  kUnclutchRight = 12,
+};
 
 struct Command {
   std::int64_t id = 0;

@@ -16,11 +16,13 @@ struct HandReading {
   std::array<double, kJoints> q_rad{};  ///< waist, shoulder, forearm (absolute)
   bool grip = false;
   bool dead_man = false;
+  bool clutch = false;
   bool valid = false;          ///< a complete set has arrived since the start
   bool enabled = false;        ///< every drive is in Operation enabled
   bool drive_fault = false;    ///< a drive is in Fault, sent an emergency or fell out of NMT operational
+  bool buttons_stuck = false;  ///< their life sign stands still
   bool bus_lost = false;       ///< the bus itself is gone
-  std::int32_t bus_bits = 0;   ///< on this hand's wire in the period before, stuff bits included
+  float bus_load = 0.0F;       ///< share of the period before that this hand's bus was busy, stuff bits included
   std::int32_t age_ticks = 0;  ///< periods since the last complete set; 0 = sampled at this period's SYNC
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// The only place that knows counts and per mille: wire integers <-> SI.
+// Counts and per mille of the shipped device <-> SI; a rig with another device record scales by that.
 
 #include <cstdint>
 #include <numbers>

@@ -119,6 +119,12 @@ struct Hands {
   double coupling_N_s_per_m = 6.0;
   double pinch_width_m = 0.0;           ///< jaws hold the nodes across their width, and their direction; 0: one node
   std::optional<double> pinch_force_N;  ///< of each jaw on the thread: it slips at 2 mu times this; absent: never
+  /// Device side of the coupling, at the device; absent: rigid, the tool is where the device is.
+  std::optional<double> device_N_per_m;
+  double device_N_s_per_m = 0.5;
+  bool passivity = true;            ///< key hands.passivity: the controller over each device port acts
+  bool override_passivity = false;  ///< key hands.override_passivity: take a coupling beyond the admissible one
+  double energy_credit_J = 0.0;     ///< opening balance of each port's account; 0: all must be earned
   double force_scale = 0.003;  ///< world newtons -> device newtons
   double max_force_N = 3.3;    ///< at the device
   bool propagation = false;

@@ -114,6 +114,11 @@ void read_hands(StrictTable& t, Hands& h) {
   t.number("coupling_N_s_per_m", h.coupling_N_s_per_m, kCoefficient);
   t.number("pinch_width_m", h.pinch_width_m, {0.0, kFar_m});
   t.number("pinch_force_N", h.pinch_force_N, {0.0, 1e6, true});
+  t.number("device_N_per_m", h.device_N_per_m, {0.0, 1e5, true});
+  t.number("device_N_s_per_m", h.device_N_s_per_m, {0.0, 1e3});
+  t.boolean("passivity", h.passivity);
+  t.boolean("override_passivity", h.override_passivity);
+  t.number("energy_credit_J", h.energy_credit_J, {0.0, 0.02});
   t.number("force_scale", h.force_scale, {0.0, 1e3});
   t.number("max_force_N", h.max_force_N, {0.0, 100.0});
   t.boolean("propagation", h.propagation);

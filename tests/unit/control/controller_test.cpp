@@ -10,6 +10,7 @@ namespace ligature::control {
 namespace {
 
 constexpr int kWatchdog = 20;
+constexpr double kHalfQuantum_Nm = 0.15e-3 * (1 + 1e-9);  // torques are whole per mille of 0.3 N m
 
 /// A rig whose hands rest while each holds a node 5 cm above it.
 class Rig {
@@ -26,6 +27,7 @@ class Rig {
   static scene::Hands scene() {
     scene::Hands hands;
     hands.workspace_scale = 20.0;
+    hands.energy_credit_J = 0.02;  // these hands never move, and earn nothing
     return hands;
   }
 
@@ -70,10 +72,10 @@ TEST(Controller, FeelsTheCouplingThroughTheLinkage) {  // 1200 N/m x 0.05 m x 0.
   Rig rig;
   rig.to_force();
   const auto command = rig.tick();
-  const Vec3 expected = joint_torque({0.0, 0.5, 0.6}, Vec3(0, 0, 0.18));
+  const Vec3 expected = Linkage(device::omni()).torque({0.0, 0.5, 0.6}, Vec3(0, 0, 0.18));
   for (std::size_t j = 0; j < 3; ++j) {
-    EXPECT_NEAR(command.hand[0].torque_Nm[j], expected[static_cast<Eigen::Index>(j)], 1e-12);
-    EXPECT_NEAR(command.hand[1].torque_Nm[j], expected[static_cast<Eigen::Index>(j)], 1e-12);
+    EXPECT_NEAR(command.hand[0].torque_Nm[j], expected[static_cast<Eigen::Index>(j)], kHalfQuantum_Nm);
+    EXPECT_NEAR(command.hand[1].torque_Nm[j], expected[static_cast<Eigen::Index>(j)], kHalfQuantum_Nm);
   }
 }
 
@@ -81,7 +83,8 @@ TEST(Controller, NeverExceedsTheForceLimitAndReportsIt) {
   Rig rig;
   rig.to_force();
   rig.offset_m = 50.0;
-  rig.tick();
+  rig.ticks(40);  // 0.15 N a tick
+  EXPECT_TRUE(rig.controller.hand(0).limits & rt::kPeakLimit);
   EXPECT_NEAR(rig.controller.hand(0).f_device_N.norm(), 3.3, 1e-9);
   EXPECT_LE(rig.controller.hand(0).f_device_N.norm(), 3.3);
   EXPECT_TRUE(rig.controller.hand(0).limited);
@@ -92,6 +95,7 @@ TEST(Controller, AForceBelowTheLimitIsNotCalledLimited) {  // while the gain sti
   Rig rig;
   rig.to_force();
   rig.offset_m = 50.0;
+  rig.ticks(40);
   rig.in.reading.hand[0].dead_man = false;
   rig.tick();
   EXPECT_LT(rig.controller.hand(0).f_device_N.norm(), 3.3);
@@ -127,6 +131,79 @@ TEST(Controller, StopTakesTheForceAtOnce) {
   EXPECT_EQ(Rig::largest(rig.tick()), 0.0);
   rig.tick();
   EXPECT_EQ(rig.controller.state(), State::kIdle);
+}
+
+TEST(Controller, ForceGrowsByAStepAtMost) {
+  Rig rig;
+  rig.to_force();
+  rig.offset_m = 50.0;
+  Vec3 before = rig.controller.hand(0).f_device_N;
+  for (int i = 0; i < 100; ++i) {
+    rig.tick();
+    const Vec3 now = rig.controller.hand(0).f_device_N;
+    EXPECT_LE((now - before).norm(), device::omni().force_step_N);
+    before = now;
+  }
+}
+
+TEST(Controller, AHandThatIsTooFastIsBrakedAndMayComeBack) {  // a limit, not a fault
+  Rig rig;
+  rig.to_force();
+  const double step = 2.4e-3 / 0.192;  // 2.4 m/s at the waist's lever: between limit and fault
+  bool braked = false, seen = false;
+  for (int i = 0; i < 8; ++i) {
+    rig.in.reading.hand[0].q_rad[0] += i < 4 ? step : 0.0;
+    rig.tick();
+    braked = braked || rig.controller.state() == State::kBrake;
+    seen = seen || (rig.controller.hand(0).limits & rt::kVelocityBrake) != 0;
+  }
+  EXPECT_TRUE(braked);
+  EXPECT_TRUE(seen);
+  EXPECT_EQ(rig.controller.fault(), Fault::kNone);
+  rig.ticks(1000);
+  EXPECT_EQ(rig.controller.state(), State::kForce);
+}
+
+TEST(Controller, TheClutchParksTheToolAndReleasesItWhereItIs) {
+  Rig rig;
+  rig.in.reading.hand[0].grip = true;
+  rig.to_force();
+  const Vec3 parked = rig.controller.tools()[0].p_WT;
+  rig.in.reading.hand[0].clutch = true;
+  rig.in.reading.hand[0].grip = false;
+  double before = rig.controller.hand(0).f_device_N.norm();
+  for (int i = 0; i < 200; ++i) {
+    rig.in.reading.hand[0].q_rad[1] += 0.0005;
+    rig.tick();
+    const double now = rig.controller.hand(0).f_device_N.norm();
+    EXPECT_LE(now, before + 1e-12);  // only less
+    before = now;
+  }
+  EXPECT_EQ(before, 0.0);
+  EXPECT_EQ(rig.controller.tools()[0].p_WT, parked);
+  EXPECT_TRUE(rig.controller.tools()[0].grip);
+  rig.in.reading.hand[0].clutch = false;
+  rig.in.reading.hand[0].grip = true;
+  for (int i = 0; i < 1000; ++i) {
+    rig.tick();
+    const double now = rig.controller.hand(0).f_device_N.norm();
+    EXPECT_LE(std::abs(now - before), 0.5 / 500 + 2e-3);  // the ramp's step, and a quantum
+    before = now;
+  }
+  EXPECT_LT((rig.controller.tools()[0].p_WT - parked).norm(), 1e-12);
+  EXPECT_GT(before, 0.0);
+}
+
+TEST(Controller, TheClutchIsAlsoACommand) {
+  Rig rig;
+  rig.to_force();
+  rig.controller.command(rt::CommandKind::kClutchRight);
+  rig.tick();
+  EXPECT_TRUE(rig.controller.hand(1).clutch);
+  EXPECT_FALSE(rig.controller.hand(0).clutch);
+  rig.controller.command(rt::CommandKind::kUnclutchRight);
+  rig.tick();
+  EXPECT_FALSE(rig.controller.hand(1).clutch);
 }
 
 struct Case {
@@ -181,6 +258,19 @@ TEST(ControllerFaults, OldJointMessagesAreHeldAndThenAFault) {
   const auto command = rig.tick();
   EXPECT_EQ(rig.controller.fault(), Fault::kTpdoTooOld);
   EXPECT_EQ(Rig::largest(command), 0.0);
+}
+
+TEST(ControllerFaults, ALostPeriodMakesNoOldSampleNew) {  // sets of 3 and 4 missing, period 5 lost: still the sample of 2
+  Rig rig;
+  rig.to_force();
+  for (const int age : {1, 2}) {
+    rig.in.reading.hand[0].age_ticks = age;
+    rig.tick();
+  }
+  ++rig.in.tick;  // lost
+  rig.in.reading.hand[0].age_ticks = 3;
+  rig.tick();
+  EXPECT_EQ(rig.controller.hand(0).age_ticks, 4);
 }
 
 TEST(ControllerFaults, OnlyAResetLeadsBackAndItArmsNothing) {

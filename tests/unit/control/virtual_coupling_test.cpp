@@ -8,7 +8,9 @@
 
 #include <limits>
 
+#include "firmware/control/admissible.hpp"
 #include "firmware/control/workspace_map.hpp"
+#include "protocol/scene/scene_file.hpp"
 
 namespace ligature::control {
 namespace {
@@ -36,27 +38,86 @@ TEST(Saturate, NeverAboveTheLimitHoweverItIsMeasured) {
   }
 }
 
+constexpr double kT_s = 1e-3;
+
+/// Of a device that stands still, once everything has settled.
+Vec3 felt(const scene::Hands& h, const Grasp& grasp, const Vec3& p_WT = Vec3::Zero(), const Vec3& v_WT = Vec3::Zero()) {
+  const VirtualCoupling coupling(h, kT_s);
+  Proxy proxy{p_WT, v_WT};
+  for (int i = 0; i < 2000; ++i) static_cast<void>(coupling.pull(grasp, p_WT, v_WT, proxy));
+  return coupling.pull(grasp, p_WT, v_WT, proxy).f_N;
+}
+
 TEST(VirtualCoupling, AnEmptyHandFeelsNothing) {
-  EXPECT_EQ(VirtualCoupling(hands()).force({false, Vec3(1, 1, 1), Vec3::Zero()}, Vec3::Zero(), Vec3::Zero()).f_N,
-            Vec3::Zero());
+  EXPECT_EQ(felt(hands(), {false, Vec3(1, 1, 1), Vec3::Zero()}), Vec3::Zero());
 }
 
 TEST(VirtualCoupling, PullsTowardsTheNode) {  // node 0.1 m above: 1200 x 0.1 x 0.003 = 0.36 N upwards
-  const auto f = VirtualCoupling(hands()).force({true, Vec3(0, 0, 0.1), Vec3::Zero()}, Vec3::Zero(), Vec3::Zero());
-  EXPECT_NEAR(f.f_N.z(), 0.36, 1e-12);
-  EXPECT_FALSE(f.limited);
+  EXPECT_NEAR(felt(hands(), {true, Vec3(0, 0, 0.1), Vec3::Zero()}).z(), 0.36, 1e-12);
 }
 
 TEST(VirtualCoupling, ResistsTheHandsOwnMotion) {  // damping takes energy: force against velocity
-  const auto f = VirtualCoupling(hands()).force({true, Vec3::Zero(), Vec3::Zero()}, Vec3::Zero(), Vec3(2, 0, 0));
-  EXPECT_NEAR(f.f_N.x(), -6.0 * 2 * 0.003, 1e-12);
+  EXPECT_NEAR(felt(hands(), {true, Vec3::Zero(), Vec3::Zero()}, Vec3::Zero(), Vec3(2, 0, 0)).x(), -6.0 * 2 * 0.003, 1e-12);
 }
 
-TEST(VirtualCoupling, LimitsTheMagnitudeAndKeepsTheDirection) {
-  const auto f = VirtualCoupling(hands()).force({true, Vec3(30, 40, 0), Vec3::Zero()}, Vec3::Zero(), Vec3::Zero());
-  EXPECT_TRUE(f.limited);
-  EXPECT_NEAR(f.f_N.norm(), 3.3, 1e-12);
-  EXPECT_NEAR(f.f_N.x() / f.f_N.y(), 0.75, 1e-12);
+scene::Hands two_sided() {
+  scene::Hands h = hands();
+  h.workspace_scale = 20.0;  // at the device: 1200 x 0.003 x 20 = 72 N/m
+  h.device_N_per_m = 36.0;
+  return h;
+}
+
+TEST(VirtualCoupling, TwoSidesAreSpringsInSeries) {  // 72 and 36 N/m: 24 N/m; 0.1 m of world is 5 mm of device
+  EXPECT_NEAR(felt(two_sided(), {true, Vec3(0, 0, 0.1), Vec3::Zero()}).z(), 24.0 * 0.005, 1e-9);
+}
+
+TEST(VirtualCoupling, TheHandFeelsWhatTheThreadFeelsScaled) {  // both springs carry one force
+  const scene::Hands h = two_sided();
+  const VirtualCoupling coupling(h, kT_s);
+  const Grasp grasp{true, Vec3(0.02, -0.05, 0.1), Vec3::Zero()};
+  Proxy proxy;
+  Vec3 f;
+  for (int i = 0; i < 2000; ++i) f = coupling.pull(grasp, Vec3::Zero(), Vec3::Zero(), proxy).f_N;
+  const Vec3 thread_N = h.coupling_N_per_m * (grasp.p_WG - proxy.p_WP);
+  EXPECT_LT((f - h.force_scale * thread_N).norm(), 1e-12);
+}
+
+TEST(VirtualCoupling, ALooseProxyIsTheDevice) {
+  const VirtualCoupling coupling(two_sided(), kT_s);
+  Proxy proxy{Vec3(9, 9, 9), Vec3::Zero()};
+  static_cast<void>(coupling.pull({}, Vec3(1, 2, 3), Vec3(4, 5, 6), proxy));
+  EXPECT_EQ(proxy.p_WP, Vec3(1, 2, 3));
+  EXPECT_EQ(proxy.v_WP, Vec3(4, 5, 6));
+}
+
+TEST(VirtualCoupling, TellsWhatIsNoNumber) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& h : {hands(), two_sided()}) {
+    Proxy proxy;
+    const auto pull = VirtualCoupling(h, kT_s).pull({true, Vec3(nan, 0, 0), Vec3::Zero()}, Vec3::Zero(), Vec3::Zero(), proxy);
+    EXPECT_FALSE(pull.finite);
+    EXPECT_EQ(pull.f_N, Vec3::Zero());
+    EXPECT_TRUE(proxy.p_WP.allFinite());
+  }
+}
+
+TEST(Admissible, IsTheBoundOfTheDevice) {  // b = 0.3, B = 0.36 N s/m, T/2 + t_d = 1.5 ms: 440 N/m
+  scene::Hands h = hands();
+  h.workspace_scale = 20.0;
+  const Admissible a = admissible(h, device::omni(), kT_s);
+  EXPECT_NEAR(a.K_N_per_m, 72.0, 1e-12);
+  EXPECT_NEAR(a.largest_N_per_m, (0.3 + 0.36) / 1.5e-3, 1e-9);
+  EXPECT_TRUE(a.holds());
+  h.coupling_N_per_m = 8000.0;
+  EXPECT_FALSE(admissible(h, device::omni(), kT_s).holds());
+}
+
+TEST(Admissible, ShippedScenesHold) {
+  for (const char* file : {"paper.toml", "desk.toml", "suture-3-0.toml", "suture-3-0-knot.toml"}) {
+    const auto scene = scene::load_scene(std::string(LIGATURE_SOURCE_DIR) + "/scenes/" + file);
+    const Admissible a = admissible(std::get<scene::Scene>(scene).hands, device::omni(), kT_s);
+    EXPECT_TRUE(a.holds()) << file << ": " << a.K_N_per_m << " N/m, largest " << a.largest_N_per_m;
+  }
 }
 
 TEST(Saturate, LimitsEvenTheLargestNumbers) {
@@ -77,9 +138,10 @@ TEST(WorkspaceMap, HomeIsTheOriginAndLengthsScale) {
   scene::Hands h = hands();
   h.workspace_scale = 20.0;
   h.workspace_origin_m = {0.5, -0.4, 3.2};
-  const WorkspaceMap map(h);
-  EXPECT_LT((map.position(kHome_DT_m) - Vec3(0.5, -0.4, 3.2)).norm(), 1e-12);
-  EXPECT_LT((map.position(kHome_DT_m + Vec3(0.01, 0, 0)) - Vec3(0.7, -0.4, 3.2)).norm(), 1e-12);
+  const Vec3 home(0.0, -0.17, 0.0);
+  const WorkspaceMap map(h, home);
+  EXPECT_LT((map.position(home) - Vec3(0.5, -0.4, 3.2)).norm(), 1e-12);
+  EXPECT_LT((map.position(home + Vec3(0.01, 0, 0)) - Vec3(0.7, -0.4, 3.2)).norm(), 1e-12);
   EXPECT_LT((map.velocity(Vec3(0, 0.1, 0)) - Vec3(0, 2, 0)).norm(), 1e-12);
 }
 

@@ -72,7 +72,9 @@ inline scene::Scene small_scene() {
   s.world.fixed = {{0, {0.0, 0.0, 5.5}, std::nullopt}};
   s.world.grippers_collide = false;
   s.hands.workspace_scale = 20.0;
-  const control::Vec3 tip_W = 20.0 * (control::tip_position(kRestingArm) - control::kHome_DT_m);
+  s.hands.energy_credit_J = 0.02;  // the fake hands never move, and would earn nothing
+  const control::Linkage arm(device::omni());
+  const control::Vec3 tip_W = 20.0 * (arm.position(kRestingArm) - arm.home_m());
   s.hands.workspace_origin_m = {0.02 - tip_W.x(), -tip_W.y(), 4.8 - tip_W.z()};  // both tools 2 cm beside the thread
   return s;
 }

@@ -74,11 +74,11 @@ TEST(HandDevice, EncodersFollowTheOperator) {
   const Vec3 q{can::angle_rad(r.master.tpdo[0].position_counts), can::angle_rad(r.master.tpdo[1].position_counts),
                can::angle_rad(r.master.tpdo[2].position_counts)};
   EXPECT_NEAR((tip_D_m(q) - Vec3(0.0, -0.17, 0.02)).norm(), 0.0, 1e-3);  // 0.4 m of the world at scale 20
-  EXPECT_EQ(r.master.tpdo[2].buttons, can::profile::kButtonGrip | can::profile::kButtonDeadMan);
+  EXPECT_EQ(r.master.tpdo[2].buttons & 0xFF, can::profile::kButtonGrip | can::profile::kButtonDeadMan);
   r.ticks(600);
-  EXPECT_EQ(r.master.tpdo[2].buttons, can::profile::kButtonDeadMan);
+  EXPECT_EQ(r.master.tpdo[2].buttons & 0xFF, can::profile::kButtonDeadMan);
   r.ticks(1000);
-  EXPECT_EQ(r.master.tpdo[2].buttons, 0);
+  EXPECT_EQ(r.master.tpdo[2].buttons & 0xFF, 0);
   EXPECT_TRUE(r.device.mechanics().is_done());
 }
 

@@ -1,0 +1,36 @@
+#pragma once
+// How stiff a coupling a device can render at all.
+
+#include "protocol/device/device.hpp"
+#include "protocol/scene/scene.hpp"
+
+namespace ligature::control {
+
+/// A coupling as the device feels it against a thread that does not give way, and the bound it must stay below:
+///   K < (b + B) / (T/2 + t_d)       linear stability of a sampled, delayed spring for small B (Gil; Hulin et al., IEEE
+///                                   Trans. Control Syst. Technol. 2014); a hand's own damping only helps
+/// b: damping of the device, T: period, t_d: delay from sample to torque. Both springs in series when the scene has a
+/// device side:
+///   K = K_d K_t / (K_d + K_t),   B = (B_d K_t^2 + B_t K_d^2) / (K_d + K_t)^2     (low frequencies), K_t, B_t times s w
+struct Admissible {
+  double K_N_per_m = 0.0;
+  double B_N_s_per_m = 0.0;
+  double largest_N_per_m = 0.0;  ///< K must stay below it
+
+  [[nodiscard]] bool holds() const noexcept { return K_N_per_m < largest_N_per_m; }
+};
+
+[[nodiscard]] inline Admissible admissible(const scene::Hands& h, const device::Device& d, double period_s) noexcept {
+  const double to_device = h.force_scale * h.workspace_scale;
+  const double Kt = to_device * h.coupling_N_per_m, Bt = to_device * h.coupling_N_s_per_m;
+  Admissible a{Kt, Bt, 0.0};
+  if (h.device_N_per_m && Kt > 0.0) {
+    const double Kd = *h.device_N_per_m, sum = Kd + Kt;
+    a.K_N_per_m = Kd * Kt / sum;
+    a.B_N_s_per_m = (h.device_N_s_per_m * Kt * Kt + Bt * Kd * Kd) / (sum * sum);
+  }
+  a.largest_N_per_m = (d.damping_N_s_per_m + a.B_N_s_per_m) / (0.5 * period_s + d.delay_s);
+  return a;
+}
+
+}  // namespace ligature::control

@@ -1,0 +1,117 @@
+#pragma once
+// An encoder that lies tells a possible story afterwards, but not in the moment it begins to lie.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "firmware/control/faults.hpp"
+
+namespace ligature::control {
+
+/// One hand's three encoders. A hand is a mass on a spring: no joint of it changes its speed from one period to the next,
+/// least of all while the others go on as before. Looked for is such a corner, over two windows of kWindow samples that
+/// meet in it, both straight within one count (slopes u before, w after, counts a period), while another joint moves on
+/// at an unchanged speed:
+///   |u| >= kBrisk and the joint stands to the count from there on, while the others travel kTravel counts   frozen
+///   |u| >= kMoving and w = -u within kSame                                                                   reversed
+/// A smooth turn that is straight within a count on both sides changes its slope by at most 8 / kWindow = 0.33 in all, so
+/// with |u| above it has to be a corner; a slow joint may simply stop. A joint in its stop does stand still; near one nothing is looked for. A fault
+/// that begins while the joint rests is not seen: then the velocity limit and the force limits remain.
+/// Gaps between samples start the watch anew. O(kWindow), no allocation.
+class EncoderWatch {
+ public:
+  static constexpr std::size_t kJoints = 3, kWindow = 24, kLength = 128;
+  static constexpr double kMoving = 0.34, kBrisk = 0.8, kSame = 0.17;  ///< counts a period
+  static constexpr double kTravel = 60.0;                ///< counts, about 3 mm at the tip
+
+  /// A new sample, in counts. @param gap whole periods since the last one. @param free per joint: far from its stops.
+  /// @return what is wrong, latched by the caller.
+  [[nodiscard]] Fault add(const std::array<double, kJoints>& counts, std::int64_t gap,
+                          const std::array<bool, kJoints>& free) noexcept {
+    if (gap != 1) count_ = 0, suspect_ = kJoints;
+    newest_ = (newest_ + 1) % kLength;
+    for (std::size_t j = 0; j < kJoints; ++j) x_[j][newest_] = counts[j];
+    count_ = std::min(count_ + 1, kLength);
+    if (count_ < 2 * kWindow) return Fault::kNone;
+    if (is_frozen(free)) return Fault::kEncoderFrozen;
+    return is_reversed(free) ? Fault::kAxisReversed : Fault::kNone;
+  }
+
+ private:
+  struct Line {
+    double slope = 0.0;
+    bool straight = false;
+  };
+
+  [[nodiscard]] double at(std::size_t joint, std::size_t ago) const noexcept {
+    return x_[joint][(newest_ + kLength - ago) % kLength];
+  }
+
+  /// Samples ago + kWindow - 1 .. ago through their ends.
+  [[nodiscard]] Line line(std::size_t joint, std::size_t ago) const noexcept {
+    constexpr double kSteps = kWindow - 1;
+    const double first = at(joint, ago + kWindow - 1);
+    Line l{(at(joint, ago) - first) / kSteps, true};
+    for (std::size_t i = 1; i < kWindow - 1; ++i) {
+      const double off = at(joint, ago + kWindow - 1 - i) - (first + l.slope * static_cast<double>(i));
+      l.straight = l.straight && std::abs(off) <= 1.0 + 1e-9;
+    }
+    return l;
+  }
+
+  /// Another joint than `joint` goes through the corner as if there were none.
+  [[nodiscard]] bool other_moves_on(std::size_t joint) const noexcept {
+    for (std::size_t k = 0; k < kJoints; ++k) {
+      if (k == joint) continue;
+      const Line before = line(k, kWindow), after = line(k, 0);
+      if (std::abs(before.slope) >= kMoving && std::abs(after.slope - before.slope) <= kSame) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool is_reversed(const std::array<bool, kJoints>& free) const noexcept {
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      const Line before = line(j, kWindow), after = line(j, 0);
+      const bool mirrored = before.straight && after.straight && std::abs(before.slope) >= kMoving &&
+                            std::abs(after.slope + before.slope) <= kSame;
+      if (free[j] && mirrored && other_moves_on(j)) return true;
+    }
+    return false;
+  }
+
+  /// First the corner, then the others' travel while the suspect stands to the count.
+  [[nodiscard]] bool is_frozen(const std::array<bool, kJoints>& free) noexcept {
+    if (suspect_ < kJoints) {
+      if (at(suspect_, 0) != at(suspect_, 1)) {
+        suspect_ = kJoints;
+        return false;
+      }
+      for (std::size_t k = 0; k < kJoints; ++k) travel_ += std::abs(at(k, 0) - at(k, 1));
+      return travel_ >= kTravel;
+    }
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      const Line before = line(j, kWindow), after = line(j, 0);
+      const bool stands = after.straight && at(j, 0) == at(j, kWindow - 1) && after.slope == 0.0 && is_constant(j);
+      if (free[j] && before.straight && std::abs(before.slope) >= kBrisk && stands && other_moves_on(j)) {
+        suspect_ = j;
+        travel_ = 0.0;
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool is_constant(std::size_t joint) const noexcept {
+    for (std::size_t i = 1; i < kWindow; ++i) {
+      if (at(joint, i) != at(joint, 0)) return false;
+    }
+    return true;
+  }
+
+  std::array<std::array<double, kLength>, kJoints> x_{};
+  std::size_t newest_ = 0, count_ = 0, suspect_ = kJoints;
+  double travel_ = 0.0;
+};
+
+}  // namespace ligature::control

@@ -1,0 +1,108 @@
+#pragma once
+// One hand's control law: joints in, a force that may be sent out. Who may push, and when, is the controller's business.
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/control/encoder_watch.hpp"
+#include "firmware/control/engagement.hpp"
+#include "firmware/control/force_limiter.hpp"
+#include "firmware/control/kinematics.hpp"
+#include "firmware/control/passivity.hpp"
+#include "firmware/control/virtual_coupling.hpp"
+#include "firmware/control/window_velocity.hpp"
+#include "firmware/control/workspace_map.hpp"
+#include "firmware/physics/simulation.hpp"
+#include "firmware/rt/rig_io.hpp"
+#include "protocol/scene/scene.hpp"
+
+namespace ligature::control {
+
+/// One hand after a tick.
+struct HandState {
+  JointAngles q_rad{};
+  Vec3 p_WT = Vec3::Zero();
+  Vec3 v_WT = Vec3::Zero();
+  Vec3 f_wish_N = Vec3::Zero();    // at the device: what the coupling asks for
+  Vec3 f_device_N = Vec3::Zero();  ///< after gain, limits and passivity; what the torques produce
+  double gain = 0.0;
+  double port_energy_J = 0.0, dissipated_J = 0.0, injected_N_s_per_m = 0.0, heat = 0.0;
+  std::int16_t limits = 0;     ///< rt::LimitCode bits
+  bool limited = false;        ///< the force above stands at a magnitude's limit, and the gain is 1
+  std::int64_t age_ticks = 0;  ///< periods since the sample that p_WT comes from
+  bool dead_man = false;
+  bool grip = false;
+  bool clutch = false;
+  float bus_load = 0.0F;
+};
+
+/// What the rig lets a hand do in a tick.
+enum class Push : std::uint8_t { kNone, kCoupling, kBrake };
+
+/// Order of a tick: observe(), step_gain(), command(). Real time: O(1), no allocation.
+class HandControl {
+ public:
+  HandControl(const device::Device& device, const scene::Hands& hands, double period_s) noexcept;
+
+  /// Another scene's hands, at once. @pre no force may flow.
+  void change_hands(const scene::Hands& hands) noexcept;
+  void set_force_scale(double scale) noexcept { coupling_.set_force_scale(scale); }
+  [[nodiscard]] double force_scale() const noexcept { return coupling_.force_scale(); }
+
+  /// Joints to tip to world, and the force that this pose asks for. An old sample is held as it is.
+  /// @param last_tick the period executed before this one; reading.age_ticks counts executed periods.
+  void observe(const rt::HandReading& reading, const Grasp& grasp, std::int64_t tick, std::int64_t last_tick) noexcept;
+  void hold_clutch(bool held) noexcept { clutch_command_ = held; }
+
+  void drop() noexcept { engagement_.drop(); }
+  void step_gain(bool wanted) noexcept { engagement_.tick(wanted && !state_.clutch, speed_m_per_s(), state_.f_wish_N.norm()); }
+  [[nodiscard]] double gain() const noexcept { return engagement_.gain(); }
+
+  /// Torques of this tick: gain, brake, limits, passivity, linkage, rounding to what the wire carries; in this order.
+  [[nodiscard]] std::array<double, rt::kJoints> command(Push push, std::int64_t tick) noexcept;
+
+  [[nodiscard]] const HandState& state() const noexcept { return state_; }
+  [[nodiscard]] bool is_finite() const noexcept { return finite_; }
+  [[nodiscard]] Fault encoder_fault() const noexcept { return encoder_fault_; }  ///< of the last sample
+  [[nodiscard]] bool is_plausible() const noexcept { return linkage_.is_plausible(state_.q_rad); }
+  [[nodiscard]] double speed_m_per_s() const noexcept { return v_DT_.norm(); }  ///< of the device's tip
+  [[nodiscard]] bool holds() const noexcept { return holds_; }
+  [[nodiscard]] Passivity& passivity() noexcept { return passivity_; }
+
+  /// The tool as the thread shall see it in this tick.
+  [[nodiscard]] physics::ToolInput tool(bool alive) const noexcept { return {proxy_.p_WP, proxy_.v_WP, state_.grip && alive}; }
+
+  /// A hand that is too fast is led to rest by these, along a reference that stops (motion.hpp).
+  static constexpr double kBrake_N_per_m = 150.0, kBrake_N_s_per_m = 2.0;
+
+ private:
+  void sample(const rt::HandReading& reading, std::int64_t sampled) noexcept;
+  void map(const Vec3& p_DT) noexcept;
+  void step_clutch(bool pressed, const Vec3& p_DT) noexcept;
+  [[nodiscard]] Vec3 sendable_torque(const Vec3& f_N, std::int64_t tick) noexcept;
+  [[nodiscard]] Vec3 tip_force(const Vec3& torque_Nm, const Vec3& otherwise_N) const noexcept;
+  [[nodiscard]] Vec3 brake_force() noexcept;
+  void fill_state(std::int16_t limits) noexcept;
+
+  double period_s_, quantum_Nm_, max_torque_Nm_, count_rad_;
+  Linkage linkage_;
+  WorkspaceMap map_;
+  VirtualCoupling coupling_;
+  ForceLimiter limiter_;
+  Passivity passivity_;
+  Engagement engagement_;
+  BrakeToRest brake_;
+  bool braking_ = false;
+  std::array<WindowVelocity, 3> velocity_;
+  HandState state_;
+  Proxy proxy_;
+  Mat3 jacobian_ = Mat3::Identity();
+  Vec3 p_DT_ = Vec3::Zero(), v_DT_ = Vec3::Zero();
+  bool finite_ = true, holds_ = false, clutch_command_ = false, torque_clipped_ = false;
+  std::int64_t sample_tick_ = -1;
+  std::int32_t last_age_ = 0;
+  EncoderWatch watch_;
+  Fault encoder_fault_ = Fault::kNone;
+};
+
+}  // namespace ligature::control

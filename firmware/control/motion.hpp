@@ -1,0 +1,102 @@
+#pragma once
+// Moves that the rig makes by itself: smooth from where things are, replanned in the loop, never from a list of points.
+
+#include <algorithm>
+#include <ruckig/ruckig.hpp>
+
+#include "firmware/physics/types.hpp"
+
+namespace ligature::control {
+
+/// A share that goes to 0 or 1 by a jerk-limited curve: the gain of a hand. A move of 1 takes exactly its duration D:
+///   v <= 1.5 / D,  a <= 6 / D^2,  j <= 72 / D^3     (D (2/3 + 1/4 + 1/12) = D)
+/// A new wish starts from the present value, speed and acceleration. Plans with Ruckig of one fixed degree of freedom:
+/// no allocation, about 1 us when the wish changes and less else.
+class Ramp {
+ public:
+  explicit Ramp(double period_s) : otg_(period_s) {
+    input_.current_position[0] = input_.current_velocity[0] = input_.current_acceleration[0] = 0.0;
+    input_.target_position[0] = input_.target_velocity[0] = input_.target_acceleration[0] = 0.0;
+    set_duration(1.0);
+  }
+
+  double step(double target, double duration_s) noexcept {
+    if (target != input_.target_position[0]) {
+      set_duration(duration_s);
+      input_.target_position[0] = target;
+    }
+    if (value_ == target && input_.current_velocity[0] == 0.0) return value_;
+    const auto result = otg_.update(input_, output_);
+    output_.pass_to_input(input_);
+    value_ = std::clamp(output_.new_position[0], 0.0, 1.0);
+    if (result != ruckig::Result::Working || std::abs(value_ - target) < kNear) settle(target);
+    return value_;
+  }
+  /// At once.
+  void settle(double value) noexcept {
+    value_ = value;
+    input_.current_position[0] = input_.target_position[0] = value;
+    input_.current_velocity[0] = input_.current_acceleration[0] = 0.0;
+  }
+  [[nodiscard]] double value() const noexcept { return value_; }
+
+ private:
+  static constexpr double kNear = 1e-9;
+
+  void set_duration(double D) noexcept {
+    input_.max_velocity[0] = 1.5 / D;
+    input_.max_acceleration[0] = 6.0 / (D * D);
+    input_.max_jerk[0] = 72.0 / (D * D * D);
+  }
+
+  ruckig::Ruckig<1> otg_;
+  ruckig::InputParameter<1> input_;
+  ruckig::OutputParameter<1> output_;
+  double value_ = 0.0;
+};
+
+/// Brings a tip from its motion to rest: a reference that starts where the tip is and as fast, and stops with at most
+/// kDeceleration and kJerk on each axis. No allocation.
+class BrakeToRest {
+ public:
+  static constexpr double kDeceleration_m_per_s2 = 60.0;  ///< 2 m/s to rest in 50 ms or so
+  static constexpr double kJerk_m_per_s3 = 6000.0;
+
+  explicit BrakeToRest(double period_s) : otg_(period_s) {
+    input_.control_interface = ruckig::ControlInterface::Velocity;
+    for (std::size_t i = 0; i < 3; ++i) {
+      input_.max_acceleration[i] = kDeceleration_m_per_s2;
+      input_.max_jerk[i] = kJerk_m_per_s3;
+      input_.target_velocity[i] = input_.target_acceleration[i] = 0.0;
+    }
+  }
+
+  void start(const physics::Vec3& p_m, const physics::Vec3& v_m_per_s) noexcept {
+    for (std::size_t i = 0; i < 3; ++i) {
+      input_.current_position[i] = p_m[static_cast<Eigen::Index>(i)];
+      input_.current_velocity[i] = v_m_per_s[static_cast<Eigen::Index>(i)];
+      input_.current_acceleration[i] = 0.0;
+    }
+    p_m_ = p_m;
+    v_m_per_s_ = v_m_per_s;
+  }
+  /// One period on.
+  void step() noexcept {
+    if (otg_.update(input_, output_) < ruckig::Result::Working) return;  // refused: the reference stays
+    output_.pass_to_input(input_);
+    for (std::size_t i = 0; i < 3; ++i) {
+      p_m_[static_cast<Eigen::Index>(i)] = output_.new_position[i];
+      v_m_per_s_[static_cast<Eigen::Index>(i)] = output_.new_velocity[i];
+    }
+  }
+  [[nodiscard]] const physics::Vec3& position_m() const noexcept { return p_m_; }
+  [[nodiscard]] const physics::Vec3& velocity_m_per_s() const noexcept { return v_m_per_s_; }
+
+ private:
+  ruckig::Ruckig<3> otg_;
+  ruckig::InputParameter<3> input_;
+  ruckig::OutputParameter<3> output_;
+  physics::Vec3 p_m_ = physics::Vec3::Zero(), v_m_per_s_ = physics::Vec3::Zero();
+};
+
+}  // namespace ligature::control

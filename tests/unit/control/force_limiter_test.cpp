@@ -1,0 +1,111 @@
+// Every limit holds whatever the law asks for.
+#include "firmware/control/force_limiter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <deque>
+#include <random>
+
+namespace ligature::control {
+namespace {
+
+using physics::Vec3;
+constexpr double kT_s = 1e-3;
+
+ForceLimiter limiter(double max_force_N = 3.3) { return {device::omni(), max_force_N, kT_s}; }
+
+Vec3 send(ForceLimiter& l, const Vec3& wish) {
+  const Vec3 f = l.limit(wish);
+  l.sent(f);
+  return f;
+}
+
+/// Wishes that jump, rest, swing and explode, some minutes of them.
+struct Wishes {
+  std::mt19937 random{17};
+  std::normal_distribution<double> any;
+  std::uniform_real_distribution<double> share;
+  Vec3 now = Vec3::Zero();
+  Vec3 next() {
+    const double dice = share(random);
+    if (dice < 0.02) now = Vec3(any(random), any(random), any(random)) * std::pow(10.0, 3.0 * share(random) - 1.0);
+    if (dice > 0.98) now = Vec3::Zero();
+    if (dice > 0.5 && dice < 0.6) now += 0.1 * Vec3(any(random), any(random), any(random));
+    return now;
+  }
+};
+
+TEST(ForceLimiter, NoWishLeadsBeyondAnyLimit) {
+  const auto d = device::omni();
+  ForceLimiter l = limiter(3.0);
+  Wishes wishes;
+  Vec3 before = Vec3::Zero();
+  std::deque<double> changes;
+  double over_100_ms = 0.0, hottest = 0.0;
+  int seen = 0;
+  for (int i = 0; i < 300'000; ++i) {
+    const Vec3 f = send(l, wishes.next());
+    const double change = (f - before).norm();
+    before = f;
+    ASSERT_LE(f.norm(), 3.0) << i;
+    ASSERT_LE(change, d.force_step_N) << i;
+    changes.push_back(change);
+    over_100_ms += change;
+    if (changes.size() > 100) over_100_ms -= changes.front(), changes.pop_front();
+    ASSERT_LE(over_100_ms, d.force_step_N + 0.1 * d.force_slew_N_per_s + 1e-9) << i;
+    hottest = std::max(hottest, l.heat());
+    seen |= l.codes();
+  }
+  EXPECT_LE(hottest, 1.4);
+  EXPECT_EQ(seen, rt::kPeakLimit | rt::kContinuousLimit | rt::kStepLimit | rt::kSlewLimit);
+}
+
+TEST(ForceLimiter, LeavesAloneWhatIsAllowed) {
+  ForceLimiter l = limiter();
+  for (int i = 0; i < 20'000; ++i) {
+    const Vec3 wish(0.3 * std::sin(0.01 * i), 0.2, 0.0);
+    const Vec3 f = send(l, wish);
+    if (i <= 2) continue;  // the first step
+    ASSERT_EQ(f, wish) << i;
+    ASSERT_EQ(l.codes(), 0) << i;
+  }
+}
+
+TEST(ForceLimiter, PeakForAWhileThenTheContinuousForce) {
+  ForceLimiter l = limiter();
+  int peak_ms = 0;
+  for (int i = 0; i < 10'000; ++i) peak_ms += send(l, Vec3(0, 0, 50)).norm() > 3.29;
+  EXPECT_GT(peak_ms, 500);   // 3.3 N = 3.75 f_c heats to 1 in tau ln(14.06 / 13.06) = 0.74 s
+  EXPECT_LT(peak_ms, 1000);
+  EXPECT_NEAR(send(l, Vec3(0, 0, 50)).norm(), 0.88, 1e-9);
+  EXPECT_TRUE(l.codes() & rt::kContinuousLimit);
+}
+
+TEST(ForceLimiter, ComesBackByHysteresisAndOnlyOnce) {
+  ForceLimiter l = limiter();
+  for (int i = 0; i < 5'000; ++i) send(l, Vec3(0, 0, 3.3));
+  int changes = 0;
+  bool limited = true;
+  for (int i = 0; i < 20'000; ++i) {
+    send(l, Vec3(0, 0, 0.5));
+    const bool now = l.cap_N() < 3.2;
+    changes += now != limited;
+    limited = now;
+  }
+  EXPECT_EQ(changes, 1);
+  EXPECT_FALSE(limited);
+}
+
+TEST(ForceLimiter, TheContinuousForceIsNeverTakenAway) {
+  ForceLimiter l = limiter();
+  for (int i = 0; i < 100'000; ++i) {
+    const double f = send(l, Vec3(0, 0.87, 0)).norm();
+    if (i > 10) {
+      ASSERT_DOUBLE_EQ(f, 0.87);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ligature::control

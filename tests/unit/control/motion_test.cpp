@@ -1,0 +1,80 @@
+// Moves planned in the loop: they end when they say, never jump, and allocate nothing.
+#include "firmware/control/motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <new>
+
+namespace {
+long allocations = 0;
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* p = std::malloc(size)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+
+namespace ligature::control {
+namespace {
+
+TEST(Ramp, TakesItsDurationAndIsSmooth) {
+  Ramp ramp(1e-3);
+  double before = 0.0, speed = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    EXPECT_LT(before, 1.0) << i;
+    const double now = ramp.step(1.0, 0.5);
+    EXPECT_GT(now, before) << i;
+    EXPECT_LE(std::abs((now - before) - speed), 6.0 / 0.25 * 1e-6 + 1e-12) << i;  // acceleration x T^2
+    speed = now - before;
+    before = now;
+  }
+  EXPECT_EQ(before, 1.0);
+}
+
+TEST(Ramp, TurnsRoundWithoutAJump) {
+  Ramp ramp(1e-3);
+  double before = 0.0;
+  for (int i = 0; i < 2000; ++i) {
+    const bool up = (i / 130) % 2 == 0;
+    const double now = ramp.step(up ? 1.0 : 0.0, up ? 0.5 : 0.05);
+    EXPECT_LE(std::abs(now - before), 1.5 / 0.05 * 1e-3 + 1e-9) << i;
+    EXPECT_GE(now, 0.0);
+    EXPECT_LE(now, 1.0);
+    before = now;
+  }
+}
+
+TEST(BrakeToRest, StopsFromAnySpeedWithinItsLimits) {
+  BrakeToRest brake(1e-3);
+  brake.start({0.1, 0.2, 0.3}, {2.0, -1.0, 0.5});
+  physics::Vec3 before = brake.velocity_m_per_s();
+  int moving = 0;
+  for (int i = 0; i < 300; ++i) {
+    brake.step();
+    EXPECT_LE((brake.velocity_m_per_s() - before).cwiseAbs().maxCoeff(), BrakeToRest::kDeceleration_m_per_s2 * 1e-3 + 1e-9);
+    before = brake.velocity_m_per_s();
+    moving += before.norm() > 1e-9;
+  }
+  EXPECT_LT(before.norm(), 1e-9);
+  EXPECT_LT(moving, 60);
+}
+
+TEST(Motion, PlansWithoutAllocating) {
+  Ramp ramp(1e-3);
+  BrakeToRest brake(1e-3);
+  const long before = allocations;
+  for (int i = 0; i < 3000; ++i) {
+    static_cast<void>(ramp.step((i / 70) % 2 == 0 ? 1.0 : 0.0, 0.5));
+    if (i % 50 == 0) brake.start({0, 0, 0}, {std::sin(0.1 * i), 1.0, -2.0});
+    brake.step();
+  }
+  EXPECT_EQ(allocations, before);
+}
+
+}  // namespace
+}  // namespace ligature::control
