@@ -147,10 +147,10 @@ int main(int argc, char** argv) {
   narrator.say("on " + options.bus + ", waiting for a controller");
   live(device, port, loop, narrator, options.exit_when_done, during_sleep);
 
-  device.power_off();
+  const std::string text = sim::stats_json(options.hand(), device, loop.stats(), port.dropped_frames());
+  device.power_off();  // after the statistics: their torque is what the drives had, not what switching them off leaves
   narrator.say("off");
   if (options.stats.empty()) return done();
-  const std::string text = sim::stats_json(options.hand(), device, loop.stats(), port.dropped_frames());
   if (sim::write_file(options.stats, text)) return done();
   std::fprintf(stderr, "ligature-device: --stats %s: cannot be written\n", options.stats.c_str());
   return kRunFailed;

@@ -42,7 +42,7 @@ std::string stats_json(const std::string& hand, const HandDevice& device, const 
   j["syncs_without_rpdo"] = syncs_without_rpdo;  // drive-SYNCs while enabled
   j["replaced_rpdos"] = replaced;                // came twice between two SYNCs
   j["watchdog_trips"] = trips;                   // drives that zeroed torque by themselves
-  j["final_torque_permille"] = device.torque_permille();
+  j["final_torque_permille"] = device.torque_permille();  // when told to end, power still on
   j["script_done"] = device.mechanics().is_done();
   j["wakeups"] = loop.wakeups;
   j["worst_wakeup_lateness_us"] = microseconds(loop.worst_lateness);

@@ -84,8 +84,11 @@ class Deaths(unittest.TestCase):
             rig.wait_for(pushes_both_hands, "force on both hands")
             rig.kill("firmware")
             for hand in HANDS:
+                rig.wait_for(lambda r: "drives took their torque away" in r.said(hand), f"the watchdog of the {hand} drives")
+            for hand in HANDS:
                 stats = rig.device_stats(hand)
                 self.assertEqual(stats["final_torque_permille"], [0, 0, 0])
+                self.assertGreaterEqual(stats["watchdog_trips"], 3)
 
 
 if __name__ == "__main__":

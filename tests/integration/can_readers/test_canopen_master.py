@@ -108,7 +108,7 @@ class Hand(unittest.TestCase):
         self.assertEqual([d.tpdo[1]["TorqueActual"].raw for d in self.drives[:2]], [200, 200])
         self.assertEqual(self.drives[2].tpdo[1]["Stylus.StylusButtons"].raw & 2, 2, "the operator holds the dead-man from the start")
         code, stats = self.end()
-        self.assertEqual((code, stats["final_torque_permille"]), (0, [0, 0, 0]))
+        self.assertEqual((code, stats["final_torque_permille"]), (0, [200, 200, 200]), "no watchdog was asked for: torque holds")
 
     def test_objects_are_as_the_eds_says(self):
         for drive in self.drives:
@@ -132,7 +132,6 @@ class Hand(unittest.TestCase):
         self.enable()
         _, stats = self.end()
         self.assertEqual(stats["watchdog_trips"], 3)
-
 
     def test_a_lost_heartbeat_of_the_master_is_told_by_emcy(self):
         self.start_up()
