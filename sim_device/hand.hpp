@@ -43,7 +43,7 @@ class Fingers {
   /// @return force on the stylus at (p_DT, v_DT), N, before the step; then moves the hand's mass by dt_s.
   Vec3 step(const Vec3& p_DH, const Vec3& v_DH, const Vec3& p_DT, const Vec3& v_DT, double dt_s) noexcept {
     if (hand_.mass_kg <= 0.0) return hand_.arm_force_D_N(p_DH, v_DH, p_DT, v_DT);
-    const Vec3 pad = hand_.pad_stiffness_N_per_m * (p_D_ - p_DT) + hand_.pad_damping_N_s_per_m * (v_D_ - v_DT);
+    Vec3 pad = hand_.pad_stiffness_N_per_m * (p_D_ - p_DT) + hand_.pad_damping_N_s_per_m * (v_D_ - v_DT);
     v_D_ += dt_s / hand_.mass_kg * (hand_.arm_force_D_N(p_DH, v_DH, p_D_, v_D_) - pad);
     p_D_ += dt_s * v_D_;
     return pad;

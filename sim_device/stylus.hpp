@@ -28,8 +28,7 @@ class Stylus {
   /// @return force on the linkage, N, before the step; then moves the tip's mass by dt_s.
   Vec3 step(const Vec3& hand_D_N, const Vec3& p_DL, const Vec3& v_DL, double dt_s) noexcept {
     if (is_rigid()) return hand_D_N;
-    const Vec3 bend =
-        compliance_.stiffness_N_per_m.cwiseProduct(p_D_ - p_DL) + compliance_.damping_N_s_per_m * (v_D_ - v_DL);
+    Vec3 bend = compliance_.stiffness_N_per_m.cwiseProduct(p_D_ - p_DL) + compliance_.damping_N_s_per_m * (v_D_ - v_DL);
     v_D_ += dt_s / compliance_.tip_mass_kg * (hand_D_N - bend);
     p_D_ += dt_s * v_D_;
     return bend;

@@ -168,10 +168,6 @@ void print_constants() {
   std::puts("]}");
 }
 
-}  // namespace
-
-namespace {
-
 int obey(int argc, char** argv) {
   const std::string command = argc > 1 ? argv[1] : "";
   if (command == "--help" || command == "-h") return std::fputs(kHelp, stdout) < 0;
