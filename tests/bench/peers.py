@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+"""The same thread and the same knot in MuJoCo and here, side by side, on one machine in one run.
+
+usage: peers.py [--lab ligature-lab] [--host ligature-host] [--venv build/peers] [--nodes 50 100 200]
+
+MuJoCo 4.0.0 from PyPI goes into a virtual environment of its own (made on the first run; needs the network). Its native
+1D flex (a discrete elastic rod, implicit under integrator "discrete") gets the thread of scenes/suture-3-0-knot.toml:
+0.3 m, 0.3 mm, E 1 GPa, friction 0.3, started from the same loose overhand. Two hands draw the ends apart to 93 % of the
+length in 0.25 s and hold, at a step of 1 ms. Times are CPU time of the thread, per 1 ms tick, of the pull and the hold.
+Prints a table and verdicts; exit 1 when one fails.
+"""
+import argparse
+import csv
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+import venv
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PACKAGES = ("mujoco==4.0.0", "numpy==2.4.6")
+SETTLE_S, PULL_S, HOLD_S, SHARE = 0.1, 0.25, 0.25, 0.93
+LENGTH_M, RADIUS_M, YOUNG_PA, POISSON, KG_PER_M = 0.3, 1.5e-4, 1e9, 0.4, 8e-5
+
+
+def own_python(folder):
+    """Python of the virtual environment, made when it is not there."""
+    python = folder / "bin/python"
+    if not (folder / "ready").exists():
+        print(f"making {folder} with {', '.join(PACKAGES)}", flush=True)
+        venv.create(folder, with_pip=True)
+        subprocess.run([python, "-m", "pip", "install", "-q", *PACKAGES], check=True)
+        (folder / "ready").touch()
+    return python
+
+
+def start_shape(nodes):
+    """The scene's loose overhand, `nodes` points equally spaced along it, m."""
+    lines = (ROOT / "scenes/shapes/overhand-loose.csv").read_text().splitlines()
+    points = [tuple(map(float, line.split(","))) for line in lines if line and line[0] in "-0123456789"]
+    return [tuple((1 - f) * a + f * b for a, b in zip(points[k], points[min(k + 1, len(points) - 1)]))
+            for k, f in ((int(at), at - int(at)) for at in ((len(points) - 1) * i / (nodes - 1) for i in range(nodes)))]
+
+
+def way_of_each_end(points):
+    distance = sum((a - b) ** 2 for a, b in zip(points[0], points[-1])) ** 0.5
+    return 0.5 * (SHARE * LENGTH_M - distance)
+
+
+def ours(lab, nodes, folder):
+    """Per-tick times, us, and the knot, from `ligature-lab run`."""
+    points = start_shape(nodes)
+    way = way_of_each_end(points)
+    script = pathlib.Path(folder) / "pull.csv"
+    with open(script, "w") as out:
+        out.write("time,hand,x,y,z,grip\n")
+        for hand, (x, y, z), sense in (("L", points[0], -1), ("R", points[-1], 1)):
+            for t, moved in ((0.0, 0.0), (SETTLE_S, 0.0), (SETTLE_S + PULL_S, way)):
+                out.write(f"{t},{hand},{x + sense * moved},{y},{z},1\n")
+    done = subprocess.run([lab, "run", ROOT / "scenes/suture-3-0-knot.toml", "--grippers", script, "--set", f"suture.nodes={nodes}",
+                           "--set", "world.grippers_collide=false", "--duration", str(SETTLE_S + PULL_S + HOLD_S), "--out", folder],
+                          capture_output=True, text=True)
+    if done.returncode:
+        raise SystemExit(done.stderr.strip())
+    with open(pathlib.Path(folder) / "trace.csv") as file:
+        times = [float(row["step_us"]) for row in csv.DictReader(file)]
+    return times[round(1000 * SETTLE_S):], json.loads((pathlib.Path(folder) / "summary.json").read_text())["knot"]["type"]
+
+
+def flex_xml(nodes):
+    """The thread straight along x, its rest shape, in millimetres, grams and seconds."""
+    step = 1e3 * LENGTH_M / (nodes - 1)
+    points = " ".join(f"{i * step:.9f} 0 0" for i in range(nodes))
+    elements = " ".join(f"{i} {i + 1}" for i in range(nodes - 1))
+    young = YOUNG_PA  # 1 Pa = 1 g / (mm s^2)
+    grips = "".join(f'<body name="grip{k}" mocap="true" pos="{x} 0 0"/>' for k, x in enumerate((0, 1e3 * LENGTH_M)))
+    ends = (0, nodes - 1)
+    connects = "".join(f'<connect body1="grip{k}" body2="thread_{end}" anchor="0 0 0" solref="0.002 1"/>' for k, end in enumerate(ends))
+    return f"""<mujoco><option timestep="0.001" integrator="discrete" solver="Newton" gravity="0 0 -9810" cone="elliptic"/>
+<size memory="256M"/><worldbody>{grips}
+<flexcomp name="thread" type="direct" dim="1" mass="{1e3 * KG_PER_M * LENGTH_M}" radius="{1e3 * RADIUS_M}" point="{points}" element="{elements}">
+<contact selfcollide="auto" friction="0.3" solref="0.002 1"/><edge equality="true" solref="0.002 1" solimp="0.999 0.9999 0.001"/>
+<elasticity young="{young}" poisson="{POISSON}" damping="0.002"/></flexcomp></worldbody>
+<equality>{connects}</equality></mujoco>"""
+
+
+def theirs(nodes):
+    """Runs inside the virtual environment: times, us, and the last shape, m, as JSON."""
+    import mujoco
+    import numpy
+    model = mujoco.MjModel.from_xml_string(flex_xml(nodes))
+    data = mujoco.MjData(model)
+    points = 1e3 * numpy.array(start_shape(nodes))
+    mujoco.mj_forward(model, data)
+    moved = points - data.flexvert_xpos
+    for i in range(nodes):  # every vertex is a body with three slides
+        body = model.flex_vertbodyid[i]
+        first = model.jnt_qposadr[model.body_jntadr[body]]
+        data.qpos[first:first + 3] = moved[i]
+    data.mocap_pos[0], data.mocap_pos[1] = points[0], points[-1]
+    way = 1e3 * way_of_each_end([tuple(p) for p in points / 1e3])
+    times = []
+    for k in range(round(1000 * (SETTLE_S + PULL_S + HOLD_S))):
+        u = min(max((1e-3 * (k + 1) - SETTLE_S) / PULL_S, 0.0), 1.0)
+        aside = way * u * u * (3 - 2 * u)  # as a hand of ours moves
+        data.mocap_pos[0][0], data.mocap_pos[1][0] = points[0][0] - aside, points[-1][0] + aside
+        before = time.thread_time_ns()
+        mujoco.mj_step(model, data)
+        times.append(1e-3 * (time.thread_time_ns() - before))
+    print(json.dumps({"us": times[round(1000 * SETTLE_S):], "shape": (1e-3 * data.flexvert_xpos).tolist(), "warnings":
+                      int(sum(data.warning.number[k] for k in range(len(data.warning.number)))) if hasattr(data.warning, "number") else 0}))
+
+
+def knot_of(host, shape, folder):
+    if not all(abs(x) < 1e3 for p in shape for x in p):
+        return "diverged"
+    file = pathlib.Path(folder) / "shape.csv"
+    file.write_text("x,y,z\n" + "".join(f"{x},{y},{z}\n" for x, y, z in shape))
+    done = subprocess.run([host, "knot", file], capture_output=True, text=True)
+    words = done.stdout.split()
+    return next((w for w in words if "_" in w), "unknown") if done.returncode == 0 else "unknown: " + done.stderr.strip()
+
+
+def report(who, nodes, times, knot):
+    times = sorted(times)
+    median, worst = times[len(times) // 2], times[-1]
+    print(f"{who:8} N {nodes:4}  median {median:8.1f} us  p99 {times[int(0.99 * len(times))]:8.1f}  worst {worst:8.1f}  "
+          f"worst/median {worst / median:5.1f}  knot {knot}", flush=True)
+    return median, worst / median, knot, worst
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--lab", default=ROOT / "build/dev/bin/ligature-lab")
+    parser.add_argument("--host", default=ROOT / "build/dev/bin/ligature-host")
+    parser.add_argument("--venv", type=pathlib.Path, default=ROOT / "build/peers")
+    parser.add_argument("--nodes", type=int, nargs="+", default=[50, 100, 200])
+    parser.add_argument("--theirs", type=int, help=argparse.SUPPRESS)
+    a = parser.parse_args()
+    if a.theirs:
+        return theirs(a.theirs)
+    python, failed = own_python(a.venv), 0
+    for nodes in a.nodes:
+        with tempfile.TemporaryDirectory() as folder:
+            our = report("ligature", nodes, *ours(a.lab, nodes, folder))
+            run = subprocess.run([python, __file__, "--theirs", str(nodes)], capture_output=True, text=True,
+                                 env={**os.environ, "OMP_NUM_THREADS": "1"})
+            if run.returncode:
+                raise SystemExit(run.stderr.strip())
+            result = json.loads(run.stdout.splitlines()[-1])
+            their = report("mujoco", nodes, result["us"], knot_of(a.host, result["shape"], folder))
+        for holds, claim in ((our[0] < their[0], "faster, median"), (our[3] < their[3], "lower worst tick"),
+                             (our[1] < their[1], "lower worst over median"), (our[2] == "3_1", "keeps the knot")):
+            print(f"{'PASS' if holds else 'FAIL'} N = {nodes}: ours {claim}")
+            failed += not holds
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
