@@ -97,8 +97,9 @@ int LcmLink::receive(int timeout_ms) {
   return handled;
 }
 
-void LcmLink::publish(std::string_view channel, const void* data, unsigned size) {
-  if (lcm_->publish(std::string(channel), data, size) != 0) throw RunFailed("LCM: sending failed");
+void LcmLink::publish_bytes(std::string_view channel, Bytes bytes) {
+  const auto size = static_cast<unsigned>(bytes.size());
+  if (lcm_->publish(std::string(channel), bytes.data(), size) != 0) throw RunFailed("LCM: sending failed");
 }
 
 }  // namespace ligature::host

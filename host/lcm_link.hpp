@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "host/messages.hpp"
 
@@ -37,10 +38,17 @@ class LcmLink {
   /// @return how many messages were handed over. @throws what the handler threw; RunFailed.
   int receive(int timeout_ms);
 
-  /// @throws RunFailed when it could not be sent.
-  void publish(std::string_view channel, const void* data, unsigned size);
+  /// @param message an lcm-gen type. @throws RunFailed when it could not be sent.
+  template <class M>
+  void publish(std::string_view channel, const M& message) {
+    std::vector<std::byte> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    publish_bytes(channel, bytes);
+  }
 
  private:
+  void publish_bytes(std::string_view channel, Bytes bytes);
+
   struct Receiver;
   std::unique_ptr<lcm::LCM> lcm_;
   std::unique_ptr<Receiver> receiver_;

@@ -18,8 +18,7 @@ struct LogEvent {
 };
 
 /// Reads an LCM event log front to back in constant memory.
-/// Format (LCM manual, "Log file format"), big-endian: 0xEDA1DA01, int64 event number, int64 timestamp in us,
-/// int32 length of the channel, int32 length of the data, channel, data.
+/// log_format.hpp has the layout.
 /// Ours and not the library's reader: that one cannot tell the end of a file from a broken event, allocates what a
 /// broken length says and prints to stderr. This one goes on at the next sound event and says how much it skipped.
 class LogReader {

@@ -14,6 +14,7 @@
 #include "host/live_tally.hpp"
 #include "host/log_writer.hpp"
 #include "host/stop_signal.hpp"
+#include "host/wall_clock.hpp"
 
 namespace ligature::host {
 namespace {
@@ -99,8 +100,7 @@ class Recording {
     filled_ += filler_.fill(tally_.sessions(), [this](const ligature_msg::tick_batch_t& batch) {
       bytes_.resize(static_cast<std::size_t>(batch.getEncodedSize()));
       batch.encode(bytes_.data(), 0, static_cast<int>(bytes_.size()));
-      const auto now = std::chrono::system_clock::now().time_since_epoch();
-      log_.write(std::chrono::duration_cast<std::chrono::microseconds>(now).count(), kTicksChannel, bytes_);
+      log_.write(now_us(), kTicksChannel, bytes_);
       waiting_.push_back(bytes_);
     });
     for (const auto& bytes : waiting_) tally_.add(kTicksChannel, bytes);  // not while its gaps are being read

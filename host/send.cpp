@@ -2,11 +2,11 @@
 
 #include <chrono>
 #include <cstdio>
-#include <vector>
 
 #include "host/errors.hpp"
 #include "host/lcm_link.hpp"
 #include "host/stop_signal.hpp"
+#include "host/wall_clock.hpp"
 
 namespace ligature::host {
 namespace {
@@ -14,17 +14,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Command = ligature_msg::command_t;
 constexpr auto kRepeatEvery = std::chrono::milliseconds(100);
-
-std::int64_t now_us() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
-}
-
-void publish(LcmLink& link, const Command& command) {
-  std::vector<char> bytes(static_cast<std::size_t>(command.getEncodedSize()));
-  command.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  link.publish(kCommandChannel, bytes.data(), static_cast<unsigned>(bytes.size()));
-}
 
 }  // namespace
 
@@ -61,11 +50,11 @@ void send(std::string_view word, const std::string& text, double value, const st
     if (auto ack = decode<ligature_msg::ack_t>(message.data); ack && ack->id == command.id) answer = std::move(ack);
   });
   const auto start = Clock::now();
-  publish(link, command);
+  link.publish(kCommandChannel, command);
   for (auto sent = start; !answer && Clock::now() - start < patience && !stop_requested();) {
     link.receive(50);
     if (!answer && *kind == Command::KIND_STOP && Clock::now() - sent >= kRepeatEvery) {
-      publish(link, command);
+      link.publish(kCommandChannel, command);
       sent = Clock::now();
     }
   }

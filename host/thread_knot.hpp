@@ -1,8 +1,14 @@
 #pragma once
+#include <array>
+#include <vector>
+
 #include "host/knot/recognise.hpp"
 #include "ligature_msg/thread_t.hpp"
 
 namespace ligature::host {
+
+/// Its nodes, m, as the knot functions take them.
+[[nodiscard]] std::vector<std::array<double, 3>> points_of(const ligature_msg::thread_t& thread);
 
 /// The knot in a recorded thread, which is open.
 [[nodiscard]] knot::KnotResult name_knot(const ligature_msg::thread_t& thread);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <map>
 #include <utility>
 
@@ -16,6 +17,7 @@ using Corner = std::array<Edge, 4>;
 
 std::vector<Corner> corners_of(const Diagram& d) {
   const int edges = static_cast<int>(d.passes.size());
+  assert(edges > 0 && d.passes.size() == 2 * d.crossings());
   std::vector<std::array<int, 2>> at(d.crossings());  // pass index: under, over
   for (int i = 0; i < edges; ++i) {
     const auto& p = d.passes[static_cast<std::size_t>(i)];

@@ -4,6 +4,7 @@
 
 #include "host/send.hpp"
 #include "host/view/json_text.hpp"
+#include "host/wall_clock.hpp"
 
 namespace ligature::host::view {
 namespace {
@@ -14,11 +15,6 @@ constexpr std::size_t kLongestText = 100;
 
 json answer(const json& id, const std::string& word, bool accepted, const std::string& why) {
   return {{"id", id}, {"command", word}, {"accepted", accepted}, {"text", why}};
-}
-
-std::int64_t now_us() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace CLI {  // NOLINT(readability-identifier-naming): theirs
+namespace CLI {
 class App;
 }
 

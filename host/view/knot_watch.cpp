@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "host/thread_knot.hpp"
 #include "host/view/rig_json.hpp"
 
 namespace ligature::host::view {
@@ -9,16 +10,8 @@ namespace {
 
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
-using Points = std::vector<std::array<double, 3>>;
 constexpr auto kPeriod = std::chrono::milliseconds(50);
 constexpr auto kCorePeriod = std::chrono::milliseconds(500);
-
-Points points_of(const ligature_msg::thread_t& thread) {
-  Points points;
-  points.reserve(thread.p_W_m.size());
-  for (const auto& p : thread.p_W_m) points.push_back({p[0], p[1], p[2]});
-  return points;
-}
 
 double length(std::span<const std::array<double, 3>> points) {
   double sum = 0.0;
@@ -62,7 +55,7 @@ void KnotWatch::watch(const std::stop_token& stop) {
     due = std::max(due + kPeriod, Clock::now());
     const auto shape = picture_.newer_shape(known);
     if (!shape) continue;
-    const Points points = points_of(*shape);
+    const auto points = points_of(*shape);
     const auto began = Clock::now();
     const auto found = knot::recognise(points, false);
     const double cost_ms = std::chrono::duration<double, std::milli>(Clock::now() - began).count();

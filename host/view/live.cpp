@@ -14,16 +14,6 @@
 #include "host/view/page_recorder.hpp"
 
 namespace ligature::host::view {
-namespace {
-
-void publish(LcmLink& link, const ligature_msg::command_t& command) {
-  std::vector<char> bytes(static_cast<std::size_t>(command.getEncodedSize()));
-  command.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  link.publish(kCommandChannel, bytes.data(), static_cast<unsigned>(bytes.size()));
-}
-
-}  // namespace
-
 Access access_for(const ServerOptions& server, const std::string& token_file) {
   boost::system::error_code error;
   const bool is_here = boost::asio::ip::make_address(server.listen, error).is_loopback() && !error;
@@ -32,8 +22,7 @@ Access access_for(const ServerOptions& server, const std::string& token_file) {
 }
 
 void announce(const Server& server, const ServerOptions& options, const Access& access) {
-  const std::string host = options.listen.find(':') == std::string::npos ? options.listen : "[" + options.listen + "]";
-  std::printf("open http://%s:%u/\n", host.c_str(), static_cast<unsigned>(server.port()));
+  std::printf("open %s\n", url_of(options, server.port()).c_str());
   if (access.token.empty())
     std::printf("listening beyond this machine without --token-file: pages may look, not command\n");
   else if (!access.gives_token)
@@ -56,7 +45,7 @@ void view_live(const ViewOptions& options) {
       picture.take(message.channel, message.data, Picture::Clock::now());
     }
   });
-  CommandDesk desk(access, [&link](const auto& command) { publish(link, command); });
+  CommandDesk desk(access, [&link](const auto& command) { link.publish(kCommandChannel, command); });
   desk_for_acks = &desk;
 
   std::exception_ptr failure;

@@ -11,22 +11,14 @@
 #include <optional>
 
 #include "host/errors.hpp"
+#include "host/log_format.hpp"
 #include "host/messages.hpp"
 
 namespace ligature::host::view {
 namespace {
 
-constexpr std::array<unsigned char, 4> kSync{0xED, 0xA1, 0xDA, 0x01};
-constexpr std::size_t kHeader = 28, kLongestChannel = 63;
 constexpr std::array kNames{kTicksChannel, kThreadChannel, kStatusChannel, kEventChannel};
 constexpr std::int64_t kLargestPayload = 16 << 20;
-
-template <class T>
-T big_endian(const unsigned char* bytes) {
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < sizeof(T); ++i) value = value << 8U | bytes[i];
-  return static_cast<T>(value);
-}
 
 std::size_t read_at(int file, void* to, std::size_t size, std::int64_t offset) {
   const ssize_t got = pread(file, to, size, offset);
@@ -57,25 +49,23 @@ LogMap::LogMap(const std::string& path) : file_(open(path.c_str(), O_RDONLY | O_
 LogMap::~LogMap() { close(file_); }
 
 void LogMap::scan() {
-  std::array<unsigned char, kHeader + kLongestChannel> bytes{};
-  for (std::int64_t at = 0; at >= 0 && at + static_cast<std::int64_t>(kHeader) <= size_;) {
+  constexpr std::size_t kHead = LogEventHead::kBytes;
+  std::array<unsigned char, kHead + kLongestChannel> bytes{};
+  for (std::int64_t at = 0; at >= 0 && at + static_cast<std::int64_t>(kHead) <= size_;) {
     const std::size_t got = read_at(file_, bytes.data(), bytes.size(), at);
-    const auto channel_size = big_endian<std::int32_t>(bytes.data() + 20);
-    const auto data_size = big_endian<std::int32_t>(bytes.data() + 24);
-    const bool is_event = got >= kHeader && std::equal(kSync.begin(), kSync.end(), bytes.begin()) && channel_size > 0 &&
-                          channel_size <= static_cast<int>(kLongestChannel) && data_size >= 0;
-    const std::int64_t payload = at + static_cast<std::int64_t>(kHeader) + channel_size;
-    if (!is_event || payload + data_size > size_) {
+    const auto head = got >= kHead ? log_event_head(std::span(bytes).first<kHead>()) : std::nullopt;
+    const std::int64_t payload = at + static_cast<std::int64_t>(kHead) + (head ? head->channel_bytes : 0);
+    if (!head || payload + head->data_bytes > size_) {
       at = find_sync(at + 1);
       continue;
     }
-    const std::string_view name(reinterpret_cast<const char*>(bytes.data()) + kHeader,
-                                static_cast<std::size_t>(channel_size));
+    const std::string_view name(reinterpret_cast<const char*>(bytes.data()) + kHead,
+                                static_cast<std::size_t>(head->channel_bytes));
     const auto known = std::ranges::find(kNames, name);
-    if (known != kNames.end() && data_size <= kLargestPayload)
-      entries_.push_back({big_endian<std::int64_t>(bytes.data() + 12), payload, static_cast<std::uint32_t>(data_size),
+    if (known != kNames.end() && head->data_bytes <= kLargestPayload)
+      entries_.push_back({head->timestamp_us, payload, static_cast<std::uint32_t>(head->data_bytes),
                           static_cast<Channel>(known - kNames.begin())});
-    at = payload + data_size;
+    at = payload + head->data_bytes;
   }
 }
 
@@ -84,11 +74,11 @@ std::int64_t LogMap::find_sync(std::int64_t from) const {
   std::vector<unsigned char> block(1U << 16U);
   for (std::int64_t at = from; at < size_;) {
     const std::size_t got = read_at(file_, block.data(), block.size(), at);
-    if (got < kSync.size()) return -1;
+    if (got < kLogSync.size()) return -1;
     const auto end = block.begin() + static_cast<std::ptrdiff_t>(got);
-    const auto found = std::search(block.begin(), end, kSync.begin(), kSync.end());
+    const auto found = std::search(block.begin(), end, kLogSync.begin(), kLogSync.end());
     if (found != end) return at + (found - block.begin());
-    at += static_cast<std::int64_t>(got - (kSync.size() - 1));  // the word may lie across two blocks
+    at += static_cast<std::int64_t>(got - (kLogSync.size() - 1));  // the word may lie across two blocks
   }
   return -1;
 }

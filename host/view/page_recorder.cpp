@@ -2,20 +2,15 @@
 
 #include <algorithm>
 #include <cctype>
-#include <chrono>
 
 #include "host/errors.hpp"
 #include "host/view/json_text.hpp"
+#include "host/wall_clock.hpp"
 
 namespace ligature::host::view {
 namespace {
 
 using nlohmann::json;
-
-std::int64_t now_us() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
-}
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #include "host/view/replay.hpp"
 
+#include <cstdio>
 #include <filesystem>
 
 #include "host/stop_signal.hpp"
@@ -38,7 +39,7 @@ void replay(const ReplayOptions& options) {
     return std::multimap<std::uint64_t, nlohmann::json>();
   };
   Server server(options.server, access, picture, {on_message, on_tick});
-  std::printf("open http://%s:%u/\n", options.server.listen.c_str(), static_cast<unsigned>(server.port()));
+  std::printf("open %s\n", url_of(options.server, server.port()).c_str());
   std::fflush(stdout);
   const KnotWatch knots(picture);
   server.run();

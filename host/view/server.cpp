@@ -106,6 +106,11 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 
 }  // namespace
 
+std::string url_of(const ServerOptions& options, std::uint16_t port) {
+  const bool is_v6 = options.listen.find(':') != std::string::npos;
+  return "http://" + (is_v6 ? "[" + options.listen + "]" : options.listen) + ":" + std::to_string(port) + "/";
+}
+
 struct Server::Parts {
   Shared shared;  // first, so that it outlives the connections, which end with io
   asio::io_context io{1};

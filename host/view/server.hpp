@@ -15,6 +15,9 @@ struct ServerOptions {
   std::uint16_t port = 8737;  // 0: any free one
 };
 
+/// The address to open in a browser; an IPv6 one stands in brackets.
+[[nodiscard]] std::string url_of(const ServerOptions& options, std::uint16_t port);
+
 /// What the server needs of the rest. All are called on the server's thread.
 struct ServerHooks {
   /// A text message of a page; @return an answer for it, or null.

@@ -59,5 +59,10 @@ TEST(Access, BeyondThisMachineCommandsNeedTheFile) {
   EXPECT_THROW((void)read_token_file(folder.file("short")), BadInput);
 }
 
+TEST(Access, AnIpv6AddressStandsInBracketsInTheUrl) {
+  EXPECT_EQ(url_of({.listen = "127.0.0.1", .port = 0}, 8737), "http://127.0.0.1:8737/");
+  EXPECT_EQ(url_of({.listen = "::1", .port = 0}, 8737), "http://[::1]:8737/");
+}
+
 }  // namespace
 }  // namespace ligature::host::view

@@ -1,0 +1,13 @@
+#pragma once
+#include <chrono>
+#include <cstdint>
+
+namespace ligature::host {
+
+/// CLOCK_REALTIME, microseconds: the `utime` of every message, and of every event in a log.
+[[nodiscard]] inline std::int64_t now_us() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+}
+
+}  // namespace ligature::host
