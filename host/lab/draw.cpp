@@ -44,6 +44,7 @@ void draw(const std::string& script, const std::vector<fs::path>& data, const fs
   for (const auto& file : data) words.push_back(file.string());
   words.push_back(picture.string());
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (auto& w : words) argv.push_back(w.data());
   argv.push_back(nullptr);
   pid_t child = 0;

@@ -31,6 +31,7 @@ std::vector<Pull> ranked(std::span<const Vec3> shape_W) {
   }
   std::stable_sort(all.begin(), all.end(), [](const Scored& a, const Scored& b) { return a.cost < b.cost; });
   std::vector<Pull> pulls;
+  pulls.reserve(all.size());
   for (const auto& s : all) pulls.push_back(s.pull);
   return pulls;
 }
