@@ -9,6 +9,7 @@
 #include "host/lab/pareto_command.hpp"
 #include "host/lab/run_command.hpp"
 #include "host/lab/stop_signal.hpp"
+#include "host/lab/tie/tie_command.hpp"
 #include "host/lab/validate_command.hpp"
 
 namespace {
@@ -36,6 +37,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   add_run_command(app, exit_code);
   add_experiment_commands(app, exit_code);
+  add_tie_command(app, exit_code);
   add_validate_command(app, exit_code);
   add_pareto_command(app, exit_code);
   try {

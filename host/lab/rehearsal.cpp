@@ -49,9 +49,23 @@ Rehearsal::Rehearsal(const scene::Scene& scene, scene::GripperScript script, con
       simulation_(make_or_refuse(scene, scene_name)),
       tick_s_(scene.time.tick_s) {}
 
+std::array<physics::ToolInput, 2> Rehearsal::tools_at(double t_s) {
+  if (!tier_) return {tool_at(script_.keys[0], t_s), tool_at(script_.keys[1], t_s)};
+  sim::Sight sight;
+  sight.t_s = t_s;
+  sight.thread_W = simulation_.nodes_W();
+  for (std::size_t h = 0; h < 2; ++h) {
+    sight.tool_W[h] = tier_->wish()[h].p_W;
+    sight.force_W_N[h] = simulation_.hand(static_cast<physics::Hand>(h)).f_W;
+  }
+  const auto& wish = tier_->tick(sight);
+  return {physics::ToolInput{wish[0].p_W, wish[0].v_W, wish[0].grip},
+          physics::ToolInput{wish[1].p_W, wish[1].v_W, wish[1].grip}};
+}
+
 bool Rehearsal::tick() {
   const double t_s = static_cast<double>(ticks_ + 1) * tick_s_;
-  const std::array<physics::ToolInput, 2> tools{tool_at(script_.keys[0], t_s), tool_at(script_.keys[1], t_s)};
+  const auto tools = tools_at(t_s);
   const double from_s = thread_cpu_s();
   simulation_.tick(tools);
   last_tick_us_ = 1e6 * (thread_cpu_s() - from_s);

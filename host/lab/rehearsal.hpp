@@ -12,6 +12,7 @@
 #include "host/knot/recognise.hpp"
 #include "protocol/scene/gripper_script.hpp"
 #include "protocol/scene/scene.hpp"
+#include "sim_device/operator/knot_tier.hpp"
 
 namespace ligature::lab {
 
@@ -28,6 +29,10 @@ class Rehearsal {
  public:
   /// @param scene_name how messages call the scene;  @throws Refusal when the physics refuses the scene.
   Rehearsal(const scene::Scene& scene, scene::GripperScript script, const std::string& scene_name = "scene");
+
+  /// From now on the hands are an operator's, who sees the thread as it was a tick ago; the script is not played.
+  void let(sim::KnotTier tier) { tier_.emplace(std::move(tier)); }
+  [[nodiscard]] const std::optional<sim::KnotTier>& tier() const noexcept { return tier_; }
 
   /// One tick: both hands where the script has them at the end of the tick. False once the state is not finite.
   bool tick();
@@ -49,9 +54,12 @@ class Rehearsal {
   [[nodiscard]] const scene::GripperScript& script() const noexcept { return script_; }
 
  private:
+  [[nodiscard]] std::array<physics::ToolInput, 2> tools_at(double t_s);
+
   scene::Scene scene_;
   scene::GripperScript script_;
   physics::Simulation simulation_;
+  std::optional<sim::KnotTier> tier_;
   double tick_s_;
   std::int64_t ticks_ = 0;
   double last_tick_us_ = 0.0;

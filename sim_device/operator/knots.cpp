@@ -82,7 +82,7 @@ Moves plan(const Knot& knot, const Workplace& place) {
     }
     auto loop = std::make_shared<Loop>(at_corner, t.side);
     const WhereAlong at_turn = [turn](const Look&) { return *turn; };
-    append(m, lay_turn(loop, t, at_turn));
+    append(m, lay_turn(loop, at_turn));
     append(m, pass_through(loop, t, at_turn));
     m.push_back(draw_through(loop, kSlant));
     m.push_back(let_go(kLeftHand));

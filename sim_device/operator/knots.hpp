@@ -17,7 +17,7 @@ struct Knot {
   std::span<const Throw> throws;
 };
 
-/// overhand, figure-eight, square, granny, surgeons.
+/// Those that are tied reliably: overhand.
 [[nodiscard]] std::span<const Knot> knots();
 [[nodiscard]] std::optional<Knot> knot_named(std::string_view name);
 

@@ -147,28 +147,27 @@ namespace {
 
 constexpr double kTurn = 2.0 * 3.14159265358979323846;
 
-/// Round the standing part at place `s`, until the end is wound by `wanted`; `back` clearances towards the anchor.
-Move orbit(std::shared_ptr<Loop> loop, WhereAlong s, double wanted, double back) {
+/// Round the standing part at place `s`, until the end is wound by `wanted`.
+Move orbit(std::shared_ptr<Loop> loop, WhereAlong s, double wanted) {
   return {"round the standing part", [=](const Look& look) {
             loop->look(look);
             const double left = wanted - loop->wound();
             MovingHand& h = look.hands[kRightHand];
             const double angle = loop->angle_of(look, look.sight.tool_W[kRightHand]) + std::clamp(left, -0.9, 0.9);
             h.pace = 0.7;
-            h.goal_W = look.thread.at(s(look)) +
-                       look.place.clearance_m * (1.4 * loop->towards(angle) - back * loop->along());
+            h.goal_W = look.thread.at(s(look)) + 1.4 * look.place.clearance_m * loop->towards(angle);
             return std::abs(left) < 0.25;
           }};
 }
 
 }  // namespace
 
-Moves lay_turn(std::shared_ptr<Loop> loop, const Throw& t, WhereAlong s) {
+Moves lay_turn(std::shared_ptr<Loop> loop, WhereAlong s) {
   const auto below = [=](const Look& look) -> Vec3 {
     loop->look(look);
     return look.thread.at(s(look)) + look.place.clearance_m * (1.4 * loop->towards(0.0) - 2.0 * Vec3::UnitZ());
   };
-  return {carry(kRightHand, "to the turn", below, 0.7), orbit(loop, s, (t.against ? 1.15 : 0.88) * kTurn, t.against ? 3.0 : 0.0)};
+  return {carry(kRightHand, "to the turn", below, 0.7), orbit(loop, s, 0.88 * kTurn)};
 }
 
 Moves pass_through(std::shared_ptr<Loop> loop, const Throw& t, WhereAlong s) {
@@ -184,19 +183,18 @@ Moves pass_through(std::shared_ptr<Loop> loop, const Throw& t, WhereAlong s) {
   };
   Moves m;
   for (int k = 0; k < t.passes; ++k) {
-    if (k > 0) {
-      m.push_back(carry_straight(kRightHand, "past the bight", place(1.0, 1.0, 1.5), 0.5));
-      m.push_back(carry_straight(kRightHand, "round the bight", place(1.0, -1.0, 1.5), 0.5));
+    if (k > 0 || t.against) {  // to the side from which the loop is passed next
+      m.push_back(carry_straight(kRightHand, "past the bight", place(1.0, 1.0, 1.5), 0.7));
+      m.push_back(carry_straight(kRightHand, "round the bight", place(1.0, -1.0, 1.5), 0.7));
     }
     const double share = k == 0 ? 0.0 : 0.5;
     const std::vector<Move> steps{carry_straight(kRightHand, "before the loop", place(share, -1.2, 0.0), 0.5),
                                   carry_straight(kRightHand, "through", place(share, 2.0, 0.0), 0.5),
-                                  orbit(loop, s, (t.against ? 1.15 : 0.88) * kTurn, t.against ? 3.0 : 0.0)};
+                                  orbit(loop, s, 0.88 * kTurn)};
     const int wanted = (k + 1) * (t.against ? -1 : 1);
     auto going = std::make_shared<std::size_t>(0);
     m.push_back({"pass the end",
                  [=](const Look& look) {
-                   if (getenv("DBG")) { static int n = 0; if (n++ % 20 == 0) { loop->look(look); auto c = loop->centre(), nn = loop->way(), b = loop->bight(); auto R = look.hands[1].p_W(); fprintf(stderr, "  pass %s around %.4f wound %.2f passes %d c(%.3f %.3f %.3f) b(%.3f %.3f %.3f) way(%.2f %.2f %.2f) R(%.3f %.3f %.3f)\n", steps[*going].name.c_str(), loop->around_m(), loop->wound()/kTurn, loop->passes(), c.x(), c.y(), c.z(), b.x(), b.y(), b.z(), nn.x(), nn.y(), nn.z(), R.x(), R.y(), R.z()); } }
                    if (!steps[*going].act(look)) return false;
                    loop->look(look);
                    if (*going == 1 && loop->passes() == wanted) return true;
@@ -226,7 +224,8 @@ Move draw_through(std::shared_ptr<Loop> loop, Vec3 direction) {
 
 Moves pull_tight(Vec3 direction, double share) {
   const Vec3 way = direction.normalized();
-  return {{"pull tight", [=](const Look& look) {
+  return {{"pull tight",
+           [=](const Look& look) {
              MovingHand& h = look.hands[kRightHand];
              const double pull_N = -way.dot(look.sight.force_W_N[kRightHand]) / (share * look.place.tension_N);
              h.pace = pull_N > 0.3 ? 0.1 : 0.5;

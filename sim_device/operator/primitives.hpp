@@ -21,10 +21,10 @@ namespace ligature::sim {
 [[nodiscard]] Moves hand_over(std::size_t from, std::size_t to);
 
 /// The loop that an end is tied through: the standing part between the crossing X and the corner, where one hand holds
-/// the thread, and the working part from there out to the bight and back to X, where it is nearest to the standing part.
-/// All is seen in angles about the standing part: 0 in front of it, a quarter turn above, a half behind (side +1; for
-/// side -1 front and behind change places). A stiff thread's loop stands out where it likes, so the turn that the end
-/// has made is counted from there.
+/// the thread, and the working part from there out to the bight and back to X, where it is nearest to the standing
+/// part. All is seen in angles about the standing part: 0 in front of it, a quarter turn above, a half behind (side +1;
+/// for side -1 front and behind change places). A stiff thread's loop stands out where it likes, so the turn that the
+/// end has made is counted from there.
 class Loop {
  public:
   /// @param corner place of the corner along the thread, m;  @param side which way round, +1 or -1
@@ -63,15 +63,15 @@ class Loop {
 
 /// How a turn is laid and how the end goes through: +1 and -1 are mirror images in y.
 struct Throw {
-  int side = 1;           ///< +1: up in front of the standing part, down behind it
-  bool against = false;   ///< through the loop against the turn (figure-eight) instead of with it
-  int passes = 1;         ///< how often the end goes round the loop's edge (2: a surgeon's first throw)
+  int side = 1;          ///< +1: up in front of the standing part, down behind it
+  bool against = false;  ///< through the loop against the turn (figure-eight) instead of with it
+  int passes = 1;        ///< how often the end goes round the loop's edge (2: a surgeon's first throw)
 };
 
-/// The end, held by the right hand, goes once around the standing part at place `s`, short of the loop (or, against the
-/// turn, beyond it, on the anchor's side of it).
-[[nodiscard]] Moves lay_turn(std::shared_ptr<Loop> loop, const Throw& t, WhereAlong s);
-/// The end goes through the loop, `passes` times around its edge; looked at, and done again when it missed.
+/// The end, held by the right hand, goes around the standing part at place `s` until it is just short of the loop.
+[[nodiscard]] Moves lay_turn(std::shared_ptr<Loop> loop, WhereAlong s);
+/// The end goes through the loop, `passes` times around its edge (against the turn: first around its bight to the other
+/// side); looked at, and done again when it missed.
 [[nodiscard]] Moves pass_through(std::shared_ptr<Loop> loop, const Throw& t, WhereAlong s);
 /// The right hand draws the end out along `direction`, past the corner that the left hand still holds, until the loop
 /// is small or the pull is felt: so the knot forms where the corner is, and does not run off the end.

@@ -1,0 +1,57 @@
+#include "host/lab/tie/tie_once.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include "host/knot/recognise.hpp"
+#include "host/lab/outcome.hpp"
+#include "host/lab/rig/virtual_rig.hpp"
+#include "host/polyline_file.hpp"
+#include "sim_device/operator/knot_tier.hpp"
+
+namespace ligature::lab {
+namespace {
+
+constexpr std::int64_t kMost_ticks = 120'000;
+
+class Person final : public SeeingOperator {
+ public:
+  explicit Person(sim::KnotTier tier) : tier_(std::move(tier)), start_W_{tier_.wish()[0].p_W, tier_.wish()[1].p_W} {}
+
+  [[nodiscard]] std::array<sim::Vec3, 2> start_W_m() const override { return start_W_; }
+  [[nodiscard]] std::array<sim::HandWish, 2> act(const sim::Sight& sight) override { return tier_.tick(sight); }
+  [[nodiscard]] bool is_done() const override { return tier_.is_done(); }
+  [[nodiscard]] const sim::KnotTier& tier() const noexcept { return tier_; }
+
+ private:
+  sim::KnotTier tier_;
+  std::array<sim::Vec3, 2> start_W_;
+};
+
+}  // namespace
+
+Tied tie_once(const scene::Scene& scene, const std::string& scene_file, const std::string& knot, std::uint32_t seed,
+              const std::filesystem::path& folder) {
+  auto made = sim::KnotTier::make(scene, knot, seed);
+  if (const auto* why = std::get_if<std::string>(&made)) throw Refusal(scene_file + ": " + *why);
+  Person person(std::get<sim::KnotTier>(std::move(made)));
+  Tied tied;
+  tied.wanted = person.tier().knot().type;
+  tied.recording = folder / (knot + "-" + std::to_string(seed) + ".lcmlog");
+  std::filesystem::remove(tied.recording);
+  RigSetup setup;
+  setup.scene = scene;
+  setup.seed = seed;
+  setup.scene_file = scene_file;
+  VirtualRig rig(setup, person);
+  rig.record(tied.recording.string());
+  if (const auto why = rig.run(kMost_ticks, true)) throw std::runtime_error("the rig did not start: " + *why);
+  tied.seconds = 1e-3 * static_cast<double>(rig.records.size());
+  tied.missed = person.tier().missed();
+  if (!person.is_done()) tied.missed.push_back("time");
+  const auto shape = host::read_polyline_log(tied.recording.string(), std::nullopt);
+  tied.found = knot::recognise(shape.points, false).type;
+  return tied;
+}
+
+}  // namespace ligature::lab

@@ -1,0 +1,27 @@
+#pragma once
+// One knot, tied by an operator who sees the thread and moves two simulated devices: counts, frames, coupling, and the
+// recording that the knot is read back from.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "protocol/scene/scene.hpp"
+
+namespace ligature::lab {
+
+struct Tied {
+  std::string wanted, found;        ///< knot types as host/knot names them; found: in the last shape of the recording
+  double seconds = 0.0;             ///< of the rig's clock, watching the knot included
+  std::vector<std::string> missed;  ///< moves that ran out of patience
+  std::filesystem::path recording;
+  [[nodiscard]] bool good() const { return wanted == found; }
+};
+
+/// @param folder where KNOT-SEED.lcmlog goes; one of that name is replaced.  @throws Refusal for an unknown knot or a
+/// scene that the operator cannot work in; std::runtime_error when the rig does not start or the file cannot be made.
+[[nodiscard]] Tied tie_once(const scene::Scene& scene, const std::string& scene_file, const std::string& knot,
+                            std::uint32_t seed, const std::filesystem::path& folder);
+
+}  // namespace ligature::lab
