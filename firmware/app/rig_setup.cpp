@@ -117,8 +117,9 @@ std::variant<Buses, Refusal> open_buses(const RunOptions& options, const Pause& 
   return buses;
 }
 
-std::optional<Refusal> configure(const Buses& buses, const RunOptions& options) {
+std::optional<Refusal> configure(const Buses& buses, const RunOptions& options, const device::Device& device) {
   can::StartupTimes times;
+  times.drive = platform::drive_facts(device);
   times.rpdo_timeout_ms = static_cast<std::uint16_t>(options.watchdog_ms);
   times.heartbeat_timeout_ms = std::max(times.heartbeat_timeout_ms, times.rpdo_timeout_ms);
   platform::PollWait wait(*buses.left, *buses.right);

@@ -44,6 +44,7 @@ using Pause = std::function<bool()>;
 [[nodiscard]] std::variant<Buses, Refusal> open_buses(const RunOptions& options, const Pause& pause);
 
 /// Makes sure that nobody else commands the drives, then start-up of all six up to pre-operational. @return why not.
-[[nodiscard]] std::optional<Refusal> configure(const Buses& buses, const RunOptions& options);
+[[nodiscard]] std::optional<Refusal> configure(const Buses& buses, const RunOptions& options,
+                                               const device::Device& device);
 
 }  // namespace ligature::app

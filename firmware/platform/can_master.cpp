@@ -1,5 +1,6 @@
 #include "firmware/platform/can_master.hpp"
 
+#include <cmath>
 #include <cstdio>
 
 #include "protocol/can/device_profile.hpp"
@@ -32,11 +33,9 @@ std::optional<std::string> expect(CanBus& bus, BusWait& wait, can::NodeId node, 
 
 std::optional<std::string> configure(CanBus& bus, BusWait& wait, can::NodeId node, const can::StartupTimes& times,
                                      Nanoseconds patience) {
-  if (auto e = expect(bus, wait, node, can::od::kRatedTorque, can::profile::kRatedTorque_mNm, patience)) return e;
-  if (auto e = expect(bus, wait, node, can::od::kEncoderIncrements,
-                      static_cast<std::uint32_t>(can::profile::kCountsPerRevolution), patience)) {
+  if (auto e = expect(bus, wait, node, can::od::kRatedTorque, times.drive.rated_torque_mNm, patience)) return e;
+  if (auto e = expect(bus, wait, node, can::od::kEncoderIncrements, times.drive.counts_per_revolution, patience))
     return e;
-  }
   for (const can::SdoWrite& w : can::startup_plan(node, times)) {
     const auto answer = transfer(bus, wait, can::sdo_write(node, w.object, w.value, w.bytes), patience).sdo;
     if (!answer) return describe(node, w.object, "no answer");
@@ -64,6 +63,12 @@ const char* only_a_master_sends(const can::Frame& frame) {
 }
 
 }  // namespace
+
+can::DriveFacts drive_facts(const device::Device& d) noexcept {
+  return {static_cast<std::uint32_t>(std::lround(1e3 * d.rated_torque_Nm)),
+          static_cast<std::uint32_t>(std::lround(d.counts_per_revolution())),
+          static_cast<std::uint16_t>(d.max_torque_permille)};
+}
 
 SdoAnswer transfer(CanBus& bus, BusWait& wait, const can::Frame& request, Nanoseconds patience) {
   const auto asked = can::decode_sdo(request);

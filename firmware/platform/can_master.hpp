@@ -9,8 +9,12 @@
 #include "firmware/platform/can_bus.hpp"
 #include "protocol/can/sdo.hpp"
 #include "protocol/can/startup.hpp"
+#include "protocol/device/device.hpp"
 
 namespace ligature::platform {
+
+/// What start-up expects of the drives of a device and sets in them.
+[[nodiscard]] can::DriveFacts drive_facts(const device::Device& device) noexcept;
 
 /// One expedited transfer: request out, matching answer in; others' frames on the bus are skipped.
 struct SdoAnswer {

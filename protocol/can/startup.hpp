@@ -17,10 +17,18 @@ struct SdoWrite {
   std::uint8_t bytes = 0;
 };
 
+/// What a device's record says of each of its drives.
+struct DriveFacts {
+  std::uint32_t rated_torque_mNm = profile::kRatedTorque_mNm;
+  std::uint32_t counts_per_revolution = static_cast<std::uint32_t>(profile::kCountsPerRevolution);
+  std::uint16_t max_torque_permille = static_cast<std::uint16_t>(profile::kMaxTorque_permille);
+};
+
 struct StartupTimes {
   std::uint16_t rpdo_timeout_ms = profile::kDefaultRpdoTimeout_ms;  ///< drive zeroes torque after this silence
   std::uint16_t heartbeat_timeout_ms = profile::kDefaultHeartbeatTimeout_ms;  ///< the same for the master's heartbeat
   std::uint16_t heartbeat_period_ms = profile::kDefaultHeartbeat_ms;          ///< of the drive
+  DriveFacts drive{};
 };
 
 struct StartupPlan {
@@ -57,7 +65,7 @@ constexpr void add_pdo_setup(StartupPlan& plan, Pdo pdo, NodeId node) {
   plan.add(od::kConsumerHeartbeat, consumer_heartbeat_value(kMasterNode, times.heartbeat_timeout_ms), 4);
   plan.add(od::kProducerHeartbeat, times.heartbeat_period_ms, 2);
   plan.add(od::kAbortConnectionOption, 1, 2);
-  plan.add(od::kMaxTorque, static_cast<std::uint32_t>(profile::kMaxTorque_permille), 2);
+  plan.add(od::kMaxTorque, times.drive.max_torque_permille, 2);
   plan.add(od::kModeOfOperation, static_cast<std::uint32_t>(profile::kCyclicSynchronousTorque), 1);
   return plan;
 }

@@ -68,7 +68,7 @@ void VirtualRig::record(const std::string& path) {
 std::optional<std::string> VirtualRig::run(std::int64_t ticks, bool end_when_done) {
   end_when_done_ = end_when_done;
   for (DeviceBus* b : {&left, &right}) {
-    if (auto why = platform::configure_drives(*b, wait, {})) return why;
+    if (auto why = platform::configure_drives(*b, wait, {.drive = platform::drive_facts(setup.device)})) return why;
   }
   platform::start_drives(left);
   platform::start_drives(right);

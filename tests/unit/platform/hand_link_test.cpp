@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "firmware/platform/rig_bus.hpp"
 #include "protocol/can/emcy.hpp"
 #include "protocol/can/heartbeat.hpp"
@@ -52,6 +54,50 @@ TEST_F(HandLinkTest, ACompleteSetIsFreshAndInSiUnits) {
   EXPECT_FALSE(r.drive_fault || r.bus_lost);
   EXPECT_EQ(r.age_ticks, 0);
   EXPECT_DOUBLE_EQ(r.q_rad[2], can::angle_rad(4096));
+}
+
+TEST_F(HandLinkTest, ButtonsWhoseLifeSignStandsStillAreStuck) {
+  const auto answer_with_life = [this](std::uint8_t life) {
+    link.send_sync();
+    answer_all(State::kOperationEnabled, 100, can::profile::with_life(can::profile::kButtonDeadMan, life));
+    link.drain();
+    return link.reading();
+  };
+  for (std::uint8_t life = 0; life < 50; ++life) EXPECT_FALSE(answer_with_life(life).buttons_stuck);
+  for (int i = 0; i < 9; ++i) EXPECT_FALSE(answer_with_life(49).buttons_stuck) << i;
+  EXPECT_TRUE(answer_with_life(49).buttons_stuck);
+  EXPECT_FALSE(answer_with_life(50).buttons_stuck);
+}
+
+TEST_F(HandLinkTest, ADriveWithoutALifeSignIsTakenAsItIs) {
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(period().buttons_stuck);
+}
+
+TEST_F(HandLinkTest, BusLoadIsThatOfThePeriodBefore) {  // SYNC, 3 TPDOs, 3 RPDOs: 617 .. 745 bits of 1000
+  for (int i = 0; i < 3; ++i) {
+    period();
+    link.write({});
+  }
+  const auto load = period().bus_load;
+  EXPECT_GE(load, 0.617F);
+  EXPECT_LE(load, 0.745F);
+}
+
+TEST(HandLinkDevice, AnotherRecordIsAnotherScale) {
+  FakeBus bus;
+  device::Device d = device::omni();
+  d.motor_counts = 1000;
+  d.gear = 2.0;
+  d.rated_torque_Nm = 0.05;
+  HandLink link(bus, d);
+  link.send_sync();
+  for (std::size_t j = 0; j < 3; ++j)
+    bus.inbox.push_back(
+        can::encode(kNodes[j], can::Tpdo1{can::cia402::statusword_of(State::kOperationEnabled), 500, 0, 0}));
+  link.drain();
+  EXPECT_DOUBLE_EQ(link.reading().q_rad[0], std::acos(-1.0) / 2.0);  // a quarter of 2000 counts
+  const auto sent = link.write({{0.025, -0.001, 9.0}, rt::DriveRequest::kOperate});
+  EXPECT_EQ(sent, (std::array<std::int16_t, 3>{500, -20, 3000}));
 }
 
 TEST_F(HandLinkTest, TwoOfThreeAreNoPose) {  // the old set is held and its age counted

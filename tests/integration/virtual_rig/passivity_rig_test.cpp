@@ -1,0 +1,138 @@
+// The device ports in the whole rig: counts, frames, one sample of delay, hands that mean ill.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/lab/rig/virtual_rig.hpp"
+#include "protocol/device/device_file.hpp"
+#include "protocol/scene/scene_file.hpp"
+#include "sim_device/unrest.hpp"
+
+namespace ligature {
+namespace {
+
+const std::string kScenes = std::string(LIGATURE_SOURCE_DIR) + "/scenes/";
+constexpr double kFloor_J = 1e-6;
+
+scene::Scene scene_with(std::vector<std::string> overrides) {
+  overrides.emplace_back("suture.nodes=12");
+  return std::get<scene::Scene>(scene::load_scene(kScenes + "paper.toml", overrides));
+}
+
+/// Takes the thread's end, pulls it tight, lets it go; again and again. Abrupt: the wish jumps by `jump_m` of device.
+class Pulling final : public sim::Intention {
+ public:
+  Pulling(const sim::Vec3& at, double period_s, double amplitude_m, bool jumps)
+      : at_(at), period_s_(period_s), amplitude_m_(amplitude_m), jumps_(jumps) {}
+  [[nodiscard]] sim::Intent at(double t_s, const sim::Touch&) const noexcept override {
+    sim::Intent now{at_, sim::Vec3::Zero(), t_s > 0.2};
+    if (!(t_s > 1.0)) return now;
+    const double phase = std::fmod(t_s - 1.0, period_s_) / period_s_;
+    const double share = jumps_ ? (phase < 0.5 ? 1.0 : 0.0) : 0.5 - 0.5 * std::cos(2.0 * std::acos(-1.0) * phase);
+    now.p_DH += amplitude_m_ * share * sim::Vec3(1.0, 0.3, -0.5);
+    now.grip = now.grip && std::fmod(t_s, 1.7) < 1.6;  // slips now and then
+    return now;
+  }
+  [[nodiscard]] double end_s() const noexcept override { return 1e9; }
+  [[nodiscard]] sim::Vec3 start_D_m() const noexcept override { return at_; }
+
+ private:
+  sim::Vec3 at_;
+  double period_s_, amplitude_m_;
+  bool jumps_;
+};
+
+struct Outcome {
+  double lowest_J = 0.0, peak_N = 0.0, step_N = 0.0;
+  int fault = 0;
+  int limits = 0;
+};
+
+Outcome outcome_of(const lab::VirtualRig& rig) {
+  Outcome o;
+  std::array<rt::Triple, 2> before{};
+  for (const auto& r : rig.records) {
+    for (std::size_t h = 0; h < 2; ++h) {
+      const auto& f = r.f_device_N[h];
+      o.lowest_J = std::min(o.lowest_J, r.port_energy_J[h]);
+      o.peak_N = std::max(o.peak_N, std::hypot(f[0], f[1], f[2]));
+      o.step_N = std::max(o.step_N, std::hypot(f[0] - before[h][0], f[1] - before[h][1], f[2] - before[h][2]));
+      o.limits |= r.limits[h];
+    }
+    before = r.f_device_N;
+    if (o.fault == 0) o.fault = r.fault;
+  }
+  return o;
+}
+
+struct Hands {
+  std::string name;
+  double tightness = 0.5;
+  double period_s = 0.7, amplitude_m = 0.03;
+  bool jumps = false;
+  double lead_s = 0.0;  // of an adversary
+  double frame_loss = 0.0;
+};
+
+Outcome play(const scene::Scene& scene, const Hands& hands, const device::Device& device = device::omni()) {
+  lab::RigSetup setup{.scene = scene, .device = device};
+  setup.frame_loss = hands.frame_loss;
+  for (auto& body : setup.body) {
+    body = sim::Body::of(device);
+    body.hand = sim::Hand::holding(hands.tightness);
+  }
+  lab::VirtualRig::Intentions intentions;
+  for (std::size_t h = 0; h < 2; ++h) {
+    const sim::Vec3 at(device.home_tip_m[0] + (h == 0 ? -0.02 : 0.02), device.home_tip_m[1], device.home_tip_m[2]);
+    intentions[h] = std::make_unique<Pulling>(at, hands.period_s + 0.1 * static_cast<double>(h), hands.amplitude_m, hands.jumps);
+    if (hands.lead_s > 0.0)
+      intentions[h] = std::make_unique<sim::Adversarial>(std::move(intentions[h]), hands.lead_s, 0.02);
+  }
+  lab::VirtualRig rig(setup, std::move(intentions));
+  EXPECT_EQ(rig.run(5000), std::nullopt);
+  return outcome_of(rig);
+}
+
+/// Ten times the shipped coupling: 720 N/m at the device, where it renders 440 stably.
+std::vector<std::string> stiff() { return {"hands.coupling_N_per_m=12000", "hands.override_passivity=true"}; }
+
+TEST(PassivityRig, NoHandGetsEnergyOutOfAPort) {
+  const std::vector<Hands> all{{"a calm pull and release"},
+                               {"a loose hand", 0.0},
+                               {"a clenched fist", 1.0, 0.4},
+                               {"a hand that jumps", 0.7, 0.5, 0.03, true},
+                               {"a hand that pushes on", 0.3, 0.7, 0.03, false, 0.05},
+                               {"5 % of the frames lost", 0.5, 0.5, 0.03, false, 0.0, 0.05}};
+  for (const auto& overrides : {std::vector<std::string>{}, stiff()}) {
+    for (const Hands& hands : all) {
+      SCOPED_TRACE(hands.name);
+      const Outcome o = play(scene_with(overrides), hands);
+      std::printf("%-26s %s lowest %.2e J, peak %.3f N, step %.3f N, limits %d, fault %d\n", hands.name.c_str(),
+                  overrides.empty() ? "shipped" : "stiff  ", o.lowest_J, o.peak_N, o.step_N, o.limits, o.fault);
+      EXPECT_GE(o.lowest_J, -kFloor_J);
+      EXPECT_LE(o.peak_N, 3.3);
+    }
+  }
+}
+
+TEST(PassivityRig, WithoutTheControllerOneOfThemIsAMotor) {
+  auto overrides = stiff();
+  overrides.emplace_back("hands.passivity=false");
+  const Hands hands{"a hand that pushes on", 0.0, 0.7, 0.03, false, 0.05};
+  const Outcome free = play(scene_with(overrides), hands), held = play(scene_with(stiff()), hands);
+  std::printf("without: lowest %.2e J, fault %d; with: lowest %.2e J\n", free.lowest_J, free.fault, held.lowest_J);
+  EXPECT_LT(free.lowest_J, -1e-3);
+  EXPECT_GE(held.lowest_J, -kFloor_J);
+}
+
+TEST(PassivityRig, AnotherDeviceIsAFile) {  // three drums instead of an arm, through the same wire
+  const auto device = std::get<device::Device>(device::load_device(kScenes + "devices/cartesian.toml"));
+  const Outcome o = play(scene_with({}), {"a calm pull and release"}, device);
+  EXPECT_EQ(o.fault, 0);
+  EXPECT_GT(o.peak_N, 0.01);
+  EXPECT_GE(o.lowest_J, -kFloor_J);
+}
+
+}  // namespace
+}  // namespace ligature
