@@ -270,7 +270,7 @@ int run(const RunOptions& options) {
   const auto side = std::make_unique<RealTimeSide>(options, plan, buses, *outlets, desk.handover());
   const auto refused = side->prepare(ask, core);
   if (options.rt == RtMode::kEnforce && !refused.empty()) return fail({3, "--rt=enforce: " + refused.front()});
-  if (const auto refusal = configure(buses, options)) return fail(*refusal);
+  if (const auto refusal = configure(buses, options, plan.device)) return fail(*refusal);
 
   telemetry::Telemetry telemetry(session(plan, options, id, ask && refused.empty(), !excess, recorder.get()), kNames,
                                  *outlets, link, recorder.get());
