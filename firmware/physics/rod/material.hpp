@@ -23,8 +23,8 @@ struct Numerics {
   int substeps = 16;  ///< of a tick at rest; more when the hands move fast
   int max_substeps = 24;
   double fast_m_per_s = 0.3;      ///< hand speed up to which `substeps` do
-  int max_passes = 40;            ///< true solves per substep while contacts settle
-  int passes_per_substep = 12;    ///< on average over a tick; when they are used up, each substep left gets four
+  int max_passes = 80;            ///< true solves per substep while contacts settle
+  int passes_per_substep = 16;    ///< of `substeps`, in all; when they are used up, each substep left gets four
   double settled_m_per_s = 3e-5;  ///< a pass that changes no velocity by more ends them,
   double settled_share = 0.012;   ///< or than this share of the hands' speed
   double recovery = 0.3;          ///< share of a penetration taken back per substep

@@ -169,6 +169,7 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
       const auto at = static_cast<std::size_t>(h);
       state_.holds[at].target = starts[at] + share * (goals[at] - starts[at]);
     }
+    substep_index_ = k;
     (this->*substep_)(dt);
   }
   for (int h = 0; h < state_.hold_count; ++h) {

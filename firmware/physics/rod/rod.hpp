@@ -88,6 +88,7 @@ class Rod {
   template <unsigned Bits>
   double guard(double dt_s, double near_m) noexcept;
   void broad_phase() noexcept;
+  [[nodiscard]] int passes_allowed() noexcept;
   int add_hold(const Hold& hold) noexcept;
 
   Material material_;
@@ -107,6 +108,7 @@ class Rod {
   Motion motion_;
   double horizon_s_ = 0.0;      // how far the list of pairs looks ahead
   double tick_travel_m_ = 0.0;  // what the fastest node may have gone since the tick began
+  int substep_index_ = 0;
   bool mesh_held_ = false;
   bool released_ = false;       // a hold let go since the last tick
   bool stale_ = true;           // the list must be made again

@@ -10,6 +10,7 @@ namespace ligature::physics::rod {
 namespace {
 
 constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8;
+constexpr int kLeastPasses = 4;   // of any substep, however much the tick has used
 constexpr double kNear = 0.1;     // diameters within which a pair is a contact at any speed
 constexpr double kSkin = 0.5;     // diameters a list of pairs looks ahead at any speed
 constexpr double kHorizon = 1.2;  // ticks it looks ahead at today's speeds
@@ -64,6 +65,13 @@ double Rod::guard(double dt_s, double near_m) noexcept {
   return share;
 }
 
+// Up to twice a fair share of what is left of the tick's passes, so that a hard substep does not starve the next.
+int Rod::passes_allowed() noexcept {
+  const int left = numerics_.passes_per_substep * numerics_.substeps - report_.passes;
+  const int most = std::clamp(2 * left / (report_.substeps - substep_index_), kLeastPasses, numerics_.max_passes);
+  return most;
+}
+
 // One substep: forces and matrix, what touches what, velocities, positions.
 template <unsigned Bits>
 void Rod::substep(double dt_s) noexcept {
@@ -90,8 +98,7 @@ void Rod::substep(double dt_s) noexcept {
         metric_dt_ = dt_s;
         metric_.prepare(state_.mesh, material_, dt_s, std::max(first - 2, 0), std::min(last + 2, n - 1));
       }
-      const int passes =
-          std::clamp(numerics_.passes_per_substep * numerics_.substeps - report_.passes, 4, numerics_.max_passes);
+      const int passes = passes_allowed();
       contacts_.settle<(Bits & kFriction) != 0>(solver_, metric_, numerics_, passes, settled_m_per_s_, dt_s, first,
                                                 last, state_.v.data(), seen);
       contacts_.store();

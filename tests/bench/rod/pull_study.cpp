@@ -2,8 +2,10 @@
 // events, worst penetration (diameters) in pull / hold / after, strain against T / EA, largest turn per node and
 // longest contact segment in the hold, chatter of the hand force in the hold, thread-CPU time per tick.
 //
+// Also: chatter while the thread slides (rms about the 51-tick moving mean, over the mean, from 5 % of the force on).
+//
 // Usage: rod_pull_study SCENE [speed_m_per_s force_N sudden(0|1) hands(1|2) [key=value ...]]; without speed: the 24
-// runs of 0.05, 0.2, 0.5, 1 m/s x 1, 5, 10 N x gentle, sudden release.
+// runs of 0.05, 0.2, 0.5, 1 m/s x 1, 5, 10 N x gentle, sudden release. HOLD_S=60 in the environment: a longer hold.
 
 #include <ctime>
 
@@ -60,12 +62,18 @@ class Study {
 
   void run(double speed, double force_N, bool sudden, int hands) {
     phase(0.1, 0.0, hands, 0.0);
+    forces_.clear();
     phase(5.0, speed, hands, force_N);
-    const double pull = std::exchange(penetration_, 0.0);
+    std::vector<double> sliding;
+    for (const double f : forces_) {
+      if (f > 0.05 * force_N) sliding.push_back(f);
+    }
+    const double slide = chatter(sliding), pull = std::exchange(penetration_, 0.0);
     phase(0.3, 0.0, hands, 0.0);
     penetration_ = 0.0;
     forces_.clear();
-    phase(0.7, 0.0, hands, 0.0);
+    const char* const hold_s = std::getenv("HOLD_S");
+    phase(hold_s != nullptr ? std::atof(hold_s) : 0.7, 0.0, hands, 0.0);
     const double hold = std::exchange(penetration_, 0.0), strain = sim_.diagnostics().max_stretch, tension = force();
     const auto [turn, segment] = sharpness();
     const double rms = chatter(forces_);
@@ -76,9 +84,9 @@ class Study {
     for (const auto& p : sim_.nodes_W()) points.push_back({p.x(), p.y(), p.z()});
     std::printf(
         "%4.2f m/s %4.1f N %s %d hand(s): %s guard %d penetration %.2f %.3f %.2f strain %.2f%% (T/EA %.2f%%) turn %.2f "
-        "segment %.2f d chatter %.4f%% us %.0f %.0f %.0f\n",
+        "segment %.2f d chatter %.4f%% sliding %.2f%% us %.0f %.0f %.0f\n",
         speed, force_N, sudden ? "sudden" : "gentle", hands, knot::recognise(points, false).type.c_str(), guard_, pull,
-        hold, penetration_, 100.0 * strain, 100.0 * tension / scene_.suture.rod.EA_N, turn, segment, 100.0 * rms,
+        hold, penetration_, 100.0 * strain, 100.0 * tension / scene_.suture.rod.EA_N, turn, segment, 100.0 * rms, 100.0 * slide,
         quantile(us_, 0.5), quantile(us_, 0.99), quantile(us_, 1.0));
   }
 

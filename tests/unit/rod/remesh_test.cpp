@@ -61,5 +61,39 @@ TEST(Remesh, CutsNothing) {  // 60 places of the strand between arc and chord; m
   EXPECT_EQ(crossings, 0);
 }
 
+Vec momentum(const State& state) {
+  Vec sum{};
+  for (std::size_t i = 0; i < state.x.size(); ++i) sum += state.mesh.mass[i] * state.v[i];
+  return sum;
+}
+
+TEST(Remesh, KeepsMomentumAndLength) {  // to rounding, in every one of the remeshes of a moving thread
+  Material m;
+  m.length_m = 0.235;
+  Numerics numerics;
+  numerics.tick_s = 1e-4;
+  numerics.substeps = numerics.max_substeps = 4;
+  Rod rod(m, numerics, Parts{false, true, true, false, true}, 99);
+  helix_around_a_strand(rod, 0.3, 1.3e-3);
+  rod.hold_mesh(true);
+  for (auto& v : rod.state().v) v = make(0.3, -0.2, 0.1);
+  int remeshes = 0;
+  for (int i = 0; i < 200; ++i) {
+    rod.tick();
+    const Vec before = momentum(rod.state());
+    if (!rod.remesh()) continue;
+    ++remeshes;
+    EXPECT_LT(norm(momentum(rod.state()) - before), 1e-12 * norm(before));
+    EXPECT_EQ(rod.state().mesh.s.front(), 0.0);
+    EXPECT_NEAR(rod.state().mesh.s.back(), m.length_m, 1e-15);
+    double length = 0.0, mass = 0.0;
+    for (std::size_t j = 0; j + 1 < rod.state().x.size(); ++j) length += rod.state().mesh.rest[j];
+    for (const double k : rod.state().mesh.mass) mass += k;
+    EXPECT_NEAR(length, m.length_m, 1e-14);
+    EXPECT_NEAR(mass, m.length_m * m.density_kg_per_m, 1e-17);
+  }
+  EXPECT_GT(remeshes, 20);
+}
+
 }  // namespace
 }  // namespace ligature::test
