@@ -69,12 +69,13 @@ std::vector<Setting> all_settings(bool quick) {
   for (const int n : nodes) {
     for (const Model m : kPaper) {
       const int least = stable_substeps(m, n);
-      for (const int times : quick || n > 200 ? std::vector<int>{1} : std::vector<int>{1, 2, 4}) {
+      for (const int times : quick || n > 200 ? std::vector<int>{1} : std::vector<int>{1, 2}) {
         all.push_back({m, n, least * times, 0, {}});
       }
     }
-    for (const int substeps : quick ? std::vector<int>{10, 24} : std::vector<int>{6, 10, 16, 24, 40}) {
-      for (const int passes : quick ? std::vector<int>{12} : std::vector<int>{4, 12, 40}) {
+    for (const int substeps : quick || n > 200 ? std::vector<int>{10, 24} : std::vector<int>{6, 10, 16, 24, 40}) {
+      const bool vary = !quick && substeps == 16 && n <= 200;
+      for (const int passes : vary ? std::vector<int>{4, 12, 40} : std::vector<int>{12}) {
         all.push_back({Model::kRod, n, substeps, passes, {}});
       }
     }

@@ -22,7 +22,7 @@ struct Setting {
 /// @throws Refusal when the text is none of Setting::text().
 [[nodiscard]] Setting setting_of(const std::string& text);
 
-/// Every model, N = 20 .. 500, substeps (an explicit model's: what its stability limit asks for, twice, four times) and
+/// Every model, N = 20 .. 500, substeps (an explicit model's: what its stability limit asks for, and twice) and
 /// passes. @param quick about a sixth of them.
 [[nodiscard]] std::vector<Setting> all_settings(bool quick);
 
