@@ -183,7 +183,7 @@ int execute(const Arguments& a) {
   const auto accuracy = accuracy_of(a.accuracy);
   const auto nodes = nodes_of(a);
   if (!a.only.empty() && !v::find_case(a.only))
-    throw Refusal("--only: found " + a.only + ", allowed see validate --help");
+    throw Refusal("--only: found " + a.only + ", allowed a case that validate --help lists");
   if (!a.out.empty()) make_folder(a.out);
   if (a.convergence) return show_convergence(a.out);
   std::vector<Outcome> outcomes;

@@ -46,6 +46,10 @@ def bad_input(folder):
     assert "bad.csv:3: column 'grip': found '7'" in refused(folder, PAPER, "--grippers", script)
     assert "--duration" in refused(folder, PAPER, "--duration", "-1")
     assert "--shape-every" in refused(folder, PAPER, "--shape-every", "0")
+    assert len(refused(folder, PAPER, "--duration", "1e300")) < 120  # a number of 300 digits tells nobody anything
+    for wrong in (["--model", "paper-9"], ["--nodes", "77"], ["--only", "tea"], ["--accuracy", "best"]):
+        done = lab("validate", *wrong)
+        assert done.returncode == 2 and done.stderr.count("\n") == 1, (wrong, done)
     for args in ([], ["fly"], ["run"], ["run", PAPER, "--nonsense"]):
         done = lab(*args)
         assert done.returncode == 2 and done.stderr.count("\n") == 1, (args, done)
@@ -73,6 +77,19 @@ def failed_run(folder):
     assert not json.loads((folder / "failed" / "summary.json").read_text())["finite"]
 
 
+def validation(folder):
+    out = folder / "validate"
+    done = lab("validate", "--only", "elastic-string", "--nodes", "50", "--out", out)
+    assert done.returncode == 0 and "PASS" in done.stdout and "FAIL" not in done.stdout, done
+    rows = list(csv.DictReader((out / "validate.csv").open()))
+    assert rows and all(row["verdict"] == "PASS" for row in rows)
+    assert len(json.loads((out / "validate.json").read_text())) == len(rows)
+    done = lab("validate", "--only", "capstan", "--nodes", "50", "--model", "paper-4")
+    assert done.returncode == 0 and "not modelled" in done.stdout, done
+    done = lab("validate", "--only", "heavy-rod-lifted", "--nodes", "50", "--model", "paper-4")
+    assert done.returncode == 1 and "FAIL" in done.stdout, done
+
+
 def teaching():
     assert lab("--version").stdout.startswith("ligature-lab ")
     assert "Example" in lab("run", "--help").stdout
@@ -82,5 +99,6 @@ with tempfile.TemporaryDirectory() as name:
     bad_input(pathlib.Path(name))
     good_run(pathlib.Path(name))
     failed_run(pathlib.Path(name))
+    validation(pathlib.Path(name))
 teaching()
 print("ligature-lab: command line behaves")
