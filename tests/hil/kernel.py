@@ -8,7 +8,7 @@ import subprocess
 XZ_MAGIC = b"\xfd7zXZ\x00"
 # What the guest needs, in no order; what these need is found in the modules themselves.
 MODULES = ("virtio_pci", "virtio_console", "virtio-rng", "9pnet_virtio", "9p", "overlay",
-           "can", "can-raw", "vcan", "kvaser_pci")
+           "can", "can-raw", "can-bcm", "vcan", "kvaser_pci")
 
 
 def package():

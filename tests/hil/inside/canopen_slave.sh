@@ -3,7 +3,6 @@
 . tests/hil/inside/rig.sh
 warm chrt "$LIGATURE_VENV"
 for node in 1 2 3; do "$LIGATURE_BIN/ligature-can-describe" eds "$node" > "/run/node-$node.eds"; done
-"$LIGATURE_VENV" tests/hil/inside/canopen_hand.py --look > /dev/null   # everything is in memory the second time
 hand right vcan1
 "$LIGATURE_VENV" tests/hil/inside/canopen_hand.py > /run/left.log 2>&1 &
 slave_pid=$!
