@@ -1,5 +1,5 @@
 // The knot as a drawing: its strands as the camera sees them, cut where they pass under, each crossing with its sign.
-const MOST_POINTS = 160, GAP_PX = 5, MARGIN_PX = 16;
+const MOST_POINTS = 160, GAP_PX = 6, MARGIN_PX = 14, MOST_SQUEEZED = 3;
 
 /**
  * @param core first and last node of the knot, or undefined: nothing is drawn then.
@@ -13,18 +13,18 @@ export function drawDiagram(canvas, p_W, core, camera) {
   ctx.clearRect(0, 0, canvas.width, canvas.height);
   ctx.lineJoin = ctx.lineCap = 'round';
   ctx.strokeStyle = '#e9cf9b';
-  ctx.lineWidth = 3;
+  ctx.lineWidth = 2.5;
   for (const piece of pieces(points, crossings, place)) {
     ctx.beginPath();
     piece.forEach(([x, y], i) => (i ? ctx.lineTo(x, y) : ctx.moveTo(x, y)));
     ctx.stroke();
   }
-  ctx.font = 'bold 11px sans-serif';
+  ctx.font = 'bold 14px sans-serif';
   ctx.textAlign = 'center';
   for (const crossing of crossings) {
     const [x, y] = place(crossing.x, crossing.y);
     ctx.fillStyle = crossing.sign > 0 ? '#2fbf8f' : '#cc79a7';
-    ctx.fillText(crossing.sign > 0 ? '+' : '−', x + 9, y - 5);
+    ctx.fillText(crossing.sign > 0 ? '+' : '−', x + 10, y - 6);
     ctx.beginPath(); ctx.arc(x, y, 2.2, 0, 2 * Math.PI); ctx.fill();
   }
   return crossings;
@@ -62,8 +62,9 @@ export function crossingsOf(points) {
 function fit(points, canvas) {
   const x = points.map((p) => p[0]), y = points.map((p) => p[1]);
   const [left, right, low, high] = [Math.min(...x), Math.max(...x), Math.min(...y), Math.max(...y)];
-  const scale = Math.min((canvas.width - 2 * MARGIN_PX) / (right - left || 1), (canvas.height - 2 * MARGIN_PX) / (high - low || 1));
-  return (px, py) => [canvas.width / 2 + scale * (px - (left + right) / 2), canvas.height / 2 - scale * (py - (low + high) / 2)];
+  const full = [(canvas.width - 2 * MARGIN_PX) / (right - left || 1), (canvas.height - 2 * MARGIN_PX) / (high - low || 1)];
+  const [sx, sy] = full.map((s) => Math.min(s, MOST_SQUEEZED * Math.min(...full))); // stretching changes no crossing
+  return (px, py) => [canvas.width / 2 + sx * (px - (left + right) / 2), canvas.height / 2 - sy * (py - (low + high) / 2)];
 }
 
 /** The strand in pieces: a gap on either side of each place where it passes under. */
