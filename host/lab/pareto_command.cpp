@@ -21,14 +21,14 @@ namespace {
 
 constexpr const char* kFooter = R"(
 Every model at N = 20 .. 500 with substeps and contact passes varied. For each setting:
-  cost    thread-CPU microseconds a 1 ms tick while a loose overhand is pulled and held: median, p99, worst; for those on
-          a front instructions too, where valgrind is there (p99 of 250 ticks is the second worst)
+  cost    thread-CPU microseconds a 1 ms tick while a loose overhand is pulled and held: median, p99, worst; for those
+          on a front instructions too, where valgrind is there (p99 of 250 ticks is the third worst)
   errors  shape  worst static error of elastica and catenary (validate), of L (explicit models: to 50 nodes)
           swing  free end of a thread let go level, rms distance from the model's own finest setting, of L
           knot   distance between the hands in the hold, against the own finest, in diameters; empty: knot lost
-DIR holds pareto.csv and pareto.png (cost against error, the fronts drawn, 1 kHz marked). The rod is the 0.3 mm suture, the
-paper's models their 5 m thread; errors are relative to each model's own finest, so models are not compared with each
-other but in cost. docs/accuracy.md says which setting to take for what.
+DIR holds pareto.csv and pareto.png (cost against error, the fronts drawn, 1 kHz marked). The rod is the 0.3 mm suture,
+the paper's models their 5 m thread; errors are relative to each model's own finest, so models are not compared with
+each other but in cost. docs/accuracy.md says which setting to take for what.
 
 Example
   ligature-lab pareto --out out/pareto --quick)";
