@@ -11,11 +11,12 @@ double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noexce
   return (b - a).cross(c - a).dot(d - a);
 }
 
-/// +1, -1 or 0: does the step from p to q pass the triangle a b c, and to which side of it?
+/// +1, -1 or 0: does the step from p to q pass the triangle a b c, and to which side of it? Two triangles that share
+/// the edge from a decide it alike, so a step through that edge counts once.
 int crossing(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
   const bool before = volume(a, b, c, p) > 0.0, after = volume(a, b, c, q) > 0.0;
   if (before == after) return 0;
-  const bool s1 = volume(p, q, a, b) > 0.0, s2 = volume(p, q, b, c) > 0.0, s3 = volume(p, q, c, a) > 0.0;
+  const bool s1 = volume(p, q, a, b) > 0.0, s2 = volume(p, q, b, c) > 0.0, s3 = !(volume(p, q, a, c) > 0.0);
   if (s1 != s2 || s2 != s3) return 0;
   return after ? 1 : -1;
 }

@@ -1,0 +1,95 @@
+// What an operator sees (arc length, holes), and that it ties what it says, whoever it is.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "firmware/physics/simulation.hpp"
+#include "host/knot/recognise.hpp"
+#include "protocol/scene/scene_file.hpp"
+#include "sim_device/operator/knot_tier.hpp"
+
+namespace ligature::sim {
+namespace {
+
+std::vector<Vec3> circle(int n, double radius_m) {
+  std::vector<Vec3> points;
+  for (int k = 0; k < n; ++k) {
+    const double a = 2.0 * M_PI * k / n;
+    points.emplace_back(radius_m * std::cos(a), radius_m * std::sin(a), 0.0);
+  }
+  return points;
+}
+
+TEST(ThreadView, SpeaksInArcLength) {
+  const std::vector<Vec3> corner{{0, 0, 0}, {3, 0, 0}, {3, 4, 0}};
+  ThreadView view;
+  view.look(corner);
+  EXPECT_DOUBLE_EQ(view.length_m(), 7.0);
+  EXPECT_TRUE(view.at(5.0).isApprox(Vec3(3, 2, 0)));
+  EXPECT_TRUE(view.along(5.0).isApprox(Vec3::UnitY()));
+  EXPECT_DOUBLE_EQ(view.nearest(Vec3(4, 1, 0)), 4.0);
+  EXPECT_DOUBLE_EQ(view.nearest(Vec3(4, 1, 0), 0.0, 2.0), 2.0);
+  const auto back = view.between(5.0, 1.0);
+  ASSERT_EQ(back.size(), 3u);
+  EXPECT_TRUE(back.front().isApprox(Vec3(3, 2, 0)));
+  EXPECT_TRUE(back.back().isApprox(Vec3(1, 0, 0)));
+}
+
+TEST(Ring, CountsPassesWithTheirSense) {
+  const Ring ring(circle(12, 1.0));
+  EXPECT_NEAR(ring.area_m2(), 3.0, 1e-12);  // of the regular twelve-sided one
+  EXPECT_TRUE(ring.normal().isApprox(Vec3::UnitZ()));
+  const std::vector<Vec3> up{{0.1, 0.2, -1}, {0.1, 0.2, 1}}, beside{{2, 0, -1}, {2, 0, 1}},
+      there_and_back{{0.1, 0.2, -1}, {0.1, 0.2, 1}, {0.3, -0.2, -1}};
+  EXPECT_EQ(ring.passes(up), 1);
+  EXPECT_EQ(ring.passes(std::vector<Vec3>{up[1], up[0]}), -1);
+  EXPECT_EQ(ring.passes(beside), 0);
+  EXPECT_EQ(ring.passes(there_and_back), 0);
+}
+
+std::string tied(const char* name, std::uint32_t seed, std::vector<std::string> overrides = {}) {
+  auto read = scene::load_scene(std::string(LIGATURE_SOURCE_DIR) + "/scenes/" + name, overrides);
+  if (auto* error = std::get_if<scene::Error>(&read)) return error->text;
+  const auto& scene = std::get<scene::Scene>(read);
+  auto made = physics::Simulation::make(scene);
+  auto tier = KnotTier::make(scene, "overhand", seed);
+  auto& thread = std::get<physics::Simulation>(made);
+  auto& person = std::get<KnotTier>(tier);
+  Sight sight;
+  for (int k = 0; k < 90'000 && !person.is_done(); ++k) {
+    sight.t_s = 1e-3 * k;
+    sight.thread_W = thread.nodes_W();
+    for (std::size_t h = 0; h < 2; ++h) {
+      sight.tool_W[h] = person.wish()[h].p_W;
+      sight.force_W_N[h] = thread.hand(static_cast<physics::Hand>(h)).f_W;
+    }
+    const auto& wish = person.tick(sight);
+    thread.tick({physics::ToolInput{wish[0].p_W, wish[0].v_W, wish[0].grip},
+                 physics::ToolInput{wish[1].p_W, wish[1].v_W, wish[1].grip}});
+  }
+  std::vector<std::array<double, 3>> shape;
+  for (const auto& p : thread.nodes_W()) shape.push_back({p.x(), p.y(), p.z()});
+  return person.is_done() ? knot::recognise(shape, false).type : "not done";
+}
+
+TEST(KnotTier, TiesAnOverhandInThePapersSuture) {  // and it is still there five seconds after the hands let go
+  for (const std::uint32_t seed : {1U, 2U, 101U}) EXPECT_EQ(tied("paper.toml", seed), "3_1") << seed;
+  EXPECT_EQ(tied("paper.toml", 7, {"suture.model=\"paper-1\""}), "3_1");
+}
+
+TEST(KnotTier, TiesARealSutureFromScratch) {  // 0.3 mm nylon, tightened to 1 N, let go
+  EXPECT_EQ(tied("suture-3-0.toml", 3), "3_1");
+}
+
+TEST(KnotTier, RefusesWhatItCannotTie) {
+  scene::Scene free_thread;
+  free_thread.world.fixed.clear();
+  EXPECT_TRUE(std::holds_alternative<std::string>(KnotTier::make(free_thread, "overhand", 1)));
+  free_thread.world.fixed = {{0, {0.0, 0.0, 5.5}, std::nullopt}};
+  EXPECT_TRUE(std::holds_alternative<std::string>(KnotTier::make(free_thread, "bow tie", 1)));
+  EXPECT_TRUE(std::holds_alternative<KnotTier>(KnotTier::make(free_thread, "overhand", 1)));
+}
+
+}  // namespace
+}  // namespace ligature::sim
