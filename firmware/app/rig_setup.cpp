@@ -30,8 +30,9 @@ std::string too_stiff(const scene::Hands& hands, const device::Device& device) {
   const auto a = control::admissible(hands, device, control::kPeriod_s);
   if (a.holds()) return {};
   std::ostringstream text;
-  text << "coupling of " << a.K_N_per_m << " N/m at the device (hands.coupling_N_per_m, hands.device_N_per_m), allowed less than "
-       << a.largest_N_per_m << " N/m: b " << device.damping_N_s_per_m << " + B " << a.B_N_s_per_m << " N s/m over T/2 + delay "
+  text << "coupling of " << a.K_N_per_m
+       << " N/m at the device (hands.coupling_N_per_m, hands.device_N_per_m), allowed less than " << a.largest_N_per_m
+       << " N/m: b " << device.damping_N_s_per_m << " + B " << a.B_N_s_per_m << " N s/m over T/2 + delay "
        << 1e3 * (0.5 * control::kPeriod_s + device.delay_s) << " ms of " << device.name
        << "; or --override-passivity (docs/haptics.md)";
   return text.str();

@@ -136,9 +136,12 @@ const std::string kHead =
     "the\n"
     "force stays below 3.3 N and every tick is recorded; a fault is latched, disarms, and takes both hands. While the\n"
     "controller sleeps or cannot be heard, the drives' own watchdog (20 ms) takes the torque.\n\n"
-    "What carries on does so on held or doubled samples. An encoder that freezes or turns round is known by the moment in\n"
-    "which it does, while the hand moves: one that begins to lie at rest is not, and then the force limit and the velocity\n"
-    "limit remain. Wrong bits are a worst case: a CAN controller's own CRC drops such frames, which then count as lost.\n\n"
+    "What carries on does so on held or doubled samples. An encoder that freezes or turns round is known by the moment "
+    "in\n"
+    "which it does, while the hand moves: one that begins to lie at rest is not, and then the force limit and the "
+    "velocity\n"
+    "limit remain. Wrong bits are a worst case: a CAN controller's own CRC drops such frames, which then count as "
+    "lost.\n\n"
     "| script | what happens | fault | stated | seen |\n|---|---|---|---|---|\n";
 
 TEST(FaultMatrix, EveryCaseEndsAsItSays) {

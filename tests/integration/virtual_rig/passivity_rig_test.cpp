@@ -85,7 +85,8 @@ Outcome play(const scene::Scene& scene, const Hands& hands, const device::Device
   lab::VirtualRig::Intentions intentions;
   for (std::size_t h = 0; h < 2; ++h) {
     const sim::Vec3 at(device.home_tip_m[0] + (h == 0 ? -0.02 : 0.02), device.home_tip_m[1], device.home_tip_m[2]);
-    intentions[h] = std::make_unique<Pulling>(at, hands.period_s + 0.1 * static_cast<double>(h), hands.amplitude_m, hands.jumps);
+    intentions[h] =
+        std::make_unique<Pulling>(at, hands.period_s + 0.1 * static_cast<double>(h), hands.amplitude_m, hands.jumps);
     if (hands.lead_s > 0.0)
       intentions[h] = std::make_unique<sim::Adversarial>(std::move(intentions[h]), hands.lead_s, 0.02);
   }

@@ -260,7 +260,8 @@ TEST(ControllerFaults, OldJointMessagesAreHeldAndThenAFault) {
   EXPECT_EQ(Rig::largest(command), 0.0);
 }
 
-TEST(ControllerFaults, ALostPeriodMakesNoOldSampleNew) {  // sets of 3 and 4 missing, period 5 lost: still the sample of 2
+TEST(ControllerFaults,
+     ALostPeriodMakesNoOldSampleNew) {  // sets of 3 and 4 missing, period 5 lost: still the sample of 2
   Rig rig;
   rig.to_force();
   for (const int age : {1, 2}) {

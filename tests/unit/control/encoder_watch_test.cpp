@@ -21,7 +21,8 @@ Counts counted(Counts c) {
 }
 
 /// Fault and how many samples after t = 0 it was told.
-std::pair<Fault, int> watch(const std::function<Counts(int)>& shown, int until = 300, std::array<bool, 3> free = kFree) {
+std::pair<Fault, int> watch(const std::function<Counts(int)>& shown, int until = 300,
+                            std::array<bool, 3> free = kFree) {
   EncoderWatch w;
   for (int t = -200; t < until; ++t) {
     const Fault f = w.add(shown(t), 1, free);
@@ -67,7 +68,8 @@ TEST(EncoderWatch, AJointInItsStopIsNoFault) {
   EXPECT_EQ(watch(stop, 300, {true, false, true}).first, Fault::kNone);
 }
 
-TEST(EncoderWatch, HandsThatTurnStopAndTrembleAreNotSuspected) {  // a mass of 45 g on 800 N/m and 8 N s/m after a wild wish
+TEST(EncoderWatch,
+     HandsThatTurnStopAndTrembleAreNotSuspected) {  // a mass of 45 g on 800 N/m and 8 N s/m after a wild wish
   std::mt19937 random(23);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
   int samples = 0;
@@ -76,7 +78,8 @@ TEST(EncoderWatch, HandsThatTurnStopAndTrembleAreNotSuspected) {  // a mass of 4
     std::array<double, 3> x{}, v{}, wish{}, speed{};
     for (int t = 0; t < 5000; ++t, ++samples) {
       if (t % (40 + 7 * run) == 0) {
-        for (auto& s : speed) s = any(random) * (any(random) > 0.0 ? 2.0 : 0.0) * 1e3;  // counts/s; sharp corners of the wish
+        for (auto& s : speed)
+          s = any(random) * (any(random) > 0.0 ? 2.0 : 0.0) * 1e3;  // counts/s; sharp corners of the wish
       }
       Counts c{};
       for (std::size_t j = 0; j < 3; ++j) {

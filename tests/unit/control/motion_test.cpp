@@ -56,7 +56,8 @@ TEST(BrakeToRest, StopsFromAnySpeedWithinItsLimits) {
   int moving = 0;
   for (int i = 0; i < 300; ++i) {
     brake.step();
-    EXPECT_LE((brake.velocity_m_per_s() - before).cwiseAbs().maxCoeff(), BrakeToRest::kDeceleration_m_per_s2 * 1e-3 + 1e-9);
+    EXPECT_LE((brake.velocity_m_per_s() - before).cwiseAbs().maxCoeff(),
+              BrakeToRest::kDeceleration_m_per_s2 * 1e-3 + 1e-9);
     before = brake.velocity_m_per_s();
     moving += before.norm() > 1e-9;
   }

@@ -57,7 +57,8 @@ TEST(VirtualCoupling, PullsTowardsTheNode) {  // node 0.1 m above: 1200 x 0.1 x 
 }
 
 TEST(VirtualCoupling, ResistsTheHandsOwnMotion) {  // damping takes energy: force against velocity
-  EXPECT_NEAR(felt(hands(), {true, Vec3::Zero(), Vec3::Zero()}, Vec3::Zero(), Vec3(2, 0, 0)).x(), -6.0 * 2 * 0.003, 1e-12);
+  EXPECT_NEAR(felt(hands(), {true, Vec3::Zero(), Vec3::Zero()}, Vec3::Zero(), Vec3(2, 0, 0)).x(), -6.0 * 2 * 0.003,
+              1e-12);
 }
 
 scene::Hands two_sided() {
@@ -94,7 +95,8 @@ TEST(VirtualCoupling, TellsWhatIsNoNumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const auto& h : {hands(), two_sided()}) {
     Proxy proxy;
-    const auto pull = VirtualCoupling(h, kT_s).pull({true, Vec3(nan, 0, 0), Vec3::Zero()}, Vec3::Zero(), Vec3::Zero(), proxy);
+    const auto pull =
+        VirtualCoupling(h, kT_s).pull({true, Vec3(nan, 0, 0), Vec3::Zero()}, Vec3::Zero(), Vec3::Zero(), proxy);
     EXPECT_FALSE(pull.finite);
     EXPECT_EQ(pull.f_N, Vec3::Zero());
     EXPECT_TRUE(proxy.p_WP.allFinite());
