@@ -21,7 +21,7 @@ sim::Vec3 tip_force(const DeviceBus& bus) {
 
 }  // namespace
 
-Watched watch(VirtualRig& rig, std::int64_t ticks) {
+Watched watch(VirtualRig& rig, std::int64_t ticks, std::size_t look_at) {
   Watched w;
   rig.each_tick = [&] {
     std::array<sim::Vec3, 2> force;
@@ -43,6 +43,7 @@ Watched watch(VirtualRig& rig, std::int64_t ticks) {
     w.rendered_N.push_back(force);
     w.tip_force_N.push_back(size);
     w.port_J.push_back(port);
+    if (w.port_J.size() == look_at) w.nodes_W.assign(rig.thread.nodes_W().begin(), rig.thread.nodes_W().end());
   };
   if (const auto why = rig.run(ticks)) throw std::runtime_error("the rig did not start: " + *why);
   rig.each_tick = nullptr;

@@ -16,12 +16,13 @@ struct Watched {
   std::array<double, 2> quantum_J{};         ///< largest work that half a count of each joint hides
   double lowest_sum_J = 0.0;                 ///< of both ports' true energy: the thread carries it from hand to hand
   double peak_N = 0.0;
-  double largest_step_N = 0.0;               ///< of the force in one tick, where neither passivity nor a fault took it
-  double largest_cut_N = 0.0;                ///< where one of them did
+  double largest_step_N = 0.0;  ///< of the force in one tick, where neither passivity nor a fault took it
+  double largest_cut_N = 0.0;   ///< where one of them did
   int fault = 0;
   std::vector<std::array<double, 2>> tip_force_N;    ///< magnitude of what the motors make at each tip, a tick
   std::vector<std::array<sim::Vec3, 2>> rendered_N;  ///< the same as vectors
   std::vector<std::array<double, 2>> port_J;
+  std::vector<sim::Vec3> nodes_W;  ///< at tick look_at
 
   /// rms of the force's components above 30 Hz (first-order high-pass, twice) and mean magnitude, of ticks first ..
   /// last.
@@ -31,7 +32,7 @@ struct Watched {
   [[nodiscard]] double worst_chatter_N() const;
 };
 
-/// Runs and watches. @param prepare may arrange faults before the start.
-[[nodiscard]] Watched watch(VirtualRig& rig, std::int64_t ticks);
+/// Runs and watches. @param look_at tick at which the thread's shape is kept.
+[[nodiscard]] Watched watch(VirtualRig& rig, std::int64_t ticks, std::size_t look_at = 0);
 
 }  // namespace ligature::lab

@@ -8,6 +8,9 @@
 
 namespace ligature::lab {
 
+/// Both its ends are free: without this it falls before it is taken.
+inline constexpr const char* kWeightless = "world.gravity_m_per_s2=[0,0,0]";
+
 /// Both hands take the thread `hold_m` from the knot's middle, draw apart to `apart_m` each (a taut knot is near 0.13),
 /// rest there, come back, let go.
 [[nodiscard]] scene::GripperScript pull_and_release(double apart_m, double draw_s = 2.0, double rest_s = 1.5);
