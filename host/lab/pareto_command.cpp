@@ -174,7 +174,7 @@ void count(std::vector<Point>& points) {
     p.instructions = count_instructions(p.setting, 250);
     there = p.instructions.has_value();
   }
-  if (!there) std::printf("no instruction counts: valgrind could not be run\n");
+  if (!there && !stop_requested()) std::printf("no instruction counts: valgrind could not be run\n");
 }
 
 int execute(const Arguments& a) {
