@@ -25,6 +25,7 @@ struct TickReport {
   int substeps = 0, passes = 0, contacts = 0, guard_events = 0, broad_phases = 0, remeshes = 0;
   double min_gap_m = 1e9;  ///< smallest thread-thread gap in any substep; negative: overlap
   bool cap_hit = false;
+  int cut_short = 0;  ///< substeps whose contacts used up their passes before they settled: what was degraded
 };
 
 /// A rod. Build it, place it with state(), then tick. Only the constructor allocates. Copyable.
@@ -88,7 +89,7 @@ class Rod {
   template <unsigned Bits>
   double guard(double dt_s, double near_m) noexcept;
   void broad_phase() noexcept;
-  [[nodiscard]] int passes_allowed() noexcept;
+  [[nodiscard]] int passes_allowed() const noexcept;
   int add_hold(const Hold& hold) noexcept;
 
   Material material_;

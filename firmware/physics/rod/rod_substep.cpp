@@ -66,10 +66,9 @@ double Rod::guard(double dt_s, double near_m) noexcept {
 }
 
 // Up to twice a fair share of what is left of the tick's passes, so that a hard substep does not starve the next.
-int Rod::passes_allowed() noexcept {
+int Rod::passes_allowed() const noexcept {
   const int left = numerics_.passes_per_substep * numerics_.substeps - report_.passes;
-  const int most = std::clamp(2 * left / (report_.substeps - substep_index_), kLeastPasses, numerics_.max_passes);
-  return most;
+  return std::clamp(2 * left / (report_.substeps - substep_index_), kLeastPasses, numerics_.max_passes);
 }
 
 // One substep: forces and matrix, what touches what, velocities, positions.
@@ -101,6 +100,7 @@ void Rod::substep(double dt_s) noexcept {
       const int passes = passes_allowed();
       contacts_.settle<(Bits & kFriction) != 0>(solver_, metric_, numerics_, passes, settled_m_per_s_, dt_s, first,
                                                 last, state_.v.data(), seen);
+      report_.cut_short += seen.passes >= passes;
       contacts_.store();
     }
   }
