@@ -6,6 +6,7 @@
 #include <iterator>
 #include <set>
 
+#include "protocol/scene/cells.hpp"
 #include "protocol/scene/polyline.hpp"
 #include "protocol/scene/rod_keys.hpp"
 #include "protocol/scene/strict_table.hpp"
@@ -128,15 +129,10 @@ void read_hands(StrictTable& t, Hands& h) {
   t.vector("workspace_origin_m", h.workspace_origin_m, kFar_m);
 }
 
-std::string trim(const std::string& s) {
-  const auto a = s.find_first_not_of(" \t"), b = s.find_last_not_of(" \t");
-  return a == std::string::npos ? "" : s.substr(a, b - a + 1);
-}
-
 /// Puts one `key=value` into the tree, creating tables on the way; false when it is not of that form.
 bool override_key(toml::table& root, const std::string& text, ReadContext& context) {
   const auto equals = text.find('=');
-  const auto key = trim(text.substr(0, equals));
+  const std::string key(trim(std::string_view(text).substr(0, equals)));
   const auto bad = [&](const std::string& why) {
     context.error = Error{"--set " + text + ": " + why};
     return false;
@@ -146,7 +142,7 @@ bool override_key(toml::table& root, const std::string& text, ReadContext& conte
   try {
     value = toml::parse("v = " + text.substr(equals + 1));
   } catch (const toml::parse_error& error) {
-    const auto plain = trim(text.substr(equals + 1));
+    const std::string plain(trim(std::string_view(text).substr(equals + 1), " \t"));
     if (plain.empty() || plain.find_first_of("[]{}\"'=,") != std::string::npos) {
       return bad("the value is not TOML: " + std::string(error.description()));
     }
