@@ -10,21 +10,21 @@
 
 namespace ligature::control {
 
-/// One hand's three encoders. A hand is a mass on a spring: no joint of it changes its speed from one period to the next,
-/// least of all while the others go on as before. Looked for is such a corner, over two windows of kWindow samples that
-/// meet in it, both straight within one count (slopes u before, w after, counts a period), while another joint moves on
-/// at an unchanged speed:
+/// One hand's three encoders. A hand is a mass on a spring: no joint of it changes its speed from one period to the
+/// next, least of all while the others go on as before. Looked for is such a corner, over two windows of kWindow
+/// samples that meet in it, both straight within one count (slopes u before, w after, counts a period), while another
+/// joint moves on at an unchanged speed:
 ///   |u| >= kBrisk and the joint stands to the count from there on, while the others travel kTravel counts   frozen
 ///   |u| >= kMoving and w = -u within kSame                                                                   reversed
-/// A smooth turn that is straight within a count on both sides changes its slope by at most 8 / kWindow = 0.33 in all, so
-/// with |u| above it has to be a corner; a slow joint may simply stop. A joint in its stop does stand still; near one nothing is looked for. A fault
-/// that begins while the joint rests is not seen: then the velocity limit and the force limits remain.
-/// Gaps between samples start the watch anew. O(kWindow), no allocation.
+/// A smooth turn that is straight within a count on both sides changes its slope by at most 8 / kWindow = 0.33 in all,
+/// so with |u| above it has to be a corner; a slow joint may simply stop. A joint in its stop does stand still; near
+/// one nothing is looked for. A fault that begins while the joint rests is not seen: then the velocity limit and the
+/// force limits remain. Gaps between samples start the watch anew. O(kWindow), no allocation.
 class EncoderWatch {
  public:
   static constexpr std::size_t kJoints = 3, kWindow = 24, kLength = 128;
   static constexpr double kMoving = 0.34, kBrisk = 0.8, kSame = 0.17;  ///< counts a period
-  static constexpr double kTravel = 60.0;                ///< counts, about 3 mm at the tip
+  static constexpr double kTravel = 60.0;                              ///< counts, about 3 mm at the tip
 
   /// A new sample, in counts. @param gap whole periods since the last one. @param free per joint: far from its stops.
   /// @return what is wrong, latched by the caller.

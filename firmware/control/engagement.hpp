@@ -6,8 +6,8 @@
 namespace ligature::control {
 
 /// Gain of one hand, 0 .. 1. From zero it starts only after the hand was still and the force small for a while; it
-/// then rises to 1 in 0.5 s as long as it is wanted (armed and dead-man pressed), and falls to 0 in 50 ms when not; both
-/// by a jerk-limited curve (motion.hpp). Periods of 1 ms. O(1).
+/// then rises to 1 in 0.5 s as long as it is wanted (armed and dead-man pressed), and falls to 0 in 50 ms when not;
+/// both by a jerk-limited curve (motion.hpp). Periods of 1 ms. O(1).
 class Engagement {
  public:
   static constexpr int kCalmTicks = 20;

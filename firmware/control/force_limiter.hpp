@@ -12,8 +12,8 @@ namespace ligature::control {
 /// In this order, once a period of T:
 ///   peak        |f| <= min(scene's max_force_N, device's peak)
 ///   continuous  I2t: dh/dt = ((|f| / f_c)^2 - h) / tau; h is the winding's temperature rise, 1 = that of f_c for ever.
-///               From h = 1 on the cap falls from the peak to f_c within kFall_s, below h = 0.7 it comes back as slowly:
-///               with hysteresis, as a force that comes and goes is worse than one that is gone.
+///               From h = 1 on the cap falls from the peak to f_c within kFall_s, below h = 0.7 it comes back as
+///               slowly: with hysteresis, as a force that comes and goes is worse than one that is gone.
 ///   step        |f - f_before| <= force_step_N in one period
 ///   slew        the same over many: an allowance refilled by force_slew_N_per_s T a period, at most force_step_N
 /// The change keeps its direction, so every output lies between two that are allowed. O(1), no allocation.

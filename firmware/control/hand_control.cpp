@@ -1,7 +1,7 @@
 #include "firmware/control/hand_control.hpp"
 
-#include <algorithm>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 namespace ligature::control {
@@ -50,7 +50,8 @@ void HandControl::observe(const rt::HandReading& reading, const Grasp& grasp, st
 
   // Age counts executed periods: one period old means sampled in the last one that was executed.
   const std::int64_t sampled = reading.age_ticks == 0 ? tick : last_tick - (reading.age_ticks - 1);
-  const bool same = reading.age_ticks == last_age_ + 1;  // one executed period older: whatever lost periods make of `sampled`
+  const bool same =
+      reading.age_ticks == last_age_ + 1;  // one executed period older: whatever lost periods make of `sampled`
   last_age_ = reading.age_ticks;
   if (sample_tick_ < 0 || (!same && sampled > sample_tick_)) sample(reading, sampled);
   state_.age_ticks = tick - sample_tick_;
@@ -78,7 +79,8 @@ void HandControl::sample(const rt::HandReading& reading, std::int64_t sampled) n
   for (std::size_t j = 0; j < counts.size(); ++j) counts[j] = std::round(reading.q_rad[j] / count_rad_);
   encoder_fault_ = watch_.add(counts, periods, linkage_.far_from_stops(reading.q_rad));
   sample_tick_ = sampled;
-  if (p_DT_.allFinite()) passivity_.observe(sampled, reading.q_rad, p_DT_, count_rad_ * jacobian_.colwise().norm().maxCoeff());
+  if (p_DT_.allFinite())
+    passivity_.observe(sampled, reading.q_rad, p_DT_, count_rad_ * jacobian_.colwise().norm().maxCoeff());
 }
 
 /// While it is held the tool stays where it is in the world; when it is let go, the map is moved so that the tool

@@ -1,5 +1,6 @@
 #pragma once
-// One hand's control law: joints in, a force that may be sent out. Who may push, and when, is the controller's business.
+// One hand's control law: joints in, a force that may be sent out. Who may push, and when, is the controller's
+// business.
 
 #include <array>
 #include <cstdint>
@@ -55,7 +56,9 @@ class HandControl {
   void hold_clutch(bool held) noexcept { clutch_command_ = held; }
 
   void drop() noexcept { engagement_.drop(); }
-  void step_gain(bool wanted) noexcept { engagement_.tick(wanted && !state_.clutch, speed_m_per_s(), state_.f_wish_N.norm()); }
+  void step_gain(bool wanted) noexcept {
+    engagement_.tick(wanted && !state_.clutch, speed_m_per_s(), state_.f_wish_N.norm());
+  }
   [[nodiscard]] double gain() const noexcept { return engagement_.gain(); }
 
   /// Torques of this tick: gain, brake, limits, passivity, linkage, rounding to what the wire carries; in this order.
@@ -70,7 +73,9 @@ class HandControl {
   [[nodiscard]] Passivity& passivity() noexcept { return passivity_; }
 
   /// The tool as the thread shall see it in this tick.
-  [[nodiscard]] physics::ToolInput tool(bool alive) const noexcept { return {proxy_.p_WP, proxy_.v_WP, state_.grip && alive}; }
+  [[nodiscard]] physics::ToolInput tool(bool alive) const noexcept {
+    return {proxy_.p_WP, proxy_.v_WP, state_.grip && alive};
+  }
 
   /// A hand that is too fast is led to rest by these, along a reference that stops (motion.hpp).
   static constexpr double kBrake_N_per_m = 150.0, kBrake_N_s_per_m = 2.0;

@@ -50,7 +50,8 @@ std::array<bool, 3> Linkage::far_from_stops(const JointAngles& q_rad) const noex
   JointAngles stop = q_rad;
   if (kind_ == device::Kinematics::kOmniSerial) stop[2] -= q_rad[1];
   std::array<bool, 3> far{};
-  for (std::size_t j = 0; j < far.size(); ++j) far[j] = stop[j] > min_rad_[j] + kFar_rad && stop[j] < max_rad_[j] - kFar_rad;
+  for (std::size_t j = 0; j < far.size(); ++j)
+    far[j] = stop[j] > min_rad_[j] + kFar_rad && stop[j] < max_rad_[j] - kFar_rad;
   if (kind_ == device::Kinematics::kOmniSerial) far[1] = far[1] && far[2];  // the links' stop holds both
   return far;
 }

@@ -2,6 +2,8 @@
 // Moves that the rig makes by itself: smooth from where things are, replanned in the loop, never from a list of points.
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <ruckig/ruckig.hpp>
 
 #include "firmware/physics/types.hpp"
@@ -14,7 +16,7 @@ namespace ligature::control {
 /// no allocation, about 1 us when the wish changes and less else.
 class Ramp {
  public:
-  explicit Ramp(double period_s) : otg_(period_s) {
+  explicit Ramp(double period_s) : period_s_(period_s) {
     input_.current_position[0] = input_.current_velocity[0] = input_.current_acceleration[0] = 0.0;
     input_.target_position[0] = input_.target_velocity[0] = input_.target_acceleration[0] = 0.0;
     set_duration(1.0);
@@ -24,12 +26,16 @@ class Ramp {
     if (target != input_.target_position[0]) {
       set_duration(duration_s);
       input_.target_position[0] = target;
+      at_s_ = 0.0;
+      plans_ = otg_.calculate(input_, plan_) >= ruckig::Result::Working;
     }
     if (value_ == target && input_.current_velocity[0] == 0.0) return value_;
-    const auto result = otg_.update(input_, output_);
-    output_.pass_to_input(input_);
-    value_ = std::clamp(output_.new_position[0], 0.0, 1.0);
-    if (result != ruckig::Result::Working || std::abs(value_ - target) < kNear) settle(target);
+    at_s_ += period_s_;
+    if (plans_) {
+      plan_.at_time(at_s_, input_.current_position, input_.current_velocity, input_.current_acceleration);
+      value_ = std::clamp(input_.current_position[0], 0.0, 1.0);
+    }
+    if (!plans_ || at_s_ >= plan_.get_duration() || std::abs(value_ - target) < kNear) settle(target);
     return value_;
   }
   /// At once.
@@ -49,10 +55,12 @@ class Ramp {
     input_.max_jerk[0] = 72.0 / (D * D * D);
   }
 
+  // calculate(), not update(): that one reads the clock.
   ruckig::Ruckig<1> otg_;
   ruckig::InputParameter<1> input_;
-  ruckig::OutputParameter<1> output_;
-  double value_ = 0.0;
+  ruckig::Trajectory<1> plan_;
+  bool plans_ = false;
+  double period_s_, at_s_ = 0.0, value_ = 0.0;
 };
 
 /// Brings a tip from its motion to rest: a reference that starts where the tip is and as fast, and stops with at most
@@ -62,7 +70,7 @@ class BrakeToRest {
   static constexpr double kDeceleration_m_per_s2 = 60.0;  ///< 2 m/s to rest in 50 ms or so
   static constexpr double kJerk_m_per_s3 = 6000.0;
 
-  explicit BrakeToRest(double period_s) : otg_(period_s) {
+  explicit BrakeToRest(double period_s) : period_s_(period_s) {
     input_.control_interface = ruckig::ControlInterface::Velocity;
     for (std::size_t i = 0; i < 3; ++i) {
       input_.max_acceleration[i] = kDeceleration_m_per_s2;
@@ -79,14 +87,18 @@ class BrakeToRest {
     }
     p_m_ = p_m;
     v_m_per_s_ = v_m_per_s;
+    at_s_ = 0.0;
+    plans_ = otg_.calculate(input_, plan_) >= ruckig::Result::Working;
   }
   /// One period on.
   void step() noexcept {
-    if (otg_.update(input_, output_) < ruckig::Result::Working) return;  // refused: the reference stays
-    output_.pass_to_input(input_);
+    if (!plans_) return;  // refused: the reference stays
+    at_s_ += period_s_;
+    std::array<double, 3> p{}, v{}, a{};
+    plan_.at_time(at_s_, p, v, a);
     for (std::size_t i = 0; i < 3; ++i) {
-      p_m_[static_cast<Eigen::Index>(i)] = output_.new_position[i];
-      v_m_per_s_[static_cast<Eigen::Index>(i)] = output_.new_velocity[i];
+      p_m_[static_cast<Eigen::Index>(i)] = p[i];
+      v_m_per_s_[static_cast<Eigen::Index>(i)] = v[i];
     }
   }
   [[nodiscard]] const physics::Vec3& position_m() const noexcept { return p_m_; }
@@ -95,7 +107,9 @@ class BrakeToRest {
  private:
   ruckig::Ruckig<3> otg_;
   ruckig::InputParameter<3> input_;
-  ruckig::OutputParameter<3> output_;
+  ruckig::Trajectory<3> plan_;
+  bool plans_ = false;
+  double period_s_, at_s_ = 0.0;
   physics::Vec3 p_m_ = physics::Vec3::Zero(), v_m_per_s_ = physics::Vec3::Zero();
 };
 

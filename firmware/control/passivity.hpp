@@ -12,25 +12,27 @@ namespace ligature::control {
 ///
 /// Observer. A torque sent in tick k acts from SYNC k+1 to SYNC k+2 and is constant in between, so the motors' work is
 /// exact, whatever the motion was:
-///   E(n) = E(n-1) - tau(n-2) . (q(n) - q(n-1))         work of the hand on the rig, J; f(n-1) dx(n) with the wire's delay
+///   E(n) = E(n-1) - tau(n-2) . (q(n) - q(n-1))         work of the hand on the rig, J; f(n-1) dx(n) with the wire's
+///   delay
 /// with the torques as rounded for the wire. Credit above kCredit_J is forgotten (the window: else an hour of harmless
 /// friction would pay for a minute of instability). The start is 0 plus the scene's energy_credit_J.
 ///
 /// Controller. Torques sent are spent money: one is on its way when the next is decided, and the hand may turn round. A
-/// hand that gives the tip at most the acceleration a moves it, in the j-th period after the last sample, by dx + e with
-/// |e| <= j a T^2 + c (dx: the last period's motion, c: one count). What force F can lose there is
+/// hand that gives the tip at most the acceleration a moves it, in the j-th period after the last sample, by dx + e
+/// with |e| <= j a T^2 + c (dx: the last period's motion, c: one count). What force F can lose there is
 ///   out_j(F) = max(0, F . dx + |F| (j a T^2 + c)),
-/// and a force is sent only when E minus the losses of all torques under way minus its own stays above -kFloor_J. One that
-/// is not is first damped against the motion (alpha = shortage / (T v^2), at most kMaxDamping, v at least kSlow), then
-/// reduced. So E stays above -kFloor_J for every hand within that acceleration, without looking at the environment.
-/// O(1), no allocation. The bound on acceleration is the device record's, the proof by play is in the tests.
+/// and a force is sent only when E minus the losses of all torques under way minus its own stays above -kFloor_J. One
+/// that is not is first damped against the motion (alpha = shortage / (T v^2), at most kMaxDamping, v at least kSlow),
+/// then reduced. So E stays above -kFloor_J for every hand within that acceleration, without looking at the
+/// environment. O(1), no allocation. The bound on acceleration is the device record's, the proof by play is in the
+/// tests.
 class Passivity {
  public:
   static constexpr double kFloor_J = 1e-6;
-  static constexpr double kCredit_J = 0.02;        ///< a 3.3 N spring of 270 N/m, or a 0.88 N one of 19 N/m
+  static constexpr double kCredit_J = 0.02;             ///< a 3.3 N spring of 270 N/m, or a 0.88 N one of 19 N/m
   static constexpr double kMaxDamping_N_s_per_m = 5.0;  ///< what a device of the class can render at 1 kHz
-  static constexpr double kSlow_m_per_s = 5e-3;    ///< below, a velocity is mostly counts
-  static constexpr std::size_t kMemory = 64;       ///< ticks; longer than any watchdog
+  static constexpr double kSlow_m_per_s = 5e-3;         ///< below, a velocity is mostly counts
+  static constexpr std::size_t kMemory = 64;            ///< ticks; longer than any watchdog
 
   Passivity(const device::Device& device, double period_s, bool active, double credit_J) noexcept;
 

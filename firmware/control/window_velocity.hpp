@@ -8,10 +8,10 @@
 
 namespace ligature::control {
 
-/// First-order adaptive window (Janabi-Sharifi, Hayward, Chen: IEEE Trans. Control Syst. Technol. 8(6), 2000), one joint.
-/// Of the samples x[n], x[n-1] .. x[n-k] it takes the most, k <= kWindow, for which the straight line through the two
-/// ends passes every sample between them within the encoder's uncertainty d; the slope of the least-squares line through
-/// these k+1 samples is the velocity:
+/// First-order adaptive window (Janabi-Sharifi, Hayward, Chen: IEEE Trans. Control Syst. Technol. 8(6), 2000), one
+/// joint. Of the samples x[n], x[n-1] .. x[n-k] it takes the most, k <= kWindow, for which the straight line through
+/// the two ends passes every sample between them within the encoder's uncertainty d; the slope of the least-squares
+/// line through these k+1 samples is the velocity:
 ///   v = sum (t_i - t_mean)(x_i - x_mean) / sum (t_i - t_mean)^2
 /// At rest and in slow motion the window is long and the counts' noise small; in fast changes it is short and so is the
 /// lag, k T / 2. Figures against the former low-pass: docs/haptics.md, held by the tests WindowVelocity.*.
