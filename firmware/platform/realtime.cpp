@@ -5,6 +5,8 @@
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdint>
@@ -38,6 +40,15 @@ int last_of(const std::string& list) {
   asm volatile("" : : "r"(stack) : "memory");  // the writes must happen
 }
 
+/// Locks what is there and what comes; under a limit not at all, because an allocation beyond it would then fail.
+/// @return 0, or the errno
+int lock_all() noexcept {
+  rlimit limit{};
+  const bool bounded = getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && geteuid() != 0;
+  if (bounded) return ENOMEM;
+  return mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
+}
+
 std::string refused(const char* what, int error, const char* remedy) {
   return std::string(what) + " refused (" + std::strerror(error) + "); remedy: " + remedy;
 }
@@ -46,8 +57,8 @@ std::string refused(const char* what, int error, const char* remedy) {
 
 Refusals lock_memory() {
   Refusals refusals;
-  if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
-    refusals.push_back(refused("locked memory (mlockall)", errno, "memlock unlimited in limits.conf, or CAP_IPC_LOCK"));
+  if (const int error = lock_all(); error != 0) {
+    refusals.push_back(refused("locked memory (mlockall)", error, "memlock unlimited in limits.conf, or run as root"));
   }
   const bool kept = mallopt(M_TRIM_THRESHOLD, -1) == 1 && mallopt(M_MMAP_MAX, 0) == 1;
   if (!kept) refusals.push_back("heap that keeps its pages (mallopt) refused; remedy: glibc's allocator");
