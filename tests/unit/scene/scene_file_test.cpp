@@ -81,6 +81,8 @@ TEST(SceneFile, EveryRefusalIsOneLineWithItsLineNumber) {
       {"[world]\ngrippers_collide = 1\n", 2, "world.grippers_collide"},
       {"[contact]\nfriction = -1\n", 2, "contact.friction"},
       {"[contact]\nfriction = 0.5\nstatic_friction = 0.2\n", 3, "contact.static_friction"},
+      {"[hands]\npinch_width_m = 0.004\n", 2, "hands.pinch_width_m"},  // the default model is the paper's
+      {"[suture]\nmodel = \"paper-1\"\n[hands]\npinch_force_N = 1\n", 4, "hands.pinch_force_N"},
       {"[time]\ntick_s = 0\n", 2, "time.tick_s"},
       {"[time\ntick_s = 0\n", 1, "TOML"},
       {"[time]\ntick_s = 0.001\ntick_s = 0.002\n", 3, "TOML"},
