@@ -12,6 +12,7 @@ run() {
   shift 3
   [[ " $chosen " == *" $name "* || -z $chosen ]] || return 0
   echo "faults: $name"
+  ip link set can0 up; ip link set can1 up  # the row before may have pulled one
   listen "$ours" vcan1
   hand left "$theirs"; hand right vcan1
   sleep 0.5
