@@ -39,9 +39,9 @@ std::string stats_json(const std::string& hand, const HandDevice& device, const 
   j["frames"] = device.wire_stats().frames;
   j["worst_bus_wait_us"] = microseconds(device.wire_stats().worst_wait);  // queued until sent
   j["worst_rpdo_after_sync_us"] = microseconds(device.bus_stats().worst_rpdo);
-  j["syncs_without_rpdo"] = syncs_without_rpdo;  // drive-SYNCs while enabled
-  j["replaced_rpdos"] = replaced;                // came twice between two SYNCs
-  j["watchdog_trips"] = trips;                   // drives that zeroed torque by themselves
+  j["syncs_without_rpdo"] = syncs_without_rpdo;           // drive-SYNCs while enabled
+  j["replaced_rpdos"] = replaced;                         // came twice between two SYNCs
+  j["watchdog_trips"] = trips;                            // drives that zeroed torque by themselves
   j["final_torque_permille"] = device.torque_permille();  // when told to end, power still on
   j["script_done"] = device.mechanics().is_done();
   j["wakeups"] = loop.wakeups;

@@ -29,8 +29,7 @@ struct Plan {
 };
 [[nodiscard]] std::variant<Plan, Refusal> make_plan(const RunOptions& options);
 /// The same for any scene file; exit codes do not matter then.
-[[nodiscard]] std::variant<Plan, Refusal> make_plan(const std::string& scene,
-                                                    const std::vector<std::string>& overrides,
+[[nodiscard]] std::variant<Plan, Refusal> make_plan(const std::string& scene, const std::vector<std::string>& overrides,
                                                     const device::Device& device = device::omni());
 
 struct Buses {

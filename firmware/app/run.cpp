@@ -174,7 +174,8 @@ class RealTimeSide {
   [[nodiscard]] control::Fault fault() const noexcept { return controller_.fault(); }
 
  private:
-  /// Not one of the rights that --rt=enforce insists on: without it wake-ups are late, which doctor and the record show.
+  /// Not one of the rights that --rt=enforce insists on: without it wake-ups are late, which doctor and the record
+  /// show.
   void stay_awake() {
     awake_.emplace();
     if (!awake_->refusal().empty()) spdlog::warn("real time: {}", awake_->refusal());

@@ -59,7 +59,10 @@ std::string rehearse(const physics::Simulation& thread) {
 }
 
 SceneDesk::SceneDesk(const RunOptions& options, const Plan& plan, int core)
-    : options_(options), device_(plan.device), core_(core), now_{options.scene, options.overrides, plan.scene, plan.scene} {
+    : options_(options),
+      device_(plan.device),
+      core_(core),
+      now_{options.scene, options.overrides, plan.scene, plan.scene} {
   const fs::path given = options.scenes.empty() ? fs::path(options.scene).parent_path() : fs::path(options.scenes);
   options_.scenes = given.empty() ? "." : given.string();
   scenes_ = scene_files(options_.scenes);

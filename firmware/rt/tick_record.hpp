@@ -34,9 +34,9 @@ enum LimitCode : std::int16_t {
 /// What the thread's solver gave up in this tick, in the order in which it does; values of TickRecord::degradation.
 enum class Degradation : std::int8_t {
   kNone = 0,
-  kIterations = 1,   ///< iterations ended before the tolerance: contacts a little softer
-  kContacts = 2,     ///< contact list full: the shallowest contacts were left out
-  kCandidates = 3,   ///< list of near pairs full: far pairs were not looked at
+  kIterations = 1,  ///< iterations ended before the tolerance: contacts a little softer
+  kContacts = 2,    ///< contact list full: the shallowest contacts were left out
+  kCandidates = 3,  ///< list of near pairs full: far pairs were not looked at
 };
 
 using Triple = std::array<double, 3>;

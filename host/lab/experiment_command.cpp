@@ -19,12 +19,9 @@ struct Entry {
   int (*run)(const Bench&);
 };
 
-constexpr Entry kExperiments[] = {{"models", experiment_models},
-                                  {"knotting", experiment_knotting},
-                                  {"pulling", experiment_pulling},
-                                  {"unknotting", experiment_unknotting},
-                                  {"stability", experiment_stability},
-                                  {"haptics", experiment_haptics}};
+constexpr Entry kExperiments[] = {{"models", experiment_models},       {"knotting", experiment_knotting},
+                                  {"pulling", experiment_pulling},     {"unknotting", experiment_unknotting},
+                                  {"stability", experiment_stability}, {"haptics", experiment_haptics}};
 
 constexpr const char* kFooter = R"(
 Each experiment of the paper gives a table (CSV, printed), a picture (PNG) and a verdict: one PASS or FAIL line a claim,

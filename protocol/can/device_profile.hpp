@@ -28,7 +28,8 @@ inline constexpr std::uint8_t kSynchronousEverySync = 1;     ///< PDO transmissi
 inline constexpr std::uint16_t kButtonGrip = 1U << 0;
 inline constexpr std::uint16_t kButtonDeadMan = 1U << 1;
 inline constexpr std::uint16_t kButtonClutch = 1U << 2;
-/// Bits 8 .. 15 of the buttons' word: a life sign, one more at each SYNC. A word that stands still is a sensor that does.
+/// Bits 8 .. 15 of the buttons' word: a life sign, one more at each SYNC. A word that stands still is a sensor that
+/// does.
 [[nodiscard]] constexpr std::uint16_t with_life(std::uint16_t buttons, std::uint8_t life) noexcept {
   return static_cast<std::uint16_t>((buttons & 0x00FFU) | (static_cast<unsigned>(life) << 8U));
 }

@@ -26,7 +26,7 @@ struct Device {
 
   // Geometry.
   Vec links_m{};
-  Vec home_tip_m{};  ///< tip position that maps to the scene's workspace_origin_m
+  Vec home_tip_m{};                      ///< tip position that maps to the scene's workspace_origin_m
   Vec joint_min_rad{}, joint_max_rad{};  ///< stops; of an Omni's third joint: of the angle between the links, q3 - q2
   Vec workspace_min_m{}, workspace_max_m{};  ///< box in D in which the tip is used
 
@@ -47,9 +47,10 @@ struct Device {
   double continuous_force_N = 0.0;
   double thermal_time_s = 0.0;  ///< time constant of the motors' winding
   double velocity_limit_m_per_s = 0.0;
-  double force_step_N = 0.0;              ///< largest change within one period
-  double force_slew_N_per_s = 0.0;        ///< largest rate of change over many periods
-  double hand_acceleration_m_per_s2 = 0.0;  ///< that a hand may give the tip; the passivity controller keeps room for it
+  double force_step_N = 0.0;        ///< largest change within one period
+  double force_slew_N_per_s = 0.0;  ///< largest rate of change over many periods
+  double hand_acceleration_m_per_s2 =
+      0.0;  ///< that a hand may give the tip; the passivity controller keeps room for it
 
   [[nodiscard]] double counts_per_revolution() const noexcept { return motor_counts * gear; }
   [[nodiscard]] double rad_per_count() const noexcept { return 2.0 * std::numbers::pi / counts_per_revolution(); }

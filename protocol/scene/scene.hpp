@@ -125,8 +125,8 @@ struct Hands {
   bool passivity = true;            ///< key hands.passivity: the controller over each device port acts
   bool override_passivity = false;  ///< key hands.override_passivity: take a coupling beyond the admissible one
   double energy_credit_J = 0.0;     ///< opening balance of each port's account; 0: all must be earned
-  double force_scale = 0.003;  ///< world newtons -> device newtons
-  double max_force_N = 3.3;    ///< at the device
+  double force_scale = 0.003;       ///< world newtons -> device newtons
+  double max_force_N = 3.3;         ///< at the device
   bool propagation = false;
   double min_length = 0.9;  ///< of rest length
   double max_length = 1.1;

@@ -1,6 +1,6 @@
 #pragma once
-// A TOML table read key by key, that refuses whatever nobody asked for. Private to the readers of scene, device and fault
-// files: whoever includes it compiles toml++.
+// A TOML table read key by key, that refuses whatever nobody asked for. Private to the readers of scene, device and
+// fault files: whoever includes it compiles toml++.
 
 // Found by fuzzing: one of the parser's own assertions fails on a zero byte in a key, which it then refuses anyhow.
 #define TOML_ASSERT(expr) static_assert(true)

@@ -31,7 +31,7 @@ struct Outlook {
 /// pairs an arc a < pi d / 2 apart touch at d sin(a / d), as near as a bent tube of constant thickness allows.
 class BroadPhase {
  public:
-  static constexpr double kLeastArc = 0.6;    ///< of a diameter, along the thread
+  static constexpr double kLeastArc = 0.6;     ///< of a diameter, along the thread
   static constexpr double kLeastReach = 0.56;  ///< sin(kLeastArc), rounded down: no pair on a list touches nearer
 
   void reserve(int nodes, int pairs);

@@ -125,7 +125,7 @@ class ContactSet {
   void add(const Contact& contact, ContactReport& report) noexcept;
   void prepare(const ContactMetric& metric, int first, int last, const Numerics& numerics, double dt_s) noexcept;
   [[nodiscard]] double merit(const Vec* v) const noexcept;
-  void push(double share) noexcept;                        ///< adds J^T p to extra_
+  void push(double share) noexcept;  ///< adds J^T p to extra_
   /// v += step_. @return the sum over axes of the largest squares: at least the square of the largest step.
   double add(int first, int last, Vec* v) const noexcept;
   template <bool Friction>

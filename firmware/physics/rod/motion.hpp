@@ -42,8 +42,8 @@ class Motion {
 
  private:
   std::vector<double> speed_, drift_, speed_before_, drift_before_, speed_allowed_, drift_allowed_;
-  std::vector<double> travel_, strayed_;  // time integrals of speed and drift
-  std::vector<double> link_;              // |v_{k+1} - v_k|
+  std::vector<double> travel_, strayed_;   // time integrals of speed and drift
+  std::vector<double> link_;               // |v_{k+1} - v_k|
   double fastest_ = 0.0, furthest_ = 0.0;  // speed of the fastest node now, and its time integral
 };
 

@@ -111,8 +111,8 @@ class Rod {
   double tick_travel_m_ = 0.0;  // what the fastest node may have gone since the tick began
   int substep_index_ = 0;
   bool mesh_held_ = false;
-  bool released_ = false;       // a hold let go since the last tick
-  bool stale_ = true;           // the list must be made again
+  bool released_ = false;  // a hold let go since the last tick
+  bool stale_ = true;      // the list must be made again
 };
 
 }  // namespace ligature::physics::rod

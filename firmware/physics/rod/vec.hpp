@@ -40,7 +40,8 @@ inline Vec& operator-=(Vec& a, Vec b) noexcept { return a = a - b; }
 
 /// a x b: rotate(a * rotate(b) - rotate(a) * b), rotate = (y, z, x).
 [[nodiscard]] inline Vec cross(Vec a, Vec b) noexcept {
-  const Lanes c = a.v * __builtin_shufflevector(b.v, b.v, 1, 2, 0, 3) - __builtin_shufflevector(a.v, a.v, 1, 2, 0, 3) * b.v;
+  const Lanes c =
+      a.v * __builtin_shufflevector(b.v, b.v, 1, 2, 0, 3) - __builtin_shufflevector(a.v, a.v, 1, 2, 0, 3) * b.v;
   return {__builtin_shufflevector(c, c, 1, 2, 0, 3)};
 }
 

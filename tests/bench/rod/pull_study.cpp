@@ -86,8 +86,8 @@ class Study {
         "%4.2f m/s %4.1f N %s %d hand(s): %s guard %d penetration %.2f %.3f %.2f strain %.2f%% (T/EA %.2f%%) turn %.2f "
         "segment %.2f d chatter %.4f%% sliding %.2f%% us %.0f %.0f %.0f\n",
         speed, force_N, sudden ? "sudden" : "gentle", hands, knot::recognise(points, false).type.c_str(), guard_, pull,
-        hold, penetration_, 100.0 * strain, 100.0 * tension / scene_.suture.rod.EA_N, turn, segment, 100.0 * rms, 100.0 * slide,
-        quantile(us_, 0.5), quantile(us_, 0.99), quantile(us_, 1.0));
+        hold, penetration_, 100.0 * strain, 100.0 * tension / scene_.suture.rod.EA_N, turn, segment, 100.0 * rms,
+        100.0 * slide, quantile(us_, 0.5), quantile(us_, 0.99), quantile(us_, 1.0));
   }
 
  private:

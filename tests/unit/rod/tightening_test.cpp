@@ -96,8 +96,8 @@ TEST(Energy, NeverRisesWhileNobodyPulls) {
   for (int k = 0; k < 600; ++k) {
     pull.sim().tick(pull.tools());
     const auto& d = pull.sim().diagnostics();
-    const double now = d.kinetic_J + d.potential_J +
-                       contact_energy(pull.sim().rod(), pull.sim().rod().numerics().contact_N_per_m);
+    const double now =
+        d.kinetic_J + d.potential_J + contact_energy(pull.sim().rod(), pull.sim().rod().numerics().contact_N_per_m);
     if (k == 0) start = now;
     if (k > 0 && now > before) most = std::max(most, now - before);
     before = now;
