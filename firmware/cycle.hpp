@@ -144,7 +144,7 @@ class Cycle {
     control::report(thread_.diagnostics(), record_);
     control::report(thread_.hand(physics::Hand::kLeft), 0, record_);
     control::report(thread_.hand(physics::Hand::kRight), 1, record_);
-    out_.records.push(record_);
+    out_.tell(record_);
     if (tick_ % kTicksPerShape == 0) {
       rt::ThreadSnapshot& shape = out_.shape.back();
       control::report(thread_.nodes_W(), record_, shape);
@@ -159,12 +159,12 @@ class Cycle {
     wake_at_ += kPeriod;
   }
 
-  /// Lost periods: the last values again, flagged. What the ring cannot hold is counted as dropped in one go.
+  /// Lost periods: the last values again, flagged. What no ring can hold is counted as dropped in one go.
   void skip(std::int64_t periods) noexcept {
-    const auto room = static_cast<std::int64_t>(out_.records.capacity());
+    const auto room = static_cast<std::int64_t>(out_.room());
     for (std::int64_t i = 0; i < periods; ++i, advance()) {
       if (i >= room) {
-        out_.records.count_dropped(static_cast<std::uint64_t>(periods - i));
+        out_.count_untold(static_cast<std::uint64_t>(periods - i));
         tick_ += periods - i;
         wake_at_ += (periods - i) * kPeriod;
         break;
@@ -173,7 +173,7 @@ class Cycle {
       record_.scheduled_ns = wake_at_.count();
       record_.flags |= rt::kPeriodLost;
       record_.flags &= ~rt::kDeadlineMissed;  // that was the executed one's
-      out_.records.push(record_);
+      out_.tell(record_);
     }
     timing_.periods_lost += static_cast<std::uint64_t>(periods);
   }

@@ -14,7 +14,7 @@ namespace ligature::host {
 /// Whether a file begins like a flight recorder's; false for one that cannot be read.
 [[nodiscard]] bool is_flight_file(const std::string& path);
 
-/// Reads a flight recorder file as it is at this moment, also while it is being written. Holds it in memory (0.4 MB for
+/// Reads a flight recorder file as it is at this moment, also while it is being written. Holds it in memory (0.5 MB for
 /// each second of it). A slot whose CRC is wrong is counted and left out; the writer's death leaves at most one.
 class FlightReader {
  public:

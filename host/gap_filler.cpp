@@ -61,13 +61,16 @@ std::int64_t GapFiller::fill(const Session& session, Source& source, const Emit&
     if (recorder.session() != session.id) return 0;  // a later run has taken the file
     Batcher batcher(session, emit);
     auto hole = holes.begin();
+    std::int64_t newest = -1;
     recorder.visit([&](const ligature_msg::tick_t& tick) {
+      newest = tick.tick;
       while (hole != holes.end() && hole->last < tick.tick) ++hole;
       if (hole == holes.end() || tick.tick < hole->first) return;
       batcher.add(tick);
       ++filled;
     });
     batcher.flush();
+    source.searched_below = std::min(source.searched_below, newest + 1);
   } catch (const BadInput&) {  // not on this machine, or not readable: the gaps stay gaps, and are named
   }
   return filled;

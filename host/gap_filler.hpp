@@ -18,9 +18,9 @@ class GapFiller {
 
   void note(const ligature_msg::status_t& status);
 
-  /// Emits the missing ticks of every session as batches like the firmware's. A gap is looked for once: what the
-  /// recorder does not have it will never have, because it writes before it sends. Cost: nothing without gaps, one
-  /// reading of the recorder's file with.
+  /// Emits the missing ticks of every session as batches like the firmware's. A gap is looked for once the
+  /// recorder has later ticks: what it does not have by then it will never have, because it writes in order. Cost:
+  /// nothing without gaps, one reading of the recorder's file with.
   /// @return how many ticks were fetched.
   std::int64_t fill(const SessionTally& sessions, const Emit& emit);
 

@@ -1,27 +1,21 @@
 #include "firmware/app/run.hpp"
 
-#include <signal.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <future>
 #include <optional>
 #include <thread>
 
 #include "firmware/app/admit_command.hpp"
+#include "firmware/app/real_time_side.hpp"
 #include "firmware/app/rig_setup.hpp"
 #include "firmware/app/scene_desk.hpp"
+#include "firmware/app/stop_signals.hpp"
 #include "firmware/app/summary.hpp"
-#include "firmware/cycle.hpp"
 #include "firmware/platform/can_master.hpp"
-#include "firmware/platform/idle_guard.hpp"
-#include "firmware/platform/realtime.hpp"
-#include "firmware/platform/rig_bus.hpp"
 #include "firmware/telemetry/flight_recorder.hpp"
 #include "firmware/telemetry/lcm_link.hpp"
 
@@ -30,31 +24,10 @@ namespace {
 
 constexpr double kAdmission_s = 0.3;
 
-using RigCycle = Cycle<platform::RigBus, platform::MonotonicClock>;
-
 std::int64_t utime_now() {
   return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
       .count();
 }
-
-/// SIGINT and SIGTERM, taken by waiting for them in the main thread: no handler, nothing asynchronous anywhere.
-class StopSignals {
- public:
-  StopSignals() {
-    sigemptyset(&set_);
-    sigaddset(&set_, SIGINT);
-    sigaddset(&set_, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &set_, nullptr);  // threads started later inherit this
-  }
-  /// @return true when one came, within at most 50 ms.
-  bool wait() const {
-    const timespec patience{0, 50'000'000};
-    return sigtimedwait(&set_, nullptr, &patience) > 0;
-  }
-
- private:
-  sigset_t set_;
-};
 
 int fail(const Refusal& refusal) {
   std::fprintf(stderr, "ligature-firmware: %s\n", refusal.text.c_str());
@@ -64,6 +37,8 @@ int fail(const Refusal& refusal) {
 void log(const ligature_msg::event_t& e) {
   if (e.kind == ligature_msg::event_t::KIND_FAULT) {
     spdlog::error("tick {}: {}", e.tick, e.text);
+  } else if (e.kind == ligature_msg::event_t::KIND_RECORDER && e.code == 0) {
+    spdlog::warn("tick {}: {}", e.tick, e.text);
   } else if (e.kind != ligature_msg::event_t::KIND_LIMIT) {
     spdlog::info("tick {}: {}", e.tick, e.text);
   }
@@ -127,82 +102,6 @@ void tell(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, SceneDesk& 
   if (link.failures() > 0) spdlog::warn("LCM: {} messages could not be sent", link.failures());
 }
 
-/// Everything on the real-time side, and the thread that runs it. The thread asks for its rights at once, says what was
-/// refused, and waits for the word to start; it never starts without one.
-class RealTimeSide {
- public:
-  RealTimeSide(const RunOptions& options, Plan& plan, const Buses& buses, rt::Outlets& outlets,
-               control::PlantHandover& plants)
-      : buses_(buses),
-        wait_(*buses.left, *buses.right),
-        bus_(*buses.left, *buses.right, wait_, plan.device),
-        controller_(plan.scene.hands, {options.watchdog_ms, options.arm, plan.device}),
-        cycle_(bus_, clock_, controller_, plan.thread, outlets) {
-    cycle_.listen(plants);
-    if (options.duration_s) cycle_.end_after(std::llround(*options.duration_s / control::kPeriod_s));
-  }
-  ~RealTimeSide() { end(); }
-
-  /// @return what was refused, each already logged.
-  platform::Refusals prepare(bool ask, int core) {
-    platform::Refusals refused = ask ? platform::lock_memory() : platform::Refusals{};
-    if (ask) stay_awake();
-    thread_ = std::thread([this, ask, core] {
-      platform::flush_denormals();
-      rights_.set_value(ask ? platform::make_realtime(core) : platform::Refusals{});
-      if (go_.get_future().get()) {
-        cycle_.run();
-        release();
-      }
-      beating_ = false;
-    });
-    for (const auto& r : rights_.get_future().get()) refused.push_back(r);
-    for (const auto& r : refused) spdlog::warn("real time: {}", r);
-    return refused;
-  }
-  void start() {
-    started_ = true;
-    go_.set_value(true);
-  }
-  void end() {
-    if (!thread_.joinable()) return;
-    if (!started_) go_.set_value(false);
-    thread_.join();
-  }
-  [[nodiscard]] bool is_beating() const noexcept { return beating_; }
-  [[nodiscard]] const RigCycle& cycle() const noexcept { return cycle_; }  // after end()
-  [[nodiscard]] control::Fault fault() const noexcept { return controller_.fault(); }
-
- private:
-  /// Not one of the rights that --rt=enforce insists on: without it wake-ups are late, which doctor and the record
-  /// show.
-  void stay_awake() {
-    awake_.emplace();
-    if (!awake_->refusal().empty()) spdlog::warn("real time: {}", awake_->refusal());
-  }
-
-  /// At once, before the drives could miss us. One hand at a time, waiting for that hand only.
-  void release() {
-    for (platform::CanBus* bus : {buses_.left.get(), buses_.right.get()}) {
-      platform::PollWait alone(*bus, *bus);
-      platform::release_drives(*bus, alone);
-    }
-  }
-
-  const Buses& buses_;
-  platform::PollWait wait_;
-  platform::RigBus bus_;
-  platform::MonotonicClock clock_;
-  control::Controller controller_;
-  RigCycle cycle_;
-  std::promise<platform::Refusals> rights_;
-  std::promise<bool> go_;
-  std::atomic<bool> beating_{true};
-  std::optional<platform::IdleGuard> awake_;
-  bool started_ = false;
-  std::thread thread_;
-};
-
 std::string no_telemetry(const std::string& url) {
   return "cannot open " + url +
          ": no multicast route, or the port is taken; remedy: run inside scripts/private-net, or 'ip link set lo up; "
@@ -210,9 +109,15 @@ std::string no_telemetry(const std::string& url) {
          "route add 224.0.0.0/4 dev lo' as root; --no-telemetry runs without anybody listening";
 }
 
+Losses losses(const rt::Outlets& outlets, const telemetry::FlightRecorder* recorder) {
+  if (recorder == nullptr) return {outlets.records.dropped(), false, 0, {}};
+  return {outlets.records.dropped(), true, recorder->missing(), recorder->slowest_sync()};
+}
+
 /// The run proper: telemetry beside the loop until one of them says that it is over. @return the exit code.
 int run_loop(RealTimeSide& side, telemetry::LcmLink& link, telemetry::Telemetry& telemetry, SceneDesk& desk,
-             const Buses& buses, rt::Outlets& outlets, const StopSignals& signals) {
+             telemetry::FlightRecorder* recorder, const Buses& buses, rt::Outlets& outlets,
+             const StopSignals& signals) {
   std::atomic<bool> done{false};
   std::thread teller([&] { tell(link, telemetry, desk, done); });
   platform::start_drives(*buses.left);
@@ -222,10 +127,11 @@ int run_loop(RealTimeSide& side, telemetry::LcmLink& link, telemetry::Telemetry&
     if (signals.wait()) outlets.stop = true;
   }
   side.end();
+  if (recorder != nullptr) recorder->finish();  // telemetry goes on meanwhile, and has its last notes to tell
   done = true;
   teller.join();
   const auto& cycle = side.cycle();
-  std::fputs(summary(cycle.timing(), cycle.periods(), outlets.records.dropped()).c_str(), stdout);
+  std::fputs(summary(cycle.timing(), cycle.periods(), losses(outlets, recorder)).c_str(), stdout);
   const auto fault = side.fault();
   if (fault == control::Fault::kNone) return 0;
   return fail({3, "ended in fault " + std::to_string(static_cast<int>(fault)) + ": " + control::name(fault)});
@@ -267,6 +173,7 @@ int run(const RunOptions& options) {
 
   const std::int64_t id = utime_now();
   const auto recorder = open_recorder(plan, options, id);
+  if (recorder) outlets->flight = &recorder->inlet();
   SceneDesk desk(options, plan, core);
   const auto side = std::make_unique<RealTimeSide>(options, plan, buses, *outlets, desk.handover());
   const auto refused = side->prepare(ask, core);
@@ -281,7 +188,7 @@ int run(const RunOptions& options) {
     const auto& last = telemetry.last();
     return desk.request(c, last.armed || control::may_push(static_cast<control::State>(last.state)));
   });
-  return run_loop(*side, link, telemetry, desk, buses, *outlets, signals);
+  return run_loop(*side, link, telemetry, desk, recorder.get(), buses, *outlets, signals);
 }
 
 }  // namespace ligature::app

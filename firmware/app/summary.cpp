@@ -13,23 +13,31 @@ std::string row(const char* what, const rt::DurationStatistics& s) {
   return line;
 }
 
+std::string recorder_rows(const Losses& losses) {
+  if (!losses.recorder) return {};
+  char rows[128];
+  std::snprintf(rows, sizeof rows, "  not recorded     %10lld\n  slowest sync     %10lld ms\n",
+                static_cast<long long>(losses.flight), static_cast<long long>(losses.slowest_sync.count()));
+  return rows;
+}
+
 }  // namespace
 
-std::string summary(const rt::CycleTiming& t, std::int64_t periods, std::uint64_t records_dropped) {
+std::string summary(const rt::CycleTiming& t, std::int64_t periods, const Losses& losses) {
   const auto executed = t.execution.count();
   const double held_Hz = periods > 0 ? 1000.0 * static_cast<double>(executed) / static_cast<double>(periods) : 0.0;
-  char head[320];
+  char head[384];
   std::snprintf(head, sizeof head,
                 "control loop, 1 kHz\n"
                 "  rate held        %10.2f Hz  (%llu of %lld periods executed)\n"
                 "  deadline misses  %10llu\n"
                 "  periods lost     %10llu\n"
-                "  records dropped  %10llu\n"
-                "  us               p50       p99       max\n",
+                "  records dropped  %10llu\n",
                 held_Hz, static_cast<unsigned long long>(executed), static_cast<long long>(periods),
                 static_cast<unsigned long long>(t.deadline_misses), static_cast<unsigned long long>(t.periods_lost),
-                static_cast<unsigned long long>(records_dropped));
-  return head + row("wakeup", t.wakeup) + row("control", t.control) + row("execution", t.execution);
+                static_cast<unsigned long long>(losses.telemetry));
+  return head + recorder_rows(losses) + "  us               p50       p99       max\n" + row("wakeup", t.wakeup) +
+         row("control", t.control) + row("execution", t.execution);
 }
 
 }  // namespace ligature::app

@@ -1,168 +1,122 @@
 #include "firmware/telemetry/flight_recorder.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <chrono>
-#include <cstdio>
-#include <cstring>
 #include <utility>
 
 namespace ligature::telemetry {
 namespace {
 
-constexpr auto kDiskPeriod = std::chrono::milliseconds(500);
-
-recorder::Header header_of(const FlightFacts& facts, std::int64_t slots) {
-  recorder::Header h;
-  std::memset(static_cast<void*>(&h), 0, sizeof h);  // gaps between members count in the CRC
-  h.magic = recorder::kMagic;
-  h.version = recorder::kVersion;
-  h.slot_bytes = recorder::slot_bytes_for(static_cast<std::size_t>(ligature_msg::tick_t{}._getEncodedSizeNoHash()));
-  h.slots = slots;
-  h.tick_hash = ligature_msg::tick_t::getHash();
-  h.session = facts.session;
-  h.period_s = facts.period_s;
-  h.max_force_N = facts.max_force_N;
-  h.toml_bytes = static_cast<std::uint32_t>(std::min(facts.scene_toml.size(), h.scene_toml.size() - 1));
-  recorder::put_text(h.firmware_version, facts.firmware_version);
-  recorder::put_text(h.scene_file, facts.scene_file);
-  recorder::put_text(h.scene_toml, facts.scene_toml);
-  h.crc = recorder::crc_of(h);
-  return h;
-}
-
-std::string refusal(const std::string& path, const char* what, int error) {
-  return "flight recorder " + path + ": " + what + " (" + std::strerror(error) + ")";
-}
-
-/// Whether somebody alive records into that file.
-bool is_in_use(const std::string& path) {
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return false;
-  const bool locked = flock(fd, LOCK_EX | LOCK_NB) != 0;
-  close(fd);
-  return locked;
-}
-
-bool write_all(int fd, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const auto n = ::write(fd, bytes.data(), bytes.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return false;
-    bytes = bytes.subspan(static_cast<std::size_t>(n));
-  }
-  return true;
-}
+constexpr std::chrono::milliseconds kWritePeriod(5);
+constexpr std::chrono::milliseconds kSyncPeriod(500);
+constexpr std::size_t kBatch = 256;
 
 }  // namespace
 
 std::variant<std::unique_ptr<FlightRecorder>, std::string> FlightRecorder::open(const std::string& path,
                                                                                 const FlightFacts& facts,
                                                                                 std::int64_t slots) {
-  if (is_in_use(path)) return "flight recorder " + path + ": another process records into it";
-  std::rename(path.c_str(), (path + ".previous").c_str());  // there may be none
-  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-  if (fd < 0) return refusal(path, "cannot be made", errno);
   const auto header = header_of(facts, slots);
-  const std::size_t size = recorder::kHeaderBytes + static_cast<std::size_t>(slots) * header.slot_bytes;
-  const auto give_up = [&](const char* what, int error) {
-    close(fd);
-    unlink(path.c_str());
-    return refusal(path, what, error);
-  };
-  if (flock(fd, LOCK_EX | LOCK_NB) != 0) return give_up("cannot be locked", errno);
-  // Blocks are taken now: a disk that fills up later can neither lose a tick nor kill us by SIGBUS.
-  if (const int e = posix_fallocate(fd, 0, static_cast<off_t>(size)); e != 0) return give_up("no room", e);
-  void* map = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
-  if (map == MAP_FAILED) return give_up("cannot be mapped", errno);
-  std::memcpy(map, &header, sizeof header);
-  return std::unique_ptr<FlightRecorder>(new FlightRecorder(path, fd, static_cast<std::byte*>(map), size, header));
+  auto disk = FileDisk::make(path, file_bytes(header));
+  if (auto* why = std::get_if<std::string>(&disk)) return std::move(*why);
+  return std::make_unique<FlightRecorder>(std::move(std::get<0>(disk)), path, header);
 }
 
-FlightRecorder::FlightRecorder(std::string path, int fd, std::byte* map, std::size_t size,
-                               const recorder::Header& header)
-    : path_(std::move(path)), fd_(fd), map_(map), size_(size), header_(header), scratch_(header.slot_bytes) {
-  disk_ = std::thread([this] { keep_disk_up(); });
+FlightRecorder::FlightRecorder(std::unique_ptr<Disk> disk, const std::string& path, const recorder::Header& header,
+                               std::size_t room)
+    : disk_(std::move(disk)), slots_(path, *disk_, header), inlet_(room) {
+  batch_.reserve(kBatch);
+  writer_ = std::thread([this] { write_down(); });
+  syncer_ = std::thread([this] { keep_disk_up(); });
 }
 
-FlightRecorder::~FlightRecorder() {
+void FlightRecorder::finish() {
+  if (!writer_.joinable()) return;
   {
     const std::lock_guard lock(mutex_);
     ending_ = true;
   }
-  wake_.notify_one();
-  disk_.join();
-  munmap(map_, size_);
-  close(fd_);
+  wake_.notify_all();
+  writer_.join();
+  syncer_.join();
+  disk_->sync();
+}
+
+/// @return true when the run is over.
+bool FlightRecorder::rest(std::chrono::milliseconds at_most) {
+  std::unique_lock lock(mutex_);
+  return wake_.wait_for(lock, at_most, [this] { return ending_; });
+}
+
+void FlightRecorder::write_down() {
+  for (bool last = false; !last;) {
+    last = rest(kWritePeriod);
+    take_all();
+  }
+  // What the ring could not keep at the very end leaves no later tick to show the hole.
+  const auto behind = static_cast<std::int64_t>(inlet_.dropped()) - holes_;
+  if (behind > 0) lose(behind, next_tick_, next_tick_ + behind - 1, "the disk stood still for too long");
+}
+
+void FlightRecorder::take_all() {
+  for (;;) {
+    batch_.clear();
+    bool faulted = false;
+    for (rt::TickRecord r; !faulted && batch_.size() < kBatch && inlet_.pop(r);) {
+      faulted = (r.flags & rt::kPeriodLost) == 0 && std::exchange(fault_, r.fault) != r.fault && r.fault != 0;
+      batch_.push_back(r);
+    }
+    if (batch_.empty()) return;
+    look_for_holes();
+    if (const auto refused = slots_.append(batch_); refused > 0) {
+      lose(static_cast<std::int64_t>(refused), batch_.front().tick, batch_.back().tick, "the disk does not take them");
+    }
+    if (faulted) save(batch_.back());
+  }
+}
+
+void FlightRecorder::look_for_holes() {
+  for (const auto& r : batch_) {
+    if (const auto hole = r.tick - next_tick_; hole > 0) {
+      holes_ += hole;
+      lose(hole, next_tick_, r.tick - 1, "the disk stood still for too long");
+    }
+    next_tick_ = r.tick + 1;
+  }
+}
+
+void FlightRecorder::save(const rt::TickRecord& faulted) {
+  const std::string file = slots_.save_last(kTicksPerFault, faulted.fault);
+  note({faulted.tick, faulted.fault,
+        "the ticks before fault " + std::to_string(faulted.fault) +
+            (file.empty() ? " could not be saved" : " are saved: " + file)});
+}
+
+void FlightRecorder::lose(std::int64_t count, std::int64_t first, std::int64_t last, const char* why) {
+  missing_.fetch_add(count, std::memory_order_relaxed);
+  if (++notes_of_loss_ > kMaxNotesOfLoss) return;
+  note({last, 0,
+        "flight recorder: " + std::to_string(count) + " of the ticks " + std::to_string(first) + ".." +
+            std::to_string(last) + " are missing: " + why});
+}
+
+void FlightRecorder::note(FlightNote what) {
+  const std::lock_guard lock(mutex_);
+  notes_.push_back(std::move(what));
+}
+
+std::vector<FlightNote> FlightRecorder::take_notes() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(notes_, {});
 }
 
 void FlightRecorder::keep_disk_up() {
-  std::unique_lock lock(mutex_);
-  for (bool last = false; !last;) {
-    last = wake_.wait_for(lock, kDiskPeriod, [this] { return ending_; });
-    lock.unlock();
-    fdatasync(fd_);
-    lock.lock();
+  using Clock = std::chrono::steady_clock;
+  while (!rest(kSyncPeriod)) {
+    const auto began = Clock::now();
+    disk_->sync();
+    const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - began).count();
+    slowest_sync_ms_.store(std::max<std::int64_t>(slowest_sync().count(), took), std::memory_order_relaxed);
   }
-}
-
-std::span<std::byte> FlightRecorder::slot(std::uint64_t sequence) noexcept {
-  const auto at = recorder::kHeaderBytes + recorder::slot_of(sequence, header_.slots) * header_.slot_bytes;
-  return {map_ + at, header_.slot_bytes};
-}
-
-void FlightRecorder::write(const ligature_msg::tick_t& tick) noexcept {
-  const auto room = static_cast<int>(scratch_.size() - sizeof(recorder::SlotHead));
-  const int n = tick._encodeNoHash(scratch_.data() + sizeof(recorder::SlotHead), 0, room);
-  if (n < 0) return;
-  const auto bytes = static_cast<std::size_t>(n);
-  recorder::SlotHead head{++sequence_, static_cast<std::uint32_t>(bytes), 0};
-  head.crc = recorder::crc_of(head, std::span(scratch_).subspan(sizeof head, bytes));
-  std::memcpy(scratch_.data(), &head, sizeof head);
-  std::memcpy(slot(sequence_).data(), scratch_.data(), sizeof head + bytes);
-}
-
-/// Records are numbered anew, from 1, so that the file is as small as what it holds.
-std::vector<std::byte> FlightRecorder::image_of_last(std::uint64_t count, std::int32_t fault) {
-  recorder::Header header = header_;
-  header.slots = static_cast<std::int64_t>(count);
-  header.fault = fault;
-  header.crc = recorder::crc_of(header);
-  std::vector<std::byte> image(recorder::kHeaderBytes + count * header.slot_bytes);
-  std::memcpy(image.data(), &header, sizeof header);
-  for (std::uint64_t q = 1; q <= count; ++q) {
-    const auto to = std::span(image).subspan(recorder::kHeaderBytes + (q - 1) * header.slot_bytes, header.slot_bytes);
-    std::ranges::copy(slot(sequence_ - count + q), to.begin());
-    recorder::SlotHead head;
-    std::memcpy(&head, to.data(), sizeof head);
-    head.sequence = q;
-    head.crc = recorder::crc_of(head, to.subspan(sizeof head, head.bytes));
-    std::memcpy(to.data(), &head, sizeof head);
-  }
-  return image;
-}
-
-std::string FlightRecorder::save_last(std::int64_t ticks, std::int32_t fault) {
-  const auto count = std::min<std::int64_t>({ticks, header_.slots, static_cast<std::int64_t>(sequence_)});
-  if (count <= 0 || saved_ >= kMaxSaved) return {};
-  std::string path = path_ + ".session-" + std::to_string(header_.session) + ".fault-" + std::to_string(fault) + "." +
-                     std::to_string(saved_ + 1);
-  const std::string draft = path + ".tmp";
-  const int fd = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (fd < 0) return {};
-  const bool written = write_all(fd, image_of_last(static_cast<std::uint64_t>(count), fault)) && fdatasync(fd) == 0;
-  close(fd);
-  if (!written || std::rename(draft.c_str(), path.c_str()) != 0) {
-    unlink(draft.c_str());
-    return {};
-  }
-  ++saved_;
-  return path;
 }
 
 }  // namespace ligature::telemetry

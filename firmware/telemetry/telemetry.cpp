@@ -13,6 +13,7 @@ Telemetry::Telemetry(Session session, const Names& names, rt::Outlets& outlets, 
 
 void Telemetry::step(std::int64_t now_us) {
   for (rt::TickRecord record; outlets_.records.pop(record);) take(record, now_us);
+  send_notes(now_us);
   if (now_us >= shape_due_us_ && outlets_.shape.refresh()) {
     send_shape(now_us);
     shape_due_us_ = now_us + kShapePeriod_us;
@@ -27,6 +28,7 @@ void Telemetry::step(std::int64_t now_us) {
 void Telemetry::finish(std::int64_t now_us) {
   for (rt::TickRecord record; outlets_.records.pop(record);) take(record, now_us);
   if (!batch_.ticks.empty()) send_batch(now_us);
+  send_notes(now_us);
   if (outlets_.shape.refresh()) send_shape(now_us);
   send_status(now_us);
 }
@@ -35,20 +37,26 @@ void Telemetry::take(const rt::TickRecord& record, std::int64_t now_us) {
   misses_ += (record.flags & rt::kDeadlineMissed) != 0;
   lost_ += (record.flags & rt::kPeriodLost) != 0;
   batch_.ticks.push_back(to_message(record));
-  if (recorder_ != nullptr) recorder_->write(batch_.ticks.back());  // first, so that whoever sees a gap can fill it
   for (auto& event : events_.next(record)) {
     event.utime = now_us;
-    if (event.kind == ligature_msg::event_t::KIND_FAULT) save_fault(event);
     sink_.send(event);
   }
   last_ = record;
   if (batch_.ticks.size() == kTicksPerBatch) send_batch(now_us);
 }
 
-void Telemetry::save_fault(ligature_msg::event_t& event) {
+void Telemetry::send_notes(std::int64_t now_us) {
   if (recorder_ == nullptr) return;
-  const std::string file = recorder_->save_last(kTicksPerFault, event.code);
-  event.text += file.empty() ? "; the ticks before it could not be saved" : "; the ticks before it: " + file;
+  for (auto& note : recorder_->take_notes()) {
+    ligature_msg::event_t event{};
+    event.utime = now_us;
+    event.tick = note.tick;
+    event.kind = ligature_msg::event_t::KIND_RECORDER;
+    event.hand = -1;
+    event.code = note.fault;
+    event.text = std::move(note.text);
+    sink_.send(event);
+  }
 }
 
 void Telemetry::send_batch(std::int64_t now_us) {

@@ -47,18 +47,17 @@ struct Session {
   std::string recorder_file;  ///< empty: none
 };
 
-/// One thread uses it. Every record goes into the flight recorder and then into exactly one batch, in order; a batch
-/// has 20 of them, the last one what is left. Shapes at 60 Hz, status at 10 Hz, the offer at 1 Hz, events at once. A
-/// fault saves the ticks before it to a file of their own, which its event names.
+/// One thread uses it. Every record goes into exactly one batch, in order; a batch has 20 of them, the last one what is
+/// left. Shapes at 60 Hz, status at 10 Hz, the offer at 1 Hz, events at once; among them what the flight recorder
+/// notes.
 class Telemetry {
  public:
   static constexpr std::size_t kTicksPerBatch = 20;
   static constexpr std::int64_t kShapePeriod_us = 1'000'000 / 60;
   static constexpr std::int64_t kStatusPeriod_us = 100'000;
   static constexpr std::int64_t kOfferPeriod_us = 1'000'000;
-  static constexpr std::int64_t kTicksPerFault = 2000;
 
-  /// @param recorder may be missing.
+  /// @param recorder whose notes are passed on; may be missing.
   Telemetry(Session session, const Names& names, rt::Outlets& outlets, Sink& sink, FlightRecorder* recorder = nullptr);
 
   /// Takes everything that is there. @param now_us CLOCK_REALTIME, microseconds.
@@ -81,7 +80,7 @@ class Telemetry {
 
  private:
   void take(const rt::TickRecord& record, std::int64_t now_us);
-  void save_fault(ligature_msg::event_t& event);
+  void send_notes(std::int64_t now_us);
   void send_batch(std::int64_t now_us);
   void send_shape(std::int64_t now_us);
   void send_status(std::int64_t now_us);

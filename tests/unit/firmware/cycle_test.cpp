@@ -123,6 +123,20 @@ TEST(Cycle, AStallLongerThanTheRingCountsWhatItCouldNotKeep) {
   EXPECT_EQ(static_cast<std::int64_t>(records.size() + rig.outlets->records.dropped()), rig.cycle.periods());
 }
 
+TEST(Cycle, TheFlightRecorderGetsEveryPeriodWhateverTelemetryDoes) {
+  VirtualRig rig;
+  rt::SpscRing<rt::TickRecord> flight(30'000);
+  rig.outlets->flight = &flight;
+  rig.bus.stalls[10] = 12s;  // more than telemetry's ring holds, and nobody takes from it
+  rig.cycle.end_after(kRun);
+  rig.cycle.run();
+  EXPECT_GT(rig.outlets->records.dropped(), 0U);
+  EXPECT_EQ(flight.dropped(), 0U);
+  std::int64_t next = 0;
+  for (rt::TickRecord r; flight.pop(r);) EXPECT_EQ(r.tick, next++);
+  EXPECT_EQ(next, rig.cycle.periods());
+}
+
 TEST(Cycle, TorqueActsExactlyOneSampleAfterItsMeasurement) {
   VirtualRig rig;
   struct Watched {  // notes what acts at each SYNC, and what was computed in each period

@@ -1,0 +1,64 @@
+#include "firmware/app/real_time_side.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+
+#include "firmware/platform/can_master.hpp"
+
+namespace ligature::app {
+
+RealTimeSide::RealTimeSide(const RunOptions& options, Plan& plan, const Buses& buses, rt::Outlets& outlets,
+                           control::PlantHandover& plants)
+    : buses_(buses),
+      wait_(*buses.left, *buses.right),
+      bus_(*buses.left, *buses.right, wait_, plan.device),
+      controller_(plan.scene.hands, {options.watchdog_ms, options.arm, plan.device}),
+      cycle_(bus_, clock_, controller_, plan.thread, outlets) {
+  cycle_.listen(plants);
+  if (options.duration_s) cycle_.end_after(std::llround(*options.duration_s / control::kPeriod_s));
+}
+
+platform::Refusals RealTimeSide::prepare(bool ask, int core) {
+  platform::Refusals refused = ask ? platform::lock_memory() : platform::Refusals{};
+  if (ask) stay_awake();
+  thread_ = std::thread([this, ask, core] {
+    platform::flush_denormals();
+    rights_.set_value(ask ? platform::make_realtime(core) : platform::Refusals{});
+    if (go_.get_future().get()) {
+      cycle_.run();
+      release();
+    }
+    beating_ = false;
+  });
+  for (const auto& r : rights_.get_future().get()) refused.push_back(r);
+  for (const auto& r : refused) spdlog::warn("real time: {}", r);
+  return refused;
+}
+
+void RealTimeSide::start() {
+  started_ = true;
+  go_.set_value(true);
+}
+
+void RealTimeSide::end() {
+  if (!thread_.joinable()) return;
+  if (!started_) go_.set_value(false);
+  thread_.join();
+}
+
+/// Not one of the rights that --rt=enforce insists on: without it wake-ups are late, which doctor and the record show.
+void RealTimeSide::stay_awake() {
+  awake_.emplace();
+  if (!awake_->refusal().empty()) spdlog::warn("real time: {}", awake_->refusal());
+}
+
+/// At once, before the drives could miss us. One hand at a time, waiting for that hand only.
+void RealTimeSide::release() {
+  for (platform::CanBus* bus : {buses_.left.get(), buses_.right.get()}) {
+    platform::PollWait alone(*bus, *bus);
+    platform::release_drives(*bus, alone);
+  }
+}
+
+}  // namespace ligature::app

@@ -1,0 +1,77 @@
+#include "firmware/telemetry/disk.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+namespace ligature::telemetry {
+namespace {
+
+std::string refusal(const std::string& path, const char* what, int error) {
+  return "flight recorder " + path + ": " + what + " (" + std::strerror(error) + ")";
+}
+
+/// Whether somebody alive records into that file.
+bool is_in_use(const std::string& path) {
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return false;
+  const bool locked = flock(fd, LOCK_EX | LOCK_NB) != 0;
+  close(fd);
+  return locked;
+}
+
+bool write_all(int fd, std::span<const std::byte> bytes, std::size_t at) noexcept {
+  while (!bytes.empty()) {
+    const auto n = pwrite(fd, bytes.data(), bytes.size(), static_cast<off_t>(at));
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(n));
+    at += static_cast<std::size_t>(n);
+  }
+  return true;
+}
+
+}  // namespace
+
+std::variant<std::unique_ptr<FileDisk>, std::string> FileDisk::make(const std::string& path, std::size_t size) {
+  if (is_in_use(path)) return "flight recorder " + path + ": another process records into it";
+  std::rename(path.c_str(), (path + ".previous").c_str());  // there may be none
+  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+  if (fd < 0) return refusal(path, "cannot be made", errno);
+  const auto give_up = [&](const char* what, int error) {
+    close(fd);
+    unlink(path.c_str());
+    return refusal(path, what, error);
+  };
+  if (flock(fd, LOCK_EX | LOCK_NB) != 0) return give_up("cannot be locked", errno);
+  // Blocks are taken now: a disk that fills up later loses no tick.
+  if (const int e = posix_fallocate(fd, 0, static_cast<off_t>(size)); e != 0) return give_up("no room", e);
+  return std::unique_ptr<FileDisk>(new FileDisk(fd));
+}
+
+FileDisk::~FileDisk() { close(fd_); }
+
+bool FileDisk::write(std::span<const std::byte> bytes, std::size_t at) noexcept { return write_all(fd_, bytes, at); }
+
+bool FileDisk::read(std::span<std::byte> bytes, std::size_t at) noexcept {
+  return pread(fd_, bytes.data(), bytes.size(), static_cast<off_t>(at)) == static_cast<ssize_t>(bytes.size());
+}
+
+void FileDisk::sync() noexcept { fdatasync(fd_); }
+
+bool write_whole_file(const std::string& path, std::span<const std::byte> bytes) {
+  const std::string draft = path + ".tmp";
+  const int fd = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (fd < 0) return false;
+  const bool written = write_all(fd, bytes, 0) && fdatasync(fd) == 0;
+  close(fd);
+  if (written && std::rename(draft.c_str(), path.c_str()) == 0) return true;
+  unlink(draft.c_str());
+  return false;
+}
+
+}  // namespace ligature::telemetry
