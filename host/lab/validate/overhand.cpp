@@ -5,11 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <utility>
+#include <vector>
 
+#include "firmware/physics/rod/rod_simulation.hpp"
 #include "host/lab/validate/reference.hpp"
 
 namespace ligature::validate {
 namespace {
+
+using physics::rod::RodSimulation;
 
 constexpr double kB = 4e-7, kA_m = 1.5e-4;  // bending stiffness and radius of the suture
 
@@ -33,12 +39,64 @@ double resting_tension(const Subject& subject, double a_over_R) {
   return pull.tension_N() * kA_m * kA_m / kB;
 }
 
+/// Nodes where the strands touch: segments of h there, growing by a quarter of the way off, h such that all n are used.
+std::vector<double> gathered(int n, const OverhandCurve& curve, double reach_m) {
+  const auto wanted = [&](double s, double h) {
+    double off = curve.length_m;
+    for (const double c : curve.crossings_m()) off = std::min(off, std::max(0.0, std::abs(s - c) - reach_m));
+    return h + 0.25 * off;
+  };
+  constexpr int kCells = 20000;
+  const double cell = curve.length_m / kCells;
+  const auto count = [&](double h) {  // segments that h asks for
+    double sum = 0.0;
+    for (int k = 0; k < kCells; ++k) sum += cell / wanted((k + 0.5) * cell, h);
+    return sum;
+  };
+  double low = 1e-6 * curve.length_m, high = curve.length_m;
+  for (int k = 0; k < 60; ++k) (count(std::sqrt(low * high)) > n - 1 ? low : high) = std::sqrt(low * high);
+  std::vector<double> s{0.0};
+  const double share = count(high) / (n - 1);
+  double sum = 0.0;
+  for (int k = 0; k < kCells && static_cast<int>(s.size()) < n - 1; ++k) {
+    sum += cell / wanted((k + 0.5) * cell, high);
+    if (sum >= share * static_cast<double>(s.size())) s.push_back((k + 1.0) * cell);
+  }
+  s.push_back(curve.length_m);
+  return s;
+}
+
+/// The same thread with its nodes gathered in the braid, and laid anew.
+RodSimulation gathered_knot(const scene::Scene& scene, double R_m, double travel_m) {
+  auto made = RodSimulation::make(scene);
+  if (auto* why = std::get_if<std::string>(&made)) throw std::runtime_error(*why);
+  auto sim = std::get<RodSimulation>(std::move(made));
+  auto& state = sim.rod().state();
+  const double L = scene.suture.length_m, a = scene.suture.radius_m;
+  const OverhandCurve natural(L, a, R_m, 0.0);
+  state.mesh.s = gathered(scene.suture.nodes, natural, natural.half_m + travel_m);
+  const OverhandCurve curve(L, a, R_m, [&] {
+    double least = L;
+    for (std::size_t j = 0; j + 1 < state.mesh.s.size(); ++j)
+      least = std::min(least, state.mesh.s[j + 1] - state.mesh.s[j]);
+    return least;
+  }());
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    const Vec3 p = curve.at(state.mesh.s[i]);
+    state.x[i] = physics::rod::make(p.x(), p.y(), p.z());
+  }
+  sim.rod().moved();
+  return sim;
+}
+
 /// T a^2/B of a knot that is tightened (+1) or loosened (-1), slowly, past the wanted size: the mean over one segment's
 /// length, because a polygon's corners come and go. Bending is stiffer than the suture's, so that drag has no share.
 double sliding_tension(const Subject& subject, double a_over_R, double friction, int sense) {
   const double EI = 100.0 * kB, R = kA_m / a_over_R, target = 2.0 * std::numbers::pi * R, speed = 0.005;
   auto scene = knotted(subject, R, EI, friction);
-  auto sim = build(scene);
+  scene.suture.rod.spacing = scene::Spacing::kUniform;  // until gathered_knot() says where the nodes are
+  const double travel = 0.04 * target;
+  auto sim = gathered_knot(scene, R, travel);
   EndPull pull(sim);
   const double dt = scene.time.tick_s, L = scene.suture.length_m;
   const auto go_to = [&](double excess, double at_speed) {  // mean tension on the way
@@ -53,7 +111,7 @@ double sliding_tension(const Subject& subject, double a_over_R, double friction,
   };
   for (int k = 0; k < 200; ++k) pull.tick(0.0, dt);
   const double window = segment_m(scene);
-  go_to(target + sense * (0.04 * target + 0.5 * window), 0.05);
+  go_to(target + sense * (travel + 0.5 * window), 0.05);
   for (int k = 0; k < 300; ++k) pull.tick(0.0, dt);
   go_to(target + sense * 0.5 * window, speed);
   return go_to(target - sense * 0.5 * window, speed) * kA_m * kA_m / EI;
@@ -68,11 +126,20 @@ Row row_of(double a_over_R, double mu) {
 
 }  // namespace
 
-void lay_overhand(scene::Scene& s, double loop_m) {
+OverhandCurve::OverhandCurve(double length, double radius, double loop, double finest_m)
+    : length_m(length), radius_m(radius), loop_m(loop) {
+  half_m = std::max(2.5 * std::sqrt(2.0 * radius_m * loop_m), 3.5 * finest_m);
+}
+
+std::array<double, 2> OverhandCurve::crossings_m() const {
+  const double round = 2.0 * std::numbers::pi * loop_m, tail = 0.5 * (length_m - round);
+  return {tail, tail + round};
+}
+
+Vec3 OverhandCurve::at(double along) const {
   constexpr double kPi = std::numbers::pi;
-  const double a = s.suture.radius_m, round = 2.0 * kPi * loop_m, natural = 2.5 * std::sqrt(2.0 * a * loop_m);
-  const double half = std::max(natural, 3.5 * segment_m(s));  // of the foot; the polygon must have the knot too
-  const double aside = half > natural ? 2.0 * a : 1.2 * a, tail = 0.5 * (s.suture.length_m - round);
+  const double a = radius_m, round = 2.0 * kPi * loop_m, natural = 2.5 * std::sqrt(2.0 * a * loop_m), half = half_m;
+  const double aside = half > natural ? 2.0 * a : 1.2 * a;
   const double bow = (round - 4.0 * half) / (2.0 * kPi);  // radius of the loop's two half circles
   // Once round the loop, from the middle of its foot: foot, half circle, top, half circle, foot.
   const auto loop = [&](double at) -> Vec3 {
@@ -87,34 +154,20 @@ void lay_overhand(scene::Scene& s, double loop_m) {
   };
   // Three half turns while a strand passes the foot.
   const auto turn = [&](double at) { return 3.0 * kPi * std::clamp(0.5 * (at / half + 1.0), 0.0, 1.0); };
-  lay(s, [&](double along) -> Vec3 {
-    const double first = along - tail,
-                 second = first - round;  // from the first and from the second passing of the foot
-    const double phase = first < 0.5 * round ? kPi + turn(first) : 2.0 * kPi + turn(second);
-    const Vec3 centre = first < 0.0 ? Vec3(first, 0, 0) : second < 0.0 ? loop(first) : Vec3(second, 0, 0);
-    return centre + aside * Vec3(0, std::cos(phase), std::sin(phase));
-  });
+  const auto [first_m, second_m] = crossings_m();
+  const double first = along - first_m, second = along - second_m;
+  const double phase = first < 0.5 * round ? kPi + turn(first) : 2.0 * kPi + turn(second);
+  const Vec3 centre = first < 0.0 ? Vec3(first, 0, 0) : second < 0.0 ? loop(first) : Vec3(second, 0, 0);
+  return centre + aside * Vec3(0, std::cos(phase), std::sin(phase));
+}
+
+void lay_overhand(scene::Scene& s, double loop_m) {
+  const OverhandCurve curve(s.suture.length_m, s.suture.radius_m, loop_m, segment_m(s));
+  lay(s, [&](double along) { return curve.at(along); });
 }
 
 double excess_m(const physics::Simulation& sim, double length_m) {
   return length_m - (sim.nodes_W().back() - sim.nodes_W().front()).norm();
-}
-
-EndPull::EndPull(physics::Simulation& sim) : sim_(sim), tools_(no_hands()) {
-  tools_[0] = {sim.nodes_W().front(), Vec3::Zero(), true};
-  tools_[1] = {sim.nodes_W().back(), Vec3::Zero(), true};
-}
-
-void EndPull::tick(double speed_m_per_s, double tick_s) {
-  for (std::size_t h = 0; h < 2; ++h) {
-    tools_[h].v_WT.x() = h == 0 ? -speed_m_per_s : speed_m_per_s;
-    tools_[h].p_WT.x() += tick_s * tools_[h].v_WT.x();
-  }
-  sim_.tick(tools_);
-}
-
-double EndPull::tension_N() const {
-  return 0.5 * (sim_.hand(physics::Hand::kLeft).f_W.x() - sim_.hand(physics::Hand::kRight).f_W.x());
 }
 
 Findings loose_overhand(
