@@ -1,7 +1,5 @@
 #include "firmware/app/admission.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -13,37 +11,21 @@
 #include <utility>
 #include <vector>
 
+#include "firmware/app/bus_calls.hpp"
+#include "firmware/app/cold_clock.hpp"
 #include "firmware/app/worst_case.hpp"
 #include "firmware/control/controller.hpp"
 #include "firmware/control/tick_report.hpp"
 #include "firmware/physics/simulation.hpp"
 #include "firmware/platform/realtime.hpp"
 #include "protocol/can/bit_time.hpp"
+#include "protocol/scene/polyline.hpp"
 
 namespace ligature::app {
 namespace {
 
 constexpr int kRepeats = 3;        // of the same tick; the least disturbed one counts
 constexpr int kTicksPerShape = 4;  // the first finds contacts, the next ones have to resolve them
-constexpr std::size_t kCacheBytes = 4 << 20;
-
-double cpu_us() noexcept {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
-}
-
-/// Between two ticks of a rig a millisecond passes in which others use the caches.
-class ColdCaches {
- public:
-  void operator()() noexcept {
-    for (std::size_t i = 0; i < bytes_.size(); i += 64) bytes_[i] = static_cast<unsigned char>(bytes_[i] + 1);
-    asm volatile("" : : "r"(bytes_.data()) : "memory");
-  }
-
- private:
-  std::vector<unsigned char> bytes_ = std::vector<unsigned char>(kCacheBytes, 1);
-};
 
 class Meter {
  public:
@@ -53,6 +35,7 @@ class Meter {
   WorstCase run(double seconds) {
     const auto give_up = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
     measure_control();
+    worst_.calls_us = bus_calls_us();
     const auto shapes = worst_shapes(scene_);
     do {
       for (const auto& shape : shapes) try_shape(shape);
@@ -155,10 +138,15 @@ Admission admit(const scene::Scene& scene, double seconds, int core, double budg
 
 std::optional<int> largest_nodes(scene::Scene scene, double seconds, int core, double budget_percent) {
   int fits = 0, too_many = scene.suture.nodes;
+  const auto shape = scene.suture.initial_polyline_m;  // empty: hanging
   const double rounds = std::ceil(std::log2(std::max(2, too_many)));
   while (too_many - fits > 1) {
     scene.suture.nodes = fits + (too_many - fits) / 2;
     if (scene.suture.nodes < 2) break;
+    if (!shape.empty()) {
+      scene.suture.initial_polyline_m =
+          scene::lay_out(shape, scene.suture.nodes, scene.suture.length_m / (scene.suture.nodes - 1));
+    }
     const bool good = std::holds_alternative<physics::Simulation>(physics::Simulation::make(scene)) &&
                       admit(scene, seconds / rounds, core, budget_percent).fits();
     (good ? fits : too_many) = scene.suture.nodes;
@@ -173,12 +161,13 @@ std::string table(const Admission& a) {
                 "worst case of a tick, %d ticks tried; period 1000 us\n"
                 "  phase                      us    %% of period\n"
                 "  bus, SYNC to last TPDO %7.1f  %8.1f   waiting, by the length of the frames\n"
+                "  calls to both buses    %7.1f  %8.1f   on a local socket; a driver's own time not known\n"
                 "  control law and record %7.1f  %8.1f\n"
                 "  thread                 %7.1f  %8.1f   up to %d contacts%s\n"
                 "  computing              %7.1f  %8.1f   allowed %.1f us (budget %.0f %%)\n"
                 "  in all                 %7.1f  %8.1f   allowed 1000.0 us\n",
-                a.worst.ticks, a.bus_us, share(a.bus_us), a.worst.control_us, share(a.worst.control_us),
-                a.worst.thread_us, share(a.worst.thread_us), a.worst.most_contacts,
+                a.worst.ticks, a.bus_us, share(a.bus_us), a.worst.calls_us, share(a.worst.calls_us), a.worst.control_us,
+                share(a.worst.control_us), a.worst.thread_us, share(a.worst.thread_us), a.worst.most_contacts,
                 a.worst.contact_cap_hit ? ", contact list full" : "", a.computing_us(), share(a.computing_us()),
                 a.budget_us(), a.budget_percent, a.bus_us + a.computing_us(), share(a.bus_us + a.computing_us()));
   return text;

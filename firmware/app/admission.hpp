@@ -16,6 +16,7 @@ inline constexpr double kDefaultBudget_percent = 60.0;
 /// ticks tried.
 struct WorstCase {
   double thread_us = 0.0;   ///< one tick of the thread's physics
+  double calls_us = 0.0;    ///< the kernel's part of sending and receiving
   double control_us = 0.0;  ///< control law and record
   bool contact_cap_hit = false;
   int most_contacts = 0;
@@ -27,7 +28,7 @@ struct Admission {
   double budget_percent = kDefaultBudget_percent;
   /// SYNC and TPDOs of a bus at its longest (bits, stuffed), during which the loop waits and computes nothing.
   double bus_us = 0.0;
-  [[nodiscard]] double computing_us() const noexcept { return worst.thread_us + worst.control_us; }
+  [[nodiscard]] double computing_us() const noexcept { return worst.thread_us + worst.control_us + worst.calls_us; }
   [[nodiscard]] double budget_us() const noexcept { return 10.0 * budget_percent; }
   /// Within the budget, and together with the bus within the period.
   [[nodiscard]] bool fits() const noexcept {

@@ -12,11 +12,11 @@
 namespace ligature::app {
 namespace {
 
-scene::Scene paper(int nodes) {
-  auto s = std::get<scene::Scene>(scene::load_scene(std::string(LIGATURE_SOURCE_DIR) + "/scenes/paper.toml",
-                                                    std::vector<std::string>{"suture.nodes=" + std::to_string(nodes)}));
-  return s;
+scene::Scene scene_of(const std::string& name, int nodes) {
+  return std::get<scene::Scene>(scene::load_scene(std::string(LIGATURE_SOURCE_DIR) + "/scenes/" + name,
+                                                  std::vector<std::string>{"suture.nodes=" + std::to_string(nodes)}));
 }
+scene::Scene paper(int nodes) { return scene_of("paper.toml", nodes); }
 
 TEST(WorstCase, AWoundThreadKeepsItsNodesAndIsAsDenseAsAsked) {
   const auto p_W = wound_up(200, 0.1, 0.1, {0.0, 0.0, 1.0});
@@ -50,6 +50,8 @@ TEST(Admission, AFewNodesFitAndTooManyDoNot) {
   EXPECT_TRUE(small.fits()) << table(small);
   EXPECT_GT(small.worst.thread_us, 0.0);
   EXPECT_GT(small.worst.control_us, 0.0);
+  EXPECT_GT(small.worst.calls_us, 0.0);
+  EXPECT_EQ(small.computing_us(), small.worst.thread_us + small.worst.control_us + small.worst.calls_us);
   EXPECT_NEAR(small.bus_us, 530.0, 80.0);
   const auto large = admit(paper(600), 0.1, core);
   EXPECT_FALSE(large.fits()) << table(large);
@@ -62,6 +64,23 @@ TEST(Admission, NamesTheLargestThreadThatFits) {
   ASSERT_TRUE(nodes);
   EXPECT_GE(*nodes, 20);
   EXPECT_LT(*nodes, 600);
+}
+
+TEST(Admission, AThreadThatBeginsInAShapeOfItsOwnIsLaidOutAnew) {
+  const auto nodes = largest_nodes(scene_of("desk.toml", 600), 0.5, platform::realtime_core(), 60.0);
+  ASSERT_TRUE(nodes);
+  EXPECT_GE(*nodes, 20);
+  EXPECT_LT(*nodes, 600);
+}
+
+TEST(Admission, ARodIsMeasuredInTheSameShapes) {
+  const auto rod = scene_of("suture-3-0.toml", 12);
+  const auto a = admit(rod, 0.05, platform::realtime_core());
+  EXPECT_GT(a.worst.thread_us, 0.0);
+  EXPECT_GT(a.worst.most_contacts, 0) << "the shapes must press it together";
+  const auto text = table(a);
+  for (const char* phase : {"bus, SYNC", "calls to both buses", "control law", "thread", "computing", "in all"})
+    EXPECT_NE(text.find(phase), std::string::npos) << text;
 }
 
 TEST(Admission, TheBusCountsAgainstThePeriodNotAgainstTheBudget) {

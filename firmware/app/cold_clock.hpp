@@ -1,0 +1,31 @@
+#pragma once
+// How admission measures: CPU time of this thread, with the caches as another program would leave them.
+
+#include <time.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace ligature::app {
+
+/// CPU time of the calling thread, us.
+inline double cpu_us() noexcept {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
+}
+
+/// Between two ticks of a rig a millisecond passes in which others use the caches.
+class ColdCaches {
+ public:
+  void operator()() noexcept {
+    for (std::size_t i = 0; i < bytes_.size(); i += 64) bytes_[i] = static_cast<unsigned char>(bytes_[i] + 1);
+    asm volatile("" : : "r"(bytes_.data()) : "memory");
+  }
+
+ private:
+  static constexpr std::size_t kBytes = 4 << 20;
+  std::vector<unsigned char> bytes_ = std::vector<unsigned char>(kBytes, 1);
+};
+
+}  // namespace ligature::app
