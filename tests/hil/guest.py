@@ -14,6 +14,7 @@ import os
 import pathlib
 import re
 import shlex
+import shutil
 import signal
 import subprocess
 import sys
@@ -23,6 +24,7 @@ import time
 import initramfs
 import kernel
 
+QEMU, BUSYBOX = "qemu-system-x86_64", pathlib.Path("/bin/busybox")
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 OUT_OF_TIME, NO_ANSWER = 124, 125
@@ -43,7 +45,7 @@ def arguments():
 
 
 def first_files(folder, command):
-    files = {"bin/busybox": pathlib.Path("/bin/busybox").read_bytes(), "init": (HERE / "init").read_bytes()}
+    files = {"bin/busybox": BUSYBOX.read_bytes(), "init": (HERE / "init").read_bytes()}
     for i, module in enumerate(kernel.modules(folder)):
         files[f"modules/{i:02}-{module.name}"] = module.read_bytes()
     known = "".join(f"export {k}={shlex.quote(v)}\n" for k, v in os.environ.items()
@@ -61,7 +63,7 @@ def machine(options, folder, initrd):
         time_base = ["-accel", "tcg,thread=multi", "-smp", str(options.cpus)]
     else:
         time_base = ["-accel", "tcg,thread=single", "-smp", "1", "-icount", f"shift={options.icount},sleep=off"]
-    return ["qemu-system-x86_64", "-nodefaults", "-no-user-config", "-no-reboot", "-display", "none", "-nic", "none",
+    return [QEMU, "-nodefaults", "-no-user-config", "-no-reboot", "-display", "none", "-nic", "none",
             "-machine", "pc,hpet=off,vmport=off,usb=off", "-cpu", "max", "-m", str(options.memory_mb), *time_base,
             "-kernel", str(folder / "vmlinux"), "-initrd", str(initrd), "-append", line,
             "-chardev", f"file,id=console,path={options.out / 'console.log'}", "-serial", "chardev:console",
@@ -86,6 +88,8 @@ def copy(stream, log):
 
 
 def run(options):
+    if shutil.which(QEMU) is None or not BUSYBOX.exists():
+        raise RuntimeError(f"no {QEMU if BUSYBOX.exists() else BUSYBOX}; remedy: scripts/setup hil")
     options.out = options.out.resolve()
     options.out.mkdir(parents=True, exist_ok=True)
     cache = ROOT / "build/hil/kernel"

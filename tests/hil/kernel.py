@@ -1,9 +1,12 @@
-"""Debian's PREEMPT_RT kernel, unpacked into a folder: never installed, never booted on this machine itself."""
+"""Debian's PREEMPT_RT kernel, unpacked into a folder: never installed, never booted on this machine itself.
+
+Usage: kernel.py FOLDER; scripts/setup hil does it."""
 
 import lzma
 import pathlib
 import shutil
 import subprocess
+import sys
 
 XZ_MAGIC = b"\xfd7zXZ\x00"
 # What the guest needs, in no order; what these need is found in the modules themselves.
@@ -21,11 +24,13 @@ def package():
 
 
 def fetch(cache):
-    """@return the folder with boot/ and lib/modules/ of the kernel; the package is downloaded once."""
+    """@return the folder with boot/ and lib/modules/ of the kernel; the package is downloaded once, a newer one only when
+    that folder is removed."""
+    here = sorted(mark.parent for mark in cache.glob("*/complete"))
+    if here:
+        return here[-1]
     name = package()
     folder = cache / name
-    if (folder / "complete").exists():
-        return folder
     print(f"hil: fetching {name}, 70 MB", flush=True)
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
@@ -75,3 +80,10 @@ def modules(folder):
     for name in MODULES:
         add(name)
     return order
+
+
+if __name__ == "__main__":
+    try:
+        fetch(pathlib.Path(sys.argv[1]))
+    except (RuntimeError, OSError) as error:
+        sys.exit(f"hil: {error}")

@@ -11,6 +11,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -22,7 +23,7 @@ import cantools
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 BIN = pathlib.Path(os.environ["LIGATURE_BIN"])
-OUT = ROOT / "build/hil"
+OUT = pathlib.Path(os.environ.get("LIGATURE_HIL_OUT", ROOT / "build/hil"))
 WATCHDOG_TICKS = 20
 LOST, MISSED = 1, 2
 IDLE, ENGAGE, FORCE, FAULT = 2, 3, 4, 6
@@ -46,7 +47,8 @@ def guest(name, *options, timeout=LONGEST_S):
                 log.write(line)
                 print("  " + line, end="", flush=True)
         code = process.wait()
-    print(f"hil: {name}: exit {code}, {time.monotonic() - began:.0f} s", flush=True)
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    print(f"hil: {name}: exit {code}, {time.monotonic() - began:.0f} s, {used.ru_utime + used.ru_stime:.0f} s of CPU so far", flush=True)
     return out, code
 
 
@@ -77,11 +79,21 @@ class Guest(unittest.TestCase):
         self.assertEqual([r["tick"] for r in rows], list(range(len(rows))))
 
 
-class Overhand(Guest):
+class Scenario(Guest):
+    """Boots once for all of its tests."""
+    name = None
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder, cls.code = guest(cls.name, *VIRTUAL)
+
+    def setUp(self):
+        self.assertEqual(self.code, 0, f"the guest's scenario {self.name}")
+
+
+class Deadlines:
     def test_ten_seconds_at_1_kHz_without_a_missed_deadline(self):
-        folder, code = guest("overhand", *VIRTUAL)
-        self.assertEqual(code, 0)
-        rows = ticks_of(folder / "overhand")
+        rows = ticks_of(self.folder / "overhand")
         self.every_tick_is_there(rows)
         self.assertGreaterEqual(len(rows), 10_000)
         self.assertEqual(sum(r["flags"] & MISSED != 0 for r in rows), 0, "missed deadlines")
@@ -97,22 +109,16 @@ class Overhand(Guest):
         print(f"  {len(rows)} periods, {len(started)} in FORCE, 0 missed, 0 lost", flush=True)
 
 
-class Faults(Guest):
+class Blows(Scenario):
     """Each blow finds the rig in force; `at` is the tick at which it can first be seen."""
 
-    @classmethod
-    def setUpClass(cls):
-        cls.folder, cls.code = guest("faults", *VIRTUAL)
-
-    def read(self, name, recorded=True):
-        self.assertEqual(self.code, 0)
+    def read(self, name):
         folder = self.folder / name
         wire = wire_of(folder)
         left = [f for f in wire if f[0] != "vcan1"]
         right = [f for f in wire if f[0] == "vcan1"]
-        rows = ticks_of(folder) if recorded else []
-        if rows:
-            self.every_tick_is_there(rows)
+        rows = ticks_of(folder)
+        self.every_tick_is_there(rows)
         return rows, left, right
 
     @staticmethod
@@ -149,6 +155,8 @@ class Faults(Guest):
         for frames in (left, right):
             self.assertEqual(set(self.torque_on_the_wire(rows, frames, first["tick"])) - {0}, set(), "torque on the wire after the fault")
 
+
+class FirstBlows:
     def test_a_killed_hand(self):
         """Its watchdog runs from its last complete set of samples."""
         rows, left, right = self.read("hand-killed")
@@ -164,17 +172,31 @@ class Faults(Guest):
         at = self.tick_before(rows, left, self.position(left, 0x082, bytes.fromhex("5082110000000000")))
         self.ends_in((12,), rows, left, right, at, (0, 1))
 
-    def test_somebody_else_stops_a_drive(self):
-        """Its torque goes at once; we learn it from its heartbeat or from its silence."""
-        rows, left, right = self.read("stranger")
-        at = self.tick_before(rows, left, self.position(left, 0x000, bytes.fromhex("8002")))
-        self.ends_in((11, 12), rows, left, right, at, range(1, WATCHDOG_TICKS + 2))
-
     def test_bus_off(self):
         """A bus that is off takes no SYNC."""
         rows, left, right = self.read("bus-off")
         last = max(i for i, f in enumerate(left) if f[1] == 0x080)
         self.ends_in((10,), rows, left, right, self.tick_before(rows, left, last), (0, 1))
+
+    def test_candump_decodes_fully(self):
+        dbc = cantools.database.load_string(subprocess.run([BIN / "ligature-can-describe", "dbc"], capture_output=True, text=True, check=True).stdout, "dbc")
+        counts = {}
+        for _, identifier, data in wire_of(self.folder / "hand-killed"):
+            message = dbc.get_message_by_frame_id(identifier)
+            message.decode(data, allow_truncated=False, allow_excess=False)
+            counts[message.name] = counts.get(message.name, 0) + 1
+        print("  " + ", ".join(f"{n} {name}" for name, n in sorted(counts.items())), flush=True)
+        for name in ("Sync", "Nmt", "Controller_Heartbeat", *(f"{d}_{s}" for d in ("Waist", "Shoulder", "Elbow")
+                                                              for s in ("TPDO1", "RPDO1", "SdoRequest", "SdoResponse", "Heartbeat", "Emergency"))):
+            self.assertGreater(counts.get(name, 0), 0, name)
+
+
+class OtherBlows:
+    def test_somebody_else_stops_a_drive(self):
+        """Its torque goes at once; we learn it from its heartbeat or from its silence."""
+        rows, left, right = self.read("stranger")
+        at = self.tick_before(rows, left, self.position(left, 0x000, bytes.fromhex("8002")))
+        self.ends_in((11, 12), rows, left, right, at, range(1, WATCHDOG_TICKS + 2))
 
     def test_a_stopped_controller(self):
         """SIGSTOP for 100 ms: the drives take the torque away by themselves, the controller wakes up into an overrun."""
@@ -214,17 +236,18 @@ class Faults(Guest):
         self.assertFalse(any(pushes(r) for r in disarmed))
         self.assertTrue(any(r["state"] == FORCE for r in after), "the order to arm brings it back")
 
-    def test_candump_decodes_fully(self):
-        dbc = cantools.database.load_string(subprocess.run([BIN / "ligature-can-describe", "dbc"], capture_output=True, text=True, check=True).stdout, "dbc")
-        counts = {}
-        for _, identifier, data in wire_of(self.folder / "hand-killed"):
-            message = dbc.get_message_by_frame_id(identifier)
-            message.decode(data, allow_truncated=False, allow_excess=False)
-            counts[message.name] = counts.get(message.name, 0) + 1
-        print("  " + ", ".join(f"{n} {name}" for name, n in sorted(counts.items())), flush=True)
-        for name in ("Sync", "Nmt", "Controller_Heartbeat", *(f"{d}_{s}" for d in ("Waist", "Shoulder", "Elbow")
-                                                              for s in ("TPDO1", "RPDO1", "SdoRequest", "SdoResponse", "Heartbeat", "Emergency"))):
-            self.assertGreater(counts.get(name, 0), 0, name)
+
+class Overhand(Deadlines, Scenario):
+    name = "overhand"
+
+
+class Faults(FirstBlows, OtherBlows, Blows):
+    name = "faults"
+
+
+class Short(Deadlines, FirstBlows, Blows):
+    """What CI asks at each change, in one boot."""
+    name = "short"
 
 
 class Canopen(Guest):
