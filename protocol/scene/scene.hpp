@@ -67,7 +67,8 @@ struct Suture {
   double length_m = 5.0;
   double radius_m = 0.05;
   std::string initial = "hanging";      ///< "hanging": straight down from node 0; else the file it was read from
-  std::vector<Vec> initial_polyline_m;  ///< empty when hanging; else laid out at rest length
+  std::vector<Vec> initial_polyline_m;  ///< empty when hanging; else equally far apart, as many as
+                                        ///< nodes, or finer for a rod whose nodes move along it
   PaperParameters paper;
   RodParameters rod;
 };

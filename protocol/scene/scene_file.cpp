@@ -1,5 +1,6 @@
 #include "protocol/scene/scene_file.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -37,6 +38,13 @@ constexpr std::pair<const char*, Integrator> kIntegrators[] = {{"semi-implicit",
 constexpr std::pair<const char*, QuadraticStretch> kQuadratics[] = {{"stiff", QuadraticStretch::kStiff},
                                                                     {"printed", QuadraticStretch::kPrinted}};
 
+/// Nodes that move along the thread may begin anywhere: their shape is kept to about a diameter.
+int initial_points(const Suture& s) {
+  if (s.model != Model::kRod || s.rod.spacing != Spacing::kAdaptive) return s.nodes;
+  constexpr double kMost = 5000.0;
+  return std::max(s.nodes, 1 + static_cast<int>(std::min(0.5 * s.length_m / s.radius_m, kMost)));
+}
+
 void read_suture(StrictTable& t, const fs::path& folder, Suture& s) {
   t.choice("model", s.model, kModels);
   t.integer("nodes", s.nodes, 2, 5000);
@@ -62,7 +70,8 @@ void read_suture(StrictTable& t, const fs::path& folder, Suture& s) {
   auto read = load_polyline(file);
   if (auto* error = std::get_if<Error>(&read))
     return t.refuse("initial", "\"hanging\" or a CSV polyline (" + error->text + ")");
-  s.initial_polyline_m = lay_out(std::get<std::vector<Vec>>(read), s.nodes, s.length_m / (s.nodes - 1));
+  const int points = initial_points(s);
+  s.initial_polyline_m = lay_out(std::get<std::vector<Vec>>(read), points, s.length_m / (points - 1));
 }
 
 void read_contact(StrictTable& t, Contact& c) {

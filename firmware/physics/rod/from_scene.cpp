@@ -26,21 +26,46 @@ Material material_of(const scene::Scene& scene) noexcept {
   return m;
 }
 
-// A point of the initial shape: the polyline of the scene, node k at material coordinate k L / (nodes - 1), or straight
-// down.
-Vec initial_point(const scene::Scene& scene, double s) noexcept {
-  const auto& line = scene.suture.initial_polyline_m;
-  if (line.size() < 2) {
-    Vec top{};
-    for (const auto& f : scene.world.fixed) {
-      if (f.node == 0) top = vec(f.position_m);
-    }
-    return top - make(0, 0, s);
+// Straight down from where node 0 is fixed.
+void hang(const scene::Scene& scene, State& state) noexcept {
+  Vec top{};
+  for (const auto& f : scene.world.fixed) {
+    if (f.node == 0) top = vec(f.position_m);
   }
-  const double at = s / scene.suture.length_m * static_cast<double>(line.size() - 1);
-  const auto k = std::min(static_cast<std::size_t>(std::max(at, 0.0)), line.size() - 2);
-  const double share = at - static_cast<double>(k);
-  return (1.0 - share) * vec(line[k]) + share * vec(line[k + 1]);
+  for (std::size_t i = 0; i < state.x.size(); ++i) state.x[i] = top - make(0, 0, state.mesh.s[i]);
+}
+
+// Curvature of the scene's polyline, point by point, 1/m.
+std::vector<double> curvature_of(const std::vector<scene::Vec>& line) {
+  std::vector<double> curvature(line.size(), 0.0);
+  for (std::size_t k = 1; k + 1 < line.size(); ++k) {
+    const Vec a = vec(line[k]) - vec(line[k - 1]), b = vec(line[k + 1]) - vec(line[k]);
+    curvature[k] = 2.0 * std::atan2(norm(cross(a, b)), dot(a, b)) / (norm(a) + norm(b));
+  }
+  return curvature;
+}
+
+// Along the scene's polyline, each node one rest length from the last as the crow flies, so that nothing is stretched:
+// where the thread bends, chords are shorter than the line, and a segment of 71 N must not begin 1 % short.
+void lay_along(const std::vector<scene::Vec>& line, State& state) noexcept {
+  state.x[0] = vec(line[0]);
+  std::size_t k = 1;  // the line's segment k - 1 .. k is searched next, from u on
+  double u = 0.0;
+  const Vec onward = vec(line.back()) - vec(line[line.size() - 2]);
+  for (std::size_t i = 1; i < state.x.size(); ++i) {
+    const double rest = state.mesh.s[i] - state.mesh.s[i - 1];
+    const Vec c = state.x[i - 1];
+    for (;; ++k, u = 0.0) {  // |a + u d - c| = rest, the larger root; the last segment goes on for ever
+      const bool last = k + 1 >= line.size();
+      const Vec a = last ? vec(line.back()) - onward : vec(line[k - 1]), d = last ? onward : vec(line[k]) - a;
+      const double A = dot(d, d), B = dot(a - c, d), D = B * B - A * (dot(a - c, a - c) - rest * rest);
+      const double root = D < 0.0 || A == 0.0 ? -1.0 : (std::sqrt(D) - B) / A;
+      if (!last && (root < u || root > 1.0)) continue;
+      state.x[i] = root >= u ? a + root * d : c + rest / norm(onward) * onward;
+      u = root >= u ? root : u;
+      break;
+    }
+  }
 }
 
 }  // namespace
@@ -96,7 +121,12 @@ std::variant<Rod, std::string> rod_of(const scene::Scene& scene) {
   for (const auto& peg : scene.world.pegs) {
     rod.bodies.push_back({vec(peg.from_m), vec(peg.to_m), peg.radius_m, Vec{}, scene.contact.friction});
   }
-  for (std::size_t i = 0; i < state.x.size(); ++i) state.x[i] = initial_point(scene, state.mesh.s[i]);
+  if (scene.suture.initial_polyline_m.size() < 2) {
+    hang(scene, state);
+  } else {
+    rod.spread(curvature_of(scene.suture.initial_polyline_m));
+    lay_along(scene.suture.initial_polyline_m, state);
+  }
   const auto mesh_node = [&](int node) {  // scenes number nodes as if equally spaced
     const int k = node < 0 ? n - 1 : node;
     const double s = scene.suture.length_m * k / (n - 1);

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
+#include <queue>
 
 namespace ligature::physics::rod {
 namespace {
 
 constexpr double kTurn = 0.35;       // rad per node
+constexpr double kStartTurn = 0.5;   // the same for the shape a loose thread begins in
 constexpr double kBendLength = 0.4;  // of sqrt(EI / T)
 constexpr double kGrading = 0.2;
 constexpr double kWorth = 1.5;  // a change must better the worst by this factor
@@ -24,6 +27,26 @@ void close_slot(std::vector<T>& array, std::size_t at) noexcept {
             array.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
+// A segment to be: how much too long it is, and of two equals the one nearer to the middle first.
+struct Piece {
+  double excess;
+  std::int32_t nearness, at, length;
+  auto operator<=>(const Piece&) const = default;
+};
+
+// Wanted length at every unit of a thread that is not pulled, graded; the same everywhere when no curvature is given.
+std::vector<double> wanted_at_rest(int units, double unit_m, std::span<const double> curvature_per_m) {
+  std::vector<double> wanted(static_cast<std::size_t>(units), unit_m * (1 << Refine::kLevels));
+  const double per_place = static_cast<double>(units) / static_cast<double>(curvature_per_m.size());
+  for (std::size_t k = 0; k < curvature_per_m.size(); ++k) {
+    auto& w = wanted[static_cast<std::size_t>(per_place * (static_cast<double>(k) + 0.5))];
+    w = std::max(unit_m, std::min(w, kStartTurn / std::max(curvature_per_m[k], 1e-9)));
+  }
+  for (std::size_t j = 1; j < wanted.size(); ++j) wanted[j] = std::min(wanted[j], wanted[j - 1] + kGrading * unit_m);
+  for (std::size_t j = wanted.size() - 1; j-- > 0;) wanted[j] = std::min(wanted[j], wanted[j + 1] + kGrading * unit_m);
+  return wanted;
+}
+
 template <class F>
 void every_array(State& s, F f) noexcept {
   f(s.x);
@@ -33,25 +56,29 @@ void every_array(State& s, F f) noexcept {
 
 }  // namespace
 
-bool Refine::start(const Material& material, double wanted_m, State& state) {
+bool Refine::start(const Material& material, double wanted_m, State& state, std::span<const double> curvature_per_m) {
   const std::size_t n = state.x.size();
   const int coarse = std::max(2, static_cast<int>(std::lround(material.length_m / (wanted_m * (1 << kLevels)))));
   unit_m_ = material.length_m / (coarse << kLevels);
   if (n < static_cast<std::size_t>(coarse) + 1 || n > static_cast<std::size_t>(coarse << kLevels) + 1) return false;
-  at_.clear();
-  at_.reserve(n);
-  for (int i = 0; i <= coarse; ++i) at_.push_back(i << kLevels);
-  for (int length = 1 << kLevels; at_.size() < n; length /= 2) {  // longest first, from the middle outwards
-    const std::int32_t middle = at_.back() / 2;
-    std::vector<std::int32_t> more;
-    for (std::size_t i = 0; i + 1 < at_.size(); ++i) {
-      if (at_[i + 1] - at_[i] == length) more.push_back(at_[i] + length / 2);
-    }
-    std::sort(more.begin(), more.end(), [&](auto a, auto b) { return std::abs(a - middle) < std::abs(b - middle); });
-    more.resize(std::min(more.size(), n - at_.size()));
-    at_.insert(at_.end(), more.begin(), more.end());
-    std::sort(at_.begin(), at_.end());
+  const auto wanted = wanted_at_rest(coarse << kLevels, unit_m_, curvature_per_m);
+  std::priority_queue<Piece> pieces;
+  const auto add = [&](std::int32_t at, std::int32_t length) {
+    const double least = *std::min_element(wanted.begin() + at, wanted.begin() + at + length);
+    const std::int32_t aside = std::abs(at + length / 2 - (coarse << kLevels) / 2);
+    pieces.push({length > 1 ? length * unit_m_ / least : 0.0, -aside, at, length});
+  };
+  for (int i = 0; i < coarse; ++i) add(i << kLevels, 1 << kLevels);
+  while (pieces.size() + 1 < n) {
+    const Piece longest = pieces.top();
+    pieces.pop();
+    add(longest.at, longest.length / 2);
+    add(longest.at + longest.length / 2, longest.length / 2);
   }
+  at_.assign(1, coarse << kLevels);
+  at_.reserve(n);
+  for (; !pieces.empty(); pieces.pop()) at_.push_back(pieces.top().at);
+  std::sort(at_.begin(), at_.end());
   for (std::size_t i = 0; i < n; ++i) state.mesh.s[i] = unit_m_ * at_[i];
   wanted_.assign(n, 0.0);
   free_.assign(n, 1);

@@ -2,6 +2,7 @@
 // Nodes where they are needed: a fixed number of them, moved along the thread by splitting here and merging there.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "firmware/physics/rod/contact.hpp"
@@ -23,9 +24,10 @@ namespace ligature::physics::rod {
 ///   (State::rest_bend, rest_strain) that fades within some ticks.
 class Refine {
  public:
-  /// Lays out n nodes: units for the finest length wanted_m, coarse segments, then splits of the longest.
+  /// Lays out n nodes: units for the finest length wanted_m, coarse segments, then splits of the longest; of the
+  /// longest for its curvature, where that is given, at places equally far apart along the whole thread.
   /// @return false when n is too small or too large for the length.
-  bool start(const Material& material, double wanted_m, State& state);
+  bool start(const Material& material, double wanted_m, State& state, std::span<const double> curvature_per_m = {});
 
   /// One tick's worth of changes. @return true when nodes moved. O(n); no allocation.
   bool update(const Material& material, State& state, const Forces& forces, ContactSet& contacts,

@@ -69,6 +69,11 @@ bool Rod::continue_from(const Rod& other) noexcept {
   return true;
 }
 
+void Rod::spread(std::span<const double> curvature_per_m) {
+  if (parts_.adaptive) refine_.start(material_, 2.0 * material_.radius_m, state_, curvature_per_m);
+  moved();
+}
+
 void Rod::moved() noexcept {
   for (auto& c : state_.mesh.clamp) c = Clamp::kFree;
   for (int h = 0; h < state_.hold_count; ++h) {

@@ -2,6 +2,7 @@
 // A rod in its world: the parts together, and the list of verbs that is a tick.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "firmware/physics/rod/assembly.hpp"
@@ -53,6 +54,10 @@ class Rod {
   [[nodiscard]] const Twist& twist() const noexcept { return twist_; }
   [[nodiscard]] const Forces& forces() const noexcept { return forces_; }
   [[nodiscard]] const ContactSet& contact_set() const noexcept { return contacts_; }
+
+  /// Where nodes move: lays them out anew for a thread curved so at places equally far apart along it. For a rod that
+  /// has not moved yet; positions are the caller's, from state().mesh.s.
+  void spread(std::span<const double> curvature_per_m);
 
   /// After positions, clamps or spacing were changed from outside: constants of the mesh again, contacts forgotten.
   void moved() noexcept;

@@ -1,11 +1,13 @@
-// Pulls the loose overhand of scenes/suture-3-0-knot.toml tight and prints one line a run: knot after the wait, guard
-// events, worst penetration (diameters) in pull / hold / after, strain against T / EA, largest turn per node and
-// longest contact segment in the hold, chatter of the hand force in the hold, thread-CPU time per tick.
+// Pulls a scene's loose knot tight and prints one line a run: the knot after the wait and whether it is the one of the
+// start, guard events, worst penetration (diameters) in pull / hold / after, strain against T / EA, largest turn per
+// node and longest contact segment in the hold, chatter of the hand force in the hold, thread-CPU time per tick.
 //
 // Also: chatter while the thread slides (rms about the 51-tick moving mean, over the mean, from 5 % of the force on).
 //
-// Usage: rod_pull_study SCENE [speed_m_per_s force_N sudden(0|1) hands(1|2) [key=value ...]]; without speed: the 24
-// runs of 0.05, 0.2, 0.5, 1 m/s x 1, 5, 10 N x gentle, sudden release. HOLD_S=60 in the environment: a longer hold.
+// Usage: rod_pull_study SCENE [speed_m_per_s force_N [sudden(0|1) hands(1|2) [key=value ...]]]; without sudden and
+// hands: the four runs of gentle, sudden x two, one; without speed: the 24 runs of 0.05, 0.2, 0.5, 1 m/s x 1, 5, 10 N x
+// gentle, sudden release. Exit 1 when a knot was lost. Environment: HOLD_S=60, a longer hold; SHAPES=FOLDER, where to
+// write the thread at the start, in the hold and at the end.
 
 #include <ctime>
 
@@ -13,6 +15,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,7 +63,10 @@ class Study {
     tools_[0].grip = tools_[1].grip = true;
   }
 
-  void run(double speed, double force_N, bool sudden, int hands) {
+  /// @return whether the thread still has the knot it began with.
+  bool run(double speed, double force_N, bool sudden, int hands) {
+    save("start");
+    const auto begun = knot();
     phase(0.1, 0.0, hands, 0.0);
     forces_.clear();
     phase(5.0, speed, hands, force_N);
@@ -74,25 +80,47 @@ class Study {
     forces_.clear();
     const char* const hold_s = std::getenv("HOLD_S");
     phase(hold_s != nullptr ? std::atof(hold_s) : 0.7, 0.0, hands, 0.0);
+    save("held");
     const double hold = std::exchange(penetration_, 0.0), strain = sim_.diagnostics().max_stretch, tension = force();
     const auto [turn, segment] = sharpness();
     const double rms = chatter(forces_);
     if (!sudden) phase(10.0, -0.02, 2, -0.02 * force_N);
     tools_[1].grip = false;
     phase(5.0, 0.0, hands, 0.0);
-    std::vector<std::array<double, 3>> points;
-    for (const auto& p : sim_.nodes_W()) points.push_back({p.x(), p.y(), p.z()});
+    save("end");
+    const auto left = knot();
+    const bool kept = left.type == begun.type && left.handedness == begun.handedness;
     std::printf(
-        "%4.2f m/s %4.1f N %s %d hand(s): %s guard %d penetration %.2f %.3f %.2f strain %.2f%% (T/EA %.2f%%) turn %.2f "
-        "segment %.2f d chatter %.4f%% sliding %.2f%% us %.0f %.0f %.0f\n",
-        speed, force_N, sudden ? "sudden" : "gentle", hands, knot::recognise(points, false).type.c_str(), guard_, pull,
-        hold, penetration_, 100.0 * strain, 100.0 * tension / scene_.suture.rod.EA_N, turn, segment, 100.0 * rms,
-        100.0 * slide, quantile(us_, 0.5), quantile(us_, 0.99), quantile(us_, 1.0));
+        "%4.2f m/s %4.1f N %s %d hand(s): %s %s %s guard %d penetration %.2f %.3f %.2f strain %.2f%% (T/EA %.2f%%) "
+        "turn "
+        "%.2f segment %.2f d chatter %.4f%% sliding %.2f%% us %.0f %.0f %.0f\n",
+        speed, force_N, sudden ? "sudden" : "gentle", hands, left.type.c_str(), left.handedness.c_str(),
+        kept ? "kept" : ("LOST, was " + begun.type).c_str(), guard_, pull, hold, penetration_, 100.0 * strain,
+        100.0 * tension / scene_.suture.rod.EA_N, turn, segment, 100.0 * rms, 100.0 * slide, quantile(us_, 0.5),
+        quantile(us_, 0.99), quantile(us_, 1.0));
+    std::fflush(stdout);
+    return kept;
   }
 
  private:
   double force() const {
     return 0.5 * (sim_.hand(physics::Hand::kLeft).f_W.x() - sim_.hand(physics::Hand::kRight).f_W.x());
+  }
+
+  std::vector<std::array<double, 3>> points() const {
+    std::vector<std::array<double, 3>> all;
+    for (const auto& p : sim_.nodes_W()) all.push_back({p.x(), p.y(), p.z()});
+    return all;
+  }
+
+  knot::KnotResult knot() const { return knot::recognise(points(), false); }
+
+  void save(const std::string& name) const {
+    const char* const folder = std::getenv("SHAPES");
+    if (folder == nullptr) return;
+    std::ofstream out(std::string(folder) + "/" + name + ".csv");
+    out << "x,y,z\n";
+    for (const auto& p : points()) out << p[0] << ',' << p[1] << ',' << p[2] << '\n';
   }
 
   // until_N > 0: ends when pulled that hard; < 0: when eased below -until_N.
@@ -142,25 +170,32 @@ class Study {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2)
-    return std::fprintf(stderr, "usage: rod_pull_study SCENE [speed force sudden hands [key=value ...]]\n"), 2;
+  if (argc < 2 || argc == 3 || argc == 5)
+    return std::fprintf(stderr, "usage: rod_pull_study SCENE [speed force [sudden hands [key=value ...]]]\n"), 2;
   const std::vector<std::string> overrides(argv + std::min(argc, 6), argv + argc);
   auto read = scene::load_scene(argv[1], overrides);
   if (auto* error = std::get_if<scene::Error>(&read)) return std::fprintf(stderr, "%s\n", error->text.c_str()), 2;
   const auto& scene = std::get<scene::Scene>(read);
+  int runs = 0, kept = 0;
   const auto run = [&](double speed, double force_N, bool sudden, int hands) {
     auto made = RodSimulation::make(scene);
-    if (auto* why = std::get_if<std::string>(&made)) return std::fprintf(stderr, "%s\n", why->c_str()), false;
-    Study(scene, std::get<RodSimulation>(std::move(made))).run(speed, force_N, sudden, hands);
-    return true;
+    if (auto* why = std::get_if<std::string>(&made)) std::fprintf(stderr, "%s\n", why->c_str()), std::exit(2);
+    kept += Study(scene, std::get<RodSimulation>(std::move(made))).run(speed, force_N, sudden, hands);
+    ++runs;
   };
-  if (argc > 5) return run(std::atof(argv[2]), std::atof(argv[3]), std::atoi(argv[4]) != 0, std::atoi(argv[5])) ? 0 : 2;
-  for (const double speed : {0.05, 0.2, 0.5, 1.0}) {
-    for (const double force_N : {1.0, 5.0, 10.0}) {
-      for (const bool sudden : {false, true}) {
-        if (!run(speed, force_N, sudden, 2)) return 2;
+  if (argc > 5) {
+    run(std::atof(argv[2]), std::atof(argv[3]), std::atoi(argv[4]) != 0, std::atoi(argv[5]));
+  } else if (argc == 4) {
+    for (const int hands : {2, 1}) {
+      for (const bool sudden : {false, true}) run(std::atof(argv[2]), std::atof(argv[3]), sudden, hands);
+    }
+  } else {
+    for (const double speed : {0.05, 0.2, 0.5, 1.0}) {
+      for (const double force_N : {1.0, 5.0, 10.0}) {
+        for (const bool sudden : {false, true}) run(speed, force_N, sudden, 2);
       }
     }
   }
-  return 0;
+  std::printf("%d of %d kept\n", kept, runs);
+  return kept == runs ? 0 : 1;
 }
