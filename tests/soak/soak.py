@@ -127,6 +127,7 @@ def causes(done, computing):
     """@return how many late ticks woke up late, waited for a hand, or computed for long; of these apart the ones whose work
     does not explain it: 99 of 100 ticks with at least as many contacts computed for less than 300 us."""
     names = {"woke up late": 0, "waited for a hand": 0, "were kept from computing": 0, "computed for long": 0}
+    told = []
     for tick, took in zip(done, computing):
         if not tick["flags"] & MISSED:
             continue
@@ -137,9 +138,11 @@ def causes(done, computing):
         else:
             same_work_ns = np.quantile(computing[done["contacts"] >= tick["contacts"]], (0.5, 0.99))
             name = "were kept from computing" if same_work_ns[1] < LONG_NS else "computed for long"
-            say(f"tick {tick['tick']}: {tick['contacts']} contacts, computing took {took / 1e3:.0f} us; "
-                f"that work takes {same_work_ns[0] / 1e3:.0f} us, 99 of 100 below {same_work_ns[1] / 1e3:.0f}")
+            told.append((took, f"tick {tick['tick']}: {tick['contacts']} contacts, computing took {took / 1e3:.0f} us; "
+                               f"that work takes {same_work_ns[0] / 1e3:.0f} us, 99 of 100 below {same_work_ns[1] / 1e3:.0f}"))
         names[name] += 1
+    for _, line in sorted(told)[-5:]:
+        say(line)
     return names
 
 
