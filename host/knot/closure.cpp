@@ -28,24 +28,24 @@ Point spread_direction(int k, int n) {
   return Eigen::AngleAxisd(0.9, Point(0.6, -0.48, 0.64)) * p;
 }
 
-std::vector<Point> close_outward(std::span<const Point> thread, const Point& first, const Point& last) {
+std::vector<Point> way_home(std::span<const Point> thread, const Point& first, const Point& last) {
   const Point centre = centre_of(thread);
   double radius = 0.0;
   for (const auto& p : thread) radius = std::max(radius, (p - centre).norm());
   const double far = 20.0 * radius;
-  std::vector<Point> ring(thread.begin(), thread.end());
-  const Point from = (ring.back() + far * last - centre).normalized(),
-              to = (ring.front() + far * first - centre).normalized();
+  const Point from = (thread.back() + far * last - centre).normalized(),
+              to = (thread.front() + far * first - centre).normalized();
   // Great circle from -> to; any circle will do when they are opposite.
   Point axis = from.cross(to);
   if (axis.norm() < 1e-6) axis = from.unitOrthogonal();
   const double angle = std::atan2(from.cross(to).norm(), from.dot(to));
+  std::vector<Point> way;
   constexpr int kSteps = 4;  // chords of at most 45 degrees stay at 18 radii: outside
   for (int k = 0; k <= kSteps; ++k) {
     const Point p = Eigen::AngleAxisd(angle * k / kSteps, axis.normalized()) * from;
-    ring.push_back(centre + far * p);
+    way.push_back(centre + far * p);
   }
-  return ring;
+  return way;
 }
 
 }  // namespace ligature::knot

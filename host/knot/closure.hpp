@@ -8,10 +8,11 @@
 
 namespace ligature::knot {
 
-/// Runs both ends straight out, one along `first`, the other along `last`, to far outside the thread, and joins them
-/// there along a great circle, which nothing can cross.
+/// How the ends of a thread are joined: both run straight out, the front along `first`, the back along `last`, to far
+/// outside the thread, and meet there along a great circle, which nothing can cross.
 /// @param thread two or more points;  @param first, last unit vectors.
-[[nodiscard]] std::vector<Point> close_outward(std::span<const Point> thread, const Point& first, const Point& last);
+/// @return the corners of the way from the thread's back to its front, both left out.
+[[nodiscard]] std::vector<Point> way_home(std::span<const Point> thread, const Point& first, const Point& last);
 
 /// The direction from the thread's centre to a point, or up when they coincide.
 [[nodiscard]] Point outward(std::span<const Point> thread, const Point& from);

@@ -1,63 +1,32 @@
 #include "host/knot/polygon.hpp"
 
-#include <Eigen/Geometry>
+#include "host/knot/corner_cutter.hpp"
 
 namespace ligature::knot {
-namespace {
-
-/// Does the edge p-q, whose ends lie at heights dp and dq on different sides of the triangle's plane, meet it?
-/// The triangle is taken a little larger than it is: a near miss counts as a hit, which is the safe side.
-bool meets(const Point& p, const Point& q, double dp, double dq, const Point& a, const Point& b, const Point& c,
-           const Point& normal) {
-  constexpr double kMargin = 1e-9;
-  const Point s = p + (q - p) * (dp / (dp - dq));
-  const double slack = -kMargin * normal.squaredNorm();
-  return normal.dot((b - a).cross(s - a)) >= slack && normal.dot((c - b).cross(s - b)) >= slack &&
-         normal.dot((a - c).cross(s - c)) >= slack;
-}
-
-}  // namespace
-
-Polygon::Polygon(std::vector<Point> corners) : corners_(std::move(corners)) {
-  Point low = corners_.front(), high = low;
-  for (const auto& p : corners_) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  const double step = 1e-9 * (high - low).norm();
+void jitter(std::vector<Point>& line) {
+  Point low = line.front(), high = low;
+  for (const auto& p : line) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  const double step = 1e-7 * (high - low).norm();
   std::mt19937 random(1);
-  std::uniform_real_distribution<double> jitter(-step, step);
-  for (auto& p : corners_) p += Point(jitter(random), jitter(random), jitter(random));
+  std::uniform_real_distribution<double> within(-step, step);
+  for (auto& p : line) p += Point(within(random), within(random), within(random));
 }
 
-bool Polygon::is_pierced(const Point& a, const Point& b, const Point& c, std::size_t first, std::size_t count) const {
-  const Point normal = (b - a).cross(c - a);
+bool Polygon::is_pierced(const Triangle& triangle, std::size_t first, std::size_t count) const {
   const std::size_t n = corners_.size();
   std::size_t k = first % n;
-  double dp = normal.dot(corners_[k] - a);
+  double from = triangle.height(corners_[k]);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t next = k + 1 == n ? 0 : k + 1;
-    const double dq = normal.dot(corners_[next] - a);
-    if ((dp > 0.0) != (dq > 0.0) && meets(corners_[k], corners_[next], dp, dq, a, b, c, normal)) return true;
+    const double to = triangle.height(corners_[next]);
+    if (triangle.is_met(corners_[k], corners_[next], from, to)) return true;
     k = next;
-    dp = dq;
+    from = to;
   }
   return false;
 }
 
-void Polygon::cut_corners() {
-  for (bool changed = true; changed && corners_.size() > 3;) {
-    changed = false;
-    for (std::size_t i = 0; i < corners_.size() && corners_.size() > 3;) {
-      const std::size_t n = corners_.size();
-      // The two edges that go, and the two that touch the triangle in its corners only, are not asked.
-      const bool free = !is_pierced(corners_[(i + n - 1) % n], corners_[i], corners_[(i + 1) % n], i + 2, n - 4);
-      if (free) {
-        corners_.erase(corners_.begin() + static_cast<std::ptrdiff_t>(i));
-        changed = true;
-      } else {
-        ++i;
-      }
-    }
-  }
-}
+void Polygon::cut_corners() { corners_ = with_corners_cut(std::move(corners_), true); }
 
 void Polygon::shake(std::mt19937& random) {
   const std::size_t n = corners_.size();
@@ -68,7 +37,7 @@ void Polygon::shake(std::mt19937& random) {
     const double reach = 0.3 * (c - a).norm();
     const Point to = 0.5 * (a + c) + reach * Point(normal(random), normal(random), normal(random));
     // a-b sweeps (a, b, to), b-c sweeps (b, c, to); edges that share a corner with the one do not pierce it.
-    if (!is_pierced(a, b, to, i + 1, n - 3) && !is_pierced(b, c, to, i + 2, n - 3)) corners_[i] = to;
+    if (!is_pierced({a, b, to}, i + 1, n - 3) && !is_pierced({b, c, to}, i + 2, n - 3)) corners_[i] = to;
   }
 }
 

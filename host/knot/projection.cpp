@@ -19,21 +19,27 @@ double cross(const Point& a, const Point& b) { return a.x() * b.y() - a.y() * b.
 enum class Meet { kApart, kCross, kDegenerate };
 
 /// Where the images of the edges p + s d and q + t e cross, 0 < s, t < 1; z is the height above the plane.
-Meet meet(const Point& p, const Point& d, const Point& q, const Point& e, double& s, double& t) {
-  constexpr double kEdge = 1e-9;
+/// A crossing that rounding could move past the end of an edge, or turn over, is none to be trusted: nearly parallel
+/// edges have many. `above` is how far the first passes over the second.
+Meet meet(const Point& p, const Point& d, const Point& q, const Point& e, double& s, double& t, double& above) {
+  constexpr double kEdge = 1e-9, kRounding = 1e-15;
+  const Point pq = q - p;
   const double det = cross(d, e);
-  const double scale = std::sqrt((d.x() * d.x() + d.y() * d.y()) * (e.x() * e.x() + e.y() * e.y()));
-  if (std::abs(det) <= 1e-12 * scale) {  // parallel: apart, unless they lie on one line
-    const Point pq = q - p;
-    const double off = std::abs(cross(pq, d)), width = std::hypot(d.x(), d.y()) * (std::hypot(pq.x(), pq.y()) + 1e-300);
+  const double d_long = std::hypot(d.x(), d.y()), e_long = std::hypot(e.x(), e.y()), apart = std::hypot(pq.x(), pq.y());
+  if (std::abs(det) <= 1e-12 * d_long * e_long) {  // parallel: apart, unless they lie on one line
+    const double off = std::abs(cross(pq, d)), width = d_long * (apart + 1e-300);
     return off > 1e-9 * width ? Meet::kApart : Meet::kDegenerate;
   }
-  s = cross(q - p, e) / det;
-  t = cross(q - p, d) / det;
-  const auto outside = [](double u) { return u < -kEdge || u > 1.0 + kEdge; };
-  const auto inside = [](double u) { return u > kEdge && u < 1.0 - kEdge; };
-  if (outside(s) || outside(t)) return Meet::kApart;
-  return inside(s) && inside(t) ? Meet::kCross : Meet::kDegenerate;
+  s = cross(pq, e) / det;
+  t = cross(pq, d) / det;
+  const double s_edge = kEdge + kRounding * (apart + d_long) * e_long / std::abs(det);
+  const double t_edge = kEdge + kRounding * (apart + e_long) * d_long / std::abs(det);
+  const auto outside = [](double u, double edge) { return u < -edge || u > 1.0 + edge; };
+  const auto inside = [](double u, double edge) { return u > edge && u < 1.0 - edge; };
+  if (outside(s, s_edge) || outside(t, t_edge)) return Meet::kApart;
+  above = s * d.z() - t * e.z() - pq.z();
+  const bool is_sure = std::abs(above) > s_edge * std::abs(d.z()) + t_edge * std::abs(e.z()) + kRounding * pq.norm();
+  return inside(s, s_edge) && inside(t, t_edge) && is_sure ? Meet::kCross : Meet::kDegenerate;
 }
 
 }  // namespace
@@ -49,11 +55,10 @@ std::optional<Diagram> project(std::span<const Point> corners, const Point& dire
   for (std::size_t i = 0; i + 2 < n; ++i) {
     for (std::size_t j = i + 2; j < n; ++j) {
       if (i == 0 && j + 1 == n) continue;  // neighbours across the seam
-      double s = 0.0, t = 0.0;
-      const Meet how = meet(flat[i], step[i], flat[j], step[j], s, t);
+      double s = 0.0, t = 0.0, above = 0.0;
+      const Meet how = meet(flat[i], step[i], flat[j], step[j], s, t, above);
       if (how == Meet::kApart) continue;
-      const double above = flat[i].z() + s * step[i].z() - flat[j].z() - t * step[j].z();
-      if (how == Meet::kDegenerate || above == 0.0) return std::nullopt;
+      if (how == Meet::kDegenerate) return std::nullopt;
       const bool i_over = above > 0.0;
       const double turn = i_over ? cross(step[i], step[j]) : cross(step[j], step[i]);
       const std::size_t c = diagram.crossings();

@@ -6,6 +6,7 @@
 
 #include "host/knot/alexander.hpp"
 #include "host/knot/closure.hpp"
+#include "host/knot/corner_cutter.hpp"
 #include "host/knot/jones.hpp"
 #include "host/knot/knot_table.hpp"
 #include "host/knot/projection.hpp"
@@ -70,21 +71,37 @@ KnotResult recognise_ring(std::vector<Point> ring) {
   return best;
 }
 
-KnotResult recognise_open(std::span<const Point> thread) {
-  constexpr int kWays = 9, kEnough = 3;
-  std::vector<KnotResult> votes{
-      recognise_ring(close_outward(thread, outward(thread, thread.front()), outward(thread, thread.back())))};
-  const auto same = [](const KnotResult& a) {
-    return [&a](const KnotResult& b) {
+/// The ways in which an open thread is closed: both ends outwards, then both towards a common direction.
+std::vector<std::vector<Point>> ways_home(std::span<const Point> thread) {
+  constexpr int kCommon = 8;
+  std::vector<std::vector<Point>> ways{
+      way_home(thread, outward(thread, thread.front()), outward(thread, thread.back()))};
+  for (int k = 0; k < kCommon; ++k) {
+    const Point d = spread_direction((k * 3) % kCommon, kCommon);
+    ways.push_back(way_home(thread, d, d));
+  }
+  return ways;
+}
+
+/// The thread is simplified once, among the bars of all its closures, which all keep their knots; then closed.
+KnotResult recognise_open(std::vector<Point> thread) {
+  constexpr std::size_t kEnough = 3;
+  const auto ways = ways_home(thread);
+  std::vector<Bar> bars;
+  for (const auto& way : ways) bars.insert(bars.end(), {{false, way.front()}, {true, way.back()}});
+  thread = with_corners_cut(std::move(thread), false, bars);
+
+  std::vector<KnotResult> votes;
+  const auto count = [&](const KnotResult& a) {
+    return std::count_if(votes.begin(), votes.end(), [&a](const KnotResult& b) {
       return a.type == b.type && a.handedness == b.handedness && a.alexander == b.alexander;
-    };
+    });
   };
-  const auto count = [&](const KnotResult& r) { return std::count_if(votes.begin(), votes.end(), same(r)); };
-  while (votes.size() < kWays) {
-    const int k = static_cast<int>(votes.size()) - 1;
-    const Point d = spread_direction((k * 3) % (kWays - 1), kWays - 1);
-    votes.push_back(recognise_ring(close_outward(thread, d, d)));
-    if (votes.size() == kEnough && count(votes[0]) == kEnough) break;
+  for (const auto& way : ways) {
+    auto ring = thread;
+    ring.insert(ring.end(), way.begin(), way.end());
+    votes.push_back(recognise_ring(std::move(ring)));
+    if (votes.size() == kEnough && count(votes[0]) == static_cast<std::ptrdiff_t>(kEnough)) break;
   }
   // max_element keeps the first of equals: on a tie the outward closure's answer wins.
   return *std::max_element(votes.begin(), votes.end(),
@@ -140,7 +157,8 @@ KnotResult recognise(std::span<const std::array<double, 3>> points, bool closed)
   if (thread.size() < 4) return from_diagram({});
   if (!normalise(thread)) return unknown();
   if (closed && turns_on_a_line(thread) > 1) return unknown();
-  return closed ? recognise_ring(std::move(thread)) : recognise_open(thread);
+  jitter(thread);
+  return closed ? recognise_ring(std::move(thread)) : recognise_open(std::move(thread));
 }
 
 }  // namespace ligature::knot

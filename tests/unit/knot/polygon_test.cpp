@@ -12,6 +12,7 @@ namespace {
 std::vector<Point> points(const shapes::Polyline& line) {
   std::vector<Point> p;
   for (const auto& v : line) p.emplace_back(v[0], v[1], v[2]);
+  jitter(p);
   return p;
 }
 

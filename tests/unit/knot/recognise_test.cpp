@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <iostream>
-
 #include "host/knot/knot_table.hpp"
 #include "tests/unit/knot/shapes.hpp"
 
@@ -169,20 +166,13 @@ TEST(Recognise, AClosedLineThatLiesInItselfIsNotGuessed) {
   EXPECT_TRUE(recognise(twice, true).alexander.empty());
 }
 
-TEST(Recognise, PrintsItsCost) {
-  std::mt19937 random(2);
-  for (const int n : {50, 200, 500}) {
-    double worst_ms = 0, sum_ms = 0;
-    const int runs = 20;
-    for (int k = 0; k < runs; ++k) {
-      auto line = posed(k % 2 ? trefoil(n) : figure_eight(n), random, 0.01);
-      const auto from = std::chrono::steady_clock::now();
-      const auto r = recognise(line, false);
-      const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - from).count();
-      worst_ms = std::max(worst_ms, ms), sum_ms += ms;
-      EXPECT_FALSE(r.type.empty());
+/// Corners on straight lines and in planes, as in drawings: what rounding cannot tell must not pass for free.
+TEST(Recognise, StraightEdgesOfManyPointsInAPlane) {
+  for (const int pieces : {2, 7, 20}) {
+    for (const auto& b : braids()) {
+      const auto line = refined(braid_closure(b.word, b.strands), pieces);
+      EXPECT_EQ(named(line), std::string(b.type) + " " + b.hand) << pieces;
     }
-    std::cout << "recognise, open, n = " << n << ": mean " << sum_ms / runs << " ms, worst " << worst_ms << " ms\n";
   }
 }
 
