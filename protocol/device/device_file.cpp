@@ -1,10 +1,9 @@
 #include "protocol/device/device_file.hpp"
 
-#include <fstream>
 #include <stdexcept>
 
 #include "protocol/device/omni_text.hpp"
-#include "protocol/scene/strict_table.hpp"
+#include "protocol/scene/toml_text.hpp"
 
 namespace ligature::device {
 namespace {
@@ -134,17 +133,15 @@ std::variant<DeviceFile, Error> read(const toml::table& root, const std::string&
 }  // namespace
 
 std::variant<DeviceFile, Error> parse_device(const std::string& text, const std::string& name) {
-  try {
-    return read(toml::parse(text, name), name);
-  } catch (const toml::parse_error& e) {
-    return Error{name + ":" + std::to_string(e.source().begin.line) + ": not TOML: " + std::string(e.description())};
-  }
+  auto parsed = scene::parse_toml(text, name);
+  if (auto* error = std::get_if<Error>(&parsed)) return *error;
+  return read(std::get<toml::table>(parsed), name);
 }
 
 std::variant<DeviceFile, Error> load_device_file(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) return Error{path.string() + ": cannot be read"};
-  return parse_device({std::istreambuf_iterator<char>(file), {}}, path.string());
+  auto parsed = scene::parse_toml_file(path);
+  if (auto* error = std::get_if<Error>(&parsed)) return *error;
+  return read(std::get<toml::table>(parsed), path.string());
 }
 
 std::variant<Device, Error> load_device(const std::filesystem::path& path) {

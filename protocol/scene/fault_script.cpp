@@ -1,6 +1,6 @@
 #include "protocol/scene/fault_script.hpp"
 
-#include "protocol/scene/strict_table.hpp"
+#include "protocol/scene/toml_text.hpp"
 
 namespace ligature::scene {
 namespace {
@@ -32,12 +32,9 @@ void read_fault(StrictTable& t, FaultScript& s) {
 
 std::variant<FaultScript, Error> load_fault_script(const std::filesystem::path& path) {
   ReadContext context{path.string(), {}, {}};
-  toml::table root;
-  try {
-    root = toml::parse_file(path.string());
-  } catch (const toml::parse_error& e) {
-    return Error{path.string() + ":" + std::to_string(e.source().begin.line) + ": " + std::string(e.description())};
-  }
+  auto parsed = parse_toml_file(path);
+  if (auto* error = std::get_if<Error>(&parsed)) return *error;
+  const auto& root = std::get<toml::table>(parsed);
   FaultScript script;
   StrictTable top(root, "", context);
   top.require("fault");

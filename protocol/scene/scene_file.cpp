@@ -1,16 +1,12 @@
 #include "protocol/scene/scene_file.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 #include "protocol/scene/cells.hpp"
 #include "protocol/scene/polyline.hpp"
 #include "protocol/scene/rod_keys.hpp"
-#include "protocol/scene/strict_table.hpp"
+#include "protocol/scene/toml_text.hpp"
 
 namespace ligature::scene {
 namespace {
@@ -152,12 +148,13 @@ bool override_key(toml::table& root, const std::string& text, ReadContext& conte
   };
   if (equals == std::string::npos || key.empty()) return bad("allowed key=value, for example suture.nodes=35");
   toml::table value;
-  try {
-    value = toml::parse("v = " + text.substr(equals + 1));
-  } catch (const toml::parse_error& error) {
+  auto parsed = parse_toml("v = " + text.substr(equals + 1), "--set");
+  if (auto* tree = std::get_if<toml::table>(&parsed)) {
+    value = std::move(*tree);
+  } else {
     const std::string plain(trim(std::string_view(text).substr(equals + 1), " \t"));
     if (plain.empty() || plain.find_first_of("[]{}\"'=,") != std::string::npos) {
-      return bad("the value is not TOML: " + std::string(error.description()));
+      return bad("the value is not TOML, allowed for example 0.5, [0.0, 0.0, 1.0] or \"text\"");
     }
     value = toml::table{{"v", plain}};  // suture.model=paper-1 without the quotes that a shell eats
   }
@@ -175,21 +172,6 @@ bool override_key(toml::table& root, const std::string& text, ReadContext& conte
   return true;
 }
 
-std::variant<toml::table, Error> parse_file(const fs::path& path) {
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file || fs::is_directory(path)) {
-    return Error{path.string() + ": cannot be read: " + std::strerror(errno ? errno : EISDIR)};
-  }
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  try {
-    return toml::parse(text, path.string());
-  } catch (const toml::parse_error& e) {
-    return Error{path.string() + ":" + std::to_string(e.source().begin.line) +
-                 ": not TOML: " + std::string(e.description())};
-  }
-}
-
 }  // namespace
 
 const char* name(Model model) noexcept {
@@ -200,7 +182,7 @@ const char* name(Model model) noexcept {
 }
 
 std::variant<Scene, Error> load_scene(const fs::path& path, std::span<const std::string> overrides) {
-  auto parsed = parse_file(path);
+  auto parsed = parse_toml_file(path);
   if (auto* error = std::get_if<Error>(&parsed)) return *error;
   auto& root = std::get<toml::table>(parsed);
   const bool has_suture = root.contains("suture");

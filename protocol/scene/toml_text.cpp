@@ -1,0 +1,71 @@
+#include "protocol/scene/toml_text.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+namespace ligature::scene {
+namespace {
+
+/// Bytes of the quote that starts here: three of a multi-line string, or one.
+std::size_t quote_at(std::string_view rest) {
+  return rest.size() >= 3 && rest[1] == rest[0] && rest[2] == rest[0] ? 3 : 1;
+}
+
+/// Bytes of a string with its quotes; an unfinished one ends where the parser will stop at it: at its line or the text.
+std::size_t quoted(std::string_view rest) {
+  const auto quote = rest.substr(0, quote_at(rest));
+  for (std::size_t i = quote.size(); i < rest.size(); ++i) {
+    if (rest[i] == '\\' && quote[0] == '"') {
+      ++i;
+    } else if (rest.substr(i).starts_with(quote)) {
+      return i + quote.size();
+    } else if (rest[i] == '\n' && quote.size() == 1) {
+      return i;
+    }
+  }
+  return rest.size();
+}
+
+}  // namespace
+
+int line_of_stray_character(std::string_view text) {
+  std::size_t i = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;  // a byte order mark is allowed
+  while (i < text.size()) {
+    if (text[i] == '#') {
+      i = std::min(text.find('\n', i), text.size());
+    } else if (text[i] == '"' || text[i] == '\'') {
+      i += quoted(text.substr(i));
+    } else if (static_cast<unsigned char>(text[i]) > 0x7F) {
+      return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n'));
+    } else {
+      ++i;
+    }
+  }
+  return 0;
+}
+
+std::variant<toml::table, Error> parse_toml(const std::string& text, const std::string& name) {
+  if (const int line = line_of_stray_character(text); line > 0) {
+    return Error{name + ":" + std::to_string(line) +
+                 ": not TOML: a character outside ASCII, allowed in comments and in quotes"};
+  }
+  try {
+    return toml::parse(text, name);
+  } catch (const toml::parse_error& e) {
+    return Error{name + ":" + std::to_string(e.source().begin.line) + ": not TOML: " + std::string(e.description())};
+  }
+}
+
+std::variant<toml::table, Error> parse_toml_file(const std::filesystem::path& path) {
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path)) {
+    return Error{path.string() + ": cannot be read: " + std::strerror(errno ? errno : EISDIR)};
+  }
+  return parse_toml({std::istreambuf_iterator<char>(file), {}}, path.string());
+}
+
+}  // namespace ligature::scene
