@@ -17,13 +17,14 @@ RULES = {
     "protocol/can": ([], []),
     "protocol/can/describe": (["protocol/can"], ["OS"]),
     "protocol/scene": ([], ["toml++/"]),
-    "protocol/device": ([SCENE_STRUCT, "protocol/scene/strict_table.hpp"], ["toml++/", "OS"]),
+    "protocol/device": ([SCENE_STRUCT, "protocol/scene/toml_text.hpp"], ["toml++/", "OS"]),
     "protocol/recorder": ([], []),
+    "protocol/lcm": ([], ["OS"]),
     "firmware/rt": ([], []),
     "firmware/physics": (["firmware/rt", SCENE_STRUCT], ["Eigen/"]),
     "firmware/control": (["firmware/rt", "firmware/physics", SCENE_STRUCT, DEVICE_STRUCT], ["Eigen/", "ruckig/"]),
     "firmware/platform": (["firmware/rt", "protocol/can", DEVICE_STRUCT], ["OS"]),
-    "firmware/telemetry": (["firmware/rt", "protocol/recorder", "ligature_msg"], ["lcm/", "OS"]),
+    "firmware/telemetry": (["firmware/rt", "protocol/recorder", "protocol/lcm", "ligature_msg"], ["lcm/", "OS"]),
     "firmware/cycle.hpp": (["firmware/rt", "firmware/control", "firmware/physics", "protocol/can"], []),
     "firmware/app": (["firmware", "protocol", "ligature_msg"], ["CLI/", "spdlog/", "OS"]),
     "sim_device": (["protocol/can", "protocol/scene", "protocol/device"], ["ruckig/", "Eigen/", "CLI/", "spdlog/", "nlohmann/", "OS"]),
@@ -32,7 +33,7 @@ RULES = {
     "host/lab": (["firmware/physics", "firmware/rt", "protocol/scene", "sim_device/operator", "host/knot", "host/lab/tie"], ["CLI/", "nlohmann/", "Eigen/", "OS"]),
     # The whole rig in one process and in virtual time: it is made of everything, and only the lab's rig may be.
     "host/lab/rig": (["firmware", "sim_device", "protocol/can", "protocol/scene", "protocol/device", "host", "ligature_msg"], ["Eigen/", "OS"]),
-    "host": (["protocol/scene", "protocol/recorder", "host/knot", "host/view", "ligature_msg"], ["lcm/", "CLI/", "nlohmann/", "spdlog/", "OS"]),
+    "host": (["protocol/scene", "protocol/recorder", "protocol/lcm", "host/knot", "host/view", "ligature_msg"], ["lcm/", "CLI/", "nlohmann/", "spdlog/", "OS"]),
     "host/view": (["host", "protocol/scene", "ligature_msg"], ["boost/", "CLI/", "nlohmann/", "OS"]),
 }
 
