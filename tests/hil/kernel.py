@@ -41,6 +41,10 @@ def fetch(cache):
     subprocess.run(["dpkg-deb", "-x", archive.name, "."], cwd=folder, check=True)
     archive.unlink()
     unpack(next((folder / "boot").glob("vmlinuz-*")), folder / "vmlinux")
+    needed = set(modules(folder))  # of 400 MB
+    for module in folder.rglob("*.ko"):
+        if module not in needed:
+            module.unlink()
     (folder / "complete").touch()
     return folder
 
