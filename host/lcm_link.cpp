@@ -1,37 +1,20 @@
 #include "host/lcm_link.hpp"
 
-#include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <unistd.h>
 
 #include <exception>
 #include <lcm/lcm-cpp.hpp>
 #include <utility>
 
 #include "host/errors.hpp"
+#include "protocol/lcm/quiet_stderr.hpp"
 
 namespace ligature::host {
 namespace {
 
 /// Our queue between the library's thread and receive(): over a minute of everything the rig sends.
 constexpr int kQueuedMessages = 16384;
-
-/// Keeps the library's page of text off stderr while it opens the network: we say the same in one line.
-class QuietStderr {
- public:
-  QuietStderr() : saved_(dup(STDERR_FILENO)), null_(open("/dev/null", O_WRONLY)) { dup2(null_, STDERR_FILENO); }
-  ~QuietStderr() {
-    dup2(saved_, STDERR_FILENO);
-    close(saved_);
-    close(null_);
-  }
-  QuietStderr(const QuietStderr&) = delete;
-  QuietStderr& operator=(const QuietStderr&) = delete;
-
- private:
-  int saved_, null_;
-};
 
 /// Threads made while this lives never take a signal: it is ours to see.
 class SignalsBlocked {
@@ -73,7 +56,7 @@ LcmLink::LcmLink(const std::string& url, const std::string& channels, Handler ha
   const SignalsBlocked in_the_library;
   lcm::Subscription* subscription = nullptr;
   {
-    const QuietStderr one_line_is_enough;
+    const lcm_tools::QuietStderr one_line_is_enough;
     lcm_ = std::make_unique<lcm::LCM>(url);
     if (lcm_->good()) subscription = lcm_->subscribe(channels, &Receiver::on_message, receiver_.get());
   }

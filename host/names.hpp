@@ -9,11 +9,59 @@ namespace ligature::host {
 
 inline constexpr std::array<std::string_view, 2> kHandNames{"left", "right"};
 
+// What numbers of the wire are called, here and in the page, which is told them at its start. A test holds each list
+// against the firmware's own.
+
+inline constexpr std::array<std::string_view, 7> kStateNames{"OFF",   "CALIBRATE", "IDLE", "ENGAGE",
+                                                             "FORCE", "BRAKE",     "FAULT"};
+
 /// Word for a STATE_ value of tick_t; "?" for a number that is none.
 [[nodiscard]] constexpr std::string_view state_name(std::int8_t state) {
-  constexpr std::array<std::string_view, 7> names{"OFF", "CALIBRATE", "IDLE", "ENGAGE", "FORCE", "BRAKE", "FAULT"};
-  return state >= 0 && state < static_cast<std::int8_t>(names.size()) ? names[static_cast<std::uint8_t>(state)] : "?";
+  return state >= 0 && state < static_cast<std::int8_t>(kStateNames.size())
+             ? kStateNames[static_cast<std::uint8_t>(state)]
+             : "?";
 }
 static_assert(state_name(4) == "FORCE");
+
+struct CodeName {
+  int code;
+  std::string_view name;
+};
+
+/// LIMIT_ bits of tick_t: what holds a hand's force back.
+inline constexpr std::array<CodeName, 7> kLimitNames{{{1, "peak force"},
+                                                      {2, "motor heat"},
+                                                      {4, "step"},
+                                                      {8, "slew rate"},
+                                                      {16, "hand too fast"},
+                                                      {32, "passivity"},
+                                                      {64, "joint torque"}}};
+
+/// DEGRADED_ values of tick_t: what the thread's solver gave up in a tick.
+inline constexpr std::array<CodeName, 3> kDegradationNames{{{1, "iterations ended early: contacts softer"},
+                                                            {2, "contact list full: shallowest left out"},
+                                                            {3, "near-pair list full: far pairs not looked at"}}};
+
+struct FaultText {
+  int number;
+  std::string_view meaning, remedy;
+};
+
+/// Fault numbers (docs/architecture.md): what happened, and what a person does about it.
+inline constexpr std::array<FaultText, 10> kFaults{{
+    {10, "A hand's bus is gone", "Check the cable or the simulated hand, then reset the fault."},
+    {11, "Joint messages too old",
+     "A drive stopped sending, or the machine was too slow. Check load and bus, then reset."},
+    {12, "A drive reports a fault", "Read the drive's own error code, clear its cause, then reset."},
+    {20, "A force or position is not a number", "Reset the thread, then the fault. If it returns, soften the scene."},
+    {21, "The hand moved too fast", "Hold the stylus still, then reset the fault."},
+    {22, "An encoder stands still while the others move", "Check that joint's encoder and its cable, then reset."},
+    {23, "A joint turned back at once while the others moved on",
+     "Check that joint's encoder and its sign, then reset."},
+    {24, "The stylus buttons cannot be trusted",
+     "Check the buttons and their cable: no force without the dead-man. Then reset."},
+    {30, "The control loop lost periods", "Too much load on the machine: run ligature-firmware doctor, then reset."},
+    {40, "The thread simulation diverged", "Reset the thread, then the fault. If it returns, soften the scene."},
+}};
 
 }  // namespace ligature::host

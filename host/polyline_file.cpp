@@ -1,10 +1,12 @@
 #include "host/polyline_file.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string_view>
 
 #include "host/errors.hpp"
@@ -25,6 +27,25 @@ std::optional<double> number(std::string_view field) {
   return scene::parse_number(field, value) ? std::optional(value) : std::nullopt;
 }
 
+/// Columns may be parted by commas, semicolons, or blanks and tabulators: the first of these that the line has.
+std::string comma_separated(std::string_view line) {
+  std::string text(line);
+  if (text.find(',') != std::string::npos) return text;
+  if (text.find(';') != std::string::npos) {
+    std::ranges::replace(text, ';', ',');
+    return text;
+  }
+  std::string joined;
+  for (std::istringstream words(text); words >> text;) joined += (joined.empty() ? "" : ",") + text;
+  return joined;
+}
+
+std::string lower(std::string_view word) {
+  std::string result(word);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
 /// Where the columns stand; -1 for one that is not there.
 struct Columns {
   int x = 0, y = 1, z = 2, time = -1, node = -1, count = 3;
@@ -38,10 +59,12 @@ class PolylineReader {
     if (++line_number_ == 1 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
     if (const auto comment = line.find('#'); comment != std::string_view::npos) line = line.substr(0, comment);
     if (scene::trim(line, kBlanks).empty()) return;
-    const auto fields = scene::split(line, kBlanks);
+    const std::string text = comma_separated(line);
+    const auto fields = scene::split(text, kBlanks);
     if (!columns_) {
       const bool has_header = !number(fields.front());
-      columns_ = has_header ? columns_of(fields) : Columns{};
+      const bool is_numbered = !has_header && fields.size() == 4;  // number, x, y, z
+      columns_ = has_header ? columns_of(fields) : is_numbered ? Columns{1, 2, 3, -1, -1, 4} : Columns{};
       if (has_header) return;
     }
     take_row(fields);
@@ -73,7 +96,7 @@ class PolylineReader {
   Columns columns_of(const std::vector<std::string_view>& names) const {
     Columns found{-1, -1, -1, -1, -1, static_cast<int>(names.size())};
     for (int i = 0; i < found.count; ++i) {
-      const auto name = names[static_cast<std::size_t>(i)];
+      const std::string name = lower(names[static_cast<std::size_t>(i)]);
       if (name == "x" || name == "x_m") found.x = i;
       if (name == "y" || name == "y_m") found.y = i;
       if (name == "z" || name == "z_m") found.z = i;

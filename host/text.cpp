@@ -16,15 +16,4 @@ std::string text(const char* format, ...) {
   return result;
 }
 
-std::string shown(std::string_view foreign) {
-  constexpr std::size_t kMost = 60;
-  std::string result;
-  for (const char c : foreign) {
-    if (result.size() >= kMost) return result + "..";
-    const auto byte = static_cast<unsigned char>(c);
-    result += byte < 0x20 || byte == 0x7F ? text("\\x%02X", unsigned{byte}) : std::string(1, c);
-  }
-  return result;
-}
-
 }  // namespace ligature::host

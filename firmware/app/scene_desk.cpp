@@ -68,15 +68,23 @@ SceneDesk::SceneDesk(const RunOptions& options, const Plan& plan, int core)
   scenes_ = scene_files(options_.scenes);
 }
 
-std::string SceneDesk::prepare_scene(const std::string& name) {
+/// "knot.toml", or "knot.toml suture.model=paper-2": the scene with another model of its thread.
+std::string SceneDesk::prepare_scene(const std::string& wish) {
+  constexpr std::string_view kModelKey = "suture.model=";
+  const auto blank = wish.find(' ');
+  const std::string name = wish.substr(0, blank);
+  std::vector<std::string> overrides;
+  if (blank != std::string::npos) overrides.push_back(wish.substr(blank + 1));
+  if (!overrides.empty() && !overrides[0].starts_with(kModelKey))
+    return "found '" + overrides[0] + "' after the scene, allowed suture.model=MODEL";
   scenes_ = scene_files(options_.scenes);
   if (std::ranges::find(scenes_, name) == scenes_.end()) {
     std::string allowed;
     for (const auto& s : scenes_) allowed += (allowed.empty() ? "" : ", ") + s;
     return "no such scene, allowed " + (allowed.empty() ? "none: " + options_.scenes + " has no scene" : allowed);
   }
-  next_ = {(fs::path(options_.scenes) / name).string(), {}, {}, {}};
-  words_ = "scene " + name + " loaded";
+  words_ = "scene " + name + " loaded" + (overrides.empty() ? "" : " with " + overrides[0]);
+  next_ = {(fs::path(options_.scenes) / name).string(), std::move(overrides), {}, {}};
   return {};
 }
 

@@ -62,7 +62,7 @@ class SceneDesk {
     Setup setup;
     std::string toml;
   };
-  [[nodiscard]] std::string prepare_scene(const std::string& name);
+  [[nodiscard]] std::string prepare_scene(const std::string& wish);
   [[nodiscard]] std::string prepare_parameter(const std::string& key, double value);
   [[nodiscard]] std::variant<Built, std::string> build(Setup setup, bool keeps_motion) const;
   [[nodiscard]] Outcome answer(const std::string& why, std::optional<Changed> changed = {}) const;

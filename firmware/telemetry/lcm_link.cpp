@@ -1,8 +1,6 @@
 #include "firmware/telemetry/lcm_link.hpp"
 
 #include <arpa/inet.h>
-#include <fcntl.h>
-#include <unistd.h>
 
 #include <charconv>
 #include <chrono>
@@ -10,30 +8,9 @@
 #include <utility>
 
 #include "firmware/telemetry/messages.hpp"
+#include "protocol/lcm/quiet_stderr.hpp"
 
 namespace ligature::telemetry {
-namespace {
-
-/// Keeps the library's page of text off stderr while it opens the network: the program says the same in one line.
-class QuietStderr {
- public:
-  QuietStderr() : saved_(dup(STDERR_FILENO)), null_(::open("/dev/null", O_WRONLY | O_CLOEXEC)) {
-    if (saved_ >= 0 && null_ >= 0) dup2(null_, STDERR_FILENO);
-  }
-  ~QuietStderr() {
-    if (saved_ >= 0) dup2(saved_, STDERR_FILENO);
-    close(saved_);
-    close(null_);
-  }
-  QuietStderr(const QuietStderr&) = delete;
-  QuietStderr& operator=(const QuietStderr&) = delete;
-
- private:
-  int saved_, null_;
-};
-
-}  // namespace
-
 std::string objection_to_url(const std::string& url) {
   constexpr std::string_view kMulticast = "udpm://";
   std::string why = "found '" + url.substr(0, 80) + "', allowed udpm://224.0.0.0 .. 239.255.255.255:PORT[?ttl=N]";
@@ -53,7 +30,7 @@ std::string objection_to_url(const std::string& url) {
 }
 
 LcmLink::LcmLink(const std::string& url, OnEvent on_event) : on_event_(std::move(on_event)) {
-  const QuietStderr one_line_is_enough;
+  const lcm_tools::QuietStderr one_line_is_enough;
   lcm_ = std::make_unique<lcm::LCM>(url);
   open_ = lcm_->good();
   // Subscribing is what tries the network.

@@ -43,11 +43,16 @@ void add_replay(CLI::App& app) {
   auto* command = app.add_subcommand("replay", "Show a recording in a browser");
   const auto options = std::make_shared<ReplayOptions>();
   command->add_option("log", options->log, "LCM log of 'record'")->required();
+  command->add_option("--compare", options->compare, "another one, whose traces are drawn dashed over these");
+  command->add_option("--align", options->align, "what both have in common: their first tick, or their first grasp")
+      ->check(CLI::IsMember({"start", "grasp"}))
+      ->capture_default_str();
   add_address(*command, options->server);
   command->footer(
       "The same page with a bar to scrub, 0.1 to 10 times the speed, and marks to jump to: grasp, release, knot,\n"
-      "fault. The log is mapped, not loaded: an hour opens in about two seconds.\n\n"
-      "Example:\n  ligature-host replay knot.lcmlog");
+      "fault. The log is mapped, not loaded: an hour opens in about two seconds. The page can lay another recording\n"
+      "of the same folder over it, too.\n\n"
+      "Example:\n  ligature-host replay tuesday.lcmlog --compare monday.lcmlog --align grasp");
   command->callback([options] { replay(*options); });
 }
 

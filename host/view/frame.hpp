@@ -12,7 +12,16 @@ namespace ligature::host::view {
 static_assert(std::endian::native == std::endian::little, "the page reads little-endian");
 
 /// Kinds of sections in a frame (docs/view.md; page/frame.js reads them).
-enum class Section : std::uint32_t { kNow = 1, kShape = 2, kRows = 3, kBins = 4, kText = 5 };
+enum class Section : std::uint32_t {
+  kNow = 1,
+  kShape = 2,
+  kRows = 3,
+  kBins = 4,
+  kText = 5,
+  kBeside = 6,
+  kBesideRows = 7,
+  kBesideBins = 8
+};
 
 /// One binary WebSocket message: "LGF1", u32 frame number, then sections of u32 kind, u32 size in bytes, payload,
 /// each padded to 8 bytes so that the page can lay typed arrays over it without copying.

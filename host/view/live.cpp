@@ -1,7 +1,6 @@
 #include "host/view/live.hpp"
 
 #include <atomic>
-#include <boost/asio/ip/address.hpp>
 #include <cstdio>
 #include <exception>
 #include <thread>
@@ -12,13 +11,12 @@
 #include "host/view/command_desk.hpp"
 #include "host/view/knot_watch.hpp"
 #include "host/view/page_recorder.hpp"
+#include "host/view/rig_json.hpp"
 
 namespace ligature::host::view {
 Access access_for(const ServerOptions& server, const std::string& token_file) {
-  boost::system::error_code error;
-  const bool is_here = boost::asio::ip::make_address(server.listen, error).is_loopback() && !error;
   if (!token_file.empty()) return {read_token_file(token_file), false};
-  return is_here ? Access{make_token(), true} : Access{};
+  return is_loopback(server) ? Access{make_token(), true} : Access{};
 }
 
 void announce(const Server& server, const ServerOptions& options, const Access& access) {
@@ -33,7 +31,10 @@ void announce(const Server& server, const ServerOptions& options, const Access& 
 void view_live(const ViewOptions& options) {
   const Access access = access_for(options.server, options.token_file);
   Picture picture;
-  picture.set("view", {{"mode", "live"}, {"version", LIGATURE_VERSION}, {"may_command", !access.token.empty()}});
+  picture.set("view", {{"mode", "live"},
+                       {"version", LIGATURE_VERSION},
+                       {"may_command", !access.token.empty()},
+                       {"names", names_json()}});
   PageRecorder recorder(access, options.recordings, picture);
   CommandDesk* desk_for_acks = nullptr;
   LcmLink link(options.lcm_url, "LIGATURE_.*", [&](const Message& message) {

@@ -18,14 +18,24 @@ void LogSurvey::go(const std::stop_token& stop) {
     const auto& entry = entries[i];
     const double t_s = map_.time_s(entry.time_us);
     const bool is_wanted = entry.channel == LogMap::Channel::kTicks || entry.channel == LogMap::Channel::kEvent ||
+                           (entry.channel == LogMap::Channel::kStatus && !has_period_) ||
                            (entry.channel == LogMap::Channel::kThread && t_s >= knot_due_s_);
     if (!is_wanted || !map_.read(entry, payload)) continue;
     if (entry.channel == LogMap::Channel::kTicks) take_batch(t_s, payload);
+    if (entry.channel == LogMap::Channel::kStatus) take_status(payload);
     if (entry.channel == LogMap::Channel::kEvent) take_event(t_s, payload);
     if (entry.channel == LogMap::Channel::kThread) take_shape(t_s, payload);
     progress_ = static_cast<double>(i) / static_cast<double>(entries.size());
   }
   progress_ = 1.0;
+}
+
+void LogSurvey::take_status(const std::vector<std::byte>& payload) {
+  const auto status = decode<ligature_msg::status_t>(payload);
+  if (!status || !(status->period_s > 0.0)) return;
+  has_period_ = true;
+  const std::scoped_lock lock(mutex_);
+  landmarks_.period_s = status->period_s;
 }
 
 void LogSurvey::take_batch(double t_s, const std::vector<std::byte>& payload) {
@@ -38,6 +48,9 @@ void LogSurvey::take_batch(double t_s, const std::vector<std::byte>& payload) {
   const std::scoped_lock lock(mutex_);
   for (const auto& tick : batch->ticks) {
     const TraceRow row = trace_row(tick);
+    if (!landmarks_.first_tick) landmarks_.first_tick = tick.tick, landmarks_.first_tick_s = t_s;
+    if (!landmarks_.first_grasp && (tick.grasped_node[0] >= 0 || tick.grasped_node[1] >= 0))
+      landmarks_.first_grasp = tick.tick;
     overview_[0][column] = std::max(overview_[0][column], static_cast<float>(row[kLeft]));
     overview_[1][column] = std::max(overview_[1][column], static_cast<float>(row[kRight]));
     TraceBin done;
@@ -63,6 +76,11 @@ void LogSurvey::add_mark(double t_s, int kind, int hand, const std::string& text
   const std::scoped_lock lock(mutex_);
   if (marks_.size() < kMostMarks)
     marks_.push_back({{"t_s", t_s}, {"kind", kind}, {"hand", hand}, {"text", text.substr(0, 200)}});
+}
+
+LogSurvey::Landmarks LogSurvey::landmarks() const {
+  const std::scoped_lock lock(mutex_);
+  return landmarks_;
 }
 
 nlohmann::json LogSurvey::marks() const {

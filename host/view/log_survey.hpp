@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -26,6 +27,14 @@ class LogSurvey {
   /// stretches of the log, N. Complete when progress() is 1.
   [[nodiscard]] nlohmann::json marks() const;
 
+  /// Where recordings can be laid over each other.
+  struct Landmarks {
+    std::optional<std::int64_t> first_tick, first_grasp;  ///< numbers; a grasp: the first tick with a node held
+    double first_tick_s = 0.0;                            ///< of the log, s
+    double period_s = 1e-3;
+  };
+  [[nodiscard]] Landmarks landmarks() const;
+
   /// The bins of the run of the firmware that is on at t, up to t, at most ten minutes of them.
   [[nodiscard]] std::vector<TraceBin> history(double t_s) const;
 
@@ -36,6 +45,7 @@ class LogSurvey {
     TraceBin bin;
   };
   void go(const std::stop_token& stop);
+  void take_status(const std::vector<std::byte>& payload);
   void take_batch(double t_s, const std::vector<std::byte>& payload);
   void take_event(double t_s, const std::vector<std::byte>& payload);
   void take_shape(double t_s, const std::vector<std::byte>& payload);
@@ -44,10 +54,12 @@ class LogSurvey {
   const LogMap& map_;
   mutable std::mutex mutex_;
   std::vector<TimedBin> bins_;
+  Landmarks landmarks_;
   nlohmann::json marks_ = nlohmann::json::array();
   std::vector<float> overview_[2]{std::vector<float>(kOverview), std::vector<float>(kOverview)};
   BinMaker bin_maker_;
   std::int64_t session_ = -1;
+  bool has_period_ = false;
   double knot_due_s_ = 0.0;
   std::string knot_ = "0_1 none";
   std::atomic<double> progress_ = 0.0;

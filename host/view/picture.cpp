@@ -1,6 +1,7 @@
 #include "host/view/picture.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 
 #include "host/view/rig_json.hpp"
@@ -13,6 +14,11 @@ using nlohmann::json;
 double milliseconds(Picture::Clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
 
 }  // namespace
+
+std::int64_t Picture::next_epoch() {
+  static std::atomic<std::int64_t> last = 0;
+  return ++last;
+}
 
 void Picture::take(std::string_view channel, Bytes data, Clock::time_point now) {
   const std::scoped_lock lock(mutex_);
@@ -63,7 +69,7 @@ void Picture::take_batch(const ligature_msg::tick_batch_t& batch) {
 }
 
 void Picture::start_again_locked() {
-  ++epoch_;
+  epoch_ = next_epoch();
   rows_.clear();
   bins_.clear();
   bin_maker_.clear();
@@ -99,6 +105,11 @@ void Picture::add_event(const json& event) {
   events_.push(event);
 }
 
+void Picture::show_beside(const Picture* other) {
+  const std::scoped_lock lock(mutex_);
+  beside_ = other;
+}
+
 std::optional<ligature_msg::thread_t> Picture::newer_shape(std::int64_t& known) const {
   const std::scoped_lock lock(mutex_);
   if (known == shape_version_) return std::nullopt;
@@ -114,9 +125,10 @@ std::int64_t Picture::unreadable() const {
 std::vector<std::byte> Picture::frame_for(Place& place, const json& answers, Clock::time_point now) const {
   const std::scoped_lock lock(mutex_);
   FrameWriter frame(++place.frame);
-  if (place.epoch != epoch_) {  // the page starts again
-    place = {.epoch = epoch_, .bin = bins_.begin(), .event = events_.begin(), .topics = {}, .frame = place.frame};
-    place.row = std::max(rows_.begin(), rows_.end() - kRowsAtFirst);
+  if (begin_traces(place.traces)) {
+    place.topics.clear();
+    place.event = events_.begin();
+    place.shape = -1;
   }
   json text = changes_since(place);
   if (!answers.empty()) text["answers"] = answers;
@@ -128,8 +140,24 @@ std::vector<std::byte> Picture::frame_for(Place& place, const json& answers, Clo
   write_now(frame, now);
   if (place.shape != shape_version_ && thread_.count > 0) write_shape(frame);
   place.shape = shape_version_;
-  write_traces(frame, place);
+  write_traces(frame, place.traces, Section::kRows, Section::kBins);
+  if (beside_) beside_->write_beside(frame, place.beside);
   return frame.take();
+}
+
+bool Picture::begin_traces(TracePlace& place) const {
+  if (place.epoch == epoch_) return false;
+  place = {epoch_, std::max(rows_.begin(), rows_.end() - kRowsAtFirst), bins_.begin()};
+  return true;
+}
+
+void Picture::write_beside(FrameWriter& frame, TracePlace& place) const {
+  const std::scoped_lock lock(mutex_);
+  begin_traces(place);
+  frame.begin(Section::kBeside);
+  frame.add(static_cast<double>(epoch_));
+  frame.end();
+  write_traces(frame, place, Section::kBesideRows, Section::kBesideBins);
 }
 
 void Picture::write_now(FrameWriter& frame, Clock::time_point now) const {
@@ -152,20 +180,20 @@ void Picture::write_shape(FrameWriter& frame) const {
   frame.end();
 }
 
-void Picture::write_traces(FrameWriter& frame, Place& place) const {
+void Picture::write_traces(FrameWriter& frame, TracePlace& place, Section rows, Section bins) const {
   place.row = std::max(place.row, rows_.begin());
   if (rows_.end() - place.row > kRowsAtFirst)  // a page that fell behind: the latest wins, the bins fill the hole
     place.row = rows_.end() - kRowsPerFrame;
   const auto last_row = std::min(rows_.end(), place.row + kRowsPerFrame);
   if (place.row < last_row) {
-    frame.begin(Section::kRows);
+    frame.begin(rows);
     for (; place.row < last_row; ++place.row) frame.add(rows_[place.row]);
     frame.end();
   }
   place.bin = std::max(place.bin, bins_.begin());
   const auto last_bin = std::min(bins_.end(), place.bin + kBinsPerFrame);
   if (place.bin < last_bin) {
-    frame.begin(Section::kBins);
+    frame.begin(bins);
     for (; place.bin < last_bin; ++place.bin) frame.add(bins_[place.bin]);
     frame.end();
   }

@@ -15,10 +15,16 @@
 
 namespace ligature::host::view {
 
+/// Up to where one page has been told of a picture's traces.
+struct TracePlace {
+  std::int64_t epoch = -1;  // of the picture; another one means: forget all, start again
+  std::int64_t row = 0, bin = 0;
+};
+
 /// Up to where one page has been told.
 struct Place {
-  std::int64_t epoch = -1;  // of the picture; another one means: forget all, start again
-  std::int64_t row = 0, bin = 0, event = 0, shape = -1;
+  TracePlace traces, beside;
+  std::int64_t event = 0, shape = -1;
   std::map<std::string, std::int64_t> topics;  // versions
   std::uint32_t frame = 0;
 };
@@ -45,6 +51,9 @@ class Picture {
   void set(const std::string& topic, nlohmann::json what);
   void add_event(const nlohmann::json& event);
 
+  /// Another recording whose traces go along with each frame; null: none. It must live until this is called again.
+  void show_beside(const Picture* other);
+
   /// The newest shape, or nothing when it is the one with number `known`, which is set.
   [[nodiscard]] std::optional<ligature_msg::thread_t> newer_shape(std::int64_t& known) const;
 
@@ -56,17 +65,23 @@ class Picture {
   [[nodiscard]] std::int64_t unreadable() const;
 
  private:
+  /// Never the same twice, of whatever picture.
+  static std::int64_t next_epoch();
   void count_unreadable();
   void take_batch(const ligature_msg::tick_batch_t& batch);
   void start_again_locked();
   void set_locked(const std::string& topic, nlohmann::json what);
   void write_now(FrameWriter& frame, Clock::time_point now) const;
   void write_shape(FrameWriter& frame) const;
-  void write_traces(FrameWriter& frame, Place& place) const;
+  void write_beside(FrameWriter& frame, TracePlace& place) const;
+  /// @return whether the page starts again.
+  bool begin_traces(TracePlace& place) const;
+  void write_traces(FrameWriter& frame, TracePlace& place, Section rows, Section bins) const;
   [[nodiscard]] nlohmann::json changes_since(Place& place) const;
 
   mutable std::mutex mutex_;
-  std::int64_t epoch_ = 0, session_ = -1, unreadable_ = 0;
+  const Picture* beside_ = nullptr;
+  std::int64_t epoch_ = next_epoch(), session_ = -1, unreadable_ = 0;
   std::optional<Clock::time_point> heard_;  // last ticks
   std::optional<ligature_msg::tick_t> last_;
   ligature_msg::thread_t thread_{};

@@ -32,6 +32,7 @@ json Player::request(const json& message, Picture::Clock::time_point now) {
 
 void Player::seek(double t_s, Picture::Clock::time_point now) {
   position_s_ = std::clamp(t_s, 0.0, map_.duration_s());
+  has_begun_ = true;
   last_ = now;
   const double from_s = std::max(0.0, position_s_ - kLeadIn_s);
   picture_.start_again(survey_.history(from_s));
@@ -48,6 +49,14 @@ void Player::advance(Picture::Clock::time_point now) {
     if (position_s_ >= map_.duration_s()) playing_ = false;
   }
   picture_.hold(now);
+}
+
+void Player::follow(double t_s, Picture::Clock::time_point now) {
+  constexpr double kLongestStep_s = 5.0;
+  const double to_s = std::clamp(t_s, 0.0, map_.duration_s());
+  if (!has_begun_ || to_s < position_s_ || to_s > position_s_ + kLongestStep_s) return seek(to_s, now);
+  position_s_ = to_s;
+  play_until(map_.after(to_s), now);
 }
 
 void Player::play_until(std::size_t end, Picture::Clock::time_point now) {

@@ -27,6 +27,9 @@ class Player {
 
   void seek(double t_s, Picture::Clock::time_point now);
 
+  /// Is at t, for one that has no clock of its own: goes on when that is a little later, else jumps.
+  void follow(double t_s, Picture::Clock::time_point now);
+
   [[nodiscard]] double position_s() const { return position_s_; }
   [[nodiscard]] bool is_playing() const { return playing_; }
   [[nodiscard]] nlohmann::json state() const;
@@ -39,7 +42,7 @@ class Player {
   Picture& picture_;
   std::size_t next_ = 0;  // entry to be played
   double position_s_ = 0.0, speed_ = 1.0;
-  bool playing_ = true;
+  bool playing_ = true, has_begun_ = false;
   Picture::Clock::time_point last_ = Picture::Clock::now();
   std::vector<std::byte> payload_;
 };

@@ -4,9 +4,11 @@
 #include <filesystem>
 
 #include "host/stop_signal.hpp"
+#include "host/view/comparison.hpp"
 #include "host/view/knot_watch.hpp"
 #include "host/view/live.hpp"
 #include "host/view/player.hpp"
+#include "host/view/rig_json.hpp"
 
 namespace ligature::host::view {
 
@@ -20,15 +22,26 @@ void replay(const ReplayOptions& options) {
   picture.set("view", {{"mode", "replay"},
                        {"version", LIGATURE_VERSION},
                        {"file", std::filesystem::path(options.log).filename().string()},
-                       {"may_command", false}});
+                       {"may_command", false},
+                       {"names", names_json()}});
+  // Who may reach this machine may see its other recordings too; who looks from elsewhere sees what is shown.
+  const auto folder = std::filesystem::path(options.log).parent_path();
+  Comparison comparison(map, survey, picture,
+                        !is_loopback(options.server) ? ""
+                        : folder.empty()             ? std::filesystem::path(".")
+                                                     : folder);
+  if (!options.compare.empty()) comparison.open(options.compare, options.align);
   const auto on_message = [&](std::uint64_t, const nlohmann::json& message) {
+    if (message.contains("compare")) return comparison.request(message);
     return player.request(message, Picture::Clock::now());
   };
   bool has_marks = false;
   auto state = player.state();
   const auto on_tick = [&](bool& more) {
     more = !stop_requested();
-    player.advance(Picture::Clock::now());
+    const auto clock = Picture::Clock::now();
+    player.advance(clock);
+    comparison.follow(player.position_s(), clock);
     if (!has_marks && survey.progress() >= 1.0) {
       has_marks = true;
       picture.set("marks", survey.marks());

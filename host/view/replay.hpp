@@ -7,6 +7,8 @@ namespace ligature::host::view {
 
 struct ReplayOptions {
   std::string log;
+  std::string compare;  // another one beside it; empty: none
+  std::string align = "start";
   ServerOptions server;
 };
 

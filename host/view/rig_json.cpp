@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/names.hpp"
+
 namespace ligature::host::view {
 
 nlohmann::json to_json(const ligature_msg::status_t& s) {
@@ -40,6 +42,14 @@ nlohmann::json to_json(const ligature_msg::offer_t& o) {
                           {"highest", p.highest}});
   }
   return {{"scenes", std::move(scenes)}, {"parameters", std::move(parameters)}};
+}
+
+nlohmann::json names_json() {
+  nlohmann::json limits, degradations, faults;
+  for (const auto& [bit, name] : kLimitNames) limits.push_back({bit, name});
+  for (const auto& [code, name] : kDegradationNames) degradations.push_back({code, name});
+  for (const auto& [number, meaning, remedy] : kFaults) faults.push_back({number, meaning, remedy});
+  return {{"states", kStateNames}, {"limits", limits}, {"degradations", degradations}, {"faults", faults}};
 }
 
 void write_tick(FrameWriter& frame, const ligature_msg::tick_t& tick) {

@@ -111,6 +111,11 @@ std::string url_of(const ServerOptions& options, std::uint16_t port) {
   return "http://" + (is_v6 ? "[" + options.listen + "]" : options.listen) + ":" + std::to_string(port) + "/";
 }
 
+bool is_loopback(const ServerOptions& options) {
+  beast::error_code error;
+  return asio::ip::make_address(options.listen, error).is_loopback() && !error;
+}
+
 struct Server::Parts {
   Shared shared;  // first, so that it outlives the connections, which end with io
   asio::io_context io{1};

@@ -18,6 +18,9 @@ struct ServerOptions {
 /// The address to open in a browser; an IPv6 one stands in brackets.
 [[nodiscard]] std::string url_of(const ServerOptions& options, std::uint16_t port);
 
+/// Whether only this machine can reach it.
+[[nodiscard]] bool is_loopback(const ServerOptions& options);
+
 /// What the server needs of the rest. All are called on the server's thread.
 struct ServerHooks {
   /// A text message of a page; @return an answer for it, or null.

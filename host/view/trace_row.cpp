@@ -21,6 +21,7 @@ TraceRow trace_row(const ligature_msg::tick_t& tick) {
     row[kLeftBusLoad + hand] = static_cast<double>(tick.bus_load[hand]);
     row[kLeftHeat + hand] = tick.heat[hand];
     row[kLeftLimits + hand] = tick.limits[hand];
+    row[kLeftClutch + hand] = tick.clutch[hand];
   }
   row[kWakeup_ns] = tick.wakeup_latency_ns;
   row[kControl_ns] = tick.control_ns;
@@ -33,6 +34,7 @@ TraceRow trace_row(const ligature_msg::tick_t& tick) {
   row[kMaxStretch] = tick.max_stretch;
   row[kMinGap_m] = tick.min_gap_m;
   row[kContacts] = tick.contacts;
+  row[kDegradation] = tick.degradation;
   return row;
 }
 

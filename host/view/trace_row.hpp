@@ -43,6 +43,9 @@ enum Column : std::size_t {
   kRightHeat,
   kLeftLimits,  // LIMIT_ bits of tick_t
   kRightLimits,
+  kLeftClutch,  // 1: the tool is parked
+  kRightClutch,
+  kDegradation,  // DEGRADED_ value of tick_t
   kColumns
 };
 

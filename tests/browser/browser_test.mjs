@@ -11,7 +11,7 @@ mkdirSync(out, { recursive: true });
 rmSync(join(out, 'page.lcmlog'), { force: true });
 const rig = new Program(python, [rigScript]);
 const browser = await Browser.start();
-let view, page;
+let view, page, replay;
 
 const steps = {
   'opens, and says how long the first thread took': async () => {
@@ -80,6 +80,19 @@ const steps = {
     assert.equal(report.ticks_lost, 0);
     assert.ok(report.ticks_recorded > 1000);
   },
+  'limits, clutch and what the solver gave up are named': async () => {
+    rig.tell('limit 33');
+    rig.tell('clutch 1');
+    rig.tell('degrade 2');
+    await until(page, () => /clutch: tool parked · limited: peak force, passivity/.test(document.getElementById('hand-left').textContent));
+    await page.getByText('solver: contact list full: shallowest left out').waitFor();
+    await page.click('#change-open');
+    await page.locator('[data-command="unclutch left"]').waitFor();
+    await page.click('#change-close');
+    await page.screenshot({ path: join(out, 'limits.png') });
+    for (const line of ['limit 0', 'clutch 0', 'degrade 0']) rig.tell(line);
+    await until(page, () => document.getElementById('degraded').hidden);
+  },
   'the space bar stops, whatever has the focus': async () => {
     await page.focus('#colour');
     await page.keyboard.press('Space');
@@ -111,6 +124,10 @@ const steps = {
     await page.click('#load-scene');
     await page.getByText('load scene: scene desk.toml loaded').waitFor();
     await until(page, () => document.getElementById('scene-file').textContent.startsWith('desk.toml'));
+    await page.selectOption('#model', 'paper-2');
+    await page.click('#load-scene');
+    await rig.says(/command load-scene desk.toml suture.model=paper-2/);
+    await page.selectOption('#model', '');
     await page.click('#arm');
     await until(page, () => document.getElementById('state').dataset.state === 'FORCE');
     await page.click('#load-scene');
@@ -198,7 +215,7 @@ const steps = {
     rig.tell('knot');
     await recorder.ended();
     execFileSync(host, ['export', log, '--forces', forces]);
-    const replay = new Program(host, ['replay', log, '--port', '0']);
+    replay = new Program(host, ['replay', log, '--port', '0']);
     page = await browser.open(await replay.says(/open (\S+)/));
     await page.waitForFunction(() => ligature.firstThread_ms);
     await page.evaluate(() => document.getElementById('help').close());
@@ -215,6 +232,25 @@ const steps = {
     assert.ok(rows.length > 500);
     compare(rows, forces);
     await page.screenshot({ path: join(out, 'replay.png') });
+    // What the cursor reads is the exported number, too.
+    await page.click('#windows button[value="1"]');
+    const box = await page.locator('.plot .u-over').first().boundingBox();
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await until(page, () => document.getElementById('cursor').dataset.row);
+    compare([JSON.parse(await page.locator('#cursor').getAttribute('data-row')).map(Number)], forces);
+  },
+  'another recording is drawn dashed over it, with its own exported values': async () => {
+    const forces = join(out, 'other.csv');
+    execFileSync(host, ['export', join(out, 'page.lcmlog'), '--forces', forces]);
+    await page.selectOption('#compare', 'page.lcmlog');
+    await page.waitForFunction(() => ligature.traces.isComparing && ligature.beside.rowEnd > ligature.beside.rowBegin + 500);
+    await page.click('#windows button[value="10"]');
+    await page.waitForFunction(() => ligature.traces.plots.every(({ plot }) => plot.series.at(-1).show && plot.data.at(-1).some((v) => v !== null && v !== undefined)));
+    const rows = await page.evaluate(() => { const r = []; for (let i = ligature.beside.rowBegin; i < ligature.beside.rowEnd; ++i) r.push([...ligature.beside.row(i)]); return r; });
+    compare(rows, forces);
+    await page.screenshot({ path: join(out, 'compare.png') });
+    await page.selectOption('#compare', '');
+    await page.waitForFunction(() => !ligature.traces.isComparing);
     assert.equal(await replay.stop(), 0);
     assert.equal(await view.stop(), 0);
   },

@@ -1,6 +1,7 @@
 """A rig for tests of the page: publishes what ligature-firmware would, and obeys lines on standard input.
 
     fault N     latch fault N        knot | unknot   the thread's shape        spike F   one tick with F newton
+    limit BITS  what holds the left hand back   clutch B   left tool parked   degrade N   what the solver gave up
     quiet       send nothing more    go              send again                restart   another session
 It says "ready" when it publishes and "command NAME" for each command that it hears. Nothing here is physics.
 """
@@ -48,6 +49,7 @@ class Rig:
         self.lcm.subscribe("LIGATURE_COMMAND", self.on_command)
         self.state, self.fault, self.armed = 2, 0, False
         self.shape, self.spike, self.quiet = unknot(KNOT_NODES), 0.0, False
+        self.limit, self.clutch, self.degraded = 0, 0, 0
         self.scene, self.friction = "fake.toml", 0.3
         self.restart()
 
@@ -113,6 +115,12 @@ class Rig:
             self.shape = trefoil(KNOT_NODES) if word == "knot" else unknot(KNOT_NODES)
         elif word == "spike":
             self.spike = float(value)
+        elif word == "limit":
+            self.limit = int(value)
+        elif word == "clutch":
+            self.clutch = int(value)
+        elif word == "degrade":
+            self.degraded = int(value)
         elif word in ("quiet", "go"):
             self.quiet = word == "quiet"
         elif word == "restart":
@@ -138,6 +146,7 @@ class Rig:
         tick.bus_load = [0.62, 0.64 + 0.02 * math.sin(t)]
         tick.port_energy_J, tick.dissipated_J = [0.02 * math.sin(t), 0.01 * math.cos(t)], [1e-4 * t, 2e-4 * t]
         tick.f_world_N = [[200 * f for f in hand] for hand in tick.f_device_N]
+        tick.limits, tick.clutch, tick.degradation = [self.limit, 0], [self.clutch, 0], self.degraded
         tick.gain, tick.heat = [gain, gain], [0.1, 0.2]
         self.spike = 0.0
         self.tick += 1

@@ -32,6 +32,15 @@ class Changes(unittest.TestCase):
             code, said = send("load-scene", "desk.toml")
             self.assertEqual((code, said), (0, "load-scene accepted: scene desk.toml loaded\n"))
             rig.wait_for(lambda r: r.listener.status.scene_file.endswith("desk.toml"), "the new scene's name")
+            code, said = send("load-scene", "paper.toml suture.model=paper-2")  # another model comes with its scene
+            self.assertEqual((code, said), (0, "load-scene accepted: scene paper.toml loaded with suture.model=paper-2\n"))
+            rig.wait_for(lambda r: "suture.model=paper-2" in r.listener.status.scene_toml, "the model in the scene's text")
+            code, said = send("load-scene", "paper.toml suture.model=rubber")
+            self.assertEqual(code, 3)
+            self.assertIn("paper-1", said)
+            code, said = send("load-scene", "paper.toml time.tick_s=1")
+            self.assertEqual(code, 3)
+            self.assertIn("allowed suture.model=MODEL", said)
             tick = rig.listener.ticks[-1]
             self.assertEqual((tick.state, tick.fault), (STATE_IDLE, 0))
             self.assertEqual(rig.end("firmware"), 0)

@@ -16,7 +16,7 @@ export function setUpChange(link) {
   };
   $('load-scene').addEventListener('click', async () => {
     $('load-scene').disabled = true;
-    await ask({ command: 'load-scene', text: $('scenes').value }, 'load scene');
+    await ask({ command: 'load-scene', text: $('scenes').value + ($('model').value && ` suture.model=${$('model').value}`) }, 'load scene');
     $('load-scene').disabled = false;
   });
   setUpChange.ask = ask;

@@ -11,6 +11,7 @@ export function setUpControls(link, isReplay) {
     toast(`${command}: ${answer.accepted ? answer.text || 'done' : `refused – ${answer.text}`}`, !answer.accepted);
   };
   for (const [id, command] of Object.entries(COMMANDS)) $(id).addEventListener('click', () => give(command));
+  for (const button of document.querySelectorAll('[data-command]')) button.addEventListener('click', () => give(button.dataset.command));
   // In the capture phase and before anything else: space stops, whatever has the focus.
   addEventListener('keydown', (event) => {
     if (event.code === 'Space' && !isReplay()) {

@@ -4,15 +4,15 @@
 export const COLUMNS = ['tick', 'leftX', 'leftY', 'leftZ', 'left', 'rightX', 'rightY', 'rightZ', 'right', 'wakeup_ns',
   'control_ns', 'execution_ns', 'flags', 'state', 'fault', 'kinetic_J', 'potential_J', 'maxStretch', 'minGap_m',
   'contacts', 'leftNode', 'rightNode', 'leftWorld', 'rightWorld', 'leftPort_J', 'rightPort_J', 'leftDissipated_J', 'rightDissipated_J',
-  'leftBusLoad', 'rightBusLoad', 'leftHeat', 'rightHeat', 'leftLimits', 'rightLimits'];
+  'leftBusLoad', 'rightBusLoad', 'leftHeat', 'rightHeat', 'leftLimits', 'rightLimits',
+  'leftClutch', 'rightClutch', 'degradation'];
 export const C = Object.fromEntries(COLUMNS.map((name, i) => [name, i]));
 export const WIDTH = COLUMNS.length;
 export const TICKS_PER_BIN = 50;
-export const STATES = ['OFF', 'CALIBRATE', 'IDLE', 'ENGAGE', 'FORCE', 'BRAKE', 'FAULT'];
-const SECTION = { now: 1, shape: 2, rows: 3, bins: 4, text: 5 };
+const SECTION = { now: 1, shape: 2, rows: 3, bins: 4, text: 5, beside: 6, besideRows: 7, besideBins: 8 };
 const MAGIC = 0x3146474c; // "LGF1", little-endian
 
-/** @returns {{number, now, shape?, rows?, bins?, text?}}; throws on anything that is no frame. */
+/** @returns {{number, now, shape?, rows?, bins?, text?, beside?, besideRows?, besideBins?}}; throws on anything that is no frame. */
 export function readFrame(buffer) {
   const view = new DataView(buffer);
   if (buffer.byteLength < 8 || view.getUint32(0, true) !== MAGIC) throw new Error('not a frame');
@@ -25,6 +25,9 @@ export function readFrame(buffer) {
     else if (kind === SECTION.rows) frame.rows = new Float64Array(buffer, start, size / 8);
     else if (kind === SECTION.bins) frame.bins = new Float32Array(buffer, start, size / 4);
     else if (kind === SECTION.text) frame.text = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, start, size)));
+    else if (kind === SECTION.beside) frame.beside = new Float64Array(buffer, start, 1)[0];
+    else if (kind === SECTION.besideRows) frame.besideRows = new Float64Array(buffer, start, size / 8);
+    else if (kind === SECTION.besideBins) frame.besideBins = new Float32Array(buffer, start, size / 4);
     at = start + Math.ceil(size / 8) * 8;
   }
   return frame;

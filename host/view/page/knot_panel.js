@@ -10,6 +10,11 @@ export class KnotPanel {
 
   clear() { this.history = []; }
 
+  /** What the strip shows before the first name that comes: a recording knows it. @param past [{label, from}], by tick. */
+  seed(past) {
+    if (!this.history.length) this.history = past.map(({ label, from }) => ({ label, type: label.split(' ')[0], from }));
+  }
+
   update(knot, period_s) {
     if (!knot) return;
     const name = $('knot-name');

@@ -9,21 +9,23 @@ import { ReplayBar } from './replay_bar.js';
 import { setUpChange, showOffer } from './change_panel.js';
 import { isTyping, setUpControls, setUpRecording, showRecording } from './controls.js';
 import { drawDiagram } from './knot_diagram.js';
-import { C } from './frame.js';
+import { setNames } from './names.js';
 import { sceneFacts, showAge, showHands, showState, showStatus } from './state_panel.js';
 
 const $ = (id) => document.getElementById(id);
-const store = new TraceStore(), scene = new Scene($('canvas')), knots = new KnotPanel();
+const store = new TraceStore(), beside = new TraceStore(), scene = new Scene($('canvas')), knots = new KnotPanel();
 const latest = { now: null, shape: null, knot: null, epoch: null, isReplay: false, isNew: false };
 const events = [];
-const page = { frames: 0, draws: 0, firstThread_ms: null, latest, store, scene }; // what tests and the curious look at
+const page = { frames: 0, draws: 0, firstThread_ms: null, latest, store, beside, scene }; // what tests and the curious look at
 window.ligature = page;
 
 const traces = new Traces($('plots'), store, (row) => {
-  $('cursor').textContent = describeRow(row, traces.period_s);
-  $('cursor').dataset.row = row ? JSON.stringify([...row]) : '';
+  $('cursor').textContent = describeRow(row, traces.period_s, traces.besideRow(row));
+  $('cursor').dataset.row = row ? JSON.stringify([...row].map((v) => (Object.is(v, -0) ? '-0' : v))) : ''; // JSON knows no -0
 });
+traces.beside = { store: beside, offset_ticks: null, name: '' };
 const link = new Link(onFrame), replay = new ReplayBar(link);
+page.traces = traces;
 page.link = link;
 
 function onFrame(frame) {
@@ -40,6 +42,9 @@ function onFrame(frame) {
   if (frame.shape) { latest.shape = frame.shape; page.firstThread_ms ??= performance.now(); }
   if (frame.bins) store.addBins(frame.bins);
   if (frame.rows) store.addRows(frame.rows);
+  if (frame.beside !== undefined && frame.beside !== latest.beside) { latest.beside = frame.beside; beside.clear(); }
+  if (frame.besideBins) beside.addBins(frame.besideBins);
+  if (frame.besideRows) beside.addRows(frame.besideRows);
   if (frame.text) onText(frame.text);
   latest.isNew = true;
   checkAge();
@@ -53,7 +58,7 @@ function checkAge() {
 }
 setInterval(checkAge, 20);
 
-function onText({ view, status, offer, unreadable, recording, knot, replay: position, marks, events: more }) {
+function onText({ view, status, offer, unreadable, recording, knot, replay: position, marks, compare, events: more }) {
   if (view) showView(view);
   if (status) {
     showStatus(status);
@@ -62,15 +67,21 @@ function onText({ view, status, offer, unreadable, recording, knot, replay: posi
     traces.limit_N = status.max_force_N;
   }
   if (offer) showOffer(offer);
-  if (knot) { latest.knot = knot; knots.update(knot, traces.period_s); }
+  if (knot) {
+    if (latest.isReplay) knots.seed(replay.knotsUntil(knot.tick, traces.period_s));
+    latest.knot = knot;
+    knots.update(knot, traces.period_s);
+  }
   if (unreadable) latest.unreadable = unreadable;
   if (recording) showRecording(recording);
   if (position) replay.update(position);
   if (marks) replay.setMarks(marks);
+  if (compare) { replay.setCompare(compare); traces.compareWith(compare); tracesDue = 0; }
   if (more) showEvents(more);
 }
 
 function showView(view) {
+  setNames(view.names);
   latest.isReplay = view.mode === 'replay';
   document.body.classList.toggle('is-replay', latest.isReplay);
   $('replay').hidden = !latest.isReplay;
@@ -98,7 +109,7 @@ function draw(time) {
     latest.isNew = false;
     showState(latest.now);
     const row = store.rowEnd > store.rowBegin ? store.row(store.rowEnd - 1) : null;
-    showHands(latest.now, row ? [row[C.leftLimits], row[C.rightLimits]] : undefined);
+    showHands(latest.now, row);
     showLegend(scene.update(latest.shape, latest.now, latest.knot?.core));
   }
   if (time >= diagramDue && latest.shape) {

@@ -17,6 +17,7 @@ export class ReplayBar {
     $('scrub').addEventListener('input', () => { this.scrubbed = performance.now(); this.seek(Number($('scrub').value)); });
     $('previous').addEventListener('click', () => this.jump(-1));
     $('next').addEventListener('click', () => this.jump(1));
+    for (const id of ['compare', 'align']) $(id).addEventListener('change', () => this.#compare());
     addEventListener('keydown', (event) => this.#key(event), { capture: true });
     new ResizeObserver(() => this.#drawOverview()).observe($('overview'));
   }
@@ -40,6 +41,25 @@ export class ReplayBar {
     const at = this.state.position_s, kind = KIND[$('mark-kind').value], marks = this.marks.filter((m) => (kind ? m.kind === kind : TINT[m.kind]));
     const mark = direction > 0 ? marks.find((m) => m.t_s > at + 0.02) : marks.findLast((m) => m.t_s < at - 0.3);
     if (mark) this.seek(mark.t_s);
+  }
+
+  /** What comes of it is told to every page by the topic 'compare'. */
+  #compare() { this.link.send({ compare: $('compare').value, align: $('align').value }); }
+
+  /** The topic 'compare': which recordings there are, and which one is beside this one. */
+  setCompare({ files, file, align, offset_ticks, why }) {
+    const names = [...new Set([...files, ...(file ? [file] : [])])];
+    $('compare').replaceChildren(new Option('compare with…', ''), ...names.map((name) => new Option(name, name)));
+    $('compare').value = file;
+    if (file) $('align').value = align;
+    $('compare-note').textContent = file && offset_ticks === null ? 'reading…' : why;
+  }
+
+  /** Knots of the recording up to now, for the strip. @param tick that is shown. */
+  knotsUntil(tick, period_s) {
+    const at = this.state.position_s, first = { label: '0_1 none', from: tick - at / period_s };
+    return [first, ...this.marks.filter((m) => m.kind === KIND.knot && m.t_s <= at)
+      .map((m) => ({ label: m.text.replace('knot ', ''), from: tick + (m.t_s - at) / period_s }))];
   }
 
   update(state) {

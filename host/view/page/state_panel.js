@@ -1,6 +1,6 @@
 // State, fault and staleness: what must be seen from across the room.
-import { STATES } from './frame.js';
-import { explainFault } from './faults.js';
+import { C } from './frame.js';
+import { degradationName, explainFault, limitNames, stateName } from './names.js';
 
 export const STALE_MS = 120; // shown within 200: a timer looks every 20
 const NOTES = {
@@ -10,7 +10,7 @@ const NOTES = {
 const $ = (id) => document.getElementById(id);
 
 export function showState(now) {
-  const name = now?.state === undefined ? 'none' : STATES[now.state] ?? '?';
+  const name = now?.state === undefined ? 'none' : stateName(now.state);
   const box = $('state');
   if (box.dataset.state !== name) {
     box.dataset.state = name;
@@ -51,16 +51,21 @@ export function showStatus(status) {
   $('scene-file').textContent = `${status.scene_file.split('/').pop()}, firmware ${status.firmware_version}`;
 }
 
-const LIMITS = [[1, 'peak'], [2, 'heat'], [4, 'step'], [8, 'slew'], [16, 'speed'], [32, 'passivity'], [64, 'torque']];
-
-/** @param limits LIMIT_ bits of each hand: what holds its force back. */
-export function showHands(now, limits = [0, 0]) {
+/** What each hand does and what holds it back, and what the solver gave up. @param row newest tick's trace row or null. */
+export function showHands(now, row) {
   now?.hands?.forEach((hand, i) => {
-    const force = Math.hypot(...hand.f_device);
+    const force = Math.hypot(...hand.f_device), isClutched = row?.[i ? C.rightClutch : C.leftClutch];
+    const side = i ? 'right' : 'left';
+    document.querySelector(`[data-command="clutch ${side}"]`).hidden = !!isClutched;
+    document.querySelector(`[data-command="unclutch ${side}"]`).hidden = !isClutched;
+    const limits = limitNames(row?.[i ? C.rightLimits : C.leftLimits] ?? 0);
     $(i ? 'hand-right' : 'hand-left').textContent = `${force.toFixed(2)} N · ${hand.node >= 0 ? `holds node ${hand.node}` : hand.grip ? 'closed' : 'open'}`
-      + `${hand.deadMan ? ' · dead-man' : ''}${hand.age > 1 ? ` · ${hand.age} ticks old` : ''}`
-      + LIMITS.filter(([bit]) => limits[i] & bit).map(([, word]) => ` · limited: ${word}`).join('');
+      + `${hand.deadMan ? ' · dead-man' : ''}${isClutched ? ' · clutch: tool parked' : ''}${hand.age > 1 ? ` · ${hand.age} ticks old` : ''}`
+      + (limits.length ? ` · limited: ${limits.join(', ')}` : '');
   });
+  const given = degradationName(row?.[C.degradation] ?? 0);
+  $('degraded').hidden = !given;
+  $('degraded').textContent = given ? `solver: ${given}` : '';
 }
 
 /** Facts of the scene's text that the picture needs; a TOML reader is not: keys are one to a line in our files. */

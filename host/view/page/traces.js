@@ -1,6 +1,7 @@
 // Forces and timing against time (uPlot), and the histogram of wake-up latency.
 import uPlot from './uPlot.esm.js';
-import { C, STATES } from './frame.js';
+import { C } from './frame.js';
+import { stateName } from './names.js';
 import { drawHistogram } from './histogram.js';
 
 export const WINDOWS_S = [1, 5, 10, 30, 60, 300, 600];
@@ -18,8 +19,9 @@ export const THIRD = {
   contacts: { columns: [C.contacts, C.contacts], factor: 1, unit: 'number in action', least: 4 },
 };
 const FORCES = [C.left, C.leftX, C.leftY, C.leftZ, C.right, C.rightX, C.rightY, C.rightZ];
+const BESIDE = 14; // where the other recording's columns begin in the data
 const FAR = 1e8; // a gap of 1e9 m says that nothing is near
-const FLAG = { lost: 1, missed: 2, limited: [16, 32] };
+const FLAG = { lost: 1, missed: 2, limited: [16, 32], full: 64 };
 const AXIS = { x: '#ff9d7a', y: '#7fd1ae', z: '#b9a5ff' };
 const GREY = '#9aa6b6';
 
@@ -53,7 +55,7 @@ export class Traces {
     const series = [{}, ...columns.map((_, i) => ({
       stroke: i === 0 ? colour : hand === null ? GREY : AXIS[names[i]], width: i === 0 ? 1.6 : 1,
       dash: hand !== null && i ? [[], [6, 3], [2, 2], [8, 2, 2, 2]][i] : undefined, points: { show: false },
-    }))];
+    })), { stroke: '#ffffffc0', width: 1.3, dash: [5, 4], points: { show: false }, show: false }]; // the other recording
     const axis = { stroke: GREY, grid: { stroke: '#2b3441', width: 1 }, ticks: { stroke: '#2b3441', size: 4 }, font: '11px sans-serif' };
     const plot = new uPlot({
       width: 400, height: 150, series, legend: { show: false }, padding: [8, 8, 0, 0],
@@ -64,10 +66,10 @@ export class Traces {
         draw: [(u) => this.#drawMarks(u, hand)],
         setCursor: [(u) => { if (u === this.pointed) this.#readCursor(u); }],
       },
-    }, [[0], ...columns.map(() => [0])], box);
+    }, series.map(() => [0]), box);
     plot.over.addEventListener('pointerenter', () => { this.pointed = plot; });
     plot.over.addEventListener('pointerleave', () => { this.pointed = null; this.onCursor(null); });
-    return { plot, columns, hand, box };
+    return { plot, columns, hand, box, title };
   }
 
   #readCursor(u) {
@@ -77,7 +79,7 @@ export class Traces {
 
   /** Limits, misses and faults, and the force limit as a line. */
   #drawMarks(u, hand) {
-    const { ctx, bbox } = u, flags = this.data?.[11], faults = this.data?.[12], x = this.data?.[0];
+    const { ctx, bbox } = u, flags = this.data?.[11], faults = this.data?.[12], degraded = this.data?.[13], x = this.data?.[0];
     if (!x) return;
     ctx.save();
     ctx.beginPath();
@@ -92,6 +94,10 @@ export class Traces {
       ctx.fillRect(from, bbox.top, Math.max(2, until - from), bbox.height);
     }
     for (let i = 0; i < x.length; ++i) {
+      if (hand === null && (degraded[i] || flags[i] & FLAG.full)) { // the solver gave something up
+        ctx.fillStyle = '#f0e442';
+        ctx.fillRect(u.valToPos(x[i], 'x', true) - 1, bbox.top + bbox.height - 6, 2, 6);
+      }
       if (!flags[i]) continue;
       const at = u.valToPos(x[i], 'x', true);
       if (hand === null && flags[i] & (FLAG.lost | FLAG.missed)) triangle(ctx, at, bbox.top + 1, '#ff5c47', 6);
@@ -123,23 +129,57 @@ export class Traces {
 
   showThird(name) {
     this.third = THIRD[name];
-    this.plots[2].box.querySelector('h2').innerHTML = `${name} <em>${this.third.unit}</em>`;
+    this.plots[2].title = name;
+    this.#writeTitles();
+  }
+
+  /** The topic 'compare': which recording is beside this one, and where both meet. */
+  compareWith({ file, offset_ticks }) {
+    Object.assign(this.beside, { name: file, offset_ticks: file ? offset_ticks : null });
+    for (const { plot } of this.plots) plot.setSeries(plot.series.length - 1, { show: this.isComparing });
+    this.#writeTitles();
+  }
+
+  get isComparing() { return this.beside?.offset_ticks != null; }
+
+  /** The other recording's row at the place of this one's, or null. */
+  besideRow(row) {
+    const wanted = row && this.isComparing ? row[C.tick] - this.beside.offset_ticks : null;
+    const found = wanted === null ? null : this.beside.store.nearest(wanted);
+    return found?.[C.tick] === wanted ? found : null;
+  }
+
+  #writeTitles() {
+    for (const { box, title, hand } of this.plots) {
+      const heading = box.querySelector('h2');
+      heading.innerHTML = `${title} <em>${hand === null ? this.third.unit : 'N'}</em>`;
+      if (this.isComparing) heading.querySelector('em').append(` – dashed: ${this.beside.name}`);
+    }
   }
 
   /** Holds the traces at this moment, or lets them run. */
   pause(on) { this.end = on ? this.store.lastTick : null; }
   get isPaused() { return this.end !== null; }
 
+  /** x, this recording's columns, marks, and from BESIDE on the other's: |F| left, |F| right, the third plot's first. */
+  #series(from, end, pixels) {
+    const own = this.store.series(from, end, pixels, [...FORCES, ...this.third.columns, C.flags, C.fault, C.degradation]);
+    if (!this.isComparing) return [...own, ...[0, 1, 2].map(() => new Array(own[0].length).fill(null))];
+    const by = this.beside.offset_ticks;
+    const other = this.beside.store.series(from - by, end - by, pixels, [C.left, C.right, this.third.columns[0]]);
+    other[0] = Array.from(other[0], (tick) => tick + by);
+    return uPlot.join([own, other]);
+  }
+
   draw() {
     const end = (this.end ?? this.store.lastTick ?? 0) + 1, from = end - this.window_s / this.period_s;
-    const data = this.store.series(from, end, this.plots[0].plot.bbox.width / devicePixelRatio,
-      [...FORCES, ...this.third.columns, C.flags, C.fault]);
+    const data = this.#series(from, end, this.plots[0].plot.bbox.width / devicePixelRatio);
     data[0] = Array.from(data[0], (tick) => tick * this.period_s);
-    for (const k of [9, 10]) data[k] = Array.from(data[k], (v) => (v === null || v > FAR && !this.third.isTime ? null : v * this.third.factor));
+    for (const k of [9, 10, BESIDE + 2]) data[k] = Array.from(data[k], (v) => (v == null || v > FAR && !this.third.isTime ? v === undefined ? v : null : v * this.third.factor));
     this.data = data;
-    for (const { plot, columns } of this.plots) {
+    for (const [i, { plot, columns }] of this.plots.entries()) {
       plot.batch(() => {
-        plot.setData([data[0], ...columns.map((c) => data[c + 1])], false);
+        plot.setData([data[0], ...columns.map((c) => data[c + 1]), data[BESIDE + i]], false);
         plot.setScale('x', { min: from * this.period_s, max: end * this.period_s });
       });
       if (plot === this.pointed) this.#readCursor(plot);
@@ -159,9 +199,10 @@ function niceRange(low, high, least) {
 }
 
 /** One line with the exact values of a tick: the shortest digits that are read back as the same number. */
-export function describeRow(row, period_s) {
+export function describeRow(row, period_s, other) {
   if (!row) return '';
+  const beside = other ? ` · other: left ${other[C.left]} N, right ${other[C.right]} N` : '';
   const fault = row[C.fault] ? ` · fault ${row[C.fault]}` : '';
   return `t ${(row[C.tick] * period_s).toFixed(3)} s · left ${row[C.left]} N · right ${row[C.right]} N · `
-    + `tick ${row[C.tick]}: ${(row[C.execution_ns] / 1000).toFixed(1)} µs, ${STATES[row[C.state]] ?? '?'}${fault}`;
+    + `tick ${row[C.tick]}: ${(row[C.execution_ns] / 1000).toFixed(1)} µs, ${stateName(row[C.state])}${fault}${beside}`;
 }

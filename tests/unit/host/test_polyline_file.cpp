@@ -45,6 +45,15 @@ TEST_F(PolylineFile, ReadsThreeNumbersARowWithoutHeader) {
   EXPECT_EQ(read("1,2,3\n4,5,6\n7,8,1e-3\n").points.size(), 3U);
 }
 
+TEST_F(PolylineFile, ReadsOtherSeparatorsCapitalsAndNumberedRows) {
+  for (const auto text : {"X;Y;Z\n1;2;3\n4;5;6\n7;8;9\n", "1 2 3\n4\t5  6\n 7 8 9 \n", "x y z\n1 2 3\n4 5 6\n7 8 9",
+                          "1 1 2 3\n2 4 5 6\n3 7 8 9\n", "1,1,2,3\n2,4,5,6\n3,7,8,9\n"}) {
+    const auto line = read(text);
+    ASSERT_EQ(line.points.size(), 3U) << text;
+    EXPECT_EQ(line.points[1], (std::array{4.0, 5.0, 6.0})) << text;
+  }
+}
+
 TEST_F(PolylineFile, TakesTheLastShapeOrTheNearest) {
   EXPECT_EQ(read(kShapes).points[0][0], 7.0);
   EXPECT_EQ(read(kShapes, 0.6).points[0][0], 4.0);

@@ -1,0 +1,30 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "host/commands.hpp"
+#include "host/commands/options.hpp"
+#include "host/record.hpp"
+
+namespace ligature::host {
+
+void add_record(CLI::App& app) {
+  auto* command = app.add_subcommand("record", "Record every message of the rig into an LCM log");
+  const auto options = std::make_shared<RecordOptions>();
+  command->add_option("--out", options->out, "log to write (lcm-logplayer plays it)")->required();
+  add_url(*command, options->lcm_url);
+  command->add_option("--duration", options->duration_s, "seconds; without it until Ctrl-C or SIGTERM")
+      ->check(finite)
+      ->check(CLI::Range(0.001, 1e7));
+  command->add_flag("--force", options->force, "replace an existing file");
+  command->add_flag("--quiet", options->quiet, "no progress");
+  command->footer(
+      "Counts every tick while it writes and names those that never came. It does not end when the firmware does: a\n"
+      "restarted firmware becomes a further session of the same log. A killed recorder leaves all it had received.\n"
+      "What the network loses is fetched from the firmware's flight recorder when that is on this machine.\n"
+      "Exit code 3 when the disk refuses, the network cannot be opened, or nothing at all came.\n\n"
+      "Example:\n  ligature-host record --out knot.lcmlog --duration 25\n"
+      "  recorded 25000 of 25000 ticks, 0 lost; 1500 shapes, 3017 messages in all");
+  command->callback([options] { record(*options); });
+}
+
+}  // namespace ligature::host

@@ -1,0 +1,17 @@
+// What the wire's numbers are called; the host says it once at the start (host/names.hpp), so there is one list.
+export const names = { states: [], limits: [], degradations: [], faults: [] };
+
+export function setNames(given) { Object.assign(names, given); }
+
+export function stateName(number) { return names.states[number] ?? '?'; }
+
+/** Words for the bits that are set. */
+export function limitNames(bits) { return names.limits.filter(([bit]) => bits & bit).map(([, word]) => word); }
+
+export function degradationName(code) { return names.degradations.find(([number]) => number === code)?.[1] ?? ''; }
+
+/** @returns [meaning, remedy]. */
+export function explainFault(number) {
+  const found = names.faults.find(([is]) => is === number);
+  return found ? found.slice(1) : ['Unknown fault', 'Look the number up in docs/architecture.md; reset when its cause is gone.'];
+}
