@@ -34,6 +34,7 @@ struct Comparison::Other {
   Picture picture;
   Player player;
   std::optional<std::int64_t> offset_ticks;  // a tick of it plus this is the tick of ours at the same place
+  bool is_whole = false;                     // was shown since all of it has been read
   double shift_s = 0.0;                      // its log's time at our log's time 0
 
   Other(const fs::path& path, std::string align_)
@@ -109,7 +110,12 @@ void Comparison::find_offset() {
 
 void Comparison::follow(double position_s, Picture::Clock::time_point now) {
   if (other_ && !other_->offset_ticks) find_offset();
-  if (other_ && other_->offset_ticks) other_->player.follow(position_s + other_->shift_s, now);
+  if (!other_ || !other_->offset_ticks) return;
+  if (!other_->is_whole && other_->survey.progress() >= 1.0) {  // now its long windows have no holes
+    other_->is_whole = true;
+    other_->player.seek(position_s + other_->shift_s, now);
+  }
+  other_->player.follow(position_s + other_->shift_s, now);
 }
 
 void Comparison::tell(const std::string& why) {

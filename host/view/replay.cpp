@@ -45,6 +45,7 @@ void replay(const ReplayOptions& options) {
     if (!has_marks && survey.progress() >= 1.0) {
       has_marks = true;
       picture.set("marks", survey.marks());
+      if (player.position_s() > Player::kLeadIn_s) player.seek(player.position_s(), clock);  // history without holes
     }
     auto now = player.state();
     now["survey"] = survey.progress();

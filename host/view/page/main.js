@@ -67,15 +67,16 @@ function onText({ view, status, offer, unreadable, recording, knot, replay: posi
     traces.limit_N = status.max_force_N;
   }
   if (offer) showOffer(offer);
+  if (position) replay.update(position);
+  if (marks) replay.setMarks(marks);
   if (knot) {
-    if (latest.isReplay) knots.seed(replay.knotsUntil(knot.tick, traces.period_s));
+    const isOfBefore = latest.isReplay && Math.abs(latest.now.tick - knot.tick) * traces.period_s > 1; // a jump: the next is on its way
+    if (latest.isReplay && !isOfBefore) knots.seed(replay.knotsUntil(knot.tick, traces.period_s));
     latest.knot = knot;
-    knots.update(knot, traces.period_s);
+    if (!isOfBefore) knots.update(knot, traces.period_s);
   }
   if (unreadable) latest.unreadable = unreadable;
   if (recording) showRecording(recording);
-  if (position) replay.update(position);
-  if (marks) replay.setMarks(marks);
   if (compare) { replay.setCompare(compare); traces.compareWith(compare); tracesDue = 0; }
   if (more) showEvents(more);
 }

@@ -55,7 +55,7 @@ export class Traces {
     const series = [{}, ...columns.map((_, i) => ({
       stroke: i === 0 ? colour : hand === null ? GREY : AXIS[names[i]], width: i === 0 ? 1.6 : 1,
       dash: hand !== null && i ? [[], [6, 3], [2, 2], [8, 2, 2, 2]][i] : undefined, points: { show: false },
-    })), { stroke: '#ffffffc0', width: 1.3, dash: [5, 4], points: { show: false }, show: false }]; // the other recording
+    })), { stroke: '#ff9ad5', width: 1.3, dash: [6, 4], points: { show: false }, show: false }]; // the other recording
     const axis = { stroke: GREY, grid: { stroke: '#2b3441', width: 1 }, ticks: { stroke: '#2b3441', size: 4 }, font: '11px sans-serif' };
     const plot = new uPlot({
       width: 400, height: 150, series, legend: { show: false }, padding: [8, 8, 0, 0],
@@ -89,7 +89,7 @@ export class Traces {
     for (let i = 0; i < x.length; ++i) { // a stretch with a fault is one band
       if (!faults[i]) continue;
       const first = i;
-      while (i + 1 < x.length && faults[i + 1]) ++i;
+      while (i + 1 < x.length && (faults[i + 1] || faults[i + 1] === undefined)) ++i; // undefined: only the other has this x
       const from = u.valToPos(x[first], 'x', true), until = u.valToPos(x[i], 'x', true);
       ctx.fillRect(from, bbox.top, Math.max(2, until - from), bbox.height);
     }
@@ -168,7 +168,8 @@ export class Traces {
     const by = this.beside.offset_ticks;
     const other = this.beside.store.series(from - by, end - by, pixels, [C.left, C.right, this.third.columns[0]]);
     other[0] = Array.from(other[0], (tick) => tick + by);
-    return uPlot.join([own, other]);
+    const isSameGrid = other[0].length === own[0].length && other[0].every((x, i) => Math.abs(x - own[0][i]) < 1e-3);
+    return isSameGrid ? [...own, ...other.slice(1)] : uPlot.join([own, other]);
   }
 
   draw() {
