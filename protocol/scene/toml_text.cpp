@@ -32,17 +32,18 @@ std::size_t quoted(std::string_view rest) {
 }  // namespace
 
 int line_of_stray_character(std::string_view text) {
+  const auto is_stray = [](char c) { return static_cast<unsigned char>(c) > 0x7F; };
   std::size_t i = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;  // a byte order mark is allowed
   while (i < text.size()) {
     if (text[i] == '#') {
       i = std::min(text.find('\n', i), text.size());
-    } else if (text[i] == '"' || text[i] == '\'') {
-      i += quoted(text.substr(i));
-    } else if (static_cast<unsigned char>(text[i]) > 0x7F) {
-      return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n'));
-    } else {
-      ++i;
+      continue;
     }
+    const auto piece = text.substr(i, text[i] == '"' || text[i] == '\'' ? quoted(text.substr(i)) : 1);
+    if (const auto stray = std::find_if(piece.begin(), piece.end(), is_stray); stray != piece.end()) {
+      return 1 + static_cast<int>(std::count(text.begin(), stray, '\n'));
+    }
+    i += piece.size();
   }
   return 0;
 }
@@ -50,7 +51,7 @@ int line_of_stray_character(std::string_view text) {
 std::variant<toml::table, Error> parse_toml(const std::string& text, const std::string& name) {
   if (const int line = line_of_stray_character(text); line > 0) {
     return Error{name + ":" + std::to_string(line) +
-                 ": not TOML: a character outside ASCII, allowed in comments and in quotes"};
+                 ": a character outside ASCII, allowed in comments; in quotes write \\u00e9 for it"};
   }
   try {
     return toml::parse(text, name);

@@ -10,9 +10,9 @@
 
 namespace ligature::scene {
 
-/// The first line with a byte outside ASCII that is neither in a comment nor in quotes; 0 when there is none.
-/// No key and no value of ours has one, and toml++ 3.0 answers some of them (U+031B in a value's place, found by
-/// fuzzing) with undefined behaviour instead of an error.
+/// The first line with a byte outside ASCII that is not in a comment; 0 when there is none. toml++ 3.0 looks whether
+/// such a character is a space, in places that depend on what is around it and also within quotes, and answers for some
+/// (U+031B, found by fuzzing) with undefined behaviour. In quotes an escape says the same: "\\u00e9".
 [[nodiscard]] int line_of_stray_character(std::string_view text);
 
 /// @param name of the source in messages. @return the tree, or one line that names the source and its line.
