@@ -12,7 +12,7 @@ namespace ligature::scene {
 
 /// The first line with a byte outside ASCII that is not in a comment; 0 when there is none. toml++ 3.0 looks whether
 /// such a character is a space, in places that depend on what is around it and also within quotes, and answers for some
-/// (U+031B, found by fuzzing) with undefined behaviour. In quotes an escape says the same: "\\u00e9".
+/// (U+031B, found by fuzzing) with undefined behaviour. In quotes an escape says the same: "\u00e9".
 [[nodiscard]] int line_of_stray_character(std::string_view text);
 
 /// @param name of the source in messages. @return the tree, or one line that names the source and its line.
