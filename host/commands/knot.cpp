@@ -24,7 +24,10 @@ void add_knot(CLI::App& app) {
   command->footer(
       "Without --closed and --open a polyline is closed when its last point repeats its first. A knot that cannot be\n"
       "named is 'unknown', with its invariants. Alexander coefficients stand from the lowest power.\n\n"
-      "Right is the trefoil whose crossings count +3, the one that scripts/demo ties.\n\n"
+      "Right is the trefoil whose crossings count +3, the one that scripts/demo ties; of any other knot the hand "
+      "whose\n"
+      "reduced alternating diagram counts above 0 (tables that go by Rolfsen's drawings may have 7_7 the other "
+      "way).\n\n"
       "Example:\n  ligature-host knot knot.lcmlog --json\n"
       "  {\"type\":\"3_1\",\"handedness\":\"right\",\"determinant\":3,\"alexander\":[1,-1,1]}");
   command->callback([options] { std::fputs(describe_knot(*options).c_str(), stdout); });
