@@ -39,6 +39,14 @@ struct HandContact {
   Propagation condition = Propagation::kNone;
 };
 
+/// The worst of what a tick gave up because its work is bounded, in the order in which it does.
+enum class Degradation : std::uint8_t {
+  kNone,
+  kIterations,  ///< contacts stopped before they settled: a little softer
+  kContacts,    ///< the shallowest contacts felt no impulse; they were kept from crossing
+  kMotion,      ///< for a part of the tick the thread was not moved: what it might pass was not known
+};
+
 /// State of health after a tick.
 struct Diagnostics {
   double kinetic_J = 0.0;
@@ -46,10 +54,12 @@ struct Diagnostics {
   double max_stretch = 0.0;      ///< max l / l_rest - 1
   double min_gap_m = 0.0;        ///< surface gap of the closest non-neighbour pair, negative: overlap; +inf: none near
   int contacts = 0;              ///< contacts that carried an impulse in the last step
-  bool contact_cap_hit = false;  ///< more contacts than there was room for
-  bool finite = true;            ///< false: frozen at the last finite state, hands open and without force
-  int bad_node = -1;             ///< first node that went non-finite or out of range
-  std::int64_t bad_tick = -1;    ///< tick at which it did
+  bool contact_cap_hit = false;  ///< more contacts than there was room or work for
+  Degradation degradation = Degradation::kNone;
+  double time_lost = 0.0;      ///< share of the tick in which the thread was not moved
+  bool finite = true;          ///< false: frozen at the last finite state, hands open and without force
+  int bad_node = -1;           ///< first node that went non-finite or out of range
+  std::int64_t bad_tick = -1;  ///< tick at which it did
 };
 
 /// A thread in its world. Copyable: a copy goes its own way (planners try pulls on copies).

@@ -21,7 +21,7 @@ std::size_t place_of(std::int32_t a, std::int32_t b) noexcept {
 
 void BroadPhase::reserve(int nodes, int pairs) {
   const auto n = (static_cast<std::size_t>(nodes) + 2 * kBlock) / kBlock * kBlock;
-  for (auto* array : {&x_, &y_, &z_, &r_}) array->assign(n, 0.0F);
+  for (auto* array : {&x_, &y_, &z_, &r_, &half_}) array->assign(n, 0.0F);
   blocks_.resize(n / kBlock);
   capacity_ = pairs;
   kept_.assign(kTable, Kept{});
@@ -34,14 +34,15 @@ void BroadPhase::place(const State& state, const Motion& motion, float horizon_s
   for (std::size_t j = 0; j < blocks * kBlock; ++j) {
     if (j >= segments) {  // padding: far from everything
       x_[j] = y_[j] = z_[j] = 1e18F;
-      r_[j] = 0.0F;
+      r_[j] = half_[j] = 0.0F;
       continue;
     }
     const Vec mid = 0.5 * (state.x[j] + state.x[j + 1]) - origin, half = 0.5 * (state.x[j + 1] - state.x[j]);
     x_[j] = static_cast<float>(mid[0]);
     y_[j] = static_cast<float>(mid[1]);
     z_[j] = static_cast<float>(mid[2]);
-    r_[j] = (static_cast<float>(norm(half)) + horizon_s * static_cast<float>(motion.speed(j))) * kSlack;
+    half_[j] = static_cast<float>(norm(half)) * kSlack;
+    r_[j] = (half_[j] + horizon_s * static_cast<float>(motion.speed(j))) * kSlack;
   }
   for (std::size_t k = 0; k < blocks; ++k) {
     const std::size_t begin = k * kBlock, end = std::min(begin + kBlock, segments);
@@ -80,12 +81,17 @@ Vec BroadPhase::kept_impulse(std::int32_t a, std::int32_t b) const noexcept {
 }
 
 bool BroadPhase::consider(const State& state, const Motion& motion, const Outlook& outlook, std::size_t a,
-                          std::size_t b, std::vector<Candidate>& list) const noexcept {
+                          std::size_t b, std::vector<Candidate>& list) noexcept {
   if (b < a + 2) return true;
+  spent_ += price::kConsider;
   const double d = outlook.diameter_m, arc = state.mesh.s[b] - state.mesh.s[a + 1];
   if (arc < kLeastArc * d) return true;
   const double reach = arc < 0.5 * std::numbers::pi * d ? d * std::sin(arc / d) : d;
   const double limit = reach + outlook.skin_m + outlook.horizon_s * motion.rate(a, b);
+  const float dx = x_[b] - x_[a], dy = y_[b] - y_[a], dz = z_[b] - z_[a];
+  const float within = (half_[a] + half_[b] + static_cast<float>(limit)) * kSlack;
+  if (dx * dx + dy * dy + dz * dz > within * within) return true;  // allowed its own motion, it stays away
+  spent_ += price::kList;
   const Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
   if (c.distance2 > limit * limit) return true;
   if (static_cast<int>(list.size()) >= capacity_) return false;
@@ -99,38 +105,60 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
   return true;
 }
 
-bool BroadPhase::build(const State& state, Motion& motion, const Outlook& outlook,
+unsigned BroadPhase::near(std::size_t a, std::size_t q, float reach) const noexcept {
+  const std::size_t base = q * kBlock;
+  const float cx = blocks_[q].x - x_[a], cy = blocks_[q].y - y_[a], cz = blocks_[q].z - z_[a];
+  const float within = blocks_[q].r * kSlack + r_[a] + reach;
+  if (cx * cx + cy * cy + cz * cz > within * within) return 0;
+  unsigned hits = 0;
+  for (std::size_t l = 0; l < kBlock; ++l) {
+    const float dx = x_[base + l] - x_[a], dy = y_[base + l] - y_[a], dz = z_[base + l] - z_[a];
+    const float apart = r_[base + l] + r_[a] + reach;
+    hits |= static_cast<unsigned>(dx * dx + dy * dy + dz * dz <= apart * apart) << l;
+  }
+  return hits;
+}
+
+bool BroadPhase::blocks(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p, std::size_t q,
+                        std::vector<Candidate>& list) noexcept {
+  constexpr long kDearest = price::kSphere + static_cast<long>(kBlock) * (price::kConsider + price::kList);
+  const float reach = static_cast<float>(outlook.diameter_m + outlook.skin_m) * kSlack;
+  for (std::size_t a = p * kBlock; a < std::min((p + 1) * kBlock, state.x.size() - 1); ++a) {
+    if (spent_ + kDearest > allowance_) return false;
+    spent_ += price::kSphere;
+    for (unsigned hits = near(a, q, reach); hits != 0; hits &= hits - 1) {
+      const std::size_t b = q * kBlock + static_cast<std::size_t>(__builtin_ctz(hits));
+      if (!consider(state, motion, outlook, a, b, list)) return false;
+    }
+  }
+  return true;
+}
+
+long BroadPhase::least_cost(int nodes) noexcept {
+  const long blocks = (nodes + static_cast<long>(kBlock) - 1) / static_cast<long>(kBlock);
+  return 4L * static_cast<long>(kTable) + 50L * nodes + 10L * blocks * (blocks + 1) / 2;
+}
+
+bool BroadPhase::build(const State& state, Motion& motion, const Outlook& outlook, long allowance, Work& work,
                        std::vector<Candidate>& list) noexcept {
   motion.restart();
-  keep_impulses(list);
   list.clear();
   place(state, motion, static_cast<float>(outlook.horizon_s));
-  const std::size_t segments = state.x.size() - 1, blocks = (segments + kBlock - 1) / kBlock;
+  const std::size_t segments = state.x.size() - 1, count = (segments + kBlock - 1) / kBlock;
   const float reach = static_cast<float>(outlook.diameter_m + outlook.skin_m) * kSlack;
-  bool room = true;
-  for (std::size_t p = 0; p < blocks; ++p) {
-    for (std::size_t q = p; q < blocks; ++q) {
+  spent_ = least_cost(state.nodes());
+  allowance_ = allowance;
+  bool good = true;
+  for (std::size_t p = 0; p < count && good; ++p) {
+    for (std::size_t q = p; q < count && good; ++q) {
       const float bx = blocks_[p].x - blocks_[q].x, by = blocks_[p].y - blocks_[q].y, bz = blocks_[p].z - blocks_[q].z;
       const float limit = (blocks_[p].r + blocks_[q].r) * kSlack + reach;
       if (p != q && bx * bx + by * by + bz * bz > limit * limit) continue;
-      for (std::size_t a = p * kBlock; a < std::min((p + 1) * kBlock, segments); ++a) {
-        const std::size_t base = q * kBlock;
-        const float cx = blocks_[q].x - x_[a], cy = blocks_[q].y - y_[a], cz = blocks_[q].z - z_[a];
-        const float within = blocks_[q].r * kSlack + r_[a] + reach;
-        if (cx * cx + cy * cy + cz * cz > within * within) continue;
-        unsigned hits = 0;
-        for (std::size_t l = 0; l < kBlock; ++l) {
-          const float dx = x_[base + l] - x_[a], dy = y_[base + l] - y_[a], dz = z_[base + l] - z_[a];
-          const float near = r_[base + l] + r_[a] + reach;
-          hits |= static_cast<unsigned>(dx * dx + dy * dy + dz * dz <= near * near) << l;
-        }
-        for (; hits != 0; hits &= hits - 1) {
-          room &= consider(state, motion, outlook, a, base + static_cast<std::size_t>(__builtin_ctz(hits)), list);
-        }
-      }
+      good = blocks(state, motion, outlook, p, q, list);
     }
   }
-  return room;
+  work.spend(spent_);
+  return good;
 }
 
 }  // namespace ligature::physics::rod

@@ -6,6 +6,7 @@
 
 #include "firmware/physics/rod/motion.hpp"
 #include "firmware/physics/rod/state.hpp"
+#include "firmware/physics/rod/work.hpp"
 
 namespace ligature::physics::rod {
 
@@ -36,27 +37,41 @@ class BroadPhase {
 
   void reserve(int nodes, int pairs);
 
-  /// Rebuilds `list`, every pair measured and counted from motion.restart() on; impulses of pairs that stay are kept.
-  /// @return false when there was no room for all pairs.
-  bool build(const State& state, Motion& motion, const Outlook& outlook, std::vector<Candidate>& list) noexcept;
+  /// Impulses of the list, for the lists to come.
+  void keep_impulses(const std::vector<Candidate>& list) noexcept;
+
+  /// Rebuilds `list`, every pair measured and counted from motion.restart() on; kept impulses are given to their pairs.
+  /// @param allowance  what it may spend. @return false, and the list is of no use, when that or the room for pairs
+  /// did not do.
+  bool build(const State& state, Motion& motion, const Outlook& outlook, long allowance, Work& work,
+             std::vector<Candidate>& list) noexcept;
+
+  /// What a build costs before it has found anything.
+  [[nodiscard]] static long least_cost(int nodes) noexcept;
 
  private:
   struct Ball {
     float x, y, z, r;
   };
   void place(const State& state, const Motion& motion, float horizon_s) noexcept;
-  void keep_impulses(const std::vector<Candidate>& list) noexcept;
   [[nodiscard]] Vec kept_impulse(std::int32_t a, std::int32_t b) const noexcept;
   /// Adds the pair if it is near enough. @return false when there was no room.
   bool consider(const State& state, const Motion& motion, const Outlook& outlook, std::size_t a, std::size_t b,
-                std::vector<Candidate>& list) const noexcept;
+                std::vector<Candidate>& list) noexcept;
+  /// Bits of those segments of block q whose spheres meet segment a's.
+  [[nodiscard]] unsigned near(std::size_t a, std::size_t q, float reach) const noexcept;
+  /// All pairs of a segment of block p and one of block q. @return false when out of room or work.
+  bool blocks(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p, std::size_t q,
+              std::vector<Candidate>& list) noexcept;
 
   struct Kept {
     std::int32_t a = -1, b = -1;
     Vec impulse{};
   };
   int capacity_ = 0;
+  long spent_ = 0, allowance_ = 0;    // of this build
   std::vector<float> x_, y_, z_, r_;  // segment spheres, swollen by what each may move
+  std::vector<float> half_;           // half their lengths
   std::vector<Ball> blocks_;
   std::vector<Kept> kept_;  // open addressing, a power of two
 };

@@ -7,16 +7,21 @@ namespace ligature::physics::rod {
 
 void ContactSet::reserve(int nodes, int bodies, int window) {
   const auto n = static_cast<std::size_t>(nodes);
-  contacts_.reserve(static_cast<std::size_t>(kMaxContacts));
+  const auto rows = static_cast<std::size_t>(kMaxContacts);
+  contacts_.reserve(rows + 3 * n);
+  gaps_.reserve(contacts_.capacity());
   pairs.reserve(24 * n + 1024);
   watched_.reserve(pairs.capacity());
+  due_.reserve(pairs.capacity());
   floor_impulse.assign(n, Vec{});
   body_impulse.assign(n * static_cast<std::size_t>(bodies), Vec{});
   body_due_.assign(static_cast<std::size_t>(bodies), -1.0);
-  columns_.assign(static_cast<std::size_t>(kMaxContacts) * static_cast<std::size_t>(window + 4), 0.0);
-  for (auto* array : {&moved_, &extra_, &step_}) array->assign(n, Vec{});
-  for (auto* array : {&p_, &plain_, &residual_}) array->assign(static_cast<std::size_t>(kMaxContacts), Vec{});
-  mixing_.reserve(static_cast<std::size_t>(kMaxContacts));
+  columns_.assign(rows * (static_cast<std::size_t>(window) + 8), 0.0F);
+  swept_.reserve(window);
+  for (auto* array : {&extra_, &step_}) array->assign(n, Vec{});
+  for (auto* array : {&p_, &plain_, &residual_}) array->assign(rows, Vec{});
+  loaded_.reserve(rows);
+  mixing_.reserve(rows);
 }
 
 namespace {
@@ -37,32 +42,6 @@ Vec velocity(const Contact& c, const Vec* v) noexcept {
 
 }  // namespace
 
-// sum of 1/2 p . (u + u_free) - target p_n + 1/2 soft p_n^2: what the impulses of the frictionless problem minimise.
-double ContactSet::merit(const Vec* v) const noexcept {
-  double sum = 0.0;
-  for (const auto& c : contacts_) {
-    const double pn = dot(c.p, c.n);
-    sum += 0.5 * dot(c.p, velocity(c, v) + c.u_free) - pn * c.target + 0.5 * c.soft * pn * pn;
-  }
-  return sum;
-}
-
-void ContactSet::push(double share) noexcept {
-  for (const auto& c : contacts_) {
-    for (int k = 0; k < c.count; ++k) extra_[static_cast<std::size_t>(c.node[k])] += (share * c.w[k]) * c.p;
-  }
-}
-
-double ContactSet::add(int first, int last, Vec* v) const noexcept {
-  Lanes largest2{};
-  for (int i = first; i <= last; ++i) {
-    const Lanes step = step_[static_cast<std::size_t>(i)].v, step2 = step * step;
-    v[i].v += step;
-    largest2 = step2 > largest2 ? step2 : largest2;
-  }
-  return largest2[0] + largest2[1] + largest2[2];
-}
-
 ContactSet& ContactSet::operator=(const ContactSet& other) {
   if (this == &other) return *this;
   begin();
@@ -74,34 +53,62 @@ ContactSet& ContactSet::operator=(const ContactSet& other) {
   return *this;
 }
 
-// Columns B = C^-1 J^T, the contact's own number J B, the wanted normal velocity, and the old impulse turned to today's
-// normal and cone.
-void ContactSet::prepare(const ContactMetric& metric, int first, int last, const Numerics& numerics,
-                         double dt_s) noexcept {
-  const auto nodes = static_cast<std::size_t>(last - first + 1),
-             offset = static_cast<std::size_t>(first - metric.first());
-  stride_ = nodes;
+// sum of 1/2 p . (u + u_free) - target p_n + 1/2 soft p_n^2: what the impulses of the frictionless problem minimise.
+double ContactSet::merit(const Vec* v) const noexcept {
+  double sum = 0.0;
+  for (const auto k : loaded_) {
+    const Contact& c = contacts_[static_cast<std::size_t>(k)];
+    const double pn = dot(c.p, c.n);
+    sum += 0.5 * dot(c.p, velocity(c, v) + c.u_free) - pn * c.target + 0.5 * c.soft * pn * pn;
+  }
+  return sum;
+}
+
+void ContactSet::clear_extra() noexcept {
+  std::fill(extra_.begin() + window_first_, extra_.begin() + window_last_ + 1, Vec{});
+}
+
+double ContactSet::push(BandSolver& solver, Vec* v) noexcept {
+  solver.solve(window_first_, window_last_, extra_.data(), step_.data(), false);
+  Lanes largest2{};
+  for (int i = window_first_; i <= window_last_; ++i) {
+    const Lanes step = step_[static_cast<std::size_t>(i)].v, step2 = step * step;
+    v[i].v += step;
+    largest2 = step2 > largest2 ? step2 : largest2;
+  }
+  return largest2[0] + largest2[1] + largest2[2];
+}
+
+// B = C^-1 J^T of a row, eight nodes at a time, and its own number J B.
+void ContactSet::make_column(Contact& c, const ContactMetric& metric, float* column) const noexcept {
+  const auto offset = static_cast<std::size_t>(window_first_ - metric.first());
+  const float* r[4];
+  Eight w[4];
+  for (int k = 0; k < 4; ++k) {
+    r[k] = metric.row(c.node[k]) + offset;
+    c.weight[k] = static_cast<float>(c.w[k]);
+    c.place[k] = SweptVelocities::place(c.node[k] - window_first_);
+    w[k] = all_eight(c.weight[k]);
+  }
+  for (std::size_t j = 0; j < stride_; j += 8) {
+    store_eight(column + j, (w[0] * load_eight(r[0] + j) + w[1] * load_eight(r[1] + j)) +
+                                (w[2] * load_eight(r[2] + j) + w[3] * load_eight(r[3] + j)));
+  }
+  double own = 0.0;
+  for (int k = 0; k < 4; ++k) own += c.w[k] * static_cast<double>(column[c.node[k] - window_first_]);
+  c.inv_w = 1.0 / own;
+  c.inv_soft_w = 1.0 / (own + c.soft);
+}
+
+// Columns, the wanted normal velocity, and the old impulse turned to today's normal and cone.
+void ContactSet::prepare(const ContactMetric& metric, const Numerics& numerics, double dt_s) noexcept {
+  stride_ = SweptVelocities::padded(window_last_ - window_first_ + 1);
   per_second_ = 1.0 / dt_s;
-  double* column = columns_.data();
-  for (auto& c : contacts_) {
-    const double* r0 = metric.row(c.node[0]) + offset;
-    if (c.count == 4) {
-      const double *r1 = metric.row(c.node[1]) + offset, *r2 = metric.row(c.node[2]) + offset,
-                   *r3 = metric.row(c.node[3]) + offset;
-      for (std::size_t j = 0; j < nodes; ++j)
-        column[j] = c.w[0] * r0[j] + c.w[1] * r1[j] + c.w[2] * r2[j] + c.w[3] * r3[j];
-    } else if (c.count == 2) {
-      const double* r1 = metric.row(c.node[1]) + offset;
-      for (std::size_t j = 0; j < nodes; ++j) column[j] = c.w[0] * r0[j] + c.w[1] * r1[j];
-    } else {
-      for (std::size_t j = 0; j < nodes; ++j) column[j] = c.w[0] * r0[j];
-    }
-    double own = 0.0;
-    for (int k = 0; k < c.count; ++k) own += c.w[k] * column[c.node[k] - first];
-    c.inv_w = 1.0 / own;
+  float* column = columns_.data();
+  for (int k = 0; k < rows_; ++k, column += stride_) {
+    Contact& c = contacts_[static_cast<std::size_t>(k)];
     c.soft = numerics.recovery / (numerics.contact_N_per_m * dt_s * dt_s);
-    c.inv_soft_w = 1.0 / (own + c.soft);
-    column += nodes;
+    make_column(c, metric, column);
     c.target =
         c.gap_m > 0.0 ? -c.gap_m / dt_s : std::min(-numerics.recovery * c.gap_m / dt_s, numerics.max_recovery_m_per_s);
     c.p = in_cone(c.p, c.n, c.mu);
@@ -109,14 +116,12 @@ void ContactSet::prepare(const ContactMetric& metric, int first, int last, const
 }
 
 template <bool Friction>
-void ContactSet::sweep(int first, int nodes, const Vec* v) noexcept {
-  Vec* const moved = moved_.data();  // velocities of the window as the metric sees them in the course of the sweep
-  for (int j = 0; j < nodes; ++j) moved[j].v = v[first + j].v;
-  const int count = static_cast<int>(contacts_.size());
-  for (int index = 0; index < count; ++index) {
+void ContactSet::sweep(const Vec* v) noexcept {
+  swept_.load(v + window_first_, window_last_ - window_first_ + 1);
+  const float* column = columns_.data();
+  for (int index = 0; index < rows_; ++index, column += stride_) {
     Contact& c = contacts_[static_cast<std::size_t>(index)];
-    Vec u = -c.surface;
-    for (int j = 0; j < c.count; ++j) u += c.w[j] * moved[c.node[j] - first];
+    const Vec u = swept_.mix(c.place, c.weight) - c.surface;
     const double un = dot(u, c.n), pn_before = dot(c.p, c.n);
     const double pn = pn_before - c.inv_soft_w * (un + c.soft * pn_before - c.target);
     Vec p{};
@@ -131,61 +136,90 @@ void ContactSet::sweep(int first, int nodes, const Vec* v) noexcept {
     } else if (dot(c.p, c.p) == 0.0) {
       continue;
     }
+    if (!c.loaded) c.loaded = true, loaded_.push_back(index), residual_[loaded_.size() - 1] = Vec{};
     const Vec delta = p - c.p;
     c.p = p;
     for (int j = 0; j < c.count; ++j) extra_[static_cast<std::size_t>(c.node[j])] += c.w[j] * delta;
-    const double* column = columns_.data() + static_cast<std::size_t>(index) * stride_;
-    for (int j = 0; j < nodes; ++j) moved[j].v += column[j] * delta.v;
+    swept_.push(column, stride_, delta);
   }
 }
 
-template <bool Friction>
-void ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const Numerics& numerics, int passes,
-                        double settled_m_per_s, double dt_s, int first, int last, Vec* v,
-                        ContactReport& report) noexcept {
-  const int nodes = last - first + 1;
-  const auto clear = [&](std::vector<Vec>& array) {
-    std::fill(array.begin() + first, array.begin() + last + 1, Vec{});
-  };
-  prepare(metric, first, last, numerics, dt_s);
-  solver.solve(first, last, nullptr, v, true);
-  for (auto& c : contacts_) c.u_free = velocity(c, v);
-  clear(extra_);
-  push(1.0);
-  solver.solve(first, last, extra_.data(), step_.data(), false);
-  add(first, last, v);
-  const double settled2 = settled_m_per_s * settled_m_per_s;
-  const std::size_t count = contacts_.size();
-  mixing_.restart();
-  for (int pass = 0; pass < passes; ++pass) {
-    ++report.passes;
-    clear(extra_);
-    for (std::size_t k = 0; k < count; ++k) residual_[k] = contacts_[k].p;
-    sweep<Friction>(first, nodes, v);
-    solver.solve(first, last, extra_.data(), step_.data(), false);
-    const double largest2 = add(first, last, v);
-    if (largest2 < settled2 || pass + 1 >= passes) break;
-    for (std::size_t k = 0; k < count; ++k) {
-      plain_[k] = p_[k] = contacts_[k].p;
-      residual_[k] = p_[k] - residual_[k];
-    }
-    if (!mixing_.step(p_.data(), residual_.data(), count)) continue;
-    // The mixture, brought back into the cones, counts only if it is better than the plain pass.
-    const double plain_merit = merit(v);
-    clear(extra_);
-    for (std::size_t k = 0; k < count; ++k) {
-      Contact& c = contacts_[k];
-      c.p = in_cone(p_[k], c.n, c.mu);
-      const Vec delta = c.p - plain_[k];
-      for (int j = 0; j < c.count; ++j) extra_[static_cast<std::size_t>(c.node[j])] += c.w[j] * delta;
-    }
-    solver.solve(first, last, extra_.data(), step_.data(), false);
-    add(first, last, v);
-    if (merit(v) <= plain_merit) continue;
-    for (int i = first; i <= last; ++i) v[i] -= step_[static_cast<std::size_t>(i)];
-    for (std::size_t k = 0; k < count; ++k) contacts_[k].p = plain_[k];
-    mixing_.restart();
+// Velocities without contact, and with the impulses of the last substep.
+void ContactSet::start(BandSolver& solver, Vec* v) noexcept {
+  solver.solve(window_first_, window_last_, nullptr, v, true);
+  clear_extra();
+  loaded_.clear();
+  for (int k = 0; k < rows_; ++k) {
+    Contact& c = contacts_[static_cast<std::size_t>(k)];
+    c.u_free = velocity(c, v);
+    c.loaded = dot(c.p, c.p) > 0.0;
+    if (!c.loaded) continue;
+    loaded_.push_back(k);
+    for (int j = 0; j < c.count; ++j) extra_[static_cast<std::size_t>(c.node[j])] += c.w[j] * c.p;
   }
+  push(solver, v);
+  mixing_.restart();
+}
+
+template <bool Friction>
+double ContactSet::plain_pass(BandSolver& solver, Vec* v) noexcept {
+  clear_extra();
+  for (std::size_t k = 0; k < loaded_.size(); ++k) residual_[k].v = loaded(k).p.v;
+  sweep<Friction>(v);
+  for (std::size_t k = 0; k < loaded_.size(); ++k) {
+    plain_[k].v = p_[k].v = loaded(k).p.v;
+    residual_[k] = p_[k] - residual_[k];
+  }
+  return push(solver, v);
+}
+
+// The mixture, brought back into the cones, counts only if it is better than the plain pass.
+void ContactSet::mix(BandSolver& solver, Vec* v) noexcept {
+  if (!mixing_.step(p_.data(), residual_.data(), loaded_.size())) return;
+  const double plain_merit = merit(v);
+  clear_extra();
+  for (std::size_t k = 0; k < loaded_.size(); ++k) {
+    Contact& c = loaded(k);
+    c.p = in_cone(p_[k], c.n, c.mu);
+    const Vec delta = c.p - plain_[k];
+    for (int j = 0; j < c.count; ++j) extra_[static_cast<std::size_t>(c.node[j])] += c.w[j] * delta;
+  }
+  push(solver, v);
+  if (merit(v) <= plain_merit) return;
+  for (int i = window_first_; i <= window_last_; ++i) v[i] -= step_[static_cast<std::size_t>(i)];
+  for (std::size_t k = 0; k < loaded_.size(); ++k) loaded(k).p.v = plain_[k].v;
+  mixing_.restart();
+}
+
+template <bool Friction>
+void ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const Numerics& numerics, const Effort& effort,
+                        double dt_s, Vec* v, ContactReport& report) noexcept {
+  prepare(metric, numerics, dt_s);
+  start(solver, v);
+  const long nodes = window_last_ - window_first_ + 1;
+  const double settled2 = effort.settled_m_per_s * effort.settled_m_per_s;
+  for (;;) {
+    const double largest2 = plain_pass<Friction>(solver, v);
+    ++report.passes;
+    report.work += price::pass(rows_, static_cast<long>(loaded_.size()), nodes);
+    if (largest2 < settled2) return;
+    // The next pass can at worst load every row.
+    report.cut_short = report.passes >= effort.passes || report.work + price::pass(rows_, rows_, nodes) > effort.work;
+    if (report.cut_short) return;
+    mix(solver, v);
+  }
+}
+
+double ContactSet::unsettled_fraction(const Vec* v, double dt_s) const noexcept {
+  constexpr double kDeep = 0.3, kCreep = 0.002;  // of the distance of touch
+  double share = 1.0;
+  for (int k = 0; k < rows_; ++k) {
+    const Contact& c = contacts_[static_cast<std::size_t>(k)];
+    const double closing_m = -dt_s * dot(velocity(c, v), c.n);
+    const double room_m = std::max(c.gap_m + kDeep * c.reach_m, kCreep * c.reach_m);
+    if (closing_m > room_m) share = std::min(share, room_m / closing_m);
+  }
+  return share;
 }
 
 void ContactSet::store() noexcept {
@@ -204,9 +238,9 @@ void ContactSet::relabel(const std::vector<double>& s) noexcept {
   }
 }
 
-template void ContactSet::settle<true>(BandSolver&, const ContactMetric&, const Numerics&, int, double, double, int,
-                                       int, Vec*, ContactReport&) noexcept;
-template void ContactSet::settle<false>(BandSolver&, const ContactMetric&, const Numerics&, int, double, double, int,
-                                        int, Vec*, ContactReport&) noexcept;
+template void ContactSet::settle<true>(BandSolver&, const ContactMetric&, const Numerics&, const Effort&, double, Vec*,
+                                       ContactReport&) noexcept;
+template void ContactSet::settle<false>(BandSolver&, const ContactMetric&, const Numerics&, const Effort&, double, Vec*,
+                                        ContactReport&) noexcept;
 
 }  // namespace ligature::physics::rod

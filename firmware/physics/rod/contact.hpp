@@ -9,6 +9,8 @@
 #include "firmware/physics/rod/broad_phase.hpp"
 #include "firmware/physics/rod/contact_metric.hpp"
 #include "firmware/physics/rod/mixing.hpp"
+#include "firmware/physics/rod/swept.hpp"
+#include "firmware/physics/rod/work.hpp"
 
 namespace ligature::physics::rod {
 
@@ -35,23 +37,34 @@ struct Contact {
   double soft = 0.0;        ///< give of the normal: u_n + soft p_n >= target, 1/kg
   double inv_soft_w = 0.0;  ///< 1 / (J C^-1 J^T + soft)
   double mu = 0.0;
-  std::int32_t count = 4;  ///< nodes in use
-  double reach_m = 0.0;    ///< centre distance at which the pair touches
-  Vec* keep = nullptr;     ///< where the impulse is kept between substeps
+  std::int32_t count = 4;                      ///< nodes in use
+  double reach_m = 0.0;                        ///< centre distance at which the pair touches
+  bool loaded = false;                         ///< has carried an impulse in this substep
+  Vec* keep = nullptr;                         ///< where the impulse is kept between substeps
+  std::int32_t place[4] = {0, 0, 0, 0};        ///< of the nodes in SweptVelocities
+  float weight[4] = {0.0F, 0.0F, 0.0F, 0.0F};  ///< w for it
 };
 
 /// What happened in a substep or, summed by the caller, in a tick.
 struct ContactReport {
-  int contacts = 0;  ///< with an impulse
   int passes = 0;
+  long work = 0;           ///< of the passes
+  bool cut_short = false;  ///< they ended before the contacts had settled
   double min_gap_m = 1e9;  ///< of thread-thread contacts before the substep
-  double largest_impulse = 0.0;
-  bool cap_hit = false;
+  int rows_left_out = 0;   ///< contacts that were only guarded: no room, or no work left for them
 };
 
-inline constexpr int kMaxContacts = 384;
+/// How hard the contacts of a substep are worked on.
+struct Effort {
+  int passes = 0;                ///< at most
+  long work = 0;                 ///< for all of them, in instructions (work.hpp); the first pass is always done
+  double settled_m_per_s = 0.0;  ///< a pass that changes no velocity by more is the last
+};
 
-/// Contacts of one rod. Collect, then settle; everything is preallocated.
+inline constexpr int kMaxContacts = 768;  ///< rows that can be solved at once
+
+/// Contacts of one rod. Collect, choose rows, then settle; everything is preallocated, and every step says what it
+/// spends (work.hpp). What is collected but not chosen feels no impulse, but the guard holds it.
 ///
 /// A contact wants u_n >= -gap / dt when apart (nothing before they meet), u_n >= min(-beta gap / dt, limit) when
 /// overlapping, and u_t = 0 with |p_t| <= mu p_n: true static friction, no slip tolerance.
@@ -75,31 +88,43 @@ class ContactSet {
   /// Watched thread-thread pairs; rebuilt by BroadPhase.
   std::vector<Candidate> pairs;
 
-  void begin() noexcept { contacts_.clear(), watched_.clear(), window_first_ = 1 << 30, window_last_ = -1; }
+  void begin() noexcept { contacts_.clear(), watched_.clear(), rows_ = 0, overflow_ = false; }
 
   /// Measures pairs that may have come within near_m + 2 dt x their rate (motion.hpp); those within near_m + 2 dt x
-  /// relative speed become contacts.
-  void collect_thread(const State& state, const Motion& motion, double near_m, double dt_s, double mu,
-                      ContactReport& report) noexcept;
+  /// relative speed become contacts. @return false when there is not work enough left to measure them all.
+  [[nodiscard]] bool collect_thread(const State& state, const Motion& motion, double near_m, double dt_s, double mu,
+                                    Work& work, ContactReport& report) noexcept;
   /// Every node against the plane z = floor_m.
   void collect_floor(const State& state, double floor_m, double radius_m, double look_m, double mu,
-                     ContactReport& report) noexcept;
+                     Work& work) noexcept;
   /// Every segment against a capsule; not even looked at while the thread, travel_m on its way in this tick, cannot
   /// have reached it.
   void collect_body(const State& state, const Body& body, int index, double radius_m, double look_m, double travel_m,
-                    ContactReport& report) noexcept;
+                    Work& work) noexcept;
   /// Bodies may have moved: look at each again.
   void forget_bodies() noexcept { std::fill(body_due_.begin(), body_due_.end(), -1.0); }
 
-  [[nodiscard]] bool empty() const noexcept { return contacts_.empty(); }
+  /// Does the work left do for the floor and all bodies, wherever the thread is?
+  [[nodiscard]] static bool afford_world(int nodes, int bodies, const Work& work) noexcept;
+
+  /// Nodes of everything collected; last < first when nothing was.
+  struct Span {
+    int first, last;
+  };
+  [[nodiscard]] Span span() const noexcept;
+
+  /// Decides which contacts are solved: the `most` deepest, on a window of at most `widest` nodes. @pre nodes >= 2.
+  void choose_rows(int most, int widest, int nodes, ContactReport& report) noexcept;
+
+  [[nodiscard]] int rows() const noexcept { return rows_; }  ///< 0: nothing to settle
   [[nodiscard]] int window_first() const noexcept { return window_first_; }
   [[nodiscard]] int window_last() const noexcept { return window_last_; }
 
-  /// Solves for the window's velocities v with all contacts. @pre the solver's core lies in the window, the metric
-  /// covers it.
+  /// Solves for the window's velocities v with all rows. @pre rows() > 0, the solver's core lies in the window, the
+  /// metric covers it.
   template <bool Friction>
-  void settle(BandSolver& solver, const ContactMetric& metric, const Numerics& numerics, int passes,
-              double settled_m_per_s, double dt_s, int first, int last, Vec* v, ContactReport& report) noexcept;
+  void settle(BandSolver& solver, const ContactMetric& metric, const Numerics& numerics, const Effort& effort,
+              double dt_s, Vec* v, ContactReport& report) noexcept;
 
   /// After nodes moved along the thread: pairs with an impulse find their segments again by material coordinate.
   void relabel(const std::vector<double>& s) noexcept;
@@ -110,8 +135,13 @@ class ContactSet {
   /// Keeps the impulses for the next substep.
   void store() noexcept;
 
-  /// Largest alpha <= 1 with which no measured pair moves by more than 0.9 of its centre distance.
+  /// Largest alpha <= 1 with which no measured pair moves by more than 0.9 of its centre distance; 0 when there was no
+  /// room to note all that is near.
   [[nodiscard]] double safe_fraction(const Motion& motion, const Vec* v, double dt_s) const noexcept;
+
+  /// After a substep whose contacts did not settle: largest alpha <= 1 with which no row overlaps by more than 0.3 of
+  /// its distance of touch, or hardly more than it did. Else a jam would burst within a few substeps; so it waits.
+  [[nodiscard]] double unsettled_fraction(const Vec* v, double dt_s) const noexcept;
 
   /// The same for every pair of a list made at these positions and velocities.
   [[nodiscard]] double safe_fraction_of_pairs(const Motion& motion, const Vec* v, double dt_s) const noexcept;
@@ -122,14 +152,23 @@ class ContactSet {
   std::vector<Vec> body_impulse;   ///< per body and segment
 
  private:
-  void add(const Contact& contact, ContactReport& report) noexcept;
-  void prepare(const ContactMetric& metric, int first, int last, const Numerics& numerics, double dt_s) noexcept;
-  [[nodiscard]] double merit(const Vec* v) const noexcept;
-  void push(double share) noexcept;  ///< adds J^T p to extra_
-  /// v += step_. @return the sum over axes of the largest squares: at least the square of the largest step.
-  double add(int first, int last, Vec* v) const noexcept;
+  void add(const Contact& contact) noexcept;
+  void measure(Candidate& pair, const State& state, const Motion& motion, double near_m, double dt_s, double mu,
+               ContactReport& report) noexcept;
+  void prepare(const ContactMetric& metric, const Numerics& numerics, double dt_s) noexcept;
+  void make_column(Contact& c, const ContactMetric& metric, float* column) const noexcept;
+  void start(BandSolver& solver, Vec* v) noexcept;
+  [[nodiscard]] Contact& loaded(std::size_t k) noexcept { return contacts_[static_cast<std::size_t>(loaded_[k])]; }
+  /// @return the square of the largest step of a velocity, or more.
   template <bool Friction>
-  void sweep(int first, int nodes, const Vec* v) noexcept;
+  double plain_pass(BandSolver& solver, Vec* v) noexcept;
+  void mix(BandSolver& solver, Vec* v) noexcept;
+  [[nodiscard]] double merit(const Vec* v) const noexcept;
+  /// v += A^-1 extra_ on the window. @return the sum over axes of the largest squares of that step.
+  double push(BandSolver& solver, Vec* v) noexcept;
+  void clear_extra() noexcept;
+  template <bool Friction>
+  void sweep(const Vec* v) noexcept;
 
   /// A pair that is near but no contact in this substep; only the guard looks at it again.
   struct Watched {
@@ -137,16 +176,21 @@ class ContactSet {
     double distance_m;
   };
 
-  std::vector<Contact> contacts_;
+  std::vector<Contact> contacts_;  // rows first, then what is left out
   std::vector<Watched> watched_;
-  std::vector<double> columns_;  // C^-1 J^T of every contact on the window
-  std::vector<Vec> moved_, extra_, step_;
-  std::vector<Vec> p_, plain_, residual_;  // impulses and their change in a pass, as the mixing wants them
+  std::vector<std::int32_t> due_;  // pairs to measure in this substep
+  std::vector<double> gaps_;       // scratch of choose_rows()
+  std::vector<float> columns_;     // C^-1 J^T of every row on the window, padded
+  SweptVelocities swept_;
+  std::vector<Vec> extra_, step_;
+  std::vector<std::int32_t> loaded_;  // rows that have carried an impulse in this substep: the others are not mixed
+  std::vector<Vec> p_, plain_, residual_;  // their impulses and their change in a pass, as the mixing wants them
   Mixing mixing_;
   std::vector<double> body_due_;  // least gap of a body when last measured + travel then
   std::size_t stride_ = 0;
   double per_second_ = 0.0;
-  int window_first_ = 0, window_last_ = -1;
+  int rows_ = 0, window_first_ = 0, window_last_ = 1;
+  bool overflow_ = false;
 };
 
 }  // namespace ligature::physics::rod

@@ -7,57 +7,135 @@
 
 namespace ligature::physics::rod {
 
-void ContactSet::add(const Contact& contact, ContactReport& report) noexcept {
-  if (contacts_.size() >= static_cast<std::size_t>(kMaxContacts)) {
-    report.cap_hit = true;
+namespace {
+
+Contact contact_of(const Candidate& pair, const Closest& c, double distance, double mu) noexcept {
+  Contact contact;
+  contact.node[0] = pair.a, contact.node[1] = pair.a + 1, contact.node[2] = pair.b, contact.node[3] = pair.b + 1;
+  contact.w[0] = c.s - 1.0, contact.w[1] = -c.s, contact.w[2] = 1.0 - c.t, contact.w[3] = c.t;
+  contact.n = distance > 1e-12 ? (1.0 / distance) * c.between : make(0, 0, 1);
+  contact.gap_m = distance - pair.reach_m;
+  contact.reach_m = pair.reach_m;
+  contact.mu = mu;
+  contact.p = pair.impulse;
+  return contact;
+}
+
+/// The less, the more a contact wants to be solved: those that carry load first, then the nearest.
+double urgency(const Contact& c) noexcept { return c.gap_m - (dot(c.p, c.p) > 0.0 ? c.reach_m : 0.0); }
+
+int lowest_node(const Contact& c) noexcept { return std::min(c.node[0], c.node[2]); }
+int highest_node(const Contact& c) noexcept { return std::max(c.node[1], c.node[3]); }
+
+}  // namespace
+
+void ContactSet::add(const Contact& contact) noexcept {
+  if (contacts_.size() == contacts_.capacity()) {
+    overflow_ = true;
+    *contact.keep = Vec{};
     return;
   }
   contacts_.push_back(contact);
-  for (int k = 0; k < contact.count; ++k) {
-    window_first_ = std::min(window_first_, static_cast<int>(contact.node[k]));
-    window_last_ = std::max(window_last_, static_cast<int>(contact.node[k]));
-  }
+  Contact& added = contacts_.back();
+  for (int k = added.count; k < 4; ++k) added.node[k] = added.node[0];  // weight zero
 }
 
-void ContactSet::collect_thread(const State& state, const Motion& motion, double near_m, double dt_s, double mu,
-                                ContactReport& report) noexcept {
-  for (auto& pair : pairs) {
+bool ContactSet::collect_thread(const State& state, const Motion& motion, double near_m, double dt_s, double mu,
+                                Work& work, ContactReport& report) noexcept {
+  due_.clear();
+  const long check = price::kCheck * static_cast<long>(pairs.size());
+  if (check > work.left()) return false;
+  work.spend(check);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    Candidate& pair = pairs[k];
     const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-    const double gone = motion.gone(a, b);
-    if (pair.due - gone > near_m + 2.0 * dt_s * motion.rate(a, b)) {  // cannot meet, even at twice today's speed
-      pair.impulse = Vec{};
-      continue;
+    if (pair.due - motion.gone(a, b) > near_m + 2.0 * dt_s * motion.rate(a, b)) {
+      pair.impulse = Vec{};  // cannot meet, even at twice today's speed
+    } else {
+      due_.push_back(static_cast<std::int32_t>(k));
     }
-    const Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
-    const double distance = std::sqrt(c.distance2), gap = distance - pair.reach_m;
-    pair.due = gap + gone;
-    report.min_gap_m = std::min(report.min_gap_m, gap);
-    // Far enough for one substep at today's relative speed (half the bound of above is usually wasted).
-    const Vec u = (1.0 - c.t) * state.v[b] + c.t * state.v[b + 1] - (1.0 - c.s) * state.v[a] - c.s * state.v[a + 1];
-    const bool full = contacts_.size() >= static_cast<std::size_t>(kMaxContacts);
-    if (full || gap > near_m + 2.0 * dt_s * norm(u)) {
-      report.cap_hit |= full;  // without room for a contact the guard still holds the pair
-      pair.impulse = Vec{};
-      watched_.push_back({pair.a, pair.b, distance});  // has room for every pair
-      continue;
-    }
-    pair.s_a = state.mesh.s[a] + c.s * state.mesh.rest[a];
-    pair.s_b = state.mesh.s[b] + c.t * state.mesh.rest[b];
-    Contact contact;
-    contact.node[0] = pair.a, contact.node[1] = pair.a + 1, contact.node[2] = pair.b, contact.node[3] = pair.b + 1;
-    contact.w[0] = c.s - 1.0, contact.w[1] = -c.s, contact.w[2] = 1.0 - c.t, contact.w[3] = c.t;
-    contact.n = distance > 1e-12 ? (1.0 / distance) * c.between : make(0, 0, 1);
-    contact.gap_m = gap;
-    contact.reach_m = pair.reach_m;
-    contact.mu = mu;
-    contact.p = pair.impulse;
-    contact.keep = &pair.impulse;
-    add(contact, report);
   }
+  const long cost = (price::kMeasure + price::kGuard) * static_cast<long>(due_.size());
+  if (cost > work.left()) return false;
+  work.spend(cost);
+  for (const auto k : due_) measure(pairs[static_cast<std::size_t>(k)], state, motion, near_m, dt_s, mu, report);
+  return true;
+}
+
+void ContactSet::measure(Candidate& pair, const State& state, const Motion& motion, double near_m, double dt_s,
+                         double mu, ContactReport& report) noexcept {
+  const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+  const Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
+  const double distance = std::sqrt(c.distance2), gap = distance - pair.reach_m;
+  pair.due = gap + motion.gone(a, b);
+  report.min_gap_m = std::min(report.min_gap_m, gap);
+  // Far enough for one substep at today's relative speed (half the bound of above is usually wasted).
+  const Vec u = (1.0 - c.t) * state.v[b] + c.t * state.v[b + 1] - (1.0 - c.s) * state.v[a] - c.s * state.v[a + 1];
+  const bool full = contacts_.size() >= static_cast<std::size_t>(kMaxContacts);
+  if (full || gap > near_m + 2.0 * dt_s * norm(u)) {
+    report.rows_left_out += full;
+    pair.impulse = Vec{};
+    watched_.push_back({pair.a, pair.b, distance});  // has room for every pair
+    return;
+  }
+  pair.s_a = state.mesh.s[a] + c.s * state.mesh.rest[a];
+  pair.s_b = state.mesh.s[b] + c.t * state.mesh.rest[b];
+  Contact contact = contact_of(pair, c, distance, mu);
+  contact.keep = &pair.impulse;
+  add(contact);
+}
+
+bool ContactSet::afford_world(int nodes, int bodies, const Work& work) noexcept {
+  const long node = price::kWorldNode + price::kGuard, body = price::kWorldNode + price::kMeasure + price::kGuard;
+  return (node + body * bodies) * nodes <= work.left();
+}
+
+ContactSet::Span ContactSet::span() const noexcept {
+  Span span{1 << 30, -1};
+  for (const auto& c : contacts_) {
+    span.first = std::min(span.first, lowest_node(c));
+    span.last = std::max(span.last, highest_node(c));
+  }
+  return span;
+}
+
+// Contacts become rows in the order in which they were found; those left out move behind them.
+void ContactSet::choose_rows(int most, int widest, int nodes, ContactReport& report) noexcept {
+  const std::size_t found = contacts_.size(), room = static_cast<std::size_t>(std::clamp(most, 0, kMaxContacts));
+  double deepest = 1e300, cut = 1e300;
+  int anchor = 0;
+  gaps_.clear();
+  for (const auto& c : contacts_) {
+    gaps_.push_back(urgency(c));
+    if (gaps_.back() < deepest) deepest = gaps_.back(), anchor = lowest_node(c);
+  }
+  if (room < found) {
+    std::nth_element(gaps_.begin(), gaps_.begin() + static_cast<std::ptrdiff_t>(room), gaps_.end());
+    cut = gaps_[room];
+  }
+  const Span all = span();
+  const bool narrow = all.last - all.first >= widest;  // then: from the deepest contact's first node on
+  rows_ = 0, window_first_ = nodes, window_last_ = -1;
+  for (std::size_t k = 0; k < found; ++k) {
+    Contact& c = contacts_[k];
+    const bool outside = narrow && (lowest_node(c) < anchor || highest_node(c) >= anchor + widest);
+    if (urgency(c) >= cut || static_cast<std::size_t>(rows_) >= room || outside) {
+      c.p = Vec{};
+      ++report.rows_left_out;
+      continue;
+    }
+    window_first_ = std::min(window_first_, lowest_node(c));
+    window_last_ = std::max(window_last_, highest_node(c));
+    if (static_cast<int>(k) != rows_) std::swap(c, contacts_[static_cast<std::size_t>(rows_)]);
+    ++rows_;
+  }
+  if (rows_ == 0) window_first_ = window_last_ = (nodes - 2) / 2;
+  if (window_first_ == window_last_ && window_last_ + 1 < nodes) ++window_last_;
+  if (window_first_ == window_last_) --window_first_;
 }
 
 void ContactSet::collect_floor(const State& state, double floor_m, double radius_m, double look_m, double mu,
-                               ContactReport& report) noexcept {
+                               Work& work) noexcept {
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     const double gap = state.x[i][2] - floor_m - radius_m;
     if (gap > look_m) {
@@ -74,12 +152,14 @@ void ContactSet::collect_floor(const State& state, double floor_m, double radius
     contact.mu = mu;
     contact.p = floor_impulse[i];
     contact.keep = &floor_impulse[i];
-    add(contact, report);
+    add(contact);
+    work.spend(price::kGuard);
   }
+  work.spend(price::kWorldNode * static_cast<long>(state.x.size()));
 }
 
 void ContactSet::collect_body(const State& state, const Body& body, int index, double radius_m, double look_m,
-                              double travel_m, ContactReport& report) noexcept {
+                              double travel_m, Work& work) noexcept {
   double& due = body_due_[static_cast<std::size_t>(index)];
   if (due - travel_m > look_m) return;
   const std::size_t n = state.x.size();
@@ -116,8 +196,10 @@ void ContactSet::collect_body(const State& state, const Body& body, int index, d
     contact.mu = body.friction;
     contact.p = keep;
     contact.keep = &keep;
-    add(contact, report);
+    add(contact);
+    work.spend(price::kMeasure + price::kGuard);
   }
+  work.spend(price::kWorldNode * static_cast<long>(n));
   due = std::min(least, std::sqrt(nearest2) - longest) + travel_m;
 }
 

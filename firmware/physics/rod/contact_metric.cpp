@@ -9,6 +9,7 @@ void ContactMetric::reserve(int nodes, int window) {
   capacity_ = std::min(nodes, window);
   const auto w = static_cast<std::size_t>(capacity_) + 4;
   table_.assign(w * w, 0.0);
+  row_.assign(w * w + 16, 0.0F);
   for (auto* array : {&d_, &l1_, &l2_}) array->assign(static_cast<std::size_t>(nodes) + 2, 0.0);
 }
 
@@ -16,8 +17,13 @@ void ContactMetric::prepare(const Mesh& mesh, const Material& material, double d
   assert(0 <= first && first < last && last < mesh.nodes() && last - first < capacity_);
   first_ = first;
   last_ = last;
-  const auto n = static_cast<std::size_t>(mesh.nodes()), a = static_cast<std::size_t>(first),
-             z = static_cast<std::size_t>(last);
+  factor(mesh, material, dt_s);
+  invert();
+}
+
+// LDL^T of C with everything outside the window eliminated.
+void ContactMetric::factor(const Mesh& mesh, const Material& material, double dt_s) noexcept {
+  const auto n = static_cast<std::size_t>(mesh.nodes()), z = static_cast<std::size_t>(last_);
   const double bend = dt_s * (dt_s + material.bend_tau_s), inertia = 1.0 + material.drag_per_s * dt_s;
   const auto diag = [&](std::size_t i) { return mesh.mass[i] * inertia + bend * mesh.kd[i]; };
   // Right of the window, backwards: only d, f (coupling to the next node inwards) are needed.
@@ -53,8 +59,11 @@ void ContactMetric::prepare(const Mesh& mesh, const Material& material, double d
     if (i + 1 == z) d_[i] -= on_before;
     if (i == z) d_[i] -= on_last;
   }
-  // Columns of the inverse, all at once: row operations on the identity.
-  const std::size_t w = z - a + 1;
+}
+
+// Columns of the inverse, all at once: row operations on the identity.
+void ContactMetric::invert() noexcept {
+  const auto a = static_cast<std::size_t>(first_), w = static_cast<std::size_t>(last_ - first_ + 1);
   stride_ = (w + 3) & ~std::size_t{3};
   const auto row_at = [&](std::size_t i) { return table_.data() + i * stride_; };
   for (std::size_t i = 0; i < w; ++i) {
@@ -78,7 +87,11 @@ void ContactMetric::prepare(const Mesh& mesh, const Material& material, double d
     const double* p = i + 1 < w ? row_at(i + 1) : r;
     const double* q = i + 2 < w ? row_at(i + 2) : r;
     const double g = i + 1 < w ? l1_[a + i + 1] : 0.0, h = i + 2 < w ? l2_[a + i + 2] : 0.0;
-    for (std::size_t j = 0; j < stride_; ++j) r[j] = inv * r[j] - g * p[j] - h * q[j];
+    float* const out = row_.data() + i * stride_;
+    for (std::size_t j = 0; j < stride_; ++j) {
+      r[j] = inv * r[j] - g * p[j] - h * q[j];
+      out[j] = static_cast<float>(r[j]);
+    }
   }
 }
 

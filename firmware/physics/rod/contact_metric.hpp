@@ -24,15 +24,19 @@ class ContactMetric {
   [[nodiscard]] int last() const noexcept { return last_; }
   [[nodiscard]] int capacity() const noexcept { return capacity_; }
 
-  /// Row of C^-1 of a node; entry j belongs to node first() + j.
-  [[nodiscard]] const double* row(int node) const noexcept {
-    return table_.data() + static_cast<std::size_t>(node - first_) * stride_;
+  /// Row of C^-1 of a node, single precision; entry j belongs to node first() + j. Seven more may be read at its end.
+  [[nodiscard]] const float* row(int node) const noexcept {
+    return row_.data() + static_cast<std::size_t>(node - first_) * stride_;
   }
 
  private:
   int capacity_ = 0, first_ = 1, last_ = 0;
   std::size_t stride_ = 0;
+  void factor(const Mesh& mesh, const Material& material, double dt_s) noexcept;
+  void invert() noexcept;
+
   std::vector<double> table_;
+  std::vector<float> row_;           // the table for those who sweep
   std::vector<double> d_, l1_, l2_;  // scalar LDL^T
 };
 

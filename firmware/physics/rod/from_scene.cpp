@@ -84,7 +84,8 @@ Numerics numerics_of(const scene::Scene& scene) noexcept {
     case scene::Accuracy::kFine:
       n.substeps = n.max_substeps = 40;
       n.settled_m_per_s = 1e-5;
-      n.max_passes = n.passes_per_substep = 40;
+      n.max_passes = 40;
+      n.work = 40'000'000;
       break;
   }
   n.substeps = std::max(n.substeps, scene.time.substeps);

@@ -30,6 +30,7 @@ struct Share {
 }  // namespace
 
 double ContactSet::safe_fraction(const Motion& motion, const Vec* v, double dt_s) const noexcept {
+  if (overflow_) return 0.0;
   Share share{v, dt_s};
   for (const auto& c : contacts_) {
     const double distance = c.gap_m + c.reach_m;

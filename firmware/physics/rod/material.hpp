@@ -22,11 +22,11 @@ struct Numerics {
   double tick_s = 1e-3;
   int substeps = 16;  ///< of a tick at rest; more when the hands move fast
   int max_substeps = 24;
-  double fast_m_per_s = 0.3;      ///< hand speed up to which `substeps` do
-  int max_passes = 80;            ///< true solves per substep while contacts settle
-  int passes_per_substep = 16;    ///< of `substeps`, in all; when they are used up, each substep left gets four
+  double fast_m_per_s = 0.3;  ///< hand speed up to which `substeps` do
+  int max_passes = 80;        ///< true solves per substep while contacts settle
+  long work = 4'500'000;  ///< what contact may cost in a tick, in instructions (work.hpp); fast hands: a quarter more
   double settled_m_per_s = 3e-5;  ///< a pass that changes no velocity by more ends them,
-  double settled_share = 0.012;   ///< or than this share of the hands' speed
+  double settled_share = 0.012;   ///< or than that and this share of the hands' speed
   double recovery = 0.3;          ///< share of a penetration taken back per substep
   double max_recovery_m_per_s = 0.5;
   double contact_N_per_m = 6e5;  ///< give of a contact under load

@@ -5,12 +5,13 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr double kRidge = 1e-6;  // of the trace; keeps nearly equal residuals from giving huge weights
+constexpr double kRidge = 1e-6,
+                 kLeast = 1e-14;  // of a change's own square, of the trace: keeps weights from being huge
 
-using Square = std::array<std::array<double, Mixing::kDepth>, Mixing::kDepth>;
+using Row = std::array<double, Mixing::kDepth>;
 
 // Gaussian elimination of a small symmetric positive definite system, in place; the answer is left in b.
-void solve(Square& a, std::array<double, Mixing::kDepth>& b, std::size_t n) noexcept {
+void solve(std::array<Row, Mixing::kDepth>& a, Row& b, std::size_t n) noexcept {
   for (std::size_t k = 0; k < n; ++k) {
     for (std::size_t i = k + 1; i < n; ++i) {
       const double f = a[i][k] / a[k][k];
@@ -24,48 +25,53 @@ void solve(Square& a, std::array<double, Mixing::kDepth>& b, std::size_t n) noex
   }
 }
 
+double sum(Lanes a) noexcept { return (a[0] + a[1]) + a[2]; }
+
 }  // namespace
 
-void Mixing::reserve(std::size_t impulses) {
-  for (auto& past : past_) {
-    past.p.resize(impulses);
-    past.r.resize(impulses);
+// The newest change goes into `slot`; its products with all changes, and theirs with r. One pass, eight registers.
+void Mixing::measure(const Vec* p, const Vec* r, std::size_t impulses, std::size_t slot, Row& theta) noexcept {
+  Lanes g0{}, g1{}, g2{}, g3{}, b0{}, b1{}, b2{}, b3{};
+  for (std::size_t i = 0; i < impulses; ++i) {
+    Past& past = past_[i];
+    const Lanes now = r[i].v, d = now - past.r.v;
+    past.dr[slot].v = d;
+    past.dp[slot].v = p[i].v - past.p.v;
+    past.r.v = now;
+    past.p.v = p[i].v;
+    const Lanes d0 = past.dr[0].v, d1 = past.dr[1].v, d2 = past.dr[2].v, d3 = past.dr[3].v;
+    g0 += d * d0, g1 += d * d1, g2 += d * d2, g3 += d * d3;
+    b0 += now * d0, b1 += now * d1, b2 += now * d2, b3 += now * d3;
   }
+  const Row row{sum(g0), sum(g1), sum(g2), sum(g3)};
+  for (std::size_t k = 0; k < kDepth; ++k) products_[slot][k] = products_[k][slot] = row[k];
+  theta = {sum(b0), sum(b1), sum(b2), sum(b3)};
 }
 
 bool Mixing::step(Vec* p, const Vec* r, std::size_t impulses) noexcept {
-  newest_ = (newest_ + 1) % (kDepth + 1);
-  Past& now = past_[static_cast<std::size_t>(newest_)];
-  std::copy(p, p + impulses, now.p.begin());
-  std::copy(r, r + impulses, now.r.begin());
-  const auto depth = static_cast<std::size_t>(held_);
-  held_ = std::min(held_ + 1, kDepth);
-  if (depth == 0) return false;
-
-  const auto before = [&](std::size_t j) -> const Past& {
-    return past_[static_cast<std::size_t>((newest_ + kDepth - static_cast<int>(j)) % (kDepth + 1))];
-  };
-  Square a{};
-  std::array<double, kDepth> theta{};
-  for (std::size_t i = 0; i < impulses; ++i) {
-    std::array<Vec, kDepth> d;
-    for (std::size_t j = 0; j < depth; ++j) {
-      d[j] = now.r[i] - before(j).r[i];
-      theta[j] += dot(d[j], now.r[i]);
-      for (std::size_t k = 0; k <= j; ++k) a[j][k] += dot(d[j], d[k]);
-    }
+  if (!primed_) known_ = 0;
+  for (; known_ < impulses; ++known_) past_[known_] = Past{};
+  if (!primed_) {
+    for (std::size_t i = 0; i < impulses; ++i) past_[i].r.v = r[i].v, past_[i].p.v = p[i].v;
+    primed_ = true;
+    return false;
   }
+  const auto slot = static_cast<std::size_t>(next_);
+  next_ = (next_ + 1) % kDepth;
+  held_ = std::min(held_ + 1, kDepth);
+  const auto depth = static_cast<std::size_t>(held_);  // slots 0 .. depth - 1 are in use
+  Row theta{};
+  measure(p, r, impulses, slot, theta);
+  auto a = products_;
   double trace = 0.0;
   for (std::size_t j = 0; j < depth; ++j) trace += a[j][j];
   if (!(trace > 0.0)) return false;
-  for (std::size_t j = 0; j < depth; ++j) {
-    a[j][j] += kRidge * trace;
-    for (std::size_t k = 0; k < j; ++k) a[k][j] = a[j][k];
-  }
+  for (std::size_t j = 0; j < depth; ++j) a[j][j] += kRidge * a[j][j] + kLeast * trace;
   solve(a, theta, depth);
-  for (std::size_t j = 0; j < depth; ++j) {
-    const Past& old = before(j);
-    for (std::size_t i = 0; i < impulses; ++i) p[i] -= theta[j] * (now.p[i] - old.p[i]);
+  for (std::size_t j = depth; j < kDepth; ++j) theta[j] = 0.0;
+  for (std::size_t i = 0; i < impulses; ++i) {
+    const auto& dp = past_[i].dp;
+    p[i].v -= (theta[0] * dp[0].v + theta[1] * dp[1].v) + (theta[2] * dp[2].v + theta[3] * dp[3].v);
   }
   return true;
 }

@@ -86,6 +86,14 @@ bool Motion::used_up(double spare_m, double horizon_s, double ahead_s) const noe
   return 2.0 * one > spare_m || rise.most > spare_m;
 }
 
+double Motion::share_within(double spare_m, double horizon_s, double dt_s) const noexcept {
+  constexpr double kLeast = 1.0 / 1024.0;
+  for (double share = 1.0; share >= kLeast; share *= 0.5) {
+    if (!used_up(spare_m, horizon_s, share * dt_s)) return share;
+  }
+  return 0.0;
+}
+
 bool Motion::outran(double spare_m, double dt_s) const noexcept {
   if (2.0 * dt_s * fastest_ <= spare_m) return false;
   double one = 0.0;

@@ -37,6 +37,10 @@ class Motion {
   /// May some pair have gone, or go in `ahead_s`, more than spare_m + horizon_s x its rate at restart()?
   [[nodiscard]] bool used_up(double spare_m, double horizon_s, double ahead_s) const noexcept;
 
+  /// The share of what everything would move in dt_s, at the velocities of now, after which no pair has gone more than
+  /// spare_m + horizon_s x its rate at restart(). Never too large; 0 or a power of a half.
+  [[nodiscard]] double share_within(double spare_m, double horizon_s, double dt_s) const noexcept;
+
   /// May some pair, in dt_s, move by more than spare_m + twice what its rate before the last measure() said?
   [[nodiscard]] bool outran(double spare_m, double dt_s) const noexcept;
 

@@ -206,13 +206,16 @@ void Refine::split(const Material&, State& state, int segment) noexcept {
 }
 
 bool Refine::update(const Material& material, State& state, const Forces& forces, ContactSet& contacts,
-                    const std::vector<Body>& bodies) noexcept {
+                    const std::vector<Body>& bodies, Work& work) noexcept {
   for (auto& q : state.rest_bend) q = kFade * q;
   for (auto& e : state.rest_strain) e *= kFade;
   want(material, state, forces, contacts);
   const std::size_t n = at_.size();
   bool changed = false;
-  for (int k = 0; k < kChangesPerTick; ++k) {
+  const long price_of_one = price::kChangePerNode * static_cast<long>(n);
+  const long most = std::clamp(work.budget() / 8 / price_of_one, 1L, static_cast<long>(kChangesPerTick));
+  for (long k = 0; k < most; ++k) {
+    work.spend(price_of_one);
     const int segment = worst_segment();
     if (segment < 0) break;
     const auto j = static_cast<std::size_t>(segment);

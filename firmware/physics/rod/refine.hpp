@@ -29,9 +29,9 @@ class Refine {
   /// @return false when n is too small or too large for the length.
   bool start(const Material& material, double wanted_m, State& state, std::span<const double> curvature_per_m = {});
 
-  /// One tick's worth of changes. @return true when nodes moved. O(n); no allocation.
+  /// One tick's worth of changes, an eighth of its work at most. @return true when nodes moved. O(n); no allocation.
   bool update(const Material& material, State& state, const Forces& forces, ContactSet& contacts,
-              const std::vector<Body>& bodies) noexcept;
+              const std::vector<Body>& bodies, Work& work) noexcept;
 
   /// After update() returned true and the mesh was rebuilt: offsets that keep moments and tensions.
   void keep_stress(const Material& material, State& state) noexcept;

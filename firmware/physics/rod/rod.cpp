@@ -7,12 +7,18 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr int kWindow = 512;
+constexpr int kWindow = 1024;      // nodes on which contacts can be solved together
+constexpr double kRelax_s = 0.02;  // in which a pulled thread comes to rest when the hands do
+constexpr double kNear = 0.1;      // diameters within which a pair is a contact at any speed
 
 }  // namespace
 
 Rod::Rod(const Material& material, const Numerics& numerics, const Parts& parts, int n, int body_count)
-    : material_(material), numerics_(numerics), parts_(parts), substep_(pick(parts)) {
+    : material_(material),
+      numerics_(numerics),
+      parts_(parts),
+      substep_(pick(parts)),
+      near_m_(2.0 * material.radius_m * kNear) {
   state_.resize(n);
   forces_.resize(n);
   solver_.resize(n);
@@ -52,6 +58,8 @@ Rod& Rod::operator=(const Rod& other) {
   refine_ = other.refine_;
   report_ = other.report_;
   substep_ = other.substep_;
+  near_m_ = other.near_m_;
+  pace_m_per_s_ = other.pace_m_per_s_;
   solver_.resize(state_.nodes());
   metric_.invalidate();
   stale_ = true;
@@ -65,6 +73,7 @@ bool Rod::continue_from(const Rod& other) noexcept {
   twist_ = other.twist_;
   refine_ = other.refine_;
   report_ = other.report_;
+  pace_m_per_s_ = other.pace_m_per_s_;
   moved();
   return true;
 }
@@ -134,7 +143,7 @@ void Rod::release(int hold) noexcept {
 }
 
 bool Rod::remesh() noexcept {
-  if (!parts_.adaptive || !refine_.update(material_, state_, forces_, contacts_, bodies)) return false;
+  if (!parts_.adaptive || !refine_.update(material_, state_, forces_, contacts_, bodies, work_)) return false;
   moved();
   refine_.keep_stress(material_, state_);
   return true;
@@ -146,9 +155,7 @@ void Rod::tick() noexcept {
   tick(goals);
 }
 
-void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
-  report_ = TickReport{};
-  std::array<Vec, kMaxHolds> starts;
+double Rod::set_hands(const std::array<Vec, kMaxHolds>& goals, std::array<Vec, kMaxHolds>& starts) noexcept {
   double hand_speed = 0.0;
   for (std::size_t h = 0; h < kMaxHolds; ++h) {
     starts[h] = state_.holds[h].target;
@@ -156,27 +163,28 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
     state_.holds[h].velocity = (1.0 / numerics_.tick_s) * (goals[h] - starts[h]);
     hand_speed = std::max(hand_speed, norm(state_.holds[h].velocity));
   }
+  return hand_speed;
+}
+
+void Rod::begin_tick(double hand_speed) noexcept {
+  report_ = TickReport{};
+  const bool fast = hand_speed > 1.001 * numerics_.fast_m_per_s;
+  work_.start(numerics_.work + (fast ? numerics_.work / 4 : 0));
+  look_cost_ = rows_cost_ = 0;
   if (!mesh_held_) report_.remeshes += remesh();
   if (parts_.twist) twist_.update(material_, state_, forces_);
-  settled_m_per_s_ = numerics_.settled_m_per_s + numerics_.settled_share * hand_speed;
-  const bool fast = hand_speed > 1.001 * numerics_.fast_m_per_s || released_;  // letting go is the fastest of all
-  report_.substeps = fast ? numerics_.max_substeps : numerics_.substeps;
+  pace_m_per_s_ = std::max(hand_speed, pace_m_per_s_ * std::exp(-numerics_.tick_s / kRelax_s));
+  letting_go_ = released_;
   released_ = false;
-  const double dt = numerics_.tick_s / report_.substeps;
+  report_.substeps = fast || letting_go_ ? numerics_.max_substeps : numerics_.substeps;
   if (parts_.contact || parts_.world) {  // velocities and bodies may have been changed from outside
     motion_.measure(state_.v.data());
     contacts_.forget_bodies();
     tick_travel_m_ = 0.0;
   }
-  for (int k = 0; k < report_.substeps; ++k) {
-    const double share = static_cast<double>(k + 1) / report_.substeps;
-    for (int h = 0; h < state_.hold_count; ++h) {
-      const auto at = static_cast<std::size_t>(h);
-      state_.holds[at].target = starts[at] + share * (goals[at] - starts[at]);
-    }
-    substep_index_ = k;
-    (this->*substep_)(dt);
-  }
+}
+
+void Rod::feel_hands() noexcept {
   for (int h = 0; h < state_.hold_count; ++h) {
     Hold& hold = state_.holds[static_cast<std::size_t>(h)];
     if (hold.node < 0 || hold.rigid) continue;
@@ -184,6 +192,28 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
     hold.force =
         hold.stiffness_N_per_m * (state_.x[i] - hold.target) + hold.damping_N_s_per_m * (state_.v[i] - hold.velocity);
   }
+}
+
+void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
+  std::array<Vec, kMaxHolds> starts;
+  begin_tick(set_hands(goals, starts));
+  const double dt = numerics_.tick_s / report_.substeps;
+  bool moving = true;
+  for (int k = 0; k < report_.substeps; ++k) {
+    const double share = static_cast<double>(k + 1) / report_.substeps;
+    for (int h = 0; h < state_.hold_count; ++h) {
+      const auto at = static_cast<std::size_t>(h);
+      state_.holds[at].target = starts[at] + share * (goals[at] - starts[at]);
+    }
+    substep_index_ = k;
+    moving = moving && (this->*substep_)(dt);
+    if (!moving) report_.time_lost += 1.0 / report_.substeps;
+  }
+  if (report_.time_lost > 0.999) {  // slower, there is less to look at in the next tick
+    for (auto& v : state_.v) v = 0.5 * v;
+  }
+  report_.work = work_.used();
+  feel_hands();
 }
 
 }  // namespace ligature::physics::rod

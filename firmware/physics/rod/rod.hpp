@@ -2,6 +2,7 @@
 // A rod in its world: the parts together, and the list of verbs that is a tick.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,8 +26,12 @@ struct Parts {
 struct TickReport {
   int substeps = 0, passes = 0, contacts = 0, guard_events = 0, broad_phases = 0, remeshes = 0;
   double min_gap_m = 1e9;  ///< smallest thread-thread gap in any substep; negative: overlap
-  bool cap_hit = false;
-  int cut_short = 0;  ///< substeps whose contacts used up their passes before they settled: what was degraded
+  long work = 0;           ///< spent on contact, of Numerics::work
+
+  // What was given up, in this order.
+  int cut_short = 0;       ///< substeps whose contacts used up their passes before they settled
+  int rows_left_out = 0;   ///< contacts that were only guarded, at most in a substep
+  double time_lost = 0.0;  ///< share of the tick in which the thread was not moved: nobody knew whether it could be
 };
 
 /// A rod. Build it, place it with state(), then tick. Only the constructor allocates. Copyable.
@@ -85,16 +90,35 @@ class Rod {
   [[nodiscard]] Energy energy() const noexcept { return rod::energy(material_, state_, gravity); }
 
  private:
-  using Substep = void (Rod::*)(double) noexcept;
-  template <unsigned Bits>
-  void substep(double dt_s) noexcept;
+  using Substep = bool (Rod::*)(double) noexcept;
   static Substep pick(const Parts& parts) noexcept;
+  /// @return false, and nothing moved, when the work left does not do for it.
   template <unsigned Bits>
-  ContactReport collect(double dt_s, double near_m, double look_m) noexcept;
+  bool substep(double dt_s) noexcept;
   template <unsigned Bits>
-  double guard(double dt_s, double near_m) noexcept;
-  void broad_phase() noexcept;
-  [[nodiscard]] int passes_allowed() const noexcept;
+  bool look(double dt_s) noexcept;
+  bool list_is_good(double dt_s) noexcept;
+  bool relist(long reserve) noexcept;
+  template <bool Friction>
+  bool settle(double dt_s) noexcept;
+  struct Allowance {
+    long window, rows, passes;  // nodes; work for rows with the least passes; work for rows with all passes
+  };
+  [[nodiscard]] Allowance work_allowed(bool metric_too) const noexcept;
+  [[nodiscard]] double settled() const noexcept;
+  std::optional<Effort> choose_rows(double dt_s) noexcept;
+  void prepare_metric(double dt_s) noexcept;
+  template <unsigned Bits>
+  void move(double dt_s) noexcept;
+  template <unsigned Bits>
+  double guard(double dt_s) noexcept;
+  double guard_unlisted(double dt_s) noexcept;
+  double brake(double dt_s) noexcept;
+
+  /// @return the speed of the faster hand.
+  double set_hands(const std::array<Vec, kMaxHolds>& goals, std::array<Vec, kMaxHolds>& starts) noexcept;
+  void begin_tick(double hand_speed) noexcept;
+  void feel_hands() noexcept;
   int add_hold(const Hold& hold) noexcept;
 
   Material material_;
@@ -110,8 +134,15 @@ class Rod {
   Refine refine_;
   TickReport report_;
   Substep substep_;
-  double metric_dt_ = 0.0, settled_m_per_s_ = 0.0;
+  Work work_;
+  long look_cost_ = 0, rows_cost_ = 0;  // of the last substep
+  long list_cost_ = 0;                  // of the last list
+  double metric_dt_ = 0.0;
+  double pace_m_per_s_ = 0.0;  // of the hands, fading once they stop
+  bool letting_go_ = false;    // a hold let go just before this tick
   Motion motion_;
+  ContactReport seen_;          // of this substep
+  double near_m_ = 0.0;         // within which a pair is a contact at any speed
   double horizon_s_ = 0.0;      // how far the list of pairs looks ahead
   double tick_travel_m_ = 0.0;  // what the fastest node may have gone since the tick began
   int substep_index_ = 0;

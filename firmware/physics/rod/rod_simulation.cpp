@@ -195,7 +195,12 @@ void RodSimulation::publish() noexcept {
   health_.max_stretch = e.max_strain;
   health_.min_gap_m = r.min_gap_m < 1e8 ? r.min_gap_m : std::numeric_limits<double>::infinity();
   health_.contacts = r.contacts;
-  health_.contact_cap_hit = r.cap_hit;
+  health_.contact_cap_hit = r.rows_left_out > 0;
+  health_.time_lost = r.time_lost;
+  health_.degradation = r.time_lost > 0.0     ? Degradation::kMotion
+                        : r.rows_left_out > 0 ? Degradation::kContacts
+                        : r.cut_short > 0     ? Degradation::kIterations
+                                              : Degradation::kNone;
 }
 
 }  // namespace ligature::physics::rod

@@ -1,7 +1,8 @@
-// One substep of a rod: what moves, what touches what, velocities, positions.
+// One substep of a rod: what touches what, velocities, positions; within the work the tick has left.
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 
 #include "firmware/physics/rod/rod.hpp"
@@ -10,113 +11,203 @@ namespace ligature::physics::rod {
 namespace {
 
 constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8;
-constexpr int kLeastPasses = 4;   // of any substep, however much the tick has used
-constexpr double kNear = 0.1;     // diameters within which a pair is a contact at any speed
-constexpr double kSkin = 0.5;     // diameters a list of pairs looks ahead at any speed
-constexpr double kHorizon = 1.2;  // ticks it looks ahead at today's speeds
+constexpr int kLeastPasses = 3;  // rows that cannot have these are left out
+constexpr double kSkin = 0.5;    // diameters a list of pairs looks ahead at any speed
+
+/// How far ahead a list looks at today's speeds, in ticks, and the share of the tick's work it may cost. Too much is
+/// near? Then look less far, again the sooner.
+struct Ahead {
+  double ticks;
+  double share;
+};
+constexpr Ahead kAhead[] = {{1.2, 0.2}, {0.15, 0.15}, {0.0, 0.25}};
 
 }  // namespace
 
-void Rod::broad_phase() noexcept {
-  Outlook outlook{2.0 * material_.radius_m, 2.0 * material_.radius_m * kSkin, kHorizon * numerics_.tick_s};
-  bool room = false;
-  for (int k = 0; k < 4 && !room; ++k) {  // no room: look less far ahead, more often
-    room = broad_.build(state_, motion_, outlook, contacts_.pairs);
-    horizon_s_ = outlook.horizon_s;
-    outlook.horizon_s *= 0.25;
+// Lists what may touch, leaving `reserve` of the work. @return false when nobody knows what may.
+bool Rod::relist(long reserve) noexcept {
+  Outlook outlook{2.0 * material_.radius_m, 2.0 * material_.radius_m * kSkin, 0.0};
+  broad_.keep_impulses(contacts_.pairs);
+  stale_ = true;
+  for (const Ahead& ahead : kAhead) {
+    const long most =
+        std::min(work_.left() - reserve, static_cast<long>(ahead.share * static_cast<double>(work_.budget())));
+    if (most < BroadPhase::least_cost(state_.nodes())) break;
+    horizon_s_ = outlook.horizon_s = ahead.ticks * numerics_.tick_s;
     ++report_.broad_phases;
+    const long before = work_.used();
+    if (!broad_.build(state_, motion_, outlook, most, work_, contacts_.pairs)) continue;
+    stale_ = false;
+    list_cost_ = work_.used() - before;
+    return true;
   }
-  stale_ = false;
-  report_.cap_hit |= !room;
+  return false;
 }
 
-// Everything that may touch in this substep, and the window of nodes it touches.
+bool Rod::list_is_good(double dt_s) noexcept {
+  const double spare = 2.0 * material_.radius_m * kSkin - near_m_;
+  if (!stale_ && !motion_.used_up(spare, horizon_s_, 2.0 * dt_s)) return true;
+  return relist(0);
+}
+
+// Everything that may touch in this substep.
 template <unsigned Bits>
-ContactReport Rod::collect(double dt_s, double near_m, double look_m) noexcept {
-  ContactReport seen;
+bool Rod::look(double dt_s) noexcept {
   contacts_.begin();
+  seen_ = ContactReport{};
   if constexpr ((Bits & kContact) != 0) {
-    const double spare = 2.0 * material_.radius_m * kSkin - near_m;
-    if (stale_ || motion_.used_up(spare, horizon_s_, 2.0 * dt_s)) broad_phase();
-    contacts_.collect_thread(state_, motion_, near_m, dt_s, material_.friction, seen);
+    if (!list_is_good(dt_s)) return false;
+  }
+  const long before = work_.used();
+  if constexpr ((Bits & kContact) != 0) {
+    if (!contacts_.collect_thread(state_, motion_, near_m_, dt_s, material_.friction, work_, seen_)) return false;
   }
   if constexpr ((Bits & kWorld) != 0) {
-    if (has_floor) contacts_.collect_floor(state_, floor_m, material_.radius_m, look_m, floor_friction, seen);
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-      contacts_.collect_body(state_, bodies[b], static_cast<int>(b), material_.radius_m, look_m, tick_travel_m_, seen);
+    const int count = static_cast<int>(bodies.size());
+    if (!ContactSet::afford_world(state_.nodes(), count, work_)) return false;
+    const double look_m = near_m_ + 4.0 * motion_.fastest() * dt_s;
+    if (has_floor) contacts_.collect_floor(state_, floor_m, material_.radius_m, look_m, floor_friction, work_);
+    for (int b = 0; b < count; ++b) {
+      const Body& body = bodies[static_cast<std::size_t>(b)];
+      contacts_.collect_body(state_, body, b, material_.radius_m, look_m, tick_travel_m_, work_);
     }
   }
-  return seen;
+  look_cost_ = work_.used() - before;
+  return true;
+}
+
+// The substeps to come are expected to need what the last one did: a look and half as much again, its rows, and the
+// least passes over them; and one of them a new list.
+// Rows may have all else that is left; more passes than the least twice a fair share of it, so that a hard substep does
+// not starve the next.
+Rod::Allowance Rod::work_allowed(bool metric_too) const noexcept {
+  const long after = report_.substeps - substep_index_ - 1;
+  const auto span = contacts_.span();
+  const long window = std::min(span.last - span.first + 1, metric_.capacity() - 4);
+  const long metric = metric_too ? price::metric(state_.nodes(), window + 4) : 0;
+  const long looks = after * (look_cost_ + look_cost_ / 2) + (after > 0 ? list_cost_ : 0);
+  const long left = std::max(0L, work_.left() - metric - looks);
+  return {window, work_.left() - metric, 2 * std::max(0L, left - after * rows_cost_) / (after + 2)};
+}
+
+void Rod::prepare_metric(double dt_s) noexcept {
+  const int n = state_.nodes(), first = contacts_.window_first(), last = contacts_.window_last();
+  if (dt_s == metric_dt_ && metric_.covers(first, last)) return;
+  const int from = std::max(first - 2, 0), to = std::min(last + 2, n - 1);
+  metric_dt_ = dt_s;
+  metric_.prepare(state_.mesh, material_, dt_s, from, to);
+  work_.spend(price::metric(n, to - from + 1));
+}
+
+// A pass that changes no velocity by more is the last. In the tick of a release the thread is faster than any hand; one
+// that hardly moves must not creep by what a pass leaves over.
+double Rod::settled() const noexcept {
+  constexpr double kLetGo = 0.15, kCreep = 0.1, kStill_m_per_s = 1e-6;
+  const double fastest = motion_.fastest(), speed = std::max(pace_m_per_s_, letting_go_ ? kLetGo * fastest : 0.0);
+  const double settled = numerics_.settled_m_per_s + numerics_.settled_share * speed;
+  return std::min(settled, std::max(kStill_m_per_s, kCreep * fastest));
+}
+
+// Which contacts are solved, and the window that is factorised for them. @return nothing when they had better wait for
+// the next tick: only in its first substep, with all the work before it, is a contact ever left out.
+std::optional<Effort> Rod::choose_rows(double dt_s) noexcept {
+  const auto span = contacts_.span();
+  const Allowance allowed = work_allowed(dt_s != metric_dt_ || !metric_.covers(span.first, span.last));
+  const long most = std::min<long>(price::affordable_rows(allowed.rows, allowed.window, kLeastPasses), kMaxContacts);
+  if (substep_index_ > 0 && most < static_cast<long>(contacts_.contacts().size())) return std::nullopt;
+  contacts_.choose_rows(static_cast<int>(most), metric_.capacity() - 4, state_.nodes(), seen_);
+  const long rows = contacts_.rows(), nodes = contacts_.window_last() - contacts_.window_first() + 1;
+  const long least = kLeastPasses * price::pass(rows, rows, nodes);
+  rows_cost_ = rows > 0 ? price::rows(rows, nodes) + least : 0;
+  return Effort{numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)), settled()};
+}
+
+// Velocities with contact.
+template <bool Friction>
+bool Rod::settle(double dt_s) noexcept {
+  const auto effort = choose_rows(dt_s);
+  if (!effort) return false;
+  const int first = contacts_.window_first(), last = contacts_.window_last();
+  solver_.factor((first + last) / 2);
+  if (contacts_.rows() > 0) {
+    prepare_metric(dt_s);
+    contacts_.settle<Friction>(solver_, metric_, numerics_, *effort, dt_s, state_.v.data(), seen_);
+    work_.spend(price::rows(contacts_.rows(), last - first + 1) + seen_.work);
+    report_.cut_short += seen_.cut_short;
+  } else {
+    solver_.solve(first, last, nullptr, state_.v.data(), true);
+  }
+  contacts_.store();
+  solver_.solve_outside(first, last, state_.v.data());
+  return true;
+}
+
+// What pairs that are not listed may do: listed ones are known after another look, else all are held back together.
+double Rod::guard_unlisted(double dt_s) noexcept {
+  const double diameter = 2.0 * material_.radius_m, unseen = 0.9 * (diameter * BroadPhase::kLeastReach + near_m_);
+  if (!motion_.outran(unseen, dt_s)) return 1.0;
+  const double within = motion_.share_within(diameter * (kSkin + 0.9 * BroadPhase::kLeastReach), horizon_s_, dt_s);
+  if (within == 1.0) return 1.0;
+  const long reserve = price::kGuard * static_cast<long>(contacts_.pairs.capacity());
+  if (work_.left() < reserve + work_.budget() / 4) return within;
+  if (!relist(reserve)) return 0.0;
+  work_.spend(price::kGuard * static_cast<long>(contacts_.pairs.size()));
+  return contacts_.safe_fraction_of_pairs(motion_, state_.v.data(), dt_s);
+}
+
+// Velocities that never settled must not press a jam ever tighter: the thread is as slow as it may move.
+double Rod::brake(double dt_s) noexcept {
+  const double share = contacts_.unsettled_fraction(state_.v.data(), dt_s);
+  if (share < 1.0) {
+    for (auto& v : state_.v) v = share * v;
+  }
+  return share;
 }
 
 // The share of dt_s that everything may move without passing anything. New velocities are measured here.
 template <unsigned Bits>
-double Rod::guard(double dt_s, double near_m) noexcept {
+double Rod::guard(double dt_s) noexcept {
   motion_.measure(state_.v.data());
   double share = contacts_.safe_fraction(motion_, state_.v.data(), dt_s);
-  if constexpr ((Bits & kContact) != 0) {
-    const double unseen = 0.9 * (2.0 * material_.radius_m * BroadPhase::kLeastReach + near_m);
-    if (motion_.outran(unseen, dt_s)) {  // a jerk, such as a release: look again, at today's speed
-      broad_phase();
-      share = std::min(share, contacts_.safe_fraction_of_pairs(motion_, state_.v.data(), dt_s));
-    }
-  }
+  if constexpr ((Bits & kContact) != 0) share = std::min(share, guard_unlisted(dt_s));
   report_.guard_events += share < 1.0;
-  return share;
+  const double slow = seen_.cut_short ? brake(dt_s) : 1.0;  // slowed velocities have moved less already
+  report_.time_lost += (1.0 - std::min(share, slow)) / report_.substeps;
+  return std::min(1.0, share / std::max(slow, 1e-9));
 }
 
-// Up to twice a fair share of what is left of the tick's passes, so that a hard substep does not starve the next.
-int Rod::passes_allowed() const noexcept {
-  const int left = numerics_.passes_per_substep * numerics_.substeps - report_.passes;
-  return std::clamp(2 * left / (report_.substeps - substep_index_), kLeastPasses, numerics_.max_passes);
-}
-
-// One substep: forces and matrix, what touches what, velocities, positions.
 template <unsigned Bits>
-void Rod::substep(double dt_s) noexcept {
-  constexpr bool kTouches = (Bits & (kContact | kWorld)) != 0;
-  assemble<(Bits & kTwist) != 0>(material_, state_, gravity, dt_s, forces_, solver_);
-  const int n = state_.nodes();
-  int first = (n - 2) / 2, last = first + 1;
-  [[maybe_unused]] ContactReport seen;
-  [[maybe_unused]] const double near_m = 2.0 * material_.radius_m * kNear;
-  if constexpr (kTouches) {
-    seen = collect<Bits>(dt_s, near_m, near_m + 4.0 * motion_.fastest() * dt_s);
-    if (!contacts_.empty()) {
-      first = contacts_.window_first();
-      last = contacts_.window_last();
-      if (first == last) (last + 1 < n ? last : first) += last + 1 < n ? 1 : -1;
-    }
-  }
-  solver_.factor((first + last) / 2);
-  bool free = true;
-  if constexpr (kTouches) {
-    if (!contacts_.empty()) {
-      free = false;
-      if (dt_s != metric_dt_ || !metric_.covers(first, last)) {
-        metric_dt_ = dt_s;
-        metric_.prepare(state_.mesh, material_, dt_s, std::max(first - 2, 0), std::min(last + 2, n - 1));
-      }
-      const int passes = passes_allowed();
-      contacts_.settle<(Bits & kFriction) != 0>(solver_, metric_, numerics_, passes, settled_m_per_s_, dt_s, first,
-                                                last, state_.v.data(), seen);
-      report_.cut_short += seen.passes >= passes;
-      contacts_.store();
-    }
-  }
-  if (free) solver_.solve(first, last, nullptr, state_.v.data(), true);
-  solver_.solve_outside(first, last, state_.v.data());
+void Rod::move(double dt_s) noexcept {
   double step_s = dt_s;
-  if constexpr (kTouches) {
-    step_s *= guard<Bits>(dt_s, near_m);
+  if constexpr ((Bits & (kContact | kWorld)) != 0) {
+    step_s *= guard<Bits>(dt_s);
     motion_.advance(step_s);
     tick_travel_m_ += step_s * motion_.fastest();
     report_.contacts = static_cast<int>(contacts_.contacts().size());
-    report_.passes += seen.passes;
-    report_.min_gap_m = std::min(report_.min_gap_m, seen.min_gap_m);
-    report_.cap_hit |= seen.cap_hit;
+    report_.passes += seen_.passes;
+    report_.min_gap_m = std::min(report_.min_gap_m, seen_.min_gap_m);
+    report_.rows_left_out = std::max(report_.rows_left_out, seen_.rows_left_out);
   }
   for (std::size_t i = 0; i < state_.x.size(); ++i) state_.x[i] += step_s * state_.v[i];
+}
+
+template <unsigned Bits>
+bool Rod::substep(double dt_s) noexcept {
+  constexpr bool kTouches = (Bits & (kContact | kWorld)) != 0;
+  if constexpr (kTouches) {
+    if (!look<Bits>(dt_s)) return false;
+  }
+  assemble<(Bits & kTwist) != 0>(material_, state_, gravity, dt_s, forces_, solver_);
+  if (kTouches && !contacts_.contacts().empty()) {
+    if (!settle<(Bits & kFriction) != 0>(dt_s)) return false;
+  } else {
+    const int first = (state_.nodes() - 2) / 2, last = first + 1;
+    solver_.factor(first);
+    solver_.solve(first, last, nullptr, state_.v.data(), true);
+    solver_.solve_outside(first, last, state_.v.data());
+  }
+  move<Bits>(dt_s);
+  return true;
 }
 
 Rod::Substep Rod::pick(const Parts& parts) noexcept {

@@ -19,7 +19,8 @@ Specimen::Specimen(const scene::Scene& scene, const Setting& setting) {
   if (!setting.preset.empty()) return;
   auto& numerics = rod.rod().numerics();
   numerics.substeps = numerics.max_substeps = setting.substeps;
-  if (setting.passes > 0) numerics.max_passes = numerics.passes_per_substep = setting.passes;
+  if (setting.passes > 0) numerics.max_passes = setting.passes;
+  if (setting.passes >= 40) numerics.work = 40'000'000;
   if (setting.passes >= 40) numerics.settled_m_per_s = 1e-5;
 }
 

@@ -6,7 +6,8 @@
 //
 // Usage: rod_pull_study SCENE [speed_m_per_s force_N [sudden(0|1) hands(1|2) [key=value ...]]]; without sudden and
 // hands: the four runs of gentle, sudden x two, one; without speed: the 24 runs of 0.05, 0.2, 0.5, 1 m/s x 1, 5, 10 N x
-// gentle, sudden release. Exit 1 when a knot was lost. Environment: HOLD_S=60, a longer hold; SHAPES=FOLDER, where to
+// gentle, sudden release. Exit 1 when a knot was lost. Environment: HOLD_S=60, a longer hold; WAIT_S,
+// the wait after the release; WORK_K, the budget; SHAPES=FOLDER, where to
 // write the thread at the start, in the hold and at the end.
 
 #include <ctime>
@@ -55,12 +56,19 @@ double chatter(const std::vector<double>& f) {
   return count > 0 ? std::sqrt(sum / count) / mean : 0.0;
 }
 
+double seconds_of(const char* variable, double otherwise) {
+  const char* const text = std::getenv(variable);
+  return text != nullptr ? std::atof(text) : otherwise;
+}
+
 class Study {
  public:
   Study(const scene::Scene& scene, RodSimulation sim) : scene_(scene), sim_(std::move(sim)) {
     tools_[0].p_WT = sim_.nodes_W().front();
     tools_[1].p_WT = sim_.nodes_W().back();
     tools_[0].grip = tools_[1].grip = true;
+    auto& numerics = sim_.rod().numerics();
+    numerics.work = static_cast<long>(1000.0 * seconds_of("WORK_K", 1e-3 * static_cast<double>(numerics.work)));
   }
 
   /// @return whether the thread still has the knot it began with.
@@ -78,26 +86,25 @@ class Study {
     phase(0.3, 0.0, hands, 0.0);
     penetration_ = 0.0;
     forces_.clear();
-    const char* const hold_s = std::getenv("HOLD_S");
-    phase(hold_s != nullptr ? std::atof(hold_s) : 0.7, 0.0, hands, 0.0);
+    phase(seconds_of("HOLD_S", 0.7), 0.0, hands, 0.0);
     save("held");
     const double hold = std::exchange(penetration_, 0.0), strain = sim_.diagnostics().max_stretch, tension = force();
     const auto [turn, segment] = sharpness();
     const double rms = chatter(forces_);
     if (!sudden) phase(10.0, -0.02, 2, -0.02 * force_N);
     tools_[1].grip = false;
-    phase(5.0, 0.0, hands, 0.0);
+    phase(seconds_of("WAIT_S", 5.0), 0.0, hands, 0.0);
     save("end");
     const auto left = knot();
     const bool kept = left.type == begun.type && left.handedness == begun.handedness;
     std::printf(
         "%4.2f m/s %4.1f N %s %d hand(s): %s %s %s guard %d penetration %.2f %.3f %.2f strain %.2f%% (T/EA %.2f%%) "
         "turn "
-        "%.2f segment %.2f d chatter %.4f%% sliding %.2f%% us %.0f %.0f %.0f\n",
+        "%.2f segment %.2f d chatter %.4f%% sliding %.2f%% us %.0f %.0f %.0f work k %.0f %.0f %.0f\n",
         speed, force_N, sudden ? "sudden" : "gentle", hands, left.type.c_str(), left.handedness.c_str(),
         kept ? "kept" : ("LOST, was " + begun.type).c_str(), guard_, pull, hold, penetration_, 100.0 * strain,
         100.0 * tension / scene_.suture.rod.EA_N, turn, segment, 100.0 * rms, 100.0 * slide, quantile(us_, 0.5),
-        quantile(us_, 0.99), quantile(us_, 1.0));
+        quantile(us_, 0.99), quantile(us_, 1.0), quantile(work_, 0.5), quantile(work_, 0.99), quantile(work_, 1.0));
     std::fflush(stdout);
     return kept;
   }
@@ -137,6 +144,7 @@ class Study {
       sim_.tick(tools_);
       us_.push_back(cpu_us() - before);
       guard_ += sim_.rod().report().guard_events;
+      work_.push_back(1e-3 * static_cast<double>(sim_.rod().report().work));
       penetration_ = std::max(penetration_, -sim_.diagnostics().min_gap_m / (2.0 * scene_.suture.radius_m));
       forces_.push_back(force());
     }
@@ -162,7 +170,7 @@ class Study {
   scene::Scene scene_;
   RodSimulation sim_;
   std::array<physics::ToolInput, 2> tools_{};
-  std::vector<double> us_, forces_;
+  std::vector<double> us_, work_, forces_;
   double penetration_ = 0.0;
   int guard_ = 0;
 };

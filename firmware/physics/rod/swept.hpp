@@ -1,0 +1,73 @@
+#pragma once
+// Velocities of the contact window in the course of a sweep: single precision, eight nodes a register.
+
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "firmware/physics/rod/vec.hpp"
+
+namespace ligature::physics::rod {
+
+using Eight = float __attribute__((vector_size(32)));
+
+[[nodiscard]] inline Eight load_eight(const float* at) noexcept {
+  Eight out;
+  std::memcpy(&out, at, sizeof out);
+  return out;
+}
+inline void store_eight(float* at, Eight value) noexcept { std::memcpy(at, &value, sizeof value); }
+[[nodiscard]] inline Eight all_eight(float a) noexcept { return Eight{a, a, a, a, a, a, a, a}; }
+
+/// Blocks of eight nodes: eight x, eight y, eight z. A sweep is only a guess of what the true matrix will answer, so
+/// rounding to 1e-7 of a velocity is far below what a pass leaves over; impulses stay in double precision.
+class SweptVelocities {
+ public:
+  void reserve(int nodes) { xyz_.assign(3 * (static_cast<std::size_t>(nodes) + 16), 0.0F); }
+
+  /// Nodes in whole blocks, as columns must be padded.
+  [[nodiscard]] static std::size_t padded(int nodes) noexcept {
+    return (static_cast<std::size_t>(nodes) + 7) & ~std::size_t{7};
+  }
+  /// Where the x of a node of the window is; y and z follow 8 and 16 later.
+  [[nodiscard]] static std::int32_t place(int node) noexcept { return (node >> 3) * 24 + (node & 7); }
+
+  void load(const Vec* v, int nodes) noexcept {
+    for (int j = 0; j < nodes; ++j) {
+      float* at = xyz_.data() + place(j);
+      at[0] = static_cast<float>(v[j][0]);
+      at[8] = static_cast<float>(v[j][1]);
+      at[16] = static_cast<float>(v[j][2]);
+    }
+  }
+
+  /// sum_k w_k v[place_k], k < 4.
+  [[nodiscard]] Vec mix(const std::int32_t* places, const float* w) const noexcept {
+    float x = 0.0F, y = 0.0F, z = 0.0F;
+    for (int k = 0; k < 4; ++k) {
+      const float* at = xyz_.data() + places[k];
+      x += w[k] * at[0];
+      y += w[k] * at[8];
+      z += w[k] * at[16];
+    }
+    return make(x, y, z);
+  }
+
+  /// v_j += column_j p for every node. @param nodes padded.
+  void push(const float* column, std::size_t nodes, Vec p) noexcept {
+    const Eight px = all_eight(static_cast<float>(p[0])), py = all_eight(static_cast<float>(p[1])),
+                pz = all_eight(static_cast<float>(p[2]));
+    float* at = xyz_.data();
+    for (std::size_t j = 0; j < nodes; j += 8, at += 24) {
+      const Eight c = load_eight(column + j);
+      store_eight(at, load_eight(at) + c * px);
+      store_eight(at + 8, load_eight(at + 8) + c * py);
+      store_eight(at + 16, load_eight(at + 16) + c * pz);
+    }
+  }
+
+ private:
+  std::vector<float> xyz_;
+};
+
+}  // namespace ligature::physics::rod

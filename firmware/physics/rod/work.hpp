@@ -1,0 +1,49 @@
+#pragma once
+// What touching may cost in a tick: priced before it is done, in instructions, so that the bound holds for any state.
+
+#include <algorithm>
+
+namespace ligature::physics::rod {
+
+/// Prices in instructions of the x86-64-v3 build, rounded up; docs/rod.md says how they were counted. What a substep
+/// costs without contact (forces, matrix, one solution) is linear in the nodes and not on the meter.
+namespace price {
+inline constexpr long kCheck = 25;           ///< a listed pair in a substep: can it meet?
+inline constexpr long kMeasure = 190;        ///< it can: its closest points, and a row to be
+inline constexpr long kGuard = 110;          ///< its part in the guard
+inline constexpr long kWorldNode = 60;       ///< a node against the floor or a body
+inline constexpr long kSphere = 30;          ///< broad phase: a segment against a block of eight
+inline constexpr long kConsider = 40;        ///< broad phase: a pair whose spheres meet
+inline constexpr long kList = 200;           ///< broad phase: such a pair measured and listed
+inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one split
+
+/// Making `rows` rows on a window of `nodes`, and the two solutions that start them.
+[[nodiscard]] constexpr long rows(long rows, long nodes) noexcept { return rows * (140 + nodes) + 140 * nodes; }
+/// One pass over them, of which `loaded` carry an impulse and are mixed.
+[[nodiscard]] constexpr long pass(long rows, long loaded, long nodes) noexcept {
+  return rows * (100 + 3 * nodes / 2) + loaded * 180 + 130 * nodes;
+}
+/// The most rows for which `passes` passes can be paid.
+[[nodiscard]] constexpr long affordable_rows(long allowance, long nodes, long passes) noexcept {
+  const long fixed = rows(0, nodes) + passes * pass(0, 0, nodes);
+  return std::max(0L, allowance - fixed) /
+         (rows(1, nodes) - rows(0, nodes) + passes * (pass(1, 1, nodes) - pass(0, 0, nodes)));
+}
+/// The table of C^-1.
+[[nodiscard]] constexpr long metric(long nodes, long window) noexcept { return 30 * nodes + 3 * window * window / 2; }
+}  // namespace price
+
+/// The meter of a tick. Spending is the caller's promise; the meter only counts.
+class Work {
+ public:
+  void start(long budget) noexcept { budget_ = budget, used_ = 0; }
+  void spend(long instructions) noexcept { used_ += instructions; }
+  [[nodiscard]] long budget() const noexcept { return budget_; }
+  [[nodiscard]] long used() const noexcept { return used_; }
+  [[nodiscard]] long left() const noexcept { return std::max(0L, budget_ - used_); }
+
+ private:
+  long budget_ = 0, used_ = 0;
+};
+
+}  // namespace ligature::physics::rod

@@ -1,0 +1,118 @@
+// The work of a tick is bounded for any state: counted in instructions priced beforehand (rod/work.hpp), never timed.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "tests/support/crossings.hpp"
+#include "tests/unit/rod/rods.hpp"
+
+namespace ligature::test {
+namespace {
+
+using physics::rod::kMaxHolds;
+
+// A ball of thread: a random walk of the mesh's segments inside a sphere of `radius` diameters, so that everything is
+// near everything; every node thrown at up to `speed_m_per_s`.
+void crumple(Rod& rod, unsigned seed, double radius, double speed_m_per_s) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  State& state = rod.state();
+  const double limit = radius * 2.0 * rod.material().radius_m;
+  Vec at{}, along = make(1, 0, 0);
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    state.x[i] = at;
+    state.v[i] = speed_m_per_s / std::sqrt(3.0) * make(normal(random), normal(random), normal(random));
+    along = along + 0.6 * make(normal(random), normal(random), normal(random)) - (0.6 * norm(at) / limit / limit) * at;
+    along = (1.0 / norm(along)) * along;
+    if (i + 1 < state.x.size()) at = at + state.mesh.rest[i] * along;
+  }
+  rod.moved();
+}
+
+struct Hostile {
+  long most_work = 0, pairs = 0, crossings = 0, ticks_given_up = 0;
+  bool finite = true;
+};
+
+// Both hands leave at hand_m_per_s; every tick is checked for what crossed in it, tick by tick of one substep.
+Hostile attack(Rod rod, unsigned seed, double thrown_m_per_s, double hand_m_per_s, int ticks) {
+  crumple(rod, seed, 6.0, thrown_m_per_s);
+  const int n = rod.state().nodes();
+  std::array<Vec, kMaxHolds> goals{};
+  rod.grip(n / 4, 1000.0, 0.5, rod.state().x[static_cast<std::size_t>(n / 4)]);
+  rod.grip(3 * n / 4, 1000.0, 0.5, rod.state().x[static_cast<std::size_t>(3 * n / 4)]);
+  for (std::size_t h = 0; h < 2; ++h) goals[h] = rod.state().holds[h].target;
+  Hostile seen;
+  for (int k = 0; k < ticks; ++k) {
+    const double way_m = hand_m_per_s * rod.numerics().tick_s;
+    goals[0] -= make(way_m, 0, 0), goals[1] += make(way_m, 0, 0);
+    const std::vector<Vec> before = rod.state().x;
+    rod.tick(goals);
+    seen.most_work = std::max(seen.most_work, rod.report().work);
+    seen.ticks_given_up += rod.report().time_lost > 0.0;
+    seen.pairs = std::max(seen.pairs, static_cast<long>(rod.contact_set().pairs.size()));
+    const auto& after = rod.state().x;
+    for (const auto& x : after) seen.finite &= std::isfinite(x[0] + x[1] + x[2]);
+    if (rod.report().substeps > 1) continue;
+    for (const auto& pair : rod.contact_set().pairs) {
+      const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+      seen.crossings += crossed({before[a], before[a + 1], before[b], before[b + 1]},
+                                {after[a], after[a + 1], after[b], after[b + 1]});
+    }
+  }
+  return seen;
+}
+
+long budget_of(const Numerics& numerics) { return numerics.work + numerics.work / 4; }
+
+TEST(Work, NoStateCostsMoreThanTheBudget) {  // 154 and 500 nodes, at rest and thrown, hands at up to 100 m/s
+  for (const int nodes : {154, 500}) {
+    for (const double thrown : {0.0, 10.0}) {
+      for (const double hands : {0.0, 100.0}) {
+        Numerics numerics;
+        const Rod rod(Material{}, numerics, Parts{true, true, true, false, nodes == 154}, nodes);
+        const Hostile seen = attack(rod, 7, thrown, hands, 12);
+        EXPECT_LE(seen.most_work, budget_of(numerics)) << nodes << ' ' << thrown << ' ' << hands;
+        EXPECT_GT(seen.most_work, numerics.work / 2);
+        EXPECT_TRUE(seen.finite);
+      }
+    }
+  }
+}
+
+TEST(Work, TwoThousandPairsAreWatchedAndNoneCrosses) {  // one substep a tick, so that every step is checked
+  Numerics numerics;
+  numerics.tick_s = 6.25e-5;
+  numerics.substeps = numerics.max_substeps = 1;
+  Rod rod(Material{}, numerics, Parts{false, true, true, false, false}, 154);
+  rod.hold_mesh(true);
+  long pairs = 0, given_up = 0;
+  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+    const Hostile seen = attack(rod, seed, 2.0, 100.0, 60);
+    EXPECT_LE(seen.most_work, budget_of(numerics));
+    EXPECT_EQ(seen.crossings, 0);
+    EXPECT_TRUE(seen.finite);
+    pairs = std::max(pairs, seen.pairs);
+    given_up += seen.ticks_given_up;
+  }
+  EXPECT_GT(pairs, 1500);
+  EXPECT_GT(given_up, 0);
+}
+
+TEST(Work, SaysWhatItGaveUp) {  // passes first; contacts stay while there is work for three passes over them
+  Numerics numerics;
+  numerics.work = 3'000'000;
+  Rod rod(Material{}, numerics, Parts{false, true, true, false, false}, 154);
+  crumple(rod, 5, 20.0, 0.0);
+  rod.tick();
+  const auto& r = rod.report();
+  EXPECT_GT(r.cut_short, 0) << r.time_lost << ' ' << r.rows_left_out << ' ' << r.contacts << ' ' << r.work;
+  EXPECT_GT(r.time_lost, 0.0) << rod.contact_set().pairs.size();
+  EXPECT_LE(rod.report().work, numerics.work);
+}
+
+}  // namespace
+}  // namespace ligature::test
