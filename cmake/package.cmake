@@ -1,13 +1,16 @@
 # `cpack -G DEB`: everything a rig needs, installed by apt. scripts/package builds and checks it.
+if(LIGATURE_INSTALL_SYSTEM)
+  include(cmake/package_docs.cmake)
+endif()
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME ligature)
 set(CPACK_PACKAGE_CONTACT "Ligature maintainers <maintainers@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "real-time haptic suture: 1 kHz controller, host tools, simulated hands")
 set(CPACK_PACKAGE_DESCRIPTION
 "Two hands on force-feedback devices tie and untie knots in a simulated thread.
-Holds the controller with its systemd unit, the recorder and viewer, the offline
-laboratory, a simulated hand, the scenes, and the files that give a rig's
-machine its rights: limits, udev rule, CAN and loopback networks.")
+Holds the controller with its systemd unit, the recorder and viewer, the
+offline laboratory, a simulated hand, the scenes, and the files that give a
+rig's machine its rights: limits, udev rule, CAN and loopback networks.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -16,5 +19,6 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "linux-image-rt-amd64, can-utils, python3-matplotlib")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA
-    ${PROJECT_SOURCE_DIR}/firmware/deploy/conffiles ${PROJECT_SOURCE_DIR}/firmware/deploy/postinst)
+    ${PROJECT_SOURCE_DIR}/firmware/deploy/conffiles ${PROJECT_SOURCE_DIR}/firmware/deploy/postinst
+    ${PROJECT_SOURCE_DIR}/firmware/deploy/prerm ${PROJECT_SOURCE_DIR}/firmware/deploy/postrm)
 include(CPack)

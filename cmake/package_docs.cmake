@@ -1,0 +1,17 @@
+# What Debian wants to read in a package: copyright, changelog, and the licences of what is inside the programs but not ours.
+install(FILES firmware/deploy/copyright CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+configure_file(firmware/deploy/changelog.in ${PROJECT_BINARY_DIR}/changelog @ONLY)
+execute_process(COMMAND gzip -9nf ${PROJECT_BINARY_DIR}/changelog COMMAND_ERROR_IS_FATAL ANY)
+install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+set(licenses ${CMAKE_INSTALL_DOCDIR}/licenses)
+if(ruckig_dir)
+  install(FILES ${ruckig_dir}/LICENSE DESTINATION ${licenses} RENAME ruckig)
+endif()
+foreach(module three uplot)
+  install(FILES ${PROJECT_BINARY_DIR}/host/view/page/node_modules/${module}/LICENSE DESTINATION ${licenses} RENAME ${module})
+endforeach()
+file(GLOB boost RELATIVE /usr/share/doc /usr/share/doc/libboost1.*-dev)
+foreach(package libeigen3-dev libtomlplusplus-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev ${boost})
+  install(FILES /usr/share/doc/${package}/copyright DESTINATION ${licenses} RENAME ${package})
+endforeach()
