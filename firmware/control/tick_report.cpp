@@ -10,6 +10,20 @@ constexpr double kNoGap_m = 1e9;  // "none near" on the wire, where infinity wou
 
 rt::Triple triple(const Vec3& v) noexcept { return {v.x(), v.y(), v.z()}; }
 
+rt::Degradation given_up(const physics::Diagnostics& thread) noexcept {
+  switch (thread.degradation) {
+    case physics::Degradation::kMotion:
+      return rt::Degradation::kCandidates;
+    case physics::Degradation::kContacts:
+      return rt::Degradation::kContacts;
+    case physics::Degradation::kIterations:
+      return rt::Degradation::kIterations;
+    case physics::Degradation::kNone:
+      break;
+  }
+  return thread.contact_cap_hit ? rt::Degradation::kContacts : rt::Degradation::kNone;
+}
+
 }  // namespace
 
 void report(const Controller& controller, rt::TickRecord& record) noexcept {
@@ -45,9 +59,8 @@ void report(const physics::Diagnostics& thread, rt::TickRecord& record) noexcept
   record.max_stretch = thread.max_stretch;
   record.min_gap_m = std::isfinite(thread.min_gap_m) ? thread.min_gap_m : kNoGap_m;
   record.contacts = static_cast<std::int16_t>(std::min<int>(thread.contacts, INT16_MAX));
-  if (!thread.contact_cap_hit) return;
-  record.flags |= rt::kContactCap;
-  record.degradation = static_cast<std::int8_t>(rt::Degradation::kContacts);
+  if (thread.contact_cap_hit) record.flags |= rt::kContactCap;
+  record.degradation = static_cast<std::int8_t>(given_up(thread));
 }
 
 void report(const physics::HandContact& contact, std::size_t hand, rt::TickRecord& record) noexcept {

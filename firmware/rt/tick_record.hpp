@@ -35,8 +35,9 @@ enum LimitCode : std::int16_t {
 enum class Degradation : std::int8_t {
   kNone = 0,
   kIterations = 1,  ///< iterations ended before the tolerance: contacts a little softer
-  kContacts = 2,    ///< contact list full: the shallowest contacts were left out
-  kCandidates = 3,  ///< list of near pairs full: far pairs were not looked at
+  kContacts = 2,    ///< no room or work for all contacts: the shallowest were only kept from crossing
+  kCandidates =
+      3,  ///< not all that is near could be looked at or solved: the thread stood still for a part of the tick
 };
 
 using Triple = std::array<double, 3>;
