@@ -5,6 +5,8 @@
 // Found by fuzzing: one of the parser's own assertions fails on a zero byte in a key, which it then refuses anyhow.
 #define TOML_ASSERT(expr) static_assert(true)
 #include <toml++/toml.h>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -205,10 +207,7 @@ class StrictTable {
   }
 
   void refuse(std::string_view key, const toml::node& node, const std::string& allowed) {
-    std::ostringstream found;
-    node.visit([&](const auto& value) { found << value; });
-    context_.refuse(full(key), node,
-                    "key '" + full(key) + "': found " + one_line(found.str()) + ", allowed " + allowed);
+    context_.refuse(full(key), node, "key '" + full(key) + "': found " + shown(node) + ", allowed " + allowed);
   }
 
   /// The same for a rule that ties keys together, after they were read.
@@ -227,11 +226,36 @@ class StrictTable {
   [[nodiscard]] std::string full(std::string_view key) const {
     return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
   }
-  static std::string one_line(std::string s) {
+  /// What was found, on one line, 80 characters at most. A list is written here, value by value: toml++ measures one
+  /// before it writes it, and turns the negative logarithm of 0.05 into an unsigned number there (found by fuzzing).
+  static std::string shown(const toml::node& node) {
+    std::string s;
+    write(node, s);
     for (auto& c : s) {
       if (c == '\n' || c == '\r') c = ' ';
     }
     return s.size() > 80 ? s.substr(0, 77) + "..." : s;
+  }
+  static void write(const toml::node& node, std::string& out) {
+    if (const auto* list = node.as_array()) {
+      out += '[';
+      for (const auto& each : *list) {
+        if (out.size() > 80) break;
+        if (&each != list->get(0)) out += ", ";
+        write(each, out);
+      }
+      out += ']';
+    } else if (node.is_table()) {
+      out += "a table";
+    } else if (const auto* number = node.as_floating_point()) {
+      std::array<char, 32> digits{};
+      const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number->get()).ptr;
+      out.append(digits.data(), end);
+    } else {
+      std::ostringstream value;
+      node.visit([&](const auto& v) { value << v; });
+      out += value.str();
+    }
   }
 
   const toml::table& table_;

@@ -78,6 +78,7 @@ TEST(SceneFile, EveryRefusalIsOneLineWithItsLineNumber) {
       {"[world]\nfixed = [{node = 49, position_m = [0,0,0]}, {node = -1, position_m = [0,0,0]}]\n", 2,
        "world.fixed[1].node"},
       {"[world]\nfixed = 3\n", 2, "world.fixed"},
+      {"[world]\ngrippers_collide = [0.05, [1, {a = 1}]]\n", 2, "found [0.05, [1, a table]], allowed"},
       {"[world]\ngrippers_collide = 1\n", 2, "world.grippers_collide"},
       {"[contact]\nfriction = -1\n", 2, "contact.friction"},
       {"[contact]\nfriction = 0.5\nstatic_friction = 0.2\n", 3, "contact.static_friction"},
