@@ -27,7 +27,7 @@ OUT = pathlib.Path(os.environ.get("LIGATURE_HIL_OUT", ROOT / "build/hil"))
 WATCHDOG_TICKS = 20
 LOST, MISSED = 1, 2
 IDLE, ENGAGE, FORCE, FAULT = 2, 3, 4, 6
-LONGEST_S = 900  # of this machine's time, when others load it; alone a scenario takes one to three minutes
+LONGEST_S = 2000  # of this machine's time, when others load it; alone a scenario takes one to three minutes
 
 
 def guest(name, *options, timeout=LONGEST_S):
