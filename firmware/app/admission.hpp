@@ -5,23 +5,12 @@
 #include <optional>
 #include <string>
 
+#include "firmware/app/meter.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::app {
 
 inline constexpr double kDefaultBudget_percent = 60.0;
-
-/// What the worst tick costs. Times are CPU time of the measuring thread with cold caches, the smallest of several
-/// runs of the same tick (so that other work on the core does not count; that is doctor's matter), the largest of all
-/// ticks tried.
-struct WorstCase {
-  double thread_us = 0.0;   ///< one tick of the thread's physics
-  double calls_us = 0.0;    ///< the kernel's part of sending and receiving
-  double control_us = 0.0;  ///< control law and record
-  bool contact_cap_hit = false;
-  int most_contacts = 0;
-  int ticks = 0;  ///< different ones that were tried
-};
 
 struct Admission {
   WorstCase worst;

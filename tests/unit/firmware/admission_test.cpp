@@ -83,6 +83,14 @@ TEST(Admission, ARodIsMeasuredInTheSameShapes) {
     EXPECT_NE(text.find(phase), std::string::npos) << text;
 }
 
+TEST(Admission, SaysWhatTheWorstTickGivesUp) {
+  Admission a;
+  EXPECT_EQ(table(a).find("gives up"), std::string::npos);
+  a.worst.gave_up = physics::Degradation::kMotion;
+  a.worst.time_lost = 0.25;
+  EXPECT_NE(table(a).find("stands still for up to 25 % of a tick"), std::string::npos) << table(a);
+}
+
 TEST(Admission, TheBusCountsAgainstThePeriodNotAgainstTheBudget) {
   Admission a;
   a.bus_us = 450.0;
