@@ -1,7 +1,6 @@
 #include "firmware/telemetry/messages.hpp"
 
 #include <algorithm>
-#include <exception>
 #include <span>
 #include <string>
 
@@ -79,18 +78,29 @@ ligature_msg::thread_t to_message(const rt::ThreadSnapshot& s, double radius_m, 
   return m;
 }
 
+namespace {
+
+/// The generated decoder believes the length that a text claims; INT_MIN, less its zero, is 2 GB to it.
+/// @return whether the text of this command_t fills exactly what the fields about it leave.
+bool text_fits(std::span<const std::byte> message) {
+  constexpr std::size_t kLength = 8 + 8 + 8 + 1;  // behind hash, utime, id, kind: four bytes, the greatest first
+  constexpr std::size_t kRest = kLength + 4 + 8;  // value follows
+  if (message.size() <= kRest) return false;
+  std::size_t length = 0;
+  for (const auto byte : message.subspan(kLength, 4)) length = length << 8U | std::to_integer<std::size_t>(byte);
+  return length == message.size() - kRest;  // one at least, its zero
+}
+
+}  // namespace
+
 std::optional<ligature_msg::command_t> command_of(std::span<const std::byte> message) {
   constexpr std::size_t kLongest = 65'536;  // a name of a scene or parameter needs far less
-  if (message.size() > kLongest) return std::nullopt;
-  try {
-    ligature_msg::command_t command;
-    const auto size = static_cast<int>(message.size());
-    if (command.decode(message.data(), 0, size) != size) return std::nullopt;
-    if (command.text.find('\0') != std::string::npos) return std::nullopt;
-    return command;
-  } catch (const std::exception&) {  // a text of length 0, which must be 1 at least: its zero
-    return std::nullopt;
-  }
+  if (message.size() > kLongest || !text_fits(message)) return std::nullopt;
+  ligature_msg::command_t command;
+  const auto size = static_cast<int>(message.size());
+  if (command.decode(message.data(), 0, size) != size) return std::nullopt;
+  if (command.text.find('\0') != std::string::npos) return std::nullopt;
+  return command;
 }
 
 }  // namespace ligature::telemetry
