@@ -1,12 +1,14 @@
 #include "sim_device/operator/knot_tier.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 namespace ligature::sim {
 namespace {
 
 constexpr double kLook_s = 0.01;
+constexpr int kMostAgain = 3;
 constexpr double kTremor_m = 1e-4;  // of a hand at rest, in the hand's own measure
 
 Vec3 vec(const scene::Vec& a) { return {a[0], a[1], a[2]}; }
@@ -29,21 +31,11 @@ Workplace workplace_of(const scene::Scene& scene, const Vec3& anchor_W) {
   return w;
 }
 
-/// Uniform between two numbers, the same on every machine.
-class Dice {
- public:
-  explicit Dice(std::uint32_t seed) : random_(seed * 2654435761U + 12345U) {}
-  double between(double low, double high) {
-    return low + (high - low) * (static_cast<double>(random_()) / 4294967296.0);
-  }
-  Vec3 vector(double size) {
-    const double x = between(-size, size), y = between(-size, size), z = between(-size, size);
-    return {x, y, z};
-  }
-
- private:
-  std::mt19937 random_;
-};
+/// 4.5 as "4.5".
+std::string shortest(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
 
 }  // namespace
 
@@ -55,45 +47,70 @@ std::variant<KnotTier, std::string> KnotTier::make(const scene::Scene& scene, co
     for (const Knot& k : knots()) allowed += (allowed.empty() ? "" : ", ") + std::string(k.name);
     return "knot: found \"" + name + "\", allowed " + allowed;
   }
+  const double least_m = 2.0 * scene.suture.radius_m * knot->least_diameters;
+  if (scene.suture.length_m < least_m) {
+    return "suture.length_m: found " + shortest(scene.suture.length_m) + ", allowed " + shortest(least_m) +
+           " or more for a " + std::string(knot->name) + " knot in a thread this thick";
+  }
   for (const auto& f : scene.world.fixed)
     if (f.node == 0) return KnotTier(scene, *knot, workplace_of(scene, vec(f.position_m)), seed);
-  return "world.fixed: node 0 is not held; the operators tie a thread that hangs from its first node";
+  return "world.fixed: node 0 is not held; the operators tie a thread that "
+         "hangs from its first node";
 }
 
 KnotTier::KnotTier(const scene::Scene& scene, const Knot& knot, const Workplace& place, std::uint32_t seed)
     : knot_(knot),
       place_(place),
       hands_{MovingHand(scene.time.tick_s), MovingHand(scene.time.tick_s)},
-      tick_s_(scene.time.tick_s) {
-  Dice dice(seed);
-  place_.speed_m_per_s *= dice.between(0.85, 1.15);
+      tick_s_(scene.time.tick_s),
+      dice_(seed) {
+  place_.speed_m_per_s *= dice_.between(0.85, 1.15);
   const Vec3 home = vec(scene.hands.workspace_origin_m);
   for (std::size_t h = 0; h < 2; ++h) {
     const Vec3 start =
-        home + dice.vector(0.05 * place.length_m) + Vec3(h == 0 ? -0.1 : 0.1, -0.1, 0.0) * place.length_m;
+        home + dice_.vector(0.05 * place.length_m) + Vec3(h == 0 ? -0.1 : 0.1, -0.1, 0.0) * place.length_m;
     hands_[h].rest_at(start, place_.speed_m_per_s);
-    const double size = kTremor_m * scene.hands.workspace_scale * dice.between(0.5, 1.5);
-    tremor_[h] = {Vec3(size, size, size), 2.0 * M_PI * (Vec3(10, 10, 10) + dice.vector(2.0)),
-                  Vec3(M_PI, M_PI, M_PI) + dice.vector(M_PI)};
+    const double size = kTremor_m * scene.hands.workspace_scale * dice_.between(0.5, 1.5);
+    tremor_[h] = {Vec3(size, size, size), 2.0 * M_PI * (Vec3(10, 10, 10) + dice_.vector(2.0)),
+                  Vec3(M_PI, M_PI, M_PI) + dice_.vector(M_PI)};
     wish_[h] = {start, Vec3::Zero(), false};
   }
-  start_s_ = dice.between(0.0, 0.5);
-  for (Move& m : plan(knot, place_)) {
-    plan_.push_back(std::move(m));
-    if (dice.between(0.0, 1.0) < 0.3) plan_.push_back(wait(dice.between(0.0, 0.3)));
-  }
+  start_s_ = dice_.between(0.0, 0.5);
+  lay_out(plan(knot, place_));
   ticks_a_look_ = std::max(1, static_cast<int>(std::lround(kLook_s / tick_s_)));
+}
+
+/// The plan from here on, with moments of rest that differ from person to
+/// person.
+void KnotTier::lay_out(Moves moves) {
+  plan_.clear();
+  next_ = 0;
+  for (Move& m : moves) {
+    plan_.push_back(std::move(m));
+    if (dice_.between(0.0, 1.0) < 0.3) plan_.push_back(wait(dice_.between(0.0, 0.3)));
+  }
+}
+
+void KnotTier::begin_again() {
+  ++begun_again_;
+  Moves moves{let_go(kRightHand), let_go(kLeftHand), hang_out()};
+  place_.clearance_m *= dice_.between(0.8, 1.25);  // not quite the same again
+  append(moves, plan(knot_, place_));
+  lay_out(std::move(moves));
 }
 
 void KnotTier::look(const Sight& sight) {
   thread_.look(sight.thread_W);
   for (int steps = 0; steps < 4 && !is_done(); ++steps) {  // moves that are done at once need no look of their own
     Move& move = plan_[next_];
-    const double since_s = t_s_ - began_s_;
-    const bool done = move.act({thread_, sight, place_, hands_, since_s});
-    if (!done && since_s < move.patience_s) return;
+    const Look now{thread_, sight, place_, hands_, t_s_ - began_s_};
+    const bool done = move.act(now);
+    if (!done && now.in_move_s < move.patience_s) return;
     if (!done) missed_.push_back(move.name);
-    ++next_;
+    if (move.good && begun_again_ < kMostAgain && !move.good(now))
+      begin_again();
+    else
+      ++next_;
     began_s_ = t_s_;
   }
 }

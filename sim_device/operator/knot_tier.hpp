@@ -10,15 +10,36 @@
 
 namespace ligature::sim {
 
-/// Ties one knot with two hands. Seeds differ in where the hands start, how fast they are, when they begin, how long
-/// they dwell and how they tremble (8-12 Hz). It looks 100 times a second; between looks the hands go on.
+/// Uniform between two numbers, the same on every machine.
+class Dice {
+ public:
+  explicit Dice(std::uint32_t seed) : random_(seed * 2654435761U + 12345U) {}
+  double between(double low, double high) {
+    return low + (high - low) * (static_cast<double>(random_()) / 4294967296.0);
+  }
+  Vec3 vector(double size) {
+    const double x = between(-size, size), y = between(-size, size), z = between(-size, size);
+    return {x, y, z};
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+/// Ties one knot with two hands. Seeds differ in where the hands start, how
+/// fast they are, when they begin, how long they dwell and how they tremble
+/// (8-12 Hz). It looks 100 times a second; between looks the hands go on. What
+/// went wrong before anything was drawn tight is let go, hangs out, and is
+/// begun again, three times at most.
 class KnotTier {
  public:
-  /// @return or why not: an unknown knot, or a scene in which node 0 is not held.
+  /// @return or why not: an unknown knot, or a scene in which node 0 is not
+  /// held.
   static std::variant<KnotTier, std::string> make(const scene::Scene& scene, const std::string& knot,
                                                   std::uint32_t seed);
 
-  /// One tick: what both hands want now. @param sight may be older than now; nothing is assumed about how much.
+  /// One tick: what both hands want now. @param sight may be older than now;
+  /// nothing is assumed about how much.
   const std::array<HandWish, 2>& tick(const Sight& sight);
 
   [[nodiscard]] const std::array<HandWish, 2>& wish() const noexcept { return wish_; }
@@ -32,6 +53,8 @@ class KnotTier {
  private:
   KnotTier(const scene::Scene& scene, const Knot& knot, const Workplace& place, std::uint32_t seed);
   void look(const Sight& sight);
+  void lay_out(Moves moves);
+  void begin_again();
 
   struct Tremor {
     Vec3 amplitude_m, rate_rad_per_s, phase;
@@ -47,7 +70,8 @@ class KnotTier {
   std::vector<std::string> missed_;
   std::size_t next_ = 0;
   double tick_s_, start_s_ = 0.0, began_s_ = 0.0, t_s_ = 0.0;
-  int until_look_ = 0, ticks_a_look_ = 10;
+  int until_look_ = 0, ticks_a_look_ = 10, begun_again_ = 0;
+  Dice dice_;
 };
 
 }  // namespace ligature::sim

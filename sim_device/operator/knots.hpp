@@ -14,10 +14,15 @@ namespace ligature::sim {
 struct Knot {
   std::string_view name;
   std::string_view type;
+  std::string_view handedness;
   std::span<const Throw> throws;
+  double least_diameters = 0.0;  ///< the thread must be so many diameters long
 };
 
-/// Those that are tied reliably: overhand.
+/// Those that are tied reliably. A surgeon's knot is a first throw of two
+/// turns, 5_1, and a second of one turn, a trefoil of the other hand: their sum
+/// 3_1#5_1, as the throws of a square knot are 3_1#3_1 of either hand
+/// (amphichiral).
 [[nodiscard]] std::span<const Knot> knots();
 [[nodiscard]] std::optional<Knot> knot_named(std::string_view name);
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "sim_device/operator/diagram.hpp"
+
 namespace ligature::sim {
 namespace {
 
@@ -68,7 +70,8 @@ Move carry(std::size_t hand, std::string name, Where where, double near, double 
           }};
 }
 
-/// As carry, but to where the place was when the move began: a ring that the hand drags along cannot be chased.
+/// As carry, but to where the place was when the move began: a ring that the
+/// hand drags along cannot be chased.
 Move carry_straight(std::size_t hand, std::string name, Where where, double near) {
   auto goal = std::make_shared<std::optional<Vec3>>();
   return {std::move(name), [=](const Look& look) {
@@ -83,6 +86,17 @@ Move carry_straight(std::size_t hand, std::string name, Where where, double near
 
 Move wait(double seconds) {
   return {"wait", [=](const Look& look) { return look.in_move_s >= seconds; }, seconds + 1.0};
+}
+
+Move hang_out() {
+  constexpr double kStill_s = 0.5;
+  auto hangs_since = std::make_shared<double>(0.0);
+  return {"hang out", [=](const Look& look) {
+            const Vec3 down = look.thread.at(look.thread.length_m()) - look.place.anchor_W;
+            const bool hangs = -down.z() > 0.97 * look.thread.length_m();
+            if (!hangs) *hangs_since = look.in_move_s;
+            return look.in_move_s - *hangs_since > kStill_s;
+          }};
 }
 
 Moves hand_over(std::size_t from, std::size_t to) {
@@ -106,7 +120,8 @@ double Loop::angle_of(const Look& look, const Vec3& p_W) const {
   return std::atan2(to.dot(up_), to.dot(front_));
 }
 
-/// Angle gone through from one place of the working part to another; in steps that are short beside the distance.
+/// Angle gone through from one place of the working part to another; in steps
+/// that are short beside the distance.
 double Loop::wind(const Look& look, double from, double to) const {
   double sum = 0.0, before = angle_of(look, look.thread.at(from));
   const double finest = 0.1 * look.place.diameter_m;
@@ -131,95 +146,137 @@ void Loop::look(const Look& look) {
   const double last = far_ < 0.0 ? corner_s_ + 0.6 * (end - corner_s_) : std::min(far_ + reach, end);
   for (double w = first; w < last; w += step)
     if (const double r = apart(w); r > most) most = r, far_ = w;
-  for (double w = far_; w < end - 0.7 * look.place.clearance_m; w += step)
-    if (const double r = apart(w); r < least) least = r, working_ = w;
+  // X is where it first comes to the standing part: a turn further on may lie
+  // as near.
+  for (double w = far_; w < end - 0.7 * look.place.clearance_m; w += step) {
+    const double r = apart(w);
+    if (least < look.place.diameter_m * 2.0 && r > 4.0 * look.place.diameter_m) break;
+    if (r < least) least = r, working_ = w;
+  }
   standing_ = look.thread.nearest(look.thread.at(working_), 0.0, corner_s_);
   const Ring ring(look.thread.between(standing_, working_));
   centre_W_ = ring.centre();
-  bight_W_ = look.thread.at(far_);
+  crossing_W_ = look.thread.at(working_);
   angle_ = angle_of(look, centre_W_);
-  wound_ = std::remainder(angle_of(look, bight_W_) - angle_, 2.0 * kPi) + wind(look, far_, end);
-  const double beyond = std::min(working_ + 0.3 * look.place.clearance_m, end);
-  passes_ = side_ * ring.passes(look.thread.between(beyond, end));
+  wound_ = std::remainder(angle_of(look, look.thread.at(far_)) - angle_, 2.0 * kPi) + wind(look, far_, end);
+  normal_W_ = ring.normal().dot(way()) < 0.0 ? Vec3(-ring.normal()) : ring.normal();
 }
 
 namespace {
 
 constexpr double kTurn = 2.0 * 3.14159265358979323846;
 
-/// Round the standing part at place `s`, until the end is wound by `wanted`.
-Move orbit(std::shared_ptr<Loop> loop, WhereAlong s, double wanted) {
+/// Where the end goes round the standing part and how far.
+struct Orbit {
+  double wound;        ///< until the end is wound by this
+  double slack = 0.0;  ///< from the top on: so many clearances further out ..
+  double back = 0.0;   ///< .. and this share of the thread nearer to the anchor,
+                       ///< so that the end trails loosely
+};
+
+/// Just short of the loop on the side from which the end goes through it:
+/// behind; or once more round and in front.
+Orbit orbit_of(const Throw& t) { return t.against ? Orbit{1.07 * kTurn, 0.9, 0.048} : Orbit{0.88 * kTurn}; }
+
+Move orbit(std::shared_ptr<Loop> loop, WhereAlong s, const Orbit& o) {
   return {"round the standing part", [=](const Look& look) {
             loop->look(look);
-            const double left = wanted - loop->wound();
+            const double left = o.wound - loop->wound();
+            const double over = std::clamp((loop->wound() / kTurn - 0.455) / 0.2, 0.0, 1.0);
             MovingHand& h = look.hands[kRightHand];
             const double angle = loop->angle_of(look, look.sight.tool_W[kRightHand]) + std::clamp(left, -0.9, 0.9);
             h.pace = 0.7;
-            h.goal_W = look.thread.at(s(look)) + 1.4 * look.place.clearance_m * loop->towards(angle);
+            h.goal_W = look.thread.at(s(look)) +
+                       (1.4 + over * o.slack) * look.place.clearance_m * loop->towards(angle) -
+                       over * o.back * look.place.length_m * loop->along();
             return std::abs(left) < 0.25;
           }};
 }
 
+/// `way` clearances from the loop's centre in the sense of the turn.
+Where beside_centre(std::shared_ptr<Loop> loop, double way) {
+  return [=](const Look& look) -> Vec3 {
+    loop->look(look);
+    return loop->centre() + way * look.place.clearance_m * loop->way();
+  };
+}
+
+/// A place on the line from X through the loop's centre, `way` clearances off
+/// the loop's plane against the turn.
+Where across_loop(std::shared_ptr<Loop> loop, double share, double way) {
+  return [=](const Look& look) -> Vec3 {
+    loop->look(look);
+    return loop->crossing() + share * (loop->centre() - loop->crossing()) -
+           way * look.place.clearance_m * loop->normal();
+  };
+}
+
+/// With the end led away to one side, would it hold?
+bool would_hold(const Look& look, const Throw& t, const Vec3& out) {
+  return seen_determinant(look.thread.between(0.0, look.thread.length_m()), out) == (t.against ? 5 : 3);
+}
+
 }  // namespace
 
-Moves lay_turn(std::shared_ptr<Loop> loop, WhereAlong s) {
+Moves lay_turn(std::shared_ptr<Loop> loop, const Throw& t, WhereAlong s) {
   const auto below = [=](const Look& look) -> Vec3 {
     loop->look(look);
     return look.thread.at(s(look)) + look.place.clearance_m * (1.4 * loop->towards(0.0) - 2.0 * Vec3::UnitZ());
   };
-  return {carry(kRightHand, "to the turn", below, 0.7), orbit(loop, s, 0.88 * kTurn)};
+  return {carry(kRightHand, "to the turn", below, 0.7), orbit(loop, s, orbit_of(t))};
 }
+
+namespace {
+
+/// The moves by which the end goes through the loop; in the sense of the turn,
+/// or against it.
+Moves step_through(std::shared_ptr<Loop> loop, const Throw& t) {
+  if (t.against) {  // the end drags the loop along; where it is passed moves on
+                    // until the end is in front of it
+    return {carry(kRightHand, "before the loop", across_loop(loop, 1.17, -1.2), 0.5),
+            carry_straight(kRightHand, "through", across_loop(loop, 1.17, 3.1), 0.5)};
+  }
+  return {carry_straight(kRightHand, "before the loop", beside_centre(loop, -1.2), 0.5),
+          carry_straight(kRightHand, "through", beside_centre(loop, 2.0), 0.5)};
+}
+
+}  // namespace
 
 Moves pass_through(std::shared_ptr<Loop> loop, const Throw& t, WhereAlong s) {
-  const double sign = t.against ? -1.0 : 1.0;
-  // A place near the loop: from its centre a share of the way to the bight, then in clearances along the way through
-  // and out beyond the bight.
-  const auto place = [loop, sign](double share, double way, double out) {
-    return [=](const Look& look) -> Vec3 {
-      loop->look(look);
-      const Vec3 to = loop->bight() - loop->centre();
-      return loop->centre() + share * to + look.place.clearance_m * (out * to.normalized() + way * sign * loop->way());
-    };
+  Moves steps = step_through(loop, t);
+  steps.push_back(orbit(loop, s, orbit_of(t)));
+  const auto is_through = [=](const Look& look) {
+    loop->look(look);
+    return would_hold(look, t, t.against ? Vec3(-loop->way()) : loop->way());
   };
-  Moves m;
-  for (int k = 0; k < t.passes; ++k) {
-    if (k > 0 || t.against) {  // to the side from which the loop is passed next
-      m.push_back(carry_straight(kRightHand, "past the bight", place(1.0, 1.0, 1.5), 0.7));
-      m.push_back(carry_straight(kRightHand, "round the bight", place(1.0, -1.0, 1.5), 0.7));
-    }
-    const double share = k == 0 ? 0.0 : 0.5;
-    const std::vector<Move> steps{carry_straight(kRightHand, "before the loop", place(share, -1.2, 0.0), 0.5),
-                                  carry_straight(kRightHand, "through", place(share, 2.0, 0.0), 0.5),
-                                  orbit(loop, s, 0.88 * kTurn)};
-    const int wanted = (k + 1) * (t.against ? -1 : 1);
-    auto going = std::make_shared<std::size_t>(0);
-    m.push_back({"pass the end",
-                 [=](const Look& look) {
-                   if (!steps[*going].act(look)) return false;
-                   loop->look(look);
-                   if (*going == 1 && loop->passes() == wanted) return true;
-                   *going = (*going + 1) % steps.size();
-                   return false;
-                 },
-                 30.0});
-  }
-  return m;
+  auto going = std::make_shared<std::size_t>(0);
+  return {{"pass the end",
+           [=](const Look& look) {
+             if (!steps[*going].act(look)) return false;
+             if (*going == 1 && is_through(look)) return true;
+             *going = (*going + 1) % steps.size();
+             return false;
+           },
+           t.against ? 10.0 : 30.0, is_through}};
 }
 
-Move draw_through(std::shared_ptr<Loop> loop, Vec3 direction) {
-  const Vec3 way = direction.normalized();
-  return {"draw through", [=](const Look& look) {
+Move draw_through(std::shared_ptr<Loop> loop, const Throw& t, Vec3 direction) {
+  const Vec3 way = direction.normalized(), side = static_cast<double>(t.against ? -t.side : t.side) * kFront;
+  return {"draw through",
+          [=](const Look& look) {
             MovingHand& h = look.hands[kRightHand];
             loop->look(look);
             const Vec3 corner = look.sight.tool_W[kLeftHand];
             h.pace = 0.7;
-            const double out = std::max(0.0, way.dot(h.p_W() - corner)) + 0.1 * look.place.length_m;
-            h.goal_W = corner + out * way + look.place.clearance_m * kFront;
+            const double out = std::max(0.0, way.dot(h.p_W() - corner)), step = 0.1 * look.place.length_m;
+            h.goal_W = corner + (out + step) * way + look.place.clearance_m * side;
             const double pull_N = -way.dot(look.sight.force_W_N[kRightHand]);
+            if (out < step && look.in_move_s < 8.0) return false;  // past the corner first, whatever it catches on
             if (loop->around_m() > 20.0 * look.place.diameter_m && pull_N < 0.5 * look.place.tension_N) return false;
             h.goal_W = h.p_W();
             return true;
-          }};
+          },
+          15.0, [=](const Look& look) { return would_hold(look, t, side); }};
 }
 
 Moves pull_tight(Vec3 direction, double share) {

@@ -15,10 +15,11 @@ namespace ligature::lab {
 namespace {
 
 constexpr double kEnough = 0.95;
+constexpr const char *kScene = "scenes/paper.toml", *kLongScene = "scenes/paper-long.toml";
 
 struct Arguments {
   std::string knot = "overhand";
-  std::string scene = "scenes/paper.toml";
+  std::string scene;
   std::vector<std::string> overrides;
   std::string seeds = "1-20";
   std::string out = "out/tie";
@@ -57,18 +58,19 @@ Seeds read_seeds(const std::string& text) {
 
 int execute(const Arguments& a) {
   const Seeds seeds = read_seeds(a.seeds);
-  const auto scene = load_scene_or_refuse(a.scene, a.overrides);
-  (void)make_or_refuse(scene, a.scene);
+  const std::string file = !a.scene.empty() ? a.scene : a.knot.starts_with("surgeon") ? kLongScene : kScene;
+  const auto scene = load_scene_or_refuse(file, a.overrides);
+  (void)make_or_refuse(scene, file);
   make_folder(a.out);
   int tied = 0, tried = 0;
-  std::printf("%6s  %-10s %8s  %s\n", "seed", "found", "seconds", "moves given up");
+  std::printf("%6s  %-20s %8s  %s\n", "seed", "found", "seconds", "moves given up");
   for (std::uint32_t seed = seeds.first; seed <= seeds.last && !stop_requested(); ++seed) {
-    const Tied t = tie_once(scene, a.scene, a.knot, seed, a.out);
+    const Tied t = tie_once(scene, file, a.knot, seed, a.out);
     ++tried;
     tied += t.good();
     std::string missed;
     for (const auto& m : t.missed) missed += (missed.empty() ? "" : ", ") + m;
-    std::printf("%6u  %-10s %8.1f  %s\n", seed, t.found.c_str(), t.seconds, missed.c_str());
+    std::printf("%6u  %-20s %8.1f  %s\n", seed, t.found.c_str(), t.seconds, missed.c_str());
     std::fflush(stdout);
   }
   std::printf("%s: tied %d of %d\n", a.knot.c_str(), tied, tried);
@@ -80,8 +82,9 @@ int execute(const Arguments& a) {
 void add_tie_command(CLI::App& app, int& exit_code) {
   auto* tie = app.add_subcommand("tie", "Knots tied by an operator that looks, through the whole chain, and counted");
   auto a = std::make_shared<Arguments>();
-  tie->add_option("knot", a->knot, "Which knot")->required();
-  tie->add_option("--scene", a->scene, "Scene file (TOML); its node 0 must be fixed")->capture_default_str();
+  tie->add_option("knot", a->knot, "Which knot; an unknown one is answered with those there are")->required();
+  tie->add_option("--scene", a->scene, "Scene file (TOML); its node 0 must be fixed")
+      ->default_str("scenes/paper.toml; for surgeon scenes/paper-long.toml");
   tie->add_option("--set", a->overrides, "key=value over the scene's own; repeatable")
       ->type_name("KEY=VALUE")
       ->expected(1)

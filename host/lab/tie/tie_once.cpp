@@ -12,7 +12,7 @@
 namespace ligature::lab {
 namespace {
 
-constexpr std::int64_t kMost_ticks = 120'000;
+constexpr std::int64_t kMost_ticks = 300'000;
 
 class Person final : public SeeingOperator {
  public:
@@ -36,7 +36,7 @@ Tied tie_once(const scene::Scene& scene, const std::string& scene_file, const st
   if (const auto* why = std::get_if<std::string>(&made)) throw Refusal(scene_file + ": " + *why);
   Person person(std::get<sim::KnotTier>(std::move(made)));
   Tied tied;
-  tied.wanted = person.tier().knot().type;
+  tied.wanted = std::string(person.tier().knot().type) + " " + std::string(person.tier().knot().handedness);
   tied.recording = folder / (knot + "-" + std::to_string(seed) + ".lcmlog");
   std::filesystem::remove(tied.recording);
   RigSetup setup;
@@ -50,7 +50,8 @@ Tied tie_once(const scene::Scene& scene, const std::string& scene_file, const st
   tied.missed = person.tier().missed();
   if (!person.is_done()) tied.missed.push_back("time");
   const auto shape = host::read_polyline_log(tied.recording.string(), std::nullopt);
-  tied.found = knot::recognise(shape.points, false).type;
+  const auto found = knot::recognise(shape.points, false);
+  tied.found = found.type + " " + found.handedness;
   return tied;
 }
 

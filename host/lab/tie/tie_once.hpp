@@ -12,8 +12,8 @@
 namespace ligature::lab {
 
 struct Tied {
-  std::string wanted, found;        ///< knot types as host/knot names them; found: in the last shape of the recording
-  double seconds = 0.0;             ///< of the rig's clock, watching the knot included
+  std::string wanted, found;  ///< type and handedness by host/knot ("3_1 right"); found: in the recording's last shape
+  double seconds = 0.0;       ///< of the rig's clock, watching the knot included
   std::vector<std::string> missed;  ///< moves that ran out of patience
   std::filesystem::path recording;
   [[nodiscard]] bool good() const { return wanted == found; }

@@ -1,0 +1,126 @@
+// Throws wound round the standing part: which knot the hand's path alone makes, and the knots of two throws in a
+// thread.
+
+#include "sim_device/operator/wound_throw.hpp"
+
+#include <gtest/gtest.h>
+
+#include "firmware/physics/simulation.hpp"
+#include "host/knot/recognise.hpp"
+#include "protocol/scene/scene_file.hpp"
+#include "sim_device/operator/knot_tier.hpp"
+
+namespace ligature::sim {
+namespace {
+
+using Line = std::vector<Vec3>;
+
+std::string knot_of(std::span<const Vec3> line) {
+  std::vector<std::array<double, 3>> points;
+  for (const Vec3& p : line) points.push_back({p.x(), p.y(), p.z()});
+  const auto k = knot::recognise(points, false);
+  return k.type + " " + k.handedness;
+}
+
+/// An ideal thread: no weight, no stiffness, as long as it likes. It hangs straight down from the anchor, then runs
+/// straight to the left hand, down to where the right hand took the end, and from there along the hand's path.
+class Trail {
+ public:
+  Line after(const Throw& t) {
+    hands_[kLeftHand].rest_at({-1.0, -1.0, -2.0}, place_.speed_m_per_s);
+    hands_[kRightHand].rest_at({1.0, -1.0, -2.0}, place_.speed_m_per_s);
+    bool drawn = false;
+    for (Move& m : wound_throw(t, std::make_shared<Site>(0.0, 1.0))) {
+      if (drawn && m.name != "draw") break;  // the rest needs a real thread
+      drawn = m.name == "draw";
+      run(m);
+    }
+    return line();
+  }
+
+ private:
+  [[nodiscard]] Line line() const {
+    Line line{place_.anchor_W};
+    if (hands_[kLeftHand].grip) line.push_back(hands_[kLeftHand].p_W());
+    if (path_.empty()) line.push_back(line.back() + Vec3(0.0, 0.0, -4.0));
+    line.insert(line.end(), path_.begin(), path_.end());
+    return line;
+  }
+
+  void run(Move& m) {
+    for (double t_s = 0.0; t_s < m.patience_s; t_s += 0.01) {
+      const Line now = line();
+      ThreadView thread;
+      thread.look(now);
+      Sight sight;
+      sight.thread_W = now;
+      for (std::size_t h = 0; h < 2; ++h) sight.tool_W[h] = hands_[h].p_W();
+      if (m.act({thread, sight, place_, hands_, t_s})) return;
+      for (MovingHand& h : hands_) h.tick();
+      if (hands_[kRightHand].grip) path_.push_back(hands_[kRightHand].p_W());
+    }
+  }
+
+  Workplace place_{Vec3::Zero(), 5.0, 0.1, 0.25, 40.0, 0.7};
+  std::array<MovingHand, 2> hands_{MovingHand(0.01), MovingHand(0.01)};
+  Line path_;
+};
+
+TEST(WoundThrow, TheHandsPathAloneIsTheThrow) {
+  EXPECT_EQ(knot_of(Trail().after({1, false, 1})), "3_1 left");
+  EXPECT_EQ(knot_of(Trail().after({-1, false, 1})), "3_1 right");
+  EXPECT_EQ(knot_of(Trail().after({1, false, 2})), "5_1 left");
+  EXPECT_EQ(knot_of(Trail().after({-1, false, 2})), "5_1 right");
+}
+
+TEST(WoundThrow, ThrowsInARowAreTheNamedKnots) {
+  for (const char* name : {"square", "granny", "surgeon"}) {
+    const auto knot = knot_named(name);
+    ASSERT_TRUE(knot) << name;
+    Line row;
+    for (const Throw& t : knot->throws) {
+      const Vec3 from = row.empty() ? Vec3::Zero() : Vec3(row.back() + Vec3(10.0, 0.0, 0.0));
+      for (const Vec3& p : Trail().after(t)) row.push_back(from + p);
+    }
+    EXPECT_EQ(knot_of(row), std::string(knot->type) + " " + std::string(knot->handedness)) << name;
+  }
+}
+
+/// At the facade, five seconds after the hands let go.
+std::string tied(const char* scene_name, const char* knot, std::uint32_t seed) {
+  const auto read = scene::load_scene(std::string(LIGATURE_SOURCE_DIR "/scenes/") + scene_name, {});
+  if (const auto* error = std::get_if<scene::Error>(&read)) return error->text;
+  const auto& scene = std::get<scene::Scene>(read);
+  auto made = physics::Simulation::make(scene);
+  auto tier = KnotTier::make(scene, knot, seed);
+  if (const auto* why = std::get_if<std::string>(&tier)) return *why;
+  auto& thread = std::get<physics::Simulation>(made);
+  auto& person = std::get<KnotTier>(tier);
+  Sight sight;
+  for (int k = 0; k < 120'000 && !person.is_done(); ++k) {
+    sight.t_s = 1e-3 * k;
+    sight.thread_W = thread.nodes_W();
+    for (std::size_t h = 0; h < 2; ++h) {
+      sight.tool_W[h] = person.wish()[h].p_W;
+      sight.force_W_N[h] = thread.hand(static_cast<physics::Hand>(h)).f_W;
+    }
+    const auto& wish = person.tick(sight);
+    thread.tick({physics::ToolInput{wish[0].p_W, wish[0].v_W, wish[0].grip},
+                 physics::ToolInput{wish[1].p_W, wish[1].v_W, wish[1].grip}});
+  }
+  return person.is_done() ? knot_of(thread.nodes_W()) : "not done";
+}
+
+TEST(WoundThrow, TiesKnotsOfTwoThrows) {
+  EXPECT_EQ(tied("paper.toml", "square", 4), "3_1#3_1 amphichiral");
+  EXPECT_EQ(tied("paper.toml", "granny", 104), "3_1#3_1 left");
+  EXPECT_EQ(tied("paper-long.toml", "surgeon", 4), "3_1#5_1 mixed");
+}
+
+TEST(WoundThrow, RefusesAThreadTooShortForTheKnot) {
+  EXPECT_EQ(tied("paper.toml", "surgeon", 1),
+            "suture.length_m: found 5, allowed 6 or more for a surgeon knot in a thread this thick");
+}
+
+}  // namespace
+}  // namespace ligature::sim
