@@ -1,9 +1,11 @@
 #pragma once
 // The simulated thread as the rest of the program sees it: two tools in, nodes and hand forces out.
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -20,6 +22,9 @@ struct ToolInput {
   Vec3 p_WT = Vec3::Zero();
   Vec3 v_WT = Vec3::Zero();
   bool grip = false;
+  /// How the tool is turned. Given when the grip closes, the thread's direction and roll there turn with the tool until
+  /// it opens (rod model); absent, a grip leaves the direction free, or as it was (hands.pinch_width_m).
+  std::optional<Eigen::Quaterniond> R_WT{};
 };
 
 /// Which of the paper's conditions (section IV) governs a hand's force.

@@ -3,6 +3,7 @@
 #include <ctime>
 
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "host/lab/outcome.hpp"
@@ -18,9 +19,14 @@ double thread_cpu_s() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-physics::ToolInput tool_at(const std::vector<scene::GripKey>& keys, double t_s) {
-  const auto pose = scene::sample(keys, t_s);
-  return {physics::Vec3(pose.p_W_m.data()), physics::Vec3(pose.v_W_m_per_s.data()), pose.grip};
+physics::ToolInput tool_at(const scene::GripperScript& script, int hand, double t_s) {
+  const auto pose = scene::sample(script.keys[hand], t_s);
+  physics::ToolInput tool{physics::Vec3(pose.p_W_m.data()), physics::Vec3(pose.v_W_m_per_s.data()), pose.grip, {}};
+  if (script.turns) {
+    const physics::Vec3 turn = physics::Vec3(pose.turn_deg.data()) * (std::numbers::pi / 180.0);
+    tool.R_WT = Eigen::AngleAxisd(turn.norm(), turn.stableNormalized());
+  }
+  return tool;
 }
 
 }  // namespace
@@ -50,7 +56,7 @@ Rehearsal::Rehearsal(const scene::Scene& scene, scene::GripperScript script, con
       tick_s_(scene.time.tick_s) {}
 
 std::array<physics::ToolInput, 2> Rehearsal::tools_at(double t_s) {
-  if (!tier_) return {tool_at(script_.keys[0], t_s), tool_at(script_.keys[1], t_s)};
+  if (!tier_) return {tool_at(script_, 0, t_s), tool_at(script_, 1, t_s)};
   sim::Sight sight;
   sight.t_s = t_s;
   sight.thread_W = simulation_.nodes_W();

@@ -8,14 +8,16 @@
 namespace ligature::scene {
 namespace {
 
-constexpr std::string_view kHeader = "time,hand,x,y,z,grip";
+constexpr std::string_view kHeader = "time,hand,x,y,z,grip", kTurning = "time,hand,x,y,z,grip,turn_x,turn_y,turn_z";
 
 /// One row as a key of one hand; the text says what is wrong with it, empty when nothing is.
 std::string read_row(const CsvRow& row, int& hand, GripKey& key) {
-  constexpr const char* kNumbers[] = {"time", "x", "y", "z"};
-  constexpr std::size_t kCells[] = {0, 2, 3, 4};
-  double* const out[] = {&key.time_s, &key.p_W_m[0], &key.p_W_m[1], &key.p_W_m[2]};
-  for (std::size_t i = 0; i < 4; ++i) {
+  constexpr const char* kNumbers[] = {"time", "x", "y", "z", "turn_x", "turn_y", "turn_z"};
+  constexpr std::size_t kCells[] = {0, 2, 3, 4, 6, 7, 8};
+  double* const out[] = {&key.time_s,      &key.p_W_m[0],    &key.p_W_m[1],   &key.p_W_m[2],
+                         &key.turn_deg[0], &key.turn_deg[1], &key.turn_deg[2]};
+  const std::size_t numbers = row.cells.size() > 6 ? 7 : 4;
+  for (std::size_t i = 0; i < numbers; ++i) {
     const auto& cell = row.cells[kCells[i]];
     if (!parse_number(cell, *out[i])) {
       return std::string("column '") + kNumbers[i] + "': found '" + shown(cell) + "', allowed a finite number";
@@ -34,9 +36,14 @@ std::string read_row(const CsvRow& row, int& hand, GripKey& key) {
 }  // namespace
 
 std::variant<GripperScript, Error> load_gripper_script(const std::filesystem::path& path) {
-  auto read = read_csv(path, kHeader);
-  if (auto* error = std::get_if<Error>(&read)) return *error;
   GripperScript script;
+  auto read = read_csv(path, kTurning);
+  if (auto* error = std::get_if<Error>(&read); error && error->text.find("allowed the header") != std::string::npos) {
+    read = read_csv(path, kHeader);
+  } else {
+    script.turns = true;
+  }
+  if (auto* error = std::get_if<Error>(&read)) return *error;
   for (const auto& row : std::get<std::vector<CsvRow>>(read)) {
     int hand = 0;
     GripKey key;
@@ -56,18 +63,19 @@ ToolPose sample(std::span<const GripKey> keys, double t_s) noexcept {
   if (keys.empty()) return {kParked_W_m, {}, false};
   const auto next =
       std::upper_bound(keys.begin(), keys.end(), t_s, [](double t, const GripKey& k) { return t < k.time_s; });
-  if (next == keys.begin()) return {next->p_W_m, {}, false};
+  if (next == keys.begin()) return {next->p_W_m, {}, false, next->turn_deg};
   const auto& a = *(next - 1);
-  if (next == keys.end()) return {a.p_W_m, {}, a.grip};
+  if (next == keys.end()) return {a.p_W_m, {}, a.grip, a.turn_deg};
   const double span_s = next->time_s - a.time_s;
   const double u = (t_s - a.time_s) / span_s;
   const double s = u * u * (3.0 - 2.0 * u);
   const double ds_per_s = 6.0 * u * (1.0 - u) / span_s;
-  ToolPose pose{{}, {}, a.grip};
+  ToolPose pose{{}, {}, a.grip, {}};
   for (std::size_t i = 0; i < 3; ++i) {
     const double way = next->p_W_m[i] - a.p_W_m[i];
     pose.p_W_m[i] = a.p_W_m[i] + way * s;
     pose.v_W_m_per_s[i] = way * ds_per_s;
+    pose.turn_deg[i] = a.turn_deg[i] + (next->turn_deg[i] - a.turn_deg[i]) * s;
   }
   return pose;
 }

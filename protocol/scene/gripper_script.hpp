@@ -1,6 +1,7 @@
 #pragma once
 // What two hands do over time: the operator's script that a simulated device or the offline lab plays.
 //   time,hand,x,y,z,grip        s, L or R, m, m, m, 0 or 1      `#` starts a comment
+// and, in a script of hands that turn, three columns more: turn_x,turn_y,turn_z, degrees.
 
 #include <array>
 #include <filesystem>
@@ -17,17 +18,21 @@ struct GripKey {
   double time_s = 0.0;
   Vec p_W_m{};
   bool grip = false;
+  Vec turn_deg{};  ///< rotation vector of the tool since its rest, about the axes of W; more than a turn is more than
+                   ///< 360
 };
 
 // The implicit copy of the array below has a loop variable of the compiler's own, which the check takes for ours.
 struct GripperScript {           // NOLINT(bugprone-reserved-identifier)
   std::vector<GripKey> keys[2];  ///< 0 = L, 1 = R; times strictly increase within a hand; empty: the hand is absent
+  bool turns = false;            ///< it has the turn columns: grippers hold the thread's direction and roll
 };
 
 struct ToolPose {
   Vec p_W_m{};
   Vec v_W_m_per_s{};
   bool grip = false;
+  Vec turn_deg{};
 };
 
 /// Where a hand without a script waits: so far away that it touches nothing.

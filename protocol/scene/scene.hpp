@@ -51,12 +51,14 @@ enum class Accuracy : std::uint8_t { kFast, kBalanced, kFine };
 /// A rod's material, per length; suture.model = "rod". Keys of [suture] with these names; `preset` fills them in.
 struct RodParameters {
   double density_kg_per_m = 8e-5;
-  double EA_N = 71.0;               ///< axial stiffness
-  double EI_N_m2 = 4e-7;            ///< bending stiffness
-  double GJ_N_m2 = 2.86e-7;         ///< twisting stiffness; 0: twist is not modelled
-  double damping_s = 2e-3;          ///< Kelvin-Voigt time of bending
-  double stretch_damping_s = 5e-4;  ///< of stretch
-  double air_drag_per_s = 5.0;      ///< a = -c v
+  double EA_N = 71.0;                 ///< axial stiffness
+  double EI_N_m2 = 4e-7;              ///< bending stiffness
+  double GJ_N_m2 = 2.86e-7;           ///< twisting stiffness; 0: twist is not modelled
+  double rest_curvature_per_m = 0.0;  ///< of the thread without stress, about an axis that is fixed in its material
+  double rest_twist_per_m = 0.0;      ///< rad/m: that axis turns along the thread; with a curvature, a helix
+  double damping_s = 2e-3;            ///< Kelvin-Voigt time of bending
+  double stretch_damping_s = 5e-4;    ///< of stretch
+  double air_drag_per_s = 5.0;        ///< a = -c v
   Spacing spacing = Spacing::kAdaptive;
   Accuracy accuracy = Accuracy::kBalanced;
 };
@@ -77,6 +79,7 @@ struct Contact {
   ContactSolver solver = ContactSolver::kImplicit;
   double friction = 0.3;                  ///< kinetic Coulomb coefficient; key contact.friction
   std::optional<double> static_friction;  ///< same as friction when absent
+  bool turns_thread = false;              ///< friction turns the thread about its axis: it rolls; rod model only
   double repulsion_N_per_m = 100.0;       ///< k_rs of (2), solver "paper" only
   double repulsion_N_s_per_m = 5.0;       ///< k_rd of (2), solver "paper" only
   bool friction_cap = true;  ///< key contact.friction_cap; solver "paper": at most stop slip; false: as printed

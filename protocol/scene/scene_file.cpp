@@ -70,13 +70,15 @@ void read_suture(StrictTable& t, const fs::path& folder, Suture& s) {
   s.initial_polyline_m = lay_out(std::get<std::vector<Vec>>(read), points, s.length_m / (points - 1));
 }
 
-void read_contact(StrictTable& t, Contact& c) {
+void read_contact(StrictTable& t, Model model, Contact& c) {
   t.choice("solver", c.solver, kSolvers);
   t.number("friction", c.friction, {0.0, 1e3});
   t.number("static_friction", c.static_friction, {0.0, 1e3});
   t.number("repulsion_N_per_m", c.repulsion_N_per_m, kCoefficient);
   t.number("repulsion_N_s_per_m", c.repulsion_N_s_per_m, kCoefficient);
   t.boolean("friction_cap", c.friction_cap);
+  t.boolean("turns_thread", c.turns_thread);
+  if (c.turns_thread && model != Model::kRod) t.refuse("turns_thread", "false, or suture.model \"rod\"");
   t.choice("broad_phase", c.broad_phase, kBroadPhases);
   if (c.static_friction && *c.static_friction < c.friction) t.refuse("static_friction", "contact.friction or more");
 }
@@ -193,7 +195,7 @@ std::variant<Scene, Error> load_scene(const fs::path& path, std::span<const std:
   Scene scene;
   StrictTable top(root, "", context);
   top.table("suture", [&](StrictTable& t) { read_suture(t, path.parent_path(), scene.suture); });
-  top.table("contact", [&](StrictTable& t) { read_contact(t, scene.contact); });
+  top.table("contact", [&](StrictTable& t) { read_contact(t, scene.suture.model, scene.contact); });
   top.table("world", [&](StrictTable& t) { read_world(t, scene.suture.nodes, scene.world); });
   top.table("time", [&](StrictTable& t) { read_time(t, scene.time); });
   top.table("hands", [&](StrictTable& t) { read_hands(t, scene.suture.model, scene.hands); });

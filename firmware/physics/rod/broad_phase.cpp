@@ -66,7 +66,7 @@ void BroadPhase::keep_impulses(const std::vector<Candidate>& list) noexcept {
     std::size_t at = place_of(c.a, c.b);
     while (kept_[at].a >= 0 && (kept_[at].a != c.a || kept_[at].b != c.b)) at = (at + 1) % kTable;
     if (kept_[at].a < 0) {
-      kept_[at] = {c.a, c.b, c.impulse};
+      kept_[at] = {c.a, c.b, c.impulse, c.stuck};
       ++held;
     } else {
       kept_[at].impulse += c.impulse;  // two, when their segments were merged
@@ -74,10 +74,12 @@ void BroadPhase::keep_impulses(const std::vector<Candidate>& list) noexcept {
   }
 }
 
-Vec BroadPhase::kept_impulse(std::int32_t a, std::int32_t b) const noexcept {
-  std::size_t at = place_of(a, b);
-  while (kept_[at].a >= 0 && (kept_[at].a != a || kept_[at].b != b)) at = (at + 1) % kTable;
-  return kept_[at].a < 0 ? Vec{} : kept_[at].impulse;
+void BroadPhase::give_back(Candidate& pair) const noexcept {
+  std::size_t at = place_of(pair.a, pair.b);
+  while (kept_[at].a >= 0 && (kept_[at].a != pair.a || kept_[at].b != pair.b)) at = (at + 1) % kTable;
+  if (kept_[at].a < 0) return;
+  pair.impulse = kept_[at].impulse;
+  pair.stuck = kept_[at].stuck;
 }
 
 bool BroadPhase::consider(const State& state, const Motion& motion, const Outlook& outlook, std::size_t a,
@@ -100,7 +102,7 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
   pair.b = static_cast<std::int32_t>(b);
   pair.reach_m = reach;
   pair.due = std::sqrt(c.distance2) - reach;
-  pair.impulse = kept_impulse(pair.a, pair.b);
+  give_back(pair);
   list.push_back(pair);
   return true;
 }

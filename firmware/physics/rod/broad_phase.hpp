@@ -18,6 +18,7 @@ struct Candidate {
   double due = 0.0;      ///< gap when last measured + Motion::gone then: minus gone now, a lower bound of the gap
   double s_a = 0.0, s_b = 0.0;  ///< material coordinates of the closest points, m
   Vec impulse{};                ///< of the last substep, on b's side, N s
+  char stuck = 0;               ///< 1: inside the friction cone then
 };
 
 /// How far ahead a list looks: pairs within reach + skin + horizon x their rate of approach (motion.hpp) are on it.
@@ -54,7 +55,7 @@ class BroadPhase {
     float x, y, z, r;
   };
   void place(const State& state, const Motion& motion, float horizon_s) noexcept;
-  [[nodiscard]] Vec kept_impulse(std::int32_t a, std::int32_t b) const noexcept;
+  void give_back(Candidate& pair) const noexcept;
   /// Adds the pair if it is near enough. @return false when there was no room.
   bool consider(const State& state, const Motion& motion, const Outlook& outlook, std::size_t a, std::size_t b,
                 std::vector<Candidate>& list) noexcept;
@@ -67,6 +68,7 @@ class BroadPhase {
   struct Kept {
     std::int32_t a = -1, b = -1;
     Vec impulse{};
+    char stuck = 0;
   };
   int capacity_ = 0;
   long spent_ = 0, allowance_ = 0;    // of this build

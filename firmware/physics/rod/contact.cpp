@@ -15,6 +15,8 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   due_.reserve(pairs.capacity());
   floor_impulse.assign(n, Vec{});
   body_impulse.assign(n * static_cast<std::size_t>(bodies), Vec{});
+  floor_stuck.assign(floor_impulse.size(), 0);
+  body_stuck.assign(body_impulse.size(), 0);
   body_due_.assign(static_cast<std::size_t>(bodies), -1.0);
   columns_.assign(rows * (static_cast<std::size_t>(window) + 8), 0.0F);
   swept_.reserve(window);
@@ -26,6 +28,8 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
 
 namespace {
 
+constexpr double kStill_m_per_s = 1e-5;  // slip below which a contact rests: a thirtieth of a diameter a second
+
 Vec in_cone(Vec p, Vec n, double mu) noexcept {
   const double pn = dot(p, n);
   if (pn <= 0.0) return Vec{};
@@ -34,13 +38,29 @@ Vec in_cone(Vec p, Vec n, double mu) noexcept {
   return pn * n + (size2 > most * most ? most / std::sqrt(size2) : 1.0) * pt;
 }
 
-Vec velocity(const Contact& c, const Vec* v) noexcept {
+}  // namespace
+
+template <bool Turns>
+Vec ContactSet::velocity(int k, const Vec* v) const noexcept {
+  const Contact& c = contacts_[static_cast<std::size_t>(k)];
   Vec u = -c.surface;
   for (int j = 0; j < c.count; ++j) u += c.w[j] * v[c.node[j]];
+  if constexpr (Turns) u += turning_.slip(k);
   return u;
 }
 
-}  // namespace
+void ContactSet::let_stick(double mu_static, const Vec* v) noexcept {
+  for (auto& c : contacts_) {
+    bool holds = *c.stuck != 0;
+    if (dot(c.p, c.p) == 0.0) {
+      Vec u = -c.surface;
+      for (int j = 0; j < c.count; ++j) u += c.w[j] * v[c.node[j]];
+      u -= dot(u, c.n) * c.n;
+      holds = dot(u, u) < kStill_m_per_s * kStill_m_per_s;
+    }
+    if (holds) c.mu = mu_static;
+  }
+}
 
 ContactSet& ContactSet::operator=(const ContactSet& other) {
   if (this == &other) return *this;
@@ -49,17 +69,20 @@ ContactSet& ContactSet::operator=(const ContactSet& other) {
   pairs = other.pairs;
   floor_impulse = other.floor_impulse;
   body_impulse = other.body_impulse;
+  floor_stuck = other.floor_stuck;
+  body_stuck = other.body_stuck;
   per_second_ = other.per_second_;
   return *this;
 }
 
 // sum of 1/2 p . (u + u_free) - target p_n + 1/2 soft p_n^2: what the impulses of the frictionless problem minimise.
+template <bool Turns>
 double ContactSet::merit(const Vec* v) const noexcept {
   double sum = 0.0;
   for (const auto k : loaded_) {
     const Contact& c = contacts_[static_cast<std::size_t>(k)];
     const double pn = dot(c.p, c.n);
-    sum += 0.5 * dot(c.p, velocity(c, v) + c.u_free) - pn * c.target + 0.5 * c.soft * pn * pn;
+    sum += 0.5 * dot(c.p, velocity<Turns>(k, v) + c.u_free) - pn * c.target + 0.5 * c.soft * pn * pn;
   }
   return sum;
 }
@@ -115,13 +138,14 @@ void ContactSet::prepare(const ContactMetric& metric, const Numerics& numerics, 
   }
 }
 
-template <bool Friction>
+template <bool Friction, bool Turns>
 void ContactSet::sweep(const Vec* v) noexcept {
   swept_.load(v + window_first_, window_last_ - window_first_ + 1);
   const float* column = columns_.data();
   for (int index = 0; index < rows_; ++index, column += stride_) {
     Contact& c = contacts_[static_cast<std::size_t>(index)];
-    const Vec u = swept_.mix(c.place, c.weight) - c.surface;
+    Vec u = swept_.mix(c.place, c.weight) - c.surface;
+    if constexpr (Turns) u += turning_.slip(index);
     const double un = dot(u, c.n), pn_before = dot(c.p, c.n);
     const double pn = pn_before - c.inv_soft_w * (un + c.soft * pn_before - c.target);
     Vec p{};
@@ -141,31 +165,36 @@ void ContactSet::sweep(const Vec* v) noexcept {
     c.p = p;
     for (int j = 0; j < c.count; ++j) extra_[static_cast<std::size_t>(c.node[j])] += c.w[j] * delta;
     swept_.push(column, stride_, delta);
+    if constexpr (Turns) turning_.push(index, delta);
   }
 }
 
 // Velocities without contact, and with the impulses of the last substep.
+template <bool Turns>
 void ContactSet::start(BandSolver& solver, Vec* v) noexcept {
   solver.solve(window_first_, window_last_, nullptr, v, true);
   clear_extra();
   loaded_.clear();
   for (int k = 0; k < rows_; ++k) {
     Contact& c = contacts_[static_cast<std::size_t>(k)];
-    c.u_free = velocity(c, v);
+    c.u_free = velocity<Turns>(k, v);
     c.loaded = dot(c.p, c.p) > 0.0;
     if (!c.loaded) continue;
     loaded_.push_back(k);
     for (int j = 0; j < c.count; ++j) extra_[static_cast<std::size_t>(c.node[j])] += c.w[j] * c.p;
   }
+  if constexpr (Turns) {
+    for (const auto k : loaded_) turning_.push(k, contacts_[static_cast<std::size_t>(k)].p);
+  }
   push(solver, v);
   mixing_.restart();
 }
 
-template <bool Friction>
+template <bool Friction, bool Turns>
 double ContactSet::plain_pass(BandSolver& solver, Vec* v) noexcept {
   clear_extra();
   for (std::size_t k = 0; k < loaded_.size(); ++k) residual_[k].v = loaded(k).p.v;
-  sweep<Friction>(v);
+  sweep<Friction, Turns>(v);
   for (std::size_t k = 0; k < loaded_.size(); ++k) {
     plain_[k].v = p_[k].v = loaded(k).p.v;
     residual_[k] = p_[k] - residual_[k];
@@ -174,39 +203,46 @@ double ContactSet::plain_pass(BandSolver& solver, Vec* v) noexcept {
 }
 
 // The mixture, brought back into the cones, counts only if it is better than the plain pass.
+template <bool Turns>
 void ContactSet::mix(BandSolver& solver, Vec* v) noexcept {
   if (!mixing_.step(p_.data(), residual_.data(), loaded_.size())) return;
-  const double plain_merit = merit(v);
+  const double plain_merit = merit<Turns>(v);
   clear_extra();
+  if constexpr (Turns) turning_.save();
   for (std::size_t k = 0; k < loaded_.size(); ++k) {
     Contact& c = loaded(k);
     c.p = in_cone(p_[k], c.n, c.mu);
     const Vec delta = c.p - plain_[k];
     for (int j = 0; j < c.count; ++j) extra_[static_cast<std::size_t>(c.node[j])] += c.w[j] * delta;
+    if constexpr (Turns) turning_.push(loaded_[k], delta);
   }
   push(solver, v);
-  if (merit(v) <= plain_merit) return;
+  if (merit<Turns>(v) <= plain_merit) return;
   for (int i = window_first_; i <= window_last_; ++i) v[i] -= step_[static_cast<std::size_t>(i)];
   for (std::size_t k = 0; k < loaded_.size(); ++k) loaded(k).p.v = plain_[k].v;
+  if constexpr (Turns) turning_.restore();
   mixing_.restart();
 }
 
-template <bool Friction>
+template <bool Friction, bool Turns>
 void ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const Numerics& numerics, const Effort& effort,
                         double dt_s, Vec* v, ContactReport& report) noexcept {
   prepare(metric, numerics, dt_s);
-  start(solver, v);
+  if constexpr (Turns) turning_.prepare(contacts_.data(), rows_, segments_, radius_m_, *spin_);
+  start<Turns>(solver, v);
   const long nodes = window_last_ - window_first_ + 1;
   const double settled2 = effort.settled_m_per_s * effort.settled_m_per_s;
+  const long turning = Turns ? turning_.price(rows_) : 0;
   for (;;) {
-    const double largest2 = plain_pass<Friction>(solver, v);
+    const double largest2 = plain_pass<Friction, Turns>(solver, v);
     ++report.passes;
-    report.work += price::pass(rows_, static_cast<long>(loaded_.size()), nodes);
+    report.work += price::pass(rows_, static_cast<long>(loaded_.size()), nodes) + turning;
     if (largest2 < settled2) return;
     // The next pass can at worst load every row.
-    report.cut_short = report.passes >= effort.passes || report.work + price::pass(rows_, rows_, nodes) > effort.work;
+    report.cut_short =
+        report.passes >= effort.passes || report.work + price::pass(rows_, rows_, nodes) + turning > effort.work;
     if (report.cut_short) return;
-    mix(solver, v);
+    mix<Turns>(solver, v);
   }
 }
 
@@ -215,7 +251,7 @@ double ContactSet::unsettled_fraction(const Vec* v, double dt_s) const noexcept 
   double share = 1.0;
   for (int k = 0; k < rows_; ++k) {
     const Contact& c = contacts_[static_cast<std::size_t>(k)];
-    const double closing_m = -dt_s * dot(velocity(c, v), c.n);
+    const double closing_m = -dt_s * dot(velocity<false>(k, v), c.n);
     const double room_m = std::max(c.gap_m + kDeep * c.reach_m, kCreep * c.reach_m);
     if (closing_m > room_m) share = std::min(share, room_m / closing_m);
   }
@@ -224,6 +260,20 @@ double ContactSet::unsettled_fraction(const Vec* v, double dt_s) const noexcept 
 
 void ContactSet::store() noexcept {
   for (const auto& c : contacts_) *c.keep = c.p;
+}
+
+// What slides is on the cone, and moves: one that is on it while its neighbours hold it does not.
+template <bool Turns>
+void ContactSet::note_stuck(const Vec* v) noexcept {
+  constexpr double kInside = 1.0 - 1e-9;
+  for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
+    const Contact& c = contacts_[static_cast<std::size_t>(k)];
+    const double pn = dot(c.p, c.n), most = kInside * c.mu * pn;
+    *c.stuck = 0;
+    if (pn <= 0.0 || k >= rows_) continue;
+    const Vec u = velocity<Turns>(k, v), along = u - dot(u, c.n) * c.n;
+    *c.stuck = dot(c.p, c.p) - pn * pn < most * most || dot(along, along) < kStill_m_per_s * kStill_m_per_s;
+  }
 }
 
 void ContactSet::relabel(const std::vector<double>& s) noexcept {
@@ -238,9 +288,13 @@ void ContactSet::relabel(const std::vector<double>& s) noexcept {
   }
 }
 
-template void ContactSet::settle<true>(BandSolver&, const ContactMetric&, const Numerics&, const Effort&, double, Vec*,
-                                       ContactReport&) noexcept;
-template void ContactSet::settle<false>(BandSolver&, const ContactMetric&, const Numerics&, const Effort&, double, Vec*,
-                                        ContactReport&) noexcept;
+template void ContactSet::settle<true, true>(BandSolver&, const ContactMetric&, const Numerics&, const Effort&, double,
+                                             Vec*, ContactReport&) noexcept;
+template void ContactSet::settle<true, false>(BandSolver&, const ContactMetric&, const Numerics&, const Effort&, double,
+                                              Vec*, ContactReport&) noexcept;
+template void ContactSet::settle<false, false>(BandSolver&, const ContactMetric&, const Numerics&, const Effort&,
+                                               double, Vec*, ContactReport&) noexcept;
+template void ContactSet::note_stuck<true>(const Vec*) noexcept;
+template void ContactSet::note_stuck<false>(const Vec*) noexcept;
 
 }  // namespace ligature::physics::rod

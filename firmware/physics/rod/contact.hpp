@@ -10,6 +10,7 @@
 #include "firmware/physics/rod/contact_metric.hpp"
 #include "firmware/physics/rod/mixing.hpp"
 #include "firmware/physics/rod/swept.hpp"
+#include "firmware/physics/rod/turning.hpp"
 #include "firmware/physics/rod/work.hpp"
 
 namespace ligature::physics::rod {
@@ -41,6 +42,7 @@ struct Contact {
   double reach_m = 0.0;                        ///< centre distance at which the pair touches
   bool loaded = false;                         ///< has carried an impulse in this substep
   Vec* keep = nullptr;                         ///< where the impulse is kept between substeps
+  char* stuck = nullptr;                       ///< where it is kept whether friction held
   std::int32_t place[4] = {0, 0, 0, 0};        ///< of the nodes in SweptVelocities
   float weight[4] = {0.0F, 0.0F, 0.0F, 0.0F};  ///< w for it
 };
@@ -67,7 +69,8 @@ inline constexpr int kMaxContacts = 768;  ///< rows that can be solved at once
 /// spends (work.hpp). What is collected but not chosen feels no impulse, but the guard holds it.
 ///
 /// A contact wants u_n >= -gap / dt when apart (nothing before they meet), u_n >= min(-beta gap / dt, limit) when
-/// overlapping, and u_t = 0 with |p_t| <= mu p_n: true static friction, no slip tolerance.
+/// overlapping, and u_t = 0 with |p_t| <= mu p_n: true static friction, no slip tolerance. With a static coefficient of
+/// its own (let_stick()), mu is that of sticking as long as the contact held in the last substep.
 ///
 /// settle(): p and v start from the last substep's impulses. Each pass runs one projected Gauss-Seidel sweep in the
 /// metric C (contact_metric.hpp), then pushes the change of p through the true matrix A; passes are mixed (mixing.hpp),
@@ -84,6 +87,8 @@ class ContactSet {
   ~ContactSet() = default;
 
   void reserve(int nodes, int bodies, int window);
+  /// For settle<.., true>.
+  void reserve_turning() { turning_.reserve(kMaxContacts); }
 
   /// Watched thread-thread pairs; rebuilt by BroadPhase.
   std::vector<Candidate> pairs;
@@ -116,15 +121,21 @@ class ContactSet {
   /// Decides which contacts are solved: the `most` deepest, on a window of at most `widest` nodes. @pre nodes >= 2.
   void choose_rows(int most, int widest, int nodes, ContactReport& report) noexcept;
 
+  /// Contacts that held in the last substep, and new ones that begin at rest, may be held by mu_static.
+  void let_stick(double mu_static, const Vec* v) noexcept;
+
   [[nodiscard]] int rows() const noexcept { return rows_; }  ///< 0: nothing to settle
   [[nodiscard]] int window_first() const noexcept { return window_first_; }
   [[nodiscard]] int window_last() const noexcept { return window_last_; }
 
   /// Solves for the window's velocities v with all rows. @pre rows() > 0, the solver's core lies in the window, the
-  /// metric covers it.
-  template <bool Friction>
+  /// metric covers it. Turns: segments turn too; begin_turning() was called.
+  template <bool Friction, bool Turns>
   void settle(BandSolver& solver, const ContactMetric& metric, const Numerics& numerics, const Effort& effort,
               double dt_s, Vec* v, ContactReport& report) noexcept;
+  void turn_with(Spin& spin, int segments, double radius_m) noexcept {
+    spin_ = &spin, segments_ = segments, radius_m_ = radius_m;
+  }
 
   /// After nodes moved along the thread: pairs with an impulse find their segments again by material coordinate.
   void relabel(const std::vector<double>& s) noexcept;
@@ -134,6 +145,9 @@ class ContactSet {
 
   /// Keeps the impulses for the next substep.
   void store() noexcept;
+  /// Which contacts hold at the velocities solved for, for let_stick().
+  template <bool Turns>
+  void note_stuck(const Vec* v) noexcept;
 
   /// Largest alpha <= 1 with which no measured pair moves by more than 0.9 of its centre distance; 0 when there was no
   /// room to note all that is near.
@@ -150,6 +164,7 @@ class ContactSet {
 
   std::vector<Vec> floor_impulse;  ///< per node
   std::vector<Vec> body_impulse;   ///< per body and segment
+  std::vector<char> floor_stuck, body_stuck;
 
  private:
   void add(const Contact& contact) noexcept;
@@ -157,17 +172,23 @@ class ContactSet {
                ContactReport& report) noexcept;
   void prepare(const ContactMetric& metric, const Numerics& numerics, double dt_s) noexcept;
   void make_column(Contact& c, const ContactMetric& metric, float* column) const noexcept;
+  template <bool Turns>
   void start(BandSolver& solver, Vec* v) noexcept;
   [[nodiscard]] Contact& loaded(std::size_t k) noexcept { return contacts_[static_cast<std::size_t>(loaded_[k])]; }
   /// @return the square of the largest step of a velocity, or more.
-  template <bool Friction>
+  template <bool Friction, bool Turns>
   double plain_pass(BandSolver& solver, Vec* v) noexcept;
+  template <bool Turns>
   void mix(BandSolver& solver, Vec* v) noexcept;
+  template <bool Turns>
   [[nodiscard]] double merit(const Vec* v) const noexcept;
+  /// Relative velocity of row k.
+  template <bool Turns>
+  [[nodiscard]] Vec velocity(int k, const Vec* v) const noexcept;
   /// v += A^-1 extra_ on the window. @return the sum over axes of the largest squares of that step.
   double push(BandSolver& solver, Vec* v) noexcept;
   void clear_extra() noexcept;
-  template <bool Friction>
+  template <bool Friction, bool Turns>
   void sweep(const Vec* v) noexcept;
 
   /// A pair that is near but no contact in this substep; only the guard looks at it again.
@@ -186,6 +207,10 @@ class ContactSet {
   std::vector<std::int32_t> loaded_;  // rows that have carried an impulse in this substep: the others are not mixed
   std::vector<Vec> p_, plain_, residual_;  // their impulses and their change in a pass, as the mixing wants them
   Mixing mixing_;
+  Turning turning_;
+  Spin* spin_ = nullptr;
+  int segments_ = 0;
+  double radius_m_ = 0.0;
   std::vector<double> body_due_;  // least gap of a body when last measured + travel then
   std::size_t stride_ = 0;
   double per_second_ = 0.0;

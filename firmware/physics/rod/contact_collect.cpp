@@ -82,6 +82,7 @@ void ContactSet::measure(Candidate& pair, const State& state, const Motion& moti
   pair.s_b = state.mesh.s[b] + c.t * state.mesh.rest[b];
   Contact contact = contact_of(pair, c, distance, mu);
   contact.keep = &pair.impulse;
+  contact.stuck = &pair.stuck;
   add(contact);
 }
 
@@ -152,6 +153,7 @@ void ContactSet::collect_floor(const State& state, double floor_m, double radius
     contact.mu = mu;
     contact.p = floor_impulse[i];
     contact.keep = &floor_impulse[i];
+    contact.stuck = &floor_stuck[i];
     add(contact);
     work.spend(price::kGuard);
   }
@@ -196,6 +198,7 @@ void ContactSet::collect_body(const State& state, const Body& body, int index, d
     contact.mu = body.friction;
     contact.p = keep;
     contact.keep = &keep;
+    contact.stuck = &body_stuck[static_cast<std::size_t>(index) * n + j];
     add(contact);
     work.spend(price::kMeasure + price::kGuard);
   }

@@ -23,6 +23,9 @@ Material material_of(const scene::Scene& scene) noexcept {
   m.stretch_tau_s = r.stretch_damping_s;
   m.drag_per_s = r.air_drag_per_s;
   m.friction = scene.contact.friction;
+  m.static_friction = scene.contact.static_friction.value_or(0.0);
+  m.born_curvature_per_m = r.rest_curvature_per_m;
+  m.born_twist_per_m = r.rest_twist_per_m;
   return m;
 }
 
@@ -101,7 +104,10 @@ Parts parts_of(const scene::Scene& scene) noexcept {
   p.contact = scene.contact.solver != scene::ContactSolver::kNone;
   p.world =
       p.contact && (scene.world.desk_height_m.has_value() || !scene.world.pegs.empty() || scene.world.grippers_collide);
-  p.friction = p.contact && scene.contact.friction > 0.0;
+  p.friction = p.contact && std::max(scene.contact.friction, scene.contact.static_friction.value_or(0.0)) > 0.0;
+  p.turning = p.twist && p.friction && scene.contact.turns_thread;
+  p.roll = p.twist &&
+           (p.turning || scene.suture.rod.rest_curvature_per_m != 0.0 || scene.suture.rod.rest_twist_per_m != 0.0);
   p.adaptive = scene.suture.rod.spacing == scene::Spacing::kAdaptive;
   return p;
 }
@@ -111,8 +117,12 @@ std::variant<Rod, std::string> rod_of(const scene::Scene& scene) {
   if (n < 4) return "suture.nodes: found " + std::to_string(n) + ", the rod model needs 4 or more";
   if (scene.contact.solver == scene::ContactSolver::kPaper)
     return "contact.solver: found \"paper\", the rod model has \"none\" and \"implicit\"";
-  if (scene.contact.static_friction && *scene.contact.static_friction != scene.contact.friction)
-    return "contact.static_friction: the rod model has one coefficient for stick and slip; leave it out";
+  if (scene.suture.rod.GJ_N_m2 == 0.0) {  // without twist a thread has no sides
+    if (scene.suture.rod.rest_curvature_per_m != 0.0)
+      return "suture.rest_curvature_per_m: needs suture.GJ_N_m2 above 0";
+    if (scene.suture.rod.rest_twist_per_m != 0.0) return "suture.rest_twist_per_m: needs suture.GJ_N_m2 above 0";
+    if (scene.contact.turns_thread) return "contact.turns_thread: needs suture.GJ_N_m2 above 0";
+  }
   const int bodies = static_cast<int>(scene.world.pegs.size()) + 2;
   Rod rod(material_of(scene), numerics_of(scene), parts_of(scene), n, bodies);
   State& state = rod.state();

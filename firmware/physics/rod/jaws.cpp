@@ -14,7 +14,7 @@ bool is_held(const State& state, int node) noexcept {
 
 }  // namespace
 
-void Jaws::close(Rod& rod, int node, Vec tool) noexcept {
+void Jaws::close(Rod& rod, int node, Vec tool, const Mat* R_WT) noexcept {
   const State& state = rod.state();
   const auto n = static_cast<int>(state.x.size());
   const auto before = static_cast<std::size_t>(std::max(node - 1, 0));
@@ -23,7 +23,11 @@ void Jaws::close(Rod& rod, int node, Vec tool) noexcept {
   along_ = (1.0 / std::max(norm(chord), 1e-12)) * chord;
   s_m_ = state.mesh.s[static_cast<std::size_t>(node)];
   slipped_m_ = 0.0;
-  hold_[0] = rod.grip(node, settings_.stiffness_N_per_m, settings_.damping_N_s_per_m, tool);
+  turning_ = R_WT != nullptr;
+  roll_hold_ = -1;
+  if (turning_) along_T_ = transposed(*R_WT) * along_;
+  const bool directed = turning_ && settings_.width_m <= 0.0;  // nodes across a width have a direction themselves
+  hold_[0] = rod.grip(node, settings_.stiffness_N_per_m, settings_.damping_N_s_per_m, tool, true, directed);
   count_ = hold_[0] >= 0 ? 1 : 0;
 }
 
@@ -90,8 +94,21 @@ void Jaws::slip(const Rod& rod, Vec tool) noexcept {
   slipped_m_ += over_m;
 }
 
-void Jaws::follow(Rod& rod, Vec tool, std::array<Vec, kMaxHolds>& goals) noexcept {
+// What is held keeps its place in the tool.
+void Jaws::turn(Rod& rod, const Mat& R_WT) noexcept {
+  along_ = R_WT * along_T_;
+  for (int k = 0; k < count_; ++k) {
+    const int h = hold_[static_cast<std::size_t>(k)];
+    const Hold& hold = rod.state().holds[static_cast<std::size_t>(h)];
+    if (!hold.holds_roll && !hold.directed) continue;
+    if (h != roll_hold_) director_T_ = transposed(R_WT) * hold.director, roll_hold_ = h;
+    rod.steer(h, R_WT * director_T_, along_);
+  }
+}
+
+void Jaws::follow(Rod& rod, Vec tool, std::array<Vec, kMaxHolds>& goals, const Mat* R_WT) noexcept {
   if (count_ == 0) return;
+  if (turning_ && R_WT != nullptr) turn(rod, *R_WT);
   if (settings_.width_m > 0.0 || settings_.slip_N > 0.0) {
     slip(rod, tool);
     choose(rod, tool);

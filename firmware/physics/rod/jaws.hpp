@@ -26,10 +26,12 @@ class Jaws {
   Jaws() = default;
   explicit Jaws(const JawSettings& settings) : settings_(settings) {}
 
-  void close(Rod& rod, int node, Vec tool) noexcept;
+  /// @param R_WT  how the tool is turned, nullptr when nobody knows: then the direction stays as it is (width > 0) or
+  /// free, and the thread cannot roll. With it, direction and roll turn as the tool does.
+  void close(Rod& rod, int node, Vec tool, const Mat* R_WT = nullptr) noexcept;
   void open(Rod& rod) noexcept;
   /// Before each tick: the tool will be here at its end. Fills the goals of the holds.
-  void follow(Rod& rod, Vec tool, std::array<Vec, kMaxHolds>& goals) noexcept;
+  void follow(Rod& rod, Vec tool, std::array<Vec, kMaxHolds>& goals, const Mat* R_WT = nullptr) noexcept;
   /// The rod was put back to its start.
   void forget() noexcept { count_ = 0; }
 
@@ -44,12 +46,16 @@ class Jaws {
  private:
   void choose(Rod& rod, Vec tool) noexcept;
   void slip(const Rod& rod, Vec tool) noexcept;
+  void turn(Rod& rod, const Mat& R_WT) noexcept;
 
   JawSettings settings_;
   std::array<int, kMost> hold_{};  // indices into State::holds
   int count_ = 0;
   double s_m_ = 0.0, slipped_m_ = 0.0;
   Vec along_{};
+  bool turning_ = false;
+  int roll_hold_ = -1;            // the one whose director is director_T_
+  Vec along_T_{}, director_T_{};  // in the tool's frame, since the jaws closed
 };
 
 }  // namespace ligature::physics::rod

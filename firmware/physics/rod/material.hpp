@@ -3,7 +3,7 @@
 
 namespace ligature::physics::rod {
 
-/// A round, straight-born, isotropic rod. Constants of a run.
+/// A round, isotropic rod. Constants of a run.
 struct Material {
   double length_m = 0.3;
   double radius_m = 1.5e-4;
@@ -13,8 +13,11 @@ struct Material {
   double GJ_N_m2 = 2.86e-7;     ///< twisting stiffness C
   double stretch_tau_s = 5e-4;  ///< Kelvin-Voigt time: damping force = tau x stiffness x rate
   double bend_tau_s = 2e-3;
-  double drag_per_s = 5.0;  ///< air: a = -c v
-  double friction = 0.3;    ///< Coulomb coefficient, static = kinetic
+  double drag_per_s = 5.0;            ///< air: a = -c v
+  double friction = 0.3;              ///< Coulomb coefficient of what slides
+  double static_friction = 0.0;       ///< of what sticks; the same as friction when that is more
+  double born_curvature_per_m = 0.0;  ///< of the stress-free thread, about a material axis (spin.hpp)
+  double born_twist_per_m = 0.0;      ///< of its material frame, rad/m
 };
 
 /// How a tick is cut and how hard contacts are solved. Every field is a trade of time for accuracy (docs/rod.md).

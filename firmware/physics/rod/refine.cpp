@@ -14,7 +14,6 @@ constexpr double kBendLength = 0.4;  // of sqrt(EI / T)
 constexpr double kGrading = 0.2;
 constexpr double kWorth = 1.5;  // a change must better the worst by this factor
 constexpr int kTries = 4;       // merges looked at for a change, so that a tangle costs no more than that
-constexpr double kFade = 0.8;   // of the stress-free offsets, per tick
 
 // Moves array[from + 1 ..] one place: opens a slot at `at`, or closes it. Sizes stay n: the slot at the end is spare.
 template <class T>

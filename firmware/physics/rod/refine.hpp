@@ -39,6 +39,7 @@ class Refine {
   [[nodiscard]] double unit_m() const noexcept { return unit_m_; }
 
   static constexpr int kLevels = 4;
+  static constexpr double kFade = 0.8;  ///< of the stress-free offsets, per tick
   static constexpr int kChangesPerTick = 6;
 
  private:

@@ -24,7 +24,7 @@ Rod::Rod(const Material& material, const Numerics& numerics, const Parts& parts,
   solver_.resize(n);
   bodies.reserve(static_cast<std::size_t>(body_count));
   if (parts.contact || parts.world) {
-    metric_.reserve(n, kWindow);
+    metric_.reserve(n + 4, kWindow);
     contacts_.reserve(n, body_count, metric_.capacity());
     broad_.reserve(n, static_cast<int>(contacts_.pairs.capacity()));
     motion_.reserve(n);
@@ -33,6 +33,8 @@ Rod::Rod(const Material& material, const Numerics& numerics, const Parts& parts,
     state_.mesh.s[static_cast<std::size_t>(i)] = material.length_m * i / (n - 1);
     state_.x[static_cast<std::size_t>(i)] = make(state_.mesh.s[static_cast<std::size_t>(i)], 0, 0);
   }
+  if (parts.roll) spin_.reserve(n);
+  if (parts.turning) contacts_.reserve_turning();
   if (parts.adaptive) parts_.adaptive = refine_.start(material, 2.0 * material.radius_m, state_);
   moved();
 }
@@ -55,6 +57,7 @@ Rod& Rod::operator=(const Rod& other) {
   forces_ = other.forces_;
   contacts_ = other.contacts_;
   twist_ = other.twist_;
+  spin_ = other.spin_;
   refine_ = other.refine_;
   report_ = other.report_;
   substep_ = other.substep_;
@@ -71,10 +74,11 @@ bool Rod::continue_from(const Rod& other) noexcept {
   state_ = other.state_;
   forces_ = other.forces_;
   twist_ = other.twist_;
+  if (parts_.roll && other.parts_.roll) spin_ = other.spin_;
   refine_ = other.refine_;
   report_ = other.report_;
   pace_m_per_s_ = other.pace_m_per_s_;
-  moved();
+  mesh_changed();
   return true;
 }
 
@@ -84,6 +88,11 @@ void Rod::spread(std::span<const double> curvature_per_m) {
 }
 
 void Rod::moved() noexcept {
+  mesh_changed();
+  if (parts_.roll) spin_.start(material_, state_);
+}
+
+void Rod::mesh_changed() noexcept {
   for (auto& c : state_.mesh.clamp) c = Clamp::kFree;
   for (int h = 0; h < state_.hold_count; ++h) {
     const Hold& hold = state_.holds[static_cast<std::size_t>(h)];
@@ -122,14 +131,24 @@ int Rod::clamp(int node, Vec p, Vec direction) noexcept {
   return h;
 }
 
-int Rod::grip(int node, double stiffness_N_per_m, double damping_N_s_per_m, Vec tool, bool holds_roll) noexcept {
+int Rod::grip(int node, double stiffness_N_per_m, double damping_N_s_per_m, Vec tool, bool holds_roll,
+              bool directed) noexcept {
   Hold hold;
   hold.node = node;
   hold.stiffness_N_per_m = stiffness_N_per_m;
   hold.damping_N_s_per_m = damping_N_s_per_m;
   hold.target = tool;
   const int h = add_hold(hold);
-  if (h >= 0 && parts_.twist && holds_roll) twist_.attach(state_, h);
+  if (h >= 0 && parts_.twist && holds_roll) {
+    twist_.attach(state_, h);
+    if (parts_.roll) spin_.attach(state_, h);
+  }
+  if (h >= 0 && directed) {
+    Hold& held = state_.holds[static_cast<std::size_t>(h)];
+    held.direction = tangent_at(state_, held);
+    held.directed = true;
+    mesh_changed();
+  }
   return h;
 }
 
@@ -139,12 +158,22 @@ void Rod::release(int hold) noexcept {
   const bool directed = h.directed;
   h = Hold{};
   released_ = true;
-  if (directed) moved();
+  if (directed) mesh_changed();
+}
+
+void Rod::steer(int hold, Vec steer, Vec direction) noexcept {
+  Hold& h = state_.holds[static_cast<std::size_t>(hold)];
+  h.steered = true;
+  h.steer = steer;
+  if (h.directed) h.direction = direction;
 }
 
 bool Rod::remesh() noexcept {
-  if (!parts_.adaptive || !refine_.update(material_, state_, forces_, contacts_, bodies, work_)) return false;
-  moved();
+  if (!parts_.adaptive) return false;
+  if (parts_.roll) spin_.before_fading(state_, Refine::kFade);
+  if (!refine_.update(material_, state_, forces_, contacts_, bodies, work_)) return false;
+  mesh_changed();
+  remeshed_ = true;
   refine_.keep_stress(material_, state_);
   return true;
 }
@@ -172,7 +201,13 @@ void Rod::begin_tick(double hand_speed) noexcept {
   work_.start(numerics_.work + (fast ? numerics_.work / 4 : 0));
   look_cost_ = rows_cost_ = 0;
   if (!mesh_held_) report_.remeshes += remesh();
-  if (parts_.twist) twist_.update(material_, state_, forces_);
+  if (parts_.roll) {
+    twist_.carry(state_);
+    spin_.update(material_, state_, forces_, numerics_.tick_s, remeshed_);
+    remeshed_ = false;
+  } else if (parts_.twist) {
+    twist_.update(material_, state_, forces_);
+  }
   pace_m_per_s_ = std::max(hand_speed, pace_m_per_s_ * std::exp(-numerics_.tick_s / kRelax_s));
   letting_go_ = released_;
   released_ = false;

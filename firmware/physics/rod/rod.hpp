@@ -20,6 +20,8 @@ struct Parts {
   bool friction = true;
   bool world = false;     ///< floor and bodies
   bool adaptive = false;  ///< nodes move along the thread to where they are needed
+  bool roll = false;      ///< every segment rolls by itself (spin.hpp): needs twist
+  bool turning = false;   ///< friction turns the thread: needs roll and friction
 };
 
 /// What a tick did. Plain values.
@@ -57,6 +59,10 @@ class Rod {
   [[nodiscard]] Numerics& numerics() noexcept { return numerics_; }
   [[nodiscard]] Twist& twist() noexcept { return twist_; }
   [[nodiscard]] const Twist& twist() const noexcept { return twist_; }
+  [[nodiscard]] const Spin& spin() const noexcept { return spin_; }  ///< with Parts::roll
+  [[nodiscard]] double twist_energy_J() const noexcept {
+    return parts_.roll ? spin_.energy_J(material_, state_) : twist_.energy_J();
+  }
   [[nodiscard]] const Forces& forces() const noexcept { return forces_; }
   [[nodiscard]] const ContactSet& contact_set() const noexcept { return contacts_; }
 
@@ -64,7 +70,8 @@ class Rod {
   /// has not moved yet; positions are the caller's, from state().mesh.s.
   void spread(std::span<const double> curvature_per_m);
 
-  /// After positions, clamps or spacing were changed from outside: constants of the mesh again, contacts forgotten.
+  /// After positions, clamps or spacing were changed from outside: constants of the mesh again, contacts forgotten, the
+  /// thread without twist where every segment rolls by itself.
   void moved() noexcept;
 
   /// The motion, holds and twist of another rod, with this one's material. @return false, and nothing done, when it has
@@ -74,7 +81,8 @@ class Rod {
   /// Holds node: @return index of the hold. @pre fewer than kMaxHolds.
   int support(int node, Vec p) noexcept;
   int clamp(int node, Vec p, Vec direction) noexcept;
-  int grip(int node, double stiffness_N_per_m, double damping_N_s_per_m, Vec tool, bool holds_roll = true) noexcept;
+  int grip(int node, double stiffness_N_per_m, double damping_N_s_per_m, Vec tool, bool holds_roll = true,
+           bool directed = false) noexcept;
   void release(int hold) noexcept;
 
   /// Advances by numerics().tick_s. `goals` are the hold targets at the end of the tick (unmoved holds: their target).
@@ -83,6 +91,9 @@ class Rod {
 
   /// The first verb of a tick, on its own: nodes move along the thread. @return true when some did.
   bool remesh() noexcept;
+  /// A hand that holds roll and turns the thread: from the next tick on the hold's director is along `steer`, and with
+  /// a directed hold its tangent along `direction`.
+  void steer(int hold, Vec steer, Vec direction) noexcept;
   /// Keeps tick() from moving nodes along the thread, until told otherwise. For those who call remesh() themselves.
   void hold_mesh(bool on) noexcept { mesh_held_ = on; }
 
@@ -99,8 +110,10 @@ class Rod {
   bool look(double dt_s) noexcept;
   bool list_is_good(double dt_s) noexcept;
   bool relist(long reserve) noexcept;
-  template <bool Friction>
+  template <unsigned Bits>
   bool settle(double dt_s) noexcept;
+  void mesh_changed() noexcept;
+  [[nodiscard]] bool sticks() const noexcept { return material_.static_friction > material_.friction; }
   struct Allowance {
     long window, rows, passes;  // nodes; work for rows with the least passes; work for rows with all passes
   };
@@ -131,6 +144,7 @@ class Rod {
   ContactSet contacts_;
   BroadPhase broad_;
   Twist twist_;
+  Spin spin_;
   Refine refine_;
   TickReport report_;
   Substep substep_;
@@ -147,6 +161,7 @@ class Rod {
   double tick_travel_m_ = 0.0;  // what the fastest node may have gone since the tick began
   int substep_index_ = 0;
   bool mesh_held_ = false;
+  bool remeshed_ = false;  // nodes moved since the spin was last brought along
   bool released_ = false;  // a hold let go since the last tick
   bool stale_ = true;      // the list must be made again
 };

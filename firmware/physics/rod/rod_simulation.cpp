@@ -14,6 +14,13 @@ constexpr double kReach = 4.0;  // a gripper is a capsule of the thread's radius
 Vec vec(const Vec3& a) noexcept { return make(a.x(), a.y(), a.z()); }
 Vec3 vec3(Vec a) noexcept { return {a[0], a[1], a[2]}; }
 
+// The tool's axes as columns.
+std::optional<Mat> axes_of(const ToolInput& tool) noexcept {
+  if (!tool.R_WT) return std::nullopt;
+  const Eigen::Matrix3d R = tool.R_WT->toRotationMatrix();
+  return Mat{vec(R.col(0)), vec(R.col(1)), vec(R.col(2))};
+}
+
 Jaws jaws_of(const scene::Scene& scene) noexcept {
   const auto& h = scene.hands;
   const double slip_N = h.pinch_force_N ? 2.0 * scene.contact.friction * *h.pinch_force_N : 0.0;  // two jaws
@@ -109,14 +116,16 @@ int RodSimulation::nearest_free(Vec p) const noexcept {
 void RodSimulation::update_grasp(const std::array<ToolInput, 2>& tools) noexcept {
   for (std::size_t h = 0; h < 2; ++h) {
     const Vec tool = vec(tools[h].p_WT);
+    const auto turned = axes_of(tools[h]);
+    const Mat* const R_WT = turned ? &*turned : nullptr;
     if (tools[h].grip && !closed_[h]) {
-      if (const int node = nearest_free(tool); node >= 0) jaws_[h].close(rod_, node, tool);
+      if (const int node = nearest_free(tool); node >= 0) jaws_[h].close(rod_, node, tool, R_WT);
     } else if (!tools[h].grip && jaws_[h].holds()) {
       jaws_[h].open(rod_);
       inside_[h] = true;
     }
     closed_[h] = tools[h].grip;
-    jaws_[h].follow(rod_, tool, goals_);
+    jaws_[h].follow(rod_, tool, goals_, R_WT);
   }
 }
 
@@ -191,7 +200,7 @@ void RodSimulation::publish() noexcept {
   const Energy e = rod_.energy();
   const TickReport& r = rod_.report();
   health_.kinetic_J = e.kinetic_J;
-  health_.potential_J = e.gravity_J + e.stretch_J + e.bend_J + rod_.twist().energy_J();
+  health_.potential_J = e.gravity_J + e.stretch_J + e.bend_J + rod_.twist_energy_J();
   health_.max_stretch = e.max_strain;
   health_.min_gap_m = r.min_gap_m < 1e8 ? r.min_gap_m : std::numeric_limits<double>::infinity();
   health_.contacts = r.contacts;

@@ -10,7 +10,7 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8;
+constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32;
 constexpr int kLeastPasses = 3;  // rows that cannot have these are left out
 constexpr double kSkin = 0.5;    // diameters a list of pairs looks ahead at any speed
 
@@ -72,6 +72,9 @@ bool Rod::look(double dt_s) noexcept {
       contacts_.collect_body(state_, body, b, material_.radius_m, look_m, tick_travel_m_, work_);
     }
   }
+  if constexpr ((Bits & kFriction) != 0) {
+    if (sticks()) contacts_.let_stick(material_.static_friction, state_.v.data());
+  }
   look_cost_ = work_.used() - before;
   return true;
 }
@@ -123,21 +126,24 @@ std::optional<Effort> Rod::choose_rows(double dt_s) noexcept {
 }
 
 // Velocities with contact.
-template <bool Friction>
+template <unsigned Bits>
 bool Rod::settle(double dt_s) noexcept {
+  constexpr bool kRubs = (Bits & kFriction) != 0, kTurns = kRubs && (Bits & kTurning) != 0;
   const auto effort = choose_rows(dt_s);
   if (!effort) return false;
   const int first = contacts_.window_first(), last = contacts_.window_last();
   solver_.factor((first + last) / 2);
   if (contacts_.rows() > 0) {
     prepare_metric(dt_s);
-    contacts_.settle<Friction>(solver_, metric_, numerics_, *effort, dt_s, state_.v.data(), seen_);
+    if constexpr (kTurns) contacts_.turn_with(spin_, state_.nodes() - 1, material_.radius_m);
+    contacts_.settle<kRubs, kTurns>(solver_, metric_, numerics_, *effort, dt_s, state_.v.data(), seen_);
     work_.spend(price::rows(contacts_.rows(), last - first + 1) + seen_.work);
     report_.cut_short += seen_.cut_short;
   } else {
     solver_.solve(first, last, nullptr, state_.v.data(), true);
   }
   contacts_.store();
+  if (kRubs && sticks()) contacts_.note_stuck<kTurns>(state_.v.data());
   solver_.solve_outside(first, last, state_.v.data());
   return true;
 }
@@ -198,14 +204,16 @@ bool Rod::substep(double dt_s) noexcept {
     if (!look<Bits>(dt_s)) return false;
   }
   assemble<(Bits & kTwist) != 0>(material_, state_, gravity, dt_s, forces_, solver_);
+  if constexpr ((Bits & kRoll) != 0) spin_.assemble(material_, state_, forces_, dt_s);
   if (kTouches && !contacts_.contacts().empty()) {
-    if (!settle<(Bits & kFriction) != 0>(dt_s)) return false;
+    if (!settle<Bits>(dt_s)) return false;
   } else {
     const int first = (state_.nodes() - 2) / 2, last = first + 1;
     solver_.factor(first);
     solver_.solve(first, last, nullptr, state_.v.data(), true);
     solver_.solve_outside(first, last, state_.v.data());
   }
+  if constexpr ((Bits & kRoll) != 0) spin_.advance(material_, state_, forces_, dt_s);
   move<Bits>(dt_s);
   return true;
 }
@@ -215,8 +223,15 @@ Rod::Substep Rod::pick(const Parts& parts) noexcept {
     return std::array<Substep, sizeof...(I)>{&Rod::substep<I>...};
   }
   (std::make_index_sequence<16>{});
-  return kTable[(parts.twist ? kTwist : 0) | (parts.contact ? kContact : 0) | (parts.friction ? kFriction : 0) |
-                (parts.world ? kWorld : 0)];
+  const unsigned bits = (parts.contact ? kContact : 0) | (parts.friction ? kFriction : 0) | (parts.world ? kWorld : 0);
+  if (!parts.roll) return kTable[bits | (parts.twist ? kTwist : 0)];
+  static constexpr unsigned kSelf = kTwist | kRoll, kBoth = kTwist | kRoll | kTurning;
+  static constexpr auto kRolls = []<std::size_t... I>(std::index_sequence<I...>) {
+    return std::array<Substep, sizeof...(I)>{
+        &Rod::substep<(I & ~std::size_t{kTwist}) | ((I & kTwist) ? kBoth : kSelf)>...};
+  }
+  (std::make_index_sequence<16>{});
+  return kRolls[bits | (parts.turning ? kTwist : 0)];
 }
 
 }  // namespace ligature::physics::rod

@@ -21,6 +21,8 @@ struct Hold {
   Vec direction{};           ///< unit tangent imposed, when directed
   Vec director{};            ///< unit normal glued to the thread here, when holds_roll
   Vec tangent{};             ///< unit tangent the director belongs to
+  bool steered = false;  ///< the holder turns the thread: the director is what is next to `steer` across the tangent
+  Vec steer{};
 };
 
 inline constexpr int kMaxHolds = 16;

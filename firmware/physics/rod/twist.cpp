@@ -13,13 +13,6 @@ Vec edge(const State& state, int j) noexcept {
   return unit(state.x[k + 1] - state.x[k]);
 }
 
-Vec tangent_at(const State& state, const Hold& hold) noexcept {
-  if (hold.directed) return hold.direction;
-  if (hold.node == 0) return edge(state, 0);
-  if (hold.node == state.nodes() - 1) return edge(state, hold.node - 1);
-  return unit(edge(state, hold.node - 1) + edge(state, hold.node));
-}
-
 // u carried along the centreline from one hold's tangent to another's.
 Vec carried(const State& state, const Hold& from, const Hold& to) noexcept {
   Vec u = from.director, t = from.tangent;
@@ -38,6 +31,13 @@ double angle_about(Vec axis, Vec from, Vec to) noexcept {
 const Hold& hold_of(const State& state, int k) noexcept { return state.holds[static_cast<std::size_t>(k)]; }
 
 }  // namespace
+
+Vec tangent_at(const State& state, const Hold& hold) noexcept {
+  if (hold.directed) return hold.direction;
+  if (hold.node == 0) return edge(state, 0);
+  if (hold.node == state.nodes() - 1) return edge(state, hold.node - 1);
+  return unit(edge(state, hold.node - 1) + edge(state, hold.node));
+}
 
 double Twist::raw_turn(const State& state, int from, int to) const noexcept {
   const Hold& b = hold_of(state, to);
@@ -92,16 +92,20 @@ void Twist::detach(State& state, int hold) noexcept {
   --count_;
 }
 
-void Twist::update(const Material& material, State& state, Forces& forces) noexcept {
-  energy_J_ = 0.0;
-  for (auto& m : forces.twist_moment) m = 0.0;
+void Twist::carry(State& state) const noexcept {
   for (int k = 0; k < count_; ++k) {
     Hold& h = state.holds[static_cast<std::size_t>(order_[static_cast<std::size_t>(k)])];
     const Vec now = tangent_at(state, h);
-    h.director = transport(h.director, h.tangent, now);
-    h.director = unit(h.director - dot(h.director, now) * now);
+    const Vec u = h.steered ? h.steer : transport(h.director, h.tangent, now);
+    h.director = unit(u - dot(u, now) * now);
     h.tangent = now;
   }
+}
+
+void Twist::update(const Material& material, State& state, Forces& forces) noexcept {
+  energy_J_ = 0.0;
+  for (auto& m : forces.twist_moment) m = 0.0;
+  carry(state);
   for (int k = 0; k + 1 < count_; ++k) {
     const auto at = static_cast<std::size_t>(k);
     const Hold& a = hold_of(state, order_[at]);

@@ -22,6 +22,9 @@ class Twist {
   /// Turns a hold's director about its tangent by angle_rad (a gripper that rolls the thread).
   static void roll(Hold& hold, double angle_rad) noexcept;
 
+  /// Directors of all holds go along with their tangents, or with the hand that steers them.
+  void carry(State& state) const noexcept;
+
   /// Once a tick: carries directors along with the tangents, measures every span and writes M into forces.
   /// O(n), no allocation. Valid while no span turns half a revolution in a tick.
   void update(const Material& material, State& state, Forces& forces) noexcept;
@@ -40,6 +43,9 @@ class Twist {
   int count_ = 0;
   double energy_J_ = 0.0;
 };
+
+/// Unit tangent of the thread where it is held.
+[[nodiscard]] Vec tangent_at(const State& state, const Hold& hold) noexcept;
 
 /// The least rotation that takes unit a to unit b, applied to u.
 [[nodiscard]] inline Vec transport(Vec u, Vec a, Vec b) noexcept {

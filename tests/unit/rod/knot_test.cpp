@@ -142,8 +142,10 @@ TEST(RodScene, RefusesWhatItCannotDo) {  // one line, which key, what is allowed
   EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(few)));
   auto paper = load("suture-3-0.toml", {"contact.solver=\"paper\""});
   EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(paper)));
-  auto two_coefficients = load("suture-3-0.toml", {"contact.static_friction=0.5"});
-  EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(two_coefficients)));
+  for (const char* key : {"contact.turns_thread=true", "suture.rest_curvature_per_m=20", "suture.rest_twist_per_m=1"}) {
+    auto no_sides = load("suture-3-0.toml", {"suture.GJ_N_m2=0", key});  // a thread without twist has none
+    EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(no_sides))) << key;
+  }
 }
 
 }  // namespace

@@ -54,6 +54,20 @@ TEST(GripperScript, RefusesABadRowByItsLine) {
   EXPECT_NE(std::get<Error>(load_gripper_script("no/such.csv")).text.find("cannot be read"), std::string::npos);
 }
 
+TEST(GripperScript, HandsThatTurnHaveThreeColumnsMore) {
+  const std::string header = "time,hand,x,y,z,grip,turn_x,turn_y,turn_z\n";
+  const auto read = load_gripper_script(write(header + "0,L,0,0,0,1,0,0,0\n2,L,0,0,0,1,720,0,-90\n"));
+  ASSERT_TRUE(std::holds_alternative<GripperScript>(read)) << std::get<Error>(read).text;
+  const auto& script = std::get<GripperScript>(read);
+  EXPECT_TRUE(script.turns);
+  EXPECT_EQ(sample(script.keys[0], 1.0).turn_deg, (Vec{360.0, 0.0, -45.0}));
+  EXPECT_EQ(sample(script.keys[0], 9.0).turn_deg, (Vec{720.0, 0.0, -90.0}));
+  const auto bad = load_gripper_script(write(header + "0,L,0,0,0,1,0,x,0\n"));
+  EXPECT_NE(std::get<Error>(bad).text.find(":2: column 'turn_y': found 'x'"), std::string::npos);
+  const auto plain = load_gripper_script(write("time,hand,x,y,z,grip\n0,L,0,0,0,1\n"));
+  EXPECT_FALSE(std::get<GripperScript>(plain).turns);
+}
+
 TEST(GripperScript, AByteOrderMarkIsNoData) {
   const auto read = load_gripper_script(write("\xEF\xBB\xBFtime,hand,x,y,z,grip\n0,L,0,0,0,1\n"));
   EXPECT_TRUE(std::holds_alternative<GripperScript>(read));
