@@ -38,14 +38,14 @@ class Meter {
 
  private:
   /// A few ticks from the same state, several times over.
-  void try_shape(const std::vector<physics::Vec3>& shape) {
-    auto start = shape;
+  void try_shape(const Shape& shape) {
+    auto start = shape.p_W;
     for (auto& p : start) p += 0.02 * scene_.suture.radius_m * random_vector();
     std::array<double, kTicksPerShape> least_us{};
     least_us.fill(1e12);
     for (int repeat = 0; repeat < kRepeats; ++repeat) {
       thread_.reset();
-      if (!start.empty()) thread_.set_state(start, {});
+      if (!start.empty()) thread_.set_state(start, shape.v_W);
       for (double& least : least_us) {
         const auto tools = grips();
         cold_();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <utility>
 
 namespace ligature::app {
 namespace {
@@ -25,6 +27,12 @@ std::vector<Vec3> corners(double length_m, double spacing_m) {
   return path;
 }
 
+Vec3 normal_vector(std::mt19937& random) {
+  std::normal_distribution<double> normal(0.0, 1.0);
+  const double x = normal(random), y = normal(random), z = normal(random);
+  return {x, y, z};
+}
+
 }  // namespace
 
 std::vector<Vec3> wound_up(int nodes, double l_rest_m, double spacing_m, const Vec3& centre_W_m) {
@@ -46,15 +54,37 @@ std::vector<Vec3> wound_up(int nodes, double l_rest_m, double spacing_m, const V
   return p_W;
 }
 
-std::vector<std::vector<Vec3>> worst_shapes(const scene::Scene& scene) {
-  const double l_rest_m = scene.suture.length_m / (scene.suture.nodes - 1);
-  const double touching_m = 2.0 * scene.suture.radius_m;
+std::vector<Vec3> crumpled(int nodes, double l_rest_m, double ball_m, const Vec3& centre_W_m, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<Vec3> p_W;
+  Vec3 at = Vec3::Zero(), along = Vec3::UnitX();
+  for (int i = 0; i < nodes; ++i) {
+    p_W.push_back(centre_W_m + at);
+    along += 0.6 * normal_vector(random) - (0.6 * at.norm() / (ball_m * ball_m)) * at;
+    along.normalize();
+    at += l_rest_m * along;
+  }
+  return p_W;
+}
+
+std::vector<Shape> worst_shapes(const scene::Scene& scene) {
+  const auto& s = scene.suture;
+  const double l_rest_m = s.length_m / (s.nodes - 1), diameter_m = 2.0 * s.radius_m;
   const auto& fixed = scene.world.fixed;
   const Vec3 centre_W_m = fixed.empty() ? Vec3(0.0, 0.0, 1.0)
                                         : Vec3(fixed[0].position_m[0], fixed[0].position_m[1], fixed[0].position_m[2]);
-  std::vector<std::vector<Vec3>> shapes{{}};
-  for (const double pressed : {1.0, 0.9, 0.7, 0.5})
-    shapes.push_back(wound_up(scene.suture.nodes, l_rest_m, pressed * touching_m, centre_W_m));
+  std::vector<Shape> shapes{{}};
+  for (const double pressed : {1.5, 1.2, 1.05, 1.0, 0.9, 0.7, 0.5})
+    shapes.push_back({wound_up(s.nodes, l_rest_m, pressed * diameter_m, centre_W_m), {}});
+  unsigned seed = 1;
+  for (const double ball_diameters : {6.0, 20.0}) {
+    for (const double thrown_m_per_s : {0.0, 0.2, 1.0}) {
+      Shape shape{crumpled(s.nodes, l_rest_m, ball_diameters * diameter_m, centre_W_m, ++seed), {}};
+      std::mt19937 random(seed);
+      for (int i = 0; i < s.nodes; ++i) shape.v_W.push_back(thrown_m_per_s / std::sqrt(3.0) * normal_vector(random));
+      shapes.push_back(std::move(shape));
+    }
+  }
   return shapes;
 }
 

@@ -14,7 +14,18 @@ namespace ligature::app {
 [[nodiscard]] std::vector<physics::Vec3> wound_up(int nodes, double l_rest_m, double spacing_m,
                                                   const physics::Vec3& centre_W_m);
 
-/// All shapes to try for a scene, from touching to crushed. An empty one means: as the scene begins.
-[[nodiscard]] std::vector<std::vector<physics::Vec3>> worst_shapes(const scene::Scene& scene);
+/// A ball of thread: a random walk that is drawn back to its middle, so that everything is near everything.
+/// @param ball_m its radius, about. @return n positions at distance `l_rest_m` from one to the next.
+[[nodiscard]] std::vector<physics::Vec3> crumpled(int nodes, double l_rest_m, double ball_m,
+                                                  const physics::Vec3& centre_W_m, unsigned seed);
+
+/// Where a tick may begin.
+struct Shape {
+  std::vector<physics::Vec3> p_W;  ///< empty: as the scene begins
+  std::vector<physics::Vec3> v_W;  ///< empty: at rest
+};
+
+/// All shapes to try for a scene: wound from nearly touching to crushed, crumpled at rest and flying apart.
+[[nodiscard]] std::vector<Shape> worst_shapes(const scene::Scene& scene);
 
 }  // namespace ligature::app

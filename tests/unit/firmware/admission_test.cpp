@@ -31,13 +31,20 @@ TEST(WorstCase, AWoundThreadKeepsItsNodesAndIsAsDenseAsAsked) {
   EXPECT_LT(closest_m, 0.13);
 }
 
+TEST(WorstCase, ACrumpledThreadIsABallOfItsLength) {
+  const auto p_W = crumpled(300, 0.1, 1.0, {0.0, 0.0, 1.0}, 1);
+  ASSERT_EQ(p_W.size(), 300U);
+  for (std::size_t i = 1; i < p_W.size(); ++i) EXPECT_NEAR((p_W[i] - p_W[i - 1]).norm(), 0.1, 1e-12);
+  for (const auto& p : p_W) EXPECT_LT((p - physics::Vec3(0.0, 0.0, 1.0)).norm(), 3.0);
+}
+
 TEST(WorstCase, PressedTogetherItFillsTheContactLists) {
   const auto scene = paper(50);
   auto thread = std::get<physics::Simulation>(physics::Simulation::make(scene));
   int most = 0;
   for (const auto& shape : worst_shapes(scene)) {
     thread.reset();
-    if (!shape.empty()) thread.set_state(shape, {});
+    if (!shape.p_W.empty()) thread.set_state(shape.p_W, shape.v_W);
     thread.tick({});
     most = std::max(most, thread.diagnostics().contacts);
   }
