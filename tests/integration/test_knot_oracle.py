@@ -13,6 +13,7 @@ import unittest
 
 import numpy as np
 
+import knot_diagrams as diagrams
 import knot_shapes as shapes
 
 HOST = pathlib.Path(os.environ["LIGATURE_BIN"]) / "ligature-host"
@@ -74,6 +75,19 @@ class Oracle(unittest.TestCase):
             self.assertEqual(name(shapes.turned(shapes.doubled_trefoil(60, twist), rng), True, self.folder), ("0_1", "none"))
         for _ in range(4):
             self.assertEqual(name(shapes.turned(shapes.smooth_unknot(rng, 200), rng), True, self.folder), ("0_1", "none"))
+
+    def test_the_published_hard_unknots(self):
+        rng = np.random.default_rng(23)
+        for who, diagram in diagrams.HARD_UNKNOTS.items():
+            for outer in range(3):  # seen from three sides
+                line = diagrams.drawn(diagram, outer)
+                line = shapes.turned(shapes.refined(line, int(rng.integers(1, 8))), rng)
+                self.assertEqual(name(line, True, self.folder), ("0_1", "none"), who)
+                self.assertEqual(name(shapes.mirrored(shapes.opened(line, rng)), False, self.folder), ("0_1", "none"), who)
+
+    def test_a_drawn_diagram_is_its_knot(self):
+        rolfsen_7_6 = [(1, 4, 2, 5), (3, 8, 4, 9), (5, 12, 6, 13), (9, 1, 10, 14), (13, 11, 14, 10), (11, 6, 12, 7), (7, 2, 8, 3)]
+        self.assertEqual(name(diagrams.drawn(rolfsen_7_6), True, self.folder), ("7_6", "left"))  # its writhe is -3
 
     def test_random_polygons_are_what_topoly_calls_them_or_unknown(self):
         try:
