@@ -222,7 +222,7 @@ class Disk(InForce):
 class Admission(InForce):
     @row("a scene whose worst tick does not fit", "`run` refuses with exit 3 and the largest that would; nothing is started")
     def test_what_does_not_fit_is_refused(self):
-        refused = run("ligature-firmware", "run", "--scene", "scenes/paper.toml", "--left", "local:/nowhere/l", "--right", "local:/nowhere/r", "--budget", 1)
+        refused = run("ligature-firmware", "run", "--scene", "scenes/paper.toml", "--left", "local:/nowhere/l", "--right", "local:/nowhere/r", "--budget", 10)
         self.assertEqual(refused.returncode, 3, refused.stderr)
         self.assertRegex(refused.stderr, r"does not fit: found \d+ us .* allowed \d+; largest suture.nodes that would: ")
 
