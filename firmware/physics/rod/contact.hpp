@@ -153,11 +153,12 @@ class ContactSet {
   /// room to note all that is near.
   [[nodiscard]] double safe_fraction(const Motion& motion, const Vec* v, double dt_s) const noexcept;
 
-  /// After a substep whose contacts did not settle: largest alpha <= 1 with which no row overlaps by more than 0.3 of
-  /// its distance of touch, or hardly more than it did. Else a jam would burst within a few substeps; so it waits.
+  /// After a substep whose contacts did not settle: largest alpha <= 1 with which no row begins to overlap, or overlaps
+  /// by hardly more than it did. Else a jam would burst within a few substeps; so it waits.
   [[nodiscard]] double unsettled_fraction(const Vec* v, double dt_s) const noexcept;
 
-  /// The same for every pair of a list made at these positions and velocities.
+  /// The same for every pair on the list, by the least distance it can have: what it had when last measured, less what
+  /// it may have gone since.
   [[nodiscard]] double safe_fraction_of_pairs(const Motion& motion, const Vec* v, double dt_s) const noexcept;
 
   [[nodiscard]] const std::vector<Contact>& contacts() const noexcept { return contacts_; }

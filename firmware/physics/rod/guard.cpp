@@ -46,7 +46,10 @@ double ContactSet::safe_fraction(const Motion& motion, const Vec* v, double dt_s
 
 double ContactSet::safe_fraction_of_pairs(const Motion& motion, const Vec* v, double dt_s) const noexcept {
   Share share{v, dt_s};
-  for (const auto& pair : pairs) share.pair(pair.a, pair.b, pair.due + pair.reach_m, motion);
+  for (const auto& pair : pairs) {
+    const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+    share.pair(pair.a, pair.b, std::max(0.0, pair.due - motion.gone(a, b) + pair.reach_m), motion);
+  }
   return share.least;
 }
 

@@ -125,7 +125,7 @@ class Rod {
   void move(double dt_s) noexcept;
   template <unsigned Bits>
   double guard(double dt_s) noexcept;
-  double guard_unlisted(double dt_s) noexcept;
+  double guard_unseen(double dt_s) noexcept;
   double brake(double dt_s) noexcept;
 
   /// @return the speed of the faster hand.

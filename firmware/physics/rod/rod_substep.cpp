@@ -148,17 +148,23 @@ bool Rod::settle(double dt_s) noexcept {
   return true;
 }
 
-// What pairs that are not listed may do: listed ones are known after another look, else all are held back together.
-double Rod::guard_unlisted(double dt_s) noexcept {
+// After a jerk, such as a release, pairs that nobody measured in this substep may meet: those on the list are held to
+// what is known of them, the others to what the list has looked ahead; or all to a new list, when there is work for it.
+double Rod::guard_unseen(double dt_s) noexcept {
   const double diameter = 2.0 * material_.radius_m, unseen = 0.9 * (diameter * BroadPhase::kLeastReach + near_m_);
-  if (!motion_.outran(unseen, dt_s)) return 1.0;
-  const double within = motion_.share_within(diameter * (kSkin + 0.9 * BroadPhase::kLeastReach), horizon_s_, dt_s);
-  if (within == 1.0) return 1.0;
+  const double ahead_m = diameter * (kSkin + 0.9 * BroadPhase::kLeastReach);
+  double share = motion_.share_within(ahead_m, horizon_s_, dt_s);
+  if (share == 1.0 && !motion_.outran(unseen, dt_s)) return 1.0;
+  const long listed = price::kGuard * static_cast<long>(contacts_.pairs.size());
+  if (work_.left() < listed) return 0.0;
+  work_.spend(listed);
+  share = std::min(share, contacts_.safe_fraction_of_pairs(motion_, state_.v.data(), dt_s));
   const long reserve = price::kGuard * static_cast<long>(contacts_.pairs.capacity());
-  if (work_.left() < reserve + work_.budget() / 4) return within;
+  if (share == 1.0 || work_.left() < reserve + work_.budget() / 4) return share;
   if (!relist(reserve)) return 0.0;
   work_.spend(price::kGuard * static_cast<long>(contacts_.pairs.size()));
-  return contacts_.safe_fraction_of_pairs(motion_, state_.v.data(), dt_s);
+  return std::min(contacts_.safe_fraction_of_pairs(motion_, state_.v.data(), dt_s),
+                  motion_.share_within(ahead_m, horizon_s_, dt_s));
 }
 
 // Velocities that never settled must not press a jam ever tighter: the thread is as slow as it may move.
@@ -175,7 +181,7 @@ template <unsigned Bits>
 double Rod::guard(double dt_s) noexcept {
   motion_.measure(state_.v.data());
   double share = contacts_.safe_fraction(motion_, state_.v.data(), dt_s);
-  if constexpr ((Bits & kContact) != 0) share = std::min(share, guard_unlisted(dt_s));
+  if constexpr ((Bits & kContact) != 0) share = std::min(share, guard_unseen(dt_s));
   report_.guard_events += share < 1.0;
   const double slow = seen_.cut_short ? brake(dt_s) : 1.0;  // slowed velocities have moved less already
   report_.time_lost += (1.0 - std::min(share, slow)) / report_.substeps;

@@ -83,7 +83,7 @@ TEST(Work, NoStateCostsMoreThanTheBudget) {  // 154 and 500 nodes, at rest and t
   }
 }
 
-TEST(Work, TwoThousandPairsAreWatchedAndNoneCrosses) {  // one substep a tick, so that every step is checked
+TEST(Work, NothingCrossesInACrumpledBall) {  // one substep a tick, so that every step is checked
   Numerics numerics;
   numerics.tick_s = 6.25e-5;
   numerics.substeps = numerics.max_substeps = 1;
@@ -98,7 +98,7 @@ TEST(Work, TwoThousandPairsAreWatchedAndNoneCrosses) {  // one substep a tick, s
     pairs = std::max(pairs, seen.pairs);
     given_up += seen.ticks_given_up;
   }
-  EXPECT_GT(pairs, 1500);
+  EXPECT_GT(pairs, 500);
   EXPECT_GT(given_up, 0);
 }
 
