@@ -132,11 +132,14 @@ std::variant<Rod, std::string> rod_of(const scene::Scene& scene) {
   for (const auto& peg : scene.world.pegs) {
     rod.bodies.push_back({vec(peg.from_m), vec(peg.to_m), peg.radius_m, Vec{}, scene.contact.friction});
   }
-  if (scene.suture.initial_polyline_m.size() < 2) {
+  const auto& line = scene.suture.initial_polyline_m;
+  if (line.size() < 2) {
     hang(scene, state);
+  } else if (static_cast<int>(line.size()) == n && scene.suture.rod.spacing == scene::Spacing::kUniform) {
+    for (std::size_t i = 0; i < line.size(); ++i) state.x[i] = vec(line[i]);  // node by node, stretched or not
   } else {
-    rod.spread(curvature_of(scene.suture.initial_polyline_m));
-    lay_along(scene.suture.initial_polyline_m, state);
+    rod.spread(curvature_of(line));
+    lay_along(line, state);
   }
   const auto mesh_node = [&](int node) {  // scenes number nodes as if equally spaced
     const int k = node < 0 ? n - 1 : node;
