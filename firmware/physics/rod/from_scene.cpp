@@ -80,7 +80,6 @@ Numerics numerics_of(const scene::Scene& scene) noexcept {
     case scene::Accuracy::kFast:
       n.substeps = 10;
       n.max_substeps = 16;
-      n.settled_m_per_s = 1e-3;
       break;
     case scene::Accuracy::kBalanced:
       break;
