@@ -18,8 +18,7 @@ struct Visit {
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// All visits in the order of the thread; the edge that joins the ends is
-/// nearest to the eye.
+/// All visits in the order of the thread; the edge that joins the ends is nearest to the eye.
 std::vector<Visit> visits(std::span<const Vec3> p, const Vec3& eye) {
   const Vec3 right = eye.unitOrthogonal(), up = eye.cross(right);
   const std::size_t n = p.size();

@@ -54,8 +54,7 @@ std::variant<KnotTier, std::string> KnotTier::make(const scene::Scene& scene, co
   }
   for (const auto& f : scene.world.fixed)
     if (f.node == 0) return KnotTier(scene, *knot, workplace_of(scene, vec(f.position_m)), seed);
-  return "world.fixed: node 0 is not held; the operators tie a thread that "
-         "hangs from its first node";
+  return "world.fixed: node 0 is not held; the operators tie a thread that hangs from its first node";
 }
 
 KnotTier::KnotTier(const scene::Scene& scene, const Knot& knot, const Workplace& place, std::uint32_t seed)
@@ -80,8 +79,7 @@ KnotTier::KnotTier(const scene::Scene& scene, const Knot& knot, const Workplace&
   ticks_a_look_ = std::max(1, static_cast<int>(std::lround(kLook_s / tick_s_)));
 }
 
-/// The plan from here on, with moments of rest that differ from person to
-/// person.
+/// The plan from here on, with moments of rest that differ from person to person.
 void KnotTier::lay_out(Moves moves) {
   plan_.clear();
   next_ = 0;

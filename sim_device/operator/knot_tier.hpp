@@ -26,20 +26,16 @@ class Dice {
   std::mt19937 random_;
 };
 
-/// Ties one knot with two hands. Seeds differ in where the hands start, how
-/// fast they are, when they begin, how long they dwell and how they tremble
-/// (8-12 Hz). It looks 100 times a second; between looks the hands go on. What
-/// went wrong before anything was drawn tight is let go, hangs out, and is
-/// begun again, three times at most.
+/// Ties one knot with two hands. Seeds differ in where the hands start, how fast they are, when they begin, how long
+/// they dwell and how they tremble (8-12 Hz). It looks 100 times a second; between looks the hands go on. What went
+/// wrong before anything was drawn tight is let go, hangs out, and is begun again, three times at most.
 class KnotTier {
  public:
-  /// @return or why not: an unknown knot, or a scene in which node 0 is not
-  /// held.
+  /// @return or why not: an unknown knot, or a scene in which node 0 is not held.
   static std::variant<KnotTier, std::string> make(const scene::Scene& scene, const std::string& knot,
                                                   std::uint32_t seed);
 
-  /// One tick: what both hands want now. @param sight may be older than now;
-  /// nothing is assumed about how much.
+  /// One tick: what both hands want now. @param sight may be older than now; nothing is assumed about how much.
   const std::array<HandWish, 2>& tick(const Sight& sight);
 
   [[nodiscard]] const std::array<HandWish, 2>& wish() const noexcept { return wish_; }

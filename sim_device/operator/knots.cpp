@@ -33,21 +33,18 @@ WhereAlong the_end() {
   return [](const Look& look) { return look.thread.length_m(); };
 }
 
-/// How a single knot is laid out: where the left hand takes the thread (share
-/// of its length), how much of that it stretches, in which direction from the
-/// anchor, and where the end goes round it (share of the standing part).
+/// How a single knot is laid out: where the left hand takes the thread (share of its length), how much of that it
+/// stretches, in which direction from the anchor, and where the end goes round it (share of the standing part).
 struct Layout {
   double corner, stretch;
   Vec3 way;
   double turn;
 };
 
-/// An overhand's standing part runs straight down to the left. A figure-eight's
-/// is led level to its corner and sags: a turn that is not yet locked stays in
-/// the belly instead of slipping over the corner while the end crosses the
-/// loop.
+/// An overhand's standing part runs straight down to the left. A figure-eight's is led level to its corner and sags: a
+/// turn that is not yet locked stays in the belly instead of slipping over the corner while the end crosses the loop.
 Layout layout_of(const Throw& t) {
-  if (t.against) return {0.403, 0.866, Vec3(-1.0, 0.0, 0.0), 0.49};
+  if (t.against) return {0.403, 0.866, -Vec3::UnitX(), 0.49};
   return {0.4, 0.96, kSlant, 0.5};
 }
 

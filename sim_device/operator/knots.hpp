@@ -19,9 +19,8 @@ struct Knot {
   double least_diameters = 0.0;  ///< the thread must be so many diameters long
 };
 
-/// Those that are tied reliably. A surgeon's knot is a first throw of two
-/// turns, 5_1, and a second of one turn, a trefoil of the other hand: their sum
-/// 3_1#5_1, as the throws of a square knot are 3_1#3_1 of either hand
+/// Those that are tied reliably. A surgeon's knot is a first throw of two turns, 5_1, and a second of one turn, a
+/// trefoil of the other hand: their sum 3_1#5_1, as the throws of a square knot are 3_1#3_1 of either hand
 /// (amphichiral).
 [[nodiscard]] std::span<const Knot> knots();
 [[nodiscard]] std::optional<Knot> knot_named(std::string_view name);

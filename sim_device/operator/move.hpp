@@ -12,8 +12,7 @@
 
 namespace ligature::sim {
 
-/// The thread's world in the operator's measure. All lengths of a knot are
-/// multiples of these.
+/// The thread's world in the operator's measure. All lengths of a knot are multiples of these.
 struct Workplace {
   Vec3 anchor_W = Vec3::Zero();  ///< where node 0 is held
   double length_m = 1.0;
@@ -31,8 +30,7 @@ struct Look {
   std::array<MovingHand, 2>& hands;
   double in_move_s = 0.0;  ///< since the move began
 
-  /// The hand is where it was sent, to within `near_m`, in intention and in
-  /// fact.
+  /// The hand is where it was sent, to within `near_m`, in intention and in fact.
   [[nodiscard]] bool has_arrived(std::size_t hand, double near_m) const {
     return hands[hand].to_go_m() < near_m &&
            (sight.tool_W[hand] - hands[hand].p_W()).norm() < near_m + place.clearance_m;
@@ -44,8 +42,7 @@ struct Move {
   std::string name;
   std::function<bool(const Look&)> act;
   double patience_s = 15.0;  ///< after that the operator goes on, done or not
-  /// Asked when the move has ended: did it do what it was for? If not, the
-  /// operator lets go and begins again.
+  /// Asked when the move has ended: did it do what it was for? If not, the operator lets go and begins again.
   std::function<bool(const Look&)> good{};
 };
 

@@ -70,8 +70,7 @@ Move carry(std::size_t hand, std::string name, Where where, double near, double 
           }};
 }
 
-/// As carry, but to where the place was when the move began: a ring that the
-/// hand drags along cannot be chased.
+/// As carry, but to where the place was when the move began: a ring that the hand drags along cannot be chased.
 Move carry_straight(std::size_t hand, std::string name, Where where, double near) {
   auto goal = std::make_shared<std::optional<Vec3>>();
   return {std::move(name), [=](const Look& look) {
@@ -120,8 +119,7 @@ double Loop::angle_of(const Look& look, const Vec3& p_W) const {
   return std::atan2(to.dot(up_), to.dot(front_));
 }
 
-/// Angle gone through from one place of the working part to another; in steps
-/// that are short beside the distance.
+/// Angle gone through from one place of the working part to another; in steps that are short beside the distance.
 double Loop::wind(const Look& look, double from, double to) const {
   double sum = 0.0, before = angle_of(look, look.thread.at(from));
   const double finest = 0.1 * look.place.diameter_m;
@@ -146,8 +144,7 @@ void Loop::look(const Look& look) {
   const double last = far_ < 0.0 ? corner_s_ + 0.6 * (end - corner_s_) : std::min(far_ + reach, end);
   for (double w = first; w < last; w += step)
     if (const double r = apart(w); r > most) most = r, far_ = w;
-  // X is where it first comes to the standing part: a turn further on may lie
-  // as near.
+  // X is where it first comes to the standing part: a turn further on may lie as near.
   for (double w = far_; w < end - 0.7 * look.place.clearance_m; w += step) {
     const double r = apart(w);
     if (least < look.place.diameter_m * 2.0 && r > 4.0 * look.place.diameter_m) break;
@@ -170,12 +167,10 @@ constexpr double kTurn = 2.0 * 3.14159265358979323846;
 struct Orbit {
   double wound;        ///< until the end is wound by this
   double slack = 0.0;  ///< from the top on: so many clearances further out ..
-  double back = 0.0;   ///< .. and this share of the thread nearer to the anchor,
-                       ///< so that the end trails loosely
+  double back = 0.0;   ///< .. and this share of the thread nearer to the anchor, so that the end trails loosely
 };
 
-/// Just short of the loop on the side from which the end goes through it:
-/// behind; or once more round and in front.
+/// Just short of the loop on the side from which the end goes through it: behind; or once more round and in front.
 Orbit orbit_of(const Throw& t) { return t.against ? Orbit{1.07 * kTurn, 0.9, 0.048} : Orbit{0.88 * kTurn}; }
 
 Move orbit(std::shared_ptr<Loop> loop, WhereAlong s, const Orbit& o) {
@@ -201,8 +196,7 @@ Where beside_centre(std::shared_ptr<Loop> loop, double way) {
   };
 }
 
-/// A place on the line from X through the loop's centre, `way` clearances off
-/// the loop's plane against the turn.
+/// A place on the line from X through the loop's centre, `way` clearances off the loop's plane against the turn.
 Where across_loop(std::shared_ptr<Loop> loop, double share, double way) {
   return [=](const Look& look) -> Vec3 {
     loop->look(look);
@@ -228,11 +222,9 @@ Moves lay_turn(std::shared_ptr<Loop> loop, const Throw& t, WhereAlong s) {
 
 namespace {
 
-/// The moves by which the end goes through the loop; in the sense of the turn,
-/// or against it.
+/// The moves by which the end goes through the loop; in the sense of the turn, or against it.
 Moves step_through(std::shared_ptr<Loop> loop, const Throw& t) {
-  if (t.against) {  // the end drags the loop along; where it is passed moves on
-                    // until the end is in front of it
+  if (t.against) {  // the end drags the loop along; where it is passed moves on until the end is in front of it
     return {carry(kRightHand, "before the loop", across_loop(loop, 1.17, -1.2), 0.5),
             carry_straight(kRightHand, "through", across_loop(loop, 1.17, 3.1), 0.5)};
   }

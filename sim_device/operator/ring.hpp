@@ -7,8 +7,7 @@
 
 namespace ligature::sim {
 
-/// A closed polygon in space and the disc it spans, taken as the fan of
-/// triangles from its centre.
+/// A closed polygon in space and the disc it spans, taken as the fan of triangles from its centre.
 class Ring {
  public:
   /// @param points three or more, in order; the last is joined to the first.
@@ -16,8 +15,7 @@ class Ring {
 
   /// Mean of the edge, weighted by length, m.
   [[nodiscard]] const Vec3& centre() const noexcept { return centre_; }
-  /// Unit normal of the area vector A = 1/2 sum (p_k - c) x (p_k+1 - c): thumb
-  /// of a right hand that follows the ring.
+  /// Unit normal of the area vector A = 1/2 sum (p_k - c) x (p_k+1 - c): thumb of a right hand that follows the ring.
   [[nodiscard]] const Vec3& normal() const noexcept { return normal_; }
   /// |A|, m^2: what is left of the hole when it is looked at along the normal.
   [[nodiscard]] double area_m2() const noexcept { return area_m2_; }
