@@ -24,6 +24,8 @@ Words words_of(const std::string& name) {
   if (name == "session") return {"", kSessionMeaning, "integer"};
   if (name == "node") return {"", "number of the node along the thread, from 0", "integer"};
   if (name.ends_with("_device_f_N")) return {"N", "magnitude of the force commanded to the device", "number"};
+  if (name.ends_with("_world_f_N"))
+    return {"N", "magnitude of the thread's force on the hand in world units: its tension there", "number"};
   return {"m", "position of the node in the world frame W (x right, y away, z up)", "number"};
 }
 

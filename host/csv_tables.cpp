@@ -24,8 +24,9 @@ std::string forces_header() {
   std::string header = "tick,t_s";
   for (const auto hand_name : kHandNames) {
     const std::string hand(hand_name);
-    header += xyz(hand, "device_f", "_N") + "," + hand + "_device_f_N" + xyz(hand, "world_f", "_N") + "," + hand +
-              "_grip," + hand + "_node";
+    for (const char* force : {"device_f", "world_f"})
+      header += xyz(hand, force, "_N") + "," + hand + "_" + force + "_N";
+    header += "," + hand + "_grip," + hand + "_node";
   }
   return header + ",state,fault,flags,session\n";
 }
@@ -33,7 +34,8 @@ std::string forces_header() {
 const std::string& forces_row(CsvRow& row, const ligature_msg::tick_t& tick, double t_s, int session) {
   row.add(tick.tick).add(t_s);
   for (std::size_t hand = 0; hand < 2; ++hand) {
-    row.add_all(tick.f_device_N[hand]).add(magnitude(tick.f_device_N[hand])).add_all(tick.f_world_N[hand]);
+    for (const auto* force : {&tick.f_device_N[hand], &tick.f_world_N[hand]})
+      row.add_all(*force).add(magnitude(*force));
     row.add(static_cast<int>(tick.grip[hand])).add(tick.grasped_node[hand]);
   }
   return row.add(static_cast<int>(tick.state)).add(tick.fault).add(tick.flags).add(session).finish();
@@ -46,6 +48,7 @@ std::string forces_columns_help() {
          "                                     axes x right, y away, z up; + pushes the hand along the axis\n"
          "  HAND_device_f_N                    its magnitude, N\n"
          "  HAND_world_f_x_N, _y_N, _z_N       force of the thread on the hand in world units, before force_scale, N\n"
+         "  HAND_world_f_N                     its magnitude: the thread's tension at the hand, N\n"
          "  HAND_grip, HAND_node               grip button 0/1; thread node held, -1 none\n"
          "  state                              0 OFF 1 CALIBRATE 2 IDLE 3 ENGAGE 4 FORCE 5 BRAKE 6 FAULT\n"
          "  fault                              latched fault number, 0 none\n"

@@ -29,6 +29,8 @@ class LogReader {
   /// @return the next whole event, nullptr at the end.
   const LogEvent* next();
 
+  [[nodiscard]] std::int64_t offset() const { return offset_; }  ///< bytes read
+  [[nodiscard]] std::int64_t size() const { return size_; }      ///< bytes in all
   [[nodiscard]] std::int64_t events() const { return events_; }
   [[nodiscard]] std::int64_t skipped_bytes() const { return skipped_bytes_; }  ///< between sound events
   [[nodiscard]] bool is_truncated() const { return tail_bytes_ > 0; }          ///< the last event is cut off

@@ -4,6 +4,7 @@
 
 #include "host/errors.hpp"
 #include "host/log_reader.hpp"
+#include "host/progress.hpp"
 #include "host/stop_signal.hpp"
 #include "host/thread_knot.hpp"
 
@@ -94,8 +95,10 @@ double LogSummary::knot_first_s() const {
 LogSummary summarise(const std::string& log_path, double knot_every_s) {
   Summariser summariser(read_rig_facts(log_path), knot_every_s);
   LogReader log(log_path);
+  Progress progress("reading");
   while (const LogEvent* event = log.next()) {
     summariser.take(*event);
+    progress.show(log.offset(), log.size());
     if (stop_requested()) throw RunFailed("stopped by a signal");
   }
   summariser.finish();

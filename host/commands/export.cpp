@@ -1,8 +1,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <initializer_list>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "host/commands.hpp"
@@ -12,6 +14,16 @@
 #include "host/export.hpp"
 
 namespace ligature::host {
+namespace {
+
+void refuse_twins(std::initializer_list<std::string> targets) {
+  std::set<std::filesystem::path> seen;
+  for (const auto& target : targets)
+    if (!target.empty() && !seen.insert(std::filesystem::absolute(target).lexically_normal()).second)
+      throw BadInput("export: found '" + target + "' for two tables, allowed a file of its own for each");
+}
+
+}  // namespace
 
 void add_export(CLI::App& app) {
   struct Options {
@@ -41,6 +53,7 @@ void add_export(CLI::App& app) {
       throw BadInput(
           "export: found nothing to write, allowed one or more of --forces, --shape, --ticks, --hdf5, --mcap");
     for (const auto& target : targets) refuse_same_file(options->log, target);
+    refuse_twins(targets);
     const auto result = export_recording(options->log, options->targets);
     if (!result.damage.empty())
       std::fprintf(stderr, "ligature-host: %s: %s\n", options->log.c_str(), result.damage.c_str());

@@ -62,7 +62,7 @@ TEST_F(Export, ForcesStandInTheColumnsOfTheirNames) {
   const auto lines = test::lines_of(folder_.file("f.csv"));
   EXPECT_TRUE(lines[0].starts_with(
       "tick,t_s,left_device_f_x_N,left_device_f_y_N,left_device_f_z_N,left_device_f_N,"
-      "left_world_f_x_N,left_world_f_y_N,left_world_f_z_N,left_grip,left_node,right_device_f_x_N"));
+      "left_world_f_x_N,left_world_f_y_N,left_world_f_z_N,left_world_f_N,left_grip,left_node,right_device_f_x_N"));
   EXPECT_TRUE(lines[4].starts_with("3,0.006,0.30000000000000004,-4,0,4.01123422402")) << lines[4];
   EXPECT_NE(lines[4].find(",0,17,"), std::string::npos);
 }

@@ -1,0 +1,43 @@
+#include "host/progress.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+namespace ligature::host {
+namespace {
+
+constexpr auto kQuietFor = std::chrono::seconds(1);
+constexpr auto kEvery = std::chrono::milliseconds(250);
+
+}  // namespace
+
+Progress::Progress(const char* what, std::FILE* out, bool on, Clock::time_point start)
+    : what_(what), out_(out), is_on_(on), start_(start), shown_(start) {}
+
+Progress::Progress(const char* what) : Progress(what, stderr, isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() {
+  if (has_line_) std::fputs("\r\033[K", out_);
+}
+
+void Progress::show(std::int64_t done, std::int64_t whole, Clock::time_point now) {
+  if (!is_on_ || now - start_ < kQuietFor || now - shown_ < kEvery || whole <= 0) return;
+  shown_ = now;
+  has_line_ = true;
+  const double share = std::clamp(static_cast<double>(done) / static_cast<double>(whole), 0.0, 1.0);
+  const double passed_s = std::chrono::duration<double>(now - start_).count();
+  std::fprintf(out_, "\r%s: %.0f %%", what_, 100.0 * share);
+  if (share > 0.02) std::fprintf(out_, ", about %.0f s more", passed_s * (1.0 - share) / share);
+  std::fputs("\033[K", out_);
+  std::fflush(out_);
+}
+
+void Progress::say(const char* step) {
+  if (!is_on_) return;
+  has_line_ = true;
+  std::fprintf(out_, "\r%s: %s\033[K", what_, step);
+  std::fflush(out_);
+}
+
+}  // namespace ligature::host

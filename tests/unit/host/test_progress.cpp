@@ -1,0 +1,45 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+
+#include "host/progress.hpp"
+
+namespace ligature::host {
+namespace {
+
+using std::chrono::milliseconds;
+
+class ProgressLine : public ::testing::Test {
+ protected:
+  ~ProgressLine() override { std::fclose(out_); }
+  std::string written() {
+    std::rewind(out_);
+    std::array<char, 500> text{};
+    return {text.data(), std::fread(text.data(), 1, text.size(), out_)};
+  }
+  std::FILE* out_ = std::tmpfile();
+  Progress::Clock::time_point start_{};
+};
+
+TEST_F(ProgressLine, SaysHowFarAndHowLongAndWipesItself) {
+  {
+    Progress progress("export", out_, true, start_);
+    progress.show(10, 100, start_ + milliseconds(900));  // short work says nothing
+    progress.show(25, 100, start_ + milliseconds(2000));
+    progress.show(26, 100, start_ + milliseconds(2100));  // not that often
+  }
+  EXPECT_EQ(written(), "\rexport: 25 %, about 6 s more\033[K\r\033[K");
+}
+
+TEST_F(ProgressLine, IsSilentWhereNobodyWatches) {
+  {
+    Progress progress("export", out_, false, start_);
+    progress.show(50, 100, start_ + milliseconds(5000));
+    progress.say("last step");
+  }
+  EXPECT_EQ(written(), "");
+}
+
+}  // namespace
+}  // namespace ligature::host
