@@ -11,7 +11,9 @@ namespace ligature::host::view {
 namespace {
 
 void add_address(CLI::App& command, ServerOptions& server) {
-  command.add_option("--port", server.port, "TCP port; 0 takes any free one")->capture_default_str();
+  command.add_option("--port", server.port, "TCP port; 0 takes any free one")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
   command.add_option("--listen", server.listen, "address to listen on; 127.0.0.1 is seen by this machine alone")
       ->capture_default_str();
 }

@@ -169,7 +169,9 @@ Server::Server(const ServerOptions& options, const Access& access, const Picture
   if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
   if (error)
     throw RunFailed("cannot listen on " + options.listen + ":" + std::to_string(options.port) + ": " + error.message() +
-                    "; remedy: another --port, or end the view that runs there");
+                    (error == asio::error::address_in_use  ? "; remedy: another --port, or end the view that runs there"
+                     : error == asio::error::access_denied ? "; remedy: a --port of 1024 or more"
+                                                           : "; remedy: an address that this machine has (ip addr)"));
 }
 
 Server::~Server() = default;
