@@ -85,7 +85,7 @@ const steps = {
     rig.tell('clutch 1');
     rig.tell('degrade 2');
     await until(page, () => /clutch: tool parked · limited: peak force, passivity/.test(document.getElementById('hand-left').textContent));
-    await page.getByText('solver: contact list full: shallowest left out').waitFor();
+    await page.getByText('solver: too many contacts: shallowest only guarded').waitFor();
     await page.click('#change-open');
     await page.locator('[data-command="unclutch left"]').waitFor();
     await page.click('#change-close');
@@ -207,14 +207,14 @@ const steps = {
     await page.close();
   },
   'a recording replays: scrubbing, labels, events, and values equal to the exported ones': async () => {
-    const log = join(out, 'run.lcmlog'), forces = join(out, 'forces.csv');
+    const log = join(out, 'run.lcmlog'), forces = join(out, 'forces.csv'), ticks = join(out, 'ticks.csv');
     rig.tell('unknot');
     const recorder = new Program(host, ['record', '--out', log, '--force', '--duration', '6', '--quiet']);
     await new Promise((resolve) => setTimeout(resolve, 2000));
     rig.tell('fault 11');
     rig.tell('knot');
     await recorder.ended();
-    execFileSync(host, ['export', log, '--forces', forces]);
+    execFileSync(host, ['export', log, '--forces', forces, '--ticks', ticks]);
     replay = new Program(host, ['replay', log, '--port', '0']);
     page = await browser.open(await replay.says(/open (\S+)/));
     await page.waitForFunction(() => ligature.firstThread_ms);
@@ -230,24 +230,29 @@ const steps = {
     await until(page, () => document.getElementById('knot-name').dataset.type === '0_1' && document.getElementById('state').dataset.state === 'IDLE');
     const rows = await page.evaluate(() => { const r = []; for (let i = ligature.store.rowBegin; i < ligature.store.rowEnd; ++i) r.push([...ligature.store.row(i)]); return r; });
     assert.ok(rows.length > 500);
-    compare(rows, forces);
+    const columns = await page.evaluate(() => ligature.columns);
+    compare(rows, columns, forces, ticks);
     await page.screenshot({ path: join(out, 'replay.png') });
     // What the cursor reads is the exported number, too.
     await page.click('#windows button[value="1"]');
     const box = await page.locator('.plot .u-over').first().boundingBox();
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
     await until(page, () => document.getElementById('cursor').dataset.row);
-    compare([JSON.parse(await page.locator('#cursor').getAttribute('data-row')).map(Number)], forces);
+    await page.selectOption('#third', 'passivity');
+    await until(page, () => { const c = document.getElementById('cursor'); return c.dataset.row && c.textContent.includes(`passivity: left ${JSON.parse(c.dataset.row)[ligature.columns.indexOf('leftPort_J')]} J`); });
+    await page.selectOption('#third', 'tick time');
+    await page.mouse.move(box.x + box.width / 2 + 3, box.y + box.height / 2);
+    compare([JSON.parse(await page.locator('#cursor').getAttribute('data-row')).map(Number)], columns, forces, ticks);
   },
   'another recording is drawn dashed over it, with its own exported values': async () => {
-    const forces = join(out, 'other.csv');
-    execFileSync(host, ['export', join(out, 'page.lcmlog'), '--forces', forces]);
+    const forces = join(out, 'other.csv'), ticks = join(out, 'other-ticks.csv');
+    execFileSync(host, ['export', join(out, 'page.lcmlog'), '--forces', forces, '--ticks', ticks]);
     await page.selectOption('#compare', 'page.lcmlog');
     await page.waitForFunction(() => ligature.traces.isComparing && ligature.beside.rowEnd > ligature.beside.rowBegin + 500);
     await page.click('#windows button[value="10"]');
     await page.waitForFunction(() => ligature.traces.plots.every(({ plot }) => plot.series.at(-1).show && plot.data.at(-1).some((v) => v !== null && v !== undefined)));
     const rows = await page.evaluate(() => { const r = []; for (let i = ligature.beside.rowBegin; i < ligature.beside.rowEnd; ++i) r.push([...ligature.beside.row(i)]); return r; });
-    compare(rows, forces);
+    compare(rows, await page.evaluate(() => ligature.columns), forces, ticks);
     await page.screenshot({ path: join(out, 'compare.png') });
     await page.selectOption('#compare', '');
     await page.waitForFunction(() => !ligature.traces.isComparing);
@@ -256,16 +261,33 @@ const steps = {
   },
 };
 
-/** Tick and both magnitudes of each row against the exported file, as the numbers that both mean. */
-function compare(rows, file) {
+/** The exported column of each of the page's (host/view/page/frame.js), hand by hand. */
+function exportedNames() {
+  const names = { wakeup_ns: 'wakeup_latency_ns', maxStretch: 'max_stretch', minGap_m: 'min_gap_m' };
+  for (const same of ['control_ns', 'execution_ns', 'flags', 'state', 'fault', 'kinetic_J', 'potential_J', 'contacts', 'degradation']) names[same] = same;
+  const ofHand = { X: 'device_f_x_N', Y: 'device_f_y_N', Z: 'device_f_z_N', '': 'device_f_N', World: 'world_f_N', Node: 'node', Port_J: 'port_energy_J',
+    Dissipated_J: 'dissipated_J', BusLoad: 'bus_load', Heat: 'heat', Limits: 'limits', Clutch: 'clutch' };
+  for (const hand of ['left', 'right'])
+    for (const [ours, theirs] of Object.entries(ofHand)) names[hand + ours] = `${hand}_${theirs}`;
+  return names;
+}
+
+function table(file) {
   const [head, ...lines] = readFileSync(file, 'utf8').trim().split('\n').map((line) => line.split(','));
-  const column = (name) => head.indexOf(name);
-  const exported = new Map(lines.map((line) => [Number(line[column('tick')]), line]));
+  return { head, lines: new Map(lines.map((line) => [Number(line[0]), line])) };
+}
+
+/** Every column of each row that the page shows against the exported files, as the numbers that both mean: to the last bit. */
+function compare(rows, columns, ...files) {
+  const tables = files.map(table), names = exportedNames();
+  assert.deepEqual(columns.filter((name) => name !== 'tick' && !names[name]), [], 'columns without an exported one');
   for (const row of rows) {
-    const line = exported.get(row[0]);
-    assert.ok(line, `tick ${row[0]} is not in the export`);
-    const names = ['left_device_f_x_N', 'left_device_f_y_N', 'left_device_f_z_N', 'left_device_f_N', 'right_device_f_x_N', 'right_device_f_y_N', 'right_device_f_z_N', 'right_device_f_N'];
-    names.forEach((name, i) => assert.equal(row[1 + i], Number(line[column(name)]), `${name} of tick ${row[0]}`));
+    columns.forEach((name, i) => {
+      const wanted = name === 'tick' ? 'tick' : names[name], from = tables.find(({ head }) => head.includes(wanted));
+      const line = from?.lines.get(row[0]);
+      assert.ok(line, `${wanted} of tick ${row[0]} is not in the export`);
+      assert.equal(row[i], Number(line[from.head.indexOf(wanted)]), `${wanted} of tick ${row[0]}`);
+    });
   }
 }
 

@@ -16,6 +16,7 @@ import time
 import lcm
 from ligature_msg import ack_t, command_t, event_t, offer_t, parameter_t, status_t, thread_t, tick_batch_t, tick_t
 
+STATES = ["OFF", "CALIBRATE", "IDLE", "ENGAGE", "FORCE", "BRAKE", "FAULT"]
 KNOT_NODES, RADIUS_M = 120, 0.03
 COMMANDS = {1: "arm", 2: "disarm", 3: "stop", 4: "reset-fault", 5: "reset-thread", 6: "load-scene", 7: "set"}
 SCENE = """[suture]
@@ -97,7 +98,7 @@ class Rig:
 
     def go_to(self, state):
         if state != self.state:
-            self.event(1, state, f"state {self.state} -> {state}")
+            self.event(1, state, f"{STATES[self.state]} -> {STATES[state]}")
         self.state, self.armed = state, state in (3, 4)
 
     def event(self, kind, code, text, hand=-1):

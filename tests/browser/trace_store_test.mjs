@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import { C, TICKS_PER_BIN, WIDTH, readFrame } from '../../host/view/page/frame.js';
 import { TraceStore } from '../../host/view/page/trace_store.js';
+import { commonName } from '../../host/view/page/knot_panel.js';
 
 function rows(first, count, value = () => 0) {
   const block = new Float64Array(count * WIDTH);
@@ -65,4 +66,11 @@ test('what is no frame is refused', () => {
   cut.setUint32(8, 3, true);
   cut.setUint32(12, 800, true);
   assert.throws(() => readFrame(cut.buffer), /cut-off/);
+});
+
+test('knots have the names that people give them, in the words of the recogniser', () => {
+  assert.equal(commonName('3_1#3_1', 'amphichiral'), 'square (reef)');
+  assert.equal(commonName('3_1#3_1', 'left'), 'granny');
+  assert.equal(commonName('4_1', 'amphichiral'), 'figure-eight');
+  assert.equal(commonName('7_4', 'right'), '');
 });

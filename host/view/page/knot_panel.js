@@ -1,7 +1,9 @@
 // The knot's name, what is known of it, and the strip of when it changed.
 const $ = (id) => document.getElementById(id);
 const COMMON = { '0_1': 'no knot', '3_1': 'trefoil (overhand)', '4_1': 'figure-eight', '5_1': 'cinquefoil', '5_2': 'three-twist', '6_1': 'stevedore',
-  '3_1#3_1 left': 'granny', '3_1#3_1 right': 'granny', '3_1#3_1 mixed': 'square (reef)' };
+  '3_1#3_1 left': 'granny', '3_1#3_1 right': 'granny', '3_1#3_1 amphichiral': 'square (reef)' };
+/** What people call it, or ''. */
+export function commonName(type, handedness) { return COMMON[`${type} ${handedness}`] ?? COMMON[type] ?? ''; }
 const TINTS = ['#56b4e9', '#e69f00', '#2fbf8f', '#cc79a7', '#f0e442', '#d55e00'];
 const STRIP_S = 120;
 
@@ -22,7 +24,7 @@ export class KnotPanel {
     name.dataset.handedness = knot.handedness;
     name.innerHTML = knot.type.split('#').map((part) => part.replace(/_(\d+)/, '<sub>$1</sub>')).join(' # ');
     const hand = ['left', 'right'].includes(knot.handedness) ? `${knot.handedness}-handed` : knot.handedness === 'none' ? '' : knot.handedness;
-    const common = COMMON[`${knot.type} ${knot.handedness}`] ?? COMMON[knot.type] ?? '';
+    const common = commonName(knot.type, knot.handedness);
     const least = knot.type === 'unknown' ? null : knot.type.split('#').reduce((sum, part) => sum + (part === '0_1' ? 0 : parseInt(part, 10)), 0);
     $('knot-note').textContent = [hand, common, knot.type === '0_1' || knot.crossings === null ? '' : `crossings ${knot.crossings}${least === null ? '' : ` (least ${least})`}`,
       knot.core_diameters ? `tightness: ${knot.core_diameters.toFixed(0)} diameters of thread` : ''].filter(Boolean).join(' · ');

@@ -1,4 +1,5 @@
 // Wires the page: frames in, panels and pictures out.
+import { COLUMNS } from './frame.js';
 import { Link } from './link.js';
 import { Scene } from './scene.js';
 import { SCALE_CSS } from './colouring.js';
@@ -16,11 +17,11 @@ const $ = (id) => document.getElementById(id);
 const store = new TraceStore(), beside = new TraceStore(), scene = new Scene($('canvas')), knots = new KnotPanel();
 const latest = { now: null, shape: null, knot: null, epoch: null, isReplay: false, isNew: false };
 const events = [];
-const page = { frames: 0, draws: 0, firstThread_ms: null, latest, store, beside, scene }; // what tests and the curious look at
+const page = { frames: 0, draws: 0, firstThread_ms: null, latest, store, beside, scene, columns: COLUMNS }; // what tests and the curious look at
 window.ligature = page;
 
 const traces = new Traces($('plots'), store, (row) => {
-  $('cursor').textContent = describeRow(row, traces.period_s, traces.besideRow(row));
+  $('cursor').textContent = describeRow(row, traces.period_s, traces.third, traces.besideRow(row));
   $('cursor').dataset.row = row ? JSON.stringify([...row].map((v) => (Object.is(v, -0) ? '-0' : v))) : ''; // JSON knows no -0
 });
 traces.beside = { store: beside, offset_ticks: null, name: '' };

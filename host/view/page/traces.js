@@ -5,18 +5,18 @@ import { stateName } from './names.js';
 import { drawHistogram } from './histogram.js';
 
 export const WINDOWS_S = [1, 5, 10, 30, 60, 300, 600];
-/** What the third plot can show: two columns, a factor to the unit, least height. */
+/** What the third plot can show: two columns and their names, their SI unit, a factor to the unit drawn, least height. */
 export const THIRD = {
-  'tick time': { columns: [C.execution_ns, C.control_ns], factor: 1e-3, unit: 'µs: whole, control only', least: 100, isTime: true },
-  tension: { columns: [C.leftWorld, C.rightWorld], factor: 1, unit: 'N, of the thread at the left hand; grey right', least: 1 },
-  passivity: { columns: [C.leftPort_J, C.rightPort_J], factor: 1000, unit: 'mJ, account of the device port: left; grey right', least: 1 },
-  'taken out': { columns: [C.leftDissipated_J, C.rightDissipated_J], factor: 1000, unit: 'mJ, by the passivity controller: left; grey right', least: 1 },
-  'bus load': { columns: [C.leftBusLoad, C.rightBusLoad], factor: 100, unit: '% of a period: left; grey right', least: 100 },
-  'motor heat': { columns: [C.leftHeat, C.rightHeat], factor: 100, unit: '% of the continuous limit: left; grey right', least: 100 },
-  energy: { columns: [C.potential_J, C.kinetic_J], factor: 1, unit: 'J: potential, kinetic', least: 1e-3 },
-  stretch: { columns: [C.maxStretch, C.maxStretch], factor: 100, unit: '%, of the longest edge', least: 0.1 },
-  gap: { columns: [C.minGap_m, C.minGap_m], factor: 1000, unit: 'mm, smallest of the thread with itself; below zero: overlap', least: 1 },
-  contacts: { columns: [C.contacts, C.contacts], factor: 1, unit: 'number in action', least: 4 },
+  'tick time': { names: ['whole', 'control'], si: 'ns', columns: [C.execution_ns, C.control_ns], factor: 1e-3, unit: 'µs: whole, control only', least: 100, isTime: true },
+  tension: { names: ['left', 'right'], si: 'N', columns: [C.leftWorld, C.rightWorld], factor: 1, unit: 'N, of the thread at the left hand; grey right', least: 1 },
+  passivity: { names: ['left', 'right'], si: 'J', columns: [C.leftPort_J, C.rightPort_J], factor: 1000, unit: 'mJ, account of the device port: left; grey right', least: 1 },
+  'taken out': { names: ['left', 'right'], si: 'J', columns: [C.leftDissipated_J, C.rightDissipated_J], factor: 1000, unit: 'mJ, by the passivity controller: left; grey right', least: 1 },
+  'bus load': { names: ['left', 'right'], si: '', columns: [C.leftBusLoad, C.rightBusLoad], factor: 100, unit: '% of a period: left; grey right', least: 100 },
+  'motor heat': { names: ['left', 'right'], si: '', columns: [C.leftHeat, C.rightHeat], factor: 100, unit: '% of the continuous limit: left; grey right', least: 100 },
+  energy: { names: ['potential', 'kinetic'], si: 'J', columns: [C.potential_J, C.kinetic_J], factor: 1, unit: 'J: potential, kinetic', least: 1e-3 },
+  stretch: { names: ['longest edge'], si: '', columns: [C.maxStretch, C.maxStretch], factor: 100, unit: '%, of the longest edge', least: 0.1 },
+  gap: { names: ['smallest'], si: 'm', columns: [C.minGap_m, C.minGap_m], factor: 1000, unit: 'mm, smallest of the thread with itself; below zero: overlap', least: 1 },
+  contacts: { names: ['in action'], si: '', columns: [C.contacts, C.contacts], factor: 1, unit: 'number in action', least: 4 },
 };
 const FORCES = [C.left, C.leftX, C.leftY, C.leftZ, C.right, C.rightX, C.rightY, C.rightZ];
 const BESIDE = 14; // where the other recording's columns begin in the data
@@ -28,7 +28,7 @@ const GREY = '#9aa6b6';
 export class Traces {
   /** @param onCursor called with the row under the cursor, or null. */
   constructor(host, store, onCursor) {
-    Object.assign(this, { host, store, onCursor, window_s: 10, period_s: 1e-3, limit_N: null, end: null, components: false, third: THIRD['tick time'] });
+    Object.assign(this, { host, store, onCursor, window_s: 10, period_s: 1e-3, limit_N: null, end: null, components: false, third: { title: 'tick time', ...THIRD['tick time'] } });
     this.plots = [
       this.#plot('left force', 'N', [0, 1, 2, 3], '#56b4e9', 0),
       this.#plot('right force', 'N', [4, 5, 6, 7], '#e69f00', 1),
@@ -128,7 +128,7 @@ export class Traces {
   }
 
   showThird(name) {
-    this.third = THIRD[name];
+    this.third = { title: name, ...THIRD[name] };
     this.plots[2].title = name;
     this.#writeTitles();
   }
@@ -199,11 +199,12 @@ function niceRange(low, high, least) {
   return [bottom, top];
 }
 
-/** One line with the exact values of a tick: the shortest digits that are read back as the same number. */
-export function describeRow(row, period_s, other) {
+/** The exact values of a tick, SI, in the shortest digits that are read back as the same number: the exported ones. */
+export function describeRow(row, period_s, third, other) {
   if (!row) return '';
   const beside = other ? ` · other: left ${other[C.left]} N, right ${other[C.right]} N` : '';
-  const fault = row[C.fault] ? ` · fault ${row[C.fault]}` : '';
+  const fault = row[C.fault] ? ` fault ${row[C.fault]}` : '';
+  const more = third.names.map((name, i) => `${name} ${row[third.columns[i]]}${third.si && ` ${third.si}`}`).join(', ');
   return `t ${(row[C.tick] * period_s).toFixed(3)} s · left ${row[C.left]} N · right ${row[C.right]} N · `
-    + `tick ${row[C.tick]}: ${(row[C.execution_ns] / 1000).toFixed(1)} µs, ${stateName(row[C.state])}${fault}${beside}`;
+    + `tick ${row[C.tick]} ${stateName(row[C.state])}${fault} · ${third.title}: ${more}${beside}`;
 }
