@@ -50,10 +50,11 @@ struct Contact {
 /// What happened in a substep or, summed by the caller, in a tick.
 struct ContactReport {
   int passes = 0;
-  long work = 0;           ///< of the passes
-  bool cut_short = false;  ///< they ended before the contacts had settled
-  double min_gap_m = 1e9;  ///< of thread-thread contacts before the substep
-  int rows_left_out = 0;   ///< contacts that were only guarded: no room, or no work left for them
+  long work = 0;                ///< of the passes
+  bool cut_short = false;       ///< they ended before the contacts had settled
+  double change_m_per_s = 0.0;  ///< of a velocity in the last pass, or more
+  double min_gap_m = 1e9;       ///< of thread-thread contacts before the substep
+  int rows_left_out = 0;        ///< contacts that were only guarded: no room, or no work left for them
 };
 
 /// How hard the contacts of a substep are worked on.

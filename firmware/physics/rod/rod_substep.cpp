@@ -11,8 +11,9 @@ namespace ligature::physics::rod {
 namespace {
 
 constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32;
-constexpr int kLeastPasses = 3;  // rows that cannot have these are left out
-constexpr double kSkin = 0.5;    // diameters a list of pairs looks ahead at any speed
+constexpr double kWild_m_per_s = 1e-3;  // change of a last pass above which velocities are not trusted
+constexpr int kLeastPasses = 3;         // rows that cannot have these are left out
+constexpr double kSkin = 0.5;           // diameters a list of pairs looks ahead at any speed
 
 /// How far ahead a list looks at today's speeds, in ticks, and the share of the tick's work it may cost. Too much is
 /// near? Then look less far, again the sooner.
@@ -183,7 +184,8 @@ double Rod::guard(double dt_s) noexcept {
   double share = contacts_.safe_fraction(motion_, state_.v.data(), dt_s);
   if constexpr ((Bits & kContact) != 0) share = std::min(share, guard_unseen(dt_s));
   report_.guard_events += share < 1.0;
-  const double slow = seen_.cut_short ? brake(dt_s) : 1.0;  // slowed velocities have moved less already
+  const bool wild = seen_.cut_short && seen_.change_m_per_s > kWild_m_per_s;
+  const double slow = wild ? brake(dt_s) : 1.0;  // slowed velocities have moved less already
   report_.time_lost += (1.0 - std::min(share, slow)) / report_.substeps;
   return std::min(1.0, share / std::max(slow, 1e-9));
 }
