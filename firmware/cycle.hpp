@@ -15,6 +15,7 @@
 #include "firmware/physics/simulation.hpp"
 #include "firmware/rt/cycle_timing.hpp"
 #include "firmware/rt/outlets.hpp"
+#include "firmware/rt/period.hpp"
 
 namespace ligature {
 
@@ -41,7 +42,7 @@ concept Bus = requires(B b, Nanoseconds deadline, const rt::RigCommand& command)
 template <Bus BusT, Clock ClockT>
 class Cycle {
  public:
-  static constexpr Nanoseconds kPeriod = std::chrono::milliseconds(1);
+  static constexpr Nanoseconds kPeriod = rt::kPeriod;
   /// From SYNC; the bus needs at most 460 us for SYNC and TPDOs, and 285 for the RPDOs before the next SYNC.
   static constexpr Nanoseconds kTpdoWait = std::chrono::microseconds(680);
   static constexpr std::int64_t kTicksPerShape = 8;

@@ -25,6 +25,12 @@ std::optional<std::int8_t> command_kind(std::string_view word) {
   if (word == "reset-thread") return Command::KIND_RESET_THREAD;
   if (word == "load-scene") return Command::KIND_LOAD_SCENE;
   if (word == "set") return Command::KIND_SET_PARAMETER;
+  if (word == "clutch left") return Command::KIND_CLUTCH_LEFT;
+  if (word == "unclutch left") return Command::KIND_UNCLUTCH_LEFT;
+  if (word == "clutch right") return Command::KIND_CLUTCH_RIGHT;
+  if (word == "unclutch right") return Command::KIND_UNCLUTCH_RIGHT;
+  if (word == "park") return Command::KIND_PARK;
+  if (word == "calibrate") return Command::KIND_CALIBRATE;
   return std::nullopt;
 }
 
@@ -36,8 +42,9 @@ std::chrono::seconds answer_time(std::int8_t kind) {
 void send(std::string_view word, const std::string& text, double value, const std::string& lcm_url) {
   const auto kind = command_kind(word);
   if (!kind)
-    throw BadInput("send: found '" + std::string(word) +
-                   "', allowed arm, disarm, stop, reset-fault, reset-thread, load-scene, set");
+    throw BadInput(
+        "send: found '" + std::string(word) +
+        "', allowed arm, disarm, stop, reset-fault, reset-thread, clutch, unclutch, park, calibrate, load-scene, set");
   Command command{};
   command.utime = command.id = now_us();
   command.kind = *kind;

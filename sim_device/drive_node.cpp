@@ -94,9 +94,11 @@ void DriveNode::on_nmt(const can::NmtMessage& message, Time now, std::vector<can
 
 void DriveNode::on_sync(const Sensed& sensed, std::vector<can::Frame>& out) {
   if (objects_.is_pdo_on(can::Pdo::kTpdo1)) {
-    const auto buttons = can::profile::with_life(sensed.buttons, ++life_);
-    out.push_back(can::encode(id_, can::Tpdo1{statusword(), sensed.position_counts, torque_permille_, buttons}));
+    const auto buttons = can::profile::with_life(can::profile::with_held(sensed.buttons, held_syncs_), ++life_);
+    const std::int16_t made = sensed.guarded ? sensed.torque_permille : torque_permille_;
+    out.push_back(can::encode(id_, can::Tpdo1{statusword(sensed.guarded), sensed.position_counts, made, buttons}));
   }
+  held_syncs_ = has_received_ ? 0 : held_syncs_ + (held_syncs_ < 31);
   if (has_received_) {
     has_received_ = false;
     act_on(received_, out);
@@ -196,9 +198,9 @@ void DriveNode::take_torque_away() noexcept {
   is_limited_ = false;
 }
 
-std::uint16_t DriveNode::statusword() const noexcept {
+std::uint16_t DriveNode::statusword(bool guarded) const noexcept {
   unsigned word = cia402::statusword_of(state_) | cia402::kVoltageEnabledBit | cia402::kRemoteBit;
-  if (is_limited_) word |= cia402::kInternalLimitBit;
+  if (is_limited_ || guarded) word |= cia402::kInternalLimitBit;
   if (state_ == State::kOperationEnabled) word |= cia402::kFollowsTargetBit;
   return static_cast<std::uint16_t>(word);
 }

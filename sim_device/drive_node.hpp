@@ -19,6 +19,8 @@ namespace ligature::sim {
 struct Sensed {
   std::int32_t position_counts = 0;
   std::uint16_t buttons = 0;
+  bool guarded = false;              ///< the power stage keeps the torque below what is asked, to spare the winding
+  std::int16_t torque_permille = 0;  ///< that it lets through then
 };
 
 struct DriveStats {
@@ -62,7 +64,7 @@ class DriveNode {
   void act_on(const can::Rpdo1& rpdo, std::vector<can::Frame>& out);
   void trip(std::uint16_t code, std::vector<can::Frame>& out);
   void take_torque_away() noexcept;
-  [[nodiscard]] std::uint16_t statusword() const noexcept;
+  [[nodiscard]] std::uint16_t statusword(bool guarded = false) const noexcept;
   [[nodiscard]] bool is_operational() const noexcept { return nmt_ == can::NmtState::kOperational; }
 
   can::NodeId id_;
@@ -74,6 +76,7 @@ class DriveNode {
   can::Rpdo1 acting_;          ///< taken over from received_ at SYNC
   std::int16_t torque_permille_ = 0;
   std::uint8_t life_ = 0;  // of the buttons
+  int held_syncs_ = 0;     // the acting torque's RPDO is so many SYNCs older than it should be
   bool is_limited_ = false;
   Deadline rpdo_watch_, master_watch_, own_heartbeat_;
   DriveStats stats_;

@@ -1,6 +1,7 @@
 #include "sim_device/hand_device.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace ligature::sim {
@@ -36,7 +37,11 @@ void HandDevice::hear(const Transmission& heard) {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     if (static_cast<int>(i) == heard.sender) continue;
     const bool stylus = can::profile::has_stylus_buttons(drives_[i].id());
-    const Sensed sensed{mechanics_.counts(static_cast<int>(i)), stylus ? mechanics_.buttons() : std::uint16_t{0}};
+    const auto joint = static_cast<Eigen::Index>(i);
+    const double per_permille = mechanics_.body().drives.torque_Nm(1);
+    const Sensed sensed{mechanics_.counts(static_cast<int>(i)), stylus ? mechanics_.buttons() : std::uint16_t{0},
+                        mechanics_.motors().is_holding(joint),
+                        static_cast<std::int16_t>(std::lround(mechanics_.made_Nm()[joint] / per_permille))};
     drives_[i].on_frame(heard.frame, heard.end, sensed, outgoing_);
     send(i, heard.end);
   }

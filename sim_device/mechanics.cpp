@@ -53,9 +53,10 @@ void Mechanics::advance(Time now, const Vec3& motor_Nm) noexcept {
     const Intent wish = intention_->at(script_time_s(), tip);
     hand_force_D_N_ = fingers_.step(wish.p_DH, wish.v_DH, tip.p_DT, tip.v_DT, dt_s);
     const Vec3 on_linkage = stylus_.step(hand_force_D_N_, plant_.tip_D_m(), plant_.tip_velocity_D_m_per_s(), dt_s);
-    const Vec3 made_Nm = motors_.pass(motor_Nm, dt_s), from_rad = plant_.q_rad();
-    plant_.step(made_Nm, on_linkage, dt_s);
-    motor_work_J_ += made_Nm.dot(plant_.q_rad() - from_rad);
+    const Vec3 from_rad = plant_.q_rad();
+    made_Nm_ = motors_.pass(motor_Nm, dt_s);
+    plant_.step(made_Nm_, on_linkage, dt_s);
+    motor_work_J_ += made_Nm_.dot(plant_.q_rad() - from_rad);
   }
 }
 

@@ -59,6 +59,8 @@ class Mechanics {
   }
   /// What the motors have put into the linkage, J: the port's work, exact, whatever the encoders resolve.
   [[nodiscard]] double motor_work_J() const noexcept { return motor_work_J_; }
+  /// Torques of the last step, N m: what was asked for, less what the drives held back.
+  [[nodiscard]] const Vec3& made_Nm() const noexcept { return made_Nm_; }
   [[nodiscard]] const MotorHeat& motors() const noexcept { return motors_; }
   [[nodiscard]] const Fingers& fingers() const noexcept { return fingers_; }
   /// On the stylus by the fingers in the last step, N.
@@ -72,7 +74,7 @@ class Mechanics {
   Fingers fingers_;
   MotorHeat motors_;
   double motor_work_J_ = 0.0;
-  Vec3 hand_force_D_N_ = Vec3::Zero();
+  Vec3 hand_force_D_N_ = Vec3::Zero(), made_Nm_ = Vec3::Zero();
   Time now_;
   Time started_at_ = kNever;
 };

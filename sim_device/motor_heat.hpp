@@ -23,17 +23,19 @@ class MotorHeat {
   /// Torque that the drives let through for dt_s of `wanted_Nm`; the windings warm by it.
   Vec3 pass(const Vec3& wanted_Nm, double dt_s) noexcept {
     Vec3 passed = wanted_Nm;
-    for (int j = 0; j < 3; ++j) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      auto& held = held_[static_cast<std::size_t>(j)];
       const double most = rating_.continuous_Nm[j];
-      if (heat_[j] >= 1.0) held_[j] = true;
-      if (heat_[j] < 0.95) held_[j] = false;
-      if (held_[j]) passed[j] = std::clamp(passed[j], -most, most);
+      if (heat_[j] >= 1.0) held = true;
+      if (heat_[j] < 0.95) held = false;
+      if (held) passed[j] = std::clamp(passed[j], -most, most);
       const double load = passed[j] / most;
       heat_[j] += dt_s / rating_.time_constant_s * (load * load - heat_[j]);
     }
     return passed;
   }
   [[nodiscard]] const Vec3& heat() const noexcept { return heat_; }
+  [[nodiscard]] bool is_holding(Eigen::Index joint) const noexcept { return held_[static_cast<std::size_t>(joint)]; }
   [[nodiscard]] bool is_holding() const noexcept { return held_[0] || held_[1] || held_[2]; }
 
  private:

@@ -34,9 +34,21 @@ void Controller::command(rt::CommandKind kind) noexcept {
     case rt::CommandKind::kUnclutchRight:
       hands_[1].hold_clutch(kind == rt::CommandKind::kClutchRight);
       break;
+    case rt::CommandKind::kPark:
+    case rt::CommandKind::kCalibrate:
+      begin_moves(kind == rt::CommandKind::kPark ? Move::kPark : Move::kCalibrate);
+      break;
     case rt::CommandKind::kResetThread:  // the thread's, not ours
     case rt::CommandKind::kNone:
       break;
+  }
+}
+
+/// Each hand that holds its dead-man and nothing else is led; the others stay as they are.
+void Controller::begin_moves(Move move) noexcept {
+  if (!armed_ || !may_push(state_) || braking_) return;
+  for (HandControl& h : hands_) {
+    if (h.state().dead_man && !h.holds() && !h.state().clutch) h.begin_move(move);
   }
 }
 
@@ -60,15 +72,16 @@ void Controller::step_force_scale() noexcept {
 rt::RigCommand Controller::tick(const TickInput& in) noexcept {
   step_force_scale();
   for (std::size_t h = 0; h < rt::kHands; ++h) hands_[h].observe(in.reading.hand[h], in.grasp[h], in.tick, last_tick_);
-  if (hands_[0].holds() && hands_[1].holds()) Passivity::share(hands_[0].passivity(), hands_[1].passivity());
   step_state(in);
   step_gains();
   last_tick_ = in.tick;
   reset_requested_ = false;
 
   rt::RigCommand command;
+  for (HandControl& h : hands_) h.decide(push(h));
+  if (settings_.lending && hands_[0].holds() && hands_[1].holds()) HandControl::lend(in.tick, hands_[0], hands_[1]);
   for (std::size_t h = 0; h < rt::kHands; ++h) {
-    command.hand[h].torque_Nm = hands_[h].command(push(), in.tick);
+    command.hand[h].torque_Nm = hands_[h].command(in.tick);
     command.hand[h].request = drive_request();
   }
   const bool off = state_ == State::kOff || state_ == State::kFault;
@@ -76,9 +89,10 @@ rt::RigCommand Controller::tick(const TickInput& in) noexcept {
   return command;
 }
 
-Push Controller::push() const noexcept {
+Push Controller::push(const HandControl& hand) const noexcept {
   if (!may_push(state_)) return Push::kNone;
-  return braking_ ? Push::kBrake : Push::kCoupling;
+  if (braking_) return Push::kBrake;
+  return hand.is_led() ? Push::kLead : Push::kCoupling;
 }
 
 bool Controller::any_too_fast() const noexcept {
@@ -179,10 +193,13 @@ void Controller::step_state(const TickInput& in) noexcept {
 
 void Controller::step_gains() noexcept {
   for (HandControl& h : hands_) {
-    if (!may_push(state_))
+    if (!may_push(state_)) {
       h.drop();
-    else
-      h.step_gain(state_ != State::kBrake && armed_ && h.state().dead_man);
+      continue;
+    }
+    const bool wanted = state_ != State::kBrake && armed_ && h.state().dead_man;
+    if (!wanted) h.end_move();
+    h.step_gain(wanted);
   }
 }
 

@@ -8,16 +8,18 @@
 #include "firmware/control/hand_control.hpp"
 #include "firmware/control/state_machine.hpp"
 #include "firmware/rt/command.hpp"
+#include "firmware/rt/period.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::control {
 
-inline constexpr double kPeriod_s = 1e-3;
+using rt::kPeriod_s;
 
 struct Settings {
   std::int32_t watchdog_ticks = 20;  ///< age of joint messages, or periods lost in a row, that is a fault
   bool armed = false;                ///< at start; a fault and a disarm take it back
   device::Device device = device::omni();
+  bool lending = true;  ///< off: each hand must earn its force alone, and cannot be pulled (an experiment shows it)
 };
 
 /// All that a tick depends on.
@@ -66,7 +68,8 @@ class Controller {
   void step_state(const TickInput& in) noexcept;
   void step_gains() noexcept;
   void step_force_scale() noexcept;
-  [[nodiscard]] Push push() const noexcept;
+  void begin_moves(Move move) noexcept;
+  [[nodiscard]] Push push(const HandControl& hand) const noexcept;
   [[nodiscard]] bool any_too_fast() const noexcept;
   [[nodiscard]] rt::DriveRequest drive_request() const noexcept;
   [[nodiscard]] bool any_full() const noexcept;

@@ -18,18 +18,26 @@ namespace ligature::control {
 ///   |u| >= kMoving and w = -u within kSame                                                                   reversed
 /// A smooth turn that is straight within a count on both sides changes its slope by at most 8 / kWindow = 0.33 in all,
 /// so with |u| above it has to be a corner; a slow joint may simply stop. A joint in its stop does stand still; near
-/// one nothing is looked for. A fault that begins while the joint rests is not seen: then the velocity limit and the
-/// force limits remain. Gaps between samples start the watch anew. O(kWindow), no allocation.
+/// one nothing is looked for. An encoder that froze while its joint rested is seen once the joint's torque has changed
+/// by kPushed of the rated one and the other joints have travelled kElsewhere since its last count: no hand is so
+/// stiff. One that was reversed at rest is seen by a led move only (move_check.hpp), or as an impossible pose. Gaps
+/// between samples start the watch anew. O(kWindow), no allocation.
 class EncoderWatch {
  public:
   static constexpr std::size_t kJoints = 3, kWindow = 24, kLength = 128;
   static constexpr double kMoving = 0.34, kBrisk = 0.8, kSame = 0.17;  ///< counts a period
   static constexpr double kTravel = 60.0;                              ///< counts, about 3 mm at the tip
+  static constexpr double kElsewhere = 300.0;                          ///< counts
+  static constexpr int kRested = 100;                                  ///< samples; a fast hand turns round in fewer
+  static constexpr double kPushed = 0.2;  ///< of the rated torque; of an Omni 0.4 N at the tip, four times its friction
 
   /// A new sample, in counts. @param gap whole periods since the last one. @param free per joint: far from its stops.
+  /// @param torque that acts on each joint, share of the rated one.
   /// @return what is wrong, latched by the caller.
   [[nodiscard]] Fault add(const std::array<double, kJoints>& counts, std::int64_t gap,
-                          const std::array<bool, kJoints>& free) noexcept {
+                          const std::array<bool, kJoints>& free,
+                          const std::array<double, kJoints>& torque = {}) noexcept {
+    if (stands_under_torque(counts, free, torque)) return Fault::kEncoderFrozen;
     if (gap != 1) count_ = 0, suspect_ = kJoints;
     newest_ = (newest_ + 1) % kLength;
     for (std::size_t j = 0; j < kJoints; ++j) x_[j][newest_] = counts[j];
@@ -44,6 +52,34 @@ class EncoderWatch {
     double slope = 0.0;
     bool straight = false;
   };
+
+  /// What has happened since a joint's last count.
+  struct Rest {
+    double count = 0.0, low = 0.0, high = 0.0, elsewhere = 0.0;
+    int samples = 0;
+  };
+  [[nodiscard]] bool stands_under_torque(const std::array<double, kJoints>& counts,
+                                         const std::array<bool, kJoints>& free,
+                                         const std::array<double, kJoints>& torque) noexcept {
+    double travel = 0.0;
+    for (std::size_t j = 0; j < kJoints; ++j) travel += std::abs(counts[j] - last_[j]);
+    if (!seen_) travel = 0.0;
+    bool stands = false;
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      Rest& r = rest_[j];
+      if (!seen_ || counts[j] != r.count || !free[j]) r = {counts[j], torque[j], torque[j], 0.0, 0};
+      r.low = std::min(r.low, torque[j]);
+      r.high = std::max(r.high, torque[j]);
+      r.elsewhere += travel;
+      ++r.samples;
+      if (r.high - r.low < kPushed || r.elsewhere < kElsewhere || r.samples < kRested) continue;
+      stands = true;
+      r = {counts[j], torque[j], torque[j], 0.0, 0};  // told; from here it must show itself again
+    }
+    last_ = counts;
+    seen_ = true;
+    return stands;
+  }
 
   [[nodiscard]] double at(std::size_t joint, std::size_t ago) const noexcept {
     return x_[joint][(newest_ + kLength - ago) % kLength];
@@ -109,6 +145,9 @@ class EncoderWatch {
     return true;
   }
 
+  std::array<Rest, kJoints> rest_{};
+  std::array<double, kJoints> last_{};
+  bool seen_ = false;
   std::array<std::array<double, kLength>, kJoints> x_{};
   std::size_t newest_ = 0, count_ = 0, suspect_ = kJoints;
   double travel_ = 0.0;

@@ -2,6 +2,7 @@
 // How much of the computed force one hand gets, so that nothing ever kicks.
 
 #include "firmware/control/motion.hpp"
+#include "firmware/rt/period.hpp"
 
 namespace ligature::control {
 
@@ -19,7 +20,7 @@ class Engagement {
   void tick(bool wanted, double speed_m_per_s, double force_N) noexcept {
     if (!wanted) {
       calm_ticks_ = 0;
-      ramp_.step(0.0, kFallTicks * kPeriod_s);
+      ramp_.step(0.0, kFallTicks * rt::kPeriod_s);
       return;
     }
     if (gain() == 0.0 && calm_ticks_ < kCalmTicks) {
@@ -27,7 +28,7 @@ class Engagement {
       calm_ticks_ = calm ? calm_ticks_ + 1 : 0;
       return;
     }
-    ramp_.step(1.0, kRiseTicks * kPeriod_s);
+    ramp_.step(1.0, kRiseTicks * rt::kPeriod_s);
   }
 
   void drop() noexcept {
@@ -38,8 +39,7 @@ class Engagement {
   [[nodiscard]] double gain() const noexcept { return ramp_.value(); }
 
  private:
-  static constexpr double kPeriod_s = 1e-3;
-  Ramp ramp_{kPeriod_s};
+  Ramp ramp_{rt::kPeriod_s};
   int calm_ticks_ = 0;
 };
 

@@ -5,11 +5,17 @@
 #include <cmath>
 
 namespace ligature::control {
+namespace {
+
+constexpr double kAbove_m = 0.01;  // of the workspace's floor: where a parked tip rests
+
+}  // namespace
 
 HandControl::HandControl(const device::Device& d, const scene::Hands& hands, double period_s) noexcept
     : period_s_(period_s),
       quantum_Nm_(d.Nm_per_permille()),
       max_torque_Nm_(d.max_torque_Nm()),
+      rated_Nm_(d.rated_torque_Nm),
       count_rad_(d.rad_per_count()),
       linkage_(d),
       map_(hands, linkage_.home_m()),
@@ -17,6 +23,9 @@ HandControl::HandControl(const device::Device& d, const scene::Hands& hands, dou
       limiter_(d, hands.max_force_N, period_s),
       passivity_(d, period_s, hands.passivity, hands.energy_credit_J),
       brake_(period_s),
+      path_(period_s),
+      park_m_(0.5 * (d.workspace_min_m[0] + d.workspace_max_m[0]), d.home_tip_m[1], d.workspace_min_m[2] + kAbove_m),
+      scene_origin_W_m_(map_.origin_W_m),
       velocity_{WindowVelocity(period_s, count_rad_), WindowVelocity(period_s, count_rad_),
                 WindowVelocity(period_s, count_rad_)} {
   state_.p_WT = map_.origin_W_m;
@@ -25,6 +34,7 @@ HandControl::HandControl(const device::Device& d, const scene::Hands& hands, dou
 
 void HandControl::change_hands(const scene::Hands& hands) noexcept {
   map_ = WorkspaceMap(hands, linkage_.home_m());
+  scene_origin_W_m_ = map_.origin_W_m;
   coupling_ = VirtualCoupling(hands, period_s_);
   limiter_.set_peak(hands.max_force_N);
   passivity_.set_active(hands.passivity);
@@ -43,7 +53,7 @@ void HandControl::map(const Vec3& p_DT) noexcept {
 void HandControl::observe(const rt::HandReading& reading, const Grasp& grasp, std::int64_t tick,
                           std::int64_t last_tick) noexcept {
   const bool clutch = reading.clutch || clutch_command_;
-  if (!clutch) state_.grip = reading.grip;  // a parked tool keeps hold of what it holds
+  if (!clutch) state_.grip = reading.grip && !is_led();  // a parked tool keeps hold of what it holds
   state_.dead_man = reading.dead_man;
   state_.bus_load = reading.bus_load;
   if (!reading.valid) return;
@@ -77,10 +87,14 @@ void HandControl::sample(const rt::HandReading& reading, std::int64_t sampled) n
   v_DT_ = jacobian_ * rate;
   std::array<double, 3> counts{};
   for (std::size_t j = 0; j < counts.size(); ++j) counts[j] = std::round(reading.q_rad[j] / count_rad_);
-  encoder_fault_ = watch_.add(counts, periods, linkage_.far_from_stops(reading.q_rad));
+  const Vec3 torque = torque_Nm_ / rated_Nm_;
+  encoder_fault_ =
+      watch_.add(counts, periods, linkage_.far_from_stops(reading.q_rad), {torque[0], torque[1], torque[2]});
   sample_tick_ = sampled;
-  if (p_DT_.allFinite())
-    passivity_.observe(sampled, reading.q_rad, p_DT_, count_rad_ * jacobian_.colwise().norm().maxCoeff());
+  from_torque_ = jacobian_.transpose().inverse();
+  if (!p_DT_.allFinite()) return;
+  const Acted acted{vector_of(reading.torque_Nm), reading.torque_limited, reading.torque_held};
+  passivity_.observe(sampled, {reading.q_rad, p_DT_, count_rad_, jacobian_.colwise().norm().transpose(), acted});
 }
 
 /// While it is held the tool stays where it is in the world; when it is let go, the map is moved so that the tool
@@ -91,25 +105,32 @@ void HandControl::step_clutch(bool pressed, const Vec3& p_DT) noexcept {
   state_.clutch = pressed;
 }
 
-std::array<double, rt::kJoints> HandControl::command(Push push, std::int64_t tick) noexcept {
-  const Vec3 wish_N = push == Push::kBrake ? brake_force() : state_.f_wish_N;
+void HandControl::decide(Push push) noexcept {
+  const Vec3 wish_N = push == Push::kBrake ? brake_force() : push == Push::kLead ? lead_force() : state_.f_wish_N;
   braking_ = push == Push::kBrake;
-  std::int16_t limits = push == Push::kBrake ? rt::kVelocityBrake : 0;
-  Vec3 torque_Nm = Vec3::Zero(), f_N = Vec3::Zero();
-  if (push != Push::kNone && finite_) {
-    const Vec3 limited_N = limiter_.limit(gain() * wish_N);
-    limits = static_cast<std::int16_t>(limits | limiter_.codes());
-    const Vec3 paid_N = passivity_.control(tick, limited_N, v_DT_);
-    torque_Nm = sendable_torque(paid_N, tick);
-    f_N = torque_Nm.isZero(0.0) ? Vec3(Vec3::Zero()) : tip_force(torque_Nm, paid_N);
+  decided_N_ = Vec3::Zero();
+  decided_limits_ = braking_ ? rt::kVelocityBrake : 0;
+  if (push == Push::kNone || !finite_) return;
+  decided_N_ = limiter_.limit(gain() * wish_N);
+  decided_limits_ = static_cast<std::int16_t>(decided_limits_ | limiter_.codes());
+}
+
+std::array<double, rt::kJoints> HandControl::command(std::int64_t tick) noexcept {
+  std::int16_t limits = decided_limits_;
+  Vec3 torque_Nm = Vec3::Zero(), f_N = Vec3::Zero(), paid_N = Vec3::Zero();
+  if (!decided_N_.isZero(0.0)) {
+    const auto made = [this](const Vec3& f) { return tip_force(sendable_torque(f), f); };
+    paid_N = passivity_.control(tick, decided_N_, v_DT_, state_.f_device_N, made);
+    torque_Nm = sendable_torque(paid_N);
+    f_N = tip_force(torque_Nm, paid_N);
     if (passivity_.acts()) limits |= rt::kPassivityLimit;
-    if (torque_clipped_) limits |= rt::kTorqueLimit;
-    state_.f_device_N = torque_Nm.isZero(0.0) ? f_N : paid_N;
-  } else {
-    state_.f_device_N = Vec3::Zero();
+    if ((jacobian_.transpose() * paid_N).lpNorm<Eigen::Infinity>() > max_torque_Nm_) limits |= rt::kTorqueLimit;
   }
+  if (torque_Nm.isZero(0.0)) paid_N = Vec3::Zero();
+  state_.f_device_N = paid_N;
+  torque_Nm_ = torque_Nm;
   passivity_.sent(tick, torque_Nm, f_N);
-  limiter_.sent(state_.f_device_N);
+  limiter_.sent(paid_N);
   fill_state(limits);
   return {torque_Nm[0], torque_Nm[1], torque_Nm[2]};
 }
@@ -120,20 +141,60 @@ Vec3 HandControl::brake_force() noexcept {
   return kBrake_N_per_m * (brake_.position_m() - p_DT_) + kBrake_N_s_per_m * (brake_.velocity_m_per_s() - v_DT_);
 }
 
-/// J^T f in whole torque quanta, within the drives' range, and never more than the port can pay for.
-Vec3 HandControl::sendable_torque(const Vec3& f_N, std::int64_t tick) noexcept {
-  const Vec3 exact = jacobian_.transpose() * f_N;
-  const Vec3 clipped = exact.cwiseMax(-max_torque_Nm_).cwiseMin(max_torque_Nm_);
-  torque_clipped_ = clipped != exact;
-  const Vec3 nearest = clipped.unaryExpr([this](double t) { return quantum_Nm_ * std::round(t / quantum_Nm_); });
-  if (passivity_.allows(tick, tip_force(nearest, f_N))) return nearest;
-  const Vec3 less = clipped.unaryExpr([this](double t) { return quantum_Nm_ * std::trunc(t / quantum_Nm_); });
-  return passivity_.allows(tick, tip_force(less, f_N)) ? less : Vec3(Vec3::Zero());
+void HandControl::begin_move(Move move) noexcept {
+  end_move();
+  move_ = move;
+}
+
+void HandControl::end_move() noexcept {
+  if (leading_) passivity_.revoke();
+  leading_ = false;
+  move_ = Move::kNone;
+}
+
+/// Along the path, once the gain is full.
+Vec3 HandControl::lead_force() noexcept {
+  if (holds_ || state_.clutch) end_move();
+  if (!leading_) {
+    if (!is_led() || gain() < 1.0) return Vec3::Zero();
+    leading_ = path_.start(p_DT_, move_ == Move::kPark ? park_m_ : linkage_.home_m());
+    if (!leading_) end_move();
+    move_check_.start(state_.q_rad);
+    passivity_.grant(kLeadEnergy_J);
+  }
+  path_.step();
+  move_check_.step(from_torque_.transpose(), path_.velocity_m_per_s(), period_s_);
+  const Vec3 off_m = path_.position_m() - p_DT_;
+  const Vec3 force_N =
+      saturate(kBrake_N_per_m * off_m + kBrake_N_s_per_m * (path_.velocity_m_per_s() - v_DT_), kLead_N).f_N;
+  if (off_m.norm() > kStray_m) {
+    move_fault_ = move_check_.judge(state_.q_rad, count_rad_);
+    end_move();
+    return Vec3::Zero();
+  }
+  if (path_.is_done()) {
+    if (move_ == Move::kCalibrate) map_.origin_W_m = scene_origin_W_m_;  // the clutch's offsets are gone
+    end_move();
+  }
+  return force_N;
+}
+
+/// J^T f in whole torque quanta, within the drives' range. A torque within kStay quanta of the last one stays: what
+/// flickers is heard, and hides energy under the encoder's counts.
+Vec3 HandControl::sendable_torque(const Vec3& f_N) const noexcept {
+  constexpr double kStay = 0.7;
+  const Vec3 exact = (jacobian_.transpose() * f_N).cwiseMax(-max_torque_Nm_).cwiseMin(max_torque_Nm_);
+  Vec3 torque_Nm;
+  for (Eigen::Index j = 0; j < 3; ++j) {
+    const bool stays = std::abs(exact[j] - torque_Nm_[j]) < kStay * quantum_Nm_;
+    torque_Nm[j] = stays ? torque_Nm_[j] : quantum_Nm_ * std::round(exact[j] / quantum_Nm_);
+  }
+  return torque_Nm;
 }
 
 /// Tip force that joint torques make: J^-T tau. Where the arm is nearly singular, the force they were made from.
 Vec3 HandControl::tip_force(const Vec3& torque_Nm, const Vec3& otherwise_N) const noexcept {
-  const Vec3 f_N = jacobian_.transpose().inverse() * torque_Nm;
+  const Vec3 f_N = from_torque_ * torque_Nm;
   return f_N.allFinite() && f_N.norm() < 10.0 * otherwise_N.norm() + 0.1 ? f_N : otherwise_N;
 }
 
@@ -143,6 +204,7 @@ void HandControl::fill_state(std::int16_t limits) noexcept {
   state_.limited = (limits & (rt::kPeakLimit | rt::kContinuousLimit)) != 0 && gain() >= 1.0;
   state_.heat = limiter_.heat();
   state_.port_energy_J = passivity_.energy_J();
+  state_.received_J = passivity_.received_J();
   state_.dissipated_J = passivity_.dissipated_J();
   state_.injected_N_s_per_m = passivity_.injected_N_s_per_m();
 }

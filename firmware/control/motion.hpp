@@ -113,4 +113,56 @@ class BrakeToRest {
   physics::Vec3 p_m_ = physics::Vec3::Zero(), v_m_per_s_ = physics::Vec3::Zero();
 };
 
+/// From rest to a pose at rest: a straight line, at most kSpeed, kAcceleration and kJerk. No allocation.
+class GuidedMove {
+ public:
+  static constexpr double kSpeed_m_per_s = 0.08, kAcceleration_m_per_s2 = 0.4, kJerk_m_per_s3 = 4.0;
+
+  explicit GuidedMove(double period_s) : period_s_(period_s) {
+    input_.synchronization = ruckig::Synchronization::Phase;  // straight
+    for (std::size_t i = 0; i < 3; ++i) {
+      input_.max_velocity[i] = kSpeed_m_per_s;
+      input_.max_acceleration[i] = kAcceleration_m_per_s2;
+      input_.max_jerk[i] = kJerk_m_per_s3;
+      input_.current_velocity[i] = input_.current_acceleration[i] = 0.0;
+      input_.target_velocity[i] = input_.target_acceleration[i] = 0.0;
+    }
+  }
+
+  /// @return false when no path can be planned; then it is done where it is.
+  bool start(const physics::Vec3& from_m, const physics::Vec3& to_m) noexcept {
+    for (std::size_t i = 0; i < 3; ++i) {
+      input_.current_position[i] = from_m[static_cast<Eigen::Index>(i)];
+      input_.target_position[i] = to_m[static_cast<Eigen::Index>(i)];
+    }
+    p_m_ = from_m;
+    v_m_per_s_.setZero();
+    at_s_ = 0.0;
+    plans_ = otg_.calculate(input_, plan_) >= ruckig::Result::Working;
+    return plans_;
+  }
+  /// One period on.
+  void step() noexcept {
+    if (!plans_) return;
+    at_s_ += period_s_;
+    std::array<double, 3> p{}, v{}, a{};
+    plan_.at_time(at_s_, p, v, a);
+    for (std::size_t i = 0; i < 3; ++i) {
+      p_m_[static_cast<Eigen::Index>(i)] = p[i];
+      v_m_per_s_[static_cast<Eigen::Index>(i)] = v[i];
+    }
+  }
+  [[nodiscard]] bool is_done() const noexcept { return !plans_ || at_s_ >= plan_.get_duration(); }
+  [[nodiscard]] const physics::Vec3& position_m() const noexcept { return p_m_; }
+  [[nodiscard]] const physics::Vec3& velocity_m_per_s() const noexcept { return v_m_per_s_; }
+
+ private:
+  ruckig::Ruckig<3> otg_;
+  ruckig::InputParameter<3> input_;
+  ruckig::Trajectory<3> plan_;
+  bool plans_ = false;
+  double period_s_, at_s_ = 0.0;
+  physics::Vec3 p_m_ = physics::Vec3::Zero(), v_m_per_s_ = physics::Vec3::Zero();
+};
+
 }  // namespace ligature::control

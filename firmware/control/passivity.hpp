@@ -1,31 +1,53 @@
 #pragma once
-// One device port must never give out more energy than it was given: an exact account, and a force that it can pay for.
+// One device port must never give out more energy than it was given: a lower bound of it, and a force that it can pay
+// for.
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "firmware/control/kinematics.hpp"
 
 namespace ligature::control {
 
+/// What a hand's drives say of the period that ended with a sample.
+struct Acted {
+  static constexpr double kNotTold = std::numeric_limits<double>::quiet_NaN();
+  Vec3 torque_Nm{kNotTold, kNotTold, kNotTold};  ///< made, by joint
+  std::array<bool, 3> limited{};                 ///< the drive made less than it was asked for
+  std::array<int, 3> held{};                     ///< SYNCs that a drive without torque in its message got nothing new
+};
+
+/// A pose, and how sharply it is seen.
+struct PortSample {
+  JointAngles q_rad{};
+  Vec3 p_m = Vec3::Zero();      ///< of the tip
+  double count_rad = 0.0;       ///< of the joints' encoders; 0: exact
+  Vec3 lever_m = Vec3::Zero();  ///< |dp/dq_j|
+  Acted acted{};
+};
+
 /// Account of a port and controller over it.
 ///
-/// Observer. A torque sent in tick k acts from SYNC k+1 to SYNC k+2 and is constant in between, so the motors' work is
-/// exact, whatever the motion was:
-///   E(n) = E(n-1) - tau(n-2) . (q(n) - q(n-1))         work of the hand on the rig, J; f(n-1) dx(n) with the wire's
-///   delay
-/// with the torques as rounded for the wire. Credit above kCredit_J is forgotten (the window: else an hour of harmless
-/// friction would pay for a minute of instability). The start is 0 plus the scene's energy_credit_J.
+/// Observer. A torque sent in tick k acts from SYNC k+1 to SYNC k+2 and is constant in between (zero-order hold), so
+/// the motors' work is exact but for the encoder's half count h:
+///   E(n) = E(n-1) - sum_j max over what joint j may have had of tau_j dq_j
+/// What a joint may have had is the torque sent two ticks ago, and what the drive says that it made if that differs (a
+/// lost RPDO, a drive that guards its winding). Half counts hide up to
+/// h |tau_j(n) - tau_j(n-1)| of either sign at each change, for which no room is kept. Credit above
+/// kCredit_J is forgotten (else an hour of harmless friction would pay for a minute of instability). The start is 0
+/// plus the scene's energy_credit_J.
 ///
 /// Controller. Torques sent are spent money: one is on its way when the next is decided, and the hand may turn round. A
 /// hand that gives the tip at most the acceleration a moves it, in the j-th period after the last sample, by dx + e
 /// with |e| <= j a T^2 + c (dx: the last period's motion, c: one count). What force F can lose there is
 ///   out_j(F) = max(0, F . dx + |F| (j a T^2 + c)),
-/// and a force is sent only when E minus the losses of all torques under way minus its own stays above -kFloor_J. One
-/// that is not is first damped against the motion (alpha = shortage / (T v^2), at most kMaxDamping, v at least kSlow),
-/// then reduced. So E stays above -kFloor_J for every hand within that acceleration, without looking at the
-/// environment. O(1), no allocation. The bound on acceleration is the device record's, the proof by play is in the
-/// tests.
+/// and a force is sent only when E stays above -kFloor_J after the losses of all torques under way, its own, and those
+/// of the way from it to zero in steps of the device's force_step_N. So a force that was paid for can always be taken
+/// back without a jump. A lost RPDO lets a torque act once more: that is booked, not foreseen. One that cannot be paid
+/// for is first damped against the motion (alpha = shortage / (T v^2), at most kMaxDamping, v at least kSlow), then as
+/// much of it is sent as can. O(1), no allocation. The bound on acceleration is the device record's; beyond it the
+/// energy comes first, and a step may be larger.
 class Passivity {
  public:
   static constexpr double kFloor_J = 1e-6;
@@ -36,23 +58,48 @@ class Passivity {
 
   Passivity(const device::Device& device, double period_s, bool active, double credit_J) noexcept;
 
-  /// A new sample: books the work since the last one. `periods` whole periods lie between, evenly moved through.
-  void observe(std::int64_t tick, const JointAngles& q_rad, const Vec3& p_m, double tip_per_count_m) noexcept;
+  /// A new sample: books the work since the last one. Whole periods lie between, moved through evenly but for what the
+  /// bound on acceleration allows.
+  void observe(std::int64_t tick, const PortSample& sample) noexcept;
 
-  /// The force that may be sent in tick `tick`, >= the last observed. Only looks; sent() books it.
-  [[nodiscard]] Vec3 control(std::int64_t tick, const Vec3& f_N, const Vec3& v_m_per_s) noexcept;
-  /// Whether exactly this tip force may be sent in `tick`: control()'s last word once torques are rounded.
-  [[nodiscard]] bool allows(std::int64_t tick, const Vec3& f_N) const noexcept;
+  /// The force that may be sent in tick `tick`, >= the last observed, on the way from `before_N` (sent last) to
+  /// `wish_N`, which lies within force_step_N of it. Only looks; sent() books it.
+  /// @param made tip force -> the one that comes of it once torques are rounded
+  template <class Make>
+  [[nodiscard]] Vec3 control(std::int64_t tick, const Vec3& wish_N, const Vec3& v_m_per_s, const Vec3& before_N,
+                             Make made) noexcept {
+    injected_ = 0.0;
+    acts_ = !allows(tick, made(wish_N));
+    if (!acts_) return wish_N;
+    const auto paid = [&](const Vec3& f_N) { return allows(tick, made(f_N)); };
+    const Vec3 least_N = shorter(before_N, step_N_), most_N = damped(tick, wish_N, v_m_per_s, before_N);
+    return paid(least_N) ? farthest(least_N, most_N, paid) : farthest(Vec3::Zero(), least_N, paid);
+  }
+  [[nodiscard]] Vec3 control(std::int64_t tick, const Vec3& wish_N, const Vec3& v, const Vec3& before_N) noexcept {
+    return control(tick, wish_N, v, before_N, [](const Vec3& f_N) { return f_N; });
+  }
+  /// Whether exactly this tip force may be sent in `tick`.
+  [[nodiscard]] bool allows(std::int64_t tick, const Vec3& f_N) const noexcept {
+    return !active_ || f_N.isZero(0.0) || shortage_J(tick, f_N) <= 0.0;
+  }
   /// What went out in `tick`, and the tip force it makes.
   void sent(std::int64_t tick, const Vec3& torque_Nm, const Vec3& f_N) noexcept;
 
-  /// While both hands hold the thread it carries energy from one to the other: they share what they have.
-  static void share(Passivity& a, Passivity& b) noexcept;
+  /// While both hands hold the thread it carries energy from one to the other: the port that is short of what its wish
+  /// costs gets what the other can spare. Their sum stays what both hands have put in.
+  static void lend(std::int64_t tick, Passivity& a, const Vec3& wish_a_N, Passivity& b, const Vec3& wish_b_N) noexcept;
+
+  /// For a move that the rig makes by itself, and no other: so much may be given out. Counts as received.
+  void grant(double energy_J) noexcept;
+  /// Its end: what is left of it goes back.
+  void revoke() noexcept;
 
   /// Off: the account is kept, nothing is held back. @pre no force flows.
   void set_active(bool active) noexcept { active_ = active; }
 
+  /// Put in by this hand less what it got back, plus what the other hand's account or a grant gave.
   [[nodiscard]] double energy_J() const noexcept { return energy_J_; }
+  [[nodiscard]] double received_J() const noexcept { return received_J_; }  ///< by lend() and grant(), since the start
   [[nodiscard]] double dissipated_J() const noexcept { return dissipated_J_; }
   [[nodiscard]] double injected_N_s_per_m() const noexcept { return injected_; }
   [[nodiscard]] bool acts() const noexcept { return acts_; }
@@ -62,13 +109,35 @@ class Passivity {
     Vec3 torque_Nm = Vec3::Zero();
     Vec3 f_N = Vec3::Zero();
   };
+  static const Sent kNothing;
+  static constexpr double kSpend_J = 0.95 * kFloor_J;
+  static constexpr double kRounding_J = 5e-6;  // what a torque's rounding may cost more: one quantum times 1 mm
   [[nodiscard]] const Sent& in_tick(std::int64_t tick) const noexcept;
-  [[nodiscard]] double loss_J(const Vec3& f_N, std::int64_t period) const noexcept;
-  [[nodiscard]] double room_J(std::int64_t tick) const noexcept;
+  void book(std::int64_t period, const Vec3& dq_rad, const Acted& acted) noexcept;
+  [[nodiscard]] double loss_J(const Vec3& f_N, double spread_m) const noexcept;
+  [[nodiscard]] double shortage_J(std::int64_t tick, const Vec3& f_N) const noexcept;
+  [[nodiscard]] Vec3 damped(std::int64_t tick, const Vec3& wish_N, const Vec3& v, const Vec3& before_N) noexcept;
+  [[nodiscard]] static Vec3 shorter(const Vec3& f_N, double by_N) noexcept {
+    const double size = f_N.norm();
+    return size > by_N ? Vec3(f_N * (1.0 - by_N / size)) : Vec3(Vec3::Zero());
+  }
 
-  double period_s_, reach_m_;  // a T^2
+  /// Of the way from `from` to `to`, as far as can be paid for.
+  template <class Paid>
+  [[nodiscard]] static Vec3 farthest(const Vec3& from, const Vec3& to, Paid paid) noexcept {
+    if (paid(to)) return to;
+    double low = 0.0, high = 1.0;
+    for (int i = 0; i < 18; ++i) {
+      const double middle = 0.5 * (low + high);
+      (paid(from + middle * (to - from)) ? low : high) = middle;
+    }
+    return from + low * (to - from);
+  }
+
+  double period_s_, reach_m_, step_N_;  // reach: a T^2
   bool active_;
-  double energy_J_, dissipated_J_ = 0.0, injected_ = 0.0, count_m_ = 0.0;
+  double energy_J_, received_J_ = 0.0, granted_J_ = 0.0, dissipated_J_ = 0.0, injected_ = 0.0;
+  double count_m_ = 0.0;
   bool acts_ = false;
   std::int64_t sampled_ = -1, last_sent_ = -1;
   JointAngles q_rad_{};

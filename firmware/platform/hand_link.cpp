@@ -113,7 +113,11 @@ rt::HandReading HandLink::reading() const noexcept {
     r.enabled = r.enabled && state == State::kOperationEnabled;
     r.drive_fault = r.drive_fault || node.emergency != can::emcy::kNoError || !node.operational ||
                     (valid_ && (state == State::kFault || state == State::kFaultReactionActive));
-    if (can::profile::has_stylus_buttons(can::profile::kJointNodes[j])) {
+    r.torque_limited[j] = (node.latest.statusword & can::cia402::kInternalLimitBit) != 0;
+    if (!can::profile::has_stylus_buttons(can::profile::kJointNodes[j])) {
+      if (valid_) r.torque_Nm[j] = node.latest.torque_permille * Nm_per_permille_;
+    } else {
+      r.torque_held[j] = can::profile::held_of(node.latest.buttons);
       r.grip = (node.latest.buttons & can::profile::kButtonGrip) != 0;
       r.dead_man = (node.latest.buttons & can::profile::kButtonDeadMan) != 0;
       r.clutch = (node.latest.buttons & can::profile::kButtonClutch) != 0;

@@ -19,6 +19,8 @@ enum class CommandKind : std::int8_t {
   kUnclutchLeft = 10,
   kClutchRight = 11,
   kUnclutchRight = 12,
+  kPark = 13,
+  kCalibrate = 14,
 };
 
 struct Command {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "firmware/rt/payload.hpp"
 
@@ -13,7 +14,12 @@ inline constexpr std::size_t kJoints = 3;
 
 /// One hand as of the last complete set of joint messages.
 struct HandReading {
+  static constexpr double kNotTold = std::numeric_limits<double>::quiet_NaN();
   std::array<double, kJoints> q_rad{};  ///< waist, shoulder, forearm (absolute)
+  /// Made in the period before the sample; kNotTold of a joint whose message has no torque.
+  std::array<double, kJoints> torque_Nm{kNotTold, kNotTold, kNotTold};
+  std::array<bool, kJoints> torque_limited{};  ///< the drive makes less than it was asked for
+  std::array<int, kJoints> torque_held{};      ///< SYNCs since that torque's RPDO, beyond the first; where it is told
   bool grip = false;
   bool dead_man = false;
   bool clutch = false;

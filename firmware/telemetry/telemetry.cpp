@@ -122,8 +122,12 @@ void Telemetry::scene_changed(const SceneFacts& facts, const std::string& text, 
 
 std::string Telemetry::objection(std::int8_t kind) const {
   using ligature_msg::command_t;
-  if (kind < command_t::KIND_ARM || kind > command_t::KIND_RESET_THREAD) {
-    return "unknown kind " + std::to_string(kind) + ", allowed 1 .. 5";
+  const bool is_plain = kind >= command_t::KIND_ARM && kind <= command_t::KIND_RESET_THREAD;
+  const bool is_of_hands = kind >= command_t::KIND_CLUTCH_LEFT && kind <= command_t::KIND_CALIBRATE;
+  if (!is_plain && !is_of_hands) return "unknown kind " + std::to_string(kind) + ", allowed 1 .. 7, 9 .. 14";
+  if (kind == command_t::KIND_PARK || kind == command_t::KIND_CALIBRATE) {
+    if (!last_.armed) return "the rig is not armed, and no hand is led without force";
+    if (!last_.dead_man[0] && !last_.dead_man[1]) return "no hand holds its dead-man";
   }
   if (kind == command_t::KIND_ARM && last_.fault != 0) {
     return "fault " + std::to_string(last_.fault) + " is latched: reset it first";

@@ -47,7 +47,7 @@ inline constexpr std::array kStatusPatterns{
 // Statusword bits outside the state pattern.
 inline constexpr std::uint16_t kVoltageEnabledBit = 1U << 4;
 inline constexpr std::uint16_t kRemoteBit = 1U << 9;
-inline constexpr std::uint16_t kInternalLimitBit = 1U << 11;  ///< torque demand clipped at 0x6072
+inline constexpr std::uint16_t kInternalLimitBit = 1U << 11;  ///< torque less than asked: clipped at 0x6072, or guarded
 inline constexpr std::uint16_t kFollowsTargetBit = 1U << 12;  ///< CST: target torque is acted upon
 
 /// State a statusword shows; nothing for a pattern the standard does not define.

@@ -28,6 +28,13 @@ inline constexpr std::uint8_t kSynchronousEverySync = 1;     ///< PDO transmissi
 inline constexpr std::uint16_t kButtonGrip = 1U << 0;
 inline constexpr std::uint16_t kButtonDeadMan = 1U << 1;
 inline constexpr std::uint16_t kButtonClutch = 1U << 2;
+/// Bits 3 .. 7 of the buttons' word: SYNCs, up to 31, at which the drive had no new RPDO and kept the torque it made in
+/// the period that the message tells of. Its TPDO has no room for the torque itself.
+[[nodiscard]] constexpr std::uint16_t with_held(std::uint16_t buttons, int syncs) noexcept {
+  const unsigned told = syncs < 0 ? 0U : syncs > 31 ? 31U : static_cast<unsigned>(syncs);
+  return static_cast<std::uint16_t>((buttons & 0xFF07U) | (told << 3U));
+}
+[[nodiscard]] constexpr int held_of(std::uint16_t buttons) noexcept { return (buttons >> 3U) & 31; }
 /// Bits 8 .. 15 of the buttons' word: a life sign, one more at each SYNC. A word that stands still is a sensor that
 /// does.
 [[nodiscard]] constexpr std::uint16_t with_life(std::uint16_t buttons, std::uint8_t life) noexcept {

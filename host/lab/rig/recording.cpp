@@ -4,6 +4,7 @@
 
 #include "firmware/control/faults.hpp"
 #include "firmware/control/state_machine.hpp"
+#include "firmware/rt/period.hpp"
 #include "firmware/telemetry/messages.hpp"
 #include "host/messages.hpp"
 
@@ -11,7 +12,6 @@ namespace ligature::lab {
 namespace {
 
 constexpr std::int64_t kSession = 1;  // a run of a simulated clock has no date
-constexpr double kPeriod_s = 1e-3;
 
 constexpr telemetry::Names kNames{
     [](int s) { return control::name(static_cast<control::State>(s)); },
@@ -76,7 +76,7 @@ void Recording::write_status() {
   m.protocol_version = ligature_msg::status_t::VERSION;
   m.firmware_version = LIGATURE_VERSION;
   m.scene_file = scene_file_;
-  m.period_s = kPeriod_s;
+  m.period_s = rt::kPeriod_s;
   m.max_force_N = scene_.hands.max_force_N;
   m.tick = last_.tick;
   m.state = last_.state;

@@ -6,7 +6,7 @@
 namespace ligature::lab {
 namespace {
 
-constexpr Nanoseconds kPeriod = std::chrono::milliseconds(1);
+using rt::kPeriod;
 constexpr Nanoseconds kGlance = std::chrono::microseconds(20);  // between two looks at the buses
 
 control::Settings settings_of(const RigSetup& setup) {

@@ -96,6 +96,30 @@ TEST(EncoderWatch,
   EXPECT_EQ(samples, 300'000);
 }
 
+TEST(EncoderWatch, AnEncoderThatNeverMovedIsSeenUnderTorque) {  // 0.3 of the rated torque while the others travel
+  for (std::size_t j = 0; j < 3; ++j) {
+    for (const bool frozen : {true, false}) {
+      EncoderWatch w;
+      Fault fault = Fault::kNone;
+      for (int t = 0; t < 500 && fault == Fault::kNone; ++t) {
+        Counts c = counted(motion(t));
+        c[j] = frozen || t < 250 ? 0.0 : 1.0;  // one count is enough to be believed
+        std::array<double, 3> torque{};
+        torque[j] = 0.3 * std::min(1.0, t / 450.0);
+        fault = w.add(c, 1, kFree, torque);
+      }
+      EXPECT_EQ(fault, frozen ? Fault::kEncoderFrozen : Fault::kNone) << j;
+    }
+  }
+}
+
+TEST(EncoderWatch, AJointThatNobodyPushesMayRestForEver) {
+  EncoderWatch w;
+  for (int t = 0; t < 3000; ++t) {
+    ASSERT_EQ(w.add({0.0, 3.0 * (t / 10), 0.0}, 1, kFree, {0.05 * std::sin(0.01 * t), 0.5, 0.0}), Fault::kNone) << t;
+  }
+}
+
 TEST(EncoderWatch, AGapStartsAnew) {
   EncoderWatch w;
   for (int t = -200; t < 200; ++t) {

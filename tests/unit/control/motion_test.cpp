@@ -65,7 +65,29 @@ TEST(BrakeToRest, StopsFromAnySpeedWithinItsLimits) {
   EXPECT_LT(moving, 60);
 }
 
+TEST(GuidedMove, GoesStraightWithinItsLimitsAndStops) {
+  GuidedMove move(1e-3);
+  const physics::Vec3 from(0.01, -0.17, 0.03), to(-0.05, -0.2, 0.0);
+  ASSERT_TRUE(move.start(from, to));
+  physics::Vec3 before = from, speed = physics::Vec3::Zero();
+  int ticks = 0;
+  for (; !move.is_done(); ++ticks) {
+    ASSERT_LT(ticks, 5000);
+    move.step();
+    const physics::Vec3 way = (to - from).normalized(), off = move.position_m() - from;
+    EXPECT_LT((off - way * way.dot(off)).norm(), 1e-9) << ticks;
+    EXPECT_LE((move.velocity_m_per_s() - speed).cwiseAbs().maxCoeff(),
+              GuidedMove::kAcceleration_m_per_s2 * 1e-3 + 1e-9);
+    EXPECT_LE(move.velocity_m_per_s().cwiseAbs().maxCoeff(), GuidedMove::kSpeed_m_per_s + 1e-9);
+    speed = move.velocity_m_per_s();
+    before = move.position_m();
+  }
+  EXPECT_GT(ticks, 500);
+  EXPECT_LT((before - to).norm(), 1e-6);
+}
+
 TEST(Motion, PlansWithoutAllocating) {
+  GuidedMove move(1e-3);
   Ramp ramp(1e-3);
   BrakeToRest brake(1e-3);
   const long before = allocations;
@@ -73,6 +95,8 @@ TEST(Motion, PlansWithoutAllocating) {
     static_cast<void>(ramp.step((i / 70) % 2 == 0 ? 1.0 : 0.0, 0.5));
     if (i % 50 == 0) brake.start({0, 0, 0}, {std::sin(0.1 * i), 1.0, -2.0});
     brake.step();
+    if (i % 90 == 0) static_cast<void>(move.start({0, 0, 0}, {0.1 * std::sin(0.1 * i), 0.1, -0.05}));
+    move.step();
   }
   EXPECT_EQ(allocations, before);
 }

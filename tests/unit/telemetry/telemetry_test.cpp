@@ -193,6 +193,27 @@ TEST_F(TelemetryTest, SenselessCommandsAreRefusedWithAReason) {
   EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_STOP), 0).reason, "too many commands at once");
 }
 
+TEST_F(TelemetryTest, ClutchAndMovesArePassedOnWhereTheyMakeSense) {
+  using ligature_msg::command_t;
+  rt::Command passed;
+  for (const auto kind : {command_t::KIND_CLUTCH_LEFT, command_t::KIND_UNCLUTCH_LEFT, command_t::KIND_CLUTCH_RIGHT,
+                          command_t::KIND_UNCLUTCH_RIGHT}) {
+    EXPECT_EQ(telemetry.handle(command(kind), 0).accepted, 1);
+    ASSERT_TRUE(outlets->commands.pop(passed));
+    EXPECT_EQ(static_cast<int>(passed.kind), kind);
+  }
+  EXPECT_EQ(telemetry.handle(command(8), 0).accepted, 0);
+  EXPECT_EQ(telemetry.handle(command(command_t::KIND_PARK), 0).accepted, 0);  // not armed
+  record.armed = true;
+  push(0);
+  telemetry.step(0);
+  EXPECT_EQ(telemetry.handle(command(command_t::KIND_PARK), 0).reason, "no hand holds its dead-man");
+  record.dead_man[1] = true;
+  push(1);
+  telemetry.step(0);
+  EXPECT_EQ(telemetry.handle(command(command_t::KIND_CALIBRATE), 0).accepted, 1);
+}
+
 std::vector<std::byte> bytes_of(const ligature_msg::command_t& c) {
   std::vector<std::byte> bytes(static_cast<std::size_t>(c.getEncodedSize()));
   EXPECT_GT(c.encode(bytes.data(), 0, static_cast<int>(bytes.size())), 0);

@@ -13,10 +13,7 @@ constexpr double kT_s = 1e-3, kCorner_Hz = 30.0;
 
 sim::Vec3 tip_force(const DeviceBus& bus) {
   const auto& m = bus.device.mechanics();
-  const auto permille = bus.device.torque_permille();
-  const auto& drive = m.body().drives;
-  const sim::Vec3 torque(drive.torque_Nm(permille[0]), drive.torque_Nm(permille[1]), drive.torque_Nm(permille[2]));
-  return m.plant().parameters().linkage.jacobian_D(m.plant().q_rad()).transpose().inverse() * torque;
+  return m.plant().parameters().linkage.jacobian_D(m.plant().q_rad()).transpose().inverse() * m.made_Nm();
 }
 
 }  // namespace
@@ -32,12 +29,7 @@ Watched watch(VirtualRig& rig, std::int64_t ticks, std::size_t look_at) {
       size[h] = force[h].norm();
       port[h] = -hands[h]->device.mechanics().motor_work_J();
       w.lowest_port_J[h] = std::min(w.lowest_port_J[h], port[h]);
-      const auto permille = hands[h]->device.torque_permille();
-      const auto& drive = hands[h]->device.mechanics().body().drives;
-      double hidden = 0.0;
-      for (const auto t : permille)
-        hidden += std::abs(drive.torque_Nm(t)) * std::numbers::pi / drive.counts_per_revolution;
-      w.quantum_J[h] = std::max(w.quantum_J[h], hidden);
+      w.lowest_bound_J[h] = std::min(w.lowest_bound_J[h], port[h] + rig.controller.hand(h).received_J);
     }
     w.lowest_sum_J = std::min(w.lowest_sum_J, port[0] + port[1]);
     w.rendered_N.push_back(force);
@@ -55,8 +47,7 @@ Watched watch(VirtualRig& rig, std::int64_t ticks, std::size_t look_at) {
       w.lowest_account_J[h] = std::min(w.lowest_account_J[h], r.port_energy_J[h]);
       if (before == nullptr) continue;
       const auto& g = before->f_device_N[h];
-      const bool cut = r.fault != 0 || (r.limits[h] & rt::kPassivityLimit) != 0;
-      double& step = cut ? w.largest_cut_N : w.largest_step_N;
+      double& step = r.fault != 0 ? w.largest_cut_N : w.largest_step_N;
       step = std::max(step, std::hypot(f[0] - g[0], f[1] - g[1], f[2] - g[2]));
     }
     if (w.fault == 0) w.fault = r.fault;
@@ -91,6 +82,18 @@ sim::Vec3 Watched::mean_N(std::size_t hand, std::size_t first, std::size_t last)
   last = std::min(last, rendered_N.size());
   for (std::size_t i = first; i < last; ++i) sum += rendered_N[i][hand];
   return sum / static_cast<double>(std::max<std::size_t>(1, last - first));
+}
+
+double Watched::unrest_N(std::size_t first, std::size_t last) const {
+  double worst = 0.0;
+  last = std::min(last, rendered_N.size());
+  for (std::size_t h = 0; h < 2 && last > first; ++h) {
+    const sim::Vec3 mean = mean_N(h, first, last);
+    double sum = 0.0;
+    for (std::size_t i = first; i < last; ++i) sum += (rendered_N[i][h] - mean).squaredNorm();
+    worst = std::max(worst, std::sqrt(sum / static_cast<double>(last - first)));
+  }
+  return worst;
 }
 
 double Watched::worst_chatter_N() const {

@@ -12,12 +12,12 @@ namespace ligature::lab {
 
 struct Watched {
   std::array<double, 2> lowest_port_J{};     ///< least the hand has put into the rig, by the motors' true work
-  std::array<double, 2> lowest_account_J{};  ///< the same by the firmware's account, on counts
-  std::array<double, 2> quantum_J{};         ///< largest work that half a count of each joint hides
+  std::array<double, 2> lowest_bound_J{};    ///< the same plus what the other hand's account gave it
+  std::array<double, 2> lowest_account_J{};  ///< the firmware's account, on counts
   double lowest_sum_J = 0.0;                 ///< of both ports' true energy: the thread carries it from hand to hand
   double peak_N = 0.0;
-  double largest_step_N = 0.0;  ///< of the force in one tick, where neither passivity nor a fault took it
-  double largest_cut_N = 0.0;   ///< where one of them did
+  double largest_step_N = 0.0;  ///< of the force in one tick, but for faults
+  double largest_cut_N = 0.0;   ///< where a fault took it
   int fault = 0;
   std::vector<std::array<double, 2>> tip_force_N;    ///< magnitude of what the motors make at each tip, a tick
   std::vector<std::array<sim::Vec3, 2>> rendered_N;  ///< the same as vectors
@@ -28,6 +28,8 @@ struct Watched {
   /// last.
   [[nodiscard]] double chatter_N(std::size_t hand, std::size_t first, std::size_t last) const;
   [[nodiscard]] sim::Vec3 mean_N(std::size_t hand, std::size_t first, std::size_t last) const;
+  /// rms of the force's change about its mean, worse hand.
+  [[nodiscard]] double unrest_N(std::size_t first, std::size_t last) const;
   /// Peak to peak speedless measure of trouble: rms of chatter over the whole run, worse hand.
   [[nodiscard]] double worst_chatter_N() const;
 };

@@ -12,6 +12,19 @@
 namespace ligature::lab {
 namespace {
 
+/// What the thread's two sides do to a node: each edge's stiffness times its strain, along it. Also the side that hangs
+/// on its frame counts: it is pressed a little.
+sim::Vec3 pull_on(const Watched& w, const scene::Suture& suture, int node) {
+  const double rest_m = suture.length_m / (suture.nodes - 1);
+  sim::Vec3 sum = sim::Vec3::Zero();
+  for (const int other : {node - 1, node + 1}) {
+    if (other < 0 || other >= static_cast<int>(w.nodes_W.size())) continue;
+    const sim::Vec3 edge = w.nodes_W[static_cast<std::size_t>(other)] - w.nodes_W[static_cast<std::size_t>(node)];
+    sum += suture.paper.stretch_N * (edge.norm() / rest_m - 1.0) * edge.normalized();
+  }
+  return sum;
+}
+
 /// A straight weightless thread of the paper's model between two hands: its tension is its stiffness times its strain,
 /// whatever the coupling or the contacts do.
 void steady_pull(const HapticsBench& bench, Verdict& v) {
@@ -28,30 +41,26 @@ void steady_pull(const HapticsBench& bench, Verdict& v) {
   }
   VirtualRig rig(setup, script);
   const Watched w = watch(rig, 6500, 6300);
-  const auto& nodes = w.nodes_W;
-  const int a = rig.thread.hand(physics::Hand::kLeft).node, b = rig.thread.hand(physics::Hand::kRight).node;
-  const int first = std::min(a, b), last = std::max(a, b);
-  if (first < 0) {
-    v.claim(false, "Fidelity: both hands hold the thread", "no", "yes");
-    return;
-  }
-  const double rest_m = setup.scene.suture.length_m / (setup.scene.suture.nodes - 1);
-  double length_m = 0.0;
-  for (int i = first; i < last; ++i)
-    length_m += (nodes[static_cast<std::size_t>(i + 1)] - nodes[static_cast<std::size_t>(i)]).norm();
-  const double tension_N = setup.scene.suture.paper.stretch_N * (length_m / (rest_m * (last - first)) - 1.0);
-  const double expected_N = setup.scene.hands.force_scale * tension_N;
-  Table table({"hand", "thread_tension_N", "times_scale_N", "at_the_hand_N", "deviation"});
-  double worst = 0.0;
+  Table table({"hand", "thread_on_node_N", "times_scale_N", "at_the_hand_N", "deviation"});
+  double worst = 0.0, least_N = 1e9;
   for (std::size_t h = 0; h < 2; ++h) {
-    const double felt_N = w.mean_N(h, 5300, 6400).norm();
-    worst = std::max(worst, std::abs(felt_N / expected_N - 1.0));
-    table.row({std::string(h == 0 ? "left" : "right"), tension_N, expected_N, felt_N, felt_N / expected_N - 1.0});
+    const int node = rig.thread.hand(h == 0 ? physics::Hand::kLeft : physics::Hand::kRight).node;
+    if (node < 0) {
+      v.claim(false, "Fidelity: both hands hold the thread", "no", "yes");
+      return;
+    }
+    const sim::Vec3 thread_N = pull_on(w, setup.scene.suture, node);
+    const sim::Vec3 expected_N = setup.scene.hands.force_scale * thread_N, felt_N = w.mean_N(h, 5300, 6400);
+    const double deviation = std::abs(felt_N.norm() / expected_N.norm() - 1.0);
+    worst = std::max(worst, deviation);
+    least_N = std::min(least_N, expected_N.norm());
+    table.row({std::string(h == 0 ? "left" : "right"), thread_N.norm(), expected_N.norm(), felt_N.norm(), deviation});
   }
   table.print();
   table.write(bench.out / "haptics-steady-pull.csv");
-  v.claim(worst <= 0.02 && expected_N > 0.05, "Fidelity: steady pull, force at the hand against tension times scale",
-          digits(worst) + " at " + digits(expected_N) + " N", "up to 0.02");
+  v.claim(worst <= 0.02 && least_N > 0.05,
+          "Fidelity: steady pull, force at the hand against the thread's on its node times scale",
+          digits(worst) + " at " + digits(least_N) + " N", "up to 0.02");
 }
 
 /// The knotted suture drawn tight and held.

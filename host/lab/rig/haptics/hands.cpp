@@ -4,6 +4,8 @@ namespace ligature::lab {
 namespace {
 
 constexpr double kHold_m = 0.095, kY_m = -0.0099, kZ_m = 0.050;
+constexpr double kShort_m = 0.02;
+constexpr std::array<double, 3> kPost_m{-0.05, kY_m, kZ_m + kShort_m};
 
 scene::GripKey key(double t, std::size_t hand, double x, bool grip) {
   return {t, {hand == 0 ? -x : x, kY_m, kZ_m}, grip};
@@ -50,6 +52,59 @@ scene::GripperScript slip(double apart_m) {
   right.push_back(key(4.9, 1, apart_m, false));
   if (last.time_s > 4.9) right.push_back(last);
   return script;
+}
+
+scene::GripperScript against_peg(double apart_m, double push_m) {
+  scene::GripperScript script = pull_and_release(apart_m, 1.2, 0.3);
+  for (auto& keys : script.keys) {
+    keys.resize(3);
+    scene::GripKey k = keys.back();
+    for (const double y : {push_m, 0.5 * push_m, push_m}) {
+      k.time_s += 0.6;
+      k.p_W_m[1] = kY_m + y;
+      keys.push_back(k);
+    }
+    k.time_s += 0.4;
+    k.grip = false;
+    keys.push_back(k);
+  }
+  return script;
+}
+
+scene::GripperScript give_way(double apart_m, double shift_m) {
+  scene::GripperScript script = pull_and_release(apart_m, 1.5, 0.3);
+  for (auto& keys : script.keys) {
+    keys.resize(3);
+    scene::GripKey k = keys.back();
+    k.time_s += 1.0;
+    k.p_W_m[0] -= shift_m;  // both to the left: the right one is dragged
+    keys.push_back(k);
+    k.time_s += 0.5;
+    keys.push_back(k);
+    k.time_s += 0.3;
+    k.grip = false;
+    keys.push_back(k);
+  }
+  return script;
+}
+
+scene::GripperScript on_a_short_thread(double pull_m) {
+  scene::GripperScript script;
+  for (std::size_t h = 0; h < 2; ++h) {
+    const double x = h == 0 ? kPost_m[0] : 0.08;
+    const auto at = [&](double t, double below, bool grip) {
+      return scene::GripKey{t, {x, kPost_m[1], kPost_m[2] - kShort_m - below}, h == 0 && grip};
+    };
+    script.keys[h] = {at(0.5, 0.0, false), at(1.0, 0.0, true), at(2.0, pull_m, true), at(4.5, pull_m, true),
+                      at(4.7, 0.0, false)};
+  }
+  return script;
+}
+
+std::vector<std::string> short_thread() {
+  const auto at = [](double v) { return std::to_string(v); };
+  return {"suture.initial=hanging", "suture.nodes=21", "suture.length_m=" + at(kShort_m), "suture.spacing=uniform",
+          "world.fixed=[{node=0,position_m=[" + at(kPost_m[0]) + "," + at(kPost_m[1]) + "," + at(kPost_m[2]) + "]}]"};
 }
 
 }  // namespace ligature::lab

@@ -1,7 +1,10 @@
 #pragma once
 // Scripts and hands of the haptics runs, for the knotted suture of scenes/suture-3-0-knot.toml: world = device, 1 : 1.
 
+#include <array>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "host/lab/rig/virtual_rig.hpp"
 #include "sim_device/unrest.hpp"
@@ -18,6 +21,15 @@ inline constexpr const char* kWeightless = "world.gravity_m_per_s2=[0,0,0]";
 [[nodiscard]] scene::GripperScript jam(double apart_m, double beat_s, int times);
 /// The right hand lets go and takes hold again under tension, every 0.3 s.
 [[nodiscard]] scene::GripperScript slip(double apart_m);
+
+/// Away from the person by `push_m` and half back, again: against a peg if the scene has one in the way.
+[[nodiscard]] scene::GripperScript against_peg(double apart_m, double push_m);
+inline constexpr const char* kPeg = "world.pegs=[{from_m=[0,0.004,-0.1],to_m=[0,0.004,0.2],radius_m=0.002}]";
+/// Drawn apart, then both to the left by `shift_m`: the left hand pulls, the right one gives way.
+[[nodiscard]] scene::GripperScript give_way(double apart_m, double shift_m);
+/// The left hand pulls down the end of a thread of 2 cm that hangs from a post (short_thread()): a stiff thing.
+[[nodiscard]] scene::GripperScript on_a_short_thread(double pull_m);
+[[nodiscard]] std::vector<std::string> short_thread();
 
 /// A hand that is elsewhere between two moments, at once.
 class Teleporting final : public sim::Intention {

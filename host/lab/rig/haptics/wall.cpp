@@ -63,8 +63,9 @@ WallRun press(const Wall& w, double time_s) {
       // The wire's own period is the controller's business, further ones lie between the sample and the law.
       acting = on_its_way;
       if (n > 0) v = (mass.x - run.x_m[static_cast<std::size_t>(n - 1)]) / kT_s;
-      passivity.observe(n, {mass.x, 0, 0}, {mass.x, 0, 0}, 0.0);
-      const control::Vec3 sent = passivity.control(n, {law(w, run.x_m, n - w.delay + 1), 0, 0}, {v, 0, 0});
+      passivity.observe(n, {{mass.x, 0, 0}, {mass.x, 0, 0}});
+      const control::Vec3 before(on_its_way, 0, 0), wish(law(w, run.x_m, n - w.delay + 1), 0, 0);
+      const control::Vec3 sent = passivity.control(n, wish, {v, 0, 0}, before);
       passivity.sent(n, sent, sent);
       on_its_way = sent.x();
     }

@@ -1,0 +1,47 @@
+#pragma once
+// Whether the joints did what a led move asked of them: the only moment at which the rig knows what an encoder must
+// show, also of one that lied from the start.
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/control/faults.hpp"
+#include "firmware/control/kinematics.hpp"
+
+namespace ligature::control {
+
+/// Sums the path's joint rates, J^-1 v, over a move, and compares with what the encoders went through. Judged when the
+/// tip strays from the path. A joint that went kEnough counts against its way: reversed, or somebody pulls against the
+/// move, which nothing here can tell apart. One that had kEnough to go and went less than kStill, while another came
+/// half its way: frozen; a hand that holds on keeps all of them, and is no fault. O(1), no allocation.
+class MoveCheck {
+ public:
+  static constexpr double kEnough = 25.0, kStill = 2.5;  ///< counts
+  static constexpr double kFollowed = 0.5;
+
+  void start(const JointAngles& q_rad) noexcept {
+    from_rad_ = vector_of(q_rad);
+    asked_rad_ = Vec3::Zero();
+  }
+  void step(const Mat3& inverse_jacobian, const Vec3& v_m_per_s, double period_s) noexcept {
+    const Vec3 dq = period_s * (inverse_jacobian * v_m_per_s);
+    if (dq.allFinite()) asked_rad_ += dq;
+  }
+  [[nodiscard]] Fault judge(const JointAngles& q_rad, double count_rad) const noexcept {
+    const Vec3 went = vector_of(q_rad) - from_rad_;
+    bool stands = false, follows = false;
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      const double enough_rad = kEnough * count_rad;
+      if (went[j] * asked_rad_[j] < 0.0 && std::abs(went[j]) >= enough_rad) return Fault::kAxisReversed;
+      if (std::abs(asked_rad_[j]) < enough_rad) continue;
+      if (went[j] / asked_rad_[j] >= kFollowed) follows = true;
+      if (std::abs(went[j]) <= kStill * count_rad) stands = true;
+    }
+    return stands && follows ? Fault::kEncoderFrozen : Fault::kNone;
+  }
+
+ private:
+  Vec3 from_rad_ = Vec3::Zero(), asked_rad_ = Vec3::Zero();
+};
+
+}  // namespace ligature::control

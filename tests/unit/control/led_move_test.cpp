@@ -1,0 +1,195 @@
+// Park and calibrate: led hands on a plant of the test's own, with encoders that may lie from the start.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/control/controller.hpp"
+
+namespace ligature::control {
+namespace {
+
+/// Two arms of the Omni's inertia and friction, rested on by hands that only hold the dead-man; one sample of delay.
+class Arms {
+ public:
+  explicit Arms(const JointAngles& at = {0.3, 0.6, 0.4}) : controller(scene(), {20, true}) {
+    q.fill(vector_of(at));
+    for (auto& r : in.reading.hand) r.valid = r.enabled = r.dead_man = true;
+  }
+  static scene::Hands scene() {
+    scene::Hands hands;
+    hands.workspace_scale = 1.0;
+    hands.force_scale = 1.0;
+    return hands;
+  }
+
+  void tick() {
+    const double count = device::omni().rad_per_count();
+    for (std::size_t h = 0; h < 2; ++h) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        const auto i = static_cast<Eigen::Index>(j);
+        const double seen = h == 0 && frozen == static_cast<int>(j) ? first[i] : q[h][i];
+        in.reading.hand[h].q_rad[j] =
+            (h == 0 && reversed == static_cast<int>(j) ? -1.0 : 1.0) * std::round(seen / count) * count;
+      }
+    }
+    const auto command = controller.tick(in);
+    ++in.tick;
+    for (std::size_t h = 0; h < 2; ++h) {
+      const Vec3 tip = linkage.position({q[h][0], q[h][1], q[h][2]});
+      move(q[h], omega[h], acting[h], work_J[h]);
+      speed = std::max(speed, (linkage.position({q[h][0], q[h][1], q[h][2]}) - tip).norm() / 1e-3);
+      acting[h] = vector_of(command.hand[h].torque_Nm);
+      most_N = std::max(most_N, controller.hand(h).f_device_N.norm());
+      most_J = std::max(most_J, work_J[h]);
+      // What the port gives out beyond what it was granted.
+      least_bound_J = std::min(least_bound_J, controller.hand(h).received_J - work_J[h]);
+    }
+  }
+  void ticks(int n) {
+    for (int i = 0; i < n; ++i) tick();
+  }
+  void to_force() {
+    first = q[0];
+    ticks(1000);
+    ASSERT_EQ(controller.state(), State::kForce);
+  }
+  [[nodiscard]] Vec3 tip(std::size_t h) const { return linkage.position({q[h][0], q[h][1], q[h][2]}); }
+
+  Controller controller;
+  TickInput in;
+  Linkage linkage{device::omni()};
+  std::array<Vec3, 2> q{}, omega{Vec3(0, 0, 0), Vec3(0, 0, 0)}, acting{Vec3(0, 0, 0), Vec3(0, 0, 0)};
+  std::array<double, 2> work_J{};
+  Vec3 first = Vec3::Zero();
+  double most_N = 0.0, most_J = 0.0, speed = 0.0, least_bound_J = 0.0;
+  int reversed = -1, frozen = -1;  // joint of the left hand
+  bool held = false;               // both arms, by somebody
+
+ private:
+  void move(Vec3& angle, Vec3& rate, const Vec3& torque, double& work) const {
+    const Vec3 inertia(1.3e-3, 8.1e-4, 7.9e-4), viscous(8.7e-3, 5.4e-3, 5.3e-3), dry(0.017, 0.0134, 0.0133);
+    if (held) return;
+    for (int i = 0; i < 10; ++i) {
+      for (Eigen::Index j = 0; j < 3; ++j) {
+        const double free = (rate[j] + 1e-4 / inertia[j] * torque[j]) / (1.0 + 1e-4 / inertia[j] * viscous[j]);
+        rate[j] = std::copysign(std::max(0.0, std::abs(free) - 1e-4 / inertia[j] * dry[j]), free);
+        angle[j] += 1e-4 * rate[j];
+        work += torque[j] * 1e-4 * rate[j];
+      }
+    }
+  }
+};
+
+constexpr double kSlack = 1.0 + 1e-9;
+
+TEST(LedMove, ParkLeadsBothHandsGentlyToTheRestingPose) {
+  Arms arms;
+  arms.to_force();
+  arms.controller.command(rt::CommandKind::kPark);
+  arms.ticks(6000);
+  const auto& d = device::omni();
+  const Vec3 park(0.5 * (d.workspace_min_m[0] + d.workspace_max_m[0]), d.home_tip_m[1], d.workspace_min_m[2] + 0.01);
+  for (std::size_t h = 0; h < 2; ++h) EXPECT_LT((arms.tip(h) - park).norm(), 0.005) << h;
+  EXPECT_EQ(arms.controller.fault(), Fault::kNone);
+  EXPECT_LE(arms.most_N, HandControl::kLead_N * kSlack);
+  EXPECT_LT(arms.speed, 0.25);
+  EXPECT_LE(arms.most_J, HandControl::kLeadEnergy_J);
+  EXPECT_GE(arms.least_bound_J, -1e-6);
+  EXPECT_LE(arms.controller.hand(0).received_J, HandControl::kLeadEnergy_J);  // the rest went back
+}
+
+TEST(LedMove, CalibrateLeadsHome) {
+  Arms arms;
+  arms.to_force();
+  arms.controller.command(rt::CommandKind::kCalibrate);
+  arms.ticks(6000);
+  EXPECT_LT((arms.tip(0) - arms.linkage.home_m()).norm(), 0.005);
+  EXPECT_EQ(arms.controller.fault(), Fault::kNone);
+}
+
+TEST(LedMove, NothingMovesWithoutACommandADeadManOrArming) {
+  for (const int without : {0, 1, 2}) {
+    Arms arms;
+    arms.to_force();
+    const Vec3 before = arms.q[0];
+    if (without == 1) {
+      for (auto& r : arms.in.reading.hand) r.dead_man = false;
+    }
+    if (without == 2) arms.controller.command(rt::CommandKind::kDisarm);
+    arms.ticks(100);
+    if (without != 0) arms.controller.command(rt::CommandKind::kPark);
+    for (auto& r : arms.in.reading.hand) r.dead_man = true;  // too late
+    arms.ticks(2000);
+    EXPECT_EQ(arms.q[0], before) << without;
+  }
+}
+
+TEST(LedMove, LettingGoOfTheDeadManEndsIt) {
+  Arms arms;
+  arms.to_force();
+  arms.controller.command(rt::CommandKind::kPark);
+  arms.ticks(500);
+  ASSERT_GT(arms.most_N, 0.05);
+  arms.in.reading.hand[0].dead_man = false;
+  arms.ticks(Engagement::kFallTicks + 3);
+  EXPECT_EQ(arms.controller.hand(0).f_device_N.norm(), 0.0);
+  arms.in.reading.hand[0].dead_man = true;
+  const Vec3 there = arms.q[0];
+  arms.ticks(2000);
+  EXPECT_LT((arms.q[0] - there).norm(), 1e-2);  // it coasts at most
+}
+
+TEST(LedMove, AHandThatHoldsTheThreadIsNotLed) {
+  Arms arms;
+  arms.to_force();
+  for (std::size_t h = 0; h < 2; ++h) arms.in.grasp[h] = {true, arms.controller.hand(h).p_WT, Vec3::Zero()};
+  arms.tick();
+  const Vec3 before = arms.q[0];
+  arms.controller.command(rt::CommandKind::kPark);
+  arms.ticks(1000);
+  EXPECT_LT((arms.q[0] - before).norm(), 1e-3);
+}
+
+TEST(LedMove, AHandThatHoldsOnEndsItWithoutAFault) {
+  Arms arms;
+  arms.to_force();
+  arms.held = true;
+  arms.controller.command(rt::CommandKind::kCalibrate);
+  arms.ticks(1000);
+  EXPECT_EQ(arms.controller.fault(), Fault::kNone);
+  EXPECT_GT(arms.most_N, 0.3);
+  EXPECT_LE(arms.most_N, HandControl::kLead_N * kSlack);
+  EXPECT_EQ(arms.controller.hand(0).f_device_N.norm(), 0.0);
+}
+
+TEST(LedMove, CalibrateFindsAnEncoderThatLiedFromTheStart) {
+  for (const auto expected : {Fault::kAxisReversed, Fault::kEncoderFrozen}) {
+    for (int joint = 0; joint < 3; ++joint) {
+      Arms arms;
+      (expected == Fault::kAxisReversed ? arms.reversed : arms.frozen) = joint;
+      if (expected == Fault::kAxisReversed && joint > 0) continue;  // below: an impossible pose, no force at all
+      arms.to_force();
+      arms.controller.command(rt::CommandKind::kCalibrate);
+      arms.ticks(3000);
+      EXPECT_EQ(arms.controller.fault(), expected) << joint;
+      EXPECT_LE(arms.most_J, HandControl::kLeadEnergy_J) << joint;
+      EXPECT_LT(arms.speed, 2.0) << joint;
+      EXPECT_EQ(arms.controller.hand(0).f_device_N.norm(), 0.0);
+      arms.controller.command(rt::CommandKind::kResetFault);  // told once, not for ever
+      arms.ticks(200);
+      EXPECT_EQ(arms.controller.fault(), Fault::kNone);
+    }
+  }
+}
+
+TEST(LedMove, AReversedShoulderNeverComesUp) {  // its angles are none that the arm can take
+  Arms arms;
+  arms.reversed = 1;
+  arms.ticks(2000);
+  EXPECT_EQ(arms.controller.state(), State::kCalibrate);
+  EXPECT_EQ(arms.most_N, 0.0);
+}
+
+}  // namespace
+}  // namespace ligature::control
