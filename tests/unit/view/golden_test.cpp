@@ -45,7 +45,9 @@ TEST(Golden, TheTracesAreTheExportedFiguresToTheLastBit) {
       for (std::string cell; std::getline(text, cell, ',');) cells.push_back(std::strtod(cell.c_str(), nullptr));
       ASSERT_EQ(row[kTick], cells[0]);
       for (std::size_t k = 0; k < 4; ++k) ASSERT_EQ(row[kLeftX + k], cells[2 + k]) << "tick " << tick.tick;
-      for (std::size_t k = 0; k < 4; ++k) ASSERT_EQ(row[kRightX + k], cells[11 + k]) << "tick " << tick.tick;
+      for (std::size_t k = 0; k < 4; ++k) ASSERT_EQ(row[kRightX + k], cells[12 + k]) << "tick " << tick.tick;
+      ASSERT_EQ(row[kLeftWorld], cells[9]) << "tick " << tick.tick;
+      ASSERT_EQ(row[kRightWorld], cells[19]) << "tick " << tick.tick;
     }
   }
   EXPECT_EQ(line, 401U);
