@@ -98,8 +98,10 @@ class Rig:
                    "--operator", self.operator, "--stats", self.path / f"{hand}.json")
 
     def start_firmware(self):
+        # Each lost period costs energy that a hand has not paid yet (docs/haptics.md); a machine that loses many would
+        # never push both hands at once, which is where these tests begin.
         self.start("firmware", "ligature-firmware", "run", "--scene", self.scene, "--left", self.bus["left"],
-                   "--right", self.bus["right"], "--arm", "--watchdog-ms", self.watchdog_ms, "--recorder", self.flight, *self.extra,
+                   "--right", self.bus["right"], "--arm", "--watchdog-ms", self.watchdog_ms, "--recorder", self.flight, "--set", "hands.energy_credit_J=0.02", *self.extra,
                    *os.environ.get("LIGATURE_RIG_ARGS", "").split(), prefix=self.prefix)
 
     def kill(self, name):

@@ -86,7 +86,8 @@ def validation(folder):
     assert len(json.loads((out / "validate.json").read_text())) == len(rows)
     done = lab("validate", "--only", "capstan", "--nodes", "50", "--model", "paper-4")
     assert done.returncode == 0 and "not modelled" in done.stdout, done
-    done = lab("validate", "--only", "heavy-rod-lifted", "--nodes", "50", "--model", "paper-4")
+    # The one case known to miss its bar (docs/rod.md, Limits); when that is cured, take another or a rod with a fault.
+    done = lab("validate", "--only", "stopping-distance", "--nodes", "200")
     assert done.returncode == 1 and "FAIL" in done.stdout, done
 
 

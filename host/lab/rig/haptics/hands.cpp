@@ -3,7 +3,7 @@
 namespace ligature::lab {
 namespace {
 
-constexpr double kHold_m = 0.095, kY_m = -0.0099, kZ_m = 0.050;
+constexpr double kHold_m = 0.08, kY_m = -0.0099, kZ_m = 0.050;
 constexpr double kShort_m = 0.02;
 constexpr std::array<double, 3> kPost_m{-0.05, kY_m, kZ_m + kShort_m};
 

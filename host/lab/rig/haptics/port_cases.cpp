@@ -6,7 +6,7 @@
 namespace ligature::lab {
 namespace {
 
-constexpr double kTaut_m = 0.124;
+constexpr double kTaut_m = 0.123;
 
 /// Drives that guard their windings at a third of what the record allows, after half a second: long before the
 /// controller's own limit would act.
@@ -28,7 +28,7 @@ void add_calm(const HapticsBench& bench, std::vector<PortCase>& all) {
   all.push_back({.name = "pull tight and release", .script = pull_and_release(kTaut_m), .in_quick = true});
   all.push_back({.name = "jam of the knot", .script = jam(kTaut_m, 0.15, 6)});
   all.push_back({.name = "jam against a peg",
-                 .script = against_peg(kTaut_m, 0.045),
+                 .script = against_peg(kTaut_m + 0.006, 0.045),
                  .overrides = {kWeightless, kPeg},
                  .in_quick = true});
   all.push_back({.name = "slip: lets go and takes again", .script = slip(kTaut_m), .in_quick = true});
