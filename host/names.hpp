@@ -38,9 +38,10 @@ inline constexpr std::array<CodeName, 7> kLimitNames{{{1, "peak force"},
                                                       {64, "joint torque"}}};
 
 /// DEGRADED_ values of tick_t: what the thread's solver gave up in a tick.
-inline constexpr std::array<CodeName, 3> kDegradationNames{{{1, "iterations ended early: contacts softer"},
-                                                            {2, "too many contacts: shallowest only guarded"},
-                                                            {3, "too much is near: stood still for a part of the tick"}}};
+inline constexpr std::array<CodeName, 3> kDegradationNames{
+    {{1, "iterations ended early: contacts softer"},
+     {2, "too many contacts: shallowest only guarded"},
+     {3, "too much is near: stood still for a part of the tick"}}};
 
 struct FaultText {
   int number;
