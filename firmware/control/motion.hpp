@@ -63,106 +63,77 @@ class Ramp {
   double period_s_, at_s_ = 0.0, value_ = 0.0;
 };
 
-/// Brings a tip from its motion to rest: a reference that starts where the tip is and as fast, and stops with at most
-/// kDeceleration and kJerk on each axis. No allocation.
-class BrakeToRest {
+/// A tip's reference along a planned path: three axes, read period by period. No allocation.
+class PlannedPath {
  public:
-  static constexpr double kDeceleration_m_per_s2 = 60.0;  ///< 2 m/s to rest in 50 ms or so
-  static constexpr double kJerk_m_per_s3 = 6000.0;
-
-  explicit BrakeToRest(double period_s) : period_s_(period_s) {
-    input_.control_interface = ruckig::ControlInterface::Velocity;
-    for (std::size_t i = 0; i < 3; ++i) {
-      input_.max_acceleration[i] = kDeceleration_m_per_s2;
-      input_.max_jerk[i] = kJerk_m_per_s3;
-      input_.target_velocity[i] = input_.target_acceleration[i] = 0.0;
-    }
-  }
-
-  void start(const physics::Vec3& p_m, const physics::Vec3& v_m_per_s) noexcept {
-    for (std::size_t i = 0; i < 3; ++i) {
-      input_.current_position[i] = p_m[static_cast<Eigen::Index>(i)];
-      input_.current_velocity[i] = v_m_per_s[static_cast<Eigen::Index>(i)];
-      input_.current_acceleration[i] = 0.0;
-    }
-    p_m_ = p_m;
-    v_m_per_s_ = v_m_per_s;
-    at_s_ = 0.0;
-    plans_ = otg_.calculate(input_, plan_) >= ruckig::Result::Working;
-  }
   /// One period on.
   void step() noexcept {
     if (!plans_) return;  // refused: the reference stays
     at_s_ += period_s_;
     std::array<double, 3> p{}, v{}, a{};
     plan_.at_time(at_s_, p, v, a);
-    for (std::size_t i = 0; i < 3; ++i) {
-      p_m_[static_cast<Eigen::Index>(i)] = p[i];
-      v_m_per_s_[static_cast<Eigen::Index>(i)] = v[i];
-    }
+    p_m_ = physics::Vec3(p[0], p[1], p[2]);
+    v_m_per_s_ = physics::Vec3(v[0], v[1], v[2]);
   }
+  [[nodiscard]] bool is_done() const noexcept { return !plans_ || at_s_ >= plan_.get_duration(); }
   [[nodiscard]] const physics::Vec3& position_m() const noexcept { return p_m_; }
   [[nodiscard]] const physics::Vec3& velocity_m_per_s() const noexcept { return v_m_per_s_; }
 
+ protected:
+  PlannedPath(double period_s, double acceleration_m_per_s2, double jerk_m_per_s3) : period_s_(period_s) {
+    input_.max_acceleration.fill(acceleration_m_per_s2);
+    input_.max_jerk.fill(jerk_m_per_s3);
+    input_.current_acceleration.fill(0.0);
+    input_.target_velocity.fill(0.0);
+    input_.target_acceleration.fill(0.0);
+  }
+  /// From here; the derived class has said where to. @return false when nothing can be planned.
+  bool plan(const physics::Vec3& p_m, const physics::Vec3& v_m_per_s) noexcept {
+    input_.current_position = {p_m[0], p_m[1], p_m[2]};
+    input_.current_velocity = {v_m_per_s[0], v_m_per_s[1], v_m_per_s[2]};
+    p_m_ = p_m;
+    v_m_per_s_ = v_m_per_s;
+    at_s_ = 0.0;
+    return plans_ = otg_.calculate(input_, plan_) >= ruckig::Result::Working;
+  }
+
+  ruckig::InputParameter<3> input_;
+
  private:
   ruckig::Ruckig<3> otg_;
-  ruckig::InputParameter<3> input_;
   ruckig::Trajectory<3> plan_;
   bool plans_ = false;
   double period_s_, at_s_ = 0.0;
   physics::Vec3 p_m_ = physics::Vec3::Zero(), v_m_per_s_ = physics::Vec3::Zero();
 };
 
-/// From rest to a pose at rest: a straight line, at most kSpeed, kAcceleration and kJerk. No allocation.
-class GuidedMove {
+/// Brings a tip from its motion to rest: a reference that starts where the tip is and as fast, and stops with at most
+/// kDeceleration and kJerk on each axis.
+class BrakeToRest : public PlannedPath {
+ public:
+  static constexpr double kDeceleration_m_per_s2 = 60.0;  ///< 2 m/s to rest in 50 ms or so
+  static constexpr double kJerk_m_per_s3 = 6000.0;
+
+  explicit BrakeToRest(double period_s) : PlannedPath(period_s, kDeceleration_m_per_s2, kJerk_m_per_s3) {
+    input_.control_interface = ruckig::ControlInterface::Velocity;
+  }
+  void start(const physics::Vec3& p_m, const physics::Vec3& v_m_per_s) noexcept { (void)plan(p_m, v_m_per_s); }
+};
+
+/// From rest to a pose at rest: a straight line, at most kSpeed, kAcceleration and kJerk.
+class GuidedMove : public PlannedPath {
  public:
   static constexpr double kSpeed_m_per_s = 0.08, kAcceleration_m_per_s2 = 0.4, kJerk_m_per_s3 = 4.0;
 
-  explicit GuidedMove(double period_s) : period_s_(period_s) {
+  explicit GuidedMove(double period_s) : PlannedPath(period_s, kAcceleration_m_per_s2, kJerk_m_per_s3) {
     input_.synchronization = ruckig::Synchronization::Phase;  // straight
-    for (std::size_t i = 0; i < 3; ++i) {
-      input_.max_velocity[i] = kSpeed_m_per_s;
-      input_.max_acceleration[i] = kAcceleration_m_per_s2;
-      input_.max_jerk[i] = kJerk_m_per_s3;
-      input_.current_velocity[i] = input_.current_acceleration[i] = 0.0;
-      input_.target_velocity[i] = input_.target_acceleration[i] = 0.0;
-    }
+    input_.max_velocity.fill(kSpeed_m_per_s);
   }
-
   /// @return false when no path can be planned; then it is done where it is.
   bool start(const physics::Vec3& from_m, const physics::Vec3& to_m) noexcept {
-    for (std::size_t i = 0; i < 3; ++i) {
-      input_.current_position[i] = from_m[static_cast<Eigen::Index>(i)];
-      input_.target_position[i] = to_m[static_cast<Eigen::Index>(i)];
-    }
-    p_m_ = from_m;
-    v_m_per_s_.setZero();
-    at_s_ = 0.0;
-    plans_ = otg_.calculate(input_, plan_) >= ruckig::Result::Working;
-    return plans_;
+    input_.target_position = {to_m[0], to_m[1], to_m[2]};
+    return plan(from_m, physics::Vec3::Zero());
   }
-  /// One period on.
-  void step() noexcept {
-    if (!plans_) return;
-    at_s_ += period_s_;
-    std::array<double, 3> p{}, v{}, a{};
-    plan_.at_time(at_s_, p, v, a);
-    for (std::size_t i = 0; i < 3; ++i) {
-      p_m_[static_cast<Eigen::Index>(i)] = p[i];
-      v_m_per_s_[static_cast<Eigen::Index>(i)] = v[i];
-    }
-  }
-  [[nodiscard]] bool is_done() const noexcept { return !plans_ || at_s_ >= plan_.get_duration(); }
-  [[nodiscard]] const physics::Vec3& position_m() const noexcept { return p_m_; }
-  [[nodiscard]] const physics::Vec3& velocity_m_per_s() const noexcept { return v_m_per_s_; }
-
- private:
-  ruckig::Ruckig<3> otg_;
-  ruckig::InputParameter<3> input_;
-  ruckig::Trajectory<3> plan_;
-  bool plans_ = false;
-  double period_s_, at_s_ = 0.0;
-  physics::Vec3 p_m_ = physics::Vec3::Zero(), v_m_per_s_ = physics::Vec3::Zero();
 };
 
 }  // namespace ligature::control

@@ -63,7 +63,8 @@ double Passivity::shortage_J(std::int64_t tick, const Vec3& f_N) const noexcept 
   const auto spend = [&](const Vec3& f, std::int64_t period, double counts) {
     spent_J += loss_J(f, static_cast<double>(period) * reach_m_ + counts * count_m_);
   };
-  for (std::int64_t i = sampled_; i <= tick; ++i) {  // under way
+  const auto remembered = last_sent_ - static_cast<std::int64_t>(kMemory) + 2;  // without samples the way is no longer
+  for (std::int64_t i = std::max(sampled_, remembered); i <= tick; ++i) {       // under way
     spend(in_tick(i - 1).f_N, i - sampled_ + 1, 1.0);
   }
   spend(f_N, tick - sampled_ + 2, 1.0);

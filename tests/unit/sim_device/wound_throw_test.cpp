@@ -5,20 +5,17 @@
 
 #include <gtest/gtest.h>
 
-#include "firmware/physics/simulation.hpp"
-#include "host/knot/recognise.hpp"
-#include "protocol/scene/scene_file.hpp"
-#include "sim_device/operator/knot_tier.hpp"
+#include "tests/unit/sim_device/tied.hpp"
 
 namespace ligature::sim {
 namespace {
 
+using test::tied;
+
 using Line = std::vector<Vec3>;
 
 std::string knot_of(std::span<const Vec3> line) {
-  std::vector<std::array<double, 3>> points;
-  for (const Vec3& p : line) points.push_back({p.x(), p.y(), p.z()});
-  const auto k = knot::recognise(points, false);
+  const auto k = test::recognised(line);
   return k.type + " " + k.handedness;
 }
 
@@ -87,30 +84,6 @@ TEST(WoundThrow, ThrowsInARowAreTheNamedKnots) {
 }
 
 /// At the facade, five seconds after the hands let go.
-std::string tied(const char* scene_name, const char* knot, std::uint32_t seed) {
-  const auto read = scene::load_scene(std::string(LIGATURE_SOURCE_DIR "/scenes/") + scene_name, {});
-  if (const auto* error = std::get_if<scene::Error>(&read)) return error->text;
-  const auto& scene = std::get<scene::Scene>(read);
-  auto made = physics::Simulation::make(scene);
-  auto tier = KnotTier::make(scene, knot, seed);
-  if (const auto* why = std::get_if<std::string>(&tier)) return *why;
-  auto& thread = std::get<physics::Simulation>(made);
-  auto& person = std::get<KnotTier>(tier);
-  Sight sight;
-  for (int k = 0; k < 120'000 && !person.is_done(); ++k) {
-    sight.t_s = 1e-3 * k;
-    sight.thread_W = thread.nodes_W();
-    for (std::size_t h = 0; h < 2; ++h) {
-      sight.tool_W[h] = person.wish()[h].p_W;
-      sight.force_W_N[h] = thread.hand(static_cast<physics::Hand>(h)).f_W;
-    }
-    const auto& wish = person.tick(sight);
-    thread.tick({physics::ToolInput{wish[0].p_W, wish[0].v_W, wish[0].grip},
-                 physics::ToolInput{wish[1].p_W, wish[1].v_W, wish[1].grip}});
-  }
-  return person.is_done() ? knot_of(thread.nodes_W()) : "not done";
-}
-
 TEST(WoundThrow, TiesKnotsOfTwoThrows) {
   EXPECT_EQ(tied("paper.toml", "square", 4), "3_1#3_1 amphichiral");
   EXPECT_EQ(tied("paper.toml", "granny", 104), "3_1#3_1 left");

@@ -1,0 +1,49 @@
+#pragma once
+// An operator at the facade: a scene's thread, hands that are where it wants them, no wire.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "firmware/physics/simulation.hpp"
+#include "host/knot/recognise.hpp"
+#include "protocol/scene/scene_file.hpp"
+#include "sim_device/operator/knot_tier.hpp"
+
+namespace ligature::sim::test {
+
+inline knot::KnotResult recognised(std::span<const Vec3> thread) {
+  std::vector<std::array<double, 3>> shape;
+  for (const Vec3& p : thread) shape.push_back({p.x(), p.y(), p.z()});
+  return knot::recognise(shape, false);
+}
+
+/// @return the knot's type and hand after the operator is done, or why there is none.
+inline std::string tied(const char* name, const char* knot, std::uint32_t seed,
+                        const std::vector<std::string>& overrides = {}) {
+  const auto read = scene::load_scene(std::string(LIGATURE_SOURCE_DIR "/scenes/") + name, overrides);
+  if (const auto* error = std::get_if<scene::Error>(&read)) return error->text;
+  const auto& scene = std::get<scene::Scene>(read);
+  auto made = physics::Simulation::make(scene);
+  auto tier = KnotTier::make(scene, knot, seed);
+  if (const auto* why = std::get_if<std::string>(&tier)) return *why;
+  auto& thread = std::get<physics::Simulation>(made);
+  auto& person = std::get<KnotTier>(tier);
+  Sight sight;
+  for (int k = 0; k < 200'000 && !person.is_done(); ++k) {
+    sight.t_s = 1e-3 * k;
+    sight.thread_W = thread.nodes_W();
+    for (std::size_t h = 0; h < 2; ++h) {
+      sight.tool_W[h] = person.wish()[h].p_W;
+      sight.force_W_N[h] = thread.hand(static_cast<physics::Hand>(h)).f_W;
+    }
+    const auto& wish = person.tick(sight);
+    thread.tick({physics::ToolInput{wish[0].p_W, wish[0].v_W, wish[0].grip},
+                 physics::ToolInput{wish[1].p_W, wish[1].v_W, wish[1].grip}});
+  }
+  if (!person.is_done()) return "not done";
+  const auto k = recognised(thread.nodes_W());
+  return k.type + " " + k.handedness;
+}
+
+}  // namespace ligature::sim::test
