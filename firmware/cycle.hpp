@@ -70,7 +70,7 @@ class Cycle {
       const auto synced = clock_.now();
       const rt::RigReading reading = bus_.read_tpdos(woke + kTpdoWait);
       const auto sampled = clock_.now();
-      const rt::RigCommand command = controller_.tick(input(reading));
+      const rt::RigCommand command = controller_.tick(input(reading, sampled - woke >= kPeriod));
       const auto decided = clock_.now();
       const rt::WireTorque torque = bus_.write_rpdos(command);
       const auto controlled = clock_.now();
@@ -115,12 +115,13 @@ class Cycle {
     plants_->give_back(plant);
   }
 
-  control::TickInput input(const rt::RigReading& reading) const noexcept {
+  control::TickInput input(const rt::RigReading& reading, bool late) const noexcept {
     return {
         tick_,
         reading,
         {control::grasp_of(thread_.hand(physics::Hand::kLeft)), control::grasp_of(thread_.hand(physics::Hand::kRight))},
-        thread_.diagnostics().finite};
+        thread_.diagnostics().finite,
+        late};
   }
 
   void publish(const Phases& at, const rt::WireTorque& torque) noexcept {

@@ -71,7 +71,10 @@ void Controller::step_force_scale() noexcept {
 
 rt::RigCommand Controller::tick(const TickInput& in) noexcept {
   step_force_scale();
-  for (std::size_t h = 0; h < rt::kHands; ++h) hands_[h].observe(in.reading.hand[h], in.grasp[h], in.tick, last_tick_);
+  for (std::size_t h = 0; h < rt::kHands; ++h) {
+    if (in.late) hands_[h].doubt_time_of(in.tick);
+    hands_[h].observe(in.reading.hand[h], in.grasp[h], in.tick, last_tick_);
+  }
   step_state(in);
   step_gains();
   last_tick_ = in.tick;

@@ -28,6 +28,7 @@ struct TickInput {
   rt::RigReading reading;
   std::array<Grasp, rt::kHands> grasp;  ///< of the thread's last tick
   bool thread_finite = true;
+  bool late = false;  ///< the samples asked for in this tick were taken nobody knows when, periods late perhaps
 };
 
 /// Real time: tick() is O(1), allocates nothing, throws nothing, calls no system. Deterministic in its inputs.

@@ -78,18 +78,20 @@ void HandControl::sample(const rt::HandReading& reading, std::int64_t sampled) n
   state_.q_rad = reading.q_rad;
   p_DT_ = linkage_.position(reading.q_rad);
   jacobian_ = linkage_.jacobian(reading.q_rad);
+  const bool timed = sampled != doubtful_tick_;
   const std::int64_t periods = sample_tick_ < 0 ? 0 : sampled - sample_tick_;
   Vec3 rate;
   for (std::size_t j = 0; j < velocity_.size(); ++j) {
     velocity_[j].add(reading.q_rad[j], periods);
+    if (!timed) velocity_[j].doubt_last_time();
     rate[static_cast<Eigen::Index>(j)] = velocity_[j].velocity_per_s();
   }
   v_DT_ = jacobian_ * rate;
   std::array<double, 3> counts{};
   for (std::size_t j = 0; j < counts.size(); ++j) counts[j] = std::round(reading.q_rad[j] / count_rad_);
   const Vec3 torque = torque_Nm_ / rated_Nm_;
-  encoder_fault_ =
-      watch_.add(counts, periods, linkage_.far_from_stops(reading.q_rad), {torque[0], torque[1], torque[2]});
+  encoder_fault_ = watch_.add(counts, timed ? periods : 0, linkage_.far_from_stops(reading.q_rad),
+                              {torque[0], torque[1], torque[2]});
   sample_tick_ = sampled;
   from_torque_ = jacobian_.transpose().inverse();
   if (!p_DT_.allFinite()) return;

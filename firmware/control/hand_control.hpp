@@ -58,6 +58,8 @@ class HandControl {
   /// Joints to tip to world, and the force that this pose asks for. An old sample is held as it is.
   /// @param last_tick the period executed before this one; reading.age_ticks counts executed periods.
   void observe(const rt::HandReading& reading, const Grasp& grasp, std::int64_t tick, std::int64_t last_tick) noexcept;
+  /// The loop stood still while this tick's samples were asked for: they may be of any time since, and tell no speed.
+  void doubt_time_of(std::int64_t tick) noexcept { doubtful_tick_ = tick; }
   void hold_clutch(bool held) noexcept { clutch_command_ = held; }
 
   void drop() noexcept {
@@ -139,7 +141,7 @@ class HandControl {
   std::int16_t decided_limits_ = 0;
   Vec3 p_DT_ = Vec3::Zero(), v_DT_ = Vec3::Zero();
   bool finite_ = true, holds_ = false, clutch_command_ = false;
-  std::int64_t sample_tick_ = -1;
+  std::int64_t sample_tick_ = -1, doubtful_tick_ = -1;
   std::int32_t last_age_ = 0;
   EncoderWatch watch_;
   Fault encoder_fault_ = Fault::kNone;

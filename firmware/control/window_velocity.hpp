@@ -35,6 +35,9 @@ class WindowVelocity {
     velocity_ = k_ == 0 ? 0.0 : -slope(k_) / period_s_;
   }
 
+  /// The time of the last sample is not known: it says where, and not how fast; the window begins with it.
+  void doubt_last_time() noexcept { count_ = 1, k_ = 0, velocity_ = 0.0; }
+
   [[nodiscard]] double velocity_per_s() const noexcept { return velocity_; }
   [[nodiscard]] std::size_t window() const noexcept { return k_; }
 

@@ -2,7 +2,6 @@
 
 import json
 import math
-import re
 import unittest
 
 from rig import FLAG_PERIOD_LOST, HANDS, STATE_ENGAGE, STATE_FAULT, STATE_FORCE, Rig, run
@@ -21,20 +20,8 @@ def pushes_both_hands(rig):
 
 class WholeRig(unittest.TestCase):
     def test_ties_the_overhand_and_every_tick_is_recorded(self):
-        # A machine that stops everything for 20 periods moves the hands in one jump; the controller is right to latch
-        # fault 21, and the run says nothing of the rig. Three such runs in a row are a failure.
-        for _ in range(2):
-            if self.machine_kept_up():
-                return
-        self.assertTrue(self.machine_kept_up(), "the machine stood still in three runs")
-
-    def machine_kept_up(self):
         with Rig(record=True, extra=("--duration", 23)) as rig:
             code = rig.processes["firmware"].wait(timeout=120)
-            longest = re.search(r"control +\S+ +\S+ +(\S+)", rig.words())
-            if code == 3 and "fault 21" in rig.words() and longest and float(longest[1]) > 20_000:
-                print(f"the machine stood still for {longest[1]} us; once more")
-                return False
             self.assertEqual(code, 0, rig.words())
             self.assertEqual(rig.end("recorder"), 0, rig.words())
             report = json.loads(run("ligature-host", "report", rig.log, "--json").stdout)
@@ -52,7 +39,6 @@ class WholeRig(unittest.TestCase):
         magnitudes = [math.hypot(*t.f_device_N[h]) for t in ticks for h in (0, 1)]
         self.assertLessEqual(max(magnitudes), MAX_FORCE_N * (1 + 1e-9))
         self.assertGreater(max(magnitudes), 0.01, "the hands felt nothing")
-        return True
 
 
 class Deaths(unittest.TestCase):

@@ -114,6 +114,18 @@ TEST(Cycle, AStallAsLongAsTheWatchdogIsAFaultInTheNextTick) {
   }
 }
 
+TEST(Cycle, AStallOfTheWholeMachineIsNoSpeedOfTheHand) {  // at 0.38 m/s a sample 15 ms late looks like 6 m/s
+  VirtualRig rig;
+  rig.bus.waist_rad_per_s = 2.0;
+  rig.bus.stalls[200] = 15ms;
+  rig.cycle.end_after(kRun);
+  rig.cycle.run();
+  EXPECT_EQ(rig.controller.fault(), control::Fault::kNone);
+  for (const auto& r : rig.records()) {
+    EXPECT_LT(std::hypot(r.v_WT_m_per_s[0][0], r.v_WT_m_per_s[0][1]), 20.0 * 0.4) << r.tick;
+  }
+}
+
 TEST(Cycle, AStallLongerThanTheRingCountsWhatItCouldNotKeep) {
   VirtualRig rig;
   rig.bus.stalls[10] = 20s;

@@ -41,6 +41,8 @@ class VirtualBus {
     clock_.time += std::chrono::microseconds(460);
     if (const auto it = stalls.find(syncs); it != stalls.end()) clock_.time += it->second;
     sampled_at.push_back(clock_.time);
+    const double moved_rad = waist_rad_per_s * std::chrono::duration<double>(clock_.time).count();
+    for (auto& hand : reading.hand) hand.q_rad[0] = kRestingArm[0] + moved_rad;
     return reading;
   }
   rt::WireTorque write_rpdos(const rt::RigCommand& command) noexcept {
@@ -59,6 +61,7 @@ class VirtualBus {
   std::int64_t syncs = 0;
   std::map<std::int64_t, Nanoseconds> stalls;  // at the n-th SYNC (from 1), the tick takes so much longer
   std::vector<Nanoseconds> sampled_at;
+  double waist_rad_per_s = 0.0;  // of both hands; a stall holds up the drives too, and they sample after it
 
  private:
   VirtualClock& clock_;
