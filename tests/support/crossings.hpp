@@ -47,6 +47,31 @@ inline bool crossed(const Instant& p, const Instant& q) {
   return false;
 }
 
+// Crossings of any two segments, listed by anybody or not, when nodes go straight from `before` to `after`. Pairs whose
+// spheres do not meet even with all that either moves are passed over.
+inline long crossings_of_step(const std::vector<Vec>& before, const std::vector<Vec>& after) {
+  struct Ball {
+    Vec middle;
+    double r;
+  };
+  std::vector<Ball> balls;
+  for (std::size_t j = 0; j + 1 < before.size(); ++j) {
+    const double moved = std::max(norm(after[j] - before[j]), norm(after[j + 1] - before[j + 1]));
+    balls.push_back({0.5 * (before[j] + before[j + 1]), 0.5 * norm(before[j + 1] - before[j]) + moved});
+  }
+  long found = 0;
+  for (std::size_t a = 0; a < balls.size(); ++a) {
+    for (std::size_t b = a + 2; b < balls.size(); ++b) {
+      const Vec off = balls[b].middle - balls[a].middle;
+      const double far = balls[a].r + balls[b].r;
+      if (dot(off, off) > far * far) continue;
+      found += crossed({before[a], before[a + 1], before[b], before[b + 1]},
+                       {after[a], after[a + 1], after[b], after[b + 1]});
+    }
+  }
+  return found;
+}
+
 inline Vec point_at(const std::vector<double>& s, const std::vector<Vec>& x, double at) {
   auto j = static_cast<std::size_t>(std::upper_bound(s.begin() + 1, s.end() - 1, at) - s.begin()) - 1;
   const double share = (at - s[j]) / (s[j + 1] - s[j]);

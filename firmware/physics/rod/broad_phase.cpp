@@ -9,8 +9,9 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr std::size_t kBlock = 8;
-constexpr float kSlack = 1.0001F;     // float rounding of centres and radii
+constexpr float kSlack = 1.0001F;  // float rounding of centres and radii
+constexpr double kStraight = 0.95,
+                 kBent = 2.0 / 3.0;   // of the gap that a straight thread leaves between its own neighbours
 constexpr std::size_t kTable = 2048;  // places for impulses: a few times the most contacts there can be
 
 std::size_t place_of(std::int32_t a, std::int32_t b) noexcept {
@@ -21,8 +22,9 @@ std::size_t place_of(std::int32_t a, std::int32_t b) noexcept {
 
 void BroadPhase::reserve(int nodes, int pairs) {
   const auto n = (static_cast<std::size_t>(nodes) + 2 * kBlock) / kBlock * kBlock;
-  for (auto* array : {&x_, &y_, &z_, &r_, &half_}) array->assign(n, 0.0F);
+  for (auto* array : {&x_, &y_, &z_, &half_}) array->assign(n, 0.0F);
   blocks_.resize(n / kBlock);
+  for (int level = 0; level < kLevels; ++level) tree_[level].resize((n / kBlock >> level) + 1);
   capacity_ = pairs;
   kept_.assign(kTable, Kept{});
 }
@@ -34,7 +36,7 @@ void BroadPhase::place(const State& state, const Motion& motion, float horizon_s
   for (std::size_t j = 0; j < blocks * kBlock; ++j) {
     if (j >= segments) {  // padding: far from everything
       x_[j] = y_[j] = z_[j] = 1e18F;
-      r_[j] = half_[j] = 0.0F;
+      half_[j] = 0.0F;
       continue;
     }
     const Vec mid = 0.5 * (state.x[j] + state.x[j + 1]) - origin, half = 0.5 * (state.x[j + 1] - state.x[j]);
@@ -42,7 +44,6 @@ void BroadPhase::place(const State& state, const Motion& motion, float horizon_s
     y_[j] = static_cast<float>(mid[1]);
     z_[j] = static_cast<float>(mid[2]);
     half_[j] = static_cast<float>(norm(half)) * kSlack;
-    r_[j] = (half_[j] + horizon_s * static_cast<float>(motion.speed(j))) * kSlack;
   }
   for (std::size_t k = 0; k < blocks; ++k) {
     const std::size_t begin = k * kBlock, end = std::min(begin + kBlock, segments);
@@ -52,9 +53,24 @@ void BroadPhase::place(const State& state, const Motion& motion, float horizon_s
     ball.x *= scale, ball.y *= scale, ball.z *= scale;
     for (std::size_t j = begin; j < end; ++j) {
       const float x = x_[j] - ball.x, y = y_[j] - ball.y, z = z_[j] - ball.z;
-      ball.r = std::max(ball.r, std::sqrt(x * x + y * y + z * z) + r_[j]);
+      ball.r = std::max(ball.r, (std::sqrt(x * x + y * y + z * z) + half_[j]) * kSlack);
     }
-    blocks_[k] = ball;
+    blocks_[k] = tree_[0][k] = ball;
+    tree_[0][k].r += horizon_s * static_cast<float>(motion.speed_of_block(k)) * kSlack;
+  }
+  grow_tree(blocks);
+}
+
+// A sphere around each two of the level below, about the middle between them.
+void BroadPhase::grow_tree(std::size_t blocks) noexcept {
+  for (int level = 1; level < kLevels && (blocks >> level) > 0; ++level) {
+    const auto& below = tree_[level - 1];
+    for (std::size_t k = 0; k < blocks >> level; ++k) {
+      const Ball &a = below[2 * k], &b = below[2 * k + 1];
+      const float x = 0.5F * (b.x - a.x), y = 0.5F * (b.y - a.y), z = 0.5F * (b.z - a.z);
+      const float r = std::sqrt(x * x + y * y + z * z) + std::max(a.r, b.r);
+      tree_[level][k] = {a.x + x, a.y + y, a.z + z, r * kSlack};
+    }
   }
 }
 
@@ -84,24 +100,31 @@ void BroadPhase::give_back(Candidate& pair) const noexcept {
 
 bool BroadPhase::consider(const State& state, const Motion& motion, const Outlook& outlook, std::size_t a,
                           std::size_t b, std::vector<Candidate>& list) noexcept {
-  if (b < a + 2) return true;
   spent_ += price::kConsider;
   const double d = outlook.diameter_m, arc = state.mesh.s[b] - state.mesh.s[a + 1];
   if (arc < kLeastArc * d) return true;
-  const double reach = arc < 0.5 * std::numbers::pi * d ? d * std::sin(arc / d) : d;
+  const bool along = arc < 0.5 * std::numbers::pi * d;  // neighbours along the thread
+  const double reach = along ? d * std::sin(arc / d) : d;
   const double limit = reach + outlook.skin_m + outlook.horizon_s * motion.rate(a, b);
   const float dx = x_[b] - x_[a], dy = y_[b] - y_[a], dz = z_[b] - z_[a];
-  const float within = (half_[a] + half_[b] + static_cast<float>(limit)) * kSlack;
-  if (dx * dx + dy * dy + dz * dz > within * within) return true;  // allowed its own motion, it stays away
+  const float halves = half_[a] + half_[b], within = (halves + static_cast<float>(limit)) * kSlack;
+  const float apart2 = dx * dx + dy * dy + dz * dz;
+  if (apart2 > within * within) return true;  // allowed its own motion, it stays away
   spent_ += price::kList;
-  const Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
-  if (c.distance2 > limit * limit) return true;
-  if (static_cast<int>(list.size()) >= capacity_) return false;
   Candidate pair;
   pair.a = static_cast<std::int32_t>(a);
   pair.b = static_cast<std::int32_t>(b);
   pair.reach_m = reach;
-  pair.due = std::sqrt(c.distance2) - reach;
+  pair.near_m = std::min(outlook.near_m, kBent * (arc - reach));
+  // Where the thread is straight its neighbours are as far apart as their spheres, which need no measuring.
+  pair.due = along ? static_cast<double>(std::sqrt(apart2) / kSlack - halves) - reach : 0.0;
+  if (!along || pair.due < kStraight * (arc - reach)) {
+    spent_ += price::kExact;
+    const Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
+    if (c.distance2 > limit * limit) return true;
+    pair.due = std::sqrt(c.distance2) - reach;
+  }
+  if (static_cast<int>(list.size()) >= capacity_) return false;
   give_back(pair);
   list.push_back(pair);
   return true;
@@ -110,55 +133,77 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
 unsigned BroadPhase::near(std::size_t a, std::size_t q, float reach) const noexcept {
   const std::size_t base = q * kBlock;
   const float cx = blocks_[q].x - x_[a], cy = blocks_[q].y - y_[a], cz = blocks_[q].z - z_[a];
-  const float within = blocks_[q].r * kSlack + r_[a] + reach;
+  const float within = blocks_[q].r + half_[a] + reach;
   if (cx * cx + cy * cy + cz * cz > within * within) return 0;
   unsigned hits = 0;
   for (std::size_t l = 0; l < kBlock; ++l) {
     const float dx = x_[base + l] - x_[a], dy = y_[base + l] - y_[a], dz = z_[base + l] - z_[a];
-    const float apart = r_[base + l] + r_[a] + reach;
+    const float apart = half_[base + l] + half_[a] + reach;
     hits |= static_cast<unsigned>(dx * dx + dy * dy + dz * dz <= apart * apart) << l;
   }
-  return hits;
+  return base < a + 2 ? hits & ~0U << (a + 2 - base) : hits;  // a pair once, and no neighbours
 }
 
 bool BroadPhase::blocks(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p, std::size_t q,
-                        std::vector<Candidate>& list) noexcept {
-  constexpr long kDearest = price::kSphere + static_cast<long>(kBlock) * (price::kConsider + price::kList);
-  const float reach = static_cast<float>(outlook.diameter_m + outlook.skin_m) * kSlack;
+                        const PairList& list) noexcept {
+  constexpr long kDearest =
+      price::kSphere + static_cast<long>(kBlock) * (price::kConsider + price::kList + price::kExact);
+  const double rate = motion.rate_of_blocks(p, q);
+  const auto reach =
+      static_cast<float>(outlook.diameter_m + outlook.skin_m + outlook.horizon_s * rate) * kSlack * kSlack;
+  const float x = blocks_[q].x - blocks_[p].x, y = blocks_[q].y - blocks_[p].y, z = blocks_[q].z - blocks_[p].z;
+  const float within = blocks_[p].r + blocks_[q].r + reach;
+  if (x * x + y * y + z * z > within * within) return true;
+  PairGroup group;
+  group.first = static_cast<std::int32_t>(list.pairs.size());
   for (std::size_t a = p * kBlock; a < std::min((p + 1) * kBlock, state.x.size() - 1); ++a) {
     if (spent_ + kDearest > allowance_) return false;
     spent_ += price::kSphere;
     for (unsigned hits = near(a, q, reach); hits != 0; hits &= hits - 1) {
       const std::size_t b = q * kBlock + static_cast<std::size_t>(__builtin_ctz(hits));
-      if (!consider(state, motion, outlook, a, b, list)) return false;
+      if (!consider(state, motion, outlook, a, b, list.pairs)) return false;
     }
+  }
+  group.last = static_cast<std::int32_t>(list.pairs.size());
+  group.p = static_cast<std::int32_t>(p), group.q = static_cast<std::int32_t>(q);
+  if (group.last > group.first) list.groups.push_back(group);
+  return true;
+}
+
+// The largest sphere that begins with block q: what it does not meet is passed over at once.
+bool BroadPhase::search(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p,
+                        const PairList& list) noexcept {
+  const std::size_t count = (state.x.size() - 1 + kBlock - 1) / kBlock;
+  const Ball own = tree_[0][p];
+  const float reach = static_cast<float>(outlook.diameter_m + outlook.skin_m) * kSlack;
+  const auto meets = [&](const Ball& ball) {
+    spent_ += price::kBall;
+    const float x = ball.x - own.x, y = ball.y - own.y, z = ball.z - own.z, within = ball.r + own.r + reach;
+    return x * x + y * y + z * z <= within * within;
+  };
+  for (std::size_t q = p; q < count;) {
+    if (spent_ + kLevels * price::kBall > allowance_) return false;
+    int level = std::min(q == 0 ? kLevels - 1 : __builtin_ctzl(q), kLevels - 1);
+    while (level > 0 && (q + (std::size_t{1} << level) > count || meets(tree_[level][q >> level]))) --level;
+    if (level == 0 && meets(tree_[0][q]) && !blocks(state, motion, outlook, p, q, list)) return false;
+    q += std::size_t{1} << level;
   }
   return true;
 }
 
-long BroadPhase::least_cost(int nodes) noexcept {
-  const long blocks = (nodes + static_cast<long>(kBlock) - 1) / static_cast<long>(kBlock);
-  return 4L * static_cast<long>(kTable) + 50L * nodes + 10L * blocks * (blocks + 1) / 2;
-}
+long BroadPhase::least_cost(int nodes) noexcept { return 4L * static_cast<long>(kTable) + 60L * nodes; }
 
 bool BroadPhase::build(const State& state, Motion& motion, const Outlook& outlook, long allowance, Work& work,
-                       std::vector<Candidate>& list) noexcept {
+                       const PairList& list) noexcept {
   motion.restart();
-  list.clear();
+  list.pairs.clear();
+  list.groups.clear();
   place(state, motion, static_cast<float>(outlook.horizon_s));
   const std::size_t segments = state.x.size() - 1, count = (segments + kBlock - 1) / kBlock;
-  const float reach = static_cast<float>(outlook.diameter_m + outlook.skin_m) * kSlack;
   spent_ = least_cost(state.nodes());
   allowance_ = allowance;
   bool good = true;
-  for (std::size_t p = 0; p < count && good; ++p) {
-    for (std::size_t q = p; q < count && good; ++q) {
-      const float bx = blocks_[p].x - blocks_[q].x, by = blocks_[p].y - blocks_[q].y, bz = blocks_[p].z - blocks_[q].z;
-      const float limit = (blocks_[p].r + blocks_[q].r) * kSlack + reach;
-      if (p != q && bx * bx + by * by + bz * bz > limit * limit) continue;
-      good = blocks(state, motion, outlook, p, q, list);
-    }
-  }
+  for (std::size_t p = 0; p < count && good; ++p) good = search(state, motion, outlook, p, list);
   work.spend(spent_);
   return good;
 }

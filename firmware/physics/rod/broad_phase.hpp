@@ -15,22 +15,41 @@ struct Candidate {
   std::int32_t a = 0;    ///< segment of the thread
   std::int32_t b = 0;    ///< another segment, >= a + 2
   double reach_m = 0.0;  ///< centre distance at which they touch
+  double near_m = 0.0;   ///< gap within which they are a contact at any speed
   double due = 0.0;      ///< gap when last measured + Motion::gone then: minus gone now, a lower bound of the gap
   double s_a = 0.0, s_b = 0.0;  ///< material coordinates of the closest points, m
   Vec impulse{};                ///< of the last substep, on b's side, N s
   char stuck = 0;               ///< 1: inside the friction cone then
 };
 
-/// How far ahead a list looks: pairs within reach + skin + horizon x their rate of approach (motion.hpp) are on it.
-struct Outlook {
-  double diameter_m = 0.0, skin_m = 0.0, horizon_s = 0.0;
+/// The pairs first .. last - 1 of a list: those between two blocks of segments (motion.hpp). What is due for none of
+/// them is looked at once, not pair by pair.
+struct PairGroup {
+  std::int32_t first = 0, last = 0;
+  std::int32_t p = 0, q = 0;  ///< the blocks
+  double due = kAtOnce;       ///< least of their dues minus near_m: minus Motion::gone_of_blocks, a lower bound
+
+  static constexpr double kAtOnce = -1e300;  ///< when one of them touched
 };
 
-/// Blocks of eight neighbouring segments first, by bounding spheres, then the segments' spheres, then the exact
-/// distance of what is left, so the cost grows like the thread's length, not its square, for all but a few hundred
-/// nanoseconds per 100 nodes. Each pair is allowed its own motion: one fast end does not fill the list.
+/// Where a list is made: pairs in the order of their groups.
+struct PairList {
+  std::vector<Candidate>& pairs;
+  std::vector<PairGroup>& groups;
+};
+
+/// How far ahead a list looks: pairs within reach + skin + horizon x their rate of approach (motion.hpp) are on it.
+struct Outlook {
+  double diameter_m = 0.0, skin_m = 0.0, near_m = 0.0, horizon_s = 0.0;
+};
+
+/// Blocks of eight neighbouring segments first, in a tree of bounding spheres, then the segments' spheres, then the
+/// exact distance of what is left, so the cost grows like the thread's length. Each pair is allowed its own motion: one
+/// fast end does not fill the list, nor does a thread that is fast as a whole.
 /// Pairs nearer than 0.6 diameters along the thread are left out: they cannot pass each other without folding it;
-/// pairs an arc a < pi d / 2 apart touch at d sin(a / d), as near as a bent tube of constant thickness allows.
+/// pairs an arc a < pi d / 2 apart touch at d sin(a / d), as near as a bent tube of constant thickness allows, and are
+/// contacts when they have come nearer than in a straight thread: within 2/3 of what that leaves, if that is less than
+/// near_m.
 class BroadPhase {
  public:
   static constexpr double kLeastArc = 0.6;     ///< of a diameter, along the thread
@@ -45,25 +64,31 @@ class BroadPhase {
   /// @param allowance  what it may spend. @return false, and the list is of no use, when that or the room for pairs
   /// did not do.
   bool build(const State& state, Motion& motion, const Outlook& outlook, long allowance, Work& work,
-             std::vector<Candidate>& list) noexcept;
+             const PairList& list) noexcept;
 
   /// What a build costs before it has found anything.
   [[nodiscard]] static long least_cost(int nodes) noexcept;
 
  private:
+  static constexpr std::size_t kBlock = Motion::kBlock;
+  static constexpr int kLevels = 12;
   struct Ball {
     float x, y, z, r;
   };
   void place(const State& state, const Motion& motion, float horizon_s) noexcept;
+  void grow_tree(std::size_t blocks) noexcept;
   void give_back(Candidate& pair) const noexcept;
   /// Adds the pair if it is near enough. @return false when there was no room.
   bool consider(const State& state, const Motion& motion, const Outlook& outlook, std::size_t a, std::size_t b,
                 std::vector<Candidate>& list) noexcept;
-  /// Bits of those segments of block q whose spheres meet segment a's.
+  /// Bits of those segments of block q whose spheres come within `reach` of segment a's.
   [[nodiscard]] unsigned near(std::size_t a, std::size_t q, float reach) const noexcept;
   /// All pairs of a segment of block p and one of block q. @return false when out of room or work.
   bool blocks(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p, std::size_t q,
-              std::vector<Candidate>& list) noexcept;
+              const PairList& list) noexcept;
+  /// The same for block p and all from itself on.
+  bool search(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p,
+              const PairList& list) noexcept;
 
   struct Kept {
     std::int32_t a = -1, b = -1;
@@ -71,11 +96,12 @@ class BroadPhase {
     char stuck = 0;
   };
   int capacity_ = 0;
-  long spent_ = 0, allowance_ = 0;    // of this build
-  std::vector<float> x_, y_, z_, r_;  // segment spheres, swollen by what each may move
-  std::vector<float> half_;           // half their lengths
-  std::vector<Ball> blocks_;
-  std::vector<Kept> kept_;  // open addressing, a power of two
+  long spent_ = 0, allowance_ = 0;   // of this build
+  std::vector<float> x_, y_, z_;     // middles of segments
+  std::vector<float> half_;          // half their lengths
+  std::vector<Ball> blocks_;         // around the segments of a block, as they are
+  std::vector<Ball> tree_[kLevels];  // around 2^level blocks, swollen by what each may move
+  std::vector<Kept> kept_;           // open addressing, a power of two
 };
 
 }  // namespace ligature::physics::rod

@@ -12,7 +12,8 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   gaps_.reserve(contacts_.capacity());
   pairs.reserve(24 * n + 1024);
   watched_.reserve(pairs.capacity());
-  due_.reserve(pairs.capacity());
+  for (auto* array : {&awake_, &due_}) array->reserve(pairs.capacity());
+  groups.reserve(pairs.capacity());
   floor_impulse.assign(n, Vec{});
   body_impulse.assign(n * static_cast<std::size_t>(bodies), Vec{});
   floor_stuck.assign(floor_impulse.size(), 0);
@@ -67,6 +68,7 @@ ContactSet& ContactSet::operator=(const ContactSet& other) {
   begin();
   pairs.reserve(other.pairs.capacity());
   pairs = other.pairs;
+  groups.clear();
   floor_impulse = other.floor_impulse;
   body_impulse = other.body_impulse;
   floor_stuck = other.floor_stuck;

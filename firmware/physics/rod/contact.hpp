@@ -93,13 +93,14 @@ class ContactSet {
 
   /// Watched thread-thread pairs; rebuilt by BroadPhase.
   std::vector<Candidate> pairs;
+  std::vector<PairGroup> groups;
 
   void begin() noexcept { contacts_.clear(), watched_.clear(), rows_ = 0, overflow_ = false; }
 
-  /// Measures pairs that may have come within near_m + 2 dt x their rate (motion.hpp); those within near_m + 2 dt x
-  /// relative speed become contacts. @return false when there is not work enough left to measure them all.
-  [[nodiscard]] bool collect_thread(const State& state, const Motion& motion, double near_m, double dt_s, double mu,
-                                    Work& work, ContactReport& report) noexcept;
+  /// Measures pairs that may have come within their near_m + 2 dt x their rate (motion.hpp); those within near_m + 2 dt
+  /// x relative speed become contacts. @return false when there is not work enough left to measure them all.
+  [[nodiscard]] bool collect_thread(const State& state, const Motion& motion, double dt_s, double mu, Work& work,
+                                    ContactReport& report) noexcept;
   /// Every node against the plane z = floor_m.
   void collect_floor(const State& state, double floor_m, double radius_m, double look_m, double mu,
                      Work& work) noexcept;
@@ -170,7 +171,9 @@ class ContactSet {
 
  private:
   void add(const Contact& contact) noexcept;
-  void measure(Candidate& pair, const State& state, const Motion& motion, double near_m, double dt_s, double mu,
+  [[nodiscard]] bool find_due(const Motion& motion, double dt_s, Work& work) noexcept;
+  /// @return true when it became a contact.
+  bool measure(Candidate& pair, const State& state, const Motion& motion, double dt_s, double mu,
                ContactReport& report) noexcept;
   void prepare(const ContactMetric& metric, const Numerics& numerics, double dt_s) noexcept;
   void make_column(Contact& c, const ContactMetric& metric, float* column) const noexcept;
@@ -201,9 +204,9 @@ class ContactSet {
 
   std::vector<Contact> contacts_;  // rows first, then what is left out
   std::vector<Watched> watched_;
-  std::vector<std::int32_t> due_;  // pairs to measure in this substep
-  std::vector<double> gaps_;       // scratch of choose_rows()
-  std::vector<float> columns_;     // C^-1 J^T of every row on the window, padded
+  std::vector<std::int32_t> awake_, due_;  // groups, and pairs, to look at in this substep
+  std::vector<double> gaps_;               // scratch of choose_rows()
+  std::vector<float> columns_;             // C^-1 J^T of every row on the window, padded
   SweptVelocities swept_;
   std::vector<Vec> extra_, step_;
   std::vector<std::int32_t> loaded_;  // rows that have carried an impulse in this substep: the others are not mixed

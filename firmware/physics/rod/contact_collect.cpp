@@ -40,30 +40,62 @@ void ContactSet::add(const Contact& contact) noexcept {
   for (int k = added.count; k < 4; ++k) added.node[k] = added.node[0];  // weight zero
 }
 
-bool ContactSet::collect_thread(const State& state, const Motion& motion, double near_m, double dt_s, double mu,
-                                Work& work, ContactReport& report) noexcept {
+// Groups that may hold a pair that is due, and those pairs, which is paid for here. The other pairs cannot meet, even
+// at twice today's speed. @return false when there is not work enough.
+bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcept {
+  awake_.clear();
   due_.clear();
-  const long check = price::kCheck * static_cast<long>(pairs.size());
-  if (check > work.left()) return false;
-  work.spend(check);
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    Candidate& pair = pairs[k];
-    const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-    if (pair.due - motion.gone(a, b) > near_m + 2.0 * dt_s * motion.rate(a, b)) {
-      pair.impulse = Vec{};  // cannot meet, even at twice today's speed
-    } else {
-      due_.push_back(static_cast<std::int32_t>(k));
+  if (price::kCheck * static_cast<long>(groups.size()) > work.left()) return false;
+  work.spend(price::kCheck * static_cast<long>(groups.size()));
+  long listed = 0;
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    const PairGroup& g = groups[k];
+    const auto p = static_cast<std::size_t>(g.p), q = static_cast<std::size_t>(g.q);
+    if (g.due - motion.gone_of_blocks(p, q) > 2.0 * dt_s * motion.rate_of_blocks(p, q)) continue;
+    awake_.push_back(static_cast<std::int32_t>(k));
+    listed += g.last - g.first;
+  }
+  if (price::kCheck * listed > work.left()) return false;
+  work.spend(price::kCheck * listed);
+  for (const auto g : awake_) {
+    for (std::int32_t k = groups[static_cast<std::size_t>(g)].first; k < groups[static_cast<std::size_t>(g)].last;
+         ++k) {
+      Candidate& pair = pairs[static_cast<std::size_t>(k)];
+      const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+      if (pair.due - motion.gone(a, b) > pair.near_m + 2.0 * dt_s * motion.rate(a, b)) {
+        pair.impulse = Vec{};
+      } else {
+        due_.push_back(k);
+      }
     }
   }
   const long cost = (price::kMeasure + price::kGuard) * static_cast<long>(due_.size());
   if (cost > work.left()) return false;
   work.spend(cost);
-  for (const auto k : due_) measure(pairs[static_cast<std::size_t>(k)], state, motion, near_m, dt_s, mu, report);
   return true;
 }
 
-void ContactSet::measure(Candidate& pair, const State& state, const Motion& motion, double near_m, double dt_s,
-                         double mu, ContactReport& report) noexcept {
+bool ContactSet::collect_thread(const State& state, const Motion& motion, double dt_s, double mu, Work& work,
+                                ContactReport& report) noexcept {
+  if (!find_due(motion, dt_s, work)) return false;
+  std::size_t next = 0;
+  for (const auto index : awake_) {
+    PairGroup& group = groups[static_cast<std::size_t>(index)];
+    bool touches = false;
+    for (; next < due_.size() && due_[next] < group.last; ++next) {
+      touches |= measure(pairs[static_cast<std::size_t>(due_[next])], state, motion, dt_s, mu, report);
+    }
+    group.due = touches ? PairGroup::kAtOnce : 1e300;
+    for (std::int32_t k = group.first; !touches && k < group.last; ++k) {
+      const Candidate& pair = pairs[static_cast<std::size_t>(k)];
+      group.due = std::min(group.due, pair.due - pair.near_m);
+    }
+  }
+  return true;
+}
+
+bool ContactSet::measure(Candidate& pair, const State& state, const Motion& motion, double dt_s, double mu,
+                         ContactReport& report) noexcept {
   const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
   const Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
   const double distance = std::sqrt(c.distance2), gap = distance - pair.reach_m;
@@ -72,11 +104,11 @@ void ContactSet::measure(Candidate& pair, const State& state, const Motion& moti
   // Far enough for one substep at today's relative speed (half the bound of above is usually wasted).
   const Vec u = (1.0 - c.t) * state.v[b] + c.t * state.v[b + 1] - (1.0 - c.s) * state.v[a] - c.s * state.v[a + 1];
   const bool full = contacts_.size() >= static_cast<std::size_t>(kMaxContacts);
-  if (full || gap > near_m + 2.0 * dt_s * norm(u)) {
+  if (full || gap > pair.near_m + 2.0 * dt_s * norm(u)) {
     report.rows_left_out += full;
     pair.impulse = Vec{};
     watched_.push_back({pair.a, pair.b, distance});  // has room for every pair
-    return;
+    return false;
   }
   pair.s_a = state.mesh.s[a] + c.s * state.mesh.rest[a];
   pair.s_b = state.mesh.s[b] + c.t * state.mesh.rest[b];
@@ -84,6 +116,7 @@ void ContactSet::measure(Candidate& pair, const State& state, const Motion& moti
   contact.keep = &pair.impulse;
   contact.stuck = &pair.stuck;
   add(contact);
+  return true;
 }
 
 bool ContactSet::afford_world(int nodes, int bodies, const Work& work) noexcept {

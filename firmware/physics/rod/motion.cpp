@@ -15,6 +15,16 @@ struct Rise {
   }
 };
 
+// Largest of every block of segments.
+void blocks_of(const std::vector<double>& of, std::vector<double>& blocks) noexcept {
+  const std::size_t n = of.size();
+  for (std::size_t k = 0, i = 0; i < n; ++k) {
+    double most = 0.0;
+    for (const std::size_t last = std::min(i + Motion::kBlock, n); i < last; ++i) most = of[i] > most ? of[i] : most;
+    blocks[k] = most;
+  }
+}
+
 }  // namespace
 
 void Motion::reserve(int nodes) {
@@ -22,6 +32,7 @@ void Motion::reserve(int nodes) {
                       &strayed_, &link_}) {
     array->assign(static_cast<std::size_t>(nodes), 0.0);
   }
+  for (auto* array : {&block_speed_, &block_travel_}) array->assign(static_cast<std::size_t>(nodes) / kBlock + 1, 0.0);
 }
 
 void Motion::measure(const Vec* v) noexcept {
@@ -47,11 +58,13 @@ void Motion::measure(const Vec* v) noexcept {
     speed[i] = std::sqrt(speed[i] > speed[i + 1] ? speed[i] : speed[i + 1]);
     link[i] = std::sqrt(link[i]);
   }
+  speed[n - 1] = 0.0;  // no segment's
   double sum = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     drift[i] = sum;
     sum += link[i];
   }
+  blocks_of(speed_, block_speed_);
 }
 
 void Motion::advance(double step_s) noexcept {
@@ -63,12 +76,14 @@ void Motion::advance(double step_s) noexcept {
     travel[i] += step_s * speed[i];
     strayed[i] += step_s * drift[i];
   }
+  blocks_of(travel_, block_travel_);
 }
 
 void Motion::restart() noexcept {
   furthest_ = 0.0;
   std::fill(travel_.begin(), travel_.end(), 0.0);
   std::fill(strayed_.begin(), strayed_.end(), 0.0);
+  std::fill(block_travel_.begin(), block_travel_.end(), 0.0);
   std::copy(speed_.begin(), speed_.end(), speed_allowed_.begin());
   std::copy(drift_.begin(), drift_.end(), drift_allowed_.begin());
 }

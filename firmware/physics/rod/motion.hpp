@@ -34,6 +34,17 @@ class Motion {
   }
   [[nodiscard]] double fastest() const noexcept { return fastest_; }
 
+  /// Blocks of neighbouring segments: nothing in block p and nothing in block q >= p is faster, or has gone farther,
+  /// relative to each other than this.
+  static constexpr std::size_t kBlock = 8;
+  [[nodiscard]] double speed_of_block(std::size_t p) const noexcept { return block_speed_[p]; }
+  [[nodiscard]] double rate_of_blocks(std::size_t p, std::size_t q) const noexcept {
+    return std::min(block_speed_[p] + block_speed_[q], drift_[end(q)] - drift_[p * kBlock]);
+  }
+  [[nodiscard]] double gone_of_blocks(std::size_t p, std::size_t q) const noexcept {
+    return std::min(block_travel_[p] + block_travel_[q], strayed_[end(q)] - strayed_[p * kBlock]);
+  }
+
   /// May some pair have gone, or go in `ahead_s`, more than spare_m + horizon_s x its rate at restart()?
   [[nodiscard]] bool used_up(double spare_m, double horizon_s, double ahead_s) const noexcept;
 
@@ -45,9 +56,13 @@ class Motion {
   [[nodiscard]] bool outran(double spare_m, double dt_s) const noexcept;
 
  private:
+  [[nodiscard]] std::size_t end(std::size_t block) const noexcept {  // last node of a block
+    return std::min((block + 1) * kBlock, drift_.size() - 1);
+  }
   std::vector<double> speed_, drift_, speed_before_, drift_before_, speed_allowed_, drift_allowed_;
-  std::vector<double> travel_, strayed_;   // time integrals of speed and drift
-  std::vector<double> link_;               // |v_{k+1} - v_k|
+  std::vector<double> travel_, strayed_;  // time integrals of speed and drift
+  std::vector<double> link_;              // |v_{k+1} - v_k|
+  std::vector<double> block_speed_, block_travel_;
   double fastest_ = 0.0, furthest_ = 0.0;  // speed of the fastest node now, and its time integral
 };
 

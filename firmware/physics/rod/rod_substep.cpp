@@ -27,7 +27,7 @@ constexpr Ahead kAhead[] = {{1.2, 0.2}, {0.15, 0.15}, {0.0, 0.25}};
 
 // Lists what may touch, leaving `reserve` of the work. @return false when nobody knows what may.
 bool Rod::relist(long reserve) noexcept {
-  Outlook outlook{2.0 * material_.radius_m, 2.0 * material_.radius_m * kSkin, 0.0};
+  Outlook outlook{2.0 * material_.radius_m, 2.0 * material_.radius_m * kSkin, near_m_, 0.0};
   broad_.keep_impulses(contacts_.pairs);
   stale_ = true;
   for (const Ahead& ahead : kAhead) {
@@ -37,7 +37,7 @@ bool Rod::relist(long reserve) noexcept {
     horizon_s_ = outlook.horizon_s = ahead.ticks * numerics_.tick_s;
     ++report_.broad_phases;
     const long before = work_.used();
-    if (!broad_.build(state_, motion_, outlook, most, work_, contacts_.pairs)) continue;
+    if (!broad_.build(state_, motion_, outlook, most, work_, {contacts_.pairs, contacts_.groups})) continue;
     stale_ = false;
     list_cost_ = work_.used() - before;
     return true;
@@ -61,7 +61,7 @@ bool Rod::look(double dt_s) noexcept {
   }
   const long before = work_.used();
   if constexpr ((Bits & kContact) != 0) {
-    if (!contacts_.collect_thread(state_, motion_, near_m_, dt_s, material_.friction, work_, seen_)) return false;
+    if (!contacts_.collect_thread(state_, motion_, dt_s, material_.friction, work_, seen_)) return false;
   }
   if constexpr ((Bits & kWorld) != 0) {
     const int count = static_cast<int>(bodies.size());

@@ -8,13 +8,15 @@ namespace ligature::physics::rod {
 /// Prices in instructions of the x86-64-v3 build, rounded up; docs/rod.md says how they were counted. What a substep
 /// costs without contact (forces, matrix, one solution) is linear in the nodes and not on the meter.
 namespace price {
-inline constexpr long kCheck = 25;           ///< a listed pair in a substep: can it meet?
+inline constexpr long kCheck = 25;           ///< a listed pair, or a group of them, in a substep: can it meet?
 inline constexpr long kMeasure = 190;        ///< it can: its closest points, and a row to be
 inline constexpr long kGuard = 110;          ///< its part in the guard
 inline constexpr long kWorldNode = 60;       ///< a node against the floor or a body
+inline constexpr long kBall = 15;            ///< broad phase: a block against a sphere of the tree
 inline constexpr long kSphere = 30;          ///< broad phase: a segment against a block of eight
 inline constexpr long kConsider = 40;        ///< broad phase: a pair whose spheres meet
-inline constexpr long kList = 200;           ///< broad phase: such a pair measured and listed
+inline constexpr long kList = 60;            ///< broad phase: such a pair listed
+inline constexpr long kExact = 140;          ///< broad phase: and measured before
 inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one split
 
 /// Making `rows` rows on a window of `nodes`, and the two solutions that start them.

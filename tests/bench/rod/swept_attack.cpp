@@ -1,6 +1,7 @@
 // Attacks the guarantee that strands never pass through each other: hairpins whose arms are thrown at each other at up
 // to 50 m/s each, at random angles (parallel and grazing among them), sizes and node counts. Between any two states of
-// a substep every pair of segments is checked for having crossed (tests/support/crossings.hpp).
+// a substep every pair of segments, on the rod's list or not, is checked for having crossed
+// (tests/support/crossings.hpp).
 //
 // A third of the threads are adaptive: there, nodes also jump along the thread between substeps, and the straight way
 // of every material point from the old polyline to the new one is checked in the same manner.
@@ -17,8 +18,8 @@
 #include "tests/support/crossings.hpp"
 
 using namespace ligature::physics::rod;
-using ligature::test::crossed;
 using ligature::test::crossings_of_remesh;
+using ligature::test::crossings_of_step;
 
 namespace {
 
@@ -77,12 +78,7 @@ int main(int argc, char** argv) {
       rod.tick();
       guarded += rod.report().guard_events > 0;
       ++substeps;
-      const auto& after = rod.state().x;
-      for (const auto& pair : rod.contact_set().pairs) {
-        const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-        found += crossed({before[a], before[a + 1], before[b], before[b + 1]},
-                         {after[a], after[a + 1], after[b], after[b + 1]});
-      }
+      found += crossings_of_step(before, rod.state().x);
     }
   }
   std::printf("approaches %ld, substeps %ld, guard acted in %ld, crossings %ld; remeshes %ld, crossings in them %ld\n",

@@ -56,12 +56,7 @@ Hostile attack(Rod rod, unsigned seed, double thrown_m_per_s, double hand_m_per_
     seen.pairs = std::max(seen.pairs, static_cast<long>(rod.contact_set().pairs.size()));
     const auto& after = rod.state().x;
     for (const auto& x : after) seen.finite &= std::isfinite(x[0] + x[1] + x[2]);
-    if (rod.report().substeps > 1) continue;
-    for (const auto& pair : rod.contact_set().pairs) {
-      const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-      seen.crossings += crossed({before[a], before[a + 1], before[b], before[b + 1]},
-                                {after[a], after[a + 1], after[b], after[b + 1]});
-    }
+    if (rod.report().substeps == 1) seen.crossings += crossings_of_step(before, after);
   }
   return seen;
 }
