@@ -19,10 +19,15 @@ bool is_address(const std::string& name) {
   return inet_pton(AF_INET, name.c_str(), binary.data()) == 1 || inet_pton(AF_INET6, name.c_str(), binary.data()) == 1;
 }
 
-/// "name:port", "name", "[v6]:port" -> the name.
+/// "name:port", "name", "[v6]:port", "[v6]" -> the name; empty for anything else.
 std::string without_port(std::string_view host) {
-  if (host.starts_with('[')) return std::string(host.substr(1, host.find(']') - 1));
-  return std::string(host.substr(0, host.find(':')));
+  const auto closing = host.starts_with('[') ? host.find(']') : 0;
+  if (closing == std::string_view::npos) return {};
+  const auto colon = host.find(':', closing);
+  const auto port = colon == std::string_view::npos ? std::string_view() : host.substr(colon + 1);
+  if (!std::ranges::all_of(port, [](char c) { return c >= '0' && c <= '9'; })) return {};
+  if (closing == 0) return std::string(host.substr(0, colon));
+  return closing + 1 == std::min(colon, host.size()) ? std::string(host.substr(1, closing - 1)) : std::string();
 }
 
 }  // namespace

@@ -27,6 +27,10 @@ TEST(Access, NamesOfOtherSitesThatPointHereAreTurnedAway) {
   EXPECT_FALSE(is_own_host("rebind.evil.example:8737", "lab"));
   EXPECT_FALSE(is_own_host("127.0.0.1.evil.example", "lab"));
   EXPECT_FALSE(is_own_host("", ""));
+  EXPECT_TRUE(is_own_host("[::1]", "lab"));
+  for (const char* malformed :
+       {"[::1", "[::1:8737", "[::1]x:8737", "127.0.0.1:8737@evil", "::1", "[]", ":8737", "[::1]]"})
+    EXPECT_FALSE(is_own_host(malformed, "lab")) << malformed;
 }
 
 TEST(Access, AnEmptyTokenIsNobodys) {
