@@ -27,6 +27,7 @@ template <class C>
 concept Clock = requires(C c, Nanoseconds at) {
   { c.now() } noexcept -> std::same_as<Nanoseconds>;
   { c.sleep_until(at) } noexcept;
+  { c.worked() } noexcept -> std::same_as<Nanoseconds>;  // CPU time of this thread
 };
 template <class B>
 concept Bus = requires(B b, Nanoseconds deadline, const rt::RigCommand& command) {
@@ -45,6 +46,8 @@ class Cycle {
   static constexpr Nanoseconds kPeriod = rt::kPeriod;
   /// From SYNC; the bus needs at most 460 us for SYNC and TPDOs, and 285 for the RPDOs before the next SYNC.
   static constexpr Nanoseconds kTpdoWait = std::chrono::microseconds(680);
+  /// What the bus leaves of a period, at its longest: a tick that works for longer cannot be in time.
+  static constexpr Nanoseconds kMostWork = kPeriod - std::chrono::microseconds(460);
   static constexpr std::int64_t kTicksPerShape = 8;
 
   Cycle(BusT& bus, ClockT& clock, control::Controller& controller, physics::Simulation& thread,
@@ -62,6 +65,7 @@ class Cycle {
     while (!controller_.is_finished()) {
       clock_.sleep_until(wake_at_);  // absolute: jitter does not accumulate
       const auto woke = clock_.now();
+      const auto worked_before = clock_.worked();
       skip((woke - wake_at_) / kPeriod);  // slept through
 
       take_commands();
@@ -77,7 +81,7 @@ class Cycle {
       thread_.tick(controller_.tools());  // the rest of the period is the thread's
       const auto done = clock_.now();
 
-      publish({woke, synced, sampled, decided, controlled, done}, torque);
+      publish({woke, synced, sampled, decided, controlled, done}, clock_.worked() - worked_before, torque);
       const auto missed = (done - wake_at_) / kPeriod;
       advance();
       skip(missed);
@@ -124,12 +128,14 @@ class Cycle {
         late};
   }
 
-  void publish(const Phases& at, const rt::WireTorque& torque) noexcept {
+  void publish(const Phases& at, Nanoseconds work, const rt::WireTorque& torque) noexcept {
     timing_.wakeup.add((at.woke - wake_at_).count());
     timing_.control.add((at.controlled - at.woke).count());
     timing_.execution.add((at.done - at.woke).count());
-    const bool missed = at.done >= wake_at_ + kPeriod;
+    timing_.work.add(work.count());
+    const bool missed = at.done >= wake_at_ + kPeriod, overworked = work > kMostWork;
     timing_.deadline_misses += missed;
+    timing_.overworked += overworked;
 
     record_ = {};
     record_.tick = tick_;
@@ -140,7 +146,7 @@ class Cycle {
     record_.law_ns = narrow(at.decided - at.woke);
     record_.control_ns = narrow(at.controlled - at.woke);
     record_.execution_ns = narrow(at.done - at.woke);
-    record_.flags = missed ? rt::kDeadlineMissed : 0;
+    record_.flags = (missed ? rt::kDeadlineMissed : 0) | (overworked ? rt::kOverworked : 0);
     record_.torque_permille = torque;
     control::report(controller_, record_);
     control::report(thread_.diagnostics(), record_);
@@ -174,7 +180,7 @@ class Cycle {
       record_.tick = tick_;
       record_.scheduled_ns = wake_at_.count();
       record_.flags |= rt::kPeriodLost;
-      record_.flags &= ~rt::kDeadlineMissed;  // that was the executed one's
+      record_.flags &= ~(rt::kDeadlineMissed | rt::kOverworked);  // those were the executed one's
       out_.tell(record_);
     }
     timing_.periods_lost += static_cast<std::uint64_t>(periods);

@@ -102,7 +102,7 @@ Columns make() {
   add_plain(c, "execution_ns", "ns", "wake-up until the whole tick was done", &Tick::execution_ns);
   add_plain(c, "flags", "",
             "sum of 1 period lost (values held), 2 deadline missed, 4/8 left/right stale, 16/32 left/right force "
-            "limited, 64 contact list full",
+            "limited, 64 contact list full, 128 the loop itself computed for longer than the bus leaves time",
             &Tick::flags);
   add_plain(c, "state", "", "0 OFF 1 CALIBRATE 2 IDLE 3 ENGAGE 4 FORCE 5 BRAKE 6 FAULT", &Tick::state);
   add_plain(c, "fault", "", "latched fault number, 0 none", &Tick::fault);

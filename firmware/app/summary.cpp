@@ -30,14 +30,14 @@ std::string summary(const rt::CycleTiming& t, std::int64_t periods, const Losses
   std::snprintf(head, sizeof head,
                 "control loop, 1 kHz\n"
                 "  rate held        %10.2f Hz  (%llu of %lld periods executed)\n"
-                "  deadline misses  %10llu\n"
+                "  deadline misses  %10llu  (%llu by the loop's own work)\n"
                 "  periods lost     %10llu\n"
                 "  records dropped  %10llu\n",
                 held_Hz, static_cast<unsigned long long>(executed), static_cast<long long>(periods),
-                static_cast<unsigned long long>(t.deadline_misses), static_cast<unsigned long long>(t.periods_lost),
-                static_cast<unsigned long long>(losses.telemetry));
+                static_cast<unsigned long long>(t.deadline_misses), static_cast<unsigned long long>(t.overworked),
+                static_cast<unsigned long long>(t.periods_lost), static_cast<unsigned long long>(losses.telemetry));
   return head + recorder_rows(losses) + "  us               p50       p99       max\n" + row("wakeup", t.wakeup) +
-         row("control", t.control) + row("execution", t.execution);
+         row("control", t.control) + row("execution", t.execution) + row("CPU", t.work);
 }
 
 }  // namespace ligature::app

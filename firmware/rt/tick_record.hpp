@@ -18,6 +18,7 @@ enum TickFlag : std::int32_t {
   kLeftLimited = 16,
   kRightLimited = 32,
   kContactCap = 64,
+  kOverworked = 128,
 };
 
 /// Bits of TickRecord::limits, one set a hand: what holds the force back now. A limit is no fault.

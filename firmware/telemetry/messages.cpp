@@ -14,6 +14,7 @@ void copy(const std::array<rt::Triple, N>& from, double (&to)[N][3]) {
 
 // The record and the message name the same bits.
 static_assert(rt::kPeriodLost == 1 && rt::kDeadlineMissed == 2 && rt::kContactCap == 64);
+static_assert(static_cast<int>(rt::kOverworked) == ligature_msg::tick_t::FLAG_OVERWORKED);
 static_assert(rt::kPeakLimit == ligature_msg::tick_t::LIMIT_PEAK);
 static_assert(rt::kTorqueLimit == ligature_msg::tick_t::LIMIT_TORQUE);
 static_assert(static_cast<int>(rt::Degradation::kCandidates) == ligature_msg::tick_t::DEGRADED_CANDIDATES);

@@ -1,74 +1,27 @@
-// No allocation in the loop: the whole cycle (bus code, control, physics, records) runs under two guards, a hook on the
-// process' allocator and Eigen's run-time switch. Both guards are first shown to bite.
+// No allocation and no lock in the loop: the whole cycle (bus code, control, physics, records) runs under two guards,
+// hooks on the process' allocator and mutexes and Eigen's run-time switch. Both guards are first shown to bite.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
-#include <atomic>
 #include <cstdlib>
+#include <mutex>
 
 #include "tests/realtime/quiet_rig.hpp"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define LIGATURE_HOOKS 0  // the sanitizer owns malloc; Eigen's switch still watches
-#else
-#define LIGATURE_HOOKS 1
-#endif
-
-namespace {
-thread_local bool watching = false;
-thread_local long allocations = 0;
-}  // namespace
-
-#if LIGATURE_HOOKS
-extern "C" {
-void* __libc_malloc(std::size_t);
-void* __libc_calloc(std::size_t, std::size_t);
-void* __libc_realloc(void*, std::size_t);
-void* __libc_memalign(std::size_t, std::size_t);
-void __libc_free(void*);
-
-// Every way to the heap ends in one of these, operator new included.
-void* malloc(std::size_t n) {
-  allocations += watching;
-  return __libc_malloc(n);
-}
-void* calloc(std::size_t n, std::size_t size) {
-  allocations += watching;
-  return __libc_calloc(n, size);
-}
-void* realloc(void* p, std::size_t n) {
-  allocations += watching;
-  return __libc_realloc(p, n);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t n) {
-  allocations += watching;
-  return __libc_memalign(alignment, n);
-}
-int posix_memalign(void** p, std::size_t alignment, std::size_t n) {
-  allocations += watching;
-  *p = __libc_memalign(alignment, n);
-  return *p == nullptr ? 12 : 0;
-}
-void free(void* p) {
-  allocations += watching && p != nullptr;  // giving back is a call into the allocator, too
-  __libc_free(p);
-}
-}
-#endif
+#include "tests/realtime/watch.hpp"
 
 namespace ligature {
 namespace {
 
-/// Counts calls into the allocator, and makes Eigen assert, while it lives.
+/// Counts calls into the allocator and of locks, and makes Eigen assert, while it lives.
 class NoAllocation {
  public:
   NoAllocation() {
-    allocations = 0;
+    watch::allocations = watch::locks = 0;
     Eigen::internal::set_is_malloc_allowed(false);
-    watching = true;
+    watch::watching = true;
   }
   ~NoAllocation() {
-    watching = false;
+    watch::watching = false;
     Eigen::internal::set_is_malloc_allowed(true);
   }
 };
@@ -85,19 +38,24 @@ void expect_quiet(const scene::Scene& scene) {
     const NoAllocation guard;
     cycle.run();
   }
-  EXPECT_EQ(allocations, 0);
+  EXPECT_EQ(watch::allocations, 0);
+  EXPECT_EQ(watch::locks, 0);
   EXPECT_GE(cycle.periods(), 2000);
   EXPECT_EQ(rig.controller.fault(), control::Fault::kNone);
 }
 
 TEST(NoAllocation, TheGuardsBite) {
-#if LIGATURE_HOOKS
-  {
-    const NoAllocation guard;
-    free(malloc(8));
+  if (watch::kCounts) {
+    std::mutex mutex;
+    {
+      const NoAllocation guard;
+      void* volatile here = malloc(8);  // else the compiler sees that it is for nothing
+      free(here);
+      const std::lock_guard nobody_else_wants_it(mutex);
+    }
+    EXPECT_GT(watch::allocations, 0);
+    EXPECT_GT(watch::locks, 0);
   }
-  EXPECT_GT(allocations, 0);
-#endif
   EXPECT_DEATH(
       {
         const NoAllocation guard;
@@ -130,7 +88,8 @@ TEST(NoAllocation, TakingAnotherSceneOrOtherParameters) {
         const NoAllocation guard;
         cycle.run();
       }
-      EXPECT_EQ(allocations, 0);
+      EXPECT_EQ(watch::allocations, 0);
+      EXPECT_EQ(watch::locks, 0);
       EXPECT_TRUE(plant.taken);
     }
   }

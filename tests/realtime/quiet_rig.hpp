@@ -20,6 +20,7 @@ class QuietClock {
  public:
   Nanoseconds now() noexcept { return time_; }
   void sleep_until(Nanoseconds at) noexcept { time_ = at; }
+  Nanoseconds worked() noexcept { return Nanoseconds::zero(); }
 
  private:
   Nanoseconds time_{0};

@@ -69,6 +69,7 @@ class VirtualRig {
   struct Clock {
     Nanoseconds now() noexcept { return rig.time; }
     void sleep_until(Nanoseconds at) noexcept { rig.sleep_until(at); }
+    Nanoseconds worked() noexcept { return Nanoseconds::zero(); }  // work takes no simulated time
     VirtualRig& rig;
   };
 

@@ -89,6 +89,23 @@ TEST(Cycle, FinishingExactlyAtTheDeadlineIsAMiss) {
   EXPECT_EQ(rig.cycle.timing().periods_lost, 1U);
 }
 
+TEST(Cycle, AMissSaysWhetherTheLoopsOwnWorkMadeIt) {
+  VirtualRig rig;
+  rig.bus.stalls[10] = 700us;  // waited for
+  rig.bus.works[20] = 530us;   // in time: 460 us for the bus, and this
+  rig.bus.works[30] = 700us;
+  rig.cycle.end_after(kRun);
+  rig.cycle.run();
+  const auto records = rig.records();
+  EXPECT_EQ(records[9].flags, rt::kDeadlineMissed);
+  EXPECT_EQ(flagged(records, rt::kOverworked), 1);
+  EXPECT_EQ(flagged(records, rt::kDeadlineMissed), 2);
+  const auto worked = std::ranges::find_if(records, [](const auto& r) { return (r.flags & rt::kOverworked) != 0; });
+  EXPECT_EQ(worked->flags, rt::kDeadlineMissed | rt::kOverworked);
+  EXPECT_EQ(rig.cycle.timing().overworked, 1U);
+  EXPECT_EQ(rig.cycle.timing().work.max_ns(), 700'000);
+}
+
 TEST(Cycle, HoldsTheLastValuesInLostPeriods) {
   VirtualRig rig;
   rig.bus.stalls[200] = 5ms;

@@ -25,6 +25,9 @@ class SceneDeskTest : public ::testing::Test {
     write("wrong.toml", "[suture]\nnodes = 1\n");
     write("huge.toml", "[suture]\nnodes = 5000\nlength_m = 50.0\nradius_m = 0.003\n");
     options.scene = (folder / "small.toml").string();
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    options.force = true;  // admission measures a program that a sanitizer slows down
+#endif
   }
   ~SceneDeskTest() override { fs::remove_all(folder); }
   void write(const std::string& name, const std::string& text) const { std::ofstream(folder / name) << text; }

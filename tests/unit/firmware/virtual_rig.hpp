@@ -17,7 +17,8 @@ class VirtualClock {
     late_by = Nanoseconds::zero();
     woken.push_back(time);
   }
-  Nanoseconds time{0};
+  Nanoseconds worked() noexcept { return work; }
+  Nanoseconds time{0}, work{0};
   Nanoseconds late_by{0};  // of the next wake-up only
   std::vector<Nanoseconds> woken;
 };
@@ -40,6 +41,7 @@ class VirtualBus {
   rt::RigReading read_tpdos(Nanoseconds) noexcept {
     clock_.time += std::chrono::microseconds(460);
     if (const auto it = stalls.find(syncs); it != stalls.end()) clock_.time += it->second;
+    if (const auto it = works.find(syncs); it != works.end()) clock_.time += it->second, clock_.work += it->second;
     sampled_at.push_back(clock_.time);
     const double moved_rad = waist_rad_per_s * std::chrono::duration<double>(clock_.time).count();
     for (auto& hand : reading.hand) hand.q_rad[0] = kRestingArm[0] + moved_rad;
@@ -60,6 +62,7 @@ class VirtualBus {
   rt::RigCommand written, acting;
   std::int64_t syncs = 0;
   std::map<std::int64_t, Nanoseconds> stalls;  // at the n-th SYNC (from 1), the tick takes so much longer
+  std::map<std::int64_t, Nanoseconds> works;   // the same, by computing
   std::vector<Nanoseconds> sampled_at;
   double waist_rad_per_s = 0.0;  // of both hands; a stall holds up the drives too, and they sample after it
 

@@ -1,0 +1,213 @@
+// The thread that the program itself starts, with its own buses and clock against two ligature-device processes in
+// force: no page fault, no system call but bus and clock, denormals are zero. Time passes as it likes; nothing here is
+// timed.
+#include <gtest/gtest.h>
+#include <linux/audit.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <ucontext.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "firmware/app/real_time_side.hpp"
+#include "firmware/platform/can_master.hpp"
+#include "tests/realtime/watch.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace ligature::app {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kFaulted = 10, kKept = 11, kAllocated = 12, kLocked = 13, kNoForce = 14,
+              kNoRig = 15;  // exit codes of the confined process
+constexpr int kWatchedTicks = 1000;
+
+pid_t start_hand(const std::string& side, const std::string& folder) {
+  const pid_t child = fork();
+  if (child != 0) return child;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const std::string bus = "local:" + folder + side, source = LIGATURE_SOURCE_DIR;
+  const std::string scene = source + "/scenes/paper.toml", script = source + "/scenes/operators/overhand.csv";
+  execl(LIGATURE_DEVICE, "ligature-device", "--hand", side.c_str(), "--bus", bus.c_str(), "--scene", scene.c_str(),
+        "--operator", script.c_str(), nullptr);
+  _exit(127);
+}
+
+/// From here on any thread of this process that asks the kernel for more than a bus and a clock need dies with it.
+void confine() {
+  constexpr std::array kAllowed{SYS_clock_gettime, SYS_clock_nanosleep, SYS_sendto,    SYS_sendmsg,
+                                SYS_recvfrom,      SYS_recvmsg,         SYS_ppoll,     SYS_poll,
+                                SYS_read,          SYS_write,           SYS_exit_group};
+  std::array<sock_filter, 2 * kAllowed.size() + 2> rules{};
+  std::size_t n = 0;
+  rules[n++] = BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr));
+  for (const long call : kAllowed) {
+    rules[n++] = BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<unsigned>(call), 0, 1);
+    rules[n++] = BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW);
+  }
+  rules[n++] = BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS);
+  const sock_fprog filter{static_cast<unsigned short>(n), rules.data()};
+  prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+  if (syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_TSYNC, &filter) != 0) _exit(77);
+}
+
+std::vector<int> threads() {
+  std::vector<int> ids;
+  for (const auto& each : std::filesystem::directory_iterator("/proc/self/task"))
+    ids.push_back(std::stoi(each.path().filename()));
+  std::ranges::sort(ids);
+  return ids;
+}
+
+/// Minor and major ones of one thread.
+long page_faults_of(int thread) {
+  std::stringstream stat;
+  stat << std::ifstream("/proc/self/task/" + std::to_string(thread) + "/stat").rdbuf();
+  std::istringstream rest(stat.str().substr(stat.str().rfind(')') + 1));
+  std::string skipped;
+  for (int field = 3; field < 10; ++field) rest >> skipped;
+  long minor = 0, children = 0, major = 0;
+  rest >> minor >> children >> major;
+  return minor + major;
+}
+
+std::atomic<int> control_word{-1};
+
+/// On the loop's thread: watches it from now on, and reads what its arithmetic is set to where the signal met it.
+void begin_to_watch(int, siginfo_t*, void* context) {
+  watch::watching = true;
+#if defined(__x86_64__)
+  control_word = static_cast<int>(static_cast<ucontext_t*>(context)->uc_mcontext.fpregs->mxcsr);
+#else
+  (void)context;
+  control_word = 0x8040;
+#endif
+}
+
+/// A rig as `run` builds it.
+struct RealRig {
+  explicit RealRig(const std::string& folder)
+      : options(with(folder)), plan(std::get<Plan>(make_plan(options))), buses(open()) {}
+
+  static RunOptions with(const std::string& folder) {
+    RunOptions o;
+    o.scene = std::string(LIGATURE_SOURCE_DIR) + "/scenes/paper.toml";
+    o.left = "local:" + folder + "left", o.right = "local:" + folder + "right";
+    o.overrides = {"hands.energy_credit_J=0.02"};  // of a rig that may lose periods
+    o.arm = true;
+    o.watchdog_ms = 2000;
+    return o;
+  }
+  Buses open() const {
+    auto opened = open_buses(options, [] {
+      std::this_thread::sleep_for(10ms);
+      return false;
+    });
+    if (!std::holds_alternative<Buses>(opened)) _exit(kNoRig);
+    return std::move(std::get<Buses>(opened));
+  }
+  void start() {
+    const auto before = threads();
+    (void)side.prepare(true, platform::realtime_core());
+    std::vector<int> fresh;
+    std::ranges::set_difference(threads(), before, std::back_inserter(fresh));
+    loop = fresh.at(0);
+    if (configure(buses, options, plan.device)) _exit(kNoRig);
+    platform::start_drives(*buses.left);
+    platform::start_drives(*buses.right);
+    side.start();
+  }
+  /// Takes `executed` ticks out of the loop's ring. @return how many of them were in force.
+  int follow(int executed) {
+    int in_force = 0;
+    for (rt::TickRecord r; executed > 0;) {
+      if (!outlets->records.pop(r)) {
+        std::this_thread::sleep_for(1ms);
+        continue;
+      }
+      if ((r.flags & rt::kPeriodLost) != 0) continue;
+      in_force += r.state == static_cast<int>(control::State::kForce);
+      --executed;
+    }
+    return in_force;
+  }
+
+  RunOptions options;
+  Plan plan;
+  Buses buses;
+  std::unique_ptr<rt::Outlets> outlets = std::make_unique<rt::Outlets>();
+  control::PlantHandover plants;
+  RealTimeSide side{options, plan, buses, *outlets, plants};
+  int loop = 0;
+};
+
+/// @return an exit code, or dies of a system call.
+int verdict(RealRig& rig) {
+  rig.start();
+  for (int tries = 0; rig.follow(100) < 100; ++tries) {
+    if (tries > 100) return kNoForce;
+  }
+  struct sigaction reader {};
+  reader.sa_sigaction = begin_to_watch;
+  reader.sa_flags = SA_SIGINFO;
+  sigaction(SIGUSR1, &reader, nullptr);
+  syscall(SYS_tgkill, getpid(), rig.loop, SIGUSR1);
+  rig.follow(100);
+  if ((control_word & 0x8040) != 0x8040) return kKept;
+
+  const long before = page_faults_of(rig.loop);
+  if (rig.follow(kWatchedTicks) == 0) return kNoForce;
+  if (page_faults_of(rig.loop) != before) return kFaulted;
+  if (watch::allocations != 0) return kAllocated;
+  if (watch::locks != 0) return kLocked;
+
+  confine();
+  return rig.follow(kWatchedTicks) > 0 ? 0 : kNoForce;
+}
+
+/// Ends with the verdict while the loop still runs: tearing down is another test's.
+[[noreturn]] void watch(const std::string& folder) {
+  RealRig rig(folder);
+  _exit(verdict(rig));
+}
+
+TEST(RealLoop, InForceItAsksTheKernelForBusAndClockOnly) {
+  const std::string folder = test::temp_folder();
+  const std::array hands{start_hand("left", folder), start_hand("right", folder)};
+  const pid_t child = fork();
+  if (child == 0) watch(folder);
+  int status = 0;
+  waitpid(child, &status, 0);
+  for (const pid_t hand : hands) {
+    kill(hand, SIGTERM);
+    waitpid(hand, nullptr, 0);
+  }
+  ASSERT_FALSE(WIFSIGNALED(status)) << "ended by signal " << WTERMSIG(status) << ", " << SIGSYS
+                                    << " is a system call too many";
+  EXPECT_NE(WEXITSTATUS(status), kFaulted) << "a page fault in the loop";
+  EXPECT_NE(WEXITSTATUS(status), kAllocated) << "the loop allocates";
+  EXPECT_NE(WEXITSTATUS(status), kLocked) << "the loop locks";
+  EXPECT_NE(WEXITSTATUS(status), kKept) << "the loop's thread keeps denormals";
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+}  // namespace
+}  // namespace ligature::app
