@@ -45,6 +45,7 @@ struct Arguments {
   std::optional<int> nodes;
   std::string only;
   std::string out;
+  double share = 1.0;
   bool quick = false;
   bool convergence = false;
 };
@@ -184,6 +185,8 @@ int execute(const Arguments& a) {
   const auto nodes = nodes_of(a);
   if (!a.only.empty() && !v::find_case(a.only))
     throw Refusal("--only: found " + a.only + ", allowed a case that validate --help lists");
+  if (!(a.share > 0.0 && a.share <= 1.0))
+    throw Refusal("--share: found " + digits(a.share) + ", allowed above 0, 1 at most");
   if (!a.out.empty()) make_folder(a.out);
   if (a.convergence) return show_convergence(a.out);
   std::vector<Outcome> outcomes;
@@ -203,6 +206,7 @@ int execute(const Arguments& a) {
         if (c.only_nodes > 0 && n != nodes.front()) continue;
         Outcome o{&c, c.only_nodes > 0 ? c.only_nodes : n, c.is_modelled(model), {}};
         if (o.modelled) o.findings = c.examine({model, o.nodes, accuracy});
+        for (auto& f : o.findings) f.tolerance *= a.share;
         judged += o.modelled;
         failed += o.modelled && !o.holds();
         add_row(table, o);
@@ -230,6 +234,9 @@ void add_validate_command(CLI::App& app, int& exit_code) {
   command->add_option("--accuracy", a->accuracy, "The rod's: fast, balanced or fine")->capture_default_str();
   command->add_option("--nodes", a->nodes, "50 or 200 [both]")->type_name("N");
   command->add_option("--only", a->only, "One case, by name")->type_name("CASE");
+  command
+      ->add_option("--share", a->share, "Share of each tolerance that a case may use: what passes at 0.5 has a margin")
+      ->capture_default_str();
   command->add_option("--out", a->out, "Folder for validate.csv and validate.json")->type_name("DIR");
   command->add_flag("--quick", a->quick, "Only the cases that take a moment");
   command->add_flag("--convergence", a->convergence, "Order in N and in substeps instead (rod)");

@@ -17,6 +17,10 @@ struct Share {
     const double room = 0.9 * distance, motion2 = dot(u, u) * dt_s * dt_s;
     if (motion2 > room * room) least = std::min(least, room / std::sqrt(motion2));
   }
+  void fall(double speed, double distance) noexcept {
+    const double room = 0.9 * distance, way = speed * dt_s;
+    if (distance > 0.0 && way > room) least = std::min(least, room / way);
+  }
   void pair(std::int32_t a, std::int32_t b, double distance, const Motion& m) noexcept {
     const auto p = static_cast<std::size_t>(a), q = static_cast<std::size_t>(b);
     if (m.rate(p, q) * dt_s <= 0.9 * distance) return;
@@ -36,6 +40,8 @@ double ContactSet::safe_fraction(const Motion& motion, const Vec* v, double dt_s
     const double distance = c.gap_m + c.reach_m;
     if (c.count == 4) {
       share.pair(c.node[0], c.node[2], distance, motion);
+    } else if (c.count == 1) {  // a plane: what is below it already may only come up
+      share.fall(-dot(v[c.node[0]] - c.surface, c.n), distance);
     } else {
       for (int i = 0; i < c.count; ++i) share.motion(v[c.node[i]] - c.surface, distance);
     }
