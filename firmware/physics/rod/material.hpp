@@ -29,7 +29,7 @@ struct Numerics {
   int max_passes = 80;        ///< true solves per substep while contacts settle
   long work = 4'500'000;  ///< what contact may cost in a tick, in instructions (work.hpp); fast hands: a quarter more
   double settled_m_per_s = 3e-5;  ///< a pass that changes no velocity by more ends them,
-  double settled_share = 0.012;   ///< or than that and this share of the hands' speed
+  double settled_share = 0.004;   ///< or than that and this share of half the speed at which the ends are parted
   double recovery = 0.3;          ///< share of a penetration taken back per substep
   double max_recovery_m_per_s = 0.5;
   double contact_N_per_m = 6e5;  ///< give of a contact under load

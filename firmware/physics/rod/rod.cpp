@@ -184,20 +184,28 @@ void Rod::tick() noexcept {
   tick(goals);
 }
 
-double Rod::set_hands(const std::array<Vec, kMaxHolds>& goals, std::array<Vec, kMaxHolds>& starts) noexcept {
-  double hand_speed = 0.0;
+Rod::HandSpeed Rod::set_hands(const std::array<Vec, kMaxHolds>& goals, std::array<Vec, kMaxHolds>& starts) noexcept {
+  HandSpeed speed;
+  int holds = 0;
   for (std::size_t h = 0; h < kMaxHolds; ++h) {
-    starts[h] = state_.holds[h].target;
-    if (state_.holds[h].node < 0) continue;
-    state_.holds[h].velocity = (1.0 / numerics_.tick_s) * (goals[h] - starts[h]);
-    hand_speed = std::max(hand_speed, norm(state_.holds[h].velocity));
+    Hold& hold = state_.holds[h];
+    starts[h] = hold.target;
+    if (hold.node < 0) continue;
+    hold.velocity = (1.0 / numerics_.tick_s) * (goals[h] - starts[h]);
+    speed.fastest = std::max(speed.fastest, norm(hold.velocity));
+    for (std::size_t k = 0; k < h; ++k) {
+      const Hold& other = state_.holds[k];
+      if (other.node >= 0) speed.apart = std::max(speed.apart, norm(hold.velocity - other.velocity));
+    }
+    ++holds;
   }
-  return hand_speed;
+  if (holds == 1) speed.apart = speed.fastest;
+  return speed;
 }
 
-void Rod::begin_tick(double hand_speed) noexcept {
+void Rod::begin_tick(const HandSpeed& hands) noexcept {
   report_ = TickReport{};
-  const bool fast = hand_speed > 1.001 * numerics_.fast_m_per_s;
+  const bool fast = hands.fastest > 1.001 * numerics_.fast_m_per_s;
   work_.start(numerics_.work + (fast ? numerics_.work / 4 : 0));
   look_cost_ = rows_cost_ = 0;
   if (!mesh_held_) report_.remeshes += remesh();
@@ -208,7 +216,7 @@ void Rod::begin_tick(double hand_speed) noexcept {
   } else if (parts_.twist) {
     twist_.update(material_, state_, forces_);
   }
-  pace_m_per_s_ = std::max(hand_speed, pace_m_per_s_ * std::exp(-numerics_.tick_s / kRelax_s));
+  pace_m_per_s_ = std::max(0.5 * hands.apart, pace_m_per_s_ * std::exp(-numerics_.tick_s / kRelax_s));
   letting_go_ = released_;
   released_ = false;
   report_.substeps = fast || letting_go_ ? numerics_.max_substeps : numerics_.substeps;

@@ -128,9 +128,12 @@ class Rod {
   double guard_unseen(double dt_s) noexcept;
   double brake(double dt_s) noexcept;
 
-  /// @return the speed of the faster hand.
-  double set_hands(const std::array<Vec, kMaxHolds>& goals, std::array<Vec, kMaxHolds>& starts) noexcept;
-  void begin_tick(double hand_speed) noexcept;
+  /// Of the holds: the fastest, and how fast two of them part (or one drags the thread), m/s.
+  struct HandSpeed {
+    double fastest = 0.0, apart = 0.0;
+  };
+  HandSpeed set_hands(const std::array<Vec, kMaxHolds>& goals, std::array<Vec, kMaxHolds>& starts) noexcept;
+  void begin_tick(const HandSpeed& hands) noexcept;
   void feel_hands() noexcept;
   int add_hold(const Hold& hold) noexcept;
 
@@ -152,7 +155,7 @@ class Rod {
   long look_cost_ = 0, rows_cost_ = 0;  // of the last substep
   long list_cost_ = 0;                  // of the last list
   double metric_dt_ = 0.0;
-  double pace_m_per_s_ = 0.0;  // of the hands, fading once they stop
+  double pace_m_per_s_ = 0.0;  // of the hands from the middle between them, fading once they stop
   bool letting_go_ = false;    // a hold let go just before this tick
   Motion motion_;
   ContactReport seen_;          // of this substep

@@ -5,10 +5,10 @@
 // Also: chatter while the thread slides (rms about a 51-tick parabola, over the mean, from 5 % of the force on).
 //
 // Usage: rod_pull_study SCENE [speed_m_per_s force_N [sudden(0|1) hands(1|2) [key=value ...]]]; without sudden and
-// hands: the four runs of gentle, sudden x two, one; without speed: the 24 runs of 0.05, 0.2, 0.5, 1 m/s x 1, 5, 10 N x
-// gentle, sudden release. Exit 1 when a knot was lost. Environment: HOLD_S=60, a longer hold; WAIT_S,
-// the wait after the release; WORK_K, the budget; SHAPES=FOLDER, where to
-// write the thread at the start, in the hold and at the end.
+// hands: the four runs of gentle, sudden x two, one; without speed: the 48 runs of two hands, one x 0.05, 0.2, 0.5, 1
+// m/s x 1, 5, 10 N x gentle, sudden release. Exit 1 when a knot was lost. Environment: HOLD_S=60, a longer hold;
+// WAIT_S, the wait after the release; WORK_K, the budget; SHAPES=FOLDER, where to write the thread at the start, in the
+// hold and at the end.
 
 #include <ctime>
 
@@ -203,9 +203,11 @@ int main(int argc, char** argv) {
       for (const bool sudden : {false, true}) run(std::atof(argv[2]), std::atof(argv[3]), sudden, hands);
     }
   } else {
-    for (const double speed : {0.05, 0.2, 0.5, 1.0}) {
-      for (const double force_N : {1.0, 5.0, 10.0}) {
-        for (const bool sudden : {false, true}) run(speed, force_N, sudden, 2);
+    for (const int hands : {2, 1}) {
+      for (const double speed : {0.05, 0.2, 0.5, 1.0}) {
+        for (const double force_N : {1.0, 5.0, 10.0}) {
+          for (const bool sudden : {false, true}) run(speed, force_N, sudden, hands);
+        }
       }
     }
   }
