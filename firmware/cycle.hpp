@@ -46,7 +46,7 @@ class Cycle {
   static constexpr Nanoseconds kPeriod = rt::kPeriod;
   /// From SYNC; the bus needs at most 460 us for SYNC and TPDOs, and 285 for the RPDOs before the next SYNC.
   static constexpr Nanoseconds kTpdoWait = std::chrono::microseconds(680);
-  /// What the bus leaves of a period, at its longest: a tick that works for longer cannot be in time.
+  /// What the bus leaves of a period, at its longest: a tick that computes for longer cannot be in time.
   static constexpr Nanoseconds kMostWork = kPeriod - std::chrono::microseconds(460);
   static constexpr std::int64_t kTicksPerShape = 8;
 
@@ -65,7 +65,6 @@ class Cycle {
     while (!controller_.is_finished()) {
       clock_.sleep_until(wake_at_);  // absolute: jitter does not accumulate
       const auto woke = clock_.now();
-      const auto worked_before = clock_.worked();
       skip((woke - wake_at_) / kPeriod);  // slept through
 
       take_commands();
@@ -74,6 +73,7 @@ class Cycle {
       const auto synced = clock_.now();
       const rt::RigReading reading = bus_.read_tpdos(woke + kTpdoWait);
       const auto sampled = clock_.now();
+      const auto worked_before = clock_.worked();
       const rt::RigCommand command = controller_.tick(input(reading, sampled - woke >= kPeriod));
       const auto decided = clock_.now();
       const rt::WireTorque torque = bus_.write_rpdos(command);

@@ -71,7 +71,7 @@ struct CycleTiming {
   DurationStatistics wakeup;     ///< scheduled until awake
   DurationStatistics control;    ///< awake until the RPDOs were written
   DurationStatistics execution;  ///< awake until the whole tick was done
-  DurationStatistics work;       ///< CPU time of the loop's thread in it: no waiting, nobody else's work
+  DurationStatistics work;       ///< CPU time of the loop's thread from the samples on: no waiting, nobody else's work
   std::uint64_t deadline_misses = 0;
   std::uint64_t overworked = 0;  ///< ticks whose work was more than the bus leaves of a period
   std::uint64_t periods_lost = 0;

@@ -124,7 +124,7 @@ def judge(ticks, before, after):
 
 def causes(done, waiting, computing):
     """@return how many late ticks woke up late, waited for a hand, or were kept from computing; and apart those whose own
-    CPU time, which the loop reads at waking and at the end, is more than the bus leaves of a period: only these are the
+    CPU time, which the loop reads when the samples are in and at the end, is more than the bus leaves of a period: only these are the
     program's."""
     names = {"woke up late": 0, "waited for a hand": 0, "were kept from computing": 0, "worked for too long": 0}
     told = []

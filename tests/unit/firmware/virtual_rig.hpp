@@ -41,7 +41,6 @@ class VirtualBus {
   rt::RigReading read_tpdos(Nanoseconds) noexcept {
     clock_.time += std::chrono::microseconds(460);
     if (const auto it = stalls.find(syncs); it != stalls.end()) clock_.time += it->second;
-    if (const auto it = works.find(syncs); it != works.end()) clock_.time += it->second, clock_.work += it->second;
     sampled_at.push_back(clock_.time);
     const double moved_rad = waist_rad_per_s * std::chrono::duration<double>(clock_.time).count();
     for (auto& hand : reading.hand) hand.q_rad[0] = kRestingArm[0] + moved_rad;
@@ -49,6 +48,7 @@ class VirtualBus {
   }
   rt::WireTorque write_rpdos(const rt::RigCommand& command) noexcept {
     written = command;
+    if (const auto it = works.find(syncs); it != works.end()) clock_.time += it->second, clock_.work += it->second;
     rt::WireTorque wire{};
     for (std::size_t h = 0; h < rt::kHands; ++h) {
       for (std::size_t j = 0; j < rt::kJoints; ++j) {
