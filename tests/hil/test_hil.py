@@ -27,6 +27,17 @@ OUT = pathlib.Path(os.environ.get("LIGATURE_HIL_OUT", ROOT / "build/hil"))
 WATCHDOG_TICKS = 20
 LOST, MISSED = 1, 2
 IDLE, ENGAGE, FORCE, FAULT = 2, 3, 4, 6
+PAGE = ROOT / "docs/fault-matrix-guest.md"
+PAGE_HEAD = """# Fault matrix, guest
+
+Made by `scripts/test-hil Faults`: real processes over SocketCAN under a PREEMPT_RT kernel, in virtual time (docs/timing.md).
+Each row befalls the rig half a second into full force. Ticks of 1 ms are counted by SYNC in `candump` and in the flight
+recorder, from the one in which the blow is on the bus; from the fault on no record and no RPDO of either hand has torque.
+*Stated* is asserted; *seen* is of the run that wrote this page.
+
+| what happens | stated | seen |
+|---|---|---|
+"""
 LONGEST_S = 2000  # of this machine's time, when others load it; alone a scenario takes one to three minutes
 
 
@@ -110,7 +121,12 @@ class Deadlines:
 
 
 class Blows(Scenario):
-    """Each blow finds the rig in force; `at` is the tick at which it can first be seen."""
+    """Each blow finds the rig in force; `at` is the tick at which it can first be seen. A test's first line says what
+    happens; with what it states and saw that makes a row of docs/fault-matrix-guest.md."""
+
+    def row(self, stated, seen):
+        self.rows[self._testMethodName] = (self._testMethodDoc.strip().splitlines()[0].rstrip("."), stated, seen)
+        print(f"  {self._testMethodName[5:]}: {seen}; stated: {stated}", flush=True)
 
     def read(self, name):
         folder = self.folder / name
@@ -141,13 +157,15 @@ class Blows(Scenario):
                 seen.append(int.from_bytes(data[2:4], "little", signed=True))
         return seen
 
-    def ends_in(self, faults, rows, left, right, at, within):
+    def ends_in(self, faults, rows, left, right, at, within, besides=""):
         """A fault of `faults`, latched from one of the first ticks after `at` on, and no torque of either hand in any
-        record or frame from there."""
+        record or frame from there. `besides`: what widens `within` in this run."""
         before = rows[at - 2]
         self.assertEqual((before["state"], pushes(before)), (FORCE, True), "the blow must find the rig in force")
         first = next(r for r in rows if r["fault"] != 0)
-        print(f"  {self._testMethodName[5:]}: fault {first['fault']} at the tick +{first['tick'] - at}, stated {within[0]} .. {within[-1]}", flush=True)
+        last = f"{within[-1]}" if not besides else f"{WATCHDOG_TICKS}{besides}"
+        self.row(f"fault {' or '.join(map(str, faults))}, tick +{within[0]} .. +{last}, both hands, latched",
+                 f"fault {first['fault']}, tick +{first['tick'] - at}")
         self.assertIn(first["fault"], faults)
         self.assertIn(first["tick"] - at, within)
         for row in rows[first["tick"]:]:
@@ -158,22 +176,26 @@ class Blows(Scenario):
 
 class FirstBlows:
     def test_a_killed_hand(self):
-        """Its watchdog runs from its last complete set of samples."""
+        """A hand is killed (SIGKILL).
+        The watchdog runs from its last complete set of samples."""
         rows, left, right = self.read("hand-killed")
         last = max(i for i, f in enumerate(left) if 0x181 <= f[1] <= 0x183)
         at = self.tick_before(rows, left, last)
         lost = sum(r["flags"] & LOST != 0 for r in rows[at:at + WATCHDOG_TICKS])  # killing costs the one CPU a period
-        self.ends_in((11,), rows, left, right, at, range(WATCHDOG_TICKS - 1, WATCHDOG_TICKS + lost + 1))
+        self.ends_in((11,), rows, left, right, at, range(WATCHDOG_TICKS - 1, WATCHDOG_TICKS + lost + 1),
+                     " and the periods that killing costs the one CPU")
         first = next(r for r in rows if r["fault"] != 0)
         self.assertEqual(first["left_tpdo_age_ticks"], WATCHDOG_TICKS)
 
     def test_an_emergency_of_a_drive(self):
+        """EMCY of a drive."""
         rows, left, right = self.read("emergency")
         at = self.tick_before(rows, left, self.position(left, 0x082, bytes.fromhex("5082110000000000")))
         self.ends_in((12,), rows, left, right, at, (0, 1))
 
     def test_bus_off(self):
-        """A bus that is off takes no SYNC."""
+        """Bus-off, told by the driver's error frame (vcan).
+        A bus that is off takes no SYNC."""
         rows, left, right = self.read("bus-off")
         last = max(i for i, f in enumerate(left) if f[1] == 0x080)
         self.ends_in((10,), rows, left, right, self.tick_before(rows, left, last), (0, 1))
@@ -193,19 +215,20 @@ class FirstBlows:
 
 class OtherBlows:
     def test_somebody_else_stops_a_drive(self):
-        """Its torque goes at once; we learn it from its heartbeat or from its silence."""
+        """A foreign NMT command stops a drive.
+        Its torque goes at once; we learn it from its heartbeat or from its silence."""
         rows, left, right = self.read("stranger")
         at = self.tick_before(rows, left, self.position(left, 0x000, bytes.fromhex("8002")))
         self.ends_in((11, 12), rows, left, right, at, range(1, WATCHDOG_TICKS + 2))
 
     def test_a_stopped_controller(self):
-        """SIGSTOP for 100 ms: the drives take the torque away by themselves, the controller wakes up into an overrun."""
+        """SIGSTOP of the controller for 0.1 s, SIGCONT.
+        The drives take the torque away by themselves, the controller wakes up into an overrun."""
         rows, left, right = self.read("controller-stopped")
         for frames in (left, right):
             told = [f for f in frames if 0x081 <= f[1] <= 0x083 and f[2][:2] == bytes.fromhex("5082")]
             self.assertEqual({f[1] for f in told}, {0x081, 0x082, 0x083}, "EMCY 0x8250: no RPDO for 20 ms")
         lost = [r["tick"] for r in rows if r["flags"] & LOST]
-        print(f"  {len(lost)} periods lost", flush=True)
         self.assertGreater(len(lost), 90)
         self.assertEqual(lost, list(range(lost[0], lost[0] + len(lost))))
         first = rows[lost[-1] + 1]
@@ -213,19 +236,25 @@ class OtherBlows:
         self.assertEqual(first["state"], FAULT)
         self.assertTrue(pushes(rows[lost[0] - 3]))
         self.assertFalse(any(pushes(r) for r in rows[lost[-1] + 1:]))
+        self.row("every drive tells EMCY 0x8250 and has no torque, by itself; fault 12 or 30 in the first executed tick",
+                 f"fault {first['fault']}, {len(lost)} periods lost")
 
     def test_the_clock_on_the_wall_does_not_matter(self):
+        """Wall clock +1 day, then -2 days."""
         rows, _, _ = self.read("clock-step")
         self.assertEqual({r["fault"] for r in rows}, {0})
         self.assertEqual(sum(r["flags"] & (LOST | MISSED) != 0 for r in rows), 0)
+        self.row("nothing: no fault, no period missed or lost", "nothing")
 
     def test_an_interface_that_goes_down_under_the_sja1000_driver(self):
-        """Its queue stops first; the news comes when the driver has closed it, or the watchdog is faster."""
+        """Interface down under the SJA1000 driver.
+        Its queue stops first; the news comes when the driver has closed it, or the watchdog is faster."""
         rows, left, right = self.read("sja1000-pulled")
         last = max(i for i, f in enumerate(left) if f[1] == 0x080)
         self.ends_in((10, 11), rows, left, right, self.tick_before(rows, left, last), range(WATCHDOG_TICKS + 2))
 
     def test_force_comes_back_by_order_only(self):
+        """The same interface up again after 0.2 s, 0.5 s later `reset-fault`, 0.5 s later `arm`."""
         rows, _, _ = self.read("sja1000-pulled-and-back")
         faulted = [r["tick"] for r in rows if r["state"] == FAULT]
         self.assertGreater(len(faulted), 600, "0.2 s without a bus, 0.5 s with one: it stays a fault")
@@ -235,6 +264,8 @@ class OtherBlows:
         self.assertGreater(sum(r["state"] == IDLE for r in disarmed), 300, "enabled again after the reset, but not armed")
         self.assertFalse(any(pushes(r) for r in disarmed))
         self.assertTrue(any(r["state"] == FORCE for r in after), "the order to arm brings it back")
+        self.row("FAULT until `reset-fault`, no torque until `arm`, then force again",
+                 f"{len(faulted)} ticks in FAULT, {len(disarmed)} without torque after the reset")
 
 
 class Overhand(Deadlines, Scenario):
@@ -243,11 +274,22 @@ class Overhand(Deadlines, Scenario):
 
 class Faults(FirstBlows, OtherBlows, Blows):
     name = "faults"
+    rows = {}
+
+    @classmethod
+    def tearDownClass(cls):
+        """The page holds what is stated; what was seen is of the run that wrote it."""
+        made = PAGE_HEAD + "".join(f"| {what} | {stated} | {seen} |\n" for _, (what, stated, seen) in sorted(cls.rows.items()))
+        if os.environ.get("LIGATURE_WRITE_DOCS"):
+            PAGE.write_text(made)
+        without_seen = [[line.rsplit("|", 2)[0] for line in text.splitlines()] for text in (PAGE.read_text() if PAGE.exists() else "", made)]
+        assert without_seen[0] == without_seen[1], f"{PAGE.name} is old: LIGATURE_WRITE_DOCS=1 writes it anew"
 
 
 class Short(Deadlines, FirstBlows, Blows):
     """What CI asks at each change, in one boot."""
     name = "short"
+    rows = {}
 
 
 class Canopen(Guest):
