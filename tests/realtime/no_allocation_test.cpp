@@ -1,5 +1,6 @@
-// No allocation and no lock in the loop: the whole cycle (bus code, control, physics, records) runs under two guards,
-// hooks on the process' allocator and mutexes and Eigen's run-time switch. Both guards are first shown to bite.
+// No allocation, no lock and no exception in the loop: the whole cycle (bus code, control, physics, records) runs under
+// two guards, hooks on the process' allocator and mutexes and Eigen's run-time switch. Both guards are first shown to
+// bite.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -55,6 +56,14 @@ TEST(NoAllocation, TheGuardsBite) {
     }
     EXPECT_GT(watch::allocations, 0);
     EXPECT_GT(watch::locks, 0);
+    {
+      const NoAllocation guard;
+      try {
+        throw 1;
+      } catch (int) {
+      }
+    }
+    EXPECT_GT(watch::allocations, 0) << "an exception is one, too, even when it is caught";
   }
   EXPECT_DEATH(
       {
