@@ -36,6 +36,7 @@ Example
 struct Arguments {
   std::string out = "out/pareto";
   bool quick = false;
+  std::string model;
   std::string one;
   int ticks = 0;
 };
@@ -179,9 +180,14 @@ void count(std::vector<Point>& points) {
 
 int execute(const Arguments& a) {
   if (!a.one.empty()) return run_one(a);
+  auto settings = all_settings(a.quick);
+  if (!a.model.empty()) {
+    std::erase_if(settings, [&](const Setting& s) { return scene::name(s.model) != a.model; });
+    if (settings.empty()) throw Refusal("--model: found " + a.model + ", allowed paper-1 .. paper-5, rod");
+  }
   make_folder(a.out);
   const std::filesystem::path out(a.out);
-  auto points = measure(all_settings(a.quick));
+  auto points = measure(settings);
   mark_front(points, motion_error, [](Point& p) -> bool& { return p.on_swing_front; });
   mark_front(
       points, [](const Point& p) { return p.errors.knot; }, [](Point& p) -> bool& { return p.on_knot_front; });
@@ -199,6 +205,7 @@ void add_pareto_command(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("pareto", "What accuracy costs: every model, N, substeps, contact passes");
   command->add_option("--out", a->out, "Folder for pareto.csv and pareto.png")->type_name("DIR")->capture_default_str();
   command->add_flag("--quick", a->quick, "About a sixth of the settings");
+  command->add_option("--model", a->model, "This model alone: paper-1 .. paper-5 or rod [all]")->type_name("MODEL");
   command->add_option("--one", a->one, "One setting's knot alone, MODEL/NODES/SUBSTEPS/PASSES or rod/NODES/PRESET")
       ->type_name("SETTING");
   command->add_option("--ticks", a->ticks, "With --one: so many ticks [the whole pull and hold]")->type_name("N");

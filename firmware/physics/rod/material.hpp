@@ -25,14 +25,21 @@ struct Numerics {
   double tick_s = 1e-3;
   int substeps = 16;  ///< of a tick at rest; more when the hands move fast
   int max_substeps = 24;
-  double fast_m_per_s = 0.3;  ///< hand speed up to which `substeps` do
-  int max_passes = 80;        ///< true solves per substep while contacts settle
-  long work = 4'500'000;  ///< what contact may cost in a tick, in instructions (work.hpp); fast hands: a quarter more
+  double fast_m_per_s = 0.3;      ///< hand speed up to which `substeps` do
+  int max_passes = 80;            ///< true solves per substep while contacts settle
+  long work = 4'200'000;          ///< what contact may cost in a tick, in instructions (work.hpp),
+  long work_per_node = 2000;      ///< and for each node besides; fast hands: a quarter more
   double settled_m_per_s = 3e-5;  ///< a pass that changes no velocity by more ends them,
   double settled_share = 0.004;   ///< or than that and this share of half the speed at which the ends are parted
   double recovery = 0.3;          ///< share of a penetration taken back per substep
   double max_recovery_m_per_s = 0.5;
   double contact_N_per_m = 6e5;  ///< give of a contact under load
+
+  /// Work of a tick for a thread of so many nodes.
+  [[nodiscard]] constexpr long budget(int nodes, bool fast_hands) const noexcept {
+    const long whole = work + work_per_node * nodes;
+    return fast_hands ? whole + whole / 4 : whole;
+  }
 };
 
 }  // namespace ligature::physics::rod

@@ -206,7 +206,7 @@ Rod::HandSpeed Rod::set_hands(const std::array<Vec, kMaxHolds>& goals, std::arra
 void Rod::begin_tick(const HandSpeed& hands) noexcept {
   report_ = TickReport{};
   const bool fast = hands.fastest > 1.001 * numerics_.fast_m_per_s;
-  work_.start(numerics_.work + (fast ? numerics_.work / 4 : 0));
+  work_.start(numerics_.budget(state_.nodes(), fast));
   look_cost_ = rows_cost_ = 0;
   if (!mesh_held_) report_.remeshes += remesh();
   if (parts_.roll) {

@@ -28,7 +28,7 @@ struct Parts {
 struct TickReport {
   int substeps = 0, passes = 0, contacts = 0, guard_events = 0, broad_phases = 0, remeshes = 0;
   double min_gap_m = 1e9;  ///< smallest thread-thread gap in any substep; negative: overlap
-  long work = 0;           ///< spent on contact, of Numerics::work
+  long work = 0;           ///< spent on contact, of Numerics::budget()
 
   // What was given up, in this order.
   int cut_short = 0;       ///< substeps whose contacts used up their passes before they settled

@@ -38,8 +38,8 @@ struct Hostile {
 };
 
 // Both hands leave at hand_m_per_s; every tick is checked for what crossed in it, tick by tick of one substep.
-Hostile attack(Rod rod, unsigned seed, double thrown_m_per_s, double hand_m_per_s, int ticks) {
-  crumple(rod, seed, 6.0, thrown_m_per_s);
+Hostile attack(Rod rod, unsigned seed, double ball, double thrown_m_per_s, double hand_m_per_s, int ticks) {
+  crumple(rod, seed, ball, thrown_m_per_s);
   const int n = rod.state().nodes();
   std::array<Vec, kMaxHolds> goals{};
   rod.grip(n / 4, 1000.0, 0.5, rod.state().x[static_cast<std::size_t>(n / 4)]);
@@ -61,16 +61,16 @@ Hostile attack(Rod rod, unsigned seed, double thrown_m_per_s, double hand_m_per_
   return seen;
 }
 
-long budget_of(const Numerics& numerics) { return numerics.work + numerics.work / 4; }
+long budget_of(const Numerics& numerics, int nodes) { return numerics.budget(nodes, true); }
 
-TEST(Work, NoStateCostsMoreThanTheBudget) {  // 154 and 500 nodes, at rest and thrown, hands at up to 100 m/s
-  for (const int nodes : {154, 500}) {
+TEST(Work, NoStateCostsMoreThanTheBudget) {  // 154 to 2000 nodes, at rest and thrown, hands at up to 100 m/s
+  for (const auto& [nodes, ball] : {std::pair{154, 6.0}, {154, 20.0}, {500, 6.0}, {500, 20.0}, {2000, 60.0}}) {
     for (const double thrown : {0.0, 10.0}) {
       for (const double hands : {0.0, 100.0}) {
         Numerics numerics;
         const Rod rod(Material{}, numerics, Parts{true, true, true, false, nodes == 154}, nodes);
-        const Hostile seen = attack(rod, 7, thrown, hands, 12);
-        EXPECT_LE(seen.most_work, budget_of(numerics)) << nodes << ' ' << thrown << ' ' << hands;
+        const Hostile seen = attack(rod, 7, ball, thrown, hands, 12);
+        EXPECT_LE(seen.most_work, budget_of(numerics, nodes)) << nodes << ' ' << thrown << ' ' << hands;
         EXPECT_GT(seen.most_work, numerics.work / 2);
         EXPECT_TRUE(seen.finite);
       }
@@ -85,28 +85,28 @@ TEST(Work, NothingCrossesInACrumpledBall) {  // one substep a tick, so that ever
   Rod rod(Material{}, numerics, Parts{false, true, true, false, false}, 154);
   rod.hold_mesh(true);
   long pairs = 0, given_up = 0;
-  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
-    const Hostile seen = attack(rod, seed, 2.0, 100.0, 60);
-    EXPECT_LE(seen.most_work, budget_of(numerics));
+  for (const auto& [seed, ball] : {std::pair{1U, 6.0}, {2U, 6.0}, {3U, 20.0}, {4U, 20.0}}) {
+    const Hostile seen = attack(rod, seed, ball, 2.0, 100.0, 60);
+    EXPECT_LE(seen.most_work, budget_of(numerics, 154));
     EXPECT_EQ(seen.crossings, 0);
     EXPECT_TRUE(seen.finite);
     pairs = std::max(pairs, seen.pairs);
     given_up += seen.ticks_given_up;
   }
-  EXPECT_GT(pairs, 500);
+  EXPECT_GT(pairs, 2000);
   EXPECT_GT(given_up, 0);
 }
 
 TEST(Work, SaysWhatItGaveUp) {  // passes first; contacts stay while there is work for three passes over them
   Numerics numerics;
-  numerics.work = 3'000'000;
+  numerics.work = 2'700'000;
   Rod rod(Material{}, numerics, Parts{false, true, true, false, false}, 154);
   crumple(rod, 5, 20.0, 0.0);
   rod.tick();
   const auto& r = rod.report();
   EXPECT_GT(r.cut_short, 0) << r.time_lost << ' ' << r.rows_left_out << ' ' << r.contacts << ' ' << r.work;
   EXPECT_GT(r.time_lost, 0.0) << rod.contact_set().pairs.size();
-  EXPECT_LE(rod.report().work, numerics.work);
+  EXPECT_LE(rod.report().work, numerics.budget(154, false));
 }
 
 }  // namespace
