@@ -12,6 +12,7 @@ constexpr double kTurn = 0.35;       // rad per node
 constexpr double kStartTurn = 0.5;   // the same for the shape a loose thread begins in
 constexpr double kBendLength = 0.4;  // of sqrt(EI / T)
 constexpr double kGrading = 0.2;
+constexpr double kRests_m_per_s = 1e-3;
 constexpr double kWorth = 1.5;  // a change must better the worst by this factor
 constexpr int kTries = 4;       // merges looked at for a change, so that a tangle costs no more than that
 
@@ -115,12 +116,32 @@ void Refine::want(const Material& material, const State& state, const Forces& fo
       wanted_[j] = std::min(wanted_[j], kBendLength * std::sqrt(material.EI_N_m2 / pull));
     }
   }
+  grade(mesh);
+  want_at_rest(state, contacts);
+}
+
+void Refine::grade(const Mesh& mesh) noexcept {
+  const std::size_t n = mesh.s.size();
   for (auto& w : wanted_) w = std::max(w, unit_m_);
   for (std::size_t j = 1; j + 1 < n; ++j) {
     wanted_[j] = std::min(wanted_[j], wanted_[j - 1] + kGrading * 0.5 * (mesh.rest[j - 1] + mesh.rest[j]));
   }
   for (std::size_t j = n - 2; j-- > 0;) {
     wanted_[j] = std::min(wanted_[j], wanted_[j + 1] + kGrading * 0.5 * (mesh.rest[j + 1] + mesh.rest[j]));
+  }
+}
+
+// What slides asks for nothing: its nodes would come and go all the time, each time with a small step of the force.
+void Refine::want_at_rest(const State& state, const ContactSet& contacts) noexcept {
+  for (const auto& c : contacts.contacts()) {
+    if (c.count != 4 || dot(c.p, c.p) == 0.0) continue;
+    Vec u{};
+    for (int k = 0; k < 4; ++k) u += c.w[k] * state.v[static_cast<std::size_t>(c.node[k])];
+    u -= dot(u, c.n) * c.n;
+    if (dot(u, u) > kRests_m_per_s * kRests_m_per_s) continue;
+    double& one = wanted_[static_cast<std::size_t>(c.node[0])];
+    double& other = wanted_[static_cast<std::size_t>(c.node[2])];
+    one = other = std::min(one, other);
   }
 }
 
