@@ -52,6 +52,7 @@ void HandControl::map(const Vec3& p_DT) noexcept {
 
 void HandControl::observe(const rt::HandReading& reading, const Grasp& grasp, std::int64_t tick,
                           std::int64_t last_tick) noexcept {
+  passivity_.begin(tick);
   const bool clutch = reading.clutch || clutch_command_;
   if (!clutch) state_.grip = reading.grip && !is_led();  // a parked tool keeps hold of what it holds
   state_.dead_man = reading.dead_man;
@@ -96,7 +97,7 @@ void HandControl::sample(const rt::HandReading& reading, std::int64_t sampled) n
   from_torque_ = jacobian_.transpose().inverse();
   if (!p_DT_.allFinite()) return;
   const Acted acted{vector_of(reading.torque_Nm), reading.torque_limited, reading.torque_held};
-  passivity_.observe(sampled, {reading.q_rad, p_DT_, count_rad_, jacobian_.colwise().norm().transpose(), acted});
+  passivity_.observe(sampled, {reading.q_rad, p_DT_, count_rad_, jacobian_.colwise().norm().transpose(), rate, acted});
 }
 
 /// While it is held the tool stays where it is in the world; when it is let go, the map is moved so that the tool

@@ -5,8 +5,6 @@
 
 namespace ligature::control {
 
-const Passivity::Sent Passivity::kNothing{};
-
 Passivity::Passivity(const device::Device& d, double period_s, bool active, double credit_J) noexcept
     : period_s_(period_s),
       reach_m_(d.hand_acceleration_m_per_s2 * period_s * period_s),
@@ -14,63 +12,98 @@ Passivity::Passivity(const device::Device& d, double period_s, bool active, doub
       active_(active),
       energy_J_(credit_J) {}
 
-const Passivity::Sent& Passivity::in_tick(std::int64_t tick) const noexcept {
-  if (tick < 0 || tick > last_sent_ || tick <= last_sent_ - static_cast<std::int64_t>(kMemory)) return kNothing;
-  return memory_[static_cast<std::size_t>(tick) % kMemory];
-}
-
 void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {
-  count_m_ = s.count_rad * s.lever_m.maxCoeff();
+  sent_.begin(tick);
+  const auto periods = static_cast<double>(tick - sampled_);
+  const double half_rad = 0.5 * s.count_rad;
+  const Vec3 counted_rad = vector_of(s.q_rad);
+  Vec3 q_rad = counted_rad;
   if (sampled_ >= 0 && tick > sampled_) {
-    const auto periods = static_cast<double>(tick - sampled_);
-    const Vec3 dq_rad = (vector_of(s.q_rad) - vector_of(q_rad_)) / periods;
-    step_m_ = (s.p_m - p_m_) / periods;
-    const std::int64_t first = std::max(sampled_, tick - static_cast<std::int64_t>(kMemory));
-    for (std::int64_t i = first; i < tick - 1; ++i) {
-      book(i, dq_rad, {});  // nobody saw how the motion was shared out among these periods
-      energy_J_ -= 0.5 * (periods - 1.0) * reach_m_ * (in_tick(i - 1).f_N - in_tick(tick - 2).f_N).norm();
+    const Vec3 turned_rad = periods * period_s_ * s.rate_rad_per_s;
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      if (std::abs(turned_rad[j]) < kSlowCounts * periods * s.count_rad)
+        q_rad[j] = std::clamp(q_rad_[j] + turned_rad[j], counted_rad[j] - half_rad, counted_rad[j] + half_rad);
     }
-    book(tick - 1, dq_rad, s.acted);
+    for (Eigen::Index j = 0; j < 3; ++j) energy_J_ -= most_given_J(j, tick, q_rad[j] - q_rad_[j], s);
     if (active_) energy_J_ = std::min(energy_J_, kCredit_J + granted_J_);
+    step_m_ = (s.p_m - p_m_) / periods;
+    doubt_m_ = 0.5 * (periods - 1.0) * reach_m_;
+    count_m_ = s.count_rad * s.lever_m.maxCoeff() / periods;
   }
   sampled_ = tick;
-  q_rad_ = s.q_rad;
+  q_rad_ = q_rad;
   p_m_ = s.p_m;
 }
 
-/// The period that begins with SYNC `period`: what acts in it was sent in the tick before.
-void Passivity::book(std::int64_t period, const Vec3& dq_rad, const Acted& acted) noexcept {
-  Vec3 made_Nm = in_tick(period - 1).torque_Nm;
-  for (Eigen::Index j = 0; j < 3; ++j) {
-    const auto joint = static_cast<std::size_t>(j);
-    double out_J = made_Nm[j] * dq_rad[j];
-    const bool told = std::isfinite(acted.torque_Nm[j]);
-    if (told || acted.held[joint] > 0)
-      made_Nm[j] = told ? acted.torque_Nm[j] : in_tick(period - 1 - acted.held[joint]).torque_Nm[j];
-    out_J = std::max(out_J, made_Nm[j] * dq_rad[j]);
-    if (acted.limited[joint] && !told) out_J = std::max(out_J, 0.0);
-    energy_J_ -= out_J;
+/// By one joint's motor since the last sample. The torque of the last cycle is known; so are those before it in which
+/// the drive had nothing new. In the others it made one of what was sent since the last sample, or went on as before.
+double Passivity::most_given_J(Eigen::Index j, std::int64_t tick, double dq_rad, const PortSample& s) noexcept {
+  const auto joint = static_cast<std::size_t>(j);
+  const std::int64_t first = sent_.cycle_of(sampled_), last = std::max(first, sent_.cycle_of(tick - 1));
+  const auto asked_Nm = [&](std::int64_t i) { return sent_.at(i - 1).torque_Nm[j]; };
+  const bool told = std::isfinite(s.acted.torque_Nm[j]);
+  const double made_Nm = told ? s.acted.torque_Nm[j] : asked_Nm(last - s.acted.held[joint]);
+  double low_Nm = low_Nm_[j], high_Nm = high_Nm_[j];
+  const auto widen = [&](double by_Nm) { low_Nm = std::min(low_Nm, by_Nm), high_Nm = std::max(high_Nm, by_Nm); };
+  for (std::int64_t i = first; i < last; ++i) widen(asked_Nm(i));
+  const bool guarded = s.acted.limited[joint] || guarded_[joint];
+  if (!guarded && made_Nm != asked_Nm(last)) lossy_until_ = tick + kWary;
+  if (guarded) widen(asked_Nm(last)), widen(told ? made_Nm : 0.0);
+
+  const double all = static_cast<double>(tick - sampled_);
+  double given_J = made_Nm * dq_rad;
+  bool known = !guarded;
+  for (std::int64_t i = last; i >= first; --i) {
+    if (i < last) known = known && (told ? made_Nm != asked_Nm(i + 1) : last - i <= s.acted.held[joint]);
+    if (known) continue;
+    const double even_rad = dq_rad * static_cast<double>(sent_.periods(i)) / all;
+    given_J += std::max((high_Nm - made_Nm) * even_rad, (low_Nm - made_Nm) * even_rad);
   }
+  low_Nm_[j] = guarded ? low_Nm : made_Nm;
+  high_Nm_[j] = guarded ? high_Nm : made_Nm;
+  guarded_[joint] = s.acted.limited[joint];
+  return given_J;
 }
 
-double Passivity::loss_J(const Vec3& f_N, double spread_m) const noexcept {
-  return std::max(0.0, f_N.dot(step_m_) + f_N.norm() * spread_m);
+/// By a tip force that acts for so many periods from `start` periods after the sample's SYNC on, at its worst.
+double Passivity::loss_J(const Vec3& f_N, std::int64_t start, std::int64_t periods, double counts) const noexcept {
+  const auto s = static_cast<double>(start), d = static_cast<double>(periods);
+  const double spread_m = reach_m_ * (d * s + 0.5 * d * (d + 1.0)) + d * (doubt_m_ + counts * count_m_);
+  return std::max(0.0, d * along_J(f_N) + f_N.norm() * spread_m);
+}
+
+/// The same where frames are lost: of a hand that is wild for two periods at most, and of what is more than kSlight_N.
+double Passivity::blind_loss_J(const Vec3& f_N, std::int64_t start, std::int64_t periods) const noexcept {
+  double lost_J = 0.0;
+  const double size_N = std::max(0.0, f_N.norm() - kSlight_N);
+  for (std::int64_t j = start + 1; j <= start + std::min(periods, SentTorques::kMemory); ++j) {
+    const double spread_m = reach_m_ * (2.0 + kLater * static_cast<double>(j - 2)) + doubt_m_ + count_m_;
+    lost_J += j <= 2 ? loss_J(f_N, j - 1, 1, 1.0) : std::max(0.0, along_J(f_N) + size_N * spread_m);
+  }
+  return lost_J;
+}
+
+/// In a period of the last motion. One count against the force may have been none.
+double Passivity::along_J(const Vec3& f_N) const noexcept {
+  const double given_J = f_N.dot(step_m_);
+  return given_J > 0.0 ? given_J : std::min(0.0, given_J + f_N.norm() * count_m_);
 }
 
 /// What is missing to send f in `tick` and to take it back in steps; below zero: what is left.
 double Passivity::shortage_J(std::int64_t tick, const Vec3& f_N) const noexcept {
+  const bool blind = tick > sampled_, wary = tick < lossy_until_;
   double spent_J = 0.0;
-  const auto spend = [&](const Vec3& f, std::int64_t period, double counts) {
-    spent_J += loss_J(f, static_cast<double>(period) * reach_m_ + counts * count_m_);
-  };
-  const auto remembered = last_sent_ - static_cast<std::int64_t>(kMemory) + 2;  // without samples the way is no longer
-  for (std::int64_t i = std::max(sampled_, remembered); i <= tick; ++i) {       // under way
-    spend(in_tick(i - 1).f_N, i - sampled_ + 1, 1.0);
+  for (std::int64_t i = sent_.cycle_of(sampled_); i <= sent_.newest(); ++i) {  // under way
+    const std::int64_t start = std::max<std::int64_t>(0, sent_.at(i).tick - sampled_);
+    const auto lost_J = [&](std::int64_t from) { return blind_loss_J(sent_.at(from).f_N, start, sent_.periods(i)); };
+    spent_J += wary ? std::max(lost_J(i - 1), lost_J(i - 2)) : lost_J(i - 1);
   }
-  spend(f_N, tick - sampled_ + 2, 1.0);
+  const std::int64_t ahead = tick + 1 - sampled_;
+  spent_J += blind_loss_J(f_N, ahead, wary && !blind ? 2 : 1);
+  if (blind) return spent_J - energy_J_ - kSpend_J;
   Vec3 f = shorter(f_N, step_N_);
   for (std::int64_t k = 1; !f.isZero(0.0); ++k) {  // each step back sees one more count
-    spend(f, tick - sampled_ + 2 + k, 1.0 + static_cast<double>(k));
+    spent_J += loss_J(f, ahead + k, 1, 1.0 + static_cast<double>(k));
     f = shorter(f, step_N_);
   }
   return spent_J - energy_J_ - kSpend_J;
@@ -89,12 +122,8 @@ Vec3 Passivity::damped(std::int64_t tick, const Vec3& wish_N, const Vec3& v, con
 }
 
 void Passivity::sent(std::int64_t tick, const Vec3& torque_Nm, const Vec3& f_N) noexcept {
-  const Sent now{torque_Nm, f_N};
-  const Sent held = in_tick(last_sent_);  // a lost period sends nothing: the drives hold what they have
-  const std::int64_t from = std::max(last_sent_ + 1, tick - static_cast<std::int64_t>(kMemory));
-  for (std::int64_t i = from; i < tick; ++i) memory_[static_cast<std::size_t>(i) % kMemory] = held;
-  memory_[static_cast<std::size_t>(tick) % kMemory] = now;
-  last_sent_ = tick;
+  sent_.begin(tick);
+  sent_.send(torque_Nm, f_N);
 }
 
 void Passivity::grant(double energy_J) noexcept {

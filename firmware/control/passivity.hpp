@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "firmware/control/kinematics.hpp"
+#include "firmware/control/sent_torques.hpp"
 
 namespace ligature::control {
 
@@ -21,9 +22,10 @@ struct Acted {
 /// A pose, and how sharply it is seen.
 struct PortSample {
   JointAngles q_rad{};
-  Vec3 p_m = Vec3::Zero();      ///< of the tip
-  double count_rad = 0.0;       ///< of the joints' encoders; 0: exact
-  Vec3 lever_m = Vec3::Zero();  ///< |dp/dq_j|
+  Vec3 p_m = Vec3::Zero();             ///< of the tip
+  double count_rad = 0.0;              ///< of the joints' encoders; 0: exact
+  Vec3 lever_m = Vec3::Zero();         ///< |dp/dq_j|
+  Vec3 rate_rad_per_s = Vec3::Zero();  ///< for where between two counts a joint is likely to be
   Acted acted{};
 };
 
@@ -31,12 +33,14 @@ struct PortSample {
 ///
 /// Observer. A torque sent in tick k acts from SYNC k+1 to SYNC k+2 and is constant in between (zero-order hold), so
 /// the motors' work is exact but for the encoder's half count h:
-///   E(n) = E(n-1) - sum_j max over what joint j may have had of tau_j dq_j
-/// What a joint may have had is the torque sent two ticks ago, and what the drive says that it made if that differs (a
-/// lost RPDO, a drive that guards its winding). Half counts hide up to
-/// h |tau_j(n) - tau_j(n-1)| of either sign at each change, for which no room is kept. Credit above
-/// kCredit_J is forgotten (else an hour of harmless friction would pay for a minute of instability). The start is 0
-/// plus the scene's energy_credit_J.
+///   E(n) = E(n-1) - sum_j tau_j dq_j
+/// with the torque that the drive says it made: a lost RPDO leaves the one before. Where a sample was lost, dq covers
+/// several periods, still exact as long as the torque was the same in all of them; else the joint is taken to have
+/// moved evenly, and where a torque is not known the worst of what it may have been is booked. A drive that guards its
+/// winding may change its torque within a period: the worst of sent and told. Where a slow joint is between two counts
+/// is guessed by its velocity. Half counts h hide up to 2 h |tau_j(n) - tau_j(n-1)| of either sign at each change, for
+/// which no room is kept. Credit above kCredit_J is forgotten (else an hour of harmless friction would pay for a minute
+/// of instability). The start is 0 plus the scene's energy_credit_J.
 ///
 /// Controller. Torques sent are spent money: one is on its way when the next is decided, and the hand may turn round. A
 /// hand that gives the tip at most the acceleration a moves it, in the j-th period after the last sample, by dx + e
@@ -44,22 +48,30 @@ struct PortSample {
 ///   out_j(F) = max(0, F . dx + |F| (j a T^2 + c)),
 /// and a force is sent only when E stays above -kFloor_J after the losses of all torques under way, its own, and those
 /// of the way from it to zero in steps of the device's force_step_N. So a force that was paid for can always be taken
-/// back without a jump. A lost RPDO lets a torque act once more: that is booked, not foreseen. One that cannot be paid
-/// for is first damped against the motion (alpha = shortage / (T v^2), at most kMaxDamping, v at least kSlow), then as
-/// much of it is sent as can. O(1), no allocation. The bound on acceleration is the device record's; beyond it the
-/// energy comes first, and a step may be larger.
+/// back without a jump. One that cannot be paid for is first damped against the motion (alpha = shortage / (T v^2), at
+/// most kMaxDamping, v at least kSlow), then as much of it is sent as can. O(1), no allocation. The bound on
+/// acceleration is the device record's; beyond it the energy comes first, and a step may be larger.
+///
+/// Lost frames. Once RPDOs have been lost, the next loss is foreseen: the one under way may be, and the one sent may
+/// act twice. Without a sample the force goes on as long as it is paid for, without the way back. In either case the
+/// hand's acceleration from the third period on is taken as kLater of a, and only of what exceeds kSlight_N.
 class Passivity {
  public:
   static constexpr double kFloor_J = 1e-6;
   static constexpr double kCredit_J = 0.02;             ///< a 3.3 N spring of 270 N/m, or a 0.88 N one of 19 N/m
   static constexpr double kMaxDamping_N_s_per_m = 5.0;  ///< what a device of the class can render at 1 kHz
-  static constexpr double kSlow_m_per_s = 5e-3;         ///< below, a velocity is mostly counts
-  static constexpr std::size_t kMemory = 64;            ///< ticks; longer than any watchdog
+  static constexpr std::int64_t kWary = 10'000;         ///< ticks after a lost RPDO in which the next one is foreseen
+  static constexpr double kLater = 0.3;          ///< of the hand's acceleration, after two periods without a sample
+  static constexpr double kSlight_N = 0.01;      ///< for so little nothing is foreseen, else no force could begin
+  static constexpr double kSlowCounts = 0.25;    ///< a period; below, a joint is guessed to be between counts
+  static constexpr double kSlow_m_per_s = 5e-3;  ///< below, a velocity is mostly counts
 
   Passivity(const device::Device& device, double period_s, bool active, double credit_J) noexcept;
 
-  /// A new sample: books the work since the last one. Whole periods lie between, moved through evenly but for what the
-  /// bound on acceleration allows.
+  /// SYNC of `tick` has gone out; observe() and sent() say so, too.
+  void begin(std::int64_t tick) noexcept { sent_.begin(tick); }
+
+  /// A new sample: books the work since the last one.
   void observe(std::int64_t tick, const PortSample& sample) noexcept;
 
   /// The force that may be sent in tick `tick`, >= the last observed, on the way from `before_N` (sent last) to
@@ -105,16 +117,13 @@ class Passivity {
   [[nodiscard]] bool acts() const noexcept { return acts_; }
 
  private:
-  struct Sent {
-    Vec3 torque_Nm = Vec3::Zero();
-    Vec3 f_N = Vec3::Zero();
-  };
-  static const Sent kNothing;
   static constexpr double kSpend_J = 0.95 * kFloor_J;
   static constexpr double kRounding_J = 5e-6;  // what a torque's rounding may cost more: one quantum times 1 mm
-  [[nodiscard]] const Sent& in_tick(std::int64_t tick) const noexcept;
-  void book(std::int64_t period, const Vec3& dq_rad, const Acted& acted) noexcept;
-  [[nodiscard]] double loss_J(const Vec3& f_N, double spread_m) const noexcept;
+  [[nodiscard]] double most_given_J(Eigen::Index joint, std::int64_t tick, double dq_rad,
+                                    const PortSample& sample) noexcept;
+  [[nodiscard]] double loss_J(const Vec3& f_N, std::int64_t start, std::int64_t periods, double counts) const noexcept;
+  [[nodiscard]] double blind_loss_J(const Vec3& f_N, std::int64_t start, std::int64_t periods) const noexcept;
+  [[nodiscard]] double along_J(const Vec3& f_N) const noexcept;
   [[nodiscard]] double shortage_J(std::int64_t tick, const Vec3& f_N) const noexcept;
   [[nodiscard]] Vec3 damped(std::int64_t tick, const Vec3& wish_N, const Vec3& v, const Vec3& before_N) noexcept;
   [[nodiscard]] static Vec3 shorter(const Vec3& f_N, double by_N) noexcept {
@@ -137,12 +146,14 @@ class Passivity {
   double period_s_, reach_m_, step_N_;  // reach: a T^2
   bool active_;
   double energy_J_, received_J_ = 0.0, granted_J_ = 0.0, dissipated_J_ = 0.0, injected_ = 0.0;
-  double count_m_ = 0.0;
+  double count_m_ = 0.0, doubt_m_ = 0.0;  // of step_m_: by counts, by what lies between samples
   bool acts_ = false;
-  std::int64_t sampled_ = -1, last_sent_ = -1;
-  JointAngles q_rad_{};
-  Vec3 p_m_ = Vec3::Zero(), step_m_ = Vec3::Zero();  // step: motion of the last observed period
-  std::array<Sent, kMemory> memory_{};
+  std::int64_t sampled_ = -1, lossy_until_ = -1;
+  Vec3 q_rad_ = Vec3::Zero();                            // within the last count
+  Vec3 p_m_ = Vec3::Zero(), step_m_ = Vec3::Zero();      // step: motion in a period before the sample
+  Vec3 low_Nm_ = Vec3::Zero(), high_Nm_ = Vec3::Zero();  // what acted in that period
+  std::array<bool, 3> guarded_{};                        // then
+  SentTorques sent_;
 };
 
 }  // namespace ligature::control

@@ -45,6 +45,7 @@ class Pulling final : public sim::Intention {
 
 struct Outcome {
   double lowest_J = 0.0, peak_N = 0.0, step_N = 0.0;
+  double felt_share = 0.0;  ///< of the time, once it has begun: both hands feel four fifths of what the coupling asks
   int fault = 0;
   int limits = 0;
 };
@@ -61,6 +62,10 @@ Outcome outcome_of(const lab::VirtualRig& rig) {
       o.limits |= r.limits[h];
     }
     before = r.f_device_N;
+    const auto size = [](const rt::Triple& f) { return std::hypot(f[0], f[1], f[2]); };
+    const bool felt =
+        size(r.f_device_N[0]) >= 0.8 * size(r.f_wish_N[0]) && size(r.f_device_N[1]) >= 0.8 * size(r.f_wish_N[1]);
+    if (r.tick >= 1500) o.felt_share += felt / static_cast<double>(rig.records.size() - 1500);
     if (o.fault == 0) o.fault = r.fault;
   }
   return o;
@@ -114,6 +119,18 @@ TEST(PassivityRig, NoHandGetsEnergyOutOfAPort) {
       EXPECT_GE(o.lowest_J, -kFloor_J);
       EXPECT_LE(o.peak_N, 3.3);
     }
+  }
+}
+
+TEST(PassivityRig, ThroughLostFramesAPullIsFelt) {
+  const Hands hands{"", 0.5, 0.7, 0.03, false, 0.0, 0.0};
+  for (const double lost : {0.0, 0.01, 0.05}) {
+    Hands lossy = hands;
+    lossy.frame_loss = lost;
+    const Outcome o = play(scene_with({}), lossy);
+    std::printf("%.2f of the frames lost: felt in %.3f of the time, lowest %.2e J\n", lost, o.felt_share, o.lowest_J);
+    EXPECT_GT(o.felt_share, 0.9);
+    EXPECT_GE(o.lowest_J, -kFloor_J);
   }
 }
 

@@ -8,6 +8,8 @@
 #include <functional>
 #include <random>
 
+#include "firmware/control/window_velocity.hpp"
+
 namespace ligature::control {
 namespace {
 
@@ -24,12 +26,15 @@ device::Device plain() {
 
 /// What lies between the controller and the motor.
 struct Chain {
-  double count_m = 0.0;      // of the encoders
-  double lost = 0.0;         // share of the RPDOs
+  double count_m = 0.0;  // of the encoders
+  double lost = 0.0;     // share of the RPDOs
+  double lost_samples = 0.0;
   double guard_N = 1e9;      // the drive makes no more than this
   bool tells_torque = true;  // else it tells only that it limits, and for how long it has held
   std::uint32_t seed = 1;    // of the losses
 };
+
+WindowVelocity velocity_of(const Chain& c) { return {kT_s, std::max(c.count_m, 1e-9)}; }
 
 /// A mass that a hand and the motors push; `wish` is the law, the hand's force is given.
 struct Port {
@@ -40,17 +45,29 @@ struct Port {
   void tick(Wish wish, const Vec3& acceleration) {
     // SYNC: the encoders are read, the drive takes what has arrived.
     const Vec3 seen = chain.count_m > 0.0 ? Vec3((p / chain.count_m).array().round() * chain.count_m) : p;
-    PortSample sample{{seen.x(), seen.y(), seen.z()}, seen, chain.count_m, Vec3(1, 1, 1), {}};
+    PortSample sample{{seen.x(), seen.y(), seen.z()}, seen, chain.count_m, Vec3(1, 1, 1), {}, {}};
     if (chain.tells_torque) sample.acted.torque_Nm = made;
     sample.acted.limited.fill(made != taken);
     sample.acted.held.fill(held);
-    passivity.observe(n, sample);
+    const bool is_seen = static_cast<double>(random()) * 0x1p-32 >= chain.lost_samples;
+    passivity.begin(n);
+    if (is_seen) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        rate[j].add(sample.q_rad[j], n - last_seen);
+        sample.rate_rad_per_s[static_cast<Eigen::Index>(j)] = rate[j].velocity_per_s();
+      }
+      last_seen = n;
+      passivity.observe(n, sample);
+      largest_shortfall_J = std::max(largest_shortfall_J, work_J - passivity.energy_J());
+      largest_excess_J = std::max(largest_excess_J, passivity.energy_J() - work_J);
+      if (hidden_J > 0.0) most_of_hidden = std::max(most_of_hidden, (passivity.energy_J() - work_J) / hidden_J);
+    }
     lowest_J = std::min(lowest_J, passivity.energy_J());
     lowest_work_J = std::min(lowest_work_J, work_J);
-    largest_excess_J = std::max(largest_excess_J, passivity.energy_J() - work_J);
     const bool arrives = static_cast<double>(random()) * 0x1p-32 >= chain.lost;
     held = arrives ? 0 : held + 1;
     if (arrives) taken = on_its_way;
+    const Vec3 made_before = made;
     made = taken.cwiseMax(-chain.guard_N).cwiseMin(chain.guard_N);
 
     const Vec3 wished = wish(p, v), change = wished - before;
@@ -64,6 +81,7 @@ struct Port {
     if (passivity.acts()) ++acted;
     const Vec3 moved = v * kT_s + 0.5 * acceleration * kT_s * kT_s;  // under a constant acceleration
     work_J -= made.dot(moved);
+    hidden_J += chain.count_m * (made - made_before).lpNorm<1>();  // half a count by the encoder, half by the guess
     p += moved;
     v += acceleration * kT_s;
     ++n;
@@ -73,11 +91,13 @@ struct Port {
   Chain chain;
   std::function<Vec3(const Vec3&)> made_of = [](const Vec3& f) { return f; };  // of torques that are rounded
   std::mt19937 random;
+  std::array<WindowVelocity, 3> rate{velocity_of(chain), velocity_of(chain), velocity_of(chain)};
   Vec3 p = Vec3::Zero(), v = Vec3::Zero(), before = Vec3::Zero();
   Vec3 on_its_way = Vec3::Zero(), taken = Vec3::Zero(), made = Vec3::Zero();
   double lowest_J = 0.0, work_J = 0.0, lowest_work_J = 0.0, largest_step_N = 0.0, largest_excess_J = -1e9;
+  double largest_shortfall_J = -1e9, hidden_J = 0.0, most_of_hidden = 0.0;
   int acted = 0, held = 0;
-  std::int64_t n = 0;
+  std::int64_t n = 0, last_seen = 0;
 };
 
 Vec3 saturated(const Vec3& f) { return f.norm() > 3.3 ? Vec3(f * (3.3 / f.norm())) : f; }
@@ -107,13 +127,13 @@ TEST(Passivity, ASampledSpringMakesEnergyAndTheControllerRefusesIt) {  // a full
 /// 40 adversaries: jerks at full acceleration, half of them always along the motors' force; springs, and motors.
 /// @param wildness share of the acceleration that the controller keeps room for
 template <class Look>
-void play_adversaries(const Chain& chain, Look look, double wildness = 1.0) {
+void play_adversaries(const Chain& chain, Look look, double wildness = 1.0, bool active = true) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> share(-1.0, 1.0);
   std::normal_distribution<double> any;
   const double a = wildness * plain().hand_acceleration_m_per_s2;
   for (int seed = 0; seed < 40; ++seed) {
-    Port port(true, 0.0, chain);
+    Port port(active, 0.0, chain);
     Vec3 push = Vec3::Zero();
     for (int i = 0; i < 3000; ++i) {
       if (i % (1 + seed % 17) == 0) push = Vec3(any(random), any(random), any(random)).normalized();
@@ -144,32 +164,69 @@ TEST(Passivity, NoHandWithinTheBoundIsCutByMoreThanAStep) {
   EXPECT_GT(felt_N, 0.5);
 }
 
-TEST(Passivity, OnCountsTheAccountHoldsAndTheTrueWorkIsNear) {  // near: what half a count of each change of force hides
-  play_adversaries({.count_m = 5e-5}, [](const Port& port) {
+TEST(Passivity, OnCountsTheAccountHoldsAndTheTrueWorkIsNear) {  // near: what counts hide at each change of force
+  double lowest_J = 0.0, most_of_bound = 0.0;
+  play_adversaries({.count_m = 5e-5}, [&](const Port& port) {
     EXPECT_GE(port.lowest_J, -Passivity::kFloor_J);
-    EXPECT_GE(port.lowest_work_J, -5e-4);
+    EXPECT_LE(port.most_of_hidden, 1.0);
+    lowest_J = std::min(lowest_J, port.lowest_work_J);
+    most_of_bound = std::max(most_of_bound, port.most_of_hidden);
   });
+  std::printf("random jerks on counts: true work %.2e J, up to %.2f of what counts can hide\n", lowest_J,
+              most_of_bound);
+  EXPECT_GE(lowest_J, -2e-4);
 }
 
 TEST(Passivity, TheAccountIsNeverAboveTheTrueWork) {  // but for a count; whatever the drive made of what it was sent
   const Chain plainly{}, counted{.count_m = 5e-5};
   const Chain guarded{.guard_N = 0.3}, silent{.guard_N = 0.3, .tells_torque = false};
   const Chain lossy{.lost = 0.05}, lossy_silent{.lost = 0.3, .tells_torque = false};
-  for (const Chain& chain : {plainly, counted, guarded, silent, lossy, lossy_silent}) {
+  const Chain blind{.lost_samples = 0.15}, both{.lost = 0.15, .lost_samples = 0.15};
+  const Chain both_silent{.lost = 0.15, .lost_samples = 0.3, .tells_torque = false};
+  for (const Chain& chain : {plainly, counted, guarded, silent, lossy, lossy_silent, blind, both, both_silent}) {
+    SCOPED_TRACE(::testing::Message() << "lost " << chain.lost << " and " << chain.lost_samples);
+    const double out_of_order_J = chain.lost_samples > 0.0 ? 1e-5 : 1e-12;  // nobody saw who moved when
     play_adversaries(chain, [&](const Port& port) {
-      EXPECT_LE(port.largest_excess_J, 1e-12 + 5.0 * chain.count_m * 3.3 * std::sqrt(3.0));
+      EXPECT_LE(port.largest_excess_J, out_of_order_J + 5.0 * chain.count_m * 3.3 * std::sqrt(3.0));
     });
   }
 }
 
-TEST(Passivity, LostFramesAreBookedAsTheyActed) {
+TEST(Passivity, ALostTorqueIsBookedToTheLastDigit) {  // what the drive made instead is known as soon as it tells
   for (const bool tells : {true, false}) {
-    double lowest_J = 0.0;
-    play_adversaries(
-        {.lost = 0.05, .tells_torque = tells},
-        [&](const Port& port) { lowest_J = std::min(lowest_J, port.lowest_work_J); }, 0.2);
-    std::printf("5 %% of the RPDOs lost, torque %s: %.2e J\n", tells ? "told" : "not told", lowest_J);
-    EXPECT_GE(lowest_J, -Passivity::kFloor_J);
+    const auto look = [](const Port& port) {
+      EXPECT_LE(port.largest_excess_J, 1e-10);
+      EXPECT_LE(port.largest_shortfall_J, 1e-10);
+    };
+    play_adversaries({.lost = 0.3, .tells_torque = tells}, look, 1.0, false);  // on, it forgets credit
+  }
+}
+
+TEST(Passivity, AHeldTorqueIsBookedExactlyOverLostSamples) {
+  Port port(false, 0.0, {.lost_samples = 0.5});
+  const auto hold = [](const Vec3&, const Vec3&) { return Vec3(0.3, 0, 0); };
+  for (int i = 0; i < 500; ++i) {
+    if (i == 20) port.largest_excess_J = port.largest_shortfall_J = -1e9;  // it acts by now
+    port.tick(hold, Vec3(std::cos(0.05 * i), 0, 0));
+  }
+  EXPECT_LE(port.largest_excess_J + port.largest_shortfall_J, 1e-12);
+}
+
+/// Of 40 adversaries with frames lost either way.
+double least_work_J(const Chain& chain, double wildness) {
+  double lowest_J = 0.0;
+  play_adversaries(
+      chain, [&](const Port& port) { lowest_J = std::min(lowest_J, port.lowest_work_J); }, wildness);
+  std::printf("RPDOs %.2f, samples %.2f lost, %.1f of the wildest hand: %.2e J\n", chain.lost, chain.lost_samples,
+              wildness, lowest_J);
+  return lowest_J;
+}
+
+TEST(Passivity, LostFramesGiveNothingAway) {  // a wilder hand gets 30 uJ once two RPDOs in a row are lost
+  for (const bool tells : {true, false}) {
+    EXPECT_GE(least_work_J({.lost = 0.05, .tells_torque = tells}, 0.5), -Passivity::kFloor_J);
+    EXPECT_GE(least_work_J({.lost_samples = 0.14, .tells_torque = tells}, 0.5), -Passivity::kFloor_J);
+    EXPECT_GE(least_work_J({.lost = 0.05, .lost_samples = 0.14, .tells_torque = tells}, 0.5), -Passivity::kFloor_J);
   }
 }
 
@@ -191,25 +248,36 @@ TEST(Passivity, APaidSpringIsFeltInFull) {  // pull 1 cm slowly and hold: what t
   EXPECT_NEAR(port.made.norm(), 400.0 * port.p.norm(), 0.01 * 400.0 * port.p.norm());
 }
 
-/// A hand that draws 6 mm at 15 mm/s and rests, on counts and whole torque quanta. @return share of K x felt at the
-/// end.
-double felt_of_a_slow_pull(double lost, double draw_m) {
-  Port port(true, 0.0, {.count_m = 5e-5, .lost = lost});
+/// A hand that draws so far at 15 mm/s and rests, on counts and whole torque quanta. @return share of its rest in which
+/// it feels four fifths of K x.
+double felt_of_a_slow_pull(Chain chain, double draw_m) {
+  chain.count_m = 5e-5;
+  Port port(true, 0.0, chain);
   const double K = 1.2 / draw_m, quantum_N = 2.2e-3;
-  const int moving = static_cast<int>(draw_m / 15e-6);
+  const int moving = static_cast<int>(draw_m / 15e-6), resting = 1000;
   const auto law = [&](const Vec3& p, const Vec3&) { return Vec3(-K * std::round(p.x() / 5e-5) * 5e-5, 0, 0); };
-  for (int i = 0; i < moving + 200; ++i) {
+  int felt = 0;
+  double mean_N = 0.0;
+  for (int i = 0; i < moving + resting; ++i) {
     port.made_of = [&](const Vec3& f) { return Vec3((f / quantum_N).array().round() * quantum_N); };
     port.tick(law, Vec3(i < 15 ? 1.0 : i >= moving && i < moving + 15 ? -1.0 : 0.0, 0, 0));
+    if (i < moving) continue;
+    felt += port.made.norm() >= 0.8 * K * port.p.x();
+    mean_N += port.made.norm() / resting;
   }
-  EXPECT_GE(port.lowest_work_J, lost > 0.0 ? -1e-5 : -Passivity::kFloor_J);
-  std::printf("slow pull, %.2f lost: %.3f of %.3f N\n", lost, port.made.norm(), K * port.p.x());
-  return port.made.norm() / (K * port.p.x());
+  EXPECT_GE(port.lowest_work_J, -Passivity::kFloor_J);
+  std::printf("slow pull of %.0f mm, %.2f and %.2f lost: %.3f of %.3f N, %.3f of the time\n", 1e3 * draw_m, chain.lost,
+              chain.lost_samples, mean_N, K * port.p.x(), static_cast<double>(felt) / resting);
+  return static_cast<double>(felt) / resting;
 }
 
 TEST(Passivity, ASlowPullOnCountsIsFelt) {  // it has to begin with one quantum, which the floor must pay for
-  EXPECT_GT(felt_of_a_slow_pull(0.0, 0.006), 0.95);
-  EXPECT_GT(felt_of_a_slow_pull(0.05, 0.02), 0.95);
+  EXPECT_GT(felt_of_a_slow_pull({}, 0.006), 0.95);
+}
+
+TEST(Passivity, ASlowPullIsFeltThroughLostFrames) {  // 5 % of the frames; a set of samples is lost with any of three
+  for (std::uint32_t seed = 1; seed <= 5; ++seed)
+    EXPECT_GT(felt_of_a_slow_pull({.lost = 0.05, .lost_samples = 0.14, .seed = seed}, 0.006), 0.90);
 }
 
 TEST(Passivity, CreditIsForgottenAboveTheWindow) {
