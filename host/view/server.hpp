@@ -31,7 +31,8 @@ struct ServerHooks {
 
 /// HTTP and WebSocket on one port and one thread (Boost.Beast). Pages get a frame 60 times a second unless the last
 /// three are not yet acknowledged: a slow one is shown less often, and nothing is ever queued for it.
-/// Bounds: 64 connections (the oldest without a page makes room), 4 KiB a message, 300 messages a second, 8 KiB of HTTP header, 10 s for a request or a write.
+/// Bounds: 64 connections (the oldest without a page makes room), 4 KiB a message, 300 messages a second, 8 KiB of HTTP
+/// header, 10 s for a request or a write.
 class Server {
  public:
   /// @throws BadInput for an address that is none, RunFailed when it cannot be bound.
