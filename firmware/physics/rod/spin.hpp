@@ -64,7 +64,12 @@ class Spin {
   [[nodiscard]] double out_of_vertex(const Material& m, const State& state, std::size_t i) const noexcept;
   void bear(const Material& material, State& state, bool keep_rest) noexcept;
   void turn_born(State& state) noexcept;
+  void eliminate() noexcept;
   void solve(const std::vector<double>& b) noexcept;
+  /// Length of thread that belongs to a vertex with two segments.
+  [[nodiscard]] static double share_of_vertex(const Mesh& mesh, std::size_t i) noexcept {
+    return 0.5 * (mesh.rest[i - 1] + mesh.rest[i]);
+  }
 
   std::vector<Vec> director_, tangent_;
   std::vector<double> rate_, rolled_;  // rad/s; rad since the tick began
