@@ -1,12 +1,13 @@
 // Attacks the guarantee that strands never pass through each other: hairpins whose arms are thrown at each other at up
-// to 50 m/s each, at random angles (parallel and grazing among them), sizes and node counts. Between any two states of
-// a substep every pair of segments, on the rod's list or not, is checked for having crossed
-// (tests/support/crossings.hpp).
+// to 50 m/s each, at random angles (parallel and grazing among them), sizes and node counts; half of them lie across
+// each other, or an end above a strand. Between any two states of a substep every pair of segments, on the rod's list
+// or not, is checked for having crossed (tests/support/crossings.hpp).
 //
 // A third of the threads are adaptive: there, nodes also jump along the thread between substeps, and the straight way
 // of every material point from the old polyline to the new one is checked in the same manner.
 //
-// Usage: rod_swept_attack [approaches = 10000] [seed = 1]; prints crossings found; exit 1 if any.
+// Usage: rod_swept_attack [approaches = 10000] [seed = 1] [none]; none: contact switched off, to see that it would be
+// noticed. Prints crossings found; exit 1 if any.
 
 #include <algorithm>
 #include <cstdio>
@@ -45,11 +46,35 @@ void shape(Rod& rod, double gap, double angle, double speed1, double speed2, dou
   rod.moved();
 }
 
+// The same with arms that lie across each other, seen from above: arm 1 along x, a step aside and up, arm 2 back over
+// it, or until its end is right above (`end_on`).
+void shape_across(Rod& rod, double gap, double aside, bool end_on, double speed1, double speed2, double sideways) {
+  State& state = rod.state();
+  const double step = std::hypot(gap, aside), arm = (end_on ? 0.65 : 0.5) * (rod.material().length_m - step);
+  const double back = rod.material().length_m - step - arm;
+  const double slope = end_on ? aside / back : std::clamp(2.0 * aside / arm, -0.9, 0.9),
+               along = std::sqrt(1.0 - slope * slope);
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    const double s = state.mesh.s[i], t = s - arm - step;
+    if (s < arm) {
+      state.x[i] = make(s, 0, 0);
+      state.v[i] = make(0, 0, speed1);
+    } else if (t < 0.0) {
+      state.x[i] = make(arm, aside * (s - arm) / step, gap * (s - arm) / step);
+    } else {
+      state.x[i] = make(arm - t * along, aside - t * slope, gap);
+      state.v[i] = make(sideways, sideways, -speed2);
+    }
+  }
+  rod.moved();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const long approaches = argc > 1 ? std::atol(argv[1]) : 10000;
   std::mt19937_64 random(argc > 2 ? static_cast<unsigned>(std::atoi(argv[2])) : 1U);
+  const bool contact = argc < 4;
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
   long found = 0, cut = 0, remeshes = 0, guarded = 0, substeps = 0;
   for (long k = 0; k < approaches; ++k) {
@@ -62,11 +87,17 @@ int main(int argc, char** argv) {
     material.friction = uniform(0.0, 0.6);
     const bool adaptive = k % 3 == 0;
     const int nodes = adaptive ? std::clamp(n, 80, 200) : n;
-    Rod rod(material, numerics, Parts{false, true, true, false, adaptive}, nodes);
+    Rod rod(material, numerics, Parts{false, contact, contact, false, adaptive}, nodes);
     rod.hold_mesh(true);
     const double top = std::pow(10.0, uniform(-1.0, std::log10(50.0)));
     const double angle = k % 5 == 0 ? 0.0 : uniform(-1.5, 1.5);
-    shape(rod, uniform(1e-3, 8e-3), angle, uniform(0.3, 1.0) * top, uniform(0.0, 1.0) * top, uniform(-0.5, 0.5) * top);
+    const double gap = uniform(1e-3, 8e-3), speed1 = uniform(0.3, 1.0) * top, speed2 = uniform(0.0, 1.0) * top;
+    const double sideways = uniform(-0.5, 0.5) * top;
+    if (k % 2 == 0) {
+      shape(rod, gap, angle, speed1, speed2, sideways);
+    } else {
+      shape_across(rod, gap, uniform(2e-3, 0.05) * (k % 4 == 1 ? 1.0 : -1.0), k % 7 == 0, speed1, speed2, sideways);
+    }
     const int steps = static_cast<int>(std::min(60.0, 20.0 + 0.01 / (top * numerics.tick_s)));
     for (int step = 0; step < steps; ++step) {
       if (adaptive) {
