@@ -19,10 +19,10 @@ void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {
   const Vec3 counted_rad = vector_of(s.q_rad);
   Vec3 q_rad = counted_rad;
   if (sampled_ >= 0 && tick > sampled_) {
-    const Vec3 turned_rad = periods * period_s_ * s.rate_rad_per_s;
     for (Eigen::Index j = 0; j < 3; ++j) {
-      if (std::abs(turned_rad[j]) < kSlowCounts * periods * s.count_rad)
-        q_rad[j] = std::clamp(q_rad_[j] + turned_rad[j], counted_rad[j] - half_rad, counted_rad[j] + half_rad);
+      const double turned_rad = periods * period_s_ * s.rate_rad_per_s[j];  // late where a joint is fast
+      if (std::abs(turned_rad) < kSlowCounts * periods * s.count_rad)
+        q_rad[j] = std::clamp(q_rad_[j] + turned_rad, counted_rad[j] - half_rad, counted_rad[j] + half_rad);
     }
     for (Eigen::Index j = 0; j < 3; ++j) energy_J_ -= most_given_J(j, tick, q_rad[j] - q_rad_[j], s);
     if (active_) energy_J_ = std::min(energy_J_, kCredit_J + granted_J_);
@@ -32,6 +32,7 @@ void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {
   }
   sampled_ = tick;
   q_rad_ = q_rad;
+  behind_rad_ = counted_rad - q_rad;
   p_m_ = s.p_m;
 }
 
@@ -92,18 +93,17 @@ double Passivity::along_J(const Vec3& f_N) const noexcept {
 /// What is missing to send f in `tick` and to take it back in steps; below zero: what is left.
 double Passivity::shortage_J(std::int64_t tick, const Vec3& f_N) const noexcept {
   const bool blind = tick > sampled_, wary = tick < lossy_until_;
-  double spent_J = 0.0;
-  for (std::int64_t i = sent_.cycle_of(sampled_); i <= sent_.newest(); ++i) {  // under way
+  double spent_J = std::max(0.0, sent_.at(sent_.newest() - 1).torque_Nm.dot(behind_rad_));  // if a guess was wrong
+  for (std::int64_t i = sent_.cycle_of(sampled_); i <= sent_.newest(); ++i) {               // under way
     const std::int64_t start = std::max<std::int64_t>(0, sent_.at(i).tick - sampled_);
     const auto lost_J = [&](std::int64_t from) { return blind_loss_J(sent_.at(from).f_N, start, sent_.periods(i)); };
     spent_J += wary ? std::max(lost_J(i - 1), lost_J(i - 2)) : lost_J(i - 1);
   }
   const std::int64_t ahead = tick + 1 - sampled_;
   spent_J += blind_loss_J(f_N, ahead, wary && !blind ? 2 : 1);
-  if (blind) return spent_J - energy_J_ - kSpend_J;
   Vec3 f = shorter(f_N, step_N_);
   for (std::int64_t k = 1; !f.isZero(0.0); ++k) {  // each step back sees one more count
-    spent_J += loss_J(f, ahead + k, 1, 1.0 + static_cast<double>(k));
+    spent_J += blind ? blind_loss_J(f, ahead + k, 1) : loss_J(f, ahead + k, 1, 1.0 + static_cast<double>(k));
     f = shorter(f, step_N_);
   }
   return spent_J - energy_J_ - kSpend_J;

@@ -53,8 +53,8 @@ struct PortSample {
 /// acceleration is the device record's; beyond it the energy comes first, and a step may be larger.
 ///
 /// Lost frames. Once RPDOs have been lost, the next loss is foreseen: the one under way may be, and the one sent may
-/// act twice. Without a sample the force goes on as long as it is paid for, without the way back. In either case the
-/// hand's acceleration from the third period on is taken as kLater of a, and only of what exceeds kSlight_N.
+/// act twice. Without a sample the force goes on as long as it is paid for. In either case the hand's acceleration from
+/// the third period on is taken as kLater of a, and only of what exceeds kSlight_N.
 class Passivity {
  public:
   static constexpr double kFloor_J = 1e-6;
@@ -149,10 +149,10 @@ class Passivity {
   double count_m_ = 0.0, doubt_m_ = 0.0;  // of step_m_: by counts, by what lies between samples
   bool acts_ = false;
   std::int64_t sampled_ = -1, lossy_until_ = -1;
-  Vec3 q_rad_ = Vec3::Zero();                            // within the last count
-  Vec3 p_m_ = Vec3::Zero(), step_m_ = Vec3::Zero();      // step: motion in a period before the sample
-  Vec3 low_Nm_ = Vec3::Zero(), high_Nm_ = Vec3::Zero();  // what acted in that period
-  std::array<bool, 3> guarded_{};                        // then
+  Vec3 q_rad_ = Vec3::Zero(), behind_rad_ = Vec3::Zero();  // at the sample: guessed; the count less that
+  Vec3 p_m_ = Vec3::Zero(), step_m_ = Vec3::Zero();        // step: motion in a period before the sample
+  Vec3 low_Nm_ = Vec3::Zero(), high_Nm_ = Vec3::Zero();    // what acted in that period
+  std::array<bool, 3> guarded_{};                          // then
   SentTorques sent_;
 };
 

@@ -174,7 +174,7 @@ TEST(Passivity, OnCountsTheAccountHoldsAndTheTrueWorkIsNear) {  // near: what co
   });
   std::printf("random jerks on counts: true work %.2e J, up to %.2f of what counts can hide\n", lowest_J,
               most_of_bound);
-  EXPECT_GE(lowest_J, -2e-4);
+  EXPECT_GE(lowest_J, -5e-4);
 }
 
 TEST(Passivity, TheAccountIsNeverAboveTheTrueWork) {  // but for a count; whatever the drive made of what it was sent
