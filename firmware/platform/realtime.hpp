@@ -9,7 +9,8 @@ namespace ligature::platform {
 /// One line for each thing that was refused, naming it, the cause and the remedy; empty: all granted.
 using Refusals = std::vector<std::string>;
 
-/// For the whole process, before the loop starts: locks present and future pages into memory, keeps freed heap from
+/// For the whole process, before the loop starts: locks present and future pages into memory, those of its files as
+/// copies, keeps freed heap from
 /// going back to the system, and touches a heap reserve, so that no page fault waits in the loop.
 [[nodiscard]] Refusals lock_memory();
 

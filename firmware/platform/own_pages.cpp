@@ -1,0 +1,57 @@
+#include "firmware/platform/own_pages.hpp"
+
+#include <sys/mman.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace ligature::platform {
+namespace {
+
+#if defined(MADV_POPULATE_WRITE)
+constexpr int kPopulateWrite = MADV_POPULATE_WRITE;
+#else
+constexpr int kPopulateWrite = 23;  // headers older than the kernel
+#endif
+
+struct Mapping {
+  std::uintptr_t from, to;
+  int protection;
+};
+
+/// Private, readable, from a file.
+std::vector<Mapping> file_mappings() {
+  std::vector<Mapping> found;
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    unsigned long from = 0, to = 0, inode = 0;
+    char may[5] = "";
+    if (std::sscanf(line.c_str(), "%lx-%lx %4s %*s %*s %lu", &from, &to, may, &inode) != 4) continue;
+    if (inode == 0 || may[0] != 'r' || may[3] != 'p') continue;
+    const int protection = PROT_READ | (may[1] == 'w' ? PROT_WRITE : 0) | (may[2] == 'x' ? PROT_EXEC : 0);
+    found.push_back({from, to, protection});
+  }
+  return found;
+}
+
+/// A write fault on every page: the kernel copies it. Code stays executable meanwhile, for this function is among it.
+bool copy(const Mapping& m) noexcept {
+  auto* const at = reinterpret_cast<void*>(m.from);
+  const std::size_t bytes = m.to - m.from;
+  if (mprotect(at, bytes, m.protection | PROT_WRITE) != 0) return false;
+  const bool copied = madvise(at, bytes, kPopulateWrite) == 0;
+  return mprotect(at, bytes, m.protection) == 0 && copied;
+}
+
+}  // namespace
+
+std::size_t own_file_pages() {
+  std::size_t refused = 0;
+  for (const auto& m : file_mappings()) refused += copy(m) ? 0 : 1;
+  return refused;
+}
+
+}  // namespace ligature::platform
