@@ -204,6 +204,7 @@ Rod::HandSpeed Rod::set_hands(const std::array<Vec, kMaxHolds>& goals, std::arra
 }
 
 void Rod::begin_tick(const HandSpeed& hands) noexcept {
+  strained_ = report_.cut_short > 0;
   report_ = TickReport{};
   const bool fast = hands.fastest > 1.001 * numerics_.fast_m_per_s;
   work_.start(numerics_.budget(state_.nodes(), fast));

@@ -156,6 +156,7 @@ class Rod {
   long list_cost_ = 0;                  // of the last list
   double metric_dt_ = 0.0;
   double pace_m_per_s_ = 0.0;  // of the hands from the middle between them, fading once they stop
+  bool strained_ = false;      // the last tick's work did not do for all its passes
   bool letting_go_ = false;    // a hold let go just before this tick
   Motion motion_;
   ContactReport seen_;          // of this substep

@@ -104,11 +104,12 @@ void Rod::prepare_metric(double dt_s) noexcept {
 }
 
 // A pass that changes no velocity by more is the last. In the tick of a release the thread is faster than any hand; one
-// that hardly moves must not creep by what a pass leaves over.
+// that hardly moves must not creep by what a pass leaves over. A jam that had to go without passes gets by with less
+// settled ones: that much in every substep is better than all of it in some, with none left for the others.
 double Rod::settled() const noexcept {
-  constexpr double kLetGo = 0.15, kCreep = 0.1, kStill_m_per_s = 1e-6;
+  constexpr double kStrained = 3.0, kLetGo = 0.15, kCreep = 0.1, kStill_m_per_s = 1e-6;
   const double fastest = motion_.fastest(), speed = std::max(pace_m_per_s_, letting_go_ ? kLetGo * fastest : 0.0);
-  const double settled = numerics_.settled_m_per_s + numerics_.settled_share * speed;
+  const double settled = numerics_.settled_m_per_s + (strained_ ? kStrained : 1.0) * numerics_.settled_share * speed;
   return std::min(settled, std::max(kStill_m_per_s, kCreep * fastest));
 }
 
