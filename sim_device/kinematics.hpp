@@ -24,8 +24,8 @@ using Mat3 = Eigen::Matrix3d;
 /// From joint angles to the tip and back, and how far the joints go.
 class Linkage {
  public:
-  /// The Omni-class device.
-  Linkage() = default;
+  /// The shipped device.
+  Linkage() : Linkage(device::omni()) {}
   explicit Linkage(const device::Device& d)
       : kind_(d.kinematics),
         links_m_(d.links_m.data()),
@@ -82,15 +82,11 @@ class Linkage {
   }
 
  private:
-  device::Kinematics kind_ = device::Kinematics::kOmniSerial;
-  Vec3 links_m_{0.134, 0.1325, 0.0};
-  Vec3 home_m_{0.0, -0.17, 0.0};
-  Vec3 min_rad_{-0.98, -0.10, -0.81}, max_rad_{0.98, 1.80, 1.25};
+  device::Kinematics kind_;
+  Vec3 links_m_, home_m_, min_rad_, max_rad_;
 };
 
-// The Omni-class linkage by itself.
-inline constexpr double kUpperArm_m = 0.134;
-inline constexpr double kForearm_m = 0.1325;
+// The shipped device's linkage by itself.
 [[nodiscard]] inline Vec3 home_tip_D_m() { return Linkage().home_D_m(); }
 [[nodiscard]] inline Vec3 tip_D_m(const Vec3& q_rad) noexcept { return Linkage().tip_D_m(q_rad); }
 [[nodiscard]] inline Mat3 tip_jacobian_D(const Vec3& q_rad) noexcept { return Linkage().jacobian_D(q_rad); }

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "protocol/can/cob_id.hpp"
+#include "protocol/can/omni_drives.hpp"
 
 namespace ligature::can::profile {
 
@@ -13,14 +14,10 @@ inline constexpr std::array kJointNodes{kWaist, kShoulder, kElbow};
 inline constexpr std::uint32_t kBitRate = 1'000'000;  ///< bit/s
 inline constexpr std::int64_t kBitTime_ns = 1'000'000'000 / kBitRate;
 
-/// Encoder counts of one joint revolution. Assumption: the maker publishes none; 0.055 mm nominal tip resolution
-/// at 0.1325 m is 0.41 mrad, i.e. about 15.4 k counts, and 2^14 is the next size encoders are made in.
-inline constexpr std::int32_t kCountsPerRevolution = 16384;
-
-/// 3.3 N at the full reach of 0.2665 m is 0.88 N m; 3 x 0.3 N m covers it with 1 per mille = 0.3 mN m = 2 mN at the
-/// tip.
-inline constexpr std::uint32_t kRatedTorque_mNm = 300;
-inline constexpr std::int16_t kMaxTorque_permille = 3000;
+/// Of the shipped device's joints and drives; another device's are in its record alone.
+inline constexpr auto kCountsPerRevolution = static_cast<std::int32_t>(omni::kMotorCounts * omni::kGear + 0.5);
+inline constexpr auto kRatedTorque_mNm = static_cast<std::uint32_t>(1e3 * omni::kRatedTorque_Nm + 0.5);
+inline constexpr auto kMaxTorque_permille = static_cast<std::int16_t>(omni::kMaxTorque_permille);
 
 inline constexpr std::int8_t kCyclicSynchronousTorque = 10;  ///< value of 0x6060
 inline constexpr std::uint8_t kSynchronousEverySync = 1;     ///< PDO transmission type

@@ -10,6 +10,8 @@
 namespace ligature::sim {
 namespace {
 
+const double kUpperArm_m = device::omni().links_m[0], kForearm_m = device::omni().links_m[1];
+
 Vec3 random_joints(std::mt19937& random) {
   std::uniform_real_distribution<double> waist(-0.9, 0.9), shoulder(0.0, 1.7), elbow(-0.75, 1.2);
   const double q2 = shoulder(random);
