@@ -62,12 +62,14 @@ void add_hands(std::vector<PortCase>& all) {
   all.push_back({.name = "clenched hands", .script = pull, .hand = fist});
   all.push_back({.name = "trembling hands, 10 Hz", .script = pull, .wrap = trembling});
   all.push_back({.name = "teleporting hands", .script = pull, .wrap = teleporting});
-  all.push_back({.name = "adversarial hands", .script = pull, .hand = firm, .wrap = adversarial, .in_quick = true});
+  all.push_back(
+      {.name = "adversarial hands", .script = pull, .hand = firm, .wrap = adversarial, .wild = true, .in_quick = true});
   all.push_back({.name = "adversarial; 5 % lost",
                  .script = jam(kTaut_m, 0.15, 6),
                  .hand = firm,
                  .wrap = adversarial,
-                 .frame_loss = 0.05});
+                 .frame_loss = 0.05,
+                 .wild = true});
   all.push_back({.name = "too stiff; loose hands", .script = pull, .hand = loose, .stiffness = 6.0});
   all.push_back(
       {.name = "too stiff; adversarial", .script = pull, .hand = loose, .wrap = adversarial, .stiffness = 6.0});
@@ -83,7 +85,8 @@ void add_hands(std::vector<PortCase>& all) {
                  .hand = {60.0, 0.5, 0.0, 0.0, 0.0},
                  .wrap = tugging,
                  .stiffness = 20.0,
-                 .overrides = taut});
+                 .overrides = taut,
+                 .unstable_without = true});
 }
 
 }  // namespace

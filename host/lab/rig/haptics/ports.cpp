@@ -15,7 +15,7 @@ double least(const std::array<double, 2>& of) { return std::min(of[0], of[1]); }
 
 /// Worst of all runs with the controller.
 struct Worst {
-  double account_J = 0.0, bound_J = 0.0, sum_J = 0.0, alone_J = 0.0, step_N = 0.0;
+  double account_J = 0.0, bound_J = 0.0, sum_J = 0.0, alone_J = 0.0, step_N = 0.0, wild_step_N = 0.0;
   int runs = 0;
 
   void add(const PortCase& c, const Watched& w) {
@@ -24,7 +24,8 @@ struct Worst {
     bound_J = std::min(bound_J, least(w.lowest_bound_J));
     sum_J = std::min(sum_J, w.lowest_sum_J);
     if (!c.gives_way) alone_J = std::min(alone_J, least(w.lowest_port_J));
-    step_N = std::max(step_N, w.largest_step_N);
+    double& step = c.wild || c.frame_loss > 0.0 ? wild_step_N : step_N;
+    step = std::max(step, w.largest_step_N);
   }
 };
 
@@ -75,6 +76,32 @@ void measure_giving_way(const HapticsBench& bench, Verdict& v) {
   }
 }
 
+/// Drawn tight and held below any limit, with every twentieth frame lost.
+void measure_lossy_feel(const HapticsBench& bench, Verdict& v) {
+  constexpr std::size_t kFrom = 4800, kTo = 6800;
+  PortCase pull;
+  pull.script = pull_and_release(0.113, 2.0, 4.0);
+  const Watched whole = play(bench, pull, true);
+  pull.frame_loss = 0.05;
+  double least_share = 1.0, least_J = 0.0;
+  const int seeds = bench.quick ? 2 : 10;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    pull.trouble = [seed](RigSetup& setup) { setup.seed = static_cast<std::uint64_t>(seed); };
+    const Watched w = play(bench, pull, true);
+    for (std::size_t h = 0; h < 2; ++h) {
+      const double enough_N = 0.8 * whole.mean_N(h, kFrom, kTo).norm();
+      long felt = 0;
+      for (std::size_t i = kFrom; i < kTo; ++i) felt += w.tip_force_N[i][h] >= enough_N;
+      least_share = std::min(least_share, static_cast<double>(felt) / (kTo - kFrom));
+      least_J = std::min(least_J, w.lowest_port_J[h]);
+    }
+  }
+  v.claim(least_share >= 0.9 && least_J >= -1e-6,
+          "Ports: time in which a pull held with 5 % of the frames lost is felt by 4/5, least energy in J",
+          digits(least_share) + " of it, " + digits(least_J) + ", " + std::to_string(seeds) + " seeds",
+          "0.9 or more, -1e-6 or more");
+}
+
 /// A wall ten times too stiff, pushed by 0.5 N with nobody holding on: the simplest thing that is unstable without.
 void measure_instability(Verdict& v) {
   Wall wall;
@@ -101,6 +128,7 @@ void measure_instability(Verdict& v) {
 void measure_ports(const HapticsBench& bench, Verdict& v) {
   PortFiles files(bench);
   Worst worst;
+  double wild_J = 0.0, tame_J = 0.0;
   int number = 0;
   for (const PortCase& c : port_cases(bench)) {
     ++number;
@@ -110,6 +138,7 @@ void measure_ports(const HapticsBench& bench, Verdict& v) {
       const Watched w = play(bench, c, controller);
       files.add(number, c, controller, w);
       if (controller) worst.add(c, w);
+      if (c.unstable_without) (controller ? tame_J : wild_J) = least(w.lowest_port_J);
     }
   }
   files.close();
@@ -123,6 +152,14 @@ void measure_ports(const HapticsBench& bench, Verdict& v) {
           "-1e-6 or more");
   v.claim(worst.step_N <= device::omni().force_step_N + 1e-9, "Ports: largest step of the force but for faults, N",
           digits(worst.step_N), "up to " + digits(device::omni().force_step_N));
+  v.claim(worst.wild_step_N <= 2.0 * device::omni().force_step_N,
+          "Ports: the same where hands fight or frames are lost: energy comes first, N", digits(worst.wild_step_N),
+          "up to twice that");
+  if (!bench.quick)
+    v.claim(wild_J < -0.05 && tame_J >= -1e-6,
+            "Ports: a short taut thread, too stiff, without the controller and with, J",
+            digits(wild_J) + ", " + digits(tame_J), "below -0.05, -1e-6 or more");
+  measure_lossy_feel(bench, v);
   measure_instability(v);
   measure_giving_way(bench, v);
 }

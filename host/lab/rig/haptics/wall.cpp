@@ -14,8 +14,7 @@ constexpr double kT_s = 1e-3;
 constexpr double kWindow_s = 0.5;
 
 /// One metre of drum: torque is force and angle is metre, so that the controller's joint is our axis.
-device::Device one_axis() {
-  device::Device d = device::omni();
+device::Device one_axis(device::Device d) {
   d.kinematics = device::Kinematics::kCartesian;
   d.links_m = {1, 1, 1};
   d.home_tip_m = {0, 0, 0};
@@ -49,7 +48,7 @@ double law(const Wall& w, const std::vector<double>& x, std::int64_t n) {
 }  // namespace
 
 WallRun press(const Wall& w, double time_s) {
-  control::Passivity passivity(one_axis(), kT_s, w.controller, 0.0);
+  control::Passivity passivity(one_axis(w.device), kT_s, w.controller, 0.0);
   Mass mass{w.mass_kg + w.hand_mass_kg, w.damping_N_s_per_m + w.hand_N_s_per_m, w.hand_N_per_m, w.start_m};
   WallRun run;
   double port_J = 0.0, on_its_way = 0.0, v = 0.0;

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "protocol/device/device.hpp"
+
 namespace ligature::lab {
 
 struct Wall {
@@ -21,6 +23,15 @@ struct Wall {
   double peak_N = 3.3;   ///< what the motor can do
   // A hand on the device: its arm's spring and damper (to x = 0), as in sim_device/hand.hpp but without mass.
   double hand_N_per_m = 0.0, hand_N_s_per_m = 0.0, hand_mass_kg = 0.0;
+  device::Device device = device::omni();  ///< whose limits the controller keeps
+
+  /// With the mass, damping and peak force that the record says.
+  [[nodiscard]] static Wall of(const device::Device& d) {
+    Wall wall;
+    wall.mass_kg = d.apparent_mass_kg, wall.damping_N_s_per_m = d.damping_N_s_per_m, wall.peak_N = d.peak_force_N;
+    wall.device = d;
+    return wall;
+  }
 };
 
 struct WallRun {

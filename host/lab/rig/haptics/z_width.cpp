@@ -7,12 +7,13 @@
 #include "host/lab/rig/haptics/wall.hpp"
 #include "host/lab/run_files.hpp"
 #include "host/lab/validate/reference.hpp"
+#include "protocol/device/device_file.hpp"
 #include "sim_device/hand.hpp"
 
 namespace ligature::lab {
 namespace {
 
-constexpr double kT_s = 1e-3, kDeviceDamping = 0.3, kPush_N = 0.5;
+constexpr double kT_s = 1e-3, kPush_N = 0.5;
 
 /// Every case of the reference table, by bisection of the simulated loop.
 void against_reference(const HapticsBench& bench, Verdict& v) {
@@ -44,8 +45,8 @@ struct Count {
 };
 
 /// The map: a steady push of 0.5 N against each wall, beginning at its face.
-void sweep(const HapticsBench& bench, Verdict& v) {
-  CsvFile file(bench.out / "haptics-zwidth.csv",
+void sweep(const HapticsBench& bench, const device::Device& device, const char* name, Verdict& v) {
+  CsvFile file(bench.out / name,
                "delay_samples,controller,B_N_s_per_m,K_N_per_m,stable,swing_mm,depth_mm,lowest_port_J");
   const int n_K = bench.quick ? 9 : 31, n_B = bench.quick ? 4 : 13;
   Count held, free_below;
@@ -53,12 +54,11 @@ void sweep(const HapticsBench& bench, Verdict& v) {
   for (const bool controller : {false, true}) {
     for (int delay = controller ? 1 : 0; delay <= 3; ++delay) {
       for (int i = 0; i < n_K * n_B; ++i) {
-        Wall wall;
+        Wall wall = Wall::of(device);
         wall.K_N_per_m = 20.0 * std::pow(500.0, static_cast<double>(i % n_K) / (n_K - 1));
         wall.B_N_s_per_m = 1.5 * (i / n_K) / (n_B - 1);
         wall.delay = delay;
         wall.controller = controller;
-        wall.damping_N_s_per_m = kDeviceDamping;
         wall.push_N = kPush_N;
         const WallRun run = press(wall, 4.0);
         const bool stable = is_stable(wall, 4.0);
@@ -70,7 +70,7 @@ void sweep(const HapticsBench& bench, Verdict& v) {
           held.stable += stable;
           lowest_J = std::min(lowest_J, run.lowest_port_J);
         }
-        const bool passive = kDeviceDamping > wall.K_N_per_m * kT_s / 2 + wall.B_N_s_per_m;
+        const bool passive = device.damping_N_s_per_m > wall.K_N_per_m * kT_s / 2 + wall.B_N_s_per_m;
         if (!controller && delay == 0 && passive) {
           ++free_below.points;
           free_below.stable += stable;
@@ -80,10 +80,13 @@ void sweep(const HapticsBench& bench, Verdict& v) {
   }
   file.close();
   v.claim(free_below.stable == free_below.points && free_below.points > 0,
-          "Z-width: stable without controller below the line b = KT/2 + |B|", free_below.text(), "all");
-  v.claim(held.stable == held.points, "Z-width: stable with the controller, K to 10 kN/m, B to 1.5, delay 1 .. 3",
-          held.text(), "all");
-  v.claim(lowest_J >= -1e-6, "Z-width: least port energy with the controller, J", digits(lowest_J), "-1e-6 or more");
+          "Z-width, " + device.name + ": stable without controller below the line b = KT/2 + |B|", free_below.text(),
+          "all");
+  v.claim(held.stable == held.points,
+          "Z-width, " + device.name + ": stable with the controller, K to 10 kN/m, B to 1.5, delay 1 .. 3", held.text(),
+          "all");
+  v.claim(lowest_J >= -1e-6, "Z-width, " + device.name + ": least port energy with the controller, J", digits(lowest_J),
+          "-1e-6 or more");
 }
 
 /// What a hand adds: the largest stiffness that a delay of one sample allows in each grip.
@@ -92,14 +95,17 @@ void hands(const HapticsBench& bench, Verdict& v) {
   struct Kind {
     const char* name;
     sim::Hand hand;
+    device::Device device = device::omni();
   };
   double bare = 0.0, clenched = 0.0;
-  for (const auto& [name, hand] :
-       {Kind{"none", sim::Hand::absent()}, Kind{"loose", sim::Hand::holding(0.0)},
-        Kind{"firm", sim::Hand::holding(0.5)}, Kind{"clenched", sim::Hand::holding(1.0)}, Kind{"light", sim::Hand{}}}) {
+  const auto second = std::get<device::Device>(device::load_device(bench.scenes / "devices/cartesian.toml"));
+  for (const auto& [name, hand, device] :
+       {Kind{"none", sim::Hand::absent()}, Kind{"none, cartesian", sim::Hand::absent(), second},
+        Kind{"loose", sim::Hand::holding(0.0)}, Kind{"firm", sim::Hand::holding(0.5)},
+        Kind{"clenched", sim::Hand::holding(1.0)}, Kind{"light", sim::Hand{}}}) {
     std::vector<Cell> row{std::string(name), 1e3 * hand.mass_kg, hand.stiffness_N_per_m, hand.damping_N_s_per_m};
     for (int delay = 0; delay <= 3; ++delay) {
-      Wall wall;
+      Wall wall = Wall::of(device);
       wall.delay = delay;
       wall.hand_mass_kg = hand.mass_kg;
       wall.hand_N_per_m = hand.stiffness_N_per_m;
@@ -121,7 +127,9 @@ void hands(const HapticsBench& bench, Verdict& v) {
 
 void measure_z_width(const HapticsBench& bench, Verdict& v) {
   against_reference(bench, v);
-  sweep(bench, v);
+  sweep(bench, device::omni(), "haptics-zwidth.csv", v);
+  const auto second = device::load_device(bench.scenes / "devices/cartesian.toml");
+  sweep(bench, std::get<device::Device>(second), "haptics-zwidth-cartesian.csv", v);
   hands(bench, v);
 }
 
