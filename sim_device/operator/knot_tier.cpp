@@ -26,9 +26,19 @@ Workplace workplace_of(const scene::Scene& scene, const Vec3& anchor_W) {
   w.length_m = s.length_m;
   w.diameter_m = d;
   w.clearance_m = std::max(2.5 * d, 0.035 * s.length_m);
+  const double weight_N_per_m = std::max(mass_kg(s) * g, 1e-9) / s.length_m;
+  if (s.model == scene::Model::kRod) w.bend_length_m = std::cbrt(s.rod.EI_N_m2 / weight_N_per_m);
   w.tension_N = 0.0155 * EA + mass_kg(s) * g;
   w.speed_m_per_s = 0.1 * std::sqrt(std::max(g, 1.0) * s.length_m);
   return w;
+}
+
+/// Nodes that a chain needs to go round its own strand: one that lies d off the strand's middle turns by
+/// 2 atan(a / 2 d) at each node, and beyond 1.1 rad (a = 1.2 d) it holds no turn. A mesh that adapts needs none.
+int least_nodes(const scene::Suture& s) {
+  constexpr double kLongest = 1.2;  // diameters
+  if (s.model == scene::Model::kRod) return 0;
+  return 1 + static_cast<int>(std::ceil(s.length_m / (kLongest * 2.0 * s.radius_m) - 1e-9));
 }
 
 /// 4.5 as "4.5".
@@ -51,6 +61,10 @@ std::variant<KnotTier, std::string> KnotTier::make(const scene::Scene& scene, co
   if (scene.suture.length_m < least_m) {
     return "suture.length_m: found " + shortest(scene.suture.length_m) + ", allowed " + shortest(least_m) +
            " or more for a " + std::string(knot->name) + " knot in a thread this thick";
+  }
+  if (const int least = least_nodes(scene.suture); scene.suture.nodes < least) {
+    return "suture.nodes: found " + std::to_string(scene.suture.nodes) + ", allowed " + std::to_string(least) +
+           " or more for a knot in this thread: longer segments than 1.2 diameters do not go round a strand";
   }
   for (const auto& f : scene.world.fixed)
     if (f.node == 0) return KnotTier(scene, *knot, workplace_of(scene, vec(f.position_m)), seed);
@@ -93,7 +107,7 @@ void KnotTier::begin_again() {
   ++begun_again_;
   Moves moves{let_go(kRightHand), let_go(kLeftHand), hang_out()};
   place_.clearance_m *= dice_.between(0.8, 1.25);  // not quite the same again
-  append(moves, plan(knot_, place_));
+  append(moves, plan(knot_, place_, throws_tied_));
   lay_out(std::move(moves));
 }
 
@@ -105,10 +119,12 @@ void KnotTier::look(const Sight& sight) {
     const bool done = move.act(now);
     if (!done && now.in_move_s < move.patience_s) return;
     if (!done) missed_.push_back(move.name);
-    if (move.good && begun_again_ < kMostAgain && !move.good(now))
+    if (move.good && begun_again_ < kMostAgain && !move.good(now)) {
       begin_again();
-    else
+    } else {
+      throws_tied_ += move.ends_throw;
       ++next_;
+    }
     began_s_ = t_s_;
   }
 }

@@ -64,7 +64,7 @@ class KnotTier {
   std::array<HandWish, 2> wish_{};
   ThreadView thread_;
   std::vector<std::string> missed_;
-  std::size_t next_ = 0;
+  std::size_t next_ = 0, throws_tied_ = 0;
   double tick_s_, start_s_ = 0.0, began_s_ = 0.0, t_s_ = 0.0;
   int until_look_ = 0, ticks_a_look_ = 10, begun_again_ = 0;
   Dice dice_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "sim_device/operator/springy_throw.hpp"
 #include "sim_device/operator/wound_throw.hpp"
 
 namespace ligature::sim {
@@ -43,7 +44,8 @@ struct Layout {
 
 /// An overhand's standing part runs straight down to the left. A figure-eight's is led level to its corner and sags: a
 /// turn that is not yet locked stays in the belly instead of slipping over the corner while the end crosses the loop.
-Layout layout_of(const Throw& t) {
+Layout layout_of(const Throw& t, const Workplace& place) {
+  if (is_springy(place) && !t.against) return {0.4, 0.96, -Vec3::UnitX(), 0.5};
   if (t.against) return {0.403, 0.866, -Vec3::UnitX(), 0.49};
   return {0.4, 0.96, kSlant, 0.5};
 }
@@ -68,24 +70,37 @@ std::optional<Knot> knot_named(std::string_view name) {
   return std::nullopt;
 }
 
-Moves plan(const Knot& knot, const Workplace& place) {
+namespace {
+
+/// The corner of one throw of several, as a place of the thread: the first near the anchor, each further one beyond
+/// what is knotted already.
+Move see_the_corner(std::shared_ptr<double> corner) {
+  constexpr double kFirst = 0.27, kBeyond = 0.1;
+  return {"see the knot", [=](const Look& look) {
+            const double knotted = tangle(look).last_m;
+            *corner = knotted > 0.0 ? knotted + kBeyond * look.place.length_m : kFirst * look.place.length_m;
+            return true;
+          }};
+}
+
+/// One throw with the corner held by the left hand, drawn tight, and both hands empty again.
+Moves held_throw(const Throw& t, const Workplace& place, bool alone) {
+  const Layout layout = layout_of(t, place);
+  auto corner = std::make_shared<double>(layout.corner * place.length_m);
+  const WhereAlong at_corner = [corner](const Look&) { return *corner; };
+  const WhereAlong at_turn = [corner, layout](const Look&) { return layout.turn * *corner; };
   Moves m;
-  if (knot.throws.size() > 1) {
-    m = throws_in_a_row(knot.throws);
-    m.push_back(wait(kWatch_s));
-    return m;
-  }
-  const Throw& t = knot.throws.front();
-  const Layout layout = layout_of(t);
-  const double corner = layout.corner * place.length_m, turn = layout.turn * corner;
-  const WhereAlong at_corner = [corner](const Look&) { return corner; };
-  const WhereAlong at_turn = [turn](const Look&) { return turn; };
+  if (!alone) m.push_back(see_the_corner(corner));
   take_corner(m, place, layout, at_corner);
   m.push_back(reach(kRightHand, the_end()));
   m.push_back(pinch(kRightHand));
   auto loop = std::make_shared<Loop>(at_corner, t.side);
-  append(m, lay_turn(loop, t, at_turn));
-  append(m, pass_through(loop, t, at_turn));
+  if (is_springy(place) && !t.against) {
+    m.push_back(springy_throw(t, at_corner, at_turn));
+  } else {
+    append(m, lay_turn(loop, t, at_turn));
+    append(m, pass_through(loop, t, at_turn));
+  }
   m.push_back(draw_through(loop, t, kSlant));
   m.push_back(let_go(kLeftHand));
   append(m, pull_tight(kSlant, 0.7));
@@ -94,6 +109,29 @@ Moves plan(const Knot& knot, const Workplace& place) {
   m.push_back(wait(0.3));
   m.push_back(ease());
   m.push_back(let_go(kRightHand));
+  m.back().ends_throw = true;
+  return m;
+}
+
+}  // namespace
+
+Moves plan(const Knot& knot, const Workplace& place, std::size_t first) {
+  Moves m;
+  const bool alone = knot.throws.size() == 1;
+  if (!alone && !is_springy(place)) {
+    m = throws_in_a_row(knot.throws);
+  } else {
+    Throw t;
+    int tied = 1;
+    for (std::size_t k = 0; k < knot.throws.size(); ++k) {
+      t = knot.throws[k];
+      t.tied_already = tied;
+      tied *= t.against ? 5 : 3;
+      if (k < first) continue;
+      if (k > 0) m.push_back(wait(1.0));
+      append(m, held_throw(t, place, alone));
+    }
+  }
   m.push_back(wait(kWatch_s));
   return m;
 }

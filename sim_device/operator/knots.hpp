@@ -25,7 +25,7 @@ struct Knot {
 [[nodiscard]] std::span<const Knot> knots();
 [[nodiscard]] std::optional<Knot> knot_named(std::string_view name);
 
-/// Everything from empty hands to empty hands.
-[[nodiscard]] Moves plan(const Knot& knot, const Workplace& place);
+/// Everything from empty hands to empty hands. @param first throw that is not tied yet
+[[nodiscard]] Moves plan(const Knot& knot, const Workplace& place, std::size_t first = 0);
 
 }  // namespace ligature::sim

@@ -207,7 +207,8 @@ Where across_loop(std::shared_ptr<Loop> loop, double share, double way) {
 
 /// With the end led away to one side, would it hold?
 bool would_hold(const Look& look, const Throw& t, const Vec3& out) {
-  return seen_determinant(look.thread.between(0.0, look.thread.length_m()), out) == (t.against ? 5 : 3);
+  return seen_determinant(look.thread.between(0.0, look.thread.length_m()), out) ==
+         t.tied_already * (t.against ? 5 : 3);
 }
 
 }  // namespace

@@ -68,6 +68,7 @@ struct Throw {
   int side = 1;          ///< +1: up in front of the standing part, down behind it
   bool against = false;  ///< through the loop against the turn (figure-eight) instead of with it
   int passes = 1;        ///< how often the end goes round the loop's edge (2: a surgeon's first throw)
+  int tied_already = 1;  ///< determinant of the throws before it on the thread (diagram.hpp)
 };
 
 /// The end, held by the right hand, goes around the standing part at place `s` until it is just short of the loop,

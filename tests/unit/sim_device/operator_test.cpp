@@ -89,7 +89,17 @@ TEST(KnotTier, TiesAFigureEightInThePapersSuture) {
 }
 
 TEST(KnotTier, TiesARealSutureFromScratch) {  // 0.3 mm nylon, tightened to 1 N, let go
-  EXPECT_EQ(tied("suture-3-0.toml", "overhand", 3), "3_1 right");
+  for (const std::uint32_t seed : {24U, 101U})
+    EXPECT_EQ(tied("suture-3-0.toml", "overhand", seed), "3_1 right") << seed;
+}
+
+TEST(KnotTier, TiesASquareKnotInARealSuture) { EXPECT_EQ(tied("suture-3-0.toml", "square", 1), "3_1#3_1 amphichiral"); }
+
+TEST(KnotTier, RefusesACoarseOrShortThread) {
+  const std::string coarse = tied("paper.toml", "overhand", 1, {"suture.nodes=20"});
+  EXPECT_TRUE(coarse.starts_with("suture.nodes: found 20, allowed 43 or more")) << coarse;
+  const std::string brief = tied("paper.toml", "surgeon", 1);
+  EXPECT_TRUE(brief.starts_with("suture.length_m: found 5, allowed 6 or more")) << brief;
 }
 
 TEST(KnotTier, RefusesWhatItCannotTie) {
