@@ -97,6 +97,14 @@ TEST(ForceLimiter, ComesBackByHysteresisAndOnlyOnce) {
   EXPECT_FALSE(limited);
 }
 
+TEST(ForceLimiter, AWindingThatHasHardlyCooledGivesNoPeak) {  // the hysteresis: 0.8 N cools it to 0.83, not to 0.7
+  ForceLimiter l = limiter();
+  for (int i = 0; i < 10'000; ++i) (void)send(l, Vec3(0, 0, 50));
+  for (int i = 0; i < 60'000; ++i) (void)send(l, Vec3(0, 0, 0.8));
+  EXPECT_LT(l.heat(), 0.9);
+  for (int i = 0; i < 500; ++i) EXPECT_LE(send(l, Vec3(0, 0, 50)).norm(), 0.88 + 1e-9);
+}
+
 TEST(ForceLimiter, TheContinuousForceIsNeverTakenAway) {
   ForceLimiter l = limiter();
   for (int i = 0; i < 100'000; ++i) {
