@@ -17,10 +17,10 @@ struct Workplace {
   Vec3 anchor_W = Vec3::Zero();  ///< where node 0 is held
   double length_m = 1.0;
   double diameter_m = 0.01;
-  double clearance_m = 0.02;   ///< how far an end keeps from strands that it passes
-  double bend_length_m = 0.0;  ///< (EI / weight per length)^(1/3): a shorter piece stands by itself
-  double tension_N = 1.0;      ///< a knot is tight at this pull
+  double clearance_m = 0.02;  ///< how far an end keeps from strands that it passes
+  double tension_N = 1.0;     ///< a knot is tight at this pull
   double speed_m_per_s = 0.1;
+  double bend_length_m = 0.0;  ///< (EI / weight per length)^(1/3): a shorter piece stands by itself
 };
 
 /// Everything a move decides from, at one look.
