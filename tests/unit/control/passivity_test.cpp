@@ -48,7 +48,7 @@ struct Port {
     PortSample sample{{seen.x(), seen.y(), seen.z()}, seen, chain.count_m, Vec3(1, 1, 1), {}, {}};
     if (chain.tells_torque) sample.acted.torque_Nm = made;
     sample.acted.limited.fill(made != taken);
-    sample.acted.held.fill(held);
+    if (!chain.tells_torque) sample.acted.held.fill(held);
     const bool is_seen = static_cast<double>(random()) * 0x1p-32 >= chain.lost_samples;
     passivity.begin(n);
     if (is_seen) {
