@@ -34,6 +34,10 @@ class BandSolver {
   /// @pre first <= core, core + 1 <= last. @param base false: the answer to `extra` alone.
   void solve(int first, int last, const Vec* extra, Vec* out, bool base) noexcept;
 
+  /// The inverse itself: (A^-1)_ij, first <= i <= j <= last, into table[(i - first) stride + j - first]. O(w^2), forty
+  /// times w solutions cheaper than those.
+  void invert(int first, int last, Mat* table, std::size_t stride) const noexcept;
+
   /// After solve() with base: completes `v` outside [first, last].
   void solve_outside(int first, int last, Vec* v) const noexcept;
 

@@ -25,6 +25,9 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   for (auto* array : {&p_, &plain_, &residual_}) array->assign(rows, Vec{});
   loaded_.reserve(rows);
   mixing_.reserve(rows);
+  newton_.reserve();
+  for (auto* array : {&u_, &p_start_}) array->assign(rows, Vec{});
+  v_start_.assign(static_cast<std::size_t>(ContactNewton::kWidest), Vec{});
 }
 
 namespace {
@@ -125,19 +128,11 @@ void ContactSet::make_column(Contact& c, const ContactMetric& metric, float* col
   c.inv_soft_w = 1.0 / (own + c.soft);
 }
 
-// Columns, the wanted normal velocity, and the old impulse turned to today's normal and cone.
-void ContactSet::prepare(const ContactMetric& metric, const Numerics& numerics, double dt_s) noexcept {
+void ContactSet::make_columns(const ContactMetric& metric) noexcept {
   stride_ = SweptVelocities::padded(window_last_ - window_first_ + 1);
-  per_second_ = 1.0 / dt_s;
   float* column = columns_.data();
-  for (int k = 0; k < rows_; ++k, column += stride_) {
-    Contact& c = contacts_[static_cast<std::size_t>(k)];
-    c.soft = numerics.recovery / (numerics.contact_N_per_m * dt_s * dt_s);
-    make_column(c, metric, column);
-    c.target =
-        c.gap_m > 0.0 ? -c.gap_m / dt_s : std::min(-numerics.recovery * c.gap_m / dt_s, numerics.max_recovery_m_per_s);
-    c.p = in_cone(c.p, c.n, c.mu);
-  }
+  for (int k = 0; k < rows_; ++k, column += stride_)
+    make_column(contacts_[static_cast<std::size_t>(k)], metric, column);
 }
 
 template <bool Friction, bool Turns>
@@ -171,14 +166,21 @@ void ContactSet::sweep(const Vec* v) noexcept {
   }
 }
 
-// Velocities without contact, and with the impulses of the last substep.
+// The wanted normal velocity, the old impulse turned to today's normal and cone; velocities without and with those.
 template <bool Turns>
-void ContactSet::start(BandSolver& solver, Vec* v) noexcept {
+void ContactSet::start(BandSolver& solver, const Numerics& numerics, double dt_s, Vec* v) noexcept {
+  const double longer = per_second_ > 0.0 ? dt_s * per_second_ : 1.0;  // than the last substep: forces stay
+  per_second_ = 1.0 / dt_s;
+  if constexpr (Turns) turning_.prepare(contacts_.data(), rows_, segments_, radius_m_, *spin_);
   solver.solve(window_first_, window_last_, nullptr, v, true);
   clear_extra();
   loaded_.clear();
   for (int k = 0; k < rows_; ++k) {
     Contact& c = contacts_[static_cast<std::size_t>(k)];
+    c.soft = numerics.recovery / (numerics.contact_N_per_m * dt_s * dt_s);
+    c.target =
+        c.gap_m > 0.0 ? -c.gap_m / dt_s : std::min(-numerics.recovery * c.gap_m / dt_s, numerics.max_recovery_m_per_s);
+    c.p = in_cone(longer * c.p, c.n, c.mu);
     c.u_free = velocity<Turns>(k, v);
     c.loaded = dot(c.p, c.p) > 0.0;
     if (!c.loaded) continue;
@@ -189,7 +191,6 @@ void ContactSet::start(BandSolver& solver, Vec* v) noexcept {
     for (const auto k : loaded_) turning_.push(k, contacts_[static_cast<std::size_t>(k)].p);
   }
   push(solver, v);
-  mixing_.restart();
 }
 
 template <bool Friction, bool Turns>
@@ -226,12 +227,110 @@ void ContactSet::mix(BandSolver& solver, Vec* v) noexcept {
   mixing_.restart();
 }
 
+// Impulses of p_ instead of today's, in the rows that newton_ knows; v answers.
+void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
+  clear_extra();
+  for (const auto k : newton_.rows()) {
+    Contact& c = contacts_[static_cast<std::size_t>(k)];
+    const Vec p = p_[static_cast<std::size_t>(k)], delta = p - c.p;
+    c.p = p;
+    for (int j = 0; j < c.count; ++j) extra_[static_cast<std::size_t>(c.node[j])] += c.w[j] * delta;
+  }
+  push(solver, v);
+}
+
+template <bool Friction>
+bool ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
+  constexpr int kMostSteps = 25, kStale = 10, kExpected = 4;
+  const long nodes = window_last_ - window_first_ + 1;
+  const double settled2 = effort.settled_m_per_s * effort.settled_m_per_s;
+  bool fresh = false;
+  const auto measure = [&] {
+    report.work += price::inverse(nodes);
+    newton_.measure(solver, window_first_, window_last_);
+    fresh = true;
+  };
+  if (!newton_.covers(window_first_, window_last_)) measure();
+  newton_.start(contacts_.data(), rows_);
+  if (newton_.resume(p_.data())) take_impulses(solver, v);
+  for (int step = 0; step < kMostSteps; ++step) {
+    if (step == kStale && !fresh) measure(), newton_.start(contacts_.data(), rows_);
+    for (int k = 0; k < rows_; ++k) u_[static_cast<std::size_t>(k)] = velocity<false>(k, v);
+    const double largest2 = newton_.look<Friction>(contacts_.data(), rows_, u_.data());
+    report.work += price::look(rows_);
+    if (largest2 < 0.0) return false;
+    report.change_m_per_s = std::sqrt(largest2);
+    if (largest2 < settled2) return true;
+    if (newton_.unknowns() > ContactNewton::kMostUnknowns) return false;
+    const long cost = price::newton(newton_.loaded(), newton_.unknowns(), nodes);
+    const long left = effort.work - effort.reserve - report.work - price::inverse(nodes);
+    if (step == 0 && kExpected * cost > left) return false;  // sweeps get further
+    if (cost > left) {
+      newton_.put_off(contacts_.data());
+      return false;
+    }
+    report.work += cost;
+    ++report.passes;
+    if (!newton_.solve(contacts_.data(), rows_, p_.data())) return false;
+    take_impulses(solver, v);
+  }
+  return false;
+}
+
+// How fast the merit of the frictionless problem rises from the impulses of p_start_ towards those of p_, at v.
+double ContactSet::slope(const Vec* v) const noexcept {
+  double sum = 0.0;
+  for (const auto k : newton_.rows()) {
+    const Contact& c = contacts_[static_cast<std::size_t>(k)];
+    const Vec d = p_[static_cast<std::size_t>(k)] - p_start_[static_cast<std::size_t>(k)];
+    sum += dot(d, velocity<false>(k, v)) + dot(d, c.n) * (c.soft * dot(c.p, c.n) - c.target);
+  }
+  return sum;
+}
+
+// Back towards the impulses and velocities of the start, so far that the merit is least. @return the share that stays.
+double ContactSet::retreat(Vec* v) noexcept {
+  const double there = slope(v);
+  for (int k = 0; k < rows_; ++k) contacts_[static_cast<std::size_t>(k)].p.v = p_start_[static_cast<std::size_t>(k)].v;
+  for (int i = window_first_; i <= window_last_; ++i)
+    std::swap(v[i].v, v_start_[static_cast<std::size_t>(i - window_first_)].v);
+  const double here = slope(v);
+  const double share = !(here < 0.0) ? 0.0 : there <= 0.0 ? 1.0 : here / (here - there);
+  if (share == 0.0) return 0.0;
+  for (const auto k : newton_.rows()) {
+    const auto at = static_cast<std::size_t>(k);
+    contacts_[at].p.v = p_start_[at].v + share * (p_[at].v - p_start_[at].v);
+  }
+  for (int i = window_first_; i <= window_last_; ++i)
+    v[i].v += share * (v_start_[static_cast<std::size_t>(i - window_first_)].v - v[i].v);
+  return share;
+}
+
+template <bool Friction>
+bool ContactSet::settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
+  constexpr double kWorth = 0.1;
+  const long nodes = window_last_ - window_first_ + 1;
+  if (nodes > ContactNewton::kWidest || 2 * price::inverse(nodes) + price::look(rows_) + effort.reserve > effort.work)
+    return false;
+  for (int k = 0; k < rows_; ++k) p_start_[static_cast<std::size_t>(k)].v = contacts_[static_cast<std::size_t>(k)].p.v;
+  std::copy(v + window_first_, v + window_last_ + 1, v_start_.begin());
+  const bool settled = newton_steps<Friction>(solver, effort, v, report);
+  for (const auto k : newton_.rows()) {
+    const Contact& c = contacts_[static_cast<std::size_t>(k)];
+    p_[static_cast<std::size_t>(k)] = in_cone(c.p, c.n, c.mu);
+  }
+  take_impulses(solver, v);
+  if (settled) return true;
+  report.cut_short = retreat(v) > kWorth;
+  return report.cut_short;
+}
+
 template <bool Friction, bool Turns>
-void ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const Numerics& numerics, const Effort& effort,
-                        double dt_s, Vec* v, ContactReport& report) noexcept {
-  prepare(metric, numerics, dt_s);
-  if constexpr (Turns) turning_.prepare(contacts_.data(), rows_, segments_, radius_m_, *spin_);
-  start<Turns>(solver, v);
+void ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const Effort& effort, Vec* v,
+                        ContactReport& report) noexcept {
+  make_columns(metric);
+  if constexpr (Turns) turning_.shorten_steps(contacts_.data());
+  mixing_.restart();
   const long nodes = window_last_ - window_first_ + 1;
   const double settled2 = effort.settled_m_per_s * effort.settled_m_per_s;
   const long turning = Turns ? turning_.price(rows_) : 0;
@@ -293,12 +392,16 @@ void ContactSet::relabel(const std::vector<double>& s) noexcept {
   }
 }
 
-template void ContactSet::settle<true, true>(BandSolver&, const ContactMetric&, const Numerics&, const Effort&, double,
-                                             Vec*, ContactReport&) noexcept;
-template void ContactSet::settle<true, false>(BandSolver&, const ContactMetric&, const Numerics&, const Effort&, double,
-                                              Vec*, ContactReport&) noexcept;
-template void ContactSet::settle<false, false>(BandSolver&, const ContactMetric&, const Numerics&, const Effort&,
-                                               double, Vec*, ContactReport&) noexcept;
+template void ContactSet::start<true>(BandSolver&, const Numerics&, double, Vec*) noexcept;
+template void ContactSet::start<false>(BandSolver&, const Numerics&, double, Vec*) noexcept;
+template bool ContactSet::settle_directly<true>(BandSolver&, const Effort&, Vec*, ContactReport&) noexcept;
+template bool ContactSet::settle_directly<false>(BandSolver&, const Effort&, Vec*, ContactReport&) noexcept;
+template void ContactSet::settle<true, true>(BandSolver&, const ContactMetric&, const Effort&, Vec*,
+                                             ContactReport&) noexcept;
+template void ContactSet::settle<true, false>(BandSolver&, const ContactMetric&, const Effort&, Vec*,
+                                              ContactReport&) noexcept;
+template void ContactSet::settle<false, false>(BandSolver&, const ContactMetric&, const Effort&, Vec*,
+                                               ContactReport&) noexcept;
 template void ContactSet::note_stuck<true>(const Vec*) noexcept;
 template void ContactSet::note_stuck<false>(const Vec*) noexcept;
 

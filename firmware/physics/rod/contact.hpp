@@ -8,6 +8,7 @@
 #include "firmware/physics/rod/band_solver.hpp"
 #include "firmware/physics/rod/broad_phase.hpp"
 #include "firmware/physics/rod/contact_metric.hpp"
+#include "firmware/physics/rod/contact_newton.hpp"
 #include "firmware/physics/rod/mixing.hpp"
 #include "firmware/physics/rod/swept.hpp"
 #include "firmware/physics/rod/turning.hpp"
@@ -61,6 +62,7 @@ struct ContactReport {
 struct Effort {
   int passes = 0;                ///< at most
   long work = 0;                 ///< for all of them, in instructions (work.hpp); the first pass is always done
+  long reserve = 0;              ///< of it, for sweeps only
   double settled_m_per_s = 0.0;  ///< a pass that changes no velocity by more is the last
 };
 
@@ -119,6 +121,10 @@ class ContactSet {
     int first, last;
   };
   [[nodiscard]] Span span() const noexcept;
+  /// Does the thread touch nothing but itself?
+  [[nodiscard]] bool only_pairs() const noexcept {
+    return std::all_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.count == 4; });
+  }
 
   /// Decides which contacts are solved: the `most` deepest, on a window of at most `widest` nodes. @pre nodes >= 2.
   void choose_rows(int most, int widest, int nodes, ContactReport& report) noexcept;
@@ -130,11 +136,23 @@ class ContactSet {
   [[nodiscard]] int window_first() const noexcept { return window_first_; }
   [[nodiscard]] int window_last() const noexcept { return window_last_; }
 
+  /// First of all: what rows want, and the window's velocities v with the impulses of the last substep. @pre rows() >
+  /// 0, the solver's core lies in the window. Turns: segments turn too; turn_with() was called.
+  template <bool Turns>
+  void start(BandSolver& solver, const Numerics& numerics, double dt_s, Vec* v) noexcept;
+
+  /// Solves for v by Newton's method (contact_newton.hpp). @return false, and all is as after start(), when there was
+  /// no room or no work for it, or it did not settle.
+  template <bool Friction>
+  bool settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept;
+  /// What settle_directly() knows of the matrix is of another mesh or time step.
+  void forget_matrix() noexcept { newton_.forget(); }
+
   /// Solves for the window's velocities v with all rows. @pre rows() > 0, the solver's core lies in the window, the
   /// metric covers it. Turns: segments turn too; begin_turning() was called.
   template <bool Friction, bool Turns>
-  void settle(BandSolver& solver, const ContactMetric& metric, const Numerics& numerics, const Effort& effort,
-              double dt_s, Vec* v, ContactReport& report) noexcept;
+  void settle(BandSolver& solver, const ContactMetric& metric, const Effort& effort, Vec* v,
+              ContactReport& report) noexcept;
   void turn_with(Spin& spin, int segments, double radius_m) noexcept {
     spin_ = &spin, segments_ = segments, radius_m_ = radius_m;
   }
@@ -175,10 +193,8 @@ class ContactSet {
   /// @return true when it became a contact.
   bool measure(Candidate& pair, const State& state, const Motion& motion, double dt_s, double mu,
                ContactReport& report) noexcept;
-  void prepare(const ContactMetric& metric, const Numerics& numerics, double dt_s) noexcept;
+  void make_columns(const ContactMetric& metric) noexcept;
   void make_column(Contact& c, const ContactMetric& metric, float* column) const noexcept;
-  template <bool Turns>
-  void start(BandSolver& solver, Vec* v) noexcept;
   [[nodiscard]] Contact& loaded(std::size_t k) noexcept { return contacts_[static_cast<std::size_t>(loaded_[k])]; }
   /// @return the square of the largest step of a velocity, or more.
   template <bool Friction, bool Turns>
@@ -195,6 +211,11 @@ class ContactSet {
   void clear_extra() noexcept;
   template <bool Friction, bool Turns>
   void sweep(const Vec* v) noexcept;
+  template <bool Friction>
+  bool newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept;
+  void take_impulses(BandSolver& solver, Vec* v) noexcept;
+  [[nodiscard]] double slope(const Vec* v) const noexcept;
+  double retreat(Vec* v) noexcept;
 
   /// A pair that is near but no contact in this substep; only the guard looks at it again.
   struct Watched {
@@ -212,6 +233,8 @@ class ContactSet {
   std::vector<std::int32_t> loaded_;  // rows that have carried an impulse in this substep: the others are not mixed
   std::vector<Vec> p_, plain_, residual_;  // their impulses and their change in a pass, as the mixing wants them
   Mixing mixing_;
+  ContactNewton newton_;
+  std::vector<Vec> u_, v_start_, p_start_;
   Turning turning_;
   Spin* spin_ = nullptr;
   int segments_ = 0;

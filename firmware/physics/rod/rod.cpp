@@ -63,6 +63,7 @@ Rod& Rod::operator=(const Rod& other) {
   substep_ = other.substep_;
   near_m_ = other.near_m_;
   pace_m_per_s_ = other.pace_m_per_s_;
+  labours_ = other.labours_;
   solver_.resize(state_.nodes());
   metric_.invalidate();
   stale_ = true;
@@ -204,7 +205,11 @@ Rod::HandSpeed Rod::set_hands(const std::array<Vec, kMaxHolds>& goals, std::arra
 }
 
 void Rod::begin_tick(const HandSpeed& hands) noexcept {
+  constexpr double kTired = 0.9, kRested = 0.25;
   strained_ = report_.cut_short > 0;
+  labours_ = solves_directly() &&
+             static_cast<double>(report_.work) >
+                 (labours_ ? kRested : kTired) * static_cast<double>(numerics_.budget(state_.nodes(), false));
   report_ = TickReport{};
   const bool fast = hands.fastest > 1.001 * numerics_.fast_m_per_s;
   work_.start(numerics_.budget(state_.nodes(), fast));
@@ -220,10 +225,13 @@ void Rod::begin_tick(const HandSpeed& hands) noexcept {
   pace_m_per_s_ = std::max(0.5 * hands.apart, pace_m_per_s_ * std::exp(-numerics_.tick_s / kRelax_s));
   letting_go_ = released_;
   released_ = false;
-  report_.substeps = fast || letting_go_ ? numerics_.max_substeps : numerics_.substeps;
+  report_.substeps = fast || letting_go_ ? numerics_.max_substeps
+                     : labours_          ? std::max(1, 5 * numerics_.substeps / 8)
+                                         : numerics_.substeps;
   if (parts_.contact || parts_.world) {  // velocities and bodies may have been changed from outside
     motion_.measure(state_.v.data());
     contacts_.forget_bodies();
+    contacts_.forget_matrix();
     tick_travel_m_ = 0.0;
   }
 }

@@ -114,6 +114,8 @@ class Rod {
   bool settle(double dt_s) noexcept;
   void mesh_changed() noexcept;
   [[nodiscard]] bool sticks() const noexcept { return material_.static_friction > material_.friction; }
+  /// Newton's method is for the jams of knots; where the thread lies on something, sweeps do.
+  [[nodiscard]] bool solves_directly() const noexcept { return !parts_.turning && contacts_.only_pairs(); }
   struct Allowance {
     long window, rows, passes;  // nodes; work for rows with the least passes; work for rows with all passes
   };
@@ -157,6 +159,7 @@ class Rod {
   double metric_dt_ = 0.0;
   double pace_m_per_s_ = 0.0;  // of the hands from the middle between them, fading once they stop
   bool strained_ = false;      // the last tick's work did not do for all its passes
+  bool labours_ = false;       // the work hardly did for the last tick, so this one has fewer substeps
   bool letting_go_ = false;    // a hold let go just before this tick
   Motion motion_;
   ContactReport seen_;          // of this substep

@@ -12,7 +12,7 @@ namespace {
 
 constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32;
 constexpr double kWild_m_per_s = 1e-3;  // change of a last pass above which velocities are not trusted
-constexpr int kLeastPasses = 3;         // rows that cannot have these are left out
+constexpr int kLeastPasses = 3;         // rows that cannot have these are left out; one where they are solved directly
 constexpr double kSkin = 0.5;           // diameters a list of pairs looks ahead at any speed
 
 /// How far ahead a list looks at today's speeds, in ticks, and the share of the tick's work it may cost. Too much is
@@ -83,7 +83,7 @@ bool Rod::look(double dt_s) noexcept {
 // The substeps to come are expected to need what the last one did: a look and half as much again, its rows, and the
 // least passes over them; and one of them a new list.
 // Rows may have all else that is left; more passes than the least twice a fair share of it, so that a hard substep does
-// not starve the next.
+// not starve the next. Where they are solved directly half of it: that makes the next substep's easy.
 Rod::Allowance Rod::work_allowed(bool metric_too) const noexcept {
   const long after = report_.substeps - substep_index_ - 1;
   const auto span = contacts_.span();
@@ -91,7 +91,8 @@ Rod::Allowance Rod::work_allowed(bool metric_too) const noexcept {
   const long metric = metric_too ? price::metric(state_.nodes(), window + 4) : 0;
   const long looks = after * (look_cost_ + look_cost_ / 2) + (after > 0 ? list_cost_ : 0);
   const long left = std::max(0L, work_.left() - metric - looks);
-  return {window, work_.left() - metric, 2 * std::max(0L, left - after * rows_cost_) / (after + 2)};
+  const long spare = std::max(0L, left - after * rows_cost_);
+  return {window, work_.left() - metric, solves_directly() ? spare / 2 : 2 * spare / (after + 2)};
 }
 
 void Rod::prepare_metric(double dt_s) noexcept {
@@ -116,15 +117,16 @@ double Rod::settled() const noexcept {
 // Which contacts are solved, and the window that is factorised for them. @return nothing when they had better wait for
 // the next tick: only in its first substep, with all the work before it, is a contact ever left out.
 std::optional<Effort> Rod::choose_rows(double dt_s) noexcept {
+  const long passes = solves_directly() ? 1 : kLeastPasses;
   const auto span = contacts_.span();
   const Allowance allowed = work_allowed(dt_s != metric_dt_ || !metric_.covers(span.first, span.last));
-  const long most = std::min<long>(price::affordable_rows(allowed.rows, allowed.window, kLeastPasses), kMaxContacts);
+  const long most = std::min<long>(price::affordable_rows(allowed.rows, allowed.window, passes), kMaxContacts);
   if (substep_index_ > 0 && most < static_cast<long>(contacts_.contacts().size())) return std::nullopt;
   contacts_.choose_rows(static_cast<int>(most), metric_.capacity() - 4, state_.nodes(), seen_);
   const long rows = contacts_.rows(), nodes = contacts_.window_last() - contacts_.window_first() + 1;
-  const long least = kLeastPasses * price::pass(rows, rows, nodes);
+  const long least = passes * price::pass(rows, rows, nodes);
   rows_cost_ = rows > 0 ? price::rows(rows, nodes) + least : 0;
-  return Effort{numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)), settled()};
+  return Effort{numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)), least, settled()};
 }
 
 // Velocities with contact.
@@ -136,9 +138,15 @@ bool Rod::settle(double dt_s) noexcept {
   const int first = contacts_.window_first(), last = contacts_.window_last();
   solver_.factor((first + last) / 2);
   if (contacts_.rows() > 0) {
-    prepare_metric(dt_s);
     if constexpr (kTurns) contacts_.turn_with(spin_, state_.nodes() - 1, material_.radius_m);
-    contacts_.settle<kRubs, kTurns>(solver_, metric_, numerics_, *effort, dt_s, state_.v.data(), seen_);
+    contacts_.start<kTurns>(solver_, numerics_, dt_s, state_.v.data());
+    bool settled = false;
+    if constexpr (!kTurns)
+      settled = solves_directly() && contacts_.settle_directly<kRubs>(solver_, *effort, state_.v.data(), seen_);
+    if (!settled) {
+      prepare_metric(dt_s);
+      contacts_.settle<kRubs, kTurns>(solver_, metric_, *effort, state_.v.data(), seen_);
+    }
     work_.spend(price::rows(contacts_.rows(), last - first + 1) + seen_.work);
     report_.cut_short += seen_.cut_short;
   } else {

@@ -7,12 +7,12 @@
 
 namespace ligature::physics::rod {
 
-void Turning::prepare(Contact* contacts, int count, int segments, double radius_m, Spin& spin) noexcept {
+void Turning::prepare(const Contact* contacts, int count, int segments, double radius_m, Spin& spin) noexcept {
   spin_ = &spin;
   rows_.clear();
   first_ = segments - 1, last_ = 0;
   for (int k = 0; k < count; ++k) {
-    Contact& c = contacts[k];
+    const Contact& c = contacts[k];
     Row row;
     double weight = 1.0;
     row.segment[0] = row.segment[1] = std::min(c.node[0], segments - 1);
@@ -31,8 +31,15 @@ void Turning::prepare(Contact* contacts, int count, int segments, double radius_
       first_ = std::min(first_, row.segment[e]);
       last_ = std::max(last_, row.segment[e]);
     }
-    c.inv_w = 1.0 / (1.0 / c.inv_w + root * root);
+    row.answer = root * root;
     rows_.push_back(row);
+  }
+}
+
+void Turning::shorten_steps(Contact* contacts) const noexcept {
+  for (const Row& row : rows_) {
+    contacts->inv_w = 1.0 / (1.0 / contacts->inv_w + row.answer);
+    ++contacts;
   }
 }
 

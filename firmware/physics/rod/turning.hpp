@@ -17,9 +17,10 @@ class Turning {
  public:
   void reserve(int rows) { rows_.reserve(static_cast<std::size_t>(rows)); }
 
-  /// One row for each of `contacts`, whose tangential step is made so small that it cannot over-shoot with the
-  /// segments' answers added. @param radius_m of the thread. The spin must be assembled.
-  void prepare(Contact* contacts, int count, int segments, double radius_m, Spin& spin) noexcept;
+  /// One row for each of `contacts`. @param radius_m of the thread. The spin must be assembled.
+  void prepare(const Contact* contacts, int count, int segments, double radius_m, Spin& spin) noexcept;
+  /// Makes their tangential steps so small that they cannot over-shoot with the segments' answers added.
+  void shorten_steps(Contact* contacts) const noexcept;
 
   /// What spinning adds to the relative velocity of row k.
   [[nodiscard]] Vec slip(int k) const noexcept {
@@ -40,6 +41,7 @@ class Turning {
   struct Row {
     std::int32_t segment[2] = {0, 0};
     int count = 1;
+    double answer = 0.0;  // how fast a unit of friction turns them, at most
     Vec g[2];
   };
   Spin* spin_ = nullptr;

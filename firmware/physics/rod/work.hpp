@@ -25,6 +25,14 @@ inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one 
 [[nodiscard]] constexpr long pass(long rows, long loaded, long nodes) noexcept {
   return rows * (100 + 3 * nodes / 2) + loaded * 180 + 130 * nodes;
 }
+/// The inverse of the matrix on a window.
+[[nodiscard]] constexpr long inverse(long nodes) noexcept { return 24 * nodes * nodes + 200 * nodes; }
+/// What impulses make of `rows` contacts.
+[[nodiscard]] constexpr long look(long rows) noexcept { return 140 * rows; }
+/// One of Newton's steps: `loaded` contacts, `unknowns` impulses.
+[[nodiscard]] constexpr long newton(long loaded, long unknowns, long nodes) noexcept {
+  return unknowns * (30 * loaded + 16 * unknowns + unknowns * unknowns / 6) + 2000 + 90 * nodes;
+}
 /// The most rows for which `passes` passes can be paid.
 [[nodiscard]] constexpr long affordable_rows(long allowance, long nodes, long passes) noexcept {
   const long fixed = rows(0, nodes) + passes * pass(0, 0, nodes);

@@ -49,6 +49,26 @@ BandSolver random_system(int n, unsigned seed) {
   return s;
 }
 
+TEST(BandSolver, InvertsItsWindow) {
+  for (const int n : {2, 3, 5, 17, 60}) {
+    for (int core = 0; core + 1 < n; core += 1 + n / 9) {
+      BandSolver s = random_system(n, static_cast<unsigned>(n));
+      const Eigen::MatrixXd truth = dense(s, n).a.inverse();
+      const int first = std::max(core - n / 2, 0), last = std::min(core + 1 + n / 3, n - 1), stride = 64;
+      std::vector<Mat> table(static_cast<std::size_t>(64 * 64));
+      s.factor(core);
+      s.invert(first, last, table.data(), static_cast<std::size_t>(stride));
+      for (int i = first; i <= last; ++i) {
+        for (int j = i; j <= last; ++j) {
+          const Mat& block = table[static_cast<std::size_t>((i - first) * stride + j - first)];
+          for (int k = 0; k < 9; ++k)
+            ASSERT_NEAR(column(block, k % 3)[k / 3], truth(3 * i + k / 3, 3 * j + k % 3), 1e-13) << n << " " << core;
+        }
+      }
+    }
+  }
+}
+
 TEST(BandSolver, AgreesWithADenseSolverForEveryCoreAndWindow) {  // well conditioned: rounding times a hundred
   for (const int n : {3, 4, 5, 17, 60}) {
     for (int core = 0; core + 1 < n; core += 1 + n / 20) {

@@ -1,0 +1,106 @@
+#pragma once
+// Contacts solved by Newton's method: few of them carry load, so what couples those is a small dense system.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "firmware/physics/rod/band_solver.hpp"
+#include "firmware/physics/rod/swept.hpp"
+
+namespace ligature::physics::rod {
+
+struct Contact;
+
+/// A contact is solved when its impulse p is a fixed point of its natural map: with u its relative velocity,
+///   p_n = max(0, p_n - r_n (u_n + soft p_n - target)),   p_t = disc(mu p_n, p_t - r_t u_t),
+/// disc(s, q) the point of the disc of radius s nearest to q [Alart & Curnier 1991]. u = u_free + W p, and W = J Z J^T
+/// with Z = A^-1, so stretch is in it. The map is linear where nothing changes its kind, so each step solves for
+/// impulses of today's kinds: an open contact has none; one that sticks three; one that slides p_n (n + mu d) and,
+/// across its direction d, what turning d costs. The kinds are then read anew (a primal-dual active set [Hintermueller
+/// 2003]); impulses may leave their cones on the way. Nothing makes it converge, but on jams for which 10,000 sweeps
+/// did not do it took 5 to 20 steps. Z may be some substeps old: the caller answers each step with the true A.
+class ContactNewton {
+ public:
+  static constexpr int kMostRows = 96;       ///< that carry load, or would
+  static constexpr int kMostUnknowns = 192;  ///< impulses in them
+  static constexpr int kWidest = 160;        ///< nodes of Z
+
+  void reserve();
+
+  /// Z is that of another mesh, or time step.
+  void forget() noexcept { last_ = -1, first_ = 0; }
+  [[nodiscard]] bool covers(int first, int last) const noexcept { return first_ <= first && last <= last_; }
+  /// Z of today. @pre last - first < kWidest; solver factorised.
+  void measure(const BandSolver& solver, int first, int last) noexcept;
+
+  /// The contacts of a substep, `count` of them. What is known of those that were here before is kept, until measure().
+  void start(const Contact* rows, int count) noexcept;
+
+  /// What impulses p and velocities u make of each contact. @return the square of the largest error, m/s: how far an
+  /// impulse is from its map times what it moves its contact by; negative when more carry load than there is room for.
+  template <bool Friction>
+  [[nodiscard]] double look(const Contact* rows, int count, const Vec* u) noexcept;
+
+  /// There was no work for more steps: in the next substep they go on from here.
+  void put_off(const Contact* rows) noexcept;
+  /// Where put_off() was, into p. @return false when it was not.
+  [[nodiscard]] bool resume(Vec* p) noexcept;
+
+  [[nodiscard]] int unknowns() const noexcept { return static_cast<int>(unknowns_.size()); }
+  [[nodiscard]] const std::vector<std::int32_t>& rows() const noexcept { return rows_; }  ///< that carry load, or did
+  [[nodiscard]] int loaded() const noexcept { return static_cast<int>(rows_.size()); }
+
+  /// Impulses that solve the kinds last seen, into p (one for each row). @return false when they cannot be had.
+  bool solve(const Contact* rows, int count, Vec* p) noexcept;
+
+ private:
+  /// A contact that carries load, or did since measure(): who it is, and how far its map steps.
+  struct Slot {
+    const void* who = nullptr;
+    std::int32_t count = 0;
+    std::int32_t node[4] = {0, 0, 0, 0};  ///< counted from first_
+    double w[4] = {0.0, 0.0, 0.0, 0.0};
+    double r_n = 0.0, r_t = 0.0;
+    Vec guess{};  ///< impulse when the work ran out
+  };
+  /// One impulse x `with`, so large that along . u + give x = wanted. Solved for is what it is more than `now`, so that
+  /// single precision does not limit the answer.
+  struct Unknown {
+    std::int32_t row;
+    std::size_t slot;
+    Vec along, with;
+    double give, wanted, now;
+  };
+  enum Kind : std::size_t { kNormal, kAcross, kAlong };  ///< n; across the sliding; along it
+  bool take(const Contact* rows, int k) noexcept;
+  void couple() noexcept;
+  [[nodiscard]] Mat block(const Slot& a, const Slot& b) const noexcept;
+  void keep(std::size_t slot, std::size_t other, const Mat& w) noexcept;
+  void add(int row, Kind kind, Vec along, Vec with, double give, double wanted, double now) noexcept;
+  void answer(std::size_t slot, Vec x, bool more) noexcept;
+  void assemble(const Contact* rows) noexcept;
+  [[nodiscard]] bool eliminate() noexcept;
+  void substitute() noexcept;
+
+  static constexpr std::size_t kPlane = static_cast<std::size_t>(kMostRows), kRow = 3 * kPlane;
+  int first_ = 0, last_ = -1;
+  std::vector<Mat> z_;              // Z_ij, i <= j, kWidest a row
+  std::vector<std::int32_t> slot_;  // of each row, or -1
+  std::vector<std::int32_t> rows_;
+  std::vector<Slot> slots_;
+  std::size_t coupled_ = 0;  // slots that W is known of
+  bool put_off_ = false;
+  std::vector<float> w_;  // W of all slots: rows x, y, z of the first, of the second; in a row all x, all y, all z
+  std::vector<Unknown> unknowns_;
+  std::vector<float> matrix_;  // and its right-hand side
+  std::vector<float> x_;
+  // Scratch of assemble().
+  std::vector<float> on_, all_;
+  std::array<std::vector<float>, 3> with_;  // x, y, z of every kind and slot
+  std::vector<std::int32_t> place_;         // of each unknown in them
+  std::vector<Vec> rest_;
+  std::size_t stride_ = 0;
+};
+
+}  // namespace ligature::physics::rod

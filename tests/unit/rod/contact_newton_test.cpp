@@ -1,0 +1,124 @@
+// Newton's method for contacts against projected Gauss-Seidel run to the end, on a small stiff chain.
+
+#include "firmware/physics/rod/contact_newton.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "firmware/physics/rod/contact.hpp"
+
+namespace ligature::physics::rod {
+namespace {
+
+constexpr int kNodes = 24, kRows = 9;
+
+/// Contacts of a chain with velocities of their own, pressed together and along: some stick, some slide, some open.
+struct Jam {
+  BandSolver solver;
+  std::vector<Contact> rows{static_cast<std::size_t>(kRows)};
+  std::vector<Vec> keep{static_cast<std::size_t>(kRows)}, free{static_cast<std::size_t>(kNodes)};
+
+  explicit Jam(unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    const auto vector = [&] { return make(normal(random), normal(random), normal(random)); };
+    solver.resize(kNodes);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(kNodes); ++i) {
+      solver.diagonal[i] = dyad(vector(), 40.0, 20.0);
+      solver.couple[i] = dyad(vector(), 1.0, -6.0);
+      solver.skip[i] = 1.0;
+      solver.rhs[i] = Vec{};
+      free[i] = vector();
+    }
+    solver.factor(kNodes / 2);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      Contact& c = rows[k];
+      const int a = static_cast<int>(k), b = kNodes / 2 + static_cast<int>(k);
+      c.node[0] = a, c.node[1] = a + 1, c.node[2] = b, c.node[3] = b + 1;
+      c.w[0] = -0.3, c.w[1] = -0.7, c.w[2] = 0.6, c.w[3] = 0.4;
+      const Vec n = vector();
+      c.n = (1.0 / norm(n)) * n;
+      c.mu = k % 2 == 0 ? 0.4 : 1.2;
+      c.soft = 1e-3;
+      c.target = 0.6;
+      c.keep = &keep[k];
+    }
+  }
+
+  std::vector<Vec> velocities() {  // of the contacts, with their impulses
+    std::vector<Vec> extra(static_cast<std::size_t>(kNodes)), v(extra.size()), u;
+    for (const auto& c : rows) {
+      for (int j = 0; j < 4; ++j) extra[static_cast<std::size_t>(c.node[j])] += c.w[j] * c.p;
+    }
+    solver.solve(0, kNodes - 1, extra.data(), v.data(), false);
+    for (const auto& c : rows) {
+      Vec sum{};
+      for (int j = 0; j < 4; ++j) {
+        const auto at = static_cast<std::size_t>(c.node[j]);
+        sum += c.w[j] * (v[at] + free[at]);
+      }
+      u.push_back(sum);
+    }
+    return u;
+  }
+
+  void sweep() {  // one contact after the other, by a step that cannot over-shoot
+    constexpr double kStep = 8.0;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      Contact& c = rows[k];
+      const Vec u = velocities()[k];
+      const double un = dot(u, c.n), before = dot(c.p, c.n);
+      const double pn = std::max(0.0, before - kStep * (un + c.soft * before - c.target));
+      const Vec pt = c.p - before * c.n - kStep * (u - un * c.n);
+      const double size = norm(pt), most = c.mu * pn;
+      c.p = pn * c.n + (size > most ? most / size : 1.0) * pt;
+    }
+  }
+};
+
+TEST(ContactNewton, FindsWhatSweepsFindInTheEnd) {
+  int stick = 0, slide = 0, open = 0, most_steps = 0;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    Jam swept(seed), jam(seed);
+    for (int k = 0; k < 4000; ++k) swept.sweep();
+    ContactNewton newton;
+    newton.reserve();
+    newton.measure(jam.solver, 0, kNodes - 1);
+    newton.start(jam.rows.data(), kRows);
+    std::vector<Vec> p(static_cast<std::size_t>(kRows));
+    int steps = 0;
+    for (; steps < 30; ++steps) {
+      if (newton.look<true>(jam.rows.data(), kRows, jam.velocities().data()) < 1e-20) break;
+      ASSERT_TRUE(newton.solve(jam.rows.data(), kRows, p.data()));
+      for (std::size_t k = 0; k < p.size(); ++k) jam.rows[k].p.v = p[k].v;
+    }
+    most_steps = std::max(most_steps, steps);
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      const Contact &c = jam.rows[k], &s = swept.rows[k];
+      EXPECT_LT(norm(c.p - s.p), 1e-7) << seed << ' ' << k;
+      const double pn = dot(c.p, c.n);
+      (pn <= 0.0 ? open : norm(c.p - pn * c.n) < 0.999 * c.mu * pn ? stick : slide) += 1;
+    }
+  }
+  EXPECT_LT(most_steps, 30);
+  EXPECT_GT(stick, 3);
+  EXPECT_GT(slide, 3);
+  EXPECT_GT(open, 3);
+}
+
+TEST(ContactNewton, SaysWhenThereAreTooMany) {
+  Jam jam(1);
+  std::vector<Contact> many(static_cast<std::size_t>(ContactNewton::kMostRows) + 1, jam.rows[0]);
+  const std::vector<Vec> approaching(many.size(), -1.0 * many[0].n);
+  ContactNewton newton;
+  newton.reserve();
+  newton.measure(jam.solver, 0, kNodes - 1);
+  for (auto& c : many) c.keep = &c.p;
+  newton.start(many.data(), static_cast<int>(many.size()));
+  EXPECT_LT(newton.look<true>(many.data(), static_cast<int>(many.size()), approaching.data()), 0.0);
+}
+
+}  // namespace
+}  // namespace ligature::physics::rod
