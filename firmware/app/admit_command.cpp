@@ -10,6 +10,14 @@ namespace {
 
 constexpr double kSearch_s = 2.0;
 
+/// A rod may be solved with less work: the same thread, other figures (docs/accuracy.md).
+bool fast_would_fit(scene::Scene scene, int core, double budget_percent) {
+  const bool has_less = scene.suture.model == scene::Model::kRod && scene.suture.rod.accuracy != scene::Accuracy::kFast;
+  if (!has_less) return false;
+  scene.suture.rod.accuracy = scene::Accuracy::kFast;
+  return admit(scene, kSearch_s / 4, core, budget_percent).fits();
+}
+
 }  // namespace
 
 std::optional<Refusal> objection_of(const Admission& admission, const scene::Scene& scene, int core) {
@@ -19,8 +27,10 @@ std::optional<Refusal> objection_of(const Admission& admission, const scene::Sce
                 "the scene does not fit: found %.0f us of computing in the worst tick, allowed %.0f; ",
                 admission.computing_us(), std::min(admission.budget_us(), 1000.0 - admission.bus_us));
   const auto nodes = largest_nodes(scene, kSearch_s, core, admission.budget_percent);
-  return Refusal{3, text + (nodes ? "largest suture.nodes that would: " + std::to_string(*nodes)
-                                  : std::string("no suture.nodes would"))};
+  const std::string remedy =
+      nodes ? "largest suture.nodes that would: " + std::to_string(*nodes) : "no suture.nodes would";
+  const bool fast = fast_would_fit(scene, core, admission.budget_percent);
+  return Refusal{3, text + remedy + (fast ? "; as it is suture.accuracy = \"fast\" would" : "")};
 }
 
 int admit_scene(const AdmitOptions& options) {

@@ -7,8 +7,8 @@ namespace ligature::platform {
 
 /// Gives the process copies of the pages that it shares with the files they come from (program and libraries).
 /// mlockall() does not hold all of these: a folio of the page cache that reaches past the end of a mapping stays on the
-/// lists of what may be reclaimed, and code that was there faults when it is next run (seen in a soak: one fault in 600
-/// s). Copies are anonymous and locked. About 10 MB; milliseconds; before threads with deadlines run.
+/// lists of what may be reclaimed, and code that was there faults when it is next run (it fits the one fault that a
+/// soak of 600 s had). Copies are anonymous and locked. About 10 MB; milliseconds; before threads with deadlines run.
 /// @return how many mappings could not be copied; on kernels before 5.14 all of them.
 [[nodiscard]] std::size_t own_file_pages();
 
