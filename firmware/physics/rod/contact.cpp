@@ -27,7 +27,7 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   mixing_.reserve(rows);
   newton_.reserve();
   for (auto* array : {&u_, &p_start_}) array->assign(rows, Vec{});
-  v_start_.assign(static_cast<std::size_t>(ContactNewton::kWidest), Vec{});
+  for (auto* array : {&v_start_, &v_before_}) array->assign(static_cast<std::size_t>(ContactNewton::kWidest), Vec{});
 }
 
 namespace {
@@ -172,6 +172,8 @@ void ContactSet::start(BandSolver& solver, const Numerics& numerics, double dt_s
   const double longer = per_second_ > 0.0 ? dt_s * per_second_ : 1.0;  // than the last substep: forces stay
   per_second_ = 1.0 / dt_s;
   if constexpr (Turns) turning_.prepare(contacts_.data(), rows_, segments_, radius_m_, *spin_);
+  if (window_last_ - window_first_ < ContactNewton::kWidest)
+    std::copy(v + window_first_, v + window_last_ + 1, v_before_.begin());
   solver.solve(window_first_, window_last_, nullptr, v, true);
   clear_extra();
   loaded_.clear();
@@ -240,10 +242,13 @@ void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
 }
 
 template <bool Friction>
-bool ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
-  constexpr int kMostSteps = 25, kStale = 10, kExpected = 4;
-  const long nodes = window_last_ - window_first_ + 1;
+Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
+  constexpr int kMostLooks = 12, kMostSteps = 48, kStale = 3;
+  constexpr double kOld = 10.0;  // what an old matrix may leave over
+  const long nodes = window_last_ - window_first_ + 1, answer = price::look(rows_) + price::answer(nodes);
   const double settled2 = effort.settled_m_per_s * effort.settled_m_per_s;
+  const Contact* const rows = contacts_.data();
+  Vec *const p = p_.data(), *const u = u_.data();
   bool fresh = false;
   const auto measure = [&] {
     report.work += price::inverse(nodes);
@@ -251,78 +256,72 @@ bool ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* v, 
     fresh = true;
   };
   if (!newton_.covers(window_first_, window_last_)) measure();
-  newton_.start(contacts_.data(), rows_);
-  if (newton_.resume(p_.data())) take_impulses(solver, v);
-  for (int step = 0; step < kMostSteps; ++step) {
-    if (step == kStale && !fresh) measure(), newton_.start(contacts_.data(), rows_);
-    for (int k = 0; k < rows_; ++k) u_[static_cast<std::size_t>(k)] = velocity<false>(k, v);
-    const double largest2 = newton_.look<Friction>(contacts_.data(), rows_, u_.data());
-    report.work += price::look(rows_);
-    if (largest2 < 0.0) return false;
-    report.change_m_per_s = std::sqrt(largest2);
-    if (largest2 < settled2) return true;
-    if (newton_.unknowns() > ContactNewton::kMostUnknowns) return false;
-    const long cost = price::newton(newton_.loaded(), newton_.unknowns(), nodes);
-    const long left = effort.work - effort.reserve - report.work - price::inverse(nodes);
-    if (step == 0 && kExpected * cost > left) return false;  // sweeps get further
-    if (cost > left) {
-      newton_.put_off(contacts_.data());
-      return false;
+  newton_.start(rows, rows_);
+  if (newton_.resume(p)) take_impulses(solver, v);
+  for (int look = 0; look < kMostLooks; ++look) {
+    if (look == kStale && !fresh) {
+      if (report.work + price::inverse(nodes) > effort.work) break;
+      measure();
+      newton_.start(rows, rows_);
     }
-    report.work += cost;
-    ++report.passes;
-    if (!newton_.solve(contacts_.data(), rows_, p_.data())) return false;
+    if (report.work + answer > effort.work) break;
+    report.work += answer;
+    for (int k = 0; k < rows_; ++k) u[k] = velocity<false>(k, v);
+    if (!newton_.look(rows, rows_, p, u)) return Outcome::kNoRoom;
+    const long coupling = price::couple(newton_.uncoupled());
+    if (report.work + coupling > effort.work) break;
+    report.work += coupling;
+    newton_.couple();
+    for (int step = 0;; ++step) {
+      const double largest2 = newton_.read<Friction>(rows, p, u);
+      if (step == 0) {
+        report.change_m_per_s = std::sqrt(largest2);
+        if (largest2 < (look > 0 ? kOld * kOld : 1.0) * settled2) return Outcome::kSettled;
+      }
+      if (largest2 < 0.25 * settled2) break;
+      if (newton_.unknowns() > ContactNewton::kMostUnknowns) return Outcome::kNoRoom;
+      const long cost = look == 0 && step == 0 ? price::dense_sweep(newton_.loaded())
+                                               : price::newton(newton_.loaded(), newton_.unknowns());
+      if (report.work + cost + answer > effort.work) {
+        newton_.put_off(p);
+        return Outcome::kLater;
+      }
+      report.work += cost;
+      if (look == 0 && step == 0) {
+        newton_.sweep<Friction>(rows, p, u);
+        continue;
+      }
+      if (++report.passes > kMostSteps) return Outcome::kNoRoom;
+      if (!newton_.solve(p, u)) return Outcome::kNoRoom;
+    }
     take_impulses(solver, v);
   }
-  return false;
-}
-
-// How fast the merit of the frictionless problem rises from the impulses of p_start_ towards those of p_, at v.
-double ContactSet::slope(const Vec* v) const noexcept {
-  double sum = 0.0;
-  for (const auto k : newton_.rows()) {
-    const Contact& c = contacts_[static_cast<std::size_t>(k)];
-    const Vec d = p_[static_cast<std::size_t>(k)] - p_start_[static_cast<std::size_t>(k)];
-    sum += dot(d, velocity<false>(k, v)) + dot(d, c.n) * (c.soft * dot(c.p, c.n) - c.target);
-  }
-  return sum;
-}
-
-// Back towards the impulses and velocities of the start, so far that the merit is least. @return the share that stays.
-double ContactSet::retreat(Vec* v) noexcept {
-  const double there = slope(v);
-  for (int k = 0; k < rows_; ++k) contacts_[static_cast<std::size_t>(k)].p.v = p_start_[static_cast<std::size_t>(k)].v;
-  for (int i = window_first_; i <= window_last_; ++i)
-    std::swap(v[i].v, v_start_[static_cast<std::size_t>(i - window_first_)].v);
-  const double here = slope(v);
-  const double share = !(here < 0.0) ? 0.0 : there <= 0.0 ? 1.0 : here / (here - there);
-  if (share == 0.0) return 0.0;
-  for (const auto k : newton_.rows()) {
-    const auto at = static_cast<std::size_t>(k);
-    contacts_[at].p.v = p_start_[at].v + share * (p_[at].v - p_start_[at].v);
-  }
-  for (int i = window_first_; i <= window_last_; ++i)
-    v[i].v += share * (v_start_[static_cast<std::size_t>(i - window_first_)].v - v[i].v);
-  return share;
+  newton_.put_off(p);
+  return Outcome::kLater;
 }
 
 template <bool Friction>
-bool ContactSet::settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
-  constexpr double kWorth = 0.1;
+Outcome ContactSet::settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
   const long nodes = window_last_ - window_first_ + 1;
-  if (nodes > ContactNewton::kWidest || 2 * price::inverse(nodes) + price::look(rows_) + effort.reserve > effort.work)
-    return false;
-  for (int k = 0; k < rows_; ++k) p_start_[static_cast<std::size_t>(k)].v = contacts_[static_cast<std::size_t>(k)].p.v;
-  std::copy(v + window_first_, v + window_last_ + 1, v_start_.begin());
-  const bool settled = newton_steps<Friction>(solver, effort, v, report);
-  for (const auto k : newton_.rows()) {
-    const Contact& c = contacts_[static_cast<std::size_t>(k)];
-    p_[static_cast<std::size_t>(k)] = in_cone(c.p, c.n, c.mu);
+  if (nodes > ContactNewton::kWidest || 2 * price::inverse(nodes) + price::look(rows_) > effort.work)
+    return Outcome::kNoRoom;
+  for (int k = 0; k < rows_; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    p_start_[at].v = p_[at].v = contacts_[at].p.v;
   }
-  take_impulses(solver, v);
-  if (settled) return true;
-  report.cut_short = retreat(v) > kWorth;
-  return report.cut_short;
+  std::copy(v + window_first_, v + window_last_ + 1, v_start_.begin());
+  const Outcome outcome = newton_steps<Friction>(solver, effort, v, report);
+  if (outcome == Outcome::kSettled) {
+    for (const auto k : newton_.rows()) {
+      Contact& c = contacts_[static_cast<std::size_t>(k)];
+      c.p = in_cone(c.p, c.n, c.mu);
+    }
+    return outcome;
+  }
+  for (int k = 0; k < rows_; ++k) contacts_[static_cast<std::size_t>(k)].p.v = p_start_[static_cast<std::size_t>(k)].v;
+  const auto& back = outcome == Outcome::kLater ? v_before_ : v_start_;
+  std::copy(back.begin(), back.begin() + nodes, v + window_first_);
+  return outcome;
 }
 
 template <bool Friction, bool Turns>
@@ -394,8 +393,8 @@ void ContactSet::relabel(const std::vector<double>& s) noexcept {
 
 template void ContactSet::start<true>(BandSolver&, const Numerics&, double, Vec*) noexcept;
 template void ContactSet::start<false>(BandSolver&, const Numerics&, double, Vec*) noexcept;
-template bool ContactSet::settle_directly<true>(BandSolver&, const Effort&, Vec*, ContactReport&) noexcept;
-template bool ContactSet::settle_directly<false>(BandSolver&, const Effort&, Vec*, ContactReport&) noexcept;
+template Outcome ContactSet::settle_directly<true>(BandSolver&, const Effort&, Vec*, ContactReport&) noexcept;
+template Outcome ContactSet::settle_directly<false>(BandSolver&, const Effort&, Vec*, ContactReport&) noexcept;
 template void ContactSet::settle<true, true>(BandSolver&, const ContactMetric&, const Effort&, Vec*,
                                              ContactReport&) noexcept;
 template void ContactSet::settle<true, false>(BandSolver&, const ContactMetric&, const Effort&, Vec*,

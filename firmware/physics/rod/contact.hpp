@@ -62,8 +62,14 @@ struct ContactReport {
 struct Effort {
   int passes = 0;                ///< at most
   long work = 0;                 ///< for all of them, in instructions (work.hpp); the first pass is always done
-  long reserve = 0;              ///< of it, for sweeps only
   double settled_m_per_s = 0.0;  ///< a pass that changes no velocity by more is the last
+};
+
+/// Of settle_directly().
+enum class Outcome : std::uint8_t {
+  kSettled,
+  kLater,   ///< the work ran out: as before start(), and the next substep goes on from there
+  kNoRoom,  ///< too many contacts, or no answer found: as after start()
 };
 
 inline constexpr int kMaxContacts = 768;  ///< rows that can be solved at once
@@ -141,10 +147,14 @@ class ContactSet {
   template <bool Turns>
   void start(BandSolver& solver, const Numerics& numerics, double dt_s, Vec* v) noexcept;
 
-  /// Solves for v by Newton's method (contact_newton.hpp). @return false, and all is as after start(), when there was
-  /// no room or no work for it, or it did not settle.
+  /// Solves for v by Newton's method (contact_newton.hpp).
   template <bool Friction>
-  bool settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept;
+  Outcome settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept;
+  /// v as before start(). @pre settle_directly() was tried last.
+  void undo(Vec* v) const noexcept {
+    if (window_last_ - window_first_ < ContactNewton::kWidest)
+      std::copy(v_before_.begin(), v_before_.begin() + (window_last_ - window_first_ + 1), v + window_first_);
+  }
   /// What settle_directly() knows of the matrix is of another mesh or time step.
   void forget_matrix() noexcept { newton_.forget(); }
 
@@ -212,10 +222,8 @@ class ContactSet {
   template <bool Friction, bool Turns>
   void sweep(const Vec* v) noexcept;
   template <bool Friction>
-  bool newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept;
+  Outcome newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept;
   void take_impulses(BandSolver& solver, Vec* v) noexcept;
-  [[nodiscard]] double slope(const Vec* v) const noexcept;
-  double retreat(Vec* v) noexcept;
 
   /// A pair that is near but no contact in this substep; only the guard looks at it again.
   struct Watched {
@@ -234,7 +242,7 @@ class ContactSet {
   std::vector<Vec> p_, plain_, residual_;  // their impulses and their change in a pass, as the mixing wants them
   Mixing mixing_;
   ContactNewton newton_;
-  std::vector<Vec> u_, v_start_, p_start_;
+  std::vector<Vec> u_, v_start_, v_before_, p_start_;
   Turning turning_;
   Spin* spin_ = nullptr;
   int segments_ = 0;

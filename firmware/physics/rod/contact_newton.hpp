@@ -37,13 +37,27 @@ class ContactNewton {
   /// The contacts of a substep, `count` of them. What is known of those that were here before is kept, until measure().
   void start(const Contact* rows, int count) noexcept;
 
-  /// What impulses p and velocities u make of each contact. @return the square of the largest error, m/s: how far an
-  /// impulse is from its map times what it moves its contact by; negative when more carry load than there is room for.
-  template <bool Friction>
-  [[nodiscard]] double look(const Contact* rows, int count, const Vec* u) noexcept;
+  /// Velocities u of all contacts: those that approach too fast are taken in. @return false when there is no room.
+  [[nodiscard]] bool look(const Contact* rows, int count, const Vec* p, const Vec* u) noexcept;
 
-  /// There was no work for more steps: in the next substep they go on from here.
-  void put_off(const Contact* rows) noexcept;
+  /// What those new ones do to the others, and they to them. After look().
+  void couple() noexcept;
+  [[nodiscard]] long uncoupled() const noexcept {  ///< pairs of contacts that couple() has yet to see
+    const auto all = static_cast<long>(slots_.size()), seen = static_cast<long>(coupled_);
+    return (all * (all + 1) - seen * (seen + 1)) / 2;
+  }
+
+  /// What impulses p and velocities u make of each contact taken in. @return the square of the largest error, m/s: how
+  /// far an impulse is from its map times what it moves its contact by.
+  template <bool Friction>
+  [[nodiscard]] double read(const Contact* rows, const Vec* p, const Vec* u) noexcept;
+
+  /// One sweep over the contacts taken in: settles what is easy. p and u follow.
+  template <bool Friction>
+  void sweep(const Contact* rows, Vec* p, Vec* u) noexcept;
+
+  /// There was no work for more steps: in the next substep they go on from these impulses.
+  void put_off(const Vec* p) noexcept;
   /// Where put_off() was, into p. @return false when it was not.
   [[nodiscard]] bool resume(Vec* p) noexcept;
 
@@ -51,18 +65,18 @@ class ContactNewton {
   [[nodiscard]] const std::vector<std::int32_t>& rows() const noexcept { return rows_; }  ///< that carry load, or did
   [[nodiscard]] int loaded() const noexcept { return static_cast<int>(rows_.size()); }
 
-  /// Impulses that solve the kinds last seen, into p (one for each row). @return false when they cannot be had.
-  bool solve(const Contact* rows, int count, Vec* p) noexcept;
+  /// Impulses that solve the kinds last read, into p; u follows. @return false when they cannot be had.
+  bool solve(Vec* p, Vec* u) noexcept;
 
  private:
   /// A contact that carries load, or did since measure(): who it is, and how far its map steps.
   struct Slot {
-    const void* who = nullptr;
     std::int32_t count = 0;
     std::int32_t node[4] = {0, 0, 0, 0};  ///< counted from first_
     double w[4] = {0.0, 0.0, 0.0, 0.0};
     double r_n = 0.0, r_t = 0.0;
-    Vec guess{};  ///< impulse when the work ran out
+    bool dead = false;  ///< its contact has moved on
+    Vec guess{};        ///< impulse when the work ran out
   };
   /// One impulse x `with`, so large that along . u + give x = wanted. Solved for is what it is more than `now`, so that
   /// single precision does not limit the answer.
@@ -74,12 +88,21 @@ class ContactNewton {
   };
   enum Kind : std::size_t { kNormal, kAcross, kAlong };  ///< n; across the sliding; along it
   bool take(const Contact* rows, int k) noexcept;
-  void couple() noexcept;
+  [[nodiscard]] std::size_t slot_of(std::int32_t row) const noexcept {
+    return static_cast<std::size_t>(slot_[static_cast<std::size_t>(row)]);
+  }
+  [[nodiscard]] Vec moved(std::size_t slot) const noexcept {
+    const float* const u = on_.data() + slot;
+    return make(u[0], u[kPlane], u[2 * kPlane]);
+  }
   [[nodiscard]] Mat block(const Slot& a, const Slot& b) const noexcept;
   void keep(std::size_t slot, std::size_t other, const Mat& w) noexcept;
   void add(int row, Kind kind, Vec along, Vec with, double give, double wanted, double now) noexcept;
   void answer(std::size_t slot, Vec x, bool more) noexcept;
-  void assemble(const Contact* rows) noexcept;
+  void assemble(const Vec* p) noexcept;
+  static constexpr std::size_t kPanel = 4;
+  [[nodiscard]] bool pivot(std::size_t k) noexcept;
+  [[nodiscard]] bool panel(std::size_t k) noexcept;
   [[nodiscard]] bool eliminate() noexcept;
   void substitute() noexcept;
 

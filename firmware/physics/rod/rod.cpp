@@ -210,6 +210,8 @@ void Rod::begin_tick(const HandSpeed& hands) noexcept {
   labours_ = solves_directly() &&
              static_cast<double>(report_.work) >
                  (labours_ ? kRested : kTired) * static_cast<double>(numerics_.budget(state_.nodes(), false));
+  const bool moved = report_.passes > 0;
+  const double dt_before = numerics_.tick_s / std::max(1, report_.substeps);
   report_ = TickReport{};
   const bool fast = hands.fastest > 1.001 * numerics_.fast_m_per_s;
   work_.start(numerics_.budget(state_.nodes(), fast));
@@ -226,12 +228,13 @@ void Rod::begin_tick(const HandSpeed& hands) noexcept {
   letting_go_ = released_;
   released_ = false;
   report_.substeps = fast || letting_go_ ? numerics_.max_substeps
-                     : labours_          ? std::max(1, 5 * numerics_.substeps / 8)
+                     : labours_          ? std::max(1, numerics_.substeps / 2)
                                          : numerics_.substeps;
   if (parts_.contact || parts_.world) {  // velocities and bodies may have been changed from outside
     motion_.measure(state_.v.data());
     contacts_.forget_bodies();
-    contacts_.forget_matrix();
+    if ((waits_ == 0 && moved) || report_.remeshes > 0 || dt_before != numerics_.tick_s / report_.substeps)
+      contacts_.forget_matrix();
     tick_travel_m_ = 0.0;
   }
 }
@@ -261,7 +264,7 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
     moving = moving && (this->*substep_)(dt);
     if (!moving) report_.time_lost += 1.0 / report_.substeps;
   }
-  if (report_.time_lost > 0.999) {  // slower, there is less to look at in the next tick
+  if (report_.time_lost > 0.999 && waits_ == 0) {  // slower, there is less to look at in the next tick
     for (auto& v : state_.v) v = 0.5 * v;
   }
   report_.work = work_.used();

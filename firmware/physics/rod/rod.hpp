@@ -159,6 +159,7 @@ class Rod {
   double metric_dt_ = 0.0;
   double pace_m_per_s_ = 0.0;  // of the hands from the middle between them, fading once they stop
   bool strained_ = false;      // the last tick's work did not do for all its passes
+  int waits_ = 0;              // ticks in which the contacts of the next substep did not settle before the work ran out
   bool labours_ = false;       // the work hardly did for the last tick, so this one has fewer substeps
   bool letting_go_ = false;    // a hold let go just before this tick
   Motion motion_;

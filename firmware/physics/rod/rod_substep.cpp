@@ -12,6 +12,7 @@ namespace {
 
 constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32;
 constexpr double kWild_m_per_s = 1e-3;  // change of a last pass above which velocities are not trusted
+constexpr int kPatience = 2;            // ticks in which a substep may wait for its contacts to settle
 constexpr int kLeastPasses = 3;         // rows that cannot have these are left out; one where they are solved directly
 constexpr double kSkin = 0.5;           // diameters a list of pairs looks ahead at any speed
 
@@ -92,7 +93,7 @@ Rod::Allowance Rod::work_allowed(bool metric_too) const noexcept {
   const long looks = after * (look_cost_ + look_cost_ / 2) + (after > 0 ? list_cost_ : 0);
   const long left = std::max(0L, work_.left() - metric - looks);
   const long spare = std::max(0L, left - after * rows_cost_);
-  return {window, work_.left() - metric, solves_directly() ? spare / 2 : 2 * spare / (after + 2)};
+  return {window, work_.left() - metric, solves_directly() ? work_.left() - metric : 2 * spare / (after + 2)};
 }
 
 void Rod::prepare_metric(double dt_s) noexcept {
@@ -126,7 +127,7 @@ std::optional<Effort> Rod::choose_rows(double dt_s) noexcept {
   const long rows = contacts_.rows(), nodes = contacts_.window_last() - contacts_.window_first() + 1;
   const long least = passes * price::pass(rows, rows, nodes);
   rows_cost_ = rows > 0 ? price::rows(rows, nodes) + least : 0;
-  return Effort{numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)), least, settled()};
+  return Effort{numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)), settled()};
 }
 
 // Velocities with contact.
@@ -140,10 +141,22 @@ bool Rod::settle(double dt_s) noexcept {
   if (contacts_.rows() > 0) {
     if constexpr (kTurns) contacts_.turn_with(spin_, state_.nodes() - 1, material_.radius_m);
     contacts_.start<kTurns>(solver_, numerics_, dt_s, state_.v.data());
-    bool settled = false;
-    if constexpr (!kTurns)
-      settled = solves_directly() && contacts_.settle_directly<kRubs>(solver_, *effort, state_.v.data(), seen_);
-    if (!settled) {
+    Outcome outcome = Outcome::kNoRoom;
+    if constexpr (!kTurns) {
+      if (solves_directly() && waits_ < kPatience)
+        outcome = contacts_.settle_directly<kRubs>(solver_, *effort, state_.v.data(), seen_);
+      if (solves_directly() && outcome == Outcome::kNoRoom && substep_index_ > 0) {
+        outcome = Outcome::kLater;
+        contacts_.undo(state_.v.data());
+      }
+      waits_ = outcome == Outcome::kLater ? waits_ + 1 : 0;
+      if (waits_ > 0) {
+        work_.spend(price::rows(contacts_.rows(), last - first + 1) + seen_.work);
+        ++report_.cut_short;
+        return false;
+      }
+    }
+    if (outcome != Outcome::kSettled) {
       prepare_metric(dt_s);
       contacts_.settle<kRubs, kTurns>(solver_, metric_, *effort, state_.v.data(), seen_);
     }

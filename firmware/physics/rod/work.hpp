@@ -29,9 +29,15 @@ inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one 
 [[nodiscard]] constexpr long inverse(long nodes) noexcept { return 24 * nodes * nodes + 200 * nodes; }
 /// What impulses make of `rows` contacts.
 [[nodiscard]] constexpr long look(long rows) noexcept { return 140 * rows; }
+/// Pairs of contacts that are to be coupled densely.
+[[nodiscard]] constexpr long couple(long pairs) noexcept { return 280 * pairs; }
+/// The velocities that answer to new impulses.
+[[nodiscard]] constexpr long answer(long nodes) noexcept { return 130 * nodes; }
+/// A sweep over `loaded` contacts that are coupled densely.
+[[nodiscard]] constexpr long dense_sweep(long loaded) noexcept { return loaded * (200 + 10 * loaded); }
 /// One of Newton's steps: `loaded` contacts, `unknowns` impulses.
-[[nodiscard]] constexpr long newton(long loaded, long unknowns, long nodes) noexcept {
-  return unknowns * (30 * loaded + 16 * unknowns + unknowns * unknowns / 6) + 2000 + 90 * nodes;
+[[nodiscard]] constexpr long newton(long loaded, long unknowns) noexcept {
+  return unknowns * (260 + 14 * unknowns + unknowns * unknowns / 9) + 3000 + 250 * loaded;
 }
 /// The most rows for which `passes` passes can be paid.
 [[nodiscard]] constexpr long affordable_rows(long allowance, long nodes, long passes) noexcept {

@@ -90,8 +90,12 @@ TEST(ContactNewton, FindsWhatSweepsFindInTheEnd) {
     std::vector<Vec> p(static_cast<std::size_t>(kRows));
     int steps = 0;
     for (; steps < 30; ++steps) {
-      if (newton.look<true>(jam.rows.data(), kRows, jam.velocities().data()) < 1e-20) break;
-      ASSERT_TRUE(newton.solve(jam.rows.data(), kRows, p.data()));
+      auto u = jam.velocities();
+      ASSERT_TRUE(newton.look(jam.rows.data(), kRows, p.data(), u.data()));
+      newton.couple();
+      newton.couple();
+      if (newton.read<true>(jam.rows.data(), p.data(), u.data()) < 1e-20) break;
+      ASSERT_TRUE(newton.solve(p.data(), u.data()));
       for (std::size_t k = 0; k < p.size(); ++k) jam.rows[k].p.v = p[k].v;
     }
     most_steps = std::max(most_steps, steps);
@@ -108,6 +112,47 @@ TEST(ContactNewton, FindsWhatSweepsFindInTheEnd) {
   EXPECT_GT(open, 3);
 }
 
+TEST(ContactNewton, KnowsWhatItsImpulsesDo) {  // without asking the solver
+  Jam jam(3);
+  ContactNewton newton;
+  newton.reserve();
+  newton.measure(jam.solver, 0, kNodes - 1);
+  newton.start(jam.rows.data(), kRows);
+  std::vector<Vec> p(static_cast<std::size_t>(kRows));
+  auto u = jam.velocities();
+  ASSERT_TRUE(newton.look(jam.rows.data(), kRows, p.data(), u.data()));
+  newton.couple();
+  for (int k = 0; k < 2; ++k) {
+    newton.sweep<true>(jam.rows.data(), p.data(), u.data());
+    (void)newton.read<true>(jam.rows.data(), p.data(), u.data());
+    ASSERT_TRUE(newton.solve(p.data(), u.data()));
+  }
+  for (std::size_t k = 0; k < p.size(); ++k) jam.rows[k].p.v = p[k].v;
+  const auto truth = jam.velocities();
+  for (const auto k : newton.rows())
+    EXPECT_LT(norm(u[static_cast<std::size_t>(k)] - truth[static_cast<std::size_t>(k)]), 1e-5);
+}
+
+TEST(ContactNewton, PutsOffAndResumes) {
+  Jam jam(2);
+  ContactNewton newton;
+  newton.reserve();
+  newton.measure(jam.solver, 0, kNodes - 1);
+  newton.start(jam.rows.data(), kRows);
+  std::vector<Vec> p(static_cast<std::size_t>(kRows)), again(p.size());
+  auto u = jam.velocities();
+  ASSERT_TRUE(newton.look(jam.rows.data(), kRows, p.data(), u.data()));
+  newton.couple();
+  EXPECT_FALSE(newton.resume(again.data()));
+  newton.sweep<true>(jam.rows.data(), p.data(), u.data());
+  newton.put_off(p.data());
+  newton.start(jam.rows.data(), kRows);
+  ASSERT_TRUE(newton.resume(again.data()));
+  for (const auto k : newton.rows())
+    EXPECT_EQ(norm(p[static_cast<std::size_t>(k)] - again[static_cast<std::size_t>(k)]), 0.0);
+  EXPECT_FALSE(newton.resume(again.data()));
+}
+
 TEST(ContactNewton, SaysWhenThereAreTooMany) {
   Jam jam(1);
   std::vector<Contact> many(static_cast<std::size_t>(ContactNewton::kMostRows) + 1, jam.rows[0]);
@@ -117,7 +162,8 @@ TEST(ContactNewton, SaysWhenThereAreTooMany) {
   newton.measure(jam.solver, 0, kNodes - 1);
   for (auto& c : many) c.keep = &c.p;
   newton.start(many.data(), static_cast<int>(many.size()));
-  EXPECT_LT(newton.look<true>(many.data(), static_cast<int>(many.size()), approaching.data()), 0.0);
+  const std::vector<Vec> none(many.size());
+  EXPECT_FALSE(newton.look(many.data(), static_cast<int>(many.size()), none.data(), approaching.data()));
 }
 
 }  // namespace
