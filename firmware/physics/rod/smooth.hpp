@@ -1,0 +1,57 @@
+#pragma once
+// The thread as a smooth curve: what touches, in place of a polygon whose corners would catch.
+
+#include <algorithm>
+#include <cstddef>
+
+#include "firmware/physics/rod/closest.hpp"
+#include "firmware/physics/rod/state.hpp"
+
+namespace ligature::physics::rod {
+
+/// Segment j of the quadratic B-spline of the nodes, which touches every chord in its middle and cuts the corners:
+///   P(s) = x_j + s e_j + 1/2 (1/2 - s)^2 k,  k = k_j for s < 1/2, k_{j+1} above,  k_i = e_i - e_{i-1} - rest_corner_i;
+/// an end of the thread has no corner. Position and tangent are continuous from segment to segment, so the normal of a
+/// contact turns smoothly as strands slide; between chords it jumps by the angle of a corner, and the force with it.
+/// An impulse still acts on the chord's two nodes, as if at the chord's s.
+struct SmoothSegment {
+  Vec x, e, before, after;  ///< node, chord, k_j and k_{j+1}, m
+
+  SmoothSegment(const State& state, std::size_t j) noexcept : x(state.x[j]), e(state.x[j + 1] - state.x[j]) {
+    if (j > 0) before = e - (x - state.x[j - 1]) - state.rest_corner[j];
+    if (j + 2 < state.x.size()) after = (state.x[j + 2] - state.x[j + 1]) - e - state.rest_corner[j + 1];
+  }
+  [[nodiscard]] Vec at(double s) const noexcept {
+    const double q = 0.5 - s;
+    return x + s * e + 0.5 * q * q * (s < 0.5 ? before : after);
+  }
+  /// dP / ds.
+  [[nodiscard]] Vec along(double s) const noexcept { return e + (s - 0.5) * (s < 0.5 ? before : after); }
+
+  /// How far the curve gets from its chord, m.
+  [[nodiscard]] double bulge() const noexcept {
+    const auto across2 = [&](Vec k) { return std::max(0.0, dot(k, k) - dot(k, e) * dot(k, e) / dot(e, e)); };
+    return 0.125 * std::sqrt(std::max(across2(before), across2(after)));
+  }
+};
+
+/// Closest points of two smooth segments, from those of their chords on: two steps of Gauss and Newton, which leave out
+/// the curvature. Good to a thousandth of a diameter (tests). About 200 operations.
+[[nodiscard]] inline Closest closest(const SmoothSegment& a, const SmoothSegment& b, Closest c) noexcept {
+  const auto step = [](double from, double by) { return std::clamp(from + by, 0.0, 1.0) - from; };
+  for (int k = 0; k < 2; ++k) {
+    const Vec da = a.along(c.s), db = b.along(c.t), r = b.at(c.t) - a.at(c.s);
+    const double aa = dot(da, da), bb = dot(db, db), ab = dot(da, db), ar = dot(da, r), br = dot(db, r);
+    const double det = aa * bb - ab * ab;
+    double ds = det > 1e-9 * aa * bb ? step(c.s, (ar * bb - br * ab) / det) : 0.0;
+    const double dt = step(c.t, (ds * ab - br) / bb);
+    ds = step(c.s, (dt * ab + ar) / aa);
+    c.s += ds;
+    c.t += dt;
+  }
+  c.between = b.at(c.t) - a.at(c.s);
+  c.distance2 = dot(c.between, c.between);
+  return c;
+}
+
+}  // namespace ligature::physics::rod
