@@ -12,6 +12,7 @@ constexpr double kTurn = 0.35;       // rad per node
 constexpr double kStartTurn = 0.5;   // the same for the shape a loose thread begins in
 constexpr double kBendLength = 0.4;  // of sqrt(EI / T)
 constexpr double kGrading = 0.2;
+constexpr double kCut = 0.5;  // of a segment, up to where its corners are cut
 constexpr double kRests_m_per_s = 1e-3;
 constexpr double kWorth = 1.5;  // a change must better the worst by this factor
 constexpr int kTries = 4;       // merges looked at for a change, so that a tangle costs no more than that
@@ -191,6 +192,10 @@ void Refine::merge(const Material& material, State& state, int node) noexcept {
     state.v[k] = (1.0 / (mass + half)) * (mass * state.v[k] + half * state.v[i]);
   }
   tension_[i - 1] = 0.5 * (tension_[i - 1] + tension_[i]);
+  state.cut_before[i - 1] *= 0.5;  // of the whole it is half as much
+  state.cut_after[i - 1] = 0.5 * state.cut_after[i];
+  close_slot(state.cut_before, i);
+  close_slot(state.cut_after, i);
   close_slot(tension_, i);
   close_slot(moment_, i);
   close_slot(corner_, i);
@@ -219,6 +224,10 @@ void Refine::split(const Material&, State& state, int segment) noexcept {
   insert(state.load, Vec{});
   insert(moment_, 0.5 * (moment_[j] + moment_[i]));
   insert(corner_, Vec{});
+  insert(state.cut_before, kCut);
+  insert(state.cut_after, std::min(1.0, 2.0 * state.cut_after[j]));
+  state.cut_before[j] = std::min(1.0, 2.0 * state.cut_before[j]);
+  state.cut_after[j] = kCut;
   insert(tension_, tension_[j]);
   insert(wanted_, wanted_[j]);
   insert(free_, char{1});
@@ -232,6 +241,9 @@ bool Refine::update(const Material& material, State& state, const Forces& forces
                     const std::vector<Body>& bodies, Work& work) noexcept {
   for (auto& q : state.rest_bend) q = kFade * q;
   for (auto& q : state.rest_corner) q = kFade * q;
+  for (auto* cuts : {&state.cut_before, &state.cut_after}) {
+    for (auto& h : *cuts) h = kCut + kFade * (h - kCut);
+  }
   for (auto& e : state.rest_strain) e *= kFade;
   want(material, state, forces, contacts);
   const std::size_t n = at_.size();
