@@ -17,7 +17,7 @@ std::string nodes_that_would(const scene::Scene& scene, const Measure& measure) 
 
 /// What to change. A rod may be solved with less work: the same thread, other figures (docs/accuracy.md).
 std::string remedies(scene::Scene scene, const Measure& measure) {
-  const std::string fewer = nodes_that_would(scene, measure);
+  std::string fewer = nodes_that_would(scene, measure);
   if (scene.suture.model != scene::Model::kRod || scene.suture.rod.accuracy == scene::Accuracy::kFast) return fewer;
   scene.suture.rod.accuracy = scene::Accuracy::kFast;
   if (measure(scene, kSearch_s / 4).fits()) return "suture.accuracy = \"fast\" would as it is; else " + fewer;
