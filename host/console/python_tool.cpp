@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 std::string find_python() {
   const char* chosen = getenv("LIGATURE_PYTHON");
-  const std::string python = chosen && *chosen ? chosen : LIGATURE_DEFAULT_PYTHON;
+  std::string python = chosen && *chosen ? chosen : LIGATURE_DEFAULT_PYTHON;
   if (access(python.c_str(), X_OK) == 0) return python;
   throw host::BadInput("no Python at " + python +
                        "; remedy: run scripts/setup, or set LIGATURE_PYTHON to one that has the packages of "
@@ -39,6 +39,7 @@ std::string find_script(const std::string& name, const fs::path& source_folder) 
 /// @return its exit code, 128 + n when signal n ended it.
 int wait_for(std::vector<std::string> words, const std::string& complaints) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (auto& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t redirect;

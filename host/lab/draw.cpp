@@ -9,6 +9,7 @@ namespace ligature::lab {
 void draw(const std::string& script, const std::vector<std::filesystem::path>& data,
           const std::filesystem::path& picture) {
   std::vector<std::string> words;
+  words.reserve(data.size() + 1);
   for (const auto& file : data) words.push_back(file.string());
   words.push_back(picture.string());
   const auto complain = [&](const std::exception& error) {
