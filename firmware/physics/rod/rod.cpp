@@ -34,7 +34,7 @@ Rod::Rod(const Material& material, const Numerics& numerics, const Parts& parts,
     state_.mesh.s[static_cast<std::size_t>(i)] = material.length_m * i / (n - 1);
     state_.x[static_cast<std::size_t>(i)] = make(state_.mesh.s[static_cast<std::size_t>(i)], 0, 0);
   }
-  if (parts.roll) spin_.reserve(n);
+  if (parts.frames()) spin_.reserve(n);
   if (parts.turning) contacts_.reserve_turning();
   if (parts.adaptive) parts_.adaptive = refine_.start(material, 2.0 * material.radius_m, state_);
   moved();
@@ -76,7 +76,7 @@ bool Rod::continue_from(const Rod& other) noexcept {
   state_ = other.state_;
   forces_ = other.forces_;
   twist_ = other.twist_;
-  if (parts_.roll && other.parts_.roll) spin_ = other.spin_;
+  if (parts_.frames() && other.parts_.frames()) spin_ = other.spin_;
   refine_ = other.refine_;
   report_ = other.report_;
   pace_m_per_s_ = other.pace_m_per_s_;
@@ -92,7 +92,7 @@ void Rod::spread(std::span<const double> curvature_per_m) {
 
 void Rod::moved() noexcept {
   mesh_changed();
-  if (parts_.roll) spin_.start(material_, state_);
+  if (parts_.frames()) spin_.start(material_, state_);
 }
 
 void Rod::mesh_changed() noexcept {
@@ -144,7 +144,7 @@ int Rod::grip(int node, double stiffness_N_per_m, double damping_N_s_per_m, Vec 
   const int h = add_hold(hold);
   if (h >= 0 && parts_.twist && holds_roll) {
     twist_.attach(state_, h);
-    if (parts_.roll) spin_.attach(state_, h);
+    if (parts_.frames()) spin_.attach(state_, h);
   }
   if (h >= 0 && directed) {
     Hold& held = state_.holds[static_cast<std::size_t>(h)];
@@ -173,7 +173,7 @@ void Rod::steer(int hold, Vec steer, Vec direction) noexcept {
 
 bool Rod::remesh() noexcept {
   if (!parts_.adaptive) return false;
-  if (parts_.roll) spin_.before_fading(state_, Refine::kFade);
+  if (parts_.frames()) spin_.before_fading(state_, Refine::kFade);
   if (!refine_.update(material_, state_, forces_, contacts_, bodies, work_)) return false;
   mesh_changed();
   remeshed_ = true;
@@ -213,9 +213,9 @@ void Rod::begin_tick(const HandSpeed& hands) noexcept {
   work_.start(numerics_.budget(state_.nodes(), fast));
   look_cost_ = rows_cost_ = 0;
   if (!mesh_held_) report_.remeshes += remesh();
-  if (parts_.roll) {
+  if (parts_.frames()) {
     twist_.carry(state_);
-    spin_.update(material_, state_, forces_, numerics_.tick_s, remeshed_);
+    spin_.update(material_, state_, forces_, numerics_.tick_s, remeshed_, !parts_.roll);
     remeshed_ = false;
   } else if (parts_.twist) {
     twist_.update(material_, state_, forces_);

@@ -10,7 +10,7 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32;
+constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32, kSet = 64;
 constexpr double kWild_m_per_s = 1e-3;  // change of a last pass above which velocities are not trusted
 constexpr int kLeastPasses = 3;         // rows that cannot have these are left out
 constexpr double kSkin = 0.5;           // diameters a list of pairs looks ahead at any speed
@@ -211,14 +211,16 @@ void Rod::move(double dt_s) noexcept {
 
 template <unsigned Bits>
 bool Rod::substep(double dt_s) noexcept {
+  constexpr unsigned kRest = Bits & ~kSet;  // what contact needs to know
   constexpr bool kTouches = (Bits & (kContact | kWorld)) != 0;
   if constexpr (kTouches) {
-    if (!look<Bits>(dt_s)) return false;
+    if (!look<kRest>(dt_s)) return false;
   }
+  if constexpr ((Bits & kSet) != 0) report_.set_J += spin_.yield(material_, state_);
   assemble<(Bits & kTwist) != 0>(material_, state_, gravity, dt_s, forces_, solver_);
-  if constexpr ((Bits & kRoll) != 0) spin_.assemble(material_, state_, forces_, dt_s);
+  if constexpr ((Bits & kRoll) != 0) spin_.assemble(material_, state_, dt_s);
   if (kTouches && !contacts_.contacts().empty()) {
-    if (!settle<Bits>(dt_s)) return false;
+    if (!settle<kRest>(dt_s)) return false;
   } else {
     const int first = (state_.nodes() - 2) / 2, last = first + 1;
     solver_.factor(first);
@@ -226,24 +228,27 @@ bool Rod::substep(double dt_s) noexcept {
     solver_.solve_outside(first, last, state_.v.data());
   }
   if constexpr ((Bits & kRoll) != 0) spin_.advance(material_, state_, forces_, dt_s);
-  move<Bits>(dt_s);
+  move<kRest>(dt_s);
   return true;
 }
 
 Rod::Substep Rod::pick(const Parts& parts) noexcept {
+  static constexpr unsigned kWith[] = {0,
+                                       kTwist,
+                                       kTwist | kSet,
+                                       kTwist | kRoll,
+                                       kTwist | kRoll | kSet,
+                                       kTwist | kRoll | kTurning,
+                                       kTwist | kRoll | kTurning | kSet};
   static constexpr auto kTable = []<std::size_t... I>(std::index_sequence<I...>) {
-    return std::array<Substep, sizeof...(I)>{&Rod::substep<I>...};
+    return std::array<Substep, sizeof...(I)>{&Rod::substep<2 * (I % 8) | kWith[I / 8]>...};
   }
-  (std::make_index_sequence<16>{});
-  const unsigned bits = (parts.contact ? kContact : 0) | (parts.friction ? kFriction : 0) | (parts.world ? kWorld : 0);
-  if (!parts.roll) return kTable[bits | (parts.twist ? kTwist : 0)];
-  static constexpr unsigned kSelf = kTwist | kRoll, kBoth = kTwist | kRoll | kTurning;
-  static constexpr auto kRolls = []<std::size_t... I>(std::index_sequence<I...>) {
-    return std::array<Substep, sizeof...(I)>{
-        &Rod::substep<(I & ~std::size_t{kTwist}) | ((I & kTwist) ? kBoth : kSelf)>...};
-  }
-  (std::make_index_sequence<16>{});
-  return kRolls[bits | (parts.turning ? kTwist : 0)];
+  (std::make_index_sequence<8 * std::size(kWith)>{});
+  static_assert(2 * 7 == (kContact | kFriction | kWorld));
+  const std::size_t touches = (parts.contact ? 1 : 0) | (parts.friction ? 2 : 0) | (parts.world ? 4 : 0);
+  const std::size_t set = parts.set ? 1 : 0;
+  const std::size_t with = parts.roll ? (parts.turning ? 5 : 3) + set : parts.set ? 2 : parts.twist ? 1 : 0;
+  return kTable[8 * with + touches];
 }
 
 }  // namespace ligature::physics::rod
