@@ -10,6 +10,8 @@ namespace ligature::physics::rod {
 
 namespace {
 
+constexpr double kClose = 2.0;  // near_m's: what is nearer than that is measured between smooth curves
+
 Contact contact_of(const Candidate& pair, const Closest& c, double distance, double mu) noexcept {
   Contact contact;
   contact.node[0] = pair.a, contact.node[1] = pair.a + 1, contact.node[2] = pair.b, contact.node[3] = pair.b + 1;
@@ -58,6 +60,7 @@ bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcep
   }
   if (price::kCheck * listed > work.left()) return false;
   work.spend(price::kCheck * listed);
+  long close = 0;
   for (const auto g : awake_) {
     for (std::int32_t k = groups[static_cast<std::size_t>(g)].first; k < groups[static_cast<std::size_t>(g)].last;
          ++k) {
@@ -67,10 +70,11 @@ bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcep
         pair.impulse = Vec{};
       } else {
         due_.push_back(k);
+        close += pair.due - motion.gone(a, b) < kClose * pair.near_m;
       }
     }
   }
-  const long cost = (price::kMeasure + price::kGuard) * static_cast<long>(due_.size());
+  const long cost = (price::kMeasure + price::kGuard) * static_cast<long>(due_.size()) + price::kSmooth * close;
   if (cost > work.left()) return false;
   work.spend(cost);
   return true;
@@ -101,7 +105,7 @@ bool ContactSet::measure(Candidate& pair, const State& state, const Motion& moti
   Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
   const double chord = std::sqrt(c.distance2);
   double distance = chord;
-  if (pair.bulge_m > 0.0 && chord - pair.bulge_m < pair.reach_m + 2.0 * pair.near_m) {
+  if (pair.bulge_m > 0.0 && chord - pair.bulge_m < pair.reach_m + kClose * pair.near_m) {
     c = closest(SmoothSegment(state, a), SmoothSegment(state, b), c);
     distance = std::sqrt(c.distance2);
   }
