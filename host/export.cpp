@@ -5,15 +5,15 @@
 #include <string_view>
 #include <vector>
 
+#include "host/console/progress.hpp"
+#include "host/console/stop_signal.hpp"
 #include "host/errors.hpp"
 #include "host/export_hdf5.hpp"
 #include "host/export_mcap.hpp"
 #include "host/flight_reader.hpp"
 #include "host/log_reader.hpp"
-#include "host/progress.hpp"
 #include "host/rig_facts.hpp"
 #include "host/session_tally.hpp"
-#include "host/stop_signal.hpp"
 #include "host/tick_order.hpp"
 
 namespace ligature::host {
@@ -154,11 +154,11 @@ ExportResult export_recording(const std::string& log_path, const ExportTargets& 
   if (is_flight_file(log_path)) return export_flight(log_path, targets);
   Exporter exporter(read_rig_facts(log_path), targets, log_path);
   LogReader log(log_path);
-  Progress progress("export");
+  console::Progress progress("export");
   while (const LogEvent* event = log.next()) {
     exporter.take(*event);
     progress.show(log.offset(), log.size());
-    if (stop_requested()) throw RunFailed("export stopped by a signal; nothing was written");
+    if (console::stop_requested()) throw RunFailed("export stopped by a signal; nothing was written");
   }
   if (!exporter.has_ticks())
     throw BadInput(log_path + ": holds no readable tick in " + std::to_string(log.events()) +

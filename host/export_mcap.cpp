@@ -1,8 +1,8 @@
 #include "host/export_mcap.hpp"
 
 #include "host/atomic_file.hpp"
+#include "host/console/python_tool.hpp"
 #include "host/export_hdf5.hpp"
-#include "host/python_tool.hpp"
 
 namespace ligature::host {
 namespace {
@@ -12,7 +12,7 @@ class McapSink final : public ExportSink {
  public:
   McapSink(const std::string& path, const RigFacts& facts, const std::string& source)
       : target_(AtomicFile(path).path()),  // made and gone again: it can be made
-        tool_("to_mcap.py"),
+        tool_("to_mcap.py", LIGATURE_PLOTS_DIR),
         gathered_(make_hdf5_sink(scratch_.file("recording.h5"), facts, source)) {}
 
   void add(const ligature_msg::tick_t& tick, double t_s, int session) override { gathered_->add(tick, t_s, session); }
@@ -28,8 +28,8 @@ class McapSink final : public ExportSink {
 
  private:
   std::string target_;
-  PythonTool tool_;
-  ScratchFolder scratch_;
+  console::PythonTool tool_;
+  console::ScratchFolder scratch_;
   std::unique_ptr<ExportSink> gathered_;
 };
 

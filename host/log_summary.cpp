@@ -2,10 +2,10 @@
 
 #include <limits>
 
+#include "host/console/progress.hpp"
+#include "host/console/stop_signal.hpp"
 #include "host/errors.hpp"
 #include "host/log_reader.hpp"
-#include "host/progress.hpp"
-#include "host/stop_signal.hpp"
 #include "host/thread_knot.hpp"
 
 namespace ligature::host {
@@ -95,11 +95,11 @@ double LogSummary::knot_first_s() const {
 LogSummary summarise(const std::string& log_path, double knot_every_s) {
   Summariser summariser(read_rig_facts(log_path), knot_every_s);
   LogReader log(log_path);
-  Progress progress("reading");
+  console::Progress progress("reading");
   while (const LogEvent* event = log.next()) {
     summariser.take(*event);
     progress.show(log.offset(), log.size());
-    if (stop_requested()) throw RunFailed("stopped by a signal");
+    if (console::stop_requested()) throw RunFailed("stopped by a signal");
   }
   summariser.finish();
   summariser.summary.damage = log.damage();

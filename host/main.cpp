@@ -6,8 +6,8 @@
 #include <string>
 
 #include "host/commands.hpp"
+#include "host/console/stop_signal.hpp"
 #include "host/errors.hpp"
-#include "host/stop_signal.hpp"
 #include "host/view/commands.hpp"
 
 namespace {
@@ -61,7 +61,8 @@ int main(int argc, char** argv) {
                         "', allowed record, export, plot, compare, report, knot, send, view, "
                         "replay",
                     2);
-  catch_stop_signals();
+  ligature::console::catch_stop_signals();
+  ligature::console::outlive_closed_pipes();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

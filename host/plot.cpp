@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "host/atomic_file.hpp"
+#include "host/console/python_tool.hpp"
 #include "host/errors.hpp"
 #include "host/export.hpp"
-#include "host/python_tool.hpp"
 #include "host/rig_facts.hpp"
 #include "host/text.hpp"
 
@@ -39,8 +39,8 @@ std::vector<std::string> table_of(const std::string& log_path, const std::string
 
 void plot(const std::string& log_path, const std::string& out_path, bool by_frame) {
   const std::string target = checked_target(out_path);
-  const PythonTool tool("plot_forces.py");
-  const ScratchFolder scratch;
+  const console::PythonTool tool("plot_forces.py", LIGATURE_PLOTS_DIR);
+  const console::ScratchFolder scratch;
   auto words = table_of(log_path, scratch.file("forces.csv"));
   words.insert(words.end(), {"--out", target});
   if (by_frame) words.emplace_back("--frames");
@@ -50,8 +50,8 @@ void plot(const std::string& log_path, const std::string& out_path, bool by_fram
 void plot_comparison(const std::string& log_a, const std::string& log_b, const std::string& out_path,
                      const std::string& align, double shift_s) {
   const std::string target = checked_target(out_path);
-  const PythonTool tool("plot_comparison.py");
-  const ScratchFolder scratch;
+  const console::PythonTool tool("plot_comparison.py", LIGATURE_PLOTS_DIR);
+  const console::ScratchFolder scratch;
   std::vector<std::string> words;
   for (const auto& [log, name] : {std::pair{log_a, "a.csv"}, std::pair{log_b, "b.csv"}}) {
     words.push_back(table_of(log, scratch.file(name))[0]);

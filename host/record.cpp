@@ -9,11 +9,11 @@
 #include <optional>
 
 #include "host/atomic_file.hpp"
+#include "host/console/stop_signal.hpp"
 #include "host/errors.hpp"
 #include "host/gap_filler.hpp"
 #include "host/live_tally.hpp"
 #include "host/log_writer.hpp"
-#include "host/stop_signal.hpp"
 #include "host/wall_clock.hpp"
 
 namespace ligature::host {
@@ -70,7 +70,7 @@ void record_until_stopped(LcmLink& link, const LiveTally& tally, const RecordOpt
   const auto start = Clock::now();
   auto filled = start;
   Progress progress(options.quiet, start);
-  for (auto now = start; !stop_requested(); now = Clock::now()) {
+  for (auto now = start; !console::stop_requested(); now = Clock::now()) {
     if (options.duration_s > 0.0 && seconds(now - start) >= options.duration_s) break;
     link.receive(50);
     if (now - filled >= kFillEvery) {

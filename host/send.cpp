@@ -3,9 +3,9 @@
 #include <chrono>
 #include <cstdio>
 
+#include "host/console/stop_signal.hpp"
 #include "host/errors.hpp"
 #include "host/lcm_link.hpp"
-#include "host/stop_signal.hpp"
 #include "host/wall_clock.hpp"
 
 namespace ligature::host {
@@ -58,7 +58,7 @@ void send(std::string_view word, const std::string& text, double value, const st
   });
   const auto start = Clock::now();
   link.publish(kCommandChannel, command);
-  for (auto sent = start; !answer && Clock::now() - start < patience && !stop_requested();) {
+  for (auto sent = start; !answer && Clock::now() - start < patience && !console::stop_requested();) {
     link.receive(50);
     if (!answer && *kind == Command::KIND_STOP && Clock::now() - sent >= kRepeatEvery) {
       link.publish(kCommandChannel, command);

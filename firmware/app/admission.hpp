@@ -2,6 +2,7 @@
 // Whether a scene's worst tick fits into the period, measured on the core that will run it, before anybody is armed.
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -29,8 +30,13 @@ struct Admission {
 [[nodiscard]] Admission admit(const scene::Scene& scene, double seconds, int core,
                               double budget_percent = kDefaultBudget_percent);
 
-/// The largest `nodes` of this scene that fits, by bisection, `seconds` in all; nothing when not even 2 do.
-[[nodiscard]] std::optional<int> largest_nodes(scene::Scene scene, double seconds, int core, double budget_percent);
+/// What a scene costs, found in so many seconds: admit() on one core, or a table of costs in a test.
+using Measure = std::function<Admission(const scene::Scene&, double seconds)>;
+[[nodiscard]] Measure measure_on(int core, double budget_percent);
+
+/// The largest `nodes` of this scene that fits, by bisection, about `seconds` in all, and measured again in the end;
+/// nothing when not even 2 do. Fewer nodes of a rod are longer segments, and much of its bound does not depend on them.
+[[nodiscard]] std::optional<int> largest_nodes(scene::Scene scene, double seconds, const Measure& measure);
 
 /// Phase by phase against the budget, a table of fixed width.
 [[nodiscard]] std::string table(const Admission& admission);

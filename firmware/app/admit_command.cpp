@@ -10,27 +10,29 @@ namespace {
 
 constexpr double kSearch_s = 2.0;
 
-/// A rod may be solved with less work: the same thread, other figures (docs/accuracy.md).
-bool fast_would_fit(scene::Scene scene, int core, double budget_percent) {
-  const bool has_less = scene.suture.model == scene::Model::kRod && scene.suture.rod.accuracy != scene::Accuracy::kFast;
-  if (!has_less) return false;
+std::string nodes_that_would(const scene::Scene& scene, const Measure& measure) {
+  const auto nodes = largest_nodes(scene, kSearch_s, measure);
+  return nodes ? "largest suture.nodes that would: " + std::to_string(*nodes) : "no suture.nodes would";
+}
+
+/// What to change. A rod may be solved with less work: the same thread, other figures (docs/accuracy.md).
+std::string remedies(scene::Scene scene, const Measure& measure) {
+  std::string fewer = nodes_that_would(scene, measure);
+  if (scene.suture.model != scene::Model::kRod || scene.suture.rod.accuracy == scene::Accuracy::kFast) return fewer;
   scene.suture.rod.accuracy = scene::Accuracy::kFast;
-  return admit(scene, kSearch_s / 4, core, budget_percent).fits();
+  if (measure(scene, kSearch_s / 4).fits()) return "suture.accuracy = \"fast\" would as it is; else " + fewer;
+  return fewer + "; with suture.accuracy = \"fast\": " + nodes_that_would(scene, measure);
 }
 
 }  // namespace
 
-std::optional<Refusal> objection_of(const Admission& admission, const scene::Scene& scene, int core) {
+std::optional<Refusal> objection_of(const Admission& admission, const scene::Scene& scene, const Measure& measure) {
   if (admission.fits()) return std::nullopt;
   char text[160];
   std::snprintf(text, sizeof text,
                 "the scene does not fit: found %.0f us of computing in the worst tick, allowed %.0f; ",
                 admission.computing_us(), std::min(admission.budget_us(), 1000.0 - admission.bus_us));
-  const auto nodes = largest_nodes(scene, kSearch_s, core, admission.budget_percent);
-  const std::string remedy =
-      nodes ? "largest suture.nodes that would: " + std::to_string(*nodes) : "no suture.nodes would";
-  const bool fast = fast_would_fit(scene, core, admission.budget_percent);
-  return Refusal{3, text + remedy + (fast ? "; as it is suture.accuracy = \"fast\" would" : "")};
+  return Refusal{3, text + remedies(scene, measure)};
 }
 
 int admit_scene(const AdmitOptions& options) {
@@ -43,10 +45,10 @@ int admit_scene(const AdmitOptions& options) {
     return refusal->exit_code;
   }
   const auto& scene = std::get<Plan>(planned).scene;
-  const int core = platform::realtime_core();
-  const Admission admission = admit(scene, options.seconds, core, options.budget_percent);
+  const Measure measure = measure_on(platform::realtime_core(), options.budget_percent);
+  const Admission admission = measure(scene, options.seconds);
   std::fputs(table(admission).c_str(), stdout);
-  const auto objection = objection_of(admission, scene, core);
+  const auto objection = objection_of(admission, scene, measure);
   if (!objection) {
     std::puts("admitted");
     return 0;

@@ -151,7 +151,8 @@ int run(const RunOptions& options) {
   const int core = platform::realtime_core();
   if (ask) platform::keep_off(core);
 
-  const auto excess = objection_of(admit(plan.scene, kAdmission_s, core, options.budget_percent), plan.scene, core);
+  const Measure measure = measure_on(core, options.budget_percent);
+  const auto excess = objection_of(measure(plan.scene, kAdmission_s), plan.scene, measure);
   if (excess && !options.force) return fail(*excess);
   if (excess) {
     spdlog::warn("--force: {}", excess->text);

@@ -132,7 +132,8 @@ std::variant<SceneDesk::Built, std::string> SceneDesk::build(Setup setup, bool k
   if (const auto* refusal = std::get_if<Refusal>(&planned)) return refusal->text;
   Plan& plan = std::get<Plan>(planned);
   if (const auto why = rehearse(plan.thread); !why.empty()) return why;
-  const auto excess = objection_of(admit(plan.scene, kAdmission_s, core_, options_.budget_percent), plan.scene, core_);
+  const Measure measure = measure_on(core_, options_.budget_percent);
+  const auto excess = objection_of(measure(plan.scene, kAdmission_s), plan.scene, measure);
   if (excess && !options_.force) return excess->text;
   setup.scene = plan.scene;
   if (!keeps_motion) setup.from_file = plan.scene;

@@ -213,9 +213,13 @@ std::vector<Check> check_can(const Machine& machine, const std::string& interfac
   if (!fs::exists(folder)) return {{Grade::kFail, "CAN", interface + ": no such interface", "ip link show type can"}};
   std::vector<Check> checks;
   const bool up = (std::strtoul(text_of(folder + "/flags").c_str(), nullptr, 16) & 1U) != 0;
-  checks.push_back(up ? good("CAN", interface + ": up")
-                      : Check{Grade::kFail, "CAN", interface + ": down", "ip link set " + interface + " up"});
   const std::string details = machine.ip_details(interface);
+  const bool off = details.find("state BUS-OFF") != std::string::npos;  // such an interface is still up
+  const std::string set = "ip link set " + interface;
+  checks.push_back(up && !off ? good("CAN", interface + ": up")
+                   : off      ? Check{Grade::kFail, "CAN", interface + ": bus-off",
+                                 "find the cause, then: " + set + " down && " + set + " up"}
+                              : Check{Grade::kFail, "CAN", interface + ": down", set + " up"});
   if (details.find("vcan") != std::string::npos) {
     checks.push_back(good("CAN bit rate", interface + ": virtual, has none"));
   } else {
@@ -224,15 +228,13 @@ std::vector<Check> check_can(const Machine& machine, const std::string& interfac
     found << interface << ": " << rate << " bit/s, sample point " << point;
     const bool fine = rate == 1e6 && point >= 0.75 && point <= 0.875;
     checks.push_back({fine ? Grade::kOk : Grade::kFail, "CAN bit rate", found.str(),
-                      fine ? ""
-                           : "ip link set " + interface + " down && ip link set " + interface +
-                                 " up type can bitrate 1000000 sample-point 0.8"});
+                      fine ? "" : set + " down && " + set + " up type can bitrate 1000000 sample-point 0.8"});
   }
   const std::string queue = text_of(folder + "/tx_queue_len");
-  checks.push_back(std::atol(queue.c_str()) >= 64
-                       ? good("CAN queue", interface + ": " + queue)
-                       : Check{Grade::kWarn, "CAN queue", interface + ": " + queue + ", wanted 64",
-                               "ip link set " + interface + " txqueuelen 64"});
+  checks.push_back(
+      std::atol(queue.c_str()) >= 64
+          ? good("CAN queue", interface + ": " + queue)
+          : Check{Grade::kWarn, "CAN queue", interface + ": " + queue + ", wanted 64", set + " txqueuelen 64"});
   checks.push_back(interrupts(machine.root, interface, core));
   return checks;
 }

@@ -4,11 +4,11 @@
 #include <cstdio>
 #include <iostream>
 
+#include "host/console/stop_signal.hpp"
 #include "host/lab/experiment_command.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/pareto_command.hpp"
 #include "host/lab/run_command.hpp"
-#include "host/lab/stop_signal.hpp"
 #include "host/lab/tie/tie_command.hpp"
 #include "host/lab/validate_command.hpp"
 
@@ -30,7 +30,7 @@ void complain(std::string text) {
 
 int main(int argc, char** argv) {
   using namespace ligature::lab;
-  watch_stop_signals();
+  ligature::console::catch_stop_signals();
   int exit_code = kDone;
   CLI::App app(kAbout, "ligature-lab");
   app.set_version_flag("--version", "ligature-lab " LIGATURE_VERSION);

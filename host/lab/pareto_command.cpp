@@ -7,13 +7,13 @@
 #include <map>
 #include <memory>
 
+#include "host/console/progress.hpp"
+#include "host/console/stop_signal.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/pareto/instructions.hpp"
 #include "host/lab/pareto/trials.hpp"
-#include "host/lab/progress.hpp"
 #include "host/lab/report.hpp"
 #include "host/lab/run_files.hpp"
-#include "host/lab/stop_signal.hpp"
 #include "protocol/scene/scene_file.hpp"
 
 namespace ligature::lab {
@@ -150,11 +150,11 @@ int run_one(const Arguments& a) {
 std::vector<Point> measure(const std::vector<Setting>& settings) {
   std::vector<Point> points;
   std::map<scene::Model, Traces> finest_of;
-  Progress progress;
+  console::Progress progress("pareto");
   for (std::size_t k = 0; k < settings.size(); ++k) {
     const auto& s = settings[k];
     progress.show(static_cast<double>(k) / static_cast<double>(settings.size()), s.text());
-    if (stop_requested()) throw Refusal("pareto: interrupted, nothing written", kRunFailed);
+    if (console::stop_requested()) throw Refusal("pareto: interrupted, nothing written", kRunFailed);
     if (!finest_of.contains(s.model)) finest_of[s.model] = run_trials(finest(s.model));
     const auto traces = run_trials(s);
     Point p{s, spread_of(traces.us), errors_of(s, traces, finest_of[s.model]), traces.penetration, traces.knot, {}};
@@ -164,18 +164,18 @@ std::vector<Point> measure(const std::vector<Setting>& settings) {
 }
 
 void count(std::vector<Point>& points) {
-  Progress progress;
+  console::Progress progress("pareto");
   bool there = true;
   double done = 0.0;
   for (auto& p : points) {
     progress.show(done++ / static_cast<double>(points.size()), "instructions, " + p.setting.text());
-    if (!there || stop_requested()) break;
+    if (!there || console::stop_requested()) break;
     if (!p.on_swing_front && !p.on_knot_front && p.setting.preset.empty()) continue;
     if (p.setting.nodes > 200) continue;  // minutes each
     p.instructions = count_instructions(p.setting, 250);
     there = p.instructions.has_value();
   }
-  if (!there && !stop_requested()) std::printf("no instruction counts: valgrind could not be run\n");
+  if (!there && !console::stop_requested()) std::printf("no instruction counts: valgrind could not be run\n");
 }
 
 int execute(const Arguments& a) {

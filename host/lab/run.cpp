@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "host/console/progress.hpp"
+#include "host/console/stop_signal.hpp"
 #include "host/lab/likely_cause.hpp"
-#include "host/lab/progress.hpp"
 #include "host/lab/run_files.hpp"
-#include "host/lab/stop_signal.hpp"
 #include "protocol/scene/scene_file.hpp"
 
 namespace ligature::lab {
@@ -70,7 +70,7 @@ void tally(RunSummary& s, const TraceRow& row) {
   s.right_N.add(row.right_N.norm());
 }
 
-void show(Progress& progress, const RunSummary& s, const Rehearsal& r, double duration_s) {
+void show(console::Progress& progress, const RunSummary& s, const Rehearsal& r, double duration_s) {
   std::ostringstream text;
   text.precision(4);
   text << r.time_s() << " of " << duration_s << " s, knot " << s.knot.type;
@@ -89,14 +89,14 @@ RunSummary run(Rehearsal& r, const RunOptions& options) {
   remove_old_outputs(options.folder);
   TraceFile trace(options.folder);
   ShapeFile shape(options.folder);
-  Progress progress;
+  console::Progress progress("run");
   Every shape_due(options.shape_every_s), knot_due(kKnotEvery_s);
   const auto ticks = static_cast<std::int64_t>(std::llround(options.duration_s / scene.time.tick_s));
   std::vector<double> step_us;
   shape.add(0.0, r.simulation().nodes_W());
   look_at_knot(s, r);
   bool shape_written = true;
-  while (r.ticks() < ticks && !stop_requested()) {
+  while (r.ticks() < ticks && !console::stop_requested()) {
     const bool good = r.tick();
     const auto row = row_of(r);
     if (!good || !row.is_finite()) {

@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "host/console/progress.hpp"
+#include "host/console/stop_signal.hpp"
 #include "host/lab/outcome.hpp"
-#include "host/lab/progress.hpp"
 #include "host/lab/report.hpp"
 #include "host/lab/run_files.hpp"
-#include "host/lab/stop_signal.hpp"
 #include "host/lab/validate/cases.hpp"
 #include "host/lab/validate/convergence.hpp"
 #include "protocol/scene/scene_file.hpp"
@@ -164,7 +164,7 @@ void write_files(const std::string& folder, const std::string& model, const std:
 int show_convergence(const std::string& out) {
   Table table({"quantity", "resolution", "error", "order"});
   {
-    Progress progress;
+    console::Progress progress("validate");
     progress.show(0.0, "six ladders");
     for (const auto& ladder : v::convergence()) {
       for (std::size_t k = 0; k < ladder.error.size(); ++k) {
@@ -193,7 +193,7 @@ int execute(const Arguments& a) {
   Table table({"case", "N", "worst figure", "reference", "measured", "error", "tolerance", "verdict"});
   int failed = 0, judged = 0;
   {
-    Progress progress;
+    console::Progress progress("validate");
     const auto cases = v::all_cases();
     double done = 0.0;
     const double whole = static_cast<double>(cases.size() * nodes.size());
@@ -202,7 +202,7 @@ int execute(const Arguments& a) {
         progress.show(done++ / whole, std::string(c.name) + ", N = " + std::to_string(n));
         if (!a.only.empty() && a.only != c.name) continue;
         if (a.quick && !c.quick) continue;
-        if (stop_requested()) throw Refusal("validate: interrupted", kRunFailed);
+        if (console::stop_requested()) throw Refusal("validate: interrupted", kRunFailed);
         if (c.only_nodes > 0 && n != nodes.front()) continue;
         Outcome o{&c, c.only_nodes > 0 ? c.only_nodes : n, c.is_modelled(model), {}};
         if (o.modelled) o.findings = c.examine({model, o.nodes, accuracy});

@@ -5,9 +5,9 @@
 #include <exception>
 #include <thread>
 
+#include "host/console/stop_signal.hpp"
 #include "host/errors.hpp"
 #include "host/lcm_link.hpp"
-#include "host/stop_signal.hpp"
 #include "host/view/command_desk.hpp"
 #include "host/view/knot_watch.hpp"
 #include "host/view/page_recorder.hpp"
@@ -56,7 +56,7 @@ void view_live(const ViewOptions& options) {
     return desk.request(page, message, CommandDesk::Clock::now());
   };
   const auto on_tick = [&](bool& more) {
-    more = !stop_requested() && !is_deaf;
+    more = !console::stop_requested() && !is_deaf;
     return desk.answers(CommandDesk::Clock::now());
   };
   Server server(options.server, access, picture, {on_message, on_tick});

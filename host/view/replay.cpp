@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "host/stop_signal.hpp"
+#include "host/console/stop_signal.hpp"
 #include "host/view/comparison.hpp"
 #include "host/view/knot_watch.hpp"
 #include "host/view/live.hpp"
@@ -38,7 +38,7 @@ void replay(const ReplayOptions& options) {
   bool has_marks = false;
   auto state = player.state();
   const auto on_tick = [&](bool& more) {
-    more = !stop_requested();
+    more = !console::stop_requested();
     const auto clock = Picture::Clock::now();
     player.advance(clock);
     comparison.follow(player.position_s(), clock);

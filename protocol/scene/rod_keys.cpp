@@ -45,6 +45,8 @@ void read_rod(StrictTable& t, RodParameters& rod, double& radius_m) {
   t.number("GJ_N_m2", rod.GJ_N_m2, coefficient);
   t.number("rest_curvature_per_m", rod.rest_curvature_per_m, {0.0, 1e6});
   t.number("rest_twist_per_m", rod.rest_twist_per_m, {-1e6, 1e6});
+  t.number("yield_strain", rod.yield_strain, {0.0, 1.0, true});
+  t.number("set_fraction", rod.set_fraction, {0.0, 1.0});
   t.number("damping_s", rod.damping_s, {0.0, 1e3});
   t.number("stretch_damping_s", rod.stretch_damping_s, {0.0, 1e3});
   t.choice("spacing", rod.spacing, kSpacings);

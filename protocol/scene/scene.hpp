@@ -51,14 +51,16 @@ enum class Accuracy : std::uint8_t { kFast, kBalanced, kFine };
 /// A rod's material, per length; suture.model = "rod". Keys of [suture] with these names; `preset` fills them in.
 struct RodParameters {
   double density_kg_per_m = 8e-5;
-  double EA_N = 71.0;                 ///< axial stiffness
-  double EI_N_m2 = 4e-7;              ///< bending stiffness
-  double GJ_N_m2 = 2.86e-7;           ///< twisting stiffness; 0: twist is not modelled
-  double rest_curvature_per_m = 0.0;  ///< of the thread without stress, about an axis that is fixed in its material
-  double rest_twist_per_m = 0.0;      ///< rad/m: that axis turns along the thread; with a curvature, a helix
-  double damping_s = 2e-3;            ///< Kelvin-Voigt time of bending
-  double stretch_damping_s = 5e-4;    ///< of stretch
-  double air_drag_per_s = 5.0;        ///< a = -c v
+  double EA_N = 71.0;                  ///< axial stiffness
+  double EI_N_m2 = 4e-7;               ///< bending stiffness
+  double GJ_N_m2 = 2.86e-7;            ///< twisting stiffness; 0: twist is not modelled
+  double rest_curvature_per_m = 0.0;   ///< of the thread without stress, about an axis that is fixed in its material
+  double rest_twist_per_m = 0.0;       ///< rad/m: that axis turns along the thread; with a curvature, a helix
+  std::optional<double> yield_strain;  ///< of the outer fibre, beyond which a bend stays; absent: never
+  double set_fraction = 0.5;           ///< share of the bending stiffness that gives way there
+  double damping_s = 2e-3;             ///< Kelvin-Voigt time of bending
+  double stretch_damping_s = 5e-4;     ///< of stretch
+  double air_drag_per_s = 5.0;         ///< a = -c v
   Spacing spacing = Spacing::kAdaptive;
   Accuracy accuracy = Accuracy::kBalanced;
 };

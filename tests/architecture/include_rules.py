@@ -29,11 +29,12 @@ RULES = {
     "firmware/app": (["firmware", "protocol", "ligature_msg"], ["CLI/", "spdlog/", "OS"]),
     "sim_device": (["protocol/can", "protocol/scene", "protocol/device"], ["ruckig/", "Eigen/", "CLI/", "spdlog/", "nlohmann/", "OS"]),
     "host/knot": ([], ["Eigen/"]),
+    "host/console": (["host/errors.hpp"], ["OS"]),
     "host/lab/tie": (["firmware/physics", "sim_device", "protocol/scene", "host"], ["CLI/", "Eigen/", "OS"]),
-    "host/lab": (["firmware/physics", "firmware/rt", "protocol/scene", "sim_device/operator", "host/knot", "host/lab/tie"], ["CLI/", "nlohmann/", "Eigen/", "OS"]),
+    "host/lab": (["firmware/physics", "firmware/rt", "protocol/scene", "sim_device/operator", "host/console", "host/errors.hpp", "host/knot", "host/lab/tie"], ["CLI/", "nlohmann/", "Eigen/", "OS"]),
     # The whole rig in one process and in virtual time: it is made of everything, and only the lab's rig may be.
     "host/lab/rig": (["firmware", "sim_device", "protocol/can", "protocol/scene", "protocol/device", "host", "ligature_msg"], ["Eigen/", "OS"]),
-    "host": (["protocol/scene", "protocol/recorder", "protocol/lcm", "host/knot", "host/view", "ligature_msg"], ["lcm/", "CLI/", "nlohmann/", "spdlog/", "OS"]),
+    "host": (["protocol/scene", "protocol/recorder", "protocol/lcm", "host/console", "host/knot", "host/view", "ligature_msg"], ["lcm/", "CLI/", "nlohmann/", "spdlog/", "OS"]),
     "host/view": (["host", "protocol/scene", "ligature_msg"], ["boost/", "CLI/", "nlohmann/", "OS"]),
 }
 

@@ -38,15 +38,16 @@ def arguments():
     parser.add_argument("--icount", type=int, metavar="N", help="virtual time: an instruction takes 2^N ns, waiting takes none; one CPU")
     parser.add_argument("--cpus", type=int, default=1, help="without --icount")
     parser.add_argument("--isolate", action="store_true", help="keep the last CPU free: isolcpus, nohz_full, rcu_nocbs")
+    parser.add_argument("--disk", type=pathlib.Path, help="file that the guest has as /dev/vda, with ext4 to mount it")
     parser.add_argument("--memory-mb", type=int, default=1024)
     parser.add_argument("--timeout", type=int, default=300, help="seconds of this machine's time")
     parser.add_argument("command", nargs="+")
     return parser.parse_args()
 
 
-def first_files(folder, command):
+def first_files(folder, names, command):
     files = {"bin/busybox": BUSYBOX.read_bytes(), "init": (HERE / "init").read_bytes()}
-    for i, module in enumerate(kernel.modules(folder)):
+    for i, module in enumerate(kernel.modules(folder, names)):
         files[f"modules/{i:02}-{module.name}"] = module.read_bytes()
     known = "".join(f"export {k}={shlex.quote(v)}\n" for k, v in os.environ.items()
                     if k in ("PATH", "HOME", "LANG") or k.startswith("LIGATURE_"))
@@ -63,8 +64,9 @@ def machine(options, folder, initrd):
         time_base = ["-accel", "tcg,thread=multi", "-smp", str(options.cpus)]
     else:
         time_base = ["-accel", "tcg,thread=single", "-smp", "1", "-icount", f"shift={options.icount},sleep=off"]
+    disk = ["-drive", f"file={options.disk.resolve()},format=raw,if=none,id=disk", "-device", "virtio-blk-pci,drive=disk"] if options.disk else []
     return [QEMU, "-nodefaults", "-no-user-config", "-no-reboot", "-display", "none", "-nic", "none",
-            "-machine", "pc,hpet=off,vmport=off,usb=off", "-cpu", "max", "-m", str(options.memory_mb), *time_base,
+            "-machine", "pc,hpet=off,vmport=off,usb=off", "-cpu", "max", "-m", str(options.memory_mb), *time_base, *disk,
             "-kernel", str(folder / "vmlinux"), "-initrd", str(initrd), "-append", line,
             "-chardev", f"file,id=console,path={options.out / 'console.log'}", "-serial", "chardev:console",
             "-device", "virtio-serial-pci,max_ports=4", "-chardev", "stdio,id=out,signal=off",
@@ -95,7 +97,7 @@ def run(options):
     cache = ROOT / "build/hil/kernel"
     folder = kernel.fetch(cache)
     initrd = options.out / "initrd"
-    initrd.write_bytes(first_files(folder, options.command))
+    initrd.write_bytes(first_files(folder, kernel.MODULES + (kernel.OF_A_DISK if options.disk else ()), options.command))
     began = time.monotonic()
     with open(options.out / "output.log", "wb") as log, open(options.out / "qemu.log", "wb") as complaints:
         qemu = subprocess.Popen(machine(options, folder, initrd), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=complaints,

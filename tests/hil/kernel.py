@@ -11,7 +11,8 @@ import sys
 XZ_MAGIC = b"\xfd7zXZ\x00"
 # What the guest needs, in no order; what these need is found in the modules themselves.
 MODULES = ("virtio_pci", "virtio_console", "virtio-rng", "9pnet_virtio", "9p", "overlay",
-           "can", "can-raw", "can-bcm", "vcan", "kvaser_pci")
+           "can", "can-raw", "can-bcm", "vcan", "kvaser_pci", "slcan")
+OF_A_DISK = ("virtio_blk", "crc32c_generic", "ext4")
 
 
 def package():
@@ -24,10 +25,10 @@ def package():
 
 
 def fetch(cache):
-    """@return the folder with boot/ and lib/modules/ of the kernel; the package is downloaded once, a newer one only when
-    that folder is removed."""
+    """@return the folder with boot/ and lib/modules/ of the kernel; the package is downloaded once, anew only when that
+    folder is removed or a module is wanted that was not kept."""
     here = sorted(mark.parent for mark in cache.glob("*/complete"))
-    if here:
+    if here and complete(here[-1]):
         return here[-1]
     name = package()
     folder = cache / name
@@ -41,7 +42,7 @@ def fetch(cache):
     subprocess.run(["dpkg-deb", "-x", archive.name, "."], cwd=folder, check=True)
     archive.unlink()
     unpack(next((folder / "boot").glob("vmlinuz-*")), folder / "vmlinux")
-    needed = set(modules(folder))  # of 400 MB
+    needed = set(modules(folder, MODULES + OF_A_DISK))  # of 400 MB
     for module in folder.rglob("*.ko"):
         if module not in needed:
             module.unlink()
@@ -66,8 +67,16 @@ def needs(module):
     return [n for n in data[at:data.index(b"\0", at)].decode().split(",") if n]
 
 
-def modules(folder):
-    """Files of MODULES and all they need, in an order in which they can be loaded."""
+def complete(folder):
+    try:
+        modules(folder, MODULES + OF_A_DISK)
+    except RuntimeError:
+        return False
+    return True
+
+
+def modules(folder, names=MODULES):
+    """Files of modules and all they need, in an order in which they can be loaded."""
     found = {f.stem.replace("-", "_"): f for f in pathlib.Path(folder, "lib/modules").rglob("*.ko")}
     order = []
 
@@ -81,7 +90,7 @@ def modules(folder):
             add(other)
         order.append(file)
 
-    for name in MODULES:
+    for name in names:
         add(name)
     return order
 

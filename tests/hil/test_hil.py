@@ -27,6 +27,7 @@ OUT = pathlib.Path(os.environ.get("LIGATURE_HIL_OUT", ROOT / "build/hil"))
 WATCHDOG_TICKS = 20
 LOST, MISSED = 1, 2
 IDLE, ENGAGE, FORCE, FAULT = 2, 3, 4, 6
+ERROR_FRAME, BUS_OFF = 0x20000000, 0x20000040  # linux/can/error.h
 PAGE = ROOT / "docs/fault-matrix-guest.md"
 PAGE_HEAD = """# Fault matrix, guest
 
@@ -38,6 +39,7 @@ recorder, from the one in which the blow is on the bus; from the fault on no rec
 | what happens | stated | seen |
 |---|---|---|
 """
+DISK_BYTES = 128 << 20
 LONGEST_S = 2000  # of this machine's time, when others load it; alone a scenario takes one to three minutes
 
 
@@ -66,10 +68,10 @@ def guest(name, *options, timeout=LONGEST_S):
 VIRTUAL = ("--icount", "0")
 
 
-def ticks_of(folder):
-    """The flight recorder as a list of rows."""
-    made = folder / "ticks.csv"
-    subprocess.run([BIN / "ligature-host", "export", folder / "flight.rec", "--ticks", made], check=True, capture_output=True, timeout=120)
+def ticks_of(folder, recorded="flight.rec"):
+    """The flight recorder, or what it saved at a fault, as a list of rows."""
+    made = folder / f"{recorded}.csv"
+    subprocess.run([BIN / "ligature-host", "export", folder / recorded, "--ticks", made], check=True, capture_output=True, timeout=120)
     with open(made) as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     return [{k: float(v) if "." in v or "e" in v else int(v) for k, v in row.items()} for row in rows]
@@ -79,10 +81,13 @@ def pushes(row):
     return any(row[f"{hand}_torque_{joint}_permille"] for hand in ("left", "right") for joint in (1, 2, 3))
 
 
-def wire_of(folder):
-    """candump's log: (interface, identifier, data) in order."""
+def wire_of(folder, by_time=False):
+    """candump's log: (interface, identifier, data) in its order, which is that of each bus, or of the kernel's time stamps."""
     line_of = re.compile(r"\((\d+\.\d+)\) +(\S+) ([0-9A-F]+)#([0-9A-F]*)")
-    return [(m[2], int(m[3], 16), bytes.fromhex(m[4])) for m in map(line_of.match, (folder / "can.log").read_text().splitlines()) if m]
+    lines = [m for m in map(line_of.match, (folder / "can.log").read_text().splitlines()) if m]
+    if by_time:
+        lines.sort(key=lambda m: float(m[1]))
+    return [(m[2], int(m[3], 16), bytes.fromhex(m[4])) for m in lines]
 
 
 class Guest(unittest.TestCase):
@@ -128,11 +133,12 @@ class Blows(Scenario):
         self.rows[self._testMethodName] = (self._testMethodDoc.strip().splitlines()[0].rstrip("."), stated, seen)
         print(f"  {self._testMethodName[5:]}: {seen}; stated: {stated}", flush=True)
 
-    def read(self, name):
-        folder = self.folder / name
+    def read(self, name, ours="vcan0", other="vcan1"):
+        """@param ours, other the controller's interfaces, left and right."""
+        folder = self.of_run = self.folder / name
         wire = wire_of(folder)
-        left = [f for f in wire if f[0] != "vcan1"]
-        right = [f for f in wire if f[0] == "vcan1"]
+        left = [f for f in wire if f[0] == ours]
+        right = [f for f in wire if f[0] == other]
         rows = ticks_of(folder)
         self.every_tick_is_there(rows)
         return rows, left, right
@@ -142,6 +148,12 @@ class Blows(Scenario):
         """The tick that had begun when frame number `position` was on the bus; a lost period sends no SYNC."""
         executed = [r["tick"] for r in rows if not r["flags"] & LOST]
         return executed[sum(f[1] == 0x080 for f in frames[:position + 1]) - 1]
+
+    @staticmethod
+    def sync_of(rows, frames, tick, interface):
+        """Position of the SYNC that began a tick, on an interface that carried all of them."""
+        executed = [r["tick"] for r in rows if not r["flags"] & LOST]
+        return [i for i, f in enumerate(frames) if f[0] == interface and f[1] == 0x080][executed.index(tick)]
 
     @staticmethod
     def position(frames, identifier, data=None):
@@ -170,6 +182,9 @@ class Blows(Scenario):
         self.assertIn(first["tick"] - at, within)
         for row in rows[first["tick"]:]:
             self.assertEqual((row["fault"], row["state"], pushes(row)), (first["fault"], FAULT, False))
+        saved, = self.of_run.glob(f"*.fault-{first['fault']}.1")
+        self.assertEqual([r["tick"] for r in ticks_of(self.of_run, saved.name)], list(range(max(0, first["tick"] - 1999), first["tick"] + 1)),
+                         "two seconds of ticks up to the fault, in a file of their own")
         for frames in (left, right):
             self.assertEqual(set(self.torque_on_the_wire(rows, frames, first["tick"])) - {0}, set(), "torque on the wire after the fault")
 
@@ -249,23 +264,58 @@ class OtherBlows:
     def test_an_interface_that_goes_down_under_the_sja1000_driver(self):
         """Interface down under the SJA1000 driver.
         Its queue stops first; the news comes when the driver has closed it, or the watchdog is faster."""
-        rows, left, right = self.read("sja1000-pulled")
+        rows, left, right = self.read("sja1000-pulled", "can0")
         last = max(i for i, f in enumerate(left) if f[1] == 0x080)
         self.ends_in((10, 11), rows, left, right, self.tick_before(rows, left, last), range(WATCHDOG_TICKS + 2))
 
     def test_force_comes_back_by_order_only(self):
         """The same interface up again after 0.2 s, 0.5 s later `reset-fault`, 0.5 s later `arm`."""
-        rows, _, _ = self.read("sja1000-pulled-and-back")
+        rows, _, _ = self.read("sja1000-pulled-and-back", "can0")
+        self.comes_back_by_order(rows, 600)
+
+    def comes_back_by_order(self, rows, at_least):
+        """@return the tick in which the order to arm was obeyed."""
         faulted = [r["tick"] for r in rows if r["state"] == FAULT]
-        self.assertGreater(len(faulted), 600, "0.2 s without a bus, 0.5 s with one: it stays a fault")
+        self.assertGreater(len(faulted), at_least, "without a bus, then 0.5 s with one: it stays a fault")
         self.assertEqual(faulted, list(range(faulted[0], faulted[-1] + 1)))
         after = rows[faulted[-1] + 1:]
         disarmed = after[:next(i for i, r in enumerate(after) if r["state"] == ENGAGE)]
         self.assertGreater(sum(r["state"] == IDLE for r in disarmed), 300, "enabled again after the reset, but not armed")
         self.assertFalse(any(pushes(r) for r in disarmed))
-        self.assertTrue(any(r["state"] == FORCE for r in after), "the order to arm brings it back")
+        self.assertTrue(any(r["state"] == FORCE and pushes(r) for r in after), "the order to arm brings it back")
         self.row("FAULT until `reset-fault`, no torque until `arm`, then force again",
                  f"{len(faulted)} ticks in FAULT, {len(disarmed)} without torque after the reset")
+        return disarmed[-1]["tick"] + 1
+
+    def slcan(self):
+        """The rig whose left controller goes bus-off: rows, frames on its interface, on the right one, and on all of them."""
+        return *self.read("slcan-bus-off", "slcan0", "wire1"), wire_of(self.folder / "slcan-bus-off", by_time=True)
+
+    def test_bus_off_of_a_controller_with_error_counters(self):
+        """Bus-off of a controller with error counters (slcan): state of its interface, no carrier.
+        Its driver takes it off the bus by the kernel's own can_bus_off()."""
+        rows, left, right, wire = self.slcan()
+        logs = [(self.folder / f"slcan-bus-off/slcan-{when}.log").read_text() for when in ("before", "after")]
+        for log, state, flags in zip(logs, ("ERROR-ACTIVE", "BUS-OFF"), ("<NOARP,UP,LOWER_UP>", "<NO-CARRIER,NOARP,UP>"), strict=True):
+            self.assertIn(f"can state {state} ", log)
+            self.assertIn(flags, log)
+        at = self.position(left, BUS_OFF)
+        until_reset = rows[:1 + max(r["tick"] for r in rows if r["state"] == FAULT)]
+        self.ends_in((10,), until_reset, left[:at], right[:self.sync_of(rows, right, len(until_reset), "wire1")], self.tick_before(rows, left, at), (0, 1))
+        told = {f[1] for f in wire if f[0] == "wire0" and 0x081 <= f[1] <= 0x083 and f[2][:2] == bytes.fromhex("5082")}
+        self.assertEqual(told, {0x081, 0x082, 0x083}, "EMCY 0x8250: the drives took the torque by themselves, too")
+
+    def test_bus_off_of_such_a_controller_is_over_by_order_only(self):
+        """The same controller back by itself after 0.2 s, its interface down and up after 0.4 s, 0.5 s later `reset-fault`, 0.5 s later `arm`."""
+        rows, left, right, wire = self.slcan()
+        armed = self.comes_back_by_order(rows, 800)
+        ours = left[self.position(left, BUS_OFF) + 1:]
+        self.assertTrue([f for f in ours if f[1] & ERROR_FRAME], "the driver tells that it is error active again")
+        self.assertGreater(sum(f[1] == 0x080 for f in ours), 800, "SYNC goes out again, and RPDOs")
+        first = next(r["tick"] for r in rows if r["fault"] != 0)
+        began, ended = (self.sync_of(rows, wire, tick, "wire1") for tick in (first, armed))
+        torques = {int.from_bytes(f[2][2:4], "little", signed=True) for f in wire[began:ended] if 0x201 <= f[1] <= 0x203}
+        self.assertEqual(torques, {0}, "on any bus, from the fault to the order")
 
 
 class Overhand(Deadlines, Scenario):
@@ -319,6 +369,24 @@ class Canopen(Guest):
         self.every_tick_is_there(rows)
         self.assertEqual({r["fault"] for r in rows}, {0, 12})
         self.assertEqual(sum(r["flags"] & (LOST | MISSED) != 0 for r in rows), 0)
+
+
+class Power(Guest):
+    def test_a_power_cut_takes_less_than_a_second(self):
+        disk = OUT / "disk.ext4"
+        OUT.mkdir(parents=True, exist_ok=True)
+        with open(disk, "wb") as made:
+            made.truncate(DISK_BYTES)
+        cut, code = guest("power_cut", *VIRTUAL, "--disk", str(disk))
+        self.assertEqual(code, 0)
+        back, code = guest("power_back", *VIRTUAL, "--disk", str(disk))
+        self.assertEqual(code, 0)
+        written, synced = ticks_of(cut / "power-cut"), ticks_of(back / "power-back")
+        self.assertEqual((written[-1]["state"], pushes(written[-1])), (FORCE, True), "the cut must find the rig in force")
+        self.assertEqual(synced, written[:len(synced)], "what is there is what was")
+        lost = len(written) - len(synced)
+        print(f"  {len(written)} ticks written, the last {lost} lost with the power", flush=True)
+        self.assertLess(lost, 1000)
 
 
 class Machine(Guest):

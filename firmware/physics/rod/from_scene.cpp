@@ -26,6 +26,8 @@ Material material_of(const scene::Scene& scene) noexcept {
   m.static_friction = scene.contact.static_friction.value_or(0.0);
   m.born_curvature_per_m = r.rest_curvature_per_m;
   m.born_twist_per_m = r.rest_twist_per_m;
+  m.yield_curvature_per_m = r.yield_strain.value_or(0.0) / m.radius_m;  // strain of the outer fibre: radius x curvature
+  m.set_fraction = r.set_fraction;
   return m;
 }
 
@@ -108,6 +110,7 @@ Parts parts_of(const scene::Scene& scene) noexcept {
   p.turning = p.twist && p.friction && scene.contact.turns_thread;
   p.roll = p.twist &&
            (p.turning || scene.suture.rod.rest_curvature_per_m != 0.0 || scene.suture.rod.rest_twist_per_m != 0.0);
+  p.set = p.twist && material_of(scene).sets();
   p.adaptive = scene.suture.rod.spacing == scene::Spacing::kAdaptive;
   return p;
 }
@@ -121,6 +124,7 @@ std::variant<Rod, std::string> rod_of(const scene::Scene& scene) {
     if (scene.suture.rod.rest_curvature_per_m != 0.0)
       return "suture.rest_curvature_per_m: needs suture.GJ_N_m2 above 0";
     if (scene.suture.rod.rest_twist_per_m != 0.0) return "suture.rest_twist_per_m: needs suture.GJ_N_m2 above 0";
+    if (scene.suture.rod.yield_strain) return "suture.yield_strain: needs suture.GJ_N_m2 above 0";
     if (scene.contact.turns_thread) return "contact.turns_thread: needs suture.GJ_N_m2 above 0";
   }
   const int bodies = static_cast<int>(scene.world.pegs.size()) + 2;

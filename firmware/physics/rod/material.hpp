@@ -13,11 +13,17 @@ struct Material {
   double GJ_N_m2 = 2.86e-7;     ///< twisting stiffness C
   double stretch_tau_s = 5e-4;  ///< Kelvin-Voigt time: damping force = tau x stiffness x rate
   double bend_tau_s = 2e-3;
-  double drag_per_s = 5.0;            ///< air: a = -c v
-  double friction = 0.3;              ///< Coulomb coefficient of what slides
-  double static_friction = 0.0;       ///< of what sticks; the same as friction when that is more
-  double born_curvature_per_m = 0.0;  ///< of the stress-free thread, about a material axis (spin.hpp)
-  double born_twist_per_m = 0.0;      ///< of its material frame, rad/m
+  double drag_per_s = 5.0;             ///< air: a = -c v
+  double friction = 0.3;               ///< Coulomb coefficient of what slides
+  double static_friction = 0.0;        ///< of what sticks; the same as friction when that is more
+  double born_curvature_per_m = 0.0;   ///< of the stress-free thread, about a material axis (spin.hpp)
+  double born_twist_per_m = 0.0;       ///< of its material frame, rad/m
+  double yield_curvature_per_m = 0.0;  ///< beyond which bends set (spin_set.cpp), 2 x yield strain / diameter; 0: never
+  double set_fraction = 0.0;           ///< share of the bending stiffness that gives way there
+
+  [[nodiscard]] constexpr bool sets() const noexcept { return yield_curvature_per_m > 0.0 && set_fraction > 0.0; }
+  /// Is there a stress-free shape that is not straight?
+  [[nodiscard]] constexpr bool has_shape() const noexcept { return born_curvature_per_m != 0.0 || sets(); }
 };
 
 /// How a tick is cut and how hard contacts are solved. Every field is a trade of time for accuracy (docs/rod.md).

@@ -7,9 +7,10 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr int kWindow = 1024;      // nodes on which contacts can be solved together
-constexpr double kRelax_s = 0.02;  // in which a pulled thread comes to rest when the hands do
-constexpr double kNear = 0.1;      // diameters within which a pair is a contact at any speed
+constexpr int kWindow = 1024;        // nodes on which contacts can be solved together
+constexpr double kRelax_s = 0.02;    // in which a pulled thread comes to rest when the hands do
+constexpr double kMostStrain = 6.0;  // see Rod::settled
+constexpr double kNear = 0.1;        // diameters within which a pair is a contact at any speed
 
 }  // namespace
 
@@ -33,7 +34,7 @@ Rod::Rod(const Material& material, const Numerics& numerics, const Parts& parts,
     state_.mesh.s[static_cast<std::size_t>(i)] = material.length_m * i / (n - 1);
     state_.x[static_cast<std::size_t>(i)] = make(state_.mesh.s[static_cast<std::size_t>(i)], 0, 0);
   }
-  if (parts.roll) spin_.reserve(n);
+  if (parts.frames()) spin_.reserve(n);
   if (parts.turning) contacts_.reserve_turning();
   if (parts.adaptive) parts_.adaptive = refine_.start(material, 2.0 * material.radius_m, state_);
   moved();
@@ -64,6 +65,7 @@ Rod& Rod::operator=(const Rod& other) {
   near_m_ = other.near_m_;
   pace_m_per_s_ = other.pace_m_per_s_;
   labours_ = other.labours_;
+  strain_ = other.strain_;
   solver_.resize(state_.nodes());
   metric_.invalidate();
   stale_ = true;
@@ -75,10 +77,11 @@ bool Rod::continue_from(const Rod& other) noexcept {
   state_ = other.state_;
   forces_ = other.forces_;
   twist_ = other.twist_;
-  if (parts_.roll && other.parts_.roll) spin_ = other.spin_;
+  if (parts_.frames() && other.parts_.frames()) spin_ = other.spin_;
   refine_ = other.refine_;
   report_ = other.report_;
   pace_m_per_s_ = other.pace_m_per_s_;
+  strain_ = other.strain_;
   mesh_changed();
   return true;
 }
@@ -90,7 +93,7 @@ void Rod::spread(std::span<const double> curvature_per_m) {
 
 void Rod::moved() noexcept {
   mesh_changed();
-  if (parts_.roll) spin_.start(material_, state_);
+  if (parts_.frames()) spin_.start(material_, state_);
 }
 
 void Rod::mesh_changed() noexcept {
@@ -142,7 +145,7 @@ int Rod::grip(int node, double stiffness_N_per_m, double damping_N_s_per_m, Vec 
   const int h = add_hold(hold);
   if (h >= 0 && parts_.twist && holds_roll) {
     twist_.attach(state_, h);
-    if (parts_.roll) spin_.attach(state_, h);
+    if (parts_.frames()) spin_.attach(state_, h);
   }
   if (h >= 0 && directed) {
     Hold& held = state_.holds[static_cast<std::size_t>(h)];
@@ -171,7 +174,7 @@ void Rod::steer(int hold, Vec steer, Vec direction) noexcept {
 
 bool Rod::remesh() noexcept {
   if (!parts_.adaptive) return false;
-  if (parts_.roll) spin_.before_fading(state_, Refine::kFade);
+  if (parts_.frames()) spin_.before_fading(state_, Refine::kFade);
   if (!refine_.update(material_, state_, forces_, contacts_, bodies, work_)) return false;
   mesh_changed();
   remeshed_ = true;
@@ -206,20 +209,20 @@ Rod::HandSpeed Rod::set_hands(const std::array<Vec, kMaxHolds>& goals, std::arra
 
 void Rod::begin_tick(const HandSpeed& hands) noexcept {
   constexpr double kTired = 0.9, kRested = 0.25;
-  strained_ = report_.cut_short > 0;
   labours_ = solves_directly() &&
              static_cast<double>(report_.work) >
                  (labours_ ? kRested : kTired) * static_cast<double>(numerics_.budget(state_.nodes(), false));
   const bool moved = report_.passes > 0;
   const double dt_before = numerics_.tick_s / std::max(1, report_.substeps);
+  strain_ = report_.cut_short > 0 ? std::min(kMostStrain, 1.5 * strain_) : std::max(1.0, 0.9 * strain_);
   report_ = TickReport{};
   const bool fast = hands.fastest > 1.001 * numerics_.fast_m_per_s;
   work_.start(numerics_.budget(state_.nodes(), fast));
   look_cost_ = rows_cost_ = 0;
   if (!mesh_held_) report_.remeshes += remesh();
-  if (parts_.roll) {
+  if (parts_.frames()) {
     twist_.carry(state_);
-    spin_.update(material_, state_, forces_, numerics_.tick_s, remeshed_);
+    spin_.update(material_, state_, forces_, numerics_.tick_s, remeshed_, !parts_.roll);
     remeshed_ = false;
   } else if (parts_.twist) {
     twist_.update(material_, state_, forces_);
@@ -239,13 +242,13 @@ void Rod::begin_tick(const HandSpeed& hands) noexcept {
   }
 }
 
-void Rod::feel_hands() noexcept {
+void Rod::feel_hands(double ahead_s) noexcept {
   for (int h = 0; h < state_.hold_count; ++h) {
     Hold& hold = state_.holds[static_cast<std::size_t>(h)];
     if (hold.node < 0 || hold.rigid) continue;
     const auto i = static_cast<std::size_t>(hold.node);
-    hold.force =
-        hold.stiffness_N_per_m * (state_.x[i] - hold.target) + hold.damping_N_s_per_m * (state_.v[i] - hold.velocity);
+    hold.force = hold.stiffness_N_per_m * (state_.x[i] + ahead_s * state_.v[i] - hold.target) +
+                 hold.damping_N_s_per_m * (state_.v[i] - hold.velocity);
   }
 }
 
@@ -261,6 +264,7 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
       state_.holds[at].target = starts[at] + share * (goals[at] - starts[at]);
     }
     substep_index_ = k;
+    braked_ = false;
     moving = moving && (this->*substep_)(dt);
     if (!moving) report_.time_lost += 1.0 / report_.substeps;
   }
@@ -268,7 +272,7 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
     for (auto& v : state_.v) v = 0.5 * v;
   }
   report_.work = work_.used();
-  feel_hands();
+  if (!braked_) feel_hands(0.0);
 }
 
 }  // namespace ligature::physics::rod

@@ -22,6 +22,10 @@ struct Parts {
   bool adaptive = false;  ///< nodes move along the thread to where they are needed
   bool roll = false;      ///< every segment rolls by itself (spin.hpp): needs twist
   bool turning = false;   ///< friction turns the thread: needs roll and friction
+  bool set = false;       ///< sharp bends stay (spin_set.cpp): needs twist
+
+  /// Does every segment have a frame of its own? With `roll` they turn in every substep, else once a tick.
+  [[nodiscard]] constexpr bool frames() const noexcept { return roll || set; }
 };
 
 /// What a tick did. Plain values.
@@ -29,6 +33,8 @@ struct TickReport {
   int substeps = 0, passes = 0, contacts = 0, guard_events = 0, broad_phases = 0, remeshes = 0;
   double min_gap_m = 1e9;  ///< smallest thread-thread gap in any substep; negative: overlap
   long work = 0;           ///< spent on contact, of Numerics::budget()
+
+  double set_J = 0.0;  ///< lost in bends that set
 
   // What was given up, in this order.
   int cut_short = 0;       ///< substeps whose contacts used up their passes before they settled
@@ -59,9 +65,9 @@ class Rod {
   [[nodiscard]] Numerics& numerics() noexcept { return numerics_; }
   [[nodiscard]] Twist& twist() noexcept { return twist_; }
   [[nodiscard]] const Twist& twist() const noexcept { return twist_; }
-  [[nodiscard]] const Spin& spin() const noexcept { return spin_; }  ///< with Parts::roll
+  [[nodiscard]] const Spin& spin() const noexcept { return spin_; }  ///< with Parts::frames()
   [[nodiscard]] double twist_energy_J() const noexcept {
-    return parts_.roll ? spin_.energy_J(material_, state_) : twist_.energy_J();
+    return parts_.frames() ? spin_.energy_J(material_, state_) : twist_.energy_J();
   }
   [[nodiscard]] const Forces& forces() const noexcept { return forces_; }
   [[nodiscard]] const ContactSet& contact_set() const noexcept { return contacts_; }
@@ -136,7 +142,8 @@ class Rod {
   };
   HandSpeed set_hands(const std::array<Vec, kMaxHolds>& goals, std::array<Vec, kMaxHolds>& starts) noexcept;
   void begin_tick(const HandSpeed& hands) noexcept;
-  void feel_hands() noexcept;
+  /// Forces on the hands where the thread will be in `ahead_s`.
+  void feel_hands(double ahead_s) noexcept;
   int add_hold(const Hold& hold) noexcept;
 
   Material material_;
@@ -158,7 +165,8 @@ class Rod {
   long list_cost_ = 0;                  // of the last list
   double metric_dt_ = 0.0;
   double pace_m_per_s_ = 0.0;  // of the hands from the middle between them, fading once they stop
-  bool strained_ = false;      // the last tick's work did not do for all its passes
+  double strain_ = 1.0;        // how much less a pass need settle, since ticks' work did not do for all passes
+  bool braked_ = false;        // the last substep was slowed; what hands felt is known
   int waits_ = 0;              // ticks in which the contacts of the next substep did not settle before the work ran out
   bool labours_ = false;       // the work hardly did for the last tick, so this one has fewer substeps
   bool letting_go_ = false;    // a hold let go just before this tick

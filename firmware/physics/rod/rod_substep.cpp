@@ -10,7 +10,7 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32;
+constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32, kSet = 64;
 constexpr double kWild_m_per_s = 1e-3;  // change of a last pass above which velocities are not trusted
 constexpr int kPatience = 2;            // ticks in which a substep may wait for its contacts to settle
 constexpr int kLeastPasses = 3;         // rows that cannot have these are left out; one where they are solved directly
@@ -106,12 +106,12 @@ void Rod::prepare_metric(double dt_s) noexcept {
 }
 
 // A pass that changes no velocity by more is the last. In the tick of a release the thread is faster than any hand; one
-// that hardly moves must not creep by what a pass leaves over. A jam that had to go without passes gets by with less
-// settled ones: that much in every substep is better than all of it in some, with none left for the others.
+// that hardly moves must not creep by what a pass leaves over. A jam that has to go without passes gets by with less
+// settled ones, by and by: that much in every substep is better than all of it in some, with none left for the others.
 double Rod::settled() const noexcept {
-  constexpr double kStrained = 3.0, kLetGo = 0.15, kCreep = 0.1, kStill_m_per_s = 1e-6;
+  constexpr double kLetGo = 0.15, kCreep = 0.1, kStill_m_per_s = 1e-6;
   const double fastest = motion_.fastest(), speed = std::max(pace_m_per_s_, letting_go_ ? kLetGo * fastest : 0.0);
-  const double settled = numerics_.settled_m_per_s + (strained_ ? kStrained : 1.0) * numerics_.settled_share * speed;
+  const double settled = numerics_.settled_m_per_s + strain_ * numerics_.settled_share * speed;
   return std::min(settled, std::max(kStill_m_per_s, kCreep * fastest));
 }
 
@@ -145,8 +145,9 @@ bool Rod::settle(double dt_s) noexcept {
     if constexpr (!kTurns) {
       if (solves_directly() && waits_ < kPatience)
         outcome = contacts_.settle_directly<kRubs>(solver_, *effort, state_.v.data(), seen_);
-      if (solves_directly() && outcome == Outcome::kNoRoom && substep_index_ > 0) {
+      if (solves_directly() && outcome == Outcome::kNoRoom && (substep_index_ > 0 || 4 * seen_.work > effort->work)) {
         outcome = Outcome::kLater;
+        waits_ = kPatience - 1;
         contacts_.undo(state_.v.data());
       }
       waits_ = outcome == Outcome::kLater ? waits_ + 1 : 0;
@@ -190,10 +191,13 @@ double Rod::guard_unseen(double dt_s) noexcept {
                   motion_.share_within(ahead_m, horizon_s_, dt_s));
 }
 
-// Velocities that never settled must not press a jam ever tighter: the thread is as slow as it may move.
+// Velocities that never settled must not press a jam ever tighter: the thread is as slow as it may move. Hands feel
+// what was solved for: their damping would take the slowing for a blow.
 double Rod::brake(double dt_s) noexcept {
   const double share = contacts_.unsettled_fraction(state_.v.data(), dt_s);
   if (share < 1.0) {
+    feel_hands(dt_s);
+    braked_ = true;
     for (auto& v : state_.v) v = share * v;
   }
   return share;
@@ -229,14 +233,16 @@ void Rod::move(double dt_s) noexcept {
 
 template <unsigned Bits>
 bool Rod::substep(double dt_s) noexcept {
+  constexpr unsigned kRest = Bits & ~kSet;  // what contact needs to know
   constexpr bool kTouches = (Bits & (kContact | kWorld)) != 0;
   if constexpr (kTouches) {
-    if (!look<Bits>(dt_s)) return false;
+    if (!look<kRest>(dt_s)) return false;
   }
+  if constexpr ((Bits & kSet) != 0) report_.set_J += spin_.yield(material_, state_);
   assemble<(Bits & kTwist) != 0>(material_, state_, gravity, dt_s, forces_, solver_);
-  if constexpr ((Bits & kRoll) != 0) spin_.assemble(material_, state_, forces_, dt_s);
+  if constexpr ((Bits & kRoll) != 0) spin_.assemble(material_, state_, dt_s);
   if (kTouches && !contacts_.contacts().empty()) {
-    if (!settle<Bits>(dt_s)) return false;
+    if (!settle<kRest>(dt_s)) return false;
   } else {
     const int first = (state_.nodes() - 2) / 2, last = first + 1;
     solver_.factor(first);
@@ -244,24 +250,27 @@ bool Rod::substep(double dt_s) noexcept {
     solver_.solve_outside(first, last, state_.v.data());
   }
   if constexpr ((Bits & kRoll) != 0) spin_.advance(material_, state_, forces_, dt_s);
-  move<Bits>(dt_s);
+  move<kRest>(dt_s);
   return true;
 }
 
 Rod::Substep Rod::pick(const Parts& parts) noexcept {
+  static constexpr unsigned kWith[] = {0,
+                                       kTwist,
+                                       kTwist | kSet,
+                                       kTwist | kRoll,
+                                       kTwist | kRoll | kSet,
+                                       kTwist | kRoll | kTurning,
+                                       kTwist | kRoll | kTurning | kSet};
   static constexpr auto kTable = []<std::size_t... I>(std::index_sequence<I...>) {
-    return std::array<Substep, sizeof...(I)>{&Rod::substep<I>...};
+    return std::array<Substep, sizeof...(I)>{&Rod::substep<2 * (I % 8) | kWith[I / 8]>...};
   }
-  (std::make_index_sequence<16>{});
-  const unsigned bits = (parts.contact ? kContact : 0) | (parts.friction ? kFriction : 0) | (parts.world ? kWorld : 0);
-  if (!parts.roll) return kTable[bits | (parts.twist ? kTwist : 0)];
-  static constexpr unsigned kSelf = kTwist | kRoll, kBoth = kTwist | kRoll | kTurning;
-  static constexpr auto kRolls = []<std::size_t... I>(std::index_sequence<I...>) {
-    return std::array<Substep, sizeof...(I)>{
-        &Rod::substep<(I & ~std::size_t{kTwist}) | ((I & kTwist) ? kBoth : kSelf)>...};
-  }
-  (std::make_index_sequence<16>{});
-  return kRolls[bits | (parts.turning ? kTwist : 0)];
+  (std::make_index_sequence<8 * std::size(kWith)>{});
+  static_assert(2 * 7 == (kContact | kFriction | kWorld));
+  const std::size_t touches = (parts.contact ? 1 : 0) | (parts.friction ? 2 : 0) | (parts.world ? 4 : 0);
+  const std::size_t set = parts.set ? 1 : 0;
+  const std::size_t with = parts.roll ? (parts.turning ? 5 : 3) + set : parts.set ? 2 : parts.twist ? 1 : 0;
+  return kTable[8 * with + touches];
 }
 
 }  // namespace ligature::physics::rod

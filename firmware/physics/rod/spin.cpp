@@ -35,10 +35,11 @@ double Spin::out_of_vertex(const Material& m, const State& state, std::size_t i)
   return i == 0 ? 0.0 : into_vertex(m, state, i);
 }
 
-void Spin::assemble(const Material& m, const State& state, const Forces& forces, double dt_s) noexcept {
+void Spin::assemble(const Material& m, const State& state, double dt_s) noexcept {
   const Mesh& mesh = state.mesh;
   const std::size_t edges = state.x.size() - 1;
   const double implicit = dt_s * (dt_s + m.bend_tau_s);
+  const bool shaped = m.has_shape();
   double into = out_of_vertex(m, state, 0);
   for (std::size_t j = 0; j < edges; ++j) {
     const double next = into_vertex(m, state, j + 1);
@@ -54,10 +55,12 @@ void Spin::assemble(const Material& m, const State& state, const Forces& forces,
     const double k = held_[i] ? 0.0 : implicit * m.GJ_N_m2 / share_of_vertex(mesh, i);
     off_[i - 1] = -k;
     diag_[i - 1] += k, diag_[i] += k;
-    if (m.born_curvature_per_m == 0.0) continue;
-    const Vec q = mesh.weight[i] * (forces.tangent[i] - forces.tangent[i - 1] - state.rest_bend[i]);
+    if (!shaped) continue;
+    const Vec bend =
+        mesh.inv_rest[i] * (state.x[i + 1] - state.x[i]) - mesh.inv_rest[i - 1] * (state.x[i] - state.x[i - 1]);
+    const Vec q = mesh.weight[i] * (bend - state.rest_bend[i]);
     const double turn = 0.5 * dt_s * dot(q, across_[i]),
-                 stiff = 0.5 * implicit * mesh.weight[i] * dot(born_0_[i], born_0_[i]);
+                 stiff = 0.5 * implicit * mesh.weight[i] * dot(across_[i], across_[i]);
     rhs_[i - 1] += turn, rhs_[i] += turn;
     diag_[i - 1] += stiff, diag_[i] += stiff;
   }
@@ -130,7 +133,7 @@ void Spin::advance(const Material& material, State& state, Forces& forces, doubl
     if (held_[j + 1]) before_[j + 1] += dt_s * drift_before_[j + 1];
   }
   give_moments(material, state, forces);
-  if (material.born_curvature_per_m != 0.0) turn_born(state);
+  if (material.has_shape()) turn_born(material, state, dt_s);
 }
 
 double Spin::energy_J(const Material& m, const State& state) const noexcept {
@@ -149,6 +152,8 @@ double Spin::energy_J(const Material& m, const State& state) const noexcept {
     }
   }
   for (std::size_t j = 0; j < edges; ++j) sum += 0.5 * inertia(m, state.mesh.rest[j]) * rate_[j] * rate_[j];
+  const double locked = 0.5 * m.set_fraction * (1.0 - m.set_fraction);  // in bends that set
+  for (std::size_t i = 1; locked > 0.0 && i < edges; ++i) sum += locked * state.mesh.weight[i] * dot(set_[i], set_[i]);
   return sum;
 }
 

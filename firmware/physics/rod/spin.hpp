@@ -17,7 +17,7 @@ namespace ligature::physics::rod {
 /// with the thread's own inertia]. A thread born with curvature k about a material axis is at rest where
 ///   t_i - t_{i-1} = 2 sin(k l_i / 2) d_i,   d_i the mean director of the vertex,
 /// which turns it by k l_i Q_i . (t_i x d_i), Q_i the bending moment. Implicit Euler in w (tridiagonal); the mesh's
-/// tangents are followed once a tick.
+/// tangents are followed once a tick. Bends that set add to what the thread was born with (spin_set.cpp).
 class Spin {
  public:
   void reserve(int nodes);
@@ -32,11 +32,19 @@ class Spin {
   /// Once a tick: directors follow the tangents (and nodes that moved along the thread), angles and moments are
   /// measured.
   /// @param remeshed  State::rest_bend was set anew, the born part included.
+  /// @param once  the segments roll here, for the whole tick, and not in its substeps: without contacts that turn them
+  /// and births that do, roll is as quick as twist, and that crosses the thread within a tick.
   /// What a hold was turned since the last tick, it turns evenly in this one.
-  void update(const Material& material, State& state, Forces& forces, double tick_s, bool remeshed) noexcept;
+  void update(const Material& material, State& state, Forces& forces, double tick_s, bool remeshed,
+              bool once = false) noexcept;
+
+  /// A substep's flow of the bends that set, at the positions of now. @return energy dissipated, J.
+  double yield(const Material& material, State& state) noexcept;
+  /// Back bend of a vertex, as a change of t: the stress-free bend is set_fraction of it.
+  [[nodiscard]] Vec set(int vertex) const noexcept { return set_[static_cast<std::size_t>(vertex)]; }
 
   /// Matrix and right-hand side of a substep; solves for the rates without contacts.
-  void assemble(const Material& material, const State& state, const Forces& forces, double dt_s) noexcept;
+  void assemble(const Material& material, const State& state, double dt_s) noexcept;
   /// Rates with the torque impulses noted since assemble(); then everything turns for dt_s.
   void advance(const Material& material, State& state, Forces& forces, double dt_s) noexcept;
 
@@ -63,7 +71,11 @@ class Spin {
   [[nodiscard]] double into_vertex(const Material& m, const State& state, std::size_t i) const noexcept;
   [[nodiscard]] double out_of_vertex(const Material& m, const State& state, std::size_t i) const noexcept;
   void bear(const Material& material, State& state, bool keep_rest) noexcept;
-  void turn_born(State& state) noexcept;
+  void turn_born(const Material& material, State& state, double dt_s) noexcept;
+  [[nodiscard]] Vec shape_of(const Material& material, std::size_t i) noexcept;
+  void set_to_material() noexcept;
+  void set_to_world(const Material& material, const Mesh& mesh) noexcept;
+  void resample_set(double length_m) noexcept;
   void eliminate() noexcept;
   void solve(const std::vector<double>& b) noexcept;
   /// Length of thread that belongs to a vertex with two segments.
@@ -78,12 +90,17 @@ class Spin {
       after_;  // angles at vertex i: free: before_ = m_i; held: to and from the hold's director
   std::vector<double> drift_before_, drift_after_;  // what the turning of a hold adds to them, rad/s
   std::vector<char> held_, was_held_;
-  std::vector<Vec> born_, born_0_, across_;  // born bend now and when the tick began; t_i x d_i times its size
-  std::vector<double> torque_;               // impulse on each segment since assemble()
+  std::vector<Vec> normal_, binormal_;  // d_i and t_i x d_i of the vertices
+  std::vector<Vec> born_, across_;      // stress-free bend, and where it goes when the thread rolls
+  std::vector<double> born_size_;       // its part along d_i that the thread was born with
+  std::vector<Vec> set_;                // z_i: in the world during a tick; along d_i, t_i x d_i between ticks
+  std::vector<double> limit2_;          // squared bend beyond which it moves
+  std::vector<double> torque_;          // impulse on each segment since assemble()
   std::vector<double> diag_, off_, rhs_, down_, up_, answer_, saved_rate_, saved_torque_;
   // Scratch of resample(): frames by the old mesh.
   std::vector<Vec> old_director_, old_tangent_;
   std::vector<double> old_rate_, old_middle_m_;
+  std::vector<Vec> old_set_;
 };
 
 }  // namespace ligature::physics::rod

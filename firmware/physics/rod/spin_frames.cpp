@@ -26,11 +26,12 @@ Vec edge(const State& state, std::size_t j) noexcept { return unit(state.x[j + 1
 
 void Spin::reserve(int nodes) {
   const auto n = static_cast<std::size_t>(nodes);
-  for (auto* array : {&director_, &tangent_, &born_, &born_0_, &across_, &old_director_, &old_tangent_})
-    array->assign(n, Vec{});
   for (auto* array :
-       {&rate_, &rolled_, &middle_m_, &before_, &after_, &torque_, &diag_, &off_, &rhs_, &down_, &up_, &answer_,
-        &saved_rate_, &saved_torque_, &drift_before_, &drift_after_, &old_rate_, &old_middle_m_})
+       {&director_, &tangent_, &normal_, &binormal_, &born_, &across_, &set_, &old_director_, &old_tangent_, &old_set_})
+    array->assign(n, Vec{});
+  for (auto* array : {&rate_,         &rolled_,      &middle_m_,  &before_, &after_,    &torque_,      &diag_,
+                      &off_,          &rhs_,         &down_,      &up_,     &answer_,   &saved_rate_,  &saved_torque_,
+                      &drift_before_, &drift_after_, &born_size_, &limit2_, &old_rate_, &old_middle_m_})
     array->assign(n, 0.0);
   held_.assign(n, 0);
   was_held_.assign(n, 0);
@@ -50,8 +51,8 @@ void Spin::start(const Material& material, State& state) noexcept {
   }
   for (int h = 0; h < state.hold_count; ++h)
     if (state.holds[static_cast<std::size_t>(h)].holds_roll) attach(state, h);
-  std::fill(born_.begin(), born_.end(), Vec{});
-  if (material.born_curvature_per_m != 0.0) bear(material, state, false);
+  for (auto* array : {&born_, &set_}) std::fill(array->begin(), array->end(), Vec{});
+  if (material.has_shape()) bear(material, state, false);
 }
 
 void Spin::attach(State& state, int hold) const noexcept {
@@ -101,15 +102,22 @@ void Spin::follow(const State& state) noexcept {
   }
 }
 
-void Spin::update(const Material& material, State& state, Forces& forces, double tick_s, bool remeshed) noexcept {
+void Spin::update(const Material& material, State& state, Forces& forces, double tick_s, bool remeshed,
+                  bool once) noexcept {
   const std::size_t edges = state.x.size() - 1;
+  if (material.sets()) set_to_material();
   for (std::size_t j = 0; j < edges; ++j)
     director_[j] = rolled(director_[j], tangent_[j], rolled_[j]), rolled_[j] = 0.0;
-  if (remeshed) resample(state);
+  if (remeshed) {
+    resample(state);
+    if (material.sets()) resample_set(state.mesh.s[edges]);
+  }
   follow(state);
   measure(state, tick_s, remeshed);
-  give_moments(material, state, forces);
-  if (material.born_curvature_per_m != 0.0) bear(material, state, remeshed);
+  if (material.has_shape()) bear(material, state, remeshed);
+  if (!once) return give_moments(material, state, forces);
+  assemble(material, state, tick_s);
+  advance(material, state, forces, tick_s);
 }
 
 void Spin::measure(const State& state, double tick_s, bool remeshed) noexcept {
@@ -149,21 +157,36 @@ void Spin::bear(const Material& material, State& state, bool keep_rest) noexcept
   const std::size_t edges = state.x.size() - 1;
   for (std::size_t i = 1; i < edges; ++i) {
     const Vec t = unit(tangent_[i - 1] + tangent_[i]), sum = director_[i - 1] + director_[i];
-    const Vec d = unit(sum - dot(sum, t) * t);
-    const double size = 2.0 * std::sin(0.5 * material.born_curvature_per_m * share_of_vertex(state.mesh, i));
-    const Vec born = size * d;
+    normal_[i] = unit(sum - dot(sum, t) * t);
+    binormal_[i] = cross(t, normal_[i]);
+    born_size_[i] = 2.0 * std::sin(0.5 * material.born_curvature_per_m * share_of_vertex(state.mesh, i));
+  }
+  if (material.sets()) set_to_world(material, state.mesh);
+  for (std::size_t i = 1; i < edges; ++i) {
+    const Vec born = shape_of(material, i);
     if (!keep_rest) state.rest_bend[i] += born - born_[i];
-    born_[i] = born_0_[i] = born;
-    across_[i] = size * cross(t, d);
+    born_[i] = born;
   }
 }
 
-// The same for what was rolled within the tick.
-void Spin::turn_born(State& state) noexcept {
+Vec Spin::shape_of(const Material& material, std::size_t i) noexcept {
+  const Vec set = material.set_fraction * set_[i];
+  const double along = born_size_[i] + dot(set, normal_[i]), aside = dot(set, binormal_[i]);
+  across_[i] = along * binormal_[i] - aside * normal_[i];
+  return along * normal_[i] + aside * binormal_[i];
+}
+
+// The same for what was rolled in dt_s.
+void Spin::turn_born(const Material& material, State& state, double dt_s) noexcept {
   const std::size_t edges = state.x.size() - 1;
   for (std::size_t i = 1; i < edges; ++i) {
-    const double a = 0.5 * (rolled_[i - 1] + rolled_[i]);
-    const Vec born = (1.0 - 0.5 * a * a) * born_0_[i] + a * across_[i];
+    const double a = 0.25 * dt_s * (rate_[i - 1] + rate_[i]);  // tangent of half the angle, next to
+    const double sine = 2.0 * a / (1.0 + a * a), cosine = 1.0 - a * sine;
+    const Vec d = normal_[i], b = binormal_[i];
+    normal_[i] = cosine * d + sine * b;
+    binormal_[i] = cosine * b - sine * d;
+    if (material.sets()) set_[i] = dot(set_[i], d) * normal_[i] + dot(set_[i], b) * binormal_[i];
+    const Vec born = shape_of(material, i);
     state.rest_bend[i] += born - born_[i];
     born_[i] = born;
   }

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/console/progress.hpp"
 #include "host/lab/experiments/experiment.hpp"
-#include "host/lab/progress.hpp"
 #include "host/lab/rehearsal.hpp"
 #include "host/lab/report.hpp"
 #include "host/lab/statistics.hpp"
@@ -62,7 +62,7 @@ int experiment_cost(const Bench& bench) {
   double free_100 = 0.0, free_1000 = 0.0;
   bool finite = true;
   {
-    Progress progress;
+    console::Progress progress("cost");
     for (const int n : kNodes) {
       scene.suture.nodes = n;
       scene.time.tick_s = n <= 50 ? 1e-3 : 1e-3 * std::pow(50.0 / n, 2);

@@ -4,11 +4,11 @@
 #include <functional>
 #include <limits>
 
+#include "host/console/progress.hpp"
 #include "host/lab/experiments/experiment.hpp"
 #include "host/lab/experiments/extremes.hpp"
 #include "host/lab/likely_cause.hpp"
 #include "host/lab/outcome.hpp"
-#include "host/lab/progress.hpp"
 #include "host/lab/rehearsal.hpp"
 #include "host/lab/report.hpp"
 
@@ -131,7 +131,7 @@ namespace {
 ExtremesMap paper_extremes(const fs::path& scenes) {
   const auto base = load_scene_or_refuse((scenes / "paper.toml").string(), {});
   ExtremesMap result;
-  Progress progress;
+  console::Progress progress("extremes");
   const auto all = dials();
   for (std::size_t k = 0; k < all.size(); ++k) {
     for (int decade = all[k].low; decade <= all[k].high; ++decade) {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "host/console/progress.hpp"
 #include "host/lab/experiments/extremes.hpp"
-#include "host/lab/progress.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -123,7 +123,7 @@ ExtremesMap rod_extremes(const std::filesystem::path& scenes) {
   const auto base = load_scene_or_refuse((scenes / "suture-3-0.toml").string(), {});
   const auto knot = load_scene_or_refuse((scenes / "suture-3-0-knot.toml").string(), {});
   ExtremesMap result;
-  Progress progress;
+  console::Progress progress("extremes, rod");
   const auto all = dials();
   for (std::size_t k = 0; k < all.size(); ++k) {
     for (int decade = all[k].low; decade <= all[k].high; decade += 2) {

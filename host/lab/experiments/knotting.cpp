@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "host/console/progress.hpp"
 #include "host/lab/experiments/experiment.hpp"
-#include "host/lab/progress.hpp"
 #include "host/lab/rehearsal.hpp"
 #include "host/lab/report.hpp"
 #include "host/lab/run_files.hpp"
@@ -73,7 +73,7 @@ int experiment_knotting(const Bench& bench) {
   Verdict verdict("knotting");
   CsvFile shapes(bench.out / "knotting-shapes.csv", "script,t_s,node,x_m,y_m,z_m");
   {
-    Progress progress;
+    console::Progress progress("knotting");
     double number = 0.0;
     for (const auto& c : kCases) {
       const auto script =

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <iterator>
 
+#include "host/console/progress.hpp"
+#include "host/console/stop_signal.hpp"
 #include "host/lab/experiments/experiment.hpp"
 #include "host/lab/outcome.hpp"
-#include "host/lab/progress.hpp"
 #include "host/lab/rehearsal.hpp"
 #include "host/lab/report.hpp"
-#include "host/lab/stop_signal.hpp"
 #include "protocol/scene/scene_file.hpp"
 
 namespace ligature::lab {
@@ -40,7 +40,7 @@ bool survives(scene::Scene scene, double dt_s) {
 double largest_step(const scene::Scene& scene, double low, double high) {
   if (survives(scene, high)) return high;
   if (!survives(scene, low)) return low;
-  while (high / low > 1.02 && !stop_requested()) {
+  while (high / low > 1.02 && !console::stop_requested()) {
     const double middle = std::sqrt(low * high);
     (survives(scene, middle) ? low : high) = middle;
   }
@@ -76,7 +76,7 @@ scene::Scene scene_for(scene::Scene s, scene::Model model, int nodes) {
 }
 
 /// The paper's explicit scheme, model by model, beside the reference.
-double add_explicit(const scene::Scene& base, const Reference& ref, Table& table, Progress& progress) {
+double add_explicit(const scene::Scene& base, const Reference& ref, Table& table, console::Progress& progress) {
   const bool forward = ref.integrator == scene::Integrator::kForward;
   double worst = 0.0;
   for (std::size_t m = 0; m < kModels.size(); ++m) {
@@ -101,7 +101,7 @@ double add_explicit(const scene::Scene& base, const Reference& ref, Table& table
 }
 
 /// What Ligature runs by default: dampers implicit. Returns the smallest margin over 1 ms at N = 20, 35, 50.
-double add_default(const scene::Scene& base, Table& table, Progress& progress) {
+double add_default(const scene::Scene& base, Table& table, console::Progress& progress) {
   double margin = 1e9;
   for (const auto model : kModels) {
     std::vector<Cell> row{std::string(scene::name(model)), std::string("semi-implicit, implicit (default)")};
@@ -125,7 +125,7 @@ int experiment_stability(const Bench& bench) {
   Verdict verdict("stability");
   double margin = 0.0, semi = 0.0, forward = 0.0;
   {
-    Progress progress;
+    console::Progress progress("stability");
     margin = add_default(base, table, progress);
     semi = add_explicit(base, kReferences[0], table, progress);
     forward = add_explicit(base, kReferences[1], table, progress);

@@ -2,12 +2,12 @@
 
 #include <cmath>
 
+#include "host/console/progress.hpp"
+#include "host/console/stop_signal.hpp"
 #include "host/lab/experiments/experiment.hpp"
 #include "host/lab/outcome.hpp"
-#include "host/lab/progress.hpp"
 #include "host/lab/report.hpp"
 #include "host/lab/run_files.hpp"
-#include "host/lab/stop_signal.hpp"
 #include "host/lab/unknotting/loose_knots.hpp"
 #include "host/lab/unknotting/planner.hpp"
 
@@ -66,11 +66,11 @@ void pull_on_desk(const Bench& bench, Table& table, Verdict& v) {
 }
 
 /// Every node, six directions.
-int map_pulls(const LooseKnot& knot, Table& map, Progress& progress) {
+int map_pulls(const LooseKnot& knot, Table& map, console::Progress& progress) {
   const int n = static_cast<int>(knot.thread.nodes_W().size());
   const std::vector<Vec3> shape(knot.thread.nodes_W().begin(), knot.thread.nodes_W().end());
   int untie = 0;
-  for (int node = 1; node < n && !stop_requested(); ++node) {
+  for (int node = 1; node < n && !console::stop_requested(); ++node) {
     progress.show(double(node) / n, "map of " + knot.type + ", node " + std::to_string(node));
     for (std::size_t d = 0; d < six_directions().size(); ++d) {
       const auto result = try_pull(shape, knot.scene, {node, six_directions()[d]});
@@ -83,9 +83,9 @@ int map_pulls(const LooseKnot& knot, Table& map, Progress& progress) {
 
 /// The planner sees the shape, names a pull, and the thread itself is pulled.
 int undo_ten(const std::string& scene, const scene::GripperScript& script, const std::string& type, Table& plans,
-             Progress& progress) {
+             console::Progress& progress) {
   int undone = 0, drawn = 0;
-  for (int k = 0; k < kKnots && !stop_requested(); ++k) {
+  for (int k = 0; k < kKnots && !console::stop_requested(); ++k) {
     progress.show(double(k) / kKnots, "planner, " + type + " number " + std::to_string(k + 1));
     auto knot = tie_loosely(scene, script, type, static_cast<std::uint32_t>(k), drawn);
     const auto nodes = knot.thread.nodes_W();
@@ -117,7 +117,7 @@ int experiment_unknotting(const Bench& bench) {
   pull_on_desk(bench, desk, v);
   const auto scene = (bench.scenes / "paper.toml").string();
   {
-    Progress progress;
+    console::Progress progress("unknotting");
     for (const auto& [type, file] : {std::pair{"3_1", "overhand.csv"}, std::pair{"4_1", "figure-eight.csv"}}) {
       const auto script = load_script_or_refuse((bench.scenes / "operators" / file).string());
       int drawn = 0;

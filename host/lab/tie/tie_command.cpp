@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <memory>
 
+#include "host/console/stop_signal.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/rehearsal.hpp"
 #include "host/lab/run_files.hpp"
-#include "host/lab/stop_signal.hpp"
 #include "host/lab/tie/tie_once.hpp"
 
 namespace ligature::lab {
@@ -64,7 +64,7 @@ int execute(const Arguments& a) {
   make_folder(a.out);
   int tied = 0, tried = 0;
   std::printf("%6s  %-20s %8s  %s\n", "seed", "found", "seconds", "moves given up");
-  for (std::uint32_t seed = seeds.first; seed <= seeds.last && !stop_requested(); ++seed) {
+  for (std::uint32_t seed = seeds.first; seed <= seeds.last && !console::stop_requested(); ++seed) {
     const Tied t = tie_once(scene, file, a.knot, seed, a.out);
     ++tried;
     tied += t.good();

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "firmware/app/admit_command.hpp"
 #include "firmware/app/doctor.hpp"
 #include "firmware/app/worst_case.hpp"
 #include "firmware/physics/simulation.hpp"
@@ -66,15 +67,14 @@ TEST(Admission, AFewNodesFitAndTooManyDoNot) {
 }
 
 TEST(Admission, NamesTheLargestThreadThatFits) {
-  const int core = platform::realtime_core();
-  const auto nodes = largest_nodes(paper(600), 1.0, core, 60.0);
+  const auto nodes = largest_nodes(paper(600), 1.0, measure_on(platform::realtime_core(), 60.0));
   ASSERT_TRUE(nodes);
   EXPECT_GE(*nodes, 20);
   EXPECT_LT(*nodes, 600);
 }
 
 TEST(Admission, AThreadThatBeginsInAShapeOfItsOwnIsLaidOutAnew) {
-  const auto nodes = largest_nodes(scene_of("desk.toml", 600), 0.5, platform::realtime_core(), 60.0);
+  const auto nodes = largest_nodes(scene_of("desk.toml", 600), 0.5, measure_on(platform::realtime_core(), 60.0));
   ASSERT_TRUE(nodes);
   EXPECT_GE(*nodes, 20);
   EXPECT_LT(*nodes, 600);
@@ -88,6 +88,65 @@ TEST(Admission, ARodIsMeasuredInTheSameShapes) {
   const auto text = table(a);
   for (const char* phase : {"bus, SYNC", "calls to both buses", "control law", "thread", "computing", "in all"})
     EXPECT_NE(text.find(phase), std::string::npos) << text;
+}
+
+/// A core that takes so long for a tick: something for a rod of that accuracy, and something a node.
+Measure costs(double balanced_us, double fast_us, double node_us) {
+  return [=](const scene::Scene& scene, double) {
+    Admission a;
+    a.bus_us = 460.0;
+    const bool rod = scene.suture.model == scene::Model::kRod;
+    const bool fast = scene.suture.rod.accuracy == scene::Accuracy::kFast;
+    a.worst.thread_us = (rod ? fast ? fast_us : balanced_us : 0.0) + node_us * scene.suture.nodes;
+    return a;
+  };
+}
+std::string refusal(const scene::Scene& scene, const Measure& measure) {
+  const auto objection = objection_of(measure(scene, 0.0), scene, measure);
+  EXPECT_EQ(objection ? objection->exit_code : 0, objection ? 3 : 0);
+  return objection ? objection->text : "";
+}
+
+TEST(Refusal, NamesWhatWasFoundWhatIsAllowedAndTheLargestThreadThatFits) {
+  EXPECT_EQ(refusal(paper(600), costs(0, 0, 2.0)),
+            "the scene does not fit: found 1200 us of computing in the worst tick, allowed 540; "
+            "largest suture.nodes that would: 270");
+  EXPECT_EQ(refusal(paper(600), costs(0, 0, 0.9)), "") << "540 us to the dot";
+  EXPECT_EQ(
+      refusal(paper(600), costs(0, 0, 500.0)),
+      "the scene does not fit: found 300000 us of computing in the worst tick, allowed 540; no suture.nodes would");
+}
+
+TEST(Refusal, OfARodNamesLessWorkBeforeFewerNodes) {
+  const auto rod = scene_of("suture-3-0.toml", 154);
+  EXPECT_EQ(refusal(rod, costs(500.0, 300.0, 1.0)),
+            "the scene does not fit: found 654 us of computing in the worst tick, allowed 540; "
+            "suture.accuracy = \"fast\" would as it is; else largest suture.nodes that would: 40");
+  EXPECT_EQ(
+      refusal(rod, costs(500.0, 420.0, 1.0)),
+      "the scene does not fit: found 654 us of computing in the worst tick, allowed 540; "
+      "largest suture.nodes that would: 40; with suture.accuracy = \"fast\": largest suture.nodes that would: 120");
+  EXPECT_EQ(refusal(rod, costs(900.0, 700.0, 0.0)),
+            "the scene does not fit: found 900 us of computing in the worst tick, allowed 540; "
+            "no suture.nodes would; with suture.accuracy = \"fast\": no suture.nodes would");
+}
+
+TEST(Refusal, OfARodThatIsFastAlreadyDoesNotNameIt) {
+  auto rod = scene_of("suture-3-0.toml", 154);
+  rod.suture.rod.accuracy = scene::Accuracy::kFast;
+  EXPECT_EQ(refusal(rod, costs(0.0, 500.0, 1.0)).find("accuracy"), std::string::npos);
+}
+
+TEST(Refusal, NamesNoThreadThatFitsOnlyOnce) {
+  int asked = 0;
+  const auto nodes = largest_nodes(paper(64), 1.0, [&](const scene::Scene& scene, double) {
+    Admission a;
+    a.worst.thread_us = scene.suture.nodes <= (++asked > 6 ? 30 : 40) ? 0.0 : 1000.0;
+    return a;
+  });
+  ASSERT_TRUE(nodes);
+  EXPECT_LE(*nodes, 30);
+  EXPECT_GE(*nodes, 27);
 }
 
 TEST(Admission, SaysWhatTheWorstTickGivesUp) {

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
+#include "host/console/stop_signal.hpp"
 #include "host/errors.hpp"
 #include "host/log_reader.hpp"
-#include "host/stop_signal.hpp"
 #include "synthetic_log.hpp"
 
 namespace ligature::host {
@@ -43,7 +43,7 @@ TEST(LogWriter, AFileSizeLimitIsAnErrorAndKeepsWhatCameBefore) {
   const test::TestFolder folder;
   const std::string path = folder.file("a.lcmlog");
   LogWriter log(path, false);
-  catch_stop_signals();  // SIGXFSZ ignored
+  console::catch_stop_signals();  // SIGXFSZ ignored
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
   const rlimit small{.rlim_cur = 100'000, .rlim_max = before.rlim_max};

@@ -3,9 +3,9 @@
 #include <array>
 #include <string>
 
-#include "host/progress.hpp"
+#include "host/console/progress.hpp"
 
-namespace ligature::host {
+namespace ligature::console {
 namespace {
 
 using std::chrono::milliseconds;
@@ -25,21 +25,23 @@ class ProgressLine : public ::testing::Test {
 TEST_F(ProgressLine, SaysHowFarAndHowLongAndWipesItself) {
   {
     Progress progress("export", out_, true, start_);
-    progress.show(10, 100, start_ + milliseconds(900));  // short work says nothing
-    progress.show(25, 100, start_ + milliseconds(2000));
-    progress.show(26, 100, start_ + milliseconds(2100));  // not that often
+    EXPECT_FALSE(progress.is_due(start_ + milliseconds(900)));  // short work says nothing
+    EXPECT_TRUE(progress.is_due(start_ + milliseconds(2000)));
+    EXPECT_FALSE(progress.is_due(start_ + milliseconds(2100)));  // not that often
+    progress.show(0.25, "", start_ + milliseconds(2000));
+    progress.show(0.5, "N = 50", start_ + milliseconds(3000));
   }
-  EXPECT_EQ(written(), "\rexport: 25 %, about 6 s more\033[K\r\033[K");
+  EXPECT_EQ(written(), "\rexport: 25 %, about 6 s more\033[K\rexport: 50 %, about 3 s more (N = 50)\033[K\r\033[K");
 }
 
 TEST_F(ProgressLine, IsSilentWhereNobodyWatches) {
   {
     Progress progress("export", out_, false, start_);
-    progress.show(50, 100, start_ + milliseconds(5000));
+    progress.show(0.5, "", start_ + milliseconds(5000));
     progress.say("last step");
   }
   EXPECT_EQ(written(), "");
 }
 
 }  // namespace
-}  // namespace ligature::host
+}  // namespace ligature::console

@@ -57,6 +57,27 @@ TEST_P(Facade, GoesOnFromAnotherOneOfItsModelAndNumberOfNodesOnly) {
 INSTANTIATE_TEST_SUITE_P(Models, Facade, testing::Values("paper-4", "rod"),
                          [](const auto& model) { return std::string(model.param) == "rod" ? "Rod" : "Paper"; });
 
+/// A thread crushed into less than its own thickness: every pair of segments touches, more than any list holds.
+TEST(Bounds, AListOfContactsThatIsFullSaysSoAndGrowsNoFurther) {
+  for (const char* solver : {"implicit", "paper"}) {
+    auto crushed = [&](int nodes) {
+      Simulation sim = make(paper_scene({"suture.nodes=" + std::to_string(nodes), "suture.model=\"paper-4\"",
+                                         std::string("contact.solver=\"") + solver + "\""}));
+      std::vector<Vec3> p_W;
+      for (int i = 0; i < nodes; ++i)
+        p_W.push_back(Vec3(0.5, -0.4, 3.0) + 1e-3 * Vec3(i % 7 - 3, i % 5 - 2, 0.1 * (i % 11)));
+      sim.set_state(p_W, {});
+      sim.tick({});
+      return sim.diagnostics();
+    };
+    const auto d = crushed(200);
+    EXPECT_TRUE(d.contact_cap_hit) << solver;
+    EXPECT_LE(d.contacts, 64 * 200 + 256) << solver;
+    EXPECT_TRUE(d.finite) << solver;
+    EXPECT_FALSE(crushed(20).contact_cap_hit) << solver;
+  }
+}
+
 TEST(Frame, MoreHooksThanThereIsRoomForAreRefusedNotForgotten) {
   std::string fixed;
   for (int k = 0; k < 7; ++k)

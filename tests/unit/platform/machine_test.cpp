@@ -105,6 +105,8 @@ TEST_F(MachineTest, CanInterfaces) {
   put("proc/irq/17/smp_affinity_list", "0");
   details = "can state ERROR-ACTIVE \n\t bitrate 1000000 sample-point 0.800 \n";
   for (const auto& check : check_can(machine, "can0", 1)) EXPECT_EQ(check.grade, Grade::kOk) << check.what;
+  details = "can state BUS-OFF \n\t bitrate 1000000 sample-point 0.800 \n";
+  EXPECT_EQ(grade(check_can(machine, "can0", 1), "CAN"), Grade::kFail) << "up, and yet off the bus";
   details = "can state ERROR-ACTIVE \n\t bitrate 500000 sample-point 0.875 \n";
   put("sys/class/net/can0/flags", "0x40080");
   put("sys/class/net/can0/tx_queue_len", "10");

@@ -165,6 +165,42 @@ TEST(Overhand, OpensWithoutFriction) {  // mu = 0: nothing holds it once an end 
   EXPECT_EQ(p.knot, "0_1");
 }
 
+// Elastic, it opens at this friction; sharp bends that stay hold it.
+TEST(FigureEight, HoldsByWhatItsBendsKeep) {
+  const Pull p = pull(load("suture-3-0-figure-eight.toml"), 5.0, 2.0, {-0.2, 0.2, true});
+  EXPECT_EQ(p.knot, "4_1");
+  EXPECT_EQ(p.guard, 0);
+  EXPECT_LT(p.penetration, 0.5);
+  EXPECT_LT(p.hold_penetration, 0.1);
+  EXPECT_NEAR(p.strain, p.force_N / 71.0, 0.002);
+  EXPECT_EQ(p.allocations, 0);
+}
+
+TEST(FigureEight, ResetTakesTheSetOut) {
+  RodSimulation sim = simulation(load("suture-3-0-figure-eight.toml"));
+  std::array<ToolInput, 2> tools{};
+  const auto run = [&] {
+    double set = 0.0;
+    for (std::size_t h = 0; h < 2; ++h) tools[h].p_WT = h == 0 ? sim.nodes_W().front() : sim.nodes_W().back();
+    for (int k = 0; k < 60; ++k) {
+      for (std::size_t h = 0; h < 2; ++h) {
+        tools[h].grip = true;
+        tools[h].p_WT.x() += h == 0 ? -2e-3 : 2e-3;
+      }
+      sim.tick(tools);
+      set += sim.rod().report().set_J;
+    }
+    tools[0].grip = tools[1].grip = false;
+    return set;
+  };
+  const double set = run();
+  EXPECT_GT(set, 0.0);
+  const std::vector<Vec3> first(sim.nodes_W().begin(), sim.nodes_W().end());
+  sim.reset();
+  EXPECT_EQ(run(), set);
+  for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(sim.nodes_W()[i], first[i]) << i;
+}
+
 TEST(RodScene, HangsStillAndCopiesGoTheirOwnWay) {  // a copy that is not touched does what the original did, bit by bit
   RodSimulation sim = simulation(load("suture-3-0.toml"));
   std::array<ToolInput, 2> open{};
@@ -185,7 +221,8 @@ TEST(RodScene, RefusesWhatItCannotDo) {  // one line, which key, what is allowed
   EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(few)));
   auto paper = load("suture-3-0.toml", {"contact.solver=\"paper\""});
   EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(paper)));
-  for (const char* key : {"contact.turns_thread=true", "suture.rest_curvature_per_m=20", "suture.rest_twist_per_m=1"}) {
+  for (const char* key : {"contact.turns_thread=true", "suture.rest_curvature_per_m=20", "suture.rest_twist_per_m=1",
+                          "suture.yield_strain=0.1"}) {
     auto no_sides = load("suture-3-0.toml", {"suture.GJ_N_m2=0", key});  // a thread without twist has none
     EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(no_sides))) << key;
   }

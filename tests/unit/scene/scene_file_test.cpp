@@ -84,6 +84,8 @@ TEST(SceneFile, EveryRefusalIsOneLineWithItsLineNumber) {
       {"[contact]\nfriction = 0.5\nstatic_friction = 0.2\n", 3, "contact.static_friction"},
       {"[contact]\nturns_thread = true\n", 2, "contact.turns_thread"},
       {"[suture]\nmodel = \"rod\"\nrest_curvature_per_m = -1\n", 3, "suture.rest_curvature_per_m"},
+      {"[suture]\nmodel = \"rod\"\nyield_strain = 0\n", 3, "suture.yield_strain"},
+      {"[suture]\nmodel = \"rod\"\nset_fraction = 1.5\n", 3, "suture.set_fraction"},
       {"[hands]\npinch_width_m = 0.004\n", 2, "hands.pinch_width_m"},  // the default model is the paper's
       {"[suture]\nmodel = \"paper-1\"\n[hands]\npinch_force_N = 1\n", 4, "hands.pinch_force_N"},
       {"[time]\ntick_s = 0\n", 2, "time.tick_s"},

@@ -1,10 +1,10 @@
-#include "host/progress.hpp"
+#include "host/console/progress.hpp"
 
 #include <unistd.h>
 
 #include <algorithm>
 
-namespace ligature::host {
+namespace ligature::console {
 namespace {
 
 constexpr auto kQuietFor = std::chrono::seconds(1);
@@ -21,14 +21,20 @@ Progress::~Progress() {
   if (has_line_) std::fputs("\r\033[K", out_);
 }
 
-void Progress::show(std::int64_t done, std::int64_t whole, Clock::time_point now) {
-  if (!is_on_ || now - start_ < kQuietFor || now - shown_ < kEvery || whole <= 0) return;
+bool Progress::is_due(Clock::time_point now) {
+  if (now - start_ < kQuietFor || now - shown_ < kEvery) return false;
   shown_ = now;
+  return true;
+}
+
+void Progress::show(double share, const std::string& step, Clock::time_point now) {
+  if (!is_on_) return;
   has_line_ = true;
-  const double share = std::clamp(static_cast<double>(done) / static_cast<double>(whole), 0.0, 1.0);
+  share = std::clamp(share, 0.0, 1.0);
   const double passed_s = std::chrono::duration<double>(now - start_).count();
   std::fprintf(out_, "\r%s: %.0f %%", what_, 100.0 * share);
   if (share > 0.02) std::fprintf(out_, ", about %.0f s more", passed_s * (1.0 - share) / share);
+  if (!step.empty()) std::fprintf(out_, " (%s)", step.c_str());
   std::fputs("\033[K", out_);
   std::fflush(out_);
 }
@@ -40,4 +46,4 @@ void Progress::say(const char* step) {
   std::fflush(out_);
 }
 
-}  // namespace ligature::host
+}  // namespace ligature::console

@@ -1,4 +1,4 @@
-#include "host/python_tool.hpp"
+#include "host/console/python_tool.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -12,33 +12,34 @@
 
 #include "host/errors.hpp"
 
-namespace ligature::host {
+namespace ligature::console {
 namespace {
 
 namespace fs = std::filesystem;
 
 std::string find_python() {
   const char* chosen = getenv("LIGATURE_PYTHON");
-  const std::string python = chosen && *chosen ? chosen : LIGATURE_DEFAULT_PYTHON;
+  std::string python = chosen && *chosen ? chosen : LIGATURE_DEFAULT_PYTHON;
   if (access(python.c_str(), X_OK) == 0) return python;
-  throw BadInput("no Python at " + python +
-                 "; remedy: run scripts/setup, or set LIGATURE_PYTHON to one that has the packages of "
-                 "requirements.txt");
+  throw host::BadInput("no Python at " + python +
+                       "; remedy: run scripts/setup, or set LIGATURE_PYTHON to one that has the packages of "
+                       "requirements.txt");
 }
 
-std::string find_script(const std::string& name) {
+std::string find_script(const std::string& name, const fs::path& source_folder) {
   std::error_code none;
   const fs::path installed =
       fs::read_symlink("/proc/self/exe", none).parent_path().parent_path() / "share/ligature/plots" / name;
   if (fs::exists(installed, none)) return installed.string();
-  const fs::path source = fs::path(LIGATURE_PLOTS_DIR) / name;
+  const fs::path source = source_folder / name;
   if (fs::exists(source, none)) return source.string();
-  throw RunFailed(name + " found neither at " + installed.string() + " nor in " LIGATURE_PLOTS_DIR);
+  throw host::RunFailed(name + " found neither at " + installed.string() + " nor in " + source_folder.string());
 }
 
 /// @return its exit code, 128 + n when signal n ended it.
 int wait_for(std::vector<std::string> words, const std::string& complaints) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (auto& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t redirect;
@@ -47,7 +48,7 @@ int wait_for(std::vector<std::string> words, const std::string& complaints) {
   pid_t child = 0;
   const int error = posix_spawn(&child, arguments[0], &redirect, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&redirect);
-  if (error != 0) throw RunFailed("cannot start " + words[0] + ": " + std::strerror(error));
+  if (error != 0) throw host::RunFailed("cannot start " + words[0] + ": " + std::strerror(error));
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
@@ -67,7 +68,7 @@ std::string last_line(const std::string& path) {
 
 ScratchFolder::ScratchFolder() {
   std::string name = (fs::temp_directory_path() / "ligature-XXXXXX").string();
-  if (!mkdtemp(name.data())) throw RunFailed(name + ": cannot make a scratch folder");
+  if (!mkdtemp(name.data())) throw host::RunFailed(name + ": cannot make a scratch folder");
   path_ = name;
 }
 
@@ -76,14 +77,16 @@ ScratchFolder::~ScratchFolder() {
   fs::remove_all(path_, ignored);
 }
 
-PythonTool::PythonTool(const char* script) : python_(find_python()), script_(find_script(script)) {}
+PythonTool::PythonTool(const std::string& script, const fs::path& source_folder)
+    : python_(find_python()), script_(find_script(script, source_folder)) {}
 
 void PythonTool::run(const std::vector<std::string>& arguments, const std::string& complaints) const {
   std::vector<std::string> words{python_, script_};
   words.insert(words.end(), arguments.begin(), arguments.end());
   if (const int code = wait_for(words, complaints); code != 0)
-    throw RunFailed(fs::path(script_).filename().string() + ": " + python_ + " ended with " + std::to_string(code) +
-                    ": " + last_line(complaints) + "; remedy for a missing package: scripts/setup");
+    throw host::RunFailed(fs::path(script_).filename().string() + ": " + python_ + " ended with " +
+                          std::to_string(code) + ": " + last_line(complaints) +
+                          "; remedy for a missing package: scripts/setup");
 }
 
-}  // namespace ligature::host
+}  // namespace ligature::console

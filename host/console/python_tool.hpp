@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace ligature::host {
+namespace ligature::console {
 
 /// A folder that is gone when this is.
 class ScratchFolder {
@@ -19,11 +19,11 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-/// A Python script of ours (host/plots), beside an installed program or in the source tree that it was built from.
+/// A Python script of ours, beside an installed program or in the folder of the source tree that it was built from.
 class PythonTool {
  public:
   /// @throws BadInput without the Python of scripts/setup or LIGATURE_PYTHON; RunFailed without the script.
-  explicit PythonTool(const char* script);
+  PythonTool(const std::string& script, const std::filesystem::path& source_folder);
 
   /// Runs it without a shell, its stderr into the file `complaints`, and waits. @throws RunFailed with its last word.
   void run(const std::vector<std::string>& arguments, const std::string& complaints) const;
@@ -32,4 +32,4 @@ class PythonTool {
   std::string python_, script_;
 };
 
-}  // namespace ligature::host
+}  // namespace ligature::console

@@ -1,8 +1,8 @@
-#include "host/stop_signal.hpp"
+#include "host/console/stop_signal.hpp"
 
 #include <signal.h>
 
-namespace ligature::host {
+namespace ligature::console {
 namespace {
 
 volatile sig_atomic_t g_stop = 0;
@@ -17,9 +17,10 @@ void catch_stop_signals() {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   signal(SIGXFSZ, SIG_IGN);
-  signal(SIGPIPE, SIG_IGN);
 }
+
+void outlive_closed_pipes() { signal(SIGPIPE, SIG_IGN); }
 
 bool stop_requested() noexcept { return g_stop != 0; }
 
-}  // namespace ligature::host
+}  // namespace ligature::console
