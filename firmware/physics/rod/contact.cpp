@@ -42,6 +42,15 @@ Vec in_cone(Vec p, Vec n, double mu) noexcept {
   return pn * n + (size2 > most * most ? most / std::sqrt(size2) : 1.0) * pt;
 }
 
+// What slid still slides: its normal has turned a little, and a hair inside the cone it would be taken to stick.
+Vec on_cone_if_near(Vec p, Vec n, double mu) noexcept {
+  constexpr double kNear = 0.999;
+  const double pn = dot(p, n), most = mu * pn;
+  const Vec pt = p - pn * n;
+  const double size2 = dot(pt, pt);
+  return size2 > kNear * kNear * most * most && size2 > 0.0 ? pn * n + most / std::sqrt(size2) * pt : p;
+}
+
 }  // namespace
 
 template <bool Turns>
@@ -182,7 +191,7 @@ void ContactSet::start(BandSolver& solver, const Numerics& numerics, double dt_s
     c.soft = numerics.recovery / (numerics.contact_N_per_m * dt_s * dt_s);
     c.target =
         c.gap_m > 0.0 ? -c.gap_m / dt_s : std::min(-numerics.recovery * c.gap_m / dt_s, numerics.max_recovery_m_per_s);
-    c.p = in_cone(longer * c.p, c.n, c.mu);
+    c.p = on_cone_if_near(in_cone(longer * c.p, c.n, c.mu), c.n, c.mu);
     c.u_free = velocity<Turns>(k, v);
     c.loaded = dot(c.p, c.p) > 0.0;
     if (!c.loaded) continue;
@@ -244,9 +253,10 @@ void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
 template <bool Friction>
 Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
   constexpr int kMostLooks = 12, kMostSteps = 48, kStale = 3;
+  constexpr double kNear = 3.0;  // an error is at most that, a pass's last change at least
   constexpr double kOld = 10.0;  // what an old matrix may leave over
   const long nodes = window_last_ - window_first_ + 1, answer = price::look(rows_) + price::answer(nodes);
-  const double settled2 = effort.settled_m_per_s * effort.settled_m_per_s;
+  const double settled = kNear * effort.settled_m_per_s, settled2 = settled * settled;
   const Contact* const rows = contacts_.data();
   Vec *const p = p_.data(), *const u = u_.data();
   bool fresh = false;

@@ -231,7 +231,7 @@ void Rod::begin_tick(const HandSpeed& hands) noexcept {
   letting_go_ = released_;
   released_ = false;
   report_.substeps = fast || letting_go_ ? numerics_.max_substeps
-                     : labours_          ? std::max(1, numerics_.substeps / 2)
+                     : labours_          ? std::max(1, 5 * numerics_.substeps / 8)
                                          : numerics_.substeps;
   if (parts_.contact || parts_.world) {  // velocities and bodies may have been changed from outside
     motion_.measure(state_.v.data());

@@ -84,7 +84,7 @@ bool Rod::look(double dt_s) noexcept {
 // The substeps to come are expected to need what the last one did: a look and half as much again, its rows, and the
 // least passes over them; and one of them a new list.
 // Rows may have all else that is left; more passes than the least twice a fair share of it, so that a hard substep does
-// not starve the next. Where they are solved directly half of it: that makes the next substep's easy.
+// not starve the next. Where they are solved directly they may have it all: what has not settled waits.
 Rod::Allowance Rod::work_allowed(bool metric_too) const noexcept {
   const long after = report_.substeps - substep_index_ - 1;
   const auto span = contacts_.span();
