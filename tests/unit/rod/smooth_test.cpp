@@ -108,7 +108,7 @@ TEST(Smooth, NormalTurnsSteadily) {
     return largest;
   };
   EXPECT_GT(largest_step(false), 0.9 * kTurn);
-  EXPECT_LT(largest_step(true), 0.05);
+  EXPECT_LT(largest_step(true), 0.35 * kTurn);  // of one step; two leave less
 }
 
 }  // namespace
