@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "firmware/physics/rod/closest.hpp"
+#include "firmware/physics/rod/smooth.hpp"
 
 namespace ligature::physics::rod {
 namespace {
@@ -22,7 +22,7 @@ std::size_t place_of(std::int32_t a, std::int32_t b) noexcept {
 
 void BroadPhase::reserve(int nodes, int pairs) {
   const auto n = (static_cast<std::size_t>(nodes) + 2 * kBlock) / kBlock * kBlock;
-  for (auto* array : {&x_, &y_, &z_, &half_}) array->assign(n, 0.0F);
+  for (auto* array : {&x_, &y_, &z_, &half_, &bulge_}) array->assign(n, 0.0F);
   blocks_.resize(n / kBlock);
   for (int level = 0; level < kLevels; ++level) tree_[level].resize((n / kBlock >> level) + 1);
   capacity_ = pairs;
@@ -36,13 +36,14 @@ void BroadPhase::place(const State& state, const Motion& motion, float horizon_s
   for (std::size_t j = 0; j < blocks * kBlock; ++j) {
     if (j >= segments) {  // padding: far from everything
       x_[j] = y_[j] = z_[j] = 1e18F;
-      half_[j] = 0.0F;
+      half_[j] = bulge_[j] = 0.0F;
       continue;
     }
     const Vec mid = 0.5 * (state.x[j] + state.x[j + 1]) - origin, half = 0.5 * (state.x[j + 1] - state.x[j]);
     x_[j] = static_cast<float>(mid[0]);
     y_[j] = static_cast<float>(mid[1]);
     z_[j] = static_cast<float>(mid[2]);
+    bulge_[j] = static_cast<float>(SmoothSegment(state, j).bulge()) * kSlack;
     half_[j] = static_cast<float>(norm(half)) * kSlack;
   }
   for (std::size_t k = 0; k < blocks; ++k) {
@@ -53,7 +54,7 @@ void BroadPhase::place(const State& state, const Motion& motion, float horizon_s
     ball.x *= scale, ball.y *= scale, ball.z *= scale;
     for (std::size_t j = begin; j < end; ++j) {
       const float x = x_[j] - ball.x, y = y_[j] - ball.y, z = z_[j] - ball.z;
-      ball.r = std::max(ball.r, (std::sqrt(x * x + y * y + z * z) + half_[j]) * kSlack);
+      ball.r = std::max(ball.r, (std::sqrt(x * x + y * y + z * z) + half_[j] + bulge_[j]) * kSlack);
     }
     blocks_[k] = tree_[0][k] = ball;
     tree_[0][k].r += horizon_s * static_cast<float>(motion.speed_of_block(k)) * kSlack;
@@ -105,7 +106,8 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
   if (arc < kLeastArc * d) return true;
   const bool along = arc < 0.5 * std::numbers::pi * d;  // neighbours along the thread
   const double reach = along ? d * std::sin(arc / d) : d;
-  const double limit = reach + outlook.skin_m + outlook.horizon_s * motion.rate(a, b);
+  const double bulge = along ? 0.0 : static_cast<double>(bulge_[a] + bulge_[b]);
+  const double limit = reach + outlook.skin_m + outlook.horizon_s * motion.rate(a, b) + bulge;
   const float dx = x_[b] - x_[a], dy = y_[b] - y_[a], dz = z_[b] - z_[a];
   const float halves = half_[a] + half_[b], within = (halves + static_cast<float>(limit)) * kSlack;
   const float apart2 = dx * dx + dy * dy + dz * dz;
@@ -115,6 +117,7 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
   pair.a = static_cast<std::int32_t>(a);
   pair.b = static_cast<std::int32_t>(b);
   pair.reach_m = reach;
+  pair.bulge_m = bulge;
   pair.near_m = std::min(outlook.near_m, kBent * (arc - reach));
   // Where the thread is straight its neighbours are as far apart as their spheres, which need no measuring.
   pair.due = along ? static_cast<double>(std::sqrt(apart2) / kSlack - halves) - reach : 0.0;
@@ -122,7 +125,7 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
     spent_ += price::kExact;
     const Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
     if (c.distance2 > limit * limit) return true;
-    pair.due = std::sqrt(c.distance2) - reach;
+    pair.due = std::sqrt(c.distance2) - reach - bulge;
   }
   if (static_cast<int>(list.size()) >= capacity_) return false;
   give_back(pair);
@@ -133,12 +136,12 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
 unsigned BroadPhase::near(std::size_t a, std::size_t q, float reach) const noexcept {
   const std::size_t base = q * kBlock;
   const float cx = blocks_[q].x - x_[a], cy = blocks_[q].y - y_[a], cz = blocks_[q].z - z_[a];
-  const float within = blocks_[q].r + half_[a] + reach;
+  const float own = half_[a] + bulge_[a] + reach, within = blocks_[q].r + own;
   if (cx * cx + cy * cy + cz * cz > within * within) return 0;
   unsigned hits = 0;
   for (std::size_t l = 0; l < kBlock; ++l) {
     const float dx = x_[base + l] - x_[a], dy = y_[base + l] - y_[a], dz = z_[base + l] - z_[a];
-    const float apart = half_[base + l] + half_[a] + reach;
+    const float apart = half_[base + l] + bulge_[base + l] + own;
     hits |= static_cast<unsigned>(dx * dx + dy * dy + dz * dz <= apart * apart) << l;
   }
   return base < a + 2 ? hits & ~0U << (a + 2 - base) : hits;  // a pair once, and no neighbours

@@ -20,6 +20,7 @@ struct Candidate {
   double s_a = 0.0, s_b = 0.0;  ///< material coordinates of the closest points, m
   Vec impulse{};                ///< of the last substep, on b's side, N s
   char stuck = 0;               ///< 1: inside the friction cone then
+  double bulge_m = 0.0;  ///< that the smooth curves (smooth.hpp) may be nearer than their chords; 0: chords touch
 };
 
 /// The pairs first .. last - 1 of a list: those between two blocks of segments (motion.hpp). What is due for none of
@@ -99,6 +100,7 @@ class BroadPhase {
   long spent_ = 0, allowance_ = 0;   // of this build
   std::vector<float> x_, y_, z_;     // middles of segments
   std::vector<float> half_;          // half their lengths
+  std::vector<float> bulge_;         // of their smooth curves
   std::vector<Ball> blocks_;         // around the segments of a block, as they are
   std::vector<Ball> tree_[kLevels];  // around 2^level blocks, swollen by what each may move
   std::vector<Kept> kept_;           // open addressing, a power of two

@@ -40,6 +40,7 @@ struct Contact {
   double mu = 0.0;
   std::int32_t count = 4;                      ///< nodes in use
   double reach_m = 0.0;                        ///< centre distance at which the pair touches
+  double distance_m = 0.0;                     ///< of the chords, for the guard
   bool loaded = false;                         ///< has carried an impulse in this substep
   Vec* keep = nullptr;                         ///< where the impulse is kept between substeps
   char* stuck = nullptr;                       ///< where it is kept whether friction held

@@ -4,10 +4,13 @@
 
 #include "firmware/physics/rod/closest.hpp"
 #include "firmware/physics/rod/contact.hpp"
+#include "firmware/physics/rod/smooth.hpp"
 
 namespace ligature::physics::rod {
 
 namespace {
+
+constexpr double kClose = 2.0;  // near_m's: what is nearer than that is measured between smooth curves
 
 Contact contact_of(const Candidate& pair, const Closest& c, double distance, double mu) noexcept {
   Contact contact;
@@ -57,6 +60,7 @@ bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcep
   }
   if (price::kCheck * listed > work.left()) return false;
   work.spend(price::kCheck * listed);
+  long close = 0;
   for (const auto g : awake_) {
     for (std::int32_t k = groups[static_cast<std::size_t>(g)].first; k < groups[static_cast<std::size_t>(g)].last;
          ++k) {
@@ -66,10 +70,11 @@ bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcep
         pair.impulse = Vec{};
       } else {
         due_.push_back(k);
+        close += pair.due - motion.gone(a, b) < kClose * pair.near_m;
       }
     }
   }
-  const long cost = (price::kMeasure + price::kGuard) * static_cast<long>(due_.size());
+  const long cost = (price::kMeasure + price::kGuard) * static_cast<long>(due_.size()) + price::kSmooth * close;
   if (cost > work.left()) return false;
   work.spend(cost);
   return true;
@@ -97,9 +102,15 @@ bool ContactSet::collect_thread(const State& state, const Motion& motion, double
 bool ContactSet::measure(Candidate& pair, const State& state, const Motion& motion, double dt_s, double mu,
                          ContactReport& report) noexcept {
   const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-  const Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
-  const double distance = std::sqrt(c.distance2), gap = distance - pair.reach_m;
-  pair.due = gap + motion.gone(a, b);
+  Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
+  const double chord = std::sqrt(c.distance2);
+  double distance = chord;
+  if (pair.bulge_m > 0.0 && chord - pair.bulge_m < pair.reach_m + kClose * pair.near_m) {
+    c = closest(SmoothSegment(state, a), SmoothSegment(state, b), c);
+    distance = std::sqrt(c.distance2);
+  }
+  const double gap = distance - pair.reach_m;
+  pair.due = std::min(distance, chord - pair.bulge_m) - pair.reach_m + motion.gone(a, b);
   report.min_gap_m = std::min(report.min_gap_m, gap);
   // Far enough for one substep at today's relative speed (half the bound of above is usually wasted).
   const Vec u = (1.0 - c.t) * state.v[b] + c.t * state.v[b + 1] - (1.0 - c.s) * state.v[a] - c.s * state.v[a + 1];
@@ -107,12 +118,13 @@ bool ContactSet::measure(Candidate& pair, const State& state, const Motion& moti
   if (full || gap > pair.near_m + 2.0 * dt_s * norm(u)) {
     report.rows_left_out += full;
     pair.impulse = Vec{};
-    watched_.push_back({pair.a, pair.b, distance});  // has room for every pair
+    watched_.push_back({pair.a, pair.b, chord});  // has room for every pair
     return false;
   }
   pair.s_a = state.mesh.s[a] + c.s * state.mesh.rest[a];
   pair.s_b = state.mesh.s[b] + c.t * state.mesh.rest[b];
   Contact contact = contact_of(pair, c, distance, mu);
+  contact.distance_m = chord;
   contact.keep = &pair.impulse;
   contact.stuck = &pair.stuck;
   add(contact);

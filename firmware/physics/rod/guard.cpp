@@ -37,7 +37,7 @@ double ContactSet::safe_fraction(const Motion& motion, const Vec* v, double dt_s
   if (overflow_) return 0.0;
   Share share{v, dt_s};
   for (const auto& c : contacts_) {
-    const double distance = c.gap_m + c.reach_m;
+    const double distance = c.count == 4 ? c.distance_m : c.gap_m + c.reach_m;
     if (c.count == 4) {
       share.pair(c.node[0], c.node[2], distance, motion);
     } else if (c.count == 1) {  // a plane: what is below it already may only come up

@@ -12,6 +12,7 @@ constexpr double kTurn = 0.35;       // rad per node
 constexpr double kStartTurn = 0.5;   // the same for the shape a loose thread begins in
 constexpr double kBendLength = 0.4;  // of sqrt(EI / T)
 constexpr double kGrading = 0.2;
+constexpr double kCut = 0.5;  // of a segment, up to where its corners are cut
 constexpr double kRests_m_per_s = 1e-3;
 constexpr double kWorth = 1.5;  // a change must better the worst by this factor
 constexpr int kTries = 4;       // merges looked at for a change, so that a tangle costs no more than that
@@ -83,6 +84,7 @@ bool Refine::start(const Material& material, double wanted_m, State& state, std:
   wanted_.assign(n, 0.0);
   free_.assign(n, 1);
   moment_.assign(n, Vec{});
+  corner_.assign(n, Vec{});
   tension_.assign(n, 0.0);
   return true;
 }
@@ -190,8 +192,13 @@ void Refine::merge(const Material& material, State& state, int node) noexcept {
     state.v[k] = (1.0 / (mass + half)) * (mass * state.v[k] + half * state.v[i]);
   }
   tension_[i - 1] = 0.5 * (tension_[i - 1] + tension_[i]);
+  state.cut_before[i - 1] *= 0.5;  // of the whole it is half as much
+  state.cut_after[i - 1] = 0.5 * state.cut_after[i];
+  close_slot(state.cut_before, i);
+  close_slot(state.cut_after, i);
   close_slot(tension_, i);
   close_slot(moment_, i);
+  close_slot(corner_, i);
   close_slot(at_, i);
   close_slot(wanted_, i);
   close_slot(free_, i);
@@ -216,6 +223,11 @@ void Refine::split(const Material&, State& state, int segment) noexcept {
   insert(state.v, 0.5 * (state.v[j] + state.v[i]));
   insert(state.load, Vec{});
   insert(moment_, 0.5 * (moment_[j] + moment_[i]));
+  insert(corner_, Vec{});
+  insert(state.cut_before, kCut);
+  insert(state.cut_after, std::min(1.0, 2.0 * state.cut_after[j]));
+  state.cut_before[j] = std::min(1.0, 2.0 * state.cut_before[j]);
+  state.cut_after[j] = kCut;
   insert(tension_, tension_[j]);
   insert(wanted_, wanted_[j]);
   insert(free_, char{1});
@@ -228,6 +240,10 @@ void Refine::split(const Material&, State& state, int segment) noexcept {
 bool Refine::update(const Material& material, State& state, const Forces& forces, ContactSet& contacts,
                     const std::vector<Body>& bodies, Work& work) noexcept {
   for (auto& q : state.rest_bend) q = kFade * q;
+  for (auto& q : state.rest_corner) q = kFade * q;
+  for (auto* cuts : {&state.cut_before, &state.cut_after}) {
+    for (auto& h : *cuts) h = kCut + kFade * (h - kCut);
+  }
   for (auto& e : state.rest_strain) e *= kFade;
   want(material, state, forces, contacts);
   const std::size_t n = at_.size();
@@ -252,6 +268,7 @@ bool Refine::update(const Material& material, State& state, const Forces& forces
         const Vec turn = state.mesh.inv_rest[q] * (state.x[q + 1] - state.x[q]) -
                          state.mesh.inv_rest[q - 1] * (state.x[q] - state.x[q - 1]) - state.rest_bend[q];
         moment_[q] = state.mesh.weight[q] * turn;
+        corner_[q] = state.x[q + 1] - 2.0 * state.x[q] + state.x[q - 1] - state.rest_corner[q];
       }
     }
     changed = true;
@@ -271,6 +288,7 @@ void Refine::keep_stress(const Material& material, State& state) noexcept {
     state.rest_strain[j] = strain - tension_[j] / material.EA_N;
   }
   for (std::size_t i = 1; i + 1 < n; ++i) {
+    state.rest_corner[i] = state.x[i + 1] - 2.0 * state.x[i] + state.x[i - 1] - corner_[i];
     if (mesh.weight[i] == 0.0) continue;
     const Vec turn =
         mesh.inv_rest[i] * (state.x[i + 1] - state.x[i]) - mesh.inv_rest[i - 1] * (state.x[i] - state.x[i - 1]);

@@ -60,6 +60,7 @@ class Refine {
   std::vector<double> wanted_;    // per segment, m
   std::vector<char> free_;        // node may be merged
   std::vector<Vec> moment_;       // Q of every vertex
+  std::vector<Vec> corner_;       // what is cut off of it
   std::vector<double> tension_;
 };
 

@@ -7,9 +7,10 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr int kWindow = 1024;      // nodes on which contacts can be solved together
-constexpr double kRelax_s = 0.02;  // in which a pulled thread comes to rest when the hands do
-constexpr double kNear = 0.1;      // diameters within which a pair is a contact at any speed
+constexpr int kWindow = 1024;        // nodes on which contacts can be solved together
+constexpr double kRelax_s = 0.02;    // in which a pulled thread comes to rest when the hands do
+constexpr double kMostStrain = 6.0;  // see Rod::settled
+constexpr double kNear = 0.1;        // diameters within which a pair is a contact at any speed
 
 }  // namespace
 
@@ -63,6 +64,7 @@ Rod& Rod::operator=(const Rod& other) {
   substep_ = other.substep_;
   near_m_ = other.near_m_;
   pace_m_per_s_ = other.pace_m_per_s_;
+  strain_ = other.strain_;
   solver_.resize(state_.nodes());
   metric_.invalidate();
   stale_ = true;
@@ -78,6 +80,7 @@ bool Rod::continue_from(const Rod& other) noexcept {
   refine_ = other.refine_;
   report_ = other.report_;
   pace_m_per_s_ = other.pace_m_per_s_;
+  strain_ = other.strain_;
   mesh_changed();
   return true;
 }
@@ -204,7 +207,7 @@ Rod::HandSpeed Rod::set_hands(const std::array<Vec, kMaxHolds>& goals, std::arra
 }
 
 void Rod::begin_tick(const HandSpeed& hands) noexcept {
-  strained_ = report_.cut_short > 0;
+  strain_ = report_.cut_short > 0 ? std::min(kMostStrain, 1.5 * strain_) : std::max(1.0, 0.9 * strain_);
   report_ = TickReport{};
   const bool fast = hands.fastest > 1.001 * numerics_.fast_m_per_s;
   work_.start(numerics_.budget(state_.nodes(), fast));
@@ -228,13 +231,13 @@ void Rod::begin_tick(const HandSpeed& hands) noexcept {
   }
 }
 
-void Rod::feel_hands() noexcept {
+void Rod::feel_hands(double ahead_s) noexcept {
   for (int h = 0; h < state_.hold_count; ++h) {
     Hold& hold = state_.holds[static_cast<std::size_t>(h)];
     if (hold.node < 0 || hold.rigid) continue;
     const auto i = static_cast<std::size_t>(hold.node);
-    hold.force =
-        hold.stiffness_N_per_m * (state_.x[i] - hold.target) + hold.damping_N_s_per_m * (state_.v[i] - hold.velocity);
+    hold.force = hold.stiffness_N_per_m * (state_.x[i] + ahead_s * state_.v[i] - hold.target) +
+                 hold.damping_N_s_per_m * (state_.v[i] - hold.velocity);
   }
 }
 
@@ -250,6 +253,7 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
       state_.holds[at].target = starts[at] + share * (goals[at] - starts[at]);
     }
     substep_index_ = k;
+    braked_ = false;
     moving = moving && (this->*substep_)(dt);
     if (!moving) report_.time_lost += 1.0 / report_.substeps;
   }
@@ -257,7 +261,7 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
     for (auto& v : state_.v) v = 0.5 * v;
   }
   report_.work = work_.used();
-  feel_hands();
+  if (!braked_) feel_hands(0.0);
 }
 
 }  // namespace ligature::physics::rod

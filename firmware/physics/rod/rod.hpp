@@ -140,7 +140,8 @@ class Rod {
   };
   HandSpeed set_hands(const std::array<Vec, kMaxHolds>& goals, std::array<Vec, kMaxHolds>& starts) noexcept;
   void begin_tick(const HandSpeed& hands) noexcept;
-  void feel_hands() noexcept;
+  /// Forces on the hands where the thread will be in `ahead_s`.
+  void feel_hands(double ahead_s) noexcept;
   int add_hold(const Hold& hold) noexcept;
 
   Material material_;
@@ -162,7 +163,8 @@ class Rod {
   long list_cost_ = 0;                  // of the last list
   double metric_dt_ = 0.0;
   double pace_m_per_s_ = 0.0;  // of the hands from the middle between them, fading once they stop
-  bool strained_ = false;      // the last tick's work did not do for all its passes
+  double strain_ = 1.0;        // how much less a pass need settle, since ticks' work did not do for all passes
+  bool braked_ = false;        // the last substep was slowed; what hands felt is known
   bool letting_go_ = false;    // a hold let go just before this tick
   Motion motion_;
   ContactReport seen_;          // of this substep

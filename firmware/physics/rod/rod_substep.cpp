@@ -104,12 +104,12 @@ void Rod::prepare_metric(double dt_s) noexcept {
 }
 
 // A pass that changes no velocity by more is the last. In the tick of a release the thread is faster than any hand; one
-// that hardly moves must not creep by what a pass leaves over. A jam that had to go without passes gets by with less
-// settled ones: that much in every substep is better than all of it in some, with none left for the others.
+// that hardly moves must not creep by what a pass leaves over. A jam that has to go without passes gets by with less
+// settled ones, by and by: that much in every substep is better than all of it in some, with none left for the others.
 double Rod::settled() const noexcept {
-  constexpr double kStrained = 3.0, kLetGo = 0.15, kCreep = 0.1, kStill_m_per_s = 1e-6;
+  constexpr double kLetGo = 0.15, kCreep = 0.1, kStill_m_per_s = 1e-6;
   const double fastest = motion_.fastest(), speed = std::max(pace_m_per_s_, letting_go_ ? kLetGo * fastest : 0.0);
-  const double settled = numerics_.settled_m_per_s + (strained_ ? kStrained : 1.0) * numerics_.settled_share * speed;
+  const double settled = numerics_.settled_m_per_s + strain_ * numerics_.settled_share * speed;
   return std::min(settled, std::max(kStill_m_per_s, kCreep * fastest));
 }
 
@@ -169,10 +169,13 @@ double Rod::guard_unseen(double dt_s) noexcept {
                   motion_.share_within(ahead_m, horizon_s_, dt_s));
 }
 
-// Velocities that never settled must not press a jam ever tighter: the thread is as slow as it may move.
+// Velocities that never settled must not press a jam ever tighter: the thread is as slow as it may move. Hands feel
+// what was solved for: their damping would take the slowing for a blow.
 double Rod::brake(double dt_s) noexcept {
   const double share = contacts_.unsettled_fraction(state_.v.data(), dt_s);
   if (share < 1.0) {
+    feel_hands(dt_s);
+    braked_ = true;
     for (auto& v : state_.v) v = share * v;
   }
   return share;

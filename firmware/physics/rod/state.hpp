@@ -29,18 +29,21 @@ inline constexpr int kMaxHolds = 16;
 
 struct State {
   Mesh mesh;
-  std::vector<Vec> x, v;            ///< n positions, m, and velocities, m/s
-  std::vector<Vec> load;            ///< n constant forces, N
-  std::vector<Vec> rest_bend;       ///< n: part of t_i - t_{i-1} that is stress free
-  std::vector<double> rest_strain;  ///< n - 1 (sized n): part of l / l_rest - 1 that is stress free
+  std::vector<Vec> x, v;                      ///< n positions, m, and velocities, m/s
+  std::vector<Vec> load;                      ///< n constant forces, N
+  std::vector<Vec> rest_bend;                 ///< n: part of t_i - t_{i-1} that is stress free
+  std::vector<Vec> rest_corner;               ///< n: part of e_i - e_{i-1} that cuts no corner (smooth.hpp), m
+  std::vector<double> cut_before, cut_after;  ///< of segment j, up to where its corners at j and j + 1 are cut (same)
+  std::vector<double> rest_strain;            ///< n - 1 (sized n): part of l / l_rest - 1 that is stress free
   std::array<Hold, kMaxHolds> holds;
   int hold_count = 0;
 
   [[nodiscard]] int nodes() const noexcept { return mesh.nodes(); }
   void resize(int n) {
     mesh.resize(n);
-    for (auto* array : {&x, &v, &load, &rest_bend}) array->assign(static_cast<std::size_t>(n), Vec{});
+    for (auto* array : {&x, &v, &load, &rest_bend, &rest_corner}) array->assign(static_cast<std::size_t>(n), Vec{});
     rest_strain.assign(static_cast<std::size_t>(n), 0.0);
+    for (auto* array : {&cut_before, &cut_after}) array->assign(static_cast<std::size_t>(n), 0.5);
   }
 };
 

@@ -2,7 +2,7 @@
 // start, guard events, worst penetration (diameters) in pull / hold / after, strain against T / EA, largest turn per
 // node and longest contact segment in the hold, chatter of the hand force in the hold, thread-CPU time per tick.
 //
-// Also: chatter while the thread slides (rms about a 51-tick parabola, over the mean, from 5 % of the force on).
+// Also: chatter while the thread slides, wherever the force is above 5 % of what is pulled to (chatter.hpp).
 //
 // Usage: rod_pull_study SCENE [speed_m_per_s force_N [sudden(0|1) hands(1|2) [key=value ...]]]; without sudden and
 // hands: the four runs of gentle, sudden x two, one; without speed: the 48 runs of two hands, one x 0.05, 0.2, 0.5, 1
@@ -24,6 +24,7 @@
 #include "firmware/physics/rod/rod_simulation.hpp"
 #include "host/knot/recognise.hpp"
 #include "protocol/scene/scene_file.hpp"
+#include "tests/bench/rod/chatter.hpp"
 
 using namespace ligature;
 using physics::rod::RodSimulation;
@@ -39,26 +40,6 @@ double cpu_us() {
 double quantile(std::vector<double> v, double q) {
   std::sort(v.begin(), v.end());
   return v.empty() ? 0.0 : v[std::min(v.size() - 1, static_cast<std::size_t>(q * static_cast<double>(v.size())))];
-}
-
-// rms of what is left of 51 ticks when their least-squares parabola is taken away, at the middle, over the mean. The
-// pull itself is no chatter: it rises, ever more steeply as thread is used up, and about a moving mean that alone
-// is 2.4 % at 0.2 m/s. A parabola's value at the middle is a sum with weights 3 (3 m^2 + 3 m - 1 - 5 k^2) /
-// ((2m-1)(2m+1)(2m+3)).
-double chatter(const std::vector<double>& f) {
-  constexpr int m = 25;
-  constexpr double kNorm = (2.0 * m - 1.0) * (2.0 * m + 1.0) * (2.0 * m + 3.0);
-  double mean = 0.0, sum = 0.0;
-  int count = 0;
-  for (const double x : f) mean += x / static_cast<double>(f.size());
-  for (int i = m; i + m < static_cast<int>(f.size()); ++i) {
-    double local = 0.0;
-    for (int k = -m; k <= m; ++k)
-      local += 3.0 * (3.0 * m * m + 3.0 * m - 1.0 - 5.0 * k * k) / kNorm * f[static_cast<std::size_t>(i + k)];
-    sum += std::pow(f[static_cast<std::size_t>(i)] - local, 2);
-    ++count;
-  }
-  return count > 0 ? std::sqrt(sum / count) / mean : 0.0;
 }
 
 double seconds_of(const char* variable, double otherwise) {
@@ -83,11 +64,7 @@ class Study {
     phase(0.1, 0.0, hands, 0.0);
     forces_.clear();
     phase(5.0, speed, hands, force_N);
-    std::vector<double> sliding;
-    for (const double f : forces_) {
-      if (f > 0.05 * force_N) sliding.push_back(f);
-    }
-    const double slide = chatter(sliding), pull = std::exchange(penetration_, 0.0);
+    const double slide = bench::chatter(forces_, 0.05 * force_N).share(), pull = std::exchange(penetration_, 0.0);
     phase(0.3, 0.0, hands, 0.0);
     penetration_ = 0.0;
     forces_.clear();
@@ -95,7 +72,7 @@ class Study {
     save("held");
     const double hold = std::exchange(penetration_, 0.0), strain = sim_.diagnostics().max_stretch, tension = force();
     const auto [turn, segment] = sharpness();
-    const double rms = chatter(forces_);
+    const double rms = bench::chatter(forces_, 0.0).share();
     if (!sudden) phase(10.0, -0.02, 2, -0.02 * force_N);
     tools_[1].grip = false;
     phase(seconds_of("WAIT_S", 5.0), 0.0, hands, 0.0);

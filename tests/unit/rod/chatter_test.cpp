@@ -1,0 +1,59 @@
+// The measure of chatter itself, on forces whose chatter is known.
+
+#include "tests/bench/rod/chatter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <vector>
+
+namespace ligature::test {
+namespace {
+
+using bench::Chatter;
+using bench::chatter;
+
+// A pull: the force over thread used up, as the overhand's; steepness per tick, and a tremble on top of it.
+std::vector<double> pull(int ticks, double tremble_N, double period_ticks) {
+  std::vector<double> f;
+  for (int k = 0; k < ticks; ++k)
+    f.push_back(0.05 * std::exp(3.0 * k / ticks) + tremble_N * std::sin(2.0 * std::numbers::pi * k / period_ticks));
+  return f;
+}
+
+TEST(Chatter, FindsAKnownTremble) {
+  for (const double period : {2.3, 5.0, 12.0}) {
+    const Chatter c = chatter(pull(250, 5e-3, period), 0.04);
+    EXPECT_NEAR(c.rms_N, 5e-3 / std::numbers::sqrt2, 0.12 * 5e-3) << period;
+    EXPECT_EQ(c.ticks, 200);
+  }
+}
+
+TEST(Chatter, IsNotThePull) {
+  EXPECT_LT(chatter(pull(250, 0.0, 1.0), 0.04).share(), 1e-3);
+  EXPECT_LT(chatter(pull(50, 0.0, 1.0), 0.04).share(), 2e-3);  // five times as fast: a shorter window
+}
+
+// The loop snaps over in the middle: no force for a while. What is on either side counts, the seam does not.
+TEST(Chatter, IsNotASnapBetweenTwoStretches) {
+  std::vector<double> f = pull(250, 0.0, 1.0);
+  for (int k = 100; k < 130; ++k) f[static_cast<std::size_t>(k)] = 0.002;
+  EXPECT_LT(chatter(f, 0.04).share(), 1e-3);
+  for (int k = 0; k < 250; ++k) f[static_cast<std::size_t>(k)] += k % 2 == 0 ? 4e-3 : -4e-3;
+  EXPECT_NEAR(chatter(f, 0.04).rms_N, 4e-3, 0.4e-3);
+}
+
+// A blow of one tick, which a thread that stands still for lack of work gives.
+TEST(Chatter, CountsABlow) {
+  std::vector<double> f = pull(250, 0.0, 1.0);
+  f[180] += 0.1;
+  EXPECT_NEAR(chatter(f, 0.04).rms_N, 0.1 / std::sqrt(200.0), 0.1 * 0.1 / std::sqrt(200.0));
+}
+
+TEST(Chatter, SaysWhenThereIsNothingToSay) {
+  EXPECT_EQ(chatter(pull(250, 0.0, 1.0), 10.0).ticks, 0);
+  EXPECT_EQ(chatter({}, 0.0).ticks, 0);
+}
+
+}  // namespace
+}  // namespace ligature::test

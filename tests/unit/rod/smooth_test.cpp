@@ -1,0 +1,115 @@
+// The smooth curve that strands touch each other with.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "firmware/physics/rod/smooth.hpp"
+
+namespace ligature::test {
+namespace {
+
+using namespace physics::rod;
+
+constexpr double kDiameter_m = 3e-4;
+
+State nodes_on_a_circle(int n, double radius_m, double turn) {
+  State state;
+  state.resize(n);
+  for (int i = 0; i < n; ++i) {
+    const double a = turn * (i - 0.5 * (n - 1));
+    state.x[static_cast<std::size_t>(i)] = make(radius_m * std::sin(a), 0, radius_m * (1.0 - std::cos(a)));
+  }
+  return state;
+}
+
+double closest_by_trying(const SmoothSegment& a, const SmoothSegment& b) {
+  double least = 1.0;
+  for (int i = 0; i <= 400; ++i) {
+    for (int j = 0; j <= 400; ++j) least = std::min(least, norm(b.at(j / 400.0) - a.at(i / 400.0)));
+  }
+  return least;
+}
+
+TEST(Smooth, IsACircleWhereThePolygonIsOne) {
+  const double turn = 0.5, radius_m = 0.6e-3, through_middles_m = radius_m * std::cos(0.5 * turn);
+  const State state = nodes_on_a_circle(12, radius_m, turn);
+  const Vec centre = make(0, 0, radius_m);
+  for (std::size_t j = 1; j < 10; ++j) {
+    const SmoothSegment segment(state, j);
+    for (double s = 0.0; s <= 1.0; s += 0.125)
+      EXPECT_NEAR(norm(segment.at(s) - centre), through_middles_m, 2e-3 * radius_m) << j << ' ' << s;
+  }
+}
+
+TEST(Smooth, HasNoCorners) {
+  State state = nodes_on_a_circle(9, 0.6e-3, 0.5);
+  state.x[4] += make(1e-5, 4e-5, -2e-5);  // unequal lengths and corners
+  for (std::size_t j = 0; j + 2 < 9; ++j) {
+    const SmoothSegment one(state, j), next(state, j + 1);
+    EXPECT_LT(norm(one.at(1.0) - next.at(0.0)), 1e-12);
+    const Vec a = one.along(1.0), b = next.along(0.0);
+    EXPECT_LT(norm(cross(a, b)), 1e-9 * norm(a) * norm(b));
+  }
+}
+
+// A segment that is cut in two begins with the corners it had; they fade.
+TEST(Smooth, KeepsTheCornersItIsToldToKeep) {
+  State state = nodes_on_a_circle(9, 0.6e-3, 0.5);
+  state.rest_corner[4] = state.x[5] - 2.0 * state.x[4] + state.x[3];
+  EXPECT_LT(norm(SmoothSegment(state, 4).at(0.0) - state.x[4]), 1e-12);
+}
+
+TEST(Smooth, ClosestPointsOfBentStrands) {
+  const State a = nodes_on_a_circle(8, 0.6e-3, 0.5);
+  for (int k = 0; k < 40; ++k) {
+    const double yaw = 0.05 * k + 0.6, c = std::cos(yaw), s = std::sin(yaw), along_m = 1e-5 * (k % 13 - 6);
+    State b = nodes_on_a_circle(8, 0.6e-3, 0.5);
+    for (auto& x : b.x) x = make(c * x[0] + along_m, s * x[0], kDiameter_m + 0.5 * along_m - x[2]);
+    for (std::size_t i = 2; i < 5; ++i) {
+      for (std::size_t j = 2; j < 5; ++j) {
+        const SmoothSegment one(a, i), other(b, j);
+        const Closest chords = closest(a.x[i], a.x[i + 1], b.x[j], b.x[j + 1]);
+        const double least = closest_by_trying(one, other);
+        if (least > 1.2 * kDiameter_m || least < 0.9 * kDiameter_m) continue;  // no contact, or no such contact
+        EXPECT_NEAR(std::sqrt(closest(one, other, chords).distance2), least, 3e-2 * kDiameter_m) << k;
+        EXPECT_LT(std::abs(least - std::sqrt(chords.distance2)), one.bulge() + other.bulge() + 1e-9);
+      }
+    }
+  }
+}
+
+// A straight strand slides along a bent one: the direction in which they push each other apart turns steadily. Between
+// chords it jumps by the angle of a corner.
+TEST(Smooth, NormalTurnsSteadily) {
+  constexpr double kTurn = 0.4;
+  const State bent = nodes_on_a_circle(14, 1e-3, kTurn);
+  const auto largest_step = [&](bool smooth) {
+    Vec before{};
+    double largest = 0.0;
+    for (double angle = -1.0; angle < 1.0; angle += 0.005) {  // on the inside of the bend
+      const double r = 1e-3 - kDiameter_m;
+      const Vec at = make(r * std::sin(angle), 0, 1e-3 - r * std::cos(angle));
+      State strand;
+      strand.resize(4);
+      for (int i = 0; i < 4; ++i) strand.x[static_cast<std::size_t>(i)] = at + make(0, 1e-3 * (i - 1.5), 0);
+      Closest nearest;
+      nearest.distance2 = 1.0;
+      for (std::size_t j = 1; j + 2 < 14; ++j) {
+        Closest c = closest(bent.x[j], bent.x[j + 1], strand.x[1], strand.x[2]);
+        if (smooth) c = closest(SmoothSegment(bent, j), SmoothSegment(strand, 1), c);
+        if (c.distance2 < nearest.distance2) nearest = c;
+      }
+      const Vec normal = (1.0 / norm(nearest.between)) * nearest.between;
+      if (angle > -1.0) largest = std::max(largest, norm(normal - before));
+      before = normal;
+    }
+    return largest;
+  };
+  EXPECT_GT(largest_step(false), 0.9 * kTurn);
+  EXPECT_LT(largest_step(true), 0.35 * kTurn);  // of one step; two leave less
+}
+
+}  // namespace
+}  // namespace ligature::test
