@@ -12,7 +12,8 @@ void MovingHand::rest_at(const Vec3& start_W, double speed_m_per_s) {
 }
 
 void MovingHand::tick() {
-  const double speed = speed_m_per_s_ * std::clamp(pace, 0.01, 4.0), acceleration = speed_m_per_s_ / 0.15;
+  const double speed = speed_m_per_s_ * std::clamp(pace, 0.01, 4.0),
+               acceleration = (is_wary ? 4.0 : 1.0) * speed_m_per_s_ / 0.15;
   for (std::size_t k = 0; k < 3; ++k) {
     in_.target_position[k] = goal_W[static_cast<Eigen::Index>(k)];
     in_.max_velocity[k] = speed;

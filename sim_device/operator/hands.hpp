@@ -17,7 +17,8 @@ class MovingHand {
   void rest_at(const Vec3& start_W, double speed_m_per_s);
 
   Vec3 goal_W = Vec3::Zero();
-  double pace = 1.0;  ///< share of the full speed
+  double pace = 1.0;     ///< share of the full speed
+  bool is_wary = false;  ///< four times as quick to stop
   bool grip = false;
 
   /// One tick on. On a goal that ruckig refuses (not finite) the hand stays where it is.

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "sim_device/operator/springy_throw.hpp"
+
 namespace ligature::sim {
 namespace {
 
@@ -107,8 +109,29 @@ void KnotTier::begin_again() {
   ++begun_again_;
   Moves moves{let_go(kRightHand), let_go(kLeftHand), hang_out()};
   place_.clearance_m *= dice_.between(0.8, 1.25);  // not quite the same again
-  append(moves, plan(knot_, place_, throws_tied_));
+  if (is_springy(place_)) {
+    append(moves, draw_straight());
+    moves.push_back({"count the throws", [](const Look&) { return true; }});
+    moves.back().then_plans = true;
+  } else {
+    append(moves, plan(knot_, place_, throws_tied_));
+  }
   lay_out(std::move(moves));
+}
+
+/// No move pulls much harder than a tight knot needs: a hand that feels more gives way, whatever it was about to do.
+void KnotTier::mind_the_pull(const Sight& sight) {
+  constexpr double kFirm = 0.4, kMost = 1.3;  // of a tight knot's pull
+  if (!is_springy(place_)) return;            // a stout one is drawn at several times that (wound_throw)
+  for (std::size_t h = 0; h < 2; ++h) {
+    MovingHand& hand = hands_[h];
+    const Vec3& pull_N = sight.force_W_N[h];
+    const double share = pull_N.norm() / place_.tension_N;
+    hand.is_wary = share > kFirm && pull_N.dot(hand.goal_W - hand.p_W()) < 0.0;
+    if (!hand.is_wary) continue;
+    hand.pace = std::min(hand.pace, 0.15);
+    if (share > kMost) hand.goal_W = hand.p_W() + 0.01 * place_.length_m * pull_N.normalized();
+  }
 }
 
 void KnotTier::look(const Sight& sight) {
@@ -117,10 +140,14 @@ void KnotTier::look(const Sight& sight) {
     Move& move = plan_[next_];
     const Look now{thread_, sight, place_, hands_, t_s_ - began_s_};
     const bool done = move.act(now);
+    mind_the_pull(sight);
     if (!done && now.in_move_s < move.patience_s) return;
     if (!done) missed_.push_back(move.name);
     if (move.good && begun_again_ < kMostAgain && !move.good(now)) {
       begin_again();
+    } else if (move.then_plans) {
+      throws_tied_ = throws_seen(knot_, now).value_or(throws_tied_);
+      lay_out(plan(knot_, place_, throws_tied_));
     } else {
       throws_tied_ += move.ends_throw;
       ++next_;

@@ -49,6 +49,7 @@ class KnotTier {
  private:
   KnotTier(const scene::Scene& scene, const Knot& knot, const Workplace& place, std::uint32_t seed);
   void look(const Sight& sight);
+  void mind_the_pull(const Sight& sight);
   void lay_out(Moves moves);
   void begin_again();
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "sim_device/operator/diagram.hpp"
 #include "sim_device/operator/springy_throw.hpp"
 #include "sim_device/operator/wound_throw.hpp"
 
@@ -13,7 +14,7 @@ constexpr Throw kOverhand[]{{1, false, 1}};
 constexpr Throw kFigureEight[]{{1, true, 1}};
 
 constexpr Throw kSquare[]{{1, false, 1}, {-1, false, 1}};
-constexpr Throw kGranny[]{{1, false, 1}, {1, false, 1}};
+constexpr Throw kGranny[]{{-1, false, 1}, {-1, false, 1}};
 constexpr Throw kSurgeon[]{{1, false, 2}, {-1, false, 1}};
 
 constexpr std::array kKnots{
@@ -27,6 +28,8 @@ constexpr std::array kKnots{
 const Vec3 kSlant = Vec3(-0.75, 0.0, -0.66).normalized();  // the standing part runs down to the left
 
 const Vec3 kDown = Vec3(-0.1, 0.0, -1.0).normalized();
+
+const Vec3 kFront = -Vec3::UnitY();
 
 constexpr double kWatch_s = 5.0;  // after letting go: does it stay?
 
@@ -50,12 +53,19 @@ Layout layout_of(const Throw& t, const Workplace& place) {
   return {0.4, 0.96, kSlant, 0.5};
 }
 
+/// Length that knots before the place `s` have taken up, m.
+double taken_up(const Look& look, double s) {
+  const Tangle knotted = tangle(look);
+  if (knotted.first_m >= knotted.last_m || knotted.last_m > s) return 0.0;
+  return knotted.last_m - knotted.first_m - (look.thread.at(knotted.last_m) - look.thread.at(knotted.first_m)).norm();
+}
+
 /// Takes the corner at `s` with the left hand and holds it as the layout says.
 void take_corner(Moves& m, const Workplace& place, const Layout& layout, WhereAlong s) {
   m.push_back(reach(kLeftHand, s));
   m.push_back(pinch(kLeftHand));
   m.push_back(carry(kLeftHand, "hold the corner", [anchor = place.anchor_W, layout, s](const Look& look) -> Vec3 {
-    return anchor + layout.stretch * s(look) * layout.way;
+    return anchor + layout.stretch * (s(look) - taken_up(look, s(look))) * layout.way;
   }));
 }
 
@@ -72,13 +82,20 @@ std::optional<Knot> knot_named(std::string_view name) {
 
 namespace {
 
-/// The corner of one throw of several, as a place of the thread: the first near the anchor, each further one beyond
-/// what is knotted already.
-Move see_the_corner(std::shared_ptr<double> corner) {
-  constexpr double kFirst = 0.27, kBeyond = 0.1;
+/// Where the corner of one throw of several is and where the end goes over, as places of the thread: the first near the
+/// anchor, each further one beyond what is knotted already.
+struct Places {
+  double corner = 0.0, turn = 0.0;
+};
+
+Move see_the_places(std::shared_ptr<Places> places) {
+  constexpr double kFirst = 0.3, kBeyond = 0.18, kMost = 0.6, kTurn = 0.5, kTurnBeyond = 0.4;
   return {"see the knot", [=](const Look& look) {
-            const double knotted = tangle(look).last_m;
-            *corner = knotted > 0.0 ? knotted + kBeyond * look.place.length_m : kFirst * look.place.length_m;
+            const double knotted = tangle(look).last_m, all = look.thread.length_m();
+            const bool is_first = !(knotted > 0.0);
+            const double corner = is_first ? kFirst * all : std::min(knotted + kBeyond * all, kMost * all);
+            const double base = std::min(knotted, corner);
+            *places = {corner, base + (is_first ? kTurn : kTurnBeyond) * (corner - base)};
             return true;
           }};
 }
@@ -86,16 +103,18 @@ Move see_the_corner(std::shared_ptr<double> corner) {
 /// One throw with the corner held by the left hand, drawn tight, and both hands empty again.
 Moves held_throw(const Throw& t, const Workplace& place, bool alone) {
   const Layout layout = layout_of(t, place);
-  auto corner = std::make_shared<double>(layout.corner * place.length_m);
-  const WhereAlong at_corner = [corner](const Look&) { return *corner; };
-  const WhereAlong at_turn = [corner, layout](const Look&) { return layout.turn * *corner; };
+  const double first = layout.corner * place.length_m;
+  auto places = std::make_shared<Places>(Places{first, layout.turn * first});
+  const WhereAlong at_corner = [places](const Look&) { return places->corner; };
+  const WhereAlong at_turn = [places](const Look&) { return places->turn; };
   Moves m;
-  if (!alone) m.push_back(see_the_corner(corner));
+  if (!alone) m.push_back(see_the_places(places));
   take_corner(m, place, layout, at_corner);
   m.push_back(reach(kRightHand, the_end()));
   m.push_back(pinch(kRightHand));
   auto loop = std::make_shared<Loop>(at_corner, t.side);
   if (is_springy(place) && !t.against) {
+    m.push_back(open_arch(t, at_corner));
     m.push_back(springy_throw(t, at_corner, at_turn));
   } else {
     append(m, lay_turn(loop, t, at_turn));
@@ -115,20 +134,41 @@ Moves held_throw(const Throw& t, const Workplace& place, bool alone) {
 
 }  // namespace
 
+std::optional<std::size_t> throws_seen(const Knot& knot, const Look& look) {
+  const int seen = seen_determinant(look.thread.between(0.0, look.thread.length_m()), kFront);
+  int tied = 1;
+  for (std::size_t k = 0; k <= knot.throws.size(); ++k) {
+    if (seen == tied) return k;
+    if (k < knot.throws.size()) tied *= determinant_of(knot.throws[k]);
+  }
+  return std::nullopt;
+}
+
+Moves draw_straight() {
+  Moves m{reach(kRightHand, the_end()), pinch(kRightHand)};
+  append(m, pull_tight(kDown, 0.5));
+  m.push_back(ease());
+  m.push_back(let_go(kRightHand));
+  m.push_back(hang_out());
+  return m;
+}
+
 Moves plan(const Knot& knot, const Workplace& place, std::size_t first) {
-  Moves m;
   const bool alone = knot.throws.size() == 1;
-  if (!alone && !is_springy(place)) {
-    m = throws_in_a_row(knot.throws);
+  std::vector<Throw> to_tie;
+  int tied = 1;
+  for (Throw t : knot.throws) {
+    t.tied_already = tied;
+    tied *= determinant_of(t);
+    to_tie.push_back(t);
+  }
+  to_tie.erase(to_tie.begin(), to_tie.begin() + static_cast<std::ptrdiff_t>(first));
+  Moves m;
+  if (!is_springy(place) && !knot.throws.front().against) {
+    m = throws_in_a_row(to_tie);
   } else {
-    Throw t;
-    int tied = 1;
-    for (std::size_t k = 0; k < knot.throws.size(); ++k) {
-      t = knot.throws[k];
-      t.tied_already = tied;
-      tied *= t.against ? 5 : 3;
-      if (k < first) continue;
-      if (k > 0) m.push_back(wait(1.0));
+    for (const Throw& t : to_tie) {
+      if (t.tied_already > 1) m.push_back(wait(1.0));
       append(m, held_throw(t, place, alone));
     }
   }

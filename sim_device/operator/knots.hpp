@@ -25,6 +25,12 @@ struct Knot {
 [[nodiscard]] std::span<const Knot> knots();
 [[nodiscard]] std::optional<Knot> knot_named(std::string_view name);
 
+/// How many of its throws the eye counts in the thread as it hangs; nothing if what it sees is no beginning of it.
+[[nodiscard]] std::optional<std::size_t> throws_seen(const Knot& knot, const Look& look);
+
+/// Empty hands take the end, draw the thread straight, however it is entangled, and let it go again.
+[[nodiscard]] Moves draw_straight();
+
 /// Everything from empty hands to empty hands. @param first throw that is not tied yet
 [[nodiscard]] Moves plan(const Knot& knot, const Workplace& place, std::size_t first = 0);
 

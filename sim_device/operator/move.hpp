@@ -46,6 +46,7 @@ struct Move {
   /// Asked when the move has ended: did it do what it was for? If not, the operator lets go and begins again.
   std::function<bool(const Look&)> good{};
   bool ends_throw = false;  ///< what is tied up to here stays: beginning again begins behind it
+  bool then_plans = false;  ///< what comes next is planned when this has ended
 };
 
 using Moves = std::vector<Move>;

@@ -89,12 +89,16 @@ Move wait(double seconds) {
 
 Move hang_out() {
   constexpr double kStill_s = 0.5;
-  auto hangs_since = std::make_shared<double>(0.0);
+  struct Seen {
+    double since_s = 0.0;
+    Vec3 end_W = Vec3::Zero();
+  };
+  auto seen = std::make_shared<Seen>();
   return {"hang out", [=](const Look& look) {
-            const Vec3 down = look.thread.at(look.thread.length_m()) - look.place.anchor_W;
-            const bool hangs = -down.z() > 0.97 * look.thread.length_m();
-            if (!hangs) *hangs_since = look.in_move_s;
-            return look.in_move_s - *hangs_since > kStill_s;
+            const Vec3 end = look.thread.at(look.thread.length_m());
+            const bool moved = (end - seen->end_W).norm() > 0.01 * look.place.length_m;
+            if (moved || look.in_move_s == 0.0) *seen = {look.in_move_s, end};
+            return look.in_move_s - seen->since_s > kStill_s;
           }};
 }
 
@@ -205,13 +209,17 @@ Where across_loop(std::shared_ptr<Loop> loop, double share, double way) {
   };
 }
 
-/// With the end led away to one side, would it hold?
-bool would_hold(const Look& look, const Throw& t, const Vec3& out) {
-  return seen_determinant(look.thread.between(0.0, look.thread.length_m()), out) ==
-         t.tied_already * (t.against ? 5 : 3);
-}
-
 }  // namespace
+
+int determinant_of(const Throw& t) { return t.against ? 5 : 2 * t.passes + 1; }
+
+bool would_hold(const Look& look, const Throw& t, const Vec3& out) {
+  auto thread = look.thread.between(0.0, look.thread.length_m());
+  const Vec3 back = look.place.anchor_W - look.sight.tool_W[kLeftHand];
+  const Vec3 led = Vec3(back.x(), back.y(), 0.0).normalized() + Vec3::UnitZ();  // past the loop that hangs beside it
+  thread.insert(thread.begin(), look.place.anchor_W + look.place.length_m * led);
+  return seen_determinant(thread, out) == t.tied_already * determinant_of(t);
+}
 
 Moves lay_turn(std::shared_ptr<Loop> loop, const Throw& t, WhereAlong s) {
   const auto below = [=](const Look& look) -> Vec3 {

@@ -17,7 +17,7 @@ namespace ligature::sim {
 [[nodiscard]] Move carry(std::size_t hand, std::string name, Where where, double near = 0.5, double pace = 1.0);
 /// Stay for a while.
 [[nodiscard]] Move wait(double seconds);
-/// Until the thread hangs straight down from the anchor and no longer swings.
+/// Until the end of the hanging thread no longer swings.
 [[nodiscard]] Move hang_out();
 /// `to` takes the thread beside the place that `from` holds; when it has it, `from` lets go.
 [[nodiscard]] Moves hand_over(std::size_t from, std::size_t to);
@@ -63,13 +63,18 @@ class Loop {
   double corner_s_ = 0.0, standing_ = 0.0, working_ = 0.0, far_ = -1.0, angle_ = 0.0, wound_ = 0.0;
 };
 
-/// How a turn is laid and how the end goes through: +1 and -1 are mirror images in y.
+/// How a turn is laid and how the end goes through.
 struct Throw {
-  int side = 1;          ///< +1: up in front of the standing part, down behind it
+  int side = 1;          ///< +1: one turn makes a right-handed trefoil; -1: its mirror image in y
   bool against = false;  ///< through the loop against the turn (figure-eight) instead of with it
   int passes = 1;        ///< how often the end goes round the loop's edge (2: a surgeon's first throw)
   int tied_already = 1;  ///< determinant of the throws before it on the thread (diagram.hpp)
 };
+
+/// What a throw multiplies the thread's determinant by: n turns make a torus knot of 2 n + 1 half turns.
+[[nodiscard]] int determinant_of(const Throw& t);
+/// With both ends led away along `out`, would the thread hold this throw and all before it? (diagram.hpp)
+[[nodiscard]] bool would_hold(const Look& look, const Throw& t, const Vec3& out);
 
 /// The end, held by the right hand, goes around the standing part at place `s` until it is just short of the loop,
 /// behind it; against the turn: once more round, nearer to the anchor than X, and in front of it.

@@ -1,12 +1,17 @@
 #include "sim_device/operator/springy_throw.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+
 #include "sim_device/operator/diagram.hpp"
 
 namespace ligature::sim {
 namespace {
 
 constexpr double kSpringy = 0.2;
-constexpr int kOverhand = 3;  // determinant
+constexpr double kNear = 0.045, kArrived = 0.02, kPast = 0.025;  // shares of the working part
 
 /// A place of the path, in shares of the working part from the corner or from the turn: to the front, up, out past the
 /// corner.
@@ -15,7 +20,7 @@ struct Stop {
   double front, up, out;
 };
 
-constexpr Stop kPath[] = {
+constexpr Stop kOnce[] = {
     {true, 0.12, -0.18, 0.0},                                     // out in front, so that the arch opens there
     {false, 0.09, 0.018, 0.0},                                    // up
     {false, 0.045, 0.042, 0.0},                                   //
@@ -24,12 +29,29 @@ constexpr Stop kPath[] = {
     {true, -0.024, -0.042, -0.06}, {true, 0.006, -0.042, -0.03},  // forward, under the standing part
     {true, 0.06, -0.03, 0.09},                                    // and through
 };
-constexpr std::size_t kStops = std::size(kPath);
 
-/// Would the thread hold one overhand more with its ends led away to the front, and out past the corner?
+constexpr Stop kTwice[] = {
+    {true, 0.12, -0.18, 0.0},                                 // as above ..
+    {false, 0.09, 0.018, 0.0},                                //
+    {false, 0.045, 0.042, 0.0},                               //
+    {false, 0.0, 0.042, 0.0},                                 //
+    {false, -0.03, -0.012, 0.0},                              //
+    {true, -0.03, -0.08, -0.12}, {true, 0.02, -0.08, -0.12},  // .. but under it further from the corner,
+    {true, 0.06, 0.0, -0.12},    {true, 0.03, 0.06, -0.1},    // up and
+    {true, -0.03, 0.06, -0.08},  {true, -0.06, 0.0, -0.06},   // over once more, the arch now along the standing part
+    {true, -0.06, -0.09, -0.05}, {true, 0.01, -0.1, -0.03},   // under
+    {true, 0.07, -0.07, 0.09},                                // and through
+};
+
+std::span<const Stop> path_of(const Throw& t) {
+  if (t.passes > 1) return kTwice;
+  return kOnce;
+}
+
+/// Would the thread hold this throw more with its ends led away to the front, and out past the corner?
 bool is_tied(const Look& look, const Throw& t, const Vec3& front, const Vec3& out) {
   const auto thread = look.thread.between(0.0, look.thread.length_m());
-  const int tied = kOverhand * t.tied_already;
+  const int tied = determinant_of(t) * t.tied_already;
   return seen_determinant(thread, front) == tied && seen_determinant(thread, 0.8 * front + 0.6 * out) == tied;
 }
 
@@ -37,29 +59,71 @@ bool is_tied(const Look& look, const Throw& t, const Vec3& front, const Vec3& ou
 
 bool is_springy(const Workplace& place) { return place.bend_length_m > kSpringy * place.length_m; }
 
+Move open_arch(const Throw& t, WhereAlong corner) {
+  constexpr double kLow = -0.62, kHigh = -0.18, kOut = 0.12;  // shares of the working part
+  constexpr double kQuarter = 0.5 * std::numbers::pi;
+  enum Phase { kRaise, kAside, kToFront };
+  struct State {
+    Phase phase = kRaise;
+    double angle = 0.0;
+  };
+  const Vec3 front = -static_cast<double>(t.side) * Vec3::UnitY();
+  auto state = std::make_shared<State>();
+  return {"open the arch",
+          [=](const Look& look) {
+            const double all = look.thread.length_m(), at = corner(look), unit = all - at;
+            const Vec3 from = look.thread.at(at);
+            Vec3 out = look.sight.tool_W[kLeftHand] - look.place.anchor_W;
+            out = (out - out.z() * Vec3::UnitZ()).normalized();
+            const auto angle_of = [&](const Vec3& p) { return std::atan2(front.dot(p - from), out.dot(p - from)); };
+            Vec3 middle = Vec3::Zero();
+            const auto arch = look.thread.between(at, all);
+            for (const Vec3& p : arch) middle += p / static_cast<double>(arch.size());
+            MovingHand& h = look.hands[kRightHand];
+            const Vec3 tool = look.sight.tool_W[kRightHand];
+            const double left = std::remainder(kQuarter - angle_of(tool), 4.0 * kQuarter);
+            const double angle = state->phase == kToFront ? angle_of(tool) + std::clamp(left, -0.6, 0.6) : state->angle;
+            const Vec3 aside = kOut * (std::cos(angle) * out + std::sin(angle) * front) + kHigh * Vec3::UnitZ();
+            h.pace = state->phase == kToFront ? 0.4 : 1.0;
+            h.goal_W = from + unit * (state->phase == kRaise ? Vec3(kLow * Vec3::UnitZ()) : aside);
+            if ((tool - h.goal_W).norm() > kNear * unit) return false;
+            if (state->phase == kRaise)
+              *state = {kAside, angle_of(middle) + kQuarter};
+            else if (state->phase == kAside)
+              state->phase = kToFront;
+            else {
+              state->phase = kRaise;
+              return std::cos(angle_of(middle)) > 0.0;
+            }
+            return false;
+          },
+          15.0};
+}
+
 Move springy_throw(const Throw& t, WhereAlong corner, WhereAlong turn) {
   const Vec3 front = -static_cast<double>(t.side) * Vec3::UnitY();
   const auto out = [](const Look& look) -> Vec3 {
     return (look.sight.tool_W[kLeftHand] - look.place.anchor_W).normalized();
   };
+  const auto unit = [=](const Look& look) { return look.thread.length_m() - corner(look); };
   const auto place = [=](const Look& look, const Stop& stop) -> Vec3 {
-    const double at = corner(look), unit = look.thread.length_m() - at;
-    const Vec3 from = look.thread.at(stop.from_corner ? at : turn(look));
-    return from + unit * (stop.front * front + stop.up * Vec3::UnitZ() + stop.out * out(look));
+    const Vec3 from = look.thread.at(stop.from_corner ? corner(look) : turn(look));
+    return from + unit(look) * (stop.front * front + stop.up * Vec3::UnitZ() + stop.out * out(look));
   };
   const auto is_through = [=](const Look& look) {
     const double gone = front.dot(look.sight.tool_W[kRightHand] - look.thread.at(corner(look)));
-    return gone > 0.5 * look.place.clearance_m && is_tied(look, t, front, out(look));
+    return gone > kPast * unit(look) && is_tied(look, t, front, out(look));
   };
+  const auto path = path_of(t);
   auto next = std::make_shared<std::size_t>(0);
   return {"over and through",
           [=](const Look& look) {
             MovingHand& h = look.hands[kRightHand];
             h.pace = 1.0;
-            h.goal_W = place(look, kPath[*next]);
-            const bool last = *next + 1 == kStops;
-            if (!(last && is_through(look)) && !look.has_arrived(kRightHand, 0.8 * look.place.clearance_m))
-              return false;
+            h.goal_W = place(look, path[*next]);
+            const bool last = *next + 1 == path.size();
+            const double off = (look.sight.tool_W[kRightHand] - h.goal_W).norm() / unit(look);
+            if (!(last && is_through(look)) && off > (last ? kArrived : kNear)) return false;
             *next = last ? 0 : *next + 1;
             return last;
           },

@@ -10,6 +10,11 @@ namespace ligature::sim {
 /// against the thread's length: nylon 3-0 of 0.3 m 0.27, the paper's suture 0.12.
 [[nodiscard]] bool is_springy(const Workplace& place);
 
+/// The end is raised below the corner until the thread between them gives way to one side, then led round to the front
+/// so that the arch comes to stand out past the corner. It does so about the vertical in one sense only: an arch and
+/// its mirror image do not turn into each other, so where the thread gave way to decides where the end goes first.
+[[nodiscard]] Move open_arch(const Throw& t, WhereAlong corner);
+
 /// The end, held by the right hand, goes over the standing part and through the loop, in one path without a stop: an
 /// overhand that is still open. The left hand holds the corner, the standing part is level: on a slope X, where the
 /// end crosses over, slides down to the corner and there is no room left to pass.
@@ -20,7 +25,8 @@ namespace ligature::sim {
 /// close behind it towards the corner (the arch turns to the anchor and the end is ahead of X), forward under the
 /// standing part and on past the corner, before the arch has turned once more.
 /// @param corner, turn places along the thread of the corner and of where the end goes over. All lengths of the path
-/// are shares of the working part. `t.against` and `t.passes` mean nothing here.
+/// are shares of the working part. With `t.passes` 2 it goes round the standing part once more on the way. `t.against`
+/// means nothing here.
 [[nodiscard]] Move springy_throw(const Throw& t, WhereAlong corner, WhereAlong turn);
 
 }  // namespace ligature::sim

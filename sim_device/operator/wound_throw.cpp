@@ -16,17 +16,21 @@ const Vec3 kAway = Vec3(0.89, 0.0, -0.45).normalized();  // the end is drawn pas
 /// What a short thread must be pulled at, in pulls of a tight knot: all of it that a knot keeps is missing later.
 double firm(const Workplace& place) { return std::clamp(200.0 * place.diameter_m / place.length_m, 1.0, 4.0); }
 
+/// The side on which the end sets out and comes out again, +y or -y.
+Vec3 front_of(const Throw& t) { return static_cast<double>(t.side) * Vec3::UnitY(); }
+
 /// The standing part as the hand sees it: places along it by share, directions across it by angle (0 in front, a
-/// quarter turn above; for side -1 front and behind change places).
+/// quarter turn above).
 class Standing {
  public:
-  Standing(const Look& look, const Site& site, int side) : look_(look), site_(site) {
+  Standing(const Look& look, const Site& site, const Throw& t) : look_(look), site_(site) {
     from_ = look.thread.at(site.base);
     const Vec3 to = look.thread.at(site.corner) - from_;
-    length_m_ = std::max(to.norm(), 1e-9);
-    along_ = to / length_m_;
-    front_ = across(-static_cast<double>(side) * Vec3::UnitY());
-    up_ = across(Vec3::UnitZ());
+    const Vec3 level(to.x(), to.y(), 0.0);
+    length_m_ = std::max(level.norm(), 1e-9);
+    along_ = level / length_m_;
+    front_ = across(front_of(t));
+    up_ = Vec3::UnitZ();
   }
 
   [[nodiscard]] Vec3 beside(double share, double radius_m, double angle) const {
@@ -75,19 +79,22 @@ Move swing_out() {
 Move wind(const Throw& t, std::shared_ptr<const Site> site) {
   auto wound = std::make_shared<std::optional<double>>();
   const double last = 2.0 * kPi * t.passes;
-  return {"wind",
-          [=](const Look& look) {
-            const Standing standing(look, *site, t.side);
-            MovingHand& h = look.hands[kRightHand];
-            const double now = standing.angle_of(look.sight.tool_W[kRightHand]);
-            *wound = *wound ? **wound + std::remainder(now - **wound, 2.0 * kPi) : now;
-            const double goal = std::min(last, **wound + 0.8);
-            const double gone = std::clamp((goal - 0.5 * kPi) / (last - kPi), 0.0, 1.0);
-            h.pace = 0.7;
-            h.goal_W = standing.beside(kFirst + gone * (kLast - kFirst), kRadius * look.place.clearance_m, goal);
-            return last - **wound < 0.25;
-          },
-          15.0 * (1 + t.passes)};
+  const Vec3 front = front_of(t);
+  return {
+      "wind",
+      [=](const Look& look) {
+        const Standing standing(look, *site, t);
+        MovingHand& h = look.hands[kRightHand];
+        const double now = standing.angle_of(look.sight.tool_W[kRightHand]);
+        *wound = *wound ? **wound + std::remainder(now - **wound, 2.0 * kPi) : now;
+        const double goal = std::min(last, **wound + 0.8);
+        const double gone = std::clamp((goal - 0.5 * kPi) / (last - kPi), 0.0, 1.0);
+        h.pace = 0.7;
+        h.goal_W = standing.beside(kFirst + gone * (kLast - kFirst), kRadius * look.place.clearance_m, goal);
+        return last - **wound < 0.25;
+      },
+      15.0 * (1 + t.passes),
+      [=](const Look& look) { return would_hold(look, t, front) && would_hold(look, t, 0.8 * front + 0.6 * kAway); }};
 }
 
 /// Is what is knotted as short as a pull makes it? A turn of a stout thread takes 12 diameters; a springy one stays
@@ -106,7 +113,7 @@ Move draw(const Throw& t) {
             const Vec3 corner = look.sight.tool_W[kLeftHand];
             const double out = std::max(0.0, kAway.dot(h.p_W() - corner)) + 0.1 * look.place.length_m;
             h.pace = 0.7;
-            h.goal_W = corner + out * kAway - t.side * look.place.clearance_m * Vec3::UnitY();
+            h.goal_W = corner + out * kAway + look.place.clearance_m * front_of(t);
             const double pull =
                 -kAway.dot(look.sight.force_W_N[kRightHand]) / (firm(look.place) * look.place.tension_N);
             if (pull < 1.0 || (pull < kMost && !is_small(look, t.passes))) return false;
@@ -168,7 +175,7 @@ Moves wound_throw(const Throw& t, std::shared_ptr<const Site> site) {
   const auto corner = [site](const Look&) { return site->corner; };
   const auto end = [](const Look& look) { return look.thread.length_m(); };
   const auto before = [site, t](const Look& look) {  // below and in front of the place where the screw begins
-    return Standing(look, *site, t.side).beside(kFirst, 2.0 * look.place.clearance_m, -0.3 * kPi);
+    return Standing(look, *site, t).beside(kFirst, 2.0 * look.place.clearance_m, -0.3 * kPi);
   };
   Moves m{reach(kLeftHand, corner), pinch(kLeftHand), swing_out(), reach(kRightHand, end), pinch(kRightHand)};
   m.push_back(carry(kRightHand, "to the standing part", before, 0.7));
@@ -183,15 +190,18 @@ Moves wound_throw(const Throw& t, std::shared_ptr<const Site> site) {
 Moves throws_in_a_row(std::span<const Throw> throws) {
   auto site = std::make_shared<Site>();
   Moves m;
+  m.push_back(wait(2.0));  // the thread hangs still, or does so again
   for (const Throw& t : throws) {
     const double more = 1.0 + 0.25 * (t.passes - 1);
-    m.push_back(wait(2.0));  // the thread hangs still, or does so again
     m.push_back({"see the knot", [site, more](const Look& look) {
                    const double c = more * look.place.clearance_m, knotted = tangle(look).last_m;
                    *site = knotted > 0.0 ? Site{knotted, knotted + 2.6 * c} : Site{0.0, 3.6 * c};
                    return true;
                  }});
     append(m, wound_throw(t, site));
+    m.push_back(wait(2.0));
+    m.back().good = [t](const Look& look) { return would_hold(look, t, front_of(t)); };
+    m.back().ends_throw = true;
   }
   return m;
 }

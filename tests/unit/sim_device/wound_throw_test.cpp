@@ -52,7 +52,11 @@ class Trail {
       Sight sight;
       sight.thread_W = now;
       for (std::size_t h = 0; h < 2; ++h) sight.tool_W[h] = hands_[h].p_W();
-      if (m.act({thread, sight, place_, hands_, t_s})) return;
+      const Look look{thread, sight, place_, hands_, t_s};
+      if (m.act(look)) {
+        EXPECT_TRUE(!m.good || m.good(look)) << m.name;
+        return;
+      }
       for (MovingHand& h : hands_) h.tick();
       if (hands_[kRightHand].grip) path_.push_back(hands_[kRightHand].p_W());
     }
@@ -64,10 +68,10 @@ class Trail {
 };
 
 TEST(WoundThrow, TheHandsPathAloneIsTheThrow) {
-  EXPECT_EQ(knot_of(Trail().after({1, false, 1})), "3_1 left");
-  EXPECT_EQ(knot_of(Trail().after({-1, false, 1})), "3_1 right");
-  EXPECT_EQ(knot_of(Trail().after({1, false, 2})), "5_1 left");
-  EXPECT_EQ(knot_of(Trail().after({-1, false, 2})), "5_1 right");
+  EXPECT_EQ(knot_of(Trail().after({1, false, 1})), "3_1 right");
+  EXPECT_EQ(knot_of(Trail().after({-1, false, 1})), "3_1 left");
+  EXPECT_EQ(knot_of(Trail().after({1, false, 2})), "5_1 right");
+  EXPECT_EQ(knot_of(Trail().after({-1, false, 2})), "5_1 left");
 }
 
 TEST(WoundThrow, ThrowsInARowAreTheNamedKnots) {
@@ -88,6 +92,10 @@ TEST(WoundThrow, TiesKnotsOfTwoThrows) {
   EXPECT_EQ(tied("paper.toml", "square", 4), "3_1#3_1 amphichiral");
   EXPECT_EQ(tied("paper.toml", "granny", 104), "3_1#3_1 left");
   EXPECT_EQ(tied("paper-long.toml", "surgeon", 4), "3_1#5_1 mixed");
+}
+
+TEST(WoundThrow, TiesALimpThreadWhoseBightHangsStraightDown) {
+  EXPECT_EQ(tied("paper.toml", "square", 1, {"suture.model=\"paper-1\""}), "3_1#3_1 amphichiral");
 }
 
 TEST(WoundThrow, RefusesAThreadTooShortForTheKnot) {
