@@ -278,7 +278,7 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
     report.work += answer;
     for (int k = 0; k < rows_; ++k) u[k] = velocity<false>(k, v);
     if (!newton_.look(rows, rows_, p, u)) return Outcome::kNoRoom;
-    const long coupling = price::couple(newton_.uncoupled());
+    const long coupling = price::couple(newton_.uncoupled()) + price::read(newton_.loaded());
     if (report.work + coupling > effort.work) break;
     report.work += coupling;
     newton_.couple();

@@ -145,7 +145,8 @@ bool Rod::settle(double dt_s) noexcept {
     if constexpr (!kTurns) {
       if (solves_directly() && waits_ < kPatience)
         outcome = contacts_.settle_directly<kRubs>(solver_, *effort, state_.v.data(), seen_);
-      if (solves_directly() && outcome == Outcome::kNoRoom && (substep_index_ > 0 || 4 * seen_.work > effort->work)) {
+      const bool short_of_work = 4 * (effort->work - seen_.work) < work_.budget();
+      if (solves_directly() && outcome == Outcome::kNoRoom && short_of_work && waits_ < kPatience) {
         outcome = Outcome::kLater;
         waits_ = kPatience - 1;
         contacts_.undo(state_.v.data());

@@ -10,7 +10,7 @@ namespace ligature::physics::rod {
 namespace price {
 inline constexpr long kCheck = 25;           ///< a listed pair, or a group of them, in a substep: can it meet?
 inline constexpr long kMeasure = 190;        ///< it can: its closest points, and a row to be
-inline constexpr long kSmooth = 480;         ///< near: between smooth curves instead
+inline constexpr long kSmooth = 340;         ///< near: between smooth curves instead
 inline constexpr long kGuard = 110;          ///< its part in the guard
 inline constexpr long kWorldNode = 60;       ///< a node against the floor or a body
 inline constexpr long kBall = 15;            ///< broad phase: a block against a sphere of the tree
@@ -31,14 +31,16 @@ inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one 
 /// What impulses make of `rows` contacts.
 [[nodiscard]] constexpr long look(long rows) noexcept { return 140 * rows; }
 /// Pairs of contacts that are to be coupled densely.
-[[nodiscard]] constexpr long couple(long pairs) noexcept { return 280 * pairs; }
+[[nodiscard]] constexpr long couple(long pairs) noexcept { return 300 * pairs; }
+/// What impulses make of contacts that are coupled densely.
+[[nodiscard]] constexpr long read(long loaded) noexcept { return 400 * loaded; }
 /// The velocities that answer to new impulses.
 [[nodiscard]] constexpr long answer(long nodes) noexcept { return 130 * nodes; }
 /// A sweep over `loaded` contacts that are coupled densely.
 [[nodiscard]] constexpr long dense_sweep(long loaded) noexcept { return loaded * (200 + 10 * loaded); }
 /// One of Newton's steps: `loaded` contacts, `unknowns` impulses.
 [[nodiscard]] constexpr long newton(long loaded, long unknowns) noexcept {
-  return unknowns * (260 + 14 * unknowns + unknowns * unknowns / 9) + 3000 + 250 * loaded;
+  return unknowns * (260 + 14 * unknowns + unknowns * unknowns / 9) + 3000 + 400 * loaded;
 }
 /// The most rows for which `passes` passes can be paid.
 [[nodiscard]] constexpr long affordable_rows(long allowance, long nodes, long passes) noexcept {
