@@ -27,7 +27,8 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   mixing_.reserve(rows);
   newton_.reserve();
   for (auto* array : {&u_, &p_start_}) array->assign(rows, Vec{});
-  for (auto* array : {&v_start_, &v_before_}) array->assign(static_cast<std::size_t>(ContactNewton::kWidest), Vec{});
+  v_start_.assign(static_cast<std::size_t>(ContactNewton::kWidest), Vec{});
+  v_before_.assign(n, Vec{});
 }
 
 namespace {
@@ -181,8 +182,7 @@ void ContactSet::start(BandSolver& solver, const Numerics& numerics, double dt_s
   const double longer = per_second_ > 0.0 ? dt_s * per_second_ : 1.0;  // than the last substep: forces stay
   per_second_ = 1.0 / dt_s;
   if constexpr (Turns) turning_.prepare(contacts_.data(), rows_, segments_, radius_m_, *spin_);
-  if (window_last_ - window_first_ < ContactNewton::kWidest)
-    std::copy(v + window_first_, v + window_last_ + 1, v_before_.begin());
+  std::copy(v + window_first_, v + window_last_ + 1, v_before_.begin());
   solver.solve(window_first_, window_last_, nullptr, v, true);
   clear_extra();
   loaded_.clear();

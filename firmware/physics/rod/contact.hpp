@@ -151,10 +151,9 @@ class ContactSet {
   /// Solves for v by Newton's method (contact_newton.hpp).
   template <bool Friction>
   Outcome settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept;
-  /// v as before start(). @pre settle_directly() was tried last.
+  /// v as before start().
   void undo(Vec* v) const noexcept {
-    if (window_last_ - window_first_ < ContactNewton::kWidest)
-      std::copy(v_before_.begin(), v_before_.begin() + (window_last_ - window_first_ + 1), v + window_first_);
+    std::copy(v_before_.begin(), v_before_.begin() + (window_last_ - window_first_ + 1), v + window_first_);
   }
   /// What settle_directly() knows of the matrix is of another mesh or time step.
   void forget_matrix() noexcept { newton_.forget(); }
