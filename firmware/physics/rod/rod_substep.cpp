@@ -12,7 +12,7 @@ namespace {
 
 constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32, kSet = 64;
 constexpr double kWild_m_per_s = 1e-3;  // change of a last pass above which velocities are not trusted
-constexpr int kPatience = 2;            // ticks in which a substep may wait for its contacts to settle
+constexpr int kPatience = 12;            // ticks in which a substep may wait for its contacts to settle
 constexpr int kLeastPasses = 3;         // rows that cannot have these are left out; one where they are solved directly
 constexpr double kSkin = 0.5;           // diameters a list of pairs looks ahead at any speed
 
