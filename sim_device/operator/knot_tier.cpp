@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "sim_device/operator/primitives.hpp"
 #include "sim_device/operator/springy_throw.hpp"
 
 namespace ligature::sim {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "sim_device/operator/primitives.hpp"
+#include "sim_device/operator/throw.hpp"
 
 namespace ligature::sim {
 

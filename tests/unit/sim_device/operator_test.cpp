@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim_device/operator/diagram.hpp"
+#include "sim_device/operator/ring.hpp"
 #include "tests/unit/sim_device/tied.hpp"
 
 namespace ligature::sim {
