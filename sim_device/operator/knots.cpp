@@ -55,13 +55,20 @@ double taken_up(const Look& look, double s) {
   return knotted.last_m - knotted.first_m - (look.thread.at(knotted.last_m) - look.thread.at(knotted.first_m)).norm();
 }
 
-/// Takes the corner at `s` with the left hand and holds it as the layout says.
-void take_corner(Moves& m, const Workplace& place, const Layout& layout, WhereAlong s) {
-  m.push_back(reach(kLeftHand, s));
-  m.push_back(pinch(kLeftHand));
-  m.push_back(carry(kLeftHand, "hold the corner", [anchor = place.anchor_W, layout, s](const Look& look) -> Vec3 {
+/// Holds the corner at `s` with the left hand as the layout says.
+Move hold_corner(const Workplace& place, const Layout& layout, WhereAlong s) {
+  return carry(kLeftHand, "hold the corner", [anchor = place.anchor_W, layout, s](const Look& look) -> Vec3 {
     return anchor + layout.stretch * (s(look) - taken_up(look, s(look))) * -Vec3::UnitX();
-  }));
+  });
+}
+
+/// The right hand holds the end down, the thread just straight: beside a knot it would hang askew, and jaws keep the
+/// direction that they close on.
+Moves hold_down() {
+  constexpr double kStraight = 0.1;  // of a tight knot's pull
+  Moves m{reach(kRightHand, the_end()), pinch(kRightHand)};
+  append(m, pull_tight(kDown, kStraight));
+  return m;
 }
 
 }  // namespace
@@ -103,8 +110,13 @@ Moves held_throw(const Throw& t, const Workplace& place, bool alone) {
   const WhereAlong at_corner = [places](const Look&) { return places->corner; };
   const WhereAlong at_turn = [places](const Look&) { return places->turn; };
   Moves m;
+  const bool is_later = t.tied_already > 1;
+  if (is_later) append(m, hold_down());
   if (!alone) m.push_back(see_the_places(places));
-  take_corner(m, place, layout, at_corner);
+  m.push_back(reach(kLeftHand, at_corner));
+  m.push_back(pinch(kLeftHand));
+  if (is_later) m.push_back(let_go(kRightHand));
+  m.push_back(hold_corner(place, layout, at_corner));
   m.push_back(reach(kRightHand, the_end()));
   m.push_back(pinch(kRightHand));
   auto loop = std::make_shared<Loop>(at_corner, t.side);
