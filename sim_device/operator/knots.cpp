@@ -20,10 +20,8 @@ constexpr Throw kGranny[]{{-1, false, 1}, {-1, false, 1}};
 constexpr Throw kSurgeon[]{{1, false, 2}, {-1, false, 1}};
 
 constexpr std::array kKnots{
-    Knot{"overhand", "3_1", "right", kOverhand},
-    Knot{"figure-eight", "4_1", "amphichiral", kFigureEight},
-    Knot{"square", "3_1#3_1", "amphichiral", kSquare, 45.0},
-    Knot{"granny", "3_1#3_1", "left", kGranny, 45.0},
+    Knot{"overhand", "3_1", "right", kOverhand, 0.0, 2.65},  Knot{"figure-eight", "4_1", "amphichiral", kFigureEight},
+    Knot{"square", "3_1#3_1", "amphichiral", kSquare, 45.0}, Knot{"granny", "3_1#3_1", "left", kGranny, 45.0},
     Knot{"surgeon", "3_1#5_1", "mixed", kSurgeon, 60.0},
 };
 

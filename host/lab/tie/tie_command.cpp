@@ -106,12 +106,16 @@ Count tie_all(const Cell& c, const Seeds& seeds) {
   return count;
 }
 
+const char* model_name(const Arguments& a, std::size_t k) {
+  return a.models[k].empty() ? "the scene's" : a.models[k].c_str();
+}
+
 /// A line for each model, a column for each knot.
 void print_table(const Arguments& a, const std::vector<Count>& counts) {
-  std::printf("\n%-10s", "model");
+  std::printf("\n%-12s", "model");
   for (const auto& knot : a.knots) std::printf(" %14s", knot.c_str());
   for (std::size_t k = 0; k < counts.size(); ++k) {
-    if (k % a.knots.size() == 0) std::printf("\n%-10s", a.models[k / a.knots.size()].c_str());
+    if (k % a.knots.size() == 0) std::printf("\n%-12s", model_name(a, k / a.knots.size()));
     std::printf(" %14s", counts[k].text().c_str());
   }
   std::printf("\n");
