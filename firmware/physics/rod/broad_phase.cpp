@@ -18,6 +18,9 @@ std::size_t place_of(std::int32_t a, std::int32_t b) noexcept {
   return (static_cast<std::size_t>(a) * 2654435761U + static_cast<std::size_t>(b) * 40503U) % kTable;
 }
 
+// A string without bending stiffness has the corners that it is given.
+bool is_stiff(const Mesh& mesh, std::size_t j) noexcept { return mesh.weight[j] > 0.0 || mesh.weight[j + 1] > 0.0; }
+
 }  // namespace
 
 void BroadPhase::reserve(int nodes, int pairs) {
@@ -43,7 +46,7 @@ void BroadPhase::place(const State& state, const Motion& motion, float horizon_s
     x_[j] = static_cast<float>(mid[0]);
     y_[j] = static_cast<float>(mid[1]);
     z_[j] = static_cast<float>(mid[2]);
-    bulge_[j] = static_cast<float>(SmoothSegment(state, j).bulge()) * kSlack;
+    bulge_[j] = is_stiff(state.mesh, j) ? static_cast<float>(SmoothSegment(state, j).bulge()) * kSlack : 0.0F;
     half_[j] = static_cast<float>(norm(half)) * kSlack;
   }
   for (std::size_t k = 0; k < blocks; ++k) {

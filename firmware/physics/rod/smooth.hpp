@@ -45,17 +45,20 @@ struct SmoothSegment {
   }
 };
 
-/// Closest points of two smooth segments, from those of their chords on: a step of Gauss and Newton, which leaves out
-/// the curvature. Good to some hundredths of a diameter (tests); a second step moves no force. About 250 operations.
+/// Closest points of two smooth segments, from those of their chords on: two steps of Gauss and Newton, which leave out
+/// the curvature. Good to a hundredth of a diameter; after one the normal still jumps by a third of a corner (tests).
+/// About 460 instructions.
 [[nodiscard]] inline Closest closest(const SmoothSegment& a, const SmoothSegment& b, Closest c) noexcept {
   const auto clamp01 = [](double q) { return std::clamp(q, 0.0, 1.0); };
-  const Vec da = a.along(c.s), db = b.along(c.t), r = b.at(c.t) - a.at(c.s);
-  const double aa = dot(da, da), bb = dot(db, db), ab = dot(da, db), ar = dot(da, r), br = dot(db, r);
-  const double det = aa * bb - ab * ab, s = c.s;
-  if (det > 1e-9 * aa * bb) c.s = clamp01(s + (ar * bb - br * ab) / det);
-  const double t = clamp01(c.t + ((c.s - s) * ab - br) / bb);
-  c.s = clamp01(s + ((t - c.t) * ab + ar) / aa);
-  c.t = t;
+  for (int k = 0; k < 2; ++k) {
+    const Vec da = a.along(c.s), db = b.along(c.t), r = b.at(c.t) - a.at(c.s);
+    const double aa = dot(da, da), bb = dot(db, db), ab = dot(da, db), ar = dot(da, r), br = dot(db, r);
+    const double det = aa * bb - ab * ab, s = c.s;
+    if (det > 1e-9 * aa * bb) c.s = clamp01(s + (ar * bb - br * ab) / det);
+    const double t = clamp01(c.t + ((c.s - s) * ab - br) / bb);
+    c.s = clamp01(s + ((t - c.t) * ab + ar) / aa);
+    c.t = t;
+  }
   c.between = b.at(c.t) - a.at(c.s);
   c.distance2 = dot(c.between, c.between);
   return c;

@@ -73,7 +73,7 @@ TEST(Smooth, ClosestPointsOfBentStrands) {
         const Closest chords = closest(a.x[i], a.x[i + 1], b.x[j], b.x[j + 1]);
         const double least = closest_by_trying(one, other);
         if (least > 1.2 * kDiameter_m || least < 0.9 * kDiameter_m) continue;  // no contact, or no such contact
-        EXPECT_NEAR(std::sqrt(closest(one, other, chords).distance2), least, 3e-2 * kDiameter_m) << k;
+        EXPECT_NEAR(std::sqrt(closest(one, other, chords).distance2), least, 1e-2 * kDiameter_m) << k;
         EXPECT_LT(std::abs(least - std::sqrt(chords.distance2)), one.bulge() + other.bulge() + 1e-9);
       }
     }
@@ -108,7 +108,7 @@ TEST(Smooth, NormalTurnsSteadily) {
     return largest;
   };
   EXPECT_GT(largest_step(false), 0.9 * kTurn);
-  EXPECT_LT(largest_step(true), 0.35 * kTurn);  // of one step; two leave less
+  EXPECT_LT(largest_step(true), 0.12 * kTurn);
 }
 
 }  // namespace
