@@ -19,13 +19,21 @@ struct SmoothSegment {
   Vec x, e, before, after;   ///< node, chord, k_j and k_{j+1}, m
   double h_before, h_after;  ///< 1 / h, 1 / h'
 
-  SmoothSegment(const State& state, std::size_t j) noexcept
+  /// Of a diameter, the most that is cut off a corner: then chords stay apart where their curves do.
+  static constexpr double kMostCut = 0.35;
+
+  SmoothSegment(const State& state, std::size_t j, double diameter_m) noexcept
       : x(state.x[j]),
         e(state.x[j + 1] - state.x[j]),
         h_before(1.0 / state.cut_before[j]),
         h_after(1.0 / state.cut_after[j]) {
-    if (j > 0) before = e - (x - state.x[j - 1]) - state.rest_corner[j];
-    if (j + 2 < state.x.size()) after = (state.x[j + 2] - state.x[j + 1]) - e - state.rest_corner[j + 1];
+    const double most_m = 8.0 * kMostCut * diameter_m;
+    const auto corner = [most_m](Vec k) {
+      const double size2 = dot(k, k);
+      return size2 > most_m * most_m ? most_m / std::sqrt(size2) * k : k;
+    };
+    if (j > 0) before = corner(e - (x - state.x[j - 1]) - state.rest_corner[j]);
+    if (j + 2 < state.x.size()) after = corner((state.x[j + 2] - state.x[j + 1]) - e - state.rest_corner[j + 1]);
   }
   [[nodiscard]] Vec at(double s) const noexcept {
     const double p = near_before(s), q = near_after(s);
