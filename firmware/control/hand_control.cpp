@@ -7,7 +7,8 @@
 namespace ligature::control {
 namespace {
 
-constexpr double kAbove_m = 0.01;  // of the workspace's floor: where a parked tip rests
+constexpr double kSingular_per_m = 400.0;  // of a torque: 1 / 2.5 mm
+constexpr double kAbove_m = 0.01;          // of the workspace's floor: where a parked tip rests
 
 }  // namespace
 
@@ -94,10 +95,13 @@ void HandControl::sample(const rt::HandReading& reading, std::int64_t sampled) n
   encoder_fault_ = watch_.add(counts, timed ? periods : 0, linkage_.far_from_stops(reading.q_rad),
                               {torque[0], torque[1], torque[2]});
   sample_tick_ = sampled;
-  from_torque_ = jacobian_.transpose().inverse();
+  // Where the arm is nearly singular a torque says little about a force: as in the last pose where it did.
+  const Mat3 inverse = jacobian_.transpose().inverse();
+  if (inverse.allFinite() && inverse.cwiseAbs().maxCoeff() < kSingular_per_m) from_torque_ = inverse;
   if (!p_DT_.allFinite()) return;
   const Acted acted{vector_of(reading.torque_Nm), reading.torque_limited, reading.torque_held};
-  passivity_.observe(sampled, {reading.q_rad, p_DT_, count_rad_, jacobian_.colwise().norm().transpose(), rate, acted});
+  passivity_.observe(
+      sampled, {reading.q_rad, p_DT_, count_rad_, jacobian_.colwise().norm().transpose(), rate, acted, from_torque_});
 }
 
 /// While it is held the tool stays where it is in the world; when it is let go, the map is moved so that the tool
@@ -113,26 +117,29 @@ void HandControl::decide(Push push) noexcept {
   braking_ = push == Push::kBrake;
   decided_N_ = Vec3::Zero();
   decided_limits_ = braking_ ? rt::kVelocityBrake : 0;
-  if (push == Push::kNone || !finite_) return;
+  lets_go_ = push == Push::kNone || !finite_;
+  if (lets_go_) return;
   decided_N_ = limiter_.limit(gain() * wish_N);
   decided_limits_ = static_cast<std::int16_t>(decided_limits_ | limiter_.codes());
 }
 
 std::array<double, rt::kJoints> HandControl::command(std::int64_t tick) noexcept {
   std::int16_t limits = decided_limits_;
-  Vec3 torque_Nm = Vec3::Zero(), f_N = Vec3::Zero(), paid_N = Vec3::Zero();
-  if (!decided_N_.isZero(0.0)) {
-    const auto made = [this](const Vec3& f) { return tip_force(sendable_torque(f), f); };
-    paid_N = passivity_.control(tick, decided_N_, v_DT_, state_.f_device_N, made);
+  Vec3 torque_Nm = Vec3::Zero(), paid_N = Vec3::Zero();
+  if (!lets_go_) {
+    const auto torque = [this](const Vec3& f) { return sendable_torque(f); };
+    paid_N = passivity_.control(tick, decided_N_, v_DT_, state_.f_device_N, torque);
     torque_Nm = sendable_torque(paid_N);
-    f_N = tip_force(torque_Nm, paid_N);
+    if (!passivity_.released() && !passivity_.is_a_step(torque_Nm)) torque_Nm = torque_Nm_;  // rounding only
+    if (passivity_.released()) release();
     if (passivity_.acts()) limits |= rt::kPassivityLimit;
+    if (passivity_.stepped()) limits |= rt::kStepLimit;
     if ((jacobian_.transpose() * paid_N).lpNorm<Eigen::Infinity>() > max_torque_Nm_) limits |= rt::kTorqueLimit;
   }
   if (torque_Nm.isZero(0.0)) paid_N = Vec3::Zero();
   state_.f_device_N = paid_N;
   torque_Nm_ = torque_Nm;
-  passivity_.sent(tick, torque_Nm, f_N);
+  passivity_.sent(tick, torque_Nm, from_torque_ * torque_Nm);
   limiter_.sent(paid_N);
   fill_state(limits);
   return {torque_Nm[0], torque_Nm[1], torque_Nm[2]};
@@ -195,10 +202,11 @@ Vec3 HandControl::sendable_torque(const Vec3& f_N) const noexcept {
   return torque_Nm;
 }
 
-/// Tip force that joint torques make: J^-T tau. Where the arm is nearly singular, the force they were made from.
-Vec3 HandControl::tip_force(const Vec3& torque_Nm, const Vec3& otherwise_N) const noexcept {
-  const Vec3 f_N = from_torque_ * torque_Nm;
-  return f_N.allFinite() && f_N.norm() < 10.0 * otherwise_N.norm() + 0.1 ? f_N : otherwise_N;
+/// Not even the least force within a step can be paid for a period longer: the hand is wilder than the record allows,
+/// or frames are lost. It gets nothing, and what comes then begins at zero and must be earned.
+void HandControl::release() noexcept {
+  torque_Nm_ = Vec3::Zero();
+  end_move();
 }
 
 void HandControl::fill_state(std::int16_t limits) noexcept {

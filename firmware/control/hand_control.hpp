@@ -113,7 +113,7 @@ class HandControl {
   void map(const Vec3& p_DT) noexcept;
   void step_clutch(bool pressed, const Vec3& p_DT) noexcept;
   [[nodiscard]] Vec3 sendable_torque(const Vec3& f_N) const noexcept;
-  [[nodiscard]] Vec3 tip_force(const Vec3& torque_Nm, const Vec3& otherwise_N) const noexcept;
+  void release() noexcept;
   [[nodiscard]] Vec3 brake_force() noexcept;
   [[nodiscard]] Vec3 lead_force() noexcept;
   void fill_state(std::int16_t limits) noexcept;
@@ -140,7 +140,7 @@ class HandControl {
   Vec3 decided_N_ = Vec3::Zero(), torque_Nm_ = Vec3::Zero();           // torque: as sent in the tick before
   std::int16_t decided_limits_ = 0;
   Vec3 p_DT_ = Vec3::Zero(), v_DT_ = Vec3::Zero();
-  bool finite_ = true, holds_ = false, clutch_command_ = false;
+  bool lets_go_ = true, finite_ = true, holds_ = false, clutch_command_ = false;
   std::int64_t sample_tick_ = -1, doubtful_tick_ = -1;
   std::int32_t last_age_ = 0;
   EncoderWatch watch_;

@@ -34,6 +34,30 @@ void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {
   q_rad_ = q_rad;
   behind_rad_ = counted_rad - q_rad;
   p_m_ = s.p_m;
+  tip_N_per_Nm_ = s.tip_N_per_Nm;
+  look_under_way(tick);
+}
+
+/// All that was decided before this tick. Once RPDOs have been lost, any of it may act, joint by joint.
+void Passivity::look_under_way(std::int64_t tick) noexcept {
+  const bool wary = tick < lossy_until_;
+  under_way_ = {low_Nm_, high_Nm_};
+  under_way_J_ = std::max(0.0, sent_.at(sent_.newest() - 1).torque_Nm.dot(behind_rad_));  // if a guess was wrong
+  for (std::int64_t i = sent_.cycle_of(sampled_); i <= sent_.newest(); ++i) {
+    const SentTorques::Cycle& before = sent_.at(i - 1);
+    under_way_.take(before.torque_Nm);
+    const std::int64_t start = std::max<std::int64_t>(0, sent_.at(i).tick - sampled_), periods = sent_.periods(i);
+    const auto loss = [&](const Vec3& f_N) { return blind_loss_J(f_N, start, periods); };
+    under_way_J_ += wary ? under_way_.worst(tip_N_per_Nm_, loss) : loss(before.f_N);
+  }
+  under_way_N_ = under_way_.worst(tip_N_per_Nm_, [](const Vec3& f_N) { return f_N.norm(); });
+}
+
+bool Passivity::is_a_step(const Vec3& torque_Nm) const noexcept {
+  if (torque_Nm == sent_.at(sent_.newest() - 1).torque_Nm) return true;
+  const Box change{(torque_Nm - under_way_.high_Nm).cwiseMin(0.0), (torque_Nm - under_way_.low_Nm).cwiseMax(0.0)};
+  constexpr double kMargin = 0.98;  // the arm turns until the frame acts
+  return change.worst(tip_N_per_Nm_, [](const Vec3& f_N) { return f_N.norm(); }) <= kMargin * step_N_;
 }
 
 /// By one joint's motor since the last sample. The torque of the last cycle is known; so are those before it in which
@@ -90,21 +114,20 @@ double Passivity::along_J(const Vec3& f_N) const noexcept {
   return given_J > 0.0 ? given_J : std::min(0.0, given_J + f_N.norm() * count_m_);
 }
 
-/// What is missing to send f in `tick` and to take it back in steps; below zero: what is left.
-double Passivity::shortage_J(std::int64_t tick, const Vec3& f_N) const noexcept {
+/// What is missing to send f in `tick` and to take it back; below zero: what is left. Each step of the way back is a
+/// step from all that may be acting, that is from the last two sent: it takes two periods.
+double Passivity::shortage_J(std::int64_t tick, const Vec3& f_N, bool and_back) const noexcept {
   const bool blind = tick > sampled_, wary = tick < lossy_until_;
-  double spent_J = std::max(0.0, sent_.at(sent_.newest() - 1).torque_Nm.dot(behind_rad_));  // if a guess was wrong
-  for (std::int64_t i = sent_.cycle_of(sampled_); i <= sent_.newest(); ++i) {               // under way
-    const std::int64_t start = std::max<std::int64_t>(0, sent_.at(i).tick - sampled_);
-    const auto lost_J = [&](std::int64_t from) { return blind_loss_J(sent_.at(from).f_N, start, sent_.periods(i)); };
-    spent_J += wary ? std::max(lost_J(i - 1), lost_J(i - 2)) : lost_J(i - 1);
-  }
   const std::int64_t ahead = tick + 1 - sampled_;
-  spent_J += blind_loss_J(f_N, ahead, wary && !blind ? 2 : 1);
-  Vec3 f = shorter(f_N, step_N_);
-  for (std::int64_t k = 1; !f.isZero(0.0); ++k) {  // each step back sees one more count
-    spent_J += blind ? blind_loss_J(f, ahead + k, 1) : loss_J(f, ahead + k, 1, 1.0 + static_cast<double>(k));
-    f = shorter(f, step_N_);
+  double size_N = f_N.norm(), told_N = under_way_N_;
+  const Vec3 along = f_N / std::max(size_N, 1e-300);
+  double spent_J = under_way_J_ + blind_loss_J(f_N, ahead, wary && !blind ? 2 : 1);
+  for (std::int64_t k = 1; and_back; ++k) {
+    const double next_N = std::clamp(std::max(told_N, size_N) - step_N_, 0.0, size_N);
+    told_N = size_N, size_N = next_N;
+    if (size_N == 0.0) break;
+    const Vec3 f = along * size_N;  // each step back sees one more count
+    spent_J += blind ? blind_loss_J(f, ahead + k, 1) : loss_J(f, ahead + k, 1, 1.0 + 0.5 * static_cast<double>(k));
   }
   return spent_J - energy_J_ - kSpend_J;
 }

@@ -2,6 +2,7 @@
 // One device port must never give out more energy than it was given: a lower bound of it, and a force that it can pay
 // for.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -27,6 +28,7 @@ struct PortSample {
   Vec3 lever_m = Vec3::Zero();         ///< |dp/dq_j|
   Vec3 rate_rad_per_s = Vec3::Zero();  ///< for where between two counts a joint is likely to be
   Acted acted{};
+  Mat3 tip_N_per_Nm = Mat3::Identity();  ///< J^-T: joint torques to tip force
 };
 
 /// Account of a port and controller over it.
@@ -47,14 +49,15 @@ struct PortSample {
 /// with |e| <= j a T^2 + c (dx: the last period's motion, c: one count). What force F can lose there is
 ///   out_j(F) = max(0, F . dx + |F| (j a T^2 + c)),
 /// and a force is sent only when E stays above -kFloor_J after the losses of all torques under way, its own, and those
-/// of the way from it to zero in steps of the device's force_step_N. So a force that was paid for can always be taken
+/// of the way from it to zero in steps of the device's force_step_N. So a force that was paid for can be taken
 /// back without a jump. One that cannot be paid for is first damped against the motion (alpha = shortage / (T v^2), at
 /// most kMaxDamping, v at least kSlow), then as much of it is sent as can. O(1), no allocation. The bound on
-/// acceleration is the device record's; beyond it the energy comes first, and a step may be larger.
+/// acceleration is the device record's; where a hand is so much wilder that not even a period of the least force within
+/// a step can be paid for, all of it is let go.
 ///
-/// Lost frames. Once RPDOs have been lost, the next loss is foreseen: the one under way may be, and the one sent may
-/// act twice. Without a sample the force goes on as long as it is paid for. In either case the hand's acceleration from
-/// the third period on is taken as kLater of a, and only of what exceeds kSlight_N.
+/// Lost frames. Once RPDOs have been lost, the next loss is foreseen: of what is under way any mixture, joint by joint,
+/// may act, and the one sent may act twice. Without a sample the force goes on as long as it is paid for. In either
+/// case the hand's acceleration from the third period on is taken as kLater of a, and only of what exceeds kSlight_N.
 class Passivity {
  public:
   static constexpr double kFloor_J = 1e-6;
@@ -69,27 +72,46 @@ class Passivity {
   Passivity(const device::Device& device, double period_s, bool active, double credit_J) noexcept;
 
   /// SYNC of `tick` has gone out; observe() and sent() say so, too.
-  void begin(std::int64_t tick) noexcept { sent_.begin(tick); }
+  void begin(std::int64_t tick) noexcept {
+    sent_.begin(tick);
+    look_under_way(tick);
+  }
 
   /// A new sample: books the work since the last one.
   void observe(std::int64_t tick, const PortSample& sample) noexcept;
 
   /// The force that may be sent in tick `tick`, >= the last observed, on the way from `before_N` (sent last) to
-  /// `wish_N`, which lies within force_step_N of it. Only looks; sent() books it.
-  /// @param made tip force -> the one that comes of it once torques are rounded
-  template <class Make>
+  /// `wish_N`. Only looks; sent() books it. Energy comes before the law. Where the way back in steps cannot be paid
+  /// for any more, it is gone; where not even the next period of it can, all force is let go: released() says so.
+  /// @param torque tip force -> the joint torques that go out for it; whole quanta
+  template <class Torque>
   [[nodiscard]] Vec3 control(std::int64_t tick, const Vec3& wish_N, const Vec3& v_m_per_s, const Vec3& before_N,
-                             Make made) noexcept {
+                             Torque torque) noexcept {
     injected_ = 0.0;
-    acts_ = !allows(tick, made(wish_N));
-    if (!acts_) return wish_N;
-    const auto paid = [&](const Vec3& f_N) { return allows(tick, made(f_N)); };
-    const Vec3 least_N = shorter(before_N, step_N_), most_N = damped(tick, wish_N, v_m_per_s, before_N);
-    return paid(least_N) ? farthest(least_N, most_N, paid) : farthest(Vec3::Zero(), least_N, paid);
+    released_ = false;
+    const auto near = [&](const Vec3& f_N) { return is_a_step(torque(f_N)); };
+    const auto paid = [&](const Vec3& f_N) {
+      const Vec3 torque_Nm = torque(f_N);
+      return is_a_step(torque_Nm) && allows(tick, tip_N_per_Nm_ * torque_Nm);
+    };
+    const Vec3 next_N = farthest(before_N, wish_N, near);
+    stepped_ = next_N != wish_N;
+    acts_ = !paid(next_N);
+    if (!acts_) return next_N;
+    const Vec3 least_N = least_of(before_N, near);
+    if (paid(least_N))
+      return farthest(least_N, farthest(before_N, damped(tick, next_N, v_m_per_s, before_N), near), paid);
+    if (near(Vec3::Zero())) return farthest(Vec3::Zero(), least_N, paid);
+    released_ = shortage_J(tick, tip_N_per_Nm_ * torque(least_N), false) > 0.0;  // not even until the next decision
+    return released_ ? Vec3(Vec3::Zero()) : least_N;
   }
   [[nodiscard]] Vec3 control(std::int64_t tick, const Vec3& wish_N, const Vec3& v, const Vec3& before_N) noexcept {
     return control(tick, wish_N, v, before_N, [](const Vec3& f_N) { return f_N; });
   }
+  /// Whether the tip's force changes by force_step_N at most when these torques act at the next SYNC, whatever acts
+  /// until then: what a drive last said that it made, or anything sent since, joint by joint, for each RPDO may be
+  /// lost. The same torques again are no step.
+  [[nodiscard]] bool is_a_step(const Vec3& torque_Nm) const noexcept;
   /// Whether exactly this tip force may be sent in `tick`.
   [[nodiscard]] bool allows(std::int64_t tick, const Vec3& f_N) const noexcept {
     return !active_ || f_N.isZero(0.0) || shortage_J(tick, f_N) <= 0.0;
@@ -115,20 +137,53 @@ class Passivity {
   [[nodiscard]] double dissipated_J() const noexcept { return dissipated_J_; }
   [[nodiscard]] double injected_N_s_per_m() const noexcept { return injected_; }
   [[nodiscard]] bool acts() const noexcept { return acts_; }
+  [[nodiscard]] bool stepped() const noexcept { return stepped_; }    ///< the wish was more than a step away
+  [[nodiscard]] bool released() const noexcept { return released_; }  ///< a hand wilder than the record allows
 
  private:
   static constexpr double kSpend_J = 0.95 * kFloor_J;
   static constexpr double kRounding_J = 5e-6;  // what a torque's rounding may cost more: one quantum times 1 mm
+  /// Joint torques, each between its two ends.
+  struct Box {
+    Vec3 low_Nm = Vec3::Zero(), high_Nm = Vec3::Zero();
+    void take(const Vec3& torque_Nm) noexcept {
+      low_Nm = low_Nm.cwiseMin(torque_Nm), high_Nm = high_Nm.cwiseMax(torque_Nm);
+    }
+    [[nodiscard]] Vec3 middle_Nm() const noexcept { return 0.5 * (low_Nm + high_Nm); }
+    /// Of a convex measure of the tip force.
+    template <class Measure>
+    [[nodiscard]] double worst(const Mat3& tip_N_per_Nm, Measure measure) const noexcept {
+      double most = measure(Vec3(tip_N_per_Nm * low_Nm));
+      for (unsigned corner = 1; corner < 8 && low_Nm != high_Nm; ++corner) {
+        Vec3 torque_Nm = low_Nm;
+        for (Eigen::Index j = 0; j < 3; ++j)
+          if ((corner >> j & 1U) != 0) torque_Nm[j] = high_Nm[j];
+        most = std::max(most, measure(Vec3(tip_N_per_Nm * torque_Nm)));
+      }
+      return most;
+    }
+  };
+
+  void look_under_way(std::int64_t tick) noexcept;
   [[nodiscard]] double most_given_J(Eigen::Index joint, std::int64_t tick, double dq_rad,
                                     const PortSample& sample) noexcept;
   [[nodiscard]] double loss_J(const Vec3& f_N, std::int64_t start, std::int64_t periods, double counts) const noexcept;
   [[nodiscard]] double blind_loss_J(const Vec3& f_N, std::int64_t start, std::int64_t periods) const noexcept;
   [[nodiscard]] double along_J(const Vec3& f_N) const noexcept;
-  [[nodiscard]] double shortage_J(std::int64_t tick, const Vec3& f_N) const noexcept;
+  [[nodiscard]] double shortage_J(std::int64_t tick, const Vec3& f_N, bool and_back = true) const noexcept;
   [[nodiscard]] Vec3 damped(std::int64_t tick, const Vec3& wish_N, const Vec3& v, const Vec3& before_N) noexcept;
   [[nodiscard]] static Vec3 shorter(const Vec3& f_N, double by_N) noexcept {
     const double size = f_N.norm();
     return size > by_N ? Vec3(f_N * (1.0 - by_N / size)) : Vec3(Vec3::Zero());
+  }
+
+  /// The shortest a step away: straight back, or where a force turns, between those that may be acting and back.
+  template <class Near>
+  [[nodiscard]] Vec3 least_of(const Vec3& before_N, Near near) const noexcept {
+    const Vec3 straight_N = farthest(before_N, shorter(before_N, step_N_), near);
+    const Vec3 amid_N = farthest(before_N, tip_N_per_Nm_ * under_way_.middle_Nm(), near);
+    const Vec3 between_N = farthest(amid_N, shorter(amid_N, step_N_), near);
+    return between_N.norm() < straight_N.norm() ? between_N : straight_N;
   }
 
   /// Of the way from `from` to `to`, as far as can be paid for.
@@ -147,13 +202,16 @@ class Passivity {
   bool active_;
   double energy_J_, received_J_ = 0.0, granted_J_ = 0.0, dissipated_J_ = 0.0, injected_ = 0.0;
   double count_m_ = 0.0, doubt_m_ = 0.0;  // of step_m_: by counts, by what lies between samples
-  bool acts_ = false;
+  bool acts_ = false, stepped_ = false, released_ = false;
+  Mat3 tip_N_per_Nm_ = Mat3::Identity();
   std::int64_t sampled_ = -1, lossy_until_ = -1;
   Vec3 q_rad_ = Vec3::Zero(), behind_rad_ = Vec3::Zero();  // at the sample: guessed; the count less that
   Vec3 p_m_ = Vec3::Zero(), step_m_ = Vec3::Zero();        // step: motion in a period before the sample
   Vec3 low_Nm_ = Vec3::Zero(), high_Nm_ = Vec3::Zero();    // what acted in that period
   std::array<bool, 3> guarded_{};                          // then
   SentTorques sent_;
+  Box under_way_;                                 // what may be acting until the next SYNC
+  double under_way_J_ = 0.0, under_way_N_ = 0.0;  // what that may lose, and the largest force of it
 };
 
 }  // namespace ligature::control

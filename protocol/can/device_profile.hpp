@@ -14,9 +14,16 @@ inline constexpr std::array kJointNodes{kWaist, kShoulder, kElbow};
 inline constexpr std::uint32_t kBitRate = 1'000'000;  ///< bit/s
 inline constexpr std::int64_t kBitTime_ns = 1'000'000'000 / kBitRate;
 
+/// The nearest number to a positive one; std::lround is no constant expression.
+template <class Integer>
+constexpr Integer nearest(double value) noexcept {
+  const auto below = static_cast<Integer>(value);
+  return static_cast<Integer>(value - below < 0.5 ? below : below + 1);
+}
+
 /// Of the shipped device's joints and drives; another device's are in its record alone.
-inline constexpr auto kCountsPerRevolution = static_cast<std::int32_t>(omni::kMotorCounts * omni::kGear + 0.5);
-inline constexpr auto kRatedTorque_mNm = static_cast<std::uint32_t>(1e3 * omni::kRatedTorque_Nm + 0.5);
+inline constexpr auto kCountsPerRevolution = nearest<std::int32_t>(omni::kMotorCounts * omni::kGear);
+inline constexpr auto kRatedTorque_mNm = nearest<std::uint32_t>(1e3 * omni::kRatedTorque_Nm);
 inline constexpr auto kMaxTorque_permille = static_cast<std::int16_t>(omni::kMaxTorque_permille);
 
 inline constexpr std::int8_t kCyclicSynchronousTorque = 10;  ///< value of 0x6060

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "sim_device/operator/primitives.hpp"
 #include "sim_device/operator/springy_throw.hpp"
 
 namespace ligature::sim {
@@ -35,12 +36,11 @@ Workplace workplace_of(const scene::Scene& scene, const Vec3& anchor_W) {
   return w;
 }
 
-/// Nodes that a chain needs to go round its own strand: one that lies d off the strand's middle turns by
-/// 2 atan(a / 2 d) at each node, and beyond 1.1 rad (a = 1.2 d) it holds no turn. A mesh that adapts needs none.
-int least_nodes(const scene::Suture& s) {
-  constexpr double kLongest = 1.2;  // diameters
+/// Nodes that a chain needs for segments no longer than the knot bears (Knot::longest_segment). A mesh that adapts
+/// needs none.
+int least_nodes(const scene::Suture& s, const Knot& knot) {
   if (s.model == scene::Model::kRod) return 0;
-  return 1 + static_cast<int>(std::ceil(s.length_m / (kLongest * 2.0 * s.radius_m) - 1e-9));
+  return 1 + static_cast<int>(std::ceil(s.length_m / (knot.longest_segment * 2.0 * s.radius_m) - 1e-9));
 }
 
 /// 4.5 as "4.5".
@@ -64,9 +64,10 @@ std::variant<KnotTier, std::string> KnotTier::make(const scene::Scene& scene, co
     return "suture.length_m: found " + shortest(scene.suture.length_m) + ", allowed " + shortest(least_m) +
            " or more for a " + std::string(knot->name) + " knot in a thread this thick";
   }
-  if (const int least = least_nodes(scene.suture); scene.suture.nodes < least) {
+  if (const int least = least_nodes(scene.suture, *knot); scene.suture.nodes < least) {
     return "suture.nodes: found " + std::to_string(scene.suture.nodes) + ", allowed " + std::to_string(least) +
-           " or more for a knot in this thread: longer segments than 1.2 diameters do not go round a strand";
+           " or more for a " + std::string(knot->name) + " knot in this thread: segments longer than " +
+           shortest(knot->longest_segment) + " diameters do not go round its strands";
   }
   for (const auto& f : scene.world.fixed)
     if (f.node == 0) return KnotTier(scene, *knot, workplace_of(scene, vec(f.position_m)), seed);

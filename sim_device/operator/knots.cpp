@@ -4,6 +4,8 @@
 #include <array>
 
 #include "sim_device/operator/diagram.hpp"
+#include "sim_device/operator/figure_eight.hpp"
+#include "sim_device/operator/primitives.hpp"
 #include "sim_device/operator/springy_throw.hpp"
 #include "sim_device/operator/wound_throw.hpp"
 
@@ -18,15 +20,12 @@ constexpr Throw kGranny[]{{-1, false, 1}, {-1, false, 1}};
 constexpr Throw kSurgeon[]{{1, false, 2}, {-1, false, 1}};
 
 constexpr std::array kKnots{
-    Knot{"overhand", "3_1", "right", kOverhand},
-    Knot{"figure-eight", "4_1", "amphichiral", kFigureEight},
-    Knot{"square", "3_1#3_1", "amphichiral", kSquare, 45.0},
-    Knot{"granny", "3_1#3_1", "left", kGranny, 45.0},
+    Knot{"overhand", "3_1", "right", kOverhand, 0.0, 2.65},  Knot{"figure-eight", "4_1", "amphichiral", kFigureEight},
+    Knot{"square", "3_1#3_1", "amphichiral", kSquare, 45.0}, Knot{"granny", "3_1#3_1", "left", kGranny, 45.0},
     Knot{"surgeon", "3_1#5_1", "mixed", kSurgeon, 60.0},
 };
 
-const Vec3 kSlant = Vec3(-0.75, 0.0, -0.66).normalized();  // the standing part runs down to the left
-
+const Vec3 kSlant = Vec3(-0.75, 0.0, -0.66).normalized();  // past the corner, down to the left
 const Vec3 kDown = Vec3(-0.1, 0.0, -1.0).normalized();
 
 const Vec3 kFront = -Vec3::UnitY();
@@ -38,20 +37,14 @@ WhereAlong the_end() {
 }
 
 /// How a single knot is laid out: where the left hand takes the thread (share of its length), how much of that it
-/// stretches, in which direction from the anchor, and where the end goes round it (share of the standing part).
+/// stretches, level to the left, and where the end goes round it (share of the standing part).
 struct Layout {
-  double corner, stretch;
-  Vec3 way;
-  double turn;
+  double corner, stretch, turn;
 };
 
-/// An overhand's standing part runs straight down to the left. A figure-eight's is led level to its corner and sags: a
-/// turn that is not yet locked stays in the belly instead of slipping over the corner while the end crosses the loop.
-Layout layout_of(const Throw& t, const Workplace& place) {
-  if (is_springy(place) && !t.against) return {0.4, 0.96, -Vec3::UnitX(), 0.5};
-  if (t.against) return {0.403, 0.866, -Vec3::UnitX(), 0.49};
-  return {0.4, 0.96, kSlant, 0.5};
-}
+/// A figure-eight's standing part is led level to its corner and sags: a turn that is not yet locked stays in the belly
+/// instead of slipping over the corner while the end crosses the loop. A springy thread's overhand has it taut.
+Layout layout_of(const Throw& t) { return t.against ? Layout{0.403, 0.866, 0.49} : Layout{0.4, 0.96, 0.5}; }
 
 /// Length that knots before the place `s` have taken up, m.
 double taken_up(const Look& look, double s) {
@@ -60,13 +53,20 @@ double taken_up(const Look& look, double s) {
   return knotted.last_m - knotted.first_m - (look.thread.at(knotted.last_m) - look.thread.at(knotted.first_m)).norm();
 }
 
-/// Takes the corner at `s` with the left hand and holds it as the layout says.
-void take_corner(Moves& m, const Workplace& place, const Layout& layout, WhereAlong s) {
-  m.push_back(reach(kLeftHand, s));
-  m.push_back(pinch(kLeftHand));
-  m.push_back(carry(kLeftHand, "hold the corner", [anchor = place.anchor_W, layout, s](const Look& look) -> Vec3 {
-    return anchor + layout.stretch * (s(look) - taken_up(look, s(look))) * layout.way;
-  }));
+/// Holds the corner at `s` with the left hand as the layout says.
+Move hold_corner(const Workplace& place, const Layout& layout, WhereAlong s) {
+  return carry(kLeftHand, "hold the corner", [anchor = place.anchor_W, layout, s](const Look& look) -> Vec3 {
+    return anchor + layout.stretch * (s(look) - taken_up(look, s(look))) * -Vec3::UnitX();
+  });
+}
+
+/// The right hand holds the end down, the thread just straight: beside a knot it would hang askew, and jaws keep the
+/// direction that they close on.
+Moves hold_down() {
+  constexpr double kStraight = 0.1;  // of a tight knot's pull
+  Moves m{reach(kRightHand, the_end()), pinch(kRightHand)};
+  append(m, pull_tight(kDown, kStraight));
+  return m;
 }
 
 }  // namespace
@@ -102,22 +102,27 @@ Move see_the_places(std::shared_ptr<Places> places) {
 
 /// One throw with the corner held by the left hand, drawn tight, and both hands empty again.
 Moves held_throw(const Throw& t, const Workplace& place, bool alone) {
-  const Layout layout = layout_of(t, place);
+  const Layout layout = layout_of(t);
   const double first = layout.corner * place.length_m;
   auto places = std::make_shared<Places>(Places{first, layout.turn * first});
   const WhereAlong at_corner = [places](const Look&) { return places->corner; };
   const WhereAlong at_turn = [places](const Look&) { return places->turn; };
   Moves m;
+  const bool is_later = t.tied_already > 1;
+  if (is_later) append(m, hold_down());
   if (!alone) m.push_back(see_the_places(places));
-  take_corner(m, place, layout, at_corner);
+  m.push_back(reach(kLeftHand, at_corner));
+  m.push_back(pinch(kLeftHand));
+  if (is_later) m.push_back(let_go(kRightHand));
+  m.push_back(hold_corner(place, layout, at_corner));
   m.push_back(reach(kRightHand, the_end()));
   m.push_back(pinch(kRightHand));
   auto loop = std::make_shared<Loop>(at_corner, t.side);
-  if (is_springy(place) && !t.against) {
+  if (!t.against) {
     m.push_back(open_arch(t, at_corner));
     m.push_back(springy_throw(t, at_corner, at_turn));
   } else {
-    append(m, lay_turn(loop, t, at_turn));
+    append(m, lay_turn(loop, at_turn));
     append(m, pass_through(loop, t, at_turn));
   }
   m.push_back(draw_through(loop, t, kSlant));

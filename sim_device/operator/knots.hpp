@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "sim_device/operator/primitives.hpp"
+#include "sim_device/operator/throw.hpp"
 
 namespace ligature::sim {
 
@@ -17,6 +17,10 @@ struct Knot {
   std::string_view handedness;
   std::span<const Throw> throws;
   double least_diameters = 0.0;  ///< the thread must be so many diameters long
+  /// Of a chain's segments, in diameters d. One that lies d off a strand's middle turns by 2 atan(a / 2 d) at each
+  /// node, a its segment; beyond a = 1.2 d, 1.1 rad, it holds no second turn beside the first. A single turn is held by
+  /// any chain tried, a = 2.65 d.
+  double longest_segment = 1.2;
 };
 
 /// Those that are tied reliably. A surgeon's knot is a first throw of two turns, 5_1, and a second of one turn, a

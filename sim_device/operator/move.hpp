@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "sim_device/operator/hands.hpp"
-#include "sim_device/operator/ring.hpp"
 #include "sim_device/operator/thread_view.hpp"
 
 namespace ligature::sim {

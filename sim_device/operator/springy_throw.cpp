@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <span>
 
 #include "sim_device/operator/diagram.hpp"
+#include "sim_device/operator/primitives.hpp"
 
 namespace ligature::sim {
 namespace {

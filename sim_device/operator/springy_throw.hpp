@@ -2,7 +2,7 @@
 // A throw in a thread that stands by itself: the loop between two pairs of jaws is an elastic arch, not a hanging
 // bight.
 
-#include "sim_device/operator/primitives.hpp"
+#include "sim_device/operator/throw.hpp"
 
 namespace ligature::sim {
 

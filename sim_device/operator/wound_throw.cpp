@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "sim_device/operator/primitives.hpp"
+
 namespace ligature::sim {
 namespace {
 
@@ -74,27 +76,31 @@ Move swing_out() {
           25.0};
 }
 
+/// Would it hold, were it drawn past the corner now?
+bool is_laid(const Look& look, const Throw& t) {
+  return would_hold(look, t, front_of(t)) && would_hold(look, t, 0.8 * front_of(t) + 0.6 * kAway);
+}
+
 /// The end goes round the standing part, `turns` times and the way in, and from the top of the first turn on also along
-/// it.
+/// it; a little further where the bight swings after it and is not passed yet.
 Move wind(const Throw& t, std::shared_ptr<const Site> site) {
   auto wound = std::make_shared<std::optional<double>>();
+  constexpr double kFurther = 0.6;
   const double last = 2.0 * kPi * t.passes;
-  const Vec3 front = front_of(t);
-  return {
-      "wind",
-      [=](const Look& look) {
-        const Standing standing(look, *site, t);
-        MovingHand& h = look.hands[kRightHand];
-        const double now = standing.angle_of(look.sight.tool_W[kRightHand]);
-        *wound = *wound ? **wound + std::remainder(now - **wound, 2.0 * kPi) : now;
-        const double goal = std::min(last, **wound + 0.8);
-        const double gone = std::clamp((goal - 0.5 * kPi) / (last - kPi), 0.0, 1.0);
-        h.pace = 0.7;
-        h.goal_W = standing.beside(kFirst + gone * (kLast - kFirst), kRadius * look.place.clearance_m, goal);
-        return last - **wound < 0.25;
-      },
-      15.0 * (1 + t.passes),
-      [=](const Look& look) { return would_hold(look, t, front) && would_hold(look, t, 0.8 * front + 0.6 * kAway); }};
+  return {"wind",
+          [=](const Look& look) {
+            const Standing standing(look, *site, t);
+            MovingHand& h = look.hands[kRightHand];
+            const double now = standing.angle_of(look.sight.tool_W[kRightHand]);
+            *wound = *wound ? **wound + std::remainder(now - **wound, 2.0 * kPi) : now;
+            const double goal = std::min(last + kFurther, **wound + 0.8);
+            const double gone = std::clamp((goal - 0.5 * kPi) / (last - kPi), 0.0, 1.0);
+            h.pace = 0.7;
+            h.goal_W = standing.beside(kFirst + gone * (kLast - kFirst), kRadius * look.place.clearance_m, goal);
+            if (**wound < last - 0.25) return false;
+            return is_laid(look, t) || **wound > last + kFurther - 0.25;
+          },
+          15.0 * (1 + t.passes), [=](const Look& look) { return is_laid(look, t); }};
 }
 
 /// Is what is knotted as short as a pull makes it? A turn of a stout thread takes 12 diameters; a springy one stays

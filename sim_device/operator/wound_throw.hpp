@@ -4,7 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "sim_device/operator/primitives.hpp"
+#include "sim_device/operator/throw.hpp"
 
 namespace ligature::sim {
 

@@ -18,6 +18,9 @@ std::size_t place_of(std::int32_t a, std::int32_t b) noexcept {
   return (static_cast<std::size_t>(a) * 2654435761U + static_cast<std::size_t>(b) * 40503U) % kTable;
 }
 
+// A string without bending stiffness has the corners that it is given.
+bool is_stiff(const Mesh& mesh, std::size_t j) noexcept { return mesh.weight[j] > 0.0 || mesh.weight[j + 1] > 0.0; }
+
 }  // namespace
 
 void BroadPhase::reserve(int nodes, int pairs) {
@@ -43,7 +46,7 @@ void BroadPhase::place(const State& state, const Motion& motion, float horizon_s
     x_[j] = static_cast<float>(mid[0]);
     y_[j] = static_cast<float>(mid[1]);
     z_[j] = static_cast<float>(mid[2]);
-    bulge_[j] = static_cast<float>(SmoothSegment(state, j).bulge()) * kSlack;
+    bulge_[j] = is_stiff(state.mesh, j) ? static_cast<float>(SmoothSegment(state, j, 1e9).bulge()) * kSlack : 0.0F;
     half_[j] = static_cast<float>(norm(half)) * kSlack;
   }
   for (std::size_t k = 0; k < blocks; ++k) {
@@ -106,7 +109,8 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
   if (arc < kLeastArc * d) return true;
   const bool along = arc < 0.5 * std::numbers::pi * d;  // neighbours along the thread
   const double reach = along ? d * std::sin(arc / d) : d;
-  const double bulge = along ? 0.0 : static_cast<double>(bulge_[a] + bulge_[b]);
+  const auto cut = [&](std::size_t j) { return std::min(static_cast<double>(bulge_[j]), SmoothSegment::kMostCut * d); };
+  const double bulge = along ? 0.0 : cut(a) + cut(b);
   const double limit = reach + outlook.skin_m + outlook.horizon_s * motion.rate(a, b) + bulge;
   const float dx = x_[b] - x_[a], dy = y_[b] - y_[a], dz = z_[b] - z_[a];
   const float halves = half_[a] + half_[b], within = (halves + static_cast<float>(limit)) * kSlack;

@@ -106,7 +106,7 @@ bool ContactSet::measure(Candidate& pair, const State& state, const Motion& moti
   const double chord = std::sqrt(c.distance2);
   double distance = chord;
   if (pair.bulge_m > 0.0 && chord - pair.bulge_m < pair.reach_m + kClose * pair.near_m) {
-    c = closest(SmoothSegment(state, a), SmoothSegment(state, b), c);
+    c = closest(SmoothSegment(state, a, pair.reach_m), SmoothSegment(state, b, pair.reach_m), c);
     distance = std::sqrt(c.distance2);
   }
   const double gap = distance - pair.reach_m;

@@ -19,13 +19,21 @@ struct SmoothSegment {
   Vec x, e, before, after;   ///< node, chord, k_j and k_{j+1}, m
   double h_before, h_after;  ///< 1 / h, 1 / h'
 
-  SmoothSegment(const State& state, std::size_t j) noexcept
+  /// Of a diameter, the most that is cut off a corner: then chords stay apart where their curves do.
+  static constexpr double kMostCut = 0.35;
+
+  SmoothSegment(const State& state, std::size_t j, double diameter_m) noexcept
       : x(state.x[j]),
         e(state.x[j + 1] - state.x[j]),
         h_before(1.0 / state.cut_before[j]),
         h_after(1.0 / state.cut_after[j]) {
-    if (j > 0) before = e - (x - state.x[j - 1]) - state.rest_corner[j];
-    if (j + 2 < state.x.size()) after = (state.x[j + 2] - state.x[j + 1]) - e - state.rest_corner[j + 1];
+    const double most_m = 8.0 * kMostCut * diameter_m;
+    const auto corner = [most_m](Vec k) {
+      const double size2 = dot(k, k);
+      return size2 > most_m * most_m ? most_m / std::sqrt(size2) * k : k;
+    };
+    if (j > 0) before = corner(e - (x - state.x[j - 1]) - state.rest_corner[j]);
+    if (j + 2 < state.x.size()) after = corner((state.x[j + 2] - state.x[j + 1]) - e - state.rest_corner[j + 1]);
   }
   [[nodiscard]] Vec at(double s) const noexcept {
     const double p = near_before(s), q = near_after(s);
@@ -45,17 +53,20 @@ struct SmoothSegment {
   }
 };
 
-/// Closest points of two smooth segments, from those of their chords on: a step of Gauss and Newton, which leaves out
-/// the curvature. Good to some hundredths of a diameter (tests); a second step moves no force. About 250 operations.
+/// Closest points of two smooth segments, from those of their chords on: two steps of Gauss and Newton, which leave out
+/// the curvature. Good to a hundredth of a diameter; after one the normal still jumps by a third of a corner (tests).
+/// About 460 instructions.
 [[nodiscard]] inline Closest closest(const SmoothSegment& a, const SmoothSegment& b, Closest c) noexcept {
   const auto clamp01 = [](double q) { return std::clamp(q, 0.0, 1.0); };
-  const Vec da = a.along(c.s), db = b.along(c.t), r = b.at(c.t) - a.at(c.s);
-  const double aa = dot(da, da), bb = dot(db, db), ab = dot(da, db), ar = dot(da, r), br = dot(db, r);
-  const double det = aa * bb - ab * ab, s = c.s;
-  if (det > 1e-9 * aa * bb) c.s = clamp01(s + (ar * bb - br * ab) / det);
-  const double t = clamp01(c.t + ((c.s - s) * ab - br) / bb);
-  c.s = clamp01(s + ((t - c.t) * ab + ar) / aa);
-  c.t = t;
+  for (int k = 0; k < 2; ++k) {
+    const Vec da = a.along(c.s), db = b.along(c.t), r = b.at(c.t) - a.at(c.s);
+    const double aa = dot(da, da), bb = dot(db, db), ab = dot(da, db), ar = dot(da, r), br = dot(db, r);
+    const double det = aa * bb - ab * ab, s = c.s;
+    if (det > 1e-9 * aa * bb) c.s = clamp01(s + (ar * bb - br * ab) / det);
+    const double t = clamp01(c.t + ((c.s - s) * ab - br) / bb);
+    c.s = clamp01(s + ((t - c.t) * ab + ar) / aa);
+    c.t = t;
+  }
   c.between = b.at(c.t) - a.at(c.s);
   c.distance2 = dot(c.between, c.between);
   return c;

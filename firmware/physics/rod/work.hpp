@@ -10,7 +10,7 @@ namespace ligature::physics::rod {
 namespace price {
 inline constexpr long kCheck = 25;           ///< a listed pair, or a group of them, in a substep: can it meet?
 inline constexpr long kMeasure = 190;        ///< it can: its closest points, and a row to be
-inline constexpr long kSmooth = 340;         ///< near: between smooth curves instead
+inline constexpr long kSmooth = 480;         ///< near: between smooth curves instead
 inline constexpr long kGuard = 110;          ///< its part in the guard
 inline constexpr long kWorldNode = 60;       ///< a node against the floor or a body
 inline constexpr long kBall = 15;            ///< broad phase: a block against a sphere of the tree

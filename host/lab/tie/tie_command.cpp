@@ -1,6 +1,7 @@
 #include "host/lab/tie/tie_command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <memory>
@@ -10,6 +11,7 @@
 #include "host/lab/rehearsal.hpp"
 #include "host/lab/run_files.hpp"
 #include "host/lab/tie/tie_once.hpp"
+#include "sim_device/operator/knot_tier.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -18,7 +20,8 @@ constexpr double kEnough = 0.95;
 constexpr const char *kScene = "scenes/paper.toml", *kLongScene = "scenes/paper-long.toml";
 
 struct Arguments {
-  std::string knot = "overhand";
+  std::vector<std::string> knots;
+  std::vector<std::string> models;
   std::string scene;
   std::vector<std::string> overrides;
   std::string seeds = "1-20";
@@ -30,9 +33,12 @@ An operator who looks at the thread 100 times a second ties the knot with two si
 frames, coupling, torque, all on a simulated clock. Each run's recording (DIR/KNOT-SEED.lcmlog, what `ligature-host
 record` would have written) is read back, and the knot in its last shape, five seconds after the hands let go, counts.
 
-Exit: 0 done; 2 knot, scene or seeds refused; 3 fewer than 95 % tied.
+Several knots or models end with a table.
 
-Example:
+Exit: 0 done; 2 knot, scene or seeds refused; 3 fewer than 95 % tied of any knot in any model.
+
+Examples:
+  ligature-lab tie overhand figure-eight square granny surgeon --models paper-1,paper-4 --seeds 1-4
   ligature-lab tie overhand --scene scenes/suture-3-0.toml --seeds 1-20 --out out/tie)";
 
 struct Seeds {
@@ -56,25 +62,75 @@ Seeds read_seeds(const std::string& text) {
   return s;
 }
 
-int execute(const Arguments& a) {
-  const Seeds seeds = read_seeds(a.seeds);
-  const std::string file = !a.scene.empty() ? a.scene : a.knot.starts_with("surgeon") ? kLongScene : kScene;
-  const auto scene = load_scene_or_refuse(file, a.overrides);
-  (void)make_or_refuse(scene, file);
-  make_folder(a.out);
+struct Count {
   int tied = 0, tried = 0;
+  [[nodiscard]] bool is_enough() const { return tried > 0 && tied >= kEnough * tried; }
+  [[nodiscard]] std::string text() const { return std::to_string(tied) + " of " + std::to_string(tried); }
+};
+
+/// One knot in one model.
+struct Cell {
+  std::string knot, model;  ///< model empty: the scene's own
+  std::string file, folder;
+  scene::Scene scene;
+};
+
+/// @throws Refusal when the scene or the knot in it is refused; before anything runs or is written.
+Cell cell_of(const Arguments& a, const std::string& knot, const std::string& model) {
+  Cell c{knot, model, a.scene, model.empty() ? a.out : a.out + "/" + model, {}};
+  if (c.file.empty()) c.file = knot.starts_with("surgeon") ? kLongScene : kScene;
+  auto overrides = a.overrides;
+  if (!model.empty()) overrides.push_back("suture.model=\"" + model + "\"");
+  c.scene = load_scene_or_refuse(c.file, overrides);
+  (void)make_or_refuse(c.scene, c.file);
+  const auto made = sim::KnotTier::make(c.scene, knot, 1);
+  if (const auto* why = std::get_if<std::string>(&made)) throw Refusal(c.file + ": " + *why);
+  return c;
+}
+
+/// All seeds; one line each.
+Count tie_all(const Cell& c, const Seeds& seeds) {
+  make_folder(c.folder);
+  Count count;
   std::printf("%6s  %-20s %8s  %s\n", "seed", "found", "seconds", "moves given up");
   for (std::uint32_t seed = seeds.first; seed <= seeds.last && !console::stop_requested(); ++seed) {
-    const Tied t = tie_once(scene, file, a.knot, seed, a.out);
-    ++tried;
-    tied += t.good();
+    const Tied t = tie_once(c.scene, c.file, c.knot, seed, c.folder);
+    ++count.tried;
+    count.tied += t.good();
     std::string missed;
     for (const auto& m : t.missed) missed += (missed.empty() ? "" : ", ") + m;
     std::printf("%6u  %-20s %8.1f  %s\n", seed, t.found.c_str(), t.seconds, missed.c_str());
     std::fflush(stdout);
   }
-  std::printf("%s: tied %d of %d\n", a.knot.c_str(), tied, tried);
-  return tried > 0 && tied >= kEnough * tried ? kDone : kRunFailed;
+  std::printf("%s%s%s: tied %s\n", c.model.c_str(), c.model.empty() ? "" : " ", c.knot.c_str(), count.text().c_str());
+  return count;
+}
+
+const char* model_name(const Arguments& a, std::size_t k) {
+  return a.models[k].empty() ? "the scene's" : a.models[k].c_str();
+}
+
+/// A line for each model, a column for each knot.
+void print_table(const Arguments& a, const std::vector<Count>& counts) {
+  std::printf("\n%-12s", "model");
+  for (const auto& knot : a.knots) std::printf(" %14s", knot.c_str());
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    if (k % a.knots.size() == 0) std::printf("\n%-12s", model_name(a, k / a.knots.size()));
+    std::printf(" %14s", counts[k].text().c_str());
+  }
+  std::printf("\n");
+}
+
+int execute(Arguments a) {
+  const Seeds seeds = read_seeds(a.seeds);
+  if (a.models.empty()) a.models = {""};
+  std::vector<Cell> cells;
+  for (const auto& model : a.models)
+    for (const auto& knot : a.knots) cells.push_back(cell_of(a, knot, model));
+  std::vector<Count> counts;
+  for (const Cell& c : cells) counts.push_back(tie_all(c, seeds));
+  if (counts.size() > 1) print_table(a, counts);
+  return std::all_of(counts.begin(), counts.end(), [](const Count& c) { return c.is_enough(); }) ? kDone : kRunFailed;
 }
 
 }  // namespace
@@ -82,7 +138,9 @@ int execute(const Arguments& a) {
 void add_tie_command(CLI::App& app, int& exit_code) {
   auto* tie = app.add_subcommand("tie", "Knots tied by an operator that looks, through the whole chain, and counted");
   auto a = std::make_shared<Arguments>();
-  tie->add_option("knot", a->knot, "Which knot; an unknown one is answered with those there are")->required();
+  tie->add_option("knot", a->knots, "Which knots; an unknown one is answered with those there are")->required();
+  tie->add_option("--models", a->models, "Instead of the scene's own: paper-1,paper-2,...; recordings in DIR/MODEL")
+      ->delimiter(',');
   tie->add_option("--scene", a->scene, "Scene file (TOML); its node 0 must be fixed")
       ->default_str("scenes/paper.toml; for surgeon scenes/paper-long.toml");
   tie->add_option("--set", a->overrides, "key=value over the scene's own; repeatable")

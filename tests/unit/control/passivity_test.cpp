@@ -48,7 +48,7 @@ struct Port {
     PortSample sample{{seen.x(), seen.y(), seen.z()}, seen, chain.count_m, Vec3(1, 1, 1), {}, {}};
     if (chain.tells_torque) sample.acted.torque_Nm = made;
     sample.acted.limited.fill(made != taken);
-    if (!chain.tells_torque) sample.acted.held.fill(held);
+    if (!chain.tells_torque) sample.acted.held = held;
     const bool is_seen = static_cast<double>(random()) * 0x1p-32 >= chain.lost_samples;
     passivity.begin(n);
     if (is_seen) {
@@ -64,17 +64,21 @@ struct Port {
     }
     lowest_J = std::min(lowest_J, passivity.energy_J());
     lowest_work_J = std::min(lowest_work_J, work_J);
-    const bool arrives = static_cast<double>(random()) * 0x1p-32 >= chain.lost;
-    held = arrives ? 0 : held + 1;
-    if (arrives) taken = on_its_way;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const bool arrives = static_cast<double>(random()) * 0x1p-32 >= chain.lost;  // each drive has its RPDO
+      held[j] = arrives ? 0 : held[j] + 1;
+      if (arrives) taken[static_cast<Eigen::Index>(j)] = on_its_way[static_cast<Eigen::Index>(j)];
+    }
     const Vec3 made_before = made;
     made = taken.cwiseMax(-chain.guard_N).cwiseMin(chain.guard_N);
+    if (n > forgiven) largest_made_step_N = std::max(largest_made_step_N, (made - made_before).norm());
 
     const Vec3 wished = wish(p, v), change = wished - before;
     const double step_N = plain().force_step_N;
     const Vec3 limited = before + change * std::min(1.0, step_N / std::max(change.norm(), step_N));
     const Vec3 paid = passivity.control(n, limited, v, before, made_of), f = made_of(paid);
-    largest_step_N = std::max(largest_step_N, (paid - before).norm());
+    if (passivity.released()) ++released, forgiven = n + 20;  // all force goes; a lost RPDO delays it
+    if (n > forgiven) largest_step_N = std::max(largest_step_N, (paid - before).norm());
     passivity.sent(n, f, f);
     before = paid;
     on_its_way = f;
@@ -96,8 +100,10 @@ struct Port {
   Vec3 on_its_way = Vec3::Zero(), taken = Vec3::Zero(), made = Vec3::Zero();
   double lowest_J = 0.0, work_J = 0.0, lowest_work_J = 0.0, largest_step_N = 0.0, largest_excess_J = -1e9;
   double largest_shortfall_J = -1e9, hidden_J = 0.0, most_of_hidden = 0.0;
-  int acted = 0, held = 0;
-  std::int64_t n = 0, last_seen = 0;
+  double largest_made_step_N = 0.0;
+  int acted = 0, released = 0;
+  std::array<int, 3> held{};
+  std::int64_t n = 0, last_seen = 0, forgiven = -1;
 };
 
 Vec3 saturated(const Vec3& f) { return f.norm() > 3.3 ? Vec3(f * (3.3 / f.norm())) : f; }
@@ -157,11 +163,30 @@ TEST(Passivity, NoHandWithinTheBoundIsCutByMoreThanAStep) {
   double felt_N = 0.0;
   const auto look = [&](const Port& port) {
     EXPECT_LE(port.largest_step_N, plain().force_step_N * (1.0 + 1e-9));
+    EXPECT_EQ(port.released, 0);
     felt_N = std::max(felt_N, port.made.norm());
   };
   play_adversaries({}, look);
   play_adversaries({.count_m = 5e-5}, look, 0.4);  // a count within a period looks like 50 m/s2
   EXPECT_GT(felt_N, 0.5);
+}
+
+TEST(Passivity, WhatTheDrivesMakeChangesByAStepWhateverIsLost) {  // but where all is let go, for energy's sake
+  const Chain whole{}, lossy{.lost = 0.05}, very{.lost = 0.3}, blind{.lost_samples = 0.14};
+  const Chain both{.lost = 0.05, .lost_samples = 0.14}, silent{.lost = 0.05, .tells_torque = false};
+  for (const Chain& chain : {whole, lossy, very, blind, both, silent}) {
+    for (const double wildness : {0.5, 4.0}) {
+      SCOPED_TRACE(::testing::Message() << "lost " << chain.lost << " and " << chain.lost_samples);
+      int released = 0;
+      const auto look = [&](const Port& port) {
+        EXPECT_LE(port.largest_made_step_N, plain().force_step_N * (1.0 + 1e-9));
+        released += port.released;
+      };
+      play_adversaries(chain, look, wildness);
+      std::printf("RPDOs %.2f, samples %.2f lost, %.1f of the wildest hand: let go %d times in 120 s\n", chain.lost,
+                  chain.lost_samples, wildness, released);
+    }
+  }
 }
 
 TEST(Passivity, OnCountsTheAccountHoldsAndTheTrueWorkIsNear) {  // near: what counts hide at each change of force
@@ -185,7 +210,8 @@ TEST(Passivity, TheAccountIsNeverAboveTheTrueWork) {  // but for a count; whatev
   const Chain both_silent{.lost = 0.15, .lost_samples = 0.3, .tells_torque = false};
   for (const Chain& chain : {plainly, counted, guarded, silent, lossy, lossy_silent, blind, both, both_silent}) {
     SCOPED_TRACE(::testing::Message() << "lost " << chain.lost << " and " << chain.lost_samples);
-    const double out_of_order_J = chain.lost_samples > 0.0 ? 1e-5 : 1e-12;  // nobody saw who moved when
+    // Nobody saw when within two periods a joint moved: a step of force times half of a T^2, on three axes.
+    const double out_of_order_J = chain.lost_samples > 0.0 ? std::sqrt(3.0) * 0.5 * 0.05e-3 : 1e-12;
     play_adversaries(chain, [&](const Port& port) {
       EXPECT_LE(port.largest_excess_J, out_of_order_J + 5.0 * chain.count_m * 3.3 * std::sqrt(3.0));
     });
@@ -222,11 +248,12 @@ double least_work_J(const Chain& chain, double wildness) {
   return lowest_J;
 }
 
-TEST(Passivity, LostFramesGiveNothingAway) {  // a wilder hand gets 30 uJ once two RPDOs in a row are lost
+TEST(Passivity, LostFramesGiveNothingAway) {
   for (const bool tells : {true, false}) {
     EXPECT_GE(least_work_J({.lost = 0.05, .tells_torque = tells}, 0.5), -Passivity::kFloor_J);
     EXPECT_GE(least_work_J({.lost_samples = 0.14, .tells_torque = tells}, 0.5), -Passivity::kFloor_J);
     EXPECT_GE(least_work_J({.lost = 0.05, .lost_samples = 0.14, .tells_torque = tells}, 0.5), -Passivity::kFloor_J);
+    EXPECT_GE(least_work_J({.lost = 0.05, .tells_torque = tells}, 1.0), -Passivity::kFloor_J);
   }
 }
 

@@ -37,7 +37,7 @@ TEST(Smooth, IsACircleWhereThePolygonIsOne) {
   const State state = nodes_on_a_circle(12, radius_m, turn);
   const Vec centre = make(0, 0, radius_m);
   for (std::size_t j = 1; j < 10; ++j) {
-    const SmoothSegment segment(state, j);
+    const SmoothSegment segment(state, j, kDiameter_m);
     for (double s = 0.0; s <= 1.0; s += 0.125)
       EXPECT_NEAR(norm(segment.at(s) - centre), through_middles_m, 2e-3 * radius_m) << j << ' ' << s;
   }
@@ -47,7 +47,7 @@ TEST(Smooth, HasNoCorners) {
   State state = nodes_on_a_circle(9, 0.6e-3, 0.5);
   state.x[4] += make(1e-5, 4e-5, -2e-5);  // unequal lengths and corners
   for (std::size_t j = 0; j + 2 < 9; ++j) {
-    const SmoothSegment one(state, j), next(state, j + 1);
+    const SmoothSegment one(state, j, kDiameter_m), next(state, j + 1, kDiameter_m);
     EXPECT_LT(norm(one.at(1.0) - next.at(0.0)), 1e-12);
     const Vec a = one.along(1.0), b = next.along(0.0);
     EXPECT_LT(norm(cross(a, b)), 1e-9 * norm(a) * norm(b));
@@ -58,7 +58,7 @@ TEST(Smooth, HasNoCorners) {
 TEST(Smooth, KeepsTheCornersItIsToldToKeep) {
   State state = nodes_on_a_circle(9, 0.6e-3, 0.5);
   state.rest_corner[4] = state.x[5] - 2.0 * state.x[4] + state.x[3];
-  EXPECT_LT(norm(SmoothSegment(state, 4).at(0.0) - state.x[4]), 1e-12);
+  EXPECT_LT(norm(SmoothSegment(state, 4, kDiameter_m).at(0.0) - state.x[4]), 1e-12);
 }
 
 TEST(Smooth, ClosestPointsOfBentStrands) {
@@ -69,15 +69,22 @@ TEST(Smooth, ClosestPointsOfBentStrands) {
     for (auto& x : b.x) x = make(c * x[0] + along_m, s * x[0], kDiameter_m + 0.5 * along_m - x[2]);
     for (std::size_t i = 2; i < 5; ++i) {
       for (std::size_t j = 2; j < 5; ++j) {
-        const SmoothSegment one(a, i), other(b, j);
+        const SmoothSegment one(a, i, kDiameter_m), other(b, j, kDiameter_m);
         const Closest chords = closest(a.x[i], a.x[i + 1], b.x[j], b.x[j + 1]);
         const double least = closest_by_trying(one, other);
         if (least > 1.2 * kDiameter_m || least < 0.9 * kDiameter_m) continue;  // no contact, or no such contact
-        EXPECT_NEAR(std::sqrt(closest(one, other, chords).distance2), least, 3e-2 * kDiameter_m) << k;
+        EXPECT_NEAR(std::sqrt(closest(one, other, chords).distance2), least, 1e-2 * kDiameter_m) << k;
         EXPECT_LT(std::abs(least - std::sqrt(chords.distance2)), one.bulge() + other.bulge() + 1e-9);
       }
     }
   }
+}
+
+// Nodes far apart: a corner is cut by no more than a third of a diameter, or strands would pass each other.
+TEST(Smooth, CutsNoMoreThanStrandsCanSpare) {
+  const State state = nodes_on_a_circle(8, 12e-3, 0.5);
+  const SmoothSegment segment(state, 3, kDiameter_m);
+  EXPECT_NEAR(norm(segment.at(0.0) - state.x[3]), SmoothSegment::kMostCut * kDiameter_m, 1e-9);
 }
 
 // A straight strand slides along a bent one: the direction in which they push each other apart turns steadily. Between
@@ -98,7 +105,7 @@ TEST(Smooth, NormalTurnsSteadily) {
       nearest.distance2 = 1.0;
       for (std::size_t j = 1; j + 2 < 14; ++j) {
         Closest c = closest(bent.x[j], bent.x[j + 1], strand.x[1], strand.x[2]);
-        if (smooth) c = closest(SmoothSegment(bent, j), SmoothSegment(strand, 1), c);
+        if (smooth) c = closest(SmoothSegment(bent, j, kDiameter_m), SmoothSegment(strand, 1, kDiameter_m), c);
         if (c.distance2 < nearest.distance2) nearest = c;
       }
       const Vec normal = (1.0 / norm(nearest.between)) * nearest.between;
@@ -108,7 +115,7 @@ TEST(Smooth, NormalTurnsSteadily) {
     return largest;
   };
   EXPECT_GT(largest_step(false), 0.9 * kTurn);
-  EXPECT_LT(largest_step(true), 0.35 * kTurn);  // of one step; two leave less
+  EXPECT_LT(largest_step(true), 0.12 * kTurn);
 }
 
 }  // namespace

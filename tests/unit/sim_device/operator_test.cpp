@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim_device/operator/diagram.hpp"
+#include "sim_device/operator/ring.hpp"
 #include "tests/unit/sim_device/tied.hpp"
 
 namespace ligature::sim {
@@ -95,8 +96,13 @@ TEST(KnotTier, TiesARealSutureFromScratch) {  // 0.3 mm nylon, tightened to 1 N,
 
 TEST(KnotTier, TiesASquareKnotInARealSuture) { EXPECT_EQ(tied("suture-3-0.toml", "square", 1), "3_1#3_1 amphichiral"); }
 
+TEST(KnotTier, TiesAnOverhandInCoarseAndFineChains) {
+  for (const char* nodes : {"suture.nodes=20", "suture.nodes=35", "suture.nodes=100"})
+    EXPECT_EQ(tied("paper.toml", "overhand", 5, {nodes}), "3_1 right") << nodes;
+}
+
 TEST(KnotTier, RefusesACoarseOrShortThread) {
-  const std::string coarse = tied("paper.toml", "overhand", 1, {"suture.nodes=20"});
+  const std::string coarse = tied("paper.toml", "square", 1, {"suture.nodes=20"});
   EXPECT_TRUE(coarse.starts_with("suture.nodes: found 20, allowed 43 or more")) << coarse;
   const std::string brief = tied("paper.toml", "surgeon", 1);
   EXPECT_TRUE(brief.starts_with("suture.length_m: found 5, allowed 6 or more")) << brief;

@@ -11,21 +11,26 @@ namespace {
 
 constexpr double kT_s = 1e-3, kCorner_Hz = 30.0;
 
-sim::Vec3 tip_force(const DeviceBus& bus) {
-  const auto& m = bus.device.mechanics();
-  return m.plant().parameters().linkage.jacobian_D(m.plant().q_rad()).transpose().inverse() * m.made_Nm();
+sim::Mat3 tip_N_per_Nm(const sim::Mechanics& m) {
+  return m.plant().parameters().linkage.jacobian_D(m.plant().q_rad()).transpose().inverse();
 }
 
 }  // namespace
 
 Watched watch(VirtualRig& rig, std::int64_t ticks, std::size_t look_at) {
   Watched w;
+  std::array<sim::Vec3, 2> made_Nm{sim::Vec3::Zero(), sim::Vec3::Zero()};
+  std::array<sim::Mat3, 2> pose{sim::Mat3::Zero(), sim::Mat3::Zero()};  // at the SYNC before
   rig.each_tick = [&] {
     std::array<sim::Vec3, 2> force;
-    std::array<double, 2> size{}, port{};
+    std::array<double, 2> size{}, port{}, step{};
     const std::array<const DeviceBus*, 2> hands{&rig.left, &rig.right};
     for (std::size_t h = 0; h < 2; ++h) {
-      force[h] = tip_force(*hands[h]);
+      const auto& m = hands[h]->device.mechanics();
+      step[h] = (pose[h] * (m.made_Nm() - made_Nm[h])).norm();
+      made_Nm[h] = m.made_Nm();
+      pose[h] = tip_N_per_Nm(m);
+      force[h] = pose[h] * made_Nm[h];
       size[h] = force[h].norm();
       port[h] = -hands[h]->device.mechanics().motor_work_J();
       w.lowest_port_J[h] = std::min(w.lowest_port_J[h], port[h]);
@@ -34,26 +39,44 @@ Watched watch(VirtualRig& rig, std::int64_t ticks, std::size_t look_at) {
     w.lowest_sum_J = std::min(w.lowest_sum_J, port[0] + port[1]);
     w.rendered_N.push_back(force);
     w.tip_force_N.push_back(size);
+    w.step_N.push_back(step);
     w.port_J.push_back(port);
-    if (w.port_J.size() == look_at) w.nodes_W.assign(rig.thread.nodes_W().begin(), rig.thread.nodes_W().end());
+    if (w.port_J.size() != look_at) return;
+    w.nodes_W.assign(rig.thread.nodes_W().begin(), rig.thread.nodes_W().end());
+    w.tension_N.resize(w.nodes_W.size());
+    std::vector<float> turn_rad(w.nodes_W.size());
+    rig.thread.describe(w.tension_N, turn_rad);
   };
   if (const auto why = rig.run(ticks)) throw std::runtime_error("the rig did not start: " + *why);
   rig.each_tick = nullptr;
-  const rt::TickRecord* before = nullptr;
   for (const auto& r : rig.records) {
     for (std::size_t h = 0; h < 2; ++h) {
       const auto& f = r.f_device_N[h];
       w.peak_N = std::max(w.peak_N, std::hypot(f[0], f[1], f[2]));
       w.lowest_account_J[h] = std::min(w.lowest_account_J[h], r.port_energy_J[h]);
-      if (before == nullptr) continue;
-      const auto& g = before->f_device_N[h];
-      double& step = r.fault != 0 ? w.largest_cut_N : w.largest_step_N;
-      step = std::max(step, std::hypot(f[0] - g[0], f[1] - g[1], f[2] - g[2]));
     }
     if (w.fault == 0) w.fault = r.fault;
-    before = &r;
   }
+  w.sort_steps(rig.records);
   return w;
+}
+
+/// What is sent in a tick is made two ticks later, and later yet where its RPDOs are lost.
+void Watched::sort_steps(const std::vector<rt::TickRecord>& records) {
+  constexpr std::size_t kLate = 10;
+  for (std::size_t h = 0; h < 2; ++h) {
+    std::size_t forgiven = 0;
+    for (std::size_t i = 1; i < std::min(step_N.size(), records.size()); ++i) {
+      const auto& r = records[i];
+      const bool none = r.f_device_N[h] == rt::Triple{} && records[i - 1].f_device_N[h] != rt::Triple{};
+      const bool gone = none && r.fault == 0 && (r.limits[h] & rt::kPassivityLimit) != 0;
+      if (r.fault != 0 || gone) forgiven = i + kLate;
+      const bool excess = step_N[i][h] > device::omni().force_step_N;
+      let_go += excess && i <= forgiven && r.fault == 0;
+      double& largest = excess && i <= forgiven ? largest_cut_N : largest_step_N;
+      largest = std::max(largest, step_N[i][h]);
+    }
+  }
 }
 
 double Watched::chatter_N(std::size_t hand, std::size_t first, std::size_t last) const {

@@ -63,26 +63,47 @@ void steady_pull(const HapticsBench& bench, Verdict& v) {
           digits(worst) + " at " + digits(least_N) + " N", "up to 0.02");
 }
 
+/// Of the thread half way from a hand to the knot, mean of a centimetre and more.
+double tension_N(const Watched& w, std::size_t hand) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < w.nodes_W.size(); ++i) {
+    const double out_m = hand == 0 ? -w.nodes_W[i].x() : w.nodes_W[i].x();
+    if (out_m < 0.05 || out_m > 0.08) continue;
+    sum += w.tension_N[i];
+    ++count;
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
 /// The knotted suture drawn tight and held.
 void tight_knot(const HapticsBench& bench, Verdict& v) {
   RigSetup setup;
   setup.scene = load_scene_or_refuse((bench.scenes / "suture-3-0-knot.toml").string(), {kWeightless});
   const scene::GripperScript script = pull_and_release(0.113, 2.0, 4.0);
   VirtualRig rig(setup, script);
-  const Watched w = watch(rig, 6900);
   const std::size_t from = 4800, to = 6800;
+  const Watched w = watch(rig, 6900, to - 100);
   const sim::Vec3 left = w.mean_N(0, from, to), right = w.mean_N(1, from, to);
   const double mean_N = 0.5 * (left.norm() + right.norm());
   const double chatter_N = std::max(w.chatter_N(0, from, to), w.chatter_N(1, from, to));
   const double apart = (left + right).norm() / std::max(mean_N, 1e-9);
-  Table table({"left_N", "right_N", "sum_of_mean", "above_30Hz_mN", "share_of_mean", "largest_step_N"});
-  table.row({left.norm(), right.norm(), apart, 1e3 * chatter_N, chatter_N / mean_N, w.largest_step_N});
+  const double scale = setup.scene.hands.force_scale;
+  const double worst = std::max(std::abs(left.norm() / (scale * tension_N(w, 0)) - 1.0),
+                                std::abs(right.norm() / (scale * tension_N(w, 1)) - 1.0));
+  Table table({"left_N", "right_N", "tension_left_N", "tension_right_N", "deviation", "sum_of_mean", "above_30Hz_mN",
+               "share_of_mean", "largest_step_N"});
+  table.row({left.norm(), right.norm(), tension_N(w, 0), tension_N(w, 1), worst, apart, 1e3 * chatter_N,
+             chatter_N / mean_N, w.largest_step_N});
   table.print();
   table.write(bench.out / "haptics-tight-knot.csv");
   bool limited = false;
   for (std::size_t i = from; i < std::min(to, rig.records.size()); ++i)
     limited = limited || rig.records[i].limits[0] != 0 || rig.records[i].limits[1] != 0;
   v.claim(!limited, "Fidelity: a limit acts in the hold", limited ? "yes" : "no", "no");
+  v.claim(worst <= 0.02,
+          "Fidelity: steady pull on the real suture, force at each hand against the thread's tension times scale",
+          digits(worst) + " at " + digits(mean_N) + " N", "up to 0.02");
   v.claim(mean_N > 0.2 && apart <= 0.02, "Fidelity: two hands on a tight knot, difference from equal and opposite",
           digits(apart) + " of " + digits(mean_N) + " N", "up to 0.02");
   v.claim(chatter_N < 0.01 * mean_N && chatter_N < 0.020, "Fidelity: chatter above 30 Hz in a steady hold, mN rms",

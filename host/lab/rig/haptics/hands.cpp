@@ -1,5 +1,7 @@
 #include "host/lab/rig/haptics/hands.hpp"
 
+#include <initializer_list>
+
 namespace ligature::lab {
 namespace {
 
@@ -9,6 +11,25 @@ constexpr std::array<double, 3> kPost_m{-0.05, kY_m, kZ_m + kShort_m};
 
 scene::GripKey key(double t, std::size_t hand, double x, bool grip) {
   return {t, {hand == 0 ? -x : x, kY_m, kZ_m}, grip};
+}
+
+/// Of both hands together, from where they had drawn the thread tight.
+struct Shift {
+  double takes_s, x_m, y_m;
+  bool grip = true;
+};
+
+scene::GripperScript draw_and_shift(double apart_m, double draw_s, std::initializer_list<Shift> shifts) {
+  scene::GripperScript script = pull_and_release(apart_m, draw_s, 0.0);
+  for (auto& keys : script.keys) {
+    keys.resize(3);
+    const scene::GripKey drawn = keys.back();
+    for (const Shift& s : shifts) {
+      const auto& p = drawn.p_W_m;
+      keys.push_back({keys.back().time_s + s.takes_s, {p[0] + s.x_m, p[1] + s.y_m, p[2]}, s.grip});
+    }
+  }
+  return script;
 }
 
 }  // namespace
@@ -55,37 +76,13 @@ scene::GripperScript slip(double apart_m) {
 }
 
 scene::GripperScript against_peg(double apart_m, double push_m) {
-  scene::GripperScript script = pull_and_release(apart_m, 1.2, 0.3);
-  for (auto& keys : script.keys) {
-    keys.resize(3);
-    scene::GripKey k = keys.back();
-    for (const double y : {push_m, 0.5 * push_m, push_m}) {
-      k.time_s += 0.6;
-      k.p_W_m[1] = kY_m + y;
-      keys.push_back(k);
-    }
-    k.time_s += 0.4;
-    k.grip = false;
-    keys.push_back(k);
-  }
-  return script;
+  const double y = push_m;
+  return draw_and_shift(apart_m, 1.2, {{0.6, 0.0, y}, {0.6, 0.0, 0.5 * y}, {0.6, 0.0, y}, {0.4, 0.0, y, false}});
 }
 
-scene::GripperScript give_way(double apart_m, double shift_m) {
-  scene::GripperScript script = pull_and_release(apart_m, 1.5, 0.3);
-  for (auto& keys : script.keys) {
-    keys.resize(3);
-    scene::GripKey k = keys.back();
-    k.time_s += 1.0;
-    k.p_W_m[0] -= shift_m;  // both to the left: the right one is dragged
-    keys.push_back(k);
-    k.time_s += 0.5;
-    keys.push_back(k);
-    k.time_s += 0.3;
-    k.grip = false;
-    keys.push_back(k);
-  }
-  return script;
+scene::GripperScript give_way(double apart_m, double shift_m) {  // both to the left: the right one is dragged
+  const double x = -shift_m;
+  return draw_and_shift(apart_m, 1.5, {{1.0, x, 0.0}, {0.5, x, 0.0}, {0.3, x, 0.0, false}});
 }
 
 scene::GripperScript on_a_short_thread(double pull_m) {

@@ -22,8 +22,8 @@ struct PortCase {
   double stiffness = 1.0;  ///< times the scene's coupling, beyond what is admissible
   std::vector<std::string> overrides = {kWeightless};
   std::function<void(RigSetup&)> trouble = [](RigSetup&) {};
-  bool gives_way = false;         ///< one hand is pulled by the other: its port gives out what the other's took in
-  bool wild = false;              ///< hands that fight back, wilder than the device record takes them to be
+  bool gives_way = false;  ///< one hand is pulled by the other: its port gives out what the other's took in
+  bool wild = false;       ///< hands that fight back, wilder than the device record takes them to be: may be let go
   bool unstable_without = false;  ///< without the controller
   bool in_quick = false;
 };
