@@ -175,8 +175,7 @@ Vec3 HandControl::lead_force() noexcept {
   path_.step();
   move_check_.step(from_torque_.transpose(), path_.velocity_m_per_s(), period_s_);
   const Vec3 off_m = path_.position_m() - p_DT_;
-  const Vec3 force_N =
-      saturate(kBrake_N_per_m * off_m + kBrake_N_s_per_m * (path_.velocity_m_per_s() - v_DT_), kLead_N).f_N;
+  Vec3 force_N = saturate(kBrake_N_per_m * off_m + kBrake_N_s_per_m * (path_.velocity_m_per_s() - v_DT_), kLead_N).f_N;
   if (off_m.norm() > kStray_m) {
     move_fault_ = move_check_.judge(state_.q_rad, count_rad_);
     end_move();

@@ -94,7 +94,7 @@ class Passivity {
       const Vec3 torque_Nm = torque(f_N);
       return is_a_step(torque_Nm) && allows(tick, tip_N_per_Nm_ * torque_Nm);
     };
-    const Vec3 next_N = farthest(before_N, wish_N, near);
+    Vec3 next_N = farthest(before_N, wish_N, near);
     stepped_ = next_N != wish_N;
     acts_ = !paid(next_N);
     if (!acts_) return next_N;

@@ -52,13 +52,18 @@ void Loop::look(const Look& look) {
   double most = -1.0, least = 1e9;
   const double first = std::max(corner_s_, far_ < 0.0 ? 0.0 : far_ - reach);
   const double last = far_ < 0.0 ? corner_s_ + 0.6 * (end - corner_s_) : std::min(far_ + reach, end);
-  for (double w = first; w < last; w += step)
+  double w = first;
+  while (w < last) {
     if (const double r = apart(w); r > most) most = r, far_ = w;
+    w += step;
+  }
   // X is where it first comes to the standing part: a turn further on may lie as near.
-  for (double w = far_; w < end - 0.7 * look.place.clearance_m; w += step) {
+  w = far_;
+  while (w < end - 0.7 * look.place.clearance_m) {
     const double r = apart(w);
     if (least < look.place.diameter_m * 2.0 && r > 4.0 * look.place.diameter_m) break;
     if (r < least) least = r, working_ = w;
+    w += step;
   }
   standing_ = look.thread.nearest(look.thread.at(working_), 0.0, corner_s_);
   const Ring ring(look.thread.between(standing_, working_));

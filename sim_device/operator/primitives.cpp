@@ -17,7 +17,7 @@ bool is_between_jaws(const Look& look, std::size_t hand, double s, double waited
 }
 }  // namespace
 
-Move reach(std::size_t hand, WhereAlong s) {
+Move reach(std::size_t hand, const WhereAlong& s) {
   auto near_s = std::make_shared<double>(-1.0);  // when it was before the thread
   return {"reach", [=](const Look& look) {
             MovingHand& h = look.hands[hand];
@@ -52,7 +52,7 @@ Move let_go(std::size_t hand) {
           }};
 }
 
-Move carry(std::size_t hand, std::string name, Where where, double near, double pace) {
+Move carry(std::size_t hand, std::string name, const Where& where, double near, double pace) {
   return {std::move(name), [=](const Look& look) {
             look.hands[hand].pace = pace;
             look.hands[hand].goal_W = where(look);
@@ -79,7 +79,7 @@ Move hang_out() {
           }};
 }
 
-Moves pull_tight(Vec3 direction, double share) {
+Moves pull_tight(const Vec3& direction, double share) {
   const Vec3 way = direction.normalized();
   return {{"pull tight",
            [=](const Look& look) {
@@ -96,7 +96,7 @@ Moves pull_tight(Vec3 direction, double share) {
            30.0}};
 }
 
-Move swing(Vec3 direction) {
+Move swing(const Vec3& direction) {
   const Vec3 way = direction.normalized();
   return {"swing", [=](const Look& look) {
             MovingHand& h = look.hands[kRightHand];

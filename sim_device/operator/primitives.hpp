@@ -7,20 +7,20 @@
 namespace ligature::sim {
 
 /// The tip goes to the place `s` of the thread, from the front (-y), and follows it until it is there.
-[[nodiscard]] Move reach(std::size_t hand, WhereAlong s);
+[[nodiscard]] Move reach(std::size_t hand, const WhereAlong& s);
 /// The jaws close, or open, and get a moment to do so.
 [[nodiscard]] Move pinch(std::size_t hand);
 [[nodiscard]] Move let_go(std::size_t hand);
 /// To a place that may move; done within `near` clearances of it. @param pace share of full speed
-[[nodiscard]] Move carry(std::size_t hand, std::string name, Where where, double near = 0.5, double pace = 1.0);
+[[nodiscard]] Move carry(std::size_t hand, std::string name, const Where& where, double near = 0.5, double pace = 1.0);
 /// Stay for a while.
 [[nodiscard]] Move wait(double seconds);
 /// Until the end of the hanging thread no longer swings.
 [[nodiscard]] Move hang_out();
 /// The right hand draws away from the anchor along `direction` until the pull is `share` of a tight knot's.
-[[nodiscard]] Moves pull_tight(Vec3 direction, double share);
+[[nodiscard]] Moves pull_tight(const Vec3& direction, double share);
 /// The right hand swings the thread about the anchor until it points along `direction`, no further out than it is.
-[[nodiscard]] Move swing(Vec3 direction);
+[[nodiscard]] Move swing(const Vec3& direction);
 /// Back again until the pull is gone.
 [[nodiscard]] Move ease();
 

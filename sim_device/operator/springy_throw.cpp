@@ -61,7 +61,7 @@ bool is_tied(const Look& look, const Throw& t, const Vec3& front, const Vec3& ou
 
 bool is_springy(const Workplace& place) { return place.bend_length_m > kSpringy * place.length_m; }
 
-Move open_arch(const Throw& t, WhereAlong corner) {
+Move open_arch(const Throw& t, const WhereAlong& corner) {
   constexpr double kLow = -0.62, kHigh = -0.18, kOut = 0.12;  // shares of the working part
   constexpr double kQuarter = 0.5 * std::numbers::pi;
   enum Phase { kRaise, kAside, kToFront };
@@ -102,7 +102,7 @@ Move open_arch(const Throw& t, WhereAlong corner) {
           15.0};
 }
 
-Move springy_throw(const Throw& t, WhereAlong corner, WhereAlong turn) {
+Move springy_throw(const Throw& t, const WhereAlong& corner, const WhereAlong& turn) {
   const Vec3 front = -static_cast<double>(t.side) * Vec3::UnitY();
   const auto out = [](const Look& look) -> Vec3 {
     return (look.sight.tool_W[kLeftHand] - look.place.anchor_W).normalized();

@@ -13,7 +13,7 @@ namespace ligature::sim {
 /// The end is raised below the corner until the thread between them gives way to one side, then led round to the front
 /// so that the arch comes to stand out past the corner. It does so about the vertical in one sense only: an arch and
 /// its mirror image do not turn into each other, so where the thread gave way to decides where the end goes first.
-[[nodiscard]] Move open_arch(const Throw& t, WhereAlong corner);
+[[nodiscard]] Move open_arch(const Throw& t, const WhereAlong& corner);
 
 /// The end, held by the right hand, goes over the standing part and through the loop, in one path without a stop: an
 /// overhand that is still open. The left hand holds the corner, the standing part is level: on a slope X, where the
@@ -27,6 +27,6 @@ namespace ligature::sim {
 /// @param corner, turn places along the thread of the corner and of where the end goes over. All lengths of the path
 /// are shares of the working part. With `t.passes` 2 it goes round the standing part once more on the way. `t.against`
 /// means nothing here.
-[[nodiscard]] Move springy_throw(const Throw& t, WhereAlong corner, WhereAlong turn);
+[[nodiscard]] Move springy_throw(const Throw& t, const WhereAlong& corner, const WhereAlong& turn);
 
 }  // namespace ligature::sim

@@ -83,7 +83,7 @@ bool is_laid(const Look& look, const Throw& t) {
 
 /// The end goes round the standing part, `turns` times and the way in, and from the top of the first turn on also along
 /// it; a little further where the bight swings after it and is not passed yet.
-Move wind(const Throw& t, std::shared_ptr<const Site> site) {
+Move wind(const Throw& t, const std::shared_ptr<const Site>& site) {
   auto wound = std::make_shared<std::optional<double>>();
   constexpr double kFurther = 0.6;
   const double last = 2.0 * kPi * t.passes;
@@ -165,7 +165,11 @@ Tangle tangle(const Look& look) {
   constexpr std::size_t kNeighbours = 3;
   constexpr double kTouch = 1.6;  // diameters: a coarse thread's corners stand apart
   std::vector<Vec3> points;
-  for (double s = 0.0; s < all; s += step) points.push_back(look.thread.at(s));
+  double s = 0.0;
+  while (s < all) {
+    points.push_back(look.thread.at(s));
+    s += step;
+  }
   Tangle t{all, 0.0};
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t j = i + kNeighbours; j < points.size(); ++j) {
@@ -177,7 +181,7 @@ Tangle tangle(const Look& look) {
   return t;
 }
 
-Moves wound_throw(const Throw& t, std::shared_ptr<const Site> site) {
+Moves wound_throw(const Throw& t, const std::shared_ptr<const Site>& site) {
   const auto corner = [site](const Look&) { return site->corner; };
   const auto end = [](const Look& look) { return look.thread.length_m(); };
   const auto before = [site, t](const Look& look) {  // below and in front of the place where the screw begins

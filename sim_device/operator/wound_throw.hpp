@@ -20,7 +20,7 @@ struct Site {
 /// (5_1). Upwards, because a thread that hangs over the standing part slides down it, away from the place where the end
 /// passes; downwards it slides to the corner and closes the loop before the end is there. Both hands are empty before
 /// and after. `t.against` means nothing here.
-[[nodiscard]] Moves wound_throw(const Throw& t, std::shared_ptr<const Site> site);
+[[nodiscard]] Moves wound_throw(const Throw& t, const std::shared_ptr<const Site>& site);
 
 /// All throws, the next beyond the last, and a look at the whole. Each is drawn small, so that the knot is the sum of
 /// them: nothing passes through an earlier throw, because the corner is swung out on an arc with the thread taut.

@@ -55,6 +55,15 @@ class BadInput(unittest.TestCase):
                     self.refused(run(*command), "bad.toml", key)
         self.assertFalse((self.path / "out").exists(), "a refused run left something behind")
 
+    def test_a_coupling_that_the_device_cannot_render(self):
+        """(b + B) / (T / 2 + delay) = (0.3 + 0.36) / 1.5 ms = 440 N/m; 9000 N/m x scales 0.06 = 540 N/m."""
+        rig = ("ligature-firmware", "run", "--scene", ROOT / "scenes/paper.toml", "--left", f"local:{self.path}/l", "--right",
+               f"local:{self.path}/r", "--set", "hands.coupling_N_per_m=9000")
+        self.refused(run(*rig), "hands.coupling_N_per_m", "540 N/m", "440 N/m", "--override-passivity")
+        taken = run(*rig, "--override-passivity")  # and goes on to a bus that is not there
+        self.assertEqual(taken.returncode, 3, taken.stderr)
+        self.assertIn("bus", taken.stderr)
+
     def test_a_missing_scene(self):
         for name, command in self.programs(self.path / "nowhere.toml"):
             with self.subTest(program=name):

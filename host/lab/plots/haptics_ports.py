@@ -22,7 +22,8 @@ for line, number in enumerate(numbers):
         rows = runs.get((number, controller), [])
         t = [float(r["t_s"]) for r in rows]
         name = "controller " + ("on" if controller else "off")
-        axes[line][0].plot(t, [float(r["right_N"]) for r in rows], color=colour, lw=0.8, label=name)
+        force = [max(float(r["left_N"]), float(r["right_N"])) for r in rows]  # in the last run one hand holds nothing
+        axes[line][0].plot(t, force, color=colour, lw=0.8, label=name)
         energy = [min(float(r["left_uJ"]), float(r["right_uJ"])) for r in rows]
         axes[line][1].plot(t, energy, color=colour, lw=0.8, label=name)
     axes[line][1].axhline(0.0, color="k", lw=0.6)
@@ -32,7 +33,7 @@ for line, number in enumerate(numbers):
         axis.tick_params(labelsize=7)
         axis.grid(alpha=0.3)
 axes[0][0].legend(fontsize=8)
-axes[0][0].set_title(names[0] + " | force at the right hand, N", fontsize=9, loc="left", pad=2)
+axes[0][0].set_title(names[0] + " | force at the hand that feels more, N", fontsize=9, loc="left", pad=2)
 axes[0][1].set_title("energy taken in at the port, the lower one of both, uJ", fontsize=9, loc="left", pad=2)
 axes[-1][0].set_xlabel("time, s")
 axes[-1][1].set_xlabel("time, s")

@@ -128,6 +128,7 @@ int execute(Arguments a) {
   for (const auto& model : a.models)
     for (const auto& knot : a.knots) cells.push_back(cell_of(a, knot, model));
   std::vector<Count> counts;
+  counts.reserve(cells.size());
   for (const Cell& c : cells) counts.push_back(tie_all(c, seeds));
   if (counts.size() > 1) print_table(a, counts);
   return std::all_of(counts.begin(), counts.end(), [](const Count& c) { return c.is_enough(); }) ? kDone : kRunFailed;

@@ -19,6 +19,7 @@ sim::Mat3 tip_N_per_Nm(const sim::Mechanics& m) {
 
 Watched watch(VirtualRig& rig, std::int64_t ticks, std::size_t look_at) {
   Watched w;
+  const double count_rad = 2.0 * std::numbers::pi / rig.setup.body[0].drives.counts_per_revolution;  // both hands alike
   std::array<sim::Vec3, 2> made_Nm{sim::Vec3::Zero(), sim::Vec3::Zero()};
   std::array<sim::Mat3, 2> pose{sim::Mat3::Zero(), sim::Mat3::Zero()};  // at the SYNC before
   rig.each_tick = [&] {
@@ -28,13 +29,16 @@ Watched watch(VirtualRig& rig, std::int64_t ticks, std::size_t look_at) {
     for (std::size_t h = 0; h < 2; ++h) {
       const auto& m = hands[h]->device.mechanics();
       step[h] = (pose[h] * (m.made_Nm() - made_Nm[h])).norm();
+      w.hidden_J[h] += count_rad * (m.made_Nm() - made_Nm[h]).cwiseAbs().sum();
       made_Nm[h] = m.made_Nm();
       pose[h] = tip_N_per_Nm(m);
       force[h] = pose[h] * made_Nm[h];
       size[h] = force[h].norm();
       port[h] = -hands[h]->device.mechanics().motor_work_J();
       w.lowest_port_J[h] = std::min(w.lowest_port_J[h], port[h]);
-      w.lowest_bound_J[h] = std::min(w.lowest_bound_J[h], port[h] + rig.controller.hand(h).received_J);
+      const double bound_J = port[h] + rig.controller.hand(h).received_J;
+      w.lowest_bound_J[h] = std::min(w.lowest_bound_J[h], bound_J);
+      w.lowest_proved_J = std::min(w.lowest_proved_J, bound_J + w.hidden_J[h]);
     }
     w.lowest_sum_J = std::min(w.lowest_sum_J, port[0] + port[1]);
     w.rendered_N.push_back(force);

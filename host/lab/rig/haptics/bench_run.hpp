@@ -11,8 +11,10 @@
 namespace ligature::lab {
 
 struct Watched {
-  std::array<double, 2> lowest_port_J{};     ///< least the hand has put into the rig, by the motors' true work
-  std::array<double, 2> lowest_bound_J{};    ///< the same plus what the other hand's account gave it
+  std::array<double, 2> lowest_port_J{};   ///< least the hand has put into the rig, by the motors' true work
+  std::array<double, 2> lowest_bound_J{};  ///< the same plus what the other hand's account gave it
+  std::array<double, 2> hidden_J{};        ///< that counts can hide: sum of count |tau(n) - tau(n-1)| (docs/haptics.md)
+  double lowest_proved_J = 0.0;            ///< least of either port's bound and what had been hidden until then
   std::array<double, 2> lowest_account_J{};  ///< the firmware's account, on counts
   double lowest_sum_J = 0.0;                 ///< of both ports' true energy: the thread carries it from hand to hand
   double peak_N = 0.0;

@@ -6,7 +6,7 @@
 namespace ligature::lab {
 namespace {
 
-constexpr double kTaut_m = 0.123;
+constexpr double kTaut_m = 0.136;  // each hand from the middle: 15 mm of loop less than at 0.123, 0.7 N instead of 0.1
 
 /// Drives that guard their windings at a third of what the record allows, after half a second: long before the
 /// controller's own limit would act.

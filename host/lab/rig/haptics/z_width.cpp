@@ -56,7 +56,8 @@ void sweep(const HapticsBench& bench, const device::Device& device, const char* 
       for (int i = 0; i < n_K * n_B; ++i) {
         Wall wall = Wall::of(device);
         wall.K_N_per_m = 20.0 * std::pow(500.0, static_cast<double>(i % n_K) / (n_K - 1));
-        wall.B_N_s_per_m = 1.5 * (i / n_K) / (n_B - 1);
+        const int row = i / n_K;
+        wall.B_N_s_per_m = 1.5 * row / (n_B - 1);
         wall.delay = delay;
         wall.controller = controller;
         wall.push_N = kPush_N;
