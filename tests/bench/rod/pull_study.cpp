@@ -1,193 +1,146 @@
-// Pulls a scene's loose knot tight and prints one line a run: the knot after the wait and whether it is the one of the
-// start, guard events, worst penetration (diameters) in pull / hold / after, strain against T / EA, largest turn per
-// node and longest contact segment in the hold, chatter of the hand force in the hold, thread-CPU time per tick.
-//
-// Also: chatter while the thread slides, wherever the force is above 5 % of what is pulled to (chatter.hpp).
-//
-// Usage: rod_pull_study SCENE [speed_m_per_s force_N [sudden(0|1) hands(1|2) [key=value ...]]]; without sudden and
-// hands: the four runs of gentle, sudden x two, one; without speed: the 48 runs of two hands, one x 0.05, 0.2, 0.5, 1
-// m/s x 1, 5, 10 N x gentle, sudden release. Exit 1 when a knot was lost. Environment: HOLD_S=60, a longer hold;
-// WAIT_S, the wait after the release; WORK_K, the budget; SHAPES=FOLDER, where to write the thread at the start, in the
-// hold and at the end.
+// Pulls a scene's loose knot tight and prints one line a pull. What it prints and takes: rod_pull_study --help.
 
-#include <ctime>
-
-#include <algorithm>
-#include <cmath>
+#include <CLI/CLI.hpp>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
-#include "firmware/physics/rod/rod_simulation.hpp"
-#include "host/knot/recognise.hpp"
 #include "protocol/scene/scene_file.hpp"
-#include "tests/bench/rod/chatter.hpp"
+#include "tests/bench/rod/pull.hpp"
 
 using namespace ligature;
+using namespace ligature::bench;
 using physics::rod::RodSimulation;
 
 namespace {
 
-double cpu_us() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
-}
+constexpr const char* kFooter = R"(
+Pulls: two hands and one at 0.05, 0.2, 0.5 and 1 m/s to 1, 5 and 10 N, let go gently and suddenly (48); with SPEED and FORCE
+the four of them; with SUDDEN (0, 1) and HANDS (1, 2) one. A line says: the knot 5 s after the release and whether it is
+the one of the start; guard events; worst penetration, diameters, in the pull, the hold and after; strain against T / EA;
+largest turn a node and longest segment in contact, in the hold; chatter of the force in the hold and while sliding;
+CPU time of the thread a tick, us, and work on contact, thousand instructions: median, p99, worst.
 
-double quantile(std::vector<double> v, double q) {
-  std::sort(v.begin(), v.end());
-  return v.empty() ? 0.0 : v[std::min(v.size() - 1, static_cast<std::size_t>(q * static_cast<double>(v.size())))];
-}
+--repeat N runs each pull N times. The rod is deterministic: every tick must do the same work and end with the same
+nodes and forces, bit by bit, else the study fails. "least of N" is made of each tick's fastest run: what the tick
+itself costs, without what interrupts, other processes and the hypervisor put on top in one run or the other.
 
-double seconds_of(const char* variable, double otherwise) {
-  const char* const text = std::getenv(variable);
-  return text != nullptr ? std::atof(text) : otherwise;
-}
+Exit 0, or 1 when a knot was lost or a pull did not repeat itself, 2 for bad input.
 
-class Study {
- public:
-  Study(const scene::Scene& scene, RodSimulation sim) : scene_(scene), sim_(std::move(sim)) {
-    tools_[0].p_WT = sim_.nodes_W().front();
-    tools_[1].p_WT = sim_.nodes_W().back();
-    tools_[0].grip = tools_[1].grip = true;
-    auto& numerics = sim_.rod().numerics();
-    numerics.work = static_cast<long>(1000.0 * seconds_of("WORK_K", 1e-3 * static_cast<double>(numerics.work)));
-  }
+Example
+  rod_pull_study scenes/suture-3-0-knot.toml 0.2 5 0 2 suture.nodes=174 --repeat 5)";
 
-  /// @return whether the thread still has the knot it began with.
-  bool run(double speed, double force_N, bool sudden, int hands) {
-    save("start");
-    const auto begun = knot();
-    phase(0.1, 0.0, hands, 0.0);
-    forces_.clear();
-    phase(5.0, speed, hands, force_N);
-    const double slide = bench::chatter(forces_, 0.05 * force_N).share(), pull = std::exchange(penetration_, 0.0);
-    phase(0.3, 0.0, hands, 0.0);
-    penetration_ = 0.0;
-    forces_.clear();
-    phase(seconds_of("HOLD_S", 0.7), 0.0, hands, 0.0);
-    save("held");
-    const double hold = std::exchange(penetration_, 0.0), strain = sim_.diagnostics().max_stretch, tension = force();
-    const auto [turn, segment] = sharpness();
-    const double rms = bench::chatter(forces_, 0.0).share();
-    if (!sudden) phase(10.0, -0.02, 2, -0.02 * force_N);
-    tools_[1].grip = false;
-    phase(seconds_of("WAIT_S", 5.0), 0.0, hands, 0.0);
-    save("end");
-    const auto left = knot();
-    const bool kept = left.type == begun.type && left.handedness == begun.handedness;
-    std::printf(
-        "%4.2f m/s %4.1f N %s %d hand(s): %s %s %s guard %d penetration %.2f %.3f %.2f strain %.2f%% (T/EA %.2f%%) "
-        "turn "
-        "%.2f segment %.2f d chatter %.4f%% sliding %.2f%% us %.0f %.0f %.0f work k %.0f %.0f %.0f\n",
-        speed, force_N, sudden ? "sudden" : "gentle", hands, left.type.c_str(), left.handedness.c_str(),
-        kept ? "kept" : ("LOST, was " + begun.type).c_str(), guard_, pull, hold, penetration_, 100.0 * strain,
-        100.0 * tension / scene_.suture.rod.EA_N, turn, segment, 100.0 * rms, 100.0 * slide, quantile(us_, 0.5),
-        quantile(us_, 0.99), quantile(us_, 1.0), quantile(work_, 0.5), quantile(work_, 0.99), quantile(work_, 1.0));
-    std::fflush(stdout);
-    return kept;
-  }
-
- private:
-  double force() const {
-    return 0.5 * (sim_.hand(physics::Hand::kLeft).f_W.x() - sim_.hand(physics::Hand::kRight).f_W.x());
-  }
-
-  std::vector<std::array<double, 3>> points() const {
-    std::vector<std::array<double, 3>> all;
-    for (const auto& p : sim_.nodes_W()) all.push_back({p.x(), p.y(), p.z()});
-    return all;
-  }
-
-  knot::KnotResult knot() const { return knot::recognise(points(), false); }
-
-  void save(const std::string& name) const {
-    const char* const folder = std::getenv("SHAPES");
-    if (folder == nullptr) return;
-    std::ofstream out(std::string(folder) + "/" + name + ".csv");
-    out << "x,y,z\n";
-    for (const auto& p : points()) out << p[0] << ',' << p[1] << ',' << p[2] << '\n';
-  }
-
-  // until_N > 0: ends when pulled that hard; < 0: when eased below -until_N.
-  void phase(double seconds, double speed, int hands, double until_N) {
-    for (int k = 0; k < static_cast<int>(1000.0 * seconds); ++k) {
-      if (until_N > 0.0 && force() >= until_N) return;
-      if (until_N < 0.0 && force() <= -until_N) return;
-      for (std::size_t h = 0; h < 2; ++h) {
-        const double v = h == 1 ? speed : hands == 2 ? -speed : 0.0;
-        tools_[h].v_WT.x() = v;
-        tools_[h].p_WT.x() += 1e-3 * v;
-      }
-      const double before = cpu_us();
-      sim_.tick(tools_);
-      us_.push_back(cpu_us() - before);
-      guard_ += sim_.rod().report().guard_events;
-      work_.push_back(1e-3 * static_cast<double>(sim_.rod().report().work));
-      penetration_ = std::max(penetration_, -sim_.diagnostics().min_gap_m / (2.0 * scene_.suture.radius_m));
-      forces_.push_back(force());
-    }
-  }
-
-  // Largest turn at a node in contact, rad, and longest segment in contact, diameters.
-  std::pair<double, double> sharpness() const {
-    double turn = 0.0, longest = 0.0;
-    const auto& state = sim_.rod().state();
-    for (const auto& c : sim_.rod().contact_set().contacts()) {
-      if (c.count != 4 || dot(c.p, c.p) == 0.0) continue;
-      for (const int k : {0, 2}) {
-        const auto i = static_cast<std::size_t>(c.node[k]);
-        if (i < 1 || i + 1 >= state.x.size()) continue;
-        const auto a = state.x[i] - state.x[i - 1], b = state.x[i + 1] - state.x[i];
-        turn = std::max(turn, std::atan2(norm(cross(a, b)), dot(a, b)));
-        longest = std::max(longest, state.mesh.rest[i] / (2.0 * scene_.suture.radius_m));
-      }
-    }
-    return {turn, longest};
-  }
-
-  scene::Scene scene_;
-  RodSimulation sim_;
-  std::array<physics::ToolInput, 2> tools_{};
-  std::vector<double> us_, work_, forces_;
-  double penetration_ = 0.0;
-  int guard_ = 0;
+struct Arguments {
+  std::string scene;
+  double speed = 0.0, force = 0.0;
+  int sudden = 0, hands = 0, repeat = 1;
+  std::vector<std::string> overrides;
+  std::string ticks;
+  PullOptions pull;
 };
+
+std::vector<Pull> pulls_of(const Arguments& a) {
+  if (a.hands > 0) return {{a.speed, a.force, a.sudden != 0, a.hands}};
+  std::vector<Pull> all;
+  for (const int hands : {2, 1}) {
+    if (a.speed > 0.0) {
+      for (const bool sudden : {false, true}) all.push_back({a.speed, a.force, sudden, hands});
+      continue;
+    }
+    for (const double speed : {0.05, 0.2, 0.5, 1.0}) {
+      for (const double force_N : {1.0, 5.0, 10.0}) {
+        for (const bool sudden : {false, true}) all.push_back({speed, force_N, sudden, hands});
+      }
+    }
+  }
+  return all;
+}
+
+void print(const char* name, const std::vector<double>& values) {
+  std::printf(" %s %.0f %.0f %.0f", name, quantile(values, 0.5), quantile(values, 0.99), quantile(values, 1.0));
+}
+
+void print(const scene::Scene& scene, const Pull& pull, const PullResult& r, const Repeated& repeated) {
+  std::printf(
+      "%4.2f m/s %4.1f N %s %d hand(s): %s %s %s guard %d penetration %.2f %.3f %.2f strain %.2f%% (T/EA %.2f%%) "
+      "turn %.2f segment %.2f d chatter %.4f%% sliding %.2f%%",
+      pull.speed_m_per_s, pull.force_N, pull.sudden ? "sudden" : "gentle", pull.hands, r.left.type.c_str(),
+      r.left.handedness.c_str(), r.kept() ? "kept" : ("LOST, was " + r.begun.type).c_str(), r.guard, r.pull_d, r.hold_d,
+      r.after_d, 100.0 * r.strain, 100.0 * r.tension_N / scene.suture.rod.EA_N, r.turn_rad, r.segment_d,
+      100.0 * r.chatter, 100.0 * r.sliding);
+  std::vector<double> us, work_k;
+  for (const auto& t : repeated.first()) us.push_back(t.us), work_k.push_back(1e-3 * static_cast<double>(t.work));
+  print("us", us);
+  print("work k", work_k);
+  if (repeated.runs() > 1) print(("least of " + std::to_string(repeated.runs()) + " us").c_str(), repeated.least_us());
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+/// @return whether the knot was kept and every run did the same.
+bool study(const scene::Scene& scene, const Pull& pull, const Arguments& a, std::ostream& ticks) {
+  Repeated repeated;
+  PullResult first;
+  for (int k = 0; k < a.repeat; ++k) {
+    auto made = RodSimulation::make(scene);
+    if (auto* why = std::get_if<std::string>(&made)) std::fprintf(stderr, "%s\n", why->c_str()), std::exit(2);
+    auto result = Puller(scene, std::get<RodSimulation>(std::move(made)), a.pull).run(pull);
+    if (const auto tick = repeated.add(std::move(result.ticks))) {
+      std::printf("%4.2f m/s %4.1f N %s %d hand(s): NOT REPEATED, run %d differs from tick %zu on\n",
+                  pull.speed_m_per_s, pull.force_N, pull.sudden ? "sudden" : "gentle", pull.hands, k + 1, *tick);
+      return false;
+    }
+    if (k == 0) first = std::move(result);
+  }
+  print(scene, pull, first, repeated);
+  char name[64];
+  std::snprintf(name, sizeof name, "%g,%g,%d,%d", pull.speed_m_per_s, pull.force_N, pull.sudden ? 1 : 0, pull.hands);
+  if (!a.ticks.empty()) repeated.write(ticks, name);
+  return first.kept();
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2 || argc == 3 || argc == 5)
-    return std::fprintf(stderr, "usage: rod_pull_study SCENE [speed force [sudden hands [key=value ...]]]\n"), 2;
-  const std::vector<std::string> overrides(argv + std::min(argc, 6), argv + argc);
-  auto read = scene::load_scene(argv[1], overrides);
-  if (auto* error = std::get_if<scene::Error>(&read)) return std::fprintf(stderr, "%s\n", error->text.c_str()), 2;
-  const auto& scene = std::get<scene::Scene>(read);
-  int runs = 0, kept = 0;
-  const auto run = [&](double speed, double force_N, bool sudden, int hands) {
-    auto made = RodSimulation::make(scene);
-    if (auto* why = std::get_if<std::string>(&made)) std::fprintf(stderr, "%s\n", why->c_str()), std::exit(2);
-    kept += Study(scene, std::get<RodSimulation>(std::move(made))).run(speed, force_N, sudden, hands);
-    ++runs;
-  };
-  if (argc > 5) {
-    run(std::atof(argv[2]), std::atof(argv[3]), std::atoi(argv[4]) != 0, std::atoi(argv[5]));
-  } else if (argc == 4) {
-    for (const int hands : {2, 1}) {
-      for (const bool sudden : {false, true}) run(std::atof(argv[2]), std::atof(argv[3]), sudden, hands);
-    }
-  } else {
-    for (const int hands : {2, 1}) {
-      for (const double speed : {0.05, 0.2, 0.5, 1.0}) {
-        for (const double force_N : {1.0, 5.0, 10.0}) {
-          for (const bool sudden : {false, true}) run(speed, force_N, sudden, hands);
-        }
-      }
-    }
+  Arguments a;
+  CLI::App app("Pulls a scene's loose knot tight, holds it, lets go and looks what is left", "rod_pull_study");
+  app.footer(kFooter);
+  app.set_version_flag("--version", "rod_pull_study " LIGATURE_VERSION);
+  app.add_option("SCENE", a.scene)->required();
+  auto* const speed = app.add_option("SPEED", a.speed, "of each hand that pulls, m/s")->check(CLI::PositiveNumber);
+  auto* const force = app.add_option("FORCE", a.force, "to pull to, N")->needs(speed)->check(CLI::PositiveNumber);
+  speed->needs(force);
+  auto* const sudden = app.add_option("SUDDEN", a.sudden, "1: let go suddenly")->check(CLI::Range(0, 1));
+  auto* const hands = app.add_option("HANDS", a.hands, "that pull")->needs(sudden)->check(CLI::Range(1, 2));
+  sudden->needs(hands);
+  app.add_option("KEY=VALUE", a.overrides, "keys of the scene file");
+  app.add_option("--repeat", a.repeat, "runs of each pull")->check(CLI::Range(1, 1000));
+  app.add_option("--ticks", a.ticks, "CSV of every tick of every run: time, work, and what disturbed it");
+  app.add_option("--hold", a.pull.hold_s, "s")->envname("HOLD_S");
+  app.add_option("--wait", a.pull.wait_s, "after the release, s")->envname("WAIT_S");
+  app.add_option("--work", a.pull.work_k, "contact budget but its part a node, thousand instructions")
+      ->envname("WORK_K");
+  app.add_option("--shapes", a.pull.shapes, "folder for start.csv, held.csv, end.csv")->envname("SHAPES");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
   }
-  std::printf("%d of %d kept\n", kept, runs);
-  return kept == runs ? 0 : 1;
+  auto read = scene::load_scene(a.scene, a.overrides);
+  if (auto* error = std::get_if<scene::Error>(&read)) return std::fprintf(stderr, "%s\n", error->text.c_str()), 2;
+  std::ofstream ticks;
+  if (!a.ticks.empty()) {
+    a.pull.disturbances = true;
+    ticks.open(a.ticks);
+    if (!ticks) return std::fprintf(stderr, "%s: cannot be written\n", a.ticks.c_str()), 2;
+    ticks << "speed_m_per_s,force_N,sudden,hands,run,tick,us,work,faults,switches,steals_10ms\n";
+  }
+  std::size_t kept = 0;
+  const auto pulls = pulls_of(a);
+  for (const auto& pull : pulls) kept += study(std::get<scene::Scene>(read), pull, a, ticks);
+  std::printf("%zu of %zu kept\n", kept, pulls.size());
+  return kept == pulls.size() ? 0 : 1;
 }

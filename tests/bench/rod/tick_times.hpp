@@ -1,0 +1,111 @@
+#pragma once
+// What ticks cost, apart from what the machine takes: a pull is run again and again, and each tick counts by its
+// fastest run.
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <ctime>
+#include <fstream>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "firmware/physics/simulation.hpp"
+
+namespace ligature::bench {
+
+/// CPU time of this thread, us. Linux charges it with what interrupts and the hypervisor take while it is on its core.
+[[nodiscard]] inline double cpu_us() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
+}
+
+[[nodiscard]] inline double quantile(std::vector<double> v, double q) {
+  std::sort(v.begin(), v.end());
+  return v.empty() ? 0.0 : v[std::min(v.size() - 1, static_cast<std::size_t>(q * static_cast<double>(v.size())))];
+}
+
+/// What the machine did to this thread so far: page faults, times another process was put in its place, and the CPU
+/// time that the hypervisor says it took from all cores, 10 ms a count.
+struct Disturbances {
+  long faults = 0, switches = 0, steals = 0;
+
+  [[nodiscard]] static Disturbances now() {
+    rusage used{};
+    getrusage(RUSAGE_THREAD, &used);
+    std::ifstream stat("/proc/stat");
+    std::string cpu;
+    long user = 0, nice = 0, system = 0, idle = 0, disk = 0, irq = 0, softirq = 0, steals = 0;
+    stat >> cpu >> user >> nice >> system >> idle >> disk >> irq >> softirq >> steals;
+    return {used.ru_minflt + used.ru_majflt, used.ru_nivcsw, steals};
+  }
+  [[nodiscard]] Disturbances since(const Disturbances& before) const {
+    return {faults - before.faults, switches - before.switches, steals - before.steals};
+  }
+};
+
+/// A tick: its time, and what it did, which is the same whenever it is run.
+struct Tick {
+  double us = 0.0;
+  long work = 0;            ///< on contact (rod/work.hpp), instructions
+  std::uint64_t print = 0;  ///< of all nodes and both hands' forces, bit by bit
+  Disturbances met{};
+
+  [[nodiscard]] bool did_as(const Tick& other) const { return work == other.work && print == other.print; }
+};
+
+/// Fingerprint [Fowler-Noll-Vo] of some vectors, bit by bit.
+[[nodiscard]] inline std::uint64_t fingerprint(std::span<const physics::Vec3> vectors, std::uint64_t hash) {
+  for (const auto& v : vectors) {
+    for (int k = 0; k < 3; ++k) hash = (hash ^ __builtin_bit_cast(std::uint64_t, v[k])) * 0x100000001b3U;
+  }
+  return hash;
+}
+
+/// The runs of one pull, tick by tick.
+class Repeated {
+ public:
+  /// @return the first tick that did something else than in the run before, if any did.
+  [[nodiscard]] std::optional<std::size_t> add(std::vector<Tick> run) {
+    runs_.push_back(std::move(run));
+    const auto &first = runs_.front(), &last = runs_.back();
+    const std::size_t both = std::min(first.size(), last.size());
+    for (std::size_t k = 0; k < both; ++k) {
+      if (!first[k].did_as(last[k])) return k;
+    }
+    return first.size() == last.size() ? std::nullopt : std::optional(both);
+  }
+
+  [[nodiscard]] std::size_t runs() const { return runs_.size(); }
+  [[nodiscard]] const std::vector<Tick>& first() const { return runs_.front(); }
+  /// Of each tick the least time that any run took for it, us.
+  [[nodiscard]] std::vector<double> least_us() const {
+    std::vector<double> least(first().size(), 1e300);
+    for (const auto& run : runs_) {
+      for (std::size_t k = 0; k < std::min(run.size(), least.size()); ++k) least[k] = std::min(least[k], run[k].us);
+    }
+    return least;
+  }
+
+  /// Every tick of every run, to look for what made one long.
+  void write(std::ostream& out, const std::string& pull) const {
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      for (std::size_t k = 0; k < runs_[r].size(); ++k) {
+        const Tick& t = runs_[r][k];
+        out << pull << ',' << r << ',' << k << ',' << t.us << ',' << t.work << ',' << t.met.faults << ','
+            << t.met.switches << ',' << t.met.steals << '\n';
+      }
+    }
+  }
+
+ private:
+  std::vector<std::vector<Tick>> runs_;
+};
+
+}  // namespace ligature::bench
