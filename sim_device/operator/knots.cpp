@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <memory>
 
 #include "sim_device/operator/diagram.hpp"
 #include "sim_device/operator/figure_eight.hpp"
@@ -139,6 +141,27 @@ Moves held_throw(const Throw& t, const Workplace& place, bool alone) {
 
 }  // namespace
 
+namespace {
+
+bool hangs_straight(const Look& look) {
+  constexpr double kStraight = 0.98;
+  const double all = look.thread.length_m();
+  return (look.thread.at(all) - look.thread.at(0.0)).norm() > kStraight * all;
+}
+
+/// `moves`, or nothing of them if, when their turn comes, there is no need.
+Moves unless(std::function<bool(const Look&)> needless, Moves moves) {
+  auto skip = std::make_shared<std::optional<bool>>();
+  for (Move& m : moves)
+    m.act = [=, act = std::move(m.act)](const Look& look) {
+      if (!*skip) *skip = needless(look);
+      return **skip || act(look);
+    };
+  return moves;
+}
+
+}  // namespace
+
 std::optional<std::size_t> throws_seen(const Knot& knot, const Look& look) {
   const int seen = seen_determinant(look.thread.between(0.0, look.thread.length_m()), kFront);
   int tied = 1;
@@ -155,7 +178,7 @@ Moves draw_straight() {
   m.push_back(ease());
   m.push_back(let_go(kRightHand));
   m.push_back(hang_out());
-  return m;
+  return unless(hangs_straight, std::move(m));
 }
 
 Moves plan(const Knot& knot, const Workplace& place, std::size_t first) {

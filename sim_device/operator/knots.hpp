@@ -32,7 +32,8 @@ struct Knot {
 /// How many of its throws the eye counts in the thread as it hangs; nothing if what it sees is no beginning of it.
 [[nodiscard]] std::optional<std::size_t> throws_seen(const Knot& knot, const Look& look);
 
-/// Empty hands take the end, draw the thread straight, however it is entangled, and let it go again.
+/// Empty hands take the end, draw the thread straight, however it is entangled, and let it go again. One that hangs
+/// straight already is left alone: its end may be lower than an arm reaches.
 [[nodiscard]] Moves draw_straight();
 
 /// Everything from empty hands to empty hands. @param first throw that is not tied yet

@@ -40,9 +40,9 @@ constexpr Stop kTwice[] = {
     {false, -0.03, -0.012, 0.0},                              //
     {true, -0.03, -0.08, -0.12}, {true, 0.02, -0.08, -0.12},  // .. but under it further from the corner,
     {true, 0.06, 0.0, -0.12},    {true, 0.03, 0.06, -0.1},    // up and
-    {true, -0.03, 0.06, -0.08},  {true, -0.06, 0.0, -0.06},   // over once more, the arch now along the standing part
-    {true, -0.06, -0.09, -0.05}, {true, 0.01, -0.1, -0.03},   // under
-    {true, 0.07, -0.07, 0.09},                                // and through
+    {true, -0.03, 0.06, -0.08},  {true, -0.06, 0.0, -0.07},   // over once more, the arch now along the standing part
+    {true, -0.06, -0.09, -0.07}, {true, 0.06, -0.1, -0.07},   // under, to the front well before the corner's strand,
+    {true, 0.09, -0.07, 0.09},                                // and through
 };
 
 std::span<const Stop> path_of(const Throw& t) {

@@ -18,9 +18,10 @@ inline knot::KnotResult recognised(std::span<const Vec3> thread) {
   return knot::recognise(shape, false);
 }
 
+/// @param until a move: when it begins, the operator is stopped
 /// @return the knot's type and hand after the operator is done, or why there is none.
 inline std::string tied(const char* name, const char* knot, std::uint32_t seed,
-                        const std::vector<std::string>& overrides = {}) {
+                        const std::vector<std::string>& overrides = {}, const char* until = "done") {
   const auto read = scene::load_scene(std::string(LIGATURE_SOURCE_DIR "/scenes/") + name, overrides);
   if (const auto* error = std::get_if<scene::Error>(&read)) return error->text;
   const auto& scene = std::get<scene::Scene>(read);
@@ -30,7 +31,7 @@ inline std::string tied(const char* name, const char* knot, std::uint32_t seed,
   auto& thread = std::get<physics::Simulation>(made);
   auto& person = std::get<KnotTier>(tier);
   Sight sight;
-  for (int k = 0; k < 200'000 && !person.is_done(); ++k) {
+  for (int k = 0; k < 200'000 && person.doing() != until; ++k) {
     sight.t_s = 1e-3 * k;
     sight.thread_W = thread.nodes_W();
     for (std::size_t h = 0; h < 2; ++h) {
@@ -41,7 +42,7 @@ inline std::string tied(const char* name, const char* knot, std::uint32_t seed,
     thread.tick({physics::ToolInput{wish[0].p_W, wish[0].v_W, wish[0].grip},
                  physics::ToolInput{wish[1].p_W, wish[1].v_W, wish[1].grip}});
   }
-  if (!person.is_done()) return "not done";
+  if (person.doing() != until) return "not done";
   const auto k = recognised(thread.nodes_W());
   return k.type + " " + k.handedness;
 }
