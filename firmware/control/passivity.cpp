@@ -19,6 +19,7 @@ void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {
   const Vec3 counted_rad = vector_of(s.q_rad);
   Vec3 q_rad = counted_rad;
   if (sampled_ >= 0 && tick > sampled_) {
+    if (tick > sampled_ + 1) lossy_until_ = tick + kWary;
     for (Eigen::Index j = 0; j < 3; ++j) {
       const double turned_rad = periods * period_s_ * s.rate_rad_per_s[j];  // late where a joint is fast
       if (std::abs(turned_rad) < kSlowCounts * periods * s.count_rad)
@@ -40,7 +41,7 @@ void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {
 
 /// All that was decided before this tick. Once RPDOs have been lost, any of it may act, joint by joint.
 void Passivity::look_under_way(std::int64_t tick) noexcept {
-  const bool wary = tick < lossy_until_;
+  const bool wary = is_wary(tick);
   under_way_ = {low_Nm_, high_Nm_};
   under_way_J_ = std::max(0.0, sent_.at(sent_.newest() - 1).torque_Nm.dot(behind_rad_));  // if a guess was wrong
   for (std::int64_t i = sent_.cycle_of(sampled_); i <= sent_.newest(); ++i) {
@@ -68,19 +69,18 @@ double Passivity::most_given_J(Eigen::Index j, std::int64_t tick, double dq_rad,
   const auto asked_Nm = [&](std::int64_t i) { return sent_.at(i - 1).torque_Nm[j]; };
   const bool told = std::isfinite(s.acted.torque_Nm[j]);
   const double made_Nm = told ? s.acted.torque_Nm[j] : asked_Nm(last - s.acted.held[joint]);
-  double low_Nm = low_Nm_[j], high_Nm = high_Nm_[j];
-  const auto widen = [&](double by_Nm) { low_Nm = std::min(low_Nm, by_Nm), high_Nm = std::max(high_Nm, by_Nm); };
-  for (std::int64_t i = first; i < last; ++i) widen(asked_Nm(i));
   const bool guarded = s.acted.limited[joint] || guarded_[joint];
   if (!guarded && made_Nm != asked_Nm(last)) lossy_until_ = tick + kWary;
-  if (guarded) widen(asked_Nm(last)), widen(told ? made_Nm : 0.0);
+  std::int64_t known = last + (guarded ? 1 : 0);  // from this cycle on it made made_Nm
+  while (!guarded && known > first && (told ? made_Nm != asked_Nm(known) : last - known < s.acted.held[joint])) --known;
 
   const double all = static_cast<double>(tick - sampled_);
   double given_J = made_Nm * dq_rad;
-  bool known = !guarded;
-  for (std::int64_t i = last; i >= first; --i) {
-    if (i < last) known = known && (told ? made_Nm != asked_Nm(i + 1) : last - i <= s.acted.held[joint]);
-    if (known) continue;
+  double low_Nm = low_Nm_[j], high_Nm = high_Nm_[j];
+  const auto widen = [&](double by_Nm) { low_Nm = std::min(low_Nm, by_Nm), high_Nm = std::max(high_Nm, by_Nm); };
+  if (guarded) widen(told ? made_Nm : 0.0);
+  for (std::int64_t i = first; i < known; ++i) {
+    widen(asked_Nm(i));
     const double even_rad = dq_rad * static_cast<double>(sent_.periods(i)) / all;
     given_J += std::max((high_Nm - made_Nm) * even_rad, (low_Nm - made_Nm) * even_rad);
   }
@@ -117,11 +117,12 @@ double Passivity::along_J(const Vec3& f_N) const noexcept {
 /// What is missing to send f in `tick` and to take it back; below zero: what is left. Each step of the way back is a
 /// step from all that may be acting, that is from the last two sent: it takes two periods.
 double Passivity::shortage_J(std::int64_t tick, const Vec3& f_N, bool and_back) const noexcept {
-  const bool blind = tick > sampled_, wary = tick < lossy_until_;
+  const bool blind = tick > sampled_, wary = is_wary(tick);
   const std::int64_t ahead = tick + 1 - sampled_;
   double size_N = f_N.norm(), told_N = under_way_N_;
   const Vec3 along = f_N / std::max(size_N, 1e-300);
-  double spent_J = under_way_J_ + blind_loss_J(f_N, ahead, wary && !blind ? 2 : 1);
+  double spent_J = under_way_J_ + blind_loss_J(f_N, ahead, wary ? 2 : 1);
+  if (wary) spent_J += kMore * std::max(0.0, along_J(f_N));
   for (std::int64_t k = 1; and_back; ++k) {
     const double next_N = std::clamp(std::max(told_N, size_N) - step_N_, 0.0, size_N);
     told_N = size_N, size_N = next_N;

@@ -65,7 +65,8 @@ class Passivity {
   static constexpr double kMaxDamping_N_s_per_m = 5.0;  ///< what a device of the class can render at 1 kHz
   static constexpr std::int64_t kWary = 10'000;         ///< ticks after a lost RPDO in which the next one is foreseen
   static constexpr double kLater = 0.3;          ///< of the hand's acceleration, after two periods without a sample
-  static constexpr double kSlight_N = 0.01;      ///< for so little nothing is foreseen, else no force could begin
+  static constexpr double kMore = 3.0;           ///< periods of the present motion foreseen beyond those two
+  static constexpr double kSlight_N = 0.006;     ///< for so little nothing is foreseen, else no force could begin
   static constexpr double kSlowCounts = 0.25;    ///< a period; below, a joint is guessed to be between counts
   static constexpr double kSlow_m_per_s = 5e-3;  ///< below, a velocity is mostly counts
 
@@ -164,6 +165,7 @@ class Passivity {
     }
   };
 
+  [[nodiscard]] bool is_wary(std::int64_t tick) const noexcept { return tick > sampled_ || tick < lossy_until_; }
   void look_under_way(std::int64_t tick) noexcept;
   [[nodiscard]] double most_given_J(Eigen::Index joint, std::int64_t tick, double dq_rad,
                                     const PortSample& sample) noexcept;

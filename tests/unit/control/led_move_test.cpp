@@ -96,7 +96,9 @@ TEST(LedMove, ParkLeadsBothHandsGentlyToTheRestingPose) {
   EXPECT_LT(arms.speed, 0.25);
   EXPECT_LE(arms.most_J, HandControl::kLeadEnergy_J);
   EXPECT_GE(arms.least_bound_J, -1e-6);
-  EXPECT_LE(arms.controller.hand(0).received_J, HandControl::kLeadEnergy_J);  // the rest went back
+  EXPECT_GT(arms.controller.hand(0).received_J, 0.0);
+  EXPECT_LT(arms.controller.hand(0).received_J, HandControl::kLeadEnergy_J);
+  EXPECT_LT(std::abs(arms.controller.hand(0).port_energy_J), 1e-6);  // the rest went back
 }
 
 TEST(LedMove, CalibrateLeadsHome) {
@@ -106,6 +108,22 @@ TEST(LedMove, CalibrateLeadsHome) {
   arms.ticks(6000);
   EXPECT_LT((arms.tip(0) - arms.linkage.home_m()).norm(), 0.005);
   EXPECT_EQ(arms.controller.fault(), Fault::kNone);
+}
+
+TEST(LedMove, CalibrateUndoesTheClutchsOffset) {
+  Arms arms;
+  arms.to_force();
+  arms.in.reading.hand[0].clutch = true;
+  arms.ticks(100);
+  for (int i = 0; i < 200; ++i, arms.tick()) arms.q[0].x() += 0.0015;  // the hand moves on, its tool does not
+  arms.in.reading.hand[0].clutch = false;
+  arms.ticks(1000);
+  const auto off_m = [&] { return (arms.controller.hand(0).p_WT - (arms.tip(0) - arms.linkage.home_m())).norm(); };
+  ASSERT_GT(off_m(), 0.02);
+  arms.controller.command(rt::CommandKind::kCalibrate);
+  arms.ticks(6000);
+  EXPECT_LT((arms.tip(0) - arms.linkage.home_m()).norm(), 0.005);
+  EXPECT_LT(off_m(), 1e-4);
 }
 
 TEST(LedMove, NothingMovesWithoutACommandADeadManOrArming) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <new>
@@ -24,12 +25,14 @@ namespace {
 
 TEST(Ramp, TakesItsDurationAndIsSmooth) {
   Ramp ramp(1e-3);
-  double before = 0.0, speed = 0.0;
+  double before = 0.0, speed = 0.0, rise = 0.0;
   for (int i = 0; i < 500; ++i) {
     EXPECT_LT(before, 1.0) << i;
     const double now = ramp.step(1.0, 0.5);
     EXPECT_GT(now, before) << i;
-    EXPECT_LE(std::abs((now - before) - speed), 6.0 / 0.25 * 1e-6 + 1e-12) << i;  // acceleration x T^2
+    EXPECT_LE(std::abs((now - before) - speed), 6.0 / 0.25 * 1e-6 + 1e-12) << i;         // acceleration x T^2
+    EXPECT_LE(std::abs(now - before - speed - rise), 72.0 / 0.125 * 1e-9 + 1e-12) << i;  // jerk x T^3
+    rise = now - before - speed;
     speed = now - before;
     before = now;
   }
@@ -49,19 +52,40 @@ TEST(Ramp, TurnsRoundWithoutAJump) {
   }
 }
 
+/// Largest acceleration and jerk of a path read period by period, on any axis.
+struct Watch {
+  physics::Vec3 speed, push = physics::Vec3::Zero();
+  double acceleration = 0.0, jerk = 0.0;
+  explicit Watch(const physics::Vec3& at_first) : speed(at_first) {}
+  void see(const physics::Vec3& now) {
+    const physics::Vec3 a = (now - speed) / 1e-3;
+    acceleration = std::max(acceleration, a.cwiseAbs().maxCoeff());
+    jerk = std::max(jerk, (a - push).cwiseAbs().maxCoeff() / 1e-3);
+    push = a;
+    speed = now;
+  }
+};
+constexpr double kSlack = 1.0 + 1e-6;
+
 TEST(BrakeToRest, StopsFromAnySpeedWithinItsLimits) {
   BrakeToRest brake(1e-3);
   brake.start({0.1, 0.2, 0.3}, {2.0, -1.0, 0.5});
-  physics::Vec3 before = brake.velocity_m_per_s();
+  EXPECT_EQ(brake.position_m(), physics::Vec3(0.1, 0.2, 0.3));  // from where the tip is, and as fast
+  EXPECT_EQ(brake.velocity_m_per_s(), physics::Vec3(2.0, -1.0, 0.5));
+  Watch watch(brake.velocity_m_per_s());
+  physics::Vec3 went = physics::Vec3::Zero();
   int moving = 0;
   for (int i = 0; i < 300; ++i) {
+    const physics::Vec3 before = brake.velocity_m_per_s();
     brake.step();
-    EXPECT_LE((brake.velocity_m_per_s() - before).cwiseAbs().maxCoeff(),
-              BrakeToRest::kDeceleration_m_per_s2 * 1e-3 + 1e-9);
-    before = brake.velocity_m_per_s();
-    moving += before.norm() > 1e-9;
+    watch.see(brake.velocity_m_per_s());
+    went += 0.5e-3 * (before + brake.velocity_m_per_s());
+    moving += brake.velocity_m_per_s().norm() > 1e-9;
   }
-  EXPECT_LT(before.norm(), 1e-9);
+  EXPECT_LE(watch.acceleration, BrakeToRest::kDeceleration_m_per_s2 * kSlack);
+  EXPECT_LE(watch.jerk, BrakeToRest::kJerk_m_per_s3 * kSlack);
+  EXPECT_LT(brake.velocity_m_per_s().norm(), 1e-9);
+  EXPECT_LT((brake.position_m() - physics::Vec3(0.1, 0.2, 0.3) - went).norm(), 1e-4);
   EXPECT_LT(moving, 60);
 }
 
@@ -69,19 +93,20 @@ TEST(GuidedMove, GoesStraightWithinItsLimitsAndStops) {
   GuidedMove move(1e-3);
   const physics::Vec3 from(0.01, -0.17, 0.03), to(-0.05, -0.2, 0.0);
   ASSERT_TRUE(move.start(from, to));
-  physics::Vec3 before = from, speed = physics::Vec3::Zero();
+  physics::Vec3 before = from;
+  Watch watch(physics::Vec3::Zero());
   int ticks = 0;
   for (; !move.is_done(); ++ticks) {
     ASSERT_LT(ticks, 5000);
     move.step();
     const physics::Vec3 way = (to - from).normalized(), off = move.position_m() - from;
     EXPECT_LT((off - way * way.dot(off)).norm(), 1e-9) << ticks;
-    EXPECT_LE((move.velocity_m_per_s() - speed).cwiseAbs().maxCoeff(),
-              GuidedMove::kAcceleration_m_per_s2 * 1e-3 + 1e-9);
+    watch.see(move.velocity_m_per_s());
     EXPECT_LE(move.velocity_m_per_s().cwiseAbs().maxCoeff(), GuidedMove::kSpeed_m_per_s + 1e-9);
-    speed = move.velocity_m_per_s();
     before = move.position_m();
   }
+  EXPECT_LE(watch.acceleration, GuidedMove::kAcceleration_m_per_s2 * kSlack);
+  EXPECT_LE(watch.jerk, GuidedMove::kJerk_m_per_s3 * kSlack);
   EXPECT_GT(ticks, 500);
   EXPECT_LT((before - to).norm(), 1e-6);
 }

@@ -238,22 +238,33 @@ TEST(Passivity, AHeldTorqueIsBookedExactlyOverLostSamples) {
   EXPECT_LE(port.largest_excess_J + port.largest_shortfall_J, 1e-12);
 }
 
+struct Least {
+  double work_J = 0.0, account_J = 0.0;
+};
+
 /// Of 40 adversaries with frames lost either way.
-double least_work_J(const Chain& chain, double wildness) {
-  double lowest_J = 0.0;
-  play_adversaries(
-      chain, [&](const Port& port) { lowest_J = std::min(lowest_J, port.lowest_work_J); }, wildness);
-  std::printf("RPDOs %.2f, samples %.2f lost, %.1f of the wildest hand: %.2e J\n", chain.lost, chain.lost_samples,
-              wildness, lowest_J);
-  return lowest_J;
+Least least_of(const Chain& chain, double wildness) {
+  Least least;
+  const auto look = [&](const Port& port) {
+    least.work_J = std::min(least.work_J, port.lowest_work_J);
+    least.account_J = std::min(least.account_J, port.lowest_J);
+  };
+  play_adversaries(chain, look, wildness);
+  std::printf("RPDOs %.2f, samples %.2f lost, %.1f of the wildest hand: work %.2e J, account %.2e J\n", chain.lost,
+              chain.lost_samples, wildness, least.work_J, least.account_J);
+  return least;
 }
 
 TEST(Passivity, LostFramesGiveNothingAway) {
   for (const bool tells : {true, false}) {
-    EXPECT_GE(least_work_J({.lost = 0.05, .tells_torque = tells}, 0.5), -Passivity::kFloor_J);
-    EXPECT_GE(least_work_J({.lost_samples = 0.14, .tells_torque = tells}, 0.5), -Passivity::kFloor_J);
-    EXPECT_GE(least_work_J({.lost = 0.05, .lost_samples = 0.14, .tells_torque = tells}, 0.5), -Passivity::kFloor_J);
-    EXPECT_GE(least_work_J({.lost = 0.05, .tells_torque = tells}, 1.0), -Passivity::kFloor_J);
+    for (const Chain& chain : {Chain{.lost = 0.05, .tells_torque = tells},
+                               {.lost_samples = 0.14, .tells_torque = tells},
+                               {.lost = 0.05, .lost_samples = 0.14, .tells_torque = tells}}) {
+      const Least half = least_of(chain, 0.5);
+      EXPECT_GE(half.work_J, -Passivity::kFloor_J);
+      EXPECT_GE(half.account_J, -Passivity::kFloor_J);  // of what nobody saw the worst is booked
+      EXPECT_GE(least_of(chain, 1.0).work_J, -Passivity::kFloor_J);
+    }
   }
 }
 
