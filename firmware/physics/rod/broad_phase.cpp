@@ -198,7 +198,7 @@ bool BroadPhase::search(const State& state, const Motion& motion, const Outlook&
   return true;
 }
 
-long BroadPhase::least_cost(int nodes) noexcept { return 4L * static_cast<long>(kTable) + 60L * nodes; }
+long BroadPhase::least_cost(int nodes) noexcept { return 5L * static_cast<long>(kTable) + 155L * nodes; }
 
 bool BroadPhase::build(const State& state, Motion& motion, const Outlook& outlook, long allowance, Work& work,
                        const PairList& list) noexcept {

@@ -255,7 +255,7 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
   constexpr int kMostLooks = 12, kMostSteps = 48, kStale = 3;
   constexpr double kNear = 3.0;  // an error is at most that, a pass's last change at least
   constexpr double kOld = 10.0;  // what an old matrix may leave over
-  const long nodes = window_last_ - window_first_ + 1, answer = price::look(rows_) + price::answer(nodes);
+  const long nodes = window_last_ - window_first_ + 1, looking = price::look(rows_);
   const double settled = kNear * effort.settled_m_per_s, settled2 = settled * settled;
   const Contact* const rows = contacts_.data();
   Vec *const p = p_.data(), *const u = u_.data();
@@ -267,15 +267,19 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
   };
   if (!newton_.covers(window_first_, window_last_)) measure();
   newton_.start(rows, rows_);
-  if (newton_.resume(p)) take_impulses(solver, v);
+  const auto answer = [&] {
+    report.work += price::answer(newton_.loaded(), nodes);
+    take_impulses(solver, v);
+  };
+  if (newton_.resume(p)) answer();
   for (int look = 0; look < kMostLooks; ++look) {
     if (look == kStale && !fresh) {
       if (report.work + price::inverse(nodes) > effort.work) break;
       measure();
       newton_.start(rows, rows_);
     }
-    if (report.work + answer > effort.work) break;
-    report.work += answer;
+    if (report.work + looking > effort.work) break;
+    report.work += looking;
     for (int k = 0; k < rows_; ++k) u[k] = velocity<false>(k, v);
     if (!newton_.look(rows, rows_, p, u)) return Outcome::kNoRoom;
     const long coupling = price::couple(newton_.uncoupled()) + price::read(newton_.loaded());
@@ -292,7 +296,7 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
       if (newton_.unknowns() > ContactNewton::kMostUnknowns) return Outcome::kNoRoom;
       const long cost = look == 0 && step == 0 ? price::dense_sweep(newton_.loaded())
                                                : price::newton(newton_.loaded(), newton_.unknowns());
-      if (report.work + cost + answer > effort.work) {
+      if (report.work + cost + price::answer(newton_.loaded(), nodes) + looking > effort.work) {
         newton_.put_off(p);
         return Outcome::kLater;
       }
@@ -304,7 +308,7 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
       if (++report.passes > kMostSteps) return Outcome::kNoRoom;
       if (!newton_.solve(p, u)) return Outcome::kNoRoom;
     }
-    take_impulses(solver, v);
+    answer();
   }
   newton_.put_off(p);
   return Outcome::kLater;

@@ -81,13 +81,13 @@ void ContactMetric::invert() noexcept {
       for (std::size_t j = 0; j + 1 < i; ++j) r[j] -= g * p[j];
     }
   }
+  std::fill(row_at(w), row_at(w + 2), 0.0);  // so that the last rows are like the others
   for (std::size_t i = w; i-- > 0;) {
-    double* r = row_at(i);
+    double* const __restrict r = row_at(i);
     const double inv = 1.0 / d_[a + i];
-    const double* p = i + 1 < w ? row_at(i + 1) : r;
-    const double* q = i + 2 < w ? row_at(i + 2) : r;
+    const double* const __restrict p = row_at(i + 1), * const __restrict q = row_at(i + 2);
     const double g = i + 1 < w ? l1_[a + i + 1] : 0.0, h = i + 2 < w ? l2_[a + i + 2] : 0.0;
-    float* const out = row_.data() + i * stride_;
+    float* const __restrict out = row_.data() + i * stride_;
     for (std::size_t j = 0; j < stride_; ++j) {
       r[j] = inv * r[j] - g * p[j] - h * q[j];
       out[j] = static_cast<float>(r[j]);

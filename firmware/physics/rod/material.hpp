@@ -33,8 +33,8 @@ struct Numerics {
   int max_substeps = 24;
   double fast_m_per_s = 0.3;      ///< hand speed up to which `substeps` do
   int max_passes = 80;            ///< true solves per substep while contacts settle
-  long work = 4'200'000;          ///< what contact may cost in a tick, in instructions (work.hpp),
-  long work_per_node = 2000;      ///< and for each node besides; fast hands: a quarter more
+  long work = 4'120'000;          ///< what contact may cost in a tick, in instructions (work.hpp),
+  long work_per_node = 2500;      ///< and for each node besides; fast hands: a quarter more
   double settled_m_per_s = 3e-5;  ///< a pass that changes no velocity by more ends them,
   double settled_share = 0.004;   ///< or than that and this share of half the speed at which the ends are parted
   double recovery = 0.3;          ///< share of a penetration taken back per substep

@@ -12,7 +12,7 @@ namespace {
 
 constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32, kSet = 64;
 constexpr double kWild_m_per_s = 1e-3;  // change of a last pass above which velocities are not trusted
-constexpr int kPatience = 12;            // ticks in which a substep may wait for its contacts to settle
+constexpr int kPatience = 12;           // ticks in which a substep may wait for its contacts to settle
 constexpr int kLeastPasses = 3;         // rows that cannot have these are left out; one where they are solved directly
 constexpr double kSkin = 0.5;           // diameters a list of pairs looks ahead at any speed
 
@@ -22,7 +22,7 @@ struct Ahead {
   double ticks;
   double share;
 };
-constexpr Ahead kAhead[] = {{1.2, 0.2}, {0.15, 0.15}, {0.0, 0.25}};
+constexpr Ahead kAhead[] = {{1.2, 0.3}, {0.15, 0.25}, {0.0, 0.4}};
 
 }  // namespace
 
@@ -180,14 +180,14 @@ double Rod::guard_unseen(double dt_s) noexcept {
   const double ahead_m = diameter * (kSkin + 0.9 * BroadPhase::kLeastReach);
   double share = motion_.share_within(ahead_m, horizon_s_, dt_s);
   if (share == 1.0 && !motion_.outran(unseen, dt_s)) return 1.0;
-  const long listed = price::kGuard * static_cast<long>(contacts_.pairs.size());
+  const long listed = price::kGuardListed * static_cast<long>(contacts_.pairs.size());
   if (work_.left() < listed) return 0.0;
   work_.spend(listed);
   share = std::min(share, contacts_.safe_fraction_of_pairs(motion_, state_.v.data(), dt_s));
-  const long reserve = price::kGuard * static_cast<long>(contacts_.pairs.capacity());
+  const long reserve = price::kGuardListed * static_cast<long>(contacts_.pairs.capacity());
   if (share == 1.0 || work_.left() < reserve + work_.budget() / 4) return share;
   if (!relist(reserve)) return 0.0;
-  work_.spend(price::kGuard * static_cast<long>(contacts_.pairs.size()));
+  work_.spend(price::kGuardListed * static_cast<long>(contacts_.pairs.size()));
   return std::min(contacts_.safe_fraction_of_pairs(motion_, state_.v.data(), dt_s),
                   motion_.share_within(ahead_m, horizon_s_, dt_s));
 }

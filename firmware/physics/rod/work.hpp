@@ -8,20 +8,21 @@ namespace ligature::physics::rod {
 /// Prices in instructions of the x86-64-v3 build, rounded up; docs/rod.md says how they were counted. What a substep
 /// costs without contact (forces, matrix, one solution) is linear in the nodes and not on the meter.
 namespace price {
-inline constexpr long kCheck = 25;           ///< a listed pair, or a group of them, in a substep: can it meet?
+inline constexpr long kCheck = 45;           ///< a listed pair, or a group of them, in a substep: can it meet?
 inline constexpr long kMeasure = 190;        ///< it can: its closest points, and a row to be
-inline constexpr long kSmooth = 480;         ///< near: between smooth curves instead
+inline constexpr long kSmooth = 500;         ///< near: between smooth curves instead
 inline constexpr long kGuard = 110;          ///< its part in the guard
+inline constexpr long kGuardListed = 60;     ///< that of a pair that was not measured
 inline constexpr long kWorldNode = 60;       ///< a node against the floor or a body
-inline constexpr long kBall = 15;            ///< broad phase: a block against a sphere of the tree
-inline constexpr long kSphere = 30;          ///< broad phase: a segment against a block of eight
-inline constexpr long kConsider = 40;        ///< broad phase: a pair whose spheres meet
-inline constexpr long kList = 60;            ///< broad phase: such a pair listed
-inline constexpr long kExact = 140;          ///< broad phase: and measured before
+inline constexpr long kBall = 60;            ///< broad phase: a block against a sphere of the tree
+inline constexpr long kSphere = 130;         ///< broad phase: a segment against a block of eight
+inline constexpr long kConsider = 75;        ///< broad phase: a pair whose spheres meet
+inline constexpr long kList = 140;           ///< broad phase: such a pair listed
+inline constexpr long kExact = 100;          ///< broad phase: and measured before
 inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one split
 
 /// Making `rows` rows on a window of `nodes`, and the two solutions that start them.
-[[nodiscard]] constexpr long rows(long rows, long nodes) noexcept { return rows * (140 + nodes) + 140 * nodes; }
+[[nodiscard]] constexpr long rows(long rows, long nodes) noexcept { return 240 * rows + 170 * nodes; }
 /// One pass over them, of which `loaded` carry an impulse and are mixed.
 [[nodiscard]] constexpr long pass(long rows, long loaded, long nodes) noexcept {
   return rows * (100 + 3 * nodes / 2) + loaded * 180 + 130 * nodes;
@@ -34,13 +35,13 @@ inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one 
 [[nodiscard]] constexpr long couple(long pairs) noexcept { return 300 * pairs; }
 /// What impulses make of contacts that are coupled densely.
 [[nodiscard]] constexpr long read(long loaded) noexcept { return 400 * loaded; }
-/// The velocities that answer to new impulses.
-[[nodiscard]] constexpr long answer(long nodes) noexcept { return 130 * nodes; }
-/// A sweep over `loaded` contacts that are coupled densely.
-[[nodiscard]] constexpr long dense_sweep(long loaded) noexcept { return loaded * (200 + 10 * loaded); }
+/// The velocities that answer to new impulses of `loaded` contacts.
+[[nodiscard]] constexpr long answer(long loaded, long nodes) noexcept { return 40 * loaded + 100 * nodes; }
+/// A sweep over `loaded` contacts that are coupled densely, and what it makes of them.
+[[nodiscard]] constexpr long dense_sweep(long loaded) noexcept { return loaded * (600 + 3 * loaded); }
 /// One of Newton's steps: `loaded` contacts, `unknowns` impulses.
 [[nodiscard]] constexpr long newton(long loaded, long unknowns) noexcept {
-  return unknowns * (260 + 14 * unknowns + unknowns * unknowns / 9) + 3000 + 400 * loaded;
+  return unknowns * (260 + 16 * unknowns + unknowns * unknowns / 9) + 3000 + 600 * loaded;
 }
 /// The most rows for which `passes` passes can be paid.
 [[nodiscard]] constexpr long affordable_rows(long allowance, long nodes, long passes) noexcept {
@@ -49,7 +50,7 @@ inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one 
          (rows(1, nodes) - rows(0, nodes) + passes * (pass(1, 1, nodes) - pass(0, 0, nodes)));
 }
 /// The table of C^-1.
-[[nodiscard]] constexpr long metric(long nodes, long window) noexcept { return 30 * nodes + 3 * window * window / 2; }
+[[nodiscard]] constexpr long metric(long nodes, long window) noexcept { return 45 * nodes + 9 * window * window / 2; }
 }  // namespace price
 
 /// The meter of a tick. Spending is the caller's promise; the meter only counts.

@@ -147,7 +147,7 @@ TEST(Growth, ATickOfADrawnThreadCostsTheSamePerNode) {
       EXPECT_EQ(rod.report().time_lost, 0.0) << nodes << ' ' << k;
       EXPECT_EQ(rod.report().contacts, 0) << nodes;
     }
-    EXPECT_LT(work / 20, 1000L * nodes);
+    EXPECT_LT(work / 20, 1400L * nodes);
   }
 }
 
