@@ -29,9 +29,9 @@ struct Material {
 /// How a tick is cut and how hard contacts are solved. Every field is a trade of time for accuracy (docs/rod.md).
 struct Numerics {
   double tick_s = 1e-3;
-  int substeps = 16;  ///< of a tick at rest; more when the hands move fast
-  int max_substeps = 24;
-  double fast_m_per_s = 0.3;      ///< hand speed up to which `substeps` do
+  int substeps = 16;      ///< of a tick,
+  int max_substeps = 16;  ///< when the hands are faster than fast_m_per_s, and in the tick that one lets go
+  double fast_m_per_s = 0.3;
   int max_passes = 80;            ///< true solves per substep while contacts settle
   long work = 4'120'000;          ///< what contact may cost in a tick, in instructions (work.hpp),
   long work_per_node = 2500;      ///< and for each node besides; fast hands: a quarter more
