@@ -1,6 +1,8 @@
 #include <cstdio>
 
 #include "host/lab/experiments/experiment.hpp"
+#include "host/lab/rehearsal.hpp"
+#include "host/lab/rig/haptics/hands.hpp"
 #include "host/lab/rig/haptics/haptics.hpp"
 
 namespace ligature::lab {
@@ -8,7 +10,11 @@ namespace ligature::lab {
 int experiment_haptics(const Bench& bench) { return experiment_haptics(bench, false); }
 
 int experiment_haptics(const Bench& bench, bool quick) {
-  const HapticsBench b{bench.scenes, bench.out, quick};
+  const auto taut_m = [&](const std::vector<std::string>& overrides) {
+    return apart_when_felt_m(load_scene_or_refuse((bench.scenes / "suture-3-0-knot.toml").string(), overrides),
+                             kTaut_N);
+  };
+  const HapticsBench b{bench.scenes, bench.out, quick, taut_m({kWeightless}), taut_m({kWeightless, kPeg})};
   Verdict v("haptics");
   std::printf(
       "haptics: walls, velocity, ports, fidelity; the firmware's own control code, simulated devices and hands\n");

@@ -80,7 +80,7 @@ double tension_N(const Watched& w, std::size_t hand) {
 void tight_knot(const HapticsBench& bench, Verdict& v) {
   RigSetup setup;
   setup.scene = load_scene_or_refuse((bench.scenes / "suture-3-0-knot.toml").string(), {kWeightless});
-  const scene::GripperScript script = pull_and_release(0.137, 2.0, 4.0);
+  const scene::GripperScript script = pull_and_release(bench.taut_m, 2.0, 4.0);
   VirtualRig rig(setup, script);
   const std::size_t from = 4800, to = 6800;
   const Watched w = watch(rig, 6900, to - 100);

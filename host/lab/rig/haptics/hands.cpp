@@ -1,6 +1,8 @@
 #include "host/lab/rig/haptics/hands.hpp"
 
+#include <algorithm>
 #include <initializer_list>
+#include <stdexcept>
 
 namespace ligature::lab {
 namespace {
@@ -33,6 +35,20 @@ scene::GripperScript draw_and_shift(double apart_m, double draw_s, std::initiali
 }
 
 }  // namespace
+
+double apart_when_felt_m(const scene::Scene& knotted, double force_N) {
+  constexpr double kDraw_s = 3.0, kFar_m = 0.15;
+  VirtualRig rig({.scene = knotted}, pull_and_release(kFar_m, kDraw_s, 0.0));
+  double apart_m = 0.0;
+  rig.each_tick = [&] {
+    if (apart_m > 0.0 || rig.controller.hand(0).f_device_N.norm() < force_N) return;
+    apart_m = 0.5 * (rig.controller.hand(1).p_WT - rig.controller.hand(0).p_WT).norm();
+    rig.cycle.end_after(0);
+  };
+  if (const auto why = rig.run(5000)) throw std::runtime_error("the rig did not start: " + *why);
+  if (apart_m == 0.0) throw std::runtime_error("the knot was never felt");
+  return apart_m;
+}
 
 scene::GripperScript pull_and_release(double apart_m, double draw_s, double rest_s) {
   scene::GripperScript script;

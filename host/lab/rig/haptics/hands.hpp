@@ -14,8 +14,11 @@ namespace ligature::lab {
 /// Both its ends are free: without this it falls before it is taken.
 inline constexpr const char* kWeightless = "world.gravity_m_per_s2=[0,0,0]";
 
-/// Both hands take the thread `hold_m` from the knot's middle, draw apart to `apart_m` each (a taut knot is near 0.13),
-/// rest there, come back, let go.
+/// Of each hand from the middle when it first feels so much of the knotted suture, drawn slowly. A rig that does it
+/// says this, and not the scene: the loose knot springs open before it is taken, and how far is the solver's business.
+[[nodiscard]] double apart_when_felt_m(const scene::Scene& knotted, double force_N);
+
+/// Both hands take the thread 8 cm from the knot's middle, draw apart to `apart_m` each, rest there, let go.
 [[nodiscard]] scene::GripperScript pull_and_release(double apart_m, double draw_s = 2.0, double rest_s = 1.5);
 /// Drawn apart and back in `beat_s`, again and again: the knot jams a little more each time.
 [[nodiscard]] scene::GripperScript jam(double apart_m, double beat_s, int times);

@@ -6,8 +6,6 @@
 namespace ligature::lab {
 namespace {
 
-constexpr double kTaut_m = 0.136;  // each hand from the middle: 15 mm of loop less than at 0.123, 0.7 N instead of 0.1
-
 /// Drives that guard their windings at a third of what the record allows, after half a second: long before the
 /// controller's own limit would act.
 void hot_drives(RigSetup& setup) {
@@ -25,39 +23,42 @@ void cartesian(const HapticsBench& bench, RigSetup& setup) {
 }
 
 void add_calm(const HapticsBench& bench, std::vector<PortCase>& all) {
-  all.push_back({.name = "pull tight and release", .script = pull_and_release(kTaut_m), .in_quick = true});
-  all.push_back({.name = "jam of the knot", .script = jam(kTaut_m, 0.15, 6)});
+  all.push_back({.name = "pull tight and release", .script = pull_and_release(bench.taut_m), .in_quick = true});
+  all.push_back({.name = "jam of the knot", .script = jam(bench.taut_m, 0.15, 6)});
   all.push_back({.name = "jam against a peg",
-                 .script = against_peg(kTaut_m + 0.006, 0.045),
+                 .script = against_peg(bench.taut_at_peg_m, 0.045),
                  .overrides = {kWeightless, kPeg},
                  .in_quick = true});
-  all.push_back({.name = "slip: lets go and takes again", .script = slip(kTaut_m), .in_quick = true});
+  all.push_back({.name = "slip: lets go and takes again", .script = slip(bench.taut_m), .in_quick = true});
+  all.push_back({.name = "one pulls, one gives way",
+                 .script = give_way(bench.taut_m, 0.03),
+                 .gives_way = true,
+                 .in_quick = true});
   all.push_back(
-      {.name = "one pulls, one gives way", .script = give_way(kTaut_m, 0.03), .gives_way = true, .in_quick = true});
-  all.push_back({.name = "hot drives", .script = pull_and_release(kTaut_m), .trouble = hot_drives, .in_quick = true});
+      {.name = "hot drives", .script = pull_and_release(bench.taut_m), .trouble = hot_drives, .in_quick = true});
   all.push_back({.name = "cartesian device",
-                 .script = pull_and_release(kTaut_m),
+                 .script = pull_and_release(bench.taut_m),
                  .trouble = [bench](RigSetup& s) { cartesian(bench, s); },
                  .in_quick = true});
 }
 
-void add_lossy(std::vector<PortCase>& all) {
-  all.push_back({.name = "1 % of frames lost", .script = pull_and_release(kTaut_m), .frame_loss = 0.01});
+void add_lossy(const HapticsBench& bench, std::vector<PortCase>& all) {
+  all.push_back({.name = "1 % of frames lost", .script = pull_and_release(bench.taut_m), .frame_loss = 0.01});
   all.push_back(
-      {.name = "5 % of frames lost", .script = pull_and_release(kTaut_m), .frame_loss = 0.05, .in_quick = true});
-  all.push_back({.name = "5 % lost; jam", .script = jam(kTaut_m, 0.15, 6), .frame_loss = 0.05});
-  all.push_back({.name = "5 % lost; slip", .script = slip(kTaut_m), .frame_loss = 0.05});
+      {.name = "5 % of frames lost", .script = pull_and_release(bench.taut_m), .frame_loss = 0.05, .in_quick = true});
+  all.push_back({.name = "5 % lost; jam", .script = jam(bench.taut_m, 0.15, 6), .frame_loss = 0.05});
+  all.push_back({.name = "5 % lost; slip", .script = slip(bench.taut_m), .frame_loss = 0.05});
 }
 
-void add_hands(std::vector<PortCase>& all) {
+void add_hands(const HapticsBench& bench, std::vector<PortCase>& all) {
   const auto trembling = [](Will w) { return std::make_unique<sim::Trembling>(std::move(w), 0.5e-3, 10.0); };
   const auto adversarial = [](Will w) { return std::make_unique<sim::Adversarial>(std::move(w), 0.02, 0.005); };
   const auto teleporting = [](Will w) {
     return std::make_unique<Teleporting>(std::move(w), 4.0, 4.1, sim::Vec3(0.0, 0.01, 0.02));
   };
   const auto loose = sim::Hand::holding(0.0), firm = sim::Hand::holding(0.5), fist = sim::Hand::holding(1.0);
-  const auto pull = pull_and_release(kTaut_m);
-  all.push_back({.name = "loose hands", .script = pull_and_release(kTaut_m + 0.006), .hand = loose});
+  const auto pull = pull_and_release(bench.taut_m);
+  all.push_back({.name = "loose hands", .script = pull_and_release(bench.taut_m + 0.006), .hand = loose});
   all.push_back({.name = "firm hands", .script = pull, .hand = firm});
   all.push_back({.name = "clenched hands", .script = pull, .hand = fist});
   all.push_back({.name = "trembling hands, 10 Hz", .script = pull, .wrap = trembling});
@@ -65,7 +66,7 @@ void add_hands(std::vector<PortCase>& all) {
   all.push_back(
       {.name = "adversarial hands", .script = pull, .hand = firm, .wrap = adversarial, .wild = true, .in_quick = true});
   all.push_back({.name = "adversarial; 5 % lost",
-                 .script = jam(kTaut_m, 0.15, 6),
+                 .script = jam(bench.taut_m, 0.15, 6),
                  .hand = firm,
                  .wrap = adversarial,
                  .frame_loss = 0.05,
@@ -94,8 +95,8 @@ void add_hands(std::vector<PortCase>& all) {
 std::vector<PortCase> port_cases(const HapticsBench& bench) {
   std::vector<PortCase> all;
   add_calm(bench, all);
-  add_lossy(all);
-  add_hands(all);
+  add_lossy(bench, all);
+  add_hands(bench, all);
   return all;
 }
 

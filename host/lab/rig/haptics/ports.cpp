@@ -81,7 +81,7 @@ void measure_giving_way(const HapticsBench& bench, Verdict& v) {
 void measure_lossy_feel(const HapticsBench& bench, Verdict& v) {
   constexpr std::size_t kFrom = 4800, kTo = 6800;
   PortCase pull;
-  pull.script = pull_and_release(0.113, 2.0, 4.0);
+  pull.script = pull_and_release(bench.taut_m, 2.0, 4.0);
   const Watched whole = play(bench, pull, true);
   pull.frame_loss = 0.05;
   double least_share = 1.0, least_J = 0.0;
