@@ -14,6 +14,7 @@ constexpr double kRadius = 1.1;                          // of the screw, in cle
 constexpr double kFirst = 0.3, kLast = 0.8;              // where it begins and ends, as shares of the standing part
 const Vec3 kOut = Vec3(0.85, 0.0, 0.52).normalized();    // the standing part runs up to the right
 const Vec3 kAway = Vec3(0.89, 0.0, -0.45).normalized();  // the end is drawn past the corner and down
+const Vec3 kHang = Vec3(0.3, 0.0, -1.0).normalized();    // nearly as it hangs: the end itself may be out of reach
 
 /// What a short thread must be pulled at, in pulls of a tight knot: all of it that a knot keeps is missing later.
 double firm(const Workplace& place) { return std::clamp(200.0 * place.diameter_m / place.length_m, 1.0, 4.0); }
@@ -193,6 +194,7 @@ Moves wound_throw(const Throw& t, const std::shared_ptr<const Site>& site) {
   m.push_back(draw(t));
   m.push_back(let_go(kLeftHand));
   append(m, pull_and_ease());
+  m.push_back(swing(kHang));  // let go where it was drawn, a thread without damping whips its knot open
   m.push_back(let_go(kRightHand));
   return m;
 }
