@@ -22,15 +22,18 @@ PullResult Puller::run(const Pull& pull) {
   r.begun = knot::recognise(points(), false);
   phase(0.1, 0.0, pull.hands, 0.0);
   forces_.clear();
+  static_cast<void>(lost());
   phase(5.0, pull.speed_m_per_s, pull.hands, pull.force_N);
   r.sliding = chatter(forces_, 0.05 * pull.force_N).share();
   r.pull_d = std::exchange(penetration_, 0.0);
+  r.pull_lost = lost();
   phase(0.3, 0.0, pull.hands, 0.0);
   penetration_ = 0.0;
   forces_.clear();
   phase(options_.hold_s, 0.0, pull.hands, 0.0);
   save("held");
   r.hold_d = std::exchange(penetration_, 0.0);
+  r.hold_lost = lost();
   r.strain = sim_.diagnostics().max_stretch;
   r.tension_N = force();
   std::tie(r.turn_rad, r.segment_d) = sharpness();
@@ -40,10 +43,16 @@ PullResult Puller::run(const Pull& pull) {
   phase(options_.wait_s, 0.0, pull.hands, 0.0);
   save("end");
   r.after_d = penetration_;
+  r.after_lost = lost();
   r.left = knot::recognise(points(), false);
   r.guard = guard_;
   r.ticks = std::move(ticks_);
   return r;
+}
+
+double Puller::lost() {
+  const auto ticks = static_cast<double>(ticks_.size() - std::exchange(lost_from_, ticks_.size()));
+  return std::exchange(lost_, 0.0) / std::max(1.0, ticks);
 }
 
 double Puller::force() const {
@@ -87,6 +96,7 @@ void Puller::tick() {
   t.us = cpu_us() - begun_us;
   if (options_.disturbances) t.met = Disturbances::now().since(before);
   t.work = sim_.rod().report().work;
+  lost_ += sim_.rod().report().time_lost;
   const physics::Vec3 hands[] = {sim_.hand(physics::Hand::kLeft).f_W, sim_.hand(physics::Hand::kRight).f_W};
   t.print = fingerprint(hands, fingerprint(sim_.nodes_W(), 0xcbf29ce484222325U));
   ticks_.push_back(t);

@@ -31,10 +31,11 @@ struct PullOptions {
 struct PullResult {
   knot::KnotResult begun, left;
   int guard = 0;
-  double pull_d = 0.0, hold_d = 0.0, after_d = 0.0;  ///< worst penetration, diameters
-  double strain = 0.0, tension_N = 0.0;              ///< in the hold
-  double turn_rad = 0.0, segment_d = 0.0;            ///< sharpest turn and longest segment in contact, in the hold
-  double chatter = 0.0, sliding = 0.0;               ///< chatter.hpp: in the hold; while pulled
+  double pull_d = 0.0, hold_d = 0.0, after_d = 0.0;           ///< worst penetration, diameters
+  double pull_lost = 0.0, hold_lost = 0.0, after_lost = 0.0;  ///< share of the time in which the thread stood still
+  double strain = 0.0, tension_N = 0.0;                       ///< in the hold
+  double turn_rad = 0.0, segment_d = 0.0;  ///< sharpest turn and longest segment in contact, in the hold
+  double chatter = 0.0, sliding = 0.0;     ///< chatter.hpp: in the hold; while pulled
   std::vector<Tick> ticks;
 
   [[nodiscard]] bool kept() const { return left.type == begun.type && left.handedness == begun.handedness; }
@@ -52,6 +53,8 @@ class Puller {
   /// until_N > 0: ends when pulled that hard; < 0: when eased below -until_N.
   void phase(double seconds, double speed, int hands, double until_N);
   void tick();
+  /// The share of the time lost since it was asked last.
+  [[nodiscard]] double lost();
   /// Largest turn at a node in contact, rad, and longest segment in contact, diameters.
   [[nodiscard]] std::pair<double, double> sharpness() const;
 
@@ -61,7 +64,8 @@ class Puller {
   std::array<physics::ToolInput, 2> tools_{};
   std::vector<Tick> ticks_;
   std::vector<double> forces_;
-  double penetration_ = 0.0;
+  double penetration_ = 0.0, lost_ = 0.0;
+  std::size_t lost_from_ = 0;  // ticks before those in lost_
   int guard_ = 0;
 };
 
