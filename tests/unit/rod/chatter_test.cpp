@@ -34,6 +34,18 @@ TEST(Chatter, IsNotThePull) {
   EXPECT_LT(chatter(pull(50, 0.0, 1.0), 0.04).share(), 2e-3);  // five times as fast: a shorter window
 }
 
+// All of a pull at 1 m/s to 1 N: what it reads for a smooth one is far below what is measured.
+TEST(Chatter, IsNotAPullOfFourteenTicks) { EXPECT_LT(chatter(pull(14, 0.0, 1.0), 0.04).share(), 2e-3); }
+
+// So what a mesh adds to the ringing of the thread itself can be told from the two (docs/rod.md).
+TEST(Chatter, AddsCausesAsSquares) {
+  const auto one = pull(250, 3e-3, 5.3), other = pull(250, 4e-3, 3.7), smooth = pull(250, 0.0, 1.0);
+  auto both = one;
+  for (std::size_t k = 0; k < both.size(); ++k) both[k] += other[k] - smooth[k];
+  const double a = chatter(one, 0.04).rms_N, b = chatter(other, 0.04).rms_N;
+  EXPECT_NEAR(chatter(both, 0.04).rms_N, std::hypot(a, b), 0.03 * std::hypot(a, b));
+}
+
 // The loop snaps over in the middle: no force for a while. What is on either side counts, the seam does not.
 TEST(Chatter, IsNotASnapBetweenTwoStretches) {
   std::vector<double> f = pull(250, 0.0, 1.0);
