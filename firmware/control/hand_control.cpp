@@ -146,8 +146,10 @@ std::array<double, rt::kJoints> HandControl::command(std::int64_t tick) noexcept
 }
 
 Vec3 HandControl::brake_force() noexcept {
-  if (!braking_) brake_.start(p_DT_, v_DT_);
-  brake_.step();
+  if (braking_)
+    brake_.step();
+  else
+    brake_.start(p_DT_, v_DT_);  // a period ahead it would pull along
   return kBrake_N_per_m * (brake_.position_m() - p_DT_) + kBrake_N_s_per_m * (brake_.velocity_m_per_s() - v_DT_);
 }
 

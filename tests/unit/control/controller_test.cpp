@@ -164,6 +164,23 @@ TEST(Controller, AHandThatIsTooFastIsBrakedAndMayComeBack) {  // a limit, not a 
   EXPECT_EQ(rig.controller.state(), State::kForce);
 }
 
+TEST(Controller, TheBrakePushesAgainstTheMotion) {  // of a hand that goes on as fast: the reference stops, it does not
+  Rig rig;
+  rig.to_force();
+  double against_N = 0.0, with_N = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    rig.in.reading.hand[0].q_rad[0] += 2.4e-3 / 0.192;
+    rig.tick();
+    if (rig.controller.state() != State::kBrake) continue;
+    const HandState& hand = rig.controller.hand(0);
+    const double along_N = hand.f_device_N.dot(hand.v_WT.normalized());
+    against_N = std::max(against_N, -along_N);
+    with_N = std::max(with_N, along_N);
+  }
+  EXPECT_GT(against_N, 0.3);
+  EXPECT_LT(with_N, 0.02);
+}
+
 TEST(Controller, TheClutchParksTheToolAndReleasesItWhereItIs) {
   Rig rig;
   rig.in.reading.hand[0].grip = true;

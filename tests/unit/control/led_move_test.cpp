@@ -169,6 +169,24 @@ TEST(LedMove, AHandThatHoldsTheThreadIsNotLed) {
   EXPECT_LT((arms.q[0] - before).norm(), 1e-3);
 }
 
+TEST(LedMove, TakingTheThreadOrTheClutchEndsItForGood) {
+  for (const bool clutch : {false, true}) {
+    Arms arms;
+    arms.to_force();
+    arms.controller.command(rt::CommandKind::kPark);
+    arms.ticks(400);
+    ASSERT_GT(arms.most_N, 0.05);
+    arms.in.grasp[0] = {!clutch, arms.controller.hand(0).p_WT, Vec3::Zero()};
+    arms.in.reading.hand[0].clutch = clutch;
+    arms.ticks(100);
+    arms.in.grasp[0].held = arms.in.reading.hand[0].clutch = false;
+    arms.ticks(50);
+    const Vec3 there = arms.q[0];
+    arms.ticks(2000);
+    EXPECT_LT((arms.q[0] - there).norm(), 1e-3) << clutch;
+  }
+}
+
 TEST(LedMove, AHandThatHoldsOnEndsItWithoutAFault) {
   Arms arms;
   arms.to_force();
