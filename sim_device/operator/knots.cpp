@@ -45,8 +45,11 @@ struct Layout {
 };
 
 /// A figure-eight's standing part is led level to its corner and sags: a turn that is not yet locked stays in the belly
-/// instead of slipping over the corner while the end crosses the loop. A springy thread's overhand has it taut.
-Layout layout_of(const Throw& t) { return t.against ? Layout{0.403, 0.866, 0.49} : Layout{0.4, 0.96, 0.5}; }
+/// instead of slipping over the corner while the end crosses the loop. A springy thread has it taut.
+Layout layout_of(const Throw& t, bool springy) {
+  if (!springy) return {0.403, 0.866, 0.49};
+  return t.against ? Layout{0.35, 0.96, 0.45} : Layout{0.4, 0.96, 0.5};
+}
 
 /// Length that knots before the place `s` have taken up, m.
 double taken_up(const Look& look, double s) {
@@ -104,7 +107,8 @@ Move see_the_places(std::shared_ptr<Places> places) {
 
 /// One throw with the corner held by the left hand, drawn tight, and both hands empty again.
 Moves held_throw(const Throw& t, const Workplace& place, bool alone) {
-  const Layout layout = layout_of(t);
+  const bool springy = is_springy(place);
+  const Layout layout = layout_of(t, springy);
   const double first = layout.corner * place.length_m;
   auto places = std::make_shared<Places>(Places{first, layout.turn * first});
   const WhereAlong at_corner = [places](const Look&) { return places->corner; };
@@ -120,7 +124,7 @@ Moves held_throw(const Throw& t, const Workplace& place, bool alone) {
   m.push_back(reach(kRightHand, the_end()));
   m.push_back(pinch(kRightHand));
   auto loop = std::make_shared<Loop>(at_corner, t.side);
-  if (!t.against) {
+  if (springy) {
     m.push_back(open_arch(t, at_corner));
     m.push_back(springy_throw(t, at_corner, at_turn));
   } else {

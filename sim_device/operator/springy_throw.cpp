@@ -45,7 +45,20 @@ constexpr Stop kTwice[] = {
     {true, 0.09, -0.07, 0.09},                                // and through
 };
 
+constexpr Stop kAgainst[] = {
+    {true, 0.12, -0.18, 0.0},                                // as above: over, and behind
+    {false, 0.09, 0.018, 0.0},                               //
+    {false, 0.045, 0.042, 0.0},                              //
+    {false, 0.0, 0.042, 0.0},                                //
+    {false, -0.06, -0.012, 0.0},                             //
+    {true, -0.15, -0.15, -0.2},                              // further behind, on the anchor's side,
+    {true, -0.12, -0.42, -0.2},  {true, 0.15, -0.42, -0.2},  // down, and forward below the arch, not through it,
+    {true, 0.2, -0.1, -0.15},    {true, 0.08, -0.05, -0.1},  // up in front,
+    {true, -0.06, -0.1, -0.08},  {true, -0.1, -0.03, 0.09},  // and through to the back
+};
+
 std::span<const Stop> path_of(const Throw& t) {
+  if (t.against) return kAgainst;
   if (t.passes > 1) return kTwice;
   return kOnce;
 }
@@ -113,7 +126,8 @@ Move springy_throw(const Throw& t, const WhereAlong& corner, const WhereAlong& t
     return from + unit(look) * (stop.front * front + stop.up * Vec3::UnitZ() + stop.out * out(look));
   };
   const auto is_through = [=](const Look& look) {
-    const double gone = front.dot(look.sight.tool_W[kRightHand] - look.thread.at(corner(look)));
+    const double gone =
+        (t.against ? -1.0 : 1.0) * front.dot(look.sight.tool_W[kRightHand] - look.thread.at(corner(look)));
     return gone > kPast * unit(look) && is_tied(look, t, front, out(look));
   };
   const auto path = path_of(t);

@@ -25,8 +25,11 @@ namespace ligature::sim {
 /// close behind it towards the corner (the arch turns to the anchor and the end is ahead of X), forward under the
 /// standing part and on past the corner, before the arch has turned once more.
 /// @param corner, turn places along the thread of the corner and of where the end goes over. All lengths of the path
-/// are shares of the working part. With `t.passes` 2 it goes round the standing part once more on the way. `t.against`
-/// means nothing here.
+/// are shares of the working part. With `t.passes` 2 it goes round the standing part once more on the way.
+///
+/// With `t.against` (figure-eight) it does not come forward through the arch but round below it, and goes through to the
+/// back. A whole turn about the standing part, as in a rope, is dragged over the corner by the arch; round the arch's
+/// lower strand it is the same knot, and that strand cannot run away.
 [[nodiscard]] Move springy_throw(const Throw& t, const WhereAlong& corner, const WhereAlong& turn);
 
 }  // namespace ligature::sim

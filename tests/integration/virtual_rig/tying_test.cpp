@@ -55,6 +55,13 @@ TEST(Tying, AFirstThrowOfTwoTurnsInTheSutureHasTwoTurns) {
     EXPECT_EQ(knot_before("draw through", "suture-3-0.toml", "surgeon", seed), "5_1 right") << seed;
 }
 
+/// A whole turn about the standing part is dragged over the corner; round the arch's lower strand it stays. Bends set:
+/// an elastic figure-eight opens at this friction.
+TEST(Tying, AFigureEightInTheSutureIsOneAndStays) {
+  EXPECT_EQ(knot_before("draw through", "suture-3-0.toml", "figure-eight", 1), "4_1 amphichiral");
+  EXPECT_EQ(knot_before("done", "suture-3-0.toml", "figure-eight", 2, {"suture.yield_strain=0.1"}), "4_1 amphichiral");
+}
+
 /// Without bend damping a thread let go where it was drawn, nearly level, whipped its second throw open (9 of 20).
 TEST(Tying, ASquareKnotStaysInAnUndampedThread) {
   for (const std::uint32_t seed : {3U, 7U})
