@@ -45,7 +45,8 @@ std::vector<double> curvature_of(const std::vector<scene::Vec>& line) {
   std::vector<double> curvature(line.size(), 0.0);
   for (std::size_t k = 1; k + 1 < line.size(); ++k) {
     const Vec a = vec(line[k]) - vec(line[k - 1]), b = vec(line[k + 1]) - vec(line[k]);
-    curvature[k] = 2.0 * std::atan2(norm(cross(a, b)), dot(a, b)) / (norm(a) + norm(b));
+    const double both = norm(a) + norm(b);
+    if (both > 0.0) curvature[k] = 2.0 * std::atan2(norm(cross(a, b)), dot(a, b)) / both;
   }
   return curvature;
 }
@@ -141,6 +142,8 @@ std::variant<Rod, std::string> rod_of(const scene::Scene& scene) {
     hang(scene, state);
   } else if (static_cast<int>(line.size()) == n && scene.suture.rod.spacing == scene::Spacing::kUniform) {
     for (std::size_t i = 0; i < line.size(); ++i) state.x[i] = vec(line[i]);  // node by node, stretched or not
+  } else if (!(norm(vec(line.back()) - vec(line[line.size() - 2])) > 0.0)) {  // it goes on that way
+    return "suture.initial: found its last two points in one place, the rod model needs a direction there";
   } else {
     rod.spread(curvature_of(line));
     lay_along(line, state);

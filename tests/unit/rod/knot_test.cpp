@@ -226,6 +226,9 @@ TEST(RodScene, RefusesWhatItCannotDo) {  // one line, which key, what is allowed
     auto no_sides = load("suture-3-0.toml", {"suture.GJ_N_m2=0", key});  // a thread without twist has none
     EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(no_sides))) << key;
   }
+  auto point = load("suture-3-0.toml", {});  // a thread laid out in one point has no direction to begin with
+  point.suture.initial_polyline_m.assign(154, {0.0, 0.0, 0.35});
+  EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(point)));
 }
 
 }  // namespace
