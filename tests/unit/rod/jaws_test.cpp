@@ -126,5 +126,27 @@ TEST(Jaws, HoldTheDirectionToo) {  // held upright at its free end, pushed from 
   EXPECT_GT(lean("hands.pinch_width_m=0.0"), 0.01);
 }
 
+TEST(Jaws, OpenTheyPushTheThreadAsideWithoutHoldingIt) {  // a tool that swings through the hanging thread at 0.1 m/s
+  const auto swung_m = [](const char* collide) {
+    auto read = scene::load_scene(std::string(LIGATURE_SOURCE_DIR) + "/scenes/suture-3-0.toml",
+                                  std::vector<std::string>{collide, "suture.nodes=61"});
+    auto sim = simulation(std::get<scene::Scene>(read));
+    auto tools = hands_at(Vec3(-0.02, 0.0, 0.15), Vec3(1, 1, 1));
+    for (int k = 0; k < 600; ++k) {
+      tools[0].p_WT.x() += 1e-4;
+      tools[0].v_WT.x() = 0.1;
+      sim.tick(tools);
+      EXPECT_EQ(sim.hand(Hand::kLeft).node, -1);
+      EXPECT_EQ(sim.hand(Hand::kLeft).f_W, Vec3(0, 0, 0));
+    }
+    double at = 0.0;
+    for (const Vec3& p : sim.nodes_W())
+      if (std::abs(p.z() - 0.15) < 0.01) at = p.x();
+    return at;
+  };
+  EXPECT_GT(swung_m("world.grippers_collide=true"), 0.035);  // the tool is at 0.04
+  EXPECT_LT(std::abs(swung_m("world.grippers_collide=false")), 1e-3);
+}
+
 }  // namespace
 }  // namespace ligature::test
