@@ -28,7 +28,6 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   newton_.reserve();
   for (auto* array : {&u_, &p_start_}) array->assign(rows, Vec{});
   v_start_.assign(static_cast<std::size_t>(ContactNewton::kWidest), Vec{});
-  v_before_.assign(n, Vec{});
 }
 
 namespace {
@@ -182,7 +181,6 @@ void ContactSet::start(BandSolver& solver, const Numerics& numerics, double dt_s
   const double longer = per_second_ > 0.0 ? dt_s * per_second_ : 1.0;  // than the last substep: forces stay
   per_second_ = 1.0 / dt_s;
   if constexpr (Turns) turning_.prepare(contacts_.data(), rows_, segments_, radius_m_, *spin_);
-  std::copy(v + window_first_, v + window_last_ + 1, v_before_.begin());
   solver.solve(window_first_, window_last_, nullptr, v, true);
   clear_extra();
   loaded_.clear();
@@ -292,7 +290,7 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
         report.change_m_per_s = std::sqrt(largest2);
         if (largest2 < (look > 0 ? kOld * kOld : 1.0) * settled2) return Outcome::kSettled;
       }
-      if (largest2 < 0.25 * settled2) break;
+      if (largest2 < settled2) break;
       if (newton_.unknowns() > ContactNewton::kMostUnknowns) return Outcome::kNoRoom;
       const long cost = look == 0 && step == 0 ? price::dense_sweep(newton_.loaded())
                                                : price::newton(newton_.loaded(), newton_.unknowns());
@@ -306,7 +304,7 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
         continue;
       }
       if (++report.passes > kMostSteps) return Outcome::kNoRoom;
-      if (!newton_.solve(p, u)) return Outcome::kNoRoom;
+      if (!newton_.solve<Friction>(rows, p, u)) return Outcome::kNoRoom;
     }
     answer();
   }
@@ -317,8 +315,8 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
 template <bool Friction>
 Outcome ContactSet::settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
   const long nodes = window_last_ - window_first_ + 1;
-  if (nodes > ContactNewton::kWidest || 2 * price::inverse(nodes) + price::look(rows_) > effort.work)
-    return Outcome::kNoRoom;
+  if (nodes > ContactNewton::kWidest) return Outcome::kNoRoom;
+  if (2 * price::inverse(nodes) + price::look(rows_) > effort.work) return Outcome::kLater;
   for (int k = 0; k < rows_; ++k) {
     const auto at = static_cast<std::size_t>(k);
     p_start_[at].v = p_[at].v = contacts_[at].p.v;
@@ -333,14 +331,14 @@ Outcome ContactSet::settle_directly(BandSolver& solver, const Effort& effort, Ve
     return outcome;
   }
   for (int k = 0; k < rows_; ++k) contacts_[static_cast<std::size_t>(k)].p.v = p_start_[static_cast<std::size_t>(k)].v;
-  const auto& back = outcome == Outcome::kLater ? v_before_ : v_start_;
-  std::copy(back.begin(), back.begin() + nodes, v + window_first_);
+  std::copy(v_start_.begin(), v_start_.begin() + nodes, v + window_first_);
   return outcome;
 }
 
 template <bool Friction, bool Turns>
 void ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const Effort& effort, Vec* v,
                         ContactReport& report) noexcept {
+  newton_.give_up();
   make_columns(metric);
   if constexpr (Turns) turning_.shorten_steps(contacts_.data());
   mixing_.restart();

@@ -69,8 +69,8 @@ struct Effort {
 /// Of settle_directly().
 enum class Outcome : std::uint8_t {
   kSettled,
-  kLater,   ///< the work ran out: as before start(), and the next substep goes on from there
-  kNoRoom,  ///< too many contacts, or no answer found: as after start()
+  kLater,   ///< the work ran out: the same substep, done again, goes on from there
+  kNoRoom,  ///< too many contacts, or no answer found
 };
 
 inline constexpr int kMaxContacts = 768;  ///< rows that can be solved at once
@@ -148,13 +148,9 @@ class ContactSet {
   template <bool Turns>
   void start(BandSolver& solver, const Numerics& numerics, double dt_s, Vec* v) noexcept;
 
-  /// Solves for v by Newton's method (contact_newton.hpp).
+  /// Solves for v by Newton's method (contact_newton.hpp). Not settled: impulses and v as after start().
   template <bool Friction>
   Outcome settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept;
-  /// v as before start().
-  void undo(Vec* v) const noexcept {
-    std::copy(v_before_.begin(), v_before_.begin() + (window_last_ - window_first_ + 1), v + window_first_);
-  }
   /// What settle_directly() knows of the matrix is of another mesh or time step.
   void forget_matrix() noexcept { newton_.forget(); }
 
@@ -242,7 +238,7 @@ class ContactSet {
   std::vector<Vec> p_, plain_, residual_;  // their impulses and their change in a pass, as the mixing wants them
   Mixing mixing_;
   ContactNewton newton_;
-  std::vector<Vec> u_, v_start_, v_before_, p_start_;
+  std::vector<Vec> u_, v_start_, p_start_;
   Turning turning_;
   Spin* spin_ = nullptr;
   int segments_ = 0;

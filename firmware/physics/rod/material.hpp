@@ -30,7 +30,7 @@ struct Material {
 struct Numerics {
   double tick_s = 1e-3;
   int substeps = 16;      ///< of a tick,
-  int max_substeps = 16;  ///< when the hands are faster than fast_m_per_s, and in the tick that one lets go
+  int max_substeps = 16;  ///< when the hands are faster than fast_m_per_s
   double fast_m_per_s = 0.3;
   int max_passes = 80;            ///< true solves per substep while contacts settle
   long work = 4'120'000;          ///< what contact may cost in a tick, in instructions (work.hpp),

@@ -12,6 +12,16 @@ constexpr double kRelax_s = 0.02;    // in which a pulled thread comes to rest w
 constexpr double kMostStrain = 6.0;  // see Rod::settled
 constexpr double kNear = 0.1;        // diameters within which a pair is a contact at any speed
 
+// How fast the fastest node moves among the others.
+double stir(const std::vector<Vec>& v) noexcept {
+  Vec mean{};
+  for (const auto& each : v) mean += each;
+  mean = (1.0 / static_cast<double>(v.size())) * mean;
+  double most2 = 0.0;
+  for (const auto& each : v) most2 = std::max(most2, dot(each - mean, each - mean));
+  return std::sqrt(most2);
+}
+
 }  // namespace
 
 Rod::Rod(const Material& material, const Numerics& numerics, const Parts& parts, int n, int body_count)
@@ -29,6 +39,7 @@ Rod::Rod(const Material& material, const Numerics& numerics, const Parts& parts,
     contacts_.reserve(n, body_count, metric_.capacity());
     broad_.reserve(n, static_cast<int>(contacts_.pairs.capacity()));
     motion_.reserve(n);
+    v_before_.assign(static_cast<std::size_t>(n), Vec{});
   }
   for (int i = 0; i < n; ++i) {
     state_.mesh.s[static_cast<std::size_t>(i)] = material.length_m * i / (n - 1);
@@ -66,8 +77,11 @@ Rod& Rod::operator=(const Rod& other) {
   pace_m_per_s_ = other.pace_m_per_s_;
   labours_ = other.labours_;
   strain_ = other.strain_;
+  waits_ = 0, patience_ = other.patience_, sweeps_only_ = false;
+  letting_go_ = other.letting_go_, released_ = other.released_;
   solver_.resize(state_.nodes());
   metric_.invalidate();
+  contacts_.forget_matrix();
   stale_ = true;
   return *this;
 }
@@ -104,6 +118,7 @@ void Rod::mesh_changed() noexcept {
   }
   state_.mesh.rebuild(material_);
   metric_.invalidate();
+  contacts_.forget_matrix();
   stale_ = true;
 }
 
@@ -208,12 +223,11 @@ Rod::HandSpeed Rod::set_hands(const std::array<Vec, kMaxHolds>& goals, std::arra
 }
 
 void Rod::begin_tick(const HandSpeed& hands) noexcept {
-  constexpr double kTired = 0.9, kRested = 0.25;
+  constexpr double kTired = 0.9, kRested = 0.25, kThrown_m_per_s = 10.0;
   labours_ = solves_directly() &&
              static_cast<double>(report_.work) >
                  (labours_ ? kRested : kTired) * static_cast<double>(numerics_.budget(state_.nodes(), false));
-  const bool moved = report_.passes > 0;
-  const double dt_before = numerics_.tick_s / std::max(1, report_.substeps);
+  const int substeps_before = report_.substeps;
   strain_ = report_.cut_short > 0 ? std::min(kMostStrain, 1.5 * strain_) : std::max(1.0, 0.9 * strain_);
   report_ = TickReport{};
   const bool fast = hands.fastest > 1.001 * numerics_.fast_m_per_s;
@@ -228,16 +242,18 @@ void Rod::begin_tick(const HandSpeed& hands) noexcept {
     twist_.update(material_, state_, forces_);
   }
   pace_m_per_s_ = std::max(0.5 * hands.apart, pace_m_per_s_ * std::exp(-numerics_.tick_s / kRelax_s));
-  letting_go_ = released_;
+  letting_go_ = released_ || (letting_go_ && (waits_ > 0 || motion_.fastest() > kThrown_m_per_s));
   released_ = false;
-  report_.substeps = fast || letting_go_ ? numerics_.max_substeps
-                     : labours_          ? std::max(1, 5 * numerics_.substeps / 8)
-                                         : numerics_.substeps;
+  report_.substeps = letting_go_  ? std::max(numerics_.max_substeps, 3 * numerics_.substeps / 2)
+                     : fast       ? numerics_.max_substeps
+                     : waits_ > 0 ? substeps_before
+                     : labours_   ? std::max(1, 5 * numerics_.substeps / 8)
+                                  : numerics_.substeps;
   if (parts_.contact || parts_.world) {  // velocities and bodies may have been changed from outside
     motion_.measure(state_.v.data());
+    stir_m_per_s_ = stir(state_.v);
     contacts_.forget_bodies();
-    if ((waits_ == 0 && moved) || report_.remeshes > 0 || dt_before != numerics_.tick_s / report_.substeps)
-      contacts_.forget_matrix();
+    if ((fast && waits_ == 0) || report_.substeps != substeps_before) contacts_.forget_matrix();
     tick_travel_m_ = 0.0;
   }
 }

@@ -130,10 +130,15 @@ class Rod {
   std::optional<Effort> choose_rows(double dt_s) noexcept;
   void prepare_metric(double dt_s) noexcept;
   template <unsigned Bits>
-  void move(double dt_s) noexcept;
+  void move(double dt_s, double share) noexcept;
   template <unsigned Bits>
-  double guard(double dt_s) noexcept;
-  double guard_unseen(double dt_s) noexcept;
+  std::optional<double> guard(double dt_s) noexcept;
+  std::optional<double> guard_unseen(double dt_s) noexcept;
+  template <bool Friction>
+  Outcome settle_directly(const Effort& effort) noexcept;
+  static constexpr double kPatience = 12.0;  ///< ticks in which a substep may wait to be solved, and guarded, at most
+  [[nodiscard]] bool can_wait() const noexcept { return solves_directly() && waits_ + 1 <= patience_; }
+  bool put_off() noexcept;
   double brake(double dt_s) noexcept;
 
   /// Of the holds: the fastest, and how fast two of them part (or one drags the thread), m/s.
@@ -164,12 +169,16 @@ class Rod {
   long look_cost_ = 0, rows_cost_ = 0;  // of the last substep
   long list_cost_ = 0;                  // of the last list
   double metric_dt_ = 0.0;
-  double pace_m_per_s_ = 0.0;  // of the hands from the middle between them, fading once they stop
-  double strain_ = 1.0;        // how much less a pass need settle, since ticks' work did not do for all passes
-  bool braked_ = false;        // the last substep was slowed; what hands felt is known
-  int waits_ = 0;              // ticks in which the contacts of the next substep did not settle before the work ran out
-  bool labours_ = false;       // the work hardly did for the last tick, so this one has fewer substeps
-  bool letting_go_ = false;    // a hold let go just before this tick
+  double pace_m_per_s_ = 0.0;    // of the hands from the middle between them, fading once they stop
+  double strain_ = 1.0;          // how much less a pass need settle, since ticks' work did not do for all passes
+  bool braked_ = false;          // the last substep was slowed; what hands felt is known
+  int waits_ = 0;                // ticks in which the work ran out before the next substep was done
+  double patience_ = kPatience;  // how many it may wait: less where substeps waited in vain, more where they settle
+  bool sweeps_only_ = false;     // the next substep is done without Newton's method
+  double stir_m_per_s_ = 0.0;    // how fast the fastest node moves among the others
+  std::vector<Vec> v_before_;    // the substep's first velocities
+  bool labours_ = false;         // the work hardly did for the last tick, so this one has fewer substeps
+  bool letting_go_ = false;      // a hold let go, and what it threw still flies
   Motion motion_;
   ContactReport seen_;          // of this substep
   double near_m_ = 0.0;         // within which a pair is a contact at any speed

@@ -12,7 +12,8 @@ namespace {
 
 constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32, kSet = 64;
 constexpr double kWild_m_per_s = 1e-3;  // change of a last pass above which velocities are not trusted
-constexpr int kPatience = 12;           // ticks in which a substep may wait for its contacts to settle
+constexpr double kLess = 0.8;           // of its patience is left where a substep has waited in vain
+constexpr double kMore = 0.02;          // patience from one substep to the next, up to 1, where there is none
 constexpr int kLeastPasses = 3;         // rows that cannot have these are left out; one where they are solved directly
 constexpr double kSkin = 0.5;           // diameters a list of pairs looks ahead at any speed
 
@@ -110,7 +111,8 @@ void Rod::prepare_metric(double dt_s) noexcept {
 // settled ones, by and by: that much in every substep is better than all of it in some, with none left for the others.
 double Rod::settled() const noexcept {
   constexpr double kLetGo = 0.15, kCreep = 0.1, kStill_m_per_s = 1e-6;
-  const double fastest = motion_.fastest(), speed = std::max(pace_m_per_s_, letting_go_ ? kLetGo * fastest : 0.0);
+  const double fastest = motion_.fastest(),
+               speed = std::max(pace_m_per_s_, kLetGo * (letting_go_ ? fastest : stir_m_per_s_));
   const double settled = numerics_.settled_m_per_s + strain_ * numerics_.settled_share * speed;
   return std::min(settled, std::max(kStill_m_per_s, kCreep * fastest));
 }
@@ -130,6 +132,22 @@ std::optional<Effort> Rod::choose_rows(double dt_s) noexcept {
   return Effort{numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)), settled()};
 }
 
+// Newton's method, as long as it may take all the work there is; else with no more than a fair share of it. @return
+// kLater when it had better go on in the next tick.
+template <bool Friction>
+Outcome Rod::settle_directly(const Effort& effort) noexcept {
+  if (!solves_directly() || sweeps_only_) return Outcome::kNoRoom;
+  const long after = report_.substeps - substep_index_ - 1;
+  Effort own = effort;
+  if (!can_wait()) own.work = std::min(effort.work, work_.left() / (after + 2));
+  const Outcome outcome = contacts_.settle_directly<Friction>(solver_, own, state_.v.data(), seen_);
+  if (outcome == Outcome::kSettled) return patience_ = std::min(kPatience, patience_ + 1.0), outcome;
+  const bool worked = 4 * (effort.work - seen_.work) < work_.budget();  // and left too little for sweeps
+  const bool wait = can_wait() && (outcome == Outcome::kLater || worked);
+  sweeps_only_ = outcome == Outcome::kNoRoom || waits_ + 2 > patience_;
+  return wait ? Outcome::kLater : Outcome::kNoRoom;
+}
+
 // Velocities with contact.
 template <unsigned Bits>
 bool Rod::settle(double dt_s) noexcept {
@@ -143,19 +161,10 @@ bool Rod::settle(double dt_s) noexcept {
     contacts_.start<kTurns>(solver_, numerics_, dt_s, state_.v.data());
     Outcome outcome = Outcome::kNoRoom;
     if constexpr (!kTurns) {
-      if (solves_directly() && waits_ < kPatience)
-        outcome = contacts_.settle_directly<kRubs>(solver_, *effort, state_.v.data(), seen_);
-      const bool short_of_work = 4 * (effort->work - seen_.work) < work_.budget();
-      if (solves_directly() && outcome == Outcome::kNoRoom && short_of_work && waits_ < kPatience) {
-        outcome = Outcome::kLater;
-        waits_ = kPatience - 1;
-        contacts_.undo(state_.v.data());
-      }
-      waits_ = outcome == Outcome::kLater ? waits_ + 1 : 0;
-      if (waits_ > 0) {
+      outcome = settle_directly<kRubs>(*effort);
+      if (outcome == Outcome::kLater) {
         work_.spend(price::rows(contacts_.rows(), last - first + 1) + seen_.work);
-        ++report_.cut_short;
-        return false;
+        return put_off();
       }
     }
     if (outcome != Outcome::kSettled) {
@@ -173,20 +182,31 @@ bool Rod::settle(double dt_s) noexcept {
   return true;
 }
 
+// The substep has to wait for the next tick, and all its work.
+bool Rod::put_off() noexcept {
+  state_.v = v_before_;
+  ++waits_;
+  ++report_.cut_short;
+  return false;
+}
+
 // After a jerk, such as a release, pairs that nobody measured in this substep may meet: those on the list are held to
-// what is known of them, the others to what the list has looked ahead; or all to a new list, when there is work for it.
-double Rod::guard_unseen(double dt_s) noexcept {
+// what is known of them, the others to what the list has looked ahead; or all to a new list. @return nothing when there
+// is no work for that and the substep can wait.
+std::optional<double> Rod::guard_unseen(double dt_s) noexcept {
   const double diameter = 2.0 * material_.radius_m, unseen = 0.9 * (diameter * BroadPhase::kLeastReach + near_m_);
   const double ahead_m = diameter * (kSkin + 0.9 * BroadPhase::kLeastReach);
   double share = motion_.share_within(ahead_m, horizon_s_, dt_s);
   if (share == 1.0 && !motion_.outran(unseen, dt_s)) return 1.0;
   const long listed = price::kGuardListed * static_cast<long>(contacts_.pairs.size());
-  if (work_.left() < listed) return 0.0;
+  const auto without_work = [&](double known) { return can_wait() ? std::nullopt : std::optional(known); };
+  if (work_.left() < listed) return without_work(0.0);
   work_.spend(listed);
   share = std::min(share, contacts_.safe_fraction_of_pairs(motion_, state_.v.data(), dt_s));
   const long reserve = price::kGuardListed * static_cast<long>(contacts_.pairs.capacity());
-  if (share == 1.0 || work_.left() < reserve + work_.budget() / 4) return share;
-  if (!relist(reserve)) return 0.0;
+  if (share == 1.0) return share;
+  if (work_.left() < reserve + work_.budget() / 4) return without_work(share);
+  if (!relist(reserve)) return without_work(0.0);
   work_.spend(price::kGuardListed * static_cast<long>(contacts_.pairs.size()));
   return std::min(contacts_.safe_fraction_of_pairs(motion_, state_.v.data(), dt_s),
                   motion_.share_within(ahead_m, horizon_s_, dt_s));
@@ -204,12 +224,17 @@ double Rod::brake(double dt_s) noexcept {
   return share;
 }
 
-// The share of dt_s that everything may move without passing anything. New velocities are measured here.
+// The share of dt_s that everything may move without passing anything, or nothing: that had better wait. New velocities
+// are measured here.
 template <unsigned Bits>
-double Rod::guard(double dt_s) noexcept {
+std::optional<double> Rod::guard(double dt_s) noexcept {
   motion_.measure(state_.v.data());
   double share = contacts_.safe_fraction(motion_, state_.v.data(), dt_s);
-  if constexpr ((Bits & kContact) != 0) share = std::min(share, guard_unseen(dt_s));
+  if constexpr ((Bits & kContact) != 0) {
+    const auto unseen = guard_unseen(dt_s);
+    if (!unseen) return std::nullopt;
+    share = std::min(share, *unseen);
+  }
   report_.guard_events += share < 1.0;
   const bool wild = seen_.cut_short && seen_.change_m_per_s > kWild_m_per_s;
   const double slow = wild ? brake(dt_s) : 1.0;  // slowed velocities have moved less already
@@ -218,10 +243,10 @@ double Rod::guard(double dt_s) noexcept {
 }
 
 template <unsigned Bits>
-void Rod::move(double dt_s) noexcept {
+void Rod::move(double dt_s, double share) noexcept {
   double step_s = dt_s;
   if constexpr ((Bits & (kContact | kWorld)) != 0) {
-    step_s *= guard<Bits>(dt_s);
+    step_s *= share;
     motion_.advance(step_s);
     tick_travel_m_ += step_s * motion_.fastest();
     report_.contacts = static_cast<int>(contacts_.contacts().size());
@@ -237,6 +262,7 @@ bool Rod::substep(double dt_s) noexcept {
   constexpr unsigned kRest = Bits & ~kSet;  // what contact needs to know
   constexpr bool kTouches = (Bits & (kContact | kWorld)) != 0;
   if constexpr (kTouches) {
+    v_before_ = state_.v;
     if (!look<kRest>(dt_s)) return false;
   }
   if constexpr ((Bits & kSet) != 0) report_.set_J += spin_.yield(material_, state_);
@@ -250,8 +276,18 @@ bool Rod::substep(double dt_s) noexcept {
     solver_.solve(first, last, nullptr, state_.v.data(), true);
     solver_.solve_outside(first, last, state_.v.data());
   }
+  double share = 1.0;
+  if constexpr (kTouches) {
+    const auto safe = guard<kRest>(dt_s);
+    if (!safe) return put_off();
+    share = *safe;
+    if (sweeps_only_ && waits_ > 0) patience_ *= kLess;
+    if (patience_ < 1.0) patience_ += kMore;
+    waits_ = 0;
+    sweeps_only_ = false;
+  }
   if constexpr ((Bits & kRoll) != 0) spin_.advance(material_, state_, forces_, dt_s);
-  move<kRest>(dt_s);
+  move<kRest>(dt_s, share);
   return true;
 }
 

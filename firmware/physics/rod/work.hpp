@@ -41,7 +41,7 @@ inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one 
 [[nodiscard]] constexpr long dense_sweep(long loaded) noexcept { return loaded * (600 + 3 * loaded); }
 /// One of Newton's steps: `loaded` contacts, `unknowns` impulses.
 [[nodiscard]] constexpr long newton(long loaded, long unknowns) noexcept {
-  return unknowns * (260 + 16 * unknowns + unknowns * unknowns / 9) + 3000 + 600 * loaded;
+  return unknowns * (500 + 9 * unknowns + unknowns * unknowns / 9) + 1500 + 800 * loaded;
 }
 /// The most rows for which `passes` passes can be paid.
 [[nodiscard]] constexpr long affordable_rows(long allowance, long nodes, long passes) noexcept {

@@ -95,7 +95,7 @@ TEST(ContactNewton, FindsWhatSweepsFindInTheEnd) {
       newton.couple();
       newton.couple();
       if (newton.read<true>(jam.rows.data(), p.data(), u.data()) < 1e-20) break;
-      ASSERT_TRUE(newton.solve(p.data(), u.data()));
+      ASSERT_TRUE(newton.solve<true>(jam.rows.data(), p.data(), u.data()));
       for (std::size_t k = 0; k < p.size(); ++k) jam.rows[k].p.v = p[k].v;
     }
     most_steps = std::max(most_steps, steps);
@@ -125,7 +125,7 @@ TEST(ContactNewton, KnowsWhatItsImpulsesDo) {  // without asking the solver
   for (int k = 0; k < 2; ++k) {
     newton.sweep<true>(jam.rows.data(), p.data(), u.data());
     (void)newton.read<true>(jam.rows.data(), p.data(), u.data());
-    ASSERT_TRUE(newton.solve(p.data(), u.data()));
+    ASSERT_TRUE(newton.solve<true>(jam.rows.data(), p.data(), u.data()));
   }
   for (std::size_t k = 0; k < p.size(); ++k) jam.rows[k].p.v = p[k].v;
   const auto truth = jam.velocities();

@@ -1,0 +1,73 @@
+// The dense solver against what it must give back.
+
+#include "firmware/physics/rod/dense.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace ligature::physics::rod {
+namespace {
+
+constexpr std::size_t kMost = 61;
+
+/// M x = b with a known x, and the largest difference from it.
+double error_of(Dense& dense, const std::vector<double>& m, std::size_t n, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> x(n);
+  for (auto& value : x) value = normal(random);
+  dense.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    float* const row = dense.row(i);
+    std::fill(row, dense.row_end(i), 0.0F);
+    double b = 0.0;
+    for (std::size_t j = 0; j < n; ++j) row[j] = static_cast<float>(m[i * n + j]), b += m[i * n + j] * x[j];
+    row[n] = static_cast<float>(b);
+  }
+  if (!dense.solve()) return 1e9;
+  double worst = 0.0;
+  for (std::size_t i = 0; i < n; ++i) worst = std::max(worst, std::abs(static_cast<double>(dense.x(i)) - x[i]));
+  return worst;
+}
+
+TEST(Dense, SolvesWhatIsNearlySymmetric) {  // of every size up to eight panels: each way a row can end
+  Dense dense;
+  dense.reserve(kMost);
+  for (std::size_t n = 1; n <= kMost; ++n) {
+    std::mt19937 random(static_cast<unsigned>(n));
+    std::normal_distribution<double> normal;
+    std::vector<double> a(n * n), m(n * n);
+    for (auto& value : a) value = normal(random);
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) {
+        for (std::size_t k = 0; k < n; ++k) m[i * n + j] += a[i * n + k] * a[j * n + k] / static_cast<double>(n);
+        m[i * n + j] += (i == j ? 1.0 : 0.0) + 0.1 * a[i * n + j] / std::sqrt(static_cast<double>(n));
+      }
+    }
+    EXPECT_LT(error_of(dense, m, n, 7), 1e-4) << n;
+  }
+}
+
+TEST(Dense, ExchangesRowsWhereAPivotVanishes) {  // a permutation: not one pivot is where it should be
+  Dense dense;
+  dense.reserve(kMost);
+  for (const std::size_t n : {2UL, 5UL, 16UL, 33UL}) {
+    std::vector<double> m(n * n);
+    for (std::size_t i = 0; i < n; ++i) m[i * n + (i + n / 2) % n] = 2.0, m[i * n + (i + n / 3) % n] += 0.1;
+    EXPECT_LT(error_of(dense, m, n, 3), 1e-4) << n;
+  }
+}
+
+TEST(Dense, SaysThatThereIsNoAnswer) {
+  Dense dense;
+  dense.reserve(kMost);
+  const std::size_t n = 9;
+  EXPECT_EQ(error_of(dense, std::vector<double>(n * n, 0.0), n, 3), 1e9);
+}
+
+}  // namespace
+}  // namespace ligature::physics::rod
