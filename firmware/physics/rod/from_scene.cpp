@@ -83,6 +83,7 @@ Numerics numerics_of(const scene::Scene& scene) noexcept {
     case scene::Accuracy::kFast:
       n.substeps = 10;
       n.max_substeps = 16;
+      n.rush = 0.25;
       n.work = 2'610'000;  // 154 nodes: 3.0 M, which 60 % of a period holds where 4.5 M are refused
       break;
     case scene::Accuracy::kBalanced:

@@ -34,17 +34,22 @@ struct Numerics {
   double fast_m_per_s = 0.3;
   int max_passes = 80;            ///< true solves per substep while contacts settle
   long work = 4'120'000;          ///< what contact may cost in a tick, in instructions (work.hpp),
-  long work_per_node = 2500;      ///< and for each node besides; fast hands: a quarter more
+  long work_per_node = 2500;      ///< and for each node besides; a quarter more for fast hands,
+  double rush = 0.75;             ///< and this share for hands faster than 2 fast_m_per_s
   double settled_m_per_s = 3e-5;  ///< a pass that changes no velocity by more ends them,
   double settled_share = 0.004;   ///< or than that and this share of half the speed at which the ends are parted
   double recovery = 0.3;          ///< share of a penetration taken back per substep
   double max_recovery_m_per_s = 0.5;
   double contact_N_per_m = 6e5;  ///< give of a contact under load
 
+  [[nodiscard]] constexpr bool is_fast(double hand_m_per_s) const noexcept {
+    return hand_m_per_s > 1.001 * fast_m_per_s;
+  }
   /// Work of a tick for a thread of so many nodes.
-  [[nodiscard]] constexpr long budget(int nodes, bool fast_hands) const noexcept {
-    const long whole = work + work_per_node * nodes;
-    return fast_hands ? whole + whole / 4 : whole;
+  [[nodiscard]] constexpr long budget(int nodes, double hand_m_per_s) const noexcept {
+    const auto whole = static_cast<double>(work + work_per_node * nodes);
+    const double more = is_fast(0.5 * hand_m_per_s) ? rush : is_fast(hand_m_per_s) ? 0.25 : 0.0;
+    return static_cast<long>((1.0 + more) * whole);
   }
 };
 

@@ -226,12 +226,12 @@ void Rod::begin_tick(const HandSpeed& hands) noexcept {
   constexpr double kTired = 0.9, kRested = 0.25, kThrown_m_per_s = 10.0;
   labours_ = solves_directly() &&
              static_cast<double>(report_.work) >
-                 (labours_ ? kRested : kTired) * static_cast<double>(numerics_.budget(state_.nodes(), false));
+                 (labours_ ? kRested : kTired) * static_cast<double>(numerics_.budget(state_.nodes(), 0.0));
   const int substeps_before = report_.substeps;
   strain_ = report_.cut_short > 0 ? std::min(kMostStrain, 1.5 * strain_) : std::max(1.0, 0.9 * strain_);
   report_ = TickReport{};
-  const bool fast = hands.fastest > 1.001 * numerics_.fast_m_per_s;
-  work_.start(numerics_.budget(state_.nodes(), fast));
+  const bool fast = numerics_.is_fast(hands.fastest);
+  work_.start(numerics_.budget(state_.nodes(), hands.fastest));
   look_cost_ = rows_cost_ = 0;
   if (!mesh_held_) report_.remeshes += remesh();
   if (parts_.frames()) {
