@@ -255,6 +255,7 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
   constexpr double kOld = 10.0;  // what an old matrix may leave over
   const long nodes = window_last_ - window_first_ + 1, looking = price::look(rows_);
   const double settled = kNear * effort.settled_m_per_s, settled2 = settled * settled;
+  const double enough = kNear * std::max(effort.settled_m_per_s, effort.enough_m_per_s), enough2 = enough * enough;
   const Contact* const rows = contacts_.data();
   Vec *const p = p_.data(), *const u = u_.data();
   bool fresh = false;
@@ -269,6 +270,13 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
     report.work += price::answer(newton_.loaded(), nodes);
     take_impulses(solver, v);
   };
+  // The work is gone: what is near enough is moved, the rest waits.
+  const auto stop = [&](double error2) {
+    if (error2 < enough2) return Outcome::kSettled;
+    newton_.put_off(p);
+    return Outcome::kLater;
+  };
+  double last2 = 1.0;  // error when last looked at, with the true A
   if (newton_.resume(p)) answer();
   for (int look = 0; look < kMostLooks; ++look) {
     if (look == kStale && !fresh) {
@@ -287,6 +295,7 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
     for (int step = 0;; ++step) {
       const double largest2 = newton_.read<Friction>(rows, p, u);
       if (step == 0) {
+        last2 = largest2;
         report.change_m_per_s = std::sqrt(largest2);
         if (largest2 < (look > 0 ? kOld * kOld : 1.0) * settled2) return Outcome::kSettled;
       }
@@ -294,9 +303,10 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
       if (newton_.unknowns() > ContactNewton::kMostUnknowns) return Outcome::kNoRoom;
       const long cost = look == 0 && step == 0 ? price::dense_sweep(newton_.loaded())
                                                : price::newton(newton_.loaded(), newton_.unknowns());
-      if (report.work + cost + price::answer(newton_.loaded(), nodes) + looking > effort.work) {
-        newton_.put_off(p);
-        return Outcome::kLater;
+      const bool gone = report.work + cost + price::answer(newton_.loaded(), nodes) + looking > effort.work;
+      if (gone || (largest2 < enough2 && report.work + cost > effort.fair)) {
+        if (largest2 < enough2 && step > 0) answer();
+        return stop(largest2);
       }
       report.work += cost;
       if (look == 0 && step == 0) {
@@ -308,8 +318,7 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
     }
     answer();
   }
-  newton_.put_off(p);
-  return Outcome::kLater;
+  return stop(last2);
 }
 
 template <bool Friction>

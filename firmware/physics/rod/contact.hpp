@@ -64,6 +64,8 @@ struct Effort {
   int passes = 0;                ///< at most
   long work = 0;                 ///< for all of them, in instructions (work.hpp); the first pass is always done
   double settled_m_per_s = 0.0;  ///< a pass that changes no velocity by more is the last
+  double enough_m_per_s = 0.0;   ///< what Newton's method may leave over beyond its fair share of the work
+  long fair = 0;                 ///< that share
 };
 
 /// Of settle_directly().

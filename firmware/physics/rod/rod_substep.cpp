@@ -11,6 +11,7 @@ namespace ligature::physics::rod {
 namespace {
 
 constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32, kSet = 64;
+constexpr double kEnough = 10.0;        // times what is settled: may be left over beyond a fair share of the work
 constexpr double kWild_m_per_s = 1e-3;  // change of a last pass above which velocities are not trusted
 constexpr double kLess = 0.8;           // of its patience is left where a substep has waited in vain
 constexpr double kMore = 0.02;          // patience from one substep to the next, up to 1, where there is none
@@ -129,7 +130,8 @@ std::optional<Effort> Rod::choose_rows(double dt_s) noexcept {
   const long rows = contacts_.rows(), nodes = contacts_.window_last() - contacts_.window_first() + 1;
   const long least = passes * price::pass(rows, rows, nodes);
   rows_cost_ = rows > 0 ? price::rows(rows, nodes) + least : 0;
-  return Effort{numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)), settled()};
+  return Effort{numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)), settled(),
+                kEnough * numerics_.settled_m_per_s};
 }
 
 // Newton's method, as long as it may take all the work there is; else with no more than a fair share of it. @return
@@ -139,6 +141,7 @@ Outcome Rod::settle_directly(const Effort& effort) noexcept {
   if (!solves_directly() || sweeps_only_) return Outcome::kNoRoom;
   const long after = report_.substeps - substep_index_ - 1;
   Effort own = effort;
+  own.fair = (effort.work - after * look_cost_) / (after + 1);
   if (!can_wait()) own.work = std::min(effort.work, work_.left() / (after + 2));
   const Outcome outcome = contacts_.settle_directly<Friction>(solver_, own, state_.v.data(), seen_);
   if (outcome == Outcome::kSettled) return patience_ = std::min(kPatience, patience_ + 1.0), outcome;
