@@ -34,14 +34,6 @@ namespace {
 
 constexpr double kStill_m_per_s = 1e-5;  // slip below which a contact rests: a thirtieth of a diameter a second
 
-Vec in_cone(Vec p, Vec n, double mu) noexcept {
-  const double pn = dot(p, n);
-  if (pn <= 0.0) return Vec{};
-  const Vec pt = p - pn * n;
-  const double size2 = dot(pt, pt), most = mu * pn;
-  return pn * n + (size2 > most * most ? most / std::sqrt(size2) : 1.0) * pt;
-}
-
 // What slid still slides: its normal has turned a little, and a hair inside the cone it would be taken to stick.
 Vec on_cone_if_near(Vec p, Vec n, double mu) noexcept {
   constexpr double kNear = 0.999;
@@ -52,15 +44,6 @@ Vec on_cone_if_near(Vec p, Vec n, double mu) noexcept {
 }
 
 }  // namespace
-
-template <bool Turns>
-Vec ContactSet::velocity(int k, const Vec* v) const noexcept {
-  const Contact& c = contacts_[static_cast<std::size_t>(k)];
-  Vec u = -c.surface;
-  for (int j = 0; j < c.count; ++j) u += c.w[j] * v[c.node[j]];
-  if constexpr (Turns) u += turning_.slip(k);
-  return u;
-}
 
 void ContactSet::let_stick(double mu_static, const Vec* v) noexcept {
   for (auto& c : contacts_) {
@@ -236,114 +219,6 @@ void ContactSet::mix(BandSolver& solver, Vec* v) noexcept {
   mixing_.restart();
 }
 
-// Impulses of p_ instead of today's, in the rows that newton_ knows; v answers.
-void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
-  clear_extra();
-  for (const auto k : newton_.rows()) {
-    Contact& c = contacts_[static_cast<std::size_t>(k)];
-    const Vec p = p_[static_cast<std::size_t>(k)], delta = p - c.p;
-    c.p = p;
-    for (int j = 0; j < c.count; ++j) extra_[static_cast<std::size_t>(c.node[j])] += c.w[j] * delta;
-  }
-  push(solver, v);
-}
-
-template <bool Friction>
-Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
-  constexpr int kMostLooks = 12, kMostSteps = 48, kStale = 3;
-  constexpr double kNear = 3.0;  // an error is at most that, a pass's last change at least
-  constexpr double kOld = 10.0;  // what an old matrix may leave over
-  const long nodes = window_last_ - window_first_ + 1, looking = price::look(rows_);
-  const double settled = kNear * effort.settled_m_per_s, settled2 = settled * settled;
-  const double enough = kNear * std::max(effort.settled_m_per_s, effort.enough_m_per_s), enough2 = enough * enough;
-  const Contact* const rows = contacts_.data();
-  Vec *const p = p_.data(), *const u = u_.data();
-  bool fresh = false;
-  const auto measure = [&] {
-    report.work += price::inverse(nodes);
-    newton_.measure(solver, window_first_, window_last_);
-    fresh = true;
-  };
-  if (!newton_.covers(window_first_, window_last_)) measure();
-  newton_.start(rows, rows_);
-  const auto answer = [&] {
-    report.work += price::answer(newton_.loaded(), nodes);
-    take_impulses(solver, v);
-  };
-  // The work is gone: what is near enough is moved, the rest waits.
-  const auto stop = [&](double error2) {
-    if (error2 < enough2) return Outcome::kSettled;
-    newton_.put_off(p);
-    return Outcome::kLater;
-  };
-  double last2 = 1.0;  // error when last looked at, with the true A
-  if (newton_.resume(p)) answer();
-  for (int look = 0; look < kMostLooks; ++look) {
-    if (look == kStale && !fresh) {
-      if (report.work + price::inverse(nodes) > effort.work) break;
-      measure();
-      newton_.start(rows, rows_);
-    }
-    if (report.work + looking > effort.work) break;
-    report.work += looking;
-    for (int k = 0; k < rows_; ++k) u[k] = velocity<false>(k, v);
-    if (!newton_.look(rows, rows_, p, u)) return Outcome::kNoRoom;
-    const long coupling = price::couple(newton_.uncoupled()) + price::read(newton_.loaded());
-    if (report.work + coupling > effort.work) break;
-    report.work += coupling;
-    newton_.couple();
-    for (int step = 0;; ++step) {
-      const double largest2 = newton_.read<Friction>(rows, p, u);
-      if (step == 0) {
-        last2 = largest2;
-        report.change_m_per_s = std::sqrt(largest2);
-        if (largest2 < (look > 0 ? kOld * kOld : 1.0) * settled2) return Outcome::kSettled;
-      }
-      if (largest2 < settled2) break;
-      if (newton_.unknowns() > ContactNewton::kMostUnknowns) return Outcome::kNoRoom;
-      const long cost = look == 0 && step == 0 ? price::dense_sweep(newton_.loaded())
-                                               : price::newton(newton_.loaded(), newton_.unknowns());
-      const bool gone = report.work + cost + price::answer(newton_.loaded(), nodes) + looking > effort.work;
-      if (gone || (largest2 < enough2 && report.work + cost > effort.fair)) {
-        if (largest2 < enough2 && step > 0) answer();
-        return stop(largest2);
-      }
-      report.work += cost;
-      if (look == 0 && step == 0) {
-        newton_.sweep<Friction>(rows, p, u);
-        continue;
-      }
-      if (++report.passes > kMostSteps) return Outcome::kNoRoom;
-      if (!newton_.solve<Friction>(rows, p, u)) return Outcome::kNoRoom;
-    }
-    answer();
-  }
-  return stop(last2);
-}
-
-template <bool Friction>
-Outcome ContactSet::settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
-  const long nodes = window_last_ - window_first_ + 1;
-  if (nodes > ContactNewton::kWidest) return Outcome::kNoRoom;
-  if (2 * price::inverse(nodes) + price::look(rows_) > effort.work) return Outcome::kLater;
-  for (int k = 0; k < rows_; ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    p_start_[at].v = p_[at].v = contacts_[at].p.v;
-  }
-  std::copy(v + window_first_, v + window_last_ + 1, v_start_.begin());
-  const Outcome outcome = newton_steps<Friction>(solver, effort, v, report);
-  if (outcome == Outcome::kSettled) {
-    for (const auto k : newton_.rows()) {
-      Contact& c = contacts_[static_cast<std::size_t>(k)];
-      c.p = in_cone(c.p, c.n, c.mu);
-    }
-    return outcome;
-  }
-  for (int k = 0; k < rows_; ++k) contacts_[static_cast<std::size_t>(k)].p.v = p_start_[static_cast<std::size_t>(k)].v;
-  std::copy(v_start_.begin(), v_start_.begin() + nodes, v + window_first_);
-  return outcome;
-}
-
 template <bool Friction, bool Turns>
 void ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const Effort& effort, Vec* v,
                         ContactReport& report) noexcept {
@@ -414,8 +289,6 @@ void ContactSet::relabel(const std::vector<double>& s) noexcept {
 
 template void ContactSet::start<true>(BandSolver&, const Numerics&, double, Vec*) noexcept;
 template void ContactSet::start<false>(BandSolver&, const Numerics&, double, Vec*) noexcept;
-template Outcome ContactSet::settle_directly<true>(BandSolver&, const Effort&, Vec*, ContactReport&) noexcept;
-template Outcome ContactSet::settle_directly<false>(BandSolver&, const Effort&, Vec*, ContactReport&) noexcept;
 template void ContactSet::settle<true, true>(BandSolver&, const ContactMetric&, const Effort&, Vec*,
                                              ContactReport&) noexcept;
 template void ContactSet::settle<true, false>(BandSolver&, const ContactMetric&, const Effort&, Vec*,

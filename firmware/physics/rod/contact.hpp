@@ -2,6 +2,7 @@
 // Contacts of the thread with itself and with fixed bodies, solved together with the rod in every substep.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -251,5 +252,23 @@ class ContactSet {
   int rows_ = 0, window_first_ = 0, window_last_ = 1;
   bool overflow_ = false;
 };
+
+/// The impulse of Coulomb's cone about n, half-angle atan(mu), that has p's normal part and is nearest to it.
+[[nodiscard]] inline Vec in_cone(Vec p, Vec n, double mu) noexcept {
+  const double pn = dot(p, n);
+  if (pn <= 0.0) return Vec{};
+  const Vec pt = p - pn * n;
+  const double size2 = dot(pt, pt), most = mu * pn;
+  return pn * n + (size2 > most * most ? most / std::sqrt(size2) : 1.0) * pt;
+}
+
+template <bool Turns>
+Vec ContactSet::velocity(int k, const Vec* v) const noexcept {
+  const Contact& c = contacts_[static_cast<std::size_t>(k)];
+  Vec u = -c.surface;
+  for (int j = 0; j < c.count; ++j) u += c.w[j] * v[c.node[j]];
+  if constexpr (Turns) u += turning_.slip(k);
+  return u;
+}
 
 }  // namespace ligature::physics::rod
