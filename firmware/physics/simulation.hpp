@@ -37,8 +37,8 @@ enum class Propagation : std::uint8_t {
 
 /// A hand's grasp of the thread. Plain values of the last tick.
 struct HandContact {
-  int node = -1;             ///< grasped node, -1 none
-  Vec3 p_WG = Vec3::Zero();  ///< its position, m
+  int node = -1;             ///< grasped node, the nearest to the middle of the jaws; -1 none
+  Vec3 p_WG = Vec3::Zero();  ///< where the thread between the jaws is, m: f_W is the coupling's pull towards there
   Vec3 v_WG = Vec3::Zero();  ///< its velocity, m/s
   Vec3 f_W = Vec3::Zero();   ///< force ON THE HAND, world newtons, before any device scaling
   Propagation condition = Propagation::kNone;

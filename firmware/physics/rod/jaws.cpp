@@ -12,6 +12,22 @@ bool is_held(const State& state, int node) noexcept {
   return false;
 }
 
+// Material coordinate nearest to p of the half segments beside a node.
+double nearest_place(const State& state, int node, Vec p) noexcept {
+  const auto i = static_cast<std::size_t>(node);
+  const auto& s = state.mesh.s;
+  double least = norm(p - state.x[i]), place_m = s[i];
+  for (const int side : {-1, 1}) {
+    if (node + side < 0 || node + side >= state.nodes()) continue;
+    const auto k = static_cast<std::size_t>(node + side);
+    const Vec segment = state.x[k] - state.x[i];
+    const double share = std::clamp(dot(p - state.x[i], segment) / std::max(dot(segment, segment), 1e-24), 0.0, 0.5);
+    const double off = norm(p - state.x[i] - share * segment);
+    if (off < least) least = off, place_m = s[i] + share * (s[k] - s[i]);
+  }
+  return place_m;
+}
+
 }  // namespace
 
 void Jaws::close(Rod& rod, int node, Vec tool, const Mat* R_WT) noexcept {
@@ -21,13 +37,14 @@ void Jaws::close(Rod& rod, int node, Vec tool, const Mat* R_WT) noexcept {
   const auto after = static_cast<std::size_t>(std::min(node + 1, n - 1));
   const Vec chord = state.x[after] - state.x[before];
   along_ = (1.0 / std::max(norm(chord), 1e-12)) * chord;
-  s_m_ = state.mesh.s[static_cast<std::size_t>(node)];
-  slipped_m_ = 0.0;
+  s_m_ = settings_.width_m > 0.0 ? nearest_place(state, node, tool) : state.mesh.s[static_cast<std::size_t>(node)];
+  slipped_m_ = slides_m_per_s_ = 0.0;
   turning_ = R_WT != nullptr;
   roll_hold_ = -1;
   if (turning_) along_T_ = transposed(*R_WT) * along_;
   const bool directed = turning_ && settings_.width_m <= 0.0;  // nodes across a width have a direction themselves
-  hold_[0] = rod.grip(node, settings_.stiffness_N_per_m, settings_.damping_N_s_per_m, tool, true, directed);
+  const Vec target = tool + (state.mesh.s[static_cast<std::size_t>(node)] - s_m_) * along_;
+  hold_[0] = rod.grip(node, settings_.stiffness_N_per_m, settings_.damping_N_s_per_m, target, true, directed);
   count_ = hold_[0] >= 0 ? 1 : 0;
 }
 
@@ -79,7 +96,7 @@ void Jaws::choose(Rod& rod, Vec tool) noexcept {
 }
 
 /// Moves s_c so far that the coupling pulls along the thread by no more than slip_N.
-void Jaws::slip(const Rod& rod, Vec tool) noexcept {
+void Jaws::slip(Rod& rod, Vec tool) noexcept {
   if (settings_.slip_N <= 0.0 || count_ == 0) return;
   const State& state = rod.state();
   double stretch_m = 0.0;  // mean of the nodes' way ahead of their targets, along the thread
@@ -91,6 +108,7 @@ void Jaws::slip(const Rod& rod, Vec tool) noexcept {
   const double most_m = settings_.slip_N / settings_.stiffness_N_per_m;
   const double over_m = stretch_m - std::clamp(stretch_m, -most_m, most_m);
   s_m_ -= over_m;
+  slides_m_per_s_ = -over_m / rod.numerics().tick_s;
   slipped_m_ += over_m;
 }
 
@@ -129,6 +147,27 @@ int Jaws::middle(const Rod& rod) const noexcept {
   for (int k = 1; k < count_; ++k)
     if (off(hold_[static_cast<std::size_t>(k)]) < off(best)) best = hold_[static_cast<std::size_t>(k)];
   return best;
+}
+
+Vec Jaws::place(const Rod& rod) const noexcept {
+  const State& state = rod.state();
+  Vec mean{};
+  for (int k = 0; k < count_; ++k) {
+    const auto node =
+        static_cast<std::size_t>(state.holds[static_cast<std::size_t>(hold_[static_cast<std::size_t>(k)])].node);
+    mean += (1.0 / count_) * (state.x[node] - (state.mesh.s[node] - s_m_) * along_);
+  }
+  return mean;
+}
+
+Vec Jaws::velocity(const Rod& rod) const noexcept {
+  const State& state = rod.state();
+  Vec mean = slides_m_per_s_ * along_;
+  for (int k = 0; k < count_; ++k) {
+    const int node = state.holds[static_cast<std::size_t>(hold_[static_cast<std::size_t>(k)])].node;
+    mean += (1.0 / count_) * state.v[static_cast<std::size_t>(node)];
+  }
+  return mean;
 }
 
 Vec Jaws::force(const Rod& rod) const noexcept {

@@ -38,6 +38,11 @@ class Jaws {
   [[nodiscard]] bool holds() const noexcept { return count_ > 0; }
   /// Index into State::holds of the node nearest to the middle. @pre holds().
   [[nodiscard]] int middle(const Rod& rod) const noexcept;
+  /// Where the thread between the jaws is, and how it moves: of what is held, each node brought to s_c along t, so that
+  ///   force() = K (place - tool) + B (velocity - the tool's).
+  /// No node need lie at s_c, and nodes that share a couple stand to either side of it. @pre holds().
+  [[nodiscard]] Vec place(const Rod& rod) const noexcept;
+  [[nodiscard]] Vec velocity(const Rod& rod) const noexcept;
   /// On the hand, N, of the last tick.
   [[nodiscard]] Vec force(const Rod& rod) const noexcept;
   /// Thread that has slipped through since they closed, m; positive towards the thread's end.
@@ -45,13 +50,13 @@ class Jaws {
 
  private:
   void choose(Rod& rod, Vec tool) noexcept;
-  void slip(const Rod& rod, Vec tool) noexcept;
+  void slip(Rod& rod, Vec tool) noexcept;
   void turn(Rod& rod, const Mat& R_WT) noexcept;
 
   JawSettings settings_;
   std::array<int, kMost> hold_{};  // indices into State::holds
   int count_ = 0;
-  double s_m_ = 0.0, slipped_m_ = 0.0;
+  double s_m_ = 0.0, slipped_m_ = 0.0, slides_m_per_s_ = 0.0;  // slides: s_c
   Vec along_{};
   bool turning_ = false;
   int roll_hold_ = -1;            // the one whose director is director_T_

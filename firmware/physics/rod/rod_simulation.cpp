@@ -193,8 +193,8 @@ void RodSimulation::publish() noexcept {
     if (!jaws_[h].holds()) continue;
     const Hold& hold = state.holds[static_cast<std::size_t>(jaws_[h].middle(rod_))];
     c.node = hold.node;
-    c.p_WG = nodes_[static_cast<std::size_t>(hold.node)];
-    c.v_WG = velocities_[static_cast<std::size_t>(hold.node)];
+    c.p_WG = vec3(jaws_[h].place(rod_));  // the coupling turns these into the force on the hand
+    c.v_WG = vec3(jaws_[h].velocity(rod_));
     c.f_W = vec3(jaws_[h].force(rod_));
   }
   const Energy e = rod_.energy();

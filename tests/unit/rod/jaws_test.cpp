@@ -70,6 +70,34 @@ TEST(Jaws, ForcesOnTheNodesAddUpToTheLoad) {  // nothing fixed: three nodes betw
   EXPECT_NEAR(f.x(), 0.0, 1e-3 * kWeight_N);
 }
 
+/// Largest | f - K (p_G - p_T) - B (v_G - v_T) |, N, while `move` leads the left hand for 800 ticks.
+template <class Move>
+double off_the_coupling_N(RodSimulation& sim, std::array<ToolInput, 2> tools, Move move) {
+  double most = 0.0;
+  tools[0].grip = true;
+  for (int k = 0; k < 800; ++k) {
+    const Vec3 before = tools[0].p_WT;
+    move(k, tools[0]);
+    tools[0].v_WT = (tools[0].p_WT - before) / 1e-3;
+    sim.tick(tools);
+    const auto& hand = sim.hand(Hand::kLeft);
+    const Vec3 pull_N = 1000.0 * (hand.p_WG - tools[0].p_WT) + 0.5 * (hand.v_WG - tools[0].v_WT);
+    if (k > 0) most = std::max(most, (hand.f_W - pull_N).norm());
+  }
+  return most;
+}
+
+TEST(Jaws, TheHandFeelsWhatTheyDoToTheThread) {                    // wherever the nodes between them are
+  auto aside = simulation(thread({"hands.pinch_width_m=0.004"}));  // two nodes share a couple: the thread is bent away
+  EXPECT_LT(off_the_coupling_N(aside, hands_at(aside.nodes_W()[60], Vec3(1, 1, 1)),
+                               [](int, ToolInput& tool) { tool.p_WT += Vec3(1e-4, 0, 5e-5); }),
+            1e-9);
+  auto slips = simulation(thread({"hands.pinch_width_m=0.004", "hands.pinch_force_N=1.0"}));  // from node to node
+  EXPECT_LT(off_the_coupling_N(slips, hands_at(slips.nodes_W()[30], Vec3(1, 1, 1)),
+                               [](int, ToolInput& tool) { tool.p_WT.z() -= 2e-5; }),
+            1e-9);
+}
+
 TEST(Jaws, SlipAtCoulombsLimit) {  // 2 mu N = 0.6 N, pulled at 20 mm/s: the thread runs through at 0.6 N, within 2 %
   auto sim = simulation(thread({"hands.pinch_width_m=0.004", "hands.pinch_force_N=1.0"}));
   auto tools = hands_at(sim.nodes_W()[30], Vec3(1, 1, 1));
@@ -111,6 +139,31 @@ TEST(Jaws, HandTheThreadOver) {  // nothing fixed; the right hand takes it besid
   EXPECT_EQ(sim.hand(Hand::kLeft).node, -1);
   ASSERT_GE(sim.hand(Hand::kRight).node, 0);
   EXPECT_LT((sim.hand(Hand::kRight).p_WG - tools[1].p_WT).norm(), 1e-3);
+}
+
+/// Wherever between two nodes, which are 5 mm apart. What they hold is then unstretched between them: 3 % of the pull.
+TEST(Jaws, CloseOnATautThreadWithoutATug) {
+  for (const double share : {0.1, 0.3, 0.45, 0.55, 0.8}) {
+    auto sim = simulation(thread({"hands.pinch_width_m=0.004"}));
+    auto tools = hands_at(sim.nodes_W()[50], Vec3(1, 1, 1));
+    tools[0].grip = true;
+    for (int k = 0; k < 500; ++k) {
+      tools[0].p_WT.z() -= 1e-5;  // 71 N x 5 / 250 and the coupling's own give, 1.1 N
+      sim.tick(tools);
+    }
+    for (int k = 0; k < 300; ++k) sim.tick(tools);
+    const double before = sim.hand(Hand::kLeft).f_W.z();
+    tools[1].p_WT = sim.nodes_W()[20] + share * (sim.nodes_W()[21] - sim.nodes_W()[20]);
+    tools[1].grip = true;
+    double most = 0.0;
+    for (int k = 0; k < 300; ++k) {
+      sim.tick(tools);
+      most = std::max(most, sim.hand(Hand::kRight).f_W.norm());
+    }
+    EXPECT_GT(before, 0.9);
+    EXPECT_LT(most, 0.03 * before) << share;
+    EXPECT_NEAR(sim.hand(Hand::kLeft).f_W.z(), before, 0.03 * before) << share;
+  }
 }
 
 TEST(Jaws, HoldTheDirectionToo) {  // held upright at its free end, pushed from the side: two nodes turn back, one turns

@@ -1,0 +1,185 @@
+// Both hands on the real suture through the whole chain: what they feel is what it does to the jaws; it goes from hand
+// to hand under load; a hand reaches round with the clutch. Virtual time.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulated_rig.hpp"
+
+namespace ligature {
+namespace {
+
+constexpr double kDevice_N_per_m = 1000.0 * 500.0 / 1500.0;  // the scene's two springs in a row
+constexpr double kHand_N_per_m = 800.0;                      // of the simulated hand
+constexpr double kEA_N = 71.0, kTop_m = 0.35;
+constexpr double kStep_N = 0.5;  // the device record's
+constexpr int kNearTop = 5;      // a segment that no hand comes near
+
+using Keys = std::vector<scene::GripKey>;
+
+scene::Scene suture(const std::vector<std::string>& overrides = {}) {
+  return std::get<scene::Scene>(scene::load_scene(LIGATURE_SOURCE_DIR "/scenes/suture-3-0.toml", overrides));
+}
+
+double size(const rt::Triple& f) { return std::hypot(f[0], f[1], f[2]); }
+double apart(const rt::Triple& a, const rt::Triple& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+
+/// A script played, and the tension next to the anchor after each of the rig's records.
+struct Played {
+  Played(const scene::Scene& scene, Keys left, Keys right, std::function<void(SimulatedRig&, double)> each = {})
+      : rig(scene, script_of(std::move(left), std::move(right))), tension_N(scene.suture.nodes) {
+    std::vector<float> turn(tension_N.size());
+    rig.each_tick = [this, turn, each]() mutable {
+      rig.thread.describe(tension_N, turn);
+      top_N.push_back(tension_N[kNearTop]);
+      at_s.push_back(script_s());
+      if (each) each(rig, at_s.back());
+    };
+    EXPECT_EQ(rig.run(20'000, true), std::nullopt);
+    EXPECT_EQ(rig.records.back().fault, 0);
+  }
+  static scene::GripperScript script_of(Keys left, Keys right) {
+    scene::GripperScript script;
+    script.keys[0] = std::move(left), script.keys[1] = std::move(right);
+    return script;
+  }
+  [[nodiscard]] double script_s() const {
+    return std::min(rig.left.device.mechanics().script_time_s(), rig.right.device.mechanics().script_time_s());
+  }
+  [[nodiscard]] std::size_t tick_at(double t_s) const {
+    return static_cast<std::size_t>(std::lower_bound(at_s.begin(), at_s.end(), t_s) - at_s.begin());
+  }
+  [[nodiscard]] double tension_at(double t_s) const { return top_N[tick_at(t_s)]; }
+  [[nodiscard]] const rt::TickRecord& at(double t_s) const { return rig.records[tick_at(t_s) - 1]; }
+  /// The largest change of what is sent, from one period to the next.
+  [[nodiscard]] double step_N(std::size_t hand, double from_s = 0.0, double to_s = 1e9) const {
+    double most = 0.0;
+    for (std::size_t k = std::max<std::size_t>(tick_at(from_s), 1); k < std::min(tick_at(to_s), rig.records.size());
+         ++k)
+      most = std::max(most, apart(rig.records[k].f_device_N[hand], rig.records[k - 1].f_device_N[hand]));
+    return most;
+  }
+
+  SimulatedRig rig;
+  std::vector<float> tension_N;
+  std::vector<double> top_N, at_s;
+};
+
+/// Tension of a thread of that length, pulled by a hand that means to be `way_m` beyond its unstretched place.
+double pulled_N(double way_m, double length_m) {
+  return way_m / (length_m / kEA_N + 1.0 / kDevice_N_per_m + 1.0 / kHand_N_per_m);
+}
+
+/// The jaws hold several nodes, none of which need be in their middle, and the couple that holds the thread's direction
+/// is shared among them: none of that is a force on the hand.
+TEST(SutureHands, FeelWhatTheThreadDoesToTheJaws) {
+  struct Pull {
+    double way_m;
+    std::vector<std::string> overrides;
+  };
+  for (const auto& [way_m, overrides] : {Pull{0.004, {}}, Pull{0.02, {"hands.pinch_force_N=0.5"}}}) {  // slips at 0.3 N
+    const Played p(suture(overrides),
+                   {{0.0, {0.0, 0.0, 0.20}, false},
+                    {0.3, {0.0, 0.0, 0.20}, true},
+                    {2.0, {0.0, 0.0, 0.20 - way_m}, true},
+                    {2.5, {0.0, 0.0, 0.20 - way_m}, true}},
+                   {{0.0, {0.0, 0.0, 0.06}, false},
+                    {0.3, {0.0, 0.0, 0.06}, true},
+                    {1.5, {0.10, 0.05, 0.17}, true},
+                    {2.5, {0.10, 0.05, 0.17}, true}});
+    double off_N = 0.0;
+    for (std::size_t k = p.tick_at(2.2); k < p.tick_at(2.5); ++k)
+      for (std::size_t h = 0; h < 2; ++h)
+        off_N = std::max(off_N, apart(p.rig.records[k].f_wish_N[h], p.rig.records[k - 1].f_world_N[h]));
+    std::printf("felt: within %.4f N of %.4f and %.4f N; the thread pulls by %.4f N\n", off_N,
+                size(p.at(2.4).f_world_N[0]), size(p.at(2.4).f_world_N[1]), p.tension_at(2.4));
+    EXPECT_LT(off_N, 0.002);
+    EXPECT_NEAR(p.at(2.4).f_wish_N[0][2], p.tension_at(2.4), 0.01 * p.tension_at(2.4));
+    EXPECT_LT(size(p.at(2.4).f_wish_N[1]), 0.02);  // it holds the slack half
+  }
+}
+
+/// The right hand takes it above the left one, draws until the tension would be the same without the left one, which
+/// then lets go.
+TEST(SutureHands, HandTheThreadOverUnderLoad) {
+  constexpr double kClosed_s = 2.6, kBoth_s = 4.4, kOpen_s = 4.5, kWay_m = 0.0042;
+  constexpr double kPlace_m = 0.1812, kLength_m = kTop_m - kPlace_m;  // between two nodes
+  const Played p(suture(),
+                 {{0.0, {0.0, 0.0, 0.15}, false},
+                  {0.3, {0.0, 0.0, 0.15}, true},
+                  {0.5, {0.0, 0.0, 0.15}, true},
+                  {1.5, {0.0, 0.0, 0.143}, true},
+                  {kOpen_s, {0.0, 0.0, 0.143}, false},
+                  {5.5, {-0.04, 0.0, 0.143}, false}},
+                 {{0.0, {0.03, 0.0, kPlace_m}, false},
+                  {1.5, {0.03, 0.0, kPlace_m}, false},
+                  {2.5, {0.0, 0.0, kPlace_m}, false},
+                  {kClosed_s, {0.0, 0.0, kPlace_m}, true},
+                  {3.0, {0.0, 0.0, kPlace_m}, true},
+                  {4.0, {0.0, 0.0, kPlace_m - kWay_m}, true},
+                  {5.5, {0.0, 0.0, kPlace_m - kWay_m}, true}});
+  const double before_N = p.tension_at(2.5), both_N = p.tension_at(kBoth_s), after_N = p.tension_at(5.4);
+  EXPECT_NEAR(before_N, pulled_N(0.007, 0.2), 0.05 * before_N);
+  // Closed, the right hand's own spring stands where the thread was stretched to.
+  EXPECT_NEAR(after_N, pulled_N(kWay_m + before_N * kLength_m / kEA_N, kLength_m), 0.03 * after_N);
+  const auto range = std::minmax_element(p.top_N.begin() + static_cast<std::ptrdiff_t>(p.tick_at(2.5)),
+                                         p.top_N.begin() + static_cast<std::ptrdiff_t>(p.tick_at(5.4)));
+  std::printf("handed over: %.3f N, %.3f with both, %.3f; never below %.3f nor above %.3f\n", before_N, both_N, after_N,
+              *range.first, *range.second);
+  EXPECT_GT(*range.first, 0.97 * before_N);
+  EXPECT_LT(*range.second, 1.01 * both_N);
+  EXPECT_LT(both_N, 1.5 * before_N);
+  // What each hand feels.
+  EXPECT_NEAR(size(p.at(2.5).f_device_N[0]), before_N, 0.01 * before_N);
+  EXPECT_NEAR(size(p.at(5.4).f_device_N[1]), after_N, 0.01 * after_N);
+  EXPECT_LT(size(p.at(2.9).f_wish_N[1]), 0.01 * before_N);  // closing is no tug
+  EXPECT_GT(size(p.at(kBoth_s).f_device_N[0]), kStep_N);    // so letting go is more than one step
+  for (std::size_t h = 0; h < 2; ++h) EXPECT_LE(p.step_N(h), kStep_N) << h;
+  EXPECT_EQ(size(p.at(kOpen_s + 0.05).f_device_N[0]), 0.0);
+}
+
+/// A hand that has come to its workspace's end presses the clutch, reaches back, and draws on from there.
+TEST(SutureHands, ReachRoundWithTheClutch) {
+  constexpr double kPress_s = 2.0, kRelease_s = 3.5, kLength_m = 0.2;
+  sim::Vec3 hand_m[2];
+  bool pressed = false;
+  const auto clutch = [&](SimulatedRig& rig, double t_s) {
+    const bool wanted = t_s > kPress_s && t_s < kRelease_s;
+    hand_m[t_s < 2.1] = rig.left.device.mechanics().touch().p_DT;
+    if (wanted == pressed) return;
+    pressed = wanted;
+    rig.outlets->commands.push({0, wanted ? rt::CommandKind::kClutchLeft : rt::CommandKind::kUnclutchLeft});
+  };
+  const Played p(suture(),
+                 {{0.0, {0.0, 0.0, 0.15}, false},
+                  {0.3, {0.0, 0.0, 0.15}, true},
+                  {0.5, {0.0, 0.0, 0.15}, true},
+                  {1.5, {0.0, 0.0, 0.1472}, true},
+                  {2.2, {0.0, 0.0, 0.1472}, true},
+                  {3.2, {0.03, 0.02, 0.1772}, true},
+                  {5.0, {0.03, 0.02, 0.1772}, true}},
+                 {}, clutch);
+  const double before_N = p.tension_at(1.9), felt_N = size(p.at(1.9).f_device_N[0]);
+  EXPECT_NEAR(before_N, pulled_N(0.0028, kLength_m), 0.05 * before_N);
+  EXPECT_GT(felt_N, 0.2);  // of a slow pull passivity keeps back a share
+  EXPECT_GT((hand_m[0] - hand_m[1]).norm(), 0.04);
+  for (std::size_t k = p.tick_at(kPress_s + 0.1); k + 2 < p.tick_at(kRelease_s); ++k) {
+    ASSERT_EQ(p.rig.records[k].p_WT_m[0], p.at(kPress_s + 0.1).p_WT_m[0]);
+    ASSERT_NEAR(p.top_N[k], before_N, 0.005 * before_N);
+    ASSERT_EQ(size(p.rig.records[k].f_device_N[0]), 0.0);
+  }
+  // The force is back, and the hand has given way to it.
+  const double again_N = size(p.at(4.9).f_device_N[0]), after_N = p.tension_at(4.9);
+  const double gave_way_N = again_N / kHand_N_per_m / (kLength_m / kEA_N + 1.0 / kDevice_N_per_m);
+  std::printf("clutch: %.3f N, felt %.3f; then %.3f, felt %.3f; largest step %.3f N\n", before_N, felt_N, after_N,
+              again_N, p.step_N(0, 1.9));
+  EXPECT_GT(again_N, 0.7 * felt_N);
+  EXPECT_NEAR(after_N, before_N - gave_way_N, 0.02 * before_N);
+  EXPECT_LT(apart(p.at(4.9).p_WT_m[0], p.at(1.9).p_WT_m[0]), 5e-4);
+  EXPECT_LT(p.step_N(0, 1.9), 0.05);  // by the gain, at either end
+}
+
+}  // namespace
+}  // namespace ligature
