@@ -86,7 +86,7 @@ void BroadPhase::keep_impulses(const std::vector<Candidate>& list) noexcept {
     std::size_t at = place_of(c.a, c.b);
     while (kept_[at].a >= 0 && (kept_[at].a != c.a || kept_[at].b != c.b)) at = (at + 1) % kTable;
     if (kept_[at].a < 0) {
-      kept_[at] = {c.a, c.b, c.impulse, c.stuck};
+      kept_[at] = {c.a, c.b, c.impulse, c.touch, c.stuck};
       ++held;
     } else {
       kept_[at].impulse += c.impulse;  // two, when their segments were merged
@@ -99,6 +99,7 @@ void BroadPhase::give_back(Candidate& pair) const noexcept {
   while (kept_[at].a >= 0 && (kept_[at].a != pair.a || kept_[at].b != pair.b)) at = (at + 1) % kTable;
   if (kept_[at].a < 0) return;
   pair.impulse = kept_[at].impulse;
+  pair.touch = kept_[at].touch;
   pair.stuck = kept_[at].stuck;
 }
 

@@ -6,6 +6,7 @@
 
 #include "firmware/physics/rod/motion.hpp"
 #include "firmware/physics/rod/state.hpp"
+#include "firmware/physics/rod/touch.hpp"
 #include "firmware/physics/rod/work.hpp"
 
 namespace ligature::physics::rod {
@@ -17,9 +18,10 @@ struct Candidate {
   double reach_m = 0.0;  ///< centre distance at which they touch
   double near_m = 0.0;   ///< gap within which they are a contact at any speed
   double due = 0.0;      ///< gap when last measured + Motion::gone then: minus gone now, a lower bound of the gap
-  double s_a = 0.0, s_b = 0.0;  ///< material coordinates of the closest points, m
-  Vec impulse{};                ///< of the last substep, on b's side, N s
-  char stuck = 0;               ///< 1: inside the friction cone then
+  Touch touch{};         ///< where the impulse acted in the last substep
+  Touch next{};          ///< and does in this one
+  Vec impulse{};         ///< of the last substep, on b's side, N s
+  char stuck = 0;        ///< 1: inside the friction cone then
   double bulge_m = 0.0;  ///< that the smooth curves (smooth.hpp) may be nearer than their chords; 0: chords touch
 };
 
@@ -94,6 +96,7 @@ class BroadPhase {
   struct Kept {
     std::int32_t a = -1, b = -1;
     Vec impulse{};
+    Touch touch{};
     char stuck = 0;
   };
   int capacity_ = 0;

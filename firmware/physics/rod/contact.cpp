@@ -34,15 +34,6 @@ namespace {
 
 constexpr double kStill_m_per_s = 1e-5;  // slip below which a contact rests: a thirtieth of a diameter a second
 
-// What slid still slides: its normal has turned a little, and a hair inside the cone it would be taken to stick.
-Vec on_cone_if_near(Vec p, Vec n, double mu) noexcept {
-  constexpr double kNear = 0.999;
-  const double pn = dot(p, n), most = mu * pn;
-  const Vec pt = p - pn * n;
-  const double size2 = dot(pt, pt);
-  return size2 > kNear * kNear * most * most && size2 > 0.0 ? pn * n + most / std::sqrt(size2) * pt : p;
-}
-
 }  // namespace
 
 void ContactSet::let_stick(double mu_static, const Vec* v) noexcept {
@@ -172,7 +163,7 @@ void ContactSet::start(BandSolver& solver, const Numerics& numerics, double dt_s
     c.soft = numerics.recovery / (numerics.contact_N_per_m * dt_s * dt_s);
     c.target =
         c.gap_m > 0.0 ? -c.gap_m / dt_s : std::min(-numerics.recovery * c.gap_m / dt_s, numerics.max_recovery_m_per_s);
-    c.p = on_cone_if_near(in_cone(longer * c.p, c.n, c.mu), c.n, c.mu);
+    c.p = in_cone(longer * c.p, c.n, c.mu);
     c.u_free = velocity<Turns>(k, v);
     c.loaded = dot(c.p, c.p) > 0.0;
     if (!c.loaded) continue;
@@ -258,7 +249,10 @@ double ContactSet::unsettled_fraction(const Vec* v, double dt_s) const noexcept 
 }
 
 void ContactSet::store() noexcept {
-  for (const auto& c : contacts_) *c.keep = c.p;
+  for (const auto& c : contacts_) {
+    *c.keep = c.p;
+    if (c.pair != nullptr) c.pair->touch = c.pair->next;
+  }
 }
 
 // What slides is on the cone, and moves: one that is on it while its neighbours hold it does not.
@@ -282,8 +276,8 @@ void ContactSet::relabel(const std::vector<double>& s) noexcept {
   };
   for (auto& pair : pairs) {
     if (dot(pair.impulse, pair.impulse) == 0.0) continue;
-    pair.a = segment(pair.s_a);
-    pair.b = segment(pair.s_b);
+    pair.a = segment(pair.touch.a);
+    pair.b = segment(pair.touch.b);
   }
 }
 

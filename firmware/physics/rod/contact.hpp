@@ -45,6 +45,7 @@ struct Contact {
   double distance_m = 0.0;                     ///< of the chords, for the guard
   bool loaded = false;                         ///< has carried an impulse in this substep
   Vec* keep = nullptr;                         ///< where the impulse is kept between substeps
+  Candidate* pair = nullptr;                   ///< of the thread with itself
   char* stuck = nullptr;                       ///< where it is kept whether friction held
   std::int32_t place[4] = {0, 0, 0, 0};        ///< of the nodes in SweptVelocities
   float weight[4] = {0.0F, 0.0F, 0.0F, 0.0F};  ///< w for it
@@ -242,6 +243,7 @@ class ContactSet {
   Mixing mixing_;
   ContactNewton newton_;
   std::vector<Vec> u_, v_start_, p_start_;
+  double start_error2_ = 0.0;  // with the impulses of the last substep, (m/s)^2
   Turning turning_;
   Spin* spin_ = nullptr;
   int segments_ = 0;

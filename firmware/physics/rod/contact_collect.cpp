@@ -24,6 +24,18 @@ Contact contact_of(const Candidate& pair, const Closest& c, double distance, dou
   return contact;
 }
 
+/// Closest points become those at which the pair's impulse acts.
+void press(Candidate& pair, const State& state, Closest& c) noexcept {
+  const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+  const Mesh& mesh = state.mesh;
+  const double at_a = mesh.s[a] + c.s * mesh.rest[a], at_b = mesh.s[b] + c.t * mesh.rest[b];
+  if (dot(pair.impulse, pair.impulse) == 0.0) return pair.next.begin(at_a, at_b);
+  pair.next = pair.touch;
+  pair.next.follow(at_a, at_b);
+  c.s = std::clamp((pair.next.a - mesh.s[a]) / mesh.rest[a], 0.0, 1.0);
+  c.t = std::clamp((pair.next.b - mesh.s[b]) / mesh.rest[b], 0.0, 1.0);
+}
+
 /// The less, the more a contact wants to be solved: those that carry load first, then the nearest.
 double urgency(const Contact& c) noexcept { return c.gap_m - (dot(c.p, c.p) > 0.0 ? c.reach_m : 0.0); }
 
@@ -121,11 +133,11 @@ bool ContactSet::measure(Candidate& pair, const State& state, const Motion& moti
     watched_.push_back({pair.a, pair.b, chord});  // has room for every pair
     return false;
   }
-  pair.s_a = state.mesh.s[a] + c.s * state.mesh.rest[a];
-  pair.s_b = state.mesh.s[b] + c.t * state.mesh.rest[b];
+  press(pair, state, c);
   Contact contact = contact_of(pair, c, distance, mu);
   contact.distance_m = chord;
   contact.keep = &pair.impulse;
+  contact.pair = &pair;
   contact.stuck = &pair.stuck;
   add(contact);
   return true;

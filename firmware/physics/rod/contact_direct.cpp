@@ -5,6 +5,16 @@
 #include "firmware/physics/rod/contact.hpp"
 
 namespace ligature::physics::rod {
+namespace {
+
+constexpr double kNear = 3.0;  // an error is at most that, a pass's last change at least
+
+double square_of_enough(const Effort& effort) noexcept {
+  const double enough = kNear * std::max(effort.settled_m_per_s, effort.enough_m_per_s);
+  return enough * enough;
+}
+
+}  // namespace
 
 // Impulses of p_ instead of today's, in the rows that newton_ knows; v answers.
 void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
@@ -21,11 +31,10 @@ void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
 template <bool Friction>
 Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
   constexpr int kMostLooks = 12, kMostSteps = 48, kStale = 3;
-  constexpr double kNear = 3.0;  // an error is at most that, a pass's last change at least
   constexpr double kOld = 10.0;  // what an old matrix may leave over
   const long nodes = window_last_ - window_first_ + 1, looking = price::look(rows_);
   const double settled = kNear * effort.settled_m_per_s, settled2 = settled * settled;
-  const double enough = kNear * std::max(effort.settled_m_per_s, effort.enough_m_per_s), enough2 = enough * enough;
+  const double enough2 = square_of_enough(effort);
   const Contact* const rows = contacts_.data();
   Vec *const p = p_.data(), *const u = u_.data();
   bool fresh = false;
@@ -47,7 +56,9 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
     return Outcome::kLater;
   };
   double last2 = 1.0;  // error when last looked at, with the true A
-  if (newton_.resume(p)) answer();
+  start_error2_ = 1e300;
+  const bool resumed = newton_.resume(p);
+  if (resumed) answer();
   for (int look = 0; look < kMostLooks; ++look) {
     if (look == kStale && !fresh) {
       if (report.work + price::inverse(nodes) > effort.work) break;
@@ -66,6 +77,7 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
       const double largest2 = newton_.read<Friction>(rows, p, u);
       if (step == 0) {
         last2 = largest2;
+        if (look == 0 && !resumed) start_error2_ = largest2;
         report.change_m_per_s = std::sqrt(largest2);
         if (largest2 < (look > 0 ? kOld * kOld : 1.0) * settled2) return Outcome::kSettled;
       }
@@ -95,7 +107,8 @@ template <bool Friction>
 Outcome ContactSet::settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
   const long nodes = window_last_ - window_first_ + 1;
   if (nodes > ContactNewton::kWidest) return Outcome::kNoRoom;
-  if (2 * price::inverse(nodes) + price::look(rows_) > effort.work) return Outcome::kLater;
+  const long matrix = newton_.covers(window_first_, window_last_) ? 0 : price::inverse(nodes);
+  if (matrix + price::look(rows_) > effort.work) return Outcome::kLater;
   for (int k = 0; k < rows_; ++k) {
     const auto at = static_cast<std::size_t>(k);
     p_start_[at].v = p_[at].v = contacts_[at].p.v;
@@ -111,7 +124,10 @@ Outcome ContactSet::settle_directly(BandSolver& solver, const Effort& effort, Ve
   }
   for (int k = 0; k < rows_; ++k) contacts_[static_cast<std::size_t>(k)].p.v = p_start_[static_cast<std::size_t>(k)].v;
   std::copy(v_start_.begin(), v_start_.begin() + nodes, v + window_first_);
-  return outcome;
+  if (start_error2_ >= square_of_enough(effort)) return outcome;
+  newton_.give_up();  // what they began with is good, and they found no better
+  report.change_m_per_s = std::sqrt(start_error2_);
+  return Outcome::kSettled;
 }
 
 template Outcome ContactSet::settle_directly<true>(BandSolver&, const Effort&, Vec*, ContactReport&) noexcept;

@@ -141,7 +141,7 @@ Outcome Rod::settle_directly(const Effort& effort) noexcept {
   if (!solves_directly() || sweeps_only_) return Outcome::kNoRoom;
   const long after = report_.substeps - substep_index_ - 1;
   Effort own = effort;
-  own.fair = (effort.work - after * look_cost_) / (after + 1);
+  own.fair = (effort.work - after * (look_cost_ + rows_cost_)) / (after + 1);
   if (!can_wait()) own.work = std::min(effort.work, work_.left() / (after + 2));
   const Outcome outcome = contacts_.settle_directly<Friction>(solver_, own, state_.v.data(), seen_);
   if (outcome == Outcome::kSettled) return patience_ = std::min(kPatience, patience_ + 1.0), outcome;
