@@ -11,8 +11,9 @@
 namespace ligature {
 namespace {
 
-constexpr double kDevice_N_per_m = 1000.0 * 500.0 / 1500.0;  // the scene's two springs in a row
-constexpr double kHand_N_per_m = 800.0;                      // of the simulated hand
+constexpr double kThread_N_per_m = 1000.0;                            // the scene's spring on the thread's side,
+constexpr double kDevice_N_per_m = kThread_N_per_m * 500.0 / 1500.0;  // and both in a row
+constexpr double kHand_N_per_m = 800.0;                               // of the simulated hand
 constexpr double kEA_N = 71.0, kTop_m = 0.35;
 constexpr double kStep_N = 0.5;  // the device record's
 constexpr int kNearTop = 5;      // a segment that no hand comes near
@@ -99,6 +100,26 @@ TEST(SutureHands, FeelWhatTheThreadDoesToTheJaws) {
     EXPECT_NEAR(p.at(2.4).f_wish_N[0][2], p.tension_at(2.4), 0.01 * p.tension_at(2.4));
     EXPECT_LT(size(p.at(2.4).f_wish_N[1]), 0.02);  // it holds the slack half
   }
+}
+
+/// The free end, a fifth of a millinewton, carried along. The coupling knows it where it was a tick before: a drag of
+/// K_t T v, which takes energy; taken to be where it is by now, it gave up to 73 uJ back at the ports.
+TEST(SutureHands, CarryAnEndThatWeighsNothing) {
+  const Played p(suture(), {},
+                 {{0.0, {0.0, 0.0, 0.06}, false},
+                  {0.3, {0.0, 0.0, 0.06}, true},
+                  {0.5, {0.0, 0.0, 0.06}, true},
+                  {2.0, {0.1, 0.0, 0.16}, true},
+                  {2.5, {0.1, 0.0, 0.16}, true}});
+  double felt_N = 0.0, speed_m_per_s = 0.0;
+  const std::size_t from = p.tick_at(1.0), to = p.tick_at(1.5);
+  for (std::size_t k = from; k < to; ++k) {
+    const rt::Triple &f = p.rig.records[k].f_wish_N[1], &v = p.rig.records[k].v_WT_m_per_s[1];
+    felt_N -= (f[0] * v[0] + f[1] * v[1] + f[2] * v[2]) / size(v) / static_cast<double>(to - from);
+    speed_m_per_s += size(v) / static_cast<double>(to - from);
+  }
+  std::printf("carried at %.4f m/s: a drag of %.4f N\n", speed_m_per_s, felt_N);
+  EXPECT_NEAR(felt_N, kThread_N_per_m * 1e-3 * speed_m_per_s, 0.03 * felt_N);
 }
 
 /// The right hand takes it above the left one, draws until the tension would be the same without the left one, which
