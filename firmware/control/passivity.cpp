@@ -33,7 +33,6 @@ void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {
   }
   sampled_ = tick;
   q_rad_ = q_rad;
-  behind_rad_ = counted_rad - q_rad;
   p_m_ = s.p_m;
   tip_N_per_Nm_ = s.tip_N_per_Nm;
   look_under_way(tick);
@@ -43,7 +42,7 @@ void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {
 void Passivity::look_under_way(std::int64_t tick) noexcept {
   const bool wary = is_wary(tick);
   under_way_ = {low_Nm_, high_Nm_};
-  under_way_J_ = std::max(0.0, sent_.at(sent_.newest() - 1).torque_Nm.dot(behind_rad_));  // if a guess was wrong
+  under_way_J_ = 0.0;
   for (std::int64_t i = sent_.cycle_of(sampled_); i <= sent_.newest(); ++i) {
     const SentTorques::Cycle& before = sent_.at(i - 1);
     under_way_.take(before.torque_Nm);

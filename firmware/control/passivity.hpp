@@ -207,10 +207,10 @@ class Passivity {
   bool acts_ = false, stepped_ = false, released_ = false;
   Mat3 tip_N_per_Nm_ = Mat3::Identity();
   std::int64_t sampled_ = -1, lossy_until_ = -1;
-  Vec3 q_rad_ = Vec3::Zero(), behind_rad_ = Vec3::Zero();  // at the sample: guessed; the count less that
-  Vec3 p_m_ = Vec3::Zero(), step_m_ = Vec3::Zero();        // step: motion in a period before the sample
-  Vec3 low_Nm_ = Vec3::Zero(), high_Nm_ = Vec3::Zero();    // what acted in that period
-  std::array<bool, 3> guarded_{};                          // then
+  Vec3 q_rad_ = Vec3::Zero();                            // at the sample: guessed
+  Vec3 p_m_ = Vec3::Zero(), step_m_ = Vec3::Zero();      // step: motion in a period before the sample
+  Vec3 low_Nm_ = Vec3::Zero(), high_Nm_ = Vec3::Zero();  // what acted in that period
+  std::array<bool, 3> guarded_{};                        // then
   SentTorques sent_;
   Box under_way_;                                 // what may be acting until the next SYNC
   double under_way_J_ = 0.0, under_way_N_ = 0.0;  // what that may lose, and the largest force of it
