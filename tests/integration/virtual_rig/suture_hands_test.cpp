@@ -103,7 +103,7 @@ TEST(SutureHands, FeelWhatTheThreadDoesToTheJaws) {
 }
 
 /// The free end, a fifth of a millinewton, carried along. The coupling knows it where it was a tick before: a drag of
-/// K_t T v, which takes energy; taken to be where it is by now, it gave up to 73 uJ back at the ports.
+/// K_t T v, which takes energy; taken to be where it is by now, the ports gave energy out.
 TEST(SutureHands, CarryAnEndThatWeighsNothing) {
   const Played p(suture(), {},
                  {{0.0, {0.0, 0.0, 0.06}, false},
