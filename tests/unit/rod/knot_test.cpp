@@ -185,6 +185,18 @@ TEST(Overhand, OpensWithoutFriction) {  // mu = 0: nothing holds it once an end 
   EXPECT_EQ(p.knot, "0_1");
 }
 
+// Two throws hold by friction alone: a square knot from 0.27 up, a granny from 0.33. Below that they turn and thread
+// runs out of the loop, and with it the tension. What is left of 5 N half a second after the hands stopped:
+TEST(Granny, NeedsMoreFrictionThanASquare) {
+  const auto left = [](const char* scene, const char* friction) {
+    return pull(load(scene, {friction}), 5.0, 0.0, {.sudden = true}).force_N / 5.0;
+  };
+  EXPECT_LT(left("suture-3-0-square.toml", "contact.friction=0.22"), 0.8);
+  EXPECT_GT(left("suture-3-0-square.toml", "contact.friction=0.3"), 0.9);
+  EXPECT_LT(left("suture-3-0-granny.toml", "contact.friction=0.3"), 0.8);
+  EXPECT_GT(left("suture-3-0-granny.toml", "contact.friction=0.38"), 0.9);
+}
+
 // Elastic, it opens at this friction; sharp bends that stay hold it.
 TEST(FigureEight, HoldsByWhatItsBendsKeep) {
   const Pull p = pull(load("suture-3-0-figure-eight.toml"), 5.0, 2.0, {-0.2, 0.2, true});
