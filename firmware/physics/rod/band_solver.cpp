@@ -151,32 +151,6 @@ void BandSolver::solve(int first, int last, const Vec* extra, Vec* out, bool bas
   }
 }
 
-// Rows of the inverse follow from rows nearer to the core: a right-hand side there does not reach w_i of solve().
-void BandSolver::invert(int first, int last, Mat* table, std::size_t stride) const noexcept {
-  assert(first <= core_ && core_ + 1 <= last);
-  const std::ptrdiff_t core = core_, l = core + 1;
-  const auto at = [&](std::ptrdiff_t i, std::ptrdiff_t j) -> Mat& {
-    return table[static_cast<std::size_t>(i - first) * stride + static_cast<std::size_t>(j - first)];
-  };
-  const Mat *h = h_.data(), *s_inverse = s_inverse_.data();
-  put(at(l, l), s_inverse[l]);
-  put(at(core, l), -1.0 * (h[l] * at(l, l)));
-  put(at(core, core), mirrored(s_inverse[core] - h[l] * transposed(at(core, l))));
-  for (std::ptrdiff_t i = core - 1; i >= first; --i) {
-    const Mat one = -1.0 * h[i + 1], two = -skip[static_cast<std::size_t>(i)] * s_inverse[i];
-    for (std::ptrdiff_t j = i + 2; j <= l; ++j) put(at(i, j), one * at(i + 1, j) + two * at(i + 2, j));
-    put(at(i, i + 1), one * at(i + 1, i + 1) + two * transposed(at(i + 1, i + 2)));
-    put(at(i, i), mirrored(s_inverse[i] + one * transposed(at(i, i + 1)) + two * transposed(at(i, i + 2))));
-  }
-  for (std::ptrdiff_t i = l + 1; i <= last; ++i) {
-    const Mat one = -1.0 * (i == l + 1 ? link_ : h[i - 1]), two = -skip[static_cast<std::size_t>(i - 2)] * s_inverse[i];
-    for (std::ptrdiff_t j = first; j <= i - 2; ++j)
-      put(at(j, i), times_transposed(at(j, i - 1), one) + at(j, i - 2) * two);
-    put(at(i - 1, i), times_transposed(at(i - 1, i - 1), one) + transposed(at(i - 2, i - 1)) * two);
-    put(at(i, i), mirrored(s_inverse[i] + one * at(i - 1, i) + two * at(i - 2, i)));
-  }
-}
-
 void BandSolver::solve_outside(int first, int last, Vec* v) const noexcept {
   const Mat *h = h_.data(), *s_inverse = s_inverse_.data();
   const Vec* z = z_.data();

@@ -21,6 +21,7 @@ namespace ligature::physics::rod {
 class BandSolver {
  public:
   void resize(int n);
+  [[nodiscard]] int nodes() const noexcept { return n_; }
 
   std::vector<Mat> diagonal, couple;  ///< n and n - 1 blocks (sized n); factor() changes them inside the window
   std::vector<double> skip;           ///< n - 2 scalars (sized n)
@@ -34,14 +35,11 @@ class BandSolver {
   /// @pre first <= core, core + 1 <= last. @param base false: the answer to `extra` alone.
   void solve(int first, int last, const Vec* extra, Vec* out, bool base) noexcept;
 
-  /// The inverse itself: (A^-1)_ij, first <= i <= j <= last, into table[(i - first) stride + j - first]. O(w^2), forty
-  /// times w solutions cheaper than those.
-  void invert(int first, int last, Mat* table, std::size_t stride) const noexcept;
-
   /// After solve() with base: completes `v` outside [first, last].
   void solve_outside(int first, int last, Vec* v) const noexcept;
 
  private:
+  friend class BandColumns;
   int n_ = 0, core_ = 0;
   std::vector<Mat> f_, h_, s_inverse_;  // F_i, H_i, S_i^-1
   std::vector<Vec> z_;                  // eliminated right-hand side

@@ -7,6 +7,7 @@
 namespace ligature::physics::rod {
 namespace {
 
+constexpr int kMargin = 6;     // nodes by which the window may grow before a new matrix is needed
 constexpr double kNear = 3.0;  // an error is at most that, a pass's last change at least
 
 double square_of_enough(const Effort& effort) noexcept {
@@ -39,8 +40,9 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
   Vec *const p = p_.data(), *const u = u_.data();
   bool fresh = false;
   const auto measure = [&] {
-    report.work += price::inverse(nodes);
-    newton_.measure(solver, window_first_, window_last_);
+    const int first = std::max(window_first_ - kMargin, 0), last = std::min(window_last_ + kMargin, solver.nodes() - 1);
+    report.work += price::factors(last - first + 1);
+    newton_.measure(solver, first, last);
     fresh = true;
   };
   if (!newton_.covers(window_first_, window_last_)) measure();
@@ -61,15 +63,23 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
   if (resumed) answer();
   for (int look = 0; look < kMostLooks; ++look) {
     if (look == kStale && !fresh) {
-      if (report.work + price::inverse(nodes) > effort.work) break;
+      if (report.work + price::factors(nodes + 2 * kMargin) > effort.work) break;
       measure();
       newton_.start(rows, rows_);
     }
     if (report.work + looking > effort.work) break;
     report.work += looking;
     for (int k = 0; k < rows_; ++k) u[k] = velocity<false>(k, v);
-    if (!newton_.look(rows, rows_, p, u)) return Outcome::kNoRoom;
-    const long coupling = price::couple(newton_.uncoupled()) + price::read(newton_.loaded());
+    if (!newton_.look(rows, rows_, p, u)) {  // full of what has gone?
+      if (fresh || report.work + price::factors(nodes + 2 * kMargin) > effort.work) return Outcome::kNoRoom;
+      measure();
+      newton_.start(rows, rows_);
+      if (!newton_.look(rows, rows_, p, u)) return Outcome::kNoRoom;
+    }
+    const auto uncoupled = newton_.uncoupled();
+    const long coupling = uncoupled.columns * price::column(newton_.nodes()) +
+                          price::couple(uncoupled.contacts, uncoupled.pairs, newton_.nodes()) +
+                          price::read(newton_.loaded());
     if (report.work + coupling > effort.work) break;
     report.work += coupling;
     newton_.couple();
@@ -106,8 +116,8 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
 template <bool Friction>
 Outcome ContactSet::settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
   const long nodes = window_last_ - window_first_ + 1;
-  if (nodes > ContactNewton::kWidest) return Outcome::kNoRoom;
-  const long matrix = newton_.covers(window_first_, window_last_) ? 0 : price::inverse(nodes);
+  if (nodes + 2 * kMargin > ContactNewton::kWidest) return Outcome::kNoRoom;
+  const long matrix = newton_.covers(window_first_, window_last_) ? 0 : price::factors(nodes + 2 * kMargin);
   if (matrix + price::look(rows_) > effort.work) return Outcome::kLater;
   for (int k = 0; k < rows_; ++k) {
     const auto at = static_cast<std::size_t>(k);

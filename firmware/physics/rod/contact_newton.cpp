@@ -12,7 +12,8 @@ namespace ligature::physics::rod {
 void ContactNewton::reserve() {
   constexpr auto kRows = static_cast<std::size_t>(kMostRows), kWide = static_cast<std::size_t>(kWidest);
   constexpr auto kUnknowns = static_cast<std::size_t>(kMostUnknowns);
-  z_.resize(kWide * kWide);
+  z_.reserve();
+  spread_.resize(BandColumns::kBlock * (kWide + 1));
   slot_.reserve(static_cast<std::size_t>(kMaxContacts));
   rows_.reserve(kRows);
   slots_.reserve(kRows);
@@ -20,14 +21,14 @@ void ContactNewton::reserve() {
   unknowns_.reserve(kUnknowns);
   on_.resize(kRow);
   rest_.resize(kRows);
-  for (auto& array : with_) array.resize(2 * kPlane);
+  stuck_.reserve(kRows);
+  with_.resize(2 * kRow);
+  at_.reserve(kWide);
   dense_.reserve(kUnknowns);
 }
 
 void ContactNewton::measure(const BandSolver& solver, int first, int last) noexcept {
-  assert(last - first < kWidest);
-  first_ = first, last_ = last;
-  solver.invert(first, last, z_.data(), kWidest);
+  z_.take(solver, first, last);
   slots_.clear();
   coupled_ = 0;
   put_off_ = false;
@@ -39,20 +40,16 @@ void ContactNewton::start(const Contact* rows, int count) noexcept {
   rows_.clear();
   if (!put_off_) steps_ = 0;
   if (!put_off_ && 2 * slots_.size() > static_cast<std::size_t>(kMostRows)) slots_.clear(), coupled_ = 0;
-  for (auto& slot : slots_) slot.row = -1;
+  index_slots();
   for (int k = 0; k < count; ++k) {
-    const std::int32_t a = rows[k].node[0] - first_, b = rows[k].node[2] - first_;
-    for (std::size_t s = 0; s < slots_.size(); ++s) {
-      if (slots_[s].node[0] != a || slots_[s].node[2] != b || slots_[s].dead) continue;
-      if (std::abs(rows[k].w[0] - slots_[s].w[0]) + std::abs(rows[k].w[3] - slots_[s].w[3]) > kMoved) {
-        slots_[s].dead = true;
-        break;
-      }
-      slot_[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(s);
-      slots_[s].row = k;
-      rows_.push_back(k);
-      break;
-    }
+    const std::int32_t s = find(rows[k].node[0] - z_.first(), rows[k].node[2] - z_.first());
+    if (s < 0) continue;
+    Slot& slot = slots_[static_cast<std::size_t>(s)];
+    slot.dead = std::abs(rows[k].w[0] - slot.w[0]) + std::abs(rows[k].w[3] - slot.w[3]) > kMoved;
+    if (slot.dead) continue;
+    slot_[static_cast<std::size_t>(k)] = s;
+    slot.row = k;
+    rows_.push_back(k);
   }
   for (std::size_t s = coupled_ == slots_.size() ? slots_.size() : 0; s-- > 0;) {
     if (!slots_[s].dead) continue;
@@ -60,6 +57,23 @@ void ContactNewton::start(const Contact* rows, int count) noexcept {
     slots_.pop_back();
     --coupled_;
   }
+}
+
+// Slots by first node, none of them with a row.
+void ContactNewton::index_slots() noexcept {
+  at_.assign(static_cast<std::size_t>(z_.width()), -1);
+  for (std::size_t s = slots_.size(); s-- > 0;) {
+    slots_[s].row = -1;
+    slots_[s].next = std::exchange(at_[static_cast<std::size_t>(slots_[s].node[0])], static_cast<std::int32_t>(s));
+  }
+}
+
+// The slot of segments a and b, or -1.
+std::int32_t ContactNewton::find(std::int32_t a, std::int32_t b) const noexcept {
+  std::int32_t s = at_[static_cast<std::size_t>(a)];
+  while (s >= 0 && (slots_[static_cast<std::size_t>(s)].node[2] != b || slots_[static_cast<std::size_t>(s)].dead))
+    s = slots_[static_cast<std::size_t>(s)].next;
+  return s;
 }
 
 void ContactNewton::put_off(const Vec* p) noexcept {
@@ -74,73 +88,93 @@ bool ContactNewton::resume(Vec* p) noexcept {
   return std::exchange(put_off_, false);
 }
 
-// Block (a, b) of J Z J^T, segment by segment. Z is symmetric and has its upper half: what lies below is summed on its
-// own and turned.
-Mat ContactNewton::block(const Slot& a, const Slot& b) const noexcept {
-  constexpr auto kWide = static_cast<std::ptrdiff_t>(kWidest);
-  Mat above{}, below{};
-  const auto add = [](Mat& sum, double weight, const Mat& z) {
-    sum.x.v += weight * z.x.v, sum.y.v += weight * z.y.v, sum.z.v += weight * z.z.v;
-  };
-  for (int i = 0; i < a.count; i += 2) {
-    for (int j = 0; j < b.count; j += 2) {
-      const std::ptrdiff_t p = a.node[i], q = b.node[j];
-      const double w00 = a.w[i] * b.w[j], w01 = a.w[i] * b.w[j + 1], w10 = a.w[i + 1] * b.w[j],
-                   w11 = a.w[i + 1] * b.w[j + 1];
-      if (p < q) {
-        const Mat* const z = z_.data() + p * kWide + q;
-        add(above, w00, z[0]), add(above, w01, z[1]), add(above, w10, z[kWide]), add(above, w11, z[kWide + 1]);
-      } else if (q < p) {
-        const Mat* const z = z_.data() + q * kWide + p;
-        add(below, w00, z[0]), add(below, w10, z[1]), add(below, w01, z[kWide]), add(below, w11, z[kWide + 1]);
-      } else {
-        const Mat* const z = z_.data() + p * kWide + p;
-        add(above, w00, z[0]), add(above, w01, z[1]), add(below, w10, z[1]), add(above, w11, z[kWide + 1]);
-      }
-    }
-  }
-  return above + transposed(below);
-}
-
-void ContactNewton::keep(std::size_t slot, std::size_t other, const Mat& w) noexcept {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Lanes row = make(w.x[static_cast<int>(i)], w.y[static_cast<int>(i)], w.z[static_cast<int>(i)]).v;
-    for (std::size_t j = 0; j < 3; ++j) {
-      w_[(3 * slot + i) * kRow + j * kPlane + other] = static_cast<float>(row[j]);
-      w_[(3 * other + j) * kRow + i * kPlane + slot] = static_cast<float>(row[j]);
-    }
-  }
-}
-
-// Row k may carry load: how far its map steps.
+// Row k may carry load.
 bool ContactNewton::take(const Contact* rows, int k) noexcept {
   const std::size_t slot = slots_.size();
   if (slot == static_cast<std::size_t>(kMostRows)) return false;
+  const Contact& c = rows[k];
+  for (int j = 0; j < c.count; ++j) {
+    if (!z_.want(c.node[j] - z_.first())) return false;
+  }
   slot_[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(slot);
   rows_.push_back(k);
-  const Contact& c = rows[k];
   Slot& made = slots_.emplace_back();
   made.guess.v = c.p.v;
   made.row = k;
   made.count = c.count;
-  for (int j = 0; j < c.count; ++j) made.node[j] = c.node[j] - first_, made.w[j] = c.w[j];
-  const Mat own = block(made, made);
-  keep(slot, slot, own);
-  const Vec on_n = own * c.n;
-  const double normal = dot(on_n, c.n);
+  made.n.v = c.n.v, made.soft = c.soft;
+  for (int j = 0; j < 4; ++j)
+    made.node[j] = c.node[j < c.count ? j : 0] - z_.first(), made.w[j] = j < c.count ? c.w[j] : 0.0;
+  return true;
+}
+
+// Z J^T of a slot, from one node to another.
+void ContactNewton::spread(const Slot& slot, std::int32_t first, std::int32_t last) noexcept {
+  const auto begin = (BandColumns::kBlock * static_cast<std::size_t>(first)) & ~std::size_t{7},
+             end = BandColumns::kBlock * static_cast<std::size_t>(last + 1);
+  float* const out = spread_.data();
+  const float *const c0 = z_.column(slot.node[0]), *const c1 = z_.column(slot.node[1]),
+                     *const c2 = z_.column(slot.node[2]), *const c3 = z_.column(slot.node[3]);
+  const Eight w0 = all_eight(static_cast<float>(slot.w[0])), w1 = all_eight(static_cast<float>(slot.w[1])),
+              w2 = all_eight(static_cast<float>(slot.w[2])), w3 = all_eight(static_cast<float>(slot.w[3]));
+  for (std::size_t j = begin; j < end; j += 8)
+    store_eight(out + j, (w0 * load_eight(c0 + j) + w1 * load_eight(c1 + j)) +
+                             (w2 * load_eight(c2 + j) + w3 * load_eight(c3 + j)));
+}
+
+// What the slot of spread() does to this one: its columns x, y, z.
+std::array<Four, 3> ContactNewton::answer_at(const Slot& slot) const noexcept {
+  std::array<Four, 3> sum{};
+  for (int j = 0; j < slot.count; ++j) {
+    const float* const at = spread_.data() + BandColumns::kBlock * static_cast<std::size_t>(slot.node[j]);
+    const auto w = static_cast<float>(slot.w[j]);
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += w * load_four(at + 4 * i);
+  }
+  return sum;
+}
+
+// W is symmetric.
+void ContactNewton::keep(std::size_t slot, std::size_t other, const std::array<Four, 3>& w) noexcept {
+  float *const row = w_.data() + 3 * slot * kRow + other, *const turned = w_.data() + 3 * other * kRow + slot;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const float value = w[i][static_cast<int>(j)];
+      row[i * kRow + j * kPlane] = value;
+      turned[j * kRow + i * kPlane] = value;
+    }
+  }
+}
+
+// How far the map of a contact steps.
+void ContactNewton::set_steps(Slot& slot, const std::array<Four, 3>& w) noexcept {
+  const Mat own{{__builtin_convertvector(w[0], Lanes)},
+                {__builtin_convertvector(w[1], Lanes)},
+                {__builtin_convertvector(w[2], Lanes)}};
+  const Vec on_n = own * slot.n;
+  const double normal = dot(on_n, slot.n);
   // Across n the block has trace t and squares s; its larger eigenvalue:
   const double t = own.x[0] + own.y[1] + own.z[2] - normal;
   const double s = dot(own.x, own.x) + dot(own.y, own.y) + dot(own.z, own.z) - 2.0 * dot(on_n, on_n) + normal * normal;
   const double across = 0.5 * (t + std::sqrt(std::max(0.0, 2.0 * s - t * t)));
-  made.r_n = 1.0 / (normal + c.soft);
-  made.r_t = 1.0 / across;
-  return true;
+  slot.r_n = 1.0 / (normal + slot.soft);
+  slot.r_t = 1.0 / across;
 }
 
 // What new slots do to the others, and they to them.
 void ContactNewton::couple() noexcept {
+  if (coupled_ == slots_.size()) return;
+  z_.make_missing();
+  std::int32_t first = z_.width(), last = 0;
+  for (const auto& slot : slots_) {
+    for (int j = 0; j < slot.count; ++j) first = std::min(first, slot.node[j]), last = std::max(last, slot.node[j]);
+  }
   for (; coupled_ < slots_.size(); ++coupled_) {
-    for (std::size_t b = 0; b < coupled_; ++b) keep(coupled_, b, block(slots_[coupled_], slots_[b]));
+    Slot& slot = slots_[coupled_];
+    spread(slot, first, last);
+    for (std::size_t b = 0; b < coupled_; ++b) keep(coupled_, b, answer_at(slots_[b]));
+    const auto own = answer_at(slot);
+    keep(coupled_, coupled_, own);
+    set_steps(slot, own);
   }
 }
 

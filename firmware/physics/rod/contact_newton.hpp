@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "firmware/physics/rod/band_columns.hpp"
 #include "firmware/physics/rod/band_solver.hpp"
 #include "firmware/physics/rod/dense.hpp"
+#include "firmware/physics/rod/floats.hpp"
 #include "firmware/physics/rod/swept.hpp"
 
 namespace ligature::physics::rod {
@@ -31,13 +33,13 @@ class ContactNewton {
  public:
   static constexpr int kMostRows = 96;       ///< that carry load, or would
   static constexpr int kMostUnknowns = 192;  ///< impulses in them
-  static constexpr int kWidest = 160;        ///< nodes of Z
+  static constexpr int kWidest = BandColumns::kWidest;
 
   void reserve();
 
   /// Z is that of another mesh, or time step.
-  void forget() noexcept { last_ = -1, first_ = 0; }
-  [[nodiscard]] bool covers(int first, int last) const noexcept { return first_ <= first && last <= last_; }
+  void forget() noexcept { z_.forget(); }
+  [[nodiscard]] bool covers(int first, int last) const noexcept { return z_.covers(first, last); }
   /// Z of today. @pre last - first < kWidest; solver factorised.
   void measure(const BandSolver& solver, int first, int last) noexcept;
 
@@ -47,12 +49,17 @@ class ContactNewton {
   /// Velocities u of all contacts: those that approach too fast are taken in. @return false when there is no room.
   [[nodiscard]] bool look(const Contact* rows, int count, const Vec* p, const Vec* u) noexcept;
 
-  /// What those new ones do to the others, and they to them. After look().
+  /// What those new ones do to the others, and they to them. After look(), before read().
   void couple() noexcept;
-  [[nodiscard]] long uncoupled() const noexcept {  ///< pairs of contacts that couple() has yet to see
+  /// What couple() has yet to see: columns of Z; contacts; pairs of contacts.
+  struct Uncoupled {
+    long columns, contacts, pairs;
+  };
+  [[nodiscard]] Uncoupled uncoupled() const noexcept {
     const auto all = static_cast<long>(slots_.size()), seen = static_cast<long>(coupled_);
-    return (all * (all + 1) - seen * (seen + 1)) / 2;
+    return {z_.missing(), all - seen, (all * (all + 1) - seen * (seen + 1)) / 2};
   }
+  [[nodiscard]] int nodes() const noexcept { return z_.width(); }  ///< of Z
 
   /// What impulses p and velocities u make of each contact taken in: its kind. @return the square of the largest error,
   /// m/s: how far an impulse is from its map times what it moves its contact by.
@@ -83,14 +90,17 @@ class ContactNewton {
   /// A contact that carries load, or did since measure(): who it is, how far its map steps, and what it reads there.
   struct Slot {
     std::int32_t count = 0;
-    std::int32_t node[4] = {0, 0, 0, 0};  ///< counted from first_
+    std::int32_t node[4] = {0, 0, 0, 0};  ///< counted from the first of Z
     std::int32_t row = -1;                ///< or none
+    std::int32_t next = -1;               ///< slot with the same first node
     double w[4] = {0.0, 0.0, 0.0, 0.0};
-    double r_n = 0.0, r_t = 0.0;
+    Vec n{};
+    double soft = 0.0, r_n = 0.0, r_t = 0.0;
     bool dead = false;  ///< its contact has moved on
     Kind kind = Kind::kNew;
     Vec guess{};        ///< impulse when the work ran out
     Vec q{};            ///< p_t - r_t u_t
+    Vec along{};        ///< its direction
     double most = 0.0;  ///< radius of its disc
     [[nodiscard]] bool carries() const noexcept { return row >= 0 && kind >= Kind::kSticks; }
   };
@@ -101,6 +111,11 @@ class ContactNewton {
     Vec along, with;
     double give, wanted, now;
   };
+  /// Direction in which one that sticks would slide.
+  struct Stuck {
+    std::size_t slot;
+    float x, y, z;
+  };
   bool take(const Contact* rows, int k) noexcept;
   [[nodiscard]] std::size_t slot_of(std::int32_t row) const noexcept {
     return static_cast<std::size_t>(slot_[static_cast<std::size_t>(row)]);
@@ -109,36 +124,45 @@ class ContactNewton {
     const float* const u = on_.data() + slot;
     return make(u[0], u[kPlane], u[2 * kPlane]);
   }
-  [[nodiscard]] Mat block(const Slot& a, const Slot& b) const noexcept;
-  void keep(std::size_t slot, std::size_t other, const Mat& w) noexcept;
+  void spread(const Slot& slot, std::int32_t first, std::int32_t last) noexcept;
+  [[nodiscard]] std::array<Four, 3> answer_at(const Slot& slot) const noexcept;
+  static void set_steps(Slot& slot, const std::array<Four, 3>& own) noexcept;
+  void index_slots() noexcept;
+  [[nodiscard]] std::int32_t find(std::int32_t a, std::int32_t b) const noexcept;
+  void keep(std::size_t slot, std::size_t other, const std::array<Four, 3>& w) noexcept;
   void exchange(std::size_t a, std::size_t b) noexcept;
   void bring_forward() noexcept;
   template <bool Friction>
   void list_unknowns(const Contact* rows, const Vec* p, const Vec* u) noexcept;
-  void answer(std::size_t slot, std::size_t count, Vec x, bool more) noexcept;
+  template <bool Two>
+  void answer(std::size_t slot, Vec x, std::size_t other, Vec y) noexcept;
   void answer_all(const Vec* change) noexcept;
+  template <bool Friction>
   void make_row(std::size_t i) noexcept;
+  template <bool Friction>
   void assemble(const Vec* p) noexcept;
 
   static constexpr std::size_t kPlane = static_cast<std::size_t>(kMostRows), kRow = 3 * kPlane;
-  int first_ = 0, last_ = -1;
-  std::vector<Mat> z_;              // Z_ij, i <= j, kWidest a row
+  BandColumns z_;
+  Floats spread_;                   // Z J^T of the slot that is being coupled, as a column of Z
   std::vector<std::int32_t> slot_;  // of each row, or -1
+  std::vector<std::int32_t> at_;    // first slot of each first node, or -1
   std::vector<std::int32_t> rows_;
   std::vector<Slot> slots_;
   std::size_t coupled_ = 0;  // slots that W is known of
   bool put_off_ = false;
   int steps_ = 0, changed_ = 0;  // since start(); kinds that the last read() changed
   double cost_ = 0.0;            // of a change, 1 at first
-  std::vector<float> w_;  // W of all slots: rows x, y, z of the first, of the second; in a row all x, all y, all z
+  Floats w_;  // W of all slots: rows x, y, z of the first, of the second; in a row all x, all y, all z
   std::vector<Unknown>
       unknowns_;  // along n of the first carrying_ slots; across their sliding; along it, if they stick
   int count_ = 0;
   std::size_t carrying_ = 0;
   Dense dense_;
   // Scratch of assemble().
-  std::vector<float> on_;
-  std::array<std::vector<float>, 3> with_;  // x, y, z for every slot: along n, then across
+  Floats on_;
+  std::vector<Stuck> stuck_;
+  Floats with_;  // planes x, y, z along n, then across
   std::vector<Vec> rest_;
 };
 

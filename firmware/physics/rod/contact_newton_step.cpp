@@ -35,7 +35,7 @@ double ContactNewton::read(const Contact* rows, const Vec* p, const Vec* u) noex
 
 template <bool Friction>
 void ContactNewton::sweep(const Contact* rows, Vec* p, Vec* u) noexcept {
-  std::fill(on_.begin(), on_.end(), 0.0F);
+  on_.clear();
   for (const auto k : rows_) {
     const Contact& c = rows[k];
     const std::size_t at = slot_of(k);
@@ -48,35 +48,46 @@ void ContactNewton::sweep(const Contact* rows, Vec* p, Vec* u) noexcept {
     const Vec to = to_n * c.n + (size2 > most * most ? most / std::sqrt(size2) : 1.0) * q, step = to - p[k];
     if (dot(step, step) == 0.0) continue;
     p[k].v = to.v;
-    answer(at, slots_.size(), step, true);
+    answer<false>(at, step, at, Vec{});
   }
   for (const auto k : rows_) u[k] += moved(slot_of(k));
 }
 
-// W x for an impulse x on one contact, the first `count` contacts at once: W is symmetric, so that is a sum of its
-// rows.
-void ContactNewton::answer(std::size_t slot, std::size_t count, Vec x, bool more) noexcept {
+// on_ += W (x, y) for impulses x and y on two contacts, or x on one: W is symmetric, so that is a sum of its rows.
+template <bool Two>
+void ContactNewton::answer(std::size_t slot, Vec x, std::size_t other, Vec y) noexcept {
   const Eight x0 = all_eight(static_cast<float>(x[0])), x1 = all_eight(static_cast<float>(x[1])),
-              x2 = all_eight(static_cast<float>(x[2]));
-  const float* const from = w_.data() + 3 * slot * kRow;
-  float* const to = on_.data();
+              x2 = all_eight(static_cast<float>(x[2])), y0 = all_eight(static_cast<float>(y[0])),
+              y1 = all_eight(static_cast<float>(y[1])), y2 = all_eight(static_cast<float>(y[2]));
+  const std::size_t count = slots_.size();
   for (std::size_t plane = 0; plane < kRow; plane += kPlane) {
-    const float* const w = from + plane;
-    float* const out = to + plane;
+    const float *const v = w_.data() + 3 * slot * kRow + plane, *const w = w_.data() + 3 * other * kRow + plane;
+    float* const out = on_.data() + plane;
     for (std::size_t s = 0; s < count; s += 8) {
-      const Eight sum = x0 * load_eight(w + s) + (x1 * load_eight(w + kRow + s) + x2 * load_eight(w + 2 * kRow + s));
-      store_eight(out + s, more ? load_eight(out + s) + sum : sum);
+      Eight sum = x0 * load_eight(v + s) + x1 * load_eight(v + kRow + s) + x2 * load_eight(v + 2 * kRow + s);
+      if constexpr (Two)
+        sum += y0 * load_eight(w + s) + y1 * load_eight(w + kRow + s) + y2 * load_eight(w + 2 * kRow + s);
+      store_eight(out + s, load_eight(out + s) + sum);
     }
   }
 }
 
 // W x for one impulse each, by slot.
 void ContactNewton::answer_all(const Vec* change) noexcept {
-  std::fill(on_.begin(), on_.end(), 0.0F);
+  constexpr auto kNone = static_cast<std::size_t>(-1);
+  on_.clear();
+  std::size_t waiting = kNone;  // for a second one
   for (const auto k : rows_) {
     const std::size_t slot = slot_of(k);
-    if (dot(change[slot], change[slot]) > 0.0) answer(slot, slots_.size(), change[slot], true);
+    if (dot(change[slot], change[slot]) == 0.0) continue;
+    if (waiting == kNone) {
+      waiting = slot;
+      continue;
+    }
+    answer<true>(waiting, change[waiting], slot, change[slot]);
+    waiting = kNone;
   }
+  if (waiting != kNone) answer<false>(waiting, change[waiting], waiting, Vec{});
 }
 
 void ContactNewton::exchange(std::size_t a, std::size_t b) noexcept {
@@ -84,9 +95,19 @@ void ContactNewton::exchange(std::size_t a, std::size_t b) noexcept {
   for (const std::size_t s : {a, b}) {
     if (slots_[s].row >= 0) slot_[static_cast<std::size_t>(slots_[s].row)] = static_cast<std::int32_t>(s);
   }
-  float* const w = w_.data();
-  std::swap_ranges(w + 3 * a * kRow, w + 3 * (a + 1) * kRow, w + 3 * b * kRow);
-  for (std::size_t at = 0, end = 3 * slots_.size() * kRow; at < end; at += kPlane) std::swap(w[at + a], w[at + b]);
+  float *const w = w_.data(), *v = w + 3 * a * kRow, *u = w + 3 * b * kRow;
+  const std::size_t count = slots_.size();
+  for (std::size_t plane = 0; plane < 3 * kRow; plane += kPlane, v += kPlane, u += kPlane) {
+    for (std::size_t s = 0; s < count; s += 8) {
+      const Eight x = load_eight(v + s), y = load_eight(u + s);
+      store_eight(v + s, y), store_eight(u + s, x);
+    }
+  }
+  for (float *row = w, *const end = w + 3 * count * kRow; row < end; row += kRow) {
+    const float x = row[a], y = row[kPlane + a], z = row[2 * kPlane + a];
+    row[a] = row[b], row[kPlane + a] = row[kPlane + b], row[2 * kPlane + a] = row[2 * kPlane + b];
+    row[b] = x, row[kPlane + b] = y, row[2 * kPlane + b] = z;
+  }
 }
 
 // Contacts that carry load become the first ones, so that all that is known of them lies side by side.
@@ -107,6 +128,7 @@ void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* 
   constexpr double kCostNormal = 0.05, kCostAlong = 0.1;  // of a change at first, of what it does to its own contact
   constexpr double kHardly = 1e-6;                        // of q: what slides without friction turns freely
   unknowns_.clear();
+  stuck_.clear();
   const auto add = [&](std::size_t s, Vec along, Vec with, double give, double cost, double wanted) {
     const std::int32_t k = slots_[s].row;
     const double now = dot(p[k], along);
@@ -119,62 +141,72 @@ void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* 
     return (1.0 / norm(across)) * across;
   };
   for (std::size_t s = 0; s < carrying_; ++s) {
-    const Slot& slot = slots_[s];
+    Slot& slot = slots_[s];
     const Contact& c = rows[slot.row];
+    if constexpr (Friction) slot.along.v = direction(slot).v;
     const bool slides = Friction && slot.kind == Kind::kSlides;
-    const Vec with = slides ? c.n + c.mu * direction(slot) : c.n;
+    const Vec with = slides ? c.n + c.mu * slot.along : c.n;
     add(s, c.n, with, c.soft, kCostNormal / slot.r_n, c.target);
-    for (std::size_t i = 0; i < 3; ++i) with_[i][s] = static_cast<float>(with.v[i]);
+    for (std::size_t i = 0; i < 3; ++i) with_.data()[i * kPlane + s] = static_cast<float>(with.v[i]);
   }
   if constexpr (Friction) {
     for (std::size_t s = 0; s < carrying_; ++s) {
       const Slot& slot = slots_[s];
-      const Vec across = cross(rows[slot.row].n, direction(slot));
+      const Vec across = cross(rows[slot.row].n, slot.along);
       const double share = std::max(kHardly, slot.most / std::max(norm(slot.q), 1e-300));
       const double give = slot.kind == Kind::kSticks ? 0.0 : (1.0 - share) / (share * slot.r_t);
       add(s, across, across, give, kCostAlong / slot.r_t, 0.0);
-      for (std::size_t i = 0; i < 3; ++i) with_[i][kPlane + s] = static_cast<float>(across.v[i]);
+      for (std::size_t i = 0; i < 3; ++i) with_.data()[kRow + i * kPlane + s] = static_cast<float>(across.v[i]);
     }
     for (std::size_t s = 0; s < carrying_; ++s) {
       const Slot& slot = slots_[s];
       if (slot.kind != Kind::kSticks) continue;
-      const Vec along = direction(slot);
-      add(s, along, along, 0.0, kCostAlong / slot.r_t, 0.0);
+      add(s, slot.along, slot.along, 0.0, kCostAlong / slot.r_t, 0.0);
+      stuck_.push_back(
+          {s, static_cast<float>(slot.along[0]), static_cast<float>(slot.along[1]), static_cast<float>(slot.along[2])});
     }
   }
 }
 
-// Row i: along_i . W_ij with_j + give_i.
-void ContactNewton::make_row(std::size_t i) noexcept {
-  const Unknown& x = unknowns_[i];
-  const std::size_t n = unknowns_.size();
-  answer(x.slot, carrying_, x.along, false);
-  const float* const on = on_.data();
-  float* const row = dense_.row(i);
-  const std::size_t planes = std::min<std::size_t>(n / std::max<std::size_t>(carrying_, 1), 2);
-  for (std::size_t plane = 0; plane < planes; ++plane) {
-    const float *const with_x = with_[0].data() + plane * kPlane, *const with_y = with_[1].data() + plane * kPlane,
-                       *const with_z = with_[2].data() + plane * kPlane;
-    float* const out = row + plane * carrying_;
-    for (std::size_t s = 0; s < carrying_; s += 8)
-      store_eight(out + s, load_eight(on + s) * load_eight(with_x + s) +
-                               (load_eight(on + kPlane + s) * load_eight(with_y + s) +
-                                load_eight(on + 2 * kPlane + s) * load_eight(with_z + s)));
+// Row i: along_i . W_ij with_j + give_i. From the last contacts to the first, as each eight numbers may spill into what
+// follows them.
+template <bool Friction>
+[[gnu::always_inline]] inline void ContactNewton::make_row(std::size_t i) noexcept {
+  const Unknown& unknown = unknowns_[i];
+  const std::size_t n = unknowns_.size(), contacts = carrying_;
+  const Eight a0 = all_eight(static_cast<float>(unknown.along[0])),
+              a1 = all_eight(static_cast<float>(unknown.along[1])),
+              a2 = all_eight(static_cast<float>(unknown.along[2]));
+  const float *const w = w_.data() + 3 * unknown.slot * kRow, *const with = with_.data();
+  float *const row = dense_.row(i), *const on = on_.data();
+  for (std::size_t s = (contacts + 7) & ~std::size_t{7}; s > 0;) {
+    s -= 8;
+    const float *const at = w + s, *const b = with + s;
+    const auto plane = [&](std::size_t p) {
+      return a0 * load_eight(at + p) + a1 * load_eight(at + kRow + p) + a2 * load_eight(at + 2 * kRow + p);
+    };
+    const Eight x = plane(0), y = plane(kPlane), z = plane(2 * kPlane);
+    store_eight(row + s, x * load_eight(b) + y * load_eight(b + kPlane) + z * load_eight(b + 2 * kPlane));
+    if constexpr (Friction) {
+      store_eight(row + contacts + s,
+                  x * load_eight(b + kRow) + y * load_eight(b + kRow + kPlane) + z * load_eight(b + kRow + 2 * kPlane));
+      store_eight(on + s, x), store_eight(on + kPlane + s, y), store_eight(on + 2 * kPlane + s, z);
+    }
   }
-  for (std::size_t j = planes * carrying_; j < n; ++j) {
-    const Vec with = unknowns_[j].with;
-    const float* const at = on + unknowns_[j].slot;
-    row[j] = static_cast<float>(with[0]) * at[0] +
-             (static_cast<float>(with[1]) * at[kPlane] + static_cast<float>(with[2]) * at[2 * kPlane]);
+  float* out = row + (Friction ? 2 : 1) * contacts;
+  for (const Stuck& stuck : stuck_) {
+    const float* const at = on + stuck.slot;
+    *out++ = at[0] * stuck.x + at[kPlane] * stuck.y + at[2 * kPlane] * stuck.z;
   }
-  std::fill(row + n, dense_.row_end(i), 0.0F);
-  row[i] += static_cast<float>(x.give);
+  store_eight(row + n, Eight{});
+  row[i] += static_cast<float>(unknown.give);
 }
 
+template <bool Friction>
 void ContactNewton::assemble(const Vec* p) noexcept {
   const std::size_t n = unknowns_.size();
   dense_.resize(n);
-  for (std::size_t i = 0; i < n; ++i) make_row(i);
+  for (std::size_t i = 0; i < n; ++i) make_row<Friction>(i);
   // Of today's impulses, what the unknowns cannot say goes.
   for (const auto k : rows_) rest_[slot_of(k)].v = p[k].v;
   for (const auto& x : unknowns_) rest_[x.slot] -= x.now * x.with;
@@ -193,7 +225,7 @@ bool ContactNewton::solve(const Contact* rows, Vec* p, Vec* u) noexcept {
   ++steps_;
   bring_forward();
   list_unknowns<Friction>(rows, p, u);
-  assemble(p);
+  assemble<Friction>(p);
   if (!dense_.solve()) return false;
   for (const auto k : rows_) rest_[slot_of(k)].v = -p[k].v, p[k] = Vec{};
   double sum = 0.0;

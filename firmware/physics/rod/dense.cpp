@@ -10,36 +10,32 @@ namespace {
 
 constexpr std::size_t kPanel = 4;
 
-using Four = float __attribute__((vector_size(16)));
-
-/// Inverse of the upper triangle of a panel: what a row has in its four columns, times that, is what to take of each of
-/// its rows.
-struct Triangle {
-  Four row[4];
-
-  Triangle(const float* m, std::size_t stride) noexcept {
-    for (int i = 0; i < 4; ++i) {
-      row[i] = Four{};
-      row[i][i] = 1.0F;
+// a -= factors[0] top + factors[1] (the row under it) ..., all times scale. The factors may lie in `a`.
+template <std::size_t Rows>
+inline void take_away(float* a, const float* factors, const float* top, std::size_t from, std::size_t stride,
+                      float scale = 1.0F) noexcept {
+  Eight f[std::max<std::size_t>(Rows, 1)];
+  for (std::size_t q = 0; q < Rows; ++q) f[q] = all_eight(factors[q]);
+  for (std::size_t j = from; j < stride; j += 8) {
+    Eight sum = load_eight(a + j);
+    for (std::size_t q = 0; q < Rows && q < kPanel; ++q) sum -= f[q] * load_eight(top + q * stride + j);
+    if constexpr (Rows > kPanel) {  // two chains of arithmetic
+      Eight more = f[kPanel] * load_eight(top + kPanel * stride + j);
+      for (std::size_t q = kPanel + 1; q < Rows; ++q) more += f[q] * load_eight(top + q * stride + j);
+      sum -= more;
+    } else {
+      sum *= scale;
     }
-    for (std::size_t j = 0; j < 4; ++j) {  // column by column: X U = I
-      for (std::size_t i = 0; i <= j; ++i) {
-        float x = i == j ? 1.0F : 0.0F;
-        for (std::size_t q = i; q < j; ++q) x -= row[i][static_cast<int>(q)] * m[q * stride + j];
-        row[i][static_cast<int>(j)] = x / m[j * stride + j];
-      }
-    }
+    store_eight(a + j, sum);
   }
-  [[nodiscard]] Four of(const float* a) const noexcept {
-    return (a[0] * row[0] + a[1] * row[1]) + (a[2] * row[2] + a[3] * row[3]);
-  }
-};
+}
 
 }  // namespace
 
 void Dense::reserve(std::size_t most) {
   m_.resize((most + 1) * (most + 16));
   x_.resize(most + 16);
+  first_.resize(most + 16);
 }
 
 // Brings the row below with the largest entry of column k up, and clears that column under it.
@@ -52,81 +48,92 @@ bool Dense::pivot(std::size_t k) noexcept {
   float* const top = row(k);
   if (best != k) std::swap_ranges(top + from, top + stride_, row(best) + from);
   if (!(std::abs(top[k]) > 0.0F)) return false;
-  for (std::size_t i = k + 1; i < n_; ++i) {
-    float* const a = row(i);
-    const Eight f = all_eight(a[k] / top[k]);
-    for (std::size_t j = from; j < stride_; j += 8) store_eight(a + j, load_eight(a + j) - f * load_eight(top + j));
-  }
+  take_away<0>(top, nullptr, nullptr, from, stride_, 1.0F / top[k]);
+  clear_below(k, 1, k + 1);
   return true;
 }
 
-// Four pivots from row k on, cleared among themselves. @return false when one has shrunk, and nothing is lost.
-bool Dense::panel(std::size_t k) noexcept {
-  constexpr float kShrunk = 1e-4F;
-  const std::size_t from = k & ~std::size_t{7};
-  for (std::size_t i = k; i < k + kPanel; ++i) {
-    float* const a = row(i);
-    const float least = kShrunk * std::abs(a[i]);
-    for (std::size_t p = k; p < i; ++p) {
-      const float* const top = row(p);
-      const Eight factor = all_eight(a[p] / top[p]);
-      for (std::size_t j = from; j < stride_; j += 8)
-        store_eight(a + j, load_eight(a + j) - factor * load_eight(top + j));
-    }
-    if (!(std::abs(a[i]) > least)) return false;
-  }
+// Row k + Before is cleared of the pivots from k on, and made 1 in its own; those are cleared of it. @return false, and
+// nothing is done, when its pivot has shrunk.
+template <std::size_t Before>
+bool Dense::join(std::size_t k) noexcept {
+  constexpr float kShrunk = 1e-4F, kNoise = 1e-6F;  // of what it was before this panel, and at first
+  const std::size_t i = k + Before, from = k & ~std::size_t{7};
+  float *const a = row(i), *const top = row(k);
+  float left = a[i];
+  for (std::size_t p = 0; p < Before; ++p) left -= a[k + p] * top[p * stride_ + i];
+  if (!(std::abs(left) > std::max(kShrunk * std::abs(a[i]), kNoise * first_.data()[i]) && first_.data()[i] > 0.0F))
+    return false;
+  take_away<Before>(a, a + k, top, from, stride_, 1.0F / left);
+  for (std::size_t p = 0; p < Before; ++p) take_away<1>(top + p * stride_, top + p * stride_ + i, a, from, stride_);
   return true;
 }
 
-// Takes the panel from all rows under it, two rows and eight columns at a time. What lies left of it is not read again.
-void Dense::clear_below(std::size_t k) noexcept {
-  const std::size_t stride = stride_, from = (k + kPanel) & ~std::size_t{7};
-  const float* const t = row(k);
-  const Triangle triangle(t + k, stride);
-  std::size_t i = k + kPanel;
-  for (; i + 1 < n_; i += 2) {
-    float *const a = row(i), *const b = a + stride;
-    const Four f = triangle.of(a + k), g = triangle.of(b + k);
-    const Eight f0 = all_eight(f[0]), f1 = all_eight(f[1]), f2 = all_eight(f[2]), f3 = all_eight(f[3]);
-    const Eight g0 = all_eight(g[0]), g1 = all_eight(g[1]), g2 = all_eight(g[2]), g3 = all_eight(g[3]);
-    for (std::size_t j = from; j < stride; j += 8) {
-      const Eight t0 = load_eight(t + j), t1 = load_eight(t + stride + j), t2 = load_eight(t + 2 * stride + j),
-                  t3 = load_eight(t + 3 * stride + j);
-      store_eight(a + j, (((load_eight(a + j) - f0 * t0) - f1 * t1) - f2 * t2) - f3 * t3);
-      store_eight(b + j, (((load_eight(b + j) - g0 * t0) - g1 * t1) - g2 * t2) - g3 * t3);
+// A unit matrix in up to four columns and rows from k on. @return how many of them, until a pivot shrinks.
+std::size_t Dense::panel(std::size_t k) noexcept {
+  const std::size_t rows = std::min(kPanel, n_ - k);
+  if (!join<0>(k)) return 0;
+  if (rows < 2 || !join<1>(k)) return 1;
+  if (rows < 3 || !join<2>(k)) return 2;
+  return rows < 4 || !join<3>(k) ? 3 : 4;
+}
+
+// Takes `pivots` rows from k on, a unit matrix in their columns, from all rows under them, beginning with one. What
+// lies left of the columns is not read again.
+void Dense::clear_below(std::size_t k, std::size_t pivots, std::size_t first) noexcept {
+  const std::size_t from = (k + pivots) & ~std::size_t{7};
+  const float* const top = row(k);
+  for (std::size_t i = first; i < n_; ++i) {
+    float* const a = row(i);
+    if (pivots == 2 * kPanel) {
+      take_away<2 * kPanel>(a, a + k, top, from, stride_);
+    } else if (pivots == kPanel) {
+      take_away<kPanel>(a, a + k, top, from, stride_);
+    } else {
+      for (std::size_t p = 0; p < pivots; ++p) take_away<1>(a, a + k + p, top + p * stride_, from, stride_);
     }
   }
-  if (i == n_) return;
-  float* const a = row(i);
-  const Four f = triangle.of(a + k);
-  for (std::size_t p = 0; p < kPanel; ++p) {
-    const Eight factor = all_eight(f[static_cast<int>(p)]);
-    for (std::size_t j = from; j < stride; j += 8)
-      store_eight(a + j, load_eight(a + j) - factor * load_eight(t + p * stride + j));
+}
+
+// Eight columns from k on, as two panels. @return how many were cleared.
+std::size_t Dense::two_panels(std::size_t k) noexcept {
+  const std::size_t l = k + kPanel, end = l + kPanel;
+  for (std::size_t i = l; i < end; ++i) take_away<kPanel>(row(i), row(i) + k, row(k), l & ~std::size_t{7}, stride_);
+  const std::size_t pivots = panel(l);
+  if (pivots < kPanel) {
+    clear_below(k, kPanel, end);
+    clear_below(l, pivots, l + pivots);
+    return kPanel + pivots;
   }
+  for (std::size_t i = k; i < l; ++i) take_away<kPanel>(row(i), row(i) + l, row(l), l & ~std::size_t{7}, stride_);
+  clear_below(k, 2 * kPanel, end);
+  return 2 * kPanel;
 }
 
 void Dense::substitute() noexcept {
-  std::fill(x_.begin(), x_.end(), 0.0F);
+  x_.clear();
+  float* const x = x_.data();
   for (std::size_t k = n_; k-- > 0;) {
     const float* const a = row(k);
     Eight sum{};
-    for (std::size_t j = (k + 1) & ~std::size_t{7}; j < n_; j += 8)
-      sum += load_eight(a + j) * load_eight(x_.data() + j);
-    // x_ is zero up to k, so what elimination left there does not count.
+    for (std::size_t j = (k + 1) & ~std::size_t{7}; j < n_; j += 8) sum += load_eight(a + j) * load_eight(x + j);
+    // x is zero up to k, so what elimination left there does not count.
     const float known = ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
-    x_[k] = (a[n_] - known) / a[k];
+    x[k] = a[n_] - known;
   }
 }
 
 bool Dense::solve() noexcept {
+  for (std::size_t i = 0; i < n_; ++i) first_.data()[i] = std::abs(row(i)[i]);
   for (std::size_t k = 0; k < n_;) {
-    if (k + kPanel <= n_ && panel(k)) {
-      clear_below(k);
-      k += kPanel;
-    } else if (!pivot(k++)) {
-      return false;
+    const std::size_t pivots = panel(k);
+    if (pivots == kPanel && k + 2 * kPanel <= n_) {
+      k += two_panels(k);
+      continue;
     }
+    clear_below(k, pivots, k + pivots);
+    k += pivots;
+    if (pivots < kPanel && k < n_ && !pivot(k++)) return false;
   }
   substitute();
   return true;

@@ -2,13 +2,14 @@
 // A small dense system of equations in single precision.
 
 #include <cstddef>
-#include <vector>
+
+#include "firmware/physics/rod/floats.hpp"
 
 namespace ligature::physics::rod {
 
-/// M x = b. Elimination clears four columns at a time and exchanges rows only where a pivot has shrunk to 1e-4 of what
-/// it was: nearly all of M is symmetric and positive. O(n^3 / 9) instructions; relative accuracy 1e-6 times the
-/// condition of M.
+/// M x = b. Elimination makes a unit matrix of eight columns and rows at a time, takes them from the rows below, and
+/// exchanges rows only where a pivot has shrunk to 1e-4 of what it was: nearly all of M is symmetric and positive.
+/// O(n^3 / 15) instructions; relative accuracy 1e-6 times the condition of M.
 class Dense {
  public:
   void reserve(std::size_t most);
@@ -21,15 +22,18 @@ class Dense {
 
   /// @return false when M is singular. M is lost.
   [[nodiscard]] bool solve() noexcept;
-  [[nodiscard]] float x(std::size_t i) const noexcept { return x_[i]; }
+  [[nodiscard]] float x(std::size_t i) const noexcept { return x_.data()[i]; }
 
  private:
   [[nodiscard]] bool pivot(std::size_t k) noexcept;
-  [[nodiscard]] bool panel(std::size_t k) noexcept;
-  void clear_below(std::size_t k) noexcept;
+  template <std::size_t Before>
+  [[nodiscard]] bool join(std::size_t k) noexcept;
+  [[nodiscard]] std::size_t panel(std::size_t k) noexcept;
+  [[nodiscard]] std::size_t two_panels(std::size_t k) noexcept;
+  void clear_below(std::size_t k, std::size_t pivots, std::size_t first) noexcept;
   void substitute() noexcept;
 
-  std::vector<float> m_, x_;
+  Floats m_, x_, first_;  // the diagonal before elimination
   std::size_t n_ = 0, stride_ = 8;
 };
 

@@ -9,7 +9,15 @@
 
 namespace ligature::physics::rod {
 
+using Four = float __attribute__((vector_size(16)));
 using Eight = float __attribute__((vector_size(32)));
+
+[[nodiscard]] inline Four load_four(const float* at) noexcept {
+  Four out;
+  std::memcpy(&out, at, sizeof out);
+  return out;
+}
+inline void store_four(float* at, Four value) noexcept { std::memcpy(at, &value, sizeof value); }
 
 [[nodiscard]] inline Eight load_eight(const float* at) noexcept {
   Eight out;

@@ -27,21 +27,24 @@ inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one 
 [[nodiscard]] constexpr long pass(long rows, long loaded, long nodes) noexcept {
   return rows * (100 + 3 * nodes / 2) + loaded * 180 + 130 * nodes;
 }
-/// The inverse of the matrix on a window.
-[[nodiscard]] constexpr long inverse(long nodes) noexcept { return 24 * nodes * nodes + 200 * nodes; }
+/// Keeping the factors of a window, and a column of their inverse.
+[[nodiscard]] constexpr long factors(long nodes) noexcept { return 60 * nodes; }
+[[nodiscard]] constexpr long column(long nodes) noexcept { return 95 * nodes; }
 /// What impulses make of `rows` contacts.
 [[nodiscard]] constexpr long look(long rows) noexcept { return 140 * rows; }
-/// Pairs of contacts that are to be coupled densely.
-[[nodiscard]] constexpr long couple(long pairs) noexcept { return 300 * pairs; }
+/// Contacts that are to be coupled densely on a window of `nodes`, and pairs of them.
+[[nodiscard]] constexpr long couple(long contacts, long pairs, long nodes) noexcept {
+  return contacts * (200 + 12 * nodes) + 90 * pairs;
+}
 /// What impulses make of contacts that are coupled densely.
-[[nodiscard]] constexpr long read(long loaded) noexcept { return 400 * loaded; }
+[[nodiscard]] constexpr long read(long loaded) noexcept { return 200 * loaded; }
 /// The velocities that answer to new impulses of `loaded` contacts.
 [[nodiscard]] constexpr long answer(long loaded, long nodes) noexcept { return 40 * loaded + 100 * nodes; }
 /// A sweep over `loaded` contacts that are coupled densely, and what it makes of them.
-[[nodiscard]] constexpr long dense_sweep(long loaded) noexcept { return loaded * (600 + 3 * loaded); }
+[[nodiscard]] constexpr long dense_sweep(long loaded) noexcept { return loaded * (300 + 2 * loaded); }
 /// One of Newton's steps: `loaded` contacts, `unknowns` impulses.
 [[nodiscard]] constexpr long newton(long loaded, long unknowns) noexcept {
-  return unknowns * (500 + 9 * unknowns + unknowns * unknowns / 9) + 1500 + 800 * loaded;
+  return unknowns * (400 + 8 * unknowns + unknowns * unknowns / 14) + 1500 + 400 * loaded;
 }
 /// The most rows for which `passes` passes can be paid.
 [[nodiscard]] constexpr long affordable_rows(long allowance, long nodes, long passes) noexcept {

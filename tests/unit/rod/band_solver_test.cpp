@@ -7,6 +7,8 @@
 #include <Eigen/Dense>
 #include <random>
 
+#include "firmware/physics/rod/band_columns.hpp"
+
 namespace ligature::physics::rod {
 namespace {
 
@@ -49,24 +51,47 @@ BandSolver random_system(int n, unsigned seed) {
   return s;
 }
 
-TEST(BandSolver, InvertsItsWindow) {
-  for (const int n : {2, 3, 5, 17, 60}) {
+// Whatever has been factorised since.
+TEST(BandColumns, AreThoseOfTheInverse) {
+  BandColumns columns;
+  columns.reserve();
+  for (const int n : {2, 3, 4, 5, 17, 60}) {
     for (int core = 0; core + 1 < n; core += 1 + n / 9) {
       BandSolver s = random_system(n, static_cast<unsigned>(n));
       const Eigen::MatrixXd truth = dense(s, n).a.inverse();
-      const int first = std::max(core - n / 2, 0), last = std::min(core + 1 + n / 3, n - 1), stride = 64;
-      std::vector<Mat> table(static_cast<std::size_t>(64 * 64));
+      const int first = std::max(core - n / 2, 0), last = std::min(core + 1 + n / 3, n - 1);
       s.factor(core);
-      s.invert(first, last, table.data(), static_cast<std::size_t>(stride));
+      columns.take(s, first, last);
+      EXPECT_TRUE(columns.covers(first, last));
+      s = random_system(n, 77);
+      s.factor(n / 3);
+      for (int j = last; j >= first; --j) ASSERT_TRUE(columns.want(j - first));
+      ASSERT_EQ(columns.missing(), last - first + 1);
+      columns.make_missing();
       for (int i = first; i <= last; ++i) {
-        for (int j = i; j <= last; ++j) {
-          const Mat& block = table[static_cast<std::size_t>((i - first) * stride + j - first)];
+        for (int j = first; j <= last; ++j) {
+          const float* const block =
+              columns.column(j - first) + static_cast<std::ptrdiff_t>(BandColumns::kBlock) * (i - first);
           for (int k = 0; k < 9; ++k)
-            ASSERT_NEAR(column(block, k % 3)[k / 3], truth(3 * i + k / 3, 3 * j + k % 3), 1e-13) << n << " " << core;
+            ASSERT_NEAR(static_cast<double>(block[4 * (k / 3) + k % 3]), truth(3 * i + k % 3, 3 * j + k / 3), 1e-8)
+                << n << " " << core << " " << i << " " << j;
         }
       }
     }
   }
+}
+
+TEST(BandColumns, SayWhenThereIsNoRoom) {
+  BandColumns columns;
+  columns.reserve();
+  BandSolver s = random_system(BandColumns::kWidest, 5);
+  s.factor(300);
+  columns.take(s, 0, BandColumns::kWidest - 1);
+  int made = 0;
+  while (made < BandColumns::kWidest && columns.want(made)) ++made;
+  columns.make_missing();
+  EXPECT_EQ(made, static_cast<int>(BandColumns::kRoom) / BandColumns::kWidest);
+  EXPECT_TRUE(columns.want(made - 1));
 }
 
 TEST(BandSolver, AgreesWithADenseSolverForEveryCoreAndWindow) {  // well conditioned: rounding times a hundred

@@ -1,0 +1,61 @@
+#pragma once
+// Columns of the inverse of a factorised matrix, on a window, one at a time: only for nodes that touch something.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "firmware/physics/rod/floats.hpp"
+#include "firmware/physics/rod/vec.hpp"
+
+namespace ligature::physics::rod {
+
+class BandSolver;
+
+/// Z = A^-1 of the moment of take(), however often the solver has been factorised since. A column costs what a solution
+/// of the window with three right-hand sides does, and is kept until the next take(). Real time: no allocation after
+/// reserve().
+class BandColumns {
+ public:
+  static constexpr int kWidest = 640;              ///< nodes of a window
+  static constexpr std::size_t kBlock = 12;        ///< numbers a node: what its x, y and z answer, four each
+  static constexpr std::size_t kRoom = 192 * 256;  ///< blocks of all columns together
+
+  void reserve();
+  void forget() noexcept { last_ = -1, first_ = 0; }
+  [[nodiscard]] bool covers(int first, int last) const noexcept { return first_ <= first && last <= last_; }
+  [[nodiscard]] int first() const noexcept { return first_; }
+  [[nodiscard]] int width() const noexcept { return last_ - first_ + 1; }
+
+  /// @pre last - first < kWidest, the solver's core in between.
+  void take(const BandSolver& solver, int first, int last) noexcept;
+
+  /// Makes room for the column of a node, counted from first(). @return false when there is none.
+  [[nodiscard]] bool want(std::int32_t node) noexcept;
+  [[nodiscard]] int missing() const noexcept { return static_cast<int>(wanted_.size()) - made_; }
+  /// Makes what was wanted.
+  void make_missing() noexcept;
+  /// Z_{q node} of each node q of the window, counted from first(). @pre made.
+  [[nodiscard]] const float* column(std::int32_t node) const noexcept {
+    return columns_.data() + static_cast<std::size_t>(place_[static_cast<std::size_t>(node)]) * stride();
+  }
+  [[nodiscard]] std::size_t stride() const noexcept {
+    return kBlock * ((static_cast<std::size_t>(width()) + 1) & ~std::size_t{1});
+  }
+
+ private:
+  void solve(std::ptrdiff_t node) noexcept;
+
+  int first_ = 0, last_ = -1, made_ = 0;
+  std::ptrdiff_t core_ = 0;         // counted from first_
+  std::vector<Mat> f_, s_inverse_;  // of BandSolver
+  std::vector<Mat> one_, two_;      // what a node takes of those one and two nearer to the core
+  std::vector<double> skip_;        // couples i and i + 2
+  Mat link_f_, core_h_;
+  std::vector<Mat> x_;                // the column that is being made
+  std::vector<std::int32_t> place_;   // of each node's column, or -1
+  std::vector<std::int32_t> wanted_;  // nodes, in the order of their columns
+  Floats columns_;
+};
+
+}  // namespace ligature::physics::rod
