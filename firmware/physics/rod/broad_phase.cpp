@@ -94,6 +94,16 @@ void BroadPhase::keep_impulses(const std::vector<Candidate>& list) noexcept {
   }
 }
 
+void BroadPhase::put_back(const PairList& list) const noexcept {
+  list.pairs.clear();
+  list.groups.clear();
+  for (const auto& k : kept_) {
+    if (k.a < 0) continue;
+    Candidate& pair = list.pairs.emplace_back();
+    pair.a = k.a, pair.b = k.b, pair.impulse = k.impulse, pair.touch = k.touch, pair.stuck = k.stuck;
+  }
+}
+
 void BroadPhase::give_back(Candidate& pair) const noexcept {
   std::size_t at = place_of(pair.a, pair.b);
   while (kept_[at].a >= 0 && (kept_[at].a != pair.a || kept_[at].b != pair.b)) at = (at + 1) % kTable;

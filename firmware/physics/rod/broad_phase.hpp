@@ -69,6 +69,9 @@ class BroadPhase {
   bool build(const State& state, Motion& motion, const Outlook& outlook, long allowance, Work& work,
              const PairList& list) noexcept;
 
+  /// After a build that failed: the kept impulses' pairs and nothing else, so that keep_impulses() finds them again.
+  void put_back(const PairList& list) const noexcept;
+
   /// What a build costs before it has found anything.
   [[nodiscard]] static long least_cost(int nodes) noexcept;
 

@@ -45,6 +45,7 @@ bool Rod::relist(long reserve) noexcept {
     list_cost_ = work_.used() - before;
     return true;
   }
+  broad_.put_back({contacts_.pairs, contacts_.groups});
   return false;
 }
 

@@ -151,5 +151,28 @@ TEST(Growth, ATickOfADrawnThreadCostsTheSamePerNode) {
   }
 }
 
+// Impulses outlive a list for which the work did not do. They did not: a held surgeon's knot lost them all, moved at
+// 10 m/s in that substep and overlapped by 0.8 d.
+TEST(Growth, AListThatCannotBeAffordedKeepsTheImpulses) {
+  std::mt19937 random(5);
+  const State state = walk(300, 1.0, 8.0, 0.0, random);
+  const Outlook outlook{kDiameter, 0.5 * kDiameter, 0.1 * kDiameter, 0.0};
+  Made made = list_of(state, outlook);
+  ASSERT_GT(made.pairs.size(), 100U);
+  for (auto& pair : made.pairs) pair.impulse = make(1.0 + pair.a, 1.0 + pair.b, 0.0);
+  const std::size_t whole = made.pairs.size();
+  BroadPhase broad;
+  broad.reserve(state.nodes(), 1'000'000);
+  const PairList list{made.pairs, made.groups};
+  Work work;
+  for (const long allowance : {BroadPhase::least_cost(state.nodes()), made.spent / 2, 2 * made.spent}) {
+    work.start(2'000'000'000);
+    broad.keep_impulses(made.pairs);
+    if (!broad.build(state, made.motion, outlook, allowance, work, list)) broad.put_back(list);
+  }
+  ASSERT_EQ(made.pairs.size(), whole);
+  for (const auto& pair : made.pairs) EXPECT_EQ(pair.impulse[0], 1.0 + pair.a) << pair.a << ' ' << pair.b;
+}
+
 }  // namespace
 }  // namespace ligature::test
