@@ -187,7 +187,7 @@ void Controller::step_state(const TickInput& in) noexcept {
         state_ = next(state_, Event::kLetGo);
       break;
     case State::kBrake:
-      if (all_zero()) state_ = next(state_, Event::kStopped);
+      if (all_zero() && !any_pushes()) state_ = next(state_, Event::kStopped);
       break;
     case State::kFault:
       break;
@@ -218,6 +218,11 @@ bool Controller::any_full() const noexcept {
 
 bool Controller::all_zero() const noexcept {
   return std::ranges::all_of(hands_, [](const HandControl& h) { return h.gain() == 0.0; });
+}
+
+/// Force goes no faster than its limits let it: it may last longer than the gain.
+bool Controller::any_pushes() const noexcept {
+  return std::ranges::any_of(hands_, [](const HandControl& h) { return !h.state().f_device_N.isZero(0.0); });
 }
 
 std::array<physics::ToolInput, rt::kHands> Controller::tools() const noexcept {

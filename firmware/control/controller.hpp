@@ -75,6 +75,7 @@ class Controller {
   [[nodiscard]] rt::DriveRequest drive_request() const noexcept;
   [[nodiscard]] bool any_full() const noexcept;
   [[nodiscard]] bool all_zero() const noexcept;
+  [[nodiscard]] bool any_pushes() const noexcept;
 
   Settings settings_;
   std::array<HandControl, rt::kHands> hands_;
