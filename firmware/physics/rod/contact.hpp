@@ -159,7 +159,7 @@ class ContactSet {
   void forget_matrix() noexcept { newton_.forget(); }
 
   /// Solves for the window's velocities v with all rows. @pre rows() > 0, the solver's core lies in the window, the
-  /// metric covers it. Turns: segments turn too; begin_turning() was called.
+  /// metric covers it. Turns: segments turn too; turn_with() was called.
   template <bool Friction, bool Turns>
   void settle(BandSolver& solver, const ContactMetric& metric, const Effort& effort, Vec* v,
               ContactReport& report) noexcept;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -131,6 +132,42 @@ TEST(ContactNewton, KnowsWhatItsImpulsesDo) {  // without asking the solver
   const auto truth = jam.velocities();
   for (const auto k : newton.rows())
     EXPECT_LT(norm(u[static_cast<std::size_t>(k)] - truth[static_cast<std::size_t>(k)]), 1e-5);
+}
+
+// From substep to substep contacts come in another order, leave, come back, and move: what was coupled is found again
+// where it has not moved, and coupled anew where it has.
+TEST(ContactNewton, KnowsItsContactsAgain) {
+  Jam jam(4);
+  std::mt19937 random(9);
+  const std::vector<Contact> all = jam.rows;
+  ContactNewton newton;
+  newton.reserve();
+  newton.measure(jam.solver, 0, kNodes - 1);
+  long again = 0;
+  for (int substep = 0; substep < 40; ++substep) {
+    jam.rows = all;
+    std::shuffle(jam.rows.begin(), jam.rows.end(), random);
+    jam.rows.resize(4 + random() % (all.size() - 3));
+    for (auto& c : jam.rows) {
+      if (random() % 3 == 0) c.w[0] = -0.1 * static_cast<double>(1 + random() % 8), c.w[1] = -1.0 - c.w[0];
+    }
+    const int count = static_cast<int>(jam.rows.size());
+    std::vector<Vec> p(jam.rows.size());
+    auto u = jam.velocities();
+    newton.start(jam.rows.data(), count);
+    ASSERT_TRUE(newton.look(jam.rows.data(), count, p.data(), u.data()));
+    again += newton.loaded() - newton.uncoupled().contacts;
+    newton.couple();
+    for (int k = 0; k < 2; ++k) {
+      (void)newton.read<true>(jam.rows.data(), p.data(), u.data());
+      ASSERT_TRUE(newton.solve<true>(jam.rows.data(), p.data(), u.data()));
+    }
+    for (std::size_t k = 0; k < p.size(); ++k) jam.rows[k].p.v = p[k].v;
+    const auto truth = jam.velocities();
+    for (const auto k : newton.rows())
+      ASSERT_LT(norm(u[static_cast<std::size_t>(k)] - truth[static_cast<std::size_t>(k)]), 1e-4) << substep << ' ' << k;
+  }
+  EXPECT_GT(again, 50);
 }
 
 TEST(ContactNewton, PutsOffAndResumes) {
