@@ -224,6 +224,7 @@ Rod::HandSpeed Rod::set_hands(const std::array<Vec, kMaxHolds>& goals, std::arra
 
 void Rod::begin_tick(const HandSpeed& hands) noexcept {
   constexpr double kTired = 0.9, kRested = 0.25, kThrown_m_per_s = 10.0;
+  constexpr int kFewest = 10;  // substeps of a thread that labours: with six it errs and overlaps, and labours more
   labours_ = solves_directly() &&
              static_cast<double>(report_.work) >
                  (labours_ ? kRested : kTired) * static_cast<double>(numerics_.budget(state_.nodes(), 0.0));
@@ -247,7 +248,7 @@ void Rod::begin_tick(const HandSpeed& hands) noexcept {
   report_.substeps = letting_go_  ? std::max(numerics_.max_substeps, 3 * numerics_.substeps / 2)
                      : fast       ? numerics_.max_substeps
                      : waits_ > 0 ? substeps_before
-                     : labours_   ? std::max(1, 5 * numerics_.substeps / 8)
+                     : labours_   ? std::min(numerics_.substeps, std::max(kFewest, 5 * numerics_.substeps / 8))
                                   : numerics_.substeps;
   if (parts_.contact || parts_.world) {  // velocities and bodies may have been changed from outside
     motion_.measure(state_.v.data());
