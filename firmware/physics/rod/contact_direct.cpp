@@ -33,6 +33,7 @@ template <bool Friction>
 Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
   constexpr int kMostLooks = 12, kMostSteps = 48, kStale = 3;
   constexpr double kOld = 10.0;  // what an old matrix may leave over
+  constexpr double kUnknown = 1e300;
   const long nodes = window_last_ - window_first_ + 1, looking = price::look(rows_);
   const double settled = kNear * effort.settled_m_per_s, settled2 = settled * settled;
   const double enough2 = square_of_enough(effort);
@@ -57,8 +58,8 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
     newton_.put_off(p);
     return Outcome::kLater;
   };
-  double last2 = 1.0;  // error when last looked at, with the true A
-  start_error2_ = 1e300;
+  double last2 = kUnknown;  // error of today's impulses, with the true A
+  start_error2_ = kUnknown;
   const bool resumed = newton_.resume(p);
   if (resumed) answer();
   for (int look = 0; look < kMostLooks; ++look) {
@@ -97,8 +98,10 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
                                                : price::newton(newton_.loaded(), newton_.unknowns());
       const bool gone = report.work + cost + price::answer(newton_.loaded(), nodes) + looking > effort.work;
       if (gone || (largest2 < enough2 && report.work + cost > effort.fair)) {
-        if (largest2 < enough2 && step > 0) answer();
-        return stop(largest2);
+        if (step == 0) return stop(largest2);
+        const long checking = price::answer(newton_.loaded(), nodes) + looking + price::read(newton_.loaded());
+        if (largest2 < enough2 && report.work + checking <= effort.work) break;  // if the true A says so too
+        return stop(kUnknown);
       }
       report.work += cost;
       if (look == 0 && step == 0) {
@@ -109,6 +112,7 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
       if (!newton_.solve<Friction>(rows, p, u)) return Outcome::kNoRoom;
     }
     answer();
+    last2 = kUnknown;
   }
   return stop(last2);
 }

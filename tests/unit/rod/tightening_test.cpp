@@ -157,25 +157,25 @@ TEST(Hold, OfTwoThrowsLosesHardlyAnyTime) {
   }
 }
 
-// At rest what was settled is so again, with half the work too: 65 % lost when every substep had to afford a matrix
-// that was known, 45 % when a start that was good enough was given up for steps that found no better, 6 % when a fair
-// share of the work left nothing for the rows of the substeps to come.
+// At rest what was settled is so again, with half the work too. Lost in the mean of three, 0.02 as it is: 0.04 when
+// every substep had to afford a matrix that was known, 0.04 when a start that was good enough was given up for steps
+// that found no better, 0.08 when a fair share of the work left nothing for the rows of the substeps to come.
 TEST(Hold, OfTwoThrowsCanDoWithHalfTheWork) {
   Tightening pull({}, "suture-3-0-square.toml");
   for (int k = 0; k < 100; ++k) pull.tick(0.0);
   for (int k = 0; k < 1000 && Tightening::force(pull.sim()) < 5.0; ++k) pull.tick(0.2);
   for (int k = 0; k < 600; ++k) pull.tick(0.0);
+  double lost = 0.0;
   for (const long work : {3'615'000, 2'615'000, 2'115'000}) {
     RodSimulation twin = pull.sim();
     twin.rod().numerics().work = work;
-    double lost = 0.0;
     for (int k = 0; k < 200; ++k) {
       twin.tick(pull.tools());
       if (k >= 50) lost += twin.rod().report().time_lost;
     }
-    EXPECT_LT(lost / 150, 0.03) << work;
-    RecordProperty("lost_" + std::to_string(work), std::to_string(lost / 150));
   }
+  EXPECT_LT(lost / 450, 0.03);
+  RecordProperty("lost", std::to_string(lost / 450));
 }
 
 // `fast` has ten substeps and keeps them when its work runs short. With six a square knot pulled to 5 N had 59, 2
@@ -196,6 +196,49 @@ TEST(Labour, LeavesTenSubsteps) {
     EXPECT_EQ(fewest, 10);
     EXPECT_GT(Tightening::force(pull.sim()), 4.0) << speed;
   }
+}
+
+// How fast contacts that carry load still close, beyond what they may, m/s.
+double lack(const RodSimulation& sim) {
+  const auto& state = sim.rod().state();
+  double worst = 0.0;
+  for (const auto& c : sim.rod().contact_set().contacts()) {
+    if (dot(c.p, c.p) == 0.0) continue;
+    physics::rod::Vec u = -c.surface;
+    for (int j = 0; j < c.count; ++j) u += c.w[j] * state.v[static_cast<std::size_t>(c.node[j])];
+    worst = std::max(worst, c.target - c.soft * dot(c.p, c.n) - dot(u, c.n));
+  }
+  return worst;
+}
+
+// What is moved obeys its contacts in the true matrix, not in the one that Newton's method knew some substeps ago: by
+// that a held square knot was settled to 1 mm/s, and its strands closed by 0.16 m/s, into each other by 0.56 d.
+TEST(Hold, MovesOnlyWhatIsSettledInTheTrueMatrix) {
+  Tightening pull({}, "suture-3-0-square.toml");
+  pull.sim().rod().numerics().work = 3'700'000;
+  auto& tool = pull.tools()[1];
+  for (int k = 0; k < 100; ++k) pull.sim().tick(pull.tools());
+  tool.v_WT.x() = 0.18;
+  for (int k = 0; k < 2000 && Tightening::force(pull.sim()) < 5.0; ++k) {
+    tool.p_WT.x() += 1e-3 * tool.v_WT.x();
+    pull.sim().tick(pull.tools());
+  }
+  tool.v_WT.x() = 0.0;
+  double worst = 0.0, overlap_m = 0.0;
+  int moved = 0;
+  for (int k = 0; k < 1000; ++k) {
+    pull.sim().tick(pull.tools());
+    if (k < 300) continue;
+    overlap_m = std::max(overlap_m, -pull.sim().diagnostics().min_gap_m);
+    if (pull.sim().rod().report().time_lost > 0.0) continue;  // its contacts are those of a substep that waits
+    ++moved;
+    worst = std::max(worst, lack(pull.sim()));
+  }
+  EXPECT_GT(moved, 500);
+  EXPECT_LT(worst, 1.5e-3);
+  EXPECT_LT(overlap_m, 0.1 * 3e-4);
+  RecordProperty("lack_m_per_s", std::to_string(worst));
+  RecordProperty("overlap_d", std::to_string(overlap_m / 3e-4));
 }
 
 }  // namespace
