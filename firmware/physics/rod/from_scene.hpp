@@ -9,7 +9,7 @@
 
 namespace ligature::physics::rod {
 
-/// Settings behind `accuracy` (docs/rod.md states what each costs and errs).
+/// Settings behind `accuracy` (docs/accuracy.md states what each costs and errs).
 [[nodiscard]] Numerics numerics_of(const scene::Scene& scene) noexcept;
 
 /// Parts that the scene asks for and no others.

@@ -26,7 +26,7 @@ struct Material {
   [[nodiscard]] constexpr bool has_shape() const noexcept { return born_curvature_per_m != 0.0 || sets(); }
 };
 
-/// How a tick is cut and how hard contacts are solved. Every field is a trade of time for accuracy (docs/rod.md).
+/// How a tick is cut and how hard contacts are solved. Every field is a trade of time for accuracy (docs/rod-contact.md).
 struct Numerics {
   double tick_s = 1e-3;
   int substeps = 16;      ///< of a tick,

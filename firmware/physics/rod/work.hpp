@@ -5,7 +5,7 @@
 
 namespace ligature::physics::rod {
 
-/// Prices in instructions of the x86-64-v3 build, rounded up; docs/rod.md says how they were counted. What a substep
+/// Prices in instructions of the x86-64-v3 build, rounded up; docs/accuracy.md says how they were counted. What a substep
 /// costs without contact (forces, matrix, one solution) is linear in the nodes and not on the meter.
 namespace price {
 inline constexpr long kCheck = 45;           ///< a listed pair, or a group of them, in a substep: can it meet?

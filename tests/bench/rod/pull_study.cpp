@@ -18,12 +18,13 @@ using physics::rod::RodSimulation;
 namespace {
 
 constexpr const char* kFooter = R"(
-Pulls: two hands and one at 0.05, 0.2, 0.5 and 1 m/s to 1, 5 and 10 N, let go gently and suddenly (48); with SPEED and FORCE
-the four of them; with SUDDEN (0, 1) and HANDS (1, 2) one. A line says: the knot 5 s after the release and whether it is
-the one of the start; guard events; worst penetration, diameters, in the pull, the hold and after; strain against T / EA;
-largest turn a node and longest segment in contact, in the hold; chatter of the force in the hold and while sliding;
-share of the time in which the thread stood still for want of work, in the pull, the hold (and before it) and after;
-CPU time of the thread a tick, us, and work on contact, thousand instructions: median, p99, worst.
+Pulls: two hands and one at 0.05, 0.2, 0.5 and 1 m/s to 1, 5 and 10 N, let go gently and suddenly (48); with SPEED and
+FORCE the four of them; with SUDDEN (0, 1) and HANDS (1, 2) one, after which keys of the scene may stand. A line says:
+the knot 5 s after the release and whether it is the one of the start; guard events; worst penetration, diameters, in
+the pull, the hold and after; strain against T / EA; largest turn a node and longest segment in contact, in the hold;
+chatter of the force in the hold and while sliding; share of the time in which the thread stood still for want of work,
+in the pull, the hold (and before it) and after; CPU time of the thread a tick, us, and work on contact, thousand
+instructions: median, p99, worst.
 
 --repeat N runs each pull N times. The rod is deterministic: every tick must do the same work and end with the same
 nodes and forces, bit by bit, else the study fails. "least of N" is made of each tick's fastest run: what the tick
@@ -38,7 +39,7 @@ struct Arguments {
   std::string scene;
   double speed = 0.0, force = 0.0;
   int sudden = 0, hands = 0, repeat = 1;
-  std::vector<std::string> overrides;
+  std::vector<std::string> overrides, set;
   std::string ticks;
   PullOptions pull;
 };
@@ -118,6 +119,8 @@ int main(int argc, char** argv) {
   auto* const hands = app.add_option("HANDS", a.hands, "that pull")->needs(sudden)->check(CLI::Range(1, 2));
   sudden->needs(hands);
   app.add_option("KEY=VALUE", a.overrides, "keys of the scene file");
+  app.add_option("--set", a.set, "KEY=VALUE, the same anywhere on the line; once for each key")
+      ->allow_extra_args(false);
   app.add_option("--repeat", a.repeat, "runs of each pull")->check(CLI::Range(1, 1000));
   app.add_option("--ticks", a.ticks, "CSV of every tick of every run: time, work, and what disturbed it");
   app.add_option("--hold", a.pull.hold_s, "s")->envname("HOLD_S");
@@ -130,6 +133,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  a.overrides.insert(a.overrides.end(), a.set.begin(), a.set.end());
   auto read = scene::load_scene(a.scene, a.overrides);
   if (auto* error = std::get_if<scene::Error>(&read)) return std::fprintf(stderr, "%s\n", error->text.c_str()), 2;
   std::ofstream ticks;

@@ -37,7 +37,7 @@ TEST(Chatter, IsNotThePull) {
 // All of a pull at 1 m/s to 1 N: what it reads for a smooth one is far below what is measured.
 TEST(Chatter, IsNotAPullOfFourteenTicks) { EXPECT_LT(chatter(pull(14, 0.0, 1.0), 0.04).share(), 2e-3); }
 
-// So what a mesh adds to the ringing of the thread itself can be told from the two (docs/rod.md).
+// So what a mesh adds to the ringing of the thread itself can be told from the two (docs/rod-knots.md).
 TEST(Chatter, AddsCausesAsSquares) {
   const auto one = pull(250, 3e-3, 5.3), other = pull(250, 4e-3, 3.7), smooth = pull(250, 0.0, 1.0);
   auto both = one;

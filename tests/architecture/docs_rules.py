@@ -1,0 +1,147 @@
+"""What the documentation names must exist: links, tests, files, identifiers, scene keys, options, pages named in code.
+
+Run: python3 tests/architecture/docs_rules.py [ROOT]; exit 1 and one line per fault. Lines of prose on the pages of docs/
+and in README.md are at most 120 characters long (tables, code and links may be longer).
+"""
+
+import functools
+import pathlib
+import re
+import sys
+
+WIDEST, WRAPPED = 120, re.compile(r"README\.md|docs/(?!fault-matrix)")  # fault matrices are printed by tests
+SOURCES = {".cpp", ".hpp", ".h", ".py", ".js", ".mjs", ".css", ".html", ".toml", ".lcm", ".cmake", ".txt", ".csv", ".json", ".md", ".in", ""}
+SKIPPED = {"build", "out", ".git", "node_modules", "__pycache__"}
+# Made when a program runs or the tree is built, or part of another machine: named by pages, not in the tree.
+MADE = re.compile(
+    r"^(build|BUILD|out|share|usr|var|proc|dev|sys)/|^/|[A-Z]{3}|\b(a|b|t|knot|golden)\.\w+$"
+    r"|^\.\w+$|^scene-N|^haptics-|^(trace|shape|forces|ticks|events|summary|report|knot|columns|start|held|end)\.(csv|json|png|lcmlog)$|^[\w-]+\.(rec|lcmlog|mcap|h5|deb|conf|eds|dbc|service)$"
+)
+FILE = re.compile(r"^(?:[\w.-]+/)*[\w.*-]*\.(?:cpp|hpp|py|mjs|js|toml|csv|md|json|lcm|css|html|\*)$|^(?:\w[\w.-]*/)+[\w.*-]*$")
+TEST = re.compile(r"^[A-Z]\w+\.(?:[A-Z]\w*(?:\.{2,3})?|\*)$")
+MEMBER = re.compile(r"^\w+::(\w+)(?:\(\))?$")
+KEY = re.compile(r"^(?:suture|contact|world|time|hands)\.([a-z]\w*)$", re.A)
+OPTION = re.compile(r"(?<![\w-])(--[a-z][\w-]+)")
+FOREIGN = re.compile(r"^(?:groupadd|cmake|ctest|test_\w+) ")  # programs with options of their own
+DECLARED = re.compile(
+    r"\bTEST(?:_[FP])?\(\s*(\w+),\s*(\w+)"
+    r"|(?:add_test\(NAME|ligature_rig_test\(|ligature_hil_test\(|ligature_browser_test\()\s*([\w.]+)"
+)
+PAGE_IN_CODE = re.compile(r"\bdocs/[\w-]+\.md")
+
+
+class Tree:
+    """The text of every file of ours, and what it declares."""
+
+    def __init__(self, root):
+        self.root = root
+        self.text = {}
+        for path in sorted(root.rglob("*")):
+            inside = path.relative_to(root)
+            if SKIPPED.intersection(inside.parts) or not path.is_file() or path.suffix not in SOURCES:
+                continue
+            self.text[inside.as_posix()] = path.read_text(errors="replace")
+        code = [t for p, t in self.text.items() if not p.endswith((".md", "docs_rules.py"))]
+        self.words = set(re.findall(r"\w+", "\n".join(code)))
+        self.options = set(OPTION.findall("\n".join(code)))
+        self.keys = set(re.findall(r'"([a-z]\w*)"', "\n".join(t for p, t in self.text.items() if p.startswith("protocol/scene/"))))
+        self.tests = set()
+        for text in code:
+            for suite, name, whole in DECLARED.findall(text):
+                self.tests.add(whole or f"{suite}.{name}")
+        self.folders = {parent.as_posix() for p in self.text for parent in pathlib.PurePosixPath(p).parents}
+
+    def has_file(self, name):
+        """A file or folder that ends in this name, with * for any part of its last component."""
+        if name.rstrip("/") in self.folders or any(f.endswith("/" + name.rstrip("/")) for f in self.folders):
+            return True
+        pattern = re.compile("(?:.*/)?" + re.escape(name).replace(r"\*", r"[^/]*") + "$")
+        return any(pattern.match(p) for p in self.text)
+
+    def has_test(self, name):
+        if name.endswith("*") or ".." in name:
+            return any(t.startswith(name.rstrip("*.") if ".." in name else name[:-1]) for t in self.tests)
+        return name in self.tests
+
+    @functools.cache
+    def anchors(self, page):
+        return {anchor_of(m) for m in re.findall(r"^#+\s+(.*)$", self.text[page], re.M)}
+
+
+def anchor_of(heading):
+    """As GitHub makes it: links and marks dropped, lower case, blanks to hyphens."""
+    plain = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading).replace("`", "").strip().lower()
+    return re.sub(r"[^\w\- ]", "", plain).replace(" ", "-")
+
+
+def link_fault(tree, page, target):
+    if re.match(r"[a-z]+:", target):
+        return None
+    name, _, anchor = target.partition("#")
+    there = pathlib.PurePosixPath(page).parent / name if name else pathlib.PurePosixPath(page)
+    if not (tree.root / there).exists():
+        return f"links to {target}, no such file"
+    if anchor and anchor not in tree.anchors(there.as_posix()):
+        return f"links to {target}, no such heading"
+    return None
+
+
+def span_fault(tree, span):
+    """What a span of code says that is not so, or None. Only what looks like a name of ours is judged."""
+    for option in OPTION.findall(span) if not FOREIGN.match(span) else ():
+        if option not in tree.options:
+            return f"no option {option}"
+    if TEST.match(span):
+        return None if tree.has_test(span) else f"no test {span}"
+    if member := MEMBER.match(span):
+        return None if member[1] in tree.words else f"no identifier {member[1]}"
+    if key := KEY.match(span):
+        return None if key[1] in tree.keys else f"no key {span} in scene files"
+    if " " not in span and FILE.match(span) and not MADE.search(span):
+        return None if tree.has_file(span) else f"no file {span}"
+    return None
+
+
+def faults(tree, page, text, narrow=False):
+    """Lines 'page:line: what' of one page."""
+    found, fenced = [], False
+    for number, line in enumerate(text.split("\n"), 1):
+        fenced ^= line.startswith("```")
+        said = [link_fault(tree, page, t) for t in re.findall(r"\]\(([^)\s]+)\)", line)] if not fenced else []
+        said += [span_fault(tree, s) for s in re.findall(r"`([^`]+)`", line)] if not fenced else []
+        prose = not fenced and not line.startswith(("|", "    ", "#", "!["))
+        if narrow and prose and len(line) > WIDEST:
+            said.append(f"{len(line)} characters, prose has {WIDEST} at most")
+        found += [f"{page}:{number}: {s}" for s in said if s]
+    return found
+
+
+def self_check(tree):
+    """The rules must be able to fail."""
+    for bad in (
+        "[a](nowhere.md)", "[a](#no-such-heading)", "`BandSolver.NoSuchTest`", "`NoSuchSuite.*`", "`no_such_file.cpp`",
+        "`firmware/nowhere/`", "`Rod::no_such_member`", "`suture.no_such_key`", "`ligature-lab run --no-such-option`",
+        "word " * 30,
+    ):
+        assert faults(tree, "README.md", bad, narrow=True), bad
+    good = "`BandSolver.*` `rod.hpp` `Rod::tick()` `suture.nodes` `ligature-lab --help` [a](docs/rod.md#limits)"
+    assert not faults(tree, "README.md", good), faults(tree, "README.md", good)
+
+
+def main():
+    tree = Tree(pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve())
+    self_check(tree)
+    found = []
+    for path, text in tree.text.items():
+        if path == "CHANGELOG.md":
+            continue  # says what was
+        if path.endswith(".md"):
+            found += faults(tree, path, text, narrow=bool(WRAPPED.match(path)))
+        elif not path.endswith("docs_rules.py"):
+            found += [f"{path}: names {page}, no such page" for page in PAGE_IN_CODE.findall(text) if page not in tree.text]
+    print("\n".join(found) if found else f"what {sum(p.endswith('.md') for p in tree.text)} pages name exists")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
