@@ -33,10 +33,4 @@ inline V3<double> capped_friction_N_s(double mu_static, double mu_kinetic, doubl
   return (-size * mass_kg / stopping) * slip;
 }
 
-/// Viscous friction: f = -c slip, N; named by the paper beside Coulomb's, without an equation.
-inline V3<double> viscous_friction_N(double c_N_s_per_m, const V3<double>& v_relative,
-                                     const V3<double>& normal) noexcept {
-  return (-c_N_s_per_m) * slip_velocity(v_relative, normal);
-}
-
 }  // namespace ligature::physics

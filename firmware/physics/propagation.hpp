@@ -4,24 +4,9 @@
 
 namespace ligature::physics {
 
-/// Component of the hand's force along a segment, equation (16): f_p = (f_h . e_i) e_i, N. This is the part that a taut
-/// segment passes on.
-inline V3<double> axial_part_N(const V3<double>& f_hand, const V3<double>& e) noexcept { return dot(f_hand, e) * e; }
-
-/// Equation (17) as printed: f_m = (f_h . e_m) e_m with e_m = (e_i x f_h)/|e_i x f_h| x e_i, i.e. the part ACROSS the
-/// segment.
-///   Kept to show that it is wrong: f_h = (3, 0, 4) on e = z gives (3, 0, 0), while a taut thread passes (0, 0, 4); a
-///   pure pull is 0/0 (here: zero). The simulation uses (16), through LengthLimits. ("Equation (5)" in its text should
-///   be (4).)
-inline V3<double> printed_propagation_N(const V3<double>& f_hand, const V3<double>& e) noexcept {
-  const V3<double> n = cross(e, f_hand);
-  const double size = norm(n);
-  if (!(size > 0.0)) return {0.0, 0.0, 0.0};
-  const V3<double> em = (1.0 / size) * cross(n, e);
-  return dot(f_hand, em) * em;
-}
-
-/// Force propagation along the thread, paper section IV, as one solve for both hands.
+/// Force propagation along the thread, paper section IV, as one solve for both hands. What a taut segment passes is the
+/// axial part of the force, equation (16): (f_h . e_i) e_i. Equation (17) as printed passes the part ACROSS the segment
+/// and is not used (docs/physics.md).
 ///   Condition A: a segment strictly inside (l_min, l_max) passes nothing; its spring carries what it can.
 ///   Condition B: a segment on its limit is rigid, so the axial force passes through it: tension at l_max, push at
 ///   l_min. Condition C: two hands are two loads of the same tridiagonal system G M^-1 G^T lambda = violation, not two

@@ -1,37 +1,27 @@
 #pragma once
-// How long every cycle took: mean, deviation and quantiles of all of them in constant memory.
+// How long every cycle took: quantiles of all of them in constant memory.
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 
 namespace ligature::rt {
 
-/// Statistics of durations in nanoseconds. Exact count, minimum, maximum, mean and variance (Welford's recurrence,
-/// which does not cancel), and a histogram with bins of equal relative width for quantiles: within a power of two there
-/// are 32 bins, so a quantile is at most 1/32 too high, never too low. 16 kB; O(1) a sample; no allocation.
+/// Statistics of durations in nanoseconds: exact count and maximum, and a histogram with bins of equal relative width
+/// for quantiles. Within a power of two there are 32 bins, so a quantile is at most 1/32 too high, never too low.
+/// 16 kB; O(1) a sample; no allocation.
 class DurationStatistics {
  public:
   void add(std::int64_t value_ns) noexcept {
     const std::int64_t v = std::max<std::int64_t>(value_ns, 0);
     ++count_;
-    const double step = static_cast<double>(v) - mean_;
-    mean_ += step / static_cast<double>(count_);
-    squares_ += step * (static_cast<double>(v) - mean_);
-    min_ = count_ == 1 ? v : std::min(min_, v);
     max_ = std::max(max_, v);
     ++bins_[bin_of(static_cast<std::uint64_t>(v))];
   }
 
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
-  [[nodiscard]] std::int64_t min_ns() const noexcept { return min_; }
   [[nodiscard]] std::int64_t max_ns() const noexcept { return max_; }
-  [[nodiscard]] double mean_ns() const noexcept { return mean_; }
-  [[nodiscard]] double deviation_ns() const noexcept {
-    return count_ < 2 ? 0.0 : std::sqrt(squares_ / static_cast<double>(count_ - 1));
-  }
 
   /// @param q in 0 .. 1. @return the upper edge of the bin that holds the q-quantile, at most max_ns(); 0 when empty.
   [[nodiscard]] std::int64_t quantile_ns(double q) const noexcept {
@@ -61,8 +51,7 @@ class DurationStatistics {
   }
 
   std::uint64_t count_ = 0;
-  std::int64_t min_ = 0, max_ = 0;
-  double mean_ = 0.0, squares_ = 0.0;
+  std::int64_t max_ = 0;
   std::array<std::uint64_t, kBins> bins_{};
 };
 

@@ -33,7 +33,7 @@ double stretch_energy(const Nodes& s) {
 }
 Forces stretch_damping(const Nodes& s) {
   const auto seg = segment(s, 0);
-  const V pull = damper_tension_N(stretch_rate(seg.u, s.v[0], s.v[1]), 1.0) * seg.u;
+  const V pull = stretch_rate(seg.u, s.v[0], s.v[1]) * seg.u;  // k_d = 1
   return {pull, -pull};
 }
 Bend<double> bend(const Nodes& s, std::size_t i = 0) {
