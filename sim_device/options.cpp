@@ -7,18 +7,15 @@ namespace ligature::sim {
 namespace {
 
 constexpr const char* kAbout =
-    "One simulated haptic hand: three CiA 402 drives on a CAN bus, the mechanics they turn, and a human hand that "
-    "follows a script.\n"
-    "It answers a controller exactly as hardware would: the bus takes its time, encoders count, torque acts one SYNC "
-    "later, and\n"
-    "the drives take torque away by themselves when the controller falls silent.";
+    "One simulated haptic hand: three CiA 402 drives on a CAN bus, the mechanics they turn, and a human hand that\n"
+    "follows a script. It answers a controller as hardware would: the bus takes its time, encoders count, torque acts\n"
+    "one SYNC later, and the drives take torque away by themselves when the controller falls silent.";
 constexpr const char* kExample =
     "Example, with ligature-firmware started the same way on the other end:\n"
     "  ligature-device --hand left --bus local:/tmp/left --scene scenes/paper.toml --operator "
     "scenes/operators/overhand.csv\n"
-    "The script starts when all three drives are enabled for the first time and SYNC runs. The operator holds the "
-    "dead-man\n"
-    "from then until 1 s after the last key. docs/wire.md describes the bus.\n"
+    "The script starts when all three drives are enabled for the first time and SYNC runs. The operator holds the\n"
+    "dead-man from then until 1 s after the last key. docs/wire.md describes the bus.\n"
     "A clenched, trembling hand:  ... --hold clenched --tremor-mm 0.5 --tremor-hz 9\n"
     "Exit: 0 ended (SIGINT, SIGTERM or script), 2 bad usage or input, 3 the run failed.";
 

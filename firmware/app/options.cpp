@@ -11,9 +11,8 @@ namespace ligature::app {
 namespace {
 
 constexpr const char* kAbout =
-    "The controller of the rig: reads both hands over CAN, simulates the thread, gives the hands its force, 1000 "
-    "times\n"
-    "a second, and tells about every period over LCM.";
+    "The controller of the rig: reads both hands over CAN, simulates the thread, gives the hands its force, 1000\n"
+    "times a second, and tells about every period over LCM.";
 
 constexpr const char* kRunHelp = R"(Runs until --duration, SIGINT or SIGTERM; then forces ramp to zero, the drives are
 switched off and a table of the timing is printed. Force needs arming (--arm, or 'ligature-host send arm')
@@ -103,11 +102,12 @@ constexpr const char* kAdmitHelp =
     R"(Lays the thread out in its most expensive shapes (wound up, pressed together until the contact lists are
 full, held by both hands), and takes the worst tick: CPU time with cold caches on the core of the loop. It must stay
 below the budget, and together with the bus's time below the period. 'run' does the same in short before it starts.
+A scene that does not fit is refused with what would: for a rod 'suture.accuracy = "fast"', and the most nodes.
 
 Example:
   ligature-firmware admit --scene scenes/paper.toml --set suture.nodes=200
 
-Exit: 0 the scene fits, 2 bad usage or bad scene, 3 it does not; the largest 'nodes' that would is printed.)";
+Exit: 0 the scene fits, 2 bad usage or bad scene, 3 it does not.)";
 
 constexpr const char* kDoctorHelp =
     R"(One row a check, with the command that mends what is wrong; then the loop's wake-ups without its work. Run it as
@@ -159,6 +159,9 @@ std::variant<Command, Exit> parse(int argc, char** argv) {
   CLI::App app{kAbout, "ligature-firmware"};
   app.set_version_flag("--version", std::string("ligature-firmware ") + LIGATURE_VERSION);
   app.require_subcommand(1);
+  app.footer(
+      "Begin with 'doctor' on a new machine and 'admit' with a new scene. 'ligature-firmware COMMAND --help' explains\n"
+      "each. Exit: 0 done, 2 bad usage or input, 3 the run failed or the machine or scene does not do.");
   add_run(*app.add_subcommand("run", "run the rig"), run);
   add_admit(*app.add_subcommand("admit", "measure whether a scene's worst tick fits into the period"), admit);
   add_doctor(*app.add_subcommand("doctor", "check whether this machine can hold the rate"), doctor);

@@ -35,6 +35,9 @@ int main(int argc, char** argv) {
   CLI::App app(kAbout, "ligature-lab");
   app.set_version_flag("--version", "ligature-lab " LIGATURE_VERSION);
   app.require_subcommand(1);
+  app.footer(
+      "'ligature-lab COMMAND --help' explains each.\n"
+      "Exit: 0 done; 1 a case of 'validate' misses; 2 bad usage or input, nothing written; 3 the run itself failed.");
   add_run_command(app, exit_code);
   add_experiment_commands(app, exit_code);
   add_tie_command(app, exit_code);

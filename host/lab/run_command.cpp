@@ -9,6 +9,7 @@
 #include "host/lab/outcome.hpp"
 #include "host/lab/report.hpp"
 #include "host/lab/run.hpp"
+#include "sim_device/operator/knots.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -100,11 +101,13 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   run->add_option("--grippers", a->grippers, "Operator's script: CSV time,hand,x,y,z,grip")->type_name("FILE");
-  run->add_option("--tie", a->tie, "Instead of a script: an operator that looks at the thread ties this knot")
+  run->add_option("--tie", a->tie,
+                  "Instead of a script: an operator that looks at the thread ties " + sim::knot_names())
       ->type_name("KNOT")
       ->excludes("--grippers");
   run->add_option("--seed", a->seed, "Which operator: pace, start, dwell, tremor")->capture_default_str();
-  run->add_option("--duration", a->duration_s, "Simulated seconds [script's end + 9, or 10]")->type_name("S");
+  run->add_option("--duration", a->duration_s, "Simulated seconds [script's end + 9; 60 with --tie; else 10]")
+      ->type_name("S");
   run->add_option("--out", a->out, "Folder for the three files")->type_name("DIR")->capture_default_str();
   run->add_option("--shape-every", a->shape_every_s, "Seconds between shapes in shape.csv")
       ->type_name("S")

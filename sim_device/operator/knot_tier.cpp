@@ -54,11 +54,7 @@ std::string shortest(double value) {
 std::variant<KnotTier, std::string> KnotTier::make(const scene::Scene& scene, const std::string& name,
                                                    std::uint32_t seed) {
   const auto knot = knot_named(name);
-  if (!knot) {
-    std::string allowed;
-    for (const Knot& k : knots()) allowed += (allowed.empty() ? "" : ", ") + std::string(k.name);
-    return "knot: found \"" + name + "\", allowed " + allowed;
-  }
+  if (!knot) return "knot: found \"" + name + "\", allowed " + knot_names();
   const double least_m = 2.0 * scene.suture.radius_m * knot->least_diameters;
   if (scene.suture.length_m < least_m) {
     return "suture.length_m: found " + shortest(scene.suture.length_m) + ", allowed " + shortest(least_m) +

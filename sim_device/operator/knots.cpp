@@ -78,6 +78,12 @@ Moves hold_down() {
 
 std::span<const Knot> knots() { return kKnots; }
 
+std::string knot_names() {
+  std::string names;
+  for (const Knot& k : kKnots) names += (names.empty() ? "" : ", ") + std::string(k.name);
+  return names;
+}
+
 std::optional<Knot> knot_named(std::string_view name) {
   if (name == "surgeon's" || name == "surgeons") name = "surgeon";
   for (const Knot& k : kKnots)

@@ -28,6 +28,8 @@ struct Knot {
 /// (amphichiral).
 [[nodiscard]] std::span<const Knot> knots();
 [[nodiscard]] std::optional<Knot> knot_named(std::string_view name);
+/// Their names, parted by ", ", for those who ask.
+[[nodiscard]] std::string knot_names();
 
 /// How many of its throws the eye counts in the thread as it hangs; nothing if what it sees is no beginning of it.
 [[nodiscard]] std::optional<std::size_t> throws_seen(const Knot& knot, const Look& look);

@@ -12,6 +12,7 @@
 #include "host/lab/run_files.hpp"
 #include "host/lab/tie/tie_once.hpp"
 #include "sim_device/operator/knot_tier.hpp"
+#include "sim_device/operator/knots.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -139,7 +140,7 @@ int execute(Arguments a) {
 void add_tie_command(CLI::App& app, int& exit_code) {
   auto* tie = app.add_subcommand("tie", "Knots tied by an operator that looks, through the whole chain, and counted");
   auto a = std::make_shared<Arguments>();
-  tie->add_option("knot", a->knots, "Which knots; an unknown one is answered with those there are")->required();
+  tie->add_option("knot", a->knots, "Which of " + sim::knot_names())->required();
   tie->add_option("--models", a->models, "Instead of the scene's own: paper-1,paper-2,...; recordings in DIR/MODEL")
       ->delimiter(',');
   tie->add_option("--scene", a->scene, "Scene file (TOML); its node 0 must be fixed")
