@@ -84,14 +84,20 @@ class Rod {
   /// another number of nodes. No allocation.
   [[nodiscard]] bool continue_from(const Rod& other) noexcept;
 
-  /// Holds node: @return index of the hold. @pre fewer than kMaxHolds.
+  /// Holds a node: rigidly at p, m; rigidly with the unit tangent along `direction` and the roll; or by a hand at
+  /// `tool`, f = K (tool - x) + B (v_tool - v) on the node, implicit, with the roll and (directed) the tangent that it
+  /// has now. @return index of the hold, -1 when kMaxHolds hold already. O(1) but with a direction: O(n), no
+  /// allocation.
   int support(int node, Vec p) noexcept;
   int clamp(int node, Vec p, Vec direction) noexcept;
   int grip(int node, double stiffness_N_per_m, double damping_N_s_per_m, Vec tool, bool holds_roll = true,
            bool directed = false) noexcept;
+  /// Lets go: the next tick may have more substeps for what that throws. @pre an index that one of the above returned.
   void release(int hold) noexcept;
 
-  /// Advances by numerics().tick_s. `goals` are the hold targets at the end of the tick (unmoved holds: their target).
+  /// Advances by numerics().tick_s. `goals` are the hold targets at the end of the tick, m (unmoved holds: their
+  /// target). Without error: what could not be done is in report(). Costs O(n) a substep and at most
+  /// Numerics::budget() instructions on contact; no allocation, no exception.
   void tick(const std::array<Vec, kMaxHolds>& goals) noexcept;
   void tick() noexcept;
 
