@@ -22,14 +22,14 @@ struct Proxy {
 
 /// Device T -- (K_d, B_d) -- proxy P -- (K_t, B_t) -- held node G (the paper, III.A.2: one pair of constants a side).
 /// P has no mass, so both springs carry the same force, and the hand feels what the thread feels, scaled:
-///   K_d (p_T - p) + B_d (v_T - p') + K_t (p_G - p) + B_t (v_G - p') = 0,   p' = (p - p_before) / T   (implicit,
-///   stable) f_device = s (K_d (p - p_T) + B_d (p' - v_T))
+///   K_d (p_T - p) + B_d (v_T - p') + K_t (p_G - p) + B_t (v_G - p') = 0
+///   p' = (p - p_before) / T                                                implicit, so stable
+///   f_device = s (K_d (p - p_T) + B_d (p' - v_T))
 /// Without hands.device_N_per_m the device's side is rigid: P = T, f_device = s (K_t (p_G - p_T) + B_t (v_G - v_T)).
 ///   K_t, B_t  scene, world units, N/m and N s/m; s: force_scale, world newtons to device newtons
-///   K_d, B_d  scene, at the device; in world units they are K_d / (s w), w = workspace_scale. Lengths scale by w,
-///   forces
-///             by s, time not at all, so stiffness and damping scale alike: at the device K_t is s w K_t, B_t is s w
-///             B_t.
+///   K_d, B_d  scene, at the device; in world units K_d / (s w), w = workspace_scale
+/// Lengths scale by w, forces by s, time not at all, so stiffness and damping scale alike: at the device the thread's
+/// side is s w K_t and s w B_t.
 /// O(1), no allocation. Not-a-number in gives `finite` false and zero force.
 class VirtualCoupling {
  public:

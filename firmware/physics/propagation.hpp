@@ -8,9 +8,8 @@ namespace ligature::physics {
 /// axial part of the force, equation (16): (f_h . e_i) e_i. Equation (17) as printed passes the part ACROSS the segment
 /// and is not used (docs/physics.md).
 ///   Condition A: a segment strictly inside (l_min, l_max) passes nothing; its spring carries what it can.
-///   Condition B: a segment on its limit is rigid, so the axial force passes through it: tension at l_max, push at
-///   l_min. Condition C: two hands are two loads of the same tridiagonal system G M^-1 G^T lambda = violation, not two
-///   passes.
+///   Condition B: a segment on its limit is rigid, so the axial force passes through: tension at l_max, push at l_min.
+///   Condition C: two hands are two loads of one tridiagonal system G M^-1 G^T lambda = violation, not two passes.
 /// Lengths are held by Newton on the positions (the system is solved anew with the new directions), so that no segment
 /// is outside its limits by more than kTolerance of rest length after a step, whatever pulls.
 class LengthLimits {

@@ -9,10 +9,10 @@ namespace ligature::physics::rod {
 
 /// Between two places that hold roll the twist is uniform (a twist wave crosses 0.3 m of nylon in 0.4 ms, faster than a
 /// tick), so one angle a span tells all of it [Bergou 2008, quasi-static material frame]:
-///   E = C Theta^2 / 2 L,  M = C Theta / L,  Theta = angle from the transported director of one end to that of the
-///   other,
-/// transported along the centreline by the Bishop (parallel) frame. Theta counts whole turns. A span with a free end
-/// has M = 0. The force on the centreline is -M grad(Theta), from the vertex binormals (assembly.cpp).
+///   E = C Theta^2 / 2 L,   M = C Theta / L,
+/// Theta the angle from the director of one end, transported along the centreline by the Bishop (parallel) frame, to
+/// that of the other; it counts whole turns. A span with a free end has M = 0. The force on the centreline is
+/// -M grad(Theta), from the vertex binormals (assembly.cpp).
 class Twist {
  public:
   /// Starts holding roll at a hold, without changing the twist anywhere.
