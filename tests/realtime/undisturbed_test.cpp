@@ -108,16 +108,29 @@ TEST(Undisturbed, DenormalsAreZeroOnTheLoopsThread) {
   EXPECT_EQ(result, 0.0);
 }
 
-/// A thread at rest for long ends in exact rest or in normal numbers, not in ever smaller ones.
-TEST(Undisturbed, AThreadAtRestHoldsNoDenormal) {
-  std::thread([] {
-    platform::flush_denormals();
-    VirtualRig rig;
-    for (int i = 0; i < 60'000; ++i) rig.thread.tick({});
-    for (const auto& v : rig.thread.velocities_W()) {
-      for (const double x : {v.x(), v.y(), v.z()}) EXPECT_NE(std::fpclassify(x), FP_SUBNORMAL);
+/// How often a velocity is a denormal while a thread that was laid aside, overdamped, comes to rest.
+int denormals_on_the_way_to_rest(bool flushed) {
+  int count = 0;
+  std::thread([&] {
+    if (flushed) platform::flush_denormals();
+    scene::Scene scene = small_scene();
+    scene.suture.paper.air_drag_per_s = 7.0;  // below 10^-308 within 210 s; later with less, and with more
+    VirtualRig rig(scene);
+    const auto hanging = rig.thread.nodes_W();
+    std::vector<physics::Vec3> aside(hanging.begin(), hanging.end());
+    for (std::size_t i = 1; i < aside.size(); ++i) aside[i].x() += 1e-3 * static_cast<double>(i);
+    rig.thread.set_state(aside, {});
+    for (int k = 0; k < 240'000; ++k) {
+      rig.thread.tick({});
+      for (const auto& v : rig.thread.velocities_W()) count += std::fpclassify(v.x()) == FP_SUBNORMAL;
     }
   }).join();
+  return count;
+}
+
+TEST(Undisturbed, AThreadThatComesToRestHoldsNoDenormal) {
+  EXPECT_GT(denormals_on_the_way_to_rest(false), 0) << "there must be some to flush";
+  EXPECT_EQ(denormals_on_the_way_to_rest(true), 0);
 }
 
 }  // namespace
