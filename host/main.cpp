@@ -7,6 +7,7 @@
 
 #include "host/commands.hpp"
 #include "host/console/stop_signal.hpp"
+#include "host/console/unknown_command.hpp"
 #include "host/errors.hpp"
 #include "host/view/commands.hpp"
 
@@ -23,13 +24,6 @@ constexpr const char* kUntold = "standard output cannot be written";
 
 /// Whether all that was printed has gone out; --help and --version use the stream.
 bool is_told() { return std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
-
-/// The parser alone would only say that a command is missing.
-bool has_command(const CLI::App& app, const std::string& word) {
-  for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    if (command->get_name() == word) return true;
-  return false;
-}
 
 }  // namespace
 
@@ -56,11 +50,8 @@ int main(int argc, char** argv) {
       "  ligature-host knot knot.lcmlog\n"
       "'ligature-host COMMAND --help' explains each.\n"
       "Exit code: 0 done, 2 bad usage or bad input, 3 the work itself failed.");
-  if (argc > 1 && argv[1][0] != '-' && !has_command(app, argv[1]))
-    return complain("found command '" + std::string(argv[1]) +
-                        "', allowed record, export, plot, compare, report, knot, send, view, "
-                        "replay",
-                    2);
+  if (const auto unknown = ligature::console::unknown_command(app, argc, argv); !unknown.empty())
+    return complain(unknown, 2);
   ligature::console::catch_stop_signals();
   ligature::console::outlive_closed_pipes();
   try {

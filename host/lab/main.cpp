@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "host/console/stop_signal.hpp"
+#include "host/console/unknown_command.hpp"
 #include "host/lab/experiment_command.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/pareto_command.hpp"
@@ -43,6 +44,10 @@ int main(int argc, char** argv) {
   add_tie_command(app, exit_code);
   add_validate_command(app, exit_code);
   add_pareto_command(app, exit_code);
+  if (const auto unknown = ligature::console::unknown_command(app, argc, argv); !unknown.empty()) {
+    complain(unknown);
+    return kBadInput;
+  }
   try {
     app.parse(argc, argv);
   } catch (const Refusal& refusal) {

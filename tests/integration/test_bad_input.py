@@ -107,6 +107,11 @@ class BadInput(unittest.TestCase):
         self.assertTrue((self.path / "link").is_symlink())
         self.refused(run("ligature-device", "--hand", "left", "--bus", f"local:{self.path}"), "folder")
 
+    def test_words_that_are_no_command_or_knot(self):
+        self.refused(run("ligature-host", "nope"), "nope", "record", "replay")
+        self.refused(run("ligature-lab", "nope"), "nope", "run", "pareto")
+        self.refused(run("ligature-lab", "tie", "nope"), "nope", "overhand", "surgeon")
+
     def test_a_full_standard_output(self):
         for program in ("ligature-host", "ligature-lab", "ligature-firmware", "ligature-device", "ligature-can-describe"):
             with self.subTest(program=program), open("/dev/full", "w") as full:

@@ -78,6 +78,7 @@ struct Cell {
 
 /// @throws Refusal when the scene or the knot in it is refused; before anything runs or is written.
 Cell cell_of(const Arguments& a, const std::string& knot, const std::string& model) {
+  if (!sim::knot_named(knot)) throw Refusal("knot: found \"" + knot + "\", allowed " + sim::knot_names());
   Cell c{knot, model, a.scene, model.empty() ? a.out : a.out + "/" + model, {}};
   if (c.file.empty()) c.file = knot.starts_with("surgeon") ? kLongScene : kScene;
   auto overrides = a.overrides;
