@@ -56,30 +56,50 @@ class Tightening {
   std::array<ToolInput, 2> tools_{};
 };
 
-// Against a twin whose mesh stands still in that tick: 0.5 % of the tension and 3 mN. Without friction, whose stick and
-// slip answers the slightest difference with steps of its own (3 % of 0.1 N, also between twins that do not remesh).
-TEST(FineZone, MovesWithoutAForceStep) {
+// What remeshing does to the force on the hands, against a twin whose mesh stands still in that tick. Without friction,
+// whose stick and slip answers the slightest difference with steps of its own (3 % of 0.1 N, also between twins that do
+// not remesh).
+struct MeshSteps {
+  int remeshes = 0;
+  double beyond_N = -1.0;  ///< the largest less 0.5 % of the tension
+};
+
+MeshSteps steps_of_a_pull(double speed) {
   Tightening pull({"contact.friction=0"});
   auto& numerics = pull.sim().rod().numerics();
   numerics.settled_m_per_s = 1e-6;  // contacts solved so far that what is left is the mesh's doing
   numerics.settled_share = 0.0;
   numerics.max_passes = 200;
   numerics.work = 400'000'000;
-  int remeshes = 0;
-  double worst = 0.0;
-  for (int k = 0; k < 700 && Tightening::force(pull.sim()) < 5.0; ++k) {
-    pull.move(k < 50 ? 0.0 : 0.2);
+  MeshSteps steps;
+  for (int k = 0; k < 50 + 130 / speed && Tightening::force(pull.sim()) < 5.0; ++k) {
+    pull.move(k < 50 ? 0.0 : speed);
     RodSimulation twin = pull.sim();
     twin.rod().hold_mesh(true);
     twin.tick(pull.tools());
     pull.sim().tick(pull.tools());
     const double f = Tightening::force(pull.sim());
     if (f < 0.05 || pull.sim().rod().report().remeshes == 0) continue;
-    ++remeshes;
-    worst = std::max(worst, std::abs(f - Tightening::force(twin)) - 0.005 * f);
+    ++steps.remeshes;
+    steps.beyond_N = std::max(steps.beyond_N, std::abs(f - Tightening::force(twin)) - 0.005 * f);
   }
-  EXPECT_GT(remeshes, 10);
-  EXPECT_LT(worst, 3e-3);
+  return steps;
+}
+
+// 0.5 % of the tension and 3 mN: in a tick strands slide by more than a segment, on the one mesh and on the other.
+TEST(FineZone, MovesWithoutAForceStep) {
+  const MeshSteps steps = steps_of_a_pull(0.2);
+  EXPECT_GT(steps.remeshes, 10);
+  EXPECT_LT(steps.beyond_N, 3e-3);
+}
+
+// Where they slide by a tenth of one it is remeshing alone: 0.5 % of the tension (0.25 mN below that; 0.17 above when a
+// split does not keep the bending moments, 0.55 when not the smooth curve, which the faster pull does not see).
+TEST(FineZone, ItselfHardlyStepsTheForce) {
+  const MeshSteps steps = steps_of_a_pull(0.02);
+  EXPECT_GT(steps.remeshes, 10);
+  EXPECT_LT(steps.beyond_N, 0.0);
+  RecordProperty("beyond_mN", std::to_string(1e3 * steps.beyond_N));
 }
 
 // A slack loop that lies against the tight knot is drawn as finely as the knot: two to four diameters long it was.
