@@ -30,6 +30,7 @@ void BroadPhase::reserve(int nodes, int pairs) {
   for (int level = 0; level < kLevels; ++level) tree_[level].resize((n / kBlock >> level) + 1);
   capacity_ = pairs;
   kept_.assign(kTable, Kept{});
+  held_.reserve(kTable);
 }
 
 // Spheres of segments and of blocks.
@@ -79,15 +80,15 @@ void BroadPhase::grow_tree(std::size_t blocks) noexcept {
 }
 
 void BroadPhase::keep_impulses(const std::vector<Candidate>& list) noexcept {
-  for (auto& k : kept_) k.a = -1;
-  std::size_t held = 0;
+  for (const auto at : held_) kept_[at].a = -1;  // the table is large, what it held is not
+  held_.clear();
   for (const auto& c : list) {
-    if (dot(c.impulse, c.impulse) == 0.0 || held + 1 >= kTable) continue;
+    if (dot(c.impulse, c.impulse) == 0.0 || held_.size() + 1 >= kTable) continue;
     std::size_t at = place_of(c.a, c.b);
     while (kept_[at].a >= 0 && (kept_[at].a != c.a || kept_[at].b != c.b)) at = (at + 1) % kTable;
     if (kept_[at].a < 0) {
       kept_[at] = {c.a, c.b, c.impulse, c.touch, c.stuck};
-      ++held;
+      held_.push_back(static_cast<std::uint32_t>(at));
     } else {
       kept_[at].impulse += c.impulse;  // two, when their segments were merged
     }
@@ -97,8 +98,8 @@ void BroadPhase::keep_impulses(const std::vector<Candidate>& list) noexcept {
 void BroadPhase::put_back(const PairList& list) const noexcept {
   list.pairs.clear();
   list.groups.clear();
-  for (const auto& k : kept_) {
-    if (k.a < 0) continue;
+  for (const auto at : held_) {
+    const Kept& k = kept_[at];
     Candidate& pair = list.pairs.emplace_back();
     pair.a = k.a, pair.b = k.b, pair.impulse = k.impulse, pair.touch = k.touch, pair.stuck = k.stuck;
   }

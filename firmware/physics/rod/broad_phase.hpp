@@ -110,6 +110,7 @@ class BroadPhase {
   std::vector<Ball> blocks_;         // around the segments of a block, as they are
   std::vector<Ball> tree_[kLevels];  // around 2^level blocks, swollen by what each may move
   std::vector<Kept> kept_;           // open addressing, a power of two
+  std::vector<std::uint32_t> held_;  // places in it that are not empty
 };
 
 }  // namespace ligature::physics::rod

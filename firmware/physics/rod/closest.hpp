@@ -1,34 +1,39 @@
 #pragma once
 // Closest points of two line segments.
 
-#include <algorithm>
-
 #include "firmware/physics/rod/vec.hpp"
 
 namespace ligature::physics::rod {
 
-/// Points a0 + s (a1 - a0) and b0 + t (b1 - b0) at the smallest distance; between = second - first.
-struct Closest {
-  double s = 0.0, t = 0.0, distance2 = 0.0;
-  Vec between{};
+/// Points a0 + s (a1 - a0) and b0 + t (b1 - b0) at the smallest distance; between = second - first. Of one pair, or of
+/// four (Vecs, Lanes).
+template <class Vector, class Number>
+struct ClosestOf {
+  Number s{}, t{}, distance2{};
+  Vector between{};
 };
+using Closest = ClosestOf<Vec, double>;
+using FourClosest = ClosestOf<Vecs, Lanes>;
 
-/// Exact for every case, parallel and degenerate included (in parallel overlap one of the minima). About 60 operations.
-[[nodiscard]] inline Closest closest(Vec a0, Vec a1, Vec b0, Vec b1) noexcept {
-  const Vec da = a1 - a0, db = b1 - b0, r = b0 - a0;
-  const double aa = dot(da, da), bb = dot(db, db), ab = dot(da, db), ar = dot(da, r), br = dot(db, r);
-  const double det = aa * bb - ab * ab;
-  const auto clamp01 = [](double q) { return std::clamp(q, 0.0, 1.0); };
+/// Of a0 + s da and a0 + r + t db. Exact for every case, parallel and degenerate included (in parallel overlap one of
+/// the minima). About 60 operations.
+template <class Vector, class Number>
+[[nodiscard]] inline ClosestOf<Vector, Number> closest_along(const Vector& da, const Vector& db,
+                                                             const Vector& r) noexcept {
+  const Number aa = dot(da, da), bb = dot(db, db), ab = dot(da, db), ar = dot(da, r), br = dot(db, r);
+  const Number det = aa * bb - ab * ab, half = Number{} + 0.5, tiny = Number{} + 1e-300;
   // Unconstrained minimum in s, clamped; then the best t for it, clamped; then the best s for that t.
-  double s = det > 1e-9 * aa * bb ? clamp01((ar * bb - br * ab) / det) : 0.5;
-  const double t = clamp01((s * ab - br) / std::max(bb, 1e-300));
-  s = clamp01((t * ab + ar) / std::max(aa, 1e-300));
-  Closest c;
-  c.s = s;
-  c.t = t;
-  c.between = r + t * db - s * da;
+  ClosestOf<Vector, Number> c;
+  c.s = det > 1e-9 * aa * bb ? clamp01((ar * bb - br * ab) / det) : half;
+  c.t = clamp01((c.s * ab - br) / (bb > tiny ? bb : tiny));
+  c.s = clamp01((c.t * ab + ar) / (aa > tiny ? aa : tiny));
+  c.between = r + c.t * db - c.s * da;
   c.distance2 = dot(c.between, c.between);
   return c;
+}
+
+[[nodiscard]] inline Closest closest(Vec a0, Vec a1, Vec b0, Vec b1) noexcept {
+  return closest_along<Vec, double>(a1 - a0, b1 - b0, b0 - a0);
 }
 
 }  // namespace ligature::physics::rod

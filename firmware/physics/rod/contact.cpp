@@ -13,6 +13,9 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   pairs.reserve(24 * n + 1024);
   watched_.reserve(pairs.capacity());
   for (auto* array : {&awake_, &due_}) array->reserve(pairs.capacity());
+  for (auto* array : {&close_, &far_}) array->reserve(pairs.capacity() + 4);
+  measured_.resize(pairs.capacity());
+  corner_.assign(n, Vec{});
   groups.reserve(pairs.capacity());
   floor_impulse.assign(n, Vec{});
   body_impulse.assign(n * static_cast<std::size_t>(bodies), Vec{});

@@ -198,11 +198,19 @@ class ContactSet {
   std::vector<char> floor_stuck, body_stuck;
 
  private:
-  void add(const Contact& contact) noexcept;
+  [[nodiscard]] Contact* add() noexcept;
   [[nodiscard]] bool find_due(const Motion& motion, double dt_s, Work& work) noexcept;
+  /// What is known of a pair that was measured.
+  struct Measured {
+    Vec between;                       ///< from the closest point of the first to that of the second, m
+    double s, t, distance_m, chord_m;  ///< where; how far apart; how far the chords are
+  };
+  template <bool Smooth>
+  void measure(const std::int32_t* places, const State& state) noexcept;
+  void bend(const State& state) noexcept;
   /// @return true when it became a contact.
-  bool measure(Candidate& pair, const State& state, const Motion& motion, double dt_s, double mu,
-               ContactReport& report) noexcept;
+  bool take(Candidate& pair, const Measured& measured, const State& state, const Motion& motion, double dt_s, double mu,
+            ContactReport& report) noexcept;
   void make_columns(const ContactMetric& metric) noexcept;
   void make_column(Contact& c, const ContactMetric& metric, float* column) const noexcept;
   [[nodiscard]] Contact& loaded(std::size_t k) noexcept { return contacts_[static_cast<std::size_t>(loaded_[k])]; }
@@ -234,6 +242,10 @@ class ContactSet {
   std::vector<Contact> contacts_;  // rows first, then what is left out
   std::vector<Watched> watched_;
   std::vector<std::int32_t> awake_, due_;  // groups, and pairs, to look at in this substep
+  std::vector<std::int32_t> close_, far_;  // places in due_: those to measure between smooth curves, and the others
+  std::vector<Measured> measured_;         // like due_
+  std::vector<Vec> corner_;                // of the smooth curve, at the nodes of bent_
+  Span bent_{0, -1};                       // of close pairs
   std::vector<double> gaps_;               // scratch of choose_rows()
   std::vector<float> columns_;             // C^-1 J^T of every row on the window, padded
   SweptVelocities swept_;

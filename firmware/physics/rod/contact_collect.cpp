@@ -1,40 +1,13 @@
-// What touches what, and how near: the geometry half of ContactSet.
+// Contacts with the world, and which of all that was collected are solved.
 
 #include <algorithm>
 
 #include "firmware/physics/rod/closest.hpp"
 #include "firmware/physics/rod/contact.hpp"
-#include "firmware/physics/rod/smooth.hpp"
 
 namespace ligature::physics::rod {
 
 namespace {
-
-constexpr double kClose = 2.0;  // near_m's: what is nearer than that is measured between smooth curves
-
-Contact contact_of(const Candidate& pair, const Closest& c, double distance, double mu) noexcept {
-  Contact contact;
-  contact.node[0] = pair.a, contact.node[1] = pair.a + 1, contact.node[2] = pair.b, contact.node[3] = pair.b + 1;
-  contact.w[0] = c.s - 1.0, contact.w[1] = -c.s, contact.w[2] = 1.0 - c.t, contact.w[3] = c.t;
-  contact.n = distance > 1e-12 ? (1.0 / distance) * c.between : make(0, 0, 1);
-  contact.gap_m = distance - pair.reach_m;
-  contact.reach_m = pair.reach_m;
-  contact.mu = mu;
-  contact.p = pair.impulse;
-  return contact;
-}
-
-/// Closest points become those at which the pair's impulse acts.
-void press(Candidate& pair, const State& state, Closest& c) noexcept {
-  const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-  const Mesh& mesh = state.mesh;
-  const double at_a = mesh.s[a] + c.s * mesh.rest[a], at_b = mesh.s[b] + c.t * mesh.rest[b];
-  if (dot(pair.impulse, pair.impulse) == 0.0) return pair.next.begin(at_a, at_b);
-  pair.next = pair.touch;
-  pair.next.follow(at_a, at_b);
-  c.s = std::clamp((pair.next.a - mesh.s[a]) / mesh.rest[a], 0.0, 1.0);
-  c.t = std::clamp((pair.next.b - mesh.s[b]) / mesh.rest[b], 0.0, 1.0);
-}
 
 /// The less, the more a contact wants to be solved: those that carry load first, then the nearest.
 double urgency(const Contact& c) noexcept { return c.gap_m - (dot(c.p, c.p) > 0.0 ? c.reach_m : 0.0); }
@@ -44,107 +17,15 @@ int highest_node(const Contact& c) noexcept { return std::max(c.node[1], c.node[
 
 }  // namespace
 
-void ContactSet::add(const Contact& contact) noexcept {
-  if (contacts_.size() == contacts_.capacity()) {
-    overflow_ = true;
-    *contact.keep = Vec{};
-    return;
-  }
-  contacts_.push_back(contact);
-  Contact& added = contacts_.back();
-  for (int k = added.count; k < 4; ++k) added.node[k] = added.node[0];  // weight zero
-}
-
-// Groups that may hold a pair that is due, and those pairs, which is paid for here. The other pairs cannot meet, even
-// at twice today's speed. @return false when there is not work enough.
-bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcept {
-  awake_.clear();
-  due_.clear();
-  if (price::kCheck * static_cast<long>(groups.size()) > work.left()) return false;
-  work.spend(price::kCheck * static_cast<long>(groups.size()));
-  long listed = 0;
-  for (std::size_t k = 0; k < groups.size(); ++k) {
-    const PairGroup& g = groups[k];
-    const auto p = static_cast<std::size_t>(g.p), q = static_cast<std::size_t>(g.q);
-    if (g.due - motion.gone_of_blocks(p, q) > 2.0 * dt_s * motion.rate_of_blocks(p, q)) continue;
-    awake_.push_back(static_cast<std::int32_t>(k));
-    listed += g.last - g.first;
-  }
-  if (price::kCheck * listed > work.left()) return false;
-  work.spend(price::kCheck * listed);
-  long close = 0;
-  for (const auto g : awake_) {
-    for (std::int32_t k = groups[static_cast<std::size_t>(g)].first; k < groups[static_cast<std::size_t>(g)].last;
-         ++k) {
-      Candidate& pair = pairs[static_cast<std::size_t>(k)];
-      const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-      if (pair.due - motion.gone(a, b) > pair.near_m + 2.0 * dt_s * motion.rate(a, b)) {
-        pair.impulse = Vec{};
-      } else {
-        due_.push_back(k);
-        close += pair.due - motion.gone(a, b) < kClose * pair.near_m;
-      }
-    }
-  }
-  const long cost = (price::kMeasure + price::kGuard) * static_cast<long>(due_.size()) + price::kSmooth * close;
-  if (cost > work.left()) return false;
-  work.spend(cost);
-  return true;
-}
-
-bool ContactSet::collect_thread(const State& state, const Motion& motion, double dt_s, double mu, Work& work,
-                                ContactReport& report) noexcept {
-  if (!find_due(motion, dt_s, work)) return false;
-  std::size_t next = 0;
-  for (const auto index : awake_) {
-    PairGroup& group = groups[static_cast<std::size_t>(index)];
-    bool touches = false;
-    for (; next < due_.size() && due_[next] < group.last; ++next) {
-      touches |= measure(pairs[static_cast<std::size_t>(due_[next])], state, motion, dt_s, mu, report);
-    }
-    group.due = touches ? PairGroup::kAtOnce : 1e300;
-    for (std::int32_t k = group.first; !touches && k < group.last; ++k) {
-      const Candidate& pair = pairs[static_cast<std::size_t>(k)];
-      group.due = std::min(group.due, pair.due - pair.near_m);
-    }
-  }
-  return true;
-}
-
-bool ContactSet::measure(Candidate& pair, const State& state, const Motion& motion, double dt_s, double mu,
-                         ContactReport& report) noexcept {
-  const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-  Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
-  const double chord = std::sqrt(c.distance2);
-  double distance = chord;
-  if (pair.bulge_m > 0.0 && chord - pair.bulge_m < pair.reach_m + kClose * pair.near_m) {
-    c = closest(SmoothSegment(state, a, pair.reach_m), SmoothSegment(state, b, pair.reach_m), c);
-    distance = std::sqrt(c.distance2);
-  }
-  const double gap = distance - pair.reach_m;
-  pair.due = std::min(distance, chord - pair.bulge_m) - pair.reach_m + motion.gone(a, b);
-  report.min_gap_m = std::min(report.min_gap_m, gap);
-  // Far enough for one substep at today's relative speed (half the bound of above is usually wasted).
-  const Vec u = (1.0 - c.t) * state.v[b] + c.t * state.v[b + 1] - (1.0 - c.s) * state.v[a] - c.s * state.v[a + 1];
-  const bool full = contacts_.size() >= static_cast<std::size_t>(kMaxContacts);
-  if (full || gap > pair.near_m + 2.0 * dt_s * norm(u)) {
-    report.rows_left_out += full;
-    pair.impulse = Vec{};
-    watched_.push_back({pair.a, pair.b, chord});  // has room for every pair
-    return false;
-  }
-  press(pair, state, c);
-  Contact contact = contact_of(pair, c, distance, mu);
-  contact.distance_m = chord;
-  contact.keep = &pair.impulse;
-  contact.pair = &pair;
-  contact.stuck = &pair.stuck;
-  add(contact);
-  return true;
+// A contact to fill in, where it is: they are large. @return nullptr when there is no room.
+Contact* ContactSet::add() noexcept {
+  if (contacts_.size() < contacts_.capacity()) return &contacts_.emplace_back();
+  overflow_ = true;
+  return nullptr;
 }
 
 bool ContactSet::afford_world(int nodes, int bodies, const Work& work) noexcept {
-  const long node = price::kWorldNode + price::kGuard, body = price::kWorldNode + price::kMeasure + price::kGuard;
+  const long node = price::kWorldNode + price::kGuard, body = price::kWorldNode + price::kBody + price::kGuard;
   return (node + body * bodies) * nodes <= work.left();
 }
 
@@ -200,9 +81,14 @@ void ContactSet::collect_floor(const State& state, double floor_m, double radius
       floor_impulse[i] = Vec{};
       continue;
     }
-    Contact contact;
+    Contact* const made = add();
+    if (made == nullptr) {
+      floor_impulse[i] = Vec{};
+      continue;
+    }
+    Contact& contact = *made;
     contact.count = 1;
-    contact.node[0] = static_cast<std::int32_t>(i);
+    for (auto& node : contact.node) node = static_cast<std::int32_t>(i);  // those not in use weigh nothing
     contact.w[0] = 1.0;
     contact.n = make(0, 0, 1);
     contact.gap_m = gap;
@@ -211,7 +97,6 @@ void ContactSet::collect_floor(const State& state, double floor_m, double radius
     contact.p = floor_impulse[i];
     contact.keep = &floor_impulse[i];
     contact.stuck = &floor_stuck[i];
-    add(contact);
     work.spend(price::kGuard);
   }
   work.spend(price::kWorldNode * static_cast<long>(state.x.size()));
@@ -244,9 +129,15 @@ void ContactSet::collect_body(const State& state, const Body& body, int index, d
       keep = Vec{};
       continue;
     }
-    Contact contact;
+    Contact* const made = add();
+    if (made == nullptr) {
+      keep = Vec{};
+      continue;
+    }
+    Contact& contact = *made;
     contact.count = 2;
-    contact.node[0] = static_cast<std::int32_t>(j), contact.node[1] = static_cast<std::int32_t>(j + 1);
+    for (auto& node : contact.node) node = static_cast<std::int32_t>(j);
+    contact.node[1] = static_cast<std::int32_t>(j + 1);
     contact.w[0] = 1.0 - c.t, contact.w[1] = c.t;
     contact.n = distance > 1e-12 ? (1.0 / distance) * c.between : make(0, 0, 1);
     contact.surface = body.velocity;
@@ -256,8 +147,7 @@ void ContactSet::collect_body(const State& state, const Body& body, int index, d
     contact.p = keep;
     contact.keep = &keep;
     contact.stuck = &body_stuck[static_cast<std::size_t>(index) * n + j];
-    add(contact);
-    work.spend(price::kMeasure + price::kGuard);
+    work.spend(price::kBody + price::kGuard);
   }
   work.spend(price::kWorldNode * static_cast<long>(n));
   due = std::min(least, std::sqrt(nearest2) - longest) + travel_m;

@@ -15,36 +15,42 @@ namespace ligature::physics::rod {
 /// the normal of a contact turns smoothly as strands slide; between chords it jumps by the angle of a corner, and the
 /// force with it. When nodes move along the thread the curve stays: k is less rest_corner, and h what cut_before,
 /// cut_after say, which fade (refine.hpp). An impulse still acts on the chord's two nodes, as if at the chord's s.
-struct SmoothSegment {
-  Vec x, e, before, after;   ///< node, chord, k_j and k_{j+1}, m
-  double h_before, h_after;  ///< 1 / h, 1 / h'
+/// Vector, Number: Vec and double, or Vecs and Lanes for four of them.
+template <class Vector, class Number>
+struct SmoothOf {
+  Vector x{}, e{}, before{}, after{};  ///< node, chord, k_j and k_{j+1}, m
+  Number h_before{}, h_after{};        ///< 1 / h, 1 / h'
 
-  /// Of a diameter, the most that is cut off a corner: then chords stay apart where their curves do.
-  static constexpr double kMostCut = 0.35;
-
-  SmoothSegment(const State& state, std::size_t j, double diameter_m) noexcept
-      : x(state.x[j]),
-        e(state.x[j + 1] - state.x[j]),
-        h_before(1.0 / state.cut_before[j]),
-        h_after(1.0 / state.cut_after[j]) {
-    const double most_m = 8.0 * kMostCut * diameter_m;
-    const auto corner = [most_m](Vec k) {
-      const double size2 = dot(k, k);
-      return size2 > most_m * most_m ? most_m / std::sqrt(size2) * k : k;
-    };
-    if (j > 0) before = corner(e - (x - state.x[j - 1]) - state.rest_corner[j]);
-    if (j + 2 < state.x.size()) after = corner((state.x[j + 2] - state.x[j + 1]) - e - state.rest_corner[j + 1]);
-  }
-  [[nodiscard]] Vec at(double s) const noexcept {
-    const double p = near_before(s), q = near_after(s);
+  [[nodiscard]] Vector at(Number s) const noexcept {
+    const Number p = near_before(s), q = near_after(s);
     return x + s * e + (0.125 * p * p) * before + (0.125 * q * q) * after;
   }
   /// dP / ds.
-  [[nodiscard]] Vec along(double s) const noexcept {
+  [[nodiscard]] Vector along(Number s) const noexcept {
     return e - (0.25 * h_before * near_before(s)) * before + (0.25 * h_after * near_after(s)) * after;
   }
-  [[nodiscard]] double near_before(double s) const noexcept { return std::max(0.0, 1.0 - s * h_before); }
-  [[nodiscard]] double near_after(double s) const noexcept { return std::max(0.0, 1.0 - (1.0 - s) * h_after); }
+  [[nodiscard]] Number near_before(Number s) const noexcept { return at_least_0(1.0 - s * h_before); }
+  [[nodiscard]] Number near_after(Number s) const noexcept { return at_least_0(1.0 - (1.0 - s) * h_after); }
+};
+
+struct SmoothSegment : SmoothOf<Vec, double> {
+  /// Of a diameter, the most that is cut off a corner: then chords stay apart where their curves do.
+  static constexpr double kMostCut = 0.35;
+
+  SmoothSegment(const State& state, std::size_t j, double diameter_m) noexcept {
+    x = state.x[j], e = state.x[j + 1] - state.x[j];
+    h_before = 1.0 / state.cut_before[j], h_after = 1.0 / state.cut_after[j];
+    if (j > 0) before = corner(state, j, diameter_m);
+    if (j + 2 < state.x.size()) after = corner(state, j + 1, diameter_m);
+  }
+
+  /// k_i of an inner node i, m: no larger than cuts off kMostCut.
+  [[nodiscard]] static Vec corner(const State& state, std::size_t i, double diameter_m) noexcept {
+    const double most_m = 8.0 * kMostCut * diameter_m;
+    const Vec k = (state.x[i + 1] - state.x[i]) - (state.x[i] - state.x[i - 1]) - state.rest_corner[i];
+    const double size2 = dot(k, k);
+    return size2 > most_m * most_m ? most_m / std::sqrt(size2) * k : k;
+  }
 
   /// How far the curve gets from its chord, m.
   [[nodiscard]] double bulge() const noexcept {
@@ -55,15 +61,17 @@ struct SmoothSegment {
 
 /// Closest points of two smooth segments, from those of their chords on: two steps of Gauss and Newton, which leave out
 /// the curvature. Good to a hundredth of a diameter; after one the normal still jumps by a third of a corner (tests).
-/// About 460 instructions.
-[[nodiscard]] inline Closest closest(const SmoothSegment& a, const SmoothSegment& b, Closest c) noexcept {
-  const auto clamp01 = [](double q) { return std::clamp(q, 0.0, 1.0); };
+/// About 460 instructions, for one pair or for four.
+template <class Vector, class Number>
+[[nodiscard]] inline ClosestOf<Vector, Number> closest(const SmoothOf<Vector, Number>& a,
+                                                       const SmoothOf<Vector, Number>& b,
+                                                       ClosestOf<Vector, Number> c) noexcept {
   for (int k = 0; k < 2; ++k) {
-    const Vec da = a.along(c.s), db = b.along(c.t), r = b.at(c.t) - a.at(c.s);
-    const double aa = dot(da, da), bb = dot(db, db), ab = dot(da, db), ar = dot(da, r), br = dot(db, r);
-    const double det = aa * bb - ab * ab, s = c.s;
-    if (det > 1e-9 * aa * bb) c.s = clamp01(s + (ar * bb - br * ab) / det);
-    const double t = clamp01(c.t + ((c.s - s) * ab - br) / bb);
+    const Vector da = a.along(c.s), db = b.along(c.t), r = b.at(c.t) - a.at(c.s);
+    const Number aa = dot(da, da), bb = dot(db, db), ab = dot(da, db), ar = dot(da, r), br = dot(db, r);
+    const Number det = aa * bb - ab * ab, s = c.s;
+    c.s = det > 1e-9 * aa * bb ? clamp01(s + (ar * bb - br * ab) / det) : s;
+    const Number t = clamp01(c.t + ((c.s - s) * ab - br) / bb);
     c.s = clamp01(s + ((t - c.t) * ab + ar) / aa);
     c.t = t;
   }

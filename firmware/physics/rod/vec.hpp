@@ -45,6 +45,31 @@ inline Vec& operator-=(Vec& a, Vec b) noexcept { return a = a - b; }
   return {__builtin_shufflevector(c, c, 1, 2, 0, 3)};
 }
 
+/// Four vectors, component by component: what is written for Vec and double does four of them with Vecs and Lanes.
+struct Vecs {
+  Lanes x, y, z;
+};
+
+[[nodiscard]] inline Vecs operator+(const Vecs& a, const Vecs& b) noexcept { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+[[nodiscard]] inline Vecs operator-(const Vecs& a, const Vecs& b) noexcept { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+[[nodiscard]] inline Vecs operator*(Lanes s, const Vecs& a) noexcept { return {s * a.x, s * a.y, s * a.z}; }
+[[nodiscard]] inline Lanes dot(const Vecs& a, const Vecs& b) noexcept { return a.x * b.x + a.y * b.y + a.z * b.z; }
+[[nodiscard]] inline Vecs four(Vec a, Vec b, Vec c, Vec d) noexcept {
+  const Lanes ab = __builtin_shufflevector(a.v, b.v, 0, 4, 2, 6), cd = __builtin_shufflevector(c.v, d.v, 0, 4, 2, 6);
+  const Lanes y0 = __builtin_shufflevector(a.v, b.v, 1, 5, 3, 7), y1 = __builtin_shufflevector(c.v, d.v, 1, 5, 3, 7);
+  return {__builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(y0, y1, 0, 1, 4, 5),
+          __builtin_shufflevector(ab, cd, 2, 3, 6, 7)};
+}
+
+/// q, but no less than 0; and no more than 1.
+[[nodiscard]] inline double at_least_0(double q) noexcept { return q > 0.0 ? q : 0.0; }
+[[nodiscard]] inline Lanes at_least_0(Lanes q) noexcept { return q > Lanes{} ? q : Lanes{}; }
+[[nodiscard]] inline double clamp01(double q) noexcept { return at_least_0(q < 1.0 ? q : 1.0); }
+[[nodiscard]] inline Lanes clamp01(Lanes q) noexcept {
+  const Lanes one = Lanes{} + 1.0;
+  return at_least_0(q < one ? q : one);
+}
+
 /// 3 x 3 matrix by columns. Three names and not an array: gcc 12 keeps arrays of registers in memory.
 struct Mat {
   Vec x, y, z;

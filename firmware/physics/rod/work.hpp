@@ -5,15 +5,18 @@
 
 namespace ligature::physics::rod {
 
-/// Prices in instructions of the x86-64-v3 build, rounded up; docs/accuracy.md says how they were counted. What a substep
-/// costs without contact (forces, matrix, one solution) is linear in the nodes and not on the meter.
+/// Prices in instructions of the x86-64-v3 build, rounded up; docs/accuracy.md says how they were counted. What a
+/// substep costs without contact (forces, matrix, one solution) is linear in the nodes and not on the meter.
 namespace price {
 inline constexpr long kCheck = 45;           ///< a listed pair, or a group of them, in a substep: can it meet?
-inline constexpr long kMeasure = 190;        ///< it can: its closest points, and a row to be
-inline constexpr long kSmooth = 500;         ///< near: between smooth curves instead
+inline constexpr long kMeasure = 340;        ///< four that can: their closest points
+inline constexpr long kSmooth = 450;         ///< four that are near: between smooth curves instead
+inline constexpr long kTake = 150;           ///< one that was measured: a row to be
+inline constexpr long kCorner = 20;          ///< and each node from the first of these to the last
 inline constexpr long kGuard = 110;          ///< its part in the guard
 inline constexpr long kGuardListed = 60;     ///< that of a pair that was not measured
 inline constexpr long kWorldNode = 60;       ///< a node against the floor or a body
+inline constexpr long kBody = 190;           ///< and it may touch the body
 inline constexpr long kBall = 60;            ///< broad phase: a block against a sphere of the tree
 inline constexpr long kSphere = 130;         ///< broad phase: a segment against a block of eight
 inline constexpr long kConsider = 75;        ///< broad phase: a pair whose spheres meet

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "firmware/physics/rod/smooth.hpp"
 
@@ -59,6 +60,42 @@ TEST(Smooth, KeepsTheCornersItIsToldToKeep) {
   State state = nodes_on_a_circle(9, 0.6e-3, 0.5);
   state.rest_corner[4] = state.x[5] - 2.0 * state.x[4] + state.x[3];
   EXPECT_LT(norm(SmoothSegment(state, 4, kDiameter_m).at(0.0) - state.x[4]), 1e-12);
+}
+
+// Four pairs at a time are what each is alone: across, side by side, without length, on the corners.
+TEST(Smooth, FourAtATimeAreAsOne) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal(0.0, kDiameter_m);
+  const auto vec = [&] { return make(normal(random), normal(random), normal(random)); };
+  for (int round = 0; round < 200; ++round) {
+    SmoothOf<Vec, double> a[4], b[4];
+    for (int l = 0; l < 4; ++l) {
+      a[l] = {vec(), vec(), 0.3 * vec(), 0.3 * vec(), 2.0, 1.0 + 0.1 * l};
+      b[l] = {vec(), l == 1 ? 1.5 * a[l].e : l == 2 ? Vec{} : vec(), 0.3 * vec(), 0.3 * vec(), 1.0, 2.0};
+    }
+    const auto four_of = [](const auto& s) {
+      const auto each = [&](auto of) { return four(of(s[0]), of(s[1]), of(s[2]), of(s[3])); };
+      return SmoothOf<Vecs, Lanes>{each([](const auto& q) { return q.x; }),
+                                   each([](const auto& q) { return q.e; }),
+                                   each([](const auto& q) { return q.before; }),
+                                   each([](const auto& q) { return q.after; }),
+                                   {s[0].h_before, s[1].h_before, s[2].h_before, s[3].h_before},
+                                   {s[0].h_after, s[1].h_after, s[2].h_after, s[3].h_after}};
+    };
+    const auto fours = four_of(a), others = four_of(b);
+    const FourClosest chords = closest_along<Vecs, Lanes>(fours.e, others.e, others.x - fours.x);
+    const FourClosest curves = closest(fours, others, chords);
+    for (int l = 0; l < 4; ++l) {
+      const Closest chord = closest(a[l].x, a[l].x + a[l].e, b[l].x, b[l].x + b[l].e);
+      EXPECT_NEAR(chords.distance2[l], chord.distance2, 1e-9 * kDiameter_m * kDiameter_m) << round << ' ' << l;
+      EXPECT_NEAR(chords.s[l], chord.s, l == 1 ? 1.0 : 1e-6) << round << ' ' << l;  // side by side any will do
+      if (l == 2) continue;  // a curve without a chord has no tangent in its middle
+      const Closest curve = closest(a[l], b[l], Closest{chords.s[l], chords.t[l], 0.0, Vec{}});
+      EXPECT_NEAR(curves.distance2[l], curve.distance2, 1e-9 * kDiameter_m * kDiameter_m) << round << ' ' << l;
+      EXPECT_NEAR(curves.t[l], curve.t, 1e-6) << round << ' ' << l;
+      EXPECT_NEAR(curves.between.y[l], curve.between[1], 1e-6 * kDiameter_m) << round << ' ' << l;
+    }
+  }
 }
 
 TEST(Smooth, ClosestPointsOfBentStrands) {

@@ -1,0 +1,202 @@
+// How near pairs of the thread's segments are, four at a time, and which of them touch.
+
+#include <algorithm>
+#include <array>
+
+#include "firmware/physics/rod/closest.hpp"
+#include "firmware/physics/rod/contact.hpp"
+#include "firmware/physics/rod/smooth.hpp"
+
+namespace ligature::physics::rod {
+namespace {
+
+constexpr double kClose = 2.0;  // near_m's: what is nearer than that is measured between smooth curves
+
+template <class F>
+[[nodiscard]] Lanes each(F number_of) noexcept {
+  return Lanes{number_of(0), number_of(1), number_of(2), number_of(3)};
+}
+
+[[nodiscard]] Lanes root(Lanes q) noexcept {
+  Lanes out;
+  for (int l = 0; l < 4; ++l) out[l] = std::sqrt(q[l]);
+  return out;
+}
+
+/// Four segments, their nodes gathered.
+struct FourSegments {
+  std::array<std::size_t, 4> j;
+  Vecs x, e;
+
+  FourSegments(const std::array<std::size_t, 4>& segments, const Vec* nodes) noexcept : j(segments) {
+    x = four(nodes[j[0]], nodes[j[1]], nodes[j[2]], nodes[j[3]]);
+    e = four(nodes[j[0] + 1], nodes[j[1] + 1], nodes[j[2] + 1], nodes[j[3] + 1]) - x;
+  }
+  [[nodiscard]] SmoothOf<Vecs, Lanes> smooth(const State& state, const Vec* corner) const noexcept {
+    const Lanes one = Lanes{} + 1.0;
+    return {x,
+            e,
+            four(corner[j[0]], corner[j[1]], corner[j[2]], corner[j[3]]),
+            four(corner[j[0] + 1], corner[j[1] + 1], corner[j[2] + 1], corner[j[3] + 1]),
+            one / each([&](std::size_t l) { return state.cut_before[j[l]]; }),
+            one / each([&](std::size_t l) { return state.cut_after[j[l]]; })};
+  }
+};
+
+/// Closest points become those at which the pair's impulse acts.
+void press(Candidate& pair, const Mesh& mesh, double& s, double& t) noexcept {
+  const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+  const double at_a = mesh.s[a] + s * mesh.rest[a], at_b = mesh.s[b] + t * mesh.rest[b];
+  if (dot(pair.impulse, pair.impulse) == 0.0) return pair.next.begin(at_a, at_b);
+  pair.next = pair.touch;
+  pair.next.follow(at_a, at_b);
+  s = clamp01((pair.next.a - mesh.s[a]) * mesh.inv_rest[a]);
+  t = clamp01((pair.next.b - mesh.s[b]) * mesh.inv_rest[b]);
+}
+
+}  // namespace
+
+// Groups that may hold a pair that is due, and those pairs, which is paid for here. The other pairs cannot meet, even
+// at twice today's speed. @return false when there is not work enough.
+bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcept {
+  awake_.clear();
+  for (auto* list : {&due_, &close_, &far_}) list->clear();
+  bent_ = {1 << 30, -1};
+  if (price::kCheck * static_cast<long>(groups.size()) > work.left()) return false;
+  work.spend(price::kCheck * static_cast<long>(groups.size()));
+  long listed = 0;
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    const PairGroup& g = groups[k];
+    const auto p = static_cast<std::size_t>(g.p), q = static_cast<std::size_t>(g.q);
+    if (g.due - motion.gone_of_blocks(p, q) > 2.0 * dt_s * motion.rate_of_blocks(p, q)) continue;
+    awake_.push_back(static_cast<std::int32_t>(k));
+    listed += g.last - g.first;
+  }
+  if (price::kCheck * listed > work.left()) return false;
+  work.spend(price::kCheck * listed);
+  for (const auto g : awake_) {
+    for (std::int32_t k = groups[static_cast<std::size_t>(g)].first; k < groups[static_cast<std::size_t>(g)].last;
+         ++k) {
+      Candidate& pair = pairs[static_cast<std::size_t>(k)];
+      const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+      const double gap_m = pair.due - motion.gone(a, b);
+      if (gap_m > pair.near_m + 2.0 * dt_s * motion.rate(a, b)) {
+        pair.impulse = Vec{};
+      } else {
+        const bool close = gap_m < kClose * pair.near_m && pair.bulge_m > 0.0;
+        (close ? close_ : far_).push_back(static_cast<std::int32_t>(due_.size()));
+        if (close) bent_ = {std::min(bent_.first, pair.a), std::max(bent_.last, pair.b + 1)};
+        due_.push_back(k);
+      }
+    }
+  }
+  const auto fours = [](const std::vector<std::int32_t>& list) { return static_cast<long>(list.size() + 3) / 4; };
+  const long cost = (price::kTake + price::kGuard) * static_cast<long>(due_.size()) + price::kMeasure * fours(far_) +
+                    (price::kMeasure + price::kSmooth) * fours(close_) +
+                    price::kCorner * std::max(0L, static_cast<long>(bent_.last - bent_.first));
+  if (cost > work.left()) return false;
+  work.spend(cost);
+  return true;
+}
+
+// Of four pairs, those at `places` of due_: closest points, and how near they are.
+template <bool Smooth>
+void ContactSet::measure(const std::int32_t* places, const State& state) noexcept {
+  const auto pair = [&](std::size_t l) -> const Candidate& {
+    return pairs[static_cast<std::size_t>(due_[static_cast<std::size_t>(places[l])])];
+  };
+  const auto segments = [&](std::int32_t Candidate::*end) {
+    return std::array<std::size_t, 4>{static_cast<std::size_t>(pair(0).*end), static_cast<std::size_t>(pair(1).*end),
+                                      static_cast<std::size_t>(pair(2).*end), static_cast<std::size_t>(pair(3).*end)};
+  };
+  const FourSegments a(segments(&Candidate::a), state.x.data()), b(segments(&Candidate::b), state.x.data());
+  FourClosest c = closest_along<Vecs, Lanes>(a.e, b.e, b.x - a.x);
+  const Lanes chord = root(c.distance2);
+  Lanes distance = chord;
+  if constexpr (Smooth) {
+    const Lanes within =
+        each([&](std::size_t l) { return pair(l).reach_m + kClose * pair(l).near_m + pair(l).bulge_m; });
+    const FourClosest curves = closest(a.smooth(state, corner_.data()), b.smooth(state, corner_.data()), c);
+    const auto close = chord < within;
+    c.s = close ? curves.s : c.s, c.t = close ? curves.t : c.t;
+    c.between.x = close ? curves.between.x : c.between.x;
+    c.between.y = close ? curves.between.y : c.between.y;
+    c.between.z = close ? curves.between.z : c.between.z;
+    distance = close ? root(curves.distance2) : chord;
+  }
+  for (int l = 0; l < 4; ++l) {
+    Measured& m = measured_[static_cast<std::size_t>(places[l])];
+    m = {make(c.between.x[l], c.between.y[l], c.between.z[l]), c.s[l], c.t[l], distance[l], chord[l]};
+  }
+}
+
+// Corners of the smooth curve, as far as nodes of close pairs go. All of these touch at the same distance.
+void ContactSet::bend(const State& state) noexcept {
+  if (close_.empty()) return;
+  const double diameter_m = pairs[static_cast<std::size_t>(due_[static_cast<std::size_t>(close_[0])])].reach_m;
+  const std::int32_t first = std::max(bent_.first, 1), last = std::min(bent_.last, state.nodes() - 2);
+  for (std::int32_t i = first; i <= last; ++i)
+    corner_[static_cast<std::size_t>(i)] = SmoothSegment::corner(state, static_cast<std::size_t>(i), diameter_m);
+}
+
+bool ContactSet::collect_thread(const State& state, const Motion& motion, double dt_s, double mu, Work& work,
+                                ContactReport& report) noexcept {
+  if (!find_due(motion, dt_s, work)) return false;
+  bend(state);
+  const auto by_fours = [](std::vector<std::int32_t>& list, auto measure_four) {
+    while (list.size() % 4 != 0) list.push_back(list.back());
+    for (std::size_t k = 0; k < list.size(); k += 4) measure_four(list.data() + k);
+  };
+  by_fours(close_, [&](const std::int32_t* places) { measure<true>(places, state); });
+  by_fours(far_, [&](const std::int32_t* places) { measure<false>(places, state); });
+  std::size_t next = 0;
+  for (const auto index : awake_) {
+    PairGroup& group = groups[static_cast<std::size_t>(index)];
+    bool touches = false;
+    for (; next < due_.size() && due_[next] < group.last; ++next) {
+      touches |= take(pairs[static_cast<std::size_t>(due_[next])], measured_[next], state, motion, dt_s, mu, report);
+    }
+    group.due = touches ? PairGroup::kAtOnce : 1e300;
+    for (std::int32_t k = group.first; !touches && k < group.last; ++k) {
+      const Candidate& pair = pairs[static_cast<std::size_t>(k)];
+      group.due = std::min(group.due, pair.due - pair.near_m);
+    }
+  }
+  return true;
+}
+
+bool ContactSet::take(Candidate& pair, const Measured& m, const State& state, const Motion& motion, double dt_s,
+                      double mu, ContactReport& report) noexcept {
+  const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+  const double gap = m.distance_m - pair.reach_m, spare = gap - pair.near_m;
+  double s = m.s, t = m.t;
+  pair.due = std::min(m.distance_m, m.chord_m - pair.bulge_m) - pair.reach_m + motion.gone(a, b);
+  report.min_gap_m = std::min(report.min_gap_m, gap);
+  // Far enough for one substep at today's relative speed (half the bound of above is usually wasted).
+  const Vec u = (1.0 - t) * state.v[b] + t * state.v[b + 1] - (1.0 - s) * state.v[a] - s * state.v[a + 1];
+  const bool full = contacts_.size() >= static_cast<std::size_t>(kMaxContacts);
+  if (full || (spare > 0.0 && spare * spare > 4.0 * dt_s * dt_s * dot(u, u))) {
+    report.rows_left_out += full;
+    pair.impulse = Vec{};
+    watched_.push_back({pair.a, pair.b, m.chord_m});  // has room for every pair
+    return false;
+  }
+  press(pair, state.mesh, s, t);
+  Contact* const made = add();
+  if (made == nullptr) return pair.impulse = Vec{}, true;  // the guard lets nothing move then
+  Contact& contact = *made;
+  contact.node[0] = pair.a, contact.node[1] = pair.a + 1, contact.node[2] = pair.b, contact.node[3] = pair.b + 1;
+  contact.w[0] = s - 1.0, contact.w[1] = -s, contact.w[2] = 1.0 - t, contact.w[3] = t;
+  contact.n = m.distance_m > 1e-12 ? (1.0 / m.distance_m) * m.between : make(0, 0, 1);
+  contact.gap_m = gap;
+  contact.reach_m = pair.reach_m;
+  contact.mu = mu;
+  contact.p = pair.impulse;
+  contact.distance_m = m.chord_m;
+  contact.keep = &pair.impulse;
+  contact.pair = &pair;
+  contact.stuck = &pair.stuck;
+  return true;
+}
+
+}  // namespace ligature::physics::rod
