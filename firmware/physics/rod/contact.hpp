@@ -181,7 +181,7 @@ class ContactSet {
 
   /// Largest alpha <= 1 with which no measured pair moves by more than 0.9 of its centre distance; 0 when there was no
   /// room to note all that is near.
-  [[nodiscard]] double safe_fraction(const Motion& motion, const Vec* v, double dt_s) const noexcept;
+  [[nodiscard]] double safe_fraction(const Motion& motion, const State& state, double dt_s) const noexcept;
 
   /// After a substep whose contacts did not settle: largest alpha <= 1 with which no row begins to overlap, or overlaps
   /// by hardly more than it did. Else a jam would burst within a few substeps; so it waits.
@@ -189,7 +189,7 @@ class ContactSet {
 
   /// The same for every pair on the list, by the least distance it can have: what it had when last measured, less what
   /// it may have gone since.
-  [[nodiscard]] double safe_fraction_of_pairs(const Motion& motion, const Vec* v, double dt_s) const noexcept;
+  [[nodiscard]] double safe_fraction_of_pairs(const Motion& motion, const State& state, double dt_s) const noexcept;
 
   [[nodiscard]] const std::vector<Contact>& contacts() const noexcept { return contacts_; }
 

@@ -1,7 +1,9 @@
-// The guard: no pair of segments may move, relative to each other, by more than its distance.
+// The guard: no pair of segments may move, relative to each other, by more than its distance, but where it stays on two
+// sides of a plane.
 
 #include <algorithm>
 
+#include "firmware/physics/rod/closest.hpp"
 #include "firmware/physics/rod/contact.hpp"
 
 namespace ligature::physics::rod {
@@ -9,12 +11,13 @@ namespace {
 
 /// Smallest share of a substep's motion that anything seen so far may make.
 struct Share {
-  const Vec* v;
+  const Vec *x, *v;
   double dt_s;
   double least = 1.0;
 
-  void motion(Vec u, double distance) noexcept {
-    const double room = 0.9 * distance, motion2 = dot(u, u) * dt_s * dt_s;
+  void motion(Vec u, double distance) noexcept { faster(dot(u, u), distance); }
+  void faster(double speed2, double distance) noexcept {
+    const double room = 0.9 * distance, motion2 = speed2 * dt_s * dt_s;
     if (motion2 > room * room) least = std::min(least, room / std::sqrt(motion2));
   }
   void fall(double speed, double distance) noexcept {
@@ -24,18 +27,32 @@ struct Share {
   void pair(std::int32_t a, std::int32_t b, double distance, const Motion& m) noexcept {
     const auto p = static_cast<std::size_t>(a), q = static_cast<std::size_t>(b);
     if (m.rate(p, q) * dt_s <= 0.9 * distance) return;
-    motion(v[b] - v[a], distance);  // points in between move no more than the ends
-    motion(v[b + 1] - v[a], distance);
-    motion(v[b] - v[a + 1], distance);
-    motion(v[b + 1] - v[a + 1], distance);
+    // Points in between move no more than the ends.
+    const Lanes ends2 = squares(v[b] - v[a], v[b + 1] - v[a], v[b] - v[a + 1], v[b + 1] - v[a + 1]);
+    const double most2 = std::max(std::max(ends2[0], ends2[1]), std::max(ends2[2], ends2[3]));
+    if (most2 * dt_s * dt_s <= 0.81 * distance * distance || passes_by(a, b)) return;
+    faster(most2, distance);
+  }
+  /// Nodes go straight, and all points of a segment lie between its ends: what is on two sides of a plane before and
+  /// after is so all the time. The plane is across the shortest way; a tenth of that remains, as when a pair moves by
+  /// 0.9 of it.
+  [[nodiscard]] bool passes_by(std::int32_t a, std::int32_t b) const noexcept {
+    const Closest c = closest(x[a], x[a + 1], x[b], x[b + 1]);
+    const auto along = [&](Vec q) { return dot(c.between, q); };
+    const double a1 = along(x[a + 1] - x[a]), b0 = along(x[b] - x[a]), b1 = along(x[b + 1] - x[a]);
+    const double before = std::min(b0, b1) - std::max(0.0, a1);
+    const double after = std::min(b0 + dt_s * along(v[b]), b1 + dt_s * along(v[b + 1])) -
+                         std::max(dt_s * along(v[a]), a1 + dt_s * along(v[a + 1]));
+    return std::min(before, after) > 0.1 * c.distance2;
   }
 };
 
 }  // namespace
 
-double ContactSet::safe_fraction(const Motion& motion, const Vec* v, double dt_s) const noexcept {
+double ContactSet::safe_fraction(const Motion& motion, const State& state, double dt_s) const noexcept {
   if (overflow_) return 0.0;
-  Share share{v, dt_s};
+  const Vec* const v = state.v.data();
+  Share share{state.x.data(), v, dt_s};
   for (const auto& c : contacts_) {
     const double distance = c.count == 4 ? c.distance_m : c.gap_m + c.reach_m;
     if (c.count == 4) {
@@ -50,8 +67,8 @@ double ContactSet::safe_fraction(const Motion& motion, const Vec* v, double dt_s
   return share.least;
 }
 
-double ContactSet::safe_fraction_of_pairs(const Motion& motion, const Vec* v, double dt_s) const noexcept {
-  Share share{v, dt_s};
+double ContactSet::safe_fraction_of_pairs(const Motion& motion, const State& state, double dt_s) const noexcept {
+  Share share{state.x.data(), state.v.data(), dt_s};
   for (const auto& pair : pairs) {
     const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
     share.pair(pair.a, pair.b, std::max(0.0, pair.due - motion.gone(a, b) + pair.reach_m), motion);

@@ -1,6 +1,7 @@
 #include "firmware/physics/rod/motion.hpp"
 
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 namespace ligature::physics::rod {
@@ -41,18 +42,21 @@ void Motion::measure(const Vec* v) noexcept {
   const std::size_t n = speed_.size();
   double *speed = speed_.data(), *link = link_.data(), *drift = drift_.data();
   std::size_t k = 0;
+  Lanes most2{};
   for (; k + 4 < n; k += 4) {
     const Lanes own = squares(v[k], v[k + 1], v[k + 2], v[k + 3]);
     const Lanes apart = squares(v[k + 1] - v[k], v[k + 2] - v[k + 1], v[k + 3] - v[k + 2], v[k + 4] - v[k + 3]);
-    for (std::size_t l = 0; l < 4; ++l) speed[k + l] = own[l], link[k + l] = apart[l];
+    std::memcpy(speed + k, &own, sizeof own);
+    std::memcpy(link + k, &apart, sizeof apart);
+    most2 = own > most2 ? own : most2;
   }
+  double most = std::max(std::max(most2[0], most2[1]), std::max(most2[2], most2[3]));
   for (; k < n; ++k) {
     const Vec apart = k + 1 < n ? v[k + 1] - v[k] : Vec{};
     speed[k] = dot(v[k], v[k]);
     link[k] = dot(apart, apart);
+    most = std::max(most, speed[k]);
   }
-  double most = 0.0;
-  for (std::size_t i = 0; i < n; ++i) most = speed[i] > most ? speed[i] : most;
   fastest_ = std::sqrt(most);
   for (std::size_t i = 0; i + 1 < n; ++i) {
     speed[i] = std::sqrt(speed[i] > speed[i + 1] ? speed[i] : speed[i + 1]);

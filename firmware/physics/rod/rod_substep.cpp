@@ -206,13 +206,13 @@ std::optional<double> Rod::guard_unseen(double dt_s) noexcept {
   const auto without_work = [&](double known) { return can_wait() ? std::nullopt : std::optional(known); };
   if (work_.left() < listed) return without_work(0.0);
   work_.spend(listed);
-  share = std::min(share, contacts_.safe_fraction_of_pairs(motion_, state_.v.data(), dt_s));
+  share = std::min(share, contacts_.safe_fraction_of_pairs(motion_, state_, dt_s));
   const long reserve = price::kGuardListed * static_cast<long>(contacts_.pairs.capacity());
   if (share == 1.0) return share;
   if (work_.left() < reserve + work_.budget() / 4) return without_work(share);
   if (!relist(reserve)) return without_work(0.0);
   work_.spend(price::kGuardListed * static_cast<long>(contacts_.pairs.size()));
-  return std::min(contacts_.safe_fraction_of_pairs(motion_, state_.v.data(), dt_s),
+  return std::min(contacts_.safe_fraction_of_pairs(motion_, state_, dt_s),
                   motion_.share_within(ahead_m, horizon_s_, dt_s));
 }
 
@@ -233,7 +233,7 @@ double Rod::brake(double dt_s) noexcept {
 template <unsigned Bits>
 std::optional<double> Rod::guard(double dt_s) noexcept {
   motion_.measure(state_.v.data());
-  double share = contacts_.safe_fraction(motion_, state_.v.data(), dt_s);
+  double share = contacts_.safe_fraction(motion_, state_, dt_s);
   if constexpr ((Bits & kContact) != 0) {
     const auto unseen = guard_unseen(dt_s);
     if (!unseen) return std::nullopt;
