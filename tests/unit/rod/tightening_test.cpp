@@ -182,25 +182,31 @@ TEST(Hold, OfTwoThrowsLosesHardlyAnyTime) {
   }
 }
 
-// At rest what was settled is so again, with half the work too. Lost in the mean of three, 0.02 as it is: 0.04 when
-// every substep had to afford a matrix that was known, 0.04 when a start that was good enough was given up for steps
-// that found no better, 0.08 when a fair share of the work left nothing for the rows of the substeps to come.
+// At rest what was settled is so again, with half the work too. A single hold is chance (at 0.2 m/s 0.16 is lost with
+// the least work, 0.00-0.01 in the others): the median of five, each the mean of three budgets, is 0.000. It is 0.018
+// when every substep has to afford a matrix that is known, 0.022 when a start that is good enough is given up for steps
+// that find no better. That a fair share of the work must leave something for the rows of the substeps to come (0.08 in
+// one hold once) it no longer shows: rows are cheaper to find.
 TEST(Hold, OfTwoThrowsCanDoWithHalfTheWork) {
-  Tightening pull({}, "suture-3-0-square.toml");
-  for (int k = 0; k < 100; ++k) pull.tick(0.0);
-  for (int k = 0; k < 1000 && Tightening::force(pull.sim()) < 5.0; ++k) pull.tick(0.2);
-  for (int k = 0; k < 600; ++k) pull.tick(0.0);
-  double lost = 0.0;
-  for (const long work : {3'615'000, 2'615'000, 2'115'000}) {
-    RodSimulation twin = pull.sim();
-    twin.rod().numerics().work = work;
-    for (int k = 0; k < 200; ++k) {
-      twin.tick(pull.tools());
-      if (k >= 50) lost += twin.rod().report().time_lost;
+  std::vector<double> lost;
+  for (const double speed : {0.18, 0.19, 0.2, 0.21, 0.22}) {
+    Tightening pull({}, "suture-3-0-square.toml");
+    for (int k = 0; k < 100; ++k) pull.tick(0.0);
+    for (int k = 0; k < 1000 && Tightening::force(pull.sim()) < 5.0; ++k) pull.tick(speed);
+    for (int k = 0; k < 600; ++k) pull.tick(0.0);
+    lost.push_back(0.0);
+    for (const long work : {3'615'000, 2'615'000, 2'115'000}) {
+      RodSimulation twin = pull.sim();
+      twin.rod().numerics().work = work;
+      for (int k = 0; k < 200; ++k) {
+        twin.tick(pull.tools());
+        if (k >= 50) lost.back() += twin.rod().report().time_lost / 450;
+      }
     }
+    RecordProperty("lost_" + std::to_string(speed), std::to_string(lost.back()));
   }
-  EXPECT_LT(lost / 450, 0.03);
-  RecordProperty("lost", std::to_string(lost / 450));
+  std::sort(lost.begin(), lost.end());
+  EXPECT_LT(lost[2], 0.01);
 }
 
 // `fast` has ten substeps and keeps them when its work runs short. With six a square knot pulled to 5 N had 59, 2
