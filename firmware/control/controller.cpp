@@ -124,6 +124,7 @@ Fault Controller::find_hand_fault(const HandControl& hand, const rt::HandReading
   if (reading.buttons_stuck) return Fault::kButtonsStuck;
   if (hand.encoder_fault() != Fault::kNone) return hand.encoder_fault();
   if (!hand.is_finite()) return Fault::kNonFinite;
+  if (hand.overtime_ticks() >= kMostOvertimeTicks) return Fault::kForceStays;
   if (hand.speed_m_per_s() > kVelocityFault * settings_.device.velocity_limit_m_per_s) return Fault::kVelocityLimit;
   return Fault::kNone;
 }
@@ -138,6 +139,7 @@ void Controller::step_state(const TickInput& in) noexcept {
   if (state_ == State::kFault) {
     if (!reset_requested_) return;
     fault_ = Fault::kNone;
+    for (HandControl& h : hands_) h.restart_account();
     state_ = next(state_, Event::kReset);
     return;
   }

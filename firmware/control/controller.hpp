@@ -36,7 +36,10 @@ class Controller {
  public:
   static constexpr int kCalibrationTicks = 50;  ///< of possible poses in a row
   static constexpr int kScaleTicks = 200;       ///< that a change of the force scale takes
-  static constexpr int kPowerDownTicks = 20;    ///< of "power stage off" sent before the run ends
+  /// That a force may take to end in steps once its gain is 0; then all of it goes at once, by a fault. Whoever lets go
+  /// is rid of it 50 ms + this later, whatever the wire loses and the drives do. Without losses 3.3 N need 14.
+  static constexpr int kMostOvertimeTicks = 100;
+  static constexpr int kPowerDownTicks = 20;  ///< of "power stage off" sent before the run ends
 
   Controller(const scene::Hands& hands, const Settings& settings) noexcept;
 

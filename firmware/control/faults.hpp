@@ -15,6 +15,7 @@ enum class Fault : std::int16_t {
   kEncoderFrozen = 22,    ///< a joint stopped dead while the others moved on
   kAxisReversed = 23,     ///< a joint turned back in one period while the others moved on
   kButtonsStuck = 24,     ///< the buttons' own life sign stands still, or a pair of contacts disagrees
+  kForceStays = 25,       ///< a hand's gain is 0 and its force still does not end
   kOverrun = 30,          ///< the loop lost as many periods in a row as the watchdog allows
   kPhysicsDiverged = 40,  ///< the thread's state is not finite
 };
@@ -39,6 +40,8 @@ enum class Fault : std::int16_t {
       return "axis reversed";
     case Fault::kButtonsStuck:
       return "buttons stuck";
+    case Fault::kForceStays:
+      return "force does not end";
     case Fault::kOverrun:
       return "control loop overrun";
     case Fault::kPhysicsDiverged:

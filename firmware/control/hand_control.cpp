@@ -137,6 +137,7 @@ std::array<double, rt::kJoints> HandControl::command(std::int64_t tick) noexcept
     if ((jacobian_.transpose() * paid_N).lpNorm<Eigen::Infinity>() > max_torque_Nm_) limits |= rt::kTorqueLimit;
   }
   if (torque_Nm.isZero(0.0)) paid_N = Vec3::Zero();
+  overtime_ticks_ = gain() > 0.0 || torque_Nm.isZero(0.0) ? 0 : overtime_ticks_ + 1;
   state_.f_device_N = paid_N;
   torque_Nm_ = torque_Nm;
   passivity_.sent(tick, torque_Nm, from_torque_ * torque_Nm);

@@ -60,6 +60,8 @@ class HandControl {
   void observe(const rt::HandReading& reading, const Grasp& grasp, std::int64_t tick, std::int64_t last_tick) noexcept;
   /// The loop stood still while this tick's samples were asked for: they may be of any time since, and tell no speed.
   void doubt_time_of(std::int64_t tick) noexcept { doubtful_tick_ = tick; }
+  /// After a fault; its cause may have been booked, and was no work.
+  void restart_account() noexcept { passivity_.restart(); }
   void hold_clutch(bool held) noexcept { clutch_command_ = held; }
 
   void drop() noexcept {
@@ -93,6 +95,8 @@ class HandControl {
   [[nodiscard]] Fault encoder_fault() const noexcept {
     return move_fault_ != Fault::kNone ? move_fault_ : encoder_fault_;
   }
+  /// Ticks in a row in which force was sent though the gain was 0: it goes back in steps of what may be acting.
+  [[nodiscard]] int overtime_ticks() const noexcept { return overtime_ticks_; }
   [[nodiscard]] bool is_plausible() const noexcept { return linkage_.is_plausible(state_.q_rad); }
   [[nodiscard]] double speed_m_per_s() const noexcept { return v_DT_.norm(); }  ///< of the device's tip
   [[nodiscard]] bool holds() const noexcept { return holds_; }
@@ -143,6 +147,7 @@ class HandControl {
   bool lets_go_ = true, finite_ = true, holds_ = false, clutch_command_ = false;
   std::int64_t sample_tick_ = -1, doubtful_tick_ = -1;
   std::int32_t last_age_ = 0;
+  int overtime_ticks_ = 0;
   EncoderWatch watch_;
   Fault encoder_fault_ = Fault::kNone;
 };

@@ -10,6 +10,7 @@ Passivity::Passivity(const device::Device& d, double period_s, bool active, doub
       reach_m_(d.hand_acceleration_m_per_s2 * period_s * period_s),
       step_N_(d.force_step_N),
       active_(active),
+      credit_J_(credit_J),
       energy_J_(credit_J) {}
 
 void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {

@@ -129,6 +129,13 @@ class Passivity {
   /// Its end: what is left of it goes back.
   void revoke() noexcept;
 
+  /// As at the start. An encoder that jumped has booked work that nobody did, and no hand could ever pay that back.
+  /// @pre no force flows, nor is any under way.
+  void restart() noexcept {
+    energy_J_ = credit_J_;
+    received_J_ = granted_J_ = 0.0;
+  }
+
   /// Off: the account is kept, nothing is held back. @pre no force flows.
   void set_active(bool active) noexcept { active_ = active; }
 
@@ -202,7 +209,7 @@ class Passivity {
 
   double period_s_, reach_m_, step_N_;  // reach: a T^2
   bool active_;
-  double energy_J_, received_J_ = 0.0, granted_J_ = 0.0, dissipated_J_ = 0.0, injected_ = 0.0;
+  double credit_J_, energy_J_, received_J_ = 0.0, granted_J_ = 0.0, dissipated_J_ = 0.0, injected_ = 0.0;
   double count_m_ = 0.0, doubt_m_ = 0.0;  // of step_m_: by counts, by what lies between samples
   bool acts_ = false, stepped_ = false, released_ = false;
   Mat3 tip_N_per_Nm_ = Mat3::Identity();

@@ -263,6 +263,30 @@ TEST(ControllerFaults, EachTakesAllTorqueInTheSameTickAndLatches) {
   }
 }
 
+/// Its drive says that it makes what was asked of it once, whatever is asked now: no step back from that may be sent
+/// without a jump, and without a limit of time force stood for ever.
+TEST(ControllerFaults, AForceThatDoesNotEndIsTakenAtOnce) {
+  for (const bool by_dead_man : {false, true}) {
+    Rig rig;
+    rig.to_force();
+    rig.offset_m = 50.0;
+    rig.ticks(40);
+    const auto asked = rig.tick();
+    ASSERT_GT(rig.controller.hand(0).f_device_N.norm(), 3.0);
+    for (std::size_t j = 0; j < rt::kJoints; ++j) rig.in.reading.hand[0].torque_Nm[j] = asked.hand[0].torque_Nm[j];
+    if (by_dead_man)
+      rig.in.reading.hand[0].dead_man = false;
+    else
+      rig.controller.command(rt::CommandKind::kDisarm);
+    int ticks = 0;
+    for (; ticks < 1000 && rig.controller.fault() == Fault::kNone; ++ticks) rig.tick();
+    EXPECT_EQ(rig.controller.fault(), Fault::kForceStays) << by_dead_man;
+    EXPECT_LE(ticks, Engagement::kFallTicks + Controller::kMostOvertimeTicks + 2);
+    EXPECT_EQ(Rig::largest(rig.tick()), 0.0);
+    EXPECT_EQ(rig.controller.state(), State::kFault);
+  }
+}
+
 TEST(ControllerFaults, OldJointMessagesAreHeldAndThenAFault) {
   Rig rig;
   rig.to_force();
@@ -305,6 +329,26 @@ TEST(ControllerFaults, OnlyAResetLeadsBackAndItArmsNothing) {
   EXPECT_FALSE(rig.controller.armed());
   rig.controller.command(rt::CommandKind::kArm);
   rig.to_force();
+}
+
+/// An encoder jumps and comes back: the work that seems to have been given is booked, what seems to have come is not,
+/// and the hand had no force any more until the program was started again.
+TEST(ControllerFaults, AResetBeginsTheAccountsAnew) {
+  Rig rig;
+  rig.to_force();
+  for (const double jump_rad : {-100.0, 100.0}) {
+    rig.in.reading.hand[0].q_rad[1] += jump_rad;
+    rig.tick();
+  }
+  ASSERT_EQ(rig.controller.fault(), Fault::kVelocityLimit);
+  rig.ticks(50);
+  ASSERT_LT(rig.controller.hand(0).port_energy_J, -0.1);
+  rig.controller.command(rt::CommandKind::kResetFault);
+  rig.tick();
+  EXPECT_DOUBLE_EQ(rig.controller.hand(0).port_energy_J, Rig::scene().energy_credit_J);
+  rig.controller.command(rt::CommandKind::kArm);
+  rig.to_force();
+  EXPECT_GT(rig.controller.hand(0).f_device_N.norm(), 0.1);
 }
 
 TEST(ControllerFaults, AResetWhileTheCauseLastsFaultsAgain) {
