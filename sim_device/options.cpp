@@ -19,6 +19,18 @@ constexpr const char* kExample =
     "A clenched, trembling hand:  ... --hold clenched --tremor-mm 0.5 --tremor-hz 9\n"
     "Exit: 0 ended (SIGINT, SIGTERM or script), 2 bad usage or input, 3 the run failed.";
 
+/// CLI11's own range lets nan pass: no comparison with it is true.
+CLI::Validator within(double low, double high) {
+  return {[=](const std::string& word) {
+            double value = 0.0;
+            const bool good = CLI::detail::lexical_cast(word, value) && value >= low && value <= high;
+            return good ? std::string()
+                        : "found '" + word + "', allowed " + CLI::detail::to_string(low) + " .. " +
+                              CLI::detail::to_string(high);
+          },
+          "FLOAT in [" + CLI::detail::to_string(low) + " - " + CLI::detail::to_string(high) + "]"};
+}
+
 }  // namespace
 
 std::optional<Hand> hand_of(const std::string& hold) {
@@ -63,17 +75,17 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
   app.add_option("--hold", o.hold,
                  "How the hand holds the stylus: loose, light, firm, clenched, none, or a tightness 0 .. 1 [light]")
       ->check(CLI::Validator(known_hold, "HOLD"));
-  app.add_option("--tremor-mm", o.tremor_mm, "Amplitude by which the hand trembles")->check(CLI::Range(0.0, 10.0));
-  app.add_option("--tremor-hz", o.tremor_Hz, "How often")->check(CLI::Range(0.1, 100.0))->capture_default_str();
+  app.add_option("--tremor-mm", o.tremor_mm, "Amplitude by which the hand trembles")->check(within(0.0, 10.0));
+  app.add_option("--tremor-hz", o.tremor_Hz, "How often")->check(within(0.1, 100.0))->capture_default_str();
   app.add_option("--adversary-s", o.adversary_lead_s,
                  "The hand works against the device: it pushes on in the direction of motion, so many seconds ahead")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(within(0.0, 1.0));
   app.add_option("--adversary-mm", o.adversary_reach_mm, "At most so far ahead")
-      ->check(CLI::Range(0.1, 100.0))
+      ->check(within(0.1, 100.0))
       ->capture_default_str();
   app.add_flag("--links-bend", o.links_bend, "Links of the class's stiffness between the encoders and the stylus");
   app.add_option("--gravity-share", o.gravity_share, "Share of the links' weight that nothing compensates")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(within(0.0, 1.0));
   app.add_option("--seed", o.seed, "Of the tremor's phases")->capture_default_str();
   try {
     app.parse(argc, argv);

@@ -64,6 +64,14 @@ class BadInput(unittest.TestCase):
         self.assertEqual(taken.returncode, 3, taken.stderr)
         self.assertIn("bus", taken.stderr)
 
+    def test_numbers_of_the_simulated_hand(self):
+        for option, words in (("--tremor-mm", "0 .. 10"), ("--tremor-hz", "0.1 .. 100"), ("--adversary-s", "0 .. 1"),
+                              ("--adversary-mm", "0.1 .. 100"), ("--gravity-share", "0 .. 1")):
+            for value in ("nan", "inf", "1e308", "-1"):
+                with self.subTest(option=option, value=value):
+                    self.refused(run("ligature-device", "--hand", "left", "--bus", f"local:{self.path}/bus", option, value),
+                                 option, f"found '{value}'", words)
+
     def test_a_missing_scene(self):
         for name, command in self.programs(self.path / "nowhere.toml"):
             with self.subTest(program=name):

@@ -75,6 +75,7 @@ std::optional<std::string> VirtualRig::run(std::int64_t ticks, bool end_when_don
   cycle.end_after(ticks);
   cycle.run();
   take_records();
+  if (unwritten_) std::rethrow_exception(unwritten_);
   if (recording_) recording_->close();
   return std::nullopt;
 }
@@ -106,12 +107,19 @@ void VirtualRig::sleep_until(Nanoseconds at) noexcept {
   }
 }
 
-void VirtualRig::take_records() {
-  for (rt::TickRecord r; outlets->records.pop(r);) {
-    if (recording_) recording_->take(r);
-    records.push_back(r);
+/// Between two ticks, where nothing may be thrown: a disk that refuses ends the run, and run() says so.
+void VirtualRig::take_records() noexcept {
+  try {
+    for (rt::TickRecord r; outlets->records.pop(r);) {
+      records.push_back(r);
+      if (recording_) recording_->take(r);
+    }
+    if (recording_ && outlets->shape.refresh()) recording_->take(outlets->shape.front());
+  } catch (...) {
+    unwritten_ = std::current_exception();
+    recording_.reset();
+    cycle.end_after(0);
   }
-  if (recording_ && outlets->shape.refresh()) recording_->take(outlets->shape.front());
 }
 
 /// What a person would see on the screen and feel in the fingers, and what the hands do about it.

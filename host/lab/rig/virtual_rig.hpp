@@ -8,6 +8,7 @@
 //   rig.records, rig.thread, rig.controller ...          // what came of it
 
 #include <array>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -55,7 +56,7 @@ class VirtualRig {
   void record(const std::string& path);
 
   /// Start-up, so many ticks (or fewer: `end_when_done` ends with the operator), shut-down, recording closed.
-  /// @return why it did not start, or nothing.
+  /// @return why it did not start, or nothing. @throws host::RunFailed when the recording could not be written.
   std::optional<std::string> run(std::int64_t ticks, bool end_when_done = false);
 
   [[nodiscard]] bool is_done() const noexcept;  ///< both operators' hands have let go
@@ -98,12 +99,13 @@ class VirtualRig {
 
  private:
   void sleep_until(Nanoseconds at) noexcept;
-  void take_records();
+  void take_records() noexcept;
   void look_and_act();
   void look_at_drives();
 
   SeeingOperator* seeing_ = nullptr;
   std::unique_ptr<Recording> recording_;
+  std::exception_ptr unwritten_;
   bool end_when_done_ = false;
 };
 

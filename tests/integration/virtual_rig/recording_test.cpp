@@ -1,10 +1,13 @@
 // What the virtual rig writes is what the host's programs read.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <sstream>
 
+#include "host/errors.hpp"
 #include "host/export.hpp"
 #include "host/knot_command.hpp"
 #include "tests/integration/virtual_rig/simulated_rig.hpp"
@@ -71,6 +74,28 @@ TEST(RigRecording, TheHostReadsEveryTickAndNamesTheKnot) {
   host::KnotOptions options;
   options.file = log;
   EXPECT_EQ(host::describe_knot(options).substr(0, 3), "3_1") << host::describe_knot(options);
+}
+
+TEST(RigRecording, AFullDiskEndsTheRunAndIsSaid) {  // it was thrown where nothing may be: the program aborted
+  Drawer drawer;
+  lab::VirtualRig rig({.scene = paper()}, drawer);
+  rig.record(test::temp_folder() + "full.lcmlog");
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit full{300'000, before.rlim_max};  // bytes of any file
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  std::string said = "nothing";
+  try {
+    (void)rig.run(20000, true);
+  } catch (const host::RunFailed& error) {
+    said = error.what();
+  }
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_NE(said.find("full.lcmlog: writing failed"), std::string::npos) << said;
+  EXPECT_LT(rig.records.size(), 3000U) << "it ends there";
+  EXPECT_EQ(rig.controller.state(), control::State::kOff) << "with the drives off";
 }
 
 TEST(RigRecording, TwoRunsWithLostFramesWriteTheSameBytes) {
