@@ -7,11 +7,12 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr int kMargin = 6;     // nodes by which the window may grow before a new matrix is needed
-constexpr double kNear = 3.0;  // an error is at most that, a pass's last change at least
+constexpr int kMargin = 6;      // nodes by which the window may grow before a new matrix is needed
+constexpr double kNear = 3.0;   // an error is at most that, a pass's last change at least
+constexpr double kLoose = 3.0;  // times what is settled: may be left over beyond a fair share of the work
 
 double square_of_enough(const Effort& effort) noexcept {
-  const double enough = kNear * std::max(effort.settled_m_per_s, effort.enough_m_per_s);
+  const double enough = kNear * std::max(kLoose * effort.settled_m_per_s, effort.enough_m_per_s);
   return enough * enough;
 }
 
@@ -31,7 +32,7 @@ void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
 
 template <bool Friction>
 Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
-  constexpr int kMostLooks = 12, kMostSteps = 48, kStale = 3;
+  constexpr int kMostLooks = 12, kMostSteps = 48, kStale = 3, kSweeps = 2;
   constexpr double kOld = 10.0;  // what an old matrix may leave over
   constexpr double kUnknown = 1e300;
   const long nodes = window_last_ - window_first_ + 1, looking = price::look(rows_);
@@ -84,6 +85,7 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
     if (report.work + coupling > effort.work) break;
     report.work += coupling;
     newton_.couple();
+    double best2 = kUnknown;  // error of the steps of this look; those impulses are in plain_
     for (int step = 0;; ++step) {
       const double largest2 = newton_.read<Friction>(rows, p, u);
       if (step == 0) {
@@ -93,19 +95,24 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
         if (largest2 < (look > 0 ? kOld * kOld : 1.0) * settled2) return Outcome::kSettled;
       }
       if (largest2 < settled2) break;
+      if (largest2 < best2 && largest2 < enough2) {
+        best2 = largest2;
+        for (const auto k : newton_.rows()) plain_[static_cast<std::size_t>(k)].v = p[k].v;
+      }
       if (newton_.unknowns() > ContactNewton::kMostUnknowns) return Outcome::kNoRoom;
-      const long cost = look == 0 && step == 0 ? price::dense_sweep(newton_.loaded())
+      const long cost = look == 0 && step == 0 ? kSweeps * price::dense_sweep(newton_.loaded())
                                                : price::newton(newton_.loaded(), newton_.unknowns());
       const bool gone = report.work + cost + price::answer(newton_.loaded(), nodes) + looking > effort.work;
-      if (gone || (largest2 < enough2 && report.work + cost > effort.fair)) {
+      if (gone || (best2 < enough2 && report.work + cost > effort.fair)) {
         if (step == 0) return stop(largest2);
         const long checking = price::answer(newton_.loaded(), nodes) + looking + price::read(newton_.loaded());
-        if (largest2 < enough2 && report.work + checking <= effort.work) break;  // if the true A says so too
-        return stop(kUnknown);
+        if (best2 >= enough2 || report.work + checking > effort.work) return stop(kUnknown);
+        for (const auto k : newton_.rows()) p[k].v = plain_[static_cast<std::size_t>(k)].v;
+        break;  // enough, if the true A says so too
       }
       report.work += cost;
       if (look == 0 && step == 0) {
-        newton_.sweep<Friction>(rows, p, u);
+        for (int k = 0; k < kSweeps; ++k) newton_.sweep<Friction>(rows, p, u);
         continue;
       }
       if (++report.passes > kMostSteps) return Outcome::kNoRoom;

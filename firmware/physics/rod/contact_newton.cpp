@@ -38,7 +38,7 @@ void ContactNewton::start(const Contact* rows, int count) noexcept {
   constexpr double kMoved = 0.02;  // of a weight: a slot that has moved more is made anew
   slot_.assign(static_cast<std::size_t>(count), -1);
   rows_.clear();
-  if (!put_off_) steps_ = 0;
+  begins_ = begins_ || !put_off_;
   if (!put_off_ && 2 * slots_.size() > static_cast<std::size_t>(kMostRows)) slots_.clear(), coupled_ = 0;
   index_slots();
   for (int k = 0; k < count; ++k) {
@@ -98,6 +98,7 @@ bool ContactNewton::take(const Contact* rows, int k) noexcept {
   }
   slot_[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(slot);
   rows_.push_back(k);
+  begins_ = true;
   Slot& made = slots_.emplace_back();
   made.guess.v = c.p.v;
   made.row = k;

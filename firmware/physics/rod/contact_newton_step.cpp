@@ -30,7 +30,7 @@ double ContactNewton::read(const Contact* rows, const Vec* p, const Vec* u) noex
     changed_ += kind != std::exchange(slot.kind, kind);
     if (kind != Kind::kOpen) count_ += !Friction ? 1 : sticks ? 3 : 2;
   }
-  return largest2;
+  return error2_ = largest2;
 }
 
 template <bool Friction>
@@ -217,12 +217,24 @@ void ContactNewton::assemble(const Vec* p) noexcept {
   }
 }
 
+// What a change of an impulse costs in this step.
+void ContactNewton::set_cost() noexcept {
+  constexpr double kFade = 0.6, kFadeWhenKnown = 0.1;  // from step to step; when no kind changes
+  constexpr double kWorse = 2.0, kMore = 4.0, kLeast = 1e-4;
+  const bool worse = error2_ > kWorse * kWorse * last_error2_;
+  if (std::exchange(begins_, false)) {
+    cost_ = 1.0;
+  } else if (changed_ == 0) {
+    cost_ *= kFadeWhenKnown;
+  } else {
+    cost_ = worse ? std::min(1.0, kMore * std::max(kLeast, cost_)) : kFade * cost_;
+  }
+  last_error2_ = error2_;
+}
+
 template <bool Friction>
 bool ContactNewton::solve(const Contact* rows, Vec* p, Vec* u) noexcept {
-  constexpr double kFade = 0.15;  // of the cost of a change, from step to step
-  constexpr int kAgain = 6;       // steps after which it begins anew
-  cost_ = steps_ == 0 ? 1.0 : changed_ == 0 ? 0.0 : steps_ % kAgain == 0 ? 1.0 : kFade * cost_;
-  ++steps_;
+  set_cost();
   bring_forward();
   list_unknowns<Friction>(rows, p, u);
   assemble<Friction>(p);
