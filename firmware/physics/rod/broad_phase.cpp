@@ -173,12 +173,16 @@ bool BroadPhase::blocks(const State& state, const Motion& motion, const Outlook&
   const float x = blocks_[q].x - blocks_[p].x, y = blocks_[q].y - blocks_[p].y, z = blocks_[q].z - blocks_[p].z;
   const float within = blocks_[p].r + blocks_[q].r + reach;
   if (x * x + y * y + z * z > within * within) return true;
+  // The lanes that fill up the last block are far away; a thread that diverges, or is no number, reaches them all the
+  // same.
+  const std::size_t left = state.x.size() - 1 - q * kBlock;
+  const unsigned real = left >= kBlock ? ~0U : (1U << left) - 1U;
   PairGroup group;
   group.first = static_cast<std::int32_t>(list.pairs.size());
   for (std::size_t a = p * kBlock; a < std::min((p + 1) * kBlock, state.x.size() - 1); ++a) {
     if (spent_ + kDearest > allowance_) return false;
     spent_ += price::kSphere;
-    for (unsigned hits = near(a, q, reach); hits != 0; hits &= hits - 1) {
+    for (unsigned hits = near(a, q, reach) & real; hits != 0; hits &= hits - 1) {
       const std::size_t b = q * kBlock + static_cast<std::size_t>(__builtin_ctz(hits));
       if (!consider(state, motion, outlook, a, b, list.pairs)) return false;
     }
