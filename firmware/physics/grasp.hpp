@@ -1,5 +1,8 @@
 #pragma once
 
+#include <limits>
+
+#include "firmware/physics/closing.hpp"
 #include "firmware/physics/simulation.hpp"
 #include "firmware/physics/thread.hpp"
 
@@ -24,15 +27,28 @@ struct Coupling {
   return spring * (p_WT - p) + damper * (v_WT - v);
 }
 
-/// What each hand holds. A hand that closes takes the nearest node that is neither fixed nor held; one that opens lets
+/// What each hand holds. A hand that closes takes the nearest node that is neither fixed nor held, if the thread beside
+/// it is within reach, and brings it to itself if it is further off than its radius (closing.hpp); one that opens lets
 /// go.
 class Grasp {
  public:
+  Grasp() = default;
+  explicit Grasp(double reach_m) : reach_m_(reach_m) {}
+
   void update(const std::array<ToolInput, 2>& tools, const ThreadModel& model, const ThreadState& state) noexcept;
-  void release_all() noexcept { *this = Grasp{}; }
+  void release_all() noexcept { *this = Grasp(reach_m_); }
+  /// A tick has passed.
+  void step(double tick_s) noexcept {
+    for (Closing& c : closing_) c.step(tick_s);
+  }
   [[nodiscard]] int node(int hand) const noexcept { return node_[static_cast<std::size_t>(hand)]; }
+  [[nodiscard]] const Closing& closing(int hand) const noexcept { return closing_[static_cast<std::size_t>(hand)]; }
 
  private:
+  void close(std::size_t hand, const ToolInput& tool, const ThreadModel& model, const ThreadState& state) noexcept;
+
+  double reach_m_ = std::numeric_limits<double>::infinity();
+  std::array<Closing, 2> closing_;
   std::array<int, 2> node_{-1, -1};
   std::array<bool, 2> closed_{false, false};
 };

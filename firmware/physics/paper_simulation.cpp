@@ -96,15 +96,19 @@ void PaperSimulation::remember() noexcept {
   extend_last_node(before_.p, model_.nodes);
 }
 
+void PaperSimulation::stop(int bad_node) noexcept {
+  health_.finite = false;
+  health_.bad_node = bad_node;
+  health_.bad_tick = ticks_;
+  hands_ = {};  // no force is the safe one to leave behind
+}
+
 /// Finite and in range; if not, the state goes back to the last tick's and stays there.
 bool PaperSimulation::check() noexcept {
   if (kinetic_J_ < model_.mass_kg * kOutOfRange * kOutOfRange && std::isfinite(weight_J_)) return true;
   for (int i = 0; i < model_.nodes; ++i) {
     if (in_range(state_.p.at(i)) && in_range(state_.v.at(i))) continue;
-    health_.finite = false;
-    health_.bad_node = i;
-    health_.bad_tick = ticks_;
-    hands_ = {};  // no force is the safe one to leave behind
+    stop(i);
     state_ = before_;
     nodes_stale_ = velocities_stale_ = true;
     return false;
@@ -148,8 +152,8 @@ void PaperSimulation::publish() noexcept {
     HandContact& c = hands_[static_cast<std::size_t>(h)];
     c.node = grasp_.node(h);
     if (c.node < 0) continue;
-    c.p_WG = to_vec3(state_.p.at(c.node));
-    c.v_WG = to_vec3(state_.v.at(c.node));
+    c.p_WG = to_vec3(state_.p.at(c.node)) - grasp_.closing(h).offset_m();
+    c.v_WG = to_vec3(state_.v.at(c.node)) - grasp_.closing(h).rate_m_per_s();
     c.condition = condition(c.node, grasp_.node(1 - h) >= 0);
   }
   health_.kinetic_J = kinetic_J_;
@@ -208,6 +212,8 @@ std::variant<PaperSimulation, std::string> PaperSimulation::make(const scene::Sc
   for (const auto& load : scene.world.loads)
     s.loads_.emplace_back(load.node < 0 ? n - 1 : load.node, to_v3(load.force_N));
   s.substeps_ = scene.time.substeps;
+  s.tick_s_ = scene.time.tick_s;
+  s.grasp_ = Grasp(scene.hands.reach_m.value_or(std::numeric_limits<double>::infinity()));
   s.work_ = InternalWorkspace(n);
   s.rate_v_ = Lane3(n);
   s.nodes_W_.resize(static_cast<std::size_t>(n));
@@ -220,15 +226,17 @@ void PaperSimulation::tick(const std::array<ToolInput, 2>& tools) noexcept {
   if (!health_.finite) return;
   remember();
   grasp_.update(tools, model_, state_);
+  const std::array<ToolInput, 2> eased{grasp_.closing(0).ease(tools[0]), grasp_.closing(1).ease(tools[1])};
   if (contact_kind_ == scene::ContactSolver::kImplicit)
     course_.update(tools, grasp_, model_, state_, contact_.obstacles());
   for (HandContact& c : hands_) c = {};
   bool fine = true;
   for (int k = 0; k < substeps_ && fine; ++k) {
-    step(tools);
+    step(eased);
     fine = check();
   }
   ++ticks_;
+  grasp_.step(tick_s_);
   if (fine) publish();
 }
 

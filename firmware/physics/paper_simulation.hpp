@@ -26,6 +26,8 @@ class PaperSimulation {
  public:
   static std::variant<PaperSimulation, std::string> make(const scene::Scene& scene);
 
+  /// As after a divergence: the state stays, hands are open and without force.
+  void stop(int bad_node) noexcept;
   void tick(const std::array<ToolInput, 2>& tools) noexcept;
   [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept { return unpacked(state_.p, nodes_W_, nodes_stale_); }
   [[nodiscard]] std::span<const Vec3> velocities_W() const noexcept {
@@ -69,6 +71,7 @@ class PaperSimulation {
   V3<double> gravity_{};
   std::vector<std::pair<int, V3<double>>> loads_;
   int substeps_ = 1;
+  double tick_s_ = 1e-3;
   std::int64_t ticks_ = 0;
   double kinetic_J_ = 0.0, weight_J_ = 0.0;
   Lane3 rate_v_;

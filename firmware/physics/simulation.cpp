@@ -1,5 +1,6 @@
 #include "firmware/physics/simulation.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "firmware/physics/paper_simulation.hpp"
@@ -7,6 +8,18 @@
 #include "firmware/physics/rod/rod_simulation.hpp"
 
 namespace ligature::physics {
+
+namespace {
+
+constexpr double kFarthest = 1e9;  // m, m/s: what is further away has diverged
+
+bool is_number(const Vec3& a) noexcept { return a.cwiseAbs().maxCoeff() < kFarthest && a.allFinite(); }
+
+bool is_number(const ToolInput& tool) noexcept {
+  return is_number(tool.p_WT) && is_number(tool.v_WT) && (!tool.R_WT || tool.R_WT->coeffs().allFinite());
+}
+
+}  // namespace
 
 struct Simulation::Impl {
   std::variant<PaperSimulation, rod::RodSimulation> model;
@@ -28,13 +41,23 @@ std::variant<Simulation, std::string> Simulation::make(const scene::Scene& scene
 }
 
 void Simulation::tick(const std::array<ToolInput, 2>& tools) noexcept {
-  std::visit([&](auto& model) { model.tick(tools); }, impl_->model);
+  std::visit(
+      [&](auto& model) {
+        if (is_number(tools[0]) && is_number(tools[1])) return model.tick(tools);
+        if (model.diagnostics().finite) model.stop(-1);
+      },
+      impl_->model);
 }
 void Simulation::reset() noexcept {
   std::visit([](auto& model) { model.reset(); }, impl_->model);
 }
 void Simulation::set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept {
-  std::visit([&](auto& model) { model.set_state(p_W, v_W); }, impl_->model);
+  const auto bad = [](std::span<const Vec3> all) {
+    const auto at = std::ranges::find_if(all, [](const Vec3& a) { return !is_number(a); });
+    return at == all.end() ? -1 : static_cast<int>(at - all.begin());
+  };
+  const int node = std::max(bad(p_W), bad(v_W));
+  std::visit([&](auto& model) { node < 0 ? model.set_state(p_W, v_W) : model.stop(node); }, impl_->model);
 }
 
 bool Simulation::continue_from(const Simulation& other) noexcept {

@@ -38,7 +38,8 @@ enum class Propagation : std::uint8_t {
 /// A hand's grasp of the thread. Plain values of the last tick.
 struct HandContact {
   int node = -1;             ///< grasped node, the nearest to the middle of the jaws; -1 none
-  Vec3 p_WG = Vec3::Zero();  ///< where the thread between the jaws is, m: f_W is the coupling's pull towards there
+  Vec3 p_WG = Vec3::Zero();  ///< where the thread between the jaws is, m: f_W is the coupling's pull towards there;
+                             ///< while the jaws close, as far from the tool as it is from where it shall be by now
   Vec3 v_WG = Vec3::Zero();  ///< its velocity, m/s
   Vec3 f_W = Vec3::Zero();   ///< force ON THE HAND, world newtons, before any device scaling
   Propagation condition = Propagation::kNone;
@@ -63,7 +64,7 @@ struct Diagnostics {
   Degradation degradation = Degradation::kNone;
   double time_lost = 0.0;      ///< share of the tick in which the thread was not moved
   bool finite = true;          ///< false: frozen at the last finite state, hands open and without force
-  int bad_node = -1;           ///< first node that went non-finite or out of range
+  int bad_node = -1;           ///< first node that went non-finite or out of range; -1: a tool was
   std::int64_t bad_tick = -1;  ///< tick at which it did
 };
 
@@ -80,7 +81,7 @@ class Simulation {
   ~Simulation();
 
   /// Advances by one scene.time.tick_s in scene.time.substeps equal steps. Never allocates, never throws; once
-  /// `diagnostics().finite` is false it does nothing.
+  /// `diagnostics().finite` is false it does nothing. A tool that is no number, or 1e9 m away, ends it so, too.
   void tick(const std::array<ToolInput, 2>& tools) noexcept;
 
   /// Positions, m, and velocities, m/s. Converted when first asked for after a tick, so ask from the thread that ticks.
@@ -101,7 +102,8 @@ class Simulation {
   [[nodiscard]] bool continue_from(const Simulation& other) noexcept;
 
   /// Replaces the shape and the motion (experiments, restarts); hands open. Fixed nodes stay where they are.
-  /// @param p_W, v_W  as many as there are nodes; v_W may be empty for rest.
+  /// @param p_W, v_W  as many as there are nodes; v_W may be empty for rest. Is one of them no number, the
+  /// thread stops as it is, as if it had diverged.
   void set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept;
 
  private:

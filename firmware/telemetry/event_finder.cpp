@@ -40,6 +40,9 @@ std::vector<ligature_msg::event_t> EventFinder::next(const rt::TickRecord& r) {
     if (was != is && is >= 0) {
       events.push_back(event(r.tick, event_t::KIND_GRASP, hand, is, who + " grasps node " + std::to_string(is)));
     }
+    if (r.grip[h] && !last_.grip[h] && is < 0) {
+      events.push_back(event(r.tick, event_t::KIND_GRASP, hand, -1, who + " closes on nothing"));
+    }
     const std::int32_t limited = h == 0 ? rt::kLeftLimited : rt::kRightLimited;
     if ((r.flags & limited) != 0 && (last_.flags & limited) == 0) {
       events.push_back(event(r.tick, event_t::KIND_LIMIT, hand, 0, who + " force reaches its limit"));

@@ -62,7 +62,9 @@ std::array<physics::ToolInput, 2> Rehearsal::tools_at(double t_s) {
   sight.thread_W = simulation_.nodes_W();
   for (std::size_t h = 0; h < 2; ++h) {
     sight.tool_W[h] = tier_->wish()[h].p_W;
-    sight.force_W_N[h] = simulation_.hand(static_cast<physics::Hand>(h)).f_W;
+    const auto& hand = simulation_.hand(static_cast<physics::Hand>(h));
+    sight.force_W_N[h] = hand.f_W;
+    sight.holds[h] = hand.node >= 0;
   }
   const auto& wish = tier_->tick(sight);
   return {physics::ToolInput{wish[0].p_W, wish[0].v_W, wish[0].grip},

@@ -23,7 +23,13 @@ std::string read_row(const CsvRow& row, int& hand, GripKey& key) {
       return std::string("column '") + kNumbers[i] + "': found '" + shown(cell) + "', allowed a finite number";
     }
   }
-  if (key.time_s < 0.0) return "column 'time': found " + shown(row.cells[0]) + ", allowed 0 or more";
+  constexpr double kMost = 1e6;  // s, m, degrees: differences of these are numbers too
+  for (std::size_t i = 0; i < numbers; ++i) {
+    const double least = i == 0 ? 0.0 : -kMost;
+    if (*out[i] < least || *out[i] > kMost)
+      return std::string("column '") + kNumbers[i] + "': found " + shown(row.cells[kCells[i]]) + ", allowed " +
+             (i == 0 ? "0" : "-1e6") + " .. 1e6";
+  }
   if (row.cells[1] != "L" && row.cells[1] != "R")
     return "column 'hand': found '" + shown(row.cells[1]) + "', allowed L or R";
   if (row.cells[5] != "0" && row.cells[5] != "1")

@@ -123,6 +123,7 @@ struct Time {
 struct Hands {
   double coupling_N_per_m = 1200.0;
   double coupling_N_s_per_m = 6.0;
+  std::optional<double> reach_m;        ///< jaws close on thread no further from the tip than this; absent: any
   double pinch_width_m = 0.0;           ///< jaws hold the nodes across their width, and their direction; 0: one node
   std::optional<double> pinch_force_N;  ///< of each jaw on the thread: it slips at 2 mu times this; absent: never
   /// Device side of the coupling, at the device; absent: rigid, the tool is where the device is.

@@ -117,12 +117,15 @@ void read_time(StrictTable& t, Time& time) {
   t.integer("substeps", time.substeps, 1, 10000);
 }
 
-void read_hands(StrictTable& t, Model model, Hands& h) {
+void read_hands(StrictTable& t, const Suture& suture, Hands& h) {
   t.number("coupling_N_per_m", h.coupling_N_per_m, kCoefficient);
   t.number("coupling_N_s_per_m", h.coupling_N_s_per_m, kCoefficient);
+  t.number("reach_m", h.reach_m, {0.0, kFar_m, true});
+  if (h.reach_m && *h.reach_m < suture.radius_m)
+    t.refuse("reach_m", "suture.radius_m or more: it goes to the thread's middle");
   t.number("pinch_width_m", h.pinch_width_m, {0.0, kFar_m});
   t.number("pinch_force_N", h.pinch_force_N, {0.0, 1e6, true});
-  if (model != Model::kRod) {  // the paper's grippers hold one node and never slip
+  if (suture.model != Model::kRod) {  // the paper's grippers hold one node and never slip
     if (h.pinch_width_m > 0.0) t.refuse("pinch_width_m", "0, or suture.model \"rod\"");
     if (h.pinch_force_N) t.refuse("pinch_force_N", "suture.model \"rod\" only");
   }
@@ -198,7 +201,7 @@ std::variant<Scene, Error> load_scene(const fs::path& path, std::span<const std:
   top.table("contact", [&](StrictTable& t) { read_contact(t, scene.suture.model, scene.contact); });
   top.table("world", [&](StrictTable& t) { read_world(t, scene.suture.nodes, scene.world); });
   top.table("time", [&](StrictTable& t) { read_time(t, scene.time); });
-  top.table("hands", [&](StrictTable& t) { read_hands(t, scene.suture.model, scene.hands); });
+  top.table("hands", [&](StrictTable& t) { read_hands(t, scene.suture, scene.hands); });
   top.finish();
   if (context.error) return *context.error;
   if (!has_suture) return Error{path.string() + ": no [suture] table, allowed a scene with one (it may be empty)"};

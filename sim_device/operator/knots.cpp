@@ -69,7 +69,7 @@ Move hold_corner(const Workplace& place, const Layout& layout, WhereAlong s) {
 /// direction that they close on.
 Moves hold_down() {
   constexpr double kStraight = 0.1;  // of a tight knot's pull
-  Moves m{reach(kRightHand, the_end()), pinch(kRightHand)};
+  Moves m{take(kRightHand, the_end())};
   append(m, pull_tight(kDown, kStraight));
   return m;
 }
@@ -123,12 +123,10 @@ Moves held_throw(const Throw& t, const Workplace& place, bool alone) {
   const bool is_later = t.tied_already > 1;
   if (is_later) append(m, hold_down());
   if (!alone) m.push_back(see_the_places(places));
-  m.push_back(reach(kLeftHand, at_corner));
-  m.push_back(pinch(kLeftHand));
+  m.push_back(take(kLeftHand, at_corner));
   if (is_later) m.push_back(let_go(kRightHand));
   m.push_back(hold_corner(place, layout, at_corner));
-  m.push_back(reach(kRightHand, the_end()));
-  m.push_back(pinch(kRightHand));
+  m.push_back(take(kRightHand, the_end()));
   auto loop = std::make_shared<Loop>(at_corner, t.side);
   if (springy) {
     m.push_back(open_arch(t, at_corner));
@@ -183,7 +181,7 @@ std::optional<std::size_t> throws_seen(const Knot& knot, const Look& look) {
 }
 
 Moves draw_straight() {
-  Moves m{reach(kRightHand, the_end()), pinch(kRightHand)};
+  Moves m{take(kRightHand, the_end())};
   append(m, pull_tight(kDown, 0.5));
   m.push_back(ease());
   m.push_back(let_go(kRightHand));

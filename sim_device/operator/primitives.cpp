@@ -17,28 +17,38 @@ bool is_between_jaws(const Look& look, std::size_t hand, double s, double waited
 }
 }  // namespace
 
-Move reach(std::size_t hand, const WhereAlong& s) {
-  auto near_s = std::make_shared<double>(-1.0);  // when it was before the thread
-  return {"reach", [=](const Look& look) {
+Move take(std::size_t hand, const WhereAlong& s) {
+  constexpr double kLong_s = 3.0, kSlide_per_s = 0.04, kMost = 0.06;  // shares of the thread's length
+  enum Phase { kBefore, kNear, kClosed };
+  struct State {
+    Phase phase = kBefore;
+    double since_s = 0.0;
+  };
+  auto state = std::make_shared<State>();
+  return {"take",
+          [=](const Look& look) {
             MovingHand& h = look.hands[hand];
-            const double at = s(look);
-            const Vec3 place = look.thread.at(at), before = place + look.place.clearance_m * kFront;
-            const bool near = *near_s >= 0.0;
+            const double now_s = look.in_move_s, in_phase_s = now_s - state->since_s;
+            const bool near = state->phase == kNear;
+            const double late_s = near ? std::max(0.0, in_phase_s - kLong_s) : 0.0;
+            const double at = s(look) - std::min(kSlide_per_s * late_s, kMost) * look.thread.length_m();
+            const Vec3 place = look.thread.at(at);
+            const auto go_on = [&](Phase phase) {
+              *state = {phase, now_s};
+              h.grip = phase == kClosed;
+              return false;
+            };
+            if (state->phase == kClosed) {
+              h.goal_W = h.p_W();
+              if (in_phase_s <= kMoment_s) return false;
+              return look.sight.holds[hand] || go_on(kBefore);
+            }
             h.pace = near ? 0.5 : 1.0;
-            h.goal_W = near ? place : before;
-            if (near) return is_between_jaws(look, hand, at, look.in_move_s - *near_s);
-            if (look.has_arrived(hand, 0.3 * look.place.clearance_m)) *near_s = look.in_move_s;
-            return false;
-          }};
-}
-
-Move pinch(std::size_t hand) {
-  return {"pinch", [=](const Look& look) {
-            MovingHand& h = look.hands[hand];
-            h.grip = true;
-            h.goal_W = h.p_W();
-            return look.in_move_s > kMoment_s;
-          }};
+            h.goal_W = near ? place : Vec3(place + look.place.clearance_m * kFront);
+            if (near) return is_between_jaws(look, hand, at, in_phase_s) && go_on(kClosed);
+            return look.has_arrived(hand, 0.3 * look.place.clearance_m) && go_on(kNear);
+          },
+          15.0, [=](const Look& look) { return look.hands[hand].grip && look.sight.holds[hand]; }};
 }
 
 Move let_go(std::size_t hand) {

@@ -18,6 +18,7 @@ struct Sight {
   std::span<const Vec3> thread_W;
   std::array<Vec3, 2> tool_W{Vec3::Zero(), Vec3::Zero()};
   std::array<Vec3, 2> force_W_N{Vec3::Zero(), Vec3::Zero()};  ///< felt by each hand, world newtons; 0: nothing held
+  std::array<bool, 2> holds{true, true};  ///< there is thread between the jaws; asked of closed ones
 };
 
 /// Where a hand wants its tool to be, and whether it squeezes.

@@ -188,7 +188,7 @@ Moves wound_throw(const Throw& t, const std::shared_ptr<const Site>& site) {
   const auto before = [site, t](const Look& look) {  // below and in front of the place where the screw begins
     return Standing(look, *site, t).beside(kFirst, 2.0 * look.place.clearance_m, -0.3 * kPi);
   };
-  Moves m{reach(kLeftHand, corner), pinch(kLeftHand), swing_out(), reach(kRightHand, end), pinch(kRightHand)};
+  Moves m{take(kLeftHand, corner), swing_out(), take(kRightHand, end)};
   m.push_back(carry(kRightHand, "to the standing part", before, 0.7));
   m.push_back(wind(t, site));
   m.push_back(draw(t));

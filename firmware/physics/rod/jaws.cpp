@@ -12,23 +12,29 @@ bool is_held(const State& state, int node) noexcept {
   return false;
 }
 
-// Material coordinate nearest to p of the half segments beside a node.
-double nearest_place(const State& state, int node, Vec p) noexcept {
+}  // namespace
+
+Place nearest_place(const State& state, int node, Vec p) noexcept {
   const auto i = static_cast<std::size_t>(node);
   const auto& s = state.mesh.s;
-  double least = norm(p - state.x[i]), place_m = s[i];
+  double least = norm(p - state.x[i]);
+  Place place{s[i], state.x[i]};
   for (const int side : {-1, 1}) {
     if (node + side < 0 || node + side >= state.nodes()) continue;
     const auto k = static_cast<std::size_t>(node + side);
     const Vec segment = state.x[k] - state.x[i];
     const double share = std::clamp(dot(p - state.x[i], segment) / std::max(dot(segment, segment), 1e-24), 0.0, 0.5);
-    const double off = norm(p - state.x[i] - share * segment);
-    if (off < least) least = off, place_m = s[i] + share * (s[k] - s[i]);
+    const Vec x = state.x[i] + share * segment;
+    if (norm(p - x) < least) least = norm(p - x), place = {s[i] + share * (s[k] - s[i]), x};
   }
-  return place_m;
+  return place;
 }
 
-}  // namespace
+Place Jaws::would_hold(const Rod& rod, int node, Vec tool) const noexcept {
+  if (settings_.width_m > 0.0) return nearest_place(rod.state(), node, tool);
+  const auto i = static_cast<std::size_t>(node);
+  return {rod.state().mesh.s[i], rod.state().x[i]};
+}
 
 void Jaws::close(Rod& rod, int node, Vec tool, const Mat* R_WT) noexcept {
   const State& state = rod.state();
@@ -37,7 +43,7 @@ void Jaws::close(Rod& rod, int node, Vec tool, const Mat* R_WT) noexcept {
   const auto after = static_cast<std::size_t>(std::min(node + 1, n - 1));
   const Vec chord = state.x[after] - state.x[before];
   along_ = (1.0 / std::max(norm(chord), 1e-12)) * chord;
-  s_m_ = settings_.width_m > 0.0 ? nearest_place(state, node, tool) : state.mesh.s[static_cast<std::size_t>(node)];
+  s_m_ = would_hold(rod, node, tool).s_m;
   slipped_m_ = slides_m_per_s_ = 0.0;
   turning_ = R_WT != nullptr;
   roll_hold_ = -1;

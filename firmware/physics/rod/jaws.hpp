@@ -13,6 +13,14 @@ struct JawSettings {
   double stiffness_N_per_m = 0.0, damping_N_s_per_m = 0.0;  ///< of the hand's coupling, shared by the nodes held
 };
 
+/// A place of the thread.
+struct Place {
+  double s_m = 0.0;  ///< material coordinate
+  Vec x{};
+};
+/// Nearest to p on the half segments beside a node.
+[[nodiscard]] Place nearest_place(const State& state, int node, Vec p) noexcept;
+
 /// Jaws of width w hold the nodes whose material coordinate s lies within w/2 of the place s_c between them, two at
 /// least, each by its share of the coupling, on a straight line that keeps the direction t it had when they closed:
 ///   target_j = tool + (s_j - s_c) t,   sum_j f_j = force on the hand
@@ -29,6 +37,8 @@ class Jaws {
   /// @param R_WT  how the tool is turned, nullptr when nobody knows: then the direction stays as it is (width > 0) or
   /// free, and the thread cannot roll. With it, direction and roll turn as the tool does.
   void close(Rod& rod, int node, Vec tool, const Mat* R_WT = nullptr) noexcept;
+  /// What jaws at `tool` would hold: across a width any place beside the node, else the node.
+  [[nodiscard]] Place would_hold(const Rod& rod, int node, Vec tool) const noexcept;
   void open(Rod& rod) noexcept;
   /// Before each tick: the tool will be here at its end. Fills the goals of the holds.
   void follow(Rod& rod, Vec tool, std::array<Vec, kMaxHolds>& goals, const Mat* R_WT = nullptr) noexcept;

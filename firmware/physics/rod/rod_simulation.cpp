@@ -39,6 +39,7 @@ RodSimulation::RodSimulation(const scene::Scene& scene, Rod rod)
     : initial_(rod),
       rod_(std::move(rod)),
       jaws_{jaws_of(scene), jaws_of(scene)},
+      reach_m_(scene.hands.reach_m.value_or(std::numeric_limits<double>::infinity())),
       grippers_(scene.world.grippers_collide && parts_of(scene).world) {
   gripper_body_ = static_cast<int>(rod_.bodies.size());
   if (grippers_) {
@@ -53,9 +54,13 @@ RodSimulation::RodSimulation(const scene::Scene& scene, Rod rod)
   reset();
 }
 
+void RodSimulation::let_go() noexcept {
+  for (std::size_t h = 0; h < 2; ++h) jaws_[h].forget(), closing_[h].forget();
+}
+
 void RodSimulation::reset() noexcept {
   rod_ = initial_;
-  for (Jaws& j : jaws_) j.forget();
+  let_go();
   closed_ = {false, false};
   inside_ = {true, true};
   hands_ = {};
@@ -66,7 +71,7 @@ void RodSimulation::reset() noexcept {
 
 bool RodSimulation::continue_from(const RodSimulation& other) noexcept {
   if (!rod_.continue_from(other.rod_)) return false;
-  jaws_ = other.jaws_, closed_ = other.closed_, inside_ = other.inside_;
+  jaws_ = other.jaws_, closing_ = other.closing_, closed_ = other.closed_, inside_ = other.inside_;
   goals_ = other.goals_;
   hands_ = other.hands_;
   health_ = other.health_;
@@ -78,7 +83,7 @@ bool RodSimulation::continue_from(const RodSimulation& other) noexcept {
 
 void RodSimulation::set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept {
   rod_ = initial_;
-  for (Jaws& j : jaws_) j.forget();
+  let_go();
   State& state = rod_.state();
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     bool fixed = false;
@@ -113,19 +118,30 @@ int RodSimulation::nearest_free(Vec p) const noexcept {
   return best;
 }
 
+void RodSimulation::close_jaws(std::size_t h, const ToolInput& tool, const Mat* R_WT) noexcept {
+  const Vec tip = vec(tool.p_WT);
+  const int node = nearest_free(tip);
+  if (node < 0 || norm(nearest_place(rod_.state(), node, tip).x - tip) > reach_m_) return;
+  const Vec place = jaws_[h].would_hold(rod_, node, tip).x, velocity = rod_.state().v[static_cast<std::size_t>(node)];
+  const Vec tip_before = tip - rod_.numerics().tick_s * vec(tool.v_WT);
+  closing_[h].start(vec3(place - tip_before), vec3(velocity) - tool.v_WT);
+  jaws_[h].close(rod_, node, place, R_WT);
+}
+
 void RodSimulation::update_grasp(const std::array<ToolInput, 2>& tools) noexcept {
   for (std::size_t h = 0; h < 2; ++h) {
-    const Vec tool = vec(tools[h].p_WT);
     const auto turned = axes_of(tools[h]);
     const Mat* const R_WT = turned ? &*turned : nullptr;
     if (tools[h].grip && !closed_[h]) {
-      if (const int node = nearest_free(tool); node >= 0) jaws_[h].close(rod_, node, tool, R_WT);
+      close_jaws(h, tools[h], R_WT);
     } else if (!tools[h].grip && jaws_[h].holds()) {
       jaws_[h].open(rod_);
+      closing_[h].forget();
       inside_[h] = true;
     }
     closed_[h] = tools[h].grip;
-    jaws_[h].follow(rod_, tool, goals_, R_WT);
+    closing_[h].step(rod_.numerics().tick_s);
+    jaws_[h].follow(rod_, vec(closing_[h].ease(tools[h]).p_WT), goals_, R_WT);
   }
 }
 
@@ -150,15 +166,20 @@ void RodSimulation::update_grippers(const std::array<ToolInput, 2>& tools) noexc
   }
 }
 
+void RodSimulation::stop(int bad_node) noexcept {
+  health_.finite = false;
+  health_.bad_node = bad_node;
+  health_.bad_tick = ticks_;
+  hands_ = {};  // no force is the safe one to leave behind
+}
+
 bool RodSimulation::is_finite() noexcept {
   const State& state = rod_.state();
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     double most = 0.0;
     for (int k = 0; k < 3; ++k) most += std::abs(state.x[i][k]) + std::abs(state.v[i][k]);
     if (most < kOutOfRange) continue;  // false for NaN
-    health_.finite = false;
-    health_.bad_node = static_cast<int>(i);
-    health_.bad_tick = ticks_;
+    stop(static_cast<int>(i));
     return false;
   }
   return true;
@@ -176,7 +197,6 @@ void RodSimulation::tick(const std::array<ToolInput, 2>& tools) noexcept {
   rod_.tick(goals_);
   ++ticks_;
   if (is_finite()) return publish();
-  hands_ = {};  // no force is the safe one to leave behind
   state.x = x_before_;
   state.v = v_before_;
 }
@@ -193,8 +213,8 @@ void RodSimulation::publish() noexcept {
     if (!jaws_[h].holds()) continue;
     const Hold& hold = state.holds[static_cast<std::size_t>(jaws_[h].middle(rod_))];
     c.node = hold.node;
-    c.p_WG = vec3(jaws_[h].place(rod_));  // the coupling turns these into the force on the hand
-    c.v_WG = vec3(jaws_[h].velocity(rod_));
+    c.p_WG = vec3(jaws_[h].place(rod_)) - closing_[h].offset_m();  // the coupling makes of these the force on the hand
+    c.v_WG = vec3(jaws_[h].velocity(rod_)) - closing_[h].rate_m_per_s();
     c.f_W = vec3(jaws_[h].force(rod_));
   }
   const Energy e = rod_.energy();

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "firmware/physics/closing.hpp"
 #include "firmware/physics/rod/jaws.hpp"
 #include "firmware/physics/rod/rod.hpp"
 #include "firmware/physics/simulation.hpp"
@@ -20,6 +21,8 @@ class RodSimulation {
  public:
   static std::variant<RodSimulation, std::string> make(const scene::Scene& scene);
 
+  /// As after a divergence: the state stays, hands are open and without force.
+  void stop(int bad_node) noexcept;
   void tick(const std::array<ToolInput, 2>& tools) noexcept;
   [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept { return nodes_; }
   [[nodiscard]] std::span<const Vec3> velocities_W() const noexcept { return velocities_; }
@@ -35,6 +38,8 @@ class RodSimulation {
 
  private:
   RodSimulation(const scene::Scene& scene, Rod rod);
+  void let_go() noexcept;
+  void close_jaws(std::size_t hand, const ToolInput& tool, const Mat* R_WT) noexcept;
   void update_grasp(const std::array<ToolInput, 2>& tools) noexcept;
   void update_grippers(const std::array<ToolInput, 2>& tools) noexcept;
   [[nodiscard]] int nearest_free(Vec p) const noexcept;
@@ -43,6 +48,8 @@ class RodSimulation {
 
   Rod initial_, rod_;
   std::array<Jaws, 2> jaws_;
+  double reach_m_;
+  std::array<Closing, 2> closing_;
   bool grippers_ = false;
   int gripper_body_ = 0;  // index of the left gripper's capsule
   std::array<bool, 2> closed_{false, false}, inside_{true, true};

@@ -133,6 +133,7 @@ void VirtualRig::look_and_act() {
   for (std::size_t h = 0; h < 2; ++h) {
     const auto& f = records.back().f_device_N[h];
     sight.tool_W[h] = map.to_world(hands[h]->touch().p_DT);
+    sight.holds[h] = records.back().grasped_node[h] >= 0;
     if (setup.scene.hands.force_scale > 0.0)
       sight.force_W_N[h] = sim::Vec3(f[0], f[1], f[2]) / setup.scene.hands.force_scale;
   }

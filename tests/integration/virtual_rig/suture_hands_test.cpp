@@ -161,6 +161,36 @@ TEST(SutureHands, HandTheThreadOverUnderLoad) {
   EXPECT_EQ(size(p.at(kOpen_s + 0.05).f_device_N[0]), 0.0);
 }
 
+/// Beside a thread that the left hand has drawn taut the right hand closes 14 mm off: out of reach it holds nothing;
+/// within, what it feels grows to what the taut thread pulls it back by, T x / l to either side.
+TEST(SutureHands, CloseFarOffWithoutAStep) {
+  constexpr double kOff_m = 0.014, kClosed_s = 2.6;
+  for (const bool within : {false, true}) {
+    const Played p(
+        suture({within ? "hands.reach_m=0.02" : "hands.reach_m=0.01"}),
+        {{0.0, {0.0, 0.0, 0.15}, false},
+         {0.3, {0.0, 0.0, 0.15}, true},
+         {0.5, {0.0, 0.0, 0.15}, true},
+         {1.5, {0.0, 0.0, 0.144}, true},
+         {4.5, {0.0, 0.0, 0.144}, true}},
+        {{0.0, {kOff_m, 0.0, 0.20}, false}, {kClosed_s, {kOff_m, 0.0, 0.20}, true}, {4.5, {kOff_m, 0.0, 0.20}, true}});
+    const rt::TickRecord& last = p.at(4.4);
+    EXPECT_TRUE(last.grip[1]);
+    EXPECT_EQ(last.grasped_node[1] >= 0, within);
+    double wish_step_N = 0.0;  // what it would be without gain, limits and passivity
+    for (std::size_t k = p.tick_at(kClosed_s - 0.1); k < p.tick_at(4.4); ++k)
+      wish_step_N = std::max(wish_step_N, apart(p.rig.records[k].f_wish_N[1], p.rig.records[k - 1].f_wish_N[1]));
+    std::printf("closed 14 mm off: feels %.3f N of %.3f, in steps of %.3f N (%.3f asked); the other hand %.3f N\n",
+                size(last.f_device_N[1]), size(last.f_wish_N[1]), p.step_N(1, kClosed_s - 0.1, 4.4), wish_step_N,
+                p.step_N(0, kClosed_s - 0.1, 4.4));
+    EXPECT_EQ(size(last.f_wish_N[1]) > 0.1, within);
+    EXPECT_EQ(size(last.f_wish_N[1]) == 0.0, !within);
+    EXPECT_LT(wish_step_N, 0.03);
+    // Passivity holds back what is not earned yet, and lets it go at the slew limit, 0.15 N a tick.
+    for (std::size_t h = 0; h < 2; ++h) EXPECT_LT(p.step_N(h, kClosed_s - 0.1, 4.4), 0.16) << h;
+  }
+}
+
 /// A hand that has come to its workspace's end presses the clutch, reaches back, and draws on from there.
 TEST(SutureHands, ReachRoundWithTheClutch) {
   constexpr double kPress_s = 2.0, kRelease_s = 3.5, kLength_m = 0.2;

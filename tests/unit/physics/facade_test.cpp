@@ -1,6 +1,8 @@
 // What the facade promises of every model alike.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "tests/unit/physics/script_run.hpp"
@@ -52,6 +54,112 @@ TEST_P(Facade, GoesOnFromAnotherOneOfItsModelAndNumberOfNodesOnly) {
   EXPECT_EQ(std::vector<Vec3>(same.nodes_W().begin(), same.nodes_W().end()),
             std::vector<Vec3>(sim_.nodes_W().begin(), sim_.nodes_W().end()));
   EXPECT_EQ(same.hand(Hand::kLeft).node, sim_.hand(Hand::kLeft).node);
+}
+
+/// Measured to the thread, not to a node: those are 10 cm apart.
+TEST_P(Facade, JawsHoldWhatIsWithinTheirReach) {
+  const Simulation start = make(paper_scene({std::string("suture.model=") + GetParam(), "hands.reach_m=0.06"}));
+  const Vec3 between = 0.5 * (start.nodes_W()[25] + start.nodes_W()[26]);
+  std::array<ToolInput, 2> tools{};
+  const auto close_at = [&](Simulation& sim, double off_m) {
+    tools[0] = {between + Vec3(off_m, 0, 0), Vec3::Zero(), true};
+    sim.tick(tools);
+    return sim.hand(Hand::kLeft).node;
+  };
+  Simulation near = start, far = start;
+  EXPECT_GE(close_at(near, 0.059), 25);
+  EXPECT_EQ(close_at(far, 0.061), -1);
+  EXPECT_EQ(far.hand(Hand::kLeft).f_W, Vec3(0, 0, 0));
+  EXPECT_EQ(close_at(far, 0.0), -1) << "closed jaws take nothing that comes by";
+  tools[0].grip = false;
+  far.tick(tools);
+  EXPECT_GE(close_at(far, 0.0), 25);
+}
+
+/// Half a metre beside the thread, the tool moving: nothing steps and nothing is thrown; then the node is held itself.
+TEST_P(Facade, JawsThatCloseFarOffBringTheThreadGently) {
+  constexpr double kOff_m = 0.5, kSpeed_m_per_s = 0.2;
+  constexpr double kSpring_N_per_m = 1200.0;
+  std::array<ToolInput, 2> tools{ToolInput{sim_.nodes_W()[25] + Vec3(kOff_m, 0, 0), Vec3::Zero(), false}, ToolInput{}};
+  Vec3 before = Vec3::Zero();
+  double step_N = 0.0, most_N = 0.0;
+  for (int k = 0; k < 1500; ++k) {
+    tools[0].grip = k > 0;
+    tools[0].v_WT = k < 300 ? Vec3(0, kSpeed_m_per_s, 0) : Vec3::Zero();
+    tools[0].p_WT += 1e-3 * tools[0].v_WT;
+    sim_.tick(tools);
+    const HandContact& hand = sim_.hand(Hand::kLeft);
+    step_N = std::max(step_N, (hand.f_W - before).norm());
+    most_N = std::max(most_N, hand.f_W.norm());
+    before = hand.f_W;
+  }
+  std::printf("closed 0.5 m off: steps of %.2f N at most, %.1f N at most\n", step_N, most_N);
+  const HandContact& hand = sim_.hand(Hand::kLeft);
+  ASSERT_GE(hand.node, 0);
+  EXPECT_LT(step_N, 0.03 * kSpring_N_per_m * kOff_m);  // all of it at once without
+  EXPECT_LT(most_N, 0.3 * kSpring_N_per_m * kOff_m);
+  EXPECT_EQ(hand.p_WG, sim_.nodes_W()[static_cast<std::size_t>(hand.node)]);
+}
+
+/// The paper's node stands for half a segment on either side: thread that is between the jaws already is not eased.
+TEST(PaperGrasp, HoldsAtOnceWhatIsBetweenTheJaws) {
+  Simulation sim = make(paper_scene({}));
+  const Vec3 a = sim.nodes_W()[25], b = sim.nodes_W()[26];
+  std::array<ToolInput, 2> tools{ToolInput{Vec3(0.7 * a + 0.3 * b), Vec3::Zero(), true}, ToolInput{}};
+  sim.tick(tools);
+  const HandContact& hand = sim.hand(Hand::kLeft);
+  EXPECT_EQ(hand.node, 25);
+  EXPECT_EQ(hand.p_WG, sim.nodes_W()[25]);
+  EXPECT_GT(hand.f_W.norm(), 0.5 * 1200.0 * 0.3 * (b - a).norm());
+}
+
+/// A tool in a held, an open and a turned grip; a shape or a motion put in: none may reach the thread.
+TEST_P(Facade, WhatIsNoNumberStopsItAsItIs) {
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  const auto shape = [](const Simulation& sim) {
+    return std::vector<Vec3>(sim.nodes_W().begin(), sim.nodes_W().end());
+  };
+  const auto fine = holding();
+  for (const double bad : {nan, inf, -inf, 1e300, 1e10}) {
+    for (int kind = 0; kind < 6; ++kind) {
+      Simulation sim = sim_;
+      for (int k = 0; k < 10; ++k) sim.tick(fine);
+      const auto before = shape(sim);
+      auto tools = fine;
+      std::vector<Vec3> p = before, v(p.size(), Vec3::Zero());
+      switch (kind) {
+        case 0:
+          tools[0].p_WT.x() = bad;
+          break;
+        case 1:
+          tools[0].v_WT.y() = bad;
+          break;
+        case 2:
+          tools[1].p_WT.z() = bad;
+          break;
+        case 3:
+          tools[1].grip = true, tools[1].R_WT = Eigen::Quaterniond(nan, 0, 0, 1);
+          break;
+        case 4:
+          p[7].x() = bad;
+          break;
+        default:
+          v[7].z() = bad;
+          break;
+      }
+      kind < 4 ? sim.tick(tools) : sim.set_state(p, v);
+      EXPECT_FALSE(sim.diagnostics().finite) << kind << ": " << bad;
+      EXPECT_EQ(sim.diagnostics().bad_node, kind < 4 ? -1 : 7);
+      EXPECT_EQ(shape(sim), before) << kind << ": " << bad;
+      EXPECT_EQ(sim.hand(Hand::kLeft).node, -1);
+      EXPECT_EQ(sim.hand(Hand::kLeft).f_W, Vec3(0, 0, 0));
+      sim.tick(fine);
+      EXPECT_EQ(shape(sim), before) << "it stays";
+      sim.reset();
+      sim.tick(fine);
+      EXPECT_TRUE(sim.diagnostics().finite) << "until it is reset";
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, Facade, testing::Values("paper-4", "rod"),

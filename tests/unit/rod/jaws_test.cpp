@@ -166,6 +166,35 @@ TEST(Jaws, CloseOnATautThreadWithoutATug) {
   }
 }
 
+/// 14 mm off, jaws once took 14 N for a tick. Neither the thread nor the hand may be jerked, and at last the hand feels
+/// what the thread above does: stretched by sqrt(l^2 + x^2) - l in series with the coupling, its pull turned by x / l.
+TEST(Jaws, CloseFarOffWithoutAJerk) {
+  for (const double pull_N : {0.0, 1.0}) {
+    const std::string load = "world.loads=[{node=60, force_N=[0,0,-" + std::to_string(pull_N) + "]}]";
+    auto sim = simulation(thread({"hands.pinch_width_m=0.004", "hands.reach_m=0.02", load}));
+    auto tools = hands_at(sim.nodes_W()[40] + Vec3(0.014, 0, 0), Vec3(1, 1, 1));
+    for (int k = 0; k < 300; ++k) sim.tick(tools);
+    Vec3 before = Vec3::Zero();
+    double step_N = 0.0, most_N = 0.0, speed = 0.0;
+    tools[0].grip = true;
+    for (int k = 0; k < 1000; ++k) {
+      sim.tick(tools);
+      const Vec3 f = sim.hand(Hand::kLeft).f_W;
+      step_N = std::max(step_N, (f - before).norm()), most_N = std::max(most_N, f.norm()), before = f;
+      for (const Vec3& v : sim.velocities_W()) speed = std::max(speed, v.norm());
+    }
+    constexpr double kAbove_m = 0.2, kOff_m = 0.014;
+    const double stretch_N = (std::hypot(kAbove_m, kOff_m) - kAbove_m) / (kAbove_m / 71.0 + 1.0 / 1000.0);
+    const double held_N = std::hypot(stretch_N, pull_N * kOff_m / kAbove_m);
+    std::printf("closed 14 mm off, pulled by %.0f N: %.4f N at last (%.4f), %.4f at most, steps of %.4f N, %.2f m/s\n",
+                pull_N, before.norm(), held_N, most_N, step_N, speed);
+    EXPECT_LT(step_N, 0.03);  // 14 N without
+    EXPECT_LT(most_N, 1.05 * held_N);
+    EXPECT_LT(speed, 0.6);  // 1.5 x 14 mm / 50 ms = 0.42 at the jaws
+    EXPECT_NEAR(before.norm(), held_N, 0.05 * held_N);
+  }
+}
+
 TEST(Jaws, HoldTheDirectionToo) {  // held upright at its free end, pushed from the side: two nodes turn back, one turns
   const auto lean = [](const char* width) {
     auto sim = simulation(thread(

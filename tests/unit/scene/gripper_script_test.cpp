@@ -44,6 +44,8 @@ TEST(GripperScript, RefusesABadRowByItsLine) {
       {"0,l,0,0,0,1\n", ":3: column 'hand': found 'l', allowed L or R"},
       {"0,L,0,0,0,2\n", ":3: column 'grip': found '2', allowed 0 or 1"},
       {"-1,L,0,0,0,1\n", ":3: column 'time': found -1"},
+      {"1e300,L,0,0,0,1\n", ":3: column 'time': found 1e300, allowed 0 .. 1e6"},
+      {"0,L,0,-1e308,0,1\n", ":3: column 'y': found -1e308, allowed -1e6 .. 1e6"},
       {"1,L,0,0,0,1\n0,R,0,0,0,1\n1,L,0,0,0,1\n", ":5: column 'time': found 1, allowed later"},
       {"", "found no rows"},
   };

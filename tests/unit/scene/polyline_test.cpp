@@ -32,6 +32,8 @@ TEST(LoadPolyline, RefusesByLine) {
   const auto path = test::temp_folder() + "shape.csv";
   std::ofstream(path) << "x,y,z\n0,0,0\n0,zero,0\n";
   EXPECT_NE(std::get<Error>(load_polyline(path)).text.find(":3: found 'zero'"), std::string::npos);
+  std::ofstream(path) << "x,y,z\n0,0,0\n0,-1e300,0\n";
+  EXPECT_NE(std::get<Error>(load_polyline(path)).text.find(":3: found -1e300, allowed -1e6 .. 1e6"), std::string::npos);
   std::ofstream(path) << "x,y,z\n0,0,0\n";
   EXPECT_NE(std::get<Error>(load_polyline(path)).text.find("found 1 point"), std::string::npos);
 }

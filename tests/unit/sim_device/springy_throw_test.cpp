@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_device/operator/primitives.hpp"
 #include "tests/unit/sim_device/tied.hpp"
 
 namespace ligature::sim {
@@ -29,6 +30,67 @@ TEST(SpringyThrow, AThreadThatHangsStraightIsNotDrawnStraight) {
   EXPECT_TRUE(hand_sent({{0, 0, 0.35}, {0, 0, 0.05}}).isApprox(Vec3(0.1, -0.1, 0.2)));
   const Vec3 bent = hand_sent({{0, 0, 0.35}, {0.15, 0, 0.35}, {0.15, 0, 0.2}});
   EXPECT_LT((bent - Vec3(0.15, 0, 0.2)).norm(), 0.02) << "to the end";
+}
+
+/// Closed jaws that hold nothing open and come again; whoever gives up holds nothing either.
+TEST(Take, LooksWhatItHoldsAndTriesAgain) {
+  const std::vector<Vec3> line{{0, 0, 0.35}, {0, 0, 0.05}};
+  const Workplace place{line.front(), 0.3, 3e-4, 0.0105, 1.1, 0.17};
+  for (const int failures : {0, 1, 2, 1000}) {
+    std::array<MovingHand, 2> hands{MovingHand(0.01), MovingHand(0.01)};
+    for (MovingHand& h : hands) h.rest_at({0.02, -0.03, 0.2}, place.speed_m_per_s);
+    ThreadView thread;
+    thread.look(line);
+    Move move = take(kRightHand, [](const Look&) { return 0.15; });
+    int closed = 0;
+    bool done = false, was = false;
+    double in_move_s = 0.0;
+    for (; in_move_s < move.patience_s && !done; in_move_s += 0.01) {
+      Sight sight;
+      sight.thread_W = line;
+      sight.tool_W = {hands[0].p_W(), hands[1].p_W()};
+      sight.holds[kRightHand] = closed > failures;
+      done = move.act({thread, sight, place, hands, in_move_s});
+      if (hands[kRightHand].grip && !was) {
+        ++closed;
+        EXPECT_LT((hands[kRightHand].p_W() - Vec3(0, 0, 0.2)).norm(), 2.0 * place.diameter_m)
+            << "looks before it closes";
+      }
+      was = hands[kRightHand].grip;
+      for (MovingHand& h : hands) h.tick();
+    }
+    Sight sight;
+    sight.holds[kRightHand] = closed > failures;
+    EXPECT_EQ(done, failures < 1000);
+    EXPECT_EQ(move.good({thread, sight, place, hands, in_move_s}), failures < 1000);
+    EXPECT_TRUE(!done || closed == failures + 1) << closed;
+  }
+}
+
+/// An end below what the arm reaches: taken where it can be.
+TEST(Take, GoesUpAlongAThreadWhoseEndIsOutOfReach) {
+  const std::vector<Vec3> line{{0, 0, 0.35}, {0, 0, 0.05}};
+  const Workplace place{line.front(), 0.3, 3e-4, 0.0105, 1.1, 0.17};
+  constexpr double kLowest_m = 0.059;
+  std::array<MovingHand, 2> hands{MovingHand(0.01), MovingHand(0.01)};
+  for (MovingHand& h : hands) h.rest_at({0.02, -0.03, 0.1}, place.speed_m_per_s);
+  ThreadView thread;
+  thread.look(line);
+  Move move = take(kRightHand, [](const Look& look) { return look.thread.length_m(); });
+  Vec3 tool = hands[kRightHand].p_W();
+  bool done = false;
+  for (double t_s = 0.0; t_s < move.patience_s && !done; t_s += 0.01) {
+    for (MovingHand& h : hands) h.tick();
+    tool = hands[kRightHand].p_W();
+    tool.z() = std::max(tool.z(), kLowest_m);
+    Sight sight;
+    sight.thread_W = line;
+    sight.tool_W = {hands[0].p_W(), tool};
+    done = move.act({thread, sight, place, hands, t_s});
+  }
+  EXPECT_TRUE(done);
+  EXPECT_LT(std::hypot(tool.x(), tool.y()), 1.5 * place.diameter_m);
+  EXPECT_LT(tool.z(), kLowest_m + 0.005) << "no further up than it must";
 }
 
 }  // namespace

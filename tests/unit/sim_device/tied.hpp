@@ -36,7 +36,9 @@ inline std::string tied(const char* name, const char* knot, std::uint32_t seed,
     sight.thread_W = thread.nodes_W();
     for (std::size_t h = 0; h < 2; ++h) {
       sight.tool_W[h] = person.wish()[h].p_W;
-      sight.force_W_N[h] = thread.hand(static_cast<physics::Hand>(h)).f_W;
+      const auto& hand = thread.hand(static_cast<physics::Hand>(h));
+      sight.force_W_N[h] = hand.f_W;
+      sight.holds[h] = hand.node >= 0;
     }
     const auto& wish = person.tick(sight);
     thread.tick({physics::ToolInput{wish[0].p_W, wish[0].v_W, wish[0].grip},

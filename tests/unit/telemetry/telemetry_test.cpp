@@ -172,6 +172,25 @@ TEST_F(TelemetryTest, EventsAreReadOutOfTheRecords) {
   EXPECT_EQ(sink.events[4].tick, 3);
 }
 
+TEST_F(TelemetryTest, JawsThatCloseOnNothingAreAnEvent) {
+  push(0);
+  record.grip[1] = true;
+  push(1);
+  push(2);  // once
+  record.grip[1] = false;
+  push(3);
+  record.grip[1] = true;
+  record.grasped_node[1] = 3;
+  push(4);
+  telemetry.step(5);
+  ASSERT_EQ(sink.events.size(), 2U);
+  EXPECT_EQ(sink.events[0].kind, ligature_msg::event_t::KIND_GRASP);
+  EXPECT_EQ(sink.events[0].code, -1);
+  EXPECT_EQ(sink.events[0].tick, 1);
+  EXPECT_EQ(sink.events[0].text, "right closes on nothing");
+  EXPECT_EQ(sink.events[1].code, 3);
+}
+
 TEST_F(TelemetryTest, CommandsArePassedOnAndAnswered) {
   const auto ack = telemetry.handle(command(ligature_msg::command_t::KIND_ARM), 9);
   EXPECT_EQ(ack.accepted, 1);
