@@ -1,0 +1,152 @@
+// Every fault's way to zero on made-up readings, and the ways back.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "tests/unit/control/controller_rig.hpp"
+
+namespace ligature::control {
+namespace {
+
+struct Case {
+  Fault fault;
+  std::function<void(Rig&)> cause;
+};
+
+const std::vector<Case>& cases() {
+  static const std::vector<Case> all{
+      {Fault::kBusLost, [](Rig& r) { r.in.reading.hand[0].bus_lost = true; }},
+      {Fault::kDriveFault, [](Rig& r) { r.in.reading.hand[1].drive_fault = true; }},
+      {Fault::kDriveFault, [](Rig& r) { r.in.reading.hand[1].enabled = false; }},
+      {Fault::kNonFinite, [](Rig& r) { r.offset_m = std::numeric_limits<double>::quiet_NaN(); }},
+      {Fault::kVelocityLimit, [](Rig& r) { r.in.reading.hand[0].q_rad[0] += 0.2; }},  // 0.15 rad in 1 ms
+      {Fault::kOverrun, [](Rig& r) { r.in.tick += kWatchdog; }},
+      {Fault::kPhysicsDiverged, [](Rig& r) { r.in.thread_finite = false; }},
+  };
+  return all;
+}
+
+TEST(ControllerFaults, EachTakesAllTorqueInTheSameTickAndLatches) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(name(c.fault));
+    Rig rig;
+    rig.to_force();
+    c.cause(rig);
+    const auto command = rig.tick();
+    EXPECT_EQ(rig.controller.state(), State::kFault);
+    EXPECT_EQ(rig.controller.fault(), c.fault);
+    EXPECT_EQ(Rig::largest(command), 0.0);
+    for (const auto& hand : command.hand) EXPECT_EQ(hand.request, rt::DriveRequest::kHold);  // and the power stages off
+
+    Rig healthy;  // the cause is gone; the fault is not
+    rig.in.reading = healthy.in.reading;
+    rig.in.thread_finite = true;
+    rig.offset_m = 0.05;
+    rig.controller.command(rt::CommandKind::kArm);
+    for (int i = 0; i < 100; ++i) EXPECT_EQ(Rig::largest(rig.tick()), 0.0);
+    EXPECT_EQ(rig.controller.fault(), c.fault);
+  }
+}
+
+/// Its drive says that it makes what was asked of it once, whatever is asked now: no step back from that may be sent
+/// without a jump, and without a limit of time force stood for ever.
+TEST(ControllerFaults, AForceThatDoesNotEndIsTakenAtOnce) {
+  for (const bool by_dead_man : {false, true}) {
+    Rig rig;
+    rig.to_force();
+    rig.offset_m = 50.0;
+    rig.ticks(40);
+    const auto asked = rig.tick();
+    ASSERT_GT(rig.controller.hand(0).f_device_N.norm(), 3.0);
+    for (std::size_t j = 0; j < rt::kJoints; ++j) rig.in.reading.hand[0].torque_Nm[j] = asked.hand[0].torque_Nm[j];
+    if (by_dead_man)
+      rig.in.reading.hand[0].dead_man = false;
+    else
+      rig.controller.command(rt::CommandKind::kDisarm);
+    int ticks = 0;
+    for (; ticks < 1000 && rig.controller.fault() == Fault::kNone; ++ticks) rig.tick();
+    EXPECT_EQ(rig.controller.fault(), Fault::kForceStays) << by_dead_man;
+    EXPECT_LE(ticks, Engagement::kFallTicks + Controller::kMostOvertimeTicks + 2);
+    EXPECT_EQ(Rig::largest(rig.tick()), 0.0);
+    EXPECT_EQ(rig.controller.state(), State::kFault);
+  }
+}
+
+TEST(ControllerFaults, OldJointMessagesAreHeldAndThenAFault) {
+  Rig rig;
+  rig.to_force();
+  for (int age = 1; age < kWatchdog; ++age) {
+    rig.in.reading.hand[0].age_ticks = age;
+    rig.tick();
+    ASSERT_EQ(rig.controller.fault(), Fault::kNone) << age;
+  }
+  rig.in.reading.hand[0].age_ticks = kWatchdog;
+  const auto command = rig.tick();
+  EXPECT_EQ(rig.controller.fault(), Fault::kTpdoTooOld);
+  EXPECT_EQ(Rig::largest(command), 0.0);
+}
+
+TEST(ControllerFaults,
+     ALostPeriodMakesNoOldSampleNew) {  // sets of 3 and 4 missing, period 5 lost: still the sample of 2
+  Rig rig;
+  rig.to_force();
+  for (const int age : {1, 2}) {
+    rig.in.reading.hand[0].age_ticks = age;
+    rig.tick();
+  }
+  ++rig.in.tick;  // lost
+  rig.in.reading.hand[0].age_ticks = 3;
+  rig.tick();
+  EXPECT_EQ(rig.controller.hand(0).age_ticks, 4);
+}
+
+TEST(ControllerFaults, OnlyAResetLeadsBackAndItArmsNothing) {
+  Rig rig;
+  rig.to_force();
+  rig.in.reading.hand[0].drive_fault = true;
+  rig.tick();
+  rig.in.reading.hand[0].drive_fault = false;
+  rig.controller.command(rt::CommandKind::kResetFault);
+  EXPECT_EQ(rig.tick().hand[0].request, rt::DriveRequest::kEnable);
+  rig.ticks(1000);
+  EXPECT_EQ(rig.controller.state(), State::kIdle);
+  EXPECT_EQ(rig.controller.fault(), Fault::kNone);
+  EXPECT_FALSE(rig.controller.armed());
+  rig.controller.command(rt::CommandKind::kArm);
+  rig.to_force();
+}
+
+/// An encoder jumps and comes back: the work that seems to have been given is booked, what seems to have come is not,
+/// and the hand had no force any more until the program was started again.
+TEST(ControllerFaults, AResetBeginsTheAccountsAnew) {
+  Rig rig;
+  rig.to_force();
+  for (const double jump_rad : {-100.0, 100.0}) {
+    rig.in.reading.hand[0].q_rad[1] += jump_rad;
+    rig.tick();
+  }
+  ASSERT_EQ(rig.controller.fault(), Fault::kVelocityLimit);
+  rig.ticks(50);
+  ASSERT_LT(rig.controller.hand(0).port_energy_J, -0.1);
+  rig.controller.command(rt::CommandKind::kResetFault);
+  rig.tick();
+  EXPECT_DOUBLE_EQ(rig.controller.hand(0).port_energy_J, Rig::scene().energy_credit_J);
+  rig.controller.command(rt::CommandKind::kArm);
+  rig.to_force();
+  EXPECT_GT(rig.controller.hand(0).f_device_N.norm(), 0.1);
+}
+
+TEST(ControllerFaults, AResetWhileTheCauseLastsFaultsAgain) {
+  Rig rig;
+  rig.to_force();
+  rig.in.reading.hand[0].bus_lost = true;
+  rig.tick();
+  rig.controller.command(rt::CommandKind::kResetFault);
+  rig.ticks(2);
+  EXPECT_EQ(rig.controller.fault(), Fault::kBusLost);
+}
+
+}  // namespace
+}  // namespace ligature::control

@@ -1,0 +1,61 @@
+#pragma once
+// The control law without a rig: readings that a test makes up, and the thread's pull on them.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/control/controller.hpp"
+
+namespace ligature::control {
+
+inline constexpr int kWatchdog = 20;
+
+/// A rig whose hands rest while each holds a node 5 cm above it.
+class Rig {
+ public:
+  Rig() : controller(scene(), {kWatchdog, true}) {
+    for (std::size_t h = 0; h < rt::kHands; ++h) {
+      auto& r = in.reading.hand[h];
+      r.q_rad = {0.0, 0.5, 0.6};
+      r.valid = r.enabled = r.dead_man = true;
+      in.grasp[h].held = true;
+    }
+  }
+
+  static scene::Hands scene() {
+    scene::Hands hands;
+    hands.workspace_scale = 20.0;
+    hands.energy_credit_J = 0.02;  // these hands never move, and earn nothing
+    return hands;
+  }
+
+  rt::RigCommand tick() {
+    for (std::size_t h = 0; h < rt::kHands; ++h) in.grasp[h].p_WG = controller.hand(h).p_WT + Vec3(0, 0, offset_m);
+    const auto command = controller.tick(in);
+    ++in.tick;
+    return command;
+  }
+  void ticks(int n) {
+    for (int i = 0; i < n; ++i) tick();
+  }
+  void to_force() {
+    ticks(1000);
+    ASSERT_EQ(controller.state(), State::kForce);
+    ASSERT_GT(largest(tick()), 0.0);
+  }
+  static double largest(const rt::RigCommand& c) {
+    double most = 0.0;
+    for (const auto& hand : c.hand) {
+      for (const double t : hand.torque_Nm) most = std::max(most, std::abs(t));
+    }
+    return most;
+  }
+
+  Controller controller;
+  TickInput in;
+  double offset_m = 0.05;
+};
+
+}  // namespace ligature::control
