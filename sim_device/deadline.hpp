@@ -12,7 +12,6 @@ class Deadline {
  public:
   void arm(Time at) noexcept { at_ = at; }
   void disarm() noexcept { at_ = kNever; }
-  [[nodiscard]] bool is_armed() const noexcept { return at_ != kNever; }
   [[nodiscard]] bool is_over(Time now) const noexcept { return now >= at_; }
   [[nodiscard]] Time at() const noexcept { return at_; }
 

@@ -44,7 +44,7 @@ void Jaws::close(Rod& rod, int node, Vec tool, const Mat* R_WT) noexcept {
   const Vec chord = state.x[after] - state.x[before];
   along_ = (1.0 / std::max(norm(chord), 1e-12)) * chord;
   s_m_ = would_hold(rod, node, tool).s_m;
-  slipped_m_ = slides_m_per_s_ = 0.0;
+  slides_m_per_s_ = 0.0;
   turning_ = R_WT != nullptr;
   roll_hold_ = -1;
   if (turning_) along_T_ = transposed(*R_WT) * along_;
@@ -115,7 +115,6 @@ void Jaws::slip(Rod& rod, Vec tool) noexcept {
   const double over_m = stretch_m - std::clamp(stretch_m, -most_m, most_m);
   s_m_ -= over_m;
   slides_m_per_s_ = -over_m / rod.numerics().tick_s;
-  slipped_m_ += over_m;
 }
 
 // What is held keeps its place in the tool.

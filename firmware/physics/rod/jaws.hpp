@@ -55,8 +55,6 @@ class Jaws {
   [[nodiscard]] Vec velocity(const Rod& rod) const noexcept;
   /// On the hand, N, of the last tick.
   [[nodiscard]] Vec force(const Rod& rod) const noexcept;
-  /// Thread that has slipped through since they closed, m; positive towards the thread's end.
-  [[nodiscard]] double slipped_m() const noexcept { return slipped_m_; }
 
  private:
   void choose(Rod& rod, Vec tool) noexcept;
@@ -66,7 +64,7 @@ class Jaws {
   JawSettings settings_;
   std::array<int, kMost> hold_{};  // indices into State::holds
   int count_ = 0;
-  double s_m_ = 0.0, slipped_m_ = 0.0, slides_m_per_s_ = 0.0;  // slides: s_c
+  double s_m_ = 0.0, slides_m_per_s_ = 0.0;  // slides: s_c
   Vec along_{};
   bool turning_ = false;
   int roll_hold_ = -1;            // the one whose director is director_T_

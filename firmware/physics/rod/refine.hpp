@@ -37,8 +37,6 @@ class Refine {
   /// After update() returned true and the mesh was rebuilt: offsets that keep moments and tensions.
   void keep_stress(const Material& material, State& state) noexcept;
 
-  [[nodiscard]] double unit_m() const noexcept { return unit_m_; }
-
   static constexpr int kLevels = 4;
   static constexpr double kFade = 0.8;  ///< of the stress-free offsets, per tick
   static constexpr int kChangesPerTick = 6;

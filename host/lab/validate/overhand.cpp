@@ -166,10 +166,6 @@ void lay_overhand(scene::Scene& s, double loop_m) {
   lay(s, [&](double along) { return curve.at(along); });
 }
 
-double excess_m(const physics::Simulation& sim, double length_m) {
-  return length_m - (sim.nodes_W().back() - sim.nodes_W().front()).norm();
-}
-
 Findings loose_overhand(
     const Subject& subject) {  // first order in sqrt(a / R); the leading order alone is 9 % off at 0.01
   Findings all;

@@ -21,9 +21,6 @@ struct OverhandCurve {
 /// Lays the scene's thread, equally spaced, along that curve.
 void lay_overhand(scene::Scene& scene, double loop_m);
 
-/// Excess length of a knotted thread held at its ends, m: what is missing between the hands.
-[[nodiscard]] double excess_m(const physics::Simulation& sim, double length_m);
-
 /// Both hands on the ends; `apart` moves them along x.
 template <class Thread>  // physics::Simulation, or a model's own class with the same contract
 class EndPull {
