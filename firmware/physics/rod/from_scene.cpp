@@ -102,9 +102,7 @@ Numerics numerics_of(const scene::Scene& scene) noexcept {
 
 Parts parts_of(const scene::Scene& scene) noexcept {
   Parts p;
-  int roll = 0;  // ends that can hold the thread's roll: clamps, and both hands
-  for (const auto& f : scene.world.fixed) roll += f.direction.has_value();
-  p.twist = scene.suture.rod.GJ_N_m2 > 0.0 && roll + 2 >= 2;
+  p.twist = scene.suture.rod.GJ_N_m2 > 0.0;
   p.contact = scene.contact.solver != scene::ContactSolver::kNone;
   p.world =
       p.contact && (scene.world.desk_height_m.has_value() || !scene.world.pegs.empty() || scene.world.grippers_collide);
