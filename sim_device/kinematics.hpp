@@ -86,10 +86,4 @@ class Linkage {
   Vec3 links_m_, home_m_, min_rad_, max_rad_;
 };
 
-// The shipped device's linkage by itself.
-[[nodiscard]] inline Vec3 home_tip_D_m() { return Linkage().home_D_m(); }
-[[nodiscard]] inline Vec3 tip_D_m(const Vec3& q_rad) noexcept { return Linkage().tip_D_m(q_rad); }
-[[nodiscard]] inline Mat3 tip_jacobian_D(const Vec3& q_rad) noexcept { return Linkage().jacobian_D(q_rad); }
-[[nodiscard]] inline std::optional<Vec3> joints_of_tip(const Vec3& p_DT) noexcept { return Linkage().joints(p_DT); }
-
 }  // namespace ligature::sim

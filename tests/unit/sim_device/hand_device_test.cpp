@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/sim_device/omni.hpp"
 #include "tests/unit/sim_device/virtual_master.hpp"
 
 namespace ligature::sim {

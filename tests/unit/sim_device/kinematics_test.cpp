@@ -6,6 +6,7 @@
 
 #include "protocol/device/device_file.hpp"
 #include "sim_device/plant.hpp"
+#include "tests/unit/sim_device/omni.hpp"
 
 namespace ligature::sim {
 namespace {

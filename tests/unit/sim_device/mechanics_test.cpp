@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "protocol/scene/gripper_script.hpp"
+#include "tests/unit/sim_device/omni.hpp"
 #include "tests/unit/sim_device/virtual_master.hpp"
 
 namespace ligature::sim {

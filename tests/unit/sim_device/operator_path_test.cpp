@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "protocol/scene/gripper_script.hpp"
+#include "tests/unit/sim_device/omni.hpp"
 
 namespace ligature::sim {
 namespace {

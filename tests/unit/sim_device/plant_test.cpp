@@ -5,6 +5,7 @@
 #include <random>
 
 #include "sim_device/hand.hpp"
+#include "tests/unit/sim_device/omni.hpp"
 
 namespace ligature::sim {
 namespace {

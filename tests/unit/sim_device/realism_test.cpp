@@ -7,6 +7,7 @@
 
 #include "sim_device/mechanics.hpp"
 #include "sim_device/unrest.hpp"
+#include "tests/unit/sim_device/omni.hpp"
 #include "tests/unit/sim_device/virtual_master.hpp"
 
 namespace ligature::sim {
