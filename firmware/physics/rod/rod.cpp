@@ -7,10 +7,10 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr int kWindow = 1024;        // nodes on which contacts can be solved together
-constexpr double kRelax_s = 0.02;    // in which a pulled thread comes to rest when the hands do
-constexpr double kMostStrain = 6.0;  // see Rod::settled
-constexpr double kNear = 0.1;        // diameters within which a pair is a contact at any speed
+constexpr int kWindow = 1024;          // nodes on which contacts can be solved together
+constexpr double kRelax_s = 0.02;      // in which a pulled thread comes to rest when the hands do
+constexpr double kMostLeniency = 6.0;  // see Rod::settled
+constexpr double kNear = 0.1;          // diameters within which a pair is a contact at any speed
 
 // How fast the fastest node moves among the others.
 double stir(const std::vector<Vec>& v) noexcept {
@@ -76,7 +76,7 @@ Rod& Rod::operator=(const Rod& other) {
   near_m_ = other.near_m_;
   pace_m_per_s_ = other.pace_m_per_s_;
   labours_ = other.labours_;
-  strain_ = other.strain_;
+  leniency_ = other.leniency_;
   waits_ = 0, patience_ = other.patience_, sweeps_only_ = false;
   letting_go_ = other.letting_go_, released_ = other.released_;
   solver_.resize(state_.nodes());
@@ -95,7 +95,7 @@ bool Rod::continue_from(const Rod& other) noexcept {
   refine_ = other.refine_;
   report_ = other.report_;
   pace_m_per_s_ = other.pace_m_per_s_;
-  strain_ = other.strain_;
+  leniency_ = other.leniency_;
   mesh_changed();
   return true;
 }
@@ -229,7 +229,7 @@ void Rod::begin_tick(const HandSpeed& hands) noexcept {
              static_cast<double>(report_.work) >
                  (labours_ ? kRested : kTired) * static_cast<double>(numerics_.budget(state_.nodes(), 0.0));
   const int substeps_before = report_.substeps;
-  strain_ = report_.cut_short > 0 ? std::min(kMostStrain, 1.5 * strain_) : std::max(1.0, 0.9 * strain_);
+  leniency_ = report_.cut_short > 0 ? std::min(kMostLeniency, 1.5 * leniency_) : std::max(1.0, 0.9 * leniency_);
   report_ = TickReport{};
   const bool fast = numerics_.is_fast(hands.fastest);
   work_.start(numerics_.budget(state_.nodes(), hands.fastest));

@@ -176,7 +176,7 @@ class Rod {
   long list_cost_ = 0;                  // of the last list
   double metric_dt_ = 0.0;
   double pace_m_per_s_ = 0.0;    // of the hands from the middle between them, fading once they stop
-  double strain_ = 1.0;          // how much less a pass need settle, since ticks' work did not do for all passes
+  double leniency_ = 1.0;        // how much less a pass need settle, since ticks' work did not do for all passes
   bool braked_ = false;          // the last substep was slowed; what hands felt is known
   int waits_ = 0;                // ticks in which the work ran out before the next substep was done
   double patience_ = kPatience;  // how many it may wait: less where substeps waited in vain, more where they settle

@@ -115,7 +115,7 @@ double Rod::settled() const noexcept {
   constexpr double kLetGo = 0.15, kCreep = 0.1, kStill_m_per_s = 1e-6;
   const double fastest = motion_.fastest(),
                speed = std::max(pace_m_per_s_, kLetGo * (letting_go_ ? fastest : stir_m_per_s_));
-  const double settled = numerics_.settled_m_per_s + strain_ * numerics_.settled_share * speed;
+  const double settled = numerics_.settled_m_per_s + leniency_ * numerics_.settled_share * speed;
   return std::min(settled, std::max(kStill_m_per_s, kCreep * fastest));
 }
 
