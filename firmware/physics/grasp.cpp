@@ -1,27 +1,12 @@
 #include "firmware/physics/grasp.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include "firmware/physics/nearest_beside.hpp"
 
 namespace ligature::physics {
 namespace {
 
 V3<double> to_v3(const Vec3& a) noexcept { return {a.x(), a.y(), a.z()}; }
 Vec3 to_vec3(const V3<double>& a) noexcept { return {a.x, a.y, a.z}; }
-
-/// From p to the half segments beside a node, m.
-double distance_m(const ThreadModel& m, const ThreadState& s, int node, const V3<double>& p) noexcept {
-  const V3<double> off = p - s.p.at(node);
-  double least2 = dot(off, off);
-  for (const int next : {node - 1, node + 1}) {
-    if (next < 0 || next >= m.nodes) continue;
-    const V3<double> segment = s.p.at(next) - s.p.at(node);
-    const double share = std::clamp(dot(off, segment) / std::max(dot(segment, segment), 1e-24), 0.0, 0.5);
-    const V3<double> aside = off - share * segment;
-    least2 = std::min(least2, dot(aside, aside));
-  }
-  return std::sqrt(least2);
-}
 
 }  // namespace
 
@@ -36,7 +21,8 @@ void Grasp::close(std::size_t h, const ToolInput& tool, const ThreadModel& m, co
     if (d2 < nearest2) nearest2 = d2, node = i;
   }
   if (node < 0) return;
-  const double off_m = distance_m(m, s, node, hand);
+  const auto position = [&](int i) { return s.p.at(i); };
+  const double off_m = norm(nearest_beside(node, m.nodes, position, hand).x - hand);
   if (off_m > reach_m_) return;
   node_[h] = node;
   // What is between the jaws is held at once, though the node that stands for it is up to half a segment away.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/physics/nearest_beside.hpp"
+
 namespace ligature::physics::rod {
 namespace {
 
@@ -15,19 +17,10 @@ bool is_held(const State& state, int node) noexcept {
 }  // namespace
 
 Place nearest_place(const State& state, int node, Vec p) noexcept {
-  const auto i = static_cast<std::size_t>(node);
-  const auto& s = state.mesh.s;
-  double least = norm(p - state.x[i]);
-  Place place{s[i], state.x[i]};
-  for (const int side : {-1, 1}) {
-    if (node + side < 0 || node + side >= state.nodes()) continue;
-    const auto k = static_cast<std::size_t>(node + side);
-    const Vec segment = state.x[k] - state.x[i];
-    const double share = std::clamp(dot(p - state.x[i], segment) / std::max(dot(segment, segment), 1e-24), 0.0, 0.5);
-    const Vec x = state.x[i] + share * segment;
-    if (norm(p - x) < least) least = norm(p - x), place = {s[i] + share * (s[k] - s[i]), x};
-  }
-  return place;
+  const auto position = [&](int i) { return state.x[static_cast<std::size_t>(i)]; };
+  const auto s = [&](int i) { return state.mesh.s[static_cast<std::size_t>(i)]; };
+  const auto nearest = nearest_beside(node, state.nodes(), position, p);
+  return {s(node) + nearest.share * (s(nearest.next) - s(node)), nearest.x};
 }
 
 Place Jaws::would_hold(const Rod& rod, int node, Vec tool) const noexcept {
