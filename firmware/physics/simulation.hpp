@@ -68,7 +68,7 @@ struct Diagnostics {
   std::int64_t bad_tick = -1;  ///< tick at which it did
 };
 
-/// A thread in its world. Copyable: a copy goes its own way (planners try pulls on copies).
+/// A thread in its world. Copyable: a copy goes its own way (a scene is rehearsed on one).
 class Simulation {
  public:
   /// Builds everything a run needs; the only function that allocates. The string says why it was refused.
