@@ -51,6 +51,12 @@ std::vector<double> curvature_of(const std::vector<scene::Vec>& line) {
   return curvature;
 }
 
+/// Does the scene say where each node is, stretched or not?
+bool is_node_by_node(const scene::Scene& scene) noexcept {
+  return static_cast<int>(scene.suture.initial_polyline_m.size()) == scene.suture.nodes &&
+         scene.suture.rod.spacing == scene::Spacing::kUniform;
+}
+
 // Along the scene's polyline, each node one rest length from the last as the crow flies, so that nothing is stretched:
 // where the thread bends, chords are shorter than the line, and a segment of 71 N must not begin 1 % short.
 void lay_along(const std::vector<scene::Vec>& line, State& state) noexcept {
@@ -72,6 +78,29 @@ void lay_along(const std::vector<scene::Vec>& line, State& state) noexcept {
       break;
     }
   }
+}
+
+/// What the scene asks of a rod and no rod can do, or nothing.
+std::string objection_to(const scene::Scene& scene) {
+  if (scene.suture.nodes < 4)
+    return "suture.nodes: found " + std::to_string(scene.suture.nodes) + ", the rod model needs 4 or more";
+  if (scene.contact.solver == scene::ContactSolver::kPaper)
+    return "contact.solver: found \"paper\", the rod model has \"none\" and \"implicit\"";
+  if (scene.suture.rod.GJ_N_m2 == 0.0) {  // without twist a thread has no sides
+    if (scene.suture.rod.rest_curvature_per_m != 0.0)
+      return "suture.rest_curvature_per_m: needs suture.GJ_N_m2 above 0";
+    if (scene.suture.rod.rest_twist_per_m != 0.0) return "suture.rest_twist_per_m: needs suture.GJ_N_m2 above 0";
+    if (scene.suture.rod.yield_strain) return "suture.yield_strain: needs suture.GJ_N_m2 above 0";
+    if (scene.contact.turns_thread) return "contact.turns_thread: needs suture.GJ_N_m2 above 0";
+  }
+  const int of_hands = scene.hands.pinch_width_m > 0.0 ? 2 * Jaws::kMost : 2;
+  if (static_cast<int>(scene.world.fixed.size()) + of_hands > kMaxHolds)
+    return "world.fixed: found " + std::to_string(scene.world.fixed.size()) + " nodes, the rod model takes " +
+           std::to_string(kMaxHolds - of_hands);
+  const auto& line = scene.suture.initial_polyline_m;
+  if (line.size() >= 2 && !is_node_by_node(scene) && !(norm(vec(line.back()) - vec(line[line.size() - 2])) > 0.0))
+    return "suture.initial: found its last two points in one place, the rod model needs a direction there";
+  return {};
 }
 
 }  // namespace
@@ -116,17 +145,8 @@ Parts parts_of(const scene::Scene& scene) noexcept {
 }
 
 std::variant<Rod, std::string> rod_of(const scene::Scene& scene) {
+  if (auto why = objection_to(scene); !why.empty()) return why;
   const int n = scene.suture.nodes;
-  if (n < 4) return "suture.nodes: found " + std::to_string(n) + ", the rod model needs 4 or more";
-  if (scene.contact.solver == scene::ContactSolver::kPaper)
-    return "contact.solver: found \"paper\", the rod model has \"none\" and \"implicit\"";
-  if (scene.suture.rod.GJ_N_m2 == 0.0) {  // without twist a thread has no sides
-    if (scene.suture.rod.rest_curvature_per_m != 0.0)
-      return "suture.rest_curvature_per_m: needs suture.GJ_N_m2 above 0";
-    if (scene.suture.rod.rest_twist_per_m != 0.0) return "suture.rest_twist_per_m: needs suture.GJ_N_m2 above 0";
-    if (scene.suture.rod.yield_strain) return "suture.yield_strain: needs suture.GJ_N_m2 above 0";
-    if (scene.contact.turns_thread) return "contact.turns_thread: needs suture.GJ_N_m2 above 0";
-  }
   const int bodies = static_cast<int>(scene.world.pegs.size()) + 2;
   Rod rod(material_of(scene), numerics_of(scene), parts_of(scene), n, bodies);
   State& state = rod.state();
@@ -139,10 +159,8 @@ std::variant<Rod, std::string> rod_of(const scene::Scene& scene) {
   const auto& line = scene.suture.initial_polyline_m;
   if (line.size() < 2) {
     hang(scene, state);
-  } else if (static_cast<int>(line.size()) == n && scene.suture.rod.spacing == scene::Spacing::kUniform) {
-    for (std::size_t i = 0; i < line.size(); ++i) state.x[i] = vec(line[i]);  // node by node, stretched or not
-  } else if (!(norm(vec(line.back()) - vec(line[line.size() - 2])) > 0.0)) {  // it goes on that way
-    return "suture.initial: found its last two points in one place, the rod model needs a direction there";
+  } else if (is_node_by_node(scene)) {
+    for (std::size_t i = 0; i < line.size(); ++i) state.x[i] = vec(line[i]);
   } else {
     rod.spread(curvature_of(line));
     lay_along(line, state);
@@ -158,11 +176,6 @@ std::variant<Rod, std::string> rod_of(const scene::Scene& scene) {
   };
   for (const auto& load : scene.world.loads)
     state.load[static_cast<std::size_t>(mesh_node(load.node))] += vec(load.force_N);
-  const int of_hands = scene.hands.pinch_width_m > 0.0 ? 2 * Jaws::kMost : 2;
-  if (static_cast<int>(scene.world.fixed.size()) + of_hands > kMaxHolds) {
-    return "world.fixed: found " + std::to_string(scene.world.fixed.size()) + " nodes, the rod model takes " +
-           std::to_string(kMaxHolds - of_hands);
-  }
   for (const auto& f : scene.world.fixed) {
     const int node = mesh_node(f.node);
     if (f.direction) {
