@@ -149,51 +149,44 @@ void Controller::step_state(const TickInput& in) noexcept {
     state_ = next(state_, Event::kFault);
     return;
   }
-  const bool push = armed_ && !shutting_down_;
   const bool brakes = !all_zero() && any_too_fast();  // without force there is nothing to brake
   if (state_ != State::kBrake) braking_ = brakes;
+  const bool plausible = state_ == State::kCalibrate && std::ranges::all_of(hands_, &HandControl::is_plausible);
+  plausible_ticks_ = plausible ? plausible_ticks_ + 1 : 0;
+  if (const auto event = find_event(in.reading, brakes)) state_ = next(state_, *event);
+}
+
+std::optional<Event> Controller::find_event(const rt::RigReading& reading, bool brakes) const noexcept {
+  const bool push = armed_ && !shutting_down_;
   switch (state_) {
     case State::kOff:
-      plausible_ticks_ = 0;
-      if (!shutting_down_ && drives_are_up(in.reading)) state_ = next(state_, Event::kDrivesUp);
+      if (!shutting_down_ && drives_are_up(reading)) return Event::kDrivesUp;
       break;
-    case State::kCalibrate: {
-      const bool plausible = std::ranges::all_of(hands_, [](const HandControl& h) { return h.is_plausible(); });
-      plausible_ticks_ = plausible ? plausible_ticks_ + 1 : 0;
-      if (shutting_down_)
-        state_ = next(state_, Event::kPowerDown);
-      else if (plausible_ticks_ >= kCalibrationTicks)
-        state_ = next(state_, Event::kCalibrated);
+    case State::kCalibrate:
+      if (shutting_down_) return Event::kPowerDown;
+      if (plausible_ticks_ >= kCalibrationTicks) return Event::kCalibrated;
       break;
-    }
     case State::kIdle:
-      if (shutting_down_)
-        state_ = next(state_, Event::kPowerDown);
-      else if (push)
-        state_ = next(state_, Event::kArm);
+      if (shutting_down_) return Event::kPowerDown;
+      if (push) return Event::kArm;
       break;
     case State::kEngage:
-      if (!push)
-        state_ = next(state_, Event::kDisarm);
-      else if (brakes)
-        state_ = next(state_, Event::kTooFast);
-      else if (any_full())
-        state_ = next(state_, Event::kEngaged);
+      if (!push) return Event::kDisarm;
+      if (brakes) return Event::kTooFast;
+      if (any_full()) return Event::kEngaged;
       break;
     case State::kForce:
-      if (!push)
-        state_ = next(state_, Event::kDisarm);
-      else if (brakes)
-        state_ = next(state_, Event::kTooFast);
-      else if (all_zero())
-        state_ = next(state_, Event::kLetGo);
+      if (!push) return Event::kDisarm;
+      if (brakes) return Event::kTooFast;
+      if (all_zero()) return Event::kLetGo;
       break;
     case State::kBrake:
-      if (all_zero() && !any_pushes()) state_ = next(state_, Event::kStopped);
+      if (all_zero() && !any_pushes()) return Event::kStopped;
       break;
     case State::kFault:
       break;
   }
+  return std::nullopt;
 }
 
 void Controller::step_gains() noexcept {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "firmware/control/faults.hpp"
 #include "firmware/control/hand_control.hpp"
@@ -70,6 +71,8 @@ class Controller {
   [[nodiscard]] Fault find_hand_fault(const HandControl& hand, const rt::HandReading& reading) const noexcept;
   [[nodiscard]] bool drives_are_up(const rt::RigReading& reading) const noexcept;
   void step_state(const TickInput& in) noexcept;
+  /// What leads out of the state that is no fault.
+  [[nodiscard]] std::optional<Event> find_event(const rt::RigReading& reading, bool brakes) const noexcept;
   void step_gains() noexcept;
   void step_force_scale() noexcept;
   void begin_moves(Move move) noexcept;
