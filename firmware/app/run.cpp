@@ -104,9 +104,8 @@ void tell(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, SceneDesk& 
 
 std::string no_telemetry(const std::string& url) {
   return "cannot open " + url +
-         ": no multicast route, or the port is taken; remedy: run inside scripts/private-net, or 'ip link set lo up; "
-         "ip "
-         "route add 224.0.0.0/4 dev lo' as root; --no-telemetry runs without anybody listening";
+         ": no multicast route, or the port is taken; remedy: run inside scripts/private-net, or "
+         "'ip link set lo up; ip route add 224.0.0.0/4 dev lo' as root; --no-telemetry runs without anybody listening";
 }
 
 Losses losses(const rt::Outlets& outlets, const telemetry::FlightRecorder* recorder) {
