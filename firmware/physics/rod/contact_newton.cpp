@@ -35,11 +35,16 @@ void ContactNewton::measure(const BandSolver& solver, int first, int last) noexc
 }
 
 void ContactNewton::start(const Contact* rows, int count) noexcept {
-  constexpr double kMoved = 0.02;  // of a weight: a slot that has moved more is made anew
+  constexpr double kMoved = 0.08;  // of a weight: a slot that has moved more is made anew
+  constexpr int kIdle = 4;         // substeps without load, after which a slot goes
   slot_.assign(static_cast<std::size_t>(count), -1);
   rows_.clear();
   begins_ = begins_ || !put_off_;
-  if (!put_off_ && 2 * slots_.size() > static_cast<std::size_t>(kMostRows)) slots_.clear(), coupled_ = 0;
+  for (Slot& slot : slots_) {
+    if (put_off_) break;
+    slot.idle = slot.row < 0 || slot.kind == Kind::kOpen ? slot.idle + 1 : 0;
+    slot.dead = slot.dead || slot.idle > kIdle;
+  }
   index_slots();
   for (int k = 0; k < count; ++k) {
     const std::int32_t s = find(rows[k].node[0] - z_.first(), rows[k].node[2] - z_.first());

@@ -96,7 +96,8 @@ class ContactNewton {
     double w[4] = {0.0, 0.0, 0.0, 0.0};
     Vec n{};
     double soft = 0.0, r_n = 0.0, r_t = 0.0;
-    bool dead = false;  ///< its contact has moved on
+    bool dead = false;  ///< its contact has moved on, or carries nothing any more
+    int idle = 0;       ///< substeps since it carried load
     Kind kind = Kind::kNew;
     Vec guess{};        ///< impulse when the work ran out
     Vec q{};            ///< p_t - r_t u_t

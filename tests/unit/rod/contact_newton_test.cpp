@@ -170,6 +170,34 @@ TEST(ContactNewton, KnowsItsContactsAgain) {
   EXPECT_GT(again, 50);
 }
 
+// Many contacts are not coupled anew in every substep; those that carry no load any more make room.
+TEST(ContactNewton, KeepsWhatCarriesLoad) {
+  constexpr int kMany = 60;
+  Jam jam(5);
+  std::vector<Contact> rows(static_cast<std::size_t>(kMany), jam.rows[0]);
+  for (int k = 0; k < kMany; ++k) {
+    Contact& c = rows[static_cast<std::size_t>(k)];
+    c.node[0] = k % 10, c.node[1] = c.node[0] + 1, c.node[2] = 12 + k / 10, c.node[3] = c.node[2] + 1;
+  }
+  ContactNewton newton;
+  newton.reserve();
+  newton.measure(jam.solver, 0, kNodes - 1);
+  const auto substep = [&](double pressed, double parting) {
+    const std::vector<Vec> p(rows.size(), pressed * rows[0].n), u(rows.size(), parting * rows[0].n);
+    newton.start(rows.data(), kMany);
+    const int known = newton.loaded();
+    EXPECT_TRUE(newton.look(rows.data(), kMany, p.data(), u.data()));
+    newton.couple();
+    (void)newton.read<true>(rows.data(), p.data(), u.data());
+    return known;
+  };
+  EXPECT_EQ(substep(1.0, 0.0), 0);
+  EXPECT_EQ(substep(1.0, 0.0), kMany);
+  EXPECT_EQ(substep(0.0, 1.0), kMany);  // known for a while
+  for (int k = 0; k < 10; ++k) (void)substep(0.0, 1.0);
+  EXPECT_EQ(newton.loaded(), 0);
+}
+
 TEST(ContactNewton, PutsOffAndResumes) {
   Jam jam(2);
   ContactNewton newton;
