@@ -26,12 +26,13 @@ Error at_line(const std::filesystem::path& path, std::size_t line, std::string_v
   return {path.string() + ":" + std::to_string(line) + ": " + std::string(what)};
 }
 
-std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& path, std::string_view header) {
+std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& path, std::string_view header,
+                                                  std::string_view wider) {
   std::ifstream file(path);
   if (!file || std::filesystem::is_directory(path)) {
     return Error{path.string() + ": cannot be read: " + std::strerror(errno ? errno : EISDIR)};
   }
-  const auto columns = split(header);
+  auto columns = split(header);
   std::vector<CsvRow> rows;
   std::string text;
   bool header_seen = false;
@@ -41,8 +42,11 @@ std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& p
     if (body.empty()) continue;
     const auto cells = split(body);
     if (!header_seen) {
+      if (!wider.empty() && cells == split(wider)) header = wider, columns = split(wider);
       if (cells != columns) {
-        return at_line(path, line, "found '" + shown(body) + "', allowed the header '" + std::string(header) + "'");
+        return at_line(path, line,
+                       "found '" + shown(body) + "', allowed the header '" + std::string(header) + "'" +
+                           (wider.empty() ? "" : " or '" + std::string(wider) + "'"));
       }
       header_seen = true;
     } else if (cells.size() != columns.size()) {

@@ -19,11 +19,12 @@ struct CsvRow {
 };
 
 /// Reads a CSV file: `#` starts a comment, empty lines are skipped, blanks around cells are dropped, the first line
-/// that is left must be `header` (as written, blanks aside), and every row must have as many cells as it.
+/// that is left must be `header` (as written, blanks aside), or `wider` where there is one, and every row must have as
+/// many cells as it.
 /// @return the rows below the header (at least one), or one line that names file, line, what was found and what is
 /// allowed.
 [[nodiscard]] std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& path,
-                                                                std::string_view header);
+                                                                std::string_view header, std::string_view wider = {});
 
 /// Foreign text as it may stand in a message: control characters as \xNN, at most 60 characters.
 [[nodiscard]] std::string shown(std::string_view text);

@@ -43,14 +43,11 @@ std::string read_row(const CsvRow& row, int& hand, GripKey& key) {
 
 std::variant<GripperScript, Error> load_gripper_script(const std::filesystem::path& path) {
   GripperScript script;
-  auto read = read_csv(path, kTurning);
-  if (auto* error = std::get_if<Error>(&read); error && error->text.find("allowed the header") != std::string::npos) {
-    read = read_csv(path, kHeader);
-  } else {
-    script.turns = true;
-  }
+  auto read = read_csv(path, kHeader, kTurning);
   if (auto* error = std::get_if<Error>(&read)) return *error;
-  for (const auto& row : std::get<std::vector<CsvRow>>(read)) {
+  const auto& rows = std::get<std::vector<CsvRow>>(read);
+  script.turns = rows.front().cells.size() > split(kHeader).size();
+  for (const auto& row : rows) {
     int hand = 0;
     GripKey key;
     if (auto why = read_row(row, hand, key); !why.empty()) return at_line(path, row.line, why);
