@@ -9,10 +9,15 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr float kSlack = 1.0001F;  // float rounding of centres and radii
-constexpr double kStraight = 0.95,
-                 kBent = 2.0 / 3.0;   // of the gap that a straight thread leaves between its own neighbours
-constexpr std::size_t kTable = 2048;  // places for impulses: a few times the most contacts there can be
+// Float rounding: a centre errs by 6e-8 of the thread's length, two of a thread a thousand diameters long by 2e-4
+// diameters together; the least that is compared, 2.5 diameters, covers that. A longer one eats into the skin.
+constexpr float kSlack = 1.0001F;
+// Of the gap that a straight thread leaves between its own neighbours. From the first on their spheres will do: it
+// saves measuring, and square and surgeon's knots are pulled and held alike with 0.8 and 0.999. Within the second they
+// are contacts: of segments a diameter long it is more than near_m, so for shorter ones alone; with a third of the gap
+// a square lay 0.09 d in itself in the pull, not 0.05.
+constexpr double kStraight = 0.95, kBent = 2.0 / 3.0;
+constexpr std::size_t kTable = 2048;  // places for impulses: 2.7 times the contacts that are solved at most
 
 std::size_t place_of(std::int32_t a, std::int32_t b) noexcept {
   return (static_cast<std::size_t>(a) * 2654435761U + static_cast<std::size_t>(b) * 40503U) % kTable;

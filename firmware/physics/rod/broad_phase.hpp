@@ -77,7 +77,7 @@ class BroadPhase {
 
  private:
   static constexpr std::size_t kBlock = Motion::kBlock;
-  static constexpr int kLevels = 12;
+  static constexpr int kLevels = 12;  ///< of the tree: 2^11 blocks in its largest sphere, 16384 segments
   struct Ball {
     float x, y, z, r;
   };
