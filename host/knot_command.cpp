@@ -48,7 +48,7 @@ std::string describe_knot(const KnotOptions& options) {
   if (closed && ends_meet) line.points.pop_back();
   if (line.points.size() < 3)
     throw BadInput(options.file + ": found " + std::to_string(line.points.size()) +
-                   " different points, allowed 3 or more");
+                   " points beside the one that closes it, allowed 3 or more");
   const knot::KnotResult found = knot::recognise(line.points, closed);
   return options.json ? json_line(found) : words(found, line);
 }

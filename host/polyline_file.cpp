@@ -40,6 +40,12 @@ std::string comma_separated(std::string_view line) {
   return joined;
 }
 
+std::string with_commas(const std::vector<std::string_view>& words) {
+  std::string joined;
+  for (const auto& word : words) joined += (joined.empty() ? "" : ",") + std::string(word);
+  return joined;
+}
+
 std::string lower(std::string_view word) {
   std::string result(word);
   for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -104,9 +110,8 @@ class PolylineReader {
       if (name == "node") found.node = i;
     }
     if (found.x < 0 || found.y < 0 || found.z < 0)
-      refuse("header '" + shown(names.front()) +
-             ",...' lacks a coordinate, allowed columns x,y,z or x_m,y_m,z_m "
-             "(and t_s, node)");
+      refuse("header '" + shown(with_commas(names)) +
+             "' lacks a coordinate, allowed columns x,y,z or x_m,y_m,z_m (and t_s, node)");
     return found;
   }
 

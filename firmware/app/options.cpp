@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -30,12 +29,26 @@ could not be started.)";
 const std::map<std::string, RtMode> kModes{
     {"enforce", RtMode::kEnforce}, {"warn", RtMode::kWarn}, {"off", RtMode::kOff}};
 
-/// CLI11's ranges let nan pass: no comparison with it is true.
-std::string finite(const std::string& word) {
-  double value = 0.0;
-  if (CLI::detail::lexical_cast(word, value) && !std::isfinite(value))
-    return "found '" + word + "', allowed a finite number";
-  return {};
+/// CLI11's own range lets nan pass: no comparison with it is true.
+CLI::Validator within(double low, double high) {
+  const std::string allowed = CLI::detail::to_string(low) + " .. " + CLI::detail::to_string(high);
+  return {[=](const std::string& word) {
+            double value = 0.0;
+            const bool good = CLI::detail::lexical_cast(word, value) && value >= low && value <= high;
+            return good ? std::string() : "found '" + word + "', allowed " + allowed;
+          },
+          "in [" + allowed + "]"};
+}
+
+/// A first word that is no command, by name: the parser alone would only say that a command is missing.
+std::string unknown_command(const CLI::App& app, int argc, const char* const* argv) {
+  if (argc < 2 || argv[1][0] == '-') return {};
+  std::string allowed;
+  for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == argv[1]) return {};
+    allowed += (allowed.empty() ? "" : ", ") + command->get_name();
+  }
+  return "found command '" + std::string(argv[1]) + "', allowed " + allowed;
 }
 
 void add_scene(CLI::App& command, std::string& scene, std::vector<std::string>& overrides) {
@@ -47,8 +60,7 @@ void add_scene(CLI::App& command, std::string& scene, std::vector<std::string>& 
 
 void add_budget(CLI::App& command, double& percent) {
   command.add_option("--budget", percent, "share of the period that computing may take, percent")
-      ->check(finite)
-      ->check(CLI::Range(1.0, 100.0))
+      ->check(within(1.0, 100.0))
       ->capture_default_str();
 }
 
@@ -70,7 +82,7 @@ void add_run(CLI::App& run, RunOptions& o) {
   run.add_flag("--override-passivity", o.override_passivity,
                "take a coupling stiffer than the device can render stably (docs/haptics.md)");
   run.add_flag("--arm", o.arm, "arm at start, as the local operator; else wait for the command");
-  run.add_option("--duration", o.duration_s, "end after so many seconds")->check(finite)->check(CLI::Range(0.001, 1e6));
+  run.add_option("--duration", o.duration_s, "end after so many seconds")->check(within(0.001, 1e6));
   run.add_option("--lcm-url", o.lcm_url, "LCM provider")->capture_default_str();
   run.add_flag("--no-telemetry", o.no_telemetry, "run without LCM: nobody sees the rig and no command reaches it");
   run.add_option_function<std::string>(
@@ -80,17 +92,16 @@ void add_run(CLI::App& run, RunOptions& o) {
       ->default_str("warn");
   run.add_option("--watchdog-ms", o.watchdog_ms,
                  "silence that is a fault: of a hand here, of the controller in the drives, of the loop itself")
-      ->check(CLI::Range(2, 10000))
+      ->check(within(2, 10000))
       ->capture_default_str();
   run.add_option("--recorder", o.recorder,
                  "flight recorder: every tick to this file, read by 'ligature-host export'; none = off")
       ->capture_default_str();
   run.add_option("--recorder-s", o.recorder_s, "seconds that it goes back, 0.5 MB each")
-      ->check(CLI::Range(5, 3600))
+      ->check(within(5, 3600))
       ->capture_default_str();
   run.add_option("--wait-s", o.wait_s, "how long to wait for the hands to be there")
-      ->check(finite)
-      ->check(CLI::Range(0.0, 3600.0))
+      ->check(within(0.0, 3600.0))
       ->capture_default_str();
   run.add_option("--scenes", o.scenes, "folder of the scenes that a command may load (default: where --scene is)");
   add_budget(run, o.budget_percent);
@@ -122,17 +133,13 @@ void add_admit(CLI::App& admit, AdmitOptions& o) {
   admit.footer(kAdmitHelp);
   add_scene(admit, o.scene, o.overrides);
   add_budget(admit, o.budget_percent);
-  admit.add_option("--seconds", o.seconds, "how long to try")
-      ->check(finite)
-      ->check(CLI::Range(0.1, 3600.0))
-      ->capture_default_str();
+  admit.add_option("--seconds", o.seconds, "how long to try")->check(within(0.1, 3600.0))->capture_default_str();
 }
 
 void add_doctor(CLI::App& doctor, DoctorOptions& o) {
   doctor.footer(kDoctorHelp);
   doctor.add_option("--seconds", o.seconds, "how long to measure wake-ups; 0 = only the table")
-      ->check(finite)
-      ->check(CLI::Range(0.0, 86400.0))
+      ->check(within(0.0, 86400.0))
       ->capture_default_str();
   doctor.add_option("--can", o.can, "SocketCAN interface to look at, may be given again")
       ->allow_extra_args(false)
@@ -165,12 +172,15 @@ std::variant<Command, Exit> parse(int argc, char** argv) {
   add_run(*app.add_subcommand("run", "run the rig"), run);
   add_admit(*app.add_subcommand("admit", "measure whether a scene's worst tick fits into the period"), admit);
   add_doctor(*app.add_subcommand("doctor", "check whether this machine can hold the rate"), doctor);
+  const auto refused = [](const std::string& why) {
+    std::fprintf(stderr, "ligature-firmware: %s (see --help)\n", one_line(why).c_str());
+    return Exit{2};
+  };
+  if (const auto unknown = unknown_command(app, argc, argv); !unknown.empty()) return refused(unknown);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return Exit{app.exit(e)};
-    std::fprintf(stderr, "ligature-firmware: %s (see --help)\n", one_line(e.what()).c_str());
-    return Exit{2};
+    return e.get_exit_code() == 0 ? Exit{app.exit(e)} : refused(e.what());
   }
   if (app.got_subcommand("admit")) return Command(admit);
   if (app.got_subcommand("doctor")) return Command(doctor);

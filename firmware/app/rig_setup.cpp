@@ -93,6 +93,8 @@ std::variant<Plan, Refusal> make_plan(const std::string& file, const std::vector
 }
 
 std::variant<Plan, Refusal> make_plan(const RunOptions& options) {
+  if (!options.scenes.empty() && !std::filesystem::is_directory(options.scenes))
+    return Refusal{2, "--scenes " + options.scenes + ": allowed a folder that is there"};
   device::Device device = device::omni();
   if (!options.device.empty()) {
     auto loaded = device::load_device(options.device);

@@ -26,7 +26,7 @@ Opened connected(int fd, const std::string& url, const Address& address, bool bi
   if ((bind_it ? bind(fd, a, sizeof address) : connect(fd, a, sizeof address)) != 0) {
     const std::string why = std::strerror(errno);
     close(fd);
-    return refuse(OpenFailure::kNotThere, url, why);
+    return refuse(OpenFailure::kNotThere, url, why + (bind_it ? "" : "; remedy: start the hand that serves it"));
   }
   return std::make_unique<SocketBus>(fd);
 }

@@ -191,7 +191,8 @@ class StrictTable {
   /// Refuses a key that must be there and is not.
   void require(std::string_view key) {
     if (!table_.contains(key))
-      context_.refuse(path_, table_, "'" + path_ + "': key '" + std::string(key) + "' is missing");
+      context_.refuse(path_, table_,
+                      (path_.empty() ? "" : "'" + path_ + "': ") + "key '" + std::string(key) + "' is missing");
   }
 
   /// Refuses the first key that was never asked for.
@@ -250,7 +251,9 @@ class StrictTable {
     } else if (const auto* number = node.as_floating_point()) {
       std::array<char, 32> digits{};
       const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number->get()).ptr;
-      out.append(digits.data(), end);
+      const std::string_view text(digits.data(), end);
+      out += text;
+      if (text.find_first_not_of("-0123456789") == text.npos) out += ".0";  // 50.0, where an integer is asked for
     } else {
       std::ostringstream value;
       node.visit([&](const auto& v) { value << v; });

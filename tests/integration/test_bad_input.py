@@ -14,6 +14,7 @@ BAD_SCENES = {
     "wrong type": (SCENE.replace("length_m = 5.0", 'length_m = "five"'), "length_m"),
     "not a number": (SCENE.replace("radius_m = 0.05", "radius_m = nan"), "radius_m"),
     "too few nodes": (SCENE.replace("nodes = 50", "nodes = 1"), "nodes"),
+    "nodes that are no integer": (SCENE.replace("nodes = 50", "nodes = 50.0"), "found 50.0, allowed integer"),
     "not toml": (SCENE + "\n[suture\n", ""),
 }
 KEYS = (ROOT / "scenes/operators/overhand.csv").read_text()
@@ -63,6 +64,7 @@ class BadInput(unittest.TestCase):
         taken = run(*rig, "--override-passivity")  # and goes on to a bus that is not there
         self.assertEqual(taken.returncode, 3, taken.stderr)
         self.assertIn("bus", taken.stderr)
+        self.assertIn("remedy: start the hand", taken.stderr)
 
     def test_numbers_of_the_simulated_hand(self):
         for option, words in (("--tremor-mm", "0 .. 10"), ("--tremor-hz", "0.1 .. 100"), ("--adversary-s", "0 .. 1"),
@@ -71,6 +73,9 @@ class BadInput(unittest.TestCase):
                 with self.subTest(option=option, value=value):
                     self.refused(run("ligature-device", "--hand", "left", "--bus", f"local:{self.path}/bus", option, value),
                                  option, f"found '{value}'", words)
+        for value in ("nan", "9999", "-1"):
+            self.refused(run("ligature-device", "--hand", "left", "--bus", f"local:{self.path}/bus", "--cpu", value),
+                         "--cpu", f"found '{value}'", "0 .. 1023")
 
     def test_a_missing_scene(self):
         for name, command in self.programs(self.path / "nowhere.toml"):
@@ -93,9 +98,12 @@ class BadInput(unittest.TestCase):
                    "--right", right or f"local:{self.path}/r", "--recorder", "none", "--wait-s", "0", "--force", *more)
 
     def test_firmware_options(self):
-        self.refused(self.firmware("--duration", "nan"), "finite")
-        self.refused(self.firmware("--duration", "inf"), "finite")
-        self.refused(self.firmware("--wait-s", "nan"), "finite")
+        for option, allowed in (("--duration", "0.001 .. 1e+06"), ("--wait-s", "0 .. 3600"), ("--budget", "1 .. 100"),
+                                ("--watchdog-ms", "2 .. 10000")):
+            for value in ("nan", "inf", "-1"):
+                with self.subTest(option=option, value=value):
+                    self.refused(run("ligature-firmware", "run", option, value), option, f"found '{value}'", allowed)
+        self.refused(self.firmware("--scenes", self.path / "nowhere"), "--scenes", "nowhere")
         self.refused(self.firmware("--lcm-url", "nonsense"), "--lcm-url", "nonsense", "udpm://")
         self.refused(self.firmware("--lcm-url", "udpm://10.0.0.1:7667"), "--lcm-url")
         self.refused(self.firmware("--lcm-url", "udpm://239.255.76.67:nan"), "--lcm-url")
@@ -116,6 +124,7 @@ class BadInput(unittest.TestCase):
         self.refused(run("ligature-device", "--hand", "left", "--bus", f"local:{self.path}"), "folder")
 
     def test_words_that_are_no_command_or_knot(self):
+        self.refused(run("ligature-firmware", "nope"), "nope", "run, admit, doctor")
         self.refused(run("ligature-host", "nope"), "nope", "record", "replay")
         self.refused(run("ligature-lab", "nope"), "nope", "run", "pareto")
         self.refused(run("ligature-lab", "tie", "nope"), "nope", "overhand", "surgeon")
@@ -146,6 +155,8 @@ class BadInput(unittest.TestCase):
         points = self.path / "points.csv"
         points.write_text("x,y,z\n0,0,0\n1,0,zero\n")
         self.refused(run("ligature-host", "knot", points), "points.csv", "3")
+        points.write_text("a,b,c\n0,0,0\n1,0,0\n")
+        self.refused(run("ligature-host", "knot", points), "points.csv:1", "'a,b,c'", "x,y,z")
 
 
 if __name__ == "__main__":
