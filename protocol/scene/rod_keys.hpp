@@ -7,7 +7,7 @@
 
 namespace ligature::scene {
 
-/// A thread that can be bought, as far as it is known. Values marked "assumed" have no source that we could read.
+/// A thread that can be bought, as far as it is known (tests/reference/08_sutures.json).
 struct RodPreset {
   const char* name;
   double diameter_m;  ///< middle of the USP range
@@ -16,17 +16,21 @@ struct RodPreset {
   double bend_share;  ///< EI over that of a solid rod: 1 for a monofilament, less for a braid
 };
 
-/// Densities: Morton & Hearle, Physical Properties of Textile Fibres, table 5.1. Moduli: nylon 6.6 fibre of medium
-/// tenacity, ibid. table 13.2; silk and polyglactin sutures: Naleway et al., J. Biomed. Mater. Res. B 103 (2015) 735.
-/// Assumed: polypropylene's modulus, polyglactin's density, the bend share of braids, and Poisson's ratio 0.4 in GJ.
+/// Diameters: middle of the range of the metric size. Densities: Morton & Hearle, Physical Properties of Textile
+/// Fibres, table 5.1. Moduli: nylon 6.6 fibre of medium tenacity, ibid. table 13.2; silk and rapid polyglactin sutures,
+/// 3-0: Naleway et al., J. Biomed. Mater. Res. B 103 (2015) 735, abstract. Assumed, since no source could be read: that
+/// a nylon suture is as stiff as the fibre, and other sizes of a braid as 3-0; polypropylene's modulus; polyglactin's
+/// density; that a braid is as dense as its fibres (no packing fraction); the bend share of braids; Poisson's ratio 0.4
+/// in GJ. Friction is not suture data and stays the scene's.
 inline constexpr RodPreset kRodPresets[] = {
     {"nylon-2-0", 0.325e-3, 1140.0, 3.42e9, 1.0},       {"nylon-3-0", 0.225e-3, 1140.0, 3.42e9, 1.0},
     {"nylon-4-0", 0.175e-3, 1140.0, 3.42e9, 1.0},       {"nylon-5-0", 0.125e-3, 1140.0, 3.42e9, 1.0},
     {"polypropylene-2-0", 0.325e-3, 910.0, 3.0e9, 1.0}, {"polypropylene-3-0", 0.225e-3, 910.0, 3.0e9, 1.0},
     {"polypropylene-4-0", 0.175e-3, 910.0, 3.0e9, 1.0}, {"polypropylene-5-0", 0.125e-3, 910.0, 3.0e9, 1.0},
     {"silk-2-0", 0.325e-3, 1340.0, 8.70e9, 0.1},        {"silk-3-0", 0.225e-3, 1340.0, 8.70e9, 0.1},
-    {"silk-4-0", 0.175e-3, 1340.0, 8.70e9, 0.1},        {"polyglactin-2-0", 0.325e-3, 1400.0, 9.32e9, 0.1},
-    {"polyglactin-3-0", 0.225e-3, 1400.0, 9.32e9, 0.1}, {"polyglactin-4-0", 0.175e-3, 1400.0, 9.32e9, 0.1}};
+    {"silk-4-0", 0.175e-3, 1340.0, 8.70e9, 0.1},        {"silk-5-0", 0.125e-3, 1340.0, 8.70e9, 0.1},
+    {"polyglactin-2-0", 0.325e-3, 1400.0, 9.32e9, 0.1}, {"polyglactin-3-0", 0.225e-3, 1400.0, 9.32e9, 0.1},
+    {"polyglactin-4-0", 0.175e-3, 1400.0, 9.32e9, 0.1}, {"polyglactin-5-0", 0.125e-3, 1400.0, 9.32e9, 0.1}};
 
 /// Reads the rod's keys of [suture]: `preset` first, then whatever is given beside it.
 /// @param radius_m set by a preset; a `radius_m` of the file, read later, replaces it.
