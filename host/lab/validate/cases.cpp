@@ -30,7 +30,7 @@ constexpr Case kCases[] = {
     {"incline", "atan(mu)", every, incline_threshold, 0, true},
     {"stopping-distance", "v^2 / 2 mu g", every, stopping_distance, 0, true},
     {"stick-creep", "half a degree below the threshold", every, stick_creep, 0, false},
-    {"crossing-threads", "two elastic strands in balance", every, crossing_threads, 0, true},
+    {"crossing-threads", "two Hookean strands in balance", hookean, crossing_threads, 0, true},
     {"heavy-rod-lifted", "nonlinear boundary value problem", bends, heavy_rod_lifted, 0, true},
     {"loose-overhand", "elastic knot without friction, to first order", rod, loose_overhand, 0, true},
     {"overhand-hysteresis", "elastic knot tightened and loosened", rod, overhand_hysteresis, 0, false},
