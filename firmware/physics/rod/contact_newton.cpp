@@ -17,12 +17,12 @@ void ContactNewton::reserve() {
   slot_.reserve(static_cast<std::size_t>(kMaxContacts));
   rows_.reserve(kRows);
   slots_.reserve(kRows);
-  w_.resize(kRow * kRow);
+  w_.reserve(kRows);
   unknowns_.reserve(kUnknowns);
-  on_.resize(kRow);
+  on_.resize(3 * kRows);
   rest_.resize(kRows);
   stuck_.reserve(kRows);
-  with_.resize(2 * kRow);
+  with_.resize(6 * kRows);
   at_.reserve(kWide);
   dense_.reserve(kUnknowns);
 }
@@ -139,18 +139,6 @@ std::array<Four, 3> ContactNewton::answer_at(const Slot& slot) const noexcept {
   return sum;
 }
 
-// W is symmetric.
-void ContactNewton::keep(std::size_t slot, std::size_t other, const std::array<Four, 3>& w) noexcept {
-  float *const row = w_.data() + 3 * slot * kRow + other, *const turned = w_.data() + 3 * other * kRow + slot;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const float value = w[i][static_cast<int>(j)];
-      row[i * kRow + j * kPlane] = value;
-      turned[j * kRow + i * kPlane] = value;
-    }
-  }
-}
-
 // How far the map of a contact steps.
 void ContactNewton::set_steps(Slot& slot, const std::array<Four, 3>& w) noexcept {
   const Mat own{{__builtin_convertvector(w[0], Lanes)},
@@ -174,14 +162,16 @@ void ContactNewton::couple() noexcept {
   for (const auto& slot : slots_) {
     for (int j = 0; j < slot.count; ++j) first = std::min(first, slot.node[j]), last = std::max(last, slot.node[j]);
   }
-  for (; coupled_ < slots_.size(); ++coupled_) {
-    Slot& slot = slots_[coupled_];
+  for (std::size_t a = coupled_; a < slots_.size(); ++a) {
+    Slot& slot = slots_[a];
     spread(slot, first, last);
-    for (std::size_t b = 0; b < coupled_; ++b) keep(coupled_, b, answer_at(slots_[b]));
+    for (std::size_t b = 0; b < a; ++b) w_.put(a, b, answer_at(slots_[b]));
     const auto own = answer_at(slot);
-    keep(coupled_, coupled_, own);
+    w_.put(a, a, own);
     set_steps(slot, own);
   }
+  w_.mirror(coupled_, slots_.size());
+  coupled_ = slots_.size();
 }
 
 bool ContactNewton::look(const Contact* rows, int count, const Vec* p, const Vec* u) noexcept {

@@ -7,6 +7,7 @@
 
 #include "firmware/physics/rod/band_columns.hpp"
 #include "firmware/physics/rod/band_solver.hpp"
+#include "firmware/physics/rod/contact_couplings.hpp"
 #include "firmware/physics/rod/dense.hpp"
 #include "firmware/physics/rod/floats.hpp"
 #include "firmware/physics/rod/swept.hpp"
@@ -122,15 +123,14 @@ class ContactNewton {
     return static_cast<std::size_t>(slot_[static_cast<std::size_t>(row)]);
   }
   [[nodiscard]] Vec moved(std::size_t slot) const noexcept {
-    const float* const u = on_.data() + slot;
-    return make(u[0], u[kPlane], u[2 * kPlane]);
+    const float* const u = on_.data() + on_at(slot);
+    return make(u[0], u[kLanes], u[2 * kLanes]);
   }
   void spread(const Slot& slot, std::int32_t first, std::int32_t last) noexcept;
   [[nodiscard]] std::array<Four, 3> answer_at(const Slot& slot) const noexcept;
   static void set_steps(Slot& slot, const std::array<Four, 3>& own) noexcept;
   void index_slots() noexcept;
   [[nodiscard]] std::int32_t find(std::int32_t a, std::int32_t b) const noexcept;
-  void keep(std::size_t slot, std::size_t other, const std::array<Four, 3>& w) noexcept;
   void exchange(std::size_t a, std::size_t b) noexcept;
   void bring_forward() noexcept;
   void set_cost() noexcept;
@@ -144,7 +144,10 @@ class ContactNewton {
   template <bool Friction>
   void assemble(const Vec* p) noexcept;
 
-  static constexpr std::size_t kPlane = static_cast<std::size_t>(kMostRows), kRow = 3 * kPlane;
+  static constexpr std::size_t kPlane = static_cast<std::size_t>(kMostRows), kLanes = Couplings::kLanes;
+  [[nodiscard]] static std::size_t on_at(std::size_t slot) noexcept {
+    return slot / kLanes * 3 * kLanes + slot % kLanes;
+  }
   BandColumns z_;
   Floats spread_;                   // Z J^T of the slot that is being coupled, as a column of Z
   std::vector<std::int32_t> slot_;  // of each row, or -1
@@ -157,14 +160,14 @@ class ContactNewton {
   int changed_ = 0;                          // kinds that the last read() changed
   double error2_ = 0.0, last_error2_ = 0.0;  // that it saw, and the one that the last step began with
   double cost_ = 1.0;                        // of a change, 1 at first
-  Floats w_;  // W of all slots: rows x, y, z of the first, of the second; in a row all x, all y, all z
+  Couplings w_;                              // of all slots
   std::vector<Unknown>
       unknowns_;  // along n of the first carrying_ slots; across their sliding; along it, if they stick
   int count_ = 0;
   std::size_t carrying_ = 0;
   Dense dense_;
   // Scratch of assemble().
-  Floats on_;
+  Floats on_;  // velocities of slots: eight x, eight y, eight z
   std::vector<Stuck> stuck_;
   Floats with_;  // planes x, y, z along n, then across
   std::vector<Vec> rest_;

@@ -60,14 +60,13 @@ void ContactNewton::answer(std::size_t slot, Vec x, std::size_t other, Vec y) no
               x2 = all_eight(static_cast<float>(x[2])), y0 = all_eight(static_cast<float>(y[0])),
               y1 = all_eight(static_cast<float>(y[1])), y2 = all_eight(static_cast<float>(y[2]));
   const std::size_t count = slots_.size();
-  for (std::size_t plane = 0; plane < kRow; plane += kPlane) {
-    const float *const v = w_.data() + 3 * slot * kRow + plane, *const w = w_.data() + 3 * other * kRow + plane;
-    float* const out = on_.data() + plane;
-    for (std::size_t s = 0; s < count; s += 8) {
-      Eight sum = x0 * load_eight(v + s) + x1 * load_eight(v + kRow + s) + x2 * load_eight(v + 2 * kRow + s);
-      if constexpr (Two)
-        sum += y0 * load_eight(w + s) + y1 * load_eight(w + kRow + s) + y2 * load_eight(w + 2 * kRow + s);
-      store_eight(out + s, load_eight(out + s) + sum);
+  float* out = on_.data();
+  for (std::size_t s = 0; s < count; s += kLanes) {
+    const float *v = w_.block(slot, s), *w = w_.block(other, s);
+    for (int j = 0; j < 3; ++j, v += kLanes, w += kLanes, out += kLanes) {
+      Eight sum = x0 * load_eight(v) + x1 * load_eight(v + 3 * kLanes) + x2 * load_eight(v + 6 * kLanes);
+      if constexpr (Two) sum += y0 * load_eight(w) + y1 * load_eight(w + 3 * kLanes) + y2 * load_eight(w + 6 * kLanes);
+      store_eight(out, load_eight(out) + sum);
     }
   }
 }
@@ -95,19 +94,7 @@ void ContactNewton::exchange(std::size_t a, std::size_t b) noexcept {
   for (const std::size_t s : {a, b}) {
     if (slots_[s].row >= 0) slot_[static_cast<std::size_t>(slots_[s].row)] = static_cast<std::int32_t>(s);
   }
-  float *const w = w_.data(), *v = w + 3 * a * kRow, *u = w + 3 * b * kRow;
-  const std::size_t count = slots_.size();
-  for (std::size_t plane = 0; plane < 3 * kRow; plane += kPlane, v += kPlane, u += kPlane) {
-    for (std::size_t s = 0; s < count; s += 8) {
-      const Eight x = load_eight(v + s), y = load_eight(u + s);
-      store_eight(v + s, y), store_eight(u + s, x);
-    }
-  }
-  for (float *row = w, *const end = w + 3 * count * kRow; row < end; row += kRow) {
-    const float x = row[a], y = row[kPlane + a], z = row[2 * kPlane + a];
-    row[a] = row[b], row[kPlane + a] = row[kPlane + b], row[2 * kPlane + a] = row[2 * kPlane + b];
-    row[b] = x, row[kPlane + b] = y, row[2 * kPlane + b] = z;
-  }
+  w_.exchange(a, b, slots_.size());
 }
 
 // Contacts that carry load become the first ones, so that all that is known of them lies side by side.
@@ -156,7 +143,7 @@ void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* 
       const double share = std::max(kHardly, slot.most / std::max(norm(slot.q), 1e-300));
       const double give = slot.kind == Kind::kSticks ? 0.0 : (1.0 - share) / (share * slot.r_t);
       add(s, across, across, give, kCostAlong / slot.r_t, 0.0);
-      for (std::size_t i = 0; i < 3; ++i) with_.data()[kRow + i * kPlane + s] = static_cast<float>(across.v[i]);
+      for (std::size_t i = 0; i < 3; ++i) with_.data()[(3 + i) * kPlane + s] = static_cast<float>(across.v[i]);
     }
     for (std::size_t s = 0; s < carrying_; ++s) {
       const Slot& slot = slots_[s];
@@ -177,26 +164,28 @@ template <bool Friction>
   const Eight a0 = all_eight(static_cast<float>(unknown.along[0])),
               a1 = all_eight(static_cast<float>(unknown.along[1])),
               a2 = all_eight(static_cast<float>(unknown.along[2]));
-  const float *const w = w_.data() + 3 * unknown.slot * kRow, *const with = with_.data();
+  const float* const with = with_.data();
   float *const row = dense_.row(i), *const on = on_.data();
   for (std::size_t s = (contacts + 7) & ~std::size_t{7}; s > 0;) {
     s -= 8;
-    const float *const at = w + s, *const b = with + s;
-    const auto plane = [&](std::size_t p) {
-      return a0 * load_eight(at + p) + a1 * load_eight(at + kRow + p) + a2 * load_eight(at + 2 * kRow + p);
+    const float *const at = w_.block(unknown.slot, s), *const b = with + s;
+    const auto plane = [&](std::size_t j) {
+      const float* const w = at + j * kLanes;
+      return a0 * load_eight(w) + a1 * load_eight(w + 3 * kLanes) + a2 * load_eight(w + 6 * kLanes);
     };
-    const Eight x = plane(0), y = plane(kPlane), z = plane(2 * kPlane);
+    const Eight x = plane(0), y = plane(1), z = plane(2);
     store_eight(row + s, x * load_eight(b) + y * load_eight(b + kPlane) + z * load_eight(b + 2 * kPlane));
     if constexpr (Friction) {
       store_eight(row + contacts + s,
-                  x * load_eight(b + kRow) + y * load_eight(b + kRow + kPlane) + z * load_eight(b + kRow + 2 * kPlane));
-      store_eight(on + s, x), store_eight(on + kPlane + s, y), store_eight(on + 2 * kPlane + s, z);
+                  x * load_eight(b + 3 * kPlane) + y * load_eight(b + 4 * kPlane) + z * load_eight(b + 5 * kPlane));
+      float* const moved = on + 3 * s;
+      store_eight(moved, x), store_eight(moved + kLanes, y), store_eight(moved + 2 * kLanes, z);
     }
   }
   float* out = row + (Friction ? 2 : 1) * contacts;
   for (const Stuck& stuck : stuck_) {
-    const float* const at = on + stuck.slot;
-    *out++ = at[0] * stuck.x + at[kPlane] * stuck.y + at[2 * kPlane] * stuck.z;
+    const float* const at = on + on_at(stuck.slot);
+    *out++ = at[0] * stuck.x + at[kLanes] * stuck.y + at[2 * kLanes] * stuck.z;
   }
   store_eight(row + n, Eight{});
   row[i] += static_cast<float>(unknown.give);
