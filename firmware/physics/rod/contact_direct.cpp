@@ -101,7 +101,8 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
       }
       if (newton_.unknowns() > ContactNewton::kMostUnknowns) return Outcome::kNoRoom;
       const long cost = look == 0 && step == 0 ? kSweeps * price::dense_sweep(newton_.loaded())
-                                               : price::newton(newton_.loaded(), newton_.unknowns());
+                                               : price::newton(newton_.loaded(), newton_.unknowns()) +
+                                                     price::exchange(newton_.exchanges(), newton_.slots());
       const bool gone = report.work + cost + price::answer(newton_.loaded(), nodes) + looking > effort.work;
       if (gone || (best2 < enough2 && report.work + cost > effort.fair)) {
         if (step == 0) return stop(largest2);

@@ -150,8 +150,9 @@ void ContactNewton::set_steps(Slot& slot, const std::array<Four, 3>& w) noexcept
   const double t = own.x[0] + own.y[1] + own.z[2] - normal;
   const double s = dot(own.x, own.x) + dot(own.y, own.y) + dot(own.z, own.z) - 2.0 * dot(on_n, on_n) + normal * normal;
   const double across = 0.5 * (t + std::sqrt(std::max(0.0, 2.0 * s - t * t)));
-  slot.r_n = 1.0 / (normal + slot.soft);
-  slot.r_t = 1.0 / across;
+  slot.per_r_n = normal + slot.soft, slot.per_r_t = across;
+  slot.r_n = 1.0 / slot.per_r_n;
+  slot.r_t = 1.0 / slot.per_r_t;
 }
 
 // What new slots do to the others, and they to them.

@@ -80,6 +80,8 @@ class ContactNewton {
 
   [[nodiscard]] int unknowns() const noexcept { return count_; }                          ///< impulses to solve for
   [[nodiscard]] const std::vector<std::int32_t>& rows() const noexcept { return rows_; }  ///< that carry load, or did
+  [[nodiscard]] int slots() const noexcept { return static_cast<int>(slots_.size()); }
+  [[nodiscard]] int exchanges() const noexcept;  ///< that the next step makes
   [[nodiscard]] int loaded() const noexcept { return static_cast<int>(rows_.size()); }
 
   /// Impulses that solve the kinds last read, into p; u follows. @return false when they cannot be had.
@@ -96,7 +98,7 @@ class ContactNewton {
     std::int32_t next = -1;               ///< slot with the same first node
     double w[4] = {0.0, 0.0, 0.0, 0.0};
     Vec n{};
-    double soft = 0.0, r_n = 0.0, r_t = 0.0;
+    double soft = 0.0, r_n = 0.0, r_t = 0.0, per_r_n = 0.0, per_r_t = 0.0;
     bool dead = false;  ///< its contact has moved on, or carries nothing any more
     int idle = 0;       ///< substeps since it carried load
     Kind kind = Kind::kNew;
@@ -132,6 +134,7 @@ class ContactNewton {
   void index_slots() noexcept;
   [[nodiscard]] std::int32_t find(std::int32_t a, std::int32_t b) const noexcept;
   void exchange(std::size_t a, std::size_t b) noexcept;
+  [[nodiscard]] std::size_t carrying() const noexcept;
   void bring_forward() noexcept;
   void set_cost() noexcept;
   template <bool Friction>

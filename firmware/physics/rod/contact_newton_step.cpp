@@ -17,14 +17,14 @@ double ContactNewton::read(const Contact* rows, const Vec* p, const Vec* u) noex
     const Contact& c = rows[k];
     Slot& slot = slots_[slot_of(k)];
     const double un = dot(u[k], c.n), pn = dot(p[k], c.n), lack = un + c.soft * pn - c.target;
-    const double to_n = std::max(0.0, pn - slot.r_n * lack), error_n = (to_n - pn) / slot.r_n;
+    const double to_n = std::max(0.0, pn - slot.r_n * lack), error_n = (to_n - pn) * slot.per_r_n;
     const Vec pt = p[k] - pn * c.n;
     slot.q = pt - slot.r_t * (u[k] - un * c.n);
     slot.most = Friction ? c.mu * to_n : 0.0;
     const double size2 = dot(slot.q, slot.q);
     const bool sticks = size2 < slot.most * slot.most;
     const double share = sticks ? 1.0 : slot.most / std::max(std::sqrt(size2), 1e-300);
-    const Vec error_t = (1.0 / slot.r_t) * (share * slot.q - pt);
+    const Vec error_t = slot.per_r_t * (share * slot.q - pt);
     largest2 = std::max(largest2, error_n * error_n + dot(error_t, error_t));
     const Kind kind = to_n <= 0.0 ? Kind::kOpen : sticks ? Kind::kSticks : Kind::kSlides;
     changed_ += kind != std::exchange(slot.kind, kind);
@@ -97,10 +97,19 @@ void ContactNewton::exchange(std::size_t a, std::size_t b) noexcept {
   w_.exchange(a, b, slots_.size());
 }
 
+std::size_t ContactNewton::carrying() const noexcept {
+  return static_cast<std::size_t>(
+      std::count_if(slots_.begin(), slots_.end(), [](const Slot& slot) { return slot.carries(); }));
+}
+
+int ContactNewton::exchanges() const noexcept {
+  const auto end = slots_.begin() + static_cast<std::ptrdiff_t>(carrying());
+  return static_cast<int>(std::count_if(slots_.begin(), end, [](const Slot& slot) { return !slot.carries(); }));
+}
+
 // Contacts that carry load become the first ones, so that all that is known of them lies side by side.
 void ContactNewton::bring_forward() noexcept {
-  carrying_ = 0;
-  for (const auto k : rows_) carrying_ += slots_[slot_of(k)].carries();
+  carrying_ = carrying();
   std::size_t behind = slots_.size();
   for (std::size_t s = 0; s < carrying_; ++s) {
     if (slots_[s].carries()) continue;
@@ -133,7 +142,7 @@ void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* 
     if constexpr (Friction) slot.along.v = direction(slot).v;
     const bool slides = Friction && slot.kind == Kind::kSlides;
     const Vec with = slides ? c.n + c.mu * slot.along : c.n;
-    add(s, c.n, with, c.soft, kCostNormal / slot.r_n, c.target);
+    add(s, c.n, with, c.soft, kCostNormal * slot.per_r_n, c.target);
     for (std::size_t i = 0; i < 3; ++i) with_.data()[i * kPlane + s] = static_cast<float>(with.v[i]);
   }
   if constexpr (Friction) {
@@ -141,14 +150,14 @@ void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* 
       const Slot& slot = slots_[s];
       const Vec across = cross(rows[slot.row].n, slot.along);
       const double share = std::max(kHardly, slot.most / std::max(norm(slot.q), 1e-300));
-      const double give = slot.kind == Kind::kSticks ? 0.0 : (1.0 - share) / (share * slot.r_t);
-      add(s, across, across, give, kCostAlong / slot.r_t, 0.0);
+      const double give = slot.kind == Kind::kSticks ? 0.0 : (1.0 - share) / share * slot.per_r_t;
+      add(s, across, across, give, kCostAlong * slot.per_r_t, 0.0);
       for (std::size_t i = 0; i < 3; ++i) with_.data()[(3 + i) * kPlane + s] = static_cast<float>(across.v[i]);
     }
     for (std::size_t s = 0; s < carrying_; ++s) {
       const Slot& slot = slots_[s];
       if (slot.kind != Kind::kSticks) continue;
-      add(s, slot.along, slot.along, 0.0, kCostAlong / slot.r_t, 0.0);
+      add(s, slot.along, slot.along, 0.0, kCostAlong * slot.per_r_t, 0.0);
       stuck_.push_back(
           {s, static_cast<float>(slot.along[0]), static_cast<float>(slot.along[1]), static_cast<float>(slot.along[2])});
     }

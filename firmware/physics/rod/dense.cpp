@@ -36,6 +36,7 @@ void Dense::reserve(std::size_t most) {
   m_.resize((most + 1) * (most + 16));
   x_.resize(most + 16);
   first_.resize(most + 16);
+  panels_.reserve(most);
 }
 
 // Brings the row below with the largest entry of column k up, and clears that column under it.
@@ -110,30 +111,48 @@ std::size_t Dense::two_panels(std::size_t k) noexcept {
   return 2 * kPanel;
 }
 
+// Rows of a panel do not wait for each other: each has a unit matrix there.
 void Dense::substitute() noexcept {
   x_.clear();
   float* const x = x_.data();
-  for (std::size_t k = n_; k-- > 0;) {
-    const float* const a = row(k);
-    Eight sum{};
-    for (std::size_t j = (k + 1) & ~std::size_t{7}; j < n_; j += 8) sum += load_eight(a + j) * load_eight(x + j);
-    // x is zero up to k, so what elimination left there does not count.
-    const float known = ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
-    x[k] = a[n_] - known;
+  for (std::size_t end = n_; end > 0;) {
+    const std::size_t k = panels_.back();
+    panels_.pop_back();
+    const float* rows[2 * kPanel];  // of a smaller panel some are read in vain
+    for (std::size_t i = 0; i < 2 * kPanel; ++i) rows[i] = row(std::min(k + i, n_ - 1));
+    Eight sum[2 * kPanel] = {};
+    for (std::size_t j = end & ~std::size_t{7}; j < n_; j += 8) {
+      const Eight at = load_eight(x + j);
+      for (std::size_t i = 0; i < 2 * kPanel; ++i) sum[i] += load_eight(rows[i] + j) * at;
+    }
+    // x is zero up to the end of the panel, so what elimination left there does not count.
+    for (std::size_t i = 0; k + i < end; ++i) {
+      const Eight s = sum[i];
+      x[k + i] = rows[i][n_] - (((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7])));
+    }
+    end = k;
   }
 }
 
 bool Dense::solve() noexcept {
   for (std::size_t i = 0; i < n_; ++i) first_.data()[i] = std::abs(row(i)[i]);
+  panels_.clear();
   for (std::size_t k = 0; k < n_;) {
+    panels_.push_back(k);
     const std::size_t pivots = panel(k);
     if (pivots == kPanel && k + 2 * kPanel <= n_) {
-      k += two_panels(k);
+      const std::size_t cleared = two_panels(k);
+      if (cleared > kPanel && cleared < 2 * kPanel) panels_.push_back(k + kPanel);
+      k += cleared;
       continue;
     }
     clear_below(k, pivots, k + pivots);
     k += pivots;
-    if (pivots < kPanel && k < n_ && !pivot(k++)) return false;
+    if (pivots == 0) panels_.pop_back();
+    if (pivots < kPanel && k < n_) {
+      panels_.push_back(k);
+      if (!pivot(k++)) return false;
+    }
   }
   substitute();
   return true;

@@ -2,6 +2,7 @@
 // A small dense system of equations in single precision.
 
 #include <cstddef>
+#include <vector>
 
 #include "firmware/physics/rod/floats.hpp"
 
@@ -33,7 +34,8 @@ class Dense {
   void clear_below(std::size_t k, std::size_t pivots, std::size_t first) noexcept;
   void substitute() noexcept;
 
-  Floats m_, x_, first_;  // the diagonal before elimination
+  Floats m_, x_, first_;             // the diagonal before elimination
+  std::vector<std::size_t> panels_;  // rows in which they begin
   std::size_t n_ = 0, stride_ = 8;
 };
 

@@ -33,7 +33,7 @@ struct Numerics {
   int max_substeps = 16;  ///< when the hands are faster than fast_m_per_s
   double fast_m_per_s = 0.3;
   int max_passes = 80;            ///< true solves per substep while contacts settle
-  long work = 3'960'000;          ///< what contact may cost in a tick, in instructions (work.hpp),
+  long work = 4'300'000;          ///< what contact may cost in a tick, in instructions (work.hpp),
   long work_per_node = 2500;      ///< and for each node besides; a quarter more for fast hands,
   double rush = 0.75;             ///< and this share for hands faster than 2 fast_m_per_s
   double settled_m_per_s = 3e-5;  ///< a pass that changes no velocity by more ends them,

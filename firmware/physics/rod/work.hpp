@@ -35,19 +35,22 @@ inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one 
 [[nodiscard]] constexpr long column(long nodes) noexcept { return 95 * nodes; }
 /// What impulses make of `rows` contacts.
 [[nodiscard]] constexpr long look(long rows) noexcept { return 140 * rows; }
-/// Contacts that are to be coupled densely on a window of `nodes`, and pairs of them.
+/// Contacts that are to be coupled densely on a window of `nodes`, and pairs of them. This, exchanges and sweeps wait
+/// for memory or for the last result: their prices are what their time would buy of the other instructions.
 [[nodiscard]] constexpr long couple(long contacts, long pairs, long nodes) noexcept {
-  return contacts * (200 + 12 * nodes) + 90 * pairs;
+  return contacts * (200 + 25 * nodes) + 50 * pairs;
 }
 /// What impulses make of contacts that are coupled densely.
 [[nodiscard]] constexpr long read(long loaded) noexcept { return 200 * loaded; }
 /// The velocities that answer to new impulses of `loaded` contacts.
 [[nodiscard]] constexpr long answer(long loaded, long nodes) noexcept { return 40 * loaded + 100 * nodes; }
 /// A sweep over `loaded` contacts that are coupled densely, and what it makes of them.
-[[nodiscard]] constexpr long dense_sweep(long loaded) noexcept { return loaded * (300 + 2 * loaded); }
+[[nodiscard]] constexpr long dense_sweep(long loaded) noexcept { return loaded * (550 + 2 * loaded); }
+/// Contacts that change places among `slots`, so that those which carry load come first.
+[[nodiscard]] constexpr long exchange(long changes, long slots) noexcept { return 140 * changes * slots; }
 /// One of Newton's steps: `loaded` contacts, `unknowns` impulses.
 [[nodiscard]] constexpr long newton(long loaded, long unknowns) noexcept {
-  return unknowns * (400 + 8 * unknowns + unknowns * unknowns / 14) + 1500 + 400 * loaded;
+  return unknowns * (300 + 8 * unknowns + unknowns * unknowns / 14) + 1500 + 400 * loaded;
 }
 /// The most rows for which `passes` passes can be paid.
 [[nodiscard]] constexpr long affordable_rows(long allowance, long nodes, long passes) noexcept {
