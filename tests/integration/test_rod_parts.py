@@ -20,9 +20,9 @@ TICKS = 30
 # What only runs for one part. Files; or functions, where a part is a template argument or shares a file.
 TWIST = ["twist.cpp"]
 ROLL = ["spin.cpp", "spin_frames.cpp", "spin_set.cpp", "turning.cpp"]
-CONTACT = ["broad_phase.cpp", "contact_collect.cpp", "contact_measure.cpp", "contact_direct.cpp", "contact_newton.cpp",
-           "contact_newton_step.cpp", "contact_metric.cpp", "dense.cpp", "guard.cpp", "mixing.cpp", "motion.cpp", "motion.hpp",
-           "smooth.hpp", "touch.hpp"]
+CONTACT = ["broad_phase.cpp", "contact_collect.cpp", "contact_couplings.cpp", "contact_measure.cpp",
+           "contact_direct.cpp", "contact_newton.cpp", "contact_newton_step.cpp", "contact_metric.cpp", "dense.cpp",
+           "guard.cpp", "mixing.cpp", "motion.cpp", "motion.hpp", "smooth.hpp", "touch.hpp"]
 ADAPTIVE = ["refine.cpp", "merge_guard.cpp"]
 WORLD = re.compile(r"collect_floor|collect_body|afford_world")
 RUBS = re.compile(r"settle(_directly)?<true|note_stuck|let_stick")
