@@ -51,7 +51,6 @@ class DriveNode {
   /// Torque the motor makes now, per mille of rated.
   [[nodiscard]] std::int16_t torque_permille() const noexcept { return torque_permille_; }
   [[nodiscard]] const DriveStats& stats() const noexcept { return stats_; }
-  [[nodiscard]] const ObjectDictionary& objects() const noexcept { return objects_; }
 
  private:
   void on_nmt(const can::NmtMessage& message, Time now, std::vector<can::Frame>& out);

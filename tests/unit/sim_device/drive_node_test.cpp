@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "protocol/can/startup.hpp"
 
 namespace ligature::sim {
@@ -180,6 +182,24 @@ TEST(DriveNode, LeavingOperationalDisablesWithoutAFault) {
     EXPECT_EQ(b.drive.state(), State::kSwitchOnDisabled);
     b.pass(milliseconds(100));
     EXPECT_EQ(b.drive.stats().watchdog_trips, 0) << "nobody needs to command a drive that is not operational";
+  }
+}
+
+TEST(DriveNode, AResetOfCommunicationForgetsTheBusAndNotTheMode) {
+  const auto told = [](Bench& b, can::Object object) -> std::optional<std::uint32_t> {
+    b.out.clear();
+    b.give(can::sdo_read(can::kWaist, object));
+    const auto answer = b.out.empty() ? std::nullopt : can::decode_sdo(b.out.front());
+    return answer && answer->kind == can::SdoKind::kValue ? std::optional(answer->value) : std::nullopt;
+  };
+  for (const auto command : {can::NmtCommand::kResetCommunication, can::NmtCommand::kResetNode}) {
+    Bench b;
+    b.give(can::encode_nmt(command, can::kWaist));
+    EXPECT_EQ(told(b, can::od::kProducerHeartbeat), 0U);
+    EXPECT_EQ(told(b, can::od::kModeOfOperation), command == can::NmtCommand::kResetCommunication ? 10U : 0U);
+    b.out.clear();
+    b.pass(milliseconds(1000));
+    EXPECT_TRUE(b.out.empty()) << "its heart beats, but nobody asked for that since";
   }
 }
 
