@@ -7,10 +7,12 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr int kWindow = 1024;          // nodes on which contacts can be solved together
-constexpr double kRelax_s = 0.02;      // in which a pulled thread comes to rest when the hands do
+constexpr int kWindow = 1024;      // nodes on which contacts can be solved together
+constexpr double kRelax_s = 0.02;  // in which a pulled thread comes to rest when the hands do; 0.005, 0.1: no matter
 constexpr double kMostLeniency = 6.0;  // see Rod::settled
-constexpr double kNear = 0.1;          // diameters within which a pair is a contact at any speed
+// Diameters within which a pair is a contact at any speed. With 0.05 and 0.2 a square and a surgeon's knot pulled at
+// 0.2 m/s to 5 N stand still for 10 and 23 % of the pull, with this for 9 and 20 (one pull each).
+constexpr double kNear = 0.1;
 
 // How fast the fastest node moves among the others.
 double stir(const std::vector<Vec>& v) noexcept {
