@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "firmware/physics/rod/band_solver.hpp"
@@ -229,6 +230,20 @@ class ContactSet {
   void clear_extra() noexcept;
   template <bool Friction, bool Turns>
   void sweep(const Vec* v) noexcept;
+  /// Newton's method in a substep: what it may do, and how far it is.
+  struct Search {
+    const Effort& effort;
+    ContactReport& report;
+    long nodes;  ///< of the window
+    int look = 0;
+    bool fresh = false, resumed = false;  ///< the matrix is today's; it goes on from where the last tick was
+    [[nodiscard]] bool can_pay(long cost) const noexcept { return report.work + cost <= effort.work; }
+    [[nodiscard]] bool pay(long cost) noexcept { return can_pay(cost) && ((report.work += cost), true); }
+  };
+  bool renew_matrix(const BandSolver& solver, Search& search) noexcept;
+  Outcome look_at_all(const BandSolver& solver, const Vec* v, Search& search) noexcept;
+  template <bool Friction>
+  std::optional<Outcome> step_on(Search& search) noexcept;
   template <bool Friction>
   Outcome newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept;
   void take_impulses(BandSolver& solver, Vec* v) noexcept;

@@ -1,6 +1,8 @@
 // Contacts solved directly: looks at what approaches, steps of Newton's method in between, within the tick's work.
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "firmware/physics/rod/contact.hpp"
 
@@ -10,6 +12,8 @@ namespace {
 constexpr int kMargin = 6;      // nodes by which the window may grow before a new matrix is needed
 constexpr double kNear = 3.0;   // an error is at most that, a pass's last change at least
 constexpr double kLoose = 3.0;  // times what is settled: may be left over beyond a fair share of the work
+
+constexpr double kUnknown = 1e300;  // square of an error
 
 double square_of_enough(const Effort& effort) noexcept {
   const double enough = kNear * std::max(kLoose * effort.settled_m_per_s, effort.enough_m_per_s);
@@ -30,99 +34,107 @@ void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
   push(solver, v);
 }
 
+// Columns of today's A^-1, for which newton_ learns its contacts anew. @return false when there is no work for them.
+bool ContactSet::renew_matrix(const BandSolver& solver, Search& search) noexcept {
+  const int first = std::max(window_first_ - kMargin, 0), last = std::min(window_last_ + kMargin, solver.nodes() - 1);
+  if (!search.pay(price::factors(last - first + 1))) return false;
+  newton_.measure(solver, first, last);
+  newton_.start(contacts_.data(), rows_);
+  return search.fresh = true;
+}
+
+// Takes in what approaches too fast, and couples it. @return kLater when there is no work for that.
+Outcome ContactSet::look_at_all(const BandSolver& solver, const Vec* v, Search& search) noexcept {
+  const Contact* const rows = contacts_.data();
+  const Vec* const p = p_.data();
+  Vec* const u = u_.data();
+  if (!search.pay(price::look(rows_))) return Outcome::kLater;
+  for (int k = 0; k < rows_; ++k) u[k] = velocity<false>(k, v);
+  if (!newton_.look(rows, rows_, p, u)) {  // full of what has gone?
+    if (search.fresh || !renew_matrix(solver, search) || !newton_.look(rows, rows_, p, u)) return Outcome::kNoRoom;
+  }
+  const auto uncoupled = newton_.uncoupled();
+  if (!search.pay(uncoupled.columns * price::column(newton_.nodes()) +
+                  price::couple(uncoupled.contacts, uncoupled.pairs, newton_.nodes()) + price::read(newton_.loaded())))
+    return Outcome::kLater;
+  newton_.couple();
+  return Outcome::kSettled;
+}
+
+// Steps from what a look saw to impulses that are settled as far as newton_ knows, or, beyond a fair share of the work,
+// to the best it came by. @return nothing when the true A has to say whether they are; else how it ended.
 template <bool Friction>
-Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
-  constexpr int kMostLooks = 12, kMostSteps = 48, kStale = 3, kSweeps = 2;
+std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
+  constexpr int kMostSteps = 48, kSweeps = 2;
   constexpr double kOld = 10.0;  // what an old matrix may leave over
-  constexpr double kUnknown = 1e300;
-  const long nodes = window_last_ - window_first_ + 1, looking = price::look(rows_);
+  const Effort& effort = search.effort;
+  ContactReport& report = search.report;
   const double settled = kNear * effort.settled_m_per_s, settled2 = settled * settled;
   const double enough2 = square_of_enough(effort);
   const Contact* const rows = contacts_.data();
   Vec *const p = p_.data(), *const u = u_.data();
-  bool fresh = false;
-  const auto measure = [&] {
-    const int first = std::max(window_first_ - kMargin, 0), last = std::min(window_last_ + kMargin, solver.nodes() - 1);
-    report.work += price::factors(last - first + 1);
-    newton_.measure(solver, first, last);
-    fresh = true;
-  };
-  if (!newton_.covers(window_first_, window_last_)) measure();
-  newton_.start(rows, rows_);
+  const auto wait = [&] { return newton_.put_off(p), Outcome::kLater; };
+  double best2 = kUnknown;  // error of the best step; its impulses are in plain_
+  for (int step = 0;; ++step) {
+    const double error2 = newton_.read<Friction>(rows, p, u);
+    const bool begins = step == 0 && search.look == 0;
+    if (step == 0) {  // what the true A says
+      if (begins && !search.resumed) start_error2_ = error2;
+      report.change_m_per_s = std::sqrt(error2);
+      if (error2 < (begins ? 1.0 : kOld * kOld) * settled2) return Outcome::kSettled;
+    }
+    if (error2 < settled2) return std::nullopt;
+    if (error2 < best2 && error2 < enough2) {
+      best2 = error2;
+      for (const auto k : newton_.rows()) plain_[static_cast<std::size_t>(k)].v = p[k].v;
+    }
+    if (newton_.unknowns() > ContactNewton::kMostUnknowns) return Outcome::kNoRoom;
+    const long cost = begins ? kSweeps * price::dense_sweep(newton_.loaded())
+                             : price::newton(newton_.loaded(), newton_.unknowns()) +
+                                   price::exchange(newton_.exchanges(), newton_.slots());
+    const long answering = price::answer(newton_.loaded(), search.nodes) + price::look(rows_);
+    const bool gone = !search.can_pay(cost + answering);
+    if (gone || (best2 < enough2 && report.work + cost > effort.fair)) {
+      if (step == 0) return error2 < enough2 ? Outcome::kSettled : wait();
+      if (best2 >= enough2 || !search.can_pay(answering + price::read(newton_.loaded()))) return wait();
+      for (const auto k : newton_.rows()) p[k].v = plain_[static_cast<std::size_t>(k)].v;
+      return std::nullopt;
+    }
+    report.work += cost;
+    if (begins) {
+      for (int k = 0; k < kSweeps; ++k) newton_.sweep<Friction>(rows, p, u);
+    } else if (++report.passes > kMostSteps || !newton_.solve<Friction>(rows, p, u)) {
+      return Outcome::kNoRoom;
+    }
+  }
+}
+
+template <bool Friction>
+Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
+  constexpr int kMostLooks = 12, kStale = 3;
+  Search search{effort, report, window_last_ - window_first_ + 1};
   const auto answer = [&] {
-    report.work += price::answer(newton_.loaded(), nodes);
+    report.work += price::answer(newton_.loaded(), search.nodes);
     take_impulses(solver, v);
   };
-  // The work is gone: what is near enough is moved, the rest waits.
-  const auto stop = [&](double error2) {
-    if (error2 < enough2) return Outcome::kSettled;
-    newton_.put_off(p);
+  if (newton_.covers(window_first_, window_last_)) {
+    newton_.start(contacts_.data(), rows_);
+  } else if (!renew_matrix(solver, search)) {
     return Outcome::kLater;
-  };
-  double last2 = kUnknown;  // error of today's impulses, with the true A
-  start_error2_ = kUnknown;
-  const bool resumed = newton_.resume(p);
-  if (resumed) answer();
-  for (int look = 0; look < kMostLooks; ++look) {
-    if (look == kStale && !fresh) {
-      if (report.work + price::factors(nodes + 2 * kMargin) > effort.work) break;
-      measure();
-      newton_.start(rows, rows_);
-    }
-    if (report.work + looking > effort.work) break;
-    report.work += looking;
-    for (int k = 0; k < rows_; ++k) u[k] = velocity<false>(k, v);
-    if (!newton_.look(rows, rows_, p, u)) {  // full of what has gone?
-      if (fresh || report.work + price::factors(nodes + 2 * kMargin) > effort.work) return Outcome::kNoRoom;
-      measure();
-      newton_.start(rows, rows_);
-      if (!newton_.look(rows, rows_, p, u)) return Outcome::kNoRoom;
-    }
-    const auto uncoupled = newton_.uncoupled();
-    const long coupling = uncoupled.columns * price::column(newton_.nodes()) +
-                          price::couple(uncoupled.contacts, uncoupled.pairs, newton_.nodes()) +
-                          price::read(newton_.loaded());
-    if (report.work + coupling > effort.work) break;
-    report.work += coupling;
-    newton_.couple();
-    double best2 = kUnknown;  // error of the steps of this look; those impulses are in plain_
-    for (int step = 0;; ++step) {
-      const double largest2 = newton_.read<Friction>(rows, p, u);
-      if (step == 0) {
-        last2 = largest2;
-        if (look == 0 && !resumed) start_error2_ = largest2;
-        report.change_m_per_s = std::sqrt(largest2);
-        if (largest2 < (look > 0 ? kOld * kOld : 1.0) * settled2) return Outcome::kSettled;
-      }
-      if (largest2 < settled2) break;
-      if (largest2 < best2 && largest2 < enough2) {
-        best2 = largest2;
-        for (const auto k : newton_.rows()) plain_[static_cast<std::size_t>(k)].v = p[k].v;
-      }
-      if (newton_.unknowns() > ContactNewton::kMostUnknowns) return Outcome::kNoRoom;
-      const long cost = look == 0 && step == 0 ? kSweeps * price::dense_sweep(newton_.loaded())
-                                               : price::newton(newton_.loaded(), newton_.unknowns()) +
-                                                     price::exchange(newton_.exchanges(), newton_.slots());
-      const bool gone = report.work + cost + price::answer(newton_.loaded(), nodes) + looking > effort.work;
-      if (gone || (best2 < enough2 && report.work + cost > effort.fair)) {
-        if (step == 0) return stop(largest2);
-        const long checking = price::answer(newton_.loaded(), nodes) + looking + price::read(newton_.loaded());
-        if (best2 >= enough2 || report.work + checking > effort.work) return stop(kUnknown);
-        for (const auto k : newton_.rows()) p[k].v = plain_[static_cast<std::size_t>(k)].v;
-        break;  // enough, if the true A says so too
-      }
-      report.work += cost;
-      if (look == 0 && step == 0) {
-        for (int k = 0; k < kSweeps; ++k) newton_.sweep<Friction>(rows, p, u);
-        continue;
-      }
-      if (++report.passes > kMostSteps) return Outcome::kNoRoom;
-      if (!newton_.solve<Friction>(rows, p, u)) return Outcome::kNoRoom;
-    }
-    answer();
-    last2 = kUnknown;
   }
-  return stop(last2);
+  start_error2_ = kUnknown;
+  search.resumed = newton_.resume(p_.data());
+  if (search.resumed) answer();
+  for (; search.look < kMostLooks; ++search.look) {
+    if (search.look == kStale && !search.fresh && !renew_matrix(solver, search)) break;
+    const Outcome looked = look_at_all(solver, v, search);
+    if (looked == Outcome::kNoRoom) return looked;
+    if (looked == Outcome::kLater) break;
+    if (const auto end = step_on<Friction>(search)) return *end;
+    answer();
+  }
+  newton_.put_off(p_.data());
+  return Outcome::kLater;
 }
 
 template <bool Friction>
