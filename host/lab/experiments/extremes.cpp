@@ -1,5 +1,6 @@
 // How far parameters may be pushed: finite, or stopped in time and named; never a non-finite number, never a hang.
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -90,6 +91,13 @@ OddEndings odd_cases(const scene::Scene& base) {
   return all;
 }
 
+bool has_a_hand_nowhere(const scene::GripperScript& script, double t_s) {
+  return std::any_of(std::begin(script.keys), std::end(script.keys), [&](const auto& keys) {
+    const auto p = scene::sample(keys, t_s).p_W_m;
+    return !std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); });
+  });
+}
+
 }  // namespace
 
 Ending trial(const scene::Scene& scene, const scene::GripperScript& script, int ticks) {
@@ -99,6 +107,8 @@ Ending trial(const scene::Scene& scene, const scene::GripperScript& script, int 
       const bool good = r.tick();
       if (!all_finite(r.simulation())) return {"LEAKED", double(k), -1.0, ""};
       const auto& d = r.simulation().diagnostics();
+      if (!good && d.bad_node < 0 && has_a_hand_nowhere(script, r.time_s()))
+        return {"stopped", double(d.bad_tick), -1.0, "a hand that is no number", true};
       if (!good) return {"stopped", double(d.bad_tick), double(d.bad_node), likely_cause(scene)};
     }
     return {"finite", double(ticks), -1.0, ""};
@@ -112,7 +122,7 @@ void ExtremesMap::count(const Ending& e) {
   leaked += e.word == "LEAKED";
   refused += e.word == "refused";
   finite += e.word == "finite";
-  unnamed += e.word == "stopped" && (e.tick < 0 || e.node < 0);
+  unnamed += e.word == "stopped" && (e.tick < 0 || (e.node < 0 && !e.by_hand));
 }
 
 void ExtremesMap::add(const char* parameter, double factor, double step_s, const Ending& e) {
@@ -153,7 +163,7 @@ void conclude(Verdict& v, const std::string& who, const ExtremesMap& m) {
   std::printf("%s: %d trials: %d finite, %d stopped, %d refused\n", who.c_str(), m.trials, m.finite,
               m.trials - m.finite - m.refused - m.leaked, m.refused);
   v.claim(m.leaked == 0, who + ": trials in which a non-finite number got out", std::to_string(m.leaked), "0");
-  v.claim(m.unnamed == 0, who + ": stops that did not name tick and node", std::to_string(m.unnamed), "0");
+  v.claim(m.unnamed == 0, who + ": stops that did not name tick and node (or hand)", std::to_string(m.unnamed), "0");
   v.claim(m.as_shipped, who + ": as shipped, at 1 ms", m.as_shipped ? "finite" : "not finite", "finite");
 }
 

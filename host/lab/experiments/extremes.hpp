@@ -15,8 +15,9 @@ namespace ligature::lab {
 struct Ending {
   std::string word;  ///< "finite", "stopped", "refused", or "LEAKED": a non-finite number got out
   double tick = 0.0;
-  double node = 0.0;
+  double node = 0.0;  ///< -1: none, or a hand was
   std::string cause;
+  bool by_hand = false;  ///< stopped by where the script had a hand, before it reached the thread
 };
 
 [[nodiscard]] Ending trial(const scene::Scene& scene, const scene::GripperScript& script, int ticks);
