@@ -64,8 +64,11 @@ void mark_front(std::vector<Point>& points, Error error, Mark mark) {
   }
 }
 
-/// What the picture shows: the worse of shape and swing, as far as both are known.
-double motion_error(const Point& p) { return std::fmax(p.errors.shape, p.errors.swing); }
+/// What the picture shows: the worse of shape and swing; NaN where the shape is not known (explicit models beyond 50
+/// nodes), for the swing alone would look ten times better than what it stands beside.
+double motion_error(const Point& p) {
+  return std::isnan(p.errors.shape) ? p.errors.shape : std::fmax(p.errors.shape, p.errors.swing);
+}
 
 Cell optional_cell(bool there, double value) {
   if (!there) return std::string();
@@ -111,7 +114,7 @@ void write(const std::vector<Point>& points, const std::filesystem::path& path) 
            optional_cell(counted, n.max),
            optional_cell(!std::isnan(p.errors.shape), p.errors.shape),
            p.errors.swing,
-           motion_error(p),
+           optional_cell(!std::isnan(motion_error(p)), motion_error(p)),
            optional_cell(kept, p.errors.knot),
            p.penetration,
            p.knot,
