@@ -55,6 +55,9 @@ void ContactSet::let_stick(double mu_static, const Vec* v) noexcept {
 ContactSet& ContactSet::operator=(const ContactSet& other) {
   if (this == &other) return *this;
   begin();
+  contacts_ = other.contacts_;
+  for (auto& c : contacts_) c.keep = nullptr, c.pair = nullptr, c.stuck = nullptr;  // into the other's lists
+  rows_ = other.rows_;
   pairs.reserve(other.pairs.capacity());
   pairs = other.pairs;
   groups.clear();

@@ -95,7 +95,8 @@ class ContactSet {
  public:
   ContactSet() = default;
   ContactSet(const ContactSet& other) = delete;  // contacts point into the lists
-  /// Impulses and pairs; the contacts of the last substep are not copied. @pre both reserved alike, or other is larger.
+  /// Impulses, pairs and the contacts of the last substep, which remeshing asks for; what is known of the matrix is not
+  /// copied, nor where a contact's impulse is kept. @pre both reserved alike, or other is larger.
   ContactSet& operator=(const ContactSet& other);
   ContactSet(ContactSet&&) noexcept = default;
   ContactSet& operator=(ContactSet&&) noexcept = default;

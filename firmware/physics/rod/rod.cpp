@@ -79,8 +79,11 @@ Rod& Rod::operator=(const Rod& other) {
   pace_m_per_s_ = other.pace_m_per_s_;
   labours_ = other.labours_;
   leniency_ = other.leniency_;
-  waits_ = 0, patience_ = other.patience_, sweeps_only_ = false;
+  waits_ = other.waits_, patience_ = other.patience_, sweeps_only_ = other.sweeps_only_;
   letting_go_ = other.letting_go_, released_ = other.released_;
+  motion_ = other.motion_;
+  list_cost_ = other.list_cost_;
+  mesh_held_ = other.mesh_held_, remeshed_ = other.remeshed_;
   solver_.resize(state_.nodes());
   metric_.invalidate();
   contacts_.forget_matrix();

@@ -42,7 +42,9 @@ struct TickReport {
   double time_lost = 0.0;  ///< share of the tick in which the thread was not moved: nobody knew whether it could be
 };
 
-/// A rod. Build it, place it with state(), then tick. Only the constructor allocates. Copyable.
+/// A rod. Build it, place it with state(), then tick. Only the constructor allocates. Copyable: all of its state goes
+/// along; the list of pairs and the matrices of contact are made anew, for reset() copies in the loop and they are
+/// large.
 class Rod {
  public:
   /// @param n nodes, >= 3, equally spaced to begin with; straight along +x from the origin, at rest.

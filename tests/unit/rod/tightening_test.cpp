@@ -202,11 +202,10 @@ TEST(Hold, OfTwoThrowsIsLetOffWithoutStandingStill) {
   EXPECT_LT(lost / ticks, 0.35);
 }
 
-// At rest what was settled is so again, with half the work too. A single hold is chance (at 0.2 m/s 0.16 is lost with
-// the least work, 0.00-0.01 in the others): the median of five, each the mean of three budgets, is 0.000. It is 0.018
-// when every substep has to afford a matrix that is known, 0.022 when a start that is good enough is given up for steps
-// that find no better. That a fair share of the work must leave something for the rows of the substeps to come (0.08 in
-// one hold once) it no longer shows: rows are cheaper to find.
+// At rest what was settled is so again, with half the work too. A single hold is chance (0.06 is lost at 0.21 m/s, 0.02
+// at 0.18): the median of five, each the mean of three budgets, is 0.000. It is 0.010 when a start that is good enough
+// is given up for steps that find no better. That a matrix that is known need not be afforded again, and that a fair
+// share of the work must leave something for the rows of the substeps to come, it no longer shows: both are cheap now.
 TEST(Hold, OfTwoThrowsCanDoWithHalfTheWork) {
   std::vector<double> lost;
   for (const double speed : {0.18, 0.19, 0.2, 0.21, 0.22}) {
@@ -226,7 +225,7 @@ TEST(Hold, OfTwoThrowsCanDoWithHalfTheWork) {
     RecordProperty("lost_" + std::to_string(speed), std::to_string(lost.back()));
   }
   std::sort(lost.begin(), lost.end());
-  EXPECT_LT(lost[2], 0.01);
+  EXPECT_LT(lost[2], 0.005);
 }
 
 // `fast` has ten substeps and keeps them when its work runs short. With six a square knot pulled to 5 N had 59, 2
