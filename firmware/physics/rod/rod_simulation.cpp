@@ -195,8 +195,9 @@ void RodSimulation::tick(const std::array<ToolInput, 2>& tools) noexcept {
   update_grasp(tools);
   if (grippers_) update_grippers(tools);
   rod_.tick(goals_);
+  const bool good = is_finite();
   ++ticks_;
-  if (is_finite()) return publish();
+  if (good) return publish();
   state.x = x_before_;
   state.v = v_before_;
 }

@@ -248,6 +248,17 @@ TEST(RodScene, HangsStillAndCopiesGoTheirOwnWay) {  // a copy that is not touche
   EXPECT_EQ(sim.nodes_W().front(), Vec3(0, 0, 0.35));
 }
 
+TEST(RodScene, SaysInWhichTickItDiverged) {  // counted from 0, as for a tool that is no number
+  RodSimulation sim = simulation(load("suture-3-0.toml"));
+  const std::vector<Vec3> p(sim.nodes_W().begin(), sim.nodes_W().end());
+  const std::vector<Vec3> v(p.size(), Vec3(9e9, 0.0, 0.0));
+  sim.set_state(p, v);
+  sim.tick({});
+  EXPECT_FALSE(sim.diagnostics().finite);
+  EXPECT_GE(sim.diagnostics().bad_node, 0);
+  EXPECT_EQ(sim.diagnostics().bad_tick, 0);
+}
+
 TEST(RodScene, RefusesWhatItCannotDo) {  // one line, which key, what is allowed
   auto few = load("suture-3-0.toml", {"suture.nodes=3"});
   EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(few)));
