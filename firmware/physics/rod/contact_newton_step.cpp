@@ -35,6 +35,7 @@ double ContactNewton::read(const Contact* rows, const Vec* p, const Vec* u) noex
 
 template <bool Friction>
 void ContactNewton::sweep(const Contact* rows, Vec* p, Vec* u) noexcept {
+  constexpr double kShare = 0.8;  // of a step: the whole of it leaves more to the contacts beside it
   on_.clear();
   for (const auto k : rows_) {
     const Contact& c = rows[k];
@@ -42,8 +43,8 @@ void ContactNewton::sweep(const Contact* rows, Vec* p, Vec* u) noexcept {
     const Slot& slot = slots_[at];
     const Vec now = u[k] + moved(at);
     const double un = dot(now, c.n), pn = dot(p[k], c.n);
-    const double to_n = std::max(0.0, pn - slot.r_n * (un + c.soft * pn - c.target));
-    const Vec q = (p[k] - pn * c.n) - slot.r_t * (now - un * c.n);
+    const double to_n = std::max(0.0, pn - kShare * slot.r_n * (un + c.soft * pn - c.target));
+    const Vec q = (p[k] - pn * c.n) - kShare * slot.r_t * (now - un * c.n);
     const double size2 = dot(q, q), most = Friction ? c.mu * to_n : 0.0;
     const Vec to = to_n * c.n + (size2 > most * most ? most / std::sqrt(size2) : 1.0) * q, step = to - p[k];
     if (dot(step, step) == 0.0) continue;
