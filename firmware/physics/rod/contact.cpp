@@ -16,6 +16,7 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   for (auto* array : {&close_, &far_}) array->reserve(pairs.capacity() + 4);
   measured_.resize(pairs.capacity());
   corner_.assign(n, Vec{});
+  share_.assign(n, 0.0);
   groups.reserve(pairs.capacity());
   floor_impulse.assign(n, Vec{});
   body_impulse.assign(n * static_cast<std::size_t>(bodies), Vec{});
@@ -99,20 +100,21 @@ double ContactSet::push(BandSolver& solver, Vec* v) noexcept {
 // B = C^-1 J^T of a row, eight nodes at a time, and its own number J B.
 void ContactSet::make_column(Contact& c, const ContactMetric& metric, float* column) const noexcept {
   const auto offset = static_cast<std::size_t>(window_first_ - metric.first());
-  const float* r[4];
-  Eight w[4];
-  for (int k = 0; k < 4; ++k) {
+  const float* r[Contact::kMostNodes];
+  Eight w[Contact::kMostNodes];
+  for (int k = 0; k < c.count; ++k) {
     r[k] = metric.row(c.node[k]) + offset;
     c.weight[k] = static_cast<float>(c.w[k]);
     c.place[k] = SweptVelocities::place(c.node[k] - window_first_);
     w[k] = all_eight(c.weight[k]);
   }
   for (std::size_t j = 0; j < stride_; j += 8) {
-    store_eight(column + j, (w[0] * load_eight(r[0] + j) + w[1] * load_eight(r[1] + j)) +
-                                (w[2] * load_eight(r[2] + j) + w[3] * load_eight(r[3] + j)));
+    Eight sum = w[0] * load_eight(r[0] + j);
+    for (int k = 1; k < c.count; ++k) sum += w[k] * load_eight(r[k] + j);
+    store_eight(column + j, sum);
   }
   double own = 0.0;
-  for (int k = 0; k < 4; ++k) own += c.w[k] * static_cast<double>(column[c.node[k] - window_first_]);
+  for (int k = 0; k < c.count; ++k) own += c.w[k] * static_cast<double>(column[c.node[k] - window_first_]);
   c.inv_w = 1.0 / own;
   c.inv_soft_w = 1.0 / (own + c.soft);
 }
@@ -130,7 +132,7 @@ void ContactSet::sweep(const Vec* v) noexcept {
   const float* column = columns_.data();
   for (int index = 0; index < rows_; ++index, column += stride_) {
     Contact& c = contacts_[static_cast<std::size_t>(index)];
-    Vec u = swept_.mix(c.place, c.weight) - c.surface;
+    Vec u = swept_.mix(c.place, c.weight, c.count) - c.surface;
     if constexpr (Turns) u += turning_.slip(index);
     const double un = dot(u, c.n), pn_before = dot(c.p, c.n);
     const double pn = pn_before - c.inv_soft_w * (un + c.soft * pn_before - c.target);
@@ -247,7 +249,7 @@ double ContactSet::unsettled_fraction(const Vec* v, double dt_s) const noexcept 
   for (int k = 0; k < rows_; ++k) {
     const Contact& c = contacts_[static_cast<std::size_t>(k)];
     const double closing_m = -dt_s * dot(velocity<false>(k, v), c.n);
-    const double spare_m = c.count == 4 ? 0.0 : kGive * c.reach_m;  // what lies on a desk does not jam
+    const double spare_m = c.is_pair() ? 0.0 : kGive * c.reach_m;  // what lies on a desk does not jam
     const double room_m = std::max(c.gap_m + spare_m, kCreep * c.reach_m);
     if (closing_m > room_m) share = std::min(share, room_m / closing_m);
   }

@@ -27,10 +27,12 @@ struct Body {
 };
 
 /// One touching pair. The relative point velocity is u = sum_k w_k v[node_k] - surface; the impulse p acts on node k as
-/// w_k p.
+/// w_k p. Of the thread with itself: first the nodes of the two segments, then the others that the points of the smooth
+/// curves depend on (smooth.hpp).
 struct Contact {
-  std::int32_t node[4] = {0, 0, 0, 0};
-  double w[4] = {0, 0, 0, 0};
+  static constexpr int kMostNodes = 8;
+  std::int32_t node[kMostNodes] = {};
+  double w[kMostNodes] = {};
   Vec n{};                  ///< unit normal, direction of a separating u
   Vec surface{};            ///< velocity of the body's surface, m/s
   Vec p{};                  ///< impulse, N s; p . n >= 0
@@ -41,15 +43,18 @@ struct Contact {
   double soft = 0.0;        ///< give of the normal: u_n + soft p_n >= target, 1/kg
   double inv_soft_w = 0.0;  ///< 1 / (J C^-1 J^T + soft)
   double mu = 0.0;
-  std::int32_t count = 4;                      ///< nodes in use
-  double reach_m = 0.0;                        ///< centre distance at which the pair touches
-  double distance_m = 0.0;                     ///< of the chords, for the guard
-  bool loaded = false;                         ///< has carried an impulse in this substep
-  Vec* keep = nullptr;                         ///< where the impulse is kept between substeps
-  Candidate* pair = nullptr;                   ///< of the thread with itself
-  char* stuck = nullptr;                       ///< where it is kept whether friction held
-  std::int32_t place[4] = {0, 0, 0, 0};        ///< of the nodes in SweptVelocities
-  float weight[4] = {0.0F, 0.0F, 0.0F, 0.0F};  ///< w for it
+  std::int32_t first = 0, last = 0;     ///< lowest and highest of the nodes
+  std::int32_t count = 4;               ///< nodes in use
+  double reach_m = 0.0;                 ///< centre distance at which the pair touches
+  double distance_m = 0.0;              ///< of the chords, for the guard
+  bool loaded = false;                  ///< has carried an impulse in this substep
+  Vec* keep = nullptr;                  ///< where the impulse is kept between substeps
+  Candidate* pair = nullptr;            ///< of the thread with itself
+  char* stuck = nullptr;                ///< where it is kept whether friction held
+  std::int32_t place[kMostNodes] = {};  ///< of the nodes in SweptVelocities
+  float weight[kMostNodes] = {};        ///< w for it
+
+  [[nodiscard]] bool is_pair() const noexcept { return pair != nullptr; }
 };
 
 /// What happened in a substep or, summed by the caller, in a tick.
@@ -136,7 +141,7 @@ class ContactSet {
   [[nodiscard]] Span span() const noexcept;
   /// Does the thread touch nothing but itself?
   [[nodiscard]] bool only_pairs() const noexcept {
-    return std::all_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.count == 4; });
+    return std::all_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.is_pair(); });
   }
 
   /// Decides which contacts are solved: the `most` deepest, on a window of at most `widest` nodes. @pre nodes >= 2.
@@ -206,10 +211,12 @@ class ContactSet {
   struct Measured {
     Vec between;                       ///< from the closest point of the first to that of the second, m
     double s, t, distance_m, chord_m;  ///< where; how far apart; how far the chords are
+    bool smooth;                       ///< between smooth curves
   };
   template <bool Smooth>
   void measure(const std::int32_t* places, const State& state) noexcept;
   void bend(const State& state) noexcept;
+  void bend_row(Contact& c, int at, double s, const State& state) const noexcept;
   /// @return true when it became a contact.
   bool take(Candidate& pair, const Measured& measured, const State& state, const Motion& motion, double dt_s, double mu,
             ContactReport& report) noexcept;
@@ -261,6 +268,7 @@ class ContactSet {
   std::vector<std::int32_t> close_, far_;  // places in due_: those to measure between smooth curves, and the others
   std::vector<Measured> measured_;         // like due_
   std::vector<Vec> corner_;                // of the smooth curve, at the nodes of bent_
+  std::vector<double> share_;              // of a corner that is cut: 1, or less where that would be too much
   Span bent_{0, -1};                       // of close pairs
   std::vector<double> gaps_;               // scratch of choose_rows()
   std::vector<float> columns_;             // C^-1 J^T of every row on the window, padded

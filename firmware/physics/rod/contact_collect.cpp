@@ -12,9 +12,6 @@ namespace {
 /// The less, the more a contact wants to be solved: those that carry load first, then the nearest.
 double urgency(const Contact& c) noexcept { return c.gap_m - (dot(c.p, c.p) > 0.0 ? c.reach_m : 0.0); }
 
-int lowest_node(const Contact& c) noexcept { return std::min(c.node[0], c.node[2]); }
-int highest_node(const Contact& c) noexcept { return std::max(c.node[1], c.node[3]); }
-
 }  // namespace
 
 // A contact to fill in, where it is: they are large. @return nullptr when there is no room.
@@ -32,8 +29,8 @@ bool ContactSet::afford_world(int nodes, int bodies, const Work& work) noexcept 
 ContactSet::Span ContactSet::span() const noexcept {
   Span span{1 << 30, -1};
   for (const auto& c : contacts_) {
-    span.first = std::min(span.first, lowest_node(c));
-    span.last = std::max(span.last, highest_node(c));
+    span.first = std::min(span.first, c.first);
+    span.last = std::max(span.last, c.last);
   }
   return span;
 }
@@ -46,7 +43,7 @@ void ContactSet::choose_rows(int most, int widest, int nodes, ContactReport& rep
   gaps_.clear();
   for (const auto& c : contacts_) {
     gaps_.push_back(urgency(c));
-    if (gaps_.back() < deepest) deepest = gaps_.back(), anchor = lowest_node(c);
+    if (gaps_.back() < deepest) deepest = gaps_.back(), anchor = c.first;
   }
   if (room < found) {
     std::nth_element(gaps_.begin(), gaps_.begin() + static_cast<std::ptrdiff_t>(room), gaps_.end());
@@ -57,14 +54,14 @@ void ContactSet::choose_rows(int most, int widest, int nodes, ContactReport& rep
   rows_ = 0, window_first_ = nodes, window_last_ = -1;
   for (std::size_t k = 0; k < found; ++k) {
     Contact& c = contacts_[k];
-    const bool outside = narrow && (lowest_node(c) < anchor || highest_node(c) >= anchor + widest);
+    const bool outside = narrow && (c.first < anchor || c.last >= anchor + widest);
     if (urgency(c) >= cut || static_cast<std::size_t>(rows_) >= room || outside) {
       c.p = Vec{};
       ++report.rows_left_out;
       continue;
     }
-    window_first_ = std::min(window_first_, lowest_node(c));
-    window_last_ = std::max(window_last_, highest_node(c));
+    window_first_ = std::min(window_first_, c.first);
+    window_last_ = std::max(window_last_, c.last);
     if (static_cast<int>(k) != rows_) std::swap(c, contacts_[static_cast<std::size_t>(rows_)]);
     ++rows_;
   }
@@ -88,7 +85,7 @@ void ContactSet::collect_floor(const State& state, double floor_m, double radius
     }
     Contact& contact = *made;
     contact.count = 1;
-    for (auto& node : contact.node) node = static_cast<std::int32_t>(i);  // those not in use weigh nothing
+    contact.node[0] = contact.first = contact.last = static_cast<std::int32_t>(i);
     contact.w[0] = 1.0;
     contact.n = make(0, 0, 1);
     contact.gap_m = gap;
@@ -136,8 +133,8 @@ void ContactSet::collect_body(const State& state, const Body& body, int index, d
     }
     Contact& contact = *made;
     contact.count = 2;
-    for (auto& node : contact.node) node = static_cast<std::int32_t>(j);
-    contact.node[1] = static_cast<std::int32_t>(j + 1);
+    contact.node[0] = contact.first = static_cast<std::int32_t>(j);
+    contact.node[1] = contact.last = static_cast<std::int32_t>(j + 1);
     contact.w[0] = 1.0 - c.t, contact.w[1] = c.t;
     contact.n = distance > 1e-12 ? (1.0 / distance) * c.between : make(0, 0, 1);
     contact.surface = body.velocity;

@@ -113,11 +113,12 @@ void ContactSet::measure(const std::int32_t* places, const State& state) noexcep
   FourClosest c = closest_along<Vecs, Lanes>(a.e, b.e, b.x - a.x);
   const Lanes chord = root(c.distance2);
   Lanes distance = chord;
+  auto smooth = chord < Lanes{};
   if constexpr (Smooth) {
     const Lanes within =
         each([&](std::size_t l) { return pair(l).reach_m + kClose * pair(l).near_m + pair(l).bulge_m; });
     const FourClosest curves = closest(a.smooth(state, corner_.data()), b.smooth(state, corner_.data()), c);
-    const auto close = chord < within;
+    const auto close = smooth = chord < within;
     c.s = close ? curves.s : c.s, c.t = close ? curves.t : c.t;
     c.between.x = close ? curves.between.x : c.between.x;
     c.between.y = close ? curves.between.y : c.between.y;
@@ -126,7 +127,7 @@ void ContactSet::measure(const std::int32_t* places, const State& state) noexcep
   }
   for (int l = 0; l < 4; ++l) {
     Measured& m = measured_[static_cast<std::size_t>(places[l])];
-    m = {make(c.between.x[l], c.between.y[l], c.between.z[l]), c.s[l], c.t[l], distance[l], chord[l]};
+    m = {make(c.between.x[l], c.between.y[l], c.between.z[l]), c.s[l], c.t[l], distance[l], chord[l], smooth[l] != 0};
   }
 }
 
@@ -136,7 +137,30 @@ void ContactSet::bend(const State& state) noexcept {
   const double diameter_m = pairs[static_cast<std::size_t>(due_[static_cast<std::size_t>(close_[0])])].reach_m;
   const std::int32_t first = std::max(bent_.first, 1), last = std::min(bent_.last, state.nodes() - 2);
   for (std::int32_t i = first; i <= last; ++i)
-    corner_[static_cast<std::size_t>(i)] = SmoothSegment::corner(state, static_cast<std::size_t>(i), diameter_m);
+    SmoothSegment::corner(state, static_cast<std::size_t>(i), diameter_m, corner_[static_cast<std::size_t>(i)],
+                          share_[static_cast<std::size_t>(i)]);
+}
+
+// The point s of the smooth curve in place of that of its chord, which begins with node[at].
+void ContactSet::bend_row(Contact& c, int at, double s, const State& state) const noexcept {
+  const auto j = static_cast<std::size_t>(c.node[at]);
+  const double side = at == 0 ? -0.25 : 0.25, h_before = state.cut_before[j], h_after = state.cut_after[j];
+  const double p = at_least_0(1.0 - s / h_before), q = at_least_0(1.0 - (1.0 - s) / h_after);
+  const auto add = [&](std::int32_t node, double w) {
+    c.node[c.count] = node, c.w[c.count] = w;
+    ++c.count;
+    c.first = std::min(c.first, node), c.last = std::max(c.last, node);
+  };
+  if (const double cut = side * p * p * share_[j]; cut != 0.0) {
+    const double on = cut * h_before, off = cut * state.cut_after[j - 1];
+    c.w[at] -= on + off, c.w[at + 1] += on;
+    add(c.node[at] - 1, off);
+  }
+  if (const double cut = side * q * q * share_[j + 1]; cut != 0.0) {
+    const double on = cut * h_after, off = cut * state.cut_before[j + 1];
+    c.w[at + 1] -= on + off, c.w[at] += on;
+    add(c.node[at] + 2, off);
+  }
 }
 
 bool ContactSet::collect_thread(const State& state, const Motion& motion, double dt_s, double mu, Work& work,
@@ -187,6 +211,8 @@ bool ContactSet::take(Candidate& pair, const Measured& m, const State& state, co
   Contact& contact = *made;
   contact.node[0] = pair.a, contact.node[1] = pair.a + 1, contact.node[2] = pair.b, contact.node[3] = pair.b + 1;
   contact.w[0] = s - 1.0, contact.w[1] = -s, contact.w[2] = 1.0 - t, contact.w[3] = t;
+  contact.first = contact.node[0], contact.last = contact.node[3];
+  if (m.smooth) bend_row(contact, 0, s, state), bend_row(contact, 2, t, state);
   contact.n = m.distance_m > 1e-12 ? (1.0 / m.distance_m) * m.between : make(0, 0, 1);
   contact.gap_m = gap;
   contact.reach_m = pair.reach_m;

@@ -34,9 +34,20 @@ void ContactNewton::measure(const BandSolver& solver, int first, int last) noexc
   put_off_ = false;
 }
 
+bool ContactNewton::has_moved(const Slot& slot, const Contact& c, std::int32_t first) noexcept {
+  constexpr double kMoved = 0.16;  // of all weights: a slot that has moved more is made anew
+  if (slot.count != c.count) return true;
+  double sum = 0.0;
+  bool same = true;
+  for (int k = 0; k < c.count; ++k) {
+    sum += std::abs(c.w[k] - slot.w[k]);
+    same &= slot.node[k] + first == c.node[k];
+  }
+  return !same || sum > kMoved;
+}
+
 void ContactNewton::start(const Contact* rows, int count) noexcept {
-  constexpr double kMoved = 0.08;  // of a weight: a slot that has moved more is made anew
-  constexpr int kIdle = 4;         // substeps without load, after which a slot goes
+  constexpr int kIdle = 4;  // substeps without load, after which a slot goes
   slot_.assign(static_cast<std::size_t>(count), -1);
   rows_.clear();
   begins_ = begins_ || !put_off_;
@@ -50,7 +61,7 @@ void ContactNewton::start(const Contact* rows, int count) noexcept {
     const std::int32_t s = find(rows[k].node[0] - z_.first(), rows[k].node[2] - z_.first());
     if (s < 0) continue;
     Slot& slot = slots_[static_cast<std::size_t>(s)];
-    slot.dead = std::abs(rows[k].w[0] - slot.w[0]) + std::abs(rows[k].w[3] - slot.w[3]) > kMoved;
+    slot.dead = has_moved(slot, rows[k], z_.first());
     if (slot.dead) continue;
     slot_[static_cast<std::size_t>(k)] = s;
     slot.row = k;
@@ -109,8 +120,7 @@ bool ContactNewton::take(const Contact* rows, int k) noexcept {
   made.row = k;
   made.count = c.count;
   made.n.v = c.n.v, made.soft = c.soft;
-  for (int j = 0; j < 4; ++j)
-    made.node[j] = c.node[j < c.count ? j : 0] - z_.first(), made.w[j] = j < c.count ? c.w[j] : 0.0;
+  for (int j = 0; j < c.count; ++j) made.node[j] = c.node[j] - z_.first(), made.w[j] = c.w[j];
   return true;
 }
 
@@ -119,13 +129,17 @@ void ContactNewton::spread(const Slot& slot, std::int32_t first, std::int32_t la
   const auto begin = (BandColumns::kBlock * static_cast<std::size_t>(first)) & ~std::size_t{7},
              end = BandColumns::kBlock * static_cast<std::size_t>(last + 1);
   float* const out = spread_.data();
-  const float *const c0 = z_.column(slot.node[0]), *const c1 = z_.column(slot.node[1]),
-                     *const c2 = z_.column(slot.node[2]), *const c3 = z_.column(slot.node[3]);
-  const Eight w0 = all_eight(static_cast<float>(slot.w[0])), w1 = all_eight(static_cast<float>(slot.w[1])),
-              w2 = all_eight(static_cast<float>(slot.w[2])), w3 = all_eight(static_cast<float>(slot.w[3]));
-  for (std::size_t j = begin; j < end; j += 8)
-    store_eight(out + j, (w0 * load_eight(c0 + j) + w1 * load_eight(c1 + j)) +
-                             (w2 * load_eight(c2 + j) + w3 * load_eight(c3 + j)));
+  const float* column[kMostNodes];
+  Eight w[kMostNodes];
+  for (int k = 0; k < slot.count; ++k) {
+    column[k] = z_.column(slot.node[k]);
+    w[k] = all_eight(static_cast<float>(slot.w[k]));
+  }
+  for (std::size_t j = begin; j < end; j += 8) {
+    Eight sum = w[0] * load_eight(column[0] + j);
+    for (int k = 1; k < slot.count; ++k) sum += w[k] * load_eight(column[k] + j);
+    store_eight(out + j, sum);
+  }
 }
 
 // What the slot of spread() does to this one: its columns x, y, z.

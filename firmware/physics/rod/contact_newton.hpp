@@ -35,6 +35,7 @@ class ContactNewton {
   static constexpr int kMostRows = 96;       ///< that carry load, or would
   static constexpr int kMostUnknowns = 192;  ///< impulses in them
   static constexpr int kWidest = BandColumns::kWidest;
+  static constexpr int kMostNodes = 8;  ///< of a contact
 
   void reserve();
 
@@ -93,10 +94,10 @@ class ContactNewton {
   /// A contact that carries load, or did since measure(): who it is, how far its map steps, and what it reads there.
   struct Slot {
     std::int32_t count = 0;
-    std::int32_t node[4] = {0, 0, 0, 0};  ///< counted from the first of Z
-    std::int32_t row = -1;                ///< or none
-    std::int32_t next = -1;               ///< slot with the same first node
-    double w[4] = {0.0, 0.0, 0.0, 0.0};
+    std::int32_t node[kMostNodes] = {};  ///< counted from the first of Z
+    std::int32_t row = -1;               ///< or none
+    std::int32_t next = -1;              ///< slot with the same first node
+    double w[kMostNodes] = {};
     Vec n{};
     double soft = 0.0, r_n = 0.0, r_t = 0.0, per_r_n = 0.0, per_r_t = 0.0;
     bool dead = false;  ///< its contact has moved on, or carries nothing any more
@@ -132,6 +133,7 @@ class ContactNewton {
   [[nodiscard]] std::array<Four, 3> answer_at(const Slot& slot) const noexcept;
   static void set_steps(Slot& slot, const std::array<Four, 3>& own) noexcept;
   void index_slots() noexcept;
+  [[nodiscard]] static bool has_moved(const Slot& slot, const Contact& c, std::int32_t first) noexcept;
   [[nodiscard]] std::int32_t find(std::int32_t a, std::int32_t b) const noexcept;
   void exchange(std::size_t a, std::size_t b) noexcept;
   [[nodiscard]] std::size_t carrying() const noexcept;

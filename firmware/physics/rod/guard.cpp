@@ -54,8 +54,8 @@ double ContactSet::safe_fraction(const Motion& motion, const State& state, doubl
   const Vec* const v = state.v.data();
   Share share{state.x.data(), v, dt_s};
   for (const auto& c : contacts_) {
-    const double distance = c.count == 4 ? c.distance_m : c.gap_m + c.reach_m;
-    if (c.count == 4) {
+    const double distance = c.is_pair() ? c.distance_m : c.gap_m + c.reach_m;
+    if (c.is_pair()) {
       share.pair(c.node[0], c.node[2], distance, motion);
     } else if (c.count == 1) {  // a plane: what is below it already may only come up
       share.fall(-dot(v[c.node[0]] - c.surface, c.n), distance);

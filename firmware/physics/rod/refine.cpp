@@ -12,7 +12,9 @@ constexpr double kTurn = 0.35;       // rad per node
 constexpr double kStartTurn = 0.5;   // the same for the shape a loose thread begins in
 constexpr double kBendLength = 0.4;  // of sqrt(EI / T)
 constexpr double kGrading = 0.2;
-constexpr double kCut = 0.5;  // of a segment, up to where its corners are cut
+constexpr double kCut = 0.5;         // of a segment, up to where its corners are cut
+constexpr double kAway = 0.5;        // of a unit, gone in which what is kept at a node fades by e
+constexpr double kLeastFade = 1e-3;  // so that Spin::before_fading() can make up for it
 constexpr double kRests_m_per_s = 1e-3;
 constexpr double kWorth = 1.5;  // a change must better the worst by this factor
 constexpr int kTries = 4;       // merges looked at for a change, so that a tangle costs no more than that
@@ -84,7 +86,7 @@ bool Refine::start(const Material& material, double wanted_m, State& state, std:
   wanted_.assign(n, 0.0);
   free_.assign(n, 1);
   moment_.assign(n, Vec{});
-  corner_.assign(n, Vec{});
+  fade_.assign(n, kFade);
   tension_.assign(n, 0.0);
   return true;
 }
@@ -112,7 +114,7 @@ void Refine::want(const Material& material, const State& state, const Forces& fo
     for (int k = 0; k < c.count; ++k) free_[static_cast<std::size_t>(c.node[k])] = 0;
     const double force = norm(c.p) * contacts.per_second();
     if (force == 0.0) continue;
-    for (int k = 0; k < c.count; k += 2) {
+    for (int k = 0; k < std::min(c.count, 4); k += 2) {
       const auto j = std::min(static_cast<std::size_t>(c.node[k]), n - 2);
       const double pull = std::max({force, forces.tension[j], 1e-9});
       wanted_[j] = std::min(wanted_[j], kBendLength * std::sqrt(material.EI_N_m2 / pull));
@@ -136,9 +138,9 @@ void Refine::grade(const Mesh& mesh) noexcept {
 // What slides asks for nothing: its nodes would come and go all the time, each time with a small step of the force.
 void Refine::want_at_rest(const State& state, const ContactSet& contacts) noexcept {
   for (const auto& c : contacts.contacts()) {
-    if (c.count != 4 || dot(c.p, c.p) == 0.0) continue;
+    if (!c.is_pair() || dot(c.p, c.p) == 0.0) continue;
     Vec u{};
-    for (int k = 0; k < 4; ++k) u += c.w[k] * state.v[static_cast<std::size_t>(c.node[k])];
+    for (int k = 0; k < c.count; ++k) u += c.w[k] * state.v[static_cast<std::size_t>(c.node[k])];
     u -= dot(u, c.n) * c.n;
     if (dot(u, u) > kRests_m_per_s * kRests_m_per_s) continue;
     double& one = wanted_[static_cast<std::size_t>(c.node[0])];
@@ -198,7 +200,6 @@ void Refine::merge(const Material& material, State& state, int node) noexcept {
   close_slot(state.cut_after, i);
   close_slot(tension_, i);
   close_slot(moment_, i);
-  close_slot(corner_, i);
   close_slot(at_, i);
   close_slot(wanted_, i);
   close_slot(free_, i);
@@ -223,7 +224,6 @@ void Refine::split(const Material&, State& state, int segment) noexcept {
   insert(state.v, 0.5 * (state.v[j] + state.v[i]));
   insert(state.load, Vec{});
   insert(moment_, 0.5 * (moment_[j] + moment_[i]));
-  insert(corner_, Vec{});
   insert(state.cut_before, kCut);
   insert(state.cut_after, std::min(1.0, 2.0 * state.cut_after[j]));
   state.cut_before[j] = std::min(1.0, 2.0 * state.cut_before[j]);
@@ -237,12 +237,20 @@ void Refine::split(const Material&, State& state, int segment) noexcept {
   }
 }
 
+// What is kept at a node belongs to the place where it was when nodes moved along the thread. Squared: what creeps, and
+// what the fading itself moves, loses none of it.
+void Refine::slide(const State& state, double tick_s) noexcept {
+  const double per_m = tick_s / (kAway * unit_m_);
+  for (std::size_t i = 0; i < fade_.size(); ++i)
+    fade_[i] = std::max(kLeastFade, kFade * std::exp(-per_m * per_m * dot(state.v[i], state.v[i])));
+}
+
 bool Refine::update(const Material& material, State& state, const Forces& forces, ContactSet& contacts,
                     const std::vector<Body>& bodies, Work& work) noexcept {
-  for (auto& q : state.rest_bend) q = kFade * q;
-  for (auto& q : state.rest_corner) q = kFade * q;
-  for (auto* cuts : {&state.cut_before, &state.cut_after}) {
-    for (auto& h : *cuts) h = kCut + kFade * (h - kCut);
+  for (std::size_t i = 0; i < at_.size(); ++i) {
+    state.rest_bend[i] = fade_[i] * state.rest_bend[i];
+    state.cut_before[i] = kCut + fade_[i] * (state.cut_before[i] - kCut);
+    if (i > 0) state.cut_after[i - 1] = kCut + fade_[i] * (state.cut_after[i - 1] - kCut);
   }
   for (auto& e : state.rest_strain) e *= kFade;
   want(material, state, forces, contacts);
@@ -268,7 +276,6 @@ bool Refine::update(const Material& material, State& state, const Forces& forces
         const Vec turn = state.mesh.inv_rest[q] * (state.x[q + 1] - state.x[q]) -
                          state.mesh.inv_rest[q - 1] * (state.x[q] - state.x[q - 1]) - state.rest_bend[q];
         moment_[q] = state.mesh.weight[q] * turn;
-        corner_[q] = state.x[q + 1] - 2.0 * state.x[q] + state.x[q - 1] - state.rest_corner[q];
       }
     }
     changed = true;
@@ -288,7 +295,6 @@ void Refine::keep_stress(const Material& material, State& state) noexcept {
     state.rest_strain[j] = strain - tension_[j] / material.EA_N;
   }
   for (std::size_t i = 1; i + 1 < n; ++i) {
-    state.rest_corner[i] = state.x[i + 1] - 2.0 * state.x[i] + state.x[i - 1] - corner_[i];
     if (mesh.weight[i] == 0.0) continue;
     const Vec turn =
         mesh.inv_rest[i] * (state.x[i + 1] - state.x[i]) - mesh.inv_rest[i - 1] * (state.x[i] - state.x[i - 1]);

@@ -22,13 +22,18 @@ namespace ligature::physics::rod {
 /// - a merge is refused when anything is so near that the two segments could pass or touch it on their way to the chord
 ///   (merge_is_clear);
 /// - bending moments and tension stay what they were: what the new polygon would change is kept as a stress-free offset
-///   (State::rest_bend, rest_strain) that fades within some ticks.
+///   (State::rest_bend, rest_strain) that fades within some ticks, sooner where the thread moves;
+/// - a split leaves the smooth curve where it is (smooth.hpp): corners are cut as far as before, which fades likewise.
 class Refine {
  public:
   /// Lays out n nodes: units for the finest length wanted_m, coarse segments, then splits of the longest; of the
   /// longest for its curvature, where that is given, at places equally far apart along the whole thread.
   /// @return false when n is too small or too large for the length.
   bool start(const Material& material, double wanted_m, State& state, std::span<const double> curvature_per_m = {});
+
+  /// Before update(): how far nodes went in a tick, and so how much of their offsets is left.
+  void slide(const State& state, double tick_s) noexcept;
+  [[nodiscard]] std::span<const double> fade() const noexcept { return fade_; }
 
   /// One tick's worth of changes, an eighth of its work at most. @return true when nodes moved. O(n); no allocation.
   bool update(const Material& material, State& state, const Forces& forces, ContactSet& contacts,
@@ -38,7 +43,7 @@ class Refine {
   void keep_stress(const Material& material, State& state) noexcept;
 
   static constexpr int kLevels = 4;
-  static constexpr double kFade = 0.8;  ///< of the stress-free offsets, per tick
+  static constexpr double kFade = 0.8;  ///< of the offsets, per tick, where nothing moves
   static constexpr int kChangesPerTick = 6;
 
  private:
@@ -58,7 +63,7 @@ class Refine {
   std::vector<double> wanted_;    // per segment, m
   std::vector<char> free_;        // node may be merged
   std::vector<Vec> moment_;       // Q of every vertex
-  std::vector<Vec> corner_;       // what is cut off of it
+  std::vector<double> fade_;      // of what is kept at a node, in this tick
   std::vector<double> tension_;
 };
 

@@ -194,7 +194,8 @@ void Rod::steer(int hold, Vec steer, Vec direction) noexcept {
 
 bool Rod::remesh() noexcept {
   if (!parts_.adaptive) return false;
-  if (parts_.frames()) spin_.before_fading(state_, Refine::kFade);
+  refine_.slide(state_, numerics_.tick_s);
+  if (parts_.frames()) spin_.before_fading(state_, refine_.fade());
   if (!refine_.update(material_, state_, forces_, contacts_, bodies, work_)) return false;
   mesh_changed();
   remeshed_ = true;

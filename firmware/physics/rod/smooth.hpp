@@ -10,11 +10,13 @@
 namespace ligature::physics::rod {
 
 /// Segment j of the quadratic B-spline of the nodes, which touches every chord in its middle and cuts the corners:
-///   P(s) = x_j + s e_j + 1/8 (1 - s / h)_+^2 k_j + 1/8 (1 - (1 - s) / h')_+^2 k_{j+1},   k_i = e_i - e_{i-1},
-/// h = h' = 1/2; an end of the thread has no corner. Position and tangent are continuous from segment to segment, so
-/// the normal of a contact turns smoothly as strands slide; between chords it jumps by the angle of a corner, and the
-/// force with it. When nodes move along the thread the curve stays: k is less rest_corner, and h what cut_before,
-/// cut_after say, which fade (refine.hpp). An impulse still acts on the chord's two nodes, as if at the chord's s.
+///   P(s) = x_j + s e_j + 1/8 (1 - s / h)_+^2 k_j + 1/8 (1 - (1 - s) / h')_+^2 k_{j+1}
+/// with h = h' = 1/2 and k_i = e_i - e_{i-1}; an end of the thread has no corner. Position and tangent are continuous
+/// from segment to segment, so the normal of a contact turns smoothly as strands slide; between chords it jumps by the
+/// angle of a corner, and the force with it. A corner is the parabola from x_i - h' e_{i-1} to x_i + h e_i, so
+///   k_i = 2 (h e_i - h' e_{i-1}),
+/// and when a segment is split the curve stays if the halves' h are twice as large (State::cut_before, cut_after); they
+/// fade to 1/2 (refine.hpp). P is linear in the nodes: an impulse in it acts on each with its weight there.
 /// Vector, Number: Vec and double, or Vecs and Lanes for four of them.
 template <class Vector, class Number>
 struct SmoothOf {
@@ -40,16 +42,19 @@ struct SmoothSegment : SmoothOf<Vec, double> {
   SmoothSegment(const State& state, std::size_t j, double diameter_m) noexcept {
     x = state.x[j], e = state.x[j + 1] - state.x[j];
     h_before = 1.0 / state.cut_before[j], h_after = 1.0 / state.cut_after[j];
-    if (j > 0) before = corner(state, j, diameter_m);
-    if (j + 2 < state.x.size()) after = corner(state, j + 1, diameter_m);
+    double share;
+    if (j > 0) corner(state, j, diameter_m, before, share);
+    if (j + 2 < state.x.size()) corner(state, j + 1, diameter_m, after, share);
   }
 
-  /// k_i of an inner node i, m: no larger than cuts off kMostCut.
-  [[nodiscard]] static Vec corner(const State& state, std::size_t i, double diameter_m) noexcept {
+  /// k_i of an inner node i, m: no larger than cuts off kMostCut, for which it is a share of what it would be.
+  static void corner(const State& state, std::size_t i, double diameter_m, Vec& k_i, double& share) noexcept {
     const double most_m = 8.0 * kMostCut * diameter_m;
-    const Vec k = (state.x[i + 1] - state.x[i]) - (state.x[i] - state.x[i - 1]) - state.rest_corner[i];
+    const Vec k = 2.0 * state.cut_before[i] * (state.x[i + 1] - state.x[i]) -
+                  2.0 * state.cut_after[i - 1] * (state.x[i] - state.x[i - 1]);
     const double size2 = dot(k, k);
-    return size2 > most_m * most_m ? most_m / std::sqrt(size2) * k : k;
+    share = size2 > most_m * most_m ? most_m / std::sqrt(size2) : 1.0;
+    k_i = share * k;
   }
 
   /// How far the curve gets from its chord, m.

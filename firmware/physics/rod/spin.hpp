@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "firmware/physics/rod/state.hpp"
@@ -27,8 +28,8 @@ class Spin {
   /// A hold's director that twists nothing. @pre after start().
   void attach(State& state, int hold) const noexcept;
 
-  /// What Refine's fading of State::rest_bend must leave: call before, with its factor.
-  void before_fading(State& state, double fade) const noexcept;
+  /// What Refine's fading of State::rest_bend must leave: call before, with its factors.
+  void before_fading(State& state, std::span<const double> fade) const noexcept;
   /// Once a tick: directors follow the tangents (and nodes that moved along the thread), angles and moments are
   /// measured.
   /// @param remeshed  State::rest_bend was set anew, the born part included.

@@ -65,8 +65,8 @@ void Spin::attach(State& state, int hold) const noexcept {
   h.director = unit(sum - dot(sum, h.tangent) * h.tangent);
 }
 
-void Spin::before_fading(State& state, double fade) const noexcept {
-  for (std::size_t i = 0; i < born_.size(); ++i) state.rest_bend[i] += (1.0 / fade - 1.0) * born_[i];
+void Spin::before_fading(State& state, std::span<const double> fade) const noexcept {
+  for (std::size_t i = 0; i < born_.size(); ++i) state.rest_bend[i] += (1.0 / fade[i] - 1.0) * born_[i];
 }
 
 // Nodes moved along the thread: frames between the middles of the old segments turn evenly from one to the next.

@@ -32,8 +32,7 @@ struct State {
   std::vector<Vec> x, v;                      ///< n positions, m, and velocities, m/s
   std::vector<Vec> load;                      ///< n constant forces, N
   std::vector<Vec> rest_bend;                 ///< n: part of t_i - t_{i-1} that is stress free
-  std::vector<Vec> rest_corner;               ///< n: part of e_i - e_{i-1} that cuts no corner (smooth.hpp), m
-  std::vector<double> cut_before, cut_after;  ///< of segment j, up to where its corners at j and j + 1 are cut (same)
+  std::vector<double> cut_before, cut_after;  ///< of segment j, how far the corners at j and j + 1 are cut (smooth.hpp)
   std::vector<double> rest_strain;            ///< n - 1 (sized n): part of l / l_rest - 1 that is stress free
   std::array<Hold, kMaxHolds> holds;
   int hold_count = 0;
@@ -41,7 +40,7 @@ struct State {
   [[nodiscard]] int nodes() const noexcept { return mesh.nodes(); }
   void resize(int n) {
     mesh.resize(n);
-    for (auto* array : {&x, &v, &load, &rest_bend, &rest_corner}) array->assign(static_cast<std::size_t>(n), Vec{});
+    for (auto* array : {&x, &v, &load, &rest_bend}) array->assign(static_cast<std::size_t>(n), Vec{});
     rest_strain.assign(static_cast<std::size_t>(n), 0.0);
     for (auto* array : {&cut_before, &cut_after}) array->assign(static_cast<std::size_t>(n), 0.5);
   }

@@ -49,10 +49,10 @@ class SweptVelocities {
     }
   }
 
-  /// sum_k w_k v[place_k], k < 4.
-  [[nodiscard]] Vec mix(const std::int32_t* places, const float* w) const noexcept {
+  /// sum_k w_k v[place_k], k < count.
+  [[nodiscard]] Vec mix(const std::int32_t* places, const float* w, int count) const noexcept {
     float x = 0.0F, y = 0.0F, z = 0.0F;
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < count; ++k) {
       const float* at = xyz_.data() + places[k];
       x += w[k] * at[0];
       y += w[k] * at[8];

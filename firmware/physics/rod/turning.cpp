@@ -16,7 +16,7 @@ void Turning::prepare(const Contact* contacts, int count, int segments, double r
     Row row;
     double weight = 1.0;
     row.segment[0] = row.segment[1] = std::min(c.node[0], segments - 1);
-    if (c.count == 4) {
+    if (c.is_pair()) {
       row.segment[1] = c.node[2];
       row.count = 2;
     } else if (c.count == 1 && c.node[0] > 0 && c.node[0] < segments) {  // a node: half of either segment

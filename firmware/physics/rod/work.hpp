@@ -11,7 +11,7 @@ namespace price {
 inline constexpr long kCheck = 45;           ///< a listed pair, or a group of them, in a substep: can it meet?
 inline constexpr long kMeasure = 340;        ///< four that can: their closest points
 inline constexpr long kSmooth = 450;         ///< four that are near: between smooth curves instead
-inline constexpr long kTake = 150;           ///< one that was measured: a row to be
+inline constexpr long kTake = 210;           ///< one that was measured: a row to be
 inline constexpr long kCorner = 20;          ///< and each node from the first of these to the last
 inline constexpr long kGuard = 130;          ///< its part in the guard
 inline constexpr long kGuardListed = 60;     ///< that of a pair that was not measured
@@ -25,25 +25,25 @@ inline constexpr long kExact = 100;          ///< broad phase: and measured befo
 inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one split
 
 /// Making `rows` rows on a window of `nodes`, and the two solutions that start them.
-[[nodiscard]] constexpr long rows(long rows, long nodes) noexcept { return 240 * rows + 170 * nodes; }
+[[nodiscard]] constexpr long rows(long rows, long nodes) noexcept { return 260 * rows + 170 * nodes; }
 /// One pass over them, of which `loaded` carry an impulse and are mixed.
 [[nodiscard]] constexpr long pass(long rows, long loaded, long nodes) noexcept {
-  return rows * (100 + 3 * nodes / 2) + loaded * 180 + 130 * nodes;
+  return rows * (115 + 3 * nodes / 2) + loaded * 180 + 130 * nodes;
 }
 /// Keeping the factors of a window, and a column of their inverse.
 [[nodiscard]] constexpr long factors(long nodes) noexcept { return 60 * nodes; }
 [[nodiscard]] constexpr long column(long nodes) noexcept { return 95 * nodes; }
 /// What impulses make of `rows` contacts.
-[[nodiscard]] constexpr long look(long rows) noexcept { return 140 * rows; }
+[[nodiscard]] constexpr long look(long rows) noexcept { return 170 * rows; }
 /// Contacts that are to be coupled densely on a window of `nodes`, and pairs of them. This, exchanges and sweeps wait
 /// for memory or for the last result: their prices are what their time would buy of the other instructions.
 [[nodiscard]] constexpr long couple(long contacts, long pairs, long nodes) noexcept {
-  return contacts * (200 + 25 * nodes) + 50 * pairs;
+  return contacts * (200 + 35 * nodes) + 70 * pairs;
 }
 /// What impulses make of contacts that are coupled densely.
 [[nodiscard]] constexpr long read(long loaded) noexcept { return 200 * loaded; }
 /// The velocities that answer to new impulses of `loaded` contacts.
-[[nodiscard]] constexpr long answer(long loaded, long nodes) noexcept { return 40 * loaded + 100 * nodes; }
+[[nodiscard]] constexpr long answer(long loaded, long nodes) noexcept { return 55 * loaded + 100 * nodes; }
 /// A sweep over `loaded` contacts that are coupled densely, and what it makes of them.
 [[nodiscard]] constexpr long dense_sweep(long loaded) noexcept { return loaded * (550 + 2 * loaded); }
 /// Contacts that change places among `slots`, so that those which carry load come first.

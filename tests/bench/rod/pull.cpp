@@ -106,7 +106,7 @@ std::pair<double, double> Puller::sharpness() const {
   double turn = 0.0, longest = 0.0;
   const auto& state = sim_.rod().state();
   for (const auto& c : sim_.rod().contact_set().contacts()) {
-    if (c.count != 4 || dot(c.p, c.p) == 0.0) continue;
+    if (!c.is_pair() || dot(c.p, c.p) == 0.0) continue;
     for (const int k : {0, 2}) {
       const auto i = static_cast<std::size_t>(c.node[k]);
       if (i < 1 || i + 1 >= state.x.size()) continue;

@@ -49,7 +49,7 @@ TEST(Copy, RemeshesAsItsOriginal) {
     apart_N = std::max(apart_N, std::abs(pull_N(copy) - pull_N(sim)));
     ASSERT_EQ(copy.rod().state().mesh.s, sim.rod().state().mesh.s) << "tick " << k;
   }
-  EXPECT_GE(remeshes, 50);
+  EXPECT_GE(remeshes, 30);
   EXPECT_LT(apart_N, 5e-3);
   RecordProperty("apart_mN", std::to_string(1e3 * apart_N));
   RecordProperty("remeshes", remeshes);

@@ -117,7 +117,7 @@ Pull pull(const scene::Scene& scene, double force_N, double wait_s, const Hands&
   result.knot = knot_of(sim);
   double first = 1e9, last = 0.0;
   for (const auto& c : sim.rod().contact_set().contacts()) {
-    if (c.count != 4 || dot(c.p, c.p) == 0.0) continue;
+    if (!c.is_pair() || dot(c.p, c.p) == 0.0) continue;
     for (const int k : {0, 2}) {
       const double s = sim.rod().state().mesh.s[static_cast<std::size_t>(c.node[k])];
       first = std::min(first, s), last = std::max(last, s);

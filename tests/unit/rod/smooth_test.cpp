@@ -55,11 +55,21 @@ TEST(Smooth, HasNoCorners) {
   }
 }
 
-// A segment that is cut in two begins with the corners it had; they fade.
-TEST(Smooth, KeepsTheCornersItIsToldToKeep) {
-  State state = nodes_on_a_circle(9, 0.6e-3, 0.5);
-  state.rest_corner[4] = state.x[5] - 2.0 * state.x[4] + state.x[3];
-  EXPECT_LT(norm(SmoothSegment(state, 4, kDiameter_m).at(0.0) - state.x[4]), 1e-12);
+// A segment that is cut in two on its chord, as Refine does: the curve is the same in every point.
+TEST(Smooth, StaysWhereASegmentIsSplit) {
+  const State whole = nodes_on_a_circle(9, 0.6e-3, 0.5);
+  State split;
+  split.resize(10);
+  for (std::size_t i = 0; i < 10; ++i) split.x[i] = i <= 4 ? whole.x[i] : whole.x[i - 1];
+  split.x[4] = 0.5 * (whole.x[3] + whole.x[4]);
+  split.cut_before[3] *= 2.0, split.cut_after[4] *= 2.0;
+  const SmoothSegment one(whole, 3, kDiameter_m), first(split, 3, kDiameter_m), second(split, 4, kDiameter_m);
+  for (double s = 0.0; s <= 0.5; s += 0.0625) {
+    EXPECT_LT(norm(first.at(2.0 * s) - one.at(s)), 1e-15) << s;
+    EXPECT_LT(norm(second.at(2.0 * s) - one.at(0.5 + s)), 1e-15) << s;
+  }
+  const SmoothSegment before(whole, 2, kDiameter_m), still(split, 2, kDiameter_m);
+  for (double s = 0.0; s <= 1.0; s += 0.125) EXPECT_LT(norm(still.at(s) - before.at(s)), 1e-15) << s;
 }
 
 // Four pairs at a time are what each is alone: across, side by side, without length, on the corners.
