@@ -16,10 +16,9 @@ class Dense {
   void reserve(std::size_t most);
   void resize(std::size_t unknowns) noexcept { n_ = unknowns, stride_ = (unknowns + 8) & ~std::size_t{7}; }
 
-  /// Row i of M; b_i behind it, and zeros up to the end of the row. Up to eight more numbers may be written behind what
-  /// is asked for, if rows are written in order.
+  /// Row i of M; b_i behind it, and zeros up to the end of the row, a multiple of eight. Up to eight more numbers may
+  /// be written behind what is asked for, if rows are written in order.
   [[nodiscard]] float* row(std::size_t i) noexcept { return m_.data() + i * stride_; }
-  [[nodiscard]] float* row_end(std::size_t i) noexcept { return row(i) + stride_; }
 
   /// @return false when M is singular. M is lost.
   [[nodiscard]] bool solve() noexcept;

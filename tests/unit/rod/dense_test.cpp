@@ -23,7 +23,7 @@ double error_of(Dense& dense, const std::vector<double>& m, std::size_t n, unsig
   dense.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     float* const row = dense.row(i);
-    std::fill(row, dense.row_end(i), 0.0F);
+    std::fill(row, row + ((n + 8) & ~std::size_t{7}), 0.0F);
     double b = 0.0;
     for (std::size_t j = 0; j < n; ++j) row[j] = static_cast<float>(m[i * n + j]), b += m[i * n + j] * x[j];
     row[n] = static_cast<float>(b);
