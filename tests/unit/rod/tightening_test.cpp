@@ -102,6 +102,31 @@ TEST(FineZone, ItselfHardlyStepsTheForce) {
   RecordProperty("beyond_mN", std::to_string(1e3 * steps.beyond_N));
 }
 
+// Virtual work: an impulse acts on the nodes as the gap depends on them. The points of the smooth curves are weighted
+// means of nodes, so the weights of a row lead from one curve to the other: n . sum w_k x_k is the distance itself.
+TEST(Sliding, ForcesActOnWhatTheGapIsMeasuredOn) {
+  Tightening pull;
+  for (int k = 0; k < 1000 && Tightening::force(pull.sim()) < 2.0; ++k) pull.tick(0.2);
+  for (int k = 0; k < 200; ++k) pull.tick(0.0);
+  const auto& state = pull.sim().rod().state();
+  int curved = 0;
+  double worst_m = 0.0, sum = 0.0;
+  for (const auto& c : pull.sim().rod().contact_set().contacts()) {
+    if (!c.is_pair() || dot(c.p, c.p) == 0.0) continue;
+    physics::rod::Vec way{};
+    for (int j = 0; j < c.count; ++j) {
+      way += c.w[j] * state.x[static_cast<std::size_t>(c.node[j])];
+      sum += c.w[j];
+    }
+    worst_m = std::max(worst_m, std::abs(dot(way, c.n) - c.gap_m - c.reach_m));
+    curved += c.count > 4;
+  }
+  EXPECT_GT(curved, 5);
+  EXPECT_LT(worst_m, 1e-3 * 3e-4);
+  EXPECT_LT(std::abs(sum), 1e-12);
+  RecordProperty("worst_d", std::to_string(worst_m / 3e-4));
+}
+
 // A slack loop that lies against the tight knot is drawn as finely as the knot: two to four diameters long it was.
 TEST(FineZone, CoversWhatLiesAgainstIt) {
   Tightening pull({}, "suture-3-0-square.toml");
