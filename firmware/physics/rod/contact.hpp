@@ -54,7 +54,7 @@ struct Contact {
   std::int32_t place[kMostNodes] = {};  ///< of the nodes in SweptVelocities
   float weight[kMostNodes] = {};        ///< w for it
 
-  [[nodiscard]] bool is_pair() const noexcept { return pair != nullptr; }
+  [[nodiscard]] bool is_pair() const noexcept { return count >= 4; }
 };
 
 /// What happened in a substep or, summed by the caller, in a tick.

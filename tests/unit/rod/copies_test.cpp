@@ -43,6 +43,7 @@ TEST(Copy, RemeshesAsItsOriginal) {
   for (int k = 0; k < 1000 && pull_N(sim) < 5.0; ++k) {
     for (auto& tool : tools) tool.p_WT += 1e-3 * tool.v_WT;
     RodSimulation copy = sim;
+    ASSERT_TRUE(copy.rod().contact_set().only_pairs()) << "a contact of the thread is one in a copy, too";
     copy.tick(tools);
     sim.tick(tools);
     remeshes += sim.rod().report().remeshes;
