@@ -1,5 +1,6 @@
 #include "firmware/physics/rod/band_columns.hpp"
 
+#include <algorithm>
 #include <cassert>
 
 #include "firmware/physics/rod/band_solver.hpp"
@@ -8,11 +9,27 @@
 namespace ligature::physics::rod {
 void BandColumns::reserve() {
   constexpr auto kWide = static_cast<std::size_t>(kWidest);
-  for (auto* array : {&f_, &s_inverse_, &one_, &two_, &x_}) array->resize(kWide);
+  for (auto* array : {&out_, &s_inverse_, &one_, &two_, &x_}) array->resize(kWide);
   skip_.resize(kWide);
   place_.reserve(kWide);
   wanted_.reserve(kWide);
   columns_.resize(kBlock * kRoom);
+}
+
+template <int Lane>
+void BandColumns::take_chain(const BandSolver& solver, std::ptrdiff_t count) noexcept {
+  const std::ptrdiff_t at_core = core_ + Lane, away = 2 * Lane - 1;
+  put(out_[at_core], -1.0 * transposed(lane<Lane>(solver.core_h_)));
+  for (std::ptrdiff_t k = 0; k < count; ++k) {
+    const BandSolver::Step& step = solver.steps_[static_cast<std::size_t>(k)];
+    const Mat h = lane<Lane>(step.h), inverse = lane<Lane>(step.s_inverse);
+    const std::ptrdiff_t i = at_core + away * (k + 1);
+    put(s_inverse_[i], inverse);
+    put(out_[i], -1.0 * transposed(h));
+    put(two_[i], -step.skip[Lane] * inverse);
+    if (k == 0) put(one_[i], -1.0 * lane<Lane>(solver.core_h_));
+    if (k + 1 < count) put(one_[i + away], -1.0 * h);
+  }
 }
 
 void BandColumns::take(const BandSolver& solver, int first, int last) noexcept {
@@ -22,18 +39,13 @@ void BandColumns::take(const BandSolver& solver, int first, int last) noexcept {
   place_.assign(static_cast<std::size_t>(width()), -1);
   core_ = solver.core_ - first;
   const std::ptrdiff_t l = core_ + 1;
-  for (std::ptrdiff_t i = 0; i < width(); ++i) {
-    const std::ptrdiff_t at = first + i;
-    put(f_[i], solver.f_[at]), put(s_inverse_[i], solver.s_inverse_[at]);
-    skip_[i] = solver.skip[at];
-    if (i < core_) put(one_[i], -1.0 * solver.h_[at + 1]), put(two_[i], -skip_[i] * s_inverse_[i]);
-    if (i > l) {
-      put(one_[i], -1.0 * (i == l + 1 ? solver.link_ : solver.h_[at - 1]));
-      put(two_[i], -skip_[i - 2] * s_inverse_[i]);
-    }
-  }
-  put(link_f_, solver.link_f_);
-  put(core_h_, solver.h_[first + l]);
+  std::copy_n(solver.skip.data() + first, width(), skip_.data());
+  take_chain<0>(solver, core_);
+  take_chain<1>(solver, width() - 1 - l);
+  put(s_inverse_[core_], solver.core_inverse_);
+  put(s_inverse_[l], solver.next_inverse_);
+  put(between_, solver.between_);
+  put(next_h_, solver.next_h_);
 }
 
 bool BandColumns::want(std::int32_t node) noexcept {
@@ -51,28 +63,28 @@ void BandColumns::solve(std::ptrdiff_t node) noexcept {
   Mat* const x = x_.data();
   for (std::ptrdiff_t i = 0; i < wide; ++i) put(x[i], Mat{});
   const Mat unit = scaled_identity(1.0);
-  Mat r = node == core ? unit : Mat{}, t = node == l ? unit : Mat{}, one{}, two{};
+  Mat r = node == core ? unit : Mat{}, t = node == l ? unit : Mat{}, y = unit, one{}, two{};
   if (node < core) {
     put(one, s_inverse_[node]), put(x[node], one);
     for (std::ptrdiff_t i = node + 1; i < core; ++i) {
-      const Mat next = -1.0 * (s_inverse_[i] * (f_[i] * one + skip_[i - 2 < 0 ? 0 : i - 2] * two));
-      put(two, one), put(one, next), put(x[i], one);
+      put(y, out_[i] * y - skip_[i - 2 < 0 ? 0 : i - 2] * two);
+      put(two, one), put(one, s_inverse_[i] * y), put(x[i], one);
     }
-    put(r, -1.0 * (f_[core] * one));
+    put(r, out_[core] * y);
     if (core > 1) put(r, r - skip_[core - 2] * two);
     put(t, -skip_[core - 1] * one);
   } else if (node > l) {
     put(one, s_inverse_[node]), put(x[node], one);
     for (std::ptrdiff_t i = node - 1; i > l; --i) {
-      const Mat next = -1.0 * (s_inverse_[i] * (f_[i] * one + skip_[i] * two));
-      put(two, one), put(one, next), put(x[i], one);
+      put(y, out_[i] * y - skip_[i] * two);
+      put(two, one), put(one, s_inverse_[i] * y), put(x[i], one);
     }
     put(r, -skip_[core] * one);
-    put(t, -1.0 * (link_f_ * one + skip_[l] * two));
+    put(t, out_[l] * y - skip_[l] * two);
   }
   put(x[core], s_inverse_[core] * r);
-  put(x[l], s_inverse_[l] * (t - f_[l] * x[core]));
-  put(x[core], x[core] - core_h_ * x[l]);
+  put(x[l], s_inverse_[l] * (t - between_ * x[core]));
+  put(x[core], x[core] - next_h_ * x[l]);
   for (std::ptrdiff_t i = core - 1; i >= 0; --i) put(x[i], x[i] + one_[i] * x[i + 1] + two_[i] * x[i + 2]);
   for (std::ptrdiff_t i = l + 1; i < wide; ++i) put(x[i], x[i] + one_[i] * x[i - 1] + two_[i] * x[i - 2]);
 }

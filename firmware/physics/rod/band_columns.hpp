@@ -45,13 +45,16 @@ class BandColumns {
 
  private:
   void solve(std::ptrdiff_t node) noexcept;
+  /// One lane of the solver's steps: `count` nodes away from its core.
+  template <int Lane>
+  void take_chain(const BandSolver& solver, std::ptrdiff_t count) noexcept;
 
   int first_ = 0, last_ = -1, made_ = 0;
-  std::ptrdiff_t core_ = 0;         // counted from first_
-  std::vector<Mat> f_, s_inverse_;  // of BandSolver
-  std::vector<Mat> one_, two_;      // what a node takes of those one and two nearer to the core
-  std::vector<double> skip_;        // couples i and i + 2
-  Mat link_f_, core_h_;
+  std::ptrdiff_t core_ = 0;           // counted from first_
+  std::vector<Mat> out_, s_inverse_;  // -H^T towards the node one further out, and S^-1, of BandSolver
+  std::vector<Mat> one_, two_;        // what a node takes of those one and two nearer to the core
+  std::vector<double> skip_;          // couples i and i + 2
+  Mat between_, next_h_;
   std::vector<Mat> x_;                // the column that is being made
   std::vector<std::int32_t> place_;   // of each node's column, or -1
   std::vector<std::int32_t> wanted_;  // nodes, in the order of their columns

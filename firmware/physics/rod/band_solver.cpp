@@ -6,165 +6,158 @@
 namespace ligature::physics::rod {
 namespace {
 
-/// Where the recurrence of the header reads and writes; plain pointers, so that nothing is read twice.
-struct Arrays {
-  const Mat* diagonal;
-  const Vec* rhs;
-  Mat *f, *h, *s_inverse;
-  Vec* z;
-};
+constexpr Mat kNothing{}, kUnit{{kAxisX}, {kAxisY}, {kAxisZ}};  // where a lane has no node
 
-/// One step of the recurrence. @param p, q nodes eliminated just before i; Order: how many of them there are.
-template <int Order>
-[[gnu::always_inline]] inline void eliminate(const Arrays& a, std::ptrdiff_t i, std::ptrdiff_t p, std::ptrdiff_t q,
-                                             const Mat& a_ip, double a_iq) noexcept {
-  Mat s = a.diagonal[i];
-  Vec r = a.rhs[i];
-  if constexpr (Order > 0) {
-    Mat f = a_ip;
-    if constexpr (Order > 1) {
-      f = f - a_iq * a.h[p];
-      s = s - (a_iq * a_iq) * a.s_inverse[q];
-      r -= a_iq * a.z[q];
-    }
-    put(a.f[i], f);
-    const Mat h = times_transposed(a.s_inverse[p], f);
-    put(a.h[i], h);
-    s = s - f * h;
-    r -= f * a.z[p];
-  }
-  const Mat inverse = inverse_spd(s);
-  put(a.s_inverse[i], inverse);
-  a.z[i].v = (inverse * r).v;
+// A_ip - A_iq H_p.
+[[gnu::always_inline]] inline TwoMats towards(const TwoSyms& e, Two b, const TwoMats& h) noexcept {
+  return {{e.xx - b * h.x.x, e.xy - b * h.x.y, e.xz - b * h.x.z},
+          {e.xy - b * h.y.x, e.yy - b * h.y.y, e.yz - b * h.y.z},
+          {e.xz - b * h.z.x, e.yz - b * h.z.y, e.zz - b * h.z.z}};
+}
+
+// a F^T, with columns that belong to the rows of F.
+[[gnu::always_inline]] inline TwoMats times_transposed(const TwoSyms& a, const TwoMats& f) noexcept {
+  return {a * Twos{f.x.x, f.y.x, f.z.x}, a * Twos{f.x.y, f.y.y, f.z.y}, a * Twos{f.x.z, f.y.z, f.z.z}};
+}
+
+// F G where that is symmetric.
+[[gnu::always_inline]] inline TwoSyms product(const TwoMats& f, const TwoMats& g) noexcept {
+  const Twos r0{f.x.x, f.y.x, f.z.x}, r1{f.x.y, f.y.y, f.z.y}, r2{f.x.z, f.y.z, f.z.z};
+  return {dot(r0, g.x), dot(r1, g.x), dot(r2, g.x), dot(r1, g.y), dot(r2, g.y), dot(r2, g.z)};
 }
 
 }  // namespace
 
+[[gnu::always_inline]] inline BandSolver::Pivot BandSolver::pivot_of(const TwoSyms& s) noexcept {
+  const TwoSyms a = adjugate(s);
+  return {a, 1.0 / (s.xx * a.xx + s.xy * a.xy + s.xz * a.xz)};
+}
+
+// H_i and y_i of the nodes of a step. @return S_i.
+[[gnu::always_inline]] inline TwoSyms BandSolver::eliminate(const Rows& a, const Step& p, Step& q, const Pivot& pivot,
+                                                            TwoMats& h, Twos& y) noexcept {
+  q.skip = a.skip;
+  const TwoMats f = towards(a.couple, a.skip, p.h), g = times_transposed(pivot.adjugate, f);
+  h = pivot.scale * g;
+  y = less_transposed(a.rhs - a.skip * q.z, h, y);
+  return a.diagonal - (a.skip * a.skip) * q.s_inverse - pivot.scale * product(f, g);
+}
+
 void BandSolver::resize(int n) {
   n_ = n;
   const auto size = static_cast<std::size_t>(n);
-  for (auto* array : {&diagonal, &couple, &f_, &h_, &s_inverse_}) array->resize(size);
-  for (auto* array : {&rhs, &z_, &w_}) array->resize(size);
+  for (auto* array : {&diagonal, &couple}) array->resize(size);
+  rhs.resize(size);
   skip.resize(size);
+  steps_.resize(size + 2);
+  w_.resize(size);
+}
+
+std::ptrdiff_t BandSolver::steps() const noexcept { return std::max(core_, n_ - 2 - core_); }
+
+[[gnu::always_inline]] inline BandSolver::Rows BandSolver::rows(std::ptrdiff_t k) const noexcept {
+  const Mat *d = diagonal.data(), *e = couple.data();
+  const double* b = skip.data();
+  const Vec* r = rhs.data();
+  const std::ptrdiff_t i = core_ - 1 - k, j = core_ + 2 + k, n = n_;
+  if (i >= 2 && j <= n - 3) [[likely]]
+    return {both(d[i], d[j]), both(e[i - 1], e[j]), Two{b[i - 2], b[j]}, both(r[i], r[j])};
+  const Mat &d_left = i >= 0 ? d[i] : kUnit, &d_right = j < n ? d[j] : kUnit;
+  const Mat &e_left = i >= 1 ? e[i - 1] : kNothing, &e_right = j < n - 1 ? e[j] : kNothing;
+  const Vec &r_left = i >= 0 ? r[i] : kNothing.x, &r_right = j < n ? r[j] : kNothing.x;
+  return {both(d_left, d_right), both(e_left, e_right), Two{i >= 2 ? b[i - 2] : 0.0, j < n - 2 ? b[j] : 0.0},
+          both(r_left, r_right)};
 }
 
 void BandSolver::factor(int core) noexcept {
   assert(0 <= core && core + 1 < n_);
   core_ = core;
-  const Arrays a{diagonal.data(), rhs.data(), f_.data(), h_.data(), s_inverse_.data(), z_.data()};
-  Mat *const d = diagonal.data(), *const e = couple.data();
-  Vec* const r = rhs.data();
-  double* const b = skip.data();
-  const auto left = [&](std::ptrdiff_t i) {
-    if (i == 0) {
-      eliminate<0>(a, 0, 0, 0, e[0], 0.0);
-    } else if (i == 1) {
-      eliminate<1>(a, 1, 0, 0, e[0], 0.0);
-    } else {
-      eliminate<2>(a, i, i - 1, i - 2, e[i - 1], b[i - 2]);
-    }
-  };
-  const std::ptrdiff_t n = n_, lefts = core, rights = n - 2 - core;
-  for (std::ptrdiff_t i = 0; i < std::min<std::ptrdiff_t>(lefts, 2); ++i) left(i);
-  if (rights > 0) eliminate<0>(a, n - 1, 0, 0, e[n - 1], 0.0);
-  if (rights > 1) eliminate<1>(a, n - 2, n - 1, 0, e[n - 2], 0.0);
-  std::ptrdiff_t i = 2, j = n - 3;  // two chains side by side, as far as both go
-  for (; i < lefts && j > core + 1; ++i, --j) {
-    eliminate<2>(a, i, i - 1, i - 2, e[i - 1], b[i - 2]);
-    eliminate<2>(a, j, j + 1, j + 2, e[j], b[j]);
+  Step* const step = steps_.data();
+  const std::ptrdiff_t count = steps();
+  step[count] = step[count + 1] = Step{};
+  Pivot pivot;
+  Twos y{};
+  for (std::ptrdiff_t k = count - 1; k >= 0; --k) {
+    Step& s = step[k];
+    const TwoSyms left = eliminate(rows(k), step[k + 1], step[k + 2], pivot, s.h, y);
+    pivot = pivot_of(left);
+    s.s_inverse = pivot.scale * pivot.adjugate;
+    s.z = s.s_inverse * y;
   }
-  for (; i < lefts; ++i) eliminate<2>(a, i, i - 1, i - 2, e[i - 1], b[i - 2]);
-  for (; j > core + 1; --j) eliminate<2>(a, j, j + 1, j + 2, e[j], b[j]);
-  // The right-hand chain's Schur complement falls on both core nodes.
-  if (rights > 0) {
-    const std::ptrdiff_t l = core + 1, p = l + 1;
-    Mat f = e[l];
-    if (rights > 1) {
-      f = f - b[l] * a.h[p];
-      d[l] = d[l] - (b[l] * b[l]) * a.s_inverse[p + 1];
-      r[l] -= b[l] * a.z[p + 1];
-    }
-    link_f_ = f;
-    link_ = times_transposed(a.s_inverse[p], f);
-    d[l] = d[l] - f * link_;
-    r[l] -= f * a.z[p];
-    const double c = b[l - 1];
-    d[l - 1] = d[l - 1] - (c * c) * a.s_inverse[p];
-    e[l - 1] = e[l - 1] - c * transposed(link_);  // A(core + 1, core): not symmetric any more
-    r[l - 1] -= c * a.z[p];
-  }
-  left(core);
-  left(core + 1);
+  // The core nodes: the chain on the other side reaches past each of them to the next.
+  Step &one = step[0], &two = step[1];
+  TwoSyms s = eliminate(rows(-1), one, two, pivot, core_h_, y);
+  const Two across{core > 0 ? skip[static_cast<std::size_t>(core) - 1] : 0.0,
+                   core + 2 < n_ ? skip[static_cast<std::size_t>(core)] : 0.0};
+  one.skip = across;
+  s = s - swapped((across * across) * one.s_inverse);
+  y = y - swapped(across * one.z);
+  between_ =
+      couple[static_cast<std::size_t>(core)] - across[0] * lane<0>(core_h_) - across[1] * transposed(lane<1>(core_h_));
+  core_inverse_ = inverse_spd(lane<0>(s));
+  next_h_ = rod::times_transposed(core_inverse_, between_);
+  next_inverse_ = inverse_spd(lane<1>(s) - between_ * next_h_);
+  core_z_ = core_inverse_ * lane<0>(y);
+  next_z_ = next_inverse_ * (lane<1>(y) - between_ * core_z_);
 }
 
 void BandSolver::solve(int first, int last, const Vec* extra, Vec* out, bool base) noexcept {
   assert(first <= core_ && core_ + 1 <= last);
-  const Mat *f = f_.data(), *h = h_.data(), *s_inverse = s_inverse_.data();
-  const double* b = skip.data();
-  Vec* w = w_.data();
+  const Step* const step = steps_.data();
   const std::ptrdiff_t core = core_, l = core + 1, lefts = core - first, rights = last - l;
+  const std::ptrdiff_t count = std::max(lefts, rights);
+  Vec at_core{}, at_next{};
   if (extra != nullptr) {
-    Vec p1{}, p2{}, q1{}, q2{};  // w of the one and two nodes before, on the left and on the right
-    for (std::ptrdiff_t k = 0; k < std::max(lefts, rights); ++k) {
-      if (k < lefts) {
-        const std::ptrdiff_t i = first + k;
-        Vec r = extra[i];
-        if (k > 0) r -= f[i] * p1;
-        if (k > 1) r -= b[i - 2] * p2;
-        p2 = p1;
-        w[i] = p1 = s_inverse[i] * r;
-      }
-      if (k < rights) {
-        const std::ptrdiff_t i = last - k;
-        Vec r = extra[i];
-        if (k > 0) r -= f[i] * q1;
-        if (k > 1) r -= b[i] * q2;
-        q2 = q1;
-        w[i] = q1 = s_inverse[i] * r;
-      }
+    Twos y{}, one{}, two{};  // y of the step before, z of that and of the one before
+    const auto pull = [&](std::ptrdiff_t i, std::ptrdiff_t j, const TwoMats& h, Two b) {
+      const Twos r = both(i >= first ? extra[i] : Vec{}, j <= last ? extra[j] : Vec{});
+      y = less_transposed(r - b * two, h, y);
+    };
+    for (std::ptrdiff_t k = count - 1; k >= 0; --k) {
+      pull(core - 1 - k, l + 1 + k, step[k].h, step[k + 2].skip);
+      two = one;
+      w_[static_cast<std::size_t>(k)] = one = step[k].s_inverse * y;
     }
-    Vec r = extra[core], t = extra[l];
-    if (lefts > 0) r -= f[core] * p1;
-    if (lefts > 1) r -= b[core - 2] * p2;
-    if (rights > 0) r -= b[core] * q1, t -= link_f_ * q1;
-    if (rights > 1) t -= b[l] * q2;
-    if (lefts > 0) t -= b[l - 2] * p1;
-    w[core] = s_inverse[core] * r;
-    w[l] = s_inverse[l] * (t - f[l] * w[core]);
-  } else {
-    std::fill(w + first, w + last + 1, Vec{});
+    pull(core, l, core_h_, step[1].skip);
+    y = y - swapped(step[0].skip * one);
+    at_core = core_inverse_ * lane<0>(y);
+    at_next = next_inverse_ * (lane<1>(y) - between_ * at_core);
   }
-  if (base) {
-    for (std::ptrdiff_t i = first; i <= last; ++i) w[i] += z_[static_cast<std::size_t>(i)];
-  }
-  out[l] = w[l];
-  out[core] = w[core] - h[l] * out[l];
-  for (std::ptrdiff_t k = 0; k < std::max(lefts, rights); ++k) {
-    if (k < lefts) {
-      const std::ptrdiff_t i = core - 1 - k;
-      out[i] = (w[i] - b[i] * (s_inverse[i] * out[i + 2])) - h[i + 1] * out[i + 1];
-    }
-    if (k < rights) {
-      const std::ptrdiff_t i = l + 1 + k;
-      out[i] = (w[i] - b[i - 2] * (s_inverse[i] * out[i - 2])) - (k == 0 ? link_ : h[i - 1]) * out[i - 1];
-    }
+  if (base) at_core += core_z_, at_next += next_z_;
+  out[l] = at_next;
+  out[core] = at_core - next_h_ * at_next;
+  Twos one = both(out[core], out[l]), two = swapped(one);
+  for (std::ptrdiff_t k = 0; k < count; ++k) {
+    Twos w = base ? step[k].z : Twos{};
+    if (extra != nullptr) w = w + w_[static_cast<std::size_t>(k)];
+    const Twos x = substitute(k, w, one, two);
+    two = one;
+    one = x;
+    if (k < lefts) out[core - 1 - k] = lane<0>(x);
+    if (k < rights) out[l + 1 + k] = lane<1>(x);
   }
 }
 
 void BandSolver::solve_outside(int first, int last, Vec* v) const noexcept {
-  const Mat *h = h_.data(), *s_inverse = s_inverse_.data();
-  const Vec* z = z_.data();
-  const double* b = skip.data();
-  const std::ptrdiff_t l = core_ + 1, lefts = first, rights = n_ - 1 - last;
-  for (std::ptrdiff_t k = 0; k < std::max(lefts, rights); ++k) {
-    if (k < lefts) {
-      const std::ptrdiff_t i = first - 1 - k;
-      v[i] = (z[i] - b[i] * (s_inverse[i] * v[i + 2])) - h[i + 1] * v[i + 1];
-    }
-    if (k < rights) {
-      const std::ptrdiff_t i = last + 1 + k;
-      v[i] = (z[i] - b[i - 2] * (s_inverse[i] * v[i - 2])) - (i == l + 1 ? link_ : h[i - 1]) * v[i - 1];
-    }
+  const Step* const step = steps_.data();
+  const std::ptrdiff_t l = core_ + 1, lefts = core_ - first, rights = last - l, n = n_;
+  std::ptrdiff_t k = std::min(lefts, rights);
+  Twos one = both(v[core_ - k], v[l + k]), two = both(v[l - k], v[core_ + k]);
+  for (; k < std::max(lefts, rights); ++k) {  // one side is still in the window, and known
+    const std::ptrdiff_t i = core_ - 1 - k, j = l + 1 + k;
+    const Twos x = substitute(k, step[k].z, one, two);
+    if (k >= lefts && i >= 0) v[i] = lane<0>(x);
+    if (k >= rights && j < n) v[j] = lane<1>(x);
+    two = one;
+    one = both(k < lefts ? v[i] : lane<0>(x), k < rights ? v[j] : lane<1>(x));
+  }
+  for (; k < steps(); ++k) {
+    const std::ptrdiff_t i = core_ - 1 - k, j = l + 1 + k;
+    const Twos x = substitute(k, step[k].z, one, two);
+    if (i >= 0) v[i] = lane<0>(x);
+    if (j < n) v[j] = lane<1>(x);
+    two = one;
+    one = x;
   }
 }
 

@@ -1,31 +1,33 @@
 #pragma once
 // The linear system of one substep: block pentadiagonal, symmetric positive definite, solved from both ends inwards.
 
+#include <cstddef>
 #include <vector>
 
+#include "firmware/physics/rod/two.hpp"
 #include "firmware/physics/rod/vec.hpp"
 
 namespace ligature::physics::rod {
 
 /// A v = r for n nodes with 3 x 3 blocks
 ///   A(i, i) = diagonal[i],  A(i, i+1) = couple[i] (symmetric),  A(i, i+2) = skip[i] I.
-/// Block LDL^T from both ends towards two core nodes, so that two independent chains of arithmetic run side by side. A
-/// window around the core can be solved again for right-hand sides that differ only inside it, at the cost of the
-/// window: what contacts need. With p, q the two nodes eliminated just before i (i-1, i-2 from the left; i+1, i+2 from
-/// the right):
+/// Block LDL^T from both ends towards two core nodes, the two chains in the two lanes of a register. A window around
+/// the core can be solved again for right-hand sides that differ only inside it, at the cost of the window: what
+/// contacts need. With p, q the two nodes eliminated just before i (i-1, i-2 from the left; i+1, i+2 from the right):
 ///   F_i = A_ip - A_iq H_p,  H_i = S_p^-1 F_i^T,  S_i = A_ii - A_iq^2 S_q^-1 - F_i H_i,
-///   z_i = S_i^-1 (r_i - F_i z_p - A_iq z_q).
-/// S is made exactly symmetric at every step: a skew rounding error would double from node to node.
-/// Since A_iq is a multiple of the identity a node costs about ninety multiply-adds. Real time: no allocation after
-/// resize(); O(n). @pre A positive definite.
+///   y_i = r_i - H_i^T y_p - A_iq z_q,  z_i = S_i^-1 y_i.
+/// Each node waits for the one before, so latency counts: S_p^-1 is used as adjugate / determinant, with the division
+/// beside F_i adj(S_p) F_i^T, and y waits for one product a node. S is kept as a triangle, exactly symmetric: a skew
+/// rounding error would double from node to node. Since A_iq is a multiple of the identity a node costs about a hundred
+/// and twenty multiply-adds. Real time: no allocation after resize(); O(max(core, n - core)). @pre A positive definite.
 class BandSolver {
  public:
   void resize(int n);
   [[nodiscard]] int nodes() const noexcept { return n_; }
 
-  std::vector<Mat> diagonal, couple;  ///< n and n - 1 blocks (sized n); factor() changes them inside the window
+  std::vector<Mat> diagonal, couple;  ///< n and n - 1 blocks (sized n); of each, the lower triangle is read
   std::vector<double> skip;           ///< n - 2 scalars (sized n)
-  std::vector<Vec> rhs;               ///< n right-hand sides; as diagonal
+  std::vector<Vec> rhs;               ///< n right-hand sides
 
   /// Factorises, and eliminates `rhs`. @param core  core nodes are core and core + 1. @pre 0 <= core < n - 1.
   void factor(int core) noexcept;
@@ -40,11 +42,42 @@ class BandSolver {
 
  private:
   friend class BandColumns;
+  /// What is kept of the nodes that are k + 1 nodes left of the core and right of it.
+  struct Step {
+    TwoMats h;          // towards the nodes one further out
+    TwoSyms s_inverse;  // S^-1
+    Twos z;             // eliminated right-hand sides
+    Two skip;           // couples them to the nodes two further in
+  };
+  /// Of the nodes of a step, in the system: A_ii, A_ip, A_iq, r_i. Lanes without a node: 1, 0, 0, 0.
+  struct Rows {
+    TwoSyms diagonal, couple;
+    Two skip;
+    Twos rhs;
+  };
+  /// S^-1 of the step before, in two factors.
+  struct Pivot {
+    TwoSyms adjugate{};
+    Two scale{};  // 1 / det(S)
+  };
+  [[nodiscard]] Rows rows(std::ptrdiff_t k) const noexcept;
+  [[nodiscard]] std::ptrdiff_t steps() const noexcept;
+  static Pivot pivot_of(const TwoSyms& s) noexcept;
+  static TwoSyms eliminate(const Rows& a, const Step& p, Step& q, const Pivot& pivot, TwoMats& h, Twos& y) noexcept;
+  /// The nodes of step k, from what is known of the steps k - 1 and k - 2.
+  [[nodiscard]] Twos substitute(std::ptrdiff_t k, const Twos& w, const Twos& one, const Twos& two) const noexcept {
+    const Step& s = steps_[static_cast<std::size_t>(k)];
+    const TwoMats& h = k > 0 ? steps_[static_cast<std::size_t>(k) - 1].h : core_h_;
+    return less(w - s.skip * (s.s_inverse * two), h, one);
+  }
+
   int n_ = 0, core_ = 0;
-  std::vector<Mat> f_, h_, s_inverse_;  // F_i, H_i, S_i^-1
-  std::vector<Vec> z_;                  // eliminated right-hand side
-  std::vector<Vec> w_;                  // scratch of solve()
-  Mat link_f_, link_;                   // F and H of node core + 1 towards the chain on its right
+  std::vector<Step> steps_;
+  TwoMats core_h_;              // H of the core nodes, each towards the chain on its side
+  Vec core_z_, next_z_;         // z of the core nodes
+  Mat core_inverse_, between_;  // S^-1 of node core, and A(core + 1, core) once the chains are eliminated
+  Mat next_inverse_, next_h_;   // S^-1 and H of node core + 1, the last
+  std::vector<Twos> w_;         // scratch of solve()
 };
 
 }  // namespace ligature::physics::rod
