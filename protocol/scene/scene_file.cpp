@@ -15,6 +15,8 @@ namespace fs = std::filesystem;
 
 constexpr double kFar_m = 1e6;            // coordinates
 constexpr Range kCoefficient{0.0, 1e12};  // stiffness and damping: wide, the stability map explores it
+constexpr const char* kOfTheRod = "with suture.model \"rod\"";
+constexpr const char* kOfThePaper = "with suture.model \"paper-1\" .. \"paper-5\"";
 
 constexpr std::pair<const char*, Model> kModels[] = {{"paper-1", Model::kPaper1}, {"paper-2", Model::kPaper2},
                                                      {"paper-3", Model::kPaper3}, {"paper-4", Model::kPaper4},
@@ -41,26 +43,30 @@ int initial_points(const Suture& s) {
   return std::max(s.nodes, 1 + static_cast<int>(std::min(0.5 * s.length_m / s.radius_m, kMost)));
 }
 
+void read_paper(StrictTable& t, PaperParameters& p) {
+  t.number("node_mass_kg", p.node_mass_kg, {0.0, 1e6, true});
+  t.number("stretch_N", p.stretch_N, kCoefficient);
+  t.number("stretch_damping", p.stretch_damping, kCoefficient);
+  t.number("bend", p.bend, kCoefficient);
+  t.number("bend_damping", p.bend_damping, kCoefficient);
+  t.number("swivel_damping", p.swivel_damping, kCoefficient);
+  t.integer("reference_nodes", p.reference_nodes, 2, 5000);
+  t.choice("damping", p.damping, kDampings);
+  t.choice("integrator", p.integrator, kIntegrators);
+  t.choice("swivel", p.swivel, kSwivels);
+  t.choice("quadratic_stretch", p.quadratic_stretch, kQuadratics);
+}
+
 void read_suture(StrictTable& t, const fs::path& folder, Suture& s) {
   t.choice("model", s.model, kModels);
   t.integer("nodes", s.nodes, 2, 5000);
   t.number("length_m", s.length_m, {0.0, 1e4, true});
-  read_rod(t, s.rod, s.radius_m);
+  const bool is_rod = s.model == Model::kRod;
+  t.keys_of(is_rod, kOfTheRod, [&] { read_rod(t, s.rod, s.radius_m); });
+  t.keys_of(!is_rod, kOfThePaper, [&] { read_paper(t, s.paper); });
   t.number("radius_m", s.radius_m, {0.0, 1e3, true});
   t.text("initial", s.initial);
-  t.number("node_mass_kg", s.paper.node_mass_kg, {0.0, 1e6, true});
-  t.number("stretch_N", s.paper.stretch_N, kCoefficient);
-  t.number("stretch_damping", s.paper.stretch_damping, kCoefficient);
-  t.number("bend", s.paper.bend, kCoefficient);
-  t.number("bend_damping", s.paper.bend_damping, kCoefficient);
-  t.number("swivel_damping", s.paper.swivel_damping, kCoefficient);
-  t.integer("reference_nodes", s.paper.reference_nodes, 2, 5000);
-  t.choice("damping", s.paper.damping, kDampings);
-  t.choice("integrator", s.paper.integrator, kIntegrators);
-  t.number("air_drag_per_s", s.paper.air_drag_per_s, {0.0, 1e6});
-  t.number("air_drag_per_s", s.rod.air_drag_per_s, {0.0, 1e6});
-  t.choice("swivel", s.paper.swivel, kSwivels);
-  t.choice("quadratic_stretch", s.paper.quadratic_stretch, kQuadratics);
+  t.number("air_drag_per_s", is_rod ? s.rod.air_drag_per_s : s.paper.air_drag_per_s, {0.0, 1e6});
   if (t.failed() || s.initial == "hanging") return;
   const fs::path file = t.was_overridden("initial") ? fs::path(s.initial) : folder / s.initial;
   auto read = load_polyline(file);
@@ -70,20 +76,23 @@ void read_suture(StrictTable& t, const fs::path& folder, Suture& s) {
   s.initial_polyline_m = lay_out(std::get<std::vector<Vec>>(read), points, s.length_m / (points - 1));
 }
 
-void read_contact(StrictTable& t, Model model, Contact& c) {
+void read_contact(StrictTable& t, bool is_rod, Contact& c) {
   t.choice("solver", c.solver, kSolvers);
   t.number("friction", c.friction, {0.0, 1e3});
   t.number("static_friction", c.static_friction, {0.0, 1e3});
-  t.number("repulsion_N_per_m", c.repulsion_N_per_m, kCoefficient);
-  t.number("repulsion_N_s_per_m", c.repulsion_N_s_per_m, kCoefficient);
-  t.boolean("friction_cap", c.friction_cap);
-  t.boolean("turns_thread", c.turns_thread);
-  if (c.turns_thread && model != Model::kRod) t.refuse("turns_thread", "false, or suture.model \"rod\"");
-  t.choice("broad_phase", c.broad_phase, kBroadPhases);
+  t.keys_of(is_rod, kOfTheRod, [&] { t.boolean("turns_thread", c.turns_thread); });
+  t.keys_of(!is_rod, kOfThePaper, [&] {
+    t.number("repulsion_N_per_m", c.repulsion_N_per_m, kCoefficient);
+    t.number("repulsion_N_s_per_m", c.repulsion_N_s_per_m, kCoefficient);
+    t.boolean("friction_cap", c.friction_cap);
+    t.choice("broad_phase", c.broad_phase, kBroadPhases);
+  });
   if (c.static_friction && *c.static_friction < c.friction) t.refuse("static_friction", "contact.friction or more");
 }
 
-void read_world(StrictTable& t, int nodes, World& w) {
+void read_world(StrictTable& t, const Suture& suture, World& w) {
+  const int nodes = suture.nodes;
+  const bool is_rod = suture.model == Model::kRod;
   t.vector("gravity_m_per_s2", w.gravity_m_per_s2, 1e6);
   std::set<int> seen;
   t.tables("fixed", [&](StrictTable& f) {
@@ -106,10 +115,10 @@ void read_world(StrictTable& t, int nodes, World& w) {
     l.vector("force_N", load.force_N, 1e9);
     w.loads.push_back(load);
   });
-  read_pegs(t, w);
+  t.keys_of(is_rod, kOfTheRod, [&] { read_pegs(t, w); });
   t.number("desk_height_m", w.desk_height_m, {-kFar_m, kFar_m});
   t.boolean("grippers_collide", w.grippers_collide);
-  t.boolean("frame_collides", w.frame_collides);
+  t.keys_of(!is_rod, kOfThePaper, [&] { t.boolean("frame_collides", w.frame_collides); });
 }
 
 void read_time(StrictTable& t, Time& time) {
@@ -123,12 +132,11 @@ void read_hands(StrictTable& t, const Suture& suture, Hands& h) {
   t.number("reach_m", h.reach_m, {0.0, kFar_m, true});
   if (h.reach_m && *h.reach_m < suture.radius_m)
     t.refuse("reach_m", "suture.radius_m or more: it goes to the thread's middle");
-  t.number("pinch_width_m", h.pinch_width_m, {0.0, kFar_m});
-  t.number("pinch_force_N", h.pinch_force_N, {0.0, 1e6, true});
-  if (suture.model != Model::kRod) {  // the paper's grippers hold one node and never slip
-    if (h.pinch_width_m > 0.0) t.refuse("pinch_width_m", "0, or suture.model \"rod\"");
-    if (h.pinch_force_N) t.refuse("pinch_force_N", "suture.model \"rod\" only");
-  }
+  const bool is_rod = suture.model == Model::kRod;
+  t.keys_of(is_rod, kOfTheRod, [&] {  // the paper's grippers hold one node and never slip
+    t.number("pinch_width_m", h.pinch_width_m, {0.0, kFar_m});
+    t.number("pinch_force_N", h.pinch_force_N, {0.0, 1e6, true});
+  });
   t.number("device_N_per_m", h.device_N_per_m, {0.0, 1e5, true});
   t.number("device_N_s_per_m", h.device_N_s_per_m, {0.0, 1e3});
   t.boolean("passivity", h.passivity);
@@ -136,9 +144,11 @@ void read_hands(StrictTable& t, const Suture& suture, Hands& h) {
   t.number("energy_credit_J", h.energy_credit_J, {0.0, 0.02});
   t.number("force_scale", h.force_scale, {0.0, 1e3});
   t.number("max_force_N", h.max_force_N, {0.0, 100.0});
-  t.boolean("propagation", h.propagation);
-  t.number("min_length", h.min_length, {0.0, 1.0, true});
-  t.number("max_length", h.max_length, {1.0, 100.0});
+  t.keys_of(!is_rod, kOfThePaper, [&] {
+    t.boolean("propagation", h.propagation);
+    t.number("min_length", h.min_length, {0.0, 1.0, true});
+    t.number("max_length", h.max_length, {1.0, 100.0});
+  });
   t.number("workspace_scale", h.workspace_scale, {0.0, 1e6, true});
   t.vector("workspace_origin_m", h.workspace_origin_m, kFar_m);
 }
@@ -198,8 +208,8 @@ std::variant<Scene, Error> load_scene(const fs::path& path, std::span<const std:
   Scene scene;
   StrictTable top(root, "", context);
   top.table("suture", [&](StrictTable& t) { read_suture(t, path.parent_path(), scene.suture); });
-  top.table("contact", [&](StrictTable& t) { read_contact(t, scene.suture.model, scene.contact); });
-  top.table("world", [&](StrictTable& t) { read_world(t, scene.suture.nodes, scene.world); });
+  top.table("contact", [&](StrictTable& t) { read_contact(t, scene.suture.model == Model::kRod, scene.contact); });
+  top.table("world", [&](StrictTable& t) { read_world(t, scene.suture, scene.world); });
   top.table("time", [&](StrictTable& t) { read_time(t, scene.time); });
   top.table("hands", [&](StrictTable& t) { read_hands(t, scene.suture, scene.hands); });
   top.finish();

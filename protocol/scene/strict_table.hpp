@@ -188,6 +188,15 @@ class StrictTable {
     }
   }
 
+  /// Keys that `read` asks for belong to `owner` alone, for example "suture.model \"rod\"": where another is simulated
+  /// (`here` is false), one that stands in the file is refused and not taken for something that would then do nothing.
+  template <class Read>
+  void keys_of(bool here, const char* owner, Read read) {
+    elsewhere_ = here ? nullptr : owner;
+    read();
+    elsewhere_ = nullptr;
+  }
+
   /// Refuses a key that must be there and is not.
   void require(std::string_view key) {
     if (!table_.contains(key))
@@ -221,8 +230,13 @@ class StrictTable {
 
  private:
   const toml::node* take(std::string_view key) {
-    asked_.insert(std::string(key));
-    return context_.error ? nullptr : table_.get(key);
+    const auto* node = context_.error ? nullptr : table_.get(key);
+    if (elsewhere_ == nullptr) {
+      asked_.insert(std::string(key));
+      return node;
+    }
+    if (node != nullptr) refuse(key, *node, std::string(elsewhere_) + " only");
+    return nullptr;
   }
   [[nodiscard]] std::string full(std::string_view key) const {
     return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
@@ -265,6 +279,7 @@ class StrictTable {
   std::string path_;
   ReadContext& context_;
   std::set<std::string> asked_;
+  const char* elsewhere_ = nullptr;  ///< whose keys are read, when it is not what is simulated
 };
 
 }  // namespace ligature::scene
