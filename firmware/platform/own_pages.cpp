@@ -2,6 +2,8 @@
 
 #include <sys/mman.h>
 
+#include <cerrno>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
@@ -38,20 +40,24 @@ std::vector<Mapping> file_mappings() {
 }
 
 /// A write fault on every page: the kernel copies it. Code stays executable meanwhile, for this function is among it.
-bool copy(const Mapping& m) noexcept {
+/// @return 0, or the errno
+int copy(const Mapping& m) noexcept {
   auto* const at = reinterpret_cast<void*>(m.from);
   const std::size_t bytes = m.to - m.from;
-  if (mprotect(at, bytes, m.protection | PROT_WRITE) != 0) return false;
-  const bool copied = madvise(at, bytes, kPopulateWrite) == 0;
-  return mprotect(at, bytes, m.protection) == 0 && copied;
+  if (mprotect(at, bytes, m.protection | PROT_WRITE) != 0) return errno;
+  const int error = madvise(at, bytes, kPopulateWrite) == 0 ? 0 : errno;
+  return mprotect(at, bytes, m.protection) == 0 || error != 0 ? error : errno;
 }
 
 }  // namespace
 
-std::size_t own_file_pages() {
-  std::size_t refused = 0;
-  for (const auto& m : file_mappings()) refused += copy(m) ? 0 : 1;
-  return refused;
+int own_file_pages() {
+  int first = 0;
+  for (const auto& m : file_mappings()) {
+    const int error = copy(m);
+    if (first == 0) first = error;
+  }
+  return first;
 }
 
 }  // namespace ligature::platform

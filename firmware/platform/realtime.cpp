@@ -62,8 +62,10 @@ Refusals lock_memory() {
   if (const int error = lock_all(); error != 0) {
     refusals.push_back(refused("locked memory (mlockall)", error, "memlock unlimited in limits.conf, or run as root"));
   }
-  if (own_file_pages() != 0)
-    refusals.push_back("copies of code and constants (madvise) refused; remedy: Linux 5.14, no MemoryDenyWriteExecute");
+  if (const int error = own_file_pages(); error != 0) {
+    refusals.push_back(refused("copies of code and constants (madvise)", error,
+                               "Linux 5.14 or newer, no MemoryDenyWriteExecute, no limit of data"));
+  }
   const bool kept = mallopt(M_TRIM_THRESHOLD, -1) == 1 && mallopt(M_MMAP_MAX, 0) == 1;
   if (!kept) refusals.push_back("heap that keeps its pages (mallopt) refused; remedy: glibc's allocator");
   if (auto* reserve = static_cast<volatile unsigned char*>(std::malloc(kHeapReserve)); reserve != nullptr) {
