@@ -21,6 +21,7 @@ void Controller::command(rt::CommandKind kind) noexcept {
       break;
     case rt::CommandKind::kStop:
       armed_ = false;
+      stop_requested_ = true;
       for (HandControl& h : hands_) h.drop();
       break;
     case rt::CommandKind::kResetFault:
@@ -87,13 +88,14 @@ rt::RigCommand Controller::tick(const TickInput& in) noexcept {
     command.hand[h].torque_Nm = hands_[h].command(in.tick);
     command.hand[h].request = drive_request();
   }
+  stop_requested_ = false;
   const bool off = state_ == State::kOff || state_ == State::kFault;
   powered_down_ticks_ = shutting_down_ && off ? powered_down_ticks_ + 1 : 0;
   return command;
 }
 
 Push Controller::push(const HandControl& hand) const noexcept {
-  if (!may_push(state_)) return Push::kNone;
+  if (!may_push(state_) || stop_requested_) return Push::kNone;
   if (braking_) return Push::kBrake;
   return hand.is_led() ? Push::kLead : Push::kCoupling;
 }

@@ -90,6 +90,7 @@ class Controller {
   Fault fault_ = Fault::kNone;
   bool armed_;
   bool reset_requested_ = false;
+  bool stop_requested_ = false;  // in this tick no hand gets a torque, whatever the step limit says
   bool shutting_down_ = false;
   bool braking_ = false;  // BRAKE because a hand was too fast
   int plausible_ticks_ = 0;

@@ -45,6 +45,12 @@ class Rig {
     ASSERT_EQ(controller.state(), State::kForce);
     ASSERT_GT(largest(tick()), 0.0);
   }
+  /// To the largest force that a hand gets, many steps of the step limit.
+  void pull_hard() {
+    offset_m = 50.0;
+    ticks(40);
+    ASSERT_GT(controller.hand(0).f_device_N.norm(), 3.0);
+  }
   static double largest(const rt::RigCommand& c) {
     double most = 0.0;
     for (const auto& hand : c.hand) {

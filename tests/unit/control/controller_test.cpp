@@ -67,18 +67,22 @@ TEST(Controller, NeedsBothArmingAndThatHandsDeadMan) {
   EXPECT_EQ(Rig::largest(rig.tick()), 0.0);
 }
 
-TEST(Controller, ReleasedDeadManTakesTheForceInFiftyMilliseconds) {
-  Rig rig;
-  rig.to_force();
-  rig.in.reading.hand[0].dead_man = rig.in.reading.hand[1].dead_man = false;
-  rig.ticks(Engagement::kFallTicks + 1);
-  EXPECT_EQ(Rig::largest(rig.tick()), 0.0);
-  EXPECT_EQ(rig.controller.state(), State::kEngage);  // pressing again is enough
+TEST(Controller, ReleasedDeadManTakesTheForceInFiftyMilliseconds) {  // the largest in the 14 steps that it has more
+  for (const bool largest : {false, true}) {
+    Rig rig;
+    rig.to_force();
+    if (largest) rig.pull_hard();
+    rig.in.reading.hand[0].dead_man = rig.in.reading.hand[1].dead_man = false;
+    rig.ticks(Engagement::kFallTicks + (largest ? 14 : 1));
+    EXPECT_EQ(Rig::largest(rig.tick()), 0.0);
+    EXPECT_EQ(rig.controller.state(), State::kEngage);  // pressing again is enough
+  }
 }
 
-TEST(Controller, StopTakesTheForceAtOnce) {
+TEST(Controller, StopTakesTheForceAtOnce) {  // the largest there is: 3.3 N are seven steps of the step limit
   Rig rig;
   rig.to_force();
+  rig.pull_hard();
   rig.controller.command(rt::CommandKind::kStop);
   EXPECT_EQ(Rig::largest(rig.tick()), 0.0);
   rig.tick();
