@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -96,10 +97,13 @@ class Cycle {
 
   void take_commands() noexcept {
     if (out_.stop.load(std::memory_order_relaxed) || tick_ >= last_tick_) controller_.shut_down();
-    for (rt::Command c; out_.commands.pop(c);) {
+    bool reset = false;
+    rt::Command c;
+    for (std::size_t left = out_.commands.capacity(); left > 0 && out_.commands.pop(c); --left) {
       controller_.command(c.kind);
-      if (c.kind == rt::CommandKind::kResetThread) thread_.reset();
+      reset = reset || c.kind == rt::CommandKind::kResetThread;
     }
+    if (reset) thread_.reset();  // 4 us for a rod: once, however many of a flood ask for it
   }
 
   /// Changes the thread by a swap of its insides: nothing is built or freed here. The old one goes back in the new

@@ -122,8 +122,9 @@ bool SocketBus::send(const can::Frame& frame) noexcept {
 }
 
 Receive SocketBus::receive(can::Frame& frame) noexcept {
+  constexpr int kMost = 64;  // of what is none of ours, in a call: whoever floods the bus holds nobody up
   can::LocalPacket packet;
-  while (loss_ != Loss::kForGood) {
+  for (int i = 0; i < kMost && loss_ != Loss::kForGood; ++i) {
     const ssize_t got = recv(fd_, packet.data(), packet.size(), MSG_DONTWAIT);
     if (got < 0) {
       note(errno);
@@ -144,7 +145,7 @@ Receive SocketBus::receive(can::Frame& frame) noexcept {
     frame = *decoded;
     return Receive::kFrame;
   }
-  return Receive::kLost;
+  return is_lost() ? Receive::kLost : Receive::kNothing;
 }
 
 }  // namespace ligature::platform

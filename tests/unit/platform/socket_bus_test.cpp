@@ -66,6 +66,19 @@ TEST_F(SocketBusTest, SkipsWhatIsNoFrame) {
   EXPECT_EQ(frame, kFrame);
 }
 
+/// A peer that sends as fast as it is read would keep a period from ending.
+TEST_F(SocketBusTest, AFloodOfWhatIsNoFrameHoldsNobodyUp) {
+  const char nonsense[5] = "what";
+  int sent = 0;
+  while (::send(peer, nonsense, sizeof nonsense, MSG_DONTWAIT) == 5) ++sent;
+  ASSERT_GT(sent, 64);
+  can::Frame frame;
+  EXPECT_EQ(bus->receive(frame), Receive::kNothing);
+  char next[16];
+  EXPECT_EQ(recv(bus->descriptor(), next, sizeof next, MSG_DONTWAIT), 5) << "all of it was read in one call";
+  EXPECT_FALSE(bus->is_lost());
+}
+
 OpenFailure failure_of(const std::string& url) {
   auto opened = open_can_bus(url);
   const auto* error = std::get_if<OpenError>(&opened);
