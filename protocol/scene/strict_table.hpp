@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "protocol/scene/csv.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::scene {
@@ -212,7 +213,7 @@ class StrictTable {
       for (const auto& k : asked_) allowed += (allowed.empty() ? "" : ", ") + k;
       const char* kind = node.is_table() ? "table" : "key";
       context_.refuse(full(key.str()), node,
-                      std::string("unknown ") + kind + " '" + full(key.str()) + "', allowed " + allowed);
+                      std::string("unknown ") + kind + " '" + full(scene::shown(key.str())) + "', allowed " + allowed);
     }
   }
 

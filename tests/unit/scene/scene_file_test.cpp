@@ -63,6 +63,7 @@ TEST(SceneFile, EveryRefusalIsOneLineWithItsLineNumber) {
   } kCases[] = {
       {"[suture]\nlenght_m = 5.0\n", 2, "suture.lenght_m"},
       {"[sutura]\nnodes = 5\n", 1, "sutura"},
+      {"[suture]\n\"\\u001b[2J\" = 5\n", 2, "'suture.\\x1B[2J'"},  // nobody's terminal is cleared
       {"nodes = 5\n", 1, "nodes"},
       {"[suture]\nnodes = 5.0\n", 2, "suture.nodes"},
       {"[suture]\nnodes = \"5\"\n", 2, "suture.nodes"},
