@@ -231,9 +231,8 @@ Rod::HandSpeed Rod::set_hands(const std::array<Vec, kMaxHolds>& goals, std::arra
 void Rod::begin_tick(const HandSpeed& hands) noexcept {
   constexpr double kTired = 0.9, kRested = 0.25, kThrown_m_per_s = 10.0;
   constexpr int kFewest = 10;  // substeps of a thread that labours: with six it errs and overlaps, and labours more
-  labours_ = solves_directly() &&
-             static_cast<double>(report_.work) >
-                 (labours_ ? kRested : kTired) * static_cast<double>(numerics_.budget(state_.nodes(), 0.0));
+  labours_ = static_cast<double>(report_.work) >
+             (labours_ ? kRested : kTired) * static_cast<double>(numerics_.budget(state_.nodes(), 0.0));
   const int substeps_before = report_.substeps;
   leniency_ = report_.cut_short > 0 ? std::min(kMostLeniency, 1.5 * leniency_) : std::max(1.0, 0.9 * leniency_);
   report_ = TickReport{};

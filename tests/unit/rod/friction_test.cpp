@@ -81,5 +81,23 @@ TEST(StaticFriction, StopsByTheKineticAndHoldsByTheStatic) {
   EXPECT_LT(std::abs(rod.state().x[15][1] - rest), 1e-3 * 2.0 * rod.material().radius_m);
 }
 
+// A thread as long as the shipped ones: all of its nodes touch, which is more work than a tick of sixteen substeps has.
+TEST(Labour, FindsTimeForAThreadAllOfWhichSlides) {
+  Material m;  // 0.3 m
+  m.drag_per_s = 0.0;
+  m.friction = kSlide;
+  Rod rod(m, Numerics{}, kRubbing, 154, 1);
+  rod.has_floor = true;
+  rod.floor_friction = kSlide;
+  for (auto& x : rod.state().x) x += make(0, 0, m.radius_m);
+  for (auto& v : rod.state().v) v = make(0, 0.5, 0);
+  rod.moved();
+  rod.gravity = make(0, 0, -kG);
+  double lost = 0.0;
+  for (int k = 0; k < 100; ++k) rod.tick(), lost += 0.01 * rod.report().time_lost;
+  EXPECT_LT(lost, 0.01);
+  EXPECT_NEAR(rod.state().v[77][1], 0.5 - 0.1 * kSlide * kG, 0.005);
+}
+
 }  // namespace
 }  // namespace ligature::test
