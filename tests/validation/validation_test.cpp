@@ -42,13 +42,42 @@ TEST_P(TheRod, AgreesAtFiftyNodes) { expect_all_within(GetParam(), {scene::Model
 INSTANTIATE_TEST_SUITE_P(Case, TheRod, testing::ValuesIn(quick_cases()),
                          [](const auto& test) { return test_name(test.param.name, ""); });
 
+// No case picks the rows that suit it: as many figures as its table has rows.
+struct Judged {
+  const char *case_name, *table;
+  int figures_a_row;
+  const char* only_kind = "";
+};
+
+class EveryRow : public testing::TestWithParam<Judged> {};
+
+TEST_P(EveryRow, IsJudged) {
+  const auto& judged = GetParam();
+  std::size_t rows = 0;
+  for (const auto& row : reference_rows(judged.table))
+    rows += *judged.only_kind == '\0' || row.at("kind") == judged.only_kind;
+  EXPECT_EQ(find_case(judged.case_name)->examine({scene::Model::kRod, 50}).size(),
+            static_cast<std::size_t>(judged.figures_a_row) * rows);
+}
+
+INSTANTIATE_TEST_SUITE_P(Case, EveryRow,
+                         testing::Values(Judged{"elastica-tip", "01_elastica_tip_load.csv", 1},
+                                         Judged{"elastica-heavy", "01_heavy_elastica.csv", 1},
+                                         Judged{"catenary", "02_catenary_inextensible.csv", 2},
+                                         Judged{"elastic-string", "02_hanging_elastic_string.csv", 1},
+                                         Judged{"stopping-distance", "05_stopping_distance.csv", 1},
+                                         Judged{"crossing-threads", "06_crossing_threads.csv", 4, "elastic"},
+                                         Judged{"heavy-rod-lifted", "06_heavy_rod_lifted_from_plane.csv", 1}),
+                         [](const auto& test) { return test_name(test.param.case_name, ""); });
+
 class TheRodOfTwoHundred : public testing::TestWithParam<const char*> {};
 
 TEST_P(TheRodOfTwoHundred, Agrees) { expect_all_within(*find_case(GetParam()), {scene::Model::kRod, 200}); }
 
 INSTANTIATE_TEST_SUITE_P(Case, TheRodOfTwoHundred,
                          testing::Values("elastica-tip", "elastica-heavy", "catenary", "elastic-string",
-                                         "hanging-chain", "cantilever", "clamped-twist", "localised-helix"),
+                                         "hanging-chain", "cantilever", "clamped-twist", "localised-helix",
+                                         "stopping-distance", "heavy-rod-lifted"),
                          [](const auto& test) { return test_name(test.param, ""); });
 
 TEST(TheRodAtFine, DoesNotCreep) {

@@ -1,6 +1,7 @@
 #pragma once
 // Every case of the validation: what it checks, on which models, and the experiment itself.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,7 +14,7 @@ namespace ligature::validate {
 struct Subject {
   scene::Model model = scene::Model::kRod;
   int nodes = 50;
-  scene::Accuracy accuracy = scene::Accuracy::kBalanced;  ///< of the rod
+  std::optional<scene::Accuracy> accuracy{};  ///< of the rod; absent: balanced, but as a case needs it
 };
 
 /// One number against its reference. The error is in the unit of the tolerance.

@@ -38,7 +38,7 @@ double elastica_error(int n) {
 /// Tip of the cantilever at t = 0.25, half way down after the load was put on, in 25 ticks.
 Vec swung_tip(int substeps) {
   Rod rod = cantilever(50, 0.01, substeps, 0.0);
-  for (int k = 0; k < 25; ++k) rod.tick();
+  for (int k = 0; k < 25; ++k) proceed(rod);
   return rod.state().x.back();
 }
 
@@ -65,7 +65,7 @@ double chain_error(int n, double steps_per_unit) {
   };
   double before = amplitude(), t = 0.0, first = 0.0;
   for (int seen = 0; seen < 3;) {
-    rod.tick();
+    proceed(rod);
     t += dt;
     const double now = amplitude();
     if ((before > 0.0) != (now > 0.0)) {

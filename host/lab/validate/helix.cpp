@@ -81,7 +81,7 @@ Helix localised_helix_of(int n, int substeps, bool adaptive) {
   for (int k = 0; k < steps; ++k) {
     Twist::roll(rod.state().holds[static_cast<std::size_t>(end)], 27.0 * 2.0 * std::numbers::pi / steps);
     goals[static_cast<std::size_t>(end)] = make(100.0 - 3.0 * (k + 1) / steps, 0, 0);
-    rod.tick(goals);
+    proceed(rod, goals);
   }
   settle(rod, 1e-7, 20000);
   const auto truth = helix_truth();

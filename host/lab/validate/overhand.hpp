@@ -35,7 +35,7 @@ class EndPull {
       tools_[h].v_WT.x() = h == 0 ? -speed_m_per_s : speed_m_per_s;
       tools_[h].p_WT.x() += tick_s * tools_[h].v_WT.x();
     }
-    sim_.tick(tools_);
+    proceed(sim_, tools_);
   }
   /// Mean of the two hands' pulls, N.
   [[nodiscard]] double tension_N() const {

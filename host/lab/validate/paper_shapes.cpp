@@ -85,7 +85,7 @@ std::string tied_by(const std::string& script_name) {
       const auto pose = scene::sample(script.keys[h], 1e-3 * k);
       tools[h] = {Vec3(pose.p_W_m.data()), Vec3(pose.v_W_m_per_s.data()), pose.grip};
     }
-    sim.tick(tools);
+    proceed(sim, tools);
   }
   std::vector<std::array<double, 3>> points;
   for (const auto& p : sim.nodes_W()) points.push_back({p.x(), p.y(), p.z()});

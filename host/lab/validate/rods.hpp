@@ -5,6 +5,7 @@
 #include <array>
 
 #include "firmware/physics/rod/rod.hpp"
+#include "host/lab/validate/proceed.hpp"
 
 namespace ligature::validate {
 
@@ -45,7 +46,7 @@ inline constexpr Parts kTwisting{true, false, false, false, false};
 /// Runs until nothing moves faster than still_m_per_s. @return false when that takes more than `most` ticks.
 inline bool settle(Rod& rod, double still_m_per_s, int most) {
   for (int k = 0; k < most; ++k) {
-    rod.tick();
+    proceed(rod);
     double fastest = 0.0;
     for (const auto& v : rod.state().v) fastest = std::max(fastest, norm(v));
     if (k > 10 && fastest < still_m_per_s) return true;

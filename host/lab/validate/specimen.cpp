@@ -5,6 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "firmware/physics/rod/from_scene.hpp"
+
 namespace ligature::validate {
 namespace {
 
@@ -50,7 +52,7 @@ scene::Scene real_thread(const Subject& subject, double share, double friction) 
     s.suture.radius_m = 1.5e-4;
     s.suture.rod.GJ_N_m2 = 0.0;
     s.suture.rod.spacing = scene::Spacing::kUniform;
-    s.suture.rod.accuracy = subject.accuracy;
+    s.suture.rod.accuracy = subject.accuracy.value_or(scene::Accuracy::kBalanced);
     s.hands.coupling_N_per_m = 1000.0;
     s.hands.coupling_N_s_per_m = 0.5;
   } else {  // Table I at 50 nodes, per length
@@ -97,7 +99,14 @@ void make_stable(scene::Scene& s) {
   double limit_s = 2.0 * std::sqrt(m / std::max(s.hands.coupling_N_per_m, 1e-12));
   limit_s = std::min(limit_s, 0.5 * std::sqrt(m * l * l * l / std::max(EI, 1e-12)));
   if (s.suture.model != scene::Model::kPaper5) limit_s = std::min(limit_s, std::sqrt(m * l / p.stretch_N));
-  s.time.substeps = std::max(1, static_cast<int>(std::ceil(s.time.tick_s / (0.5 * limit_s))));
+  s.time.substeps = std::max(s.time.substeps, static_cast<int>(std::ceil(s.time.tick_s / (0.5 * limit_s))));
+}
+
+double step_s(const scene::Scene& scene) {
+  if (is_rod(scene)) return scene.time.tick_s / physics::rod::numerics_of(scene).substeps;
+  auto s = scene;
+  make_stable(s);
+  return s.time.tick_s / s.time.substeps;
 }
 
 physics::Simulation build(const scene::Scene& scene) {
@@ -122,7 +131,7 @@ double fastest(const physics::Simulation& sim) {
 
 bool settle(physics::Simulation& sim, const Tools& tools, double still_m_per_s, int most) {
   for (int k = 0; k < most; ++k) {
-    sim.tick(tools);
+    proceed(sim, tools);
     if (!sim.diagnostics().finite) return false;
     if (k > 10 && fastest(sim) < still_m_per_s) return true;
   }

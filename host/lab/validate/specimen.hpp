@@ -6,6 +6,7 @@
 
 #include "firmware/physics/simulation.hpp"
 #include "host/lab/validate/cases.hpp"
+#include "host/lab/validate/proceed.hpp"
 
 namespace ligature::validate {
 
@@ -52,8 +53,11 @@ void lay(scene::Scene& scene, Place place) {
   }
 }
 
-/// Substeps that keep an explicit model well inside its stability limit.
+/// At least as many substeps as keep an explicit model well inside its stability limit, but for model 5's stretch.
 void make_stable(scene::Scene& scene);
+
+/// How long one step lasts, s: of a rod that does not labour, of a paper model made stable.
+[[nodiscard]] double step_s(const scene::Scene& scene);
 
 /// @throws std::runtime_error when the physics refuses the scene.
 [[nodiscard]] physics::Simulation build(const scene::Scene& scene);

@@ -82,10 +82,10 @@ Tight tighten(int n) {
     natural *= 1.0 - shrink;
     for (auto& at : state.mesh.s) at *= 1.0 - shrink;
     rod.moved();
-    rod.tick();
+    proceed(rod);
     if (k % 10 == 0) tension = m.EA_N * ((contour(state.x) - bridge) / natural - 1.0);
   }
-  for (int k = 0; k < 500; ++k) rod.tick();
+  for (int k = 0; k < 500; ++k) proceed(rod);
   std::vector<std::array<double, 3>> points;
   for (const auto& x : state.x) points.push_back({x[0], x[1], x[2]});
   const double length = contour(state.x);

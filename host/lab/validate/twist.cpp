@@ -33,9 +33,9 @@ double clamped_rod_growth(int n, double moment) {
     return sum;
   };
   const int ticks = 1500;
-  for (int k = 0; k < ticks; ++k) rod.tick();
+  for (int k = 0; k < ticks; ++k) proceed(rod);
   const double early = size();
-  for (int k = 0; k < ticks; ++k) rod.tick();
+  for (int k = 0; k < ticks; ++k) proceed(rod);
   return 0.5 * std::log(size() / early) / ticks;
 }
 
@@ -57,7 +57,7 @@ bool twisted_ring_buckles(int n, double turns_over_critical, double bend_over_tw
   for (std::size_t i = 1; i + 1 < rod.state().x.size(); ++i) {
     rod.state().x[i] += make(0, 0, 1e-6 * (1.0 - std::cos(4.0 * kPi * rod.state().mesh.s[i])));
   }
-  for (int k = 0; k < 6500; ++k) rod.tick();
+  for (int k = 0; k < 6500; ++k) proceed(rod);
   return std::abs(rod.twist().turn_rad(0) - angle) > 1.0;
 }
 
@@ -77,7 +77,7 @@ void wind(Rod& rod, int hold, double angle_rad) {
   const int steps = static_cast<int>(std::ceil(std::abs(angle_rad)));
   for (int k = 0; k < steps; ++k) {
     Twist::roll(rod.state().holds[static_cast<std::size_t>(hold)], angle_rad / steps);
-    rod.tick();
+    proceed(rod);
   }
 }
 

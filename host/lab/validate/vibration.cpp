@@ -62,7 +62,7 @@ double chain_frequency_of_rod(int masses, double omega, const std::vector<double
     for (std::size_t i = 0; i < y.size(); ++i) q += y[i] * state.x[i][0];
     return q;
   };
-  return frequency(amplitude(), tick, 6, [&] { return rod.tick(), amplitude(); });
+  return frequency(amplitude(), tick, 6, [&] { return proceed(rod), amplitude(); });
 }
 
 double chain_frequency_of_paper(const Subject& subject, double omega, const std::vector<double>& y) {
@@ -82,7 +82,7 @@ double chain_frequency_of_paper(const Subject& subject, double omega, const std:
     for (std::size_t i = 0; i < y.size(); ++i) q += y[i] * sim.nodes_W()[i].x();
     return q;
   };
-  return frequency(amplitude(), tick, 6, [&] { return sim.tick(tools), amplitude(); });
+  return frequency(amplitude(), tick, 6, [&] { return proceed(sim, tools), amplitude(); });
 }
 
 /// A cantilever in one of its modes, behind the facade.
@@ -139,7 +139,7 @@ Findings cantilever_frequencies(const Subject& subject) {  // cosh beta cos beta
     // A paper thread's equal masses reach half a segment past its last node, as far as the clamp takes at its first.
     Ringing r(unit_thread(subject, 0.1 / omega, 0.0), number(row, "beta_L"), 1.0);
     const double found =
-        frequency(r.amplitude(), 0.1 / omega, 6, [&] { return r.sim->tick(no_hands()), r.amplitude(); });
+        frequency(r.amplitude(), 0.1 / omega, 6, [&] { return proceed(*r.sim, no_hands()), r.amplitude(); });
     all.push_back(relative("f" + row.at("mode") + ": omega", omega, found, row.at("mode") == "1" ? 0.01 : 0.03));
   }
   return all;
@@ -162,7 +162,7 @@ double numerical_damping(const Subject& subject, scene::Accuracy accuracy, int m
   double peak = 0.0;
   const int around = ticks / (4 * periods);
   for (int k = 0; k < ticks + around; ++k) {
-    ringing.sim->tick(no_hands());
+    proceed(*ringing.sim, no_hands());
     if (k >= ticks - around) peak = std::max(peak, std::abs(ringing.amplitude()));
   }
   return std::log(from / peak) / (2.0 * std::numbers::pi * periods);

@@ -7,9 +7,11 @@ import csv
 import json
 import math
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 LAB, SCENES = sys.argv[1], pathlib.Path(sys.argv[2])
 PAPER = str(SCENES / "paper.toml")
@@ -91,6 +93,20 @@ def validation(folder):
     assert done.returncode == 1 and "FAIL" in done.stdout, done
 
 
+def interruption():
+    """A case of half a minute ends within a second or so, in one line."""
+    with subprocess.Popen([LAB, "validate", "--only", "overhand-hysteresis", "--nodes", "200"], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True) as validate:
+        time.sleep(0.5)  # past the start, far from the end
+        validate.send_signal(signal.SIGINT)
+        try:
+            out, complaint = validate.communicate(timeout=5)
+        finally:
+            validate.kill()
+    assert validate.returncode == 3 and out == "", (validate.returncode, out)
+    assert complaint == "ligature-lab: validate: interrupted in overhand-hysteresis, nothing written\n", complaint
+
+
 def teaching():
     assert lab("--version").stdout.startswith("ligature-lab ")
     assert "Example" in lab("run", "--help").stdout
@@ -101,5 +117,6 @@ with tempfile.TemporaryDirectory() as name:
     good_run(pathlib.Path(name))
     failed_run(pathlib.Path(name))
     validation(pathlib.Path(name))
+interruption()
 teaching()
 print("ligature-lab: command line behaves")
