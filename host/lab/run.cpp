@@ -51,8 +51,11 @@ TraceRow row_of(const Rehearsal& r) {
 std::string divergence(const Rehearsal& r) {
   const auto& d = r.simulation().diagnostics();
   std::ostringstream text;
-  text << "diverged at tick " << (d.bad_tick >= 0 ? d.bad_tick : r.ticks()) << " (t = " << r.time_s() << " s), node "
-       << d.bad_node << "; likely cause: " << likely_cause(r.scene());
+  text << "diverged at tick " << (d.bad_tick >= 0 ? d.bad_tick : r.ticks()) << " (t = " << r.time_s() << " s), ";
+  if (!d.finite && d.bad_node < 0)  // stopped before it reached the thread
+    text << "by a hand whose position or speed is no number, or beyond 1e9";
+  else
+    text << "node " << d.bad_node << "; likely cause: " << likely_cause(r.scene());
   return text.str();
 }
 

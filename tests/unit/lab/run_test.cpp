@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string>
 
 #include "host/lab/outcome.hpp"
@@ -59,6 +60,18 @@ TEST(Run, ADivergingRunNamesTickNodeAndCauseAndWritesNothingNonFinite) {
       EXPECT_EQ(line.find("nan"), std::string::npos) << name << ": " << line;
       EXPECT_EQ(line.find("inf"), std::string::npos) << name << ": " << line;
     }
+  }
+}
+
+TEST(Run, AHandThatIsNoNumberIsNamedAndNoStiffness) {
+  for (const char* scene : {"paper.toml", "suture-3-0.toml"}) {
+    auto script = load_script_or_refuse(kOverhand);
+    for (auto& key : script.keys[0]) key.p_W_m[0] = std::numeric_limits<double>::quiet_NaN();
+    Rehearsal r(load_scene_or_refuse(std::string(LIGATURE_SOURCE_DIR "/scenes/") + scene, {}), script);
+    const auto s = run(r, {test::temp_folder() + "run_no_hand", 0.1, 0.1});
+    EXPECT_FALSE(s.finite);
+    EXPECT_EQ(s.failure,
+              "diverged at tick 0 (t = 0.001 s), by a hand whose position or speed is no number, or beyond 1e9");
   }
 }
 
