@@ -20,6 +20,7 @@ const std::vector<Case>& cases() {
       {Fault::kBusLost, [](Rig& r) { r.in.reading.hand[0].bus_lost = true; }},
       {Fault::kDriveFault, [](Rig& r) { r.in.reading.hand[1].drive_fault = true; }},
       {Fault::kDriveFault, [](Rig& r) { r.in.reading.hand[1].enabled = false; }},
+      {Fault::kButtonsStuck, [](Rig& r) { r.in.reading.hand[0].buttons_stuck = true; }},
       {Fault::kNonFinite, [](Rig& r) { r.offset_m = std::numeric_limits<double>::quiet_NaN(); }},
       {Fault::kVelocityLimit,  // of all joints: one alone, while a torque stands, would be the frozen others'
        [](Rig& r) {
@@ -74,6 +75,18 @@ TEST(ControllerFaults, AForceThatDoesNotEndIsTakenAtOnce) {
     EXPECT_EQ(Rig::largest(rig.tick()), 0.0);
     EXPECT_EQ(rig.controller.state(), State::kFault);
   }
+}
+
+TEST(ControllerFaults, ArmingInAFaultIsNotKeptForAfterIt) {
+  Rig rig;
+  rig.to_force();
+  rig.in.thread_finite = false;
+  rig.tick();
+  rig.in.thread_finite = true;
+  rig.controller.command(rt::CommandKind::kArm);
+  rig.controller.command(rt::CommandKind::kResetFault);
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(Rig::largest(rig.tick()), 0.0) << i;
+  EXPECT_EQ(rig.controller.state(), State::kIdle);
 }
 
 TEST(ControllerFaults, OldJointMessagesAreHeldAndThenAFault) {

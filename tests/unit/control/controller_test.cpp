@@ -20,6 +20,51 @@ TEST(Controller, ComesUpThroughEveryStateToForce) {
   EXPECT_EQ(seen, (std::vector{State::kOff, State::kCalibrate, State::kIdle, State::kEngage, State::kForce}));
 }
 
+/// What a drive complains of before it is up is no fault: it is being brought up.
+TEST(Controller, WaitsForDrivesThatAreUpAndFresh) {
+  const std::vector<void (*)(rt::HandReading&)> kNotUp{
+      [](auto& r) { r.drive_fault = true; }, [](auto& r) { r.enabled = false; }, [](auto& r) { r.valid = false; },
+      [](auto& r) { r.age_ticks = 1; }, [](auto& r) { r.buttons_stuck = r.drive_fault = true; }};
+  for (const auto& spoil : kNotUp) {
+    Rig rig;
+    const auto good = rig.in.reading.hand[1];
+    spoil(rig.in.reading.hand[1]);
+    rig.ticks(100);
+    EXPECT_EQ(rig.controller.state(), State::kOff);
+    EXPECT_EQ(rig.controller.fault(), Fault::kNone);
+    rig.in.reading.hand[1] = good;
+    rig.tick();
+    EXPECT_EQ(rig.controller.state(), State::kCalibrate);
+  }
+}
+
+TEST(Controller, EncodersMustShowAPossiblePoseForAWhile) {
+  Rig rig;
+  rig.tick();
+  for (int i = 0; i < Controller::kCalibrationTicks; ++i, rig.tick())
+    ASSERT_EQ(rig.controller.state(), State::kCalibrate) << i;
+  EXPECT_EQ(rig.controller.state(), State::kIdle);
+}
+
+TEST(Controller, DoesNotEngageOnALargeForce) {  // 1.8 N would be there at once
+  Rig rig;
+  rig.offset_m = 0.5;
+  rig.ticks(1000);
+  EXPECT_EQ(rig.controller.hand(0).gain, 0.0);
+  EXPECT_EQ(rig.controller.state(), State::kEngage);
+}
+
+TEST(Controller, WithoutForceThereIsNothingToBrake) {
+  Rig rig;
+  rig.in.reading.hand[0].dead_man = rig.in.reading.hand[1].dead_man = false;
+  rig.ticks(1000);
+  for (int i = 0; i < 8; ++i) {
+    rig.in.reading.hand[0].q_rad[0] += 2.4e-3 / 0.192;
+    rig.tick();
+    EXPECT_EQ(rig.controller.state(), State::kEngage) << i;
+  }
+}
+
 TEST(Controller, FeelsTheCouplingThroughTheLinkage) {  // 1200 N/m x 0.05 m x 0.003 = 0.18 N upwards on both hands
   Rig rig;
   rig.to_force();
