@@ -131,7 +131,7 @@ std::array<double, rt::kJoints> HandControl::command(std::int64_t tick) noexcept
     paid_N = passivity_.control(tick, decided_N_, v_DT_, state_.f_device_N, torque);
     torque_Nm = sendable_torque(paid_N);
     if (!passivity_.released() && !passivity_.is_a_step(torque_Nm)) torque_Nm = torque_Nm_;  // rounding only
-    if (passivity_.released()) release();
+    if (passivity_.released()) end_move();  // wilder than the record allows, or frames are lost: it gets nothing
     if (passivity_.acts()) limits |= rt::kPassivityLimit;
     if (passivity_.stepped()) limits |= rt::kStepLimit;
     if ((jacobian_.transpose() * paid_N).lpNorm<Eigen::Infinity>() > max_torque_Nm_) limits |= rt::kTorqueLimit;
@@ -202,13 +202,6 @@ Vec3 HandControl::sendable_torque(const Vec3& f_N) const noexcept {
     torque_Nm[j] = stays ? torque_Nm_[j] : quantum_Nm_ * std::round(exact[j] / quantum_Nm_);
   }
   return torque_Nm;
-}
-
-/// Not even the least force within a step can be paid for a period longer: the hand is wilder than the record allows,
-/// or frames are lost. It gets nothing, and what comes then begins at zero and must be earned.
-void HandControl::release() noexcept {
-  torque_Nm_ = Vec3::Zero();
-  end_move();
 }
 
 void HandControl::fill_state(std::int16_t limits) noexcept {

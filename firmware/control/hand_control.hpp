@@ -117,7 +117,6 @@ class HandControl {
   void map(const Vec3& p_DT) noexcept;
   void step_clutch(bool pressed, const Vec3& p_DT) noexcept;
   [[nodiscard]] Vec3 sendable_torque(const Vec3& f_N) const noexcept;
-  void release() noexcept;
   [[nodiscard]] Vec3 brake_force() noexcept;
   [[nodiscard]] Vec3 lead_force() noexcept;
   void fill_state(std::int16_t limits) noexcept;

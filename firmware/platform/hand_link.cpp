@@ -139,7 +139,7 @@ std::array<std::int16_t, rt::kJoints> HandLink::write(const rt::HandCommand& com
       node.emergency = can::emcy::kNoError;  // it came back up: what it complained of is over
     }
     node.controlword = controlword(command.request, state, node.controlword);
-    const std::int16_t torque = bus_.is_lost() ? std::int16_t{0} : permille_of(command.torque_Nm[j]);
+    const std::int16_t torque = permille_of(command.torque_Nm[j]);
     if (send(can::encode(can::profile::kJointNodes[j], can::Rpdo1{node.controlword, torque}))) sent[j] = torque;
   }
   return sent;

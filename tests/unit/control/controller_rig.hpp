@@ -15,7 +15,8 @@ inline constexpr int kWatchdog = 20;
 /// A rig whose hands rest while each holds a node 5 cm above it.
 class Rig {
  public:
-  Rig() : controller(scene(), {kWatchdog, true}) {
+  explicit Rig(const scene::Hands& hands = scene(), const device::Device& device = device::omni())
+      : controller(hands, {kWatchdog, true, device}) {
     for (std::size_t h = 0; h < rt::kHands; ++h) {
       auto& r = in.reading.hand[h];
       r.q_rad = {0.0, 0.5, 0.6};

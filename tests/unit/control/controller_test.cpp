@@ -88,6 +88,44 @@ TEST(Controller, NeverExceedsTheForceLimitAndReportsIt) {
   EXPECT_EQ(rig.controller.fault(), Fault::kNone);  // a limit is not a fault
 }
 
+TEST(Controller, ASceneTakenOnTheWayBringsItsForceLimitAndItsPassivity) {
+  Rig rig;
+  rig.ticks(60);
+  ASSERT_EQ(rig.controller.state(), State::kEngage);
+  auto hands = Rig::scene();
+  hands.max_force_N = 1.0;
+  rig.controller.change_hands(hands);
+  rig.to_force();
+  rig.offset_m = 50.0;
+  rig.ticks(40);
+  EXPECT_NEAR(rig.controller.hand(0).f_device_N.norm(), 1.0, 1e-9);
+
+  for (const bool on : {false, true}) {  // hands that never moved have earned nothing
+    hands = Rig::scene();
+    hands.energy_credit_J = 0.0;
+    hands.passivity = !on;
+    Rig other(hands);
+    other.ticks(60);
+    hands.passivity = on;
+    other.controller.change_hands(hands);
+    other.ticks(1000);
+    other.offset_m = 50.0;
+    other.ticks(40);
+    EXPECT_EQ(other.controller.hand(0).f_device_N.norm() < 3.0, on);
+  }
+}
+
+TEST(Controller, NoJointIsAskedForMoreThanItsDriveGives) {
+  auto weak = device::omni();
+  weak.max_torque_permille = 200;
+  Rig rig(Rig::scene(), weak);
+  rig.to_force();
+  rig.offset_m = 50.0;
+  rig.ticks(40);
+  EXPECT_NEAR(Rig::largest(rig.tick()), weak.max_torque_Nm(), 1e-9);
+  EXPECT_TRUE(rig.controller.hand(0).limits & rt::kTorqueLimit);
+}
+
 TEST(Controller, AForceBelowTheLimitIsNotCalledLimited) {  // while the gain still rises, or without arming
   Rig rig;
   rig.to_force();

@@ -101,6 +101,17 @@ TEST(LedMove, ParkLeadsBothHandsGentlyToTheRestingPose) {
   EXPECT_LT(std::abs(arms.controller.hand(0).port_energy_J), 1e-6);  // the rest went back
 }
 
+TEST(LedMove, NothingIsGrippedOnTheWay) {
+  Arms arms;
+  arms.to_force();
+  arms.in.reading.hand[0].grip = true;
+  arms.controller.command(rt::CommandKind::kPark);
+  arms.ticks(500);
+  EXPECT_FALSE(arms.controller.tools()[0].grip);
+  arms.ticks(6000);
+  EXPECT_TRUE(arms.controller.tools()[0].grip);
+}
+
 TEST(LedMove, CalibrateLeadsHome) {
   Arms arms;
   arms.to_force();

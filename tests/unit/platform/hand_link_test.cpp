@@ -111,6 +111,28 @@ TEST_F(HandLinkTest, TwoOfThreeAreNoPose) {  // the old set is held and its age 
   EXPECT_DOUBLE_EQ(link.reading().q_rad[0], can::angle_rad(100));
 }
 
+TEST_F(HandLinkTest, AJointOfTheLastSyncMakesNoSetWithTwoOfThis) {  // a pose that never was
+  period();
+  link.send_sync();
+  answer(0, State::kOperationEnabled, 999);
+  link.drain();
+  link.send_sync();
+  answer(1, State::kOperationEnabled, 200);
+  answer(2, State::kOperationEnabled, 200);
+  link.drain();
+  EXPECT_FALSE(link.is_settled());
+  EXPECT_DOUBLE_EQ(link.reading().q_rad[0], can::angle_rad(100));
+}
+
+/// Whoever dropped out by itself is not brought back before somebody asks for it: that is kEnable.
+TEST(HandLinkControlword, OperatingKeepsOnlyThoseUpThatAreUp) {
+  for (const auto& p : can::cia402::kStatusPatterns) {
+    const auto word = controlword(rt::DriveRequest::kOperate, p.state, can::cia402::kControlEnableOperation);
+    EXPECT_EQ(word == can::cia402::kControlEnableOperation, p.state == State::kOperationEnabled);
+    EXPECT_EQ(controlword(rt::DriveRequest::kHold, p.state, word), can::cia402::kControlDisableVoltage);
+  }
+}
+
 TEST_F(HandLinkTest, ASetThatCameTooLateCountsAsOnePeriodOld) {
   period();
   link.send_sync();
