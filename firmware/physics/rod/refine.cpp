@@ -16,6 +16,8 @@ constexpr double kCut = 0.5;         // of a segment, up to where its corners ar
 constexpr double kAway = 0.5;        // of a unit, gone in which what is kept at a node fades by e
 constexpr double kLeastFade = 1e-3;  // so that Spin::before_fading() can make up for it
 constexpr double kRests_m_per_s = 1e-3;
+constexpr double kSwings_m_per_s = 0.05;
+constexpr double kFirst = 0.7;  // of a unit: what rests against a segment of one is split before other places
 constexpr double kWorth = 1.5;  // a change must better the worst by this factor
 constexpr int kTries = 4;       // merges looked at for a change, so that a tangle costs no more than that
 
@@ -135,17 +137,25 @@ void Refine::grade(const Mesh& mesh) noexcept {
   }
 }
 
-// What slides asks for nothing: its nodes would come and go all the time, each time with a small step of the force.
+// What lies against the finest segments goes before all else: it is as fine as they are though other places are then up
+// to twice as long as they want to be. What slides slowly, as a loop that swings, is at most twice as long; what slides
+// fast asks for nothing: its nodes would come and go all the time, each time with a small step of the force.
 void Refine::want_at_rest(const State& state, const ContactSet& contacts) noexcept {
   for (const auto& c : contacts.contacts()) {
     if (!c.is_pair() || dot(c.p, c.p) == 0.0) continue;
     Vec u{};
     for (int k = 0; k < c.count; ++k) u += c.w[k] * state.v[static_cast<std::size_t>(c.node[k])];
     u -= dot(u, c.n) * c.n;
-    if (dot(u, u) > kRests_m_per_s * kRests_m_per_s) continue;
+    const double slip2 = dot(u, u);
+    if (slip2 > kSwings_m_per_s * kSwings_m_per_s) continue;
     double& one = wanted_[static_cast<std::size_t>(c.node[0])];
     double& other = wanted_[static_cast<std::size_t>(c.node[2])];
-    one = other = std::min(one, other);
+    const double least = std::max(unit_m_, std::min(one, other));
+    if (slip2 > kRests_m_per_s * kRests_m_per_s) {
+      one = std::min(one, 2.0 * least), other = std::min(other, 2.0 * least);
+    } else {
+      one = other = least > unit_m_ ? least : kFirst * unit_m_;
+    }
   }
 }
 

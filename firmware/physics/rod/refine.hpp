@@ -14,7 +14,7 @@ namespace ligature::physics::rod {
 ///   0.35 / curvature,
 ///   0.4 sqrt(EI / T) at a contact, T its force or the tension: the length over which a pulled thread bends away,
 ///   the wanted length of a place nearby + 0.2 x distance (grading),
-///   that of the place it lies against, however lightly, when it lies still,
+///   that of the place it lies against, however lightly, when it lies still; twice that while it slides slowly,
 /// and never below a unit. Where the longest segment, relative to what is wanted, is much worse off than a merged pair
 /// elsewhere would be, that pair is merged and the segment split. Nothing jumps:
 /// - a new node lies on the chord of its segment, so the thread's shape, gaps and stretch are untouched;
