@@ -30,7 +30,7 @@ struct Body {
 /// w_k p. Of the thread with itself: first the nodes of the two segments, then the others that the points of the smooth
 /// curves depend on (smooth.hpp).
 struct Contact {
-  static constexpr int kMostNodes = 8;
+  static constexpr int kMostNodes = ContactNewton::kMostNodes;
   std::int32_t node[kMostNodes] = {};
   double w[kMostNodes] = {};
   Vec n{};                  ///< unit normal, direction of a separating u
@@ -79,8 +79,8 @@ struct Effort {
 /// Of settle_directly().
 enum class Outcome : std::uint8_t {
   kSettled,
-  kLater,   ///< the work ran out: the same substep, done again, goes on from there
-  kNoRoom,  ///< too many contacts, or no answer found
+  kLater,     ///< the work ran out: the same substep, done again, goes on from there
+  kUnsolved,  ///< too much for Newton's method, or it found no answer: sweeps are for it
 };
 
 inline constexpr int kMaxContacts = 768;  ///< rows that can be solved at once

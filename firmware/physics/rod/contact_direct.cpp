@@ -51,7 +51,7 @@ Outcome ContactSet::look_at_all(const BandSolver& solver, const Vec* v, Search& 
   if (!search.pay(price::look(rows_))) return Outcome::kLater;
   for (int k = 0; k < rows_; ++k) u[k] = velocity<false>(k, v);
   if (!newton_.look(rows, rows_, p, u)) {  // full of what has gone?
-    if (search.fresh || !renew_matrix(solver, search) || !newton_.look(rows, rows_, p, u)) return Outcome::kNoRoom;
+    if (search.fresh || !renew_matrix(solver, search) || !newton_.look(rows, rows_, p, u)) return Outcome::kUnsolved;
   }
   const auto uncoupled = newton_.uncoupled();
   if (!search.pay(uncoupled.columns * price::column(newton_.nodes()) +
@@ -88,7 +88,7 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
       best2 = error2;
       for (const auto k : newton_.rows()) plain_[static_cast<std::size_t>(k)].v = p[k].v;
     }
-    if (newton_.unknowns() > ContactNewton::kMostUnknowns) return Outcome::kNoRoom;
+    if (newton_.unknowns() > ContactNewton::kMostUnknowns) return Outcome::kUnsolved;
     const long cost = begins ? kSweeps * price::dense_sweep(newton_.loaded())
                              : price::newton(newton_.loaded(), newton_.unknowns()) +
                                    price::exchange(newton_.exchanges(), newton_.slots());
@@ -104,7 +104,7 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
     if (begins) {
       for (int k = 0; k < kSweeps; ++k) newton_.sweep<Friction>(rows, p, u);
     } else if (++report.passes > kMostSteps || !newton_.solve<Friction>(rows, p, u)) {
-      return Outcome::kNoRoom;
+      return Outcome::kUnsolved;
     }
   }
 }
@@ -128,7 +128,7 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
   for (; search.look < kMostLooks; ++search.look) {
     if (search.look == kStale && !search.fresh && !renew_matrix(solver, search)) break;
     const Outcome looked = look_at_all(solver, v, search);
-    if (looked == Outcome::kNoRoom) return looked;
+    if (looked == Outcome::kUnsolved) return looked;
     if (looked == Outcome::kLater) break;
     if (const auto end = step_on<Friction>(search)) return *end;
     answer();
@@ -140,7 +140,7 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
 template <bool Friction>
 Outcome ContactSet::settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
   const long nodes = window_last_ - window_first_ + 1;
-  if (nodes + 2 * kMargin > ContactNewton::kWidest) return Outcome::kNoRoom;
+  if (nodes + 2 * kMargin > ContactNewton::kWidest) return Outcome::kUnsolved;
   const long matrix = newton_.covers(window_first_, window_last_) ? 0 : price::factors(nodes + 2 * kMargin);
   if (matrix + price::look(rows_) > effort.work) return Outcome::kLater;
   for (int k = 0; k < rows_; ++k) {

@@ -9,8 +9,6 @@
 
 namespace ligature::physics::rod {
 
-static_assert(ContactNewton::kMostNodes == Contact::kMostNodes);
-
 void ContactNewton::reserve() {
   constexpr auto kRows = static_cast<std::size_t>(kMostRows), kWide = static_cast<std::size_t>(kWidest);
   constexpr auto kUnknowns = static_cast<std::size_t>(kMostUnknowns);

@@ -227,30 +227,86 @@ TEST(Hold, OfTwoThrowsIsLetOffWithoutStandingStill) {
   EXPECT_LT(lost / ticks, 0.35);
 }
 
-// At rest what was settled is so again, with half the work too. A single hold is chance (0.06 is lost at 0.21 m/s, 0.02
-// at 0.18): the median of five, each the mean of three budgets, is 0.000. It is 0.010 when a start that is good enough
-// is given up for steps that find no better. That a matrix that is known need not be afforded again, and that a fair
-// share of the work must leave something for the rows of the substeps to come, it no longer shows: both are cheap now.
+// At rest what was settled is so again, with half the work too. A single hold is chance (none of it is lost, or 0.07),
+// and so was the median of five: the mean of ten, each the mean of three budgets, is 0.02. It bounds what is lost, and
+// is no test of a rule: without a fair share of the work it is 0.03.
 TEST(Hold, OfTwoThrowsCanDoWithHalfTheWork) {
-  std::vector<double> lost;
-  for (const double speed : {0.18, 0.19, 0.2, 0.21, 0.22}) {
+  double lost = 0.0;
+  for (int i = 0; i < 10; ++i) {
     Tightening pull({}, "suture-3-0-square.toml");
     for (int k = 0; k < 100; ++k) pull.tick(0.0);
-    for (int k = 0; k < 1000 && Tightening::force(pull.sim()) < 5.0; ++k) pull.tick(speed);
+    for (int k = 0; k < 1000 && Tightening::force(pull.sim()) < 5.0; ++k) pull.tick(0.165 + 0.007 * i);
     for (int k = 0; k < 600; ++k) pull.tick(0.0);
-    lost.push_back(0.0);
     for (const long work : {3'615'000, 2'615'000, 2'115'000}) {
       RodSimulation twin = pull.sim();
       twin.rod().numerics().work = work;
       for (int k = 0; k < 200; ++k) {
         twin.tick(pull.tools());
-        if (k >= 50) lost.back() += twin.rod().report().time_lost / 450;
+        if (k >= 50) lost += twin.rod().report().time_lost / (10 * 450);
       }
     }
-    RecordProperty("lost_" + std::to_string(speed), std::to_string(lost.back()));
   }
-  std::sort(lost.begin(), lost.end());
-  EXPECT_LT(lost[2], 0.005);
+  RecordProperty("lost", std::to_string(lost));
+  EXPECT_LT(lost, 0.05);
+}
+
+// A substep takes no more than its fair share of the tick's work where it has an answer that is good enough. The mean
+// of eight pulls of a surgeon's knot loses 0.21 of the time (twelve: 0.21 with a standard error of 0.01); 0.31 when
+// each substep may take all that is left.
+TEST(Labour, IsSharedFairly) {
+  double lost = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    Tightening pull({}, "suture-3-0-surgeons.toml");
+    for (int k = 0; k < 100; ++k) pull.tick(0.0);
+    double sum = 0.0;
+    int ticks = 0;
+    for (; ticks < 1000 && Tightening::force(pull.sim()) < 5.0; ++ticks) {
+      pull.tick(0.165 + 0.009 * i);
+      sum += pull.sim().rod().report().time_lost;
+    }
+    lost += sum / ticks / 8;
+  }
+  RecordProperty("lost", std::to_string(lost));
+  EXPECT_LT(lost, 0.25);
+}
+
+// A surgeon's knot drawn tight by two hands and held for 0.7 s.
+Tightening held(double speed) {
+  Tightening pull({}, "suture-3-0-surgeons.toml");
+  for (int k = 0; k < 100; ++k) pull.tick(0.0);
+  for (int k = 0; k < 1000 && Tightening::force(pull.sim()) < 5.0; ++k) pull.tick(speed);
+  for (int k = 0; k < 700; ++k) pull.tick(0.0);
+  return pull;
+}
+
+// What rests is settled to what single precision can tell. When the aim was a tenth of its motion, however small, the
+// last of these four spent its whole budget, 4.55 million, on differences of 5 um/s, tick after tick.
+TEST(Hold, OfTwoThrowsAtRestIsCheap) {
+  for (const double speed : {0.18, 0.2, 0.22, 0.24}) {
+    Tightening pull = held(speed);
+    long work = 0;
+    for (int k = 0; k < 100; ++k) pull.tick(0.0), work += pull.sim().rod().report().work / 100;
+    EXPECT_LT(work, 3'500'000) << speed;
+    RecordProperty("work_" + std::to_string(speed), std::to_string(work));
+  }
+}
+
+// A loop that touches the thread beside a tight knot, with 0.1 mN, is as fine there as the thread it touches.
+TEST(FineZone, ReachesTheLoopThatTouches) {
+  for (const double speed : {0.16, 0.19, 0.22, 0.24}) {
+    Tightening pull = held(speed);
+    const auto& mesh = pull.sim().rod().state().mesh;
+    double longest = 0.0;
+    int loaded = 0;
+    for (const auto& c : pull.sim().rod().contact_set().contacts()) {
+      if (dot(c.p, c.p) == 0.0) continue;
+      ++loaded;
+      for (const int k : {0, 2}) longest = std::max(longest, mesh.rest[static_cast<std::size_t>(c.node[k])]);
+    }
+    EXPECT_GT(loaded, 20);
+    EXPECT_LT(longest, 1.2 * 3e-4) << speed;
+    RecordProperty("segment_" + std::to_string(speed), std::to_string(longest / 3e-4));
+  }
 }
 
 // `fast` has ten substeps and keeps them when its work runs short. With six a square knot pulled to 5 N had 59, 2
