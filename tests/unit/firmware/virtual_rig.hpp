@@ -2,6 +2,7 @@
 // A rig in virtual time: drives that obey at once, a clock that moves when somebody works or sleeps.
 
 #include <deque>
+#include <functional>
 #include <map>
 #include <vector>
 
@@ -37,6 +38,7 @@ class VirtualBus {
   void send_sync() noexcept {
     acting = written;
     ++syncs;
+    if (on_sync) on_sync(syncs);
   }
   rt::RigReading read_tpdos(Nanoseconds) noexcept {
     clock_.time += std::chrono::microseconds(460);
@@ -63,6 +65,7 @@ class VirtualBus {
   std::int64_t syncs = 0;
   std::map<std::int64_t, Nanoseconds> stalls;  // at the n-th SYNC (from 1), the tick takes so much longer
   std::map<std::int64_t, Nanoseconds> works;   // the same, by computing
+  std::function<void(std::int64_t)> on_sync;   // with the SYNC's number; what it asks for comes in the next period
   std::vector<Nanoseconds> sampled_at;
   double waist_rad_per_s = 0.0;  // of both hands; a stall holds up the drives too, and they sample after it
 
