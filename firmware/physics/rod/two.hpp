@@ -23,8 +23,10 @@ struct Twos {
 }
 template <int Lane>
 [[nodiscard]] inline Vec lane(const Twos& a) noexcept {
-  const Two xy = __builtin_shufflevector(a.x, a.y, Lane, 2 + Lane), z0 = __builtin_shufflevector(a.z, Two{}, Lane, 2);
-  return {__builtin_shufflevector(xy, z0, 0, 1, 2, 3)};
+  // Blended with zeros last: a lone z over zeros becomes `vmovq` of two registers, which valgrind does not know.
+  const Two xy = __builtin_shufflevector(a.x, a.y, Lane, 2 + Lane), zz = __builtin_shufflevector(a.z, a.z, Lane, Lane);
+  const Lanes xyzz = __builtin_shufflevector(xy, zz, 0, 1, 2, 3);
+  return {__builtin_shufflevector(xyzz, Lanes{}, 0, 1, 2, 7)};
 }
 [[nodiscard]] inline Twos swapped(const Twos& a) noexcept {
   return {__builtin_shufflevector(a.x, a.x, 1, 0), __builtin_shufflevector(a.y, a.y, 1, 0),
