@@ -56,7 +56,7 @@ enum class Degradation : std::uint8_t {
 /// State of health after a tick.
 struct Diagnostics {
   double kinetic_J = 0.0;
-  double potential_J = 0.0;      ///< gravity (zero at z = 0), stretch, bending
+  double potential_J = 0.0;      ///< gravity (zero at z = 0), stretch, bending, twist, give of contacts
   double max_stretch = 0.0;      ///< max l / l_rest - 1
   double min_gap_m = 0.0;        ///< surface gap of the closest non-neighbour pair, negative: overlap; +inf: none near
   int contacts = 0;              ///< contacts that carried an impulse in the last step

@@ -123,8 +123,8 @@ Energy energy(const Material& material, const State& state, Vec gravity) noexcep
     e.gravity_J -= mesh.mass[i] * dot(gravity, state.x[i]);
     if (i + 1 == mesh.s.size()) break;
     const Vec t = mesh.inv_rest[i] * (state.x[i + 1] - state.x[i]);
-    const double strain = norm(t) - 1.0;
-    e.stretch_J += 0.5 * material.EA_N * strain * strain * mesh.rest[i];
+    const double strain = norm(t) - 1.0, stressed = strain - state.rest_strain[i];
+    e.stretch_J += 0.5 * material.EA_N * stressed * stressed * mesh.rest[i];
     e.max_strain = std::max(e.max_strain, strain);
     if (i > 0) {
       const Vec q = t - before - state.rest_bend[i];

@@ -16,9 +16,12 @@ template <bool Twist>
 void assemble(const Material& material, const State& state, Vec gravity, double dt_s, Forces& forces,
               BandSolver& solver) noexcept;
 
-/// Elastic and kinetic energy, J, and the largest strain of a segment.
+/// Kinetic energy and what is stored, J, and the largest strain of a segment. Elastic energy is that of the stress:
+/// what nodes that moved along the thread left of strain and bend without any (State::rest_strain, rest_bend) stores
+/// none.
 struct Energy {
   double kinetic_J = 0.0, stretch_J = 0.0, bend_J = 0.0, gravity_J = 0.0, max_strain = 0.0;
+  double give_J = 0.0;  ///< of contacts (ContactSet::give_J)
 };
 [[nodiscard]] Energy energy(const Material& material, const State& state, Vec gravity) noexcept;
 

@@ -44,8 +44,7 @@ void ContactSet::let_stick(double mu_static, const Vec* v) noexcept {
   for (auto& c : contacts_) {
     bool holds = *c.stuck != 0;
     if (dot(c.p, c.p) == 0.0) {
-      Vec u = -c.surface;
-      for (int j = 0; j < c.count; ++j) u += c.w[j] * v[c.node[j]];
+      Vec u = velocity(c, v);
       u -= dot(u, c.n) * c.n;
       holds = dot(u, u) < kStill_m_per_s * kStill_m_per_s;
     }
@@ -254,6 +253,15 @@ double ContactSet::unsettled_fraction(const Vec* v, double dt_s) const noexcept 
     if (closing_m > room_m) share = std::min(share, room_m / closing_m);
   }
   return share;
+}
+
+double ContactSet::give_J(double k_N_per_m, const Vec* v, double step_s) const noexcept {
+  double sum = 0.0;
+  for (const auto& c : contacts_) {
+    const double overlap_m = std::max(0.0, -c.gap_m - step_s * dot(velocity(c, v), c.n));
+    sum += 0.5 * k_N_per_m * overlap_m * overlap_m;
+  }
+  return sum;
 }
 
 void ContactSet::store() noexcept {

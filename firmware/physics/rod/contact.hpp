@@ -177,6 +177,9 @@ class ContactSet {
   /// After nodes moved along the thread: pairs with an impulse find their segments again by material coordinate.
   void relabel(const std::vector<double>& s) noexcept;
 
+  /// What the give of contacts stores, 1/2 k overlap^2 each, J, where the velocities v lead in step_s.
+  [[nodiscard]] double give_J(double k_N_per_m, const Vec* v, double step_s) const noexcept;
+
   /// Turns impulses of the last substep into forces, 1/s.
   [[nodiscard]] double per_second() const noexcept { return per_second_; }
 
@@ -233,6 +236,11 @@ class ContactSet {
   /// Relative velocity of row k.
   template <bool Turns>
   [[nodiscard]] Vec velocity(int k, const Vec* v) const noexcept;
+  [[nodiscard]] static Vec velocity(const Contact& c, const Vec* v) noexcept {
+    Vec u = -c.surface;
+    for (int j = 0; j < c.count; ++j) u += c.w[j] * v[c.node[j]];
+    return u;
+  }
   /// v += A^-1 extra_ on the window. @return the sum over axes of the largest squares of that step.
   double push(BandSolver& solver, Vec* v) noexcept;
   void clear_extra() noexcept;
@@ -302,9 +310,7 @@ class ContactSet {
 
 template <bool Turns>
 Vec ContactSet::velocity(int k, const Vec* v) const noexcept {
-  const Contact& c = contacts_[static_cast<std::size_t>(k)];
-  Vec u = -c.surface;
-  for (int j = 0; j < c.count; ++j) u += c.w[j] * v[c.node[j]];
+  Vec u = velocity(contacts_[static_cast<std::size_t>(k)], v);
   if constexpr (Turns) u += turning_.slip(k);
   return u;
 }

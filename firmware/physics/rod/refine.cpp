@@ -52,6 +52,13 @@ std::vector<double> wanted_at_rest(int units, double unit_m, std::span<const dou
   return wanted;
 }
 
+Vec mean_velocity(const State& state) noexcept {
+  Vec sum{};
+  double mass = 0.0;
+  for (std::size_t i = 0; i < state.v.size(); ++i) sum += state.mesh.mass[i] * state.v[i], mass += state.mesh.mass[i];
+  return (1.0 / mass) * sum;
+}
+
 template <class F>
 void every_array(State& s, F f) noexcept {
   f(s.x);
@@ -89,6 +96,7 @@ bool Refine::start(const Material& material, double wanted_m, State& state, std:
   free_.assign(n, 1);
   moment_.assign(n, Vec{});
   fade_.assign(n, kFade);
+  strain_fade_.assign(n, kFade);
   tension_.assign(n, 0.0);
   return true;
 }
@@ -249,20 +257,56 @@ void Refine::split(const Material&, State& state, int segment) noexcept {
 
 // What is kept at a node belongs to the place where it was when nodes moved along the thread. Squared: what creeps, and
 // what the fading itself moves, loses none of it.
-void Refine::slide(const State& state, double tick_s) noexcept {
+void Refine::slide(const State& state, double tick_s, bool drifts) noexcept {
   const double per_m = tick_s / (kAway * unit_m_);
-  for (std::size_t i = 0; i < fade_.size(); ++i)
-    fade_[i] = std::max(kLeastFade, kFade * std::exp(-per_m * per_m * dot(state.v[i], state.v[i])));
+  const Vec drift = drifts ? mean_velocity(state) : Vec{};
+  for (std::size_t i = 0; i < fade_.size(); ++i) {
+    const Vec v = state.v[i] - drift;
+    fade_[i] = std::max(kLeastFade, kFade * std::exp(-per_m * per_m * dot(v, v)));
+  }
+  std::fill(strain_fade_.begin(), strain_fade_.end(), kFade);
 }
 
-bool Refine::update(const Material& material, State& state, const Forces& forces, ContactSet& contacts,
-                    const std::vector<Body>& bodies, Work& work) noexcept {
+// What fading frees is stress: where that grows, energy comes from nowhere.
+double Refine::hold_back(const Material& material, const State& state, std::span<const Vec> born,
+                         double allowance_J) noexcept {
+  const Mesh& mesh = state.mesh;
+  const std::size_t n = at_.size();
+  const auto bend_gain = [&](std::size_t i) {
+    const Vec turn = mesh.inv_rest[i] * (state.x[i + 1] - state.x[i]) -
+                     mesh.inv_rest[i - 1] * (state.x[i] - state.x[i - 1]) - state.rest_bend[i];
+    const Vec freed = (1.0 - fade_[i]) * (born.empty() ? state.rest_bend[i] : state.rest_bend[i] - born[i]);
+    return mesh.weight[i] * (dot(turn, freed) + 0.5 * dot(freed, freed));
+  };
+  const auto strain_gain = [&](std::size_t j) {
+    const double strain = norm(state.x[j + 1] - state.x[j]) * mesh.inv_rest[j] - 1.0 - state.rest_strain[j];
+    const double freed = (1.0 - strain_fade_[j]) * state.rest_strain[j];
+    return material.EA_N * mesh.rest[j] * (strain * freed + 0.5 * freed * freed);
+  };
+  double up_J = 0.0, down_J = 0.0;
+  const auto count = [&](double gain_J) { (gain_J > 0.0 ? up_J : down_J) += gain_J; };
+  for (std::size_t i = 1; i + 1 < n; ++i) count(bend_gain(i));
+  for (std::size_t j = 0; j + 1 < n; ++j) count(strain_gain(j));
+  if (up_J + down_J <= allowance_J) return up_J + down_J;
+  const double share = (allowance_J - down_J) / up_J;  // gains are convex, so a share of the way gains less than that
+  for (std::size_t i = 1; i + 1 < n; ++i)
+    if (bend_gain(i) > 0.0) fade_[i] = 1.0 - share * (1.0 - fade_[i]);
+  for (std::size_t j = 0; j + 1 < n; ++j)
+    if (strain_gain(j) > 0.0) strain_fade_[j] = 1.0 - share * (1.0 - strain_fade_[j]);
+  return allowance_J;
+}
+
+void Refine::fade_offsets(State& state) const noexcept {
   for (std::size_t i = 0; i < at_.size(); ++i) {
     state.rest_bend[i] = fade_[i] * state.rest_bend[i];
     state.cut_before[i] = kCut + fade_[i] * (state.cut_before[i] - kCut);
     if (i > 0) state.cut_after[i - 1] = kCut + fade_[i] * (state.cut_after[i - 1] - kCut);
+    state.rest_strain[i] *= strain_fade_[i];
   }
-  for (auto& e : state.rest_strain) e *= kFade;
+}
+
+bool Refine::update(const Material& material, State& state, const Forces& forces, ContactSet& contacts,
+                    const std::vector<Body>& bodies, Work& work) noexcept {
   want(material, state, forces, contacts);
   const std::size_t n = at_.size();
   bool changed = false;

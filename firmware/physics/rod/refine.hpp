@@ -31,9 +31,17 @@ class Refine {
   /// @return false when n is too small or too large for the length.
   bool start(const Material& material, double wanted_m, State& state, std::span<const double> curvature_per_m = {});
 
-  /// Before update(): how far nodes went in a tick, and so how much of their offsets is left.
-  void slide(const State& state, double tick_s) noexcept;
+  /// Before update(): how far nodes went in a tick, and so how much of their offsets is left. A thread that `drifts`
+  /// falls or flies as a whole: that is no way along anything.
+  void slide(const State& state, double tick_s, bool drifts) noexcept;
+  /// The same: fading may raise the energy by no more than allowance_J. `born` is the part of State::rest_bend that
+  /// does not fade, or empty. @return by how much it does, or less than that: what is lower by it is given away.
+  double hold_back(const Material& material, const State& state, std::span<const Vec> born,
+                   double allowance_J) noexcept;
   [[nodiscard]] std::span<const double> fade() const noexcept { return fade_; }
+
+  /// Offsets become what is left of them.
+  void fade_offsets(State& state) const noexcept;
 
   /// One tick's worth of changes, an eighth of its work at most. @return true when nodes moved. O(n); no allocation.
   bool update(const Material& material, State& state, const Forces& forces, ContactSet& contacts,
@@ -59,11 +67,12 @@ class Refine {
   void split(const Material& material, State& state, int segment) noexcept;
 
   double unit_m_ = 0.0;
-  std::vector<std::int32_t> at_;  // node positions in units
-  std::vector<double> wanted_;    // per segment, m
-  std::vector<char> free_;        // node may be merged
-  std::vector<Vec> moment_;       // Q of every vertex
-  std::vector<double> fade_;      // of what is kept at a node, in this tick
+  std::vector<std::int32_t> at_;     // node positions in units
+  std::vector<double> wanted_;       // per segment, m
+  std::vector<char> free_;           // node may be merged
+  std::vector<Vec> moment_;          // Q of every vertex
+  std::vector<double> fade_;         // of what is kept at a node, in this tick
+  std::vector<double> strain_fade_;  // and in a segment
   std::vector<double> tension_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace ligature::physics::rod {
 namespace {
@@ -13,6 +14,8 @@ constexpr double kMostLeniency = 6.0;  // see Rod::settled
 // Diameters within which a pair is a contact at any speed. With 0.05 and 0.2 a square and a surgeon's knot pulled at
 // 0.2 m/s to 5 N stand still for 10 and 23 % of the pull, with this for 9 and 20 (one pull each).
 constexpr double kNear = 0.1;
+// A thread that is alone: of what the tick lost, and of what its bends store, that fading may give it back.
+constexpr double kFadeShare = 0.5, kFadeLeast = 1e-6;
 
 // How fast the fastest node moves among the others.
 double stir(const std::vector<Vec>& v) noexcept {
@@ -23,6 +26,8 @@ double stir(const std::vector<Vec>& v) noexcept {
   for (const auto& each : v) most2 = std::max(most2, dot(each - mean, each - mean));
   return std::sqrt(most2);
 }
+
+bool moves(const Body& body) noexcept { return dot(body.velocity, body.velocity) > 0.0; }
 
 }  // namespace
 
@@ -73,6 +78,7 @@ Rod& Rod::operator=(const Rod& other) {
   twist_ = other.twist_;
   spin_ = other.spin_;
   refine_ = other.refine_;
+  alone_ = other.alone_, faded_ = other.faded_, kept_J_ = other.kept_J_, give_J_ = other.give_J_;
   report_ = other.report_;
   substep_ = other.substep_;
   near_m_ = other.near_m_;
@@ -101,6 +107,7 @@ bool Rod::continue_from(const Rod& other) noexcept {
   report_ = other.report_;
   pace_m_per_s_ = other.pace_m_per_s_;
   leniency_ = other.leniency_;
+  alone_ = other.alone_, faded_ = other.faded_, kept_J_ = other.kept_J_, give_J_ = other.give_J_;
   mesh_changed();
   return true;
 }
@@ -111,6 +118,7 @@ void Rod::spread(std::span<const double> curvature_per_m) {
 }
 
 void Rod::moved() noexcept {
+  give_J_ = 0.0;
   mesh_changed();
   if (parts_.frames()) spin_.start(material_, state_);
 }
@@ -192,10 +200,21 @@ void Rod::steer(int hold, Vec steer, Vec direction) noexcept {
   if (h.directed) h.direction = direction;
 }
 
+void Rod::fade() noexcept {
+  refine_.slide(state_, numerics_.tick_s, alone_);
+  if (alone_) {
+    const Energy e = energy();
+    const double now_J = all_J(e), most_J = kFadeShare * std::max(0.0, kept_J_ - now_J) + kFadeLeast * e.bend_J;
+    const auto born = parts_.frames() ? spin_.born() : std::span<const Vec>{};
+    kept_J_ = now_J + refine_.hold_back(material_, state_, born, most_J);
+  }
+  if (parts_.frames()) spin_.before_fading(state_, refine_.fade());
+  refine_.fade_offsets(state_);
+}
+
 bool Rod::remesh() noexcept {
   if (!parts_.adaptive) return false;
-  refine_.slide(state_, numerics_.tick_s);
-  if (parts_.frames()) spin_.before_fading(state_, refine_.fade());
+  if (!std::exchange(faded_, false)) fade();
   if (!refine_.update(material_, state_, forces_, contacts_, bodies, work_)) return false;
   mesh_changed();
   remeshed_ = true;
@@ -211,7 +230,6 @@ void Rod::tick() noexcept {
 
 Rod::HandSpeed Rod::set_hands(const std::array<Vec, kMaxHolds>& goals, std::array<Vec, kMaxHolds>& starts) noexcept {
   HandSpeed speed;
-  int holds = 0;
   for (std::size_t h = 0; h < kMaxHolds; ++h) {
     Hold& hold = state_.holds[h];
     starts[h] = hold.target;
@@ -222,9 +240,9 @@ Rod::HandSpeed Rod::set_hands(const std::array<Vec, kMaxHolds>& goals, std::arra
       const Hold& other = state_.holds[k];
       if (other.node >= 0) speed.apart = std::max(speed.apart, norm(hold.velocity - other.velocity));
     }
-    ++holds;
+    ++speed.holds;
   }
-  if (holds == 1) speed.apart = speed.fastest;
+  if (speed.holds == 1) speed.apart = speed.fastest;
   return speed;
 }
 
@@ -239,6 +257,9 @@ void Rod::begin_tick(const HandSpeed& hands) noexcept {
   const bool fast = numerics_.is_fast(hands.fastest);
   work_.start(numerics_.budget(state_.nodes(), hands.fastest));
   look_cost_ = rows_cost_ = 0;
+  const bool was_alone = alone_;
+  alone_ = hands.holds < 2 && hands.fastest == 0.0 && std::none_of(bodies.begin(), bodies.end(), moves);
+  if (alone_ && !was_alone && parts_.adaptive) kept_J_ = all_J(energy());
   if (!mesh_held_) report_.remeshes += remesh();
   if (parts_.frames()) {
     twist_.carry(state_);
@@ -247,7 +268,8 @@ void Rod::begin_tick(const HandSpeed& hands) noexcept {
   } else if (parts_.twist) {
     twist_.update(material_, state_, forces_);
   }
-  pace_m_per_s_ = std::max(0.5 * hands.apart, pace_m_per_s_ * std::exp(-numerics_.tick_s / kRelax_s));
+  const double fading = alone_ ? 0.0 : std::exp(-numerics_.tick_s / kRelax_s);
+  pace_m_per_s_ = std::max(0.5 * hands.apart, fading * pace_m_per_s_);
   letting_go_ = released_ || (letting_go_ && (waits_ > 0 || motion_.fastest() > kThrown_m_per_s));
   released_ = false;
   report_.substeps = letting_go_  ? std::max(numerics_.max_substeps, 3 * numerics_.substeps / 2)
@@ -274,6 +296,18 @@ void Rod::feel_hands(double ahead_s) noexcept {
   }
 }
 
+double Rod::all_J(const Energy& e) const noexcept {
+  double sum = e.kinetic_J + e.stretch_J + e.bend_J + e.gravity_J + e.give_J + twist_energy_J();
+  for (int h = 0; h < state_.hold_count; ++h) {
+    const Hold& hold = state_.holds[static_cast<std::size_t>(h)];
+    if (hold.node < 0) continue;
+    const Vec off = state_.x[static_cast<std::size_t>(hold.node)] - hold.target;
+    sum += 0.5 * hold.stiffness_N_per_m * dot(off, off);
+  }
+  for (std::size_t i = 0; i < state_.x.size(); ++i) sum -= dot(state_.load[i], state_.x[i]);
+  return sum;
+}
+
 void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
   std::array<Vec, kMaxHolds> starts;
   begin_tick(set_hands(goals, starts));
@@ -290,9 +324,11 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
     moving = moving && (this->*substep_)(dt);
     if (!moving) report_.time_lost += 1.0 / report_.substeps;
   }
+  if (measured_) give_J_ = contacts_.give_J(numerics_.contact_N_per_m, state_.v.data(), since_look_s_);
   if (report_.time_lost > 0.999 && waits_ == 0) {  // slower, there is less to look at in the next tick
     for (auto& v : state_.v) v = 0.5 * v;
   }
+  if (alone_ && parts_.adaptive && !mesh_held_) fade(), faded_ = true;  // of what this tick has lost
   report_.work = work_.used();
   if (!braked_) feel_hands(0.0);
 }

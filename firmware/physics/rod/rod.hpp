@@ -112,7 +112,12 @@ class Rod {
   void hold_mesh(bool on) noexcept { mesh_held_ = on; }
 
   [[nodiscard]] const TickReport& report() const noexcept { return report_; }
-  [[nodiscard]] Energy energy() const noexcept { return rod::energy(material_, state_, gravity); }
+  /// The give of contacts is that at the end of the last tick; without twist_energy_J().
+  [[nodiscard]] Energy energy() const noexcept {
+    Energy e = rod::energy(material_, state_, gravity);
+    e.give_J = give_J_;
+    return e;
+  }
 
  private:
   using Substep = bool (Rod::*)(double) noexcept;
@@ -152,12 +157,17 @@ class Rod {
   /// Of the holds: the fastest, and how fast two of them part (or one drags the thread), m/s.
   struct HandSpeed {
     double fastest = 0.0, apart = 0.0;
+    int holds = 0;
   };
   HandSpeed set_hands(const std::array<Vec, kMaxHolds>& goals, std::array<Vec, kMaxHolds>& starts) noexcept;
   void begin_tick(const HandSpeed& hands) noexcept;
   /// Forces on the hands where the thread will be in `ahead_s`.
   void feel_hands(double ahead_s) noexcept;
   int add_hold(const Hold& hold) noexcept;
+  /// All that is kinetic or stored, in hands' springs and by constant loads too.
+  [[nodiscard]] double all_J(const Energy& e) const noexcept;
+  /// What remeshing left, of bends, strains and corners, fades.
+  void fade() noexcept;
 
   Material material_;
   Numerics numerics_;
@@ -184,6 +194,12 @@ class Rod {
   double patience_ = kPatience;  // how many it may wait: less where substeps waited in vain, more where they settle
   bool sweeps_only_ = false;     // the next substep is done without Newton's method
   double stir_m_per_s_ = 0.0;    // how fast the fastest node moves among the others
+  double give_J_ = 0.0;          // stored in contacts
+  bool alone_ = false;           // nothing that holds or touches it moves in this tick, and one hold at most holds it
+  bool faded_ = false;           // what remeshing left has faded for the tick to come
+  double kept_J_ = 0.0;          // of a thread that is alone: what the last tick left it
+  bool measured_ = false;        // all of them are known, from before the last move
+  double since_look_s_ = 0.0;    // how long that was
   std::vector<Vec> v_before_;    // the substep's first velocities
   bool labours_ = false;         // the work hardly did for the last tick, so this one has fewer substeps
   bool letting_go_ = false;      // a hold let go, and what it threw still flies

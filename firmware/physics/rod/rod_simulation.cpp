@@ -221,7 +221,7 @@ void RodSimulation::publish() noexcept {
   const Energy e = rod_.energy();
   const TickReport& r = rod_.report();
   health_.kinetic_J = e.kinetic_J;
-  health_.potential_J = e.gravity_J + e.stretch_J + e.bend_J + rod_.twist_energy_J();
+  health_.potential_J = e.gravity_J + e.stretch_J + e.bend_J + e.give_J + rod_.twist_energy_J();
   health_.max_stretch = e.max_strain;
   health_.min_gap_m = r.min_gap_m < 1e8 ? r.min_gap_m : std::numeric_limits<double>::infinity();
   health_.contacts = r.contacts;

@@ -29,6 +29,7 @@ class Spin {
   void attach(State& state, int hold) const noexcept;
 
   /// What Refine's fading of State::rest_bend must leave: call before, with its factors.
+  [[nodiscard]] std::span<const Vec> born() const noexcept { return born_; }
   void before_fading(State& state, std::span<const double> fade) const noexcept;
   /// Once a tick: directors follow the tangents (and nodes that moved along the thread), angles and moments are
   /// measured.
