@@ -17,12 +17,6 @@ template <class F>
   return Lanes{number_of(0), number_of(1), number_of(2), number_of(3)};
 }
 
-[[nodiscard]] Lanes root(Lanes q) noexcept {
-  Lanes out;
-  for (int l = 0; l < 4; ++l) out[l] = std::sqrt(q[l]);
-  return out;
-}
-
 /// Four segments, their nodes gathered.
 struct FourSegments {
   std::array<std::size_t, 4> j;

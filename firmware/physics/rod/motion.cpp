@@ -1,7 +1,6 @@
 #include "firmware/physics/rod/motion.hpp"
 
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 namespace ligature::physics::rod {
@@ -46,8 +45,8 @@ void Motion::measure(const Vec* v) noexcept {
   for (; k + 4 < n; k += 4) {
     const Lanes own = squares(v[k], v[k + 1], v[k + 2], v[k + 3]);
     const Lanes apart = squares(v[k + 1] - v[k], v[k + 2] - v[k + 1], v[k + 3] - v[k + 2], v[k + 4] - v[k + 3]);
-    std::memcpy(speed + k, &own, sizeof own);
-    std::memcpy(link + k, &apart, sizeof apart);
+    store(speed + k, own);
+    store(link + k, apart);
     most2 = own > most2 ? own : most2;
   }
   double most = std::max(std::max(most2[0], most2[1]), std::max(most2[2], most2[3]));

@@ -55,6 +55,7 @@ struct Forces {
   std::vector<double> shortening;    ///< l_rest / |e|
   std::vector<double> tension;       ///< EA strain, N
   std::vector<double> twist_moment;  ///< M of vertex i, N m
+  std::vector<double> half_twist;    ///< M / (1 + cos) of the angle there
 
   void resize(int n) {
     const auto size = static_cast<std::size_t>(n);
@@ -62,6 +63,7 @@ struct Forces {
     shortening.assign(size, 1.0);
     tension.assign(size, 0.0);
     twist_moment.assign(size, 0.0);
+    half_twist.assign(size, 0.0);
   }
 };
 

@@ -3,6 +3,7 @@
 // source becomes AVX on x86-64 and NEON pairs on arm64.
 
 #include <cmath>
+#include <cstring>
 
 namespace ligature::physics::rod {
 
@@ -29,13 +30,27 @@ inline Vec& operator-=(Vec& a, Vec b) noexcept { return a = a - b; }
   const Lanes p = a.v * b.v;
   return (p[0] + p[1]) + p[2];
 }
-/// |a|^2, |b|^2, |c|^2, |d|^2: a transposition and adds.
-[[nodiscard]] inline Lanes squares(Vec a, Vec b, Vec c, Vec d) noexcept {
-  const Lanes p = a.v * a.v, q = b.v * b.v, r = c.v * c.v, s = d.v * d.v;
+/// The sum of each one's lanes: a transposition and adds.
+[[nodiscard]] inline Lanes sums(Lanes p, Lanes q, Lanes r, Lanes s) noexcept {
   const Lanes pq = __builtin_shufflevector(p, q, 0, 4, 2, 6) + __builtin_shufflevector(p, q, 1, 5, 3, 7);
   const Lanes rs = __builtin_shufflevector(r, s, 0, 4, 2, 6) + __builtin_shufflevector(r, s, 1, 5, 3, 7);
   return __builtin_shufflevector(pq, rs, 0, 1, 4, 5) + __builtin_shufflevector(pq, rs, 2, 3, 6, 7);
 }
+/// |a|^2, |b|^2, |c|^2, |d|^2.
+[[nodiscard]] inline Lanes squares(Vec a, Vec b, Vec c, Vec d) noexcept {
+  return sums(a.v * a.v, b.v * b.v, c.v * c.v, d.v * d.v);
+}
+[[nodiscard]] inline Lanes root(Lanes q) noexcept {
+  Lanes out;
+  for (int l = 0; l < 4; ++l) out[l] = std::sqrt(q[l]);
+  return out;
+}
+[[nodiscard]] inline Lanes load(const double* at) noexcept {
+  Lanes out;
+  std::memcpy(&out, at, sizeof out);
+  return out;
+}
+inline void store(double* at, Lanes value) noexcept { std::memcpy(at, &value, sizeof value); }
 [[nodiscard]] inline double norm(Vec a) noexcept { return std::sqrt(dot(a, a)); }
 
 /// a x b: rotate(a * rotate(b) - rotate(a) * b), rotate = (y, z, x).
