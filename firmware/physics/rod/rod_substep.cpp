@@ -11,9 +11,6 @@ namespace ligature::physics::rod {
 namespace {
 
 constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32, kSet = 64;
-// Newton's method is in single precision, which leaves 5 um/s in a held knot. What rests does not creep by it, as
-// sweeps and their mixing do: impulses that are settled stay what they are.
-constexpr double kSettledInFloats_m_per_s = 1e-5;
 constexpr double kEnough = 10.0;        // times what is settled: may be left over beyond a fair share of the work
 constexpr double kWild_m_per_s = 1e-3;  // change of a last pass above which velocities are not trusted
 constexpr double kLess = 0.8;           // of its patience is left where a substep has waited in vain
@@ -148,7 +145,7 @@ Outcome Rod::settle_directly(const Effort& effort) noexcept {
   if (!solves_directly() || sweeps_only_) return Outcome::kUnsolved;
   const long after = report_.substeps - substep_index_ - 1;
   Effort own = effort;
-  own.settled_m_per_s = std::max(effort.settled_m_per_s, kSettledInFloats_m_per_s);
+  own.settled_m_per_s = std::max(effort.settled_m_per_s, numerics_.newton_m_per_s);
   own.fair = (effort.work - after * (look_cost_ + rows_cost_)) / (after + 1);
   if (!can_wait()) own.work = std::min(effort.work, work_.left() / (after + 2));
   const Outcome outcome = contacts_.settle_directly<Friction>(solver_, own, state_.v.data(), seen_);
