@@ -13,9 +13,16 @@ namespace {
 using test::make;
 using test::paper_scene;
 
-class Facade : public testing::TestWithParam<const char*> {
+/// The paper's scene, its thread by another model: a file would have to leave out the keys that are not that model's.
+scene::Scene scene_of(scene::Model model, const std::vector<std::string>& overrides = {}) {
+  auto scene = paper_scene(overrides);
+  scene.suture.model = model;
+  return scene;
+}
+
+class Facade : public testing::TestWithParam<scene::Model> {
  protected:
-  Simulation sim_ = make(paper_scene({std::string("suture.model=") + GetParam()}));
+  Simulation sim_ = make(scene_of(GetParam()));
   /// The left hand's button is down at a node in the middle of the thread.
   std::array<ToolInput, 2> holding() const { return {ToolInput{sim_.nodes_W()[25], Vec3::Zero(), true}, ToolInput{}}; }
 };
@@ -41,11 +48,9 @@ TEST_P(Facade, AfterResetItIsAsItWasMade) {
 }
 
 TEST_P(Facade, GoesOnFromAnotherOneOfItsModelAndNumberOfNodesOnly) {
-  const std::string model = std::string("suture.model=") + GetParam();
-  Simulation same = make(paper_scene({model, "contact.friction=0.4"})),
-             fewer = make(paper_scene({model, "suture.nodes=40"}));
-  Simulation other =
-      make(paper_scene({std::string("suture.model=") + (GetParam() == std::string("rod") ? "paper-4" : "rod")}));
+  Simulation same = make(scene_of(GetParam(), {"contact.friction=0.4"})),
+             fewer = make(scene_of(GetParam(), {"suture.nodes=40"}));
+  Simulation other = make(scene_of(GetParam() == scene::Model::kRod ? scene::Model::kPaper4 : scene::Model::kRod));
   const auto tools = holding();
   for (int k = 0; k < 20; ++k) sim_.tick(tools);
   EXPECT_FALSE(fewer.continue_from(sim_));
@@ -58,7 +63,7 @@ TEST_P(Facade, GoesOnFromAnotherOneOfItsModelAndNumberOfNodesOnly) {
 
 /// Measured to the thread, not to a node: those are 10 cm apart.
 TEST_P(Facade, JawsHoldWhatIsWithinTheirReach) {
-  const Simulation start = make(paper_scene({std::string("suture.model=") + GetParam(), "hands.reach_m=0.06"}));
+  const Simulation start = make(scene_of(GetParam(), {"hands.reach_m=0.06"}));
   const Vec3 between = 0.5 * (start.nodes_W()[25] + start.nodes_W()[26]);
   std::array<ToolInput, 2> tools{};
   const auto close_at = [&](Simulation& sim, double off_m) {
@@ -162,8 +167,8 @@ TEST_P(Facade, WhatIsNoNumberStopsItAsItIs) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, Facade, testing::Values("paper-4", "rod"),
-                         [](const auto& model) { return std::string(model.param) == "rod" ? "Rod" : "Paper"; });
+INSTANTIATE_TEST_SUITE_P(Models, Facade, testing::Values(scene::Model::kPaper4, scene::Model::kRod),
+                         [](const auto& model) { return model.param == scene::Model::kRod ? "Rod" : "Paper"; });
 
 /// A thread crushed into less than its own thickness: every pair of segments touches, more than any list holds.
 TEST(Bounds, AListOfContactsThatIsFullSaysSoAndGrowsNoFurther) {
