@@ -119,6 +119,7 @@ void Rod::spread(std::span<const double> curvature_per_m) {
 
 void Rod::moved() noexcept {
   give_J_ = 0.0;
+  alone_ = faded_ = false;  // what it has is counted anew
   mesh_changed();
   if (parts_.frames()) spin_.start(material_, state_);
 }
