@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "firmware/app/launch.hpp"
 #include "firmware/control/admissible.hpp"
 #include "firmware/control/controller.hpp"
 #include "firmware/platform/can_master.hpp"
@@ -101,9 +102,7 @@ std::variant<Plan, Refusal> make_plan(const RunOptions& options) {
     if (const auto* error = std::get_if<scene::Error>(&loaded)) return Refusal{2, error->text};
     device = std::get<device::Device>(loaded);
   }
-  auto overrides = options.overrides;
-  if (options.override_passivity) overrides.emplace_back("hands.override_passivity=true");
-  auto plan = make_plan(options.scene, overrides, device);
+  auto plan = make_plan(options.scene, launch_overrides(options), device);
   if (std::holds_alternative<Refusal>(plan)) return plan;
   if (is_same_bus(options.left, options.right))
     return Refusal{2, "--left, --right: found '" + options.left + "' for both, allowed a bus for each hand"};

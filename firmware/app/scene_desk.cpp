@@ -62,47 +62,61 @@ SceneDesk::SceneDesk(const RunOptions& options, const Plan& plan, int core)
     : options_(options),
       device_(plan.device),
       core_(core),
-      now_{options.scene, options.overrides, plan.scene, plan.scene} {
+      launch_(options, plan.scene),
+      now_{options.scene, {}, plan.scene, plan.scene} {
   const fs::path given = options.scenes.empty() ? fs::path(options.scene).parent_path() : fs::path(options.scenes);
   options_.scenes = given.empty() ? "." : given.string();
   scenes_ = scene_files(options_.scenes);
 }
 
-/// "knot.toml", or "knot.toml suture.model=paper-2": the scene with another model of its thread.
+/// "knot.toml", or "knot.toml suture.model=paper-2 suture.nodes=35": the scene with another model or number of nodes.
 std::string SceneDesk::prepare_scene(const std::string& wish) {
-  constexpr std::string_view kModelKey = "suture.model=";
-  const auto blank = wish.find(' ');
-  const std::string name = wish.substr(0, blank);
-  std::vector<std::string> overrides;
-  if (blank != std::string::npos) overrides.push_back(wish.substr(blank + 1));
-  if (!overrides.empty() && !overrides[0].starts_with(kModelKey))
-    return "found '" + overrides[0] + "' after the scene, allowed suture.model=MODEL";
+  std::istringstream words(wish);
+  std::string name;
+  words >> name;
+  std::vector<std::string> live;
+  for (std::string word; words >> word; live.push_back(word)) {
+    if (key_of(word) != "suture.model" && key_of(word) != "suture.nodes")
+      return "found '" + word + "' after the scene, allowed suture.model=MODEL and suture.nodes=N";
+  }
   scenes_ = scene_files(options_.scenes);
   if (std::ranges::find(scenes_, name) == scenes_.end()) {
     std::string allowed;
     for (const auto& s : scenes_) allowed += (allowed.empty() ? "" : ", ") + s;
     return "no such scene, allowed " + (allowed.empty() ? "none: " + options_.scenes + " has no scene" : allowed);
   }
-  words_ = "scene " + name + " loaded" + (overrides.empty() ? "" : " with " + overrides[0]);
-  next_ = {(fs::path(options_.scenes) / name).string(), std::move(overrides), {}, {}};
+  words_ = "scene " + name + " loaded";
+  for (const auto& l : live) words_ += (&l == &live.front() ? " with " : " ") + l;
+  if (const auto held = launch_.held(live); !held.empty()) words_ += "; launch options hold: " + held;
+  next_ = {(fs::path(options_.scenes) / name).string(), std::move(live), {}, {}};
   return {};
 }
 
+/// What may be changed, within the launch's limits.
+std::vector<LiveParameter> SceneDesk::parameters() const {
+  auto list = live_parameters(now_.from_file, now_.scene);
+  for (auto& p : list) p.highest = std::min(p.highest, launch_.highest(p.key).value_or(p.highest));
+  return list;
+}
+
 std::string SceneDesk::prepare_parameter(const std::string& key, double value) {
-  const auto list = live_parameters(now_.from_file, now_.scene);
+  const auto list = parameters();
   const auto found = std::ranges::find(list, key, &LiveParameter::key);
   if (found == list.end()) {
     std::string allowed;
     for (const auto& p : list) allowed += (allowed.empty() ? "" : ", ") + p.key;
     return "no such parameter, allowed " + allowed;
   }
-  if (!(value >= found->lowest && value <= found->highest))
+  if (!(value >= found->lowest && value <= found->highest)) {
+    const auto bound = launch_.highest(key);
     return key + ": found " + shortest(value) + ", allowed " + shortest(found->lowest) + " .. " +
-           shortest(found->highest);
+           shortest(found->highest) +
+           (bound == found->highest ? " by the launch option --set " + assignment(key, *bound) : "");
+  }
   next_ = now_;
   const std::string assigned = assignment(key, value);
-  std::erase_if(next_.overrides, [&](const std::string& o) { return o.starts_with(key + "="); });
-  next_.overrides.push_back(assigned);
+  std::erase_if(next_.live, [&](const std::string& o) { return key_of(o) == key; });
+  next_.live.push_back(assigned);
   words_ = assigned;
   return {};
 }
@@ -128,7 +142,7 @@ std::optional<ligature_msg::ack_t> SceneDesk::request(const ligature_msg::comman
 
 std::variant<SceneDesk::Built, std::string> SceneDesk::build(Setup setup, bool keeps_motion) const {
   platform::flush_denormals();
-  auto planned = make_plan(setup.file, setup.overrides, device_);
+  auto planned = make_plan(setup.file, launch_.with(setup.live, setup.file), device_);
   if (const auto* refusal = std::get_if<Refusal>(&planned)) return refusal->text;
   Plan& plan = std::get<Plan>(planned);
   if (const auto why = rehearse(plan.thread); !why.empty()) return why;
@@ -173,7 +187,7 @@ std::optional<SceneDesk::Outcome> SceneDesk::poll() {
 ligature_msg::offer_t SceneDesk::offer() const {
   ligature_msg::offer_t offer{};
   offer.scenes = scenes_;
-  for (const auto& p : live_parameters(now_.from_file, now_.scene)) {
+  for (const auto& p : parameters()) {
     ligature_msg::parameter_t parameter{};
     parameter.key = p.key, parameter.name = p.name, parameter.unit = p.unit;
     parameter.value = p.value, parameter.lowest = p.lowest, parameter.highest = p.highest;

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "firmware/app/launch.hpp"
 #include "firmware/app/live_parameters.hpp"
 #include "firmware/app/rig_setup.hpp"
 #include "firmware/control/plant.hpp"
@@ -54,7 +55,7 @@ class SceneDesk {
  private:
   struct Setup {  // what the loop runs
     std::string file;
-    std::vector<std::string> overrides;
+    std::vector<std::string> live;  // overrides of commands; those of the launch hold beside them
     scene::Scene from_file, scene;
   };
   struct Built {
@@ -63,6 +64,7 @@ class SceneDesk {
     std::string toml;
   };
   [[nodiscard]] std::string prepare_scene(const std::string& wish);
+  [[nodiscard]] std::vector<LiveParameter> parameters() const;
   [[nodiscard]] std::string prepare_parameter(const std::string& key, double value);
   [[nodiscard]] std::variant<Built, std::string> build(Setup setup, bool keeps_motion) const;
   [[nodiscard]] Outcome answer(const std::string& why, std::optional<Changed> changed = {}) const;
@@ -70,6 +72,7 @@ class SceneDesk {
   RunOptions options_;
   device::Device device_;
   int core_;
+  Launch launch_;
   std::vector<std::string> scenes_;
   Setup now_;
   control::PlantHandover handover_;

@@ -26,7 +26,7 @@ void add_send(CLI::App& app) {
                              "calibrate", "load-scene", "set"}));
   command->add_option("name", options->text,
                       "clutch, unclutch: left or right; load-scene: the scene file's name, with another model "
-                      "as\n'NAME suture.model=MODEL'; set: the parameter's key");
+                      "or\nnumber of nodes as 'NAME suture.model=MODEL suture.nodes=N'; set: the parameter's key");
   command->add_option("value", options->value, "set: the parameter's value")->check(finite);
   add_url(*command, options->lcm_url);
   command->footer(
@@ -39,7 +39,9 @@ void add_send(CLI::App& app) {
       "encoders on the way and forgets the clutch's offsets.\n"
       "load-scene takes a file of the firmware's --scenes folder, in OFF and IDLE only, where no force can flow. set "
       "changes\n"
-      "a parameter within its range, at any time. What may be asked for is in the refusal of what may not. Both are "
+      "a parameter within its range, at any time. Launch options (--set, --override-passivity) hold all along: neither "
+      "turns\n"
+      "force up beyond them. What may be asked for is in the refusal of what may not. Both are "
       "built and\n"
       "measured beside the running loop first, and refused when the worst tick would not fit.\n"
       "Waits up to 1 s (load-scene, set: 10 s); exit code 3 when the firmware refuses or does not answer. No command "
@@ -47,7 +49,7 @@ void add_send(CLI::App& app) {
       "on\n"
       "a hand: that needs the dead-man button of the device as well.\n\n"
       "Example:\n  ligature-host send stop\n  ligature-host send load-scene desk.toml\n"
-      "  ligature-host send load-scene 'paper.toml suture.model=paper-2'\n"
+      "  ligature-host send load-scene 'paper.toml suture.model=paper-2 suture.nodes=35'\n"
       "  ligature-host send set contact.friction 0.5");
   command->callback([options] {
     const bool is_clutch = options->word == "clutch" || options->word == "unclutch";

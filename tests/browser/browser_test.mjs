@@ -125,9 +125,11 @@ const steps = {
     await page.getByText('load scene: scene desk.toml loaded').waitFor();
     await until(page, () => document.getElementById('scene-file').textContent.startsWith('desk.toml'));
     await page.selectOption('#model', 'paper-2');
+    await page.fill('#nodes', '35');
     await page.click('#load-scene');
-    await rig.says(/command load-scene desk.toml suture.model=paper-2/);
+    await rig.says(/command load-scene desk.toml suture.model=paper-2 suture.nodes=35/);
     await page.selectOption('#model', '');
+    await page.fill('#nodes', '');
     await page.click('#arm');
     await until(page, () => document.getElementById('state').dataset.state === 'FORCE');
     await page.click('#load-scene');

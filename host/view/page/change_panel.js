@@ -16,7 +16,9 @@ export function setUpChange(link) {
   };
   $('load-scene').addEventListener('click', async () => {
     $('load-scene').disabled = true;
-    await ask({ command: 'load-scene', text: $('scenes').value + ($('model').value && ` suture.model=${$('model').value}`) }, 'load scene');
+    const nodes = $('nodes').value.trim();
+    const changes = ($('model').value && ` suture.model=${$('model').value}`) + (nodes && ` suture.nodes=${nodes}`);
+    await ask({ command: 'load-scene', text: $('scenes').value + changes }, 'load scene');
     $('load-scene').disabled = false;
   });
   setUpChange.ask = ask;

@@ -42,13 +42,15 @@ class SceneDeskTest : public ::testing::Test {
     c.id = id, c.kind = command_t::KIND_SET_PARAMETER, c.text = key, c.value = value;
     return c;
   }
-  SceneDesk desk() const { return SceneDesk(options, std::get<Plan>(make_plan(options.scene, {})), 0); }
+  SceneDesk desk() const { return SceneDesk(options, std::get<Plan>(make_plan(options)), 0); }
 
   /// Plays the loop until the desk has answered.
-  static SceneDesk::Outcome outcome(SceneDesk& desk, bool takes = true) {
+  SceneDesk::Outcome outcome(SceneDesk& desk, bool takes = true) {
     for (;;) {
       if (auto* plant = desk.handover().take()) {
         plant->taken = takes;
+        hands = plant->hands;
+        nodes = static_cast<int>(plant->thread.nodes_W().size());
         desk.handover().give_back(plant);
       }
       if (auto o = desk.poll()) return *o;
@@ -58,6 +60,8 @@ class SceneDeskTest : public ::testing::Test {
 
   const fs::path folder = fs::temp_directory_path() / ("ligature-desk-" + std::to_string(getpid()));
   RunOptions options;
+  scene::Hands hands;  // of the plant that came last
+  int nodes = 0;
 };
 
 TEST_F(SceneDeskTest, OffersTheScenesBesideTheFirstAndParametersWithRanges) {
@@ -131,6 +135,101 @@ TEST_F(SceneDeskTest, OneAtATimeAndTheLoopHasTheLastWord) {
   const auto o = outcome(d, false);
   EXPECT_EQ(o.ack.accepted, 0);
   EXPECT_FALSE(o.changed.has_value());
+}
+
+TEST_F(SceneDeskTest, WhatTheLaunchSetStaysSetWhateverIsLoaded) {
+  options.overrides = {"hands.max_force_N=1.0", "suture.nodes=12"};
+  auto d = desk();
+  for (const char* wish : {"longer.toml", "small.toml suture.model=paper-2", "longer.toml"}) {
+    ASSERT_FALSE(d.request(load(wish), false).has_value()) << wish;
+    const auto o = outcome(d);
+    ASSERT_EQ(o.ack.accepted, 1) << o.ack.reason;
+    EXPECT_EQ(hands.max_force_N, 1.0) << wish;
+    EXPECT_EQ(o.changed->max_force_N, 1.0) << wish;
+    EXPECT_EQ(nodes, 12) << wish;
+    EXPECT_NE(o.changed->toml.find("\n# --set hands.max_force_N=1.0\n"), std::string::npos) << o.changed->toml;
+    for (const auto& text : {o.ack.reason, o.changed->text})
+      EXPECT_NE(text.find("launch options hold: --set hands.max_force_N=1.0, --set suture.nodes=12"), text.npos)
+          << text;
+  }
+}
+
+TEST_F(SceneDeskTest, ASceneMayAskForLessForceThanTheLaunchAllows) {
+  write("soft.toml", "[suture]\nnodes = 10\n[hands]\nmax_force_N = 0.5\n");
+  for (const char* launch : {"hands.max_force_N=1.0", "hands={max_force_N=1.0}"}) {
+    options.overrides = {launch};
+    auto d = desk();
+    ASSERT_FALSE(d.request(load("soft.toml"), false).has_value());
+    EXPECT_EQ(outcome(d).ack.accepted, 1);
+    EXPECT_EQ(hands.max_force_N, 0.5) << launch;
+    ASSERT_FALSE(d.request(load("longer.toml"), false).has_value());
+    EXPECT_EQ(outcome(d).ack.accepted, 1);
+    EXPECT_EQ(hands.max_force_N, 1.0) << launch << ": and no later scene may ask for more";
+  }
+}
+
+TEST_F(SceneDeskTest, ALiveValueYieldsToTheLaunchsAtTheNextScene) {
+  options.overrides = {"contact.friction=0.4"};
+  auto d = desk();
+  ASSERT_FALSE(d.request(set("contact.friction", 0.5), true).has_value());
+  const auto o = outcome(d);
+  ASSERT_TRUE(o.changed.has_value()) << o.ack.reason;
+  EXPECT_NE(o.changed->toml.find("# --set contact.friction=0.5"), std::string::npos);
+  EXPECT_EQ(o.changed->toml.find("# --set contact.friction=0.4"), std::string::npos)
+      << "the text says what is in force";
+  ASSERT_FALSE(d.request(load("longer.toml"), false).has_value());
+  EXPECT_EQ(outcome(d).ack.accepted, 1);
+  EXPECT_EQ(d.offer().parameters[0].value, 0.4);
+}
+
+TEST_F(SceneDeskTest, NoMessageTurnsTheForceUpBeyondTheLaunch) {
+  options.overrides = {"hands.force_scale=0.002"};
+  auto d = desk();
+  const auto beyond = d.request(set("hands.force_scale", 0.003), false);
+  ASSERT_TRUE(beyond.has_value());
+  EXPECT_NE(beyond->reason.find("--set hands.force_scale=0.002"), std::string::npos) << beyond->reason;
+  EXPECT_EQ(d.offer().parameters.back().highest, 0.002);
+  ASSERT_FALSE(d.request(set("hands.force_scale", 0.001), false).has_value()) << "down it may go,";
+  EXPECT_EQ(outcome(d).ack.accepted, 1);
+  ASSERT_FALSE(d.request(set("hands.force_scale", 0.002), false).has_value()) << "and up again to where it was";
+  EXPECT_EQ(outcome(d).ack.accepted, 1);
+}
+
+TEST_F(SceneDeskTest, AStiffCouplingOnceTakenIsTakenToTheEnd) {
+  write("stiff.toml", "[suture]\nnodes = 10\n[hands]\ndevice_N_per_m = 9000.0\n");
+  options.scene = (folder / "stiff.toml").string();
+  options.override_passivity = true;
+  auto d = desk();
+  ASSERT_FALSE(d.request(set("contact.friction", 0.5), true).has_value());
+  const auto o = outcome(d);
+  EXPECT_EQ(o.ack.accepted, 1) << o.ack.reason;
+  ASSERT_FALSE(d.request(load("stiff.toml"), false).has_value());
+  const auto again = outcome(d);
+  EXPECT_EQ(again.ack.accepted, 1) << again.ack.reason;
+  EXPECT_NE(again.ack.reason.find("--override-passivity"), std::string::npos) << again.ack.reason;
+}
+
+TEST_F(SceneDeskTest, LoadsASceneWithAnotherNumberOfNodes) {
+  options.overrides = {"suture.nodes=12"};
+  auto d = desk();
+  ASSERT_FALSE(d.request(load("longer.toml suture.nodes=15 suture.model=paper-2"), false).has_value());
+  EXPECT_EQ(outcome(d).ack.accepted, 1);
+  EXPECT_EQ(nodes, 15);
+  ASSERT_FALSE(d.request(set("contact.friction", 0.5), false).has_value());
+  const auto o = outcome(d);
+  EXPECT_EQ(nodes, 15) << "a parameter leaves it as it is";
+  EXPECT_NE(o.changed->toml.find("# --set suture.model=paper-2"), std::string::npos) << o.changed->toml;
+  ASSERT_FALSE(d.request(load("longer.toml"), false).has_value());
+  EXPECT_EQ(outcome(d).ack.accepted, 1);
+  EXPECT_EQ(nodes, 12) << "the launch's, again";
+  for (const char* bad : {"longer.toml suture.nodes=1", "longer.toml suture.nodes=many"}) {
+    ASSERT_FALSE(d.request(load(bad), false).has_value());
+    EXPECT_NE(outcome(d).ack.reason.find("allowed integer 2 .. 5000"), std::string::npos) << bad;
+  }
+  for (const char* bad : {"longer.toml hands.max_force_N=3.3", "longer.toml suture.nodes=9 hands.max_force_N=3.3"})
+    EXPECT_NE(d.request(load(bad), false)->reason.find("allowed suture.model=MODEL and suture.nodes=N"),
+              std::string::npos)
+        << bad;
 }
 
 TEST(Rehearsal, FindsAThreadThatWouldBlowUp) {
