@@ -91,7 +91,8 @@ void expect_idle_in_rigid_motion(int n, const Law& law) {
   test::Random random(9);
   for (Nodes s : states(n)) {
     const double moving = test::largest_of(law(s));
-    s.v = test::rigid_velocities(s.p, random.vector(), random.vector());
+    const V v = random.vector(), omega = random.vector();
+    s.v = test::rigid_velocities(s.p, v, omega);
     EXPECT_LE(test::largest_of(law(s)), 1e-12 * std::max(1.0, moving));
   }
 }
