@@ -16,6 +16,22 @@ elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   add_compile_options(-march=x86-64-v3)
 endif()
 
+# Before the first instruction that a CPU may not know: cpu_check.cpp. An object, for a library would leave it out.
+add_library(ligature_cpu_check OBJECT ${CMAKE_CURRENT_LIST_DIR}/cpu_check.cpp)
+if(LIGATURE_ARCH STREQUAL "default" OR LIGATURE_ARCH STREQUAL "x86-64-v3")
+  target_compile_definitions(ligature_cpu_check PRIVATE LIGATURE_X86_64_LEVEL=3)
+elseif(LIGATURE_ARCH STREQUAL "x86-64-v2")
+  target_compile_definitions(ligature_cpu_check PRIVATE LIGATURE_X86_64_LEVEL=2)
+else()
+  target_compile_definitions(ligature_cpu_check PRIVATE LIGATURE_X86_64_LEVEL=1)
+endif()
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  target_compile_options(ligature_cpu_check PRIVATE -march=x86-64)  # the last of two counts
+endif()
+function(ligature_check_cpu target)
+  target_sources(${target} PRIVATE $<TARGET_OBJECTS:ligature_cpu_check>)
+endfunction()
+
 if(LIGATURE_SANITIZE)
   add_compile_options(-fsanitize=${LIGATURE_SANITIZE} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${LIGATURE_SANITIZE})

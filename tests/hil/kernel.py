@@ -7,8 +7,16 @@ import pathlib
 import shutil
 import subprocess
 import sys
+import zlib
 
-XZ_MAGIC = b"\xfd7zXZ\x00"
+import zstandard
+
+# How kernels are packed: first bytes, and what unpacks them. Each ignores what follows its stream.
+PACKED = (
+    (b"\xfd7zXZ\x00", lambda data: lzma.LZMADecompressor(lzma.FORMAT_XZ).decompress(data)),
+    (b"\x28\xb5\x2f\xfd", lambda data: zstandard.ZstdDecompressor().decompressobj().decompress(data)),
+    (b"\x1f\x8b\x08", lambda data: zlib.decompressobj(wbits=31).decompress(data)),
+)
 # What the guest needs, in no order; what these need is found in the modules themselves.
 MODULES = ("virtio_pci", "virtio_console", "virtio-rng", "9pnet_virtio", "9p", "overlay",
            "can", "can-raw", "can-bcm", "vcan", "kvaser_pci", "slcan")
@@ -42,6 +50,7 @@ def fetch(cache):
     subprocess.run(["dpkg-deb", "-x", archive.name, "."], cwd=folder, check=True)
     archive.unlink()
     unpack(next((folder / "boot").glob("vmlinuz-*")), folder / "vmlinux")
+    unpack_modules(folder)
     needed = set(modules(folder, MODULES + OF_A_DISK))  # of 400 MB
     for module in folder.rglob("*.ko"):
         if module not in needed:
@@ -53,10 +62,25 @@ def fetch(cache):
 def unpack(bzimage, to):
     """The kernel as ELF: an emulated CPU would need seconds to unpack it at every start."""
     data = bzimage.read_bytes()
-    at = data.find(XZ_MAGIC)
-    if at < 0:
-        raise RuntimeError(f"{bzimage}: not compressed with xz, which was expected")
-    to.write_bytes(lzma.LZMADecompressor(lzma.FORMAT_XZ).decompress(data[at:]))
+    for magic, unpacked in PACKED:
+        at = data.find(magic)
+        while at >= 0:  # the first bytes may also stand in code
+            try:
+                elf = unpacked(data[at:])
+            except (lzma.LZMAError, zstandard.ZstdError, zlib.error):
+                elf = b""
+            if elf.startswith(b"\x7fELF"):
+                to.write_bytes(elf)
+                return
+            at = data.find(magic, at + 1)
+    raise RuntimeError(f"{bzimage}: holds no kernel packed with xz, zstd or gzip, the ways that Debian uses")
+
+
+def unpack_modules(folder):
+    """Plain .ko files, as the guest's insmod reads them: Debian 13 packs each of them with xz."""
+    for packed in pathlib.Path(folder, "lib/modules").rglob("*.ko.xz"):
+        packed.with_suffix("").write_bytes(lzma.decompress(packed.read_bytes()))
+        packed.unlink()
 
 
 def needs(module):

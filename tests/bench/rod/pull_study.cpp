@@ -118,7 +118,7 @@ int main(int argc, char** argv) {
   auto* const sudden = app.add_option("SUDDEN", a.sudden, "1: let go suddenly")->check(CLI::Range(0, 1));
   auto* const hands = app.add_option("HANDS", a.hands, "that pull")->needs(sudden)->check(CLI::Range(1, 2));
   sudden->needs(hands);
-  app.add_option("KEY=VALUE", a.overrides, "keys of the scene file");
+  app.add_option("overrides", a.overrides, "keys of the scene file")->type_name("KEY=VALUE");
   app.add_option("--set", a.set, "KEY=VALUE, the same anywhere on the line; once for each key")
       ->allow_extra_args(false);
   app.add_option("--repeat", a.repeat, "runs of each pull")->check(CLI::Range(1, 1000));
