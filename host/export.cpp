@@ -56,10 +56,7 @@ class Exporter {
 
   void take(const ligature_msg::tick_batch_t& batch) {
     const int session = tally_.find_or_add(batch.session);
-    if (session < 0) {
-      ++result_.unreadable_messages;
-      return;
-    }
+    if (session < 0) return tally_.leave_out(batch.ticks.size());
     if (session != session_) end_session();
     session_ = session;
     for (const auto& tick : batch.ticks) {
@@ -92,6 +89,7 @@ class Exporter {
   void name_missing() {
     constexpr std::size_t kNamed = 10;
     std::size_t named = 0;
+    result_.left_out = tally_.left_out();
     for (const Session& session : tally_.sessions()) {
       result_.missing += session.ticks.missing();
       for (const TickRange& hole : session.ticks.missing_ranges()) {

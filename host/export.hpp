@@ -14,6 +14,7 @@ struct ExportTargets {
 
 struct ExportResult {
   std::int64_t tick_rows = 0, shapes = 0, duplicates_left_out = 0, unreadable_messages = 0;
+  std::int64_t left_out = 0;  // ticks of more sessions than are kept apart
   std::int64_t missing = 0;   // ticks between the first and the last of a session
   std::string missing_ticks;  // "100..119, 400"; the first holes by number
   std::string damage;         // of the log, empty for a sound one

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
+#include <memory>
 
 #include "host/errors.hpp"
 #include "host/text.hpp"
@@ -16,35 +16,41 @@ std::string text_in(const std::array<char, N>& field) {
   return {field.data(), strnlen(field.data(), N)};
 }
 
-bool read_into(std::ifstream& file, void* to, std::size_t bytes) {
-  file.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes));
-  return static_cast<std::size_t>(file.gcount()) == bytes;
+/// The header, when the file is long enough for one.
+bool read_header(const RegularFile& file, recorder::Header& header) {
+  return file.size() >= static_cast<std::int64_t>(recorder::kHeaderBytes) &&
+         file.read_at(static_cast<void*>(&header), sizeof header, 0) == sizeof header;
 }
 
 }  // namespace
 
-bool is_flight_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+bool is_flight_file(const std::string& path) try {
+  const RegularFile file(path);
   std::array<char, 8> magic{};
-  return read_into(file, magic.data(), magic.size()) && magic == recorder::kMagic;
+  return file.read_at(magic.data(), magic.size(), 0) == magic.size() && magic == recorder::kMagic;
+} catch (const BadInput&) {
+  return false;
 }
 
-FlightReader::FlightReader(const std::string& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  const auto end = file.tellg();
-  if (!file || end < 0) throw BadInput(path + ": cannot be read");
-  const auto size = static_cast<std::size_t>(end);
-  file.seekg(0);
-  std::vector<std::byte> head(recorder::kHeaderBytes);
-  if (!read_into(file, head.data(), head.size())) throw BadInput(path + ": shorter than a flight recorder's header");
-  std::memcpy(static_cast<void*>(&header_), head.data(), sizeof header_);
-  check(path, size);
-  ring_.resize(size - recorder::kHeaderBytes);
-  if (!read_into(file, ring_.data(), ring_.size())) throw BadInput(path + ": became shorter while it was read");
+std::optional<std::int64_t> session_of(const RegularFile& file) {
+  const auto header = std::make_unique<recorder::Header>();
+  if (!read_header(file, *header) || header->magic != recorder::kMagic || header->crc != recorder::crc_of(*header))
+    return std::nullopt;
+  return header->session;
+}
+
+FlightReader::FlightReader(const std::string& path) : FlightReader(RegularFile(path), path) {}
+
+FlightReader::FlightReader(const RegularFile& file, const std::string& path) {
+  if (!read_header(file, header_)) throw BadInput(path + ": shorter than a flight recorder's header");
+  check(path, file.size());
+  ring_.resize(static_cast<std::size_t>(file.size()) - recorder::kHeaderBytes);
+  if (file.read_at(ring_.data(), ring_.size(), recorder::kHeaderBytes) != ring_.size())
+    throw BadInput(path + ": became shorter while it was read");
   index();
 }
 
-void FlightReader::check(const std::string& path, std::size_t size) const {
+void FlightReader::check(const std::string& path, std::int64_t size) const {
   const auto& h = header_;
   if (h.magic != recorder::kMagic) throw BadInput(path + ": not a flight recorder file");
   if (h.version != recorder::kVersion)
@@ -55,8 +61,10 @@ void FlightReader::check(const std::string& path, std::size_t size) const {
   const bool sane = h.slots >= 1 && h.slots <= recorder::kMaxSlots && h.slot_bytes > sizeof(recorder::SlotHead) &&
                     h.slot_bytes <= recorder::kMaxSlotBytes && std::isfinite(h.period_s) && h.period_s > 0.0;
   if (!sane) throw BadInput(path + ": the header makes no sense");
-  const std::size_t wanted = recorder::kHeaderBytes + static_cast<std::size_t>(h.slots) * h.slot_bytes;
-  if (size != wanted) throw BadInput(path + text(": found %zu bytes, the header says %zu", size, wanted));
+  const std::int64_t wanted = static_cast<std::int64_t>(recorder::kHeaderBytes) + h.slots * h.slot_bytes;
+  if (size != wanted)
+    throw BadInput(path + text(": found %lld bytes, the header says %lld", static_cast<long long>(size),
+                               static_cast<long long>(wanted)));
 }
 
 std::span<const std::byte> FlightReader::slot(std::size_t i) const {

@@ -2,9 +2,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "host/regular_file.hpp"
 #include "host/rig_facts.hpp"
 #include "ligature_msg/tick_t.hpp"
 #include "protocol/recorder/flight_file.hpp"
@@ -14,12 +16,17 @@ namespace ligature::host {
 /// Whether a file begins like a flight recorder's; false for one that cannot be read.
 [[nodiscard]] bool is_flight_file(const std::string& path);
 
+/// The session that a flight recorder's header names: cheap, nothing else is read. Nothing when it has no sound header.
+[[nodiscard]] std::optional<std::int64_t> session_of(const RegularFile& file);
+
 /// Reads a flight recorder file as it is at this moment, also while it is being written. Holds it in memory (0.5 MB for
 /// each second of it). A slot whose CRC is wrong is counted and left out; the writer's death leaves at most one.
 class FlightReader {
  public:
   /// @throws BadInput when it is not such a file, of another version, or shorter than its header says.
   explicit FlightReader(const std::string& path);
+  /// A file that is open already; `path` is what messages call it.
+  FlightReader(const RegularFile& file, const std::string& path);
 
   /// Every sound tick, oldest first.
   void visit(const std::function<void(const ligature_msg::tick_t&)>& take) const;
@@ -31,7 +38,7 @@ class FlightReader {
   [[nodiscard]] RigFacts facts() const;
 
  private:
-  void check(const std::string& path, std::size_t size) const;
+  void check(const std::string& path, std::int64_t size) const;
   void index();
   [[nodiscard]] std::span<const std::byte> slot(std::size_t i) const;
 

@@ -19,7 +19,7 @@ struct TickRange {
 /// Cost: O(1) for the next number in sequence, O(log holes) for one out of order.
 class GapCounter {
  public:
-  /// @param number 0 .. 2^53. @return false when it was there already.
+  /// @param number 0 .. 2^53; messages hold less. @return false when it was there already.
   bool add(std::int64_t number);
 
   [[nodiscard]] bool is_empty() const { return received_ == 0; }

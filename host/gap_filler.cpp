@@ -1,9 +1,10 @@
 #include "host/gap_filler.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+#include <limits>
 
 #include "host/errors.hpp"
-#include "host/flight_reader.hpp"
 
 namespace ligature::host {
 namespace {
@@ -36,43 +37,91 @@ class Batcher {
 
 }  // namespace
 
-void GapFiller::note(const ligature_msg::status_t& status) {
-  if (status.recorder_file.empty() || sources_.size() >= SessionTally::kMaxSessions) return;
-  sources_.try_emplace(status.session, Source{status.recorder_file, 0});
+namespace fs = std::filesystem;
+
+std::vector<fs::path> default_flight_folders() {
+  std::vector<fs::path> folders{"/var/lib/ligature"};
+  const char* state = std::getenv("XDG_STATE_HOME");
+  const char* home = std::getenv("HOME");
+  if (state != nullptr && *state == '/')
+    folders.push_back(fs::path(state) / "ligature");
+  else if (home != nullptr && *home == '/')
+    folders.push_back(fs::path(home) / ".local/state/ligature");
+  return folders;
 }
 
-std::int64_t GapFiller::fill(const SessionTally& sessions, const Emit& emit) {
+GapFiller::GapFiller(const std::vector<fs::path>& folders) {
+  for (const auto& folder : folders) {
+    const auto normal = fs::absolute(folder).lexically_normal();
+    folders_.push_back(normal.has_filename() ? normal : normal.parent_path());  // without a slash at the end
+  }
+}
+
+/// The name alone is judged: a look at a folder that a stranger chose could wait for a server for ever.
+void GapFiller::note(const ligature_msg::status_t& status) {
+  if (status.recorder_file.empty()) return;
+  const fs::path file = fs::path(status.recorder_file).lexically_normal();
+  if (std::ranges::find(folders_, file.parent_path()) == folders_.end()) {
+    if (outside_.empty()) outside_ = status.recorder_file;
+  } else if (files_.size() < kMostFiles) {
+    files_.insert(file.string());
+  }
+}
+
+std::int64_t GapFiller::fill(const SessionTally& sessions, const Emit& emit, Ends ends) {
+  if (ends == Ends::kOpen && sessions.missing() == 0) return 0;
   std::int64_t filled = 0;
-  for (const Session& session : sessions.sessions()) {
-    const auto source = sources_.find(session.id);
-    if (source != sources_.end() && session.ticks.missing() > 0) filled += fill(session, source->second, emit);
+  const auto files = files_;
+  for (const auto& file : files) {
+    filled += fill_from(file, sessions, emit, ends);
+    filled += fill_from(file + ".previous", sessions, emit, ends);  // a restarted firmware has moved it there
   }
   return filled;
 }
 
-std::int64_t GapFiller::fill(const Session& session, Source& source, const Emit& emit) {
-  auto holes = session.ticks.missing_ranges();
-  std::erase_if(holes, [&](const TickRange& hole) { return hole.last < source.searched_below; });
-  if (holes.empty()) return 0;
-  source.searched_below = holes.back().last + 1;
-  std::int64_t filled = 0;
-  try {
-    const FlightReader recorder(source.file);
-    if (recorder.session() != session.id) return 0;  // a later run has taken the file
-    Batcher batcher(session, emit);
-    auto hole = holes.begin();
-    std::int64_t newest = -1;
-    recorder.visit([&](const ligature_msg::tick_t& tick) {
-      newest = tick.tick;
-      while (hole != holes.end() && hole->last < tick.tick) ++hole;
-      if (hole == holes.end() || tick.tick < hole->first) return;
-      batcher.add(tick);
-      ++filled;
-    });
-    batcher.flush();
-    source.searched_below = std::min(source.searched_below, newest + 1);
-  } catch (const BadInput&) {  // not on this machine, or not readable: the gaps stay gaps, and are named
+std::optional<RegularFile> GapFiller::open(const std::string& path) const try {
+  const fs::path file(path);
+  return RegularFile(file.parent_path(), file.filename());
+} catch (const BadInput&) {  // not on this machine, or not readable: the gaps stay gaps, and are named
+  return std::nullopt;
+}
+
+std::int64_t GapFiller::fill_from(const std::string& path, const SessionTally& sessions, const Emit& emit, Ends ends) {
+  const auto file = open(path);
+  const auto id = file ? session_of(*file) : std::nullopt;
+  if (!id) {
+    files_.erase(path);  // a forged name makes room; the firmware says its own ten times a second
+    return 0;
   }
+  const auto session = std::ranges::find(sessions.sessions(), *id, &Session::id);
+  if (session == sessions.sessions().end() || session->ticks.is_empty()) return 0;
+  auto holes = session->ticks.missing_ranges();
+  std::erase_if(holes, [&](const TickRange& hole) { return hole.last < searched_below_[*id]; });
+  if (ends == Ends::kClosed) holes.push_back({session->ticks.last() + 1, std::numeric_limits<std::int64_t>::max() - 1});
+  if (holes.empty()) return 0;
+  try {
+    const auto filled = fill_from(FlightReader(*file, path), *session, std::move(holes), emit);
+    if (ends == Ends::kClosed) ended_.insert(*id);
+    return filled;
+  } catch (const BadInput&) {  // damaged
+    return 0;
+  }
+}
+
+std::int64_t GapFiller::fill_from(const FlightReader& recorder, const Session& session, std::vector<TickRange> holes,
+                                  const Emit& emit) {
+  std::int64_t filled = 0, newest = -1;
+  Batcher batcher(session, emit);
+  auto hole = holes.begin();
+  recorder.visit([&](const ligature_msg::tick_t& tick) {
+    newest = tick.tick;
+    while (hole != holes.end() && hole->last < tick.tick) ++hole;
+    if (hole == holes.end() || tick.tick < hole->first) return;
+    batcher.add(tick);
+    ++filled;
+  });
+  batcher.flush();
+  searched_below_[session.id] = std::min(holes.back().last, newest) + 1;
   return filled;
 }
 

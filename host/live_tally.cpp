@@ -1,5 +1,8 @@
 #include "host/live_tally.hpp"
 
+#include <algorithm>
+
+#include "host/log_format.hpp"
 #include "host/names.hpp"
 #include "host/text.hpp"
 #include "host/tick_statistics.hpp"
@@ -40,14 +43,12 @@ void LiveTally::add(std::string_view channel, Bytes message) {
 
 void LiveTally::add(const ligature_msg::tick_batch_t& batch) {
   const int index = sessions_.find_or_add(batch.session);
-  if (index < 0) {
-    ++unreadable_;
-    return;
-  }
+  if (index < 0) return sessions_.leave_out(batch.ticks.size());
   Session& session = sessions_[index];
   session.ring_dropped = batch.ring_dropped;
   for (const auto& tick : batch.ticks) sessions_.add(index, tick.tick);
   if (batch.ticks.empty()) return;
+  newest_session_ = batch.session;
   const auto& newest = batch.ticks.back();
   state_ = newest.state;
   fault_ = newest.fault;
@@ -58,6 +59,7 @@ std::string LiveTally::progress_line(double elapsed_s, double ticks_per_s) const
   std::string line =
       text("%7.1f s  %lld ticks  %.0f/s  %lld lost", elapsed_s, static_cast<long long>(sessions_.received()),
            ticks_per_s, static_cast<long long>(sessions_.missing()));
+  if (sessions_.left_out() > 0) line += text("  %lld not counted", static_cast<long long>(sessions_.left_out()));
   if (sessions_.restarts() > 0)
     line += sessions_.are_interleaved() ? text("  %zu FIRMWARES AT ONCE", sessions_.sessions().size())
                                         : text("  %zu restarts", sessions_.restarts());
@@ -67,10 +69,13 @@ std::string LiveTally::progress_line(double elapsed_s, double ticks_per_s) const
   return line;
 }
 
-std::string LiveTally::summary(std::size_t max_ranges) const {
+std::string LiveTally::summary(std::span<const std::int64_t> open_ends, std::size_t max_ranges) const {
   const auto received = sessions_.received(), missing = sessions_.missing();
-  std::string lines = text("recorded %lld of %lld ticks, %lld lost", static_cast<long long>(received),
-                           static_cast<long long>(received + missing), static_cast<long long>(missing));
+  const bool is_whole = open_ends.empty() && sessions_.left_out() == 0;
+  std::string lines = text(is_whole ? "recorded %lld of %lld ticks, %lld lost"
+                                    : "recorded %lld of at least %lld ticks, %lld known to be lost",
+                           static_cast<long long>(received), static_cast<long long>(received + missing),
+                           static_cast<long long>(missing));
   lines +=
       text("; %lld shapes, %lld messages in all\n", static_cast<long long>(shapes_), static_cast<long long>(messages_));
   if (sessions_.restarts() > 0)
@@ -81,8 +86,19 @@ std::string LiveTally::summary(std::size_t max_ranges) const {
     lines += text("duplicates: %lld ticks came twice\n", static_cast<long long>(sessions_.duplicates()));
   if (unreadable_ > 0)
     lines += text("unreadable: %lld messages, kept as they came\n", static_cast<long long>(unreadable_));
+  if (refused_ > 0)
+    lines += text("refused: %lld messages of more than %d MB\n", static_cast<long long>(refused_), kLargestData >> 20);
+  if (sessions_.left_out() > 0)
+    lines += text("not counted: %lld ticks of further sessions, all kept; more than %zu are forged or garbage\n",
+                  static_cast<long long>(sessions_.left_out()), SessionTally::kMaxSessions);
   int number = 0;
-  for (const auto& session : sessions_.sessions()) lines += describe_losses(session, ++number, max_ranges);
+  std::size_t named_ends = 0;
+  for (const auto& session : sessions_.sessions()) {
+    lines += describe_losses(session, ++number, max_ranges);
+    if (std::ranges::find(open_ends, session.id) != open_ends.end() && named_ends++ < max_ranges)
+      lines += text("session %d ended after tick %lld or later: no flight recorder of it was found\n", number,
+                    static_cast<long long>(session.ticks.last()));
+  }
   return lines;
 }
 

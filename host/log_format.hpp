@@ -17,7 +17,8 @@ struct LogEventHead {
 };
 
 inline constexpr std::array<unsigned char, 4> kLogSync{0xED, 0xA1, 0xDA, 0x01};
-inline constexpr std::int32_t kLongestChannel = 63;  ///< LCM_MAX_CHANNEL_NAME_LENGTH
+inline constexpr std::int32_t kLongestChannel = 63;     ///< LCM_MAX_CHANNEL_NAME_LENGTH
+inline constexpr std::int32_t kLargestData = 16 << 20;  ///< of one event; the rig's messages have some 10 KB
 
 /// Nothing when the bytes do not begin with the sync word, or state lengths that no event has.
 [[nodiscard]] constexpr std::optional<LogEventHead> log_event_head(
@@ -32,7 +33,9 @@ inline constexpr std::int32_t kLongestChannel = 63;  ///< LCM_MAX_CHANNEL_NAME_L
   }
   const LogEventHead head{static_cast<std::int64_t>(number(12, 8)), static_cast<std::int32_t>(number(20, 4)),
                           static_cast<std::int32_t>(number(24, 4))};
-  if (head.channel_bytes < 1 || head.channel_bytes > kLongestChannel || head.data_bytes < 0) return std::nullopt;
+  if (head.channel_bytes < 1 || head.channel_bytes > kLongestChannel || head.data_bytes < 0 ||
+      head.data_bytes > kLargestData)
+    return std::nullopt;
   return head;
 }
 

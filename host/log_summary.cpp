@@ -41,10 +41,7 @@ class Summariser {
  private:
   void take(const ligature_msg::tick_batch_t& batch) {
     const int index = summary.tally.find_or_add(batch.session);
-    if (index < 0) {
-      ++summary.unreadable_messages;
-      return;
-    }
+    if (index < 0) return summary.tally.leave_out(batch.ticks.size());
     if (index != session_) {
       session_ = index;
       next_knot_s_ = -std::numeric_limits<double>::infinity();  // its clock starts again

@@ -1,6 +1,8 @@
 #include "host/log_writer.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -9,32 +11,46 @@
 #include <utility>
 
 #include "host/errors.hpp"
+#include "host/log_format.hpp"
 
 namespace ligature::host {
 namespace {
 
 constexpr std::int64_t kHeaderSize = 28;
 
-/// Makes the file, so that two recorders can never take the same name; the library truncates without asking.
-void create(const std::string& path, bool replace) {
-  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | (replace ? 0 : O_EXCL), 0666);
-  if (file >= 0) {
-    close(file);
-    return;
-  }
-  if (errno == EEXIST) throw BadInput(path + ": exists; allowed: a new name, or --force to replace it");
-  throw BadInput(path + ": cannot be written: " + std::strerror(errno));
-}
-
 }  // namespace
 
-LogWriter::LogWriter(std::string path, bool replace) : path_(std::move(path)) {
-  create(path_, replace);
+/// Makes the file, so that two recorders can never take the same name; the library truncates without asking.
+LogWriter::Lock::Lock(const std::string& path, bool replace)
+    : file_(open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NONBLOCK | (replace ? 0 : O_EXCL), 0666)) {
+  if (file_ < 0 && errno == EEXIST) throw BadInput(path + ": exists; allowed: a new name, or --force to replace it");
+  if (file_ < 0) throw BadInput(path + ": cannot be written: " + std::strerror(errno));
+  struct stat facts = {};
+  const bool is_file = fstat(file_, &facts) == 0 && S_ISREG(facts.st_mode);  // a device is nobody's own
+  // A file system that knows no locks (ENOLCK) is written without one.
+  if (is_file && flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    ::close(file_);
+    throw BadInput(path + ": is being written by another recorder; allowed: a name of its own for each");
+  }
+}
+
+LogWriter::Lock::~Lock() { ::close(file_); }
+
+bool LogWriter::Lock::is_of(int file) const {
+  struct stat ours = {}, theirs = {};
+  return fstat(file_, &ours) == 0 && fstat(file, &theirs) == 0 && ours.st_dev == theirs.st_dev &&
+         ours.st_ino == theirs.st_ino;
+}
+
+LogWriter::LogWriter(std::string path, bool replace) : path_(std::move(path)), lock_(path_, replace) {
   file_ = std::make_unique<lcm::LogFile>(path_, "w");
   if (!file_->good()) throw BadInput(path_ + ": cannot be written: " + std::strerror(errno));
+  if (!lock_.is_of(fileno(file_->getFilePtr()))) throw BadInput(path_ + ": was replaced while it was opened");
 }
 
 LogWriter::~LogWriter() = default;
+
+bool LogWriter::takes(Bytes data) { return data.size() <= static_cast<std::size_t>(kLargestData); }
 
 void LogWriter::write(std::int64_t timestamp_us, std::string_view channel, Bytes data) {
   lcm::LogEvent event;

@@ -15,11 +15,14 @@ namespace ligature::host {
 /// Writes an LCM event log (as lcm-logger does; lcm-logplayer plays it).
 class LogWriter {
  public:
+  /// The file is locked as long as this lives (flock): two writers would mix their events.
   /// @param replace whether a file of that name may be replaced.
-  /// @throws BadInput when it may not, or the file cannot be made.
+  /// @throws BadInput when it may not, the file cannot be made, or somebody else writes it.
   LogWriter(std::string path, bool replace);
   ~LogWriter();
 
+  /// Whether an event is fit for a log: no larger than readers take.
+  [[nodiscard]] static bool takes(Bytes data);
   /// Hands one event to the operating system: when this returns, the end of this process loses nothing of it.
   /// (One system call each; the rig sends about 120 events a second.)
   /// @throws RunFailed when the disk does not take it; what it took before is kept.
@@ -30,9 +33,22 @@ class LogWriter {
   [[nodiscard]] std::int64_t bytes() const { return bytes_; }
 
  private:
+  /// A descriptor that holds the lock until it is closed.
+  class Lock {
+   public:
+    Lock(const std::string& path, bool replace);
+    ~Lock();
+    Lock(const Lock&) = delete;
+    Lock& operator=(const Lock&) = delete;
+    [[nodiscard]] bool is_of(int file) const;
+
+   private:
+    int file_;
+  };
   [[noreturn]] void fail() const;
 
   std::string path_;
+  Lock lock_;  // before anything is truncated
   std::unique_ptr<lcm::LogFile> file_;
   std::int64_t bytes_ = 0;
 };

@@ -9,7 +9,7 @@ namespace ligature::host {
 namespace {
 
 constexpr std::size_t kHash = 8, kInt64 = 8, kInt32 = 4, kInt8 = 1, kFloat = 4;  // bytes on the wire
-constexpr std::int64_t kLargestTick = std::int64_t{1} << 53;  // exact in a double: 285 000 years at 1 kHz
+constexpr std::int64_t kLargestTick = std::int64_t{1} << 40;                     // 35 years at 1 kHz: no run had more
 
 /// The big-endian int32 at an offset; nothing when the message ends before it.
 std::optional<std::int32_t> int32_at(Bytes message, std::size_t offset) {
@@ -65,6 +65,13 @@ std::optional<M> decode_checked(Bytes message) {
 
 bool is_tick_number(std::int64_t tick) { return tick >= 0 && tick < kLargestTick; }
 
+/// Oldest first, each number once; ticks that the ring dropped may be left out.
+bool is_rising(const std::vector<ligature_msg::tick_t>& ticks) {
+  const auto falls = [](const auto& a, const auto& b) { return a.tick >= b.tick; };
+  return std::ranges::all_of(ticks, is_tick_number, &ligature_msg::tick_t::tick) &&
+         std::ranges::adjacent_find(ticks, falls) == ticks.end();
+}
+
 }  // namespace
 
 template <>
@@ -72,7 +79,7 @@ std::optional<ligature_msg::tick_batch_t> decode(Bytes message) {
   static const auto tick_size = static_cast<std::size_t>(ligature_msg::tick_t{}._getEncodedSizeNoHash());
   if (!array_fits(message, kHash + 3 * kInt64, tick_size, 0)) return std::nullopt;
   auto batch = decode_checked<ligature_msg::tick_batch_t>(message);
-  if (batch && !std::ranges::all_of(batch->ticks, is_tick_number, &ligature_msg::tick_t::tick)) return std::nullopt;
+  if (batch && !is_rising(batch->ticks)) return std::nullopt;
   return batch;
 }
 

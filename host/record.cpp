@@ -5,16 +5,14 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <optional>
 
 #include "host/atomic_file.hpp"
 #include "host/console/stop_signal.hpp"
 #include "host/errors.hpp"
-#include "host/gap_filler.hpp"
 #include "host/live_tally.hpp"
 #include "host/log_writer.hpp"
-#include "host/wall_clock.hpp"
+#include "host/recording.hpp"
 
 namespace ligature::host {
 namespace {
@@ -64,9 +62,8 @@ class Progress {
   double ticks_per_s_ = 0.0;
 };
 
-/// Receives until the end of the run; the link's handler writes and counts, `fill` closes gaps.
-void record_until_stopped(LcmLink& link, const LiveTally& tally, const RecordOptions& options,
-                          const std::function<void()>& fill) {
+/// Receives until the end of the run; the link's handler writes and counts, here gaps are closed.
+void record_until_stopped(LcmLink& link, const LiveTally& tally, const RecordOptions& options, Recording& recording) {
   const auto start = Clock::now();
   auto filled = start;
   Progress progress(options.quiet, start);
@@ -74,50 +71,16 @@ void record_until_stopped(LcmLink& link, const LiveTally& tally, const RecordOpt
     if (options.duration_s > 0.0 && seconds(now - start) >= options.duration_s) break;
     link.receive(50);
     if (now - filled >= kFillEvery) {
-      fill();
+      recording.fill();
       filled = now;
     }
     progress.show(tally, now);
   }
   const auto stopped = Clock::now();
-  while (Clock::now() - stopped < kLongestDrain && link.receive(kQuiet_ms) > 0) {
-  }
-  fill();
+  bool is_quiet = false;
+  while (!is_quiet && Clock::now() - stopped < kLongestDrain) is_quiet = link.receive(kQuiet_ms) == 0;
+  recording.finish(is_quiet);
 }
-
-/// What goes into the log: everything heard, and what the flight recorder has of what was not.
-class Recording {
- public:
-  Recording(LogWriter& log, LiveTally& tally) : log_(log), tally_(tally) {}
-
-  void take(const Message& message) {
-    log_.write(message.received_us, message.channel, message.data);
-    tally_.add(message.channel, message.data);
-    if (message.channel != kStatusChannel) return;
-    if (const auto status = decode<ligature_msg::status_t>(message.data)) filler_.note(*status);
-  }
-  void fill() {
-    filled_ += filler_.fill(tally_.sessions(), [this](const ligature_msg::tick_batch_t& batch) {
-      bytes_.resize(static_cast<std::size_t>(batch.getEncodedSize()));
-      batch.encode(bytes_.data(), 0, static_cast<int>(bytes_.size()));
-      log_.write(now_us(), kTicksChannel, bytes_);
-      waiting_.push_back(bytes_);
-    });
-    for (const auto& bytes : waiting_) tally_.add(kTicksChannel, bytes);  // not while its gaps are being read
-    waiting_.clear();
-  }
-  void say() const {
-    if (filled_ > 0) std::printf("%lld of the ticks came from the flight recorder\n", static_cast<long long>(filled_));
-  }
-
- private:
-  LogWriter& log_;
-  LiveTally& tally_;
-  GapFiller filler_;
-  std::vector<std::byte> bytes_;
-  std::vector<std::vector<std::byte>> waiting_;
-  std::int64_t filled_ = 0;
-};
 
 }  // namespace
 
@@ -129,16 +92,15 @@ void record(const RecordOptions& options) {
   });
   const std::string out = options.force ? file_to_write(options.out) : options.out;
   LogWriter log(out, options.force);
-  recording.emplace(log, tally);
+  recording.emplace(log, tally, options.flight_folders.empty() ? default_flight_folders() : options.flight_folders);
   try {
-    record_until_stopped(link, tally, options, [&] { recording->fill(); });
+    record_until_stopped(link, tally, options, *recording);
     log.close();
   } catch (const RunFailed&) {
-    std::fputs(tally.summary().c_str(), stdout);
+    std::fputs(recording->summary().c_str(), stdout);
     throw;
   }
-  std::fputs(tally.summary().c_str(), stdout);
-  recording->say();
+  std::fputs(recording->summary().c_str(), stdout);
   if (tally.messages() > 0) {
     std::printf("%s: %.1f MB\n", options.out.c_str(), static_cast<double>(log.bytes()) * 1e-6);
     return;

@@ -17,6 +17,9 @@ double recorded_per_s(const LogSummary& s) { return static_cast<double>(s.tally.
 /// First recorded tick of the first session; what ran before the recorder is not there, and not lost.
 std::int64_t first_tick(const LogSummary& s) { return s.tally.sessions().front().ticks.first(); }
 
+/// Ticks that were not counted may be of any session, and nobody knows which of its ticks those were.
+const char* lost_words(const LogSummary& s) { return s.tally.left_out() > 0 ? "known to be lost" : "lost"; }
+
 /// Part of the recorded periods in which the loop ran, %.
 double executed_percent(const LogSummary& s) {
   return 100.0 * static_cast<double>(s.ticks.executed()) / static_cast<double>(s.tally.received());
@@ -71,8 +74,8 @@ std::string report_table(const LogSummary& s) {
     table += text(", scene %s, firmware %s", s.facts.scene_file.c_str(), s.facts.firmware_version.c_str());
   table += "\n";
   const auto received = s.tally.received(), missing = s.tally.missing();
-  table += row("samples", text("%lld recorded, %lld lost, %.1f per second", static_cast<Count>(received),
-                               static_cast<Count>(missing), recorded_per_s(s)));
+  table += row("samples", text("%lld recorded, %lld %s, %.1f per second", static_cast<Count>(received),
+                               static_cast<Count>(missing), lost_words(s), recorded_per_s(s)));
   table += row("rate held",
                text("%.1f ticks per second, %.3f %% of periods executed", rate_held_per_s(s), executed_percent(s)));
   table += row("deadline misses", text("%lld finished late", static_cast<Count>(s.ticks.deadline_misses())));
@@ -92,6 +95,9 @@ std::string report_table(const LogSummary& s) {
     table += row("restarts", text("%zu of the firmware", s.tally.restarts()));
   if (s.tally.duplicates() > 0)
     table += row("duplicates", text("%lld ticks", static_cast<Count>(s.tally.duplicates())));
+  if (s.tally.left_out() > 0)
+    table += row("not counted", text("%lld ticks of further sessions: more than %zu are forged or garbage",
+                                     static_cast<Count>(s.tally.left_out()), SessionTally::kMaxSessions));
   if (s.unreadable_messages > 0)
     table += row("unreadable", text("%lld messages", static_cast<Count>(s.unreadable_messages)));
   if (!s.damage.empty()) table += row("log damaged", s.damage);
@@ -123,6 +129,7 @@ std::string report_json(const LogSummary& s) {
                      {"firmware_version", s.facts.firmware_version},
                      {"ticks_recorded", s.tally.received()},
                      {"ticks_lost", s.tally.missing()},
+                     {"ticks_not_counted", s.tally.left_out()},
                      {"first_tick", first_tick(s)},
                      {"duplicates", s.tally.duplicates()},
                      {"restarts", s.tally.restarts()},

@@ -24,6 +24,8 @@ class SessionTally {
 
   /// The session of that id, made when it is new. @return its index, or -1 when there are too many.
   int find_or_add(std::int64_t id);
+  /// Ticks of a session that has no place: nothing is known of them but that they came.
+  void leave_out(std::size_t ticks) { left_out_ += static_cast<std::int64_t>(ticks); }
   /// Counts a tick of the session at `index`. @return false when it was there already.
   bool add(int index, std::int64_t tick);
   Session& operator[](int index) { return sessions_[static_cast<std::size_t>(index)]; }
@@ -32,6 +34,9 @@ class SessionTally {
   [[nodiscard]] std::int64_t received() const;
   [[nodiscard]] std::int64_t missing() const;
   [[nodiscard]] std::int64_t duplicates() const;
+  [[nodiscard]] std::int64_t left_out() const {
+    return left_out_;
+  }  ///< of sessions beyond kMaxSessions; not in received()
   /// Two firmwares sent at the same time: a session went on after a later one had begun.
   [[nodiscard]] bool are_interleaved() const { return interleaved_; }
   [[nodiscard]] std::size_t restarts() const { return sessions_.empty() ? 0 : sessions_.size() - 1; }
@@ -39,6 +44,7 @@ class SessionTally {
  private:
   std::vector<Session> sessions_;  // in order of their first message
   bool interleaved_ = false;
+  std::int64_t left_out_ = 0;
 };
 
 }  // namespace ligature::host

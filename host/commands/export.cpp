@@ -63,6 +63,7 @@ void add_export(CLI::App& app) {
       std::printf(", left out %lld duplicates", static_cast<long long>(result.duplicates_left_out));
     if (result.unreadable_messages)
       std::printf(", %lld unreadable messages", static_cast<long long>(result.unreadable_messages));
+    if (result.left_out) std::printf(", %lld ticks of further sessions", static_cast<long long>(result.left_out));
     if (result.missing)
       std::printf("; %lld ticks are missing: %s", static_cast<long long>(result.missing), result.missing_ticks.c_str());
     std::printf("\n");

@@ -81,7 +81,7 @@ class Rig:
         for hand in HANDS:
             self.start_device(hand)
         if self.with_recorder:
-            self.start("recorder", "ligature-host", "record", "--out", self.log)
+            self.start("recorder", "ligature-host", "record", "--out", self.log, "--flight-folder", self.path)
         self.start_firmware()
         return self
 

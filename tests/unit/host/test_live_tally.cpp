@@ -66,7 +66,7 @@ TEST(LiveTally, SaysThatItJoinedLate) {
 TEST(LiveTally, ManyHolesAreCutShort) {
   LiveTally tally;
   for (int i = 0; i < 30; ++i) add(tally, test::batch_of(1, 3 * i, 2));
-  EXPECT_NE(tally.summary(10).find("and 19 more holes (29 in all"), std::string::npos) << tally.summary(10);
+  EXPECT_NE(tally.summary({}, 10).find("and 19 more holes (29 in all"), std::string::npos) << tally.summary({}, 10);
 }
 
 }  // namespace

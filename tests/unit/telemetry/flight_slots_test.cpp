@@ -143,7 +143,7 @@ TEST_F(FlightSlotsTest, WhatTheNetworkLostIsFetchedOnce) {
   auto& ticks = tally[tally.find_or_add(77)].ticks;
   for (std::int64_t t = 10; t < 70; ++t)
     if ((t < 20 || t > 44) && t != 50 && (t < 60 || t > 62)) ticks.add(t);
-  host::GapFiller filler;
+  host::GapFiller filler({folder.path()});
   std::vector<std::int64_t> fetched;
   const auto emit = [&](const ligature_msg::tick_batch_t& batch) {
     EXPECT_EQ(batch.session, 77);
