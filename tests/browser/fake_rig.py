@@ -2,6 +2,7 @@
 
     fault N     latch fault N        knot | unknot   the thread's shape        spike F   one tick with F newton
     limit BITS  what holds the left hand back   clutch B   left tool parked   degrade N   what the solver gave up
+    arm         go to FORCE
     quiet       send nothing more    go              send again                restart   another session
 It says "ready" when it publishes and "command NAME" for each command that it hears. Nothing here is physics.
 """
@@ -122,6 +123,9 @@ class Rig:
             self.clutch = int(value)
         elif word == "degrade":
             self.degraded = int(value)
+        elif word == "arm":
+            self.fault = 0
+            self.go_to(4)
         elif word in ("quiet", "go"):
             self.quiet = word == "quiet"
         elif word == "restart":

@@ -2,12 +2,11 @@
 import { spawn } from 'node:child_process';
 import { createServer } from 'node:http';
 import { connect } from 'node:net';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
-const PATIENCE_MS = 60_000; // a shared machine may be slow; every wait is for a condition
+const PATIENCE_MS = Number(process.env.LIGATURE_PATIENCE_MS ?? 60_000); // a shared machine may be slow; every wait is for a condition
 
 export function arguments_() {
   const given = {};
@@ -46,26 +45,56 @@ export class Program {
   peakMemory_kB() { return Number(readFileSync(`/proc/${this.child.pid}/status`, 'utf8').match(/VmHWM:\s+(\d+)/)[1]); }
 }
 
+function startChromium({ chromium }, webgl) {
+  const drawing = webgl ? ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] : ['--disable-gpu', '--disable-3d-apis'];
+  return chromium.launch({
+    executablePath: process.env.LIGATURE_CHROMIUM ?? '/usr/bin/chromium', headless: true,
+    args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync', ...drawing],
+  });
+}
+
+/** Without a screen Firefox has no WebGL: with it, it gets a virtual one, whose number Xvfb chooses and says. */
+async function startFirefox({ _bidiFirefox: firefox }, webgl) {
+  const screen = webgl ? new Program('Xvfb', ['-displayfd', '1', '-screen', '0', '1600x1000x24', '-nolisten', 'tcp']) : null;
+  const env = screen ? { ...process.env, DISPLAY: `:${await screen.says(/^(\d+)\n/)}`, LIBGL_ALWAYS_SOFTWARE: '1' } : process.env;
+  const started = await firefox.launch({
+    executablePath: process.env.LIGATURE_FIREFOX ?? '/usr/bin/firefox-esr', headless: !screen, env,
+    firefoxUserPrefs: webgl ? { 'webgl.force-enabled': true } : { 'webgl.disabled': true },
+  });
+  if (screen) started.on('disconnected', () => screen.stop());
+  return started;
+}
+
 export class Browser {
-  static async start() {
-    const { modules } = arguments_();
-    const { chromium } = createRequire(join(modules, 'x.js'))('playwright-core');
+  /** @param kind 'chromium', or 'firefox', which is driven by WebDriver BiDi. @param webgl whether pages get it. */
+  static async start({ kind = 'chromium', webgl = true } = {}) {
+    const { modules } = arguments_(), playwright = createRequire(join(modules, 'x.js'))('playwright-core');
     const browser = new Browser();
     browser.complaints = [];
     browser.servers = [];
-    browser.profile = mkdtempSync(join(tmpdir(), 'ligature-chromium-'));
-    browser.context = await chromium.launchPersistentContext(browser.profile, {
-      executablePath: process.env.LIGATURE_CHROMIUM ?? '/usr/bin/chromium', headless: true, viewport: { width: 1280, height: 800 },
-      args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
-        '--disable-sync', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
-    });
+    browser.process = await (kind === 'firefox' ? startFirefox(playwright, webgl) : startChromium(playwright, webgl));
+    browser.context = await browser.process.newContext({ viewport: { width: 1280, height: 800 } });
     return browser;
+  }
+
+  /** For the pages to come, and the sheet. */
+  async resize(width, height) {
+    this.viewport = { width, height };
+    await (await this.sheet()).setViewportSize(this.viewport);
+  }
+
+  /** One page that may complain, used again and again. */
+  async sheet() {
+    this.sheet_ ??= await this.context.newPage();
+    this.sheet_.setDefaultTimeout(PATIENCE_MS);
+    return this.sheet_;
   }
 
   /** A page of ours: everything that it complains of in the console is a failure. */
   async open(url) {
     const page = await this.context.newPage();
     page.setDefaultTimeout(PATIENCE_MS);
+    if (this.viewport) await page.setViewportSize(this.viewport);
     page.on('pageerror', (error) => this.complaints.push(`${error.stack}`));
     page.on('console', (message) => { if (['error', 'warning'].includes(message.type()) && !/GPU stall|ReadPixels/.test(message.text())) this.complaints.push(message.text()); });
     await page.goto(url);
@@ -87,8 +116,7 @@ export class Browser {
 
   async stop() {
     for (const server of this.servers) server.close();
-    await this.context.close();
-    rmSync(this.profile, { recursive: true, force: true });
+    await this.process.close();
   }
 }
 

@@ -3,7 +3,36 @@ import { C } from './frame.js';
 
 const BOUNDS_us = [2, 5, 10, 20, 50, 100, 200, 500, 1000];
 
-export function drawHistogram(canvas, store, from, period_s) {
+export class Histogram {
+  /** @param redraw asks for a drawing soon: a canvas of another size is empty. */
+  constructor(host, redraw) {
+    this.box = Object.assign(document.createElement('div'), { className: 'plot histogram' });
+    this.box.innerHTML = '<h2>wake-up latency <em>µs, log count over the window</em></h2>';
+    this.canvas = document.createElement('canvas');
+    this.box.append(this.canvas);
+    host.append(this.box);
+    this.resizes = new ResizeObserver(redraw);
+    this.resizes.observe(this.box);
+  }
+
+  dispose() { this.resizes.disconnect(); this.box.remove(); }
+
+  draw(store, from, period_s) {
+    fitTo(this.canvas, this.box);
+    drawHistogram(this.canvas, store, from, period_s);
+  }
+}
+
+/** As many pixels as are seen, so that nothing is stretched. */
+function fitTo(canvas, box) {
+  const width = Math.round(box.clientWidth * devicePixelRatio), height = Math.round(box.clientHeight * devicePixelRatio);
+  if (canvas.width === width && canvas.height === height) return;
+  canvas.width = width;
+  canvas.height = height;
+  canvas.style.cssText = `display:block;width:${box.clientWidth}px;height:${box.clientHeight}px`;
+}
+
+function drawHistogram(canvas, store, from, period_s) {
   const ctx = canvas.getContext('2d'), ratio = devicePixelRatio;
   const { counts, max } = store.histogram(C.wakeup_ns, BOUNDS_us.map((us) => us * 1000), from);
   const width = canvas.width / ratio, height = canvas.height / ratio, left = 50, bottom = 17, top = 36;

@@ -4,14 +4,20 @@ import { OrbitControls } from './OrbitControls.js';
 import { Tube } from './tube.js';
 import { Hand } from './hands.js';
 import { colourThread } from './colouring.js';
+import { sceneFacts } from './scene_facts.js';
 
 const QUALITIES = [{}, { ratio: 1, shadow: 1024 }, { ratio: 0.6, shadow: 512 }];
 const VIEWS = { front: [0, -1, 0.12], side: [1, 0, 0.12], top: [0, -0.02, 1], iso: [0.62, -0.9, 0.42] };
 
 export class Scene {
-  constructor(canvas) {
-    this.canvas = canvas;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
+  /** @param choice {colour, follow, stereo, view} of the person. @param onLost called when the browser takes WebGL away. */
+  constructor(host, choice, onLost) {
+    this.choice = choice;
+    this.canvas = Object.assign(document.createElement('canvas'), { id: 'canvas', className: 'picture', hidden: true });
+    const context = this.canvas.getContext('webgl2', { antialias: true, powerPreference: 'high-performance' });
+    if (!context) throw new Error('no WebGL in this browser, drawn flat');
+    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, context });
+    this.canvas.addEventListener('webglcontextlost', () => onLost('the browser took WebGL away, drawn flat'));
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
@@ -22,7 +28,7 @@ export class Scene {
     this.camera.up.set(0, 0, 1);
     this.stereo = new THREE.StereoCamera();
     this.stereoMode = 'off';
-    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.enableDamping = false;
     this.controls.addEventListener('start', () => { this.touched = true; });
     this.controls.addEventListener('change', () => { this.isDirty = true; });
@@ -30,10 +36,20 @@ export class Scene {
     this.#addSurroundings();
     this.tube = new Tube(this.scene);
     this.hands = [0, 1].map((i) => new Hand(this.scene, i));
-    this.colour = 'plain';
-    this.follow = false;
     this.facts = { deskHeight_m: null, restLength_m: 0, fixed: [], maxForce_N: 3.3 };
-    new ResizeObserver(() => { this.isDirty = true; }).observe(canvas);
+    this.setStereo(choice.stereo);
+    this.resizes = new ResizeObserver(() => { this.isDirty = true; });
+    this.resizes.observe(this.canvas);
+    host.prepend(this.canvas);
+  }
+
+  show(on) { this.canvas.hidden = !on; }
+
+  dispose() {
+    this.canvas.remove();
+    this.resizes.disconnect();
+    this.controls.dispose();
+    this.renderer.dispose();
   }
 
   #addLight() {
@@ -64,8 +80,8 @@ export class Scene {
     this.scene.add(this.desk, this.grid, this.axes, this.posts);
   }
 
-  /** Facts of the scene file that the picture needs. */
-  setFacts(facts) {
+  setStatus(status) {
+    const facts = sceneFacts(status);
     const is = JSON.stringify(facts);
     if (is === this.factsText) return;
     this.factsText = is;
@@ -79,7 +95,7 @@ export class Scene {
     this.isDirty = true;
     let legend = null;
     if (shape) {
-      const painted = colourThread(this.colour, shape, { restLength_m: this.facts.restLength_m, core });
+      const painted = colourThread(this.choice.colour, shape, { restLength_m: this.facts.restLength_m, core });
       legend = painted.legend;
       this.tube.update(shape.p_W, shape.radius_m, painted.colours, shape.turn_rad);
       if (!this.shape || this.shape.p_W.length !== shape.p_W.length || this.shape.radius_m !== shape.radius_m) this.#layOut(shape);
@@ -91,7 +107,7 @@ export class Scene {
       const size = Math.max(1.6 * (this.shape?.radius_m ?? 0), 0.013 * this.extent);
       now.hands.forEach((hand, i) => this.hands[i].update(hand, size, (0.3 * this.extent) / this.facts.maxForce_N));
     }
-    if (this.follow && this.shape) this.#followKnot();
+    if (this.choice.follow && this.shape) this.#followKnot();
     return legend;
   }
 
@@ -139,7 +155,7 @@ export class Scene {
 
   /** Until a person moves the camera: steps back when the thread goes where the picture does not. */
   #keepInPicture(shape) {
-    if (this.touched || this.follow) return;
+    if (this.touched || this.choice.follow) return;
     this.seen.union(boxOf(shape.p_W));
     if (this.framed.containsBox(this.seen)) return;
     this.view('iso', this.seen);

@@ -3,6 +3,7 @@ import { C } from './frame.js';
 import { degradationName, explainFault, limitNames, stateName } from './names.js';
 
 export const STALE_MS = 120; // shown within 200: a timer looks every 20
+const SLOW_MS = 250, LONGEST_LAG_MS = 1000;
 const NOTES = {
   OFF: 'drives are off', CALIBRATE: 'looking at the encoders', IDLE: 'ready, no force', ENGAGE: 'armed: hold still, press the dead-man',
   FORCE: 'forces on', BRAKE: 'forces ramp to zero', FAULT: 'no force until reset',
@@ -27,18 +28,31 @@ export function showState(now) {
   }
 }
 
-/** @param age_ms of the newest ticks as the host knows it, -1 none yet; @param silent_ms since the host's last frame.
- *  @returns whether the picture is old. */
-export function showAge(age_ms, silent_ms, { isReplay, unreadable }) {
-  let text = '';
-  if (silent_ms > STALE_MS) text = `No word from the host for ${seconds(silent_ms)}: is ligature-host running?`;
-  else if (age_ms < 0 && unreadable) text = 'Messages come that this host cannot read: firmware and host must be of the same version.';
-  else if (age_ms < 0) text = isReplay ? '' : 'No ticks yet: is ligature-firmware running on this LCM network?';
-  else if (age_ms > STALE_MS) text = `Old picture: no ticks for ${seconds(age_ms)}. The rig may be in any state.`;
-  $('stale').hidden = !text;
-  $('stale').textContent = text;
-  document.body.classList.toggle('is-stale', text !== '');
-  return text !== '';
+/**
+ * Whether what is shown is old, and whose fault that is: the rig's or the host's silence, or this computer's slowness.
+ * @param age_ms of the newest ticks as the host knows it, -1 none yet. @param silent_ms since the host's last frame.
+ * @param lag_ms how far this page is behind its own timer: what is old by no more may have waited here.
+ * @returns {{text, isOld, isSlow}}
+ */
+export function judgeAge(age_ms, silent_ms, lag_ms, { isReplay, unreadable }) {
+  const allowed_ms = STALE_MS + Math.min(lag_ms, LONGEST_LAG_MS), old = (text) => ({ text, isOld: text !== '', isSlow: false });
+  if (silent_ms > allowed_ms) return old(`No word from the host for ${seconds(silent_ms)}: is ligature-host running?`);
+  if (age_ms < 0 && unreadable) return old('Messages come that this host cannot read: firmware and host must be of the same version.');
+  if (age_ms < 0) return old(isReplay ? '' : 'No ticks yet: is ligature-firmware running on this LCM network?');
+  if (age_ms > allowed_ms) return old(`Old picture: no ticks for ${seconds(age_ms)}. The rig may be in any state.`);
+  if (lag_ms <= SLOW_MS) return old('');
+  return { text: `slow picture: this computer is up to ${seconds(Math.max(lag_ms, age_ms))} behind; the rig is heard`, isOld: false, isSlow: true };
+}
+
+/** @returns whether the picture is old. */
+export function showAge(age_ms, silent_ms, lag_ms, rig) {
+  const { text, isOld, isSlow } = judgeAge(age_ms, silent_ms, lag_ms, rig);
+  $('stale').hidden = !isOld;
+  $('stale').textContent = isOld ? text : '';
+  $('slow').hidden = !isSlow;
+  $('slow').textContent = isSlow ? text : '';
+  document.body.classList.toggle('is-stale', isOld);
+  return isOld;
 }
 
 function seconds(ms) { return ms < 10_000 ? `${(ms / 1000).toFixed(1)} s` : `${Math.round(ms / 1000)} s`; }
@@ -66,11 +80,4 @@ export function showHands(now, row) {
   const given = degradationName(row?.[C.degradation] ?? 0);
   $('degraded').hidden = !given;
   $('degraded').textContent = given ? `solver: ${given}` : '';
-}
-
-/** Facts of the scene's text that the picture needs; a TOML reader is not: keys are one to a line in our files. */
-export function sceneFacts(status) {
-  const toml = status.scene_toml ?? '', number = (key) => { const m = toml.match(new RegExp(`^\\s*${key}\\s*=\\s*([-+0-9.eE_]+)`, 'm')); return m ? Number(m[1]) : null; };
-  const fixed = [...toml.matchAll(/\{\s*node\s*=\s*-?\d+\s*,\s*position_m\s*=\s*\[([^\]]+)\]/g)].map((m) => m[1].split(',').map(Number));
-  return { deskHeight_m: number('desk_height_m'), restLength_m: number('length_m') ?? 0, fixed: fixed.filter((p) => p.length === 3 && p.every(Number.isFinite)), maxForce_N: status.max_force_N || 3.3 };
 }

@@ -1,10 +1,8 @@
-// Forces and timing against time (uPlot), and the histogram of wake-up latency.
+// Forces and timing against time (uPlot).
 import uPlot from './uPlot.esm.js';
 import { C } from './frame.js';
 import { stateName } from './names.js';
-import { drawHistogram } from './histogram.js';
 
-export const WINDOWS_S = [1, 5, 10, 30, 60, 300, 600];
 /** What the third plot can show: two columns and their names, their SI unit, a factor to the unit drawn, least height. */
 export const THIRD = {
   'tick time': { names: ['whole', 'control'], si: 'ns', columns: [C.execution_ns, C.control_ns], factor: 1e-3, unit: 'µs: whole, control only', least: 100, isTime: true },
@@ -26,19 +24,26 @@ const AXIS = { x: '#ff9d7a', y: '#7fd1ae', z: '#b9a5ff' };
 const GREY = '#9aa6b6';
 
 export class Traces {
-  /** @param onCursor called with the row under the cursor, or null. */
-  constructor(host, store, onCursor) {
-    Object.assign(this, { host, store, onCursor, window_s: 10, period_s: 1e-3, limit_N: null, end: null, components: false, third: { title: 'tick time', ...THIRD['tick time'] } });
-    this.plots = [
-      this.#plot('left force', 'N', [0, 1, 2, 3], '#56b4e9', 0),
-      this.#plot('right force', 'N', [4, 5, 6, 7], '#e69f00', 1),
-      this.#plot('tick time', this.third.unit, [8, 9], '#e8ecf2', null),
-    ];
-    this.histogram = document.createElement('canvas');
-    const box = this.#box('wake-up latency', 'µs, log count over the window');
-    box.append(this.histogram);
-    this.resize();
-    new ResizeObserver(() => this.resize()).observe(host);
+  /** @param beside the other recording's store. @param choice {window_s, third, components}. @param onCursor called with the row under the cursor, or null. */
+  constructor(host, store, beside, choice, onCursor) {
+    const { window_s, third } = choice;
+    Object.assign(this, { host, store, onCursor, window_s, period_s: 1e-3, limit_N: null, end: null, third: { title: third, ...THIRD[third] } });
+    this.beside = { store: beside, offset_ticks: null, name: '' };
+    this.plots = [];
+    try {
+      this.plots.push(this.#plot('left force', 'N', [0, 1, 2, 3], '#56b4e9', 0));
+      this.plots.push(this.#plot('right force', 'N', [4, 5, 6, 7], '#e69f00', 1));
+      this.plots.push(this.#plot(third, this.third.unit, [8, 9], '#e8ecf2', null));
+      this.showComponents(choice.components);
+      this.resizes = new ResizeObserver(() => this.resize());
+      this.resizes.observe(host);
+      this.resize();
+    } catch (error) { this.dispose(); throw error; }
+  }
+
+  dispose() {
+    this.resizes?.disconnect();
+    for (const { plot, box } of this.plots) { plot.destroy(); box.remove(); }
   }
 
   #box(title, unit) {
@@ -115,14 +120,9 @@ export class Traces {
 
   resize() {
     for (const { plot, box } of this.plots) plot.setSize({ width: Math.max(200, box.clientWidth), height: Math.max(70, box.clientHeight) });
-    const box = this.histogram.parentElement;
-    this.histogram.width = box.clientWidth * devicePixelRatio;
-    this.histogram.height = box.clientHeight * devicePixelRatio;
-    this.histogram.style.cssText = `width:${box.clientWidth}px;height:${box.clientHeight}px`;
   }
 
   showComponents(on) {
-    this.components = on;
     for (const { plot, columns, hand } of this.plots)
       if (hand !== null) for (let i = 1; i < columns.length; ++i) plot.setSeries(i + 1, { show: on });
   }
@@ -185,7 +185,7 @@ export class Traces {
       });
       if (plot === this.pointed) this.#readCursor(plot);
     }
-    drawHistogram(this.histogram, this.store, Math.max(from, end - 60 / this.period_s), this.period_s);
+    this.histogramFrom = Math.max(from, end - 60 / this.period_s);
   }
 }
 

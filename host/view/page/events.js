@@ -1,0 +1,11 @@
+// What happened last, newest first, at the foot of the page.
+const SHOWN = 12, FAULT = 2;
+
+export function showEvents(events, period_s) {
+  document.getElementById('events').replaceChildren(...events.slice(-SHOWN).reverse().map((event) => {
+    const item = document.createElement('li');
+    item.textContent = `${(event.tick * period_s).toFixed(2)} s ${event.text}`;
+    if (event.kind === FAULT) item.className = 'fault-event';
+    return item;
+  }));
+}

@@ -1,0 +1,58 @@
+// One part of the page that draws: it fails alone, says so in its place, and is made again after a while.
+const FIRST_WAIT_MS = 1000, LONGEST_WAIT_MS = 32_000, SOUND_AFTER_MS = 10_000;
+
+export class Part {
+  /**
+   * @param what {name, place(), make(attempt), dispose?(value), text?(value, text), frame?(value, frame), draw?(value, time_ms)}:
+   *   `place` gives the element that a failure is told in; `make` gives the part's object, or a promise of it; `attempt`
+   *   is 0 at first: a module that failed is only loaded again under another address.
+   */
+  constructor(what) {
+    Object.assign(this, { what, value: null, attempt: 0, wait_ms: FIRST_WAIT_MS, failures: 0 });
+  }
+
+  /** @param told all that the host has said so far: what is made now has missed it. */
+  async start(told) {
+    this.told = told;
+    try {
+      const value = await this.what.make(this.attempt++);
+      this.value = value;
+      this.made_ms = performance.now();
+      this.#say('');
+      this.what.text?.(value, told);
+    } catch (error) { this.#fail(error); }
+  }
+
+  /** @returns what `use` gives, or undefined where the part is not there or fails at it. */
+  run(use) {
+    if (this.value === null) return undefined;
+    try { return use(this.value); } catch (error) { this.#fail(error); return undefined; }
+  }
+
+  text(text) { if (this.what.text) this.run((value) => this.what.text(value, text)); }
+  frame(frame) { if (this.what.frame) this.run((value) => this.what.frame(value, frame)); }
+  draw(time_ms) { if (this.what.draw) this.run((value) => this.what.draw(value, time_ms)); }
+
+  /** For a failure that no call of ours sees. */
+  fail(error) { if (this.value !== null) this.#fail(error); }
+
+  #fail(error) {
+    const value = this.value;
+    this.value = null;
+    ++this.failures;
+    try { this.what.dispose?.(value); } catch { /* it is broken already */ }
+    if (performance.now() - this.made_ms > SOUND_AFTER_MS) this.wait_ms = FIRST_WAIT_MS;
+    this.#say(`${this.what.name}: ${error?.message ?? error}. Next try in ${this.wait_ms / 1000} s.`);
+    setTimeout(() => this.start(this.told), this.wait_ms);
+    this.wait_ms = Math.min(2 * this.wait_ms, LONGEST_WAIT_MS);
+  }
+
+  #say(text) {
+    this.note ??= Object.assign(document.createElement('p'), { className: 'part-note' });
+    this.note.hidden = !text;
+    this.note.textContent = text;
+    this.note.dataset.part = this.what.name;
+    const place = this.what.place();
+    if (text && this.note.parentElement !== place) place.append(this.note);
+  }
+}

@@ -1,0 +1,112 @@
+// Which parts there are, where each says that it failed, and what it is told. Each is loaded by itself, when it is made.
+const $ = (id) => document.getElementById(id);
+const DIAGRAM_MS = 200, TRACES_MS = 50, LONG_TRACES_MS = 200, LONG_WINDOW_S = 10;
+
+const load = (file, attempt) => import(`./${file}${attempt ? `?try=${attempt}` : ''}`);
+
+/** @param panels what the parts share: the stores, what the host has said, what the person has chosen. */
+export function allParts(panels) {
+  return { ...pictures(panels), ...knots(panels), ...plots(panels), ...tools(panels) };
+}
+
+function pictures(panels) {
+  const { latest, choice } = panels;
+  const isWanted = (key) => key === 'scene' || !panels.parts.scene.value; // drawn flat while there is no 3-D view
+  const picture = (key, name, file, className) => ({
+    name, place: () => $('scene-notes'),
+    make: async (attempt) => new (await load(file, attempt))[className]($('scene'), choice, (why) => panels.parts[key].fail(new Error(why))),
+    dispose: (value) => value?.dispose(),
+    text: (value, { status }) => { if (status) value.setStatus(status); },
+    update: (value) => { if (isWanted(key)) panels.parts.sceneTools.run((t) => t.showLegend(value.update(latest.shape, latest.now, latest.knot?.core))); },
+    draw: (value, time) => { value.show(isWanted(key)); if (isWanted(key)) value.draw(time); },
+  });
+  return { scene: picture('scene', '3-D view', 'scene.js', 'Scene'), flat: picture('flat', 'flat view', 'flat_view.js', 'FlatView') };
+}
+
+function knots(panels) {
+  const { latest, page } = panels;
+  let due = 0;
+  return {
+    knot: {
+      name: 'name of the knot', place: () => $('scene-notes'),
+      make: async (attempt) => new (await load('knot_panel.js', attempt)).KnotPanel(),
+      forget: (value) => value.clear(),
+      text: (value, { knot }) => { if (knot) showKnot(panels, value, knot); },
+    },
+    diagram: {
+      name: 'drawing of the knot', place: () => $('scene-notes'),
+      make: (attempt) => load('knot_diagram.js', attempt),
+      dispose: () => { $('knot-diagram').hidden = true; },
+      draw: (value, time) => {
+        const camera = panels.picture?.camera;
+        if (time < due || !latest.shape || !camera) return;
+        due = time + DIAGRAM_MS;
+        page.crossings = value.drawDiagram($('knot-diagram'), latest.shape.p_W, latest.knot?.core, camera);
+      },
+    },
+  };
+}
+
+/** In a recording: not while a jump is under way, and with what came before on the strip. */
+function showKnot(panels, value, knot) {
+  const { latest } = panels, period_s = panels.period_s;
+  if (latest.isReplay && Math.abs(latest.now.tick - knot.tick) * period_s > 1) return; // the next is on its way
+  if (latest.isReplay) panels.parts.replay.run((bar) => value.seed(bar.knotsUntil(knot.tick, period_s)));
+  value.update(knot, period_s);
+}
+
+function plots(panels) {
+  let due = 0;
+  panels.hurryTraces = () => { due = 0; };
+  return {
+    traces: {
+      name: 'traces', place: () => $('trace-notes'),
+      make: async (attempt) => {
+        const { Traces, describeRow } = await load('traces.js', attempt);
+        const traces = new Traces($('plots'), panels.store, panels.beside, panels.choice, (row) => {
+          $('cursor').textContent = describeRow(row, traces.period_s, traces.third, traces.besideRow(row));
+          $('cursor').dataset.row = row ? JSON.stringify([...row].map((v) => (Object.is(v, -0) ? '-0' : v))) : ''; // JSON knows no -0
+        });
+        panels.hurryTraces();
+        return traces;
+      },
+      dispose: (value) => value?.dispose(),
+      forget: (value) => { if (value.isPaused) panels.parts.traceTools.run((t) => t.togglePause()); },
+      text: (value, { status, compare }) => {
+        if (status) Object.assign(value, { period_s: status.period_s, limit_N: status.max_force_N });
+        if (compare) { value.compareWith(compare); panels.hurryTraces(); }
+      },
+      draw: (value, time) => {
+        if (time < due) return;
+        value.draw();
+        panels.parts.histogram.run((histogram) => histogram.draw(panels.store, value.histogramFrom, panels.period_s));
+        due = time + (value.window_s <= LONG_WINDOW_S ? TRACES_MS : LONG_TRACES_MS); // long windows move slowly
+      },
+    },
+    histogram: {
+      name: 'wake-up latency', place: () => $('trace-notes'),
+      make: async (attempt) => new (await load('histogram.js', attempt)).Histogram($('plots'), panels.hurryTraces),
+      dispose: (value) => value?.dispose(),
+    },
+  };
+}
+
+function tools(panels) {
+  const { link, latest } = panels;
+  const part = (name, file, make, more = {}) => ({ name, place: () => $('banner-notes'), make: async (attempt) => make(await load(file, attempt)), ...more });
+  return {
+    sceneTools: part('view buttons', 'scene_tools.js', ({ SceneTools }) => new SceneTools(panels)),
+    traceTools: part('trace buttons', 'trace_tools.js', ({ TraceTools }) => new TraceTools(panels)),
+    replay: part('replay bar', 'replay_bar.js', ({ ReplayBar }) => new ReplayBar(link), {
+      text: (value, { replay, marks, compare }) => {
+        if (replay) value.update(replay);
+        if (marks) value.setMarks(marks);
+        if (compare) value.setCompare(compare);
+      },
+    }),
+    change: part('scene and parameters', 'change_panel.js', (module) => { module.setUpChange(link); return module; }, { text: (value, { offer }) => { if (offer) value.showOffer(offer); } }),
+    recording: part('recording', 'recording.js', (module) => { module.setUpRecording(link); return module; }, { text: (value, { recording }) => { if (recording) value.showRecording(recording); } }),
+    events: part('events', 'events.js', (module) => module, { text: (value) => value.showEvents(panels.events, panels.period_s) }),
+    help: part('help', 'help.js', ({ Help }) => new Help(() => latest.isReplay)),
+  };
+}

@@ -1,0 +1,26 @@
+// The button that records, and the dialog for the recording's name and notes.
+import { toast } from './controls.js';
+
+const $ = (id) => document.getElementById(id);
+
+/** The button that starts a recording with a name and notes, and ends it. */
+export function setUpRecording(link) {
+  const say = (answer, what) => toast(`${what}: ${answer.accepted ? answer.text : `refused – ${answer.text}`}`, !answer.accepted);
+  $('record').addEventListener('click', async () => {
+    if ($('record').dataset.on === 'true') return say(await link.request({ record: 'stop' }), 'recorded');
+    $('record-name').value = new Date().toISOString().slice(0, 19).replace(/[:T]/g, '-');
+    $('record-notes').value = '';
+    $('record-dialog').show(); // not modal: STOP stays within reach
+    $('record-name').focus();
+  });
+  $('record-dialog').addEventListener('close', async () => {
+    if ($('record-dialog').returnValue !== 'start') return;
+    say(await link.request({ record: 'start', name: $('record-name').value, notes: $('record-notes').value }), 'recording');
+  });
+}
+
+export function showRecording({ on, file, why }) {
+  $('record').dataset.on = on;
+  $('record').textContent = on ? `■ ${file}` : '● Record';
+  if (why) toast(`recording of ${file} ended: ${why}`, true);
+}

@@ -1,0 +1,28 @@
+// Buttons, keys and legend of the picture, whichever is there: three-dimensional or flat.
+import { SCALE_CSS } from './colouring.js';
+import { isTyping } from './controls.js';
+
+const $ = (id) => document.getElementById(id);
+
+export class SceneTools {
+  constructor(panels) {
+    const { choice } = panels;
+    const pictures = (use) => { for (const key of ['scene', 'flat']) panels.parts[key].run(use); panels.isNew = true; };
+    const view = (name) => { choice.view = name; pictures((p) => p.view(name)); };
+    for (const button of document.querySelectorAll('[data-view]')) button.addEventListener('click', () => view(button.dataset.view));
+    $('follow').addEventListener('change', () => { choice.follow = $('follow').checked; pictures(() => {}); });
+    $('colour').addEventListener('change', () => { choice.colour = $('colour').value; pictures(() => {}); });
+    $('stereo').addEventListener('change', () => { choice.stereo = $('stereo').value; pictures((p) => p.setStereo(choice.stereo)); });
+    const keys = { 1: () => view('front'), 2: () => view('side'), 3: () => view('top'), 4: () => view('iso'), f: () => view('fit'),
+      k: () => $('follow').click(), c: () => { if (!panels.latest.isReplay) $('change-open').click(); } };
+    addEventListener('keydown', (event) => { if (!isTyping(event) && !document.querySelector('dialog[open]')) keys[event.key.toLowerCase()]?.(); });
+  }
+
+  showLegend(legend) {
+    $('legend').hidden = !legend;
+    const text = legend ? `${legend.title}|${legend.low ?? ''}|${legend.high ?? ''}` : '';
+    if ($('legend').dataset.text === text) return;
+    $('legend').dataset.text = text;
+    $('legend').innerHTML = legend ? `<b>${legend.title}</b>${legend.low ? `<i style="background:${SCALE_CSS}"></i><span>${legend.low}<span></span>${legend.high}</span>` : ''}` : '';
+  }
+}

@@ -1,0 +1,46 @@
+// Buttons and keys of the traces. What is chosen is kept apart from them: traces that are made again find it.
+import { isTyping } from './controls.js';
+
+const $ = (id) => document.getElementById(id);
+export const WINDOWS_S = [1, 5, 10, 30, 60, 300, 600];
+/** What the third plot can show: the names of THIRD in traces.js. */
+const THIRD = ['tick time', 'tension', 'passivity', 'taken out', 'bus load', 'motor heat', 'energy', 'stretch', 'gap', 'contacts'];
+
+export class TraceTools {
+  constructor(panels) {
+    this.panels = panels;
+    const traces = (use) => { panels.parts.traces.run(use); panels.hurryTraces(); };
+    this.traces = traces;
+    $('windows').replaceChildren(...WINDOWS_S.map((s) => {
+      const button = Object.assign(document.createElement('button'), { value: s, textContent: s < 60 ? `${s} s` : `${s / 60} min` });
+      button.addEventListener('click', () => this.setWindow(s));
+      return button;
+    }));
+    this.setWindow(panels.choice.window_s);
+    $('pause').addEventListener('click', () => this.togglePause());
+    $('components').addEventListener('change', () => { panels.choice.components = $('components').checked; traces((t) => t.showComponents(panels.choice.components)); });
+    $('third').replaceChildren(...THIRD.map((name) => new Option(name, name)));
+    $('third').addEventListener('change', () => { panels.choice.third = $('third').value; traces((t) => t.showThird(panels.choice.third)); });
+    const keys = { p: () => this.togglePause(), '+': () => this.#step(1), '-': () => this.#step(-1) };
+    addEventListener('keydown', (event) => { if (!isTyping(event) && !document.querySelector('dialog[open]')) keys[event.key.toLowerCase()]?.(); });
+  }
+
+  setWindow(seconds) {
+    this.panels.choice.window_s = seconds;
+    this.traces((t) => { t.window_s = seconds; });
+    for (const button of $('windows').children) button.classList.toggle('on', Number(button.value) === seconds);
+  }
+
+  togglePause() {
+    this.traces((t) => {
+      t.pause(!t.isPaused);
+      $('pause').classList.toggle('on', t.isPaused);
+      $('pause').textContent = t.isPaused ? 'Run' : 'Pause';
+    });
+  }
+
+  #step(by) {
+    const at = WINDOWS_S.indexOf(this.panels.choice.window_s) + by;
+    this.setWindow(WINDOWS_S[Math.min(Math.max(at, 0), WINDOWS_S.length - 1)]);
+  }
+}

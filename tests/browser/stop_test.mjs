@@ -1,0 +1,114 @@
+// Nothing that draws stands between a person and STOP: with WebGL and without, with each file of the page broken in each
+// way, the page stops a rig in FORCE, and never says a state that the rig does not have.
+//   node stop_test.mjs --browser chromium|firefox --host BIN --python BIN --rig SCRIPT --page DIR --modules DIR --out DIR
+import assert from 'node:assert/strict';
+import { mkdirSync, readFileSync, readdirSync } from 'node:fs';
+import { join } from 'node:path';
+import { Browser, Program, arguments_, until } from './support.mjs';
+import { Saboteur, waysFor } from './saboteur.mjs';
+
+const { host, python, rig: rigScript, out, page: pageFolder, browser: kind, parts = '' } = arguments_();
+mkdirSync(out, { recursive: true });
+const rig = new Program(python, [rigScript]);
+await rig.says(/ready/);
+const view = new Program(host, ['view', '--port', '0', '--recordings', out]);
+const own = new URL(await view.says(/open (\S+)/));
+const saboteur = await Saboteur.between(own.host);
+const CORE = ['guard.js', 'main.js', 'link.js', 'frame.js', 'names.js', 'state_panel.js', 'controls.js'];
+let failures = 0, cases = 0;
+
+/** Opens the page on a rig in FORCE, looks at what it says, and stops. @param file that is broken, or null. */
+async function stops(browser, name, file, look) {
+  ++cases;
+  const began = Date.now(), mayNotKnow = CORE.includes(file), heard = rig.heard.length;
+  const page = await browser.sheet();
+  // Again and again: where the answer was late, the page before has sent a second STOP, which may come only now.
+  const arming = setInterval(() => rig.tell('arm'), 500);
+  try {
+    await page.goto(saboteur.url);
+    await shows(page, mayNotKnow ? ['FORCE', 'UNKNOWN'] : ['FORCE']);
+    clearInterval(arming);
+    await look(page);
+    if (cases % 2) await page.keyboard.press('Space'); else await page.click('#stop');
+    await says(/command stop/, heard);
+    assert.equal((rig.heard.slice(heard).match(/command (?!stop)\S+/g) ?? []).join(), '', 'nothing else was commanded');
+    const said = await shows(page, mayNotKnow ? ['IDLE', 'UNKNOWN'] : ['IDLE']);
+    console.log(`ok   ${name}: ${said} (${((Date.now() - began) / 1000).toFixed(1)} s)`);
+  } catch (error) {
+    clearInterval(arming);
+    ++failures;
+    console.log(`FAIL ${name}\n${error.stack}`);
+    await page.screenshot({ path: join(out, `failure-${kind}-${cases}.png`) }).catch(() => {});
+  }
+}
+
+/** Waits until the page says one of these states; @returns which. */
+async function shows(page, states) {
+  await page.waitForFunction((wanted) => document.readyState === 'complete' && wanted.includes(document.getElementById('state-name').textContent), states);
+  return page.evaluate(() => document.getElementById('state-name').textContent);
+}
+
+async function says(pattern, from) {
+  const until_ms = Date.now() + 60_000;
+  while (!pattern.test(rig.heard.slice(from))) {
+    if (Date.now() > until_ms) throw new Error(`the rig never heard ${pattern}`);
+    await new Promise((resolve) => setTimeout(resolve, 10));
+  }
+}
+
+const isOurs = (name) => name.endsWith('.js') && (!parts || parts.split(',').includes(name));
+for (const webgl of [false, true]) {
+  const browser = await Browser.start({ kind, webgl });
+  for (const [width, height] of [[1400, 900], [900, 600]]) {
+    await browser.resize(width, height);
+    await stops(browser, `${kind}, WebGL ${webgl ? 'on' : 'off'}, ${width}x${height}`, null, (page) => draws(page, webgl, `${kind}-${webgl ? 'webgl' : 'flat'}-${width}x${height}`));
+  }
+  // With WebGL only what draws by it: the others have been broken without it, which is quicker.
+  const files = webgl ? ['scene.js', 'tube.js', 'hands.js', 'three.module.js'] : [...readdirSync(pageFolder), 'uPlot.esm.js'];
+  for (const file of files.filter(isOurs)) {
+    // In Firefox one way is enough: what is tried there is the browser, not the page's parts.
+    const ways = kind === 'firefox' || file.includes('three') || file.includes('uPlot') ? ['load'] : waysFor(readFileSync(join(pageFolder, file), 'utf8'));
+    for (const way of ways) {
+      saboteur.breaks(file, way);
+      await stops(browser, `${file} throws, ${way}`, file, (page) => tells(page, file));
+    }
+  }
+  saboteur.breaks(null);
+  await browser.stop();
+}
+
+/** A picture is there, traces are, and no part complains but the one that needs WebGL. */
+async function draws(page, webgl, name) {
+  await until(page, () => window.ligature?.traces && ligature.store.rowEnd > 500 && ligature.scene?.shape);
+  await page.waitForFunction((id) => document.getElementById(id)?.width > 300, webgl ? 'canvas' : 'flat');
+  rig.tell('knot');
+  await until(page, () => document.getElementById('knot-name').dataset.type === '3_1');
+  await page.waitForFunction((n) => ligature.draws > n + 5, await page.evaluate(() => ligature.draws));
+  const notes = await page.evaluate(() => [...document.querySelectorAll('.part-note:not([hidden])')].map((n) => n.dataset.part));
+  assert.deepEqual(notes, webgl ? [] : ['3-D view']);
+  if (!webgl) assert.ok(await page.evaluate(inked) > 200, 'the thread is seen in the flat view');
+  await page.evaluate(() => document.getElementById('help').close());
+  await page.screenshot({ path: join(out, `${name}.png`) });
+  await page.evaluate(() => document.getElementById('help').show()); // STOP is within reach beside it
+  rig.tell('unknot');
+}
+
+/** How many pixels of the flat view have the thread's colour, give or take. */
+function inked() {
+  const canvas = document.getElementById('flat'), { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  let count = 0;
+  for (let i = 0; i < data.length; i += 4) if (data[i] > 200 && data[i + 1] > 150 && data[i + 2] < 200 && data[i] > data[i + 2] + 40) ++count;
+  return count;
+}
+
+/** What broke says so on the page or in its console record; the rest of the page goes on. */
+async function tells(page, file) {
+  if (CORE.includes(file)) return;
+  await until(page, () => document.querySelector('.part-note:not([hidden])') || Object.keys(window.ligature?.troubles ?? {}).length);
+}
+
+console.log(`${cases} cases, ${failures} failures`);
+saboteur.stop();
+await view.stop();
+await rig.stop();
+process.exitCode = failures ? 1 : 0;
