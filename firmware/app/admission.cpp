@@ -40,7 +40,7 @@ Admission admit(const scene::Scene& scene, double seconds, int core, double budg
   result.budget_percent = budget_percent;
   result.bus_us = kBus_us;
   std::thread([&] {  // on the core, but without its priority: this computes for seconds on end
-    platform::stay_on(core);
+    if (core != kAnyCore) platform::stay_on(core);
     platform::flush_denormals();
     result.worst = measure_worst_case(scene, seconds);
   })

@@ -26,6 +26,9 @@ struct Admission {
   }
 };
 
+/// Measure on whatever core the calling thread may use.
+inline constexpr int kAnyCore = -1;
+
 /// @param scene one that physics::Simulation::make() accepts. @param seconds to spend. @param core to measure on.
 [[nodiscard]] Admission admit(const scene::Scene& scene, double seconds, int core,
                               double budget_percent = kDefaultBudget_percent);

@@ -38,16 +38,17 @@ std::vector<std::string> Launch::with(const std::vector<std::string>& live) cons
   return all;
 }
 
-std::vector<std::string> Launch::with(const std::vector<std::string>& live, const std::string& file) const {
+std::vector<std::string> Launch::with(const std::vector<std::string>& live, const std::string& file,
+                                      const std::string& text) const {
   auto all = with(live), without = all;
   if (std::erase_if(without, [](const std::string& o) { return speaks_of(o, kMaxForce); }) == 0) return all;
-  const auto own = scene::load_scene(file, without);
+  const auto own = scene::parse_scene(text, file, without);
   const auto* scene = std::get_if<scene::Scene>(&own);
   if (scene == nullptr || scene->hands.max_force_N >= hands_.max_force_N) return all;
-  char text[64];
-  std::snprintf(text, sizeof text, "%s=%.17g", kMaxForce.data(), scene->hands.max_force_N);
+  char own_limit[64];
+  std::snprintf(own_limit, sizeof own_limit, "%s=%.17g", kMaxForce.data(), scene->hands.max_force_N);
   std::erase_if(all, [](const std::string& o) { return key_of(o) == kMaxForce; });
-  all.emplace_back(text);
+  all.emplace_back(own_limit);
   return all;
 }
 

@@ -23,8 +23,9 @@ class Launch {
   /// hands.force_scale, which highest() bounds.
   [[nodiscard]] std::vector<std::string> with(const std::vector<std::string>& live) const;
 
-  /// The same, and with the force limit of the scene where that is lower than the launch's.
-  [[nodiscard]] std::vector<std::string> with(const std::vector<std::string>& live, const std::string& file) const;
+  /// The same, and with the force limit of the scene, read from `file`, where that is lower than the launch's.
+  [[nodiscard]] std::vector<std::string> with(const std::vector<std::string>& live, const std::string& file,
+                                              const std::string& text) const;
 
   /// The most that a command may set a limit to; nothing when the launch does not bound it.
   [[nodiscard]] std::optional<double> highest(std::string_view key) const;

@@ -9,6 +9,7 @@
 #include "firmware/app/admit_command.hpp"
 #include "firmware/app/doctor.hpp"
 #include "firmware/app/options.hpp"
+#include "firmware/app/rehearsal.hpp"
 #include "firmware/app/run.hpp"
 
 namespace {
@@ -22,6 +23,7 @@ int told() {
 
 int obey(const ligature::app::RunOptions& o) { return ligature::app::run(o); }
 int obey(const ligature::app::AdmitOptions& o) { return ligature::app::admit_scene(o); }
+int obey(const ligature::app::RehearseOptions& o) { return ligature::app::rehearse_scene(o); }
 int obey(const ligature::app::DoctorOptions& o) { return ligature::app::doctor(o); }
 
 }  // namespace

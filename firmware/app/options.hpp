@@ -29,6 +29,15 @@ struct RunOptions {
   std::string scenes;    ///< folder of the scenes that a command may load; empty: that of `scene`
   bool force = false;    ///< also a scene that does not fit
   double budget_percent = 60.0;
+  std::string program = "/proc/self/exe";  ///< rehearses what commands ask for, as a child
+};
+
+struct RehearseOptions {
+  std::string scene;
+  std::vector<std::string> overrides;
+  std::string text_from;  ///< where the scene's text is read; empty: from `scene`
+  double budget_percent = 60.0;
+  bool cost_unchanged = false;
 };
 
 struct AdmitOptions {
@@ -43,7 +52,7 @@ struct DoctorOptions {
   std::vector<std::string> can;  ///< interfaces to look at
 };
 
-using Command = std::variant<RunOptions, AdmitOptions, DoctorOptions>;
+using Command = std::variant<RunOptions, AdmitOptions, RehearseOptions, DoctorOptions>;
 
 struct Exit {
   int code;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <string_view>
 
@@ -15,15 +14,14 @@
 #include "firmware/rt/tick_record.hpp"
 #include "protocol/device/device_file.hpp"
 #include "protocol/scene/scene_file.hpp"
+#include "protocol/scene/text_file.hpp"
 
 namespace ligature::app {
 namespace {
 
-std::string text_of(const std::string& scene, const std::vector<std::string>& overrides) {
-  std::ostringstream text;
-  text << std::ifstream(scene).rdbuf();
-  for (const auto& o : overrides) text << "\n# --set " << o;
-  return text.str();
+std::string with_overrides(std::string text, const std::vector<std::string>& overrides) {
+  for (const auto& o : overrides) text += "\n# --set " + o;
+  return text;
 }
 
 /// A coupling that the device cannot render stably.
@@ -82,15 +80,15 @@ std::variant<std::unique_ptr<platform::CanBus>, Refusal> open_patiently(const st
 
 }  // namespace
 
-std::variant<Plan, Refusal> make_plan(const std::string& file, const std::vector<std::string>& overrides,
-                                      const device::Device& device) {
-  auto loaded = scene::load_scene(file, overrides);
+std::variant<Plan, Refusal> plan_of(const std::string& file, const std::string& text,
+                                    const std::vector<std::string>& overrides, const device::Device& device) {
+  auto loaded = scene::parse_scene(text, file, overrides);
   if (const auto* error = std::get_if<scene::Error>(&loaded)) return Refusal{2, error->text};
   auto& scene = std::get<scene::Scene>(loaded);
   if (const auto why = objection(scene, device); !why.empty()) return Refusal{2, file + ": " + why};
   auto made = physics::Simulation::make(scene);
   if (const auto* why = std::get_if<std::string>(&made)) return Refusal{2, file + ": " + *why};
-  return Plan{scene, std::move(std::get<physics::Simulation>(made)), device, text_of(file, overrides)};
+  return Plan{scene, std::move(std::get<physics::Simulation>(made)), device, with_overrides(text, overrides)};
 }
 
 std::variant<Plan, Refusal> make_plan(const RunOptions& options) {
@@ -102,7 +100,9 @@ std::variant<Plan, Refusal> make_plan(const RunOptions& options) {
     if (const auto* error = std::get_if<scene::Error>(&loaded)) return Refusal{2, error->text};
     device = std::get<device::Device>(loaded);
   }
-  auto plan = make_plan(options.scene, launch_overrides(options), device);
+  const auto text = scene::read_text(options.scene, scene::kMostScene_bytes);
+  if (const auto* error = std::get_if<scene::Error>(&text)) return Refusal{2, error->text};
+  auto plan = plan_of(options.scene, std::get<std::string>(text), launch_overrides(options), device);
   if (std::holds_alternative<Refusal>(plan)) return plan;
   if (is_same_bus(options.left, options.right))
     return Refusal{2, "--left, --right: found '" + options.left + "' for both, allowed a bus for each hand"};

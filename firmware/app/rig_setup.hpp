@@ -28,9 +28,10 @@ struct Plan {
   std::string toml;  ///< the scene's text with the overrides as comments, for recordings
 };
 [[nodiscard]] std::variant<Plan, Refusal> make_plan(const RunOptions& options);
-/// The same for any scene file; exit codes do not matter then.
-[[nodiscard]] std::variant<Plan, Refusal> make_plan(const std::string& scene, const std::vector<std::string>& overrides,
-                                                    const device::Device& device = device::omni());
+/// The same for any scene: one that was read from `file`. Exit codes do not matter then.
+[[nodiscard]] std::variant<Plan, Refusal> plan_of(const std::string& file, const std::string& text,
+                                                  const std::vector<std::string>& overrides,
+                                                  const device::Device& device = device::omni());
 
 struct Buses {
   std::unique_ptr<platform::CanBus> left, right;

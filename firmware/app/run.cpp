@@ -174,7 +174,7 @@ int run(const RunOptions& options) {
   const std::int64_t id = utime_now();
   const auto recorder = open_recorder(plan, options, id);
   if (recorder) outlets->flight = &recorder->inlet();
-  SceneDesk desk(options, plan, core);
+  SceneDesk desk(options, plan);
   const auto side = std::make_unique<RealTimeSide>(options, plan, buses, *outlets, desk.handover());
   const auto refused = side->prepare(ask, core);
   if (options.rt == RtMode::kEnforce && !refused.empty()) return fail({3, "--rt=enforce: " + refused.front()});

@@ -1,21 +1,20 @@
 #include "firmware/app/scene_desk.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <sstream>
 #include <thread>
 #include <utility>
 
-#include "firmware/app/admit_command.hpp"
+#include "firmware/app/rehearsal_process.hpp"
 #include "firmware/platform/realtime.hpp"
+#include "protocol/scene/text_file.hpp"
 
 namespace ligature::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kAdmission_s = 0.3;
 constexpr std::size_t kMostScenes = 100;
 
 std::vector<std::string> scene_files(const fs::path& folder) {
@@ -39,29 +38,9 @@ std::string assignment(const std::string& key, double value) { return key + "=" 
 
 }  // namespace
 
-std::string rehearse(const physics::Simulation& thread) {
-  constexpr int kTicks = 400;
-  constexpr double kTorn = 5.0;
-  physics::Simulation copy = thread;
-  const auto n = copy.nodes_W().size();
-  const physics::Vec3 start[2] = {copy.nodes_W()[n / 3], copy.nodes_W()[2 * n / 3]};
-  const double reach_m = 0.2 * (start[1] - start[0]).norm();
-  for (int tick = 0; tick < kTicks; ++tick) {
-    const double swing = std::sin(6.283185307179586 * tick / kTicks);
-    const physics::Vec3 pull(reach_m * swing, 0.0, 0.0);
-    copy.tick({physics::ToolInput{start[0] - pull, physics::Vec3::Zero(), true},
-               physics::ToolInput{start[1] + pull, physics::Vec3::Zero(), true}});
-    if (!copy.diagnostics().finite || copy.diagnostics().max_stretch > kTorn)
-      return "the thread would become unstable (rehearsal of " + std::to_string(kTicks) + " ticks, tick " +
-             std::to_string(tick) + ")";
-  }
-  return {};
-}
-
-SceneDesk::SceneDesk(const RunOptions& options, const Plan& plan, int core)
+SceneDesk::SceneDesk(const RunOptions& options, const Plan& plan)
     : options_(options),
       device_(plan.device),
-      core_(core),
       launch_(options, plan.scene),
       now_{options.scene, {}, plan.scene, plan.scene} {
   const fs::path given = options.scenes.empty() ? fs::path(options.scene).parent_path() : fs::path(options.scenes);
@@ -140,15 +119,24 @@ std::optional<ligature_msg::ack_t> SceneDesk::request(const ligature_msg::comman
   return std::nullopt;
 }
 
+/// First in a process that the scene may take down, then, what has passed there, in this one.
 std::variant<SceneDesk::Built, std::string> SceneDesk::build(Setup setup, bool keeps_motion) const {
   platform::flush_denormals();
-  auto planned = make_plan(setup.file, launch_.with(setup.live, setup.file), device_);
+  const auto read = scene::read_text(setup.file, scene::kMostScene_bytes);
+  if (const auto* error = std::get_if<scene::Error>(&read)) return error->text;
+  const auto& text = std::get<std::string>(read);
+  const auto verdict = rehearse_elsewhere({.program = options_.program,
+                                           .file = setup.file,
+                                           .text = text,
+                                           .overrides = launch_.with(setup.live),
+                                           .budget_percent = options_.budget_percent,
+                                           .cost_unchanged = keeps_motion},
+                                          ending_);
+  if (!verdict.refusal.empty()) return verdict.refusal;
+  if (!verdict.excess.empty() && !options_.force) return verdict.excess;
+  auto planned = plan_of(setup.file, text, launch_.with(setup.live, setup.file, text), device_);
   if (const auto* refusal = std::get_if<Refusal>(&planned)) return refusal->text;
   Plan& plan = std::get<Plan>(planned);
-  if (const auto why = rehearse(plan.thread); !why.empty()) return why;
-  const Measure measure = measure_on(core_, options_.budget_percent);
-  const auto excess = objection_of(measure(plan.scene, kAdmission_s), plan.scene, measure);
-  if (excess && !options_.force) return excess->text;
   setup.scene = plan.scene;
   if (!keeps_motion) setup.from_file = plan.scene;
   auto plant =

@@ -1,6 +1,7 @@
 #pragma once
 // Changes of scene and of parameters while the rig runs: judged, built and measured here, taken over by the loop.
 
+#include <atomic>
 #include <cstdint>
 #include <future>
 #include <memory>
@@ -25,13 +26,18 @@ struct Changed {
   double max_force_N, radius_m;
 };
 
-/// The telemetry thread's; building and measuring happens in a thread of its own, and one change at a time. A plant is
-/// built, its worst tick must fit as at the start (unless --force), and a rehearsal must stay finite; only then is it
-/// handed over. The loop judges the state once more. Whatever comes back is destroyed here.
+/// The telemetry thread's; a thread of its own builds, one change at a time. A scene is read once; a child process
+/// builds it, lets it prove in a rehearsal that it stays finite, and measures whether its worst tick fits as at the
+/// start (unless --force); only then it is built here and handed over. None of that runs on the loop's core, nor with
+/// its priority. A parameter does not change what a tick may cost, and is not measured. The loop judges the state once
+/// more. Whatever comes back is destroyed here.
 class SceneDesk {
  public:
   /// @param plan of the start; its thread is not looked at.
-  SceneDesk(const RunOptions& options, const Plan& plan, int core);
+  SceneDesk(const RunOptions& options, const Plan& plan);
+  ~SceneDesk() { ending_ = true; }  // and waits for a builder that is told so
+  SceneDesk(const SceneDesk&) = delete;
+  SceneDesk& operator=(const SceneDesk&) = delete;
 
   [[nodiscard]] control::PlantHandover& handover() noexcept { return handover_; }
 
@@ -71,7 +77,6 @@ class SceneDesk {
 
   RunOptions options_;
   device::Device device_;
-  int core_;
   Launch launch_;
   std::vector<std::string> scenes_;
   Setup now_;
@@ -80,12 +85,10 @@ class SceneDesk {
   ligature_msg::command_t asked_{};
   std::string words_;  // of what is asked
   Setup next_;
+  std::atomic<bool> ending_{false};
   std::future<std::variant<Built, std::string>> building_;
   std::optional<Built> lent_;  // with the loop
   bool busy_ = false;
 };
-
-/// Runs a copy for a while, both hands pulling to and fro. @return why it will not do, or empty.
-[[nodiscard]] std::string rehearse(const physics::Simulation& thread);
 
 }  // namespace ligature::app

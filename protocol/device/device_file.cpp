@@ -17,7 +17,7 @@ constexpr std::pair<const char*, Kinematics> kKinematics[] = {{"omni-serial", Ki
                                                               {"cartesian", Kinematics::kCartesian}};
 constexpr std::pair<const char*, Source> kSources[] = {
     {"assumed", Source::kAssumed}, {"datasheet", Source::kDatasheet}, {"measured", Source::kMeasured}};
-constexpr Range kPositive{0.0, 1e6, true};
+constexpr Range kPositive{1e-6, 1e6};
 constexpr Range kNotNegative{0.0, 1e6};
 constexpr double kFar = 100.0;  // m or rad
 

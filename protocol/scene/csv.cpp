@@ -1,10 +1,9 @@
 #include "protocol/scene/csv.hpp"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
+#include <algorithm>
 
 #include "protocol/scene/cells.hpp"
+#include "protocol/scene/text_file.hpp"
 
 namespace ligature::scene {
 std::string shown(std::string_view text) {
@@ -28,17 +27,17 @@ Error at_line(const std::filesystem::path& path, std::size_t line, std::string_v
 
 std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& path, std::string_view header,
                                                   std::string_view wider) {
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path)) {
-    return Error{path.string() + ": cannot be read: " + std::strerror(errno ? errno : EISDIR)};
-  }
+  const auto read = read_text(path, kMostCsv_bytes);
+  if (const auto* error = std::get_if<Error>(&read)) return *error;
+  std::string_view rest = std::get<std::string>(read);
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // the byte order mark of UTF-8
   auto columns = split(header);
   std::vector<CsvRow> rows;
-  std::string text;
   bool header_seen = false;
-  for (std::size_t line = 1; std::getline(file, text); ++line) {
-    if (line == 1 && text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // the byte order mark of UTF-8
-    const auto body = trim(std::string_view(text).substr(0, text.find('#')));
+  for (std::size_t line = 1; !rest.empty(); ++line) {
+    const auto text = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(rest.size(), text.size() + 1));
+    const auto body = trim(text.substr(0, text.find('#')));
     if (body.empty()) continue;
     const auto cells = split(body);
     if (!header_seen) {
@@ -53,6 +52,8 @@ std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& p
       return at_line(path, line,
                      "found " + std::to_string(cells.size()) + " columns, allowed " + std::to_string(columns.size()) +
                          " (" + std::string(header) + ")");
+    } else if (rows.size() == kMostRows) {
+      return at_line(path, line, "found another row, allowed " + std::to_string(kMostRows) + " at most");
     } else {
       rows.push_back({line, {cells.begin(), cells.end()}});
     }

@@ -13,14 +13,16 @@
 
 namespace ligature::scene {
 
+inline constexpr std::size_t kMostRows = 200'000;  ///< two hands, a minute at 1 kHz, and some more
+
 struct CsvRow {
   std::size_t line = 0;  ///< in the file, from 1
   std::vector<std::string> cells;
 };
 
-/// Reads a CSV file: `#` starts a comment, empty lines are skipped, blanks around cells are dropped, the first line
-/// that is left must be `header` (as written, blanks aside), or `wider` where there is one, and every row must have as
-/// many cells as it.
+/// Reads a CSV file of at most kMostCsv_bytes and kMostRows: `#` starts a comment, empty lines are skipped, blanks
+/// around cells are dropped, the first line that is left must be `header` (as written, blanks aside), or `wider` where
+/// there is one, and every row must have as many cells as it.
 /// @return the rows below the header (at least one), or one line that names file, line, what was found and what is
 /// allowed.
 [[nodiscard]] std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& path,

@@ -38,14 +38,13 @@ void read_rod(StrictTable& t, RodParameters& rod, double& radius_m) {
     }
     if (!found) return t.refuse("preset", "one of " + names);
   }
-  const Range positive{0.0, 1e12, true}, coefficient{0.0, 1e12};
-  t.number("density_kg_per_m", rod.density_kg_per_m, {0.0, 1e6, true});
-  t.number("EA_N", rod.EA_N, positive);
-  t.number("EI_N_m2", rod.EI_N_m2, coefficient);
-  t.number("GJ_N_m2", rod.GJ_N_m2, coefficient);
-  t.number("rest_curvature_per_m", rod.rest_curvature_per_m, {0.0, 1e6});
-  t.number("rest_twist_per_m", rod.rest_twist_per_m, {-1e6, 1e6});
-  t.number("yield_strain", rod.yield_strain, {0.0, 1.0, true});
+  t.number("density_kg_per_m", rod.density_kg_per_m, {1e-9, 1e4});
+  t.number("EA_N", rod.EA_N, {1e-6, 1e9});
+  t.number("EI_N_m2", rod.EI_N_m2, {0.0, 1e6});
+  t.number("GJ_N_m2", rod.GJ_N_m2, {0.0, 1e6});
+  t.number("rest_curvature_per_m", rod.rest_curvature_per_m, {0.0, 1e5});
+  t.number("rest_twist_per_m", rod.rest_twist_per_m, {-1e5, 1e5});
+  t.number("yield_strain", rod.yield_strain, {1e-6, 1.0});
   t.number("set_fraction", rod.set_fraction, {0.0, 1.0});
   t.number("damping_s", rod.damping_s, {0.0, 1e3});
   t.number("stretch_damping_s", rod.stretch_damping_s, {0.0, 1e3});
@@ -59,11 +58,13 @@ void read_pegs(StrictTable& t, World& world) {
     p.require("from_m");
     p.require("to_m");
     p.require("radius_m");
-    p.vector("from_m", peg.from_m, 1e6);
-    p.vector("to_m", peg.to_m, 1e6);
-    p.number("radius_m", peg.radius_m, {0.0, 1e3, true});
+    p.vector("from_m", peg.from_m, 1e4);
+    p.vector("to_m", peg.to_m, 1e4);
+    p.number("radius_m", peg.radius_m, {1e-6, 100.0});
     world.pegs.push_back(peg);
   });
+  constexpr std::size_t kMostPegs = 100;
+  if (world.pegs.size() > kMostPegs) t.refuse("pegs", std::to_string(kMostPegs) + " at most");
 }
 
 }  // namespace ligature::scene

@@ -1,11 +1,13 @@
 #include "protocol/scene/scene_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "protocol/scene/cells.hpp"
 #include "protocol/scene/polyline.hpp"
 #include "protocol/scene/rod_keys.hpp"
+#include "protocol/scene/text_file.hpp"
 #include "protocol/scene/toml_text.hpp"
 
 namespace ligature::scene {
@@ -13,8 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kFar_m = 1e6;            // coordinates
-constexpr Range kCoefficient{0.0, 1e12};  // stiffness and damping: wide, the stability map explores it
+// Wide, experiments go to the ends; but a grain of dust and a ship's hawser are threads, and 1e-300 m is none.
+constexpr double kFar_m = 1e4;           // coordinates
+constexpr Range kCoefficient{0.0, 1e9};  // stiffness and damping
+constexpr int kMostWork = 2'000'000;     // nodes x substeps: some tenths of a second a tick
+constexpr std::size_t kMostLoads = 5000;
 constexpr const char* kOfTheRod = "with suture.model \"rod\"";
 constexpr const char* kOfThePaper = "with suture.model \"paper-1\" .. \"paper-5\"";
 
@@ -44,7 +49,7 @@ int initial_points(const Suture& s) {
 }
 
 void read_paper(StrictTable& t, PaperParameters& p) {
-  t.number("node_mass_kg", p.node_mass_kg, {0.0, 1e6, true});
+  t.number("node_mass_kg", p.node_mass_kg, {1e-9, 1e4});
   t.number("stretch_N", p.stretch_N, kCoefficient);
   t.number("stretch_damping", p.stretch_damping, kCoefficient);
   t.number("bend", p.bend, kCoefficient);
@@ -60,11 +65,11 @@ void read_paper(StrictTable& t, PaperParameters& p) {
 void read_suture(StrictTable& t, const fs::path& folder, Suture& s) {
   t.choice("model", s.model, kModels);
   t.integer("nodes", s.nodes, 2, 5000);
-  t.number("length_m", s.length_m, {0.0, 1e4, true});
+  t.number("length_m", s.length_m, {1e-3, 1e3});
   const bool is_rod = s.model == Model::kRod;
   t.keys_of(is_rod, kOfTheRod, [&] { read_rod(t, s.rod, s.radius_m); });
   t.keys_of(!is_rod, kOfThePaper, [&] { read_paper(t, s.paper); });
-  t.number("radius_m", s.radius_m, {0.0, 1e3, true});
+  t.number("radius_m", s.radius_m, {1e-6, 100.0});
   t.text("initial", s.initial);
   t.number("air_drag_per_s", is_rod ? s.rod.air_drag_per_s : s.paper.air_drag_per_s, {0.0, 1e6});
   if (t.failed() || s.initial == "hanging") return;
@@ -90,10 +95,12 @@ void read_contact(StrictTable& t, bool is_rod, Contact& c) {
   if (c.static_friction && *c.static_friction < c.friction) t.refuse("static_friction", "contact.friction or more");
 }
 
+double length_of(const Vec& v) { return std::hypot(v[0], v[1], v[2]); }
+
 void read_world(StrictTable& t, const Suture& suture, World& w) {
   const int nodes = suture.nodes;
   const bool is_rod = suture.model == Model::kRod;
-  t.vector("gravity_m_per_s2", w.gravity_m_per_s2, 1e6);
+  t.vector("gravity_m_per_s2", w.gravity_m_per_s2, 1e4);
   std::set<int> seen;
   t.tables("fixed", [&](StrictTable& f) {
     FixedNode fixed;
@@ -102,7 +109,8 @@ void read_world(StrictTable& t, const Suture& suture, World& w) {
     f.integer("node", fixed.node, -1, nodes - 1);
     f.vector("position_m", fixed.position_m, kFar_m);
     f.vector("direction", fixed.direction, kFar_m);
-    if (fixed.direction == Vec{0.0, 0.0, 0.0}) f.refuse("direction", "a vector with a length");
+    if (fixed.direction && !(length_of(*fixed.direction) >= 1e-6))
+      f.refuse("direction", "a vector of length 1e-6 or more");
     if (!seen.insert(fixed.node < 0 ? nodes - 1 : fixed.node).second)
       f.refuse("node", "a node that is not fixed already");
     w.fixed.push_back(fixed);
@@ -112,32 +120,35 @@ void read_world(StrictTable& t, const Suture& suture, World& w) {
     l.require("node");
     l.require("force_N");
     l.integer("node", load.node, -1, nodes - 1);
-    l.vector("force_N", load.force_N, 1e9);
+    l.vector("force_N", load.force_N, 1e6);
     w.loads.push_back(load);
   });
+  if (w.loads.size() > kMostLoads) t.refuse("loads", std::to_string(kMostLoads) + " at most");
   t.keys_of(is_rod, kOfTheRod, [&] { read_pegs(t, w); });
   t.number("desk_height_m", w.desk_height_m, {-kFar_m, kFar_m});
   t.boolean("grippers_collide", w.grippers_collide);
   t.keys_of(!is_rod, kOfThePaper, [&] { t.boolean("frame_collides", w.frame_collides); });
 }
 
-void read_time(StrictTable& t, Time& time) {
+void read_time(StrictTable& t, int nodes, Time& time) {
   t.number("tick_s", time.tick_s, {1e-7, 1.0});
   t.integer("substeps", time.substeps, 1, 10000);
+  if (time.substeps > kMostWork / nodes)
+    t.refuse("substeps", std::to_string(kMostWork / nodes) + " at most with " + std::to_string(nodes) + " nodes");
 }
 
 void read_hands(StrictTable& t, const Suture& suture, Hands& h) {
   t.number("coupling_N_per_m", h.coupling_N_per_m, kCoefficient);
   t.number("coupling_N_s_per_m", h.coupling_N_s_per_m, kCoefficient);
-  t.number("reach_m", h.reach_m, {0.0, kFar_m, true});
+  t.number("reach_m", h.reach_m, {1e-6, kFar_m});
   if (h.reach_m && *h.reach_m < suture.radius_m)
     t.refuse("reach_m", "suture.radius_m or more: it goes to the thread's middle");
   const bool is_rod = suture.model == Model::kRod;
   t.keys_of(is_rod, kOfTheRod, [&] {  // the paper's grippers hold one node and never slip
     t.number("pinch_width_m", h.pinch_width_m, {0.0, kFar_m});
-    t.number("pinch_force_N", h.pinch_force_N, {0.0, 1e6, true});
+    t.number("pinch_force_N", h.pinch_force_N, {1e-6, 1e4});
   });
-  t.number("device_N_per_m", h.device_N_per_m, {0.0, 1e5, true});
+  t.number("device_N_per_m", h.device_N_per_m, {1e-3, 1e5});
   t.number("device_N_s_per_m", h.device_N_s_per_m, {0.0, 1e3});
   t.boolean("passivity", h.passivity);
   t.boolean("override_passivity", h.override_passivity);
@@ -146,10 +157,10 @@ void read_hands(StrictTable& t, const Suture& suture, Hands& h) {
   t.number("max_force_N", h.max_force_N, {0.0, 100.0});
   t.keys_of(!is_rod, kOfThePaper, [&] {
     t.boolean("propagation", h.propagation);
-    t.number("min_length", h.min_length, {0.0, 1.0, true});
+    t.number("min_length", h.min_length, {0.01, 1.0});
     t.number("max_length", h.max_length, {1.0, 100.0});
   });
-  t.number("workspace_scale", h.workspace_scale, {0.0, 1e6, true});
+  t.number("workspace_scale", h.workspace_scale, {1e-3, 1e4});
   t.vector("workspace_origin_m", h.workspace_origin_m, kFar_m);
 }
 
@@ -162,6 +173,8 @@ bool override_key(toml::table& root, const std::string& text, ReadContext& conte
     return false;
   };
   if (equals == std::string::npos || key.empty()) return bad("allowed key=value, for example suture.nodes=35");
+  if (std::ranges::count(key, '.') > static_cast<std::ptrdiff_t>(kDeepest))
+    return bad("nested too deep, allowed " + std::to_string(kDeepest) + " dots");
   toml::table value;
   auto parsed = parse_toml("v = " + text.substr(equals + 1), "--set");
   if (auto* tree = std::get_if<toml::table>(&parsed)) {
@@ -197,20 +210,27 @@ const char* name(Model model) noexcept {
 }
 
 std::variant<Scene, Error> load_scene(const fs::path& path, std::span<const std::string> overrides) {
-  auto parsed = parse_toml_file(path);
+  const auto read = read_text(path, kMostScene_bytes);
+  if (const auto* error = std::get_if<Error>(&read)) return *error;
+  return parse_scene(std::get<std::string>(read), path, overrides);
+}
+
+std::variant<Scene, Error> parse_scene(const std::string& text, const fs::path& path,
+                                       std::span<const std::string> overrides) {
+  auto parsed = parse_toml(text, path.string());
   if (auto* error = std::get_if<Error>(&parsed)) return *error;
   auto& root = std::get<toml::table>(parsed);
   const bool has_suture = root.contains("suture");
   ReadContext context{path.string(), {}, {}};
-  for (const auto& text : overrides) {
-    if (!override_key(root, text, context)) return *context.error;
+  for (const auto& each : overrides) {
+    if (!override_key(root, each, context)) return *context.error;
   }
   Scene scene;
   StrictTable top(root, "", context);
   top.table("suture", [&](StrictTable& t) { read_suture(t, path.parent_path(), scene.suture); });
   top.table("contact", [&](StrictTable& t) { read_contact(t, scene.suture.model == Model::kRod, scene.contact); });
   top.table("world", [&](StrictTable& t) { read_world(t, scene.suture, scene.world); });
-  top.table("time", [&](StrictTable& t) { read_time(t, scene.time); });
+  top.table("time", [&](StrictTable& t) { read_time(t, scene.suture.nodes, scene.time); });
   top.table("hands", [&](StrictTable& t) { read_hands(t, scene.suture, scene.hands); });
   top.finish();
   if (context.error) return *context.error;

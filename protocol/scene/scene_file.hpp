@@ -21,6 +21,10 @@ namespace ligature::scene {
 [[nodiscard]] std::variant<Scene, Error> load_scene(const std::filesystem::path& path,
                                                     std::span<const std::string> overrides = {});
 
+/// The same from a text that was read from `path`, so that what is run and what is recorded is one reading.
+[[nodiscard]] std::variant<Scene, Error> parse_scene(const std::string& text, const std::filesystem::path& path,
+                                                     std::span<const std::string> overrides = {});
+
 /// "paper-4" and the like, as scene files write it.
 [[nodiscard]] const char* name(Model model) noexcept;
 

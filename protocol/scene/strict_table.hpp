@@ -54,19 +54,15 @@ struct ReadContext {
   }
 };
 
-/// What a number may be: [low, high], or (low, high] when the low end is open.
+/// What a number may be: low and high included.
 struct Range {
   double low;
   double high;
-  bool open_low = false;
 
-  [[nodiscard]] bool holds(double v) const { return (open_low ? v > low : v >= low) && v <= high; }
+  [[nodiscard]] bool holds(double v) const { return v >= low && v <= high; }
   [[nodiscard]] std::string text() const {
     std::ostringstream s;
-    if (open_low)
-      s << "more than " << low << " up to " << high;
-    else
-      s << low << " .. " << high;
+    s << low << " .. " << high;
     return s.str();
   }
 };

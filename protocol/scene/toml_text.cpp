@@ -1,10 +1,8 @@
 #include "protocol/scene/toml_text.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <iterator>
+
+#include "protocol/scene/text_file.hpp"
 
 namespace ligature::scene {
 namespace {
@@ -48,7 +46,30 @@ int line_of_stray_character(std::string_view text) {
   return 0;
 }
 
+int line_too_deep(std::string_view text) {
+  std::size_t dots = 0, open = 0;
+  for (std::size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    if (c == '#') {
+      i = std::min(text.find('\n', i), text.size());
+      continue;
+    }
+    if (c == '[' || c == '{') ++open;
+    if ((c == ']' || c == '}') && open > 0) --open;
+    if (std::string_view("=,[]{}\n").find(c) != std::string_view::npos) dots = 0;
+    if (c == '.') ++dots;
+    if (dots > kDeepest || open > kDeepest)
+      return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n'));
+    i += c == '"' || c == '\'' ? quoted(text.substr(i)) : 1;
+  }
+  return 0;
+}
+
 std::variant<toml::table, Error> parse_toml(const std::string& text, const std::string& name) {
+  if (const int line = line_too_deep(text); line > 0) {
+    return Error{name + ":" + std::to_string(line) + ": nested too deep, allowed " + std::to_string(kDeepest) +
+                 " dots in a key and as many brackets in one another"};
+  }
   if (const int line = line_of_stray_character(text); line > 0) {
     return Error{name + ":" + std::to_string(line) +
                  ": a character outside ASCII, allowed in comments; in quotes write \\u00e9 for it"};
@@ -61,12 +82,9 @@ std::variant<toml::table, Error> parse_toml(const std::string& text, const std::
 }
 
 std::variant<toml::table, Error> parse_toml_file(const std::filesystem::path& path) {
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) {
-    return Error{path.string() + ": cannot be read: " + std::strerror(errno ? errno : EISDIR)};
-  }
-  return parse_toml({std::istreambuf_iterator<char>(file), {}}, path.string());
+  const auto read = read_text(path, kMostScene_bytes);
+  if (const auto* error = std::get_if<Error>(&read)) return *error;
+  return parse_toml(std::get<std::string>(read), path.string());
 }
 
 }  // namespace ligature::scene

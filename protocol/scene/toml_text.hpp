@@ -15,6 +15,12 @@ namespace ligature::scene {
 /// (U+031B, found by fuzzing) with undefined behaviour. In quotes an escape says the same: "\u00e9".
 [[nodiscard]] int line_of_stray_character(std::string_view text);
 
+/// Dots in a key, and brackets in brackets: the parser and its tree call themselves once for each.
+inline constexpr std::size_t kDeepest = 8;
+
+/// The first line with more of them; 0 when there is none.
+[[nodiscard]] int line_too_deep(std::string_view text);
+
 /// @param name of the source in messages. @return the tree, or one line that names the source and its line.
 [[nodiscard]] std::variant<toml::table, Error> parse_toml(const std::string& text, const std::string& name);
 

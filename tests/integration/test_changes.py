@@ -1,8 +1,12 @@
 """Another scene and other parameters while the rig runs: acknowledged or refused, through the real firmware."""
 
+import os
+import pathlib
+import tempfile
+import threading
 import unittest
 
-from rig import Rig, STATE_ENGAGE, run
+from rig import ROOT, Rig, STATE_ENGAGE, STATE_FORCE, run
 
 STATE_IDLE = 2
 
@@ -46,6 +50,108 @@ class Changes(unittest.TestCase):
             tick = rig.listener.ticks[-1]
             self.assertEqual((tick.state, tick.fault), (STATE_IDLE, 0))
             self.assertEqual(rig.end("firmware"), 0)
+
+    def test_scenes_that_would_kill_or_hang_the_controller(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        path = pathlib.Path(folder.name)
+        os.mkfifo(path / "pipe")
+        os.mkfifo(path / "pipe.toml")
+        poison = {
+            "deep.toml": ("a." * 500_000 + "a = 1", "nested too deep"),
+            "thin.toml": ("radius_m = 1e-300", "found 1e-300, allowed number 1e-06 .. 100"),
+            "short.toml": ("length_m = 5e-324", "allowed number 0.001 .. 1000"),
+            "light.toml": ("node_mass_kg = 1e-300", "allowed number 1e-09 .. 10000"),
+            "waits.toml": ('initial = "pipe"', "found a pipe or device"),
+            "slow.toml": ("nodes = 5000\n[time]\nsubsteps = 400", "slow.toml: the rehearsal "),
+        }
+        for name, (line, _) in poison.items():
+            (path / name).write_text(f"[suture]\n{line}\n")
+        (path / "good.toml").write_text((ROOT / "scenes/paper.toml").read_text())
+        with Rig(scene=path / "good.toml") as rig:
+            rig.wait_for(lambda r: r.listener.ticks and r.listener.ticks[-1].state >= STATE_ENGAGE, "arming")
+            self.assertEqual(send("disarm")[0], 0)
+            rig.wait_for(lambda r: r.state_is(STATE_IDLE), "idle")
+            for name, (_, words) in poison.items():
+                with self.subTest(scene=name):
+                    code, said = send("load-scene", name)
+                    self.assertEqual(code, 3)
+                    self.assertIn(words, said)
+            self.assertEqual(send("load-scene", "pipe.toml")[0], 3)
+            code, said = send("load-scene", "good.toml")
+            self.assertEqual(code, 0, said)
+            self.assertEqual((rig.listener.ticks[-1].state, rig.listener.ticks[-1].fault), (STATE_IDLE, 0))
+            self.assertEqual(rig.end("firmware"), 0)
+
+    def test_nothing_else_on_the_loops_core(self):
+        """During live changes, in force and not, no thread of the firmware or of its children may run where the loop runs."""
+        with Rig(extra=("--rt=warn",)) as rig:
+            rig.wait_for(lambda r: r.state_is(STATE_FORCE), "force")
+            pid = rig.processes["firmware"].pid
+            core = loops_core()
+            quiet = allowed_on(core, pid)
+            self.assertIn(len(quiet), (1, 2), f"the loop, and the thread's physics, on core {core}")
+            watch = CoreWatch(core, pid)
+            for i in range(10):
+                self.assertEqual(send("set", "contact.friction", f"{0.3 + 0.01 * i}")[0], 0)
+            self.assertEqual(send("disarm")[0], 0)
+            rig.wait_for(lambda r: r.state_is(STATE_IDLE), "idle")
+            for name in ("desk.toml", "paper.toml"):
+                self.assertEqual(send("load-scene", name)[0], 0)
+            seen, children = watch.end()
+            self.assertEqual(seen - quiet, set(), "others were allowed on the loop's core")
+            self.assertGreater(children, 0, "the rehearsals were not seen at all")
+            self.assertEqual(rig.end("firmware"), 0)
+
+
+def loops_core():
+    """As firmware/platform/realtime.cpp chooses it."""
+    isolated = pathlib.Path("/sys/devices/system/cpu/isolated").read_text().strip()
+    return int(isolated.replace("-", ",").split(",")[-1]) if isolated else max(os.sched_getaffinity(0))
+
+
+def tasks_of(pid):
+    return [int(t.name) for t in pathlib.Path(f"/proc/{pid}/task").iterdir()]
+
+
+def children_of(pid):
+    return [int(c) for t in tasks_of(pid) for c in pathlib.Path(f"/proc/{pid}/task/{t}/children").read_text().split()]
+
+
+def allowed_on(core, pid):
+    """The threads of a process that may run on that core; none when it has ended meanwhile."""
+    found = set()
+    for task in tasks_of(pid):
+        try:
+            if core in os.sched_getaffinity(task):
+                found.add(task)
+        except ProcessLookupError:
+            pass
+    return found
+
+
+class CoreWatch(threading.Thread):
+    """Looks every millisecond who may run on a core: threads of a process and of its children."""
+
+    def __init__(self, core, pid):
+        super().__init__(daemon=True)
+        self.core, self.pid, self.seen, self.children, self.over = core, pid, set(), set(), threading.Event()
+        self.start()
+
+    def run(self):
+        while not self.over.wait(0.001):
+            self.seen |= allowed_on(self.core, self.pid)
+            try:
+                for child in children_of(self.pid):
+                    self.seen |= allowed_on(self.core, child)
+                    self.children.add(child)
+            except (FileNotFoundError, ProcessLookupError):  # ended meanwhile
+                pass
+
+    def end(self):
+        self.over.set()
+        self.join()
+        return self.seen, len(self.children)
 
 
 if __name__ == "__main__":

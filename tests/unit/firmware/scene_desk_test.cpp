@@ -2,12 +2,17 @@
 #include "firmware/app/scene_desk.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <thread>
+
+#include "firmware/app/rehearsal.hpp"
+#include "firmware/app/rehearsal_process.hpp"
 
 namespace ligature::app {
 namespace {
@@ -25,6 +30,7 @@ class SceneDeskTest : public ::testing::Test {
     write("wrong.toml", "[suture]\nnodes = 1\n");
     write("huge.toml", "[suture]\nnodes = 5000\nlength_m = 50.0\nradius_m = 0.003\n");
     options.scene = (folder / "small.toml").string();
+    options.program = LIGATURE_FIRMWARE;
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     options.force = true;  // admission measures a program that a sanitizer slows down
 #endif
@@ -42,7 +48,7 @@ class SceneDeskTest : public ::testing::Test {
     c.id = id, c.kind = command_t::KIND_SET_PARAMETER, c.text = key, c.value = value;
     return c;
   }
-  SceneDesk desk() const { return SceneDesk(options, std::get<Plan>(make_plan(options)), 0); }
+  SceneDesk desk() const { return SceneDesk(options, std::get<Plan>(make_plan(options))); }
 
   /// Plays the loop until the desk has answered.
   SceneDesk::Outcome outcome(SceneDesk& desk, bool takes = true) {
@@ -230,6 +236,82 @@ TEST_F(SceneDeskTest, LoadsASceneWithAnotherNumberOfNodes) {
     EXPECT_NE(d.request(load(bad), false)->reason.find("allowed suture.model=MODEL and suture.nodes=N"),
               std::string::npos)
         << bad;
+}
+
+/// A program in the place of the one that rehearses.
+std::string script(const fs::path& folder, const std::string& body) {
+  const auto path = folder / "program.sh";
+  std::ofstream(path) << "#!/bin/sh\n" << body << "\n";
+  fs::permissions(path, fs::perms::owner_all);
+  return path.string();
+}
+
+TEST_F(SceneDeskTest, ASceneThatTakesItsRehearsalDownIsRefusedAndNothingElseHappens) {
+  const std::pair<const char*, const char*> ends[] = {{"kill -SEGV $$", "took the process of its rehearsal down (Segm"},
+                                                      {"kill -ABRT $$", "took the process of its rehearsal down (Abor"},
+                                                      {"kill -XCPU $$", "the rehearsal took too long"},
+                                                      {"exit 1", "took the process of its rehearsal down (exit code 1"},
+                                                      {"exit 2", "no reason given"}};
+  for (const auto& [body, words] : ends) {
+    options.program = script(folder, body);
+    auto d = desk();
+    for (const auto& wish : {load("longer.toml"), set("contact.friction", 0.5)}) {
+      ASSERT_FALSE(d.request(wish, false).has_value()) << body << ": and the next request is heard";
+      const auto o = outcome(d);
+      EXPECT_EQ(o.ack.accepted, 0) << body;
+      EXPECT_NE(o.ack.reason.find(words), std::string::npos) << o.ack.reason;
+    }
+  }
+  options.program = (folder / "none").string();
+  auto d = desk();
+  ASSERT_FALSE(d.request(load("longer.toml"), false).has_value());
+  EXPECT_NE(outcome(d).ack.reason.find("cannot be rehearsed: no process"), std::string::npos);
+}
+
+TEST_F(SceneDeskTest, ARehearsalThatDoesNotEndIsEndedWithTheDesk) {
+  const auto note = folder / "pid";
+  options.program = script(folder, "echo $$ > " + note.string() + "; exec sleep 600");
+  int pid = 0;
+  {
+    auto d = desk();
+    ASSERT_FALSE(d.request(load("longer.toml"), false).has_value());
+    for (; pid == 0; std::this_thread::yield()) std::ifstream(note) >> pid;
+  }
+  EXPECT_NE(kill(pid, 0), 0) << "it is gone, and waited for";
+}
+
+TEST(RehearsalProcess, IsEndedWhenItsTimeIsOver) {
+  const std::atomic<bool> cancelled{false};
+  const auto path = script(fs::temp_directory_path(), "exec sleep 600");
+  Rehearsal what;
+  what.program = path, what.file = "a.toml", what.patience = std::chrono::milliseconds(50);
+  const auto v = rehearse_elsewhere(what, cancelled);
+  EXPECT_EQ(v.refusal, "a.toml: the rehearsal did not end in time and was ended");
+  fs::remove(path);
+}
+
+// What the child sees of us: the text as it was read, the overrides, and no file but its three.
+TEST_F(SceneDeskTest, TheRehearsalHasTheTextAndNoFileOfOurs) {
+  options.overrides = {"hands.max_force_N=1.0"};
+  const auto at = [&](const char* name) { return (folder / name).string(); };
+  constexpr int kOurs = 40;
+  ASSERT_EQ(dup2(STDERR_FILENO, kOurs), kOurs) << "LCM does not close its socket on exec";
+  options.program =
+      script(folder, "cat > " + at("text") + "; echo \"$@\" > " + at("words") + "; ls /proc/$$/fd > " + at("files"));
+  auto d = desk();
+  ASSERT_FALSE(d.request(load("longer.toml suture.nodes=15"), false).has_value());
+  EXPECT_EQ(outcome(d).ack.accepted, 1);
+  const auto all = [&](const char* name) {
+    std::ifstream file(at(name));
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  EXPECT_EQ(all("text"), all("longer.toml"));
+  EXPECT_EQ(all("words"), "rehearse --scene " + at("longer.toml") +
+                              " --text-from /proc/self/fd/0 --budget 60.000000 --set hands.max_force_N=1.0 --set "
+                              "suture.nodes=15\n");
+  EXPECT_NE(all("files").find("2\n"), std::string::npos);
+  EXPECT_EQ(all("files").find("40\n"), std::string::npos) << all("files");
+  close(kOurs);
 }
 
 TEST(Rehearsal, FindsAThreadThatWouldBlowUp) {

@@ -1,10 +1,18 @@
 #include "protocol/scene/scene_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "protocol/scene/fault_script.hpp"
+#include "protocol/scene/gripper_script.hpp"
+#include "protocol/scene/polyline.hpp"
+#include "protocol/scene/text_file.hpp"
+#include "protocol/scene/toml_text.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace ligature::scene {
@@ -137,6 +145,76 @@ TEST(SceneFile, AKeyOfAnotherModelIsRefused) {
 TEST(SceneFile, RefusesAMissingFileAndAFolder) {
   EXPECT_NE(std::get<Error>(load_scene("no/such.toml")).text.find("no/such.toml: cannot be read"), std::string::npos);
   EXPECT_NE(std::get<Error>(load_scene(test::temp_folder())).text.find("cannot be read"), std::string::npos);
+}
+
+TEST(SceneFile, ReadsRegularFilesOnlyAndNeverWaits) {
+  const std::string pipe = test::temp_folder() + "pipe", device = "/dev/zero";
+  ::unlink(pipe.c_str());
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& path : {pipe, device}) {
+    const auto said = [&](const Error& error) {
+      EXPECT_NE(error.text.find(path + ": cannot be read: found a pipe or device, allowed a regular file"),
+                std::string::npos)
+          << error.text;
+    };
+    said(std::get<Error>(load_scene(path)));
+    said(std::get<Error>(load_fault_script(path)));
+    said(std::get<Error>(load_gripper_script(path)));
+    said(std::get<Error>(load_polyline(path)));
+    said({why_refused("[suture]\ninitial = \"" + path + "\"\n")});
+  }
+}
+
+TEST(SceneFile, ReadsFilesOfABoundedSizeOnly) {
+  const auto big = write("big.toml", "[suture]\n#" + std::string(kMostScene_bytes, '.'));
+  EXPECT_EQ(std::get<Error>(load_scene(big)).text, big + ": found 1048586 bytes, allowed 1048576 at most");
+  std::filesystem::resize_file(big, kMostScene_bytes);
+  EXPECT_TRUE(std::holds_alternative<Scene>(load_scene(big)));
+  const auto sparse = write("sparse.csv", "x,y,z\n0,0,0\n");
+  std::filesystem::resize_file(sparse, std::uintmax_t{60} << 30);
+  EXPECT_NE(std::get<Error>(load_polyline(sparse)).text.find("allowed 16777216 at most"), std::string::npos);
+  std::string rows = "x,y,z\n";
+  for (std::size_t i = 0; i < kMostRows; ++i) rows += "0,0,0\n";
+  EXPECT_TRUE(std::holds_alternative<std::vector<Vec>>(load_polyline(write("rows.csv", rows))));
+  EXPECT_NE(std::get<Error>(load_polyline(write("rows.csv", rows + "0,0,0\n"))).text.find("rows.csv:200002: found"),
+            std::string::npos);
+}
+
+TEST(SceneFile, NestsToABoundedDepthOnly) {
+  std::string key = "a", quoted = "\"a\"", list = "1";
+  for (int i = 0; i < 1'000'000; ++i) key += ".a";
+  for (int i = 0; i < 100'000; ++i) quoted += " . \"a\"";
+  for (int i = 0; i < 100'000; ++i) list.insert(0, 1, '[');
+  for (const auto& line : {key + " = 1", "[" + key + "]", "b = {" + quoted + " = 1}", "b = " + list}) {
+    const auto why = why_refused("[suture]\n" + line.substr(0, kMostScene_bytes - 100) + "\n");
+    EXPECT_EQ(why, test::temp_folder() +
+                       "scene.toml:2: nested too deep, allowed 8 dots in a key and as many brackets "
+                       "in one another");
+  }
+  EXPECT_NE(why_refused("[suture]\n", {key + "=1"}).find("nested too deep, allowed 8 dots"), std::string::npos);
+  EXPECT_EQ(why_refused("[suture]\n# a.b.c.d.e.f.g.h.i.j.k\nlength_m = 5.0\ninitial = \"hanging\"\n"), "");
+  EXPECT_NE(why_refused("[suture]\ninitial = \"a.b.c.d.e.f.g.h.i.j.k.csv\"\n").find("cannot be read"),
+            std::string::npos)
+      << "dots in a text are none of a key";
+}
+
+// A thread as thin as an atom's nucleus is a slip of a finger; physics cannot mean it, and rounding cannot bear it.
+TEST(SceneFile, RefusesWhatNoThreadCanBe) {
+  for (const char* set :
+       {"suture.radius_m=1e-300", "suture.length_m=5e-324", "suture.node_mass_kg=1e-300", "suture.stretch_N=1e12",
+        "world.gravity_m_per_s2=[0,0,-1e300]", "world.fixed=[{node=0,position_m=[1e5,0,0]}]",
+        "world.fixed=[{node=0,position_m=[0,0,0],direction=[5e-324,0,0]}]", "hands.workspace_scale=1e-300",
+        "hands.reach_m=1e-300", "hands.device_N_per_m=1e-300", "hands.min_length=1e-300", "time.substeps=40001"}) {
+    const auto why = why_refused("[suture]\n", {set});
+    EXPECT_NE(why.find("allowed"), std::string::npos) << set << " -> " << why;
+  }
+  for (const char* set : {"suture.density_kg_per_m=1e-300", "suture.EA_N=1e-300", "suture.yield_strain=1e-300",
+                          "hands.pinch_force_N=1e-300", "world.pegs=[{from_m=[0,0,0],to_m=[1,0,0],radius_m=1e-300}]"}) {
+    const auto why = why_refused("[suture]\n", {"suture.model=rod", set});
+    EXPECT_NE(why.find("allowed"), std::string::npos) << set << " -> " << why;
+  }
+  EXPECT_EQ(why_refused("[suture]\nnodes = 5000\n[time]\nsubsteps = 401\n"),
+            test::temp_folder() + "scene.toml:4: key 'time.substeps': found 401, allowed 400 at most with 5000 nodes");
 }
 
 TEST(SceneFile, OverridesReachEveryKindOfKey) {

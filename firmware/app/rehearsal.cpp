@@ -1,0 +1,91 @@
+#include "firmware/app/rehearsal.hpp"
+
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <cstdio>
+#include <exception>
+
+#include "firmware/app/admit_command.hpp"
+#include "firmware/platform/realtime.hpp"
+#include "protocol/scene/text_file.hpp"
+
+namespace ligature::app {
+namespace {
+
+constexpr rlim_t kMostMemory_bytes = rlim_t{1} << 30;
+constexpr rlim_t kMostCpu_s = 6;
+constexpr int kNiceness = 10;
+constexpr double kAdmission_s = 0.3;
+
+/// Of CPU time, the first limit says by its signal what ended the process, the second ends it.
+void limit(int what, rlim_t most) {
+  const rlimit both{most, what == RLIMIT_CPU ? most + 1 : most};
+  setrlimit(static_cast<__rlimit_resource>(what), &both);
+}
+
+/// What this process may take, whatever the scene asks for. A sanitizer's shadow is memory, too.
+void bound_this_process() {
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  limit(RLIMIT_AS, kMostMemory_bytes);
+  limit(RLIMIT_CPU, kMostCpu_s);
+#endif
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_FSIZE, 0);
+  setpriority(PRIO_PROCESS, 0, kNiceness);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody waits for the answer any more
+}
+
+int refused(const Refusal& why) {
+  std::fprintf(stderr, "ligature-firmware: %s\n", why.text.c_str());
+  return why.exit_code;
+}
+
+int try_out(const RehearseOptions& options) {
+  const auto text =
+      scene::read_text(options.text_from.empty() ? options.scene : options.text_from, scene::kMostScene_bytes);
+  if (const auto* error = std::get_if<scene::Error>(&text)) return refused({2, error->text});
+  auto planned = plan_of(options.scene, std::get<std::string>(text), options.overrides);
+  if (const auto* refusal = std::get_if<Refusal>(&planned)) return refused(*refusal);
+  const Plan& plan = std::get<Plan>(planned);
+  if (const auto why = rehearse(plan.thread); !why.empty()) return refused({2, options.scene + ": " + why});
+  if (options.cost_unchanged) return 0;
+  const Measure measure = measure_on(kAnyCore, options.budget_percent);
+  const auto excess = objection_of(measure(plan.scene, kAdmission_s), plan.scene, measure);
+  return excess ? refused(*excess) : 0;
+}
+
+}  // namespace
+
+std::string rehearse(const physics::Simulation& thread) {
+  constexpr int kTicks = 400;
+  constexpr double kTorn = 5.0;
+  physics::Simulation copy = thread;
+  const auto n = copy.nodes_W().size();
+  const physics::Vec3 start[2] = {copy.nodes_W()[n / 3], copy.nodes_W()[2 * n / 3]};
+  const double reach_m = 0.2 * (start[1] - start[0]).norm();
+  for (int tick = 0; tick < kTicks; ++tick) {
+    const double swing = std::sin(6.283185307179586 * tick / kTicks);
+    const physics::Vec3 pull(reach_m * swing, 0.0, 0.0);
+    copy.tick({physics::ToolInput{start[0] - pull, physics::Vec3::Zero(), true},
+               physics::ToolInput{start[1] + pull, physics::Vec3::Zero(), true}});
+    if (!copy.diagnostics().finite || copy.diagnostics().max_stretch > kTorn)
+      return "the thread would become unstable (rehearsal of " + std::to_string(kTicks) + " ticks, tick " +
+             std::to_string(tick) + ")";
+  }
+  return {};
+}
+
+int rehearse_scene(const RehearseOptions& options) {
+  bound_this_process();
+  platform::flush_denormals();
+  try {
+    return try_out(options);
+  } catch (const std::exception& error) {  // no memory, mostly
+    return refused({2, options.scene + ": cannot be built within 1 GB of memory (" + error.what() + ")"});
+  }
+}
+
+}  // namespace ligature::app
