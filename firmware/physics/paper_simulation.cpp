@@ -72,8 +72,8 @@ double PaperSimulation::integrate(const Lane3& v_W) noexcept {
 void PaperSimulation::step(const std::array<ToolInput, 2>& tools) noexcept {
   if (explicit_damping_ || forward_) rate_v_ = state_.v;  // same size: copies, does not allocate
   add_external(tools);
+  if (has_limits_) limits_.warm_start(model_, state_);
   internal_(model_, state_, rate_v_, work_);
-  if (has_limits_) limits_.warm_start(model_, state_, work_.u);
   if (contact_kind_ == scene::ContactSolver::kImplicit) contact_.solve(model_, state_);
   if (contact_kind_ == scene::ContactSolver::kPaper) paper_contact_.solve(model_, state_);
   double speed = integrate(forward_ ? rate_v_ : state_.v);
@@ -247,8 +247,9 @@ void PaperSimulation::describe(std::span<float> tension_N, std::span<float> turn
     const int node = static_cast<int>(i);
     if (node + 1 < model_.nodes) {
       const double strain = norm(state_.p.at(node + 1) - state_.p.at(node)) / model_.rest_m - 1.0;
-      tension = static_cast<float>(quadratic_ ? QuadraticStretchLaw::tension_N(strain, model_.stretch_N)
-                                              : LinearStretch::tension_N(strain, model_.stretch_N));
+      const double spring_N = quadratic_ ? QuadraticStretchLaw::tension_N(strain, model_.stretch_N)
+                                         : LinearStretch::tension_N(strain, model_.stretch_N);
+      tension = static_cast<float>(spring_N + (has_limits_ ? limits_.passed_N(node) : 0.0));
     }
     tension_N[i] = tension;
   }

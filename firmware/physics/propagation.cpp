@@ -29,11 +29,11 @@ void LengthLimits::forget() noexcept {
   holding_ = false;
 }
 
-void LengthLimits::warm_start(const ThreadModel& m, ThreadState& s, const Lane3& u) noexcept {
+void LengthLimits::warm_start(const ThreadModel& m, ThreadState& s) noexcept {
   if (!holding_) return;
   for (int i = 0; i < m.nodes; i += kLanes) {
-    const Pack w = m.inverse_mass_per_kg.pack(i);
-    s.v.set(i, s.v.pack(i) + (w * impulse_.pack(i)) * u.pack(i) - (w * impulse_.pack(i - 1)) * u.pack(i - 1));
+    const Pack w = m.inverse_mass_per_kg.pack(i), here = w * impulse_.pack(i), before = w * impulse_.pack(i - 1);
+    s.v.set(i, s.v.pack(i) + here * u_.pack(i) - before * u_.pack(i - 1));
   }
 }
 

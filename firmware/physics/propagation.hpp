@@ -19,9 +19,9 @@ class LengthLimits {
   LengthLimits() = default;
   LengthLimits(const ThreadModel& model, double min_length, double max_length);
 
-  /// Velocity level, before contacts: applies last step's tensions again, so that contacts feel the pull that passes
-  /// through.
-  void warm_start(const ThreadModel& model, ThreadState& state, const Lane3& directions) noexcept;
+  /// Velocity level, before dampers and contacts: applies last step's tensions again. So dampers see no speed in a
+  /// balance, and contacts feel the pull that passes through.
+  void warm_start(const ThreadModel& model, ThreadState& state) noexcept;
 
   /// Position level, after positions moved: corrects them and the velocities. @return Newton iterations used
   int enforce(const ThreadModel& model, ThreadState& state) noexcept;

@@ -130,5 +130,21 @@ TEST(Propagation, OneHandThatPullsTautIsConditionB) {
   EXPECT_GT(sim.hand(Hand::kLeft).f_W.z(), 300.0);
 }
 
+// What is told of a thread that a hand pulls taut: each segment carries the hand's pull and the nodes below it, part of
+// it by its spring, the rest by being on its limit.
+TEST(Propagation, TheTensionToldIsTheHandsPullAndTheWeightBelow) {
+  Simulation sim = make(paper_scene({"hands.propagation=true", "suture.nodes=20", "suture.air_drag_per_s=5.0"}));
+  for (int k = 0; k < 6000; ++k) {
+    const double z = 0.5 - std::min(1.0, 1e-3 * k);
+    sim.tick({ToolInput{Vec3(0.0, 0.0, z), Vec3(0, 0, k < 1000 ? -1.0 : 0.0), true},
+              ToolInput{Vec3(9, 9, 9), Vec3::Zero(), false}});
+  }
+  float tension_N[20], turn[20];
+  sim.describe(tension_N, turn);
+  const double pull_N = sim.hand(Hand::kLeft).f_W.z();
+  ASSERT_GT(pull_N, 300.0);
+  for (int i = 0; i < 19; ++i) EXPECT_NEAR(tension_N[i], pull_N + (19 - i) * 0.05 * 9.8, 1e-6 * pull_N) << i;
+}
+
 }  // namespace
 }  // namespace ligature::physics

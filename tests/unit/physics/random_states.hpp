@@ -20,7 +20,11 @@ class Random {
   explicit Random(unsigned seed) : engine_(seed) {}
   double in(double low, double high) { return std::uniform_real_distribution<>(low, high)(engine_); }
   double log_in(double low, double high) { return std::pow(10.0, in(std::log10(low), std::log10(high))); }
-  V vector(double size = 1.0) { return {in(-size, size), in(-size, size), in(-size, size)}; }
+  V vector(double size = 1.0) { return {in(-size, size), in(-size, size), in(-size, size)}; }  // braces: in order
+  V unit() {
+    for (;;)
+      if (const V a = vector(); dot(a, a) > 0.01) return (1.0 / norm(a)) * a;
+  }
   Nodes nodes(int n) {
     Nodes s;
     for (int i = 0; i < n; ++i) s.p.push_back(vector()), s.v.push_back(vector());

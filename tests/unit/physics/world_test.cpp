@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/unit/physics/random_states.hpp"
 #include "tests/unit/physics/script_run.hpp"
 
 namespace ligature::physics {
@@ -45,6 +46,31 @@ TEST(HangingThread, StretchesLessInModel5OnlyWithTheStiffConstant) {
   EXPECT_NEAR(four / 5.0, 0.0153, 1e-3);  // 1.5 % and 11.7 %: the prototype's figures for N = 50
   EXPECT_NEAR(printed / 5.0, 0.117, 2e-3);
   EXPECT_LT(stiff, 0.85 * four);
+}
+
+// What is told of a thread: each segment carries the nodes below it, whatever its law.
+TEST(HangingThread, TellsTheTensionOfTheWeightBelow) {
+  for (const auto& [model, constant] :
+       {std::pair{"paper-4", "stiff"}, std::pair{"paper-5", "stiff"}, std::pair{"paper-5", "printed"}}) {
+    Simulation sim =
+        make(paper_scene({std::string("suture.model=") + model, std::string("suture.quadratic_stretch=") + constant,
+                          "suture.nodes=20", "suture.air_drag_per_s=5.0"}));
+    settle(sim, 20.0);
+    float tension_N[20], turn[20];
+    sim.describe(tension_N, turn);
+    for (int i = 0; i < 19; ++i) EXPECT_NEAR(tension_N[i] / ((19 - i) * 0.05 * 9.8), 1.0, 2e-3) << model << " " << i;
+  }
+}
+
+// x += dt v with the velocity of before the step (forward) or of after it (semi-implicit): a fall tells them apart.
+TEST(Integrator, ForwardMovesByTheVelocityBeforeTheStepSemiImplicitByTheOneAfter) {
+  for (const auto& [name, steps] : {std::pair{"forward", 99.0}, std::pair{"semi-implicit", 101.0}}) {
+    Simulation sim = make(paper_scene({std::string("suture.integrator=") + name, "world.fixed=[]",
+                                       "suture.air_drag_per_s=0.0", "contact.solver=none", "time.substeps=2"}));
+    const double from_m = sim.nodes_W()[7].z();
+    for (int k = 0; k < 50; ++k) sim.tick(kNoHands);  // 100 steps of half a millisecond
+    EXPECT_NEAR(sim.nodes_W()[7].z() - from_m, -9.8 * 2.5e-7 * 100.0 * steps / 2.0, 1e-12) << name;
+  }
 }
 
 // With reference_nodes the same thread is refined: its weight, its stretch and its sag do not depend on `nodes`.
@@ -140,6 +166,24 @@ TEST(Gripper, PushesTheThreadAsideButNotTheOneItHolds) {
   EXPECT_EQ(held.diagnostics().contacts, 0);  // lets go without kicking the thread away
 }
 
+// What overlaps is pushed out at 0.01 r a step, 0.5 m/s: a faster gripper takes the thread along by its own velocity.
+TEST(Gripper, TakesAlongWhatItMeetsHoweverFastItIs) {
+  for (const double speed : {0.2, 1.0, 3.0}) {
+    Simulation sim = make(paper_scene({"world.grippers_collide=true", "world.gravity_m_per_s2=[0.0,0.0,0.0]"}));
+    const std::size_t middle = 25;
+    const double z = sim.nodes_W()[middle].z(), from_m = -0.2, ticks = 0.4 / speed * 1e3;
+    double x = 0.0, deepest_m = 0.0;
+    for (int k = 0; k < static_cast<int>(ticks); ++k) {
+      x = from_m + 1e-3 * speed * k;
+      sim.tick({ToolInput{Vec3(x, 0.1, z), Vec3(speed, 0, 0), false}, ToolInput{Vec3(9, 9, 9), Vec3::Zero(), false}});
+      if (x > -0.09) deepest_m = std::max(deepest_m, x + 1e-3 * speed + 0.1 - sim.nodes_W()[middle].x());
+    }
+    EXPECT_GT(sim.diagnostics().contacts, 0) << speed;
+    EXPECT_LT(deepest_m, 0.02 * 0.1) << speed;
+    EXPECT_GT(sim.velocities_W()[middle].x(), 0.9 * speed) << speed;
+  }
+}
+
 TEST(Frame, ItsHookStopsAThreadThrownOverIt) {
   for (const auto& [collides, stopped] : {std::pair{"true", true}, std::pair{"false", false}}) {
     // The tail lies across the hook, 0.1 m above the fixed node, and falls: onto the hook's side or through it.
@@ -185,6 +229,67 @@ TEST(Coupling, PullsTheHandBackTowardsTheNodeAtRestBySpringAlone) {
   EXPECT_EQ(c.node, 49);
   EXPECT_NEAR((c.f_W - 1200.0 * (c.p_WG - hand.p_WT)).norm(), 0.0, 1e-6 * c.f_W.norm());
   EXPECT_GT(c.f_W.z(), 0.0);
+}
+
+/// Runs of one thread with each broad phase: the pairs are the same to the last bit, so the motion is.
+void expect_the_same_motion(int nodes, const std::vector<Vec3>& shape, const std::function<void(Simulation&)>& run) {
+  std::vector<Vec3> brute;
+  for (const char* search : {"brute", "sweep", "bvh"}) {
+    Simulation sim =
+        make(paper_scene({std::string("contact.broad_phase=") + search, "suture.nodes=" + std::to_string(nodes)}));
+    if (!shape.empty()) sim.set_state(shape, {});
+    run(sim);
+    EXPECT_GT(sim.diagnostics().contacts, 0) << search;
+    if (brute.empty()) brute.assign(sim.nodes_W().begin(), sim.nodes_W().end());
+    for (std::size_t i = 0; i < brute.size(); ++i) ASSERT_EQ(sim.nodes_W()[i], brute[i]) << search << ", node " << i;
+  }
+}
+
+TEST(BroadPhases, MoveAThreadAlikeToTheLastBit) {
+  const auto script = test::overhand();
+  expect_the_same_motion(50, {}, [&](Simulation& sim) { test::play(sim, script, 0.0, 12.0); });
+  const auto fall = [](Simulation& sim) {
+    for (int tick = 0; tick < 40; ++tick) sim.tick(kNoHands);
+  };
+  test::Random random(8);
+  for (int k = 0; k < 5; ++k) {  // heaps that fall apart
+    std::vector<Vec3> heap;
+    for (int i = 0; i < 50; ++i) {
+      const auto at = random.vector(0.4);
+      heap.emplace_back(at.x, at.y, at.z);
+    }
+    expect_the_same_motion(50, heap, fall);
+  }
+  // Coils whose turns overlap a little. Of segments a quarter of the diameter long: their spheres are no larger than
+  // what touches.
+  for (int k = 0; k < 3; ++k) {
+    const double radius_m = random.in(0.2, 0.4), pitch_m = random.in(0.08, 0.095);
+    std::vector<Vec3> coil;
+    for (int i = 0; i < 200; ++i) {
+      const double turn = 5.0 / 199.0 * i / radius_m;
+      coil.emplace_back(radius_m * std::cos(turn), radius_m * std::sin(turn), 5.5 + pitch_m * turn / 6.283);
+    }
+    expect_the_same_motion(200, coil, fall);
+  }
+}
+
+// The published contact as a scene's option: a thread folded back onto itself is pushed apart, without contact it
+// stays.
+TEST(PaperSolver, KeepsAFoldedThreadApart) {
+  for (const auto& [solver, holds] : {std::pair{"paper", true}, std::pair{"none", false}}) {
+    Simulation sim = make(paper_scene({std::string("contact.solver=") + solver, "suture.bend=0.0",
+                                       "world.gravity_m_per_s2=[0.0,0.0,0.0]", "world.fixed=[]"}));
+    std::vector<Vec3> shape;
+    for (int i = 0; i < 50; ++i) shape.emplace_back(0.1 * (i < 25 ? i : 49 - i), i < 25 ? 0.0 : 0.06, 0.0);
+    sim.set_state(shape, {});
+    settle(sim, 0.5);
+    EXPECT_TRUE(sim.diagnostics().finite);
+    const double apart_m = (sim.nodes_W()[5] - sim.nodes_W()[44]).norm();
+    if (holds)
+      EXPECT_GT(apart_m, 0.099);
+    else
+      EXPECT_LT(apart_m, 0.07);
+  }
 }
 
 TEST(Simulation, ACopyOfAKnottedThreadGoesOnExactlyLikeTheOriginal) {  // contacts and the room for them included
