@@ -46,8 +46,8 @@ void HandDevice::hear(const Transmission& heard) {
     send(i, heard.end);
   }
   const auto enabled = [](const DriveNode& d) { return d.state() == can::cia402::State::kOperationEnabled; };
-  if (can::is_sync(heard.frame) && std::all_of(drives_.begin(), drives_.end(), enabled))
-    mechanics_.start_script(heard.end);
+  if (can::is_sync(heard.frame))
+    mechanics_.feel_drives(std::all_of(drives_.begin(), drives_.end(), enabled), heard.end);
   deliveries_.push_back({heard.frame, heard.sender, heard.end});
 }
 

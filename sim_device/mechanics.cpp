@@ -35,7 +35,13 @@ Body Body::of(const device::Device& device) {
 }
 
 void Mechanics::start_script(Time now) noexcept {
-  if (!has_started()) started_at_ = now;
+  if (!has_started()) started_at_ = pressed_from_ = now;
+}
+
+void Mechanics::feel_drives(bool on, Time now) noexcept {
+  if (on && has_started() && pressed_from_ == kNever) pressed_from_ = now + kPressesAgainAfter;
+  if (on) start_script(now);
+  if (!on) pressed_from_ = kNever;
 }
 
 double Mechanics::script_time_s() const noexcept {
@@ -64,7 +70,8 @@ std::uint16_t Mechanics::buttons() const noexcept {
   if (!has_started()) return 0;
   const double t_s = script_time_s();
   unsigned pressed = intention_->at(t_s, touch()).grip ? can::profile::kButtonGrip : 0U;
-  if (t_s <= intention_->end_s() + kDeadManAfterScript_s) pressed |= can::profile::kButtonDeadMan;
+  const bool holds_on = now_ >= pressed_from_ && t_s <= intention_->end_s() + kDeadManAfterScript_s;
+  if (holds_on) pressed |= can::profile::kButtonDeadMan;
   return static_cast<std::uint16_t>(pressed);
 }
 

@@ -15,6 +15,7 @@ namespace ligature::sim {
 
 inline constexpr Time kPlantStep = std::chrono::microseconds(100);  ///< longest; an interval is cut into equal ones
 inline constexpr double kDeadManAfterScript_s = 1.0;
+inline constexpr Time kPressesAgainAfter = std::chrono::milliseconds(200);
 
 /// What the device is made of, and whose hand is on it.
 struct Body {
@@ -36,6 +37,9 @@ class Mechanics {
 
   /// The operator begins; later calls change nothing.
   void start_script(Time now) noexcept;
+  /// Whether all drives are on. The first time they are, the operator begins; whenever they go off, he lets go of the
+  /// dead-man and presses it again when they have been on for kPressesAgainAfter.
+  void feel_drives(bool on, Time now) noexcept;
   /// Moves everything to `now` under constant motor torques; an earlier time changes nothing. About 0.3 us a step.
   void advance(Time now, const Vec3& motor_Nm) noexcept;
 
@@ -77,6 +81,7 @@ class Mechanics {
   Vec3 hand_force_D_N_ = Vec3::Zero(), made_Nm_ = Vec3::Zero();
   Time now_;
   Time started_at_ = kNever;
+  Time pressed_from_ = kNever;  // the dead-man; never while the drives are off
 };
 
 }  // namespace ligature::sim

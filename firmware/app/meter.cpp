@@ -84,7 +84,8 @@ class Meter {
       in.tick = tick;
       for (auto& hand : in.reading.hand) {
         hand.q_rad = {0.0, 0.5, 0.6 + 1e-4 * static_cast<double>(tick)};
-        hand.valid = hand.enabled = hand.dead_man = hand.grip = true;
+        hand.valid = hand.enabled = hand.grip = true;
+        hand.dead_man = tick >= control::DeadMan::kReleased;
       }
       double least_us = 1e12;
       std::optional<control::Controller> after;

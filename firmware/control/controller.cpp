@@ -22,7 +22,7 @@ void Controller::command(rt::CommandKind kind) noexcept {
     case rt::CommandKind::kStop:
       armed_ = false;
       stop_requested_ = true;
-      for (HandControl& h : hands_) h.drop();
+      for (HandControl& h : hands_) h.drop(), h.need_new_press();
       break;
     case rt::CommandKind::kResetFault:
       reset_requested_ = true;
@@ -49,7 +49,7 @@ void Controller::command(rt::CommandKind kind) noexcept {
 void Controller::begin_moves(Move move) noexcept {
   if (!armed_ || !may_push(state_) || braking_) return;
   for (HandControl& h : hands_) {
-    if (h.state().dead_man && !h.holds() && !h.state().clutch) h.begin_move(move);
+    if (h.dead_man_counts() && !h.holds() && !h.state().clutch) h.begin_move(move);
   }
 }
 
@@ -139,6 +139,7 @@ bool Controller::drives_are_up(const rt::RigReading& reading) const noexcept {
 
 void Controller::step_state(const TickInput& in) noexcept {
   if (state_ == State::kFault) {
+    for (HandControl& h : hands_) h.need_new_press();
     if (!reset_requested_) return;
     fault_ = Fault::kNone;
     for (HandControl& h : hands_) h.restart_account();
@@ -197,7 +198,7 @@ void Controller::step_gains() noexcept {
       h.drop();
       continue;
     }
-    const bool wanted = state_ != State::kBrake && armed_ && h.state().dead_man;
+    const bool wanted = state_ != State::kBrake && armed_ && h.dead_man_counts();
     if (!wanted) h.end_move();
     h.step_gain(wanted);
   }

@@ -59,6 +59,7 @@ void HandControl::observe(const rt::HandReading& reading, const Grasp& grasp, st
   state_.dead_man = reading.dead_man;
   state_.bus_load = reading.bus_load;
   if (!reading.valid) return;
+  if (reading.age_ticks == 0) dead_man_.see(reading.dead_man);
 
   // Age counts executed periods: one period old means sampled in the last one that was executed.
   const std::int64_t sampled = reading.age_ticks == 0 ? tick : last_tick - (reading.age_ticks - 1);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/control/dead_man.hpp"
 #include "firmware/control/encoder_watch.hpp"
 #include "firmware/control/engagement.hpp"
 #include "firmware/control/force_limiter.hpp"
@@ -33,7 +34,7 @@ struct HandState {
   std::int16_t limits = 0;     ///< rt::LimitCode bits
   bool limited = false;        ///< the force above stands at a magnitude's limit, and the gain is 1
   std::int64_t age_ticks = 0;  ///< periods since the sample that p_WT comes from
-  bool dead_man = false;
+  bool dead_man = false;       ///< the button; HandControl::dead_man_counts() whether it counts
   bool grip = false;
   bool clutch = false;
   float bus_load = 0.0F;
@@ -63,6 +64,9 @@ class HandControl {
   /// After a fault; its cause may have been booked, and was no work.
   void restart_account() noexcept { passivity_.restart(); }
   void hold_clutch(bool held) noexcept { clutch_command_ = held; }
+  /// A dead-man that is pressed counts no more, until it was let go and pressed again.
+  void need_new_press() noexcept { dead_man_.need_new_press(); }
+  [[nodiscard]] bool dead_man_counts() const noexcept { return dead_man_.counts(); }
 
   void drop() noexcept {
     engagement_.drop();
@@ -128,6 +132,7 @@ class HandControl {
   ForceLimiter limiter_;
   Passivity passivity_;
   Engagement engagement_;
+  DeadMan dead_man_;
   BrakeToRest brake_;
   bool braking_ = false;
   GuidedMove path_;

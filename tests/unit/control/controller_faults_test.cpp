@@ -130,6 +130,7 @@ TEST(ControllerFaults, OnlyAResetLeadsBackAndItArmsNothing) {
   EXPECT_EQ(rig.controller.fault(), Fault::kNone);
   EXPECT_FALSE(rig.controller.armed());
   rig.controller.command(rt::CommandKind::kArm);
+  rig.released = 0;
   rig.to_force();
 }
 
@@ -149,6 +150,7 @@ TEST(ControllerFaults, AResetBeginsTheAccountsAnew) {
   rig.tick();
   EXPECT_DOUBLE_EQ(rig.controller.hand(0).port_energy_J, Rig::scene().energy_credit_J);
   rig.controller.command(rt::CommandKind::kArm);
+  rig.released = 0;
   rig.to_force();
   EXPECT_GT(rig.controller.hand(0).f_device_N.norm(), 0.1);
 }

@@ -12,7 +12,7 @@ namespace ligature::control {
 
 inline constexpr int kWatchdog = 20;
 
-/// A rig whose hands rest while each holds a node 5 cm above it.
+/// A rig whose hands rest while each holds a node 5 cm above it. Both press the dead-man as soon as a press counts.
 class Rig {
  public:
   explicit Rig(const scene::Hands& hands = scene(), const device::Device& device = device::omni())
@@ -34,7 +34,10 @@ class Rig {
 
   rt::RigCommand tick() {
     for (std::size_t h = 0; h < rt::kHands; ++h) in.grasp[h].p_WG = controller.hand(h).p_WT + Vec3(0, 0, offset_m);
-    const auto command = controller.tick(in);
+    TickInput now = in;
+    for (auto& hand : now.reading.hand) hand.dead_man = hand.dead_man && released >= DeadMan::kReleased;
+    if (released < DeadMan::kReleased) ++released;
+    const auto command = controller.tick(now);
     ++in.tick;
     return command;
   }
@@ -63,6 +66,7 @@ class Rig {
   Controller controller;
   TickInput in;
   double offset_m = 0.05;
+  int released = 0;  ///< ticks since the dead-man was let go: 0 lets it go again
 };
 
 }  // namespace ligature::control

@@ -33,7 +33,10 @@ class Arms {
             (h == 0 && reversed == static_cast<int>(j) ? -1.0 : 1.0) * std::round(seen / count) * count;
       }
     }
-    const auto command = controller.tick(in);
+    auto now = in;
+    for (auto& hand : now.reading.hand) hand.dead_man = hand.dead_man && released >= DeadMan::kReleased;
+    if (released < DeadMan::kReleased) ++released;  // else a press does not count
+    const auto command = controller.tick(now);
     ++in.tick;
     for (std::size_t h = 0; h < 2; ++h) {
       const Vec3 tip = linkage.position({q[h][0], q[h][1], q[h][2]});
@@ -64,7 +67,8 @@ class Arms {
   Vec3 first = Vec3::Zero();
   double most_N = 0.0, most_J = 0.0, speed = 0.0, least_bound_J = 0.0;
   int reversed = -1, frozen = -1;  // joint of the left hand
-  bool held = false;               // both arms, by somebody
+  int released = 0;
+  bool held = false;  // both arms, by somebody
 
  private:
   void move(Vec3& angle, Vec3& rate, const Vec3& torque, double& work) const {

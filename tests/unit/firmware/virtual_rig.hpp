@@ -32,7 +32,7 @@ class VirtualBus {
   explicit VirtualBus(VirtualClock& clock) : clock_(clock) {
     for (auto& r : reading.hand) {
       r.q_rad = kRestingArm;
-      r.valid = r.enabled = r.dead_man = true;
+      r.valid = r.enabled = true;
     }
   }
   void send_sync() noexcept {
@@ -45,7 +45,10 @@ class VirtualBus {
     if (const auto it = stalls.find(syncs); it != stalls.end()) clock_.time += it->second;
     sampled_at.push_back(clock_.time);
     const double moved_rad = waist_rad_per_s * std::chrono::duration<double>(clock_.time).count();
-    for (auto& hand : reading.hand) hand.q_rad[0] = kRestingArm[0] + moved_rad;
+    for (auto& hand : reading.hand) {
+      hand.q_rad[0] = kRestingArm[0] + moved_rad;
+      hand.dead_man = syncs > control::DeadMan::kReleased;  // pressed too early it would not count
+    }
     return reading;
   }
   rt::WireTorque write_rpdos(const rt::RigCommand& command) noexcept {
