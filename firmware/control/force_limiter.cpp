@@ -27,11 +27,13 @@ void ForceLimiter::move_cap() noexcept {
   cap_N_ = hot_ ? std::max(continuous_N_, cap_N_ - by_N) : std::min(device_peak_N_, cap_N_ + by_N);
 }
 
-Vec3 ForceLimiter::limit(const Vec3& wish_N) noexcept {
+Vec3 ForceLimiter::limit(const Vec3& wish_N, double most_N) noexcept {
   move_cap();
   codes_ = 0;
-  const LimitedForce capped = saturate(wish_N, std::min(peak_N_, cap_N_));
-  if (capped.limited) codes_ |= cap_N_ < peak_N_ ? rt::kContinuousLimit : rt::kPeakLimit;
+  const double cap_N = std::min(peak_N_, cap_N_);
+  const LimitedForce capped = saturate(wish_N, std::min(cap_N, most_N));
+  if (capped.limited)
+    codes_ |= most_N < cap_N ? rt::kTorqueLimit : cap_N_ < peak_N_ ? rt::kContinuousLimit : rt::kPeakLimit;
 
   allowance_N_ = std::min(step_N_, allowance_N_ + slew_N_per_s_ * period_s_);
   const Vec3 change = capped.f_N - before_N_;
@@ -39,8 +41,7 @@ Vec3 ForceLimiter::limit(const Vec3& wish_N) noexcept {
   if (size_N <= allowance_N_) return capped.f_N;
   codes_ |= allowance_N_ < step_N_ ? rt::kSlewLimit : rt::kStepLimit;
   constexpr double kRounding = 1.0 - 4.0 * std::numeric_limits<double>::epsilon();
-  const Vec3 stepped = before_N_ + change * (allowance_N_ * kRounding / size_N);
-  return saturate(stepped, std::min(peak_N_, std::max(before_N_.norm(), cap_N_))).f_N;  // rounding only
+  return before_N_ + change * (allowance_N_ * kRounding / size_N);  // between two that are allowed, hence allowed
 }
 
 void ForceLimiter::sent(const Vec3& f_N) noexcept {

@@ -2,6 +2,7 @@
 // What the device may be asked for, whatever the law wants: one hand's limits, each with its code.
 
 #include <cstdint>
+#include <limits>
 
 #include "firmware/control/limits.hpp"
 #include "firmware/rt/tick_record.hpp"
@@ -11,6 +12,7 @@ namespace ligature::control {
 
 /// In this order, once a period of T:
 ///   peak        |f| <= min(scene's max_force_N, device's peak)
+///   torque      |f| <= the most in f's direction that is within the peak in any pose of the arm (AnyPose)
 ///   continuous  I2t: dh/dt = ((|f| / f_c)^2 - h) / tau; h is the winding's temperature rise, 1 = that of f_c for ever.
 ///               From h = 1 on the cap falls from the peak to f_c within kFall_s, below h = 0.7 it comes back as
 ///               slowly: with hysteresis, as a force that comes and goes is worse than one that is gone.
@@ -26,13 +28,16 @@ class ForceLimiter {
 
   void set_peak(double max_force_N) noexcept;
 
-  /// @param wish_N finite. @return what may be sent; codes() says why it is less.
-  [[nodiscard]] physics::Vec3 limit(const physics::Vec3& wish_N) noexcept;
+  /// @param wish_N finite. @param most_N by the joints' torques, in the wish's direction. @return what may be sent;
+  /// codes() says why it is less.
+  [[nodiscard]] physics::Vec3 limit(const physics::Vec3& wish_N,
+                                    double most_N = std::numeric_limits<double>::infinity()) noexcept;
   /// What was sent after all (something may have cut it further): the next change and the heat start from it.
   void sent(const physics::Vec3& f_N) noexcept;
 
   [[nodiscard]] std::int16_t codes() const noexcept { return codes_; }  ///< rt::LimitCode bits of the last limit()
   [[nodiscard]] double heat() const noexcept { return heat_; }
+  [[nodiscard]] double peak_N() const noexcept { return peak_N_; }
   [[nodiscard]] double cap_N() const noexcept { return cap_N_; }
 
  private:

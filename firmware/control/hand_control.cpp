@@ -19,6 +19,7 @@ HandControl::HandControl(const device::Device& d, const scene::Hands& hands, dou
       rated_Nm_(d.rated_torque_Nm),
       count_rad_(d.rad_per_count()),
       linkage_(d),
+      any_pose_(d),
       map_(hands, linkage_.home_m()),
       coupling_(hands, period_s),
       limiter_(d, hands.max_force_N, period_s),
@@ -120,7 +121,9 @@ void HandControl::decide(Push push) noexcept {
   decided_limits_ = braking_ ? rt::kVelocityBrake : 0;
   lets_go_ = push == Push::kNone || !finite_;
   if (lets_go_) return;
-  decided_N_ = limiter_.limit(gain() * wish_N);
+  const Vec3 scaled_N = gain() * wish_N;
+  const double most_N = safe_share(jacobian_.transpose() * scaled_N) * std::max(scaled_N.norm(), 1e-300);
+  decided_N_ = limiter_.limit(scaled_N, most_N);
   decided_limits_ = static_cast<std::int16_t>(decided_limits_ | limiter_.codes());
 }
 
@@ -129,13 +132,16 @@ std::array<double, rt::kJoints> HandControl::command(std::int64_t tick) noexcept
   Vec3 torque_Nm = Vec3::Zero(), paid_N = Vec3::Zero();
   if (!lets_go_) {
     const auto torque = [this](const Vec3& f) { return sendable_torque(f); };
-    paid_N = passivity_.control(tick, decided_N_, v_DT_, state_.f_device_N, torque);
+    const Vec3 before_N = from_torque_ * torque_Nm_;  // in this pose: the same torques again are no step
+    paid_N = passivity_.control(tick, decided_N_, v_DT_, before_N, torque);
     torque_Nm = sendable_torque(paid_N);
     if (!passivity_.released() && !passivity_.is_a_step(torque_Nm)) torque_Nm = torque_Nm_;  // rounding only
     if (passivity_.released()) end_move();  // wilder than the record allows, or frames are lost: it gets nothing
     if (passivity_.acts()) limits |= rt::kPassivityLimit;
     if (passivity_.stepped()) limits |= rt::kStepLimit;
-    if ((jacobian_.transpose() * paid_N).lpNorm<Eigen::Infinity>() > max_torque_Nm_) limits |= rt::kTorqueLimit;
+    const Vec3 exact_Nm = jacobian_.transpose() * paid_N;
+    if (exact_Nm.lpNorm<Eigen::Infinity>() > max_torque_Nm_) limits |= rt::kTorqueLimit;
+    paid_N *= std::min(1.0, safe_share(exact_Nm));  // what passivity turned
   }
   if (torque_Nm.isZero(0.0)) paid_N = Vec3::Zero();
   overtime_ticks_ = gain() > 0.0 || torque_Nm.isZero(0.0) ? 0 : overtime_ticks_ + 1;
@@ -192,11 +198,18 @@ Vec3 HandControl::lead_force() noexcept {
   return force_N;
 }
 
-/// J^T f in whole torque quanta, within the drives' range. A torque within kStay quanta of the last one stays: what
-/// flickers is heard, and hides energy under the encoder's counts.
+/// Times these torques are what makes at most the peak force at the tip in any pose, whatever the encoders say.
+double HandControl::safe_share(const Vec3& torque_Nm) const noexcept {
+  const double most_N = any_pose_.most_N(torque_Nm);
+  return most_N > 0.0 ? limiter_.peak_N() / most_N : std::numeric_limits<double>::infinity();
+}
+
+/// J^T f in whole torque quanta, within the drives' range and what is safe in any pose. A torque within kStay quanta of
+/// the last one stays: what flickers is heard, and hides energy under the encoder's counts.
 Vec3 HandControl::sendable_torque(const Vec3& f_N) const noexcept {
   constexpr double kStay = 0.7;
-  const Vec3 exact = (jacobian_.transpose() * f_N).cwiseMax(-max_torque_Nm_).cwiseMin(max_torque_Nm_);
+  Vec3 exact = (jacobian_.transpose() * f_N).cwiseMax(-max_torque_Nm_).cwiseMin(max_torque_Nm_);
+  exact *= std::min(1.0, safe_share(exact));
   Vec3 torque_Nm;
   for (Eigen::Index j = 0; j < 3; ++j) {
     const bool stays = std::abs(exact[j] - torque_Nm_[j]) < kStay * quantum_Nm_;
@@ -208,7 +221,7 @@ Vec3 HandControl::sendable_torque(const Vec3& f_N) const noexcept {
 void HandControl::fill_state(std::int16_t limits) noexcept {
   state_.gain = gain();
   state_.limits = limits;
-  state_.limited = (limits & (rt::kPeakLimit | rt::kContinuousLimit)) != 0 && gain() >= 1.0;
+  state_.limited = (limits & (rt::kPeakLimit | rt::kContinuousLimit | rt::kTorqueLimit)) != 0 && gain() >= 1.0;
   state_.heat = limiter_.heat();
   state_.port_energy_J = passivity_.energy_J();
   state_.received_J = passivity_.received_J();

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/control/any_pose.hpp"
 #include "firmware/control/dead_man.hpp"
 #include "firmware/control/encoder_watch.hpp"
 #include "firmware/control/engagement.hpp"
@@ -120,6 +121,7 @@ class HandControl {
   void sample(const rt::HandReading& reading, std::int64_t sampled) noexcept;
   void map(const Vec3& p_DT) noexcept;
   void step_clutch(bool pressed, const Vec3& p_DT) noexcept;
+  [[nodiscard]] double safe_share(const Vec3& torque_Nm) const noexcept;
   [[nodiscard]] Vec3 sendable_torque(const Vec3& f_N) const noexcept;
   [[nodiscard]] Vec3 brake_force() noexcept;
   [[nodiscard]] Vec3 lead_force() noexcept;
@@ -127,6 +129,7 @@ class HandControl {
 
   double period_s_, quantum_Nm_, max_torque_Nm_, rated_Nm_, count_rad_;
   Linkage linkage_;
+  AnyPose any_pose_;
   WorkspaceMap map_;
   VirtualCoupling coupling_;
   ForceLimiter limiter_;

@@ -1,5 +1,6 @@
 #include "firmware/control/passivity.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +10,7 @@ Passivity::Passivity(const device::Device& d, double period_s, bool active, doub
     : period_s_(period_s),
       reach_m_(d.hand_acceleration_m_per_s2 * period_s * period_s),
       step_N_(d.force_step_N),
+      any_pose_(d),
       active_(active),
       credit_J_(credit_J),
       energy_J_(credit_J) {}
@@ -36,6 +38,7 @@ void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {
   q_rad_ = q_rad;
   p_m_ = s.p_m;
   tip_N_per_Nm_ = s.tip_N_per_Nm;
+  Nm_per_tip_N_ = tip_N_per_Nm_.inverse();
   look_under_way(tick);
 }
 
@@ -58,7 +61,14 @@ bool Passivity::is_a_step(const Vec3& torque_Nm) const noexcept {
   if (torque_Nm == sent_.at(sent_.newest() - 1).torque_Nm) return true;
   const Box change{(torque_Nm - under_way_.high_Nm).cwiseMin(0.0), (torque_Nm - under_way_.low_Nm).cwiseMax(0.0)};
   constexpr double kMargin = 0.98;  // the arm turns until the frame acts
-  return change.worst(tip_N_per_Nm_, [](const Vec3& f_N) { return f_N.norm(); }) <= kMargin * step_N_;
+  return any_pose_.most_N(change.low_Nm, change.high_Nm) <= kAnyPose * step_N_ &&
+         change.worst(tip_N_per_Nm_, [](const Vec3& f_N) { return f_N.norm(); }) <= kMargin * step_N_;
+}
+
+/// The largest step that a force in this direction may make.
+double Passivity::step_along_N(const Vec3& along) const noexcept {
+  const double any_pose_N = any_pose_.most_N(Nm_per_tip_N_ * along);
+  return any_pose_N > kAnyPose ? step_N_ * kAnyPose / any_pose_N : step_N_;
 }
 
 /// By one joint's motor since the last sample. The torque of the last cycle is known; so are those before it in which
@@ -123,8 +133,9 @@ double Passivity::shortage_J(std::int64_t tick, const Vec3& f_N, bool and_back) 
   const Vec3 along = f_N / std::max(size_N, 1e-300);
   double spent_J = under_way_J_ + blind_loss_J(f_N, ahead, wary ? 2 : 1);
   if (wary) spent_J += kMore * std::max(0.0, along_J(f_N));
+  const double step_N = and_back ? step_along_N(along) : step_N_;
   for (std::int64_t k = 1; and_back; ++k) {
-    const double next_N = std::clamp(std::max(told_N, size_N) - step_N_, 0.0, size_N);
+    const double next_N = std::clamp(std::max(told_N, size_N) - step_N, 0.0, size_N);
     told_N = size_N, size_N = next_N;
     if (size_N == 0.0) break;
     const Vec3 f = along * size_N;  // each step back sees one more count

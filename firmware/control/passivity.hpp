@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "firmware/control/any_pose.hpp"
 #include "firmware/control/kinematics.hpp"
 #include "firmware/control/sent_torques.hpp"
 
@@ -69,6 +70,7 @@ class Passivity {
   static constexpr double kSlight_N = 0.006;     ///< for so little nothing is foreseen, else no force could begin
   static constexpr double kSlowCounts = 0.25;    ///< a period; below, a joint is guessed to be between counts
   static constexpr double kSlow_m_per_s = 5e-3;  ///< below, a velocity is mostly counts
+  static constexpr double kAnyPose = 1.04;       ///< of the step limit, for encoders that lie: 0.52 N
 
   Passivity(const device::Device& device, double period_s, bool active, double credit_J) noexcept;
 
@@ -103,7 +105,8 @@ class Passivity {
     if (paid(least_N))
       return farthest(least_N, farthest(before_N, damped(tick, next_N, v_m_per_s, before_N), near), paid);
     if (near(Vec3::Zero())) return farthest(Vec3::Zero(), least_N, paid);
-    released_ = shortage_J(tick, tip_N_per_Nm_ * torque(least_N), false) > 0.0;  // not even until the next decision
+    // Not even until the next decision.
+    released_ = active_ && shortage_J(tick, tip_N_per_Nm_ * torque(least_N), false) > 0.0;
     return released_ ? Vec3(Vec3::Zero()) : least_N;
   }
   [[nodiscard]] Vec3 control(std::int64_t tick, const Vec3& wish_N, const Vec3& v, const Vec3& before_N) noexcept {
@@ -111,7 +114,8 @@ class Passivity {
   }
   /// Whether the tip's force changes by force_step_N at most when these torques act at the next SYNC, whatever acts
   /// until then: what a drive last said that it made, or anything sent since, joint by joint, for each RPDO may be
-  /// lost. The same torques again are no step.
+  /// lost. In the pose that the encoders say, and by kAnyPose of it in any pose of the workspace, in case they lie. The
+  /// same torques again are no step.
   [[nodiscard]] bool is_a_step(const Vec3& torque_Nm) const noexcept;
   /// Whether exactly this tip force may be sent in `tick`.
   [[nodiscard]] bool allows(std::int64_t tick, const Vec3& f_N) const noexcept {
@@ -207,12 +211,15 @@ class Passivity {
     return from + low * (to - from);
   }
 
+  [[nodiscard]] double step_along_N(const Vec3& along) const noexcept;
+
   double period_s_, reach_m_, step_N_;  // reach: a T^2
+  AnyPose any_pose_;
   bool active_;
   double credit_J_, energy_J_, received_J_ = 0.0, granted_J_ = 0.0, dissipated_J_ = 0.0, injected_ = 0.0;
   double count_m_ = 0.0, doubt_m_ = 0.0;  // of step_m_: by counts, by what lies between samples
   bool acts_ = false, stepped_ = false, released_ = false;
-  Mat3 tip_N_per_Nm_ = Mat3::Identity();
+  Mat3 tip_N_per_Nm_ = Mat3::Identity(), Nm_per_tip_N_ = Mat3::Identity();
   std::int64_t sampled_ = -1, lossy_until_ = -1;
   Vec3 q_rad_ = Vec3::Zero();                            // at the sample: guessed
   Vec3 p_m_ = Vec3::Zero(), step_m_ = Vec3::Zero();      // step: motion in a period before the sample

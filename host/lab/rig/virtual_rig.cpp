@@ -151,6 +151,8 @@ void VirtualRig::look_at_drives() {
     return std::ranges::any_of(b.device.torque_permille(), [](auto t) { return t != 0; });
   };
   drives_push.push_back(on(left) || on(right));
+  truth[0].look(left.device);
+  truth[1].look(right.device);
 }
 
 }  // namespace ligature::lab

@@ -21,6 +21,7 @@
 #include "host/lab/rig/device_bus.hpp"
 #include "host/lab/rig/recording.hpp"
 #include "host/lab/rig/seeing_operator.hpp"
+#include "host/lab/rig/true_tip.hpp"
 #include "protocol/scene/gripper_script.hpp"
 #include "protocol/scene/scene.hpp"
 
@@ -82,6 +83,7 @@ class VirtualRig {
  public:
   Nanoseconds time{0};
   std::vector<bool> drives_push;  ///< a motor has torque, at the end of the period before each SYNC
+  std::array<TruthWatch, 2> truth{TruthWatch(setup.device), TruthWatch(setup.device)};  ///< as often as drives_push
   std::int64_t cut_left_at = -1;  ///< tick at which the left hand's process dies
   std::int64_t stall_at = 0;      ///< tick at which the real-time thread sleeps too long, once
   Nanoseconds stall_for{0};

@@ -77,7 +77,7 @@ TEST(Controller, FeelsTheCouplingThroughTheLinkage) {  // 1200 N/m x 0.05 m x 0.
 }
 
 TEST(Controller, NeverExceedsTheForceLimitAndReportsIt) {
-  Rig rig;
+  Rig rig(Rig::scene(), Rig::drums());
   rig.to_force();
   rig.offset_m = 50.0;
   rig.ticks(40);  // 0.15 N a tick
@@ -88,8 +88,19 @@ TEST(Controller, NeverExceedsTheForceLimitAndReportsIt) {
   EXPECT_EQ(rig.controller.fault(), Fault::kNone);  // a limit is not a fault
 }
 
-TEST(Controller, ASceneTakenOnTheWayBringsItsForceLimitAndItsPassivity) {
+TEST(Controller, AnArmGetsWhatIsSafeInEveryPoseAndReportsIt) {
   Rig rig;
+  rig.to_force();
+  rig.pull_hard();
+  const Vec3 torque_Nm = vector_of(rig.tick().hand[0].torque_Nm);
+  EXPECT_NEAR(AnyPose(device::omni()).most_N(torque_Nm), 3.3, 0.01);
+  EXPECT_EQ(rig.controller.hand(0).limits, rt::kTorqueLimit);
+  EXPECT_TRUE(rig.controller.hand(0).limited);
+  EXPECT_EQ(rig.controller.fault(), Fault::kNone);
+}
+
+TEST(Controller, ASceneTakenOnTheWayBringsItsForceLimitAndItsPassivity) {
+  Rig rig(Rig::scene(), Rig::drums());
   rig.ticks(60);
   ASSERT_EQ(rig.controller.state(), State::kEngage);
   auto hands = Rig::scene();
@@ -104,7 +115,7 @@ TEST(Controller, ASceneTakenOnTheWayBringsItsForceLimitAndItsPassivity) {
     hands = Rig::scene();
     hands.energy_credit_J = 0.0;
     hands.passivity = !on;
-    Rig other(hands);
+    Rig other(hands, Rig::drums());
     other.ticks(60);
     hands.passivity = on;
     other.controller.change_hands(hands);
