@@ -38,12 +38,14 @@ struct LcmLink::Receiver {
   Handler handler;
   std::exception_ptr failure;  // of the handler: it must not cross the library's C frames
 
-  void on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept {
-    if (failure) return;
+  /// A plain function: what the library makes of a member function does not survive GCC's -fsanitize=vptr, which uses an
+  /// object's address before it has computed it where a member is called through a pointer found in a polymorphic one.
+  static void on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel, Receiver* to) noexcept {
+    if (to->failure) return;
     try {
-      handler({buffer->recv_utime, channel, Bytes(static_cast<const std::byte*>(buffer->data), buffer->data_size)});
+      to->handler({buffer->recv_utime, channel, Bytes(static_cast<const std::byte*>(buffer->data), buffer->data_size)});
     } catch (...) {
-      failure = std::current_exception();
+      to->failure = std::current_exception();
     }
   }
 };
@@ -58,7 +60,7 @@ LcmLink::LcmLink(const std::string& url, const std::string& channels, Handler ha
   {
     const lcm_tools::QuietStderr one_line_is_enough;
     lcm_ = std::make_unique<lcm::LCM>(url);
-    if (lcm_->good()) subscription = lcm_->subscribe(channels, &Receiver::on_message, receiver_.get());
+    if (lcm_->good()) subscription = lcm_->subscribeFunction(channels, &Receiver::on_message, receiver_.get());
   }
   if (!subscription)
     throw RunFailed("cannot open " + url +

@@ -24,9 +24,13 @@ namespace {
 
 constexpr double kAdmission_s = 0.3;
 
-std::int64_t utime_now() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
+template <class ClockT>
+std::int64_t microseconds_of() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(ClockT::now().time_since_epoch()).count();
+}
+
+telemetry::Moment now() {
+  return {microseconds_of<std::chrono::steady_clock>(), microseconds_of<std::chrono::system_clock>()};
 }
 
 int fail(const Refusal& refusal) {
@@ -82,10 +86,10 @@ telemetry::Session session(const Plan& plan, const RunOptions& options, std::int
 void tell_change(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, SceneDesk& desk) {
   auto outcome = desk.poll();
   if (!outcome) return;
-  const auto now = utime_now();
-  outcome->ack.utime = now;
+  const auto at = now();
+  outcome->ack.utime = at.utime;
   if (const auto& c = outcome->changed) {
-    telemetry.scene_changed({c->file, c->toml, c->max_force_N, c->radius_m}, c->text, now);
+    telemetry.scene_changed({c->file, c->toml, c->max_force_N, c->radius_m}, c->text, at);
     telemetry.set_offer(desk.offer());
   }
   link.answer(outcome->ack);
@@ -95,10 +99,10 @@ void tell_change(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, Scen
 void tell(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, SceneDesk& desk, const std::atomic<bool>& done) {
   while (!done) {
     link.wait(5);
-    telemetry.step(utime_now());
+    telemetry.step(now());
     tell_change(link, telemetry, desk);
   }
-  telemetry.finish(utime_now());
+  telemetry.finish(now());
   if (link.failures() > 0) spdlog::warn("LCM: {} messages could not be sent", link.failures());
 }
 
@@ -171,7 +175,7 @@ int run(const RunOptions& options) {
   if (const auto* refusal = std::get_if<Refusal>(&opened)) return fail(*refusal);
   const Buses& buses = std::get<Buses>(opened);
 
-  const std::int64_t id = utime_now();
+  const std::int64_t id = now().utime;
   const auto recorder = open_recorder(plan, options, id);
   if (recorder) outlets->flight = &recorder->inlet();
   SceneDesk desk(options, plan);
@@ -184,7 +188,7 @@ int run(const RunOptions& options) {
                                  *outlets, link, recorder.get());
   telemetry.set_offer(desk.offer());
   link.listen([&](const ligature_msg::command_t& c) -> std::optional<ligature_msg::ack_t> {
-    if (!SceneDesk::is_for(c)) return telemetry.handle(c, utime_now());
+    if (!SceneDesk::is_for(c)) return telemetry.handle(c, now());
     const auto& last = telemetry.last();
     return desk.request(c, last.armed || control::may_push(static_cast<control::State>(last.state)));
   });

@@ -34,7 +34,7 @@ LcmLink::LcmLink(const std::string& url, OnEvent on_event) : on_event_(std::move
   lcm_ = std::make_unique<lcm::LCM>(url);
   open_ = lcm_->good();
   // Subscribing is what tries the network.
-  listening_ = open_ && lcm_->subscribe("LIGATURE_COMMAND", &LcmLink::receive, this) != nullptr;
+  listening_ = open_ && lcm_->subscribeFunction("LIGATURE_COMMAND", &LcmLink::receive, this) != nullptr;
   open_ = listening_;
 }
 
@@ -52,11 +52,11 @@ void LcmLink::wait(std::int64_t at_most_ms) {
 }
 
 /// Decoded here and not by the library, whose generated decoder a hostile message can make throw.
-void LcmLink::receive(const lcm::ReceiveBuffer* received, const std::string&) {
-  if (!on_command_) return;
+void LcmLink::receive(const lcm::ReceiveBuffer* received, const std::string&, LcmLink* link) {
+  if (!link->on_command_) return;
   const auto command = command_of({static_cast<const std::byte*>(received->data), received->data_size});
   if (!command) return;
-  if (const auto ack = on_command_(*command)) answer(*ack);
+  if (const auto ack = link->on_command_(*command)) link->answer(*ack);
 }
 
 }  // namespace ligature::telemetry

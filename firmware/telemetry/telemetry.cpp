@@ -11,45 +11,45 @@ Telemetry::Telemetry(Session session, const Names& names, rt::Outlets& outlets, 
   batch_.ticks.reserve(kTicksPerBatch);
 }
 
-void Telemetry::step(std::int64_t now_us) {
-  for (rt::TickRecord record; outlets_.records.pop(record);) take(record, now_us);
-  send_notes(now_us);
-  if (now_us >= shape_due_us_ && outlets_.shape.refresh()) {
-    send_shape(now_us);
-    shape_due_us_ = now_us + kShapePeriod_us;
+void Telemetry::step(Moment now) {
+  for (rt::TickRecord record; outlets_.records.pop(record);) take(record, now);
+  send_notes(now);
+  if (now.monotonic_us >= shape_due_us_ && outlets_.shape.refresh()) {
+    send_shape(now);
+    shape_due_us_ = now.monotonic_us + kShapePeriod_us;
   }
-  if (now_us >= status_due_us_) {
-    send_status(now_us);
-    status_due_us_ = now_us + kStatusPeriod_us;
+  if (now.monotonic_us >= status_due_us_) {
+    send_status(now);
+    status_due_us_ = now.monotonic_us + kStatusPeriod_us;
   }
-  if (now_us >= offer_due_us_) send_offer(now_us);
+  if (now.monotonic_us >= offer_due_us_) send_offer(now);
 }
 
-void Telemetry::finish(std::int64_t now_us) {
-  for (rt::TickRecord record; outlets_.records.pop(record);) take(record, now_us);
-  if (!batch_.ticks.empty()) send_batch(now_us);
-  send_notes(now_us);
-  if (outlets_.shape.refresh()) send_shape(now_us);
-  send_status(now_us);
+void Telemetry::finish(Moment now) {
+  for (rt::TickRecord record; outlets_.records.pop(record);) take(record, now);
+  if (!batch_.ticks.empty()) send_batch(now);
+  send_notes(now);
+  if (outlets_.shape.refresh()) send_shape(now);
+  send_status(now);
 }
 
-void Telemetry::take(const rt::TickRecord& record, std::int64_t now_us) {
+void Telemetry::take(const rt::TickRecord& record, Moment now) {
   misses_ += (record.flags & rt::kDeadlineMissed) != 0;
   lost_ += (record.flags & rt::kPeriodLost) != 0;
   batch_.ticks.push_back(to_message(record));
   for (auto& event : events_.next(record)) {
-    event.utime = now_us;
+    event.utime = now.utime;
     sink_.send(event);
   }
   last_ = record;
-  if (batch_.ticks.size() == kTicksPerBatch) send_batch(now_us);
+  if (batch_.ticks.size() == kTicksPerBatch) send_batch(now);
 }
 
-void Telemetry::send_notes(std::int64_t now_us) {
+void Telemetry::send_notes(Moment now) {
   if (recorder_ == nullptr) return;
   for (auto& note : recorder_->take_notes()) {
     ligature_msg::event_t event{};
-    event.utime = now_us;
+    event.utime = now.utime;
     event.tick = note.tick;
     event.kind = ligature_msg::event_t::KIND_RECORDER;
     event.hand = -1;
@@ -59,8 +59,8 @@ void Telemetry::send_notes(std::int64_t now_us) {
   }
 }
 
-void Telemetry::send_batch(std::int64_t now_us) {
-  batch_.utime = now_us;
+void Telemetry::send_batch(Moment now) {
+  batch_.utime = now.utime;
   batch_.session = session_.id;
   batch_.ring_dropped = static_cast<std::int64_t>(outlets_.records.dropped());
   batch_.count = static_cast<std::int32_t>(batch_.ticks.size());
@@ -68,13 +68,13 @@ void Telemetry::send_batch(std::int64_t now_us) {
   batch_.ticks.clear();
 }
 
-void Telemetry::send_shape(std::int64_t now_us) {
-  sink_.send(to_message(outlets_.shape.front(), session_.scene.radius_m, now_us));
+void Telemetry::send_shape(Moment now) {
+  sink_.send(to_message(outlets_.shape.front(), session_.scene.radius_m, now.utime));
 }
 
-void Telemetry::send_status(std::int64_t now_us) {
+void Telemetry::send_status(Moment now) {
   ligature_msg::status_t m{};
-  m.utime = now_us;
+  m.utime = now.utime;
   m.session = session_.id;
   m.protocol_version = ligature_msg::status_t::VERSION;
   m.firmware_version = session_.firmware_version;
@@ -94,9 +94,9 @@ void Telemetry::send_status(std::int64_t now_us) {
   sink_.send(m);
 }
 
-void Telemetry::send_offer(std::int64_t now_us) {
-  offer_due_us_ = now_us + kOfferPeriod_us;
-  offer_.utime = now_us;
+void Telemetry::send_offer(Moment now) {
+  offer_due_us_ = now.monotonic_us + kOfferPeriod_us;
+  offer_.utime = now.utime;
   offer_.session = session_.id;
   offer_.scene_count = static_cast<std::int32_t>(offer_.scenes.size());
   offer_.parameter_count = static_cast<std::int32_t>(offer_.parameters.size());
@@ -108,16 +108,16 @@ void Telemetry::set_offer(ligature_msg::offer_t offer) {
   offer_due_us_ = 0;
 }
 
-void Telemetry::scene_changed(const SceneFacts& facts, const std::string& text, std::int64_t now_us) {
+void Telemetry::scene_changed(const SceneFacts& facts, const std::string& text, Moment now) {
   session_.scene = facts;
   ligature_msg::event_t event{};
-  event.utime = now_us;
+  event.utime = now.utime;
   event.tick = last_.tick;
   event.kind = ligature_msg::event_t::KIND_CHANGE;
   event.hand = -1;
   event.text = text;
   sink_.send(event);
-  send_status(now_us);
+  send_status(now);
 }
 
 std::string Telemetry::objection(std::int8_t kind) const {
@@ -136,9 +136,9 @@ std::string Telemetry::objection(std::int8_t kind) const {
   return {};
 }
 
-ligature_msg::ack_t Telemetry::handle(const ligature_msg::command_t& command, std::int64_t now_us) {
+ligature_msg::ack_t Telemetry::handle(const ligature_msg::command_t& command, Moment now) {
   ligature_msg::ack_t ack{};
-  ack.utime = now_us;
+  ack.utime = now.utime;
   ack.id = command.id;
   ack.reason = objection(command.kind);
   if (ack.reason.empty() && !outlets_.commands.push({command.id, static_cast<rt::CommandKind>(command.kind)})) {

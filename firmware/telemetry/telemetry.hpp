@@ -28,6 +28,12 @@ class Sink {
   virtual void send(const ligature_msg::offer_t& m) = 0;
 };
 
+/// One instant on two clocks. What is due when goes by the first alone; the second stamps messages and may be set back.
+struct Moment {
+  std::int64_t monotonic_us = 0;  ///< CLOCK_MONOTONIC
+  std::int64_t utime = 0;         ///< CLOCK_REALTIME, microseconds
+};
+
 /// What a change of scene changes.
 struct SceneFacts {
   std::string scene_file;
@@ -60,31 +66,31 @@ class Telemetry {
   /// @param recorder whose notes are passed on; may be missing.
   Telemetry(Session session, const Names& names, rt::Outlets& outlets, Sink& sink, FlightRecorder* recorder = nullptr);
 
-  /// Takes everything that is there. @param now_us CLOCK_REALTIME, microseconds.
-  void step(std::int64_t now_us);
+  /// Takes everything that is there.
+  void step(Moment now);
 
   /// The last step: also what does not fill a batch, the last shape and a last status.
-  void finish(std::int64_t now_us);
+  void finish(Moment now);
 
   /// The scenes and parameters that may be asked for; told from now on.
   void set_offer(ligature_msg::offer_t offer);
 
   /// Another scene or parameter is in force: told at once, with the words of the event.
-  void scene_changed(const SceneFacts& facts, const std::string& text, std::int64_t now_us);
+  void scene_changed(const SceneFacts& facts, const std::string& text, Moment now);
 
   /// The state after the newest record: what a request is judged by before the loop judges it.
   [[nodiscard]] const rt::TickRecord& last() const noexcept { return last_; }
 
   /// Passes a request on, or says why not.
-  [[nodiscard]] ligature_msg::ack_t handle(const ligature_msg::command_t& command, std::int64_t now_us);
+  [[nodiscard]] ligature_msg::ack_t handle(const ligature_msg::command_t& command, Moment now);
 
  private:
-  void take(const rt::TickRecord& record, std::int64_t now_us);
-  void send_notes(std::int64_t now_us);
-  void send_batch(std::int64_t now_us);
-  void send_shape(std::int64_t now_us);
-  void send_status(std::int64_t now_us);
-  void send_offer(std::int64_t now_us);
+  void take(const rt::TickRecord& record, Moment now);
+  void send_notes(Moment now);
+  void send_batch(Moment now);
+  void send_shape(Moment now);
+  void send_status(Moment now);
+  void send_offer(Moment now);
   [[nodiscard]] std::string objection(std::int8_t kind) const;
 
   Session session_;
@@ -96,7 +102,7 @@ class Telemetry {
   ligature_msg::offer_t offer_{};
   rt::TickRecord last_{};
   std::int64_t misses_ = 0, lost_ = 0;
-  std::int64_t shape_due_us_ = 0, status_due_us_ = 0, offer_due_us_ = 0;
+  std::int64_t shape_due_us_ = 0, status_due_us_ = 0, offer_due_us_ = 0;  // CLOCK_MONOTONIC
 };
 
 }  // namespace ligature::telemetry

@@ -120,7 +120,7 @@ TEST_F(FlightRecorderTest, ADiskThatStandsStillForThreeSecondsCostsNoTickAndHold
   stand_still();
   for (int step = 0; step < 600; ++step) {
     tick(5);
-    telemetry.step(step * 5'000);
+    telemetry.step({step * 5'000, step * 5'000});
   }
   EXPECT_EQ(network.ticks, 3000) << "LCM goes on";
   EXPECT_EQ(outlets->records.dropped() + recorder->inlet().dropped(), 0U);
@@ -204,7 +204,7 @@ TEST_F(FlightRecorderTest, AFaultSavesTheTicksBeforeItAndIsNoted) {
   recorder->finish();
   Network network;
   Telemetry telemetry({}, kNames, *outlets, network, recorder.get());
-  telemetry.finish(7);
+  telemetry.finish({0, 7});
   std::erase_if(network.events, [](const auto& e) { return e.kind != ligature_msg::event_t::KIND_RECORDER; });
   ASSERT_EQ(network.events.size(), 2U);
   const auto& event = network.events[0];

@@ -13,6 +13,9 @@ namespace {
 
 constexpr Names kNames{[](int s) { return s == 0 ? "OFF" : "ON"; }, [](int) { return "broken"; }};
 
+/// Both clocks at that time, as where nobody sets the one on the wall.
+Moment at(std::int64_t us) { return {us, us}; }
+
 class Memory final : public Sink {
  public:
   void send(const ligature_msg::tick_batch_t& m) override { batches.push_back(m); }
@@ -50,18 +53,18 @@ TEST_F(TelemetryTest, AChangeOfSceneIsToldAtOnceAndInEveryStatusAfterIt) {
   ligature_msg::offer_t offer{};
   offer.scenes = {"a.toml", "b.toml"};
   telemetry.set_offer(offer);
-  telemetry.step(0);
+  telemetry.step(at(0));
   ASSERT_EQ(sink.offers.size(), 1U);
   EXPECT_EQ(sink.offers[0].scene_count, 2);
   EXPECT_EQ(sink.offers[0].session, 42);
-  telemetry.step(999'999);
+  telemetry.step(at(999'999));
   EXPECT_EQ(sink.offers.size(), 1U);
-  telemetry.step(1'000'000);
+  telemetry.step(at(1'000'000));
   EXPECT_EQ(sink.offers.size(), 2U);
 
   push(5);
-  telemetry.step(1'000'001);
-  telemetry.scene_changed({"b.toml", "other", 1.5, 0.01}, "scene b.toml loaded", 1'000'002);
+  telemetry.step(at(1'000'001));
+  telemetry.scene_changed({"b.toml", "other", 1.5, 0.01}, "scene b.toml loaded", at(1'000'002));
   ASSERT_EQ(sink.events.back().kind, ligature_msg::event_t::KIND_CHANGE);
   EXPECT_EQ(sink.events.back().tick, 5);
   EXPECT_EQ(sink.events.back().text, "scene b.toml loaded");
@@ -72,9 +75,9 @@ TEST_F(TelemetryTest, AChangeOfSceneIsToldAtOnceAndInEveryStatusAfterIt) {
 
 TEST_F(TelemetryTest, EveryRecordGoesIntoExactlyOneBatchInOrder) {
   for (std::int64_t t = 0; t < 45; ++t) push(t);
-  telemetry.step(0);
+  telemetry.step(at(0));
   ASSERT_EQ(sink.batches.size(), 2U);
-  telemetry.finish(1);
+  telemetry.finish(at(1));
   ASSERT_EQ(sink.batches.size(), 3U);
   std::int64_t expected = 0;
   for (const auto& batch : sink.batches) {
@@ -95,7 +98,7 @@ TEST_F(TelemetryTest, MessagesCarryEveryField) {
   record.contacts = 11;
   record.min_gap_m = 1e9;
   push(0);
-  telemetry.finish(0);
+  telemetry.finish(at(0));
   const auto& m = sink.batches.at(0).ticks.at(0);
   EXPECT_EQ(m.p_WT_m[1][2], 3.0);
   EXPECT_EQ(m.f_device_N[0][1], 0.2);
@@ -111,7 +114,7 @@ TEST_F(TelemetryTest, MessagesCarryEveryField) {
 TEST_F(TelemetryTest, DroppedRecordsAreTold) {
   const auto room = static_cast<std::int64_t>(outlets->records.capacity());
   for (std::int64_t t = 0; t < room + 5; ++t) push(t);
-  telemetry.finish(0);
+  telemetry.finish(at(0));
   EXPECT_EQ(sink.batches.back().ring_dropped, 5);
 }
 
@@ -119,14 +122,14 @@ TEST_F(TelemetryTest, ShapesComeAtSixtyHertzAndOnlyWhenNew) {
   outlets->shape.back().count = 2;
   outlets->shape.back().p_W_m[1] = {1.0F, 2.0F, 3.0F};
   outlets->shape.publish();
-  telemetry.step(0);
-  telemetry.step(20'000);  // nothing new
+  telemetry.step(at(0));
+  telemetry.step(at(20'000));  // nothing new
   ASSERT_EQ(sink.shapes.size(), 1U);
   EXPECT_EQ(sink.shapes[0].count, 2);
   EXPECT_EQ(sink.shapes[0].p_W_m[1][2], 3.0F);
   for (std::int64_t us = 30'000; us < 1'030'000; us += 5'000) {
     outlets->shape.publish();
-    telemetry.step(us);
+    telemetry.step(at(us));
   }
   EXPECT_NEAR(static_cast<double>(sink.shapes.size()), 51.0, 10.0);  // every 20 ms: the first step after 16.7
 }
@@ -137,9 +140,9 @@ TEST_F(TelemetryTest, StatusCountsMissesAndLostPeriods) {
   record.flags = rt::kPeriodLost;
   push(1);
   push(2);
-  telemetry.step(0);
-  telemetry.step(50'000);
-  telemetry.step(100'000);
+  telemetry.step(at(0));
+  telemetry.step(at(50'000));
+  telemetry.step(at(100'000));
   ASSERT_EQ(sink.statuses.size(), 2U);
   EXPECT_EQ(sink.statuses[1].deadline_misses, 1);
   EXPECT_EQ(sink.statuses[1].periods_lost, 2);
@@ -147,6 +150,27 @@ TEST_F(TelemetryTest, StatusCountsMissesAndLostPeriods) {
   EXPECT_EQ(sink.statuses[1].realtime, 1);
   EXPECT_EQ(sink.statuses[1].admitted, 0);
   EXPECT_EQ(sink.statuses[1].recorder_file, "flight.rec");
+}
+
+/// Whatever is done to the clock on the wall, and whatever it shows at the start (1970 on a board without a battery).
+TEST_F(TelemetryTest, AWallClockThatIsSetChangesTimeStampsOnly) {
+  constexpr std::int64_t kSecond = 1'000'000, kBegin = 5 * kSecond;
+  for (const std::int64_t step_s : {-60, 3600, -86'400 * 365 * 50}) {
+    Telemetry told(session, kNames, *outlets, sink);
+    sink = {};
+    std::int64_t wall = 1'800'000'000 * kSecond;
+    for (std::int64_t us = 0; us < 4 * kSecond; us += 5'000) {
+      if (us == 2 * kSecond) wall += step_s * kSecond;
+      outlets->shape.publish();
+      push(us / 1'000);
+      told.step({kBegin + us, wall + us});
+    }
+    EXPECT_EQ(sink.statuses.size(), 40U) << step_s;
+    EXPECT_EQ(sink.offers.size(), 4U) << step_s;
+    EXPECT_EQ(sink.shapes.size(), 200U) << step_s;
+    EXPECT_EQ(sink.statuses.back().utime, wall + 3'900'000) << "stamped by the clock on the wall";
+    EXPECT_EQ(sink.statuses.back().tick, 3'900);
+  }
 }
 
 TEST_F(TelemetryTest, EventsAreReadOutOfTheRecords) {
@@ -161,7 +185,7 @@ TEST_F(TelemetryTest, EventsAreReadOutOfTheRecords) {
   record.flags = 0;
   record.grasped_node[1] = -1;
   push(3);
-  telemetry.step(5);
+  telemetry.step(at(5));
   ASSERT_EQ(sink.events.size(), 5U);
   using ligature_msg::event_t;
   const std::int8_t kinds[] = {event_t::KIND_FAULT, event_t::KIND_STATE, event_t::KIND_LIMIT, event_t::KIND_GRASP,
@@ -182,7 +206,7 @@ TEST_F(TelemetryTest, JawsThatCloseOnNothingAreAnEvent) {
   record.grip[1] = true;
   record.grasped_node[1] = 3;
   push(4);
-  telemetry.step(5);
+  telemetry.step(at(5));
   ASSERT_EQ(sink.events.size(), 2U);
   EXPECT_EQ(sink.events[0].kind, ligature_msg::event_t::KIND_GRASP);
   EXPECT_EQ(sink.events[0].code, -1);
@@ -192,7 +216,7 @@ TEST_F(TelemetryTest, JawsThatCloseOnNothingAreAnEvent) {
 }
 
 TEST_F(TelemetryTest, CommandsArePassedOnAndAnswered) {
-  const auto ack = telemetry.handle(command(ligature_msg::command_t::KIND_ARM), 9);
+  const auto ack = telemetry.handle(command(ligature_msg::command_t::KIND_ARM), at(9));
   EXPECT_EQ(ack.accepted, 1);
   EXPECT_EQ(ack.id, 7);
   rt::Command passed;
@@ -201,15 +225,15 @@ TEST_F(TelemetryTest, CommandsArePassedOnAndAnswered) {
 }
 
 TEST_F(TelemetryTest, SenselessCommandsAreRefusedWithAReason) {
-  EXPECT_EQ(telemetry.handle(command(99), 0).accepted, 0);
-  EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_RESET_FAULT), 0).reason, "there is no fault");
+  EXPECT_EQ(telemetry.handle(command(99), at(0)).accepted, 0);
+  EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_RESET_FAULT), at(0)).reason, "there is no fault");
   record.fault = 10;
   push(0);
-  telemetry.step(0);
-  EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_ARM), 0).accepted, 0);
-  EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_RESET_FAULT), 0).accepted, 1);
-  for (int i = 0; i < 100; ++i) (void)telemetry.handle(command(ligature_msg::command_t::KIND_STOP), 0);
-  EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_STOP), 0).reason, "too many commands at once");
+  telemetry.step(at(0));
+  EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_ARM), at(0)).accepted, 0);
+  EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_RESET_FAULT), at(0)).accepted, 1);
+  for (int i = 0; i < 100; ++i) (void)telemetry.handle(command(ligature_msg::command_t::KIND_STOP), at(0));
+  EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_STOP), at(0)).reason, "too many commands at once");
 }
 
 TEST_F(TelemetryTest, ClutchAndMovesArePassedOnWhereTheyMakeSense) {
@@ -217,20 +241,20 @@ TEST_F(TelemetryTest, ClutchAndMovesArePassedOnWhereTheyMakeSense) {
   rt::Command passed;
   for (const auto kind : {command_t::KIND_CLUTCH_LEFT, command_t::KIND_UNCLUTCH_LEFT, command_t::KIND_CLUTCH_RIGHT,
                           command_t::KIND_UNCLUTCH_RIGHT}) {
-    EXPECT_EQ(telemetry.handle(command(kind), 0).accepted, 1);
+    EXPECT_EQ(telemetry.handle(command(kind), at(0)).accepted, 1);
     ASSERT_TRUE(outlets->commands.pop(passed));
     EXPECT_EQ(static_cast<int>(passed.kind), kind);
   }
-  EXPECT_EQ(telemetry.handle(command(8), 0).accepted, 0);
-  EXPECT_EQ(telemetry.handle(command(command_t::KIND_PARK), 0).accepted, 0);  // not armed
+  EXPECT_EQ(telemetry.handle(command(8), at(0)).accepted, 0);
+  EXPECT_EQ(telemetry.handle(command(command_t::KIND_PARK), at(0)).accepted, 0);  // not armed
   record.armed = true;
   push(0);
-  telemetry.step(0);
-  EXPECT_EQ(telemetry.handle(command(command_t::KIND_PARK), 0).reason, "no hand holds its dead-man");
+  telemetry.step(at(0));
+  EXPECT_EQ(telemetry.handle(command(command_t::KIND_PARK), at(0)).reason, "no hand holds its dead-man");
   record.dead_man[1] = true;
   push(1);
-  telemetry.step(0);
-  EXPECT_EQ(telemetry.handle(command(command_t::KIND_CALIBRATE), 0).accepted, 1);
+  telemetry.step(at(0));
+  EXPECT_EQ(telemetry.handle(command(command_t::KIND_CALIBRATE), at(0)).accepted, 1);
 }
 
 std::vector<std::byte> bytes_of(const ligature_msg::command_t& c) {
