@@ -38,8 +38,9 @@ struct LcmLink::Receiver {
   Handler handler;
   std::exception_ptr failure;  // of the handler: it must not cross the library's C frames
 
-  /// A plain function: what the library makes of a member function does not survive GCC's -fsanitize=vptr, which uses an
-  /// object's address before it has computed it where a member is called through a pointer found in a polymorphic one.
+  /// A plain function: what the library makes of a member function does not survive GCC's -fsanitize=vptr, which uses
+  /// an object's address before it has computed it where a member is called through a pointer found in a polymorphic
+  /// one.
   static void on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel, Receiver* to) noexcept {
     if (to->failure) return;
     try {

@@ -108,7 +108,7 @@ std::optional<ligature_msg::event_t> decode(Bytes message) {
 
 template <>
 std::optional<ligature_msg::ack_t> decode(Bytes message) {
-  if (!strings_fit(message, kHash + 2 * kInt64 + kInt8, 1)) return std::nullopt;
+  if (!strings_fit(message, kHash + 4 * kInt64 + kInt8, 1)) return std::nullopt;
   return decode_checked<ligature_msg::ack_t>(message);
 }
 
@@ -125,7 +125,7 @@ std::optional<ligature_msg::offer_t> decode(Bytes message) {
 
 template <>
 std::optional<ligature_msg::command_t> decode(Bytes message) {
-  if (!strings_fit(message, kHash + 2 * kInt64 + kInt8, 1)) return std::nullopt;
+  if (!strings_fit(message, kHash + 4 * kInt64 + kInt8, 1)) return std::nullopt;
   return decode_checked<ligature_msg::command_t>(message);
 }
 

@@ -41,7 +41,8 @@ int fail(const Refusal& refusal) {
 void log(const ligature_msg::event_t& e) {
   if (e.kind == ligature_msg::event_t::KIND_FAULT) {
     spdlog::error("tick {}: {}", e.tick, e.text);
-  } else if (e.kind == ligature_msg::event_t::KIND_RECORDER && e.code == 0) {
+  } else if (e.kind == ligature_msg::event_t::KIND_REFUSED ||
+             (e.kind == ligature_msg::event_t::KIND_RECORDER && e.code == 0)) {
     spdlog::warn("tick {}: {}", e.tick, e.text);
   } else if (e.kind != ligature_msg::event_t::KIND_LIMIT) {
     spdlog::info("tick {}: {}", e.tick, e.text);
@@ -87,7 +88,7 @@ void tell_change(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, Scen
   auto outcome = desk.poll();
   if (!outcome) return;
   const auto at = now();
-  outcome->ack.utime = at.utime;
+  telemetry.stamp(outcome->ack, at);
   if (const auto& c = outcome->changed) {
     telemetry.scene_changed({c->file, c->toml, c->max_force_N, c->radius_m}, c->text, at);
     telemetry.set_offer(desk.offer());
@@ -188,9 +189,12 @@ int run(const RunOptions& options) {
                                  *outlets, link, recorder.get());
   telemetry.set_offer(desk.offer());
   link.listen([&](const ligature_msg::command_t& c) -> std::optional<ligature_msg::ack_t> {
+    if (auto turned_away = telemetry.turn_away(c, now())) return turned_away;
     if (!SceneDesk::is_for(c)) return telemetry.handle(c, now());
     const auto& last = telemetry.last();
-    return desk.request(c, last.armed || control::may_push(static_cast<control::State>(last.state)));
+    auto answer = desk.request(c, last.armed || control::may_push(static_cast<control::State>(last.state)));
+    if (answer) telemetry.stamp(*answer, now());
+    return answer;
   });
   return run_loop(*side, link, telemetry, desk, recorder.get(), buses, *outlets, signals);
 }

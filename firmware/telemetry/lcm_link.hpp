@@ -51,8 +51,9 @@ class LcmLink final : public Sink {
   void publish(const char* channel, const Message& m) {
     if (!open_ || lcm_->publish(channel, &m) != 0) ++failures_;
   }
-  /// A plain function: what the library makes of a member function does not survive GCC's -fsanitize=vptr, which uses an
-  /// object's address before it has computed it where a member is called through a pointer found in a polymorphic one.
+  /// A plain function: what the library makes of a member function does not survive GCC's -fsanitize=vptr, which uses
+  /// an object's address before it has computed it where a member is called through a pointer found in a polymorphic
+  /// one.
   static void receive(const lcm::ReceiveBuffer* received, const std::string& channel, LcmLink* link);
 
   std::unique_ptr<lcm::LCM> lcm_;

@@ -84,7 +84,8 @@ namespace {
 /// The generated decoder believes the length that a text claims; INT_MIN, less its zero, is 2 GB to it.
 /// @return whether the text of this command_t fills exactly what the fields about it leave.
 bool text_fits(std::span<const std::byte> message) {
-  constexpr std::size_t kLength = 8 + 8 + 8 + 1;  // behind hash, utime, id, kind: four bytes, the greatest first
+  constexpr std::size_t kLength =
+      8 + 8 + 8 + 8 + 8 + 1;  // behind hash, utime, id, session, challenge, kind: four bytes, the greatest first
   constexpr std::size_t kRest = kLength + 4 + 8;  // value follows
   if (message.size() <= kRest) return false;
   std::size_t length = 0;

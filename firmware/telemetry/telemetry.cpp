@@ -3,11 +3,17 @@
 #include <utility>
 
 #include "firmware/telemetry/messages.hpp"
+#include "protocol/lcm/command_words.hpp"
 
 namespace ligature::telemetry {
 
 Telemetry::Telemetry(Session session, const Names& names, rt::Outlets& outlets, Sink& sink, FlightRecorder* recorder)
-    : session_(std::move(session)), events_(names), outlets_(outlets), sink_(sink), recorder_(recorder) {
+    : session_(std::move(session)),
+      gate_(session_.id),
+      events_(names),
+      outlets_(outlets),
+      sink_(sink),
+      recorder_(recorder) {
   batch_.ticks.reserve(kTicksPerBatch);
 }
 
@@ -136,9 +142,44 @@ std::string Telemetry::objection(std::int8_t kind) const {
   return {};
 }
 
+void Telemetry::stamp(ligature_msg::ack_t& ack, Moment now) const {
+  ack.utime = now.utime;
+  ack.session = session_.id;
+}
+
+std::optional<ligature_msg::ack_t> Telemetry::turn_away(const ligature_msg::command_t& command, Moment now) {
+  auto judged = gate_.judge(command, now.monotonic_us);
+  if (judged.may_be_done) return std::nullopt;
+  ligature_msg::ack_t ack{};
+  stamp(ack, now);
+  ack.id = command.id;
+  ack.challenge = judged.challenge;
+  ack.reason = judged.challenge != 0 ? "not done yet: to be sent again with this challenge" : judged.why;
+  if (judged.challenge == 0) tell_refusal(command, judged.why, now);
+  return ack;
+}
+
+void Telemetry::tell_refusal(const ligature_msg::command_t& command, const std::string& why, Moment now) {
+  if (now.monotonic_us < refusal_due_us_) {
+    ++untold_refusals_;
+    return;
+  }
+  refusal_due_us_ = now.monotonic_us + kRefusalPeriod_us;
+  ligature_msg::event_t event{};
+  event.utime = now.utime;
+  event.tick = last_.tick;
+  event.kind = ligature_msg::event_t::KIND_REFUSED;
+  event.hand = -1;
+  event.code = command.kind;
+  event.text = lcm_tools::command_word(command.kind) + " refused: " + why;
+  if (untold_refusals_ > 0) event.text += " (" + std::to_string(untold_refusals_) + " others before it)";
+  untold_refusals_ = 0;
+  sink_.send(event);
+}
+
 ligature_msg::ack_t Telemetry::handle(const ligature_msg::command_t& command, Moment now) {
   ligature_msg::ack_t ack{};
-  ack.utime = now.utime;
+  stamp(ack, now);
   ack.id = command.id;
   ack.reason = objection(command.kind);
   if (ack.reason.empty() && !outlets_.commands.push({command.id, static_cast<rt::CommandKind>(command.kind)})) {

@@ -2,9 +2,11 @@
 // Drains what the real-time thread leaves and decides what is sent when. Time comes in as an argument.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "firmware/rt/outlets.hpp"
+#include "firmware/telemetry/command_gate.hpp"
 #include "firmware/telemetry/event_finder.hpp"
 #include "firmware/telemetry/flight_recorder.hpp"
 #include "ligature_msg/ack_t.hpp"
@@ -55,13 +57,14 @@ struct Session {
 
 /// One thread uses it. Every record goes into exactly one batch, in order; a batch has 20 of them, the last one what is
 /// left. Shapes at 60 Hz, status at 10 Hz, the offer at 1 Hz, events at once; among them what the flight recorder
-/// notes.
+/// notes. Commands that were played back are told once a second at most, however many come.
 class Telemetry {
  public:
   static constexpr std::size_t kTicksPerBatch = 20;
   static constexpr std::int64_t kShapePeriod_us = 1'000'000 / 60;
   static constexpr std::int64_t kStatusPeriod_us = 100'000;
   static constexpr std::int64_t kOfferPeriod_us = 1'000'000;
+  static constexpr std::int64_t kRefusalPeriod_us = 1'000'000;
 
   /// @param recorder whose notes are passed on; may be missing.
   Telemetry(Session session, const Names& names, rt::Outlets& outlets, Sink& sink, FlightRecorder* recorder = nullptr);
@@ -81,6 +84,12 @@ class Telemetry {
   /// The state after the newest record: what a request is judged by before the loop judges it.
   [[nodiscard]] const rt::TickRecord& last() const noexcept { return last_; }
 
+  /// The answer to a command that goes no further: it only asked for its challenge, or was played back, which is told.
+  [[nodiscard]] std::optional<ligature_msg::ack_t> turn_away(const ligature_msg::command_t& command, Moment now);
+
+  /// Who answers, and when.
+  void stamp(ligature_msg::ack_t& ack, Moment now) const;
+
   /// Passes a request on, or says why not.
   [[nodiscard]] ligature_msg::ack_t handle(const ligature_msg::command_t& command, Moment now);
 
@@ -91,9 +100,11 @@ class Telemetry {
   void send_shape(Moment now);
   void send_status(Moment now);
   void send_offer(Moment now);
+  void tell_refusal(const ligature_msg::command_t& command, const std::string& why, Moment now);
   [[nodiscard]] std::string objection(std::int8_t kind) const;
 
   Session session_;
+  CommandGate gate_;
   EventFinder events_;
   rt::Outlets& outlets_;
   Sink& sink_;
@@ -103,6 +114,7 @@ class Telemetry {
   rt::TickRecord last_{};
   std::int64_t misses_ = 0, lost_ = 0;
   std::int64_t shape_due_us_ = 0, status_due_us_ = 0, offer_due_us_ = 0;  // CLOCK_MONOTONIC
+  std::int64_t refusal_due_us_ = 0, untold_refusals_ = 0;
 };
 
 }  // namespace ligature::telemetry

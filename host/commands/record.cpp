@@ -10,7 +10,7 @@ namespace ligature::host {
 void add_record(CLI::App& app) {
   auto* command = app.add_subcommand("record", "Record every message of the rig into an LCM log");
   const auto options = std::make_shared<RecordOptions>();
-  command->add_option("--out", options->out, "log to write (lcm-logplayer plays it)")->required();
+  command->add_option("--out", options->out, "log to write (ligature-host replay shows it)")->required();
   add_url(*command, options->lcm_url);
   command->add_option("--duration", options->duration_s, "seconds; without it until Ctrl-C or SIGTERM")
       ->check(finite)

@@ -1,10 +1,10 @@
 #include "host/view/command_desk.hpp"
 
-#include <algorithm>
+#include <utility>
 
 #include "host/send.hpp"
 #include "host/view/json_text.hpp"
-#include "host/wall_clock.hpp"
+#include "protocol/lcm/command_words.hpp"
 
 namespace ligature::host::view {
 namespace {
@@ -22,7 +22,7 @@ json answer(const json& id, const std::string& word, bool accepted, const std::s
 json CommandDesk::request(std::uint64_t page, const json& message, Clock::time_point now) {
   const std::string word = text_of(message, "command");
   const json id = id_of(message);
-  const auto kind = command_kind(word);
+  const auto kind = lcm_tools::command_kind(word);
   if (!kind) return answer(id, word.substr(0, 40), false, "no such command");
   if (access_.token.empty()) return answer(id, word, false, "this view may only look: it was started without a token");
   if (!is_token(text_of(message, "token"), access_.token))
@@ -30,29 +30,35 @@ json CommandDesk::request(std::uint64_t page, const json& message, Clock::time_p
 
   const std::scoped_lock lock(mutex_);
   if (waiting_.size() >= kMostWaiting) return answer(id, word, false, "too many commands are waiting for an answer");
-  ligature_msg::command_t command{};
-  command.utime = now_us();
-  command.id = last_id_ = std::max(last_id_ + 1, command.utime);
-  command.kind = *kind;
-  command.text = text_of(message, "text").substr(0, kLongestText);
-  if (const auto value = message.find("value"); value != message.end() && value->is_number())
-    command.value = value->get<double>();
-  waiting_[command.id] = {page, id, word, command, now, now};
+  const auto value = message.find("value");
+  const Exchange exchange(*kind, text_of(message, "text").substr(0, kLongestText),
+                          value != message.end() && value->is_number() ? value->get<double>() : 0.0);
   try {
-    publish_(command);
+    publish_(exchange.message());
   } catch (const std::exception& error) {
-    waiting_.erase(command.id);
     return answer(id, word, false, error.what());
   }
+  waiting_.insert_or_assign(exchange.id(), Waiting{page, id, word, exchange, now, now});
   return nullptr;
+}
+
+/// A failure is said by the answer that does not come.
+void CommandDesk::publish_quietly(const Waiting& waiting) {
+  try {
+    publish_(waiting.exchange.message());
+  } catch (const std::exception&) {
+  }
 }
 
 void CommandDesk::take_ack(const ligature_msg::ack_t& ack) {
   const std::scoped_lock lock(mutex_);
   const auto found = waiting_.find(ack.id);
   if (found == waiting_.end()) return;
-  const auto& [page, id, word, command, sent, repeated] = found->second;
-  ready_.emplace(page, answer(id, word, ack.accepted != 0, ack.reason.substr(0, 200)));
+  auto& waiting = found->second;
+  const auto step = waiting.exchange.take(ack);
+  if (step == Exchange::Step::kSay) publish_quietly(waiting);
+  if (step != Exchange::Step::kAnswered) return;
+  ready_.emplace(waiting.page, answer(waiting.id, waiting.word, ack.accepted != 0, ack.reason.substr(0, 200)));
   waiting_.erase(found);
 }
 
@@ -60,18 +66,15 @@ std::multimap<std::uint64_t, json> CommandDesk::answers(Clock::time_point now) {
   const std::scoped_lock lock(mutex_);
   for (auto it = waiting_.begin(); it != waiting_.end();) {
     auto& w = it->second;
-    if (const auto patience = answer_time(w.command.kind); now - w.sent >= patience) {
+    if (const auto patience = answer_time(w.exchange.message().kind); now - w.sent >= patience) {
       const std::string time = std::to_string(patience.count());
-      ready_.emplace(w.page, answer(w.id, w.word, false, "no answer within " + time + " s: is the firmware running?"));
+      ready_.emplace(w.page, answer(w.id, w.word, false, "within " + time + " s " + w.exchange.silence()));
       it = waiting_.erase(it);
       continue;
     }
-    if (w.command.kind == ligature_msg::command_t::KIND_STOP && now - w.repeated >= kRepeatStopEvery) {
+    if (w.exchange.may_be_repeated() && now - w.repeated >= kRepeatEvery) {
       w.repeated = now;
-      try {
-        publish_(w.command);
-      } catch (const std::exception&) {  // said by the answer that does not come
-      }
+      publish_quietly(w);
     }
     ++it;
   }

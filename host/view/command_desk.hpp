@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "host/exchange.hpp"
 #include "host/messages.hpp"
 #include "host/view/access.hpp"
 
@@ -18,7 +19,7 @@ class CommandDesk {
  public:
   using Clock = std::chrono::steady_clock;
   using Publish = std::function<void(const ligature_msg::command_t&)>;
-  static constexpr auto kRepeatStopEvery = std::chrono::milliseconds(100);
+  static constexpr auto kRepeatEvery = std::chrono::milliseconds(100);
   static constexpr std::size_t kMostWaiting = 64;
 
   CommandDesk(const Access& access, Publish publish) : access_(access), publish_(std::move(publish)) {}
@@ -30,7 +31,8 @@ class CommandDesk {
   /// What the firmware answered; called by the thread that hears LCM.
   void take_ack(const ligature_msg::ack_t& ack);
 
-  /// Answers for pages that have come since the last call, and of those that nobody gave in time. Repeats a stop.
+  /// Answers for pages that have come since the last call, and of those that nobody gave in time. Repeats a stop and
+  /// what only asks.
   [[nodiscard]] std::multimap<std::uint64_t, nlohmann::json> answers(Clock::time_point now);
 
  private:
@@ -38,16 +40,17 @@ class CommandDesk {
     std::uint64_t page;
     nlohmann::json id;
     std::string word;
-    ligature_msg::command_t command;
+    Exchange exchange;
     Clock::time_point sent, repeated;
   };
+
+  void publish_quietly(const Waiting& waiting);
 
   const Access& access_;
   Publish publish_;
   std::mutex mutex_;
   std::map<std::int64_t, Waiting> waiting_;  // by the id of the command
   std::multimap<std::uint64_t, nlohmann::json> ready_;
-  std::int64_t last_id_ = 0;
 };
 
 }  // namespace ligature::host::view

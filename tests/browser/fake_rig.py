@@ -10,6 +10,7 @@ It says "ready" when it publishes and "command NAME" for each command that it he
 import argparse
 import math
 import os
+import random
 import select
 import sys
 import time
@@ -56,14 +57,16 @@ class Rig:
         self.restart()
 
     def restart(self):
-        self.session, self.tick = int(time.time() * 1e6), 0
+        self.session, self.tick, self.challenges = int(time.time() * 1e6), 0, {}
 
     def on_command(self, _, data):
         command = command_t.decode(data)
         kind = COMMANDS.get(command.kind, "?")
+        if kind not in ("disarm", "stop") and not self.is_fresh(command):
+            return
         print("command", kind, command.text, flush=True)
         ack = ack_t()
-        ack.id, ack.accepted, ack.reason = command.id, 1, "done"
+        ack.id, ack.session, ack.accepted, ack.reason = command.id, self.session, 1, "done"
         if kind == "arm" and self.fault:
             ack.accepted, ack.reason = 0, f"fault {self.fault} is latched"
         elif kind == "arm":
@@ -87,6 +90,17 @@ class Rig:
             self.event(6, 0, ack.reason)
         self.lcm.publish("LIGATURE_ACK", ack.encode())
         self.publish_offer()
+
+    def is_fresh(self, command):
+        """As the firmware's gate: a command without a challenge is given one."""
+        if command.challenge and self.challenges.pop(command.id, 0) == command.challenge:
+            return True
+        ack = ack_t()
+        ack.id, ack.session, ack.reason = command.id, self.session, "replayed"
+        if not command.challenge:
+            ack.challenge = self.challenges[command.id] = random.getrandbits(62) + 1
+        self.lcm.publish("LIGATURE_ACK", ack.encode())
+        return False
 
     def publish_offer(self):
         offer = offer_t()

@@ -22,7 +22,7 @@ import lcm  # noqa: E402
 from ligature_msg import status_t, tick_batch_t  # noqa: E402
 
 HANDS = ("left", "right")
-STATE_ENGAGE, STATE_FORCE, STATE_FAULT = 3, 4, 6
+STATE_IDLE, STATE_ENGAGE, STATE_FORCE, STATE_FAULT = 2, 3, 4, 6
 FLAG_PERIOD_LOST = 1
 LCM_URL = "udpm://239.255.76.67:7667?ttl=0"
 

@@ -6,9 +6,7 @@ import tempfile
 import threading
 import unittest
 
-from rig import ROOT, Rig, STATE_ENGAGE, STATE_FORCE, run
-
-STATE_IDLE = 2
+from rig import ROOT, Rig, STATE_ENGAGE, STATE_FORCE, STATE_IDLE, run
 
 
 def send(*words):

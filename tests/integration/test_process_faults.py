@@ -16,7 +16,7 @@ import sys
 import threading
 import unittest
 
-from rig import BIN, FLAG_PERIOD_LOST, HANDS, ROOT, STATE_FAULT, STATE_FORCE, Rig, run
+from rig import BIN, FLAG_PERIOD_LOST, HANDS, LCM_URL, ROOT, STATE_ENGAGE, STATE_FAULT, STATE_FORCE, STATE_IDLE, Rig, run
 
 sys.path.insert(0, os.environ["LIGATURE_LCM_PYTHON"])
 import lcm  # noqa: E402
@@ -40,6 +40,11 @@ def row(what, ends):
 
 def pushes(rig):
     return rig.state_is(STATE_FORCE) and all(any(hand) for hand in rig.listener.ticks[-1].torque_permille)
+
+
+def is_armed(rig):
+    """By its state: when force comes depends on what the operator does at that moment."""
+    return rig.state_is(STATE_ENGAGE) or rig.state_is(STATE_FORCE)
 
 
 def pause(seconds):
@@ -124,10 +129,42 @@ class Network(InForce):
         command = command_t()
         for i in range(20_000):
             command.id, command.kind = i, command_t.KIND_ARM
+            command.session, command.challenge = (17, i) if i % 2 else (0, 0)  # of a recording, or only asking
             link.publish("LIGATURE_COMMAND", command.encode())
         self.carries_on(rig)
         self.assertEqual(run("ligature-host", "send", "arm").returncode, 0)
         self.carries_on(rig, 50)
+
+    @row("a recording with an `arm` in it is played back (`lcm-logplayer`), of the run that goes on, then of an earlier one",
+         "each command but `stop` and `disarm` is refused and named in an event; the rig stays in IDLE")
+    def test_a_recording_played_back(self):
+        rig = self.rig(record=True, extra=("--rt=warn",))
+        for word in ("disarm", "arm", "reset-thread", "disarm"):
+            self.assertEqual(run("ligature-host", "send", word).returncode, 0)
+            if word == "arm":
+                rig.wait_for(is_armed, "arming")
+        rig.wait_for(lambda r: r.state_is(STATE_IDLE), "idle")
+        self.assertEqual(rig.end("recorder"), 0)
+        first = rig.listener.status.session
+        self.assertEqual(self.arms_when_played_back(rig), 0)
+        self.assertIn(f"arm refused: command of session {first} replayed", rig.said("firmware"))
+
+        rig.end("firmware")
+        rig.start_firmware()
+        rig.wait_for(lambda r: r.listener.status.session != first and is_armed(r), "the next run")
+        self.assertEqual(run("ligature-host", "send", "disarm").returncode, 0)
+        rig.wait_for(lambda r: r.state_is(STATE_IDLE), "idle")
+        self.assertEqual(self.arms_when_played_back(rig), 0)
+        self.assertRegex(rig.said("firmware"), rf"arm refused: command of session {first}, this is session \d+")
+        self.assertEqual(run("ligature-host", "send", "arm").returncode, 0, "a living sender is heard")
+
+    def arms_when_played_back(self, rig):
+        """Plays the recording into the rig's own network. @return how often it has left IDLE meanwhile, by its own words."""
+        before = rig.said("firmware").count("IDLE -> ENGAGE")
+        subprocess.run(["lcm-logplayer", "--speed=4", f"--lcm-url={LCM_URL}", rig.log], check=True, capture_output=True, timeout=60)
+        pause(0.3)
+        self.assertTrue(rig.alive("firmware"), rig.words())
+        return rig.said("firmware").count("IDLE -> ENGAGE") - before
 
     @row("LCM garbage: random packets, a channel without end, wrong type hash, cut-off and 1 MB messages, counts that lie", "ignored, by controller and recorder")
     def test_garbage(self):

@@ -80,7 +80,7 @@ TEST(Messages, RefusesForgedStringLengths) {
     put_int32(status, 28, length);
     EXPECT_FALSE(decode<ligature_msg::status_t>(status)) << length;
     auto ack = encoded(ligature_msg::ack_t{});
-    put_int32(ack, 25, length);
+    put_int32(ack, 41, length);
     EXPECT_FALSE(decode<ligature_msg::ack_t>(ack)) << length;
     auto event = encoded(ligature_msg::event_t{});
     put_int32(event, 30, length);

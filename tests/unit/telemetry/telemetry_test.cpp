@@ -224,6 +224,40 @@ TEST_F(TelemetryTest, CommandsArePassedOnAndAnswered) {
   EXPECT_EQ(passed.kind, rt::CommandKind::kArm);
 }
 
+TEST_F(TelemetryTest, ACommandIsGivenAChallengeAndPassesWithIt) {
+  auto c = command(ligature_msg::command_t::KIND_ARM);
+  const auto first = telemetry.turn_away(c, at(9));
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->id, 7);
+  EXPECT_EQ(first->session, 42);
+  EXPECT_EQ(first->utime, 9);
+  EXPECT_EQ(first->accepted, 0);
+  EXPECT_NE(first->challenge, 0);
+  c.session = 42;
+  c.challenge = first->challenge;
+  EXPECT_FALSE(telemetry.turn_away(c, at(10)));
+  EXPECT_EQ(telemetry.handle(c, at(10)).session, 42);
+  EXPECT_TRUE(sink.events.empty());
+  EXPECT_FALSE(telemetry.turn_away(command(ligature_msg::command_t::KIND_STOP), at(10)));
+}
+
+TEST_F(TelemetryTest, APlayedBackCommandIsToldOnceASecondHoweverManyCome) {
+  auto replayed = command(ligature_msg::command_t::KIND_ARM);
+  replayed.session = 41;
+  replayed.challenge = 5;
+  for (std::int64_t ms = 0; ms < 1001; ++ms) {
+    const auto ack = telemetry.turn_away(replayed, {ms * 1'000, 0});
+    ASSERT_TRUE(ack);
+    EXPECT_EQ(ack->accepted + ack->challenge, 0);
+    EXPECT_NE(ack->reason.find("command of session 41"), std::string::npos);
+  }
+  ASSERT_EQ(sink.events.size(), 2U);
+  EXPECT_EQ(sink.events[0].kind, ligature_msg::event_t::KIND_REFUSED);
+  EXPECT_EQ(sink.events[0].code, ligature_msg::command_t::KIND_ARM);
+  EXPECT_TRUE(sink.events[0].text.starts_with("arm refused: command of session 41")) << sink.events[0].text;
+  EXPECT_TRUE(sink.events[1].text.ends_with("(999 others before it)")) << sink.events[1].text;
+}
+
 TEST_F(TelemetryTest, SenselessCommandsAreRefusedWithAReason) {
   EXPECT_EQ(telemetry.handle(command(99), at(0)).accepted, 0);
   EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_RESET_FAULT), at(0)).reason, "there is no fault");
@@ -278,7 +312,7 @@ TEST(CommandOf, TakesWhatWasEncodedAndNothingElse) {
 }
 
 TEST(CommandOf, SurvivesEveryLengthThatATextCanClaim) {
-  constexpr std::size_t kTextLength = 8 + 8 + 8 + 1;  // hash, utime, id, kind
+  constexpr std::size_t kTextLength = 8 + 8 + 8 + 8 + 8 + 1;  // hash, utime, id, session, challenge, kind
   auto message = bytes_of({});
   for (const unsigned claimed : {0U, 2U, 100U, 0x7FFF'FFFFU, 0x8000'0000U, 0xFFFF'FFFFU}) {
     for (std::size_t i = 0; i < 4; ++i) message[kTextLength + i] = static_cast<std::byte>(claimed >> (24 - 8 * i));

@@ -60,6 +60,29 @@ TEST(CommandDesk, PassesACommandOnAndItsAnswerBack) {
             (json{{"id", 7}, {"command", "arm"}, {"accepted", false}, {"text", "fault 11 is latched"}}));
 }
 
+TEST(CommandDesk, SaysACommandAgainWithTheChallengeThatItIsGivenAndOnceOnly) {
+  Desk d;
+  EXPECT_TRUE(d.ask({{"command", "arm"}, {"id", 7}, {"token", d.access.token}}).is_null());
+  (void)d.desk.answers(d.now + 100ms);
+  ASSERT_EQ(d.sent.size(), 2U) << "asking again does no harm";
+  ligature_msg::ack_t ack{};
+  ack.id = d.sent[0].id;
+  ack.session = 42;
+  ack.challenge = 99;
+  d.desk.take_ack(ack);
+  ASSERT_EQ(d.sent.size(), 3U);
+  EXPECT_EQ(d.sent[2].id, d.sent[0].id);
+  EXPECT_EQ(d.sent[2].session, 42);
+  EXPECT_EQ(d.sent[2].challenge, 99);
+  EXPECT_TRUE(d.desk.answers(d.now + 300ms).empty());
+  d.desk.take_ack(ack);
+  EXPECT_EQ(d.sent.size(), 3U);
+  ack.challenge = 0;
+  ack.accepted = 1;
+  d.desk.take_ack(ack);
+  EXPECT_EQ(d.desk.answers(d.now + 300ms).begin()->second["accepted"], true);
+}
+
 TEST(CommandDesk, WithoutTheTokenNothingIsSent) {
   Desk d;
   for (const json& message : {json{{"command", "arm"}, {"id", 1}}, json{{"command", "arm"}, {"token", "wrong"}},

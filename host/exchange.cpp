@@ -1,0 +1,51 @@
+#include "host/exchange.hpp"
+
+#include <random>
+
+#include "host/wall_clock.hpp"
+
+namespace ligature::host {
+namespace {
+
+using ligature_msg::command_t;
+
+/// Never the same twice, whatever the clock says: a recording cannot answer it.
+std::int64_t fresh_id() {
+  std::random_device device;
+  constexpr std::uint64_t kPositive = ~(std::uint64_t{1} << 63U);
+  return static_cast<std::int64_t>((std::uint64_t{device()} << 32U | device()) & kPositive);
+}
+
+}  // namespace
+
+Exchange::Exchange(std::int8_t kind, const std::string& text, double value) {
+  command_.utime = now_us();
+  command_.id = fresh_id();
+  command_.kind = kind;
+  command_.text = text;
+  command_.value = value;
+}
+
+Exchange::Step Exchange::take(const ligature_msg::ack_t& ack) {
+  if (ack.id != command_.id) return Step::kWait;
+  const bool gives_challenge = ack.accepted == 0 && ack.challenge != 0;
+  if (command_.challenge == 0 && gives_challenge) {
+    command_.utime = now_us();
+    command_.session = ack.session;
+    command_.challenge = ack.challenge;
+    return Step::kSay;
+  }
+  // Of two firmwares on one network the first to give a challenge is meant; the other refuses what is not for it.
+  const bool is_of_another = command_.challenge != 0 && ack.session != command_.session;
+  return gives_challenge || is_of_another ? Step::kWait : Step::kAnswered;
+}
+
+bool Exchange::may_be_repeated() const { return command_.challenge == 0; }
+
+std::string Exchange::silence() const {
+  return command_.challenge == 0 ? "no rig answers; is ligature-firmware running with the same --lcm-url in the same "
+                                   "network namespace?"
+                                 : "no answer: whether it was done is not known, look at the rig's state";
+}
+
+}  // namespace ligature::host
