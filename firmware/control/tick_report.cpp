@@ -30,27 +30,28 @@ void report(const Controller& controller, rt::TickRecord& record) noexcept {
   record.state = static_cast<std::int8_t>(controller.state());
   record.fault = static_cast<std::int16_t>(controller.fault());
   record.armed = controller.armed();
-  for (std::size_t h = 0; h < rt::kHands; ++h) {
-    const HandState& s = controller.hand(h);
-    record.p_WT_m[h] = triple(s.p_WT);
-    record.v_WT_m_per_s[h] = triple(s.v_WT);
-    record.f_device_N[h] = triple(s.f_device_N);
-    record.q_rad[h] = s.q_rad;
-    record.f_wish_N[h] = triple(s.f_wish_N);
-    record.gain[h] = s.gain;
-    record.port_energy_J[h] = s.port_energy_J;
-    record.dissipated_J[h] = s.dissipated_J;
-    record.injected_N_s_per_m[h] = s.injected_N_s_per_m;
-    record.heat[h] = s.heat;
-    record.limits[h] = s.limits;
-    record.clutch[h] = s.clutch;
-    record.bus_load[h] = s.bus_load;
-    record.grip[h] = s.grip;
-    record.dead_man[h] = s.dead_man;
-    record.tpdo_age_ticks[h] = static_cast<std::int16_t>(std::min<std::int64_t>(s.age_ticks, INT16_MAX));
-    if (s.age_ticks > 0) record.flags |= h == 0 ? rt::kLeftStale : rt::kRightStale;
-    if (s.limited) record.flags |= h == 0 ? rt::kLeftLimited : rt::kRightLimited;
-  }
+  for (std::size_t h = 0; h < rt::kHands; ++h) report(controller.hand(h), h, record);
+}
+
+void report(const HandState& s, std::size_t h, rt::TickRecord& record) noexcept {
+  record.p_WT_m[h] = triple(s.p_WT);
+  record.v_WT_m_per_s[h] = triple(s.v_WT);
+  record.f_device_N[h] = triple(s.f_device_N);
+  record.q_rad[h] = s.q_rad;
+  record.f_wish_N[h] = triple(s.f_wish_N);
+  record.gain[h] = s.gain;
+  record.port_energy_J[h] = s.port_energy_J;
+  record.dissipated_J[h] = s.dissipated_J;
+  record.injected_N_s_per_m[h] = s.injected_N_s_per_m;
+  record.heat[h] = s.heat;
+  record.limits[h] = s.limits;
+  record.clutch[h] = s.clutch;
+  record.bus_load[h] = s.bus_load;
+  record.grip[h] = s.grip;
+  record.dead_man[h] = s.dead_man;
+  record.tpdo_age_ticks[h] = static_cast<std::int16_t>(std::min<std::int64_t>(s.age_ticks, INT16_MAX));
+  if (s.age_ticks > 0) record.flags |= h == 0 ? rt::kLeftStale : rt::kRightStale;
+  if (s.limited) record.flags |= h == 0 ? rt::kLeftLimited : rt::kRightLimited;
 }
 
 void report(const physics::Diagnostics& thread, rt::TickRecord& record) noexcept {

@@ -57,11 +57,18 @@ TEST(LogSummary, TableAndJsonSayTheSame) {
   const auto json = nlohmann::json::parse(report_json(summary));
   EXPECT_EQ(json["ticks_lost"], 20);
   EXPECT_EQ(json["recorded_per_s"], 990.0);
+  // One of 1980 recorded periods was lost: what was not recorded says nothing about the loop.
+  EXPECT_DOUBLE_EQ(json["executed_percent"].get<double>(), 100.0 * 1979 / 1980);
+  EXPECT_DOUBLE_EQ(json["executed_per_s"].get<double>(), 1000.0 * 1979 / 1980);
+  EXPECT_EQ(json["periods_lost"], 1);
+  EXPECT_DOUBLE_EQ(json["wakeup_us"]["p50"].get<double>(), 1.009);  // of 0 .. 1999 without 400 .. 419 and 1900
+  EXPECT_DOUBLE_EQ(json["wakeup_us"]["p99"].get<double>(), 1.98);
   EXPECT_EQ(json["knot"]["type"], "3_1");
   EXPECT_EQ(json["hand_force"]["left"]["peak_N"], 3.0);
   EXPECT_EQ(json["wakeup_us"]["max"], 1.999);
   const auto table = report_table(summary);
   EXPECT_NE(table.find("1980 recorded, 20 lost"), std::string::npos) << table;
+  EXPECT_NE(table.find("999.5 ticks per second, 99.949 % of periods executed"), std::string::npos) << table;
   EXPECT_NE(table.find("3_1"), std::string::npos) << table;
   EXPECT_NE(table.find("peak 3.000 N at 0.777 s"), std::string::npos) << table;
 }

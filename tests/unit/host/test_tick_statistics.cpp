@@ -22,6 +22,23 @@ TEST(TickStatistics, ALostPeriodIsNoTimingSample) {
   EXPECT_EQ(statistics.execution().p50_ns, 200);
 }
 
+TEST(TickStatistics, PercentilesAreThoseTheyAreCalled) {
+  TickStatistics statistics;
+  for (int i = 1; i <= 1000; ++i) {
+    auto tick = test::tick_of(i);
+    tick.wakeup_latency_ns = 1001 - i;
+    tick.control_ns = 10'000 + i;
+    tick.execution_ns = 20'000 + i;
+    statistics.add(tick);
+  }
+  const auto are = [](const Percentiles& p, std::int32_t base) {
+    return p.p50_ns == base + 500 && p.p99_ns == base + 990 && p.max_ns == base + 1000;
+  };
+  EXPECT_TRUE(are(statistics.wakeup(), 0));
+  EXPECT_TRUE(are(statistics.control(), 10'000));
+  EXPECT_TRUE(are(statistics.execution(), 20'000));
+}
+
 TEST(TickStatistics, MeanForceIsOverTheTicksWithAGrasp) {
   TickStatistics statistics;
   for (int i = 0; i < 10; ++i) {
