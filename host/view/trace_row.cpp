@@ -46,7 +46,8 @@ bool BinMaker::add(const TraceRow& row, TraceBin& done) {
   if (is_new) {
     number_ = number;
     for (std::size_t c = 0; c < kColumns; ++c) open_.low[c] = open_.high[c] = static_cast<float>(row[c]);
-    open_.low[kTick] = open_.high[kTick] = static_cast<float>(number);  // the bin's number: exact in a float for 9 days
+    open_.low[kTick] = static_cast<float>(number % kBinNumberPart);
+    open_.high[kTick] = static_cast<float>(number / kBinNumberPart);
     return finished;
   }
   constexpr std::size_t kBits[] = {kFlags, kLeftLimits, kRightLimits};

@@ -56,11 +56,12 @@ using TraceRow = std::array<double, kColumns>;
 [[nodiscard]] TraceRow trace_row(const ligature_msg::tick_t& tick);
 
 /// Smallest and largest value of each column over kTicksPerBin consecutive tick numbers (by tick / kTicksPerBin).
+/// kTick: the bin's number in two parts, low + high * kBinNumberPart: one float alone is exact for 9 days only.
 /// kFlags and the limits: `low` and, joined by or, `high`; so that one late tick among fifty is never hidden.
 struct TraceBin {
   std::array<float, kColumns> low{}, high{};
 };
-inline constexpr std::int64_t kTicksPerBin = 50;
+inline constexpr std::int64_t kTicksPerBin = 50, kBinNumberPart = std::int64_t{1} << 20;
 
 /// Collects rows into bins.
 class BinMaker {

@@ -1,16 +1,16 @@
-// The page in a real Chromium against a fake rig, and a recording of it. Waits on conditions only.
-//   node browser_test.mjs --host BIN --rig PYTHON:SCRIPT --modules DIR --out DIR     (inside scripts/private-net)
+// The page in a real browser against a fake rig, and a recording of it. Waits on conditions only.
+//   node browser_test.mjs [--browser firefox] [--webgl off] --host BIN --python BIN --rig SCRIPT --modules DIR --out DIR     (inside scripts/private-net)
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { Browser, Program, arguments_, clientOf, until } from './support.mjs';
 
-const { host, python, rig: rigScript, out } = arguments_();
+const { host, python, rig: rigScript, out, browser: kind, webgl } = arguments_();
 mkdirSync(out, { recursive: true });
 rmSync(join(out, 'page.lcmlog'), { force: true });
 const rig = new Program(python, [rigScript]);
-const browser = await Browser.start();
+const browser = await Browser.start({ kind, webgl: webgl !== 'off' });
 let view, page, replay;
 
 const steps = {
@@ -152,7 +152,7 @@ const steps = {
     rig.tell('quiet');
     await until(page, () => !document.getElementById('stale').hidden);
     // Shown at the first frame or timer after 120 ms; how soon is printed, for wall time is no verdict on a shared machine.
-    const { age_ms, pace_ms } = await page.evaluate(() => ({ age_ms: ligature.staleAt_ms, pace_ms: ligature.scene.pace }));
+    const { age_ms, pace_ms } = await page.evaluate(() => ({ age_ms: ligature.staleAt_ms, pace_ms: ligature.scene.pace ?? 0 }));
     console.log(`    shown as old at ${age_ms.toFixed(0)} ms, one picture takes ${pace_ms.toFixed(0)} ms`);
     assert.ok(age_ms >= 120, `${age_ms} ms`);
     await page.screenshot({ path: join(out, 'stale.png') });
@@ -196,6 +196,31 @@ const steps = {
     assert.ok(view.peakMemory_kB() < 300 * 1024);
     deaf.forEach((peer) => peer.end());
     assert.equal(rig.heard.slice(before).includes('command arm'), false);
+  },
+  'ticks are exact after a year, and where 31 and 32 bits end': async () => {
+    for (const start of [2 ** 31 - 3000, 2 ** 32 - 3000, 31_536_000_000]) {
+      rig.tell(`restart ${start}`);
+      await page.waitForFunction((from) => ligature.store.lastTick > from + 5000 && ligature.store.tickOfRow(ligature.store.rowBegin) >= from && ligature.store.binEnd - ligature.store.binBegin > 80, start);
+      const { now, rows, bins } = await page.evaluate(() => {
+        const { store, latest } = ligature, all = (begin, end, tick) => Array.from({ length: end - begin }, (_, i) => tick(begin + i));
+        return { now: latest.now.tick, rows: all(store.rowBegin, store.rowEnd, (i) => store.tickOfRow(i)), bins: all(store.binBegin, store.binEnd, (i) => store.tickOfBin(i)) };
+      });
+      assert.equal(now, rows.at(-1));
+      rows.forEach((tick, i) => assert.equal(tick, rows[0] + i));
+      bins.forEach((tick, i) => assert.equal(tick, bins[0] + 50 * i));
+      assert.equal(bins[0], Math.floor(rows[0] / 50) * 50);
+      await page.click('#windows button[value="1"]');
+      await page.waitForFunction(() => { const { plot } = ligature.traces.plots[0]; return plot.axes[0]._values?.length > 1 && plot.data[0].at(-1) > ligature.store.lastTick / 1000 - 2; });
+      const labels = await page.evaluate(() => ligature.traces.plots[0].plot.axes[0]._values.filter((v) => v));
+      assert.equal(new Set(labels).size, labels.length, labels.join());
+      labels.forEach((label) => assert.ok(Math.abs(parseFloat(label) - start / 1000) < 3600, label));
+      const over = await page.locator('.plot .u-over').first().boundingBox();
+      await page.mouse.move(over.x + over.width / 2, over.y + over.height / 2);
+      const read = await page.waitForFunction(() => { const c = document.getElementById('cursor'); return c.dataset.row && [JSON.parse(c.dataset.row)[0], c.textContent]; }).then((handle) => handle.jsonValue());
+      assert.ok(read[1].startsWith(`t ${Math.floor(read[0] / 1000)}.${String(read[0] % 1000).padStart(3, '0')} s`), read.join(': '));
+      await page.screenshot({ path: join(out, `tick-${start}.png`) });
+      await page.mouse.move(5, 5);
+    }
   },
   'goes on with a restarted firmware': async () => {
     rig.tell('restart');
@@ -301,7 +326,7 @@ for (const [name, step] of Object.entries(steps)) {
     console.log(`ok   ${name} (${((Date.now() - began) / 1000).toFixed(1)} s)`);
   } catch (error) {
     ++failed;
-    console.log(`FAIL ${name}\n${error.stack}`);
+    console.log(`FAIL ${name}\n${error.stack}\n${rig.heard}`);
     await page?.screenshot({ path: join(out, 'failure.png') }).catch(() => {});
     break; // the steps build on each other
   }

@@ -3,7 +3,7 @@
     fault N     latch fault N        knot | unknot   the thread's shape        spike F   one tick with F newton
     limit BITS  what holds the left hand back   clutch B   left tool parked   degrade N   what the solver gave up
     arm         go to FORCE
-    quiet       send nothing more    go              send again                restart   another session
+    quiet       send nothing more    go              send again                restart [T]   another session, from tick T
 It says "ready" when it publishes and "command NAME" for each command that it hears. Nothing here is physics.
 """
 
@@ -56,8 +56,8 @@ class Rig:
         self.scene, self.friction = "fake.toml", 0.3
         self.restart()
 
-    def restart(self):
-        self.session, self.tick, self.challenges = int(time.time() * 1e6), 0, {}
+    def restart(self, tick=0):
+        self.session, self.tick, self.challenges = int(time.time() * 1e6), tick, {}
 
     def on_command(self, _, data):
         command = command_t.decode(data)
@@ -143,7 +143,7 @@ class Rig:
         elif word in ("quiet", "go"):
             self.quiet = word == "quiet"
         elif word == "restart":
-            self.restart()
+            self.restart(int(value or 0))
 
     def one_tick(self):
         tick = tick_t()

@@ -1,8 +1,9 @@
 // The page's trace memory and frame reader, as plain functions.
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { C, TICKS_PER_BIN, WIDTH, readFrame } from '../../host/view/page/frame.js';
+import { BIN_NUMBER_PART, C, TICKS_PER_BIN, WIDTH, readFrame } from '../../host/view/page/frame.js';
 import { TraceStore } from '../../host/view/page/trace_store.js';
+import { axisLabels, describeTime, labelRoom } from '../../host/view/page/times.js';
 import { commonName } from '../../host/view/page/knot_panel.js';
 
 function rows(first, count, value = () => 0) {
@@ -38,6 +39,51 @@ test('bins stand in for ticks that are gone, and only for those', () => {
   const [x, left] = store.series(0, 100, 10, [C.left]);
   assert.equal(Math.max(...left.filter((v, i) => v !== null && x[i] < 50)), 9);
   assert.equal(Math.max(...left.filter((_, i) => x[i] >= 50)), 2);
+});
+
+// After a year at 1 kHz, and where 31 and 32 bits end.
+for (const start of [31_536_000_000, 2 ** 31 - 100, 2 ** 32 - 100]) {
+  test(`ticks are exact from ${start} on`, () => {
+    const store = new TraceStore(), first = Math.floor(start / TICKS_PER_BIN);
+    const bins = new Float32Array(4 * 2 * WIDTH);
+    for (let i = 0; i < 4; ++i) {
+      bins[2 * i * WIDTH] = (first + i) % BIN_NUMBER_PART;
+      bins[(2 * i + 1) * WIDTH] = Math.floor((first + i) / BIN_NUMBER_PART);
+      bins[(2 * i + 1) * WIDTH + C.left] = i;
+    }
+    store.addBins(bins);
+    for (let i = 0; i < 4; ++i) assert.equal(store.tickOfBin(i), (first + i) * TICKS_PER_BIN);
+    const from = (first + 4) * TICKS_PER_BIN;
+    store.addRows(rows(from, 500, (tick) => (tick === from + 77 ? 7 : 1)));
+    assert.equal(store.nearest(from + 77.4)[C.left], 7);
+    assert.equal(store.lastTick, from + 499);
+    const [x, left] = store.series(from, from + 500, 500, [C.left]);
+    assert.equal(x[left.indexOf(7)], from + 77);
+    const [wideX, wide] = store.series(first * TICKS_PER_BIN, from + 500, 70, [C.left]); // ten ticks a stretch
+    assert.ok(Math.abs(wideX[wide.indexOf(7)] - (from + 77)) <= 10);
+    assert.ok(Math.abs(wideX[wide.indexOf(3)] - (first + 3) * TICKS_PER_BIN) <= 10);
+    assert.equal(store.histogram(C.wakeup_ns, [1], from + 100).counts[0], 400);
+    assert.match(describeTime(from + 77, 1e-3), new RegExp(`^t ${Math.floor((from + 77) / 1000)}\\.${String((from + 77) % 1000).padStart(3, '0')} s`));
+  });
+}
+
+test('rows and bins are found after more than 2^31 of them', () => {
+  const store = new TraceStore();
+  for (const count of [2 ** 30, 2 ** 31 - 50, 2 ** 32 - 50]) {
+    store.rowEnd = count - 60_000;
+    for (let i = 0; i < 60; ++i) store.addRows(rows(count + 1000 * i, 1000));
+    assert.equal(store.nearest(count + 12_345)[0], count + 12_345);
+  }
+});
+
+test('labels of a time axis differ, have their unit, and have room', () => {
+  for (const [end_s, step_s] of [[12, 1], [10, 0.1], [31_536_000, 2], [31_536_000, 0.1], [4_294_967, 0.01]]) {
+    const labels = axisLabels([0, 1, 2, 3].map((i) => end_s + i * step_s));
+    assert.equal(new Set(labels).size, 4, labels.join());
+    labels.forEach((label, i) => assert.ok(Math.abs(parseFloat(label) - (end_s + i * step_s)) < 1e-6, label));
+    assert.match(labels[3], / s$/);
+    assert.ok(labelRoom(end_s, step_s) >= 6 * labels[2].length);
+  }
 });
 
 test('memory is fixed: the oldest go', () => {

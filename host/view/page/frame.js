@@ -9,6 +9,7 @@ export const COLUMNS = ['tick', 'leftX', 'leftY', 'leftZ', 'left', 'rightX', 'ri
 export const C = Object.fromEntries(COLUMNS.map((name, i) => [name, i]));
 export const WIDTH = COLUMNS.length;
 export const TICKS_PER_BIN = 50;
+export const BIN_NUMBER_PART = 2 ** 20; // as kBinNumberPart of host/view/trace_row.hpp
 const SECTION = { now: 1, shape: 2, rows: 3, bins: 4, text: 5, beside: 6, besideRows: 7, besideBins: 8 };
 const MAGIC = 0x3146474c; // "LGF1", little-endian
 

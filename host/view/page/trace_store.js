@@ -1,6 +1,6 @@
 // What the traces are drawn from: every tick of the last minute, and bins of 50 ticks with smallest and largest value
 // for the last ten minutes. Memory is fixed.
-import { C, TICKS_PER_BIN, WIDTH } from './frame.js';
+import { BIN_NUMBER_PART, C, TICKS_PER_BIN, WIDTH } from './frame.js';
 
 const ROWS = 60_000, BINS = 12_000;
 
@@ -27,7 +27,8 @@ export class TraceStore {
   get binBegin() { return Math.max(0, this.binEnd - BINS); }
   row(i) { const at = (i % ROWS) * WIDTH; return this.rows.subarray(at, at + WIDTH); }
   tickOfRow(i) { return this.rows[(i % ROWS) * WIDTH]; }
-  tickOfBin(i) { return this.bins[(i % BINS) * 2 * WIDTH] * TICKS_PER_BIN; }
+  /** A bin's number comes as two floats (host/view/trace_row.hpp): one is exact for 9 days only. */
+  tickOfBin(i) { const at = (i % BINS) * 2 * WIDTH; return (this.bins[at] + this.bins[at + WIDTH] * BIN_NUMBER_PART) * TICKS_PER_BIN; }
   get lastTick() { return this.rowEnd > this.rowBegin ? this.tickOfRow(this.rowEnd - 1) : null; }
 
   /** First row whose tick is at least `tick`. */
@@ -123,7 +124,7 @@ function assemble(from, to, cells, low, high) {
 
 function lowerBound(begin, end, isEnough) {
   while (begin < end) {
-    const middle = (begin + end) >> 1;
+    const middle = Math.floor((begin + end) / 2); // no shift: it ends at 31 bits
     if (isEnough(middle)) end = middle; else begin = middle + 1;
   }
   return begin;

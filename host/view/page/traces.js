@@ -2,6 +2,7 @@
 import uPlot from './uPlot.esm.js';
 import { C } from './frame.js';
 import { stateName } from './names.js';
+import { axisLabels, describeTime, labelRoom } from './times.js';
 
 /** What the third plot can show: two columns and their names, their SI unit, a factor to the unit drawn, least height. */
 export const THIRD = {
@@ -66,7 +67,7 @@ export class Traces {
       width: 400, height: 150, series, legend: { show: false }, padding: [8, 8, 0, 0],
       cursor: { sync: { key: 'ligature' }, drag: { x: false, y: false }, points: { size: 6 } },
       scales: { x: { time: false, auto: false }, y: { range: (_, low, high) => niceRange(low, high, hand === null ? this.third.least : 0.1) } },
-      axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((t) => `${+t.toFixed(3)}`) }, { ...axis, size: 50 }],
+      axes: [{ ...axis, size: 24, values: (_, marks) => axisLabels(marks), space: () => labelRoom(this.end_s ?? 0, this.window_s / 10) }, { ...axis, size: 50 }],
       hooks: {
         draw: [(u) => this.#drawMarks(u, hand)],
         setCursor: [(u) => { if (u === this.pointed) this.#readCursor(u); }],
@@ -175,6 +176,7 @@ export class Traces {
   draw() {
     const end = (this.end ?? this.store.lastTick ?? 0) + 1, from = end - this.window_s / this.period_s;
     const data = this.#series(from, end, this.plots[0].plot.bbox.width / devicePixelRatio);
+    this.end_s = end * this.period_s;
     data[0] = Array.from(data[0], (tick) => tick * this.period_s);
     for (const k of [9, 10, BESIDE + 2]) data[k] = Array.from(data[k], (v) => (v == null || v > FAR && !this.third.isTime ? v === undefined ? v : null : v * this.third.factor));
     this.data = data;
@@ -205,6 +207,6 @@ export function describeRow(row, period_s, third, other) {
   const beside = other ? ` · other: left ${other[C.left]} N, right ${other[C.right]} N` : '';
   const fault = row[C.fault] ? ` fault ${row[C.fault]}` : '';
   const more = third.names.map((name, i) => `${name} ${row[third.columns[i]]}${third.si && ` ${third.si}`}`).join(', ');
-  return `t ${(row[C.tick] * period_s).toFixed(3)} s · left ${row[C.left]} N · right ${row[C.right]} N · `
+  return `${describeTime(row[C.tick], period_s)} · left ${row[C.left]} N · right ${row[C.right]} N · `
     + `tick ${row[C.tick]} ${stateName(row[C.state])}${fault} · ${third.title}: ${more}${beside}`;
 }

@@ -38,6 +38,22 @@ TEST(BinMaker, NeverHidesASpikeNorAFlag) {
   EXPECT_EQ(done.high[kTick], 0.0F);
 }
 
+TEST(BinMaker, NumbersItsBinsExactlyForYears) {
+  constexpr std::int64_t kYear = 31'536'000'000;
+  for (const std::int64_t start : {std::int64_t{0}, std::int64_t{1} << 31, std::int64_t{1} << 32, kYear, 10 * kYear}) {
+    BinMaker maker;
+    TraceBin done;
+    std::int64_t wanted = start / kTicksPerBin;
+    for (std::int64_t tick = start; tick < start + 10 * kTicksPerBin; ++tick) {
+      if (!maker.add(trace_row(test::tick_of(tick)), done)) continue;
+      const auto found =
+          static_cast<std::int64_t>(done.low[kTick]) + static_cast<std::int64_t>(done.high[kTick]) * kBinNumberPart;
+      EXPECT_EQ(found, wanted++);
+    }
+    EXPECT_GE(wanted - start / kTicksPerBin, 9);
+  }
+}
+
 TEST(Ring, KeepsTheLastAndCountsAll) {
   Ring<int> ring(3);
   for (int i = 0; i < 5; ++i) ring.push(i);
