@@ -2,6 +2,8 @@
 
 #include <boost/asio/buffer.hpp>
 
+#include "host/view/json_text.hpp"
+
 namespace ligature::host::view {
 namespace {
 
@@ -14,12 +16,19 @@ constexpr int kSocketBuffer = 128 * 1024;               // small, so that frames
 PageConnection::PageConnection(beast::tcp_stream stream, Shared& shared)
     : shared_(shared), id_(++shared.last_page), socket_(std::move(stream)) {
   ++shared_.connections;
-  second_began_ = last_seen_ = Clock::now();
+  ++shared_.lookers;
+  began_ = second_began_ = last_seen_ = Clock::now();
 }
 
 PageConnection::~PageConnection() {
-  --shared_.connections;
+  give_place_back();
   shared_.pages.erase(id_);
+}
+
+void PageConnection::give_place_back() {
+  if (!std::exchange(has_place_, false)) return;
+  --shared_.connections;
+  if (!is_known_) --shared_.lookers;
 }
 
 void PageConnection::accept(const http::request<http::string_body>& upgrade) {
@@ -73,8 +82,16 @@ bool PageConnection::on_message(std::string_view text) {
     last_seen_ = now;
     return seen_ <= place_.frame;
   }
+  look_at_token(message);
+  if (message.size() == 1 && message.contains("token")) return true;  // a greeting, nothing is asked
   if (auto answer = shared_.hooks.on_message(id_, message); !answer.is_null()) add_answer(answer);
   return true;
+}
+
+void PageConnection::look_at_token(const nlohmann::json& message) {
+  if (is_known_ || !has_place_ || !is_token(text_of(message, "token"), shared_.access.token)) return;
+  is_known_ = true;
+  --shared_.lookers;
 }
 
 void PageConnection::add_answer(const nlohmann::json& answer) {
@@ -83,7 +100,8 @@ void PageConnection::add_answer(const nlohmann::json& answer) {
 
 void PageConnection::offer_frame(Clock::time_point now) {
   if (!open_) return;
-  if (now - last_seen_ > kSilentPage) return close();
+  const bool is_stranger = !is_known_ && shared_.access.gives_token && now - began_ > shared_.token_within;
+  if (is_stranger || now - last_seen_ > kSilentPage) return close();
   if (writing_ || place_.frame - seen_ >= kMostUnseen) return;
   outbox_ = shared_.picture.frame_for(place_, std::exchange(answers_, nlohmann::json::array()), now);
   writing_ = true;
@@ -93,9 +111,9 @@ void PageConnection::offer_frame(Clock::time_point now) {
   });
 }
 
-/// Without a closing handshake: what is closed here did not keep to the rules or does not answer.
 void PageConnection::close() {
   open_ = false;
+  give_place_back();
   beast::get_lowest_layer(socket_).close();
 }
 

@@ -23,7 +23,8 @@ struct Shared {
   const Picture& picture;
   ServerHooks hooks;
   std::string machine_name;
-  std::size_t connections = 0;
+  Picture::Clock::duration token_within;     // for pages, where the page itself carries the token
+  std::size_t connections = 0, lookers = 0;  // all, and pages that have not shown the token
   std::map<std::uint64_t, std::weak_ptr<class PageConnection>> pages;
   std::uint64_t last_page = 0;
 };
@@ -40,6 +41,10 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
   /// Sends a frame unless the page is behind.
   void offer_frame(Picture::Clock::time_point now);
   void add_answer(const nlohmann::json& answer);
+  /// Whether it has shown the token: then nobody takes its place.
+  [[nodiscard]] bool is_known() const { return is_known_; }
+  /// Without a closing handshake: its place is needed, or it does not keep to the rules or does not answer.
+  void close();
 
  private:
   static constexpr std::uint32_t kMostUnseen = 3;
@@ -49,7 +54,8 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
   void read();
   /// @return false when the page breaks the rules and must go.
   bool on_message(std::string_view text);
-  void close();
+  void look_at_token(const nlohmann::json& message);
+  void give_place_back();
 
   Shared& shared_;
   std::uint64_t id_;
@@ -60,7 +66,8 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
   Place place_;
   std::uint32_t seen_ = 0;
   nlohmann::json answers_ = nlohmann::json::array();
-  Picture::Clock::time_point second_began_, last_seen_;
+  Picture::Clock::time_point began_, second_began_, last_seen_;
+  bool is_known_ = false, has_place_ = true;
   int messages_this_second_ = 0;
 };
 

@@ -15,6 +15,8 @@ namespace {
 namespace asio = boost::asio;
 using Clock = Picture::Clock;
 constexpr std::size_t kMostConnections = 64;
+// Pages that have not shown the token: where the page carries it they are none of ours, elsewhere they may look.
+constexpr std::size_t kFewLookers = 16, kManyLookers = 48;
 constexpr auto kFramePeriod = std::chrono::microseconds(16'667);
 
 std::string own_name() {
@@ -55,15 +57,35 @@ struct Server::Parts {
     });
   }
 
-  /// At the limit whoever has spoken HTTP longest makes room: peers that connect and say nothing keep no page out. With
-  /// nothing but pages there is none, and the socket ends here.
+  /// At the limit whoever has spoken HTTP longest makes room, then the page that has looked longest without the token:
+  /// peers that connect and say nothing keep no page out. With nothing but pages that have shown the token there is no
+  /// room, and the socket ends here.
   bool has_room() {
     std::erase_if(visitors, [](const auto& visitor) { return visitor.expired(); });
+    while (shared.lookers > most_lookers() && end_oldest_looker()) {
+    }
     if (shared.connections < kMostConnections) return true;
-    if (visitors.empty()) return false;
+    if (visitors.empty()) return end_oldest_looker();
     if (const auto oldest = visitors.front().lock()) oldest->end();
     visitors.pop_front();
     return true;
+  }
+
+  /// Where there is a token, those who show it have most of the places.
+  [[nodiscard]] std::size_t most_lookers() const {
+    return shared.access.token.empty() ? kMostConnections : shared.access.gives_token ? kFewLookers : kManyLookers;
+  }
+
+  /// The place of the longest looker; its socket is closed, and it is no longer counted on.
+  bool end_oldest_looker() {
+    for (const auto& [id, weak] : shared.pages) {  // in order of their coming
+      const auto page = weak.lock();
+      if (!page || page->is_known()) continue;
+      page->close();
+      shared.pages.erase(id);
+      return true;
+    }
+    return false;
   }
 
   void tick() {
@@ -89,7 +111,7 @@ struct Server::Parts {
 };
 
 Server::Server(const ServerOptions& options, const Access& access, const Picture& picture, ServerHooks hooks)
-    : parts_(new Parts{.shared = {access, picture, std::move(hooks), own_name(), 0, {}, 0}}) {
+    : parts_(new Parts{.shared = {access, picture, std::move(hooks), own_name(), options.token_within, 0, 0, {}, 0}}) {
   beast::error_code error;
   const auto address = asio::ip::make_address(options.listen, error);
   if (error)

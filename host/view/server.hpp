@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -12,7 +13,8 @@ namespace ligature::host::view {
 
 struct ServerOptions {
   std::string listen = "127.0.0.1";
-  std::uint16_t port = 8737;  // 0: any free one
+  std::uint16_t port = 8737;                       // 0: any free one
+  std::chrono::milliseconds token_within{10'000};  // a page that carries the token says it at once; another ends then
 };
 
 /// The address to open in a browser; an IPv6 one stands in brackets.
@@ -31,8 +33,9 @@ struct ServerHooks {
 
 /// HTTP and WebSocket on one port and one thread (Boost.Beast). Pages get a frame 60 times a second unless the last
 /// three are not yet acknowledged: a slow one is shown less often, and nothing is ever queued for it.
-/// Bounds: 64 connections (the oldest without a page makes room), 4 KiB a message, 300 messages a second, 8 KiB of HTTP
-/// header, 10 s for a request or a write.
+/// Bounds: 64 connections, of them 16 pages without the token where the page carries it (for 10 s each), 48 where it is
+/// given by hand (the oldest makes room: first who speaks HTTP, then who has not shown the token), 4 KiB a message, 300
+/// messages a second, 8 KiB of HTTP header, 10 s for a request or a write.
 class Server {
  public:
   /// @throws BadInput for an address that is none, RunFailed when it cannot be bound.

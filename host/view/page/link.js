@@ -25,7 +25,10 @@ export class Link {
   connect() {
     this.socket = new WebSocket(`ws://${location.host}/socket`);
     this.socket.binaryType = 'arraybuffer';
-    this.socket.onopen = () => { this.isOpen = true; };
+    this.socket.onopen = () => {
+      this.isOpen = true;
+      if (this.token) this.send({ token: this.token }); // who shows it keeps its place, however many come
+    };
     this.socket.onmessage = ({ data }) => {
       const frame = readFrame(data);
       this.lastFrame = performance.now();

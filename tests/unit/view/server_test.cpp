@@ -6,7 +6,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
+#include <cerrno>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -23,6 +26,8 @@ class Peer {
     at.sin_family = AF_INET;
     at.sin_port = htons(port);
     at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const timeval patience{.tv_sec = 20, .tv_usec = 0};  // ends a hang, and nothing else
+    setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     connected_ = connect(socket_, reinterpret_cast<const sockaddr*>(&at), sizeof at) == 0;
   }
   ~Peer() { close(socket_); }
@@ -39,10 +44,136 @@ class Peer {
     return answer;
   }
 
+  /// Becomes a page, as far as the server knows. @return whether it did.
+  [[nodiscard]] bool upgrade() const {
+    return ask("GET /socket HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+               "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n")
+        .starts_with("HTTP/1.1 101");
+  }
+  /// A short text message, masked with zeros.
+  void say(const std::string& text) const {
+    const std::string frame = std::string{'\x81', static_cast<char>(0x80 | text.size()), 0, 0, 0, 0} + text;
+    (void)send(socket_, frame.data(), frame.size(), MSG_NOSIGNAL);
+  }
+  /// Reads until the other end closes. @return whether it did.
+  [[nodiscard]] bool is_closed() const {
+    std::array<char, 4096> bytes{};
+    for (;;) {
+      const auto got = recv(socket_, bytes.data(), bytes.size(), 0);
+      if (got <= 0) return got == 0 || errno == ECONNRESET;
+    }
+  }
+
  private:
   int socket_;
   bool connected_ = false;
 };
+
+const Access kToken{"0123456789abcdef", true};
+const std::string kGreeting = R"({"token":"0123456789abcdef"})";
+
+/// A server, and peers that do what `visit` says on a thread of its own.
+class Visited {
+ public:
+  Visited(Access access, const ServerOptions& options, const std::function<void(Visited&)>& visit)
+      : access_(std::move(access)), server_(options, access_, picture_, hooks()) {
+    std::thread visitor([&] {
+      visit(*this);
+      done_ = true;
+    });
+    server_.run();
+    visitor.join();
+  }
+  [[nodiscard]] std::unique_ptr<Peer> peer() const { return std::make_unique<Peer>(server_.port()); }
+  [[nodiscard]] bool is_served() const {
+    return peer()->ask("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n").starts_with("HTTP/1.1 200 OK");
+  }
+  /// Asks for something and waits until that was heard. @return false when it never was.
+  [[nodiscard]] bool is_heard(const Peer& page) {
+    const int before = heard_;
+    page.say(R"({"seen":0})");  // it is there, and not one of those who never answer
+    page.say(R"({"command":"stop","id":1})");
+    for (int i = 0; i < 2000 && heard_ == before; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return heard_ > before;
+  }
+
+ private:
+  ServerHooks hooks() {
+    return {[this](std::uint64_t, const nlohmann::json&) {
+              ++heard_;
+              return nlohmann::json(nullptr);
+            },
+            [this](bool& more) {
+              more = !done_;
+              return std::multimap<std::uint64_t, nlohmann::json>{};
+            }};
+  }
+  const Access access_;
+  const Picture picture_;
+  std::atomic<bool> done_ = false;
+  std::atomic<int> heard_ = 0;
+  Server server_;
+};
+
+constexpr int kMany = 200;  // more than three times the places
+
+/// Peers that became pages and say nothing; all stay open.
+std::vector<std::unique_ptr<Peer>> crowd(const Visited& visited) {
+  std::vector<std::unique_ptr<Peer>> peers;
+  for (int i = 0; i < kMany; ++i) {
+    peers.push_back(visited.peer());
+    EXPECT_TRUE(peers.back()->upgrade()) << i;
+  }
+  return peers;
+}
+
+TEST(Server, PagesWithoutTheTokenKeepNobodyOutAndTakeNoPlaceOfThoseWithIt) {
+  Visited(kToken, {.listen = "127.0.0.1", .port = 0}, [](Visited& visited) {
+    const auto page = visited.peer();
+    EXPECT_TRUE(page->upgrade());
+    page->say(kGreeting);
+    EXPECT_TRUE(visited.is_heard(*page));
+    const auto strangers = crowd(visited);
+    EXPECT_TRUE(visited.is_served());
+    EXPECT_TRUE(visited.is_heard(*page)) << "a page with the token lost its place";
+    const auto next = visited.peer();
+    EXPECT_TRUE(next->upgrade());
+    EXPECT_TRUE(visited.is_heard(*next));
+  });
+}
+
+TEST(Server, WhereNobodyHasATokenTheLongestLookerMakesRoom) {
+  Visited({}, {.listen = "127.0.0.1", .port = 0}, [](Visited& visited) {
+    const auto lookers = crowd(visited);
+    EXPECT_TRUE(visited.is_served());
+    EXPECT_TRUE(lookers.front()->is_closed());
+    EXPECT_TRUE(visited.is_heard(*lookers.back()));
+  });
+}
+
+TEST(Server, APageThatCarriesTheTokenAndDoesNotSayItEnds) {
+  Visited(kToken, {.listen = "127.0.0.1", .port = 0, .token_within = std::chrono::milliseconds(100)},
+          [](Visited& visited) {
+            const auto page = visited.peer(), stranger = visited.peer(), liar = visited.peer();
+            EXPECT_TRUE(page->upgrade());
+            page->say(kGreeting);
+            EXPECT_TRUE(stranger->upgrade());
+            EXPECT_TRUE(liar->upgrade());
+            liar->say(R"({"token":"0123456789abcdee"})");
+            EXPECT_TRUE(stranger->is_closed());
+            EXPECT_TRUE(liar->is_closed());
+            EXPECT_TRUE(visited.is_heard(*page));
+          });
+}
+
+TEST(Server, WhereTheTokenIsGivenByHandPagesMayLookWithoutIt) {
+  Visited({"0123456789abcdef", false}, {.listen = "127.0.0.1", .port = 0, .token_within = std::chrono::milliseconds(1)},
+          [](Visited& visited) {
+            const auto looker = visited.peer();
+            EXPECT_TRUE(looker->upgrade());
+            for (int i = 0; i < 5; ++i) EXPECT_TRUE(visited.is_heard(*looker));
+          });
+}
 
 TEST(Server, PeersThatConnectAndSayNothingKeepNoPageOut) {
   const Access access;
