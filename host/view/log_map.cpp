@@ -20,6 +20,27 @@ namespace {
 constexpr std::array kNames{kTicksChannel, kThreadChannel, kStatusChannel, kEventChannel};
 constexpr std::int64_t kLargestPayload = 16 << 20;
 
+/// Reception times come from the clock on the wall, and somebody may have set it meanwhile: what follows a step of it
+/// goes on where the recording stood. So does what follows half a minute without a rig. Small disorder is left to sort.
+class Timeline {
+ public:
+  std::int64_t place(std::int64_t stamp_us) {
+    constexpr std::int64_t kFurthest_us = std::int64_t{1} << 61U;  // of a forged log: sums stay within the type
+    constexpr std::int64_t kSetBack_us = 1'000'000, kSetForward_us = 30'000'000;
+    stamp_us = std::clamp(stamp_us, -kFurthest_us, kFurthest_us);
+    if (!last_us_) last_us_ = stamp_us;
+    const std::int64_t passed_us = stamp_us + shift_us_ - *last_us_;
+    if (passed_us < -kSetBack_us || passed_us > kSetForward_us) shift_us_ -= passed_us;
+    const std::int64_t placed_us = stamp_us + shift_us_;
+    last_us_ = std::max(*last_us_, placed_us);
+    return placed_us;
+  }
+
+ private:
+  std::optional<std::int64_t> last_us_;
+  std::int64_t shift_us_ = 0;
+};
+
 std::size_t read_at(int file, void* to, std::size_t size, std::int64_t offset) {
   const ssize_t got = pread(file, to, size, offset);
   return got > 0 ? static_cast<std::size_t>(got) : 0;
@@ -42,7 +63,6 @@ LogMap::LogMap(const std::string& path) : file_(open(path.c_str(), O_RDONLY | O_
     close(file_);
     throw BadInput(path + ": found no message of the rig, allowed an LCM log of ligature-host record");
   }
-  // Reception times of one host: in order but for a clock that was set back.
   std::ranges::stable_sort(entries_, {}, &Entry::time_us);
 }
 
@@ -51,6 +71,7 @@ LogMap::~LogMap() { close(file_); }
 void LogMap::scan() {
   constexpr std::size_t kHead = LogEventHead::kBytes;
   std::array<unsigned char, kHead + kLongestChannel> bytes{};
+  Timeline timeline;
   for (std::int64_t at = 0; at >= 0 && at + static_cast<std::int64_t>(kHead) <= size_;) {
     const std::size_t got = read_at(file_, bytes.data(), bytes.size(), at);
     const auto head = got >= kHead ? log_event_head(std::span(bytes).first<kHead>()) : std::nullopt;
@@ -63,7 +84,7 @@ void LogMap::scan() {
                                 static_cast<std::size_t>(head->channel_bytes));
     const auto known = std::ranges::find(kNames, name);
     if (known != kNames.end() && head->data_bytes <= kLargestPayload)
-      entries_.push_back({head->timestamp_us, payload, static_cast<std::uint32_t>(head->data_bytes),
+      entries_.push_back({timeline.place(head->timestamp_us), payload, static_cast<std::uint32_t>(head->data_bytes),
                           static_cast<Channel>(known - kNames.begin())});
     at = payload + head->data_bytes;
   }

@@ -14,7 +14,7 @@ class LogMap {
  public:
   enum class Channel : std::uint8_t { kTicks, kThread, kStatus, kEvent };
   struct Entry {
-    std::int64_t time_us;  // CLOCK_REALTIME at reception
+    std::int64_t time_us;  // at reception, without what the clock on the wall was set by
     std::int64_t offset;   // of the payload
     std::uint32_t size;
     Channel channel;

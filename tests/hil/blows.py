@@ -146,7 +146,7 @@ class OtherBlows:
         rows, _, _ = self.read("clock-step")
         self.assertEqual({r["fault"] for r in rows}, {0})
         self.assertEqual(sum(r["flags"] & (LOST | MISSED) != 0 for r in rows), 0)
-        self.row("nothing: no fault, no period missed or lost", "nothing")
+        self.row("nothing in the loop: no fault, no period missed or lost", "nothing")
 
     def test_an_interface_that_goes_down_under_the_sja1000_driver(self):
         """Interface down under the SJA1000 driver.

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <limits>
 
 #include "host/errors.hpp"
 #include "host/log_reader.hpp"
@@ -49,6 +51,27 @@ TEST(LogMap, FindsAMoment) {
   EXPECT_EQ(map.after(-1.0), 0U);
   EXPECT_EQ(map.after(1.0), 51U);  // entries at 0, 0.02, .. 1.0 are before
   EXPECT_EQ(map.after(1e9), map.entries().size());
+}
+
+TEST(LogMap, PlaysOnWhenTheClockOnTheWallWasSetMeanwhile) {
+  constexpr std::int64_t kSecond = 1'000'000;
+  const std::int64_t largest = std::numeric_limits<std::int64_t>::max();
+  for (const std::int64_t step_us : {-60 * kSecond, 3600 * kSecond, -50 * 365 * 86'400 * kSecond, largest, -largest}) {
+    const test::TestFolder folder;
+    const std::string path = folder.file("run.lcmlog");
+    LogWriter log(path, false);
+    for (int i = 0; i < kBatches; ++i) {
+      const std::int64_t passed_us = 20'000LL * i, begin_us = 1'800'000'000 * kSecond;
+      const bool is_set = i >= kBatches / 2 && i < kBatches - 10;  // and set right again at the end
+      const bool is_extreme = step_us == largest || step_us == -largest;
+      const auto stamp_us = !is_set ? begin_us + passed_us : is_extreme ? step_us : begin_us + step_us + passed_us;
+      log.write(stamp_us, kTicksChannel, test::encoded(test::batch_of(1, 20 * i, 20)));
+    }
+    log.close();
+    const LogMap map(path);
+    EXPECT_LE(map.duration_s(), 0.02 * kBatches + 1e-6) << step_us;
+    EXPECT_TRUE(std::ranges::is_sorted(map.entries(), {}, &LogMap::Entry::offset)) << step_us << ": in the order heard";
+  }
 }
 
 TEST(LogMap, GoesOnBehindABrokenStretchAndStopsAtACutEnd) {
