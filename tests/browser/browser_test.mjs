@@ -98,7 +98,7 @@ const steps = {
     await page.keyboard.press('Space');
     await rig.says(/command stop/);
     await until(page, () => document.getElementById('state').dataset.state === 'IDLE');
-    await page.getByText('stop: done').waitFor();
+    await page.getByText('stop: done').first().waitFor();
   },
   'the space bar stops while a note is being typed, and the note gets its blank': async () => {
     await page.click('#arm');

@@ -59,7 +59,7 @@ async function says(pattern, from) {
 const isOurs = (name) => name.endsWith('.js') && (!parts || parts.split(',').includes(name));
 for (const webgl of [false, true]) {
   const browser = await Browser.start({ kind, webgl });
-  for (const [width, height] of [[1400, 900], [900, 600]]) {
+  for (const [width, height] of webgl ? [[1400, 900], [900, 600]] : [[1400, 900], [1024, 768], [900, 600], [390, 844]]) {
     await browser.resize(width, height);
     await stops(browser, `${kind}, WebGL ${webgl ? 'on' : 'off'}, ${width}x${height}`, null, (page) => draws(page, webgl, `${kind}-${webgl ? 'webgl' : 'flat'}-${width}x${height}`));
   }
@@ -80,7 +80,7 @@ for (const webgl of [false, true]) {
 /** A picture is there, traces are, and no part complains but the one that needs WebGL. */
 async function draws(page, webgl, name) {
   await until(page, () => window.ligature?.traces && ligature.store.rowEnd > 500 && ligature.scene?.shape);
-  await page.waitForFunction((id) => document.getElementById(id)?.width > 300, webgl ? 'canvas' : 'flat');
+  await page.waitForFunction((id) => document.getElementById(id)?.width > 100, webgl ? 'canvas' : 'flat');
   rig.tell('knot');
   await until(page, () => document.getElementById('knot-name').dataset.type === '3_1');
   await page.waitForFunction((n) => ligature.draws > n + 5, await page.evaluate(() => ligature.draws));
@@ -88,9 +88,50 @@ async function draws(page, webgl, name) {
   assert.deepEqual(notes, webgl ? [] : ['3-D view']);
   if (!webgl) assert.ok(await page.evaluate(inked) > 200, 'the thread is seen in the flat view');
   await page.evaluate(() => document.getElementById('help').close());
+  const { width, height } = page.viewportSize();
+  await fits(page, width, height);
   await page.screenshot({ path: join(out, `${name}.png`) });
   await page.evaluate(() => document.getElementById('help').show()); // STOP is within reach beside it
   rig.tell('unknot');
+}
+
+/** At widths from a phone's to a desk's, with every panel and dialog open: STOP is not covered, and nothing sticks out. */
+async function fits(page, width, height) {
+  for (const open of ['', 'change', 'help', 'record-dialog']) {
+    await page.evaluate((id) => {
+      for (const box of document.querySelectorAll('dialog[open]')) box.close();
+      document.getElementById('change').hidden = id !== 'change';
+      if (id && id !== 'change') document.getElementById(id).show();
+    }, open);
+    const found = await page.evaluate(outside);
+    assert.deepEqual(found, [], `${width}x${height} with ${open || 'nothing'} open`);
+  }
+  await page.evaluate(() => document.getElementById('record-dialog').close());
+}
+
+/** @returns what covers STOP, what is wider than the page, and what sticks out of the box that it belongs to. */
+function outside() {
+  const wrong = [], box = (e) => e.getBoundingClientRect(), name = (e) => e.id || e.className || e.tagName;
+  const stop = document.getElementById('stop'), r = box(stop);
+  for (const [x, y] of [[0.1, 0.2], [0.5, 0.5], [0.9, 0.8]]) {
+    const top = document.elementFromPoint(r.left + x * r.width, r.top + y * r.height);
+    if (!stop.contains(top)) wrong.push(`STOP is under ${top ? name(top) : 'nothing: outside the window'}`);
+  }
+  if (document.documentElement.scrollWidth > innerWidth) wrong.push(`${document.documentElement.scrollWidth - innerWidth} px too wide`);
+  for (const panel of document.querySelectorAll('header, .scene, .traces, #change, dialog, .trace-tools')) {
+    const p = box(panel);
+    if (!p.width) continue;
+    for (const e of panel.querySelectorAll('button, input, select, label, h2, .overlay')) {
+      const b = box(e);
+      if (b.width && (b.left < p.left - 1 || b.right > p.right + 1)) wrong.push(`${name(e)} (${e.textContent.slice(0, 20)}) sticks out of ${name(panel)}`);
+    }
+  }
+  const overlays = ['.top-left', '.top-right', '.hands', '.corner'].map((s) => document.querySelector(s));
+  overlays.forEach((a, i) => overlays.slice(i + 1).forEach((b) => {
+    const [p, q] = [box(a), box(b)];
+    if (p.width && q.width && p.left < q.right - 1 && q.left < p.right - 1 && p.top < q.bottom - 1 && q.top < p.bottom - 1) wrong.push(`${name(a)} and ${name(b)} overlap`);
+  }));
+  return wrong;
 }
 
 /** How many pixels of the flat view have the thread's colour, give or take. */

@@ -4,6 +4,8 @@ import test from 'node:test';
 import { BIN_NUMBER_PART, C, TICKS_PER_BIN, WIDTH, readFrame } from '../../host/view/page/frame.js';
 import { TraceStore } from '../../host/view/page/trace_store.js';
 import { axisLabels, describeTime, labelRoom } from '../../host/view/page/times.js';
+import { judgeAge } from '../../host/view/page/state_panel.js';
+import { colourThread, scaleEnd } from '../../host/view/page/colouring.js';
 import { commonName } from '../../host/view/page/knot_panel.js';
 
 function rows(first, count, value = () => 0) {
@@ -119,4 +121,33 @@ test('knots have the names that people give them, in the words of the recogniser
   assert.equal(commonName('3_1#3_1', 'left'), 'granny');
   assert.equal(commonName('4_1', 'amphichiral'), 'figure-eight');
   assert.equal(commonName('7_4', 'right'), '');
+});
+
+test('a slow computer is told apart from a silent rig and a silent host', () => {
+  const live = { isReplay: false };
+  assert.deepEqual(judgeAge(30, 0, 5, live), { text: '', isOld: false, isSlow: false });
+  for (const age_ms of [130, 250, 400]) { // two to four pictures a second, the rig healthy
+    assert.equal(judgeAge(age_ms, 0, 5, live).isOld, true); // nothing here was slow: the rig is
+    const slow = judgeAge(age_ms, 0, 400, live);
+    assert.deepEqual([slow.isOld, slow.isSlow], [false, true]);
+  }
+  for (const lag_ms of [0, 400, 5000, 1e9]) { // however slow the page is: after a second more it is the rig, or the host
+    assert.match(judgeAge(1200, 0, lag_ms, live).text, lag_ms < 1000 ? /^Old picture/ : /Old picture/);
+    assert.match(judgeAge(30, 1200, lag_ms, live).text, /^No word from the host/);
+  }
+  assert.equal(judgeAge(-1, 0, 400, live).isOld, true);
+});
+
+test('the scale of curvature fits the thread: it is not painted in one colour', () => {
+  const n = 100, p_W = new Float32Array(3 * n), bent = 0.15e-3; // a suture, radius 0.15 mm, in a bow that tightens
+  for (let i = 0, angle = 0, x = 0, z = 0; i < n; ++i) {
+    p_W.set([x, 0, z], 3 * i);
+    x += 2e-3 * Math.cos(angle); z += 2e-3 * Math.sin(angle); angle += 0.001 * i;
+  }
+  const shape = { p_W, radius_m: bent, grasped: [-1, -1], tension_N: new Float32Array(n), turn_rad: new Float32Array(n) };
+  const { colours, legend } = colourThread('curvature', shape);
+  assert.ok(Math.max(...colours) - Math.min(...colours) > 0.5, `${Math.min(...colours)} .. ${Math.max(...colours)}`);
+  assert.equal(legend.high, '50.0 1/m');
+  for (const [largest, most, end] of [[49, 3333, 50], [51, 3333, 100], [101, 3333, 200], [3000, 3333, 3333], [0, 3333, 5]])
+    assert.equal(scaleEnd(largest, most), end);
 });

@@ -18,8 +18,8 @@ export function colourThread(mode, shape, { restLength_m, core } = {}) {
   let legend = null;
   for (let i = 0; i < n; ++i) paint(i, PLAIN);
   if (mode === 'curvature') {
-    const most = 1 / (2 * shape.radius_m); // a bend as tight as the thread is thick
-    for (let i = 0; i < n; ++i) paint(i, onScale(curvature(p, i, n) / most));
+    const bends = Array.from({ length: n }, (_, i) => curvature(p, i, n)), most = scaleEnd(Math.max(...bends), 1 / (2 * shape.radius_m));
+    for (let i = 0; i < n; ++i) paint(i, onScale(bends[i] / most));
     legend = { title: 'curvature', low: '0', high: `${format(most)} 1/m` };
   } else if (mode === 'stretch' && restLength_m > 0) {
     const rest = restLength_m / (n - 1), span = 0.05;
@@ -43,6 +43,12 @@ export function colourThread(mode, shape, { restLength_m, core } = {}) {
   }
   shape.grasped.forEach((node, hand) => { if (node >= 0 && node < n) paint(node, HELD[hand]); });
   return { colours, legend };
+}
+
+/** The end of a scale that fits the data: 1, 2 or 5 times a power of ten, so that it stays while they change a little. */
+export function scaleEnd(largest, most) {
+  const least = Math.max(largest, 1e-3 * most), ten = 10 ** Math.floor(Math.log10(least));
+  return Math.min(most, [1, 2, 5, 10].map((k) => k * ten).find((end) => end >= least) ?? most);
 }
 
 function distance(p, a, b) { return Math.hypot(p[3 * a] - p[3 * b], p[3 * a + 1] - p[3 * b + 1], p[3 * a + 2] - p[3 * b + 2]); }

@@ -18,7 +18,12 @@ function pictures(panels) {
     dispose: (value) => value?.dispose(),
     text: (value, { status }) => { if (status) value.setStatus(status); },
     update: (value) => { if (isWanted(key)) panels.parts.sceneTools.run((t) => t.showLegend(value.update(latest.shape, latest.now, latest.knot?.core))); },
-    draw: (value, time) => { value.show(isWanted(key)); if (isWanted(key)) value.draw(time); },
+    draw: (value, time) => {
+      value.show(isWanted(key));
+      if (!isWanted(key)) return;
+      value.draw(time);
+      panels.parts.sceneTools.run((t) => t.showScale(latest.shape ? value.metresPerPixel : 0));
+    },
   });
   return { scene: picture('scene', '3-D view', 'scene.js', 'Scene'), flat: picture('flat', 'flat view', 'flat_view.js', 'FlatView') };
 }

@@ -134,6 +134,7 @@ export class Scene {
   }
 
   #putPosts(length) {
+    this.desk.visible = this.grid.visible = this.facts.deskHeight_m !== null;
     this.posts.clear();
     for (const p of this.facts.fixed) {
       const knob = new THREE.Mesh(new THREE.OctahedronGeometry(0.012 * length), new THREE.MeshStandardMaterial({ color: 0xb8c2cf, roughness: 0.5 }));
@@ -161,6 +162,12 @@ export class Scene {
     this.view('iso', this.seen);
     this.touched = false;
     this.framed.copy(this.seen).expandByScalar(0.02 * this.extent);
+  }
+
+  /** At the middle of the picture. */
+  get metresPerPixel() {
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    return (2 * distance * Math.tan((this.camera.fov * Math.PI) / 360)) / Math.max(1, this.canvas.clientHeight);
   }
 
   /** A standard view, or 'fit': the same direction with everything in the picture. */
@@ -279,7 +286,7 @@ function nameSprite(name) {
   context.textAlign = 'center';
   context.textBaseline = 'middle';
   context.fillText(name, 32, 30);
-  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: new THREE.CanvasTexture(canvas) }));
+  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: new THREE.CanvasTexture(canvas), depthTest: false, depthWrite: false })); // over all else: whole letters
   sprite.scale.setScalar(0.45);
   return sprite;
 }

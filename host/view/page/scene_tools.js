@@ -18,6 +18,17 @@ export class SceneTools {
     addEventListener('keydown', (event) => { if (!isTyping(event) && !document.querySelector('dialog[open]')) keys[event.key.toLowerCase()]?.(); });
   }
 
+  /** A bar of a round length, between 40 and 100 pixels. */
+  showScale(metresPerPixel) {
+    const bar = $('scale-bar');
+    bar.hidden = !(metresPerPixel > 0);
+    if (bar.hidden) return;
+    const ten = 10 ** Math.floor(Math.log10(100 * metresPerPixel)), length_m = [5, 2, 1].map((k) => k * ten).find((l) => l <= 100 * metresPerPixel);
+    bar.style.width = `${length_m / metresPerPixel}px`;
+    const [unit, factor] = length_m >= 1 ? ['m', 1] : length_m >= 1e-3 ? ['mm', 1e3] : ['µm', 1e6];
+    bar.firstElementChild.textContent = `${+(length_m * factor).toPrecision(3)} ${unit}`;
+  }
+
   showLegend(legend) {
     $('legend').hidden = !legend;
     const text = legend ? `${legend.title}|${legend.low ?? ''}|${legend.high ?? ''}` : '';

@@ -41,7 +41,7 @@ export function judgeAge(age_ms, silent_ms, lag_ms, { isReplay, unreadable }) {
   if (age_ms < 0) return old(isReplay ? '' : 'No ticks yet: is ligature-firmware running on this LCM network?');
   if (age_ms > allowed_ms) return old(`Old picture: no ticks for ${seconds(age_ms)}. The rig may be in any state.`);
   if (lag_ms <= SLOW_MS) return old('');
-  return { text: `slow picture: this computer is up to ${seconds(Math.max(lag_ms, age_ms))} behind; the rig is heard`, isOld: false, isSlow: true };
+  return { text: `slow picture: this computer is up to ${seconds(Math.max(lag_ms, age_ms))} behind${isReplay ? '' : '; the rig is heard'}`, isOld: false, isSlow: true };
 }
 
 /** @returns whether the picture is old. */
@@ -73,7 +73,8 @@ export function showHands(now, row) {
     document.querySelector(`[data-command="clutch ${side}"]`).hidden = !!isClutched;
     document.querySelector(`[data-command="unclutch ${side}"]`).hidden = !isClutched;
     const limits = limitNames(row?.[i ? C.rightLimits : C.leftLimits] ?? 0);
-    $(i ? 'hand-right' : 'hand-left').textContent = `${force.toFixed(2)} N · ${hand.node >= 0 ? `holds node ${hand.node}` : hand.grip ? 'closed' : 'open'}`
+    $(i ? 'hand-right' : 'hand-left').title = `${force} N`;
+    $(i ? 'hand-right' : 'hand-left').textContent = `${force.toFixed(3)} N · ${hand.node >= 0 ? `holds node ${hand.node}` : hand.grip ? 'closed' : 'open'}`
       + `${hand.deadMan ? ' · dead-man' : ''}${isClutched ? ' · clutch: tool parked' : ''}${hand.age > 1 ? ` · ${hand.age} ticks old` : ''}`
       + (limits.length ? ` · limited: ${limits.join(', ')}` : '');
   });

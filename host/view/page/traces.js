@@ -29,6 +29,7 @@ export class Traces {
   constructor(host, store, beside, choice, onCursor) {
     const { window_s, third } = choice;
     Object.assign(this, { host, store, onCursor, window_s, period_s: 1e-3, limit_N: null, end: null, third: { title: third, ...THIRD[third] } });
+    this.forceRange = [0, 0.1];
     this.beside = { store: beside, offset_ticks: null, name: '' };
     this.plots = [];
     try {
@@ -66,7 +67,7 @@ export class Traces {
     const plot = new uPlot({
       width: 400, height: 150, series, legend: { show: false }, padding: [8, 8, 0, 0],
       cursor: { sync: { key: 'ligature' }, drag: { x: false, y: false }, points: { size: 6 } },
-      scales: { x: { time: false, auto: false }, y: { range: (_, low, high) => niceRange(low, high, hand === null ? this.third.least : 0.1) } },
+      scales: { x: { time: false, auto: false }, y: { range: (_, low, high) => (hand === null ? niceRange(low, high, this.third.least) : this.forceRange) } },
       axes: [{ ...axis, size: 24, values: (_, marks) => axisLabels(marks), space: () => labelRoom(this.end_s ?? 0, this.window_s / 10) }, { ...axis, size: 50 }],
       hooks: {
         draw: [(u) => this.#drawMarks(u, hand)],
@@ -173,6 +174,17 @@ export class Traces {
     return isSameGrid ? [...own, ...other.slice(1)] : uPlot.join([own, other]);
   }
 
+  /** One scale for both hands, so that equal forces are equally high. */
+  #commonRange(data) {
+    let low = 0, high = 0;
+    for (const { plot, columns, hand } of this.plots) {
+      if (hand === null) continue;
+      const seen = [...columns.map((c) => c + 1), BESIDE + hand].filter((_, i) => plot.series[i + 1].show);
+      for (const k of seen) for (const v of data[k]) { if (v < low) low = v; if (v > high) high = v; }
+    }
+    return niceRange(low, high, 0.1);
+  }
+
   draw() {
     const end = (this.end ?? this.store.lastTick ?? 0) + 1, from = end - this.window_s / this.period_s;
     const data = this.#series(from, end, this.plots[0].plot.bbox.width / devicePixelRatio);
@@ -180,6 +192,7 @@ export class Traces {
     data[0] = Array.from(data[0], (tick) => tick * this.period_s);
     for (const k of [9, 10, BESIDE + 2]) data[k] = Array.from(data[k], (v) => (v == null || v > FAR && !this.third.isTime ? v === undefined ? v : null : v * this.third.factor));
     this.data = data;
+    this.forceRange = this.#commonRange(data);
     for (const [i, { plot, columns }] of this.plots.entries()) {
       plot.batch(() => {
         plot.setData([data[0], ...columns.map((c) => data[c + 1]), data[BESIDE + i]], false);
