@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "host/console/progress.hpp"
-#include "host/console/stop_signal.hpp"
 #include "host/errors.hpp"
 #include "host/export_hdf5.hpp"
 #include "host/export_mcap.hpp"
@@ -151,13 +150,9 @@ ExportResult export_flight(const std::string& path, const ExportTargets& targets
 ExportResult export_recording(const std::string& log_path, const ExportTargets& targets) {
   if (is_flight_file(log_path)) return export_flight(log_path, targets);
   Exporter exporter(read_rig_facts(log_path), targets, log_path);
-  LogReader log(log_path);
   console::Progress progress("export");
-  while (const LogEvent* event = log.next()) {
-    exporter.take(*event);
-    progress.show(log.offset(), log.size());
-    if (console::stop_requested()) throw RunFailed("export stopped by a signal; nothing was written");
-  }
+  LogReader log(log_path, &progress);
+  while (const LogEvent* event = log.next()) exporter.take(*event);
   if (!exporter.has_ticks())
     throw BadInput(log_path + ": holds no readable tick in " + std::to_string(log.events()) +
                    " events; allowed: a log with messages on " + std::string(kTicksChannel));

@@ -4,6 +4,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
+
+#include "protocol/recorder/crc32.hpp"
 
 namespace ligature::host {
 
@@ -19,6 +22,21 @@ struct LogEventHead {
 inline constexpr std::array<unsigned char, 4> kLogSync{0xED, 0xA1, 0xDA, 0x01};
 inline constexpr std::int32_t kLongestChannel = 63;     ///< LCM_MAX_CHANNEL_NAME_LENGTH
 inline constexpr std::int32_t kLargestData = 16 << 20;  ///< of one event; the rig's messages have some 10 KB
+
+// LCM's format has no checksum. So each event of ours is followed by one on a channel of its own, which other readers
+// pass over: the big-endian int64 timestamp of the event and the CRC-32 of its channel and data.
+inline constexpr std::string_view kCheckChannel = "LIGATURE_CHECK";
+inline constexpr std::size_t kCheckBytes = 12;  ///< of its data
+inline constexpr std::size_t kCheckEventBytes = 28 + kCheckChannel.size() + kCheckBytes;
+
+[[nodiscard]] constexpr std::uint32_t log_checksum(std::string_view channel, std::span<const std::byte> data) noexcept {
+  std::uint32_t sum = 0;
+  for (const char c : channel) {
+    const std::byte byte{static_cast<unsigned char>(c)};
+    sum = recorder::crc32(std::span(&byte, 1), sum);
+  }
+  return recorder::crc32(data, sum);
+}
 
 /// Nothing when the bytes do not begin with the sync word, or state lengths that no event has.
 [[nodiscard]] constexpr std::optional<LogEventHead> log_event_head(
@@ -37,6 +55,48 @@ inline constexpr std::int32_t kLargestData = 16 << 20;  ///< of one event; the r
       head.data_bytes > kLargestData)
     return std::nullopt;
   return head;
+}
+
+/// What a checksum event says of the event before it.
+struct LogCheck {
+  std::int64_t timestamp_us = 0;
+  std::uint32_t checksum = 0;
+};
+
+/// Nothing when the bytes do not begin with a checksum event as its recorder wrote it. (A log that was played and
+/// recorded again has others: their own time is another one than the time that they tell.)
+[[nodiscard]] constexpr std::optional<LogCheck> log_check(std::span<const unsigned char> bytes) noexcept {
+  if (bytes.size() < kCheckEventBytes) return std::nullopt;
+  const auto head = log_event_head(bytes.first<LogEventHead::kBytes>());
+  if (!head || head->channel_bytes != static_cast<std::int32_t>(kCheckChannel.size()) ||
+      head->data_bytes != static_cast<std::int32_t>(kCheckBytes))
+    return std::nullopt;
+  bytes = bytes.subspan(LogEventHead::kBytes);
+  for (std::size_t i = 0; i < kCheckChannel.size(); ++i)
+    if (bytes[i] != static_cast<unsigned char>(kCheckChannel[i])) return std::nullopt;
+  bytes = bytes.subspan(kCheckChannel.size());
+  std::uint64_t timestamp = 0;
+  std::uint32_t checksum = 0;
+  for (std::size_t i = 0; i < 8; ++i) timestamp = timestamp << 8U | bytes[i];
+  for (std::size_t i = 8; i < kCheckBytes; ++i) checksum = checksum << 8U | bytes[i];
+  if (static_cast<std::int64_t>(timestamp) != head->timestamp_us) return std::nullopt;
+  return LogCheck{static_cast<std::int64_t>(timestamp), checksum};
+}
+
+/// Whether the recorder of a log that begins like this wrote checksums.
+[[nodiscard]] constexpr bool has_checksums(std::span<const unsigned char> beginning) noexcept {
+  for (; beginning.size() >= kCheckEventBytes; beginning = beginning.subspan(1))
+    if (beginning[0] == kLogSync[0] && log_check(beginning)) return true;
+  return false;
+}
+inline constexpr std::size_t kBeginning = 1U << 16U;  ///< bytes that tell: some of the rig's messages
+
+[[nodiscard]] constexpr std::array<std::byte, kCheckBytes> encoded(const LogCheck& check) noexcept {
+  std::array<std::byte, kCheckBytes> bytes{};
+  for (std::size_t i = 0; i < 8; ++i)
+    bytes[i] = static_cast<std::byte>(static_cast<std::uint64_t>(check.timestamp_us) >> (56 - 8 * i));
+  for (std::size_t i = 8; i < kCheckBytes; ++i) bytes[i] = static_cast<std::byte>(check.checksum >> (88 - 8 * i));
+  return bytes;
 }
 
 }  // namespace ligature::host

@@ -1,92 +1,105 @@
 #include "host/log_reader.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
 
 #include "host/errors.hpp"
-#include "host/log_format.hpp"
+#include "host/sync_search.hpp"
 
 namespace ligature::host {
 
-LogReader::LogReader(const std::string& path) {
-  std::error_code why;
-  if (!std::filesystem::is_regular_file(path, why))
-    throw BadInput(path + ": " + (why ? why.message() : "not a file") +
-                   "; allowed: an LCM log of ligature-host record");
-  file_.reset(std::fopen(path.c_str(), "rb"));
-  if (!file_) throw BadInput(path + ": " + std::strerror(errno));
-  size_ = static_cast<std::int64_t>(std::filesystem::file_size(path));
-  std::array<unsigned char, 4> start{};
-  const bool has_start = std::fread(start.data(), 1, start.size(), file_.get()) == start.size();
-  if (size_ == 0) throw BadInput(path + ": empty file; allowed: an LCM log of ligature-host record");
-  if (!has_start || start != kLogSync)
+LogReader::LogReader(const std::string& path, console::Progress* progress) : file_(path), progress_(progress) {
+  if (file_.size() == 0) throw BadInput(path + ": empty file; allowed: an LCM log of ligature-host record");
+  if (!std::ranges::equal(window_.at(0, kLogSync.size()), kLogSync))
     throw BadInput(path +
                    ": not an LCM log (does not begin with ED A1 DA 01); allowed: a file of ligature-host record");
+  has_checks_ = has_checksums(window_.at(0, kBeginning));
 }
 
 const LogEvent* LogReader::next() {
-  const std::int64_t expected_at = offset_;
-  std::int64_t candidate = expected_at;
-  while (candidate >= 0 && !read_event_at(candidate)) candidate = find_sync(candidate + 1);
-  if (candidate < 0) {  // nothing sound follows
-    tail_bytes_ += size_ - expected_at;
-    offset_ = size_;
-    return nullptr;
+  end_when_asked();
+  if (progress_ != nullptr) progress_->show(offset_, size());
+  for (std::int64_t candidate = offset_; candidate >= 0;) {
+    const std::int64_t before = offset_;
+    const bool is_sound = read_event_at(candidate);
+    if (offset_ > before) skipped_bytes_ += candidate - before;  // found, or left out
+    if (is_sound) {
+      ++events_;
+      return &event_;
+    }
+    candidate = find_sync(file_, std::max(candidate, offset_ - 1) + 1, progress_);
   }
-  skipped_bytes_ += candidate - expected_at;
-  ++events_;
-  return &event_;
+  tail_bytes_ += size() - offset_;  // nothing sound follows
+  offset_ = size();
+  return nullptr;
 }
 
-/// Reads the event whose header starts at an offset into event_; false when there is no whole, sound one.
+/// Reads the event whose header starts at an offset into event_, or the next one that is not to be left out; false
+/// where no event is.
 bool LogReader::read_event_at(std::int64_t offset) {
-  std::array<unsigned char, LogEventHead::kBytes> bytes{};
-  constexpr auto kHead = static_cast<std::int64_t>(bytes.size());
-  if (size_ - offset < kHead) return false;
-  // In sequence the stream stands there already; seeking would throw its buffer away.
-  if (std::ftell(file_.get()) != offset) std::fseek(file_.get(), static_cast<long>(offset), SEEK_SET);
-  if (std::fread(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) return false;
-  const auto head = log_event_head(bytes);
-  if (!head) return false;
-  const std::int64_t rest = std::int64_t{head->channel_bytes} + head->data_bytes;
-  if (rest > size_ - offset - kHead) return false;
+  constexpr auto kHead = static_cast<std::int64_t>(LogEventHead::kBytes);
+  for (;;) {
+    end_when_asked();
+    if (size() - offset < kHead) return false;
+    const auto first = window_.at(offset, LogEventHead::kBytes);
+    const auto head =
+        first.size() == LogEventHead::kBytes ? log_event_head(first.first<LogEventHead::kBytes>()) : std::nullopt;
+    if (!head) return false;
+    const std::int64_t whole = kHead + head->channel_bytes + head->data_bytes;
+    if (whole > size() - offset) return false;
 
-  channel_.resize(static_cast<std::size_t>(head->channel_bytes));
-  payload_.resize(static_cast<std::size_t>(head->data_bytes));
-  if (std::fread(channel_.data(), 1, channel_.size(), file_.get()) != channel_.size()) return false;
-  if (std::fread(payload_.data(), 1, payload_.size(), file_.get()) != payload_.size()) return false;
-  if (!std::ranges::all_of(channel_, [](char c) { return c >= ' ' && c <= '~'; })) return false;
-  event_ = {head->timestamp_us, channel_, payload_};
-  offset_ = offset + kHead + rest;
-  return true;
+    const auto bytes = window_.at(offset, static_cast<std::size_t>(whole) + kCheckEventBytes);
+    if (static_cast<std::int64_t>(bytes.size()) < whole) return false;  // it became shorter
+    const auto named = static_cast<std::size_t>(head->channel_bytes);
+    const std::string_view channel(reinterpret_cast<const char*>(bytes.data()) + kHead, named);
+    if (!std::ranges::all_of(channel, [](char c) { return c >= ' ' && c <= '~'; })) return false;
+    const auto data = std::as_bytes(
+        bytes.subspan(static_cast<std::size_t>(kHead) + named, static_cast<std::size_t>(head->data_bytes)));
+    const auto behind = bytes.subspan(static_cast<std::size_t>(whole));
+    if (!has_checks_ && channel == kCheckChannel) {  // of a log that was played and recorded again
+      offset_ = offset += whole;
+      continue;
+    }
+    if (has_checks_ && (channel == kCheckChannel || !is_whole(behind))) return false;  // what it was about is broken
+    const auto check = log_check(behind);
+    const bool is_own = check && check->timestamp_us == head->timestamp_us;
+    offset_ = offset +=
+        whole + (check || (has_checks_ && is_like_check(behind)) ? static_cast<std::int64_t>(kCheckEventBytes) : 0);
+    if (is_own && check->checksum != log_checksum(channel, data)) {
+      ++damaged_;
+    } else if (has_checks_ && !is_own && behind.size() >= kCheckEventBytes) {
+      ++unchecked_;
+    } else {
+      event_ = {head->timestamp_us, channel, data};
+      return true;
+    }
+  }
 }
 
-/// Offset of the next sync word at or after an offset, -1 when there is none.
-std::int64_t LogReader::find_sync(std::int64_t from) {
-  constexpr std::uint32_t kSync = 0xEDA1DA01;
-  std::fseek(file_.get(), static_cast<long>(from), SEEK_SET);
-  std::uint32_t window = 0;
-  for (std::int64_t at = from; at < size_; ++at) {
-    const int byte = std::fgetc(file_.get());
-    if (byte == EOF) return -1;
-    window = window << 8U | static_cast<std::uint32_t>(byte);
-    if (at - from >= 3 && window == kSync) return at - 3;
-  }
-  return -1;
+/// In a log with checksums an event is followed by another, or by the end of a recorder that was killed. Elsewhere its
+/// length is what was damaged: taken as it is, it would swallow the sound events behind it.
+bool LogReader::is_whole(std::span<const unsigned char> behind) {
+  const auto known = std::min(behind.size(), kLogSync.size());
+  return std::ranges::equal(behind.first(known), std::span(kLogSync).first(known));
+}
+
+/// A checksum event with a damaged name, time or sum.
+bool LogReader::is_like_check(std::span<const unsigned char> behind) {
+  if (behind.size() < kCheckEventBytes) return false;
+  const auto head = log_event_head(behind.first<LogEventHead::kBytes>());
+  return head && head->channel_bytes == static_cast<std::int32_t>(kCheckChannel.size()) &&
+         head->data_bytes == static_cast<std::int32_t>(kCheckBytes);
 }
 
 std::string LogReader::damage() const {
-  std::string text;
-  if (skipped_bytes_ > 0) text = std::to_string(skipped_bytes_) + " broken bytes skipped";
-  if (is_truncated()) {
-    if (!text.empty()) text += "; ";
-    text += "file ends inside an event (recorder killed?): read up to the last whole one, " +
-            std::to_string(tail_bytes_) + " bytes left out";
-  }
-  return text;
+  std::string line;
+  const auto say = [&line](const std::string& words) { line += (line.empty() ? "" : "; ") + words; };
+  if (damaged_ > 0) say(std::to_string(damaged_) + " damaged records left out (wrong checksum)");
+  if (unchecked_ > 0) say(std::to_string(unchecked_) + " records left out whose checksum is damaged");
+  if (skipped_bytes_ > 0) say(std::to_string(skipped_bytes_) + " broken bytes skipped");
+  if (is_truncated())
+    say("file ends inside an event (recorder killed?): read up to the last whole one, " + std::to_string(tail_bytes_) +
+        " bytes left out");
+  return line;
 }
 
 }  // namespace ligature::host

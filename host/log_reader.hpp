@@ -1,12 +1,14 @@
 #pragma once
 #include <cstdint>
-#include <cstdio>
-#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
+#include "host/console/progress.hpp"
+#include "host/file_window.hpp"
+#include "host/log_format.hpp"
 #include "host/messages.hpp"
+#include "host/regular_file.hpp"
 
 namespace ligature::host {
 
@@ -20,18 +22,25 @@ struct LogEvent {
 /// Reads an LCM event log front to back in constant memory.
 /// log_format.hpp has the layout.
 /// Ours and not the library's reader: that one cannot tell the end of a file from a broken event, allocates what a
-/// broken length says and prints to stderr. This one goes on at the next sound event and says how much it skipped.
+/// broken length says and prints to stderr. This one goes on at the next sound event and says how much it skipped. An
+/// event whose checksum is wrong is counted and left out. A signal ends it wherever it is (RunFailed).
 class LogReader {
  public:
+  /// @param progress is shown how far it is; may be null.
   /// @throws BadInput when the file cannot be read or does not begin like an LCM log.
-  explicit LogReader(const std::string& path);
+  explicit LogReader(const std::string& path, console::Progress* progress = nullptr);
 
-  /// @return the next whole event, nullptr at the end.
+  LogReader(const LogReader&) = delete;
+  LogReader& operator=(const LogReader&) = delete;
+
+  /// @return the next whole event, nullptr at the end. @throws RunFailed when a signal asks for the end.
   const LogEvent* next();
 
   [[nodiscard]] std::int64_t offset() const { return offset_; }  ///< bytes read
-  [[nodiscard]] std::int64_t size() const { return size_; }      ///< bytes in all
-  [[nodiscard]] std::int64_t events() const { return events_; }
+  [[nodiscard]] std::int64_t size() const { return file_.size(); }
+  [[nodiscard]] std::int64_t events() const { return events_; }        ///< handed out
+  [[nodiscard]] std::int64_t damaged() const { return damaged_; }      ///< left out: their checksum is wrong
+  [[nodiscard]] std::int64_t unchecked() const { return unchecked_; }  ///< left out: they have none of their own
   [[nodiscard]] std::int64_t skipped_bytes() const { return skipped_bytes_; }  ///< between sound events
   [[nodiscard]] bool is_truncated() const { return tail_bytes_ > 0; }          ///< the last event is cut off
   [[nodiscard]] std::int64_t tail_bytes() const { return tail_bytes_; }
@@ -40,16 +49,15 @@ class LogReader {
   [[nodiscard]] std::string damage() const;
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   bool read_event_at(std::int64_t offset);
-  std::int64_t find_sync(std::int64_t from);
+  [[nodiscard]] static bool is_whole(std::span<const unsigned char> behind);
+  [[nodiscard]] static bool is_like_check(std::span<const unsigned char> behind);
 
-  std::unique_ptr<std::FILE, Closer> file_;
-  std::int64_t size_ = 0, offset_ = 0, events_ = 0, skipped_bytes_ = 0, tail_bytes_ = 0;
-  std::vector<std::byte> payload_;
-  std::string channel_;
+  RegularFile file_;
+  FileWindow window_{file_};
+  console::Progress* progress_;
+  std::int64_t offset_ = 0, events_ = 0, skipped_bytes_ = 0, tail_bytes_ = 0, damaged_ = 0, unchecked_ = 0;
+  bool has_checks_ = false;
   LogEvent event_;
 };
 

@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "host/console/progress.hpp"
-#include "host/console/stop_signal.hpp"
 #include "host/errors.hpp"
 #include "host/log_reader.hpp"
 #include "host/thread_knot.hpp"
@@ -91,13 +90,9 @@ double LogSummary::knot_first_s() const {
 
 LogSummary summarise(const std::string& log_path, double knot_every_s) {
   Summariser summariser(read_rig_facts(log_path), knot_every_s);
-  LogReader log(log_path);
   console::Progress progress("reading");
-  while (const LogEvent* event = log.next()) {
-    summariser.take(*event);
-    progress.show(log.offset(), log.size());
-    if (console::stop_requested()) throw RunFailed("stopped by a signal");
-  }
+  LogReader log(log_path, &progress);
+  while (const LogEvent* event = log.next()) summariser.take(*event);
   summariser.finish();
   summariser.summary.damage = log.damage();
   if (summariser.summary.tally.received() == 0)

@@ -14,12 +14,6 @@
 #include "host/log_format.hpp"
 
 namespace ligature::host {
-namespace {
-
-constexpr std::int64_t kHeaderSize = 28;
-
-}  // namespace
-
 /// Makes the file, so that two recorders can never take the same name; the library truncates without asking.
 LogWriter::Lock::Lock(const std::string& path, bool replace)
     : file_(open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NONBLOCK | (replace ? 0 : O_EXCL), 0666)) {
@@ -50,16 +44,24 @@ LogWriter::LogWriter(std::string path, bool replace) : path_(std::move(path)), l
 
 LogWriter::~LogWriter() = default;
 
-bool LogWriter::takes(Bytes data) { return data.size() <= static_cast<std::size_t>(kLargestData); }
+bool LogWriter::takes(std::string_view channel, Bytes data) {
+  return data.size() <= static_cast<std::size_t>(kLargestData) && channel != kCheckChannel;
+}
 
 void LogWriter::write(std::int64_t timestamp_us, std::string_view channel, Bytes data) {
+  append(timestamp_us, channel, data);
+  append(timestamp_us, kCheckChannel, encoded({timestamp_us, log_checksum(channel, data)}));
+  if (std::fflush(file_->getFilePtr()) != 0) fail();
+}
+
+void LogWriter::append(std::int64_t timestamp_us, std::string_view channel, Bytes data) {
   lcm::LogEvent event;
   event.timestamp = timestamp_us;
   event.channel = channel;
   event.datalen = static_cast<std::int32_t>(data.size());
   event.data = const_cast<std::byte*>(data.data());  // the library only reads it
-  if (file_->writeEvent(&event) != 0 || std::fflush(file_->getFilePtr()) != 0) fail();
-  bytes_ += kHeaderSize + static_cast<std::int64_t>(channel.size() + data.size());
+  if (file_->writeEvent(&event) != 0) fail();
+  bytes_ += static_cast<std::int64_t>(LogEventHead::kBytes + channel.size() + data.size());
 }
 
 void LogWriter::close() {

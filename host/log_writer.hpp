@@ -21,10 +21,11 @@ class LogWriter {
   LogWriter(std::string path, bool replace);
   ~LogWriter();
 
-  /// Whether an event is fit for a log: no larger than readers take.
-  [[nodiscard]] static bool takes(Bytes data);
+  /// Whether an event is fit for a log: no larger than readers take, and not on the channel of the checksums.
+  [[nodiscard]] static bool takes(std::string_view channel, Bytes data);
   /// Hands one event to the operating system: when this returns, the end of this process loses nothing of it.
-  /// (One system call each; the rig sends about 120 events a second.)
+  /// Its checksum follows it (host/log_format.hpp). (One system call for both, two for a large one; the rig sends about
+  /// 120 events a second.)
   /// @throws RunFailed when the disk does not take it; what it took before is kept.
   void write(std::int64_t timestamp_us, std::string_view channel, Bytes data);
   /// Puts everything on the disk and closes. @throws RunFailed.
@@ -45,6 +46,7 @@ class LogWriter {
    private:
     int file_;
   };
+  void append(std::int64_t timestamp_us, std::string_view channel, Bytes data);
   [[noreturn]] void fail() const;
 
   std::string path_;

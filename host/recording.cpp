@@ -1,12 +1,14 @@
 #include "host/recording.hpp"
 
+#include "host/log_format.hpp"
 #include "host/text.hpp"
 #include "host/wall_clock.hpp"
 
 namespace ligature::host {
 
 void Recording::take(const Message& message) {
-  if (!LogWriter::takes(message.data)) return tally_.refuse();
+  if (message.channel == kCheckChannel) return;  // a played log's; ours has its own
+  if (!LogWriter::takes(message.channel, message.data)) return tally_.refuse();
   log_.write(message.received_us, message.channel, message.data);
   tally_.add(message.channel, message.data);
   if (message.channel != kStatusChannel) return;

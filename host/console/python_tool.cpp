@@ -1,6 +1,8 @@
 #include "host/console/python_tool.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
 #include <spawn.h>
 #include <stdlib.h>
 #include <sys/wait.h>
@@ -10,6 +12,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "host/console/stop_signal.hpp"
 #include "host/errors.hpp"
 
 namespace ligature::console {
@@ -36,6 +39,20 @@ std::string find_script(const std::string& name, const fs::path& source_folder) 
   throw host::RunFailed(name + " found neither at " + installed.string() + " nor in " + source_folder.string());
 }
 
+/// Waits for a child; when a signal asks us to end, it is asked, too (SIGINT: Python takes its half-made file away).
+int status_of(pid_t child) {
+  constexpr int kLook_ms = 20;
+  int status = 0;
+  bool is_told = false;
+  for (;;) {
+    const pid_t ended = waitpid(child, &status, WNOHANG);
+    if (ended == child) return status;
+    if (ended < 0 && errno != EINTR) return status;
+    if (stop_requested() && !is_told) is_told = kill(child, SIGINT) == 0;
+    poll(nullptr, 0, kLook_ms);
+  }
+}
+
 /// @return its exit code, 128 + n when signal n ended it.
 int wait_for(std::vector<std::string> words, const std::string& complaints) {
   std::vector<char*> arguments;
@@ -49,9 +66,8 @@ int wait_for(std::vector<std::string> words, const std::string& complaints) {
   const int error = posix_spawn(&child, arguments[0], &redirect, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&redirect);
   if (error != 0) throw host::RunFailed("cannot start " + words[0] + ": " + std::strerror(error));
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  const int status = status_of(child);
+  if (stop_requested()) throw host::RunFailed("stopped by a signal; what was not complete is not there");
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 

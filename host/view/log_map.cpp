@@ -1,24 +1,20 @@
 #include "host/view/log_map.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <optional>
+#include <span>
 
+#include "host/console/progress.hpp"
 #include "host/errors.hpp"
 #include "host/log_format.hpp"
 #include "host/messages.hpp"
+#include "host/sync_search.hpp"
 
 namespace ligature::host::view {
 namespace {
 
 constexpr std::array kNames{kTicksChannel, kThreadChannel, kStatusChannel, kEventChannel};
-constexpr std::int64_t kLargestPayload = 16 << 20;
 
 /// Reception times come from the clock on the wall, and somebody may have set it meanwhile: what follows a step of it
 /// goes on where the recording stood. So does what follows half a minute without a rig. Small disorder is left to sort.
@@ -41,67 +37,59 @@ class Timeline {
   std::int64_t shift_us_ = 0;
 };
 
-std::size_t read_at(int file, void* to, std::size_t size, std::int64_t offset) {
-  const ssize_t got = pread(file, to, size, offset);
-  return got > 0 ? static_cast<std::size_t>(got) : 0;
-}
+/// A checksum, and the header behind it, with its channel: one read for each event.
+constexpr std::size_t kGlance = kCheckEventBytes + LogEventHead::kBytes + kLongestChannel;
 
 }  // namespace
 
 std::string_view wire_name(LogMap::Channel channel) { return kNames[static_cast<std::size_t>(channel)]; }
 
-LogMap::LogMap(const std::string& path) : file_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-  struct stat facts = {};
-  if (file_ < 0 || fstat(file_, &facts) != 0 || !S_ISREG(facts.st_mode)) {
-    const std::string why = file_ < 0 ? std::strerror(errno) : "not a file";
-    if (file_ >= 0) close(file_);
-    throw BadInput(path + ": " + why + "; allowed: an LCM log of ligature-host record");
-  }
-  size_ = facts.st_size;
+LogMap::LogMap(const std::string& path) : file_(path) {
   scan();
-  if (entries_.empty()) {
-    close(file_);
+  if (entries_.empty())
     throw BadInput(path + ": found no message of the rig, allowed an LCM log of ligature-host record");
-  }
   std::ranges::stable_sort(entries_, {}, &Entry::time_us);
 }
 
-LogMap::~LogMap() { close(file_); }
-
 void LogMap::scan() {
   constexpr std::size_t kHead = LogEventHead::kBytes;
-  std::array<unsigned char, kHead + kLongestChannel> bytes{};
+  console::Progress progress("opening");
+  std::array<unsigned char, kGlance> bytes{};
+  const auto look = [&](std::int64_t offset) {
+    return std::span<const unsigned char>(bytes).first(file_.read_at(bytes.data(), bytes.size(), offset));
+  };
   Timeline timeline;
-  for (std::int64_t at = 0; at >= 0 && at + static_cast<std::int64_t>(kHead) <= size_;) {
-    const std::size_t got = read_at(file_, bytes.data(), bytes.size(), at);
-    const auto head = got >= kHead ? log_event_head(std::span(bytes).first<kHead>()) : std::nullopt;
+  std::vector<unsigned char> beginning(kBeginning);
+  beginning.resize(file_.read_at(beginning.data(), beginning.size(), 0));
+  const bool has_checks = has_checksums(beginning);
+  for (std::int64_t at = 0; at >= 0 && at < file_.size();) {
+    end_when_asked();
+    progress.show(at, file_.size());
+    auto seen = look(at);
+    const auto head = seen.size() >= kHead ? log_event_head(seen.first<kHead>()) : std::nullopt;
     const std::int64_t payload = at + static_cast<std::int64_t>(kHead) + (head ? head->channel_bytes : 0);
-    if (!head || payload + head->data_bytes > size_) {
-      at = find_sync(at + 1);
+    if (!head || payload + head->data_bytes > file_.size()) {
+      at = find_sync(file_, at + 1, &progress);
       continue;
     }
-    const std::string_view name(reinterpret_cast<const char*>(bytes.data()) + kHead,
-                                static_cast<std::size_t>(head->channel_bytes));
+    const std::string name(reinterpret_cast<const char*>(seen.data()) + kHead,
+                           std::min(static_cast<std::size_t>(head->channel_bytes), seen.size() - kHead));
+    const std::int64_t end = payload + head->data_bytes;
+    seen = look(end);
+    const auto check = log_check(seen);
+    const auto known_bytes = std::min(seen.size(), kLogSync.size());
+    if (has_checks && !std::ranges::equal(seen.first(known_bytes), std::span(kLogSync).first(known_bytes))) {
+      at = find_sync(file_, at + 1, &progress);  // its length is what was damaged
+      continue;
+    }
+    at = end + (check ? static_cast<std::int64_t>(kCheckEventBytes) : 0);
+    const bool is_own = check && check->timestamp_us == head->timestamp_us;
+    if (has_checks && !is_own && seen.size() >= kCheckEventBytes) continue;  // its checksum is damaged
     const auto known = std::ranges::find(kNames, name);
-    if (known != kNames.end() && head->data_bytes <= kLargestPayload)
-      entries_.push_back({timeline.place(head->timestamp_us), payload, static_cast<std::uint32_t>(head->data_bytes),
-                          static_cast<Channel>(known - kNames.begin())});
-    at = payload + head->data_bytes;
+    if (known == kNames.end()) continue;
+    entries_.push_back({timeline.place(head->timestamp_us), payload, static_cast<std::uint32_t>(head->data_bytes),
+                        is_own ? check->checksum : 0, static_cast<Channel>(known - kNames.begin()), is_own});
   }
-}
-
-/// Offset of the next sync word at or after an offset, -1 when there is none.
-std::int64_t LogMap::find_sync(std::int64_t from) const {
-  std::vector<unsigned char> block(1U << 16U);
-  for (std::int64_t at = from; at < size_;) {
-    const std::size_t got = read_at(file_, block.data(), block.size(), at);
-    if (got < kLogSync.size()) return -1;
-    const auto end = block.begin() + static_cast<std::ptrdiff_t>(got);
-    const auto found = std::search(block.begin(), end, kLogSync.begin(), kLogSync.end());
-    if (found != end) return at + (found - block.begin());
-    at += static_cast<std::int64_t>(got - (kLogSync.size() - 1));  // the word may lie across two blocks
-  }
-  return -1;
 }
 
 double LogMap::time_s(std::int64_t time_us) const {
@@ -115,7 +103,8 @@ std::size_t LogMap::after(double t_s) const {
 
 bool LogMap::read(const Entry& entry, std::vector<std::byte>& payload) const {
   payload.resize(entry.size);
-  return read_at(file_, payload.data(), payload.size(), entry.offset) == payload.size();
+  return file_.read_at(payload.data(), payload.size(), entry.offset) == payload.size() &&
+         (!entry.has_checksum || entry.checksum == log_checksum(wire_name(entry.channel), payload));
 }
 
 }  // namespace ligature::host::view

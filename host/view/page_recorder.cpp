@@ -68,7 +68,7 @@ void PageRecorder::stop(const std::string& why) {
 
 void PageRecorder::take(const Message& message) {
   const std::scoped_lock lock(mutex_);
-  if (!log_ || !LogWriter::takes(message.data)) return;
+  if (!log_ || !LogWriter::takes(message.channel, message.data)) return;
   try {
     log_->write(message.received_us, message.channel, message.data);
     ++messages_;

@@ -21,6 +21,7 @@ BIN = pathlib.Path(os.environ["LIGATURE_BIN"])
 BOUND_S = 60
 SESSION = 1_700_000_000_000_000
 HEADER_BYTES, SLOT_BYTES = 65536, 1024
+CHECK_BYTES = 28 + len("LIGATURE_CHECK") + 12  # behind each event of a log (host/log_format.hpp)
 
 
 def batch(session, first, count):
@@ -110,7 +111,7 @@ class Records(unittest.TestCase):
         size = recorder.log.stat().st_size
         for i, (channel, data) in enumerate(messages):
             self.lcm.publish(channel, data)
-            size += 28 + len(channel) + len(data)
+            size += 28 + len(channel) + len(data) + CHECK_BYTES
             if i % 20 == 19 or i + 1 == len(messages):
                 self.until(recorder, lambda: recorder.has(size))
 
@@ -136,7 +137,7 @@ class Forged(Records):
         self.say(recorder, ("LIGATURE_TICKS", batch(SESSION, 0, 20)), ("LIGATURE_TICKS", batch(SESSION, 40, 20)))
         # Gaps are looked for once a second: it goes on writing after that.
         size = recorder.log.stat().st_size
-        self.until(recorder, lambda: recorder.has(size + 250 * 40), lambda: self.lcm.publish("LIGATURE_HELLO", b"hello"))
+        self.until(recorder, lambda: recorder.has(size + 250 * (40 + CHECK_BYTES)), lambda: self.lcm.publish("LIGATURE_HELLO", b"hello"))
         code, words = recorder.end()
         self.assertEqual(code, 0, words)
         self.assertIn("recorded 40 of at least 60 ticks, 20 known to be lost", words)
@@ -175,6 +176,25 @@ class Forged(Records):
         self.assertIn("unreadable: 3 messages", words)
         report = self.report(recorder.log)
         self.assertIn("run of 0.020 s", report)
+
+
+class Damaged(Records):
+    def test_a_damaged_record_is_left_out_and_said(self):
+        recorder = self.recorder()
+        false_check = struct.pack(">qI", 0, 0)  # what a played log would bring, or a stranger
+        self.say(recorder, *[("LIGATURE_TICKS", batch(SESSION, 20 * i, 20)) for i in range(10)])
+        self.lcm.publish("LIGATURE_CHECK", false_check)
+        self.say(recorder, *[("LIGATURE_TICKS", batch(SESSION, 20 * i, 20)) for i in range(10, 20)])
+        self.assertEqual(recorder.end()[0], 0)
+        sound = self.report(recorder.log)
+        self.assertIn("400 recorded, 0 lost", sound)
+        self.assertNotIn("damaged", sound)
+        log = bytearray(recorder.log.read_bytes())
+        log[log.index(b"LIGATURE_TICKS", len(log) // 2) + 500] ^= 4  # within a tick
+        recorder.log.write_bytes(log)
+        damaged = self.report(recorder.log)
+        self.assertIn("380 recorded, 20 lost", damaged)
+        self.assertIn("1 damaged records left out", damaged)
 
 
 class Beside(Records):
@@ -239,7 +259,7 @@ class Ends(Records):
         self.say(recorder, *[("LIGATURE_STATUS", status(SESSION, self.path / f"forged-{i}")) for i in range(40)],
                  ("LIGATURE_TICKS", batch(SESSION, 0, 20)), ("LIGATURE_TICKS", batch(SESSION, 40, 20)))
         filled = recorder.log.stat().st_size + 20 * 400
-        self.until(recorder, lambda: recorder.has(filled + 20 * 700), lambda: self.lcm.publish("LIGATURE_STATUS", status(SESSION, self.path / "flight.rec")))
+        self.until(recorder, lambda: recorder.has(filled + 20 * 1000), lambda: self.lcm.publish("LIGATURE_STATUS", status(SESSION, self.path / "flight.rec")))
         code, words = recorder.end()
         self.assertEqual(code, 0, words)
         self.assertIn("recorded 60 of 60 ticks, 0 lost", words)

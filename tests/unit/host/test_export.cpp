@@ -6,6 +6,7 @@
 #include "host/csv_row.hpp"
 #include "host/errors.hpp"
 #include "host/export.hpp"
+#include "host/log_format.hpp"
 #include "host/rig_facts.hpp"
 #include "synthetic_log.hpp"
 
@@ -77,7 +78,7 @@ TEST_F(Export, ShapeIsTheDesignsTable) {
 
 TEST_F(Export, ACutLogIsExportedUpToItsLastWholeEvent) {
   const std::string whole = test::text_of(write_log());
-  test::write_text(folder_.file("cut.lcmlog"), whole.substr(0, whole.size() - 1));
+  test::write_text(folder_.file("cut.lcmlog"), whole.substr(0, whole.size() - kCheckEventBytes - 1));
   const auto result = export_recording(folder_.file("cut.lcmlog"), targets());
   EXPECT_EQ(result.tick_rows, 20);
   EXPECT_NE(result.damage, "");
