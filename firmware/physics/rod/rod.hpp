@@ -118,6 +118,8 @@ class Rod {
     e.give_J = give_J_;
     return e;
   }
+  /// All of energy(), of twist, of the holds' springs and of the constant loads.
+  [[nodiscard]] double all_J(const Energy& e) const noexcept;
 
  private:
   using Substep = bool (Rod::*)(double) noexcept;
@@ -164,8 +166,6 @@ class Rod {
   /// Forces on the hands where the thread will be in `ahead_s`.
   void feel_hands(double ahead_s) noexcept;
   int add_hold(const Hold& hold) noexcept;
-  /// All that is kinetic or stored, in hands' springs and by constant loads too.
-  [[nodiscard]] double all_J(const Energy& e) const noexcept;
   /// What remeshing left, of bends, strains and corners, fades.
   void fade() noexcept;
 

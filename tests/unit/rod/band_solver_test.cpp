@@ -39,7 +39,7 @@ Dense dense(const BandSolver& s, int n) {
 BandSolver random_system(int n, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
-  const auto vector = [&] { return make(normal(random), normal(random), normal(random)); };
+  const auto vector = [&] { return Vec{{normal(random), normal(random), normal(random), 0.0}}; };
   BandSolver s;
   s.resize(n);
   for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {

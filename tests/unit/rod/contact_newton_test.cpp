@@ -24,7 +24,7 @@ struct Jam {
   explicit Jam(unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
-    const auto vector = [&] { return make(normal(random), normal(random), normal(random)); };
+    const auto vector = [&] { return Vec{{normal(random), normal(random), normal(random), 0.0}}; };
     solver.resize(kNodes);
     for (std::size_t i = 0; i < static_cast<std::size_t>(kNodes); ++i) {
       solver.diagonal[i] = dyad(vector(), 40.0, 20.0);

@@ -50,7 +50,7 @@ TEST(Guard, LetsPassWhatFliesByOrAway) {
 TEST(Guard, LetsNothingThrough) {
   std::mt19937 random(11);
   std::normal_distribution<double> normal(0.0, 1.0);
-  const auto vec = [&](double size) { return size * make(normal(random), normal(random), normal(random)); };
+  const auto vec = [&](double size) { return size * Vec{{normal(random), normal(random), normal(random), 0.0}}; };
   int free = 0, held = 0;
   for (int round = 0; round < 4000; ++round) {
     Two two;

@@ -76,7 +76,7 @@ TEST(Smooth, StaysWhereASegmentIsSplit) {
 TEST(Smooth, FourAtATimeAreAsOne) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal(0.0, kDiameter_m);
-  const auto vec = [&] { return make(normal(random), normal(random), normal(random)); };
+  const auto vec = [&] { return Vec{{normal(random), normal(random), normal(random), 0.0}}; };
   for (int round = 0; round < 200; ++round) {
     SmoothOf<Vec, double> a[4], b[4];
     for (int l = 0; l < 4; ++l) {

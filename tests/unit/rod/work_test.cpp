@@ -4,33 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "tests/support/crossings.hpp"
-#include "tests/unit/rod/rods.hpp"
+#include "tests/unit/rod/crumple.hpp"
 
 namespace ligature::test {
 namespace {
 
 using physics::rod::kMaxHolds;
-
-// A ball of thread: a random walk of the mesh's segments inside a sphere of `radius` diameters, so that everything is
-// near everything; every node thrown at up to `speed_m_per_s`.
-void crumple(Rod& rod, unsigned seed, double radius, double speed_m_per_s) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal(0.0, 1.0);
-  State& state = rod.state();
-  const double limit = radius * 2.0 * rod.material().radius_m;
-  Vec at{}, along = make(1, 0, 0);
-  for (std::size_t i = 0; i < state.x.size(); ++i) {
-    state.x[i] = at;
-    state.v[i] = speed_m_per_s / std::sqrt(3.0) * make(normal(random), normal(random), normal(random));
-    along = along + 0.6 * make(normal(random), normal(random), normal(random)) - (0.6 * norm(at) / limit / limit) * at;
-    along = (1.0 / norm(along)) * along;
-    if (i + 1 < state.x.size()) at = at + state.mesh.rest[i] * along;
-  }
-  rod.moved();
-}
 
 struct Hostile {
   long most_work = 0, pairs = 0, crossings = 0, ticks_given_up = 0;

@@ -1,0 +1,33 @@
+#pragma once
+// A ball of thread, for tests of what touching costs and does.
+
+#include <cmath>
+#include <random>
+
+#include "tests/unit/rod/rods.hpp"
+
+namespace ligature::test {
+
+/// A random walk of the mesh's segments inside a sphere of `radius` diameters, so that everything is near everything;
+/// every node thrown at up to `speed_m_per_s`.
+inline void crumple(Rod& rod, unsigned seed, double radius, double speed_m_per_s) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  const auto vector = [&] {  // as arguments of one call the draws would come in the compiler's order
+    const double x = normal(random), y = normal(random), z = normal(random);
+    return make(x, y, z);
+  };
+  auto& state = rod.state();
+  const double limit = radius * 2.0 * rod.material().radius_m;
+  Vec at{}, along = make(1, 0, 0);
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    state.x[i] = at;
+    state.v[i] = speed_m_per_s / std::sqrt(3.0) * vector();
+    along = along + 0.6 * vector() - (0.6 * norm(at) / limit / limit) * at;
+    along = (1.0 / norm(along)) * along;
+    if (i + 1 < state.x.size()) at = at + state.mesh.rest[i] * along;
+  }
+  rod.moved();
+}
+
+}  // namespace ligature::test
