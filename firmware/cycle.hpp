@@ -2,207 +2,160 @@
 // THE loop. Linux stands behind Bus and Clock in the program, fakes in virtual time stand there in tests.
 
 #include <algorithm>
-#include <chrono>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <utility>
 
+#include "firmware/clock.hpp"
 #include "firmware/control/controller.hpp"
+#include "firmware/control/period_log.hpp"
 #include "firmware/control/plant.hpp"
+#include "firmware/control/thread_link.hpp"
 #include "firmware/control/tick_report.hpp"
-#include "firmware/physics/simulation.hpp"
-#include "firmware/rt/cycle_timing.hpp"
+#include "firmware/rt/bus_time.hpp"
 #include "firmware/rt/outlets.hpp"
 #include "firmware/rt/period.hpp"
 
 namespace ligature {
 
-using Nanoseconds = std::chrono::nanoseconds;  ///< time points are nanoseconds of one monotonic clock
-
 // Version 14 of clang-format tears compound requirements apart.
 // clang-format off
-template <class C>
-concept Clock = requires(C c, Nanoseconds at) {
-  { c.now() } noexcept -> std::same_as<Nanoseconds>;
-  { c.sleep_until(at) } noexcept;
-  { c.worked() } noexcept -> std::same_as<Nanoseconds>;  // CPU time of this thread
-};
 template <class B>
 concept Bus = requires(B b, Nanoseconds deadline, const rt::RigCommand& command) {
   { b.send_sync() } noexcept;                                           // every drive samples and acts now
   { b.read_tpdos(deadline) } noexcept -> std::same_as<rt::RigReading>;  // returns early when all have come
   { b.write_rpdos(command) } noexcept -> std::same_as<rt::WireTorque>;  // acts at the next SYNC
 };
+template <class W>
+concept Waker = requires(W w) {
+  { w.wake() } noexcept;  // the thread's physics, if it waits; it runs as soon as nothing more urgent does
+};
 // clang-format on
 
 /// One period after the other until the controller has shut the rig down. Period k is due at start + k T; whole periods
-/// that pass unused are counted, recorded and skipped, never made up for. No allocation, lock, log or exception in
-/// run().
-template <Bus BusT, Clock ClockT>
+/// that pass unused are counted, recorded and skipped, never made up for. The thread's physics (thread_context.hpp) is
+/// given the tools of period k and is done before the samples of period k + 1 are in; if it is not, the law goes on with
+/// the grasp that it has. No allocation, lock, log or exception in run(), and no waiting but for the bus and the clock.
+template <Bus BusT, Clock ClockT, Waker WakerT>
 class Cycle {
  public:
   static constexpr Nanoseconds kPeriod = rt::kPeriod;
-  /// From SYNC; the bus needs at most 460 us for SYNC and TPDOs, and 285 for the RPDOs before the next SYNC.
-  static constexpr Nanoseconds kTpdoWait = std::chrono::microseconds(680);
-  /// What the bus leaves of a period, at its longest: a tick that computes for longer cannot be in time.
-  static constexpr Nanoseconds kMostWork = kPeriod - std::chrono::microseconds(460);
-  static constexpr std::int64_t kTicksPerShape = 8;
+  static constexpr Nanoseconds kTpdoWait = std::chrono::microseconds(680);  ///< from SYNC
 
-  Cycle(BusT& bus, ClockT& clock, control::Controller& controller, physics::Simulation& thread,
+  Cycle(BusT& bus, ClockT& clock, control::Controller& controller, control::ThreadExchange& exchange, WakerT& physics,
         rt::Outlets& out) noexcept
-      : bus_(bus), clock_(clock), controller_(controller), thread_(thread), out_(out) {}
+      : bus_(bus), clock_(clock), controller_(controller), thread_(exchange), physics_(physics), out_(out), log_(out) {}
 
   void end_after(std::int64_t ticks) noexcept { last_tick_ = ticks; }
   /// Where other scenes and parameters come from.
   void listen(control::PlantHandover& plants) noexcept { plants_ = &plants; }
-  [[nodiscard]] const rt::CycleTiming& timing() const noexcept { return timing_; }
+  [[nodiscard]] const rt::CycleTiming& timing() const noexcept { return log_.timing(); }
   [[nodiscard]] std::int64_t periods() const noexcept { return tick_; }
 
   void run() noexcept {
     wake_at_ = clock_.now() + kPeriod;
     while (!controller_.is_finished()) {
       clock_.sleep_until(wake_at_);  // absolute: jitter does not accumulate
-      const auto woke = clock_.now();
-      skip((woke - wake_at_) / kPeriod);  // slept through
+      control::Phases at{};
+      at.woke = clock_.now();
+      skip((at.woke - wake_at_) / kPeriod);  // slept through
+      at.scheduled = wake_at_;
 
       take_commands();
       take_plant();
       bus_.send_sync();  // every axis samples, and acts on the last tick's torque
-      const auto synced = clock_.now();
-      const rt::RigReading reading = bus_.read_tpdos(woke + kTpdoWait);
-      const auto sampled = clock_.now();
+      at.synced = clock_.now();
+      const rt::RigReading reading = bus_.read_tpdos(at.woke + kTpdoWait);
+      at.sampled = clock_.now();
       const auto worked_before = clock_.worked();
-      const rt::RigCommand command = controller_.tick(input(reading, sampled - woke >= kPeriod));
-      const auto decided = clock_.now();
+      take_grasp();  // it has seen the tools of the last period
+      const auto in = input(reading, at.sampled - at.woke >= kPeriod);
+      const rt::RigCommand command = controller_.tick(in);
+      at.decided = clock_.now();
       const rt::WireTorque torque = bus_.write_rpdos(command);
-      const auto controlled = clock_.now();
-      thread_.tick(controller_.tools());  // the rest of the period is the thread's
-      const auto done = clock_.now();
-
-      publish({woke, synced, sampled, decided, controlled, done}, clock_.worked() - worked_before, torque);
-      const auto missed = (done - wake_at_) / kPeriod;
-      advance();
+      at.controlled = clock_.now();
+      thread_deadline_.note(at.sampled - at.woke);
+      const auto periods = (at.controlled - wake_at_) / kPeriod + 1;  // of a late tick the next one is later, too
+      thread_.hand_over(tick_, controller_.tools(), thread_deadline_.before(wake_at_ + periods * kPeriod));
+      physics_.wake();  // until the next samples the core is the thread's
+      at.done = clock_.now();
+      log_.finish(thread_.result(), in.thread_late_ticks);  // the last period, now that its thread is known
+      log_.begin(tick_, at, clock_.worked() - worked_before, torque, controller_, in.grasp_age_ticks);
+      const auto missed = (at.done - wake_at_) / kPeriod;
+      advance(1);
       skip(missed);
     }
+    log_.finish_last(thread_.result());
   }
 
  private:
-  /// When each phase of a tick ended.
-  struct Phases {
-    Nanoseconds woke, synced, sampled, decided, controlled, done;
-  };
-
   void take_commands() noexcept {
     if (out_.stop.load(std::memory_order_relaxed) || tick_ >= last_tick_) controller_.shut_down();
-    bool reset = false;
     rt::Command c;
+    bool reset = false;
     for (std::size_t left = out_.commands.capacity(); left > 0 && out_.commands.pop(c); --left) {
-      controller_.command(c.kind);
       reset = reset || c.kind == rt::CommandKind::kResetThread;
+      const bool arms = c.kind == rt::CommandKind::kArm;
+      if (arms || c.kind == rt::CommandKind::kDisarm || c.kind == rt::CommandKind::kStop)
+        arm_waits_ = arms && thread_.changes_scene();
+      if (!arm_waits_ || !arms) controller_.command(c.kind);
     }
-    if (reset) thread_.reset();  // 4 us for a rod: once, however many of a flood ask for it
+    if (reset) thread_.reset();  // once, however many of a flood ask for it
   }
 
-  /// Changes the thread by a swap of its insides: nothing is built or freed here. The old one goes back in the new
-  /// one's place. Another scene is taken only where no force may flow; parameters at any time.
+  /// Another scene is taken only where no force may flow; parameters at any time.
   void take_plant() noexcept {
-    control::Plant* plant = plants_ != nullptr ? plants_->take() : nullptr;
+    if (plants_ == nullptr || thread_.is_changing()) return;
+    control::Plant* plant = plants_->take();
     if (plant == nullptr) return;
-    plant->taken = plant->keeps_motion ? plant->thread.continue_from(thread_)
-                                       : !controller_.armed() && !control::may_push(controller_.state());
-    if (plant->taken) {
-      std::swap(thread_, plant->thread);
-      if (plant->keeps_motion)
-        controller_.change_force_scale(plant->hands.force_scale);
-      else
-        controller_.change_hands(plant->hands);
-    }
+    plant->taken = plant->keeps_motion || (!controller_.armed() && !control::may_push(controller_.state()));
+    if (plant->taken) return thread_.change(plant);
     plants_->give_back(plant);
   }
 
+  /// The newest there is. When it is that of a new thread, its hands come with it.
+  void take_grasp() noexcept {
+    control::Plant* const plant = thread_.collect();
+    if (plant == nullptr) return;
+    if (plant->taken && plant->keeps_motion) controller_.change_force_scale(plant->hands.force_scale);
+    if (plant->taken && !plant->keeps_motion) controller_.change_hands(plant->hands);
+    plants_->give_back(plant);
+    if (std::exchange(arm_waits_, false)) controller_.command(rt::CommandKind::kArm);
+  }
+
   control::TickInput input(const rt::RigReading& reading, bool late) const noexcept {
-    return {
-        tick_,
-        reading,
-        {control::grasp_of(thread_.hand(physics::Hand::kLeft)), control::grasp_of(thread_.hand(physics::Hand::kRight))},
-        thread_.diagnostics().finite,
-        late};
+    const control::ThreadResult& thread = thread_.result();
+    return {tick_,
+            reading,
+            {control::grasp_of(thread.hand[0]), control::grasp_of(thread.hand[1])},
+            thread.health.finite,
+            late,
+            tick_ - thread.tick,
+            thread_.late_ticks()};
   }
 
-  void publish(const Phases& at, Nanoseconds work, const rt::WireTorque& torque) noexcept {
-    timing_.wakeup.add((at.woke - wake_at_).count());
-    timing_.control.add((at.controlled - at.woke).count());
-    timing_.execution.add((at.done - at.woke).count());
-    timing_.work.add(work.count());
-    const bool missed = at.done >= wake_at_ + kPeriod, overworked = work > kMostWork;
-    timing_.deadline_misses += missed;
-    timing_.overworked += overworked;
-
-    record_ = {};
-    record_.tick = tick_;
-    record_.scheduled_ns = wake_at_.count();
-    record_.wakeup_latency_ns = narrow(at.woke - wake_at_);
-    record_.sync_ns = narrow(at.synced - at.woke);
-    record_.tpdo_ns = narrow(at.sampled - at.woke);
-    record_.law_ns = narrow(at.decided - at.woke);
-    record_.control_ns = narrow(at.controlled - at.woke);
-    record_.execution_ns = narrow(at.done - at.woke);
-    record_.flags = (missed ? rt::kDeadlineMissed : 0) | (overworked ? rt::kOverworked : 0);
-    record_.torque_permille = torque;
-    control::report(controller_, record_);
-    control::report(thread_.diagnostics(), record_);
-    control::report(thread_.hand(physics::Hand::kLeft), 0, record_);
-    control::report(thread_.hand(physics::Hand::kRight), 1, record_);
-    out_.tell(record_);
-    if (tick_ % kTicksPerShape == 0) {
-      rt::ThreadSnapshot& shape = out_.shape.back();
-      control::report(thread_.nodes_W(), record_, shape);
-      const auto count = static_cast<std::size_t>(shape.count);
-      thread_.describe(std::span(shape.tension_N).first(count), std::span(shape.turn_rad).first(count));
-      out_.shape.publish();
-    }
+  void advance(std::int64_t periods) noexcept {
+    tick_ += periods;
+    wake_at_ += periods * kPeriod;
   }
-
-  void advance() noexcept {
-    ++tick_;
-    wake_at_ += kPeriod;
-  }
-
-  /// Lost periods: the last values again, flagged. What no ring can hold is counted as dropped in one go.
   void skip(std::int64_t periods) noexcept {
-    const auto room = static_cast<std::int64_t>(out_.room());
-    for (std::int64_t i = 0; i < periods; ++i, advance()) {
-      if (i >= room) {
-        out_.count_untold(static_cast<std::uint64_t>(periods - i));
-        tick_ += periods - i;
-        wake_at_ += (periods - i) * kPeriod;
-        break;
-      }
-      record_.tick = tick_;
-      record_.scheduled_ns = wake_at_.count();
-      record_.flags |= rt::kPeriodLost;
-      record_.flags &= ~(rt::kDeadlineMissed | rt::kOverworked);  // those were the executed one's
-      out_.tell(record_);
-    }
-    timing_.periods_lost += static_cast<std::uint64_t>(periods);
-  }
-
-  static std::int32_t narrow(Nanoseconds t) noexcept {
-    constexpr auto kMax = Nanoseconds(std::numeric_limits<std::int32_t>::max());
-    return static_cast<std::int32_t>(std::min(t, kMax).count());
+    if (periods <= 0) return;
+    log_.lose(tick_, wake_at_, periods);
+    advance(periods);
   }
 
   BusT& bus_;
   ClockT& clock_;
   control::Controller& controller_;
-  physics::Simulation& thread_;
+  control::ThreadLink thread_;
+  WakerT& physics_;
   rt::Outlets& out_;
+  control::PeriodLog log_;
+  rt::ThreadDeadline thread_deadline_;
   control::PlantHandover* plants_ = nullptr;
-  rt::CycleTiming timing_;
-  rt::TickRecord record_;
+  bool arm_waits_ = false;  // for another scene that is under way
   Nanoseconds wake_at_{};
   std::int64_t tick_ = 0;
   std::int64_t last_tick_ = std::numeric_limits<std::int64_t>::max();

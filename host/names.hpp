@@ -49,7 +49,7 @@ struct FaultText {
 };
 
 /// Fault numbers (docs/architecture.md): what happened, and what a person does about it.
-inline constexpr std::array<FaultText, 11> kFaults{{
+inline constexpr std::array<FaultText, 12> kFaults{{
     {10, "A hand's bus is gone", "Check the cable or the simulated hand, then reset the fault."},
     {11, "Joint messages too old",
      "A drive stopped sending, or the machine was too slow. Check load and bus, then reset."},
@@ -65,6 +65,7 @@ inline constexpr std::array<FaultText, 11> kFaults{{
      "Look for frames lost in bursts, or a drive whose torque does not follow what it is sent. Then reset."},
     {30, "The control loop lost periods", "Too much load on the machine: run ligature-firmware doctor, then reset."},
     {40, "The thread simulation diverged", "Reset the thread, then the fault. If it returns, soften the scene."},
+    {41, "The thread simulation is late", "Reset the fault. If it returns, take a scene that this machine admits."},
 }};
 
 }  // namespace ligature::host

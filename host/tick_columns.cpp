@@ -99,10 +99,12 @@ Columns make() {
   add_plain(c, "tpdo_ns", "ns", "wake-up until both hands' joints had come", &Tick::tpdo_ns);
   add_plain(c, "law_ns", "ns", "wake-up until the torques were computed", &Tick::law_ns);
   add_plain(c, "control_ns", "ns", "wake-up until both hands' RPDOs were written", &Tick::control_ns);
-  add_plain(c, "execution_ns", "ns", "wake-up until the whole tick was done", &Tick::execution_ns);
+  add_plain(c, "execution_ns", "ns", "wake-up until the loop's tick was done, the tools handed to the thread",
+            &Tick::execution_ns);
   add_plain(c, "flags", "",
             "sum of 1 period lost (values held), 2 deadline missed, 4/8 left/right stale, 16/32 left/right force "
-            "limited, 64 contact list full, 128 the loop itself computed for longer than the bus leaves time",
+            "limited, 64 contact list full, 128 the loop itself computed for longer than the bus leaves time, 256 the "
+            "thread was late, 512 the clock ended its tick",
             &Tick::flags);
   add_plain(c, "state", "", "0 OFF 1 CALIBRATE 2 IDLE 3 ENGAGE 4 FORCE 5 BRAKE 6 FAULT", &Tick::state);
   add_plain(c, "fault", "", "latched fault number, 0 none", &Tick::fault);
@@ -116,6 +118,15 @@ Columns make() {
   for (std::size_t hand = 0; hand < 2; ++hand) add_port(c, hand);
   add_plain(c, "degradation", "", "what the solver gave up: 0 nothing, 1 iterations, 2 contacts, 3 candidates",
             &Tick::degradation);
+  add_plain(c, "grasp_age_ticks", "ticks", "periods since the one whose tools the law's grasp has seen; 1 in time",
+            &Tick::grasp_age_ticks);
+  add_plain(c, "thread_start_ns", "ns", "wake-up until the thread's physics began; 0 late", &Tick::thread_start_ns);
+  add_plain(c, "thread_done_ns", "ns", "wake-up until it was done; 0 late", &Tick::thread_done_ns);
+  add_plain(c, "thread_work_ns", "ns", "CPU time that it took", &Tick::thread_work_ns);
+  add_plain(c, "thread_end", "", "0 all of the tick was computed, 1 its work was spent, 2 its time was over",
+            &Tick::thread_end);
+  add_plain(c, "thread_cut_at", "", "question for the time that was answered with no, -1 none", &Tick::thread_cut_at);
+  add_plain(c, "time_lost", "", "share of the tick in which the thread stood still", &Tick::time_lost);
   return c;
 }
 

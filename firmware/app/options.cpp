@@ -90,6 +90,9 @@ void add_run(CLI::App& run, RunOptions& o) {
          "real-time scheduling and locked memory: enforce (or exit 3), warn, off")
       ->check(CLI::IsMember({"enforce", "warn", "off"}))
       ->default_str("warn");
+  run.add_option("--physics-core", o.physics_core,
+                 "core of the thread's physics, its own; default: that of the loop, when the loop waits for the bus")
+      ->check(within(0, 1023));
   run.add_option("--watchdog-ms", o.watchdog_ms,
                  "silence that is a fault: of a hand here, of the controller in the drives, of the loop itself")
       ->check(within(2, 10000))

@@ -23,6 +23,7 @@ struct RunOptions {
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
   bool no_telemetry = false;  ///< say nothing to anybody, hear no commands
   RtMode rt = RtMode::kWarn;
+  int physics_core = -1;  ///< of the thread's physics; -1: that of the loop
   int watchdog_ms = 20;
   std::string recorder;  ///< flight recorder file; "none" for none
   int recorder_s = 120;  ///< how far back it goes

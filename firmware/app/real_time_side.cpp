@@ -14,7 +14,9 @@ RealTimeSide::RealTimeSide(const RunOptions& options, Plan& plan, const Buses& b
       wait_(*buses.left, *buses.right),
       bus_(*buses.left, *buses.right, wait_, plan.device),
       controller_(plan.scene.hands, {options.watchdog_ms, options.arm, plan.device}),
-      cycle_(bus_, clock_, controller_, plan.thread, outlets) {
+      cycle_(bus_, clock_, controller_, exchange_, wake_physics_, outlets),
+      physics_(clock_, plan.thread, exchange_, outlets.shape),
+      physics_core_(options.physics_core) {
   cycle_.listen(plants);
   if (options.duration_s) cycle_.end_after(std::llround(*options.duration_s / control::kPeriod_s));
 }
@@ -32,8 +34,16 @@ platform::Refusals RealTimeSide::prepare(bool ask, int core) {
     beating_ = false;
   });
   for (const auto& r : rights_.get_future().get()) refused.push_back(r);
+  physics_thread_ = std::thread(&RealTimeSide::run_physics, this, ask, physics_core_ >= 0 ? physics_core_ : core);
+  for (const auto& r : physics_rights_.get_future().get()) refused.push_back(r + " (the thread's physics)");
   for (const auto& r : refused) spdlog::warn("real time: {}", r);
   return refused;
+}
+
+void RealTimeSide::run_physics(bool ask, int core) {
+  platform::flush_denormals();
+  physics_rights_.set_value(ask ? platform::make_realtime(core, platform::kPhysicsPriority) : platform::Refusals{});
+  physics_.run(wake_physics_);
 }
 
 void RealTimeSide::start() {
@@ -45,6 +55,8 @@ void RealTimeSide::end() {
   if (!thread_.joinable()) return;
   if (!started_) go_.set_value(false);
   thread_.join();
+  wake_physics_.end();
+  physics_thread_.join();
 }
 
 /// Not one of the rights that --rt=enforce insists on: without it wake-ups are late, which doctor and the record show.

@@ -1,5 +1,5 @@
 #pragma once
-// The loop, all it works with, and the thread that runs it.
+// The loop and the thread's physics, all they work with, and the threads that run them.
 
 #include <atomic>
 #include <future>
@@ -12,14 +12,16 @@
 #include "firmware/platform/monotonic_clock.hpp"
 #include "firmware/platform/realtime.hpp"
 #include "firmware/platform/rig_bus.hpp"
+#include "firmware/platform/wake_up.hpp"
+#include "firmware/thread_context.hpp"
 
 namespace ligature::app {
 
-/// The thread asks for its rights at once, says what was refused, and waits for the word to start; it never starts
-/// without one.
+/// Each thread asks for its rights at once and says what was refused. The loop's waits for the word to start, and never
+/// starts without one; the physics' waits for the loop.
 class RealTimeSide {
  public:
-  using RigCycle = Cycle<platform::RigBus, platform::MonotonicClock>;
+  using RigCycle = Cycle<platform::RigBus, platform::MonotonicClock, platform::WakeUp>;
 
   RealTimeSide(const RunOptions& options, Plan& plan, const Buses& buses, rt::Outlets& outlets,
                control::PlantHandover& plants);
@@ -41,18 +43,24 @@ class RealTimeSide {
   void stay_awake();
   void release();
 
+  void run_physics(bool ask, int core);
+
   const Buses& buses_;
   platform::PollWait wait_;
   platform::RigBus bus_;
   platform::MonotonicClock clock_;
   control::Controller controller_;
+  control::ThreadExchange exchange_;
+  platform::WakeUp wake_physics_;
   RigCycle cycle_;
-  std::promise<platform::Refusals> rights_;
+  ThreadContext<platform::MonotonicClock> physics_;
+  int physics_core_;
+  std::promise<platform::Refusals> rights_, physics_rights_;
   std::promise<bool> go_;
   std::atomic<bool> beating_{true};
   std::optional<platform::IdleGuard> awake_;
   bool started_ = false;
-  std::thread thread_;
+  std::thread thread_, physics_thread_;
 };
 
 }  // namespace ligature::app

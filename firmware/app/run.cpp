@@ -154,6 +154,7 @@ int run(const RunOptions& options) {
   const bool ask = options.rt != RtMode::kOff;
   const int core = platform::realtime_core();
   if (ask) platform::keep_off(core);
+  if (ask && options.physics_core >= 0) platform::keep_off(options.physics_core);
 
   const Measure measure = measure_on(core, options.budget_percent);
   const auto excess = objection_of(measure(plan.scene, kAdmission_s), plan.scene, measure);

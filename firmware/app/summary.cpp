@@ -26,18 +26,21 @@ std::string recorder_rows(const Losses& losses) {
 std::string summary(const rt::CycleTiming& t, std::int64_t periods, const Losses& losses) {
   const auto executed = t.execution.count();
   const double held_Hz = periods > 0 ? 1000.0 * static_cast<double>(executed) / static_cast<double>(periods) : 0.0;
-  char head[384];
+  char head[640];
   std::snprintf(head, sizeof head,
                 "control loop, 1 kHz\n"
                 "  rate held        %10.2f Hz  (%llu of %lld periods executed)\n"
                 "  deadline misses  %10llu  (%llu by the loop's own work)\n"
                 "  periods lost     %10llu\n"
+                "  thread late      %10llu\n"
+                "  thread cut       %10llu  (by the clock; in all it stood still for %.1f ms)\n"
                 "  records dropped  %10llu\n",
                 held_Hz, static_cast<unsigned long long>(executed), static_cast<long long>(periods),
                 static_cast<unsigned long long>(t.deadline_misses), static_cast<unsigned long long>(t.overworked),
-                static_cast<unsigned long long>(t.periods_lost), static_cast<unsigned long long>(losses.telemetry));
+                static_cast<unsigned long long>(t.periods_lost), static_cast<unsigned long long>(t.thread_late),
+                static_cast<unsigned long long>(t.thread_cut), t.thread_lost_ticks, static_cast<unsigned long long>(losses.telemetry));
   return head + recorder_rows(losses) + "  us               p50       p99       max\n" + row("wakeup", t.wakeup) +
-         row("control", t.control) + row("execution", t.execution) + row("CPU", t.work);
+         row("control", t.control) + row("execution", t.execution) + row("CPU", t.work) + row("thread CPU", t.thread);
 }
 
 }  // namespace ligature::app

@@ -112,6 +112,7 @@ Fault Controller::find_fault(const TickInput& in) const noexcept {
   }
   if (!in.thread_finite) return Fault::kPhysicsDiverged;
   if (last_tick_ >= 0 && in.tick - last_tick_ - 1 >= settings_.watchdog_ticks) return Fault::kOverrun;
+  if (in.thread_late_ticks >= settings_.watchdog_ticks) return Fault::kThreadLate;
   if (state_ == State::kOff) return Fault::kNone;
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     const Fault fault = find_hand_fault(hands_[h], in.reading.hand[h]);

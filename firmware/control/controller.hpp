@@ -17,7 +17,7 @@ namespace ligature::control {
 using rt::kPeriod_s;
 
 struct Settings {
-  std::int32_t watchdog_ticks = 20;  ///< age of joint messages, or periods lost in a row, that is a fault
+  std::int32_t watchdog_ticks = 20;  ///< age of joint messages, periods lost or thread late in a row, that is a fault
   bool armed = false;                ///< at start; a fault and a disarm take it back
   device::Device device = device::omni();
   bool lending = true;  ///< off: each hand must earn its force alone, and cannot be pulled (an experiment shows it)
@@ -27,9 +27,11 @@ struct Settings {
 struct TickInput {
   std::int64_t tick = 0;  ///< number of the period; a jump means lost periods
   rt::RigReading reading;
-  std::array<Grasp, rt::kHands> grasp;  ///< of the thread's last tick
+  std::array<Grasp, rt::kHands> grasp;  ///< the newest there is
   bool thread_finite = true;
   bool late = false;  ///< the samples asked for in this tick were taken nobody knows when, periods late perhaps
+  std::int64_t grasp_age_ticks = 1;    ///< since the period whose tools that grasp has seen
+  std::int64_t thread_late_ticks = 0;  ///< tools handed over that it has not seen
 };
 
 /// Real time: tick() is O(1), allocates nothing, throws nothing, calls no system. Deterministic in its inputs.

@@ -18,6 +18,7 @@ enum class Fault : std::int16_t {
   kForceStays = 25,       ///< a hand's gain is 0 and its force still does not end
   kOverrun = 30,          ///< the loop lost as many periods in a row as the watchdog allows
   kPhysicsDiverged = 40,  ///< the thread's state is not finite
+  kThreadLate = 41,       ///< the thread's physics has not seen the tools of as many ticks as the watchdog allows
 };
 
 [[nodiscard]] constexpr const char* name(Fault f) noexcept {
@@ -46,6 +47,8 @@ enum class Fault : std::int16_t {
       return "control loop overrun";
     case Fault::kPhysicsDiverged:
       return "thread simulation diverged";
+    case Fault::kThreadLate:
+      return "thread simulation late";
   }
   return "unknown";
 }

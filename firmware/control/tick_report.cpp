@@ -62,6 +62,9 @@ void report(const physics::Diagnostics& thread, rt::TickRecord& record) noexcept
   record.contacts = static_cast<std::int16_t>(std::min<int>(thread.contacts, INT16_MAX));
   if (thread.contact_cap_hit) record.flags |= rt::kContactCap;
   record.degradation = static_cast<std::int8_t>(given_up(thread));
+  record.thread_end = static_cast<std::int8_t>(thread.end);
+  record.thread_cut_at = thread.cut_at;
+  record.time_lost = static_cast<float>(thread.time_lost);
 }
 
 void report(const physics::HandContact& contact, std::size_t hand, rt::TickRecord& record) noexcept {
@@ -69,10 +72,10 @@ void report(const physics::HandContact& contact, std::size_t hand, rt::TickRecor
   record.grasped_node[hand] = static_cast<std::int16_t>(contact.node);
 }
 
-void report(std::span<const physics::Vec3> nodes_W, const rt::TickRecord& record,
-            rt::ThreadSnapshot& snapshot) noexcept {
-  snapshot.tick = record.tick;
-  snapshot.grasped_node = record.grasped_node;
+void report(std::span<const physics::Vec3> nodes_W, const ThreadResult& thread, rt::ThreadSnapshot& snapshot) noexcept {
+  snapshot.tick = thread.tick;
+  for (std::size_t h = 0; h < rt::kHands; ++h)
+    snapshot.grasped_node[h] = static_cast<std::int16_t>(thread.hand[h].node);
   snapshot.count = static_cast<std::int32_t>(std::min(nodes_W.size(), rt::kMaxNodes));
   for (std::size_t i = 0; i < static_cast<std::size_t>(snapshot.count); ++i) {
     for (std::size_t a = 0; a < 3; ++a) {

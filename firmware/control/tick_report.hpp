@@ -2,6 +2,7 @@
 // A period as others shall read it.
 
 #include "firmware/control/controller.hpp"
+#include "firmware/control/thread_link.hpp"
 #include "firmware/physics/simulation.hpp"
 #include "firmware/rt/tick_record.hpp"
 
@@ -19,7 +20,6 @@ void report(const physics::Diagnostics& thread, rt::TickRecord& record) noexcept
 void report(const physics::HandContact& contact, std::size_t hand, rt::TickRecord& record) noexcept;
 
 /// The shape, as many nodes as fit.
-void report(std::span<const physics::Vec3> nodes_W, const rt::TickRecord& record,
-            rt::ThreadSnapshot& snapshot) noexcept;
+void report(std::span<const physics::Vec3> nodes_W, const ThreadResult& thread, rt::ThreadSnapshot& snapshot) noexcept;
 
 }  // namespace ligature::control

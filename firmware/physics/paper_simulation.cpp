@@ -10,6 +10,7 @@
 namespace ligature::physics {
 namespace {
 
+constexpr std::int64_t kSubstep_ns = 400'000;  // is one piece: half of what a tick has
 constexpr double kOutOfRange = 1e9;  // m/s or m: beyond any thread; a run that gets there has diverged
 
 V3<double> to_v3(const Vec3& a) noexcept { return {a.x(), a.y(), a.z()}; }
@@ -222,22 +223,44 @@ std::variant<PaperSimulation, std::string> PaperSimulation::make(const scene::Sc
   return s;
 }
 
-void PaperSimulation::tick(const std::array<ToolInput, 2>& tools) noexcept {
+void PaperSimulation::tick(const std::array<ToolInput, 2>& tools, const TimeLeft& left) noexcept {
   if (!health_.finite) return;
+  time_.start(left, kSubstep_ns);
   remember();
   grasp_.update(tools, model_, state_);
   const std::array<ToolInput, 2> eased{grasp_.closing(0).ease(tools[0]), grasp_.closing(1).ease(tools[1])};
   if (contact_kind_ == scene::ContactSolver::kImplicit)
     course_.update(tools, grasp_, model_, state_, contact_.obstacles());
+  const std::array<Vec3, 2> felt{hands_[0].f_W, hands_[1].f_W};
   for (HandContact& c : hands_) c = {};
   bool fine = true;
-  for (int k = 0; k < substeps_ && fine; ++k) {
+  int done = 0;
+  for (; done < substeps_ && fine && time_.allows(); ++done) {
     step(eased);
     fine = check();
   }
   ++ticks_;
   grasp_.step(tick_s_);
-  if (fine) publish();
+  health_.time_lost = time_.is_over() ? 1.0 - static_cast<double>(done) / substeps_ : 0.0;
+  health_.degradation = time_.is_over() ? Degradation::kMotion : Degradation::kNone;
+  health_.end = time_.is_over() ? TickEnd::kClock : TickEnd::kWhole;
+  health_.cut_at = time_.cut_at();
+  if (fine) {
+    if (time_.is_over()) feel_what_was_done(done, felt);
+    publish();
+  }
+  time_.end();
+}
+
+/// Of a tick that ended early: the mean over what was done of it, or what was felt before.
+void PaperSimulation::feel_what_was_done(int substeps, const std::array<Vec3, 2>& before) noexcept {
+  for (std::size_t h = 0; h < 2; ++h) {
+    if (substeps > 0) {
+      hands_[h].f_W *= static_cast<double>(substeps_) / substeps;
+    } else if (grasp_.node(static_cast<int>(h)) >= 0) {
+      hands_[h].f_W = before[h];
+    }
+  }
 }
 
 void PaperSimulation::describe(std::span<float> tension_N, std::span<float> turn_rad) const noexcept {

@@ -28,7 +28,7 @@ class PaperSimulation {
 
   /// As after a divergence: the state stays, hands are open and without force.
   void stop(int bad_node) noexcept;
-  void tick(const std::array<ToolInput, 2>& tools) noexcept;
+  void tick(const std::array<ToolInput, 2>& tools, const TimeLeft& left) noexcept;
   [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept { return unpacked(state_.p, nodes_W_, nodes_stale_); }
   [[nodiscard]] std::span<const Vec3> velocities_W() const noexcept {
     return unpacked(state_.v, velocities_W_, velocities_stale_);
@@ -47,6 +47,7 @@ class PaperSimulation {
   void add_external(const std::array<ToolInput, 2>& tools) noexcept;
   [[nodiscard]] double integrate(const Lane3& v_W) noexcept;
   void step(const std::array<ToolInput, 2>& tools) noexcept;
+  void feel_what_was_done(int substeps, const std::array<Vec3, 2>& before) noexcept;
   [[nodiscard]] double fastest() const noexcept;
   [[nodiscard]] Propagation condition(int node, bool other_holds) const noexcept;
   void remember() noexcept;
@@ -71,6 +72,7 @@ class PaperSimulation {
   V3<double> gravity_{};
   std::vector<std::pair<int, V3<double>>> loads_;
   int substeps_ = 1;
+  TickTime time_;
   double tick_s_ = 1e-3;
   std::int64_t ticks_ = 0;
   double kinetic_J_ = 0.0, weight_J_ = 0.0;

@@ -40,13 +40,20 @@ std::variant<Simulation, std::string> Simulation::make(const scene::Scene& scene
   return Simulation(std::move(std::get<0>(made)));
 }
 
-void Simulation::tick(const std::array<ToolInput, 2>& tools) noexcept {
+void Simulation::tick(const std::array<ToolInput, 2>& tools, const TimeLeft& left) noexcept {
   std::visit(
       [&](auto& model) {
-        if (is_number(tools[0]) && is_number(tools[1])) return model.tick(tools);
+        if (is_number(tools[0]) && is_number(tools[1])) return model.tick(tools, left);
         if (model.diagnostics().finite) model.stop(-1);
       },
       impl_->model);
+}
+void Simulation::set_work(long instructions) noexcept {
+  if (auto* rod = std::get_if<rod::RodSimulation>(&impl_->model)) rod->set_work(instructions);
+}
+long Simulation::work() const noexcept {
+  const auto* rod = std::get_if<rod::RodSimulation>(&impl_->model);
+  return rod != nullptr ? rod->work() : 0;
 }
 void Simulation::reset() noexcept {
   std::visit([](auto& model) { model.reset(); }, impl_->model);

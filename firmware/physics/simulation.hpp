@@ -10,6 +10,7 @@
 #include <string>
 #include <variant>
 
+#include "firmware/physics/time_left.hpp"
 #include "firmware/physics/types.hpp"
 #include "protocol/scene/scene.hpp"
 
@@ -53,6 +54,13 @@ enum class Degradation : std::uint8_t {
   kMotion,      ///< for a part of the tick the thread was not moved: what it might pass was not known
 };
 
+/// How a tick of the thread ended.
+enum class TickEnd : std::uint8_t {
+  kWhole,  ///< all of it was computed
+  kWork,   ///< its work was spent: the thread stood still for the rest of it
+  kClock,  ///< its time was over: the same
+};
+
 /// State of health after a tick.
 struct Diagnostics {
   double kinetic_J = 0.0;
@@ -63,6 +71,8 @@ struct Diagnostics {
   bool contact_cap_hit = false;  ///< more contacts than there was room or work for
   Degradation degradation = Degradation::kNone;
   double time_lost = 0.0;      ///< share of the tick in which the thread was not moved
+  TickEnd end = TickEnd::kWhole;
+  int cut_at = -1;             ///< kClock: the question (TimeLeft) that was answered with no
   bool finite = true;          ///< false: frozen at the last finite state, hands open and without force
   int bad_node = -1;           ///< first node that went non-finite or out of range; -1: a tool was
   std::int64_t bad_tick = -1;  ///< tick at which it did
@@ -82,7 +92,8 @@ class Simulation {
 
   /// Advances by one scene.time.tick_s in scene.time.substeps equal steps. Never allocates, never throws; once
   /// `diagnostics().finite` is false it does nothing. A tool that is no number, or 1e9 m away, ends it so, too.
-  void tick(const std::array<ToolInput, 2>& tools) noexcept;
+  /// When the time left does not do, the thread stands still for the rest of the tick (diagnostics().time_lost).
+  void tick(const std::array<ToolInput, 2>& tools, const TimeLeft& left = {}) noexcept;
 
   /// Positions, m, and velocities, m/s. Converted when first asked for after a tick, so ask from the thread that ticks.
   [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept;
@@ -93,6 +104,11 @@ class Simulation {
   void describe(std::span<float> tension_N, std::span<float> turn_rad) const noexcept;
   [[nodiscard]] const HandContact& hand(Hand h) const noexcept;
   [[nodiscard]] const Diagnostics& diagnostics() const noexcept;
+
+  /// What contact may cost in a tick, in instructions (rod/work.hpp), from the next one on; for a thread whose model has
+  /// no such bound it does nothing. Stays over reset(); a plant brings its own.
+  void set_work(long instructions) noexcept;
+  [[nodiscard]] long work() const noexcept;  ///< 0: no such bound
 
   /// Back to the initial state of the scene, hands open.
   void reset() noexcept;

@@ -24,7 +24,6 @@
 namespace ligature::platform {
 namespace {
 
-constexpr int kPriority = 80;  // above threaded interrupts (50), below the kernel's own (99)
 constexpr std::size_t kStackReserve = std::size_t{256} * 1024;
 constexpr std::size_t kHeapReserve = std::size_t{8} * 1024 * 1024;
 constexpr std::size_t kPage = 4096;
@@ -75,7 +74,7 @@ Refusals lock_memory() {
   return refusals;
 }
 
-Refusals make_realtime(int core) {
+Refusals make_realtime(int core, int for_priority) {
   Refusals refusals;
   cpu_set_t only;
   CPU_ZERO(&only);
@@ -84,7 +83,7 @@ Refusals make_realtime(int core) {
     refusals.push_back(refused("own core (affinity)", e, "allow the core to this process"));
   }
   sched_param priority{};
-  priority.sched_priority = kPriority;
+  priority.sched_priority = for_priority;
   if (const int e = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority); e != 0) {
     refusals.push_back(refused("SCHED_FIFO", e, "rtprio 80 in limits.conf, or CAP_SYS_NICE"));
   }

@@ -14,8 +14,11 @@ using Refusals = std::vector<std::string>;
 /// going back to the system, and touches a heap reserve, so that no page fault waits in the loop.
 [[nodiscard]] Refusals lock_memory();
 
+inline constexpr int kLoopPriority = 80;     ///< above threaded interrupts (50), below the kernel's own (99)
+inline constexpr int kPhysicsPriority = 70;  ///< whatever the loop has to do goes before
+
 /// For the calling thread: pinned to `core`, SCHED_FIFO, stack touched, exact timers.
-[[nodiscard]] Refusals make_realtime(int core);
+[[nodiscard]] Refusals make_realtime(int core, int priority = kLoopPriority);
 
 /// For the calling thread, granted always: denormals are zero. A thread at rest decays into them, and
 /// each costs a hundred cycles; a force below 1e-308 N is nobody's.
@@ -27,7 +30,7 @@ bool stay_on(int core) noexcept;
 /// The isolated core, or else the last one this process may use: interrupts and other work gather on the first.
 [[nodiscard]] int realtime_core();
 
-/// For the calling thread (and those it starts): every allowed core but that one; all of them when it is the only one.
+/// For the calling thread (and those it starts): every allowed core but that one; no change when it is the only one.
 void keep_off(int core) noexcept;
 
 }  // namespace ligature::platform

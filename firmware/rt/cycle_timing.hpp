@@ -59,10 +59,14 @@ class DurationStatistics {
 struct CycleTiming {
   DurationStatistics wakeup;     ///< scheduled until awake
   DurationStatistics control;    ///< awake until the RPDOs were written
-  DurationStatistics execution;  ///< awake until the whole tick was done
+  DurationStatistics execution;  ///< awake until the loop had handed the tools over
   DurationStatistics work;       ///< CPU time of the loop's thread from the samples on: no waiting, nobody else's work
   std::uint64_t deadline_misses = 0;
+  DurationStatistics thread;     ///< CPU time of the thread's physics, a tick
   std::uint64_t overworked = 0;  ///< ticks whose work was more than the bus leaves of a period
+  std::uint64_t thread_late = 0;     ///< ticks whose thread was not done when the next samples came
+  std::uint64_t thread_cut = 0;      ///< ticks of the thread that the clock ended
+  double thread_lost_ticks = 0.0;    ///< time in which the thread stood still, in ticks
   std::uint64_t periods_lost = 0;
 };
 

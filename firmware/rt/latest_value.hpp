@@ -10,14 +10,15 @@
 
 namespace ligature::rt {
 
-/// Triple buffer: one writer, one reader, both wait-free, values of any size, never torn.
+/// Triple buffer: one writer, one reader, both wait-free as long as they assign what neither allocates nor throws; values
+/// of any size, never torn.
 ///
 /// Three slots, and at any time the writer owns one (`back_`), the reader owns one (`front_`), and the third is named
 /// by the atomic `middle_`. publish() and refresh() each swap their own slot with the middle one in a single exchange,
 /// so no slot ever has two owners and the bytes need no atomics. acq_rel on both exchanges: release hands over what
 /// was written (or the promise to read no more), acquire takes what the other side handed over. A bit in `middle_`
 /// tells whether it holds news.
-template <Payload T>
+template <class T>
 class LatestValue {
  public:
   /// Writer only: the slot to fill. What it holds is some older value.
@@ -30,7 +31,9 @@ class LatestValue {
   }
 
   /// Writer only: publishes a copy.
-  void store(const T& value) noexcept {
+  void store(const T& value) noexcept
+    requires Payload<T>
+  {
     back() = value;
     publish();
   }

@@ -19,6 +19,8 @@ enum TickFlag : std::int32_t {
   kRightLimited = 32,
   kContactCap = 64,
   kOverworked = 128,
+  kThreadLate = 256,  ///< the next samples came before the thread had done with this tick: its values are older ones
+  kThreadCut = 512,   ///< the clock ended the thread's tick
 };
 
 /// Bits of TickRecord::limits, one set a hand: what holds the force back now. A limit is no fault.
@@ -86,6 +88,15 @@ struct TickRecord {
   double min_gap_m = 0.0;
   std::int16_t contacts = 0;
   std::int8_t degradation = 0;
+
+  // The thread's physics in this period; 0 where it was late. Times from the wake-up, work is CPU time.
+  std::int16_t grasp_age_ticks = 0;  ///< of the grasp that the law used: since the period whose tools it has seen
+  std::int32_t thread_start_ns = 0;
+  std::int32_t thread_done_ns = 0;
+  std::int32_t thread_work_ns = 0;
+  std::int8_t thread_end = 0;        ///< physics::TickEnd
+  std::int32_t thread_cut_at = -1;   ///< the question that was answered with no, where the clock ended the tick
+  float time_lost = 0.0F;            ///< share of the tick in which the thread stood still
 };
 
 inline constexpr std::size_t kMaxNodes = 5000;

@@ -15,6 +15,8 @@ void copy(const std::array<rt::Triple, N>& from, double (&to)[N][3]) {
 // The record and the message name the same bits.
 static_assert(rt::kPeriodLost == 1 && rt::kDeadlineMissed == 2 && rt::kContactCap == 64);
 static_assert(static_cast<int>(rt::kOverworked) == ligature_msg::tick_t::FLAG_OVERWORKED);
+static_assert(static_cast<int>(rt::kThreadLate) == ligature_msg::tick_t::FLAG_THREAD_LATE);
+static_assert(static_cast<int>(rt::kThreadCut) == ligature_msg::tick_t::FLAG_THREAD_CUT);
 static_assert(rt::kPeakLimit == ligature_msg::tick_t::LIMIT_PEAK);
 static_assert(rt::kTorqueLimit == ligature_msg::tick_t::LIMIT_TORQUE);
 static_assert(static_cast<int>(rt::Degradation::kCandidates) == ligature_msg::tick_t::DEGRADED_CANDIDATES);
@@ -61,6 +63,13 @@ ligature_msg::tick_t to_message(const rt::TickRecord& r) {
   m.min_gap_m = r.min_gap_m;
   m.contacts = r.contacts;
   m.degradation = r.degradation;
+  m.grasp_age_ticks = r.grasp_age_ticks;
+  m.thread_start_ns = r.thread_start_ns;
+  m.thread_done_ns = r.thread_done_ns;
+  m.thread_work_ns = r.thread_work_ns;
+  m.thread_end = r.thread_end;
+  m.thread_cut_at = r.thread_cut_at;
+  m.time_lost = r.time_lost;
   return m;
 }
 

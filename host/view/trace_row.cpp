@@ -35,6 +35,8 @@ TraceRow trace_row(const ligature_msg::tick_t& tick) {
   row[kMinGap_m] = tick.min_gap_m;
   row[kContacts] = tick.contacts;
   row[kDegradation] = tick.degradation;
+  row[kThreadDone_ns] = tick.thread_done_ns;
+  row[kTimeLost] = static_cast<double>(tick.time_lost);
   return row;
 }
 

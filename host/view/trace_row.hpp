@@ -46,6 +46,8 @@ enum Column : std::size_t {
   kLeftClutch,  // 1: the tool is parked
   kRightClutch,
   kDegradation,  // DEGRADED_ value of tick_t
+  kThreadDone_ns,  // of the thread's physics; 0: it was late
+  kTimeLost,       // share of the tick in which the thread stood still
   kColumns
 };
 

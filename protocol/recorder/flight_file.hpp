@@ -21,7 +21,7 @@
 namespace ligature::recorder {
 
 inline constexpr std::array<char, 8> kMagic{'L', 'G', 'F', 'L', 'I', 'G', 'H', 'T'};
-inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kVersion = 2;
 inline constexpr std::size_t kHeaderBytes = 65536;
 inline constexpr std::int64_t kMaxSlots = 4'000'000;
 inline constexpr std::uint32_t kMaxSlotBytes = 4096;

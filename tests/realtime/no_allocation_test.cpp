@@ -1,5 +1,5 @@
-// No allocation, no lock and no exception in the loop: the whole cycle (bus code, control, physics, records) runs under
-// two guards, hooks on the process' allocator and mutexes and Eigen's run-time switch. Both guards are first shown to
+// No allocation, no lock and no exception in the two real-time contexts: the whole cycle (bus code, control, records) and
+// the thread's physics, with a clock that ends its ticks and without, run under two guards, hooks on the process' allocator and mutexes and Eigen's run-time switch. Both guards are first shown to
 // bite.
 #include <gtest/gtest.h>
 
@@ -27,12 +27,12 @@ class NoAllocation {
   }
 };
 
-void expect_quiet(const scene::Scene& scene) {
+void expect_quiet(const scene::Scene& scene, Nanoseconds per_question = {}) {
   VirtualRig rig(scene);
   for (auto& hand : rig.bus.reading.hand) hand.grip = true;
-  QuietBus bus(rig.bus);
-  QuietClock clock;
-  Cycle cycle(bus, clock, rig.controller, rig.thread, *rig.outlets);
+  QuietRun run(rig);
+  auto& cycle = run.cycle;
+  run.physics.per_question = per_question;
   cycle.end_after(2000);
   rig.outlets->commands.push({1, rt::CommandKind::kResetThread});
   {
@@ -42,6 +42,7 @@ void expect_quiet(const scene::Scene& scene) {
   EXPECT_EQ(watch::allocations, 0);
   EXPECT_EQ(watch::locks, 0);
   EXPECT_GE(cycle.periods(), 2000);
+  EXPECT_EQ(cycle.timing().thread_cut > 1000, per_question > Nanoseconds::zero()) << "does the clock end its ticks?";
   EXPECT_EQ(rig.controller.fault(), control::Fault::kNone);
 }
 
@@ -75,6 +76,16 @@ TEST(NoAllocation, TheGuardsBite) {
 
 TEST(NoAllocation, TheWholeCycleWithASmallThread) { expect_quiet(small_scene()); }
 
+TEST(NoAllocation, TheWholeCycleWithAThreadWhoseTicksTheClockEnds) {
+  constexpr auto kLong = std::chrono::microseconds(200);
+  scene::Scene s = small_scene();
+  s.time.substeps = 8;
+  expect_quiet(s, kLong);
+  s.suture.model = scene::Model::kRod;
+  s.suture.radius_m = 1e-3;
+  expect_quiet(s, kLong);
+}
+
 TEST(NoAllocation, TakingAnotherSceneOrOtherParameters) {
   for (const bool keeps_motion : {false, true}) {
     for (const auto model : {scene::Model::kPaper4, scene::Model::kRod}) {
@@ -87,9 +98,8 @@ TEST(NoAllocation, TakingAnotherSceneOrOtherParameters) {
       control::Plant plant{std::get<physics::Simulation>(physics::Simulation::make(other)), other.hands, keeps_motion,
                            false};
       control::PlantHandover plants;
-      QuietBus bus(rig.bus);
-      QuietClock clock;
-      Cycle cycle(bus, clock, rig.controller, rig.thread, *rig.outlets);
+      QuietRun run(rig);
+      auto& cycle = run.cycle;
       cycle.listen(plants);
       cycle.end_after(100);
       plants.offer(&plant);

@@ -18,12 +18,24 @@ class QuietBus {
 };
 class QuietClock {
  public:
-  Nanoseconds now() noexcept { return time_; }
-  void sleep_until(Nanoseconds at) noexcept { time_ = at; }
+  Nanoseconds now() noexcept {
+    if (thread != nullptr) thread->advance();
+    return time;
+  }
+  void sleep_until(Nanoseconds at) noexcept { time = at; }
   Nanoseconds worked() noexcept { return Nanoseconds::zero(); }
+  Nanoseconds time{0};
+  lab::VirtualThread* thread = nullptr;
+};
 
- private:
-  Nanoseconds time_{0};
+/// Both contexts of a rig on one thread: the physics runs where the loop wakes it.
+struct QuietRun {
+  explicit QuietRun(VirtualRig& r) : rig(r) { clock.thread = &physics; }
+  VirtualRig& rig;
+  QuietBus bus{rig.bus};
+  QuietClock clock;
+  lab::VirtualThread physics{clock.time, rig.thread, *rig.exchange, rig.outlets->shape};
+  Cycle<QuietBus, QuietClock, lab::VirtualThread> cycle{bus, clock, rig.controller, *rig.exchange, physics, *rig.outlets};
 };
 
 }  // namespace ligature

@@ -1,5 +1,5 @@
-// After start-up the loop asks nothing of the kernel but its bus and its clock: no page fault, no other system call, no
-// denormal, no exception. Each guard is first shown to bite.
+// After start-up the loop and the thread's physics ask nothing of the kernel but its bus and its clock: no page fault, no
+// other system call, no denormal, no exception. Each guard is first shown to bite. (Their one wake-up: RealLoop.*)
 #include <gtest/gtest.h>
 #include <linux/seccomp.h>
 #include <sys/mman.h>
@@ -25,19 +25,17 @@
 namespace ligature {
 namespace {
 
-using QuietCycle = Cycle<QuietBus, QuietClock>;
-static_assert(noexcept(std::declval<QuietCycle&>().run()));
+static_assert(noexcept(std::declval<QuietRun&>().cycle.run()));
+static_assert(noexcept(std::declval<ThreadContext<QuietClock>&>().compute()));
+static_assert(noexcept(std::declval<ThreadContext<QuietClock>&>().publish()));
 static_assert(noexcept(std::declval<physics::Simulation&>().tick({})));
 static_assert(noexcept(std::declval<control::Controller&>().tick({})));
 
-struct QuietRun {
-  QuietRun() {
-    for (auto& hand : rig.bus.reading.hand) hand.grip = true;
+struct Grasping : VirtualRig {
+  Grasping() {
+    for (auto& hand : bus.reading.hand) hand.grip = true;
   }
-  VirtualRig rig;
-  QuietBus bus{rig.bus};
-  QuietClock clock;
-  QuietCycle cycle{bus, clock, rig.controller, rig.thread, *rig.outlets};
+  QuietRun quiet{*this};
 };
 
 long page_faults() {
@@ -58,14 +56,14 @@ TEST(Undisturbed, NoPageFaultAfterStart) {
   // As the program does. Where the lock is refused the heap has been touched all the same, and the warm run maps the
   // code.
   (void)platform::lock_memory();
-  QuietRun warm, run;
-  for (auto* each : {&warm, &run}) each->cycle.end_after(5000);
-  warm.cycle.run();
+  Grasping warm, run;
+  for (auto* each : {&warm, &run}) each->quiet.cycle.end_after(5000);
+  warm.quiet.cycle.run();
   const long before = page_faults();
-  run.cycle.run();
+  run.quiet.cycle.run();
   EXPECT_EQ(page_faults() - before, 0);
   munlockall();
-  EXPECT_EQ(run.rig.controller.fault(), control::Fault::kNone);
+  EXPECT_EQ(run.controller.fault(), control::Fault::kNone);
 }
 
 /// Runs something in a process that may do nothing but exit, and says how that ended. Strict seccomp: the kernel kills
@@ -86,9 +84,9 @@ int status_of_confined(Work&& work) {
 TEST(Undisturbed, NoSystemCallButBusAndClock) {
   const int caught = status_of_confined([] { syscall(SYS_getppid); });
   ASSERT_TRUE(WIFSIGNALED(caught) && WTERMSIG(caught) == SIGKILL) << "the guard must kill; status " << caught;
-  QuietRun run;
-  run.cycle.end_after(2000);
-  const int status = status_of_confined([&] { run.cycle.run(); });
+  Grasping run;
+  run.quiet.cycle.end_after(2000);
+  const int status = status_of_confined([&] { run.quiet.cycle.run(); });
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
 }
 

@@ -87,7 +87,7 @@ def ticks_of(file):
         opened.seek(HEADER_BYTES)
         _, bytes_ = struct.unpack("<QI", opened.read(12))
     named = dict(TICK)
-    contacts_at = 16 + bytes_ - 3  # the last but one field: int16_t contacts, int8_t degradation
+    contacts_at = 16 + bytes_ - 26  # int16_t contacts, int8_t degradation, and 23 bytes about the thread's own time
     offsets = np.cumsum([0] + [np.dtype(t).itemsize for t in named.values()])[:-1].tolist()
     layout = {"names": [*named, "contacts"], "formats": [*named.values(), ">i2"], "offsets": [*offsets, contacts_at], "itemsize": slot}
     raw = np.fromfile(file, dtype=np.dtype(layout), offset=HEADER_BYTES)

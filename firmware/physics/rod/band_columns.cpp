@@ -89,14 +89,17 @@ void BandColumns::solve(std::ptrdiff_t node) noexcept {
   for (std::ptrdiff_t i = l + 1; i < wide; ++i) put(x[i], x[i] + one_[i] * x[i - 1] + two_[i] * x[i - 2]);
 }
 
-void BandColumns::make_missing() noexcept {
+bool BandColumns::make_missing(TickTime& time) noexcept {
+  Pieces pieces(time);
   for (; missing() > 0; ++made_) {
+    if (!pieces.allow(price::column(width()))) return false;
     const auto single = [](Vec a) { return __builtin_convertvector(a.v, Four); };
     solve(wanted_[static_cast<std::size_t>(made_)]);
     float* at = columns_.data() + static_cast<std::size_t>(made_) * stride();
     for (std::ptrdiff_t i = 0; i < width(); ++i, at += kBlock)
       store_four(at, single(x_[i].x)), store_four(at + 4, single(x_[i].y)), store_four(at + 8, single(x_[i].z));
   }
+  return true;
 }
 
 }  // namespace ligature::physics::rod

@@ -7,6 +7,7 @@
 
 #include "firmware/physics/rod/floats.hpp"
 #include "firmware/physics/rod/vec.hpp"
+#include "firmware/physics/rod/work.hpp"
 
 namespace ligature::physics::rod {
 
@@ -33,8 +34,8 @@ class BandColumns {
   /// Makes room for the column of a node, counted from first(). @return false when there is none.
   [[nodiscard]] bool want(std::int32_t node) noexcept;
   [[nodiscard]] int missing() const noexcept { return static_cast<int>(wanted_.size()) - made_; }
-  /// Makes what was wanted.
-  void make_missing() noexcept;
+  /// Makes what was wanted. @return false when the time was over first: what was made stays.
+  bool make_missing(TickTime& time = TickTime::endless()) noexcept;
   /// Z_{q node} of each node q of the window, counted from first(). @pre made.
   [[nodiscard]] const float* column(std::int32_t node) const noexcept {
     return columns_.data() + static_cast<std::size_t>(place_[static_cast<std::size_t>(node)]) * stride();

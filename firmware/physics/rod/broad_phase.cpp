@@ -210,7 +210,7 @@ bool BroadPhase::search(const State& state, const Motion& motion, const Outlook&
     return x * x + y * y + z * z <= within * within;
   };
   for (std::size_t q = p; q < count;) {
-    if (spent_ + kLevels * price::kBall > allowance_) return false;
+    if (spent_ + kLevels * price::kBall > allowance_ || !has_time()) return false;
     int level = std::min(q == 0 ? kLevels - 1 : __builtin_ctzl(q), kLevels - 1);
     while (level > 0 && (q + (std::size_t{1} << level) > count || meets(tree_[level][q >> level]))) --level;
     if (level == 0 && meets(tree_[0][q]) && !blocks(state, motion, outlook, p, q, list)) return false;
@@ -231,7 +231,9 @@ bool BroadPhase::build(const State& state, Motion& motion, const Outlook& outloo
   place(state, motion, static_cast<float>(outlook.horizon_s));
   const std::size_t segments = state.x.size() - 1, count = (segments + kBlock - 1) / kBlock;
   spent_ = least_cost(state.nodes());
+  asked_ = spent_ - Work::kPiece;  // after what is linear in the nodes
   allowance_ = allowance;
+  time_ = &work.time();
   bool good = true;
   for (std::size_t p = 0; p < count && good; ++p) good = search(state, motion, outlook, p, list);
   work.spend(spent_);

@@ -64,8 +64,8 @@ class BroadPhase {
   void keep_impulses(const std::vector<Candidate>& list) noexcept;
 
   /// Rebuilds `list`, every pair measured and counted from motion.restart() on; kept impulses are given to their pairs.
-  /// @param allowance  what it may spend. @return false, and the list is of no use, when that or the room for pairs
-  /// did not do.
+  /// @param allowance  what it may spend. @return false, and the list is of no use, when that, the room for pairs or
+  /// the tick's time did not do.
   bool build(const State& state, Motion& motion, const Outlook& outlook, long allowance, Work& work,
              const PairList& list) noexcept;
 
@@ -96,6 +96,13 @@ class BroadPhase {
   bool search(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p,
               const PairList& list) noexcept;
 
+  /// Does the tick's time do for more? Asked once in Work::kPiece.
+  [[nodiscard]] bool has_time() noexcept {
+    if (spent_ - asked_ < Work::kPiece) return true;
+    asked_ = spent_;
+    return time_->allows();
+  }
+
   struct Kept {
     std::int32_t a = -1, b = -1;
     Vec impulse{};
@@ -104,6 +111,8 @@ class BroadPhase {
   };
   int capacity_ = 0;
   long spent_ = 0, allowance_ = 0;   // of this build
+  long asked_ = 0;                   // what was spent when the time was last asked for
+  TickTime* time_ = nullptr;
   std::vector<float> x_, y_, z_;     // middles of segments
   std::vector<float> half_;          // half their lengths
   std::vector<float> bulge_;         // of their smooth curves

@@ -118,18 +118,24 @@ void ContactSet::make_column(Contact& c, const ContactMetric& metric, float* col
   c.inv_soft_w = 1.0 / (own + c.soft);
 }
 
-void ContactSet::make_columns(const ContactMetric& metric) noexcept {
+bool ContactSet::make_columns(const ContactMetric& metric, TickTime& time) noexcept {
   stride_ = SweptVelocities::padded(window_last_ - window_first_ + 1);
   float* column = columns_.data();
-  for (int k = 0; k < rows_; ++k, column += stride_)
+  Pieces pieces(time);
+  for (int k = 0; k < rows_; ++k, column += stride_) {
+    if (!pieces.allow(100 + static_cast<long>(stride_))) return false;
     make_column(contacts_[static_cast<std::size_t>(k)], metric, column);
+  }
+  return time.allows();
 }
 
 template <bool Friction, bool Turns>
-void ContactSet::sweep(const Vec* v) noexcept {
+void ContactSet::sweep(const Vec* v, TickTime& time) noexcept {
+  Pieces pieces(time);
   swept_.load(v + window_first_, window_last_ - window_first_ + 1);
   const float* column = columns_.data();
-  for (int index = 0; index < rows_; ++index, column += stride_) {
+  for (int index = 0; index < rows_ && pieces.allow(115 + static_cast<long>(stride_) * 3 / 2);
+       ++index, column += stride_) {  // a part of a sweep is one, too
     Contact& c = contacts_[static_cast<std::size_t>(index)];
     Vec u = swept_.mix(c.place, c.weight, c.count) - c.surface;
     if constexpr (Turns) u += turning_.slip(index);
@@ -184,10 +190,10 @@ void ContactSet::start(BandSolver& solver, const Numerics& numerics, double dt_s
 }
 
 template <bool Friction, bool Turns>
-double ContactSet::plain_pass(BandSolver& solver, Vec* v) noexcept {
+double ContactSet::plain_pass(BandSolver& solver, Vec* v, TickTime& time) noexcept {
   clear_extra();
   for (std::size_t k = 0; k < loaded_.size(); ++k) residual_[k].v = loaded(k).p.v;
-  sweep<Friction, Turns>(v);
+  sweep<Friction, Turns>(v, time);
   for (std::size_t k = 0; k < loaded_.size(); ++k) {
     plain_[k].v = p_[k].v = loaded(k).p.v;
     residual_[k] = p_[k] - residual_[k];
@@ -218,25 +224,25 @@ void ContactSet::mix(BandSolver& solver, Vec* v) noexcept {
 }
 
 template <bool Friction, bool Turns>
-void ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const Effort& effort, Vec* v,
+bool ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const Effort& effort, Vec* v,
                         ContactReport& report) noexcept {
+  if (!make_columns(metric, effort.time)) return false;
   newton_.give_up();
-  make_columns(metric);
   if constexpr (Turns) turning_.shorten_steps(contacts_.data());
   mixing_.restart();
   const long nodes = window_last_ - window_first_ + 1;
   const double settled2 = effort.settled_m_per_s * effort.settled_m_per_s;
   const long turning = Turns ? turning_.price(rows_) : 0;
   for (;;) {
-    const double largest2 = plain_pass<Friction, Turns>(solver, v);
+    const double largest2 = plain_pass<Friction, Turns>(solver, v, effort.time);
     ++report.passes;
     report.work += price::pass(rows_, static_cast<long>(loaded_.size()), nodes) + turning;
-    if (largest2 < settled2) return;
+    if (largest2 < settled2 && !effort.time.is_over()) return true;
     // The next pass can at worst load every row.
     report.change_m_per_s = std::sqrt(largest2);
-    report.cut_short =
-        report.passes >= effort.passes || report.work + price::pass(rows_, rows_, nodes) + turning > effort.work;
-    if (report.cut_short) return;
+    report.cut_short = report.passes >= effort.passes ||
+                       report.work + price::pass(rows_, rows_, nodes) + turning > effort.work || !effort.time.allows();
+    if (report.cut_short) return true;
     mix<Turns>(solver, v);
   }
 }
@@ -299,11 +305,11 @@ void ContactSet::relabel(const std::vector<double>& s) noexcept {
 
 template void ContactSet::start<true>(BandSolver&, const Numerics&, double, Vec*) noexcept;
 template void ContactSet::start<false>(BandSolver&, const Numerics&, double, Vec*) noexcept;
-template void ContactSet::settle<true, true>(BandSolver&, const ContactMetric&, const Effort&, Vec*,
+template bool ContactSet::settle<true, true>(BandSolver&, const ContactMetric&, const Effort&, Vec*,
                                              ContactReport&) noexcept;
-template void ContactSet::settle<true, false>(BandSolver&, const ContactMetric&, const Effort&, Vec*,
+template bool ContactSet::settle<true, false>(BandSolver&, const ContactMetric&, const Effort&, Vec*,
                                               ContactReport&) noexcept;
-template void ContactSet::settle<false, false>(BandSolver&, const ContactMetric&, const Effort&, Vec*,
+template bool ContactSet::settle<false, false>(BandSolver&, const ContactMetric&, const Effort&, Vec*,
                                                ContactReport&) noexcept;
 template void ContactSet::note_stuck<true>(const Vec*) noexcept;
 template void ContactSet::note_stuck<false>(const Vec*) noexcept;

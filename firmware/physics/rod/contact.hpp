@@ -69,6 +69,7 @@ struct ContactReport {
 
 /// How hard the contacts of a substep are worked on.
 struct Effort {
+  TickTime& time;
   int passes = 0;                ///< at most
   long work = 0;                 ///< for all of them, in instructions (work.hpp); the first pass is always done
   double settled_m_per_s = 0.0;  ///< a pass that changes no velocity by more is the last
@@ -166,9 +167,10 @@ class ContactSet {
   void forget_matrix() noexcept { newton_.forget(); }
 
   /// Solves for the window's velocities v with all rows. @pre rows() > 0, the solver's core lies in the window, the
-  /// metric covers it. Turns: segments turn too; turn_with() was called.
+  /// metric covers it. Turns: segments turn too; turn_with() was called. @return false, and nothing is solved, when the
+  /// time was over before the first pass.
   template <bool Friction, bool Turns>
-  void settle(BandSolver& solver, const ContactMetric& metric, const Effort& effort, Vec* v,
+  [[nodiscard]] bool settle(BandSolver& solver, const ContactMetric& metric, const Effort& effort, Vec* v,
               ContactReport& report) noexcept;
   void turn_with(Spin& spin, int segments, double radius_m) noexcept {
     spin_ = &spin, segments_ = segments, radius_m_ = radius_m;
@@ -223,12 +225,12 @@ class ContactSet {
   /// @return true when it became a contact.
   bool take(Candidate& pair, const Measured& measured, const State& state, const Motion& motion, double dt_s, double mu,
             ContactReport& report) noexcept;
-  void make_columns(const ContactMetric& metric) noexcept;
+  [[nodiscard]] bool make_columns(const ContactMetric& metric, TickTime& time) noexcept;
   void make_column(Contact& c, const ContactMetric& metric, float* column) const noexcept;
   [[nodiscard]] Contact& loaded(std::size_t k) noexcept { return contacts_[static_cast<std::size_t>(loaded_[k])]; }
   /// @return the square of the largest step of a velocity, or more.
   template <bool Friction, bool Turns>
-  double plain_pass(BandSolver& solver, Vec* v) noexcept;
+  double plain_pass(BandSolver& solver, Vec* v, TickTime& time) noexcept;
   template <bool Turns>
   void mix(BandSolver& solver, Vec* v) noexcept;
   template <bool Turns>
@@ -245,7 +247,7 @@ class ContactSet {
   double push(BandSolver& solver, Vec* v) noexcept;
   void clear_extra() noexcept;
   template <bool Friction, bool Turns>
-  void sweep(const Vec* v) noexcept;
+  void sweep(const Vec* v, TickTime& time) noexcept;
   /// Newton's method in a substep: what it may do, and how far it is.
   struct Search {
     const Effort& effort;
@@ -254,7 +256,9 @@ class ContactSet {
     int look = 0;
     bool fresh = false, resumed = false;  ///< the matrix is today's; it goes on from where the last tick was
     [[nodiscard]] bool can_pay(long cost) const noexcept { return report.work + cost <= effort.work; }
-    [[nodiscard]] bool pay(long cost) noexcept { return can_pay(cost) && ((report.work += cost), true); }
+    [[nodiscard]] bool pay(long cost) noexcept {
+      return can_pay(cost) && effort.time.allows() && ((report.work += cost), true);
+    }
   };
   bool renew_matrix(const BandSolver& solver, Search& search) noexcept;
   Outcome look_at_all(const BandSolver& solver, const Vec* v, Search& search) noexcept;

@@ -43,7 +43,7 @@ bool ContactSet::renew_matrix(const BandSolver& solver, Search& search) noexcept
   return search.fresh = true;
 }
 
-// Takes in what approaches too fast, and couples it. @return kLater when there is no work for that.
+// Takes in what approaches too fast, and couples it. @return kLater when there is no work or time for that.
 Outcome ContactSet::look_at_all(const BandSolver& solver, const Vec* v, Search& search) noexcept {
   const Contact* const rows = contacts_.data();
   const Vec* const p = p_.data();
@@ -57,8 +57,7 @@ Outcome ContactSet::look_at_all(const BandSolver& solver, const Vec* v, Search& 
   if (!search.pay(uncoupled.columns * price::column(newton_.nodes()) +
                   price::couple(uncoupled.contacts, uncoupled.pairs, newton_.nodes()) + price::read(newton_.loaded())))
     return Outcome::kLater;
-  newton_.couple();
-  return Outcome::kSettled;
+  return newton_.couple(search.effort.time) ? Outcome::kSettled : Outcome::kLater;
 }
 
 // Steps from what a look saw to impulses that are settled as far as newton_ knows, or, beyond a fair share of the work,
@@ -93,7 +92,7 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
                              : price::newton(newton_.loaded(), newton_.unknowns()) +
                                    price::exchange(newton_.exchanges(), newton_.slots());
     const long answering = price::answer(newton_.loaded(), search.nodes) + price::look(rows_);
-    const bool gone = !search.can_pay(cost + answering);
+    const bool gone = !search.can_pay(cost + answering) || !effort.time.allows();
     if (gone || (best2 < enough2 && report.work + cost > effort.fair)) {
       if (step == 0) return error2 < enough2 ? Outcome::kSettled : wait();
       if (best2 >= enough2 || !search.can_pay(answering + price::read(newton_.loaded()))) return wait();
@@ -103,8 +102,8 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
     report.work += cost;
     if (begins) {
       for (int k = 0; k < kSweeps; ++k) newton_.sweep<Friction>(rows, p, u);
-    } else if (++report.passes > kMostSteps || !newton_.solve<Friction>(rows, p, u)) {
-      return Outcome::kUnsolved;
+    } else if (++report.passes > kMostSteps || !newton_.solve<Friction>(rows, p, u, effort.time)) {
+      return effort.time.is_over() ? wait() : Outcome::kUnsolved;
     }
   }
 }

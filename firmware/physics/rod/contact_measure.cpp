@@ -161,16 +161,24 @@ bool ContactSet::collect_thread(const State& state, const Motion& motion, double
                                 ContactReport& report) noexcept {
   if (!find_due(motion, dt_s, work)) return false;
   bend(state);
-  const auto by_fours = [](std::vector<std::int32_t>& list, auto measure_four) {
+  Pieces pieces(work.time());
+  const auto by_fours = [&](std::vector<std::int32_t>& list, long cost, auto measure_four) {
     while (list.size() % 4 != 0) list.push_back(list.back());
-    for (std::size_t k = 0; k < list.size(); k += 4) measure_four(list.data() + k);
+    for (std::size_t k = 0; k < list.size(); k += 4) {
+      if (!pieces.allow(cost)) return false;
+      measure_four(list.data() + k);
+    }
+    return true;
   };
-  by_fours(close_, [&](const std::int32_t* places) { measure<true>(places, state); });
-  by_fours(far_, [&](const std::int32_t* places) { measure<false>(places, state); });
+  const auto smooth = [&](const std::int32_t* places) { measure<true>(places, state); };
+  const auto straight = [&](const std::int32_t* places) { measure<false>(places, state); };
+  if (!by_fours(close_, price::kMeasure + price::kSmooth, smooth) || !by_fours(far_, price::kMeasure, straight))
+    return false;
   std::size_t next = 0;
   for (const auto index : awake_) {
     PairGroup& group = groups[static_cast<std::size_t>(index)];
     bool touches = false;
+    if (!pieces.allow((price::kTake + price::kGuard) * (group.last - group.first))) return false;
     for (; next < due_.size() && due_[next] < group.last; ++next) {
       touches |= take(pairs[static_cast<std::size_t>(due_[next])], measured_[next], state, motion, dt_s, mu, report);
     }

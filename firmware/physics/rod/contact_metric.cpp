@@ -13,12 +13,15 @@ void ContactMetric::reserve(int nodes, int window) {
   for (auto* array : {&d_, &l1_, &l2_}) array->assign(static_cast<std::size_t>(nodes) + 2, 0.0);
 }
 
-void ContactMetric::prepare(const Mesh& mesh, const Material& material, double dt_s, int first, int last) noexcept {
+bool ContactMetric::prepare(const Mesh& mesh, const Material& material, double dt_s, int first, int last,
+                            TickTime& time) noexcept {
   assert(0 <= first && first < last && last < mesh.nodes() && last - first < capacity_);
   first_ = first;
   last_ = last;
   factor(mesh, material, dt_s);
-  invert();
+  if (invert(time)) return true;
+  invalidate();
+  return false;
 }
 
 // LDL^T of C with everything outside the window eliminated.
@@ -62,11 +65,13 @@ void ContactMetric::factor(const Mesh& mesh, const Material& material, double dt
 }
 
 // Columns of the inverse, all at once: row operations on the identity.
-void ContactMetric::invert() noexcept {
+bool ContactMetric::invert(TickTime& time) noexcept {
   const auto a = static_cast<std::size_t>(first_), w = static_cast<std::size_t>(last_ - first_ + 1);
   stride_ = (w + 3) & ~std::size_t{3};
   const auto row_at = [&](std::size_t i) { return table_.data() + i * stride_; };
+  Pieces pieces(time);
   for (std::size_t i = 0; i < w; ++i) {
+    if (!pieces.allow(static_cast<long>(w))) return false;
     double* r = row_at(i);
     std::fill(r, r + stride_, 0.0);
     r[i] = 1.0;
@@ -83,6 +88,7 @@ void ContactMetric::invert() noexcept {
   }
   std::fill(row_at(w), row_at(w + 2), 0.0);  // so that the last rows are like the others
   for (std::size_t i = w; i-- > 0;) {
+    if (!pieces.allow(4 * static_cast<long>(w))) return false;
     double* const __restrict r = row_at(i);
     const double inv = 1.0 / d_[a + i];
     const double* const __restrict p = row_at(i + 1), * const __restrict q = row_at(i + 2);
@@ -93,6 +99,7 @@ void ContactMetric::invert() noexcept {
       out[j] = static_cast<float>(r[j]);
     }
   }
+  return true;
 }
 
 }  // namespace ligature::physics::rod

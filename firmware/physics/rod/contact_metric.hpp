@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "firmware/physics/rod/mesh.hpp"
+#include "firmware/physics/rod/work.hpp"
 
 namespace ligature::physics::rod {
 
@@ -15,8 +16,10 @@ class ContactMetric {
  public:
   void reserve(int nodes, int window);
 
-  /// C^-1 on the nodes [first, last]. O(n + w^2), no allocation. @pre last - first < capacity.
-  void prepare(const Mesh& mesh, const Material& material, double dt_s, int first, int last) noexcept;
+  /// C^-1 on the nodes [first, last]. O(n + w^2), no allocation. @pre last - first < capacity. @return false, and it
+  /// covers nothing, when the time was over first.
+  [[nodiscard]] bool prepare(const Mesh& mesh, const Material& material, double dt_s, int first, int last,
+                             TickTime& time) noexcept;
 
   [[nodiscard]] bool covers(int first, int last) const noexcept { return first_ <= first && last <= last_; }
   void invalidate() noexcept { first_ = 1, last_ = 0; }
@@ -33,7 +36,7 @@ class ContactMetric {
   int capacity_ = 0, first_ = 1, last_ = 0;
   std::size_t stride_ = 0;
   void factor(const Mesh& mesh, const Material& material, double dt_s) noexcept;
-  void invert() noexcept;
+  [[nodiscard]] bool invert(TickTime& time) noexcept;
 
   std::vector<double> table_;
   std::vector<float> row_;           // the table for those who sweep

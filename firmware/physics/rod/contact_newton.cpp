@@ -170,14 +170,16 @@ void ContactNewton::set_steps(Slot& slot, const std::array<Four, 3>& w) noexcept
 }
 
 // What new slots do to the others, and they to them.
-void ContactNewton::couple() noexcept {
-  if (coupled_ == slots_.size()) return;
-  z_.make_missing();
+bool ContactNewton::couple(TickTime& time) noexcept {
+  if (coupled_ == slots_.size()) return true;
+  if (!z_.make_missing(time)) return false;
+  Pieces pieces(time);
   std::int32_t first = z_.width(), last = 0;
   for (const auto& slot : slots_) {
     for (int j = 0; j < slot.count; ++j) first = std::min(first, slot.node[j]), last = std::max(last, slot.node[j]);
   }
-  for (std::size_t a = coupled_; a < slots_.size(); ++a) {
+  std::size_t a = coupled_;
+  for (; a < slots_.size() && pieces.allow(price::couple(1, static_cast<long>(a), z_.width())); ++a) {
     Slot& slot = slots_[a];
     spread(slot, first, last);
     for (std::size_t b = 0; b < a; ++b) w_.put(a, b, answer_at(slots_[b]));
@@ -185,8 +187,9 @@ void ContactNewton::couple() noexcept {
     w_.put(a, a, own);
     set_steps(slot, own);
   }
-  w_.mirror(coupled_, slots_.size());
-  coupled_ = slots_.size();
+  w_.mirror(coupled_, a);
+  coupled_ = a;
+  return coupled_ == slots_.size();
 }
 
 bool ContactNewton::look(const Contact* rows, int count, const Vec* p, const Vec* u) noexcept {

@@ -11,6 +11,7 @@
 #include "firmware/physics/rod/dense.hpp"
 #include "firmware/physics/rod/floats.hpp"
 #include "firmware/physics/rod/swept.hpp"
+#include "firmware/physics/rod/work.hpp"
 
 namespace ligature::physics::rod {
 
@@ -51,8 +52,9 @@ class ContactNewton {
   /// Velocities u of all contacts: those that approach too fast are taken in. @return false when there is no room.
   [[nodiscard]] bool look(const Contact* rows, int count, const Vec* p, const Vec* u) noexcept;
 
-  /// What those new ones do to the others, and they to them. After look(), before read().
-  void couple() noexcept;
+  /// What those new ones do to the others, and they to them. After look(), before read(). @return false when the time
+  /// was over first: what was made is kept.
+  bool couple(TickTime& time = TickTime::endless()) noexcept;
   /// What couple() has yet to see: columns of Z; contacts; pairs of contacts.
   struct Uncoupled {
     long columns, contacts, pairs;
@@ -85,9 +87,10 @@ class ContactNewton {
   [[nodiscard]] int exchanges() const noexcept;  ///< that the next step makes
   [[nodiscard]] int loaded() const noexcept { return static_cast<int>(rows_.size()); }
 
-  /// Impulses that solve the kinds last read, into p; u follows. @return false when they cannot be had.
+  /// Impulses that solve the kinds last read, into p; u follows. @return false when they cannot be had, or the time was
+  /// over first: p and u are what they were.
   template <bool Friction>
-  bool solve(const Contact* rows, Vec* p, Vec* u) noexcept;
+  bool solve(const Contact* rows, Vec* p, Vec* u, TickTime& time = TickTime::endless()) noexcept;
 
  private:
   enum class Kind : std::uint8_t { kNew, kOpen, kSticks, kSlides };
@@ -147,7 +150,7 @@ class ContactNewton {
   template <bool Friction>
   void make_row(std::size_t i) noexcept;
   template <bool Friction>
-  void assemble(const Vec* p) noexcept;
+  bool assemble(const Vec* p, TickTime& time) noexcept;
 
   static constexpr std::size_t kPlane = static_cast<std::size_t>(kMostRows), kLanes = Couplings::kLanes;
   [[nodiscard]] static std::size_t on_at(std::size_t slot) noexcept {

@@ -202,10 +202,14 @@ template <bool Friction>
 }
 
 template <bool Friction>
-void ContactNewton::assemble(const Vec* p) noexcept {
+bool ContactNewton::assemble(const Vec* p, TickTime& time) noexcept {
   const std::size_t n = unknowns_.size();
   dense_.resize(n);
-  for (std::size_t i = 0; i < n; ++i) make_row<Friction>(i);
+  Pieces pieces(time);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!pieces.allow(300 + 8 * static_cast<long>(n))) return false;
+    make_row<Friction>(i);
+  }
   // Of today's impulses, what the unknowns cannot say goes.
   for (const auto k : rows_) rest_[slot_of(k)].v = p[k].v;
   for (const auto& x : unknowns_) rest_[x.slot] -= x.now * x.with;
@@ -214,6 +218,7 @@ void ContactNewton::assemble(const Vec* p) noexcept {
     const Unknown& x = unknowns_[i];
     dense_.row(i)[n] = static_cast<float>(x.wanted + dot(x.along, moved(x.slot)));
   }
+  return true;
 }
 
 // What a change of an impulse costs in this step.
@@ -232,12 +237,11 @@ void ContactNewton::set_cost() noexcept {
 }
 
 template <bool Friction>
-bool ContactNewton::solve(const Contact* rows, Vec* p, Vec* u) noexcept {
+bool ContactNewton::solve(const Contact* rows, Vec* p, Vec* u, TickTime& time) noexcept {
   set_cost();
   bring_forward();
   list_unknowns<Friction>(rows, p, u);
-  assemble<Friction>(p);
-  if (!dense_.solve()) return false;
+  if (!assemble<Friction>(p, time) || !dense_.solve(time)) return false;
   for (const auto k : rows_) rest_[slot_of(k)].v = -p[k].v, p[k] = Vec{};
   double sum = 0.0;
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
@@ -255,7 +259,7 @@ template double ContactNewton::read<true>(const Contact*, const Vec*, const Vec*
 template double ContactNewton::read<false>(const Contact*, const Vec*, const Vec*) noexcept;
 template void ContactNewton::sweep<true>(const Contact*, Vec*, Vec*) noexcept;
 template void ContactNewton::sweep<false>(const Contact*, Vec*, Vec*) noexcept;
-template bool ContactNewton::solve<true>(const Contact*, Vec*, Vec*) noexcept;
-template bool ContactNewton::solve<false>(const Contact*, Vec*, Vec*) noexcept;
+template bool ContactNewton::solve<true>(const Contact*, Vec*, Vec*, TickTime&) noexcept;
+template bool ContactNewton::solve<false>(const Contact*, Vec*, Vec*, TickTime&) noexcept;
 
 }  // namespace ligature::physics::rod

@@ -134,10 +134,13 @@ void Dense::substitute() noexcept {
   }
 }
 
-bool Dense::solve() noexcept {
+bool Dense::solve(TickTime& time) noexcept {
+  Pieces pieces(time);
+  const long panel_price = static_cast<long>(n_ * n_) * 2 / 3;
   for (std::size_t i = 0; i < n_; ++i) first_.data()[i] = std::abs(row(i)[i]);
   panels_.clear();
   for (std::size_t k = 0; k < n_;) {
+    if (!pieces.allow(panel_price)) return false;
     panels_.push_back(k);
     const std::size_t pivots = panel(k);
     if (pivots == kPanel && k + 2 * kPanel <= n_) {

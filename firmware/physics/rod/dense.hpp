@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "firmware/physics/rod/floats.hpp"
+#include "firmware/physics/rod/work.hpp"
 
 namespace ligature::physics::rod {
 
@@ -20,8 +21,8 @@ class Dense {
   /// be written behind what is asked for, if rows are written in order.
   [[nodiscard]] float* row(std::size_t i) noexcept { return m_.data() + i * stride_; }
 
-  /// @return false when M is singular. M is lost.
-  [[nodiscard]] bool solve() noexcept;
+  /// @return false when M is singular, or the time was over first. M is lost.
+  [[nodiscard]] bool solve(TickTime& time = TickTime::endless()) noexcept;
   [[nodiscard]] float x(std::size_t i) const noexcept { return x_.data()[i]; }
 
  private:

@@ -312,7 +312,7 @@ bool Refine::update(const Material& material, State& state, const Forces& forces
   bool changed = false;
   const long price_of_one = price::kChangePerNode * static_cast<long>(n);
   const long most = std::clamp(work.budget() / 8 / price_of_one, 1L, static_cast<long>(kChangesPerTick));
-  for (long k = 0; k < most; ++k) {
+  for (long k = 0; k < most && work.time().allows(); ++k) {
     work.spend(price_of_one);
     const int segment = worst_segment();
     if (segment < 0) break;

@@ -8,6 +8,7 @@
 namespace ligature::physics::rod {
 namespace {
 
+constexpr int kNodesInPiece = 500;  // whose forces or matrix take no more than a piece may
 constexpr int kWindow = 1024;      // nodes on which contacts can be solved together
 constexpr double kRelax_s = 0.02;  // in which a pulled thread comes to rest when the hands do; 0.005, 0.1: no matter
 constexpr double kMostLeniency = 6.0;  // see Rod::settled
@@ -247,16 +248,19 @@ Rod::HandSpeed Rod::set_hands(const std::array<Vec, kMaxHolds>& goals, std::arra
   return speed;
 }
 
-void Rod::begin_tick(const HandSpeed& hands) noexcept {
+void Rod::begin_tick(const HandSpeed& hands, const TimeLeft& left) noexcept {
   constexpr double kTired = 0.9, kRested = 0.25, kThrown_m_per_s = 10.0;
   constexpr int kFewest = 10;  // substeps of a thread that labours: with six it errs and overlaps, and labours more
   labours_ = static_cast<double>(report_.work) >
-             (labours_ ? kRested : kTired) * static_cast<double>(numerics_.budget(state_.nodes(), 0.0));
+                 (labours_ ? kRested : kTired) * static_cast<double>(numerics_.budget(state_.nodes(), 0.0)) ||
+             report_.cut_at >= 0;
   const int substeps_before = report_.substeps;
   leniency_ = report_.cut_short > 0 ? std::min(kMostLeniency, 1.5 * leniency_) : std::max(1.0, 0.9 * leniency_);
   report_ = TickReport{};
   const bool fast = numerics_.is_fast(hands.fastest);
-  work_.start(numerics_.budget(state_.nodes(), hands.fastest));
+  // What is linear in the nodes is asked for between its parts: forces, matrix, solution.
+  const std::int64_t piece_ns = TickTime::kPiece_ns * std::max(1, state_.nodes() / kNodesInPiece);
+  work_.start(numerics_.budget(state_.nodes(), hands.fastest), left, piece_ns);
   look_cost_ = rows_cost_ = 0;
   const bool was_alone = alone_;
   alone_ = hands.holds < 2 && hands.fastest == 0.0 && std::none_of(bodies.begin(), bodies.end(), moves);
@@ -309,9 +313,9 @@ double Rod::all_J(const Energy& e) const noexcept {
   return sum;
 }
 
-void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
+void Rod::tick(const std::array<Vec, kMaxHolds>& goals, const TimeLeft& left) noexcept {
   std::array<Vec, kMaxHolds> starts;
-  begin_tick(set_hands(goals, starts));
+  begin_tick(set_hands(goals, starts), left);
   const double dt = numerics_.tick_s / report_.substeps;
   bool moving = true;
   for (int k = 0; k < report_.substeps; ++k) {
@@ -322,7 +326,7 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
     }
     substep_index_ = k;
     braked_ = false;
-    moving = moving && (this->*substep_)(dt);
+    moving = moving && work_.time().allows() && (this->*substep_)(dt);
     if (!moving) report_.time_lost += 1.0 / report_.substeps;
   }
   if (measured_) give_J_ = contacts_.give_J(numerics_.contact_N_per_m, state_.v.data(), since_look_s_);
@@ -331,6 +335,7 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals) noexcept {
   }
   if (alone_ && parts_.adaptive && !mesh_held_) fade(), faded_ = true;  // of what this tick has lost
   report_.work = work_.used();
+  report_.cut_at = work_.time().cut_at();
   if (!braked_) feel_hands(0.0);
 }
 

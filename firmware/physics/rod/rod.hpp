@@ -40,6 +40,7 @@ struct TickReport {
   int cut_short = 0;       ///< substeps whose contacts used up their passes before they settled
   int rows_left_out = 0;   ///< contacts that were only guarded, at most in a substep
   double time_lost = 0.0;  ///< share of the tick in which the thread was not moved: nobody knew whether it could be
+  int cut_at = -1;         ///< question at which the tick's time was over (time_left.hpp); -1: it was not
 };
 
 /// A rod. Build it, place it with state(), then tick. Only the constructor allocates. Copyable: all of its state goes
@@ -65,6 +66,7 @@ class Rod {
   [[nodiscard]] const State& state() const noexcept { return state_; }
   [[nodiscard]] const Material& material() const noexcept { return material_; }
   [[nodiscard]] Numerics& numerics() noexcept { return numerics_; }
+  [[nodiscard]] const Numerics& numerics() const noexcept { return numerics_; }
   [[nodiscard]] Twist& twist() noexcept { return twist_; }
   [[nodiscard]] const Twist& twist() const noexcept { return twist_; }
   [[nodiscard]] const Spin& spin() const noexcept { return spin_; }  ///< with Parts::frames()
@@ -99,9 +101,12 @@ class Rod {
 
   /// Advances by numerics().tick_s. `goals` are the hold targets at the end of the tick, m (unmoved holds: their
   /// target). Without error: what could not be done is in report(). Costs O(n) a substep and at most
-  /// Numerics::budget() instructions on contact; no allocation, no exception.
-  void tick(const std::array<Vec, kMaxHolds>& goals) noexcept;
+  /// Numerics::budget() instructions on contact; no allocation, no exception. When the time left does not do, the
+  /// thread stands still for the rest of the tick, as it does when the work is spent.
+  void tick(const std::array<Vec, kMaxHolds>& goals, const TimeLeft& left = {}) noexcept;
   void tick() noexcept;
+  /// All that the tick is for has been done: how long that took after the last question is for the next tick to know.
+  void tick_ended() noexcept { work_.time().end(); }
 
   /// The first verb of a tick, on its own: nodes move along the thread. @return true when some did.
   bool remesh() noexcept;
@@ -143,7 +148,7 @@ class Rod {
   [[nodiscard]] Allowance work_allowed(bool metric_too) const noexcept;
   [[nodiscard]] double settled() const noexcept;
   std::optional<Effort> choose_rows(double dt_s) noexcept;
-  void prepare_metric(double dt_s) noexcept;
+  [[nodiscard]] bool prepare_metric(double dt_s) noexcept;
   template <unsigned Bits>
   void move(double dt_s, double share) noexcept;
   template <unsigned Bits>
@@ -154,6 +159,7 @@ class Rod {
   static constexpr double kPatience = 12.0;  ///< ticks in which a substep may wait to be solved, and guarded, at most
   [[nodiscard]] bool can_wait() const noexcept { return solves_directly() && waits_ + 1 <= patience_; }
   bool put_off() noexcept;
+  bool give_up() noexcept;
   double brake(double dt_s) noexcept;
 
   /// Of the holds: the fastest, and how fast two of them part (or one drags the thread), m/s.
@@ -162,7 +168,7 @@ class Rod {
     int holds = 0;
   };
   HandSpeed set_hands(const std::array<Vec, kMaxHolds>& goals, std::array<Vec, kMaxHolds>& starts) noexcept;
-  void begin_tick(const HandSpeed& hands) noexcept;
+  void begin_tick(const HandSpeed& hands, const TimeLeft& left) noexcept;
   /// Forces on the hands where the thread will be in `ahead_s`.
   void feel_hands(double ahead_s) noexcept;
   int add_hold(const Hold& hold) noexcept;

@@ -185,7 +185,7 @@ bool RodSimulation::is_finite() noexcept {
   return true;
 }
 
-void RodSimulation::tick(const std::array<ToolInput, 2>& tools) noexcept {
+void RodSimulation::tick(const std::array<ToolInput, 2>& tools, const TimeLeft& left) noexcept {
   if (!health_.finite) return;
   State& state = rod_.state();
   x_before_ = state.x;  // same size: copies, does not allocate
@@ -194,12 +194,16 @@ void RodSimulation::tick(const std::array<ToolInput, 2>& tools) noexcept {
     goals_[static_cast<std::size_t>(h)] = state.holds[static_cast<std::size_t>(h)].target;
   update_grasp(tools);
   if (grippers_) update_grippers(tools);
-  rod_.tick(goals_);
+  rod_.tick(goals_, left);
   const bool good = is_finite();
   ++ticks_;
-  if (good) return publish();
-  state.x = x_before_;
-  state.v = v_before_;
+  if (good) {
+    publish();
+  } else {
+    state.x = x_before_;
+    state.v = v_before_;
+  }
+  rod_.tick_ended();
 }
 
 void RodSimulation::publish() noexcept {
@@ -227,6 +231,8 @@ void RodSimulation::publish() noexcept {
   health_.contacts = r.contacts;
   health_.contact_cap_hit = r.rows_left_out > 0;
   health_.time_lost = r.time_lost;
+  health_.cut_at = r.cut_at;
+  health_.end = r.cut_at >= 0 ? TickEnd::kClock : r.time_lost > 0.0 ? TickEnd::kWork : TickEnd::kWhole;
   health_.degradation = r.time_lost > 0.0     ? Degradation::kMotion
                         : r.rows_left_out > 0 ? Degradation::kContacts
                         : r.cut_short > 0     ? Degradation::kIterations

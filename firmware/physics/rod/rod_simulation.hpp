@@ -23,11 +23,13 @@ class RodSimulation {
 
   /// As after a divergence: the state stays, hands are open and without force.
   void stop(int bad_node) noexcept;
-  void tick(const std::array<ToolInput, 2>& tools) noexcept;
+  void tick(const std::array<ToolInput, 2>& tools, const TimeLeft& left) noexcept;
   [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept { return nodes_; }
   [[nodiscard]] std::span<const Vec3> velocities_W() const noexcept { return velocities_; }
   [[nodiscard]] const HandContact& hand(Hand h) const noexcept { return hands_[static_cast<std::size_t>(h)]; }
   [[nodiscard]] const Diagnostics& diagnostics() const noexcept { return health_; }
+  void set_work(long instructions) noexcept { initial_.numerics().work = rod_.numerics().work = instructions; }
+  [[nodiscard]] long work() const noexcept { return rod_.numerics().work; }
   void reset() noexcept;
   [[nodiscard]] bool continue_from(const RodSimulation& other) noexcept;
   void set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept;

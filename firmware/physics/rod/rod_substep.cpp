@@ -74,6 +74,7 @@ bool Rod::look(double dt_s) noexcept {
     const double look_m = near_m_ + 4.0 * motion_.fastest() * dt_s;
     if (has_floor) contacts_.collect_floor(state_, floor_m, material_.radius_m, look_m, floor_friction, work_);
     for (int b = 0; b < count; ++b) {
+      if (!work_.time().allows()) return false;
       const Body& body = bodies[static_cast<std::size_t>(b)];
       contacts_.collect_body(state_, body, b, material_.radius_m, look_m, tick_travel_m_, work_);
     }
@@ -101,13 +102,13 @@ Rod::Allowance Rod::work_allowed(bool metric_too) const noexcept {
   return {window, work_.left() - metric, solves_directly() ? work_.left() - metric : 2 * spare / (after + 2)};
 }
 
-void Rod::prepare_metric(double dt_s) noexcept {
+bool Rod::prepare_metric(double dt_s) noexcept {
   const int n = state_.nodes(), first = contacts_.window_first(), last = contacts_.window_last();
-  if (dt_s == metric_dt_ && metric_.covers(first, last)) return;
+  if (dt_s == metric_dt_ && metric_.covers(first, last)) return true;
   const int from = std::max(first - 2, 0), to = std::min(last + 2, n - 1);
   metric_dt_ = dt_s;
-  metric_.prepare(state_.mesh, material_, dt_s, from, to);
   work_.spend(price::metric(n, to - from + 1));
+  return metric_.prepare(state_.mesh, material_, dt_s, from, to, work_.time());
 }
 
 // A pass that changes no velocity by more is the last. In the tick of a release the thread is faster than any hand; one
@@ -134,7 +135,7 @@ std::optional<Effort> Rod::choose_rows(double dt_s) noexcept {
   const long rows = contacts_.rows(), nodes = contacts_.window_last() - contacts_.window_first() + 1;
   const long least = passes * price::pass(rows, rows, nodes);
   rows_cost_ = rows > 0 ? price::rows(rows, nodes) + least : 0;
-  return Effort{numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)), settled(),
+  return Effort{work_.time(), numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)), settled(),
                 kEnough * numerics_.settled_m_per_s};
 }
 
@@ -147,7 +148,7 @@ Outcome Rod::settle_directly(const Effort& effort) noexcept {
   Effort own = effort;
   own.settled_m_per_s = std::max(effort.settled_m_per_s, numerics_.newton_m_per_s);
   own.fair = (effort.work - after * (look_cost_ + rows_cost_)) / (after + 1);
-  if (!can_wait()) own.work = std::min(effort.work, work_.left() / (after + 2));
+  if (!can_wait()) own.work = std::min(effort.work, work_.unspent() / (after + 2));
   const Outcome outcome = contacts_.settle_directly<Friction>(solver_, own, state_.v.data(), seen_);
   if (outcome == Outcome::kSettled) return patience_ = std::min(kPatience, patience_ + 1.0), outcome;
   const bool worked = 4 * (effort.work - seen_.work) < work_.budget();  // and left too little for sweeps
@@ -163,7 +164,9 @@ bool Rod::settle(double dt_s) noexcept {
   const auto effort = choose_rows(dt_s);
   if (!effort) return false;
   const int first = contacts_.window_first(), last = contacts_.window_last();
+  if (!work_.time().allows()) return false;
   solver_.factor((first + last) / 2);
+  if (!work_.time().allows()) return false;
   if (contacts_.rows() > 0) {
     if constexpr (kTurns) contacts_.turn_with(spin_, state_.nodes() - 1, material_.radius_m);
     contacts_.start<kTurns>(solver_, numerics_, dt_s, state_.v.data());
@@ -176,8 +179,9 @@ bool Rod::settle(double dt_s) noexcept {
       }
     }
     if (outcome != Outcome::kSettled) {
-      prepare_metric(dt_s);
-      contacts_.settle<kRubs, kTurns>(solver_, metric_, *effort, state_.v.data(), seen_);
+      if (!prepare_metric(dt_s) ||
+          !contacts_.settle<kRubs, kTurns>(solver_, metric_, *effort, state_.v.data(), seen_))
+        return give_up();
     }
     work_.spend(price::rows(contacts_.rows(), last - first + 1) + seen_.work);
     report_.cut_short += seen_.cut_short;
@@ -198,6 +202,14 @@ bool Rod::put_off() noexcept {
   return false;
 }
 
+// The tick's time is over: the substep will be done again, from the start, in the next one.
+bool Rod::give_up() noexcept {
+  state_.v = v_before_;
+  work_.spend(seen_.work);
+  ++report_.cut_short;
+  return false;
+}
+
 // After a jerk, such as a release, pairs that nobody measured in this substep may meet: those on the list are held to
 // what is known of them, the others to what the list has looked ahead; or all to a new list. @return nothing when there
 // is no work for that and the substep can wait.
@@ -208,7 +220,7 @@ std::optional<double> Rod::guard_unseen(double dt_s) noexcept {
   if (share == 1.0 && !motion_.outran(unseen, dt_s)) return 1.0;
   const long listed = price::kGuardListed * static_cast<long>(contacts_.pairs.size());
   const auto without_work = [&](double known) { return can_wait() ? std::nullopt : std::optional(known); };
-  if (work_.left() < listed) return without_work(0.0);
+  if (work_.unspent() < listed) return without_work(0.0);
   work_.spend(listed);
   share = std::min(share, contacts_.safe_fraction_of_pairs(motion_, state_, dt_s));
   const long reserve = price::kGuardListed * static_cast<long>(contacts_.pairs.capacity());
@@ -276,12 +288,14 @@ bool Rod::substep(double dt_s) noexcept {
     if (!look<kRest>(dt_s)) return false;
   }
   if constexpr ((Bits & kSet) != 0) report_.set_J += spin_.yield(material_, state_);
+  if (!work_.time().allows()) return false;
   assemble<(Bits & kTwist) != 0>(material_, state_, gravity, dt_s, forces_, solver_);
   if constexpr ((Bits & kRoll) != 0) spin_.assemble(material_, state_, dt_s);
   if (kTouches && !contacts_.contacts().empty()) {
     if (!settle<kRest>(dt_s)) return false;
   } else {
     const int first = (state_.nodes() - 2) / 2, last = first + 1;
+    if (!work_.time().allows()) return false;
     solver_.factor(first);
     solver_.solve(first, last, nullptr, state_.v.data(), true);
     solver_.solve_outside(first, last, state_.v.data());

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "firmware/physics/time_left.hpp"
+
 namespace ligature::physics::rod {
 
 /// Prices in instructions of the x86-64-v3 build, rounded up; docs/accuracy.md says how they were counted. What a
@@ -62,17 +64,44 @@ inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one 
 [[nodiscard]] constexpr long metric(long nodes, long window) noexcept { return 45 * nodes + 9 * window * window / 2; }
 }  // namespace price
 
-/// The meter of a tick. Spending is the caller's promise; the meter only counts.
+/// The meter of a tick. Spending is the caller's promise; the meter only counts. It ends early when the tick's time is
+/// over, which is asked where a piece of work begins: no more than kPiece lies between two questions.
 class Work {
  public:
-  void start(long budget) noexcept { budget_ = budget, used_ = 0; }
+  static constexpr long kPiece = 100'000;
+
+  void start(long budget, const TimeLeft& left = {}, std::int64_t piece_ns = TickTime::kPiece_ns) noexcept {
+    budget_ = budget, used_ = 0;
+    time_.start(left, piece_ns);
+  }
   void spend(long instructions) noexcept { used_ += instructions; }
   [[nodiscard]] long budget() const noexcept { return budget_; }
   [[nodiscard]] long used() const noexcept { return used_; }
-  [[nodiscard]] long left() const noexcept { return std::max(0L, budget_ - used_); }
+  [[nodiscard]] long unspent() const noexcept { return std::max(0L, budget_ - used_); }  ///< whatever the time
+  [[nodiscard]] long left() const noexcept { return time_.is_over() ? 0 : unspent(); }
+  [[nodiscard]] TickTime& time() noexcept { return time_; }
+  [[nodiscard]] const TickTime& time() const noexcept { return time_; }
 
  private:
   long budget_ = 0, used_ = 0;
+  TickTime time_;
+};
+
+/// Between many small pieces: asks once in Work::kPiece.
+class Pieces {
+ public:
+  explicit Pieces(TickTime& time) noexcept : time_(time) {}
+  /// @return false when the time is over.
+  [[nodiscard]] bool allow(long instructions) noexcept {
+    since_ += instructions;
+    if (since_ < Work::kPiece) return !time_.is_over();
+    since_ = 0;
+    return time_.allows();
+  }
+
+ private:
+  TickTime& time_;
+  long since_ = 0;
 };
 
 }  // namespace ligature::physics::rod

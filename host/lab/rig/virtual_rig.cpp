@@ -92,14 +92,14 @@ bool VirtualRig::Wait::wait(Nanoseconds deadline) noexcept {
 
 void VirtualRig::sleep_until(Nanoseconds at) noexcept {
   take_records();
-  if (cut_left_at >= 0 && static_cast<std::int64_t>(records.size()) >= cut_left_at) left.cut = true;
+  if (cut_left_at >= 0 && cycle.periods() >= cut_left_at) left.cut = true;
   if (seeing_ != nullptr) look_and_act();
   time = std::max(time, at);
   for (DeviceBus* b : {&left, &right}) b->device.advance(at);
   look_at_drives();
   if (each_tick) each_tick();
   if (end_when_done_ && is_done()) cycle.end_after(0);
-  if (static_cast<std::int64_t>(records.size()) < stall_at) return;
+  if (cycle.periods() < stall_at) return;
   for (; stall_for > Nanoseconds(0); stall_for -= kPeriod) {
     time += kPeriod;
     for (DeviceBus* b : {&left, &right}) b->device.advance(time);
@@ -125,17 +125,17 @@ void VirtualRig::take_records() noexcept {
 /// What a person would see on the screen and feel in the fingers, and what the hands do about it.
 void VirtualRig::look_and_act() {
   const std::array<const sim::Mechanics*, 2> hands{&left.device.mechanics(), &right.device.mechanics()};
-  if (!hands[0]->has_started() || !hands[1]->has_started() || records.empty()) return;
+  if (!hands[0]->has_started() || !hands[1]->has_started() || cycle.periods() == 0) return;
   const sim::WorkspaceMap map(setup.scene.hands, setup.body[0].plant.linkage);
   sim::Sight sight;
   sight.t_s = std::min(hands[0]->script_time_s(), hands[1]->script_time_s());
   sight.thread_W = thread.nodes_W();
   for (std::size_t h = 0; h < 2; ++h) {
-    const auto& f = records.back().f_device_N[h];
+    const auto& f = controller.hand(h).f_device_N;
     sight.tool_W[h] = map.to_world(hands[h]->touch().p_DT);
-    sight.holds[h] = records.back().grasped_node[h] >= 0;
+    sight.holds[h] = thread.hand(static_cast<physics::Hand>(h)).node >= 0;
     if (setup.scene.hands.force_scale > 0.0)
-      sight.force_W_N[h] = sim::Vec3(f[0], f[1], f[2]) / setup.scene.hands.force_scale;
+      sight.force_W_N[h] = sim::Vec3(f / setup.scene.hands.force_scale);
   }
   const auto wishes = seeing_->act(sight);
   for (std::size_t h = 0; h < 2; ++h) {

@@ -22,6 +22,7 @@
 #include "host/lab/rig/recording.hpp"
 #include "host/lab/rig/seeing_operator.hpp"
 #include "host/lab/rig/true_tip.hpp"
+#include "host/lab/rig/virtual_thread.hpp"
 #include "protocol/scene/gripper_script.hpp"
 #include "protocol/scene/scene.hpp"
 
@@ -69,7 +70,10 @@ class VirtualRig {
     VirtualRig& rig;
   };
   struct Clock {
-    Nanoseconds now() noexcept { return rig.time; }
+    Nanoseconds now() noexcept {
+      rig.physics.advance();
+      return rig.time;
+    }
     void sleep_until(Nanoseconds at) noexcept { rig.sleep_until(at); }
     Nanoseconds worked() noexcept { return Nanoseconds::zero(); }  // work takes no simulated time
     VirtualRig& rig;
@@ -96,7 +100,9 @@ class VirtualRig {
   Clock clock{*this};
   control::Controller controller;
   std::unique_ptr<rt::Outlets> outlets = std::make_unique<rt::Outlets>();
-  Cycle<platform::RigBus, Clock> cycle{bus, clock, controller, thread, *outlets};
+  std::unique_ptr<control::ThreadExchange> exchange = std::make_unique<control::ThreadExchange>();
+  VirtualThread physics{time, thread, *exchange, outlets->shape};
+  Cycle<platform::RigBus, Clock, VirtualThread> cycle{bus, clock, controller, *exchange, physics, *outlets};
   std::vector<rt::TickRecord> records;
 
  private:

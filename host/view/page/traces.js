@@ -7,6 +7,8 @@ import { axisLabels, describeTime, labelRoom } from './times.js';
 /** What the third plot can show: two columns and their names, their SI unit, a factor to the unit drawn, least height. */
 export const THIRD = {
   'tick time': { names: ['whole', 'control'], si: 'ns', columns: [C.execution_ns, C.control_ns], factor: 1e-3, unit: 'µs: whole, control only', least: 100, isTime: true },
+  'thread time': { names: ['done', 'loop'], si: 'ns', columns: [C.threadDone_ns, C.execution_ns], factor: 1e-3, unit: 'µs after the wake-up: thread done, loop done', least: 100, isTime: true },
+  'time lost': { names: ['share'], si: '', columns: [C.timeLost, C.timeLost], factor: 100, unit: '% of a tick in which the thread stood still', least: 1 },
   tension: { names: ['left', 'right'], si: 'N', columns: [C.leftWorld, C.rightWorld], factor: 1, unit: 'N, of the thread at the left hand; grey right', least: 1 },
   passivity: { names: ['left', 'right'], si: 'J', columns: [C.leftPort_J, C.rightPort_J], factor: 1000, unit: 'mJ, account of the device port: left; grey right', least: 1 },
   'taken out': { names: ['left', 'right'], si: 'J', columns: [C.leftDissipated_J, C.rightDissipated_J], factor: 1000, unit: 'mJ, by the passivity controller: left; grey right', least: 1 },

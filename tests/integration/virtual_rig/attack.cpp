@@ -237,7 +237,7 @@ std::optional<std::string> AttackedRig::run() { return rig.run(kAttackTicks); }
 
 /// Between two ticks.
 void AttackedRig::befall() {
-  const auto tick = static_cast<std::int64_t>(rig.records.size());
+  const auto tick = rig.cycle.periods();
   for (const auto& f : plan_.foreign) {
     if (tick < f.from || tick >= f.from + f.ticks) continue;
     for (int i = 0; i < f.a_tick; ++i)

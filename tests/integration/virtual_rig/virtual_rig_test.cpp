@@ -105,8 +105,8 @@ TEST(VirtualRig, AFaultIsLeftByResetArmAndANewPress) {
   rig.left.faults.emplace(
       std::get<scene::FaultScript>(scene::load_fault_script(kScenes + "faults/emergency.toml")));  // at 1.5 s
   rig.each_tick = [&] {
-    if (rig.records.size() == 1700) rig.outlets->commands.push({1, rt::CommandKind::kResetFault});
-    if (rig.records.size() == 2100) rig.outlets->commands.push({2, rt::CommandKind::kArm});
+    if (rig.cycle.periods() == 1700) rig.outlets->commands.push({1, rt::CommandKind::kResetFault});
+    if (rig.cycle.periods() == 2100) rig.outlets->commands.push({2, rt::CommandKind::kArm});
   };
   ASSERT_EQ(rig.run(3000), std::nullopt);
   EXPECT_EQ(rig.records[1600].fault, 12);

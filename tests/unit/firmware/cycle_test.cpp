@@ -92,17 +92,19 @@ TEST(Cycle, FinishingExactlyAtTheDeadlineIsAMiss) {
 TEST(Cycle, AMissSaysWhetherTheLoopsOwnWorkMadeIt) {
   VirtualRig rig;
   rig.bus.stalls[10] = 700us;  // waited for
-  rig.bus.works[20] = 530us;   // in time: 460 us for the bus, and this
+  rig.bus.works[20] = 250us;   // in time: 460 us for the bus, this, and 285 until the torques have passed
   rig.bus.works[30] = 700us;
+  rig.bus.works[40] = 260us;  // its torques come after the next SYNC
   rig.cycle.end_after(kRun);
   rig.cycle.run();
   const auto records = rig.records();
   EXPECT_EQ(records[9].flags, rt::kDeadlineMissed);
-  EXPECT_EQ(flagged(records, rt::kOverworked), 1);
+  EXPECT_EQ(flagged(records, rt::kOverworked), 2);
   EXPECT_EQ(flagged(records, rt::kDeadlineMissed), 2);
   const auto worked = std::ranges::find_if(records, [](const auto& r) { return (r.flags & rt::kOverworked) != 0; });
   EXPECT_EQ(worked->flags, rt::kDeadlineMissed | rt::kOverworked);
-  EXPECT_EQ(rig.cycle.timing().overworked, 1U);
+  EXPECT_EQ(records[41].flags, rt::kOverworked);  // two periods were lost
+  EXPECT_EQ(rig.cycle.timing().overworked, 2U);
   EXPECT_EQ(rig.cycle.timing().work.max_ns(), 700'000);
 }
 
@@ -182,7 +184,7 @@ TEST(Cycle, TorqueActsExactlyOneSampleAfterItsMeasurement) {
     }
   } bus{rig.bus, {}, {}};
   for (auto& hand : rig.bus.reading.hand) hand.grip = true;
-  Cycle cycle(bus, rig.clock, rig.controller, rig.thread, *rig.outlets);
+  Cycle cycle(bus, rig.clock, rig.controller, *rig.exchange, rig.physics, *rig.outlets);
   cycle.end_after(2000);
   cycle.run();
   bool pushed = false;

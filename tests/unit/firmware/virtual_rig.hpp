@@ -7,12 +7,16 @@
 #include <vector>
 
 #include "firmware/cycle.hpp"
+#include "host/lab/rig/virtual_thread.hpp"
 
 namespace ligature {
 
 class VirtualClock {
  public:
-  Nanoseconds now() noexcept { return time; }
+  Nanoseconds now() noexcept {
+    if (thread != nullptr) thread->advance();  // what happened meanwhile
+    return time;
+  }
   void sleep_until(Nanoseconds at) noexcept {
     time = std::max(time, at) + late_by;
     late_by = Nanoseconds::zero();
@@ -22,6 +26,7 @@ class VirtualClock {
   Nanoseconds time{0}, work{0};
   Nanoseconds late_by{0};  // of the next wake-up only
   std::vector<Nanoseconds> woken;
+  lab::VirtualThread* thread = nullptr;
 };
 
 inline constexpr control::JointAngles kRestingArm{0.0, 0.5, 0.6};
@@ -94,7 +99,9 @@ inline scene::Scene small_scene() {
 /// Everything a cycle needs, and a way to collect what it leaves.
 struct VirtualRig {
   explicit VirtualRig(const scene::Scene& scene = small_scene(), control::Settings settings = {20, true})
-      : thread(std::get<physics::Simulation>(physics::Simulation::make(scene))), controller(scene.hands, settings) {}
+      : thread(std::get<physics::Simulation>(physics::Simulation::make(scene))), controller(scene.hands, settings) {
+    clock.thread = &physics;
+  }
 
   std::vector<rt::TickRecord> records() {
     std::vector<rt::TickRecord> all;
@@ -107,7 +114,9 @@ struct VirtualRig {
   physics::Simulation thread;
   control::Controller controller;
   std::unique_ptr<rt::Outlets> outlets = std::make_unique<rt::Outlets>();
-  Cycle<VirtualBus, VirtualClock> cycle{bus, clock, controller, thread, *outlets};
+  std::unique_ptr<control::ThreadExchange> exchange = std::make_unique<control::ThreadExchange>();
+  lab::VirtualThread physics{clock.time, thread, *exchange, outlets->shape};
+  Cycle<VirtualBus, VirtualClock, lab::VirtualThread> cycle{bus, clock, controller, *exchange, physics, *outlets};
 };
 
 }  // namespace ligature

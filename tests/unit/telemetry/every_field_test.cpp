@@ -82,13 +82,16 @@ struct Sources {
     thread.min_gap_m = d.next(), thread.time_lost = d.next(), thread.contacts = 401;
     thread.contact_cap_hit = yes == kCapHit;
     thread.degradation = physics::Degradation::kMotion;
+    thread.end = physics::TickEnd::kWork, thread.cut_at = 513;
+    record.grasp_age_ticks = 509, record.thread_start_ns = 510, record.thread_done_ns = 511;
+    record.thread_work_ns = 512;
     record.tick = 501, record.scheduled_ns = 502, record.wakeup_latency_ns = 503, record.sync_ns = 504;
     record.tpdo_ns = 505, record.law_ns = 506, record.control_ns = 507, record.execution_ns = 508;
     record.flags = rt::kDeadlineMissed;
     record.state = 4, record.fault = 25, record.armed = yes == kArmed;
   }
 
-  /// As Cycle::publish() puts a record together; state, fault and armed are the controller's own.
+  /// As PeriodLog puts a record together; state, fault and armed are the controller's own.
   rt::TickRecord told_record() {
     for (std::size_t h = 0; h < 2; ++h) {
       control::report(hand[h], h, record);
@@ -142,7 +145,14 @@ struct Sources {
             {"max_stretch", words(thread.max_stretch)},
             {"min_gap_m", words(thread.min_gap_m)},
             {"contacts", words(401)},
-            {"degradation", words(3)}};
+            {"degradation", words(3)},
+            {"grasp_age_ticks", words(509)},
+            {"thread_start_ns", words(510)},
+            {"thread_done_ns", words(511)},
+            {"thread_work_ns", words(512)},
+            {"thread_end", words(1)},
+            {"thread_cut_at", words(513)},
+            {"time_lost", words(static_cast<float>(thread.time_lost))}};
   }
 };
 
@@ -195,11 +205,11 @@ TEST_F(EveryField, OfABatchIsThatOfItsSource) {
 TEST_F(EveryField, OfAShapeIsThatOfItsSource) {
   Telemetry telemetry{session, kNames, *outlets, sink};
   const std::vector<physics::Vec3> nodes{{1.5, 2.5, 3.5}, {4.5, 5.5, 6.5}};
-  rt::TickRecord record;
-  record.tick = 601;
-  record.grasped_node = {602, 603};
+  control::ThreadResult thread;
+  thread.tick = 601;
+  thread.hand[0].node = 602, thread.hand[1].node = 603;
   auto& shape = outlets->shape.back();
-  control::report(nodes, record, shape);
+  control::report(nodes, thread, shape);
   shape.tension_N[0] = 7.5F, shape.tension_N[1] = 8.5F, shape.turn_rad[0] = 9.5F, shape.turn_rad[1] = 10.5F;
   outlets->shape.publish();
   telemetry.finish(kNow);

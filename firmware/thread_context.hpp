@@ -1,0 +1,97 @@
+#pragma once
+// THE thread's physics, beside the loop (cycle.hpp): it works while the loop sleeps or waits for the bus.
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "firmware/clock.hpp"
+#include "firmware/control/thread_link.hpp"
+#include "firmware/control/tick_report.hpp"
+#include "firmware/physics/simulation.hpp"
+#include "firmware/rt/tick_record.hpp"
+
+namespace ligature {
+
+/// One request after the other: take(), compute(), publish(). Owns the thread's state as long as it runs; what others
+/// want of it comes with a request. No allocation, lock, log or exception. It is told when a tick must have ended, and
+/// then the thread stands still for the rest of that tick.
+template <Clock ClockT>
+class ThreadContext {
+ public:
+  static constexpr std::int64_t kTicksPerShape = 8;
+
+  ThreadContext(ClockT& clock, physics::Simulation& thread, control::ThreadExchange& exchange,
+                rt::LatestValue<rt::ThreadSnapshot>& shape) noexcept
+      : clock_(clock), thread_(thread), exchange_(exchange), shape_(shape) {}
+
+  /// Until wake.wait() says that it is over.
+  template <class WakeT>
+  void run(WakeT& wake) noexcept {
+    while (wake.wait()) {
+      while (take()) {
+        compute();
+        publish();
+      }
+    }
+  }
+
+  /// Moves to the newest request. @return false when there is none since the last.
+  bool take() noexcept { return exchange_.requests.refresh(); }
+
+  void compute() noexcept {
+    const control::ThreadRequest& asked = exchange_.requests.front();
+    const auto worked_before = clock_.worked();
+    result_.began = clock_.now();
+    if (std::exchange(resets_, asked.resets) != asked.resets) thread_.reset();
+    if (!take_plant(asked)) thread_.tick(asked.tools, {&ThreadContext::time_left, this});
+    result_.tick = asked.tick;
+    result_.number = asked.number;
+    result_.hand = {thread_.hand(physics::Hand::kLeft), thread_.hand(physics::Hand::kRight)};
+    result_.health = thread_.diagnostics();
+    result_.work = clock_.worked() - worked_before;
+    result_.done = clock_.now();
+  }
+
+  /// The grasp first: the law waits for nothing else.
+  void publish() noexcept {
+    exchange_.results.back() = result_;
+    exchange_.results.publish();
+    if (result_.tick / kTicksPerShape == shape_of_) return;
+    shape_of_ = result_.tick / kTicksPerShape;
+    rt::ThreadSnapshot& shape = shape_.back();
+    control::report(thread_.nodes_W(), result_, shape);
+    const auto count = static_cast<std::size_t>(shape.count);
+    thread_.describe(std::span(shape.tension_N).first(count), std::span(shape.turn_rad).first(count));
+    shape_.publish();
+  }
+
+ private:
+  /// Changes the thread by a swap of its insides: nothing is built or freed here. The old one goes back in the new
+  /// one's place. @return true when another scene came: its tools are not known before the hands are its own.
+  bool take_plant(const control::ThreadRequest& asked) noexcept {
+    if (std::exchange(result_.plants, asked.plants) == asked.plants) return false;
+    control::Plant& plant = *asked.plant;
+    plant.taken = !plant.keeps_motion || plant.thread.continue_from(thread_);
+    if (plant.taken) std::swap(thread_, plant.thread);
+    return !plant.keeps_motion;
+  }
+
+  static std::int64_t time_left(void* self) noexcept {
+    auto& me = *static_cast<ThreadContext*>(self);
+    return (me.exchange_.requests.front().deadline - me.clock_.now()).count();
+  }
+
+  ClockT& clock_;
+  physics::Simulation& thread_;
+  control::ThreadExchange& exchange_;
+  rt::LatestValue<rt::ThreadSnapshot>& shape_;
+  control::ThreadResult result_;
+  std::int64_t resets_ = 0, shape_of_ = -1;
+};
+
+}  // namespace ligature
