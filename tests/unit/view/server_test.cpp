@@ -166,6 +166,21 @@ TEST(Server, APageThatCarriesTheTokenAndDoesNotSayItEnds) {
           });
 }
 
+TEST(Server, APageThatFloodsEndsAndOneThatTalksDoesNot) {
+  Visited(kToken, {.listen = "127.0.0.1", .port = 0}, [](Visited& visited) {
+    const auto page = visited.peer(), flood = visited.peer();
+    EXPECT_TRUE(page->upgrade());
+    page->say(kGreeting);
+    for (int i = 0; i < 200; ++i) page->say(R"({"seen":0})");
+    EXPECT_TRUE(visited.is_heard(*page)) << "300 a second are allowed";
+    EXPECT_TRUE(flood->upgrade());
+    flood->say(kGreeting);
+    for (int i = 0; i < 20'000; ++i) flood->say(R"({"seen":0})");  // more than a minute's worth
+    EXPECT_TRUE(flood->is_closed());
+    EXPECT_TRUE(visited.is_heard(*page));
+  });
+}
+
 TEST(Server, WhereTheTokenIsGivenByHandPagesMayLookWithoutIt) {
   Visited({"0123456789abcdef", false}, {.listen = "127.0.0.1", .port = 0, .token_within = std::chrono::milliseconds(1)},
           [](Visited& visited) {
