@@ -111,6 +111,7 @@ class Cycle {
     control::Plant* plant = plants_->take();
     if (plant == nullptr) return;
     plant->taken = plant->keeps_motion || (!controller_.armed() && !control::may_push(controller_.state()));
+    plant->first_tick = tick_;
     if (plant->taken) return thread_.change(plant);
     plants_->give_back(plant);
   }

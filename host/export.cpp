@@ -1,5 +1,6 @@
 #include "host/export.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -66,6 +67,13 @@ class Exporter {
     }
   }
 
+  void take(const ligature_msg::status_t& status) {
+    if (status.scene_toml == scene_toml_ && status.scene_file == scene_file_) return;
+    scene_toml_ = status.scene_toml;
+    scene_file_ = status.scene_file;
+    tell(status, status.tick);
+  }
+
   ExportResult commit() {
     end_session();
     name_missing();
@@ -111,13 +119,6 @@ class Exporter {
     tell(thread, thread.tick);
   }
 
-  void take(const ligature_msg::status_t& status) {
-    if (status.scene_toml == scene_toml_ && status.scene_file == scene_file_) return;
-    scene_toml_ = status.scene_toml;
-    scene_file_ = status.scene_file;
-    tell(status, status.tick);
-  }
-
   RigFacts facts_;
   std::vector<std::unique_ptr<ExportSink>> sinks_;
   std::string scene_file_, scene_toml_;
@@ -126,6 +127,22 @@ class Exporter {
   int session_ = -1;
   ExportResult result_;
 };
+
+/// The scene in force at a tick, as a log would tell it.
+ligature_msg::status_t status_of(const FlightReader& recorder, std::int64_t tick) {
+  const auto& scene = recorder.scene_at(tick);
+  ligature_msg::status_t status{};
+  status.session = recorder.session();
+  status.protocol_version = ligature_msg::status_t::VERSION;
+  status.tick = std::max(tick, scene.first_tick);
+  status.firmware_version = scene.facts.firmware_version;
+  status.scene_file = scene.facts.scene_file;
+  status.scene_toml = scene.facts.scene_toml;
+  status.period_s = scene.facts.period_s;
+  status.max_force_N = scene.facts.max_force_N;
+  status.admitted = scene.admitted ? 1 : 0;
+  return status;
+}
 
 /// A flight recorder's file: one session, ticks only.
 ExportResult export_flight(const std::string& path, const ExportTargets& targets) {
@@ -137,6 +154,7 @@ ExportResult export_flight(const std::string& path, const ExportTargets& targets
   ligature_msg::tick_batch_t batch{};
   batch.session = recorder.session();
   recorder.visit([&](const ligature_msg::tick_t& tick) {
+    exporter.take(status_of(recorder, tick.tick));
     batch.ticks.assign(1, tick);
     exporter.take(batch);
   });

@@ -48,13 +48,15 @@ FlightReader::FlightReader(const RegularFile& file, const std::string& path) {
   if (file.read_at(ring_.data(), ring_.size(), recorder::kHeaderBytes) != ring_.size())
     throw BadInput(path + ": became shorter while it was read");
   index();
+  read_scenes(std::span(ring_).subspan(static_cast<std::size_t>(header_.slots) * header_.slot_bytes));
 }
 
 void FlightReader::check(const std::string& path, std::int64_t size) const {
   const auto& h = header_;
   if (h.magic != recorder::kMagic) throw BadInput(path + ": not a flight recorder file");
-  if (h.version != recorder::kVersion)
-    throw BadInput(path + text(": found flight recorder version %u, allowed %u", h.version, recorder::kVersion));
+  if (h.version < recorder::kOldestVersion || h.version > recorder::kVersion)
+    throw BadInput(path + text(": found flight recorder version %u, allowed %u .. %u", h.version,
+                               recorder::kOldestVersion, recorder::kVersion));
   if (h.crc != recorder::crc_of(h)) throw BadInput(path + ": the header's CRC is wrong: the file was damaged");
   if (h.tick_hash != ligature_msg::tick_t::getHash())
     throw BadInput(path + ": written with another tick_t, by ligature-firmware " + text_in(h.firmware_version));
@@ -62,7 +64,9 @@ void FlightReader::check(const std::string& path, std::int64_t size) const {
                     h.slot_bytes <= recorder::kMaxSlotBytes && std::isfinite(h.period_s) && h.period_s > 0.0;
   if (!sane) throw BadInput(path + ": the header makes no sense");
   const std::int64_t wanted = static_cast<std::int64_t>(recorder::kHeaderBytes) + h.slots * h.slot_bytes;
-  if (size != wanted)
+  const std::int64_t scenes_bytes = size - wanted, one = recorder::kSceneBytes;
+  const std::int64_t most = h.version < 3 ? 0 : one * static_cast<std::int64_t>(recorder::kMostScenes);
+  if (scenes_bytes < 0 || scenes_bytes > most || scenes_bytes % one != 0)
     throw BadInput(path + text(": found %lld bytes, the header says %lld", static_cast<long long>(size),
                                static_cast<long long>(wanted)));
 }
@@ -99,13 +103,38 @@ void FlightReader::visit(const std::function<void(const ligature_msg::tick_t&)>&
   }
 }
 
-RigFacts FlightReader::facts() const {
-  return {header_.period_s,
-          header_.max_force_N,
-          true,
-          text_in(header_.scene_file),
-          text_in(header_.scene_toml),
-          text_in(header_.firmware_version)};
+/// An entry whose CRC is wrong was being written when everything stopped, or never.
+void FlightReader::read_scenes(std::span<const std::byte> entries) {
+  const auto facts = [&](const auto& from) {
+    return RigFacts{header_.period_s,         from.max_force_N,         true,
+                    text_in(from.scene_file), text_in(from.scene_toml), text_in(header_.firmware_version)};
+  };
+  const auto begun = facts(header_);
+  scenes_.push_back({0, begun, begun.scene_toml.find("\n# --force: ") == std::string::npos});
+  const auto entry = std::make_unique<recorder::SceneEntry>();
+  for (; entries.size() >= recorder::kSceneBytes; entries = entries.subspan(recorder::kSceneBytes)) {
+    std::memcpy(static_cast<void*>(entry.get()), entries.data(), sizeof *entry);
+    if (entry->number == 0 || entry->crc != recorder::crc_of(*entry)) continue;
+    scenes_.push_back({entry->first_tick, facts(*entry), entry->admitted != 0});
+  }
+  std::stable_sort(scenes_.begin() + 1, scenes_.end(),
+                   [](const Scene& a, const Scene& b) { return a.first_tick < b.first_tick; });
 }
+
+const FlightReader::Scene& FlightReader::scene_at(std::int64_t tick) const {
+  const auto later =
+      std::find_if(scenes_.begin() + 1, scenes_.end(), [&](const Scene& s) { return s.first_tick > tick; });
+  return *(later - 1);
+}
+
+std::int64_t FlightReader::oldest_tick() const {
+  ligature_msg::tick_t tick{};
+  if (sound_.empty()) return 0;
+  const auto payload = slot(sound_.front().slot).subspan(sizeof(recorder::SlotHead));
+  tick._decodeNoHash(payload.data(), 0, static_cast<int>(payload.size()));
+  return tick.tick;
+}
+
+RigFacts FlightReader::facts() const { return scene_at(oldest_tick()).facts; }
 
 }  // namespace ligature::host

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,14 +36,28 @@ class FlightReader {
   [[nodiscard]] std::int32_t fault() const { return header_.fault; }  ///< it was saved with; 0 = none
   [[nodiscard]] std::size_t ticks() const { return sound_.size(); }
   [[nodiscard]] std::int64_t damaged_slots() const { return damaged_; }
+  /// The scene in force at the oldest tick.
   [[nodiscard]] RigFacts facts() const;
 
+  /// A scene with its overrides, and from which tick on it was in force.
+  struct Scene {
+    std::int64_t first_tick = 0;
+    RigFacts facts;
+    bool admitted = true;  ///< false: run by --force
+  };
+  /// In order; the first is the one that the run, or what is known of it, began with.
+  [[nodiscard]] const std::vector<Scene>& scenes() const { return scenes_; }
+  [[nodiscard]] const Scene& scene_at(std::int64_t tick) const;
+
  private:
+  void read_scenes(std::span<const std::byte> entries);
+  [[nodiscard]] std::int64_t oldest_tick() const;
   void check(const std::string& path, std::int64_t size) const;
   void index();
   [[nodiscard]] std::span<const std::byte> slot(std::size_t i) const;
 
   recorder::Header header_;
+  std::vector<Scene> scenes_;
   std::vector<std::byte> ring_;
   struct Entry {
     std::uint64_t sequence;

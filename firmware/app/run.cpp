@@ -76,32 +76,36 @@ telemetry::Session session(const Plan& plan, const RunOptions& options, std::int
                            const telemetry::FlightRecorder* recorder) {
   return {id,
           LIGATURE_VERSION,
-          {options.scene, plan.toml, plan.scene.hands.max_force_N, plan.scene.suture.radius_m},
+          {options.scene, plan.toml, plan.scene.hands.max_force_N, plan.scene.suture.radius_m, admitted},
           control::kPeriod_s,
           realtime,
-          admitted,
           recorder != nullptr ? recorder->path() : std::string()};
 }
 
 /// What has become of a change of scene or parameters, told.
-void tell_change(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, SceneDesk& desk) {
+void tell_change(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, SceneDesk& desk,
+                 telemetry::FlightRecorder* recorder) {
+  if (recorder != nullptr) recorder->expect_scene(desk.is_busy());  // before the loop can have it
   auto outcome = desk.poll();
   if (!outcome) return;
   const auto at = now();
   telemetry.stamp(outcome->ack, at);
   if (const auto& c = outcome->changed) {
-    telemetry.scene_changed({c->file, c->toml, c->max_force_N, c->radius_m}, c->text, at);
+    if (recorder != nullptr) recorder->scene_changed({c->first_tick, c->max_force_N, c->admitted, c->file, c->toml});
+    telemetry.scene_changed({c->file, c->toml, c->max_force_N, c->radius_m, c->admitted}, c->text, c->first_tick, at);
     telemetry.set_offer(desk.offer());
   }
+  if (recorder != nullptr) recorder->expect_scene(false);
   link.answer(outcome->ack);
 }
 
 /// The telemetry thread: until `done`, then what is left.
-void tell(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, SceneDesk& desk, const std::atomic<bool>& done) {
+void tell(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, SceneDesk& desk,
+          telemetry::FlightRecorder* recorder, const std::atomic<bool>& done) {
   while (!done) {
     link.wait(5);
     telemetry.step(now());
-    tell_change(link, telemetry, desk);
+    tell_change(link, telemetry, desk, recorder);
   }
   telemetry.finish(now());
   if (link.failures() > 0) spdlog::warn("LCM: {} messages could not be sent", link.failures());
@@ -123,7 +127,7 @@ int run_loop(RealTimeSide& side, telemetry::LcmLink& link, telemetry::Telemetry&
              telemetry::FlightRecorder* recorder, const Buses& buses, rt::Outlets& outlets,
              const StopSignals& signals) {
   std::atomic<bool> done{false};
-  std::thread teller([&] { tell(link, telemetry, desk, done); });
+  std::thread teller([&] { tell(link, telemetry, desk, recorder, done); });
   platform::start_drives(*buses.left);
   platform::start_drives(*buses.right);
   side.start();
@@ -161,7 +165,7 @@ int run(const RunOptions& options) {
   if (excess && !options.force) return fail(*excess);
   if (excess) {
     spdlog::warn("--force: {}", excess->text);
-    plan.toml += "\n# --force: " + excess->text + "\n";
+    plan.toml += forced(excess->text);
   }
 
   const auto outlets = std::make_unique<rt::Outlets>();
@@ -180,7 +184,7 @@ int run(const RunOptions& options) {
   const std::int64_t id = now().utime;
   const auto recorder = open_recorder(plan, options, id);
   if (recorder) outlets->flight = &recorder->inlet();
-  SceneDesk desk(options, plan);
+  SceneDesk desk(options, plan, excess ? excess->text : "");
   const auto side = std::make_unique<RealTimeSide>(options, plan, buses, *outlets, desk.handover());
   const auto refused = side->prepare(ask, core);
   if (options.rt == RtMode::kEnforce && !refused.empty()) return fail({3, "--rt=enforce: " + refused.front()});

@@ -38,11 +38,13 @@ std::string assignment(const std::string& key, double value) { return key + "=" 
 
 }  // namespace
 
-SceneDesk::SceneDesk(const RunOptions& options, const Plan& plan)
+std::string forced(const std::string& excess) { return excess.empty() ? excess : "\n# --force: " + excess + "\n"; }
+
+SceneDesk::SceneDesk(const RunOptions& options, const Plan& plan, const std::string& excess)
     : options_(options),
       device_(plan.device),
       launch_(options, plan.scene),
-      now_{options.scene, {}, plan.scene, plan.scene} {
+      now_{options.scene, {}, plan.scene, plan.scene, excess} {
   const fs::path given = options.scenes.empty() ? fs::path(options.scene).parent_path() : fs::path(options.scenes);
   options_.scenes = given.empty() ? "." : given.string();
   scenes_ = scene_files(options_.scenes);
@@ -67,7 +69,7 @@ std::string SceneDesk::prepare_scene(const std::string& wish) {
   words_ = "scene " + name + " loaded";
   for (const auto& l : live) words_ += (&l == &live.front() ? " with " : " ") + l;
   if (const auto held = launch_.held(live); !held.empty()) words_ += "; launch options hold: " + held;
-  next_ = {(fs::path(options_.scenes) / name).string(), std::move(live), {}, {}};
+  next_ = {(fs::path(options_.scenes) / name).string(), std::move(live), {}, {}, {}};
   return {};
 }
 
@@ -138,9 +140,10 @@ std::variant<SceneDesk::Built, std::string> SceneDesk::build(Setup setup, bool k
   if (const auto* refusal = std::get_if<Refusal>(&planned)) return refusal->text;
   Plan& plan = std::get<Plan>(planned);
   setup.scene = plan.scene;
-  if (!keeps_motion) setup.from_file = plan.scene;
+  if (!keeps_motion) setup.from_file = plan.scene, setup.excess = verdict.excess;
   auto plant =
       std::make_unique<control::Plant>(control::Plant{std::move(plan.thread), plan.scene.hands, keeps_motion, false});
+  plan.toml += forced(setup.excess);
   return Built{std::move(plant), std::move(setup), std::move(plan.toml)};
 }
 
@@ -168,8 +171,8 @@ std::optional<SceneDesk::Outcome> SceneDesk::poll() {
   const Built done = *std::exchange(lent_, std::nullopt);
   if (!back->taken) return answer("force may flow: disarm first, a scene is loaded in OFF or IDLE only");
   now_ = done.setup;
-  return answer(words_,
-                Changed{now_.file, done.toml, words_, now_.scene.hands.max_force_N, now_.scene.suture.radius_m});
+  return answer(words_, Changed{now_.file, done.toml, words_, now_.scene.hands.max_force_N, now_.scene.suture.radius_m,
+                                now_.excess.empty(), done.plant->first_tick});
 }
 
 ligature_msg::offer_t SceneDesk::offer() const {

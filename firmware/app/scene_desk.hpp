@@ -24,7 +24,12 @@ namespace ligature::app {
 struct Changed {
   std::string file, toml, text;  ///< text: one line for people
   double max_force_N, radius_m;
+  bool admitted;
+  std::int64_t first_tick;
 };
+
+/// What the text of a scene says when its worst tick does not fit and --force runs it: "\n# --force: ..", or nothing.
+[[nodiscard]] std::string forced(const std::string& excess);
 
 /// The telemetry thread's; a thread of its own builds, one change at a time. A scene is read once; a child process
 /// builds it, lets it prove in a rehearsal that it stays finite, and measures whether its worst tick fits as at the
@@ -34,7 +39,8 @@ struct Changed {
 class SceneDesk {
  public:
   /// @param plan of the start; its thread is not looked at.
-  SceneDesk(const RunOptions& options, const Plan& plan);
+  /// @param excess why its worst tick does not fit; empty: it does.
+  SceneDesk(const RunOptions& options, const Plan& plan, const std::string& excess = {});
   ~SceneDesk() { ending_ = true; }  // and waits for a builder that is told so
   SceneDesk(const SceneDesk&) = delete;
   SceneDesk& operator=(const SceneDesk&) = delete;
@@ -56,6 +62,9 @@ class SceneDesk {
   };
   [[nodiscard]] std::optional<Outcome> poll();
 
+  /// Whether a change is asked for and not yet answered; the loop may have it.
+  [[nodiscard]] bool is_busy() const noexcept { return busy_; }
+
   [[nodiscard]] ligature_msg::offer_t offer() const;
 
  private:
@@ -63,6 +72,7 @@ class SceneDesk {
     std::string file;
     std::vector<std::string> live;  // overrides of commands; those of the launch hold beside them
     scene::Scene from_file, scene;
+    std::string excess;  // why its worst tick does not fit; empty: it does
   };
   struct Built {
     std::unique_ptr<control::Plant> plant;

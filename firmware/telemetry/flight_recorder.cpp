@@ -8,6 +8,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kWritePeriod(5);
 constexpr std::chrono::milliseconds kSyncPeriod(500);
+constexpr std::chrono::milliseconds kScenePatience(100);  // telemetry looks every 5 ms
 constexpr std::size_t kBatch = 256;
 
 }  // namespace
@@ -57,7 +58,30 @@ void FlightRecorder::write_down() {
   if (behind > 0) lose(behind, next_tick_, next_tick_ + behind - 1, "the disk stood still for too long");
 }
 
+void FlightRecorder::expect_scene(bool expected) {
+  {
+    const std::lock_guard lock(mutex_);
+    scene_expected_ = expected;
+  }
+  wake_.notify_all();
+}
+
+void FlightRecorder::scene_changed(FlightScene scene) {
+  const std::lock_guard lock(mutex_);
+  scenes_.push_back(std::move(scene));
+}
+
+void FlightRecorder::take_scenes() {
+  std::vector<FlightScene> come;
+  {
+    const std::lock_guard lock(mutex_);
+    come.swap(scenes_);
+  }
+  for (const auto& scene : come) slots_.add(scene);
+}
+
 void FlightRecorder::take_all() {
+  take_scenes();
   for (;;) {
     batch_.clear();
     bool faulted = false;
@@ -85,6 +109,11 @@ void FlightRecorder::look_for_holes() {
 }
 
 void FlightRecorder::save(const rt::TickRecord& faulted) {
+  {
+    std::unique_lock lock(mutex_);
+    wake_.wait_for(lock, kScenePatience, [this] { return !scene_expected_; });
+  }
+  take_scenes();
   const std::string file = slots_.save_last(kTicksPerFault, faulted.fault);
   note({faulted.tick, faulted.fault,
         "the ticks before fault " + std::to_string(faulted.fault) +

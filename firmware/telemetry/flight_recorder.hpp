@@ -56,6 +56,12 @@ class FlightRecorder {
   /// Where one thread, the loop, puts its records; their ticks count from 0 on.
   [[nodiscard]] rt::SpscRing<rt::TickRecord>& inlet() noexcept { return inlet_; }
 
+  /// A change of scene is under way: the loop may have taken it before scene_changed() says so. What is saved with a
+  /// fault waits for that, for a moment at most. Any thread; never waits for the disk.
+  void expect_scene(bool expected);
+  /// Another scene or parameter is in force since its first tick. Any thread; never waits for the disk.
+  void scene_changed(FlightScene scene);
+
   /// After the last record: returns when all are on the disk. The second time it does nothing.
   void finish();
 
@@ -73,6 +79,7 @@ class FlightRecorder {
  private:
   void write_down();
   void take_all();
+  void take_scenes();
   void look_for_holes();
   void save(const rt::TickRecord& faulted);
   void lose(std::int64_t count, std::int64_t first, std::int64_t last, const char* why);
@@ -92,7 +99,8 @@ class FlightRecorder {
   std::atomic<std::int64_t> missing_{0}, slowest_sync_ms_{0};
   std::mutex mutex_;  // of what follows; held for a moment only, never over a call to the disk
   std::condition_variable wake_;
-  bool ending_ = false;
+  bool ending_ = false, scene_expected_ = false;
+  std::vector<FlightScene> scenes_;
   std::vector<FlightNote> notes_;
   std::thread writer_, syncer_;
 };

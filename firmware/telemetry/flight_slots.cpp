@@ -22,6 +22,14 @@ void encode(const rt::TickRecord& record, std::uint64_t sequence, std::span<std:
   std::memcpy(slot.data(), &head, sizeof head);
 }
 
+/// The tick of slot 0: the first field of a tick_t, big-endian.
+std::int64_t first_tick_in(std::span<const std::byte> image) {
+  std::uint64_t tick = 0;
+  for (const auto byte : image.subspan(recorder::kHeaderBytes + sizeof(recorder::SlotHead), 8))
+    tick = tick << 8U | std::to_integer<std::uint64_t>(byte);
+  return static_cast<std::int64_t>(tick);
+}
+
 }  // namespace
 
 recorder::Header header_of(const FlightFacts& facts, std::int64_t slots) {
@@ -43,8 +51,9 @@ recorder::Header header_of(const FlightFacts& facts, std::int64_t slots) {
   return h;
 }
 
-std::size_t file_bytes(const recorder::Header& header) {
-  return recorder::kHeaderBytes + static_cast<std::size_t>(header.slots) * header.slot_bytes;
+std::size_t file_bytes(const recorder::Header& header, std::size_t scenes) {
+  return recorder::kHeaderBytes + static_cast<std::size_t>(header.slots) * header.slot_bytes +
+         scenes * recorder::kSceneBytes;
 }
 
 FlightSlots::FlightSlots(std::string path, Disk& disk, const recorder::Header& header)
@@ -74,13 +83,36 @@ std::size_t FlightSlots::append(std::span<const rt::TickRecord> records) {
   return refused;
 }
 
+void FlightSlots::add(const FlightScene& scene) {
+  recorder::SceneEntry& e = scenes_.emplace_back();
+  std::memset(static_cast<void*>(&e), 0, sizeof e);  // gaps between members count in the CRC
+  e.number = ++scene_number_;
+  e.first_tick = scene.first_tick;
+  e.max_force_N = scene.max_force_N;
+  e.admitted = scene.admitted ? 1 : 0;
+  e.toml_bytes = static_cast<std::uint32_t>(std::min(scene.scene_toml.size(), e.scene_toml.size() - 1));
+  recorder::put_text(e.scene_file, scene.scene_file);
+  recorder::put_text(e.scene_toml, scene.scene_toml);
+  e.crc = recorder::crc_of(e);
+  disk_.write(std::as_bytes(std::span(&e, 1)), file_bytes(header_, (e.number - 1) % recorder::kMostScenes));
+  if (scenes_.size() > recorder::kMostScenes) scenes_.pop_front();
+}
+
+/// Those in force at that tick or later.
+std::vector<const recorder::SceneEntry*> FlightSlots::scenes_from(std::int64_t tick) const {
+  std::vector<const recorder::SceneEntry*> wanted;
+  for (std::size_t i = 0; i < scenes_.size(); ++i)
+    if (i + 1 == scenes_.size() || scenes_[i + 1].first_tick > tick) wanted.push_back(&scenes_[i]);
+  return wanted;
+}
+
 /// Records are numbered anew, from 1, so that the file is as small as what it holds.
 std::vector<std::byte> FlightSlots::image_of_last(std::uint64_t count, std::int32_t fault) {
   recorder::Header header = header_;
   header.slots = static_cast<std::int64_t>(count);
   header.fault = fault;
   header.crc = recorder::crc_of(header);
-  std::vector<std::byte> image(file_bytes(header));
+  std::vector<std::byte> image(file_bytes(header, 0));
   std::memcpy(image.data(), &header, sizeof header);
   for (std::uint64_t q = 1; q <= count; ++q) {
     const auto to = std::span(image).subspan(recorder::kHeaderBytes + (q - 1) * header.slot_bytes, header.slot_bytes);
@@ -90,6 +122,13 @@ std::vector<std::byte> FlightSlots::image_of_last(std::uint64_t count, std::int3
     head.sequence = q;
     head.crc = recorder::crc_of(head, to.subspan(sizeof head, head.bytes));
     std::memcpy(to.data(), &head, sizeof head);
+  }
+  for (const auto* entry : scenes_from(first_tick_in(image))) {
+    recorder::SceneEntry anew = *entry;
+    anew.number = (image.size() - file_bytes(header, 0)) / recorder::kSceneBytes + 1;
+    anew.crc = recorder::crc_of(anew);
+    image.resize(image.size() + recorder::kSceneBytes);
+    std::memcpy(image.data() + image.size() - recorder::kSceneBytes, &anew, sizeof anew);
   }
   return image;
 }

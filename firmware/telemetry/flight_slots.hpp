@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,9 +22,18 @@ struct FlightFacts {
   std::string firmware_version, scene_file, scene_toml;
 };
 
+/// A scene that came in force while the rig ran.
+struct FlightScene {
+  std::int64_t first_tick = 0;
+  double max_force_N = 0.0;
+  bool admitted = true;
+  std::string scene_file, scene_toml;
+};
+
 /// @param slots ticks to keep.
 [[nodiscard]] recorder::Header header_of(const FlightFacts& facts, std::int64_t slots);
-[[nodiscard]] std::size_t file_bytes(const recorder::Header& header);
+/// @param scenes that the file has room for.
+[[nodiscard]] std::size_t file_bytes(const recorder::Header& header, std::size_t scenes = recorder::kMostScenes);
 
 /// One thread uses it; it waits for the disk.
 class FlightSlots {
@@ -36,7 +46,11 @@ class FlightSlots {
   /// @return how many of them the disk did not take; these are not in the file.
   std::size_t append(std::span<const rt::TickRecord> records);
 
-  /// The last `ticks` as a file of the same format beside this one, complete or not at all.
+  /// From its first tick on; the last kMostScenes of them are kept.
+  void add(const FlightScene& scene);
+
+  /// The last `ticks`, and the scenes in force at them, as a file of the same format beside this one, complete or not
+  /// at all.
   /// @return its path, or nothing when it could not be written or kMaxSaved were.
   [[nodiscard]] std::string save_last(std::int64_t ticks, std::int32_t fault);
 
@@ -44,6 +58,7 @@ class FlightSlots {
 
  private:
   [[nodiscard]] std::size_t place_of(std::uint64_t sequence) const noexcept;
+  [[nodiscard]] std::vector<const recorder::SceneEntry*> scenes_from(std::int64_t tick) const;
   [[nodiscard]] std::vector<std::byte> image_of_last(std::uint64_t count, std::int32_t fault);
 
   std::string path_;
@@ -51,6 +66,8 @@ class FlightSlots {
   recorder::Header header_;
   std::uint64_t sequence_ = 0;
   int saved_ = 0;
+  std::deque<recorder::SceneEntry> scenes_;  // the newest, oldest first
+  std::uint64_t scene_number_ = 0;
   std::vector<std::byte> scratch_;
 };
 

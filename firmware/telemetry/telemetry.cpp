@@ -96,7 +96,7 @@ void Telemetry::send_status(Moment now) {
   m.periods_lost = lost_;
   m.realtime = session_.realtime ? 1 : 0;
   m.armed = last_.armed ? 1 : 0;
-  m.admitted = session_.admitted ? 1 : 0;
+  m.admitted = session_.scene.admitted ? 1 : 0;
   sink_.send(m);
 }
 
@@ -114,11 +114,11 @@ void Telemetry::set_offer(ligature_msg::offer_t offer) {
   offer_due_us_ = 0;
 }
 
-void Telemetry::scene_changed(const SceneFacts& facts, const std::string& text, Moment now) {
+void Telemetry::scene_changed(const SceneFacts& facts, const std::string& text, std::int64_t tick, Moment now) {
   session_.scene = facts;
   ligature_msg::event_t event{};
   event.utime = now.utime;
-  event.tick = last_.tick;
+  event.tick = tick;
   event.kind = ligature_msg::event_t::KIND_CHANGE;
   event.hand = -1;
   event.text = text;

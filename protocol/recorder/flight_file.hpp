@@ -3,10 +3,14 @@
 //
 //   0       Header, kHeaderBytes, with a CRC of its own
 //   + i S   slot i of S = slot_bytes: SlotHead, then `bytes` of payload: a tick_t in LCM encoding, without its hash
+//   + j K   from version 3 on, scene j of K = kSceneBytes: a SceneEntry for each change of scene or parameter; as many
+//           as the file's size leaves room for
 //
 // Record number q (from 1) lies in slot (q - 1) mod slots. The CRC of a slot covers number, length and payload, so that
 // a slot that was being written when everything stopped, or that the disk lost, is seen as such: at most one of them by
-// the death of the writer, whatever its moment. Nothing else is ever rewritten, so there is no index to repair.
+// the death of the writer, whatever its moment. Scene entry number e (from 1) lies in place (e - 1) mod their count,
+// and is written in the same way. The header's scene is in force from the first tick on, an entry's from its
+// first_tick. Nothing else is ever rewritten, so there is no index to repair.
 
 #include <array>
 #include <cstddef>
@@ -21,7 +25,7 @@
 namespace ligature::recorder {
 
 inline constexpr std::array<char, 8> kMagic{'L', 'G', 'F', 'L', 'I', 'G', 'H', 'T'};
-inline constexpr std::uint32_t kVersion = 2;
+inline constexpr std::uint32_t kVersion = 3, kOldestVersion = 2;
 inline constexpr std::size_t kHeaderBytes = 65536;
 inline constexpr std::int64_t kMaxSlots = 4'000'000;
 inline constexpr std::uint32_t kMaxSlotBytes = 4096;
@@ -44,6 +48,21 @@ struct Header {
 };
 static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) <= kHeaderBytes);
 
+/// A scene that came in force while the rig ran.
+struct SceneEntry {
+  std::uint64_t number = 0;  ///< 0: never written
+  std::int64_t first_tick = 0;
+  double max_force_N = 0.0;
+  std::int32_t admitted = 0;  ///< 0: run by --force
+  std::uint32_t toml_bytes = 0;
+  std::array<char, 256> scene_file{};
+  std::array<char, 61440> scene_toml{};  ///< with its overrides; cut off when longer
+  std::uint32_t crc = 0;                 ///< of everything before it
+};
+inline constexpr std::size_t kSceneBytes = 65536;
+inline constexpr std::size_t kMostScenes = 64;
+static_assert(std::is_trivially_copyable_v<SceneEntry> && sizeof(SceneEntry) <= kSceneBytes);
+
 struct SlotHead {
   std::uint64_t sequence = 0;  ///< 0: never written
   std::uint32_t bytes = 0;
@@ -53,6 +72,10 @@ static_assert(sizeof(SlotHead) == 16);
 
 [[nodiscard]] inline std::uint32_t crc_of(const Header& header) noexcept {
   return crc32(std::as_bytes(std::span(&header, 1)).first(offsetof(Header, crc)));
+}
+
+[[nodiscard]] inline std::uint32_t crc_of(const SceneEntry& entry) noexcept {
+  return crc32(std::as_bytes(std::span(&entry, 1)).first(offsetof(SceneEntry, crc)));
 }
 
 [[nodiscard]] inline std::uint32_t crc_of(const SlotHead& head, std::span<const std::byte> payload) noexcept {

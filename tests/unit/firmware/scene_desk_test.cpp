@@ -55,6 +55,7 @@ class SceneDeskTest : public ::testing::Test {
     for (;;) {
       if (auto* plant = desk.handover().take()) {
         plant->taken = takes;
+        plant->first_tick = 1234;
         hands = plant->hands;
         nodes = static_cast<int>(plant->thread.nodes_W().size());
         desk.handover().give_back(plant);
@@ -266,6 +267,33 @@ TEST_F(SceneDeskTest, ASceneThatTakesItsRehearsalDownIsRefusedAndNothingElseHapp
   auto d = desk();
   ASSERT_FALSE(d.request(load("longer.toml"), false).has_value());
   EXPECT_NE(outcome(d).ack.reason.find("cannot be rehearsed: no process"), std::string::npos);
+}
+
+TEST_F(SceneDeskTest, TellsOfEachSceneWhetherItFitsAndSinceWhichTick) {
+  options.program = script(folder, "case \"$3\" in *longer*) echo ligature-firmware: too much >&2; exit 3;; esac");
+  {
+    auto strict = desk();
+    ASSERT_FALSE(strict.request(load("longer.toml"), false).has_value());
+    EXPECT_EQ(outcome(strict).ack.reason, "too much");
+  }
+  options.force = true;
+  SceneDesk d(options, std::get<Plan>(make_plan(options)), "too much at the start");
+  const auto changed = [&](const ligature_msg::command_t& wish) {
+    EXPECT_FALSE(d.request(wish, false).has_value());
+    return *outcome(d).changed;
+  };
+  const auto first = changed(set("contact.friction", 0.5));
+  EXPECT_FALSE(first.admitted) << "a parameter leaves it as it was";
+  EXPECT_NE(first.toml.find("\n# --force: too much at the start\n"), std::string::npos) << first.toml;
+  EXPECT_EQ(first.first_tick, 1234);
+  const auto fits = changed(load("small.toml"));
+  EXPECT_TRUE(fits.admitted);
+  EXPECT_EQ(fits.toml.find("--force"), std::string::npos) << fits.toml;
+  for (const auto& wish : {load("longer.toml"), set("contact.friction", 0.5)}) {
+    const auto large = changed(wish);
+    EXPECT_FALSE(large.admitted);
+    EXPECT_NE(large.toml.find("\n# --force: too much\n"), std::string::npos) << large.toml;
+  }
 }
 
 TEST_F(SceneDeskTest, ARehearsalThatDoesNotEndIsEndedWithTheDesk) {

@@ -160,7 +160,7 @@ class EveryField : public ::testing::Test {
  protected:
   std::unique_ptr<rt::Outlets> outlets = std::make_unique<rt::Outlets>();
   Last sink;
-  Session session{42, "1.2.3", {"a.toml", "text", 3.25, 0.0625}, 0.002, false, false, "flight.rec"};
+  Session session{42, "1.2.3", {"a.toml", "text", 3.25, 0.0625, false}, 0.002, false, "flight.rec"};
 };
 
 /// What was told against what is expected, name by name; `open` are those whose value is not the source's to give.
@@ -225,7 +225,7 @@ TEST_F(EveryField, OfAShapeIsThatOfItsSource) {
 
 TEST_F(EveryField, OfAStatusIsThatOfItsSource) {
   for (int yes = 0; yes < 3; ++yes) {
-    session.realtime = yes == 0, session.admitted = yes == 1;
+    session.realtime = yes == 0, session.scene.admitted = yes == 1;
     Telemetry telemetry{session, kNames, *outlets, sink};
     rt::TickRecord record;
     record.tick = 701, record.state = 5, record.fault = 21, record.armed = yes == 2;

@@ -228,5 +228,85 @@ TEST_F(FlightRecorderTest, OpensAFileOfItsOwnOrSaysWhyNot) {
   EXPECT_NE(std::get<std::string>(again).find("another process records into it"), std::string::npos);
 }
 
+FlightScene scene_of(std::int64_t first_tick, const std::string& name, bool admitted = true) {
+  return {first_tick, 1.5, admitted, name, "[suture]\n# of " + name};
+}
+
+std::string file_at(const FlightReader& reader, std::int64_t tick) { return reader.scene_at(tick).facts.scene_file; }
+
+TEST_F(FlightRecorderTest, NamesTheSceneInForceAtEachTick) {
+  start();
+  tick(100);
+  recorder->scene_changed(scene_of(40, "b.toml"));
+  recorder->scene_changed(scene_of(90, "c.toml", false));
+  recorder->finish();
+  const FlightReader reader(path);
+  EXPECT_EQ(reader.ticks(), 100U);
+  for (const auto& [at, name] :
+       {std::pair{0, "a.toml"}, {39, "a.toml"}, {40, "b.toml"}, {89, "b.toml"}, {90, "c.toml"}})
+    EXPECT_EQ(file_at(reader, at), name) << at;
+  EXPECT_EQ(reader.scene_at(50).facts.scene_toml, "[suture]\n# of b.toml");
+  EXPECT_EQ(reader.scene_at(50).facts.max_force_N, 1.5);
+  EXPECT_TRUE(reader.scene_at(50).admitted);
+  EXPECT_FALSE(reader.scene_at(90).admitted);
+  EXPECT_EQ(reader.facts().scene_file, "a.toml") << "at the oldest tick";
+}
+
+TEST_F(FlightRecorderTest, ARingThatHasForgottenTheFirstSceneSaysWhichItHolds) {
+  start();
+  recorder->scene_changed(scene_of(1000, "b.toml"));
+  tick(kSlots + 2000);
+  recorder->finish();
+  EXPECT_EQ(FlightReader(path).facts().scene_file, "b.toml");
+}
+
+TEST_F(FlightRecorderTest, KeepsTheNewestScenesOfMany) {
+  start();
+  constexpr std::int64_t kMany = 3 * recorder::kMostScenes / 2;
+  for (std::int64_t i = 1; i <= kMany; ++i) recorder->scene_changed(scene_of(i, std::to_string(i)));
+  tick(kMany + 1);
+  recorder->finish();
+  const FlightReader reader(path);
+  EXPECT_EQ(reader.scenes().size(), 1 + recorder::kMostScenes);
+  for (std::int64_t i = kMany - static_cast<std::int64_t>(recorder::kMostScenes) + 1; i <= kMany; ++i)
+    EXPECT_EQ(file_at(reader, i), std::to_string(i));
+}
+
+TEST_F(FlightRecorderTest, WhatAFaultSavesNamesTheScenesOfItsTicks) {
+  start();
+  tick(3000);
+  recorder->scene_changed(scene_of(100, "b.toml"));
+  recorder->scene_changed(scene_of(500, "c.toml"));
+  recorder->scene_changed(scene_of(2900, "d.toml", false));
+  tick(1, 21);
+  recorder->finish();
+  const auto notes = recorder->take_notes();
+  ASSERT_EQ(notes.size(), 1U);
+  const FlightReader saved(notes[0].text.substr(notes[0].text.find('/')));
+  EXPECT_EQ(saved.fault(), 21);
+  EXPECT_EQ(saved.ticks(), 2000U);
+  EXPECT_EQ(file_at(saved, 1001), "c.toml");
+  EXPECT_EQ(file_at(saved, 3000), "d.toml");
+  EXPECT_FALSE(saved.scene_at(3000).admitted);
+  EXPECT_EQ(saved.facts().scene_file, "c.toml");
+  EXPECT_EQ(saved.scenes().size(), 3U) << "the launch's, and the two of its ticks";
+}
+
+// The loop takes a scene, a fault follows in the next tick, and only then telemetry hears of the scene.
+TEST_F(FlightRecorderTest, WhatAFaultSavesWaitsForASceneThatIsOnItsWay) {
+  start();
+  recorder->expect_scene(true);
+  tick(100);
+  tick(1, 21);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // the writer is there by now; if not, this tests less
+  EXPECT_TRUE(recorder->take_notes().empty());
+  recorder->scene_changed(scene_of(100, "b.toml"));
+  recorder->expect_scene(false);
+  recorder->finish();
+  const auto notes = recorder->take_notes();
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_EQ(file_at(FlightReader(notes[0].text.substr(notes[0].text.find('/'))), 100), "b.toml");
+}
+
 }  // namespace
 }  // namespace ligature::telemetry

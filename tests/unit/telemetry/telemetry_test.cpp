@@ -44,7 +44,7 @@ class TelemetryTest : public ::testing::Test {
   }
   std::unique_ptr<rt::Outlets> outlets = std::make_unique<rt::Outlets>();
   Memory sink;
-  Session session{42, "1.2.3", {"a.toml", "text", 3.3, 0.05}, 0.001, true, false, "flight.rec"};
+  Session session{42, "1.2.3", {"a.toml", "text", 3.3, 0.05, false}, 0.001, true, "flight.rec"};
   Telemetry telemetry{session, kNames, *outlets, sink};
   rt::TickRecord record;
 };
@@ -64,9 +64,11 @@ TEST_F(TelemetryTest, AChangeOfSceneIsToldAtOnceAndInEveryStatusAfterIt) {
 
   push(5);
   telemetry.step(at(1'000'001));
-  telemetry.scene_changed({"b.toml", "other", 1.5, 0.01}, "scene b.toml loaded", at(1'000'002));
+  EXPECT_EQ(sink.statuses.back().admitted, 0);
+  telemetry.scene_changed({"b.toml", "other", 1.5, 0.01, true}, "scene b.toml loaded", 4, at(1'000'002));
   ASSERT_EQ(sink.events.back().kind, ligature_msg::event_t::KIND_CHANGE);
-  EXPECT_EQ(sink.events.back().tick, 5);
+  EXPECT_EQ(sink.events.back().tick, 4) << "since it is in force, not since it is told";
+  EXPECT_EQ(sink.statuses.back().admitted, 1);
   EXPECT_EQ(sink.events.back().text, "scene b.toml loaded");
   EXPECT_EQ(sink.statuses.back().scene_file, "b.toml");
   EXPECT_EQ(sink.statuses.back().scene_toml, "other");
