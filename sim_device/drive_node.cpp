@@ -1,6 +1,8 @@
 #include "sim_device/drive_node.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+#include <limits>
 
 namespace ligature::sim {
 
@@ -95,7 +97,7 @@ void DriveNode::on_nmt(const can::NmtMessage& message, Time now, std::vector<can
 void DriveNode::on_sync(const Sensed& sensed, std::vector<can::Frame>& out) {
   if (objects_.is_pdo_on(can::Pdo::kTpdo1)) {
     const auto buttons = can::profile::with_life(can::profile::with_held(sensed.buttons, held_syncs_), ++life_);
-    const std::int16_t made = sensed.guarded ? sensed.torque_permille : torque_permille_;
+    const std::int16_t made = sensed.guarded ? sensed.torque_permille : torque_permille();
     out.push_back(can::encode(id_, can::Tpdo1{statusword(sensed.guarded), sensed.position_counts, made, buttons}));
   }
   held_syncs_ = has_received_ ? 0 : held_syncs_ + (held_syncs_ < 31);
@@ -140,7 +142,7 @@ void DriveNode::react(Event event, std::vector<can::Frame>& out) {
 
 void DriveNode::on_sdo(const can::Sdo& request, Time now, std::vector<can::Frame>& out) {
   objects_.set(od::kStatusword, statusword());
-  objects_.set(od::kTorqueActual, torque_permille_);
+  objects_.set(od::kTorqueActual, torque_permille());
   objects_.set(od::kModeOfOperationDisplay, objects_.value(od::kModeOfOperation));
   const auto answer = objects_.serve(request);
   if (!answer) return;
@@ -193,6 +195,16 @@ void DriveNode::trip(std::uint16_t code, std::vector<can::Frame>& out) {
   out.push_back(can::encode(can::Emergency{id_, code, error_register}));
 }
 
+std::int16_t DriveNode::torque_permille() const noexcept {
+  if (state_ != State::kOperationEnabled) return torque_permille_;
+  constexpr int kMost = std::numeric_limits<std::int16_t>::max();
+  return static_cast<std::int16_t>(std::clamp(torque_permille_ + astray_permille_, -kMost, kMost));
+}
+
+bool DriveNode::is_astray() const noexcept {
+  return state_ == State::kOperationEnabled && std::abs(astray_permille_) > can::profile::kTorqueTolerance_permille;
+}
+
 void DriveNode::take_torque_away() noexcept {
   torque_permille_ = 0;
   is_limited_ = false;
@@ -202,6 +214,7 @@ std::uint16_t DriveNode::statusword(bool guarded) const noexcept {
   unsigned word = cia402::statusword_of(state_) | cia402::kVoltageEnabledBit | cia402::kRemoteBit;
   if (is_limited_ || guarded) word |= cia402::kInternalLimitBit;
   if (state_ == State::kOperationEnabled) word |= cia402::kFollowsTargetBit;
+  if (is_astray()) word |= cia402::kTorqueAstrayBit;
   return static_cast<std::uint16_t>(word);
 }
 

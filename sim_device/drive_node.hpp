@@ -44,12 +44,14 @@ class DriveNode {
   [[nodiscard]] Time next_deadline() const noexcept;
   /// Power off: no torque from here on.
   void power_off() noexcept;
+  /// Its current loop is out of order: while the power stage is on it makes so much more than it was asked for.
+  void go_astray(std::int16_t by_permille) noexcept { astray_permille_ = by_permille; }
 
   [[nodiscard]] can::NodeId id() const noexcept { return id_; }
   [[nodiscard]] can::cia402::State state() const noexcept { return state_; }
   [[nodiscard]] can::NmtState nmt_state() const noexcept { return nmt_; }
   /// Torque the motor makes now, per mille of rated.
-  [[nodiscard]] std::int16_t torque_permille() const noexcept { return torque_permille_; }
+  [[nodiscard]] std::int16_t torque_permille() const noexcept;
   [[nodiscard]] const DriveStats& stats() const noexcept { return stats_; }
 
  private:
@@ -63,6 +65,7 @@ class DriveNode {
   void act_on(const can::Rpdo1& rpdo, std::vector<can::Frame>& out);
   void trip(std::uint16_t code, std::vector<can::Frame>& out);
   void take_torque_away() noexcept;
+  [[nodiscard]] bool is_astray() const noexcept;
   [[nodiscard]] std::uint16_t statusword(bool guarded = false) const noexcept;
   [[nodiscard]] bool is_operational() const noexcept { return nmt_ == can::NmtState::kOperational; }
 
@@ -70,10 +73,11 @@ class DriveNode {
   ObjectDictionary objects_;
   can::NmtState nmt_ = can::NmtState::kBootUp;
   can::cia402::State state_ = can::cia402::State::kNotReadyToSwitchOn;
-  can::Rpdo1 received_;        ///< written by the bus at any time
-  bool has_received_ = false;  ///< since the last SYNC
-  can::Rpdo1 acting_;          ///< taken over from received_ at SYNC
-  std::int16_t torque_permille_ = 0;
+  can::Rpdo1 received_;               ///< written by the bus at any time
+  bool has_received_ = false;         ///< since the last SYNC
+  can::Rpdo1 acting_;                 ///< taken over from received_ at SYNC
+  std::int16_t torque_permille_ = 0;  // as asked for
+  std::int16_t astray_permille_ = 0;
   std::uint8_t life_ = 0;  // of the buttons
   int held_syncs_ = 0;     // the acting torque's RPDO is so many SYNCs older than it should be
   bool is_limited_ = false;

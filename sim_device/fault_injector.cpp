@@ -5,12 +5,15 @@
 
 #include "protocol/can/codec.hpp"
 #include "protocol/can/emcy.hpp"
+#include "protocol/can/heartbeat.hpp"
 #include "protocol/can/nmt.hpp"
+#include "protocol/can/sdo.hpp"
 
 namespace ligature::sim {
 namespace {
 
 using scene::FaultKind;
+using scene::ForeignFrame;
 
 constexpr std::uint16_t kGenericError = 0x1000;
 
@@ -25,6 +28,8 @@ void FaultInjector::apply(HandDevice& device, Time now) {
     end_ = script_.until_s < 1e6 ? device.bus_stats().first_sync + time_of(script_.until_s) : kNever;
   }
   once(device, now);
+  for (; next_foreign_ <= now && next_foreign_ < end_; next_foreign_ += time_of(script_.period_s))
+    send_foreign(device, now);
   auto& deliveries = device.deliveries();
   std::vector<Delivery> changed;
   for (Delivery& d : deliveries) {
@@ -42,11 +47,43 @@ void FaultInjector::once(HandDevice& device, Time now) {
   if (done_once_ || now < onset_) return;
   done_once_ = true;
   const can::NodeId node{static_cast<std::uint8_t>(std::max(script_.node, 1))};
-  if (script_.kind == FaultKind::kReboot)
-    device.submit(can::encode_nmt(can::NmtCommand::kResetNode, node), HandDevice::kMaxClients, now);
+  const std::size_t drive = node.value - 1U;
+  if (script_.kind == FaultKind::kReboot) device.restart(drive, now);
   if (script_.kind == FaultKind::kEmergency)
-    device.submit(can::encode(can::Emergency{node, kGenericError, can::emcy::kGenericBit}), HandDevice::kMaxClients,
-                  now);
+    device.submit(can::encode(can::Emergency{node, kGenericError, can::emcy::kGenericBit}), HandDevice::kStranger, now);
+  if (script_.kind == FaultKind::kAstray) device.lead_astray(drive, static_cast<std::int16_t>(script_.permille));
+  if (script_.kind == FaultKind::kForeign) next_foreign_ = now;
+}
+
+/// As a second controller would: `node` 0 means all of the hand's drives.
+void FaultInjector::send_foreign(HandDevice& device, Time now) const {
+  const auto put = [&](const can::Frame& f) { device.submit(f, HandDevice::kStranger, now); };
+  const can::NodeId target{static_cast<std::uint8_t>(script_.node)};
+  const auto to_each = [&](auto frame_for) {
+    for (const can::NodeId n : can::profile::kJointNodes)
+      if (script_.node == 0 || n == target) put(frame_for(n));
+  };
+  const auto torque = static_cast<std::int16_t>(script_.permille);
+  switch (script_.frame) {
+    case ForeignFrame::kRpdo:
+      return to_each([&](can::NodeId n) {
+        return can::encode(n, can::Rpdo1{can::cia402::kControlEnableOperation, torque});
+      });
+    case ForeignFrame::kSync:
+      return put(can::sync_frame());
+    case ForeignFrame::kHeartbeat:
+      return put(can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}));
+    case ForeignFrame::kNmtStart:
+      return put(can::encode_nmt(can::NmtCommand::kStart, target));
+    case ForeignFrame::kNmtStop:
+      return put(can::encode_nmt(can::NmtCommand::kStop, target));
+    case ForeignFrame::kNmtReset:
+      return put(can::encode_nmt(can::NmtCommand::kResetNode, target));
+    case ForeignFrame::kSdoRead:
+      return to_each([](can::NodeId n) { return can::sdo_read(n, can::od::kStatusword); });
+    case ForeignFrame::kSdoWrite:  // the watch over silence, off
+      return to_each([](can::NodeId n) { return can::sdo_write(n, can::od::kRpdo1EventTimer, 0, 2); });
+  }
 }
 
 bool FaultInjector::is_hit(const Delivery& d) {

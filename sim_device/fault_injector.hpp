@@ -11,8 +11,8 @@
 
 namespace ligature::sim {
 
-/// Changes what the outside hears of a device; the device itself does not know (a reboot and an emergency excepted:
-/// those it really does). Deterministic in its script. Times are since the first SYNC.
+/// Changes what the outside hears of a device; the device itself does not know (a reboot, an emergency and a drive
+/// astray excepted: those it really does). Deterministic in its script. Times are since the first SYNC.
 class FaultInjector {
  public:
   explicit FaultInjector(const scene::FaultScript& script)
@@ -24,6 +24,7 @@ class FaultInjector {
 
  private:
   void once(HandDevice& device, Time now);
+  void send_foreign(HandDevice& device, Time now) const;
   void change(const Delivery& delivery, std::vector<Delivery>& out);
   [[nodiscard]] bool is_hit(const Delivery& delivery);
   [[nodiscard]] can::Frame with_wrong_reading(const can::Frame& frame, bool active);
@@ -32,6 +33,7 @@ class FaultInjector {
   std::mt19937 random_;
   Time onset_ = kNever, end_ = kNever;
   bool done_once_ = false;
+  Time next_foreign_ = kNever;
   std::array<std::int32_t, 3> before_counts_{};  // of each node when the fault began
   std::uint16_t before_buttons_ = 0;
   std::optional<Delivery> held_;  // waits for the next one

@@ -106,6 +106,13 @@ Time HandDevice::wake_at(int listeners) const noexcept {
   return to_send ? std::min(at, deliveries_.back().due) : at;
 }
 
+void HandDevice::restart(std::size_t drive, Time now) {
+  move(now);
+  drives_[drive].power_off();
+  drives_[drive].power_on(now, outgoing_);
+  send(drive, now);
+}
+
 void HandDevice::power_off() noexcept {
   for (DriveNode& d : drives_) d.power_off();
 }

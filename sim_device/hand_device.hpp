@@ -32,6 +32,7 @@ class HandDevice {
  public:
   static constexpr int kFirstClient = 3;
   static constexpr int kMaxClients = 12;
+  static constexpr int kStranger = kFirstClient + kMaxClients;  ///< on the cable, but no client: a script puts it there
   static constexpr Time kPeriod = std::chrono::milliseconds(1);
 
   HandDevice(OperatorPath path, Time now, bool charge_bus_time = true);
@@ -49,6 +50,9 @@ class HandDevice {
   [[nodiscard]] Time wake_at(int listeners) const noexcept;
 
   void power_off() noexcept;
+  /// One drive loses power and gets it back.
+  void restart(std::size_t drive, Time now);
+  void lead_astray(std::size_t drive, std::int16_t by_permille) noexcept { drives_[drive].go_astray(by_permille); }
 
   [[nodiscard]] std::array<std::int16_t, 3> torque_permille() const noexcept;
   [[nodiscard]] const Mechanics& mechanics() const noexcept { return mechanics_; }

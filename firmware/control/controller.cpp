@@ -8,6 +8,8 @@ namespace ligature::control {
 Controller::Controller(const scene::Hands& hands, const Settings& settings) noexcept
     : settings_(settings),
       hands_{HandControl(settings.device, hands, kPeriod_s), HandControl(settings.device, hands, kPeriod_s)},
+      torque_{TorqueWatch(settings.device, settings.watchdog_ticks),
+              TorqueWatch(settings.device, settings.watchdog_ticks)},
       scale_goal_(hands.force_scale),
       armed_(settings.armed) {}
 
@@ -74,6 +76,7 @@ rt::RigCommand Controller::tick(const TickInput& in) noexcept {
   step_force_scale();
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     if (in.late) hands_[h].doubt_time_of(in.tick);
+    torque_[h].look(in.reading.hand[h]);
     hands_[h].observe(in.reading.hand[h], in.grasp[h], in.tick, last_tick_);
   }
   step_state(in);
@@ -87,6 +90,7 @@ rt::RigCommand Controller::tick(const TickInput& in) noexcept {
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     command.hand[h].torque_Nm = hands_[h].command(in.tick);
     command.hand[h].request = drive_request();
+    torque_[h].sent(command.hand[h].torque_Nm);
   }
   stop_requested_ = false;
   const bool off = state_ == State::kOff || state_ == State::kFault;
@@ -105,10 +109,16 @@ bool Controller::any_too_fast() const noexcept {
       hands_, [this](const HandControl& h) { return h.speed_m_per_s() > settings_.device.velocity_limit_m_per_s; });
 }
 
-/// The fault of this tick, the most telling first. While the drives are on their way up (OFF) only a lost bus counts.
+/// The fault of this tick, the most telling first. While the drives are on their way up (OFF) only those count that
+/// have nothing to do with whether they are.
 Fault Controller::find_fault(const TickInput& in) const noexcept {
   for (const auto& reading : in.reading.hand) {
     if (reading.bus_lost) return Fault::kBusLost;
+  }
+  for (std::size_t h = 0; h < rt::kHands; ++h) {
+    const Fault foreign = fault_of(in.reading.hand[h].foreign);
+    if (foreign != Fault::kNone) return foreign;
+    if (torque_[h].is_astray()) return Fault::kTorqueAstray;
   }
   if (!in.thread_finite) return Fault::kPhysicsDiverged;
   if (last_tick_ >= 0 && in.tick - last_tick_ - 1 >= settings_.watchdog_ticks) return Fault::kOverrun;
@@ -141,7 +151,7 @@ bool Controller::drives_are_up(const rt::RigReading& reading) const noexcept {
 void Controller::step_state(const TickInput& in) noexcept {
   if (state_ == State::kFault) {
     for (HandControl& h : hands_) h.need_new_press();
-    if (!reset_requested_) return;
+    if (!reset_requested_ || needs_restart(fault_)) return;
     fault_ = Fault::kNone;
     for (HandControl& h : hands_) h.restart_account();
     state_ = next(state_, Event::kReset);
@@ -206,7 +216,7 @@ void Controller::step_gains() noexcept {
 }
 
 rt::DriveRequest Controller::drive_request() const noexcept {
-  if (state_ == State::kFault) return rt::DriveRequest::kHold;
+  if (state_ == State::kFault) return needs_restart(fault_) ? rt::DriveRequest::kStop : rt::DriveRequest::kHold;
   if (state_ == State::kOff) return shutting_down_ ? rt::DriveRequest::kHold : rt::DriveRequest::kEnable;
   return rt::DriveRequest::kOperate;
 }

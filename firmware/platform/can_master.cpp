@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
+#include "firmware/platform/foreign_frame.hpp"
 #include "protocol/can/device_profile.hpp"
 #include "protocol/can/nmt.hpp"
 
@@ -24,7 +26,8 @@ std::string abort_text(std::uint32_t code) {
 /// Reads a number that must be the one the unit conversions were built with.
 std::optional<std::string> expect(CanBus& bus, BusWait& wait, can::NodeId node, const can::Object& object,
                                   std::uint32_t wanted, Nanoseconds patience) {
-  const auto answer = transfer(bus, wait, can::sdo_read(node, object), patience).sdo;
+  const auto [answer, other] = transfer(bus, wait, can::sdo_read(node, object), patience);
+  if (other) return other;
   if (!answer) return describe(node, object, "no answer");
   if (answer->kind != can::SdoKind::kValue) return describe(node, object, abort_text(answer->value));
   if (answer->value == wanted) return std::nullopt;
@@ -37,29 +40,23 @@ std::optional<std::string> configure(CanBus& bus, BusWait& wait, can::NodeId nod
   if (auto e = expect(bus, wait, node, can::od::kEncoderIncrements, times.drive.counts_per_revolution, patience))
     return e;
   for (const can::SdoWrite& w : can::startup_plan(node, times)) {
-    const auto answer = transfer(bus, wait, can::sdo_write(node, w.object, w.value, w.bytes), patience).sdo;
+    const auto [answer, other] = transfer(bus, wait, can::sdo_write(node, w.object, w.value, w.bytes), patience);
+    if (other) return other;
     if (!answer) return describe(node, w.object, "no answer");
     if (answer->kind != can::SdoKind::kWritten) return describe(node, w.object, abort_text(answer->value));
   }
   return std::nullopt;
 }
 
-/// What makes a frame one that drives never send, or null.
-const char* only_a_master_sends(const can::Frame& frame) {
-  const auto address = can::address_of(frame.id);
-  if (!address) return nullptr;
-  switch (address->service) {
-    case can::Service::kSync:
-      return "SYNC";
-    case can::Service::kNmt:
-      return "NMT commands";
-    case can::Service::kRpdo1:
-      return "RPDOs";
-    case can::Service::kHeartbeat:
-      return address->node == can::kMasterNode ? "the master's heartbeat" : nullptr;
-    default:
-      return nullptr;
-  }
+/// What is to be said of a frame that only a controller sends; nothing for a drive's.
+std::optional<std::string> told_of_other(const can::Frame& frame) {
+  const rt::Foreign kind = foreign_kind(frame);
+  if (kind == rt::Foreign::kNone) return std::nullopt;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "another controller is on this bus: it sends %s (0x%03X); remedy: end or unplug it, a bus has one",
+                name(kind), frame.id);
+  return text;
 }
 
 }  // namespace
@@ -78,10 +75,11 @@ SdoAnswer transfer(CanBus& bus, BusWait& wait, const can::Frame& request, Nanose
     can::Frame frame;
     Receive got;
     while ((got = bus.receive(frame)) == Receive::kFrame) {
+      if (auto other = told_of_other(frame)) return {std::nullopt, std::move(other)};
       const auto address = can::address_of(frame.id);
       if (!address || address->service != can::Service::kSdoResponse) continue;
       const auto answer = can::decode_sdo(frame);
-      if (answer && answer->node == asked->node && answer->object == asked->object) return {answer};
+      if (answer && answer->node == asked->node && answer->object == asked->object) return {answer, std::nullopt};
     }
     if (got == Receive::kLost) return {};
   } while (wait.wait(deadline));
@@ -111,11 +109,7 @@ std::optional<std::string> other_master(CanBus& bus, BusWait& wait, Nanoseconds 
     can::Frame frame;
     Receive got;
     while ((got = bus.receive(frame)) == Receive::kFrame) {
-      if (const char* what = only_a_master_sends(frame)) {
-        char text[80];
-        std::snprintf(text, sizeof text, "another controller is on this bus: it sends %s (0x%03X)", what, frame.id);
-        return text;
-      }
+      if (auto other = told_of_other(frame)) return other;
     }
     if (got == Receive::kLost) return std::nullopt;  // told by whoever uses the bus next
   } while (wait.wait(deadline));

@@ -16,9 +16,10 @@ namespace ligature::platform {
 /// What start-up expects of the drives of a device and sets in them.
 [[nodiscard]] can::DriveFacts drive_facts(const device::Device& device) noexcept;
 
-/// One expedited transfer: request out, matching answer in; others' frames on the bus are skipped.
+/// One expedited transfer: request out, matching answer in; other drives' frames are skipped.
 struct SdoAnswer {
-  std::optional<can::Sdo> sdo;  ///< nothing: no answer in time, or the bus is gone
+  std::optional<can::Sdo> sdo;  ///< nothing: no answer in time, somebody else commands, or the bus is gone
+  std::optional<std::string> other_master{};  ///< what was heard of one meanwhile
 };
 [[nodiscard]] SdoAnswer transfer(CanBus& bus, BusWait& wait, const can::Frame& request, Nanoseconds patience);
 
@@ -35,7 +36,8 @@ bool start_drives(CanBus& bus) noexcept;
 /// our heartbeat off, so that our silence is no fault to them. What a drive does not answer is left as it is.
 void release_drives(CanBus& bus, BusWait& wait, Nanoseconds patience = std::chrono::milliseconds(20));
 
-/// Listens before we speak: a bus has one master. @return what another one sent within `listening`, or nothing.
+/// Listens before we speak: a bus has one master. Two that began to listen in the same moment hear each other in
+/// transfer(). @return what another one sent within `listening`, or nothing.
 [[nodiscard]] std::optional<std::string> other_master(CanBus& bus, BusWait& wait,
                                                       Nanoseconds listening = std::chrono::milliseconds(60));
 

@@ -3,6 +3,7 @@
 #include <limits>
 #include <utility>
 
+#include "firmware/platform/foreign_frame.hpp"
 #include "protocol/can/bit_time.hpp"
 #include "protocol/can/emcy.hpp"
 #include "protocol/can/heartbeat.hpp"
@@ -54,6 +55,7 @@ bool HandLink::send(const can::Frame& frame) noexcept {
 
 void HandLink::take(const can::Frame& frame) noexcept {
   bits_ += can::frame_bits(frame);
+  if (foreign_ == rt::Foreign::kNone) foreign_ = foreign_kind(frame);
   const auto address = can::address_of(frame.id);
   if (!address) return;
   const std::size_t joint = joint_of(address->node);
@@ -101,6 +103,7 @@ rt::HandReading HandLink::reading() const noexcept {
   using can::cia402::State;
   rt::HandReading r;
   r.bus_lost = bus_.is_lost();
+  r.foreign = foreign_;
   r.valid = valid_;
   r.age_ticks = age_ticks_;
   r.bus_load = static_cast<float>(can::bits_to_ns(bits_of_last_period_)) / kPeriod_ns;
@@ -113,6 +116,7 @@ rt::HandReading HandLink::reading() const noexcept {
     r.enabled = r.enabled && state == State::kOperationEnabled;
     r.drive_fault = r.drive_fault || node.emergency != can::emcy::kNoError || !node.operational ||
                     (valid_ && (state == State::kFault || state == State::kFaultReactionActive));
+    r.torque_astray = r.torque_astray || (node.latest.statusword & can::cia402::kTorqueAstrayBit) != 0;
     r.torque_limited[j] = (node.latest.statusword & can::cia402::kInternalLimitBit) != 0;
     if (!can::profile::has_stylus_buttons(can::profile::kJointNodes[j])) {
       if (valid_) r.torque_Nm[j] = node.latest.torque_permille * Nm_per_permille_;
@@ -132,6 +136,7 @@ std::int16_t HandLink::permille_of(double torque_Nm) const noexcept {
 
 std::array<std::int16_t, rt::kJoints> HandLink::write(const rt::HandCommand& command) noexcept {
   std::array<std::int16_t, rt::kJoints> sent{};
+  if (command.request == rt::DriveRequest::kStop) send(can::encode_nmt(can::NmtCommand::kStop));
   for (std::size_t j = 0; j < rt::kJoints; ++j) {
     Node& node = nodes_[j];
     const auto state = node.state();

@@ -18,6 +18,7 @@ namespace ligature::platform {
   using can::cia402::State;
   switch (request) {
     case rt::DriveRequest::kHold:
+    case rt::DriveRequest::kStop:
       return can::cia402::kControlDisableVoltage;
     case rt::DriveRequest::kEnable:
       if (state == State::kFault) {
@@ -52,6 +53,7 @@ class HandLink {
   [[nodiscard]] bool is_settled() const noexcept { return age_ticks_ == 0 || bus_.is_lost(); }
   [[nodiscard]] rt::HandReading reading() const noexcept;
 
+  /// Every period anew, so that somebody else's frames do not outlast ours.
   /// @return the torques as they went out, per mille; zero when the bus is lost.
   std::array<std::int16_t, rt::kJoints> write(const rt::HandCommand& command) noexcept;
 
@@ -81,6 +83,7 @@ class HandLink {
   std::array<can::Tpdo1, rt::kJoints> pending_{};
   unsigned arrived_ = 0;  // bit per joint since the last SYNC
   bool valid_ = false;
+  rt::Foreign foreign_ = rt::Foreign::kNone;
   bool has_life_ = false;  // the buttons' life sign was seen to move; a drive without one is taken as it is
   int still_sets_ = 0;
   std::int32_t age_ticks_ = 1;

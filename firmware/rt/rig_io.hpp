@@ -12,6 +12,15 @@ namespace ligature::rt {
 inline constexpr std::size_t kHands = 2;
 inline constexpr std::size_t kJoints = 3;
 
+/// What somebody who is not this controller sent on a hand's bus.
+enum class Foreign : std::uint8_t {
+  kNone,
+  kTorque,   ///< an RPDO
+  kBeat,     ///< SYNC, or a controller's heartbeat
+  kNetwork,  ///< NMT, or what changes node numbers
+  kObject,   ///< an SDO request
+};
+
 /// One hand as of the last complete set of joint messages.
 struct HandReading {
   static constexpr double kNotTold = std::numeric_limits<double>::quiet_NaN();
@@ -23,13 +32,15 @@ struct HandReading {
   bool grip = false;
   bool dead_man = false;
   bool clutch = false;
-  bool valid = false;          ///< a complete set has arrived since the start
-  bool enabled = false;        ///< every drive is in Operation enabled
-  bool drive_fault = false;    ///< a drive is in Fault, sent an emergency or fell out of NMT operational
-  bool buttons_stuck = false;  ///< their life sign stands still
-  bool bus_lost = false;       ///< the bus itself is gone
-  float bus_load = 0.0F;       ///< share of the period before that this hand's bus was busy, stuff bits included
-  std::int32_t age_ticks = 0;  ///< periods since the last complete set; 0 = sampled at this period's SYNC
+  bool valid = false;                ///< a complete set has arrived since the start
+  bool enabled = false;              ///< every drive is in Operation enabled
+  bool drive_fault = false;          ///< a drive is in Fault, sent an emergency or fell out of NMT operational
+  bool buttons_stuck = false;        ///< their life sign stands still
+  bool torque_astray = false;        ///< a drive says that its torque is not what was asked for, nor less
+  bool bus_lost = false;             ///< the bus itself is gone
+  Foreign foreign = Foreign::kNone;  ///< the first frame of somebody else in this run
+  float bus_load = 0.0F;             ///< share of the period before that this hand's bus was busy, stuff bits included
+  std::int32_t age_ticks = 0;        ///< periods since the last complete set; 0 = sampled at this period's SYNC
 };
 
 struct RigReading {
@@ -41,6 +52,7 @@ enum class DriveRequest : std::uint8_t {
   kHold,     ///< power stage off; a drive in Fault stays there
   kEnable,   ///< go to Operation enabled, leaving Fault by a fault reset
   kOperate,  ///< stay in Operation enabled; a drive that falls into Fault stays there
+  kStop,     ///< power stage off, and off the network: no RPDO is obeyed until the drives are set up anew
 };
 
 struct HandCommand {

@@ -49,6 +49,8 @@ inline constexpr std::uint16_t kVoltageEnabledBit = 1U << 4;
 inline constexpr std::uint16_t kRemoteBit = 1U << 9;
 inline constexpr std::uint16_t kInternalLimitBit = 1U << 11;  ///< torque less than asked: clipped at 0x6072, or guarded
 inline constexpr std::uint16_t kFollowsTargetBit = 1U << 12;  ///< CST: target torque is acted upon
+/// Maker's own: the torque made is not the one acted upon, nor one between it and zero.
+inline constexpr std::uint16_t kTorqueAstrayBit = 1U << 14;
 
 /// State a statusword shows; nothing for a pattern the standard does not define.
 [[nodiscard]] constexpr std::optional<State> state_of(std::uint16_t statusword) noexcept {

@@ -26,6 +26,9 @@ inline constexpr auto kCountsPerRevolution = nearest<std::int32_t>(omni::kMotorC
 inline constexpr auto kRatedTorque_mNm = nearest<std::uint32_t>(1e3 * omni::kRatedTorque_Nm);
 inline constexpr auto kMaxTorque_permille = static_cast<std::int16_t>(omni::kMaxTorque_permille);
 
+/// What a drive's torque may be off before it says so (kTorqueAstrayBit).
+inline constexpr int kTorqueTolerance_permille = 50;
+
 inline constexpr std::int8_t kCyclicSynchronousTorque = 10;  ///< value of 0x6060
 inline constexpr std::uint8_t kSynchronousEverySync = 1;     ///< PDO transmission type
 

@@ -31,11 +31,12 @@ struct Device {
   Vec workspace_min_m{}, workspace_max_m{};  ///< box in D in which the tip is used
 
   // Drives, seen from the joint.
-  int motor_counts = 0;          ///< encoder counts of one motor revolution, after quadrature
-  double gear = 1.0;             ///< motor revolutions per joint revolution
-  double rated_torque_Nm = 0.0;  ///< 0x6076
-  int max_torque_permille = 0;   ///< 0x6072
-  double delay_s = 0.0;          ///< from the sample of a position to the effect of the torque made of it
+  int motor_counts = 0;                ///< encoder counts of one motor revolution, after quadrature
+  double gear = 1.0;                   ///< motor revolutions per joint revolution
+  double rated_torque_Nm = 0.0;        ///< 0x6076
+  int max_torque_permille = 0;         ///< 0x6072
+  int torque_tolerance_permille = 50;  ///< a drive's torque may be told so much beyond what it was asked for
+  double delay_s = 0.0;                ///< from the sample of a position to the effect of the torque made of it
 
   // What a hand feels of it when it is off, at the tip in the home pose.
   double apparent_mass_kg = 0.0;

@@ -32,6 +32,10 @@ class Marked {
   void integer(const char* key, int& v, int low, int high) {
     entry(key, [&](StrictTable& t) { t.integer("value", v, low, high); });
   }
+  void optional_integer(const char* key, int& v, int low, int high) {
+    table_.table(key,
+                 [&](StrictTable& t) { value(t, key, [&](StrictTable& e) { e.integer("value", v, low, high); }); });
+  }
   void vector(const char* key, Vec& v) {
     entry(key, [&](StrictTable& t) { t.vector("value", v, kFar); });
   }
@@ -40,14 +44,16 @@ class Marked {
   template <class Read>
   void entry(const char* key, Read read) {
     table_.require(key);
-    table_.table(key, [&](StrictTable& t) {
-      t.require("value");
-      t.require("source");
-      read(t);
-      Source source = Source::kAssumed;
-      t.choice("source", source, kSources);
-      out_.sources.emplace_back(path_ + "." + key, source);
-    });
+    table_.table(key, [&](StrictTable& t) { value(t, key, read); });
+  }
+  template <class Read>
+  void value(StrictTable& t, const char* key, Read read) {
+    t.require("value");
+    t.require("source");
+    read(t);
+    Source source = Source::kAssumed;
+    t.choice("source", source, kSources);
+    out_.sources.emplace_back(path_ + "." + key, source);
   }
 
   StrictTable& table_;
@@ -76,6 +82,7 @@ void read_drives(Marked t, Device& d) {
   t.number("gear", d.gear, kPositive);
   t.number("rated_torque_Nm", d.rated_torque_Nm, kPositive);
   t.integer("max_torque_permille", d.max_torque_permille, 1, 32767);
+  t.optional_integer("torque_tolerance_permille", d.torque_tolerance_permille, 1, 32767);
   t.number("delay_s", d.delay_s, {0.0, 1.0});
 }
 

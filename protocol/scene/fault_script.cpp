@@ -6,10 +6,16 @@ namespace ligature::scene {
 namespace {
 
 constexpr std::pair<const char*, FaultKind> kKinds[] = {
-    {"lose", FaultKind::kLose},       {"delay", FaultKind::kDelay},        {"duplicate", FaultKind::kDuplicate},
-    {"reorder", FaultKind::kReorder}, {"corrupt", FaultKind::kCorrupt},    {"freeze", FaultKind::kFreeze},
-    {"jump", FaultKind::kJump},       {"reverse", FaultKind::kReverse},    {"button", FaultKind::kButton},
-    {"reboot", FaultKind::kReboot},   {"emergency", FaultKind::kEmergency}};
+    {"lose", FaultKind::kLose},       {"delay", FaultKind::kDelay},         {"duplicate", FaultKind::kDuplicate},
+    {"reorder", FaultKind::kReorder}, {"corrupt", FaultKind::kCorrupt},     {"freeze", FaultKind::kFreeze},
+    {"jump", FaultKind::kJump},       {"reverse", FaultKind::kReverse},     {"button", FaultKind::kButton},
+    {"reboot", FaultKind::kReboot},   {"emergency", FaultKind::kEmergency}, {"astray", FaultKind::kAstray},
+    {"foreign", FaultKind::kForeign}};
+constexpr std::pair<const char*, ForeignFrame> kFrames[] = {
+    {"rpdo", ForeignFrame::kRpdo},           {"sync", ForeignFrame::kSync},
+    {"heartbeat", ForeignFrame::kHeartbeat}, {"nmt-start", ForeignFrame::kNmtStart},
+    {"nmt-stop", ForeignFrame::kNmtStop},    {"nmt-reset", ForeignFrame::kNmtReset},
+    {"sdo-read", ForeignFrame::kSdoRead},    {"sdo-write", ForeignFrame::kSdoWrite}};
 constexpr std::pair<const char*, int> kHands[] = {{"left", 0}, {"right", 1}};
 
 void read_fault(StrictTable& t, FaultScript& s) {
@@ -26,6 +32,9 @@ void read_fault(StrictTable& t, FaultScript& s) {
   t.number("delay_s", s.delay_s, {0.0, 10.0});
   t.integer("counts", s.counts, -1000000, 1000000);
   t.integer("seed", s.seed, 0, 1000000);
+  t.integer("permille", s.permille, -6000, 6000);
+  t.choice("frame", s.frame, kFrames);
+  t.number("period_s", s.period_s, {1e-4, 10.0});
 }
 
 }  // namespace

@@ -22,6 +22,20 @@ enum class FaultKind : std::uint8_t {
   kButton,     ///< the stylus buttons stay as they were
   kReboot,     ///< the drive `node` starts anew, once
   kEmergency,  ///< the drive `node` sends an emergency, once
+  kAstray,     ///< the drive `node` makes `permille` more torque than it is asked for
+  kForeign,    ///< somebody else on the bus sends `frame` to `node` every period_s
+};
+
+/// What somebody who is not the controller may send.
+enum class ForeignFrame : std::uint8_t {
+  kRpdo,
+  kSync,
+  kHeartbeat,
+  kNmtStart,
+  kNmtStop,
+  kNmtReset,
+  kSdoRead,
+  kSdoWrite
 };
 
 struct FaultScript {
@@ -34,7 +48,10 @@ struct FaultScript {
   double until_s = 1e9;
   double delay_s = 0.0;
   int counts = 0;
-  int seed = 1;  ///< which frames, when share < 1
+  int seed = 1;      ///< which frames, when share < 1
+  int permille = 0;  ///< torque, of the rated one
+  ForeignFrame frame = ForeignFrame::kRpdo;
+  double period_s = 1e-3;
 
   int expected_fault = 0;  ///< number of docs/architecture.md; 0: the rig carries on
   int within_ticks = 0;    ///< from the onset until no torque is commanded to either hand

@@ -118,10 +118,22 @@ class FirstBlows:
 class OtherBlows:
     def test_somebody_else_stops_a_drive(self):
         """A foreign NMT command stops a drive.
-        Its torque goes at once; we learn it from its heartbeat or from its silence."""
+        Its torque goes at once; we hear the command itself."""
         rows, left, right = self.read("stranger")
         at = self.tick_before(rows, left, self.position(left, 0x000, bytes.fromhex("8002")))
-        self.ends_in((11, 12), rows, left, right, at, range(1, WATCHDOG_TICKS + 2))
+        self.ends_in((15,), rows, left, right, at, (0, 1))
+
+    def test_somebody_else_commands_torque(self):
+        """A foreign RPDO commands 3000 per mille.
+        Ours of the same period follows; the drives are stopped by NMT from the fault on."""
+        rows, left, right = self.read("foreign-rpdo")
+        alien = self.position(left, 0x201, bytes.fromhex("0f00b80b"))
+        at = self.tick_before(rows, left, alien)
+        self.ends_in((13,), rows, left[:alien] + left[alien + 1:], right, at, (0, 1))
+        first = next(r["tick"] for r in rows if r["fault"] != 0)
+        for frames in (left, right):
+            ends = [f for f in frames if f[1] == 0x000 and f[2] == bytes.fromhex("0200")]
+            self.assertGreaterEqual(len(ends), sum(r["tick"] > first and not r["flags"] & LOST for r in rows), "NMT stop in every period")
 
     def test_a_stopped_controller(self):
         """SIGSTOP of the controller for 0.1 s, SIGCONT.

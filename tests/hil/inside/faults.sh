@@ -31,6 +31,7 @@ run() {
 killed() { kill -KILL "$left_pid"; }
 emergency() { cansend vcan0 082#5082110000000000; }             # of the shoulder, as its drive would send it
 stranger() { cansend vcan0 000#8002; }                           # an NMT command: shoulder to pre-operational
+foreign_rpdo() { cansend vcan0 201#0F00B80B; }                    # somebody commands 3000 per mille
 bus_off() { cansend vcan0 20000040#0000000000000000; }           # the error frame of a driver
 silent() { kill -STOP "$firmware_pid"; sleep 0.1; kill -CONT "$firmware_pid"; }
 clock_step() { date -s '+1 day' > /dev/null; sleep 0.3; date -s '-2 days' > /dev/null; }
@@ -76,6 +77,7 @@ controller_off_and_back() {
 run hand-killed vcan0 vcan0 killed
 run emergency vcan0 vcan0 emergency
 run stranger vcan0 vcan0 stranger
+run foreign-rpdo vcan0 vcan0 foreign_rpdo
 run bus-off vcan0 vcan0 bus_off
 run controller-stopped vcan0 vcan0 silent
 run clock-step vcan0 vcan0 clock_step

@@ -28,6 +28,10 @@ const std::vector<Case>& cases() {
        }},
       {Fault::kOverrun, [](Rig& r) { r.in.tick += kWatchdog; }},
       {Fault::kPhysicsDiverged, [](Rig& r) { r.in.thread_finite = false; }},
+      {Fault::kForeignTorque, [](Rig& r) { r.in.reading.hand[0].foreign = rt::Foreign::kTorque; }},
+      {Fault::kForeignBeat, [](Rig& r) { r.in.reading.hand[1].foreign = rt::Foreign::kBeat; }},
+      {Fault::kForeignNetwork, [](Rig& r) { r.in.reading.hand[0].foreign = rt::Foreign::kNetwork; }},
+      {Fault::kForeignObject, [](Rig& r) { r.in.reading.hand[1].foreign = rt::Foreign::kObject; }},
   };
   return all;
 }
@@ -43,7 +47,8 @@ TEST(ControllerFaults, EachTakesAllTorqueInTheSameTickAndLatches) {
     EXPECT_EQ(rig.controller.state(), State::kFault);
     EXPECT_EQ(rig.controller.fault(), c.fault);
     EXPECT_EQ(Rig::largest(command), 0.0);
-    for (const auto& hand : command.hand) EXPECT_EQ(hand.request, rt::DriveRequest::kHold);  // and the power stages off
+    const auto off = needs_restart(c.fault) ? rt::DriveRequest::kStop : rt::DriveRequest::kHold;
+    for (const auto& hand : command.hand) EXPECT_EQ(hand.request, off);  // and the power stages off
 
     Rig healthy;  // the cause is gone; the fault is not
     rig.in.reading = healthy.in.reading;
@@ -55,11 +60,45 @@ TEST(ControllerFaults, EachTakesAllTorqueInTheSameTickAndLatches) {
   }
 }
 
+/// In any state, armed or not: to the bus it does not matter what the rig is about.
+TEST(ControllerFaults, SomebodyElseOnTheBusIsAFaultInEveryStateAndNoResetLeavesIt) {
+  for (const int ticks : {0, 1, 30, 200, 1000}) {  // OFF, CALIBRATE, IDLE or on its way to force, FORCE
+    for (const bool armed : {false, true}) {
+      for (const bool by_torque : {false, true}) {
+        Rig rig;
+        if (!armed) rig.controller.command(rt::CommandKind::kDisarm);
+        rig.ticks(ticks);
+        const auto state = rig.controller.state();
+        auto& hand = rig.in.reading.hand[0];
+        if (by_torque)
+          hand.torque_Nm = {0.0, 0.9, 0.0};
+        else
+          hand.foreign = rt::Foreign::kTorque;
+        rig.ticks(by_torque ? 2 : 1);
+        const auto fault = by_torque ? Fault::kTorqueAstray : Fault::kForeignTorque;
+        ASSERT_EQ(rig.controller.fault(), fault) << name(state);
+        hand.foreign = rt::Foreign::kNone;
+        hand.torque_Nm = {0.0, 0.0, 0.0};
+        rig.controller.command(rt::CommandKind::kResetFault);
+        rig.controller.command(rt::CommandKind::kArm);
+        for (int i = 0; i < 100; ++i) ASSERT_EQ(rig.tick().hand[1].request, rt::DriveRequest::kStop);
+        EXPECT_EQ(rig.controller.fault(), fault);
+        rig.controller.shut_down();
+        rig.ticks(Controller::kPowerDownTicks);
+        EXPECT_TRUE(rig.controller.is_finished()) << "a run can be ended";
+      }
+    }
+  }
+}
+
 /// Its drive says that it makes what was asked of it once, whatever is asked now: no step back from that may be sent
-/// without a jump, and without a limit of time force stood for ever.
+/// without a jump, and without a limit of time force stood for ever. Of a drive whose torque may be told wide of what
+/// it was asked for; else that is what is found first.
 TEST(ControllerFaults, AForceThatDoesNotEndIsTakenAtOnce) {
+  device::Device vague = device::omni();
+  vague.torque_tolerance_permille = vague.max_torque_permille;
   for (const bool by_dead_man : {false, true}) {
-    Rig rig;
+    Rig rig(Rig::scene(), vague);
     rig.to_force();
     rig.pull_hard();
     const auto asked = rig.tick();

@@ -73,10 +73,39 @@ TEST_F(CanMasterTest, ADriveOfAnotherSizeIsRefused) {  // per mille of something
   EXPECT_EQ(configure(), "node 1, object 0x6076:00: found 1000, allowed 300");
 }
 
+TEST_F(CanMasterTest, AnEncoderOfAnotherResolutionIsRefused) {  // angles, and all that is made of them, would be others
+  values[can::od::kEncoderIncrements] = 4096;
+  EXPECT_EQ(configure(),
+            "node 1, object 0x608F:01: found 4096, allowed " + std::to_string(can::profile::kCountsPerRevolution));
+}
+
+/// Two that began to listen in the same moment heard nobody. Each hears the other's first words.
+TEST_F(CanMasterTest, AControllerThatStartsInTheSameMomentIsHeardWhileDrivesAreSetUp) {
+  const can::Frame of_a_master[] = {can::encode_nmt(can::NmtCommand::kEnterPreOperational),
+                                    can::sdo_read(can::kWaist, can::od::kRatedTorque),
+                                    can::sdo_write(can::kElbow, can::od::kMaxTorque, 1, 2), can::sync_frame()};
+  for (const auto& frame : of_a_master) {
+    for (const std::size_t after : {std::size_t{1}, std::size_t{2}, std::size_t{30}}) {
+      bus.sent.clear();
+      bus.inbox.clear();
+      bus.on_send = [&](const can::Frame& f) {
+        if (bus.sent.size() == after) bus.inbox.push_back(frame);
+        answer(f);
+      };
+      const auto why = configure();
+      ASSERT_TRUE(why.has_value()) << frame.id;
+      EXPECT_NE(why->find("another controller is on this bus"), std::string::npos) << *why;
+      EXPECT_NE(why->find("remedy: "), std::string::npos);
+      EXPECT_LE(bus.sent.size(), after + 1) << "not a word more";
+    }
+  }
+}
+
 TEST_F(CanMasterTest, HearsAnotherControllerBeforeItSpeaks) {
   const can::Frame of_a_master[] = {can::sync_frame(),
                                     can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}),
-                                    can::encode(can::kElbow, can::Rpdo1{}), can::encode_nmt(can::NmtCommand::kStart)};
+                                    can::encode(can::kElbow, can::Rpdo1{}), can::encode_nmt(can::NmtCommand::kStart),
+                                    can::sdo_read(can::kElbow, can::od::kStatusword)};
   for (const auto& frame : of_a_master) {
     wait.on_wait = [&] {
       if (wait.time == std::chrono::milliseconds(5)) bus.inbox.push_back(frame);

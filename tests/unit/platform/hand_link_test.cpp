@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "firmware/platform/rig_bus.hpp"
 #include "protocol/can/emcy.hpp"
 #include "protocol/can/heartbeat.hpp"
 #include "protocol/can/nmt.hpp"
+#include "protocol/can/sdo.hpp"
 #include "protocol/can/units.hpp"
 #include "tests/unit/platform/fake_bus.hpp"
 
@@ -180,6 +183,94 @@ TEST_F(HandLinkTest, ANodeThatRebootedIsTrouble) {
   period();
   bus.inbox.push_back(can::encode(can::Heartbeat{kNodes[0], can::NmtState::kBootUp}));
   EXPECT_TRUE(period().drive_fault);
+}
+
+TEST_F(HandLinkTest, WhatOnlyAControllerSendsIsSeenForWhatItIs) {
+  using rt::Foreign;
+  const std::pair<can::Frame, Foreign> all[] = {
+      {can::encode(can::kWaist, can::Rpdo1{can::cia402::kControlEnableOperation, 3000}), Foreign::kTorque},
+      {{0x301, 8, {}}, Foreign::kTorque},  // RPDO 2 and 4, that a drive may have been delivered with
+      {{0x503, 8, {}}, Foreign::kTorque},
+      {can::sync_frame(), Foreign::kBeat},
+      {{0x080, 1, {7}}, Foreign::kBeat},  // with a counter
+      {can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}), Foreign::kBeat},
+      {can::encode_nmt(can::NmtCommand::kStart), Foreign::kNetwork},
+      {can::encode_nmt(can::NmtCommand::kResetNode, can::kElbow), Foreign::kNetwork},
+      {{0x7E5, 8, {}}, Foreign::kNetwork},
+      {can::sdo_read(can::kElbow, can::od::kStatusword), Foreign::kObject},
+      {can::sdo_write(can::kElbow, can::od::kMaxTorque, 1, 2), Foreign::kObject}};
+  for (const auto& [frame, kind] : all) {
+    FakeBus own;
+    HandLink hand(own, device::omni());
+    hand.send_sync();
+    EXPECT_EQ(hand.reading().foreign, Foreign::kNone);
+    own.inbox.push_back(frame);
+    hand.drain();
+    EXPECT_EQ(hand.reading().foreign, kind) << frame.id;
+    own.inbox.push_back(can::sync_frame());
+    for (int i = 0; i < 3; ++i) hand.send_sync();
+    EXPECT_EQ(hand.reading().foreign, kind) << "the first one, kept for the run";
+  }
+}
+
+TEST_F(HandLinkTest, WhatDrivesSendIsNotForeign) {
+  const can::Frame all[] = {can::encode(can::kWaist, can::Tpdo1{}),
+                            {0x281, 8, {}},
+                            {0x481, 8, {}},
+                            can::encode(can::Emergency{can::kElbow, 0, 0}),
+                            can::encode(can::Heartbeat{can::kElbow, can::NmtState::kOperational}),
+                            can::encode(can::Sdo{can::SdoKind::kWritten, can::kElbow, can::od::kMaxTorque, 0, 0}),
+                            {0x7E4, 8, {}}};
+  for (const auto& frame : all) bus.inbox.push_back(frame);
+  EXPECT_EQ(period().foreign, rt::Foreign::kNone);
+}
+
+TEST_F(HandLinkTest, ADriveThatSaysItsTorqueIsAstrayIsHeard) {
+  EXPECT_FALSE(period().torque_astray);
+  for (std::size_t astray = 0; astray < 3; ++astray) {
+    link.send_sync();
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::uint16_t bit = j == astray ? can::cia402::kTorqueAstrayBit : std::uint16_t{0};
+      const auto word = static_cast<std::uint16_t>(can::cia402::statusword_of(State::kOperationEnabled) | bit);
+      bus.inbox.push_back(can::encode(kNodes[j], can::Tpdo1{word, 100, 0, 0}));
+    }
+    link.drain();
+    EXPECT_TRUE(link.reading().torque_astray) << astray;
+  }
+  EXPECT_FALSE(period().torque_astray);
+}
+
+TEST_F(HandLinkTest, ADriveThatMakesLessThanItWasAskedForIsHeard) {
+  for (std::size_t limited = 0; limited < 3; ++limited) {
+    link.send_sync();
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::uint16_t bit = j == limited ? can::cia402::kInternalLimitBit : std::uint16_t{0};
+      const auto word = static_cast<std::uint16_t>(can::cia402::statusword_of(State::kOperationEnabled) | bit);
+      bus.inbox.push_back(can::encode(kNodes[j], can::Tpdo1{word, 100, 0, 0}));
+    }
+    link.drain();
+    for (std::size_t j = 0; j < 3; ++j) EXPECT_EQ(link.reading().torque_limited[j], j == limited);
+  }
+}
+
+/// A drive that is stopped takes no RPDO, whoever sends it; and somebody who starts it again is answered.
+TEST_F(HandLinkTest, StoppingTakesTheDrivesOffTheNetworkInEveryPeriod) {
+  period();
+  const auto stops = [this] { return std::ranges::count(bus.sent, can::encode_nmt(can::NmtCommand::kStop)); };
+  link.write({{}, rt::DriveRequest::kHold});
+  EXPECT_EQ(stops(), 0);
+  for (int i = 1; i <= 5; ++i) {
+    link.send_sync();
+    link.write({{}, rt::DriveRequest::kStop});
+    EXPECT_EQ(stops(), i);
+    EXPECT_EQ(last_rpdo(1).controlword, can::cia402::kControlDisableVoltage);
+  }
+}
+
+/// The drives' map says SYNC without a counter: one with a counter is another frame, and costs bits.
+TEST_F(HandLinkTest, SyncCarriesNothing) {
+  link.send_sync();
+  EXPECT_EQ(bus.sent.front(), (can::Frame{0x080, 0, {}}));
 }
 
 TEST_F(HandLinkTest, ALostBusIsSeenAtOnce) {

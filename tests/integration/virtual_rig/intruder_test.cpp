@@ -1,0 +1,125 @@
+// Somebody else on a hand's bus, and drives that push by themselves: in every state; and what must never look like it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+#include <random>
+
+#include "firmware/control/faults.hpp"
+#include "protocol/scene/fault_script.hpp"
+#include "tests/integration/virtual_rig/simulated_rig.hpp"
+
+namespace ligature {
+namespace {
+
+using control::Fault;
+using scene::FaultKind;
+using scene::ForeignFrame;
+
+const std::string kScenes = std::string(LIGATURE_SOURCE_DIR) + "/scenes/";
+
+struct Rig : lab::VirtualRig {
+  explicit Rig(bool armed, double loss = 0.0, std::uint64_t seed = 1)
+      : VirtualRig(lab::RigSetup{.scene = std::get<scene::Scene>(scene::load_scene(kScenes + "paper.toml")),
+                                 .settings = {20, armed},
+                                 .frame_loss = loss,
+                                 .seed = seed},
+                   std::get<scene::GripperScript>(scene::load_gripper_script(kScenes + "operators/overhand.csv"))) {}
+
+  [[nodiscard]] bool any_torque() const {
+    return std::ranges::any_of(std::array{&left, &right}, [](const DeviceBus* b) {
+      return std::ranges::any_of(b->device.torque_permille(), [](auto t) { return t != 0; });
+    });
+  }
+};
+
+/// Ticks from the blow to the fault, and to the last torque on any motor.
+struct Found {
+  Fault fault = Fault::kNone;
+  std::int64_t ticks_to_fault = -1, ticks_to_zero = 0;
+};
+
+Found found(bool armed, double from_s, scene::FaultScript script) {
+  Rig rig(armed);
+  script.from_s = from_s;
+  rig.left.faults.emplace(script);
+  EXPECT_EQ(rig.run(1600), std::nullopt);
+  const auto onset = static_cast<std::int64_t>(std::lround(1e3 * from_s));
+  Found f{rig.controller.fault()};
+  for (const auto& r : rig.records) {
+    if (r.fault != 0 && f.ticks_to_fault < 0) f.ticks_to_fault = r.tick - onset;
+  }
+  for (auto tick = static_cast<std::size_t>(onset); tick < rig.drives_push.size(); ++tick)
+    if (rig.drives_push[tick]) f.ticks_to_zero = static_cast<std::int64_t>(tick) - onset;
+  return f;
+}
+
+/// Five RPDOs a period, for ever: the drives are off the network, and take none.
+TEST(Intruder, WhoKeepsCommandingTorqueGetsNoneInAnyState) {
+  for (const bool armed : {false, true}) {
+    for (const double from_s : {0.02, 0.2, 0.6, 1.4}) {  // CALIBRATE, IDLE or ENGAGE, ENGAGE, FORCE
+      for (const int node : {0, 1, 3}) {
+        const auto f =
+            found(armed, from_s,
+                  {.title = {}, .kind = FaultKind::kForeign, .node = node, .permille = 3000, .period_s = 2e-4});
+        EXPECT_EQ(f.fault, Fault::kForeignTorque) << from_s << " " << armed << " " << node;
+        EXPECT_LE(f.ticks_to_fault, 2);
+        EXPECT_LE(f.ticks_to_zero, 3);
+      }
+    }
+  }
+}
+
+TEST(Intruder, ADriveThatPushesByItselfIsFoundInAnyState) {
+  for (const bool armed : {false, true}) {
+    for (const double from_s : {0.02, 0.2, 1.4}) {
+      for (const int node : {1, 2, 3}) {
+        for (const int permille : {-900, 900}) {
+          const auto f =
+              found(armed, from_s, {.title = {}, .kind = FaultKind::kAstray, .node = node, .permille = permille});
+          EXPECT_EQ(f.fault, Fault::kTorqueAstray) << from_s << " " << armed << " " << node;
+          EXPECT_LE(f.ticks_to_fault, 3) << "acting from one SYNC on, told at the next two";
+          EXPECT_LE(f.ticks_to_zero, 4);
+        }
+      }
+    }
+  }
+}
+
+/// Losses, delays, doubled and reordered frames, a drive that starts anew, orders to reset and to arm: other faults may
+/// come of them, but not these.
+TEST(Intruder, NoHonestTroubleLooksLikeOne) {
+  std::mt19937_64 random(std::random_device{}());
+  const auto any = [&](int below) { return static_cast<int>(random() % static_cast<unsigned>(below)); };
+  constexpr FaultKind kTroubles[] = {FaultKind::kLose,    FaultKind::kDelay,  FaultKind::kDuplicate,
+                                     FaultKind::kReorder, FaultKind::kReboot, FaultKind::kEmergency};
+  for (int run = 0; run < 30; ++run) {
+    const std::uint64_t seed = random();
+    const double loss = 0.01 * any(21);
+    Rig rig(true, loss, seed);
+    scene::FaultScript trouble{.title = {},
+                               .kind = kTroubles[run % 6],
+                               .node = any(4),
+                               .share = 0.01 * any(31),
+                               .from_s = 1e-3 * any(1500),
+                               .delay_s = 1e-4 * any(80),
+                               .seed = any(1000)};
+    rig.right.faults.emplace(trouble);
+    rig.each_tick = [&] {
+      const auto tick = rig.records.size();
+      if (tick % 200 == 0) rig.outlets->commands.push({0, rt::CommandKind::kResetFault});
+      if (tick % 200 == 100) rig.outlets->commands.push({0, rt::CommandKind::kArm});
+      if (tick % 700 == 0) rig.outlets->commands.push({0, rt::CommandKind::kStop});
+    };
+    ASSERT_EQ(rig.run(1500), std::nullopt);
+    for (const auto& r : rig.records) {
+      ASSERT_FALSE(control::needs_restart(static_cast<Fault>(r.fault)))
+          << "fault " << r.fault << " in tick " << r.tick << ", loss " << loss << ", seed " << seed << ", trouble "
+          << static_cast<int>(trouble.kind) << " from " << trouble.from_s << " s, share " << trouble.share << ", delay "
+          << trouble.delay_s << ", its seed " << trouble.seed;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ligature
