@@ -74,6 +74,7 @@ std::variant<std::unique_ptr<platform::CanBus>, Refusal> open_patiently(const st
     if (auto* bus = std::get_if<std::unique_ptr<platform::CanBus>>(&opened)) return std::move(*bus);
     const auto& error = std::get<platform::OpenError>(opened);
     if (error.kind == platform::OpenFailure::kUsage) return Refusal{2, error.text};
+    if (error.kind == platform::OpenFailure::kTaken) return Refusal{3, error.text};
     if (pause() || std::chrono::steady_clock::now() >= give_up) return Refusal{3, error.text};
   }
 }

@@ -21,14 +21,14 @@ Opened refuse(OpenFailure kind, const std::string& url, const std::string& why) 
 }
 
 template <class Address>
-Opened connected(int fd, const std::string& url, const Address& address, bool bind_it) {
+Opened connected(int fd, const std::string& url, const Address& address, bool bind_it, BusClaim claim) {
   const auto* a = reinterpret_cast<const sockaddr*>(&address);
   if ((bind_it ? bind(fd, a, sizeof address) : connect(fd, a, sizeof address)) != 0) {
     const std::string why = std::strerror(errno);
     close(fd);
     return refuse(OpenFailure::kNotThere, url, why + (bind_it ? "" : "; remedy: start the hand that serves it"));
   }
-  return std::make_unique<SocketBus>(fd);
+  return std::make_unique<SocketBus>(fd, std::move(claim));
 }
 
 Opened open_local(const std::string& url, const std::string& path) {
@@ -40,14 +40,20 @@ Opened open_local(const std::string& url, const std::string& path) {
   }
   std::memcpy(address.sun_path, path.data(), path.size());
   struct stat found {};
-  if (stat(path.c_str(), &found) == 0 && !S_ISSOCK(found.st_mode)) {
+  if (stat(path.c_str(), &found) != 0)
+    return refuse(OpenFailure::kNotThere, url,
+                  std::string(std::strerror(errno)) + "; remedy: start the hand that serves it");
+  if (!S_ISSOCK(found.st_mode)) {
     return refuse(OpenFailure::kUsage, url,
                   std::string("is ") + (S_ISDIR(found.st_mode) ? "a folder" : "no socket") +
                       ", allowed the socket that ligature-device made, or will make");
   }
+  // By inode: two names of one socket are one bus.
+  auto claim = BusClaim::take("local/" + std::to_string(found.st_dev) + ":" + std::to_string(found.st_ino));
+  if (const auto* why = std::get_if<std::string>(&claim)) return refuse(OpenFailure::kTaken, url, *why);
   const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (fd < 0) return refuse(OpenFailure::kNotThere, url, std::strerror(errno));
-  return connected(fd, url, address, false);
+  return connected(fd, url, address, false, std::get<BusClaim>(std::move(claim)));
 }
 
 Opened open_socketcan(const std::string& url, const std::string& interface) {
@@ -69,7 +75,12 @@ Opened open_socketcan(const std::string& url, const std::string& interface) {
     close(fd);
     return refuse(OpenFailure::kUsage, url, "no error frames from this interface: " + why);
   }
-  return connected(fd, url, address, true);
+  auto claim = BusClaim::take("can/" + interface);
+  if (const auto* why = std::get_if<std::string>(&claim)) {
+    close(fd);
+    return refuse(OpenFailure::kTaken, url, *why);
+  }
+  return connected(fd, url, address, true, std::get<BusClaim>(std::move(claim)));
 }
 
 }  // namespace

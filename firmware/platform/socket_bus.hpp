@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <variant>
 
+#include "firmware/platform/bus_claim.hpp"
 #include "firmware/platform/can_bus.hpp"
 #include "protocol/can/local_wire.hpp"
 
@@ -17,7 +19,7 @@ namespace ligature::platform {
 class SocketBus final : public CanBus {
  public:
   /// Owns the descriptor, which must be non-blocking.
-  explicit SocketBus(int descriptor) noexcept : fd_(descriptor) {}
+  explicit SocketBus(int descriptor, BusClaim claim = {}) noexcept : fd_(descriptor), claim_(std::move(claim)) {}
   ~SocketBus() override;
   SocketBus(const SocketBus&) = delete;
   SocketBus& operator=(const SocketBus&) = delete;
@@ -35,19 +37,21 @@ class SocketBus final : public CanBus {
   bool take_error_frame(const can::LocalPacket& packet) noexcept;
 
   int fd_;
+  BusClaim claim_;
   Loss loss_ = Loss::kNone;
 };
 
 enum class OpenFailure : std::uint8_t {
   kUsage,     ///< the URL cannot be meant: no waiting helps
   kNotThere,  ///< nobody listens yet, or the interface is down: may be tried again
+  kTaken,     ///< another controller on this machine has it
 };
 struct OpenError {
   OpenFailure kind;
   std::string text;  ///< one line
 };
 
-/// `local:/path/socket` (the simulated hand listens there) or `socketcan:can0`.
+/// `local:/path/socket` (the simulated hand listens there) or `socketcan:can0`; held alone until it is closed.
 [[nodiscard]] std::variant<std::unique_ptr<CanBus>, OpenError> open_can_bus(const std::string& url);
 
 }  // namespace ligature::platform

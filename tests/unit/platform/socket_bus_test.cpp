@@ -2,10 +2,22 @@
 #include "firmware/platform/socket_bus.hpp"
 
 #include <gtest/gtest.h>
+#include <linux/can.h>
+#include <linux/can/error.h>
+#include <poll.h>
+#include <signal.h>
 #include <sys/socket.h>
+#include <sys/un.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
+#include <cstring>
+#include <filesystem>
+
+#include "firmware/platform/bus_wait.hpp"
 #include "protocol/can/local_wire.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace ligature::platform {
 namespace {
@@ -77,6 +89,165 @@ TEST_F(SocketBusTest, AFloodOfWhatIsNoFrameHoldsNobodyUp) {
   char next[16];
   EXPECT_EQ(recv(bus->descriptor(), next, sizeof next, MSG_DONTWAIT), 5) << "all of it was read in one call";
   EXPECT_FALSE(bus->is_lost());
+}
+
+/// What an interface's driver tells by frames of its own.
+can::LocalPacket told_by_driver(std::uint32_t what) {
+  can::LocalPacket packet = can::to_packet({0, 8, {}});
+  const std::uint32_t id = CAN_ERR_FLAG | what;
+  std::memcpy(packet.data(), &id, sizeof id);
+  return packet;
+}
+
+class BusOff : public SocketBusTest {
+ protected:
+  void put(const can::LocalPacket& packet) {
+    ASSERT_EQ(::send(peer, packet.data(), packet.size(), 0), static_cast<ssize_t>(packet.size()));
+  }
+  void put(const can::Frame& frame) { put(can::to_packet(frame)); }
+  Receive receive() { return bus->receive(last); }
+  can::Frame last;
+};
+
+TEST_F(BusOff, IsALossUntilTheDriverTellsOfARestart) {
+  put(told_by_driver(CAN_ERR_BUSOFF));
+  EXPECT_EQ(receive(), Receive::kLost);
+  EXPECT_TRUE(bus->is_lost());
+  EXPECT_FALSE(bus->send(kFrame));
+  for (int i = 0; i < 3; ++i) {  // a frame is no sign: a controller that is off hears nothing
+    put(kFrame);
+    EXPECT_EQ(receive(), Receive::kLost);
+    EXPECT_TRUE(bus->is_lost());
+  }
+  put(told_by_driver(CAN_ERR_RESTARTED));
+  put(kFrame);
+  EXPECT_EQ(receive(), Receive::kFrame);
+  EXPECT_FALSE(bus->is_lost());
+  EXPECT_TRUE(bus->send(kFrame));
+}
+
+TEST_F(BusOff, WhatWasQueuedBeforeItIsNoSignOfLife) {
+  put(told_by_driver(CAN_ERR_BUSOFF));
+  for (int i = 0; i < 5; ++i) put(kFrame);  // heard before the driver told, read after
+  EXPECT_EQ(receive(), Receive::kLost);
+  put(told_by_driver(CAN_ERR_RESTARTED));
+  EXPECT_EQ(receive(), Receive::kNothing) << "frames of before the loss came through";
+}
+
+TEST_F(BusOff, OtherNewsOfTheDriverIsNone) {
+  put(told_by_driver(CAN_ERR_RESTARTED));
+  EXPECT_EQ(receive(), Receive::kNothing);
+  EXPECT_FALSE(bus->is_lost());
+}
+
+/// A lost bus is always readable: who waits for it never sleeps.
+TEST_F(BusOff, ALostBusIsNotWaitedFor) {
+  close(peer);
+  peer = -1;
+  EXPECT_EQ(receive(), Receive::kLost);
+  PollWait wait(*bus, *bus);
+  const Nanoseconds deadline = wait.now() + std::chrono::milliseconds(50);
+  (void)wait.wait(deadline);
+  EXPECT_GE(wait.now(), deadline) << "it came back at once";
+  EXPECT_FALSE(wait.wait(deadline));
+}
+
+TEST(BusClaim, IsHeldByOneUntilItEnds) {
+  const std::string name = "test/" + std::to_string(getpid());
+  auto first = BusClaim::take(name);
+  ASSERT_TRUE(std::holds_alternative<BusClaim>(first));
+  const auto second = BusClaim::take(name);
+  ASSERT_TRUE(std::holds_alternative<std::string>(second));
+  const auto& why = std::get<std::string>(second);
+  EXPECT_NE(why.find("process " + std::to_string(getpid())), std::string::npos) << why;
+  EXPECT_NE(why.find("; remedy: "), std::string::npos) << why;
+  EXPECT_TRUE(std::holds_alternative<BusClaim>(BusClaim::take(name + "x"))) << "another bus";
+  { const auto moved = std::get<BusClaim>(std::move(first)); }
+  EXPECT_TRUE(std::holds_alternative<BusClaim>(BusClaim::take(name)));
+}
+
+/// Of many that try at once.
+TEST(BusClaim, OneOfManyGetsIt) {
+  const std::string name = "race/" + std::to_string(getpid());
+  for (int round = 0; round < 20; ++round) {
+    int start[2], told[2];
+    ASSERT_EQ(pipe(start), 0);
+    ASSERT_EQ(pipe(told), 0);
+    constexpr int kTries = 8;
+    std::array<pid_t, kTries> children{};
+    for (pid_t& child : children) {
+      if ((child = fork()) != 0) continue;
+      close(start[1]);
+      char go = 0;
+      if (read(start[0], &go, 1) != 0) _exit(2);  // all at once: when the parent closes it
+      const auto claim = BusClaim::take(name);
+      const char got = std::holds_alternative<BusClaim>(claim) ? '1' : '0';
+      if (write(told[1], &got, 1) != 1) _exit(2);
+      pause();  // held until killed
+      _exit(0);
+    }
+    close(start[0]);
+    close(start[1]);
+    int got = 0;
+    for (int i = 0; i < kTries; ++i) {
+      char one = 0;
+      ASSERT_EQ(read(told[0], &one, 1), 1);
+      got += one == '1';
+    }
+    EXPECT_EQ(got, 1);
+    for (const pid_t child : children) {
+      kill(child, SIGKILL);
+      waitpid(child, nullptr, 0);
+    }
+    EXPECT_TRUE(std::holds_alternative<BusClaim>(BusClaim::take(name))) << "the kernel takes it back";
+    close(told[0]);
+    close(told[1]);
+  }
+}
+
+/// A device's socket, as ligature-device makes it.
+class OpenLocal : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    listener = socket(AF_UNIX, SOCK_SEQPACKET, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::memcpy(address.sun_path, path.data(), path.size());
+    ASSERT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    ASSERT_EQ(listen(listener, 8), 0);
+  }
+  void TearDown() override {
+    close(listener);
+    std::filesystem::remove(path);
+    std::filesystem::remove(folder + "other-name");
+  }
+  std::string folder = test::temp_folder(), path = folder + "hand";
+  int listener = -1;
+};
+
+TEST_F(OpenLocal, ASecondControllerIsRefusedWhateverItCallsTheBus) {
+  std::filesystem::create_symlink(path, folder + "other-name");
+  auto first = open_can_bus("local:" + path);
+  ASSERT_TRUE(std::holds_alternative<std::unique_ptr<CanBus>>(first));
+  for (const std::string& name : {path, folder + "other-name", folder + "./hand"}) {
+    const auto second = open_can_bus("local:" + name);
+    const auto* error = std::get_if<OpenError>(&second);
+    ASSERT_NE(error, nullptr) << name;
+    EXPECT_EQ(error->kind, OpenFailure::kTaken);
+    EXPECT_EQ(error->text.rfind("bus 'local:" + name + "': another controller", 0), 0U) << error->text;
+  }
+  std::get<0>(first).reset();
+  EXPECT_TRUE(std::holds_alternative<std::unique_ptr<CanBus>>(open_can_bus("local:" + path)));
+}
+
+TEST_F(OpenLocal, NothingIsSentByWhoIsRefused) {
+  auto first = open_can_bus("local:" + path);
+  const int device = accept4(listener, nullptr, nullptr, SOCK_NONBLOCK);
+  ASSERT_GE(device, 0);
+  (void)open_can_bus("local:" + path);
+  pollfd waiting{listener, POLLIN, 0};
+  EXPECT_EQ(poll(&waiting, 1, 0), 0) << "it did not even connect";
+  close(device);
 }
 
 OpenFailure failure_of(const std::string& url) {
