@@ -3,7 +3,10 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -18,6 +21,7 @@
 #include <sstream>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "firmware/platform/idle_guard.hpp"
 #include "firmware/platform/own_pages.hpp"
@@ -126,13 +130,115 @@ TEST(Realtime, EveryRefusalNamesItsCauseAndItsRemedy) {
   }
 }
 
-TEST(IdleGuard, AsksForZeroMicrosecondsAndHoldsTheRequest) {
-  const std::string device = test::temp_folder() + "cpu_dma_latency";
-  std::ofstream(device) << "";
-  const IdleGuard guard(device.c_str());
-  EXPECT_EQ(guard.refusal(), "");
-  EXPECT_EQ(std::filesystem::file_size(device), sizeof(std::int32_t));
+/// How often this process has a file open.
+int times_open(const std::string& file) {
+  int times = 0;
+  std::error_code gone;  // the folder's own descriptor
+  for (const auto& fd : std::filesystem::directory_iterator("/proc/self/fd"))
+    times += std::filesystem::read_symlink(fd.path(), gone) == file;
+  return times;
 }
+
+/// The kernel keeps the request for as long as the file is open.
+TEST(IdleGuard, AsksForZeroMicrosecondsAndHoldsTheRequest) {
+  const std::string device = std::filesystem::canonical(test::temp_folder()) / "cpu_dma_latency";
+  std::ofstream(device) << "";
+  {
+    const IdleGuard guard(device.c_str());
+    EXPECT_EQ(guard.refusal(), "");
+    std::int32_t asked_us = -1;
+    ASSERT_EQ(std::filesystem::file_size(device), sizeof asked_us);
+    std::ifstream(device).read(reinterpret_cast<char*>(&asked_us), sizeof asked_us);
+    EXPECT_EQ(asked_us, 0);
+    EXPECT_EQ(times_open(device), 1) << "closed, the request is over";
+  }
+  EXPECT_EQ(times_open(device), 0);
+}
+
+/// What a thread of its own sees of itself after it has asked for its rights, on a stack that nobody has used.
+struct OwnThread {
+  static constexpr std::size_t kStack = std::size_t{1} << 20, kPage = 4096;
+  Refusals refusals;
+  int policy = -1, core = -1, cores = 0;
+  sched_param priority{};
+  int slack_ns = -1;
+  std::size_t stack_pages = 0;  // present
+  void* stack = nullptr;
+
+  static void* begin(void* self) {
+    auto& t = *static_cast<OwnThread*>(self);
+    t.refusals = make_realtime(t.core);
+    pthread_getschedparam(pthread_self(), &t.policy, &t.priority);
+    t.slack_ns = prctl(PR_GET_TIMERSLACK);
+    cpu_set_t allowed;
+    CPU_ZERO(&allowed);
+    sched_getaffinity(0, sizeof allowed, &allowed);
+    t.cores = CPU_COUNT(&allowed);
+    if (!CPU_ISSET(static_cast<std::size_t>(t.core), &allowed)) t.cores = -1;
+    return nullptr;
+  }
+  void run() {
+    core = realtime_core();
+    stack = mmap(nullptr, kStack, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    ASSERT_NE(stack, MAP_FAILED);
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    pthread_attr_setstack(&attributes, stack, kStack);
+    pthread_t thread;
+    ASSERT_EQ(pthread_create(&thread, &attributes, begin, this), 0);
+    pthread_join(thread, nullptr);
+    pthread_attr_destroy(&attributes);
+    std::vector<unsigned char> present(kStack / kPage);
+    ASSERT_EQ(mincore(stack, kStack, present.data()), 0);
+    stack_pages = static_cast<std::size_t>(std::ranges::count_if(present, [](auto p) { return (p & 1) != 0; }));
+    munmap(stack, kStack);
+  }
+};
+
+/// Where the machine refuses, that must have been told; where it does not, the kernel says the same as we do.
+TEST(Realtime, AThreadHasTheCoreThePriorityTheTimersAndTheStackThatItAskedFor) {
+  OwnThread t;
+  t.run();
+  const auto refused = [&](const char* what) {
+    return std::ranges::any_of(t.refusals, [&](const auto& r) { return r.starts_with(what); });
+  };
+  if (refused("SCHED_FIFO")) {
+    EXPECT_EQ(t.policy, SCHED_OTHER);
+  } else {
+    EXPECT_EQ(t.policy, SCHED_FIFO);
+    EXPECT_EQ(t.priority.sched_priority, 80) << "above threaded interrupts, which have 50";
+  }
+  EXPECT_EQ(t.cores, refused("own core") ? t.cores : 1);
+  EXPECT_FALSE(refused("exact timers"));
+  EXPECT_LE(t.slack_ns, 1) << "50 us is what a thread begins with; for real-time ones newer kernels say 0";
+  EXPECT_GE(t.stack_pages * OwnThread::kPage, 256U * 1024U) << "the loop's first deep call would fault";
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they bring an allocator of their own
+/// In a process of its own, for it is for good.
+TEST(Realtime, TheHeapKeepsWhatItHas) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const rlimit small{0, 0};
+    setrlimit(RLIMIT_MEMLOCK, &small);
+    (void)lock_memory();
+    constexpr std::size_t kBlock = 65536, kBlocks = 256, kLarge = std::size_t{4} << 20;
+    std::vector<void*> blocks;
+    for (std::size_t i = 0; i < kBlocks; ++i) blocks.push_back(std::malloc(kBlock));
+    void* const large = std::malloc(kLarge);
+    const auto end = reinterpret_cast<std::uintptr_t>(sbrk(0)), at = reinterpret_cast<std::uintptr_t>(large);
+    const bool in_heap = at < end && at + kLarge <= end;
+    std::free(large);
+    for (void* block : blocks) std::free(block);
+    const bool kept = reinterpret_cast<std::uintptr_t>(sbrk(0)) == end;
+    _exit(!in_heap ? 2 : kept ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0) << "1: freed memory went back to the system, 2: a large block is not of the heap";
+}
+#endif
 
 TEST(IdleGuard, SaysWhyNotAndWhatHelps) {
   const IdleGuard guard("/nowhere/cpu_dma_latency");
@@ -143,11 +249,16 @@ TEST(IdleGuard, SaysWhyNotAndWhatHelps) {
 TEST(Realtime, OthersKeepOffTheRealTimeCore) {
   std::thread([] {
     const int core = realtime_core();
-    keep_off(core);
     cpu_set_t allowed;
     CPU_ZERO(&allowed);
     ASSERT_EQ(sched_getaffinity(0, sizeof allowed, &allowed), 0);
-    EXPECT_TRUE(CPU_COUNT(&allowed) == 1 || !CPU_ISSET(static_cast<std::size_t>(core), &allowed));
+    const int before = CPU_COUNT(&allowed);
+    const int away = before > 1 && CPU_ISSET(static_cast<std::size_t>(core), &allowed) ? 1 : 0;
+    keep_off(core);
+    CPU_ZERO(&allowed);
+    ASSERT_EQ(sched_getaffinity(0, sizeof allowed, &allowed), 0);
+    EXPECT_TRUE(before == 1 || !CPU_ISSET(static_cast<std::size_t>(core), &allowed));
+    EXPECT_EQ(CPU_COUNT(&allowed), before - away) << "and on every other one";
   }).join();
 }
 
