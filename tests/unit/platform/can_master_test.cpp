@@ -34,6 +34,8 @@ class CanMasterTest : public ::testing::Test {
     }
     // Somebody else's answer comes first, and must be passed over.
     bus.inbox.push_back(can::encode(can::Sdo{can::SdoKind::kWritten, can::NodeId{99}, request->object, 0, 0}));
+    // So must a late one of its own, about something else.
+    bus.inbox.push_back(can::encode(can::Sdo{can::SdoKind::kValue, request->node, can::od::kErrorCode, 7, 4}));
     bus.inbox.push_back(can::encode(reply));
   }
   std::optional<std::string> configure() { return configure_drives(bus, wait, {50, 300, 100}); }
@@ -66,6 +68,31 @@ TEST_F(CanMasterTest, ASilentDriveIsNamed) {
 TEST_F(CanMasterTest, ARefusalIsNamedWithItsCode) {
   refused = can::od::kMaxTorque;
   EXPECT_EQ(configure(), "node 1, object 0x6072:00: refused by the drive, abort code 0x06010002");
+}
+
+TEST_F(CanMasterTest, ARefusalToBeReadIsNamedWithItsCode) {
+  refused = can::od::kRatedTorque;
+  EXPECT_EQ(configure(), "node 1, object 0x6076:00: refused by the drive, abort code 0x06010002");
+}
+
+/// Each object that the record speaks of is written with the record's number.
+TEST_F(CanMasterTest, WritesWhatTheDevicesRecordSays) {
+  device::Device d = device::omni();
+  d.max_torque_permille = 1234;
+  d.rated_torque_Nm = 0.05;
+  d.motor_counts = 1000, d.gear = 2.0;
+  values[can::od::kRatedTorque] = 50;
+  values[can::od::kEncoderIncrements] = 2000;
+  EXPECT_EQ(configure_drives(bus, wait, {50, 300, 100, drive_facts(d)}), std::nullopt);
+  EXPECT_EQ(written[can::od::kMaxTorque], 1234U);
+  EXPECT_EQ(written[can::od::kAbortConnectionOption], 1U) << "a lost link is a fault";
+  EXPECT_EQ(written[can::od::kProducerHeartbeat], 100U);
+  EXPECT_EQ(written[can::od::kConsumerHeartbeat], can::consumer_heartbeat_value(can::kMasterNode, 300));
+}
+
+TEST_F(CanMasterTest, StartingIsOneNmtCommandToAll) {
+  EXPECT_TRUE(start_drives(bus));
+  EXPECT_EQ(bus.sent, std::vector<can::Frame>{can::encode_nmt(can::NmtCommand::kStart)});
 }
 
 TEST_F(CanMasterTest, ADriveOfAnotherSizeIsRefused) {  // per mille of something else would be another force

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "firmware/platform/rig_bus.hpp"
 #include "protocol/can/emcy.hpp"
@@ -273,6 +274,98 @@ TEST_F(HandLinkTest, SyncCarriesNothing) {
   EXPECT_EQ(bus.sent.front(), (can::Frame{0x080, 0, {}}));
 }
 
+/// Each bit of the buttons' word by itself.
+TEST_F(HandLinkTest, ReadsEachButtonAndHowLongATorqueWasHeld) {
+  const auto told = [this](std::uint16_t buttons) {
+    link.send_sync();
+    answer_all(State::kOperationEnabled, 100, buttons);
+    link.drain();
+    return link.reading();
+  };
+  for (unsigned bits = 0; bits < 8; ++bits) {
+    const auto r = told(static_cast<std::uint16_t>(bits));
+    EXPECT_EQ(r.grip, (bits & can::profile::kButtonGrip) != 0) << bits;
+    EXPECT_EQ(r.dead_man, (bits & can::profile::kButtonDeadMan) != 0) << bits;
+    EXPECT_EQ(r.clutch, (bits & can::profile::kButtonClutch) != 0) << bits;
+    EXPECT_EQ(r.torque_held[2], 0);
+  }
+  for (int held = 0; held < 32; ++held)
+    EXPECT_EQ(told(can::profile::with_held(can::profile::kButtonGrip, held)).torque_held[2], held);
+}
+
+TEST_F(HandLinkTest, TorqueIsTakenAsItIsToldAndNotBeforeItIs) {
+  for (const double t : link.reading().torque_Nm) EXPECT_TRUE(std::isnan(t));
+  link.send_sync();
+  const std::int16_t told[] = {-1000, 250, 0};
+  for (std::size_t j = 0; j < 3; ++j)
+    bus.inbox.push_back(
+        can::encode(kNodes[j], can::Tpdo1{can::cia402::statusword_of(State::kOperationEnabled), 0, told[j], 0}));
+  link.drain();
+  EXPECT_DOUBLE_EQ(link.reading().torque_Nm[0], -0.3);
+  EXPECT_DOUBLE_EQ(link.reading().torque_Nm[1], 0.075);
+  EXPECT_TRUE(std::isnan(link.reading().torque_Nm[2])) << "its message has buttons there";
+}
+
+TEST_F(HandLinkTest, ANodeThatIsNotOperationalIsTroubleUntilItIs) {
+  for (const auto state : {can::NmtState::kStopped, can::NmtState::kPreOperational, can::NmtState::kBootUp}) {
+    bus.inbox.push_back(can::encode(can::Heartbeat{kNodes[2], state}));
+    EXPECT_TRUE(period().drive_fault) << static_cast<int>(state);
+    bus.inbox.push_back(can::encode(can::Heartbeat{kNodes[2], can::NmtState::kOperational}));
+    EXPECT_FALSE(period().drive_fault);
+  }
+}
+
+TEST_F(HandLinkTest, ADriveOnItsWayIntoAFaultIsInOne) {
+  link.send_sync();
+  answer(0);
+  answer(1, State::kFaultReactionActive);
+  answer(2);
+  link.drain();
+  EXPECT_TRUE(link.reading().drive_fault);
+}
+
+/// What it complained of is over when somebody asked it back up and it came: not while it is merely operated.
+TEST_F(HandLinkTest, AnEmergencyIsForgottenByEnablingOnly) {
+  period();
+  bus.inbox.push_back(can::encode(can::Emergency{kNodes[1], can::emcy::kRpdoTimeout, can::emcy::kGenericBit}));
+  for (const auto request : {rt::DriveRequest::kOperate, rt::DriveRequest::kHold, rt::DriveRequest::kStop}) {
+    EXPECT_TRUE(period().drive_fault);
+    link.write({{}, request});
+  }
+  EXPECT_TRUE(period().drive_fault);
+  link.write({{}, rt::DriveRequest::kEnable});
+  EXPECT_FALSE(period().drive_fault);
+}
+
+/// A reset is an edge: zero in between, or a drive that faults again is never reset again.
+TEST(HandLinkControlword, AFaultResetAlternatesWithZero) {
+  std::uint16_t word = 0;
+  for (int i = 0; i < 6; ++i) {
+    word = controlword(rt::DriveRequest::kEnable, can::cia402::State::kFault, word);
+    EXPECT_EQ(word, i % 2 == 0 ? can::cia402::kControlFaultReset : can::cia402::kControlDisableVoltage) << i;
+  }
+}
+
+TEST_F(HandLinkTest, EveryFaultIsResetByAnEdgeOfItsOwn) {
+  std::vector<std::uint16_t> words;
+  for (int i = 0; i < 4; ++i) {
+    link.send_sync();
+    answer_all(State::kFault);
+    link.drain();
+    link.write({{}, rt::DriveRequest::kEnable});
+    words.push_back(last_rpdo(1).controlword);
+  }
+  EXPECT_EQ(words, (std::vector<std::uint16_t>{0x80, 0, 0x80, 0}));
+}
+
+/// More than a bus can carry in a period, in one go: a stalled hand's messages pile up and must not stay behind.
+TEST_F(HandLinkTest, TakesAWholeBusyPeriodAtOnce) {
+  link.send_sync();
+  for (int i = 0; i < 20; ++i) answer_all(State::kOperationEnabled, i);
+  link.drain();
+  EXPECT_DOUBLE_EQ(link.reading().q_rad[0], can::angle_rad(19));
+}
+
 TEST_F(HandLinkTest, ALostBusIsSeenAtOnce) {
   period();
   bus.lost = true;
@@ -317,7 +410,7 @@ TEST_F(HandLinkTest, SendsTheMastersHeartbeatNowAndThen) {
   int beats = 0;
   for (const auto& f : bus.sent) {
     const auto beat = can::decode_heartbeat(f);
-    beats += beat && beat->node == can::kMasterNode;
+    beats += beat && beat->node == can::kMasterNode && beat->state == can::NmtState::kOperational;
   }
   EXPECT_EQ(beats, 2);
 }
@@ -338,6 +431,31 @@ TEST(RigBus, ReturnsAsSoonAsBothHandsAnswered) {
   EXPECT_EQ(wait.time, std::chrono::microseconds(400));
   EXPECT_EQ(reading.hand[0].age_ticks, 0);
   EXPECT_EQ(reading.hand[1].age_ticks, 0);
+}
+
+TEST(RigBus, EachHandHasItsOwnBus) {
+  FakeBus left, right;
+  FakeWait wait;
+  RigBus rig(left, right, wait);
+  rig.send_sync();
+  for (const auto node : kNodes) left.inbox.push_back(can::encode(node, can::Tpdo1{0x27, 10, 0, 0}));
+  for (const auto node : kNodes) right.inbox.push_back(can::encode(node, can::Tpdo1{0x27, 20, 0, 0}));
+  const auto reading = rig.read_tpdos(std::chrono::microseconds(600));
+  EXPECT_DOUBLE_EQ(reading.hand[0].q_rad[0], can::angle_rad(10));
+  EXPECT_DOUBLE_EQ(reading.hand[1].q_rad[0], can::angle_rad(20));
+  rt::RigCommand command;
+  command.hand[0] = {{0.03, 0.0, 0.0}, rt::DriveRequest::kOperate};
+  command.hand[1] = {{-0.06, 0.0, 0.0}, rt::DriveRequest::kHold};
+  const auto sent = rig.write_rpdos(command);
+  EXPECT_EQ(sent[0][0], 100);
+  EXPECT_EQ(sent[1][0], -200);
+  const auto first_rpdo = [](const FakeBus& bus) {
+    for (const auto& f : bus.sent)
+      if (const auto rpdo = can::decode_rpdo1(kNodes[0], f)) return *rpdo;
+    return can::Rpdo1{};
+  };
+  EXPECT_EQ(first_rpdo(left), (can::Rpdo1{can::cia402::kControlEnableOperation, 100}));
+  EXPECT_EQ(first_rpdo(right), (can::Rpdo1{can::cia402::kControlDisableVoltage, -200}));
 }
 
 TEST(RigBus, DoesNotWaitBeyondTheDeadline) {

@@ -12,12 +12,30 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <filesystem>
 
 #include "firmware/platform/bus_wait.hpp"
 #include "protocol/can/local_wire.hpp"
 #include "tests/support/temp_folder.hpp"
+
+namespace {
+
+int send_error = 0, recv_error = 0;  // what an interface would answer now; 0: nothing special
+
+}  // namespace
+
+// The kernel's calls by their longer names, so that a test can put an interface's errors in front of a plain socket.
+extern "C" ssize_t send(int fd, const void* bytes, std::size_t count, int flags) {
+  if (send_error != 0) return errno = send_error, -1;
+  return sendto(fd, bytes, count, flags, nullptr, 0);
+}
+extern "C" ssize_t recv(int fd, void* bytes, std::size_t count, int flags) {
+  if (recv_error != 0) return errno = recv_error, -1;
+  return recvfrom(fd, bytes, count, flags, nullptr, nullptr);
+}
 
 namespace ligature::platform {
 namespace {
@@ -138,6 +156,45 @@ TEST_F(BusOff, OtherNewsOfTheDriverIsNone) {
   put(told_by_driver(CAN_ERR_RESTARTED));
   EXPECT_EQ(receive(), Receive::kNothing);
   EXPECT_FALSE(bus->is_lost());
+}
+
+class Interface : public BusOff {
+ protected:
+  void TearDown() override {
+    send_error = recv_error = 0;
+    BusOff::TearDown();
+  }
+};
+
+TEST_F(Interface, AFullQueueOfItsIsNoLoss) {
+  send_error = ENOBUFS;
+  EXPECT_FALSE(bus->send(kFrame));
+  EXPECT_FALSE(bus->is_lost());
+  send_error = 0;
+  EXPECT_TRUE(bus->send(kFrame));
+}
+
+TEST_F(Interface, ThatIsDownIsLostUntilItsFirstFrame) {
+  for (int* const error : {&recv_error, &send_error}) {
+    *error = ENETDOWN;
+    EXPECT_TRUE(error == &recv_error ? receive() == Receive::kLost : !bus->send(kFrame));
+    EXPECT_TRUE(bus->is_lost());
+    *error = 0;
+    put(told_by_driver(CAN_ERR_RESTARTED));  // of a bus-off that was not ours
+    EXPECT_EQ(receive(), Receive::kLost) << "no frame yet";
+    put(kFrame);
+    EXPECT_EQ(receive(), Receive::kFrame);
+    EXPECT_FALSE(bus->is_lost());
+  }
+}
+
+TEST_F(Interface, ThatIsGoneStaysGone) {
+  send_error = ENODEV;
+  EXPECT_FALSE(bus->send(kFrame));
+  send_error = 0;
+  put(kFrame);
+  EXPECT_EQ(receive(), Receive::kLost);
+  EXPECT_TRUE(bus->is_lost());
 }
 
 /// A lost bus is always readable: who waits for it never sleeps.
