@@ -100,12 +100,20 @@ void arrange(SimulatedRig& rig, const Case& c) {
   rig.stall_for = c.stall;
 }
 
+/// Torque that is not ours is taken by a fault, but not before it was there.
+bool others_push(const Case& c) {
+  return c.script && (c.script->kind == scene::FaultKind::kAstray ||
+                      (c.script->kind == scene::FaultKind::kForeign && c.script->frame == scene::ForeignFrame::kRpdo));
+}
+
 void expect_sound(const SimulatedRig& rig, const Case& c, const Outcome& o) {
   for (std::size_t i = 0; i < rig.records.size(); ++i) ASSERT_EQ(rig.records[i].tick, static_cast<std::int64_t>(i));
   EXPECT_TRUE(o.pushed_before) << "the onset must find the rig in force";
   EXPECT_EQ(o.fault, c.fault);
-  EXPECT_LE(o.peak_N, 3.4);
-  EXPECT_LE(o.step_N, 0.55);
+  if (!others_push(c)) {
+    EXPECT_LE(o.peak_N, 3.4);
+    EXPECT_LE(o.step_N, 0.55);
+  }
   if (c.fault == 0) return;
   EXPECT_LE(o.ticks_to_zero, c.within_ticks);
   bool faulted = false;
@@ -146,7 +154,9 @@ const std::string kHead =
     "the\n"
     "true force at either tip stays below 3.4 N and its true steps below 0.55 N, both from the torques that the "
     "motors\n"
-    "made and the pose that the arm truly had; every tick is recorded; a fault is latched, disarms, and takes both "
+    "made and the pose that the arm truly had (not where somebody else pushes until the fault: rows `foreign-rpdo` "
+    "and\n"
+    "`astray`); every tick is recorded; a fault is latched, disarms, and takes both "
     "hands.\n"
     "While the controller sleeps or cannot be heard, the drives' own watchdog (20 ms) takes the torque.\n\n"
     "What carries on does so on held or doubled samples. An encoder that freezes or turns round is known by the moment "
