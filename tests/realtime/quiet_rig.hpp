@@ -5,17 +5,6 @@
 
 namespace ligature {
 
-/// The real bus would allocate nowhere; this one must not either, so the samples it notes are dropped.
-class QuietBus {
- public:
-  explicit QuietBus(VirtualBus& bus) : bus_(bus) {}
-  void send_sync() noexcept { bus_.send_sync(); }
-  rt::RigReading read_tpdos(Nanoseconds) noexcept { return bus_.reading; }
-  rt::WireTorque write_rpdos(const rt::RigCommand& c) noexcept { return bus_.write_rpdos(c); }
-
- private:
-  VirtualBus& bus_;
-};
 class QuietClock {
  public:
   Nanoseconds now() noexcept {
@@ -28,12 +17,28 @@ class QuietClock {
   lab::VirtualThread* thread = nullptr;
 };
 
+/// The real bus would allocate nowhere; this one must not either, so the samples it notes are dropped.
+class QuietBus {
+ public:
+  QuietBus(VirtualBus& bus, QuietClock& clock) : bus_(bus), clock_(clock) {}
+  void send_sync() noexcept { bus_.send_sync(); }
+  rt::RigReading read_tpdos(Nanoseconds) noexcept {
+    clock_.time += rt::kSamplesLatest;
+    return bus_.reading;
+  }
+  rt::WireTorque write_rpdos(const rt::RigCommand& c) noexcept { return bus_.write_rpdos(c); }
+
+ private:
+  VirtualBus& bus_;
+  QuietClock& clock_;
+};
+
 /// Both contexts of a rig on one thread: the physics runs where the loop wakes it.
 struct QuietRun {
   explicit QuietRun(VirtualRig& r) : rig(r) { clock.thread = &physics; }
   VirtualRig& rig;
-  QuietBus bus{rig.bus};
   QuietClock clock;
+  QuietBus bus{rig.bus, clock};
   lab::VirtualThread physics{clock.time, rig.thread, *rig.exchange, rig.outlets->shape};
   Cycle<QuietBus, QuietClock, lab::VirtualThread> cycle{bus, clock, rig.controller, *rig.exchange, physics, *rig.outlets};
 };

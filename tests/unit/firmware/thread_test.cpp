@@ -16,8 +16,16 @@ scene::Scene eight_substeps() {
   return s;
 }
 
+scene::Scene long_rod() {  // 2000 nodes: whatever that takes, it is more than there is
+  scene::Scene s = small_scene();
+  s.suture.model = scene::Model::kRod;
+  s.suture.radius_m = 1e-3;
+  s.suture.nodes = 2000;
+  return s;
+}
+
 struct HeldRig : VirtualRig {
-  HeldRig() : VirtualRig(eight_substeps()) {
+  explicit HeldRig(const scene::Scene& scene = eight_substeps()) : VirtualRig(scene) {
     for (auto& hand : bus.reading.hand) hand.grip = true;
     bus.on_sync = [this](std::int64_t) { synced_at.push_back(clock.time); };
   }
@@ -108,6 +116,25 @@ TEST(Thread, TheClockEndsATickThatDoesNotFit) {
   }
   EXPECT_GE(rig.cycle.timing().thread_cut, 1490U);
   EXPECT_NEAR(rig.cycle.timing().thread_lost_ticks / 1500.0, records[1000].time_lost, 0.1);
+  EXPECT_EQ(rig.controller.fault(), control::Fault::kNone);
+}
+
+TEST(Thread, TwoThousandNodesUnderForceHoldUpNothingAndTheLossIsTold) {
+  HeldRig rig(long_rod());
+  rig.physics.per_question = 50us;
+  const auto records = rig.run(1200);
+  expect_loop_in_time(rig, records);
+  std::int64_t cut = 0, held = 0;
+  for (const auto& r : records) {
+    if (r.tick < 2 || &r == &records.back()) continue;
+    ASSERT_EQ(r.grasp_age_ticks, 1) << r.tick;
+    ASSERT_EQ(r.flags & rt::kThreadLate, 0) << r.tick;
+    ASSERT_EQ((r.flags & rt::kThreadCut) != 0, r.time_lost > 0.0F) << r.tick;
+    cut += (r.flags & rt::kThreadCut) != 0;
+    held += r.grasped_node[0] >= 0 && r.state == static_cast<int>(control::State::kForce);
+  }
+  EXPECT_GT(cut, 1000);
+  EXPECT_GT(held, 100);
   EXPECT_EQ(rig.controller.fault(), control::Fault::kNone);
 }
 
