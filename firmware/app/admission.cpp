@@ -1,95 +1,120 @@
 #include "firmware/app/admission.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <thread>
 
 #include "firmware/platform/realtime.hpp"
-#include "protocol/can/bit_time.hpp"
-#include "protocol/scene/polyline.hpp"
+#include "firmware/rt/bus_time.hpp"
 
 namespace ligature::app {
 namespace {
 
-constexpr double kBus_us =
-    1e-3 * static_cast<double>(can::bits_to_ns(can::max_frame_bits(0) + 3 * can::max_frame_bits(8)));
+constexpr double kNoLoss = 1e-3;  // share of the time: less than a millisecond in a second is none
 
-/// What the worst ticks did instead of running longer; empty: nothing.
-std::string given_up(const WorstCase& worst) {
-  char text[128] = "";
-  switch (worst.gave_up) {
-    case physics::Degradation::kNone:
-      break;
-    case physics::Degradation::kIterations:
-      return "  gives up then: contacts settle less\n";
-    case physics::Degradation::kContacts:
-      return "  gives up then: the shallowest contacts feel no impulse\n";
-    case physics::Degradation::kMotion:
-      std::snprintf(text, sizeof text, "  gives up then: the thread stands still for up to %.0f %% of a tick\n",
-                    100.0 * worst.time_lost);
-      break;
+double us(std::chrono::nanoseconds t) { return 1e-3 * static_cast<double>(t.count()); }
+
+/// What the thread has at the least: from tools handed over after the latest samples until before the earliest ones.
+double given_us(const LoopCost& loop) {
+  constexpr auto kLeast = rt::kPeriod - (rt::kSamplesLatest - rt::kSamplesEarliest) - rt::ThreadDeadline::kMargin;
+  return us(kLeast) - loop.control_us - loop.calls_us;
+}
+
+std::vector<DrawnKnot> draw_knots(const scene::Scene& scene, const ThreadCost& cost) {
+  const scene::Scene knotted = with_loose_knot(scene);
+  auto made = physics::Simulation::make(knotted);
+  auto* const thread = std::get_if<physics::Simulation>(&made);
+  if (thread == nullptr) return {};
+  if (cost.work > 0) thread->set_work(cost.work);
+  const Tick tick = [&](physics::Simulation& t, const std::array<physics::ToolInput, 2>& tools) {
+    tick_within(t, tools, cost.given_us);
+  };
+  std::vector<DrawnKnot> knots;
+  for (const double speed : kHandSpeeds_m_per_s) knots.push_back(draw(*thread, knotted, speed, tick));
+  return knots;
+}
+
+double lost(const DrawnKnot& knot) { return std::max(knot.pull_lost, knot.hold_lost); }
+
+std::string knots_table(const std::vector<DrawnKnot>& knots) {
+  if (knots.empty()) return {};
+  std::string text = "  time lost by a knot drawn tight, each hand at so many m/s\n    m/s      drawn %   held %\n";
+  char row[96];
+  for (const auto& k : knots) {
+    std::snprintf(row, sizeof row, "    %-8.2f %7.1f  %7.1f\n", k.speed_m_per_s, 100.0 * k.pull_lost,
+                  100.0 * k.hold_lost);
+    text += row;
   }
   return text;
 }
 
 }  // namespace
 
-Admission admit(const scene::Scene& scene, double seconds, int core, double budget_percent) {
+Admission admit(const scene::Scene& scene, const AdmissionSettings& settings) {
   Admission result;
-  result.budget_percent = budget_percent;
-  result.bus_us = kBus_us;
+  result.budget_percent = settings.budget_percent;
   std::thread([&] {  // on the core, but without its priority: this computes for seconds on end
-    if (core != kAnyCore) platform::stay_on(core);
+    if (settings.core != kAnyCore) platform::stay_on(settings.core);
     platform::flush_denormals();
-    result.worst = measure_worst_case(scene, seconds);
+    result.loop = measure_loop(scene);
+    result.thread = measure_thread(scene, given_us(result.loop), settings.seconds);
+    if (settings.draw_knots) result.knots = draw_knots(scene, result.thread);
   })
       .join();
   return result;
 }
 
-Measure measure_on(int core, double budget_percent) {
-  return [=](const scene::Scene& scene, double seconds) { return admit(scene, seconds, core, budget_percent); };
-}
-
-std::optional<int> largest_nodes(scene::Scene scene, double seconds, const Measure& measure) {
-  int fits = 0, too_many = scene.suture.nodes;
-  const auto shape = scene.suture.initial_polyline_m;  // empty: hanging
-  const double rounds = std::ceil(std::log2(std::max(2, too_many)));
-  const auto good = [&](int nodes) {
-    scene.suture.nodes = nodes;
-    if (!shape.empty())
-      scene.suture.initial_polyline_m = scene::lay_out(shape, nodes, scene.suture.length_m / (nodes - 1));
-    return std::holds_alternative<physics::Simulation>(physics::Simulation::make(scene)) &&
-           measure(scene, seconds / rounds).fits();
-  };
-  while (too_many - fits > 1) {
-    const int nodes = fits + (too_many - fits) / 2;
-    if (nodes < 2) break;
-    (good(nodes) ? fits : too_many) = nodes;
-  }
-  constexpr double kLess = 0.9;  // what is named has been measured twice, or it is a tenth less
-  while (fits >= 2 && !good(fits)) fits = static_cast<int>(kLess * fits);
-  return fits >= 2 ? std::optional(fits) : std::nullopt;
-}
-
 std::string table(const Admission& a) {
   char text[1024];
-  const auto share = [](double us) { return 0.1 * us; };
+  const auto share = [](double part_us) { return 0.1 * part_us; };
+  const double bus_us = us(rt::kSamplesLatest), torques_us = us(rt::kTorquesLatest);
   std::snprintf(text, sizeof text,
-                "worst case of a tick, %d ticks tried; period 1000 us\n"
-                "  phase                      us    %% of period\n"
-                "  bus, SYNC to last TPDO %7.1f  %8.1f   waiting, by the length of the frames\n"
-                "  calls to both buses    %7.1f  %8.1f   on a local socket; a driver's own time not known\n"
-                "  control law and record %7.1f  %8.1f\n"
-                "  thread                 %7.1f  %8.1f   up to %d contacts%s\n"
-                "  computing              %7.1f  %8.1f   allowed %.1f us (budget %.0f %%)\n"
-                "  in all                 %7.1f  %8.1f   allowed 1000.0 us\n",
-                a.worst.ticks, a.bus_us, share(a.bus_us), a.worst.calls_us, share(a.worst.calls_us), a.worst.control_us,
-                share(a.worst.control_us), a.worst.thread_us, share(a.worst.thread_us), a.worst.most_contacts,
-                a.worst.contact_cap_hit ? ", contact list full" : "", a.computing_us(), share(a.computing_us()),
-                a.budget_us(), a.budget_percent, a.bus_us + a.computing_us(), share(a.bus_us + a.computing_us()));
-  return text + given_up(a.worst);
+                "period 1000 us\n"
+                "  loop                        us    %% of period\n"
+                "  SYNC to last TPDO       %7.1f  %8.1f   waiting, by the length of the frames\n"
+                "  calls to both buses     %7.1f  %8.1f   on a local socket; a driver's own time not known\n"
+                "  control law and record  %7.1f  %8.1f\n"
+                "  computing               %7.1f  %8.1f   allowed %.1f us (--budget %.0f %%)\n"
+                "  torques to next SYNC    %7.1f  %8.1f   on the bus\n"
+                "  thread, also while the loop waits\n"
+                "  has                     %7.1f  %8.1f\n"
+                "  worst tick of %-5d     %7.1f  %8.1f   up to %d contacts%s%s\n",
+                bus_us, share(bus_us), a.loop.calls_us, share(a.loop.calls_us), a.loop.control_us,
+                share(a.loop.control_us), a.computing_us(), share(a.computing_us()), a.budget_us(), a.budget_percent,
+                torques_us, share(torques_us), a.thread.given_us, share(a.thread.given_us), a.thread.ticks,
+                a.thread.worst_us, share(a.thread.worst_us), a.thread.most_contacts,
+                a.thread.contact_cap_hit ? ", not all of them solved" : "",
+                a.thread.ended_by_clock ? "; ended by the clock" : "");
+  std::string all = text;
+  if (a.thread.work > 0) {
+    std::snprintf(text, sizeof text, "  work for contact        %7.1f  million instructions a tick\n",
+                  1e-6 * static_cast<double>(a.thread.work));
+    all += text;
+  }
+  std::snprintf(text, sizeof text, "  time lost in the worst shape: %.1f %%\n", 100.0 * a.thread.time_lost);
+  return all + text + knots_table(a.knots);
+}
+
+std::optional<std::string> objection_of(const Admission& a, double no_loss_m_per_s) {
+  char text[256];
+  if (!a.fits()) {
+    std::snprintf(
+        text, sizeof text,
+        "the loop does not fit: found %.0f us of computing from SYNC to record, allowed %.0f; remedy: a faster core, "
+        "or --budget up to %.0f",
+        a.computing_us(), a.budget_us(), 1e-1 * us(rt::kMostWork));
+    return text;
+  }
+  for (const auto& knot : a.knots) {
+    if (knot.speed_m_per_s > no_loss_m_per_s || lost(knot) < kNoLoss) continue;
+    std::snprintf(
+        text, sizeof text,
+        "--no-loss %g: found %.1f %% of the time lost by a knot drawn at %g m/s a hand, allowed %.1f; remedy: "
+        "suture.accuracy = \"fast\", fewer suture.nodes, or --physics-core",
+        no_loss_m_per_s, 100.0 * lost(knot), knot.speed_m_per_s, 100.0 * kNoLoss);
+    return text;
+  }
+  return std::nullopt;
 }
 
 }  // namespace ligature::app

@@ -1,47 +1,48 @@
 #pragma once
-// Whether a scene's worst tick fits into the period, measured on the core that will run it, before anybody is armed.
+// What a scene may promise on this machine, measured before anybody is armed: that the loop is in time, whatever the
+// thread does, and how much of its time the thread keeps.
 
-#include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "firmware/app/drawn_knot.hpp"
 #include "firmware/app/meter.hpp"
+#include "firmware/app/options.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::app {
 
-inline constexpr double kDefaultBudget_percent = 60.0;
-
 struct Admission {
-  WorstCase worst;
+  LoopCost loop;
+  ThreadCost thread;
+  std::vector<DrawnKnot> knots;  ///< empty: not tried
   double budget_percent = kDefaultBudget_percent;
-  /// SYNC and TPDOs of a bus at its longest (bits, stuffed), during which the loop waits and computes nothing.
-  double bus_us = 0.0;
-  [[nodiscard]] double computing_us() const noexcept { return worst.thread_us + worst.control_us + worst.calls_us; }
+  [[nodiscard]] double computing_us() const noexcept { return loop.control_us + loop.calls_us; }
   [[nodiscard]] double budget_us() const noexcept { return 10.0 * budget_percent; }
-  /// Within the budget, and together with the bus within the period.
-  [[nodiscard]] bool fits() const noexcept {
-    return computing_us() <= budget_us() && bus_us + computing_us() <= 1000.0;
-  }
+  /// The loop's way from SYNC to torques and record does; the thread is ended by the clock and cannot hold it up.
+  [[nodiscard]] bool fits() const noexcept { return computing_us() <= budget_us(); }
 };
 
 /// Measure on whatever core the calling thread may use.
 inline constexpr int kAnyCore = -1;
 
-/// @param scene one that physics::Simulation::make() accepts. @param seconds to spend. @param core to measure on.
-[[nodiscard]] Admission admit(const scene::Scene& scene, double seconds, int core,
-                              double budget_percent = kDefaultBudget_percent);
+struct AdmissionSettings {
+  double seconds = 0.3;  ///< to spend on worst shapes
+  int core = kAnyCore;
+  double budget_percent = kDefaultBudget_percent;
+  bool draw_knots = false;
+};
 
-/// What a scene costs, found in so many seconds: admit() on one core, or a table of costs in a test.
-using Measure = std::function<Admission(const scene::Scene&, double seconds)>;
-[[nodiscard]] Measure measure_on(int core, double budget_percent);
+/// @param scene one that physics::Simulation::make() accepts. Without `suture.work_instructions` the thread's work is
+/// chosen so that the dearest tick of a drawn knot ends by itself; what is worse, the clock ends.
+[[nodiscard]] Admission admit(const scene::Scene& scene, const AdmissionSettings& settings);
 
-/// The largest `nodes` of this scene that fits, by bisection, about `seconds` in all, and measured again in the end;
-/// nothing when not even 2 do. Fewer nodes of a rod are longer segments, and much of its bound does not depend on them.
-[[nodiscard]] std::optional<int> largest_nodes(scene::Scene scene, double seconds, const Measure& measure);
-
-/// Phase by phase against the budget, a table of fixed width.
+/// Phase by phase against what is allowed, and what the thread loses.
 [[nodiscard]] std::string table(const Admission& admission);
+
+/// Why such a scene must not run: the loop is too slow, or it loses time at hands' speeds up to `no_loss_m_per_s` (0:
+/// may). Nothing when it may run.
+[[nodiscard]] std::optional<std::string> objection_of(const Admission& admission, double no_loss_m_per_s = 0.0);
 
 }  // namespace ligature::app

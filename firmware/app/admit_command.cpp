@@ -3,37 +3,35 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "firmware/app/admission.hpp"
+#include "firmware/app/rig_setup.hpp"
 #include "firmware/platform/realtime.hpp"
 
 namespace ligature::app {
 namespace {
 
-constexpr double kSearch_s = 2.0;
+constexpr double kLoses = 0.001;  // share of the time that is worth a word
 
-std::string nodes_that_would(const scene::Scene& scene, const Measure& measure) {
-  const auto nodes = largest_nodes(scene, kSearch_s, measure);
-  return nodes ? "largest suture.nodes that would: " + std::to_string(*nodes) : "no suture.nodes would";
+/// The most that a drawn knot loses at surgeons' speeds.
+double most_lost(const Admission& a) {
+  double most = 0.0;
+  for (const auto& knot : a.knots) most = std::max({most, knot.pull_lost, knot.hold_lost});
+  return most;
 }
 
-/// What to change. A rod may be solved with less work: the same thread, other figures (docs/accuracy.md).
-std::string remedies(scene::Scene scene, const Measure& measure) {
-  std::string fewer = nodes_that_would(scene, measure);
-  if (scene.suture.model != scene::Model::kRod || scene.suture.rod.accuracy == scene::Accuracy::kFast) return fewer;
-  scene.suture.rod.accuracy = scene::Accuracy::kFast;
-  if (measure(scene, kSearch_s / 4).fits()) return "suture.accuracy = \"fast\" would as it is; else " + fewer;
-  return fewer + "; with suture.accuracy = \"fast\": " + nodes_that_would(scene, measure);
+/// Where the thread loses time: whether fewer substeps would lose less.
+void tell_what_loses_less(scene::Scene scene, const Admission& found, const AdmissionSettings& settings) {
+  auto& accuracy = scene.suture.rod.accuracy;
+  if (most_lost(found) < kLoses || scene.suture.model != scene::Model::kRod || accuracy == scene::Accuracy::kFast)
+    return;
+  accuracy = scene::Accuracy::kFast;
+  const double fast = most_lost(admit(scene, settings));
+  if (fast < most_lost(found))
+    std::printf("suture.accuracy = \"fast\" would lose at most %.1f %% (here %.1f %%)\n", 100.0 * fast,
+                100.0 * most_lost(found));
 }
 
 }  // namespace
-
-std::optional<Refusal> objection_of(const Admission& admission, const scene::Scene& scene, const Measure& measure) {
-  if (admission.fits()) return std::nullopt;
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "the scene does not fit: found %.0f us of computing in the worst tick, allowed %.0f; ",
-                admission.computing_us(), std::min(admission.budget_us(), 1000.0 - admission.bus_us));
-  return Refusal{3, text + remedies(scene, measure)};
-}
 
 int admit_scene(const AdmitOptions& options) {
   RunOptions like_run;
@@ -45,17 +43,18 @@ int admit_scene(const AdmitOptions& options) {
     return refusal->exit_code;
   }
   const auto& scene = std::get<Plan>(planned).scene;
-  const Measure measure = measure_on(platform::realtime_core(), options.budget_percent);
-  const Admission admission = measure(scene, options.seconds);
+  const AdmissionSettings settings{options.seconds, platform::realtime_core(), options.budget_percent, true};
+  const Admission admission = admit(scene, settings);
   std::fputs(table(admission).c_str(), stdout);
-  const auto objection = objection_of(admission, scene, measure);
+  const auto objection = objection_of(admission, options.no_loss_m_per_s);
   if (!objection) {
+    tell_what_loses_less(scene, admission, settings);
     std::puts("admitted");
     return 0;
   }
   std::fflush(stdout);
-  std::fprintf(stderr, "ligature-firmware: %s\n", objection->text.c_str());
-  return objection->exit_code;
+  std::fprintf(stderr, "ligature-firmware: %s: %s\n", options.scene.c_str(), objection->c_str());
+  return 3;
 }
 
 }  // namespace ligature::app

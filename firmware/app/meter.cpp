@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <random>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include "firmware/app/bus_calls.hpp"
 #include "firmware/app/cold_clock.hpp"
+#include "firmware/app/drawn_knot.hpp"
 #include "firmware/app/worst_case.hpp"
 #include "firmware/control/controller.hpp"
 #include "firmware/control/tick_report.hpp"
@@ -17,23 +19,83 @@
 namespace ligature::app {
 namespace {
 
-constexpr int kRepeats = 3;        // of the same tick; the least disturbed one counts
-constexpr int kTicksPerShape = 4;  // the first finds contacts, the next ones have to resolve them
+constexpr int kRepeats = 3;             // of the same tick; the least disturbed one counts
+constexpr int kTicksPerShape = 4;       // the first finds contacts, the next ones have to resolve them
+constexpr long kMostWork = 16'000'000;  // more is of no use to any knot (docs/rod-knots.md),
+constexpr long kLeastWork = 1'000'000;  // and with less nothing holds: the clock ends such ticks
+constexpr double kSpare = 0.95;         // of the time given: the rest is for what was not tried
+constexpr double kRound = 100'000.0;    // instructions: the same machine finds the same budget
 
-class Meter {
+/// A teller of CPU time for physics::TimeLeft.
+struct CpuTime {
+  double until_us;
+  static std::int64_t left_ns(void* self) noexcept {
+    return std::llround(1e3 * (static_cast<CpuTime*>(self)->until_us - cpu_us()));
+  }
+};
+
+void tick_until(physics::Simulation& thread, const std::array<physics::ToolInput, 2>& tools, double end_us) noexcept {
+  CpuTime clock{end_us};
+  thread.tick(tools, physics::TimeLeft(&CpuTime::left_ns, &clock));
+}
+
+/// The work that fits into the time given, by what it costs while a knot is drawn tight: the least disturbed of several
+/// equal runs, and all but a hundredth of their ticks.
+long affordable_work(const scene::Scene& scene, double given_us) {
+  constexpr double kSpeed_m_per_s = 0.25;
+  constexpr long kCounts = 500'000;  // instructions: less than this tells little of their price
+  constexpr double kDear = 0.99;     // of the ticks cost no more: what is dearer still, the clock ends
+  const scene::Scene knotted = with_loose_knot(scene);
+  auto made = physics::Simulation::make(knotted);
+  auto* const thread = std::get_if<physics::Simulation>(&made);
+  if (thread == nullptr) return kLeastWork;
+  thread->set_work(kMostWork);
+  std::vector<double> least_us;
+  std::vector<long> work;
+  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+    std::size_t at = 0;
+    static_cast<void>(draw(*thread, knotted, kSpeed_m_per_s, [&](physics::Simulation& t, const auto& tools) {
+      const double before = cpu_us();
+      t.tick(tools);
+      const double took_us = cpu_us() - before;
+      if (repeat == 0) {
+        least_us.push_back(took_us);
+        work.push_back(t.diagnostics().work);
+      } else {
+        least_us[at] = std::min(least_us[at], took_us);
+      }
+      ++at;
+    }));
+  }
+  const double own_us = *std::ranges::min_element(least_us);
+  std::vector<double> prices_us;
+  for (std::size_t i = 0; i < work.size(); ++i) {
+    if (work[i] > kCounts) prices_us.push_back((least_us[i] - own_us) / static_cast<double>(work[i]));
+  }
+  if (prices_us.empty()) return kMostWork;
+  const auto dear = prices_us.begin() + static_cast<std::ptrdiff_t>(kDear * static_cast<double>(prices_us.size() - 1));
+  std::ranges::nth_element(prices_us, dear);
+  const double bought = (kSpare * given_us - own_us) / *dear;
+  return std::clamp(static_cast<long>(kRound * std::floor(bought / kRound)), kLeastWork, kMostWork);
+}
+
+class ThreadMeter {
  public:
-  explicit Meter(const scene::Scene& scene)
-      : scene_(scene), thread_(std::get<physics::Simulation>(physics::Simulation::make(scene))) {}
+  explicit ThreadMeter(const scene::Scene& scene)
+      : scene_(scene),
+        thread_(std::get<physics::Simulation>(physics::Simulation::make(scene))),
+        shapes_(worst_shapes(scene)) {}
 
-  WorstCase run(double seconds) {
+  ThreadCost run(double given_us, double seconds) {
     const auto give_up = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-    measure_control();
-    worst_.calls_us = bus_calls_us();
-    const auto shapes = worst_shapes(scene_);
+    cost_.given_us = given_us;
+    if (thread_.work() > 0 && scene_.suture.rod.work_instructions == 0)
+      thread_.set_work(affordable_work(scene_, given_us));
+    cost_.work = thread_.work();
     do {
-      for (const auto& shape : shapes) try_shape(shape);
+      for (const auto& shape : shapes_) try_shape(shape);
     } while (std::chrono::steady_clock::now() < give_up);
-    return worst_;
+    return cost_;
   }
 
  private:
@@ -43,27 +105,29 @@ class Meter {
     for (auto& p : start) p += 0.02 * scene_.suture.radius_m * random_vector();
     std::array<double, kTicksPerShape> least_us{};
     least_us.fill(1e12);
+    double lost = 0.0;
     for (int repeat = 0; repeat < kRepeats; ++repeat) {
       thread_.reset();
       if (!start.empty()) thread_.set_state(start, shape.v_W);
-      for (double& least : least_us) {
+      for (std::size_t k = 0; k < least_us.size(); ++k) {
         const auto tools = grips();
         cold_();
         const double before = cpu_us();
-        thread_.tick(tools);
-        least = std::min(least, cpu_us() - before);
+        tick_until(thread_, tools, before + cost_.given_us);
+        least_us[k] = std::min(least_us[k], cpu_us() - before);
+        if (repeat == 0) lost += thread_.diagnostics().time_lost / kTicksPerShape;
         look_at(thread_.diagnostics());
       }
     }
-    worst_.thread_us = std::max(worst_.thread_us, *std::ranges::max_element(least_us));
-    worst_.ticks += kTicksPerShape;
+    cost_.time_lost = std::max(cost_.time_lost, lost);
+    cost_.worst_us = std::max(cost_.worst_us, *std::ranges::max_element(least_us));
+    cost_.ticks += kTicksPerShape;
   }
 
   void look_at(const physics::Diagnostics& d) noexcept {
-    worst_.most_contacts = std::max(worst_.most_contacts, d.contacts);
-    worst_.contact_cap_hit = worst_.contact_cap_hit || d.contact_cap_hit;
-    worst_.gave_up = std::max(worst_.gave_up, d.degradation);
-    worst_.time_lost = std::max(worst_.time_lost, d.time_lost);
+    cost_.most_contacts = std::max(cost_.most_contacts, d.contacts);
+    cost_.contact_cap_hit = cost_.contact_cap_hit || d.contact_cap_hit;
+    cost_.ended_by_clock = cost_.ended_by_clock || d.end == physics::TickEnd::kClock;
   }
 
   /// Both hands hold and pull: the left one a quarter along the thread, the right one at three quarters.
@@ -75,35 +139,6 @@ class Meter {
     return {held(nodes_W.size() / 4, -scene_.suture.radius_m), held(3 * nodes_W.size() / 4, scene_.suture.radius_m)};
   }
 
-  void measure_control() {
-    constexpr int kTicks = 100;
-    // Controllers can be copied but not assigned: they plan with Ruckig, whose members are constants.
-    std::optional<control::Controller> fresh(std::in_place, scene_.hands, control::Settings{20, true});
-    for (std::int64_t tick = 0; tick < kTicks; ++tick) {
-      control::TickInput in;
-      in.tick = tick;
-      for (auto& hand : in.reading.hand) {
-        hand.q_rad = {0.0, 0.5, 0.6 + 1e-4 * static_cast<double>(tick)};
-        hand.valid = hand.enabled = hand.grip = true;
-        hand.dead_man = tick >= control::DeadMan::kReleased;
-      }
-      double least_us = 1e12;
-      std::optional<control::Controller> after;
-      for (int repeat = 0; repeat < kRepeats; ++repeat) {
-        after.emplace(*fresh);
-        cold_();
-        const double before = cpu_us();
-        (void)after->tick(in);
-        record_ = {};
-        control::report(*after, record_);
-        control::report(thread_.diagnostics(), record_);
-        least_us = std::min(least_us, cpu_us() - before);
-      }
-      fresh.emplace(*after);
-      worst_.control_us = std::max(worst_.control_us, least_us);
-    }
-  }
-
   physics::Vec3 random_vector() {
     std::uniform_real_distribution<double> d(-1.0, 1.0);
     const double x = d(random_), y = d(random_), z = d(random_);
@@ -112,14 +147,56 @@ class Meter {
 
   const scene::Scene& scene_;
   physics::Simulation thread_;
+  std::vector<Shape> shapes_;
   ColdCaches cold_;
   std::mt19937 random_{1};
-  rt::TickRecord record_;
-  WorstCase worst_;
+  ThreadCost cost_;
 };
 
 }  // namespace
 
-WorstCase measure_worst_case(const scene::Scene& scene, double seconds) { return Meter(scene).run(seconds); }
+void tick_within(physics::Simulation& thread, const std::array<physics::ToolInput, 2>& tools,
+                 double given_us) noexcept {
+  if (thread.work() > 0) return thread.tick(tools);
+  tick_until(thread, tools, cpu_us() + given_us);
+}
+
+ThreadCost measure_thread(const scene::Scene& scene, double given_us, double seconds) {
+  return ThreadMeter(scene).run(given_us, seconds);
+}
+
+LoopCost measure_loop(const scene::Scene& scene) {
+  constexpr int kTicks = 100;
+  LoopCost cost;
+  cost.calls_us = bus_calls_us();
+  ColdCaches cold;
+  rt::TickRecord record;
+  // Controllers can be copied but not assigned: they plan with Ruckig, whose members are constants.
+  std::optional<control::Controller> fresh(std::in_place, scene.hands, control::Settings{20, true});
+  for (std::int64_t tick = 0; tick < kTicks; ++tick) {
+    control::TickInput in;
+    in.tick = tick;
+    for (auto& hand : in.reading.hand) {
+      hand.q_rad = {0.0, 0.5, 0.6 + 1e-4 * static_cast<double>(tick)};
+      hand.valid = hand.enabled = hand.grip = true;
+      hand.dead_man = tick >= control::DeadMan::kReleased;
+    }
+    double least_us = 1e12;
+    std::optional<control::Controller> after;
+    for (int repeat = 0; repeat < kRepeats; ++repeat) {
+      after.emplace(*fresh);
+      cold();
+      const double before = cpu_us();
+      (void)after->tick(in);
+      record = {};
+      control::report(*after, record);
+      control::report(physics::Diagnostics{}, record);
+      least_us = std::min(least_us, cpu_us() - before);
+    }
+    fresh.emplace(*after);
+    cost.control_us = std::max(cost.control_us, least_us);
+  }
+  return cost;
+}
 
 }  // namespace ligature::app

@@ -8,6 +8,9 @@
 
 namespace ligature::app {
 
+/// The loop's computing, as a share of the period: what the bus at its longest leaves it (rt::kMostWork), less a fifth.
+inline constexpr double kDefaultBudget_percent = 20.0;
+
 enum class RtMode { kEnforce, kWarn, kOff };
 
 struct RunOptions {
@@ -28,24 +31,25 @@ struct RunOptions {
   std::string recorder;  ///< flight recorder file; "none" for none
   int recorder_s = 120;  ///< how far back it goes
   std::string scenes;    ///< folder of the scenes that a command may load; empty: that of `scene`
-  bool force = false;    ///< also a scene that does not fit
-  double budget_percent = 60.0;
+  bool force = false;    ///< also a scene that is not admitted
+  double budget_percent = kDefaultBudget_percent;
+  double no_loss_m_per_s = 0.0;            ///< speed of a hand up to which a drawn knot must lose no time; 0: may
   std::string program = "/proc/self/exe";  ///< rehearses what commands ask for, as a child
 };
 
 struct RehearseOptions {
   std::string scene;
   std::vector<std::string> overrides;
-  std::string text_from;  ///< where the scene's text is read; empty: from `scene`
-  double budget_percent = 60.0;
-  bool cost_unchanged = false;
+  std::string text_from;         ///< where the scene's text is read; empty: from `scene`
+  double no_loss_m_per_s = 0.0;  ///< as the run's; 0: nothing is measured
 };
 
 struct AdmitOptions {
   std::string scene;
   std::vector<std::string> overrides;
   double seconds = 3.0;
-  double budget_percent = 60.0;
+  double budget_percent = kDefaultBudget_percent;
+  double no_loss_m_per_s = 0.0;
 };
 
 struct DoctorOptions {

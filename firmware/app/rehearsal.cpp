@@ -8,7 +8,8 @@
 #include <cstdio>
 #include <exception>
 
-#include "firmware/app/admit_command.hpp"
+#include "firmware/app/admission.hpp"
+#include "firmware/app/rig_setup.hpp"
 #include "firmware/platform/realtime.hpp"
 #include "protocol/scene/text_file.hpp"
 
@@ -18,7 +19,6 @@ namespace {
 constexpr rlim_t kMostMemory_bytes = rlim_t{1} << 30;
 constexpr rlim_t kMostCpu_s = 6;
 constexpr int kNiceness = 10;
-constexpr double kAdmission_s = 0.3;
 
 /// Of CPU time, the first limit says by its signal what ended the process, the second ends it.
 void limit(int what, rlim_t most) {
@@ -51,10 +51,9 @@ int try_out(const RehearseOptions& options) {
   if (const auto* refusal = std::get_if<Refusal>(&planned)) return refused(*refusal);
   const Plan& plan = std::get<Plan>(planned);
   if (const auto why = rehearse(plan.thread); !why.empty()) return refused({2, options.scene + ": " + why});
-  if (options.cost_unchanged) return 0;
-  const Measure measure = measure_on(kAnyCore, options.budget_percent);
-  const auto excess = objection_of(measure(plan.scene, kAdmission_s), plan.scene, measure);
-  return excess ? refused(*excess) : 0;
+  if (options.no_loss_m_per_s == 0.0) return 0;
+  const auto excess = objection_of(admit(plan.scene, {.draw_knots = true}), options.no_loss_m_per_s);
+  return excess ? refused({3, options.scene + ": " + *excess}) : 0;
 }
 
 }  // namespace

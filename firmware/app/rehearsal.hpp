@@ -11,9 +11,9 @@ namespace ligature::app {
 /// Runs a copy for a while, both hands pulling to and fro. @return why it will not do, or empty.
 [[nodiscard]] std::string rehearse(const physics::Simulation& thread);
 
-/// `rehearse`: reads, builds, rehearses and, on request, measures, within limits of memory and CPU time that it sets
-/// for itself. @return the exit code: 0 it will do, 2 it will not, 3 its worst tick does not fit; the reason is on
-/// stderr. Whatever else ends it (a signal, another code) is the scene's doing, too.
+/// `rehearse`: reads, builds, rehearses and, on request, draws a knot, within limits of memory and CPU time that it
+/// sets for itself. @return the exit code: 0 it will do, 2 it will not, 3 it loses time; the reason is on stderr.
+/// Whatever else ends it (a signal, another code) is the scene's doing, too.
 [[nodiscard]] int rehearse_scene(const RehearseOptions& options);
 
 }  // namespace ligature::app

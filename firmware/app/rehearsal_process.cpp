@@ -46,10 +46,9 @@ bool write_all(int fd, const std::string& text) {
 }
 
 std::vector<std::string> words_of(const Rehearsal& what) {
-  std::vector<std::string> words{
-      "ligature-firmware", "rehearse",        "--scene",  what.file,
-      "--text-from",       "/proc/self/fd/0", "--budget", std::to_string(what.budget_percent)};
-  if (what.cost_unchanged) words.emplace_back("--cost-unchanged");
+  std::vector<std::string> words{"ligature-firmware", "rehearse",    "--scene",
+                                 what.file,           "--text-from", "/proc/self/fd/0"};
+  if (what.no_loss_m_per_s > 0.0) words.insert(words.end(), {"--no-loss", std::to_string(what.no_loss_m_per_s)});
   for (const auto& o : what.overrides) words.insert(words.end(), {"--set", o});
   return words;
 }

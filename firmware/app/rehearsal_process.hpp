@@ -13,14 +13,13 @@ struct Rehearsal {
   std::string file;     ///< names the scene, and polylines are found beside it
   std::string text;     ///< of the scene, as it will be run
   std::vector<std::string> overrides;
-  double budget_percent = 60.0;
-  bool cost_unchanged = false;  ///< no measurement of the worst tick
+  double no_loss_m_per_s = 0.0;               ///< what a drawn knot loses is measured up to this speed; 0: it is not
   std::chrono::milliseconds patience{9'000};  ///< whoever asked waits for 10 s
 };
 
 struct Verdict {
   std::string refusal;  ///< why it must not run; empty: it may
-  std::string excess;   ///< why its worst tick does not fit; empty: it does, or was not measured
+  std::string excess;   ///< what time it loses that it must not; empty: none, or it was not measured
 };
 
 /// Waits for the child's verdict, for `patience` at most and until `cancelled`; then the child is killed. The child

@@ -110,6 +110,14 @@ std::variant<Plan, Refusal> make_plan(const RunOptions& options) {
   return plan;
 }
 
+void give_work(Plan& plan, long instructions) {
+  auto& own = plan.scene.suture.rod.work_instructions;
+  if (instructions == 0 || own != 0) return;
+  own = static_cast<int>(instructions);
+  plan.thread.set_work(instructions);
+  plan.toml += "\n# --set suture.work_instructions=" + std::to_string(instructions);
+}
+
 std::variant<Buses, Refusal> open_buses(const RunOptions& options, const Pause& pause) {
   Buses buses;
   for (auto [url, bus] : {std::pair{&options.left, &buses.left}, std::pair{&options.right, &buses.right}}) {

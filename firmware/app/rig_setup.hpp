@@ -33,6 +33,10 @@ struct Plan {
                                                   const std::vector<std::string>& overrides,
                                                   const device::Device& device = device::omni());
 
+/// Gives the plan's thread so much work for contact a tick, and notes it with the overrides, so that a recording is
+/// stepped again alike. Nothing for a thread without such a bound (0), or whose scene says it.
+void give_work(Plan& plan, long instructions);
+
 struct Buses {
   std::unique_ptr<platform::CanBus> left, right;
 };

@@ -9,7 +9,7 @@
 #include <optional>
 #include <thread>
 
-#include "firmware/app/admit_command.hpp"
+#include "firmware/app/admission.hpp"
 #include "firmware/app/real_time_side.hpp"
 #include "firmware/app/rig_setup.hpp"
 #include "firmware/app/scene_desk.hpp"
@@ -160,13 +160,15 @@ int run(const RunOptions& options) {
   if (ask) platform::keep_off(core);
   if (ask && options.physics_core >= 0) platform::keep_off(options.physics_core);
 
-  const Measure measure = measure_on(core, options.budget_percent);
-  const auto excess = objection_of(measure(plan.scene, kAdmission_s), plan.scene, measure);
-  if (excess && !options.force) return fail(*excess);
+  const Admission admission =
+      admit(plan.scene, {kAdmission_s, core, options.budget_percent, options.no_loss_m_per_s > 0.0});
+  const auto excess = objection_of(admission, options.no_loss_m_per_s);
+  if (excess && !options.force) return fail({3, options.scene + ": " + *excess});
   if (excess) {
-    spdlog::warn("--force: {}", excess->text);
-    plan.toml += forced(excess->text);
+    spdlog::warn("--force: {}", *excess);
+    plan.toml += forced(*excess);
   }
+  give_work(plan, admission.thread.work);
 
   const auto outlets = std::make_unique<rt::Outlets>();
   telemetry::LcmLink link(options.no_telemetry ? "memq://" : options.lcm_url, [&](const ligature_msg::event_t& e) {
@@ -184,7 +186,7 @@ int run(const RunOptions& options) {
   const std::int64_t id = now().utime;
   const auto recorder = open_recorder(plan, options, id);
   if (recorder) outlets->flight = &recorder->inlet();
-  SceneDesk desk(options, plan, excess ? excess->text : "");
+  SceneDesk desk(options, plan, excess.value_or(""), !admission.fits());
   const auto side = std::make_unique<RealTimeSide>(options, plan, buses, *outlets, desk.handover());
   const auto refused = side->prepare(ask, core);
   if (options.rt == RtMode::kEnforce && !refused.empty()) return fail({3, "--rt=enforce: " + refused.front()});

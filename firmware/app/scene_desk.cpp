@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "firmware/app/admission.hpp"
 #include "firmware/app/rehearsal_process.hpp"
 #include "firmware/platform/realtime.hpp"
 #include "protocol/scene/text_file.hpp"
@@ -40,9 +41,11 @@ std::string assignment(const std::string& key, double value) { return key + "=" 
 
 std::string forced(const std::string& excess) { return excess.empty() ? excess : "\n# --force: " + excess + "\n"; }
 
-SceneDesk::SceneDesk(const RunOptions& options, const Plan& plan, const std::string& excess)
+SceneDesk::SceneDesk(const RunOptions& options, const Plan& plan, const std::string& excess, bool always)
     : options_(options),
       device_(plan.device),
+      loop_excess_(always ? excess : ""),
+      work_(plan.thread.work()),
       launch_(options, plan.scene),
       now_{options.scene, {}, plan.scene, plan.scene, excess} {
   const fs::path given = options.scenes.empty() ? fs::path(options.scene).parent_path() : fs::path(options.scenes);
@@ -121,6 +124,12 @@ std::optional<ligature_msg::ack_t> SceneDesk::request(const ligature_msg::comman
   return std::nullopt;
 }
 
+/// What this machine affords, found at the launch or, where that had no such bound, beside the loop.
+long SceneDesk::affordable_work(const Plan& plan) const {
+  if (plan.thread.work() == 0 || work_ > 0) return plan.thread.work() == 0 ? 0 : work_;
+  return admit(plan.scene, {}).thread.work;
+}
+
 /// First in a process that the scene may take down, then, what has passed there, in this one.
 std::variant<SceneDesk::Built, std::string> SceneDesk::build(Setup setup, bool keeps_motion) const {
   platform::flush_denormals();
@@ -131,16 +140,16 @@ std::variant<SceneDesk::Built, std::string> SceneDesk::build(Setup setup, bool k
                                            .file = setup.file,
                                            .text = text,
                                            .overrides = launch_.with(setup.live),
-                                           .budget_percent = options_.budget_percent,
-                                           .cost_unchanged = keeps_motion},
+                                           .no_loss_m_per_s = keeps_motion ? 0.0 : options_.no_loss_m_per_s},
                                           ending_);
   if (!verdict.refusal.empty()) return verdict.refusal;
   if (!verdict.excess.empty() && !options_.force) return verdict.excess;
   auto planned = plan_of(setup.file, text, launch_.with(setup.live, setup.file, text), device_);
   if (const auto* refusal = std::get_if<Refusal>(&planned)) return refusal->text;
   Plan& plan = std::get<Plan>(planned);
+  give_work(plan, affordable_work(plan));
   setup.scene = plan.scene;
-  if (!keeps_motion) setup.from_file = plan.scene, setup.excess = verdict.excess;
+  if (!keeps_motion) setup.from_file = plan.scene, setup.excess = loop_excess_.empty() ? verdict.excess : loop_excess_;
   auto plant =
       std::make_unique<control::Plant>(control::Plant{std::move(plan.thread), plan.scene.hands, keeps_motion, false});
   plan.toml += forced(setup.excess);

@@ -28,19 +28,20 @@ struct Changed {
   std::int64_t first_tick;
 };
 
-/// What the text of a scene says when its worst tick does not fit and --force runs it: "\n# --force: ..", or nothing.
+/// What the text of a scene says when it is not admitted and --force runs it: "\n# --force: ..", or nothing.
 [[nodiscard]] std::string forced(const std::string& excess);
 
 /// The telemetry thread's; a thread of its own builds, one change at a time. A scene is read once; a child process
-/// builds it, lets it prove in a rehearsal that it stays finite, and measures whether its worst tick fits as at the
-/// start (unless --force); only then it is built here and handed over. None of that runs on the loop's core, nor with
-/// its priority. A parameter does not change what a tick may cost, and is not measured. The loop judges the state once
-/// more. Whatever comes back is destroyed here.
+/// builds it, lets it prove in a rehearsal that it stays finite and, with --no-loss, that its knot loses no time
+/// (unless
+/// --force); only then it is built here and handed over. None of that runs on the loop's core, nor with its priority.
+/// The loop judges the state once more. Whatever comes back is destroyed here.
 class SceneDesk {
  public:
-  /// @param plan of the start; its thread is not looked at.
-  /// @param excess why its worst tick does not fit; empty: it does.
-  SceneDesk(const RunOptions& options, const Plan& plan, const std::string& excess = {});
+  /// @param plan of the start, as it will be run.
+  /// @param excess why it is not admitted; empty: it is. @param always  so with any scene: it is the loop that is too
+  /// slow.
+  SceneDesk(const RunOptions& options, const Plan& plan, const std::string& excess = {}, bool always = false);
   ~SceneDesk() { ending_ = true; }  // and waits for a builder that is told so
   SceneDesk(const SceneDesk&) = delete;
   SceneDesk& operator=(const SceneDesk&) = delete;
@@ -72,7 +73,7 @@ class SceneDesk {
     std::string file;
     std::vector<std::string> live;  // overrides of commands; those of the launch hold beside them
     scene::Scene from_file, scene;
-    std::string excess;  // why its worst tick does not fit; empty: it does
+    std::string excess;  // why it is not admitted; empty: it is
   };
   struct Built {
     std::unique_ptr<control::Plant> plant;
@@ -82,11 +83,14 @@ class SceneDesk {
   [[nodiscard]] std::string prepare_scene(const std::string& wish);
   [[nodiscard]] std::vector<LiveParameter> parameters() const;
   [[nodiscard]] std::string prepare_parameter(const std::string& key, double value);
+  [[nodiscard]] long affordable_work(const Plan& plan) const;
   [[nodiscard]] std::variant<Built, std::string> build(Setup setup, bool keeps_motion) const;
   [[nodiscard]] Outcome answer(const std::string& why, std::optional<Changed> changed = {}) const;
 
   RunOptions options_;
   device::Device device_;
+  std::string loop_excess_;  // of any scene
+  long work_;  // what this machine affords for contact; 0: not known, the launch's model has no such bound
   Launch launch_;
   std::vector<std::string> scenes_;
   Setup now_;

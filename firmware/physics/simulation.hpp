@@ -70,8 +70,9 @@ struct Diagnostics {
   int contacts = 0;              ///< contacts that carried an impulse in the last step
   bool contact_cap_hit = false;  ///< more contacts than there was room or work for
   Degradation degradation = Degradation::kNone;
-  double time_lost = 0.0;      ///< share of the tick in which the thread was not moved
+  double time_lost = 0.0;  ///< share of the tick in which the thread was not moved
   TickEnd end = TickEnd::kWhole;
+  long work = 0;               ///< instructions that contact took, as priced; 0: a model without a bound of work
   int cut_at = -1;             ///< kClock: the question (TimeLeft) that was answered with no
   bool finite = true;          ///< false: frozen at the last finite state, hands open and without force
   int bad_node = -1;           ///< first node that went non-finite or out of range; -1: a tool was
@@ -105,8 +106,8 @@ class Simulation {
   [[nodiscard]] const HandContact& hand(Hand h) const noexcept;
   [[nodiscard]] const Diagnostics& diagnostics() const noexcept;
 
-  /// What contact may cost in a tick, in instructions (rod/work.hpp), from the next one on; for a thread whose model has
-  /// no such bound it does nothing. Stays over reset(); a plant brings its own.
+  /// What contact may cost in a tick, in instructions (rod/work.hpp), from the next one on; for a thread whose model
+  /// has no such bound it does nothing. Stays over reset(); a plant brings its own.
   void set_work(long instructions) noexcept;
   [[nodiscard]] long work() const noexcept;  ///< 0: no such bound
 

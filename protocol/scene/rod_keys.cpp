@@ -50,6 +50,7 @@ void read_rod(StrictTable& t, RodParameters& rod, double& radius_m) {
   t.number("stretch_damping_s", rod.stretch_damping_s, {0.0, 1e3});
   t.choice("spacing", rod.spacing, kSpacings);
   t.choice("accuracy", rod.accuracy, kAccuracies);
+  t.integer("work_instructions", rod.work_instructions, 100'000, 1'000'000'000);
 }
 
 void read_pegs(StrictTable& t, World& world) {

@@ -63,6 +63,7 @@ struct RodParameters {
   double air_drag_per_s = 5.0;         ///< a = -c v
   Spacing spacing = Spacing::kAdaptive;
   Accuracy accuracy = Accuracy::kBalanced;
+  int work_instructions = 0;  ///< what contact may cost in a tick; 0: as `accuracy` has it, or what the rig can afford
 };
 
 struct Suture {

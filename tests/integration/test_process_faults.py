@@ -263,11 +263,11 @@ class Disk(InForce):
 
 
 class Admission(InForce):
-    @row("a scene whose worst tick does not fit", "`run` refuses with exit 3 and the largest that would; nothing is started")
+    @row("a loop that does not fit into its budget", "`run` refuses with exit 3, the figures and the remedy; nothing is started")
     def test_what_does_not_fit_is_refused(self):
-        refused = run("ligature-firmware", "run", "--scene", "scenes/paper.toml", "--left", "local:/nowhere/l", "--right", "local:/nowhere/r", "--budget", 10)
+        refused = run("ligature-firmware", "run", "--scene", "scenes/paper.toml", "--left", "local:/nowhere/l", "--right", "local:/nowhere/r", "--budget", 1)
         self.assertEqual(refused.returncode, 3, refused.stderr)
-        self.assertRegex(refused.stderr, r"does not fit: found \d+ us .* allowed \d+; largest suture.nodes that would: ")
+        self.assertRegex(refused.stderr, r"paper.toml: the loop does not fit: found \d+ us .* allowed 10; remedy: ")
 
     @row("the same with `--force`", "runs, and every recording of it says that it was forced")
     def test_force_marks_the_recording(self):
@@ -276,8 +276,8 @@ class Admission(InForce):
         self.carries_on(rig)
         rig.end("firmware")
         self.assertEqual(rig.end("recorder"), 0)
-        self.assertIn(b"# --force: the scene does not fit", rig.log.read_bytes())
-        self.assertIn(b"# --force: the scene does not fit", rig.flight.read_bytes()[:65536])
+        self.assertIn(b"# --force: the loop does not fit", rig.log.read_bytes())
+        self.assertIn(b"# --force: the loop does not fit", rig.flight.read_bytes()[:65536])
 
 
 class Page(unittest.TestCase):

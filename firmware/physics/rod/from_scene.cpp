@@ -124,6 +124,7 @@ Numerics numerics_of(const scene::Scene& scene) noexcept {
       n.work = 40'000'000;
       break;
   }
+  n.given_work = scene.suture.rod.work_instructions;
   n.substeps = std::max(n.substeps, scene.time.substeps);
   n.max_substeps = std::max(n.max_substeps, n.substeps);
   return n;

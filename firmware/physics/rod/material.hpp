@@ -36,7 +36,8 @@ struct Numerics {
   int max_passes = 80;            ///< true solves per substep while contacts settle
   long work = 4'300'000;          ///< what contact may cost in a tick, in instructions (work.hpp),
   long work_per_node = 2500;      ///< and for each node besides; a quarter more for fast hands,
-  double rush = 0.75;             ///< and this share for hands faster than 2 fast_m_per_s
+  double rush = 0.75;             ///< and this share for hands faster than 2 fast_m_per_s;
+  long given_work = 0;            ///< > 0: this instead, whatever the nodes and the hands
   double settled_m_per_s = 3e-5;  ///< a pass that changes no velocity by more ends them,
   double settled_share = 0.004;   ///< or than that and this share of half the speed at which the ends are parted
   /// Newton's method is in single precision, which leaves 5 um/s in a held knot, so it aims at no less than this. What
@@ -51,6 +52,7 @@ struct Numerics {
   }
   /// Work of a tick for a thread of so many nodes.
   [[nodiscard]] constexpr long budget(int nodes, double hand_m_per_s) const noexcept {
+    if (given_work > 0) return given_work;
     const auto whole = static_cast<double>(work + work_per_node * nodes);
     const double more = is_fast(0.5 * hand_m_per_s) ? rush : is_fast(hand_m_per_s) ? 0.25 : 0.0;
     return static_cast<long>((1.0 + more) * whole);

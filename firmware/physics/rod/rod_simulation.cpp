@@ -232,6 +232,7 @@ void RodSimulation::publish() noexcept {
   health_.contact_cap_hit = r.rows_left_out > 0;
   health_.time_lost = r.time_lost;
   health_.cut_at = r.cut_at;
+  health_.work = r.work;
   health_.end = r.cut_at >= 0 ? TickEnd::kClock : r.time_lost > 0.0 ? TickEnd::kWork : TickEnd::kWhole;
   health_.degradation = r.time_lost > 0.0     ? Degradation::kMotion
                         : r.rows_left_out > 0 ? Degradation::kContacts

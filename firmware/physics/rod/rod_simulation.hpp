@@ -28,8 +28,10 @@ class RodSimulation {
   [[nodiscard]] std::span<const Vec3> velocities_W() const noexcept { return velocities_; }
   [[nodiscard]] const HandContact& hand(Hand h) const noexcept { return hands_[static_cast<std::size_t>(h)]; }
   [[nodiscard]] const Diagnostics& diagnostics() const noexcept { return health_; }
-  void set_work(long instructions) noexcept { initial_.numerics().work = rod_.numerics().work = instructions; }
-  [[nodiscard]] long work() const noexcept { return rod_.numerics().work; }
+  void set_work(long instructions) noexcept {
+    initial_.numerics().given_work = rod_.numerics().given_work = instructions;
+  }
+  [[nodiscard]] long work() const noexcept { return rod_.numerics().budget(rod_.state().nodes(), 0.0); }
   void reset() noexcept;
   [[nodiscard]] bool continue_from(const RodSimulation& other) noexcept;
   void set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept;

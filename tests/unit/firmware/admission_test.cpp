@@ -3,11 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "firmware/app/admit_command.hpp"
 #include "firmware/app/doctor.hpp"
 #include "firmware/app/worst_case.hpp"
 #include "firmware/physics/simulation.hpp"
-#include "firmware/platform/realtime.hpp"
 #include "protocol/scene/scene_file.hpp"
 
 namespace ligature::app {
@@ -52,121 +50,85 @@ TEST(WorstCase, PressedTogetherItFillsTheContactLists) {
   EXPECT_GE(most, 50) << "more than one contact a node";
 }
 
-TEST(Admission, AFewNodesFitAndTooManyDoNot) {
-  const int core = platform::realtime_core();
-  const auto small = admit(paper(20), 0.1, core);
-  EXPECT_TRUE(small.fits()) << table(small);
-  EXPECT_GT(small.worst.thread_us, 0.0);
-  EXPECT_GT(small.worst.control_us, 0.0);
-  EXPECT_GT(small.worst.calls_us, 0.0);
-  EXPECT_EQ(small.computing_us(), small.worst.thread_us + small.worst.control_us + small.worst.calls_us);
-  EXPECT_NEAR(small.bus_us, 530.0, 80.0);
-  const auto large = admit(paper(600), 0.1, core);
-  EXPECT_FALSE(large.fits()) << table(large);
-  EXPECT_GT(large.worst.thread_us, small.worst.thread_us);
+constexpr AdmissionSettings kQuick{0.05, kAnyCore, kDefaultBudget_percent, false};
+
+TEST(Admission, TheLoopFitsWhateverTheThread) {
+  for (const auto& scene : {paper(20), paper(1500), scene_of("suture-3-0-square.toml", 350)}) {
+    const auto a = admit(scene, kQuick);
+    EXPECT_TRUE(a.fits()) << table(a);
+    EXPECT_EQ(objection_of(a), std::nullopt);
+    EXPECT_GT(a.loop.control_us, 0.0);
+    EXPECT_GT(a.loop.calls_us, 0.0);
+    EXPECT_GE(a.thread.given_us, 850.0 - a.computing_us()) << "most of the period is the thread's";
+    EXPECT_GT(a.thread.most_contacts, 0) << "the shapes must press it together";
+  }
 }
 
-TEST(Admission, NamesTheLargestThreadThatFits) {
-  const auto nodes = largest_nodes(paper(600), 1.0, measure_on(platform::realtime_core(), 60.0));
-  ASSERT_TRUE(nodes);
-  EXPECT_GE(*nodes, 20);
-  EXPECT_LT(*nodes, 600);
+TEST(Admission, AThreadThatTakesTooLongInItsWorstShapesLosesTimeAndIsEndedByTheClock) {
+  const auto small = admit(paper(20), kQuick);
+  EXPECT_EQ(small.thread.time_lost, 0.0) << table(small);
+  const auto large = admit(scene_of("suture-3-0.toml", 350), kQuick);
+  EXPECT_GT(large.thread.time_lost, 0.1) << table(large);
 }
 
-TEST(Admission, AThreadThatBeginsInAShapeOfItsOwnIsLaidOutAnew) {
-  const auto nodes = largest_nodes(scene_of("desk.toml", 600), 0.5, measure_on(platform::realtime_core(), 60.0));
-  ASSERT_TRUE(nodes);
-  EXPECT_GE(*nodes, 20);
-  EXPECT_LT(*nodes, 600);
+TEST(Admission, WorkIsWhatTheTimeGivenBuys) {
+  const auto scene = scene_of("suture-3-0-square.toml", 154);
+  const auto all = measure_thread(scene, 800.0, 0.0), third = measure_thread(scene, 270.0, 0.0);
+  EXPECT_GT(all.work, third.work);
+  EXPECT_LT(static_cast<double>(third.work), 0.6 * static_cast<double>(all.work));
+  auto own = scene;
+  own.suture.rod.work_instructions = 1'234'567;
+  EXPECT_EQ(measure_thread(own, 800.0, 0.0).work, 1'234'567) << "a scene's own is taken as it is";
+  EXPECT_EQ(measure_thread(paper(20), 800.0, 0.0).work, 0) << "a model without such a bound";
 }
 
-TEST(Admission, ARodIsMeasuredInTheSameShapes) {
-  const auto rod = scene_of("suture-3-0.toml", 12);
-  const auto a = admit(rod, 0.05, platform::realtime_core());
-  EXPECT_GT(a.worst.thread_us, 0.0);
-  EXPECT_GT(a.worst.most_contacts, 0) << "the shapes must press it together";
-  const auto text = table(a);
-  for (const char* phase : {"bus, SYNC", "calls to both buses", "control law", "thread", "computing", "in all"})
-    EXPECT_NE(text.find(phase), std::string::npos) << text;
-}
-
-/// A core that takes so long for a tick: something for a rod of that accuracy, and something a node.
-Measure costs(double balanced_us, double fast_us, double node_us) {
-  return [=](const scene::Scene& scene, double) {
-    Admission a;
-    a.bus_us = 460.0;
-    const bool rod = scene.suture.model == scene::Model::kRod;
-    const bool fast = scene.suture.rod.accuracy == scene::Accuracy::kFast;
-    a.worst.thread_us = (rod ? fast ? fast_us : balanced_us : 0.0) + node_us * scene.suture.nodes;
-    return a;
+TEST(Admission, MoreWorkLosesLessOfASquareKnot) {
+  const auto lost = [](int work) {
+    auto scene = scene_of("suture-3-0-square.toml", 154);
+    scene.suture.rod.work_instructions = work;
+    auto thread = std::get<physics::Simulation>(physics::Simulation::make(with_loose_knot(scene)));
+    return draw(std::move(thread), scene, 0.25, [](physics::Simulation& t, const auto& tools) { t.tick(tools); })
+        .pull_lost;
   };
-}
-std::string refusal(const scene::Scene& scene, const Measure& measure) {
-  const auto objection = objection_of(measure(scene, 0.0), scene, measure);
-  EXPECT_EQ(objection ? objection->exit_code : 0, objection ? 3 : 0);
-  return objection ? objection->text : "";
+  const double little = lost(2'000'000), much = lost(16'000'000);
+  EXPECT_GT(little, 0.02);
+  EXPECT_LT(much, 0.2 * little);
 }
 
-TEST(Refusal, NamesWhatWasFoundWhatIsAllowedAndTheLargestThreadThatFits) {
-  EXPECT_EQ(refusal(paper(600), costs(0, 0, 2.0)),
-            "the scene does not fit: found 1200 us of computing in the worst tick, allowed 540; "
-            "largest suture.nodes that would: 270");
-  EXPECT_EQ(refusal(paper(600), costs(0, 0, 0.9)), "") << "540 us to the dot";
-  EXPECT_EQ(
-      refusal(paper(600), costs(0, 0, 500.0)),
-      "the scene does not fit: found 300000 us of computing in the worst tick, allowed 540; no suture.nodes would");
-}
-
-TEST(Refusal, OfARodNamesLessWorkBeforeFewerNodes) {
-  const auto rod = scene_of("suture-3-0.toml", 154);
-  EXPECT_EQ(refusal(rod, costs(500.0, 300.0, 1.0)),
-            "the scene does not fit: found 654 us of computing in the worst tick, allowed 540; "
-            "suture.accuracy = \"fast\" would as it is; else largest suture.nodes that would: 40");
-  EXPECT_EQ(
-      refusal(rod, costs(500.0, 420.0, 1.0)),
-      "the scene does not fit: found 654 us of computing in the worst tick, allowed 540; "
-      "largest suture.nodes that would: 40; with suture.accuracy = \"fast\": largest suture.nodes that would: 120");
-  EXPECT_EQ(refusal(rod, costs(900.0, 700.0, 0.0)),
-            "the scene does not fit: found 900 us of computing in the worst tick, allowed 540; "
-            "no suture.nodes would; with suture.accuracy = \"fast\": no suture.nodes would");
-}
-
-TEST(Refusal, OfARodThatIsFastAlreadyDoesNotNameIt) {
-  auto rod = scene_of("suture-3-0.toml", 154);
-  rod.suture.rod.accuracy = scene::Accuracy::kFast;
-  EXPECT_EQ(refusal(rod, costs(0.0, 500.0, 1.0)).find("accuracy"), std::string::npos);
-}
-
-TEST(Refusal, NamesNoThreadThatFitsOnlyOnce) {
-  int asked = 0;
-  const auto nodes = largest_nodes(paper(64), 1.0, [&](const scene::Scene& scene, double) {
-    Admission a;
-    a.worst.thread_us = scene.suture.nodes <= (++asked > 6 ? 30 : 40) ? 0.0 : 1000.0;
-    return a;
-  });
-  ASSERT_TRUE(nodes);
-  EXPECT_LE(*nodes, 30);
-  EXPECT_GE(*nodes, 27);
-}
-
-TEST(Admission, SaysWhatTheWorstTickGivesUp) {
+/// What was measured, written down.
+Admission found(double computing_us, double lost_at_quarter) {
   Admission a;
-  EXPECT_EQ(table(a).find("gives up"), std::string::npos);
-  a.worst.gave_up = physics::Degradation::kMotion;
-  a.worst.time_lost = 0.25;
-  EXPECT_NE(table(a).find("stands still for up to 25 % of a tick"), std::string::npos) << table(a);
+  a.loop = {0.5 * computing_us, 0.5 * computing_us};
+  for (const double speed : kHandSpeeds_m_per_s)
+    a.knots.push_back({speed, speed < 0.25 ? 0.0 : lost_at_quarter, 0.0, 100});
+  return a;
 }
 
-TEST(Admission, TheBusCountsAgainstThePeriodNotAgainstTheBudget) {
-  Admission a;
-  a.bus_us = 450.0;
-  a.worst.thread_us = 560.0;
-  EXPECT_FALSE(a.fits());  // within 600, but not with the bus
-  a.worst.thread_us = 540.0;
-  EXPECT_TRUE(a.fits());
-  a.bus_us = 100.0;
-  a.worst.thread_us = 610.0;
-  EXPECT_FALSE(a.fits());
+TEST(Objection, NamesWhatWasFoundWhatIsAllowedAndTheRemedy) {
+  EXPECT_EQ(objection_of(found(200.0, 1.0)), std::nullopt) << "200 us to the dot; loss is told, not refused";
+  EXPECT_EQ(objection_of(found(230.0, 0.0)),
+            "the loop does not fit: found 230 us of computing from SYNC to record, allowed 200; remedy: a faster core, "
+            "or --budget up to 26");
+}
+
+TEST(Objection, OfLossUpToASpeedOnly) {
+  EXPECT_EQ(objection_of(found(100.0, 0.03), 0.1), std::nullopt);
+  const auto refused = objection_of(found(100.0, 0.03), 0.25);
+  ASSERT_TRUE(refused);
+  EXPECT_NE(refused->find("--no-loss 0.25: found 3.0 % of the time lost by a knot drawn at 0.25 m/s"),
+            std::string::npos)
+      << *refused;
+  EXPECT_EQ(objection_of(found(100.0, 0.0009), 0.4), std::nullopt);
+}
+
+TEST(Admission, ItsTableSaysWhatItFound) {
+  auto a = found(100.0, 0.125);
+  a.thread = {880.0, 700.0, 9'100'000, 0.25, true, true, 300, 64};
+  const auto text = table(a);
+  for (const char* said :
+       {"SYNC to last TPDO", "calls to both buses", "control law", "allowed 200.0 us", "up to 300 contacts",
+        "not all of them solved", "ended by the clock", "9.1  million", "worst shape: 25.0 %", "0.25        12.5"})
+    EXPECT_NE(text.find(said), std::string::npos) << said << "\n" << text;
 }
 
 TEST(Doctor, JudgesByTheWorstWakeUp) {

@@ -335,7 +335,7 @@ TEST_F(SceneDeskTest, TheRehearsalHasTheTextAndNoFileOfOurs) {
   };
   EXPECT_EQ(all("text"), all("longer.toml"));
   EXPECT_EQ(all("words"), "rehearse --scene " + at("longer.toml") +
-                              " --text-from /proc/self/fd/0 --budget 60.000000 --set hands.max_force_N=1.0 --set "
+                              " --text-from /proc/self/fd/0 --set hands.max_force_N=1.0 --set "
                               "suture.nodes=15\n");
   EXPECT_NE(all("files").find("2\n"), std::string::npos);
   EXPECT_EQ(all("files").find("40\n"), std::string::npos) << all("files");
