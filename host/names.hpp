@@ -49,11 +49,18 @@ struct FaultText {
 };
 
 /// Fault numbers (docs/architecture.md): what happened, and what a person does about it.
-inline constexpr std::array<FaultText, 12> kFaults{{
+inline constexpr std::array<FaultText, 17> kFaults{{
     {10, "A hand's bus is gone", "Check the cable or the simulated hand, then reset the fault."},
     {11, "Joint messages too old",
      "A drive stopped sending, or the machine was too slow. Check load and bus, then reset."},
     {12, "A drive reports a fault", "Read the drive's own error code, clear its cause, then reset."},
+    {13, "Somebody else on the bus commands torque",
+     "Take everything but this controller and the drives off the bus, then restart ligature-firmware."},
+    {14, "Another controller is on the bus", "End the other controller, then restart ligature-firmware."},
+    {15, "Somebody else on the bus starts or stops drives",
+     "Take every other CANopen tool off the bus, then restart ligature-firmware."},
+    {16, "Somebody else on the bus writes the drives' settings",
+     "Take every other CANopen tool off the bus, then restart ligature-firmware, which writes them anew."},
     {20, "A force or position is not a number", "Reset the thread, then the fault. If it returns, soften the scene."},
     {21, "The hand moved too fast", "Hold the stylus still, then reset the fault."},
     {22, "An encoder stands still while the others move", "Check that joint's encoder and its cable, then reset."},
@@ -63,6 +70,8 @@ inline constexpr std::array<FaultText, 12> kFaults{{
      "Check the buttons and their cable: no force without the dead-man. Then reset."},
     {25, "A hand's force did not end in time and was taken at once",
      "Look for frames lost in bursts, or a drive whose torque does not follow what it is sent. Then reset."},
+    {26, "A drive makes a torque that nobody asked for",
+     "Cut the drive's power and look for its cause (gains, wiring, another sender), then restart ligature-firmware."},
     {30, "The control loop lost periods", "Too much load on the machine: run ligature-firmware doctor, then reset."},
     {40, "The thread simulation diverged", "Reset the thread, then the fault. If it returns, soften the scene."},
     {41, "The thread simulation is late", "Reset the fault. If it returns, take a scene that this machine admits."},

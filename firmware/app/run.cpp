@@ -52,6 +52,7 @@ void log(const ligature_msg::event_t& e) {
 constexpr telemetry::Names kNames{
     [](int s) { return control::name(static_cast<control::State>(s)); },
     [](int f) { return control::name(static_cast<control::Fault>(f)); },
+    [](int f) { return control::needs_restart(static_cast<control::Fault>(f)); },
 };
 
 /// The recorder, or nothing: a rig without one is worse off, but not less safe.

@@ -28,7 +28,7 @@ class PaperSimulation {
 
   /// As after a divergence: the state stays, hands are open and without force.
   void stop(int bad_node) noexcept;
-  void tick(const std::array<ToolInput, 2>& tools, const TimeLeft& left) noexcept;
+  void tick(const std::array<ToolInput, 2>& tools, const TimeLeft& left = {}) noexcept;
   [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept { return unpacked(state_.p, nodes_W_, nodes_stale_); }
   [[nodiscard]] std::span<const Vec3> velocities_W() const noexcept {
     return unpacked(state_.v, velocities_W_, velocities_stale_);

@@ -13,6 +13,7 @@ namespace ligature::telemetry {
 struct Names {
   const char* (*state)(int number);
   const char* (*fault)(int number);
+  bool (*stays)(int fault) = [](int) { return false; };  ///< no reset leaves it
 };
 
 /// Compares each record with the one before it.

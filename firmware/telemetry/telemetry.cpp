@@ -10,6 +10,7 @@ namespace ligature::telemetry {
 Telemetry::Telemetry(Session session, const Names& names, rt::Outlets& outlets, Sink& sink, FlightRecorder* recorder)
     : session_(std::move(session)),
       gate_(session_.id),
+      names_(names),
       events_(names),
       outlets_(outlets),
       sink_(sink),
@@ -139,6 +140,8 @@ std::string Telemetry::objection(std::int8_t kind) const {
     return "fault " + std::to_string(last_.fault) + " is latched: reset it first";
   }
   if (kind == command_t::KIND_RESET_FAULT && last_.fault == 0) return "there is no fault";
+  if (kind == command_t::KIND_RESET_FAULT && names_.stays(last_.fault))
+    return "fault " + std::to_string(last_.fault) + " stays until ligature-firmware is started again";
   return {};
 }
 

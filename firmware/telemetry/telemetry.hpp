@@ -105,6 +105,7 @@ class Telemetry {
 
   Session session_;
   CommandGate gate_;
+  Names names_;
   EventFinder events_;
   rt::Outlets& outlets_;
   Sink& sink_;

@@ -23,7 +23,7 @@ class RodSimulation {
 
   /// As after a divergence: the state stays, hands are open and without force.
   void stop(int bad_node) noexcept;
-  void tick(const std::array<ToolInput, 2>& tools, const TimeLeft& left) noexcept;
+  void tick(const std::array<ToolInput, 2>& tools, const TimeLeft& left = {}) noexcept;
   [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept { return nodes_; }
   [[nodiscard]] std::span<const Vec3> velocities_W() const noexcept { return velocities_; }
   [[nodiscard]] const HandContact& hand(Hand h) const noexcept { return hands_[static_cast<std::size_t>(h)]; }

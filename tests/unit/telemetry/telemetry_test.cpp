@@ -11,7 +11,8 @@
 namespace ligature::telemetry {
 namespace {
 
-constexpr Names kNames{[](int s) { return s == 0 ? "OFF" : "ON"; }, [](int) { return "broken"; }};
+constexpr Names kNames{[](int s) { return s == 0 ? "OFF" : "ON"; }, [](int) { return "broken"; },
+                       [](int fault) { return fault == 13; }};
 
 /// Both clocks at that time, as where nobody sets the one on the wall.
 Moment at(std::int64_t us) { return {us, us}; }
@@ -268,6 +269,11 @@ TEST_F(TelemetryTest, SenselessCommandsAreRefusedWithAReason) {
   telemetry.step(at(0));
   EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_ARM), at(0)).accepted, 0);
   EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_RESET_FAULT), at(0)).accepted, 1);
+  record.fault = 13;
+  push(1);
+  telemetry.step(at(0));
+  EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_RESET_FAULT), at(0)).reason,
+            "fault 13 stays until ligature-firmware is started again");
   for (int i = 0; i < 100; ++i) (void)telemetry.handle(command(ligature_msg::command_t::KIND_STOP), at(0));
   EXPECT_EQ(telemetry.handle(command(ligature_msg::command_t::KIND_STOP), at(0)).reason, "too many commands at once");
 }
