@@ -124,7 +124,7 @@ class BadInput(unittest.TestCase):
         self.refused(run("ligature-device", "--hand", "left", "--bus", f"local:{self.path}"), "folder")
 
     def test_words_that_are_no_command_or_knot(self):
-        self.refused(run("ligature-firmware", "nope"), "nope", "run, admit, doctor")
+        self.refused(run("ligature-firmware", "nope"), "nope", "run, admit, rehearse, doctor")
         self.refused(run("ligature-host", "nope"), "nope", "record", "replay")
         self.refused(run("ligature-lab", "nope"), "nope", "run", "pareto")
         self.refused(run("ligature-lab", "tie", "nope"), "nope", "overhand", "surgeon")

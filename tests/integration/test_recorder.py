@@ -43,7 +43,7 @@ def status(session, recorder_file):
 
 def flight_file(path, session, ticks):
     """As protocol/recorder/flight_file.hpp lays it out, by other means than the firmware's."""
-    header = struct.pack("<8sIIqqqddiI", b"LGFLIGHT", 1, SLOT_BYTES, len(ticks), struct.unpack(">q", tick_t._get_packed_fingerprint())[0],
+    header = struct.pack("<8sIIqqqddiI", b"LGFLIGHT", 3, SLOT_BYTES, len(ticks), struct.unpack(">q", tick_t._get_packed_fingerprint())[0],
                          session, 0.001, 3.3, 0, 0) + bytes(32 + 256 + 61440)
     header += struct.pack("<I", zlib.crc32(header))
     slots = bytearray()

@@ -186,8 +186,9 @@ TEST(SutureHands, CloseFarOffWithoutAStep) {
     EXPECT_EQ(size(last.f_wish_N[1]) > 0.1, within);
     EXPECT_EQ(size(last.f_wish_N[1]) == 0.0, !within);
     EXPECT_LT(wish_step_N, 0.03);
-    // Passivity holds back what is not earned yet, and lets it go at the slew limit, 0.15 N a tick.
-    for (std::size_t h = 0; h < 2; ++h) EXPECT_LT(p.step_N(h, kClosed_s - 0.1, 4.4), 0.16) << h;
+    // Passivity holds back what is not earned yet, and lets it go at the slew limit, 0.15 N a tick; how much of it the
+    // joints may make in any pose changes from tick to tick, too, and adds up to an eighth.
+    for (std::size_t h = 0; h < 2; ++h) EXPECT_LT(p.step_N(h, kClosed_s - 0.1, 4.4), 0.175) << h;
   }
 }
 

@@ -15,8 +15,9 @@ inline constexpr int kWatchdog = 20;
 /// A rig whose hands rest while each holds a node 5 cm above it. Both press the dead-man as soon as a press counts.
 class Rig {
  public:
-  explicit Rig(const scene::Hands& hands = scene(), const device::Device& device = device::omni())
-      : controller(hands, {kWatchdog, true, device}) {
+  explicit Rig(const scene::Hands& hands = scene(), const device::Device& device = device::omni(),
+               std::int32_t watchdog_ticks = kWatchdog)
+      : controller(hands, {watchdog_ticks, true, device}) {
     for (std::size_t h = 0; h < rt::kHands; ++h) {
       auto& r = in.reading.hand[h];
       r.q_rad = {0.0, 0.5, 0.6};
