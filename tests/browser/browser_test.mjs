@@ -250,6 +250,7 @@ const steps = {
     replay = new Program(host, ['replay', log, '--port', '0']);
     page = await browser.open(await replay.says(/open (\S+)/));
     await page.waitForFunction(() => ligature.firstThread_ms);
+    await page.locator('#help').waitFor({ state: 'visible' }); // a new address: the first visit
     await page.evaluate(() => document.getElementById('help').close());
     await until(page, () => document.querySelectorAll('#marks button').length >= 2);
     const titles = await page.locator('#marks button').evaluateAll((all) => all.map((b) => b.title).join('\n'));
@@ -295,7 +296,7 @@ const steps = {
 
 /** The exported column of each of the page's (host/view/page/frame.js), hand by hand. */
 function exportedNames() {
-  const names = { wakeup_ns: 'wakeup_latency_ns', maxStretch: 'max_stretch', minGap_m: 'min_gap_m' };
+  const names = { wakeup_ns: 'wakeup_latency_ns', maxStretch: 'max_stretch', minGap_m: 'min_gap_m', threadDone_ns: 'thread_done_ns', timeLost: 'time_lost' };
   for (const same of ['control_ns', 'execution_ns', 'flags', 'state', 'fault', 'kinetic_J', 'potential_J', 'contacts', 'degradation']) names[same] = same;
   const ofHand = { X: 'device_f_x_N', Y: 'device_f_y_N', Z: 'device_f_z_N', '': 'device_f_N', World: 'world_f_N', Node: 'node', Port_J: 'port_energy_J',
     Dissipated_J: 'dissipated_J', BusLoad: 'bus_load', Heat: 'heat', Limits: 'limits', Clutch: 'clutch' };
@@ -339,5 +340,6 @@ for (const [name, step] of Object.entries(steps)) {
 if (browser.complaints.length) { ++failed; console.log('FAIL console is quiet\n', browser.complaints.join('\n')); }
 await browser.stop();
 view?.stop();
+replay?.stop();
 rig.stop();
 process.exitCode = failed ? 1 : 0;
