@@ -11,7 +11,7 @@ class DeadMan {
  public:
   static constexpr int kReleased = 3;  ///< samples, 1 ms each
 
-  /// A fresh sample of the button.
+  /// A new sample of the button, late or in time.
   void see(bool pressed) noexcept {
     pressed_ = pressed;
     released_ = pressed ? 0 : std::min(released_ + 1, kReleased);

@@ -60,14 +60,16 @@ void HandControl::observe(const rt::HandReading& reading, const Grasp& grasp, st
   state_.dead_man = reading.dead_man;
   state_.bus_load = reading.bus_load;
   if (!reading.valid) return;
-  if (reading.age_ticks == 0) dead_man_.see(reading.dead_man);
 
   // Age counts executed periods: one period old means sampled in the last one that was executed.
   const std::int64_t sampled = reading.age_ticks == 0 ? tick : last_tick - (reading.age_ticks - 1);
   const bool same =
       reading.age_ticks == last_age_ + 1;  // one executed period older: whatever lost periods make of `sampled`
   last_age_ = reading.age_ticks;
-  if (sample_tick_ < 0 || (!same && sampled > sample_tick_)) sample(reading, sampled);
+  if (sample_tick_ < 0 || (!same && sampled > sample_tick_)) {  // new, be it late
+    dead_man_.see(reading.dead_man);
+    sample(reading, sampled);
+  }
   state_.age_ticks = tick - sample_tick_;
   step_clutch(clutch, p_DT_);
   if (!state_.clutch) map(p_DT_);

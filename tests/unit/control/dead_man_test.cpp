@@ -120,6 +120,29 @@ TEST(NewPress, IsSeenInFreshSamplesOnly) {  // one old sample that is held is on
   expect_no_force(rig);
 }
 
+TEST(LetGo, IsSeenInSamplesThatComeLate) {  // each a period late: as new as any, and force went on for good
+  for (int age = 0; age <= 3; ++age) {
+    Rig rig;
+    rig.to_force();
+    for (auto& hand : rig.in.reading.hand) hand.age_ticks = age;
+    rig.ticks(100);
+    ASSERT_GT(Rig::largest(rig.tick()), 0.0) << age;
+    for (auto& hand : rig.in.reading.hand) hand.dead_man = false;
+    rig.ticks(150);
+    EXPECT_EQ(Rig::largest(rig.tick()), 0.0) << age;
+  }
+}
+
+TEST(LetGo, OfOneHandInALateSampleLeavesTheOther) {
+  Rig rig;
+  rig.to_force();
+  rig.in.reading.hand[0].age_ticks = 1;
+  rig.in.reading.hand[0].dead_man = false;
+  rig.ticks(150);
+  EXPECT_EQ(rig.controller.hand(0).gain, 0.0);
+  EXPECT_EQ(rig.controller.hand(1).gain, 1.0);
+}
+
 TEST(NewPress, NotAfterADisarm) {  // the hand went on holding, and force comes by the gain, from zero
   Rig rig;
   rig.to_force();
