@@ -45,10 +45,14 @@ void HandLink::send_sync() noexcept {
 void HandLink::drain() noexcept {
   can::Frame frame;
   for (int i = 0; i < kMaxFrames && bus_.receive(frame) == Receive::kFrame; ++i) take(frame);
+  was_lost_ = was_lost_ || bus_.is_lost();
 }
 
 bool HandLink::send(const can::Frame& frame) noexcept {
-  if (!bus_.send(frame)) return false;
+  if (!bus_.send(frame)) {
+    was_lost_ = was_lost_ || bus_.is_lost();
+    return false;
+  }
   bits_ += can::frame_bits(frame);
   return true;
 }
@@ -102,7 +106,7 @@ void HandLink::take_tpdo(std::size_t joint, const can::Tpdo1& tpdo) noexcept {
 rt::HandReading HandLink::reading() const noexcept {
   using can::cia402::State;
   rt::HandReading r;
-  r.bus_lost = bus_.is_lost();
+  r.bus_lost = was_lost_ || bus_.is_lost();
   r.foreign = foreign_;
   r.valid = valid_;
   r.age_ticks = age_ticks_;
@@ -136,6 +140,7 @@ std::int16_t HandLink::permille_of(double torque_Nm) const noexcept {
 
 std::array<std::int16_t, rt::kJoints> HandLink::write(const rt::HandCommand& command) noexcept {
   std::array<std::int16_t, rt::kJoints> sent{};
+  was_lost_ = false;
   if (command.request == rt::DriveRequest::kStop) send(can::encode_nmt(can::NmtCommand::kStop));
   for (std::size_t j = 0; j < rt::kJoints; ++j) {
     Node& node = nodes_[j];

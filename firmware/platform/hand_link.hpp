@@ -83,6 +83,7 @@ class HandLink {
   std::array<can::Tpdo1, rt::kJoints> pending_{};
   unsigned arrived_ = 0;  // bit per joint since the last SYNC
   bool valid_ = false;
+  bool was_lost_ = false;  // since the last reading; a bus may be back before anybody asks
   rt::Foreign foreign_ = rt::Foreign::kNone;
   bool has_life_ = false;  // the buttons' life sign was seen to move; a drive without one is taken as it is
   int still_sets_ = 0;

@@ -104,13 +104,16 @@ bool SocketBus::note(int error) noexcept {
   return false;
 }
 
-/// What waits in the socket was sent before the loss.
+/// An interface that goes down is told ahead of the frames that wait in the socket: they were sent before, and its
+/// first frame is the sign that it is up again. What waits behind a bus-off is skipped until the restart, which may
+/// wait, too.
 void SocketBus::lose(Loss how) noexcept {
+  loss_ = how;
+  if (how != Loss::kDown) return;
   constexpr int kMost = 1024;  // far more than a period brings: bounded, whatever happens
   can::LocalPacket dropped;
   for (int i = 0; i < kMost && recv(fd_, dropped.data(), dropped.size(), MSG_DONTWAIT) > 0; ++i) {
   }
-  loss_ = how;
 }
 
 /// Controller's own news. @return whether it was that, and not a frame of somebody.

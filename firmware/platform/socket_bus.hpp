@@ -14,7 +14,7 @@
 namespace ligature::platform {
 
 /// A `local:` bus that is lost stays lost: its other end is gone. A CAN interface may come back: after being down with
-/// its first frame, after bus-off when its driver tells that it was restarted. What was queued before the loss is
+/// its first frame, after bus-off when its driver tells that it was restarted. What was queued before that is
 /// dropped. Whether force may come back is not asked here: the loss was a fault, and faults are latched.
 class SocketBus final : public CanBus {
  public:

@@ -375,6 +375,27 @@ TEST_F(HandLinkTest, ALostBusIsSeenAtOnce) {
   EXPECT_EQ(link.write({{0.1, 0.1, 0.1}, rt::DriveRequest::kOperate}), (std::array<std::int16_t, 3>{}));
 }
 
+/// A controller that restarts at once, an interface that comes back: the loss is a fault all the same.
+TEST_F(HandLinkTest, ALossThatIsOverBeforeTheNextReadingIsTold) {
+  const auto lost_for = [this](const auto& step) {
+    bus.lost = true;
+    step();
+    bus.lost = false;
+    link.send_sync();
+    answer_all();
+    link.drain();
+    const bool told = link.reading().bus_lost;
+    link.write({{}, rt::DriveRequest::kOperate});
+    EXPECT_FALSE(period().bus_lost) << "told once";
+    link.write({{}, rt::DriveRequest::kOperate});
+    return told;
+  };
+  EXPECT_FALSE(lost_for([] {})) << "nobody can have seen it";
+  EXPECT_TRUE(lost_for([this] { link.drain(); }));
+  EXPECT_TRUE(lost_for([this] { link.send_sync(); }));
+  EXPECT_TRUE(lost_for([this] { link.write({{}, rt::DriveRequest::kOperate}); }));
+}
+
 TEST_F(HandLinkTest, WritesPerMilleAndSaysWhatItSent) {
   period();
   const auto sent = link.write({{0.03, -0.3, 9.0}, rt::DriveRequest::kOperate});

@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 #include "firmware/platform/bus_wait.hpp"
 #include "protocol/can/local_wire.hpp"
@@ -23,7 +24,7 @@
 
 namespace {
 
-int send_error = 0, recv_error = 0;  // what an interface would answer now; 0: nothing special
+int send_error = 0, recv_error = 0;  // what an interface would answer now; 0: nothing special. recv tells it once
 
 }  // namespace
 
@@ -33,7 +34,7 @@ extern "C" ssize_t send(int fd, const void* bytes, std::size_t count, int flags)
   return sendto(fd, bytes, count, flags, nullptr, 0);
 }
 extern "C" ssize_t recv(int fd, void* bytes, std::size_t count, int flags) {
-  if (recv_error != 0) return errno = recv_error, -1;
+  if (recv_error != 0) return errno = std::exchange(recv_error, 0), -1;
   return recvfrom(fd, bytes, count, flags, nullptr, nullptr);
 }
 
@@ -152,6 +153,15 @@ TEST_F(BusOff, WhatWasQueuedBeforeItIsNoSignOfLife) {
   EXPECT_EQ(receive(), Receive::kNothing) << "frames of before the loss came through";
 }
 
+TEST_F(BusOff, ARestartThatWasToldWithItIsHeard) {  // a loop that stood still for a while reads both at once
+  put(told_by_driver(CAN_ERR_BUSOFF));
+  put(kFrame);
+  put(told_by_driver(CAN_ERR_RESTARTED));
+  EXPECT_EQ(receive(), Receive::kLost) << "the loss itself is told first";
+  EXPECT_EQ(receive(), Receive::kNothing);
+  EXPECT_FALSE(bus->is_lost());
+}
+
 TEST_F(BusOff, OtherNewsOfTheDriverIsNone) {
   put(told_by_driver(CAN_ERR_RESTARTED));
   EXPECT_EQ(receive(), Receive::kNothing);
@@ -185,6 +195,19 @@ TEST_F(Interface, ThatIsDownIsLostUntilItsFirstFrame) {
     put(kFrame);
     EXPECT_EQ(receive(), Receive::kFrame);
     EXPECT_FALSE(bus->is_lost());
+  }
+}
+
+/// The kernel tells the error first, and then gives out what it had queued.
+TEST_F(Interface, WhatWasQueuedBeforeItWentDownIsNoSignOfLife) {
+  for (int* const error : {&recv_error, &send_error}) {
+    for (int i = 0; i < 40; ++i) put(kFrame);
+    *error = ENETDOWN;
+    EXPECT_TRUE(error == &recv_error ? receive() == Receive::kLost : !bus->send(kFrame));
+    *error = 0;
+    EXPECT_EQ(receive(), Receive::kLost) << "a frame of before the loss came through";
+    put(kFrame);
+    EXPECT_EQ(receive(), Receive::kFrame);
   }
 }
 
