@@ -36,10 +36,16 @@ void HandLink::send_sync() noexcept {
   arrived_ = 0;
   if (age_ticks_ < std::numeric_limits<std::int32_t>::max()) ++age_ticks_;
   send(can::sync_frame());
-  if (--periods_to_heartbeat_ <= 0) {
-    send(can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}));
-    periods_to_heartbeat_ = kHeartbeatPeriods;
-  }
+}
+
+/// Every other frame beats a heartbeat, and keeps those behind it in the queue. So it goes out when the drives have
+/// answered and the bus is free, and no more once somebody else commands them: by its absence they let go by
+/// themselves.
+void HandLink::beat() noexcept {
+  if (foreign_ != rt::Foreign::kNone) return;
+  if (--periods_to_heartbeat_ >= 0) return;
+  send(can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}));
+  periods_to_heartbeat_ = kHeartbeatPeriods - 1;
 }
 
 void HandLink::drain() noexcept {
@@ -142,6 +148,7 @@ std::array<std::int16_t, rt::kJoints> HandLink::write(const rt::HandCommand& com
   std::array<std::int16_t, rt::kJoints> sent{};
   was_lost_ = false;
   if (command.request == rt::DriveRequest::kStop) send(can::encode_nmt(can::NmtCommand::kStop));
+  beat();
   for (std::size_t j = 0; j < rt::kJoints; ++j) {
     Node& node = nodes_[j];
     const auto state = node.state();

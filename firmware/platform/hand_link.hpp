@@ -36,14 +36,17 @@ namespace ligature::platform {
 /// Real time: every call is bounded, allocates nothing, and does at most the bus' system calls.
 class HandLink {
  public:
-  HandLink(CanBus& bus, const device::Device& device) noexcept
+  static constexpr int kHeartbeatPeriods = 50;  ///< half of the drives' default, so that one may be lost
+
+  /// @param first_heartbeat  the period, from 0, that has the first heartbeat of the master
+  HandLink(CanBus& bus, const device::Device& device, int first_heartbeat = 0) noexcept
       : bus_(bus),
         rad_per_count_(device.rad_per_count()),
         Nm_per_permille_(device.Nm_per_permille()),
-        max_permille_(device.max_torque_permille) {}
+        max_permille_(device.max_torque_permille),
+        periods_to_heartbeat_(first_heartbeat) {}
 
-  /// Begins a period. What came too late for the last one is taken first, as one period old; then SYNC goes out, and
-  /// now and then the master's heartbeat.
+  /// Begins a period. What came too late for the last one is taken first, as one period old; then SYNC goes out.
   void send_sync() noexcept;
 
   /// Takes what has arrived.
@@ -53,14 +56,14 @@ class HandLink {
   [[nodiscard]] bool is_settled() const noexcept { return age_ticks_ == 0 || bus_.is_lost(); }
   [[nodiscard]] rt::HandReading reading() const noexcept;
 
-  /// Every period anew, so that somebody else's frames do not outlast ours.
+  /// Every period anew, so that somebody else's frames do not outlast ours; before them, every kHeartbeatPeriods, the
+  /// master's heartbeat.
   /// @return the torques as they went out, per mille; zero when the bus is lost.
   std::array<std::int16_t, rt::kJoints> write(const rt::HandCommand& command) noexcept;
 
  private:
-  static constexpr int kMaxFrames = 64;         // a period on a 1 Mbit/s bus carries fewer than 22
-  static constexpr int kStillSets = 10;         // complete sets without a new life sign
-  static constexpr int kHeartbeatPeriods = 50;  // half of the drives' default, so that one may be lost
+  static constexpr int kMaxFrames = 64;  // a period on a 1 Mbit/s bus carries fewer than 22
+  static constexpr int kStillSets = 10;  // complete sets without a new life sign
 
   struct Node {
     can::Tpdo1 latest;
@@ -71,6 +74,7 @@ class HandLink {
   };
 
   bool send(const can::Frame& frame) noexcept;
+  void beat() noexcept;
   void take(const can::Frame& frame) noexcept;
   [[nodiscard]] std::int16_t permille_of(double torque_Nm) const noexcept;
   void note_life(std::uint16_t buttons) noexcept;
@@ -88,7 +92,7 @@ class HandLink {
   bool has_life_ = false;  // the buttons' life sign was seen to move; a drive without one is taken as it is
   int still_sets_ = 0;
   std::int32_t age_ticks_ = 1;
-  int periods_to_heartbeat_ = 0;
+  int periods_to_heartbeat_;
   unsigned bits_ = 0, bits_of_last_period_ = 0;  // on the wire
 };
 

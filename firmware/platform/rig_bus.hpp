@@ -9,7 +9,7 @@ namespace ligature::platform {
 class RigBus {
  public:
   RigBus(CanBus& left, CanBus& right, BusWait& wait, const device::Device& device = device::omni())
-      : hands_{HandLink(left, device), HandLink(right, device)}, wait_(wait) {}
+      : hands_{HandLink(left, device), HandLink(right, device, HandLink::kHeartbeatPeriods / 2)}, wait_(wait) {}
 
   void send_sync() noexcept;
   /// Returns as soon as both hands have answered, at the latest at the deadline.
@@ -17,6 +17,7 @@ class RigBus {
   rt::WireTorque write_rpdos(const rt::RigCommand& command) noexcept;
 
  private:
+  // Their heartbeats fall into different periods: no period has the work of both.
   std::array<HandLink, rt::kHands> hands_;
   BusWait& wait_;
 };

@@ -426,16 +426,6 @@ TEST_F(HandLinkTest, BringsADriveUpAndDown) {  // the drive is protocol's own st
   EXPECT_FALSE(can::cia402::may_produce_torque(drive));
 }
 
-TEST_F(HandLinkTest, SendsTheMastersHeartbeatNowAndThen) {
-  for (int i = 0; i < 100; ++i) link.send_sync();
-  int beats = 0;
-  for (const auto& f : bus.sent) {
-    const auto beat = can::decode_heartbeat(f);
-    beats += beat && beat->node == can::kMasterNode && beat->state == can::NmtState::kOperational;
-  }
-  EXPECT_EQ(beats, 2);
-}
-
 TEST(RigBus, ReturnsAsSoonAsBothHandsAnswered) {
   FakeBus left, right;
   FakeWait wait;
@@ -477,6 +467,39 @@ TEST(RigBus, EachHandHasItsOwnBus) {
   };
   EXPECT_EQ(first_rpdo(left), (can::Rpdo1{can::cia402::kControlEnableOperation, 100}));
   EXPECT_EQ(first_rpdo(right), (can::Rpdo1{can::cia402::kControlDisableVoltage, -200}));
+}
+
+/// It holds up no answer to SYNC, and never is one for both hands in one period.
+TEST(RigBus, TheMastersHeartbeatGoesBeforeTheTorquesOfEveryFiftiethPeriod) {
+  FakeBus left, right;
+  FakeWait wait;
+  RigBus rig(left, right, wait);
+  std::vector<int> beats[2];
+  for (int period = 0; period < 200; ++period) {
+    for (FakeBus* bus : {&left, &right}) bus->sent.clear();
+    rig.send_sync();
+    EXPECT_EQ(left.sent.size() + right.sent.size(), 2U) << "two SYNCs and nothing else";
+    (void)rig.write_rpdos({});
+    for (FakeBus* bus : {&left, &right}) {
+      if (bus->sent.size() == 4) continue;
+      ASSERT_EQ(bus->sent.size(), 5U);
+      EXPECT_EQ(bus->sent[1], can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}));
+      beats[bus == &right].push_back(period);
+    }
+  }
+  EXPECT_EQ(beats[0], (std::vector{0, 50, 100, 150}));
+  EXPECT_EQ(beats[1], (std::vector{25, 75, 125, 175}));
+}
+
+TEST_F(HandLinkTest, NoHeartbeatGoesOutOnceSomebodyElseCommandsTheDrives) {
+  (void)link.write({});
+  bus.inbox.push_back(can::encode(can::kWaist, can::Rpdo1{can::cia402::kControlEnableOperation, 3000}));
+  bus.sent.clear();
+  for (int i = 0; i < 200; ++i) {
+    period();
+    (void)link.write({});
+  }
+  for (const auto& f : bus.sent) EXPECT_NE(f.id, 0x77FU);
 }
 
 TEST(RigBus, DoesNotWaitBeyondTheDeadline) {
