@@ -49,7 +49,7 @@ class Summariser {
     Session& session = summary.tally[index];
     session.ring_dropped = batch.ring_dropped;
     for (const auto& tick : batch.ticks)
-      if (summary.tally.add(index, tick.tick)) summary.ticks.add(tick);
+      if (summary.tally.add(index, tick.tick, tick.state)) summary.ticks.add(tick);
   }
 
   void take(const ligature_msg::thread_t& thread) {

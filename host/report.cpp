@@ -17,8 +17,10 @@ double recorded_per_s(const LogSummary& s) { return static_cast<double>(s.tally.
 /// First recorded tick of the first session; what ran before the recorder is not there, and not lost.
 std::int64_t first_tick(const LogSummary& s) { return s.tally.sessions().front().ticks.first(); }
 
-/// Ticks that were not counted may be of any session, and nobody knows which of its ticks those were.
-const char* lost_words(const LogSummary& s) { return s.tally.left_out() > 0 ? "known to be lost" : "lost"; }
+/// Ticks that were not counted may be of any session, and of one without its end nobody knows how many came after.
+bool all_is_known(const LogSummary& s) { return s.tally.left_out() == 0 && s.tally.open_ended() == nullptr; }
+
+const char* lost_words(const LogSummary& s) { return all_is_known(s) ? "lost" : "known to be lost"; }
 
 /// Part of the recorded periods in which the loop ran, %.
 double executed_percent(const LogSummary& s) {
@@ -54,6 +56,14 @@ std::string knot_words(const LogSummary& s) {
   return words;
 }
 
+std::string thread_words(const LogSummary& s) {
+  const ThreadStatistics& t = s.ticks.thread();
+  const double share = s.ticks.executed() > 0 ? t.lost_ticks / static_cast<double>(s.ticks.executed()) : 0.0;
+  return text("stood still for %.3f s (%.2f %% of the time); ticks ended by work %lld, by the clock %lld, late %lld",
+              t.lost_ticks * s.facts.period_s, 100.0 * share, static_cast<Count>(t.by_work),
+              static_cast<Count>(t.by_clock), static_cast<Count>(t.late));
+}
+
 std::string fault_words(const LogSummary& s) {
   if (s.ticks.faults().empty()) return "none";
   std::string words;
@@ -83,12 +93,18 @@ std::string report_table(const LogSummary& s) {
   table += duration_row("wake-up latency", s.ticks.wakeup());
   table += duration_row("control time", s.ticks.control());
   table += duration_row("execution time", s.ticks.execution());
+  table += row("thread", thread_words(s));
   for (std::size_t hand = 0; hand < 2; ++hand) table += hand_row(s, hand);
   table += row("force limit", text("%.2f N", s.facts.max_force_N));
   table += row("faults", fault_words(s));
   table += row("knot", knot_words(s));
   if (const auto first = first_tick(s); first > 1)
     table += row("joined late", text("recording begins at tick %lld", static_cast<Count>(first)));
+  if (const Session* open = s.tally.open_ended())
+    table +=
+        row("open end", text("recording ends at tick %lld in %s, not with the drives switched off: what came after "
+                             "is not in it; the flight recorder may have it",
+                             static_cast<Count>(open->ticks.last()), state_name(open->last_state).data()));
   if (s.tally.are_interleaved())
     table += row("sessions", text("%zu at the same time", s.tally.sessions().size()));
   else if (s.tally.restarts() > 0)
@@ -130,6 +146,7 @@ std::string report_json(const LogSummary& s) {
                      {"ticks_recorded", s.tally.received()},
                      {"ticks_lost", s.tally.missing()},
                      {"ticks_not_counted", s.tally.left_out()},
+                     {"ended", s.tally.open_ended() == nullptr},
                      {"first_tick", first_tick(s)},
                      {"duplicates", s.tally.duplicates()},
                      {"restarts", s.tally.restarts()},
@@ -139,6 +156,11 @@ std::string report_json(const LogSummary& s) {
                      {"executed_percent", executed_percent(s)},
                      {"deadline_misses", s.ticks.deadline_misses()},
                      {"periods_lost", s.ticks.periods_lost()},
+                     {"thread",
+                      {{"stood_still_s", s.ticks.thread().lost_ticks * s.facts.period_s},
+                       {"ended_by_work", s.ticks.thread().by_work},
+                       {"ended_by_clock", s.ticks.thread().by_clock},
+                       {"late", s.ticks.thread().late}}},
                      {"wakeup_us", microseconds(s.ticks.wakeup())},
                      {"control_us", microseconds(s.ticks.control())},
                      {"execution_us", microseconds(s.ticks.execution())},

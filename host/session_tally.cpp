@@ -1,5 +1,9 @@
 #include "host/session_tally.hpp"
 
+#include <algorithm>
+
+#include "ligature_msg/tick_t.hpp"
+
 namespace ligature::host {
 
 int SessionTally::find_or_add(std::int64_t id) {
@@ -10,12 +14,20 @@ int SessionTally::find_or_add(std::int64_t id) {
   return static_cast<int>(sessions_.size()) - 1;
 }
 
-bool SessionTally::add(int index, std::int64_t tick) {
+bool SessionTally::add(int index, std::int64_t tick, std::int8_t state) {
   Session& session = sessions_[static_cast<std::size_t>(index)];
   // A tick that fills a gap of an earlier session may come at any time; one that goes on with it may not.
   const bool is_last = static_cast<std::size_t>(index) + 1 == sessions_.size();
   if (!is_last && (session.ticks.is_empty() || tick > session.ticks.last())) interleaved_ = true;
+  if (session.ticks.is_empty() || tick > session.ticks.last()) session.last_state = state;
   return session.ticks.add(tick);
+}
+
+const Session* SessionTally::open_ended() const {
+  const auto found = std::ranges::find_if(sessions_, [](const Session& s) {
+    return !s.ticks.is_empty() && s.last_state != ligature_msg::tick_t::STATE_OFF;
+  });
+  return found == sessions_.end() ? nullptr : &*found;
 }
 
 std::int64_t SessionTally::received() const {

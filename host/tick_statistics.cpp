@@ -16,10 +16,21 @@ void TickStatistics::add(const ligature_msg::tick_t& tick) {
     control_ns_.push_back(tick.control_ns);
     execution_ns_.push_back(tick.execution_ns);
     if (tick.flags & ligature_msg::tick_t::FLAG_DEADLINE_MISSED) ++deadline_misses_;
+    add_thread(tick);
   }
   for (std::size_t hand = 0; hand < hands_.size(); ++hand) add_hand(hand, tick);
   if (tick.fault != last_fault_ && tick.fault != 0) faults_.push_back({tick.tick, tick.fault});
   last_fault_ = tick.fault;
+}
+
+void TickStatistics::add_thread(const ligature_msg::tick_t& tick) {
+  if (tick.flags & ligature_msg::tick_t::FLAG_THREAD_LATE) {
+    ++thread_.late;  // its other values are those of an older tick
+    return;
+  }
+  if (tick.thread_end == ligature_msg::tick_t::THREAD_WORK) ++thread_.by_work;
+  if (tick.thread_end == ligature_msg::tick_t::THREAD_CLOCK) ++thread_.by_clock;
+  thread_.lost_ticks += static_cast<double>(tick.time_lost);
 }
 
 /// A lost period counts here too: the device went on with the last force.

@@ -17,6 +17,13 @@ struct HandStatistics {
   [[nodiscard]] double mean_N() const { return grasp_ticks ? sum_N / static_cast<double>(grasp_ticks) : 0.0; }
 };
 
+/// How the thread's physics kept up.
+struct ThreadStatistics {
+  std::int64_t by_work = 0, by_clock = 0;  // ticks ended before their end: work spent, time over
+  std::int64_t late = 0;                   // ticks that were not done when the next samples came
+  double lost_ticks = 0.0;                 // time for which it stood still
+};
+
 struct FaultEntry {
   std::int64_t tick = 0;
   std::int16_t fault = 0;
@@ -39,6 +46,7 @@ class TickStatistics {
   [[nodiscard]] std::int64_t executed() const { return static_cast<std::int64_t>(wakeup_ns_.size()); }
   [[nodiscard]] std::int64_t periods_lost() const { return periods_lost_; }
   [[nodiscard]] std::int64_t deadline_misses() const { return deadline_misses_; }
+  [[nodiscard]] const ThreadStatistics& thread() const { return thread_; }
   [[nodiscard]] const std::array<HandStatistics, 2>& hands() const { return hands_; }
   [[nodiscard]] const std::vector<FaultEntry>& faults() const { return faults_; }  ///< each change to a fault
   [[nodiscard]] Percentiles wakeup() const { return percentiles_of(wakeup_ns_); }
@@ -47,10 +55,12 @@ class TickStatistics {
 
  private:
   static Percentiles percentiles_of(std::vector<std::int32_t> samples);
+  void add_thread(const ligature_msg::tick_t& tick);
   void add_hand(std::size_t hand, const ligature_msg::tick_t& tick);
 
   std::vector<std::int32_t> wakeup_ns_, control_ns_, execution_ns_;
   std::int64_t periods_lost_ = 0, deadline_misses_ = 0;
+  ThreadStatistics thread_;
   std::array<HandStatistics, 2> hands_;
   std::vector<FaultEntry> faults_;
   std::int16_t last_fault_ = 0;

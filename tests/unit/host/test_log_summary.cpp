@@ -4,6 +4,7 @@
 
 #include "host/errors.hpp"
 #include "host/log_summary.hpp"
+#include "host/names.hpp"
 #include "host/report.hpp"
 #include "synthetic_log.hpp"
 
@@ -71,6 +72,54 @@ TEST(LogSummary, TableAndJsonSayTheSame) {
   EXPECT_NE(table.find("999.5 ticks per second, 99.949 % of periods executed"), std::string::npos) << table;
   EXPECT_NE(table.find("3_1"), std::string::npos) << table;
   EXPECT_NE(table.find("peak 3.000 N at 0.777 s"), std::string::npos) << table;
+}
+
+/// Nobody knows what a run did after its last recorded tick, unless that one has its drives switched off.
+TEST(LogSummary, SaysZeroLostOnlyOfRunsThatAreThereToTheirEnd) {
+  const test::TestFolder folder;
+  for (std::int8_t state = 0; state < 7; ++state) {
+    for (const bool restarted : {false, true}) {
+      const std::string path = folder.file(std::to_string(state) + (restarted ? "r.lcmlog" : ".lcmlog"));
+      LogWriter log(path, false);
+      auto last = test::batch_of(1, 10, 10);
+      last.ticks.back().state = state;
+      test::write(log, kTicksChannel, last);
+      test::write(log, kTicksChannel, test::batch_of(1, 0, 10));  // filled from the flight recorder: not in order
+      if (restarted) test::write(log, kTicksChannel, test::batch_of(2, 0, 20));
+      log.close();
+      const auto summary = summarise(path);
+      const bool ended = state == ligature_msg::tick_t::STATE_OFF;
+      const auto table = report_table(summary);
+      EXPECT_EQ(table.find("0 lost") != std::string::npos, ended) << table;
+      EXPECT_EQ(table.find("open end") == std::string::npos, ended) << table;
+      EXPECT_EQ(nlohmann::json::parse(report_json(summary))["ended"], ended);
+      if (!ended) {
+        EXPECT_NE(table.find("ends at tick 19 in " + std::string(state_name(state))), std::string::npos) << table;
+      }
+    }
+  }
+}
+
+TEST(LogSummary, TellsHowTheThreadKeptUp) {
+  const test::TestFolder folder;
+  LogWriter log(folder.file("thread.lcmlog"), false);
+  auto batch = test::batch_of(1, 0, 100);
+  using ligature_msg::tick_t;
+  for (std::size_t i = 0; i < 10; ++i) batch.ticks[i].thread_end = tick_t::THREAD_WORK, batch.ticks[i].time_lost = 0.5F;
+  for (std::size_t i = 20; i < 24; ++i) batch.ticks[i].thread_end = tick_t::THREAD_CLOCK;
+  for (std::size_t i = 30; i < 33; ++i)
+    batch.ticks[i].flags = tick_t::FLAG_THREAD_LATE, batch.ticks[i].time_lost = 1.0F;
+  batch.ticks[40].flags = tick_t::FLAG_PERIOD_LOST, batch.ticks[40].time_lost = 1.0F;
+  test::write(log, kTicksChannel, batch);
+  log.close();
+  const auto summary = summarise(folder.file("thread.lcmlog"));
+  const auto table = report_table(summary);
+  EXPECT_NE(table.find("stood still for 0.005 s (5.05 % of the time); ticks ended by work 10, by the clock 4, late 3"),
+            std::string::npos)
+      << table;
+  const auto json = nlohmann::json::parse(report_json(summary))["thread"];
+  EXPECT_DOUBLE_EQ(json["stood_still_s"].get<double>(), 0.005);
+  EXPECT_EQ(json["late"], 3);
 }
 
 TEST(LogSummary, RefusesALogWithoutTicks) {
