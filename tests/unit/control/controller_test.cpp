@@ -231,6 +231,44 @@ TEST(Controller, TheBrakePushesAgainstTheMotion) {  // of a hand that goes on as
   EXPECT_LT(with_N, 0.02);
 }
 
+/// The loop stood still while samples were asked for: where the joints are is known, how fast they are is not.
+TEST(Controller, ASampleOfUnknownTimeTellsNoSpeed) {
+  Rig rig;
+  rig.to_force();
+  const auto turn = [&](double by_rad) {
+    for (auto& hand : rig.in.reading.hand) hand.q_rad[0] += by_rad;
+    rig.tick();
+    return rig.controller.hand(0).v_WT.norm();
+  };
+  for (int i = 0; i < 20; ++i) turn(1e-3);
+  const double speed = turn(1e-3);
+  ASSERT_GT(speed, 0.0);
+  rig.in.late = true;
+  EXPECT_EQ(turn(15e-3), 0.0);  // 15 periods of it
+  rig.in.late = false;
+  rig.in.tick += 15;
+  EXPECT_NEAR(turn(1e-3), speed / 16.0, 1e-2 * speed) << "nothing before it counts, but it does";
+  EXPECT_EQ(rig.controller.fault(), Fault::kNone);
+}
+
+/// Nor whether an encoder lies: corners in its curve may be those of time.
+TEST(Controller, SamplesOfUnknownTimeAccuseNoEncoder) {
+  for (const bool late : {false, true}) {
+    Rig rig;
+    rig.to_force();
+    const double count = device::omni().rad_per_count();
+    for (int i = 0; i < 200 && rig.controller.fault() == Fault::kNone; ++i) {
+      for (auto& hand : rig.in.reading.hand) {
+        hand.q_rad[0] += (i < 100 ? 1.5 : -1.5) * count;  // turns round in no time
+        hand.q_rad[1] += 1.0 * count;
+      }
+      rig.in.late = late && i % 20 == 0;
+      rig.tick();
+    }
+    EXPECT_EQ(rig.controller.fault(), late ? Fault::kNone : Fault::kAxisReversed);
+  }
+}
+
 TEST(Controller, TheClutchParksTheToolAndReleasesItWhereItIs) {
   Rig rig;
   rig.in.reading.hand[0].grip = true;

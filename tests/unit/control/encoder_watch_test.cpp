@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <random>
 
@@ -120,13 +121,76 @@ TEST(EncoderWatch, AJointThatNobodyPushesMayRestForEver) {
   }
 }
 
+/// A lie that is found within 120 samples (above), seen with a gap in time every 20.
 TEST(EncoderWatch, AGapStartsAnew) {
-  EncoderWatch w;
-  for (int t = -200; t < 200; ++t) {
-    Counts c = counted(motion(t));
-    if (t > 0) c[0] = 0.0;
-    EXPECT_EQ(w.add(c, t % 20 == 0 ? 2 : 1, kFree), Fault::kNone);
+  for (const bool reversed : {true, false}) {
+    for (const std::int64_t gap : {1, 0, 2}) {  // 0: nobody knows how long it was
+      EncoderWatch w;
+      Fault fault = Fault::kNone;
+      for (int t = -200; t < 200 && fault == Fault::kNone; ++t) {
+        Counts c = counted(motion(t)), then = counted(motion(0));
+        if (t > 0) c[2] = reversed ? 2.0 * then[2] - c[2] : then[2];
+        fault = w.add(c, t % 20 == 0 ? gap : 1, kFree);
+      }
+      EXPECT_EQ(fault, gap != 1 ? Fault::kNone : reversed ? Fault::kAxisReversed : Fault::kEncoderFrozen) << gap;
+    }
   }
+}
+
+/// What nobody saw may have been a motion: here the joint went on for 30 samples, and stopped as joints do.
+TEST(EncoderWatch, ASuspicionEndsWithAGap) {
+  const auto frozen = [](int t) {
+    Counts c = counted(motion(t));
+    if (t > 0) c[2] = counted(motion(0))[2];
+    return c;
+  };
+  const int gap = watch(frozen).second - 5;  // that near to being told
+  ASSERT_LE(gap, 120);
+  EncoderWatch w;
+  for (int t = -200; t < gap + 100; ++t) {
+    Counts c = frozen(t);
+    c[2] += std::round(0.3 * std::clamp(t - gap, 0, 30));
+    ASSERT_EQ(w.add(c, t == gap ? 2 : 1, kFree), Fault::kNone) << t;
+  }
+}
+
+/// A hand at rest at first: no corner to be seen. The others go on, and the joint's torque changes once.
+struct UnderTorque {
+  double torque = 0.3, per_sample = 20.0;  ///< of the rated one; counts of each other joint
+  int samples = 500;
+  bool free = true;
+  /// @return samples until it was told, 0: never
+  [[nodiscard]] int told_after() const {
+    EncoderWatch w;
+    for (int t = 0; t < samples; ++t) {
+      const Fault fault = w.add({0.0, per_sample * t, per_sample * t}, 1, {free, true, true}, {t > 0 ? torque : 0.0});
+      if (fault != Fault::kNone) return fault == Fault::kEncoderFrozen ? t + 1 : -1;
+    }
+    return 0;
+  }
+};
+
+TEST(EncoderWatch, UnderTorqueAJointMayRestForAHundredSamples) {  // a fast hand that turns round
+  EXPECT_EQ(UnderTorque{}.told_after(), 100);
+  EXPECT_EQ(UnderTorque{.samples = 99}.told_after(), 0);
+}
+
+TEST(EncoderWatch, UnderTorqueAJointIsAskedForAFifthOfItsTorqueAndTravelElsewhere) {
+  EXPECT_EQ(UnderTorque{.torque = 0.19}.told_after(), 0);
+  EXPECT_EQ(UnderTorque{.torque = -0.21}.told_after(), 100);
+  EXPECT_EQ(UnderTorque{.per_sample = 0.5}.told_after(), 301);  // 300 counts of both
+  EXPECT_EQ((UnderTorque{.per_sample = 0.5, .samples = 300}.told_after()), 0);
+}
+
+TEST(EncoderWatch, AJointInItsStopMayBePushedAndMayBounce) {
+  EXPECT_EQ(UnderTorque{.free = false}.told_after(), 0);
+  const auto bounce = [](int t) {
+    Counts c = counted(motion(t));
+    if (t > 0) c[1] = 2.0 * counted(motion(0))[1] - c[1];
+    return c;
+  };
+  EXPECT_EQ(watch(bounce, 300, {true, false, true}).first, Fault::kNone);
+  EXPECT_EQ(watch(bounce, 300).first, Fault::kAxisReversed);
 }
 
 }  // namespace

@@ -41,6 +41,23 @@ TEST(Engagement, FallsInFiftyMillisecondsAndMustBeCalmAgain) {
   EXPECT_EQ(e.gain(), 0.0);
 }
 
+/// Twenty still ticks in a row, from the press on: a hand that trembles in between is not calm.
+TEST(Engagement, TheCalmIsCountedAnew) {
+  const auto calm_after = [](const auto& disturb) {
+    Engagement e;
+    for (int i = 0; i < Engagement::kCalmTicks - 1; ++i) e.tick(true, kStill, kSmall);
+    disturb(e);
+    int calm = 0;
+    for (; e.gain() == 0.0 && calm < 100; ++calm) e.tick(true, kStill, kSmall);
+    return calm - 1;  // the last was the first of the rise
+  };
+  EXPECT_EQ(calm_after([](Engagement&) {}), 1);
+  EXPECT_EQ(calm_after([](Engagement& e) { e.tick(true, 1.0, kSmall); }), Engagement::kCalmTicks);
+  EXPECT_EQ(calm_after([](Engagement& e) { e.tick(true, kStill, 3.0); }), Engagement::kCalmTicks);
+  EXPECT_EQ(calm_after([](Engagement& e) { e.tick(false, kStill, kSmall); }), Engagement::kCalmTicks);
+  EXPECT_EQ(calm_after([](Engagement& e) { e.drop(); }), Engagement::kCalmTicks);
+}
+
 TEST(Engagement, DropsAtOnce) {
   Engagement e;
   for (int i = 0; i < 1000; ++i) e.tick(true, kStill, kSmall);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "firmware/control/controller.hpp"
 
@@ -199,6 +201,74 @@ TEST(LedMove, TakingTheThreadOrTheClutchEndsItForGood) {
     const Vec3 there = arms.q[0];
     arms.ticks(2000);
     EXPECT_LT((arms.q[0] - there).norm(), 1e-3) << clutch;
+  }
+}
+
+/// A move that is refused changes nothing at all: what is held stays held, and each torque is as without it.
+TEST(LedMove, AMoveThatIsRefusedIsAsIfNobodyHadAskedForIt) {
+  struct Reason {
+    const char* name;
+    State state;  // in which it is asked for, 5 ticks later
+    void (*forbid)(Arms&);
+  };
+  const std::vector<Reason> reasons{
+      {"not up yet", State::kCalibrate, [](Arms&) {}},
+      {"disarmed", State::kBrake, [](Arms& a) { a.controller.command(rt::CommandKind::kDisarm); }},
+      {"a fault", State::kFault, [](Arms& a) { a.in.reading.hand[0].drive_fault = true; }},
+      {"no dead-man", State::kForce,
+       [](Arms& a) {
+         for (auto& r : a.in.reading.hand) r.dead_man = false;
+       }},
+      {"the thread", State::kForce, [](Arms& a) { a.in.grasp[0].held = a.in.grasp[1].held = true; }},
+      {"the clutch", State::kForce,
+       [](Arms& a) {
+         for (auto& r : a.in.reading.hand) r.clutch = true;
+       }},
+      {"too fast", State::kBrake, [](Arms& a) { a.omega[0].x() = a.omega[1].x() = 14.0; }}};
+  for (const auto& reason : reasons) {
+    SCOPED_TRACE(reason.name);
+    Arms asked, other;
+    for (Arms* arms : {&asked, &other}) {
+      arms->ticks(reason.state == State::kCalibrate ? 20 : 1000);
+      for (std::size_t h = 0; h < 2; ++h) {
+        arms->in.reading.hand[h].grip = true;
+        arms->in.grasp[h].p_WG = arms->controller.hand(h).p_WT + Vec3(0, 0, 1e-3);
+      }
+      reason.forbid(*arms);
+      arms->ticks(5);
+    }
+    ASSERT_EQ(asked.controller.state(), reason.state);
+    asked.controller.command(rt::CommandKind::kPark);
+    for (int i = 0; i < 400; ++i) {
+      asked.tick(), other.tick();
+      ASSERT_EQ(asked.acting, other.acting) << i;
+      for (std::size_t h = 0; h < 2; ++h)
+        ASSERT_EQ(asked.controller.tools()[h].grip, other.controller.tools()[h].grip) << i;
+    }
+  }
+}
+
+/// Whoever stopped it has seen a reason; the next arming is for force, not for a motion of the rig's own.
+TEST(LedMove, IsNotTakenUpAgainAfterAStopOrAFault) {
+  for (const bool stop : {true, false}) {
+    Arms arms;
+    arms.to_force();
+    arms.controller.command(rt::CommandKind::kPark);
+    arms.ticks(500);
+    ASSERT_GT(arms.most_N, 0.05);
+    if (stop) arms.controller.command(rt::CommandKind::kStop);
+    arms.in.reading.hand[0].drive_fault = !stop;
+    arms.ticks(100);
+    arms.in.reading.hand[0].drive_fault = false;
+    if (!stop) arms.controller.command(rt::CommandKind::kResetFault);
+    arms.ticks(100);
+    arms.released = 0;  // a new press, before the arming
+    arms.ticks(10);
+    const Vec3 there = arms.q[0];
+    arms.controller.command(rt::CommandKind::kArm);
+    arms.ticks(2000);
+    EXPECT_EQ(arms.controller.hand(0).gain, 1.0);
+    EXPECT_LT((arms.q[0] - there).norm(), 1e-3);
   }
 }
 

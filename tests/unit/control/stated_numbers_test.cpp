@@ -88,6 +88,21 @@ TEST(StatedNumbers, AHotWindingsCapFallsInHalfASecondAndComesBackAsSlowly) {
   EXPECT_NEAR(back, 500, 1);
 }
 
+TEST(StatedNumbers, AChangeOfTheForceScaleTakesTwoTenthsOfASecond) {  // evenly, from a held force to another
+  for (const double times : {2.0, 0.5}) {
+    Rig rig;
+    rig.to_force();
+    const double before_N = rig.controller.hand(0).f_wish_N.norm();
+    rig.controller.change_force_scale(times * Rig::scene().force_scale);
+    const double step_N = (times - 1.0) * before_N / 200.0;
+    for (int i = 1; i <= 210; ++i) {
+      rig.tick();
+      for (std::size_t h = 0; h < 2; ++h)
+        ASSERT_NEAR(rig.controller.hand(h).f_wish_N.norm(), before_N + step_N * std::min(i, 200), 1e-9) << i;
+    }
+  }
+}
+
 TEST(StatedNumbers, AParkedToolStands) {  // it kept the hand's velocity, and threw what it held
   Rig rig;
   rig.to_force();
@@ -105,7 +120,8 @@ TEST(StatedNumbers, AParkedToolStands) {  // it kept the hand's velocity, and th
   }
 }
 
-/// A drive that goes on as it was. With the usual watchdog that is a torque astray (26) before: here it may be that old.
+/// A drive that goes on as it was. With the usual watchdog that is a torque astray (26) before: here it may be that
+/// old.
 TEST(StatedNumbers, AForceThatDoesNotEndIsTakenAfterAHundredTicks) {
   Rig rig(Rig::scene(), device::omni(), 1000);
   rig.to_force();
