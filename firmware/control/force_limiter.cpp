@@ -8,32 +8,22 @@ using physics::Vec3;
 
 ForceLimiter::ForceLimiter(const device::Device& d, double max_force_N, double period_s) noexcept
     : device_peak_N_(d.peak_force_N),
-      continuous_N_(d.continuous_force_N),
-      tau_s_(d.thermal_time_s),
       step_N_(d.force_step_N),
       slew_N_per_s_(d.force_slew_N_per_s),
       period_s_(period_s),
-      allowance_N_(d.force_step_N) {
+      allowance_N_(d.force_step_N),
+      thermal_(d.peak_force_N, d.continuous_force_N, d.thermal_time_s, period_s) {
   set_peak(max_force_N);
-  cap_N_ = device_peak_N_;
 }
 
 void ForceLimiter::set_peak(double max_force_N) noexcept { peak_N_ = std::min(max_force_N, device_peak_N_); }
 
-void ForceLimiter::move_cap() noexcept {
-  if (heat_ >= kHot) hot_ = true;
-  if (heat_ < kCool) hot_ = false;
-  const double by_N = (device_peak_N_ - continuous_N_) * period_s_ / kFall_s;
-  cap_N_ = hot_ ? std::max(continuous_N_, cap_N_ - by_N) : std::min(device_peak_N_, cap_N_ + by_N);
-}
-
-Vec3 ForceLimiter::limit(const Vec3& wish_N, double most_N) noexcept {
-  move_cap();
+Vec3 ForceLimiter::limit(const Vec3& wish_N, const MostByJoints& most) noexcept {
   codes_ = 0;
-  const double cap_N = std::min(peak_N_, cap_N_);
-  const LimitedForce capped = saturate(wish_N, std::min(cap_N, most_N));
+  const double warm_N = std::min(thermal_.cap(), most.by_heat_N), cap_N = std::min(peak_N_, warm_N);
+  const LimitedForce capped = saturate(wish_N, std::min(cap_N, most.in_any_pose_N));
   if (capped.limited)
-    codes_ |= most_N < cap_N ? rt::kTorqueLimit : cap_N_ < peak_N_ ? rt::kContinuousLimit : rt::kPeakLimit;
+    codes_ |= most.in_any_pose_N < cap_N ? rt::kTorqueLimit : warm_N < peak_N_ ? rt::kContinuousLimit : rt::kPeakLimit;
 
   allowance_N_ = std::min(step_N_, allowance_N_ + slew_N_per_s_ * period_s_);
   const Vec3 change = capped.f_N - before_N_;
@@ -44,11 +34,10 @@ Vec3 ForceLimiter::limit(const Vec3& wish_N, double most_N) noexcept {
   return before_N_ + change * (allowance_N_ * kRounding / size_N);  // between two that are allowed, hence allowed
 }
 
-void ForceLimiter::sent(const Vec3& f_N) noexcept {
+void ForceLimiter::sent(const Vec3& f_N, std::int64_t periods) noexcept {
   allowance_N_ = std::max(0.0, allowance_N_ - (f_N - before_N_).norm());
   before_N_ = f_N;
-  const double load = f_N.norm() / continuous_N_;
-  heat_ += (load * load - heat_) * period_s_ / tau_s_;
+  thermal_.sent(f_N.norm(), periods);
 }
 
 }  // namespace ligature::control

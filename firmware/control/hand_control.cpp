@@ -23,6 +23,7 @@ HandControl::HandControl(const device::Device& d, const scene::Hands& hands, dou
       map_(hands, linkage_.home_m()),
       coupling_(hands, period_s),
       limiter_(d, hands.max_force_N, period_s),
+      windings_(d, period_s),
       passivity_(d, period_s, hands.passivity, hands.energy_credit_J),
       brake_(period_s),
       path_(period_s),
@@ -124,8 +125,9 @@ void HandControl::decide(Push push) noexcept {
   lets_go_ = push == Push::kNone || !finite_;
   if (lets_go_) return;
   const Vec3 scaled_N = gain() * wish_N;
-  const double most_N = safe_share(jacobian_.transpose() * scaled_N) * std::max(scaled_N.norm(), 1e-300);
-  decided_N_ = limiter_.limit(scaled_N, most_N);
+  const Vec3 torque_Nm = jacobian_.transpose() * scaled_N;
+  const double size_N = std::max(scaled_N.norm(), 1e-300);
+  decided_N_ = limiter_.limit(scaled_N, {safe_share(torque_Nm) * size_N, windings_.share(torque_Nm) * size_N});
   decided_limits_ = static_cast<std::int16_t>(decided_limits_ | limiter_.codes());
 }
 
@@ -143,14 +145,16 @@ std::array<double, rt::kJoints> HandControl::command(std::int64_t tick) noexcept
     if (passivity_.stepped()) limits |= rt::kStepLimit;
     const Vec3 exact_Nm = jacobian_.transpose() * paid_N;
     if (exact_Nm.lpNorm<Eigen::Infinity>() > max_torque_Nm_) limits |= rt::kTorqueLimit;
-    paid_N *= std::min(1.0, safe_share(exact_Nm));  // what passivity turned
+    paid_N *= std::min({1.0, safe_share(exact_Nm), windings_.share(exact_Nm)});  // what passivity turned
   }
   if (torque_Nm.isZero(0.0)) paid_N = Vec3::Zero();
   overtime_ticks_ = gain() > 0.0 || torque_Nm.isZero(0.0) ? 0 : overtime_ticks_ + 1;
   state_.f_device_N = paid_N;
   torque_Nm_ = torque_Nm;
   passivity_.sent(tick, torque_Nm, from_torque_ * torque_Nm);
-  limiter_.sent(paid_N);
+  limiter_.sent(paid_N, tick - commanded_tick_);
+  windings_.sent(torque_Nm, tick - commanded_tick_);
+  commanded_tick_ = tick;
   fill_state(limits);
   return {torque_Nm[0], torque_Nm[1], torque_Nm[2]};
 }
@@ -206,12 +210,13 @@ double HandControl::safe_share(const Vec3& torque_Nm) const noexcept {
   return most_N > 0.0 ? limiter_.peak_N() / most_N : std::numeric_limits<double>::infinity();
 }
 
-/// J^T f in whole torque quanta, within the drives' range and what is safe in any pose. A torque within kStay quanta of
-/// the last one stays: what flickers is heard, and hides energy under the encoder's counts.
+/// J^T f in whole torque quanta, within the drives' range, what is safe in any pose and what the windings may have. A
+/// torque within kStay quanta of the last one stays: what flickers is heard, and hides energy under the encoder's
+/// counts.
 Vec3 HandControl::sendable_torque(const Vec3& f_N) const noexcept {
   constexpr double kStay = 0.7;
   Vec3 exact = (jacobian_.transpose() * f_N).cwiseMax(-max_torque_Nm_).cwiseMin(max_torque_Nm_);
-  exact *= std::min(1.0, safe_share(exact));
+  exact *= std::min({1.0, safe_share(exact), windings_.share(exact)});
   Vec3 torque_Nm;
   for (Eigen::Index j = 0; j < 3; ++j) {
     const bool stays = std::abs(exact[j] - torque_Nm_[j]) < kStay * quantum_Nm_;
@@ -224,7 +229,7 @@ void HandControl::fill_state(std::int16_t limits) noexcept {
   state_.gain = gain();
   state_.limits = limits;
   state_.limited = (limits & (rt::kPeakLimit | rt::kContinuousLimit | rt::kTorqueLimit)) != 0 && gain() >= 1.0;
-  state_.heat = limiter_.heat();
+  state_.heat = std::max(limiter_.heat(), windings_.heat());
   state_.port_energy_J = passivity_.energy_J();
   state_.received_J = passivity_.received_J();
   state_.dissipated_J = passivity_.dissipated_J();

@@ -14,6 +14,7 @@
 #include "firmware/control/move_check.hpp"
 #include "firmware/control/passivity.hpp"
 #include "firmware/control/virtual_coupling.hpp"
+#include "firmware/control/windings.hpp"
 #include "firmware/control/window_velocity.hpp"
 #include "firmware/control/workspace_map.hpp"
 #include "firmware/physics/simulation.hpp"
@@ -133,6 +134,7 @@ class HandControl {
   WorkspaceMap map_;
   VirtualCoupling coupling_;
   ForceLimiter limiter_;
+  Windings windings_;
   Passivity passivity_;
   Engagement engagement_;
   DeadMan dead_man_;
@@ -152,7 +154,7 @@ class HandControl {
   std::int16_t decided_limits_ = 0;
   Vec3 p_DT_ = Vec3::Zero(), v_DT_ = Vec3::Zero();
   bool lets_go_ = true, finite_ = true, holds_ = false, clutch_command_ = false;
-  std::int64_t sample_tick_ = -1, doubtful_tick_ = -1;
+  std::int64_t sample_tick_ = -1, doubtful_tick_ = -1, commanded_tick_ = -1;
   std::int32_t last_age_ = 0;
   int overtime_ticks_ = 0;
   EncoderWatch watch_;

@@ -28,6 +28,13 @@ Mat3 omni_jacobian(const Vec3& l, const JointAngles& q_rad) noexcept {
 
 }  // namespace
 
+Vec3 levers_at_home_m(const device::Device& d) noexcept {
+  Vec3 levers_m = vector_of(d.links_m);
+  if (d.kinematics == device::Kinematics::kOmniSerial)
+    levers_m = Vec3(std::hypot(d.home_tip_m[0], d.home_tip_m[1]), d.links_m[0], d.links_m[1]);
+  return levers_m;
+}
+
 Linkage::Linkage(const device::Device& d) noexcept
     : kind_(d.kinematics),
       links_m_(vector_of(d.links_m)),

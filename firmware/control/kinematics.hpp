@@ -14,6 +14,9 @@ using JointAngles = std::array<double, 3>;  ///< as the drives count them; rad
 
 [[nodiscard]] inline Vec3 vector_of(const std::array<double, 3>& a) noexcept { return {a[0], a[1], a[2]}; }
 
+/// |dp/dq_j| in the home pose: what a tip force along a joint's motion asks of that joint, N m per N.
+[[nodiscard]] Vec3 levers_at_home_m(const device::Device& device) noexcept;
+
 /// Tip T in the device base D (x right, y away from the person, z up) and J = d p_DT / d q.
 ///
 /// omni-serial: waist q1, shoulder q2, forearm q3 against the vertical; links l1, l2.

@@ -1,0 +1,48 @@
+#pragma once
+// What a motor may do for a while, and what it may do for ever.
+
+#include <algorithm>
+#include <cstdint>
+
+namespace ligature::control {
+
+/// I2t of what is sent, a force or a torque: dh/dt = ((x / continuous)^2 - h) / tau, h the winding's temperature rise,
+/// 1 = that of `continuous` for ever. From h = 1 on the cap falls from the peak to `continuous`, below h = 0.7 it comes
+/// back as slowly: with hysteresis, as a force that comes and goes is worse than one that is gone. It falls within
+/// kFall_s, or sooner where h would rise above 1 + kMostOver meanwhile: with r = peak / continuous, falling evenly for
+/// t lets through (r^2 + r + 1) / 3 on average, so h rises by less than ((r^2 + r + 1) / 3 - 1) t / tau. A drive that
+/// guards its winding at 1.2 times `continuous` or above (h = 1.44) is never the first. O(1).
+class ThermalCap {
+ public:
+  static constexpr double kFall_s = 0.5;
+  static constexpr double kHot = 1.0, kCool = 0.7, kMostOver = 0.35;
+
+  ThermalCap(double peak, double continuous, double tau_s, double period_s) noexcept
+      : peak_(std::max(peak, continuous)), continuous_(continuous), tau_s_(tau_s), period_s_(period_s), cap_(peak_) {
+    const double r = peak_ / continuous_, rise = (r * r + r + 1.0) / 3.0 - 1.0;
+    fall_s_ = std::min(kFall_s, kMostOver * tau_s_ / std::max(rise, 1e-9));
+  }
+
+  /// Once a tick. @param periods since the last call: in all of them acted what was sent then.
+  void sent(double size, std::int64_t periods = 1) noexcept {
+    const double load = sent_ / continuous_,
+                 time_s = period_s_ * static_cast<double>(std::max<std::int64_t>(periods, 1));
+    heat_ += (load * load - heat_) * std::min(1.0, time_s / tau_s_);
+    sent_ = size;
+    if (heat_ >= kHot) hot_ = true;
+    if (heat_ < kCool) hot_ = false;
+    const double by = (peak_ - continuous_) * time_s / fall_s_;
+    cap_ = hot_ ? std::max(continuous_, cap_ - by) : std::min(peak_, cap_ + by);
+  }
+
+  [[nodiscard]] double heat() const noexcept { return heat_; }
+  [[nodiscard]] double cap() const noexcept { return cap_; }
+  [[nodiscard]] bool is_full() const noexcept { return cap_ == peak_; }
+
+ private:
+  double peak_, continuous_, tau_s_, period_s_, cap_, fall_s_ = kFall_s;
+  double heat_ = 0.0, sent_ = 0.0;
+  bool hot_ = false;
+};
+
+}  // namespace ligature::control

@@ -1,0 +1,138 @@
+// No drive ever has to guard its own winding: the controller is there first, whatever is asked for.
+#include "firmware/control/windings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/unit/control/controller_rig.hpp"
+
+namespace ligature::control {
+namespace {
+
+constexpr double kT_s = 1e-3;
+constexpr double kGuard = 1.2;  // times the continuous torque: what a drive holds down to when its winding is hot
+
+/// The windings of one arm as their drives see them: rated a fifth above the record, 1 = too hot.
+struct Guarded {
+  explicit Guarded(const device::Device& d) : most_Nm(kGuard * continuous_torque_Nm(d)), tau_s(d.thermal_time_s) {}
+  void pass(const Vec3& torque_Nm) {
+    const Vec3 load = torque_Nm.cwiseQuotient(most_Nm);
+    heat += (load.cwiseAbs2() - heat) * kT_s / tau_s;
+    hottest = std::max(hottest, heat.maxCoeff());
+  }
+  Vec3 most_Nm, heat = Vec3::Zero();
+  double tau_s, hottest = 0.0;
+};
+
+/// An arm that has nothing to do with an Omni but its kind.
+device::Device any_device(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> share;
+  device::Device d = device::omni();
+  d.continuous_force_N = 0.3 + 2.0 * share(random);
+  d.peak_force_N = d.continuous_force_N * (1.2 + 6.0 * share(random));
+  d.thermal_time_s = 2.0 + 30.0 * share(random);
+  d.links_m = {0.1 + 0.1 * share(random), 0.1 + 0.1 * share(random), 0.0};
+  d.home_tip_m[1] = -0.16 - 0.07 * share(random);
+  return d;
+}
+
+/// Torques that jump, rest and swing, up to what the peak force makes at home.
+struct Wishes {
+  std::mt19937_64& random;
+  Vec3 most_Nm, now = Vec3::Zero();
+  const Vec3& next() {
+    std::uniform_real_distribution<double> share, sign(-1.0, 1.0);
+    const double dice = share(random);
+    if (dice < 0.004) now = Vec3(sign(random), sign(random), sign(random)).cwiseProduct(most_Nm);
+    if (dice > 0.9985) now = most_Nm;
+    if (dice > 0.9965 && dice < 0.9975) now = Vec3::Zero();
+    return now;
+  }
+};
+
+TEST(Windings, NoWishMakesADriveGuardItself) {
+  std::mt19937_64 random(std::random_device{}());
+  for (int run = 0; run < 40; ++run) {
+    const device::Device d = any_device(random);
+    Windings windings(d, kT_s);
+    Guarded drives(d);
+    const double peak = d.peak_force_N / d.continuous_force_N;
+    Wishes wishes{random, peak * continuous_torque_Nm(d)};
+    for (int i = 0; i < 40'000; ++i) {
+      const Vec3 wish = wishes.next();
+      const Vec3 torque = wish * std::min(1.0, windings.share(wish));
+      windings.sent(torque);
+      drives.pass(torque);
+      ASSERT_LT(drives.hottest, 1.0) << "peak " << peak << " times continuous, time constant " << d.thermal_time_s;
+    }
+  }
+}
+
+TEST(Windings, ThePeakHeldForEverGetsAsHotAsTheClosedFormSays) {
+  const device::Device d = device::omni();
+  Windings windings(d, kT_s);
+  const double peak = d.peak_force_N / d.continuous_force_N;
+  const Vec3 wish = peak * continuous_torque_Nm(d);
+  double hottest = 0.0;
+  for (int i = 0; i < 20'000; ++i) {
+    windings.sent(wish * std::min(1.0, windings.share(wish)));
+    hottest = std::max(hottest, windings.heat());
+  }
+  // While the cap falls from r to 1 in 0.5 s it lets through the mean of its square, and the winding cools by h >= 1.
+  const double fall = 0.5 / d.thermal_time_s, square = (peak * peak + peak + 1.0) / 3.0;
+  EXPECT_LT(hottest, 1.0 + fall * (square - 1.0) + 1e-3);
+  EXPECT_GT(hottest, 1.0 + fall * (square - 1.3));
+  EXPECT_LT(hottest, kGuard * kGuard - 0.1);
+  EXPECT_NEAR(windings.share(wish) * peak, 1.0, 1e-9) << "the continuous torque for ever";
+}
+
+TEST(Windings, WhatIsContinuousIsNeverTakenAway) {
+  Windings windings(device::omni(), kT_s);
+  const Vec3 wish = 0.999 * continuous_torque_Nm(device::omni());
+  for (int i = 0; i < 100'000; ++i) {
+    ASSERT_GE(windings.share(wish), 1.0) << i;
+    windings.sent(wish);
+  }
+}
+
+TEST(Windings, PeriodsThatWereLostWarmThemToo) {  // the drives go on with what they were sent
+  Windings each(device::omni(), kT_s), tenth(device::omni(), kT_s);
+  const Vec3 torque(0.4, 0.1, 0.0);
+  for (int i = 0; i < 500; ++i) each.sent(torque);
+  for (int i = 0; i < 50; ++i) tenth.sent(torque, 10);
+  EXPECT_NEAR(tenth.heat(), each.heat(), 0.03 * each.heat());
+}
+
+/// Tip and pull of one hand, held for 12 s; the rig's other hand does the same.
+double hottest_of(const JointAngles& pose, const Vec3& along) {
+  Rig rig;
+  for (auto& reading : rig.in.reading.hand) reading.q_rad = pose;
+  Guarded drives(device::omni());
+  for (int i = 0; i < 12'000; ++i) {
+    for (std::size_t h = 0; h < rt::kHands; ++h)
+      rig.in.grasp[h].p_WG = rig.controller.hand(h).p_WT + (i < 1000 ? 0.05 : 50.0) * along;
+    const auto torque = rig.tick_as_is().hand[0].torque_Nm;
+    drives.pass(vector_of(torque));
+  }
+  return drives.hottest;
+}
+
+TEST(Windings, NoPullInAnyPoseMakesADriveGuardItself) {  // 0.88 N at full reach is 1.4 times what the waist may have
+  std::mt19937_64 random(std::random_device{}());
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  const device::Device d = device::omni();
+  double hottest = hottest_of({0.0, 0.45, 0.95}, Vec3::UnitX());
+  EXPECT_LT(hottest, 1.0) << "the waist at full reach";
+  for (int run = 0; run < 6; ++run) {
+    const JointAngles pose{-0.4 + 0.8 * share(random), 0.2 + 0.8 * share(random), 0.4 + 0.7 * share(random)};
+    const Vec3 along = Vec3(share(random) - 0.5, share(random) - 0.5, share(random) - 0.5).normalized();
+    const double heat = hottest_of(pose, along);
+    EXPECT_LT(heat, 1.0) << pose[0] << ' ' << pose[1] << ' ' << pose[2] << " along " << along.transpose();
+    hottest = std::max(hottest, heat);
+  }
+  EXPECT_GT(hottest, 0.5) << "a pull that warms nothing says nothing";
+}
+
+}  // namespace
+}  // namespace ligature::control
