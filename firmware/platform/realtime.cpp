@@ -110,10 +110,10 @@ bool stay_on(int core) noexcept {
 }
 
 /// An isolated core is not among those a process starts with; it must be asked for.
-int realtime_core() {
-  std::string isolated;
-  std::getline(std::ifstream("/sys/devices/system/cpu/isolated"), isolated);
-  if (const int core = last_of(isolated); core > 0) return core;
+int realtime_core(const char* isolated) {
+  std::string cores;
+  std::getline(std::ifstream(isolated), cores);
+  if (const int core = last_of(cores); core > 0) return core;
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
   sched_getaffinity(0, sizeof allowed, &allowed);

@@ -28,7 +28,8 @@ void flush_denormals() noexcept;
 bool stay_on(int core) noexcept;
 
 /// The isolated core, or else the last one this process may use: interrupts and other work gather on the first.
-[[nodiscard]] int realtime_core();
+/// @param isolated  the kernel's list of isolated cores
+[[nodiscard]] int realtime_core(const char* isolated = "/sys/devices/system/cpu/isolated");
 
 /// For the calling thread (and those it starts): every allowed core but that one; no change when it is the only one.
 void keep_off(int core) noexcept;

@@ -40,6 +40,13 @@ TEST(Heartbeat, RefusesUnknownStatesAndLengths) {
   EXPECT_EQ(consumer_heartbeat_value(kMasterNode, 300), 0x007F012CU);
 }
 
+TEST(Emergency, ItsNumbersAreThoseOfCiA301) {
+  EXPECT_EQ(emcy::kGenericBit, 0x01);
+  EXPECT_EQ(emcy::kCommunicationBit, 0x10);
+  EXPECT_EQ(emcy::kHeartbeatLost, 0x8130);
+  EXPECT_EQ(emcy::kRpdoTimeout, 0x8250);
+}
+
 TEST(Emergency, IsLittleEndian) {
   EXPECT_EQ(encode(Emergency{kWaist, emcy::kRpdoTimeout, 0x11}).data, (std::array<std::uint8_t, 8>{0x50, 0x82, 0x11}));
 }

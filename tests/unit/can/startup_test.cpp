@@ -32,18 +32,26 @@ TEST(Startup, ChangesAMappingOnlyWhileItsPdoIsOff) {
   }
 }
 
+std::uint32_t written(const StartupPlan& plan, Object object) {
+  for (const SdoWrite& w : plan) {
+    if (w.object == object) return w.value;
+  }
+  return 0;
+}
+
 TEST(Startup, SetsBothWatchdogs) {
   const StartupPlan plan =
       startup_plan(kWaist, {.rpdo_timeout_ms = 35, .heartbeat_timeout_ms = 250, .heartbeat_period_ms = 80});
-  const auto value = [&](Object o) {
-    for (const SdoWrite& w : plan) {
-      if (w.object == o) return w.value;
-    }
-    return 0U;
-  };
-  EXPECT_EQ(value(od::kRpdo1EventTimer), 35U);
-  EXPECT_EQ(value(od::kConsumerHeartbeat), consumer_heartbeat_value(kMasterNode, 250));
-  EXPECT_EQ(value(od::kProducerHeartbeat), 80U);
+  EXPECT_EQ(written(plan, od::kRpdo1EventTimer), 35U);
+  EXPECT_EQ(written(plan, od::kConsumerHeartbeat), consumer_heartbeat_value(kMasterNode, 250));
+  EXPECT_EQ(written(plan, od::kProducerHeartbeat), 80U);
+}
+
+TEST(Startup, AWatchdogThatNobodyNamesIsTwentyMillisecondsOrThreeHeartbeats) {
+  const StartupPlan plan = startup_plan(kWaist);
+  EXPECT_EQ(written(plan, od::kRpdo1EventTimer), 20U);
+  EXPECT_EQ(written(plan, od::kConsumerHeartbeat), consumer_heartbeat_value(kMasterNode, 300));
+  EXPECT_EQ(written(plan, od::kProducerHeartbeat), 100U);
 }
 
 }  // namespace

@@ -47,6 +47,7 @@ TEST(Messages, DecodesWhatWasEncoded) {
   EXPECT_TRUE(decode<ligature_msg::event_t>(encoded(ligature_msg::event_t{})));
   EXPECT_TRUE(decode<ligature_msg::command_t>(encoded(ligature_msg::command_t{})));
   EXPECT_EQ(decode<ligature_msg::offer_t>(encoded(some_offer()))->parameters[1].highest, 2.0);
+  EXPECT_TRUE(decode<ligature_msg::offer_t>(encoded(ligature_msg::offer_t{}))) << "nothing to offer";
 }
 
 TEST(Messages, RefusesEveryCutAndForgedCountOfAnOffer) {

@@ -125,6 +125,14 @@ TEST(Machine, ReadsCoreListsAndRoutes) {
   const std::string table = "head\neth0\t00000000\t0\t3\t0\t0\t0\t00000000\t0\t0\t0\n";
   EXPECT_EQ(route_of(table, 0xEFFF4C43), "eth0");
   EXPECT_EQ(route_of("head\n", 0xEFFF4C43), "");
+  // 127.0.0.0/8 is no way to 239.255.76.67, however narrow; of two that are, the narrower one is taken, in any order.
+  const std::string any = "eth0\t00000000\t0101A8C0\t0003\t0\t0\t0\t00000000\n",
+                    loop = "lo\t0000007F\t00000000\t0001\t0\t0\t0\t000000FF\n",
+                    many = "eth1\t000000E0\t00000000\t0001\t0\t0\t0\t000000F0\n";
+  EXPECT_EQ(route_of("head\n" + any + loop, 0xEFFF4C43), "eth0");
+  EXPECT_EQ(route_of("head\n" + loop, 0xEFFF4C43), "");
+  EXPECT_EQ(route_of("head\n" + any + many + loop, 0xEFFF4C43), "eth1");
+  EXPECT_EQ(route_of("head\n" + loop + many + any, 0xEFFF4C43), "eth1");
 }
 
 }  // namespace

@@ -260,6 +260,25 @@ TEST(IdleGuard, SaysWhyNotAndWhatHelps) {
   EXPECT_NE(guard.refusal().find("remedy"), std::string::npos);
 }
 
+TEST(Realtime, TheCoreIsTheLastIsolatedOneOrTheLastThatThereIs) {
+  const std::string file = test::temp_folder() + "isolated";
+  const auto core_of = [&](const char* list) {
+    std::ofstream(file) << list << "\n";
+    return realtime_core(file.c_str());
+  };
+  EXPECT_EQ(core_of("3"), 3);
+  EXPECT_EQ(core_of("2-5"), 5);
+  EXPECT_EQ(core_of("1,13"), 13);
+  EXPECT_EQ(core_of("1,3-5,7-11"), 11);
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  ASSERT_EQ(sched_getaffinity(0, sizeof allowed, &allowed), 0);
+  const int core = core_of("");
+  EXPECT_EQ(realtime_core("/nowhere/isolated"), core);
+  for (int later = core + 1; later < CPU_SETSIZE; ++later)
+    EXPECT_FALSE(CPU_ISSET(static_cast<std::size_t>(later), &allowed)) << later;
+}
+
 TEST(Realtime, OthersKeepOffTheRealTimeCore) {
   std::thread([] {
     const int core = realtime_core();

@@ -220,6 +220,22 @@ TEST_F(Interface, ThatIsGoneStaysGone) {
   EXPECT_TRUE(bus->is_lost());
 }
 
+/// Of either hand; the deadline is one that nothing here waits for.
+TEST_F(SocketBusTest, WaitingEndsWithTheFirstFrameOfEitherBus) {
+  int pair[2];
+  ASSERT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0, pair), 0);
+  SocketBus quiet(pair[0]);
+  const auto packet = can::to_packet(kFrame);
+  ASSERT_EQ(::send(peer, packet.data(), packet.size(), 0), 16);
+  for (const bool left : {true, false}) {
+    PollWait wait(left ? *bus : quiet, left ? quiet : *bus);
+    const Nanoseconds deadline = wait.now() + std::chrono::seconds(20);
+    EXPECT_TRUE(wait.wait(deadline));
+    EXPECT_LT(wait.now(), deadline) << (left ? "left" : "right") << " is not waited for";
+  }
+  close(pair[1]);
+}
+
 /// A lost bus is always readable: who waits for it never sleeps.
 TEST_F(BusOff, ALostBusIsNotWaitedFor) {
   close(peer);

@@ -46,6 +46,19 @@ struct Read {
     for (std::size_t i = 0; i < rows.size(); i += kColumns) found.push_back(static_cast<std::int64_t>(rows[i]));
     return found;
   }
+  /// Numbers of the bins.
+  [[nodiscard]] std::vector<std::int64_t> bins() const {
+    std::vector<std::int64_t> found;
+    if (!sections.contains(Section::kBins)) return found;
+    const auto& bytes = sections.at(Section::kBins);
+    for (std::size_t at = 0; at + sizeof(TraceBin) <= bytes.size(); at += sizeof(TraceBin)) {
+      TraceBin bin;
+      std::memcpy(&bin, bytes.data() + at, sizeof bin);
+      found.push_back(static_cast<std::int64_t>(bin.low[kTick]) +
+                      static_cast<std::int64_t>(bin.high[kTick]) * kBinNumberPart);
+    }
+    return found;
+  }
 };
 
 }  // namespace ligature::host::view::test_frames

@@ -40,6 +40,14 @@ TEST(PageRecorder, WritesWhatItHearsBetweenStartAndStop) {
                                                 std::string(kTicksChannel)}));
 }
 
+TEST(PageRecorder, NamesHaveLettersDigitsAndThreeSigns) {
+  for (const auto* name : {"a", "Z9", "first-try", "first_try", "2026.11.23", "-", "_"})
+    EXPECT_TRUE(is_file_name(name));
+  EXPECT_TRUE(is_file_name(std::string(64, 'x')));
+  EXPECT_FALSE(is_file_name(std::string(65, 'x')));
+  for (const auto* name : {"a:b", "a,b", "a\\b", "a*", "~", "\xC3\xA4", "."}) EXPECT_FALSE(is_file_name(name)) << name;
+}
+
 TEST(PageRecorder, LeavesItsFolderNeverAndReplacesNothing) {
   Recorder r;
   for (const auto* name : {"../up", "/etc/x", "a/b", ".hidden", "", "a b", "x\n"})

@@ -36,6 +36,29 @@ TEST(Picture, TellsEachPageEachTickOnce) {
   EXPECT_EQ(frame(picture, late).ticks().size(), 40U);
 }
 
+/// However often the page asks, and when all of them come at once.
+TEST(Picture, TellsEachPageEachBinOnce) {
+  for (const int batches_a_frame : {7, 5000}) {  // the last: more bins than fit in a frame
+    Picture picture;
+    Place page;
+    std::vector<std::int64_t> told;
+    const auto ask = [&] {
+      const auto bins = frame(picture, page).bins();
+      told.insert(told.end(), bins.begin(), bins.end());
+      return !bins.empty();
+    };
+    constexpr int kBatches = 5000;
+    for (int i = 0; i < kBatches; ++i) {
+      take(picture, kTicksChannel, test::batch_of(1, 20 * i, 20));
+      if (i % batches_a_frame == 0) ask();
+    }
+    while (ask()) {
+    }
+    ASSERT_EQ(std::ssize(told), 20 * kBatches / kTicksPerBin - 1) << batches_a_frame;  // the last is not full
+    for (std::size_t i = 0; i < told.size(); ++i) ASSERT_EQ(told[i], static_cast<std::int64_t>(i)) << batches_a_frame;
+  }
+}
+
 TEST(Picture, GivesAPageThatFellBehindTheLatest) {
   Picture picture;
   Place page;

@@ -100,6 +100,27 @@ TEST(LogSurvey, FindsGraspAndKnotAndTheSameEachTime) {
   EXPECT_EQ(again.marks(), p.survey.marks());
 }
 
+/// Two recordings are laid side by side by it: of either hand, and at the thread's first node, too.
+TEST(LogSurvey, FindsTheFirstGraspOfEitherHandAtAnyNode) {
+  for (const int hand : {0, 1}) {
+    const test::TestFolder folder;
+    const std::string path = folder.file("grasp.lcmlog");
+    LogWriter log(path, false);
+    for (int i = 0; i < 10; ++i) {
+      auto batch = test::batch_of(1, 20 * i, 20);
+      for (auto& tick : batch.ticks)
+        if (tick.tick >= 87) tick.grasped_node[hand] = 0;
+      test::write(log, kTicksChannel, batch);
+    }
+    log.close();
+    const LogMap map(path);
+    const LogSurvey survey(map);
+    while (survey.progress() < 1.0) std::this_thread::yield();
+    EXPECT_EQ(survey.landmarks().first_tick, 0) << hand;
+    EXPECT_EQ(survey.landmarks().first_grasp, 87) << hand;
+  }
+}
+
 TEST(LogSurvey, GivesTheBinsBeforeAMoment) {
   Playing p;
   p.wait_for_survey();

@@ -44,6 +44,14 @@ class Peer {
     return answer;
   }
 
+  /// Status line and header fields of the answer; empty when the server closes instead.
+  [[nodiscard]] std::string head_of(std::string_view request) const {
+    std::string head = ask(request);
+    for (char c = 0; !head.empty() && head.find("\r\n\r\n") == std::string::npos && recv(socket_, &c, 1, 0) == 1;)
+      head += c;
+    return head;
+  }
+
   /// Becomes a page, as far as the server knows. @return whether it did.
   [[nodiscard]] bool upgrade() const {
     return ask("GET /socket HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
@@ -125,6 +133,39 @@ std::vector<std::unique_ptr<Peer>> crowd(const Visited& visited) {
     EXPECT_TRUE(peers.back()->upgrade()) << i;
   }
   return peers;
+}
+
+TEST(Server, EveryAnswerSaysWhatItIsAndWhoMayUseIt) {
+  Visited(kToken, {.listen = "127.0.0.1", .port = 0}, [](Visited& visited) {
+    for (const auto& [file, type] : {std::pair("/", "text/html"), std::pair("/main.js", "text/javascript")}) {
+      const auto head = visited.peer()->head_of("GET " + std::string(file) + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
+      EXPECT_TRUE(head.starts_with("HTTP/1.1 200 OK")) << head;
+      for (const std::string& line :
+           {"Content-Type: " + std::string(type),
+            std::string("Content-Security-Policy: default-src 'none'; script-src 'self'"),
+            std::string("X-Content-Type-Options: nosniff"), std::string("X-Frame-Options: DENY"),
+            std::string("Cache-Control: no-store"), std::string("Cross-Origin-Resource-Policy: same-origin")})
+        EXPECT_NE(head.find("\r\n" + line), std::string::npos) << line << " is not in\n" << head;
+    }
+  });
+}
+
+TEST(Server, WhatIsNoRequestOfItsOwnPageIsTurnedAway) {
+  Visited(kToken, {.listen = "127.0.0.1", .port = 0}, [](Visited& visited) {
+    const auto answer = [&](const std::string& request) { return visited.peer()->ask(request).substr(0, 12); };
+    EXPECT_EQ(answer("GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n"), "HTTP/1.1 403");
+    EXPECT_EQ(answer("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 0\r\n\r\n"), "HTTP/1.1 405");
+    EXPECT_EQ(answer("GET /../main.js HTTP/1.1\r\nHost: localhost\r\n\r\n"), "HTTP/1.1 404");
+    EXPECT_EQ(answer("GET /socket HTTP/1.1\r\nHost: localhost\r\nOrigin: http://evil.example\r\nUpgrade: websocket\r\n"
+                     "Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+                     "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"),
+              "HTTP/1.1 403");
+    const std::string filler(7000, 'x'), more(2000, 'x');
+    EXPECT_EQ(answer("GET / HTTP/1.1\r\nHost: localhost\r\nX: " + filler + "\r\n\r\n"), "HTTP/1.1 200");
+    EXPECT_EQ(answer("GET / HTTP/1.1\r\nHost: localhost\r\nX: " + filler + more + "\r\n\r\n"), "")
+        << "8 kB are allowed";
+    EXPECT_EQ(answer("GET / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2000\r\n\r\n" + more), "") << "1 kB is";
+  });
 }
 
 TEST(Server, PagesWithoutTheTokenKeepNobodyOutAndTakeNoPlaceOfThoseWithIt) {
