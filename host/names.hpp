@@ -49,7 +49,7 @@ struct FaultText {
 };
 
 /// Fault numbers (docs/architecture.md): what happened, and what a person does about it.
-inline constexpr std::array<FaultText, 17> kFaults{{
+inline constexpr std::array<FaultText, 18> kFaults{{
     {10, "A hand's bus is gone", "Check the cable or the simulated hand, then reset the fault."},
     {11, "Joint messages too old",
      "A drive stopped sending, or the machine was too slow. Check load and bus, then reset."},
@@ -61,6 +61,8 @@ inline constexpr std::array<FaultText, 17> kFaults{{
      "Take every other CANopen tool off the bus, then restart ligature-firmware."},
     {16, "Somebody else on the bus writes the drives' settings",
      "Take every other CANopen tool off the bus, then restart ligature-firmware, which writes them anew."},
+    {17, "Too many of a hand's frames are lost",
+     "Check that hand's cable, its terminators and the bus load, then reset."},
     {20, "A force or position is not a number", "Reset the thread, then the fault. If it returns, soften the scene."},
     {21, "The hand moved too fast", "Hold the stylus still, then reset the fault."},
     {22, "An encoder stands still while the others move", "Check that joint's encoder and its cable, then reset."},

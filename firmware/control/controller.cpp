@@ -77,6 +77,8 @@ rt::RigCommand Controller::tick(const TickInput& in) noexcept {
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     if (in.late) hands_[h].doubt_time_of(in.tick);
     torque_[h].look(in.reading.hand[h]);
+    loss_[h].look(in.reading.hand[h]);
+    if (state_ == State::kOff) loss_[h].forget();  // the drives are on their way up, or the fault was reset
     hands_[h].observe(in.reading.hand[h], in.grasp[h], in.tick, last_tick_);
   }
   step_state(in);
@@ -127,6 +129,7 @@ Fault Controller::find_fault(const TickInput& in) const noexcept {
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     const Fault fault = find_hand_fault(hands_[h], in.reading.hand[h]);
     if (fault != Fault::kNone) return fault;
+    if (loss_[h].is_lossy()) return Fault::kFramesLost;
   }
   return Fault::kNone;
 }

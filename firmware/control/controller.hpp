@@ -7,6 +7,7 @@
 
 #include "firmware/control/faults.hpp"
 #include "firmware/control/hand_control.hpp"
+#include "firmware/control/loss_watch.hpp"
 #include "firmware/control/state_machine.hpp"
 #include "firmware/control/torque_watch.hpp"
 #include "firmware/rt/command.hpp"
@@ -89,6 +90,7 @@ class Controller {
   Settings settings_;
   std::array<HandControl, rt::kHands> hands_;
   std::array<TorqueWatch, rt::kHands> torque_;
+  std::array<LossWatch, rt::kHands> loss_;
   double scale_goal_, scale_step_ = 0.0;
   State state_ = State::kOff;
   Fault fault_ = Fault::kNone;

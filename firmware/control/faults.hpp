@@ -16,6 +16,7 @@ enum class Fault : std::int16_t {
   kForeignBeat = 14,      ///< ... SYNC or a controller's heartbeat
   kForeignNetwork = 15,   ///< ... NMT commands
   kForeignObject = 16,    ///< ... SDO requests
+  kFramesLost = 17,       ///< more than a third of a hand's samples or torques do not come, for a while
   kNonFinite = 20,        ///< a force or position is not a number
   kVelocityLimit = 21,    ///< tip faster than kVelocityFault times the device's limit
   kEncoderFrozen = 22,    ///< a joint stopped dead while the others moved on
@@ -68,6 +69,8 @@ enum class Fault : std::int16_t {
       return "somebody else on the bus commands the drives' network state";
     case Fault::kForeignObject:
       return "somebody else on the bus reads or writes the drives' objects";
+    case Fault::kFramesLost:
+      return "too many frames lost";
     case Fault::kNonFinite:
       return "force or position is not finite";
     case Fault::kVelocityLimit:

@@ -1,0 +1,42 @@
+#pragma once
+// A bus that is bad and not dead: so many frames are lost that what is felt is no longer the thread.
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "firmware/rt/rig_io.hpp"
+
+namespace ligature::control {
+
+/// Counts what one hand's bus loses, each way for itself: samples that did not come, and torques of which a drive says
+/// that it makes an older one for want of an RPDO. Each count leaks: + kLost for a loss, - kCame for what came, never
+/// below 0. So a share of losses above kCame / (kCame + kLost), a third, ends in kMost sooner or later, and one well
+/// below it does not. A third is where forces are still told truly (docs/haptics.md): a sample of three frames of which
+/// 12 % are lost. Losses in a row are another fault's (joint messages too old), which comes first. O(1).
+class LossWatch {
+ public:
+  static constexpr int kLost = 2, kCame = 1;
+  static constexpr int kMost = 60;  ///< 30 losses with nothing between them
+
+  /// This tick's reading.
+  void look(const rt::HandReading& reading) noexcept {
+    const bool fresh = reading.valid && reading.age_ticks != last_age_ + 1;
+    last_age_ = reading.age_ticks;
+    count(samples_, !fresh);
+    if (!fresh) return;  // tells nothing new of the other way
+    count(torques_, std::ranges::any_of(reading.torque_held, [](int held) { return held > 0; }));
+  }
+  void forget() noexcept { samples_ = torques_ = 0; }
+  [[nodiscard]] bool is_lossy() const noexcept { return samples_ >= kMost || torques_ >= kMost; }
+
+ private:
+  static void count(int& losses, bool lost) noexcept {
+    losses = std::clamp(losses + (lost ? kLost : -kCame), 0, kMost);
+  }
+
+  std::int32_t last_age_ = 0;
+  int samples_ = 0, torques_ = 0;
+};
+
+}  // namespace ligature::control

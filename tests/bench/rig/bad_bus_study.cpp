@@ -1,0 +1,106 @@
+// Draws of a bad bus, by share of frames lost or wrong: what fault it ends in and when no motor has torque.
+// Usage: bad_bus_study [draws a row = 300] [first seed = 1]; prints the tables of docs/fault-matrix.md.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/integration/virtual_rig/bad_bus.hpp"
+
+namespace ligature {
+namespace {
+
+/// Share with its 95 % interval (Wilson), in percent.
+std::string share_of(int hits, int draws) {
+  const double n = draws, p = hits / n, z = 1.96, z2 = z * z / n;
+  const double middle = (p + 0.5 * z2) / (1.0 + z2),
+               half = z * std::sqrt(p * (1.0 - p) / n + 0.25 * z2 / n) / (1.0 + z2);
+  char text[64];
+  std::snprintf(text, sizeof text, "%.1f (%.1f .. %.1f)", 100.0 * p, 100.0 * std::max(0.0, middle - half),
+                100.0 * std::min(1.0, middle + half));
+  return hits == 0 && draws > 0 ? "0 (.. " + std::string(text).substr(std::string(text).rfind(' ') + 1) : text;
+}
+
+struct Tally {
+  std::map<int, int> faults;
+  std::vector<std::int64_t> to_zero;
+  double peak_N = 0.0;
+  int draws = 0, pushed_after = 0;
+};
+
+Tally tally(const BadBus& bus, int draws, std::uint64_t first_seed) {
+  Tally t;
+  for (int k = 0; k < draws; ++k, ++t.draws) {
+    BadBus one = bus;
+    if (bus.left != bus.right) one.left = k % 2 == 0, one.right = !one.left;  // either hand
+    const BadBusEnd end = end_of(one, first_seed + 1000 * static_cast<std::uint64_t>(k));
+    ++t.faults[end.fault];
+    if (end.fault != 0) t.to_zero.push_back(end.to_zero);
+    t.peak_N = std::max(t.peak_N, end.peak_N);
+    t.pushed_after += end.pushed_after;
+  }
+  std::ranges::sort(t.to_zero);
+  return t;
+}
+
+int others(const Tally& t, std::vector<int> named) {
+  int sum = 0;
+  for (const auto& [fault, times] : t.faults) sum += std::ranges::count(named, fault) == 0 ? times : 0;
+  return sum;
+}
+
+void print_times(const Tally& t) {
+  if (t.to_zero.empty())
+    std::printf(" | | | %.2f |\n", t.peak_N);
+  else
+    std::printf(" | %lld | %lld | %.2f |\n", static_cast<long long>(t.to_zero[t.to_zero.size() / 2]),
+                static_cast<long long>(t.to_zero.back()), t.peak_N);
+  if (t.pushed_after > 0) std::printf("TORQUE AFTER A FAULT: %d\n", t.pushed_after);
+  std::fflush(stdout);
+}
+
+void lost(int draws, std::uint64_t seed) {
+  std::printf(
+      "| frames lost, %% | hands | no fault, %% | 17, %% | 11, %% | others, %% | median | worst | true force, N |\n"
+      "|---|---|---|---|---|---|---|---|---|\n");
+  for (int percent = 0; percent <= 100; percent += 5) {
+    for (const bool both : {false, true}) {
+      const std::int64_t ticks = percent < 15 ? 1000 : percent < 25 ? 2200 : 300;
+      const Tally t = tally({.lost = 0.01 * percent, .left = true, .right = both, .ticks = ticks}, draws, seed);
+      auto count = [&](int fault) { return t.faults.contains(fault) ? t.faults.at(fault) : 0; };
+      std::printf("| %d | %s | %s | %s | %s | %s", percent, both ? "both" : "one", share_of(count(0), draws).c_str(),
+                  share_of(count(17), draws).c_str(), share_of(count(11), draws).c_str(),
+                  share_of(others(t, {0, 11, 17}), draws).c_str());
+      print_times(t);
+      seed += 1'000'003;
+    }
+  }
+}
+
+void wrong(int draws, std::uint64_t seed) {
+  std::printf(
+      "\n| frames with a wrong bit, %% | no fault, %% | 21, %% | 12, %% | others, %% | median | worst | true force, N "
+      "|\n|---|---|---|---|---|---|---|---|\n");
+  for (const double percent : {0.1, 1.0, 10.0}) {
+    const Tally t = tally({.wrong = 0.01 * percent, .ticks = 1500}, draws, seed);
+    auto count = [&](int fault) { return t.faults.contains(fault) ? t.faults.at(fault) : 0; };
+    std::printf("| %g | %s | %s | %s | %s", percent, share_of(count(0), draws).c_str(),
+                share_of(count(21), draws).c_str(), share_of(count(12), draws).c_str(),
+                share_of(others(t, {0, 12, 21}), draws).c_str());
+    print_times(t);
+    seed += 1'000'003;
+  }
+}
+
+}  // namespace
+}  // namespace ligature
+
+int main(int argc, char** argv) {
+  const int draws = argc > 1 ? std::max(1, std::atoi(argv[1])) : 300;
+  const auto seed = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1ULL;
+  ligature::lost(draws, seed);
+  ligature::wrong(draws, seed + 500'000'009ULL);
+}
