@@ -58,6 +58,14 @@ scene::Scene with_loose_knot(scene::Scene scene) {
   return scene;
 }
 
+scene::Scene no_longer_than(scene::Scene scene, int nodes) {
+  if (scene.suture.nodes <= nodes) return scene;
+  scene.suture.length_m *= static_cast<double>(nodes - 1) / (scene.suture.nodes - 1);
+  scene.suture.nodes = nodes;
+  scene.suture.initial_polyline_m.clear();  // with_loose_knot() lays out another
+  return scene;
+}
+
 DrawnKnot draw(physics::Simulation thread, const scene::Scene& scene, double speed_m_per_s, const Tick& tick) {
   std::array<physics::ToolInput, 2> tools{};
   tools[0].p_WT = thread.nodes_W().front(), tools[1].p_WT = thread.nodes_W().back();

@@ -18,6 +18,9 @@ inline constexpr std::array<double, 4> kHandSpeeds_m_per_s{0.05, 0.1, 0.25, 0.4}
 /// @return points in world W, m, far closer to each other than nodes are.
 [[nodiscard]] std::vector<scene::Vec> loose_overhand(const scene::Suture& suture, const scene::Vec& middle_W_m);
 
+/// The scene with a piece of its thread, of the same segments and in no shape of its own, where it has more nodes.
+[[nodiscard]] scene::Scene no_longer_than(scene::Scene scene, int nodes);
+
 /// The scene with both ends of its thread free, and a loose knot in it: its own, if it begins with a shape of its own
 /// and nothing fixed, else an overhand. The desk is left out: it may be where the knot lies.
 [[nodiscard]] scene::Scene with_loose_knot(scene::Scene scene);

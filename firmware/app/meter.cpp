@@ -23,6 +23,7 @@ constexpr int kRepeats = 3;             // of the same tick; the least disturbed
 constexpr int kTicksPerShape = 4;       // the first finds contacts, the next ones have to resolve them
 constexpr long kMostWork = 16'000'000;  // more is of no use to any knot (docs/rod-knots.md),
 constexpr long kLeastWork = 1'000'000;  // and with less nothing holds: the clock ends such ticks
+constexpr long kLeastOfANode = 2'000;   // more than twice what a look for contacts takes: without it nothing moves
 constexpr double kSpare = 0.95;         // of the time given: the rest is for what was not tried
 constexpr double kRound = 100'000.0;    // instructions: the same machine finds the same budget
 
@@ -39,13 +40,30 @@ void tick_until(physics::Simulation& thread, const std::array<physics::ToolInput
   thread.tick(tools, physics::TimeLeft(&CpuTime::left_ns, &clock));
 }
 
+/// Of a tick of a thread that touches nothing, the least of several.
+double own_cost_us(scene::Scene scene) {
+  constexpr int kTicks = 10;
+  scene.suture.initial = "hanging";
+  scene.suture.initial_polyline_m.clear();
+  auto thread = std::get<physics::Simulation>(physics::Simulation::make(scene));
+  double least_us = 1e12;
+  for (int k = 0; k < kTicks; ++k) {
+    const double before = cpu_us();
+    thread.tick({});
+    least_us = std::min(least_us, cpu_us() - before);
+  }
+  return least_us;
+}
+
 /// The work that fits into the time given, by what it costs while a knot is drawn tight: the least disturbed of several
-/// equal runs, and all but a hundredth of their ticks.
-long affordable_work(const scene::Scene& scene, double given_us) {
+/// equal runs, and all but a hundredth of their ticks. The knot is of a piece of a long thread, so that this takes
+/// about a second at most: what contact costs, it costs in the knot.
+long work_that_fits(const scene::Scene& scene, double given_us) {
   constexpr double kSpeed_m_per_s = 0.25;
   constexpr long kCounts = 500'000;  // instructions: less than this tells little of their price
-  constexpr double kDear = 0.99;     // of the ticks cost no more: what is dearer still, the clock ends
-  const scene::Scene knotted = with_loose_knot(scene);
+  constexpr int kMostNodes = 200;
+  constexpr double kDear = 0.99;  // of the ticks cost no more: what is dearer still, the clock ends
+  const scene::Scene knotted = with_loose_knot(no_longer_than(scene, kMostNodes));
   auto made = physics::Simulation::make(knotted);
   auto* const thread = std::get_if<physics::Simulation>(&made);
   if (thread == nullptr) return kLeastWork;
@@ -68,6 +86,7 @@ long affordable_work(const scene::Scene& scene, double given_us) {
     }));
   }
   const double own_us = *std::ranges::min_element(least_us);
+  const long least = std::min(kMostWork, kLeastWork + kLeastOfANode * scene.suture.nodes);
   std::vector<double> prices_us;
   for (std::size_t i = 0; i < work.size(); ++i) {
     if (work[i] > kCounts) prices_us.push_back((least_us[i] - own_us) / static_cast<double>(work[i]));
@@ -75,8 +94,8 @@ long affordable_work(const scene::Scene& scene, double given_us) {
   if (prices_us.empty()) return kMostWork;
   const auto dear = prices_us.begin() + static_cast<std::ptrdiff_t>(kDear * static_cast<double>(prices_us.size() - 1));
   std::ranges::nth_element(prices_us, dear);
-  const double bought = (kSpare * given_us - own_us) / *dear;
-  return std::clamp(static_cast<long>(kRound * std::floor(bought / kRound)), kLeastWork, kMostWork);
+  const double bought = (kSpare * given_us - std::max(own_us, own_cost_us(scene))) / *dear;
+  return std::clamp(static_cast<long>(kRound * std::floor(bought / kRound)), least, kMostWork);
 }
 
 class ThreadMeter {
@@ -90,7 +109,7 @@ class ThreadMeter {
     const auto give_up = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
     cost_.given_us = given_us;
     if (thread_.work() > 0 && scene_.suture.rod.work_instructions == 0)
-      thread_.set_work(affordable_work(scene_, given_us));
+      thread_.set_work(work_that_fits(scene_, given_us));
     cost_.work = thread_.work();
     do {
       for (const auto& shape : shapes_) try_shape(shape);

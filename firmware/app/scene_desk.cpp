@@ -125,7 +125,7 @@ std::optional<ligature_msg::ack_t> SceneDesk::request(const ligature_msg::comman
 }
 
 /// What this machine affords, found at the launch or, where that had no such bound, beside the loop.
-long SceneDesk::affordable_work(const Plan& plan) const {
+long SceneDesk::work_of_this_machine(const Plan& plan) const {
   if (plan.thread.work() == 0 || work_ > 0) return plan.thread.work() == 0 ? 0 : work_;
   return admit(plan.scene, {}).thread.work;
 }
@@ -147,7 +147,7 @@ std::variant<SceneDesk::Built, std::string> SceneDesk::build(Setup setup, bool k
   auto planned = plan_of(setup.file, text, launch_.with(setup.live, setup.file, text), device_);
   if (const auto* refusal = std::get_if<Refusal>(&planned)) return refusal->text;
   Plan& plan = std::get<Plan>(planned);
-  give_work(plan, affordable_work(plan));
+  give_work(plan, work_of_this_machine(plan));
   setup.scene = plan.scene;
   if (!keeps_motion) setup.from_file = plan.scene, setup.excess = loop_excess_.empty() ? verdict.excess : loop_excess_;
   auto plant =

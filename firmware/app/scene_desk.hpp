@@ -83,7 +83,7 @@ class SceneDesk {
   [[nodiscard]] std::string prepare_scene(const std::string& wish);
   [[nodiscard]] std::vector<LiveParameter> parameters() const;
   [[nodiscard]] std::string prepare_parameter(const std::string& key, double value);
-  [[nodiscard]] long affordable_work(const Plan& plan) const;
+  [[nodiscard]] long work_of_this_machine(const Plan& plan) const;
   [[nodiscard]] std::variant<Built, std::string> build(Setup setup, bool keeps_motion) const;
   [[nodiscard]] Outcome answer(const std::string& why, std::optional<Changed> changed = {}) const;
 

@@ -32,6 +32,18 @@ TEST(DrawnKnot, IsAnOverhandWhereTheSceneHasNone) {
   }
 }
 
+TEST(DrawnKnot, OfALongThreadIsInAPieceOfTheSameSegments) {
+  auto scene = scene_of("suture-3-0-figure-eight.toml");
+  const auto piece = no_longer_than(scene, scene.suture.nodes);
+  EXPECT_EQ(piece.suture.initial_polyline_m, scene.suture.initial_polyline_m) << "short enough: as it was";
+  scene.suture.length_m *= 1999.0 / (scene.suture.nodes - 1);
+  scene.suture.nodes = 2000;
+  const auto cut = no_longer_than(scene, 200);
+  EXPECT_EQ(cut.suture.nodes, 200);
+  EXPECT_NEAR(cut.suture.length_m / 199, scene.suture.length_m / 1999, 1e-12);
+  EXPECT_EQ(knot_of(thread_of(with_loose_knot(cut))), "3_1");
+}
+
 TEST(DrawnKnot, IsTheScenesOwnWhereItBeginsWithOne) {
   EXPECT_EQ(knot_of(thread_of(with_loose_knot(scene_of("suture-3-0-figure-eight.toml")))), "4_1");
 }
