@@ -47,11 +47,12 @@ void Controller::command(rt::CommandKind kind) noexcept {
   }
 }
 
-/// Each hand that holds its dead-man and nothing else is led; the others stay as they are.
+/// Each hand that holds its dead-man and nothing else is led; the others stay as they are. Under the clutch a move ends
+/// before it begins (HandControl::lead_force).
 void Controller::begin_moves(Move move) noexcept {
   if (!armed_ || !may_push(state_) || braking_) return;
   for (HandControl& h : hands_) {
-    if (h.dead_man_counts() && !h.holds() && !h.state().clutch) h.begin_move(move);
+    if (h.dead_man_counts() && !h.holds()) h.begin_move(move);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -246,6 +247,57 @@ TEST(LedMove, AMoveThatIsRefusedIsAsIfNobodyHadAskedForIt) {
         ASSERT_EQ(asked.controller.tools()[h].grip, other.controller.tools()[h].grip) << i;
     }
   }
+}
+
+/// Asked for while the gain still rises, and taken back before it is full: a later press is no wish for it.
+TEST(LedMove, OneThatHasNotBegunIsOverForGood) {
+  using Set = void (*)(Arms&, bool);
+  const std::vector<std::pair<const char*, Set>> ends{
+      {"nothing", [](Arms&, bool) {}},
+      {"the dead-man", [](Arms& a, bool on) { a.in.reading.hand[0].dead_man = !on; }},
+      {"the clutch", [](Arms& a, bool on) { a.in.reading.hand[0].clutch = on; }},
+      {"the thread", [](Arms& a, bool on) {
+         a.in.grasp[0] = {on, a.controller.hand(0).p_WT, Vec3::Zero()};
+       }}};
+  for (const auto& [name, set] : ends) {
+    for (const bool before : {true, false}) {
+      SCOPED_TRACE(::testing::Message() << name << (before ? " before it" : " after it"));
+      Arms arms;
+      for (int i = 0; i < 1000 && arms.controller.hand(0).gain < 0.2; ++i) arms.tick();
+      if (before) set(arms, true), arms.ticks(5);
+      arms.controller.command(rt::CommandKind::kPark);
+      arms.ticks(5);
+      ASSERT_LT(arms.controller.hand(0).gain, 1.0);
+      set(arms, true), arms.ticks(20);
+      set(arms, false);
+      const Vec3 there = arms.q[0];
+      arms.ticks(1500);
+      EXPECT_EQ(arms.controller.hand(0).gain, 1.0);
+      EXPECT_EQ((arms.q[0] - there).norm() > 1e-2, std::string(name) == "nothing") << (arms.q[0] - there).norm();
+    }
+  }
+}
+
+/// A drive says once that it gave out far more than was granted. Once is no fault, and no more is paid for.
+TEST(LedMove, OneThatCannotBePaidForIsOverAtOnce) {
+  Arms arms;
+  arms.to_force();
+  arms.in.reading.hand[0].grip = true;
+  arms.controller.command(rt::CommandKind::kPark);
+  arms.ticks(400);
+  ASSERT_GT(arms.controller.hand(0).f_device_N.norm(), 0.05);
+  ASSERT_FALSE(arms.controller.tools()[0].grip);
+  for (std::size_t j = 0; j < 3; ++j)
+    arms.in.reading.hand[0].torque_Nm[j] = std::copysign(300.0, arms.omega[0][static_cast<Eigen::Index>(j)]);
+  arms.tick();
+  for (double& torque : arms.in.reading.hand[0].torque_Nm) torque = rt::HandReading::kNotTold;
+  EXPECT_EQ(arms.controller.hand(0).f_device_N.norm(), 0.0);
+  arms.tick();
+  EXPECT_TRUE(arms.controller.tools()[0].grip) << "it is still led";
+  const Vec3 there = arms.q[0];
+  arms.ticks(2000);
+  EXPECT_EQ(arms.controller.fault(), Fault::kNone);
+  EXPECT_LT((arms.q[0] - there).norm(), 1e-2) << "it coasts at most";
 }
 
 /// Whoever stopped it has seen a reason; the next arming is for force, not for a motion of the rig's own.
