@@ -15,9 +15,10 @@ namespace ligature::control {
 /// What one hand's drives say that they make, against what may come of all that was sent to them. A drive makes what
 /// it was sent, or less (a guarded winding, a drive that is off), or for want of an RPDO what it made before, but for
 /// no longer than the watchdog lets it. So a torque told must lie between zero and what was sent to that joint within
-/// the watchdog's time, and kWay ticks more for the way there and back. The device record says by how much a drive may
-/// miss; one sample beyond is an overshoot or noise, kStrange in a row are not. A joint whose message has no room for a
-/// torque tells by a bit of its statusword. O(kBlocks), no allocation.
+/// the watchdog's time and kWay ticks more for the way there and back. That is remembered in kBlocks of equal length:
+/// 28 to 32 ticks with a watchdog of 20. The device record says by how much a drive may miss; one sample beyond is an
+/// overshoot or noise, kStrange in a row are not. A joint whose message has no room for a torque tells by a bit of its
+/// statusword. O(kBlocks), no allocation.
 class TorqueWatch {
  public:
   static constexpr int kStrange = 2;  ///< samples in a row
