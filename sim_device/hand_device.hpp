@@ -40,6 +40,8 @@ class HandDevice {
 
   /// A client puts a frame into its queue at `when`; per client, time must not run backwards.
   void submit(const can::Frame& frame, int client, Time when);
+  /// Frames that wait in that queue.
+  [[nodiscard]] std::size_t pending(int client) const noexcept { return wire_.pending(client); }
   void drop_client(int client) noexcept { wire_.drop(client); }
   /// Everything that happens until `now`: bus, drives, mechanics, in the order of their times.
   void advance(Time now);

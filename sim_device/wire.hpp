@@ -1,6 +1,7 @@
 #pragma once
 // The cable of one hand: one frame at a time, each as long as its bits, the lowest identifier first.
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -49,6 +50,11 @@ class Wire {
       }
     }
     return false;
+  }
+  /// Of one sender, waiting for the bus.
+  [[nodiscard]] std::size_t pending(int sender) const noexcept {
+    const auto index = static_cast<std::size_t>(sender);
+    return index < queues_.size() ? queues_[index].size() : 0;
   }
   /// Forgets what a sender that left has not yet sent.
   void drop(int sender) noexcept;

@@ -230,11 +230,13 @@ std::vector<Check> check_can(const Machine& machine, const std::string& interfac
     checks.push_back({fine ? Grade::kOk : Grade::kFail, "CAN bit rate", found.str(),
                       fine ? "" : set + " down && " + set + " up type can bitrate 1000000 sample-point 0.8"});
   }
+  // A period has up to six frames. More of them would wait on a busy bus, grow old, and keep drives awake.
   const std::string queue = text_of(folder + "/tx_queue_len");
+  const long frames = std::atol(queue.c_str());
   checks.push_back(
-      std::atol(queue.c_str()) >= 64
+      frames >= 8 && frames <= 16
           ? good("CAN queue", interface + ": " + queue)
-          : Check{Grade::kWarn, "CAN queue", interface + ": " + queue + ", wanted 64", set + " txqueuelen 64"});
+          : Check{Grade::kWarn, "CAN queue", interface + ": " + queue + ", wanted 8 to 16", set + " txqueuelen 8"});
   checks.push_back(interrupts(machine.root, interface, core));
   return checks;
 }

@@ -15,8 +15,9 @@ bool DeviceBus::loses(const can::Frame& frame) noexcept {
 }
 
 bool DeviceBus::send(const can::Frame& frame) noexcept {
-  if (!cut && !loses(frame)) device.submit(frame, sim::HandDevice::kFirstClient, now_);
-  return !cut;
+  if (cut || device.pending(sim::HandDevice::kFirstClient) >= kQueue) return false;
+  if (!loses(frame)) device.submit(frame, sim::HandDevice::kFirstClient, now_);
+  return true;
 }
 
 platform::Receive DeviceBus::receive(can::Frame& frame) noexcept {

@@ -2,6 +2,7 @@
 // The cable between a simulated hand and the firmware, on a clock that is a number.
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -19,6 +20,9 @@ using Nanoseconds = std::chrono::nanoseconds;
 /// Frames come when their last bit has passed.
 class DeviceBus final : public platform::CanBus {
  public:
+  /// Frames that the firmware's interface has room for, as on a rig (docs/deployment.md).
+  static constexpr std::size_t kQueue = 8;
+
   DeviceBus(std::unique_ptr<sim::Intention> intention, const sim::Body& body, const Nanoseconds& now)
       : device(std::move(intention), now, body), now_(now) {}
 

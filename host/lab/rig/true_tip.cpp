@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "protocol/can/device_profile.hpp"
 
@@ -18,7 +19,10 @@ void TruthWatch::look(const sim::HandDevice& device) {
   if (!tips_.empty()) tip.step_N = force_N(q_rad_, torque_Nm - torque_Nm_).norm();
   tip.in_workspace = (p_m.array() >= low_m_.array()).all() && (p_m.array() <= high_m_.array()).all();
   tip.dead_man = (arm.buttons() & can::profile::kButtonDeadMan) != 0;
-  tip.permille = device.torque_permille();
+  tip.guarded = arm.motors().is_holding();
+  for (std::size_t j = 0; j < tip.permille.size(); ++j)
+    tip.permille[j] = static_cast<std::int16_t>(
+        std::lround(torque_Nm[static_cast<Eigen::Index>(j)] / arm.body().drives.torque_Nm(1)));
   tip.drives_on = std::ranges::all_of(device.drives(),
                                       [](const auto& drive) { return can::cia402::may_produce_torque(drive.state()); });
   tips_.push_back(tip);

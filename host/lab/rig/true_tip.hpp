@@ -15,9 +15,10 @@ struct TrueTip {
   sim::Vec3 f_N = sim::Vec3::Zero();       ///< of the torques made, in the pose at the period's end
   double step_N = 0.0;                     ///< of the change of these torques, in the pose in which they changed
   bool in_workspace = true;                ///< the tip is within the device's workspace box
+  bool guarded = false;                    ///< a drive makes less than it was asked for, to spare its winding
   bool dead_man = false;                   ///< the button is truly pressed
   bool drives_on = false;                  ///< all three, at the period's end
-  std::array<std::int16_t, 3> permille{};  ///< what they take for commanded, then
+  std::array<std::int16_t, 3> permille{};  ///< the torques made, of the rated ones
 };
 
 /// Looks at one device once a period. The linkage is the simulation's own, not the controller's.

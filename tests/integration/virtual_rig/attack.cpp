@@ -14,6 +14,7 @@ namespace {
 const std::string kScene = std::string(LIGATURE_SOURCE_DIR) + "/scenes/paper.toml";
 constexpr double kShippedCoupling_N_per_m = 1200.0;
 constexpr int kStranger = 5;  // a client of the bus that is not the firmware
+constexpr std::size_t kStrangersQueue = 16;
 
 // 53 bits of the generator: the standard distributions are not the same everywhere.
 double share(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
@@ -84,6 +85,10 @@ AttackPlan::AttackPlan(std::uint64_t s) : seed(s) {
   choose_faults(random);
   choose_foreign(random);
   choose_orders(random);
+}
+
+AttackPlan::Foreign AttackPlan::flood(int hand, std::int64_t from, std::int64_t ticks, int a_tick) {
+  return {hand, from, ticks, a_tick, {0x001U, 8, {}}, "flood"};
 }
 
 AttackPlan AttackPlan::pulls(std::uint64_t seed) {
@@ -175,9 +180,7 @@ void AttackPlan::choose_foreign(std::mt19937_64& random) {
         f.frame = {0x80U + node, 8, {0x00, 0x10, 0x01, 0, 0, 0, 0, 0}};
         break;
       default:
-        f.what = "flood";
-        f.frame = {0x001U, 8, {}};
-        f.a_tick = static_cast<int>(any_of(random, 1, 10));
+        f = flood(f.hand, f.from, f.ticks, static_cast<int>(any_of(random, 1, 10)));
     }
     foreign.push_back(f);
   }
@@ -240,8 +243,9 @@ void AttackedRig::befall() {
   const auto tick = rig.cycle.periods();
   for (const auto& f : plan_.foreign) {
     if (tick < f.from || tick >= f.from + f.ticks) continue;
-    for (int i = 0; i < f.a_tick; ++i)
-      (f.hand == 0 ? rig.left : rig.right).device.submit(f.frame, kStranger, rig.time + std::chrono::microseconds(40));
+    auto& device = (f.hand == 0 ? rig.left : rig.right).device;
+    for (int i = 0; i < f.a_tick && device.pending(kStranger) < kStrangersQueue; ++i)
+      device.submit(f.frame, kStranger, rig.time + std::chrono::microseconds(40));
   }
   for (const auto& order : plan_.orders)
     if (order.tick == tick) rig.outlets->commands.push({tick, order.kind});

@@ -25,6 +25,8 @@ struct AttackPlan {
     can::Frame frame;
     std::string what;
   };
+  /// From tick `from` on, so many frames of the highest priority a tick.
+  [[nodiscard]] static Foreign flood(int hand, std::int64_t from, std::int64_t ticks, int a_tick);
   struct Order {
     std::int64_t tick = 0;
     rt::CommandKind kind = rt::CommandKind::kNone;

@@ -100,7 +100,7 @@ TEST_F(MachineTest, AnEmptyMachineIsReadWithoutHarm) {
 
 TEST_F(MachineTest, CanInterfaces) {
   put("sys/class/net/can0/flags", "0x40081");
-  put("sys/class/net/can0/tx_queue_len", "100");
+  put("sys/class/net/can0/tx_queue_len", "8");
   put("proc/interrupts", "           CPU0       CPU1\n 17:   5   6   IO-APIC   17-fasteoi   can0");
   put("proc/irq/17/smp_affinity_list", "0");
   details = "can state ERROR-ACTIVE \n\t bitrate 1000000 sample-point 0.800 \n";
@@ -109,13 +109,15 @@ TEST_F(MachineTest, CanInterfaces) {
   EXPECT_EQ(grade(check_can(machine, "can0", 1), "CAN"), Grade::kFail) << "up, and yet off the bus";
   details = "can state ERROR-ACTIVE \n\t bitrate 500000 sample-point 0.875 \n";
   put("sys/class/net/can0/flags", "0x40080");
-  put("sys/class/net/can0/tx_queue_len", "10");
+  put("sys/class/net/can0/tx_queue_len", "64");  // old torques would wait in it
   put("proc/irq/17/smp_affinity_list", "0-3");
   const auto checks = check_can(machine, "can0", 1);
   EXPECT_EQ(grade(checks, "CAN"), Grade::kFail);
   EXPECT_EQ(grade(checks, "CAN bit rate"), Grade::kFail);
   EXPECT_EQ(grade(checks, "CAN queue"), Grade::kWarn);
   EXPECT_EQ(grade(checks, "CAN interrupt"), Grade::kWarn);
+  put("sys/class/net/can0/tx_queue_len", "5");  // less than a period's frames
+  EXPECT_EQ(grade(check_can(machine, "can0", 1), "CAN queue"), Grade::kWarn);
 }
 
 TEST(Machine, ReadsCoreListsAndRoutes) {
