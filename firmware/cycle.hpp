@@ -36,8 +36,9 @@ concept Waker = requires(W w) {
 
 /// One period after the other until the controller has shut the rig down. Period k is due at start + k T; whole periods
 /// that pass unused are counted, recorded and skipped, never made up for. The thread's physics (thread_context.hpp) is
-/// given the tools of period k and is done before the samples of period k + 1 are in; if it is not, the law goes on with
-/// the grasp that it has. No allocation, lock, log or exception in run(), and no waiting but for the bus and the clock.
+/// given the tools of period k and is done before the samples of period k + 1 are in; if it is not, the law goes on
+/// with the grasp that it has. No allocation, lock, log or exception in run(), and no waiting but for the bus and the
+/// clock.
 template <Bus BusT, Clock ClockT, Waker WakerT>
 class Cycle {
  public:
@@ -82,7 +83,7 @@ class Cycle {
       physics_.wake();  // until the next samples the core is the thread's
       at.done = clock_.now();
       log_.finish(thread_.result(), in.thread_late_ticks);  // the last period, now that its thread is known
-      log_.begin(tick_, at, clock_.worked() - worked_before, torque, controller_, in.grasp_age_ticks);
+      log_.begin(tick_, at, clock_.worked() - worked_before, torque, controller_, thread_.orders(), in.grasp_age_ticks);
       const auto missed = (at.done - wake_at_) / kPeriod;
       advance(1);
       skip(missed);

@@ -53,6 +53,7 @@ class ThreadContext {
     result_.number = asked.number;
     result_.hand = {thread_.hand(physics::Hand::kLeft), thread_.hand(physics::Hand::kRight)};
     result_.health = thread_.diagnostics();
+    result_.add_step({asked.tick, result_.health.cut_at});
     result_.work = clock_.worked() - worked_before;
     result_.done = clock_.now();
   }

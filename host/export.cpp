@@ -71,7 +71,7 @@ class Exporter {
     if (status.scene_toml == scene_toml_ && status.scene_file == scene_file_) return;
     scene_toml_ = status.scene_toml;
     scene_file_ = status.scene_file;
-    tell(status, status.tick);
+    tell(status, status.scene_first_tick);
   }
 
   ExportResult commit() {
@@ -135,6 +135,7 @@ ligature_msg::status_t status_of(const FlightReader& recorder, std::int64_t tick
   status.session = recorder.session();
   status.protocol_version = ligature_msg::status_t::VERSION;
   status.tick = std::max(tick, scene.first_tick);
+  status.scene_first_tick = scene.first_tick;
   status.firmware_version = scene.facts.firmware_version;
   status.scene_file = scene.facts.scene_file;
   status.scene_toml = scene.facts.scene_toml;

@@ -20,7 +20,7 @@ namespace ligature::host {
 /// The session that a flight recorder's header names: cheap, nothing else is read. Nothing when it has no sound header.
 [[nodiscard]] std::optional<std::int64_t> session_of(const RegularFile& file);
 
-/// Reads a flight recorder file as it is at this moment, also while it is being written. Holds it in memory (0.5 MB for
+/// Reads a flight recorder file as it is at this moment, also while it is being written. Holds it in memory (0.7 MB for
 /// each second of it). A slot whose CRC is wrong is counted and left out; the writer's death leaves at most one.
 class FlightReader {
  public:

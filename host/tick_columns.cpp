@@ -90,6 +90,29 @@ void add_port(Columns& c, std::size_t hand) {
   add_scalar(c, hand, "bus_load", "", "share of the last period that the hand's bus was busy", &Tick::bus_load);
 }
 
+/// What it takes to do the thread's ticks again.
+void add_tool(Columns& c, std::size_t hand) {
+  add_vector(c, hand, "tool_p_W", "_m", "m", "the tool as the thread's physics was given it", &Tick::tool_p_W_m);
+  add_vector(c, hand, "tool_v_W", "_m_per_s", "m/s", "its velocity", &Tick::tool_v_W_m_per_s);
+  add_scalar(c, hand, "tool_grip", "", "its grip", &Tick::tool_grip);
+}
+
+void add_steps(Columns& c) {
+  add_plain(c, "thread_resets", "", "resets of the thread asked for since start", &Tick::thread_resets);
+  add_plain(c, "thread_scenes", "", "scenes handed to it since start", &Tick::thread_scenes);
+  add_plain(c, "thread_parameters", "", "changes of parameters handed to it since start", &Tick::thread_parameters);
+  add_plain(c, "thread_steps", "", "its ticks that have ended since the last row; 1 in time", &Tick::thread_steps);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string step = "step_" + std::to_string(i + 1);
+    const auto whole = [&](const char* name, const char* unit, const char* meaning, auto field) {
+      add(c, step + name, unit, meaning, [=](const Tick& t) { return std::int64_t{(t.*field)[i]}; });
+    };
+    whole("_age_ticks", "ticks", "of the first, second or third of them: periods since its tools; -1 none",
+          &Tick::step_age_ticks);
+    whole("_cut_at", "", "its thread_cut_at", &Tick::step_cut_at);
+  }
+}
+
 Columns make() {
   Columns c;
   add_plain(c, "tick", "ticks", "number of the control period since the firmware's start", &Tick::tick);
@@ -127,6 +150,8 @@ Columns make() {
             &Tick::thread_end);
   add_plain(c, "thread_cut_at", "", "question for the time that was answered with no, -1 none", &Tick::thread_cut_at);
   add_plain(c, "time_lost", "", "share of the tick in which the thread stood still", &Tick::time_lost);
+  for (std::size_t hand = 0; hand < 2; ++hand) add_tool(c, hand);
+  add_steps(c);
   return c;
 }
 

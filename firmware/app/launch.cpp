@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "protocol/scene/cells.hpp"
 #include "protocol/scene/scene_file.hpp"
 
 namespace ligature::app {
@@ -19,8 +18,6 @@ bool speaks_of(std::string_view override, std::string_view key) {
 }
 
 }  // namespace
-
-std::string_view key_of(std::string_view override) { return scene::trim(override.substr(0, override.find('='))); }
 
 std::vector<std::string> launch_overrides(const RunOptions& options) {
   auto all = options.overrides;

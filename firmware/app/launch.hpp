@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "firmware/app/options.hpp"
-#include "protocol/scene/scene.hpp"
+#include "protocol/scene/recorded_scene.hpp"
 
 namespace ligature::app {
 
@@ -38,7 +38,6 @@ class Launch {
   scene::Hands hands_;
 };
 
-/// The key of a `key=value`, without blanks.
-[[nodiscard]] std::string_view key_of(std::string_view override);
+using scene::key_of;
 
 }  // namespace ligature::app

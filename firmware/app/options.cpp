@@ -109,7 +109,7 @@ void add_run(CLI::App& run, RunOptions& o) {
   run.add_option("--recorder", o.recorder,
                  "flight recorder: every tick to this file, read by 'ligature-host export'; none = off")
       ->capture_default_str();
-  run.add_option("--recorder-s", o.recorder_s, "seconds that it goes back, 0.5 MB each")
+  run.add_option("--recorder-s", o.recorder_s, "seconds that it goes back, 0.7 MB each")
       ->check(within(5, 3600))
       ->capture_default_str();
   run.add_option("--wait-s", o.wait_s, "how long to wait for the hands to be there")

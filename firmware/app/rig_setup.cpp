@@ -13,16 +13,12 @@
 #include "firmware/platform/socket_bus.hpp"
 #include "firmware/rt/tick_record.hpp"
 #include "protocol/device/device_file.hpp"
+#include "protocol/scene/recorded_scene.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "protocol/scene/text_file.hpp"
 
 namespace ligature::app {
 namespace {
-
-std::string with_overrides(std::string text, const std::vector<std::string>& overrides) {
-  for (const auto& o : overrides) text += "\n# --set " + o;
-  return text;
-}
 
 /// A coupling that the device cannot render stably.
 std::string too_stiff(const scene::Hands& hands, const device::Device& device) {
@@ -89,7 +85,8 @@ std::variant<Plan, Refusal> plan_of(const std::string& file, const std::string& 
   if (const auto why = objection(scene, device); !why.empty()) return Refusal{2, file + ": " + why};
   auto made = physics::Simulation::make(scene);
   if (const auto* why = std::get_if<std::string>(&made)) return Refusal{2, file + ": " + *why};
-  return Plan{scene, std::move(std::get<physics::Simulation>(made)), device, with_overrides(text, overrides)};
+  return Plan{scene, std::move(std::get<physics::Simulation>(made)), device,
+              scene::recorded_text(text, overrides, scene)};
 }
 
 std::variant<Plan, Refusal> make_plan(const RunOptions& options) {

@@ -93,7 +93,7 @@ void tell_change(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, Scen
   telemetry.stamp(outcome->ack, at);
   if (const auto& c = outcome->changed) {
     if (recorder != nullptr) recorder->scene_changed({c->first_tick, c->max_force_N, c->admitted, c->file, c->toml});
-    telemetry.scene_changed({c->file, c->toml, c->max_force_N, c->radius_m, c->admitted}, c->text, c->first_tick, at);
+    telemetry.scene_changed({c->file, c->toml, c->max_force_N, c->radius_m, c->admitted, c->first_tick}, c->text, at);
     telemetry.set_offer(desk.offer());
   }
   if (recorder != nullptr) recorder->expect_scene(false);

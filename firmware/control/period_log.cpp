@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "firmware/control/tick_report.hpp"
 #include "firmware/rt/bus_time.hpp"
@@ -21,7 +22,7 @@ Narrow narrow(std::int64_t value) noexcept {
 }  // namespace
 
 void PeriodLog::begin(std::int64_t tick, const Phases& at, nanoseconds work, const rt::WireTorque& torque,
-                      const Controller& controller, std::int64_t grasp_age_ticks) noexcept {
+                      const Controller& controller, const ThreadOrders& orders, std::int64_t grasp_age_ticks) noexcept {
   timing_.wakeup.add((at.woke - at.scheduled).count());
   timing_.control.add((at.controlled - at.woke).count());
   timing_.execution.add((at.done - at.woke).count());
@@ -43,6 +44,7 @@ void PeriodLog::begin(std::int64_t tick, const Phases& at, nanoseconds work, con
   record_.torque_permille = torque;
   record_.grasp_age_ticks = narrow<std::int16_t>(grasp_age_ticks);
   report(controller, record_);
+  report(orders, record_);
   woke_ = at.woke;
   begun_ = true;
 }
@@ -67,6 +69,7 @@ void PeriodLog::tell(const ThreadResult& thread) noexcept {
   if (begun_) {
     report(thread.health, record_);
     for (std::size_t h = 0; h < rt::kHands; ++h) report(thread.hand[h], h, record_);
+    tell_steps(thread);
     if (thread.tick == record_.tick) {
       record_.thread_start_ns = narrow((thread.began - woke_).count());
       record_.thread_done_ns = narrow((thread.done - woke_).count());
@@ -87,11 +90,24 @@ void PeriodLog::tell(const ThreadResult& thread) noexcept {
   tell_lost();
 }
 
+/// What has ended since the last record. A result that the loop never saw is told by the next one.
+void PeriodLog::tell_steps(const ThreadResult& thread) noexcept {
+  record_.thread_steps = narrow<std::int8_t>(thread.steps - std::exchange(steps_, thread.steps));
+  const auto told = std::min<std::size_t>(static_cast<std::size_t>(record_.thread_steps), rt::kThreadSteps);
+  for (std::size_t i = 0; i < told; ++i) {
+    const ThreadStep& step = thread.last_steps[told - 1 - i];
+    record_.step_age_ticks[i] = narrow(record_.tick - step.tick);
+    record_.step_cut_at[i] = step.cut_at;
+  }
+}
+
 /// The last values again, flagged. What no ring can hold is counted as dropped in one go.
 void PeriodLog::tell_lost() noexcept {
   const auto room = static_cast<std::int64_t>(out_.room());
   record_.flags |= rt::kPeriodLost;
   record_.flags &= ~kOfOneTick;  // those were the executed one's
+  record_.thread_steps = 0;
+  record_.step_age_ticks = record_.step_cut_at = {-1, -1, -1};
   for (std::int64_t i = 0; i < lost_; ++i) {
     if (i >= room) {
       out_.count_untold(static_cast<std::uint64_t>(lost_ - i));

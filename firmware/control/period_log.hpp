@@ -23,7 +23,7 @@ class PeriodLog {
   explicit PeriodLog(rt::Outlets& out) noexcept : out_(out) {}
 
   void begin(std::int64_t tick, const Phases& at, std::chrono::nanoseconds work, const rt::WireTorque& torque,
-             const Controller& controller, std::int64_t grasp_age_ticks) noexcept;
+             const Controller& controller, const ThreadOrders& orders, std::int64_t grasp_age_ticks) noexcept;
   /// Periods in which nothing is done, the first with this number and this time.
   void lose(std::int64_t tick, std::chrono::nanoseconds scheduled, std::int64_t periods) noexcept;
   /// Tells what has begun, and what was lost since. @param late_ticks  by which the result is behind it.
@@ -35,6 +35,7 @@ class PeriodLog {
 
  private:
   void tell(const ThreadResult& thread) noexcept;
+  void tell_steps(const ThreadResult& thread) noexcept;
   void tell_lost() noexcept;
 
   rt::Outlets& out_;
@@ -42,6 +43,7 @@ class PeriodLog {
   rt::TickRecord record_;
   std::chrono::nanoseconds woke_{};  // of the record's tick
   bool begun_ = false;
+  std::int64_t steps_ = 0;  // of the thread that were told
   std::int64_t lost_ = 0, lost_tick_ = 0;
   std::chrono::nanoseconds lost_scheduled_{};
 };

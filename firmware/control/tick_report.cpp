@@ -30,7 +30,11 @@ void report(const Controller& controller, rt::TickRecord& record) noexcept {
   record.state = static_cast<std::int8_t>(controller.state());
   record.fault = static_cast<std::int16_t>(controller.fault());
   record.armed = controller.armed();
-  for (std::size_t h = 0; h < rt::kHands; ++h) report(controller.hand(h), h, record);
+  const auto tools = controller.tools();
+  for (std::size_t h = 0; h < rt::kHands; ++h) {
+    report(controller.hand(h), h, record);
+    report(tools[h], h, record);
+  }
 }
 
 void report(const HandState& s, std::size_t h, rt::TickRecord& record) noexcept {
@@ -52,6 +56,18 @@ void report(const HandState& s, std::size_t h, rt::TickRecord& record) noexcept 
   record.tpdo_age_ticks[h] = static_cast<std::int16_t>(std::min<std::int64_t>(s.age_ticks, INT16_MAX));
   if (s.age_ticks > 0) record.flags |= h == 0 ? rt::kLeftStale : rt::kRightStale;
   if (s.limited) record.flags |= h == 0 ? rt::kLeftLimited : rt::kRightLimited;
+}
+
+void report(const ThreadOrders& orders, rt::TickRecord& record) noexcept {
+  record.thread_resets = static_cast<std::int32_t>(orders.resets);
+  record.thread_scenes = static_cast<std::int32_t>(orders.scenes);
+  record.thread_parameters = static_cast<std::int32_t>(orders.parameters);
+}
+
+void report(const physics::ToolInput& tool, std::size_t hand, rt::TickRecord& record) noexcept {
+  record.tool_p_W_m[hand] = triple(tool.p_WT);
+  record.tool_v_W_m_per_s[hand] = triple(tool.v_WT);
+  record.tool_grip[hand] = tool.grip;
 }
 
 void report(const physics::Diagnostics& thread, rt::TickRecord& record) noexcept {

@@ -16,6 +16,8 @@ namespace ligature::control {
 /// Copies controller and thread into the record; timing, tick number and torques are the cycle's own.
 void report(const Controller& controller, rt::TickRecord& record) noexcept;
 void report(const HandState& hand, std::size_t number, rt::TickRecord& record) noexcept;
+void report(const ThreadOrders& orders, rt::TickRecord& record) noexcept;
+void report(const physics::ToolInput& tool, std::size_t hand, rt::TickRecord& record) noexcept;
 void report(const physics::Diagnostics& thread, rt::TickRecord& record) noexcept;
 void report(const physics::HandContact& contact, std::size_t hand, rt::TickRecord& record) noexcept;
 

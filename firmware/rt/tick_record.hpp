@@ -45,6 +45,10 @@ enum class Degradation : std::int8_t {
 
 using Triple = std::array<double, 3>;
 
+/// The most ticks of the thread that can end between two looks of the loop: the one under way, the request that waited
+/// for it and the newest one.
+inline constexpr std::size_t kThreadSteps = 3;
+
 /// One control period; fields, units and frames as in protocol/lcm/tick_t.lcm, plus `armed`.
 struct TickRecord {
   std::int64_t tick = 0;
@@ -94,9 +98,21 @@ struct TickRecord {
   std::int32_t thread_start_ns = 0;
   std::int32_t thread_done_ns = 0;
   std::int32_t thread_work_ns = 0;
-  std::int8_t thread_end = 0;        ///< physics::TickEnd
-  std::int32_t thread_cut_at = -1;   ///< the question that was answered with no, where the clock ended the tick
-  float time_lost = 0.0F;            ///< share of the tick in which the thread stood still
+  std::int8_t thread_end = 0;       ///< physics::TickEnd
+  std::int32_t thread_cut_at = -1;  ///< the question that was answered with no, where the clock ended the tick
+  float time_lost = 0.0F;           ///< share of the tick in which the thread stood still
+
+  // What the thread does again to the bit, given the same scenes: its tools of this period, what was asked of it so
+  // far, and which periods' tools it has worked at since the last record.
+  std::array<Triple, kHands> tool_p_W_m{};
+  std::array<Triple, kHands> tool_v_W_m_per_s{};
+  std::array<bool, kHands> tool_grip{};
+  std::int32_t thread_resets = 0;
+  std::int32_t thread_scenes = 0;
+  std::int32_t thread_parameters = 0;
+  std::int8_t thread_steps = 0;                                       ///< 1 in time, 0 late or lost
+  std::array<std::int32_t, kThreadSteps> step_age_ticks{-1, -1, -1};  ///< oldest first; 0: this period's tools
+  std::array<std::int32_t, kThreadSteps> step_cut_at{-1, -1, -1};     ///< as thread_cut_at
 };
 
 inline constexpr std::size_t kMaxNodes = 5000;

@@ -37,7 +37,7 @@ struct FlightNote {
 /// file of their own; that is noted, too.
 class FlightRecorder {
  public:
-  static constexpr std::size_t kRoom = 60'000;  ///< ticks in memory, 30 MB
+  static constexpr std::size_t kRoom = 60'000;  ///< ticks in memory, 45 MB
   static constexpr std::int64_t kTicksPerFault = 2000;
   static constexpr int kMaxNotesOfLoss = 100;  ///< a run; all are counted
 

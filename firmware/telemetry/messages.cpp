@@ -70,6 +70,15 @@ ligature_msg::tick_t to_message(const rt::TickRecord& r) {
   m.thread_end = r.thread_end;
   m.thread_cut_at = r.thread_cut_at;
   m.time_lost = r.time_lost;
+  copy(r.tool_p_W_m, m.tool_p_W_m);
+  copy(r.tool_v_W_m_per_s, m.tool_v_W_m_per_s);
+  for (std::size_t h = 0; h < rt::kHands; ++h) m.tool_grip[h] = r.tool_grip[h] ? 1 : 0;
+  m.thread_resets = r.thread_resets;
+  m.thread_scenes = r.thread_scenes;
+  m.thread_parameters = r.thread_parameters;
+  m.thread_steps = r.thread_steps;
+  std::ranges::copy(r.step_age_ticks, m.step_age_ticks);
+  std::ranges::copy(r.step_cut_at, m.step_cut_at);
   return m;
 }
 

@@ -87,6 +87,7 @@ void Telemetry::send_status(Moment now) {
   m.firmware_version = session_.firmware_version;
   m.scene_file = session_.scene.scene_file;
   m.scene_toml = session_.scene.scene_toml;
+  m.scene_first_tick = session_.scene.first_tick;
   m.recorder_file = session_.recorder_file;
   m.period_s = session_.period_s;
   m.max_force_N = session_.scene.max_force_N;
@@ -115,11 +116,11 @@ void Telemetry::set_offer(ligature_msg::offer_t offer) {
   offer_due_us_ = 0;
 }
 
-void Telemetry::scene_changed(const SceneFacts& facts, const std::string& text, std::int64_t tick, Moment now) {
+void Telemetry::scene_changed(const SceneFacts& facts, const std::string& text, Moment now) {
   session_.scene = facts;
   ligature_msg::event_t event{};
   event.utime = now.utime;
-  event.tick = tick;
+  event.tick = facts.first_tick;
   event.kind = ligature_msg::event_t::KIND_CHANGE;
   event.hand = -1;
   event.text = text;

@@ -42,7 +42,8 @@ struct SceneFacts {
   std::string scene_toml;
   double max_force_N = 0.0;
   double radius_m = 0.0;
-  bool admitted = true;  ///< its worst tick fits; false: run by --force, as its text says, too
+  bool admitted = true;         ///< its worst tick fits; false: run by --force, as its text says, too
+  std::int64_t first_tick = 0;  ///< in force from it on
 };
 
 /// What does not change during a run, and the scene that it began with.
@@ -78,8 +79,8 @@ class Telemetry {
   /// The scenes and parameters that may be asked for; told from now on.
   void set_offer(ligature_msg::offer_t offer);
 
-  /// Another scene or parameter is in force since that tick: told at once, with the words of the event.
-  void scene_changed(const SceneFacts& facts, const std::string& text, std::int64_t tick, Moment now);
+  /// Another scene or parameter is in force since its first tick: told at once, with the words of the event.
+  void scene_changed(const SceneFacts& facts, const std::string& text, Moment now);
 
   /// The state after the newest record: what a request is judged by before the loop judges it.
   [[nodiscard]] const rt::TickRecord& last() const noexcept { return last_; }

@@ -8,6 +8,7 @@
 
 #include "host/lab/outcome.hpp"
 #include "protocol/scene/scene_file.hpp"
+#include "protocol/scene/text_file.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -32,7 +33,18 @@ physics::ToolInput tool_at(const scene::GripperScript& script, int hand, double 
 }  // namespace
 
 scene::Scene load_scene_or_refuse(const std::string& path, const std::vector<std::string>& overrides) {
-  auto read = scene::load_scene(path, overrides);
+  return parse_scene_or_refuse(read_scene_text_or_refuse(path), path, overrides);
+}
+
+std::string read_scene_text_or_refuse(const std::string& path) {
+  auto read = scene::read_text(path, scene::kMostScene_bytes);
+  if (const auto* error = std::get_if<scene::Error>(&read)) throw Refusal(error->text);
+  return std::get<std::string>(std::move(read));
+}
+
+scene::Scene parse_scene_or_refuse(const std::string& text, const std::string& path,
+                                   const std::vector<std::string>& overrides) {
+  auto read = scene::parse_scene(text, path, overrides);
   if (const auto* error = std::get_if<scene::Error>(&read)) throw Refusal(error->text);
   return std::get<scene::Scene>(std::move(read));
 }

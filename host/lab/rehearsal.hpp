@@ -19,6 +19,11 @@ namespace ligature::lab {
 /// Reads a scene or throws the one-line Refusal.
 [[nodiscard]] scene::Scene load_scene_or_refuse(const std::string& path, const std::vector<std::string>& overrides);
 
+/// The same in two steps, for those who record what they have read.
+[[nodiscard]] std::string read_scene_text_or_refuse(const std::string& path);
+[[nodiscard]] scene::Scene parse_scene_or_refuse(const std::string& text, const std::string& path,
+                                                 const std::vector<std::string>& overrides);
+
 /// Reads a script or throws the one-line Refusal.
 [[nodiscard]] scene::GripperScript load_script_or_refuse(const std::string& path);
 

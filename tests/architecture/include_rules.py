@@ -16,7 +16,7 @@ DEVICE_STRUCT = "protocol/device/device.hpp"
 RULES = {
     "protocol/can": ([], []),
     "protocol/can/describe": (["protocol/can"], ["OS"]),
-    "protocol/scene": ([], ["toml++/"]),
+    "protocol/scene": (["protocol/recorder/crc32.hpp"], ["toml++/"]),
     "protocol/scene/text_file.cpp": (["protocol/scene"], ["OS"]),  # the one place that opens files
     "protocol/device": ([SCENE_STRUCT, "protocol/scene/toml_text.hpp"], ["toml++/", "OS"]),
     "protocol/recorder": ([], []),

@@ -51,6 +51,7 @@ def write_log(path):
     def status(toml, at):
         message = status_t()
         message.session, message.period_s, message.max_force_N, message.tick = 1, 1e-3, 3.3, at
+        message.scene_first_tick = at
         message.scene_file, message.scene_toml, message.firmware_version = "scenes/two.toml", toml, "0.1.0"
         say("STATUS", message, at)
 

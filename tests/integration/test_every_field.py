@@ -27,7 +27,8 @@ HANDS, TICKS, SHAPES, EVENTS, SESSION = ("left", "right"), 7, 3, 4, 99
 # Columns are called after their fields but for these: quantity and unit of a vector, and its axes.
 VECTORS = {"p_WT_m": ("p_WT", "_m", "xyz"), "v_WT_m_per_s": ("v_WT", "_m_per_s", "xyz"), "f_world_N": ("world_f", "_N", "xyz"),
            "f_device_N": ("device_f", "_N", "xyz"), "f_wish_N": ("wish_f", "_N", "xyz"), "q_rad": ("q", "_rad", "123"),
-           "torque_permille": ("torque", "_permille", "123")}
+           "torque_permille": ("torque", "_permille", "123"), "tool_p_W_m": ("tool_p_W", "_m", "xyz"), "tool_v_W_m_per_s": ("tool_v_W", "_m_per_s", "xyz")}
+NUMBERED = {"step_age_ticks": "step_{}_age_ticks", "step_cut_at": "step_{}_cut_at"}
 RENAMED = {"grasped_node": "node"}
 UNITS = (("_m_per_s", "m/s"), ("_N_s_per_m", "N s/m"), ("_permille", "1/1000 of rated"), ("_ticks", "ticks"), ("_rad", "rad"), ("_ns", "ns"),
          ("_m", "m"), ("_N", "N"), ("_J", "J"), ("_s", "s"))
@@ -35,7 +36,7 @@ UNITS = (("_m_per_s", "m/s"), ("_N_s_per_m", "N s/m"), ("_permille", "1/1000 of 
 # held that the ticks have at that tick, and what a status says about the moment it was sent (`report` and the page show it).
 LEFT_OUT = {"tick_t": set(), "thread_t": {"utime", "grasped_node"}, "event_t": {"utime"},
             "status_t": {"utime", "session", "protocol_version", "recorder_file", "state", "fault", "deadline_misses", "periods_lost", "realtime",
-                         "armed", "admitted"}}
+                         "armed", "admitted", "tick"}}
 
 
 def fields_of(name):
@@ -76,6 +77,8 @@ def columns_of_tick():
             yield name, field, ()
         elif sizes == ["2"]:
             yield from ((f"{hand}_{name}", field, (h,)) for h, hand in enumerate(HANDS))
+        elif sizes == ["3"]:
+            yield from ((NUMBERED[field].format(i + 1), field, (i,)) for i in range(3))
         elif sizes == ["2", "3"]:
             quantity, unit, axes = VECTORS[field]  # a new vector needs its line there
             yield from ((f"{hand}_{quantity}_{axis}{unit}", field, (h, a)) for h, hand in enumerate(HANDS) for a, axis in enumerate(axes))
@@ -225,18 +228,18 @@ class EveryField(unittest.TestCase):
 
     def test_status(self):
         told = {field for _, field, _ in fields_of("status_t")} - LEFT_OUT["status_t"]
-        self.assertEqual(told, {"firmware_version", "scene_file", "scene_toml", "period_s", "max_force_N", "tick"}, "a new field: where is it told?")
+        self.assertEqual(told, {"firmware_version", "scene_file", "scene_toml", "period_s", "max_force_N", "scene_first_tick"}, "a new field: where is it told?")
         words = json.loads((self.folder / "ticks.csv-metadata.json").read_text())
         with h5py.File(self.folder / "a.h5") as file, open(self.folder / "a.mcap", "rb") as mcap:
             about = next(record.metadata for record in make_reader(mcap).iter_metadata() if record.name == "ligature")
-            for name in told - {"tick"}:
+            for name in told - {"scene_first_tick"}:
                 truth = getattr(self.status, name)
                 self.assertEqual(file.attrs[name], truth, name)
                 self.assertEqual(words[f"ligature:{name}"], truth, name)
                 self.assertEqual(about[name], str(truth), name)
             scenes = file["scenes"]
             self.assertEqual([scenes["file"].asstr()[0], scenes["toml"].asstr()[0], scenes["t_s"][0]],
-                             [self.status.scene_file, self.status.scene_toml, self.status.tick / 250])
+                             [self.status.scene_file, self.status.scene_toml, self.status.scene_first_tick / 250])
 
 
 if __name__ == "__main__":

@@ -20,8 +20,12 @@ constexpr telemetry::Names kNames{
 
 }  // namespace
 
-Recording::Recording(const std::string& path, const scene::Scene& scene, std::string scene_file)
-    : log_(path, false), scene_(scene), scene_file_(std::move(scene_file)), events_(kNames) {}
+Recording::Recording(const std::string& path, const scene::Scene& scene, std::string scene_file, std::string scene_toml)
+    : log_(path, false),
+      scene_(scene),
+      scene_file_(std::move(scene_file)),
+      scene_toml_(std::move(scene_toml)),
+      events_(kNames) {}
 
 template <class Message>
 void Recording::write(std::string_view channel, const Message& message) {
@@ -50,6 +54,13 @@ void Recording::take(const rt::ThreadSnapshot& shape) {
   write_shape();
 }
 
+void Recording::scene_changed(const scene::Scene& scene, std::string scene_toml, std::int64_t first_tick) {
+  scene_ = scene;
+  scene_toml_ = std::move(scene_toml);
+  scene_first_tick_ = first_tick;
+  write_status();
+}
+
 void Recording::close() {
   if (!batch_.ticks.empty()) write_batch();
   if (shape_->count > 0) write_shape();
@@ -76,6 +87,8 @@ void Recording::write_status() {
   m.protocol_version = ligature_msg::status_t::VERSION;
   m.firmware_version = LIGATURE_VERSION;
   m.scene_file = scene_file_;
+  m.scene_toml = scene_toml_;
+  m.scene_first_tick = scene_first_tick_;
   m.period_s = rt::kPeriod_s;
   m.max_force_N = scene_.hands.max_force_N;
   m.tick = last_.tick;

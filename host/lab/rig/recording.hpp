@@ -19,11 +19,14 @@ class Recording {
   static constexpr std::int64_t kShapePeriod_ticks = 16, kStatusPeriod_ticks = 100;  ///< 62 Hz and 10 Hz
 
   /// @throws host::BadInput when the file exists or cannot be made.
-  Recording(const std::string& path, const scene::Scene& scene, std::string scene_file);
+  /// @param scene_toml as scene::recorded_text() makes it.
+  Recording(const std::string& path, const scene::Scene& scene, std::string scene_file, std::string scene_toml);
 
   /// @throws host::RunFailed when the disk is full.
   void take(const rt::TickRecord& record);
   void take(const rt::ThreadSnapshot& shape);
+  /// Another scene or parameter is in force from that tick on.
+  void scene_changed(const scene::Scene& scene, std::string scene_toml, std::int64_t first_tick);
   /// What does not fill a batch, the last shape and a last status.
   void close();
 
@@ -37,7 +40,8 @@ class Recording {
 
   host::LogWriter log_;
   scene::Scene scene_;
-  std::string scene_file_;
+  std::string scene_file_, scene_toml_;
+  std::int64_t scene_first_tick_ = 0;
   telemetry::EventFinder events_;
   ligature_msg::tick_batch_t batch_{};
   rt::TickRecord last_{};

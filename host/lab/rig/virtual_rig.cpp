@@ -1,7 +1,10 @@
 #include "host/lab/rig/virtual_rig.hpp"
 
 #include <algorithm>
+#include <cfenv>
 #include <stdexcept>
+
+#include "firmware/platform/realtime.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -20,6 +23,21 @@ physics::Simulation thread_of(const scene::Scene& scene) {
   if (const auto* why = std::get_if<std::string>(&made)) throw std::runtime_error(*why);
   return std::get<physics::Simulation>(std::move(made));
 }
+
+/// For as long as this lives.
+class FlushedDenormals {
+ public:
+  FlushedDenormals() {
+    std::fegetenv(&before_);
+    platform::flush_denormals();
+  }
+  ~FlushedDenormals() { std::fesetenv(&before_); }
+  FlushedDenormals(const FlushedDenormals&) = delete;
+  FlushedDenormals& operator=(const FlushedDenormals&) = delete;
+
+ private:
+  std::fenv_t before_{};
+};
 
 VirtualRig::Intentions held(const RigSetup& setup, const SeeingOperator& seeing) {
   VirtualRig::Intentions hands;
@@ -62,10 +80,11 @@ VirtualRig::VirtualRig(RigSetup s, Intentions intentions)
 }
 
 void VirtualRig::record(const std::string& path) {
-  recording_ = std::make_unique<Recording>(path, setup.scene, setup.scene_file);
+  recording_ = std::make_unique<Recording>(path, setup.scene, setup.scene_file, setup.scene_toml);
 }
 
 std::optional<std::string> VirtualRig::run(std::int64_t ticks, bool end_when_done) {
+  const FlushedDenormals like_the_firmware;
   end_when_done_ = end_when_done;
   for (DeviceBus* b : {&left, &right}) {
     if (auto why = platform::configure_drives(*b, wait, {.drive = platform::drive_facts(setup.device)})) return why;
@@ -134,8 +153,7 @@ void VirtualRig::look_and_act() {
     const auto& f = controller.hand(h).f_device_N;
     sight.tool_W[h] = map.to_world(hands[h]->touch().p_DT);
     sight.holds[h] = thread.hand(static_cast<physics::Hand>(h)).node >= 0;
-    if (setup.scene.hands.force_scale > 0.0)
-      sight.force_W_N[h] = sim::Vec3(f / setup.scene.hands.force_scale);
+    if (setup.scene.hands.force_scale > 0.0) sight.force_W_N[h] = sim::Vec3(f / setup.scene.hands.force_scale);
   }
   const auto wishes = seeing_->act(sight);
   for (std::size_t h = 0; h < 2; ++h) {

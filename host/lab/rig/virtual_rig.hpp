@@ -35,7 +35,8 @@ struct RigSetup {
   control::Settings settings{20, true};                                         ///< armed from the start
   double frame_loss = 0.0;           ///< share of process data frames that is lost, 0 .. 1
   std::uint64_t seed = 1;            ///< of the losses
-  std::string scene_file = "scene";  ///< how a recording calls the scene
+  std::string scene_file = "scene";  ///< how a recording calls the scene,
+  std::string scene_toml{};          ///< and its text (scene::recorded_text)
 };
 
 /// The script's hands. @throws std::runtime_error when a key pose is out of reach.
@@ -56,6 +57,11 @@ class VirtualRig {
 
   /// Writes an LCM log of everything from here on. @throws when the file exists or cannot be made.
   void record(const std::string& path);
+
+  /// Another scene or parameter is in force since that tick: for the recording.
+  void scene_changed(const scene::Scene& scene, std::string scene_toml, std::int64_t first_tick) {
+    if (recording_) recording_->scene_changed(scene, std::move(scene_toml), first_tick);
+  }
 
   /// Start-up, so many ticks (or fewer: `end_when_done` ends with the operator), shut-down, recording closed.
   /// @return why it did not start, or nothing. @throws host::RunFailed when the recording could not be written.

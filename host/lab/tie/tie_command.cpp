@@ -11,6 +11,7 @@
 #include "host/lab/rehearsal.hpp"
 #include "host/lab/run_files.hpp"
 #include "host/lab/tie/tie_once.hpp"
+#include "protocol/scene/recorded_scene.hpp"
 #include "sim_device/operator/knot_tier.hpp"
 #include "sim_device/operator/knots.hpp"
 
@@ -74,17 +75,22 @@ struct Cell {
   std::string knot, model;  ///< model empty: the scene's own
   std::string file, folder;
   scene::Scene scene;
+  std::string toml;  // for the recordings
 };
 
 /// @throws Refusal when the scene or the knot in it is refused; before anything runs or is written.
 Cell cell_of(const Arguments& a, const std::string& knot, const std::string& model) {
   if (!sim::knot_named(knot)) throw Refusal("knot: found \"" + knot + "\", allowed " + sim::knot_names());
-  Cell c{knot, model, a.scene, model.empty() ? a.out : a.out + "/" + model, {}};
+  Cell c{knot, model, a.scene, model.empty() ? a.out : a.out + "/" + model, {}, {}};
   if (c.file.empty()) c.file = knot.starts_with("surgeon") ? kLongScene : kScene;
   auto overrides = a.overrides;
   if (!model.empty()) overrides.push_back("suture.model=\"" + model + "\"");
-  c.scene = load_scene_or_refuse(c.file, overrides);
-  (void)make_or_refuse(c.scene, c.file);
+  const auto text = read_scene_text_or_refuse(c.file);
+  c.scene = parse_scene_or_refuse(text, c.file, overrides);
+  const auto thread = make_or_refuse(c.scene, c.file);
+  c.toml = scene::recorded_text(text, overrides, c.scene);
+  if (thread.work() > 0)
+    c.toml += "\n# work " + std::to_string(thread.work()) + " instructions a tick, of hands at rest";
   const auto made = sim::KnotTier::make(c.scene, knot, 1);
   if (const auto* why = std::get_if<std::string>(&made)) throw Refusal(c.file + ": " + *why);
   return c;
@@ -96,7 +102,7 @@ Count tie_all(const Cell& c, const Seeds& seeds) {
   Count count;
   std::printf("%6s  %-20s %8s  %s\n", "seed", "found", "seconds", "moves given up");
   for (std::uint32_t seed = seeds.first; seed <= seeds.last && !console::stop_requested(); ++seed) {
-    const Tied t = tie_once(c.scene, c.file, c.knot, seed, c.folder);
+    const Tied t = tie_once(c.scene, c.file, c.toml, c.knot, seed, c.folder);
     ++count.tried;
     count.tied += t.good();
     std::string missed;

@@ -30,8 +30,8 @@ class Person final : public SeeingOperator {
 
 }  // namespace
 
-Tied tie_once(const scene::Scene& scene, const std::string& scene_file, const std::string& knot, std::uint32_t seed,
-              const std::filesystem::path& folder) {
+Tied tie_once(const scene::Scene& scene, const std::string& scene_file, const std::string& scene_toml,
+              const std::string& knot, std::uint32_t seed, const std::filesystem::path& folder) {
   auto made = sim::KnotTier::make(scene, knot, seed);
   if (const auto* why = std::get_if<std::string>(&made)) throw Refusal(scene_file + ": " + *why);
   Person person(std::get<sim::KnotTier>(std::move(made)));
@@ -43,6 +43,7 @@ Tied tie_once(const scene::Scene& scene, const std::string& scene_file, const st
   setup.scene = scene;
   setup.seed = seed;
   setup.scene_file = scene_file;
+  setup.scene_toml = scene_toml + "\n# tie " + knot + "\n# seed " + std::to_string(seed);
   VirtualRig rig(setup, person);
   rig.record(tied.recording.string());
   if (const auto why = rig.run(kMost_ticks, true)) throw std::runtime_error("the rig did not start: " + *why);

@@ -35,7 +35,7 @@ class Last final : public Sink {
 };
 
 /// The yes-or-no sources: in each pass of the test one of them is yes, so that none can stand for another.
-enum Yes { kGrip, kDeadMan = 2, kClutch = 4, kLimited = 6, kStale = 8, kCapHit = 10, kArmed, kYeses };
+enum Yes { kGrip, kDeadMan = 2, kClutch = 4, kLimited = 6, kStale = 8, kCapHit = 10, kArmed, kToolGrip, kYeses = 14 };
 
 /// Values 1.001, 1.002, ..; none comes twice.
 class Distinct {
@@ -57,6 +57,8 @@ Words xyz(const control::Vec3& left, const control::Vec3& right) {
 struct Sources {
   control::HandState hand[2];
   physics::HandContact contact[2];
+  physics::ToolInput tool[2];
+  control::ThreadOrders orders{601, 602, 603};
   physics::Diagnostics thread;
   rt::TickRecord record;  // what the cycle itself fills
 
@@ -78,6 +80,8 @@ struct Sources {
         record.torque_permille[static_cast<std::size_t>(h)][j] =
             static_cast<std::int16_t>(301 + 3 * h + static_cast<int>(j));
     }
+    for (int h = 0; h < 2; ++h) tool[h] = {d.vector(), d.vector(), yes == kToolGrip + h, {}};
+    record.thread_steps = 5, record.step_age_ticks = {604, 605, 606}, record.step_cut_at = {607, 608, 609};
     thread.kinetic_J = d.next(), thread.potential_J = d.next(), thread.max_stretch = d.next();
     thread.min_gap_m = d.next(), thread.time_lost = d.next(), thread.contacts = 401;
     thread.contact_cap_hit = yes == kCapHit;
@@ -96,7 +100,9 @@ struct Sources {
     for (std::size_t h = 0; h < 2; ++h) {
       control::report(hand[h], h, record);
       control::report(contact[h], h, record);
+      control::report(tool[h], h, record);
     }
+    control::report(orders, record);
     control::report(thread, record);
     return record;
   }
@@ -152,7 +158,16 @@ struct Sources {
             {"thread_work_ns", words(512)},
             {"thread_end", words(1)},
             {"thread_cut_at", words(513)},
-            {"time_lost", words(static_cast<float>(thread.time_lost))}};
+            {"time_lost", words(static_cast<float>(thread.time_lost))},
+            {"tool_p_W_m", xyz(tool[0].p_WT, tool[1].p_WT)},
+            {"tool_v_W_m_per_s", xyz(tool[0].v_WT, tool[1].v_WT)},
+            {"tool_grip", words(int{yes == kToolGrip}, int{yes == kToolGrip + 1})},
+            {"thread_resets", words(601)},
+            {"thread_scenes", words(602)},
+            {"thread_parameters", words(603)},
+            {"thread_steps", words(5)},
+            {"step_age_ticks", words(604, 605, 606)},
+            {"step_cut_at", words(607, 608, 609)}};
   }
 };
 
@@ -160,7 +175,7 @@ class EveryField : public ::testing::Test {
  protected:
   std::unique_ptr<rt::Outlets> outlets = std::make_unique<rt::Outlets>();
   Last sink;
-  Session session{42, "1.2.3", {"a.toml", "text", 3.25, 0.0625, false}, 0.002, false, "flight.rec"};
+  Session session{42, "1.2.3", {"a.toml", "text", 3.25, 0.0625, false, 702}, 0.002, false, "flight.rec"};
 };
 
 /// What was told against what is expected, name by name; `open` are those whose value is not the source's to give.
@@ -185,7 +200,7 @@ TEST_F(EveryField, OfATickIsThatOfItsSource) {
   // What it rests on: no two fields expect the same numbers.
   std::set<Words> seen;
   for (const auto& [name, values] : Sources(kYeses).expected(kYeses)) {
-    if (name != "grip" && name != "dead_man" && name != "clutch" && name != "tpdo_age_ticks") {
+    if (name != "grip" && name != "dead_man" && name != "clutch" && name != "tpdo_age_ticks" && name != "tool_grip") {
       EXPECT_TRUE(seen.insert(values).second) << name;
     }
   }
@@ -240,6 +255,7 @@ TEST_F(EveryField, OfAStatusIsThatOfItsSource) {
                                             {"firmware_version", words(std::string("1.2.3"))},
                                             {"scene_file", words(std::string("a.toml"))},
                                             {"scene_toml", words(std::string("text"))},
+                                            {"scene_first_tick", words(702)},
                                             {"recorder_file", words(std::string("flight.rec"))},
                                             {"period_s", words(0.002)},
                                             {"max_force_N", words(3.25)},

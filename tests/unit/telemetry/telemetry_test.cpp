@@ -66,7 +66,7 @@ TEST_F(TelemetryTest, AChangeOfSceneIsToldAtOnceAndInEveryStatusAfterIt) {
   push(5);
   telemetry.step(at(1'000'001));
   EXPECT_EQ(sink.statuses.back().admitted, 0);
-  telemetry.scene_changed({"b.toml", "other", 1.5, 0.01, true}, "scene b.toml loaded", 4, at(1'000'002));
+  telemetry.scene_changed({"b.toml", "other", 1.5, 0.01, true, 4}, "scene b.toml loaded", at(1'000'002));
   ASSERT_EQ(sink.events.back().kind, ligature_msg::event_t::KIND_CHANGE);
   EXPECT_EQ(sink.events.back().tick, 4) << "since it is in force, not since it is told";
   EXPECT_EQ(sink.statuses.back().admitted, 1);

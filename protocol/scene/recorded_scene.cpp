@@ -1,0 +1,75 @@
+#include "protocol/scene/recorded_scene.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+
+#include "protocol/recorder/crc32.hpp"
+#include "protocol/scene/cells.hpp"
+#include "protocol/scene/scene_file.hpp"
+
+namespace ligature::scene {
+namespace {
+
+constexpr std::string_view kAsRun = "\n# as run:", kSet = "# --set ", kShape = "# shape ";
+
+/// Of the shape as it is laid out: whatever its file is called and says beside it.
+std::uint32_t shape_of(const Scene& scene) {
+  return recorder::crc32(std::as_bytes(std::span(scene.suture.initial_polyline_m)));
+}
+
+std::string hex(std::uint32_t number) {
+  char digits[8];
+  return {digits, std::to_chars(digits, digits + sizeof digits, number, 16).ptr};
+}
+
+}  // namespace
+
+std::string_view key_of(std::string_view override) { return trim(override.substr(0, override.find('='))); }
+
+std::string recorded_text(std::string text, std::span<const std::string> overrides, const Scene& scene) {
+  text += kAsRun;
+  if (!scene.suture.initial_polyline_m.empty()) text.append("\n").append(kShape).append(hex(shape_of(scene)));
+  for (const auto& o : overrides) text.append("\n").append(kSet).append(o);
+  return text;
+}
+
+/// The last such line is the recording's own: a text that was recorded may have been run and recorded again.
+RecordedScene split_recorded(const std::string& recorded) {
+  RecordedScene found{recorded, {}, {}};
+  const auto at = recorded.rfind(kAsRun);
+  if (at == std::string::npos) return found;
+  found.text.resize(at);
+  std::string_view rest = std::string_view(recorded).substr(at + kAsRun.size());
+  while (!rest.empty()) {
+    const auto end = std::min(rest.find('\n'), rest.size());
+    const auto line = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (line.starts_with(kSet)) found.overrides.emplace_back(line.substr(kSet.size()));
+    std::uint32_t number = 0;
+    if (!line.starts_with(kShape)) continue;
+    const auto digits = line.substr(kShape.size());
+    if (std::from_chars(digits.data(), digits.data() + digits.size(), number, 16).ec == std::errc{})
+      found.shape = number;
+  }
+  return found;
+}
+
+std::variant<Scene, Error> parse_recorded(const std::string& recorded, const std::string& path,
+                                          std::span<const std::string> overrides) {
+  const RecordedScene was = split_recorded(recorded);
+  auto as_run = parse_scene(was.text, path, was.overrides);
+  const auto* scene = std::get_if<Scene>(&as_run);
+  if (scene == nullptr) return as_run;
+  if (was.shape && shape_of(*scene) != *was.shape)
+    return Error{path + ": key 'suture.initial': found " + scene->suture.initial + " with shape " +
+                 hex(shape_of(*scene)) + ", allowed the one of the recording, " + hex(*was.shape)};
+  if (overrides.empty()) return as_run;
+  auto all = was.overrides;
+  std::erase_if(
+      all, [&](const std::string& o) { return std::ranges::find(overrides, key_of(o), key_of) != overrides.end(); });
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  return parse_scene(was.text, path, all);
+}
+
+}  // namespace ligature::scene
