@@ -24,6 +24,12 @@ class PaperContact {
   /// Impulses into the velocities and separation into the positions of all overlapping pairs, one after the other.
   void solve(const ThreadModel& model, ThreadState& state) noexcept;
 
+  /// What was reported last.
+  void forget() noexcept {
+    active_ = 0;
+    min_gap_m_ = 0.0;
+    pairs_.overflow = false;
+  }
   [[nodiscard]] int active() const noexcept { return active_; }
   [[nodiscard]] double min_gap_m() const noexcept { return min_gap_m_; }
   [[nodiscard]] bool cap_hit() const noexcept { return pairs_.overflow; }

@@ -11,7 +11,7 @@ namespace ligature::physics {
 namespace {
 
 constexpr std::int64_t kSubstep_ns = 400'000;  // is one piece: half of what a tick has
-constexpr double kOutOfRange = 1e9;  // m/s or m: beyond any thread; a run that gets there has diverged
+constexpr double kOutOfRange = 1e9;            // m/s or m: beyond any thread; a run that gets there has diverged
 
 V3<double> to_v3(const Vec3& a) noexcept { return {a.x(), a.y(), a.z()}; }
 V3<double> to_v3(const scene::Vec& a) noexcept { return {a[0], a[1], a[2]}; }
@@ -168,6 +168,9 @@ void PaperSimulation::restart() noexcept {
   contact_.forget();
   course_.reset();
   limits_.forget();
+  paper_contact_.forget();
+  kinetic_J_ = weight_J_ = 0.0;  // nothing was measured yet: a tick without time says so
+  work_.stretch_J = work_.bend_J = work_.max_strain = 0.0;
   hands_ = {};
   health_ = {};
   health_.min_gap_m = std::numeric_limits<double>::infinity();

@@ -1,4 +1,5 @@
-// A tick whose time is over: it ends between two pieces, the thread stands still for the rest, and it can be done again.
+// A tick whose time is over: it ends between two pieces, the thread stands still for the rest, and it can be done
+// again.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -113,6 +114,29 @@ TEST(TimeLeft, WithoutTimeTheThreadStandsStillAndTheHandsHoldOn) {
   }
 }
 
+/// A tick without time tells what was before it: after a reset that is the beginning, not what the thread did before.
+TEST(TimeLeft, AThreadThatWasResetIsLikeANewOneFromTheFirstQuestionOn) {
+  for (const auto& scene : {scene_of("paper.toml"), scene_of("paper.toml", {"contact.solver=\"paper\""}),
+                            scene_of("desk.toml"), scene_of("suture-3-0-square.toml")}) {
+    Pull fresh(scene), again(scene);
+    for (int k = 0; k < 40; ++k) again.tick({});
+    again.sim.reset();
+    again.k = 0;
+    for (int k = 0; k < 12; ++k) {
+      const TimeLeft left = k == 0 || k == 7 ? TimeLeft::until_question(0) : TimeLeft{};
+      fresh.tick(left);
+      again.tick(left);
+      const Diagnostics &a = fresh.sim.diagnostics(), &b = again.sim.diagnostics();
+      ASSERT_EQ(a.kinetic_J, b.kinetic_J) << scene::name(scene.suture.model) << ", tick " << k;
+      ASSERT_EQ(a.potential_J, b.potential_J) << k;
+      ASSERT_EQ(a.max_stretch, b.max_stretch) << k;
+      ASSERT_EQ(a.min_gap_m, b.min_gap_m) << k;
+      ASSERT_EQ(a.contacts, b.contacts) << k;
+      expect_same(fresh.sim, again.sim);
+    }
+  }
+}
+
 /// The rod prices what it does; nothing long may lie between two questions.
 TEST(TimeLeft, AJamAsksOftenEnough) {
   struct Counted {
@@ -122,7 +146,8 @@ TEST(TimeLeft, AJamAsksOftenEnough) {
   const TimeLeft never{[](void* c) noexcept { return ++static_cast<Counted*>(c)->questions, std::int64_t{1} << 60; },
                        &counted};
   for (int k = 0; k < 200; ++k) pull.tick(never);
-  EXPECT_GE(counted.questions, 200 * 16 * 4) << "at the start of a substep, before its matrix, its solution and each pass";
+  EXPECT_GE(counted.questions, 200 * 16 * 4)
+      << "at the start of a substep, before its matrix, its solution and each pass";
 }
 
 TEST(TimeLeft, TheWorkOfATickCanBeSetAndStaysOverAReset) {
