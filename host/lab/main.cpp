@@ -9,6 +9,7 @@
 #include "host/lab/experiment_command.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/pareto_command.hpp"
+#include "host/lab/rerun/rerun_command.hpp"
 #include "host/lab/run_command.hpp"
 #include "host/lab/tie/tie_command.hpp"
 #include "host/lab/validate_command.hpp"
@@ -38,10 +39,13 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "'ligature-lab COMMAND --help' explains each.\n"
-      "Exit: 0 done; 1 a case of 'validate' misses; 2 bad usage or input, nothing written; 3 the run itself failed.");
+      "Exit: 0 done; 1 a case of 'validate' misses, or a 'rerun' as recorded differs; 2 bad usage or input, nothing "
+      "written;\n"
+      "3 the run itself failed; 130 a 'rerun' was interrupted.");
   add_run_command(app, exit_code);
   add_experiment_commands(app, exit_code);
   add_tie_command(app, exit_code);
+  add_rerun_command(app, exit_code);
   add_validate_command(app, exit_code);
   add_pareto_command(app, exit_code);
   if (const auto unknown = ligature::console::unknown_command(app, argc, argv); !unknown.empty()) {

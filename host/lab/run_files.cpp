@@ -85,8 +85,8 @@ void make_folder(const std::filesystem::path& folder) {
   }
 }
 
-void remove_old_outputs(const std::filesystem::path& folder) {
-  for (const char* name : {"summary.json", "trace.csv", "shape.csv"}) {
+void remove_old_outputs(const std::filesystem::path& folder, std::initializer_list<const char*> names) {
+  for (const char* name : names) {
     const auto path = folder / name;
     std::error_code error;
     const auto found = std::filesystem::symlink_status(path, error);

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <span>
 #include <string>
@@ -70,7 +71,8 @@ void make_folder(const std::filesystem::path& folder);
 
 /// Removes what an earlier run left in the folder, so that one that fails or is killed leaves nothing that looks like
 /// its own. @throws Refusal.
-void remove_old_outputs(const std::filesystem::path& folder);
+void remove_old_outputs(const std::filesystem::path& folder,
+                        std::initializer_list<const char*> names = {"summary.json", "trace.csv", "shape.csv"});
 
 /// Writes a text file in one go (beside it first, then renamed over it), or throws Refusal.
 void write_text(const std::filesystem::path& path, const std::string& text);

@@ -23,8 +23,6 @@ namespace {
 namespace v = ligature::validate;
 using Json = nlohmann::ordered_json;
 
-constexpr int kACaseFails = 1;
-
 constexpr const char* kFooter = R"(
 Each case is an experiment with a known answer (closed form, or computed elsewhere: tests/reference, built into the
 program). The table gives the worst figure of a case; --out keeps every one. A model that lacks a case's physics is not
@@ -232,7 +230,7 @@ int execute(const Arguments& a) {
     write_files(a.out, a.model, outcomes);
     std::printf("files %s/{validate.csv,validate.json}\n", a.out.c_str());
   }
-  return failed == 0 ? kDone : kACaseFails;
+  return failed == 0 ? kDone : kMissed;
 }
 
 }  // namespace

@@ -1,0 +1,79 @@
+#pragma once
+// What a rerun's thread does otherwise than the recorded one.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/lab/statistics.hpp"
+#include "ligature_msg/thread_t.hpp"
+#include "ligature_msg/tick_t.hpp"
+
+namespace ligature::lab {
+
+/// The columns of a tick (host/tick_columns.hpp) that the thread makes. All are the physics' own numbers to the bit but
+/// for: min_gap_m, where none near is 1e9; contacts, at most 32767; time_lost, a float. Shapes are floats.
+[[nodiscard]] const std::vector<std::string>& columns_of_thread();
+
+/// Root mean square and largest of a force, N.
+struct ForceOf {
+  double squares_N2 = 0.0, peak_N = 0.0;
+  void add(double force_N);
+  [[nodiscard]] double rms_N(std::int64_t ticks) const;
+};
+
+/// When which knot was in the thread.
+using KnotHistory = std::vector<std::pair<double, std::string>>;
+
+/// How far two shapes are apart, node by node; one of another number of nodes is compared at the same shares of its
+/// length. m.
+struct ShapeDistance {
+  double rms_m = 0.0, largest_m = 0.0;
+};
+[[nodiscard]] ShapeDistance distance(const ligature_msg::thread_t& a, const ligature_msg::thread_t& b);
+
+/// Recorded against rerun, tick by tick and shape by shape.
+class Differences {
+ public:
+  explicit Differences(double period_s) : period_s_(period_s) {}
+
+  void add(const ligature_msg::tick_t& recorded, const ligature_msg::tick_t& again, std::optional<double> cost_us);
+  void add(const ligature_msg::thread_t& recorded, const ligature_msg::thread_t& again);
+
+  [[nodiscard]] bool are_none() const { return different_ticks_ + different_shapes_ == 0; }
+  /// "tick 1201: left_world_f_x_N 0.25 recorded, 0.26 now"; empty: none.
+  [[nodiscard]] const std::string& first() const { return first_; }
+
+  struct Side {
+    std::array<ForceOf, 2> force;
+    double lost_ticks = 0.0;
+    std::vector<double> cost_us;
+    KnotHistory knots;
+  };
+  [[nodiscard]] const Side& recorded() const { return recorded_; }
+  [[nodiscard]] const Side& again() const { return again_; }
+  [[nodiscard]] const std::array<ForceOf, 2>& apart() const { return apart_; }  ///< of the two forces
+  [[nodiscard]] std::int64_t ticks() const { return ticks_; }
+  [[nodiscard]] std::int64_t different_ticks() const { return different_ticks_; }
+  [[nodiscard]] std::int64_t shapes() const { return shapes_; }
+  [[nodiscard]] std::int64_t different_shapes() const { return different_shapes_; }
+  [[nodiscard]] double shape_rms_m() const;
+  [[nodiscard]] double shape_largest_m() const { return shape_largest_m_; }
+  [[nodiscard]] double shape_largest_at_s() const { return shape_largest_at_s_; }
+
+ private:
+  [[nodiscard]] double time_s(std::int64_t tick) const { return static_cast<double>(tick) * period_s_; }
+  void name_knots(const ligature_msg::thread_t& recorded, const ligature_msg::thread_t& again, bool same);
+
+  double period_s_;
+  Side recorded_, again_;
+  std::array<ForceOf, 2> apart_;
+  std::int64_t ticks_ = 0, different_ticks_ = 0, shapes_ = 0, different_shapes_ = 0, knot_due_tick_ = 0;
+  double shape_squares_m2_ = 0.0, shape_largest_m_ = 0.0, shape_largest_at_s_ = 0.0;
+  std::string first_;
+};
+
+}  // namespace ligature::lab

@@ -1,0 +1,12 @@
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace ligature::lab {
+
+/// `ligature-lab rerun`.
+void add_rerun_command(CLI::App& app, int& exit_code);
+
+}  // namespace ligature::lab
