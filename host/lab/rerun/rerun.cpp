@@ -92,6 +92,7 @@ class Play {
   }
 
   void take(thread_t shape) {
+    if (shape.tick == compared_tick_) return;  // told twice: the last one of `lab tie`
     if (const auto at = played_.find(shape.tick); at != played_.end()) {
       compare(shape, at->second);
       played_.erase(at);
@@ -102,6 +103,7 @@ class Play {
   }
 
   void compare(const thread_t& recorded, const thread_t& again) {
+    compared_tick_ = recorded.tick;
     outcome_.differences.add(recorded, again);
     if (files_) files_->add(recorded, again);
   }
@@ -138,6 +140,7 @@ class Play {
   ligature_msg::tick_batch_t like_{};
   std::map<std::int64_t, thread_t> recorded_, played_;  // by tick; those whose other half has not come yet
   std::array<std::array<double, 3>, 2> more_N_{};       // f_world of the tick before, beyond the recorded one
+  std::int64_t compared_tick_ = -1;
   bool is_ours_ = false;
 };
 

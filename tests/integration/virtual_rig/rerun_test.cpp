@@ -224,7 +224,7 @@ TEST_P(Rerun, IsTheSameToTheBitAndOneBitOfAToolShows) {
   EXPECT_EQ(same.differences.ticks(), same.ticks);
   EXPECT_EQ(same.unknown_ticks, 0) << same.why_unknown;
   EXPECT_GT(same.differences.shapes(), kTicks / 20);
-  EXPECT_LE(same.shapes_alone, 1);
+  EXPECT_LE(same.shapes_alone, 1) << "that of a last tick, which no record tells";
   EXPECT_GT(same.differences.recorded().force[1].peak_N, 0.0);
   EXPECT_GT(same.differences.recorded().lost_ticks, 1.0);
   EXPECT_EQ(same.differences.recorded().lost_ticks, same.differences.again().lost_ticks);
