@@ -9,6 +9,7 @@ import unittest
 from bare_rig import BareRig
 
 FIFO, LOOP, PHYSICS = 1, 80, 70
+LOCKS = not os.environ.get("LIGATURE_SANITIZE")  # a sanitizer's mlockall locks nothing and says that it did
 
 
 class Thread:
@@ -60,7 +61,8 @@ class Threads(BareRig):
         granted = "SCHED_FIFO refused" not in words
         self.assertEqual(sorted((t.policy, t.priority) for t in pair), [(FIFO, PHYSICS), (FIFO, LOOP)] if granted else [(0, 0), (0, 0)])
         self.assertEqual(awake, "short idle states" not in words, "held open, or told")
-        self.assertEqual(locked_kB > 10_000, "locked memory (mlockall) refused" not in words, locked_kB)
+        if LOCKS:
+            self.assertEqual(locked_kB > 10_000, "locked memory (mlockall) refused" not in words, locked_kB)
 
     def test_without_real_time_nothing_is_asked_for(self):
         firmware = self.start(duration=20, rt="off")
@@ -74,7 +76,7 @@ class Threads(BareRig):
             firmware = self.start(rt=mode, prefix=no_rights)
             said, wrong = firmware.communicate(timeout=120)
             self.assertEqual(firmware.returncode, code, wrong)
-            for what in ("SCHED_FIFO refused", "locked memory (mlockall) refused"):
+            for what in ("SCHED_FIFO refused", "locked memory (mlockall) refused")[:2 if LOCKS else 1]:
                 self.assertIn(what, said + wrong)
             last = wrong.splitlines()[-1] if wrong else ""
             self.assertEqual(last.startswith("ligature-firmware: --rt=enforce: ") and "; remedy: " in last, mode == "enforce", wrong)
