@@ -7,9 +7,9 @@ void jitter(std::vector<Point>& line) {
   Point low = line.front(), high = low;
   for (const auto& p : line) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const double step = 1e-7 * (high - low).norm();
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> within(-step, step);
-  for (auto& p : line) p += Point(within(random), within(random), within(random));
+  Draw draw(1);
+  for (auto& p : line)
+    for (Eigen::Index i = 0; i < 3; ++i) p[i] += step * (2.0 * draw.share() - 1.0);
 }
 
 bool Polygon::is_pierced(const Triangle& triangle, std::size_t first, std::size_t count) const {
@@ -28,14 +28,14 @@ bool Polygon::is_pierced(const Triangle& triangle, std::size_t first, std::size_
 
 void Polygon::cut_corners() { corners_ = with_corners_cut(std::move(corners_), true); }
 
-void Polygon::shake(std::mt19937& random) {
+void Polygon::shake(Draw& draw) {
   const std::size_t n = corners_.size();
   if (n < 5) return;
-  std::normal_distribution<double> normal;
   for (std::size_t i = 0; i < n; ++i) {
     const Point &a = corners_[(i + n - 1) % n], b = corners_[i], &c = corners_[(i + 1) % n];
     const double reach = 0.3 * (c - a).norm();
-    const Point to = 0.5 * (a + c) + reach * Point(normal(random), normal(random), normal(random));
+    const Point away{draw.bell(), draw.bell(), draw.bell()};  // braces: in this order
+    const Point to = 0.5 * (a + c) + reach * away;
     // a-b sweeps (a, b, to), b-c sweeps (b, c, to); edges that share a corner with the one do not pierce it.
     if (!is_pierced({a, b, to}, i + 1, n - 3) && !is_pierced({b, c, to}, i + 2, n - 3)) corners_[i] = to;
   }

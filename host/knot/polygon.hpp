@@ -1,10 +1,10 @@
 #pragma once
 // A closed polygon in space and the moves that change its shape but never its knot.
 
-#include <random>
 #include <span>
 #include <vector>
 
+#include "host/knot/draw.hpp"
 #include "host/knot/pierce.hpp"
 
 namespace ligature::knot {
@@ -24,7 +24,7 @@ class Polygon {
   void cut_corners();
 
   /// Moves every corner somewhere near the middle of its neighbours, where that is free: gets cut_corners() unstuck.
-  void shake(std::mt19937& random);
+  void shake(Draw& draw);
 
   [[nodiscard]] std::span<const Point> corners() const noexcept { return corners_; }
 

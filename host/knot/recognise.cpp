@@ -49,26 +49,45 @@ KnotResult from_diagram(const Diagram& d) {
   return r;
 }
 
-/// A closed polygon's knot: simplify, look, and when it has no name yet, shake it loose and look again.
-KnotResult recognise_ring(std::vector<Point> ring) {
-  constexpr int kRounds = 12, kShakes = 8, kViews = 40;
-  Polygon polygon(std::move(ring));
-  polygon.cut_corners();
-  std::mt19937 random(7);
+/// The best that was seen of a ring.
+struct Seen {
   KnotResult best = unknown();
-  std::size_t fewest = static_cast<std::size_t>(-1);
+  std::size_t fewest = static_cast<std::size_t>(-1);  // crossings
+  bool is_named() const { return best.type != "unknown"; }
+};
+
+/// Looks, and while it has no name, shakes it loose and looks again.
+void shake_and_look(Polygon polygon, Draw draw, Seen& seen) {
+  constexpr int kRounds = 12, kShakes = 8, kViews = 40;
   for (int round = 0; round < kRounds; ++round) {
-    if (polygon.corners().size() < 6) return from_diagram({});  // a knot needs six sticks
-    if (polygon.corners().size() > kTangled) return best;
-    if (const auto diagram = simplest_view(polygon.corners(), kViews); diagram && diagram->crossings() < fewest) {
-      fewest = diagram->crossings();
-      best = from_diagram(*diagram);
-      if (best.type != "unknown") return best;
+    if (polygon.corners().size() < 6) {  // a knot needs six sticks
+      seen.best = from_diagram({});
+      return;
     }
-    for (int k = 0; k < kShakes; ++k) polygon.shake(random);
+    if (polygon.corners().size() > kTangled) return;
+    if (const auto diagram = simplest_view(polygon.corners(), kViews); diagram && diagram->crossings() < seen.fewest) {
+      seen.fewest = diagram->crossings();
+      seen.best = from_diagram(*diagram);
+      if (seen.is_named()) return;
+    }
+    for (int k = 0; k < kShakes; ++k) polygon.shake(draw);
     polygon.cut_corners();
   }
-  return best;
+}
+
+/// A closed polygon's knot. One course of shaking may get stuck short of a diagram that has a name; where one is near,
+/// others are taken, so that a name does not depend on one draw's luck.
+KnotResult recognise_ring(std::vector<Point> ring) {
+  constexpr std::uint64_t kCourses = 12;
+  constexpr std::size_t kNear = 14;  // crossings; the table's knots have at most 8, sums more
+  Polygon polygon(std::move(ring));
+  polygon.cut_corners();
+  Seen seen;
+  for (std::uint64_t course = 1; course <= kCourses; ++course) {
+    shake_and_look(polygon, Draw(course), seen);
+    if (seen.is_named() || seen.fewest > kNear) break;
+  }
+  return seen.best;
 }
 
 /// The ways in which an open thread is closed: both ends outwards, then both towards a common direction.

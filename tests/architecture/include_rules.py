@@ -51,6 +51,7 @@ OS_HEADERS = re.compile(
     r"^(sys|linux|net|netinet|arpa)/|^(unistd|fcntl|poll|pthread|sched|signal|time|errno|dirent|termios|glob|malloc)\.h$"
     r"|^(fstream|iostream|filesystem|thread|mutex|condition_variable|future|csignal|ctime|cstdio|syncstream|semaphore)$"
 )
+STRANGE_RANDOM = re.compile(r"std::mt19937\w*|std::\w+_distribution|std::random_device|std::(?:ranges::)?shuffle\(")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 
 
@@ -82,8 +83,16 @@ def violations(path, text):
     return found
 
 
+def random_violations(path, text):
+    """Random input of tests comes from tests/support/random.hpp: the same everywhere, and shifted by one variable."""
+    found = sorted(set(STRANGE_RANDOM.findall(text)))
+    return [f"{path}: uses {word}; random input comes from tests/support/random.hpp" for word in found]
+
+
 def self_check():
     """The rules must be able to fail."""
+    assert random_violations("tests/a.cpp", "std::mt19937 random(1);")
+    assert not random_violations("tests/a.cpp", "test::Random random(1);")
     assert violations("firmware/physics/a.cpp", "#include <fstream>\n")
     assert violations("firmware/control/a.cpp", '#include "protocol/can/units.hpp"\n')
     assert violations("sim_device/a.cpp", '#include "firmware/rt/spsc_ring.hpp"\n')
@@ -97,6 +106,8 @@ def main():
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
     files = [p for top in OURS for p in (root / top).rglob("*") if p.suffix in (".hpp", ".cpp", ".h")]
     found = [v for p in sorted(files) for v in violations(p.relative_to(root).as_posix(), p.read_text())]
+    for p in sorted(p for p in (root / "tests").rglob("*") if p.suffix in (".hpp", ".cpp")):
+        found += random_violations(p.relative_to(root).as_posix(), p.read_text())
     print("\n".join(found) if found else f"include rules hold in {len(files)} files")
     return 1 if found or not files else 0
 

@@ -6,14 +6,14 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <random>
 
 #include "tests/fuzz/target.hpp"
+#include "tests/support/random.hpp"
 
 namespace {
 
 /// One to eight small damages: a bit, a byte, a piece cut out, a piece doubled, the end cut off, a large number.
-std::string mutated(std::string s, std::mt19937& random) {
+std::string mutated(std::string s, ligature::test::Random& random) {
   const auto below = [&](std::size_t n) { return n == 0 ? 0 : static_cast<std::size_t>(random()) % n; };
   for (std::size_t k = 1 + below(8); k > 0 && !s.empty(); --k) {
     const std::size_t at = below(s.size());
@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
     return 0;
   }
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 1000;
-  std::mt19937 random(1);
+  ligature::test::Random random(1);
   eat({});
   for (const auto& seed : seeds) eat(seed);
   for (int i = 0; i < rounds; ++i) eat(mutated(seeds[static_cast<std::size_t>(random()) % seeds.size()], random));

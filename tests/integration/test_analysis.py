@@ -18,6 +18,7 @@ import h5py  # noqa: E402
 import lcm  # noqa: E402
 from ligature_msg import event_t, status_t, thread_t, tick_batch_t, tick_t  # noqa: E402
 from mcap.reader import make_reader  # noqa: E402
+from seeds import shifted  # noqa: E402
 
 TICKS, SCENE, OTHER = 4321, "[suture]\nnodes = 4\n", "[suture]\nnodes = 6\n"
 
@@ -28,7 +29,7 @@ def awkward(rng):
 
 
 def ticks():
-    rng = random.Random(6)
+    rng = random.Random(shifted(6))
     for number in range(TICKS):
         tick = tick_t()
         tick.tick, tick.state, tick.grasped_node = number, 4, [3, -1]

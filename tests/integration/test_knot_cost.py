@@ -14,6 +14,7 @@ import unittest
 import numpy as np
 
 import knot_shapes as shapes
+from seeds import shifted
 
 HOST = pathlib.Path(os.environ["LIGATURE_BIN"]) / "ligature-host"
 MOST, NODES = 30e6, 500
@@ -27,7 +28,7 @@ def resampled(points, n):
 
 class Cost(unittest.TestCase):
     def test_an_open_thread_of_500_nodes(self):
-        rng = np.random.default_rng(30)
+        rng = np.random.default_rng(shifted(30))
         with tempfile.TemporaryDirectory(prefix="knots-") as folder:
             for label in (("3_1", "right"), ("3_1#3_1", "amphichiral"), ("3_1#3_1#3_1", "right"), ("7_7", "right")):
                 points = shapes.turned(resampled(shapes.opened(shapes.closed_braid(*shapes.BRAIDS[label]), rng), NODES), rng, 2e-3)

@@ -17,6 +17,7 @@ import threading
 import unittest
 
 from rig import BIN, FLAG_PERIOD_LOST, HANDS, LCM_URL, ROOT, STATE_ENGAGE, STATE_FAULT, STATE_FORCE, STATE_IDLE, Rig, run
+from seeds import shifted
 
 sys.path.insert(0, os.environ["LIGATURE_LCM_PYTHON"])
 import lcm  # noqa: E402
@@ -24,7 +25,7 @@ from ligature_msg import ack_t, command_t, tick_batch_t  # noqa: E402
 
 PAGE = ROOT / "docs/fault-matrix-processes.md"
 GROUP = ("239.255.76.67", 7667)
-SEED = 20261121
+SEED = shifted(20261121)
 KILLS = 100
 BUS_LOST, TOO_OLD, DRIVE_FAULT, OVERRUN = 10, 11, 12, 30
 ROWS = []

@@ -1,9 +1,9 @@
 #pragma once
 // Every random input of a test comes from here.
 //
-// The same seed gives the same numbers with every compiler, library and machine: no std::*_distribution (its output is
-// the library's own), no libm, no sum that a compiler may or may not contract. Draw in statements of their own or in a
-// braced list: the order of a call's arguments, and of an operator's two sides, is the compiler's.
+// The same seed gives the same numbers with every compiler, library and machine: none of the standard distributions
+// (their output is the library's own), no libm, no sum that a compiler may or may not contract. Draw in statements of
+// their own or in a braced list: the order of a call's arguments, and of an operator's two sides, is the compiler's.
 //
 // LIGATURE_TEST_SEED (0 .. 2^64 - 1, default 0; `scripts/test --seed N`) shifts all seeds at once. A test that fails
 // names it, and how to repeat the run (tests/support/seed_told.cpp).
@@ -40,7 +40,7 @@ inline std::uint64_t seed_shift() {
 }
 
 /// A stream of numbers: SplitMix64 (Steele, Lea, Flood 2014). Also a generator for the standard library's algorithms
-/// where their result does not depend on whose they are (std::shuffle is not one: shuffle() below).
+/// where their result does not depend on whose they are (a shuffle is not: shuffle() below).
 class Random {
  public:
   using result_type = std::uint64_t;

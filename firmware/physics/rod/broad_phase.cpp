@@ -1,6 +1,7 @@
 #include "firmware/physics/rod/broad_phase.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -17,11 +18,7 @@ constexpr float kSlack = 1.0001F;
 // are contacts: of segments a diameter long it is more than near_m, so for shorter ones alone; with a third of the gap
 // a square lay 0.09 d in itself in the pull, not 0.05.
 constexpr double kStraight = 0.95, kBent = 2.0 / 3.0;
-constexpr std::size_t kTable = 2048;  // places for impulses: 2.7 times the contacts that are solved at most
-
-std::size_t place_of(std::int32_t a, std::int32_t b) noexcept {
-  return (static_cast<std::size_t>(a) * 2654435761U + static_cast<std::size_t>(b) * 40503U) % kTable;
-}
+constexpr std::size_t kLeastTable = 2048;
 
 // A string without bending stiffness has the corners that it is given.
 bool is_stiff(const Mesh& mesh, std::size_t j) noexcept { return mesh.weight[j] > 0.0 || mesh.weight[j + 1] > 0.0; }
@@ -34,8 +31,20 @@ void BroadPhase::reserve(int nodes, int pairs) {
   blocks_.resize(n / kBlock);
   for (int level = 0; level < kLevels; ++level) tree_[level].resize((n / kBlock >> level) + 1);
   capacity_ = pairs;
-  kept_.assign(kTable, Kept{});
-  held_.reserve(kTable);
+  // Any number of the pairs may have an impulse, and at least half of the places stay empty.
+  places_.assign(std::max(kLeastTable, std::bit_ceil(2 * static_cast<std::size_t>(pairs))), kNobody);
+  kept_.reserve(static_cast<std::size_t>(pairs));
+}
+
+/// Where the pair is, or would be put.
+std::size_t BroadPhase::place_of(std::int32_t a, std::int32_t b) const noexcept {
+  const std::size_t mask = places_.size() - 1;
+  std::size_t at = (static_cast<std::size_t>(a) * 2654435761U + static_cast<std::size_t>(b) * 40503U) & mask;
+  for (; places_[at] != kNobody; at = (at + 1) & mask) {
+    const Kept& k = kept_[places_[at]];
+    if (k.a == a && k.b == b) break;
+  }
+  return at;
 }
 
 // Spheres of segments and of blocks.
@@ -85,17 +94,16 @@ void BroadPhase::grow_tree(std::size_t blocks) noexcept {
 }
 
 void BroadPhase::keep_impulses(const std::vector<Candidate>& list) noexcept {
-  for (const auto at : held_) kept_[at].a = -1;  // the table is large, what it held is not
-  held_.clear();
+  for (const Kept& k : kept_) places_[k.at] = kNobody;  // the table is large, what it held is not
+  kept_.clear();
   for (const auto& c : list) {
-    if (dot(c.impulse, c.impulse) == 0.0 || held_.size() + 1 >= kTable) continue;
-    std::size_t at = place_of(c.a, c.b);
-    while (kept_[at].a >= 0 && (kept_[at].a != c.a || kept_[at].b != c.b)) at = (at + 1) % kTable;
-    if (kept_[at].a < 0) {
-      kept_[at] = {c.a, c.b, c.impulse, c.touch, c.stuck};
-      held_.push_back(static_cast<std::uint32_t>(at));
+    if (dot(c.impulse, c.impulse) == 0.0) continue;
+    const std::size_t at = place_of(c.a, c.b);
+    if (places_[at] == kNobody) {
+      places_[at] = static_cast<std::uint32_t>(kept_.size());
+      kept_.push_back({c.a, c.b, static_cast<std::uint32_t>(at), c.impulse, c.touch, c.stuck});
     } else {
-      kept_[at].impulse += c.impulse;  // two, when their segments were merged
+      kept_[places_[at]].impulse += c.impulse;  // two, when their segments were merged
     }
   }
 }
@@ -103,20 +111,19 @@ void BroadPhase::keep_impulses(const std::vector<Candidate>& list) noexcept {
 void BroadPhase::put_back(const PairList& list) const noexcept {
   list.pairs.clear();
   list.groups.clear();
-  for (const auto at : held_) {
-    const Kept& k = kept_[at];
+  for (const Kept& k : kept_) {
     Candidate& pair = list.pairs.emplace_back();
     pair.a = k.a, pair.b = k.b, pair.impulse = k.impulse, pair.touch = k.touch, pair.stuck = k.stuck;
   }
 }
 
 void BroadPhase::give_back(Candidate& pair) const noexcept {
-  std::size_t at = place_of(pair.a, pair.b);
-  while (kept_[at].a >= 0 && (kept_[at].a != pair.a || kept_[at].b != pair.b)) at = (at + 1) % kTable;
-  if (kept_[at].a < 0) return;
-  pair.impulse = kept_[at].impulse;
-  pair.touch = kept_[at].touch;
-  pair.stuck = kept_[at].stuck;
+  const std::uint32_t found = places_[place_of(pair.a, pair.b)];
+  if (found == kNobody) return;
+  const Kept& k = kept_[found];
+  pair.impulse = k.impulse;
+  pair.touch = k.touch;
+  pair.stuck = k.stuck;
 }
 
 bool BroadPhase::consider(const State& state, const Motion& motion, const Outlook& outlook, std::size_t a,
@@ -220,8 +227,8 @@ bool BroadPhase::search(const State& state, const Motion& motion, const Outlook&
 }
 
 // Counted (callgrind, an overhand knot at 1 m/s): 133 a node for spheres and their tree, and 2100 to keep the impulses
-// of its contacts; 5 for a place of the table is for those of a jam.
-long BroadPhase::least_cost(int nodes) noexcept { return 5L * static_cast<long>(kTable) + 155L * nodes; }
+// of its contacts; 5 for each of 2048 places is for those of a jam.
+long BroadPhase::least_cost(int nodes) noexcept { return 5L * static_cast<long>(kLeastTable) + 155L * nodes; }
 
 bool BroadPhase::build(const State& state, Motion& motion, const Outlook& outlook, long allowance, Work& work,
                        const PairList& list) noexcept {

@@ -60,7 +60,7 @@ class BroadPhase {
 
   void reserve(int nodes, int pairs);
 
-  /// Impulses of the list, for the lists to come.
+  /// Impulses of the list, for the lists to come; all of them. @pre no more pairs than there is room for
   void keep_impulses(const std::vector<Candidate>& list) noexcept;
 
   /// Rebuilds `list`, every pair measured and counted from motion.restart() on; kept impulses are given to their pairs.
@@ -82,6 +82,7 @@ class BroadPhase {
     float x, y, z, r;
   };
   void place(const State& state, const Motion& motion, float horizon_s) noexcept;
+  [[nodiscard]] std::size_t place_of(std::int32_t a, std::int32_t b) const noexcept;
   void grow_tree(std::size_t blocks) noexcept;
   void give_back(Candidate& pair) const noexcept;
   /// Adds the pair if it is near enough. @return false when there was no room.
@@ -103,23 +104,25 @@ class BroadPhase {
     return time_->allows();
   }
 
+  static constexpr std::uint32_t kNobody = 0xFFFFFFFFU;
   struct Kept {
-    std::int32_t a = -1, b = -1;
+    std::int32_t a = 0, b = 0;
+    std::uint32_t at = 0;  // its place
     Vec impulse{};
     Touch touch{};
     char stuck = 0;
   };
   int capacity_ = 0;
-  long spent_ = 0, allowance_ = 0;   // of this build
-  long asked_ = 0;                   // what was spent when the time was last asked for
+  long spent_ = 0, allowance_ = 0;  // of this build
+  long asked_ = 0;                  // what was spent when the time was last asked for
   TickTime* time_ = nullptr;
-  std::vector<float> x_, y_, z_;     // middles of segments
-  std::vector<float> half_;          // half their lengths
-  std::vector<float> bulge_;         // of their smooth curves
-  std::vector<Ball> blocks_;         // around the segments of a block, as they are
-  std::vector<Ball> tree_[kLevels];  // around 2^level blocks, swollen by what each may move
-  std::vector<Kept> kept_;           // open addressing, a power of two
-  std::vector<std::uint32_t> held_;  // places in it that are not empty
+  std::vector<float> x_, y_, z_;       // middles of segments
+  std::vector<float> half_;            // half their lengths
+  std::vector<float> bulge_;           // of their smooth curves
+  std::vector<Ball> blocks_;           // around the segments of a block, as they are
+  std::vector<Ball> tree_[kLevels];    // around 2^level blocks, swollen by what each may move
+  std::vector<Kept> kept_;             // impulses
+  std::vector<std::uint32_t> places_;  // open addressing, a power of two: which of kept_
 };
 
 }  // namespace ligature::physics::rod

@@ -13,10 +13,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <numbers>
-#include <random>
 
 #include "firmware/physics/rod/rod.hpp"
 #include "tests/support/crossings.hpp"
+#include "tests/support/random.hpp"
 
 using namespace ligature::physics::rod;
 using ligature::test::crossings_of_remesh;
@@ -73,9 +73,9 @@ void shape_across(Rod& rod, double gap, double aside, bool end_on, double speed1
 
 int main(int argc, char** argv) {
   const long approaches = argc > 1 ? std::atol(argv[1]) : 10000;
-  std::mt19937_64 random(argc > 2 ? static_cast<unsigned>(std::atoi(argv[2])) : 1U);
+  test::Random random(argc > 2 ? static_cast<unsigned>(std::atoi(argv[2])) : 1U);
   const bool contact = argc < 4;
-  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  const auto uniform = [&](double a, double b) { return random.in(a, b); };
   long found = 0, cut = 0, remeshes = 0, guarded = 0, substeps = 0;
   for (long k = 0; k < approaches; ++k) {
     static constexpr int kNodes[] = {20, 20, 20, 50, 50, 154};

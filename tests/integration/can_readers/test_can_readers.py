@@ -3,17 +3,22 @@
 import io
 import json
 import os
+import pathlib
 import random
 import subprocess
+import sys
 import unittest
 
 import canopen
 import cantools
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from seeds import shifted  # noqa: E402
+
 DESCRIBE = os.environ["LIGATURE_DESCRIBE"]
 NODES = {1: "Waist", 2: "Shoulder", 3: "Elbow"}
 ROUNDS = 2000
-SEED = 20260101
+SEED = shifted(20260101)
 
 
 def describe(*args, lines=None):

@@ -7,6 +7,7 @@
 
 #include "protocol/scene/scene_file.hpp"
 #include "sim_device/unrest.hpp"
+#include "tests/support/random.hpp"
 
 namespace ligature {
 namespace {
@@ -15,14 +16,6 @@ const std::string kScene = std::string(LIGATURE_SOURCE_DIR) + "/scenes/paper.tom
 constexpr double kShippedCoupling_N_per_m = 1200.0;
 constexpr int kStranger = 5;  // a client of the bus that is not the firmware
 constexpr std::size_t kStrangersQueue = 16;
-
-// 53 bits of the generator: the standard distributions are not the same everywhere.
-double share(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
-double between(std::mt19937_64& random, double low, double high) { return low + (high - low) * share(random); }
-std::int64_t any_of(std::mt19937_64& random, std::int64_t low, std::int64_t high) {
-  return low + static_cast<std::int64_t>(share(random) * static_cast<double>(high - low + 1));
-}
-bool happens(std::mt19937_64& random, double probability) { return share(random) < probability; }
 
 /// Takes the thread, pulls it tight and lets it go, within the workspace box.
 class Pulling final : public sim::Intention {
@@ -61,7 +54,7 @@ scene::Scene scene_of(const AttackPlan& plan) {
 lab::RigSetup setup_of(const AttackPlan& plan) {
   lab::RigSetup setup{.scene = scene_of(plan)};
   setup.frame_loss = plan.frame_loss;
-  setup.seed = plan.seed;
+  setup.seed = test::Random(plan.seed)();
   for (std::size_t h = 0; h < 2; ++h) setup.body[h].hand = sim::Hand::holding(plan.tightness[h]);
   return setup;
 }
@@ -80,7 +73,7 @@ std::uint8_t byte(std::int64_t value) { return static_cast<std::uint8_t>(value &
 }  // namespace
 
 AttackPlan::AttackPlan(std::uint64_t s) : seed(s) {
-  std::mt19937_64 random(s * 0x9E3779B97F4A7C15ULL + 1);
+  test::Random random(s * 0x9E3779B97F4A7C15ULL + 1);
   choose_hands(random);
   choose_faults(random);
   choose_foreign(random);
@@ -103,24 +96,24 @@ AttackPlan AttackPlan::pulls(std::uint64_t seed) {
   return plan;
 }
 
-void AttackPlan::choose_hands(std::mt19937_64& random) {
-  coupling = std::array{1.0, 3.0, 10.0, 30.0}[static_cast<std::size_t>(any_of(random, 0, 3))];
+void AttackPlan::choose_hands(test::Random& random) {
+  coupling = std::array{1.0, 3.0, 10.0, 30.0}[static_cast<std::size_t>(random.any(0, 3))];
   for (std::size_t h = 0; h < 2; ++h) {
-    tightness[h] = between(random, 0.2, 1.0);
-    period_s[h] = between(random, 0.3, 1.2);
-    amplitude_m[h] = between(random, 0.01, 0.03);
-    sim::Vec3 v(between(random, -1.0, 1.0), between(random, -1.0, 1.0), between(random, -1.0, 1.0));
+    tightness[h] = random.in(0.2, 1.0);
+    period_s[h] = random.in(0.3, 1.2);
+    amplitude_m[h] = random.in(0.01, 0.03);
+    sim::Vec3 v{random.in(-1.0, 1.0), random.in(-1.0, 1.0), random.in(-1.0, 1.0)};
     along[h] = v.norm() > 1e-3 ? sim::Vec3(v.normalized()) : sim::Vec3::UnitX();
   }
-  jumps = happens(random, 0.3);
-  if (happens(random, 0.1)) lead_s = 0.05;
-  if (happens(random, 0.3)) let_go_s = between(random, 1.05, 2.0);
+  jumps = random.happens(0.3);
+  if (random.happens(0.1)) lead_s = 0.05;
+  if (random.happens(0.3)) let_go_s = random.in(1.05, 2.0);
 }
 
-void AttackPlan::choose_faults(std::mt19937_64& random) {
-  if (happens(random, 0.3)) frame_loss = between(random, 0.0, 0.2);
+void AttackPlan::choose_faults(test::Random& random) {
+  if (random.happens(0.3)) frame_loss = random.in(0.0, 0.2);
   for (std::size_t h = 0; h < 2; ++h) {
-    if (!happens(random, 0.4)) continue;
+    if (!random.happens(0.4)) continue;
     scene::FaultScript f;
     // Sensors that lie are half of them.
     constexpr std::array kKinds{scene::FaultKind::kLose,    scene::FaultKind::kDelay,     scene::FaultKind::kDuplicate,
@@ -129,31 +122,32 @@ void AttackPlan::choose_faults(std::mt19937_64& random) {
                                 scene::FaultKind::kFreeze,  scene::FaultKind::kReverse,   scene::FaultKind::kReverse,
                                 scene::FaultKind::kReverse, scene::FaultKind::kJump,      scene::FaultKind::kJump,
                                 scene::FaultKind::kFreeze};
-    f.kind = kKinds[static_cast<std::size_t>(any_of(random, 0, kKinds.size() - 1))];
+    f.kind = kKinds[static_cast<std::size_t>(random.any(0, kKinds.size() - 1))];
     f.hand = static_cast<int>(h);
-    f.node = static_cast<int>(any_of(random, 1, 3));
-    f.share = happens(random, 0.5) ? 1.0 : between(random, 0.0, 0.2);
-    f.from_s = between(random, 0.8, 2.0);
-    if (happens(random, 0.3)) f.until_s = f.from_s + between(random, 0.001, 0.1);
-    f.delay_s = between(random, 0.0005, 0.01);
-    f.counts = static_cast<int>(any_of(random, -60, 60)) * (happens(random, 0.2) ? 100 : 1);
-    f.seed = static_cast<int>(any_of(random, 1, 1'000'000));
+    f.node = static_cast<int>(random.any(1, 3));
+    f.share = random.happens(0.5) ? 1.0 : random.in(0.0, 0.2);
+    f.from_s = random.in(0.8, 2.0);
+    if (random.happens(0.3)) f.until_s = f.from_s + random.in(0.001, 0.1);
+    f.delay_s = random.in(0.0005, 0.01);
+    f.counts = static_cast<int>(random.any(-60, 60));
+    if (random.happens(0.2)) f.counts *= 100;
+    f.seed = static_cast<int>(random.any(1, 1'000'000));
     const bool lies = f.kind == scene::FaultKind::kFreeze || f.kind == scene::FaultKind::kReverse;
     if (lies) f.share = 1.0;
     faults[h] = f;
   }
 }
 
-void AttackPlan::choose_foreign(std::mt19937_64& random) {
-  if (!happens(random, 0.4)) return;
-  for (std::int64_t left = any_of(random, 1, 3); left > 0; --left) {
+void AttackPlan::choose_foreign(test::Random& random) {
+  if (!random.happens(0.4)) return;
+  for (std::int64_t left = random.any(1, 3); left > 0; --left) {
     Foreign f;
-    f.hand = static_cast<int>(any_of(random, 0, 1));
-    f.from = any_of(random, 200, kAttackTicks - 100);
-    f.ticks = happens(random, 0.5) ? 1 : any_of(random, 2, 60);
-    const auto node = static_cast<std::uint32_t>(any_of(random, 1, 3));
-    const auto torque = any_of(random, -3000, 3000);
-    switch (any_of(random, 0, 6)) {
+    f.hand = static_cast<int>(random.any(0, 1));
+    f.from = random.any(200, kAttackTicks - 100);
+    f.ticks = random.happens(0.5) ? 1 : random.any(2, 60);
+    const auto node = static_cast<std::uint32_t>(random.any(1, 3));
+    const auto torque = random.any(-3000, 3000);
+    switch (random.any(0, 6)) {
       case 0:
         f.what = "RPDO";
         f.frame = {0x200U + node, 4, {0x0F, 0x00, byte(torque), byte(torque >> 8)}};
@@ -180,26 +174,26 @@ void AttackPlan::choose_foreign(std::mt19937_64& random) {
         f.frame = {0x80U + node, 8, {0x00, 0x10, 0x01, 0, 0, 0, 0, 0}};
         break;
       default:
-        f = flood(f.hand, f.from, f.ticks, static_cast<int>(any_of(random, 1, 10)));
+        f = flood(f.hand, f.from, f.ticks, static_cast<int>(random.any(1, 10)));
     }
     foreign.push_back(f);
   }
 }
 
-void AttackPlan::choose_orders(std::mt19937_64& random) {
+void AttackPlan::choose_orders(test::Random& random) {
   using rt::CommandKind;
   constexpr std::array kKinds{CommandKind::kArm,         CommandKind::kDisarm,        CommandKind::kStop,
                               CommandKind::kResetFault,  CommandKind::kResetFault,    CommandKind::kArm,
                               CommandKind::kResetThread, CommandKind::kClutchLeft,    CommandKind::kUnclutchLeft,
                               CommandKind::kClutchRight, CommandKind::kUnclutchRight, CommandKind::kPark,
                               CommandKind::kCalibrate};
-  if (happens(random, 0.5)) {
-    for (std::int64_t left = any_of(random, 1, 8); left > 0; --left)
-      orders.push_back({any_of(random, 100, kAttackTicks), kKinds[random() % kKinds.size()]});
+  if (random.happens(0.5)) {
+    for (std::int64_t left = random.any(1, 8); left > 0; --left)
+      orders.push_back({random.any(100, kAttackTicks), kKinds[random() % kKinds.size()]});
   }
-  if (happens(random, 0.2)) swap_at = any_of(random, 200, kAttackTicks), swap_scene = happens(random, 0.5);
-  if (happens(random, 0.05)) cut_at = any_of(random, 800, kAttackTicks);
-  if (happens(random, 0.1)) stall_at = any_of(random, 800, 2000), stall_ticks = any_of(random, 1, 60);
+  if (random.happens(0.2)) swap_at = random.any(200, kAttackTicks), swap_scene = random.happens(0.5);
+  if (random.happens(0.05)) cut_at = random.any(800, kAttackTicks);
+  if (random.happens(0.1)) stall_at = random.any(800, 2000), stall_ticks = random.any(1, 60);
 }
 
 bool AttackPlan::loses_frames() const {

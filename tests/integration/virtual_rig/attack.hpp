@@ -3,12 +3,12 @@
 
 #include <cstdint>
 #include <memory>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "firmware/control/plant.hpp"
 #include "host/lab/rig/virtual_rig.hpp"
+#include "tests/support/random.hpp"
 
 namespace ligature {
 
@@ -51,10 +51,10 @@ struct AttackPlan {
   [[nodiscard]] std::string text() const;
 
  private:
-  void choose_hands(std::mt19937_64& random);
-  void choose_faults(std::mt19937_64& random);
-  void choose_foreign(std::mt19937_64& random);
-  void choose_orders(std::mt19937_64& random);
+  void choose_hands(test::Random& random);
+  void choose_faults(test::Random& random);
+  void choose_foreign(test::Random& random);
+  void choose_orders(test::Random& random);
 };
 
 inline constexpr std::int64_t kAttackTicks = 2200;

@@ -255,6 +255,7 @@ TEST(FaultMatrix, EveryCaseEndsAsItSays) {
   const std::string page = std::string(LIGATURE_SOURCE_DIR) + "/docs/fault-matrix.md", before = text_of(page);
   const std::size_t by_chance = std::min(before.find(kByChance), before.size());  // that part is bad_bus_study's
   if (std::getenv("LIGATURE_WRITE_DOCS") != nullptr) std::ofstream(page) << table << before.substr(by_chance);
+  if (test::seed_shift() != 0) return;  // the page shows the draw without a shift
   EXPECT_EQ(text_of(page).substr(0, by_chance), table)
       << "docs/fault-matrix.md is old: LIGATURE_WRITE_DOCS=1 writes it anew";
 }
@@ -277,7 +278,9 @@ TEST(FaultMatrix, WhatEndsByChanceAlwaysEndsInAFault) {
       const Outcome o = outcome_of(rig, kOnset);
       EXPECT_TRUE(o.pushed_before);
       EXPECT_NE(o.fault, 0);
-      if (c.script->kind == scene::FaultKind::kLose) EXPECT_TRUE(o.fault == 17 || o.fault == 11) << o.fault;
+      if (c.script->kind == scene::FaultKind::kLose) {
+        EXPECT_TRUE(o.fault == 17 || o.fault == 11) << o.fault;
+      }
       EXPECT_LE(o.ticks_to_zero, c.within_ticks);
       EXPECT_LE(o.peak_N, 3.4);
     }

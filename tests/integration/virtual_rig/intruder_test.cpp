@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <optional>
-#include <random>
 
 #include "firmware/control/faults.hpp"
 #include "protocol/can/device_profile.hpp"
 #include "protocol/scene/fault_script.hpp"
 #include "tests/integration/virtual_rig/simulated_rig.hpp"
+#include "tests/support/random.hpp"
 
 namespace ligature {
 namespace {
@@ -104,7 +104,7 @@ TEST(Intruder, ADriveThatPushesByItselfIsFoundInAnyState) {
 /// Losses, delays, doubled and reordered frames, a drive that starts anew, orders to reset and to arm: other faults may
 /// come of them, but not these.
 TEST(Intruder, NoHonestTroubleLooksLikeOne) {
-  std::mt19937_64 random(std::random_device{}());
+  test::Random random(92);
   const auto any = [&](int below) { return static_cast<int>(random() % static_cast<unsigned>(below)); };
   constexpr FaultKind kTroubles[] = {FaultKind::kLose,    FaultKind::kDelay,  FaultKind::kDuplicate,
                                      FaultKind::kReorder, FaultKind::kReboot, FaultKind::kEmergency};

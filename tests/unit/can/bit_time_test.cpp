@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
 #include <string_view>
 
 #include "protocol/can/codec.hpp"
 #include "protocol/can/nmt.hpp"
+#include "tests/support/random.hpp"
 
 namespace ligature::can {
 namespace {
@@ -23,7 +23,7 @@ TEST(BitTime, CountsStuffBitsOfAFrameDoneByHand) {
 }
 
 TEST(BitTime, LiesBetweenNoStuffingAndTheWorstCase) {
-  std::mt19937 random(7);
+  test::Random random(7);
   for (int i = 0; i < 20000; ++i) {
     Frame f{static_cast<std::uint32_t>(random()) & kMaxId, static_cast<std::uint8_t>(random() % 9), {}};
     const bool runs = i % 2 == 0;  // half of them made of long runs, which stuffing likes
@@ -35,7 +35,7 @@ TEST(BitTime, LiesBetweenNoStuffingAndTheWorstCase) {
 }
 
 TEST(BitTime, OneTickTakesBetween617And745Microseconds) {
-  std::mt19937 random(8);
+  test::Random random(8);
   for (int i = 0; i < 2000; ++i) {
     unsigned bits = frame_bits(sync_frame());
     for (const NodeId node : profile::kJointNodes) {

@@ -3,16 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <random>
 #include <span>
 
 #include "protocol/can/local_wire.hpp"
+#include "tests/support/random.hpp"
 
 namespace ligature::can {
 namespace {
 
 template <class Int>
-Int pick(std::mt19937& random) {  // extremes as often as ordinary values
+Int pick(test::Random& random) {  // extremes as often as ordinary values
   switch (random() % 4) {
     case 0:
       return std::numeric_limits<Int>::min();
@@ -26,7 +26,7 @@ Int pick(std::mt19937& random) {  // extremes as often as ordinary values
 }
 
 TEST(Codec, Tpdo1SurvivesTheRoundTrip) {
-  std::mt19937 random(1);
+  test::Random random(1);
   for (int i = 0; i < 20000; ++i) {
     const NodeId node = profile::kJointNodes[random() % 3];
     Tpdo1 p{pick<std::uint16_t>(random), pick<std::int32_t>(random), 0, 0};
@@ -40,7 +40,7 @@ TEST(Codec, Tpdo1SurvivesTheRoundTrip) {
 }
 
 TEST(Codec, Rpdo1SurvivesTheRoundTrip) {
-  std::mt19937 random(2);
+  test::Random random(2);
   for (int i = 0; i < 20000; ++i) {
     const NodeId node = profile::kJointNodes[random() % 3];
     const Rpdo1 p{pick<std::uint16_t>(random), pick<std::int16_t>(random)};
@@ -63,7 +63,7 @@ TEST(Codec, TorqueAndButtonsTravelOnlyWhereTheMapSaysSo) {
 }
 
 TEST(LocalWire, AnyFrameSurvivesTheRoundTrip) {
-  std::mt19937 random(3);
+  test::Random random(3);
   for (int i = 0; i < 5000; ++i) {
     Frame f{static_cast<std::uint32_t>(random()) & kMaxId, static_cast<std::uint8_t>(random() % 9), {}};
     for (std::size_t b = 0; b < f.dlc; ++b) f.data[b] = static_cast<std::uint8_t>(random());

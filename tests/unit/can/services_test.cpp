@@ -1,11 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "protocol/can/emcy.hpp"
 #include "protocol/can/heartbeat.hpp"
 #include "protocol/can/nmt.hpp"
 #include "protocol/can/sdo.hpp"
+#include "tests/support/random.hpp"
 
 namespace ligature::can {
 namespace {
@@ -52,7 +51,7 @@ TEST(Emergency, IsLittleEndian) {
 }
 
 TEST(Sdo, EveryTransferSurvivesTheRoundTrip) {
-  std::mt19937 random(4);
+  test::Random random(4);
   for (int i = 0; i < 5000; ++i) {
     const NodeId node{static_cast<std::uint8_t>(1 + random() % 127)};
     const Object object{static_cast<std::uint16_t>(random()), static_cast<std::uint8_t>(random())};

@@ -3,16 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <random>
+
+#include "tests/support/random.hpp"
 
 namespace ligature::can {
 namespace {
 
 TEST(Units, AnglesComeBackWithinHalfACount) {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> angle(-3.2, 3.2);
+  test::Random random(5);
+  const auto angle = [&] { return random.in(-3.2, 3.2); };
   for (int i = 0; i < 10000; ++i) {
-    const double q = angle(random);
+    const double q = angle();
     EXPECT_NEAR(angle_rad(counts_of(q)), q, 0.5 * kRadPerCount * (1 + 1e-9));
   }
 }

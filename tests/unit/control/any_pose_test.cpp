@@ -6,9 +6,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <vector>
 
+#include "tests/support/random.hpp"
 #include "tests/unit/control/controller_rig.hpp"
 
 namespace ligature::control {
@@ -21,10 +21,10 @@ constexpr double kQuanta_N = 0.02;  // half a per mille of each joint's torque, 
 class Poses {
  public:
   explicit Poses(unsigned seed) : random_(seed) {}
-  double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  double between(double low, double high) { return random_.in(low, high); }
   Vec3 direction() {
-    std::normal_distribution<double> n;
-    return Vec3(n(random_), n(random_), n(random_)).normalized();
+    const auto n = [&] { return random_.normal(); };
+    return Vec3{n(), n(), n()}.normalized();
   }
   /// By the two-circle construction; in an eighth of the cases a corner of the box.
   JointAngles next() {
@@ -49,13 +49,13 @@ class Poses {
   [[nodiscard]] const Linkage& linkage() const { return linkage_; }
 
  private:
-  std::mt19937 random_;
+  test::Random random_;
   Linkage linkage_{device::omni()};
 };
 
 TEST(AnyPose, BoundsTheForceInEveryPoseAndNotByMuch) {
   const AnyPose any(device::omni());
-  Poses poses(static_cast<unsigned>(GTEST_FLAG_GET(random_seed)) + 1U);
+  Poses poses(1U);
   std::vector<JointAngles> all;
   for (int i = 0; i < 2000; ++i) all.push_back(poses.next());
   for (int i = 0; i < 200; ++i) {
@@ -69,7 +69,7 @@ TEST(AnyPose, BoundsTheForceInEveryPoseAndNotByMuch) {
 
 TEST(AnyPose, BoundsEveryMixtureOfTwoTorques) {
   const AnyPose any(device::omni());
-  Poses poses(static_cast<unsigned>(GTEST_FLAG_GET(random_seed)) + 2U);
+  Poses poses(2U);
   for (int i = 0; i < 2000; ++i) {
     const Vec3 one = 0.3 * poses.direction(), other = 0.3 * poses.direction();
     const Vec3 low = one.cwiseMin(other), high = one.cwiseMax(other);
@@ -96,7 +96,7 @@ TEST(AnyPose, AnArmThatMayBeStretchedGetsNoForce) {  // a box that reaches a sin
 /// The price: in this much of the workspace and in these directions an honest hand gets the device's peak force.
 TEST(AnyPose, LeavesAnHonestHandMostOfTheForce) {
   const AnyPose any(device::omni());
-  Poses poses(static_cast<unsigned>(GTEST_FLAG_GET(random_seed)) + 3U);
+  Poses poses(3U);
   std::vector<double> left_N;
   for (int i = 0; i < 20'000; ++i) {
     const Vec3 torque_Nm = poses.linkage().torque(poses.next(), poses.direction());
@@ -171,7 +171,7 @@ Most pulled_by_what_encoders_say(unsigned seed) {
 
 TEST(LyingEncoders, NeverGetTheTrueForceOrItsStepOverTheLimit) {
   for (unsigned run = 0; run < 6; ++run) {
-    const unsigned seed = 10U + run + static_cast<unsigned>(GTEST_FLAG_GET(random_seed));
+    const unsigned seed = 10U + run;
     const Most most = pulled_by_what_encoders_say(seed);
     std::printf("seed %u: true force at most %.3f N (said: %.3f N), true step %.3f N\n", seed, most.true_N, most.said_N,
                 most.true_step_N);

@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <functional>
-#include <random>
+
+#include "tests/support/random.hpp"
 
 namespace ligature::control {
 namespace {
@@ -71,16 +72,15 @@ TEST(EncoderWatch, AJointInItsStopIsNoFault) {
 
 TEST(EncoderWatch,
      HandsThatTurnStopAndTrembleAreNotSuspected) {  // a mass of 45 g on 800 N/m and 8 N s/m after a wild wish
-  std::mt19937 random(23);
-  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  test::Random random(23);
+  const auto any = [&] { return random.in(-1.0, 1.0); };
   int samples = 0;
   for (int run = 0; run < 60; ++run) {
     EncoderWatch w;
     std::array<double, 3> x{}, v{}, wish{}, speed{};
     for (int t = 0; t < 5000; ++t, ++samples) {
       if (t % (40 + 7 * run) == 0) {
-        for (auto& s : speed)
-          s = any(random) * (any(random) > 0.0 ? 2.0 : 0.0) * 1e3;  // counts/s; sharp corners of the wish
+        for (auto& s : speed) s = any() * (any() > 0.0 ? 2.0 : 0.0) * 1e3;  // counts/s; sharp corners of the wish
       }
       Counts c{};
       for (std::size_t j = 0; j < 3; ++j) {

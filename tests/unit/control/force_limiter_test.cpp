@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <deque>
-#include <random>
+
+#include "tests/support/random.hpp"
 
 namespace ligature::control {
 namespace {
@@ -23,15 +24,18 @@ Vec3 send(ForceLimiter& l, const Vec3& wish) {
 
 /// Wishes that jump, rest, swing and explode, some minutes of them.
 struct Wishes {
-  std::mt19937 random{17};
-  std::normal_distribution<double> any;
-  std::uniform_real_distribution<double> share;
+  test::Random random{17};
+  double any() { return random.normal(); }
+  double share() { return random.share(); }
   Vec3 now = Vec3::Zero();
   Vec3 next() {
-    const double dice = share(random);
-    if (dice < 0.02) now = Vec3(any(random), any(random), any(random)) * std::pow(10.0, 3.0 * share(random) - 1.0);
+    const double dice = share();
+    if (dice < 0.02) {
+      now = Vec3{any(), any(), any()};
+      now *= std::pow(10.0, 3.0 * share() - 1.0);
+    }
     if (dice > 0.98) now = Vec3::Zero();
-    if (dice > 0.5 && dice < 0.6) now += 0.1 * Vec3(any(random), any(random), any(random));
+    if (dice > 0.5 && dice < 0.6) now += 0.1 * Vec3{any(), any(), any()};
     return now;
   }
 };

@@ -6,8 +6,9 @@
 #include <Eigen/QR>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <vector>
+
+#include "tests/support/random.hpp"
 
 namespace ligature::control {
 namespace {
@@ -17,12 +18,14 @@ constexpr double kUpperArm_m = 0.134, kForearm_m = 0.1325;
 Linkage arm() { return Linkage(device::omni()); }
 
 std::vector<JointAngles> poses() {
-  std::mt19937 random(11);
-  std::uniform_real_distribution<double> q1(-0.9, 0.9), q2(0.0, 1.7), bend(-0.8, 1.2);
+  test::Random random(11);
+  const auto q1 = [&] { return random.in(-0.9, 0.9); };
+  const auto q2 = [&] { return random.in(0.0, 1.7); };
+  const auto bend = [&] { return random.in(-0.8, 1.2); };
   std::vector<JointAngles> all;
   for (int i = 0; i < 200; ++i) {
-    const double shoulder = q2(random);
-    all.push_back({q1(random), shoulder, shoulder + bend(random)});
+    const double shoulder = q2();
+    all.push_back({q1(), shoulder, shoulder + bend()});
   }
   return all;
 }
@@ -63,10 +66,10 @@ TEST(Kinematics, JacobianIsTheDerivative) {  // central difference, step ~ eps^(
 }
 
 TEST(Kinematics, JointTorqueDoesTheWorkOfTheForce) {  // tau . dq = f . dp for any small motion
-  std::mt19937 random(12);
-  std::normal_distribution<double> any;
+  test::Random random(12);
+  const auto any = [&] { return random.normal(); };
   for (const JointAngles& q : poses()) {
-    const Vec3 f(any(random), any(random), any(random)), dq(any(random), any(random), any(random));
+    const Vec3 f{any(), any(), any()}, dq{any(), any(), any()};
     const Vec3 dp = arm().jacobian(q) * dq;
     EXPECT_NEAR(arm().torque(q, f).dot(dq), f.dot(dp), 1e-12);
   }

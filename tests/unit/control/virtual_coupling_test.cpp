@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 #include <limits>
 
 #include "firmware/control/admissible.hpp"
 #include "firmware/control/workspace_map.hpp"
 #include "protocol/scene/scene_file.hpp"
+#include "tests/support/random.hpp"
 
 namespace ligature::control {
 namespace {
@@ -27,10 +27,10 @@ scene::Hands hands() {
 }
 
 TEST(Saturate, NeverAboveTheLimitHoweverItIsMeasured) {
-  std::mt19937 random(3);
-  std::normal_distribution<double> normal(0.0, 20.0);
+  test::Random random(3);
+  const auto normal = [&] { return 20.0 * random.normal(); };
   for (int i = 0; i < 100'000; ++i) {
-    const Vec3 wanted(normal(random), normal(random), normal(random));
+    const Vec3 wanted{normal(), normal(), normal()};
     const auto f = saturate(wanted, 3.3).f_N;
     ASSERT_LE(f.norm(), 3.3);
     ASSERT_LE(std::hypot(f.x(), f.y(), f.z()), 3.3);

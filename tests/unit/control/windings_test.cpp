@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
+#include "tests/support/random.hpp"
 #include "tests/unit/control/controller_rig.hpp"
 
 namespace ligature::control {
@@ -26,25 +25,26 @@ struct Guarded {
 };
 
 /// An arm that has nothing to do with an Omni but its kind.
-device::Device any_device(std::mt19937_64& random) {
-  std::uniform_real_distribution<double> share;
+device::Device any_device(test::Random& random) {
+  const auto share = [&] { return random.share(); };
   device::Device d = device::omni();
-  d.continuous_force_N = 0.3 + 2.0 * share(random);
-  d.peak_force_N = d.continuous_force_N * (1.2 + 6.0 * share(random));
-  d.thermal_time_s = 2.0 + 30.0 * share(random);
-  d.links_m = {0.1 + 0.1 * share(random), 0.1 + 0.1 * share(random), 0.0};
-  d.home_tip_m[1] = -0.16 - 0.07 * share(random);
+  d.continuous_force_N = 0.3 + 2.0 * share();
+  d.peak_force_N = d.continuous_force_N * (1.2 + 6.0 * share());
+  d.thermal_time_s = 2.0 + 30.0 * share();
+  d.links_m = {0.1 + 0.1 * share(), 0.1 + 0.1 * share(), 0.0};
+  d.home_tip_m[1] = -0.16 - 0.07 * share();
   return d;
 }
 
 /// Torques that jump, rest and swing, up to what the peak force makes at home.
 struct Wishes {
-  std::mt19937_64& random;
+  test::Random& random;
   Vec3 most_Nm, now = Vec3::Zero();
   const Vec3& next() {
-    std::uniform_real_distribution<double> share, sign(-1.0, 1.0);
-    const double dice = share(random);
-    if (dice < 0.004) now = Vec3(sign(random), sign(random), sign(random)).cwiseProduct(most_Nm);
+    const auto share = [&] { return random.share(); };
+    const auto sign = [&] { return random.in(-1.0, 1.0); };
+    const double dice = share();
+    if (dice < 0.004) now = Vec3{sign(), sign(), sign()}.cwiseProduct(most_Nm);
     if (dice > 0.9985) now = most_Nm;
     if (dice > 0.9965 && dice < 0.9975) now = Vec3::Zero();
     return now;
@@ -52,7 +52,7 @@ struct Wishes {
 };
 
 TEST(Windings, NoWishMakesADriveGuardItself) {
-  std::mt19937_64 random(std::random_device{}());
+  test::Random random(56);
   for (int run = 0; run < 40; ++run) {
     const device::Device d = any_device(random);
     Windings windings(d, kT_s);
@@ -119,14 +119,14 @@ double hottest_of(const JointAngles& pose, const Vec3& along) {
 }
 
 TEST(Windings, NoPullInAnyPoseMakesADriveGuardItself) {  // 0.88 N at full reach is 1.4 times what the waist may have
-  std::mt19937_64 random(std::random_device{}());
-  std::uniform_real_distribution<double> share(0.0, 1.0);
+  test::Random random(56);
+  const auto share = [&] { return random.share(); };
   const device::Device d = device::omni();
   double hottest = hottest_of({0.0, 0.45, 0.95}, Vec3::UnitX());
   EXPECT_LT(hottest, 1.0) << "the waist at full reach";
   for (int run = 0; run < 6; ++run) {
-    const JointAngles pose{-0.4 + 0.8 * share(random), 0.2 + 0.8 * share(random), 0.4 + 0.7 * share(random)};
-    const Vec3 along = Vec3(share(random) - 0.5, share(random) - 0.5, share(random) - 0.5).normalized();
+    const JointAngles pose{-0.4 + 0.8 * share(), 0.2 + 0.8 * share(), 0.4 + 0.7 * share()};
+    const Vec3 along = Vec3{share() - 0.5, share() - 0.5, share() - 0.5}.normalized();
     const double heat = hottest_of(pose, along);
     EXPECT_LT(heat, 1.0) << pose[0] << ' ' << pose[1] << ' ' << pose[2] << " along " << along.transpose();
     hottest = std::max(hottest, heat);

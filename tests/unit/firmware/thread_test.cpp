@@ -1,8 +1,7 @@
 // The thread's physics beside the loop, in virtual time: what it costs is simulated time, and the loop never waits.
 #include <gtest/gtest.h>
 
-#include <random>
-
+#include "tests/support/random.hpp"
 #include "tests/unit/firmware/virtual_rig.hpp"
 
 namespace ligature {
@@ -52,7 +51,7 @@ void expect_loop_in_time(const HeldRig& rig, const std::vector<rt::TickRecord>& 
 Nanoseconds usable(Nanoseconds law) {
   rt::ThreadDeadline deadline;
   Nanoseconds least = 1s;
-  std::mt19937 random(1);
+  test::Random random(1);
   for (int k = 0; k < 1000; ++k) {  // samples come between the earliest and the latest, a few bits apart
     const Nanoseconds sampled = 420us + std::chrono::microseconds(random() % 20);
     deadline.note(sampled);

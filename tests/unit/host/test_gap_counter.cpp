@@ -2,10 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <random>
 #include <set>
 
 #include "host/gap_counter.hpp"
+#include "tests/support/random.hpp"
 
 namespace ligature::host {
 namespace {
@@ -58,12 +58,12 @@ TEST(GapCounter, ANumberBeforeTheFirstExtendsTheSequence) {
 }
 
 TEST(GapCounter, AgreesWithASetOnShuffledLossyStreams) {
-  std::mt19937 random(1);
+  test::Random random(1);
   for (int round = 0; round < 50; ++round) {
     std::vector<int> stream;
     for (int i = 0; i < 200; ++i)
       for (auto copies = random() % 3; copies > 0; --copies) stream.push_back(i);
-    std::ranges::shuffle(stream, random);
+    random.shuffle(stream);
     GapCounter counter;
     std::set<std::int64_t> came;
     for (const int n : stream) EXPECT_EQ(counter.add(n), came.insert(n).second);

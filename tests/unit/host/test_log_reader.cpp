@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <random>
 
 #include "host/console/stop_signal.hpp"
 #include "host/errors.hpp"
 #include "host/log_reader.hpp"
 #include "host/sync_search.hpp"
 #include "synthetic_log.hpp"
+#include "tests/support/random.hpp"
 
 namespace ligature::host {
 namespace {
@@ -95,7 +95,7 @@ TEST(LogReader, NoFlippedBitGoesUnnoticed) {
       events.emplace_back(reinterpret_cast<const char*>(event->data.data()), event->data.size());
     return events;
   }();
-  std::mt19937 random(std::random_device{}());
+  ligature::test::Random random(98);
   const std::size_t first = 28 + kTicksChannel.size() + 8;  // behind what makes it a log at all
   for (int i = 0; i < 200; ++i) {
     std::string broken = whole;

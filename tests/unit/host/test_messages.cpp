@@ -1,9 +1,8 @@
 // A message is what anybody sent: whatever the bytes, decoding answers or refuses, never more.
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "synthetic_log.hpp"
+#include "tests/support/random.hpp"
 
 namespace ligature::host {
 namespace {
@@ -107,7 +106,7 @@ TEST(Messages, RefusesImplausibleValues) {
 }
 
 TEST(Messages, SurvivesRandomAndMutatedBytesOnEveryChannel) {
-  std::mt19937 random(3);
+  ligature::test::Random random(3);
   const std::vector<Bytes_> seeds{encoded(test::batch_of(7, 0, 3)),
                                   encoded(test::thread_of(0, test::straight_points(5))),
                                   encoded(some_status()),

@@ -5,6 +5,7 @@
 #include "host/knot/alexander.hpp"
 #include "host/knot/jones.hpp"
 #include "host/knot/projection.hpp"
+#include "tests/support/random.hpp"
 #include "tests/unit/knot/shapes.hpp"
 
 namespace ligature::knot {
@@ -44,7 +45,7 @@ TEST(Reduce, UndoesAClaspOfOppositeSignsOnly) {
 }
 
 TEST(Invariants, AreTheSameFromEveryDirection) {
-  std::mt19937 random(1);
+  test::Random random(1);
   for (int k = 0; k < 40; ++k) {
     const auto line = points(shapes::posed(shapes::figure_eight(40), random, 0.05));
     const auto d = project(line, Point::UnitZ());

@@ -4,6 +4,7 @@
 
 #include "host/knot/alexander.hpp"
 #include "host/knot/projection.hpp"
+#include "tests/support/random.hpp"
 #include "tests/unit/knot/shapes.hpp"
 
 namespace ligature::knot {
@@ -23,7 +24,7 @@ TEST(Polygon, AnUnknotShrinksToATriangle) {
 }
 
 TEST(Polygon, ATrefoilNeverShrinksBelowItsSixSticks) {
-  std::mt19937 random(1);
+  test::Random random(1);
   for (int k = 0; k < 50; ++k) {
     Polygon trefoil(points(shapes::posed(shapes::trefoil(60), random, 0.03)));
     trefoil.cut_corners();
@@ -33,12 +34,13 @@ TEST(Polygon, ATrefoilNeverShrinksBelowItsSixSticks) {
 }
 
 TEST(Polygon, ShakingKeepsTheKnot) {
-  std::mt19937 random(4);
+  test::Random random(4);
+  Draw draw(random());
   for (int k = 0; k < 50; ++k) {
     Polygon knot(points(shapes::posed(shapes::figure_eight(60), random, 0.02)));
     knot.cut_corners();
     for (int i = 0; i < 20; ++i) {
-      knot.shake(random);
+      knot.shake(draw);
       const auto d = simplest_view(knot.corners(), 12);
       ASSERT_TRUE(d);
       ASSERT_EQ(alexander(*d), (std::vector<int>{1, -3, 1}));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "host/knot/knot_table.hpp"
+#include "tests/support/random.hpp"
 #include "tests/unit/knot/shapes.hpp"
 
 namespace ligature::knot {
@@ -74,7 +75,7 @@ const std::vector<Braid>& braids() {
 std::string other(const std::string& hand) { return hand == "right" ? "left" : hand == "left" ? "right" : hand; }
 
 TEST(Recognise, ClosedBraidsFromTheClassicalTableAndTheirMirrorImages) {
-  std::mt19937 random(3);
+  test::Random random(3);
   for (const auto& b : braids()) {
     const auto line = posed(refined(braid_closure(b.word, b.strands), 3), random, 1e-3);
     EXPECT_EQ(named(line), std::string(b.type) + " " + b.hand);
@@ -83,7 +84,7 @@ TEST(Recognise, ClosedBraidsFromTheClassicalTableAndTheirMirrorImages) {
 }
 
 TEST(Recognise, DoesNotDependOnPoseNoiseStartOrDirection) {
-  std::mt19937 random(5);
+  test::Random random(5);
   for (int k = 0; k < 60; ++k) {
     auto a = posed(trefoil(70, -1), random, 0.02), b = posed(figure_eight(90), random, 0.02);
     std::rotate(a.begin(), a.begin() + 7 * (k % 10), a.end());
@@ -94,7 +95,7 @@ TEST(Recognise, DoesNotDependOnPoseNoiseStartOrDirection) {
 }
 
 TEST(Recognise, TangledUnknotsAreUnknots) {
-  std::mt19937 random(11);
+  test::Random random(11);
   for (int k = 0; k < 40; ++k) {
     const auto line = posed(tangled_unknot(150, random), random, 0.0);
     EXPECT_EQ(named(line), "0_1 none");
@@ -102,7 +103,7 @@ TEST(Recognise, TangledUnknotsAreUnknots) {
 }
 
 TEST(Recognise, ADoubledThreadTiedInATrefoilIsAnUnknot) {
-  std::mt19937 random(13);
+  test::Random random(13);
   for (int k = 0; k < 20; ++k) {
     const auto line = posed(doubled_trefoil(60, 0.3 * k), random, 0.0);
     EXPECT_EQ(named(line), "0_1 none");

@@ -5,8 +5,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <vector>
+
+#include "tests/support/random.hpp"
 
 namespace ligature::knot::shapes {
 
@@ -84,13 +85,12 @@ inline Polyline mirrored(Polyline line) {
 }
 
 /// A random rotation, and noise of the given size on every point.
-inline Polyline posed(Polyline line, std::mt19937& random, double noise) {
-  std::normal_distribution<double> normal;
-  const Eigen::Quaterniond q =
-      Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized();
+inline Polyline posed(Polyline line, test::Random& random, double noise) {
+  const auto normal = [&] { return random.normal(); };
+  const Eigen::Quaterniond q = Eigen::Quaterniond{normal(), normal(), normal(), normal()}.normalized();
   for (auto& p : line) {
     const Eigen::Vector3d v = q * Eigen::Vector3d(p[0], p[1], p[2]);
-    p = {v.x() + noise * normal(random), v.y() + noise * normal(random), v.z() + noise * normal(random)};
+    p = {v.x() + noise * normal(), v.y() + noise * normal(), v.z() + noise * normal()};
   }
   return line;
 }
@@ -125,10 +125,10 @@ inline Polyline doubled_trefoil(int n, double twist) {
 }
 
 /// Tangled to look at, but z rises all the way and the return runs outside: the unknot, whatever x and y do.
-inline Polyline tangled_unknot(int n, std::mt19937& random) {
-  std::uniform_real_distribution<double> angle(0.0, kTurn);
+inline Polyline tangled_unknot(int n, test::Random& random) {
+  const auto angle = [&] { return random.in(0.0, kTurn); };
   Polyline line;
-  const double p1 = angle(random), p2 = angle(random);
+  const double p1 = angle(), p2 = angle();
   for (int k = 0; k < n; ++k) {
     const double t = kTurn * k / n;
     line.push_back({std::sin(5 * t + p1) + std::cos(9 * t), std::cos(7 * t + p2) - std::sin(4 * t), 0.02 * k});

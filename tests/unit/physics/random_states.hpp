@@ -2,10 +2,10 @@
 // Random and degenerate configurations for property tests, and sums over the forces of a few nodes.
 
 #include <algorithm>
-#include <random>
 #include <vector>
 
 #include "firmware/physics/vec.hpp"
+#include "tests/support/random.hpp"
 
 namespace ligature::physics::test {
 
@@ -15,10 +15,9 @@ struct Nodes {
   std::vector<V> p, v;
 };
 
-class Random {
+class Random : public ligature::test::Random {
  public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  double in(double low, double high) { return std::uniform_real_distribution<>(low, high)(engine_); }
+  using ligature::test::Random::Random;
   double log_in(double low, double high) { return std::pow(10.0, in(std::log10(low), std::log10(high))); }
   V vector(double size = 1.0) { return {in(-size, size), in(-size, size), in(-size, size)}; }  // braces: in order
   V unit() {
@@ -30,9 +29,6 @@ class Random {
     for (int i = 0; i < n; ++i) s.p.push_back(vector()), s.v.push_back(vector());
     return s;
   }
-
- private:
-  std::mt19937 engine_;
 };
 
 /// Straight, right-angled, folded back, coincident, nearly straight and nearly folded chains of n nodes, all moving.

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <random>
 
 #include "firmware/physics/rod/band_columns.hpp"
+#include "tests/support/random.hpp"
 
 namespace ligature::physics::rod {
 namespace {
@@ -37,15 +37,15 @@ Dense dense(const BandSolver& s, int n) {
 }
 
 BandSolver random_system(int n, unsigned seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
-  const auto vector = [&] { return Vec{{normal(random), normal(random), normal(random), 0.0}}; };
+  test::Random random(seed);
+  const auto normal = [&] { return random.normal(); };
+  const auto vector = [&] { return Vec{{normal(), normal(), normal(), 0.0}}; };
   BandSolver s;
   s.resize(n);
   for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
     s.diagonal[i] = dyad(vector(), 1.0, 20.0);  // large enough to be positive definite
     s.couple[i] = dyad(vector(), 1.0, -2.0);
-    s.skip[i] = normal(random);
+    s.skip[i] = normal();
     s.rhs[i] = vector();
   }
   return s;

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "firmware/physics/rod/contact.hpp"
+#include "tests/support/random.hpp"
 
 namespace ligature::physics::rod {
 namespace {
@@ -22,9 +22,9 @@ struct Jam {
   std::vector<Vec> keep{static_cast<std::size_t>(kRows)}, free{static_cast<std::size_t>(kNodes)};
 
   explicit Jam(unsigned seed) {
-    std::mt19937 random(seed);
-    std::normal_distribution<double> normal;
-    const auto vector = [&] { return Vec{{normal(random), normal(random), normal(random), 0.0}}; };
+    test::Random random(seed);
+    const auto normal = [&] { return random.normal(); };
+    const auto vector = [&] { return Vec{{normal(), normal(), normal(), 0.0}}; };
     solver.resize(kNodes);
     for (std::size_t i = 0; i < static_cast<std::size_t>(kNodes); ++i) {
       solver.diagonal[i] = dyad(vector(), 40.0, 20.0);
@@ -138,7 +138,7 @@ TEST(ContactNewton, KnowsWhatItsImpulsesDo) {  // without asking the solver
 // where it has not moved, and coupled anew where it has.
 TEST(ContactNewton, KnowsItsContactsAgain) {
   Jam jam(4);
-  std::mt19937 random(9);
+  test::Random random(9);
   const std::vector<Contact> all = jam.rows;
   ContactNewton newton;
   newton.reserve();
@@ -146,7 +146,7 @@ TEST(ContactNewton, KnowsItsContactsAgain) {
   long again = 0;
   for (int substep = 0; substep < 40; ++substep) {
     jam.rows = all;
-    std::shuffle(jam.rows.begin(), jam.rows.end(), random);
+    random.shuffle(jam.rows);
     jam.rows.resize(4 + random() % (all.size() - 3));
     for (auto& c : jam.rows) {
       if (random() % 3 == 0) c.w[0] = -0.1 * static_cast<double>(1 + random() % 8), c.w[1] = -1.0 - c.w[0];
@@ -167,7 +167,7 @@ TEST(ContactNewton, KnowsItsContactsAgain) {
     for (const auto k : newton.rows())
       ASSERT_LT(norm(u[static_cast<std::size_t>(k)] - truth[static_cast<std::size_t>(k)]), 1e-4) << substep << ' ' << k;
   }
-  EXPECT_GT(again, 50);
+  EXPECT_GT(again, 15);  // some 75, by draw 49 and more
 }
 
 // Many contacts are not coupled anew in every substep; those that carry no load any more make room.

@@ -2,8 +2,8 @@
 // A ball of thread, for tests of what touching costs and does.
 
 #include <cmath>
-#include <random>
 
+#include "tests/support/random.hpp"
 #include "tests/unit/rod/rods.hpp"
 
 namespace ligature::test {
@@ -11,10 +11,9 @@ namespace ligature::test {
 /// A random walk of the mesh's segments inside a sphere of `radius` diameters, so that everything is near everything;
 /// every node thrown at up to `speed_m_per_s`.
 inline void crumple(Rod& rod, unsigned seed, double radius, double speed_m_per_s) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal(0.0, 1.0);
-  const auto vector = [&] {  // as arguments of one call the draws would come in the compiler's order
-    const double x = normal(random), y = normal(random), z = normal(random);
+  test::Random random(seed);
+  const auto vector = [&] {
+    const auto [x, y, z] = random.normals();
     return make(x, y, z);
   };
   auto& state = rod.state();

@@ -6,8 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <vector>
+
+#include "tests/support/random.hpp"
 
 namespace ligature::physics::rod {
 namespace {
@@ -16,10 +17,10 @@ constexpr std::size_t kMost = 61;
 
 /// M x = b with a known x, and the largest difference from it.
 double error_of(Dense& dense, const std::vector<double>& m, std::size_t n, unsigned seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
+  test::Random random(seed);
+  const auto normal = [&] { return random.normal(); };
   std::vector<double> x(n);
-  for (auto& value : x) value = normal(random);
+  for (auto& value : x) value = normal();
   dense.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     float* const row = dense.row(i);
@@ -38,10 +39,10 @@ TEST(Dense, SolvesWhatIsNearlySymmetric) {  // of every size up to eight panels:
   Dense dense;
   dense.reserve(kMost);
   for (std::size_t n = 1; n <= kMost; ++n) {
-    std::mt19937 random(static_cast<unsigned>(n));
-    std::normal_distribution<double> normal;
+    test::Random random(static_cast<unsigned>(n));
+    const auto normal = [&] { return random.normal(); };
     std::vector<double> a(n * n), m(n * n);
-    for (auto& value : a) value = normal(random);
+    for (auto& value : a) value = normal();
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j = 0; j < n; ++j) {
         for (std::size_t k = 0; k < n; ++k) m[i * n + j] += a[i * n + k] * a[j * n + k] / static_cast<double>(n);

@@ -2,10 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "firmware/physics/rod/closest.hpp"
 #include "firmware/physics/rod/contact.hpp"
+#include "tests/support/random.hpp"
 
 namespace ligature::test {
 namespace {
@@ -48,9 +47,9 @@ TEST(Guard, LetsPassWhatFliesByOrAway) {
 }
 
 TEST(Guard, LetsNothingThrough) {
-  std::mt19937 random(11);
-  std::normal_distribution<double> normal(0.0, 1.0);
-  const auto vec = [&](double size) { return size * Vec{{normal(random), normal(random), normal(random), 0.0}}; };
+  test::Random random(11);
+  const auto normal = [&] { return random.normal(); };
+  const auto vec = [&](double size) { return size * Vec{{normal(), normal(), normal(), 0.0}}; };
   int free = 0, held = 0;
   for (int round = 0; round < 4000; ++round) {
     Two two;

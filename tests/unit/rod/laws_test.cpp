@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
+#include "tests/support/random.hpp"
 #include "tests/unit/rod/crumple.hpp"
 
 namespace ligature::test {
@@ -17,10 +17,10 @@ constexpr double kG = 9.81;
 
 // Inside the cone an impulse stays; outside, its part across the normal is mu times its part along it; a pull is none.
 TEST(Cone, KeepsTheNormalPartAndCutsTheRestToItsEdge) {
-  std::mt19937 random(31);
-  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  test::Random random(31);
+  const auto any = [&] { return random.in(-1.0, 1.0); };
   const auto vector = [&] {
-    const double x = any(random), y = any(random), z = any(random);
+    const double x = any(), y = any(), z = any();
     return make(x, y, z);
   };
   int cut = 0, kept = 0, pulls = 0;
@@ -28,7 +28,7 @@ TEST(Cone, KeepsTheNormalPartAndCutsTheRestToItsEdge) {
     const Vec p = vector(), aim = vector();
     if (norm(aim) < 0.1) continue;
     const Vec n = (1.0 / norm(aim)) * aim;
-    const double mu = any(random) + 1.0, pn = dot(p, n);
+    const double mu = any() + 1.0, pn = dot(p, n);
     const Vec across = p - pn * n, q = in_cone(p, n, mu);
     const double size = norm(across);
     if (pn <= 0.0) {

@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "tests/support/crossings.hpp"
+#include "tests/support/random.hpp"
 #include "tests/unit/rod/rods.hpp"
 
 namespace ligature::test {
@@ -38,14 +38,16 @@ void helix_around_a_strand(Rod& rod, double phase, double inside_m) {
 }
 
 TEST(Remesh, CutsNothing) {  // 60 places of the strand between arc and chord; merges must happen, crossings must not
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> phase(0.0, 2.0 * std::numbers::pi), inside(1.12, 1.6);
+  test::Random random(3);
+  const auto phase = [&] { return random.in(0.0, 2.0 * std::numbers::pi); };
+  const auto inside = [&] { return random.in(1.12, 1.6); };
   long crossings = 0, remeshes = 0;
   for (int k = 0; k < 60; ++k) {
     Material m;
     m.length_m = 0.235;
     Rod rod(m, steps_of(1e-7), Parts{false, true, true, false, true}, 99);
-    helix_around_a_strand(rod, phase(random), inside(random) * 2.0 * m.radius_m);
+    const double at = phase(), radius = inside() * 2.0 * m.radius_m;
+    helix_around_a_strand(rod, at, radius);
     rod.hold_mesh(true);
     rod.tick();
     for (int i = 0; i < 10; ++i) {

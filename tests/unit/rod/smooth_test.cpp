@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "firmware/physics/rod/smooth.hpp"
+#include "tests/support/random.hpp"
 
 namespace ligature::test {
 namespace {
@@ -74,9 +74,9 @@ TEST(Smooth, StaysWhereASegmentIsSplit) {
 
 // Four pairs at a time are what each is alone: across, side by side, without length, on the corners.
 TEST(Smooth, FourAtATimeAreAsOne) {
-  std::mt19937 random(5);
-  std::normal_distribution<double> normal(0.0, kDiameter_m);
-  const auto vec = [&] { return Vec{{normal(random), normal(random), normal(random), 0.0}}; };
+  test::Random random(5);
+  const auto normal = [&] { return kDiameter_m * random.normal(); };
+  const auto vec = [&] { return Vec{{normal(), normal(), normal(), 0.0}}; };
   for (int round = 0; round < 200; ++round) {
     SmoothOf<Vec, double> a[4], b[4];
     for (int l = 0; l < 4; ++l) {

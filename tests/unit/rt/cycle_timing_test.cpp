@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <vector>
+
+#include "tests/support/random.hpp"
 
 namespace ligature::rt {
 namespace {
@@ -19,11 +20,11 @@ TEST(DurationStatistics, IsZeroWhenEmpty) {
 
 TEST(DurationStatistics, MatchesTheSampleItself) {
   DurationStatistics s;
-  std::mt19937 random(7);
-  std::lognormal_distribution<double> duration(std::log(5e4), 1.0);
+  test::Random random(7);
+  const auto duration = [&] { return 5e4 * std::exp(random.normal()); };
   std::vector<std::int64_t> all;
   for (int i = 0; i < 20000; ++i) {
-    all.push_back(static_cast<std::int64_t>(duration(random)));
+    all.push_back(static_cast<std::int64_t>(duration()));
     s.add(all.back());
   }
   std::sort(all.begin(), all.end());

@@ -2,10 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "protocol/device/device_file.hpp"
 #include "sim_device/plant.hpp"
+#include "tests/support/random.hpp"
 #include "tests/unit/sim_device/omni.hpp"
 
 namespace ligature::sim {
@@ -13,10 +12,12 @@ namespace {
 
 const double kUpperArm_m = device::omni().links_m[0], kForearm_m = device::omni().links_m[1];
 
-Vec3 random_joints(std::mt19937& random) {
-  std::uniform_real_distribution<double> waist(-0.9, 0.9), shoulder(0.0, 1.7), elbow(-0.75, 1.2);
-  const double q2 = shoulder(random);
-  return {waist(random), q2, q2 + elbow(random)};
+Vec3 random_joints(test::Random& random) {
+  const auto waist = [&] { return random.in(-0.9, 0.9); };
+  const auto shoulder = [&] { return random.in(0.0, 1.7); };
+  const auto elbow = [&] { return random.in(-0.75, 1.2); };
+  const double q2 = shoulder();
+  return {waist(), q2, q2 + elbow()};
 }
 
 TEST(Kinematics, HomeIsWhereItIsSaidToBe) {
@@ -27,7 +28,7 @@ TEST(Kinematics, HomeIsWhereItIsSaidToBe) {
 }
 
 TEST(Kinematics, AnglesOfATipLeadBackToIt) {  // over the whole reach inside the stops
-  std::mt19937 random(11);
+  test::Random random(11);
   for (int i = 0; i < 2000; ++i) {
     const Vec3 q = random_joints(random);
     const Vec3 p_DT = tip_D_m(q);
@@ -44,7 +45,7 @@ TEST(Kinematics, LinksHaveTheirLengths) {  // a closed form that knows nothing o
 }
 
 TEST(Kinematics, JacobianIsTheDerivativeOfTheTip) {  // central difference, error of order h^2
-  std::mt19937 random(12);
+  test::Random random(12);
   constexpr double h = 1e-6;
   for (int i = 0; i < 200; ++i) {
     const Vec3 q = random_joints(random);

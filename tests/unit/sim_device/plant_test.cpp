@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "sim_device/hand.hpp"
+#include "tests/support/random.hpp"
 #include "tests/unit/sim_device/omni.hpp"
 
 namespace ligature::sim {
@@ -22,10 +21,10 @@ Plant moving(const PlantParameters& parameters, const Vec3& q_rad, const Vec3& m
 }
 
 TEST(Plant, KineticEnergyNeverGrowsWithoutTorque) {  // friction, and stops that do not rebound
-  std::mt19937 random(21);
-  std::uniform_real_distribution<double> torque(-0.9, 0.9);
+  test::Random random(21);
+  const auto torque = [&] { return random.in(-0.9, 0.9); };
   for (int run = 0; run < 50; ++run) {
-    Plant plant = moving({}, home_joints(), {torque(random), torque(random), torque(random)});
+    Plant plant = moving({}, home_joints(), {torque(), torque(), torque()});
     double energy_J = plant.kinetic_J();
     for (int i = 0; i < 20000; ++i) {
       plant.step(Vec3::Zero(), Vec3::Zero(), kStep_s);

@@ -10,12 +10,12 @@
 #include <atomic>
 #include <cstdio>
 #include <fstream>
-#include <random>
 
 #include "host/errors.hpp"
 #include "host/export.hpp"
 #include "host/flight_reader.hpp"
 #include "host/gap_filler.hpp"
+#include "tests/support/random.hpp"
 #include "tests/unit/telemetry/flight_files.hpp"
 
 namespace ligature::telemetry {
@@ -186,7 +186,7 @@ TEST_F(FlightSlotsTest, AHundredKillsLoseNothingThatWasWritten) {
   void* shared = mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   ASSERT_NE(shared, MAP_FAILED);
   auto& written = *new (shared) std::atomic<std::int64_t>(0);
-  std::mt19937 random(7);
+  ligature::test::Random random(7);
   for (int kill_number = 0; kill_number < 100; ++kill_number) {
     written = 0;
     const pid_t child = fork();
