@@ -73,7 +73,7 @@ void shape_across(Rod& rod, double gap, double aside, bool end_on, double speed1
 
 int main(int argc, char** argv) {
   const long approaches = argc > 1 ? std::atol(argv[1]) : 10000;
-  test::Random random(argc > 2 ? static_cast<unsigned>(std::atoi(argv[2])) : 1U);
+  ligature::test::Random random(argc > 2 ? static_cast<unsigned>(std::atoi(argv[2])) : 1U);
   const bool contact = argc < 4;
   const auto uniform = [&](double a, double b) { return random.in(a, b); };
   long found = 0, cut = 0, remeshes = 0, guarded = 0, substeps = 0;
