@@ -10,6 +10,7 @@ Controller::Controller(const scene::Hands& hands, const Settings& settings) noex
       hands_{HandControl(settings.device, hands, kPeriod_s), HandControl(settings.device, hands, kPeriod_s)},
       torque_{TorqueWatch(settings.device, settings.watchdog_ticks),
               TorqueWatch(settings.device, settings.watchdog_ticks)},
+      loss_{LossWatch(settings.watchdog_ticks), LossWatch(settings.watchdog_ticks)},
       scale_goal_(hands.force_scale),
       armed_(settings.armed) {}
 

@@ -11,13 +11,16 @@ namespace ligature::control {
 
 /// Counts what one hand's bus loses, each way for itself: samples that did not come, and torques of which a drive says
 /// that it makes an older one for want of an RPDO. Each count leaks: + kLost for a loss, - kCame for what came, never
-/// below 0. So a share of losses above kCame / (kCame + kLost), a third, ends in kMost sooner or later, and one well
+/// below 0. So a share of losses above kCame / (kCame + kLost), a third, ends in the most sooner or later, and one well
 /// below it does not. A third is where forces are still told truly (docs/haptics.md): a sample of three frames of which
-/// 12 % are lost. Losses in a row are another fault's (joint messages too old), which comes first. O(1).
+/// 12 % are lost. Losses in a row are another fault's (joint messages too old), which comes first, so the most is three
+/// times the watchdog's ticks: who gives a bus more time for a silence gives it more for losses. O(1).
 class LossWatch {
  public:
   static constexpr int kLost = 2, kCame = 1;
-  static constexpr int kMost = 60;  ///< 30 losses with nothing between them
+  static constexpr int kMost = 60;  ///< with the usual watchdog of 20 ticks: 30 losses with nothing between them
+
+  explicit LossWatch(std::int32_t watchdog_ticks = 20) noexcept : most_(std::max(kMost, 3 * watchdog_ticks)) {}
 
   /// This tick's reading.
   void look(const rt::HandReading& reading) noexcept {
@@ -28,13 +31,12 @@ class LossWatch {
     count(torques_, std::ranges::any_of(reading.torque_held, [](int held) { return held > 0; }));
   }
   void forget() noexcept { samples_ = torques_ = 0; }
-  [[nodiscard]] bool is_lossy() const noexcept { return samples_ >= kMost || torques_ >= kMost; }
+  [[nodiscard]] bool is_lossy() const noexcept { return samples_ >= most_ || torques_ >= most_; }
 
  private:
-  static void count(int& losses, bool lost) noexcept {
-    losses = std::clamp(losses + (lost ? kLost : -kCame), 0, kMost);
-  }
+  void count(int& losses, bool lost) const noexcept { losses = std::clamp(losses + (lost ? kLost : -kCame), 0, most_); }
 
+  int most_;
   std::int32_t last_age_ = 0;
   int samples_ = 0, torques_ = 0;
 };

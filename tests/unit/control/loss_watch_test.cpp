@@ -86,6 +86,26 @@ TEST(LossWatch, CountsSamplesAndTorquesEachForItself) {
   }
 }
 
+/// A silence is the watchdog's matter, however long that is; half of the samples lost are still found.
+TEST(LossWatch, LeavesASilenceToTheWatchdog) {
+  for (const int watchdog : {2, 20, 21, 300, 1000, 10000}) {
+    LossWatch silent(watchdog), half(watchdog);
+    rt::HandReading r;
+    r.valid = true;
+    for (int k = 1; k <= watchdog; ++k) {
+      r.age_ticks = k;
+      silent.look(r);
+      EXPECT_FALSE(silent.is_lossy()) << watchdog << " " << k;
+    }
+    int k = 0;
+    for (; k < 7 * watchdog + 200 && !half.is_lossy(); ++k) {
+      r.age_ticks = k % 2;
+      half.look(r);
+    }
+    EXPECT_TRUE(half.is_lossy()) << watchdog;
+  }
+}
+
 TEST(LossWatch, ASampleThatComesAPeriodLateIsNotLost) {
   LossWatch watch;
   rt::HandReading r;
