@@ -1,0 +1,156 @@
+// What drives tell besides their joints, and what somebody else on the bus sends.
+#include <utility>
+
+#include "protocol/can/emcy.hpp"
+#include "protocol/can/heartbeat.hpp"
+#include "protocol/can/nmt.hpp"
+#include "protocol/can/sdo.hpp"
+#include "protocol/can/units.hpp"
+#include "tests/unit/platform/hand_link_fixture.hpp"
+
+namespace ligature::platform {
+namespace {
+
+TEST_F(HandLinkTest, ADriveThatDropsOutOrFaultsIsSeen) {
+  period();
+  link.send_sync();
+  answer(0);
+  answer(1, State::kSwitchedOn);
+  answer(2);
+  link.drain();
+  EXPECT_FALSE(link.reading().enabled);
+  EXPECT_FALSE(link.reading().drive_fault);
+  link.send_sync();
+  answer(0);
+  answer(1, State::kFault);
+  answer(2);
+  link.drain();
+  EXPECT_TRUE(link.reading().drive_fault);
+}
+
+TEST_F(HandLinkTest, AnEmergencyCountsUntilItIsOver) {
+  period();
+  bus.inbox.push_back(can::encode(can::Emergency{kNodes[1], can::emcy::kRpdoTimeout, can::emcy::kGenericBit}));
+  EXPECT_TRUE(period().drive_fault);
+  bus.inbox.push_back(can::encode(can::Emergency{kNodes[1], can::emcy::kNoError, 0}));
+  EXPECT_FALSE(period().drive_fault);
+}
+
+TEST_F(HandLinkTest, ANodeThatRebootedIsTrouble) {
+  period();
+  bus.inbox.push_back(can::encode(can::Heartbeat{kNodes[0], can::NmtState::kBootUp}));
+  EXPECT_TRUE(period().drive_fault);
+}
+
+TEST_F(HandLinkTest, WhatOnlyAControllerSendsIsSeenForWhatItIs) {
+  using rt::Foreign;
+  const std::pair<can::Frame, Foreign> all[] = {
+      {can::encode(can::kWaist, can::Rpdo1{can::cia402::kControlEnableOperation, 3000}), Foreign::kTorque},
+      {{0x301, 8, {}}, Foreign::kTorque},  // RPDO 2 and 4, that a drive may have been delivered with
+      {{0x503, 8, {}}, Foreign::kTorque},
+      {can::sync_frame(), Foreign::kBeat},
+      {{0x080, 1, {7}}, Foreign::kBeat},  // with a counter
+      {can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}), Foreign::kBeat},
+      {can::encode_nmt(can::NmtCommand::kStart), Foreign::kNetwork},
+      {can::encode_nmt(can::NmtCommand::kResetNode, can::kElbow), Foreign::kNetwork},
+      {{0x7E5, 8, {}}, Foreign::kNetwork},
+      {can::sdo_read(can::kElbow, can::od::kStatusword), Foreign::kObject},
+      {can::sdo_write(can::kElbow, can::od::kMaxTorque, 1, 2), Foreign::kObject}};
+  for (const auto& [frame, kind] : all) {
+    FakeBus own;
+    HandLink hand(own, device::omni());
+    hand.send_sync();
+    EXPECT_EQ(hand.reading().foreign, Foreign::kNone);
+    own.inbox.push_back(frame);
+    hand.drain();
+    EXPECT_EQ(hand.reading().foreign, kind) << frame.id;
+    own.inbox.push_back(can::sync_frame());
+    for (int i = 0; i < 3; ++i) hand.send_sync();
+    EXPECT_EQ(hand.reading().foreign, kind) << "the first one, kept for the run";
+  }
+}
+
+TEST_F(HandLinkTest, WhatDrivesSendIsNotForeign) {
+  const can::Frame all[] = {can::encode(can::kWaist, can::Tpdo1{}),
+                            {0x281, 8, {}},
+                            {0x481, 8, {}},
+                            can::encode(can::Emergency{can::kElbow, 0, 0}),
+                            can::encode(can::Heartbeat{can::kElbow, can::NmtState::kOperational}),
+                            can::encode(can::Sdo{can::SdoKind::kWritten, can::kElbow, can::od::kMaxTorque, 0, 0}),
+                            {0x7E4, 8, {}}};
+  for (const auto& frame : all) bus.inbox.push_back(frame);
+  EXPECT_EQ(period().foreign, rt::Foreign::kNone);
+}
+
+TEST_F(HandLinkTest, ADriveThatSaysItsTorqueIsAstrayIsHeard) {
+  EXPECT_FALSE(period().torque_astray);
+  for (std::size_t astray = 0; astray < 3; ++astray) {
+    link.send_sync();
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::uint16_t bit = j == astray ? can::cia402::kTorqueAstrayBit : std::uint16_t{0};
+      const auto word = static_cast<std::uint16_t>(can::cia402::statusword_of(State::kOperationEnabled) | bit);
+      bus.inbox.push_back(can::encode(kNodes[j], can::Tpdo1{word, 100, 0, 0}));
+    }
+    link.drain();
+    EXPECT_TRUE(link.reading().torque_astray) << astray;
+  }
+  EXPECT_FALSE(period().torque_astray);
+}
+
+TEST_F(HandLinkTest, ADriveThatMakesLessThanItWasAskedForIsHeard) {
+  for (std::size_t limited = 0; limited < 3; ++limited) {
+    link.send_sync();
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::uint16_t bit = j == limited ? can::cia402::kInternalLimitBit : std::uint16_t{0};
+      const auto word = static_cast<std::uint16_t>(can::cia402::statusword_of(State::kOperationEnabled) | bit);
+      bus.inbox.push_back(can::encode(kNodes[j], can::Tpdo1{word, 100, 0, 0}));
+    }
+    link.drain();
+    for (std::size_t j = 0; j < 3; ++j) EXPECT_EQ(link.reading().torque_limited[j], j == limited);
+  }
+}
+
+TEST_F(HandLinkTest, ANodeThatIsNotOperationalIsTroubleUntilItIs) {
+  for (const auto state : {can::NmtState::kStopped, can::NmtState::kPreOperational, can::NmtState::kBootUp}) {
+    bus.inbox.push_back(can::encode(can::Heartbeat{kNodes[2], state}));
+    EXPECT_TRUE(period().drive_fault) << static_cast<int>(state);
+    bus.inbox.push_back(can::encode(can::Heartbeat{kNodes[2], can::NmtState::kOperational}));
+    EXPECT_FALSE(period().drive_fault);
+  }
+}
+
+TEST_F(HandLinkTest, ADriveOnItsWayIntoAFaultIsInOne) {
+  link.send_sync();
+  answer(0);
+  answer(1, State::kFaultReactionActive);
+  answer(2);
+  link.drain();
+  EXPECT_TRUE(link.reading().drive_fault);
+}
+
+/// What it complained of is over when somebody asked it back up and it came: not while it is merely operated.
+TEST_F(HandLinkTest, AnEmergencyIsForgottenByEnablingOnly) {
+  period();
+  bus.inbox.push_back(can::encode(can::Emergency{kNodes[1], can::emcy::kRpdoTimeout, can::emcy::kGenericBit}));
+  for (const auto request : {rt::DriveRequest::kOperate, rt::DriveRequest::kHold, rt::DriveRequest::kStop}) {
+    EXPECT_TRUE(period().drive_fault);
+    link.write({{}, request});
+  }
+  EXPECT_TRUE(period().drive_fault);
+  link.write({{}, rt::DriveRequest::kEnable});
+  EXPECT_FALSE(period().drive_fault);
+}
+
+TEST_F(HandLinkTest, NoHeartbeatGoesOutOnceSomebodyElseCommandsTheDrives) {
+  (void)link.write({});
+  bus.inbox.push_back(can::encode(can::kWaist, can::Rpdo1{can::cia402::kControlEnableOperation, 3000}));
+  bus.sent.clear();
+  for (int i = 0; i < 200; ++i) {
+    period();
+    (void)link.write({});
+  }
+  for (const auto& f : bus.sent) EXPECT_NE(f.id, 0x77FU);
+}
+
+}  // namespace
+}  // namespace ligature::platform
