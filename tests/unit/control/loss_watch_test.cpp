@@ -106,6 +106,18 @@ TEST(LossWatch, LeavesASilenceToTheWatchdog) {
   }
 }
 
+TEST(LossWatch, ASilenceOfAHandIsTheFaultOfTheRigsOwnWatchdog) {
+  for (const int watchdog : {20, 300}) {
+    Rig rig(Rig::scene(), device::omni(), watchdog);
+    rig.ticks(1000);
+    for (int k = 0; k < watchdog + 2; ++k) {
+      ++rig.in.reading.hand[0].age_ticks;
+      rig.tick();
+    }
+    EXPECT_EQ(rig.controller.fault(), Fault::kTpdoTooOld) << watchdog;
+  }
+}
+
 TEST(LossWatch, ASampleThatComesAPeriodLateIsNotLost) {
   LossWatch watch;
   rt::HandReading r;

@@ -82,6 +82,12 @@ TEST(Admission, WorkIsWhatTheTimeGivenBuys) {
   EXPECT_EQ(measure_thread(paper(20), 800.0, 0.0).work, 0) << "a model without such a bound";
 }
 
+/// A thread that looks for contacts needs that much at least: with less nothing of it moves.
+TEST(Admission, ALongThreadGetsWhatItsOwnLookForContactsTakes) {
+  const auto scene = scene_of("suture-3-0.toml", 400);
+  EXPECT_EQ(measure_thread(scene, 50.0, 0.0).work, 1'000'000 + 400 * 2'000) << "in a time that buys nothing";
+}
+
 TEST(Admission, MoreWorkLosesLessOfASquareKnot) {
   const auto lost = [](int work) {
     auto scene = scene_of("suture-3-0-square.toml", 154);
