@@ -23,8 +23,6 @@ namespace ligature {
 template <Clock ClockT>
 class ThreadContext {
  public:
-  static constexpr std::int64_t kTicksPerShape = 8;
-
   ThreadContext(ClockT& clock, physics::Simulation& thread, control::ThreadExchange& exchange,
                 rt::LatestValue<rt::ThreadSnapshot>& shape) noexcept
       : clock_(clock), thread_(thread), exchange_(exchange), shape_(shape) {}
@@ -62,12 +60,9 @@ class ThreadContext {
   void publish() noexcept {
     exchange_.results.back() = result_;
     exchange_.results.publish();
-    if (result_.tick / kTicksPerShape == shape_of_) return;
-    shape_of_ = result_.tick / kTicksPerShape;
-    rt::ThreadSnapshot& shape = shape_.back();
-    control::report(thread_.nodes_W(), result_, shape);
-    const auto count = static_cast<std::size_t>(shape.count);
-    thread_.describe(std::span(shape.tension_N).first(count), std::span(shape.turn_rad).first(count));
+    if (result_.tick / control::kTicksPerShape == shape_of_) return;
+    shape_of_ = result_.tick / control::kTicksPerShape;
+    control::report(thread_, result_, shape_.back());
     shape_.publish();
   }
 

@@ -41,8 +41,8 @@ class LcmLink {
   /// @param message an lcm-gen type. @throws RunFailed when it could not be sent.
   template <class M>
   void publish(std::string_view channel, const M& message) {
-    std::vector<std::byte> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    std::vector<std::byte> bytes;
+    encode(message, bytes);
     publish_bytes(channel, bytes);
   }
 

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "ligature_msg/ack_t.hpp"
 #include "ligature_msg/command_t.hpp"
@@ -46,6 +47,13 @@ template <>
 std::optional<ligature_msg::command_t> decode(Bytes message);
 template <>
 std::optional<ligature_msg::offer_t> decode(Bytes message);
+
+/// The bytes of a message (an lcm-gen type), in a buffer that may be used again.
+template <class M>
+void encode(const M& message, std::vector<std::byte>& bytes) {
+  bytes.resize(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+}
 
 /// Whether a message of one of our channels can be read; true for channels that are not ours.
 [[nodiscard]] bool is_readable(std::string_view channel, Bytes message);

@@ -17,8 +17,7 @@ void Recording::take(const Message& message) {
 
 void Recording::fetch(GapFiller::Ends ends) {
   const auto emit = [this](const ligature_msg::tick_batch_t& batch) {
-    bytes_.resize(static_cast<std::size_t>(batch.getEncodedSize()));
-    batch.encode(bytes_.data(), 0, static_cast<int>(bytes_.size()));
+    encode(batch, bytes_);
     log_.write(now_us(), kTicksChannel, bytes_);
     waiting_.push_back(bytes_);
   };

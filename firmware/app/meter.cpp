@@ -23,7 +23,7 @@ constexpr int kRepeats = 3;             // of the same tick; the least disturbed
 constexpr int kTicksPerShape = 4;       // the first finds contacts, the next ones have to resolve them
 constexpr long kMostWork = 16'000'000;  // more is of no use to any knot (docs/rod-knots.md),
 constexpr long kLeastWork = 1'000'000;  // and with less nothing holds: the clock ends such ticks
-constexpr long kLeastOfANode = 2'000;   // more than twice what a look for contacts takes: without it nothing moves
+constexpr long kLeastOfANode = 2'000;   // twice what a search for contacts takes: with less nothing moves
 constexpr double kSpare = 0.95;         // of the time given: the rest is for what was not tried
 constexpr double kRound = 100'000.0;    // instructions: the same machine finds the same budget
 

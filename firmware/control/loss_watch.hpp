@@ -10,11 +10,12 @@
 namespace ligature::control {
 
 /// Counts what one hand's bus loses, each way for itself: samples that did not come, and torques of which a drive says
-/// that it makes an older one for want of an RPDO. Each count leaks: + kLost for a loss, - kCame for what came, never
-/// below 0. So a share of losses above kCame / (kCame + kLost), a third, ends in the most sooner or later, and one well
-/// below it does not. A third is where forces are still told truly (docs/haptics.md): a sample of three frames of which
-/// 12 % are lost. Losses in a row are another fault's (joint messages too old), which comes first, so the most is three
-/// times the watchdog's ticks: who gives a bus more time for a silence gives it more for losses. O(1).
+/// that it makes an older one for want of an RPDO. A loss adds kLost to a count, what came takes kCame from it, and no
+/// count is below 0. So losses of more than a third, kCame / (kCame + kLost), reach the limit sooner or later, and a
+/// share well below that never does. Up to a third forces are told truly (docs/haptics.md): that is 12 % of the frames,
+/// three of which make a sample.
+/// A silence belongs to another fault (joint messages too old), which must come first: the limit is three times the
+/// watchdog's ticks, since each tick of silence adds two. O(1).
 class LossWatch {
  public:
   static constexpr int kLost = 2, kCame = 1;

@@ -14,6 +14,9 @@
 
 namespace ligature::control {
 
+/// Ticks of the thread between two shapes that it tells.
+inline constexpr std::int64_t kTicksPerShape = 8;
+
 /// What the loop asks for, once a period.
 struct ThreadRequest {
   std::int64_t tick = -1;   ///< the period

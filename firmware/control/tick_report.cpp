@@ -100,4 +100,10 @@ void report(std::span<const physics::Vec3> nodes_W, const ThreadResult& thread, 
   }
 }
 
+void report(const physics::Simulation& thread, const ThreadResult& result, rt::ThreadSnapshot& snapshot) noexcept {
+  report(thread.nodes_W(), result, snapshot);
+  const auto count = static_cast<std::size_t>(snapshot.count);
+  thread.describe(std::span(snapshot.tension_N).first(count), std::span(snapshot.turn_rad).first(count));
+}
+
 }  // namespace ligature::control

@@ -23,5 +23,7 @@ void report(const physics::HandContact& contact, std::size_t hand, rt::TickRecor
 
 /// The shape, as many nodes as fit.
 void report(std::span<const physics::Vec3> nodes_W, const ThreadResult& thread, rt::ThreadSnapshot& snapshot) noexcept;
+/// The whole shape, tension and turn included.
+void report(const physics::Simulation& thread, const ThreadResult& result, rt::ThreadSnapshot& snapshot) noexcept;
 
 }  // namespace ligature::control

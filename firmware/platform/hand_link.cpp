@@ -38,9 +38,9 @@ void HandLink::send_sync() noexcept {
   send(can::sync_frame());
 }
 
-/// Every other frame beats a heartbeat, and keeps those behind it in the queue. So it goes out when the drives have
-/// answered and the bus is free, and no more once somebody else commands them: by its absence they let go by
-/// themselves.
+/// A heartbeat has the lowest priority on the bus: while others send it waits, and so does what is queued behind it.
+/// Hence it is sent when the drives have answered and the bus is free; and not at all once a foreign controller was
+/// heard: a flood would keep NMT stop waiting behind it, and drives that miss it let go by themselves.
 void HandLink::beat() noexcept {
   if (foreign_ != rt::Foreign::kNone) return;
   if (--periods_to_heartbeat_ >= 0) return;

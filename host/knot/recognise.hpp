@@ -31,7 +31,8 @@ struct KnotResult {
 ///               closed line that lies several times in itself.
 /// @param closed whether the last point is joined to the first (a repeated first point at the end does no harm).
 /// What is not named by one course of random moves is tried by others (each from a seed of its own), where a diagram of
-/// 14 crossings or fewer says that a name may be near. Deterministic, and the same with every build. Cost about O(n^2 / 16): about 1 ms at n = 500 (Knots.Cost bounds the instructions).
+/// 14 crossings or fewer says that a name may be near. Deterministic, and the same with every build. Cost about
+/// O(n^2 / 16): about 1 ms at n = 500 (Knots.Cost bounds the instructions).
 [[nodiscard]] KnotResult recognise(std::span<const std::array<double, 3>> points, bool closed);
 
 }  // namespace ligature::knot

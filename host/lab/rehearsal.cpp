@@ -1,24 +1,16 @@
 #include "host/lab/rehearsal.hpp"
 
-#include <ctime>
-
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "host/lab/cpu_time.hpp"
 #include "host/lab/outcome.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "protocol/scene/text_file.hpp"
 
 namespace ligature::lab {
 namespace {
-
-/// CPU time of this thread, s: what a tick costs, whatever else the machine is doing.
-double thread_cpu_s() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 physics::ToolInput tool_at(const scene::GripperScript& script, int hand, double t_s) {
   const auto pose = scene::sample(script.keys[hand], t_s);
@@ -86,9 +78,9 @@ std::array<physics::ToolInput, 2> Rehearsal::tools_at(double t_s) {
 bool Rehearsal::tick() {
   const double t_s = static_cast<double>(ticks_ + 1) * tick_s_;
   const auto tools = tools_at(t_s);
-  const double from_s = thread_cpu_s();
+  const double from_us = thread_cpu_us();
   simulation_.tick(tools);
-  last_tick_us_ = 1e6 * (thread_cpu_s() - from_s);
+  last_tick_us_ = thread_cpu_us() - from_us;
   ++ticks_;
   return simulation_.diagnostics().finite;
 }

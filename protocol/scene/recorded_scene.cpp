@@ -27,10 +27,14 @@ std::string hex(std::uint32_t number) {
 
 std::string_view key_of(std::string_view override) { return trim(override.substr(0, override.find('='))); }
 
+void add_override(std::string& recorded, std::string_view override) {
+  recorded.append("\n").append(kSet).append(override);
+}
+
 std::string recorded_text(std::string text, std::span<const std::string> overrides, const Scene& scene) {
   text += kAsRun;
   if (!scene.suture.initial_polyline_m.empty()) text.append("\n").append(kShape).append(hex(shape_of(scene)));
-  for (const auto& o : overrides) text.append("\n").append(kSet).append(o);
+  for (const auto& o : overrides) add_override(text, o);
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -20,6 +21,9 @@ namespace ligature::scene {
 ///   # --force: why              it is not admitted
 ///   # seed 7                    of a simulated operator
 [[nodiscard]] std::string recorded_text(std::string text, std::span<const std::string> overrides, const Scene& scene);
+
+/// One more override, after the others.
+void add_override(std::string& recorded, std::string_view override);
 
 struct RecordedScene {
   std::string text;

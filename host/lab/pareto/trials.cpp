@@ -1,12 +1,11 @@
 #include "host/lab/pareto/trials.hpp"
 
-#include <ctime>
-
 #include <cmath>
 #include <limits>
 #include <map>
 
 #include "host/knot/recognise.hpp"
+#include "host/lab/cpu_time.hpp"
 #include "host/lab/validate/overhand.hpp"
 
 namespace ligature::lab {
@@ -17,12 +16,6 @@ using physics::Vec3;
 using validate::Tools;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-double thread_cpu_us() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
-}
 
 /// The thread, level, one end fixed, let go: the first half second (rod) or two seconds (5 m of paper thread).
 std::vector<Vec3> swing_of(const Setting& setting) {

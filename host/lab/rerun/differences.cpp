@@ -8,6 +8,7 @@
 
 #include "host/thread_knot.hpp"
 #include "host/tick_columns.hpp"
+#include "host/tick_statistics.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -16,8 +17,6 @@ using ligature_msg::thread_t;
 using ligature_msg::tick_t;
 
 constexpr double kKnotEvery_s = 0.1;
-
-double size_of(const double (&f)[3]) { return std::hypot(f[0], f[1], f[2]); }
 
 const std::vector<host::TickColumn>& columns() {
   static const std::vector<host::TickColumn> found = [] {
@@ -84,6 +83,12 @@ const std::vector<std::string>& columns_of_thread() {
   return names;
 }
 
+double apart_N(const tick_t& recorded, const tick_t& again, std::size_t hand) {
+  double apart[3];
+  for (std::size_t k = 0; k < 3; ++k) apart[k] = again.f_world_N[hand][k] - recorded.f_world_N[hand][k];
+  return host::magnitude(apart);
+}
+
 void ForceOf::add(double force_N) {
   squares_N2 += force_N * force_N;
   peak_N = std::max(peak_N, force_N);
@@ -117,11 +122,9 @@ void Differences::add(const tick_t& recorded, const tick_t& again, std::optional
                " recorded, " + value_of(*differs, again) + " now";
   }
   for (std::size_t h = 0; h < 2; ++h) {
-    recorded_.force[h].add(size_of(recorded.f_world_N[h]));
-    again_.force[h].add(size_of(again.f_world_N[h]));
-    double apart[3];
-    for (std::size_t k = 0; k < 3; ++k) apart[k] = again.f_world_N[h][k] - recorded.f_world_N[h][k];
-    apart_[h].add(size_of(apart));
+    recorded_.force[h].add(host::magnitude(recorded.f_world_N[h]));
+    again_.force[h].add(host::magnitude(again.f_world_N[h]));
+    apart_[h].add(apart_N(recorded, again, h));
   }
   if ((recorded.flags & tick_t::FLAG_PERIOD_LOST) != 0) return;
   recorded_.lost_ticks += static_cast<double>(recorded.time_lost);

@@ -2,6 +2,7 @@
 // What a rerun's thread does otherwise than the recorded one.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -17,6 +18,9 @@ namespace ligature::lab {
 /// The columns of a tick (host/tick_columns.hpp) that the thread makes. All are the physics' own numbers to the bit but
 /// for: min_gap_m, where none near is 1e9; contacts, at most 32767; time_lost, a float. Shapes are floats.
 [[nodiscard]] const std::vector<std::string>& columns_of_thread();
+
+/// |f| of what lies between the thread's forces on a hand, N.
+[[nodiscard]] double apart_N(const ligature_msg::tick_t& recorded, const ligature_msg::tick_t& again, std::size_t hand);
 
 /// Root mean square and largest of a force, N.
 struct ForceOf {

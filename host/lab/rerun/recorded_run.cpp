@@ -11,7 +11,6 @@
 #include "host/lab/rehearsal.hpp"
 #include "host/log_reader.hpp"
 #include "host/messages.hpp"
-#include "host/session_tally.hpp"
 #include "protocol/scene/recorded_scene.hpp"
 
 namespace ligature::lab {

@@ -9,12 +9,12 @@
 #include "host/console/progress.hpp"
 #include "host/console/stop_signal.hpp"
 #include "host/errors.hpp"
+#include "host/gap_counter.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/rerun/rerun_files.hpp"
 #include "host/lab/rerun/thread_player.hpp"
 #include "host/log_reader.hpp"
 #include "host/messages.hpp"
-#include "host/session_tally.hpp"
 #include "host/tick_order.hpp"
 
 namespace ligature::lab {
@@ -66,7 +66,7 @@ class Play {
     like_ = batch;
     like_.ticks.clear();
     for (const auto& tick : batch.ticks)
-      if (seen_.add(0, tick.tick)) order_.add(tick, [this](const tick_t& t) { play(t); });
+      if (seen_.add(tick.tick)) order_.add(tick, [this](const tick_t& t) { play(t); });
     if (files_) files_->log.end_batch(like_);
   }
 
@@ -131,11 +131,7 @@ class Play {
   ThreadPlayer player_;
   RerunOutcome outcome_;
   std::optional<RerunFiles> files_;
-  host::SessionTally seen_ = [] {
-    host::SessionTally one;
-    (void)one.find_or_add(0);
-    return one;
-  }();
+  host::GapCounter seen_;
   host::TickOrder order_;
   ligature_msg::tick_batch_t like_{};
   std::map<std::int64_t, thread_t> recorded_, played_;  // by tick; those whose other half has not come yet

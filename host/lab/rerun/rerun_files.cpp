@@ -1,11 +1,11 @@
 #include "host/lab/rerun/rerun_files.hpp"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "host/lab/outcome.hpp"
 #include "host/lab/rerun/rerun.hpp"
+#include "host/tick_statistics.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -17,8 +17,6 @@ std::filesystem::path emptied(const std::filesystem::path& folder) {
   remove_old_outputs(folder, {kLog, kForces, kShapes, "summary.json", "rerun.png"});
   return folder;
 }
-
-double size_of(const double (&f)[3]) { return std::hypot(f[0], f[1], f[2]); }
 
 nlohmann::ordered_json json_of(const Differences::Side& side, std::int64_t ticks) {
   using Json = nlohmann::ordered_json;
@@ -47,16 +45,13 @@ RerunFiles::RerunFiles(const std::filesystem::path& folder, const std::vector<st
 void RerunFiles::add(const ligature_msg::tick_t& recorded, const ligature_msg::tick_t& again,
                      std::optional<double> cost_us) {
   log.add(again);
-  double apart_N[2][3];
-  for (std::size_t h = 0; h < 2; ++h)
-    for (std::size_t k = 0; k < 3; ++k) apart_N[h][k] = again.f_world_N[h][k] - recorded.f_world_N[h][k];
   const double cells[] = {static_cast<double>(recorded.tick) * period_s_,
-                          size_of(recorded.f_world_N[0]),
-                          size_of(again.f_world_N[0]),
-                          size_of(apart_N[0]),
-                          size_of(recorded.f_world_N[1]),
-                          size_of(again.f_world_N[1]),
-                          size_of(apart_N[1]),
+                          host::magnitude(recorded.f_world_N[0]),
+                          host::magnitude(again.f_world_N[0]),
+                          apart_N(recorded, again, 0),
+                          host::magnitude(recorded.f_world_N[1]),
+                          host::magnitude(again.f_world_N[1]),
+                          apart_N(recorded, again, 1),
                           static_cast<double>(recorded.time_lost),
                           static_cast<double>(again.time_lost),
                           1e-3 * recorded.thread_work_ns,

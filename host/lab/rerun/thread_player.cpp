@@ -1,23 +1,16 @@
 #include "host/lab/rerun/thread_player.hpp"
 
 #include <algorithm>
-#include <ctime>
 #include <utility>
 
 #include "firmware/control/tick_report.hpp"
 #include "firmware/telemetry/messages.hpp"
+#include "host/lab/cpu_time.hpp"
 
 namespace ligature::lab {
 namespace {
 
 using ligature_msg::tick_t;
-constexpr std::int64_t kTicksPerShape = 8;  // ThreadContext
-
-double thread_cpu_us() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
-}
 
 physics::ToolInput tool_of(const tick_t& t, std::size_t hand) {
   return {physics::Vec3(t.tool_p_W_m[hand]), physics::Vec3(t.tool_v_W_m_per_s[hand]), t.tool_grip[hand] != 0, {}};
@@ -117,13 +110,11 @@ void ThreadPlayer::note_result(std::int64_t tick) {
   result_.hand = {thread_->hand(physics::Hand::kLeft), thread_->hand(physics::Hand::kRight)};
   result_.health = thread_->diagnostics();
   result_.add_step({tick, result_.health.cut_at});
-  if (tick / kTicksPerShape != std::exchange(shape_of_, tick / kTicksPerShape)) snapshot();
+  if (const std::int64_t shape = tick / control::kTicksPerShape; shape != std::exchange(shape_of_, shape)) snapshot();
 }
 
 void ThreadPlayer::snapshot() {
-  control::report(thread_->nodes_W(), result_, *shape_);
-  const auto count = static_cast<std::size_t>(shape_->count);
-  thread_->describe(std::span(shape_->tension_N).first(count), std::span(shape_->turn_rad).first(count));
+  control::report(*thread_, result_, *shape_);
   shapes_.push_back(telemetry::to_message(*shape_, scenes_[current_].scene.suture.radius_m, 0));
 }
 

@@ -29,8 +29,7 @@ Recording::Recording(const std::string& path, const scene::Scene& scene, std::st
 
 template <class Message>
 void Recording::write(std::string_view channel, const Message& message) {
-  bytes_.resize(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes_.data(), 0, static_cast<int>(bytes_.size()));
+  host::encode(message, bytes_);
   log_.write(now_us(), channel, bytes_);
 }
 
