@@ -45,16 +45,24 @@ void AnyPose::cut(const device::Device& d) noexcept {
   }
 }
 
+double AnyPose::most_of_slices(double waist, double a, double b) const noexcept {
+  const double apart = 0.5 * (a - b) * (a - b), along = 0.5 * (a + b) * (a + b);
+  double most = 0.0;
+  for (const Slice& s : slices_) most = std::max(most, s.u * waist + s.v * apart + s.w * along);
+  return most;
+}
+
+double AnyPose::most_N(const Vec3& torque_Nm) const noexcept {
+  const Vec3 f = torque_Nm.cwiseProduct(per_m_);
+  return std::sqrt(most_of_slices(f[0] * f[0], f[1], f[2]));
+}
+
 double AnyPose::most_N(const Vec3& low_Nm, const Vec3& high_Nm) const noexcept {
   const Vec3 low = low_Nm.cwiseProduct(per_m_), high = high_Nm.cwiseProduct(per_m_);
   const double waist = std::max(low[0] * low[0], high[0] * high[0]);
   double most = 0.0;
-  for (const double a : {low[1], high[1]}) {  // convex: at a corner
-    for (const double b : {low[2], high[2]}) {
-      const double apart = 0.5 * (a - b) * (a - b), along = 0.5 * (a + b) * (a + b);
-      for (const Slice& s : slices_) most = std::max(most, s.u * waist + s.v * apart + s.w * along);
-    }
-  }
+  for (const double a : {low[1], high[1]})  // convex: at a corner
+    for (const double b : {low[2], high[2]}) most = std::max(most, most_of_slices(waist, a, b));
   return std::sqrt(most);
 }
 

@@ -27,7 +27,7 @@ class AnyPose {
  public:
   explicit AnyPose(const device::Device& device) noexcept;
 
-  [[nodiscard]] double most_N(const Vec3& torque_Nm) const noexcept { return most_N(torque_Nm, torque_Nm); }
+  [[nodiscard]] double most_N(const Vec3& torque_Nm) const noexcept;
   /// Of all torques that are, joint by joint, between these two.
   [[nodiscard]] double most_N(const Vec3& low_Nm, const Vec3& high_Nm) const noexcept;
 
@@ -37,6 +37,8 @@ class AnyPose {
     double u = 0.0, v = 0.0, w = 0.0;  // u with tau1 as a force on lever 1
   };
   void cut(const device::Device& device) noexcept;
+  /// Square of the force: of the waist's force squared, and of those along a and b.
+  [[nodiscard]] double most_of_slices(double waist, double a, double b) const noexcept;
 
   Vec3 per_m_ = Vec3::Zero();  // joint torques to tau1 / 1 m, a, b
   std::array<Slice, kSlices> slices_{};

@@ -7,25 +7,24 @@
 #include <cstdint>
 
 #include "firmware/control/faults.hpp"
+#include "firmware/control/mirrored_turn.hpp"
 
 namespace ligature::control {
 
 /// One hand's three encoders. A hand is a mass on a spring: no joint of it changes its speed from one period to the
-/// next, least of all while the others go on as before. Looked for is such a corner, over two windows of kWindow
-/// samples that meet in it, both straight within one count (slopes u before, w after, counts a period), while another
-/// joint moves on at an unchanged speed:
-///   |u| >= kBrisk and the joint stands to the count from there on, while the others travel kTravel counts   frozen
-///   |u| >= kMoving and w = -u within kSame                                                                   reversed
-/// A smooth turn that is straight within a count on both sides changes its slope by at most 8 / kWindow = 0.33 in all,
-/// so with |u| above it has to be a corner; a slow joint may simply stop. A joint in its stop does stand still; near
-/// one nothing is looked for. An encoder that froze while its joint rested is seen once the joint's torque has changed
-/// by kPushed of the rated one and the other joints have travelled kElsewhere since its last count: no hand is so
-/// stiff. One that was reversed at rest is seen by a led move only (move_check.hpp), or as an impossible pose. Gaps
-/// between samples start the watch anew. O(kWindow), no allocation.
+/// next. A joint that does counts backwards (mirrored_turn.hpp), or froze: over two windows of kWindow samples that
+/// meet in a corner, both straight within one count (slope u before, counts a period), while another joint moves on at
+/// an unchanged speed,
+///   |u| >= kBrisk and the joint stands to the count from there on, while the others travel kTravel counts.
+/// A slow joint may simply stop. A joint in its stop does stand still; near one nothing is looked for. An encoder that
+/// froze while its joint rested is seen once the joint's torque has changed by kPushed of the rated one and the other
+/// joints have travelled kElsewhere since its last count: no hand is so stiff. One that was reversed at rest is seen by
+/// a led move only (move_check.hpp), or as an impossible pose. Gaps between samples start the watch anew. O(kWindow),
+/// no allocation.
 class EncoderWatch {
  public:
   static constexpr std::size_t kJoints = 3, kWindow = 24, kLength = 128;
-  static constexpr double kMoving = 0.34, kBrisk = 0.8, kSame = 0.17;  ///< counts a period
+  static constexpr double kMoving = 0.34, kBrisk = 0.8, kSame = 0.17;  ///< counts a period; of another joint, of it
   static constexpr double kTravel = 60.0;                              ///< counts, about 3 mm at the tip
   static constexpr double kElsewhere = 300.0;                          ///< counts
   static constexpr int kRested = 100;                                  ///< samples; a fast hand turns round in fewer
@@ -42,9 +41,21 @@ class EncoderWatch {
     newest_ = (newest_ + 1) % kLength;
     for (std::size_t j = 0; j < kJoints; ++j) x_[j][newest_] = counts[j];
     count_ = std::min(count_ + 1, kLength);
-    if (count_ < 2 * kWindow) return Fault::kNone;
-    if (is_frozen(free)) return Fault::kEncoderFrozen;
-    return is_reversed(free) ? Fault::kAxisReversed : Fault::kNone;
+    if (count_ >= 2 * kWindow && is_frozen(free)) return Fault::kEncoderFrozen;
+    return reversal(free) >= 1.0 ? Fault::kAxisReversed : Fault::kNone;
+  }
+
+  /// Of the newest sample: speed of a mirrored turn against the least that is one, the most of all looks and joints.
+  [[nodiscard]] double reversal(const std::array<bool, kJoints>& free) const noexcept {
+    double most = 0.0;
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      for (const MirroredTurn::Look& look : MirroredTurn::kLooks) {
+        if (!free[j] || count_ < 2 * look.half) continue;
+        const double share = MirroredTurn::speed([&](std::size_t ago) { return at(j, ago); }, look) / look.moving;
+        if (share > most && (look.alone || other_moves_on(j))) most = share;
+      }
+    }
+    return most;
   }
 
  private:
@@ -107,16 +118,6 @@ class EncoderWatch {
     return false;
   }
 
-  [[nodiscard]] bool is_reversed(const std::array<bool, kJoints>& free) const noexcept {
-    for (std::size_t j = 0; j < kJoints; ++j) {
-      const Line before = line(j, kWindow), after = line(j, 0);
-      const bool mirrored = before.straight && after.straight && std::abs(before.slope) >= kMoving &&
-                            std::abs(after.slope + before.slope) <= kSame;
-      if (free[j] && mirrored && other_moves_on(j)) return true;
-    }
-    return false;
-  }
-
   /// First the corner, then the others' travel while the suspect stands to the count.
   [[nodiscard]] bool is_frozen(const std::array<bool, kJoints>& free) noexcept {
     if (suspect_ < kJoints) {
@@ -128,9 +129,9 @@ class EncoderWatch {
       return travel_ >= kTravel;
     }
     for (std::size_t j = 0; j < kJoints; ++j) {
-      const Line before = line(j, kWindow), after = line(j, 0);
-      const bool stands = after.straight && at(j, 0) == at(j, kWindow - 1) && after.slope == 0.0 && is_constant(j);
-      if (free[j] && before.straight && std::abs(before.slope) >= kBrisk && stands && other_moves_on(j)) {
+      if (!free[j] || !is_constant(j)) continue;  // few are: the rest is for them
+      const Line before = line(j, kWindow);
+      if (before.straight && std::abs(before.slope) >= kBrisk && other_moves_on(j)) {
         suspect_ = j;
         travel_ = 0.0;
       }

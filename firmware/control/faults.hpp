@@ -20,7 +20,7 @@ enum class Fault : std::int16_t {
   kNonFinite = 20,        ///< a force or position is not a number
   kVelocityLimit = 21,    ///< tip faster than kVelocityFault times the device's limit
   kEncoderFrozen = 22,    ///< a joint stopped dead while the others moved on
-  kAxisReversed = 23,     ///< a joint turned back in one period while the others moved on
+  kAxisReversed = 23,     ///< a joint turned back in one period, as in a mirror
   kButtonsStuck = 24,     ///< the buttons' own life sign stands still, or a pair of contacts disagrees
   kForceStays = 25,       ///< a hand's gain is 0 and its force still does not end
   kTorqueAstray = 26,     ///< a drive says that it makes a torque that nobody asked for

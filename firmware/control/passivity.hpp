@@ -151,6 +151,8 @@ class Passivity {
   [[nodiscard]] bool acts() const noexcept { return acts_; }
   [[nodiscard]] bool stepped() const noexcept { return stepped_; }    ///< the wish was more than a step away
   [[nodiscard]] bool released() const noexcept { return released_; }  ///< a hand wilder than the record allows
+  /// Whether lost frames are foreseen in this tick.
+  [[nodiscard]] bool is_wary(std::int64_t tick) const noexcept { return tick > sampled_ || tick < lossy_until_; }
 
  private:
   static constexpr double kSpend_J = 0.95 * kFloor_J;
@@ -176,7 +178,6 @@ class Passivity {
     }
   };
 
-  [[nodiscard]] bool is_wary(std::int64_t tick) const noexcept { return tick > sampled_ || tick < lossy_until_; }
   void look_under_way(std::int64_t tick) noexcept;
   [[nodiscard]] double most_given_J(Eigen::Index joint, std::int64_t tick, double dq_rad,
                                     const PortSample& sample) noexcept;

@@ -1,6 +1,7 @@
 #pragma once
 // Velocity out of quantised positions: as long a window as the motion lets be straight, and no longer.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -15,7 +16,7 @@ namespace ligature::control {
 ///   v = sum (t_i - t_mean)(x_i - x_mean) / sum (t_i - t_mean)^2
 /// At rest and in slow motion the window is long and the counts' noise small; in fast changes it is short and so is the
 /// lag, k T / 2. Figures against the former low-pass: docs/haptics.md, held by the tests WindowVelocity.*.
-/// Samples that never came leave a gap in time, not in the line. O(kWindow^2) additions, no allocation.
+/// Samples that never came leave a gap in time, not in the line. O(kWindow), no allocation.
 class WindowVelocity {
  public:
   static constexpr std::size_t kWindow = 16;
@@ -44,17 +45,17 @@ class WindowVelocity {
  private:
   static constexpr std::int64_t kForget = 32;
 
-  /// k: the largest for which the line through the ends stays within d of what lies between.
+  /// k: the largest for which the line through the ends stays within d of what lies between. Each sample bounds the
+  /// slope of the lines that pass it; a longer line has to keep within all of these bounds.
   [[nodiscard]] std::size_t longest_straight() const noexcept {
-    std::size_t best = count_ > 1 ? 1 : 0;
-    for (std::size_t k = 2; k < count_; ++k) {
-      const double per_age = (x_[k] - x_[0]) / age_[k];
-      for (std::size_t i = 1; i < k; ++i) {
-        if (std::abs(x_[0] + per_age * age_[i] - x_[i]) > d_) return best;
-      }
-      best = k;
+    double least = -1e300, most = 1e300;
+    for (std::size_t k = 1; k < count_; ++k) {
+      const double change = x_[k] - x_[0], per_age = change / age_[k];
+      if (per_age < least || per_age > most) return k - 1;
+      least = std::max(least, (change - d_) / age_[k]);
+      most = std::min(most, (change + d_) / age_[k]);
     }
-    return best;
+    return count_ > 0 ? count_ - 1 : 0;
   }
 
   /// Of x over age, least squares, of samples 0 .. k.

@@ -33,11 +33,11 @@ std::vector<ligature_msg::event_t> EventFinder::next(const rt::TickRecord& r) {
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     const auto hand = static_cast<std::int8_t>(h);
     const std::string who = kHandNames[h];
-    const int was = last_.grasped_node[h], is = r.grasped_node[h];
-    if (was != is && was >= 0) {
+    const int was = last_.grasped_node[h], is = r.grasped_node[h];  // an adaptive mesh numbers what is held anew
+    if (was >= 0 && is < 0) {
       events.push_back(event(r.tick, event_t::KIND_RELEASE, hand, was, who + " releases node " + std::to_string(was)));
     }
-    if (was != is && is >= 0) {
+    if (was < 0 && is >= 0) {
       events.push_back(event(r.tick, event_t::KIND_GRASP, hand, is, who + " grasps node " + std::to_string(is)));
     }
     if (r.grip[h] && !last_.grip[h] && is < 0) {

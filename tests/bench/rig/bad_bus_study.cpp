@@ -1,28 +1,16 @@
 // Draws of a bad bus, by share of frames lost or wrong: what fault it ends in and when no motor has torque.
 // Usage: bad_bus_study [draws a row = 300] [first seed = 1]; prints the tables of docs/fault-matrix.md.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
-#include <string>
 #include <vector>
 
 #include "tests/integration/virtual_rig/bad_bus.hpp"
+#include "tests/support/share.hpp"
 
 namespace ligature {
 namespace {
-
-/// Share with its 95 % interval (Wilson), in percent.
-std::string share_of(int hits, int draws) {
-  const double n = draws, p = hits / n, z = 1.96, z2 = z * z / n;
-  const double middle = (p + 0.5 * z2) / (1.0 + z2),
-               half = z * std::sqrt(p * (1.0 - p) / n + 0.25 * z2 / n) / (1.0 + z2);
-  char text[64];
-  std::snprintf(text, sizeof text, "%.1f (%.1f .. %.1f)", 100.0 * p, 100.0 * std::max(0.0, middle - half),
-                100.0 * std::min(1.0, middle + half));
-  return hits == 0 && draws > 0 ? "0 (.. " + std::string(text).substr(std::string(text).rfind(' ') + 1) : text;
-}
 
 struct Tally {
   std::map<int, int> faults;
@@ -71,9 +59,9 @@ void lost(int draws, std::uint64_t seed) {
       const std::int64_t ticks = percent < 15 ? 1000 : percent < 25 ? 2200 : 300;
       const Tally t = tally({.lost = 0.01 * percent, .left = true, .right = both, .ticks = ticks}, draws, seed);
       auto count = [&](int fault) { return t.faults.contains(fault) ? t.faults.at(fault) : 0; };
-      std::printf("| %d | %s | %s | %s | %s | %s", percent, both ? "both" : "one", share_of(count(0), draws).c_str(),
-                  share_of(count(17), draws).c_str(), share_of(count(11), draws).c_str(),
-                  share_of(others(t, {0, 11, 17}), draws).c_str());
+      std::printf("| %d | %s | %s | %s | %s | %s", percent, both ? "both" : "one", test::share(count(0), draws).c_str(),
+                  test::share(count(17), draws).c_str(), test::share(count(11), draws).c_str(),
+                  test::share(others(t, {0, 11, 17}), draws).c_str());
       print_times(t);
       seed += 1'000'003;
     }
@@ -87,9 +75,9 @@ void wrong(int draws, std::uint64_t seed) {
   for (const double percent : {0.1, 1.0, 10.0}) {
     const Tally t = tally({.wrong = 0.01 * percent, .ticks = 1500}, draws, seed);
     auto count = [&](int fault) { return t.faults.contains(fault) ? t.faults.at(fault) : 0; };
-    std::printf("| %g | %s | %s | %s | %s", percent, share_of(count(0), draws).c_str(),
-                share_of(count(21), draws).c_str(), share_of(count(12), draws).c_str(),
-                share_of(others(t, {0, 12, 21}), draws).c_str());
+    std::printf("| %g | %s | %s | %s | %s", percent, test::share(count(0), draws).c_str(),
+                test::share(count(21), draws).c_str(), test::share(count(12), draws).c_str(),
+                test::share(others(t, {0, 12, 21}), draws).c_str());
     print_times(t);
     seed += 1'000'003;
   }

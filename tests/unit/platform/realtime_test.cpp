@@ -107,8 +107,9 @@ Refusals refusals_without_rights() {
     for (std::string line; std::getline(stream, line);) lines.push_back(line);
     return lines;
   }
+  std::string text(100'000, ' ');  // the heap cannot grow any more then: what is given back here, words are made of
+  text = std::string();
   give_up_rights();
-  std::string text;
   for (const auto& refusals : {lock_memory(), make_realtime(kNoCore)})
     for (const auto& r : refusals) text += r + '\n';
   const bool told = write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size());

@@ -218,6 +218,24 @@ TEST_F(TelemetryTest, JawsThatCloseOnNothingAreAnEvent) {
   EXPECT_EQ(sink.events[1].code, 3);
 }
 
+/// A mesh that adapts numbers its nodes anew while a hand holds one: nobody opened or closed jaws.
+TEST_F(TelemetryTest, ANodeNumberedAnewIsNoGrasp) {
+  std::int64_t tick = 0;
+  push(tick);
+  record.grip[0] = true;
+  for (const int node : {40, 41, 57, 3}) {
+    record.grasped_node[0] = static_cast<std::int16_t>(node);
+    push(++tick);
+  }
+  record.grip[0] = false;
+  record.grasped_node[0] = -1;
+  push(++tick);
+  telemetry.step(at(10));
+  ASSERT_EQ(sink.events.size(), 2U);
+  EXPECT_EQ(sink.events[0].text, "left grasps node 40");
+  EXPECT_EQ(sink.events[1].text, "left releases node 3");
+}
+
 TEST_F(TelemetryTest, CommandsArePassedOnAndAnswered) {
   const auto ack = telemetry.handle(command(ligature_msg::command_t::KIND_ARM), at(9));
   EXPECT_EQ(ack.accepted, 1);

@@ -1,0 +1,142 @@
+// The encoder watch over its threshold: honest hands suspected in an hour, reversed axes missed.
+// Usage: encoder_watch_study [hours = 100] [reversals = 1000] [first seed = 1]; prints tables of docs/encoder-watch.md.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "firmware/control/encoder_watch.hpp"
+#include "tests/support/honest_hands.hpp"
+#include "tests/support/share.hpp"
+
+namespace ligature {
+namespace {
+
+using control::EncoderWatch;
+using test::HonestHand;
+constexpr std::array kScales{0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 2.0};
+constexpr std::array<bool, 3> kFree{true, true, true};
+constexpr int kRunTicks = 5000, kLookTicks = 60;
+using Hits = std::array<int, kScales.size()>;
+
+void count(double most, Hits& hits) {
+  for (std::size_t i = 0; i < kScales.size(); ++i) hits[i] += most >= kScales[i];
+}
+
+/// Runs of 5 s in which the hand would have been suspected.
+struct Honest {
+  Hits reversed{};
+  int frozen = 0, runs = 0;
+};
+Honest honest(HonestHand::Kind kind, double hours, std::uint64_t seed) {
+  Honest h;
+  for (h.runs = 0; h.runs < static_cast<int>(hours * 720.0); ++h.runs) {
+    HonestHand hand(kind, seed + 7 * static_cast<std::uint64_t>(h.runs));
+    EncoderWatch watch;
+    double most = 0.0;
+    bool frozen = false;
+    for (int t = 0; t < kRunTicks; ++t) {
+      const auto fault = watch.add(hand.next(), 1, kFree);
+      frozen = frozen || fault == control::Fault::kEncoderFrozen;
+      most = std::max(most, watch.reversal(kFree));
+    }
+    count(most, h.reversed);
+    h.frozen += frozen;
+  }
+  return h;
+}
+
+/// An axis that counts backwards from a random moment on; by its speed at that moment, counts a period.
+constexpr std::array kClasses{0.0, 0.44, 0.6, 0.85, 1.4};
+struct Reversed {
+  std::array<Hits, kClasses.size()> found{};
+  std::array<int, kClasses.size()> draws{};
+  std::vector<int> ticks;
+};
+Reversed reversed(HonestHand::Kind kind, int draws, std::uint64_t seed) {
+  Reversed r;
+  for (int k = 0; k < draws; ++k) {
+    test::Random random(seed + 11 * static_cast<std::uint64_t>(k));
+    HonestHand hand(kind, random());
+    const int onset = static_cast<int>(random.any(1000, 4000));
+    const std::size_t joint = random.below(3);
+    EncoderWatch watch;
+    std::vector<double> told;
+    double most = 0.0, x0 = 0.0;
+    for (int t = 0; t <= onset + kLookTicks; ++t) {
+      auto counts = hand.next();
+      told.push_back(counts[joint]);
+      if (t == onset) x0 = counts[joint];
+      if (t > onset) counts[joint] = 2.0 * x0 - counts[joint];
+      (void)watch.add(counts, 1, kFree);
+      if (t <= onset) continue;
+      if (most < 1.0 && watch.reversal(kFree) >= 1.0) r.ticks.push_back(t - onset);
+      most = std::max(most, watch.reversal(kFree));
+    }
+    const auto at = static_cast<std::size_t>(onset);
+    const double speed = std::abs(told[at + 6] - told[at - 6]) / 12.0;
+    std::size_t c = 0;
+    while (c + 1 < kClasses.size() && speed >= kClasses[c + 1]) ++c;
+    ++r.draws[c];
+    count(most, r.found[c]);
+  }
+  return r;
+}
+
+void print_honest(double hours, std::uint64_t seed) {
+  std::printf("| threshold |");
+  for (const double scale : kScales) std::printf(" x %g |", scale);
+  std::printf(" fault 22 |\n|---|");
+  for (std::size_t i = 0; i <= kScales.size(); ++i) std::printf("---|");
+  Honest all;
+  const double each_h = hours / HonestHand::kKinds.size();
+  for (const auto kind : HonestHand::kKinds) {
+    const Honest h = honest(kind, each_h, seed += 100'000'007);
+    std::printf("\n| %s, %.0f h |", HonestHand::name(kind), each_h);
+    for (std::size_t i = 0; i < kScales.size(); ++i)
+      all.reversed[i] += h.reversed[i], std::printf(" %d |", h.reversed[i]);
+    std::printf(" %d |", h.frozen);
+    std::fflush(stdout);
+    all.frozen += h.frozen;
+  }
+  std::printf("\n| all, %.0f h |", hours);
+  for (const int n : all.reversed) std::printf(" %s |", test::rate(n).c_str());
+  std::printf(" %s |\n\n", test::rate(all.frozen).c_str());
+}
+
+void print_reversed(int draws, std::uint64_t seed) {
+  std::printf("| speed, counts a period | draws |");
+  for (const double scale : kScales) std::printf(" x %g |", scale);
+  std::printf("\n|---|---|");
+  for (std::size_t i = 0; i < kScales.size(); ++i) std::printf("---|");
+  Reversed all;
+  const int each = draws / static_cast<int>(HonestHand::kKinds.size());
+  for (const auto kind : HonestHand::kKinds) {
+    const Reversed r = reversed(kind, each, seed += 100'000'007);
+    for (std::size_t c = 0; c < kClasses.size(); ++c) {
+      all.draws[c] += r.draws[c];
+      for (std::size_t i = 0; i < kScales.size(); ++i) all.found[c][i] += r.found[c][i];
+    }
+    all.ticks.insert(all.ticks.end(), r.ticks.begin(), r.ticks.end());
+  }
+  for (std::size_t c = 0; c < kClasses.size(); ++c) {
+    std::printf("\n| from %.2f | %d |", kClasses[c], all.draws[c]);
+    for (const int found : all.found[c]) std::printf(" %s |", test::share(all.draws[c] - found, all.draws[c]).c_str());
+  }
+  std::ranges::sort(all.ticks);
+  if (!all.ticks.empty())
+    std::printf("\n\nticks until told: median %d, most %d\n", all.ticks[all.ticks.size() / 2], all.ticks.back());
+}
+
+}  // namespace
+}  // namespace ligature
+
+int main(int argc, char** argv) {
+  const double hours = argc > 1 ? std::atof(argv[1]) : 100.0;
+  const int reversals = argc > 2 ? std::atoi(argv[2]) : 1000;
+  const auto seed = argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 1ULL;
+  ligature::print_honest(hours, seed);
+  ligature::print_reversed(reversals, seed + 900'000'011ULL);
+}

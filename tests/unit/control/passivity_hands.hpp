@@ -1,0 +1,90 @@
+#pragma once
+// Hands that attack a port: drawn, or climbing.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "tests/support/random.hpp"
+#include "tests/unit/control/passivity_port.hpp"
+
+namespace ligature::control {
+
+/// A motion, a law and losses, by numbers that a climb may change: at each knot an acceleration, and how much of it
+/// goes along the motors' force.
+struct Attacker {
+  static constexpr std::size_t kKnots = 40;
+  std::array<Vec3, kKnots> push{};
+  std::array<double, kKnots> along{};
+  double gain_N_per_m = 400.0, damping_s = 0.01;  ///< of the law; a negative gain is a spring
+  int hold = 10;                                  ///< periods of a knot
+  Chain chain;
+
+  /// One that nobody climbed. @param random also of the chain, in which nothing or up to 30 % is lost either way
+  [[nodiscard]] static Attacker drawn(test::Random& random, double wildness, double count_m, bool loses) {
+    Attacker a;
+    for (std::size_t k = 0; k < kKnots; ++k) {
+      const auto to = random.normals();
+      a.push[k] = {to[0], to[1], to[2]};
+      a.along[k] = random.happens(0.5) ? random.in(-2.0, 2.0) : 0.0;
+    }
+    const double sign = random.happens(0.5) ? 1.0 : -1.0;
+    a.gain_N_per_m = sign * std::pow(10.0, random.in(1.5, 3.3));
+    a.damping_s = random.in(0.0, 0.02);
+    a.hold = static_cast<int>(random.any(1, 25));
+    const double lost = random.in(0.0, 0.3), lost_samples = random.in(0.0, 0.3);
+    const std::int64_t which = random.any(1, 3);
+    a.chain.count_m = count_m, a.chain.wildness = wildness, a.chain.seed = random();
+    a.chain.lost = loses && which != 1 ? lost : 0.0;
+    a.chain.lost_samples = loses && which != 2 ? lost_samples : 0.0;
+    a.chain.tells_torque = random.happens(0.5);
+    return a;
+  }
+
+  /// A neighbour: a few knots, now and then the law or the losses.
+  [[nodiscard]] Attacker changed(test::Random& random, double size) const {
+    Attacker a = *this;
+    for (std::size_t k = 0; k < kKnots; ++k) {
+      if (!random.happens(0.15)) continue;
+      const auto by = random.normals();
+      a.push[k] += size * Vec3(by[0], by[1], by[2]);
+      a.along[k] += size * random.normal();
+    }
+    if (random.happens(0.2)) a.gain_N_per_m *= 1.0 + 0.5 * size * random.in(-1.0, 1.0);
+    if (random.happens(0.2)) a.damping_s = std::max(0.0, a.damping_s + 0.005 * size * random.normal());
+    if (random.happens(0.2)) a.hold = static_cast<int>(std::clamp<std::int64_t>(a.hold + random.any(-2, 2), 1, 25));
+    if (random.happens(0.1)) a.chain.seed = random();
+    return a;
+  }
+
+  [[nodiscard]] Port run(int ticks) const {
+    Port port(true, 0.0, chain);
+    const double most = chain.wildness * plain().hand_acceleration_m_per_s2;
+    for (int i = 0; i < ticks; ++i) {
+      const std::size_t k = static_cast<std::size_t>(i / hold) % kKnots;
+      Vec3 pushed = push[k];
+      if (!port.made.isZero()) pushed += along[k] * port.made.normalized();
+      Vec3 acceleration = most * pushed / std::max(1.0, pushed.norm());
+      if (port.v.norm() > 1.0) acceleration = -most * port.v.normalized();
+      port.tick([this](const Vec3& p, const Vec3& v) { return saturated(gain_N_per_m * (p + damping_s * v)); },
+                acceleration);
+    }
+    return port;
+  }
+};
+
+/// (1+1)-ES with the one-fifth rule. @return the best found
+template <class Worse>
+[[nodiscard]] Attacker climb(Attacker best, int steps, int ticks, test::Random& random, Worse worse) {
+  double most = worse(best.run(ticks)), size = 0.5;
+  for (int i = 0; i < steps; ++i) {
+    const Attacker next = best.changed(random, size);
+    const double value = worse(next.run(ticks));
+    size = std::clamp(size * (value > most ? 1.5 : 0.904), 0.02, 3.0);
+    if (value >= most) best = next, most = value;
+  }
+  return best;
+}
+
+}  // namespace ligature::control
