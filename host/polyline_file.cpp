@@ -203,6 +203,7 @@ Polyline read_polyline_log(const std::string& path, std::optional<double> at_s) 
     const double time_s = facts.time_s(thread->tick);
     if (at_s && chosen.time_s && std::abs(time_s - *at_s) >= std::abs(*chosen.time_s - *at_s)) continue;
     chosen = {{}, time_s};
+    chosen.radius_m = thread->radius_m;
     for (const auto& p : thread->p_W_m) chosen.points.push_back({p[0], p[1], p[2]});
   }
   if (chosen.points.size() < 3)

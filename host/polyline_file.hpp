@@ -10,6 +10,7 @@ namespace ligature::host {
 struct Polyline {
   std::vector<std::array<double, 3>> points;
   std::optional<double> time_s;  // of a shape out of many
+  double radius_m = 0.0;         // of a recorded thread
   bool last_is_cut_off = false;  // the file's last shape lacks nodes and was not considered
 };
 

@@ -69,8 +69,9 @@ void Mechanics::advance(Time now, const Vec3& motor_Nm) noexcept {
 std::uint16_t Mechanics::buttons() const noexcept {
   if (!has_started()) return 0;
   const double t_s = script_time_s();
-  unsigned pressed = intention_->at(t_s, touch()).grip ? can::profile::kButtonGrip : 0U;
-  const bool holds_on = now_ >= pressed_from_ && t_s <= intention_->end_s() + kDeadManAfterScript_s;
+  const Intent wish = intention_->at(t_s, touch());
+  unsigned pressed = wish.grip ? can::profile::kButtonGrip : 0U;
+  const bool holds_on = wish.dead_man && now_ >= pressed_from_ && t_s <= intention_->end_s() + kDeadManAfterScript_s;
   if (holds_on) pressed |= can::profile::kButtonDeadMan;
   return static_cast<std::uint16_t>(pressed);
 }

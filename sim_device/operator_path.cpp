@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "sim_device/plant.hpp"
+#include "sim_device/script_hand.hpp"
 
 namespace ligature::sim {
 namespace {
@@ -12,12 +13,6 @@ namespace {
 constexpr double kPeakVelocity = 1.5, kPeakAcceleration = 4.9, kPeakJerk = 180.0;  // in L/T, L/T², L/T³
 constexpr double kSlack = 1.005;  // the fastest motion is then shorter than T, and ruckig stretches it to T exactly
 constexpr double kLeastTravel_m = 1e-4;  // an axis that hardly moves still needs limits above zero
-
-std::string text(const char* format, double a, double b, double c, double d) {
-  char line[160];
-  std::snprintf(line, sizeof line, format, a, b, c, d);
-  return line;
-}
 
 bool plan(const Vec3& from, const Vec3& to, double duration_s, ruckig::Trajectory<3>& trajectory) {
   ruckig::InputParameter<3> in;
@@ -41,22 +36,18 @@ std::variant<OperatorPath, std::string> OperatorPath::make(std::span<const scene
                                                            const WorkspaceMap& map) {
   OperatorPath path;
   for (const scene::GripKey& key : keys) {
-    const Vec3 p_D = map.to_device({key.p_W_m[0], key.p_W_m[1], key.p_W_m[2]});
-    const auto q = map.linkage.joints(p_D);
-    if (!q || !map.linkage.is_within_stops(*q)) {
-      return text(
-          "key at time %g s lies at (%.3f, %.3f, %.3f) m for the device, out of its reach; "
-          "allowed: hands.workspace_scale and workspace_origin_m that bring it nearer",
-          key.time_s, p_D.x(), p_D.y(), p_D.z());
-    }
-    path.keys_.push_back({key.time_s, p_D, key.grip});
+    if (auto why = objection_to(key, map); !why.empty()) return why;
+    path.keys_.push_back({key.time_s, map.to_device({key.p_W_m[0], key.p_W_m[1], key.p_W_m[2]}), key.grip});
   }
   if (path.keys_.empty()) path.keys_.push_back({0.0, map.linkage.home_D_m(), false});  // an idle hand rests at home
   path.segments_.resize(path.keys_.size() - 1);
   for (std::size_t i = 0; i < path.segments_.size(); ++i) {
     const Key &from = path.keys_[i], &to = path.keys_[i + 1];
     if (!plan(from.p_D, to.p_D, to.time_s - from.time_s, path.segments_[i])) {
-      return text("no jerk-limited motion from the key at %g s to that at %g s", from.time_s, to.time_s, 0.0, 0.0);
+      char line[100];
+      std::snprintf(line, sizeof line, "no jerk-limited motion from the key at %g s to that at %g s", from.time_s,
+                    to.time_s);
+      return line;
     }
   }
   return path;

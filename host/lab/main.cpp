@@ -11,6 +11,7 @@
 #include "host/lab/pareto_command.hpp"
 #include "host/lab/rerun/rerun_command.hpp"
 #include "host/lab/run_command.hpp"
+#include "host/lab/tie/play_command.hpp"
 #include "host/lab/tie/tie_command.hpp"
 #include "host/lab/validate_command.hpp"
 
@@ -45,6 +46,7 @@ int main(int argc, char** argv) {
   add_run_command(app, exit_code);
   add_experiment_commands(app, exit_code);
   add_tie_command(app, exit_code);
+  add_play_command(app, exit_code);
   add_rerun_command(app, exit_code);
   add_validate_command(app, exit_code);
   add_pareto_command(app, exit_code);

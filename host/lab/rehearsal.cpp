@@ -1,28 +1,14 @@
 #include "host/lab/rehearsal.hpp"
 
-#include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "host/lab/cpu_time.hpp"
 #include "host/lab/outcome.hpp"
+#include "host/lab/script_tools.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "protocol/scene/text_file.hpp"
 
 namespace ligature::lab {
-namespace {
-
-physics::ToolInput tool_at(const scene::GripperScript& script, int hand, double t_s) {
-  const auto pose = scene::sample(script.keys[hand], t_s);
-  physics::ToolInput tool{physics::Vec3(pose.p_W_m.data()), physics::Vec3(pose.v_W_m_per_s.data()), pose.grip, {}};
-  if (script.turns) {
-    const physics::Vec3 turn = physics::Vec3(pose.turn_deg.data()) * (std::numbers::pi / 180.0);
-    tool.R_WT = Eigen::AngleAxisd(turn.norm(), turn.stableNormalized());
-  }
-  return tool;
-}
-
-}  // namespace
 
 scene::Scene load_scene_or_refuse(const std::string& path, const std::vector<std::string>& overrides) {
   return parse_scene_or_refuse(read_scene_text_or_refuse(path), path, overrides);
@@ -60,7 +46,7 @@ Rehearsal::Rehearsal(const scene::Scene& scene, scene::GripperScript script, con
       tick_s_(scene.time.tick_s) {}
 
 std::array<physics::ToolInput, 2> Rehearsal::tools_at(double t_s) {
-  if (!tier_) return {tool_at(script_, 0, t_s), tool_at(script_, 1, t_s)};
+  if (!tier_) return lab::tools_at(script_, t_s);
   sim::Sight sight;
   sight.t_s = t_s;
   sight.thread_W = simulation_.nodes_W();

@@ -7,8 +7,9 @@
 
 #include "host/console/progress.hpp"
 #include "host/console/stop_signal.hpp"
-#include "host/lab/likely_cause.hpp"
+#include "host/lab/every.hpp"
 #include "host/lab/run_files.hpp"
+#include "host/lab/trace_row.hpp"
 #include "protocol/scene/scene_file.hpp"
 
 namespace ligature::lab {
@@ -16,48 +17,7 @@ namespace {
 
 constexpr double kKnotEvery_s = 0.02;
 
-/// Due at multiples of a period, however the ticks fall on them.
-class Every {
- public:
-  explicit Every(double period_s) : period_s_(period_s) {}
-  bool is_due(double t_s, double tick_s) {
-    if (t_s + 0.5 * tick_s < next_ * period_s_) return false;
-    next_ = std::floor(t_s / period_s_ + 0.5 * tick_s / period_s_) + 1.0;
-    return true;
-  }
-
- private:
-  double period_s_;
-  double next_ = 1.0;
-};
-
-/// min_gap_m is +inf when no pair is near; files hold finite numbers only, so then it is the thread's own length.
-double finite_gap(double gap_m, const scene::Scene& s) { return std::min(gap_m, s.suture.length_m); }
-
-TraceRow row_of(const Rehearsal& r) {
-  const auto& sim = r.simulation();
-  const auto& d = sim.diagnostics();
-  return {r.time_s(),
-          sim.hand(physics::Hand::kLeft).f_W,
-          sim.hand(physics::Hand::kRight).f_W,
-          d.kinetic_J,
-          d.potential_J,
-          d.max_stretch,
-          finite_gap(d.min_gap_m, r.scene()),
-          d.contacts,
-          r.last_tick_us()};
-}
-
-std::string divergence(const Rehearsal& r) {
-  const auto& d = r.simulation().diagnostics();
-  std::ostringstream text;
-  text << "diverged at tick " << (d.bad_tick >= 0 ? d.bad_tick : r.ticks()) << " (t = " << r.time_s() << " s), ";
-  if (!d.finite && d.bad_node < 0)  // stopped before it reached the thread
-    text << "by a hand whose position or speed is no number, or beyond 1e9";
-  else
-    text << "node " << d.bad_node << "; likely cause: " << likely_cause(r.scene());
-  return text.str();
-}
+TraceRow row_of(const Rehearsal& r) { return lab::row_of(r.simulation(), r.scene(), r.time_s(), r.last_tick_us()); }
 
 void look_at_knot(RunSummary& s, const Rehearsal& r) {
   s.knot = knot_of(r.simulation());
@@ -104,7 +64,7 @@ RunSummary run(Rehearsal& r, const RunOptions& options) {
     const auto row = row_of(r);
     if (!good || !row.is_finite()) {
       s.finite = false;
-      s.failure = divergence(r);
+      s.failure = divergence(r.simulation().diagnostics(), scene, r.ticks(), r.time_s());
       break;
     }
     trace.add(row);

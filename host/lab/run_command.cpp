@@ -9,6 +9,7 @@
 #include "host/lab/outcome.hpp"
 #include "host/lab/report.hpp"
 #include "host/lab/run.hpp"
+#include "host/lab/script_tools.hpp"
 #include "sim_device/operator/knots.hpp"
 
 namespace ligature::lab {
@@ -42,12 +43,6 @@ Example: an overhand knot tied in the paper's suture, with 35 nodes instead of 5
       --set suture.nodes=35 --set contact.friction=0.3 --out out/overhand
 and in a real one, by an operator that looks:
   ligature-lab run scenes/suture-3-0.toml --tie overhand --seed 3 --duration 25 --out out/tied)";
-
-/// Long enough for the script and nine seconds after; ten seconds when no hand is there.
-double default_duration_s(const scene::GripperScript& script) {
-  const double end_s = scene::end_time_s(script);
-  return end_s > 0.0 ? end_s + 9.0 : 10.0;
-}
 
 constexpr double kTyingTakes_s = 60.0;  // more than any operator needs, with the knot watched for some time after
 

@@ -17,18 +17,24 @@ scene::GripperScript changed(scene::GripperScript script, F change) {
 }  // namespace
 
 scene::GripperScript mirrored(scene::GripperScript script) {
-  return changed(std::move(script), [](scene::GripKey& k) { k.p_W_m[0] = -k.p_W_m[0]; });
+  return changed(std::move(script), [](scene::GripKey& k) {
+    for (auto* along : {&k.p_W_m, &k.v_W_m_per_s}) (*along)[0] = -(*along)[0];
+  });
 }
 
 scene::GripperScript turned(scene::GripperScript script, double angle_rad) {
   const double c = std::cos(angle_rad), s = std::sin(angle_rad);
   return changed(std::move(script), [c, s](scene::GripKey& k) {
-    k.p_W_m = {c * k.p_W_m[0] - s * k.p_W_m[1], s * k.p_W_m[0] + c * k.p_W_m[1], k.p_W_m[2]};
+    for (auto* v : {&k.p_W_m, &k.v_W_m_per_s}) *v = {c * (*v)[0] - s * (*v)[1], s * (*v)[0] + c * (*v)[1], (*v)[2]};
   });
 }
 
 scene::GripperScript paced(scene::GripperScript script, double factor) {
-  return changed(std::move(script), [factor](scene::GripKey& k) { k.time_s /= factor; });
+  return changed(std::move(script), [factor](scene::GripKey& k) {
+    k.time_s /= factor;
+    for (auto* rate : {&k.v_W_m_per_s, &k.turn_deg_per_s})
+      for (double& r : *rate) r *= factor;
+  });
 }
 
 double release_time_s(const scene::GripperScript& script) {

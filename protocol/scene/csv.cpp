@@ -26,7 +26,7 @@ Error at_line(const std::filesystem::path& path, std::size_t line, std::string_v
 }
 
 std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& path, std::string_view header,
-                                                  std::string_view wider) {
+                                                  std::string_view wider, CsvSetting* setting) {
   const auto read = read_text(path, kMostCsv_bytes);
   if (const auto* error = std::get_if<Error>(&read)) return *error;
   std::string_view rest = std::get<std::string>(read);
@@ -40,7 +40,11 @@ std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& p
     const auto body = trim(text.substr(0, text.find('#')));
     if (body.empty()) continue;
     const auto cells = split(body);
-    if (!header_seen) {
+    const bool may_set = setting != nullptr && !header_seen && setting->line == 0;
+    if (may_set && cells.size() == 2 && cells[0] == setting->key) {
+      setting->value = cells[1];
+      setting->line = line;
+    } else if (!header_seen) {
       if (!wider.empty() && cells == split(wider)) header = wider, columns = split(wider);
       if (cells != columns) {
         return at_line(path, line,

@@ -1,14 +1,35 @@
 #include "protocol/scene/gripper_script.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <string>
 
 #include "protocol/scene/csv.hpp"
+#include "protocol/scene/monotone_cubic.hpp"
 
 namespace ligature::scene {
 namespace {
 
 constexpr std::string_view kHeader = "time,hand,x,y,z,grip", kTurning = "time,hand,x,y,z,grip,turn_x,turn_y,turn_z";
+
+/// With at most so many decimals, and no zeros at the end. @pre |value| <= 1e9
+std::string shortest(double value, int decimals) {
+  std::array<char, 32> cell{};
+  const auto end = std::to_chars(cell.data(), cell.data() + cell.size(), value, std::chars_format::fixed, decimals);
+  std::string text(cell.data(), end.ptr);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text == "-0" ? "0" : text;
+}
+
+/// Empty when it is one.
+std::string read_motion(const CsvSetting& setting, Motion& motion) {
+  if (setting.line == 0 || setting.value == "rests") return {};
+  motion = Motion::kMonotoneCubic;
+  if (setting.value == "monotone-cubic") return {};
+  return "motion: found '" + shown(setting.value) + "', allowed rests or monotone-cubic";
+}
 
 /// One row as a key of one hand; the text says what is wrong with it, empty when nothing is.
 std::string read_row(const CsvRow& row, int& hand, GripKey& key) {
@@ -43,8 +64,10 @@ std::string read_row(const CsvRow& row, int& hand, GripKey& key) {
 
 std::variant<GripperScript, Error> load_gripper_script(const std::filesystem::path& path) {
   GripperScript script;
-  auto read = read_csv(path, kHeader, kTurning);
+  CsvSetting motion{"motion"};
+  auto read = read_csv(path, kHeader, kTurning, &motion);
   if (auto* error = std::get_if<Error>(&read)) return *error;
+  if (auto why = read_motion(motion, script.motion); !why.empty()) return at_line(path, motion.line, why);
   const auto& rows = std::get<std::vector<CsvRow>>(read);
   script.turns = rows.front().cells.size() > split(kHeader).size();
   for (const auto& row : rows) {
@@ -59,7 +82,26 @@ std::variant<GripperScript, Error> load_gripper_script(const std::filesystem::pa
     }
     keys.push_back(key);
   }
+  if (script.motion == Motion::kMonotoneCubic)
+    for (auto& keys : script.keys) pass_through(keys);
   return script;
+}
+
+std::string gripper_script_text(const GripperScript& script, const std::string& remark) {
+  std::string text = "# " + remark + "\n";
+  if (script.motion == Motion::kMonotoneCubic) text += "motion,monotone-cubic\n";
+  text += std::string(script.turns ? kTurning : kHeader) + "\n";
+  for (int hand = 0; hand < 2; ++hand) {
+    for (const GripKey& key : script.keys[hand]) {
+      text += shortest(key.time_s, 4) + (hand == 0 ? ",L" : ",R");
+      for (const double x : key.p_W_m) text += "," + shortest(x, 6);
+      text += key.grip ? ",1" : ",0";
+      if (script.turns)
+        for (const double turn : key.turn_deg) text += "," + shortest(turn, 3);
+      text += "\n";
+    }
+  }
+  return text;
 }
 
 ToolPose sample(std::span<const GripKey> keys, double t_s) noexcept {
@@ -73,12 +115,15 @@ ToolPose sample(std::span<const GripKey> keys, double t_s) noexcept {
   const double u = (t_s - a.time_s) / span_s;
   const double s = u * u * (3.0 - 2.0 * u);
   const double ds_per_s = 6.0 * u * (1.0 - u) / span_s;
+  const double from = span_s * u * (1.0 - u) * (1.0 - u), to = -span_s * u * u * (1.0 - u);
   ToolPose pose{{}, {}, a.grip, {}};
   for (std::size_t i = 0; i < 3; ++i) {
     const double way = next->p_W_m[i] - a.p_W_m[i];
-    pose.p_W_m[i] = a.p_W_m[i] + way * s;
-    pose.v_W_m_per_s[i] = way * ds_per_s;
-    pose.turn_deg[i] = a.turn_deg[i] + (next->turn_deg[i] - a.turn_deg[i]) * s;
+    const double v_a = a.v_W_m_per_s[i], v_b = next->v_W_m_per_s[i];
+    pose.p_W_m[i] = a.p_W_m[i] + way * s + (from * v_a + to * v_b);
+    pose.v_W_m_per_s[i] = way * ds_per_s + ((1.0 - u) * (1.0 - 3.0 * u) * v_a + u * (3.0 * u - 2.0) * v_b);
+    pose.turn_deg[i] = a.turn_deg[i] + (next->turn_deg[i] - a.turn_deg[i]) * s +
+                       (from * a.turn_deg_per_s[i] + to * next->turn_deg_per_s[i]);
   }
   return pose;
 }

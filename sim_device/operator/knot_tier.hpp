@@ -39,6 +39,12 @@ class KnotTier {
   const std::array<HandWish, 2>& tick(const Sight& sight);
 
   [[nodiscard]] const std::array<HandWish, 2>& wish() const noexcept { return wish_; }
+  /// The same without the tremor.
+  [[nodiscard]] std::array<HandWish, 2> calm_wish() const noexcept {
+    std::array<HandWish, 2> calm;
+    for (std::size_t h = 0; h < 2; ++h) calm[h] = {hands_[h].p_W(), hands_[h].v_W(), hands_[h].grip};
+    return calm;
+  }
   [[nodiscard]] bool is_done() const noexcept { return next_ >= plan_.size(); }
   /// What it is doing, for those who watch.
   [[nodiscard]] std::string doing() const { return is_done() ? "done" : plan_[next_].name; }

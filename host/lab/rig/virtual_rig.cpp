@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "firmware/platform/realtime.hpp"
+#include "sim_device/script_hand.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -55,10 +56,9 @@ VirtualRig::Intentions held(const RigSetup& setup, const SeeingOperator& seeing)
 VirtualRig::Intentions scripted_hands(const RigSetup& setup, const scene::GripperScript& script) {
   VirtualRig::Intentions hands;
   for (std::size_t h = 0; h < 2; ++h) {
-    auto path =
-        sim::OperatorPath::make(script.keys[h], sim::WorkspaceMap(setup.scene.hands, setup.body[h].plant.linkage));
-    if (const auto* why = std::get_if<std::string>(&path)) throw std::runtime_error(*why);
-    hands[h] = std::make_unique<sim::OperatorPath>(std::get<sim::OperatorPath>(std::move(path)));
+    auto hand = sim::script_hand(script, h, sim::WorkspaceMap(setup.scene.hands, setup.body[h].plant.linkage));
+    if (const auto* why = std::get_if<std::string>(&hand)) throw std::runtime_error(*why);
+    hands[h] = std::get<std::unique_ptr<sim::Intention>>(std::move(hand));
   }
   return hands;
 }

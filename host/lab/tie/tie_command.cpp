@@ -2,14 +2,15 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <memory>
 
 #include "host/console/stop_signal.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/rehearsal.hpp"
+#include "host/lab/report.hpp"
 #include "host/lab/run_files.hpp"
+#include "host/lab/tie/seeds.hpp"
 #include "host/lab/tie/tie_once.hpp"
 #include "protocol/scene/recorded_scene.hpp"
 #include "sim_device/operator/knot_tier.hpp"
@@ -28,6 +29,8 @@ struct Arguments {
   std::vector<std::string> overrides;
   std::string seeds = "1-20";
   std::string out = "out/tie";
+  std::string script_out;
+  double script_within = 0.3;  // diameters of the thread
 };
 
 constexpr const char* kFooter = R"(
@@ -37,38 +40,32 @@ record` would have written) is read back, and the knot in its last shape, five s
 
 Several knots or models end with a table.
 
+--script-out writes what the hands wanted, without their tremor and within the arm's reach, as a script for
+`ligature-device --operator`: it plays on a rig and does not look. `ligature-lab play` counts how often it ties.
+
 Exit: 0 done; 2 knot, scene or seeds refused; 3 fewer than 95 % tied of any knot in any model.
 
 Examples:
   ligature-lab tie overhand figure-eight square granny surgeon --models paper-1,paper-4 --seeds 1-4
-  ligature-lab tie overhand --scene scenes/suture-3-0.toml --seeds 1-20 --out out/tie)";
-
-struct Seeds {
-  std::uint32_t first = 1, last = 1;
-};
-
-Seeds read_seeds(const std::string& text) {
-  Seeds s;
-  const char* end = text.data() + text.size();
-  auto [at, error] = std::from_chars(text.data(), end, s.first);
-  s.last = s.first;
-  bool good = error == std::errc{};
-  if (good && at != end) {
-    const auto rest =
-        *at == '-' ? std::from_chars(at + 1, end, s.last) : std::from_chars_result{at, std::errc::invalid_argument};
-    good = rest.ec == std::errc{} && rest.ptr == end;
-  }
-  if (!good || s.last < s.first || s.last - s.first >= 10'000) {
-    throw Refusal("--seeds: found \"" + text + "\", allowed N or FIRST-LAST, rising, at most 10000 of them");
-  }
-  return s;
-}
+  ligature-lab tie overhand --scene scenes/suture-3-0.toml --seeds 1-20 --out out/tie
+  ligature-lab tie square --scene scenes/suture-3-0.toml --seeds 7 --script-out square.csv)";
 
 struct Count {
   int tied = 0, tried = 0;
   [[nodiscard]] bool is_enough() const { return tried > 0 && tied >= kEnough * tried; }
   [[nodiscard]] std::string text() const { return std::to_string(tied) + " of " + std::to_string(tried); }
 };
+
+/// A script is of one run, and goes into a folder that is there. @throws Refusal
+void check_script_out(const Arguments& a, const Seeds& seeds) {
+  if (a.script_out.empty()) return;
+  const auto runs = a.knots.size() * std::max<std::size_t>(1, a.models.size()) * (seeds.last - seeds.first + 1);
+  if (runs != 1) throw Refusal("--script-out: found " + std::to_string(runs) + " runs, allowed one knot with one seed");
+  const auto folder = std::filesystem::absolute(a.script_out).parent_path();
+  if (!std::filesystem::is_directory(folder)) throw Refusal("--script-out: found no folder " + folder.string());
+  if (!(a.script_within > 0.0 && a.script_within <= 10.0))
+    throw Refusal("--script-within: found " + digits(a.script_within) + ", allowed more than 0, at most 10");
+}
 
 /// One knot in one model.
 struct Cell {
@@ -96,18 +93,31 @@ Cell cell_of(const Arguments& a, const std::string& knot, const std::string& mod
   return c;
 }
 
+void write_script(const Arguments& a, const Cell& c, std::uint32_t seed, const HandRecord& hands) {
+  const double within_m = a.script_within * 2.0 * c.scene.suture.radius_m;
+  const auto script = hands.script(within_m);
+  std::string how = "ligature-lab tie " + c.knot + " --scene " + c.file;
+  for (const auto& o : a.overrides) how += " --set " + o;
+  how += " --seeds " + std::to_string(seed) + " --script-within " + digits(a.script_within) + " --script-out FILE";
+  write_text(a.script_out, scene::gripper_script_text(script, how));
+  std::printf("script: %zu keys in %s, within %s m of the hands\n", script.keys[0].size() + script.keys[1].size(),
+              a.script_out.c_str(), digits(within_m).c_str());
+}
+
 /// All seeds; one line each.
-Count tie_all(const Cell& c, const Seeds& seeds) {
+Count tie_all(const Arguments& a, const Cell& c, const Seeds& seeds) {
   make_folder(c.folder);
   Count count;
   std::printf("%6s  %-20s %8s  %s\n", "seed", "found", "seconds", "moves given up");
   for (std::uint32_t seed = seeds.first; seed <= seeds.last && !console::stop_requested(); ++seed) {
-    const Tied t = tie_once(c.scene, c.file, c.toml, c.knot, seed, c.folder);
+    HandRecord hands(sim::WorkspaceMap(c.scene.hands));
+    const Tied t = tie_once(c.scene, c.file, c.toml, c.knot, seed, c.folder, a.script_out.empty() ? nullptr : &hands);
     ++count.tried;
     count.tied += t.good();
     std::string missed;
     for (const auto& m : t.missed) missed += (missed.empty() ? "" : ", ") + m;
     std::printf("%6u  %-20s %8.1f  %s\n", seed, t.found.c_str(), t.seconds, missed.c_str());
+    if (!a.script_out.empty() && t.good()) write_script(a, c, seed, hands);
     std::fflush(stdout);
   }
   std::printf("%s%s%s: tied %s\n", c.model.c_str(), c.model.empty() ? "" : " ", c.knot.c_str(), count.text().c_str());
@@ -131,13 +141,14 @@ void print_table(const Arguments& a, const std::vector<Count>& counts) {
 
 int execute(Arguments a) {
   const Seeds seeds = read_seeds(a.seeds);
+  check_script_out(a, seeds);
   if (a.models.empty()) a.models = {""};
   std::vector<Cell> cells;
   for (const auto& model : a.models)
     for (const auto& knot : a.knots) cells.push_back(cell_of(a, knot, model));
   std::vector<Count> counts;
   counts.reserve(cells.size());
-  for (const Cell& c : cells) counts.push_back(tie_all(c, seeds));
+  for (const Cell& c : cells) counts.push_back(tie_all(a, c, seeds));
   if (counts.size() > 1) print_table(a, counts);
   return std::all_of(counts.begin(), counts.end(), [](const Count& c) { return c.is_enough(); }) ? kDone : kRunFailed;
 }
@@ -158,6 +169,10 @@ void add_tie_command(CLI::App& app, int& exit_code) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   tie->add_option("--seeds", a->seeds, "N or FIRST-LAST: another operator each")->capture_default_str();
   tie->add_option("--out", a->out, "Folder for the recordings")->type_name("DIR")->capture_default_str();
+  tie->add_option("--script-out", a->script_out, "Of one run that ties: what the hands wanted, as a gripper script")
+      ->type_name("FILE");
+  tie->add_option("--script-within", a->script_within, "How near the script comes to it, in diameters of the thread")
+      ->capture_default_str();
   tie->footer(kFooter);
   tie->callback([a, &exit_code] { exit_code = execute(*a); });
 }

@@ -16,25 +16,31 @@ constexpr std::int64_t kMost_ticks = 300'000;
 
 class Person final : public SeeingOperator {
  public:
-  explicit Person(sim::KnotTier tier) : tier_(std::move(tier)), start_W_{tier_.wish()[0].p_W, tier_.wish()[1].p_W} {}
+  Person(sim::KnotTier tier, HandRecord* hands)
+      : tier_(std::move(tier)), hands_(hands), start_W_{tier_.wish()[0].p_W, tier_.wish()[1].p_W} {}
 
   [[nodiscard]] std::array<sim::Vec3, 2> start_W_m() const override { return start_W_; }
-  [[nodiscard]] std::array<sim::HandWish, 2> act(const sim::Sight& sight) override { return tier_.tick(sight); }
+  [[nodiscard]] std::array<sim::HandWish, 2> act(const sim::Sight& sight) override {
+    const auto& wish = tier_.tick(sight);
+    if (hands_ != nullptr) hands_->add(sight.t_s, tier_.calm_wish());
+    return wish;
+  }
   [[nodiscard]] bool is_done() const override { return tier_.is_done(); }
   [[nodiscard]] const sim::KnotTier& tier() const noexcept { return tier_; }
 
  private:
   sim::KnotTier tier_;
+  HandRecord* hands_;
   std::array<sim::Vec3, 2> start_W_;
 };
 
 }  // namespace
 
 Tied tie_once(const scene::Scene& scene, const std::string& scene_file, const std::string& scene_toml,
-              const std::string& knot, std::uint32_t seed, const std::filesystem::path& folder) {
+              const std::string& knot, std::uint32_t seed, const std::filesystem::path& folder, HandRecord* hands) {
   auto made = sim::KnotTier::make(scene, knot, seed);
   if (const auto* why = std::get_if<std::string>(&made)) throw Refusal(scene_file + ": " + *why);
-  Person person(std::get<sim::KnotTier>(std::move(made)));
+  Person person(std::get<sim::KnotTier>(std::move(made)), hands);
   Tied tied;
   tied.wanted = std::string(person.tier().knot().type) + " " + std::string(person.tier().knot().handedness);
   tied.recording = folder / (knot + "-" + std::to_string(seed) + ".lcmlog");

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "host/lab/tie/hand_record.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::lab {
@@ -20,9 +21,11 @@ struct Tied {
 };
 
 /// @param scene_toml as scene::recorded_text() makes it; the operator's knot and seed are added.
-/// @param folder where KNOT-SEED.lcmlog goes; one of that name is replaced.  @throws Refusal for an unknown knot or a
-/// scene that the operator cannot work in; std::runtime_error when the rig does not start or the file cannot be made.
+/// @param folder where KNOT-SEED.lcmlog goes; one of that name is replaced.  @param hands gets what they wanted.
+/// @throws Refusal for an unknown knot or a scene that the operator cannot work in; std::runtime_error when the rig
+/// does not start or the file cannot be made.
 [[nodiscard]] Tied tie_once(const scene::Scene& scene, const std::string& scene_file, const std::string& scene_toml,
-                            const std::string& knot, std::uint32_t seed, const std::filesystem::path& folder);
+                            const std::string& knot, std::uint32_t seed, const std::filesystem::path& folder,
+                            HandRecord* hands = nullptr);
 
 }  // namespace ligature::lab

@@ -62,6 +62,21 @@ TEST(Tying, AFigureEightInTheSutureIsOneAndStays) {
   EXPECT_EQ(knot_before("done", "suture-3-0.toml", "figure-eight", 2, {"suture.yield_strain=0.1"}), "4_1 amphichiral");
 }
 
+/// What scripts/make-operators made, played without looking by hands that begin apart from each other.
+TEST(Tying, AScriptOfTheSutureTies) {
+  RigSetup setup;
+  setup.scene = std::get<scene::Scene>(scene::load_scene(LIGATURE_SOURCE_DIR "/scenes/suture-3-0.toml", {}));
+  auto script = std::get<scene::GripperScript>(
+      scene::load_gripper_script(LIGATURE_SOURCE_DIR "/scenes/operators/suture-overhand.csv"));
+  for (auto& key : script.keys[1]) key.time_s += 0.01;
+  VirtualRig rig(setup, script);
+  ASSERT_EQ(rig.run(static_cast<std::int64_t>(1e3 * scene::end_time_s(script))), std::nullopt);
+  std::vector<std::array<double, 3>> shape;
+  for (const sim::Vec3& p : rig.thread.nodes_W()) shape.push_back({p.x(), p.y(), p.z()});
+  const auto found = knot::recognise(shape, false);
+  EXPECT_EQ(found.type + " " + found.handedness, "3_1 right");
+}
+
 /// Without bend damping a thread let go where it was drawn, nearly level, whipped its second throw open (9 of 20).
 TEST(Tying, ASquareKnotStaysInAnUndampedThread) {
   for (const std::uint32_t seed : {3U, 7U})

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "firmware/rt/bus_time.hpp"
 #include "host/tick_statistics.hpp"
 #include "synthetic_log.hpp"
 
@@ -70,6 +71,52 @@ TEST(TickStatistics, AFaultCountsOnceUntilItIsLeft) {
   ASSERT_EQ(statistics.faults().size(), 3U);
   EXPECT_EQ(statistics.faults()[0].tick, 1);
   EXPECT_EQ(statistics.faults()[2].fault, 5);
+}
+
+/// One period of the rig, as the loop records it.
+tick_t period_of(int number, std::int32_t wakeup_us, std::int32_t joints_us, std::int32_t execution_us) {
+  auto tick = test::tick_of(number);
+  tick.scheduled_ns = std::int64_t{number} * 1'000'000;
+  tick.wakeup_latency_ns = wakeup_us * 1000;
+  tick.sync_ns = 30'000;
+  tick.tpdo_ns = joints_us * 1000;
+  tick.execution_ns = execution_us * 1000;
+  return tick;
+}
+
+TEST(ThreadTime, IsFromTheToolsToTheNextJointsWithoutTheSync) {
+  TickStatistics statistics;
+  statistics.add(period_of(1, 10, 450, 500));
+  EXPECT_FALSE(statistics.thread_time().known());
+  statistics.add(period_of(2, 20, 400, 480));  // 1000 + 20 + 400 - 25 - 30 - (10 + 500)
+  statistics.add(period_of(3, 0, 600, 700));   // 1000 + 0 + 460 - 25 - 30 - (20 + 480): joints never count as later
+  EXPECT_EQ(statistics.thread_time().at_least_ns(50), 905'000);
+  statistics.add(period_of(4, 5, 420, 500));  // 1000 + 5 + 420 - 25 - 30 - (0 + 700)
+  EXPECT_EQ(statistics.thread_time().at_least_ns(50), 855'000);
+  EXPECT_EQ(statistics.thread_time().at_least_ns(100), 670'000);
+}
+
+TEST(ThreadTime, IsToldOnlyByPeriodsThatFollowEachOther) {
+  const auto known = [](auto change) {
+    TickStatistics statistics;
+    auto first = period_of(1, 0, 400, 500), second = period_of(2, 0, 400, 500);
+    change(statistics, first, second);
+    statistics.add(second);
+    return statistics.thread_time().known();
+  };
+  EXPECT_TRUE(known([](auto& all, auto& first, auto&) { all.add(first); }));
+  EXPECT_FALSE(known([](auto& all, auto& first, auto& second) { second.tick = 3, all.add(first); }));
+  EXPECT_FALSE(known([](auto& all, auto& first, auto&) { all.add(first), all.start_session(); }));
+  EXPECT_FALSE(
+      known([](auto& all, auto& first, auto&) { first.flags = tick_t::FLAG_DEADLINE_MISSED, all.add(first); }));
+  EXPECT_FALSE(known([](auto& all, auto& first, auto&) { first.flags = tick_t::FLAG_PERIOD_LOST, all.add(first); }));
+  EXPECT_FALSE(
+      known([](auto& all, auto& first, auto& second) { all.add(first), second.flags = tick_t::FLAG_PERIOD_LOST; }));
+}
+
+TEST(ThreadTime, HasTheLoopsOwnFigures) {
+  EXPECT_EQ(ThreadTime::kMargin_ns, rt::ThreadDeadline::kMargin.count());
+  EXPECT_EQ(ThreadTime::kJointsLatest_ns, rt::kSamplesLatest.count());
 }
 
 }  // namespace

@@ -70,6 +70,49 @@ TEST(GripperScript, HandsThatTurnHaveThreeColumnsMore) {
   EXPECT_FALSE(std::get<GripperScript>(plain).turns);
 }
 
+TEST(GripperScript, ALineBeforeTheHeaderSaysHowTheHandGoes) {
+  const std::string rows = "time,hand,x,y,z,grip\n0,L,0,0,0,1\n1,L,1,0,0,1\n2,L,2,0,0,1\n";
+  const auto passing_x = [&](const std::string& first_line) {
+    const auto read = load_gripper_script(write("# as recorded\n" + first_line + rows));
+    const auto* error = std::get_if<Error>(&read);
+    EXPECT_EQ(error, nullptr) << error->text;
+    return error != nullptr ? -1.0 : sample(std::get<GripperScript>(read).keys[0], 1.0).v_W_m_per_s[0];
+  };
+  EXPECT_EQ(passing_x(""), 0.0);
+  EXPECT_EQ(passing_x("motion,rests\n"), 0.0);
+  EXPECT_DOUBLE_EQ(passing_x(" motion , monotone-cubic\n"), 1.0);
+  const auto why = [&](const std::string& text) { return std::get<Error>(load_gripper_script(write(text))).text; };
+  EXPECT_NE(why("motion,linear\n" + rows).find(":1: motion: found 'linear', allowed rests or monotone-cubic"),
+            std::string::npos);
+  EXPECT_NE(why("motion,rests\nmotion,rests\n" + rows).find(":2: found 'motion,rests', allowed the header"),
+            std::string::npos);
+  EXPECT_NE(why("pace,2\n" + rows).find(":1: found 'pace,2', allowed the header"), std::string::npos);
+  EXPECT_NE(why(rows + "motion,rests\n").find(":5: found 2 columns"), std::string::npos);
+}
+
+TEST(GripperScript, WhatIsWrittenReadsBack) {
+  for (const char* header : {"time,hand,x,y,z,grip\n0,L,0,-0.5,100,1\n1.25,L,1e-6,2,3,0\n0.001,R,0.1,0,0,1\n",
+                             "motion,monotone-cubic\ntime,hand,x,y,z,grip,turn_x,turn_y,turn_z\n"
+                             "0,L,0,0,0,1,0,0,0\n2,L,0,0,1,1,720,0,-90.5\n3,L,0,0,2,1,800,0,0\n"}) {
+    const auto first = std::get<GripperScript>(load_gripper_script(write(header)));
+    const auto text = gripper_script_text(first, "a remark");
+    EXPECT_TRUE(text.starts_with("# a remark\n")) << text;
+    const auto again = std::get<GripperScript>(load_gripper_script(write(text)));
+    EXPECT_EQ(again.turns, first.turns);
+    EXPECT_EQ(again.motion, first.motion);
+    for (const double t_s : {0.0, 0.0005, 0.3, 1.25, 2.5, 9.0}) {
+      for (const int hand : {0, 1}) {
+        const auto a = sample(first.keys[hand], t_s), b = sample(again.keys[hand], t_s);
+        EXPECT_EQ(a.grip, b.grip);
+        for (std::size_t i = 0; i < 3; ++i) {
+          EXPECT_NEAR(a.p_W_m[i], b.p_W_m[i], 1e-9);
+          EXPECT_NEAR(a.turn_deg[i], b.turn_deg[i], 1e-9);
+        }
+      }
+    }
+  }
+}
+
 TEST(GripperScript, AByteOrderMarkIsNoData) {
   const auto read = load_gripper_script(write("\xEF\xBB\xBFtime,hand,x,y,z,grip\n0,L,0,0,0,1\n"));
   EXPECT_TRUE(std::holds_alternative<GripperScript>(read));
@@ -93,7 +136,8 @@ TEST(GripperScript, SampleRestsAtKeysAndHoldsOutside) {
 }
 
 TEST(GripperScript, SampledVelocityIsTheDerivativeOfThePosition) {
-  const std::vector<GripKey> keys{{0.0, {0, 0, 0}, true}, {0.7, {1, -2, 3}, true}, {1.1, {4, 0, 1}, true}};
+  std::vector<GripKey> keys{{0.0, {0, 0, 0}, true}, {0.7, {1, -2, 3}, true}, {1.1, {4, 0, 1}, true}};
+  keys[1].v_W_m_per_s = {-1, 0.5, 2};  // passes the second, rests in the others
   for (double t = 0.05; t < 1.1; t += 0.05) {
     const double h = 1e-6;
     for (std::size_t i = 0; i < 3; ++i) {

@@ -1,0 +1,34 @@
+#pragma once
+// Several runs by their seeds: N or FIRST-LAST.
+
+#include <charconv>
+#include <cstdint>
+#include <string>
+
+#include "host/lab/outcome.hpp"
+
+namespace ligature::lab {
+
+struct Seeds {
+  std::uint32_t first = 1, last = 1;
+};
+
+/// @throws Refusal
+inline Seeds read_seeds(const std::string& text) {
+  Seeds s;
+  const char* end = text.data() + text.size();
+  auto [at, error] = std::from_chars(text.data(), end, s.first);
+  s.last = s.first;
+  bool good = error == std::errc{};
+  if (good && at != end) {
+    const auto rest =
+        *at == '-' ? std::from_chars(at + 1, end, s.last) : std::from_chars_result{at, std::errc::invalid_argument};
+    good = rest.ec == std::errc{} && rest.ptr == end;
+  }
+  if (!good || s.last < s.first || s.last - s.first >= 10'000) {
+    throw Refusal("--seeds: found \"" + text + "\", allowed N or FIRST-LAST, rising, at most 10000 of them");
+  }
+  return s;
+}
+
+}  // namespace ligature::lab
