@@ -1,20 +1,12 @@
 #include "host/exchange.hpp"
 
-#include <random>
-
+#include "host/fresh_id.hpp"
 #include "host/wall_clock.hpp"
 
 namespace ligature::host {
 namespace {
 
 using ligature_msg::command_t;
-
-/// Never the same twice, whatever the clock says: a recording cannot answer it.
-std::int64_t fresh_id() {
-  std::random_device device;
-  constexpr std::uint64_t kPositive = ~(std::uint64_t{1} << 63U);
-  return static_cast<std::int64_t>((std::uint64_t{device()} << 32U | device()) & kPositive);
-}
 
 }  // namespace
 

@@ -5,11 +5,14 @@
 
 namespace ligature::sim {
 
+inline constexpr double kEndless_s = 1e300;  ///< end of what nobody has ended yet
+
 /// Where the hand wants the stylus, in D, and what its fingers press.
 struct Intent {
   Vec3 p_DH = Vec3::Zero();
   Vec3 v_DH = Vec3::Zero();
   bool grip = false;
+  bool dead_man = true;  ///< held, while the drives are on
 };
 
 /// Where the stylus is.
@@ -53,7 +56,7 @@ class HeldIntention final : public Intention {
  private:
   Vec3 start_D_m_;
   Intent intent_;
-  double since_s_ = 1e300, end_s_ = 1e300;
+  double since_s_ = 1e300, end_s_ = kEndless_s;
 };
 
 }  // namespace ligature::sim

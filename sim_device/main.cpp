@@ -7,14 +7,12 @@
 
 #include "protocol/device/device_file.hpp"
 #include "protocol/scene/fault_script.hpp"
-#include "protocol/scene/gripper_script.hpp"
-#include "protocol/scene/scene_file.hpp"
 #include "sim_device/event_loop.hpp"
+#include "sim_device/mover.hpp"
 #include "sim_device/narrator.hpp"
 #include "sim_device/options.hpp"
 #include "sim_device/scheduling.hpp"
 #include "sim_device/stats_file.hpp"
-#include "sim_device/unrest.hpp"
 
 namespace {
 
@@ -66,34 +64,6 @@ std::variant<sim::Body, std::string> read_body(const sim::Options& o) {
   return body;
 }
 
-/// The script, and what besides it moves the hand.
-std::unique_ptr<sim::Intention> intention_of(sim::OperatorPath path, const sim::Options& o) {
-  std::unique_ptr<sim::Intention> will = std::make_unique<sim::OperatorPath>(std::move(path));
-  if (o.tremor_mm > 0.0)
-    will = std::make_unique<sim::Trembling>(std::move(will), 1e-3 * o.tremor_mm, o.tremor_Hz, o.seed);
-  if (o.adversary_lead_s > 0.0)
-    will = std::make_unique<sim::Adversarial>(std::move(will), o.adversary_lead_s, 1e-3 * o.adversary_reach_mm);
-  return will;
-}
-
-std::variant<sim::OperatorPath, std::string> read_path(const sim::Options& o, const sim::Linkage& linkage) {
-  scene::Scene scene;
-  if (!o.scene.empty()) {
-    auto read = scene::load_scene(o.scene, o.overrides);
-    if (const auto* e = std::get_if<scene::Error>(&read)) return e->text;
-    scene = std::get<scene::Scene>(std::move(read));
-  }
-  scene::GripperScript script;
-  if (!o.script.empty()) {
-    auto read = scene::load_gripper_script(o.script);
-    if (const auto* e = std::get_if<scene::Error>(&read)) return e->text;
-    script = std::get<scene::GripperScript>(std::move(read));
-  }
-  auto path = sim::OperatorPath::make(script.keys[o.is_left ? 0 : 1], sim::WorkspaceMap(scene.hands, linkage));
-  if (const auto* why = std::get_if<std::string>(&path)) return o.script + ": " + *why;
-  return path;
-}
-
 /// What shall go wrong: nothing, when no script is given.
 std::variant<std::optional<sim::FaultInjector>, std::string> read_faults(const sim::Options& o) {
   if (o.faults.empty()) return std::optional<sim::FaultInjector>();
@@ -105,13 +75,14 @@ std::variant<std::optional<sim::FaultInjector>, std::string> read_faults(const s
   return std::optional<sim::FaultInjector>(script);
 }
 
-void live(sim::HandDevice& device, sim::Port& port, sim::EventLoop& loop, sim::Narrator& narrator, bool exit_when_done,
-          const sigset_t& during_sleep) {
+void live(sim::HandDevice& device, sim::Port& port, sim::EventLoop& loop, sim::Narrator& narrator, sim::PageLink* page,
+          bool exit_when_done, const sigset_t& during_sleep) {
   sim::Time end = sim::kNever;
   while (g_stop == 0) {
     loop.wait(kLongestSleep, during_sleep);
     const sim::Time now = sim::now_monotonic();
     loop.serve(now);
+    if (page != nullptr) page->look(device.mechanics(), now);
     narrator.look(device, port.clients(), now);
     if (exit_when_done && end == sim::kNever && device.mechanics().is_done()) end = now + kFarewell;
     if (now >= end) return;
@@ -129,8 +100,11 @@ int main(int argc, char** argv) {
     return refuse("--stats " + options.stats + ": " + why);
   const auto body = read_body(options);
   if (const auto* why = std::get_if<std::string>(&body)) return refuse(*why);
-  auto path = read_path(options, std::get<sim::Body>(body).plant.linkage);
-  if (const auto* why = std::get_if<std::string>(&path)) return refuse(*why);
+  const sigset_t during_sleep = take_signals();
+  auto found =
+      sim::mover_of(options, std::get<sim::Body>(body).plant.linkage);  // its threads take no signal and no priority
+  if (const auto* why = std::get_if<std::string>(&found)) return refuse(*why);
+  auto& mover = std::get<sim::Mover>(found);
   auto faults = read_faults(options);
   if (const auto* why = std::get_if<std::string>(&faults)) return refuse(*why);
   auto& injector = std::get<std::optional<sim::FaultInjector>>(faults);
@@ -140,12 +114,11 @@ int main(int argc, char** argv) {
 
   sim::Narrator narrator(options.hand());
   for (const std::string& line : sim::ask_for_scheduling(options.real_time, options.cpu)) narrator.say(line);
-  const sigset_t during_sleep = take_signals();
-  sim::HandDevice device(intention_of(std::get<sim::OperatorPath>(std::move(path)), options), sim::now_monotonic(),
-                         std::get<sim::Body>(body), !port.charges_bit_time());
+  sim::HandDevice device(std::move(mover.will), sim::now_monotonic(), std::get<sim::Body>(body),
+                         !port.charges_bit_time());
   sim::EventLoop loop(device, port, injector ? &*injector : nullptr);
   narrator.say("on " + options.bus + ", waiting for a controller");
-  live(device, port, loop, narrator, options.exit_when_done, during_sleep);
+  live(device, port, loop, narrator, mover.page.get(), options.exit_when_done, during_sleep);
 
   const std::string text = sim::stats_json(options.hand(), device, loop.stats(), port.dropped_frames());
   device.power_off();  // after the statistics: their torque is what the drives had, not what switching them off leaves

@@ -15,7 +15,8 @@ struct Options {
   bool is_left = true;
   std::string bus;
   std::string scene;   ///< empty: default workspace
-  std::string script;  ///< empty: the hand rests
+  std::string script;  ///< empty: the hand rests; "page": whoever steers it from a page
+  std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304";
   std::string stats;   ///< empty: none
   std::string faults;  ///< empty: nothing goes wrong
   std::vector<std::string> overrides;
@@ -31,6 +32,7 @@ struct Options {
   double gravity_share = 0.0;
   std::uint32_t seed = 1;
 
+  [[nodiscard]] bool is_steered() const { return script == "page"; }
   [[nodiscard]] std::string hand() const { return is_left ? "left" : "right"; }
 };
 

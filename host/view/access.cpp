@@ -62,6 +62,13 @@ bool is_token(std::string_view found, std::string_view expected) noexcept {
   return differs == 0;
 }
 
+std::string objection_to(std::string_view token, const Access& access) {
+  if (access.token.empty()) return "this view may only look: it was started without a token";
+  if (!is_token(token, access.token))
+    return "the token is not the one of this view; open the address that its start printed";
+  return {};
+}
+
 bool is_own_host(std::string_view host_header, std::string_view machine_name) {
   const std::string name = without_port(host_header);
   return name == "localhost" || is_address(name) || (!machine_name.empty() && name == machine_name);

@@ -19,6 +19,9 @@ struct Access {
 /// Equal, in a time that does not tell where they differ; false for an empty expected token.
 [[nodiscard]] bool is_token(std::string_view found, std::string_view expected) noexcept;
 
+/// Why what came with this token is not done; empty when it is.
+[[nodiscard]] std::string objection_to(std::string_view token, const Access& access);
+
 /// Whether a Host header names this machine by address, as localhost or by its own name. A page of another site that
 /// points its own name at 127.0.0.1 (DNS rebinding) comes with that name and is turned away.
 [[nodiscard]] bool is_own_host(std::string_view host_header, std::string_view machine_name);

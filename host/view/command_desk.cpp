@@ -24,9 +24,8 @@ json CommandDesk::request(std::uint64_t page, const json& message, Clock::time_p
   const json id = id_of(message);
   const auto kind = lcm_tools::command_kind(word);
   if (!kind) return answer(id, word.substr(0, 40), false, "no such command");
-  if (access_.token.empty()) return answer(id, word, false, "this view may only look: it was started without a token");
-  if (!is_token(text_of(message, "token"), access_.token))
-    return answer(id, word, false, "the token is not the one of this view; open the address that its start printed");
+  if (const auto why = objection_to(text_of(message, "token"), access_); !why.empty())
+    return answer(id, word, false, why);
 
   const std::scoped_lock lock(mutex_);
   if (waiting_.size() >= kMostWaiting) return answer(id, word, false, "too many commands are waiting for an answer");

@@ -21,8 +21,14 @@ PageConnection::PageConnection(beast::tcp_stream stream, Shared& shared)
 }
 
 PageConnection::~PageConnection() {
+  end();
   give_place_back();
   shared_.pages.erase(id_);
+}
+
+void PageConnection::end() {
+  open_ = false;
+  if (shared_.hooks.on_gone) shared_.hooks.on_gone(id_);
 }
 
 void PageConnection::give_place_back() {
@@ -54,10 +60,7 @@ void PageConnection::accept(const http::request<http::string_body>& upgrade) {
 
 void PageConnection::read() {
   socket_.async_read(inbox_, [self = shared_from_this()](beast::error_code error, std::size_t) {
-    if (error) {  // closed, too large, malformed, silent
-      self->open_ = false;
-      return;
-    }
+    if (error) return self->end();  // closed, too large, malformed, silent
     const auto data = self->inbox_.data();
     const bool goes_on = self->on_message({static_cast<const char*>(data.data()), data.size()});
     self->inbox_.clear();
@@ -107,12 +110,12 @@ void PageConnection::offer_frame(Clock::time_point now) {
   writing_ = true;
   socket_.async_write(boost::asio::buffer(outbox_), [self = shared_from_this()](beast::error_code error, std::size_t) {
     self->writing_ = false;
-    if (error) self->open_ = false;
+    if (error) self->end();
   });
 }
 
 void PageConnection::close() {
-  open_ = false;
+  end();
   give_place_back();
   beast::get_lowest_layer(socket_).close();
 }

@@ -56,6 +56,8 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
   bool on_message(std::string_view text);
   void look_at_token(const nlohmann::json& message);
   void give_place_back();
+  /// At once, whatever still waits on the socket: somebody may count on it to be heard.
+  void end();
 
   Shared& shared_;
   std::uint64_t id_;

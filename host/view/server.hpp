@@ -29,6 +29,8 @@ struct ServerHooks {
   std::function<nlohmann::json(std::uint64_t page, const nlohmann::json& message)> on_message;
   /// 60 times a second, before frames are sent. @return answers for pages; false in `more` ends the server.
   std::function<std::multimap<std::uint64_t, nlohmann::json>(bool& more)> on_tick;
+  /// The page's connection has ended; may be missing, and may be called more than once for a page.
+  std::function<void(std::uint64_t page)> on_gone = {};
 };
 
 /// HTTP and WebSocket on one port and one thread (Boost.Beast). Pages get a frame 60 times a second unless the last

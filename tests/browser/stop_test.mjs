@@ -97,16 +97,17 @@ async function draws(page, webgl, name) {
 
 /** At widths from a phone's to a desk's, with every panel and dialog open: STOP is not covered, and nothing sticks out. */
 async function fits(page, width, height) {
-  for (const open of ['', 'change', 'help', 'record-dialog']) {
+  for (const open of ['', 'change', 'help', 'record-dialog', 'hand-panel']) {
     await page.evaluate((id) => {
       for (const box of document.querySelectorAll('dialog[open]')) box.close();
-      document.getElementById('change').hidden = id !== 'change';
-      if (id && id !== 'change') document.getElementById(id).show();
+      for (const panel of ['change', 'hand-panel']) document.getElementById(panel).hidden = id !== panel;
+      document.getElementById(id)?.show?.();
+      for (const side of ['left', 'right']) Object.assign(document.getElementById(`jaws-${side}`), { hidden: false, textContent: `${side} jaws: close` });
     }, open);
     const found = await page.evaluate(outside);
     assert.deepEqual(found, [], `${width}x${height} with ${open || 'nothing'} open`);
   }
-  await page.evaluate(() => document.getElementById('record-dialog').close());
+  await page.evaluate(() => { document.getElementById('hand-panel').hidden = true; });
 }
 
 /** @returns what covers STOP, what is wider than the page, and what sticks out of the box that it belongs to. */

@@ -102,6 +102,15 @@ class Analysis(unittest.TestCase):
         self.assertIn("firmware 0.1.0", said[2])
         self.assertIn("[suture]", said[3])
 
+    def test_a_picture_of_the_thread_even_of_one_without_a_knot(self):
+        def plot(*words):
+            return subprocess.run([HOST, "plot", "knot.lcmlog", *words], cwd=self.folder, capture_output=True, text=True)
+        drawn = plot("--thread", "--out", "thread.svg")
+        self.assertEqual(drawn.returncode, 0, drawn.stderr)
+        self.assertIn("0_1", (self.folder / "thread.svg").read_text(), "the title names the knot")
+        self.assertEqual(plot("--thread", "--frames", "--out", "no.svg").returncode, 2)
+        self.assertFalse((self.folder / "no.svg").exists())
+
     def columns(self):
         """Name and value of a tick in the message itself."""
         axes = "xyz"

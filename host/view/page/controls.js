@@ -3,6 +3,8 @@ const $ = (id) => document.getElementById(id);
 const COMMANDS = { arm: 'arm', disarm: 'disarm', 'reset-thread': 'reset-thread', 'reset-fault': 'reset-fault' };
 const KEYS = { a: 'arm', d: 'disarm', t: 'reset-thread', r: 'reset-fault' };
 const TOAST_MS = 4000;
+/** Keys (event.code) that mean something else for now: the hands' (hand_keys.js). */
+export const takenKeys = new Set();
 
 export function setUpControls(link, isReplay) {
   const give = async (command) => {
@@ -33,7 +35,7 @@ function standInForGuard(stop, isReplay) {
 function isText(target) { return target.tagName === 'TEXTAREA' || (target.tagName === 'INPUT' && target.type === 'text'); }
 
 export function isTyping(event) {
-  return event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === 'SELECT' || isText(event.target);
+  return takenKeys.has(event.code) || event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === 'SELECT' || isText(event.target);
 }
 
 export function toast(text, refused) {

@@ -15,6 +15,7 @@ export class FlatView {
     this.facts = { deskHeight_m: null, restLength_m: 0, fixed: [], maxForce_N: 3.3 };
     this.box = null;
     this.due = 0;
+    this.panes = []; // as scene.js has them
     host.prepend(this.canvas);
   }
 
@@ -75,6 +76,7 @@ export class FlatView {
     const [w, h] = [canvas.clientWidth / (isWide ? 2 : 1), canvas.clientHeight / (isWide ? 1 : 2)];
     const scale = Math.min(...this.sides.map((s) => Math.min((0.8 * w) / box.size[SIDES[s].right], (0.6 * h) / box.size[SIDES[s].up])));
     this.metresPerPixel = 1 / scale;
+    this.panes = [];
     this.sides.forEach((name, i) => this.#pane(name, { x: isWide ? i * w : 0, y: isWide ? 0 : i * h, w, h }, box, scale));
     c.fillStyle = '#c9d2de'; // on either side of the line between them
     c.font = '12px sans-serif';
@@ -87,6 +89,8 @@ export class FlatView {
   #pane(name, { x, y, w, h }, box, scale) {
     const c = this.context, side = SIDES[name];
     const place = (at) => [x + w / 2 + scale * (at[side.right] - box.centre[side.right]), y + 0.55 * h - scale * (at[side.up] - box.centre[side.up])];
+    const axis = (which, sign) => [0, 1, 2].map((j) => (j === which ? sign : 0));
+    this.panes.push({ x, y, w, h, place, right: axis(side.right, 1), up: axis(side.up, 1), away: axis(side.near, -side.sign), metresPerPixel: () => 1 / scale });
     c.save();
     c.beginPath(); c.rect(x, y, w, h); c.clip();
     c.fillStyle = '#222a35';

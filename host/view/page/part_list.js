@@ -1,12 +1,12 @@
 // Which parts there are, where each says that it failed, and what it is told. Each is loaded by itself, when it is made.
 const $ = (id) => document.getElementById(id);
-const DIAGRAM_MS = 200, TRACES_MS = 50, LONG_TRACES_MS = 200, LONG_WINDOW_S = 10;
+const HANDS_MS = 100, DIAGRAM_MS = 200, TRACES_MS = 50, LONG_TRACES_MS = 200, LONG_WINDOW_S = 10;
 
 const load = (file, attempt) => import(`./${file}${attempt ? `?try=${attempt}` : ''}`);
 
 /** @param panels what the parts share: the stores, what the host has said, what the person has chosen. */
 export function allParts(panels) {
-  return { ...pictures(panels), ...knots(panels), ...plots(panels), ...tools(panels) };
+  return { ...pictures(panels), ...knots(panels), ...plots(panels), ...tools(panels), ...hands(panels) };
 }
 
 function pictures(panels) {
@@ -113,5 +113,19 @@ function tools(panels) {
     recording: part('recording', 'recording.js', (module) => { module.setUpRecording(link); return module; }, { text: (value, { recording }) => { if (recording) value.showRecording(recording); } }),
     events: part('events', 'events.js', (module) => module, { text: (value) => value.showEvents(panels.events, panels.period_s) }),
     help: part('help', 'help.js', ({ Help }) => new Help(() => latest.isReplay)),
+  };
+}
+
+function hands(panels) {
+  const { link, latest } = panels;
+  let due = 0, maxForce_N = 3.3;
+  return {
+    hands: {
+      name: 'moving hands', place: () => $('scene-notes'),
+      make: async (attempt) => new (await load('hand_control.js', attempt)).HandControl({ link, latest, panels, run: (use) => panels.parts.hands.run(use) }),
+      dispose: (value) => value?.dispose(),
+      text: (value, { hands: told, status }) => { if (status) maxForce_N = status.max_force_N; if (told) value.hear(told); },
+      draw: (value, time) => { if (time >= due) { due = time + HANDS_MS; value.show(maxForce_N); } },
+    },
   };
 }

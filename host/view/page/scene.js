@@ -170,6 +170,17 @@ export class Scene {
     return (2 * distance * Math.tan((this.camera.fov * Math.PI) / 360)) / Math.max(1, this.canvas.clientHeight);
   }
 
+  /** How the picture lies in the world, for who moves something in it: pixels of the element, unit vectors of the world. */
+  get panes() {
+    const { clientWidth: w, clientHeight: h } = this.canvas, { camera } = this;
+    camera.updateMatrixWorld();
+    const m = camera.matrixWorld.elements, axis = (i, sign) => [0, 1, 2].map((j) => sign * m[4 * i + j]);
+    const place = (p) => { const seen = new THREE.Vector3(...p).project(camera); return [((seen.x + 1) * w) / 2, ((1 - seen.y) * h) / 2]; };
+    const depth = (p) => -new THREE.Vector3(...p).applyMatrix4(camera.matrixWorldInverse).z;
+    const metresPerPixel = (p) => (2 * depth(p) * Math.tan((camera.fov * Math.PI) / 360)) / Math.max(1, h);
+    return [{ x: 0, y: 0, w, h, right: axis(0, 1), up: axis(1, 1), away: axis(2, -1), place, metresPerPixel }];
+  }
+
   /** A standard view, or 'fit': the same direction with everything in the picture. */
   view(name, box = this.shape && boxOf(this.shape.p_W)) {
     if (!box) return;

@@ -1,0 +1,61 @@
+// Keys that move hands, by their place on the keyboard, whatever is printed on them. Each direction is [right, up, away]
+// as the picture shows it.
+import { takenKeys } from './controls.js';
+
+export const KEYS = {
+  left: { KeyA: [-1, 0, 0], KeyD: [1, 0, 0], KeyS: [0, -1, 0], KeyW: [0, 1, 0], KeyQ: [0, 0, -1], KeyE: [0, 0, 1] },
+  right: { KeyJ: [-1, 0, 0], KeyL: [1, 0, 0], KeyK: [0, -1, 0], KeyI: [0, 1, 0], KeyU: [0, 0, -1], KeyO: [0, 0, 1] },
+};
+const DEAD_MAN = { left: 'ShiftLeft', right: 'Semicolon' }, // not both shifts: of two, some systems tell the release of one only
+  JAWS = { KeyF: 'left', KeyH: 'right' }, PACE = { Comma: -1, Period: 1 };
+const ALL = [...Object.values(KEYS).flatMap(Object.keys), ...Object.values(DEAD_MAN), ...Object.keys(JAWS), ...Object.keys(PACE)];
+const IS_TEXT = 'input[type=text], textarea';
+
+export class HandKeys {
+  /** @param tell {jaws(side), pace(step), letGo()}: what a press asks for; letGo: keys can no longer be trusted. */
+  constructor(tell) {
+    this.tell = tell;
+    this.held = new Set();
+    this.ending = new AbortController();
+    const listen = (type, what) => addEventListener(type, what, { capture: true, signal: this.ending.signal });
+    listen('keydown', (event) => this.down(event));
+    listen('keyup', (event) => this.up(event));
+    this.on(false);
+  }
+
+  /** While it is on, these keys mean nothing else. */
+  on(isOn) {
+    this.isOn = isOn;
+    this.held.clear();
+    for (const code of ALL) if (isOn) takenKeys.add(code); else takenKeys.delete(code);
+  }
+
+  release() { this.held.clear(); }
+  dispose() { this.on(false); this.ending.abort(); }
+
+  down(event) {
+    if (!this.isOn || !ALL.includes(event.code)) return;
+    // With these the system may keep the release of a key to itself.
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches?.(IS_TEXT)) return this.tell.letGo();
+    event.preventDefault();
+    this.up({ shiftKey: event.shiftKey }); // a release that nobody told
+    if (event.repeat) return;
+    this.held.add(event.code);
+    if (JAWS[event.code]) this.tell.jaws(JAWS[event.code]);
+    if (PACE[event.code]) this.tell.pace(PACE[event.code]);
+  }
+
+  up({ code, shiftKey }) {
+    this.held.delete(code);
+    if (!shiftKey) this.held.delete(DEAD_MAN.left);
+  }
+
+  /** @returns [right, up, away], each -1 .. 1. */
+  move(side) {
+    const sum = [0, 0, 0];
+    for (const [code, way] of Object.entries(KEYS[side])) if (this.held.has(code)) way.forEach((w, i) => { sum[i] += w; });
+    return sum;
+  }
+
+  deadMan(side) { return this.held.has(DEAD_MAN[side]); }
+}
