@@ -1,9 +1,6 @@
 #include "host/export.hpp"
 
-#include <algorithm>
 #include <memory>
-#include <optional>
-#include <string_view>
 #include <vector>
 
 #include "host/console/progress.hpp"
@@ -11,15 +8,11 @@
 #include "host/export_hdf5.hpp"
 #include "host/export_mcap.hpp"
 #include "host/flight_reader.hpp"
-#include "host/log_reader.hpp"
+#include "host/recording_reader.hpp"
 #include "host/rig_facts.hpp"
-#include "host/session_tally.hpp"
-#include "host/tick_order.hpp"
 
 namespace ligature::host {
 namespace {
-
-constexpr std::string_view kNotesChannel = "LIGATURE_NOTES";
 
 std::vector<std::unique_ptr<ExportSink>> make_sinks(const ExportTargets& targets, const RigFacts& facts,
                                                     const std::string& source) {
@@ -31,153 +24,20 @@ std::vector<std::unique_ptr<ExportSink>> make_sinks(const ExportTargets& targets
   return sinks;
 }
 
-class Exporter {
- public:
-  Exporter(RigFacts facts, const ExportTargets& targets, const std::string& source)
-      : facts_(std::move(facts)), sinks_(make_sinks(targets, facts_, source)) {}
-
-  void take(const LogEvent& event) {
-    if (event.channel == kTicksChannel) {
-      if (const auto batch = decode<ligature_msg::tick_batch_t>(event.data)) return take(*batch);
-    } else if (event.channel == kThreadChannel) {
-      if (const auto thread = decode<ligature_msg::thread_t>(event.data)) return take(*thread);
-    } else if (event.channel == kEventChannel) {
-      if (const auto message = decode<ligature_msg::event_t>(event.data)) return tell(*message, message->tick);
-    } else if (event.channel == kStatusChannel) {
-      if (const auto status = decode<ligature_msg::status_t>(event.data)) return take(*status);
-    } else if (event.channel == kNotesChannel) {
-      for (auto& sink : sinks_) sink->note({reinterpret_cast<const char*>(event.data.data()), event.data.size()});
-      return;
-    } else if (is_readable(event.channel, event.data)) {
-      return;
-    }
-    ++result_.unreadable_messages;
-  }
-
-  void take(const ligature_msg::tick_batch_t& batch) {
-    const int session = tally_.find_or_add(batch.session);
-    if (session < 0) return tally_.leave_out(batch.ticks.size());
-    if (session != session_) end_session();
-    session_ = session;
-    for (const auto& tick : batch.ticks) {
-      if (tally_[session].ticks.add(tick.tick))
-        order_.add(tick, [this](const auto& t) { write(t); });
-      else
-        ++result_.duplicates_left_out;
-    }
-  }
-
-  void take(const ligature_msg::status_t& status) {
-    if (status.scene_toml == scene_toml_ && status.scene_file == scene_file_) return;
-    scene_toml_ = status.scene_toml;
-    scene_file_ = status.scene_file;
-    tell(status, status.scene_first_tick);
-  }
-
-  ExportResult commit() {
-    end_session();
-    name_missing();
-    for (auto& sink : sinks_) sink->commit();
-    return result_;
-  }
-
-  [[nodiscard]] bool has_ticks() const { return tally_.received() > 0; }
-
- private:
-  void end_session() {
-    order_.flush([this](const auto& t) { write(t); });
-  }
-
-  void write(const ligature_msg::tick_t& tick) {
-    ++result_.tick_rows;
-    for (auto& sink : sinks_) sink->add(tick, facts_.time_s(tick.tick), session_ + 1);
-  }
-
-  void name_missing() {
-    constexpr std::size_t kNamed = 10;
-    std::size_t named = 0;
-    result_.left_out = tally_.left_out();
-    for (const Session& session : tally_.sessions()) {
-      result_.missing += session.ticks.missing();
-      for (const TickRange& hole : session.ticks.missing_ranges()) {
-        if (++named > kNamed) break;
-        if (named > 1) result_.missing_ticks += ", ";
-        result_.missing_ticks += std::to_string(hole.first);
-        if (hole.size() > 1) result_.missing_ticks += ".." + std::to_string(hole.last);
-      }
-    }
-    if (named > kNamed) result_.missing_ticks += ", ..";
-  }
-
-  template <class Message>
-  void tell(const Message& message, std::int64_t tick) {
-    for (auto& sink : sinks_) sink->add(message, facts_.time_s(tick));
-  }
-
-  void take(const ligature_msg::thread_t& thread) {
-    ++result_.shapes;
-    tell(thread, thread.tick);
-  }
-
-  RigFacts facts_;
-  std::vector<std::unique_ptr<ExportSink>> sinks_;
-  std::string scene_file_, scene_toml_;
-  SessionTally tally_;
-  TickOrder order_;
-  int session_ = -1;
-  ExportResult result_;
-};
-
-/// The scene in force at a tick, as a log would tell it.
-ligature_msg::status_t status_of(const FlightReader& recorder, std::int64_t tick) {
-  const auto& scene = recorder.scene_at(tick);
-  ligature_msg::status_t status{};
-  status.session = recorder.session();
-  status.protocol_version = ligature_msg::status_t::VERSION;
-  status.tick = std::max(tick, scene.first_tick);
-  status.scene_first_tick = scene.first_tick;
-  status.firmware_version = scene.facts.firmware_version;
-  status.scene_file = scene.facts.scene_file;
-  status.scene_toml = scene.facts.scene_toml;
-  status.period_s = scene.facts.period_s;
-  status.max_force_N = scene.facts.max_force_N;
-  status.admitted = scene.admitted ? 1 : 0;
-  return status;
-}
-
-/// A flight recorder's file: one session, ticks only.
-ExportResult export_flight(const std::string& path, const ExportTargets& targets) {
-  if (!targets.csv.shape.empty())
-    throw BadInput(path + ": a flight recorder file holds no shapes; allowed --forces, --ticks, --hdf5, --mcap");
-  const FlightReader recorder(path);
-  if (recorder.ticks() == 0) throw BadInput(path + ": holds no tick");
-  Exporter exporter(recorder.facts(), targets, path);
-  ligature_msg::tick_batch_t batch{};
-  batch.session = recorder.session();
-  recorder.visit([&](const ligature_msg::tick_t& tick) {
-    exporter.take(status_of(recorder, tick.tick));
-    batch.ticks.assign(1, tick);
-    exporter.take(batch);
-  });
-  ExportResult result = exporter.commit();
-  if (recorder.damaged_slots() > 0) result.damage = std::to_string(recorder.damaged_slots()) + " slots were damaged";
-  return result;
-}
-
 }  // namespace
 
 ExportResult export_recording(const std::string& log_path, const ExportTargets& targets) {
-  if (is_flight_file(log_path)) return export_flight(log_path, targets);
-  Exporter exporter(read_rig_facts(log_path), targets, log_path);
+  const bool is_flight = is_flight_file(log_path);
+  if (is_flight && !targets.csv.shape.empty())
+    throw BadInput(log_path + ": a flight recorder file holds no shapes; allowed --forces, --ticks, --hdf5, --mcap");
+  const RigFacts facts = read_rig_facts(log_path);
+  const auto sinks = make_sinks(targets, facts, log_path);
+  std::vector<ExportSink*> each;
+  for (const auto& sink : sinks) each.push_back(sink.get());
   console::Progress progress("export");
-  LogReader log(log_path, &progress);
-  while (const LogEvent* event = log.next()) exporter.take(*event);
-  if (!exporter.has_ticks())
-    throw BadInput(log_path + ": holds no readable tick in " + std::to_string(log.events()) +
-                   " events; allowed: a log with messages on " + std::string(kTicksChannel));
-  if (!targets.mcap.empty()) progress.say("making the MCAP file");
-  ExportResult result = exporter.commit();
-  result.damage = log.damage();
+  ExportResult result = read_recording(log_path, facts, each, &progress);
+  if (!is_flight && !targets.mcap.empty()) progress.say("making the MCAP file");
+  for (auto* sink : each) sink->commit();
   return result;
 }
 

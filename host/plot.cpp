@@ -8,6 +8,8 @@
 #include "host/console/python_tool.hpp"
 #include "host/errors.hpp"
 #include "host/export.hpp"
+#include "host/knot/recognise.hpp"
+#include "host/polyline_file.hpp"
 #include "host/rig_facts.hpp"
 #include "host/text.hpp"
 
@@ -45,6 +47,21 @@ void plot(const std::string& log_path, const std::string& out_path, bool by_fram
   words.insert(words.end(), {"--out", target});
   if (by_frame) words.emplace_back("--frames");
   tool.run(words, scratch.file("complaints"));
+}
+
+void plot_thread(const std::string& log_path, const std::string& out_path) {
+  const std::string target = checked_target(out_path);
+  const Polyline line = read_polyline_log(log_path, std::nullopt);
+  const auto found = knot::recognise(line.points, false);
+  const console::PythonTool tool("plot_thread.py", LIGATURE_PLOTS_DIR);
+  const console::ScratchFolder scratch;
+  AtomicFile shape(scratch.file("shape.csv"));
+  for (const auto& p : line.points) shape.write(text("%.9g,%.9g,%.9g\n", p[0], p[1], p[2]));
+  shape.commit();
+  std::string title = fs::path(log_path).filename().string() + ": " + found.type;
+  if (found.handedness != "none") title += " " + found.handedness;
+  tool.run({scratch.file("shape.csv"), "--radius", text("%.17g", line.radius_m), "--title", title, "--out", target},
+           scratch.file("complaints"));
 }
 
 void plot_comparison(const std::string& log_a, const std::string& log_b, const std::string& out_path,

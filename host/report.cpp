@@ -64,6 +64,13 @@ std::string thread_words(const LogSummary& s) {
               static_cast<Count>(t.by_clock), static_cast<Count>(t.late));
 }
 
+std::string thread_time_words(const LogSummary& s) {
+  const ThreadTime& t = s.ticks.thread_time();
+  if (!t.known()) return "not known: no two periods follow each other";
+  return text("p50 %.0f us a period; at least %.0f us in 99 %% of the periods, %.0f us in all",
+              t.at_least_ns(50) * 1e-3, t.at_least_ns(99) * 1e-3, t.at_least_ns(100) * 1e-3);
+}
+
 std::string fault_words(const LogSummary& s) {
   if (s.ticks.faults().empty()) return "none";
   std::string words;
@@ -94,6 +101,7 @@ std::string report_table(const LogSummary& s) {
   table += duration_row("control time", s.ticks.control());
   table += duration_row("execution time", s.ticks.execution());
   table += row("thread", thread_words(s));
+  table += row("time for thread", thread_time_words(s));
   for (std::size_t hand = 0; hand < 2; ++hand) table += hand_row(s, hand);
   table += row("force limit", text("%.2f N", s.facts.max_force_N));
   table += row("faults", fault_words(s));
@@ -160,7 +168,11 @@ std::string report_json(const LogSummary& s) {
                       {{"stood_still_s", s.ticks.thread().lost_ticks * s.facts.period_s},
                        {"ended_by_work", s.ticks.thread().by_work},
                        {"ended_by_clock", s.ticks.thread().by_clock},
-                       {"late", s.ticks.thread().late}}},
+                       {"late", s.ticks.thread().late},
+                       {"time_us",
+                        {{"p50", s.ticks.thread_time().at_least_ns(50) * 1e-3},
+                         {"p1", s.ticks.thread_time().at_least_ns(99) * 1e-3},
+                         {"min", s.ticks.thread_time().at_least_ns(100) * 1e-3}}}}},
                      {"wakeup_us", microseconds(s.ticks.wakeup())},
                      {"control_us", microseconds(s.ticks.control())},
                      {"execution_us", microseconds(s.ticks.execution())},

@@ -18,6 +18,7 @@ void TickStatistics::add(const ligature_msg::tick_t& tick) {
     if (tick.flags & ligature_msg::tick_t::FLAG_DEADLINE_MISSED) ++deadline_misses_;
     add_thread(tick);
   }
+  thread_time_.add(tick);
   for (std::size_t hand = 0; hand < hands_.size(); ++hand) add_hand(hand, tick);
   if (tick.fault != last_fault_ && tick.fault != 0) faults_.push_back({tick.tick, tick.fault});
   last_fault_ = tick.fault;

@@ -99,15 +99,15 @@ def draw_hand(axes, column, time, hand, limit_N, frames):
     axes.plot(*thinned(time, force_N), color=colour, linewidth=1.1, label="|F| commanded to the device")
     axes.axhline(limit_N, color=LIMIT, linestyle="--", linewidth=1.0, label=f"limit {limit_N:g} N")
     marks = {"grasp": [], "release": []}
-    for first, after, held in spans(node):
-        if held < 0:
+    for first, after, held in spans(node >= 0):  # an adaptive mesh numbers what is held anew
+        if not held:
             continue
         axes.axvspan(time[first], time[after - 1], color=colour, alpha=0.08, linewidth=0)
         if first > 0:
             marks["grasp"].append(time[first])
         if after < len(time):
             marks["release"].append(time[after])
-        axes.annotate(f"node {int(held)}", (time[first], 1.0), xycoords=("data", "axes fraction"), xytext=(3, -11),
+        axes.annotate(f"node {int(node[first])}", (time[first], 1.0), xycoords=("data", "axes fraction"), xytext=(3, -11),
                       textcoords="offset points", fontsize=7, color=colour)
     mark_losses(axes, time)
     top = limit_N * 1.12

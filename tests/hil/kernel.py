@@ -33,7 +33,7 @@ def package():
 
 
 def fetch(cache):
-    """@return the folder with boot/ and lib/modules/ of the kernel; the package is downloaded once, anew only when that
+    """@return the folder with boot/ and the modules of the kernel; the package is downloaded once, anew only when that
     folder is removed or a module is wanted that was not kept."""
     here = sorted(mark.parent for mark in cache.glob("*/complete"))
     if here and complete(here[-1]):
@@ -78,7 +78,7 @@ def unpack(bzimage, to):
 
 def unpack_modules(folder):
     """Plain .ko files, as the guest's insmod reads them: Debian 13 packs each of them with xz."""
-    for packed in pathlib.Path(folder, "lib/modules").rglob("*.ko.xz"):
+    for packed in pathlib.Path(folder).rglob("*.ko.xz"):
         packed.with_suffix("").write_bytes(lzma.decompress(packed.read_bytes()))
         packed.unlink()
 
@@ -101,12 +101,16 @@ def complete(folder):
 
 def modules(folder, names=MODULES):
     """Files of modules and all they need, in an order in which they can be loaded."""
-    found = {f.stem.replace("-", "_"): f for f in pathlib.Path(folder, "lib/modules").rglob("*.ko")}
+    folder = pathlib.Path(folder)  # /lib/modules in Debian 12, /usr/lib/modules in 13
+    found = {f.stem.replace("-", "_"): f for f in folder.rglob("*.ko")}
+    inside = {pathlib.PurePath(line).stem.replace("-", "_") for list_ in folder.rglob("modules.builtin") for line in list_.read_text().splitlines()}
     order = []
 
     def add(name):
         file = found.get(name.replace("-", "_"))
         if file is None:
+            if name.replace("-", "_") in inside:
+                return
             raise RuntimeError(f"the kernel has no module {name}")
         if file in order:
             return

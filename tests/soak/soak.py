@@ -1,4 +1,4 @@
-"""The overhand in a loop for minutes, firmware and both hands as processes: what must not change in time does not.
+"""A script in a loop for minutes, firmware and both hands as processes: what must not change in time does not.
 
 Between two rounds the hands let go and the thread is reset. Judged: every tick recorded, the schedule on its grid to the
 nanosecond, no page fault and no growth of the firmware after its start; each late tick with its cause, none of which may
@@ -6,11 +6,13 @@ be that the loop itself computed for longer. Wall time is told, not judged: this
 
 With --disk another process writes to the recorder's disk all the while, 512 MB after 512 MB, each until it is synced.
 
-Usage: soak.py MINUTES [--disk] (scripts/soak sets the environment). Exit: 0, or 3 when something changed that must not.
+Exit: 0, 2 for bad usage, or 3 when something changed that must not.
 """
 
+import argparse
 import os
 import pathlib
+import re
 import signal
 import struct
 import subprocess
@@ -22,28 +24,64 @@ import time
 import numpy as np
 
 ROOT = pathlib.Path(os.environ["LIGATURE_SOURCE"])
-BIN = pathlib.Path(os.environ["LIGATURE_BIN"])
-ROUND_S, REST_AT_S = 24.0, 22.2  # the script takes 21 s
+BIN = pathlib.Path(os.environ.get("LIGATURE_BIN", ROOT / "build/release/bin"))
+PAUSE_S, RESET_AFTER_S = 3.0, 1.5  # between two rounds; the thread is reset in it
 PERIOD_NS = 1_000_000
 HEADER_BYTES = 65536
 SETTLED_S = 5.0
-LOST, MISSED, OVERWORKED = 1, 2, 128
+LOST, MISSED, OVERWORKED, THREAD_LATE = 1, 2, 128, 256
 BUS_NS = 460_000  # what SYNC and TPDOs take
 
-# Of protocol/recorder/flight_file.hpp and tick_t.lcm, the first fields.
-TICK = [("sequence", "<u8"), ("bytes", "<u4"), ("crc", "<u4"), ("tick", ">i8"), ("scheduled_ns", ">i8"), ("wakeup", ">i4"), ("sync", ">i4"),
-        ("tpdo", ">i4"), ("law", ">i4"), ("control", ">i4"), ("execution", ">i4"), ("flags", ">i4"), ("state", "i1"), ("fault", ">i2")]
+NUMPY = {"double": ">f8", "float": ">f4", "int8_t": "i1", "int16_t": ">i2", "int32_t": ">i4", "int64_t": ">i8"}
 
 
-def script_in_a_loop(folder, rounds):
-    lines = [line for line in (ROOT / "scenes/operators/overhand.csv").read_text().splitlines() if line and not line.startswith("#")]
-    keys = [line.split(",") for line in lines[1:]]
+def record_layout(slot_bytes):
+    """A slot of the flight recorder: its head (protocol/recorder/flight_file.hpp), then tick_t as LCM packs it."""
+    text = (ROOT / "protocol/lcm/tick_t.lcm").read_text()
+    fields = re.findall(r"^  (double|float|int\d+_t)\s+(\w+)((?:\[\d+\])*);", text, re.M)
+    head = np.dtype([("sequence", "<u8"), ("bytes", "<u4"), ("crc", "<u4")])
+    body = np.dtype([(name, NUMPY[kind], tuple(map(int, re.findall(r"\d+", size)))) for kind, name, size in fields])
+    offsets = [head.fields[n][1] for n in head.names] + [head.itemsize + body.fields[n][1] for n in body.names]
+    formats = [head[n] for n in head.names] + [body[n] for n in body.names]
+    return np.dtype({"names": [*head.names, *body.names], "formats": formats, "offsets": offsets, "itemsize": slot_bytes}), body.itemsize
+
+
+class Changes(threading.Thread):
+    """Sends a live change of friction every two seconds; keeps when, on the clock of the schedule."""
+
+    def __init__(self, count):
+        super().__init__(daemon=True)
+        self.count, self.over, self.sent_ns, self.refused = count, threading.Event(), [], 0
+
+    def run(self):
+        while len(self.sent_ns) < self.count and not self.over.wait(2.0):
+            self.sent_ns.append(time.monotonic_ns())
+            value = str(0.3 + 0.01 * (len(self.sent_ns) % 5))
+            said = subprocess.run([BIN / "ligature-host", "send", "set", "contact.friction", value], capture_output=True, timeout=30)
+            self.refused += said.returncode != 0
+
+    def report(self, ticks):
+        """Periods lost and late in the second after each change, beside the second after that one."""
+        say(f"{len(self.sent_ns)} live changes, {self.refused} refused")
+        for what, flag in (("lost", LOST), ("late", MISSED)):
+            at = ticks["scheduled_ns"][ticks["flags"] & flag != 0]
+            after = [sum(int(np.sum((at >= t + d) & (at < t + d + 10**9))) for t in self.sent_ns) for d in (0, 10**9)]
+            say(f"periods {what}: {after[0]} in the seconds with a change, {after[1]} in as many without")
+
+
+def script_in_a_loop(script, folder, length_s):
+    """@return the file with the script over and over for so long, the number of rounds and the length of one."""
+    lines = [line for line in script.read_text().splitlines() if line and not line.startswith("#")]
+    heads = [line for line in lines if not line[0].isdigit()]  # how to move between keys, names of the columns
+    keys = [line.split(",") for line in lines if line[0].isdigit()]
+    round_s = np.ceil(float(keys[-1][0])) + PAUSE_S
+    rounds = max(1, int(np.ceil(length_s / round_s)))
     with open(folder / "loop.csv", "w") as out:
-        out.write(lines[0] + "\n")
+        out.write("\n".join(heads) + "\n")
         for i in range(rounds):
             for t, *rest in keys:
-                out.write(",".join([f"{float(t) + i * ROUND_S:.3f}", *rest]) + "\n")
-    return folder / "loop.csv"
+                out.write(",".join([f"{float(t) + i * round_s:.3f}", *rest]) + "\n")
+    return folder / "loop.csv", rounds, round_s
 
 
 class Firmware:
@@ -83,14 +121,12 @@ class DiskLoad(threading.Thread):
 
 def ticks_of(file):
     with open(file, "rb") as opened:
-        slot = struct.unpack("<8sII", opened.read(16))[2]
+        _, _, slot, slots = struct.unpack("<8sIIq", opened.read(24))
         opened.seek(HEADER_BYTES)
-        _, bytes_ = struct.unpack("<QI", opened.read(12))
-    named = dict(TICK)
-    contacts_at = 16 + bytes_ - 26  # int16_t contacts, int8_t degradation, and 23 bytes about the thread's own time
-    offsets = np.cumsum([0] + [np.dtype(t).itemsize for t in named.values()])[:-1].tolist()
-    layout = {"names": [*named, "contacts"], "formats": [*named.values(), ">i2"], "offsets": [*offsets, contacts_at], "itemsize": slot}
-    raw = np.fromfile(file, dtype=np.dtype(layout), offset=HEADER_BYTES)
+        _, told_bytes = struct.unpack("<QI", opened.read(12))
+    layout, tick_bytes = record_layout(slot)
+    assert tick_bytes == told_bytes, f"a tick has {told_bytes} bytes in the recorder, {tick_bytes} in tick_t.lcm"
+    raw = np.fromfile(file, dtype=layout, offset=HEADER_BYTES, count=slots)  # scenes follow
     raw = raw[raw["sequence"] > 0]
     return raw[np.argsort(raw["sequence"])]
 
@@ -135,7 +171,7 @@ def causes(done, waiting, computing):
         elif not tick["flags"] & MISSED:
             continue
         else:
-            lost_ns = {"woke up late": tick["wakeup"], "waited for a hand": waited - BUS_NS, "were kept from computing": took}
+            lost_ns = {"woke up late": tick["wakeup_latency_ns"], "waited for a hand": waited - BUS_NS, "were kept from computing": took}
             name = max(lost_ns, key=lost_ns.get)
         names[name] += 1
     for _, line in sorted(told)[-5:]:
@@ -147,28 +183,45 @@ def report(ticks):
     """@return how many ticks worked for longer than there is time."""
     lost = ticks["flags"] & LOST != 0
     done = ticks[~lost]
-    waiting = done["tpdo"] - done["sync"]
-    computing = done["execution"] - waiting
+    waiting = done["tpdo_ns"] - done["sync_ns"]
+    computing = done["execution_ns"] - waiting
     late = done["flags"] & MISSED != 0
     say(f"{len(ticks)} periods, {len(done)} executed ({100 * len(done) / len(ticks):.3f} %), {late.sum()} finished late, {lost.sum()} lost")
     say("us                       p50        p99      p99.9     p99.99      worst")
-    for name, values in (("wake-up", done["wakeup"]), ("waiting for the hands", waiting), ("computing", computing), ("whole tick", done["execution"])):
+    for name, values in (("wake-up", done["wakeup_latency_ns"]), ("waiting for the hands", waiting), ("computing", computing), ("whole tick", done["execution_ns"])):
         say(f"{name:22}{quantiles(values)}")
     names = causes(done, waiting, computing)
     say("late ticks: " + ", ".join(f"{n} {name}" for name, n in names.items()))
     p999 = np.sort(computing)[int(0.999 * len(computing))]
     say(f"computing, p99.9: {p999 / PERIOD_NS * 100:.1f} % of the period (bar 40 %)")
+    in_time = done[done["flags"] & THREAD_LATE == 0]
+    ends = {name: int(np.sum(in_time["thread_end"] == value)) for name, value in (("work", 1), ("the clock", 2))}
+    say(f"thread: {100 * float(np.mean(in_time['time_lost'])):.3f} % of its time lost, ticks ended by "
+        + ", by ".join(f"{name} {n}" for name, n in ends.items()) + f", late {len(done) - len(in_time)}; most contacts {done['contacts'].max()}")
     return names["worked for too long"]
 
 
+def arguments():
+    parser = argparse.ArgumentParser(prog="soak", description=__doc__.splitlines()[0])
+    parser.add_argument("minutes", nargs="?", type=float, default=10.0, help="10 when nothing is said; whole rounds of the script")
+    parser.add_argument("--scene", default="scenes/paper.toml", help="default: %(default)s")
+    parser.add_argument("--operator", default="scenes/operators/overhand.csv", metavar="SCRIPT", help="default: %(default)s")
+    parser.add_argument("--disk", action="store_true", help="keep the recorder's disk busy meanwhile")
+    parser.add_argument("--changes", type=int, default=0, metavar="N", help="send so many live changes of friction, one every two seconds")
+    asked = parser.parse_args()
+    for file in (asked.scene, asked.operator):
+        if not (ROOT / file).is_file():
+            parser.error(f"no file {file}")
+    return asked
+
+
 def main():
-    minutes, loads_disk = float(sys.argv[1]), "--disk" in sys.argv[2:]
-    rounds = max(1, int(np.ceil(minutes * 60 / ROUND_S)))
+    asked = arguments()
     with tempfile.TemporaryDirectory(prefix="soak-") as name:
         folder = pathlib.Path(name)
-        loop = script_in_a_loop(folder, rounds)
+        loop, rounds, round_s = script_in_a_loop(ROOT / asked.operator, folder, asked.minutes * 60)
         started = []
-        disk = DiskLoad(folder)
+        disk, changes = DiskLoad(folder), Changes(asked.changes)
 
         def start(program, *args):
             with open(folder / f"{len(started)}.log", "w") as log:
@@ -178,9 +231,9 @@ def main():
         try:
             buses = {hand: f"local:{folder / hand}" for hand in ("left", "right")}
             for hand, bus in buses.items():
-                start("ligature-device", "--rt", "--hand", hand, "--bus", bus, "--scene", "scenes/paper.toml", "--operator", loop)
-            length_s = rounds * ROUND_S
-            firmware = start("ligature-firmware", "run", "--scene", "scenes/paper.toml", "--left", buses["left"], "--right", buses["right"],
+                start("ligature-device", "--rt", "--hand", hand, "--bus", bus, "--scene", asked.scene, "--operator", loop)
+            length_s = rounds * round_s
+            firmware = start("ligature-firmware", "run", "--scene", asked.scene, "--left", buses["left"], "--right", buses["right"],
                              "--arm", "--duration", length_s, "--watchdog-ms", 1000, "--recorder", folder / "flight.rec",
                              "--recorder-s", int(length_s) + 30)
             say(f"{rounds} rounds, {length_s:.0f} s; load {os.getloadavg()[0]:.1f}")
@@ -188,13 +241,14 @@ def main():
             if firmware.poll() is not None:
                 print((folder / "2.log").read_text())
                 return 3
-            linux = Firmware(firmware.pid)
-            if loads_disk:
-                disk.start()
-            before = {"faults": linux.faults(), "memory": linux.memory_kB()}
             began = time.monotonic() - SETTLED_S
+            linux = Firmware(firmware.pid)
+            if asked.disk:
+                disk.start()
+            changes.start()
+            before = {"faults": linux.faults(), "memory": linux.memory_kB()}
             for i in range(rounds):
-                while firmware.poll() is None and time.monotonic() < began + i * ROUND_S + REST_AT_S + 0.8:
+                while firmware.poll() is None and time.monotonic() < began + (i + 1) * round_s - RESET_AFTER_S:
                     time.sleep(0.2)
                     if time.monotonic() < began + length_s - 3:
                         after = {"faults": linux.faults(), "memory": linux.memory_kB(), "cpu_s": linux.cpu_s()}
@@ -205,15 +259,21 @@ def main():
             say(f"firmware: exit {code}, loop used {after['cpu_s']:.1f} s of CPU; load {os.getloadavg()[0]:.1f}")
             print((folder / "2.log").read_text())
             ticks = ticks_of(folder / "flight.rec")
+            if asked.changes:  # what they are built in grows and then stays: told, not judged
+                say(f"memory {before['memory']['VmRSS']} -> {after['memory']['VmRSS']} kB")
+                after["memory"] = before["memory"]
             wrong = judge(ticks, before, after)
             if (long := report(ticks)) > 0:
                 wrong.append(f"{long} ticks worked for too long")
-            if loads_disk:
+            if asked.changes:
+                changes.report(ticks)
+            if asked.disk:
                 say(f"beside it {disk.written_MB} MB were written to the same disk")
         finally:
-            disk.over.set()
-            if disk.is_alive():
-                disk.join()
+            for load in (disk, changes):
+                load.over.set()
+                if load.is_alive():
+                    load.join()
             for process in started:
                 if process.poll() is None:
                     process.send_signal(signal.SIGTERM)

@@ -1,0 +1,128 @@
+"""Draws a thread: whole, as the operator sees it, and its knot magnified, nearer strands over farther ones.
+
+python3 plot_thread.py shape.csv --radius M --out thread.png [--title TEXT]
+shape.csv: x,y,z, metres, a row a node. Needs numpy and matplotlib.
+"""
+
+import argparse
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import LineCollection
+from plot_forces import save
+
+NEAR = 1.5  # diameters between the middles of strands that touch, and some more
+STEP, BESIDE = 0.15, 40  # diameters between drawn points; points of what leads to the knot
+APART = 8.0  # diameters along the thread from which on two places are two strands
+FROM_THE_FRONT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # to the right, up
+
+
+def fine(points, step):
+    """The same line with points no further apart than a step."""
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    at = np.linspace(0.0, along[-1], max(2, int(np.ceil(along[-1] / step))))
+    return np.stack([np.interp(at, along, points[:, i]) for i in range(3)], axis=1), at
+
+
+def knotted(points, along, diameter):
+    """Indices from the first to the last place where the thread comes to itself; all of it when it nowhere does."""
+    places = []
+    for i, point in enumerate(points):
+        near = np.linalg.norm(points - point, axis=1) < NEAR * diameter
+        if (near & (np.abs(along - along[i]) > APART * diameter)).any():
+            places.append(i)
+    return (places[0], places[-1]) if places else (0, len(points) - 1)
+
+
+def flattest(points):
+    """Two directions across which these points spread most."""
+    _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
+    return axes[:2]
+
+
+def draw_strands(axis, points, share, view, width_m):
+    """Segments from the farthest to the nearest, each with a pale rim that parts it from what lies behind."""
+    depth = points @ np.cross(*view)  # towards the eye: right x up
+    flat = points @ view.T
+    segments = np.stack([flat[:-1], flat[1:]], axis=1)
+    order = np.argsort(depth[:-1] + depth[1:])
+    colours = plt.get_cmap("viridis")(0.9 * (share - share.min()) / np.ptp(share))
+    left, right = axis.get_xlim()
+    points_per_m = axis.bbox.width / axis.figure.dpi * 72.0 / (right - left)
+    width = max(width_m * points_per_m, 1.2)
+    lines = np.repeat(segments[order], 2, axis=0)
+    overlap = 0.4 * (lines[1::2, 1] - lines[1::2, 0])  # a strand without seams
+    lines[1::2, 0] -= overlap
+    lines[1::2, 1] += overlap
+    paints = np.repeat(colours[order], 2, axis=0)
+    paints[::2] = (1.0, 1.0, 1.0, 1.0)
+    widths = np.tile([width + 2.0, width], len(order))
+    axis.add_collection(LineCollection(lines, colors=paints, linewidths=widths, capstyle="butt"))
+
+
+def frame(axis, flat, margin):
+    """Equal scales, whatever the box: the smaller direction gets room."""
+    low, high = flat.min(axis=0) - margin, flat.max(axis=0) + margin
+    middle, half = (low + high) / 2, (high - low) / 2
+    ratio = axis.bbox.width / axis.bbox.height
+    half_y = max(half[1], half[0] / ratio)
+    axis.set_xlim(middle[0] - ratio * half_y, middle[0] + ratio * half_y)
+    axis.set_ylim(middle[1] - half_y, middle[1] + half_y)
+
+
+def scale_bar(axis):
+    """A round length, a fifth of the width or less."""
+    left, right = axis.get_xlim()
+    low, high = axis.get_ylim()
+    room = 0.2 * (right - left)
+    length = max(step * 10.0 ** power for power in range(-6, 3) for step in (1, 2, 5) if step * 10.0 ** power <= room)
+    x, y = left + 0.05 * (right - left), low + 0.04 * (high - low)
+    axis.plot([x, x + length], [y, y], color="black", linewidth=2, solid_capstyle="butt")
+    name = f"{length * 1e3:g} mm" if length < 0.1 else f"{length:g} m"
+    axis.annotate(name, (x + length / 2, y), xytext=(0, 4), textcoords="offset points", ha="center", fontsize=9)
+
+
+def draw(path, radius, out, title):
+    points = np.loadtxt(path, delimiter=",", ndmin=2)
+    diameter = 2.0 * radius
+    points, along = fine(points, STEP * diameter)
+    first, last = knotted(points, along, diameter)
+    share = (along[:-1] + along[1:]) / 2 / along[-1]
+    core = points[first:last + 1]
+    near = slice(max(0, first - BESIDE), last + BESIDE + 1)
+    panels = (("from the front", points, share, FROM_THE_FRONT, 0.05 * np.ptp(points, axis=0).max()),
+              ("the knot", points[near], share[near], flattest(core), 4.0 * diameter))
+    figure, axes = plt.subplots(1, 2, figsize=(12, 7), dpi=130, width_ratios=[1, 2])
+    figure.subplots_adjust(0.02, 0.02, 0.98, 0.9, 0.04)
+    for axis, (name, shown, along_it, view, margin) in zip(axes, panels):
+        frame(axis, shown @ view.T, margin)
+        draw_strands(axis, shown, along_it[:len(shown) - 1], view, diameter)
+        scale_bar(axis)
+        axis.set_xticks([])
+        axis.set_yticks([])
+        axis.set_title(name, fontsize=10)
+    figure.suptitle(title)
+    save(figure, out, {})
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("shape")
+    parser.add_argument("--radius", type=float, required=True, help="of the thread, m")
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--title", default="thread")
+    arguments = parser.parse_args()
+    try:
+        draw(arguments.shape, arguments.radius, arguments.out, arguments.title)
+    except (OSError, ValueError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
