@@ -1,0 +1,24 @@
+"""Says in one line what this CPU lacks, where the extension's first instruction would end the interpreter."""
+
+import pathlib
+
+from ligature._arch import ARCH
+
+NEEDED = {"x86-64-v3": ("avx", "avx2", "fma", "bmi2"), "x86-64-v2": ("ssse3", "sse4_2", "popcnt")}
+
+
+def lacking(arch: str, cpuinfo: str) -> list[str]:
+    """The features of `arch` that no line `flags` of /proc/cpuinfo has; none where nothing is known."""
+    flags = next((line.split() for line in cpuinfo.splitlines() if line.startswith("flags")), None)
+    return [] if flags is None else [feature for feature in NEEDED.get(arch, ()) if feature not in flags]
+
+
+def require() -> None:
+    """Raises ImportError when this CPU lacks something."""
+    try:
+        missing = lacking(ARCH, pathlib.Path("/proc/cpuinfo").read_text())
+    except OSError:
+        return
+    if missing:
+        raise ImportError(f"ligature: this CPU lacks {' '.join(missing)}, and this build is for {ARCH}; "
+                          "remedy: pip install . -Ccmake.define.LIGATURE_ARCH=x86-64-v2 makes a build for every x86-64 since 2009")

@@ -1,0 +1,22 @@
+#pragma once
+// What the module is made of, one function a file.
+
+#include <nanobind/nanobind.h>
+
+#include <string_view>
+
+namespace ligature::python {
+
+/// Bytes of anybody as text: what is no UTF-8 becomes a replacement character.
+inline nanobind::str text_of(std::string_view bytes) {
+  return nanobind::steal<nanobind::str>(
+      PyUnicode_DecodeUTF8(bytes.data(), static_cast<Py_ssize_t>(bytes.size()), "replace"));
+}
+
+void bind_scene(nanobind::module_& module);
+void bind_run(nanobind::module_& module);
+void bind_simulation(nanobind::module_& module);
+void bind_knot(nanobind::module_& module);
+void bind_recording(nanobind::module_& module);
+
+}  // namespace ligature::python

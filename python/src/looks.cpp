@@ -1,0 +1,87 @@
+#include "python/src/looks.hpp"
+
+#include <nanobind/stl/array.h>
+
+namespace ligature::python {
+namespace {
+
+const char* name(physics::Degradation degradation) {
+  constexpr const char* kNames[] = {"none", "iterations", "contacts", "motion"};
+  return kNames[static_cast<std::size_t>(degradation)];
+}
+
+const char* name(physics::Propagation condition) {
+  constexpr const char* kNames[] = {"none", "A", "B", "C"};
+  return kNames[static_cast<std::size_t>(condition)];
+}
+
+template <class T>
+View<T, nb::ndim<1>> one_row(std::vector<T> values) {
+  const std::size_t n = values.size();
+  return View<T, nb::ndim<1>>(array_of(std::move(values), {n}));
+}
+
+void bind_hand(nb::module_& module) {
+  using physics::HandContact;
+  nb::class_<HandContact>(module, "Hand", "A hand's hold of the thread in the last tick.")
+      .def_ro("node", &HandContact::node, "Node held, the nearest to the middle of the jaws; -1: none.")
+      .def_prop_ro(
+          "p_W_m", [](const HandContact& h) { return plain(h.p_WG); }, "Where the thread between the jaws is, m.")
+      .def_prop_ro(
+          "v_W_m_per_s", [](const HandContact& h) { return plain(h.v_WG); }, "Its velocity, m/s.")
+      .def_prop_ro(
+          "f_W_N", [](const HandContact& h) { return plain(h.f_W); },
+          "Force on the hand, world newtons, before hands.force_scale and the limits of a device.")
+      .def_prop_ro(
+          "condition", [](const HandContact& h) { return name(h.condition); },
+          "Which of the paper's conditions governs it: 'none', 'A', 'B', 'C'.");
+}
+
+}  // namespace
+
+Floats tension_N(const physics::Simulation& simulation) {
+  std::vector<float> values(simulation.nodes_W().size());
+  simulation.describe(values, {});
+  return one_row(std::move(values));
+}
+
+Floats turn_rad(const physics::Simulation& simulation) {
+  std::vector<float> values(simulation.nodes_W().size());
+  simulation.describe({}, values);
+  return one_row(std::move(values));
+}
+
+Reals curvature_per_m(const physics::Simulation& simulation) {
+  const auto p = simulation.nodes_W();
+  std::vector<double> values(p.size());
+  for (std::size_t i = 1; i + 1 < p.size(); ++i) {
+    const physics::Vec3 before = p[i] - p[i - 1], after = p[i + 1] - p[i], across = p[i + 1] - p[i - 1];
+    const double product = before.norm() * after.norm() * across.norm();  // circle of three points: 4 area / product
+    values[i] = product > 0.0 ? 2.0 * before.cross(after).norm() / product : 0.0;
+  }
+  return one_row(std::move(values));
+}
+
+void bind_looks(nb::module_& module) {
+  bind_hand(module);
+  using physics::Diagnostics;
+  nb::class_<Diagnostics>(module, "Diagnostics", "State of health after a tick.")
+      .def_ro("kinetic_J", &Diagnostics::kinetic_J, "Kinetic energy, J.")
+      .def_ro("potential_J", &Diagnostics::potential_J,
+              "Gravity (zero at z = 0), stretch, bending, twist, give of contacts, J.")
+      .def_ro("max_stretch", &Diagnostics::max_stretch, "Largest l / l_rest - 1.")
+      .def_ro("min_gap_m", &Diagnostics::min_gap_m,
+              "Surface gap of the closest pair of strands, m; negative: overlap; inf.")
+      .def_ro("contacts", &Diagnostics::contacts, "Contacts that carried an impulse in the last step.")
+      .def_ro("contact_cap_hit", &Diagnostics::contact_cap_hit, "More contacts than there was room or work for.")
+      .def_prop_ro(
+          "degradation", [](const Diagnostics& d) { return name(d.degradation); },
+          "What the tick gave up because its work is bounded: 'none', 'iterations', 'contacts', 'motion'.")
+      .def_ro("time_lost", &Diagnostics::time_lost, "Share of the tick in which the thread was not moved.")
+      .def_ro("work", &Diagnostics::work, "Instructions that contact took, as priced; 0: a model without a bound.")
+      .def_ro("finite", &Diagnostics::finite, "False: frozen at the last finite state, hands open and without force.")
+      .def_ro("bad_node", &Diagnostics::bad_node, "First node that was no number; -1: none, or a tool was.")
+      .def_ro("bad_tick", &Diagnostics::bad_tick, "The tick at which it was; -1: none.");
+}
+
+}  // namespace ligature::python

@@ -1,0 +1,19 @@
+#pragma once
+// What there is to see of a simulation.
+
+#include "python/src/arrays.hpp"
+#include "python/src/sim.hpp"
+
+namespace ligature::python {
+
+using Floats = View<float, nb::ndim<1>>;
+using Reals = View<double, nb::ndim<1>>;
+
+[[nodiscard]] Floats tension_N(const physics::Simulation& simulation);
+[[nodiscard]] Floats turn_rad(const physics::Simulation& simulation);
+[[nodiscard]] Reals curvature_per_m(const physics::Simulation& simulation);
+
+/// Hand and Diagnostics.
+void bind_looks(nb::module_& module);
+
+}  // namespace ligature::python

@@ -1,0 +1,51 @@
+// ligature._core: the thread's physics, its scenes, its knots and recordings, as the programs have them.
+
+#include <nanobind/nanobind.h>
+
+#include <algorithm>
+#include <string>
+
+#include "host/errors.hpp"
+#include "host/lab/outcome.hpp"
+#include "python/src/bindings.hpp"
+
+namespace nb = nanobind;
+
+namespace {
+
+PyObject* g_refusal = nullptr;
+
+/// Errors of the programs become exceptions with the same line.
+void translate(const std::exception_ptr& thrown, void*) {
+  namespace python = ligature::python;
+  const auto raise = [](PyObject* type, std::string line) {  // one line, whatever a library put into it
+    std::ranges::replace(line, '\n', ' ');
+    PyErr_SetObject(type, python::text_of(line).ptr());
+  };
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const ligature::lab::Refusal& error) {
+    raise(g_refusal, error.what());
+  } catch (const ligature::host::BadInput& error) {
+    raise(g_refusal, error.what());
+  } catch (const ligature::host::RunFailed& error) {
+    raise(PyExc_OSError, error.what());
+  }
+}
+
+}  // namespace
+
+NB_MODULE(_core, module) {
+  namespace python = ligature::python;
+  module.attr("__version__") = LIGATURE_VERSION;
+  g_refusal = PyErr_NewExceptionWithDoc(
+      "ligature.Refusal", "What was asked or read is wrong: one line with place, what was found, what is allowed.",
+      PyExc_ValueError, nullptr);
+  module.attr("Refusal") = nb::handle(g_refusal);
+  nb::register_exception_translator(translate);
+  python::bind_scene(module);
+  python::bind_run(module);
+  python::bind_simulation(module);
+  python::bind_knot(module);
+  python::bind_recording(module);
+}

@@ -1,0 +1,29 @@
+"""What the tests of the Python package share: the tree, its programs, scripts of hands."""
+
+import os
+import pathlib
+import subprocess
+
+import pytest
+
+import ligature
+
+SOURCE = pathlib.Path(os.environ["LIGATURE_SOURCE"])
+BIN = pathlib.Path(os.environ["LIGATURE_BIN"])
+SCENES = SOURCE / "scenes"
+OVERHAND = SCENES / "operators/overhand.csv"
+
+
+def run_program(name, *args):
+    return subprocess.run([BIN / name, *map(str, args)], capture_output=True, text=True, timeout=200)
+
+
+@pytest.fixture
+def paper():
+    """A short thread of the paper's."""
+    return ligature.Scene.load(SCENES / "paper.toml", {"suture.nodes": 20})
+
+
+@pytest.fixture
+def overhand():
+    return ligature.Script.load(OVERHAND)
