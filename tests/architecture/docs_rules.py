@@ -25,7 +25,7 @@ OPTION = re.compile(r"(?<![\w-])(--[a-z][\w-]+)")
 FOREIGN = re.compile(r"^(?:groupadd|cmake|ctest|test_\w+) ")  # programs with options of their own
 DECLARED = re.compile(
     r"\bTEST(?:_[FP])?\(\s*(\w+),\s*(\w+)"
-    r"|(?:add_test\(NAME|ligature_rig_test\(|ligature_hil_test\(|ligature_browser_test\()\s*([\w.]+)"
+    r"|(?:add_test\(NAME|ligature_rig_test\(|ligature_hil_test\(|ligature_python_test\(|ligature_browser_test\()\s*([\w.]+)"
 )
 PAGE_IN_CODE = re.compile(r"\bdocs/[\w-]+\.md")
 

@@ -1,0 +1,31 @@
+"""Hook of mkdocs.yml: pages of the root folder join those of docs/, and Markdown is read as GitHub reads it."""
+
+import pathlib
+import re
+
+from mkdocs.structure.files import File
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+OF_THE_ROOT = {"README.md": "index.md", "CONTRIBUTING.md": "CONTRIBUTING.md", "SECURITY.md": "SECURITY.md", "CHANGELOG.md": "CHANGELOG.md",
+               "NOTICE.md": "NOTICE.md"}
+ITEM, ROW = re.compile(r"(?:[-*]|\d+\.) "), re.compile(r"\|")
+
+
+def on_files(files, config):
+    for source, page in OF_THE_ROOT.items():
+        text = re.sub(r"\]\(docs/", "](", (ROOT / source).read_text())
+        files.append(File.generated(config, page, content=text))
+    return files
+
+
+def on_page_markdown(markdown, **_):
+    """GitHub begins a list or a table right after a line of text; Python-Markdown wants an empty line between them."""
+    lines, fenced, inside = [], False, False
+    for line in markdown.replace("](../README.md)", "](index.md)").splitlines():
+        begins = bool(ITEM.match(line) or ROW.match(line))
+        if begins and not fenced and not inside and lines and lines[-1].strip():
+            lines.append("")
+        fenced ^= line.startswith("```")
+        inside = begins or (inside and line.startswith("  "))
+        lines.append(line)
+    return "\n".join(lines)

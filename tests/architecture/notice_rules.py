@@ -1,0 +1,53 @@
+"""NOTICE.md names everything that the project's files install: Python and npm packages, libraries of apt.
+
+Run: python3 tests/architecture/notice_rules.py [ROOT]; exit 1 and one line per package that is missing, or named and gone.
+"""
+
+import json
+import pathlib
+import re
+import sys
+
+NAMED_TOO = {"ruckig", "liblcm-bin"}  # an archive that CMake unpacks; programs that are run
+
+
+def python_packages(root):
+    texts = [(root / name).read_text() for name in ("requirements.txt", "requirements-test.txt")]
+    return {name for text in texts for name in re.findall(r"^([A-Za-z][\w.-]*)==", text, re.M)}
+
+
+def npm_packages(root):
+    return {name for file in ("host/view/page/package.json", "tests/browser/package.json")
+            for name in json.loads((root / file).read_text()).get("dependencies", {})}
+
+
+def apt_libraries(root):
+    """What is compiled or linked into programs; compilers, browsers and emulators are only run."""
+    words = set(re.findall(r"\b(?:lib|nlohmann)[\w-]*-dev\b", (root / "scripts/setup").read_text()))
+    return words - {"libclang-rt-dev"}  # clang's own, for the fuzzers
+
+
+def faults(wanted, notice):
+    named = set(re.findall(r"`([\w.-]+)`", notice))
+    missing = [f"NOTICE.md: does not name {name}, which the project installs" for name in sorted(wanted - named)]
+    return missing + [f"NOTICE.md: names {name}, which nothing installs" for name in sorted(named - wanted - NAMED_TOO)]
+
+
+def self_check():
+    """The rules must be able to fail."""
+    assert faults({"numpy", "three"}, "`numpy`") == ["NOTICE.md: does not name three, which the project installs"]
+    assert faults({"numpy"}, "`numpy` `scipy`") == ["NOTICE.md: names scipy, which nothing installs"]
+    assert not faults({"numpy"}, "`numpy`")
+
+
+def main():
+    self_check()
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
+    wanted = python_packages(root) | npm_packages(root) | apt_libraries(root)
+    found = faults(wanted, (root / "NOTICE.md").read_text())
+    print("\n".join(found) if found else f"NOTICE.md names the {len(wanted)} packages that are installed")
+    return 1 if found or len(wanted) < 20 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
