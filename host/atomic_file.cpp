@@ -13,12 +13,13 @@ namespace ligature::host {
 
 std::string file_to_write(const std::string& path) {
   namespace fs = std::filesystem;
-  constexpr int kMostLinks = 40;  // as the kernel's own limit
+  constexpr int kMostLinks = 40;  // the kernel's own limit
   std::error_code none;
   fs::path target(path);
   for (int i = 0; fs::is_symlink(fs::symlink_status(target, none)); ++i) {
     if (i == kMostLinks) throw BadInput(path + ": is a circle of links; allowed: the name of a file");
-    target = target.parent_path() / fs::read_symlink(target, none);  // an absolute one replaces the whole
+    target = target.parent_path() /
+             fs::read_symlink(target, none);  // operator/ discards the left side when the link is absolute
   }
   const auto found = fs::status(target, none);
   if (fs::is_directory(found)) throw BadInput(path + ": is a folder; allowed: the name of a file");

@@ -4,13 +4,13 @@
 
 namespace ligature::host {
 
-/// Where writing to `path` really goes: symbolic links followed, also one that points at nothing yet.
-/// @throws BadInput when something is there that is no regular file (a device, a pipe, a folder): a file that appears
-/// by renaming would take its place.
+/// The file that a write to `path` ends up in: symbolic links are followed, also one whose target does not exist yet.
+/// @throws BadInput when the target exists and is no regular file (a device, a pipe, a folder): commit() renames a new
+/// file over it.
 [[nodiscard]] std::string file_to_write(const std::string& path);
 
-/// A file that exists under its name only when it is complete: written as NAME.part-PID, renamed by commit(),
-/// removed when commit() was not reached. A symbolic link stays one: its target is what is replaced.
+/// A file that appears under its name only when it is complete. It is written as NAME.part-PID, renamed by commit(),
+/// and removed when commit() was not reached. A symbolic link is kept: its target is replaced.
 class AtomicFile {
  public:
   /// @throws BadInput when the file cannot be made.
@@ -19,13 +19,13 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// @throws RunFailed when the disk does not take it.
+  /// @throws RunFailed when writing fails (disk full).
   void write(const std::string& text);
-  /// Puts it on the disk and under its name. @throws RunFailed.
+  /// Flushes the file to the disk and renames it to its final name. @throws RunFailed.
   void commit();
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  /// Where it is until commit(), for those who write it by other means; they have closed or flushed it before.
+  /// The temporary name, for callers that write the file by other means; they must close or flush it before commit().
   [[nodiscard]] const std::string& part_path() const { return part_path_; }
 
  private:

@@ -6,7 +6,7 @@ class App;
 
 namespace ligature::host {
 
-/// Adds the subcommands with their options and help; each does its work as the callback of its parsing.
+/// Each adds one subcommand with its options and help. The subcommand runs in its CLI11 parse callback.
 void add_record(CLI::App& app);
 void add_export(CLI::App& app);
 void add_plot(CLI::App& app);

@@ -5,8 +5,8 @@
 
 namespace ligature::host {
 
-/// What a CSV table cannot say of itself: "CSV on the Web" metadata (W3C, tabular-metadata) with the name, unit and
-/// meaning of each column of `header`, beside the scene's text and the versions. It belongs into TABLE-metadata.json.
+/// The metadata file of a CSV table, in the format "CSV on the Web" (W3C, tabular-metadata): name, unit and meaning of
+/// each column of `header`, the scene's text and the versions. To be written to TABLE-metadata.json.
 [[nodiscard]] std::string csv_metadata(const std::string& table_path, const std::string& header, const RigFacts& facts,
                                        const std::string& source);
 

@@ -26,7 +26,7 @@ class CsvRow {
     return *this;
   }
 
-  /// The line with its end; the row is empty again.
+  /// Ends the line and clears the row. @return the line, valid until the next call.
   [[nodiscard]] const std::string& finish() {
     line_ += '\n';
     done_.swap(line_);

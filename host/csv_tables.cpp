@@ -8,7 +8,7 @@
 namespace ligature::host {
 namespace {
 
-/// ",left_f_x_N,left_f_y_N,left_f_z_N" of ("left", "f", "_N").
+/// Column names of a vector: ",left_f_x_N,left_f_y_N,left_f_z_N" for ("left", "f", "_N").
 std::string xyz(std::string_view hand, std::string_view quantity, std::string_view unit) {
   std::string names;
   for (const char axis : {'x', 'y', 'z'}) {

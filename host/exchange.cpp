@@ -27,7 +27,8 @@ Exchange::Step Exchange::take(const ligature_msg::ack_t& ack) {
     command_.challenge = ack.challenge;
     return Step::kSay;
   }
-  // Of two firmwares on one network the first to give a challenge is meant; the other refuses what is not for it.
+  // If two firmwares share the network, the command goes to the one whose challenge came first. Answers of the other
+  // one, which refuses a command not addressed to it, are ignored.
   const bool is_of_another = command_.challenge != 0 && ack.session != command_.session;
   return gives_challenge || is_of_another ? Step::kWait : Step::kAnswered;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// One command on its way to the firmware: asked for a challenge, said with it, answered.
+// The exchange of messages that carries one command to the firmware: request a challenge, send the command with it, get
+// the answer.
 
 #include <cstdint>
 #include <string>
@@ -8,28 +9,28 @@
 
 namespace ligature::host {
 
-/// The firmware does a command only with a challenge that it has just given out for it, so that a recording that is
-/// played back moves nothing (protocol/lcm/command_t.lcm). `stop` and `disarm` need none.
+/// The firmware carries out a command only with a challenge that it has just issued for it, so that replaying a
+/// recording cannot move anything (protocol/lcm/command_t.lcm). `stop` and `disarm` need no challenge.
 class Exchange {
  public:
   Exchange(std::int8_t kind, const std::string& text, double value);
 
-  /// What is to be published now.
+  /// The message to publish next.
   [[nodiscard]] const ligature_msg::command_t& message() const { return command_; }
   [[nodiscard]] std::int64_t id() const { return command_.id; }
 
   enum class Step : std::uint8_t {
-    kWait,      ///< that was another's answer, or no news
-    kSay,       ///< the challenge has come: publish message() once
-    kAnswered,  ///< the answer proper
+    kWait,      ///< not for us, or nothing new
+    kSay,       ///< the challenge has arrived: publish message() once
+    kAnswered,  ///< the final answer to the command has arrived
   };
   [[nodiscard]] Step take(const ligature_msg::ack_t& ack);
 
-  /// Publishing message() again does no harm: it is a stop, or it only asks. Others are said once, because doing them
-  /// twice is not the same.
+  /// Whether message() may be published again when no answer comes: true for a stop and for a request for a challenge.
+  /// Other commands are sent once, because executing one twice differs from executing it once.
   [[nodiscard]] bool may_be_repeated() const;
 
-  /// What to tell a person when no answer has come in time.
+  /// The error text for a missing answer.
   [[nodiscard]] std::string silence() const;
 
  private:

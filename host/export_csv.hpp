@@ -6,12 +6,12 @@
 
 namespace ligature::host {
 
-/// Where to write tables; an empty name is not written.
+/// Names of the tables to write; an empty one is not written.
 struct CsvTargets {
   std::string forces, shape, ticks;
 };
 
-/// CSV tables, and beside each TABLE-metadata.json (csv_metadata.hpp).
+/// Writes CSV tables, and TABLE-metadata.json beside each (csv_metadata.hpp).
 [[nodiscard]] std::unique_ptr<ExportSink> make_csv_sink(const CsvTargets& targets, const RigFacts& facts,
                                                         const std::string& source);
 

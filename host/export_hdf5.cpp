@@ -22,7 +22,7 @@ void explain(hid_t dataset, const std::string& unit, const std::string& meaning)
   annotate(dataset, "meaning", meaning);
 }
 
-/// The columns of ticks.csv, each a dataset of its own.
+/// The columns of ticks.csv, one dataset each.
 class Ticks {
  public:
   explicit Ticks(hid_t file)
@@ -61,7 +61,7 @@ class Ticks {
   std::vector<std::variant<Whole, Real>> columns_;
 };
 
-/// Shapes with as many nodes each as it had: nodes first[i] .. first[i] + count[i] of p_W_m.
+/// Shapes of the thread. Shape i has its own number of nodes: rows first[i] .. first[i] + count[i] - 1 of p_W_m.
 struct Shapes {
   explicit Shapes(hid_t file)
       : group(hdf5::make_group(file, "shapes")),

@@ -6,8 +6,8 @@
 
 namespace ligature::host {
 
-/// One HDF5 file of a recording; its layout is docs/analysis.md. @param source name of the recording, for the file.
-/// @throws BadInput when it cannot be made.
+/// Writes one HDF5 file; its layout is in docs/analysis.md. @param source name of the recording, stored in the file.
+/// @throws BadInput when the file cannot be created.
 [[nodiscard]] std::unique_ptr<ExportSink> make_hdf5_sink(const std::string& path, const RigFacts& facts,
                                                          const std::string& source);
 

@@ -7,11 +7,11 @@
 namespace ligature::host {
 namespace {
 
-/// Gathers everything in an HDF5 file of its own, from which the script makes the other.
+/// Collects everything in a temporary HDF5 file, which the script to_mcap.py converts to MCAP at commit().
 class McapSink final : public ExportSink {
  public:
   McapSink(const std::string& path, const RigFacts& facts, const std::string& source)
-      : target_(AtomicFile(path).path()),  // made and gone again: it can be made
+      : target_(AtomicFile(path).path()),  // creates and removes the file: tests early that it can be created
         tool_("to_mcap.py", LIGATURE_PLOTS_DIR),
         gathered_(make_hdf5_sink(scratch_.file("recording.h5"), facts, source)) {}
 

@@ -6,8 +6,8 @@
 
 namespace ligature::host {
 
-/// One MCAP file of a recording, for Foxglove, PlotJuggler and the like; its topics are in docs/analysis.md. Written
-/// by the `mcap` package of the Python that scripts/setup made. @throws BadInput when there is none.
+/// Writes one MCAP file, for Foxglove, PlotJuggler and others; its topics are in docs/analysis.md. The `mcap` package
+/// of the Python environment from scripts/setup writes it. @throws BadInput without that environment.
 [[nodiscard]] std::unique_ptr<ExportSink> make_mcap_sink(const std::string& path, const RigFacts& facts,
                                                          const std::string& source);
 

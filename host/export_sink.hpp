@@ -10,7 +10,7 @@
 
 namespace ligature::host {
 
-/// A format that a recording is exported to. Ticks come once each and in order; the rest as it was received.
+/// One output format of `export`. Each tick arrives once and in order; other messages arrive in the order of reception.
 class ExportSink {
  public:
   virtual ~ExportSink() = default;
@@ -18,10 +18,10 @@ class ExportSink {
   virtual void add(const ligature_msg::tick_t& tick, double t_s, int session) = 0;
   virtual void add(const ligature_msg::thread_t& thread, double t_s) { (void)thread, (void)t_s; }
   virtual void add(const ligature_msg::event_t& event, double t_s) { (void)event, (void)t_s; }
-  /// The scene that is in force from here on; called when its text changes.
+  /// The status message of the scene in force from here on; called only when the scene's text changes.
   virtual void add(const ligature_msg::status_t& status, double t_s) { (void)status, (void)t_s; }
   virtual void note(const std::string& text) { (void)text; }
-  /// Makes the file appear under its name. @throws RunFailed.
+  /// Completes the file and gives it its final name. @throws RunFailed.
   virtual void commit() = 0;
 };
 

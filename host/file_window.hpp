@@ -8,15 +8,14 @@
 
 namespace ligature::host {
 
-/// A file in pieces: what was read last stays in memory, so that going through it in small steps costs few system
-/// calls.
+/// Buffered random access to a file: the block read last stays in memory, so that small steps need few system calls.
 class FileWindow {
  public:
   static constexpr std::size_t kBlock = 1U << 18U;
 
   explicit FileWindow(const RegularFile& file) : file_(file) {}
 
-  /// The bytes there, fewer at the file's end; valid until the next call.
+  /// The bytes at `offset`, fewer at the end of the file; valid until the next call.
   [[nodiscard]] std::span<const unsigned char> at(std::int64_t offset, std::size_t bytes) {
     const auto end = [&] { return start_ + static_cast<std::int64_t>(held_); };
     if (offset < start_ || offset + static_cast<std::int64_t>(bytes) > end()) {

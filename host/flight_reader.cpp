@@ -16,7 +16,7 @@ std::string text_in(const std::array<char, N>& field) {
   return {field.data(), strnlen(field.data(), N)};
 }
 
-/// The header, when the file is long enough for one.
+/// @return whether the file is long enough for a header and could be read.
 bool read_header(const RegularFile& file, recorder::Header& header) {
   return file.size() >= static_cast<std::int64_t>(recorder::kHeaderBytes) &&
          file.read_at(static_cast<void*>(&header), sizeof header, 0) == sizeof header;
@@ -103,7 +103,7 @@ void FlightReader::visit(const std::function<void(const ligature_msg::tick_t&)>&
   }
 }
 
-/// An entry whose CRC is wrong was being written when everything stopped, or never.
+/// Skips entries with a wrong CRC: they were never written, or the writer died while writing them.
 void FlightReader::read_scenes(std::span<const std::byte> entries) {
   const auto facts = [&](const auto& from) {
     return RigFacts{header_.period_s,         from.max_force_N,         true,

@@ -14,38 +14,38 @@
 
 namespace ligature::host {
 
-/// Whether a file begins like a flight recorder's; false for one that cannot be read.
+/// Whether the file starts with a flight recorder's header; false when it cannot be read.
 [[nodiscard]] bool is_flight_file(const std::string& path);
 
-/// The session that a flight recorder's header names: cheap, nothing else is read. Nothing when it has no sound header.
+/// The session in a flight recorder's header; reads nothing else. Empty when the header is invalid.
 [[nodiscard]] std::optional<std::int64_t> session_of(const RegularFile& file);
 
-/// Reads a flight recorder file as it is at this moment, also while it is being written. Holds it in memory (0.7 MB for
-/// each second of it). A slot whose CRC is wrong is counted and left out; the writer's death leaves at most one.
+/// Reads the present content of a flight recorder file, also while it is being written, into memory (0.7 MB for each
+/// second). Slots with a wrong CRC are counted and skipped; a writer that dies leaves at most one.
 class FlightReader {
  public:
-  /// @throws BadInput when it is not such a file, of another version, or shorter than its header says.
+  /// @throws BadInput when it is no flight recorder file, has another version, or is shorter than its header says.
   explicit FlightReader(const std::string& path);
-  /// A file that is open already; `path` is what messages call it.
+  /// Reads a file that is already open; `path` is its name in messages.
   FlightReader(const RegularFile& file, const std::string& path);
 
-  /// Every sound tick, oldest first.
+  /// Calls `take` for every valid tick, oldest first.
   void visit(const std::function<void(const ligature_msg::tick_t&)>& take) const;
 
   [[nodiscard]] std::int64_t session() const { return header_.session; }
-  [[nodiscard]] std::int32_t fault() const { return header_.fault; }  ///< it was saved with; 0 = none
+  [[nodiscard]] std::int32_t fault() const { return header_.fault; }  ///< fault code at the time of saving; 0 = none
   [[nodiscard]] std::size_t ticks() const { return sound_.size(); }
   [[nodiscard]] std::int64_t damaged_slots() const { return damaged_; }
   /// The scene in force at the oldest tick.
   [[nodiscard]] RigFacts facts() const;
 
-  /// A scene with its overrides, and from which tick on it was in force.
+  /// A scene with its overrides, and the first tick for which it was in force.
   struct Scene {
     std::int64_t first_tick = 0;
     RigFacts facts;
-    bool admitted = true;  ///< false: run by --force
+    bool admitted = true;  ///< false: admission failed, and the run was started with --force
   };
-  /// In order; the first is the one that the run, or what is known of it, began with.
+  /// In order of time. The first is the scene in force at the start of the run, or at the oldest tick that is known.
   [[nodiscard]] const std::vector<Scene>& scenes() const { return scenes_; }
   [[nodiscard]] const Scene& scene_at(std::int64_t tick) const;
 
@@ -63,7 +63,7 @@ class FlightReader {
     std::uint64_t sequence;
     std::size_t slot;
   };
-  std::vector<Entry> sound_;  // in order of sequence
+  std::vector<Entry> sound_;  // ordered by sequence number
   std::int64_t damaged_ = 0;
 };
 

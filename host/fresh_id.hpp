@@ -4,7 +4,8 @@
 
 namespace ligature::host {
 
-/// Never the same twice, whatever the clock says, not to be guessed, and above 0: a recording cannot know it.
+/// A random positive number that cannot be guessed, even with a wrong clock. Used as an identifier that no recording
+/// can contain.
 [[nodiscard]] inline std::int64_t fresh_id() {
   std::random_device device;
   constexpr std::uint64_t kPositive = ~(std::uint64_t{1} << 63U);

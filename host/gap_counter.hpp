@@ -13,22 +13,22 @@ struct TickRange {
   [[nodiscard]] std::int64_t size() const { return last - first + 1; }
 };
 
-/// Says which numbers of a sequence never came. Numbers should rise by one; a jump leaves a hole, a number
-/// that comes late closes its place in the hole, one that was there already is a duplicate.
+/// Finds the missing numbers of a sequence whose numbers should rise by one. A jump opens a hole; a late number fills
+/// its place in the hole; a number received before is a duplicate.
 /// Invariant: received() + missing() = last() - first() + 1 as soon as one number came.
 /// Cost: O(1) for the next number in sequence, O(log holes) for one out of order.
 class GapCounter {
  public:
-  /// @param number 0 .. 2^53; messages hold less. @return false when it was there already.
+  /// @param number 0 .. 2^53 (message types hold less). @return false for a duplicate.
   bool add(std::int64_t number);
 
   [[nodiscard]] bool is_empty() const { return received_ == 0; }
   [[nodiscard]] std::int64_t first() const { return first_; }
   [[nodiscard]] std::int64_t last() const { return last_; }
-  [[nodiscard]] std::int64_t received() const { return received_; }  ///< different numbers
+  [[nodiscard]] std::int64_t received() const { return received_; }  ///< distinct numbers
   [[nodiscard]] std::int64_t missing() const { return missing_; }
   [[nodiscard]] std::int64_t duplicates() const { return duplicates_; }
-  [[nodiscard]] std::int64_t late() const { return late_; }  ///< came after a larger number
+  [[nodiscard]] std::int64_t late() const { return late_; }  ///< arrived after a larger number
   [[nodiscard]] std::vector<TickRange> missing_ranges() const;
 
  private:

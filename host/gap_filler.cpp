@@ -53,11 +53,12 @@ std::vector<fs::path> default_flight_folders() {
 GapFiller::GapFiller(const std::vector<fs::path>& folders) {
   for (const auto& folder : folders) {
     const auto normal = fs::absolute(folder).lexically_normal();
-    folders_.push_back(normal.has_filename() ? normal : normal.parent_path());  // without a slash at the end
+    folders_.push_back(normal.has_filename() ? normal : normal.parent_path());  // removes a trailing slash
   }
 }
 
-/// The name alone is judged: a look at a folder that a stranger chose could wait for a server for ever.
+/// Checks only the text of the path. Any access to a folder that a stranger chose could block for ever on a network
+/// file system.
 void GapFiller::note(const ligature_msg::status_t& status) {
   if (status.recorder_file.empty()) return;
   const fs::path file = fs::path(status.recorder_file).lexically_normal();
@@ -74,7 +75,7 @@ std::int64_t GapFiller::fill(const SessionTally& sessions, const Emit& emit, End
   const auto files = files_;
   for (const auto& file : files) {
     filled += fill_from(file, sessions, emit, ends);
-    filled += fill_from(file + ".previous", sessions, emit, ends);  // a restarted firmware has moved it there
+    filled += fill_from(file + ".previous", sessions, emit, ends);  // a restarted firmware renames its old file so
   }
   return filled;
 }
@@ -82,7 +83,7 @@ std::int64_t GapFiller::fill(const SessionTally& sessions, const Emit& emit, End
 std::optional<RegularFile> GapFiller::open(const std::string& path) const try {
   const fs::path file(path);
   return RegularFile(file.parent_path(), file.filename());
-} catch (const BadInput&) {  // not on this machine, or not readable: the gaps stay gaps, and are named
+} catch (const BadInput&) {  // not on this machine, or not readable: the gaps remain and are reported
   return std::nullopt;
 }
 
@@ -90,7 +91,7 @@ std::int64_t GapFiller::fill_from(const std::string& path, const SessionTally& s
   const auto file = open(path);
   const auto id = file ? session_of(*file) : std::nullopt;
   if (!id) {
-    files_.erase(path);  // a forged name makes room; the firmware says its own ten times a second
+    files_.erase(path);  // makes room when a forged status named it; the firmware repeats its own ten times a second
     return 0;
   }
   const auto session = std::ranges::find(sessions.sessions(), *id, &Session::id);
@@ -103,7 +104,7 @@ std::int64_t GapFiller::fill_from(const std::string& path, const SessionTally& s
     const auto filled = fill_from(FlightReader(*file, path), *session, std::move(holes), emit);
     if (ends == Ends::kClosed) ended_.insert(*id);
     return filled;
-  } catch (const BadInput&) {  // damaged
+  } catch (const BadInput&) {  // damaged file
     return 0;
   }
 }

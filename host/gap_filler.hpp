@@ -14,15 +14,14 @@
 
 namespace ligature::host {
 
-/// Where flight recorders of this machine are written unless ligature-firmware was told otherwise: its own default and
-/// the service's folder.
+/// Default folders of flight recorder files on this machine: the firmware's own default and the system service's.
 [[nodiscard]] std::vector<std::filesystem::path> default_flight_folders();
 
-/// Fetches what the network lost from the flight recorder that the firmware names in its status. Works when the
-/// firmware runs on this machine (or its recorder's folder is mounted here); elsewhere it finds nothing, and the gaps
-/// stay named in the summary.
-/// Anybody on the network can send a status, so its word is only a hint: regular files of the given folders are read
-/// and nothing else, and which session a file holds is what the file itself says.
+/// Fetches ticks that the network lost from the flight recorder file that the firmware names in its status. It works
+/// when the firmware runs on this machine or its folder is mounted here; otherwise the gaps remain and are reported in
+/// the summary.
+/// Security: anybody on the network can send a status. Therefore only regular files in the given folders are read, and
+/// the session number is taken from the file itself.
 class GapFiller {
  public:
   using Emit = std::function<void(const ligature_msg::tick_batch_t&)>;
@@ -33,16 +32,17 @@ class GapFiller {
 
   void note(const ligature_msg::status_t& status);
 
-  /// Emits the missing ticks of every session as batches like the firmware's. A gap is looked for once the
-  /// recorder has later ticks: what it does not have by then it will never have, because it writes in order. Cost:
-  /// nothing without gaps, one reading of the recorder's file with.
-  /// @param ends closed: what follows a session's last tick is missing, too (a killed firmware's last batch).
-  /// @return how many ticks were fetched.
+  /// Emits the missing ticks of every session in batches like the firmware's. A gap is searched for once, when the
+  /// recorder already holds later ticks: it writes in order, so that a tick absent by then never comes. Cost: nothing
+  /// without gaps, else one reading of the recorder's file.
+  /// @param ends kClosed: ticks after a session's last received one count as missing, too (the last batch of a killed
+  /// firmware).
+  /// @return number of ticks fetched.
   std::int64_t fill(const SessionTally& sessions, const Emit& emit, Ends ends = Ends::kOpen);
 
-  /// Whether a flight recorder was read to its end for this session with `ends` closed.
+  /// Whether a flight recorder of this session was read to its end, with `ends` = kClosed.
   [[nodiscard]] bool knows_end_of(std::int64_t session) const { return ended_.contains(session); }
-  /// A flight recorder that a status named and that lies in none of the folders; empty when there was none.
+  /// A flight recorder file that a status named outside the allowed folders; empty when there was none.
   [[nodiscard]] const std::string& outside() const { return outside_; }
 
  private:
@@ -52,8 +52,9 @@ class GapFiller {
                          const Emit& emit);
 
   std::vector<std::filesystem::path> folders_;
-  std::set<std::string> files_;                          // that a status named, and that lie in a folder of ours
-  std::map<std::int64_t, std::int64_t> searched_below_;  // by session: gaps that end before this tick were looked for
+  std::set<std::string> files_;  // named by a status, and inside an allowed folder
+  std::map<std::int64_t, std::int64_t>
+      searched_below_;  // per session: gaps that end before this tick have been searched for
   std::set<std::int64_t> ended_;
   std::string outside_;
 };

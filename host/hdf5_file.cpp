@@ -32,7 +32,7 @@ Handle::Handle(hid_t id, Close close, const char* doing) {
 }
 
 Handle make_file(const std::string& path) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // our own one line instead of the library's page
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // turns off HDF5's own error output; RunFailed carries one line instead
   return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, "make the file"};
 }
 

@@ -8,12 +8,12 @@
 
 namespace ligature::host::hdf5 {
 
-/// A handle of the HDF5 library, closed when it goes.
+/// An HDF5 identifier with shared ownership, closed with its last copy.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
   Handle() = default;
-  /// @throws RunFailed when the library gave none.
+  /// @param doing what the call tried, for the message. @throws RunFailed when `id` is invalid.
   Handle(hid_t id, Close close, const char* doing);
   [[nodiscard]] hid_t id() const { return *id_; }
 
@@ -24,7 +24,7 @@ class Handle {
 [[nodiscard]] Handle make_file(const std::string& path);
 [[nodiscard]] Handle make_group(hid_t parent, const char* name);
 
-/// Attributes: UTF-8 text, or a number.
+/// Adds an attribute: UTF-8 text or a number.
 void annotate(hid_t object, const char* name, const std::string& text);
 void annotate(hid_t object, const char* name, double value);
 
@@ -32,8 +32,8 @@ void annotate(hid_t object, const char* name, double value);
 template <class T>
 [[nodiscard]] hid_t type_of();
 
-/// A dataset that grows row by row: n values, or n rows of `width`. Chunked and deflated; rows are gathered, so that
-/// adding one costs a copy.
+/// A growing dataset of n values, or of n rows of `width` values. Chunked and compressed (deflate). Rows are buffered,
+/// so that add() costs one copy.
 template <class T>
 class Series {
  public:

@@ -14,7 +14,7 @@ namespace {
 std::string json_line(const knot::KnotResult& found) {
   nlohmann::ordered_json json = {
       {"type", found.type}, {"handedness", found.handedness}, {"determinant", nullptr}, {"alexander", nullptr}};
-  if (!found.alexander.empty()) {  // else neither could be computed
+  if (!found.alexander.empty()) {  // else it could not be computed
     json["determinant"] = found.determinant;
     json["alexander"] = found.alexander;
   }

@@ -7,13 +7,13 @@ namespace ligature::host {
 struct KnotOptions {
   std::string file{};            // CSV polyline or LCM log
   bool closed = false;           // --closed: the last point joins the first
-  bool open = false;             // --open: it does not, even where the two coincide
-  std::optional<double> at_s{};  // which shape, where there are many; the last one without
+  bool open = false;             // --open: the last point does not join the first, even where the two coincide
+  std::optional<double> at_s{};  // time of the shape in a log with many; without it the last shape
   bool json = false;
 };
 
 /// Names the knot of a file. @return the line to print.
-/// Without --closed and --open a polyline is closed when its last point repeats its first. @throws BadInput.
+/// Without --closed and --open, a polyline counts as closed when its last point repeats its first. @throws BadInput.
 [[nodiscard]] std::string describe_knot(const KnotOptions& options);
 
 }  // namespace ligature::host

@@ -13,10 +13,10 @@
 namespace ligature::host {
 namespace {
 
-/// Our queue between the library's thread and receive(): over a minute of everything the rig sends.
+/// Size of the queue between LCM's thread and receive(): more than a minute of all messages of a rig.
 constexpr int kQueuedMessages = 16384;
 
-/// Threads made while this lives never take a signal: it is ours to see.
+/// Threads created while this object lives have all signals blocked, so that signals reach the main thread.
 class SignalsBlocked {
  public:
   SignalsBlocked() {
@@ -36,11 +36,11 @@ class SignalsBlocked {
 
 struct LcmLink::Receiver {
   Handler handler;
-  std::exception_ptr failure;  // of the handler: it must not cross the library's C frames
+  std::exception_ptr failure;  // thrown by the handler; it must not pass through LCM's C stack frames
 
-  /// A plain function: what the library makes of a member function does not survive GCC's -fsanitize=vptr, which uses
-  /// an object's address before it has computed it where a member is called through a pointer found in a polymorphic
-  /// one.
+  /// A static function, because LCM's wrapper of a member function fails under GCC's -fsanitize=vptr: the generated
+  /// check uses the object's address before it is computed, when a member is called through a pointer stored in a
+  /// polymorphic object.
   static void on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel, Receiver* to) noexcept {
     if (to->failure) return;
     try {
@@ -78,7 +78,7 @@ int LcmLink::receive(int timeout_ms) {
   while (poll(&waiting, 1, handled ? 0 : timeout_ms) > 0) {
     if (lcm_->handle() != 0) throw RunFailed("LCM: receiving failed");
     if (receiver_->failure) std::rethrow_exception(receiver_->failure);
-    if (++handled == 256) break;  // let the caller look at the clock
+    if (++handled == 256) break;  // return now and then, so that the caller can check the time
   }
   return handled;
 }

@@ -14,28 +14,28 @@ class LCM;
 
 namespace ligature::host {
 
-/// ttl 0: nothing leaves this machine. A large receive buffer, because a small one is what loses messages.
+/// ttl=0: packets stay on this machine. The receive buffer is large, because overflow of a small one loses messages.
 inline constexpr std::string_view kDefaultLcmUrl = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304";
 
-/// One message as it came from the network.
+/// One received message.
 struct Message {
   std::int64_t received_us = 0;  // CLOCK_REALTIME
   std::string_view channel;
   Bytes data;
 };
 
-/// Subscription and publishing on one LCM URL.
+/// Subscribes and publishes on one LCM URL.
 class LcmLink {
  public:
   using Handler = std::function<void(const Message&)>;
 
-  /// @param channels regular expression of the channels to hear.
-  /// @throws BadInput for a URL that is none, RunFailed when the network refuses (no multicast route).
+  /// @param channels regular expression of the channels to receive.
+  /// @throws BadInput for an invalid URL, RunFailed when the network refuses (no multicast route).
   LcmLink(const std::string& url, const std::string& channels, Handler handler);
   ~LcmLink();
 
-  /// Hands over what has come; waits for at most `timeout_ms` when nothing has. Returns early at a signal.
-  /// @return how many messages were handed over. @throws what the handler threw; RunFailed.
+  /// Passes received messages to the handler; waits up to `timeout_ms` for the first one. Returns early on a signal.
+  /// @return how many messages were passed on. @throws RunFailed, and what the handler threw.
   int receive(int timeout_ms);
 
   /// @param message an lcm-gen type. @throws RunFailed when it could not be sent.

@@ -13,7 +13,7 @@ namespace {
 /// "lost in session 1: ticks 100..119, 400 (21; 0 of them dropped inside the firmware)", or nothing.
 std::string describe_losses(const Session& session, int number, std::size_t max_ranges) {
   std::string line;
-  if (session.ticks.first() > 1)  // what ran before the recorder is not lost, but it is not there either
+  if (session.ticks.first() > 1)  // ticks before the recorder was started do not count as lost, but they are absent
     line = text("session %d was joined at tick %lld\n", number, static_cast<long long>(session.ticks.first()));
   if (session.ticks.missing() == 0) return line;
   line += text("lost in session %d: ticks ", number);

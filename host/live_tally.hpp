@@ -10,26 +10,27 @@
 
 namespace ligature::host {
 
-/// What the recorder knows about the stream it writes: enough for its progress line and its last words.
+/// Statistics of the stream while it is recorded: for the progress line and the final summary.
 class LiveTally {
  public:
   void add(std::string_view channel, Bytes message);
-  /// A message that is not kept, because no reader would take it.
+  /// Counts a message that is not recorded, because no reader would accept it.
   void refuse() { ++messages_, ++refused_; }
 
   [[nodiscard]] const SessionTally& sessions() const { return sessions_; }
-  /// The run of the firmware whose ticks came last.
+  /// The session (run of the firmware) of the last received ticks.
   [[nodiscard]] std::optional<std::int64_t> newest_session() const { return newest_session_; }
   [[nodiscard]] std::int64_t messages() const { return messages_; }
   [[nodiscard]] std::int64_t unreadable() const { return unreadable_; }
   [[nodiscard]] std::int64_t shapes() const { return shapes_; }
 
-  /// "12.3 s  12300 ticks  1000/s  0 lost  FORCE  left 1.20 N  right 0.31 N"; `ticks_per_s` is the caller's measure.
+  /// "12.3 s  12300 ticks  1000/s  0 lost  FORCE  left 1.20 N  right 0.31 N"; the caller measures `ticks_per_s`.
   [[nodiscard]] std::string progress_line(double elapsed_s, double ticks_per_s) const;
 
-  /// Lines about what was recorded and what was lost, with the missing numbers (the first `max_ranges` holes).
-  /// @param open_ends sessions of which nobody knows whether more ticks followed the last one that came: of a log with
-  /// one of them, or with ticks that could not be counted, nobody can say that nothing is lost.
+  /// Lines that say what was recorded and what was lost, with the numbers of the missing ticks (first `max_ranges`
+  /// ranges).
+  /// @param open_ends sessions for which it is unknown whether more ticks followed the last received one. With such a
+  /// session, or with uncounted ticks, the summary does not claim that nothing was lost.
   [[nodiscard]] std::string summary(std::span<const std::int64_t> open_ends = {}, std::size_t max_ranges = 10) const;
 
  private:

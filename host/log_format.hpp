@@ -21,12 +21,12 @@ struct LogEventHead {
 
 inline constexpr std::array<unsigned char, 4> kLogSync{0xED, 0xA1, 0xDA, 0x01};
 inline constexpr std::int32_t kLongestChannel = 63;     ///< LCM_MAX_CHANNEL_NAME_LENGTH
-inline constexpr std::int32_t kLargestData = 16 << 20;  ///< of one event; the rig's messages have some 10 KB
+inline constexpr std::int32_t kLargestData = 16 << 20;  ///< per event; the rig's messages have about 10 KB
 
-// LCM's format has no checksum. So each event of ours is followed by one on a channel of its own, which other readers
-// pass over: the big-endian int64 timestamp of the event and the CRC-32 of its channel and data.
+// LCM's log format has no checksum. Therefore a checksum event follows each event that we write, on a channel that
+// other readers ignore. Its data: the big-endian int64 timestamp of the event, and the CRC-32 of its channel and data.
 inline constexpr std::string_view kCheckChannel = "LIGATURE_CHECK";
-inline constexpr std::size_t kCheckBytes = 12;  ///< of its data
+inline constexpr std::size_t kCheckBytes = 12;  ///< size of the checksum event's data
 inline constexpr std::size_t kCheckEventBytes = 28 + kCheckChannel.size() + kCheckBytes;
 
 [[nodiscard]] constexpr std::uint32_t log_checksum(std::string_view channel, std::span<const std::byte> data) noexcept {
@@ -38,7 +38,8 @@ inline constexpr std::size_t kCheckEventBytes = 28 + kCheckChannel.size() + kChe
   return recorder::crc32(data, sum);
 }
 
-/// Nothing when the bytes do not begin with the sync word, or state lengths that no event has.
+/// Decodes an event's head. Nothing when the bytes do not start with the sync word, or when the lengths are out of
+/// range.
 [[nodiscard]] constexpr std::optional<LogEventHead> log_event_head(
     std::span<const unsigned char, LogEventHead::kBytes> bytes) noexcept {
   const auto number = [&](std::size_t at, std::size_t size) {
@@ -57,14 +58,14 @@ inline constexpr std::size_t kCheckEventBytes = 28 + kCheckChannel.size() + kChe
   return head;
 }
 
-/// What a checksum event says of the event before it.
+/// Content of a checksum event; it belongs to the event before it.
 struct LogCheck {
   std::int64_t timestamp_us = 0;
   std::uint32_t checksum = 0;
 };
 
-/// Nothing when the bytes do not begin with a checksum event as its recorder wrote it. (A log that was played and
-/// recorded again has others: their own time is another one than the time that they tell.)
+/// Decodes a checksum event. Nothing when there is none, or when the event's own timestamp differs from the timestamp
+/// in its data. (That happens in a log that was played back and recorded again: those checksum events are ignored.)
 [[nodiscard]] constexpr std::optional<LogCheck> log_check(std::span<const unsigned char> bytes) noexcept {
   if (bytes.size() < kCheckEventBytes) return std::nullopt;
   const auto head = log_event_head(bytes.first<LogEventHead::kBytes>());
@@ -83,13 +84,14 @@ struct LogCheck {
   return LogCheck{static_cast<std::int64_t>(timestamp), checksum};
 }
 
-/// Whether the recorder of a log that begins like this wrote checksums.
+/// Whether the log was recorded with checksums, judged by its first bytes.
 [[nodiscard]] constexpr bool has_checksums(std::span<const unsigned char> beginning) noexcept {
   for (; beginning.size() >= kCheckEventBytes; beginning = beginning.subspan(1))
     if (beginning[0] == kLogSync[0] && log_check(beginning)) return true;
   return false;
 }
-inline constexpr std::size_t kBeginning = 1U << 16U;  ///< bytes that tell: some of the rig's messages
+inline constexpr std::size_t kBeginning =
+    1U << 16U;  ///< bytes that suffice for that: they hold several messages of the rig
 
 [[nodiscard]] constexpr std::array<std::byte, kCheckBytes> encoded(const LogCheck& check) noexcept {
   std::array<std::byte, kCheckBytes> bytes{};

@@ -21,20 +21,21 @@ const LogEvent* LogReader::next() {
   for (std::int64_t candidate = offset_; candidate >= 0;) {
     const std::int64_t before = offset_;
     const bool is_sound = read_event_at(candidate);
-    if (offset_ > before) skipped_bytes_ += candidate - before;  // found, or left out
+    if (offset_ > before)
+      skipped_bytes_ += candidate - before;  // bytes before an event that was found, or dropped as damaged
     if (is_sound) {
       ++events_;
       return &event_;
     }
     candidate = find_sync(file_, std::max(candidate, offset_ - 1) + 1, progress_);
   }
-  tail_bytes_ += size() - offset_;  // nothing sound follows
+  tail_bytes_ += size() - offset_;  // no intact event follows
   offset_ = size();
   return nullptr;
 }
 
-/// Reads the event whose header starts at an offset into event_, or the next one that is not to be left out; false
-/// where no event is.
+/// Reads the event at `offset` into event_, or the next one if events there must be dropped (wrong checksum, or a
+/// checksum event of another recorder). False when there is no event at that place.
 bool LogReader::read_event_at(std::int64_t offset) {
   constexpr auto kHead = static_cast<std::int64_t>(LogEventHead::kBytes);
   for (;;) {
@@ -48,18 +49,19 @@ bool LogReader::read_event_at(std::int64_t offset) {
     if (whole > size() - offset) return false;
 
     const auto bytes = window_.at(offset, static_cast<std::size_t>(whole) + kCheckEventBytes);
-    if (static_cast<std::int64_t>(bytes.size()) < whole) return false;  // it became shorter
+    if (static_cast<std::int64_t>(bytes.size()) < whole) return false;  // the file was shortened meanwhile
     const auto named = static_cast<std::size_t>(head->channel_bytes);
     const std::string_view channel(reinterpret_cast<const char*>(bytes.data()) + kHead, named);
     if (!std::ranges::all_of(channel, [](char c) { return c >= ' ' && c <= '~'; })) return false;
     const auto data = std::as_bytes(
         bytes.subspan(static_cast<std::size_t>(kHead) + named, static_cast<std::size_t>(head->data_bytes)));
     const auto behind = bytes.subspan(static_cast<std::size_t>(whole));
-    if (!has_checks_ && channel == kCheckChannel) {  // of a log that was played and recorded again
+    if (!has_checks_ && channel == kCheckChannel) {  // checksum event of a log that was played back and recorded again
       offset_ = offset += whole;
       continue;
     }
-    if (has_checks_ && (channel == kCheckChannel || !is_whole(behind))) return false;  // what it was about is broken
+    if (has_checks_ && (channel == kCheckChannel || !is_whole(behind)))
+      return false;  // the event that this checksum belongs to is damaged
     const auto check = log_check(behind);
     const bool is_own = check && check->timestamp_us == head->timestamp_us;
     offset_ = offset +=
@@ -75,14 +77,14 @@ bool LogReader::read_event_at(std::int64_t offset) {
   }
 }
 
-/// In a log with checksums an event is followed by another, or by the end of a recorder that was killed. Elsewhere its
-/// length is what was damaged: taken as it is, it would swallow the sound events behind it.
+/// In a log with checksums, another event must follow, or the end of the file (recorder killed). Otherwise the length
+/// field of this event is damaged, and using it would skip the intact events that follow.
 bool LogReader::is_whole(std::span<const unsigned char> behind) {
   const auto known = std::min(behind.size(), kLogSync.size());
   return std::ranges::equal(behind.first(known), std::span(kLogSync).first(known));
 }
 
-/// A checksum event with a damaged name, time or sum.
+/// Whether a checksum event follows whose name, time or sum is damaged.
 bool LogReader::is_like_check(std::span<const unsigned char> behind) {
   if (behind.size() < kCheckEventBytes) return false;
   const auto head = log_event_head(behind.first<LogEventHead::kBytes>());

@@ -12,40 +12,39 @@
 
 namespace ligature::host {
 
-/// One event of a log; views into the reader, valid until its next call.
+/// One event of a log. The members point into the reader and are valid until its next call.
 struct LogEvent {
   std::int64_t timestamp_us = 0;  // CLOCK_REALTIME at reception
   std::string_view channel;
   Bytes data;
 };
 
-/// Reads an LCM event log front to back in constant memory.
-/// log_format.hpp has the layout.
-/// Ours and not the library's reader: that one cannot tell the end of a file from a broken event, allocates what a
-/// broken length says and prints to stderr. This one goes on at the next sound event and says how much it skipped. An
-/// event whose checksum is wrong is counted and left out. A signal ends it wherever it is (RunFailed).
+/// Reads an LCM event log (layout: log_format.hpp) front to back in constant memory.
+/// LCM's own reader is not used: it cannot tell the end of a file from a damaged event, allocates as much as a damaged
+/// length asks for, and prints to stderr. This one continues at the next intact event and counts the bytes skipped. An
+/// event with a wrong checksum is counted and dropped. A stop signal ends reading with RunFailed.
 class LogReader {
  public:
-  /// @param progress is shown how far it is; may be null.
+  /// @param progress display of the position in the file; may be null.
   /// @throws BadInput when the file cannot be read or does not begin like an LCM log.
   explicit LogReader(const std::string& path, console::Progress* progress = nullptr);
 
   LogReader(const LogReader&) = delete;
   LogReader& operator=(const LogReader&) = delete;
 
-  /// @return the next whole event, nullptr at the end. @throws RunFailed when a signal asks for the end.
+  /// @return the next complete event, nullptr at the end. @throws RunFailed on a stop signal.
   const LogEvent* next();
 
   [[nodiscard]] std::int64_t offset() const { return offset_; }  ///< bytes read
   [[nodiscard]] std::int64_t size() const { return file_.size(); }
-  [[nodiscard]] std::int64_t events() const { return events_; }        ///< handed out
-  [[nodiscard]] std::int64_t damaged() const { return damaged_; }      ///< left out: their checksum is wrong
-  [[nodiscard]] std::int64_t unchecked() const { return unchecked_; }  ///< left out: they have none of their own
-  [[nodiscard]] std::int64_t skipped_bytes() const { return skipped_bytes_; }  ///< between sound events
+  [[nodiscard]] std::int64_t events() const { return events_; }                ///< returned by next()
+  [[nodiscard]] std::int64_t damaged() const { return damaged_; }              ///< dropped: wrong checksum
+  [[nodiscard]] std::int64_t unchecked() const { return unchecked_; }          ///< dropped: no checksum of their own
+  [[nodiscard]] std::int64_t skipped_bytes() const { return skipped_bytes_; }  ///< between intact events
   [[nodiscard]] bool is_truncated() const { return tail_bytes_ > 0; }          ///< the last event is cut off
   [[nodiscard]] std::int64_t tail_bytes() const { return tail_bytes_; }
 
-  /// One line about what is damaged; empty for a sound file.
+  /// One line about the damage; empty for an intact file.
   [[nodiscard]] std::string damage() const;
 
  private:

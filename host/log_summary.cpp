@@ -30,7 +30,7 @@ class Summariser {
     ++summary.unreadable_messages;
   }
 
-  /// The last shape counts, wherever the sampling stood.
+  /// Names the knot of the last shape, which the sampling interval may have left out.
   void finish() {
     if (last_shape_.count > 0) name(last_shape_);
   }
@@ -43,7 +43,7 @@ class Summariser {
     if (index < 0) return summary.tally.leave_out(batch.ticks.size());
     if (index != session_) {
       session_ = index;
-      next_knot_s_ = -std::numeric_limits<double>::infinity();  // its clock starts again
+      next_knot_s_ = -std::numeric_limits<double>::infinity();  // the time starts again in another session
       summary.ticks.start_session();
     }
     Session& session = summary.tally[index];

@@ -11,14 +11,14 @@
 
 namespace ligature::host {
 
-/// The knot of the recorded thread from a time on.
+/// The knot of the recorded thread from `from_s` until the next entry.
 struct KnotSpan {
   double from_s = 0.0;
   std::string type;        // "0_1", "3_1", .., "unknown"
   std::string handedness;  // "right", "left", "amphichiral", "mixed", "none"
 };
 
-/// Everything `report` prints, gathered in one pass over a log.
+/// Everything that `report` prints, collected in one pass over a log.
 struct LogSummary {
   RigFacts facts;
   SessionTally tally;
@@ -26,16 +26,18 @@ struct LogSummary {
   std::vector<KnotSpan> knots;  // changes over time, oldest first
   std::optional<ligature_msg::status_t> last_status;
   std::int64_t unreadable_messages = 0, shapes = 0;
-  std::string damage;  // of the log, empty for a sound one
+  std::string damage;  // of the log; empty when it is intact
 
-  /// Time on the controller's clock that the recorded ticks span, summed over sessions.
+  /// Time on the controller's clock from the first to the last tick, summed over sessions.
   [[nodiscard]] double duration_s() const;
-  /// When the knot the log ends with was seen first, and since when it has held; -1 without a shape.
+  /// Time of the first occurrence of the final knot, and the time since which it has persisted without interruption; -1
+  /// without a shape.
   [[nodiscard]] double knot_first_s() const;
   [[nodiscard]] double knot_since_s() const { return knots.empty() ? -1.0 : knots.back().from_s; }
 };
 
-/// @param knot_every_s thread shapes closer together than this are not named. @throws BadInput, RunFailed (stopped).
+/// @param knot_every_s smallest time between two shapes whose knot is named.
+/// @throws BadInput, RunFailed (stop signal).
 [[nodiscard]] LogSummary summarise(const std::string& log_path, double knot_every_s = 0.1);
 
 }  // namespace ligature::host

@@ -14,14 +14,15 @@
 #include "host/log_format.hpp"
 
 namespace ligature::host {
-/// Makes the file, so that two recorders can never take the same name; the library truncates without asking.
+/// Creates the file with O_EXCL, so that two recorders cannot use the same name: LCM's own writer truncates without
+/// asking.
 LogWriter::Lock::Lock(const std::string& path, bool replace)
     : file_(open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NONBLOCK | (replace ? 0 : O_EXCL), 0666)) {
   if (file_ < 0 && errno == EEXIST) throw BadInput(path + ": exists; allowed: a new name, or --force to replace it");
   if (file_ < 0) throw BadInput(path + ": cannot be written: " + std::strerror(errno));
   struct stat facts = {};
-  const bool is_file = fstat(file_, &facts) == 0 && S_ISREG(facts.st_mode);  // a device is nobody's own
-  // A file system that knows no locks (ENOLCK) is written without one.
+  const bool is_file = fstat(file_, &facts) == 0 && S_ISREG(facts.st_mode);  // a device is not locked
+  // File systems without locks (ENOLCK) are written without one.
   if (is_file && flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     ::close(file_);
     throw BadInput(path + ": is being written by another recorder; allowed: a name of its own for each");
@@ -59,14 +60,14 @@ void LogWriter::append(std::int64_t timestamp_us, std::string_view channel, Byte
   event.timestamp = timestamp_us;
   event.channel = channel;
   event.datalen = static_cast<std::int32_t>(data.size());
-  event.data = const_cast<std::byte*>(data.data());  // the library only reads it
+  event.data = const_cast<std::byte*>(data.data());  // writeEvent() only reads it
   if (file_->writeEvent(&event) != 0) fail();
   bytes_ += static_cast<std::int64_t>(LogEventHead::kBytes + channel.size() + data.size());
 }
 
 void LogWriter::close() {
   if (!file_) return;
-  // A device like /dev/null has nothing to sync (EINVAL); on a file this is where a full disk may show.
+  // fdatasync reports EINVAL for a device such as /dev/null. On a file, a full disk may show only here.
   if (fdatasync(fileno(file_->getFilePtr())) != 0 && errno != EINVAL && errno != EROFS) fail();
   file_.reset();
 }

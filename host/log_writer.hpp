@@ -12,29 +12,30 @@ class LogFile;
 
 namespace ligature::host {
 
-/// Writes an LCM event log (as lcm-logger does; lcm-logplayer plays it).
+/// Writes an LCM event log, as lcm-logger does; lcm-logplayer can play it.
 class LogWriter {
  public:
-  /// The file is locked as long as this lives (flock): two writers would mix their events.
-  /// @param replace whether a file of that name may be replaced.
-  /// @throws BadInput when it may not, the file cannot be made, or somebody else writes it.
+  /// Locks the file (flock) for the lifetime of this object, because two writers would mix their events.
+  /// @param replace whether an existing file may be replaced.
+  /// @throws BadInput when the file exists and `replace` is false, when it cannot be created, or when another process
+  /// writes it.
   LogWriter(std::string path, bool replace);
   ~LogWriter();
 
-  /// Whether an event is fit for a log: no larger than readers take, and not on the channel of the checksums.
+  /// Whether an event may be logged: not larger than readers accept, and not on the checksum channel.
   [[nodiscard]] static bool takes(std::string_view channel, Bytes data);
-  /// Hands one event to the operating system: when this returns, the end of this process loses nothing of it.
-  /// Its checksum follows it (host/log_format.hpp). (One system call for both, two for a large one; the rig sends about
-  /// 120 events a second.)
-  /// @throws RunFailed when the disk does not take it; what it took before is kept.
+  /// Passes one event and its checksum (host/log_format.hpp) to the operating system. After the return, the event
+  /// survives the end of this process. Cost: one system call, two for a large event; the rig sends about 120 events a
+  /// second.
+  /// @throws RunFailed when writing fails (disk full); earlier events are kept.
   void write(std::int64_t timestamp_us, std::string_view channel, Bytes data);
-  /// Puts everything on the disk and closes. @throws RunFailed.
+  /// Flushes everything to the disk and closes the file. @throws RunFailed.
   void close();
 
   [[nodiscard]] std::int64_t bytes() const { return bytes_; }
 
  private:
-  /// A descriptor that holds the lock until it is closed.
+  /// A file descriptor that holds the lock until it is closed.
   class Lock {
    public:
     Lock(const std::string& path, bool replace);
@@ -50,7 +51,7 @@ class LogWriter {
   [[noreturn]] void fail() const;
 
   std::string path_;
-  Lock lock_;  // before anything is truncated
+  Lock lock_;  // declared first: the lock must be held before the file is truncated
   std::unique_ptr<lcm::LogFile> file_;
   std::int64_t bytes_ = 0;
 };

@@ -13,7 +13,7 @@
 
 namespace {
 
-/// One line on stderr.
+/// Prints one line on stderr. @return `exit_code`.
 int complain(const std::string& what, int exit_code) {
   std::fflush(stdout);
   std::fprintf(stderr, "ligature-host: %s\n", what.c_str());
@@ -22,7 +22,7 @@ int complain(const std::string& what, int exit_code) {
 
 constexpr const char* kUntold = "standard output cannot be written";
 
-/// Whether all that was printed has gone out; --help and --version use the stream.
+/// Flushes the standard output. @return whether everything was written; --help and --version print through std::cout.
 bool is_told() { return std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
 
 }  // namespace

@@ -8,10 +8,10 @@
 namespace ligature::host {
 namespace {
 
-constexpr std::size_t kHash = 8, kInt64 = 8, kInt32 = 4, kInt8 = 1, kFloat = 4;  // bytes on the wire
-constexpr std::int64_t kLargestTick = std::int64_t{1} << 40;                     // 35 years at 1 kHz: no run had more
+constexpr std::size_t kHash = 8, kInt64 = 8, kInt32 = 4, kInt8 = 1, kFloat = 4;  // encoded sizes in bytes
+constexpr std::int64_t kLargestTick = std::int64_t{1} << 40;  // 35 years at 1 kHz; larger numbers are rejected
 
-/// The big-endian int32 at an offset; nothing when the message ends before it.
+/// The big-endian int32 at an offset; nothing when the message is too short.
 std::optional<std::int32_t> int32_at(Bytes message, std::size_t offset) {
   if (message.size() < offset + kInt32) return std::nullopt;
   std::uint32_t value = 0;
@@ -19,14 +19,16 @@ std::optional<std::int32_t> int32_at(Bytes message, std::size_t offset) {
   return static_cast<std::int32_t>(value);
 }
 
-/// Whether `count` at that offset announces exactly the elements that follow it, before a tail of fixed size.
+/// Whether the message has exactly the length that an array with its count at `count_offset` and a tail of fixed size
+/// need.
 bool array_fits(Bytes message, std::size_t count_offset, std::size_t element_size, std::size_t tail_size) {
   const auto count = int32_at(message, count_offset);
   if (!count || *count < 0) return false;
   return message.size() == count_offset + kInt32 + static_cast<std::size_t>(*count) * element_size + tail_size;
 }
 
-/// Moves the offset past `count` consecutive strings (length with terminator, bytes, 0); false when one ends outside.
+/// Moves `offset` past `count` consecutive strings (length including the terminator, bytes, 0). False when one exceeds
+/// the message.
 bool skip_strings(Bytes message, std::size_t& offset, int count) {
   for (int i = 0; i < count; ++i) {
     const auto length = int32_at(message, offset);
@@ -39,7 +41,8 @@ bool skip_strings(Bytes message, std::size_t& offset, int count) {
 
 bool strings_fit(Bytes message, std::size_t offset, int count) { return skip_strings(message, offset, count); }
 
-/// Scenes, then parameters of three strings and three doubles each, to the message's end.
+/// Layout of offer_t: scene names, then parameters of three strings and three doubles each, up to the end of the
+/// message.
 bool offer_fits(Bytes message) {
   std::size_t at = kHash + 2 * kInt64;
   const auto scenes = int32_at(message, at);
@@ -65,7 +68,7 @@ std::optional<M> decode_checked(Bytes message) {
 
 bool is_tick_number(std::int64_t tick) { return tick >= 0 && tick < kLargestTick; }
 
-/// Oldest first, each number once; ticks that the ring dropped may be left out.
+/// Whether tick numbers are valid and strictly rising. Gaps are allowed: the firmware's ring buffer may drop ticks.
 bool is_rising(const std::vector<ligature_msg::tick_t>& ticks) {
   const auto falls = [](const auto& a, const auto& b) { return a.tick >= b.tick; };
   return std::ranges::all_of(ticks, is_tick_number, &ligature_msg::tick_t::tick) &&
@@ -85,7 +88,7 @@ std::optional<ligature_msg::tick_batch_t> decode(Bytes message) {
 
 template <>
 std::optional<ligature_msg::thread_t> decode(Bytes message) {
-  // Position, tension and turn of each node: three arrays of one length.
+  // Per node: position, tension and turn (bending angle), as three arrays of one length.
   if (!array_fits(message, kHash + 2 * kInt64 + kFloat, 5 * kFloat, 2 * sizeof(std::int16_t))) return std::nullopt;
   auto thread = decode_checked<ligature_msg::thread_t>(message);
   if (thread && !is_tick_number(thread->tick)) return std::nullopt;

@@ -25,11 +25,11 @@ inline constexpr std::string_view kOfferChannel = "LIGATURE_OFFER";
 
 using Bytes = std::span<const std::byte>;
 
-/// Decodes a message that anybody on the network may have sent.
-/// The generated decoders trust the lengths inside a message; these check first that every array and string
-/// fits into the bytes that came, so a forged length can neither allocate gigabytes nor read past the end.
-/// Every byte must be used, and values that later code computes with must be plausible.
-/// @return nothing for a message that is not exactly one M.
+/// Decodes a message from the network, which anybody may have sent.
+/// The generated decoders trust the lengths inside a message. These functions first check that every array and string
+/// fits into the received bytes, so that a forged length can neither allocate gigabytes nor read past the end. All
+/// bytes must be used, and values used in computations must be plausible.
+/// @return nothing when the message is not exactly one valid M.
 template <class M>
 [[nodiscard]] std::optional<M> decode(Bytes message);
 
@@ -48,14 +48,14 @@ std::optional<ligature_msg::command_t> decode(Bytes message);
 template <>
 std::optional<ligature_msg::offer_t> decode(Bytes message);
 
-/// The bytes of a message (an lcm-gen type), in a buffer that may be used again.
+/// Encodes a message (an lcm-gen type) into a reusable buffer.
 template <class M>
 void encode(const M& message, std::vector<std::byte>& bytes) {
   bytes.resize(static_cast<std::size_t>(message.getEncodedSize()));
   message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
 }
 
-/// Whether a message of one of our channels can be read; true for channels that are not ours.
+/// Whether a message on one of Ligature's channels can be decoded; true for other channels.
 [[nodiscard]] bool is_readable(std::string_view channel, Bytes message);
 
 }  // namespace ligature::host

@@ -9,13 +9,13 @@ namespace ligature::host {
 
 inline constexpr std::array<std::string_view, 2> kHandNames{"left", "right"};
 
-// What numbers of the wire are called, here and in the page, which is told them at its start. A test holds each list
-// against the firmware's own.
+// Names for the numeric codes in messages, used by the host's programs and sent to the browser page at its start. A
+// test compares each list with the firmware's.
 
 inline constexpr std::array<std::string_view, 7> kStateNames{"OFF",   "CALIBRATE", "IDLE", "ENGAGE",
                                                              "FORCE", "BRAKE",     "FAULT"};
 
-/// Word for a STATE_ value of tick_t; "?" for a number that is none.
+/// Name of a STATE_ value of tick_t; "?" for an invalid one.
 [[nodiscard]] constexpr std::string_view state_name(std::int8_t state) {
   return state >= 0 && state < static_cast<std::int8_t>(kStateNames.size())
              ? kStateNames[static_cast<std::uint8_t>(state)]
@@ -28,7 +28,7 @@ struct CodeName {
   std::string_view name;
 };
 
-/// LIMIT_ bits of tick_t: what holds a hand's force back.
+/// LIMIT_ bits of tick_t: the limits that reduced a hand's force.
 inline constexpr std::array<CodeName, 7> kLimitNames{{{1, "peak force"},
                                                       {2, "motor heat"},
                                                       {4, "step"},
@@ -37,7 +37,7 @@ inline constexpr std::array<CodeName, 7> kLimitNames{{{1, "peak force"},
                                                       {32, "passivity"},
                                                       {64, "joint torque"}}};
 
-/// DEGRADED_ values of tick_t: what the thread's solver gave up in a tick.
+/// DEGRADED_ values of tick_t: the accuracy that the thread's solver gave up in a tick.
 inline constexpr std::array<CodeName, 3> kDegradationNames{
     {{1, "iterations ended early: contacts softer"},
      {2, "too many contacts: shallowest only guarded"},
@@ -48,7 +48,7 @@ struct FaultText {
   std::string_view meaning, remedy;
 };
 
-/// Fault numbers (docs/architecture.md): what happened, and what a person does about it.
+/// Fault numbers (docs/architecture.md), what they mean, and what the operator should do.
 inline constexpr std::array<FaultText, 18> kFaults{{
     {10, "A hand's bus is gone", "Check the cable or the simulated hand, then reset the fault."},
     {11, "Joint messages too old",

@@ -6,9 +6,9 @@
 
 namespace ligature::host {
 
-/// The nearest-rank percentile: the smallest sample that at least `percent` % of all samples do not exceed.
-/// Always a value that was measured, never an interpolation; percent = 100 is the largest.
-/// @param samples reordered; may be empty (result 0). @param percent 0 < percent <= 100.
+/// The nearest-rank percentile: the smallest sample that is >= at least `percent` % of all samples. It is always a
+/// measured value, never an interpolation; percent = 100 gives the largest.
+/// @param samples reordered by the call; may be empty (result 0). @param percent 0 < percent <= 100.
 /// Cost: O(n).
 [[nodiscard]] inline std::int32_t percentile(std::span<std::int32_t> samples, double percent) {
   if (samples.empty()) return 0;

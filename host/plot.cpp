@@ -18,15 +18,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// @return where the picture goes, links followed.
+/// Checks the ending. @return path of the picture, symbolic links followed.
 std::string checked_target(const std::string& out_path) {
   const auto ending = fs::path(out_path).extension();
   if (ending != ".png" && ending != ".svg" && ending != ".pdf")
     throw BadInput(out_path + ": found ending '" + ending.string() + "', allowed .png, .svg or .pdf");
-  return AtomicFile(out_path).path();  // made and gone again: it can be made
+  return AtomicFile(out_path).path();  // creates and removes the file: tests early that it can be created
 }
 
-/// What the script needs to know of one recording.
+/// Exports one recording's forces to a CSV file. @return the script's arguments for it.
 std::vector<std::string> table_of(const std::string& log_path, const std::string& forces_csv) {
   const RigFacts facts = read_rig_facts(log_path);
   const auto exported = export_recording(log_path, {.csv = {.forces = forces_csv, .shape = {}, .ticks = {}}});

@@ -3,17 +3,17 @@
 
 namespace ligature::host {
 
-/// Draws the forces of a log by plots/plot_forces.py.
-/// The Python is $LIGATURE_PYTHON, else the one this program was configured with.
-/// @param by_frame against the number of the haptic frame instead of time, as the paper's Table III.
-/// @throws BadInput when there is no such Python or the log is none, RunFailed when drawing fails.
+/// Draws the forces of a log with plots/plot_forces.py.
+/// Python is $LIGATURE_PYTHON, else the one that this program was configured with.
+/// @param by_frame horizontal axis: number of the haptic frame instead of time, as in the paper's Table III.
+/// @throws BadInput without such a Python or when the file is no log, RunFailed when drawing fails.
 void plot(const std::string& log_path, const std::string& out_path, bool by_frame);
 
-/// Draws the thread's last shape by plots/plot_thread.py, its knot magnified and named. @throws as plot().
+/// Draws the thread's last shape with plots/plot_thread.py, with its knot magnified and named. @throws as plot().
 void plot_thread(const std::string& log_path, const std::string& out_path);
 
-/// Draws the forces of two logs over each other and prints what differs. @param align "start": both from their first
-/// tick; "grasp": both from their first grasp. @param shift_s moves the second one later.
+/// Draws the forces of two logs in one diagram and prints their differences. @param align what time 0 is: "start", the
+/// first tick of each log; "grasp", its first grasp. @param shift_s delays the second log by this time.
 void plot_comparison(const std::string& log_a, const std::string& log_b, const std::string& out_path,
                      const std::string& align, double shift_s);
 

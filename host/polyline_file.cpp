@@ -18,16 +18,18 @@
 namespace ligature::host {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8; spreadsheets put it first
-constexpr std::size_t kMostBytes = 64U << 20;                // of one file; a pipe may never end
-constexpr std::string_view kBlanks = " \t\r\"";              // spreadsheets quote
+constexpr std::string_view kByteOrderMark =
+    "\xEF\xBB\xBF";                              // UTF-8 byte order mark; spreadsheets write it at the start
+constexpr std::size_t kMostBytes = 64U << 20;    // largest input: a pipe may never end
+constexpr std::string_view kBlanks = " \t\r\"";  // quotation marks included: spreadsheets may quote fields
 
 std::optional<double> number(std::string_view field) {
   double value = 0.0;
   return scene::parse_number(field, value) ? std::optional(value) : std::nullopt;
 }
 
-/// Columns may be parted by commas, semicolons, or blanks and tabulators: the first of these that the line has.
+/// Replaces the separator by commas. Columns may be separated by commas, semicolons, or blanks and tabs; the first of
+/// these that occurs in the line is taken as the separator.
 std::string comma_separated(std::string_view line) {
   std::string text(line);
   if (text.find(',') != std::string::npos) return text;
@@ -52,7 +54,7 @@ std::string lower(std::string_view word) {
   return result;
 }
 
-/// Where the columns stand; -1 for one that is not there.
+/// Index of each column; -1: absent.
 struct Columns {
   int x = 0, y = 1, z = 2, time = -1, node = -1, count = 3;
 };
@@ -69,14 +71,15 @@ class PolylineReader {
     const auto fields = scene::split(text, kBlanks);
     if (!columns_) {
       const bool has_header = !number(fields.front());
-      const bool is_numbered = !has_header && fields.size() == 4;  // number, x, y, z
+      const bool is_numbered = !has_header && fields.size() == 4;  // columns: number, x, y, z
       columns_ = has_header ? columns_of(fields) : is_numbered ? Columns{1, 2, 3, -1, -1, 4} : Columns{};
       if (has_header) return;
     }
     take_row(fields);
   }
 
-  /// The last line of a file, without its end: where a writer was killed, half a row of a shape.
+  /// Handles a last line without a line end. When the writer of a file with shapes was killed, that line can be an
+  /// incomplete row.
   void take_unended(std::string_view line) {
     const bool half_a_row = columns_ && columns_->node >= 0 && !scene::trim(line, kBlanks).empty() &&
                             std::ranges::count(line, ',') + 1 < columns_->count;
@@ -84,7 +87,8 @@ class PolylineReader {
   }
 
   Polyline finish() {
-    // Shapes of one thread have equally many nodes: the last one may have been cut off with its file.
+    // All shapes of one thread have equally many nodes: a shorter last shape is incomplete, because its writer was
+    // killed.
     const bool cut_off = row_cut_off_ || (columns_ && columns_->node >= 0 && current_.points.size() < whole_nodes_);
     if (cut_off && chosen_.points.empty()) throw BadInput(path_ + ": its only shape is cut off; allowed: a whole one");
     if (!cut_off) choose();
@@ -140,7 +144,7 @@ class PolylineReader {
     current_.points.push_back(point);
   }
 
-  /// Keeps the shape just read when it is a better answer than the one before.
+  /// Keeps the shape just read when it fits `at_s` better than the one kept so far; without `at_s`, always.
   void choose() {
     if (current_.points.empty()) return;
     whole_nodes_ = current_.points.size();
@@ -154,7 +158,7 @@ class PolylineReader {
   int line_number_ = 0;
   std::optional<Columns> columns_;
   Polyline current_, chosen_;
-  std::size_t whole_nodes_ = 0;  // of the last finished shape
+  std::size_t whole_nodes_ = 0;  // number of nodes of the last complete shape
   bool row_cut_off_ = false;
 };
 
@@ -166,7 +170,7 @@ void refuse_what_is_no_text(const std::string& path) {
     throw BadInput(path + ": is a device; allowed: a file or a pipe");
 }
 
-/// std::getline() that stops at `most` characters: a line may never end either.
+/// std::getline() with at most `most` characters, because a line from a pipe may never end.
 bool bounded_line(std::istream& in, std::string& line, std::size_t most) {
   line.clear();
   for (int c; line.size() < most && (c = in.get()) != std::istream::traits_type::eof();) {
@@ -214,7 +218,7 @@ Polyline read_polyline_log(const std::string& path, std::optional<double> at_s) 
 
 bool is_lcm_log(const std::string& path) {
   std::error_code none;
-  if (!std::filesystem::is_regular_file(path, none)) return false;  // a look would eat a pipe's first bytes
+  if (!std::filesystem::is_regular_file(path, none)) return false;  // reading from a pipe would consume its first bytes
   std::ifstream file(path, std::ios::binary);
   char start[4] = {};
   return file.read(start, 4) && std::string_view(start, 4) == "\xED\xA1\xDA\x01";

@@ -20,15 +20,15 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr auto kTerminalEvery = milliseconds(250);  // progress on a terminal
-constexpr auto kPlainEvery = milliseconds(5000);    // and in a log file
-constexpr auto kFillEvery = milliseconds(1000);     // gaps, from the flight recorder
-constexpr auto kLongestDrain = milliseconds(300);   // for messages still on their way after the stop
-constexpr int kQuiet_ms = 100;                      // nothing came for that long: nothing is on its way
+constexpr auto kTerminalEvery = milliseconds(250);  // interval of progress on a terminal
+constexpr auto kPlainEvery = milliseconds(5000);    // interval of progress otherwise (a log file)
+constexpr auto kFillEvery = milliseconds(1000);     // interval of filling gaps from the flight recorder
+constexpr auto kLongestDrain = milliseconds(300);   // after the stop: for messages still in transit
+constexpr int kQuiet_ms = 100;                      // after so long without a message, none is in transit any more
 
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
-/// One line, rewritten in place on a terminal, a line every few seconds elsewhere.
+/// Progress display: one line rewritten in place on a terminal, otherwise a new line every few seconds.
 class Progress {
  public:
   Progress(bool quiet, Clock::time_point start) : quiet_(quiet), start_(start), shown_(start), measured_(start) {}
@@ -48,7 +48,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
  private:
-  /// Over a second or more, because ticks come in batches.
+  /// Averages over 1 s or more, because ticks arrive in batches.
   void measure_rate(std::int64_t received, Clock::time_point now) {
     if (now - measured_ < milliseconds(1000)) return;
     ticks_per_s_ = static_cast<double>(received - received_) / seconds(now - measured_);
@@ -62,7 +62,7 @@ class Progress {
   double ticks_per_s_ = 0.0;
 };
 
-/// Receives until the end of the run; the link's handler writes and counts, here gaps are closed.
+/// Receives until the stop. The link's handler records and counts messages; this loop fills gaps.
 void record_until_stopped(LcmLink& link, const LiveTally& tally, const RecordOptions& options, Recording& recording) {
   const auto start = Clock::now();
   auto filled = start;
@@ -86,7 +86,7 @@ void record_until_stopped(LcmLink& link, const LiveTally& tally, const RecordOpt
 
 void record(const RecordOptions& options) {
   LiveTally tally;
-  std::optional<Recording> recording;  // the network comes first: without it no file is made
+  std::optional<Recording> recording;  // created after the link: without a network no file is made
   LcmLink link(options.lcm_url, "LIGATURE_.*", [&](const Message& message) {
     if (recording) recording->take(message);
   });
@@ -105,7 +105,7 @@ void record(const RecordOptions& options) {
     std::printf("%s: %.1f MB\n", options.out.c_str(), static_cast<double>(log.bytes()) * 1e-6);
     return;
   }
-  if (std::filesystem::is_regular_file(out)) std::filesystem::remove(out);  // an empty log helps nobody
+  if (std::filesystem::is_regular_file(out)) std::filesystem::remove(out);  // removes the empty log
   throw RunFailed("no message came on " + options.lcm_url +
                   "; is ligature-firmware running with the same --lcm-url "
                   "in the same network namespace?");

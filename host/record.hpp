@@ -10,16 +10,17 @@ namespace ligature::host {
 struct RecordOptions {
   std::string out;
   std::string lcm_url{kDefaultLcmUrl};
-  double duration_s = 0.0;                              // 0: until a signal
-  std::vector<std::filesystem::path> flight_folders{};  // whose flight recorders may be read; empty: the usual ones
-  bool force = false;                                   // replace an existing file
-  bool quiet = false;                                   // no progress
+  double duration_s = 0.0;  // 0: until a signal comes
+  std::vector<std::filesystem::path>
+      flight_folders{};  // folders whose flight recorder files may be read; empty: the default ones
+  bool force = false;    // may replace an existing file
+  bool quiet = false;    // no progress display
 };
 
-/// Writes every message of the rig's channels to a log until the time is over or a signal comes, then says what was
-/// recorded and what was lost. The recorder does not end when the firmware does: a restarted firmware is recorded
-/// as a further session.
-/// @throws BadInput, RunFailed (disk, network, or nothing at all came).
+/// Records all messages on the rig's channels until the duration is over or a signal comes; then prints what was
+/// recorded and what was lost. It continues when the firmware stops: a restarted firmware is recorded as a further
+/// session.
+/// @throws BadInput, RunFailed (disk, network, or no message at all).
 void record(const RecordOptions& options);
 
 }  // namespace ligature::host

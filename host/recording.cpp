@@ -7,7 +7,8 @@
 namespace ligature::host {
 
 void Recording::take(const Message& message) {
-  if (message.channel == kCheckChannel) return;  // a played log's; ours has its own
+  if (message.channel == kCheckChannel)
+    return;  // the checksum event of a log that is being played back; this log gets its own checksums
   if (!LogWriter::takes(message.channel, message.data)) return tally_.refuse();
   log_.write(message.received_us, message.channel, message.data);
   tally_.add(message.channel, message.data);
@@ -22,7 +23,8 @@ void Recording::fetch(GapFiller::Ends ends) {
     waiting_.push_back(bytes_);
   };
   filled_ += filler_.fill(tally_.sessions(), emit, ends);
-  for (const auto& bytes : waiting_) tally_.add(kTicksChannel, bytes);  // not while its gaps are being read
+  for (const auto& bytes : waiting_)
+    tally_.add(kTicksChannel, bytes);  // only now, because fill() was still reading the tally's gaps
   waiting_.clear();
 }
 

@@ -10,20 +10,21 @@
 
 namespace ligature::host {
 
-/// What goes into the log: everything heard, and what the flight recorder has of what was not.
+/// Writes the log: all received messages, and missing ticks fetched from the flight recorder.
 class Recording {
  public:
   Recording(LogWriter& log, LiveTally& tally, const std::vector<std::filesystem::path>& flight_folders)
       : log_(log), tally_(tally), filler_(flight_folders) {}
 
   void take(const Message& message);
-  /// Fetches what is missing between the ticks that came.
+  /// Fetches missing ticks between received ones.
   void fill() { fetch(GapFiller::Ends::kOpen); }
-  /// The last fetching: the ends of runs, too.
-  /// @param is_quiet nobody sends any more; else the run that was heard last goes on, and has no end to look for.
+  /// Fetches missing ticks for the last time, including those after each session's last received tick.
+  /// @param is_quiet true: nothing is being sent any more. false: the newest session still runs, and its end is not
+  /// looked for.
   void finish(bool is_quiet);
 
-  /// Lines about what was recorded, lost and fetched; complete after finish().
+  /// Lines that say what was recorded, lost and fetched; complete after finish().
   [[nodiscard]] std::string summary() const;
 
  private:
@@ -34,7 +35,7 @@ class Recording {
   GapFiller filler_;
   std::vector<std::byte> bytes_;
   std::vector<std::vector<std::byte>> waiting_;
-  std::vector<std::int64_t> open_ends_;  // sessions of which more ticks may have been
+  std::vector<std::int64_t> open_ends_;  // sessions that may have had more ticks after the last recorded one
   std::int64_t filled_ = 0;
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kNotesChannel = "LIGATURE_NOTES";
 
-/// Hands on what comes: each tick once and in order.
+/// Passes messages to the sinks: each tick once, in order.
 class Walk {
  public:
   Walk(const RigFacts& facts, std::span<ExportSink* const> sinks) : facts_(facts), sinks_(sinks) {}
@@ -110,7 +110,7 @@ class Walk {
   ExportResult result_;
 };
 
-/// The scene in force at a tick, as a log would tell it.
+/// The scene in force at a tick, as the status message that a log would contain.
 ligature_msg::status_t status_of(const FlightReader& recorder, std::int64_t tick) {
   const auto& scene = recorder.scene_at(tick);
   ligature_msg::status_t status{};
@@ -127,7 +127,7 @@ ligature_msg::status_t status_of(const FlightReader& recorder, std::int64_t tick
   return status;
 }
 
-/// A flight recorder's file: one session, ticks only.
+/// Reads a flight recorder file: one session, ticks only.
 ExportResult read_flight(const std::string& path, const RigFacts& facts, std::span<ExportSink* const> sinks) {
   const FlightReader recorder(path);
   if (recorder.ticks() == 0) throw BadInput(path + ": holds no tick");

@@ -9,10 +9,10 @@
 
 namespace ligature::host {
 
-/// Reads an LCM log (front to back in constant memory) or a flight recorder file (which holds ticks and no shapes) into
-/// sinks that are not committed yet. Each tick number of a session comes once, in order (TickOrder).
-/// @param facts     of that file (read_rig_facts).  @param progress  is shown how far a log is; may be null.
-/// @throws BadInput for a file that is neither or holds no tick; RunFailed for a stop request.
+/// Reads an LCM log (front to back in constant memory) or a flight recorder file (ticks only, no shapes) and passes its
+/// content to `sinks`; the caller commits them. Each tick number of a session comes once, in order (TickOrder).
+/// @param facts     of that file (read_rig_facts).  @param progress  display of the position in a log; may be null.
+/// @throws BadInput when the file is of neither kind or holds no tick; RunFailed on a stop signal.
 ExportResult read_recording(const std::string& path, const RigFacts& facts, std::span<ExportSink* const> sinks,
                             console::Progress* progress = nullptr);
 

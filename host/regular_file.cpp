@@ -13,7 +13,7 @@
 namespace ligature::host {
 namespace {
 
-// Without O_NONBLOCK the opening of a pipe waits for its other end, and a read of /proc/kmsg for the next message.
+// O_NONBLOCK: without it, opening a pipe waits for its other end, and reading /proc/kmsg waits for the next message.
 constexpr int kHow = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
 
 }  // namespace
@@ -69,7 +69,8 @@ std::size_t RegularFile::read_at(void* to, std::size_t bytes, std::int64_t offse
 std::int64_t RegularFile::data_after(std::int64_t offset) const {
   const off_t found = lseek(file_, offset, SEEK_DATA);
   if (found >= 0) return found;
-  return errno == ENXIO ? size_ : offset;  // ENXIO: nothing but a hole follows; else the file system knows no holes
+  return errno == ENXIO ? size_
+                        : offset;  // ENXIO: only a hole follows; otherwise the file system does not support holes
 }
 
 }  // namespace ligature::host

@@ -11,23 +11,24 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Count = long long;
 
-/// Samples that arrived here per second of the run.
+/// Samples received per second of the run.
 double recorded_per_s(const LogSummary& s) { return static_cast<double>(s.tally.received()) / s.duration_s(); }
 
-/// First recorded tick of the first session; what ran before the recorder is not there, and not lost.
+/// First recorded tick of the first session. Ticks before the recorder was started do not count as lost.
 std::int64_t first_tick(const LogSummary& s) { return s.tally.sessions().front().ticks.first(); }
 
-/// Ticks that were not counted may be of any session, and of one without its end nobody knows how many came after.
+/// Whether the number of lost ticks is certain: every tick was counted in a session, and every session has its end
+/// recorded.
 bool all_is_known(const LogSummary& s) { return s.tally.left_out() == 0 && s.tally.open_ended() == nullptr; }
 
 const char* lost_words(const LogSummary& s) { return all_is_known(s) ? "lost" : "known to be lost"; }
 
-/// Part of the recorded periods in which the loop ran, %.
+/// Share of the recorded periods in which the loop ran, in %.
 double executed_percent(const LogSummary& s) {
   return 100.0 * static_cast<double>(s.ticks.executed()) / static_cast<double>(s.tally.received());
 }
 
-/// Rate of the loop itself, judged by what was recorded: a sample lost on the way is no tick lost in the loop.
+/// Rate of the loop, computed from recorded ticks only: a sample lost on the network does not reduce it.
 double rate_held_per_s(const LogSummary& s) { return executed_percent(s) / 100.0 / s.facts.period_s; }
 
 std::string row(const char* name, const std::string& value) { return text("  %-18s %s\n", name, value.c_str()); }

@@ -5,10 +5,10 @@
 
 namespace ligature::host {
 
-/// The table a person reads at the end of a run.
+/// The report as a table for people.
 [[nodiscard]] std::string report_table(const LogSummary& summary);
 
-/// The same numbers as one JSON object; SI units, durations in us, as its keys say.
+/// The same numbers as one JSON object; SI units, durations in us as the keys say.
 [[nodiscard]] std::string report_json(const LogSummary& summary);
 
 }  // namespace ligature::host

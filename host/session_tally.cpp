@@ -7,7 +7,7 @@
 namespace ligature::host {
 
 int SessionTally::find_or_add(std::int64_t id) {
-  for (std::size_t i = sessions_.size(); i-- > 0;)  // from the newest: it is nearly always that one
+  for (std::size_t i = sessions_.size(); i-- > 0;)  // newest first: nearly always that one
     if (sessions_[i].id == id) return static_cast<int>(i);
   if (sessions_.size() >= kMaxSessions) return -1;
   sessions_.push_back({.id = id, .ring_dropped = 0, .ticks = {}});
@@ -16,7 +16,7 @@ int SessionTally::find_or_add(std::int64_t id) {
 
 bool SessionTally::add(int index, std::int64_t tick, std::int8_t state) {
   Session& session = sessions_[static_cast<std::size_t>(index)];
-  // A tick that fills a gap of an earlier session may come at any time; one that goes on with it may not.
+  // A late tick may fill a gap of an earlier session. A tick that continues an earlier session means two senders.
   const bool is_last = static_cast<std::size_t>(index) + 1 == sessions_.size();
   if (!is_last && (session.ticks.is_empty() || tick > session.ticks.last())) interleaved_ = true;
   if (session.ticks.is_empty() || tick > session.ticks.last()) session.last_state = state;

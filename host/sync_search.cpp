@@ -24,7 +24,7 @@ std::int64_t find_sync(const RegularFile& file, std::int64_t from, console::Prog
     const auto end = block.begin() + static_cast<std::ptrdiff_t>(got);
     const auto found = std::search(block.begin(), end, kLogSync.begin(), kLogSync.end());
     if (found != end) return at + (found - block.begin());
-    const auto passed = static_cast<std::int64_t>(got - (kLogSync.size() - 1));  // the word may lie across two blocks
+    const auto passed = static_cast<std::int64_t>(got - (kLogSync.size() - 1));  // a sync word may straddle blocks
     searched += passed;
     at = file.data_after(at + passed);
   }

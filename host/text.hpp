@@ -6,7 +6,7 @@
 
 namespace ligature::host {
 
-/// printf into a string; the compiler checks the arguments.
+/// printf into a string; the compiler checks the arguments against the format.
 [[nodiscard]] [[gnu::format(printf, 1, 2)]] std::string text(const char* format, ...);
 
 using scene::shown;

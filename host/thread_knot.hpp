@@ -7,10 +7,10 @@
 
 namespace ligature::host {
 
-/// Its nodes, m, as the knot functions take them.
+/// The thread's nodes, m, in the form that the knot functions take.
 [[nodiscard]] std::vector<std::array<double, 3>> points_of(const ligature_msg::thread_t& thread);
 
-/// The knot in a recorded thread, which is open.
+/// Names the knot in a recorded thread, which is open.
 [[nodiscard]] knot::KnotResult name_knot(const ligature_msg::thread_t& thread);
 
 }  // namespace ligature::host

@@ -8,12 +8,13 @@
 
 namespace ligature::host {
 
-/// What each period left to the thread's physics, ns: from when the loop handed it the tools until it must stand still
-/// for the next joints, less what the loop took for its SYNC meanwhile. Only pairs of executed periods that follow each
-/// other and were in time tell it. 4 bytes a tick.
+/// The time that each period left for the thread's physics, ns: from when the loop hands over the tool samples until
+/// the physics must pause for the next joint samples, less the time in which the loop sent the next SYNC. Computed only
+/// from pairs of consecutive executed periods without a deadline miss. 4 bytes a tick.
 class ThreadTime {
  public:
-  /// As firmware/rt/bus_time.hpp has it: so long before the next joints, which the bus delivers after so long at most.
+  /// As in firmware/rt/bus_time.hpp: the physics must end this long before the joint samples, and these arrive this
+  /// long after the wake-up at the latest.
   static constexpr std::int64_t kMargin_ns = 25'000, kJointsLatest_ns = 460'000;
 
   void add(const ligature_msg::tick_t& tick) {
@@ -27,11 +28,11 @@ class ThreadTime {
     last_ = tick.tick;
     handed_at_ns_ = told && in_time ? woke_ns + tick.execution_ns : -1;
   }
-  /// Ticks of another session follow.
+  /// Call before the ticks of another session.
   void start_session() { handed_at_ns_ = -1; }
 
   [[nodiscard]] bool known() const { return !left_ns_.empty(); }
-  /// At least so much was left in this share of the periods. @param percent 0 < percent <= 100.
+  /// The time that was available in at least `percent` % of the periods. @param percent 0 < percent <= 100.
   [[nodiscard]] std::int32_t at_least_ns(double percent) const {
     auto negated = left_ns_;
     for (auto& left : negated) left = -left;

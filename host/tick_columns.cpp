@@ -16,7 +16,7 @@ void add(Columns& to, std::string name, std::string unit, std::string meaning, F
     to.push_back({std::move(name), std::move(unit), std::move(meaning), TickColumn::Whole(field)});
 }
 
-/// Three components of a field, named hand_quantity_x_unit.
+/// Adds the three components of a vector, named hand_quantity_x_unit.
 template <class T>
 void add_vector(Columns& to, std::size_t hand, const char* quantity, const char* suffix, const char* unit,
                 const char* meaning, T (Tick::*field)[2][3]) {
@@ -72,7 +72,7 @@ void add_hand(Columns& c, std::size_t hand) {
   add_scalar(c, hand, "tpdo_age_ticks", "ticks", "periods since the last complete set of TPDOs", &Tick::tpdo_age_ticks);
 }
 
-/// What the device port adds, behind the columns that there always were.
+/// Columns of the device port. They follow the older columns, whose order must not change.
 void add_port(Columns& c, std::size_t hand) {
   add_joints(c, hand, "q", "_rad", "rad", "joint angle: waist, shoulder, forearm (absolute)", &Tick::q_rad);
   add_vector(c, hand, "wish_f", "_N", "N", "what the coupling asks of the device, before gain, limits and passivity",
@@ -90,7 +90,7 @@ void add_port(Columns& c, std::size_t hand) {
   add_scalar(c, hand, "bus_load", "", "share of the last period that the hand's bus was busy", &Tick::bus_load);
 }
 
-/// What it takes to do the thread's ticks again.
+/// Columns from which the thread's ticks can be recomputed: the physics' inputs.
 void add_tool(Columns& c, std::size_t hand) {
   add_vector(c, hand, "tool_p_W", "_m", "m", "the tool as the thread's physics was given it", &Tick::tool_p_W_m);
   add_vector(c, hand, "tool_v_W", "_m_per_s", "m/s", "its velocity", &Tick::tool_v_W_m_per_s);

@@ -8,14 +8,14 @@
 
 namespace ligature::host {
 
-/// Puts ticks that come late back into their place. The recorder fills a gap within seconds of the ticks around it, so
-/// a window of a few thousand is enough; a tick that comes later still follows out of order.
+/// Sorts late ticks into their place. The recorder fills a gap within seconds, so a window of a few thousand ticks
+/// suffices; a tick that is later still is passed on out of order.
 /// Constant memory; O(log window) for a tick after a gap, O(1) for one in sequence.
 class TickOrder {
  public:
   static constexpr std::size_t kWindow = 8192;
 
-  /// @param emit is called with every tick that can go on.
+  /// @param emit is called for every tick whose place in the order is known.
   template <class Emit>
   void add(const ligature_msg::tick_t& tick, Emit&& emit) {
     if (waiting_.empty() && (next_ < 0 || tick.tick <= next_)) return pass(tick, emit);
@@ -23,7 +23,7 @@ class TickOrder {
     while (!waiting_.empty() && (waiting_.begin()->first <= next_ || waiting_.size() > kWindow)) pass_first(emit);
   }
 
-  /// Nothing more will come.
+  /// Passes on everything that waits; no more ticks follow.
   template <class Emit>
   void flush(Emit&& emit) {
     while (!waiting_.empty()) pass_first(emit);
@@ -43,7 +43,7 @@ class TickOrder {
   }
 
   std::map<std::int64_t, ligature_msg::tick_t> waiting_;
-  std::int64_t next_ = -1;  // number that continues the sequence
+  std::int64_t next_ = -1;  // number of the tick that continues the sequence; -1: unknown
 };
 
 }  // namespace ligature::host

@@ -26,7 +26,7 @@ void TickStatistics::add(const ligature_msg::tick_t& tick) {
 
 void TickStatistics::add_thread(const ligature_msg::tick_t& tick) {
   if (tick.flags & ligature_msg::tick_t::FLAG_THREAD_LATE) {
-    ++thread_.late;  // its other values are those of an older tick
+    ++thread_.late;  // the thread's fields repeat those of an older tick
     return;
   }
   if (tick.thread_end == ligature_msg::tick_t::THREAD_WORK) ++thread_.by_work;
@@ -34,7 +34,7 @@ void TickStatistics::add_thread(const ligature_msg::tick_t& tick) {
   thread_.lost_ticks += static_cast<double>(tick.time_lost);
 }
 
-/// A lost period counts here too: the device went on with the last force.
+/// Lost periods count too: the device kept the last force.
 void TickStatistics::add_hand(std::size_t hand, const ligature_msg::tick_t& tick) {
   auto& felt = hands_[hand];
   const double force_N = magnitude(tick.f_device_N[hand]);

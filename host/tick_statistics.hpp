@@ -8,21 +8,21 @@
 
 namespace ligature::host {
 
-/// What one hand felt.
+/// Force statistics of one hand.
 struct HandStatistics {
   double peak_N = 0.0;  // largest |f_device|
   std::int64_t peak_tick = -1;
   double sum_N = 0.0;  // of |f_device| over the ticks with a grasp
   std::int64_t grasp_ticks = 0;
-  std::int64_t limited_ticks = 0;  // force saturated at the limit
+  std::int64_t limited_ticks = 0;  // force reduced by a limit
   [[nodiscard]] double mean_N() const { return grasp_ticks ? sum_N / static_cast<double>(grasp_ticks) : 0.0; }
 };
 
-/// How the thread's physics kept up.
+/// How well the thread's physics kept up with real time.
 struct ThreadStatistics {
-  std::int64_t by_work = 0, by_clock = 0;  // ticks ended before their end: work spent, time over
-  std::int64_t late = 0;                   // ticks that were not done when the next samples came
-  double lost_ticks = 0.0;                 // time for which it stood still
+  std::int64_t by_work = 0, by_clock = 0;  // ticks cut short: work budget used up, time over
+  std::int64_t late = 0;                   // ticks not finished when the next samples came
+  double lost_ticks = 0.0;                 // time lost, in ticks: the thread was not moved
 };
 
 struct FaultEntry {
@@ -35,13 +35,14 @@ struct Percentiles {
   std::int32_t p50_ns = 0, p99_ns = 0, max_ns = 0;
 };
 
-/// Timing and forces over ticks. Durations are kept whole (16 bytes a tick, 58 MB an hour) so that percentiles are
-/// exact. A period the loop lost carries the values of the last executed one: it counts as a period, not as a sample.
+/// Statistics of timing and forces over ticks. All durations are stored (16 bytes a tick, 58 MB an hour), so that
+/// percentiles are exact. A lost period repeats the values of the last executed one: it counts as a period, but not as
+/// a sample.
 class TickStatistics {
  public:
   void add(const ligature_msg::tick_t& tick);
 
-  /// Ticks of another session follow: a fault that was latched before is a new one if seen again.
+  /// Call before the ticks of another session: a fault that is still latched then counts again.
   void start_session() {
     last_fault_ = 0;
     thread_time_.start_session();
@@ -53,7 +54,9 @@ class TickStatistics {
   [[nodiscard]] const ThreadStatistics& thread() const { return thread_; }
   [[nodiscard]] const ThreadTime& thread_time() const { return thread_time_; }
   [[nodiscard]] const std::array<HandStatistics, 2>& hands() const { return hands_; }
-  [[nodiscard]] const std::vector<FaultEntry>& faults() const { return faults_; }  ///< each change to a fault
+  [[nodiscard]] const std::vector<FaultEntry>& faults() const {
+    return faults_;
+  }  ///< one entry for each change to a fault
   [[nodiscard]] Percentiles wakeup() const { return percentiles_of(wakeup_ns_); }
   [[nodiscard]] Percentiles control() const { return percentiles_of(control_ns_); }
   [[nodiscard]] Percentiles execution() const { return percentiles_of(execution_ns_); }
@@ -72,7 +75,7 @@ class TickStatistics {
   std::int16_t last_fault_ = 0;
 };
 
-/// |f| of three components.
+/// Euclidean norm.
 [[nodiscard]] double magnitude(const double (&f)[3]);
 
 }  // namespace ligature::host

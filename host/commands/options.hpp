@@ -1,5 +1,5 @@
 #pragma once
-// What several subcommands have in common.
+// Option checks that several subcommands share.
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -16,7 +16,7 @@ inline void refuse_same_file(const std::string& log, const std::string& target) 
     throw BadInput(target + ": is the log itself; allowed: another name");
 }
 
-/// CLI11's ranges let nan pass: no comparison with it is true.
+/// Rejects nan and inf. CLI11's range checks let nan pass, because every comparison with nan is false.
 inline std::string finite(const std::string& word) {
   double value = 0.0;
   if (CLI::detail::lexical_cast(word, value) && !std::isfinite(value))

@@ -6,31 +6,32 @@
 
 namespace ligature::console {
 
-/// How far a long work is, as one line rewritten in place; silent where nobody watches.
+/// Progress of a long task as one line that is rewritten in place; silent when the output is no terminal.
 class Progress {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// @param what the work, as a word: "export".  @param on whether `out` is a terminal.
+  /// @param what the task in one word, such as "export".  @param on whether `out` is a terminal.
   Progress(const char* what, std::FILE* out, bool on, Clock::time_point start = Clock::now());
-  /// On the standard error output, when that is a terminal.
+  /// Writes to standard error, when that is a terminal.
   explicit Progress(const char* what);
-  /// Wipes the line.
+  /// Erases the line.
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// For steps by the thousand: looks at the clock only now and then, and says nothing in the first second.
+  /// For loops of thousands of short steps: reads the clock only at every 64th call, and prints nothing in the first
+  /// second.
   void show(std::int64_t done, std::int64_t whole) {
     if (is_due() && whole > 0) show(static_cast<double>(done) / static_cast<double>(whole), std::string());
   }
-  /// Is another line due? For those who make its words only then. Cheap enough for every tick.
+  /// Whether the line should be printed again; lets a caller build its text only then. Cheap enough for every tick.
   [[nodiscard]] bool is_due() { return is_on_ && ++calls_ % 64 == 0 && is_due(Clock::now()); }
   [[nodiscard]] bool is_due(Clock::time_point now);
-  /// For steps that take long: shown at once.  @param share 0 .. 1 done;  @param step what is going on, a short phrase.
+  /// For slow steps: printed at once.  @param share 0 .. 1 done;  @param step the current step, a short phrase.
   void show(double share, const std::string& step) { show(share, step, Clock::now()); }
   void show(double share, const std::string& step, Clock::time_point now);
-  /// A step that has no measure, "making the MCAP file".
+  /// Prints a step whose progress cannot be measured, such as "making the MCAP file".
   void say(const char* step);
 
  private:

@@ -39,7 +39,8 @@ std::string find_script(const std::string& name, const fs::path& source_folder) 
   throw host::RunFailed(name + " found neither at " + installed.string() + " nor in " + source_folder.string());
 }
 
-/// Waits for a child; when a signal asks us to end, it is asked, too (SIGINT: Python takes its half-made file away).
+/// Waits for the child process. When this process is asked to stop, the child gets SIGINT, on which Python removes its
+/// unfinished output file.
 int status_of(pid_t child) {
   constexpr int kLook_ms = 20;
   int status = 0;
@@ -53,7 +54,8 @@ int status_of(pid_t child) {
   }
 }
 
-/// @return its exit code, 128 + n when signal n ended it.
+/// Runs the program and waits for it, its stderr written to the file `complaints`. @return its exit code, or 128 + n
+/// when signal n ended it.
 int wait_for(std::vector<std::string> words, const std::string& complaints) {
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
@@ -71,7 +73,7 @@ int wait_for(std::vector<std::string> words, const std::string& complaints) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// The last line of a text: where Python says what went wrong.
+/// The last non-empty line of a file: where Python's traceback gives the error.
 std::string last_line(const std::string& path) {
   std::ifstream file(path);
   std::string last = "no reason given";

@@ -5,7 +5,7 @@
 
 namespace ligature::console {
 
-/// A folder that is gone when this is.
+/// A temporary folder, deleted with its contents by the destructor.
 class ScratchFolder {
  public:
   /// @throws RunFailed.
@@ -19,13 +19,15 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-/// A Python script of ours, beside an installed program or in the folder of the source tree that it was built from.
+/// One of this project's Python scripts: beside the installed program, else in the source folder it was built from.
 class PythonTool {
  public:
-  /// @throws BadInput without the Python of scripts/setup or LIGATURE_PYTHON; RunFailed without the script.
+  /// @throws BadInput when neither the virtual environment of scripts/setup nor LIGATURE_PYTHON gives a Python;
+  /// RunFailed when the script is missing.
   PythonTool(const std::string& script, const std::filesystem::path& source_folder);
 
-  /// Runs it without a shell, its stderr into the file `complaints`, and waits. @throws RunFailed with its last word.
+  /// Runs the script without a shell and waits; its stderr goes to the file `complaints`. @throws RunFailed with the
+  /// last line of that file.
   void run(const std::vector<std::string>& arguments, const std::string& complaints) const;
 
  private:

@@ -1,12 +1,12 @@
 #pragma once
-// A first word that is no command, refused by name: the parser alone would only say that a command is missing.
+// Names an unknown subcommand in the error message: CLI11 alone would only say that a command is missing.
 
 #include <string>
 
 namespace ligature::console {
 
-/// @param app  a CLI::App (this folder does not know the library). @return what to say of argv[1], or nothing when it
-/// is a command, an option or not there.
+/// @param app  a CLI::App (a template, so that this folder does not depend on CLI11).
+/// @return the error message for argv[1]; empty when it is a command, an option or absent.
 template <class App>
 [[nodiscard]] std::string unknown_command(const App& app, int argc, const char* const* argv) {
   if (argc < 2 || argv[1][0] == '-') return {};

@@ -15,7 +15,7 @@ std::uint64_t times(std::uint64_t a, std::uint64_t b) {
 std::uint64_t plus(std::uint64_t a, std::uint64_t b) { return (a + b) % kPrime; }
 std::uint64_t minus(std::uint64_t a, std::uint64_t b) { return (a + kPrime - b) % kPrime; }
 
-std::uint64_t inverse(std::uint64_t a) {  // Fermat: a^(p - 2)
+std::uint64_t inverse(std::uint64_t a) {  // Fermat's little theorem: a^(p - 2)
   std::uint64_t r = 1;
   for (std::uint64_t e = kPrime - 2; e > 0; e >>= 1, a = times(a, a)) {
     if (e & 1) r = times(r, a);
@@ -47,7 +47,7 @@ std::uint64_t determinant_of(Matrix m) {
   return det;
 }
 
-/// The three arcs of a crossing: an arc runs from one under pass to the next.
+/// The three arcs that meet at a crossing. An arc runs from one under-pass to the next.
 struct Arcs {
   std::size_t over, in, out;
 };
@@ -68,7 +68,7 @@ std::vector<Arcs> arcs_of(const Diagram& d) {
 }
 
 std::uint64_t minor_at(const Diagram& d, const std::vector<Arcs>& arcs, std::uint64_t t) {
-  const std::size_t n = d.crossings() - 1;  // any row and any column may go
+  const std::size_t n = d.crossings() - 1;  // a minor: the last row and column are left out; any others would do
   Matrix m(n, std::vector<std::uint64_t>(n, 0));
   for (std::size_t c = 0; c < n; ++c) {
     const auto put = [&](std::size_t arc, std::uint64_t v) {

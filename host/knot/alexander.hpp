@@ -6,11 +6,11 @@
 
 namespace ligature::knot {
 
-/// Alexander polynomial: coefficients from t^0 up, made unique by no factor t and a positive first coefficient, so the
-/// trefoil is {1, -1, 1} and the unknot {1}.
+/// Alexander polynomial: coefficients from t^0 up. It is normalised to have no factor t and a positive first
+/// coefficient: the trefoil is {1, -1, 1} and the unknot {1}.
 /// A minor of the matrix of Fox derivatives, one row a crossing (1 - t, t, -1), is evaluated at n points modulo the
-/// prime 2^61 - 1 and interpolated: integer arithmetic throughout. No coefficient exceeds 4^n, so n <= 29 crossings is
-/// exact without further argument; beyond that the caller should simplify first. Cost O(n^4).
+/// prime 2^61 - 1 and interpolated, all in integers. No coefficient exceeds 4^n, so the result is proved exact for n <=
+/// 29 crossings; simplify larger diagrams first. Cost O(n^4).
 [[nodiscard]] std::vector<int> alexander(const Diagram& d);
 
 /// |Delta(-1)|

@@ -11,7 +11,7 @@ using Slot = std::int32_t;
 constexpr Slot kNone = -1;
 constexpr std::size_t kBlock = 16;
 
-/// One pass over a line whose corners lie in slots; a corner that goes leaves its slot empty.
+/// One pass over the polyline. Corners keep their slot number; a removed corner leaves an empty slot.
 class Pass {
  public:
   Pass(std::span<const Point> corners, bool closed, std::span<const Bar> bars)
@@ -26,7 +26,7 @@ class Pass {
     for (Slot i = 0; i < n; ++i) enclose(i);
   }
 
-  /// @return what is left.
+  /// @return the remaining corners.
   std::vector<Point> run() {
     const std::size_t fewest = closed_ ? 3 : 2;
     for (Slot b = 0; b < static_cast<Slot>(corners_.size()) && left_ > fewest; ++b) {
@@ -51,7 +51,7 @@ class Pass {
   [[nodiscard]] Slot before(Slot slot) const { return slot == kNone ? kNone : before_[index(slot)]; }
   [[nodiscard]] Slot after(Slot slot) const { return slot == kNone ? kNone : after_[index(slot)]; }
 
-  /// The edge that starts at a slot is in the box of the slot's block.
+  /// Extends the box of this slot's block by the edge that starts at the slot.
   void enclose(Slot start) {
     Box& box = boxes_[index(start) / kBlock];
     box.extend(at(start));
@@ -64,7 +64,7 @@ class Pass {
     near.extend(triangle.b).extend(triangle.c);
     const Point margin = 1e-8 * near.sizes();
     near.extend(Point(near.min() - margin)).extend(Point(near.max() + margin));
-    // The two edges that go, and the two that touch the triangle in its corners only, are not asked.
+    // Not tested: the two edges that would be replaced, and the two that touch the triangle only at its corners.
     const Slot skipped[] = {before(a), a, b, c};
     for (std::size_t block = 0; block < boxes_.size(); ++block) {
       if (boxes_[block].intersects(near) && meets_block(triangle, block, skipped)) return true;
@@ -74,7 +74,7 @@ class Pass {
 
   [[nodiscard]] bool meets_block(const Triangle& triangle, std::size_t block, const Slot (&skipped)[4]) const {
     const auto end = static_cast<Slot>(std::min(corners_.size(), (block + 1) * kBlock));
-    Slot known = kNone;  // whose height is at hand: edges of a block follow each other
+    Slot known = kNone;  // slot of the last height that was computed; consecutive edges share a corner
     double height = 0.0;
     for (auto k = static_cast<Slot>(block * kBlock); k < end; ++k) {
       const Slot next = after_[index(k)];
@@ -88,7 +88,7 @@ class Pass {
     return false;
   }
 
-  /// A bar that starts in a corner of the triangle only touches it there.
+  /// A bar that starts at a corner of the triangle touches it only there and is not tested.
   [[nodiscard]] bool meets_bar(const Triangle& triangle, bool has_front, bool has_back) const {
     for (const Bar& bar : bars_) {
       if (bar.from_front ? has_front : has_back) continue;

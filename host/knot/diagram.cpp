@@ -22,8 +22,8 @@ void erase(Diagram& d, std::size_t a, std::size_t b) {
   d.signs = std::move(signs);
 }
 
-/// c A c B with no crossing shared by A and B: turn A over by half a turn, and c is gone. Seen from behind, A's
-/// crossings keep their signs and swap over with under.
+/// Removes a nugatory crossing c: the walk is c A c B, and A and B share no crossing. Turning the part A by 180 degrees
+/// removes c. A's crossings keep their signs, and over and under swap.
 bool undo_one_nugatory(Diagram& d) {
   const std::size_t n = d.passes.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -43,7 +43,8 @@ bool undo_one_nugatory(Diagram& d) {
   return false;
 }
 
-/// Two crossings of opposite sign, neighbours on an over strand and on an under strand: the strands come apart.
+/// Removes a pair of crossings of opposite sign that are neighbours both on the over strand and on the under strand
+/// (Reidemeister II).
 bool undo_one_clasp(Diagram& d) {
   const std::size_t n = d.passes.size();
   if (n < 4) return false;
@@ -62,7 +63,7 @@ bool undo_one_clasp(Diagram& d) {
   return false;
 }
 
-/// The diagram made of some of d's passes; every crossing of theirs is met twice among them.
+/// The sub-diagram made of some of d's passes. Each of its crossings must occur twice among them.
 Diagram part_of(const Diagram& d, std::vector<Pass> passes) {
   Diagram part{std::move(passes), {}};
   std::vector<std::size_t> renamed(d.crossings(), d.crossings());

@@ -10,9 +10,10 @@ namespace ligature::knot {
 namespace {
 
 using Edge = int;
-using Pairing = std::map<Edge, Edge>;  // open strand ends, both ways round
+using Pairing =
+    std::map<Edge, Edge>;  // ends of open strands: maps each end to the other end of its strand, in both directions
 
-/// The four edges at a crossing, counter-clockwise from the one that comes in below.
+/// The four edges at a crossing, counter-clockwise from the incoming under-strand.
 using Corner = std::array<Edge, 4>;
 
 std::vector<Corner> corners_of(const Diagram& d) {
@@ -34,7 +35,8 @@ std::vector<Corner> corners_of(const Diagram& d) {
   return corners;
 }
 
-/// Joins x to y by an arc; true when that closes a loop. An edge is open from its first mention to its second.
+/// Joins edges x and y by an arc. @return whether that closes a loop. An edge is open between its first mention and its
+/// second.
 bool join(Pairing& open, Edge x, Edge y) {
   if (x == y) return true;
   const auto end_of = [&](Edge e) {
@@ -55,7 +57,7 @@ bool join(Pairing& open, Edge x, Edge y) {
   return false;
 }
 
-/// p times -A^2 - A^-2, the value of a loop.
+/// p times (-A^2 - A^-2), the bracket's factor for a closed loop.
 Laurent with_loop(const Laurent& p) {
   Laurent r;
   add(r, p, -1, 2);
@@ -63,7 +65,7 @@ Laurent with_loop(const Laurent& p) {
   return r;
 }
 
-/// p / (-A^2 - A^-2); exact, since every state has a loop.
+/// p / (-A^2 - A^-2). The division is exact, because every state contains a loop.
 Laurent without_loop(Laurent p) {
   Laurent q;
   while (!p.c.empty()) {
@@ -74,7 +76,7 @@ Laurent without_loop(Laurent p) {
   return q;
 }
 
-/// The crossing not yet done that touches most open strands: keeps the diagram's frontier narrow.
+/// The unprocessed crossing that touches most open strands: this keeps the number of open strands small.
 std::size_t next_corner(const std::vector<Corner>& corners, const std::vector<bool>& done, const Pairing& open) {
   std::size_t best = corners.size();
   int most = -1;
@@ -119,7 +121,7 @@ Laurent jones(const Diagram& d) {
   Laurent in_A;
   add(in_A, bracket(d), w % 2 == 0 ? 1 : -1, -3 * w);
   Laurent v;
-  for (std::size_t k = 0; k < in_A.c.size(); ++k) {  // only multiples of A^4 occur for a knot
+  for (std::size_t k = 0; k < in_A.c.size(); ++k) {  // for a knot all exponents are multiples of 4
     if (in_A.c[k] != 0) add(v, {0, {in_A.c[k]}}, 1, -(in_A.low + static_cast<int>(k)) / 4);
   }
   return v;

@@ -13,10 +13,10 @@ struct Prime {
   std::size_t crossings;
   bool chiral;
   std::vector<int> alexander;
-  Laurent jones;  ///< of the right-handed one
+  Laurent jones;  ///< of the right-handed form
 };
 
-/// The classical table (Rolfsen's numbering); a test derives each row again from a diagram.
+/// The table of prime knots (Rolfsen's numbering). A test derives each row again from a diagram.
 const std::vector<Prime>& primes() {
   static const std::vector<Prime> kPrimes{
       {"3_1", 3, true, {1, -1, 1}, {1, {1, 0, 1, -1}}},
@@ -40,7 +40,8 @@ const std::vector<Prime>& primes() {
 constexpr std::size_t kMostCrossings = 10;
 constexpr std::size_t kUnknotCrossings = 24;
 
-/// Names that another knot of so many crossings shares both polynomials with: 10_132 and 9_12.
+/// {name, crossings}: from this many crossings on, another knot has both polynomials of the named one: 10_132 those of
+/// 5_1, and 9_12 those of 4_1#5_2.
 constexpr std::pair<const char*, std::size_t> kShared[] = {{"5_1", 10}, {"4_1#5_2", 9}};
 
 using Invariants = std::pair<std::vector<int>, Laurent>;
@@ -52,7 +53,7 @@ std::string joined_hand(const std::string& a, const std::string& b) {
   return a == b ? a : "mixed";
 }
 
-/// Adds to `sum` every prime from `first` on, in both hands, as long as the crossings allow.
+/// Adds to the table every sum of `sum` and primes from index `first` on, in both hands, up to kMostCrossings.
 void extend(Table& table, const Invariants& sum, const KnotName& name, std::size_t first, std::size_t crossings) {
   for (std::size_t k = first; k < primes().size(); ++k) {
     const auto& p = primes()[k];
@@ -74,7 +75,8 @@ void extend(Table& table, const Invariants& sum, const KnotName& name, std::size
   }
 }
 
-/// A sum of a knot and its own mirror image is amphichiral, however many hands its parts have.
+/// All names of the table. A sum whose Jones polynomial equals its mirror image's is amphichiral, even though its parts
+/// have different hands.
 Table make_table() {
   Table table;
   extend(table, {{1}, {0, {1}}}, {"", "none"}, 0, 0);
@@ -106,7 +108,8 @@ KnotName sum_of(const KnotName& a, const KnotName& b) {
     std::istringstream text(name);
     for (std::string part; std::getline(text, part, '#');) parts.push_back(part);
   }
-  std::sort(parts.begin(), parts.end());  // one-digit crossing numbers: the order of the text is that of the table
+  std::sort(parts.begin(),
+            parts.end());  // all crossing numbers have one digit, so that alphabetical order is the order of the table
   std::string type;
   for (const auto& part : parts) type += (type.empty() ? "" : "#") + part;
   return {type, joined_hand(a.handedness, b.handedness)};

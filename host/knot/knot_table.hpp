@@ -1,5 +1,5 @@
 #pragma once
-// Names of knots by their invariants.
+// Names knots by their polynomial invariants.
 
 #include <optional>
 #include <string>
@@ -10,16 +10,16 @@
 namespace ligature::knot {
 
 struct KnotName {
-  std::string type;  ///< "3_1", "3_1#4_1": Alexander-Briggs names, parts in rising order
+  std::string type;  ///< "3_1", "3_1#4_1": Alexander-Briggs names; the parts of a sum in rising order
   std::string
       handedness;  ///< "right", "left", "amphichiral", "mixed" (a sum of parts of different hands), "none" (0_1)
 };
 
-/// The prime knots up to seven crossings and their sums up to ten. Right is the hand whose reduced alternating diagram
-/// has positive writhe (Tait: all such diagrams of one knot agree).
-/// @param crossings of the diagram that the invariants came from: a name is given only where no other knot with so few
-///        crossings shares both polynomials. 5_1 and 10_132 do, and from eleven crossings on there are too many, so
-///        there only the unknot is named, for which the Jones polynomial alone decides up to 24 crossings.
+/// Table of the prime knots up to seven crossings and their sums up to ten. "right" is the form whose reduced
+/// alternating diagram has positive writhe (Tait: all such diagrams of one knot agree).
+/// @param crossings of the diagram from which the invariants were computed. A name is returned only when no other knot
+/// with at most so many crossings has both polynomials (5_1 and 10_132 share them). From eleven crossings on only the
+/// unknot is named: its Jones polynomial is unique up to 24 crossings.
 [[nodiscard]] std::optional<KnotName> name_of(const std::vector<int>& alexander, const Laurent& jones,
                                               std::size_t crossings);
 

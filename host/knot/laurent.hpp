@@ -1,5 +1,5 @@
 #pragma once
-// Integer Laurent polynomials, as small as knot invariants need them.
+// Integer Laurent polynomials, with just the operations that knot invariants need.
 
 #include <compare>
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace ligature::knot {
 
-/// sum over k of c[k] x^(low + k); zero is the empty one; first and last coefficients are never zero.
+/// sum over k of c[k] x^(low + k). Zero is the empty vector; the first and last coefficients are never zero.
 struct Laurent {
   int low = 0;
   std::vector<std::int64_t> c;
@@ -43,7 +43,7 @@ inline void add(Laurent& p, const Laurent& q, std::int64_t factor, int shift) {
   return r;
 }
 
-/// p(1/x): what the mirror image does to the Jones polynomial.
+/// p(1/x): the Jones polynomial of the mirror image.
 [[nodiscard]] inline Laurent mirrored(const Laurent& p) {
   if (p.c.empty()) return p;
   return {-(p.low + static_cast<int>(p.c.size()) - 1), {p.c.rbegin(), p.c.rend()}};

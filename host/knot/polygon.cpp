@@ -34,9 +34,10 @@ void Polygon::shake(Draw& draw) {
   for (std::size_t i = 0; i < n; ++i) {
     const Point &a = corners_[(i + n - 1) % n], b = corners_[i], &c = corners_[(i + 1) % n];
     const double reach = 0.3 * (c - a).norm();
-    const Point away{draw.bell(), draw.bell(), draw.bell()};  // braces: in this order
+    const Point away{draw.bell(), draw.bell(), draw.bell()};  // braces guarantee the order of evaluation
     const Point to = 0.5 * (a + c) + reach * away;
-    // a-b sweeps (a, b, to), b-c sweeps (b, c, to); edges that share a corner with the one do not pierce it.
+    // b moves to `to`: a-b sweeps (a, b, to), b-c sweeps (b, c, to). Edges that share a corner with the swept triangle
+    // are not tested.
     if (!is_pierced({a, b, to}, i + 1, n - 3) && !is_pierced({b, c, to}, i + 2, n - 3)) corners_[i] = to;
   }
 }

@@ -10,7 +10,7 @@ namespace ligature::knot {
 namespace {
 
 struct Meeting {
-  double at;  ///< edge index + position on it
+  double at;  ///< edge index + fraction along the edge
   Pass pass;
 };
 
@@ -18,15 +18,15 @@ double cross(const Point& a, const Point& b) { return a.x() * b.y() - a.y() * b.
 
 enum class Meet { kApart, kCross, kDegenerate };
 
-/// Where the images of the edges p + s d and q + t e cross, 0 < s, t < 1; z is the height above the plane.
-/// A crossing that rounding could move past the end of an edge, or turn over, is none to be trusted: nearly parallel
-/// edges have many. `above` is how far the first passes over the second.
+/// Where the projected edges p + s d and q + t e cross, 0 < s, t < 1; z is the height above the plane of projection.
+/// `above` is the height of the first over the second at the crossing. kDegenerate: rounding could move the crossing
+/// past the end of an edge or swap over and under, as is common for nearly parallel edges.
 Meet meet(const Point& p, const Point& d, const Point& q, const Point& e, double& s, double& t, double& above) {
   constexpr double kEdge = 1e-9, kRounding = 1e-15;
   const Point pq = q - p;
   const double det = cross(d, e);
   const double d_long = std::hypot(d.x(), d.y()), e_long = std::hypot(e.x(), e.y()), apart = std::hypot(pq.x(), pq.y());
-  if (std::abs(det) <= 1e-12 * d_long * e_long) {  // parallel: apart, unless they lie on one line
+  if (std::abs(det) <= 1e-12 * d_long * e_long) {  // parallel: kApart, unless they lie on one line
     const double off = std::abs(cross(pq, d)), width = d_long * (apart + 1e-300);
     return off > 1e-9 * width ? Meet::kApart : Meet::kDegenerate;
   }
@@ -54,7 +54,7 @@ std::optional<Diagram> project(std::span<const Point> corners, const Point& dire
   std::vector<Meeting> meetings;
   for (std::size_t i = 0; i + 2 < n; ++i) {
     for (std::size_t j = i + 2; j < n; ++j) {
-      if (i == 0 && j + 1 == n) continue;  // neighbours across the seam
+      if (i == 0 && j + 1 == n) continue;  // the last edge is a neighbour of the first
       double s = 0.0, t = 0.0, above = 0.0;
       const Meet how = meet(flat[i], step[i], flat[j], step[j], s, t, above);
       if (how == Meet::kApart) continue;
@@ -81,10 +81,10 @@ std::optional<Diagram> simplest_view(std::span<const Point> corners, int views) 
   for (int k = 0; k < views; ++k) {
     auto diagram = project(corners, spread_direction(k, views));
     if (!diagram) continue;
-    constexpr std::size_t kHopeless = 120;  // reducing is cubic, and from so many crossings it would not name a knot
+    constexpr std::size_t kHopeless = 120;  // reduce() is O(n^3), and so large a diagram would not lead to a name
     if (diagram->crossings() <= kHopeless) reduce(*diagram);
     if (!best || diagram->crossings() < best->crossings()) best = std::move(diagram);
-    if (best->crossings() < 3) break;  // fewer than three crossings: the unknot, whatever they are
+    if (best->crossings() < 3) break;  // fewer than three crossings: always the unknot
   }
   return best;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// From a polygon in space to a diagram in a plane.
+// Projects a closed polygon to a knot diagram.
 
 #include <optional>
 #include <span>
@@ -9,8 +9,8 @@
 
 namespace ligature::knot {
 
-/// The diagram that an eye far away along +direction sees.
-/// @return nothing when that view is not generic: a corner lies on another edge's image, or two strands touch.
+/// The diagram of the parallel projection, seen from far away along +direction.
+/// @return nothing when the projection is not generic: a corner lies on another edge's image, or two strands touch.
 /// Cost O(n^2).
 [[nodiscard]] std::optional<Diagram> project(std::span<const Point> corners, const Point& direction);
 

@@ -14,12 +14,12 @@
 namespace ligature::knot {
 namespace {
 
-constexpr std::size_t kExact = 29;     // crossings up to which every invariant is exact
-constexpr std::size_t kTangled = 300;  // corners left of a thread that no shaking will name in reasonable time
+constexpr std::size_t kExact = 29;     // largest number of crossings for which every invariant is exact
+constexpr std::size_t kTangled = 300;  // with more corners left, shaking does not lead to a name in reasonable time
 
 KnotResult unknown() { return {"unknown", "none", 0, {}, {}, 0}; }
 
-/// Names the factors one by one where the diagram shows them side by side.
+/// Names the factors one by one, when the diagram shows them side by side.
 std::optional<KnotName> name_by_factors(const Diagram& d) {
   const auto factors = visible_factors(d);
   if (factors.size() < 2) return std::nullopt;
@@ -49,18 +49,18 @@ KnotResult from_diagram(const Diagram& d) {
   return r;
 }
 
-/// The best that was seen of a ring.
+/// Best result so far for one closed polygon.
 struct Seen {
   KnotResult best = unknown();
-  std::size_t fewest = static_cast<std::size_t>(-1);  // crossings
+  std::size_t fewest = static_cast<std::size_t>(-1);  // crossings of the best diagram so far
   bool is_named() const { return best.type != "unknown"; }
 };
 
-/// Looks, and while it has no name, shakes it loose and looks again.
+/// Projects the polygon; while the result has no name, shakes and simplifies it and projects again.
 void shake_and_look(Polygon polygon, Draw draw, Seen& seen) {
   constexpr int kRounds = 12, kShakes = 8, kViews = 40;
   for (int round = 0; round < kRounds; ++round) {
-    if (polygon.corners().size() < 6) {  // a knot needs six sticks
+    if (polygon.corners().size() < 6) {  // a knot needs at least six edges
       seen.best = from_diagram({});
       return;
     }
@@ -75,11 +75,12 @@ void shake_and_look(Polygon polygon, Draw draw, Seen& seen) {
   }
 }
 
-/// A closed polygon's knot. One course of shaking may get stuck short of a diagram that has a name; where one is near,
-/// others are taken, so that a name does not depend on one draw's luck.
+/// Names the knot of a closed polygon. One sequence of random moves can get stuck before a diagram with a name. If its
+/// best diagram has at most kNear crossings, further sequences with other seeds are tried, so that the result does not
+/// depend on one seed.
 KnotResult recognise_ring(std::vector<Point> ring) {
   constexpr std::uint64_t kCourses = 12;
-  constexpr std::size_t kNear = 14;  // crossings; the table's knots have at most 8, sums more
+  constexpr std::size_t kNear = 14;  // knots of the table have at most 7 crossings, sums more
   Polygon polygon(std::move(ring));
   polygon.cut_corners();
   Seen seen;
@@ -90,7 +91,7 @@ KnotResult recognise_ring(std::vector<Point> ring) {
   return seen.best;
 }
 
-/// The ways in which an open thread is closed: both ends outwards, then both towards a common direction.
+/// The closures that are tried: both ends outwards from the centre, then both ends in one common direction.
 std::vector<std::vector<Point>> ways_home(std::span<const Point> thread) {
   constexpr int kCommon = 8;
   std::vector<std::vector<Point>> ways{
@@ -102,7 +103,8 @@ std::vector<std::vector<Point>> ways_home(std::span<const Point> thread) {
   return ways;
 }
 
-/// The thread is simplified once, among the bars of all its closures, which all keep their knots; then closed.
+/// Simplifies the open thread once, together with the bars of all closures, which keeps the knot of every closure. Then
+/// closes it in each way; the results vote.
 KnotResult recognise_open(std::vector<Point> thread) {
   constexpr std::size_t kEnough = 3;
   const auto ways = ways_home(thread);
@@ -122,20 +124,20 @@ KnotResult recognise_open(std::vector<Point> thread) {
     votes.push_back(recognise_ring(std::move(ring)));
     if (votes.size() == kEnough && count(votes[0]) == static_cast<std::ptrdiff_t>(kEnough)) break;
   }
-  // max_element keeps the first of equals: on a tie the outward closure's answer wins.
+  // max_element returns the first of equals: in a tie the outward closure's result wins.
   return *std::max_element(votes.begin(), votes.end(),
                            [&](const KnotResult& a, const KnotResult& b) { return count(a) < count(b); });
 }
 
-/// Moves the points into the unit cube, so that squares and products neither overflow nor vanish.
-/// @return whether what is left of their precision can carry a knot: numbers near 1e14 are whole numbers of 1/64, and a
-///         thread of one metre there has lost its strands in rounding.
+/// Moves the points into the unit cube, so that squares and products neither overflow nor underflow.
+/// @return false when rounding of the coordinates is too coarse to resolve strands: numbers near 1e14 are multiples of
+/// 1/64, so that a thread of one metre there has lost its shape.
 bool normalise(std::vector<Point>& points) {
-  constexpr double kLeastExtent = 1e-290;  // below it numbers are no longer normal; 0: all points in one
-  constexpr double kCoarsest = 1e-8;       // resolution per extent; strands are told apart to 1e-9
+  constexpr double kLeastExtent = 1e-290;  // smaller extents are near the subnormal numbers; 0: all points coincide
+  constexpr double kCoarsest = 1e-8;       // resolution / extent; strands are told apart at 1e-9
   Point low = points.front(), high = low;
   for (const auto& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  const double half_extent = (0.5 * high - 0.5 * low).maxCoeff();  // halves first: the difference may overflow
+  const double half_extent = (0.5 * high - 0.5 * low).maxCoeff();  // halved first: the difference could overflow
   const double largest = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
   if (half_extent < kLeastExtent) return false;
   if (largest / half_extent * std::numeric_limits<double>::epsilon() > kCoarsest) return false;
@@ -143,9 +145,9 @@ bool normalise(std::vector<Point>& points) {
   return true;
 }
 
-/// How often a closed line that runs to and fro on one straight line turns back at its far end; 0 when it leaves the
-/// line. One such turn is a bridge number of 1, the unknot [Schubert 1954]; with more the strands lie in each other and
-/// nothing says how they would come apart.
+/// For a closed line that runs to and fro along one straight line: how often it turns back at its far end; 0 when it
+/// leaves the line. One turn means bridge number 1, the unknot [Schubert 1954]. With more turns the strands coincide,
+/// and the knot is undefined.
 int turns_on_a_line(const std::vector<Point>& ring) {
   constexpr double kOff = 1e-8;
   const auto far = std::max_element(ring.begin(), ring.end(), [&](const Point& a, const Point& b) {

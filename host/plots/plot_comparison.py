@@ -20,13 +20,13 @@ HANDS = ("left", "right")
 
 
 def zero_of(column, time, align):
-    """What becomes time 0; a recording without a grasp keeps its start."""
+    """Time that becomes 0: of the first grasp for align "grasp", else (or without any grasp) of the first row."""
     held = np.flatnonzero((column["left_node"] >= 0) | (column["right_node"] >= 0))
     return time[held[0]] if align == "grasp" and len(held) else time[0]
 
 
 def difference(time_a, force_a, time_b, force_b):
-    """b - a at the ticks of a that b covers: of b the sample at that time, or the line between two."""
+    """b - a at those ticks of a that lie within b's time; b is interpolated linearly."""
     both = (time_a >= time_b[0]) & (time_a <= time_b[-1])
     return time_a[both], np.interp(time_a[both], time_b, force_b) - force_a[both]
 

@@ -15,16 +15,16 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-# Okabe-Ito: tells apart in every common kind of colour blindness, and in grey.
+# Okabe-Ito palette: distinguishable with the common forms of colour blindness and in grey.
 HANDS = {"left": "#0072B2", "right": "#D55E00"}
 LIMIT = "#000000"
 STATES = {0: ("OFF", "#999999"), 1: ("CALIBRATE", "#56B4E9"), 2: ("IDLE", "#DDDDDD"), 3: ("ENGAGE", "#F0E442"),
           4: ("FORCE", "#009E73"), 5: ("BRAKE", "#CC79A7"), 6: ("FAULT", "#882255")}
-POINTS = 6000  # drawn a curve: a few for every pixel column
+POINTS = 6000  # largest number of points drawn per curve, a few per pixel column
 
 
 def read(path):
-    """Columns by name, in order of time; further sessions follow the ones before."""
+    """The table's columns by name, in order of time; each session's time continues after the one before."""
     with open(path, encoding="ascii") as file:
         names = file.readline().strip().split(",")
         table = np.loadtxt(file, delimiter=",", ndmin=2)
@@ -39,7 +39,7 @@ def read(path):
 
 
 def thinned(time, values):
-    """Smallest and largest value of every bin, so that no spike is lost."""
+    """Reduces each bin of samples to its smallest and largest value, so that no spike is lost."""
     bins = len(values) // (POINTS // 2)
     if bins < 2:
         return time, values
@@ -60,7 +60,8 @@ def spans(values):
 
 
 def mark_losses(axes, time):
-    """Hatches the time of samples that were not recorded, so that no line across a hole passes for data."""
+    """Hatches the times of samples that were not recorded, so that a line drawn across the gap is not taken for data.
+    """
     steps = np.diff(time)
     holes = np.flatnonzero(steps > 1.5 * np.median(steps)) if len(steps) else []
     for i, hole in enumerate(holes):
@@ -69,7 +70,7 @@ def mark_losses(axes, time):
 
 
 def embedded(path):
-    """The scene and the versions of the table, for the picture's own metadata."""
+    """Scene and versions from the table's metadata file, to be stored in the picture's metadata."""
     try:
         with open(path + "-metadata.json", encoding="utf-8") as file:
             facts = json.load(file)
@@ -99,7 +100,7 @@ def draw_hand(axes, column, time, hand, limit_N, frames):
     axes.plot(*thinned(time, force_N), color=colour, linewidth=1.1, label="|F| commanded to the device")
     axes.axhline(limit_N, color=LIMIT, linestyle="--", linewidth=1.0, label=f"limit {limit_N:g} N")
     marks = {"grasp": [], "release": []}
-    for first, after, held in spans(node >= 0):  # an adaptive mesh numbers what is held anew
+    for first, after, held in spans(node >= 0):  # remeshing renumbers the held node
         if not held:
             continue
         axes.axvspan(time[first], time[after - 1], color=colour, alpha=0.08, linewidth=0)

@@ -15,21 +15,21 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from plot_forces import save
 
-NEAR = 1.5  # diameters between the middles of strands that touch, and some more
-STEP, BESIDE = 0.15, 40  # diameters between drawn points; points of what leads to the knot
-APART = 8.0  # diameters along the thread from which on two places are two strands
-FROM_THE_FRONT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # to the right, up
+NEAR = 1.5  # in diameters: strands closer than this count as touching
+STEP, BESIDE = 0.15, 40  # in diameters: distance of drawn points; number of points drawn before and after the knot
+APART = 8.0  # in diameters along the thread: two places further apart belong to different strands
+FROM_THE_FRONT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # direction of view: x to the right, z up
 
 
 def fine(points, step):
-    """The same line with points no further apart than a step."""
+    """The same polyline, resampled with points at most `step` apart."""
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     at = np.linspace(0.0, along[-1], max(2, int(np.ceil(along[-1] / step))))
     return np.stack([np.interp(at, along, points[:, i]) for i in range(3)], axis=1), at
 
 
 def knotted(points, along, diameter):
-    """Indices from the first to the last place where the thread comes to itself; all of it when it nowhere does."""
+    """First and last index of the part where strands touch each other; the whole thread when none do."""
     places = []
     for i, point in enumerate(points):
         near = np.linalg.norm(points - point, axis=1) < NEAR * diameter
@@ -39,14 +39,14 @@ def knotted(points, along, diameter):
 
 
 def flattest(points):
-    """Two directions across which these points spread most."""
+    """The two principal directions in which the points spread most."""
     _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
     return axes[:2]
 
 
 def draw_strands(axis, points, share, view, width_m):
-    """Segments from the farthest to the nearest, each with a pale rim that parts it from what lies behind."""
-    depth = points @ np.cross(*view)  # towards the eye: right x up
+    """Draws segments from back to front, each with a pale outline that separates it from what lies behind."""
+    depth = points @ np.cross(*view)  # depth towards the viewer: right x up
     flat = points @ view.T
     segments = np.stack([flat[:-1], flat[1:]], axis=1)
     order = np.argsort(depth[:-1] + depth[1:])
@@ -55,7 +55,7 @@ def draw_strands(axis, points, share, view, width_m):
     points_per_m = axis.bbox.width / axis.figure.dpi * 72.0 / (right - left)
     width = max(width_m * points_per_m, 1.2)
     lines = np.repeat(segments[order], 2, axis=0)
-    overlap = 0.4 * (lines[1::2, 1] - lines[1::2, 0])  # a strand without seams
+    overlap = 0.4 * (lines[1::2, 1] - lines[1::2, 0])  # segments overlap, so that a strand shows no seams
     lines[1::2, 0] -= overlap
     lines[1::2, 1] += overlap
     paints = np.repeat(colours[order], 2, axis=0)
@@ -65,7 +65,7 @@ def draw_strands(axis, points, share, view, width_m):
 
 
 def frame(axis, flat, margin):
-    """Equal scales, whatever the box: the smaller direction gets room."""
+    """Sets equal scales on both axes; the shorter direction gets a wider margin."""
     low, high = flat.min(axis=0) - margin, flat.max(axis=0) + margin
     middle, half = (low + high) / 2, (high - low) / 2
     ratio = axis.bbox.width / axis.bbox.height
@@ -75,7 +75,7 @@ def frame(axis, flat, margin):
 
 
 def scale_bar(axis):
-    """A round length, a fifth of the width or less."""
+    """Draws a scale bar of a round length (1, 2 or 5 times a power of ten), at most a fifth of the width."""
     left, right = axis.get_xlim()
     low, high = axis.get_ylim()
     room = 0.2 * (right - left)

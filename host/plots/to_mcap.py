@@ -12,10 +12,10 @@ import sys
 import h5py
 from mcap.writer import CompressionType, Writer
 
-BLOCK = 20_000  # rows read at once
+BLOCK = 20_000  # rows read at a time
 HANDS = ("left", "right")
 COLOUR = {"r": 0.85, "g": 0.73, "b": 0.5, "a": 1.0}
-LINE_STRIP = 0  # foxglove.LinePrimitive
+LINE_STRIP = 0  # value in foxglove.LinePrimitive
 
 
 def schema_of(title, properties):
@@ -29,7 +29,7 @@ def field(dataset):
 
 
 def split(names):
-    """Column names by topic: those that begin with a hand's name, and the rest."""
+    """Sorts column names by topic: one topic per hand (names that start with "left_" or "right_"), the rest on /rig."""
     topics = {"/rig": {}}
     for name in names:
         hand = next((h for h in HANDS if name.startswith(h + "_")), None)
@@ -66,7 +66,9 @@ class Recording:
                     self.say(channels[topic], t_s, dict(zip(shorts, row)))
 
     def shapes(self):
-        """foxglove.SceneUpdate: viewers that know it draw the thread as a line of its true thickness."""
+        """Writes shapes as foxglove.SceneUpdate: viewers that support it draw the thread as a line of its true
+        thickness.
+        """
         group = self.source["shapes"]
         channel = self.channel("/thread", "foxglove.SceneUpdate", {"entities": {"type": "array", "items": {"type": "object"}}})
         pose = {"position": {"x": 0, "y": 0, "z": 0}, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}
