@@ -1,14 +1,15 @@
 #pragma once
-// The clock of the two real-time contexts, as a concept: Linux's in the program, a number in tests.
+// Clock concept of the two real-time threads (control loop, thread physics): Linux's monotonic clock in the program, a
+// simulated time in tests.
 
 #include <chrono>
 #include <concepts>
 
 namespace ligature {
 
-using Nanoseconds = std::chrono::nanoseconds;  ///< time points are nanoseconds of one monotonic clock
+using Nanoseconds = std::chrono::nanoseconds;  ///< time since the epoch of one monotonic clock
 
-// Version 14 of clang-format tears compound requirements apart.
+// clang-format 14 splits compound requirements over several lines.
 // clang-format off
 template <class C>
 concept Clock = requires(C c, Nanoseconds at) {

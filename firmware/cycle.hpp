@@ -1,5 +1,5 @@
 #pragma once
-// THE loop. Linux stands behind Bus and Clock in the program, fakes in virtual time stand there in tests.
+// The 1 kHz control loop. Bus and Clock are Linux's in the program, and fakes with simulated time in tests.
 
 #include <algorithm>
 #include <concepts>
@@ -20,37 +20,38 @@
 
 namespace ligature {
 
-// Version 14 of clang-format tears compound requirements apart.
+// clang-format 14 splits compound requirements over several lines.
 // clang-format off
 template <class B>
 concept Bus = requires(B b, Nanoseconds deadline, const rt::RigCommand& command) {
-  { b.send_sync() } noexcept;                                           // every drive samples and acts now
-  { b.read_tpdos(deadline) } noexcept -> std::same_as<rt::RigReading>;  // returns early when all have come
-  { b.write_rpdos(command) } noexcept -> std::same_as<rt::WireTorque>;  // acts at the next SYNC
+  // drives sample their encoders and apply the last RPDO's torque
+  { b.send_sync() } noexcept;
+  { b.read_tpdos(deadline) } noexcept -> std::same_as<rt::RigReading>;  // returns as soon as all TPDOs have come
+  { b.write_rpdos(command) } noexcept -> std::same_as<rt::WireTorque>;  // takes effect at the next SYNC
 };
 template <class W>
 concept Waker = requires(W w) {
-  { w.wake() } noexcept;  // the thread's physics, if it waits; it runs as soon as nothing more urgent does
+  { w.wake() } noexcept;  // wakes the physics thread if it waits; it runs once this higher-priority thread sleeps
 };
 // clang-format on
 
-/// One period after the other until the controller has shut the rig down. Period k is due at start + k T; whole periods
-/// that pass unused are counted, recorded and skipped, never made up for. The thread's physics (thread_context.hpp) is
-/// given the tools of period k and is done before the samples of period k + 1 are in; if it is not, the law goes on
-/// with the grasp that it has. No allocation, lock, log or exception in run(), and no waiting but for the bus and the
-/// clock.
+/// Runs period after period until the controller has shut the rig down. Period k is due at start + k T. Whole periods
+/// that pass unused are counted, recorded and skipped, never made up for. The thread's physics (thread_context.hpp)
+/// gets the tools of period k and normally finishes before the samples of period k + 1 arrive; if it is late, the
+/// control law continues with the last grasp. run() does not allocate, lock, log or throw; it waits only for the bus
+/// and the clock.
 template <Bus BusT, Clock ClockT, Waker WakerT>
 class Cycle {
  public:
   static constexpr Nanoseconds kPeriod = rt::kPeriod;
-  static constexpr Nanoseconds kTpdoWait = std::chrono::microseconds(680);  ///< from SYNC
+  static constexpr Nanoseconds kTpdoWait = std::chrono::microseconds(680);  ///< counted from SYNC
 
   Cycle(BusT& bus, ClockT& clock, control::Controller& controller, control::ThreadExchange& exchange, WakerT& physics,
         rt::Outlets& out) noexcept
       : bus_(bus), clock_(clock), controller_(controller), thread_(exchange), physics_(physics), out_(out), log_(out) {}
 
   void end_after(std::int64_t ticks) noexcept { last_tick_ = ticks; }
-  /// Where other scenes and parameters come from.
+  /// Source of new scenes and parameters.
   void listen(control::PlantHandover& plants) noexcept { plants_ = &plants; }
   [[nodiscard]] const rt::CycleTiming& timing() const noexcept { return log_.timing(); }
   [[nodiscard]] std::int64_t periods() const noexcept { return tick_; }
@@ -61,28 +62,29 @@ class Cycle {
       clock_.sleep_until(wake_at_);  // absolute: jitter does not accumulate
       control::Phases at{};
       at.woke = clock_.now();
-      skip((at.woke - wake_at_) / kPeriod);  // slept through
+      skip((at.woke - wake_at_) / kPeriod);  // periods lost by waking too late
       at.scheduled = wake_at_;
 
       take_commands();
       take_plant();
-      bus_.send_sync();  // every axis samples, and acts on the last tick's torque
+      bus_.send_sync();  // all drives sample and apply the previous tick's torque
       at.synced = clock_.now();
       const rt::RigReading reading = bus_.read_tpdos(at.woke + kTpdoWait);
       at.sampled = clock_.now();
       const auto worked_before = clock_.worked();
-      take_grasp();  // it has seen the tools of the last period
+      take_grasp();  // computed from the tools of the previous period
       const auto in = input(reading, at.sampled - at.woke >= kPeriod);
       const rt::RigCommand command = controller_.tick(in);
       at.decided = clock_.now();
       const rt::WireTorque torque = bus_.write_rpdos(command);
       at.controlled = clock_.now();
       thread_deadline_.note(at.sampled - at.woke);
-      const auto periods = (at.controlled - wake_at_) / kPeriod + 1;  // of a late tick the next one is later, too
+      const auto periods = (at.controlled - wake_at_) / kPeriod + 1;  // a late tick also delays the next one
       thread_.hand_over(tick_, controller_.tools(), thread_deadline_.before(wake_at_ + periods * kPeriod));
-      physics_.wake();  // until the next samples the core is the thread's
+      physics_.wake();  // the physics may use the core until the next samples
       at.done = clock_.now();
-      log_.finish(thread_.result(), in.thread_late_ticks);  // the last period, now that its thread is known
+      // record of the previous period: its physics result is known only now
+      log_.finish(thread_.result(), in.thread_late_ticks);
       log_.begin(tick_, at, clock_.worked() - worked_before, torque, controller_, thread_.orders(), in.grasp_age_ticks);
       const auto missed = (at.done - wake_at_) / kPeriod;
       advance(1);
@@ -103,10 +105,10 @@ class Cycle {
         arm_waits_ = arms && thread_.changes_scene();
       if (!arm_waits_ || !arms) controller_.command(c.kind);
     }
-    if (reset) thread_.reset();  // once, however many of a flood ask for it
+    if (reset) thread_.reset();  // one reset, however many were requested in this tick
   }
 
-  /// Another scene is taken only where no force may flow; parameters at any time.
+  /// A new scene is accepted only while no force may flow; new parameters at any time.
   void take_plant() noexcept {
     if (plants_ == nullptr || thread_.is_changing()) return;
     control::Plant* plant = plants_->take();
@@ -117,7 +119,7 @@ class Cycle {
     plants_->give_back(plant);
   }
 
-  /// The newest there is. When it is that of a new thread, its hands come with it.
+  /// Takes the newest grasp. If it comes from a new scene's thread, the controller changes to that scene's hands.
   void take_grasp() noexcept {
     control::Plant* const plant = thread_.collect();
     if (plant == nullptr) return;
@@ -157,7 +159,7 @@ class Cycle {
   control::PeriodLog log_;
   rt::ThreadDeadline thread_deadline_;
   control::PlantHandover* plants_ = nullptr;
-  bool arm_waits_ = false;  // for another scene that is under way
+  bool arm_waits_ = false;  // ARM was requested while a new scene is being installed; it is executed after that
   Nanoseconds wake_at_{};
   std::int64_t tick_ = 0;
   std::int64_t last_tick_ = std::numeric_limits<std::int64_t>::max();

@@ -1,5 +1,5 @@
 #pragma once
-// THE thread's physics, beside the loop (cycle.hpp): it works while the loop sleeps or waits for the bus.
+// The physics thread, which runs beside the control loop (cycle.hpp) while the loop sleeps or waits for the bus.
 
 #include <algorithm>
 #include <array>
@@ -17,9 +17,9 @@
 
 namespace ligature {
 
-/// One request after the other: take(), compute(), publish(). Owns the thread's state as long as it runs; what others
-/// want of it comes with a request. No allocation, lock, log or exception. It is told when a tick must have ended, and
-/// then the thread stands still for the rest of that tick.
+/// Serves one request after the other: take(), compute(), publish(). Owns the simulation while it runs; others access
+/// it only by requests. No allocation, lock, log or exception. Each request carries a deadline; when it passes, the
+/// simulated thread does not move for the rest of that tick.
 template <Clock ClockT>
 class ThreadContext {
  public:
@@ -27,7 +27,7 @@ class ThreadContext {
                 rt::LatestValue<rt::ThreadSnapshot>& shape) noexcept
       : clock_(clock), thread_(thread), exchange_(exchange), shape_(shape) {}
 
-  /// Until wake.wait() says that it is over.
+  /// Runs until wake.wait() returns false.
   template <class WakeT>
   void run(WakeT& wake) noexcept {
     while (wake.wait()) {
@@ -38,7 +38,7 @@ class ThreadContext {
     }
   }
 
-  /// Moves to the newest request. @return false when there is none since the last.
+  /// Takes the newest request. @return false if there is none since the last call.
   bool take() noexcept { return exchange_.requests.refresh(); }
 
   void compute() noexcept {
@@ -56,7 +56,7 @@ class ThreadContext {
     result_.done = clock_.now();
   }
 
-  /// The grasp first: the law waits for nothing else.
+  /// The grasp is published first, because the control law uses it; the shape is for telemetry only.
   void publish() noexcept {
     exchange_.results.back() = result_;
     exchange_.results.publish();
@@ -67,8 +67,9 @@ class ThreadContext {
   }
 
  private:
-  /// Changes the thread by a swap of its insides: nothing is built or freed here. The old one goes back in the new
-  /// one's place. @return true when another scene came: its tools are not known before the hands are its own.
+  /// Installs a new simulation by swapping, so that nothing is built or freed here; the old one is returned in its
+  /// place. @return true if a new scene was installed: then this tick is not computed, because the tools belong to the
+  /// old scene's hands.
   bool take_plant(const control::ThreadRequest& asked) noexcept {
     if (std::exchange(result_.plants, asked.plants) == asked.plants) return false;
     control::Plant& plant = *asked.plant;

@@ -10,11 +10,12 @@
 namespace ligature::app {
 namespace {
 
-constexpr double kNoLoss = 1e-3;  // share of the time: less than a millisecond in a second is none
+constexpr double kNoLoss = 1e-3;  // share of the time: less than 1 ms lost in a second counts as none
 
 double us(std::chrono::nanoseconds t) { return 1e-3 * static_cast<double>(t.count()); }
 
-/// What the thread has at the least: from tools handed over after the latest samples until before the earliest ones.
+/// Shortest time that the physics gets per period: from the hand-over of the tools after the latest possible samples
+/// until before the earliest possible next samples.
 double given_us(const LoopCost& loop) {
   constexpr auto kLeast = rt::kPeriod - (rt::kSamplesLatest - rt::kSamplesEarliest) - rt::ThreadDeadline::kMargin;
   return us(kLeast) - loop.control_us - loop.calls_us;
@@ -53,7 +54,7 @@ std::string knots_table(const std::vector<DrawnKnot>& knots) {
 Admission admit(const scene::Scene& scene, const AdmissionSettings& settings) {
   Admission result;
   result.budget_percent = settings.budget_percent;
-  std::thread([&] {  // on the core, but without its priority: this computes for seconds on end
+  std::thread([&] {  // on the run's core, but without real-time priority: this computes for seconds
     if (settings.core != kAnyCore) platform::stay_on(settings.core);
     platform::flush_denormals();
     result.loop = measure_loop(scene);

@@ -10,16 +10,16 @@
 namespace ligature::app {
 namespace {
 
-constexpr double kLoses = 0.001;  // share of the time that is worth a word
+constexpr double kLoses = 0.001;  // share of time lost below which nothing is printed
 
-/// The most that a drawn knot loses at surgeons' speeds.
+/// Largest share of time lost while a knot is drawn tight or held, over all hand speeds.
 double most_lost(const Admission& a) {
   double most = 0.0;
   for (const auto& knot : a.knots) most = std::max({most, knot.pull_lost, knot.hold_lost});
   return most;
 }
 
-/// Where the thread loses time: whether fewer substeps would lose less.
+/// If the thread loses time, measures again with fewer substeps, and says whether that loses less.
 void tell_what_loses_less(scene::Scene scene, const Admission& found, const AdmissionSettings& settings) {
   auto& accuracy = scene.suture.rod.accuracy;
   if (most_lost(found) < kLoses || scene.suture.model != scene::Model::kRod || accuracy == scene::Accuracy::kFast)

@@ -4,7 +4,7 @@
 
 namespace ligature::app {
 
-/// `admit`: measures, prints the table. @return the exit code: 0 admitted, 2 bad scene, 3 refused.
+/// The `admit` command: measures and prints the table. @return the exit code: 0 admitted, 2 bad scene, 3 refused.
 [[nodiscard]] int admit_scene(const AdmitOptions& options);
 
 }  // namespace ligature::app

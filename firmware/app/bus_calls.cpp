@@ -20,7 +20,7 @@ void drain(platform::CanBus& bus) noexcept {
   }
 }
 
-/// Everything that a tick asks of the kernel for one hand.
+/// All kernel calls of one tick for one hand: send SYNC, read the TPDOs, send the RPDOs.
 void call(platform::CanBus& bus) noexcept {
   bus.send({.id = 0x080});
   drain(bus);

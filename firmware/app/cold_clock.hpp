@@ -1,5 +1,5 @@
 #pragma once
-// How admission measures: CPU time of this thread, with the caches as another program would leave them.
+// How admission measures: CPU time of the calling thread, with cold caches.
 
 #include <time.h>
 
@@ -15,7 +15,7 @@ inline double cpu_us() noexcept {
   return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
 }
 
-/// Between two ticks of a rig a millisecond passes in which others use the caches.
+/// Evicts the caches before a measurement: on a rig other programs use them in the 1 ms between two ticks.
 class ColdCaches {
  public:
   void operator()() noexcept {

@@ -21,9 +21,9 @@ using platform::Grade;
 
 constexpr auto kPeriod = std::chrono::milliseconds(1);
 constexpr std::int64_t kGood_ns = 100'000, kUsable_ns = 300'000;
-constexpr std::size_t kBins = 12;  // < 1, 2, 4, .. 1024 us, more
+constexpr std::size_t kBins = 12;  // upper bounds 1, 2, 4, .. 1024 us, and one bin for longer
 
-/// Text of a command's output; the name was checked, so nothing of it reaches the shell's grammar.
+/// Output of a shell command. `interface` was validated before, so it cannot inject shell syntax.
 std::string ip_details(const std::string& interface) {
   const std::string command = "ip -details link show " + interface + " 2>/dev/null";
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "r"), pclose);
@@ -46,7 +46,7 @@ std::size_t bin_of(std::int64_t latency_ns) {
 
 std::atomic<bool> g_stop{false};
 
-/// Wakes up every millisecond like the loop, with the loop's rights, and does nothing.
+/// Wakes up every millisecond like the loop, with the same priority and locked memory, and does no other work.
 Latency measure_wakeups(double seconds, int core) {
   Latency result;
   result.refusals = platform::lock_memory();
@@ -60,7 +60,7 @@ Latency measure_wakeups(double seconds, int core) {
       const auto late = clock.now() - due;
       result.wakeup.add(late.count());
       ++result.bins[bin_of(late.count())];
-      due += late / kPeriod * kPeriod;  // as the loop does: lost periods are skipped
+      due += late / kPeriod * kPeriod;  // lost periods are skipped, as in the loop
     }
   }).join();
   return result;

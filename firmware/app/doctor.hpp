@@ -1,5 +1,5 @@
 #pragma once
-// Whether this machine can hold the rate: how it is set up, and how late it wakes up.
+// The `doctor` command: checks the machine's settings and measures how late it wakes up.
 
 #include <string>
 #include <vector>
@@ -10,17 +10,17 @@
 
 namespace ligature::app {
 
-/// Verdict on the largest wake-up latency. The loop has 1000 us less admission's "in all" to spare; a rig feels
-/// jitter long before it loses a period.
+/// Grades the largest wake-up latency. What the loop can tolerate is 1000 us minus the total in admission's table, but
+/// forces become uneven long before a period is lost.
 [[nodiscard]] platform::Check judge(const rt::DurationStatistics& wakeup);
 
-/// One row a check: OK, WARN or FAIL, what was found, and under it the command that mends it.
+/// One row per check: OK, WARN or FAIL and what was found; below it the command that corrects it.
 [[nodiscard]] std::string table(const std::vector<platform::Check>& checks);
 
-/// Share of wake-ups by latency, in bins that double.
+/// Share of wake-ups by latency, in bins whose width doubles.
 [[nodiscard]] std::string histogram(const rt::DurationStatistics& wakeup, const std::vector<std::uint64_t>& bins);
 
-/// @return the exit code: 0 no FAIL, 3 at least one.
+/// The `doctor` command. @return the exit code: 0 no FAIL, 3 at least one.
 [[nodiscard]] int doctor(const DoctorOptions& options);
 
 }  // namespace ligature::app

@@ -11,13 +11,15 @@ namespace {
 
 using physics::Vec3;
 
-constexpr double kTaut = 0.07;      // stretch at which a knot counts as drawn: 5 N on a 3-0 nylon thread
-constexpr double kLongest_s = 5.0;  // of a draw
-constexpr double kFarthest = 1.3;   // times its length may the ends of a thread that does not become taut be apart
+constexpr double kTaut = 0.07;      // strain at which a knot counts as drawn tight: 5 N on a 3-0 nylon thread
+constexpr double kLongest_s = 5.0;  // longest duration of drawing
+constexpr double kFarthest = 1.3;   // largest distance of the ends, in thread lengths, if the thread never becomes taut
 constexpr int kRestTicks = 100, kHoldTicks = 300;
-constexpr double kUnits = 91.0;  // of the knot's curve in the thread's length: a quarter of it lies in the knot
+// thread length in units of the trefoil's coordinates: a quarter of the thread lies in the knot
+constexpr double kUnits = 91.0;
 
-/// The classic trefoil r(t) = (sin t + 2 sin 2t, cos t - 2 cos 2t, -sin 3t), open at the top, between straight tails.
+/// The standard trefoil r(t) = (sin t + 2 sin 2t, cos t - 2 cos 2t, -sin 3t), cut open at the top, where the straight
+/// tails begin.
 scene::Vec trefoil(double t) {
   return {std::sin(t) + 2.0 * std::sin(2.0 * t), -std::sin(3.0 * t), std::cos(t) - 2.0 * std::cos(2.0 * t)};
 }
@@ -28,7 +30,7 @@ double distance(const scene::Vec& a, const scene::Vec& b) { return std::hypot(b[
 
 std::vector<scene::Vec> loose_overhand(const scene::Suture& suture, const scene::Vec& middle_W_m) {
   constexpr int kSteps = 600;
-  constexpr double kOpen = 0.35;  // rad left out on both sides of t = pi, where two tails lead away
+  constexpr double kOpen = 0.35;  // rad omitted on each side of t = pi, where the two tails begin
   const double unit_m = suture.length_m / kUnits;
   std::vector<scene::Vec> curve;
   for (int k = 0; k <= kSteps; ++k) {
@@ -62,7 +64,7 @@ scene::Scene no_longer_than(scene::Scene scene, int nodes) {
   if (scene.suture.nodes <= nodes) return scene;
   scene.suture.length_m *= static_cast<double>(nodes - 1) / (scene.suture.nodes - 1);
   scene.suture.nodes = nodes;
-  scene.suture.initial_polyline_m.clear();  // with_loose_knot() lays out another
+  scene.suture.initial_polyline_m.clear();  // with_loose_knot() makes a new start shape
   return scene;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// A knot in the scene's thread, drawn tight by two hands: the work that a rig is for, at the speeds of surgeons' hands.
+// A knot in the scene's thread that two hands draw tight at surgeons' speeds: the typical load of a rig, used by
+// admission.
 
 #include <array>
 #include <functional>
@@ -10,34 +11,35 @@
 
 namespace ligature::app {
 
-/// m/s a hand. 0.25 covers 99.9 % of what was measured of surgeons, 0.4 all of it.
+/// m/s of each hand. 0.25 covers 99.9 % of the measured speeds of surgeons, 0.4 all of them.
 inline constexpr std::array<double, 4> kHandSpeeds_m_per_s{0.05, 0.1, 0.25, 0.4};
 
-/// A loose overhand knot with straight tails along x, its middle where the scene's thread begins, as long as the
-/// thread.
-/// @return points in world W, m, far closer to each other than nodes are.
+/// A loose overhand knot with straight tails along x. Its middle is `middle_W_m`; its length is that of the thread.
+/// @return points in world W, m, much denser than the thread's nodes.
 [[nodiscard]] std::vector<scene::Vec> loose_overhand(const scene::Suture& suture, const scene::Vec& middle_W_m);
 
-/// The scene with a piece of its thread, of the same segments and in no shape of its own, where it has more nodes.
+/// The scene itself if its thread has at most `nodes` nodes; else with a shorter thread of the same segment length and
+/// no start shape.
 [[nodiscard]] scene::Scene no_longer_than(scene::Scene scene, int nodes);
 
-/// The scene with both ends of its thread free, and a loose knot in it: its own, if it begins with a shape of its own
-/// and nothing fixed, else an overhand. The desk is left out: it may be where the knot lies.
+/// The scene with both thread ends free and a loose knot in the thread: the scene's own start shape if it has one and
+/// fixes no point, else an overhand knot. The desk is removed, because the knot may lie inside it.
 [[nodiscard]] scene::Scene with_loose_knot(scene::Scene scene);
 
 struct DrawnKnot {
   double speed_m_per_s = 0.0;
-  double pull_lost = 0.0;  ///< share of the time that the thread stood still while the hands drew,
-  double hold_lost = 0.0;  ///< and in the 0.3 s after, in which they held
+  double pull_lost = 0.0;  ///< share of time in which the thread was not moved while the hands drew
+  double hold_lost = 0.0;  ///< the same in the 0.3 s after that, while the hands held still
   int ticks = 0;
 };
 
-/// A tick of the thread, as it would be on a rig: with the work, or the time, that a rig has for it.
+/// Steps the thread by one tick with the work budget, or the time limit, that a rig has.
 using Tick = std::function<void(physics::Simulation& thread, const std::array<physics::ToolInput, 2>& tools)>;
 
-/// Both ends are taken and drawn apart with `speed` each, until the thread is stretched by 7 % somewhere, or its ends
-/// are further apart than any thread may be; then held.
-/// @param thread one of with_loose_knot(). @param tick steps it; its diagnostics tell what was lost.
+/// Grips both ends and moves them apart, each at `speed_m_per_s`, until the strain is 7 % somewhere or the ends are
+/// further apart than 1.3 thread lengths; then holds them.
+/// @param thread made from with_loose_knot()
+/// @param tick steps the thread; the time lost is read from the thread's diagnostics
 [[nodiscard]] DrawnKnot draw(physics::Simulation thread, const scene::Scene& scene, double speed_m_per_s,
                              const Tick& tick);
 

@@ -11,7 +11,7 @@ namespace {
 constexpr const char* kOverridePassivity = "hands.override_passivity=true";
 constexpr std::string_view kMaxForce = "hands.max_force_N", kForceScale = "hands.force_scale";
 
-/// Whether an override says something about `key`: by its name or by that of a table it lies in.
+/// Whether an override sets `key`, directly or through a table that contains it.
 bool speaks_of(std::string_view override, std::string_view key) {
   const auto named = key_of(override);
   return key == named || (key.starts_with(named) && key[named.size()] == '.');

@@ -1,5 +1,5 @@
 #pragma once
-// What the command line says about the scene: it holds for the whole run, whatever scene a command loads.
+// Scene settings from the command line. They hold for the whole run, also for scenes that commands load later.
 
 #include <optional>
 #include <string>
@@ -11,26 +11,27 @@
 
 namespace ligature::app {
 
-/// Every `--set`, in order, then --override-passivity.
+/// All `--set` options in order, then --override-passivity.
 [[nodiscard]] std::vector<std::string> launch_overrides(const RunOptions& options);
 
 class Launch {
  public:
-  /// @param launched the scene that the run began with, overrides included.
+  /// @param launched the scene at the start of the run, overrides included
   Launch(const RunOptions& options, const scene::Scene& launched);
 
-  /// The launch's overrides, then those of commands; of the same key only the command's. Commands can name no limit but
-  /// hands.force_scale, which highest() bounds.
+  /// Overrides of the launch, then those of commands; where both set a key, only the command's is kept. The only limit
+  /// that a command can set is hands.force_scale, and highest() bounds it.
   [[nodiscard]] std::vector<std::string> with(const std::vector<std::string>& live) const;
 
-  /// The same, and with the force limit of the scene, read from `file`, where that is lower than the launch's.
+  /// As above; also lowers the force limit to that of the scene in `file` if it is lower than the launch's.
   [[nodiscard]] std::vector<std::string> with(const std::vector<std::string>& live, const std::string& file,
                                               const std::string& text) const;
 
-  /// The most that a command may set a limit to; nothing when the launch does not bound it.
+  /// Largest value to which a command may set a limit; empty if the launch does not bound it.
   [[nodiscard]] std::optional<double> highest(std::string_view key) const;
 
-  /// "--set hands.max_force_N=1.0, --override-passivity": the options that hold beside these overrides of commands.
+  /// Text such as "--set hands.max_force_N=1.0, --override-passivity": the launch options still in force next to the
+  /// overrides of commands.
   [[nodiscard]] std::string held(const std::vector<std::string>& live) const;
 
  private:

@@ -40,7 +40,8 @@ std::vector<LiveParameter> live_parameters(const scene::Scene& file, const scene
   };
   const bool is_rod = now.suture.model == scene::Model::kRod;
   const bool has_contact = now.contact.solver != scene::ContactSolver::kNone;
-  // The rod compiles friction in or leaves it out; a scene without it cannot gain it on the way.
+  // The rod fixes at construction whether there is friction at all, so a scene without friction cannot get it while
+  // running.
   if (has_contact && (!is_rod || file.contact.friction > 0.0))
     list.push_back({"contact.friction", "friction", "", now.contact.friction, is_rod ? 0.01 : 0.0, kMostFriction});
   if (is_rod)

@@ -1,5 +1,5 @@
 #pragma once
-// The numbers of a scene that may change while the rig runs, and how far.
+// The scene parameters that may change while the rig runs, and their ranges.
 
 #include <string>
 #include <vector>
@@ -13,9 +13,10 @@ struct LiveParameter {
   double value, lowest, highest;
 };
 
-/// Friction 0 .. 2; the rest from a quarter to four times what the scene file says: beyond that it is another thread,
-/// which is another scene. Numbers that are zero in the file, or that its model does not have, are left out.
-/// @param file the scene as its file says; @param now as it is.
+/// Ranges: friction 0 .. 2; every other parameter from a quarter to four times the value in the scene file. Larger
+/// changes need another scene. Parameters that are zero in the file, or that its model lacks, are left out.
+/// @param file the scene as in its file
+/// @param now the scene as it runs
 [[nodiscard]] std::vector<LiveParameter> live_parameters(const scene::Scene& file, const scene::Scene& now);
 
 }  // namespace ligature::app

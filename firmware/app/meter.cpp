@@ -19,15 +19,16 @@
 namespace ligature::app {
 namespace {
 
-constexpr int kRepeats = 3;             // of the same tick; the least disturbed one counts
-constexpr int kTicksPerShape = 4;       // the first finds contacts, the next ones have to resolve them
-constexpr long kMostWork = 16'000'000;  // more is of no use to any knot (docs/rod-knots.md),
-constexpr long kLeastWork = 1'000'000;  // and with less nothing holds: the clock ends such ticks
-constexpr long kLeastOfANode = 2'000;   // twice what a search for contacts takes: with less nothing moves
-constexpr double kSpare = 0.95;         // of the time given: the rest is for what was not tried
-constexpr double kRound = 100'000.0;    // instructions: the same machine finds the same budget
+constexpr int kRepeats = 3;             // of the same tick; the smallest time counts
+constexpr int kTicksPerShape = 4;       // the first tick finds the contacts, the next ones resolve them
+constexpr long kMostWork = 16'000'000;  // instructions per tick; more helps no knot (docs/rod-knots.md)
+constexpr long kLeastWork = 1'000'000;  // with less no knot holds; then the deadline ends ticks instead
+constexpr long kLeastOfANode = 2'000;   // twice the cost of a contact search per node; with less the thread never moves
+constexpr double kSpare = 0.95;         // share of the given time that is used; the rest is reserve for cases not tried
+// instructions; budgets are rounded to this, so that a machine finds the same one again
+constexpr double kRound = 100'000.0;
 
-/// A teller of CPU time for physics::TimeLeft.
+/// Time left until a given CPU time of this thread, for physics::TimeLeft.
 struct CpuTime {
   double until_us;
   static std::int64_t left_ns(void* self) noexcept {
@@ -40,7 +41,7 @@ void tick_until(physics::Simulation& thread, const std::array<physics::ToolInput
   thread.tick(tools, physics::TimeLeft(&CpuTime::left_ns, &clock));
 }
 
-/// Of a tick of a thread that touches nothing, the least of several.
+/// CPU time in us of a tick without any contact, the least of several.
 double own_cost_us(scene::Scene scene) {
   constexpr int kTicks = 10;
   scene.suture.initial = "hanging";
@@ -55,14 +56,14 @@ double own_cost_us(scene::Scene scene) {
   return least_us;
 }
 
-/// The work that fits into the time given, by what it costs while a knot is drawn tight: the least disturbed of several
-/// equal runs, and all but a hundredth of their ticks. The knot is of a piece of a long thread, so that this takes
-/// about a second at most: what contact costs, it costs in the knot.
+/// Work budget that fits into the given time. It follows from the cost per instruction while a knot is drawn tight: for
+/// each tick the least time of several equal runs, and the budget covers 99 % of the ticks. A long thread is replaced
+/// by a shorter one with the same knot, where the contact cost arises; this bounds the measurement to about 1 s.
 long work_that_fits(const scene::Scene& scene, double given_us) {
   constexpr double kSpeed_m_per_s = 0.25;
-  constexpr long kCounts = 500'000;  // instructions: less than this tells little of their price
+  constexpr long kCounts = 500'000;  // instructions; ticks with less work give no reliable cost per instruction
   constexpr int kMostNodes = 200;
-  constexpr double kDear = 0.99;  // of the ticks cost no more: what is dearer still, the clock ends
+  constexpr double kDear = 0.99;  // quantile of the ticks that must fit; costlier ones end at the deadline
   const scene::Scene knotted = with_loose_knot(no_longer_than(scene, kMostNodes));
   auto made = physics::Simulation::make(knotted);
   auto* const thread = std::get_if<physics::Simulation>(&made);
@@ -118,7 +119,7 @@ class ThreadMeter {
   }
 
  private:
-  /// A few ticks from the same state, several times over.
+  /// Measures the first few ticks from this shape, several times from the same state.
   void try_shape(const Shape& shape) {
     auto start = shape.p_W;
     for (auto& p : start) p += 0.02 * scene_.suture.radius_m * random_vector();
@@ -149,7 +150,7 @@ class ThreadMeter {
     cost_.ended_by_clock = cost_.ended_by_clock || d.end == physics::TickEnd::kClock;
   }
 
-  /// Both hands hold and pull: the left one a quarter along the thread, the right one at three quarters.
+  /// Both hands grip and pull: left at a quarter of the thread, right at three quarters.
   std::array<physics::ToolInput, 2> grips() const {
     const auto nodes_W = thread_.nodes_W();
     const auto held = [&](std::size_t node, double pull_m) {
@@ -190,7 +191,7 @@ LoopCost measure_loop(const scene::Scene& scene) {
   cost.calls_us = bus_calls_us();
   ColdCaches cold;
   rt::TickRecord record;
-  // Controllers can be copied but not assigned: they plan with Ruckig, whose members are constants.
+  // A Controller can be copied but not assigned (Ruckig has const members), so an optional is emplaced instead.
   std::optional<control::Controller> fresh(std::in_place, scene.hands, control::Settings{20, true});
   for (std::int64_t tick = 0; tick < kTicks; ++tick) {
     control::TickInput in;

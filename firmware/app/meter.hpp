@@ -5,35 +5,36 @@
 
 namespace ligature::app {
 
-/// Times are CPU time of the measuring thread with cold caches, the smallest of several runs of the same tick (so that
-/// other work on the core does not count; that is doctor's matter), the largest of all ticks tried.
+/// Times are CPU time of the measuring thread with cold caches: the smallest over several runs of the same tick, which
+/// excludes disturbance by other processes (doctor measures that), and the largest over all ticks tried.
 struct LoopCost {
-  double calls_us = 0.0;    ///< the kernel's part of sending and receiving
-  double control_us = 0.0;  ///< control law and record
+  double calls_us = 0.0;    ///< kernel calls that send and receive frames
+  double control_us = 0.0;  ///< control law and tick record
 };
 
-/// The thread's physics in the scene's worst shapes.
+/// Cost of the thread's physics in the scene's worst-case shapes.
 struct ThreadCost {
-  double given_us = 0.0;         ///< what it has of each period
-  double worst_us = 0.0;         ///< of a tick
-  long work = 0;                 ///< instructions that contact may take in a tick; 0: a model without such a bound
-  double time_lost = 0.0;        ///< share of the time that it stood still, in the shape in which that was most
-  bool ended_by_clock = false;   ///< a tick of those
-  bool contact_cap_hit = false;  ///< more contacts than there was room or work for
+  double given_us = 0.0;         ///< time available in each period
+  double worst_us = 0.0;         ///< costliest tick
+  long work = 0;                 ///< contact budget per tick, in instructions; 0: the model has no such budget
+  double time_lost = 0.0;        ///< largest share of time, over all shapes, in which the thread was not moved
+  bool ended_by_clock = false;   ///< at least one tick ended at the deadline
+  bool contact_cap_hit = false;  ///< more contacts than the list or the budget could hold
   int most_contacts = 0;
-  int ticks = 0;  ///< different ones that were tried
+  int ticks = 0;  ///< number of different ticks measured
 };
 
-/// On the calling thread, some tenths of a second.
+/// Runs on the calling thread and takes some tenths of a second.
 [[nodiscard]] LoopCost measure_loop(const scene::Scene& scene);
 
-/// Tries the worst shapes for so many seconds, and each of them once at least. @param given_us of each period.
-/// @param scene one that physics::Simulation::make() accepts; its suture.work_instructions are taken as they are, else
-/// they are chosen by what they cost on this core while a knot is drawn, so that such a tick ends before its time is
-/// over.
+/// Measures the worst-case shapes for `seconds`, each at least once.
+/// @param scene one that physics::Simulation::make() accepts. Its suture.work_instructions is used if set; else the
+/// budget is chosen by its measured cost on this core while a knot is drawn, so that such a tick ends before the
+/// deadline.
+/// @param given_us time available in each period
 [[nodiscard]] ThreadCost measure_thread(const scene::Scene& scene, double given_us, double seconds);
 
-/// Steps a thread as a rig would that gives it so much work or, where its model knows none, so much CPU time.
+/// Steps a thread as a rig does: with its contact budget or, for a model without one, with `given_us` of CPU time.
 void tick_within(physics::Simulation& thread, const std::array<physics::ToolInput, 2>& tools, double given_us) noexcept;
 
 }  // namespace ligature::app

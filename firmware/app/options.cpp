@@ -29,7 +29,7 @@ could not be started.)";
 const std::map<std::string, RtMode> kModes{
     {"enforce", RtMode::kEnforce}, {"warn", RtMode::kWarn}, {"off", RtMode::kOff}};
 
-/// CLI11's own range lets nan pass: no comparison with it is true.
+/// CLI::Range accepts nan, because every comparison with nan is false.
 CLI::Validator within(double low, double high) {
   const std::string allowed = CLI::detail::to_string(low) + " .. " + CLI::detail::to_string(high);
   return {[=](const std::string& word) {
@@ -40,7 +40,7 @@ CLI::Validator within(double low, double high) {
           "in [" + allowed + "]"};
 }
 
-/// A first word that is no command, by name: the parser alone would only say that a command is missing.
+/// Error text that names an unknown command; CLI11 alone would only say that a command is missing.
 std::string unknown_command(const CLI::App& app, int argc, const char* const* argv) {
   if (argc < 2 || argv[1][0] == '-') return {};
   std::string allowed;
@@ -73,7 +73,7 @@ void add_no_loss(CLI::App& command, double& speed) {
       ->check(within(0.01, 0.4));
 }
 
-/// Where programs keep what they know between runs (XDG base directories).
+/// Default path of the flight recorder: the state directory of the XDG base directory specification, or "none".
 std::string default_recorder() {
   if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state == '/')
     return std::string(state) + "/ligature/flight.rec";

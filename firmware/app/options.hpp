@@ -1,5 +1,5 @@
 #pragma once
-// The command line.
+// Command line of ligature-firmware.
 
 #include <optional>
 #include <string>
@@ -8,7 +8,8 @@
 
 namespace ligature::app {
 
-/// The loop's computing, as a share of the period: what the bus at its longest leaves it (rt::kMostWork), less a fifth.
+/// Default budget of the loop's computing in percent of a period: the time left by the slowest bus (rt::kMostWork),
+/// less a fifth.
 inline constexpr double kDefaultBudget_percent = 20.0;
 
 enum class RtMode { kEnforce, kWarn, kOff };
@@ -16,7 +17,7 @@ enum class RtMode { kEnforce, kWarn, kOff };
 struct RunOptions {
   std::string scene;
   std::vector<std::string> overrides;
-  std::string device;  ///< record of both hands' devices; empty: the shipped Omni-class one
+  std::string device;  ///< device record for both hands; empty: the built-in Omni-class record
   bool override_passivity = false;
   std::string left, right;
   bool arm = false;
@@ -24,24 +25,25 @@ struct RunOptions {
   std::optional<double> duration_s;
   double wait_s = 10.0;
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
-  bool no_telemetry = false;  ///< say nothing to anybody, hear no commands
+  bool no_telemetry = false;  ///< neither publish nor accept commands
   RtMode rt = RtMode::kWarn;
-  int physics_core = -1;  ///< of the thread's physics; -1: that of the loop
+  int physics_core = -1;  ///< core of the physics thread; -1: the loop's core
   int watchdog_ms = 20;
   std::string recorder;  ///< flight recorder file; "none" for none
-  int recorder_s = 120;  ///< how far back it goes
-  std::string scenes;    ///< folder of the scenes that a command may load; empty: that of `scene`
-  bool force = false;    ///< also a scene that is not admitted
+  int recorder_s = 120;  ///< length of the recorded history
+  std::string scenes;    ///< folder of scenes that commands may load; empty: the folder of `scene`
+  bool force = false;    ///< run even if admission refuses
   double budget_percent = kDefaultBudget_percent;
-  double no_loss_m_per_s = 0.0;            ///< speed of a hand up to which a drawn knot must lose no time; 0: may
-  std::string program = "/proc/self/exe";  ///< rehearses what commands ask for, as a child
+  double no_loss_m_per_s = 0.0;  ///< hand speed up to which drawing a knot must lose no time; 0: no such demand
+  /// executable started as a child process to rehearse scenes that commands ask for
+  std::string program = "/proc/self/exe";
 };
 
 struct RehearseOptions {
   std::string scene;
   std::vector<std::string> overrides;
-  std::string text_from;         ///< where the scene's text is read; empty: from `scene`
-  double no_loss_m_per_s = 0.0;  ///< as the run's; 0: nothing is measured
+  std::string text_from;         ///< file that holds the scene's text; empty: `scene` itself
+  double no_loss_m_per_s = 0.0;  ///< as in RunOptions; 0: time loss is not measured
 };
 
 struct AdmitOptions {
@@ -54,7 +56,7 @@ struct AdmitOptions {
 
 struct DoctorOptions {
   double seconds = 10.0;
-  std::vector<std::string> can;  ///< interfaces to look at
+  std::vector<std::string> can;  ///< CAN interfaces to check
 };
 
 using Command = std::variant<RunOptions, AdmitOptions, RehearseOptions, DoctorOptions>;
@@ -63,8 +65,8 @@ struct Exit {
   int code;
 };
 
-/// @return what to do, or the exit code when everything is said: help and version (0), bad usage (2, one line on
-/// stderr).
+/// @return the command to run, or the exit code if nothing is left to do: help and version (0), bad usage (2, one line
+/// on stderr).
 [[nodiscard]] std::variant<Command, Exit> parse(int argc, char** argv);
 
 }  // namespace ligature::app

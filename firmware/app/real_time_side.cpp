@@ -59,13 +59,15 @@ void RealTimeSide::end() {
   physics_thread_.join();
 }
 
-/// Not one of the rights that --rt=enforce insists on: without it wake-ups are late, which doctor and the record show.
+/// Keeps the CPU out of deep idle states. A refusal is only logged, even with --rt=enforce: wake-ups are then later,
+/// which doctor and the tick record show.
 void RealTimeSide::stay_awake() {
   awake_.emplace();
   if (!awake_->refusal().empty()) spdlog::warn("real time: {}", awake_->refusal());
 }
 
-/// At once, before the drives could miss us. One hand at a time, waiting for that hand only.
+/// Switches the drives off at once, before their watchdogs expire. One hand at a time, so that one silent bus cannot
+/// delay the other.
 void RealTimeSide::release() {
   for (platform::CanBus* bus : {buses_.left.get(), buses_.right.get()}) {
     platform::PollWait alone(*bus, *bus);

@@ -1,5 +1,6 @@
 #pragma once
-// The loop and the thread's physics, all they work with, and the threads that run them.
+// The control loop and the thread's physics, everything they work with, and the two operating-system threads that run
+// them.
 
 #include <atomic>
 #include <future>
@@ -17,8 +18,8 @@
 
 namespace ligature::app {
 
-/// Each thread asks for its rights at once and says what was refused. The loop's waits for the word to start, and never
-/// starts without one; the physics' waits for the loop.
+/// Each thread first requests its real-time rights and reports refusals. The loop's thread then waits for start(), and
+/// ends without running the loop if start() never comes; the physics thread waits for the loop.
 class RealTimeSide {
  public:
   using RigCycle = Cycle<platform::RigBus, platform::MonotonicClock, platform::WakeUp>;
@@ -29,15 +30,15 @@ class RealTimeSide {
   RealTimeSide(const RealTimeSide&) = delete;
   RealTimeSide& operator=(const RealTimeSide&) = delete;
 
-  /// @param ask false: for no right at all. @return what was refused, each already logged.
+  /// @param ask false: request no rights. @return the refusals, each already logged.
   platform::Refusals prepare(bool ask, int core);
   void start();
-  /// Waits for the loop's end; without start() it never began.
+  /// Waits until the loop has ended; if start() was not called, the loop never runs.
   void end();
 
   [[nodiscard]] bool is_beating() const noexcept { return beating_; }
-  [[nodiscard]] const RigCycle& cycle() const noexcept { return cycle_; }              // after end()
-  [[nodiscard]] control::Fault fault() const noexcept { return controller_.fault(); }  // after end()
+  [[nodiscard]] const RigCycle& cycle() const noexcept { return cycle_; }              // valid after end()
+  [[nodiscard]] control::Fault fault() const noexcept { return controller_.fault(); }  // valid after end()
 
  private:
   void stay_awake();

@@ -20,13 +20,15 @@ constexpr rlim_t kMostMemory_bytes = rlim_t{1} << 30;
 constexpr rlim_t kMostCpu_s = 6;
 constexpr int kNiceness = 10;
 
-/// Of CPU time, the first limit says by its signal what ended the process, the second ends it.
+/// Sets a resource limit. For CPU time the soft limit raises SIGXCPU, which names the cause; the hard limit 1 s later
+/// kills.
 void limit(int what, rlim_t most) {
   const rlimit both{most, what == RLIMIT_CPU ? most + 1 : most};
   setrlimit(static_cast<__rlimit_resource>(what), &both);
 }
 
-/// What this process may take, whatever the scene asks for. A sanitizer's shadow is memory, too.
+/// Limits this process's memory, CPU time and files, whatever the scene needs. Not with sanitizers, whose shadow memory
+/// would count.
 void bound_this_process() {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   limit(RLIMIT_AS, kMostMemory_bytes);
@@ -35,7 +37,7 @@ void bound_this_process() {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, 0);
   setpriority(PRIO_PROCESS, 0, kNiceness);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody waits for the answer any more
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // die with the parent: the verdict would have no reader
 }
 
 int refused(const Refusal& why) {
@@ -82,7 +84,7 @@ int rehearse_scene(const RehearseOptions& options) {
   platform::flush_denormals();
   try {
     return try_out(options);
-  } catch (const std::exception& error) {  // no memory, mostly
+  } catch (const std::exception& error) {  // mostly out of memory
     return refused({2, options.scene + ": cannot be built within 1 GB of memory (" + error.what() + ")"});
   }
 }

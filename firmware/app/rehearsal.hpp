@@ -1,5 +1,6 @@
 #pragma once
-// Whether a scene that a command asks for may come near the loop: built and tried, in a process that it may take down.
+// Rehearsal: before a commanded scene reaches the loop, it is built and run for a while in a process of its own, which
+// may crash.
 
 #include <string>
 
@@ -8,12 +9,13 @@
 
 namespace ligature::app {
 
-/// Runs a copy for a while, both hands pulling to and fro. @return why it will not do, or empty.
+/// Steps a copy of the thread for 0.4 s while both hands pull back and forth. @return why the scene is not usable, or
+/// empty.
 [[nodiscard]] std::string rehearse(const physics::Simulation& thread);
 
-/// `rehearse`: reads, builds, rehearses and, on request, draws a knot, within limits of memory and CPU time that it
-/// sets for itself. @return the exit code: 0 it will do, 2 it will not, 3 it loses time; the reason is on stderr.
-/// Whatever else ends it (a signal, another code) is the scene's doing, too.
+/// The `rehearse` command: reads, builds and rehearses the scene and, if asked, draws a knot, under its own limits of
+/// memory and CPU time. @return the exit code: 0 usable, 2 not usable, 3 loses time; the reason is on stderr. Any other
+/// end (signal, other code) also means that the scene is not usable.
 [[nodiscard]] int rehearse_scene(const RehearseOptions& options);
 
 }  // namespace ligature::app

@@ -19,7 +19,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::size_t kMostWords = 4096;
 
-/// An open file that is closed at the end.
+/// Owns a file descriptor.
 class File {
  public:
   explicit File(int fd = -1) : fd_(fd) {}
@@ -53,8 +53,8 @@ std::vector<std::string> words_of(const Rehearsal& what) {
   return words;
 }
 
-/// posix_spawn() and not fork(): a fork marks every page of ours for copying, and the loop would meet a page fault at
-/// each one that it writes. @return the child, or -1 with errno.
+/// posix_spawn() instead of fork(): fork marks all our pages copy-on-write, and each of the loop's writes to one would
+/// then cause a page fault. @return the child's pid, or -1 with errno.
 pid_t start(const Rehearsal& what, int in, int out) {
   auto words = words_of(what);
   std::vector<char*> arguments;
@@ -72,7 +72,7 @@ pid_t start(const Rehearsal& what, int in, int out) {
   sigset_t none;
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&how, &none);
-  posix_spawnattr_setpgroup(&how, 0);  // Ctrl-C is for the controller
+  posix_spawnattr_setpgroup(&how, 0);  // so that Ctrl-C does not reach the child
   posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
   pid_t child = -1;
   const int error = posix_spawn(&child, what.program.c_str(), &files, &how, arguments.data(), environ);
@@ -82,14 +82,14 @@ pid_t start(const Rehearsal& what, int in, int out) {
   return error == 0 ? child : -1;
 }
 
-/// What the child said so far; what is too much is dropped.
+/// Appends what the child has printed so far; text beyond kMostWords is dropped.
 void hear(int from, std::string& words) {
   std::array<char, 1024> part{};
   const auto n = ::read(from, part.data(), part.size());
   if (n > 0 && words.size() < kMostWords) words.append(part.data(), static_cast<std::size_t>(n));
 }
 
-/// The child's end as waitpid() tells it, or nothing when it was killed for want of time.
+/// The child's status as from waitpid(), or nothing if it was killed after `patience` or by `cancelled`.
 std::optional<int> await(pid_t child, int from, std::chrono::milliseconds patience, const std::atomic<bool>& cancelled,
                          std::string& words) {
   int status = 0;
@@ -106,7 +106,7 @@ std::optional<int> await(pid_t child, int from, std::chrono::milliseconds patien
   return killed ? std::nullopt : std::optional(status);
 }
 
-/// The last line that the program itself said.
+/// The last line that carries the program's own prefix.
 std::string reason_in(const std::string& words) {
   constexpr std::string_view kName = "ligature-firmware: ";
   const auto at = words.rfind(kName);
@@ -129,7 +129,7 @@ Verdict rehearse_elsewhere(const Rehearsal& what, const std::atomic<bool>& cance
   const auto failed = [&](const char* why) {
     return Verdict{what.file + ": cannot be rehearsed: " + why + " (" + std::strerror(errno) + ")", {}};
   };
-  const File text(memfd_create("scene", MFD_CLOEXEC));  // a regular file that nobody else can change
+  const File text(memfd_create("scene", MFD_CLOEXEC));  // a regular file that no other process can change
   if (!write_all(text.fd(), what.text)) return failed("no memory for its text");
   std::array<int, 2> ends{-1, -1};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) return failed("no pipe");

@@ -1,5 +1,6 @@
 #pragma once
-// `ligature-firmware rehearse` as a child of the running controller: what a scene does to it ends with it.
+// Runs `ligature-firmware rehearse` as a child process of the running controller, so that a harmful scene can only
+// crash the child.
 
 #include <atomic>
 #include <chrono>
@@ -9,22 +10,22 @@
 namespace ligature::app {
 
 struct Rehearsal {
-  std::string program;  ///< ligature-firmware
-  std::string file;     ///< names the scene, and polylines are found beside it
-  std::string text;     ///< of the scene, as it will be run
+  std::string program;  ///< path of ligature-firmware
+  std::string file;     ///< names the scene; its polyline files are looked up relative to it
+  std::string text;     ///< the scene's text, exactly as it will be run
   std::vector<std::string> overrides;
-  double no_loss_m_per_s = 0.0;               ///< what a drawn knot loses is measured up to this speed; 0: it is not
-  std::chrono::milliseconds patience{9'000};  ///< whoever asked waits for 10 s
+  double no_loss_m_per_s = 0.0;               ///< hand speed up to which time loss is measured; 0: not measured
+  std::chrono::milliseconds patience{9'000};  ///< less than the 10 s for which the command's sender waits
 };
 
 struct Verdict {
-  std::string refusal;  ///< why it must not run; empty: it may
-  std::string excess;   ///< what time it loses that it must not; empty: none, or it was not measured
+  std::string refusal;  ///< why the scene must not run; empty: it may
+  std::string excess;   ///< time lost beyond what is allowed; empty: none, or not measured
 };
 
-/// Waits for the child's verdict, for `patience` at most and until `cancelled`; then the child is killed. The child
-/// inherits the calling thread's cores and none of our files. It is started without a copy of our memory, so that no
-/// page of the loop's is touched.
+/// Waits for the child's verdict for at most `patience`, or until `cancelled`, and then kills the child. The child
+/// inherits the calling thread's CPU affinity and none of our files. It is started without copying our memory
+/// (posix_spawn), so the loop gets no page faults.
 [[nodiscard]] Verdict rehearse_elsewhere(const Rehearsal& what, const std::atomic<bool>& cancelled);
 
 }  // namespace ligature::app

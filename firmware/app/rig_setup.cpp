@@ -20,7 +20,7 @@
 namespace ligature::app {
 namespace {
 
-/// A coupling that the device cannot render stably.
+/// Error text if the coupling is stiffer than the device can render stably, else empty.
 std::string too_stiff(const scene::Hands& hands, const device::Device& device) {
   const auto a = control::admissible(hands, device, control::kPeriod_s);
   if (a.holds()) return {};
@@ -33,7 +33,7 @@ std::string too_stiff(const scene::Hands& hands, const device::Device& device) {
   return text.str();
 }
 
-/// What a scene may ask of a lab run but not of a hand.
+/// Error text for settings that are allowed in a simulation but not with hands connected, else empty.
 std::string objection(const scene::Scene& s, const device::Device& device) {
   const auto told = [](const char* key, double found, const std::string& allowed) {
     std::ostringstream text;
@@ -49,10 +49,10 @@ std::string objection(const scene::Scene& s, const device::Device& device) {
   return s.hands.override_passivity ? std::string() : too_stiff(s.hands, device);
 }
 
-/// The same name, or two names of the same socket.
+/// Whether both URLs are equal, or name the same socket by different paths.
 bool is_same_bus(const std::string& left, const std::string& right) {
   constexpr std::string_view kLocal = "local:";
-  if (left.empty() || right.empty()) return false;  // `admit` has none
+  if (left.empty() || right.empty()) return false;  // `admit` opens no bus
   if (left == right) return true;
   if (!left.starts_with(kLocal) || !right.starts_with(kLocal)) return false;
   std::error_code none;
@@ -132,7 +132,8 @@ std::optional<Refusal> configure(const Buses& buses, const RunOptions& options, 
   times.heartbeat_timeout_ms = std::max(times.heartbeat_timeout_ms, times.rpdo_timeout_ms);
   platform::PollWait wait(*buses.left, *buses.right);
   for (auto [hand, bus] : {std::pair{"left", buses.left.get()}, std::pair{"right", buses.right.get()}}) {
-    platform::PollWait alone(*bus, *bus);  // the other hand's frames, not read now, would wake us for nothing
+    // waits on this bus only: unread frames of the other would wake us for nothing
+    platform::PollWait alone(*bus, *bus);
     if (const auto why = platform::other_master(*bus, alone)) return Refusal{3, std::string(hand) + " hand: " + *why};
   }
   for (auto [hand, bus] : {std::pair{"left", buses.left.get()}, std::pair{"right", buses.right.get()}}) {

@@ -1,5 +1,5 @@
 #pragma once
-// From names on the command line to things that work: the scene, the buses, the drives.
+// Builds what the command line names: scene, buses, configured drives.
 
 #include <functional>
 #include <memory>
@@ -15,7 +15,7 @@
 
 namespace ligature::app {
 
-/// Why something could not be, and the exit code that says so.
+/// Why the program cannot start, and its exit code.
 struct Refusal {
   int exit_code;
   std::string text;
@@ -25,29 +25,30 @@ struct Plan {
   scene::Scene scene;
   physics::Simulation thread;
   device::Device device;
-  std::string toml;  ///< the scene's text with the overrides as comments, for recordings
+  std::string toml;  ///< the scene's text with the overrides as comments, stored in recordings
 };
 [[nodiscard]] std::variant<Plan, Refusal> make_plan(const RunOptions& options);
-/// The same for any scene: one that was read from `file`. Exit codes do not matter then.
+/// The same for a scene whose text was already read from `file`. The exit code in a Refusal is not used then.
 [[nodiscard]] std::variant<Plan, Refusal> plan_of(const std::string& file, const std::string& text,
                                                   const std::vector<std::string>& overrides,
                                                   const device::Device& device = device::omni());
 
-/// Gives the plan's thread so much work for contact a tick, and notes it with the overrides, so that a recording is
-/// stepped again alike. Nothing for a thread without such a bound (0), or whose scene says it.
+/// Sets the thread's contact budget per tick and adds it to the overrides, so that a recording is replayed identically.
+/// Does nothing if the model has no budget (0) or the scene sets it.
 void give_work(Plan& plan, long instructions);
 
 struct Buses {
   std::unique_ptr<platform::CanBus> left, right;
 };
 
-/// Pauses for a while; true when the program shall end.
+/// Pauses for a moment. @return true if the program shall end.
 using Pause = std::function<bool()>;
 
-/// Opens both buses, trying again for options.wait_s: a hand may start later than we.
+/// Opens both buses, retrying for options.wait_s, because a hand may start later than this program.
 [[nodiscard]] std::variant<Buses, Refusal> open_buses(const RunOptions& options, const Pause& pause);
 
-/// Makes sure that nobody else commands the drives, then start-up of all six up to pre-operational. @return why not.
+/// Checks that nobody else commands the drives, then starts all six up to pre-operational. @return why it failed, if
+/// so.
 [[nodiscard]] std::optional<Refusal> configure(const Buses& buses, const RunOptions& options,
                                                const device::Device& device);
 

@@ -55,12 +55,12 @@ constexpr telemetry::Names kNames{
     [](int f) { return control::needs_restart(static_cast<control::Fault>(f)); },
 };
 
-/// The recorder, or nothing: a rig without one is worse off, but not less safe.
+/// Opens the flight recorder; on failure only warns, because the rig is as safe without it.
 std::unique_ptr<telemetry::FlightRecorder> open_recorder(const Plan& plan, const RunOptions& options,
                                                          std::int64_t session) {
   if (options.recorder == "none") return nullptr;
   const auto path = std::filesystem::absolute(options.recorder);
-  std::error_code ignored;  // open() tells
+  std::error_code ignored;  // open() reports the error
   std::filesystem::create_directories(path.parent_path(), ignored);
   auto opened = telemetry::FlightRecorder::open(
       path.string(),
@@ -83,10 +83,10 @@ telemetry::Session session(const Plan& plan, const RunOptions& options, std::int
           recorder != nullptr ? recorder->path() : std::string()};
 }
 
-/// What has become of a change of scene or parameters, told.
+/// Reports the outcome of a change of scene or parameters to recorder, telemetry and sender.
 void tell_change(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, SceneDesk& desk,
                  telemetry::FlightRecorder* recorder) {
-  if (recorder != nullptr) recorder->expect_scene(desk.is_busy());  // before the loop can have it
+  if (recorder != nullptr) recorder->expect_scene(desk.is_busy());  // before the loop can have taken it
   auto outcome = desk.poll();
   if (!outcome) return;
   const auto at = now();
@@ -100,7 +100,7 @@ void tell_change(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, Scen
   link.answer(outcome->ack);
 }
 
-/// The telemetry thread: until `done`, then what is left.
+/// Body of the telemetry thread: runs until `done`, then sends what is left.
 void tell(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, SceneDesk& desk,
           telemetry::FlightRecorder* recorder, const std::atomic<bool>& done) {
   while (!done) {
@@ -123,7 +123,7 @@ Losses losses(const rt::Outlets& outlets, const telemetry::FlightRecorder* recor
   return {outlets.records.dropped(), true, recorder->missing(), recorder->slowest_sync()};
 }
 
-/// The run proper: telemetry beside the loop until one of them says that it is over. @return the exit code.
+/// Runs telemetry beside the loop until the loop ends, by itself or by a signal. @return the exit code.
 int run_loop(RealTimeSide& side, telemetry::LcmLink& link, telemetry::Telemetry& telemetry, SceneDesk& desk,
              telemetry::FlightRecorder* recorder, const Buses& buses, rt::Outlets& outlets,
              const StopSignals& signals) {
@@ -136,7 +136,7 @@ int run_loop(RealTimeSide& side, telemetry::LcmLink& link, telemetry::Telemetry&
     if (signals.wait()) outlets.stop = true;
   }
   side.end();
-  if (recorder != nullptr) recorder->finish();  // telemetry goes on meanwhile, and has its last notes to tell
+  if (recorder != nullptr) recorder->finish();  // telemetry still runs, because finish() may produce messages for it
   done = true;
   teller.join();
   const auto& cycle = side.cycle();

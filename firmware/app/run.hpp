@@ -4,7 +4,8 @@
 
 namespace ligature::app {
 
-/// The whole life of the controller. @return the exit code: 0 done, 2 bad scene, 3 fault at the end or no start.
+/// The `run` command, from start to end. @return the exit code: 0 done, 2 bad scene, 3 start failed or ended in a
+/// fault.
 [[nodiscard]] int run(const RunOptions& options);
 
 }  // namespace ligature::app

@@ -34,7 +34,7 @@ std::string shortest(double value) {
   return text;
 }
 
-/// "0.5" is a TOML number, "2" an integer: both are read as numbers.
+/// "key=value" as a TOML assignment. A whole value prints as an integer, which readers of floats accept as well.
 std::string assignment(const std::string& key, double value) { return key + "=" + shortest(value); }
 
 }  // namespace
@@ -53,7 +53,8 @@ SceneDesk::SceneDesk(const RunOptions& options, const Plan& plan, const std::str
   scenes_ = scene_files(options_.scenes);
 }
 
-/// "knot.toml", or "knot.toml suture.model=paper-2 suture.nodes=35": the scene with another model or number of nodes.
+/// `wish` is "knot.toml" or "knot.toml suture.model=paper-2 suture.nodes=35": a scene, optionally with another model or
+/// number of nodes.
 std::string SceneDesk::prepare_scene(const std::string& wish) {
   std::istringstream words(wish);
   std::string name;
@@ -76,7 +77,7 @@ std::string SceneDesk::prepare_scene(const std::string& wish) {
   return {};
 }
 
-/// What may be changed, within the launch's limits.
+/// The parameters that may change, with ranges cut to the launch's limits.
 std::vector<LiveParameter> SceneDesk::parameters() const {
   auto list = live_parameters(now_.from_file, now_.scene);
   for (auto& p : list) p.highest = std::min(p.highest, launch_.highest(p.key).value_or(p.highest));
@@ -124,13 +125,14 @@ std::optional<ligature_msg::ack_t> SceneDesk::request(const ligature_msg::comman
   return std::nullopt;
 }
 
-/// What this machine affords, found at the launch or, where that had no such bound, beside the loop.
+/// Contact budget of this machine: measured at the launch or, if the launch's model had no budget, measured now (off
+/// the loop).
 long SceneDesk::work_of_this_machine(const Plan& plan) const {
   if (plan.thread.work() == 0 || work_ > 0) return plan.thread.work() == 0 ? 0 : work_;
   return admit(plan.scene, {}).thread.work;
 }
 
-/// First in a process that the scene may take down, then, what has passed there, in this one.
+/// Rehearses the scene in a child process that may crash; if that succeeds, builds it in this process.
 std::variant<SceneDesk::Built, std::string> SceneDesk::build(Setup setup, bool keeps_motion) const {
   platform::flush_denormals();
   const auto read = scene::read_text(setup.file, scene::kMostScene_bytes);

@@ -1,5 +1,5 @@
 #pragma once
-// Changes of scene and of parameters while the rig runs: judged, built and measured here, taken over by the loop.
+// Changes of scene and parameters while the rig runs: checked, built and measured here, then handed over to the loop.
 
 #include <atomic>
 #include <cstdint>
@@ -20,7 +20,7 @@
 
 namespace ligature::app {
 
-/// A change that the loop has taken over.
+/// A change that the loop has accepted.
 struct Changed {
   std::string file, toml, text;  ///< text: one line for people
   double max_force_N, radius_m;
@@ -28,21 +28,21 @@ struct Changed {
   std::int64_t first_tick;
 };
 
-/// What the text of a scene says when it is not admitted and --force runs it: "\n# --force: ..", or nothing.
+/// Text appended to a scene that runs by --force although it was not admitted: "\n# --force: <reason>", or empty.
 [[nodiscard]] std::string forced(const std::string& excess);
 
-/// The telemetry thread's; a thread of its own builds, one change at a time. A scene is read once; a child process
-/// builds it, lets it prove in a rehearsal that it stays finite and, with --no-loss, that its knot loses no time
-/// (unless
-/// --force); only then it is built here and handed over. None of that runs on the loop's core, nor with its priority.
-/// The loop judges the state once more. Whatever comes back is destroyed here.
+/// Used from the telemetry thread; it builds in another thread, one change at a time. The scene file is read once. A
+/// child process builds it and rehearses it: the state must stay finite and, with --no-loss and without --force, its
+/// knot must lose no time. Only then is it built in this process and handed over. None of this runs on the loop's core
+/// or at its priority. The loop checks the rig's state once more before it accepts. Plants that the loop gives back are
+/// destroyed here.
 class SceneDesk {
  public:
-  /// @param plan of the start, as it will be run.
-  /// @param excess why it is not admitted; empty: it is. @param always  so with any scene: it is the loop that is too
-  /// slow.
+  /// @param plan of the start, as it will be run
+  /// @param excess why that scene is not admitted; empty: it is
+  /// @param always true: `excess` holds for every scene, because the loop itself is too slow
   SceneDesk(const RunOptions& options, const Plan& plan, const std::string& excess = {}, bool always = false);
-  ~SceneDesk() { ending_ = true; }  // and waits for a builder that is told so
+  ~SceneDesk() { ending_ = true; }  // the future's destructor waits for the builder, which checks ending_
   SceneDesk(const SceneDesk&) = delete;
   SceneDesk& operator=(const SceneDesk&) = delete;
 
@@ -53,25 +53,26 @@ class SceneDesk {
            command.kind == ligature_msg::command_t::KIND_SET_PARAMETER;
   }
 
-  /// @param may_push whether force may flow now, as far as is known. @return a refusal, or nothing: poll() answers.
+  /// @param may_push whether force may flow, as far as telemetry knows. @return a refusal, or nothing: poll() answers
+  /// later.
   [[nodiscard]] std::optional<ligature_msg::ack_t> request(const ligature_msg::command_t& command, bool may_push);
 
-  /// What has become of the request: its answer, and the change when there was one.
+  /// Result of a request: the answer, and the change if one was made.
   struct Outcome {
     ligature_msg::ack_t ack;
     std::optional<Changed> changed;
   };
   [[nodiscard]] std::optional<Outcome> poll();
 
-  /// Whether a change is asked for and not yet answered; the loop may have it.
+  /// Whether a change is requested and not yet answered; the loop may already have it.
   [[nodiscard]] bool is_busy() const noexcept { return busy_; }
 
   [[nodiscard]] ligature_msg::offer_t offer() const;
 
  private:
-  struct Setup {  // what the loop runs
+  struct Setup {  // a scene with its overrides, as the loop runs it
     std::string file;
-    std::vector<std::string> live;  // overrides of commands; those of the launch hold beside them
+    std::vector<std::string> live;  // overrides by commands; those of the launch apply in addition
     scene::Scene from_file, scene;
     std::string excess;  // why it is not admitted; empty: it is
   };
@@ -89,19 +90,20 @@ class SceneDesk {
 
   RunOptions options_;
   device::Device device_;
-  std::string loop_excess_;  // of any scene
-  long work_;  // what this machine affords for contact; 0: not known, the launch's model has no such bound
+  std::string loop_excess_;  // why no scene is admitted (loop too slow); empty: no such reason
+  // contact budget of this machine in instructions; 0: unknown, as the launch's model has none
+  long work_;
   Launch launch_;
   std::vector<std::string> scenes_;
   Setup now_;
   control::PlantHandover handover_;
 
   ligature_msg::command_t asked_{};
-  std::string words_;  // of what is asked
+  std::string words_;  // text of the pending request
   Setup next_;
   std::atomic<bool> ending_{false};
   std::future<std::variant<Built, std::string>> building_;
-  std::optional<Built> lent_;  // with the loop
+  std::optional<Built> lent_;  // plant handed to the loop and not yet given back
   bool busy_ = false;
 };
 

@@ -1,11 +1,11 @@
 #pragma once
-// How the program is told to end.
+// Signals that end the program.
 
 #include <signal.h>
 
 namespace ligature::app {
 
-/// SIGINT and SIGTERM, taken by waiting for them in the main thread: no handler, nothing asynchronous anywhere.
+/// SIGINT and SIGTERM are blocked and waited for in the main thread, so there is no asynchronous signal handler.
 class StopSignals {
  public:
   StopSignals() {
@@ -14,7 +14,7 @@ class StopSignals {
     sigaddset(&set_, SIGTERM);
     pthread_sigmask(SIG_BLOCK, &set_, nullptr);  // threads started later inherit this
   }
-  /// @return true when one came, within at most 50 ms.
+  /// @return true if one arrived; waits for at most 50 ms.
   bool wait() const {
     const timespec patience{0, 50'000'000};
     return sigtimedwait(&set_, nullptr, &patience) > 0;

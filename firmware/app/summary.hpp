@@ -8,15 +8,15 @@
 
 namespace ligature::app {
 
-/// Records that were lost on their way out of the loop.
+/// Tick records that did not reach their readers.
 struct Losses {
-  std::uint64_t telemetry = 0;  ///< of what LCM hears
+  std::uint64_t telemetry = 0;  ///< records missing in LCM telemetry
   bool recorder = false;        ///< whether there is a flight recorder
-  std::int64_t flight = 0;      ///< of what it holds
+  std::int64_t flight = 0;      ///< records missing in the flight recorder
   std::chrono::milliseconds slowest_sync{0};
 };
 
-/// The last words of a run: how well the rate was held, as a table of fixed width.
+/// The table of fixed width printed at the end of a run: rate held, deadline misses, times.
 [[nodiscard]] std::string summary(const rt::CycleTiming& timing, std::int64_t periods, const Losses& losses);
 
 }  // namespace ligature::app

@@ -10,7 +10,7 @@ namespace {
 
 using physics::Vec3;
 
-/// Corners of the winding: rows along x, stacked in y, layers in z, without a jump anywhere.
+/// Corner points of a back-and-forth winding: rows along x, stacked in y, layers in z; the path is continuous.
 std::vector<Vec3> corners(double length_m, double spacing_m) {
   const int rows = std::max(2, static_cast<int>(std::cbrt(length_m / spacing_m)));
   const double row_m = std::max(2.0 * spacing_m, rows * spacing_m);
@@ -39,7 +39,7 @@ std::vector<Vec3> wound_up(int nodes, double l_rest_m, double spacing_m, const V
   const auto path = corners((nodes + 1) * l_rest_m, spacing_m);
   std::vector<Vec3> p_W;
   std::size_t piece = 0;
-  double into_m = 0.0;  // the next node, from the start of the piece
+  double into_m = 0.0;  // distance of the next node from the start of this piece
   while (static_cast<int>(p_W.size()) < nodes) {
     const Vec3 along = path[piece + 1] - path[piece];
     const double piece_m = along.norm();

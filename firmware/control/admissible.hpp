@@ -1,17 +1,17 @@
 #pragma once
-// How stiff a coupling a device can render at all.
+// The largest coupling stiffness that a device can render stably.
 
 #include "protocol/device/device.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::control {
 
-/// A coupling as the device feels it against a thread that does not give way, and the bound it must stay below:
+/// The coupling as the device feels it if the thread does not yield, and its stability limit:
 ///   K < (b + B) / (T/2 + t_d)       linear stability of a sampled, delayed spring for small B (Gil; Hulin et al., IEEE
 ///                                   Trans. Control Syst. Technol. 2014); a hand's own damping only helps
-/// b: damping of the device, T: period, t_d: delay from sample to torque. Both springs in series when the scene has a
-/// device side:
-///   K = K_d K_t / (K_d + K_t),   B = (B_d K_t^2 + B_t K_d^2) / (K_d + K_t)^2     (low frequencies), K_t, B_t times s w
+/// b: damping of the device, T: period, t_d: delay from sample to torque. If the scene has a device-side spring (K_d,
+/// B_d), it is in series with the thread-side one (K_t, B_t, times s w: force scale and workspace scale):
+///   K = K_d K_t / (K_d + K_t),   B = (B_d K_t^2 + B_t K_d^2) / (K_d + K_t)^2     (low frequencies)
 struct Admissible {
   double K_N_per_m = 0.0;
   double B_N_s_per_m = 0.0;

@@ -6,9 +6,10 @@
 namespace ligature::control {
 namespace {
 
-constexpr double kNearStretched = 1e-6;  // of 1 - |x|: a box that reaches a singular pose leaves no force, and no NaN
+// lower bound of 1 - |x|: near a singular pose the allowed force goes to 0 without NaN
+constexpr double kNearStretched = 1e-6;
 
-/// Least and largest distance of [low, high] from zero.
+/// Smallest and largest |x| for x in [low, high].
 struct Span {
   Span(double low, double high) noexcept
       : least(low <= 0.0 && high >= 0.0 ? 0.0 : std::min(std::abs(low), std::abs(high))),
@@ -61,7 +62,7 @@ double AnyPose::most_N(const Vec3& low_Nm, const Vec3& high_Nm) const noexcept {
   const Vec3 low = low_Nm.cwiseProduct(per_m_), high = high_Nm.cwiseProduct(per_m_);
   const double waist = std::max(low[0] * low[0], high[0] * high[0]);
   double most = 0.0;
-  for (const double a : {low[1], high[1]})  // convex: at a corner
+  for (const double a : {low[1], high[1]})  // a convex function has its maximum at a corner
     for (const double b : {low[2], high[2]}) most = std::max(most, most_of_slices(waist, a, b));
   return std::sqrt(most);
 }

@@ -42,14 +42,14 @@ void Controller::command(rt::CommandKind kind) noexcept {
     case rt::CommandKind::kCalibrate:
       begin_moves(kind == rt::CommandKind::kPark ? Move::kPark : Move::kCalibrate);
       break;
-    case rt::CommandKind::kResetThread:  // the thread's, not ours
+    case rt::CommandKind::kResetThread:  // handled by the physics thread
     case rt::CommandKind::kNone:
       break;
   }
 }
 
-/// Each hand that holds its dead-man and nothing else is led; the others stay as they are. Under the clutch a move ends
-/// before it begins (HandControl::lead_force).
+/// Starts the move on each hand whose dead-man is pressed and which holds nothing; the other hands are not affected. If
+/// the clutch is pressed, the move ends at once (HandControl::lead_force).
 void Controller::begin_moves(Move move) noexcept {
   if (!armed_ || !may_push(state_) || braking_) return;
   for (HandControl& h : hands_) {
@@ -70,7 +70,8 @@ void Controller::change_force_scale(double force_scale) noexcept {
 void Controller::step_force_scale() noexcept {
   const double now = hands_[0].force_scale(), left = scale_goal_ - now;
   if (left == 0.0) return;
-  const bool arrives = std::abs(left) <= scale_step_ * (1.0 + 1e-9);  // exactly, whatever the steps added up to
+  // set exactly, so that rounding errors of the steps do not remain
+  const bool arrives = std::abs(left) <= scale_step_ * (1.0 + 1e-9);
   for (HandControl& h : hands_) h.set_force_scale(arrives ? scale_goal_ : now + std::copysign(scale_step_, left));
 }
 
@@ -80,7 +81,7 @@ rt::RigCommand Controller::tick(const TickInput& in) noexcept {
     if (in.late) hands_[h].doubt_time_of(in.tick);
     torque_[h].look(in.reading.hand[h]);
     loss_[h].look(in.reading.hand[h]);
-    if (state_ == State::kOff) loss_[h].forget();  // the drives are on their way up, or the fault was reset
+    if (state_ == State::kOff) loss_[h].forget();  // drives are starting up, or a fault was reset
     hands_[h].observe(in.reading.hand[h], in.grasp[h], in.tick, last_tick_);
   }
   step_state(in);
@@ -113,8 +114,8 @@ bool Controller::any_too_fast() const noexcept {
       hands_, [this](const HandControl& h) { return h.speed_m_per_s() > settings_.device.velocity_limit_m_per_s; });
 }
 
-/// The fault of this tick, the most telling first. While the drives are on their way up (OFF) only those count that
-/// have nothing to do with whether they are.
+/// The fault of this tick, most specific first. In OFF, while the drives start up, only faults that do not depend on
+/// the drives being up count.
 Fault Controller::find_fault(const TickInput& in) const noexcept {
   for (const auto& reading : in.reading.hand) {
     if (reading.bus_lost) return Fault::kBusLost;
@@ -234,13 +235,13 @@ bool Controller::all_zero() const noexcept {
   return std::ranges::all_of(hands_, [](const HandControl& h) { return h.gain() == 0.0; });
 }
 
-/// Force goes no faster than its limits let it: it may last longer than the gain.
+/// Whether any force is left: limits on its change can make it last longer than the gain.
 bool Controller::any_pushes() const noexcept {
   return std::ranges::any_of(hands_, [](const HandControl& h) { return !h.state().f_device_N.isZero(0.0); });
 }
 
 std::array<physics::ToolInput, rt::kHands> Controller::tools() const noexcept {
-  // A hand that is gone lets go of the thread.
+  // A hand without fresh samples releases the thread.
   const auto tool = [this](const HandControl& h) { return h.tool(h.state().age_ticks < settings_.watchdog_ticks); };
   return {tool(hands_[0]), tool(hands_[1])};
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Both hands' control law: what the joints say in, what the drives shall do out. One call a period.
+// Control law of both hands: joint samples in, torques and drive requests out, once per period.
 
 #include <array>
 #include <cstdint>
@@ -19,44 +19,48 @@ namespace ligature::control {
 using rt::kPeriod_s;
 
 struct Settings {
-  std::int32_t watchdog_ticks = 20;  ///< age of joint messages, periods lost or thread late in a row, that is a fault
-  bool armed = false;                ///< at start; a fault and a disarm take it back
+  /// limit, in ticks, for the age of joint messages, for lost periods in a row and for physics lateness; reaching it is
+  /// a fault
+  std::int32_t watchdog_ticks = 20;
+  bool armed = false;  ///< at start; a fault or a disarm clears it
   device::Device device = device::omni();
-  bool lending = true;  ///< off: each hand must earn its force alone, and cannot be pulled (an experiment shows it)
+  /// false: the hands' accounts lend no energy to each other, so no hand can be pulled by the other (for experiments)
+  bool lending = true;
 };
 
-/// All that a tick depends on.
+/// All inputs of a tick.
 struct TickInput {
-  std::int64_t tick = 0;  ///< number of the period; a jump means lost periods
+  std::int64_t tick = 0;  ///< index of the period; a jump means lost periods
   rt::RigReading reading;
-  std::array<Grasp, rt::kHands> grasp;  ///< the newest there is
+  std::array<Grasp, rt::kHands> grasp;  ///< newest available
   bool thread_finite = true;
-  bool late = false;  ///< the samples asked for in this tick were taken nobody knows when, periods late perhaps
-  std::int64_t grasp_age_ticks = 1;    ///< since the period whose tools that grasp has seen
-  std::int64_t thread_late_ticks = 0;  ///< tools handed over that it has not seen
+  bool late = false;                   ///< the time of this tick's samples is unknown; they may be periods late
+  std::int64_t grasp_age_ticks = 1;    ///< periods since the one whose tools this grasp was computed from
+  std::int64_t thread_late_ticks = 0;  ///< number of tool inputs handed over that the physics has not used yet
 };
 
-/// Real time: tick() is O(1), allocates nothing, throws nothing, calls no system. Deterministic in its inputs.
+/// tick() is O(1), allocates nothing, throws nothing and makes no system call. Its output depends only on its inputs.
 class Controller {
  public:
-  static constexpr int kCalibrationTicks = 50;  ///< of possible poses in a row
-  static constexpr int kScaleTicks = 200;       ///< that a change of the force scale takes
-  /// That a force may take to end in steps once its gain is 0; then all of it goes at once, by a fault. Whoever lets go
-  /// is rid of it 50 ms + this later, whatever the wire loses and the drives do. Without losses 3.3 N need 14.
+  static constexpr int kCalibrationTicks = 50;  ///< consecutive ticks with possible poses
+  static constexpr int kScaleTicks = 200;       ///< duration of a change of the force scale
+  /// Largest number of ticks for which a force may last, reduced step by step, after its gain is 0; then a fault
+  /// removes it at once. So a hand is free of force at most 50 ms + 100 ms after the dead-man is released, whatever
+  /// frames are lost. Without losses 3.3 N need 14 ticks.
   static constexpr int kMostOvertimeTicks = 100;
-  static constexpr int kPowerDownTicks = 20;  ///< of "power stage off" sent before the run ends
+  static constexpr int kPowerDownTicks = 20;  ///< "power stage off" is sent for so many ticks before the run ends
 
   Controller(const scene::Hands& hands, const Settings& settings) noexcept;
 
   /// A request of the host or the operator; acts in the next tick.
   void command(rt::CommandKind kind) noexcept;
 
-  /// Another scene's hands, at once. @pre no force may flow.
+  /// Installs another scene's hands at once. @pre no force may flow.
   void change_hands(const scene::Hands& hands) noexcept;
-  /// Goes to another force scale over kScaleTicks, so that a held force changes without a jump.
+  /// Changes the force scale linearly over kScaleTicks, so that a rendered force does not jump.
   void change_force_scale(double force_scale) noexcept;
 
-  /// Begins the end: forces ramp to zero, drives are switched off, then is_finished().
+  /// Starts the shutdown: forces ramp to zero, drives are switched off, then is_finished() is true.
   void shut_down() noexcept { shutting_down_ = true; }
   [[nodiscard]] bool is_finished() const noexcept { return powered_down_ticks_ >= kPowerDownTicks; }
 
@@ -67,7 +71,7 @@ class Controller {
   [[nodiscard]] bool armed() const noexcept { return armed_; }
   [[nodiscard]] const HandState& hand(std::size_t h) const noexcept { return hands_[h].state(); }
 
-  /// The two tools as the thread shall see them in this tick.
+  /// The two tools for the physics in this tick.
   [[nodiscard]] std::array<physics::ToolInput, rt::kHands> tools() const noexcept;
 
  private:
@@ -75,7 +79,7 @@ class Controller {
   [[nodiscard]] Fault find_hand_fault(const HandControl& hand, const rt::HandReading& reading) const noexcept;
   [[nodiscard]] bool drives_are_up(const rt::RigReading& reading) const noexcept;
   void step_state(const TickInput& in) noexcept;
-  /// What leads out of the state that is no fault.
+  /// Transition event of this tick, other than a fault.
   [[nodiscard]] std::optional<Event> find_event(const rt::RigReading& reading, bool brakes) const noexcept;
   void step_gains() noexcept;
   void step_force_scale() noexcept;
@@ -96,9 +100,9 @@ class Controller {
   Fault fault_ = Fault::kNone;
   bool armed_;
   bool reset_requested_ = false;
-  bool stop_requested_ = false;  // in this tick no hand gets a torque, whatever the step limit says
+  bool stop_requested_ = false;  // all torques are zero in this tick, even above the step limit
   bool shutting_down_ = false;
-  bool braking_ = false;  // BRAKE because a hand was too fast
+  bool braking_ = false;  // state BRAKE was entered because a hand was too fast
   int plausible_ticks_ = 0;
   int powered_down_ticks_ = 0;
   std::int64_t last_tick_ = -1;

@@ -1,19 +1,20 @@
 #pragma once
-// How much of the computed force one hand gets, so that nothing ever kicks.
+// Gain of one hand: fades the computed force in and out, so that it never starts with a jump.
 
 #include "firmware/control/motion.hpp"
 #include "firmware/rt/period.hpp"
 
 namespace ligature::control {
 
-/// Gain of one hand, 0 .. 1. From zero it starts only after the hand was still and the force small for a while; it
-/// then rises to 1 in 0.5 s as long as it is wanted (armed and dead-man pressed), and falls to 0 in 50 ms when not;
-/// both by a jerk-limited curve (motion.hpp). Periods of 1 ms. O(1).
+/// Gain of one hand, 0 .. 1. It leaves 0 only after kCalmTicks in which the hand was still and the force small. Then it
+/// rises to 1 in 0.5 s while it is wanted (armed and dead-man pressed); otherwise it falls to 0 in 50 ms. Both follow a
+/// jerk-limited curve (motion.hpp). Periods of 1 ms. O(1).
 class Engagement {
  public:
   static constexpr int kCalmTicks = 20;
-  static constexpr double kStill_m_per_s = 0.05;  ///< device tip; the filter's noise is 0.003
-  static constexpr double kSmallForce_N = 0.5;    ///< device force the hand would get at once; 15 % of the peak
+  /// speed of the device's tip; the velocity estimate has 0.003 m/s of noise
+  static constexpr double kStill_m_per_s = 0.05;
+  static constexpr double kSmallForce_N = 0.5;  ///< force that the hand would get at gain 1; 15 % of the peak
   static constexpr int kRiseTicks = 500;
   static constexpr int kFallTicks = 50;
 

@@ -12,21 +12,21 @@ enum class Fault : std::int16_t {
   kBusLost = 10,          ///< a hand's bus is gone: peer closed, interface down
   kTpdoTooOld = 11,       ///< no complete set of joint messages within the watchdog time
   kDriveFault = 12,       ///< a drive is in Fault, sent EMCY, or left Operation enabled by itself
-  kForeignTorque = 13,    ///< somebody else on a hand's bus sends RPDOs
-  kForeignBeat = 14,      ///< ... SYNC or a controller's heartbeat
-  kForeignNetwork = 15,   ///< ... NMT commands
-  kForeignObject = 16,    ///< ... SDO requests
-  kFramesLost = 17,       ///< more than a third of a hand's samples or torques do not come, for a while
+  kForeignTorque = 13,    ///< another node on a hand's bus sends RPDOs
+  kForeignBeat = 14,      ///< another node sends SYNC or a controller's heartbeat
+  kForeignNetwork = 15,   ///< another node sends NMT commands
+  kForeignObject = 16,    ///< another node sends SDO requests
+  kFramesLost = 17,       ///< for a while more than a third of a hand's samples or torques were lost
   kNonFinite = 20,        ///< a force or position is not a number
   kVelocityLimit = 21,    ///< tip faster than kVelocityFault times the device's limit
-  kEncoderFrozen = 22,    ///< a joint stopped dead while the others moved on
-  kAxisReversed = 23,     ///< a joint turned back in one period, as in a mirror
-  kButtonsStuck = 24,     ///< the buttons' own life sign stands still, or a pair of contacts disagrees
-  kForceStays = 25,       ///< a hand's gain is 0 and its force still does not end
-  kTorqueAstray = 26,     ///< a drive says that it makes a torque that nobody asked for
+  kEncoderFrozen = 22,    ///< a joint's reading suddenly stopped while the others moved on
+  kAxisReversed = 23,     ///< a joint's reading reversed its motion within one period, as if its sign had flipped
+  kButtonsStuck = 24,     ///< the button module's counter stands still, or two redundant contacts disagree
+  kForceStays = 25,       ///< force is still not zero long after the gain became 0
+  kTorqueAstray = 26,     ///< a drive reports a torque that it was not asked for
   kOverrun = 30,          ///< the loop lost as many periods in a row as the watchdog allows
   kPhysicsDiverged = 40,  ///< the thread's state is not finite
-  kThreadLate = 41,       ///< the thread's physics has not seen the tools of as many ticks as the watchdog allows
+  kThreadLate = 41,       ///< the physics is behind by as many ticks as the watchdog allows
 };
 
 [[nodiscard]] constexpr Fault fault_of(rt::Foreign kind) noexcept {
@@ -45,8 +45,8 @@ enum class Fault : std::int16_t {
   return Fault::kNone;
 }
 
-/// No reset leaves these: the drives are off the network, and what somebody wrote into them is not known. A start reads
-/// and writes them anew.
+/// Faults that reset-fault cannot clear: the drives have left the network, and what another node may have written into
+/// them is unknown. Only a restart reads and writes their objects again.
 [[nodiscard]] constexpr bool needs_restart(Fault f) noexcept {
   return (f >= Fault::kForeignTorque && f <= Fault::kForeignObject) || f == Fault::kTorqueAstray;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// What the device may be asked for, whatever the law wants: one hand's limits, each with its code.
+// Limits of one hand's force: peak, torque, heat, step and slew rate. Each has a code that is reported.
 
 #include <cstdint>
 #include <limits>
@@ -11,28 +11,29 @@
 
 namespace ligature::control {
 
-/// What the joints' torques allow in a wish's direction, N.
+/// Largest force that the joints allow in the wish's direction, N.
 struct MostByJoints {
   double in_any_pose_N = std::numeric_limits<double>::infinity();
   double by_heat_N = std::numeric_limits<double>::infinity();
 };
 
-/// In this order, once a period of T:
+/// Limits, applied in this order once per period T:
 ///   peak        |f| <= min(scene's max_force_N, device's peak)
-///   torque      |f| <= the most in f's direction that is within the peak in any pose of the arm (AnyPose)
-///   continuous  |f| <= what is left of the peak by I2t (ThermalCap), of the force itself and of each joint's winding
-///   step        |f - f_before| <= force_step_N in one period
-///   slew        the same over many: an allowance refilled by force_slew_N_per_s T a period, at most force_step_N
-/// The change keeps its direction, so every output lies between two that are allowed. O(1), no allocation.
+///   torque      |f| <= the largest force in f's direction whose torques stay within the peak in any pose (AnyPose)
+///   continuous  |f| <= the peak as reduced by I2t (ThermalCap), for the force itself and for each joint's winding
+///   step        |f - f_before| <= force_step_N per period
+///   slew        average rate: an allowance for changes, refilled by force_slew_N_per_s T per period up to force_step_N
+/// The change keeps its direction, so each output lies between two allowed forces. O(1), no allocation.
 class ForceLimiter {
  public:
   ForceLimiter(const device::Device& device, double max_force_N, double period_s) noexcept;
 
   void set_peak(double max_force_N) noexcept;
 
-  /// @param wish_N finite. @return what may be sent; codes() says why it is less.
+  /// @param wish_N finite. @return the force that may be sent; codes() gives the limits that reduced it.
   [[nodiscard]] physics::Vec3 limit(const physics::Vec3& wish_N, const MostByJoints& most = {}) noexcept;
-  /// What was sent after all (something may have cut it further): the next change and the heat start from it.
+  /// Reports the force that was really sent (later stages may reduce it further); the next change and the heat start
+  /// from it.
   /// @param periods since the last call
   void sent(const physics::Vec3& f_N, std::int64_t periods = 1) noexcept;
 

@@ -7,8 +7,9 @@
 namespace ligature::control {
 namespace {
 
-constexpr double kSingular_per_m = 400.0;  // of a torque: 1 / 2.5 mm
-constexpr double kAbove_m = 0.01;          // of the workspace's floor: where a parked tip rests
+// tip force per joint torque above which a pose counts as singular: 1 / 2.5 mm
+constexpr double kSingular_per_m = 400.0;
+constexpr double kAbove_m = 0.01;  // height of the parked tip above the workspace's floor
 
 }  // namespace
 
@@ -57,17 +58,17 @@ void HandControl::observe(const rt::HandReading& reading, const Grasp& grasp, st
                           std::int64_t last_tick) noexcept {
   passivity_.begin(tick);
   const bool clutch = reading.clutch || clutch_command_;
-  if (!clutch) state_.grip = reading.grip && !is_led();  // a parked tool keeps hold of what it holds
+  if (!clutch) state_.grip = reading.grip && !is_led();  // under the clutch the tool keeps its grip
   state_.dead_man = reading.dead_man;
   state_.bus_load = reading.bus_load;
   if (!reading.valid) return;
 
-  // Age counts executed periods: one period old means sampled in the last one that was executed.
+  // reading.age_ticks counts executed periods: age 1 means sampled in the last executed period, `last_tick`.
   const std::int64_t sampled = reading.age_ticks == 0 ? tick : last_tick - (reading.age_ticks - 1);
   const bool same =
-      reading.age_ticks == last_age_ + 1;  // one executed period older: whatever lost periods make of `sampled`
+      reading.age_ticks == last_age_ + 1;  // the same sample, one executed period older (also after lost periods)
   last_age_ = reading.age_ticks;
-  if (sample_tick_ < 0 || (!same && sampled > sample_tick_)) {  // new, be it late
+  if (sample_tick_ < 0 || (!same && sampled > sample_tick_)) {  // a new sample, possibly late
     dead_man_.see(reading.dead_man);
     sample(reading, sampled);
   }
@@ -100,7 +101,7 @@ void HandControl::sample(const rt::HandReading& reading, std::int64_t sampled) n
   encoder_fault_ = watch_.add(counts, timed ? periods : 0, linkage_.far_from_stops(reading.q_rad),
                               {torque[0], torque[1], torque[2]});
   sample_tick_ = sampled;
-  // Where the arm is nearly singular a torque says little about a force: as in the last pose where it did.
+  // Near a singular pose, forces computed from torques are meaningless: keep the inverse of the last regular pose.
   const Mat3 inverse = jacobian_.transpose().inverse();
   if (inverse.allFinite() && inverse.cwiseAbs().maxCoeff() < kSingular_per_m) from_torque_ = inverse;
   if (!p_DT_.allFinite()) return;
@@ -109,8 +110,8 @@ void HandControl::sample(const rt::HandReading& reading, std::int64_t sampled) n
       sampled, {reading.q_rad, p_DT_, count_rad_, jacobian_.colwise().norm().transpose(), rate, acted, from_torque_});
 }
 
-/// While it is held the tool stays where it is in the world; when it is let go, the map is moved so that the tool
-/// still is there. The hand's force is taken by the gain in between, and comes back by it: nothing jumps.
+/// While the clutch is pressed, the tool stays where it is in the world. On release the map is shifted so that the tool
+/// is still there. The gain fades the force out before and in after, so nothing jumps.
 void HandControl::step_clutch(bool pressed, const Vec3& p_DT) noexcept {
   if (pressed && !state_.clutch) state_.v_WT = Vec3::Zero();
   if (!pressed && state_.clutch) map_.origin_W_m += state_.p_WT - map_.position(p_DT);
@@ -136,16 +137,20 @@ std::array<double, rt::kJoints> HandControl::command(std::int64_t tick) noexcept
   Vec3 torque_Nm = Vec3::Zero(), paid_N = Vec3::Zero();
   if (!lets_go_) {
     const auto torque = [this](const Vec3& f) { return sendable_torque(f); };
-    const Vec3 before_N = from_torque_ * torque_Nm_;  // in this pose: the same torques again are no step
+    // force of the last torques in the present pose: sending the same torques again changes nothing
+    const Vec3 before_N = from_torque_ * torque_Nm_;
     paid_N = passivity_.control(tick, decided_N_, v_DT_, before_N, torque);
     torque_Nm = sendable_torque(paid_N);
-    if (!passivity_.released() && !passivity_.is_a_step(torque_Nm)) torque_Nm = torque_Nm_;  // rounding only
-    if (passivity_.released()) end_move();  // wilder than the record allows, or frames are lost: it gets nothing
+    // can fail only by rounding
+    if (!passivity_.released() && !passivity_.is_a_step(torque_Nm)) torque_Nm = torque_Nm_;
+    // the hand exceeds the acceleration bound, or frames are lost: all force is removed
+    if (passivity_.released()) end_move();
     if (passivity_.acts()) limits |= rt::kPassivityLimit;
     if (passivity_.stepped()) limits |= rt::kStepLimit;
     const Vec3 exact_Nm = jacobian_.transpose() * paid_N;
     if (exact_Nm.lpNorm<Eigen::Infinity>() > max_torque_Nm_) limits |= rt::kTorqueLimit;
-    paid_N *= std::min({1.0, safe_share(exact_Nm), windings_.share(exact_Nm)});  // what passivity turned
+    // passivity may have turned the force's direction, so the limits are checked again
+    paid_N *= std::min({1.0, safe_share(exact_Nm), windings_.share(exact_Nm)});
   }
   if (torque_Nm.isZero(0.0)) paid_N = Vec3::Zero();
   overtime_ticks_ = gain() > 0.0 || torque_Nm.isZero(0.0) ? 0 : overtime_ticks_ + 1;
@@ -163,7 +168,7 @@ Vec3 HandControl::brake_force() noexcept {
   if (braking_)
     brake_.step();
   else
-    brake_.start(p_DT_, v_DT_);  // a period ahead it would pull along
+    brake_.start(p_DT_, v_DT_);  // start at the present motion: one period further it would pull the tip forward
   return kBrake_N_per_m * (brake_.position_m() - p_DT_) + kBrake_N_s_per_m * (brake_.velocity_m_per_s() - v_DT_);
 }
 
@@ -178,7 +183,7 @@ void HandControl::end_move() noexcept {
   move_ = Move::kNone;
 }
 
-/// Along the path, once the gain is full.
+/// Force that pulls the tip along the planned path; zero until the gain is full.
 Vec3 HandControl::lead_force() noexcept {
   if (holds_ || state_.clutch) end_move();
   if (!leading_) {
@@ -198,21 +203,21 @@ Vec3 HandControl::lead_force() noexcept {
     return Vec3::Zero();
   }
   if (path_.is_done()) {
-    if (move_ == Move::kCalibrate) map_.origin_W_m = scene_origin_W_m_;  // the clutch's offsets are gone
+    if (move_ == Move::kCalibrate) map_.origin_W_m = scene_origin_W_m_;  // removes the offsets that the clutch has left
     end_move();
   }
   return force_N;
 }
 
-/// Times these torques are what makes at most the peak force at the tip in any pose, whatever the encoders say.
+/// Factor on these torques at which the tip force in the worst pose equals the peak force; needs no encoder.
 double HandControl::safe_share(const Vec3& torque_Nm) const noexcept {
   const double most_N = any_pose_.most_N(torque_Nm);
   return most_N > 0.0 ? limiter_.peak_N() / most_N : std::numeric_limits<double>::infinity();
 }
 
-/// J^T f in whole torque quanta, within the drives' range, what is safe in any pose and what the windings may have. A
-/// torque within kStay quanta of the last one stays: what flickers is heard, and hides energy under the encoder's
-/// counts.
+/// Torques to send: J^T f, limited to the drives' range, to what is safe in any pose and to what the windings allow, in
+/// whole torque quanta. A joint keeps its last torque if the change is below kStay quanta: rapid toggling is audible,
+/// and hides energy from the account within encoder counts.
 Vec3 HandControl::sendable_torque(const Vec3& f_N) const noexcept {
   constexpr double kStay = 0.7;
   Vec3 exact = (jacobian_.transpose() * f_N).cwiseMax(-max_torque_Nm_).cwiseMin(max_torque_Nm_);

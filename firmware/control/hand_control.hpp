@@ -1,6 +1,5 @@
 #pragma once
-// One hand's control law: joints in, a force that may be sent out. Who may push, and when, is the controller's
-// business.
+// Control law of one hand: joint samples in, a force that may be sent out. The controller decides when a hand may push.
 
 #include <array>
 #include <cstdint>
@@ -23,50 +22,53 @@
 
 namespace ligature::control {
 
-/// One hand after a tick.
+/// State of one hand after a tick.
 struct HandState {
   JointAngles q_rad{};
   Vec3 p_WT = Vec3::Zero();
   Vec3 v_WT = Vec3::Zero();
-  Vec3 f_wish_N = Vec3::Zero();    // at the device: what the coupling asks for
-  Vec3 f_device_N = Vec3::Zero();  ///< after gain, limits and passivity; what the torques produce
+  Vec3 f_wish_N = Vec3::Zero();    // at the device: the coupling's force
+  Vec3 f_device_N = Vec3::Zero();  ///< after gain, limits and passivity, as made by the torques sent
   double gain = 0.0;
   double port_energy_J = 0.0, dissipated_J = 0.0, injected_N_s_per_m = 0.0, heat = 0.0;
-  double received_J = 0.0;     ///< of port_energy_J: from the other hand's account, through the thread
+  /// part of port_energy_J that was received: lent by the other hand's account, or granted for a guided move
+  double received_J = 0.0;
   std::int16_t limits = 0;     ///< rt::LimitCode bits
-  bool limited = false;        ///< the force above stands at a magnitude's limit, and the gain is 1
+  bool limited = false;        ///< f_device_N is at a magnitude limit while the gain is 1
   std::int64_t age_ticks = 0;  ///< periods since the sample that p_WT comes from
-  bool dead_man = false;       ///< the button; HandControl::dead_man_counts() whether it counts
+  bool dead_man = false;       ///< the button as read; HandControl::dead_man_counts() says whether it counts
   bool grip = false;
   bool clutch = false;
   float bus_load = 0.0F;
 };
 
-/// What the rig lets a hand do in a tick.
+/// Source of the hand's force in a tick: none, the coupling, the velocity brake, or a guided move.
 enum class Push : std::uint8_t { kNone, kCoupling, kBrake, kLead };
 
-/// Where a hand may be led on request: the rig's only motion of its own.
+/// Guided moves: the only motions that the rig starts itself, always on a command.
 enum class Move : std::uint8_t { kNone, kPark, kCalibrate };
 
-/// Order of a tick: observe(), step_gain(), decide(), command(). Real time: O(1), no allocation.
+/// Order of calls in a tick: observe(), step_gain(), decide(), command(). Real time: O(1), no allocation.
 class HandControl {
  public:
   HandControl(const device::Device& device, const scene::Hands& hands, double period_s) noexcept;
 
-  /// Another scene's hands, at once. @pre no force may flow.
+  /// Installs another scene's hands at once. @pre no force may flow.
   void change_hands(const scene::Hands& hands) noexcept;
   void set_force_scale(double scale) noexcept { coupling_.set_force_scale(scale); }
   [[nodiscard]] double force_scale() const noexcept { return coupling_.force_scale(); }
 
-  /// Joints to tip to world, and the force that this pose asks for. An old sample is held as it is.
-  /// @param last_tick the period executed before this one; reading.age_ticks counts executed periods.
+  /// Computes tip pose, tool pose in the world and the coupling's force from the joints. Without a new sample the last
+  /// one is kept.
+  /// @param last_tick the period executed before this one; reading.age_ticks counts executed periods
   void observe(const rt::HandReading& reading, const Grasp& grasp, std::int64_t tick, std::int64_t last_tick) noexcept;
-  /// The loop stood still while this tick's samples were asked for: they may be of any time since, and tell no speed.
+  /// The loop was delayed while it read this tick's samples: their time is unknown, so no velocity is derived from
+  /// them.
   void doubt_time_of(std::int64_t tick) noexcept { doubtful_tick_ = tick; }
-  /// After a fault; its cause may have been booked, and was no work.
+  /// After a fault: its cause (such as an encoder jump) may have been booked as work.
   void restart_account() noexcept { passivity_.restart(); }
   void hold_clutch(bool held) noexcept { clutch_command_ = held; }
-  /// A dead-man that is pressed counts no more, until it was let go and pressed again.
+  /// A pressed dead-man no longer counts until it is released and pressed again.
   void need_new_press() noexcept { dead_man_.need_new_press(); }
   [[nodiscard]] bool dead_man_counts() const noexcept { return dead_man_.counts(); }
 
@@ -75,9 +77,9 @@ class HandControl {
     end_move();
     move_fault_ = Fault::kNone;
   }
-  /// Leads the hand along a jerk-limited path as soon as the gain is full, with at most kLead_N and kLeadEnergy_J. It
-  /// ends where the path ends, and earlier when the hand takes the thread or the clutch, when its tip is kStray_m off
-  /// the path, or when end_move() says so. Until then nothing is gripped.
+  /// Guides the hand along a jerk-limited path once the gain is full, with at most kLead_N and kLeadEnergy_J. The move
+  /// ends at the path's end, or earlier: the hand holds the thread, the clutch is pressed, the tip is kStray_m off the
+  /// path, or end_move() is called. Until then the gripper stays open.
   void begin_move(Move move) noexcept;
   void end_move() noexcept;
   [[nodiscard]] bool is_led() const noexcept { return move_ != Move::kNone; }
@@ -86,37 +88,38 @@ class HandControl {
   }
   [[nodiscard]] double gain() const noexcept { return engagement_.gain(); }
 
-  /// The force of this tick as far as it does not depend on energy: gain or brake, then limits.
+  /// Force of this tick before the energy account: gain (or brake or guided move), then limits.
   void decide(Push push) noexcept;
-  /// Torques of this tick: passivity, linkage, rounding to what the wire carries; in this order.
+  /// Torques of this tick: passivity control, J^T f, rounding to torque quanta, in this order.
   [[nodiscard]] std::array<double, rt::kJoints> command(std::int64_t tick) noexcept;
-  /// Both hands hold the thread: between decide() and command(), the one that is short borrows of the other.
+  /// Call between decide() and command() while both hands hold the thread: the account that is short borrows from the
+  /// other.
   static void lend(std::int64_t tick, HandControl& a, HandControl& b) noexcept {
     Passivity::lend(tick, a.passivity_, a.decided_N_, b.passivity_, b.decided_N_);
   }
 
   [[nodiscard]] const HandState& state() const noexcept { return state_; }
   [[nodiscard]] bool is_finite() const noexcept { return finite_; }
-  /// Of the last sample, or of the move that ended with it.
+  /// Encoder fault of the last sample, or of the guided move that ended with it.
   [[nodiscard]] Fault encoder_fault() const noexcept {
     return move_fault_ != Fault::kNone ? move_fault_ : encoder_fault_;
   }
-  /// Ticks in a row in which force was sent though the gain was 0: it goes back in steps of what may be acting.
+  /// Consecutive ticks with force although the gain is 0: the step limit allows it to fall only gradually.
   [[nodiscard]] int overtime_ticks() const noexcept { return overtime_ticks_; }
   [[nodiscard]] bool is_plausible() const noexcept { return linkage_.is_plausible(state_.q_rad); }
-  [[nodiscard]] double speed_m_per_s() const noexcept { return v_DT_.norm(); }  ///< of the device's tip
+  [[nodiscard]] double speed_m_per_s() const noexcept { return v_DT_.norm(); }  ///< speed of the device's tip
   [[nodiscard]] bool holds() const noexcept { return holds_; }
 
-  /// The tool as the thread shall see it in this tick.
+  /// The tool for the physics in this tick. @param alive false: the hand has no fresh samples, and its gripper opens.
   [[nodiscard]] physics::ToolInput tool(bool alive) const noexcept {
     return {proxy_.p_WP, proxy_.v_WP, state_.grip && alive};
   }
 
-  /// A hand that is too fast is led to rest by these, along a reference that stops (motion.hpp).
+  /// Spring and damper that bring a hand above the velocity limit to rest along a decelerating reference (motion.hpp).
   static constexpr double kBrake_N_per_m = 150.0, kBrake_N_s_per_m = 2.0;
-  static constexpr double kLead_N = 0.5;         ///< below what an Omni-class device may do for ever
-  static constexpr double kLeadEnergy_J = 0.05;  ///< 0.2 m against 0.1 N of friction, twice and more
-  static constexpr double kStray_m = 0.008;      ///< somebody holds on, or an encoder lies
+  static constexpr double kLead_N = 0.5;         ///< below the continuous force of an Omni-class device
+  static constexpr double kLeadEnergy_J = 0.05;  ///< enough for 0.2 m against 0.1 N of friction, more than twice
+  static constexpr double kStray_m = 0.008;      ///< larger deviation: somebody holds the tip, or an encoder is wrong
 
  private:
   void sample(const rt::HandReading& reading, std::int64_t sampled) noexcept;
@@ -150,7 +153,7 @@ class HandControl {
   HandState state_;
   Proxy proxy_;
   Mat3 jacobian_ = Mat3::Identity(), from_torque_ = Mat3::Identity();  // J and J^-T of the last sample
-  Vec3 decided_N_ = Vec3::Zero(), torque_Nm_ = Vec3::Zero();           // torque: as sent in the tick before
+  Vec3 decided_N_ = Vec3::Zero(), torque_Nm_ = Vec3::Zero();           // torque: sent in the tick before
   std::int16_t decided_limits_ = 0;
   Vec3 p_DT_ = Vec3::Zero(), v_DT_ = Vec3::Zero();
   bool lets_go_ = true, finite_ = true, holds_ = false, clutch_command_ = false;

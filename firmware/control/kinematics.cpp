@@ -59,7 +59,8 @@ std::array<bool, 3> Linkage::far_from_stops(const JointAngles& q_rad) const noex
   std::array<bool, 3> far{};
   for (std::size_t j = 0; j < far.size(); ++j)
     far[j] = stop[j] > min_rad_[j] + kFar_rad && stop[j] < max_rad_[j] - kFar_rad;
-  if (kind_ == device::Kinematics::kOmniSerial) far[1] = far[1] && far[2];  // the links' stop holds both
+  // the stop between the links limits both joints
+  if (kind_ == device::Kinematics::kOmniSerial) far[1] = far[1] && far[2];
   return far;
 }
 
@@ -68,7 +69,7 @@ bool Linkage::is_plausible(const JointAngles& q_rad) const noexcept {
   if (kind_ == device::Kinematics::kOmniSerial) stop[2] -= q_rad[1];  // the links' stop is on the angle between them
   for (std::size_t j = 0; j < stop.size(); ++j) {
     const bool within = stop[j] >= min_rad_[j] - kPlausible_rad && stop[j] <= max_rad_[j] + kPlausible_rad;
-    if (!within) return false;  // not a number is never within
+    if (!within) return false;  // also for NaN
   }
   return true;
 }

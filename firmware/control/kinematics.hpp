@@ -1,5 +1,5 @@
 #pragma once
-// From joint angles to the tip, and the way forces go back: one function pair per kind of device.
+// Position and Jacobian of the tip from joint angles, for each kind of device.
 
 #include <array>
 
@@ -10,11 +10,11 @@ namespace ligature::control {
 
 using physics::Vec3;
 using Mat3 = Eigen::Matrix3d;
-using JointAngles = std::array<double, 3>;  ///< as the drives count them; rad
+using JointAngles = std::array<double, 3>;  ///< rad, as the drives report them
 
 [[nodiscard]] inline Vec3 vector_of(const std::array<double, 3>& a) noexcept { return {a[0], a[1], a[2]}; }
 
-/// |dp/dq_j| in the home pose: what a tip force along a joint's motion asks of that joint, N m per N.
+/// Lever arms |dp/dq_j| in the home pose: joint torque per tip force along that joint's motion, N m per N.
 [[nodiscard]] Vec3 levers_at_home_m(const device::Device& device) noexcept;
 
 /// Tip T in the device base D (x right, y away from the person, z up) and J = d p_DT / d q.
@@ -37,8 +37,8 @@ class Linkage {
   [[nodiscard]] Vec3 position(const JointAngles& q_rad) const noexcept;
   [[nodiscard]] Mat3 jacobian(const JointAngles& q_rad) const noexcept;  ///< m/rad: v_DT = J dq/dt
 
-  /// Joint torques that hold a tip force, tau = J^T f (virtual work: tau . dq = f . dp). N m.
-  /// @param f_D_N force on the hand at the tip, N; + pushes the hand along +D.
+  /// Joint torques that produce a tip force, tau = J^T f (virtual work: tau . dq = f . dp). N m.
+  /// @param f_D_N force on the hand at the tip, N; a positive component pushes the hand along that axis of D
   [[nodiscard]] Vec3 torque(const JointAngles& q_rad, const Vec3& f_D_N) const noexcept {
     return jacobian(q_rad).transpose() * f_D_N;
   }
@@ -46,10 +46,11 @@ class Linkage {
   /// Whether the angles can be those of this device: its stops with 0.25 rad of margin.
   [[nodiscard]] bool is_plausible(const JointAngles& q_rad) const noexcept;
 
-  /// Per joint: more than 0.05 rad from its stops.
+  /// For each joint: whether it is more than 0.05 rad from its stops.
   [[nodiscard]] std::array<bool, 3> far_from_stops(const JointAngles& q_rad) const noexcept;
 
-  [[nodiscard]] const Vec3& home_m() const noexcept { return home_m_; }  ///< maps to the workspace's origin
+  /// tip position that maps to the workspace's origin
+  [[nodiscard]] const Vec3& home_m() const noexcept { return home_m_; }
 
  private:
   device::Kinematics kind_;

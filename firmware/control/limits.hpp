@@ -1,5 +1,5 @@
 #pragma once
-// Limits are reported, faults are latched: a saturated force is normal life, a force that is no number is not.
+// Limit on a force's magnitude. Reaching a limit is normal and only reported; a force that is not finite is a fault.
 
 #include <limits>
 
@@ -7,7 +7,8 @@
 
 namespace ligature::control {
 
-/// Times the device's velocity limit: the limit brakes, as a hand may slip; this no hand does, but a broken encoder.
+/// Factor on the device's velocity limit. Above the limit the rig only brakes (a hand may slip); above this factor it
+/// is a fault, because only a broken encoder moves so fast.
 inline constexpr double kVelocityFault = 1.5;
 
 struct LimitedForce {
@@ -16,9 +17,9 @@ struct LimitedForce {
   bool finite = true;
 };
 
-/// Keeps the direction and clips the magnitude: |f| ≤ max_N, also when f's own rounding counts against it (hence a few
-/// ulps less than max_N). What the motors make of it differs by the wire's resolution: torques are rounded to 1 per
-/// mille, 0.3 mN m, which is at most 2 mN at the tip. Not-a-number and infinity become zero and are told.
+/// Clips the magnitude and keeps the direction: |f| <= max_N even after rounding (hence a few ulps below max_N). The
+/// motors' force still differs by the torque quantum on the wire: 1 per mille, 0.3 mN m, at most 2 mN at the tip. NaN
+/// and infinity give zero and `finite` false.
 [[nodiscard]] inline LimitedForce saturate(const physics::Vec3& f_N, double max_N) noexcept {
   if (!f_N.allFinite()) return {physics::Vec3::Zero(), false, false};
   const double magnitude_N = f_N.norm();

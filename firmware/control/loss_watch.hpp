@@ -1,5 +1,5 @@
 #pragma once
-// A bus that is bad and not dead: so many frames are lost that what is felt is no longer the thread.
+// Detects a bus that loses so many frames that the rendered force no longer represents the thread.
 
 #include <algorithm>
 #include <array>
@@ -9,17 +9,16 @@
 
 namespace ligature::control {
 
-/// Counts what one hand's bus loses, each way for itself: samples that did not come, and torques of which a drive says
-/// that it makes an older one for want of an RPDO. A loss adds kLost to a count, what came takes kCame from it, and no
-/// count is below 0. So losses of more than a third, kCame / (kCame + kLost), reach the limit sooner or later, and a
-/// share well below that never does. Up to a third forces are told truly (docs/haptics.md): that is 12 % of the frames,
-/// three of which make a sample.
-/// A silence belongs to another fault (joint messages too old), which must come first: the limit is three times the
-/// watchdog's ticks, since each tick of silence adds two. O(1).
+/// Counts one hand's lost frames, separately for each direction: samples that did not come, and torques that a drive
+/// reports to have repeated because an RPDO was missing. A loss adds kLost to the direction's counter, a frame that
+/// came subtracts kCame; a counter never falls below 0. So a loss rate above kCame / (kCame + kLost) = 1/3 reaches the
+/// limit eventually, and a rate well below never does. Up to 1/3 of the samples, which is 12 % of the frames (a sample
+/// has three), forces are rendered correctly (docs/haptics.md). Complete silence must raise another fault first (joint
+/// messages too old). Each silent tick adds 2, so the limit is three times the watchdog's ticks. O(1).
 class LossWatch {
  public:
   static constexpr int kLost = 2, kCame = 1;
-  static constexpr int kMost = 60;  ///< with the usual watchdog of 20 ticks: 30 losses with nothing between them
+  static constexpr int kMost = 60;  ///< with the usual watchdog of 20 ticks: 30 losses in a row
 
   explicit LossWatch(std::int32_t watchdog_ticks = 20) noexcept : most_(std::max(kMost, 3 * watchdog_ticks)) {}
 
@@ -28,7 +27,7 @@ class LossWatch {
     const bool fresh = reading.valid && reading.age_ticks != last_age_ + 1;
     last_age_ = reading.age_ticks;
     count(samples_, !fresh);
-    if (!fresh) return;  // tells nothing new of the other way
+    if (!fresh) return;  // without a new sample nothing is known about the torques
     count(torques_, std::ranges::any_of(reading.torque_held, [](int held) { return held > 0; }));
   }
   void forget() noexcept { samples_ = torques_ = 0; }

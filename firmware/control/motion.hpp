@@ -1,5 +1,5 @@
 #pragma once
-// Moves that the rig makes by itself: smooth from where things are, replanned in the loop, never from a list of points.
+// Smooth motions planned in the loop (Ruckig): the gain's ramp, braking to rest, guided moves.
 
 #include <algorithm>
 #include <array>
@@ -10,10 +10,11 @@
 
 namespace ligature::control {
 
-/// A share that goes to 0 or 1 by a jerk-limited curve: the gain of a hand. A move of 1 takes exactly its duration D:
+/// A value in 0 .. 1 that goes to 0 or 1 along a jerk-limited curve: the gain of a hand. A full move from 0 to 1 takes
+/// exactly its duration D:
 ///   v <= 1.5 / D,  a <= 6 / D^2,  j <= 72 / D^3     (D (2/3 + 1/4 + 1/12) = D)
-/// A new wish starts from the present value, speed and acceleration. Plans with Ruckig of one fixed degree of freedom:
-/// no allocation, about 1 us when the wish changes and less else.
+/// A new target starts from the present value, speed and acceleration. Ruckig with one fixed degree of freedom: no
+/// allocation; about 1 us when the target changes, less otherwise.
 class Ramp {
  public:
   explicit Ramp(double period_s) : period_s_(period_s) {
@@ -38,7 +39,7 @@ class Ramp {
     if (!plans_ || at_s_ >= plan_.get_duration() || std::abs(value_ - target) < kNear) settle(target);
     return value_;
   }
-  /// At once.
+  /// Sets the value at once, at rest.
   void settle(double value) noexcept {
     value_ = value;
     input_.current_position[0] = input_.target_position[0] = value;
@@ -55,7 +56,7 @@ class Ramp {
     input_.max_jerk[0] = 72.0 / (D * D * D);
   }
 
-  // calculate(), not update(): that one reads the clock.
+  // Planned with calculate() rather than update(), because update() reads the clock.
   ruckig::Ruckig<1> otg_;
   ruckig::InputParameter<1> input_;
   ruckig::Trajectory<1> plan_;
@@ -63,12 +64,12 @@ class Ramp {
   double period_s_, at_s_ = 0.0, value_ = 0.0;
 };
 
-/// A tip's reference along a planned path: three axes, read period by period. No allocation.
+/// Reference motion of a tip along a planned path in three axes, stepped period by period. No allocation.
 class PlannedPath {
  public:
-  /// One period on.
+  /// Advances by one period.
   void step() noexcept {
-    if (!plans_) return;  // refused: the reference stays
+    if (!plans_) return;  // planning failed: the reference stays in place
     at_s_ += period_s_;
     std::array<double, 3> p{}, v{}, a{};
     plan_.at_time(at_s_, p, v, a);
@@ -87,7 +88,8 @@ class PlannedPath {
     input_.target_velocity.fill(0.0);
     input_.target_acceleration.fill(0.0);
   }
-  /// From here; the derived class has said where to. @return false when nothing can be planned.
+  /// Plans from this position and velocity to the target that the derived class has set. @return false if planning
+  /// fails.
   bool plan(const physics::Vec3& p_m, const physics::Vec3& v_m_per_s) noexcept {
     input_.current_position = {p_m[0], p_m[1], p_m[2]};
     input_.current_velocity = {v_m_per_s[0], v_m_per_s[1], v_m_per_s[2]};
@@ -107,11 +109,11 @@ class PlannedPath {
   physics::Vec3 p_m_ = physics::Vec3::Zero(), v_m_per_s_ = physics::Vec3::Zero();
 };
 
-/// Brings a tip from its motion to rest: a reference that starts where the tip is and as fast, and stops with at most
+/// Brings a tip to rest: a reference that starts with the tip's position and velocity and stops with at most
 /// kDeceleration and kJerk on each axis.
 class BrakeToRest : public PlannedPath {
  public:
-  static constexpr double kDeceleration_m_per_s2 = 60.0;  ///< 2 m/s to rest in 50 ms or so
+  static constexpr double kDeceleration_m_per_s2 = 60.0;  ///< 2 m/s to rest in about 50 ms
   static constexpr double kJerk_m_per_s3 = 6000.0;
 
   explicit BrakeToRest(double period_s) : PlannedPath(period_s, kDeceleration_m_per_s2, kJerk_m_per_s3) {
@@ -120,16 +122,16 @@ class BrakeToRest : public PlannedPath {
   void start(const physics::Vec3& p_m, const physics::Vec3& v_m_per_s) noexcept { (void)plan(p_m, v_m_per_s); }
 };
 
-/// From rest to a pose at rest: a straight line, at most kSpeed, kAcceleration and kJerk.
+/// A straight line from rest to rest with at most kSpeed, kAcceleration and kJerk.
 class GuidedMove : public PlannedPath {
  public:
   static constexpr double kSpeed_m_per_s = 0.08, kAcceleration_m_per_s2 = 0.4, kJerk_m_per_s3 = 4.0;
 
   explicit GuidedMove(double period_s) : PlannedPath(period_s, kAcceleration_m_per_s2, kJerk_m_per_s3) {
-    input_.synchronization = ruckig::Synchronization::Phase;  // straight
+    input_.synchronization = ruckig::Synchronization::Phase;  // makes the path a straight line
     input_.max_velocity.fill(kSpeed_m_per_s);
   }
-  /// @return false when no path can be planned; then it is done where it is.
+  /// @return false if no path can be planned; is_done() is then true at once.
   bool start(const physics::Vec3& from_m, const physics::Vec3& to_m) noexcept {
     input_.target_position = {to_m[0], to_m[1], to_m[2]};
     return plan(from_m, physics::Vec3::Zero());

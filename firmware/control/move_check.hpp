@@ -1,6 +1,6 @@
 #pragma once
-// Whether the joints did what a led move asked of them: the only moment at which the rig knows what an encoder must
-// show, also of one that lied from the start.
+// Checks encoders by a guided move: only then does the rig know what each encoder must show, so this also finds an
+// encoder that was wrong from the start.
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +10,11 @@
 
 namespace ligature::control {
 
-/// Sums the path's joint rates, J^-1 v, over a move, and compares with what the encoders went through. Judged when the
-/// tip strays from the path. A joint that went kEnough counts against its way: reversed, or somebody pulls against the
-/// move, which nothing here can tell apart. One that had kEnough to go and went less than kStill, while another came
-/// half its way: frozen; a hand that holds on keeps all of them, and is no fault. O(1), no allocation.
+/// Integrates the path's joint rates, J^-1 v, over a move and compares with the encoders' change; judged when the tip
+/// strays from the path. Reversed: a joint that went kEnough counts against its commanded direction (somebody pulling
+/// against the move looks the same). Frozen: a joint that was to go kEnough counts or more and went kStill at most,
+/// while another went at least kFollowed of its way. A hand that holds the arm stops all joints, which is no fault.
+/// O(1), no allocation.
 class MoveCheck {
  public:
   static constexpr double kEnough = 25.0, kStill = 2.5;  ///< counts

@@ -24,7 +24,8 @@ void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {
   if (sampled_ >= 0 && tick > sampled_) {
     if (tick > sampled_ + 1) lossy_until_ = tick + kWary;
     for (Eigen::Index j = 0; j < 3; ++j) {
-      const double turned_rad = periods * period_s_ * s.rate_rad_per_s[j];  // late where a joint is fast
+      // the velocity estimate lags if the joint is fast
+      const double turned_rad = periods * period_s_ * s.rate_rad_per_s[j];
       if (std::abs(turned_rad) < kSlowCounts * periods * s.count_rad)
         q_rad[j] = std::clamp(q_rad_[j] + turned_rad, counted_rad[j] - half_rad, counted_rad[j] + half_rad);
     }
@@ -42,7 +43,8 @@ void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {
   look_under_way(tick);
 }
 
-/// All that was decided before this tick. Once RPDOs have been lost, any of it may act, joint by joint.
+/// Range of the torques that may act until the next SYNC, and their largest loss. After lost RPDOs, each joint may make
+/// any torque sent since the last sample.
 void Passivity::look_under_way(std::int64_t tick) noexcept {
   const bool wary = is_wary(tick);
   under_way_ = {low_Nm_, high_Nm_};
@@ -60,19 +62,20 @@ void Passivity::look_under_way(std::int64_t tick) noexcept {
 bool Passivity::is_a_step(const Vec3& torque_Nm) const noexcept {
   if (torque_Nm == sent_.at(sent_.newest() - 1).torque_Nm) return true;
   const Box change{(torque_Nm - under_way_.high_Nm).cwiseMin(0.0), (torque_Nm - under_way_.low_Nm).cwiseMax(0.0)};
-  constexpr double kMargin = 0.98;  // the arm turns until the frame acts
+  constexpr double kMargin = 0.98;  // margin for the arm's motion until the torque acts
   return any_pose_.most_N(change.low_Nm, change.high_Nm) <= kAnyPose * step_N_ &&
          change.worst(tip_N_per_Nm_, [](const Vec3& f_N) { return f_N.norm(); }) <= kMargin * step_N_;
 }
 
-/// The largest step that a force in this direction may make.
+/// Largest force change in this direction that counts as one step.
 double Passivity::step_along_N(const Vec3& along) const noexcept {
   const double any_pose_N = any_pose_.most_N(Nm_per_tip_N_ * along);
   return any_pose_N > kAnyPose ? step_N_ * kAnyPose / any_pose_N : step_N_;
 }
 
-/// By one joint's motor since the last sample. The torque of the last cycle is known; so are those before it in which
-/// the drive had nothing new. In the others it made one of what was sent since the last sample, or went on as before.
+/// Upper bound of the energy that one joint's motor gave since the last sample. Known torques: that of the last cycle,
+/// and those of earlier cycles in which the drive received nothing new. In all other cycles the drive made either any
+/// torque sent since the last sample or the torque from before it.
 double Passivity::most_given_J(Eigen::Index j, std::int64_t tick, double dq_rad, const PortSample& s) noexcept {
   const auto joint = static_cast<std::size_t>(j);
   const std::int64_t first = sent_.cycle_of(sampled_), last = std::max(first, sent_.cycle_of(tick - 1));
@@ -81,7 +84,7 @@ double Passivity::most_given_J(Eigen::Index j, std::int64_t tick, double dq_rad,
   const double made_Nm = told ? s.acted.torque_Nm[j] : asked_Nm(last - s.acted.held[joint]);
   const bool guarded = s.acted.limited[joint] || guarded_[joint];
   if (!guarded && made_Nm != asked_Nm(last)) lossy_until_ = tick + kWary;
-  std::int64_t known = last + (guarded ? 1 : 0);  // from this cycle on it made made_Nm
+  std::int64_t known = last + (guarded ? 1 : 0);  // the joint made made_Nm from this cycle on
   while (!guarded && known > first && (told ? made_Nm != asked_Nm(known) : last - known < s.acted.held[joint])) --known;
 
   const double all = static_cast<double>(tick - sampled_);
@@ -100,14 +103,15 @@ double Passivity::most_given_J(Eigen::Index j, std::int64_t tick, double dq_rad,
   return given_J;
 }
 
-/// By a tip force that acts for so many periods from `start` periods after the sample's SYNC on, at its worst.
+/// Largest loss by tip force f that acts for `periods` periods, beginning `start` periods after the SYNC of the sample.
 double Passivity::loss_J(const Vec3& f_N, std::int64_t start, std::int64_t periods, double counts) const noexcept {
   const auto s = static_cast<double>(start), d = static_cast<double>(periods);
   const double spread_m = reach_m_ * (d * s + 0.5 * d * (d + 1.0)) + d * (doubt_m_ + counts * count_m_);
   return std::max(0.0, d * along_J(f_N) + f_N.norm() * spread_m);
 }
 
-/// The same where frames are lost: of a hand that is wild for two periods at most, and of what is more than kSlight_N.
+/// As loss_J() when frames are lost: the full acceleration bound for two periods, kLater of it afterwards, and only for
+/// the part of the force above kSlight_N.
 double Passivity::blind_loss_J(const Vec3& f_N, std::int64_t start, std::int64_t periods) const noexcept {
   double lost_J = 0.0;
   const double size_N = std::max(0.0, f_N.norm() - kSlight_N);
@@ -118,14 +122,15 @@ double Passivity::blind_loss_J(const Vec3& f_N, std::int64_t start, std::int64_t
   return lost_J;
 }
 
-/// In a period of the last motion. One count against the force may have been none.
+/// Loss by f in a period with the last period's motion. If it is a gain, one encoder count of it may be false, and is
+/// not credited.
 double Passivity::along_J(const Vec3& f_N) const noexcept {
   const double given_J = f_N.dot(step_m_);
   return given_J > 0.0 ? given_J : std::min(0.0, given_J + f_N.norm() * count_m_);
 }
 
-/// What is missing to send f in `tick` and to take it back; below zero: what is left. Each step of the way back is a
-/// step from all that may be acting, that is from the last two sent: it takes two periods.
+/// Energy missing to send f in `tick` and, if and_back, to reduce it to zero later; negative: the surplus. Each
+/// reduction must be within a step of both torques sent last, so reducing by one step takes two periods.
 double Passivity::shortage_J(std::int64_t tick, const Vec3& f_N, bool and_back) const noexcept {
   const bool blind = tick > sampled_, wary = is_wary(tick);
   const std::int64_t ahead = tick + 1 - sampled_;
@@ -138,22 +143,23 @@ double Passivity::shortage_J(std::int64_t tick, const Vec3& f_N, bool and_back) 
     const double next_N = std::clamp(std::max(told_N, size_N) - step_N, 0.0, size_N);
     told_N = size_N, size_N = next_N;
     if (size_N == 0.0) break;
-    const Vec3 f = along * size_N;  // each step back sees one more count
+    const Vec3 f = along * size_N;  // each further period adds half a count of uncertainty
     spent_J += blind ? blind_loss_J(f, ahead + k, 1) : loss_J(f, ahead + k, 1, 1.0 + 0.5 * static_cast<double>(k));
   }
   return spent_J - energy_J_ - kSpend_J;
 }
 
-/// Against the motion, as far as one step goes.
+/// Adds damping against the motion, limited to one step.
 Vec3 Passivity::damped(std::int64_t tick, const Vec3& wish_N, const Vec3& v, const Vec3& before_N) noexcept {
   const double speed = v.norm();
-  if (wish_N.dot(v) <= 0.0 || speed <= kSlow_m_per_s) return wish_N;  // the rig does not give
+  // the force takes energy from the hand: no damping needed
+  if (wish_N.dot(v) <= 0.0 || speed <= kSlow_m_per_s) return wish_N;
   injected_ = std::min(kMaxDamping_N_s_per_m, shortage_J(tick, wish_N) / (period_s_ * speed * speed));
   dissipated_J_ += injected_ * speed * speed * period_s_;
   const Vec3 change_N = wish_N - injected_ * v - before_N;
   const Vec3 f_N = before_N + change_N * std::min(1.0, step_N_ / std::max(change_N.norm(), step_N_));
   const double most_N = std::max(wish_N.norm(), before_N.norm()), size_N = f_N.norm();
-  return size_N > most_N ? Vec3(f_N * (most_N / size_N)) : f_N;  // braking is no reason to exceed a limit
+  return size_N > most_N ? Vec3(f_N * (most_N / size_N)) : f_N;  // damping must not exceed the larger of the two forces
 }
 
 void Passivity::sent(std::int64_t tick, const Vec3& torque_Nm, const Vec3& f_N) noexcept {
@@ -179,7 +185,7 @@ void Passivity::lend(std::int64_t tick, Passivity& a, const Vec3& wish_a_N, Pass
                      const Vec3& wish_b_N) noexcept {
   if (!a.active_ || !b.active_) return;
   const double short_a_J = a.shortage_J(tick, wish_a_N), short_b_J = b.shortage_J(tick, wish_b_N);
-  if ((short_a_J > 0.0) == (short_b_J > 0.0)) return;  // nobody is short, or nobody can spare
+  if ((short_a_J > 0.0) == (short_b_J > 0.0)) return;  // neither is short, or both are
   const double lack_J = std::max(short_a_J, short_b_J) + kRounding_J,
                spare_J = -0.999999 * std::min(short_a_J, short_b_J);
   const double size_J = std::min(lack_J, spare_J), to_a_J = short_a_J > 0.0 ? size_J : -size_J;

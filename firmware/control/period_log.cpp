@@ -79,7 +79,7 @@ void PeriodLog::tell(const ThreadResult& thread) noexcept {
       timing_.thread.add(thread.work.count());
       timing_.thread_cut += cut;
       timing_.thread_lost_ticks += thread.health.time_lost;
-    } else {  // those are of an older tick
+    } else {  // the values in `health` belong to an older tick
       record_.thread_end = 0;
       record_.thread_cut_at = -1;
       record_.time_lost = 0.0F;
@@ -90,7 +90,7 @@ void PeriodLog::tell(const ThreadResult& thread) noexcept {
   tell_lost();
 }
 
-/// What has ended since the last record. A result that the loop never saw is told by the next one.
+/// Physics ticks completed since the last record. Results that the loop skipped are included with the next one.
 void PeriodLog::tell_steps(const ThreadResult& thread) noexcept {
   record_.thread_steps = narrow<std::int8_t>(thread.steps - std::exchange(steps_, thread.steps));
   const auto told = std::min<std::size_t>(static_cast<std::size_t>(record_.thread_steps), rt::kThreadSteps);
@@ -101,11 +101,11 @@ void PeriodLog::tell_steps(const ThreadResult& thread) noexcept {
   }
 }
 
-/// The last values again, flagged. What no ring can hold is counted as dropped in one go.
+/// Writes records of lost periods: the last values, flagged. Records beyond the ring's room are counted as dropped.
 void PeriodLog::tell_lost() noexcept {
   const auto room = static_cast<std::int64_t>(out_.room());
   record_.flags |= rt::kPeriodLost;
-  record_.flags &= ~kOfOneTick;  // those were the executed one's
+  record_.flags &= ~kOfOneTick;  // these flags concern the executed tick only
   record_.thread_steps = 0;
   record_.step_age_ticks = record_.step_cut_at = {-1, -1, -1};
   for (std::int64_t i = 0; i < lost_; ++i) {

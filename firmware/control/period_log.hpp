@@ -1,5 +1,5 @@
 #pragma once
-// What the loop says about each period: a record once all of it is known, and statistics of the run.
+// Reports each period of the loop: a tick record once its physics result is known, and statistics of the run.
 
 #include <chrono>
 #include <cstdint>
@@ -11,24 +11,26 @@
 
 namespace ligature::control {
 
-/// When each phase of a tick ended, on the loop's clock.
+/// Times at which the phases of a tick ended, on the loop's clock.
 struct Phases {
   std::chrono::nanoseconds scheduled, woke, synced, sampled, decided, controlled, done;
 };
 
-/// The record of a period waits for its thread: begin() in the period, finish() in the next one, when that thread's
-/// result is in or late. Lost periods repeat it, flagged. No allocation after construction.
+/// A period's record needs the physics result, which comes in the next period: begin() is called in the period,
+/// finish() in the next one, with the result or if it is late. Lost periods repeat the record, flagged. No allocation
+/// after construction.
 class PeriodLog {
  public:
   explicit PeriodLog(rt::Outlets& out) noexcept : out_(out) {}
 
   void begin(std::int64_t tick, const Phases& at, std::chrono::nanoseconds work, const rt::WireTorque& torque,
              const Controller& controller, const ThreadOrders& orders, std::int64_t grasp_age_ticks) noexcept;
-  /// Periods in which nothing is done, the first with this number and this time.
+  /// Periods that were skipped; `tick` and `scheduled` are those of the first.
   void lose(std::int64_t tick, std::chrono::nanoseconds scheduled, std::int64_t periods) noexcept;
-  /// Tells what has begun, and what was lost since. @param late_ticks  by which the result is behind it.
+  /// Writes the record that was begun, and those of periods lost since. @param late_ticks how far the physics is
+  /// behind.
   void finish(const ThreadResult& thread, std::int64_t late_ticks) noexcept;
-  /// The same at the end of a run: nobody waits for the last thread, so it is not called late.
+  /// As finish(), at the end of a run: the last result is not awaited, and not reported as late.
   void finish_last(const ThreadResult& thread) noexcept;
 
   [[nodiscard]] const rt::CycleTiming& timing() const noexcept { return timing_; }
@@ -41,9 +43,9 @@ class PeriodLog {
   rt::Outlets& out_;
   rt::CycleTiming timing_;
   rt::TickRecord record_;
-  std::chrono::nanoseconds woke_{};  // of the record's tick
+  std::chrono::nanoseconds woke_{};  // of the tick in record_
   bool begun_ = false;
-  std::int64_t steps_ = 0;  // of the thread that were told
+  std::int64_t steps_ = 0;  // physics ticks already reported
   std::int64_t lost_ = 0, lost_tick_ = 0;
   std::chrono::nanoseconds lost_scheduled_{};
 };

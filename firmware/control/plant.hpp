@@ -1,5 +1,5 @@
 #pragma once
-// What a change of scene or of live parameters replaces in the loop, built elsewhere and handed over whole.
+// What a change of scene or live parameters replaces in the loop; built in another thread and handed over as a whole.
 
 #include <cstdint>
 
@@ -12,9 +12,11 @@ namespace ligature::control {
 struct Plant {
   physics::Simulation thread;
   scene::Hands hands;
-  bool keeps_motion = false;  ///< parameters: the thread goes on from where it is; else another scene, from its start
-  bool taken = false;         ///< set by the loop; false: it was in a state in which force may flow
-  std::int64_t first_tick = -1;  ///< set by the loop: the first that it is in force in
+  /// true: new parameters, the thread continues from its present state; false: another scene, from its start
+  bool keeps_motion = false;
+  /// set by the loop; false: refused, because force may flow or the parameters do not fit the thread
+  bool taken = false;
+  std::int64_t first_tick = -1;  ///< set by the loop: first tick with this plant
 };
 
 using PlantHandover = rt::Handover<Plant>;

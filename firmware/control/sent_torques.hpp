@@ -1,5 +1,5 @@
 #pragma once
-// What went out to one hand's drives, SYNC by SYNC.
+// History of the torques sent to one hand's drives, by SYNC.
 
 #include <algorithm>
 #include <array>
@@ -9,12 +9,12 @@
 
 namespace ligature::control {
 
-/// Cycle i goes from its SYNC to the next one's. In it the drives make what cycle i - 1 sent, constant (zero-order
-/// hold), or what they made before if that frame was lost. A lost period has no SYNC: the cycle before it lasts
-/// longer, and work is counted from SYNC to SYNC, whatever the time between. All O(1) but cycle_of(), O(kMemory).
+/// Cycle i lasts from its SYNC to the next. In it the drives hold (zero-order hold) what was sent in cycle i - 1, or
+/// their torque before that if the frame was lost. A lost period has no SYNC, so the cycle before it lasts longer. All
+/// functions are O(1), except cycle_of(): O(kMemory).
 class SentTorques {
  public:
-  static constexpr std::int64_t kMemory = 64;  ///< cycles; longer than any watchdog
+  static constexpr std::int64_t kMemory = 64;  ///< cycles remembered; more than any watchdog's ticks
   using Vec3 = physics::Vec3;
 
   struct Cycle {
@@ -23,31 +23,31 @@ class SentTorques {
     Vec3 f_N = Vec3::Zero();  ///< tip force that the torques make
   };
 
-  /// SYNC of period `tick` has gone out. Again, or for an older one: nothing changes.
+  /// The SYNC of period `tick` was sent. No effect if this tick, or a later one, was begun before.
   void begin(std::int64_t tick) noexcept {
     if (tick <= at(newest_).tick) return;
-    const Cycle held{tick, at(newest_).torque_Nm, at(newest_).f_N};  // until send() says what
+    const Cycle held{tick, at(newest_).torque_Nm, at(newest_).f_N};  // until send() is called, the last torques count
     ring_[index(++newest_)] = held;
   }
-  /// In the newest cycle.
+  /// Records what was sent in the newest cycle.
   void send(const Vec3& torque_Nm, const Vec3& f_N) noexcept {
     Cycle& now = ring_[index(newest_)];
     now.torque_Nm = torque_Nm, now.f_N = f_N;
   }
 
   [[nodiscard]] std::int64_t newest() const noexcept { return newest_; }
-  /// Nothing was sent in cycles before the first, nor in those that are forgotten.
+  /// Cycle i; zero torque for cycles before the first and for forgotten ones.
   [[nodiscard]] const Cycle& at(std::int64_t i) const noexcept {
     return i >= 0 && i <= newest_ && i > newest_ - kMemory ? ring_[index(i)] : kNothing;
   }
-  /// The last one whose SYNC went out in period `tick` or before; one that is remembered, if any is.
+  /// The last cycle whose SYNC was sent in period `tick` or before; at least the oldest remembered one.
   [[nodiscard]] std::int64_t cycle_of(std::int64_t tick) const noexcept {
     const std::int64_t oldest = std::max<std::int64_t>(0, newest_ - kMemory + 2);
     std::int64_t i = newest_;
     while (i > oldest && at(i).tick > tick) --i;
     return i;
   }
-  /// Periods that it lasted; the newest: one.
+  /// Duration of cycle i in periods; 1 for the newest.
   [[nodiscard]] std::int64_t periods(std::int64_t i) const noexcept {
     return i < newest_ ? at(i + 1).tick - at(i).tick : 1;
   }

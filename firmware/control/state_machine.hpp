@@ -1,20 +1,21 @@
 #pragma once
-// The rig's states as a table, a pure function and proofs. What a state does is the controller's business.
+// The rig's states: transition table, transition function, and compile-time checks. Controller implements the states.
 
 #include <array>
 #include <cstdint>
 
 namespace ligature::control {
 
-/// Values as in protocol/lcm/tick_t.lcm.
+/// Values are part of the interface: protocol/lcm/tick_t.lcm.
 enum class State : std::uint8_t {
-  kOff = 0,        ///< drives off or on their way to Operation enabled; no torque
-  kCalibrate = 1,  ///< drives on; encoders must show a possible pose for a while; no torque
+  kOff = 0,        ///< drives off or starting up to Operation enabled; no torque
+  kCalibrate = 1,  ///< drives on; encoders must show a possible pose for 50 ticks; no torque
   kIdle = 2,       ///< ready; no torque
-  kEngage = 3,     ///< armed; each hand waits for its dead-man, stillness and a small force, then ramps
-  kForce = 4,      ///< at least one hand has full force
-  kBrake = 5,      ///< forces ramp to zero
-  kFault = 6,      ///< latched; no torque, power stages off
+  /// armed; each hand waits until its dead-man is pressed, it is still and its force small; then the gain rises
+  kEngage = 3,
+  kForce = 4,  ///< at least one hand has full force
+  kBrake = 5,  ///< forces ramp to zero
+  kFault = 6,  ///< latched; no torque, power stages off
 };
 inline constexpr int kStates = 7;
 
@@ -55,14 +56,14 @@ inline constexpr std::array kTransitions{
 };
 
 [[nodiscard]] constexpr State next(State s, Event e) noexcept {
-  if (e == Event::kFault) return State::kFault;  // from anywhere
+  if (e == Event::kFault) return State::kFault;  // from any state
   for (const Transition& t : kTransitions) {
     if (t.from == s && t.on == e) return t.to;
   }
-  return s;  // a pair not listed changes nothing
+  return s;  // events that are not listed for a state have no effect
 }
 
-/// Only these three let torque through.
+/// Only in these three states may torque be commanded.
 [[nodiscard]] constexpr bool may_push(State s) noexcept {
   return s == State::kEngage || s == State::kForce || s == State::kBrake;
 }
@@ -72,7 +73,7 @@ inline constexpr std::array kTransitions{
   return kNames[static_cast<std::size_t>(s)];
 }
 
-static_assert([] {  // a fault is reached from every state and left by a reset only
+static_assert([] {  // every state leads to FAULT on a fault, and only a reset leaves FAULT
   for (int s = 0; s < kStates; ++s) {
     if (next(static_cast<State>(s), Event::kFault) != State::kFault) return false;
   }
@@ -82,19 +83,19 @@ static_assert([] {  // a fault is reached from every state and left by a reset o
   }
   return true;
 }());
-static_assert([] {  // torque begins by arming in IDLE and nowhere else
+static_assert([] {  // the only transition from no torque to torque is arming in IDLE
   for (const Transition& t : kTransitions) {
     if (!may_push(t.from) && may_push(t.to) && !(t.from == State::kIdle && t.on == Event::kArm)) return false;
   }
   return true;
 }());
-static_assert([] {  // from wherever torque may flow, disarming leads out of it in two steps
+static_assert([] {  // from every state with torque, kDisarm and then kStopped lead to one without
   for (const State s : {State::kEngage, State::kForce, State::kBrake}) {
     if (may_push(next(next(s, Event::kDisarm), Event::kStopped))) return false;
   }
   return true;
 }());
-static_assert([] {  // no two rows answer the same question
+static_assert([] {  // no two rows have the same state and event
   for (std::size_t i = 0; i < kTransitions.size(); ++i) {
     for (std::size_t j = i + 1; j < kTransitions.size(); ++j) {
       if (kTransitions[i].from == kTransitions[j].from && kTransitions[i].on == kTransitions[j].on) return false;

@@ -1,17 +1,17 @@
 #pragma once
-// What a motor may do for a while, and what it may do for ever.
+// Thermal (I2t) limit: how long a motor may exceed its continuous force or torque.
 
 #include <algorithm>
 #include <cstdint>
 
 namespace ligature::control {
 
-/// I2t of what is sent, a force or a torque: dh/dt = ((x / continuous)^2 - h) / tau, h the winding's temperature rise,
-/// 1 = that of `continuous` for ever. From h = 1 on the cap falls from the peak to `continuous`, below h = 0.7 it comes
-/// back as slowly: with hysteresis, as a force that comes and goes is worse than one that is gone. It falls within
-/// kFall_s, or sooner where h would rise above 1 + kMostOver meanwhile: with r = peak / continuous, falling evenly for
-/// t lets through (r^2 + r + 1) / 3 on average, so h rises by less than ((r^2 + r + 1) / 3 - 1) t / tau. A drive that
-/// guards its winding at 1.2 times `continuous` or above (h = 1.44) is never the first. O(1).
+/// I2t model of a force or torque x: dh/dt = ((x / continuous)^2 - h) / tau. h is the winding's temperature rise; h = 1
+/// is reached by `continuous` held for ever. When h reaches kHot the cap falls from the peak to `continuous`; below
+/// kCool it rises again at the same rate. The hysteresis avoids a force that comes and goes. The fall takes kFall_s, or
+/// less if h would otherwise exceed 1 + kMostOver: with r = peak / continuous, the mean of (x / continuous)^2 during a
+/// linear fall is (r^2 + r + 1) / 3, so in a time t h rises by less than ((r^2 + r + 1) / 3 - 1) t / tau. So this cap
+/// acts before a drive that limits at 1.2 times `continuous` (h = 1.44). O(1).
 class ThermalCap {
  public:
   static constexpr double kFall_s = 0.5;
@@ -23,7 +23,8 @@ class ThermalCap {
     fall_s_ = std::min(kFall_s, kMostOver * tau_s_ / std::max(rise, 1e-9));
   }
 
-  /// Once a tick. @param periods since the last call: in all of them acted what was sent then.
+  /// Call once per tick with the new value. @param periods since the last call; the value given then acted in all of
+  /// them.
   void sent(double size, std::int64_t periods = 1) noexcept {
     const double load = sent_ / continuous_,
                  time_s = period_s_ * static_cast<double>(std::max<std::int64_t>(periods, 1));

@@ -1,5 +1,5 @@
 #pragma once
-// Between the loop and the thread's physics: tools one way, the grasp the other, and neither ever waits.
+// Wait-free exchange between the control loop and the physics thread: tools one way, grasp and diagnostics the other.
 
 #include <algorithm>
 #include <array>
@@ -14,39 +14,39 @@
 
 namespace ligature::control {
 
-/// Ticks of the thread between two shapes that it tells.
+/// The physics publishes the thread's shape once every so many ticks.
 inline constexpr std::int64_t kTicksPerShape = 8;
 
-/// What the loop asks for, once a period.
+/// Request of the loop to the physics, once per period.
 struct ThreadRequest {
-  std::int64_t tick = -1;   ///< the period
-  std::int64_t number = 0;  ///< of the request, from 1 on: periods in which the loop did nothing have none
+  std::int64_t tick = -1;   ///< period in which it was made
+  std::int64_t number = 0;  ///< of the request, counted from 1; lost periods make no request
   std::array<physics::ToolInput, 2> tools;
   std::chrono::nanoseconds deadline{};  ///< on the loop's clock
-  std::int64_t resets = 0;              ///< asked for so far; the thread starts anew when this has grown
-  std::int64_t plants = 0;              ///< handed over so far, this one included;
-  Plant* plant = nullptr;               ///< lent until a result says that it is done with
+  std::int64_t resets = 0;              ///< resets requested so far; if larger than before, the thread restarts
+  std::int64_t plants = 0;              ///< plants handed over so far, including this one
+  Plant* plant = nullptr;               ///< owned by the loop's side; lent until a result reports it as processed
 };
 
-/// A request that was answered.
+/// A request that the physics has answered.
 struct ThreadStep {
   std::int64_t tick = -1;
-  int cut_at = -1;  ///< physics::Diagnostics
+  int cut_at = -1;  ///< see physics::Diagnostics
 };
 
-/// What the physics made of it.
+/// Result of the newest answered request.
 struct ThreadResult {
-  std::int64_t tick = -1;   ///< of the request that was answered,
-  std::int64_t number = 0;  ///< and its number
+  std::int64_t tick = -1;   ///< of that request
+  std::int64_t number = 0;  ///< of that request
   std::array<physics::HandContact, 2> hand;
   physics::Diagnostics health;
   std::chrono::nanoseconds began{}, done{};               ///< on the loop's clock
   std::chrono::nanoseconds work{};                        ///< CPU time
-  std::int64_t plants = 0;                                ///< done with so far
-  std::int64_t steps = 0;                                 ///< requests answered so far,
-  std::array<ThreadStep, rt::kThreadSteps> last_steps{};  ///< the newest of them first
+  std::int64_t plants = 0;                                ///< plants processed so far
+  std::int64_t steps = 0;                                 ///< requests answered so far
+  std::array<ThreadStep, rt::kThreadSteps> last_steps{};  ///< newest first
 
-  /// One more.
+  /// Appends an answered request.
   void add_step(ThreadStep step) noexcept {
     std::shift_right(last_steps.begin(), last_steps.end(), 1);
     last_steps.front() = step;
@@ -54,45 +54,45 @@ struct ThreadResult {
   }
 };
 
-/// What was asked of the thread so far, besides ticks.
+/// Orders to the physics so far, besides ticks.
 struct ThreadOrders {
   std::int64_t resets = 0, scenes = 0, parameters = 0;
 };
 
-/// Both directions. Either side owns one slot of each triple buffer whole, so neither can be held up or see half of
-/// something; the exchange that hands a slot over releases what was written and acquires what the other side wrote
-/// (latest_value.hpp). The newest request counts: what came in while a tick took too long is not made up for. What must
-/// not be lost with a request that was passed over is counted (resets) or told again until it is answered (a plant).
+/// Triple buffers in both directions. Each side owns one slot exclusively, so neither blocks or reads a partial value;
+/// publishing has release, reading acquire semantics (latest_value.hpp). Only the newest request counts; requests that
+/// arrive during a long tick are skipped. What a skipped request must not lose is either counted (resets) or repeated
+/// until it is answered (a plant).
 struct ThreadExchange {
   rt::LatestValue<ThreadRequest> requests;  ///< loop -> physics
   rt::LatestValue<ThreadResult> results;    ///< physics -> loop
 };
 
-/// The loop's end of it.
+/// The loop's side of the exchange.
 class ThreadLink {
  public:
   explicit ThreadLink(ThreadExchange& exchange) noexcept : exchange_(exchange) {}
 
-  /// With the next tools: the thread starts anew.
+  /// The next request restarts the thread.
   void reset() noexcept { ++orders_.resets; }
-  /// With the next tools: another thread. @pre !is_changing()
+  /// The next request replaces the simulation. @pre !is_changing()
   void change(Plant* plant) noexcept {
     plant_ = plant;
     ++(plant->keeps_motion ? orders_.parameters : orders_.scenes);
   }
   [[nodiscard]] bool is_changing() const noexcept { return plant_ != nullptr; }
-  /// Another scene is under way: the hands are still those of the old one.
+  /// A new scene is being installed: the hands are still those of the old one.
   [[nodiscard]] bool changes_scene() const noexcept { return plant_ != nullptr && !plant_->keeps_motion; }
 
   void hand_over(std::int64_t tick, const std::array<physics::ToolInput, 2>& tools,
                  std::chrono::nanoseconds deadline) noexcept;
 
-  /// Moves to the newest result. @return a plant that is done with, taken or not; else nullptr.
+  /// Takes the newest result. @return a plant that the physics has processed, whether accepted or not; else nullptr.
   [[nodiscard]] Plant* collect() noexcept;
   [[nodiscard]] const ThreadResult& result() const noexcept { return exchange_.results.front(); }
-  /// With the newest tools.
+  /// Orders contained in the newest request.
   [[nodiscard]] const ThreadOrders& orders() const noexcept { return orders_; }
-  /// Tools handed over that the newest result has not seen; 0: the thread is in time.
+  /// Number of requests newer than the one that the newest result answers; 0: the physics is in time.
   [[nodiscard]] std::int64_t late_ticks() const noexcept { return number_ - result().number; }
 
  private:

@@ -6,7 +6,7 @@
 namespace ligature::control {
 namespace {
 
-constexpr double kNoGap_m = 1e9;  // "none near" on the wire, where infinity would not survive every reader
+constexpr double kNoGap_m = 1e9;  // value for "nothing near" on the wire, since not every reader handles infinity
 
 rt::Triple triple(const Vec3& v) noexcept { return {v.x(), v.y(), v.z()}; }
 

@@ -1,5 +1,5 @@
 #pragma once
-// A period as others shall read it.
+// Fills tick records and thread snapshots for telemetry and recorder.
 
 #include "firmware/control/controller.hpp"
 #include "firmware/control/thread_link.hpp"
@@ -8,12 +8,12 @@
 
 namespace ligature::control {
 
-/// The node that a hand of the thread holds, as the controller wants it.
+/// The held piece of thread, as the controller uses it.
 [[nodiscard]] inline Grasp grasp_of(const physics::HandContact& contact) noexcept {
   return {contact.node >= 0, contact.p_WG, contact.v_WG};
 }
 
-/// Copies controller and thread into the record; timing, tick number and torques are the cycle's own.
+/// Copies the state of controller and thread into the record; the cycle itself fills in times, tick and torques.
 void report(const Controller& controller, rt::TickRecord& record) noexcept;
 void report(const HandState& hand, std::size_t number, rt::TickRecord& record) noexcept;
 void report(const ThreadOrders& orders, rt::TickRecord& record) noexcept;
@@ -21,9 +21,9 @@ void report(const physics::ToolInput& tool, std::size_t hand, rt::TickRecord& re
 void report(const physics::Diagnostics& thread, rt::TickRecord& record) noexcept;
 void report(const physics::HandContact& contact, std::size_t hand, rt::TickRecord& record) noexcept;
 
-/// The shape, as many nodes as fit.
+/// Node positions, up to the snapshot's capacity.
 void report(std::span<const physics::Vec3> nodes_W, const ThreadResult& thread, rt::ThreadSnapshot& snapshot) noexcept;
-/// The whole shape, tension and turn included.
+/// Node positions, tension and turn.
 void report(const physics::Simulation& thread, const ThreadResult& result, rt::ThreadSnapshot& snapshot) noexcept;
 
 }  // namespace ligature::control

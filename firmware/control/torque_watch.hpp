@@ -1,5 +1,5 @@
 #pragma once
-// Torque that nobody asked for.
+// Detects a drive that reports a torque which it was not asked for.
 
 #include <algorithm>
 #include <array>
@@ -12,23 +12,23 @@
 
 namespace ligature::control {
 
-/// What one hand's drives say that they make, against what may come of all that was sent to them. A drive makes what
-/// it was sent, or less (a guarded winding, a drive that is off), or for want of an RPDO what it made before, but for
-/// no longer than the watchdog lets it. So a torque told must lie between zero and what was sent to that joint within
-/// the watchdog's time and kWay ticks more for the way there and back. That is remembered in kBlocks of equal length:
-/// 28 to 32 ticks with a watchdog of 20. The device record says by how much a drive may miss; one sample beyond is an
-/// overshoot or noise, kStrange in a row are not. A joint whose message has no room for a torque tells by a bit of its
-/// statusword. O(kBlocks), no allocation.
+/// Compares the torques that one hand's drives report with all that can follow from the commands. A drive makes the
+/// commanded torque, or less (it protects its winding, or is off), or repeats an earlier one if an RPDO is missing, but
+/// no longer than its watchdog time. So a reported torque must lie between zero and the extremes of what was sent to
+/// that joint within the watchdog time plus kWay ticks. The extremes are stored in kBlocks blocks of equal length: in
+/// all 28 to 32 ticks with a watchdog of 20. The tolerance is in the device record. One sample outside is overshoot or
+/// noise; kStrange in a row are a fault. A joint whose message has no torque reports a deviation by a statusword bit
+/// instead. O(kBlocks), no allocation.
 class TorqueWatch {
  public:
-  static constexpr int kStrange = 2;  ///< samples in a row
-  static constexpr int kWay = 4;      ///< ticks: sent, acting, told, a late message
+  static constexpr int kStrange = 2;  ///< consecutive samples
+  static constexpr int kWay = 4;      ///< ticks for the way of a torque: sent, acting, reported, message late
 
   TorqueWatch(const device::Device& device, std::int32_t watchdog_ticks) noexcept
       : tolerance_Nm_(device.torque_tolerance_permille * device.Nm_per_permille()),
         block_ticks_((watchdog_ticks + kWay) / static_cast<std::int32_t>(kBlocks - 1) + 1) {}
 
-  /// This tick's reading, before sent() of this tick.
+  /// Checks this tick's reading; call before sent() of this tick.
   void look(const rt::HandReading& reading) noexcept {
     const bool fresh = reading.valid && reading.age_ticks != last_age_ + 1;
     last_age_ = reading.age_ticks;
@@ -59,7 +59,7 @@ class TorqueWatch {
     bool strange = reading.torque_astray;
     for (std::size_t j = 0; j < rt::kJoints; ++j) {
       const double told_Nm = reading.torque_Nm[j];
-      if (!std::isfinite(told_Nm)) continue;  // no room for it in the message
+      if (!std::isfinite(told_Nm)) continue;  // this joint's message has no torque
       Range may;
       for (const auto& block : blocks_) {
         may.low_Nm = std::min(may.low_Nm, block[j].low_Nm);
@@ -73,7 +73,7 @@ class TorqueWatch {
   double tolerance_Nm_;
   std::int32_t block_ticks_, ticks_ = 0, last_age_ = 0;
   std::size_t newest_ = 0;
-  std::array<std::array<Range, rt::kJoints>, kBlocks> blocks_{};  // the newest is not full
+  std::array<std::array<Range, rt::kJoints>, kBlocks> blocks_{};  // ring; the newest block is still being filled
   int strange_ = 0;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// The motors' windings, joint by joint: what warms them is torque, wherever the tip is.
+// Thermal limit of the motors' windings, joint by joint; they are heated by torque, which depends on the pose.
 
 #include <algorithm>
 #include <array>
@@ -12,19 +12,20 @@
 
 namespace ligature::control {
 
-/// The torques that the record's continuous force makes at home, where its maker states it. N m.
+/// Joint torques that the record's continuous force needs in the home pose, for which the maker states it. N m.
 [[nodiscard]] inline Vec3 continuous_torque_Nm(const device::Device& d) noexcept {
   return d.continuous_force_N * levers_at_home_m(d);
 }
 
-/// An arm that reaches further than home needs more torque for the same force: a winding gets hot, and its drive holds
-/// it down by a jump, while the tip's force is what may be made for ever. So each winding has its own I2t. O(1).
+/// With the arm stretched further than in the home pose, the same tip force needs more torque. A winding could then
+/// overheat, and its drive would limit it abruptly, although the tip's force is within the continuous limit. So each
+/// winding has an I2t limit of its own. O(1).
 class Windings {
  public:
   Windings(const device::Device& d, double period_s) noexcept
       : caps_{cap_of(d, 0, period_s), cap_of(d, 1, period_s), cap_of(d, 2, period_s)} {}
 
-  /// Times these torques are what all windings may have now. Where none is warm: without a limit.
+  /// Largest factor on these torques that keeps all windings within their caps; infinite if no winding is limited.
   [[nodiscard]] double share(const Vec3& torque_Nm) const noexcept {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t j = 0; j < caps_.size(); ++j) {
@@ -33,12 +34,12 @@ class Windings {
     }
     return least;
   }
-  /// Once a tick. @param periods since the last call.
+  /// Call once per tick. @param periods since the last call.
   void sent(const Vec3& torque_Nm, std::int64_t periods = 1) noexcept {
     for (std::size_t j = 0; j < caps_.size(); ++j)
       caps_[j].sent(std::abs(torque_Nm[static_cast<Eigen::Index>(j)]), periods);
   }
-  /// Of the hottest: 1 = its cap begins to fall.
+  /// Heat of the hottest winding; at 1 its cap begins to fall.
   [[nodiscard]] double heat() const noexcept { return std::max({caps_[0].heat(), caps_[1].heat(), caps_[2].heat()}); }
 
  private:

@@ -1,13 +1,13 @@
 #pragma once
-// The desk-sized device moves tools in a world that may be larger.
+// Map from device coordinates D to world coordinates W, where the scene may be larger than the device's workspace.
 
 #include "firmware/control/kinematics.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::control {
 
-/// p_WT = origin + scale (p_DT - p_DT_home),  v_WT = scale v_DT;  axes of D and W are parallel, so a force needs no
-/// rotation (its scale is force_scale, a separate choice: energy is not preserved across the map).
+/// p_WT = origin + scale (p_DT - p_DT_home),  v_WT = scale v_DT. The axes of D and W are parallel, so forces need no
+/// rotation. Forces have a scale of their own (force_scale), so the map does not preserve energy.
 struct WorkspaceMap {
   double scale = 1.0;
   Vec3 origin_W_m = Vec3::Zero();

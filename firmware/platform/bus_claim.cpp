@@ -17,7 +17,7 @@ struct AbstractName {
   socklen_t size = 0;
 };
 
-/// The leading zero makes it a name of the kernel's own, and no file.
+/// Address in the abstract namespace (leading zero byte): owned by the kernel, with no file.
 AbstractName abstract(const std::string& name) {
   AbstractName a;
   a.address.sun_family = AF_UNIX;
@@ -27,7 +27,7 @@ AbstractName abstract(const std::string& name) {
   return a;
 }
 
-/// Process that listens at a name; 0 if nobody tells.
+/// Process that holds the name; 0 if unknown.
 pid_t holder_of(const AbstractName& name) {
   const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   ucred who{};
@@ -44,7 +44,7 @@ std::variant<BusClaim, std::string> BusClaim::take(const std::string& name) {
   const AbstractName at = abstract("ligature-firmware/" + name);
   BusClaim claim(socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0));
   if (claim.fd_ < 0) return std::string(std::strerror(errno));
-  constexpr int kCallers = 16;  // who asks whose it is
+  constexpr int kCallers = 16;  // backlog for processes that ask who holds it
   if (bind(claim.fd_, reinterpret_cast<const sockaddr*>(&at.address), at.size) == 0 && listen(claim.fd_, kCallers) == 0)
     return claim;
   if (errno != EADDRINUSE) return std::string(std::strerror(errno));

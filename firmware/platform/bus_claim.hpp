@@ -1,5 +1,5 @@
 #pragma once
-// One controller a bus: who opens one on this machine holds it alone, before the first frame.
+// Makes sure that only one controller on this machine uses a bus; taken before the first frame is sent.
 
 #include <string>
 #include <utility>
@@ -7,12 +7,12 @@
 
 namespace ligature::platform {
 
-/// A name that one process at a time can hold. The kernel takes it back when the process ends, however it ends, and
-/// leaves nothing in the file system (an abstract Unix socket; one a network namespace, as CAN interfaces are).
+/// A name that only one process can hold at a time. It is an abstract Unix socket, so the kernel frees it however the
+/// process ends and no file remains. Abstract names are per network namespace, as CAN interfaces are.
 class BusClaim {
  public:
   BusClaim() = default;
-  /// @return the claim, or why not: in one line, with the process that holds it.
+  /// @return the claim, or one line that says why not, with the process that holds it.
   [[nodiscard]] static std::variant<BusClaim, std::string> take(const std::string& name);
 
   ~BusClaim();

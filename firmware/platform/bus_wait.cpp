@@ -9,7 +9,7 @@ bool PollWait::wait(Nanoseconds deadline) noexcept {
   if (left <= Nanoseconds::zero()) return false;
   std::array<pollfd, 2> fds{};
   for (std::size_t i = 0; i < fds.size(); ++i) {
-    fds[i].fd = buses_[i]->is_lost() ? -1 : buses_[i]->descriptor();  // poll ignores negative ones
+    fds[i].fd = buses_[i]->is_lost() ? -1 : buses_[i]->descriptor();  // poll ignores negative descriptors
     fds[i].events = POLLIN;
   }
   const timespec timeout = MonotonicClock::to_timespec(left);

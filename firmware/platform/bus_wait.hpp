@@ -1,5 +1,5 @@
 #pragma once
-// Waiting for frames of several buses, with a deadline.
+// Waits for frames on several buses, with a deadline.
 
 #include <array>
 
@@ -8,16 +8,16 @@
 
 namespace ligature::platform {
 
-/// Tests put virtual time behind this.
+/// Interface, so that tests can use simulated time.
 class BusWait {
  public:
   virtual ~BusWait() = default;
   [[nodiscard]] virtual Nanoseconds now() noexcept = 0;
-  /// Sleeps until a bus has something to say or the deadline comes. @return false when the deadline has passed.
+  /// Sleeps until a bus is readable or the deadline is reached. @return false if the deadline has passed.
   virtual bool wait(Nanoseconds deadline) noexcept = 0;
 };
 
-/// ppoll on both hands' sockets. A lost bus, always readable, is left out, so that waiting never becomes spinning.
+/// ppoll() on both hands' sockets. A lost bus is always readable, so it is left out; otherwise waiting would busy-loop.
 class PollWait final : public BusWait {
  public:
   PollWait(const CanBus& left, const CanBus& right) noexcept : buses_{&left, &right} {}

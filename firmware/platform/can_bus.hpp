@@ -1,5 +1,5 @@
 #pragma once
-// One CAN network as its master uses it, whatever carries the frames.
+// A CAN network as its master uses it, independent of the transport.
 
 #include <cstdint>
 
@@ -9,15 +9,15 @@ namespace ligature::platform {
 
 enum class Receive : std::uint8_t { kFrame, kNothing, kLost };
 
-/// Never blocks, never throws. A bus that is lost takes no frames; one that can come back does so while it is read.
+/// Never blocks or throws. A lost bus accepts no frames; if it can recover, it does so while receive() is called.
 class CanBus {
  public:
   virtual ~CanBus() = default;
-  /// @return false when the frame could not be queued (full, or lost); the next period will send another.
+  /// @return false if the frame could not be queued (queue full, or bus lost); it is not retried.
   virtual bool send(const can::Frame& frame) noexcept = 0;
   virtual Receive receive(can::Frame& frame) noexcept = 0;
   [[nodiscard]] virtual bool is_lost() const noexcept = 0;
-  /// File descriptor that becomes readable with a frame or a loss; -1 when there is none to wait for.
+  /// Descriptor that becomes readable when a frame arrives or the bus is lost; -1: none.
   [[nodiscard]] virtual int descriptor() const noexcept = 0;
 };
 

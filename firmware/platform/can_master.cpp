@@ -23,7 +23,7 @@ std::string abort_text(std::uint32_t code) {
   return text;
 }
 
-/// Reads a number that must be the one the unit conversions were built with.
+/// Reads an object and checks that it has the value for which the unit conversions were computed.
 std::optional<std::string> expect(CanBus& bus, BusWait& wait, can::NodeId node, const can::Object& object,
                                   std::uint32_t wanted, Nanoseconds patience) {
   const auto [answer, other] = transfer(bus, wait, can::sdo_read(node, object), patience);
@@ -48,7 +48,7 @@ std::optional<std::string> configure(CanBus& bus, BusWait& wait, can::NodeId nod
   return std::nullopt;
 }
 
-/// What is to be said of a frame that only a controller sends; nothing for a drive's.
+/// Error text for a frame that only a controller sends; nothing for a drive's frame.
 std::optional<std::string> told_of_other(const can::Frame& frame) {
   const rt::Foreign kind = foreign_kind(frame);
   if (kind == rt::Foreign::kNone) return std::nullopt;
@@ -111,7 +111,7 @@ std::optional<std::string> other_master(CanBus& bus, BusWait& wait, Nanoseconds 
     while ((got = bus.receive(frame)) == Receive::kFrame) {
       if (auto other = told_of_other(frame)) return other;
     }
-    if (got == Receive::kLost) return std::nullopt;  // told by whoever uses the bus next
+    if (got == Receive::kLost) return std::nullopt;  // reported by the next user of the bus
   } while (wait.wait(deadline));
   return std::nullopt;
 }

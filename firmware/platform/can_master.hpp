@@ -1,5 +1,5 @@
 #pragma once
-// Bringing the three drives of a hand from power-on to cyclic operation; before the loop, may take its time.
+// Brings the three drives of a hand from power-on to cyclic operation. Runs before the loop, without deadlines.
 
 #include <chrono>
 #include <optional>
@@ -13,31 +13,33 @@
 
 namespace ligature::platform {
 
-/// What start-up expects of the drives of a device and sets in them.
+/// Values that start-up checks and sets in the drives of a device.
 [[nodiscard]] can::DriveFacts drive_facts(const device::Device& device) noexcept;
 
-/// One expedited transfer: request out, matching answer in; other drives' frames are skipped.
+/// One expedited SDO transfer: sends the request and waits for its answer; other frames are skipped.
 struct SdoAnswer {
-  std::optional<can::Sdo> sdo;  ///< nothing: no answer in time, somebody else commands, or the bus is gone
-  std::optional<std::string> other_master{};  ///< what was heard of one meanwhile
+  /// empty: no answer in time, another controller was heard, or the bus is lost
+  std::optional<can::Sdo> sdo;
+  std::optional<std::string> other_master{};  ///< description of another controller that was heard meanwhile
 };
 [[nodiscard]] SdoAnswer transfer(CanBus& bus, BusWait& wait, const can::Frame& request, Nanoseconds patience);
 
-/// Puts the nodes into pre-operational, checks that rated torque and encoder are the ones the units are computed
-/// with, and writes startup_plan() (mapping, watchdogs, torque limit, cyclic synchronous torque mode).
-/// @return why it failed, one line, or nothing. The bus is left in pre-operational: no torque is possible.
+/// Puts the nodes into pre-operational, checks that rated torque and encoder resolution match the unit conversions, and
+/// writes startup_plan() (mapping, watchdogs, torque limit, cyclic synchronous torque mode).
+/// @return one line that says why it failed, or nothing. The nodes are left in pre-operational, where no torque is
+/// possible.
 [[nodiscard]] std::optional<std::string> configure_drives(CanBus& bus, BusWait& wait, const can::StartupTimes& times,
                                                           Nanoseconds patience = std::chrono::milliseconds(500));
 
-/// NMT start: from now on the drives answer SYNC with TPDOs. They stay switched off until asked.
+/// NMT start: from now on the drives answer SYNC with TPDOs. They stay switched off until enabled by controlword.
 bool start_drives(CanBus& bus) noexcept;
 
-/// The end of a run: NMT pre-operational, where drives are disabled and need no RPDOs, then every drive's watch over
-/// our heartbeat off, so that our silence is no fault to them. What a drive does not answer is left as it is.
+/// End of a run: NMT pre-operational, in which drives are disabled and expect no RPDOs. Then switches off every drive's
+/// monitoring of our heartbeat, so that our silence causes no fault. Drives that do not answer are left as they are.
 void release_drives(CanBus& bus, BusWait& wait, Nanoseconds patience = std::chrono::milliseconds(20));
 
-/// Listens before we speak: a bus has one master. Two that began to listen in the same moment hear each other in
-/// transfer(). @return what another one sent within `listening`, or nothing.
+/// Listens for another master before this one sends anything; a bus has one master. Two masters that start at the same
+/// moment hear each other later, in transfer(). @return what was heard within `listening`, or nothing.
 [[nodiscard]] std::optional<std::string> other_master(CanBus& bus, BusWait& wait,
                                                       Nanoseconds listening = std::chrono::milliseconds(60));
 

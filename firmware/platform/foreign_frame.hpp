@@ -1,6 +1,6 @@
 #pragma once
-// Frames that a controller sends and no drive does. Neither back end lets us hear what we sent ourselves, so whoever
-// hears one has heard somebody else.
+// Recognises frames that only a controller sends. Neither back end returns our own frames, so each such frame comes
+// from another controller.
 
 #include "firmware/rt/rig_io.hpp"
 #include "protocol/can/cob_id.hpp"
@@ -8,9 +8,9 @@
 
 namespace ligature::platform {
 
-/// RPDO 2 to 4 count, too: a drive from the shelf may act on one that it was delivered with.
+/// RPDO 2 to 4 count as well: a drive may be delivered with a mapping that obeys them.
 [[nodiscard]] constexpr rt::Foreign foreign_kind(const can::Frame& frame) noexcept {
-  constexpr std::uint32_t kLss = 0x7E5;  // layer setting services of CiA 305: they change node numbers
+  constexpr std::uint32_t kLss = 0x7E5;  // layer setting services (CiA 305), which change node ids
   for (const std::uint32_t base : {0x300U, 0x400U, 0x500U}) {
     if (frame.id > base && frame.id <= base + can::kMaxNodeId) return rt::Foreign::kTorque;
   }
@@ -31,7 +31,7 @@ namespace ligature::platform {
     case can::Service::kEmcy:
     case can::Service::kTpdo1:
     case can::Service::kSdoResponse:
-      break;  // a drive's own
+      break;  // sent by drives
   }
   return rt::Foreign::kNone;
 }

@@ -16,7 +16,7 @@ namespace {
 constexpr float kPeriod_ns = 1e6F;
 constexpr unsigned kAllJoints = (1U << rt::kJoints) - 1U;
 
-/// Index of a joint's node, or kJoints for a stranger.
+/// Index of the joint with this node id; kJoints if there is none.
 constexpr std::size_t joint_of(can::NodeId node) noexcept {
   for (std::size_t j = 0; j < rt::kJoints; ++j) {
     if (can::profile::kJointNodes[j] == node) return j;
@@ -38,9 +38,10 @@ void HandLink::send_sync() noexcept {
   send(can::sync_frame());
 }
 
-/// A heartbeat has the lowest priority on the bus: while others send it waits, and so does what is queued behind it.
-/// Hence it is sent when the drives have answered and the bus is free; and not at all once a foreign controller was
-/// heard: a flood would keep NMT stop waiting behind it, and drives that miss it let go by themselves.
+/// A heartbeat has the lowest priority on the bus: while others send, it waits and so does everything queued behind it.
+/// So it is sent after the drives have answered, when the bus is free. After a foreign controller was heard, no more
+/// are sent: on a flooded bus NMT stop would wait behind the heartbeat. Drives that miss heartbeats switch off by
+/// themselves.
 void HandLink::beat() noexcept {
   if (foreign_ != rt::Foreign::kNone) return;
   if (--periods_to_heartbeat_ >= 0) return;
@@ -95,7 +96,7 @@ void HandLink::note_life(std::uint16_t buttons) noexcept {
   still_sets_ = moved ? 0 : still_sets_ + (still_sets_ < kStillSets);
 }
 
-/// Joints are used as a set sampled at one SYNC, or not at all: mixed ages would be a pose that never was.
+/// Joints are used only as a complete set sampled at one SYNC: a mixture of ages would be a pose that never existed.
 void HandLink::take_tpdo(std::size_t joint, const can::Tpdo1& tpdo) noexcept {
   pending_[joint] = tpdo;
   arrived_ |= 1U << joint;
@@ -153,7 +154,7 @@ std::array<std::int16_t, rt::kJoints> HandLink::write(const rt::HandCommand& com
     Node& node = nodes_[j];
     const auto state = node.state();
     if (command.request == rt::DriveRequest::kEnable && state == can::cia402::State::kOperationEnabled) {
-      node.emergency = can::emcy::kNoError;  // it came back up: what it complained of is over
+      node.emergency = can::emcy::kNoError;  // the drive is enabled again: its earlier error no longer counts
     }
     node.controlword = controlword(command.request, state, node.controlword);
     const std::int16_t torque = permille_of(command.torque_Nm[j]);

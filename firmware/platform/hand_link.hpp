@@ -1,5 +1,5 @@
 #pragma once
-// The cyclic part of one hand's bus: SYNC out, three TPDOs in, three RPDOs out, and an ear for trouble.
+// Cyclic traffic of one hand's bus: SYNC out, three TPDOs in, three RPDOs out; detects faults and foreign frames.
 
 #include <array>
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace ligature::platform {
 
-/// Controlword for a drive in a state, by request. Fault reset is an edge, so it alternates with zero.
+/// Controlword for a request and the drive's state. Fault reset works on a rising edge, so it alternates with zero.
 [[nodiscard]] constexpr std::uint16_t controlword(rt::DriveRequest request, can::cia402::State state,
                                                   std::uint16_t before) noexcept {
   using can::cia402::State;
@@ -33,12 +33,12 @@ namespace ligature::platform {
   return can::cia402::kControlDisableVoltage;
 }
 
-/// Real time: every call is bounded, allocates nothing, and does at most the bus' system calls.
+/// Real time: every call is bounded, does not allocate, and makes only the bus's system calls.
 class HandLink {
  public:
-  static constexpr int kHeartbeatPeriods = 50;  ///< half of the drives' default, so that one may be lost
+  static constexpr int kHeartbeatPeriods = 50;  ///< half of the drives' default timeout, so that one may be lost
 
-  /// @param first_heartbeat  the period, from 0, that has the first heartbeat of the master
+  /// @param first_heartbeat period, from 0, in which the first master heartbeat is sent
   HandLink(CanBus& bus, const device::Device& device, int first_heartbeat = 0) noexcept
       : bus_(bus),
         rad_per_count_(device.rad_per_count()),
@@ -46,29 +46,29 @@ class HandLink {
         max_permille_(device.max_torque_permille),
         periods_to_heartbeat_(first_heartbeat) {}
 
-  /// Begins a period. What came too late for the last one is taken first, as one period old; then SYNC goes out.
+  /// Begins a period: first reads late frames of the last period (as one period old), then sends SYNC.
   void send_sync() noexcept;
 
-  /// Takes what has arrived.
+  /// Reads all frames that have arrived.
   void drain() noexcept;
 
-  /// All three drives have answered this period's SYNC, or never will.
+  /// Whether waiting is over: all three drives have answered this period's SYNC, or the bus is lost.
   [[nodiscard]] bool is_settled() const noexcept { return age_ticks_ == 0 || bus_.is_lost(); }
   [[nodiscard]] rt::HandReading reading() const noexcept;
 
-  /// Every period anew, so that somebody else's frames do not outlast ours; before them, every kHeartbeatPeriods, the
-  /// master's heartbeat.
-  /// @return the torques as they went out, per mille; zero when the bus is lost.
+  /// Sends the torques. They are sent in every period, so that a foreign controller's RPDO acts for one period at most.
+  /// Every kHeartbeatPeriods the master's heartbeat is sent before them.
+  /// @return the torques as sent, per mille; zero if the bus is lost
   std::array<std::int16_t, rt::kJoints> write(const rt::HandCommand& command) noexcept;
 
  private:
-  static constexpr int kMaxFrames = 64;  // a period on a 1 Mbit/s bus carries fewer than 22
-  static constexpr int kStillSets = 10;  // complete sets without a new life sign
+  static constexpr int kMaxFrames = 64;  // read per call; a period on a 1 Mbit/s bus has fewer than 22
+  static constexpr int kStillSets = 10;  // complete sets without a change of the buttons' counter
 
   struct Node {
     can::Tpdo1 latest;
     std::uint16_t emergency = 0;  // error code, 0 = none
-    bool operational = true;      // by its heartbeat
+    bool operational = true;      // according to its heartbeat
     std::uint16_t controlword = 0;
     [[nodiscard]] can::cia402::State state() const noexcept;
   };
@@ -85,15 +85,15 @@ class HandLink {
   std::int32_t max_permille_;
   std::array<Node, rt::kJoints> nodes_{};
   std::array<can::Tpdo1, rt::kJoints> pending_{};
-  unsigned arrived_ = 0;  // bit per joint since the last SYNC
+  unsigned arrived_ = 0;  // joints that answered since the last SYNC, one bit each
   bool valid_ = false;
-  bool was_lost_ = false;  // since the last reading; a bus may be back before anybody asks
+  bool was_lost_ = false;  // since the last reading; a bus may recover before it is read
   rt::Foreign foreign_ = rt::Foreign::kNone;
-  bool has_life_ = false;  // the buttons' life sign was seen to move; a drive without one is taken as it is
+  bool has_life_ = false;  // the buttons' counter was seen to change; a drive without one is not checked
   int still_sets_ = 0;
   std::int32_t age_ticks_ = 1;
   int periods_to_heartbeat_;
-  unsigned bits_ = 0, bits_of_last_period_ = 0;  // on the wire
+  unsigned bits_ = 0, bits_of_last_period_ = 0;  // bits on the wire, for the bus load
 };
 
 }  // namespace ligature::platform

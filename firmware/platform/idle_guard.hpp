@@ -1,12 +1,12 @@
 #pragma once
-// No deep sleep while force may flow: a core that must first come back from a deep idle state is late every time.
+// Prevents deep idle states of the CPU while force may flow: leaving one would delay every wake-up.
 
 #include <string>
 
 namespace ligature::platform {
 
-/// Holds /dev/cpu_dma_latency open with a request of 0 us (the kernel's PM QoS): from then on cores only idle in states
-/// that they leave at once. The request ends with this object, or with the process.
+/// Holds /dev/cpu_dma_latency open with a request of 0 us (the kernel's PM QoS): cores then use only idle states that
+/// they leave at once. The request ends with this object, or with the process.
 class IdleGuard {
  public:
   explicit IdleGuard(const char* device = "/dev/cpu_dma_latency");
@@ -14,7 +14,7 @@ class IdleGuard {
   IdleGuard(const IdleGuard&) = delete;
   IdleGuard& operator=(const IdleGuard&) = delete;
 
-  /// Empty when granted; else one line: what, why and the remedy.
+  /// Empty if granted; else one line with what was refused, why, and the remedy.
   [[nodiscard]] const std::string& refusal() const noexcept { return refusal_; }
 
  private:

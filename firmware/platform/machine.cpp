@@ -34,7 +34,7 @@ Check kernel(const std::string& root) {
   return {Grade::kFail, "kernel", release + ", not PREEMPT_RT", "apt install linux-image-rt-amd64 && reboot"};
 }
 
-/// The soft limit in proc/self/limits; "unlimited" as a very large number.
+/// The soft limit in proc/self/limits; "unlimited" becomes a very large number.
 long limit(const std::string& root, const std::string& name) {
   std::istringstream lines(text_of(root + "proc/self/limits"));
   for (std::string line; std::getline(lines, line);) {
@@ -71,7 +71,7 @@ Check memory_limit(const std::string& root) {
   return {Grade::kFail, "locked memory", amount(allowed) + " bytes, wanted unlimited", kLimits};
 }
 
-/// A core list of the kernel that shall hold ours.
+/// Checks that a core list of the kernel contains our core.
 Check core_list(const std::string& root, const char* what, const std::string& file, const std::string& option,
                 int core) {
   const std::string list = text_of(root + file);
@@ -103,7 +103,7 @@ Check governor(const std::string& root, int core) {
           "cpupower -c " + std::to_string(core) + " frequency-set -g performance"};
 }
 
-/// Idle states that take long to leave add to every wake-up.
+/// Reports idle states whose exit latency would delay every wake-up.
 Check idle(const std::string& root, int core) {
   std::error_code none;
   std::string slow;
@@ -139,13 +139,13 @@ Check receive_buffer(const std::string& root) {
           "sysctl -w net.core.rmem_max=4194304"};
 }
 
-/// Number after a word in a text, or -1.
+/// The number after a word in a text; -1 if the word is missing.
 double number_after(const std::string& text, const std::string& word) {
   const auto at = text.find(word);
   return at == std::string::npos ? -1.0 : std::atof(text.c_str() + at + word.size());
 }
 
-/// Interrupts of the interface that may come to the core.
+/// Checks that no interrupt of the interface may be handled by our core.
 Check interrupts(const std::string& root, const std::string& interface, int core) {
   std::istringstream lines(text_of(root + "proc/interrupts"));
   for (std::string line; std::getline(lines, line);) {
@@ -214,7 +214,7 @@ std::vector<Check> check_can(const Machine& machine, const std::string& interfac
   std::vector<Check> checks;
   const bool up = (std::strtoul(text_of(folder + "/flags").c_str(), nullptr, 16) & 1U) != 0;
   const std::string details = machine.ip_details(interface);
-  const bool off = details.find("state BUS-OFF") != std::string::npos;  // such an interface is still up
+  const bool off = details.find("state BUS-OFF") != std::string::npos;  // an interface in bus-off still counts as up
   const std::string set = "ip link set " + interface;
   checks.push_back(up && !off ? good("CAN", interface + ": up")
                    : off      ? Check{Grade::kFail, "CAN", interface + ": bus-off",
@@ -230,7 +230,8 @@ std::vector<Check> check_can(const Machine& machine, const std::string& interfac
     checks.push_back({fine ? Grade::kOk : Grade::kFail, "CAN bit rate", found.str(),
                       fine ? "" : set + " down && " + set + " up type can bitrate 1000000 sample-point 0.8"});
   }
-  // A period has up to six frames. More of them would wait on a busy bus, grow old, and keep drives awake.
+  // A period has up to six frames. In a longer queue, frames would wait on a busy bus, become outdated, and still reset
+  // the drives' watchdogs.
   const std::string queue = text_of(folder + "/tx_queue_len");
   const long frames = std::atol(queue.c_str());
   checks.push_back(

@@ -1,5 +1,5 @@
 #pragma once
-// What the machine is set up to be, read from where the kernel says it. Every check has the command that mends it.
+// Checks of the machine's settings, read from proc and sys. Each failed check names the command that corrects it.
 
 #include <functional>
 #include <string>
@@ -13,25 +13,25 @@ struct Check {
   Grade grade;
   std::string what;  ///< "kernel", "locked memory", ..
   std::string found;
-  std::string remedy;  ///< a command or a line to add; empty when there is nothing to mend
+  std::string remedy;  ///< command, or line to add to a file; empty if nothing is wrong
 };
 
-/// Where to look; tests put a folder of their own there.
+/// Where settings are read from; tests use a folder of their own.
 struct Machine {
   std::string root = "/";                                     ///< holds proc/ and sys/
   std::function<std::string(const std::string&)> ip_details;  ///< text of `ip -details link show INTERFACE`
 };
 
-/// Kernel, limits, core, frequency, idle states, clock source, network: everything that needs no bus.
+/// All checks that need no bus: kernel, limits, core, frequency, idle states, clock source, network.
 [[nodiscard]] std::vector<Check> check_machine(const Machine& machine, int core);
 
-/// A CAN interface: up, 1 Mbit/s, sample point 75 .. 87.5 %, queue, and its interrupts off the core.
+/// Checks of a CAN interface: up, 1 Mbit/s, sample point 75 .. 87.5 %, queue length, interrupts not on the core.
 [[nodiscard]] std::vector<Check> check_can(const Machine& machine, const std::string& interface, int core);
 
-/// Whether a list as the kernel writes it ("0,2-5") holds a core.
+/// Whether a core list in the kernel's format ("0,2-5") contains a core.
 [[nodiscard]] bool list_holds(const std::string& list, int core);
 
-/// The interface by which packets to an IPv4 address (host byte order) leave; empty: none. From proc/net/route.
+/// Interface through which packets to an IPv4 address (host byte order) leave, from proc/net/route; empty: none.
 [[nodiscard]] std::string route_of(const std::string& route_table, unsigned address);
 
 }  // namespace ligature::platform

@@ -1,5 +1,5 @@
 #pragma once
-// The one clock of the loop.
+// The loop's clock.
 
 #include <time.h>
 
@@ -10,13 +10,13 @@ namespace ligature::platform {
 
 using Nanoseconds = std::chrono::nanoseconds;
 
-/// CLOCK_MONOTONIC; sleeps to absolute times, so that what a cycle took does not shift the next one.
+/// CLOCK_MONOTONIC; sleeps to absolute times, so that delays in one cycle do not shift the next.
 class MonotonicClock {
  public:
   [[nodiscard]] Nanoseconds now() noexcept { return time_of(CLOCK_MONOTONIC); }
 
-  /// CPU time of the calling thread: what it computed, in the kernel too, and not what it waited for. A core that a
-  /// hypervisor takes away is counted where Linux is not told of it.
+  /// CPU time of the calling thread, kernel time included, waiting excluded. Time taken away by a hypervisor is
+  /// included if Linux does not know of it.
   [[nodiscard]] Nanoseconds worked() noexcept { return time_of(CLOCK_THREAD_CPUTIME_ID); }
 
   void sleep_until(Nanoseconds at) noexcept {

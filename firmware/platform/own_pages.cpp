@@ -16,7 +16,7 @@ namespace {
 #if defined(MADV_POPULATE_WRITE)
 constexpr int kPopulateWrite = MADV_POPULATE_WRITE;
 #else
-constexpr int kPopulateWrite = 23;  // headers older than the kernel
+constexpr int kPopulateWrite = 23;  // older headers lack this constant
 #endif
 
 struct Mapping {
@@ -24,7 +24,7 @@ struct Mapping {
   int protection;
 };
 
-/// Private, readable, from a file.
+/// Private, readable mappings of files.
 std::vector<Mapping> file_mappings() {
   std::vector<Mapping> found;
   std::ifstream maps("/proc/self/maps");
@@ -39,7 +39,8 @@ std::vector<Mapping> file_mappings() {
   return found;
 }
 
-/// A write fault on every page: the kernel copies it. Code stays executable meanwhile, for this function is among it.
+/// Makes the kernel copy every page by a write fault. The mapping stays executable meanwhile, because it may contain
+/// this function.
 /// @return 0, or the errno
 int copy(const Mapping& m) noexcept {
   auto* const at = reinterpret_cast<void*>(m.from);

@@ -28,7 +28,7 @@ constexpr std::size_t kStackReserve = std::size_t{256} * 1024;
 constexpr std::size_t kHeapReserve = std::size_t{8} * 1024 * 1024;
 constexpr std::size_t kPage = 4096;
 
-/// The last number of a core list such as "1,3-5"; -1 when it is empty.
+/// The last number of a core list such as "1,3-5"; -1 if it is empty.
 int last_of(const std::string& list) {
   const auto at = list.find_last_of(",-");
   const std::string last = at == std::string::npos ? list : list.substr(at + 1);
@@ -38,10 +38,11 @@ int last_of(const std::string& list) {
 [[gnu::noinline]] void touch_stack() noexcept {
   unsigned char stack[kStackReserve];
   for (std::size_t i = 0; i < kStackReserve; i += kPage) stack[i] = 0;
-  asm volatile("" : : "r"(stack) : "memory");  // the writes must happen
+  asm volatile("" : : "r"(stack) : "memory");  // keeps the compiler from removing the writes
 }
 
-/// Locks what is there and what comes; under a limit not at all, because an allocation beyond it would then fail.
+/// Locks present and future memory. With a memlock limit it locks nothing, because allocations beyond the limit would
+/// then fail.
 /// @return 0, or the errno
 int lock_all() noexcept {
   rlimit limit{};
@@ -94,7 +95,7 @@ Refusals make_realtime(int core, int for_priority) {
 
 void flush_denormals() noexcept {
 #if defined(__x86_64__)
-  _mm_setcsr(_mm_getcsr() | 0x8040U);  // FTZ: results, DAZ: operands
+  _mm_setcsr(_mm_getcsr() | 0x8040U);  // FTZ (results) and DAZ (operands)
 #elif defined(__aarch64__)
   std::uint64_t fpcr = 0;
   asm volatile("mrs %0, fpcr" : "=r"(fpcr));
@@ -109,7 +110,7 @@ bool stay_on(int core) noexcept {
   return pthread_setaffinity_np(pthread_self(), sizeof only, &only) == 0;
 }
 
-/// An isolated core is not among those a process starts with; it must be asked for.
+/// A process does not start with isolated cores in its affinity mask, so an isolated core must be requested.
 int realtime_core(const char* isolated) {
   std::string cores;
   std::getline(std::ifstream(isolated), cores);

@@ -1,5 +1,5 @@
 #pragma once
-// Both hands' buses as the loop sees them.
+// Both hands' buses as one, for the loop.
 
 #include "firmware/platform/bus_wait.hpp"
 #include "firmware/platform/hand_link.hpp"
@@ -12,12 +12,12 @@ class RigBus {
       : hands_{HandLink(left, device), HandLink(right, device, HandLink::kHeartbeatPeriods / 2)}, wait_(wait) {}
 
   void send_sync() noexcept;
-  /// Returns as soon as both hands have answered, at the latest at the deadline.
+  /// Returns as soon as both hands have answered, and at the deadline at the latest.
   [[nodiscard]] rt::RigReading read_tpdos(Nanoseconds deadline) noexcept;
   rt::WireTorque write_rpdos(const rt::RigCommand& command) noexcept;
 
  private:
-  // Their heartbeats fall into different periods: no period has the work of both.
+  // The two heartbeats are sent in different periods, to spread the work.
   std::array<HandLink, rt::kHands> hands_;
   BusWait& wait_;
 };

@@ -48,7 +48,7 @@ Opened open_local(const std::string& url, const std::string& path) {
                   std::string("is ") + (S_ISDIR(found.st_mode) ? "a folder" : "no socket") +
                       ", allowed the socket that ligature-device made, or will make");
   }
-  // By inode: two names of one socket are one bus.
+  // The claim uses the inode, so that two paths of one socket count as one bus.
   auto claim = BusClaim::take("local/" + std::to_string(found.st_dev) + ":" + std::to_string(found.st_ino));
   if (const auto* why = std::get_if<std::string>(&claim)) return refuse(OpenFailure::kTaken, url, *why);
   const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
@@ -69,7 +69,7 @@ Opened open_socketcan(const std::string& url, const std::string& interface) {
     close(fd);
     return refuse(OpenFailure::kUsage, url, "no interface of that name, allowed one that 'ip link' lists");
   }
-  const can_err_mask_t wanted = CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;  // as frames, beside those of the drives
+  const can_err_mask_t wanted = CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;  // error frames that the socket shall deliver
   if (setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &wanted, sizeof wanted) != 0) {
     const std::string why = std::strerror(errno);
     close(fd);
@@ -94,8 +94,8 @@ Opened open_can_bus(const std::string& url) {
 
 SocketBus::~SocketBus() { close(fd_); }
 
-/// @return false always, for use as a result. Full queues pass; an interface that is down may come up again; everything
-/// else means that the other end or the interface is gone.
+/// Handles a socket error. A full queue is temporary; an interface that is down may come up again; any other error
+/// means that the peer or interface is gone. @return always false, as the caller's result.
 bool SocketBus::note(int error) noexcept {
   if (error == ENETDOWN)
     lose(Loss::kDown);
@@ -104,19 +104,19 @@ bool SocketBus::note(int error) noexcept {
   return false;
 }
 
-/// An interface that goes down is told ahead of the frames that wait in the socket: they were sent before, and its
-/// first frame is the sign that it is up again. What waits behind a bus-off is skipped until the restart, which may
-/// wait, too.
+/// Marks the bus as lost. The socket reports "interface down" before frames that are still queued. These are dropped
+/// here, because the next frame received is taken as the sign that the interface is up again. After bus-off, frames are
+/// skipped until the error frame that reports the restart.
 void SocketBus::lose(Loss how) noexcept {
   loss_ = how;
   if (how != Loss::kDown) return;
-  constexpr int kMost = 1024;  // far more than a period brings: bounded, whatever happens
+  constexpr int kMost = 1024;  // bounds the loop; far more frames than a period brings
   can::LocalPacket dropped;
   for (int i = 0; i < kMost && recv(fd_, dropped.data(), dropped.size(), MSG_DONTWAIT) > 0; ++i) {
   }
 }
 
-/// Controller's own news. @return whether it was that, and not a frame of somebody.
+/// Handles an error frame of the CAN controller. @return true if it was one, false for a normal frame.
 bool SocketBus::take_error_frame(const can::LocalPacket& packet) noexcept {
   std::uint32_t id = 0;
   std::memcpy(&id, packet.data(), sizeof id);
@@ -136,7 +136,7 @@ bool SocketBus::send(const can::Frame& frame) noexcept {
 }
 
 Receive SocketBus::receive(can::Frame& frame) noexcept {
-  constexpr int kMost = 64;  // of what is none of ours, in a call: whoever floods the bus holds nobody up
+  constexpr int kMost = 64;  // bounds the frames skipped per call, so that a flooded bus cannot block the caller
   can::LocalPacket packet;
   for (int i = 0; i < kMost && loss_ != Loss::kForGood; ++i) {
     const ssize_t got = recv(fd_, packet.data(), packet.size(), MSG_DONTWAIT);
@@ -145,7 +145,7 @@ Receive SocketBus::receive(can::Frame& frame) noexcept {
       return is_lost() ? Receive::kLost : Receive::kNothing;
     }
     if (got == 0) {
-      lose(Loss::kForGood);  // the peer closed: killed, ended, or refused us
+      lose(Loss::kForGood);  // the peer closed the connection
       break;
     }
     const auto bytes = std::span(packet).first(static_cast<std::size_t>(got));
@@ -154,7 +154,7 @@ Receive SocketBus::receive(can::Frame& frame) noexcept {
       continue;
     }
     const auto decoded = can::from_packet(bytes);
-    if (!decoded || loss_ == Loss::kBusOff) continue;  // an extended or remote frame is none of ours
+    if (!decoded || loss_ == Loss::kBusOff) continue;  // extended and remote frames are ignored
     loss_ = Loss::kNone;
     frame = *decoded;
     return Receive::kFrame;

@@ -1,5 +1,6 @@
 #pragma once
-// The two back ends. Both are packet sockets that carry 16-byte frame images, so one class serves them.
+// Both back ends (Unix socket, SocketCAN). They carry the same 16-byte frame images in packets, so one class serves
+// both.
 
 #include <cstdint>
 #include <memory>
@@ -13,12 +14,12 @@
 
 namespace ligature::platform {
 
-/// A `local:` bus that is lost stays lost: its other end is gone. A CAN interface may come back: after being down with
-/// its first frame, after bus-off when its driver tells that it was restarted. What was queued before that is
-/// dropped. Whether force may come back is not asked here: the loss was a fault, and faults are latched.
+/// A lost `local:` bus stays lost, because its peer is gone. A CAN interface may recover: after being down, with its
+/// first frame; after bus-off, when its driver reports a restart. Frames queued before that are dropped. Force does not
+/// return by itself, because losing the bus is a latched fault.
 class SocketBus final : public CanBus {
  public:
-  /// Owns the descriptor, which must be non-blocking.
+  /// Takes ownership of the descriptor, which must be non-blocking.
   explicit SocketBus(int descriptor, BusClaim claim = {}) noexcept : fd_(descriptor), claim_(std::move(claim)) {}
   ~SocketBus() override;
   SocketBus(const SocketBus&) = delete;
@@ -42,16 +43,16 @@ class SocketBus final : public CanBus {
 };
 
 enum class OpenFailure : std::uint8_t {
-  kUsage,     ///< the URL cannot be meant: no waiting helps
-  kNotThere,  ///< nobody listens yet, or the interface is down: may be tried again
-  kTaken,     ///< another controller on this machine has it
+  kUsage,     ///< bad URL: retrying is useless
+  kNotThere,  ///< no peer yet, or interface down: may be retried
+  kTaken,     ///< used by another controller on this machine
 };
 struct OpenError {
   OpenFailure kind;
   std::string text;  ///< one line
 };
 
-/// `local:/path/socket` (the simulated hand listens there) or `socketcan:can0`; held alone until it is closed.
+/// Opens `local:/path/socket` (where the simulated hand listens) or `socketcan:can0`, for exclusive use until closed.
 [[nodiscard]] std::variant<std::unique_ptr<CanBus>, OpenError> open_can_bus(const std::string& url);
 
 }  // namespace ligature::platform

@@ -1,5 +1,5 @@
 #pragma once
-// One thread wakes another: the one call between the two real-time contexts that is neither bus nor clock.
+// Wakes one thread from another. Of the loop's system calls only this one concerns neither bus nor clock.
 
 #include <linux/futex.h>
 #include <sys/syscall.h>
@@ -10,23 +10,23 @@
 
 namespace ligature::platform {
 
-/// A count that the one raises and the other waits on (futex). Raising never waits; a wake-up that comes while nobody
-/// waits is not lost, and several of them are one.
+/// A counter that one thread increments and another waits on (futex). wake() never blocks. A wake-up while nobody waits
+/// is not lost; several wake-ups count as one.
 ///
-/// Memory order: what the waker wrote before wake() is seen after wait(), by release on the count and acquire of it.
+/// Memory order: writes before wake() are visible after wait() (release on the counter, acquire in wait()).
 class WakeUp {
  public:
   void wake() noexcept {
     count_.fetch_add(2, std::memory_order_release);
     call(FUTEX_WAKE_PRIVATE, 1);
   }
-  /// The last wake-up: from now on wait() says that it is over.
+  /// Last wake-up: from now on wait() returns false.
   void end() noexcept {
     count_.fetch_or(kEnd, std::memory_order_release);
     call(FUTEX_WAKE_PRIVATE, 1);
   }
 
-  /// One thread only: sleeps until there was a wake-up since the last call. @return false when it is over.
+  /// For one waiting thread: sleeps until there was a wake-up since the last call. @return false after end().
   bool wait() noexcept {
     std::uint32_t now = 0;
     while ((now = count_.load(std::memory_order_acquire)) == seen_) call(FUTEX_WAIT_PRIVATE, seen_);
@@ -37,7 +37,7 @@ class WakeUp {
  private:
   static constexpr std::uint32_t kEnd = 1;
   void call(int what, std::uint32_t value) noexcept {
-    // The kernel compares the count itself, so a wake-up between the load above and this call is not slept through.
+    // The kernel compares the counter again before sleeping, so a wake-up between the load and this call is not missed.
     syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&count_), what, value, nullptr, nullptr, 0);
   }
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the classic CAN bus at 1 Mbit/s does with a period, and what that leaves.
+// Time budget of a period on a classic CAN bus at 1 Mbit/s.
 
 #include <algorithm>
 #include <chrono>
@@ -8,29 +8,30 @@
 
 namespace ligature::rt {
 
-/// From SYNC to the last bit of a hand's three joint messages: 47 bits and three times 111 when none is stuffed, and
-/// with all the stuff bits that there can be. The two hands have a bus each.
+/// Time from SYNC to the last bit of a hand's three joint messages: 47 + 3 x 111 bits without stuff bits, and with the
+/// largest number of stuff bits. Each hand has its own bus.
 inline constexpr std::chrono::nanoseconds kSamplesEarliest = std::chrono::microseconds(380);
 inline constexpr std::chrono::nanoseconds kSamplesLatest = std::chrono::microseconds(460);
-/// Three torque messages of a hand at the most: they must have passed before the next SYNC.
+/// Longest time of a hand's three torque messages, which must be sent before the next SYNC.
 inline constexpr std::chrono::nanoseconds kTorquesLatest = std::chrono::microseconds(285);
 
-/// What the bus leaves the loop for computing: with more, torques would come after the SYNC at which they are to act.
+/// Time left for the loop's computing; with more, torques would miss the SYNC at which they are to act.
 inline constexpr std::chrono::nanoseconds kMostWork = kPeriod - kSamplesLatest - kTorquesLatest;
 
-/// When the thread's tick must have ended: before the next samples can be in. When these come is what the last ones did,
-/// the earliest of them, as the number of stuff bits changes little from period to period; never beyond what the bus can
-/// do.
+/// Deadline of the physics tick: before the next samples can be complete. Their arrival time is predicted from the
+/// earliest recent one, because the number of stuff bits changes little between periods; it is limited to what the bus
+/// can do.
 class ThreadDeadline {
  public:
   static constexpr std::chrono::nanoseconds kMargin = std::chrono::microseconds(25);
-  static constexpr std::chrono::nanoseconds kForgets = std::chrono::nanoseconds(20);  ///< of the earliest, a period
+  /// per period, by which the earliest time relaxes
+  static constexpr std::chrono::nanoseconds kForgets = std::chrono::nanoseconds(20);
 
-  /// Samples were in so long after the wake-up.
+  /// Records that the samples were complete this long after the wake-up.
   void note(std::chrono::nanoseconds sampled) noexcept {
     earliest_ = std::clamp(std::min(earliest_ + kForgets, sampled), kSamplesEarliest, kSamplesLatest);
   }
-  /// For the tick whose next period begins at `next_wake`.
+  /// Deadline of the physics tick that ends before the samples of the period starting at `next_wake`.
   [[nodiscard]] std::chrono::nanoseconds before(std::chrono::nanoseconds next_wake) const noexcept {
     return next_wake + earliest_ - kMargin;
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Requests to the real-time thread.
+// Commands to the real-time thread.
 
 #include <cstdint>
 
@@ -7,7 +7,7 @@
 
 namespace ligature::rt {
 
-/// Values as in protocol/lcm/command_t.lcm.
+/// Values as in protocol/lcm/command_t.lcm, part of the interface.
 enum class CommandKind : std::int8_t {
   kNone = 0,
   kArm = 1,
@@ -15,7 +15,7 @@ enum class CommandKind : std::int8_t {
   kStop = 3,
   kResetFault = 4,
   kResetThread = 5,
-  kClutchLeft = 9,  ///< 6 and 7 never come here
+  kClutchLeft = 9,  ///< 6 to 8 are handled elsewhere and never reach the loop
   kUnclutchLeft = 10,
   kClutchRight = 11,
   kUnclutchRight = 12,

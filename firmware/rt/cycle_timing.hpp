@@ -1,5 +1,5 @@
 #pragma once
-// How long every cycle took: quantiles of all of them in constant memory.
+// Timing statistics of all cycles of a run, in constant memory.
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,8 @@
 
 namespace ligature::rt {
 
-/// Statistics of durations in nanoseconds: exact count and maximum, and a histogram with bins of equal relative width
-/// for quantiles. Within a power of two there are 32 bins, so a quantile is at most 1/32 too high, never too low.
-/// 16 kB; O(1) a sample; no allocation.
+/// Statistics of durations in ns: exact count and maximum, and a histogram with 32 bins per power of two. A quantile is
+/// at most 1/32 too high and never too low. 16 kB; O(1) per sample; no allocation.
 class DurationStatistics {
  public:
   void add(std::int64_t value_ns) noexcept {
@@ -55,18 +54,19 @@ class DurationStatistics {
   std::array<std::uint64_t, kBins> bins_{};
 };
 
-/// Every cycle of a run. "Missed": finished after its period's end. "Lost": a period in which nothing was done.
+/// Timing of a run. Missed: a cycle that finished after the end of its period. Lost: a period in which nothing was
+/// done.
 struct CycleTiming {
-  DurationStatistics wakeup;     ///< scheduled until awake
-  DurationStatistics control;    ///< awake until the RPDOs were written
-  DurationStatistics execution;  ///< awake until the loop had handed the tools over
-  DurationStatistics work;       ///< CPU time of the loop's thread from the samples on: no waiting, nobody else's work
+  DurationStatistics wakeup;     ///< from scheduled time to awake
+  DurationStatistics control;    ///< from awake to RPDOs written
+  DurationStatistics execution;  ///< from awake to tools handed to the physics
+  DurationStatistics work;       ///< CPU time of the loop's thread after the samples, without waiting
   std::uint64_t deadline_misses = 0;
-  DurationStatistics thread;     ///< CPU time of the thread's physics, a tick
-  std::uint64_t overworked = 0;  ///< ticks whose work was more than the bus leaves of a period
-  std::uint64_t thread_late = 0;     ///< ticks whose thread was not done when the next samples came
-  std::uint64_t thread_cut = 0;      ///< ticks of the thread that the clock ended
-  double thread_lost_ticks = 0.0;    ///< time in which the thread stood still, in ticks
+  DurationStatistics thread;       ///< CPU time of the physics per tick
+  std::uint64_t overworked = 0;    ///< ticks whose `work` exceeds what the bus leaves of a period
+  std::uint64_t thread_late = 0;   ///< ticks whose physics was not done when the next samples came
+  std::uint64_t thread_cut = 0;    ///< physics ticks ended by the deadline
+  double thread_lost_ticks = 0.0;  ///< time in which the simulated thread was not moved, in ticks
   std::uint64_t periods_lost = 0;
 };
 

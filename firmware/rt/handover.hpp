@@ -1,24 +1,24 @@
 #pragma once
-// Something large, lent to the real-time thread and given back by it.
+// Lends a large object to the real-time thread, which gives it back.
 
 #include <atomic>
 
 namespace ligature::rt {
 
-/// One object at a time goes over and comes back; what is exchanged with it, the borrower decides. Both sides are
-/// wait-free: a load when nothing is there, one exchange or store when something is. The lender owns the object all
-/// along and must not touch it between offer() and the collect() that returns it; so it is the lender that builds and
-/// destroys, and the real-time thread does neither.
+/// One object at a time is lent and returned; the borrower may exchange its contents. Both sides are wait-free: one
+/// load if nothing is there, else one exchange or store. The lender owns the object throughout, but must not touch it
+/// between offer() and the collect() that returns it. So only the lender builds and destroys, and the real-time thread
+/// never does.
 ///   offer: store-release ---> take: exchange-acquire      give_back: store-release ---> collect: exchange-acquire
 template <class T>
 class Handover {
  public:
   /// Lender: @pre the last object has been collected.
   void offer(T* object) noexcept { forth_.store(object, std::memory_order_release); }
-  /// Lender: what has come back, or nullptr.
+  /// Lender: the returned object, or nullptr.
   [[nodiscard]] T* collect() noexcept { return swap_out(back_); }
 
-  /// Real time: what is there, or nullptr.
+  /// Real-time thread: the offered object, or nullptr.
   [[nodiscard]] T* take() noexcept { return swap_out(forth_); }
   void give_back(T* object) noexcept { back_.store(object, std::memory_order_release); }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The newest value of something, from one thread to another; older ones are forgotten.
+// Passes the newest value from one thread to another; older values are overwritten.
 
 #include <array>
 #include <atomic>
@@ -10,18 +10,18 @@
 
 namespace ligature::rt {
 
-/// Triple buffer: one writer, one reader, both wait-free as long as they assign what neither allocates nor throws; values
-/// of any size, never torn.
+/// Triple buffer for one writer and one reader. Both are wait-free (if assigning a T neither allocates nor throws).
+/// Values of any size, never torn.
 ///
-/// Three slots, and at any time the writer owns one (`back_`), the reader owns one (`front_`), and the third is named
-/// by the atomic `middle_`. publish() and refresh() each swap their own slot with the middle one in a single exchange,
-/// so no slot ever has two owners and the bytes need no atomics. acq_rel on both exchanges: release hands over what
-/// was written (or the promise to read no more), acquire takes what the other side handed over. A bit in `middle_`
-/// tells whether it holds news.
+/// Three slots: at any time the writer owns one (`back_`), the reader owns one (`front_`), and the atomic `middle_`
+/// holds the index of the third. publish() and refresh() swap their own slot with the middle one in a single exchange,
+/// so no slot ever has two owners and the values need no atomics. Both exchanges are acq_rel: release publishes what
+/// was written (or that reading has ended), acquire sees what the other side published. A bit in `middle_` tells
+/// whether the middle slot holds a new value.
 template <class T>
 class LatestValue {
  public:
-  /// Writer only: the slot to fill. What it holds is some older value.
+  /// Writer only: the slot to fill; it contains some older value.
   [[nodiscard]] T& back() noexcept { return slots_[back_].value; }
 
   /// Writer only: makes back() the newest value.
@@ -38,14 +38,14 @@ class LatestValue {
     publish();
   }
 
-  /// Reader only: moves to the newest value. @return true when there was news since the last call.
+  /// Reader only: takes the newest value. @return true if there was a new one since the last call.
   bool refresh() noexcept {
     if ((middle_.load(std::memory_order_relaxed) & kNews) == 0) return false;
     front_ = static_cast<std::uint8_t>(middle_.exchange(front_, std::memory_order_acq_rel) & kSlot);
     return true;
   }
 
-  /// Reader only: the value of the last refresh(); a default one before the first news.
+  /// Reader only: the value of the last refresh(); default-constructed before the first.
   [[nodiscard]] const T& front() const noexcept { return slots_[front_].value; }
 
  private:

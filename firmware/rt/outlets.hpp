@@ -1,5 +1,5 @@
 #pragma once
-// The real-time thread's edges to the other threads, all of them.
+// All channels between the real-time thread and the other threads.
 
 #include <algorithm>
 #include <atomic>
@@ -14,25 +14,26 @@
 namespace ligature::rt {
 
 struct Outlets {
-  static constexpr std::size_t kRecords = 8192;  ///< 8 s of slack for a telemetry thread that is held up
+  static constexpr std::size_t kRecords = 8192;  ///< 8 s of buffer if the telemetry thread is delayed
 
   SpscRing<TickRecord> records{kRecords};  ///< real time -> telemetry, one a period
-  SpscRing<TickRecord>* flight = nullptr;  ///< real time -> flight recorder, the same ones; set before the loop starts
-  LatestValue<ThreadSnapshot> shape;       ///< real time -> telemetry
-  SpscRing<Command> commands{64};          ///< telemetry -> real time
-  std::atomic<bool> stop{false};           ///< main -> real time: ramp down and end
+  /// real time -> flight recorder, the same records; set before the loop starts
+  SpscRing<TickRecord>* flight = nullptr;
+  LatestValue<ThreadSnapshot> shape;  ///< real time -> telemetry
+  SpscRing<Command> commands{64};     ///< telemetry -> real time
+  std::atomic<bool> stop{false};      ///< main -> real time: ramp forces down and end
 
-  /// Real time only: one record to everybody who wants one. Nobody who is slow takes it from another.
+  /// Real-time thread only: sends a record to all readers. A slow reader does not affect another.
   void tell(const TickRecord& record) noexcept {
     records.push(record);
     if (flight != nullptr) flight->push(record);
   }
-  /// Real time only: records that no ring had room for and that were not even tried.
+  /// Real-time thread only: counts records as dropped that were never pushed, because no ring has room for them.
   void count_untold(std::uint64_t n) noexcept {
     records.count_dropped(n);
     if (flight != nullptr) flight->count_dropped(n);
   }
-  /// How many records there is room for at all.
+  /// Capacity of the larger ring, in records.
   [[nodiscard]] std::size_t room() const noexcept {
     return flight != nullptr ? std::max(flight->capacity(), records.capacity()) : records.capacity();
   }

@@ -1,5 +1,5 @@
 #pragma once
-// The one period of the whole rig.
+// The control period of the whole rig.
 
 #include <chrono>
 

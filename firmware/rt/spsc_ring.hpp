@@ -1,5 +1,5 @@
 #pragma once
-// A queue between exactly two threads that never waits.
+// Wait-free queue between exactly two threads.
 
 #include <algorithm>
 #include <atomic>
@@ -11,27 +11,27 @@
 
 namespace ligature::rt {
 
-/// 64 on every machine we build for; a constant because std::hardware_destructive_interference_size follows tuning
-/// flags and would make the layout differ between translation units.
+/// Cache-line size of all supported machines. A constant, because std::hardware_destructive_interference_size depends
+/// on compiler flags, so the layout could differ between translation units.
 inline constexpr std::size_t kCacheLine = 64;
 
-/// Single-producer single-consumer ring, bounded, wait-free on both sides: no lock, no loop, no system call, no
-/// allocation after construction. A full ring drops the newest value and counts it, so that the producer (the
-/// real-time thread) is never held up by a slow consumer.
+/// Bounded single-producer single-consumer ring, wait-free on both sides: no lock, no loop, no system call, no
+/// allocation after construction. If the ring is full, push() drops the new value and counts it, so that a slow
+/// consumer never delays the producer (the real-time thread).
 ///
 ///   | head (producer) + its copy of tail | pad | tail (consumer) + its copy of head | pad | slots ... |
 ///
 /// Memory order. `head_` counts values pushed, `tail_` values popped; both only grow, slot = count mod capacity.
 ///  * The producer writes the slot, then stores head_ with release; the consumer loads head_ with acquire, then reads
-///    the slot: the value is complete when it is seen.
+///    the slot. So a value is complete when the consumer sees it.
 ///  * The consumer reads the slot, then stores tail_ with release; the producer loads tail_ with acquire before it
-///    writes a slot again: nobody overwrites what is still being read.
+///    writes a slot again. So no slot is overwritten while it is being read.
 ///  * Each side loads its own counter relaxed (only it writes it) and keeps a copy of the other's, refreshed only
-///    when the copy says full or empty: the line of the other side moves between cores once a batch, not once a value.
+///    when the copy says full or empty. So the other side's cache line is fetched once per batch, not once per value.
 template <Payload T>
 class SpscRing {
  public:
-  /// @param capacity values kept; ≥ 1. Allocates and touches all of it here.
+  /// @param capacity number of values, >= 1. Allocates and touches all memory here.
   explicit SpscRing(std::size_t capacity)
       : capacity_(std::max<std::size_t>(capacity, 1)), slots_(std::make_unique<T[]>(capacity_)) {}
 
@@ -62,12 +62,12 @@ class SpscRing {
     return true;
   }
 
-  /// Producer only: values that were not even tried.
+  /// Producer only: counts values that were dropped without calling push().
   void count_dropped(std::uint64_t n) noexcept {
     dropped_.store(dropped_.load(std::memory_order_relaxed) + n, std::memory_order_relaxed);
   }
 
-  /// Any thread. A count, ordered with nothing else.
+  /// Any thread; relaxed, not synchronised with the values.
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
 

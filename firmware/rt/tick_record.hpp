@@ -1,5 +1,5 @@
 #pragma once
-// What the real-time thread tells the others: one record a period, and the thread's shape now and then.
+// Data that the real-time thread reports: one record per period, and the thread's shape every few periods.
 
 #include <array>
 #include <cstdint>
@@ -19,34 +19,33 @@ enum TickFlag : std::int32_t {
   kRightLimited = 32,
   kContactCap = 64,
   kOverworked = 128,
-  kThreadLate = 256,  ///< the next samples came before the thread had done with this tick: its values are older ones
-  kThreadCut = 512,   ///< the clock ended the thread's tick
+  kThreadLate = 256,  ///< the physics had not finished this tick when the next samples came; its values are older
+  kThreadCut = 512,   ///< the deadline ended the physics tick
 };
 
-/// Bits of TickRecord::limits, one set a hand: what holds the force back now. A limit is no fault.
+/// Bits of TickRecord::limits, per hand: which limits reduce the force now. Reaching a limit is no fault.
 enum LimitCode : std::int16_t {
   kPeakLimit = 1,        ///< magnitude at max_force_N or the device's peak
-  kContinuousLimit = 2,  ///< the motors' thermal budget (I2t) is used up
+  kContinuousLimit = 2,  ///< the motors' thermal limit (I2t) is reached
   kStepLimit = 4,        ///< change within one period
   kSlewLimit = 8,        ///< rate of change over many periods
   kVelocityBrake = 16,   ///< tip too fast: the rig goes to BRAKE
   kPassivityLimit = 32,  ///< the port's energy account is short: the force is damped or reduced
-  kTorqueLimit = 64,     ///< a joint's drive is at its end
+  kTorqueLimit = 64,     ///< a drive has reached its maximum torque, or torques are limited to be safe in any pose
 };
 
-/// What the thread's solver gave up in this tick, in the order in which it does; values of TickRecord::degradation.
+/// How the thread's solver degraded in this tick, in order of severity; values of TickRecord::degradation.
 enum class Degradation : std::int8_t {
   kNone = 0,
-  kIterations = 1,  ///< iterations ended before the tolerance: contacts a little softer
-  kContacts = 2,    ///< no room or work for all contacts: the shallowest were only kept from crossing
-  kCandidates =
-      3,  ///< not all that is near could be looked at or solved: the thread stood still for a part of the tick
+  kIterations = 1,  ///< iterations ended before convergence: contacts are a little softer
+  kContacts = 2,    ///< not enough room or budget for all contacts: the shallowest were only kept from crossing
+  kCandidates = 3,  ///< not all near pairs could be checked or solved: the thread was not moved for part of the tick
 };
 
 using Triple = std::array<double, 3>;
 
-/// The most ticks of the thread that can end between two looks of the loop: the one under way, the request that waited
-/// for it and the newest one.
+/// Largest number of physics ticks that can end between two reads by the loop: the running one, one waiting request,
+/// and the newest one.
 inline constexpr std::size_t kThreadSteps = 3;
 
 /// One control period; fields, units and frames as in protocol/lcm/tick_t.lcm, plus `armed`.
@@ -93,38 +92,40 @@ struct TickRecord {
   std::int16_t contacts = 0;
   std::int8_t degradation = 0;
 
-  // The thread's physics in this period; 0 where it was late. Times from the wake-up, work is CPU time.
-  std::int16_t grasp_age_ticks = 0;  ///< of the grasp that the law used: since the period whose tools it has seen
+  // The thread's physics in this period; 0 if it was late. Times count from the wake-up; work is CPU time.
+  std::int16_t grasp_age_ticks = 0;  ///< periods since the one whose tools the grasp in use was computed from
   std::int32_t thread_start_ns = 0;
   std::int32_t thread_done_ns = 0;
   std::int32_t thread_work_ns = 0;
-  std::int8_t thread_end = 0;       ///< physics::TickEnd
-  std::int32_t thread_cut_at = -1;  ///< the question that was answered with no, where the clock ended the tick
-  float time_lost = 0.0F;           ///< share of the tick in which the thread stood still
+  std::int8_t thread_end = 0;  ///< physics::TickEnd
+  /// index of the deadline query at which the tick was ended; -1: not ended by the deadline
+  std::int32_t thread_cut_at = -1;
+  float time_lost = 0.0F;  ///< share of the tick in which the thread was not moved
 
-  // What the thread does again to the bit, given the same scenes: its tools of this period, what was asked of it so
-  // far, and which periods' tools it has worked at since the last record.
+  // Inputs from which the physics can be replayed bit by bit, given the same scenes: this period's tools, the orders so
+  // far, and the periods whose tools were processed since the last record.
   std::array<Triple, kHands> tool_p_W_m{};
   std::array<Triple, kHands> tool_v_W_m_per_s{};
   std::array<bool, kHands> tool_grip{};
   std::int32_t thread_resets = 0;
   std::int32_t thread_scenes = 0;
   std::int32_t thread_parameters = 0;
-  std::int8_t thread_steps = 0;                                       ///< 1 in time, 0 late or lost
+  std::int8_t thread_steps = 0;                                       ///< 1: in time; 0: late or lost period
   std::array<std::int32_t, kThreadSteps> step_age_ticks{-1, -1, -1};  ///< oldest first; 0: this period's tools
   std::array<std::int32_t, kThreadSteps> step_cut_at{-1, -1, -1};     ///< as thread_cut_at
 };
 
 inline constexpr std::size_t kMaxNodes = 5000;
 
-/// The centreline in W at one tick.
+/// The thread's centreline in W at one tick.
 struct ThreadSnapshot {
   std::int64_t tick = 0;
   std::int32_t count = 0;  ///< nodes in use, ≤ kMaxNodes
   std::array<std::int16_t, kHands> grasped_node{-1, -1};
   std::array<std::array<float, 3>, kMaxNodes> p_W_m{};
-  std::array<float, kMaxNodes> tension_N{};  ///< of the edge after each node
-  std::array<float, kMaxNodes> turn_rad{};   ///< of the material frame, against the twist-free one from node 0
+  std::array<float, kMaxNodes> tension_N{};  ///< tension of the segment after each node
+  /// angle of the material frame against the twist-free frame that starts at node 0
+  std::array<float, kMaxNodes> turn_rad{};
 };
 
 static_assert(Payload<TickRecord> && Payload<ThreadSnapshot>);

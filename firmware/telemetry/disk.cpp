@@ -15,7 +15,7 @@ std::string refusal(const std::string& path, const char* what, int error) {
   return "flight recorder " + path + ": " + what + " (" + std::strerror(error) + ")";
 }
 
-/// Whether somebody alive records into that file.
+/// Whether a running process records into that file.
 bool is_in_use(const std::string& path) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return false;
@@ -39,7 +39,7 @@ bool write_all(int fd, std::span<const std::byte> bytes, std::size_t at) noexcep
 
 std::variant<std::unique_ptr<FileDisk>, std::string> FileDisk::make(const std::string& path, std::size_t size) {
   if (is_in_use(path)) return "flight recorder " + path + ": another process records into it";
-  std::rename(path.c_str(), (path + ".previous").c_str());  // there may be none
+  std::rename(path.c_str(), (path + ".previous").c_str());  // fails harmlessly if there is no earlier file
   const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
   if (fd < 0) return refusal(path, "cannot be made", errno);
   const auto give_up = [&](const char* what, int error) {
@@ -48,7 +48,7 @@ std::variant<std::unique_ptr<FileDisk>, std::string> FileDisk::make(const std::s
     return refusal(path, what, error);
   };
   if (flock(fd, LOCK_EX | LOCK_NB) != 0) return give_up("cannot be locked", errno);
-  // Blocks are taken now: a disk that fills up later loses no tick.
+  // Allocates all blocks now, so that a disk that fills up later loses no tick.
   if (const int e = posix_fallocate(fd, 0, static_cast<off_t>(size)); e != 0) return give_up("no room", e);
   return std::unique_ptr<FileDisk>(new FileDisk(fd));
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The file of a flight recorder as a place for bytes. Any call may take as long as the disk likes.
+// Storage of a flight recorder. Any call may block for as long as the disk needs.
 
 #include <cstddef>
 #include <memory>
@@ -12,21 +12,21 @@ namespace ligature::telemetry {
 class Disk {
  public:
   virtual ~Disk() = default;
-  /// @return false when the disk did not take all of it.
+  /// @return false if not all bytes could be written.
   virtual bool write(std::span<const std::byte> bytes, std::size_t at) noexcept = 0;
   virtual bool read(std::span<std::byte> bytes, std::size_t at) noexcept = 0;
-  /// Returns when all that was written before is on the disk itself. May be called by another thread.
+  /// Returns when all earlier writes are on the disk itself. May be called from another thread.
   virtual void sync() noexcept = 0;
 };
 
-/// A file of fixed size, all its blocks taken, locked against a second writer. What is written lies in the kernel's
-/// page cache at once, so it survives SIGKILL of any process. It is written with pwrite() and not through a mapping: a
-/// mapped page that the disk is busy with stops the thread that touches it inside the address space's lock, where every
-/// other thread of this process may meet it, and a disk that fails would end the process.
+/// A file of fixed size with all blocks allocated, locked against a second writer. Written data is in the kernel's page
+/// cache at once, so it survives SIGKILL of this process. It uses pwrite() instead of a memory mapping for two reasons.
+/// A thread that touches a mapped page under write-back blocks while it holds the address space's lock, which other
+/// threads of the process also need. And a disk error on a mapping would kill the process (SIGBUS).
 class FileDisk final : public Disk {
  public:
-  /// The file of an earlier run is kept once, as FILE.previous. @return the file, or one line that says why there is
-  /// none.
+  /// Creates the file; that of the previous run is kept as FILE.previous. @return the file, or one line that says why
+  /// it failed.
   [[nodiscard]] static std::variant<std::unique_ptr<FileDisk>, std::string> make(const std::string& path,
                                                                                  std::size_t size);
   ~FileDisk() override;
@@ -42,7 +42,7 @@ class FileDisk final : public Disk {
   int fd_;
 };
 
-/// A file of these bytes, complete and on the disk, or none. @return false for none.
+/// Writes a complete file, synced to the disk, or none. @return false for none.
 [[nodiscard]] bool write_whole_file(const std::string& path, std::span<const std::byte> bytes);
 
 }  // namespace ligature::telemetry

@@ -1,5 +1,5 @@
 #pragma once
-// What happened, read out of the records: the real-time thread only states facts, it announces nothing.
+// Derives events from tick records; the real-time thread itself sends no events.
 
 #include <string>
 #include <vector>
@@ -9,11 +9,11 @@
 
 namespace ligature::telemetry {
 
-/// Words for numbers that belong to the control law, which telemetry does not know.
+/// Names of states and faults. They belong to the control law, which telemetry does not depend on.
 struct Names {
   const char* (*state)(int number);
   const char* (*fault)(int number);
-  bool (*stays)(int fault) = [](int) { return false; };  ///< no reset leaves it
+  bool (*stays)(int fault) = [](int) { return false; };  ///< whether the fault cannot be reset
 };
 
 /// Compares each record with the one before it.
@@ -21,8 +21,8 @@ class EventFinder {
  public:
   explicit EventFinder(const Names& names) : names_(names) {}
 
-  /// @return state changes, a new fault, grasps, releases, and forces that begin to be limited; `utime` is left to the
-  /// sender. Lost periods hold old values, so they bring nothing.
+  /// @return events: state changes, a new fault, grasps, releases, forces that begin to be limited. The sender fills in
+  /// `utime`. Lost periods repeat old values, so they give no events.
   [[nodiscard]] std::vector<ligature_msg::event_t> next(const rt::TickRecord& record);
 
  private:

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kWritePeriod(5);
 constexpr std::chrono::milliseconds kSyncPeriod(500);
-constexpr std::chrono::milliseconds kScenePatience(100);  // telemetry looks every 5 ms
+constexpr std::chrono::milliseconds kScenePatience(100);  // telemetry polls every 5 ms
 constexpr std::size_t kBatch = 256;
 
 }  // namespace
@@ -42,7 +42,7 @@ void FlightRecorder::finish() {
   disk_->sync();
 }
 
-/// @return true when the run is over.
+/// Sleeps for at most `at_most`. @return true if the run is over.
 bool FlightRecorder::rest(std::chrono::milliseconds at_most) {
   std::unique_lock lock(mutex_);
   return wake_.wait_for(lock, at_most, [this] { return ending_; });
@@ -53,7 +53,7 @@ void FlightRecorder::write_down() {
     last = rest(kWritePeriod);
     take_all();
   }
-  // What the ring could not keep at the very end leaves no later tick to show the hole.
+  // Records dropped at the very end are reported here, because no later tick reveals the gap.
   const auto behind = static_cast<std::int64_t>(inlet_.dropped()) - holes_;
   if (behind > 0) lose(behind, next_tick_, next_tick_ + behind - 1, "the disk stood still for too long");
 }
