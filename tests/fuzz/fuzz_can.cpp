@@ -1,4 +1,4 @@
-// CAN frames as a hand's bus brings them: every decoder, and the cyclic reader on top of them.
+// CAN frames from a hand's bus: every decoder, and the cyclic reader.
 #include <algorithm>
 #include <cstring>
 #include <deque>
@@ -27,7 +27,7 @@ class QueueBus final : public platform::CanBus {
   std::deque<can::Frame> frames;
 };
 
-constexpr std::size_t kImage = 13;  // identifier, length, data
+constexpr std::size_t kImage = 13;  // bytes per frame: identifier 4, length 1, data 8
 
 std::string image(const can::Frame& f) {
   std::string s(kImage, '\0');

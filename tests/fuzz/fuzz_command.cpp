@@ -1,4 +1,4 @@
-// Commands: what anybody on the network may send to the firmware.
+// Commands from the network through the firmware's decoder.
 #include <span>
 
 #include "firmware/telemetry/messages.hpp"

@@ -1,4 +1,4 @@
-// Flight recorder files. The header's CRC would keep every mutation out, so half of the inputs get a right one.
+// Flight recorder files. Half of the inputs get a valid header CRC, which random mutations would never have.
 #include <cstring>
 
 #include "host/errors.hpp"
@@ -54,7 +54,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::size_t seen = 0;
     reader.visit([&](const auto&) { ++seen; });
     (void)reader.facts();
-  } catch (const host::BadInput&) {  // refused: the other good end
+  } catch (const host::BadInput&) {  // rejected, as it should be
   }
   return 0;
 }

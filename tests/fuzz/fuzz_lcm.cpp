@@ -1,4 +1,4 @@
-// LCM messages: what anybody on the network may send to the host's decoders. First byte: which type.
+// LCM messages from the network through the host's decoders. The first byte selects the type.
 #include <span>
 
 #include "host/messages.hpp"

@@ -1,4 +1,4 @@
-// LCM logs: framing, damage, and every message inside.
+// LCM logs: framing, damaged files, and decoding of every message in them.
 #include "host/errors.hpp"
 #include "host/log_reader.hpp"
 #include "tests/fuzz/target.hpp"
@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     host::LogReader log(file.path());
     while (const auto* event = log.next()) (void)host::is_readable(event->channel, event->data);
     (void)log.damage();
-  } catch (const host::BadInput&) {  // refused: the other good end
+  } catch (const host::BadInput&) {  // rejected, as it should be
   }
   return 0;
 }

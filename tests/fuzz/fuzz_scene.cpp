@@ -1,4 +1,5 @@
-// Scene files: what is taken is built, and ticks, and stays finite or says that it did not; whatever the file says.
+// Scene files: every scene that is accepted is built and stepped, and its state stays finite or is reported as not
+// finite.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -14,7 +15,8 @@ using ligature::physics::Simulation;
 using ligature::physics::ToolInput;
 using ligature::physics::Vec3;
 
-/// A twentieth of a second a tick, as far as this test is concerned: what is slower is the child's limits' to end.
+/// Largest nodes x substeps that is stepped here; a slower scene would exceed the time limit of a run, not reveal an
+/// error.
 constexpr int kMostWork = 20'000;
 
 void require(bool good, const char* what) {
@@ -28,7 +30,7 @@ void tick(Simulation thread) {
   const Vec3 at[2] = {thread.nodes_W()[n / 3], thread.nodes_W()[2 * n / 3]};
   for (int k = 0; k < 10; ++k) {
     thread.tick({ToolInput{at[0], Vec3::Zero(), true}, ToolInput{at[1], Vec3::Zero(), true}});
-    if (!thread.diagnostics().finite) return;  // said, and the firmware refuses it
+    if (!thread.diagnostics().finite) return;  // reported; the firmware rejects such a scene
     for (const auto& p : thread.nodes_W())
       require(p.allFinite(), "a node that is no number, and the thread says finite");
     for (const auto hand : {ligature::physics::Hand::kLeft, ligature::physics::Hand::kRight})
@@ -40,7 +42,7 @@ void tick(Simulation thread) {
 
 std::vector<std::string> ligature::fuzz::seeds() {
   auto all = files_in("scenes", ".toml");
-  // Each key of the reader, so that mutations find numbers to change.
+  // Every key that the reader knows, so that mutations find numbers to change.
   all.emplace_back(
       "[suture]\nmodel = \"paper-5\"\nnodes = 9\nlength_m = 1.0\nradius_m = 0.01\nnode_mass_kg = 1e-3\nstretch_N = "
       "8e2\nbend = 1e1\nbend_damping = 5e-2\nswivel_damping = 2e-1\nreference_nodes = 50\ndamping = "

@@ -1,7 +1,6 @@
-// Scenes whose keys have values that nobody would write: whatever the reader takes is built or refused, and ticks, and
-// stays finite or says that it did not.
-//   fuzz_scene_values [TRIALS [SEED]]     the same SEED gives the same scenes; ends with 0, and the counts, when all
-//   held
+// Scenes with extreme values for their keys. Every scene that is accepted is built or rejected; a built one is stepped,
+// and its state stays finite or is reported as not finite.
+//   fuzz_scene_values [TRIALS [SEED]]     the same SEED gives the same scenes; exit code 0 and counts if all held
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -85,7 +84,7 @@ class Wild {
   explicit Wild(std::uint64_t seed) : random_(seed) {}
   int below(std::size_t n) { return static_cast<int>(random_() % n); }
 
-  /// Between 1e-13 and 1e13 mostly, at the ends of a range, or beyond all of them; of either sign now and then.
+  /// Mostly between 1e-13 and 1e13; sometimes at the ends of the representable range or beyond it; sometimes negative.
   std::string number() {
     constexpr const char* kOdd[] = {"0.0", "5e-324", "1e-300", "1e-9", "1e-6", "1e-3", "1.0",     "1e2",
                                     "1e3", "1e4",    "1e5",    "1e6",  "1e9",  "1e12", "1.7e308", "-1e-3"};
@@ -101,7 +100,7 @@ class Wild {
     return std::to_string(kOdd[below(std::size(kOdd))]);
   }
   std::string vector() {
-    const std::string three[]{number(), number(), number()};  // in this order, whoever compiles
+    const std::string three[]{number(), number(), number()};  // braces: the order of evaluation is defined
     return "[" + three[0] + ", " + three[1] + ", " + three[2] + "]";
   }
   std::string value(Kind kind) {
@@ -157,7 +156,7 @@ class Wild {
   std::exit(1);
 }
 
-/// @return whether it stayed finite for ten ticks, held by both hands.
+/// @return whether the state stayed finite for ten ticks, with both hands holding the thread.
 bool ticks(Simulation& thread, const std::vector<std::string>& scene) {
   const auto n = thread.nodes_W().size();
   const Vec3 at[2] = {thread.nodes_W()[n / 3], thread.nodes_W()[2 * n / 3]};
@@ -167,7 +166,7 @@ bool ticks(Simulation& thread, const std::vector<std::string>& scene) {
       if (!p.allFinite()) fail(scene, "a node that is no number");
     for (const auto hand : {ligature::physics::Hand::kLeft, ligature::physics::Hand::kRight})
       if (!thread.hand(hand).f_W.allFinite()) fail(scene, "a force that is no number");
-    if (!thread.diagnostics().finite) return false;  // said, and the rehearsal refuses it
+    if (!thread.diagnostics().finite) return false;  // reported; the rehearsal rejects such a scene
   }
   return true;
 }
@@ -180,7 +179,7 @@ int main(int argc, char** argv) {
   std::printf("seed %llu, LIGATURE_TEST_SEED=%llu\n", static_cast<unsigned long long>(seed),
               static_cast<unsigned long long>(ligature::test::seed_shift()));
   std::fflush(stdout);
-  constexpr int kMostWork = 20'000;  // nodes x substeps: beyond it, the limits of the rehearsal end it
+  constexpr int kMostWork = 20'000;  // nodes x substeps; the rehearsal's limits end slower scenes
   Wild wild(seed);
   const ligature::fuzz::MemoryFile empty(reinterpret_cast<const std::uint8_t*>("[suture]\n"), 9);
   int taken = 0, built = 0, finite = 0;
@@ -195,5 +194,5 @@ int main(int argc, char** argv) {
     if (auto* thread = std::get_if<Simulation>(&made)) ++built, finite += ticks(*thread, scene);
   }
   std::printf("%d scenes: %d taken, %d built, %d finite after 10 ticks\n", trials, taken, built, finite);
-  return 10 * finite < trials ? 1 : 0;  // else hardly anything was tried
+  return 10 * finite < trials ? 1 : 0;  // a test in which hardly any scene ran would prove nothing
 }

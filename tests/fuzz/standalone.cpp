@@ -1,5 +1,5 @@
-// Runs a target without libFuzzer: all seeds, then mutations of them, from a fixed seed of the generator.
-//   TARGET [ROUNDS]          eat; ends with 0 when nothing crashed
+// Runs a target without libFuzzer: all seeds, then mutations of them, with a fixed generator seed.
+//   TARGET [ROUNDS]          run; exit code 0 when nothing crashed
 //   TARGET --write FOLDER    write the seeds as files, as a corpus for libFuzzer
 #include <algorithm>
 #include <cstdio>
@@ -12,7 +12,7 @@
 
 namespace {
 
-/// One to eight small damages: a bit, a byte, a piece cut out, a piece doubled, the end cut off, a large number.
+/// One to eight random changes: flip a bit, set a byte, cut out or duplicate a piece, truncate, insert a large number.
 std::string mutated(std::string s, ligature::test::Random& random) {
   const auto below = [&](std::size_t n) { return n == 0 ? 0 : static_cast<std::size_t>(random()) % n; };
   for (std::size_t k = 1 + below(8); k > 0 && !s.empty(); --k) {

@@ -1,6 +1,7 @@
 #pragma once
-// A fuzz target: what eats bytes from outside, and sound inputs to start from. With clang each one is a libFuzzer
-// program; with any compiler it is a test that eats the seeds and thousands of mutations of them (standalone.cpp).
+// Interface of a fuzz target: a function that reads untrusted bytes, and valid inputs to start from. With clang each
+// target is a libFuzzer program; with any compiler it is a test that reads the seeds and thousands of mutations of them
+// (standalone.cpp).
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -14,10 +15,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 namespace ligature::fuzz {
 
-/// Sound inputs, defined by each target.
+/// Valid inputs, defined by each target.
 [[nodiscard]] std::vector<std::string> seeds();
 
-/// Bytes as a file that exists in memory only, for readers that want a path.
+/// Bytes as an in-memory file (memfd), for readers that take a path.
 class MemoryFile {
  public:
   MemoryFile(const std::uint8_t* data, std::size_t size) : fd_(memfd_create("fuzz", MFD_CLOEXEC)) {
@@ -36,7 +37,7 @@ class MemoryFile {
   int fd_;
 };
 
-/// Every file with that ending in a folder of the source tree.
+/// Contents of all files in a source folder whose names end in `ending`.
 [[nodiscard]] std::vector<std::string> files_in(const std::string& folder, const std::string& ending);
 
 }  // namespace ligature::fuzz

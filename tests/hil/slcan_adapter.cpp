@@ -1,7 +1,7 @@
-// A serial CAN adapter (Lawicel ASCII lines) between the guest's slcan driver and an interface that stands for the
-// wire. It has what the emulated SJA1000 has not, error counters: told to, it goes bus-off and says so to the driver,
-// which then does what every CAN driver does in that state. Runs in the guest of scripts/test-hil, as root.
-//   slcan-adapter INTERFACE    prints the name of the driver's interface; SIGUSR1: bus-off, SIGUSR2: back by itself
+// A serial CAN adapter (Lawicel ASCII lines) between the guest's slcan driver and a CAN interface that serves as the
+// wire. Unlike the emulated SJA1000 it has error counters: on a signal it goes bus-off and reports it, and the driver
+// then reacts as every CAN driver does. Runs in the guest of scripts/test-hil, as root.
+//   slcan-adapter INTERFACE    prints the name of the driver's interface; SIGUSR1: bus-off, SIGUSR2: recover
 #include <fcntl.h>
 #include <linux/can.h>
 #include <linux/can/raw.h>
@@ -22,8 +22,8 @@
 
 namespace {
 
-constexpr int kSlcanLine = 17;  // N_SLCAN of linux/tty.h, which does not go together with C++
-// Receive and transmit error counters, three digits each: a transmitter is off from 256 on (ISO 11898-1).
+constexpr int kSlcanLine = 17;  // N_SLCAN of linux/tty.h, a header that cannot be included together with C++ ones
+// Receive and transmit error counters, three digits each; a transmitter is bus-off from 256 on (ISO 11898-1).
 constexpr std::string_view kBusOff = "sb000256\r", kErrorActive = "sa000000\r";
 
 [[noreturn]] void fail(const char* what) {
@@ -31,7 +31,7 @@ constexpr std::string_view kBusOff = "sb000256\r", kErrorActive = "sa000000\r";
   std::exit(1);
 }
 
-/// 't', three digits of identifier, length, two digits a byte.
+/// Format: 't', three hex digits of identifier, length, two hex digits per byte.
 std::string to_line(const can_frame& frame) {
   char text[8 + 2 * CAN_MAX_DLEN];
   int n = std::snprintf(text, sizeof text, "t%03X%d", frame.can_id & CAN_SFF_MASK, frame.can_dlc);
@@ -69,7 +69,7 @@ class Adapter {
  public:
   explicit Adapter(const char* wire) : wire_(can_socket(wire)), serial_(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
     if (serial_ < 0 || grantpt(serial_) != 0 || unlockpt(serial_) != 0) fail("pty");
-    const int driver = open(ptsname(serial_), O_RDWR | O_NOCTTY);  // stays open: closing it takes the interface away
+    const int driver = open(ptsname(serial_), O_RDWR | O_NOCTTY);  // kept open: closing it removes the interface
     ifreq name{};
     if (driver < 0 || ioctl(driver, TIOCSETD, &kSlcanLine) != 0 || ioctl(driver, SIOCGIFNAME, name.ifr_name) != 0)
       fail("slcan");
@@ -116,7 +116,7 @@ class Adapter {
 
   void heard() {
     can_frame frame;
-    if (line_ == "O") is_off_ = false;  // opened anew: the controller has been reset
+    if (line_ == "O") is_off_ = false;  // interface reopened: the controller has been reset
     if (is_off_ || !to_frame(line_, frame)) return;
     if (write(wire_, &frame, sizeof frame) != sizeof frame) std::perror("write to the wire");
   }

@@ -1,6 +1,6 @@
-// No allocation, no lock and no exception in the two real-time contexts: the whole cycle (bus code, control, records) and
-// the thread's physics, with a clock that ends its ticks and without, run under two guards, hooks on the process' allocator and mutexes and Eigen's run-time switch. Both guards are first shown to
-// bite.
+// The two real-time contexts neither allocate, lock nor throw: the whole cycle (bus code, control, records) and the
+// thread's physics, with and without a clock that ends its ticks. Hooks on the allocator and on mutexes and Eigen's
+// run-time malloc check watch them; both are first shown to detect a violation.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@
 namespace ligature {
 namespace {
 
-/// Counts calls into the allocator and of locks, and makes Eigen assert, while it lives.
+/// While it lives: counts allocator calls and locks, and makes Eigen assert on allocation.
 class NoAllocation {
  public:
   NoAllocation() {
@@ -51,7 +51,7 @@ TEST(NoAllocation, TheGuardsBite) {
     std::mutex mutex;
     {
       const NoAllocation guard;
-      void* volatile here = malloc(8);  // else the compiler sees that it is for nothing
+      void* volatile here = malloc(8);  // volatile: else the compiler removes the unused allocation
       free(here);
       const std::lock_guard nobody_else_wants_it(mutex);
     }
@@ -82,7 +82,7 @@ TEST(NoAllocation, TheWholeCycleWithAThreadWhoseTicksTheClockEnds) {
   expect_quiet(s, std::chrono::microseconds(200));
   s.suture.model = scene::Model::kRod;
   s.suture.radius_m = 1e-3;
-  expect_quiet(s, std::chrono::microseconds(50));  // no piece of a rod takes longer than 60
+  expect_quiet(s, std::chrono::microseconds(50));  // no part of a rod's tick takes longer than 60 us
 }
 
 TEST(NoAllocation, TakingAnotherSceneOrOtherParameters) {
@@ -121,7 +121,8 @@ TEST(NoAllocation, TheWholeCycleWithEveryModelAndSolver) {
       scene::Scene s = small_scene();
       s.suture.model = model;
       s.contact.solver = solver;
-      if (!std::holds_alternative<physics::Simulation>(physics::Simulation::make(s))) continue;  // refused at start
+      // a combination that make() rejects
+      if (!std::holds_alternative<physics::Simulation>(physics::Simulation::make(s))) continue;
       expect_quiet(s);
     }
   }

@@ -1,5 +1,5 @@
 #pragma once
-// A bus and a clock that cost nothing, so that what a watched cycle does is the cycle's own doing.
+// A bus and a clock that make no system calls and allocate nothing, so that a watched cycle is charged only for itself.
 
 #include "tests/unit/firmware/virtual_rig.hpp"
 
@@ -17,7 +17,7 @@ class QuietClock {
   lab::VirtualThread* thread = nullptr;
 };
 
-/// The real bus would allocate nowhere; this one must not either, so the samples it notes are dropped.
+/// Drops the samples that VirtualBus records: storing them would allocate, which the real bus does not.
 class QuietBus {
  public:
   QuietBus(VirtualBus& bus, QuietClock& clock) : bus_(bus), clock_(clock) {}
@@ -33,14 +33,15 @@ class QuietBus {
   QuietClock& clock_;
 };
 
-/// Both contexts of a rig on one thread: the physics runs where the loop wakes it.
+/// Both real-time contexts on one thread of execution: the physics runs when the loop wakes it.
 struct QuietRun {
   explicit QuietRun(VirtualRig& r) : rig(r) { clock.thread = &physics; }
   VirtualRig& rig;
   QuietClock clock;
   QuietBus bus{rig.bus, clock};
   lab::VirtualThread physics{clock.time, rig.thread, *rig.exchange, rig.outlets->shape};
-  Cycle<QuietBus, QuietClock, lab::VirtualThread> cycle{bus, clock, rig.controller, *rig.exchange, physics, *rig.outlets};
+  Cycle<QuietBus, QuietClock, lab::VirtualThread> cycle{bus,           clock,   rig.controller,
+                                                        *rig.exchange, physics, *rig.outlets};
 };
 
 }  // namespace ligature

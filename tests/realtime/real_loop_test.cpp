@@ -1,6 +1,6 @@
-// The two threads that the program itself starts, the loop and the thread's physics, with their own buses, clock and
-// wake-up against two ligature-device processes in force: no page fault, no system call but bus, clock and the one
-// wake-up, denormals are zero. Time passes as it likes; nothing here is timed.
+// The program's own two real-time threads (loop and thread physics), with their real buses, clock and wake-up,
+// rendering force against two ligature-device processes: no page fault, no system call except for bus, clock and one
+// wake-up, denormals flushed to zero. No time limits are checked.
 #include <gtest/gtest.h>
 #include <linux/audit.h>
 #include <linux/filter.h>
@@ -51,11 +51,11 @@ pid_t start_hand(const std::string& side, const std::string& folder) {
   _exit(127);
 }
 
-/// From here on any thread of this process that asks the kernel for more than a bus, a clock and a wake-up need dies
-/// with it. A wake-up is a futex, as a lock is; locks are counted apart (watch.hpp).
+/// Installs a seccomp filter on all threads: a system call that bus, clock and wake-up do not need kills the process.
+/// The wake-up needs futex, which locks use, too; locks are therefore counted separately (watch.hpp).
 void confine() {
-  constexpr std::array kAllowed{SYS_clock_gettime, SYS_clock_nanosleep, SYS_sendto,    SYS_sendmsg,
-                                SYS_recvfrom,      SYS_recvmsg,         SYS_ppoll,     SYS_poll,
+  constexpr std::array kAllowed{SYS_clock_gettime, SYS_clock_nanosleep, SYS_sendto,     SYS_sendmsg,
+                                SYS_recvfrom,      SYS_recvmsg,         SYS_ppoll,      SYS_poll,
                                 SYS_read,          SYS_write,           SYS_exit_group, SYS_futex};
   std::array<sock_filter, 2 * kAllowed.size() + 2> rules{};
   std::size_t n = 0;
@@ -78,7 +78,7 @@ std::vector<int> threads() {
   return ids;
 }
 
-/// Minor and major ones of one thread.
+/// Minor plus major page faults of one thread.
 long page_faults_of(int thread) {
   std::stringstream stat;
   stat << std::ifstream("/proc/self/task/" + std::to_string(thread) + "/stat").rdbuf();
@@ -90,9 +90,10 @@ long page_faults_of(int thread) {
   return minor + major;
 }
 
-std::atomic<int> watched{0}, flushing{0};  // threads
+std::atomic<int> watched{0}, flushing{0};  // number of threads
 
-/// On a real-time thread: watches it from now on, and reads what its arithmetic is set to where the signal met it.
+/// Signal handler, run on a real-time thread: starts watching it, and reads the interrupted code's floating-point
+/// flags.
 void begin_to_watch(int, siginfo_t*, void* context) {
   watch::watching = true;
 #if defined(__x86_64__)
@@ -114,7 +115,7 @@ struct RealRig {
     RunOptions o;
     o.scene = std::string(LIGATURE_SOURCE_DIR) + "/scenes/paper.toml";
     o.left = "local:" + folder + "left", o.right = "local:" + folder + "right";
-    o.overrides = {"hands.energy_credit_J=0.02"};  // of a rig that may lose periods
+    o.overrides = {"hands.energy_credit_J=0.02"};  // as for a rig that may lose periods
     o.arm = true;
     o.watchdog_ms = 2000;
     return o;
@@ -139,7 +140,7 @@ struct RealRig {
     platform::start_drives(*buses.right);
     side.start();
   }
-  /// Takes `executed` ticks out of the loop's ring. @return how many of them were in force.
+  /// Reads `executed` tick records from the loop's ring. @return how many of them had force enabled.
   int follow(int executed) {
     int in_force = 0;
     for (rt::TickRecord r; executed > 0;) {
@@ -161,10 +162,10 @@ struct RealRig {
   control::PlantHandover plants;
   RealTimeSide side{options, plan, buses, *outlets, plants};
   [[nodiscard]] long page_faults() const { return page_faults_of(contexts[0]) + page_faults_of(contexts[1]); }
-  std::array<int, 2> contexts{};  ///< threads: the loop, the thread's physics
+  std::array<int, 2> contexts{};  ///< thread ids: the loop, the thread's physics
 };
 
-/// @return an exit code, or dies of a system call.
+/// @return an exit code; the process is killed on a forbidden system call.
 int verdict(RealRig& rig) {
   rig.start();
   for (int tries = 0; rig.follow(100) < 100; ++tries) {
@@ -188,7 +189,7 @@ int verdict(RealRig& rig) {
   return rig.follow(kWatchedTicks) > 0 ? 0 : kNoForce;
 }
 
-/// Ends with the verdict while the loop still runs: tearing down is another test's.
+/// Exits with the verdict while the loop still runs; shutdown is not tested here.
 [[noreturn]] void watch(const std::string& folder) {
   RealRig rig(folder);
   _exit(verdict(rig));

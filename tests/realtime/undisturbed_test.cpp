@@ -1,5 +1,6 @@
-// After start-up the loop and the thread's physics ask nothing of the kernel but its bus and its clock: no page fault, no
-// other system call, no denormal, no exception. Each guard is first shown to bite. (Their one wake-up: RealLoop.*)
+// After start-up the loop and the thread's physics cause no page fault, no system call except for bus and clock, no
+// denormal number and no exception. Each check is first shown to detect a violation. (Their wake-up system call:
+// RealLoop.*)
 #include <gtest/gtest.h>
 #include <linux/seccomp.h>
 #include <sys/mman.h>
@@ -17,7 +18,7 @@
 #include "tests/realtime/quiet_rig.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define LIGATURE_WATCHED 0  // a sanitizer's own memory faults and calls the kernel
+#define LIGATURE_WATCHED 0  // a sanitizer itself causes page faults and system calls
 #else
 #define LIGATURE_WATCHED 1
 #endif
@@ -53,8 +54,7 @@ TEST(Undisturbed, NoPageFaultAfterStart) {
   ASSERT_GT(page_faults(), start) << "the guard must see a first touch";
   munmap(fresh, 1 << 16);
 
-  // As the program does. Where the lock is refused the heap has been touched all the same, and the warm run maps the
-  // code.
+  // As the program does. Where mlockall is refused, the warm run still maps code and heap.
   (void)platform::lock_memory();
   Grasping warm, run;
   for (auto* each : {&warm, &run}) each->quiet.cycle.end_after(5000);
@@ -66,8 +66,8 @@ TEST(Undisturbed, NoPageFaultAfterStart) {
   EXPECT_EQ(run.controller.fault(), control::Fault::kNone);
 }
 
-/// Runs something in a process that may do nothing but exit, and says how that ended. Strict seccomp: the kernel kills
-/// at the first system call other than read, write and exit.
+/// Runs `work` in a child process under strict seccomp (the kernel kills it at any system call but read, write and
+/// exit). @return the child's wait status.
 template <class Work>
 int status_of_confined(Work&& work) {
   const pid_t child = fork();
@@ -99,20 +99,21 @@ TEST(Undisturbed, DenormalsAreZeroOnTheLoopsThread) {
   double operand = 1.0, result = 1.0;
   std::thread([&] {
     platform::flush_denormals();
-    operand = tiny + tiny;     // denormals are zero
-    result = smallest * half;  // flushed to zero
+    operand = tiny + tiny;     // inputs: denormals are zero
+    result = smallest * half;  // results: flushed to zero
   }).join();
   EXPECT_EQ(operand, 0.0);
   EXPECT_EQ(result, 0.0);
 }
 
-/// How often a velocity is a denormal while a thread that was laid aside, overdamped, comes to rest.
+/// Counts the denormal velocities while an overdamped thread, displaced at the start, comes to rest.
 int denormals_on_the_way_to_rest(bool flushed) {
   int count = 0;
   std::thread([&] {
     if (flushed) platform::flush_denormals();
     scene::Scene scene = small_scene();
-    scene.suture.paper.air_drag_per_s = 7.0;  // below 10^-308 within 210 s; later with less, and with more
+    // at this drag velocities fall below 10^-308 within 210 s; with less or more drag later
+    scene.suture.paper.air_drag_per_s = 7.0;
     VirtualRig rig(scene);
     const auto hanging = rig.thread.nodes_W();
     std::vector<physics::Vec3> aside(hanging.begin(), hanging.end());

@@ -24,7 +24,7 @@ void count(std::atomic<long>& what) noexcept {
 void count_allocation() noexcept { count(ligature::watch::allocations); }
 
 using Lock = int(pthread_mutex_t*);
-/// libc's own; looked up before any thread is watched.
+/// libc's pthread_mutex_lock; resolved before any thread is watched.
 Lock* next_lock() noexcept {
   static Lock* const next = reinterpret_cast<Lock*>(dlsym(RTLD_NEXT, "pthread_mutex_lock"));
   return next;
@@ -44,7 +44,7 @@ void* __libc_realloc(void*, std::size_t);
 void* __libc_memalign(std::size_t, std::size_t);
 void __libc_free(void*);
 
-// Every way to the heap ends in one of these, operator new included.
+// All heap allocation ends in one of these functions, operator new included.
 void* malloc(std::size_t n) {
   count_allocation();
   return __libc_malloc(n);
@@ -67,7 +67,7 @@ int posix_memalign(void** p, std::size_t alignment, std::size_t n) {
   return *p == nullptr ? 12 : 0;
 }
 void free(void* p) {
-  if (p != nullptr) count_allocation();  // giving back is a call into the allocator, too
+  if (p != nullptr) count_allocation();  // freeing is an allocator call, too
   __libc_free(p);
 }
 

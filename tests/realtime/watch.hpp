@@ -1,18 +1,18 @@
 #pragma once
-// Counts what the watched thread asks of the allocator and of locks, by functions of those names put before libc's.
+// Counts allocator calls and mutex locks of the watched thread, through functions that replace libc's by name.
 
 #include <atomic>
 
 namespace ligature::watch {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool kCounts = false;  // the sanitizer owns both
+inline constexpr bool kCounts = false;  // a sanitizer replaces both itself
 #else
 inline constexpr bool kCounts = true;
 #endif
 
-extern thread_local bool watching;     ///< this thread; may be set by a signal handler
-extern std::atomic<long> allocations;  ///< and ways back; an exception is one, too
-extern std::atomic<long> locks;        ///< mutexes taken or tried, also those that nobody held
+extern thread_local bool watching;     ///< for the calling thread; a signal handler may set it
+extern std::atomic<long> allocations;  ///< calls of malloc and free; throwing an exception allocates, too
+extern std::atomic<long> locks;        ///< mutexes locked or tried, uncontended ones included
 
 }  // namespace ligature::watch

@@ -1,6 +1,6 @@
 #pragma once
-// Did strands pass through each other? By means that share nothing with the solver: two segments are followed along
-// their straight motion, and at every instant at which they are coplanar it is asked whether they meet.
+// Detects strands that passed through each other, without code shared with the solver: end points move on straight
+// lines, and at each instant at which two segments are coplanar their distance is tested.
 
 #include <algorithm>
 #include <iterator>
@@ -15,7 +15,7 @@ using physics::rod::closest;
 using physics::rod::State;
 using physics::rod::Vec;
 
-/// Two segments at an instant.
+/// End points of two segments at one instant.
 struct Instant {
   Vec a0, a1, b0, b1;
 };
@@ -27,7 +27,8 @@ inline Instant between(const Instant& p, const Instant& q, double t) {
 
 inline double volume(const Instant& m) { return dot(cross(m.a1 - m.a0, m.b1 - m.b0), m.b0 - m.a0); }
 
-// Did the segments meet on the way from p to q? Roots of the cubic volume(t) by sampling and bisection.
+// Whether the segments touched between states p and q. The roots of the cubic volume(t) are found by sampling and
+// bisection.
 inline bool crossed(const Instant& p, const Instant& q) {
   constexpr int kSamples = 16;
   double t0 = 0.0, v0 = volume(p);
@@ -47,8 +48,8 @@ inline bool crossed(const Instant& p, const Instant& q) {
   return false;
 }
 
-// Crossings of any two segments, listed by anybody or not, when nodes go straight from `before` to `after`. Pairs whose
-// spheres do not meet even with all that either moves are passed over.
+// Number of crossings among all pairs of segments (not only the contact list's) when nodes move straight from `before`
+// to `after`. Pairs whose bounding spheres, enlarged by the motion, are apart are skipped.
 inline long crossings_of_step(const std::vector<Vec>& before, const std::vector<Vec>& after) {
   struct Ball {
     Vec middle;
@@ -78,7 +79,8 @@ inline Vec point_at(const std::vector<double>& s, const std::vector<Vec>& x, dou
   return (1.0 - share) * x[j] + share * x[j + 1];
 }
 
-// Crossings when the polyline over s0 becomes the polyline over s1, each material point going straight.
+// Number of crossings when remeshing replaces the polyline over s0 by the one over s1, each material point moving
+// straight.
 inline long crossings_of_remesh(const std::vector<double>& s0, const std::vector<Vec>& x0, const State& state) {
   const auto& s1 = state.mesh.s;
   std::vector<double> s;

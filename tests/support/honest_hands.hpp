@@ -1,5 +1,5 @@
 #pragma once
-// Counts of three joints as honest hands move them: a mass on a spring and a damper after a wish.
+// Encoder counts of three joints moved by a healthy operator: a mass pulled by a spring and a damper to a target.
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace ligature::test {
 
-/// A count is 0.05 mm at an Omni's tip, a count a period 50 mm/s, and 0.02 counts a period^2 are 1 m/s2.
+/// Units: one count is 0.05 mm at an Omni's tip; one count per period is 50 mm/s; 0.02 counts/period^2 is 1 m/s2.
 class HonestHand {
  public:
   enum class Kind : std::uint8_t { kTurning, kTrembling, kResting, kFast, kAbrupt };
@@ -19,8 +19,8 @@ class HonestHand {
     return std::array{"turning", "trembling", "resting", "fast", "abrupt"}[static_cast<std::size_t>(kind)];
   }
 
-  /// Loose to clenched (80 .. 1600 N/m). An abrupt one is neither, and its wish has corners (tests of the watch began
-  /// with it); the others' wishes change their speed with 5 to 100 m/s2.
+  /// Hand stiffness is drawn from loose to clenched (80 .. 1600 N/m), and the target's acceleration from 5 to 100 m/s2.
+  /// kAbrupt is different: a fixed stiffness and a target velocity that jumps.
   HonestHand(Kind kind, std::uint64_t seed) : kind_(kind), random_(seed) {
     const bool abrupt = kind == Kind::kAbrupt;
     const double tightness = random_.share();
@@ -38,7 +38,7 @@ class HonestHand {
     speeding_ = abrupt ? 1e9 : 0.02 * random_.in(5.0, 100.0);
   }
 
-  /// The next sample, in whole counts.
+  /// The next sample, one rounded count per joint.
   [[nodiscard]] std::array<double, 3> next() {
     if (t_ >= turns_at_) wish();
     std::array<double, 3> counts{};
@@ -75,7 +75,8 @@ class HonestHand {
   Random random_;
   double stiffness_ = 0.0, damping_ = 0.0, mass_kg_ = 0.0, stays_ = 0.0, amplitude_ = 0.0, pulsation_ = 0.0;
   double speeding_ = 0.0, t_ = 0.0, turns_at_ = 0.0;
-  std::array<double, 3> phase_{}, x_{}, v_{}, at_{}, speed_{}, wished_{};  // counts, counts/s; wish in counts a period
+  // x_ counts, v_ counts/s; at_ (target) counts, speed_ and wished_ counts per period
+  std::array<double, 3> phase_{}, x_{}, v_{}, at_{}, speed_{}, wished_{};
 };
 
 }  // namespace ligature::test

@@ -1,6 +1,6 @@
 #pragma once
-// A message read by its .lcm definition and nothing else: no generated code says what a field is called, so a field
-// that somebody forgets is one that a test meets.
+// Decodes a message from its .lcm definition alone, without generated code, so that a field that the program under test
+// forgets is still found.
 
 #include <array>
 #include <bit>
@@ -17,7 +17,7 @@ namespace ligature::test {
 
 struct LcmField {
   std::string type, name;
-  std::vector<std::string> sizes;  // numbers, or the name of the field that holds one
+  std::vector<std::string> sizes;  // array sizes: a number, or the name of the field that holds it
 };
 
 /// The fields of protocol/lcm/TYPE.lcm, in order.
@@ -39,7 +39,7 @@ inline std::vector<LcmField> lcm_fields(const std::string& type) {
   return found;
 }
 
-/// A number or a text as this test writes it: equal for equal bits.
+/// A value as text; equal for equal bits.
 inline std::string word(const std::string& value) { return value; }
 template <class T>
 std::string word(T value) {
@@ -58,12 +58,13 @@ Words words(const T&... values) {
   return {word(values)...};
 }
 
-/// Every field of an encoded message (hash included) by its name, arrays flat. @throws when bytes are left or lacking.
+/// All fields of an encoded message (hash included) by name, arrays flattened. @throws when the definition needs more
+/// or fewer bytes than the message has.
 template <class M>
 std::map<std::string, Words> told(const M& message, const std::string& type) {
   std::vector<unsigned char> bytes(static_cast<std::size_t>(message.getEncodedSize()));
   message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  std::size_t at = 8;  // behind the hash
+  std::size_t at = 8;  // after the hash
   const auto number = [&](std::size_t size) {
     std::uint64_t value = 0;
     for (std::size_t i = 0; i < size; ++i) value = value << 8U | bytes.at(at++);

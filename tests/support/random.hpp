@@ -1,12 +1,12 @@
 #pragma once
-// Every random input of a test comes from here.
+// Source of every random input of the tests.
 //
-// The same seed gives the same numbers with every compiler, library and machine: none of the standard distributions
-// (their output is the library's own), no libm, no sum that a compiler may or may not contract. Draw in statements of
-// their own or in a braced list: the order of a call's arguments, and of an operator's two sides, is the compiler's.
+// The same seed gives the same numbers with every compiler, library and machine. Therefore nothing here uses a standard
+// distribution (its output is implementation-defined), libm, or a sum that a compiler may contract. Draw numbers in
+// separate statements or in a braced list: C++ leaves the evaluation order of function arguments and operands open.
 //
-// LIGATURE_TEST_SEED (0 .. 2^64 - 1, default 0; `scripts/test --seed N`) shifts all seeds at once. A test that fails
-// names it, and how to repeat the run (tests/support/seed_told.cpp).
+// LIGATURE_TEST_SEED (0 .. 2^64 - 1, default 0; `scripts/test --seed N`) shifts all seeds at once. A failing test
+// prints the seed and the command that repeats the run (tests/support/seed_told.cpp).
 
 #include <array>
 #include <cmath>
@@ -20,7 +20,7 @@
 
 namespace ligature::test {
 
-/// LIGATURE_TEST_SEED. Ends the program with 2 when it is no number.
+/// The value of LIGATURE_TEST_SEED; exits with code 2 when it is not a number.
 inline std::uint64_t seed_shift() {
   static const std::uint64_t shift = [] {
     const char* text = std::getenv("LIGATURE_TEST_SEED");
@@ -39,8 +39,8 @@ inline std::uint64_t seed_shift() {
   return shift;
 }
 
-/// A stream of numbers: SplitMix64 (Steele, Lea, Flood 2014). Also a generator for the standard library's algorithms
-/// where their result does not depend on whose they are (a shuffle is not: shuffle() below).
+/// SplitMix64 (Steele, Lea, Flood 2014). Satisfies UniformRandomBitGenerator, but only for standard algorithms whose
+/// result is the same in every library; std::shuffle is not, use shuffle() below.
 class Random {
  public:
   using result_type = std::uint64_t;
@@ -50,26 +50,26 @@ class Random {
   static constexpr result_type min() noexcept { return 0; }
   static constexpr result_type max() noexcept { return std::numeric_limits<result_type>::max(); }
 
-  /// From [0, 1), 53 bits.
+  /// Uniform in [0, 1), with 53 random bits.
   double share() noexcept { return static_cast<double>((*this)() >> 11) * 0x1p-53; }
-  /// From [low, high).
+  /// Uniform in [low, high).
   double in(double low, double high) noexcept { return std::fma(high - low, share(), low); }
   bool happens(double probability) noexcept { return share() < probability; }
-  /// From low .. high, both among them.
+  /// Uniform integer in low .. high, both included.
   std::int64_t any(std::int64_t low, std::int64_t high) noexcept {
     const auto span = static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(low) + 1;
     const std::uint64_t draw = (*this)();
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(low) + (span == 0 ? draw : draw % span));
   }
-  /// An index below n. @pre n > 0
+  /// Uniform index below n. @pre n > 0
   std::size_t below(std::size_t n) noexcept { return static_cast<std::size_t>((*this)() % n); }
-  /// Bell-shaped, mean 0, variance 1, never beyond 6: the sum of twelve shares, which needs no logarithm.
+  /// Approximately normal, mean 0, variance 1, magnitude at most 6: the sum of twelve uniform draws, which avoids libm.
   double normal() noexcept {
     double sum = -6.0;
     for (int i = 0; i < 12; ++i) sum += share();
     return sum;
   }
-  /// Three of them, in order.
+  /// Three draws of normal(), in a defined order.
   std::array<double, 3> normals() noexcept { return {normal(), normal(), normal()}; }
 
   template <class List>

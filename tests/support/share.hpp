@@ -1,5 +1,5 @@
 #pragma once
-// What is counted in random draws, with its 95 % interval, for the tables of the docs.
+// Proportions and rates from random draws with their 95 % intervals, formatted for the tables of docs/.
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace ligature::test {
 
-/// A share in percent (Wilson).
+/// A proportion in percent with its 95 % Wilson interval.
 [[nodiscard]] inline std::string share(int hits, int draws) {
   if (draws == 0) return "-";
   const double n = draws, p = hits / n, z = 1.96, z2 = z * z / n;
@@ -23,9 +23,9 @@ namespace ligature::test {
   return text;
 }
 
-/// A number of events in a time (Poisson; within a few percent of the exact interval).
+/// An event count with its 95 % Poisson interval (within a few percent of the exact interval).
 [[nodiscard]] inline std::string rate(int events) {
-  const auto edge = [](double k, double z) {  // Wilson and Hilferty
+  const auto edge = [](double k, double z) {  // Wilson and Hilferty approximation of a chi-squared quantile
     return k <= 0.0 ? 0.0 : k * std::pow(1.0 - 1.0 / (9.0 * k) + z / (3.0 * std::sqrt(k)), 3.0);
   };
   const double high = edge(events + 1.0, 1.96);

@@ -1,5 +1,5 @@
 #pragma once
-// A folder of this process's own: tests run side by side, and a shared file name would let one read another's file.
+// A temporary folder per process: tests run in parallel, and with shared file names they would read each other's files.
 
 #include <cstdlib>
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace ligature::test {
 
-/// Path of the folder, ending in '/'. Made at the first call, removed with the process.
+/// Path of the folder, ending in '/'. Created at the first call, removed at exit.
 inline const std::string& temp_folder() {
   struct Folder {
     std::string path = (std::filesystem::temp_directory_path() / "ligature-test-XXXXXX").string();

@@ -1,4 +1,4 @@
-// Every model against the quick cases of the validation, at 50 nodes; the rod at 200 too where that is quick.
+// Every model against the quick validation cases with 50 nodes; the rod also with 200 where that is quick.
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ TEST_P(TheRod, AgreesAtFiftyNodes) { expect_all_within(GetParam(), {scene::Model
 INSTANTIATE_TEST_SUITE_P(Case, TheRod, testing::ValuesIn(quick_cases()),
                          [](const auto& test) { return test_name(test.param.name, ""); });
 
-// No case picks the rows that suit it: as many figures as its table has rows.
+// Checks that a validation case judges every row of its reference table.
 struct Judged {
   const char *case_name, *table;
   int figures_a_row;
@@ -91,7 +91,7 @@ TEST_P(PaperFour, AgreesAtFiftyNodes) { expect_all_within(*find_case(GetParam())
 INSTANTIATE_TEST_SUITE_P(Case, PaperFour, testing::Values("catenary", "elastic-string", "hanging-chain", "cantilever"),
                          [](const auto& test) { return test_name(test.param, ""); });
 
-// What a model does not model it is not judged on: model 5's stretch is quadratic, the crossing strands are Hookean.
+// Only cases of effects that the model has: model 5's stretch is quadratic, while the crossing strands are Hookean.
 class EveryPaperModel : public testing::TestWithParam<scene::Model> {};
 
 TEST_P(EveryPaperModel, AgreesInContactAndUnderItsOwnWeight) {

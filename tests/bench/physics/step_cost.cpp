@@ -1,9 +1,9 @@
-// What a tick costs. Never run by ctest.
-//   physics-step-cost table                            us per step: median, p99, max for N = 20 .. 1000 and broad
-//   phases physics-step-cost one SCENARIO NODES TICKS [key=value ..]   one warmed-up run for callgrind; see
-//   instructions.py
-//     SCENARIO: tied (the overhand script, from 9 s on: a loosely tied trefoil), tightened (from 10 s), coil (a
-//     touching coil)
+// Cost of a tick of the paper's models. Not run by ctest. Usage:
+//   physics-step-cost table
+//      us per step: median, p99, max for N = 20 .. 1000 and each broad phase
+//   physics-step-cost one SCENARIO NODES TICKS [key=value ..]
+//      one warmed-up run for callgrind; see instructions.py. SCENARIO is one of:
+//      tied (the overhand script from 9 s on: a loose trefoil), tightened (from 10 s), coil (turns that touch)
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -20,11 +20,11 @@ using namespace ligature::physics;
 using test::make;
 using test::paper_scene;
 
-/// What callgrind counts: instructions.py collects inside this function only.
+/// The function whose instructions callgrind counts (instructions.py).
 [[gnu::noinline]] void measured_tick(Simulation& sim, const std::array<ToolInput, 2>& tools) { sim.tick(tools); }
 
-/// A thread of N nodes with segments as long as it is thick, coiled so that neighbouring turns just touch; neither
-/// gravity nor bending stiffness, so that it stays one.
+/// A thread of N nodes, with segments as long as its diameter, coiled so that neighbouring turns just touch. Without
+/// gravity and bending stiffness it stays coiled.
 Simulation coil(int nodes, const std::vector<std::string>& extra) {
   const double rest_m = 5.0 / (nodes - 1), radius_m = 0.5 * rest_m, turn_m = 4.0 * rest_m;
   std::vector<std::string> o{"suture.nodes=" + std::to_string(nodes),
@@ -40,7 +40,7 @@ Simulation coil(int nodes, const std::vector<std::string>& extra) {
     const double angle = i * rest_m / turn_m;
     p.emplace_back(turn_m * std::cos(angle), turn_m * std::sin(angle), 2.05 * radius_m * angle / 6.283185307179586);
   }
-  std::vector<Vec3> v;  // squeezed along the axis, so that turns meet
+  std::vector<Vec3> v;  // compressing along the axis, so that turns touch
   for (const Vec3& x : p) v.emplace_back(0.0, 0.0, 4.0 * radius_m * (p.back().z() * 0.5 - x.z()) / p.back().z());
   sim.set_state(p, v);
   return sim;

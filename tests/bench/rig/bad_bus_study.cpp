@@ -1,5 +1,5 @@
-// Draws of a bad bus, by share of frames lost or wrong: what fault it ends in and when no motor has torque.
-// Usage: bad_bus_study [draws a row = 300] [first seed = 1]; prints the tables of docs/fault-matrix.md.
+// Random runs with lost or corrupted CAN frames: the fault each ends in, and the time until no motor has torque.
+// Usage: bad_bus_study [runs per row = 300] [first seed = 1]; prints the tables of docs/fault-matrix.md.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -23,7 +23,7 @@ Tally tally(const BadBus& bus, int draws, std::uint64_t first_seed) {
   Tally t;
   for (int k = 0; k < draws; ++k, ++t.draws) {
     BadBus one = bus;
-    if (bus.left != bus.right) one.left = k % 2 == 0, one.right = !one.left;  // either hand
+    if (bus.left != bus.right) one.left = k % 2 == 0, one.right = !one.left;  // alternate left, right
     const BadBusEnd end = end_of(one, first_seed + 1000 * static_cast<std::uint64_t>(k));
     ++t.faults[end.fault];
     if (end.fault != 0) t.to_zero.push_back(end.to_zero);

@@ -1,4 +1,4 @@
-// The encoder watch over its threshold: honest hands suspected in an hour, reversed axes missed.
+// Encoder watch at several thresholds: false alarms per hour with healthy hands, and reversed axes that it misses.
 // Usage: encoder_watch_study [hours = 100] [reversals = 1000] [first seed = 1]; prints tables of docs/encoder-watch.md.
 #include <algorithm>
 #include <array>
@@ -25,7 +25,8 @@ void count(double most, Hits& hits) {
   for (std::size_t i = 0; i < kScales.size(); ++i) hits[i] += most >= kScales[i];
 }
 
-/// Runs of 5 s in which the hand would have been suspected.
+/// Number of 5 s runs of a healthy hand that would raise an alarm: per threshold for a reversed axis, and for a frozen
+/// one.
 struct Honest {
   Hits reversed{};
   int frozen = 0, runs = 0;
@@ -48,7 +49,7 @@ Honest honest(HonestHand::Kind kind, double hours, std::uint64_t seed) {
   return h;
 }
 
-/// An axis that counts backwards from a random moment on; by its speed at that moment, counts a period.
+/// Lower class limits, counts per period: axes that start to count backwards are classed by their speed at that moment.
 constexpr std::array kClasses{0.0, 0.44, 0.6, 0.85, 1.4};
 struct Reversed {
   std::array<Hits, kClasses.size()> found{};

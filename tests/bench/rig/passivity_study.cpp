@@ -1,5 +1,6 @@
-// The passivity bounds of docs/passivity.md under drawn hands and under hands that climb; prints that page's tables.
-// Usage: passivity_study [draws = 10000] [climbing hands = 200] [steps of a climb = 1000] [first seed = 1]
+// Tests the passivity bounds of docs/passivity.md with randomly drawn and with optimised attacks; prints that page's
+// tables.
+// Usage: passivity_study [draws = 10000] [optimised attacks = 200] [optimiser steps = 1000] [first seed = 1]
 // Exit code 3 when a bound was broken.
 #include <algorithm>
 #include <array>
@@ -28,7 +29,7 @@ constexpr std::array<Case, 8> kCases{{{"exact", 0.4, 0.0, false},
 constexpr int kDrawTicks = 1000, kClimbTicks = 200;
 
 struct Worst {
-  double above_J = -1.0, below_J = -1.0, work_below_J = -1.0;  // against the bounds; positive: broken
+  double above_J = -1.0, below_J = -1.0, work_below_J = -1.0;  // excess over each bound; positive: broken
   double work_J = 0.0, over_J = 0.0, of_bound = 0.0;
   int runs = 0, in_debt = 0, let_go = 0;
   void take(const Port& port) {
@@ -68,7 +69,8 @@ bool draw(int draws, test::Random& random) {
   return sound;
 }
 
-/// A third each climbs towards more work given, towards an account above the work, and towards a broken floor.
+/// Optimises attacks, one third each for: the least work, the account's excess over the work, the account's lower
+/// bound.
 bool climb_all(int hands, int steps, test::Random& random) {
   bool sound = true;
   std::printf("\n");

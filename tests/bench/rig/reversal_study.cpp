@@ -1,5 +1,6 @@
-// An axis of a hand that pulls counts backwards from a random moment on: what finds it, and what its motors give out
-// until then. Usage: reversal_study [draws = 1000] [first seed = 1]; prints a table of docs/encoder-watch.md.
+// One axis of a pulling hand starts to count backwards at a random moment: which check detects it, and the energy that
+// the motors deliver until then. Usage: reversal_study [draws = 1000] [first seed = 1]; prints a table of
+// docs/encoder-watch.md.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,8 +19,8 @@ constexpr std::int64_t kLookTicks = 500;
 
 struct End {
   int fault = 0;
-  double speed = 0.0;    ///< of the joint at the onset, counts a period
-  double given_J = 0.0;  ///< by the hand's motors since the onset, the most at any time
+  double speed = 0.0;    ///< of the joint at the onset, counts per period
+  double given_J = 0.0;  ///< largest energy that the hand's motors have delivered since the onset
   double peak_N = 0.0;
 };
 

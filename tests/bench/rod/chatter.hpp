@@ -1,5 +1,5 @@
 #pragma once
-// How much a force trembles while it changes.
+// Chatter: the rapid fluctuation of a slowly changing force.
 
 #include <algorithm>
 #include <cmath>
@@ -7,19 +7,19 @@
 
 namespace ligature::bench {
 
-/// What is left of a force, tick by tick, when a parabola fitted to the ticks around it is taken away.
+/// Residual of a force against a moving least-squares parabola.
 struct Chatter {
   double rms_N = 0.0, mean_N = 0.0;
-  int ticks = 0;  ///< looked at; 0: nothing to say
+  int ticks = 0;  ///< ticks evaluated; 0: force never above the floor long enough
   [[nodiscard]] double share() const noexcept { return ticks > 0 ? rms_N / mean_N : 0.0; }
 };
 
-/// Over every stretch of ticks in which the force stays above floor_N, about a least-squares parabola of 51 ticks, or
-/// of half the stretch if that is shorter. A pull rises ever more steeply as thread is used up: that is no chatter
-/// (about a moving mean it would be 2.4 % at 0.2 m/s). Nor is what lies between two stretches: a pulled overhand's loop
-/// snaps over on its way, and its force is nothing for a while; a parabola across the seam would take the snap for
-/// chatter. The parabola's value at the middle of 2 m + 1 ticks is a sum with weights 3 (3 m^2 + 3 m - 1 - 5 k^2) / ((2
-/// m - 1) (2 m + 1) (2 m + 3)) [Savitzky & Golay 1964].
+/// Evaluates every stretch of ticks in which the force stays above floor_N, with a parabola fitted to 51 ticks, or to
+/// half the stretch if that is shorter. A parabola is used because a pull's force rises ever more steeply; about a
+/// moving mean that rise alone would count as 2.4 % at 0.2 m/s. Stretches are kept apart because the force drops to
+/// zero when an overhand's loop snaps over during the pull; a fit across the gap would count that jump as chatter. The
+/// fitted value at the middle of 2 m + 1 ticks is the weighted sum with weights 3 (3 m^2 + 3 m - 1 - 5 k^2) / ((2 m -
+/// 1) (2 m + 1) (2 m + 3)), k = -m .. m [Savitzky & Golay 1964].
 [[nodiscard]] inline Chatter chatter(std::span<const double> force_N, double floor_N) {
   constexpr int kHalf = 25, kLeast = 3;
   double squares = 0.0, sum = 0.0;

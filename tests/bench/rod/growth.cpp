@@ -1,6 +1,6 @@
-// How a tick grows with the nodes: a 0.3 mm suture, equally spaced, held at one end and swinging from level, without
-// contact, with it, and drawn along by both hands at 1 m/s. One line each: thread-CPU time and, for the last two, the
-// work on contact (rod/work.hpp), pairs on the list and lists made, a tick.
+// Cost of a tick by number of nodes, for an equally spaced 0.3 mm suture: swinging from level, held at one end, without
+// and with contact, and drawn along by both hands at 1 m/s. Prints per tick: thread CPU time and, for the last two,
+// contact work (rod/work.hpp), pairs on the contact list, and lists built.
 //
 // Usage: rod_growth [nodes ...]   (default 50 100 200 256 512 1024 2000)
 // For instruction counts: valgrind --tool=callgrind --toggle-collect='*Rod::tick*' rod_growth 1024

@@ -1,5 +1,5 @@
 #pragma once
-// One pull of a scene's loose knot: drawn tight, held, let go, waited for.
+// Draws a scene's loose knot tight, holds it, releases it and waits.
 
 #include <array>
 #include <string>
@@ -15,27 +15,28 @@ namespace ligature::bench {
 
 struct Pull {
   double speed_m_per_s = 0.2, force_N = 5.0;
-  bool sudden = false;  ///< let go at once, else eased off first
-  int hands = 2;        ///< that pull
+  bool sudden = false;  ///< the hands let go under full force; else they move back first
+  int hands = 2;        ///< number of hands that pull
 };
 
-/// For every pull of a study.
+/// Settings shared by all pulls of a study.
 struct PullOptions {
-  double hold_s = 0.7;        ///< after 0.3 s in which the thread comes to rest
+  double hold_s = 0.7;        ///< length of the hold, after 0.3 s for the thread to come to rest
   double wait_s = 5.0;        ///< after the release
-  double work_k = 0.0;        ///< Numerics::work, thousand instructions; 0: the setting's own
-  std::string shapes;         ///< folder for the thread at the start, in the hold, at the end; empty: none
-  bool disturbances = false;  ///< note with each tick what disturbed it
+  double work_k = 0.0;        ///< Numerics::work in thousand instructions; 0: the default
+  std::string shapes;         ///< folder for the thread's shapes at start, hold and end; empty: none
+  bool disturbances = false;  ///< record for each tick what disturbed it (tick_times.hpp)
 };
 
 struct PullResult {
   knot::KnotResult begun, left;
   int guard = 0;
-  double pull_d = 0.0, hold_d = 0.0, after_d = 0.0;           ///< worst penetration, diameters
-  double pull_lost = 0.0, hold_lost = 0.0, after_lost = 0.0;  ///< share of the time in which the thread stood still
-  double strain = 0.0, tension_N = 0.0;                       ///< in the hold
-  double turn_rad = 0.0, segment_d = 0.0;  ///< sharpest turn and longest segment in contact, in the hold
-  double chatter = 0.0, sliding = 0.0;     ///< chatter.hpp: in the hold; while pulled
+  double pull_d = 0.0, hold_d = 0.0, after_d = 0.0;  ///< largest penetration in each stage, in thread diameters
+  /// share of each stage's time in which the thread was not moved (time lost)
+  double pull_lost = 0.0, hold_lost = 0.0, after_lost = 0.0;
+  double strain = 0.0, tension_N = 0.0;    ///< measured in the hold
+  double turn_rad = 0.0, segment_d = 0.0;  ///< sharpest turn and longest segment in contact, measured in the hold
+  double chatter = 0.0, sliding = 0.0;     ///< see chatter.hpp: measured in the hold, and during the pull
   std::vector<Tick> ticks;
 
   [[nodiscard]] bool kept() const { return left.type == begun.type && left.handedness == begun.handedness; }
@@ -50,12 +51,13 @@ class Puller {
   [[nodiscard]] double force() const;
   [[nodiscard]] std::vector<std::array<double, 3>> points() const;
   void save(const std::string& name) const;
-  /// until_N > 0: ends when pulled that hard; < 0: when eased below -until_N.
+  /// Ends after `seconds`, or earlier: with until_N > 0 when the force exceeds it, with until_N < 0 when it falls below
+  /// -until_N.
   void phase(double seconds, double speed, int hands, double until_N);
   void tick();
-  /// The share of the time lost since it was asked last.
+  /// Share of time lost since the previous call.
   [[nodiscard]] double lost();
-  /// Largest turn at a node in contact, rad, and longest segment in contact, diameters.
+  /// Largest turn at a node in contact, rad, and longest segment in contact, in diameters.
   [[nodiscard]] std::pair<double, double> sharpness() const;
 
   scene::Scene scene_;
@@ -65,7 +67,7 @@ class Puller {
   std::vector<Tick> ticks_;
   std::vector<double> forces_;
   double penetration_ = 0.0, lost_ = 0.0;
-  std::size_t lost_from_ = 0;  // ticks before those in lost_
+  std::size_t lost_from_ = 0;  // tick from which lost() counts
   int guard_ = 0;
 };
 

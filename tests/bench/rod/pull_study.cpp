@@ -1,4 +1,4 @@
-// Pulls a scene's loose knot tight and prints one line a pull. What it prints and takes: rod_pull_study --help.
+// Pulls a scene's loose knot tight and prints one line per pull; arguments and columns: rod_pull_study --help.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -82,7 +82,7 @@ void print(const scene::Scene& scene, const Pull& pull, const PullResult& r, con
   std::fflush(stdout);
 }
 
-/// @return whether the knot was kept and every run did the same.
+/// @return whether the knot was kept and all repetitions computed the same.
 bool study(const scene::Scene& scene, const Pull& pull, const Arguments& a, std::ostream& ticks) {
   Repeated repeated;
   PullResult first;

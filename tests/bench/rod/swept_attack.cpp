@@ -1,13 +1,13 @@
-// Attacks the guarantee that strands never pass through each other: hairpins whose arms are thrown at each other at up
-// to 50 m/s each, at random angles (parallel and grazing among them), sizes and node counts; half of them lie across
-// each other, or an end above a strand. Between any two states of a substep every pair of segments, on the rod's list
-// or not, is checked for having crossed (tests/support/crossings.hpp).
+// Tests the guarantee that strands never pass through each other. The arms of a hairpin are thrown at each other at up
+// to 50 m/s each, at random angles (parallel and grazing included), sizes and node counts. In half of the cases the
+// arms cross, or one end lies above the other arm. Every pair of segments, on the contact list or not, is checked for a
+// crossing in every substep (tests/support/crossings.hpp).
 //
-// A third of the threads are adaptive: there, nodes also jump along the thread between substeps, and the straight way
-// of every material point from the old polyline to the new one is checked in the same manner.
+// A third of the threads are adaptive. There remeshing also moves nodes between substeps, so the straight motion of
+// every material point from the old to the new polyline is checked as well.
 //
-// Usage: rod_swept_attack [approaches = 10000] [seed = 1] [none]; none: contact switched off, to see that it would be
-// noticed. Prints crossings found; exit 1 if any.
+// Usage: rod_swept_attack [approaches = 10000] [seed = 1] [none]. `none` switches contact off, to show that crossings
+// are then found. Prints the number of crossings; exit code 1 if any.
 
 #include <algorithm>
 #include <cstdio>
@@ -24,7 +24,7 @@ using ligature::test::crossings_of_step;
 
 namespace {
 
-// A hairpin: arm 1 along x, a half circle upwards, arm 2 back, turned about z by `angle`.
+// A hairpin: arm 1 along x, a half circle upwards, and arm 2 back, turned about z by `angle`.
 void shape(Rod& rod, double gap, double angle, double speed1, double speed2, double sideways) {
   State& state = rod.state();
   const double length = rod.material().length_m, r = 0.5 * gap, bend = std::numbers::pi * r,
@@ -46,8 +46,8 @@ void shape(Rod& rod, double gap, double angle, double speed1, double speed2, dou
   rod.moved();
 }
 
-// The same with arms that lie across each other, seen from above: arm 1 along x, a step aside and up, arm 2 back over
-// it, or until its end is right above (`end_on`).
+// Like shape(), but the arms cross as seen from above: arm 1 along x, a step sideways and up, and arm 2 back across arm
+// 1; with `end_on` the end of arm 2 is right above arm 1.
 void shape_across(Rod& rod, double gap, double aside, bool end_on, double speed1, double speed2, double sideways) {
   State& state = rod.state();
   const double step = std::hypot(gap, aside), arm = (end_on ? 0.65 : 0.5) * (rod.material().length_m - step);
@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
   long found = 0, cut = 0, remeshes = 0, guarded = 0, substeps = 0;
   for (long k = 0; k < approaches; ++k) {
     static constexpr int kNodes[] = {20, 20, 20, 50, 50, 154};
-    const int n = k % 50 < 3 ? 500 : kNodes[random() % 6];  // hairpins, parallel and not, and strands that cross
+    const int n = k % 50 < 3 ? 500 : kNodes[random() % 6];  // the large meshes cover all three shapes
     Numerics numerics;
     numerics.tick_s = 6.25e-5;
     numerics.substeps = numerics.max_substeps = 1;

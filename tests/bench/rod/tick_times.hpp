@@ -1,5 +1,5 @@
 #pragma once
-// What ticks cost, apart from what the machine takes: a pull is run again and again, and each tick counts by its
+// Cost of ticks without the machine's disturbances: a deterministic pull is repeated, and each tick counts with its
 // fastest run.
 
 #include <sys/resource.h>
@@ -19,7 +19,7 @@
 
 namespace ligature::bench {
 
-/// CPU time of this thread, us. Linux charges it with what interrupts and the hypervisor take while it is on its core.
+/// CPU time of the calling thread, us. Linux includes interrupts and time stolen by the hypervisor.
 [[nodiscard]] inline double cpu_us() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -31,8 +31,8 @@ namespace ligature::bench {
   return v.empty() ? 0.0 : v[std::min(v.size() - 1, static_cast<std::size_t>(q * static_cast<double>(v.size())))];
 }
 
-/// What the machine did to this thread so far: page faults, times another process was put in its place, and the CPU
-/// time that the hypervisor says it took from all cores, 10 ms a count.
+/// Disturbances of the calling thread so far: page faults, involuntary context switches, and the CPU time stolen by the
+/// hypervisor from all cores, in counts of 10 ms.
 struct Disturbances {
   long faults = 0, switches = 0, steals = 0;
 
@@ -50,17 +50,17 @@ struct Disturbances {
   }
 };
 
-/// A tick: its time, and what it did, which is the same whenever it is run.
+/// One tick: its time, and what it computed, which is the same in every repetition.
 struct Tick {
   double us = 0.0;
-  long work = 0;            ///< on contact (rod/work.hpp), instructions
-  std::uint64_t print = 0;  ///< of all nodes and both hands' forces, bit by bit
+  long work = 0;            ///< spent on contact (rod/work.hpp), instructions
+  std::uint64_t print = 0;  ///< fingerprint of all nodes and of both hands' forces
   Disturbances met{};
 
   [[nodiscard]] bool did_as(const Tick& other) const { return work == other.work && print == other.print; }
 };
 
-/// Fingerprint [Fowler-Noll-Vo] of some vectors, bit by bit.
+/// FNV-1a hash over the 64-bit words of the vectors' components.
 [[nodiscard]] inline std::uint64_t fingerprint(std::span<const physics::Vec3> vectors, std::uint64_t hash) {
   for (const auto& v : vectors) {
     for (int k = 0; k < 3; ++k) hash = (hash ^ __builtin_bit_cast(std::uint64_t, v[k])) * 0x100000001b3U;
@@ -68,10 +68,10 @@ struct Tick {
   return hash;
 }
 
-/// The runs of one pull, tick by tick.
+/// Repetitions of one pull, compared tick by tick.
 class Repeated {
  public:
-  /// @return the first tick that did something else than in the run before, if any did.
+  /// @return the first tick whose computation differs from the first run's, if any.
   [[nodiscard]] std::optional<std::size_t> add(std::vector<Tick> run) {
     runs_.push_back(std::move(run));
     const auto &first = runs_.front(), &last = runs_.back();
@@ -84,7 +84,7 @@ class Repeated {
 
   [[nodiscard]] std::size_t runs() const { return runs_.size(); }
   [[nodiscard]] const std::vector<Tick>& first() const { return runs_.front(); }
-  /// Of each tick the least time that any run took for it, us.
+  /// For each tick the shortest time of all runs, us.
   [[nodiscard]] std::vector<double> least_us() const {
     std::vector<double> least(first().size(), 1e300);
     for (const auto& run : runs_) {
@@ -93,7 +93,7 @@ class Repeated {
     return least;
   }
 
-  /// Every tick of every run, to look for what made one long.
+  /// Writes every tick of every run as CSV, to find the cause of long ticks.
   void write(std::ostream& out, const std::string& pull) const {
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       for (std::size_t k = 0; k < runs_[r].size(); ++k) {
