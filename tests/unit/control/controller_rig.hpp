@@ -1,5 +1,5 @@
 #pragma once
-// The control law without a rig: readings that a test makes up, and the thread's pull on them.
+// The control law without drives: the test sets the readings and the positions of the held nodes.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,8 @@ namespace ligature::control {
 
 inline constexpr int kWatchdog = 20;
 
-/// A rig whose hands rest while each holds a node 5 cm above it. Both press the dead-man as soon as a press counts.
+/// A controller with two resting hands; each holds a node 5 cm above its tool and presses the dead-man as soon as it
+/// counts.
 class Rig {
  public:
   explicit Rig(const scene::Hands& hands = scene(), const device::Device& device = device::omni(),
@@ -29,11 +30,11 @@ class Rig {
   static scene::Hands scene() {
     scene::Hands hands;
     hands.workspace_scale = 20.0;
-    hands.energy_credit_J = 0.02;  // these hands never move, and earn nothing
+    hands.energy_credit_J = 0.02;  // these hands never move, so they earn no energy credit
     return hands;
   }
 
-  /// A device whose force does not depend on where it is.
+  /// A Cartesian device: its force does not depend on its pose.
   static device::Device drums() {
     device::Device d = device::omni();
     d.kinematics = device::Kinematics::kCartesian;
@@ -45,7 +46,7 @@ class Rig {
     for (std::size_t h = 0; h < rt::kHands; ++h) in.grasp[h].p_WG = controller.hand(h).p_WT + Vec3(0, 0, offset_m);
     return tick_as_is();
   }
-  /// With the grasps as the test has set them.
+  /// A tick with the grasps exactly as the test has set them.
   rt::RigCommand tick_as_is() {
     TickInput now = in;
     for (auto& hand : now.reading.hand) hand.dead_man = hand.dead_man && released >= DeadMan::kReleased;
@@ -62,7 +63,7 @@ class Rig {
     ASSERT_EQ(controller.state(), State::kForce);
     ASSERT_GT(largest(tick()), 0.0);
   }
-  /// To the largest force that a hand gets, many steps of the step limit.
+  /// Raises the force to a hand's maximum; that takes many ticks of the step limit.
   void pull_hard() {
     offset_m = 50.0;
     ticks(40);
@@ -79,7 +80,7 @@ class Rig {
   Controller controller;
   TickInput in;
   double offset_m = 0.05;
-  int released = 0;  ///< ticks since the dead-man was let go: 0 lets it go again
+  int released = 0;  ///< ticks since the dead-man was released; the test sets 0 to release it again
 };
 
 }  // namespace ligature::control

@@ -1,5 +1,5 @@
 #pragma once
-// The bounds of docs/passivity.md, summed beside a run: what a port's account and the motors' true work may be.
+// Evaluates the bounds of docs/passivity.md during a run: limits for a port's account and for the motors' true work.
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace ligature::control {
 
-/// For a hand that gives the tip at most a share `wildness` of the record's acceleration; all terms >= 0:
+/// Bounds for a hand whose tip acceleration is at most `wildness` times the device file's limit; all terms >= 0:
 ///   account <= work + hidden + unseen
 ///   work    >= -1 uJ - hidden - unseen - counted - beyond
 class PassivityBounds {
@@ -20,19 +20,19 @@ class PassivityBounds {
   PassivityBounds(double count_m, double wildness)
       : count_m_(count_m), wildness_(wildness), reach_m_(plain().hand_acceleration_m_per_s2 * kT_s * kT_s) {}
 
-  /// What was decided in a tick, and what the motors made from its SYNC to the next one's.
+  /// Of one tick: the force that was sent, the force that acted until the next SYNC, and the energy it delivered.
   struct Period {
     Vec3 sent_N, made_N;
     double given_J = 0.0;
-    std::int64_t sample = 0;  ///< the last one then
-    bool wary = false;        ///< lost frames were foreseen
+    std::int64_t sample = 0;  ///< index of the latest encoder sample
+    bool wary = false;        ///< lost frames were expected
   };
   void period(const Period& now) {
     const Vec3 before_N = periods_.empty() ? Vec3(Vec3::Zero()) : periods_.back().made_N;
     hidden_J_ += count_m_ * (now.made_N - before_N).lpNorm<1>();
     periods_.push_back(now);
   }
-  /// A sample was taken at SYNC n.
+  /// An encoder sample arrived at SYNC n.
   void seen(std::int64_t n, double account_J, double work_J) {
     unseen_J_ += wildness_ * reach_m_ * unseen_N(periods_.empty() ? n : periods_.back().sample, n);
     accounts_J_.resize(static_cast<std::size_t>(n + 1), accounts_J_.back());
@@ -40,24 +40,25 @@ class PassivityBounds {
     above_J = std::max(above_J, account_J - work_J - hidden_J() - unseen_J_);
     unseen_share = std::max(unseen_share, (account_J - work_J - hidden_J()) / std::max(unseen_J_, 1e-9));
   }
-  /// At SYNC n, seen or not.
+  /// To be called at every SYNC n, with or without a sample.
   void check(std::int64_t n, double work_J) {
     const std::int64_t m = last_sent(n);
     if (m < 0) return;
     const double more_J = beyond_J(m, n) + counted_J(m, n);
-    double account_J = accounts_J_[static_cast<std::size_t>(at(m).sample)];  // less what was given since
+    // minus the energy delivered since that sample
+    double account_J = accounts_J_[static_cast<std::size_t>(at(m).sample)];
     for (std::int64_t p = at(m).sample; p < n; ++p) account_J -= at(p).given_J;
     below_J = std::max(below_J, -Passivity::kFloor_J - more_J - account_J);
     work_below_J = std::max(work_below_J, -Passivity::kFloor_J - more_J - hidden_J() - unseen_J_ - work_J);
     most_beyond_J = std::max(most_beyond_J, more_J);
   }
 
-  double above_J = -1e9;       ///< the account over its bound; positive: broken
-  double below_J = -1e9;       ///< the same of the account, less what was given since its sample, under its floor
-  double work_below_J = -1e9;  ///< the same of the work
+  double above_J = -1e9;       ///< largest excess of the account over its upper bound; positive: broken
+  double below_J = -1e9;       ///< the same for the account's lower bound, less what was delivered since its sample
+  double work_below_J = -1e9;  ///< the same for the work's lower bound
   double unseen_share = 0.0, most_beyond_J = 0.0;
   [[nodiscard]] double unseen_J() const { return unseen_J_; }
-  /// Half a count by the encoder and half by the guess, at each change of torque.
+  /// Work that quantised positions hide: at each change of force, half a count by the encoder, half by interpolation.
   [[nodiscard]] double hidden_J() const {
     return periods_.empty() ? 0.0 : hidden_J_ + count_m_ * periods_.back().made_N.lpNorm<1>();
   }
@@ -65,15 +66,15 @@ class PassivityBounds {
  private:
   [[nodiscard]] const Period& at(std::int64_t n) const { return periods_[static_cast<std::size_t>(n)]; }
 
-  /// The last tick before SYNC n whose decision was a force.
+  /// The last tick before SYNC n that sent a nonzero force; -1: none.
   [[nodiscard]] std::int64_t last_sent(std::int64_t n) const {
     for (std::int64_t m = n - 1; m >= 0 && m >= n - SentTorques::kMemory; --m)
       if (!at(m).sent_N.isZero(0.0)) return m;
     return -1;
   }
 
-  /// Nobody saw when, between two samples, the tip moved: sum over t of |sum over later periods of force less its
-  /// mean|.
+  /// Work that is uncertain because the tip's motion between two samples is unknown: sum over t of |sum over later
+  /// periods of (force - mean force)|.
   [[nodiscard]] double unseen_N(std::int64_t from, std::int64_t to) const {
     Vec3 mean_N = Vec3::Zero(), before_N = Vec3::Zero();
     double sum_N = 0.0;
@@ -82,7 +83,7 @@ class PassivityBounds {
     return sum_N;
   }
 
-  /// Given from the sample of decision m on, up to SYNC n, and not foreseen by that decision.
+  /// Energy delivered between the sample of decision m and SYNC n that this decision did not budget for.
   [[nodiscard]] double beyond_J(std::int64_t m, std::int64_t n) const {
     double sum_J = 0.0;
     for (std::int64_t p = at(m).sample; p < n; ++p) {
@@ -94,7 +95,8 @@ class PassivityBounds {
     }
     return sum_J;
   }
-  /// From the third period after a sample on: a hand that is wilder than foreseen, and a force too slight to be.
+  /// Shortfall of that budget from the third period without a sample on: the hand may accelerate more than was assumed,
+  /// and very small forces are not budgeted for at all.
   [[nodiscard]] double wilder_J(std::int64_t m, std::int64_t p) const {
     const std::int64_t sample = at(m).sample, gap = sample > 0 ? sample - at(sample - 1).sample : 1;
     const auto j = static_cast<double>(p - sample + 1);
@@ -103,7 +105,7 @@ class PassivityBounds {
     const double doubt_m = reach_m_ * (spread + 0.5 * static_cast<double>(gap - 1)) + count_m_;
     return size_N * reach_m_ * std::max(0.0, wildness_ * j - spread) + std::min(size_N, Passivity::kSlight_N) * doubt_m;
   }
-  /// A count a joint, of the last motion; foreseen is one along the force.
+  /// Error of the last known motion, one count per joint; the decision budgets for one count along the force.
   [[nodiscard]] double counted_J(std::int64_t m, std::int64_t n) const {
     double sum_N = 0.0;
     for (std::int64_t p = at(m).sample; p < n; ++p) sum_N += at(p).made_N.lpNorm<1>() - at(p).made_N.norm();
@@ -112,7 +114,7 @@ class PassivityBounds {
 
   double count_m_, wildness_, reach_m_, hidden_J_ = 0.0, unseen_J_ = 0.0;
   std::vector<Period> periods_;
-  std::vector<double> accounts_J_{0.0};  // at each SYNC: at the last sample
+  std::vector<double> accounts_J_{0.0};  // account of the latest sample, for each SYNC
 };
 
 }  // namespace ligature::control

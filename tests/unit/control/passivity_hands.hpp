@@ -1,5 +1,5 @@
 #pragma once
-// Hands that attack a port: drawn, or climbing.
+// Attacks on a port's passivity: hand motions, control laws and frame losses, random or optimised.
 
 #include <algorithm>
 #include <array>
@@ -11,17 +11,18 @@
 
 namespace ligature::control {
 
-/// A motion, a law and losses, by numbers that a climb may change: at each knot an acceleration, and how much of it
-/// goes along the motors' force.
+/// Parameters of one attack, which an optimiser may change. Each knot, a stretch of equal length, has an acceleration
+/// and a share of it that acts along the motors' force.
 struct Attacker {
   static constexpr std::size_t kKnots = 40;
   std::array<Vec3, kKnots> push{};
   std::array<double, kKnots> along{};
-  double gain_N_per_m = 400.0, damping_s = 0.01;  ///< of the law; a negative gain is a spring
-  int hold = 10;                                  ///< periods of a knot
+  /// coefficients of the control law; with a negative gain it is a spring
+  double gain_N_per_m = 400.0, damping_s = 0.01;
+  int hold = 10;  ///< length of a knot in periods
   Chain chain;
 
-  /// One that nobody climbed. @param random also of the chain, in which nothing or up to 30 % is lost either way
+  /// Random parameters. With `loses`, up to 30 % of RPDOs, of samples or of both are lost.
   [[nodiscard]] static Attacker drawn(test::Random& random, double wildness, double count_m, bool loses) {
     Attacker a;
     for (std::size_t k = 0; k < kKnots; ++k) {
@@ -42,7 +43,7 @@ struct Attacker {
     return a;
   }
 
-  /// A neighbour: a few knots, now and then the law or the losses.
+  /// A mutation: some knots, and sometimes the control law or the losses.
   [[nodiscard]] Attacker changed(test::Random& random, double size) const {
     Attacker a = *this;
     for (std::size_t k = 0; k < kKnots; ++k) {
@@ -74,7 +75,7 @@ struct Attacker {
   }
 };
 
-/// (1+1)-ES with the one-fifth rule. @return the best found
+/// Maximises `worse` with a (1+1) evolution strategy and the one-fifth success rule. @return the best attack found
 template <class Worse>
 [[nodiscard]] Attacker climb(Attacker best, int steps, int ticks, test::Random& random, Worse worse) {
   double most = worse(best.run(ticks)), size = 0.5;

@@ -1,5 +1,5 @@
 #pragma once
-// A port against a plant of its own: a mass that a hand and the motors push, with counts and lost frames between.
+// A passivity port with a simulated plant: a mass moved by a hand and the motors, quantised positions and lost frames.
 
 #include <algorithm>
 #include <array>
@@ -15,20 +15,20 @@
 
 namespace ligature::control {
 
-/// What lies between the controller and the motor.
+/// Transmission between controller and motors.
 struct Chain {
-  double count_m = 0.0;  // of the encoders
-  double lost = 0.0;     // share of the RPDOs
+  double count_m = 0.0;  // encoder resolution at the tip
+  double lost = 0.0;     // share of RPDOs that are lost
   double lost_samples = 0.0;
-  double guard_N = 1e9;      // the drive makes no more than this
-  bool tells_torque = true;  // else it tells only that it limits, and for how long it has held
-  std::uint64_t seed = 1;    // of the losses
-  double wildness = 1.0;     // of the hand: share of the record's acceleration
+  double guard_N = 1e9;      // the drive limits its force to this
+  bool tells_torque = true;  // else the drive reports only that it limits, and the age of its torque
+  std::uint64_t seed = 1;    // of the random losses
+  double wildness = 1.0;     // the hand's acceleration as a share of the device file's limit
 };
 
 inline WindowVelocity velocity_of(const Chain& c) { return {kT_s, std::max(c.count_m, 1e-9)}; }
 
-/// A mass that a hand and the motors push; `wish` is the law, the hand's force is given.
+/// A mass moved by a hand and the motors; `wish` is the control law, the hand's acceleration is prescribed.
 struct Port {
   explicit Port(bool active, double credit_J = 0.0, const Chain& c = {})
       : passivity(plain(), kT_s, active, credit_J), chain(c), random(c.seed), bounds(c.count_m, c.wildness) {}
@@ -36,9 +36,9 @@ struct Port {
   template <class Wish>
   void tick(Wish wish, const Vec3& acceleration) {
     see();
-    // The drive takes what has arrived.
+    // The drive applies the torques that have arrived.
     for (std::size_t j = 0; j < 3; ++j) {
-      const bool arrives = random.share() >= chain.lost;  // each drive has its RPDO
+      const bool arrives = random.share() >= chain.lost;  // each joint's drive has its own RPDO
       held[j] = arrives ? 0 : held[j] + 1;
       if (arrives) taken[static_cast<Eigen::Index>(j)] = on_its_way[static_cast<Eigen::Index>(j)];
     }
@@ -50,13 +50,13 @@ struct Port {
     const double step_N = plain().force_step_N;
     const Vec3 limited = before + change * std::min(1.0, step_N / std::max(change.norm(), step_N));
     const Vec3 paid = passivity.control(n, limited, v, before, made_of), f = made_of(paid);
-    if (passivity.released()) ++released, forgiven = n + 20;  // all force goes; a lost RPDO delays it
+    if (passivity.released()) ++released, forgiven = n + 20;  // the force drops to zero; a lost RPDO may delay that
     if (n > forgiven) largest_step_N = std::max(largest_step_N, (paid - before).norm());
     passivity.sent(n, f, f);
     before = paid;
     on_its_way = f;
     if (passivity.acts()) ++acted;
-    const Vec3 moved = v * kT_s + 0.5 * acceleration * kT_s * kT_s;  // under a constant acceleration
+    const Vec3 moved = v * kT_s + 0.5 * acceleration * kT_s * kT_s;  // exact for a constant acceleration
     bounds.period({f, made, made.dot(moved), last_seen, passivity.is_wary(n)});
     work_J -= made.dot(moved);
     p += moved;
@@ -66,7 +66,8 @@ struct Port {
 
   Passivity passivity;
   Chain chain;
-  std::function<Vec3(const Vec3&)> made_of = [](const Vec3& f) { return f; };  // of torques that are rounded
+  // force made by the torques of a force, which the drive rounds
+  std::function<Vec3(const Vec3&)> made_of = [](const Vec3& f) { return f; };
   test::Random random;
   PassivityBounds bounds;
   std::array<WindowVelocity, 3> rate{velocity_of(chain), velocity_of(chain), velocity_of(chain)};
@@ -79,7 +80,7 @@ struct Port {
   std::int64_t n = 0, last_seen = 0, forgiven = -1;
 
  private:
-  /// SYNC: the encoders are read.
+  /// SYNC: the encoders are sampled.
   void see() {
     const Vec3 seen = chain.count_m > 0.0 ? Vec3((p / chain.count_m).array().round() * chain.count_m) : p;
     PortSample sample{{seen.x(), seen.y(), seen.z()}, seen, chain.count_m, Vec3(1, 1, 1), {}, {}};

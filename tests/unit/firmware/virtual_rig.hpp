@@ -1,5 +1,5 @@
 #pragma once
-// A rig in virtual time: drives that obey at once, a clock that moves when somebody works or sleeps.
+// A rig in virtual time: drives that follow commands at once, and a clock that advances only by work and sleep.
 
 #include <deque>
 #include <functional>
@@ -14,7 +14,7 @@ namespace ligature {
 class VirtualClock {
  public:
   Nanoseconds now() noexcept {
-    if (thread != nullptr) thread->advance();  // what happened meanwhile
+    if (thread != nullptr) thread->advance();  // the physics catches up to the current time
     return time;
   }
   void sleep_until(Nanoseconds at) noexcept {
@@ -24,14 +24,14 @@ class VirtualClock {
   }
   Nanoseconds worked() noexcept { return work; }
   Nanoseconds time{0}, work{0};
-  Nanoseconds late_by{0};  // of the next wake-up only
+  Nanoseconds late_by{0};  // applies to the next wake-up only
   std::vector<Nanoseconds> woken;
   lab::VirtualThread* thread = nullptr;
 };
 
 inline constexpr control::JointAngles kRestingArm{0.0, 0.5, 0.6};
 
-/// Drives that are up at once and keep what the wire says: a torque written in a period acts at the next SYNC.
+/// Drives that are operational at once. As on the wire, a torque written in a period acts from the next SYNC on.
 class VirtualBus {
  public:
   explicit VirtualBus(VirtualClock& clock) : clock_(clock) {
@@ -52,7 +52,7 @@ class VirtualBus {
     const double moved_rad = waist_rad_per_s * std::chrono::duration<double>(clock_.time).count();
     for (auto& hand : reading.hand) {
       hand.q_rad[0] = kRestingArm[0] + moved_rad;
-      hand.dead_man = syncs > control::DeadMan::kReleased;  // pressed too early it would not count
+      hand.dead_man = syncs > control::DeadMan::kReleased;  // a press before that would not count
     }
     return reading;
   }
@@ -71,11 +71,12 @@ class VirtualBus {
   rt::RigReading reading;
   rt::RigCommand written, acting;
   std::int64_t syncs = 0;
-  std::map<std::int64_t, Nanoseconds> stalls;  // at the n-th SYNC (from 1), the tick takes so much longer
-  std::map<std::int64_t, Nanoseconds> works;   // the same, by computing
-  std::function<void(std::int64_t)> on_sync;   // with the SYNC's number; what it asks for comes in the next period
+  std::map<std::int64_t, Nanoseconds> stalls;  // extra duration of the tick of the n-th SYNC (from 1), spent waiting
+  std::map<std::int64_t, Nanoseconds> works;   // the same, spent computing
+  // called with the SYNC's number; its changes take effect in the next period
+  std::function<void(std::int64_t)> on_sync;
   std::vector<Nanoseconds> sampled_at;
-  double waist_rad_per_s = 0.0;  // of both hands; a stall holds up the drives too, and they sample after it
+  double waist_rad_per_s = 0.0;  // of both hands; a stall also delays the drives, which sample after it
 
  private:
   VirtualClock& clock_;
@@ -89,14 +90,14 @@ inline scene::Scene small_scene() {
   s.world.fixed = {{0, {0.0, 0.0, 5.5}, std::nullopt}};
   s.world.grippers_collide = false;
   s.hands.workspace_scale = 20.0;
-  s.hands.energy_credit_J = 0.02;  // the fake hands never move, and would earn nothing
+  s.hands.energy_credit_J = 0.02;  // these hands never move, so they earn no energy credit
   const control::Linkage arm(device::omni());
   const control::Vec3 tip_W = 20.0 * (arm.position(kRestingArm) - arm.home_m());
   s.hands.workspace_origin_m = {0.02 - tip_W.x(), -tip_W.y(), 4.8 - tip_W.z()};  // both tools 2 cm beside the thread
   return s;
 }
 
-/// Everything a cycle needs, and a way to collect what it leaves.
+/// All parts of a cycle, and access to its records.
 struct VirtualRig {
   explicit VirtualRig(const scene::Scene& scene = small_scene(), control::Settings settings = {20, true})
       : thread(std::get<physics::Simulation>(physics::Simulation::make(scene))), controller(scene.hands, settings) {

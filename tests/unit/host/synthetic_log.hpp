@@ -10,7 +10,7 @@
 
 namespace ligature::host::test {
 
-/// A folder of its own for one test, gone afterwards.
+/// A temporary folder for one test, removed afterwards.
 class TestFolder {
  public:
   TestFolder();
@@ -24,7 +24,7 @@ class TestFolder {
   std::filesystem::path path_;
 };
 
-/// A tick with every field zero but its number and "no node held".
+/// A tick whose fields are zero except for its number and "no node held".
 [[nodiscard]] ligature_msg::tick_t tick_of(std::int64_t number);
 
 /// Consecutive ticks first .. first + count - 1.
@@ -33,7 +33,7 @@ class TestFolder {
 /// A thread along a polyline.
 [[nodiscard]] ligature_msg::thread_t thread_of(std::int64_t tick, const std::vector<std::array<double, 3>>& points);
 
-/// An open overhand knot with long ends: what a trefoil closes to. A straight line.
+/// An open overhand knot with long ends; closing it gives a trefoil.
 [[nodiscard]] std::vector<std::array<double, 3>> overhand_points(int count);
 [[nodiscard]] std::vector<std::array<double, 3>> straight_points(int count);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Knots to recognise, as polylines made from formulas.
+// Knots as polylines from formulas, as input for knot recognition.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -22,8 +22,8 @@ Polyline closed_curve(int n, F f) {
   return line;
 }
 
-/// The trefoil in its usual pose. The sign of z is the hand: with + sin 3t it is right-handed (Gauss' integral gives
-/// the writhe +3.4), with the - sin 3t that is often printed it is left-handed.
+/// The trefoil in its usual pose; `hand` is the sign of z. With + sin 3t it is right-handed (writhe +3.4 by Gauss'
+/// integral); with - sin 3t, as often printed, it is left-handed.
 inline Polyline trefoil(int n, int hand = 1) {
   return closed_curve(n, [hand](double t) {
     return std::array{std::sin(t) + 2 * std::sin(2 * t), std::cos(t) - 2 * std::cos(2 * t), hand * std::sin(3 * t)};
@@ -37,7 +37,7 @@ inline Polyline figure_eight(int n) {
   });
 }
 
-/// T(2, q) on a torus, q odd; right-handed for q > 0.
+/// Torus knot T(2, q), q odd; right-handed for q > 0.
 inline Polyline torus_knot(int q, int n) {
   return closed_curve(n, [q](double t) {
     const double r = 2 + std::cos(q * t);
@@ -45,8 +45,8 @@ inline Polyline torus_knot(int q, int n) {
   });
 }
 
-/// Closure of a braid; word of +-k: strand k crosses k + 1 (k from 1), positive letters make right-handed crossings.
-/// The braid runs along x; every letter is two steps long; the strands return at y far below.
+/// Closure of a braid. In `word`, +-k means that strand k crosses k + 1 (k from 1); positive letters make right-handed
+/// crossings. The braid runs along x, two units per letter; the strands return far away in y.
 inline Polyline braid_closure(const std::vector<int>& word, int strands) {
   const double end = 2.0 * static_cast<double>(word.size()) + 1.0;
   Polyline line;
@@ -58,8 +58,8 @@ inline Polyline braid_closure(const std::vector<int>& word, int strands) {
       const int k = std::abs(letter) - 1;
       line.push_back({x, static_cast<double>(at), 0.0});
       if (at == k || at == k + 1) {
-        // The strand that goes up passes over in a right-handed crossing of two strands running along +x... seen from
-        // +z, over (1, 1) turns counter-clockwise to under (1, -1) the long way: that is left-handed; so it goes under.
+        // A crossing is right-handed when turning the over strand counter-clockwise by less than half a turn gives the
+        // under strand's direction (seen from +z). Here that is the strand going down, so the strand going up is under.
         const bool up = at == k;
         const bool over = (letter > 0) != up;
         const double to = up ? k + 1 : k;
@@ -84,7 +84,7 @@ inline Polyline mirrored(Polyline line) {
   return line;
 }
 
-/// A random rotation, and noise of the given size on every point.
+/// Rotates the line randomly and adds noise of the given size to every point.
 inline Polyline posed(Polyline line, test::Random& random, double noise) {
   const auto normal = [&] { return random.normal(); };
   const Eigen::Quaterniond q = Eigen::Quaterniond{normal(), normal(), normal(), normal()}.normalized();
@@ -95,7 +95,7 @@ inline Polyline posed(Polyline line, test::Random& random, double noise) {
   return line;
 }
 
-/// Splits every edge into n.
+/// Splits every edge into n equal parts.
 inline Polyline refined(const Polyline& line, int n) {
   Polyline fine;
   for (std::size_t k = 0; k < line.size(); ++k) {
@@ -108,8 +108,8 @@ inline Polyline refined(const Polyline& line, int n) {
   return fine;
 }
 
-/// A long bight tied in a trefoil: out along a trefoil with a gap, and back beside it, the two strands twisted about
-/// each other. Pulling the bight back through undoes it, so it is the unknot, with a dozen crossings and more.
+/// The unknot with a dozen or more crossings: a long bight laid along a trefoil, its two strands twisted about each
+/// other. Pulling the bight back undoes it.
 inline Polyline doubled_trefoil(int n, double twist) {
   constexpr double kGap = 0.5, kApart = 0.08;
   const auto at = [&](double t, double side) {
@@ -124,7 +124,7 @@ inline Polyline doubled_trefoil(int n, double twist) {
   return line;
 }
 
-/// Tangled to look at, but z rises all the way and the return runs outside: the unknot, whatever x and y do.
+/// An unknot that looks tangled: z rises monotonically and the return path runs outside, for any x and y.
 inline Polyline tangled_unknot(int n, test::Random& random) {
   const auto angle = [&] { return random.in(0.0, kTurn); };
   Polyline line;

@@ -1,5 +1,5 @@
 #pragma once
-// Random and degenerate configurations for property tests, and sums over the forces of a few nodes.
+// Random and degenerate node configurations for property tests, and sums over the forces of a few nodes.
 
 #include <algorithm>
 #include <vector>
@@ -19,7 +19,8 @@ class Random : public ligature::test::Random {
  public:
   using ligature::test::Random::Random;
   double log_in(double low, double high) { return std::pow(10.0, in(std::log10(low), std::log10(high))); }
-  V vector(double size = 1.0) { return {in(-size, size), in(-size, size), in(-size, size)}; }  // braces: in order
+  // braces define the order of evaluation
+  V vector(double size = 1.0) { return {in(-size, size), in(-size, size), in(-size, size)}; }
   V unit() {
     for (;;)
       if (const V a = vector(); dot(a, a) > 0.01) return (1.0 / norm(a)) * a;

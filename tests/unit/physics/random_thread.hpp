@@ -1,5 +1,5 @@
 #pragma once
-// A random thread as the step of its internal forces sees it, and its sums.
+// A random thread as input for the internal-force step, and its energy and momenta.
 
 #include "firmware/physics/thread.hpp"
 #include "tests/unit/physics/random_states.hpp"
@@ -12,7 +12,7 @@ struct Thread {
   InternalWorkspace w;
 };
 
-/// n nodes in a random walk of 0.15 m a step, all moving; no stiffness and no damping.
+/// A random walk of n nodes, up to 0.15 m per axis and step, all moving; no stiffness and no damping.
 inline Thread random_thread(int n, Random& random) {
   Thread t{.m = {}, .s = {Lane3(n), Lane3(n)}, .w = InternalWorkspace(n)};
   t.m.nodes = n, t.m.rest_m = 0.1, t.m.radius_m = 0.05, t.m.mass_kg = 0.05, t.m.step_s = 1e-3;

@@ -1,5 +1,5 @@
 #pragma once
-// Plays an operator script into a simulation and watches the knot; shared by the tests of tying, pulling and releasing.
+// Plays a gripper script into a simulation and checks the knot; shared by the tests of tying, pulling and releasing.
 
 #include <array>
 #include <cmath>
@@ -39,9 +39,9 @@ inline knot::KnotResult knot_of(const Simulation& sim) {
   return knot::recognise(points, false);
 }
 
-/// How a script is changed before it is played.
+/// Changes applied to a script when it is played.
 struct Variation {
-  double speed = 1.0;     ///< 1.25 is a quarter faster
+  double speed = 1.0;     ///< time scale; 1.25 is a quarter faster
   double turn_rad = 0.0;  ///< about the vertical
   bool mirrored = false;  ///< y -> -y
 };

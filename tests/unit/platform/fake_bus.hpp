@@ -1,5 +1,5 @@
 #pragma once
-// A CAN bus in memory and a waiting that only advances a number.
+// A CAN bus in memory, and a wait function that only advances the time.
 
 #include <deque>
 #include <functional>

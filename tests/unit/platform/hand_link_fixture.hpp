@@ -1,5 +1,5 @@
 #pragma once
-// One hand's link on a bus in memory, and drives that answer as a test tells them.
+// One hand's link on a bus in memory, with drives whose answers the test sets.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-// A ball of thread, for tests of what touching costs and does.
+// A crumpled thread, for tests of contact and its cost.
 
 #include <cmath>
 
@@ -8,8 +8,8 @@
 
 namespace ligature::test {
 
-/// A random walk of the mesh's segments inside a sphere of `radius` diameters, so that everything is near everything;
-/// every node thrown at up to `speed_m_per_s`.
+/// Places the nodes on a random walk inside a sphere of `radius` thread diameters, so that all segments are close to
+/// each other, and gives every node a random velocity of up to `speed_m_per_s`.
 inline void crumple(Rod& rod, unsigned seed, double radius, double speed_m_per_s) {
   test::Random random(seed);
   const auto vector = [&] {

@@ -1,5 +1,5 @@
 #pragma once
-// The bare rods of the validation, for tests of the rod's own parts.
+// The validation's rods without a scene, for tests of parts of the rod model.
 
 #include "host/lab/validate/rods.hpp"
 

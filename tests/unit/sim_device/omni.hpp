@@ -1,5 +1,5 @@
 #pragma once
-// The shipped device's linkage by itself.
+// The linkage of the shipped device.
 
 #include <optional>
 

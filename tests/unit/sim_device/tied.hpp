@@ -1,5 +1,5 @@
 #pragma once
-// An operator at the facade: a scene's thread, hands that are where it wants them, no wire.
+// A simulated operator at the facade: its hands move the thread directly, without devices and wire.
 
 #include <array>
 #include <string>
@@ -18,8 +18,8 @@ inline knot::KnotResult recognised(std::span<const Vec3> thread) {
   return knot::recognise(shape, false);
 }
 
-/// @param until a move: when it begins, the operator is stopped
-/// @return the knot's type and hand after the operator is done, or why there is none.
+/// Lets the operator tie `knot`; stops when the move `until` begins.
+/// @return the knot's type and handedness at the end, or why there is none.
 inline std::string tied(const char* name, const char* knot, std::uint32_t seed,
                         const std::vector<std::string>& overrides = {}, const char* until = "done") {
   const auto read = scene::load_scene(std::string(LIGATURE_SOURCE_DIR "/scenes/") + name, overrides);

@@ -1,5 +1,5 @@
 #pragma once
-// A scripted CANopen master on the simulated cable, in virtual time: what a controller does, without one.
+// A scripted CANopen master on the simulated cable, in virtual time; it takes the controller's place.
 
 #include <array>
 #include <chrono>
@@ -21,7 +21,7 @@ class VirtualMaster {
   /// Puts a frame on the wire now.
   void send(const can::Frame& f) { device_.submit(f, HandDevice::kFirstClient, now_); }
 
-  /// Lets time pass in the small steps of a real loop: every moment the device asks for, and the end.
+  /// Advances time to every moment that the device asks for, and then to the end, as a real loop would.
   void pass(Time span) {
     const Time end = now_ + span;
     for (;;) {
@@ -32,7 +32,8 @@ class VirtualMaster {
     }
   }
 
-  /// Reset communication, all start-up writes one by one, NMT start. True when every write was accepted.
+  /// Sends Reset Communication, all start-up writes one by one, and NMT start. @return true when every write was
+  /// accepted.
   bool start_up(const can::StartupTimes& times = {}) {
     send(can::encode_nmt(can::NmtCommand::kResetCommunication));
     pass(std::chrono::milliseconds(2));
@@ -49,7 +50,7 @@ class VirtualMaster {
     return true;
   }
 
-  /// One period: SYNC, wait for the TPDOs, RPDOs with these torques on the way to Operation Enabled.
+  /// One period: SYNC, wait for the TPDOs, RPDOs with these torques and the transitions to Operation Enabled.
   void tick(const std::array<std::int16_t, 3>& torque_permille = {}) {
     const Time end = now_ + HandDevice::kPeriod;
     if (ticks++ % 100 == 0) send(can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}));
@@ -83,7 +84,7 @@ class VirtualMaster {
   std::array<can::Tpdo1, 3> tpdo{};
   std::vector<can::Emergency> emergencies;
   std::vector<can::Heartbeat> heartbeats;
-  std::vector<Time> tpdo_times;  // after the SYNC of their period
+  std::vector<Time> tpdo_times;  // relative to the SYNC of their period
   bool reset_faults = false;
   long ticks = 0;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Reads frames as the page does, for tests.
+// Decodes view frames as the browser page does.
 
 #include <cstddef>
 #include <cstdint>
@@ -46,7 +46,7 @@ struct Read {
     for (std::size_t i = 0; i < rows.size(); i += kColumns) found.push_back(static_cast<std::int64_t>(rows[i]));
     return found;
   }
-  /// Numbers of the bins.
+  /// The numbers of the trace bins in the frame.
   [[nodiscard]] std::vector<std::int64_t> bins() const {
     std::vector<std::int64_t> found;
     if (!sections.contains(Section::kBins)) return found;
