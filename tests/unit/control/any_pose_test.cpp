@@ -1,4 +1,4 @@
-// What torques may do at the tip wherever it is: the bound that no encoder can break.
+// The largest tip force that given torques can make in any pose: a force limit that holds even if encoders are wrong.
 #include "firmware/control/any_pose.hpp"
 
 #include <gtest/gtest.h>
@@ -15,9 +15,9 @@ namespace ligature::control {
 namespace {
 
 constexpr double kPeak_N = 3.3, kStep_N = 0.53;
-constexpr double kQuanta_N = 0.02;  // half a per mille of each joint's torque, where levers are shortest
+constexpr double kQuanta_N = 0.02;  // half a per mille of each joint's torque, at the pose with the shortest levers
 
-/// Poses of an Omni that have the tip in its workspace box.
+/// Random poses of an Omni with the tip in its workspace box.
 class Poses {
  public:
   explicit Poses(unsigned seed) : random_(seed) {}
@@ -26,7 +26,7 @@ class Poses {
     const auto n = [&] { return random_.normal(); };
     return Vec3{n(), n(), n()}.normalized();
   }
-  /// By the two-circle construction; in an eighth of the cases a corner of the box.
+  /// Inverse kinematics by intersecting two circles; one pose in eight is at a corner of the box.
   JointAngles next() {
     const device::Device d = device::omni();
     for (;;) {
@@ -85,7 +85,8 @@ TEST(AnyPose, OfThreeDrumsIsTheForceItself) {
   EXPECT_NEAR(AnyPose(d).most_N(Vec3(0.02 * 1.0, 0.03 * -2.0, 0.05 * 2.0)), 3.0, 1e-12);
 }
 
-TEST(AnyPose, AnArmThatMayBeStretchedGetsNoForce) {  // a box that reaches a singular pose: safe, and a number
+// the box contains a singular pose: no force, and the bound stays finite
+TEST(AnyPose, AnArmThatMayBeStretchedGetsNoForce) {
   device::Device d = device::omni();
   d.workspace_min_m[1] = -0.30;
   const double most_N = AnyPose(d).most_N(Vec3(0.0, 0.1, -0.1));
@@ -93,7 +94,7 @@ TEST(AnyPose, AnArmThatMayBeStretchedGetsNoForce) {  // a box that reaches a sin
   EXPECT_GT(most_N, 100.0);
 }
 
-/// The price: in this much of the workspace and in these directions an honest hand gets the device's peak force.
+/// Cost of the limit: the forces that remain available with correct encoders, over workspace and directions.
 TEST(AnyPose, LeavesAnHonestHandMostOfTheForce) {
   const AnyPose any(device::omni());
   Poses poses(3U);
@@ -110,11 +111,11 @@ TEST(AnyPose, LeavesAnHonestHandMostOfTheForce) {
       "honest force: least %.2f N, 5 %% below %.2f N, median %.2f N; home: side %.2f, in and out %.2f, up %.2f N\n",
       left_N.front(), left_N[1000], left_N[10'000], at_home(Vec3::UnitX()), at_home(Vec3::UnitY()),
       at_home(Vec3::UnitZ()));
-  EXPECT_GT(left_N.front(), 1.35);  // the continuous limit, 0.88 N, is nowhere touched
+  EXPECT_GT(left_N.front(), 1.35);  // everywhere above the continuous limit of 0.88 N
   EXPECT_GT(left_N[10'000], 2.4);
 }
 
-/// From pose to pose, smoothly and all joints together: what a moving arm could say.
+/// Encoder readings of a smooth motion of all joints between random poses.
 class Says {
  public:
   explicit Says(Poses& poses) : poses_(poses), from_(vector_of(poses.next())), to_(from_) {}
@@ -123,7 +124,7 @@ class Says {
     if (tick % kMove == 0) {
       from_ = to_;
       do to_ = vector_of(poses_.next());
-      while ((to_ - from_).cwiseAbs().minCoeff() < 0.02);  // no joint stands still
+      while ((to_ - from_).cwiseAbs().minCoeff() < 0.02);  // every joint moves
     }
     const double share = 0.5 - 0.5 * std::cos(std::acos(-1.0) * (tick % kMove) / kMove);
     const Vec3 q = from_ + share * (to_ - from_);
@@ -139,7 +140,7 @@ struct Most {
   double true_N = 0.0, true_step_N = 0.0, said_N = 0.0;
 };
 
-/// Pulled hard in changing directions, with the tip truly in any of a hundred other places.
+/// Largest force and step at the tip, evaluated in a hundred poses other than the encoders' one, during strong pulls.
 Most pulled_by_what_encoders_say(unsigned seed) {
   Poses poses(seed);
   Says says(poses);

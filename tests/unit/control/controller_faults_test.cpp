@@ -1,4 +1,4 @@
-// Every fault's way to zero on made-up readings, and the ways back.
+// Every fault removes the force; which of them can be reset, and how. The readings are artificial.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -22,7 +22,7 @@ const std::vector<Case>& cases() {
       {Fault::kDriveFault, [](Rig& r) { r.in.reading.hand[1].enabled = false; }},
       {Fault::kButtonsStuck, [](Rig& r) { r.in.reading.hand[0].buttons_stuck = true; }},
       {Fault::kNonFinite, [](Rig& r) { r.offset_m = std::numeric_limits<double>::quiet_NaN(); }},
-      {Fault::kVelocityLimit,  // of all joints: one alone, while a torque stands, would be the frozen others'
+      {Fault::kVelocityLimit,  // all joints: one moving alone under torque would be reported as the others being frozen
        [](Rig& r) {
          for (double& q : r.in.reading.hand[0].q_rad) q += 0.2;
        }},
@@ -48,9 +48,9 @@ TEST(ControllerFaults, EachTakesAllTorqueInTheSameTickAndLatches) {
     EXPECT_EQ(rig.controller.fault(), c.fault);
     EXPECT_EQ(Rig::largest(command), 0.0);
     const auto off = needs_restart(c.fault) ? rt::DriveRequest::kStop : rt::DriveRequest::kHold;
-    for (const auto& hand : command.hand) EXPECT_EQ(hand.request, off);  // and the power stages off
+    for (const auto& hand : command.hand) EXPECT_EQ(hand.request, off);  // the drives' power stages are off
 
-    Rig healthy;  // the cause is gone; the fault is not
+    Rig healthy;  // the cause is removed; the fault remains
     rig.in.reading = healthy.in.reading;
     rig.in.thread_finite = true;
     rig.offset_m = 0.05;
@@ -60,9 +60,9 @@ TEST(ControllerFaults, EachTakesAllTorqueInTheSameTickAndLatches) {
   }
 }
 
-/// In any state, armed or not: to the bus it does not matter what the rig is about.
+/// In every state, armed or not: whether a stranger is on the bus does not depend on the controller's state.
 TEST(ControllerFaults, SomebodyElseOnTheBusIsAFaultInEveryStateAndNoResetLeavesIt) {
-  for (const int ticks : {0, 1, 30, 200, 1000}) {  // OFF, CALIBRATE, IDLE or on its way to force, FORCE
+  for (const int ticks : {0, 1, 30, 200, 1000}) {  // OFF, CALIBRATE, IDLE or rising force, FORCE
     for (const bool armed : {false, true}) {
       for (const bool by_torque : {false, true}) {
         Rig rig;
@@ -91,9 +91,9 @@ TEST(ControllerFaults, SomebodyElseOnTheBusIsAFaultInEveryStateAndNoResetLeavesI
   }
 }
 
-/// Its drive says that it makes what was asked of it once, whatever is asked now: no step back from that may be sent
-/// without a jump, and without a limit of time force stood for ever. Of a drive whose torque may be told wide of what
-/// it was asked for; else that is what is found first.
+/// The drive keeps reporting the torque of one command, whatever it is sent later. The force cannot be reduced in steps
+/// from there without a jump, so a time limit must end it. The device file tolerates any torque error here; otherwise
+/// the torque check would report a fault first.
 TEST(ControllerFaults, AForceThatDoesNotEndIsTakenAtOnce) {
   device::Device vague = device::omni();
   vague.torque_tolerance_permille = vague.max_torque_permille;
@@ -143,14 +143,15 @@ TEST(ControllerFaults, OldJointMessagesAreHeldAndThenAFault) {
 }
 
 TEST(ControllerFaults,
-     ALostPeriodMakesNoOldSampleNew) {  // sets of 3 and 4 missing, period 5 lost: still the sample of 2
+     // samples of ticks 3 and 4 are missing, period 5 is lost: the sample of tick 2 stays the latest
+     ALostPeriodMakesNoOldSampleNew) {
   Rig rig;
   rig.to_force();
   for (const int age : {1, 2}) {
     rig.in.reading.hand[0].age_ticks = age;
     rig.tick();
   }
-  ++rig.in.tick;  // lost
+  ++rig.in.tick;  // a lost period
   rig.in.reading.hand[0].age_ticks = 3;
   rig.tick();
   EXPECT_EQ(rig.controller.hand(0).age_ticks, 4);
@@ -173,8 +174,8 @@ TEST(ControllerFaults, OnlyAResetLeadsBackAndItArmsNothing) {
   rig.to_force();
 }
 
-/// An encoder jumps and comes back: the work that seems to have been given is booked, what seems to have come is not,
-/// and the hand had no force any more until the program was started again.
+/// An encoder jumps and returns. The account debits the apparent energy output but does not credit the apparent input,
+/// so without a reset of the account the hand would have no force until the program restarts.
 TEST(ControllerFaults, AResetBeginsTheAccountsAnew) {
   Rig rig;
   rig.to_force();

@@ -1,4 +1,4 @@
-// The whole control law on made-up readings: the way to force, its limits, the clutch, and the end.
+// The whole control law with artificial readings: start-up to force, limits, clutch, and end of force.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -8,7 +8,8 @@
 namespace ligature::control {
 namespace {
 
-constexpr double kStay_Nm = 0.7 * 0.3e-3 * (1 + 1e-9);  // torques are whole per mille of 0.3 N m, and stay within that
+// torques are sent in whole per mille of 0.3 N m, rounded towards zero
+constexpr double kStay_Nm = 0.7 * 0.3e-3 * (1 + 1e-9);
 
 TEST(Controller, ComesUpThroughEveryStateToForce) {
   Rig rig;
@@ -20,7 +21,7 @@ TEST(Controller, ComesUpThroughEveryStateToForce) {
   EXPECT_EQ(seen, (std::vector{State::kOff, State::kCalibrate, State::kIdle, State::kEngage, State::kForce}));
 }
 
-/// What a drive complains of before it is up is no fault: it is being brought up.
+/// Drive errors before the drives are operational are not faults: start-up is still going on.
 TEST(Controller, WaitsForDrivesThatAreUpAndFresh) {
   const std::vector<void (*)(rt::HandReading&)> kNotUp{
       [](auto& r) { r.drive_fault = true; }, [](auto& r) { r.enabled = false; }, [](auto& r) { r.valid = false; },
@@ -46,7 +47,7 @@ TEST(Controller, EncodersMustShowAPossiblePoseForAWhile) {
   EXPECT_EQ(rig.controller.state(), State::kIdle);
 }
 
-TEST(Controller, DoesNotEngageOnALargeForce) {  // 1.8 N would be there at once
+TEST(Controller, DoesNotEngageOnALargeForce) {  // 1.8 N; the gain rises only while the force is small
   Rig rig;
   rig.offset_m = 0.5;
   rig.ticks(1000);
@@ -65,7 +66,8 @@ TEST(Controller, WithoutForceThereIsNothingToBrake) {
   }
 }
 
-TEST(Controller, FeelsTheCouplingThroughTheLinkage) {  // 1200 N/m x 0.05 m x 0.003 = 0.18 N upwards on both hands
+// 1200 N/m x 0.05 m x force scale 0.003 = 0.18 N upwards on both hands
+TEST(Controller, FeelsTheCouplingThroughTheLinkage) {
   Rig rig;
   rig.to_force();
   const auto command = rig.tick();
@@ -80,12 +82,12 @@ TEST(Controller, NeverExceedsTheForceLimitAndReportsIt) {
   Rig rig(Rig::scene(), Rig::drums());
   rig.to_force();
   rig.offset_m = 50.0;
-  rig.ticks(40);  // 0.15 N a tick
+  rig.ticks(40);  // reaches the peak limit at 0.15 N per tick
   EXPECT_TRUE(rig.controller.hand(0).limits & rt::kPeakLimit);
   EXPECT_NEAR(rig.controller.hand(0).f_device_N.norm(), 3.3, 1e-9);
   EXPECT_LE(rig.controller.hand(0).f_device_N.norm(), 3.3);
   EXPECT_TRUE(rig.controller.hand(0).limited);
-  EXPECT_EQ(rig.controller.fault(), Fault::kNone);  // a limit is not a fault
+  EXPECT_EQ(rig.controller.fault(), Fault::kNone);  // reaching a limit is not a fault
 }
 
 TEST(Controller, AnArmGetsWhatIsSafeInEveryPoseAndReportsIt) {
@@ -111,7 +113,7 @@ TEST(Controller, ASceneTakenOnTheWayBringsItsForceLimitAndItsPassivity) {
   rig.ticks(40);
   EXPECT_NEAR(rig.controller.hand(0).f_device_N.norm(), 1.0, 1e-9);
 
-  for (const bool on : {false, true}) {  // hands that never moved have earned nothing
+  for (const bool on : {false, true}) {  // hands that never moved have no energy credit
     hands = Rig::scene();
     hands.energy_credit_J = 0.0;
     hands.passivity = !on;
@@ -137,7 +139,7 @@ TEST(Controller, NoJointIsAskedForMoreThanItsDriveGives) {
   EXPECT_TRUE(rig.controller.hand(0).limits & rt::kTorqueLimit);
 }
 
-TEST(Controller, AForceBelowTheLimitIsNotCalledLimited) {  // while the gain still rises, or without arming
+TEST(Controller, AForceBelowTheLimitIsNotCalledLimited) {  // while the gain rises, and when not armed
   Rig rig;
   rig.to_force();
   rig.offset_m = 50.0;
@@ -161,7 +163,8 @@ TEST(Controller, NeedsBothArmingAndThatHandsDeadMan) {
   EXPECT_EQ(Rig::largest(rig.tick()), 0.0);
 }
 
-TEST(Controller, ReleasedDeadManTakesTheForceInFiftyMilliseconds) {  // the largest in the 14 steps that it has more
+// the largest force needs 14 more steps of the step limit
+TEST(Controller, ReleasedDeadManTakesTheForceInFiftyMilliseconds) {
   for (const bool largest : {false, true}) {
     Rig rig;
     rig.to_force();
@@ -169,11 +172,11 @@ TEST(Controller, ReleasedDeadManTakesTheForceInFiftyMilliseconds) {  // the larg
     rig.in.reading.hand[0].dead_man = rig.in.reading.hand[1].dead_man = false;
     rig.ticks(Engagement::kFallTicks + (largest ? 14 : 1));
     EXPECT_EQ(Rig::largest(rig.tick()), 0.0);
-    EXPECT_EQ(rig.controller.state(), State::kEngage);  // pressing again is enough
+    EXPECT_EQ(rig.controller.state(), State::kEngage);  // pressing the dead-man again is enough
   }
 }
 
-TEST(Controller, StopTakesTheForceAtOnce) {  // the largest there is: 3.3 N are seven steps of the step limit
+TEST(Controller, StopTakesTheForceAtOnce) {  // from the peak force: 3.3 N are seven steps of the step limit
   Rig rig;
   rig.to_force();
   rig.pull_hard();
@@ -196,10 +199,10 @@ TEST(Controller, ForceGrowsByAStepAtMost) {
   }
 }
 
-TEST(Controller, AHandThatIsTooFastIsBrakedAndMayComeBack) {  // a limit, not a fault
+TEST(Controller, AHandThatIsTooFastIsBrakedAndMayComeBack) {  // the speed limit, below the velocity fault
   Rig rig;
   rig.to_force();
-  const double step = 2.4e-3 / 0.192;  // 2.4 m/s at the waist's lever: between limit and fault
+  const double step = 2.4e-3 / 0.192;  // 2.4 m/s at the waist's lever arm: above the limit, below the fault
   bool braked = false, seen = false;
   for (int i = 0; i < 8; ++i) {
     rig.in.reading.hand[0].q_rad[0] += i < 4 ? step : 0.0;
@@ -214,7 +217,7 @@ TEST(Controller, AHandThatIsTooFastIsBrakedAndMayComeBack) {  // a limit, not a 
   EXPECT_EQ(rig.controller.state(), State::kForce);
 }
 
-TEST(Controller, TheBrakePushesAgainstTheMotion) {  // of a hand that goes on as fast: the reference stops, it does not
+TEST(Controller, TheBrakePushesAgainstTheMotion) {  // the hand keeps its speed while the coupling's reference is braked
   Rig rig;
   rig.to_force();
   double against_N = 0.0, with_N = 0.0;
@@ -231,7 +234,8 @@ TEST(Controller, TheBrakePushesAgainstTheMotion) {  // of a hand that goes on as
   EXPECT_LT(with_N, 0.02);
 }
 
-/// The loop stood still while samples were asked for: where the joints are is known, how fast they are is not.
+/// The loop stalled while samples were requested, so the sample time is unknown: positions are valid, no velocity may
+/// be derived.
 TEST(Controller, ASampleOfUnknownTimeTellsNoSpeed) {
   Rig rig;
   rig.to_force();
@@ -244,14 +248,14 @@ TEST(Controller, ASampleOfUnknownTimeTellsNoSpeed) {
   const double speed = turn(1e-3);
   ASSERT_GT(speed, 0.0);
   rig.in.late = true;
-  EXPECT_EQ(turn(15e-3), 0.0);  // 15 periods of it
+  EXPECT_EQ(turn(15e-3), 0.0);  // 15 periods of motion in one sample
   rig.in.late = false;
   rig.in.tick += 15;
   EXPECT_NEAR(turn(1e-3), speed / 16.0, 1e-2 * speed) << "nothing before it counts, but it does";
   EXPECT_EQ(rig.controller.fault(), Fault::kNone);
 }
 
-/// Nor whether an encoder lies: corners in its curve may be those of time.
+/// With unknown sample times the encoder watch must stay silent: a corner in the position curve may be a timing error.
 TEST(Controller, SamplesOfUnknownTimeAccuseNoEncoder) {
   for (const bool late : {false, true}) {
     Rig rig;
@@ -259,7 +263,7 @@ TEST(Controller, SamplesOfUnknownTimeAccuseNoEncoder) {
     const double count = device::omni().rad_per_count();
     for (int i = 0; i < 200 && rig.controller.fault() == Fault::kNone; ++i) {
       for (auto& hand : rig.in.reading.hand) {
-        hand.q_rad[0] += (i < 100 ? 1.5 : -1.5) * count;  // turns round in no time
+        hand.q_rad[0] += (i < 100 ? 1.5 : -1.5) * count;  // reverses within one sample
         hand.q_rad[1] += 1.0 * count;
       }
       rig.in.late = late && i % 20 == 0;
@@ -281,7 +285,7 @@ TEST(Controller, TheClutchParksTheToolAndReleasesItWhereItIs) {
     rig.in.reading.hand[0].q_rad[1] += 0.0005;
     rig.tick();
     const double now = rig.controller.hand(0).f_device_N.norm();
-    EXPECT_LE(now, before + 1e-12);  // only less
+    EXPECT_LE(now, before + 1e-12);  // decreases monotonically
     before = now;
   }
   EXPECT_EQ(before, 0.0);
@@ -292,7 +296,7 @@ TEST(Controller, TheClutchParksTheToolAndReleasesItWhereItIs) {
   for (int i = 0; i < 1000; ++i) {
     rig.tick();
     const double now = rig.controller.hand(0).f_device_N.norm();
-    EXPECT_LE(std::abs(now - before), 0.5 / 500 + 2e-3);  // the ramp's step, and a quantum
+    EXPECT_LE(std::abs(now - before), 0.5 / 500 + 2e-3);  // one step of the gain's ramp plus one torque quantum
     before = now;
   }
   EXPECT_LT((rig.controller.tools()[0].p_WT - parked).norm(), 1e-12);

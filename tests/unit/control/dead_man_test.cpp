@@ -1,4 +1,4 @@
-// Force that was taken comes back by a hand's own new press, never by a message alone.
+// After the force was taken away, only a new press of the hand's dead-man brings it back, never a command alone.
 #include "firmware/control/dead_man.hpp"
 
 #include "tests/unit/control/controller_rig.hpp"
@@ -6,13 +6,13 @@
 namespace ligature::control {
 namespace {
 
-constexpr int kLong = 2000;  // four times what the way to full force takes
+constexpr int kLong = 2000;  // ticks; four times the way to full force
 
 TEST(DeadMan, CountsAfterItWasSeenReleased) {
   DeadMan d;
   for (int i = 0; i < 100; ++i) d.see(true);
   EXPECT_FALSE(d.counts());
-  for (int i = 0; i < DeadMan::kReleased - 1; ++i) d.see(false);  // a wrong bit or two
+  for (int i = 0; i < DeadMan::kReleased - 1; ++i) d.see(false);  // too short for a release: a few wrong bits
   d.see(true);
   EXPECT_FALSE(d.counts());
   for (int i = 0; i < DeadMan::kReleased; ++i) d.see(false);
@@ -21,7 +21,7 @@ TEST(DeadMan, CountsAfterItWasSeenReleased) {
   EXPECT_TRUE(d.counts());
   d.see(false);
   EXPECT_FALSE(d.counts());
-  d.see(true);  // let go and pressed again: no new release is asked for
+  d.see(true);  // released for a moment and pressed again: no full release is needed now
   EXPECT_TRUE(d.counts());
 }
 
@@ -43,7 +43,7 @@ void press_anew(Rig& rig) {
   rig.to_force();
 }
 
-TEST(NewPress, AfterAStop) {  // held all along it gave force again with the next `arm`
+TEST(NewPress, AfterAStop) {  // a dead-man held all along must not give force with the next `arm`
   Rig rig;
   rig.to_force();
   rig.controller.command(rt::CommandKind::kStop);
@@ -55,7 +55,7 @@ TEST(NewPress, AfterAStop) {  // held all along it gave force again with the nex
   press_anew(rig);
 }
 
-TEST(NewPress, AfterAStopThatTookNothing) {  // somebody saw a reason for it
+TEST(NewPress, AfterAStopThatTookNothing) {  // a stop when there was no force counts as well
   Rig rig;
   rig.controller.command(rt::CommandKind::kDisarm);
   rig.ticks(100);
@@ -86,7 +86,7 @@ TEST(NewPress, AfterAFaultsReset) {
     rig.in.reading.hand[0].drive_fault = true;
     rig.ticks(10);
     rig.in.reading.hand[0].drive_fault = false;
-    if (pressed_while_in_fault) rig.released = 0;  // before the reset: for the fault, not for what comes after it
+    if (pressed_while_in_fault) rig.released = 0;  // a press before the reset does not count for the force after it
     rig.ticks(100);
     rig.controller.command(rt::CommandKind::kResetFault);
     rig.ticks(100);
@@ -104,7 +104,7 @@ TEST(NewPress, OfAButtonHeldSinceTheStart) {
   press_anew(rig);
 }
 
-TEST(NewPress, IsSeenInFreshSamplesOnly) {  // one old sample that is held is one sample
+TEST(NewPress, IsSeenInFreshSamplesOnly) {  // an old sample that is held counts once
   Rig rig;
   rig.to_force();
   rig.controller.command(rt::CommandKind::kStop);
@@ -120,7 +120,8 @@ TEST(NewPress, IsSeenInFreshSamplesOnly) {  // one old sample that is held is on
   expect_no_force(rig);
 }
 
-TEST(LetGo, IsSeenInSamplesThatComeLate) {  // each a period late: as new as any, and force went on for good
+// samples a constant period late count as new; otherwise a release would be ignored
+TEST(LetGo, IsSeenInSamplesThatComeLate) {
   for (int age = 0; age <= 3; ++age) {
     Rig rig;
     rig.to_force();
@@ -143,7 +144,7 @@ TEST(LetGo, OfOneHandInALateSampleLeavesTheOther) {
   EXPECT_EQ(rig.controller.hand(1).gain, 1.0);
 }
 
-TEST(NewPress, NotAfterADisarm) {  // the hand went on holding, and force comes by the gain, from zero
+TEST(NewPress, NotAfterADisarm) {  // no new press needed: the force returns through the gain, from zero
   Rig rig;
   rig.to_force();
   rig.controller.command(rt::CommandKind::kDisarm);
@@ -164,7 +165,7 @@ TEST(NewPress, AMoveIsNotBegunByAnOldOne) {
   rig.controller.command(rt::CommandKind::kArm);
   rig.ticks(100);
   rig.controller.command(rt::CommandKind::kCalibrate);
-  rig.released = 0;  // nor by a press after it
+  rig.released = 0;  // a press after the command does not start it either
   for (int i = 0; i < kLong; ++i) ASSERT_EQ(Rig::largest(rig.tick()), 0.0) << "tick " << i;
 }
 

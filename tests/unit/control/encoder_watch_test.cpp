@@ -1,4 +1,4 @@
-// Lies are found, hands are not suspected.
+// The encoder watch finds wrong encoders and raises no false alarm on normal hand motions.
 #include "firmware/control/encoder_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 constexpr std::array<bool, 3> kFree{true, true, true};
 using Counts = std::array<double, 3>;
 
-/// A slow curve, 0.45, 1.0 and 1.6 counts a period at t = 0: what the operator of the fault scripts does at its onset.
+/// A slow motion: 0.45, 1.0 and 1.6 counts per period at t = 0, as by the fault scripts' operator at the fault's onset.
 Counts motion(int t) { return {0.45 * t - 1e-4 * t * t, 1.0 * t - 2e-3 * t * t, 1.6 * t - 2e-3 * t * t}; }
 
 Counts counted(Counts c) {
@@ -24,7 +24,7 @@ Counts counted(Counts c) {
   return c;
 }
 
-/// Fault and how many samples after t = 0 it was told.
+/// The fault and the number of samples after t = 0 at which it was reported.
 std::pair<Fault, int> watch(const std::function<Counts(int)>& shown, int until = 300,
                             std::array<bool, 3> free = kFree) {
   EncoderWatch w;
@@ -40,7 +40,7 @@ TEST(EncoderWatch, AnHonestHandIsNotSuspected) {
 }
 
 TEST(EncoderWatch, AFrozenJointIsSeenWhileTheOthersMoveOn) {
-  for (const std::size_t j : {1U, 2U}) {  // the first one is too slow to be sure
+  for (const std::size_t j : {1U, 2U}) {  // joint 0 is too slow to decide
     const auto [fault, when] = watch([j](int t) {
       Counts c = counted(motion(t));
       if (t > 0) c[j] = counted(motion(0))[j];
@@ -72,7 +72,7 @@ TEST(EncoderWatch, AJointInItsStopIsNoFault) {
   EXPECT_EQ(watch(stop, 300, {true, false, true}).first, Fault::kNone);
 }
 
-/// Twenty minutes of honest hands; docs/encoder-watch.md has a hundred hours, without an alarm.
+/// Twenty minutes of normal hand motions; docs/encoder-watch.md reports a hundred hours without an alarm.
 TEST(EncoderWatch, HandsThatTurnStopAndTrembleAreNotSuspected) {
   test::Random random(23);
   for (const auto kind : test::HonestHand::kKinds) {
@@ -90,12 +90,12 @@ TEST(EncoderWatch, HandsThatTurnStopAndTrembleAreNotSuspected) {
   }
 }
 
-/// The law's reach: a joint that turns at speed u with a constant acceleration, two counts and more from a mirror
-/// image.
+/// The watch's limit: a joint that reverses from speed u with constant acceleration, which differs by two counts or
+/// more from an instant reversal.
 TEST(EncoderWatch, ATurnThatTakesItsTimeIsNotSuspected) {
   test::Random random(24);
   for (const MirroredTurn::Look& look : MirroredTurn::kLooks) {
-    const double most = 0.5 * look.moving * look.moving;  // counts a period^2
+    const double most = 0.5 * look.moving * look.moving;  // counts per period^2
     std::printf("from %.2f counts a period on: hands of up to %.0f m/s2\n", look.moving, 50.0 * most);
     for (int run = 0; run < 500; ++run) {
       const double u = look.moving * random.in(1.0, 1.4), a = most * random.in(0.1, 1.0), at_rest = random.share();
@@ -110,7 +110,7 @@ TEST(EncoderWatch, ATurnThatTakesItsTimeIsNotSuspected) {
   }
 }
 
-/// The axis of a hand that moves on steadily counts backwards from one sample to the next, alone or with the others.
+/// From one sample to the next, one axis of a steadily moving hand counts backwards, alone or with the other axes.
 TEST(EncoderWatch, AReversalIsToldTheSoonerTheFaster) {
   test::Random random(25);
   constexpr std::array<std::pair<double, int>, 4> kUntil{{{0.46, 24}, {0.62, 24}, {0.9, 12}, {1.5, 6}}};
@@ -137,14 +137,14 @@ TEST(EncoderWatch, ASlowJointIsJudgedOnlyWhileAnotherMovesOn) {
   }
 }
 
-TEST(EncoderWatch, AnEncoderThatNeverMovedIsSeenUnderTorque) {  // 0.3 of the rated torque while the others travel
+TEST(EncoderWatch, AnEncoderThatNeverMovedIsSeenUnderTorque) {  // 0.3 of the rated torque, while the other joints move
   for (std::size_t j = 0; j < 3; ++j) {
     for (const bool frozen : {true, false}) {
       EncoderWatch w;
       Fault fault = Fault::kNone;
       for (int t = 0; t < 500 && fault == Fault::kNone; ++t) {
         Counts c = counted(motion(t));
-        c[j] = frozen || t < 250 ? 0.0 : 1.0;  // one count is enough to be believed
+        c[j] = frozen || t < 250 ? 0.0 : 1.0;  // a single count proves that the encoder works
         std::array<double, 3> torque{};
         torque[j] = 0.3 * std::min(1.0, t / 450.0);
         fault = w.add(c, 1, kFree, torque);
@@ -161,10 +161,11 @@ TEST(EncoderWatch, AJointThatNobodyPushesMayRestForEver) {
   }
 }
 
-/// A lie that is found within 120 samples (above), seen with a gap in time every 20.
+/// A wrong encoder that is found within 120 samples (above) is not found if a time gap interrupts them every 20
+/// samples.
 TEST(EncoderWatch, AGapStartsAnew) {
   for (const bool reversed : {true, false}) {
-    for (const std::int64_t gap : {1, 0, 2}) {  // 0: nobody knows how long it was
+    for (const std::int64_t gap : {1, 0, 2}) {  // periods; 0: unknown length
       EncoderWatch w;
       Fault fault = Fault::kNone;
       for (int t = -200; t < 200 && fault == Fault::kNone; ++t) {
@@ -177,14 +178,14 @@ TEST(EncoderWatch, AGapStartsAnew) {
   }
 }
 
-/// What nobody saw may have been a motion: here the joint went on for 30 samples, and stopped as joints do.
+/// During a gap the joint may have moved: here it went on for 30 samples and then stopped normally.
 TEST(EncoderWatch, ASuspicionEndsWithAGap) {
   const auto frozen = [](int t) {
     Counts c = counted(motion(t));
     if (t > 0) c[2] = counted(motion(0))[2];
     return c;
   };
-  const int gap = watch(frozen).second - 5;  // that near to being told
+  const int gap = watch(frozen).second - 5;  // five samples before the fault would be reported
   ASSERT_LE(gap, 120);
   EncoderWatch w;
   for (int t = -200; t < gap + 100; ++t) {
@@ -194,12 +195,13 @@ TEST(EncoderWatch, ASuspicionEndsWithAGap) {
   }
 }
 
-/// A hand at rest at first: no corner to be seen. The others go on, and the joint's torque changes once.
+/// A joint that rests from the start, so its position curve has no corner; the others move, and its torque changes
+/// once.
 struct UnderTorque {
-  double torque = 0.3, per_sample = 20.0;  ///< of the rated one; counts of each other joint
+  double torque = 0.3, per_sample = 20.0;  ///< share of the rated torque; counts per sample of each other joint
   int samples = 500;
   bool free = true;
-  /// @return samples until it was told, 0: never
+  /// @return the number of samples until the fault is reported, 0: never
   [[nodiscard]] int told_after() const {
     EncoderWatch w;
     for (int t = 0; t < samples; ++t) {
@@ -210,7 +212,7 @@ struct UnderTorque {
   }
 };
 
-TEST(EncoderWatch, UnderTorqueAJointMayRestForAHundredSamples) {  // a fast hand that turns round
+TEST(EncoderWatch, UnderTorqueAJointMayRestForAHundredSamples) {  // as in a fast hand that reverses
   EXPECT_EQ(UnderTorque{}.told_after(), 100);
   EXPECT_EQ(UnderTorque{.samples = 99}.told_after(), 0);
 }
@@ -218,7 +220,8 @@ TEST(EncoderWatch, UnderTorqueAJointMayRestForAHundredSamples) {  // a fast hand
 TEST(EncoderWatch, UnderTorqueAJointIsAskedForAFifthOfItsTorqueAndTravelElsewhere) {
   EXPECT_EQ(UnderTorque{.torque = 0.19}.told_after(), 0);
   EXPECT_EQ(UnderTorque{.torque = -0.21}.told_after(), 100);
-  EXPECT_EQ(UnderTorque{.per_sample = 0.5}.told_after(), 301);  // 300 counts of both
+  // when the two other joints together have moved 300 counts
+  EXPECT_EQ(UnderTorque{.per_sample = 0.5}.told_after(), 301);
   EXPECT_EQ((UnderTorque{.per_sample = 0.5, .samples = 300}.told_after()), 0);
 }
 

@@ -1,4 +1,4 @@
-// The gain of a hand over time.
+// The gain of a hand's coupling over time.
 #include "firmware/control/engagement.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ TEST(Engagement, RisesInHalfASecondAfterTheCalm) {
   double before = 0.0;
   for (int i = 0; i < Engagement::kRiseTicks; ++i) {
     EXPECT_LT(e.gain(), 1.0);
-    e.tick(true, 1.0, 3.0);  // once begun, motion and force are what it is for
+    e.tick(true, 1.0, 3.0);  // once the gain has begun to rise, motion and force no longer stop it
     EXPECT_GT(e.gain(), before);
     before = e.gain();
   }
@@ -41,7 +41,7 @@ TEST(Engagement, FallsInFiftyMillisecondsAndMustBeCalmAgain) {
   EXPECT_EQ(e.gain(), 0.0);
 }
 
-/// Twenty still ticks in a row, from the press on: a hand that trembles in between is not calm.
+/// The gain rises after twenty consecutive still ticks; a disturbance restarts the count.
 TEST(Engagement, TheCalmIsCountedAnew) {
   const auto calm_after = [](const auto& disturb) {
     Engagement e;
@@ -49,7 +49,7 @@ TEST(Engagement, TheCalmIsCountedAnew) {
     disturb(e);
     int calm = 0;
     for (; e.gain() == 0.0 && calm < 100; ++calm) e.tick(true, kStill, kSmall);
-    return calm - 1;  // the last was the first of the rise
+    return calm - 1;  // the last tick is already the first of the rise
   };
   EXPECT_EQ(calm_after([](Engagement&) {}), 1);
   EXPECT_EQ(calm_after([](Engagement& e) { e.tick(true, 1.0, kSmall); }), Engagement::kCalmTicks);

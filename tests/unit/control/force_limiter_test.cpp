@@ -1,4 +1,4 @@
-// Every limit holds whatever the law asks for.
+// Every force limit holds for any requested force.
 #include "firmware/control/force_limiter.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ Vec3 send(ForceLimiter& l, const Vec3& wish) {
   return f;
 }
 
-/// Wishes that jump, rest, swing and explode, some minutes of them.
+/// Requested forces that jump, rest, oscillate and diverge, for some minutes.
 struct Wishes {
   test::Random random{17};
   double any() { return random.normal(); }
@@ -70,7 +70,7 @@ TEST(ForceLimiter, LeavesAloneWhatIsAllowed) {
   for (int i = 0; i < 20'000; ++i) {
     const Vec3 wish(0.3 * std::sin(0.01 * i), 0.2, 0.0);
     const Vec3 f = send(l, wish);
-    if (i <= 2) continue;  // the first step
+    if (i <= 2) continue;  // limited by the first step
     ASSERT_EQ(f, wish) << i;
     ASSERT_EQ(l.codes(), 0) << i;
   }
@@ -80,7 +80,8 @@ TEST(ForceLimiter, PeakForAWhileThenTheContinuousForce) {
   ForceLimiter l = limiter();
   int peak_ms = 0;
   for (int i = 0; i < 10'000; ++i) peak_ms += send(l, Vec3(0, 0, 50)).norm() > 3.29;
-  EXPECT_GT(peak_ms, 500);  // 3.3 N = 3.75 f_c heats to 1 in tau ln(14.06 / 13.06) = 0.74 s
+  // at 3.3 N = 3.75 times the continuous force, the heat reaches 1 after tau ln(14.06 / 13.06) = 0.74 s
+  EXPECT_GT(peak_ms, 500);
   EXPECT_LT(peak_ms, 1000);
   EXPECT_NEAR(send(l, Vec3(0, 0, 50)).norm(), 0.88, 1e-9);
   EXPECT_TRUE(l.codes() & rt::kContinuousLimit);
@@ -101,7 +102,8 @@ TEST(ForceLimiter, ComesBackByHysteresisAndOnlyOnce) {
   EXPECT_FALSE(limited);
 }
 
-TEST(ForceLimiter, AWindingThatHasHardlyCooledGivesNoPeak) {  // the hysteresis: 0.8 N cools it to 0.83, not to 0.7
+// hysteresis: 0.8 N cools it to 0.83, and a peak needs 0.7
+TEST(ForceLimiter, AWindingThatHasHardlyCooledGivesNoPeak) {
   ForceLimiter l = limiter();
   for (int i = 0; i < 10'000; ++i) (void)send(l, Vec3(0, 0, 50));
   for (int i = 0; i < 60'000; ++i) (void)send(l, Vec3(0, 0, 0.8));

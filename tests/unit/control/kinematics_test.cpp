@@ -1,4 +1,4 @@
-// The linkage against geometry, finite differences and virtual work.
+// The linkage's kinematics against geometry, finite differences and virtual work.
 #include "firmware/control/kinematics.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ std::vector<JointAngles> poses() {
 TEST(Kinematics, UpperArmLevelAndForearmHangingIsReadOffTheDrawing) {
   const Vec3 p = arm().position({0.0, 0.0, 0.0});
   EXPECT_NEAR(p.x(), 0.0, 1e-15);
-  EXPECT_NEAR(p.y(), -kUpperArm_m, 1e-15);  // towards the person
+  EXPECT_NEAR(p.y(), -kUpperArm_m, 1e-15);  // towards the operator
   EXPECT_NEAR(p.z(), -kForearm_m, 1e-15);
 }
 
@@ -42,7 +42,7 @@ TEST(Kinematics, StretchedArmReachesTheSumOfTheLinks) {
   EXPECT_NEAR(p.norm(), kUpperArm_m + kForearm_m, 1e-15);
 }
 
-TEST(Kinematics, ForearmAngleIsAbsolute) {  // moving the shoulder alone translates the forearm, it does not turn it
+TEST(Kinematics, ForearmAngleIsAbsolute) {  // moving the shoulder alone translates the forearm without rotating it
   const JointAngles a{0.0, 0.2, 0.7}, b{0.0, 0.9, 0.7};
   const Vec3 shift = arm().position(b) - arm().position(a);
   EXPECT_NEAR(shift.y(), -kUpperArm_m * (std::cos(0.9) - std::cos(0.2)), 1e-15);
@@ -51,7 +51,7 @@ TEST(Kinematics, ForearmAngleIsAbsolute) {  // moving the shoulder alone transla
 
 TEST(Kinematics, TurningTheWaistLeftMovesTheTipAlongX) { EXPECT_GT(arm().position({0.1, 0.3, 0.5}).x(), 0.0); }
 
-TEST(Kinematics, JacobianIsTheDerivative) {  // central difference, step ~ eps^(1/3), error ~ eps^(2/3)
+TEST(Kinematics, JacobianIsTheDerivative) {  // central difference with step ~ eps^(1/3), error ~ eps^(2/3)
   constexpr double h = 6e-6;
   for (const JointAngles& q : poses()) {
     const Mat3 J = arm().jacobian(q);
@@ -87,7 +87,8 @@ TEST(Kinematics, TheHomePoseIsReachableAndPlausible) {  // solved by Newton's me
   EXPECT_FALSE(arm().is_plausible({std::nan(""), 0.4, 0.6}));
 }
 
-TEST(Kinematics, AnotherDeviceIsAFileAndAFunction) {  // three drums: straight lines, force = torque / radius
+// a Cartesian device, three drums: linear motion, force = torque / radius
+TEST(Kinematics, AnotherDeviceIsAFileAndAFunction) {
   device::Device d = device::omni();
   d.kinematics = device::Kinematics::kCartesian;
   d.links_m = {0.02, 0.03, 0.04};

@@ -1,4 +1,4 @@
-// Park and calibrate: led hands on a plant of the test's own, with encoders that may lie from the start.
+// Park and calibrate: the controller moves simulated arms by itself, with encoders that may be wrong from the start.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace ligature::control {
 namespace {
 
-/// Two arms of the Omni's inertia and friction, rested on by hands that only hold the dead-man; one sample of delay.
+/// Two arms with the Omni's inertia and friction, held by hands that only press the dead-man; samples are one tick old.
 class Arms {
  public:
   explicit Arms(const JointAngles& at = {0.3, 0.6, 0.4}) : controller(scene(), {20, true}) {
@@ -38,7 +38,7 @@ class Arms {
     }
     auto now = in;
     for (auto& hand : now.reading.hand) hand.dead_man = hand.dead_man && released >= DeadMan::kReleased;
-    if (released < DeadMan::kReleased) ++released;  // else a press does not count
+    if (released < DeadMan::kReleased) ++released;  // an earlier press does not count
     const auto command = controller.tick(now);
     ++in.tick;
     for (std::size_t h = 0; h < 2; ++h) {
@@ -48,7 +48,7 @@ class Arms {
       acting[h] = vector_of(command.hand[h].torque_Nm);
       most_N = std::max(most_N, controller.hand(h).f_device_N.norm());
       most_J = std::max(most_J, work_J[h]);
-      // What the port gives out beyond what it was granted.
+      // Energy that the port delivers beyond its allowance.
       least_bound_J = std::min(least_bound_J, controller.hand(h).received_J - work_J[h]);
     }
   }
@@ -69,9 +69,9 @@ class Arms {
   std::array<double, 2> work_J{};
   Vec3 first = Vec3::Zero();
   double most_N = 0.0, most_J = 0.0, speed = 0.0, least_bound_J = 0.0;
-  int reversed = -1, frozen = -1;  // joint of the left hand
+  int reversed = -1, frozen = -1;  // that joint of the left hand; -1: none
   int released = 0;
-  bool held = false;  // both arms, by somebody
+  bool held = false;  // both arms are held fast
 
  private:
   void move(Vec3& angle, Vec3& rate, const Vec3& torque, double& work) const {
@@ -105,7 +105,7 @@ TEST(LedMove, ParkLeadsBothHandsGentlyToTheRestingPose) {
   EXPECT_GE(arms.least_bound_J, -1e-6);
   EXPECT_GT(arms.controller.hand(0).received_J, 0.0);
   EXPECT_LT(arms.controller.hand(0).received_J, HandControl::kLeadEnergy_J);
-  EXPECT_LT(std::abs(arms.controller.hand(0).port_energy_J), 1e-6);  // the rest went back
+  EXPECT_LT(std::abs(arms.controller.hand(0).port_energy_J), 1e-6);  // the rest of the loan was returned
 }
 
 TEST(LedMove, NothingIsGrippedOnTheWay) {
@@ -133,7 +133,7 @@ TEST(LedMove, CalibrateUndoesTheClutchsOffset) {
   arms.to_force();
   arms.in.reading.hand[0].clutch = true;
   arms.ticks(100);
-  for (int i = 0; i < 200; ++i, arms.tick()) arms.q[0].x() += 0.0015;  // the hand moves on, its tool does not
+  for (int i = 0; i < 200; ++i, arms.tick()) arms.q[0].x() += 0.0015;  // the hand moves on, its tool stays (clutch)
   arms.in.reading.hand[0].clutch = false;
   arms.ticks(1000);
   const auto off_m = [&] { return (arms.controller.hand(0).p_WT - (arms.tip(0) - arms.linkage.home_m())).norm(); };
@@ -155,7 +155,7 @@ TEST(LedMove, NothingMovesWithoutACommandADeadManOrArming) {
     if (without == 2) arms.controller.command(rt::CommandKind::kDisarm);
     arms.ticks(100);
     if (without != 0) arms.controller.command(rt::CommandKind::kPark);
-    for (auto& r : arms.in.reading.hand) r.dead_man = true;  // too late
+    for (auto& r : arms.in.reading.hand) r.dead_man = true;  // too late: the command has ended
     arms.ticks(2000);
     EXPECT_EQ(arms.q[0], before) << without;
   }
@@ -205,11 +205,11 @@ TEST(LedMove, TakingTheThreadOrTheClutchEndsItForGood) {
   }
 }
 
-/// A move that is refused changes nothing at all: what is held stays held, and each torque is as without it.
+/// A rejected move changes nothing: the thread that is held stays held, and every torque is as without the command.
 TEST(LedMove, AMoveThatIsRefusedIsAsIfNobodyHadAskedForIt) {
   struct Reason {
     const char* name;
-    State state;  // in which it is asked for, 5 ticks later
+    State state;  // 5 ticks before the command
     void (*forbid)(Arms&);
   };
   const std::vector<Reason> reasons{
@@ -249,7 +249,8 @@ TEST(LedMove, AMoveThatIsRefusedIsAsIfNobodyHadAskedForIt) {
   }
 }
 
-/// Asked for while the gain still rises, and taken back before it is full: a later press is no wish for it.
+/// The command arrives while the gain still rises, and its condition ends before the gain is full: a later press must
+/// not start the move.
 TEST(LedMove, OneThatHasNotBegunIsOverForGood) {
   using Set = void (*)(Arms&, bool);
   const std::vector<std::pair<const char*, Set>> ends{
@@ -278,7 +279,7 @@ TEST(LedMove, OneThatHasNotBegunIsOverForGood) {
   }
 }
 
-/// A drive says once that it gave out far more than was granted. Once is no fault, and no more is paid for.
+/// A drive reports once that it delivered far more energy than allowed. That is no fault, but the move ends.
 TEST(LedMove, OneThatCannotBePaidForIsOverAtOnce) {
   Arms arms;
   arms.to_force();
@@ -300,7 +301,7 @@ TEST(LedMove, OneThatCannotBePaidForIsOverAtOnce) {
   EXPECT_LT((arms.q[0] - there).norm(), 1e-2) << "it coasts at most";
 }
 
-/// Whoever stopped it has seen a reason; the next arming is for force, not for a motion of the rig's own.
+/// A stop or a fault cancels the move: the next arming is for force, not for a motion by the controller.
 TEST(LedMove, IsNotTakenUpAgainAfterAStopOrAFault) {
   for (const bool stop : {true, false}) {
     for (const bool begun : {true, false}) {
@@ -315,7 +316,7 @@ TEST(LedMove, IsNotTakenUpAgainAfterAStopOrAFault) {
       arms.in.reading.hand[0].drive_fault = false;
       if (!stop) arms.controller.command(rt::CommandKind::kResetFault);
       arms.ticks(100);
-      arms.released = 0;  // a new press, before the arming
+      arms.released = 0;  // a new press before arming
       arms.ticks(10);
       const Vec3 there = arms.q[0];
       arms.controller.command(rt::CommandKind::kArm);
@@ -343,7 +344,8 @@ TEST(LedMove, CalibrateFindsAnEncoderThatLiedFromTheStart) {
     for (int joint = 0; joint < 3; ++joint) {
       Arms arms;
       (expected == Fault::kAxisReversed ? arms.reversed : arms.frozen) = joint;
-      if (expected == Fault::kAxisReversed && joint > 0) continue;  // below: an impossible pose, no force at all
+      // tested below: the pose is impossible, so there is no force at all
+      if (expected == Fault::kAxisReversed && joint > 0) continue;
       arms.to_force();
       arms.controller.command(rt::CommandKind::kCalibrate);
       arms.ticks(3000);
@@ -351,14 +353,14 @@ TEST(LedMove, CalibrateFindsAnEncoderThatLiedFromTheStart) {
       EXPECT_LE(arms.most_J, HandControl::kLeadEnergy_J) << joint;
       EXPECT_LT(arms.speed, 2.0) << joint;
       EXPECT_EQ(arms.controller.hand(0).f_device_N.norm(), 0.0);
-      arms.controller.command(rt::CommandKind::kResetFault);  // told once, not for ever
+      arms.controller.command(rt::CommandKind::kResetFault);  // reported once, not again after the reset
       arms.ticks(200);
       EXPECT_EQ(arms.controller.fault(), Fault::kNone);
     }
   }
 }
 
-TEST(LedMove, AReversedShoulderNeverComesUp) {  // its angles are none that the arm can take
+TEST(LedMove, AReversedShoulderNeverComesUp) {  // the reversed angles are a pose that the arm cannot reach
   Arms arms;
   arms.reversed = 1;
   arms.ticks(2000);

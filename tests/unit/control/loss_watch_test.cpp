@@ -1,4 +1,4 @@
-// What a bad bus must lose until it is a fault, and how seldom a good one is taken for it.
+// How much loss makes a bus a fault, how fast, and how rarely a good bus is reported.
 #include "firmware/control/loss_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -13,14 +13,14 @@
 namespace ligature::control {
 namespace {
 
-/// Share of samples lost when that share of the frames is: a sample is three of them.
+/// Share of samples lost for a given share of frames lost: a sample consists of three frames.
 double samples_lost(double frames) { return 1.0 - std::pow(1.0 - frames, 3.0); }
 
-/// The exact law of the count under independent losses: probability of each value, and of no fault yet.
+/// Exact distribution of the loss counter under independent losses: probability of each value, and of no fault so far.
 class Count {
  public:
   explicit Count(double share) : share_(share) { at_[0] = 1.0; }
-  double after(int ticks) {  // share of buses that are not yet named
+  double after(int ticks) {  // share of buses without a fault after that many ticks
     for (; ticks > 0; --ticks) {
       std::array<double, LossWatch::kMost> next{};
       for (int i = 0; i < LossWatch::kMost; ++i) {
@@ -45,7 +45,7 @@ struct Bound {
   int ticks;
 };
 
-// docs/architecture.md states these.
+// These bounds are stated in docs/architecture.md.
 TEST(LossWatch, ABadBusIsNamedWithinABoundedTimeButOnceInAMillionTimes) {
   for (const auto& [frames, ticks] : {Bound{0.15, 2100}, Bound{0.2, 430}, Bound{0.25, 220}, Bound{0.5, 65}}) {
     Count count(samples_lost(frames));
@@ -57,11 +57,11 @@ TEST(LossWatch, AnHonestRigHasNoAlarm) {
   for (const auto& [frames, per_hour] : {std::pair{0.02, 1e-9}, {0.05, 1e-9}, {0.08, 1e-3}, {0.1, 2.0}}) {
     Count count(samples_lost(frames));
     const double settled = count.after(1000), later = count.after(10000);
-    EXPECT_LE((settled - later) / 10000.0 * 3.6e6, per_hour + 1e-8) << frames;  // 1e-8: what rounding adds
+    EXPECT_LE((settled - later) / 10000.0 * 3.6e6, per_hour + 1e-8) << frames;  // 1e-8: rounding errors
   }
 }
 
-/// Ticks to the fault when each sample is lost with that share, and each torque held with the other; -1: none.
+/// Ticks until the fault, with independent random losses: `samples` of the samples, `torques` of the torques; -1: none.
 int ticks_to_fault(test::Random& random, double samples, double torques, int ticks) {
   LossWatch watch;
   rt::HandReading r;
@@ -86,7 +86,7 @@ TEST(LossWatch, CountsSamplesAndTorquesEachForItself) {
   }
 }
 
-/// A silence is the watchdog's matter, however long that is; half of the samples lost are still found.
+/// Total silence is left to the watchdog, whatever its length; the loss of half of the samples is still found.
 TEST(LossWatch, LeavesASilenceToTheWatchdog) {
   for (const int watchdog : {2, 20, 21, 300, 1000, 10000}) {
     LossWatch silent(watchdog), half(watchdog);
@@ -130,12 +130,12 @@ TEST(LossWatch, ASampleThatComesAPeriodLateIsNotLost) {
 TEST(LossWatch, OfEitherHandItTakesAllForceInEveryStateAndAResetBeginsAnew) {
   for (const std::size_t hand : {0U, 1U}) {
     for (const bool by_torque : {false, true}) {
-      for (const int ticks : {10, 100, 1000}) {  // CALIBRATE, on the way to force, FORCE
+      for (const int ticks : {10, 100, 1000}) {  // CALIBRATE, gain rising, FORCE
         Rig rig;
         rig.ticks(ticks);
         auto& reading = rig.in.reading.hand[hand];
         int k = 0;
-        for (; k < 200 && rig.controller.fault() == Fault::kNone; ++k) {  // half of them, every other one
+        for (; k < 200 && rig.controller.fault() == Fault::kNone; ++k) {  // every second one is lost
           reading.age_ticks = by_torque ? 0 : k % 2;
           reading.torque_held[2] = by_torque ? k % 2 : 0;
           rig.tick();

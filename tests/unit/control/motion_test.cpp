@@ -1,4 +1,4 @@
-// Moves planned in the loop: they end when they say, never jump, and allocate nothing.
+// Motions planned in the loop end when predicted, never jump, and allocate nothing.
 #include "firmware/control/motion.hpp"
 
 #include <gtest/gtest.h>
@@ -30,8 +30,8 @@ TEST(Ramp, TakesItsDurationAndIsSmooth) {
     EXPECT_LT(before, 1.0) << i;
     const double now = ramp.step(1.0, 0.5);
     EXPECT_GT(now, before) << i;
-    EXPECT_LE(std::abs((now - before) - speed), 6.0 / 0.25 * 1e-6 + 1e-12) << i;         // acceleration x T^2
-    EXPECT_LE(std::abs(now - before - speed - rise), 72.0 / 0.125 * 1e-9 + 1e-12) << i;  // jerk x T^3
+    EXPECT_LE(std::abs((now - before) - speed), 6.0 / 0.25 * 1e-6 + 1e-12) << i;  // bound on the acceleration times T^2
+    EXPECT_LE(std::abs(now - before - speed - rise), 72.0 / 0.125 * 1e-9 + 1e-12) << i;  // bound on the jerk times T^3
     rise = now - before - speed;
     speed = now - before;
     before = now;
@@ -52,7 +52,7 @@ TEST(Ramp, TurnsRoundWithoutAJump) {
   }
 }
 
-/// Largest acceleration and jerk of a path read period by period, on any axis.
+/// Largest acceleration and jerk of a sampled path, over all axes.
 struct Watch {
   physics::Vec3 speed, push = physics::Vec3::Zero();
   double acceleration = 0.0, jerk = 0.0;
@@ -70,7 +70,7 @@ constexpr double kSlack = 1.0 + 1e-6;
 TEST(BrakeToRest, StopsFromAnySpeedWithinItsLimits) {
   BrakeToRest brake(1e-3);
   brake.start({0.1, 0.2, 0.3}, {2.0, -1.0, 0.5});
-  EXPECT_EQ(brake.position_m(), physics::Vec3(0.1, 0.2, 0.3));  // from where the tip is, and as fast
+  EXPECT_EQ(brake.position_m(), physics::Vec3(0.1, 0.2, 0.3));  // starts at the tip's position and velocity
   EXPECT_EQ(brake.velocity_m_per_s(), physics::Vec3(2.0, -1.0, 0.5));
   Watch watch(brake.velocity_m_per_s());
   physics::Vec3 went = physics::Vec3::Zero();

@@ -1,4 +1,4 @@
-// What a led move asked of the joints against what their encoders showed, in counts.
+// After a move led by the controller: commanded against measured joint motion, in encoder counts.
 #include "firmware/control/move_check.hpp"
 
 #include <gtest/gtest.h>
@@ -8,12 +8,13 @@ namespace {
 
 constexpr double kCount_rad = 1e-3;
 
-/// A move that asked for so many counts of each joint, in a hundred ticks, from some pose.
+/// Judges a move of 100 ticks from some pose: commanded motion of each joint and the motion its encoder showed, in
+/// counts.
 Fault judged(const Vec3& asked_counts, const Vec3& went_counts) {
   const Vec3 from(0.3, -0.2, 0.7);
   MoveCheck check;
   check.start({from[0], from[1], from[2]});
-  const Mat3 inverse_jacobian = 2.0 * Mat3::Identity();  // rad/m
+  const Mat3 inverse_jacobian = 2.0 * Mat3::Identity();  // rad/m, the same for all joints
   for (int i = 0; i < 100; ++i) check.step(inverse_jacobian, 0.5 * kCount_rad * asked_counts / 0.1, 1e-3);
   const Vec3 at = from + kCount_rad * went_counts;
   return check.judge({at[0], at[1], at[2]}, kCount_rad);
@@ -41,7 +42,7 @@ TEST(MoveCheck, AHandThatHoldsOnIsNoFault) {
   EXPECT_EQ(judged({40, 40, 10}, {1, 1, 10}), Fault::kNone) << "a way of ten counts tells nothing";
 }
 
-TEST(MoveCheck, EachMoveIsJudgedByItself) {  // there and half the way back
+TEST(MoveCheck, EachMoveIsJudgedByItself) {  // forth, and half the way back
   MoveCheck check;
   check.start({0.0, 0.0, 0.0});
   for (int i = 0; i < 100; ++i) check.step(Mat3::Identity(), Vec3(0.8, 0, 0), 1e-3);

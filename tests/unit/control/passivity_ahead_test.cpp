@@ -1,4 +1,5 @@
-// What a port looks at before it sends: the ticks to come, with what is under way; and what it lends and borrows.
+// Before a port sends a force, it budgets for the ticks to come and for torques still in transit; lending between
+// ports.
 #include <gtest/gtest.h>
 
 #include "firmware/control/passivity.hpp"
@@ -7,15 +8,15 @@
 namespace ligature::control {
 namespace {
 
-/// Resting at 0 and just sampled.
+/// A port at rest at 0, sampled once.
 Passivity resting(double credit_J) {
   Passivity p(plain(), kT_s, true, credit_J);
   p.observe(0, {});
   return p;
 }
 
-/// A port whose RPDO of tick 1 was lost, `later` ticks after that; its hand goes along `axis` at 0.05 m/s, and 0.3 N
-/// are on their way to it.
+/// A port whose first RPDO was lost `later` ticks ago. Its hand moves along `axis` at 0.05 m/s, and 0.3 N are in
+/// transit.
 struct Lossy {
   Lossy(const Vec3& axis, double credit_J, int later) : passivity(plain(), kT_s, true, credit_J) {
     for (int n = 0; n <= later + 2; ++n) {
@@ -29,7 +30,7 @@ struct Lossy {
     }
     tick = later + 2;
   }
-  /// The largest force in this direction that is paid for.
+  /// The largest force in this direction that the account allows.
   [[nodiscard]] double most_N(const Vec3& along) const {
     double low = 0.0, high = 3.3;
     for (int i = 0; i < 50; ++i) {
@@ -42,7 +43,7 @@ struct Lossy {
   std::int64_t tick = 0;
 };
 
-/// What is under way is looked at joint by joint; no joint is looked at less than another, nor is a direction.
+/// Torques in transit are budgeted joint by joint; no axis and no direction gets less.
 TEST(Passivity, NoAxisIsForeseenLessThanAnother) {
   const double first_N = Lossy(Vec3(1, 0, 0), 2e-4, 5).most_N(Vec3(1, 0, 0));
   ASSERT_GT(first_N, 0.01);
@@ -51,8 +52,9 @@ TEST(Passivity, NoAxisIsForeseenLessThanAnother) {
     EXPECT_NEAR(Lossy(axis, 2e-4, 5).most_N(axis), first_N, 1e-9) << axis.transpose();
 }
 
-/// For ten seconds after a lost RPDO the next one is foreseen. A hand at rest goes with the force: at full acceleration
-/// for two periods, the force acting in the second, and at 0.3 of it in a third, in which the force acts again.
+/// For ten seconds after a lost RPDO the port expects another loss. The budget assumes that a hand at rest moves with
+/// the force: at full acceleration for two periods, in the second of which the force acts, and at 0.3 of it in a third,
+/// in which the force acts again.
 TEST(Passivity, AForceThatMayActTwiceIsPaidForTwice) {
   const double a = plain().hand_acceleration_m_per_s2, credit_J = 3e-5;
   for (const int later : {2, 100, 9990}) {
@@ -93,7 +95,7 @@ TEST(Passivity, ALenderKeepsWhatItsOwnForceNeeds) {
   Passivity::lend(0, poor, much, rich, wish);
   EXPECT_TRUE(rich.allows(0, wish));
   EXPECT_GT(poor.energy_J(), 0.0);
-  Passivity other = resting(0.0), another = resting(0.0);  // both have nothing
+  Passivity other = resting(0.0), another = resting(0.0);  // both accounts are empty
   Passivity::lend(0, other, wish, another, wish);
   EXPECT_DOUBLE_EQ(other.received_J(), 0.0);
 }

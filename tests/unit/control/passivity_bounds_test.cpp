@@ -1,4 +1,4 @@
-// The bounds of docs/passivity.md, for every draw and for hands that climb. passivity_study is the long form.
+// The bounds of docs/passivity.md for random and for optimised attacks, as a short form of passivity_study.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace ligature::control {
 namespace {
 
-constexpr double kExact_J = 1e-12;  // of sums in double
+constexpr double kExact_J = 1e-12;  // rounding error of sums
 
 void expect_within(const Port& port) {
   EXPECT_LE(port.bounds.above_J, kExact_J) << "the account above the work";
@@ -41,7 +41,7 @@ TEST(PassivityBounds, HoldForEveryDraw) {
   }
 }
 
-/// Each climbs towards what would break a bound, and is looked at in each step.
+/// Each attack is optimised towards breaking one bound; every step is checked.
 TEST(PassivityBounds, HoldForHandsThatClimb) {
   test::Random random(62);
   for (const Case& c : kCases) {
@@ -55,8 +55,9 @@ TEST(PassivityBounds, HoldForHandsThatClimb) {
   }
 }
 
-/// The account takes the arm to have moved evenly. Two periods between samples, 0.3 N in the second one: a hand that
-/// waits and then goes with it gets 0.3 N a T^2 / 2 more than is booked, and no hand within the bound gets more.
+/// Between two samples the account assumes uniform motion. With two periods between the samples and 0.3 N in the
+/// second, a hand that waits and then follows the force gets 0.3 N a T^2 / 2 more than is debited. No hand within the
+/// acceleration a gets more.
 TEST(PassivityBounds, WhatNobodySawIsWorthHalfAStepTimesTheAcceleration) {
   const double a = plain().hand_acceleration_m_per_s2;
   const auto excess_J = [&](double share) {
@@ -70,11 +71,12 @@ TEST(PassivityBounds, WhatNobodySawIsWorthHalfAStepTimesTheAcceleration) {
     p.begin(1), p.sent(1, Vec3(0.3, 0, 0), Vec3(0.3, 0, 0));
     p.begin(2), p.sent(2, Vec3(0.3, 0, 0), Vec3(0.3, 0, 0));
     p.begin(3);
-    const double d1 = 1e-5, d2 = d1 + share * a * kT_s * kT_s, start_m = 2e-5;  // of the periods 1 to 2 and 2 to 3
+    // motion in period 1 to 2 and in period 2 to 3
+    const double d1 = 1e-5, d2 = d1 + share * a * kT_s * kT_s, start_m = 2e-5;
     Passivity q = p;
     q.observe(1, sample(start_m, 0.0));
     q.observe(3, sample(start_m + d1 + d2, 0.3));
-    return q.energy_J() + 0.3 * d2;  // the account less the work
+    return q.energy_J() + 0.3 * d2;  // account minus true work
   };
   EXPECT_NEAR(excess_J(1.0), 0.3 * a * kT_s * kT_s / 2, 1e-12);
   EXPECT_NEAR(excess_J(-0.1), -0.03 * a * kT_s * kT_s / 2, 1e-12);

@@ -1,4 +1,4 @@
-// The port's account against a plant of its own: exact, and never overdrawn by any hand within the bound.
+// The port's account in a simulated plant: it is exact, and no hand within the acceleration bound overdraws it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace ligature::control {
 namespace {
 
-TEST(Passivity, TheAccountIsTheWorkToTheLastDigit) {  // against the work summed by the plant itself
+TEST(Passivity, TheAccountIsTheWorkToTheLastDigit) {  // against the work that the plant itself sums
   Port port(false);
   for (int i = 0; i < 3000; ++i) port.tick(spring, 10.0 * Vec3(std::cos(0.02 * i), std::sin(0.03 * i), 0));
   const double before = port.work_J;
@@ -19,10 +19,11 @@ TEST(Passivity, TheAccountIsTheWorkToTheLastDigit) {  // against the work summed
   EXPECT_NEAR(port.passivity.energy_J(), before, 1e-12);
 }
 
-TEST(Passivity, ASampledSpringMakesEnergyAndTheControllerRefusesIt) {  // a full swing costs the hand less than it gets
+// in a full swing the hand would get more energy than it gives
+TEST(Passivity, ASampledSpringMakesEnergyAndTheControllerRefusesIt) {
   const auto swing = [](bool active) {
     Port port(active);
-    port.v.x() = 0.02 * 40.0;  // 2 cm at 40 rad/s
+    port.v.x() = 0.02 * 40.0;  // amplitude 2 cm at 40 rad/s
     for (int i = 0; i < 2000; ++i) port.tick(spring, Vec3(-0.02 * 40.0 * 40.0 * std::sin(0.04 * (i + 0.5)), 0, 0));
     return port;
   };
@@ -32,10 +33,11 @@ TEST(Passivity, ASampledSpringMakesEnergyAndTheControllerRefusesIt) {  // a full
   EXPECT_GT(held.acted, 0);
 }
 
-constexpr double kExact_J = 1e-12;  // of sums in double
+constexpr double kExact_J = 1e-12;  // rounding error of sums
 
-/// 40 adversaries: jerks at full acceleration, half of them always along the motors' force; springs, and motors.
-/// @param wildness share of the acceleration that the controller keeps room for
+/// 40 random attacks: jumps of acceleration at the bound, half of them along the motors' force, against springs and
+/// against negative springs.
+/// @param wildness the hand's acceleration as a share of the bound
 template <class Look>
 void play_adversaries(const Chain& chain, Look look, double wildness = 1.0, bool active = true) {
   test::Random random(5);
@@ -52,7 +54,7 @@ void play_adversaries(const Chain& chain, Look look, double wildness = 1.0, bool
       const bool with_the_force = seed % 2 == 0 && !port.made.isZero();
       Vec3 acceleration = a * (with_the_force ? Vec3(port.made.normalized()) : push) * share();
       if (port.v.norm() > 1.0) acceleration = -a * port.v.normalized();
-      const double gain = seed % 3 == 0 ? 400.0 : -400.0;  // a negative spring is a motor
+      const double gain = seed % 3 == 0 ? 400.0 : -400.0;  // a negative spring acts as a motor
       const auto law = [gain](const Vec3& p, const Vec3& v) { return saturated(gain * p + 0.5 * gain * 0.01 * v); };
       port.tick(law, acceleration);
     }
@@ -65,7 +67,7 @@ TEST(Passivity, NoHandWithinTheBoundOverdrawsTheAccount) {
   play_adversaries({}, [](const Port& port) { EXPECT_GE(port.lowest_J, -Passivity::kFloor_J); });
 }
 
-/// A hand that is let go is a matter of its draw (docs/passivity.md has the shares): hardly any of these.
+/// Whether the force is dropped at once depends on the random draw (docs/passivity.md has the shares): here it is rare.
 TEST(Passivity, HandsWithinTheBoundAreCutByAStepButWhereTheyAreLetGo) {
   double felt_N = 0.0;
   int let_go = 0;
@@ -75,12 +77,13 @@ TEST(Passivity, HandsWithinTheBoundAreCutByAStepButWhereTheyAreLetGo) {
     felt_N = std::max(felt_N, port.made.norm());
   };
   play_adversaries({}, look);
-  play_adversaries({.count_m = 5e-5}, look, 0.4);  // a count within a period looks like 50 m/s2
+  play_adversaries({.count_m = 5e-5}, look, 0.4);  // one count of motion within a period looks like 50 m/s2
   EXPECT_GT(felt_N, 0.5);
   EXPECT_LE(let_go, 6) << "of 80";
 }
 
-TEST(Passivity, WhatTheDrivesMakeChangesByAStepWhateverIsLost) {  // but where all is let go, for energy's sake
+// except where all force is dropped, for lack of energy
+TEST(Passivity, WhatTheDrivesMakeChangesByAStepWhateverIsLost) {
   const Chain whole{}, lossy{.lost = 0.05}, very{.lost = 0.3}, blind{.lost_samples = 0.14};
   const Chain both{.lost = 0.05, .lost_samples = 0.14}, silent{.lost = 0.05, .tells_torque = false};
   for (const Chain& chain : {whole, lossy, very, blind, both, silent}) {
@@ -98,7 +101,8 @@ TEST(Passivity, WhatTheDrivesMakeChangesByAStepWhateverIsLost) {  // but where a
   }
 }
 
-TEST(Passivity, OnCountsTheTrueWorkIsWithinItsBounds) {  // what counts hide at each change of force
+// up to the energy that quantised positions hide at each change of force
+TEST(Passivity, OnCountsTheTrueWorkIsWithinItsBounds) {
   double lowest_J = 0.0, most_hidden_J = 0.0;
   play_adversaries({.count_m = 5e-5}, [&](const Port& port) {
     EXPECT_LE(port.bounds.above_J, kExact_J);
@@ -109,20 +113,21 @@ TEST(Passivity, OnCountsTheTrueWorkIsWithinItsBounds) {  // what counts hide at 
   std::printf("random jerks on counts: true work %.2e J; counts may hide %.2e J\n", lowest_J, most_hidden_J);
 }
 
-TEST(Passivity, BetweenCountsASlowJointIsWhereItsSpeedSays) {  // a tenth of a count a period, under a steady torque
+TEST(Passivity, BetweenCountsASlowJointIsWhereItsSpeedSays) {  // a tenth of a count per period, under a steady torque
   Port port(false, 0.0, {.count_m = 5e-5});
   const double force_N = 0.3;
   port.v.x() = 5e-3;
   for (int i = 0; i < 1000; ++i) {
-    if (i == 100) port.largest_excess_J = port.largest_shortfall_J = -1e9;  // the estimators have settled
+    if (i == 100) port.largest_excess_J = port.largest_shortfall_J = -1e9;  // the estimators have converged
     port.tick([&](const Vec3&, const Vec3&) { return Vec3(force_N, 0, 0); }, Vec3::Zero());
   }
-  const double hidden_J = port.largest_excess_J + port.largest_shortfall_J;  // a count's worth without the guess
+  // without interpolation this would be one count's worth
+  const double hidden_J = port.largest_excess_J + port.largest_shortfall_J;
   std::printf("between counts: %.2f of a count's energy hidden\n", hidden_J / (force_N * port.chain.count_m));
   EXPECT_LT(hidden_J, 0.5 * force_N * port.chain.count_m);
 }
 
-/// But for counts, and for when between two samples the arm moved; whatever the drive made of what it was sent.
+/// Except for quantisation and for the unknown motion between samples; whatever torque the drive made of its command.
 TEST(Passivity, TheAccountIsNeverAboveTheTrueWork) {
   const Chain plainly{}, counted{.count_m = 5e-5};
   const Chain guarded{.guard_N = 0.3}, silent{.guard_N = 0.3, .tells_torque = false};
@@ -135,13 +140,15 @@ TEST(Passivity, TheAccountIsNeverAboveTheTrueWork) {
   }
 }
 
-TEST(Passivity, ALostTorqueIsBookedToTheLastDigit) {  // what the drive made instead is known as soon as it tells
+// the torque that acted instead is known once the drive reports it
+TEST(Passivity, ALostTorqueIsBookedToTheLastDigit) {
   for (const bool tells : {true, false}) {
     const auto look = [](const Port& port) {
       EXPECT_LE(port.largest_excess_J, 1e-10);
       EXPECT_LE(port.largest_shortfall_J, 1e-10);
     };
-    play_adversaries({.lost = 0.3, .tells_torque = tells}, look, 1.0, false);  // on, it forgets credit
+    // passivity off: when on, it gives up credit after losses
+    play_adversaries({.lost = 0.3, .tells_torque = tells}, look, 1.0, false);
   }
 }
 
@@ -149,7 +156,7 @@ TEST(Passivity, AHeldTorqueIsBookedExactlyOverLostSamples) {
   Port port(false, 0.0, {.lost_samples = 0.5});
   const auto hold = [](const Vec3&, const Vec3&) { return Vec3(0.3, 0, 0); };
   for (int i = 0; i < 500; ++i) {
-    if (i == 20) port.largest_excess_J = port.largest_shortfall_J = -1e9;  // it acts by now
+    if (i == 20) port.largest_excess_J = port.largest_shortfall_J = -1e9;  // the torque has begun to act
     port.tick(hold, Vec3(std::cos(0.05 * i), 0, 0));
   }
   EXPECT_LE(port.largest_excess_J + port.largest_shortfall_J, 1e-12);
@@ -182,7 +189,8 @@ TEST(Passivity, AMotorGetsNothingFromAHandThatNeverPaid) {  // constant force al
   EXPECT_GE(port.lowest_J, -Passivity::kFloor_J);
 }
 
-TEST(Passivity, APaidSpringIsFeltInFull) {  // pull 1 cm slowly and hold: what the hand has paid it may feel
+// pull 1 cm slowly and hold: the hand feels the force whose energy it has supplied
+TEST(Passivity, APaidSpringIsFeltInFull) {
   Port port(true);
   const double rate = 2.0 * std::acos(-1.0);
   for (int i = 0; i < 2000; ++i) {
@@ -193,8 +201,8 @@ TEST(Passivity, APaidSpringIsFeltInFull) {  // pull 1 cm slowly and hold: what t
   EXPECT_NEAR(port.made.norm(), 400.0 * port.p.norm(), 0.01 * 400.0 * port.p.norm());
 }
 
-/// A hand that draws so far at 15 mm/s and rests, on counts and whole torque quanta. @return share of its rest in which
-/// it feels four fifths of K x.
+/// A hand draws `draw_m` at 15 mm/s and rests, with quantised positions and torques. @return the share of the rest in
+/// which it feels at least four fifths of K x.
 double felt_of_a_slow_pull(Chain chain, double draw_m) {
   chain.count_m = 5e-5;
   Port port(true, 0.0, chain);
@@ -216,11 +224,11 @@ double felt_of_a_slow_pull(Chain chain, double draw_m) {
   return static_cast<double>(felt) / resting;
 }
 
-TEST(Passivity, ASlowPullOnCountsIsFelt) {  // it has to begin with one quantum, which the floor must pay for
+TEST(Passivity, ASlowPullOnCountsIsFelt) {  // the first torque quantum must be allowed before any energy is earned
   EXPECT_GT(felt_of_a_slow_pull({}, 0.006), 0.95);
 }
 
-TEST(Passivity, ASlowPullIsFeltThroughLostFrames) {  // 5 % of the frames; a set of samples is lost with any of three
+TEST(Passivity, ASlowPullIsFeltThroughLostFrames) {  // 5 % of frames lost; a sample needs three frames
   for (std::uint32_t seed = 1; seed <= 5; ++seed)
     EXPECT_GT(felt_of_a_slow_pull({.lost = 0.05, .lost_samples = 0.14, .seed = seed}, 0.006), 0.90);
 }

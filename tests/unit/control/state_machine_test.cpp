@@ -1,4 +1,4 @@
-// The proofs about the table are static_asserts beside it; here the paths people walk, and the numbers they see.
+// The transition table is proved by static_asserts beside it; these tests take typical paths through the states.
 #include "firmware/control/state_machine.hpp"
 
 #include <gtest/gtest.h>

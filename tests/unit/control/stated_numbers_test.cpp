@@ -1,4 +1,4 @@
-// Times and limits that the pages state, counted here and not read from the code's own constants.
+// Times and limits that the documentation states, measured here without the code's own constants.
 #include "firmware/control/engagement.hpp"
 #include "firmware/control/force_limiter.hpp"
 #include "tests/unit/control/controller_rig.hpp"
@@ -6,9 +6,9 @@
 namespace ligature::control {
 namespace {
 
-constexpr double kLever_m = 0.1924;  // of the waist in the rig's pose
+constexpr double kLever_m = 0.1924;  // lever arm of the waist joint in the rig's pose
 
-/// Fault of a disarmed rig whose left tip goes at this speed for 20 ms.
+/// Fault of a disarmed rig whose left tip moves at this speed for 20 ms.
 Fault fault_at(double speed_m_per_s) {
   Rig rig;
   rig.controller.command(rt::CommandKind::kDisarm);
@@ -38,7 +38,8 @@ TEST(StatedNumbers, CalibrationTakesFiftyPossiblePosesInARow) {
   Rig rig;
   EXPECT_EQ(ticks_in_calibrate(rig), 50);
 
-  Rig doubtful;  // 30 possible ones, some beyond the stop's margin of 0.25 rad, counted anew
+  // 30 plausible samples, then implausible ones (beyond the stop's margin of 0.25 rad), so the count restarts
+  Rig doubtful;
   for (auto& hand : doubtful.in.reading.hand) hand.q_rad[0] = 1.22;
   doubtful.ticks(31);
   for (const double turn_rad : {0.005, 0.005, 0.005, 0.005, -0.005, -0.005, -0.005}) {
@@ -47,7 +48,7 @@ TEST(StatedNumbers, CalibrationTakesFiftyPossiblePosesInARow) {
   }
   ASSERT_EQ(doubtful.controller.state(), State::kCalibrate);
   doubtful.in.reading.hand[1].q_rad[0] -= 0.005;
-  EXPECT_EQ(ticks_in_calibrate(doubtful), 48);  // 1.23 and 1.225 have passed
+  EXPECT_EQ(ticks_in_calibrate(doubtful), 48);  // the samples at 1.23 and 1.225 already count
 }
 
 TEST(StatedNumbers, TheGainRisesInHalfASecondAndFallsInFiftyMilliseconds) {
@@ -56,7 +57,7 @@ TEST(StatedNumbers, TheGainRisesInHalfASecondAndFallsInFiftyMilliseconds) {
   for (; e.gain() == 0.0 && calm < 1000; ++calm) e.tick(true, 0.0, 0.0);
   for (; e.gain() < 1.0 && rise < 2000; ++rise) e.tick(true, 0.0, 0.0);
   for (; e.gain() > 0.0 && fall < 2000; ++fall) e.tick(false, 0.0, 0.0);
-  EXPECT_EQ(calm, 21);  // 20 of a still hand, then the first of the rise
+  EXPECT_EQ(calm, 21);  // 20 ticks of a still hand, then the first of the rise
   EXPECT_EQ(rise + 1, 500);
   EXPECT_EQ(fall, 50);
 }
@@ -88,7 +89,7 @@ TEST(StatedNumbers, AHotWindingsCapFallsInHalfASecondAndComesBackAsSlowly) {
   EXPECT_NEAR(back, 500, 1);
 }
 
-TEST(StatedNumbers, AChangeOfTheForceScaleTakesTwoTenthsOfASecond) {  // evenly, from a held force to another
+TEST(StatedNumbers, AChangeOfTheForceScaleTakesTwoTenthsOfASecond) {  // linearly, from one steady force to another
   for (const double times : {2.0, 0.5}) {
     Rig rig;
     rig.to_force();
@@ -103,14 +104,15 @@ TEST(StatedNumbers, AChangeOfTheForceScaleTakesTwoTenthsOfASecond) {  // evenly,
   }
 }
 
-TEST(StatedNumbers, AParkedToolStands) {  // it kept the hand's velocity, and threw what it held
+// a parked tool must not keep the hand's velocity, or it would throw what it holds
+TEST(StatedNumbers, AParkedToolStands) {
   Rig rig;
   rig.to_force();
   for (int i = 0; i < 30; ++i) {
     rig.in.reading.hand[0].q_rad[0] += 1e-3 * 0.3 / kLever_m;
     rig.tick();
   }
-  ASSERT_GT(rig.controller.hand(0).v_WT.norm(), 1.0);  // world: 20 times the device's
+  ASSERT_GT(rig.controller.hand(0).v_WT.norm(), 1.0);  // in world units, 20 times the device's
   rig.in.reading.hand[0].clutch = true;
   for (int i = 0; i < 30; ++i) {
     rig.in.reading.hand[0].q_rad[0] += 1e-3 * 0.3 / kLever_m;
@@ -120,8 +122,8 @@ TEST(StatedNumbers, AParkedToolStands) {  // it kept the hand's velocity, and th
   }
 }
 
-/// A drive that goes on as it was. With the usual watchdog that is a torque astray (26) before: here it may be that
-/// old.
+/// A drive keeps its torque. With the usual watchdog the torque check would report it first (fault 26); with this long
+/// one the torque may still be an old command.
 TEST(StatedNumbers, AForceThatDoesNotEndIsTakenAfterAHundredTicks) {
   Rig rig(Rig::scene(), device::omni(), 1000);
   rig.to_force();

@@ -1,4 +1,4 @@
-// What drives tell of their torque against what they were sent, over wires that lose, delay, double and reorder frames.
+// Reported against commanded drive torques, over links that lose, delay, duplicate and reorder frames.
 #include "firmware/control/torque_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ rt::HandReading reading_of(const Torques& told_Nm, std::int32_t age = 0) {
   return r;
 }
 
-/// One joint's drive behind a wire that does what it likes with single frames, in either direction.
+/// One joint's drive behind a link that loses, delays or duplicates frames in both directions.
 class Drive {
  public:
   Drive(test::Random& random, double loss, int most_delay) : random_(random), loss_(loss), most_delay_(most_delay) {}
@@ -31,10 +31,10 @@ class Drive {
   void send(double torque_Nm, int now) {
     if (chance() < loss_) return;
     under_way_.push_back({now + delay(), torque_Nm});
-    if (chance() < loss_) under_way_.push_back({now + delay(), torque_Nm});  // doubled, and maybe out of order
+    if (chance() < loss_) under_way_.push_back({now + delay(), torque_Nm});  // duplicated, possibly out of order
   }
-  /// SYNC of a period: latches what it made until now, then acts on what came last. Silence beyond the watchdog ends
-  /// it.
+  /// A SYNC: reports the torque that acted until now, then applies the latest command. Without a command for longer
+  /// than the watchdog the torque is zero.
   double sync(int now) {
     const double made_Nm = acting_Nm_;
     std::optional<double> got;
@@ -46,7 +46,7 @@ class Drive {
     silence_ = got ? 0 : silence_ + 1;
     if (got) acting_Nm_ = *got;
     if (silence_ >= kWatchdog) acting_Nm_ = 0.0;
-    if (chance() < 0.001) acting_Nm_ = 0.0, under_way_.clear();  // it was reset
+    if (chance() < 0.001) acting_Nm_ = 0.0, under_way_.clear();  // the drive was reset
     return made_Nm;
   }
   double chance() { return random_.share(); }
@@ -66,7 +66,7 @@ class Drive {
   int silence_ = 0;
 };
 
-/// Honest drives, for so many ticks: torques that wander, jump, and end.
+/// Correct drives with torques that wander, jump and end. @return whether a fault was raised.
 bool alarms(unsigned seed, double loss, int most_delay) {
   test::Random random(seed);
   TorqueWatch watch(device::omni(), kWatchdog);
@@ -82,7 +82,7 @@ bool alarms(unsigned seed, double loss, int most_delay) {
       made[j] = drives[j].sync(tick);
       made[j] += noise();
     }
-    age = drives[0].chance() < loss ? age + 1 : 0;  // a TPDO is lost: the set before is held
+    age = drives[0].chance() < loss ? age + 1 : 0;  // a TPDO is lost: the previous samples are held
     if (age == 0) told = made;
     watch.look(reading_of(told, age));
     if (watch.is_astray()) return true;
@@ -111,7 +111,7 @@ TEST(TorqueWatch, APushThatNobodyAskedForIsFoundInItsSecondSample) {
     for (const double sign : {-1.0, 1.0}) {
       TorqueWatch watch(device::omni(), kWatchdog);
       Torques told{};
-      const double asked = 0.037;  // 123 per mille
+      const double asked = 0.037;  // 123 per mille of the rated torque
       for (int i = 0; i < 50; ++i) watch.look(reading_of(told)), watch.sent({asked, asked, asked});
       told = {asked, asked, asked};
       for (int i = 0; i < 50; ++i) {
@@ -131,7 +131,7 @@ TEST(TorqueWatch, APushThatNobodyAskedForIsFoundInItsSecondSample) {
   }
 }
 
-/// To the edge of what the record grants, from either side, of torques of either sign.
+/// Up to the tolerance of the device file, from either side, for torques of either sign.
 TEST(TorqueWatch, ToleratesWhatTheRecordSaysAndNoMore) {
   device::Device d = device::omni();
   for (const int permille : {10, 50, 200}) {
@@ -151,7 +151,7 @@ TEST(TorqueWatch, ToleratesWhatTheRecordSaysAndNoMore) {
   }
 }
 
-/// What was asked for once is no excuse for ever: a drive that does not let go is found a watchdog's time later.
+/// A command excuses a torque only for a limited time: a drive that keeps it is found about one watchdog time later.
 TEST(TorqueWatch, ForgetsWhatWasSentLongAgo) {
   for (const std::int32_t watchdog : {2, 5, 20, 100, 1000}) {
     TorqueWatch watch(device::omni(), watchdog);
@@ -163,7 +163,7 @@ TEST(TorqueWatch, ForgetsWhatWasSentLongAgo) {
     int ticks = 0;
     for (; !watch.is_astray() && ticks < 10000; ++ticks) tick(0.6, 0.0);
     EXPECT_GT(ticks, watchdog) << "an RPDO may have been lost so long";
-    EXPECT_LE(ticks, watchdog + watchdog / 7 + 18) << watchdog;  // its memory comes in seven blocks
+    EXPECT_LE(ticks, watchdog + watchdog / 7 + 18) << watchdog;  // the history is kept in seven blocks
   }
 }
 

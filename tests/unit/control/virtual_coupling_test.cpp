@@ -1,4 +1,4 @@
-// The felt force: its signs, its scale, its limit.
+// The coupling's force: signs, scale and limits.
 #include "firmware/control/virtual_coupling.hpp"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ TEST(Saturate, NeverAboveTheLimitHoweverItIsMeasured) {
 
 constexpr double kT_s = 1e-3;
 
-/// Of a device that stands still, once everything has settled.
+/// The force with a resting device, in the steady state.
 Vec3 felt(const scene::Hands& h, const Grasp& grasp, const Vec3& p_WT = Vec3::Zero(), const Vec3& v_WT = Vec3::Zero()) {
   const VirtualCoupling coupling(h, kT_s);
   Proxy proxy{p_WT, v_WT};
@@ -56,7 +56,7 @@ TEST(VirtualCoupling, PullsTowardsTheNode) {  // node 0.1 m above: 1200 x 0.1 x 
   EXPECT_NEAR(felt(hands(), {true, Vec3(0, 0, 0.1), Vec3::Zero()}).z(), 0.36, 1e-12);
 }
 
-TEST(VirtualCoupling, ResistsTheHandsOwnMotion) {  // damping takes energy: force against velocity
+TEST(VirtualCoupling, ResistsTheHandsOwnMotion) {  // damping dissipates: the force opposes the velocity
   EXPECT_NEAR(felt(hands(), {true, Vec3::Zero(), Vec3::Zero()}, Vec3::Zero(), Vec3(2, 0, 0)).x(), -6.0 * 2 * 0.003,
               1e-12);
 }
@@ -68,11 +68,12 @@ scene::Hands two_sided() {
   return h;
 }
 
-TEST(VirtualCoupling, TwoSidesAreSpringsInSeries) {  // 72 and 36 N/m: 24 N/m; 0.1 m of world is 5 mm of device
+// 72 and 36 N/m in series: 24 N/m; 0.1 m in the world is 5 mm at the device
+TEST(VirtualCoupling, TwoSidesAreSpringsInSeries) {
   EXPECT_NEAR(felt(two_sided(), {true, Vec3(0, 0, 0.1), Vec3::Zero()}).z(), 24.0 * 0.005, 1e-9);
 }
 
-TEST(VirtualCoupling, TheHandFeelsWhatTheThreadFeelsScaled) {  // both springs carry one force
+TEST(VirtualCoupling, TheHandFeelsWhatTheThreadFeelsScaled) {  // the springs in series carry the same force
   const scene::Hands h = two_sided();
   const VirtualCoupling coupling(h, kT_s);
   const Grasp grasp{true, Vec3(0.02, -0.05, 0.1), Vec3::Zero()};

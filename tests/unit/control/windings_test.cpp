@@ -1,4 +1,4 @@
-// No drive ever has to guard its own winding: the controller is there first, whatever is asked for.
+// The controller limits the motors' heat before any drive has to protect its own winding, whatever force is requested.
 #include "firmware/control/windings.hpp"
 
 #include <gtest/gtest.h>
@@ -10,9 +10,9 @@ namespace ligature::control {
 namespace {
 
 constexpr double kT_s = 1e-3;
-constexpr double kGuard = 1.2;  // times the continuous torque: what a drive holds down to when its winding is hot
+constexpr double kGuard = 1.2;  // share of the continuous torque to which a drive limits itself when its winding is hot
 
-/// The windings of one arm as their drives see them: rated a fifth above the record, 1 = too hot.
+/// Thermal model of an arm's windings as its drives compute it, rated 20 % above the device file; 1 = too hot.
 struct Guarded {
   explicit Guarded(const device::Device& d) : most_Nm(kGuard * continuous_torque_Nm(d)), tau_s(d.thermal_time_s) {}
   void pass(const Vec3& torque_Nm) {
@@ -24,7 +24,7 @@ struct Guarded {
   double tau_s, hottest = 0.0;
 };
 
-/// An arm that has nothing to do with an Omni but its kind.
+/// A random device with an Omni's kinematics.
 device::Device any_device(test::Random& random) {
   const auto share = [&] { return random.share(); };
   device::Device d = device::omni();
@@ -36,7 +36,7 @@ device::Device any_device(test::Random& random) {
   return d;
 }
 
-/// Torques that jump, rest and swing, up to what the peak force makes at home.
+/// Torques that jump, rest and oscillate, up to those of the peak force at home.
 struct Wishes {
   test::Random& random;
   Vec3 most_Nm, now = Vec3::Zero();
@@ -79,7 +79,7 @@ TEST(Windings, ThePeakHeldForEverGetsAsHotAsTheClosedFormSays) {
     windings.sent(wish * std::min(1.0, windings.share(wish)));
     hottest = std::max(hottest, windings.heat());
   }
-  // While the cap falls from r to 1 in 0.5 s it lets through the mean of its square, and the winding cools by h >= 1.
+  // While the cap falls from r to 1 in 0.5 s, the mean of its square acts, and the winding cools by at least h = 1.
   const double fall = 0.5 / d.thermal_time_s, square = (peak * peak + peak + 1.0) / 3.0;
   EXPECT_LT(hottest, 1.0 + fall * (square - 1.0) + 1e-3);
   EXPECT_GT(hottest, 1.0 + fall * (square - 1.3));
@@ -96,7 +96,7 @@ TEST(Windings, WhatIsContinuousIsNeverTakenAway) {
   }
 }
 
-TEST(Windings, PeriodsThatWereLostWarmThemToo) {  // the drives go on with what they were sent
+TEST(Windings, PeriodsThatWereLostWarmThemToo) {  // during lost periods the drives keep the last torque
   Windings each(device::omni(), kT_s), tenth(device::omni(), kT_s);
   const Vec3 torque(0.4, 0.1, 0.0);
   for (int i = 0; i < 500; ++i) each.sent(torque);
@@ -104,7 +104,7 @@ TEST(Windings, PeriodsThatWereLostWarmThemToo) {  // the drives go on with what 
   EXPECT_NEAR(tenth.heat(), each.heat(), 0.03 * each.heat());
 }
 
-/// Tip and pull of one hand, held for 12 s; the rig's other hand does the same.
+/// Largest winding heat after 12 s with the given pose and pull; both hands do the same.
 double hottest_of(const JointAngles& pose, const Vec3& along) {
   Rig rig;
   for (auto& reading : rig.in.reading.hand) reading.q_rad = pose;
@@ -118,7 +118,8 @@ double hottest_of(const JointAngles& pose, const Vec3& along) {
   return drives.hottest;
 }
 
-TEST(Windings, NoPullInAnyPoseMakesADriveGuardItself) {  // 0.88 N at full reach is 1.4 times what the waist may have
+// 0.88 N at full reach is 1.4 times the waist's continuous torque
+TEST(Windings, NoPullInAnyPoseMakesADriveGuardItself) {
   test::Random random(56);
   const auto share = [&] { return random.share(); };
   const device::Device d = device::omni();

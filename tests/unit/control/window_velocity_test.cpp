@@ -1,4 +1,4 @@
-// The estimator's noise and lag, side by side with the low-pass that it replaced. Prints the table of docs/haptics.md.
+// Noise and lag of the velocity estimator, compared with a first-order low-pass. Prints the table of docs/haptics.md.
 #include "firmware/control/window_velocity.hpp"
 
 #include <gtest/gtest.h>
@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kT_s = 1e-3;
 constexpr double kQuantum_rad = 2.0 * std::numbers::pi / 16384.0;
-constexpr double kLever_m = 0.1325;  // tip speeds below are of a forearm of this length
+constexpr double kLever_m = 0.1325;  // m; tip speeds below are for a link of this length
 
-/// What was there before: backward difference through v += 0.2 (difference - v).
+/// The low-pass: v += 0.2 (backward difference - v).
 struct LowPass {
   void add(double x, std::int64_t) {
     if (seeded) v += 0.2 * ((x - last) / kT_s - v);
@@ -31,7 +31,7 @@ struct Error {
   double rms_m_per_s, mean_m_per_s;
 };
 
-/// Error of the tip's velocity on a motion x(t), v(t) of the joint, counted; first 100 ms left out.
+/// Error of the tip's velocity for a joint motion x(t), v(t) read in whole counts; the first 100 ms are left out.
 template <class Estimator>
 Error run(Estimator estimator, const std::function<double(double)>& x, const std::function<double(double)>& v) {
   double squares = 0.0, sum = 0.0;
@@ -52,7 +52,7 @@ WindowVelocity window() { return {kT_s, kQuantum_rad}; }
 
 TEST(WindowVelocity, ConstantSpeedsAreLessNoisyThanTheLowPass) {
   for (const double speed : {0.001, 0.01, 0.05, 0.2, 0.5}) {
-    const double rate = speed / kLever_m * 1.0137;  // not a whole number of counts a period
+    const double rate = speed / kLever_m * 1.0137;  // not a whole number of counts per period
     const auto x = [&](double t) { return rate * t; };
     const auto v = [&](double) { return rate; };
     const Error now = run(window(), x, v), before = run(LowPass{}, x, v);
@@ -64,7 +64,7 @@ TEST(WindowVelocity, ConstantSpeedsAreLessNoisyThanTheLowPass) {
   }
 }
 
-TEST(WindowVelocity, LagsLessThanTheLowPassWhenItMatters) {  // steady acceleration: lag = -mean error / acceleration
+TEST(WindowVelocity, LagsLessThanTheLowPassWhenItMatters) {  // at steady acceleration: lag = -mean error / acceleration
   for (const double a : {5.0, 10.0, 50.0}) {                 // m/s^2 at the tip
     const double rate = a / kLever_m;
     const auto lag_ms = [&](auto estimator) {
@@ -83,14 +83,14 @@ TEST(WindowVelocity, LagsLessThanTheLowPassWhenItMatters) {  // steady accelerat
   }
 }
 
-TEST(WindowVelocity, AtRestAFlickeringCountIsHardlySeen) {  // worst case: it flips every period
+TEST(WindowVelocity, AtRestAFlickeringCountIsHardlySeen) {  // worst case: the count flips every period
   WindowVelocity estimator = window();
   double most = 0.0;
   for (int i = 0; i < 200; ++i) {
     estimator.add((i % 2) * kQuantum_rad, 1);
     if (i > 25) most = std::max(most, std::abs(estimator.velocity_per_s()) * kLever_m);
   }
-  EXPECT_LT(most, 0.001);  // the low-pass: 0.0056
+  EXPECT_LT(most, 0.001);  // the low-pass gives 0.0056
 }
 
 TEST(WindowVelocity, FirstSampleIsRestAndNoTimeTeachesNothing) {
@@ -116,7 +116,7 @@ TEST(WindowVelocity, MissingSamplesDoNotShakeAConstantVelocity) {
   at += 6;
   estimator.add(0.3 * kT_s * static_cast<double>(at), 7);
   EXPECT_NEAR(estimator.velocity_per_s(), 0.3, 1e-9);
-  estimator.add(7.0, 100);  // long gone: starts anew
+  estimator.add(7.0, 100);  // after so long a gap the estimator restarts
   EXPECT_EQ(estimator.velocity_per_s(), 0.0);
 }
 
