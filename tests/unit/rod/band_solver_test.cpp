@@ -1,4 +1,4 @@
-// The banded solver against a dense one, for every place of the window, and on the matrix that once broke it.
+// The banded solver against a dense solver, for every position of the window, and on a matrix that is numerically hard.
 
 #include "firmware/physics/rod/band_solver.hpp"
 
@@ -43,7 +43,7 @@ BandSolver random_system(int n, unsigned seed) {
   BandSolver s;
   s.resize(n);
   for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
-    s.diagonal[i] = dyad(vector(), 1.0, 20.0);  // large enough to be positive definite
+    s.diagonal[i] = dyad(vector(), 1.0, 20.0);  // large enough for a positive definite matrix
     s.couple[i] = dyad(vector(), 1.0, -2.0);
     s.skip[i] = normal();
     s.rhs[i] = vector();
@@ -51,7 +51,7 @@ BandSolver random_system(int n, unsigned seed) {
   return s;
 }
 
-// Whatever has been factorised since.
+// Columns of the inverse stay those of the matrix that was taken, even after the solver has factorised another one.
 TEST(BandColumns, AreThoseOfTheInverse) {
   BandColumns columns;
   columns.reserve();
@@ -94,7 +94,8 @@ TEST(BandColumns, SayWhenThereIsNoRoom) {
   EXPECT_TRUE(columns.want(made - 1));
 }
 
-TEST(BandSolver, AgreesWithADenseSolverForEveryCoreAndWindow) {  // well conditioned: rounding times a hundred
+// well-conditioned matrices: tolerance of a hundred roundings
+TEST(BandSolver, AgreesWithADenseSolverForEveryCoreAndWindow) {
   for (const int n : {3, 4, 5, 17, 60}) {
     for (int core = 0; core + 1 < n; core += 1 + n / 20) {
       for (int width = 0; width < n; width += 1 + n / 10) {
@@ -132,7 +133,7 @@ TEST(BandSolver,
   }
 }
 
-TEST(BandSolver, StaysAccurateAlongALongStiffBeam) {  // skew rounding errors would double at every node
+TEST(BandSolver, StaysAccurateAlongALongStiffBeam) {  // unsymmetric rounding errors would double at every node
   const int n = 400;
   BandSolver s;
   s.resize(n);

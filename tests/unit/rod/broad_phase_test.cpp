@@ -1,4 +1,4 @@
-// What the list of pairs may name: segments of the thread, whatever their motion is.
+// The contact list names only existing segments, whatever the velocities.
 
 #include "firmware/physics/rod/broad_phase.hpp"
 

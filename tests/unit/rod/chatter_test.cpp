@@ -1,4 +1,4 @@
-// The measure of chatter itself, on forces whose chatter is known.
+// The measure of chatter, on forces with known chatter.
 
 #include "tests/bench/rod/chatter.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 using bench::Chatter;
 using bench::chatter;
 
-// A pull: the force over thread used up, as the overhand's; steepness per tick, and a tremble on top of it.
+// A pull's force: grows exponentially as an overhand's does, plus a sinusoidal fluctuation.
 std::vector<double> pull(int ticks, double tremble_N, double period_ticks) {
   std::vector<double> f;
   for (int k = 0; k < ticks; ++k)
@@ -31,13 +31,15 @@ TEST(Chatter, FindsAKnownTremble) {
 
 TEST(Chatter, IsNotThePull) {
   EXPECT_LT(chatter(pull(250, 0.0, 1.0), 0.04).share(), 1e-3);
-  EXPECT_LT(chatter(pull(50, 0.0, 1.0), 0.04).share(), 2e-3);  // five times as fast: a shorter window
+  // five times as fast, so the stretch is shorter than the fit's window
+  EXPECT_LT(chatter(pull(50, 0.0, 1.0), 0.04).share(), 2e-3);
 }
 
-// All of a pull at 1 m/s to 1 N: what it reads for a smooth one is far below what is measured.
+// A complete pull at 1 m/s to 1 N. The value for a smooth force is far below the measured ones.
 TEST(Chatter, IsNotAPullOfFourteenTicks) { EXPECT_LT(chatter(pull(14, 0.0, 1.0), 0.04).share(), 2e-3); }
 
-// So what a mesh adds to the ringing of the thread itself can be told from the two (docs/rod-knots.md).
+// Independent fluctuations add as squares, so the mesh's contribution can be separated from the thread's own vibration
+// (docs/rod-knots.md).
 TEST(Chatter, AddsCausesAsSquares) {
   const auto one = pull(250, 3e-3, 5.3), other = pull(250, 4e-3, 3.7), smooth = pull(250, 0.0, 1.0);
   auto both = one;
@@ -46,7 +48,8 @@ TEST(Chatter, AddsCausesAsSquares) {
   EXPECT_NEAR(chatter(both, 0.04).rms_N, std::hypot(a, b), 0.03 * std::hypot(a, b));
 }
 
-// The loop snaps over in the middle: no force for a while. What is on either side counts, the seam does not.
+// In the middle of the pull the loop snaps over and the force is zero for a while. The stretches on both sides count,
+// the gap does not.
 TEST(Chatter, IsNotASnapBetweenTwoStretches) {
   std::vector<double> f = pull(250, 0.0, 1.0);
   for (int k = 100; k < 130; ++k) f[static_cast<std::size_t>(k)] = 0.002;
@@ -55,7 +58,7 @@ TEST(Chatter, IsNotASnapBetweenTwoStretches) {
   EXPECT_NEAR(chatter(f, 0.04).rms_N, 4e-3, 0.4e-3);
 }
 
-// A blow of one tick, which a thread that stands still for lack of work gives.
+// A force peak of one tick, as occurs when the thread waits for lack of budget.
 TEST(Chatter, CountsABlow) {
   std::vector<double> f = pull(250, 0.0, 1.0);
   f[180] += 0.1;

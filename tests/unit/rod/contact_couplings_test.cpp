@@ -1,4 +1,4 @@
-// The table of what impulses on contacts do to each other: both halves of it, after any exchange.
+// The table of contact couplings (velocity of contact a per impulse on contact b): both triangles, after exchanges.
 
 #include "firmware/physics/rod/contact_couplings.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMost = 24;
 
-// What contact a has of b: i, j.
+// A distinct value for entry (i, j) of the block of contacts a, b; symmetric under exchange of both index pairs.
 float number(std::size_t a, std::size_t b, std::size_t i, std::size_t j) {
   if (a < b || (a == b && i > j)) return number(b, a, j, i);
   return static_cast<float>(1000 * a + 10 * b + 3 * i + j) + 0.5F;

@@ -1,4 +1,4 @@
-// Newton's method for contacts against projected Gauss-Seidel run to the end, on a small stiff chain.
+// Newton's method for contacts against projected Gauss-Seidel iterated to convergence, on a short stiff chain.
 
 #include "firmware/physics/rod/contact_newton.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kNodes = 24, kRows = 9;
 
-/// Contacts of a chain with velocities of their own, pressed together and along: some stick, some slide, some open.
+/// Random contacts of a chain, with initial velocities that press and shear them: some stick, some slide, some open.
 struct Jam {
   BandSolver solver;
   std::vector<Contact> rows{static_cast<std::size_t>(kRows)};
@@ -48,7 +48,7 @@ struct Jam {
     }
   }
 
-  std::vector<Vec> velocities() {  // of the contacts, with their impulses
+  std::vector<Vec> velocities() {  // relative velocities at the contacts, with their impulses applied
     std::vector<Vec> extra(static_cast<std::size_t>(kNodes)), v(extra.size()), u;
     for (const auto& c : rows) {
       for (int j = 0; j < 4; ++j) extra[static_cast<std::size_t>(c.node[j])] += c.w[j] * c.p;
@@ -65,7 +65,7 @@ struct Jam {
     return u;
   }
 
-  void sweep() {  // one contact after the other, by a step that cannot over-shoot
+  void sweep() {  // Gauss-Seidel with a step that cannot overshoot
     constexpr double kStep = 8.0;
     for (std::size_t k = 0; k < rows.size(); ++k) {
       Contact& c = rows[k];
@@ -113,7 +113,7 @@ TEST(ContactNewton, FindsWhatSweepsFindInTheEnd) {
   EXPECT_GT(open, 3);
 }
 
-TEST(ContactNewton, KnowsWhatItsImpulsesDo) {  // without asking the solver
+TEST(ContactNewton, KnowsWhatItsImpulsesDo) {  // without calls of the linear solver
   Jam jam(3);
   ContactNewton newton;
   newton.reserve();
@@ -134,8 +134,8 @@ TEST(ContactNewton, KnowsWhatItsImpulsesDo) {  // without asking the solver
     EXPECT_LT(norm(u[static_cast<std::size_t>(k)] - truth[static_cast<std::size_t>(k)]), 1e-5);
 }
 
-// From substep to substep contacts come in another order, leave, come back, and move: what was coupled is found again
-// where it has not moved, and coupled anew where it has.
+// Between substeps contacts change order, disappear, reappear and move. Couplings are reused for contacts that have not
+// moved and recomputed for the others.
 TEST(ContactNewton, KnowsItsContactsAgain) {
   Jam jam(4);
   test::Random random(9);
@@ -167,10 +167,10 @@ TEST(ContactNewton, KnowsItsContactsAgain) {
     for (const auto k : newton.rows())
       ASSERT_LT(norm(u[static_cast<std::size_t>(k)] - truth[static_cast<std::size_t>(k)]), 1e-4) << substep << ' ' << k;
   }
-  EXPECT_GT(again, 15);  // some 75, by draw 49 and more
+  EXPECT_GT(again, 15);  // about 75; between random draws at least 49
 }
 
-// Many contacts are not coupled anew in every substep; those that carry no load any more make room.
+// Couplings are kept between substeps; those of contacts that no longer carry load make room for new ones.
 TEST(ContactNewton, KeepsWhatCarriesLoad) {
   constexpr int kMany = 60;
   Jam jam(5);
@@ -193,7 +193,7 @@ TEST(ContactNewton, KeepsWhatCarriesLoad) {
   };
   EXPECT_EQ(substep(1.0, 0.0), 0);
   EXPECT_EQ(substep(1.0, 0.0), kMany);
-  EXPECT_EQ(substep(0.0, 1.0), kMany);  // known for a while
+  EXPECT_EQ(substep(0.0, 1.0), kMany);  // kept for some substeps without load
   for (int k = 0; k < 10; ++k) (void)substep(0.0, 1.0);
   EXPECT_EQ(newton.loaded(), 0);
 }

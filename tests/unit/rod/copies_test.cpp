@@ -1,4 +1,4 @@
-// A copy taken in the midst of a pull goes on as its original does.
+// A copy made during a pull continues like the original.
 
 #include <gtest/gtest.h>
 
@@ -31,8 +31,8 @@ double pull_N(const RodSimulation& sim) {
   return 0.5 * (sim.hand(Hand::kLeft).f_W.x() - sim.hand(Hand::kRight).f_W.x());
 }
 
-/// Nodes go where contacts want them, so a copy without its contacts has another mesh from the next tick on. What it
-/// makes anew (the list of pairs, matrices) only rounds otherwise: 3 mN here, on the way to 5 N.
+/// Contacts decide where remeshing puts nodes, so a copy without the contacts would have another mesh from the next
+/// tick on. The copy rebuilds the contact list and matrices, which changes only rounding: 3 mN here, on the way to 5 N.
 TEST(Copy, RemeshesAsItsOriginal) {
   RodSimulation sim = knotted();
   std::array<ToolInput, 2> tools{};

@@ -1,4 +1,4 @@
-// The dense solver against what it must give back.
+// The dense solver reproduces known solutions.
 
 #include "firmware/physics/rod/dense.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMost = 61;
 
-/// M x = b with a known x, and the largest difference from it.
+/// Largest error of the solution of M x = b for a known x.
 double error_of(Dense& dense, const std::vector<double>& m, std::size_t n, unsigned seed) {
   test::Random random(seed);
   const auto normal = [&] { return random.normal(); };
@@ -35,7 +35,7 @@ double error_of(Dense& dense, const std::vector<double>& m, std::size_t n, unsig
   return worst;
 }
 
-TEST(Dense, SolvesWhatIsNearlySymmetric) {  // of every size up to eight panels: each way a row can end
+TEST(Dense, SolvesWhatIsNearlySymmetric) {  // all sizes up to eight panels, so that every remainder of a row occurs
   Dense dense;
   dense.reserve(kMost);
   for (std::size_t n = 1; n <= kMost; ++n) {
@@ -53,7 +53,7 @@ TEST(Dense, SolvesWhatIsNearlySymmetric) {  // of every size up to eight panels:
   }
 }
 
-TEST(Dense, ExchangesRowsWhereAPivotVanishes) {  // a permutation: not one pivot is where it should be
+TEST(Dense, ExchangesRowsWhereAPivotVanishes) {  // a permutation matrix: every pivot is off the diagonal
   Dense dense;
   dense.reserve(kMost);
   for (const std::size_t n : {2UL, 5UL, 16UL, 33UL}) {

@@ -1,4 +1,4 @@
-// Static friction of its own: what rests holds up to mu_s, what slides is braked by mu_k.
+// Separate static friction: a resting thread holds up to mu_s, a sliding one is braked by mu_k.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 constexpr double kG = 9.81, kSlide = 0.2, kStick = 0.4;
 constexpr Parts kRubbing{.twist = false, .contact = true, .friction = true, .world = true};
 
-/// A thread lying across a desk tilted by `angle` about it.
+/// A thread on a desk that is tilted by `angle` about the thread's axis.
 Rod lying(double angle, int nodes = 30) {
   Material m;
   m.length_m = 0.03;
@@ -32,7 +32,7 @@ void run(Rod& rod, int ticks) {
   for (int k = 0; k < ticks; ++k) rod.tick();
 }
 
-// Tilted slowly, as one measures it.
+// The desk is tilted slowly, as in a measurement of mu_s.
 TEST(StaticFriction, HoldsUpToItsOwnConeAndCreepsNowhere) {
   Rod rod = lying(0.0);
   run(rod, 50);
@@ -56,7 +56,8 @@ TEST(StaticFriction, OnceItSlidesOnlyTheKineticOneBrakes) {
   EXPECT_NEAR(rod.state().v[15][1] - v0, 0.1 * a, 0.01 * 0.1 * a);
 }
 
-// Between the two cones both are possible: what was pushed goes on, what lay stays.
+// On a slope between the two friction angles both states are stable: a pushed thread keeps sliding, a resting one
+// stays.
 TEST(StaticFriction, BetweenTheConesMotionDecides) {
   const double angle = std::atan(0.3), a = kG * (std::sin(angle) - kSlide * std::cos(angle));
   Rod pushed = lying(angle), left = lying(angle);
@@ -67,7 +68,7 @@ TEST(StaticFriction, BetweenTheConesMotionDecides) {
   EXPECT_LT(std::abs(left.state().v[15][1]), 1e-6);
 }
 
-// On the flat a pushed thread stops by the kinetic coefficient, and then holds by the static one.
+// On a level desk a pushed thread stops by the kinetic coefficient, then holds up to the static one.
 TEST(StaticFriction, StopsByTheKineticAndHoldsByTheStatic) {
   Rod rod = lying(0.0);
   for (auto& v : rod.state().v) v = make(0, 0.1, 0);
@@ -81,9 +82,10 @@ TEST(StaticFriction, StopsByTheKineticAndHoldsByTheStatic) {
   EXPECT_LT(std::abs(rod.state().x[15][1] - rest), 1e-3 * 2.0 * rod.material().radius_m);
 }
 
-// A thread as long as the shipped ones: all of its nodes touch, which is more work than a tick of sixteen substeps has.
+// A thread of the shipped length of which all nodes touch the desk: more contact work than the budget of sixteen
+// substeps.
 TEST(Labour, FindsTimeForAThreadAllOfWhichSlides) {
-  Material m;  // 0.3 m
+  Material m;  // length 0.3 m
   m.drag_per_s = 0.0;
   m.friction = kSlide;
   Rod rod(m, Numerics{}, kRubbing, 154, 1);

@@ -1,4 +1,4 @@
-// The list of pairs that may touch: nothing is missing from it, and its cost grows with the thread's length.
+// The contact list misses no pair, and its cost grows linearly with the thread's length.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ using namespace physics::rod;
 
 constexpr double kDiameter = 3e-4;
 
-// A random walk of n nodes with segments of `segment` diameters, kept within `ball` diameters of the origin.
+// A random walk of n nodes, with segments of `segment` diameters, within `ball` diameters of the origin.
 State walk(int n, double segment, double ball, double speed_m_per_s, Random& random) {
   const auto vector = [&] {
     const auto [x, y, z] = random.normals();
@@ -39,7 +39,7 @@ State walk(int n, double segment, double ball, double speed_m_per_s, Random& ran
   return state;
 }
 
-// Everything a list promises, pair by pair.
+// All pairs that the contact list must contain, by testing each pair.
 std::set<std::pair<int, int>> promised(const State& state, const Motion& motion, const Outlook& outlook) {
   std::set<std::pair<int, int>> all;
   const double d = outlook.diameter_m;
@@ -120,8 +120,9 @@ TEST(Growth, AGroupKnowsTheFastestOfItsPairs) {
   EXPECT_EQ(next, static_cast<std::int32_t>(made.pairs.size()));
 }
 
-// A loose coil, and balls; all in motion. In a ball an eighth is added with each doubling, for blocks that meet without
-// a pair; a list that looked at all pairs would cost eight times as much here. Six walks of each: one alone is chance.
+// A loose coil and a ball, both moving, with 250 and 2000 nodes. In the ball each doubling adds an eighth to the cost
+// per pair, for blocks that overlap without a pair; testing all pairs would cost eight times as much. The mean over six
+// walks reduces the scatter.
 TEST(Growth, AListCostsByTheNodeAndByThePair) {
   Random random(5);
   const Outlook outlook{kDiameter, 0.5 * kDiameter, 0.1 * kDiameter, 1.2e-3};
@@ -140,8 +141,8 @@ TEST(Growth, AListCostsByTheNodeAndByThePair) {
   }
 }
 
-// A thread drawn along at 1 m/s, without a knot: segments of two thirds of a diameter, where neighbours along the
-// thread are nearest, among them.
+// A thread without a knot, drawn along at 1 m/s. Its segments of two thirds of a diameter are the worst case for pairs
+// of neighbours along the thread.
 TEST(Growth, ATickOfADrawnThreadCostsTheSamePerNode) {
   for (const int nodes : {512, 1024, 1500, 2000}) {
     Rod rod(Material{}, Numerics{}, Parts{true, true, true, false, false}, nodes);
@@ -161,8 +162,8 @@ TEST(Growth, ATickOfADrawnThreadCostsTheSamePerNode) {
   }
 }
 
-// Impulses outlive a list for which the work did not do. They did not: a held surgeon's knot lost them all, moved at
-// 10 m/s in that substep and overlapped by 0.8 d.
+// When the budget is too small for a new list, the contacts must keep their impulses for the solver's start. Without
+// them a held surgeon's knot moved at 10 m/s in that substep and overlapped by 0.8 d.
 TEST(Growth, AListThatCannotBeAffordedKeepsTheImpulses) {
   Random random(5);
   const State state = walk(300, 1.0, 8.0, 0.0, random);

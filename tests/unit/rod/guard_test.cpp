@@ -1,4 +1,4 @@
-// What the guard lets pass, and what it does not.
+// Which motions the guard shortens and which it lets pass.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ using namespace physics::rod;
 
 constexpr double kDiameter_m = 3e-4, kSubstep_s = 1e-3 / 24;
 
-// Segments 0 and 2 of a thread of four nodes, a diameter apart, and the share of a substep that they may move.
+// Segments 0 and 2 of a thread of four nodes, one diameter apart, and the share of a substep that the guard allows.
 struct Two {
   State state;
   Two() {
@@ -34,7 +34,7 @@ struct Two {
   }
 };
 
-// A free tail at 26 m/s that flies past a strand, or away, was held to 0.9 of their distance.
+// A free end at 26 m/s that flies past a strand or away from it must not be shortened to 0.9 of the distance.
 TEST(Guard, LetsPassWhatFliesByOrAway) {
   for (const Vec u : {make(26, 0, 0), make(0, 26, 0), make(20, 5, 14), make(0, 0, 26), make(18, 18, -2)}) {
     Two two;

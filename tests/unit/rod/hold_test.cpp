@@ -1,5 +1,5 @@
-// Two throws that are held, and pulled, with too little work: what they lose, what they cost at rest, and how fine the
-// mesh is where strands touch.
+// Knots of two throws under too small a budget, held and released: time lost, cost at rest, and the mesh where strands
+// touch.
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,9 @@
 namespace ligature::test {
 namespace {
 
-// A square knot drawn tight and held: 50 % of the time lost at 0.2 m/s when old impulses were moved onto their cones
-// and points of contact rang (touch.hpp); by the one alone 20 % (0.15 m/s), by the other 74 % (0.22 m/s).
+// A square knot drawn tight and held. Two rules of the contacts keep the time lost low: old impulses start as they
+// were, not projected onto their cones, and contact points do not oscillate (touch.hpp). Without both, 50 % of the time
+// was lost at 0.2 m/s; without the first 20 % (0.15 m/s), without the second 74 % (0.22 m/s).
 TEST(Hold, OfTwoThrowsLosesHardlyAnyTime) {
   for (const double speed : {0.15, 0.2, 0.22, 0.23}) {
     Tightening pull({}, "suture-3-0-square.toml");
@@ -33,8 +34,8 @@ TEST(Hold, OfTwoThrowsLosesHardlyAnyTime) {
   }
 }
 
-// A held surgeon's knot that is let off slowly: half of its contacts change their kind, and steps that gave up the cost
-// of a change as soon as none did began to circle.
+// A held surgeon's knot is slackened slowly, so half of its contacts change between stick, slip and open. Newton's
+// steps cycle if their proximal term (contact_newton.hpp) is dropped as soon as no contact changes its kind.
 TEST(Hold, OfTwoThrowsIsLetOffWithoutStandingStill) {
   double lost = 0.0;
   int ticks = 0;
@@ -53,9 +54,9 @@ TEST(Hold, OfTwoThrowsIsLetOffWithoutStandingStill) {
   EXPECT_LT(lost / ticks, 0.35);
 }
 
-// At rest what was settled is so again, with half the work too. A single hold is chance (none of it is lost, or 0.07),
-// and so was the median of five: the mean of ten, each the mean of three budgets, is 0.02. It bounds what is lost, and
-// is no test of a rule: without a fair share of the work it is 0.03.
+// At rest the solver converges again in each substep, even with about half the budget. A single hold scatters (time
+// lost 0 or 0.07), so ten holds with three budgets each are averaged: 0.02, and 0.03 without a fair share of the budget
+// per substep. The limit only bounds the time lost; it does not test that rule.
 TEST(Hold, OfTwoThrowsCanDoWithHalfTheWork) {
   double lost = 0.0;
   for (int i = 0; i < 10; ++i) {
@@ -76,9 +77,9 @@ TEST(Hold, OfTwoThrowsCanDoWithHalfTheWork) {
   EXPECT_LT(lost, 0.05);
 }
 
-// A substep takes no more than its fair share of the tick's work where it has an answer that is good enough. The mean
-// of eight pulls of a surgeon's knot loses 0.21 of the time (twelve: 0.21 with a standard error of 0.01); 0.31 when
-// each substep may take all that is left.
+// A substep takes no more than its fair share of the tick's budget if it has a solution that is good enough. Mean time
+// lost over eight pulls of a surgeon's knot: 0.21 (standard error 0.01); 0.31 if each substep may take all that is
+// left.
 TEST(Labour, IsSharedFairly) {
   double lost = 0.0;
   for (int i = 0; i < 8; ++i) {
@@ -105,9 +106,9 @@ Tightening held(double speed) {
   return pull;
 }
 
-// What rests is settled to what single precision can tell. Where the aim is a tenth of its motion, however small, some
-// holds spend their whole budget on differences of 5 um/s, tick after tick. Twins of one state tell: which holds come
-// to that by themselves is chance (0.72 of the work; one of the five spends all of it either way).
+// At rest the tolerance has a lower bound, set by single precision. If it were always a tenth of the motion, some holds
+// would spend their whole budget in every tick on differences of 5 um/s. Two copies of the same state are compared,
+// because which holds do so is random (work ratio 0.72; one of the five spends all of it in either copy).
 TEST(Hold, OfTwoThrowsAtRestIsCheap) {
   double work = 0.0, finer = 0.0;
   for (const double speed : {0.16, 0.18, 0.2, 0.22, 0.24}) {
@@ -124,7 +125,8 @@ TEST(Hold, OfTwoThrowsAtRestIsCheap) {
   EXPECT_LT(work, 0.85 * finer);
 }
 
-// A loop that touches the thread beside a tight knot, with 0.1 mN, is as fine there as the thread it touches.
+// A loop that touches the thread beside a tight knot with only 0.1 mN is meshed there as finely as the thread it
+// touches.
 TEST(FineZone, ReachesTheLoopThatTouches) {
   for (const double speed : {0.16, 0.19, 0.22, 0.24}) {
     Tightening pull = held(speed);
@@ -142,8 +144,8 @@ TEST(FineZone, ReachesTheLoopThatTouches) {
   }
 }
 
-// `fast` has ten substeps and keeps them when its work runs short. With six a square knot pulled to 5 N had 59, 2
-// and 23 guard events and was held with 0.02, 3.6 and 1.9 N, and no less of the time was lost.
+// `fast` uses ten substeps, also when the budget runs out. With six, square knots pulled to 5 N had 59, 2 and 23 guard
+// events, were held with 0.02, 3.6 and 1.9 N, and lost no less time.
 TEST(Labour, LeavesTenSubsteps) {
   for (const double speed : {0.19, 0.2, 0.21}) {
     Tightening pull({"suture.accuracy=\"fast\""}, "suture-3-0-square.toml");
@@ -162,7 +164,7 @@ TEST(Labour, LeavesTenSubsteps) {
   }
 }
 
-// How fast contacts that carry load still close, beyond what they may, m/s.
+// Largest approach velocity of loaded contacts beyond the allowed one, m/s.
 double lack(const RodSimulation& sim) {
   const auto& state = sim.rod().state();
   double worst = 0.0;
@@ -175,8 +177,9 @@ double lack(const RodSimulation& sim) {
   return worst;
 }
 
-// What is moved obeys its contacts in the true matrix, not in the one that Newton's method knew some substeps ago: by
-// that a held square knot was settled to 1 mm/s, and its strands closed by 0.16 m/s, into each other by 0.56 d.
+// Nodes are moved only with velocities that satisfy the contacts in the current matrix, not in the older one that
+// Newton's method uses. With the older one a held square knot converged to 1 mm/s, but its strands approached at 0.16
+// m/s and overlapped by 0.56 d.
 TEST(Hold, MovesOnlyWhatIsSettledInTheTrueMatrix) {
   Tightening pull({}, "suture-3-0-square.toml");
   pull.sim().rod().numerics().work = 3'700'000;
@@ -194,7 +197,8 @@ TEST(Hold, MovesOnlyWhatIsSettledInTheTrueMatrix) {
     pull.sim().tick(pull.tools());
     if (k < 300) continue;
     overlap_m = std::max(overlap_m, -pull.sim().diagnostics().min_gap_m);
-    if (pull.sim().rod().report().time_lost > 0.0) continue;  // its contacts are those of a substep that waits
+    // its contacts belong to a substep that was not carried out
+    if (pull.sim().rod().report().time_lost > 0.0) continue;
     ++moved;
     worst = std::max(worst, lack(pull.sim()));
   }

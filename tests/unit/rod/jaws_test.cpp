@@ -1,5 +1,5 @@
-// Jaws of finite width: what they carry is shared and adds up, they slip at Coulomb's limit, and a thread can be handed
-// from one hand to the other.
+// Gripper jaws of finite width: the nodes share the load, the thread slips at Coulomb's limit, and one hand can pass
+// the thread to the other.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using physics::ToolInput;
 using physics::Vec3;
 using physics::rod::RodSimulation;
 
-constexpr double kWeight_N = 8e-5 * 9.81;  // per metre
+constexpr double kWeight_N = 8e-5 * 9.81;  // weight per metre
 
 scene::Scene thread(std::vector<std::string> overrides) {
   overrides.insert(overrides.end(), {"suture.nodes=61", "suture.spacing=\"uniform\"", "world.grippers_collide=false",
@@ -59,7 +59,7 @@ TEST(Jaws, WithoutWidthHoldOneNode) {
   EXPECT_EQ(sim.hand(Hand::kLeft).node, 30);
 }
 
-TEST(Jaws, ForcesOnTheNodesAddUpToTheLoad) {  // nothing fixed: three nodes between jaws carry the whole thread
+TEST(Jaws, ForcesOnTheNodesAddUpToTheLoad) {  // no fixed node: three nodes between the jaws carry the whole thread
   auto sim = simulation(thread({"hands.pinch_width_m=0.011", "world.fixed=[]"}));
   auto tools = hands_at(sim.nodes_W()[30], Vec3(1, 1, 1));
   tools[0].grip = true;
@@ -70,7 +70,8 @@ TEST(Jaws, ForcesOnTheNodesAddUpToTheLoad) {  // nothing fixed: three nodes betw
   EXPECT_NEAR(f.x(), 0.0, 1e-3 * kWeight_N);
 }
 
-/// Largest | f - K (p_G - p_T) - B (v_G - v_T) |, N, while `move` leads the left hand for 800 ticks.
+/// Largest deviation of the hand's force from K (p_G - p_T) + B (v_G - v_T), N, while `move` moves the left hand for
+/// 800 ticks.
 template <class Move>
 double off_the_coupling_N(RodSimulation& sim, std::array<ToolInput, 2> tools, Move move) {
   double most = 0.0;
@@ -87,18 +88,20 @@ double off_the_coupling_N(RodSimulation& sim, std::array<ToolInput, 2> tools, Mo
   return most;
 }
 
-TEST(Jaws, TheHandFeelsWhatTheyDoToTheThread) {                    // wherever the nodes between them are
-  auto aside = simulation(thread({"hands.pinch_width_m=0.004"}));  // two nodes share a couple: the thread is bent away
+TEST(Jaws, TheHandFeelsWhatTheyDoToTheThread) {  // for any position of the nodes between the jaws
+  // two nodes share a moment: the thread is bent sideways
+  auto aside = simulation(thread({"hands.pinch_width_m=0.004"}));
   EXPECT_LT(off_the_coupling_N(aside, hands_at(aside.nodes_W()[60], Vec3(1, 1, 1)),
                                [](int, ToolInput& tool) { tool.p_WT += Vec3(1e-4, 0, 5e-5); }),
             1e-9);
-  auto slips = simulation(thread({"hands.pinch_width_m=0.004", "hands.pinch_force_N=1.0"}));  // from node to node
+  // the grip slips from node to node
+  auto slips = simulation(thread({"hands.pinch_width_m=0.004", "hands.pinch_force_N=1.0"}));
   EXPECT_LT(off_the_coupling_N(slips, hands_at(slips.nodes_W()[30], Vec3(1, 1, 1)),
                                [](int, ToolInput& tool) { tool.p_WT.z() -= 2e-5; }),
             1e-9);
 }
 
-TEST(Jaws, SlipAtCoulombsLimit) {  // 2 mu N = 0.6 N, pulled at 20 mm/s: the thread runs through at 0.6 N, within 2 %
+TEST(Jaws, SlipAtCoulombsLimit) {  // 2 mu N = 0.6 N; pulled at 20 mm/s the thread slips at 0.6 N within 2 %
   auto sim = simulation(thread({"hands.pinch_width_m=0.004", "hands.pinch_force_N=1.0"}));
   auto tools = hands_at(sim.nodes_W()[30], Vec3(1, 1, 1));
   tools[0].grip = true;
@@ -112,7 +115,7 @@ TEST(Jaws, SlipAtCoulombsLimit) {  // 2 mu N = 0.6 N, pulled at 20 mm/s: the thr
   }
   EXPECT_NEAR(most, 0.6, 0.012);
   EXPECT_NEAR(last, 0.6, 0.012);
-  EXPECT_GT(sim.hand(Hand::kLeft).node, 31);  // it has run through by about 13 mm, two and a half nodes
+  EXPECT_GT(sim.hand(Hand::kLeft).node, 31);  // it has slipped by about 13 mm, two and a half segments
 }
 
 TEST(Jaws, DoNotSlipBelowTheLimit) {
@@ -120,14 +123,14 @@ TEST(Jaws, DoNotSlipBelowTheLimit) {
   auto tools = hands_at(sim.nodes_W()[30], Vec3(1, 1, 1));
   tools[0].grip = true;
   sim.tick(tools);
-  tools[0].p_WT.z() -= 1e-3;  // stretched by a millimetre: 71 N x 1 / 150 and the coupling's own give, some 0.3 N
+  tools[0].p_WT.z() -= 1e-3;  // stretched by 1 mm: 71 N x 1 / 150 in series with the coupling, some 0.3 N
   for (int k = 0; k < 500; ++k) sim.tick(tools);
   EXPECT_LT(sim.hand(Hand::kLeft).f_W.z(), 0.58);
   EXPECT_GT(sim.hand(Hand::kLeft).f_W.z(), 0.1);
   EXPECT_EQ(sim.hand(Hand::kLeft).node, 30);
 }
 
-TEST(Jaws, HandTheThreadOver) {  // nothing fixed; the right hand takes it beside the left, which then lets go
+TEST(Jaws, HandTheThreadOver) {  // no fixed node; the right hand grips beside the left, which then lets go
   auto sim = simulation(thread({"hands.pinch_width_m=0.004", "world.fixed=[]"}));
   auto tools = hands_at(sim.nodes_W()[20], sim.nodes_W()[26]);
   tools[0].grip = true;
@@ -141,14 +144,15 @@ TEST(Jaws, HandTheThreadOver) {  // nothing fixed; the right hand takes it besid
   EXPECT_LT((sim.hand(Hand::kRight).p_WG - tools[1].p_WT).norm(), 1e-3);
 }
 
-/// Wherever between two nodes, which are 5 mm apart. What they hold is then unstretched between them: 3 % of the pull.
+/// Jaws that close anywhere between two nodes, 5 mm apart. The held piece becomes unstretched, which changes the force
+/// by 3 %.
 TEST(Jaws, CloseOnATautThreadWithoutATug) {
   for (const double share : {0.1, 0.3, 0.45, 0.55, 0.8}) {
     auto sim = simulation(thread({"hands.pinch_width_m=0.004"}));
     auto tools = hands_at(sim.nodes_W()[50], Vec3(1, 1, 1));
     tools[0].grip = true;
     for (int k = 0; k < 500; ++k) {
-      tools[0].p_WT.z() -= 1e-5;  // 71 N x 5 / 250 and the coupling's own give, 1.1 N
+      tools[0].p_WT.z() -= 1e-5;  // 71 N x 5 / 250 in series with the coupling, 1.1 N
       sim.tick(tools);
     }
     for (int k = 0; k < 300; ++k) sim.tick(tools);
@@ -166,8 +170,9 @@ TEST(Jaws, CloseOnATautThreadWithoutATug) {
   }
 }
 
-/// 14 mm off, jaws once took 14 N for a tick. Neither the thread nor the hand may be jerked, and at last the hand feels
-/// what the thread above does: stretched by sqrt(l^2 + x^2) - l in series with the coupling, its pull turned by x / l.
+/// Jaws close 14 mm beside the thread, which must jerk neither the thread nor the hand; a rigid grip would pull with 14
+/// N for a tick. In the end the hand feels the thread above: stretched by sqrt(l^2 + x^2) - l in series with the
+/// coupling, and its pull turned by x / l.
 TEST(Jaws, CloseFarOffWithoutAJerk) {
   for (const double pull_N : {0.0, 1.0}) {
     const std::string load = "world.loads=[{node=60, force_N=[0,0,-" + std::to_string(pull_N) + "]}]";
@@ -188,14 +193,15 @@ TEST(Jaws, CloseFarOffWithoutAJerk) {
     const double held_N = std::hypot(stretch_N, pull_N * kOff_m / kAbove_m);
     std::printf("closed 14 mm off, pulled by %.0f N: %.4f N at last (%.4f), %.4f at most, steps of %.4f N, %.2f m/s\n",
                 pull_N, before.norm(), held_N, most_N, step_N, speed);
-    EXPECT_LT(step_N, 0.03);  // 14 N without
+    EXPECT_LT(step_N, 0.03);  // a rigid grip: 14 N
     EXPECT_LT(most_N, 1.05 * held_N);
-    EXPECT_LT(speed, 0.6);  // 1.5 x 14 mm / 50 ms = 0.42 at the jaws
+    EXPECT_LT(speed, 0.6);  // expected at the jaws: 1.5 x 14 mm / 50 ms = 0.42
     EXPECT_NEAR(before.norm(), held_N, 0.05 * held_N);
   }
 }
 
-TEST(Jaws, HoldTheDirectionToo) {  // held upright at its free end, pushed from the side: two nodes turn back, one turns
+// held upright, pushed sideways at the free end: two nodes hold the direction, one does not
+TEST(Jaws, HoldTheDirectionToo) {
   const auto lean = [](const char* width) {
     auto sim = simulation(thread(
         {width, "world.fixed=[]", "world.gravity_m_per_s2=[0,0,0]", "world.loads=[{node=40, force_N=[1e-5,0,0]}]"}));
@@ -208,7 +214,7 @@ TEST(Jaws, HoldTheDirectionToo) {  // held upright at its free end, pushed from 
   EXPECT_GT(lean("hands.pinch_width_m=0.0"), 0.01);
 }
 
-TEST(Jaws, OpenTheyPushTheThreadAsideWithoutHoldingIt) {  // a tool that swings through the hanging thread at 0.1 m/s
+TEST(Jaws, OpenTheyPushTheThreadAsideWithoutHoldingIt) {  // open jaws move through the hanging thread at 0.1 m/s
   const auto swung_m = [](const char* collide) {
     auto read = scene::load_scene(std::string(LIGATURE_SOURCE_DIR) + "/scenes/suture-3-0.toml",
                                   std::vector<std::string>{collide, "suture.nodes=61"});
@@ -226,7 +232,7 @@ TEST(Jaws, OpenTheyPushTheThreadAsideWithoutHoldingIt) {  // a tool that swings 
       if (std::abs(p.z() - 0.15) < 0.01) at = p.x();
     return at;
   };
-  EXPECT_GT(swung_m("world.grippers_collide=true"), 0.035);  // the tool is at 0.04
+  EXPECT_GT(swung_m("world.grippers_collide=true"), 0.035);  // the gripper is at 0.04 m
   EXPECT_LT(std::abs(swung_m("world.grippers_collide=false")), 1e-3);
 }
 

@@ -1,4 +1,5 @@
-// Closed forms of the rod's contact and energy: the cone, bodies that move, what creeps, what did not settle, springs.
+// Contact and energy of the rod against closed forms: friction cone, moving bodies, slow slip, unconverged solves,
+// springs.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,8 @@ using physics::rod::in_cone;
 
 constexpr double kG = 9.81;
 
-// Inside the cone an impulse stays; outside, its part across the normal is mu times its part along it; a pull is none.
+// Projection onto the friction cone: an impulse inside is unchanged; outside, its tangential part becomes mu times the
+// normal part; a pulling one becomes zero.
 TEST(Cone, KeepsTheNormalPartAndCutsTheRestToItsEdge) {
   test::Random random(31);
   const auto any = [&] { return random.in(-1.0, 1.0); };
@@ -43,7 +45,7 @@ TEST(Cone, KeepsTheNormalPartAndCutsTheRestToItsEdge) {
   EXPECT_GT(std::min({cut, kept, pulls}), 500);
 }
 
-// Two belts that run across a thread which lies on them: it is drawn along at mu g until it is as fast as they are.
+// A thread lies across two moving belts: friction accelerates it at mu g until it has the belts' speed.
 TEST(Belts, DrawTheThreadAlongByFrictionUntilItIsAsFast) {
   constexpr double kMu = 0.2, kBelt_m_per_s = 0.05, kRoll_m = 1e-3;
   Material m;
@@ -68,8 +70,8 @@ TEST(Belts, DrawTheThreadAlongByFrictionUntilItIsAsFast) {
   EXPECT_NEAR(mean(), kBelt_m_per_s, 0.01 * kBelt_m_per_s);
 }
 
-// 2e-4 m/s is slow, yet a slip: on a slope just beyond the kinetic cone it goes on, and the static one does not catch
-// it.
+// 2e-4 m/s is slow but still sliding: on a slope just steeper than mu_k the thread must keep sliding, and static
+// friction must not stop it.
 TEST(StaticFriction, DoesNotCatchWhatSlidesSlowly) {
   constexpr double kSlide = 0.2, kSlow_m_per_s = 2e-4;
   Material m;
@@ -89,16 +91,20 @@ TEST(StaticFriction, DoesNotCatchWhatSlidesSlowly) {
   EXPECT_NEAR(rod.state().v[15][1], kSlow_m_per_s + 0.1 * a, 0.5 * kSlow_m_per_s);
 }
 
-// A single pass settles nothing in a ball that was thrown together: what it leaves may close no contact by more than
-// that has room, or the ball would be pressed ever tighter.
+// A ball of thread thrown together does not converge in a single pass. The remaining velocities must not close any gap
+// by more than its width, or the overlaps would grow.
 TEST(Unsettled, VelocitiesAreBrakedToWhatContactsHaveRoomFor) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     Numerics numerics;
     numerics.tick_s = 6.25e-5;
     numerics.substeps = numerics.max_substeps = 1;
     numerics.max_passes = 1;
-    const Parts turning{
-        .twist = true, .contact = true, .friction = true, .roll = true, .turning = true};  // sweeps only
+    const Parts turning{// these parts together are solved by sweeps only
+                        .twist = true,
+                        .contact = true,
+                        .friction = true,
+                        .roll = true,
+                        .turning = true};
     Rod rod(Material{}, numerics, turning, 154);
     crumple(rod, seed, 20.0, 2.0);
     int cut = 0;
@@ -113,7 +119,7 @@ TEST(Unsettled, VelocitiesAreBrakedToWhatContactsHaveRoomFor) {
   }
 }
 
-// At rest on a desk the contacts carry the weight together; one that presses by F gives by F / k: F^2 / 2k is stored.
+// At rest on a desk the contacts carry the weight. A contact with force F and stiffness k stores F^2 / 2k.
 TEST(Energy, TheGiveOfContactsIsThatOfTheirSprings) {
   Material m;
   m.length_m = 0.03;
@@ -140,14 +146,14 @@ TEST(Energy, TheGiveOfContactsIsThatOfTheirSprings) {
   EXPECT_NEAR(rod.all_J(e), e.kinetic_J + e.stretch_J + e.bend_J + e.gravity_J + e.give_J, 1e-3 * stored_J);
 }
 
-// A rod between a fixed end and a hand's spring, drawn out and twisted, under a constant load:
-// T^2 / 2K + T^2 L / 2EA + C phi^2 / 2L less the load's F x.
+// A rod between a fixed end and a hand's spring, stretched and twisted, under a constant load. Energy: T^2 / 2K + T^2 L
+// / 2EA + C phi^2 / 2L - F x (F x: work of the load).
 TEST(Energy, AllOfItIsTheSumOfItsSprings) {
   constexpr double kSpring_N_per_m = 50.0, kPull_N = 20.0, kTurn = 0.5, kLoad_N = 5.0;
   for (const bool rolls : {false, true}) {
     Material m = unit_rod();
     m.EA_N = 1e3;
-    m.EI_N_m2 = 1e-6;  // a clamp's bend feels stretch, too: next to nothing so
+    m.EI_N_m2 = 1e-6;  // a clamp's bending moment depends on stretch, too; with this value it is negligible
     m.stretch_tau_s = m.bend_tau_s = 0.01;
     m.drag_per_s = 10.0;
     const Parts parts{

@@ -1,5 +1,5 @@
-// usage: rod-one-tick SEED PASSES: a ball of thread thrown onto a floor, one substep of so many passes over its
-// contacts. Prints what that was charged and did; test_pass_price.py counts what it cost.
+// usage: rod-one-tick SEED PASSES: a ball of thread hits a floor; one substep with that many passes over its contacts.
+// Prints the work it was charged and what it did; test_pass_price.py counts the instructions it really took.
 
 #include <cstdio>
 #include <cstdlib>
@@ -13,9 +13,9 @@ int main(int argc, char** argv) {
   numerics.tick_s = 6.25e-5;
   numerics.substeps = numerics.max_substeps = 1;
   numerics.max_passes = std::atoi(argv[2]);
-  numerics.settled_m_per_s = numerics.settled_share = 0.0;  // never: all passes are made
+  numerics.settled_m_per_s = numerics.settled_share = 0.0;  // never converged, so all passes are made
   numerics.work = 1'000'000'000;
-  // With a contact that is not of the thread with itself they are solved by passes.
+  // Contacts with the floor are solved by passes, not by Newton's method.
   Rod rod(Material{}, numerics, Parts{.twist = false, .contact = true, .friction = true, .world = true}, 154);
   crumple(rod, static_cast<unsigned>(std::atoi(argv[1])), 20.0, 2.0);
   double lowest_m = 0.0;

@@ -1,4 +1,4 @@
-// Nodes that move along the thread: nothing is cut, momentum, length and the force on a hand stay.
+// Remeshing: no strand is cut, and momentum, length and the force on a hand are preserved.
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@
 namespace ligature::test {
 namespace {
 
-// A wide helix whose turns pass close outside a straight strand of the same thread, and a tight coil that wants nodes:
-// merging two segments of the helix onto their chord would cut the strand where it runs between arc and chord.
+// A wide helix whose turns pass close outside a straight strand of the same thread, and a tight coil that attracts
+// nodes. Merging two segments of the helix into their chord would cut the strand where it runs between arc and chord.
 void helix_around_a_strand(Rod& rod, double phase, double inside_m) {
   constexpr double kRadius = 6.4e-3, kPitch = 4e-3, kTurns = 3.5, kCoil = 1.2e-3;
   std::vector<Vec> line;
@@ -37,7 +37,8 @@ void helix_around_a_strand(Rod& rod, double phase, double inside_m) {
   rod.moved();
 }
 
-TEST(Remesh, CutsNothing) {  // 60 places of the strand between arc and chord; merges must happen, crossings must not
+// 60 positions of the strand between arc and chord: segments must merge, but none may cross the strand
+TEST(Remesh, CutsNothing) {
   test::Random random(3);
   const auto phase = [&] { return random.in(0.0, 2.0 * std::numbers::pi); };
   const auto inside = [&] { return random.in(1.12, 1.6); };
@@ -69,7 +70,7 @@ Vec momentum(const State& state) {
   return sum;
 }
 
-TEST(Remesh, KeepsMomentumAndLength) {  // to rounding, in every one of the remeshes of a moving thread
+TEST(Remesh, KeepsMomentumAndLength) {  // to rounding, in every remesh of a moving thread
   Material m;
   m.length_m = 0.235;
   Numerics numerics;

@@ -1,4 +1,4 @@
-// Bends that set: what a thread keeps of a bend too sharp for it, in closed form.
+// Plastic bending: the curvature that stays after a sharp bend, against closed forms.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ using physics::rod::State;
 
 constexpr Parts kSets{
     .twist = true, .contact = false, .friction = false, .world = false, .adaptive = false, .set = true};
-constexpr double kYield = 1.0;  // 1/m
+constexpr double kYield = 1.0;  // yield curvature, 1/m
 
 Material setting_rod(double set_fraction) {
   Material m = unit_rod();
@@ -26,14 +26,14 @@ Material setting_rod(double set_fraction) {
   return m;
 }
 
-/// A rod along x, clamped at both ends, that is bent to circular arcs by turning the far one.
+/// A rod along x, clamped at both ends and bent into circular arcs by turning its far end.
 class Bender {
  public:
   explicit Bender(const Material& m, int nodes = 61, Parts parts = kSets) : rod(m, steps_of(1e-3), parts, nodes) {
     near_ = rod.clamp(0, make(0, 0, 0), make(1, 0, 0));
     far_ = rod.clamp(nodes - 1, make(1, 0, 0), make(1, 0, 0));
   }
-  /// From one curvature to another, slowly: an arc at any moment. @param watch called after each tick.
+  /// Changes the curvature slowly, so that the rod is always an arc. @param watch called after each tick.
   void bend(
       double to, int ticks, const std::function<void()>& watch = [] {}) {
     const double from = curvature_;
@@ -55,7 +55,7 @@ class Bender {
   }
   physics::rod::Hold& hold(int h) { return rod.state().holds[static_cast<std::size_t>(h)]; }
   physics::rod::Hold& near() { return hold(near_); }
-  /// Turn of the tangent at a vertex, as a vector and over its share of the rod.
+  /// The turn of the tangent at a vertex, as a vector; proportional to the curvature.
   [[nodiscard]] Vec turn(std::size_t i) const {
     const State& s = rod.state();
     return s.mesh.inv_rest[i] * (s.x[i + 1] - s.x[i]) - s.mesh.inv_rest[i - 1] * (s.x[i] - s.x[i - 1]);
@@ -64,7 +64,7 @@ class Bender {
     return norm(turn(i)) / (0.5 * (rod.state().mesh.rest[i - 1] + rod.state().mesh.rest[i]));
   }
   Rod rod;
-  double lost_J = 0.0;  ///< in bends that set
+  double lost_J = 0.0;  ///< dissipated by plastic bending
 
  private:
   int near_, far_;
@@ -79,7 +79,7 @@ TEST(Set, BelowYieldNothingDiffersInAnyBit) {
     for (int k = 0; k < 3; ++k) EXPECT_EQ(with.rod.state().x[i][k], without.rod.state().x[i][k]) << i;
 }
 
-// Bent to kappa: z = kappa - kappa_y, M = B (kappa - f z); let go: f z stays.
+// Bent to curvature kappa: z = kappa - kappa_y and M = B (kappa - f z). After unloading the curvature f z stays.
 TEST(Set, WhatABendKeepsIsItsFractionOfWhatExceedsYield) {
   for (const double f : {0.3, 0.5, 0.8}) {
     Bender b(setting_rod(f));
@@ -92,13 +92,13 @@ TEST(Set, WhatABendKeepsIsItsFractionOfWhatExceedsYield) {
       EXPECT_NEAR(bent[k], 1.2, 0.1);
       EXPECT_NEAR(norm(b.rod.spin().set(static_cast<int>(kAt[k]))) * 60.0, bent[k], 0.01 * bent[k]);
     }
-    b.bend(f * bent[1], 6000);  // no whip: it would bend the thread further near the clamp
+    b.bend(f * bent[1], 6000);  // slow unloading; an oscillation would yield the thread further near the clamp
     b.let_go(4000);
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(b.curvature(kAt[k]), f * bent[k], 0.01 * f * bent[k]) << f;
   }
 }
 
-// Farther than kappa_y (2 - f) / (1 - f) the share that did not give way bends the other back past its yield.
+// For bends beyond kappa_y (2 - f) / (1 - f), the elastic share yields the plastic one in reverse during unloading.
 TEST(Set, OfASharpBendItKeepsNoMoreThanTheOtherShareAllows) {
   Bender b(setting_rod(0.3));
   b.bend(4.0, 12000);
@@ -107,16 +107,16 @@ TEST(Set, OfASharpBendItKeepsNoMoreThanTheOtherShareAllows) {
   b.bend(0.43, 2000);
   b.let_go(4000);
   const double kept = 0.3 * kYield / 0.7;
-  // On the verge of yielding, every ripple of the way back counts.
+  // In that state every small oscillation of the unloading matters.
   for (const std::size_t i : {20U, 30U, 40U}) EXPECT_NEAR(b.curvature(i), kept, 0.02 * kept);
 }
 
-// To and fro between +-k: the loop of moment and curvature has the area 4 f B k_y (k - k_y) a length.
+// Cycle between +k and -k: the hysteresis loop of moment and curvature has the area 4 f B k_y (k - k_y) per length.
 TEST(Set, ALoopCostsItsArea) {
   constexpr double f = 0.4, k = 2.0;
   Bender b(setting_rod(f));
   double area = 0.0, moment = 0.0, turn = 0.0, most = 0.0;
-  const auto watch = [&] {  // signed by the side that the thread bends to
+  const auto watch = [&] {  // signed by the side to which the thread bends
     const State& s = b.rod.state();
     const Vec t = s.x[31] - s.x[30], aside = (1.0 / norm(t)) * make(-t[2], 0, t[0]), bend = b.turn(30);
     const double now = dot(bend, aside), m = s.mesh.weight[30] * dot(bend - s.rest_bend[30], aside);
@@ -134,7 +134,8 @@ TEST(Set, ALoopCostsItsArea) {
   EXPECT_NEAR(b.lost_J, 59.0 * vertex, 0.03 * 59.0 * vertex);
 }
 
-// A set bend belongs to the material: clamped at one end and turned there about its axis, the whole bow turns with it.
+// Set curvature is fixed to the material: when the rod is clamped at one end and turned there about its axis, the whole
+// bow turns with it.
 TEST(Set, ABowTurnsWithItsMaterial) {
   for (const bool in_every_substep : {false, true}) {
     Parts parts = kSets;
@@ -156,7 +157,7 @@ TEST(Set, ABowTurnsWithItsMaterial) {
   }
 }
 
-// Nothing but the thread itself: whatever it yields, energy only falls.
+// No external forces: plastic bending may only reduce the energy.
 TEST(Set, EnergyNeverRises) {
   Material m = setting_rod(0.6);
   m.drag_per_s = 0.0;
@@ -184,7 +185,7 @@ TEST(Set, EnergyNeverRises) {
   EXPECT_LT(lost, first);
 }
 
-// Nodes that move along the thread leave the sum of what has set, and do not wake a thread at rest.
+// Remeshing preserves the total set curvature and does not move a thread at rest.
 TEST(Set, MovingNodesKeepsIt) {
   Material m;
   m.length_m = 0.1;
@@ -195,7 +196,7 @@ TEST(Set, MovingNodesKeepsIt) {
   parts.adaptive = true;
   Rod rod(m, Numerics{}, parts, 120);
   State& s = rod.state();
-  for (std::size_t i = 1; i < s.x.size(); ++i) {  // 2000 per m at 0.016 m
+  for (std::size_t i = 1; i < s.x.size(); ++i) {  // curvature 2000 per m around s = 0.016 m
     const double at = 0.5 * (s.mesh.s[i - 1] + s.mesh.s[i]), a = 1.5 * (1.0 + std::tanh((at - 0.016) / 0.00075));
     s.x[i] = s.x[i - 1] + (s.mesh.s[i] - s.mesh.s[i - 1]) * make(std::cos(a), 0, std::sin(a));
   }
@@ -220,7 +221,7 @@ TEST(Set, MovingNodesKeepsIt) {
   }
   EXPECT_NEAR(sum(), whole, 1e-9 * whole);
   EXPECT_GE(moved, 4);
-  EXPECT_LT(fastest, 0.02);  // a coarse bow becomes a smooth one
+  EXPECT_LT(fastest, 0.02);  // a coarse bow becomes smooth
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The loose knots that scenes start from are the knots their names say, as the rod lays its nodes along them.
+// Each shipped loose knot, as the rod places its nodes along it, has the knot type of its name.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ std::string folder() { return std::string(LIGATURE_SOURCE_DIR) + "/scenes/"; }
 
 struct Shipped {
   const char *scene, *type, *handedness;
-  bool bends_set = false;  // says so in two lines of its own
+  bool bends_set = false;  // the scene enables plastic bending, in two additional lines
 };
 
 class ShippedStart : public testing::TestWithParam<Shipped> {};
@@ -61,7 +61,7 @@ TEST_P(ShippedStart, HasItsKnotAndIsLooseAndUnstretched) {
   EXPECT_LT(worst_strain, 1e-9);
   EXPECT_GT(nearest_m, 4.0 * 2.0 * scene.suture.radius_m);
   EXPECT_EQ(scene.suture.rod.yield_strain.has_value(), GetParam().bends_set);
-  EXPECT_EQ(settings(GetParam().scene), settings("suture-3-0-knot.toml"));  // nothing else differs
+  EXPECT_EQ(settings(GetParam().scene), settings("suture-3-0-knot.toml"));  // no other setting differs
 }
 
 INSTANTIATE_TEST_SUITE_P(Knots, ShippedStart,

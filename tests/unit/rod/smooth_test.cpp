@@ -1,4 +1,4 @@
-// The smooth curve that strands touch each other with.
+// The smooth curves between which contact is computed.
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ TEST(Smooth, IsACircleWhereThePolygonIsOne) {
 
 TEST(Smooth, HasNoCorners) {
   State state = nodes_on_a_circle(9, 0.6e-3, 0.5);
-  state.x[4] += make(1e-5, 4e-5, -2e-5);  // unequal lengths and corners
+  state.x[4] += make(1e-5, 4e-5, -2e-5);  // unequal lengths and turns
   for (std::size_t j = 0; j + 2 < 9; ++j) {
     const SmoothSegment one(state, j, kDiameter_m), next(state, j + 1, kDiameter_m);
     EXPECT_LT(norm(one.at(1.0) - next.at(0.0)), 1e-12);
@@ -55,7 +55,7 @@ TEST(Smooth, HasNoCorners) {
   }
 }
 
-// A segment that is cut in two on its chord, as Refine does: the curve is the same in every point.
+// Splitting a segment at a point of its chord, as Refine does, leaves the curve unchanged.
 TEST(Smooth, StaysWhereASegmentIsSplit) {
   const State whole = nodes_on_a_circle(9, 0.6e-3, 0.5);
   State split;
@@ -72,7 +72,7 @@ TEST(Smooth, StaysWhereASegmentIsSplit) {
   for (double s = 0.0; s <= 1.0; s += 0.125) EXPECT_LT(norm(still.at(s) - before.at(s)), 1e-15) << s;
 }
 
-// Four pairs at a time are what each is alone: across, side by side, without length, on the corners.
+// The four-lane version gives the same as four single calls: crossing, parallel, zero-length and corner cases.
 TEST(Smooth, FourAtATimeAreAsOne) {
   test::Random random(5);
   const auto normal = [&] { return kDiameter_m * random.normal(); };
@@ -98,8 +98,9 @@ TEST(Smooth, FourAtATimeAreAsOne) {
     for (int l = 0; l < 4; ++l) {
       const Closest chord = closest(a[l].x, a[l].x + a[l].e, b[l].x, b[l].x + b[l].e);
       EXPECT_NEAR(chords.distance2[l], chord.distance2, 1e-9 * kDiameter_m * kDiameter_m) << round << ' ' << l;
-      EXPECT_NEAR(chords.s[l], chord.s, l == 1 ? 1.0 : 1e-6) << round << ' ' << l;  // side by side any will do
-      if (l == 2) continue;  // a curve without a chord has no tangent in its middle
+      // for parallel segments any point is correct
+      EXPECT_NEAR(chords.s[l], chord.s, l == 1 ? 1.0 : 1e-6) << round << ' ' << l;
+      if (l == 2) continue;  // a curve without a chord has no tangent at its middle
       const Closest curve = closest(a[l], b[l], Closest{chords.s[l], chords.t[l], 0.0, Vec{}});
       EXPECT_NEAR(curves.distance2[l], curve.distance2, 1e-9 * kDiameter_m * kDiameter_m) << round << ' ' << l;
       EXPECT_NEAR(curves.t[l], curve.t, 1e-6) << round << ' ' << l;
@@ -119,7 +120,8 @@ TEST(Smooth, ClosestPointsOfBentStrands) {
         const SmoothSegment one(a, i, kDiameter_m), other(b, j, kDiameter_m);
         const Closest chords = closest(a.x[i], a.x[i + 1], b.x[j], b.x[j + 1]);
         const double least = closest_by_trying(one, other);
-        if (least > 1.2 * kDiameter_m || least < 0.9 * kDiameter_m) continue;  // no contact, or no such contact
+        // no contact, or an overlap that does not occur
+        if (least > 1.2 * kDiameter_m || least < 0.9 * kDiameter_m) continue;
         EXPECT_NEAR(std::sqrt(closest(one, other, chords).distance2), least, 1e-2 * kDiameter_m) << k;
         EXPECT_LT(std::abs(least - std::sqrt(chords.distance2)), one.bulge() + other.bulge() + 1e-9);
       }
@@ -127,22 +129,23 @@ TEST(Smooth, ClosestPointsOfBentStrands) {
   }
 }
 
-// Nodes far apart: a corner is cut by no more than a third of a diameter, or strands would pass each other.
+// With a coarse mesh, smoothing moves a corner by at most a third of a diameter; more would let strands pass each
+// other.
 TEST(Smooth, CutsNoMoreThanStrandsCanSpare) {
   const State state = nodes_on_a_circle(8, 12e-3, 0.5);
   const SmoothSegment segment(state, 3, kDiameter_m);
   EXPECT_NEAR(norm(segment.at(0.0) - state.x[3]), SmoothSegment::kMostCut * kDiameter_m, 1e-9);
 }
 
-// A straight strand slides along a bent one: the direction in which they push each other apart turns steadily. Between
-// chords it jumps by the angle of a corner.
+// A straight strand slides along a bent one: the contact normal turns continuously. Between chords it would jump at
+// each corner.
 TEST(Smooth, NormalTurnsSteadily) {
   constexpr double kTurn = 0.4;
   const State bent = nodes_on_a_circle(14, 1e-3, kTurn);
   const auto largest_step = [&](bool smooth) {
     Vec before{};
     double largest = 0.0;
-    for (double angle = -1.0; angle < 1.0; angle += 0.005) {  // on the inside of the bend
+    for (double angle = -1.0; angle < 1.0; angle += 0.005) {  // on the inner side of the bend
       const double r = 1e-3 - kDiameter_m;
       const Vec at = make(r * std::sin(angle), 0, 1e-3 - r * std::cos(angle));
       State strand;

@@ -1,4 +1,4 @@
-// Roll of every segment: threads born curved, threads that friction turns.
+// Roll of the segments: threads with a curved rest shape, and threads that friction rolls.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,8 @@ Material nylon(double length_m) {
   return m;
 }
 
-// Package memory: a free thread curls up to the radius it was wound with. Laid straight it would not know where to.
+// Package memory: a free thread curls to the radius on which it was wound. A perfectly straight start would have no
+// preferred direction.
 TEST(RestCurvature, AFreeThreadRelaxesToACircularArc) {
   for (const int nodes : {30, 60}) {
     Material m = nylon(0.06);
@@ -42,13 +43,13 @@ TEST(RestCurvature, AFreeThreadRelaxesToACircularArc) {
     const std::size_t n = x.size();
     for (std::size_t i = n / 6; i < n - n / 6 - 4; i += 2)
       EXPECT_NEAR(radius_through(x[i], x[i + 2], x[i + 4]), 0.02, 0.005 * 0.02) << nodes << " nodes, at " << i;
-    // 0.06 m on a radius of 0.02 m: 3 rad, the chord of it.
+    // 0.06 m on a radius of 0.02 m is an arc of 3 rad; its chord is compared.
     EXPECT_NEAR(norm(x[n - 1] - x[0]), 2.0 * 0.02 * std::sin(1.5), 0.005 * 0.04);
     EXPECT_LT(rod.energy().bend_J + rod.twist_energy_J(), 1e-6 * 0.5 * m.EI_N_m2 * 50.0 * 50.0 * 0.06);
   }
 }
 
-// Curvature k about an axis that turns by t along the thread: a helix of radius k / (k^2 + t^2).
+// Rest curvature k about an axis that rotates by t per length: a helix of radius k / (k^2 + t^2).
 TEST(RestCurvature, WithARestTwistAFreeThreadRelaxesToAHelix) {
   Material m = nylon(0.06);
   m.born_curvature_per_m = 60.0;
@@ -56,7 +57,8 @@ TEST(RestCurvature, WithARestTwistAFreeThreadRelaxesToAHelix) {
   Rod rod(m, Numerics{}, kRolling, 80);
   for (int k = 0; k < 4000; ++k) rod.tick();
   const auto& x = rod.state().x;
-  // A chord of arc s of a helix: (2 a sin(w s / 2))^2 + (b w s)^2, w^2 = k^2 + t^2, a = k / w^2, b = t / w^2.
+  // Chord of an arc of length s of a helix: (2 a sin(w s / 2))^2 + (b w s)^2, w^2 = k^2 + t^2, a = k / w^2, b = t /
+  // w^2.
   const double w = std::hypot(60.0, 80.0), a = 60.0 / (w * w), rise = 80.0 / w;
   for (const std::size_t span : {20U, 40U, 60U}) {
     const double s = 0.06 * static_cast<double>(span) / 79.0;
@@ -65,7 +67,7 @@ TEST(RestCurvature, WithARestTwistAFreeThreadRelaxesToAHelix) {
   }
 }
 
-// The roll follows its own law: a rod clamped with roll at both ends and turned by an angle is under C angle / L.
+// A rod clamped with roll at both ends and turned by an angle has the twisting moment C angle / L.
 TEST(Spin, TurnedEndsTwistEvenly) {
   Material m = unit_rod();
   m.GJ_N_m2 = 0.8;
@@ -80,7 +82,7 @@ TEST(Spin, TurnedEndsTwistEvenly) {
   for (const std::size_t i : {1U, 20U, 39U}) EXPECT_NEAR(rod.forces().twist_moment[i], 0.8 * 2.0, 1e-3 * 1.6);
 }
 
-/// A thread along x on a desk at z = 0, at rest.
+/// A thread at rest along x, on a desk at z = 0.
 Rod on_a_desk(const Material& material, int nodes) {
   Rod rod(material, Numerics{}, kOnADesk, nodes, 1);
   rod.has_floor = true;
@@ -90,21 +92,22 @@ Rod on_a_desk(const Material& material, int nodes) {
   return rod;
 }
 
-// A cylinder across a slope: I = m r^2 / 2, so it goes at 2/3 g sin(angle) as long as friction can turn it.
+// A cylinder across a slope: with I = m r^2 / 2 it accelerates at 2/3 g sin(angle) as long as friction suffices to roll
+// it.
 TEST(Turning, AThreadRollsDownASlopeAtTwoThirds) {
   Material m = nylon(0.03);
   m.drag_per_s = 0.0;
   m.friction = 0.3;
   Rod rod = on_a_desk(m, 30);
-  const double slope = 0.2;  // tan 0.2027 < 3 mu
+  const double slope = 0.2;  // rad; rolling without slip needs tan(angle) < 3 mu
   rod.gravity = make(0, kG * std::sin(slope), -kG * std::cos(slope));
   for (int k = 0; k < 100; ++k) rod.tick();
   const auto& s = rod.state();
   EXPECT_NEAR(s.v[15][1], 2.0 / 3.0 * kG * std::sin(slope) * 0.1, 0.01 * 2.0 / 3.0 * kG * std::sin(slope) * 0.1);
-  EXPECT_NEAR(std::abs(rod.spin().rate(15)) * m.radius_m, s.v[15][1], 0.01 * s.v[15][1]);  // it does not slip
+  EXPECT_NEAR(std::abs(rod.spin().rate(15)) * m.radius_m, s.v[15][1], 0.01 * s.v[15][1]);  // rolls without slip
 }
 
-// Steeper than 3 mu it slips and rolls: g (sin - mu cos) forwards, 2 mu g cos / r round.
+// On a slope steeper than 3 mu it slips and rolls: acceleration g (sin - mu cos), angular acceleration 2 mu g cos / r.
 TEST(Turning, TooSteepItSlipsWhileItRolls) {
   Material m = nylon(0.03);
   m.drag_per_s = 0.0;
@@ -119,10 +122,10 @@ TEST(Turning, TooSteepItSlipsWhileItRolls) {
               0.02 * 0.2 * kG * 0.1);
 }
 
-// Held in line at both ends, pressed on the desk and spun from one: the torque it takes is mu N r.
+// A thread fixed in line at both ends, pressed on the desk and spun at one end: the torque is mu N r.
 TEST(Turning, SpinningUnderALoadTakesMuNR) {
   Material m = nylon(0.02);
-  m.EI_N_m2 = 4e-6;  // the desk pushes it aside by mu N; stiff enough to stay in line
+  m.EI_N_m2 = 4e-6;  // stiff enough to stay in line although the desk pushes it sideways by mu N
   m.friction = 0.3;
   Rod rod = on_a_desk(m, 21);
   const int turner = rod.clamp(0, rod.state().x[0], make(1, 0, 0));

@@ -1,5 +1,4 @@
-// What a hand feels and what happens to energy while the knot of scenes/suture-3-0-knot.toml is pulled tight, held and
-// let go.
+// Force on a hand, and energy, while the knot of scenes/suture-3-0-knot.toml is pulled tight, held and released.
 
 #include <gtest/gtest.h>
 
@@ -14,18 +13,17 @@
 namespace ligature::test {
 namespace {
 
-// What remeshing does to the force on the hands, against a twin whose mesh stands still in that tick. Without friction,
-// whose stick and slip answers the slightest difference with steps of its own (3 % of 0.1 N, also between twins that do
-// not remesh).
+// Change of the hands' force by remeshing, against a copy whose mesh stays fixed in that tick. Friction is off, because
+// stick and slip amplify any small difference (3 % of 0.1 N, even between copies that do not remesh).
 struct MeshSteps {
   int remeshes = 0;
-  double beyond_N = -1.0;  ///< the largest less 0.5 % of the tension
+  double beyond_N = -1.0;  ///< largest force step minus 0.5 % of the tension
 };
 
 MeshSteps steps_of_a_pull(double speed) {
   Tightening pull({"contact.friction=0"});
   auto& numerics = pull.sim().rod().numerics();
-  numerics.settled_m_per_s = 1e-6;  // contacts solved so far that what is left is the mesh's doing
+  numerics.settled_m_per_s = 1e-6;  // converged so far that the remaining difference is the mesh's
   numerics.settled_share = 0.0;
   numerics.max_passes = 200;
   numerics.work = 400'000'000;
@@ -44,15 +42,16 @@ MeshSteps steps_of_a_pull(double speed) {
   return steps;
 }
 
-// 0.5 % of the tension and 3 mN: in a tick strands slide by more than a segment, on the one mesh and on the other.
+// Limit: 0.5 % of the tension plus 3 mN, because strands slide by more than a segment per tick in either mesh.
 TEST(FineZone, MovesWithoutAForceStep) {
   const MeshSteps steps = steps_of_a_pull(0.2);
   EXPECT_GT(steps.remeshes, 10);
   EXPECT_LT(steps.beyond_N, 3e-3);
 }
 
-// Where they slide by a tenth of one it is remeshing alone: 0.5 % of the tension (0.25 mN below that; 0.17 above when a
-// split does not keep the bending moments, 0.55 when not the smooth curve, which the faster pull does not see).
+// Strands slide by a tenth of a segment per tick, so remeshing alone is measured. Limit: 0.5 % of the tension.
+// Measured: 0.25 mN below it; 0.17 mN above it if a split does not preserve the bending moments, and 0.55 mN above it
+// if a split does not preserve the smooth curve. The faster pull does not detect these errors.
 TEST(FineZone, ItselfHardlyStepsTheForce) {
   const MeshSteps steps = steps_of_a_pull(0.02);
   EXPECT_GT(steps.remeshes, 10);
@@ -60,8 +59,8 @@ TEST(FineZone, ItselfHardlyStepsTheForce) {
   RecordProperty("beyond_mN", std::to_string(1e3 * steps.beyond_N));
 }
 
-// Virtual work: an impulse acts on the nodes as the gap depends on them. The points of the smooth curves are weighted
-// means of nodes, so the weights of a row lead from one curve to the other: n . sum w_k x_k is the distance itself.
+// Virtual work: an impulse acts on the nodes with the gap's derivatives. Points of the smooth curves are weighted means
+// of nodes, so with a contact row's weights w_k, n . sum w_k x_k must equal the gap's distance.
 TEST(Sliding, ForcesActOnWhatTheGapIsMeasuredOn) {
   Tightening pull;
   for (int k = 0; k < 1000 && Tightening::force(pull.sim()) < 2.0; ++k) pull.tick(0.2);
@@ -85,10 +84,11 @@ TEST(Sliding, ForcesActOnWhatTheGapIsMeasuredOn) {
   RecordProperty("worst_d", std::to_string(worst_m / 3e-4));
 }
 
-// A slack loop that lies against the tight knot is drawn as finely as the knot: two to four diameters long it was.
+// A slack loop that touches the tight knot is meshed as finely as the knot, not with segments of two to four diameters.
 TEST(FineZone, CoversWhatLiesAgainstIt) {
   Tightening pull({}, "suture-3-0-square.toml");
-  pull.sim().rod().numerics().work = 40'000'000;  // tight needs more passes than the rig has time for
+  // converging a tight knot needs more passes than the default budget allows
+  pull.sim().rod().numerics().work = 40'000'000;
   for (int k = 0; k < 100; ++k) pull.tick(0.0);
   for (int k = 0; k < 1000 && Tightening::force(pull.sim()) < 5.0; ++k) pull.tick(0.2);
   for (int k = 0; k < 500; ++k) pull.tick(0.0);
@@ -102,8 +102,8 @@ TEST(FineZone, CoversWhatLiesAgainstIt) {
   EXPECT_GT(loaded, 10);
 }
 
-// Of a knot pulled to 5 N, held, and let go by both hands: the largest rise of all that is kinetic or stored, contacts'
-// give too, in a tick of a second, and what there was at first and at last.
+// A knot pulled to 5 N, held, and released by both hands: the largest rise of the total energy (kinetic, elastic and of
+// the contacts' compliance) per tick within one second, and the energy at start and end.
 struct Released {
   double rise_J = 0.0, start_J = 0.0, end_J = 0.0, give_J = 0.0, overlap_d = 0.0, lost = 0.0;
 };
@@ -132,7 +132,7 @@ Released release(const char* scene, double speed, bool sudden) {
   return r;
 }
 
-// Contact, friction, remeshing on. The tight knot keeps most of its bending for good.
+// Contact, friction and remeshing are on. The tight knot keeps most of its bending energy.
 TEST(Energy, NeverRisesWhileNobodyPulls) {
   for (const bool sudden : {true, false}) {
     const Released r = release("suture-3-0-knot.toml", 0.2, sudden);
@@ -142,9 +142,9 @@ TEST(Energy, NeverRisesWhileNobodyPulls) {
   }
 }
 
-// Two throws jam, and their work runs out. Contacts that may close as fast as a free end whips, and bends that come
-// back as nodes that moved are forgotten, gave them up to 3 % of what was stored in a tick. What is left: a jam that
-// waits in vain goes on by sweeps, and the brake lets its overlaps deepen by 1e-4 d, which is rare and 1e-6 J or two.
+// Two throws jam and use up the budget. Energy would rise by up to 3 % of the stored energy in a tick if the contact
+// tolerance grew with the free end's speed, or if bending reappeared after remeshing. A rare rise of 1e-6 to 2e-6 J is
+// tolerated: when a waiting jam falls back to sweeps, the brake lets overlaps deepen by 1e-4 d.
 TEST(Energy, NeverRisesWhileNobodyPullsTwoThrows) {
   int rises = 0;
   for (const char* scene : {"suture-3-0-square.toml", "suture-3-0-surgeons.toml"}) {
@@ -162,8 +162,8 @@ TEST(Energy, NeverRisesWhileNobodyPullsTwoThrows) {
   EXPECT_LE(rises, 1);
 }
 
-// What the hands feel while the strands slide over each other. Between chords, whose normal jumps at every corner, it
-// was 2 to 4 %.
+// Force on the hands while the strands slide over each other. With contact between chords, whose normal jumps at every
+// corner, its chatter was 2 to 4 %.
 TEST(Sliding, IsSmooth) {
   Tightening pull;
   std::vector<double> force;

@@ -1,4 +1,4 @@
-// Where a contact presses: the points follow what slides, and do not ring where what they do comes back a step late.
+// Contact points follow sliding strands, and do not oscillate although the strands respond one substep late.
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@ namespace {
 
 using physics::rod::Touch;
 
-// What presses at x has turned the strands, so that their nearest points are at -gain x in the next substep. Going all
-// the way each time, x grows by the gain.
+// Pressing at x turns the strands, so that in the next substep their closest points are at -gain x. Following them
+// fully would multiply x by the gain in each substep.
 void ring(Touch& touch, double gain, int substeps) {
   for (int k = 0; k < substeps; ++k) touch.follow(-gain * touch.a, -gain * touch.b);
 }
@@ -37,7 +37,7 @@ TEST(Touch, FollowsWhatSlidesWithoutLag) {
   }
 }
 
-TEST(Touch, FollowsAgainWithinTwoMillisecondsOfRinging) {  // 32 substeps
+TEST(Touch, FollowsAgainWithinTwoMillisecondsOfRinging) {  // 2 ms are 32 substeps
   constexpr double kWay = 1e-6;
   Touch touch;
   touch.begin(1e-4, 0.0);

@@ -1,4 +1,4 @@
-// A gripper that knows how it is turned holds direction and roll of the thread, and turns both.
+// A gripper with an orientation holds the thread's direction and roll, and turns both.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using physics::rod::RodSimulation;
 
 constexpr double kPi = std::numbers::pi, kLength = 0.03;
 
-/// A straight thread along x, clamped at the origin; no weight.
+/// A straight thread along x, clamped at the origin, without gravity.
 RodSimulation thread(double width_m, bool rolls = false) {
   scene::Scene s;
   s.suture.model = scene::Model::kRod;
@@ -41,7 +41,7 @@ RodSimulation thread(double width_m, bool rolls = false) {
   return std::get<RodSimulation>(std::move(made));
 }
 
-/// The left hand closes on the end and then turns by `angle` about `axis`, in 0.5 s; slack_m back towards the clamp.
+/// The left hand grips the end and then turns by `angle` about `axis` in 0.5 s, `slack_m` closer to the clamp.
 void turn(RodSimulation& sim, const Vec3& axis, double angle, double slack_m = 0.0) {
   std::array<ToolInput, 2> tools{};
   tools[1].p_WT = Vec3(1e3, 1e3, 1e3);
@@ -62,13 +62,13 @@ TEST(TurnedGrip, TwistsTheThreadByItsAngle) {
       const auto& rod = sim.rod();
       const double free_m = rod.state().mesh.s[static_cast<std::size_t>(sim.hand(Hand::kLeft).node)];
       const double wanted = rod.material().GJ_N_m2 * 0.75 * kPi / (width_m > 0.0 ? free_m : kLength);
-      const double tolerance = width_m > 0.0 ? 0.08 : 0.01;  // which of the nodes between the jaws holds the roll
+      const double tolerance = width_m > 0.0 ? 0.08 : 0.01;  // which node between the jaws holds the roll is not exact
       EXPECT_NEAR(std::abs(rod.forces().twist_moment[5]), wanted, tolerance * wanted) << width_m << rolls;
     }
   }
 }
 
-// Four turns, in steps that a quaternion can tell: the thread counts them.
+// Four whole turns, in steps small enough for a quaternion: the thread counts them.
 TEST(TurnedGrip, CountsWholeTurns) {
   auto sim = thread(0.0);
   turn(sim, Vec3(1, 0, 0), 4.0 * kPi);
@@ -78,7 +78,7 @@ TEST(TurnedGrip, CountsWholeTurns) {
 TEST(TurnedGrip, ImposesTheDirection) {
   for (const double width_m : {0.0, 0.004}) {
     auto sim = thread(width_m);
-    turn(sim, Vec3(0, 0, 1), 0.5, 0.001);  // taut, it would bend within a millimetre of the grip
+    turn(sim, Vec3(0, 0, 1), 0.5, 0.001);  // a taut thread would bend within a millimetre of the grip
     const auto x = sim.nodes_W();
     const Vec3 end = (x[30] - x[29]).normalized();
     EXPECT_NEAR(std::atan2(end.y(), end.x()), 0.5, 0.05) << width_m;  // half a segment bends beyond the grip
@@ -86,7 +86,7 @@ TEST(TurnedGrip, ImposesTheDirection) {
   }
 }
 
-// Without an orientation nothing imposes a direction at a single node: the thread stays straight.
+// Without an orientation, a grip at a single node imposes no direction: the thread stays straight.
 TEST(TurnedGrip, WithoutAnOrientationAGripIsAPoint) {
   auto sim = thread(0.0);
   std::array<ToolInput, 2> tools{};

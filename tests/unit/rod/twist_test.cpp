@@ -1,4 +1,4 @@
-// Twist: its force against its energy. (The instabilities are cases of the validation.)
+// The twist force against its energy. (Twist instabilities are validation cases.)
 
 #include <gtest/gtest.h>
 

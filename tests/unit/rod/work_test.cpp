@@ -1,4 +1,5 @@
-// The work of a tick is bounded for any state: counted in instructions priced beforehand (rod/work.hpp), never timed.
+// The work of a tick is bounded in any state: it is counted in instructions priced beforehand (rod/work.hpp), not
+// timed.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,7 @@ struct Hostile {
   bool finite = true;
 };
 
-// Both hands leave at hand_m_per_s; every tick is checked for what crossed in it, tick by tick of one substep.
+// Moves the hands apart at hand_m_per_s; each tick is a single substep and is checked for crossings.
 Hostile attack(Rod rod, unsigned seed, double ball, double thrown_m_per_s, double hand_m_per_s, int ticks) {
   crumple(rod, seed, ball, thrown_m_per_s);
   const int n = rod.state().nodes();
@@ -59,7 +60,7 @@ TEST(Work, NoStateCostsMoreThanTheBudget) {  // 154 to 2000 nodes, at rest and t
   }
 }
 
-TEST(Work, NothingCrossesInACrumpledBall) {  // one substep a tick, so that every step is checked
+TEST(Work, NothingCrossesInACrumpledBall) {  // one substep per tick, so that every step is checked
   Numerics numerics;
   numerics.tick_s = 6.25e-5;
   numerics.substeps = numerics.max_substeps = 1;
@@ -78,7 +79,7 @@ TEST(Work, NothingCrossesInACrumpledBall) {  // one substep a tick, so that ever
   EXPECT_GT(given_up, 0);
 }
 
-TEST(Work, SaysWhatItGaveUp) {  // time: what has not settled waits; contacts stay
+TEST(Work, SaysWhatItGaveUp) {  // what is given up is time: unconverged substeps wait, and contacts are kept
   Numerics numerics;
   numerics.work = 2'700'000;
   Rod rod(Material{}, numerics, Parts{false, true, true, false, false}, 154);
