@@ -11,7 +11,7 @@ namespace {
 
 using test::V;
 
-/// Shape number k of n nodes: every eighth is degenerate.
+/// Test shape number k with n nodes; half of the shapes are degenerate or regular.
 Lane3 shape(int k, int n, test::Random& random) {
   Lane3 p(n);
   V at = random.vector(3.0);
@@ -64,7 +64,7 @@ TEST(BroadPhase, SweepAndTreeReportThePairsOfBruteForceInTenThousandShapes) {
   EXPECT_GT(found, 100000U);
 }
 
-// Nothing that touches is missed: brute force against the distances themselves.
+// Brute force itself against the distances: no touching pair is missing.
 TEST(BroadPhase, BruteForceMissesNoTouchingPair) {
   test::Random random(6);
   SegmentSpheres spheres(40);
@@ -92,7 +92,7 @@ TEST(BroadPhase, AFullListSaysSo) {
   EXPECT_EQ(pairs.pairs.size(), 5U);
 }
 
-// Dense sampling bounds the distance from above; the closest points must not be farther apart than it.
+// Densely sampled pairs bound the distance from above; the closest points must not be farther apart.
 TEST(ClosestPoints, AreNoFartherThanAnySampledPair) {
   test::Random random(12);
   auto states = test::degenerate_nodes(4, 13);

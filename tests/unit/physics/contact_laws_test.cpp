@@ -1,4 +1,5 @@
-// Equations (1)-(3), (18)-(22) and the separation of V.A as pure functions, printed and corrected.
+// The paper's equations (1)-(3), (18)-(22) and the separation of section V.A as pure functions, as printed and
+// corrected.
 #include <gtest/gtest.h>
 
 #include "firmware/physics/contact_row.hpp"
@@ -16,7 +17,7 @@ TEST(Repulsion, PushesWhenOverlappingAndNeverPullsWhenClamped) {
   const Repulsion k;
   EXPECT_DOUBLE_EQ(repulsion_N(k, 0.05, 0.08, 0.0), 2.0);
   EXPECT_DOUBLE_EQ(repulsion_N(k, 0.05, 0.08, -1.0), 7.0);
-  EXPECT_DOUBLE_EQ(repulsion_N(k, 0.05, 0.08, 1.0), 0.0);          // separating: the damper would pull
+  EXPECT_DOUBLE_EQ(repulsion_N(k, 0.05, 0.08, 1.0), 0.0);  // separating: without the clamp the damper would pull
   EXPECT_DOUBLE_EQ(repulsion_N(k, 0.05, 0.08, 1.0, false), -3.0);  // as printed
 }
 
@@ -61,7 +62,8 @@ TEST(ImpulseResponse, ConservesBothMomentaAndGivesOneToTwoTimesTheImpulse) {
       const V change = velocity_after(s.v[e], part[e], applied, 1.0 / m, n) - s.v[e];
       linear = linear + m * change, angular = angular + m * cross(s.p[e], change);
     }
-    // C and E are apart along n in a contact, so equal impulses there have no torque; here: torque is exactly theirs.
+    // The impulses act at C and E, which in a contact differ only along n, so they exert no torque; for arbitrary
+    // points the torque must be that of these impulses.
     const V c = (1 - a) * s.p[0] + a * s.p[1], e = (1 - b) * s.p[2] + b * s.p[3];
     EXPECT_LE(norm(linear), 1e-12);
     EXPECT_LE(norm(angular - cross(c - e, applied * n)), 1e-12);
@@ -82,8 +84,7 @@ TEST(Separation, OpensTheGapToTheSafetyMarginAndKeepsTheCentreOfMass) {
   EXPECT_EQ(separation_m(0.05, 0.11, 1e-3), 0.0);
 }
 
-// The cone projection is what a contact does with friction: sticking inside, sliding outside, nothing when pulled
-// apart.
+// Projection onto the friction cone: sticking inside, sliding outside, and zero where the contact would pull.
 TEST(FrictionCone, SticksInsideSlidesOutsideAndNeverPulls) {
   const Pack n{0, 0, 1, 0};
   const Pack inside = project_on_cone(Pack{0.2, 0, 1, 0}, n, 0.3, 0.25);

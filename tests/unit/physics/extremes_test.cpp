@@ -1,5 +1,5 @@
-// Scenes far outside what anyone would ask for: the result is finite, or the simulation says where it stopped and holds
-// the last finite state. Never a NaN, never a hang.
+// Scenes with extreme parameters: the result is finite, or the simulation reports where it stopped and keeps the last
+// finite state. Never a NaN, never a hang.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ bool all_finite(const Simulation& sim) {
   return fine;
 }
 
-/// Plays the script for 300 ticks; everything readable is finite at every tick.
+/// Plays the script for 300 ticks and checks that all outputs are finite at every tick.
 void expect_finite_or_stopped(Simulation& sim, const std::string& what) {
   const auto script = overhand();
   for (int k = 0; k < 300; ++k) {

@@ -1,4 +1,4 @@
-// What the facade promises of every model alike.
+// What the facade guarantees for every thread model.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 using test::make;
 using test::paper_scene;
 
-/// The paper's scene, its thread by another model: a file would have to leave out the keys that are not that model's.
+/// The paper's scene with another thread model, set directly; in a file, keys of other models would have to be removed.
 scene::Scene scene_of(scene::Model model, const std::vector<std::string>& overrides = {}) {
   auto scene = paper_scene(overrides);
   scene.suture.model = model;
@@ -23,7 +23,7 @@ scene::Scene scene_of(scene::Model model, const std::vector<std::string>& overri
 class Facade : public testing::TestWithParam<scene::Model> {
  protected:
   Simulation sim_ = make(scene_of(GetParam()));
-  /// The left hand's button is down at a node in the middle of the thread.
+  /// Tools of which the left one grips at a node in the middle of the thread.
   std::array<ToolInput, 2> holding() const { return {ToolInput{sim_.nodes_W()[25], Vec3::Zero(), true}, ToolInput{}}; }
 };
 
@@ -61,7 +61,7 @@ TEST_P(Facade, GoesOnFromAnotherOneOfItsModelAndNumberOfNodesOnly) {
   EXPECT_EQ(same.hand(Hand::kLeft).node, sim_.hand(Hand::kLeft).node);
 }
 
-/// Measured to the thread, not to a node: those are 10 cm apart.
+/// The reach is measured to the thread, not to its nodes, which are 10 cm apart.
 TEST_P(Facade, JawsHoldWhatIsWithinTheirReach) {
   const Simulation start = make(scene_of(GetParam(), {"hands.reach_m=0.06"}));
   const Vec3 between = 0.5 * (start.nodes_W()[25] + start.nodes_W()[26]);
@@ -81,7 +81,8 @@ TEST_P(Facade, JawsHoldWhatIsWithinTheirReach) {
   EXPECT_GE(close_at(far, 0.0), 25);
 }
 
-/// Half a metre beside the thread, the tool moving: nothing steps and nothing is thrown; then the node is held itself.
+/// Jaws close half a metre beside the thread while the tool moves: the force has no step, the thread is not thrown, and
+/// in the end the node itself is held.
 TEST_P(Facade, JawsThatCloseFarOffBringTheThreadGently) {
   constexpr double kOff_m = 0.5, kSpeed_m_per_s = 0.2;
   constexpr double kSpring_N_per_m = 1200.0;
@@ -101,12 +102,12 @@ TEST_P(Facade, JawsThatCloseFarOffBringTheThreadGently) {
   std::printf("closed 0.5 m off: steps of %.2f N at most, %.1f N at most\n", step_N, most_N);
   const HandContact& hand = sim_.hand(Hand::kLeft);
   ASSERT_GE(hand.node, 0);
-  EXPECT_LT(step_N, 0.03 * kSpring_N_per_m * kOff_m);  // all of it at once without
+  EXPECT_LT(step_N, 0.03 * kSpring_N_per_m * kOff_m);  // without a gradual approach the whole force would act at once
   EXPECT_LT(most_N, 0.3 * kSpring_N_per_m * kOff_m);
   EXPECT_EQ(hand.p_WG, sim_.nodes_W()[static_cast<std::size_t>(hand.node)]);
 }
 
-/// The paper's node stands for half a segment on either side: thread that is between the jaws already is not eased.
+/// In the paper's models a node stands for half a segment on either side, so thread between the jaws is held at once.
 TEST(PaperGrasp, HoldsAtOnceWhatIsBetweenTheJaws) {
   Simulation sim = make(paper_scene({}));
   const Vec3 a = sim.nodes_W()[25], b = sim.nodes_W()[26];
@@ -118,7 +119,8 @@ TEST(PaperGrasp, HoldsAtOnceWhatIsBetweenTheJaws) {
   EXPECT_GT(hand.f_W.norm(), 0.5 * 1200.0 * 0.3 * (b - a).norm());
 }
 
-/// A tool in a held, an open and a turned grip; a shape or a motion put in: none may reach the thread.
+/// NaN or infinity in a tool of any grip (closed, open, with orientation), in a shape or in a velocity: it must not
+/// change the thread.
 TEST_P(Facade, WhatIsNoNumberStopsItAsItIs) {
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
   const auto shape = [](const Simulation& sim) {
@@ -170,7 +172,7 @@ TEST_P(Facade, WhatIsNoNumberStopsItAsItIs) {
 INSTANTIATE_TEST_SUITE_P(Models, Facade, testing::Values(scene::Model::kPaper4, scene::Model::kRod),
                          [](const auto& model) { return model.param == scene::Model::kRod ? "Rod" : "Paper"; });
 
-/// A thread crushed into less than its own thickness: every pair of segments touches, more than any list holds.
+/// A thread compressed into less than its own diameter: every pair of segments touches, more than the list can hold.
 TEST(Bounds, AListOfContactsThatIsFullSaysSoAndGrowsNoFurther) {
   for (const char* solver : {"implicit", "paper"}) {
     auto crushed = [&](int nodes) {

@@ -1,4 +1,5 @@
-// Equations (4)-(15) as pure functions: momentum, energy and gradients on 2,000 random states and the degenerate ones.
+// The paper's equations (4)-(15) as pure functions: momentum, energy and gradients for 2,000 random and for degenerate
+// states.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -74,7 +75,7 @@ std::vector<Nodes> states(int n) {
   return all;
 }
 
-/// Internal: nothing is left over, neither force nor torque, to 1e-12 of the largest force (lever arms are about 1 m).
+/// Internal forces: total force and torque vanish to 1e-12 of the largest force (lever arms are about 1 m).
 void expect_internal(int n, const Law& law) {
   for (const Nodes& s : states(n)) {
     const Forces f = law(s);
@@ -96,8 +97,8 @@ void expect_idle_in_rigid_motion(int n, const Law& law) {
     EXPECT_LE(test::largest_of(law(s)), 1e-12 * std::max(1.0, moving));
   }
 }
-/// Central difference with step ~eps^(1/3): error ~eps^(2/3) of the energy over the step. States whose bend is within
-/// 0.01 of straight or folded are left out: there the energy has a kink or the difference straddles it.
+/// Central difference with step ~eps^(1/3); error ~eps^(2/3) of energy / step. States with a bend within 0.01 of
+/// straight or folded are skipped: the energy has a kink there.
 void expect_minus_gradient(int n, const Law& law, const std::function<double(const Nodes&)>& energy) {
   test::Random random(10);
   constexpr double h = 6e-6;
@@ -136,7 +137,7 @@ TEST(DihedralDamper, NeverAddsPower) { expect_dissipative(4, dihedral_damping); 
 TEST(DihedralDamper, IsIdleInRigidMotion) { expect_idle_in_rigid_motion(4, dihedral_damping); }
 TEST(PaperSwivel, NeverAddsPowerButIsNotInternal) {
   expect_dissipative(3, paper_swivel);
-  // Documented: it brakes rigid rotation, which no internal force does.
+  // Documented property of the paper's law: it brakes rigid rotation, which an internal force should not do.
   test::Random random(11);
   Nodes s = random.nodes(3);
   s.v = test::rigid_velocities(s.p, {0, 0, 0}, {1.0, 2.0, 3.0});
@@ -151,7 +152,7 @@ TEST(BendAngle, IsExactAtEveryAngle) {
 }
 TEST(BendSpring, PushesFoldedSegmentsApartAtFullForce) {
   Nodes s;
-  s.p = {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}};  // folded back exactly: E = k pi / 2, |dE/dP| = k / l
+  s.p = {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}};  // exactly folded back: E = k pi / 2, |dE/dP| = k / l
   const Forces f = bend_spring(s);
   EXPECT_NEAR(norm(f[0]), 10.0, 1e-12);
   EXPECT_NEAR(norm(f[2]), 10.0, 1e-12);

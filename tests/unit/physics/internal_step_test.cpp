@@ -1,4 +1,4 @@
-// The step of the internal forces: what implicit dampers may and may not do, for every model and any coefficient.
+// The internal-force step: properties of implicit dampers for every model and any coefficient.
 #include <gtest/gtest.h>
 
 #include "firmware/physics/internal_step.hpp"
@@ -41,7 +41,7 @@ TEST(InternalStep, ConservesBothMomentaInEveryModel) {
     }
 }
 
-// Every damper alone and all together, coefficients over twelve decades: kinetic energy never grows.
+// Each damper alone and all together, with coefficients over twelve decades: the kinetic energy never grows.
 TEST(InternalStep, ImplicitDampersNeverAddEnergyAtAnyCoefficient) {
   test::Random random(2);
   for (int k = 0; k < 4000; ++k) {
@@ -70,7 +70,7 @@ TEST(InternalStep, ImplicitDampersLeaveRigidMotionAlone) {
   }
 }
 
-// First order in the step: for small coefficients the implicit damper is the explicit one.
+// For small coefficients the implicit damper equals the explicit one to first order in the time step.
 TEST(InternalStep, ImplicitDampingTendsToTheExplicitOneForSmallCoefficients) {
   test::Random random(4);
   scene::Suture as_printed = suture(scene::Model::kPaper4);
@@ -87,7 +87,8 @@ TEST(InternalStep, ImplicitDampingTendsToTheExplicitOneForSmallCoefficients) {
   }
 }
 
-// Alone, in either model that has one: what swings out of the bends' planes loses energy, what does not is left alone.
+// The swivel damper alone, in either model that has one: motion out of the bends' planes loses energy, other motion
+// does not.
 TEST(InternalStep, ASwivelDamperTakesEnergyFromWhatSwings) {
   test::Random random(5);
   for (const auto model : {scene::Model::kPaper4, scene::Model::kPaper5})
@@ -99,7 +100,8 @@ TEST(InternalStep, ASwivelDamperTakesEnergyFromWhatSwings) {
         for (int k = 0; k < 200; ++k) {
           Thread t = random_thread(4 + k % 40, random);
           t.m.swivel_N_s = 0.2;
-          if (damping == scene::Damping::kExplicit) t.m.swivel_N_s *= 1e-4;  // short segments overshoot as printed
+          // short segments make the printed explicit law overshoot
+          if (damping == scene::Damping::kExplicit) t.m.swivel_N_s *= 1e-4;
           const double before = kinetic_J(t);
           const Lane3 v = t.s.v;
           step(t.m, t.s, v, t.w);
@@ -108,7 +110,7 @@ TEST(InternalStep, ASwivelDamperTakesEnergyFromWhatSwings) {
       }
 }
 
-// Equations (13)-(15) with the sign that damps, to the letter: explicit, one bend.
+// Equations (13)-(15) exactly, with the sign that damps: explicit, one bend.
 TEST(InternalStep, ThePapersSwivelDamperBrakesEachEndAcrossThePlaneOfItsBend) {
   test::Random random(6);
   scene::Suture s = suture(scene::Model::kPaper4, scene::SwivelDamper::kPaper);
@@ -131,8 +133,8 @@ TEST(InternalStep, ThePapersSwivelDamperBrakesEachEndAcrossThePlaneOfItsBend) {
   }
 }
 
-// Two nodes at rest, stretched or pressed: dt T / m, and divided by 1 + 2 dt^2 (dT/dl) / m where the spring is
-// implicit, which is model 5's.
+// Two nodes at rest, stretched or compressed: the velocity changes by dt T / m, divided by 1 + 2 dt^2 (dT/dl) / m where
+// the spring is implicit (model 5).
 TEST(InternalStep, TheSpringIsLinearInModel4AndQuadraticInModel5) {
   test::Random random(7);
   for (const auto model : {scene::Model::kPaper4, scene::Model::kPaper5})
@@ -159,8 +161,8 @@ TEST(InternalStep, TheSpringIsLinearInModel4AndQuadraticInModel5) {
       }
 }
 
-// A segment that comes out of its limits by d in a step is brought back by d: M d / dt more speed between its ends, M
-// their reduced mass, and M d / dt^2 is the force that it passed.
+// A segment that leaves its length limits by d in a step is brought back by d: the relative speed of its ends changes
+// by d / dt, and the reported force is M d / dt^2, with M their reduced mass.
 TEST(LengthLimits, PassTheForceThatBringsASegmentBack) {
   test::Random random(8);
   for (int k = 0; k < 500; ++k) {

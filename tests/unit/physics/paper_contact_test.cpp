@@ -1,5 +1,5 @@
-// PaperContact, the published self-contact, on random crossings against closed forms: equations (2), (18)-(22) along
-// the normal, (1) and (3) across it, the separation of V.A.
+// PaperContact, the paper's self-contact, for random crossings against closed forms: equations (2), (18)-(22) for the
+// normal direction, (1) and (3) for friction, and the separation of section V.A.
 #include "firmware/physics/paper_contact.hpp"
 
 #include <gtest/gtest.h>
@@ -12,14 +12,14 @@ namespace {
 using test::kinetic_J;
 using test::V;
 
-constexpr double kSafety = 0.01;  // of the radius: how far apart the separation leaves two surfaces
+constexpr double kSafety = 0.01;  // gap that the separation leaves between two surfaces, as a share of the radius
 
-/// Four nodes whose first and third segment cross, overlapping; the second one only joins them.
+/// Four nodes whose first and third segments cross and overlap; the second segment joins them.
 struct Crossing {
   test::Thread t;
-  V n;           // from the third segment to the first
-  double a, b;   // where along them
-  double gap_m;  // < 0
+  V n;           // unit vector from the third segment to the first
+  double a, b;   // positions of the crossing along the two segments
+  double gap_m;  // negative: overlap
   double part[4], mobility_per_kg = 0.0;
 
   explicit Crossing(test::Random& random) : t(test::random_thread(4, random)) {
@@ -36,15 +36,15 @@ struct Crossing {
     part[0] = 1.0 - a, part[1] = a, part[2] = b - 1.0, part[3] = -b;
     for (int k = 0; k < 4; ++k) mobility_per_kg += part[k] * part[k] / t.m.mass_kg;
   }
-  /// Of the first segment against the third, where they cross.
+  /// Difference of a nodal quantity between first and third segment at the crossing.
   V relative(const Lane3& of) const {
     V u{0, 0, 0};
     for (int k = 0; k < 4; ++k) u = u + part[k] * of.at(k);
     return u;
   }
-  /// Equation (2) before any clamp, N.
+  /// Equation (2) before clamping, N.
   double repulsion() const { return -100.0 * gap_m - 5.0 * dot(relative(t.s.v), n); }
-  /// Equation (18) from a force's size, N s.
+  /// Equation (18) for a force of the given size, N s.
   double impulse(double force_N) const {
     return 2.0 * force_N * t.m.step_s / (a * a + b * b + (1 - a) * (1 - a) + (1 - b) * (1 - b));
   }
@@ -63,7 +63,7 @@ TEST(PaperContact, PushesApartByTheImpulseOfItsRepulsion) {
   for (int k = 0; k < 2000; ++k) {
     Crossing x(random);
     const V before = x.relative(x.t.s.v);
-    const double force_N = std::max(0.0, x.repulsion());  // never pulls
+    const double force_N = std::max(0.0, x.repulsion());  // contact never pulls
     x.solve(0.3, 0.2, true);
     const double gained = dot(x.relative(x.t.s.v) - before, x.n);
     EXPECT_NEAR(gained, x.impulse(force_N) * x.mobility_per_kg, 1e-12 + 1e-9 * gained);
@@ -91,7 +91,7 @@ TEST(PaperContact, FrictionStopsSlipInsideTheStaticConeAndBrakesItByTheKineticOn
   EXPECT_GT(slid, 100);
 }
 
-// As printed: mu |n| dt against the slip, however far that throws it back, and an attraction turned into a push.
+// As printed: an impulse mu |n| dt against the slip, even if it reverses the slip, and attraction becomes a push.
 TEST(PaperContact, UncappedItIsAsPrinted) {
   test::Random random(23);
   int reversed = 0, attracted = 0;
@@ -131,7 +131,7 @@ TEST(PaperContact, SeparatesToItsMarginAndLeavesTheCentreOfMassAndFixedNodes) {
   test::Random random(25);
   for (int k = 0; k < 2000; ++k) {
     Crossing x(random);
-    const int fixed = k % 5;  // 4: none
+    const int fixed = k % 5;  // node without mobility; 4: none
     if (fixed < 4) x.t.m.inverse_mass_per_kg[fixed] = 0.0;
     const Lane3 p = x.t.s.p, v = x.t.s.v;
     x.solve(0.3, 0.2, true);

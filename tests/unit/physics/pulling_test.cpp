@@ -1,4 +1,4 @@
-// Pulling a half-tight trefoil apart, letting go suddenly, and force propagation under such pulls.
+// A half-tight trefoil is pulled apart, released suddenly, and pulled with force propagation.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,15 +14,15 @@ using test::overhand;
 using test::paper_scene;
 using test::play;
 
-constexpr double kHalfTight_s = 11.0;  // the overhand script has tied the knot and is about to tighten it
+constexpr double kHalfTight_s = 11.0;  // script time at which the knot is tied but not yet tightened
 
 struct Pull {
   Simulation sim;
   std::array<Vec3, 2> hands;
-  Vec3 apart;  // unit, from the left to the right hand
+  Vec3 apart;  // unit vector from the left to the right hand
 };
 
-/// A half-tight trefoil, tied at friction 0.3, both hands closed on it, in a scene of its own.
+/// A half-tight trefoil tied at friction 0.3, with both hands closed on it, moved into a scene with other parameters.
 Pull half_tight(int nodes, const std::vector<std::string>& overrides) {
   const std::string n = "suture.nodes=" + std::to_string(nodes);
   Simulation tied = make(paper_scene({n}));
@@ -53,7 +53,7 @@ TEST(Pulling, NoCrossingIsLostAtAnySpeedAndFriction) {
       for (const double speed : {0.1, 0.5, 2.0, 5.0}) {
         Pull pull = half_tight(nodes, {std::string("contact.friction=") + friction});
         ASSERT_EQ(knot_of(pull.sim).type, "3_1");
-        const int ticks = static_cast<int>(1500.0 / speed);  // 3 m between the hands
+        const int ticks = static_cast<int>(1500.0 / speed);  // until the hands are 3 m further apart
         std::string knot = "3_1";
         for (int k = 0; k < ticks && knot == "3_1"; ++k) {
           tick(pull, speed);
@@ -61,7 +61,7 @@ TEST(Pulling, NoCrossingIsLostAtAnySpeedAndFriction) {
         }
         EXPECT_EQ(knot, "3_1") << nodes << " nodes, friction " << friction << ", " << speed << " m/s";
         EXPECT_TRUE(pull.sim.diagnostics().finite);
-        EXPECT_GT(larger_force_N(pull.sim), 100.0);  // it was a pull, not a stroke
+        EXPECT_GT(larger_force_N(pull.sim), 100.0);  // a real pull, not a light touch
       }
 }
 
@@ -88,7 +88,7 @@ TEST(Pulling, ALetGoFromAHundredNewtonsStaysFinite) {
   }
 }
 
-// l_min, l_max of the scene (0.9, 1.1); lengths from the published positions themselves.
+// The scene's limits l_min, l_max are 0.9 and 1.1; lengths are computed from the published positions.
 TEST(Propagation, NoSegmentLeavesItsLimitsUpTo5MetresPerSecondAnd500Newtons) {
   for (const int nodes : {20, 35, 50})
     for (const double speed : {0.1, 0.5, 2.0, 5.0}) {
@@ -126,12 +126,12 @@ TEST(Propagation, OneHandThatPullsTautIsConditionB) {
     sim.tick({ToolInput{Vec3(0.0, 0.0, z), Vec3(0, 0, k < 1000 ? -1.0 : 0.0), true}, away});
   }
   EXPECT_EQ(sim.hand(Hand::kLeft).condition, Propagation::kB);
-  // Statics: the frame carries what the hand pulls plus the weight; every segment is at its limit.
+  // Statics: the fixed frame carries the hand's pull and the weight; every segment is at its limit.
   EXPECT_GT(sim.hand(Hand::kLeft).f_W.z(), 300.0);
 }
 
-// What is told of a thread that a hand pulls taut: each segment carries the hand's pull and the nodes below it, part of
-// it by its spring, the rest by being on its limit.
+// Reported tensions of a thread that a hand pulls taut: each segment carries the hand's pull and the nodes below it,
+// partly by its spring, the rest by its length limit.
 TEST(Propagation, TheTensionToldIsTheHandsPullAndTheWeightBelow) {
   Simulation sim = make(paper_scene({"hands.propagation=true", "suture.nodes=20", "suture.air_drag_per_s=5.0"}));
   for (int k = 0; k < 6000; ++k) {

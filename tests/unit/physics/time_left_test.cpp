@@ -1,5 +1,5 @@
-// A tick whose time is over: it ends between two pieces, the thread stands still for the rest, and it can be done
-// again.
+// A tick whose time budget is over ends between two pieces of work; the thread does not move for the rest of the tick,
+// and the tick can be repeated.
 #include <gtest/gtest.h>
 
 #include "tests/support/random.hpp"
@@ -14,7 +14,7 @@ scene::Scene scene_of(const std::string& file, const std::vector<std::string>& o
   return std::get<scene::Scene>(loaded);
 }
 
-/// Time that passes from question to question, by a random amount, and is over in some ticks.
+/// A clock that advances by a random amount at each query, so that the time is over in some ticks.
 struct FakeTime {
   explicit FakeTime(std::uint64_t seed) : random(seed) {}
   TimeLeft tick(std::int64_t ns) {
@@ -30,7 +30,7 @@ struct FakeTime {
   long questions = 0;
 };
 
-/// Both ends held and pulled apart.
+/// Both ends of the thread are held and pulled apart.
 struct Pull {
   explicit Pull(const scene::Scene& scene) : sim(test::make(scene)), ends{sim.nodes_W().front(), sim.nodes_W().back()} {
     along = (ends[1] - ends[0]).normalized();
@@ -113,7 +113,7 @@ TEST(TimeLeft, WithoutTimeTheThreadStandsStillAndTheHandsHoldOn) {
   }
 }
 
-/// A tick without time tells what was before it: after a reset that is the beginning, not what the thread did before.
+/// A tick without time reports the previous state: after a reset that is the start, not the state before the reset.
 TEST(TimeLeft, AThreadThatWasResetIsLikeANewOneFromTheFirstQuestionOn) {
   for (const auto& scene : {scene_of("paper.toml"), scene_of("paper.toml", {"contact.solver=\"paper\""}),
                             scene_of("desk.toml"), scene_of("suture-3-0-square.toml")}) {
@@ -136,7 +136,7 @@ TEST(TimeLeft, AThreadThatWasResetIsLikeANewOneFromTheFirstQuestionOn) {
   }
 }
 
-/// The rod prices what it does; nothing long may lie between two questions.
+/// The clock must be queried often: no long piece of work may lie between two queries.
 TEST(TimeLeft, AJamAsksOftenEnough) {
   struct Counted {
     long questions = 0;

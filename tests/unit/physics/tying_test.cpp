@@ -18,7 +18,7 @@ Simulation tied(int nodes, double end_s, const Variation& how = {}, const std::s
   return sim;
 }
 
-// The script lets go of everything at 21 s; what is tied then must stay tied without a hand.
+// The script releases everything at 21 s; the knot must then stay tied without hands.
 TEST(Tying, TheOverhandScriptTiesATrefoilThatHoldsTenSecondsAfterRelease) {
   for (const int nodes : {20, 35, 50}) {
     const Simulation sim = tied(nodes, 31.0);

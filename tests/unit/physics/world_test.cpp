@@ -1,4 +1,4 @@
-// Gravity, loads, fixed and clamped nodes, desk, grippers, frame, refinement: the thread in its world.
+// The thread in its world: gravity, loads, fixed and clamped nodes, desk, grippers, frame, refinement.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ void settle(Simulation& sim, double seconds) {
   for (int k = 0; k < static_cast<int>(seconds * 1000); ++k) sim.tick(kNoHands);
 }
 
-/// Rope hanging straight: node i carries the nodes below it, so l_i = l_r (1 + (n - 1 - i) m g / k_l).
+/// Tip height of a hanging thread: segment i carries the nodes below it, so l_i = l_r (1 + (n - 1 - i) m g / k_l).
 double hanging_tip_m(int nodes, double mass_kg) {
   double z = 5.5;
   for (int i = 0; i + 1 < nodes; ++i) z -= 5.0 / (nodes - 1) * (1.0 + (nodes - 1 - i) * mass_kg * 9.8 / 800.0);
@@ -33,7 +33,7 @@ TEST(HangingThread, ExtendsByItsWeightOverStiffness) {
   }
 }
 
-// Model 5 with its default constant stretches less than model 4, with the printed one more (paper V.C claims less).
+// Model 5 stretches less than model 4 with its default constant, but more with the printed one (paper V.C claims less).
 TEST(HangingThread, StretchesLessInModel5OnlyWithTheStiffConstant) {
   const auto tip = [](const char* model, const char* constant) {
     Simulation sim =
@@ -43,12 +43,12 @@ TEST(HangingThread, StretchesLessInModel5OnlyWithTheStiffConstant) {
     return 0.5 - sim.nodes_W().back().z();
   };
   const double four = tip("paper-4", "stiff"), stiff = tip("paper-5", "stiff"), printed = tip("paper-5", "printed");
-  EXPECT_NEAR(four / 5.0, 0.0153, 1e-3);  // 1.5 % and 11.7 %: the prototype's figures for N = 50
+  EXPECT_NEAR(four / 5.0, 0.0153, 1e-3);  // strains of 1.5 % and 11.7 %: the prototype's values for N = 50
   EXPECT_NEAR(printed / 5.0, 0.117, 2e-3);
   EXPECT_LT(stiff, 0.85 * four);
 }
 
-// What is told of a thread: each segment carries the nodes below it, whatever its law.
+// Reported tensions: each segment carries the nodes below it, for every stretch law.
 TEST(HangingThread, TellsTheTensionOfTheWeightBelow) {
   for (const auto& [model, constant] :
        {std::pair{"paper-4", "stiff"}, std::pair{"paper-5", "stiff"}, std::pair{"paper-5", "printed"}}) {
@@ -62,18 +62,18 @@ TEST(HangingThread, TellsTheTensionOfTheWeightBelow) {
   }
 }
 
-// x += dt v with the velocity of before the step (forward) or of after it (semi-implicit): a fall tells them apart.
+// x += dt v with the velocity before the step (forward) or after it (semi-implicit); free fall distinguishes them.
 TEST(Integrator, ForwardMovesByTheVelocityBeforeTheStepSemiImplicitByTheOneAfter) {
   for (const auto& [name, steps] : {std::pair{"forward", 99.0}, std::pair{"semi-implicit", 101.0}}) {
     Simulation sim = make(paper_scene({std::string("suture.integrator=") + name, "world.fixed=[]",
                                        "suture.air_drag_per_s=0.0", "contact.solver=none", "time.substeps=2"}));
     const double from_m = sim.nodes_W()[7].z();
-    for (int k = 0; k < 50; ++k) sim.tick(kNoHands);  // 100 steps of half a millisecond
+    for (int k = 0; k < 50; ++k) sim.tick(kNoHands);  // 100 substeps of 0.5 ms
     EXPECT_NEAR(sim.nodes_W()[7].z() - from_m, -9.8 * 2.5e-7 * 100.0 * steps / 2.0, 1e-12) << name;
   }
 }
 
-// With reference_nodes the same thread is refined: its weight, its stretch and its sag do not depend on `nodes`.
+// With reference_nodes, weight, stretch and sag of the thread do not depend on `nodes`.
 TEST(Refinement, KeepsTheThreadWhenNodesChange) {
   double tip[3];
   int k = 0;
@@ -83,12 +83,12 @@ TEST(Refinement, KeepsTheThreadWhenNodesChange) {
     settle(sim, 20.0);
     tip[k++] = 0.5 - sim.nodes_W().back().z();
   }
-  EXPECT_NEAR(tip[0] / tip[1], 1.0, 0.03);  // end effects of order 1 / nodes
+  EXPECT_NEAR(tip[0] / tip[1], 1.0, 0.03);  // end effects are of order 1 / nodes
   EXPECT_NEAR(tip[2] / tip[1], 1.0, 0.02);
 }
 
-// A clamped thread without gravity under an end load: bending stiffness EI = k_ts l_r / pi is kept by reference_nodes,
-// so the small deflection F L^3 / (3 EI) does not depend on `nodes` either.
+// A clamped thread without gravity under an end load: reference_nodes preserves the bending stiffness EI = k_ts l_r /
+// pi, so the small deflection F L^3 / (3 EI) does not depend on `nodes`.
 TEST(Refinement, KeepsTheBendingStiffness) {
   for (const int nodes : {26, 51}) {
     Simulation sim = make(
@@ -128,7 +128,8 @@ TEST(Desk, CarriesTheThreadAndFrictionStopsIt) {
   EXPECT_LT(sim.diagnostics().kinetic_J, 1e-3);
 }
 
-// On a slope of tan(angle) < mu a thread at rest stays, on a steeper one it slides: gravity tilted instead of the desk.
+// On a slope with tan(angle) < mu a resting thread stays; on a steeper one it slides. Gravity is tilted instead of the
+// desk.
 TEST(Desk, StaticFrictionHoldsUpToItsConeAndNotBeyond) {
   for (const auto& [slope, slides] : {std::pair{0.28, false}, std::pair{0.33, true}}) {
     Simulation sim = make(paper_scene({"world.desk_height_m=0.0", "world.fixed=[]", "suture.air_drag_per_s=0.0",
@@ -139,7 +140,7 @@ TEST(Desk, StaticFrictionHoldsUpToItsConeAndNotBeyond) {
     settle(sim, 3.0);
     const double moved = sim.nodes_W()[25].x();
     if (slides)
-      EXPECT_NEAR(moved, 0.5 * 9.8 * (slope - 0.3) * 9.0, 0.15);  // a = g (tan - mu)
+      EXPECT_NEAR(moved, 0.5 * 9.8 * (slope - 0.3) * 9.0, 0.15);  // acceleration g (tan(angle) - mu)
     else
       EXPECT_LT(std::abs(moved), 1e-6);
   }
@@ -155,7 +156,7 @@ TEST(Gripper, PushesTheThreadAsideButNotTheOneItHolds) {
   double at = 0.0;
   for (const Vec3& p : sim.nodes_W())
     if (std::abs(p.z() - 3.0) < 0.1) at = p.x();
-  EXPECT_GT(at, 0.5);  // pushed ahead of the gripper, which has come to x = 0.5
+  EXPECT_GT(at, 0.5);  // pushed ahead of the gripper, which is at x = 0.5
   EXPECT_GT(sim.diagnostics().contacts, 0);
 
   Simulation held = make(paper_scene({"world.grippers_collide=true"}));
@@ -163,10 +164,10 @@ TEST(Gripper, PushesTheThreadAsideButNotTheOneItHolds) {
     held.tick({ToolInput{Vec3(0, 0, 3), Vec3::Zero(), true}, ToolInput{Vec3(9, 9, 9), Vec3::Zero(), false}});
   EXPECT_EQ(held.diagnostics().contacts, 0);
   held.tick({ToolInput{Vec3(0, 0, 3), Vec3::Zero(), false}, ToolInput{Vec3(9, 9, 9), Vec3::Zero(), false}});
-  EXPECT_EQ(held.diagnostics().contacts, 0);  // lets go without kicking the thread away
+  EXPECT_EQ(held.diagnostics().contacts, 0);  // releasing does not kick the thread away
 }
 
-// What overlaps is pushed out at 0.01 r a step, 0.5 m/s: a faster gripper takes the thread along by its own velocity.
+// Overlaps are removed by 0.01 r per step, i.e. at 0.5 m/s; a faster gripper moves the thread by its own velocity.
 TEST(Gripper, TakesAlongWhatItMeetsHoweverFastItIs) {
   for (const double speed : {0.2, 1.0, 3.0}) {
     Simulation sim = make(paper_scene({"world.grippers_collide=true", "world.gravity_m_per_s2=[0.0,0.0,0.0]"}));
@@ -186,7 +187,7 @@ TEST(Gripper, TakesAlongWhatItMeetsHoweverFastItIs) {
 
 TEST(Frame, ItsHookStopsAThreadThrownOverIt) {
   for (const auto& [collides, stopped] : {std::pair{"true", true}, std::pair{"false", false}}) {
-    // The tail lies across the hook, 0.1 m above the fixed node, and falls: onto the hook's side or through it.
+    // The free end lies across the hook, 0.1 m above the fixed node, and falls onto the hook or through it.
     Simulation sim =
         make(paper_scene({std::string("world.frame_collides=") + collides, "world.gravity_m_per_s2=[9.8,0.0,-1e-9]"}));
     std::vector<Vec3> p;
@@ -213,8 +214,8 @@ TEST(Grasp, TakesTheNearestNodeThatIsNeitherFixedNorHeld) {
   Simulation sim = make(paper_scene());
   const ToolInput top{Vec3(0, 0, 5.6), Vec3::Zero(), true};
   sim.tick({top, top});
-  EXPECT_EQ(sim.hand(Hand::kLeft).node, 1);   // 0 is fixed
-  EXPECT_EQ(sim.hand(Hand::kRight).node, 2);  // 1 is held
+  EXPECT_EQ(sim.hand(Hand::kLeft).node, 1);   // node 0 is fixed
+  EXPECT_EQ(sim.hand(Hand::kRight).node, 2);  // node 1 is held by the other hand
   sim.tick({ToolInput{top.p_WT, Vec3::Zero(), false}, top});
   EXPECT_EQ(sim.hand(Hand::kLeft).node, -1);
   EXPECT_EQ(sim.hand(Hand::kLeft).f_W, Vec3::Zero());
@@ -231,7 +232,7 @@ TEST(Coupling, PullsTheHandBackTowardsTheNodeAtRestBySpringAlone) {
   EXPECT_GT(c.f_W.z(), 0.0);
 }
 
-/// Runs of one thread with each broad phase: the pairs are the same to the last bit, so the motion is.
+/// The same run with each broad phase: contacts are bit-identical, therefore the motion is.
 void expect_the_same_motion(int nodes, const std::vector<Vec3>& shape, const std::function<void(Simulation&)>& run) {
   std::vector<Vec3> brute;
   for (const char* search : {"brute", "sweep", "bvh"}) {
@@ -260,8 +261,8 @@ TEST(BroadPhases, MoveAThreadAlikeToTheLastBit) {
     }
     expect_the_same_motion(50, heap, fall);
   }
-  // Coils whose turns overlap a little. Of segments a quarter of the diameter long: their spheres are no larger than
-  // what touches.
+  // Coils whose turns overlap slightly. Segments are a quarter of the diameter long, so that their bounding spheres are
+  // hardly larger than the contact distance.
   for (int k = 0; k < 3; ++k) {
     const double radius_m = random.in(0.2, 0.4), pitch_m = random.in(0.08, 0.095);
     std::vector<Vec3> coil;
@@ -273,8 +274,7 @@ TEST(BroadPhases, MoveAThreadAlikeToTheLastBit) {
   }
 }
 
-// The published contact as a scene's option: a thread folded back onto itself is pushed apart, without contact it
-// stays.
+// The paper's contact as a scene option: it separates a folded thread; without contact the thread stays folded.
 TEST(PaperSolver, KeepsAFoldedThreadApart) {
   for (const auto& [solver, holds] : {std::pair{"paper", true}, std::pair{"none", false}}) {
     Simulation sim = make(paper_scene({std::string("contact.solver=") + solver, "suture.bend=0.0",
@@ -292,7 +292,7 @@ TEST(PaperSolver, KeepsAFoldedThreadApart) {
   }
 }
 
-TEST(Simulation, ACopyOfAKnottedThreadGoesOnExactlyLikeTheOriginal) {  // contacts and the room for them included
+TEST(Simulation, ACopyOfAKnottedThreadGoesOnExactlyLikeTheOriginal) {  // including contacts and their buffers
   const auto script = test::overhand();
   Simulation sim = make(paper_scene());
   test::play(sim, script, 0.0, 16.0);

@@ -14,8 +14,8 @@ namespace {
 
 using namespace physics::rod;
 
-/// 11 segments fill a block and three lanes of the next. A thread that diverges within a tick is as fast as this; pairs
-/// with what fills up the block were listed, read beyond the thread's end, and written there.
+/// 11 segments fill one block of eight lanes and three lanes of the next. The padding lanes must give no pairs, even at
+/// the velocities of a thread that diverges within a tick; such pairs would be out-of-range accesses.
 TEST(BroadPhase, NamesSegmentsOfTheThreadOnly) {
   for (const double speed : {0.0, 1e9, 1e22, 1e30, 1e300, std::numeric_limits<double>::infinity(), std::nan("")}) {
     Rod rod(unit_rod(), steps_of(1e-3), kBare, 12);

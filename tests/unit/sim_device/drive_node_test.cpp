@@ -12,7 +12,7 @@ namespace {
 using can::cia402::State;
 using std::chrono::milliseconds;
 
-/// One drive with its connector in the test's hand.
+/// One drive whose bus frames and encoder the test controls.
 struct Bench {
   Bench() {
     drive.power_on(now, out);
@@ -72,11 +72,11 @@ TEST(DriveNode, TorqueSentInOneTickActsAtTheNextSync) {
   Bench b;
   b.enable();
   b.rpdo(can::cia402::kControlEnableOperation, 777);
-  EXPECT_EQ(b.drive.torque_permille(), 0);  // received, not acting
+  EXPECT_EQ(b.drive.torque_permille(), 0);  // received, but acts only from the next SYNC
   b.sync();
   EXPECT_EQ(b.drive.torque_permille(), 777);
   const auto at_first = can::decode_tpdo1(can::kWaist, b.out.back());
-  EXPECT_EQ(at_first->torque_permille, 0);  // inputs are latched before the RPDO acts
+  EXPECT_EQ(at_first->torque_permille, 0);  // SYNC latches the inputs before the RPDO acts
   b.rpdo(can::cia402::kControlEnableOperation, -5);
   b.sync();
   EXPECT_EQ(can::decode_tpdo1(can::kWaist, b.out.back())->torque_permille, 777);
@@ -142,7 +142,7 @@ TEST(DriveNode, SilenceOfTheMasterTakesTorqueAway) {
   Bench b;
   b.enable();
   b.give(can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}));
-  for (int i = 0; i < 300; ++i) {  // RPDOs keep coming, the heartbeat does not
+  for (int i = 0; i < 300; ++i) {  // RPDOs continue, the heartbeat stops
     EXPECT_EQ(b.drive.state(), State::kOperationEnabled);
     b.command(can::cia402::kControlEnableOperation, 900);
     b.pass(milliseconds(1));

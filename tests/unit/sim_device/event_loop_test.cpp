@@ -1,4 +1,4 @@
-// One round of the loop over a port that the test holds; time is an argument, nothing waits.
+// Single rounds of the event loop with a fake port; the time is an argument, and nothing waits.
 
 #include "sim_device/event_loop.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-/// Two clients: what client 0 says is in `incoming`, what each hears in `heard`.
+/// Two clients: `incoming` holds frames sent by client 0, `heard` what each client receives.
 class FakePort final : public Port {
  public:
   void add_descriptors(std::vector<pollfd>&) const override {}
@@ -41,7 +41,7 @@ class FakePort final : public Port {
 class EventLoopTest : public testing::Test {
  protected:
   void SetUp() override {
-    loop.serve(milliseconds(10));  // the boot-ups leave
+    loop.serve(milliseconds(10));  // sends the boot-up messages
     loop.serve(milliseconds(11));
     for (auto& h : port.heard) h.clear();
   }
@@ -54,10 +54,10 @@ TEST_F(EventLoopTest, AnAnswerIsHeardByAllWhenItsLastBitHasPassed) {
   port.incoming = {{can::sdo_read(can::kWaist, can::od::kStatusword), 0}};
   loop.serve(milliseconds(20));
   EXPECT_TRUE(port.heard[0].empty());
-  loop.serve(milliseconds(20) + microseconds(270));  // request and answer, 135 bits at most each
+  loop.serve(milliseconds(20) + microseconds(270));  // time for request and answer, at most 135 bits each
   ASSERT_EQ(port.heard[0].size(), 1U);
   EXPECT_EQ(can::decode_sdo(port.heard[0][0])->kind, can::SdoKind::kValue);
-  EXPECT_EQ(port.heard[1].size(), 2U);  // the other client also heard the request
+  EXPECT_EQ(port.heard[1].size(), 2U);  // the other client hears the request as well
 }
 
 TEST_F(EventLoopTest, CountsPeriodsItSleptThrough) {

@@ -1,4 +1,4 @@
-// A scripted master enables three drives and moves them, over the charged bus, in virtual time.
+// A scripted master enables the three drives and moves them over the simulated, loaded bus in virtual time.
 
 #include "sim_device/hand_device.hpp"
 
@@ -27,7 +27,7 @@ struct Rig {
   VirtualMaster master;
 };
 
-TEST(HandDevice, StartsUpAndIsEnabledInSevenTicks) {  // three transitions, each seen two SYNCs after its command
+TEST(HandDevice, StartsUpAndIsEnabledInSevenTicks) {  // three transitions, each visible two SYNCs after its command
   Rig r;
   ASSERT_TRUE(r.master.start_up());
   EXPECT_TRUE(r.master.enable(7));
@@ -44,7 +44,8 @@ TEST(HandDevice, AllTpdosArriveWithin460MicrosecondsOfTheSync) {
   for (const Time t : r.master.tpdo_times) EXPECT_LE(t, microseconds(3 * 135 + 5));
 }
 
-TEST(HandDevice, BusLoadLiesWhereTheBitsSay) {  // 61.7 .. 74.5 % for the tick, heartbeats on top (4 in 100 ms: 0.3 %)
+// 61.7 .. 74.5 % for the tick's frames, depending on stuff bits; heartbeats add 0.3 %
+TEST(HandDevice, BusLoadLiesWhereTheBitsSay) {
   Rig r;
   ASSERT_TRUE(r.master.start_up());
   r.ticks(2000, {123, -456, 789});
@@ -54,7 +55,7 @@ TEST(HandDevice, BusLoadLiesWhereTheBitsSay) {  // 61.7 .. 74.5 % for the tick, 
   EXPECT_LT(r.device.bus_stats().worst_rpdo, milliseconds(1));
 }
 
-TEST(HandDevice, PositiveTorqueTurnsEachJointPositive) {  // 0.3 N m at most, against the resting hand
+TEST(HandDevice, PositiveTorqueTurnsEachJointPositive) {  // torque of at most 0.3 N m, against the resting hand
   for (std::size_t joint = 0; joint < 3; ++joint) {
     Rig r;
     ASSERT_TRUE(r.master.start_up());
@@ -74,7 +75,7 @@ TEST(HandDevice, EncodersFollowTheOperator) {
   r.ticks(500);
   const Vec3 q{can::angle_rad(r.master.tpdo[0].position_counts), can::angle_rad(r.master.tpdo[1].position_counts),
                can::angle_rad(r.master.tpdo[2].position_counts)};
-  EXPECT_NEAR((tip_D_m(q) - Vec3(0.0, -0.17, 0.02)).norm(), 0.0, 1e-3);  // 0.4 m of the world at scale 20
+  EXPECT_NEAR((tip_D_m(q) - Vec3(0.0, -0.17, 0.02)).norm(), 0.0, 1e-3);  // 0.4 m in the world at scale 20
   EXPECT_EQ(r.master.tpdo[2].buttons & 0xFF, can::profile::kButtonGrip | can::profile::kButtonDeadMan);
   r.ticks(600);
   EXPECT_EQ(r.master.tpdo[2].buttons & 0xFF, can::profile::kButtonDeadMan);
@@ -114,14 +115,14 @@ TEST(HandDevice, ASecondMasterStartsOnTheSameHand) {
   Rig r(kUpAndDown);
   ASSERT_TRUE(r.master.start_up());
   ASSERT_TRUE(r.master.enable());
-  r.master.pass(milliseconds(200));  // the first one died
+  r.master.pass(milliseconds(200));  // the first master is gone
   VirtualMaster second(r.device, r.master.now());
   ASSERT_TRUE(second.start_up());
   second.reset_faults = true;
   EXPECT_TRUE(second.enable(20));
 }
 
-TEST(HandDevice, FramesReadLateActInTheOrderAndTimeTheyWereSent) {  // this process slept for five periods
+TEST(HandDevice, FramesReadLateActInTheOrderAndTimeTheyWereSent) {  // the device's process did not run for five periods
   Rig r;
   ASSERT_TRUE(r.master.start_up());
   ASSERT_TRUE(r.master.enable());
@@ -137,7 +138,8 @@ TEST(HandDevice, FramesReadLateActInTheOrderAndTimeTheyWereSent) {  // this proc
   }
   r.device.advance(wake);
   EXPECT_EQ(r.device.bus_stats().syncs, syncs + 5);
-  EXPECT_EQ(r.device.torque_permille(), (std::array<std::int16_t, 3>{400, 400, 400}));  // of tick 4, acting at SYNC 5
+  // the torque of tick 4, which acts at SYNC 5
+  EXPECT_EQ(r.device.torque_permille(), (std::array<std::int16_t, 3>{400, 400, 400}));
   EXPECT_EQ(r.device.drives()[0].stats().late_rpdos, 0);
 }
 

@@ -27,19 +27,19 @@ TEST(Kinematics, HomeIsWhereItIsSaidToBe) {
   EXPECT_NEAR((tip_D_m(*q) - Vec3(0.0, -0.17, 0.0)).norm(), 0.0, 1e-12);
 }
 
-TEST(Kinematics, AnglesOfATipLeadBackToIt) {  // over the whole reach inside the stops
+TEST(Kinematics, AnglesOfATipLeadBackToIt) {  // over the whole reach within the joint stops
   test::Random random(11);
   for (int i = 0; i < 2000; ++i) {
     const Vec3 q = random_joints(random);
     const Vec3 p_DT = tip_D_m(q);
-    if (std::hypot(p_DT.x(), p_DT.y()) < 1e-3) continue;  // above the waist axis q1 is free
+    if (std::hypot(p_DT.x(), p_DT.y()) < 1e-3) continue;  // on the waist axis q1 is undetermined
     const auto back = joints_of_tip(p_DT);
     ASSERT_TRUE(back);
     EXPECT_NEAR((tip_D_m(*back) - p_DT).norm(), 0.0, 1e-12);
   }
 }
 
-TEST(Kinematics, LinksHaveTheirLengths) {  // a closed form that knows nothing of the angles' meaning
+TEST(Kinematics, LinksHaveTheirLengths) {  // closed forms, independent of the angles' conventions
   EXPECT_NEAR(tip_D_m({0.0, 0.0, std::acos(-1.0) / 2}).norm(), kUpperArm_m + kForearm_m, 1e-12);  // stretched forwards
   EXPECT_NEAR((tip_D_m({0.0, 0.0, 0.0}) - Vec3(0.0, -kUpperArm_m, -kForearm_m)).norm(), 0.0, 1e-12);
 }
@@ -86,13 +86,13 @@ TEST(Linkage, TheShippedRecordIsTheDeviceThatIsBuiltIn) {
   }
 }
 
-TEST(Plant, AnyDevicePushesBackAsItsRecordSays) {  // mass and friction at the tip, each axis, in the home pose
+TEST(Plant, AnyDevicePushesBackAsItsRecordSays) {  // mass and friction at the tip, along each axis in the home pose
   const auto cartesian =
       std::get<device::Device>(device::load_device(LIGATURE_SOURCE_DIR "/scenes/devices/cartesian.toml"));
   const PlantParameters p = PlantParameters::of(cartesian);
   for (int axis = 0; axis < 3; ++axis) {
     Plant plant(*p.linkage.joints(p.linkage.home_D_m()), p);
-    plant.step(Vec3::Zero(), (1.0 + cartesian.coulomb_N) * Vec3::Unit(axis), 1e-6);  // 1 N beyond friction
+    plant.step(Vec3::Zero(), (1.0 + cartesian.coulomb_N) * Vec3::Unit(axis), 1e-6);  // 1 N more than friction
     EXPECT_NEAR(plant.tip_velocity_D_m_per_s()[axis], 1e-6 / cartesian.apparent_mass_kg, 1e-9);
   }
 }

@@ -1,4 +1,4 @@
-// Real sockets in a folder of their own; nothing waits.
+// Real sockets in a temporary folder; nothing waits.
 
 #include "sim_device/local_port.hpp"
 
@@ -68,7 +68,7 @@ TEST_F(LocalPortTest, AClientThatLeavesIsNoticed) {
   give(a, can::sync_frame());
   a.reset();
   port->receive(frames_, left_);
-  EXPECT_EQ(frames_.size(), 1U);  // what it had said is heard
+  EXPECT_EQ(frames_.size(), 1U);  // what it sent before leaving is received
   EXPECT_EQ(left_.size(), 1U);
   EXPECT_EQ(port->clients(), 0);
   port->send(can::sync_frame(), -1);
@@ -95,7 +95,7 @@ TEST_F(LocalPortTest, ALiveSocketIsRefusedAndALeftOverOneReplaced) {
   auto port = open();
   EXPECT_NE(refusal().find("in use"), std::string::npos);
   const auto held = folder_ / "held";
-  std::filesystem::create_hard_link(path_, held);  // survives the port, as after a SIGKILL
+  std::filesystem::create_hard_link(path_, held);  // keeps the socket file after the port is closed, as after a SIGKILL
   port.reset();
   EXPECT_FALSE(std::filesystem::exists(path_)) << "a port removes its socket";
   std::filesystem::rename(held, path_);

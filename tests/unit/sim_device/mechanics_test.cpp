@@ -18,7 +18,8 @@ std::vector<scene::GripKey> overhand(int hand) {
       .keys[hand];
 }
 
-TEST(Mechanics, TheTipReachesEveryKeyWithinAMillimetre) {  // the fingers are soft and the joints rub; no thread pulls
+// with soft fingers and joint friction, and no force from the thread
+TEST(Mechanics, TheTipReachesEveryKeyWithinAMillimetre) {
   for (const int hand : {0, 1}) {
     const auto keys = overhand(hand);
     Mechanics m(path_of(keys), Time(0));
@@ -37,7 +38,7 @@ TEST(Mechanics, TheTipReachesEveryKeyWithinAMillimetre) {  // the fingers are so
 TEST(Mechanics, DeadManIsHeldFromTheStartUntilASecondAfterTheLastKey) {
   Mechanics m(path_of({{0.0, {0.5, -0.4, 3.2}, true}, {1.0, {0.5, -0.4, 3.4}, false}}), Time(0));
   m.advance(seconds(1), Vec3::Zero());
-  EXPECT_EQ(m.buttons(), 0);  // not started
+  EXPECT_EQ(m.buttons(), 0);  // the script has not started
   m.start_script(seconds(1));
   EXPECT_EQ(m.buttons(), can::profile::kButtonGrip | can::profile::kButtonDeadMan);
   m.advance(milliseconds(2500), Vec3::Zero());
@@ -48,7 +49,7 @@ TEST(Mechanics, DeadManIsHeldFromTheStartUntilASecondAfterTheLastKey) {
   EXPECT_TRUE(m.is_done());
 }
 
-TEST(Mechanics, TimeMayComeInAnyPortions) {  // same motion in steps of 1 ms and of 0.1 ms
+TEST(Mechanics, TimeMayComeInAnyPortions) {  // the same motion in steps of 1 ms and of 0.1 ms
   const auto keys = overhand(1);
   Mechanics a(path_of(keys), Time(0)), b(path_of(keys), Time(0));
   a.start_script(Time(0));

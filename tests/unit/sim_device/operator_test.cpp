@@ -1,4 +1,4 @@
-// What an operator sees (arc length, holes), and that it ties what it says, whoever it is.
+// What the simulated operator perceives (arc length, holes), and that it ties the requested knot with any seed.
 
 #include <gtest/gtest.h>
 
@@ -40,19 +40,19 @@ TEST(ThreadView, SpeaksInArcLength) {
 
 TEST(Ring, HasACentreANormalAndAnArea) {
   const Ring ring(circle(12, 1.0));
-  EXPECT_NEAR(ring.area_m2(), 3.0, 1e-12);  // of the regular twelve-sided one
+  EXPECT_NEAR(ring.area_m2(), 3.0, 1e-12);  // area of the regular twelve-sided polygon
   EXPECT_TRUE(ring.normal().isApprox(Vec3::UnitZ()));
   EXPECT_LT(ring.centre().norm(), 1e-12);
 }
 
-/// The knots as they are planned, on paper: the standing part from the right to the corner, down, back below it, up in
-/// front of it (y < 0), over, and down behind it; then the end. side -1 is the mirror image in y.
+/// The knots as drawn: the standing part from the right to the corner, down, back below itself, up in front of itself
+/// (y < 0), over, and down behind it; then the end. side -1 gives the mirror image in y.
 std::vector<Vec3> drawn(bool figure_eight, double side) {
   std::vector<Vec3> p{{3, 0, 0}, {-3, 0, 0}, {-3, 0, -2}, {0, 0, -2}, {0, -0.5, 0}, {0, 0, 1}, {1.5, 0.3, 1}};
   p.insert(p.end(), {{1.5, 0.5, 0}, {1.5, 0.2, -1}});
-  if (figure_eight)  // once more round, in front of the strand that rises, through the loop from the front
+  if (figure_eight)  // another turn in front of the rising strand, then through the loop from the front
     p.insert(p.end(), {{0, -1, -1}, {-1.5, -1, -1}, {-1.5, 1, -1}, {-1.5, 1, -4}});
-  else  // behind that strand, through the loop from behind
+  else  // behind that strand, then through the loop from behind
     p.insert(p.end(), {{0, 1, -1}, {-1.5, 1, -1}, {-1.5, -1, -1}, {-1.5, -1, -4}});
   for (Vec3& q : p) q.y() *= side;
   return p;
@@ -67,7 +67,7 @@ TEST(PlannedKnots, AreTheNamedOnesInBothHands) {
 }
 
 TEST(SeenDeterminant, TellsThemApartFromTheirPicture) {
-  const Vec3 from_below(0.1, 0.2, -1.0);  // both ends led away downwards do not pass the loop again
+  const Vec3 from_below(0.1, 0.2, -1.0);  // both ends are led away downwards without passing the loop again
   for (const double side : {1.0, -1.0}) {
     EXPECT_EQ(seen_determinant(drawn(false, side), from_below), 3);
     EXPECT_EQ(seen_determinant(drawn(true, side), from_below), 5);
@@ -75,11 +75,11 @@ TEST(SeenDeterminant, TellsThemApartFromTheirPicture) {
   const std::vector<Vec3> straight{{0, 0, 0}, {0, 0.1, -1}, {0, 0, -2}};
   EXPECT_EQ(seen_determinant(straight, Vec3::UnitY()), 1);
   auto slipped = drawn(true, 1.0);
-  slipped.resize(slipped.size() - 2);  // the end is still in front of the loop
+  slipped.resize(slipped.size() - 2);  // the end has not yet passed through the loop
   EXPECT_EQ(seen_determinant(slipped, -Vec3::UnitY()), 1);
 }
 
-TEST(KnotTier, TiesAnOverhandInThePapersSuture) {  // and it is still there five seconds after the hands let go
+TEST(KnotTier, TiesAnOverhandInThePapersSuture) {  // checked five seconds after the hands let go
   for (const std::uint32_t seed : {1U, 2U, 101U}) EXPECT_EQ(tied("paper.toml", "overhand", seed), "3_1 right") << seed;
   EXPECT_EQ(tied("paper.toml", "overhand", 7, {"suture.model=\"paper-1\""}), "3_1 right");
 }
@@ -89,7 +89,7 @@ TEST(KnotTier, TiesAFigureEightInThePapersSuture) {
     EXPECT_EQ(tied("paper.toml", "figure-eight", seed), "4_1 amphichiral") << seed;
 }
 
-TEST(KnotTier, TiesARealSutureFromScratch) {  // 0.3 mm nylon, tightened to 1 N, let go
+TEST(KnotTier, TiesARealSutureFromScratch) {  // 0.3 mm nylon, tightened to 1 N and released
   for (const std::uint32_t seed : {24U, 101U})
     EXPECT_EQ(tied("suture-3-0.toml", "overhand", seed), "3_1 right") << seed;
 }

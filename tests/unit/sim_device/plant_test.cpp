@@ -13,14 +13,14 @@ constexpr double kStep_s = 1e-4;
 
 Vec3 home_joints() { return *joints_of_tip(home_tip_D_m()); }
 
-/// Gives the joints a push and lets go.
+/// A plant after `steps` steps with the given motor torque.
 Plant moving(const PlantParameters& parameters, const Vec3& q_rad, const Vec3& motor_Nm, int steps = 100) {
   Plant plant(q_rad, parameters);
   for (int i = 0; i < steps; ++i) plant.step(motor_Nm, Vec3::Zero(), kStep_s);
   return plant;
 }
 
-TEST(Plant, KineticEnergyNeverGrowsWithoutTorque) {  // friction, and stops that do not rebound
+TEST(Plant, KineticEnergyNeverGrowsWithoutTorque) {  // with friction, and stops without rebound
   test::Random random(21);
   const auto torque = [&] { return random.in(-0.9, 0.9); };
   for (int run = 0; run < 50; ++run) {
@@ -75,7 +75,7 @@ TEST(Plant, TorqueIsLimited) {
             moving(p, home_joints(), {0.9, 0.0, 0.0}, 1).omega_rad_per_s()[0]);
 }
 
-TEST(Plant, MotorTorqueJTransposeFBalancesAForceAtTheTip) {  // statics: virtual work, at poses over the reach
+TEST(Plant, MotorTorqueJTransposeFBalancesAForceAtTheTip) {  // statics by virtual work, in poses over the whole reach
   PlantParameters p;
   p.coulomb_Nm.setZero();
   for (const Vec3& tip : {Vec3(0.0, -0.17, 0.0), Vec3(0.06, -0.15, 0.05), Vec3(-0.07, -0.19, -0.03)}) {
@@ -97,7 +97,8 @@ TEST(Plant, ApparentMassAtTheHomePoseIsAbout45Grams) {  // 1 / (u' J I^-1 J' u) 
 }
 
 TEST(Hand,
-     BringsTheDeviceToItsPointAndTheEnergyFalls) {  // spring energy + kinetic energy; O(h) ripple of the integrator
+     // spring plus kinetic energy, up to the integrator's O(h) oscillation
+     BringsTheDeviceToItsPointAndTheEnergyFalls) {
   const Hand hand;
   const Vec3 anchor = home_tip_D_m() + Vec3(0.02, 0.01, 0.015);
   Plant plant(home_joints());
@@ -112,7 +113,7 @@ TEST(Hand,
     ASSERT_LE(energy(), before_J + 1e-4 * start_J);
     before_J = energy();
   }
-  EXPECT_LT((plant.tip_D_m() - anchor).norm(), 5e-4);  // what dry friction leaves: 0.1 N class over 800 N/m
+  EXPECT_LT((plant.tip_D_m() - anchor).norm(), 5e-4);  // remaining error: about 0.1 N of dry friction over 800 N/m
 }
 
 }  // namespace

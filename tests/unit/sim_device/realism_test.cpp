@@ -1,4 +1,4 @@
-// Each law of the simulated device and hand against its closed form.
+// Each physical law of the simulated device and hand against its closed form.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -16,7 +16,8 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::seconds;
 constexpr double kWaistLever_m = 0.17;
-constexpr double kTipMass_kg = 1.30e-3 / (kWaistLever_m * kWaistLever_m);  // sideways, by the waist alone: 45 g
+// apparent mass for sideways motion by the waist alone: 45 g
+constexpr double kTipMass_kg = 1.30e-3 / (kWaistLever_m * kWaistLever_m);
 
 PlantParameters frictionless() {
   PlantParameters p;
@@ -24,13 +25,13 @@ PlantParameters frictionless() {
   return p;
 }
 
-/// Intends to be at home, for ever.
+/// A hand that stays at home.
 std::unique_ptr<HeldIntention> resting() { return std::make_unique<HeldIntention>(home_tip_D_m()); }
 
-/// Torque that pulls the tip sideways by 1 N times `force_N`.
+/// Motor torque that pulls the tip sideways with `force_N`.
 Vec3 sideways(double force_N) { return {force_N * kWaistLever_m, 0.0, 0.0}; }
 
-/// Drawn aside by the motor, let go, sampled every 0.1 ms.
+/// Free oscillation: deflected by the motor, released, and sampled every 0.1 ms.
 std::vector<double> ring(Mechanics& m, double force_N, double time_s) {
   m.advance(seconds(1), sideways(force_N));
   std::vector<double> x;
@@ -41,7 +42,7 @@ std::vector<double> ring(Mechanics& m, double force_N, double time_s) {
   return x;
 }
 
-/// By rising passages through zero, between samples linearly.
+/// From rising zero crossings, interpolated linearly.
 double frequency_Hz(const std::vector<double>& x) {
   std::vector<double> at;
   for (std::size_t i = 1; i < x.size(); ++i)
@@ -71,7 +72,7 @@ TEST(Realism, BentLinksRingBetweenTheirTwoMasses) {
   const double both = 1.0 / (1.0 / kTipMass_kg + 1.0 / c.tip_mass_kg);
   const double expected = natural_Hz(c.stiffness_N_per_m.x(), both);  // 63 Hz
   std::vector<double> bend;
-  for (int i = 1; i < 2000; ++i) {  // struck by the motor for 1 ms
+  for (int i = 1; i < 2000; ++i) {  // excited by a motor torque of 1 ms
     m.advance(microseconds(100 * i), sideways(i <= 10 ? 3.0 : 0.0));
     bend.push_back(m.touch().p_DT.x() - m.plant().tip_D_m().x());
   }
@@ -85,14 +86,14 @@ TEST(Realism, StaticErrorIsForceOverTheSpringsInSeries) {
   m.advance(seconds(5), sideways(0.5));
   const double linkage = m.plant().tip_D_m().x();
   const double tip = m.touch().p_DT.x(), finger = m.fingers().position_D_m().x();
-  // The lever turns with the waist: 0.5 N is exact at home and less by cos q1 beside it.
+  // The lever turns with the waist: the force is 0.5 N at home and 0.5 N / cos q1 beside it.
   const double force = 0.5 / std::cos(m.plant().q_rad()[0]);
   EXPECT_NEAR(finger, force / hand.stiffness_N_per_m, 0.01 * finger);
   EXPECT_NEAR(tip - finger, force / hand.pad_stiffness_N_per_m, 0.02 * (tip - finger));
   EXPECT_NEAR(linkage - tip, force / 1260.0, 0.02 * (linkage - tip));
 }
 
-TEST(Realism, FrictionHoldsAHandsPullBelowItsBand) {  // 0.1 N at the tip
+TEST(Realism, FrictionHoldsAHandsPullBelowItsBand) {  // the friction band is 0.1 N at the tip
   const double band_N = PlantParameters{}.coulomb_Nm[0] / kWaistLever_m;
   for (const double share : {0.98, 1.02}) {
     auto will = resting();
@@ -120,7 +121,7 @@ TEST(Realism, WeightWithoutFrictionKeepsItsEnergy) {
   for (int i = 0; i < 50000; ++i) {
     plant.step(Vec3::Zero(), Vec3::Zero(), 1e-4);
     swing_J = std::max(swing_J, plant.kinetic_J());
-    ASSERT_NEAR(plant.kinetic_J() + plant.potential_J(), start_J, 2e-3 * 0.1) << i;  // of a swing of 0.1 J
+    ASSERT_NEAR(plant.kinetic_J() + plant.potential_J(), start_J, 2e-3 * 0.1) << i;  // relative to a swing of 0.1 J
   }
   EXPECT_GT(swing_J, 0.05);
 }
@@ -135,7 +136,7 @@ TEST(Realism, WhatIsLeftOfTheWeightIsATenthOfANewtonAndFrictionHoldsIt) {
   EXPECT_EQ(plant.q_rad(), *joints_of_tip(home_tip_D_m()));
 }
 
-/// Work in = energy stored + energy lost, to 1 % of the work, with every law at once.
+/// Work in = energy stored + energy dissipated, to 1 % of the work, with all laws active.
 TEST(Realism, EnergyBalances) {
   const Hand hand = Hand::holding(0.6);
   PlantParameters p;
@@ -188,7 +189,7 @@ TEST(Realism, AMotorAtTwiceItsRatingIsHeldDownWhenItsWindingIsHot) {
     }
   }
   EXPECT_NEAR(held_at_s, expected_s, 0.01);
-  for (int i = 0; i < 20000; ++i) motors.pass(Vec3::Zero(), 1e-4);  // 2 s of rest: below 0.95
+  for (int i = 0; i < 20000; ++i) motors.pass(Vec3::Zero(), 1e-4);  // after 2 s of rest the heat is below 0.95
   EXPECT_EQ(motors.pass(twice, 1e-4), twice);
 }
 
@@ -229,7 +230,7 @@ TEST(Realism, ATremblingHandShakesByItsAmplitudeAtItsFrequency) {
   EXPECT_EQ(will.at(-1.0, {}).p_DH, home_tip_D_m()) << "calm before the start";
 }
 
-/// A spring of the device (here the motor, by its true position and without delay) that a calm hand brings to rest.
+/// A spring at the device (made by the motor, without delay): a calm hand brings it to rest, an adversary excites it.
 TEST(Realism, AnAdversaryPutsEnergyIntoWhatACalmHandBringsToRest) {
   const auto end_speed = [](std::unique_ptr<Intention> will) {
     Mechanics m(std::move(will), Time(0), {{}, Hand{300.0, 1.0}, {}, {}});

@@ -32,7 +32,7 @@ std::unique_ptr<Intention> made(const scene::GripperScript& s, std::size_t hand)
   return std::get<std::unique_ptr<Intention>>(std::move(hands));
 }
 
-/// The offline lab and the device play one motion.
+/// The offline lab and the simulated device follow the same path.
 TEST(ScriptHand, PassesWhereTheLabPasses) {
   const auto s = script();
   const auto hand = made(s, 1);
@@ -43,7 +43,7 @@ TEST(ScriptHand, PassesWhereTheLabPasses) {
     EXPECT_LT((kScale * intent.v_DH - Vec3(lab.v_W_m_per_s.data())).norm(), 1e-12) << t_s;
     EXPECT_EQ(intent.grip, lab.grip) << t_s;
   }
-  EXPECT_GT(hand->at(1.0, {}).v_DH.norm(), 0.0);  // on the way
+  EXPECT_GT(hand->at(1.0, {}).v_DH.norm(), 0.0);  // in motion
   EXPECT_EQ(hand->end_s(), 4.0);
   EXPECT_EQ(hand->start_D_m(), hand->at(0.0, {}).p_DH);
 }

@@ -1,4 +1,4 @@
-// Throws in a thread that stands by itself.
+// Throws in a thread that stands by its own stiffness.
 
 #include "sim_device/operator/springy_throw.hpp"
 
@@ -10,7 +10,7 @@
 namespace ligature::sim {
 namespace {
 
-/// Where drawing a thread straight sends the right hand at first sight; the places of the thread are given.
+/// The first position to which the move that straightens the thread sends the right hand, for given node positions.
 Vec3 hand_sent(const std::vector<Vec3>& line) {
   const Workplace place{line.front(), 0.3, 3e-4, 0.0105, 1.1, 0.17};
   std::array<MovingHand, 2> hands{MovingHand(0.01), MovingHand(0.01)};
@@ -32,7 +32,7 @@ TEST(SpringyThrow, AThreadThatHangsStraightIsNotDrawnStraight) {
   EXPECT_LT((bent - Vec3(0.15, 0, 0.2)).norm(), 0.02) << "to the end";
 }
 
-/// Closed jaws that hold nothing open and come again; whoever gives up holds nothing either.
+/// Jaws that close on nothing open and try again; an operator that gives up holds nothing.
 TEST(Take, LooksWhatItHoldsAndTriesAgain) {
   const std::vector<Vec3> line{{0, 0, 0.35}, {0, 0, 0.05}};
   const Workplace place{line.front(), 0.3, 3e-4, 0.0105, 1.1, 0.17};
@@ -67,7 +67,7 @@ TEST(Take, LooksWhatItHoldsAndTriesAgain) {
   }
 }
 
-/// An end below what the arm reaches: taken where it can be.
+/// The thread's end is below the reach of the arm: the thread is gripped higher up, where the arm reaches.
 TEST(Take, GoesUpAlongAThreadWhoseEndIsOutOfReach) {
   const std::vector<Vec3> line{{0, 0, 0.35}, {0, 0, 0.05}};
   const Workplace place{line.front(), 0.3, 3e-4, 0.0105, 1.1, 0.17};

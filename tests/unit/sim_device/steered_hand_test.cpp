@@ -23,12 +23,12 @@ TEST(SteeredHand, RestsAtHomeWithTheDeadManLetGoUntilItIsWishedElsewhere) {
     EXPECT_EQ(hand.at(t_s).p_DH, home_tip_D_m());
     EXPECT_FALSE(hand.at(t_s).dead_man);
   }
-  hand.wish(-std::numeric_limits<double>::infinity(), kThere, true, true);  // before the drives are on
+  hand.wish(-std::numeric_limits<double>::infinity(), kThere, true, true);  // before the drives are enabled
   EXPECT_EQ(hand.at(1.0).p_DH, home_tip_D_m());
   EXPECT_FALSE(hand.at(1.0).grip);
 }
 
-/// Wishes at 50 Hz from `from_s` on, as a page sends them. @return when the last one came.
+/// Sends targets at 50 Hz from `from_s` on, as a page does. @return the time of the last one.
 double keep_wishing(SteeredHand& hand, double from_s, double to_s, const Vec3& p_D_m, bool dead_man) {
   double t_s = from_s;
   for (; t_s < to_s; t_s += 0.02) hand.wish(t_s, p_D_m, dead_man, true);
@@ -94,7 +94,7 @@ TEST(SteeredHand, NoNumberIsNoWish) {
   EXPECT_TRUE(hand.at(1.0).grip);
 }
 
-/// Whatever is wished, when and how often: no arm is faster, and no motion jumps.
+/// For any targets at any times and rates: the hand keeps within an arm's speed and acceleration, and never jumps.
 TEST(SteeredHand, KeepsToTheLimitsOfAnArmWhateverIsWished) {
   const ArmLimits limits;
   test::Random random(20);
@@ -118,7 +118,7 @@ TEST(SteeredHand, KeepsToTheLimitsOfAnArmWhateverIsWished) {
   }
 }
 
-/// Through the device's buttons, which are all that the firmware hears of a person.
+/// The device's buttons are all that the firmware learns of the person.
 TEST(SteeredHand, ThePersonsDeadManIsTheDevicesWhileItsDrivesAreOn) {
   auto steered = std::make_unique<SteeredHand>(Linkage{});
   SteeredHand& hand = *steered;

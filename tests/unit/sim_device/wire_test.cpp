@@ -25,14 +25,14 @@ TEST(Wire, AFrameTakesItsBitsAtOneMegabit) {
 
 TEST(Wire, TheLowestIdentifierWinsAmongThoseThatWait) {
   Wire wire;
-  wire.submit(frame(0x300), 0, microseconds(0));  // starts at once: nothing else is there yet
+  wire.submit(frame(0x300), 0, microseconds(0));  // starts at once because the bus is idle
   wire.submit(frame(0x203), 1, microseconds(5));
   wire.submit(frame(0x183), 2, microseconds(20));
   wire.submit(frame(0x081), 3, microseconds(30));
   std::vector<std::uint32_t> order;
   Time end{};
   while (const auto sent = wire.advance(microseconds(1000))) {
-    EXPECT_TRUE(order.empty() || sent->start == end + microseconds(3));  // back to back, interframe space between
+    EXPECT_TRUE(order.empty() || sent->start == end + microseconds(3));  // back to back, with interframe space
     end = sent->end;
     order.push_back(sent->frame.id);
   }
@@ -49,7 +49,7 @@ TEST(Wire, AFrameThatComesLaterCannotOvertakeOneThatHasStarted) {
 TEST(Wire, ASenderKeepsItsOwnOrder) {
   Wire wire;
   wire.submit(frame(0x203), 0, microseconds(0));
-  wire.submit(frame(0x080), 0, microseconds(0));  // a better identifier, but behind in its controller's queue
+  wire.submit(frame(0x080), 0, microseconds(0));  // a higher-priority identifier, but second in its controller's queue
   EXPECT_EQ(wire.advance(microseconds(1000))->frame.id, 0x203U);
   EXPECT_EQ(wire.advance(microseconds(1000))->frame.id, 0x080U);
 }

@@ -1,5 +1,5 @@
-// Throws wound round the standing part: which knot the hand's path alone makes, and the knots of two throws in a
-// thread.
+// Throws wound round the standing part: the knot that the hand's path alone makes, and knots of two throws in a
+// simulated thread.
 
 #include "sim_device/operator/wound_throw.hpp"
 
@@ -19,8 +19,8 @@ std::string knot_of(std::span<const Vec3> line) {
   return k.type + " " + k.handedness;
 }
 
-/// An ideal thread: no weight, no stiffness, as long as it likes. It hangs straight down from the anchor, then runs
-/// straight to the left hand, down to where the right hand took the end, and from there along the hand's path.
+/// An ideal thread without weight and stiffness and of any length: straight down from the anchor, straight to the left
+/// hand, down to where the right hand took the end, and then along the right hand's path.
 class Trail {
  public:
   Line after(const Throw& t) {
@@ -28,7 +28,7 @@ class Trail {
     hands_[kRightHand].rest_at({1.0, -1.0, -2.0}, place_.speed_m_per_s);
     bool drawn = false;
     for (Move& m : wound_throw(t, std::make_shared<Site>(0.0, 1.0))) {
-      if (drawn && m.name != "draw") break;  // the rest needs a real thread
+      if (drawn && m.name != "draw") break;  // the moves after it need a simulated thread
       drawn = m.name == "draw";
       run(m);
     }
@@ -87,7 +87,7 @@ TEST(WoundThrow, ThrowsInARowAreTheNamedKnots) {
   }
 }
 
-/// At the facade, five seconds after the hands let go.
+/// Tied at the facade; checked five seconds after the hands let go.
 TEST(WoundThrow, TiesKnotsOfTwoThrows) {
   EXPECT_EQ(tied("paper.toml", "square", 4), "3_1#3_1 amphichiral");
   EXPECT_EQ(tied("paper.toml", "granny", 104), "3_1#3_1 left");
