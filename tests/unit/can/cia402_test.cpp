@@ -46,7 +46,7 @@ TEST(Cia402, OperationIsEnteredOnlyFromSwitchedOnByEnableOperation) {
 TEST(Cia402, AFaultIsLeftOnlyByTheRisingEdgeOfFaultReset) {
   for (int word = 0; word <= 0xFF; ++word) {
     const auto w = static_cast<std::uint16_t>(word);
-    const auto held = event_of(kControlFaultReset, w);  // bit 7 was set before: no edge
+    const auto held = event_of(kControlFaultReset, w);  // bit 7 was set before, so there is no rising edge
     EXPECT_TRUE(!held || next(State::kFault, *held) == State::kFault) << word;
     const auto risen = event_of(0, w);
     const bool resets = risen && next(State::kFault, *risen) != State::kFault;

@@ -12,7 +12,7 @@ namespace ligature::can {
 namespace {
 
 template <class Int>
-Int pick(test::Random& random) {  // extremes as often as ordinary values
+Int pick(test::Random& random) {  // extreme values as often as ordinary ones
   switch (random() % 4) {
     case 0:
       return std::numeric_limits<Int>::min();
@@ -74,10 +74,10 @@ TEST(LocalWire, AnyFrameSurvivesTheRoundTrip) {
 TEST(LocalWire, RefusesWhatIsNoDataFrame) {
   LocalPacket p = to_packet(Frame{0x181, 8, {}});
   EXPECT_FALSE(from_packet(std::span(p).first(15)));
-  p[4] = 9;  // more data than classic CAN has
+  p[4] = 9;  // more data bytes than classic CAN allows
   EXPECT_FALSE(from_packet(p));
   p[4] = 8;
-  p[3] = 0x80;  // extended identifier flag
+  p[3] = 0x80;  // the flag for extended identifiers
   EXPECT_FALSE(from_packet(p));
 }
 

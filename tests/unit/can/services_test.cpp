@@ -27,7 +27,7 @@ TEST(Nmt, CommandsAreForOneNodeOrAll) {
   ASSERT_TRUE(one);
   EXPECT_TRUE(one->is_for(kShoulder));
   EXPECT_FALSE(one->is_for(kWaist));
-  EXPECT_FALSE(decode_nmt(Frame{0, 2, {0x55, 0}}));  // no such command
+  EXPECT_FALSE(decode_nmt(Frame{0, 2, {0x55, 0}}));  // 0x55 is no NMT command
   EXPECT_FALSE(decode_nmt(Frame{0, 1, {0x01}}));
 }
 
@@ -75,7 +75,8 @@ TEST(Sdo, BytesAreThoseOfTheStandard) {
 }
 
 TEST(Sdo, SegmentedTransfersAreNamedUnsupported) {
-  EXPECT_EQ(decode_sdo(Frame{0x601, 8, {0x21, 0x00, 0x10}})->kind, SdoKind::kUnsupported);  // download, not expedited
+  // a download that is not expedited
+  EXPECT_EQ(decode_sdo(Frame{0x601, 8, {0x21, 0x00, 0x10}})->kind, SdoKind::kUnsupported);
   EXPECT_FALSE(decode_sdo(Frame{0x601, 7, {0x40}}));
 }
 

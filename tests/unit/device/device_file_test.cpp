@@ -1,4 +1,4 @@
-// Device records: what is shipped can be read, what is wrong is told in one line.
+// Device files: shipped ones can be read, and errors are reported in one line.
 #include "protocol/device/device_file.hpp"
 
 #include <gtest/gtest.h>

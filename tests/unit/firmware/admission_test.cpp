@@ -1,4 +1,4 @@
-// Admission: the shapes are as bad as they claim, and the verdict follows the cost.
+// Admission: the test shapes are as demanding as claimed, and the verdict follows the measured cost.
 #include "firmware/app/admission.hpp"
 
 #include <gtest/gtest.h>
@@ -82,7 +82,7 @@ TEST(Admission, WorkIsWhatTheTimeGivenBuys) {
   EXPECT_EQ(measure_thread(paper(20), 800.0, 0.0).work, 0) << "a model without such a bound";
 }
 
-/// A thread that looks for contacts needs that much at least: with less nothing of it moves.
+/// Building the contact list has a minimum cost per node; with a smaller budget the thread could not move at all.
 TEST(Admission, ALongThreadGetsWhatItsOwnLookForContactsTakes) {
   const auto scene = scene_of("suture-3-0.toml", 400);
   EXPECT_EQ(measure_thread(scene, 50.0, 0.0).work, 1'000'000 + 400 * 2'000) << "in a time that buys nothing";
@@ -101,7 +101,7 @@ TEST(Admission, MoreWorkLosesLessOfASquareKnot) {
   EXPECT_LT(much, 0.2 * little);
 }
 
-/// What was measured, written down.
+/// A measurement result with the given values.
 Admission found(double computing_us, double lost_at_quarter) {
   Admission a;
   a.loop = {0.5 * computing_us, 0.5 * computing_us};

@@ -1,4 +1,4 @@
-// The loop in virtual time: everything about timing is exact here.
+// The loop in virtual time, so that all times are exact.
 #include <gtest/gtest.h>
 
 #include "tests/unit/firmware/virtual_rig.hpp"
@@ -40,7 +40,7 @@ TEST(Cycle, EveryRecordSaysWhenItsPhasesEnded) {
   rig.cycle.end_after(30);
   rig.cycle.run();
   for (const auto& r : rig.records()) {
-    const std::int32_t waited_ns = r.tick == 19 ? 560'000 : 460'000;  // in virtual time only waiting takes any
+    const std::int32_t waited_ns = r.tick == 19 ? 560'000 : 460'000;  // in virtual time only waiting takes time
     EXPECT_EQ(r.sync_ns, 0);
     EXPECT_EQ(r.tpdo_ns, waited_ns);
     EXPECT_EQ(r.law_ns, waited_ns);
@@ -49,7 +49,8 @@ TEST(Cycle, EveryRecordSaysWhenItsPhasesEnded) {
   }
 }
 
-TEST(Cycle, SkipsAndCountsLostPeriodsAfterAStall) {  // the tick at 10 ms ends at 13.7 ms: 11, 12 and 13 are lost
+// the tick at 10 ms ends at 13.7 ms, so periods 11, 12 and 13 are lost
+TEST(Cycle, SkipsAndCountsLostPeriodsAfterAStall) {
   VirtualRig rig;
   rig.bus.stalls[10] = 3240us;
   rig.cycle.end_after(kRun);
@@ -62,13 +63,13 @@ TEST(Cycle, SkipsAndCountsLostPeriodsAfterAStall) {  // the tick at 10 ms ends a
   EXPECT_EQ(flagged(records, rt::kPeriodLost), 3);
   EXPECT_NE(records[9].flags & rt::kDeadlineMissed, 0);
   for (const std::size_t lost : {10U, 11U, 12U}) EXPECT_NE(records[lost].flags & rt::kPeriodLost, 0) << lost;
-  EXPECT_EQ(rig.clock.woken[10], 14ms);  // back on the grid, none made up for
+  EXPECT_EQ(rig.clock.woken[10], 14ms);  // the next period that has not begun; lost ones are not made up for
   EXPECT_EQ(rig.clock.woken[11], 15ms);
 }
 
 TEST(Cycle, SkipsAndCountsPeriodsItSleptThrough) {
   VirtualRig rig;
-  rig.clock.late_by = 4200us;  // the first wake-up, due at 1 ms, comes at 5.2 ms
+  rig.clock.late_by = 4200us;  // the first wake-up, due at 1 ms, happens at 5.2 ms
   rig.cycle.end_after(kRun);
   rig.cycle.run();
   const auto records = rig.records();
@@ -91,10 +92,10 @@ TEST(Cycle, FinishingExactlyAtTheDeadlineIsAMiss) {
 
 TEST(Cycle, AMissSaysWhetherTheLoopsOwnWorkMadeIt) {
   VirtualRig rig;
-  rig.bus.stalls[10] = 700us;  // waited for
-  rig.bus.works[20] = 250us;   // in time: 460 us for the bus, this, and 285 until the torques have passed
+  rig.bus.stalls[10] = 700us;  // spent waiting
+  rig.bus.works[20] = 250us;   // still in time: 460 us for the bus + 250 us + 285 us until the torques are sent
   rig.bus.works[30] = 700us;
-  rig.bus.works[40] = 260us;  // its torques come after the next SYNC
+  rig.bus.works[40] = 260us;  // the torques are sent after the next SYNC
   rig.cycle.end_after(kRun);
   rig.cycle.run();
   const auto records = rig.records();
@@ -103,7 +104,7 @@ TEST(Cycle, AMissSaysWhetherTheLoopsOwnWorkMadeIt) {
   EXPECT_EQ(flagged(records, rt::kDeadlineMissed), 2);
   const auto worked = std::ranges::find_if(records, [](const auto& r) { return (r.flags & rt::kOverworked) != 0; });
   EXPECT_EQ(worked->flags, rt::kDeadlineMissed | rt::kOverworked);
-  EXPECT_EQ(records[41].flags, rt::kOverworked);  // two periods were lost
+  EXPECT_EQ(records[41].flags, rt::kOverworked);  // two periods were lost before
   EXPECT_EQ(rig.cycle.timing().overworked, 2U);
   EXPECT_EQ(rig.cycle.timing().work.max_ns(), 700'000);
 }
@@ -133,7 +134,7 @@ TEST(Cycle, AStallAsLongAsTheWatchdogIsAFaultInTheNextTick) {
   }
 }
 
-TEST(Cycle, AStallOfTheWholeMachineIsNoSpeedOfTheHand) {  // at 0.38 m/s a sample 15 ms late looks like 6 m/s
+TEST(Cycle, AStallOfTheWholeMachineIsNoSpeedOfTheHand) {  // at 0.38 m/s a sample that is 15 ms late looks like 6 m/s
   VirtualRig rig;
   rig.bus.waist_rad_per_s = 2.0;
   rig.bus.stalls[200] = 15ms;
@@ -158,7 +159,7 @@ TEST(Cycle, TheFlightRecorderGetsEveryPeriodWhateverTelemetryDoes) {
   VirtualRig rig;
   rt::SpscRing<rt::TickRecord> flight(30'000);
   rig.outlets->flight = &flight;
-  rig.bus.stalls[10] = 12s;  // more than telemetry's ring holds, and nobody takes from it
+  rig.bus.stalls[10] = 12s;  // longer than telemetry's ring can hold; nothing reads from it
   rig.cycle.end_after(kRun);
   rig.cycle.run();
   EXPECT_GT(rig.outlets->records.dropped(), 0U);
@@ -170,7 +171,7 @@ TEST(Cycle, TheFlightRecorderGetsEveryPeriodWhateverTelemetryDoes) {
 
 TEST(Cycle, TorqueActsExactlyOneSampleAfterItsMeasurement) {
   VirtualRig rig;
-  struct Watched {  // notes what acts at each SYNC, and what was computed in each period
+  struct Watched {  // records what acts at each SYNC and what was computed in each period
     VirtualBus& bus;
     std::vector<rt::RigCommand> acting, computed;
     void send_sync() noexcept {
@@ -250,7 +251,7 @@ TEST(Cycle, ACommandBesideAResetOfTheThreadTakesNothingFromIt) {
   rig.cycle.run();
   const auto records = rig.records();
   ASSERT_NE(records[999].potential_J, records[0].potential_J);
-  EXPECT_EQ(records[1000].potential_J, records[0].potential_J);  // one tick from the start again
+  EXPECT_EQ(records[1000].potential_J, records[0].potential_J);  // one tick after the start, again
 }
 
 }  // namespace

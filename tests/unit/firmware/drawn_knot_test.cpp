@@ -1,4 +1,4 @@
-// The knot that admission draws: a knot, and drawn.
+// The knot that admission measures is a knot and is drawn tight.
 #include "firmware/app/drawn_knot.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Another scene, or other parameters, handed to the running loop between two ticks.
+// A scene or parameters handed to the running loop between two ticks.
 #include <gtest/gtest.h>
 
 #include "tests/unit/firmware/virtual_rig.hpp"
@@ -51,7 +51,7 @@ TEST(Plant, ASceneIsRefusedByTheLoopWhileArmed) {
   EXPECT_EQ(rig.thread.nodes_W().size(), 10U);
 }
 
-TEST(Plant, ASceneIsRefusedWhileForceStillEnds) {  // disarmed, but not yet at rest
+TEST(Plant, ASceneIsRefusedWhileForceStillEnds) {  // disarmed, but the force has not yet faded
   PlantRig rig(true);
   rig.bus.on_sync = [&](std::int64_t sync) {
     if (sync == 1500) rig.outlets->commands.push({1, rt::CommandKind::kDisarm});

@@ -1,4 +1,4 @@
-// Changes while the rig runs: what is refused, with which words, and that what is lent comes back.
+// Changes during a run: which are rejected, with which messages, and that lent objects are returned.
 #include "firmware/app/scene_desk.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ class SceneDeskTest : public ::testing::Test {
     options.scene = (folder / "small.toml").string();
     options.program = LIGATURE_FIRMWARE;
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    options.force = true;  // admission measures a program that a sanitizer slows down
+    options.force = true;  // a sanitizer slows the program down, so admission would fail
 #endif
   }
   ~SceneDeskTest() override { fs::remove_all(folder); }
@@ -50,7 +50,7 @@ class SceneDeskTest : public ::testing::Test {
   }
   SceneDesk desk() const { return SceneDesk(options, std::get<Plan>(make_plan(options))); }
 
-  /// Plays the loop until the desk has answered.
+  /// Runs the loop until the desk has answered.
   SceneDesk::Outcome outcome(SceneDesk& desk, bool takes = true) {
     for (;;) {
       if (auto* plant = desk.handover().take()) {
@@ -67,7 +67,7 @@ class SceneDeskTest : public ::testing::Test {
 
   const fs::path folder = fs::temp_directory_path() / ("ligature-desk-" + std::to_string(getpid()));
   RunOptions options;
-  scene::Hands hands;  // of the plant that came last
+  scene::Hands hands;  // of the latest plant
   int nodes = 0;
 };
 
@@ -239,7 +239,7 @@ TEST_F(SceneDeskTest, LoadsASceneWithAnotherNumberOfNodes) {
         << bad;
 }
 
-/// A program in the place of the one that rehearses.
+/// A shell script that takes the place of the rehearsal program.
 std::string script(const fs::path& folder, const std::string& body) {
   const auto path = folder / "program.sh";
   std::ofstream(path) << "#!/bin/sh\n" << body << "\n";
@@ -318,7 +318,7 @@ TEST(RehearsalProcess, IsEndedWhenItsTimeIsOver) {
   fs::remove(path);
 }
 
-// What the child sees of us: the text as it was read, the overrides, and no file but its three.
+// What the child process gets: the scene text as read, the overrides, and no file descriptors but its three.
 TEST_F(SceneDeskTest, TheRehearsalHasTheTextAndNoFileOfOurs) {
   options.overrides = {"hands.max_force_N=1.0"};
   const auto at = [&](const char* name) { return (folder / name).string(); };

@@ -1,4 +1,5 @@
-// The thread's physics beside the loop, in virtual time: what it costs is simulated time, and the loop never waits.
+// The thread's physics beside the loop, in virtual time: its cost reduces simulated time only; the loop never waits for
+// it.
 #include <gtest/gtest.h>
 
 #include "tests/support/random.hpp"
@@ -15,7 +16,7 @@ scene::Scene eight_substeps() {
   return s;
 }
 
-scene::Scene long_rod() {  // 2000 nodes: whatever that takes, it is more than there is
+scene::Scene long_rod() {  // 2000 nodes: more work than any tick has time for
   scene::Scene s = small_scene();
   s.suture.model = scene::Model::kRod;
   s.suture.radius_m = 1e-3;
@@ -36,7 +37,7 @@ struct HeldRig : VirtualRig {
   std::vector<Nanoseconds> synced_at;
 };
 
-/// Whatever the thread does: SYNC on the grid, law and torques at once after the samples, nothing lost.
+/// The loop is unaffected by the thread: SYNC in every period, law and torques right after the samples, no period lost.
 void expect_loop_in_time(const HeldRig& rig, const std::vector<rt::TickRecord>& records) {
   for (std::size_t i = 0; i < rig.synced_at.size(); ++i)
     ASSERT_EQ(rig.synced_at[i], static_cast<std::int64_t>(i + 1) * 1ms) << i;
@@ -47,12 +48,12 @@ void expect_loop_in_time(const HeldRig& rig, const std::vector<rt::TickRecord>& 
   }
 }
 
-/// From the tools, so long after the samples, to the thread's end.
+/// Time from handing over the tools, `law` after the samples, to the thread's deadline: the least of 1000 ticks.
 Nanoseconds usable(Nanoseconds law) {
   rt::ThreadDeadline deadline;
   Nanoseconds least = 1s;
   test::Random random(1);
-  for (int k = 0; k < 1000; ++k) {  // samples come between the earliest and the latest, a few bits apart
+  for (int k = 0; k < 1000; ++k) {  // arrival times of samples differ by a few bit times
     const Nanoseconds sampled = 420us + std::chrono::microseconds(random() % 20);
     deadline.note(sampled);
     least = std::min(least, deadline.before(1ms) - sampled - law);
@@ -64,7 +65,7 @@ TEST(Thread, HasMostOfAPeriod) {
   EXPECT_GE(usable(50us), 850us);
   rt::ThreadDeadline deadline;
   EXPECT_EQ(deadline.before(1ms), 1ms + 435us);
-  deadline.note(100us);  // no bus is as fast as that
+  deadline.note(100us);  // earlier than any bus could deliver
   EXPECT_EQ(deadline.before(1ms), 1ms + 355us);
   for (int k = 0; k < 10'000; ++k) deadline.note(5ms);
   EXPECT_EQ(deadline.before(1ms), 1ms + 435us);
@@ -72,7 +73,7 @@ TEST(Thread, HasMostOfAPeriod) {
 
 TEST(Thread, AThreadThatFitsIsNeverOlderThanOnePeriod) {
   HeldRig rig;
-  rig.physics.per_question = 40us;  // eight substeps, and the ends of a tick: 440 us
+  rig.physics.per_question = 40us;  // eight substeps plus start and end of a tick: 440 us
   const auto records = rig.run(1500);
   expect_loop_in_time(rig, records);
   for (const auto& r : records) {
@@ -105,7 +106,7 @@ TEST(Thread, TheClockEndsATickThatDoesNotFit) {
   const auto records = rig.run(1500);
   expect_loop_in_time(rig, records);
   for (const auto& r : records) {
-    if (r.tick < 2 || &r == &records.back()) continue;  // how long a piece takes is not known before
+    if (r.tick < 2 || &r == &records.back()) continue;  // the first ticks have no estimate of a piece's duration
     ASSERT_EQ(r.grasp_age_ticks, 1) << r.tick;
     ASSERT_EQ(r.flags & (rt::kThreadLate | rt::kThreadCut), rt::kThreadCut) << r.tick;
     ASSERT_EQ(r.thread_end, static_cast<int>(physics::TickEnd::kClock)) << r.tick;
@@ -140,7 +141,7 @@ TEST(Thread, TwoThousandNodesUnderForceHoldUpNothingAndTheLossIsTold) {
 TEST(Thread, ATickOfTheLoopThatIsLateTakesNothingFromTheThread) {
   HeldRig rig;
   rig.physics.per_question = 40us;
-  rig.bus.stalls[100] = 900us;  // the tools come after the end that they had, but the next samples a period later
+  rig.bus.stalls[100] = 900us;  // the tools come after the thread's deadline, and the next samples a period later
   rig.bus.stalls[200] = 3240us;
   const auto records = rig.run(300);
   EXPECT_EQ(rig.cycle.timing().periods_lost, 4U);
@@ -149,13 +150,13 @@ TEST(Thread, ATickOfTheLoopThatIsLateTakesNothingFromTheThread) {
 }
 
 TEST(Thread, AnEndlessTickHoldsUpNothingAndIsAFaultAfterTheWatchdogsTime) {
-  HeldRig rig;  // force is on by then
+  HeldRig rig;  // force is on at tick 1200
   rig.physics.stalls = [](std::int64_t n) { return n == 1200 ? Nanoseconds(60ms) : Nanoseconds(0); };
   const auto records = rig.run(1500);
   expect_loop_in_time(rig, records);
   std::int64_t late = 0;
   for (const auto& r : records) late += (r.flags & rt::kThreadLate) != 0;
-  EXPECT_EQ(late, 59);  // the tools of the 60th period are the newest when it is done
+  EXPECT_EQ(late, 59);  // after 60 ms the thread takes the tools of the 60th period
   for (std::int64_t k = 1201; k < 1219; ++k) {
     ASSERT_EQ(records[static_cast<std::size_t>(k)].grasp_age_ticks, k - 1199);
     ASSERT_EQ(records[static_cast<std::size_t>(k)].fault, 0) << "the law goes on with the grasp that it has";

@@ -52,7 +52,7 @@ ligature_msg::thread_t thread_of(std::int64_t tick, const std::vector<std::array
   return thread;
 }
 
-/// The trefoil (2 + cos 3t)(cos 2t, sin 2t), sin 3t, cut at an outer point and led far away from there.
+/// The trefoil (2 + cos 3t)(cos 2t, sin 2t), sin 3t, cut at an outer point; both ends are led far away from there.
 std::vector<std::array<double, 3>> overhand_points(int count) {
   std::vector<std::array<double, 3>> points;
   constexpr double kCut = 0.05;

@@ -38,7 +38,7 @@ TEST(Exchange, AStopIsDoneAtOnceAndMayBeRepeated) {
   EXPECT_EQ(stop.take(ack_of(stop.id(), 42, 0, true)), Step::kAnswered);
 }
 
-/// What a recording that is played back says, and another firmware on the same network.
+/// Answers from a recording that is played back and from another firmware on the network are ignored.
 TEST(Exchange, HearsOnlyTheAnswersThatAreMeant) {
   Exchange arm(command_t::KIND_ARM, "", 0.0);
   EXPECT_NE(arm.id(), Exchange(command_t::KIND_ARM, "", 0.0).id());

@@ -27,10 +27,10 @@ class Export : public ::testing::Test {
     batch.ticks[3].grasped_node[0] = 17;
     test::write(log, kTicksChannel, batch);
     test::write(log, kStatusChannel, status);
-    test::write(log, kTicksChannel, batch);                             // twice
-    log.write(0, kTicksChannel, test::encoded(ligature_msg::ack_t{}));  // garbage
+    test::write(log, kTicksChannel, batch);                             // the same batch twice
+    log.write(0, kTicksChannel, test::encoded(ligature_msg::ack_t{}));  // not a tick batch
     test::write(log, kThreadChannel, test::thread_of(10, test::straight_points(5)));
-    test::write(log, kTicksChannel, test::batch_of(2, 0, 5));  // restarted
+    test::write(log, kTicksChannel, test::batch_of(2, 0, 5));  // the firmware was restarted
     log.close();
     return folder_.file("a.lcmlog");
   }
@@ -53,7 +53,7 @@ TEST_F(Export, WritesEveryTickOfEverySessionOnce) {
     for (const auto& line : lines) EXPECT_EQ(fields_in(line), fields_in(lines[0])) << name;
     EXPECT_TRUE(lines[0].starts_with("tick,t_s,"));
     EXPECT_TRUE(lines[0].ends_with(",session"));
-    EXPECT_TRUE(lines[4].starts_with("3,0.006,"));  // the period of the status
+    EXPECT_TRUE(lines[4].starts_with("3,0.006,"));  // time by the period in the status message
     EXPECT_TRUE(lines[25].ends_with(",2"));
   }
 }

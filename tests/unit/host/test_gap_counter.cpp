@@ -1,4 +1,4 @@
-// Truth: a set of the numbers that came, counted by hand or by std::set.
+// Compared with the set of received numbers, by hand or by std::set.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ TEST(GapCounter, CountsNothingLostInAWholeSequence) {
   for (int i = 5; i < 1005; ++i) EXPECT_TRUE(counter.add(i));
   EXPECT_EQ(counter.received(), 1000);
   EXPECT_EQ(counter.missing(), 0);
-  EXPECT_EQ(counter.first(), 5);  // joining late is not a loss
+  EXPECT_EQ(counter.first(), 5);  // numbers before the first received one are not missing
   EXPECT_EQ(counter.last(), 1004);
 }
 

@@ -1,4 +1,4 @@
-// What a flight recorder's file may add to a recording: the missing ticks of the very session that it holds.
+// What a flight recorder's file may add to a recording: only missing ticks of the same session.
 #include "host/gap_filler.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace ligature::host {
 namespace {
 
-/// A flight recorder's file with ticks first .. last of a session, as protocol/recorder lays it out.
+/// Writes a flight recorder's file with ticks first .. last of a session, laid out as by protocol/recorder.
 void write_flight(const std::string& path, std::int64_t session, std::int64_t first, std::int64_t last) {
   const auto header = std::make_unique<recorder::Header>();
   header->slot_bytes = recorder::slot_bytes_for(static_cast<std::size_t>(test::tick_of(0)._getEncodedSizeNoHash()));
@@ -42,7 +42,7 @@ class GapFillerTest : public ::testing::Test {
  protected:
   static constexpr std::int64_t kSession = 7'000, kOther = 8'000;
 
-  /// Ticks of a session came; those between first and last that are not named are missing.
+  /// Marks ticks first .. last of a session as received; gaps between such calls are missing ticks.
   void came(std::int64_t session, std::int64_t first, std::int64_t last) {
     const int index = tally.find_or_add(session);
     for (auto tick = first; tick <= last; ++tick) tally.add(index, tick);
@@ -52,7 +52,7 @@ class GapFillerTest : public ::testing::Test {
     status.recorder_file = name;
     filler.note(status);
   }
-  /// Numbers of the ticks that were fetched, of each session by itself.
+  /// Numbers of the fetched ticks, by session.
   std::map<std::int64_t, std::vector<std::int64_t>> fetched(GapFiller::Ends ends = GapFiller::Ends::kOpen) {
     std::map<std::int64_t, std::vector<std::int64_t>> ticks;
     std::int64_t sum = 0;
@@ -93,7 +93,7 @@ TEST_F(GapFillerTest, FetchesTheEndOfARunWhenTheRunHasEnded) {
   EXPECT_TRUE(filler.knows_end_of(kSession));
 }
 
-/// Ticks have numbers from zero in every session: another run's would fit in.
+/// Tick numbers start at zero in every session, so another run's ticks would fit into the gaps.
 TEST_F(GapFillerTest, AFileOfAnotherSessionFillsNothing) {
   write_flight(file, kOther, 0, 60);
   came(kSession, 0, 20);

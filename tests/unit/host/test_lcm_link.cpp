@@ -1,4 +1,4 @@
-// The host's end of LCM, within one process: nothing here needs a network.
+// The host's LCM connection within one process, without network.
 #include "host/lcm_link.hpp"
 
 #include <gtest/gtest.h>

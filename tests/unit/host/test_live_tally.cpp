@@ -48,7 +48,7 @@ TEST(LiveTally, TwoFirmwaresAtOnceAreNoRestart) {
   }
   EXPECT_NE(tally.summary().find("several firmwares sent at the same time"), std::string::npos) << tally.summary();
   EXPECT_EQ(tally.summary().find("restarted"), std::string::npos);
-  LiveTally filled_late;  // from the flight recorder, after a restart
+  LiveTally filled_late;  // ticks from the flight recorder, after a restart of the firmware
   add(filled_late, test::batch_of(1, 0, 20));
   add(filled_late, test::batch_of(1, 40, 20));
   add(filled_late, test::batch_of(2, 0, 20));

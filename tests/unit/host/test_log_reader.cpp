@@ -1,4 +1,4 @@
-// Truth: files written by LCM's own event log writer, then damaged.
+// Files written by LCM's own event log writer, then damaged.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -25,7 +25,7 @@ std::string write_log(const test::TestFolder& folder) {
   return path;
 }
 
-/// Reads all; the first ticks of the batches that came.
+/// Reads the whole log. @return the first tick of each batch.
 std::vector<std::int64_t> first_ticks(LogReader& log) {
   std::vector<std::int64_t> ticks;
   while (const LogEvent* event = log.next())
@@ -64,8 +64,8 @@ TEST(LogReader, GoesOnBehindABrokenEvent) {
   const test::TestFolder folder;
   std::string bytes = test::text_of(write_log(folder));
   const std::size_t event_size = bytes.size() / kEvents;
-  bytes[3 * event_size] = 'x';                                   // a sync word
-  bytes.replace(6 * event_size + 24, 4, "\x7F\xFF\xFF\xFF", 4);  // a data length
+  bytes[3 * event_size] = 'x';                                   // the sync word of event 3
+  bytes.replace(6 * event_size + 24, 4, "\x7F\xFF\xFF\xFF", 4);  // the data length of event 6
   test::write_text(folder.file("broken.lcmlog"), bytes);
   LogReader log(folder.file("broken.lcmlog"));
   EXPECT_EQ(first_ticks(log), (std::vector<std::int64_t>{0, 20, 40, 80, 100, 140, 160, 180}));
@@ -96,7 +96,7 @@ TEST(LogReader, NoFlippedBitGoesUnnoticed) {
     return events;
   }();
   ligature::test::Random random(98);
-  const std::size_t first = 28 + kTicksChannel.size() + 8;  // behind what makes it a log at all
+  const std::size_t first = 28 + kTicksChannel.size() + 8;  // after the part that identifies the file as a log
   for (int i = 0; i < 200; ++i) {
     std::string broken = whole;
     const std::size_t at = first + random() % (whole.size() - first);
@@ -112,9 +112,9 @@ TEST(LogReader, NoFlippedBitGoesUnnoticed) {
     EXPECT_GE(came, truth.size() - 1) << "byte " << at << ": one flipped bit costs one event at most";
     const std::size_t in_event = at % (whole.size() / kEvents);
     const bool is_number =
-        (in_event >= 4 && in_event < 12) ||  // the event's, which nothing needs
+        (in_event >= 4 && in_event < 12) ||  // the event's number, which is not needed
         (in_event >= whole.size() / kEvents - kCheckEventBytes + 4 &&
-         in_event < whole.size() / kEvents - kCheckEventBytes + 20);  // and number and time of its check
+         in_event < whole.size() / kEvents - kCheckEventBytes + 20);  // and number and time of its checksum event
     if (!is_number) {
       EXPECT_NE(log.damage(), "") << "byte " << at;
     }
@@ -131,7 +131,7 @@ TEST(LogReader, ALogOfAnotherRecorderHasNoChecksumsAndIsSound) {
   LogReader log(folder.file("plain.lcmlog"));
   EXPECT_EQ(first_ticks(log).size(), static_cast<std::size_t>(kEvents));
   EXPECT_EQ(log.damage(), "");
-  // Ours, played by lcm-logplayer and recorded by lcm-logger: with its checksums, at other times.
+  // As after lcm-logplayer and lcm-logger: the same checksums, other times.
   std::string played = whole;
   for (std::size_t i = 0; i < kEvents; ++i)
     for (const std::size_t head : {std::size_t{0}, event_size - kCheckEventBytes})

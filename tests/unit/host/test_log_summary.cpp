@@ -11,7 +11,7 @@
 namespace ligature::host {
 namespace {
 
-/// Two seconds in batches of 20; the batch at 0.4 s never came, a shape every 20 ms, tied from 1.5 s on.
+/// Writes two seconds in batches of 20 ticks, without the batch at 0.4 s; a shape every 20 ms; a knot from 1.5 s on.
 std::string write_run(const test::TestFolder& folder) {
   const std::string path = folder.file("run.lcmlog");
   LogWriter log(path, false);
@@ -58,11 +58,12 @@ TEST(LogSummary, TableAndJsonSayTheSame) {
   const auto json = nlohmann::json::parse(report_json(summary));
   EXPECT_EQ(json["ticks_lost"], 20);
   EXPECT_EQ(json["recorded_per_s"], 990.0);
-  // One of 1980 recorded periods was lost: what was not recorded says nothing about the loop.
+  // Of 1980 recorded periods the loop lost one; missing records say nothing about the loop.
   EXPECT_DOUBLE_EQ(json["executed_percent"].get<double>(), 100.0 * 1979 / 1980);
   EXPECT_DOUBLE_EQ(json["executed_per_s"].get<double>(), 1000.0 * 1979 / 1980);
   EXPECT_EQ(json["periods_lost"], 1);
-  EXPECT_DOUBLE_EQ(json["wakeup_us"]["p50"].get<double>(), 1.009);  // of 0 .. 1999 without 400 .. 419 and 1900
+  // of the values 0 .. 1999 without 400 .. 419 and 1900
+  EXPECT_DOUBLE_EQ(json["wakeup_us"]["p50"].get<double>(), 1.009);
   EXPECT_DOUBLE_EQ(json["wakeup_us"]["p99"].get<double>(), 1.98);
   EXPECT_EQ(json["knot"]["type"], "3_1");
   EXPECT_EQ(json["hand_force"]["left"]["peak_N"], 3.0);
@@ -74,7 +75,7 @@ TEST(LogSummary, TableAndJsonSayTheSame) {
   EXPECT_NE(table.find("peak 3.000 N at 0.777 s"), std::string::npos) << table;
 }
 
-/// Nobody knows what a run did after its last recorded tick, unless that one has its drives switched off.
+/// "Zero lost" may be claimed only if the last recorded tick has the drives off: otherwise the run may have gone on.
 TEST(LogSummary, SaysZeroLostOnlyOfRunsThatAreThereToTheirEnd) {
   const test::TestFolder folder;
   for (std::int8_t state = 0; state < 7; ++state) {
@@ -84,7 +85,7 @@ TEST(LogSummary, SaysZeroLostOnlyOfRunsThatAreThereToTheirEnd) {
       auto last = test::batch_of(1, 10, 10);
       last.ticks.back().state = state;
       test::write(log, kTicksChannel, last);
-      test::write(log, kTicksChannel, test::batch_of(1, 0, 10));  // filled from the flight recorder: not in order
+      test::write(log, kTicksChannel, test::batch_of(1, 0, 10));  // filled from the flight recorder, so out of order
       if (restarted) test::write(log, kTicksChannel, test::batch_of(2, 0, 20));
       log.close();
       const auto summary = summarise(path);

@@ -43,7 +43,7 @@ TEST(LogWriter, AFileSizeLimitIsAnErrorAndKeepsWhatCameBefore) {
   const test::TestFolder folder;
   const std::string path = folder.file("a.lcmlog");
   LogWriter log(path, false);
-  console::catch_stop_signals();  // SIGXFSZ ignored
+  console::catch_stop_signals();  // also ignores SIGXFSZ
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
   const rlimit small{.rlim_cur = 100'000, .rlim_max = before.rlim_max};
@@ -56,7 +56,7 @@ TEST(LogWriter, AFileSizeLimitIsAnErrorAndKeepsWhatCameBefore) {
   int events = 0;
   while (kept.next()) ++events;
   EXPECT_GT(events, 5);
-  EXPECT_EQ(events, written);  // what was reported as written can be read
+  EXPECT_EQ(events, written);  // everything reported as written can be read
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Names of the wire's numbers, against the firmware's own lists: the only place where both may be seen.
+// The host's names for protocol numbers against the firmware's own lists; only here both may be included.
 #include <gtest/gtest.h>
 
 #include <algorithm>

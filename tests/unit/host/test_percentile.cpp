@@ -1,4 +1,4 @@
-// Truth: the definition, on sorted samples.
+// Compared with the definition, on sorted samples.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -23,7 +23,7 @@ TEST(Percentile, IsTheSmallestSampleThatEnoughOthersDoNotExceed) {
   test::Random random(2);
   for (const std::size_t count : {1U, 2U, 3U, 10U, 997U}) {
     std::vector<std::int32_t> samples(count);
-    for (auto& sample : samples) sample = static_cast<std::int32_t>(random() % 50);  // with ties
+    for (auto& sample : samples) sample = static_cast<std::int32_t>(random() % 50);  // with equal values
     for (const double percent : {1.0, 50.0, 90.0, 99.0, 99.9, 100.0}) {
       const auto found = percentile(samples, percent);
       const auto below = std::ranges::count_if(samples, [&](auto s) { return s < found; });

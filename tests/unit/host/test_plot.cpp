@@ -11,7 +11,7 @@ namespace {
 std::string write_log(const test::TestFolder& folder) {
   LogWriter log(folder.file("a.lcmlog"), false);
   for (int first = 0; first < 30'000; first += 500) {
-    if (first == 9000) continue;  // a hole
+    if (first == 9000) continue;  // a gap
     auto batch = test::batch_of(1, first, 500);
     for (auto& tick : batch.ticks) {
       tick.state = tick.tick < 3000 ? 2 : 4;
@@ -30,7 +30,7 @@ TEST(Plot, DrawsAWholePicture) {
   const std::string png = test::text_of(folder.file("forces.png"));
   EXPECT_TRUE(png.starts_with("\x89PNG"));
   EXPECT_NE(png.find("IEND"), std::string::npos);
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2);  // the log and the picture
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2);  // only the log and the picture
 }
 
 TEST(Plot, SaysHowToGetAMissingPython) {

@@ -69,7 +69,7 @@ TEST_F(PolylineFile, AShapeThatWasCutOffIsNotTaken) {
   EXPECT_EQ(line.points.size(), 3U);
   EXPECT_TRUE(line.last_is_cut_off);
   EXPECT_FALSE(read(kShapes).last_is_cut_off);
-  EXPECT_EQ(read(cut + "1,2,9").points[0][0], 4.0);  // and within a row
+  EXPECT_EQ(read(cut + "1,2,9").points[0][0], 4.0);  // cut off within a row
   EXPECT_EQ(read(cut, 99.0).points[0][0], 4.0);
   EXPECT_EQ(refusal("t_s,node,x,y,z\n0,0,1,2,3\n0,1,1,2"), ": its only shape is cut off; allowed: a whole one");
 }
@@ -89,7 +89,7 @@ TEST_F(PolylineFile, WhatIsQuotedFitsOnALine) {
 
 TEST_F(PolylineFile, RefusesFoldersAndTextsWithoutEnd) {
   EXPECT_THROW(static_cast<void>(read_polyline_csv(folder_.path().string(), {})), BadInput);
-  EXPECT_THROW(static_cast<void>(read_polyline_csv("/dev/zero", {})), BadInput);  // only read
+  EXPECT_THROW(static_cast<void>(read_polyline_csv("/dev/zero", {})), BadInput);  // not a regular file
   EXPECT_FALSE(is_lcm_log("/dev/zero"));
   EXPECT_EQ(refusal(std::string((64U << 20) + 10, '7')), ": found more than 64 MB, allowed at most that");
 }

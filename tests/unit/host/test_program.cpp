@@ -1,4 +1,4 @@
-// The program as a person runs it: exit codes, and one line on stderr for whatever is wrong.
+// The program as started by a user: exit codes, and one line on stderr for each error.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -13,7 +13,7 @@ namespace {
 
 class Program : public ::testing::Test {
  protected:
-  /// Runs `ligature-host WORDS` in the test's folder; stdout and stderr go into files there.
+  /// Runs `ligature-host WORDS` in the test's folder, with stdout and stderr redirected to files there.
   int run(const std::string& words) {
     const std::string line =
         "cd '" + folder_.path().string() + "' && '" LIGATURE_HOST_PROGRAM "' " + words + " >out 2>err";

@@ -25,9 +25,9 @@ class ProgressLine : public ::testing::Test {
 TEST_F(ProgressLine, SaysHowFarAndHowLongAndWipesItself) {
   {
     Progress progress("export", out_, true, start_);
-    EXPECT_FALSE(progress.is_due(start_ + milliseconds(900)));  // short work says nothing
+    EXPECT_FALSE(progress.is_due(start_ + milliseconds(900)));  // no progress is shown for short work
     EXPECT_TRUE(progress.is_due(start_ + milliseconds(2000)));
-    EXPECT_FALSE(progress.is_due(start_ + milliseconds(2100)));  // not that often
+    EXPECT_FALSE(progress.is_due(start_ + milliseconds(2100)));  // too soon after the previous one
     progress.show(0.25, "", start_ + milliseconds(2000));
     progress.show(0.5, "N = 50", start_ + milliseconds(3000));
   }

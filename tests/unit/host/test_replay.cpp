@@ -1,5 +1,5 @@
-// A recording that is always the same: whatever the speed and however it is scrubbed, the same knots at the same ticks,
-// the same events and the same traces.
+// A fixed recording gives the same knots at the same ticks, the same events and the same traces at any replay speed and
+// with any seeking.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -27,7 +27,7 @@ ligature_msg::event_t event_of(std::int64_t tick, std::int8_t kind, int code, co
   return event;
 }
 
-/// 6 s: a straight thread until 2 s, an overhand from then on, straight again from 5 s; grasped from `grasp` on.
+/// 6 s: a straight thread, an overhand knot from 2 s on, straight again from 5 s on; grasped from tick `grasp` on.
 void write_golden(const std::string& path, std::int64_t grasp) {
   LogWriter log(path, false);
   ligature_msg::status_t status{};
@@ -55,7 +55,7 @@ void write_golden(const std::string& path, std::int64_t grasp) {
 }
 
 struct Seen {
-  std::vector<std::string> knots;  // "3_1 right", when it changes
+  std::vector<std::string> knots;  // e.g. "3_1 right"; one entry per change
   std::vector<std::pair<std::int64_t, std::string>> events;
   std::int64_t last_tick = -1;
 };
@@ -66,7 +66,7 @@ std::uint32_t u32_at(const std::vector<std::byte>& bytes, std::size_t at) {
   return value;
 }
 
-/// Payloads of one kind of section in a frame.
+/// Contents of all sections of one kind in a frame.
 std::vector<std::vector<std::byte>> sections(const std::vector<std::byte>& frame, Section kind) {
   std::vector<std::vector<std::byte>> found;
   for (std::size_t at = 8; at + 8 <= frame.size();) {
@@ -155,13 +155,14 @@ TEST_F(Replay, MarksAreTheSameEvents) {
       {"left hand holds node 7", 1.234}, {"knot 3_1 left", 2.0}, {"fault 30", 4.0}, {"knot 0_1 none", 5.0}};
   for (std::size_t i = 0; i < golden.size(); ++i) {
     EXPECT_EQ(marks[i].first, golden[i].first);
-    EXPECT_NEAR(marks[i].second, golden[i].second, LogSurvey::kKnotPeriod_s) << golden[i].first;  // how often it names
+    // knots are recognised only that often
+    EXPECT_NEAR(marks[i].second, golden[i].second, LogSurvey::kKnotPeriod_s) << golden[i].first;
   }
   EXPECT_EQ(survey.landmarks().first_tick, 0);
   EXPECT_EQ(survey.landmarks().first_grasp, 1234);
 }
 
-/// What a page is told of the second recording, and where that is.
+/// What a page receives of a second recording, and its position.
 TEST_F(Replay, AnotherRecordingRunsBesideItFromTheCommonGrasp) {
   write_golden(folder_.file("other.lcmlog"), 2000);
   const LogMap map(path_);
@@ -192,7 +193,7 @@ TEST_F(Replay, AnotherRecordingRunsBesideItFromTheCommonGrasp) {
   }
   EXPECT_EQ(told["files"], (json{"golden.lcmlog", "other.lcmlog"}));
   EXPECT_EQ(told["offset_ticks"], 1234 - 2000);
-  // Ours stands at 1.5 s, 0.266 s after the grasp; so does the other: in batches of 20.
+  // The recording is at 1.5 s, 0.266 s after its grasp; the other one must be as far after its own, to within a batch.
   EXPECT_NEAR(last, 2266.0, 2 * kBatch);
 
   EXPECT_TRUE(comparison.request({{"compare", ""}, {"align", "start"}}).is_null());

@@ -29,7 +29,7 @@ TEST(SessionTally, RefusesMoreSessionsThanARigCouldStart) {
   SessionTally tally;
   for (std::size_t i = 0; i < SessionTally::kMaxSessions; ++i) EXPECT_GE(tally.find_or_add(static_cast<int>(i)), 0);
   EXPECT_EQ(tally.find_or_add(-1), -1);
-  EXPECT_EQ(tally.find_or_add(7), 7);  // those known stay known
+  EXPECT_EQ(tally.find_or_add(7), 7);  // known sessions are still found
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ TEST(TickStatistics, AFaultCountsOnceUntilItIsLeft) {
   EXPECT_EQ(statistics.faults()[2].fault, 5);
 }
 
-/// One period of the rig, as the loop records it.
+/// One period as the loop records it.
 tick_t period_of(int number, std::int32_t wakeup_us, std::int32_t joints_us, std::int32_t execution_us) {
   auto tick = test::tick_of(number);
   tick.scheduled_ns = std::int64_t{number} * 1'000'000;
@@ -89,7 +89,8 @@ TEST(ThreadTime, IsFromTheToolsToTheNextJointsWithoutTheSync) {
   statistics.add(period_of(1, 10, 450, 500));
   EXPECT_FALSE(statistics.thread_time().known());
   statistics.add(period_of(2, 20, 400, 480));  // 1000 + 20 + 400 - 25 - 30 - (10 + 500)
-  statistics.add(period_of(3, 0, 600, 700));   // 1000 + 0 + 460 - 25 - 30 - (20 + 480): joints never count as later
+  // 1000 + 0 + 460 - 25 - 30 - (20 + 480): 600 us counts as 460, the latest arrival
+  statistics.add(period_of(3, 0, 600, 700));
   EXPECT_EQ(statistics.thread_time().at_least_ns(50), 905'000);
   statistics.add(period_of(4, 5, 420, 500));  // 1000 + 5 + 420 - 25 - 30 - (0 + 700)
   EXPECT_EQ(statistics.thread_time().at_least_ns(50), 855'000);

@@ -11,7 +11,7 @@ TEST(Closure, JoinsFarOutsideWhateverTheDirections) {
     const auto way = way_home(thread, first, Point(1, 0, 0));
     ASSERT_GE(way.size(), 2u);
     for (std::size_t k = 0; k + 1 < way.size(); ++k) {
-      EXPECT_GT((0.5 * (way[k] + way[k + 1])).norm(), 10.0);  // the chord stays away from the thread
+      EXPECT_GT((0.5 * (way[k] + way[k + 1])).norm(), 10.0);  // the closing chord stays away from the thread
       EXPECT_TRUE(way[k].allFinite());
     }
   }

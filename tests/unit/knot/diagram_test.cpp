@@ -23,7 +23,7 @@ TEST(Projection, TheStandardTrefoilHasWritheThree) {
   EXPECT_EQ(seen->crossings(), 3u);
   EXPECT_EQ(writhe(*seen), 3);
   const auto behind = project(points(shapes::trefoil(50)), -Point(0.013, -0.021, 1).normalized());
-  EXPECT_EQ(writhe(*behind), 3);  // the same from behind
+  EXPECT_EQ(writhe(*behind), 3);  // the writhe is the same from behind
 }
 
 TEST(Projection, RefusesAViewAlongAnEdge) {

@@ -11,7 +11,7 @@ namespace {
 
 using namespace shapes;
 
-/// "3_1 right"
+/// Type and handedness, e.g. "3_1 right".
 std::string named(const Polyline& line, bool closed = true) {
   const auto r = recognise(line, closed);
   return r.type + " " + r.handedness;
@@ -113,7 +113,7 @@ TEST(Recognise, ADoubledThreadTiedInATrefoilIsAnUnknot) {
 TEST(Recognise, OpenThreadsWithTheirEndsOutside) {
   for (const int hand : {1, -1}) {
     auto line = trefoil(61, hand);
-    // Cut where the curve is farthest out, and lead both ends away.
+    // Cut at the outermost point, and lead both ends away.
     std::rotate(line.begin(), line.begin() + 10, line.end());
     const auto a = line.front(), b = line.back();
     line.insert(line.begin(), {2 * a[0], 2 * a[1], 2 * a[2]});
@@ -128,10 +128,11 @@ TEST(Recognise, OpenThreadsWithTheirEndsOutside) {
 TEST(Recognise, DegenerateInput) {
   EXPECT_EQ(named({}), "0_1 none");
   EXPECT_EQ(named({{0, 0, 0}}, false), "0_1 none");
-  EXPECT_EQ(named(Polyline(20, {1, 1, 1}), false), "unknown none");  // any shape, too far away, looks like this
+  // any shape far from the origin loses its details to rounding like this
+  EXPECT_EQ(named(Polyline(20, {1, 1, 1}), false), "unknown none");
   EXPECT_EQ(named(Polyline(20, {1, 1, 1})), "unknown none");
   auto line = trefoil(60);
-  line.push_back(line.front());  // closed twice
+  line.push_back(line.front());  // closed by a repeated point, too
   EXPECT_EQ(named(line), "3_1 right");
   Polyline doubled;
   for (const auto& p : trefoil(60)) doubled.push_back(p), doubled.push_back(p);
@@ -161,13 +162,13 @@ TEST(Recognise, AClosedLineThatLiesInItselfIsNotGuessed) {
   Polyline there_and_back, twice;
   for (int k = 0; k <= 20; ++k) there_and_back.push_back({1.0 * k, 2.0 * k, -0.5 * k});
   for (int k = 19; k > 0; --k) there_and_back.push_back({1.0 * k, 2.0 * k, -0.5 * k});
-  EXPECT_EQ(named(there_and_back), "0_1 none");  // one far end: a bridge number of 1
+  EXPECT_EQ(named(there_and_back), "0_1 none");  // one maximum in this direction: bridge number 1
   for (int k = 0; k < 2; ++k) twice.insert(twice.end(), there_and_back.begin(), there_and_back.end());
   EXPECT_EQ(named(twice), "unknown none");
   EXPECT_TRUE(recognise(twice, true).alexander.empty());
 }
 
-/// Corners on straight lines and in planes, as in drawings: what rounding cannot tell must not pass for free.
+/// Straight edges and planar polygons, as in drawings: moves that are uncertain by rounding are rejected (pierce.hpp).
 TEST(Recognise, StraightEdgesOfManyPointsInAPlane) {
   for (const int pieces : {2, 7, 20}) {
     for (const auto& b : braids()) {
@@ -181,7 +182,7 @@ TEST(KnotTable, NamesNothingWhereTwoKnotsShareTheirPolynomials) {
   const std::vector<int> a{1, -1, 1, -1, 1};
   const Laurent v{2, {1, 0, 1, -1, 1, -1}};
   EXPECT_EQ(name_of(a, v, 9)->type, "5_1");
-  EXPECT_FALSE(name_of(a, v, 10));  // might be 10_132
+  EXPECT_FALSE(name_of(a, v, 10));  // could also be 10_132
   const auto sum = product(Laurent{-2, {1, -1, 1, -1, 1}}, Laurent{1, {1, -1, 2, -1, 1, -1}});
   EXPECT_FALSE(name_of({2, -9, 13, -9, 2}, sum, 9));  // 4_1#5_2 or 9_12
   EXPECT_FALSE(name_of({1, -1, 1}, {1, {1, 0, 1, -1}}, 11));

@@ -1,4 +1,4 @@
-// How a trial of `extremes` ends, and which endings count as stopped without a name.
+// How a trial of `extremes` ends, and which ends count as a stop without a known cause.
 
 #include <gtest/gtest.h>
 

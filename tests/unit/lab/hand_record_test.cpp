@@ -15,7 +15,7 @@ sim::WorkspaceMap map() {
   return sim::WorkspaceMap(hands);
 }
 
-/// The left hand on a screw line with jaws that close and open; the right one leads out of reach and back.
+/// The left hand on a helix with jaws that close and open; the right hand moves out of reach and back.
 std::array<sim::HandWish, 2> wish_at(double t_s) {
   std::array<sim::HandWish, 2> wish;
   wish[0].p_W = {0.03 * std::cos(2.0 * t_s), 0.03 * std::sin(2.0 * t_s), 0.01 * t_s};
@@ -46,7 +46,7 @@ TEST(HandRecord, FollowsTheHandsWithinTheToleranceWithFewKeys) {
   EXPECT_LT(keys_before, 60u);
 }
 
-/// Rounding brings no key out of reach, wherever the hand is: found in a square knot's script.
+/// Rounding must not move a key out of reach, wherever the hand is (this happened in a square knot's script).
 TEST(HandRecord, EveryKeyCanBePlayed) {
   HandRecord record(map());
   for (int tick = 0; tick <= 20000; ++tick) {
@@ -66,7 +66,7 @@ TEST(HandRecord, StaysWithinTheArmsReach) {
     EXPECT_EQ(sim::objection_to(key, map()), "");
     lowest_m = std::min(lowest_m, key.p_W_m[2]);
   }
-  EXPECT_LT(lowest_m, -0.05);  // as far as it goes
+  EXPECT_LT(lowest_m, -0.05);  // the limit of the reach
   EXPECT_GT(lowest_m, -0.4);
 }
 

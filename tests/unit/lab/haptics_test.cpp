@@ -1,4 +1,4 @@
-// The haptics experiment in its quick form: every claim that the whole one makes, on fewer cases.
+// The haptics experiment in its short form: the same claims, on fewer cases.
 #include <gtest/gtest.h>
 
 #include "host/lab/experiments/experiment.hpp"

@@ -1,4 +1,5 @@
-// The bar of the knotting experiment: every shipped script ties its knot at 35 and 50 nodes, and the knot stays.
+// Acceptance test of the knotting experiment: every shipped script ties its knot with 35 and 50 nodes, and the knot
+// stays.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,7 @@ namespace {
 
 const std::string kScene = LIGATURE_SOURCE_DIR "/scenes/paper.toml";
 
-/// "3_1 right" ten seconds after the release.
+/// The knot ten seconds after the release, e.g. "3_1 right".
 std::string tied(const scene::GripperScript& script, const char* nodes) {
   Rehearsal r(load_scene_or_refuse(kScene, {nodes}), script);
   if (!r.run_until(release_time_s(script) + 10.0)) return "diverged";

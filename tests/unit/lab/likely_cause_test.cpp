@@ -15,7 +15,7 @@ TEST(LikelyCause, NamesTheTermThatOverstepsMost) {
   s = {};
   s.suture.paper.bend = 1e9;
   EXPECT_NE(likely_cause(s).find("suture.bend is"), std::string::npos);
-  s.suture.model = scene::Model::kPaper1;  // has no bending
+  s.suture.model = scene::Model::kPaper1;  // a model without bending
   EXPECT_EQ(likely_cause(s).find("suture.bend is"), std::string::npos);
 }
 

@@ -32,7 +32,7 @@ TEST(Run, WritesOneTraceRowATickAndShapesOnTime) {
   EXPECT_EQ(s.knot.type, "0_1");
   EXPECT_EQ(lines_of(folder / "trace.csv").size(), 1u + 105u);
   const auto shape = lines_of(folder / "shape.csv");
-  EXPECT_EQ(shape.size(), 1u + 20u * (1 + 5 + 1));  // start, every 20 ms, end
+  EXPECT_EQ(shape.size(), 1u + 20u * (1 + 5 + 1));  // shapes at the start, every 20 ms, and at the end
   EXPECT_EQ(shape.back().substr(0, 9), "0.105,19,");
   EXPECT_TRUE(std::filesystem::exists(folder / "summary.json"));
 }

@@ -1,4 +1,4 @@
-// Start-up by SDO against drives that answer, refuse, are something else, or are silent.
+// Start-up by SDO with drives that answer, reject, are of another kind, or stay silent.
 #include "firmware/platform/can_master.hpp"
 
 #include <gtest/gtest.h>
@@ -32,9 +32,9 @@ class CanMasterTest : public ::testing::Test {
       ++writes[request->node.value];
       written[request->object] = request->value;
     }
-    // Somebody else's answer comes first, and must be passed over.
+    // First an answer from another node, which must be ignored.
     bus.inbox.push_back(can::encode(can::Sdo{can::SdoKind::kWritten, can::NodeId{99}, request->object, 0, 0}));
-    // So must a late one of its own, about something else.
+    // Then a late answer of the same node about another object, which must be ignored, too.
     bus.inbox.push_back(can::encode(can::Sdo{can::SdoKind::kValue, request->node, can::od::kErrorCode, 7, 4}));
     bus.inbox.push_back(can::encode(reply));
   }
@@ -75,7 +75,7 @@ TEST_F(CanMasterTest, ARefusalToBeReadIsNamedWithItsCode) {
   EXPECT_EQ(configure(), "node 1, object 0x6076:00: refused by the drive, abort code 0x06010002");
 }
 
-/// Each object that the record speaks of is written with the record's number.
+/// Each object that depends on the device file is written with the file's value.
 TEST_F(CanMasterTest, WritesWhatTheDevicesRecordSays) {
   device::Device d = device::omni();
   d.max_torque_permille = 1234;
@@ -95,18 +95,19 @@ TEST_F(CanMasterTest, StartingIsOneNmtCommandToAll) {
   EXPECT_EQ(bus.sent, std::vector<can::Frame>{can::encode_nmt(can::NmtCommand::kStart)});
 }
 
-TEST_F(CanMasterTest, ADriveOfAnotherSizeIsRefused) {  // per mille of something else would be another force
+// torques are per mille of the rated torque, so forces would be wrong
+TEST_F(CanMasterTest, ADriveOfAnotherSizeIsRefused) {
   values[can::od::kRatedTorque] = 1000;
   EXPECT_EQ(configure(), "node 1, object 0x6076:00: found 1000, allowed 300");
 }
 
-TEST_F(CanMasterTest, AnEncoderOfAnotherResolutionIsRefused) {  // angles, and all that is made of them, would be others
+TEST_F(CanMasterTest, AnEncoderOfAnotherResolutionIsRefused) {  // all angles would be wrong
   values[can::od::kEncoderIncrements] = 4096;
   EXPECT_EQ(configure(),
             "node 1, object 0x608F:01: found 4096, allowed " + std::to_string(can::profile::kCountsPerRevolution));
 }
 
-/// Two that began to listen in the same moment heard nobody. Each hears the other's first words.
+/// Two controllers that start at the same time both find the bus free. Each must then detect the other's first frames.
 TEST_F(CanMasterTest, AControllerThatStartsInTheSameMomentIsHeardWhileDrivesAreSetUp) {
   const can::Frame of_a_master[] = {can::encode_nmt(can::NmtCommand::kEnterPreOperational),
                                     can::sdo_read(can::kWaist, can::od::kRatedTorque),
@@ -149,7 +150,7 @@ TEST_F(CanMasterTest, DrivesAloneAreNoOtherController) {
     bus.inbox.push_back(can::encode(can::kElbow, can::Tpdo1{}));
   };
   EXPECT_EQ(other_master(bus, wait), std::nullopt);
-  EXPECT_GE(wait.time, std::chrono::milliseconds(60));  // longer than the pause between two heartbeats
+  EXPECT_GE(wait.time, std::chrono::milliseconds(60));  // longer than the interval between two heartbeats
 }
 
 TEST_F(CanMasterTest, LeavesTheDrivesPreOperationalAndUnwatched) {

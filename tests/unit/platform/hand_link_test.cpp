@@ -1,4 +1,4 @@
-// One hand's cyclic traffic against frames made by hand: sets, ages, drive states, trouble.
+// Cyclic traffic of one hand with hand-made frames: sample sets, their age, drive states and errors.
 #include "firmware/platform/hand_link.hpp"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST_F(HandLinkTest, ADriveWithoutALifeSignIsTakenAsItIs) {
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(period().buttons_stuck);
 }
 
-TEST_F(HandLinkTest, BusLoadIsThatOfThePeriodBefore) {  // SYNC, 3 TPDOs, 3 RPDOs: 617 .. 745 bits of 1000
+TEST_F(HandLinkTest, BusLoadIsThatOfThePeriodBefore) {  // SYNC, 3 TPDOs and 3 RPDOs: 617 .. 745 of 1000 bits
   for (int i = 0; i < 3; ++i) {
     period();
     link.write({});
@@ -70,12 +70,12 @@ TEST(HandLinkDevice, AnotherRecordIsAnotherScale) {
     bus.inbox.push_back(
         can::encode(kNodes[j], can::Tpdo1{can::cia402::statusword_of(State::kOperationEnabled), 500, 0, 0}));
   link.drain();
-  EXPECT_DOUBLE_EQ(link.reading().q_rad[0], std::acos(-1.0) / 2.0);  // a quarter of 2000 counts
+  EXPECT_DOUBLE_EQ(link.reading().q_rad[0], std::acos(-1.0) / 2.0);  // 2000 counts are a quarter of a turn
   const auto sent = link.write({{0.025, -0.001, 9.0}, rt::DriveRequest::kOperate});
   EXPECT_EQ(sent, (std::array<std::int16_t, 3>{500, -20, 3000}));
 }
 
-TEST_F(HandLinkTest, TwoOfThreeAreNoPose) {  // the old set is held and its age counted
+TEST_F(HandLinkTest, TwoOfThreeAreNoPose) {  // without the third joint the previous set is held and its age counted
   period();
   link.send_sync();
   answer(0, State::kOperationEnabled, 999);
@@ -86,7 +86,8 @@ TEST_F(HandLinkTest, TwoOfThreeAreNoPose) {  // the old set is held and its age 
   EXPECT_DOUBLE_EQ(link.reading().q_rad[0], can::angle_rad(100));
 }
 
-TEST_F(HandLinkTest, AJointOfTheLastSyncMakesNoSetWithTwoOfThis) {  // a pose that never was
+// joints of different SYNCs must not be combined to a pose
+TEST_F(HandLinkTest, AJointOfTheLastSyncMakesNoSetWithTwoOfThis) {
   period();
   link.send_sync();
   answer(0, State::kOperationEnabled, 999);
@@ -99,7 +100,7 @@ TEST_F(HandLinkTest, AJointOfTheLastSyncMakesNoSetWithTwoOfThis) {  // a pose th
   EXPECT_DOUBLE_EQ(link.reading().q_rad[0], can::angle_rad(100));
 }
 
-/// Whoever dropped out by itself is not brought back before somebody asks for it: that is kEnable.
+/// A drive that left Operation Enabled by itself is brought back only by the request kEnable.
 TEST(HandLinkControlword, OperatingKeepsOnlyThoseUpThatAreUp) {
   for (const auto& p : can::cia402::kStatusPatterns) {
     const auto word = controlword(rt::DriveRequest::kOperate, p.state, can::cia402::kControlEnableOperation);
@@ -112,7 +113,7 @@ TEST_F(HandLinkTest, ASetThatCameTooLateCountsAsOnePeriodOld) {
   period();
   link.send_sync();
   link.drain();
-  answer_all(State::kOperationEnabled, 200);  // after the deadline
+  answer_all(State::kOperationEnabled, 200);  // samples after the deadline
   link.send_sync();
   EXPECT_EQ(link.reading().age_ticks, 1);
   EXPECT_DOUBLE_EQ(link.reading().q_rad[0], can::angle_rad(200));
@@ -126,7 +127,7 @@ TEST_F(HandLinkTest, AgeGrowsByOneAPeriodOfSilence) {
   }
 }
 
-/// A drive that is stopped takes no RPDO, whoever sends it; and somebody who starts it again is answered.
+/// A stopped drive ignores RPDOs from any sender; if another node restarts it, it is stopped again.
 TEST_F(HandLinkTest, StoppingTakesTheDrivesOffTheNetworkInEveryPeriod) {
   period();
   const auto stops = [this] { return std::ranges::count(bus.sent, can::encode_nmt(can::NmtCommand::kStop)); };
@@ -140,13 +141,13 @@ TEST_F(HandLinkTest, StoppingTakesTheDrivesOffTheNetworkInEveryPeriod) {
   }
 }
 
-/// The drives' map says SYNC without a counter: one with a counter is another frame, and costs bits.
+/// The drives are configured for SYNC without counter; with a counter the frame would be longer.
 TEST_F(HandLinkTest, SyncCarriesNothing) {
   link.send_sync();
   EXPECT_EQ(bus.sent.front(), (can::Frame{0x080, 0, {}}));
 }
 
-/// Each bit of the buttons' word by itself.
+/// Each bit of the buttons word separately.
 TEST_F(HandLinkTest, ReadsEachButtonAndHowLongATorqueWasHeld) {
   const auto told = [this](std::uint16_t buttons) {
     link.send_sync();
@@ -178,7 +179,8 @@ TEST_F(HandLinkTest, TorqueIsTakenAsItIsToldAndNotBeforeItIs) {
   EXPECT_TRUE(std::isnan(link.reading().torque_Nm[2])) << "its message has buttons there";
 }
 
-/// A reset is an edge: zero in between, or a drive that faults again is never reset again.
+/// A fault reset needs a rising edge, so the controlword alternates with zero; otherwise only the first reset would
+/// act.
 TEST(HandLinkControlword, AFaultResetAlternatesWithZero) {
   std::uint16_t word = 0;
   for (int i = 0; i < 6; ++i) {
@@ -199,7 +201,7 @@ TEST_F(HandLinkTest, EveryFaultIsResetByAnEdgeOfItsOwn) {
   EXPECT_EQ(words, (std::vector<std::uint16_t>{0x80, 0, 0x80, 0}));
 }
 
-/// More than a bus can carry in a period, in one go: a stalled hand's messages pile up and must not stay behind.
+/// More frames than a bus can carry in a period: a stalled hand's queued frames must all be read at once.
 TEST_F(HandLinkTest, TakesAWholeBusyPeriodAtOnce) {
   link.send_sync();
   for (int i = 0; i < 20; ++i) answer_all(State::kOperationEnabled, i);
@@ -211,12 +213,12 @@ TEST_F(HandLinkTest, ALostBusIsSeenAtOnce) {
   period();
   bus.lost = true;
   link.send_sync();
-  EXPECT_TRUE(link.is_settled());  // nothing to wait for
+  EXPECT_TRUE(link.is_settled());  // no answer is awaited
   EXPECT_TRUE(link.reading().bus_lost);
   EXPECT_EQ(link.write({{0.1, 0.1, 0.1}, rt::DriveRequest::kOperate}), (std::array<std::int16_t, 3>{}));
 }
 
-/// A controller that restarts at once, an interface that comes back: the loss is a fault all the same.
+/// The peer reconnects or the interface recovers before the next reading: the loss must still be reported.
 TEST_F(HandLinkTest, ALossThatIsOverBeforeTheNextReadingIsTold) {
   const auto lost_for = [this](const auto& step) {
     bus.lost = true;
@@ -260,7 +262,7 @@ TEST_F(HandLinkTest, BringsADriveUpAndDown) {  // the drive is protocol's own st
     }
   };
   run(rt::DriveRequest::kOperate, 10);
-  EXPECT_EQ(drive, State::kFault);  // operating resets nothing
+  EXPECT_EQ(drive, State::kFault);  // kOperate does not reset faults
   run(rt::DriveRequest::kEnable, 15);
   EXPECT_EQ(drive, State::kOperationEnabled);
   run(rt::DriveRequest::kHold, 3);

@@ -1,4 +1,4 @@
-// What drives tell besides their joints, and what somebody else on the bus sends.
+// What drives report besides their joints, and frames of other senders on the bus.
 #include <utility>
 
 #include "protocol/can/emcy.hpp"
@@ -46,10 +46,10 @@ TEST_F(HandLinkTest, WhatOnlyAControllerSendsIsSeenForWhatItIs) {
   using rt::Foreign;
   const std::pair<can::Frame, Foreign> all[] = {
       {can::encode(can::kWaist, can::Rpdo1{can::cia402::kControlEnableOperation, 3000}), Foreign::kTorque},
-      {{0x301, 8, {}}, Foreign::kTorque},  // RPDO 2 and 4, that a drive may have been delivered with
+      {{0x301, 8, {}}, Foreign::kTorque},  // RPDO 2 and 4, which a drive may have enabled by default
       {{0x503, 8, {}}, Foreign::kTorque},
       {can::sync_frame(), Foreign::kBeat},
-      {{0x080, 1, {7}}, Foreign::kBeat},  // with a counter
+      {{0x080, 1, {7}}, Foreign::kBeat},  // with a SYNC counter
       {can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}), Foreign::kBeat},
       {can::encode_nmt(can::NmtCommand::kStart), Foreign::kNetwork},
       {can::encode_nmt(can::NmtCommand::kResetNode, can::kElbow), Foreign::kNetwork},
@@ -128,7 +128,7 @@ TEST_F(HandLinkTest, ADriveOnItsWayIntoAFaultIsInOne) {
   EXPECT_TRUE(link.reading().drive_fault);
 }
 
-/// What it complained of is over when somebody asked it back up and it came: not while it is merely operated.
+/// An emergency is cleared when the drive has been enabled again on request, not while it is merely operated.
 TEST_F(HandLinkTest, AnEmergencyIsForgottenByEnablingOnly) {
   period();
   bus.inbox.push_back(can::encode(can::Emergency{kNodes[1], can::emcy::kRpdoTimeout, can::emcy::kGenericBit}));

@@ -1,4 +1,4 @@
-// The doctor's eyes, on machines made of files.
+// The machine checks of `doctor`, on machines simulated by files.
 #include "firmware/platform/machine.hpp"
 
 #include <gtest/gtest.h>
@@ -109,14 +109,14 @@ TEST_F(MachineTest, CanInterfaces) {
   EXPECT_EQ(grade(check_can(machine, "can0", 1), "CAN"), Grade::kFail) << "up, and yet off the bus";
   details = "can state ERROR-ACTIVE \n\t bitrate 500000 sample-point 0.875 \n";
   put("sys/class/net/can0/flags", "0x40080");
-  put("sys/class/net/can0/tx_queue_len", "64");  // old torques would wait in it
+  put("sys/class/net/can0/tx_queue_len", "64");  // old torques would wait in such a long queue
   put("proc/irq/17/smp_affinity_list", "0-3");
   const auto checks = check_can(machine, "can0", 1);
   EXPECT_EQ(grade(checks, "CAN"), Grade::kFail);
   EXPECT_EQ(grade(checks, "CAN bit rate"), Grade::kFail);
   EXPECT_EQ(grade(checks, "CAN queue"), Grade::kWarn);
   EXPECT_EQ(grade(checks, "CAN interrupt"), Grade::kWarn);
-  put("sys/class/net/can0/tx_queue_len", "5");  // less than a period's frames
+  put("sys/class/net/can0/tx_queue_len", "5");  // shorter than the frames of a period
   EXPECT_EQ(grade(check_can(machine, "can0", 1), "CAN queue"), Grade::kWarn);
 }
 
@@ -127,7 +127,8 @@ TEST(Machine, ReadsCoreListsAndRoutes) {
   const std::string table = "head\neth0\t00000000\t0\t3\t0\t0\t0\t00000000\t0\t0\t0\n";
   EXPECT_EQ(route_of(table, 0xEFFF4C43), "eth0");
   EXPECT_EQ(route_of("head\n", 0xEFFF4C43), "");
-  // 127.0.0.0/8 is no way to 239.255.76.67, however narrow; of two that are, the narrower one is taken, in any order.
+  // The loopback network 127.0.0.0/8 is no route to 239.255.76.67, however specific; of two routes the more specific is
+  // used, in any order of lines.
   const std::string any = "eth0\t00000000\t0101A8C0\t0003\t0\t0\t0\t00000000\n",
                     loop = "lo\t0000007F\t00000000\t0001\t0\t0\t0\t000000FF\n",
                     many = "eth1\t000000E0\t00000000\t0001\t0\t0\t0\t000000F0\n";

@@ -1,4 +1,4 @@
-// What can be asked of any machine: denormals vanish, refusals are sentences, cores are respected.
+// Real-time set-up that works on any machine: denormals are flushed, refusals are reported, and core lists are obeyed.
 #include "firmware/platform/realtime.hpp"
 
 #include <fcntl.h>
@@ -32,7 +32,7 @@ namespace {
 
 TEST(Realtime, FlushesDenormals) {
 #if defined(__x86_64__) || defined(__aarch64__)
-  std::thread([] {  // the mode belongs to a thread
+  std::thread([] {  // the mode is per thread
     flush_denormals();
     volatile double small = std::numeric_limits<double>::min();
     volatile double half = small / 2.0;
@@ -42,7 +42,7 @@ TEST(Realtime, FlushesDenormals) {
 #endif
 }
 
-/// Pages that are present and still the file's (bit 61 of pagemap), of mappings that are not shared with others.
+/// Number of resident pages that still belong to a file (bit 61 of pagemap), in private mappings.
 int pages_of_files() {
   std::ifstream maps("/proc/self/maps");
   const int pagemap = open("/proc/self/pagemap", O_RDONLY);
@@ -61,14 +61,14 @@ int pages_of_files() {
   return found;
 }
 
-/// What the page cache holds may be taken away, locked or not.
+/// File pages may be evicted even if they are locked, so they must be replaced by private copies.
 TEST(Realtime, CodeAndConstantsAreCopiesOfTheirFiles) {
   ASSERT_GT(pages_of_files(), 0) << "the guard must see them";
   EXPECT_EQ(own_file_pages(), 0);
   EXPECT_EQ(pages_of_files(), 0);
 }
 
-/// Private writable memory of this process, bytes, as RLIMIT_DATA counts it.
+/// Private writable memory of this process in bytes, as RLIMIT_DATA counts it.
 rlim_t data_now() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {
@@ -78,10 +78,11 @@ rlim_t data_now() {
   return 0;
 }
 
-/// From here on this process has no right that a real-time thread asks for, whoever started it.
+/// Removes all rights that a real-time thread needs from this process, also when started by root.
 void give_up_rights() {
   constexpr uid_t kNobody = 65534;
-  const rlimit none{0, 0}, hardly_any{data_now() + 65536, data_now() + 65536};  // no writable copy of any code
+  // too little for writable copies of the code
+  const rlimit none{0, 0}, hardly_any{data_now() + 65536, data_now() + 65536};
   bool gone = setrlimit(RLIMIT_RTPRIO, &none) == 0 && setrlimit(RLIMIT_MEMLOCK, &none) == 0 &&
               setrlimit(RLIMIT_DATA, &hardly_any) == 0;
   if (geteuid() == 0)
@@ -89,7 +90,7 @@ void give_up_rights() {
   if (!gone) _exit(EXIT_FAILURE);
 }
 
-/// What a process without rights is told, line by line.
+/// The refusals that a process without rights gets, one per line.
 Refusals refusals_without_rights() {
   constexpr int kNoCore = CPU_SETSIZE - 1;
   int ends[2];
@@ -107,7 +108,7 @@ Refusals refusals_without_rights() {
     for (std::string line; std::getline(stream, line);) lines.push_back(line);
     return lines;
   }
-  std::string text(100'000, ' ');  // the heap cannot grow any more then: what is given back here, words are made of
+  std::string text(100'000, ' ');  // the heap cannot grow later, so memory for the messages is reserved here
   text = std::string();
   give_up_rights();
   for (const auto& refusals : {lock_memory(), make_realtime(kNoCore)})
@@ -131,16 +132,16 @@ TEST(Realtime, EveryRefusalNamesItsCauseAndItsRemedy) {
   }
 }
 
-/// How often this process has a file open.
+/// Number of open descriptors of this process for a file.
 int times_open(const std::string& file) {
   int times = 0;
-  std::error_code gone;  // the folder's own descriptor
+  std::error_code gone;  // the descriptor of the folder itself
   for (const auto& fd : std::filesystem::directory_iterator("/proc/self/fd"))
     times += std::filesystem::read_symlink(fd.path(), gone) == file;
   return times;
 }
 
-/// The kernel keeps the request for as long as the file is open.
+/// The kernel keeps the latency request while the file is open.
 TEST(IdleGuard, AsksForZeroMicrosecondsAndHoldsTheRequest) {
   const std::string device = std::filesystem::canonical(test::temp_folder()) / "cpu_dma_latency";
   std::ofstream(device) << "";
@@ -156,14 +157,14 @@ TEST(IdleGuard, AsksForZeroMicrosecondsAndHoldsTheRequest) {
   EXPECT_EQ(times_open(device), 0);
 }
 
-/// What a thread of its own sees of itself after it has asked for its rights, on a stack that nobody has used.
+/// A new thread's own settings after it has requested its rights, on a stack that has not been used before.
 struct OwnThread {
   static constexpr std::size_t kStack = std::size_t{1} << 20, kPage = 4096;
   Refusals refusals;
   int policy = -1, core = -1, cores = 0;
   sched_param priority{};
   int slack_ns = -1;
-  std::size_t stack_pages = 0;  // present
+  std::size_t stack_pages = 0;  // resident
   void* stack = nullptr;
 
   static void* begin(void* self) {
@@ -196,7 +197,7 @@ struct OwnThread {
   }
 };
 
-/// Where the machine refuses, that must have been told; where it does not, the kernel says the same as we do.
+/// What the machine refuses must be reported; otherwise the kernel must confirm the settings.
 TEST(Realtime, AThreadHasTheCoreThePriorityTheTimersAndTheStackThatItAskedFor) {
   OwnThread t;
   t.run();
@@ -215,7 +216,8 @@ TEST(Realtime, AThreadHasTheCoreThePriorityTheTimersAndTheStackThatItAskedFor) {
   EXPECT_GE(t.stack_pages * OwnThread::kPage, 256U * 1024U) << "the loop's first deep call would fault";
 }
 
-/// For a thread with a real-time priority newer kernels say 0 whatever it asks for; one that was refused has to ask.
+/// For real-time threads newer kernels report a timer slack of 0 in any case; a thread without real-time priority must
+/// set it.
 TEST(Realtime, TimersAreExactWithoutAPriority) {
   const pid_t child = fork();
   if (child == 0) {
@@ -229,8 +231,8 @@ TEST(Realtime, TimersAreExactWithoutAPriority) {
   EXPECT_EQ(WEXITSTATUS(status), 0) << "1: a timer may be 50 us late, 2: the priority was not refused";
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they bring an allocator of their own
-/// In a process of its own, for it is for good.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // sanitizers bring their own allocator
+/// In a child process, because the setting cannot be undone.
 TEST(Realtime, TheHeapKeepsWhatItHas) {
   const pid_t child = fork();
   if (child == 0) {

@@ -1,4 +1,4 @@
-// Both hands' buses in one period.
+// Both hands' buses within one period.
 #include "firmware/platform/rig_bus.hpp"
 
 #include <vector>
@@ -56,7 +56,7 @@ TEST(RigBus, EachHandHasItsOwnBus) {
   EXPECT_EQ(first_rpdo(right), (can::Rpdo1{can::cia402::kControlDisableVoltage, -200}));
 }
 
-/// It holds up no answer to SYNC, and never is one for both hands in one period.
+/// The heartbeat does not delay an answer to SYNC, and the two hands' heartbeats fall in different periods.
 TEST(RigBus, TheMastersHeartbeatGoesBeforeTheTorquesOfEveryFiftiethPeriod) {
   FakeBus left, right;
   FakeWait wait;

@@ -1,4 +1,4 @@
-// The socket back end over a socket pair of the kind that `local:` uses.
+// The socket back end, over a socket pair like that of `local:`.
 #include "firmware/platform/socket_bus.hpp"
 
 #include <gtest/gtest.h>
@@ -24,11 +24,11 @@
 
 namespace {
 
-int send_error = 0, recv_error = 0;  // what an interface would answer now; 0: nothing special. recv tells it once
+int send_error = 0, recv_error = 0;  // errno that send and recv are to fail with; 0: none. recv reports it once
 
 }  // namespace
 
-// The kernel's calls by their longer names, so that a test can put an interface's errors in front of a plain socket.
+// Replacements for libc's calls, so that a plain socket can return a CAN interface's errors.
 extern "C" ssize_t send(int fd, const void* bytes, std::size_t count, int flags) {
   if (send_error != 0) return errno = send_error, -1;
   return sendto(fd, bytes, count, flags, nullptr, 0);
@@ -97,7 +97,7 @@ TEST_F(SocketBusTest, SkipsWhatIsNoFrame) {
   EXPECT_EQ(frame, kFrame);
 }
 
-/// A peer that sends as fast as it is read would keep a period from ending.
+/// Reading must be bounded: a peer that sends as fast as it is read would otherwise keep a period from ending.
 TEST_F(SocketBusTest, AFloodOfWhatIsNoFrameHoldsNobodyUp) {
   const char nonsense[5] = "what";
   int sent = 0;
@@ -110,7 +110,7 @@ TEST_F(SocketBusTest, AFloodOfWhatIsNoFrameHoldsNobodyUp) {
   EXPECT_FALSE(bus->is_lost());
 }
 
-/// What an interface's driver tells by frames of its own.
+/// An error frame as a CAN interface's driver sends it.
 can::LocalPacket told_by_driver(std::uint32_t what) {
   can::LocalPacket packet = can::to_packet({0, 8, {}});
   const std::uint32_t id = CAN_ERR_FLAG | what;
@@ -133,7 +133,7 @@ TEST_F(BusOff, IsALossUntilTheDriverTellsOfARestart) {
   EXPECT_EQ(receive(), Receive::kLost);
   EXPECT_TRUE(bus->is_lost());
   EXPECT_FALSE(bus->send(kFrame));
-  for (int i = 0; i < 3; ++i) {  // a frame is no sign: a controller that is off hears nothing
+  for (int i = 0; i < 3; ++i) {  // frames are no sign of recovery: a controller in bus-off receives nothing
     put(kFrame);
     EXPECT_EQ(receive(), Receive::kLost);
     EXPECT_TRUE(bus->is_lost());
@@ -147,13 +147,13 @@ TEST_F(BusOff, IsALossUntilTheDriverTellsOfARestart) {
 
 TEST_F(BusOff, WhatWasQueuedBeforeItIsNoSignOfLife) {
   put(told_by_driver(CAN_ERR_BUSOFF));
-  for (int i = 0; i < 5; ++i) put(kFrame);  // heard before the driver told, read after
+  for (int i = 0; i < 5; ++i) put(kFrame);  // received before the bus-off, read after it
   EXPECT_EQ(receive(), Receive::kLost);
   put(told_by_driver(CAN_ERR_RESTARTED));
   EXPECT_EQ(receive(), Receive::kNothing) << "frames of before the loss came through";
 }
 
-TEST_F(BusOff, ARestartThatWasToldWithItIsHeard) {  // a loop that stood still for a while reads both at once
+TEST_F(BusOff, ARestartThatWasToldWithItIsHeard) {  // a loop that was delayed reads both at once
   put(told_by_driver(CAN_ERR_BUSOFF));
   put(kFrame);
   put(told_by_driver(CAN_ERR_RESTARTED));
@@ -198,7 +198,7 @@ TEST_F(Interface, ThatIsDownIsLostUntilItsFirstFrame) {
   }
 }
 
-/// The kernel tells the error first, and then gives out what it had queued.
+/// The kernel reports the error first, and then delivers the frames that it had queued.
 TEST_F(Interface, WhatWasQueuedBeforeItWentDownIsNoSignOfLife) {
   for (int* const error : {&recv_error, &send_error}) {
     for (int i = 0; i < 40; ++i) put(kFrame);
@@ -220,7 +220,7 @@ TEST_F(Interface, ThatIsGoneStaysGone) {
   EXPECT_TRUE(bus->is_lost());
 }
 
-/// Of either hand; the deadline is one that nothing here waits for.
+/// With the first frame on either hand's bus; the deadline is never reached here.
 TEST_F(SocketBusTest, WaitingEndsWithTheFirstFrameOfEitherBus) {
   int pair[2];
   ASSERT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0, pair), 0);
@@ -236,7 +236,7 @@ TEST_F(SocketBusTest, WaitingEndsWithTheFirstFrameOfEitherBus) {
   close(pair[1]);
 }
 
-/// A lost bus is always readable: who waits for it never sleeps.
+/// A closed socket is always readable, so waiting for it would never sleep.
 TEST_F(BusOff, ALostBusIsNotWaitedFor) {
   close(peer);
   peer = -1;
@@ -262,7 +262,7 @@ TEST(BusClaim, IsHeldByOneUntilItEnds) {
   EXPECT_TRUE(std::holds_alternative<BusClaim>(BusClaim::take(name)));
 }
 
-/// Of many that try at once.
+/// Of many processes that claim the bus at once, one gets it.
 TEST(BusClaim, OneOfManyGetsIt) {
   const std::string name = "race/" + std::to_string(getpid());
   for (int round = 0; round < 20; ++round) {
@@ -275,11 +275,11 @@ TEST(BusClaim, OneOfManyGetsIt) {
       if ((child = fork()) != 0) continue;
       close(start[1]);
       char go = 0;
-      if (read(start[0], &go, 1) != 0) _exit(2);  // all at once: when the parent closes it
+      if (read(start[0], &go, 1) != 0) _exit(2);  // all processes start when the parent closes the pipe
       const auto claim = BusClaim::take(name);
       const char got = std::holds_alternative<BusClaim>(claim) ? '1' : '0';
       if (write(told[1], &got, 1) != 1) _exit(2);
-      pause();  // held until killed
+      pause();  // holds the claim until killed
       _exit(0);
     }
     close(start[0]);
@@ -301,7 +301,7 @@ TEST(BusClaim, OneOfManyGetsIt) {
   }
 }
 
-/// A device's socket, as ligature-device makes it.
+/// A device's socket as ligature-device creates it.
 class OpenLocal : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -362,7 +362,7 @@ TEST(OpenCanBus, TellsBadUsageFromWhatIsNotThereYet) {
   EXPECT_EQ(failure_of("socketcan:a-name-that-is-far-too-long"), OpenFailure::kUsage);
   EXPECT_EQ(failure_of("local:/nowhere/at/all"), OpenFailure::kNotThere);
   EXPECT_EQ(failure_of("socketcan:nosuchcan9"), OpenFailure::kUsage);
-  EXPECT_EQ(failure_of("local:/tmp"), OpenFailure::kUsage);  // a folder, and a file, will never be a socket
+  EXPECT_EQ(failure_of("local:/tmp"), OpenFailure::kUsage);  // neither a folder nor a regular file can become a socket
   EXPECT_EQ(failure_of("local:/proc/self/stat"), OpenFailure::kUsage);
 }
 

@@ -10,7 +10,7 @@ namespace {
 TEST(WakeUp, OneThatComesWhileNobodyWaitsIsNotLost) {
   WakeUp wake;
   wake.wake();
-  EXPECT_TRUE(wake.wait());  // else it would sleep for good
+  EXPECT_TRUE(wake.wait());  // returns because the wake-up was stored
 }
 
 TEST(WakeUp, TheEndStays) {
@@ -22,7 +22,8 @@ TEST(WakeUp, TheEndStays) {
   EXPECT_FALSE(wake.wait());
 }
 
-// Plain numbers go to and fro: each side sees what the other wrote before it woke it (ThreadSanitizer looks too).
+// Plain integers are passed back and forth: each side must see what the other wrote before waking it (ThreadSanitizer
+// checks this, too).
 TEST(WakeUp, ShowsWhatWasWrittenBefore) {
   constexpr int kRounds = 5000;
   WakeUp there, back;

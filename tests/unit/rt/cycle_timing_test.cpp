@@ -1,4 +1,4 @@
-// Statistics in constant memory against the same numbers computed from all samples.
+// Statistics in constant memory against the same values computed from all samples.
 #include "firmware/rt/cycle_timing.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TEST(DurationStatistics, MatchesTheSampleItself) {
   std::sort(all.begin(), all.end());
   EXPECT_EQ(s.count(), all.size());
   EXPECT_EQ(s.max_ns(), all.back());
-  for (const double q : {0.01, 0.5, 0.99, 0.999}) {  // never too low, at most one bin (1/32) too high
+  for (const double q : {0.01, 0.5, 0.99, 0.999}) {  // never too low, and too high by at most one bin (1/32)
     const auto exact = all[static_cast<std::size_t>(std::ceil(q * static_cast<double>(all.size()))) - 1];
     EXPECT_GE(s.quantile_ns(q), exact);
     EXPECT_LE(static_cast<double>(s.quantile_ns(q)), static_cast<double>(exact) * (1.0 + 1.0 / 32.0) + 1.0);

@@ -1,4 +1,4 @@
-// The triple buffer: newest value, never torn, never older than one already seen.
+// The triple buffer: the reader gets the newest value, never a mixture of two, never an older one than before.
 #include "firmware/rt/latest_value.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The ring against its contract, alone and between two threads. The threaded test is what the tsan preset watches.
+// The ring buffer, in one thread and between two threads; the tsan preset checks the latter for data races.
 #include "firmware/rt/spsc_ring.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ TEST(SpscRing, KeepsOrderAndForgetsNothingWhileNotFull) {
   SpscRing<int> ring(3);
   int value = 0;
   EXPECT_FALSE(ring.pop(value));
-  for (int lap = 0; lap < 5; ++lap) {  // wraps around
+  for (int lap = 0; lap < 5; ++lap) {  // several times around the ring
     for (int i = 0; i < 3; ++i) EXPECT_TRUE(ring.push(10 * lap + i));
     for (int i = 0; i < 3; ++i) {
       ASSERT_TRUE(ring.pop(value));

@@ -137,12 +137,12 @@ TEST(GripperScript, SampleRestsAtKeysAndHoldsOutside) {
 
 TEST(GripperScript, SampledVelocityIsTheDerivativeOfThePosition) {
   std::vector<GripKey> keys{{0.0, {0, 0, 0}, true}, {0.7, {1, -2, 3}, true}, {1.1, {4, 0, 1}, true}};
-  keys[1].v_W_m_per_s = {-1, 0.5, 2};  // passes the second, rests in the others
+  keys[1].v_W_m_per_s = {-1, 0.5, 2};  // passes through the second key, at rest in the others
   for (double t = 0.05; t < 1.1; t += 0.05) {
     const double h = 1e-6;
     for (std::size_t i = 0; i < 3; ++i) {
       const double slope = (sample(keys, t + h).p_W_m[i] - sample(keys, t - h).p_W_m[i]) / (2 * h);
-      EXPECT_NEAR(sample(keys, t).v_W_m_per_s[i], slope, 1e-3);  // t = 0.7 is a key: smooth there too
+      EXPECT_NEAR(sample(keys, t).v_W_m_per_s[i], slope, 1e-3);  // smooth also at t = 0.7, a key
     }
   }
 }

@@ -1,4 +1,4 @@
-// A scene as a recording carries it is the scene that was run.
+// A scene read back from a recording equals the scene that was run.
 #include <gtest/gtest.h>
 
 #include "protocol/scene/recorded_scene.hpp"

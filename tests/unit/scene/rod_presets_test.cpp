@@ -1,5 +1,5 @@
-// The named threads against the table of what is known of sutures (tests/reference/08_sutures.json): what has a source
-// there has that value, and what has none is what rod_keys.hpp calls assumed.
+// The named threads against the table of published suture data (tests/reference/08_sutures.json): values with a source
+// there must agree, and those without must be listed as assumed in rod_keys.hpp.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ nlohmann::json known() {
   return nlohmann::json::parse(file);
 }
 
-/// Material and size of "nylon-3-0".
+/// Splits a name like "nylon-3-0" into material and size.
 std::pair<std::string, std::string> parts_of(const std::string& name) {
   const auto dash = name.find('-');
   return {name.substr(0, dash), name.substr(dash + 1)};
@@ -73,11 +73,11 @@ TEST(RodPresets, HaveTheSourcedDensitiesAndModuli) {
     }
     EXPECT_EQ(p.bend_share == 1.0, material == "nylon" || material == "polypropylene") << p.name;
   }
-  // rod_keys.hpp names these among what is assumed; a new one belongs there first.
+  // rod_keys.hpp lists these as assumed; a further one must be added there first.
   EXPECT_EQ(assumed, (std::set<std::string>{"density of polyglactin", "modulus of polypropylene"}));
 }
 
-TEST(RodPresets, AreTheRodThatTheTableDerives) {  // solid round sections
+TEST(RodPresets, AreTheRodThatTheTableDerives) {  // computed for solid round cross-sections
   const auto table = known();
   const auto& per_m = table.at("linear_density_derived_kg_per_m");
   const auto& bending = table.at("bending_stiffness_derived_Nm2");

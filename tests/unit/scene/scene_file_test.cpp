@@ -18,14 +18,14 @@
 namespace ligature::scene {
 namespace {
 
-/// A file in the test's temporary folder.
+/// Writes a file into the test's temporary folder. @return its path.
 std::string write(const std::string& name, const std::string& text) {
   const auto path = test::temp_folder() + name;
   std::ofstream(path) << text;
   return path;
 }
 
-/// What is wrong with a scene of this text, "" when nothing is.
+/// The error that this scene text gives, "" if none.
 std::string why_refused(const std::string& text, const std::vector<std::string>& overrides = {}) {
   const auto read = load_scene(write("scene.toml", text), overrides);
   const auto* error = std::get_if<Error>(&read);
@@ -39,7 +39,8 @@ TEST(SceneFile, AFileWithoutASutureIsNoScene) {
 }
 
 TEST(SceneFile, ReadsTheShippedScenes) {
-  const std::pair<const char*, double> scenes[] = {{"paper.toml", 5.5}, {"desk.toml", 1.1}};  // height of the frame, m
+  // with the height of the frame in m
+  const std::pair<const char*, double> scenes[] = {{"paper.toml", 5.5}, {"desk.toml", 1.1}};
   for (const auto& [name, frame_m] : scenes) {
     const auto read = load_scene(std::string(LIGATURE_SOURCE_DIR "/scenes/") + name);
     ASSERT_TRUE(std::holds_alternative<Scene>(read)) << std::get<Error>(read).text;
@@ -71,7 +72,7 @@ TEST(SceneFile, EveryRefusalIsOneLineWithItsLineNumber) {
   } kCases[] = {
       {"[suture]\nlenght_m = 5.0\n", 2, "suture.lenght_m"},
       {"[sutura]\nnodes = 5\n", 1, "sutura"},
-      {"[suture]\n\"\\u001b[2J\" = 5\n", 2, "'suture.\\x1B[2J'"},  // nobody's terminal is cleared
+      {"[suture]\n\"\\u001b[2J\" = 5\n", 2, "'suture.\\x1B[2J'"},  // escape sequences are not printed raw
       {"nodes = 5\n", 1, "nodes"},
       {"[suture]\nnodes = 5.0\n", 2, "suture.nodes"},
       {"[suture]\nnodes = \"5\"\n", 2, "suture.nodes"},
@@ -110,7 +111,7 @@ TEST(SceneFile, EveryRefusalIsOneLineWithItsLineNumber) {
   }
 }
 
-// What another model would read does nothing here: whoever wrote it believes that it does.
+// A key of another model would have no effect, although its author expects one.
 TEST(SceneFile, AKeyOfAnotherModelIsRefused) {
   const struct {
     const char *table, *keys;
@@ -138,7 +139,7 @@ TEST(SceneFile, AKeyOfAnotherModelIsRefused) {
                          "': found 1, allowed with suture.model " + owner);
     }
   }
-  EXPECT_EQ(why_refused("[suture]\nair_drag_per_s = 1\n[hands]\nreach_m = 0.1\n"), "");  // of both
+  EXPECT_EQ(why_refused("[suture]\nair_drag_per_s = 1\n[hands]\nreach_m = 0.1\n"), "");  // keys of both models
   EXPECT_EQ(why_refused("[suture]\nmodel = \"rod\"\nair_drag_per_s = 1\n[hands]\nreach_m = 0.1\n"), "");
 }
 
@@ -198,7 +199,7 @@ TEST(SceneFile, NestsToABoundedDepthOnly) {
       << "dots in a text are none of a key";
 }
 
-// A thread as thin as an atom's nucleus is a slip of a finger; physics cannot mean it, and rounding cannot bear it.
+// Values far outside physics are typing errors, and rounding would make the simulation fail.
 TEST(SceneFile, RefusesWhatNoThreadCanBe) {
   for (const char* set :
        {"suture.radius_m=1e-300", "suture.length_m=5e-324", "suture.node_mass_kg=1e-300", "suture.stretch_N=1e12",

@@ -1,4 +1,4 @@
-// Commands that are said now are told from those that a recording says again.
+// New commands are distinguished from those that a replayed recording repeats.
 #include "firmware/telemetry/command_gate.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ class CommandGateTest : public ::testing::Test {
     c.id = id;
     return c;
   }
-  /// The command as its sender says it after it has asked.
+  /// The command with the answer to the gate's challenge, as its sender repeats it.
   command_t asked(command_t c, std::int64_t at_us = 0) {
     const auto judged = gate.judge(c, at_us);
     EXPECT_FALSE(judged.may_be_done);
@@ -45,7 +45,7 @@ TEST_F(CommandGateTest, EveryKindButStopAndDisarmIsDoneOnlyWithItsChallengeAndOn
   }
 }
 
-/// Taking force away is never refused, and a second time does no harm.
+/// Commands that remove force are never refused; repeating them is harmless.
 TEST_F(CommandGateTest, StopAndDisarmAreDoneWhoeverSaysThemAndWhenever) {
   for (const auto kind : {command_t::KIND_STOP, command_t::KIND_DISARM}) {
     for (const std::int64_t session : {std::int64_t{0}, kSession, std::int64_t{17}}) {
@@ -68,7 +68,7 @@ TEST_F(CommandGateTest, ARecordingOfAnEarlierRunIsNamedAndRefused) {
   EXPECT_EQ(judged.why,
             "command of session 42, this is session 43: played back from a recording, or meant for another rig");
   auto question = recorded;
-  question.challenge = 0;  // of another run, so not even a question
+  question.challenge = 0;  // a challenge of another run, so it is ignored
   EXPECT_EQ(next_run.judge(question, kLater_us).challenge, 0);
 }
 
@@ -104,9 +104,9 @@ TEST_F(CommandGateTest, MayBeAskedWithoutEndAndKeepsTheNewestChallenges) {
 
 TEST_F(CommandGateTest, NoTwoChallengesAreAlikeAndNoneIsZero) {
   std::int64_t next = 0;
-  CommandGate counting(kSession, [&] { return next++; });  // a zero comes out of every generator in the end
+  CommandGate counting(kSession, [&] { return next++; });  // a challenge of zero would mean "none" and must be skipped
   EXPECT_EQ(counting.judge(command(command_t::KIND_ARM), 0).challenge, 1);
-  CommandGate other_run(kSession);  // the same clock on the wall at the start, say
+  CommandGate other_run(kSession);  // for example with the same wall-clock time at the start
   EXPECT_NE(asked(command(command_t::KIND_ARM)).challenge, other_run.judge(command(command_t::KIND_ARM), 0).challenge);
 }
 

@@ -1,6 +1,6 @@
-// Every field of what the firmware tells, from where its value is made to the bytes on the network. Each source has a
-// value that no other has, and fields are walked by the .lcm definitions: one that carries another's value, or that
-// nobody fills, is found. From the bytes on: tests/integration/test_every_field.py.
+// Every field of the firmware's messages, from its source to the encoded bytes. Each source has a unique value, and the
+// fields are enumerated from the .lcm definitions, so swapped and forgotten fields are found. The path from the bytes
+// on: tests/integration/test_every_field.py.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -34,10 +34,10 @@ class Last final : public Sink {
   ligature_msg::event_t event{};
 };
 
-/// The yes-or-no sources: in each pass of the test one of them is yes, so that none can stand for another.
+/// Sources of boolean fields: each run of the test sets exactly one, so that swapped fields are found.
 enum Yes { kGrip, kDeadMan = 2, kClutch = 4, kLimited = 6, kStale = 8, kCapHit = 10, kArmed, kToolGrip, kYeses = 14 };
 
-/// Values 1.001, 1.002, ..; none comes twice.
+/// Values 1.001, 1.002, ..; each is unique.
 class Distinct {
  public:
   double next() { return 1.0 + 0.001 * ++count_; }
@@ -60,7 +60,7 @@ struct Sources {
   physics::ToolInput tool[2];
   control::ThreadOrders orders{601, 602, 603};
   physics::Diagnostics thread;
-  rt::TickRecord record;  // what the cycle itself fills
+  rt::TickRecord record;  // the fields that the cycle itself fills
 
   explicit Sources(int yes) {
     Distinct d;
@@ -95,7 +95,7 @@ struct Sources {
     record.state = 4, record.fault = 25, record.armed = yes == kArmed;
   }
 
-  /// As PeriodLog puts a record together; state, fault and armed are the controller's own.
+  /// Assembles a record as PeriodLog does; state, fault and armed are the controller's own.
   rt::TickRecord told_record() {
     for (std::size_t h = 0; h < 2; ++h) {
       control::report(hand[h], h, record);
@@ -178,7 +178,7 @@ class EveryField : public ::testing::Test {
   Session session{42, "1.2.3", {"a.toml", "text", 3.25, 0.0625, false, 702}, 0.002, false, "flight.rec"};
 };
 
-/// What was told against what is expected, name by name; `open` are those whose value is not the source's to give.
+/// Compares all fields by name; `open` names fields whose value does not come from these sources.
 void compare(const std::map<std::string, Words>& found, const std::map<std::string, Words>& expected) {
   for (const auto& [name, values] : found) {
     ASSERT_TRUE(expected.contains(name)) << name << ": a new field? Give it a source of its own value here";
@@ -197,7 +197,7 @@ TEST_F(EveryField, OfATickIsThatOfItsSource) {
     compare(told(sink.batch.ticks[0], "tick_t"), sources.expected(yes));
     EXPECT_EQ(sink.status.armed, yes == kArmed ? 1 : 0);
   }
-  // What it rests on: no two fields expect the same numbers.
+  // Precondition: no two fields expect the same values.
   std::set<Words> seen;
   for (const auto& [name, values] : Sources(kYeses).expected(kYeses)) {
     if (name != "grip" && name != "dead_man" && name != "clutch" && name != "tpdo_age_ticks" && name != "tool_grip") {
@@ -244,7 +244,7 @@ TEST_F(EveryField, OfAStatusIsThatOfItsSource) {
     Telemetry telemetry{session, kNames, *outlets, sink};
     rt::TickRecord record;
     record.tick = 701, record.state = 5, record.fault = 21, record.armed = yes == 2;
-    for (int i = 0; i < 5; ++i) {  // two lost, three missed
+    for (int i = 0; i < 5; ++i) {  // two lost periods, three deadline misses
       record.flags = i < 2 ? rt::kPeriodLost : rt::kDeadlineMissed;
       outlets->records.push(record);
     }

@@ -1,5 +1,5 @@
-// The recorder beside a disk that stands still, refuses, or is well: what the loop gave it is there, or is named. The
-// disk stands still until the test lets it go on, so nothing here depends on time.
+// The flight recorder with a disk that blocks, fails or works: every tick from the loop is in the file or counted as
+// missing. The test decides when the blocked disk continues, so nothing depends on timing.
 #include "firmware/telemetry/flight_recorder.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using host::FlightReader;
 using test::record_of;
 using test::ticks_in;
 
-/// A door that the disk's calls pass; closed, they wait in it.
+/// A gate that every disk call passes; while it is closed, calls wait at it.
 class Door {
  public:
   void pass() noexcept {
@@ -31,7 +31,7 @@ class Door {
     closed_ = false;
     closed_.notify_all();
   }
-  /// Returns when somebody stands before it.
+  /// Returns when a call waits at the gate.
   void wait_for_somebody() const { waiting_.wait(0); }
 
  private:
@@ -78,13 +78,13 @@ class FlightRecorderTest : public ::testing::Test {
   static constexpr std::int64_t kSlots = 5000;
   static constexpr Names kNames{[](int) { return "state"; }, [](int) { return "broken"; }};
 
-  /// @param room ticks in memory.
+  /// @param room number of ticks that memory can hold.
   void start(std::size_t room = FlightRecorder::kRoom) {
     auto disk = std::make_unique<SlowDisk>(test::disk_or_die(path, kSlots), doors);
     recorder = std::make_unique<FlightRecorder>(std::move(disk), path, header_of(test::kFacts, kSlots), room);
     outlets->flight = &recorder->inlet();
   }
-  /// As the loop does.
+  /// Records ticks as the loop does.
   void tick(std::int64_t count, std::int16_t fault = 0) {
     for (std::int64_t i = 0; i < count; ++i) {
       auto record = record_of(next++);
@@ -92,7 +92,7 @@ class FlightRecorderTest : public ::testing::Test {
       outlets->tell(record);
     }
   }
-  /// The disk takes one more tick from the ring and then stands still with it.
+  /// Blocks the disk while it writes one more tick.
   void stand_still() {
     doors.write.close();
     tick(1);
@@ -134,7 +134,8 @@ TEST_F(FlightRecorderTest, ADiskThatStandsStillForThreeSecondsCostsNoTickAndHold
 
 TEST_F(FlightRecorderTest, ANetworkThatStandsStillCostsTheRecorderNothing) {
   start();
-  tick(static_cast<std::int64_t>(rt::Outlets::kRecords) + 500);  // nobody takes them from telemetry's ring
+  // telemetry's ring overflows, because nothing reads from it
+  tick(static_cast<std::int64_t>(rt::Outlets::kRecords) + 500);
   EXPECT_EQ(outlets->records.dropped(), 500U);
   recorder->finish();
   EXPECT_EQ(recorder->missing(), 0);
@@ -292,13 +293,14 @@ TEST_F(FlightRecorderTest, WhatAFaultSavesNamesTheScenesOfItsTicks) {
   EXPECT_EQ(saved.scenes().size(), 3U) << "the launch's, and the two of its ticks";
 }
 
-// The loop takes a scene, a fault follows in the next tick, and only then telemetry hears of the scene.
+// The loop switches to a scene, a fault follows in the next tick, and telemetry learns of the scene only afterwards.
 TEST_F(FlightRecorderTest, WhatAFaultSavesWaitsForASceneThatIsOnItsWay) {
   start();
   recorder->expect_scene(true);
   tick(100);
   tick(1, 21);
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // the writer is there by now; if not, this tests less
+  // usually enough for the writer to get there; otherwise this test checks less
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_TRUE(recorder->take_notes().empty());
   recorder->scene_changed(scene_of(100, "b.toml"));
   recorder->expect_scene(false);

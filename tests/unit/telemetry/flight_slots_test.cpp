@@ -1,4 +1,4 @@
-// The recorder's file against its reader: what was written is there, whoever dies, and what is damaged is said to be.
+// The recorder's file with its reader: written ticks survive a killed process, and damaged slots are reported.
 #include "firmware/telemetry/flight_slots.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ using test::kFacts;
 using test::record_of;
 using test::ticks_in;
 
-/// A file and what writes it, in this thread.
+/// A file and its writer, in this thread.
 struct Open {
   Open(const std::string& path, std::int64_t count)
       : disk(test::disk_or_die(path, count)), slots(path, *disk, header_of(kFacts, count)) {}
@@ -92,7 +92,7 @@ TEST_F(FlightSlotsTest, RefusesAFolderThatIsNotThereAndADiskThatIsFull) {
 
 TEST_F(FlightSlotsTest, SavesTheTicksBeforeAFaultAndEndsBeforeTheDiskIsFull) {
   Open file(path, 100);
-  EXPECT_EQ(file.slots.save_last(50, 11), "");  // nothing yet
+  EXPECT_EQ(file.slots.save_last(50, 11), "");  // nothing to save yet
   file.write_ticks(0, 129);
   const std::string saved = file.slots.save_last(50, 11);
   ASSERT_NE(saved, "");
@@ -150,7 +150,7 @@ TEST_F(FlightSlotsTest, WhatTheNetworkLostIsFetchedOnce) {
     EXPECT_EQ(batch.count, static_cast<std::int32_t>(batch.ticks.size()));
     for (const auto& tick : batch.ticks) fetched.push_back(tick.tick);
   };
-  EXPECT_EQ(filler.fill(tally, emit), 0);  // nobody has said where the recorder is
+  EXPECT_EQ(filler.fill(tally, emit), 0);  // the recorder's file is not known yet
   ligature_msg::status_t status{};
   status.session = 77;
   status.recorder_file = path;
@@ -158,19 +158,19 @@ TEST_F(FlightSlotsTest, WhatTheNetworkLostIsFetchedOnce) {
   EXPECT_EQ(filler.fill(tally, emit), 25);
   for (const auto t : fetched) EXPECT_TRUE(ticks.add(t)) << t;
   fetched.clear();
-  EXPECT_EQ(ticks.missing(), 4);  // 50 and 60..62: not in the recorder
+  EXPECT_EQ(ticks.missing(), 4);  // ticks 50 and 60..62, which the recorder does not have
   EXPECT_EQ(filler.fill(tally, emit), 0);
-  file.write_ticks(50, 59);  // the disk is late, the network was not
+  file.write_ticks(50, 59);  // the disk is later than the network
   EXPECT_EQ(filler.fill(tally, emit), 1);
   EXPECT_EQ(fetched, std::vector<std::int64_t>{50});
   EXPECT_TRUE(ticks.add(50));
-  file.write_ticks(63, 70);  // it has later ones, so 60..62 will never come
+  file.write_ticks(63, 70);  // the recorder has later ones, so 60..62 will never come
   EXPECT_EQ(filler.fill(tally, emit), 0);
   file.write_ticks(60, 62);
   EXPECT_EQ(filler.fill(tally, emit), 0);
 }
 
-/// Writes as fast as it can until it is killed, 1 to 100 ticks at a time; tells after each time. Never returns.
+/// Writes at full speed, 1 to 100 ticks at a time, and reports after each write, until it is killed. Never returns.
 [[noreturn]] void write_forever(const std::string& path, std::atomic<std::int64_t>& written) {
   Open file(path, 2000);
   std::vector<rt::TickRecord> records;
@@ -196,14 +196,15 @@ TEST_F(FlightSlotsTest, AHundredKillsLoseNothingThatWasWritten) {
     while (written.load(std::memory_order_acquire) < until) ASSERT_EQ(waitpid(child, nullptr, WNOHANG), 0);
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
-    if (written == 0) continue;  // died before the file was complete
+    if (written == 0) continue;  // killed before the file was complete
     const FlightReader reader(path);
     EXPECT_LE(reader.damaged_slots(), 1) << kill_number;
     const auto ticks = ticks_in(reader);
     ASSERT_FALSE(ticks.empty());
     EXPECT_GE(ticks.back() + 1, written) << kill_number;
     for (std::size_t i = 1; i < ticks.size(); ++i) ASSERT_EQ(ticks[i], ticks[i - 1] + 1);
-    const auto wanted = std::min<std::int64_t>(ticks.back() + 1, 2000 - 1);  // a torn slot took the oldest one's place
+    // a partly written slot has replaced the oldest tick
+    const auto wanted = std::min<std::int64_t>(ticks.back() + 1, 2000 - 1);
     EXPECT_GE(static_cast<std::int64_t>(ticks.size()), wanted) << kill_number;
   }
   munmap(shared, 4096);

@@ -1,4 +1,4 @@
-// What goes out for what came in, with time as an argument and a sink that remembers.
+// Output of telemetry for given input, with time as an argument and a sink that stores everything.
 #include "firmware/telemetry/telemetry.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 constexpr Names kNames{[](int s) { return s == 0 ? "OFF" : "ON"; }, [](int) { return "broken"; },
                        [](int fault) { return fault == 13; }};
 
-/// Both clocks at that time, as where nobody sets the one on the wall.
+/// Steady and wall clock both at that time, as if the wall clock is never set.
 Moment at(std::int64_t us) { return {us, us}; }
 
 class Memory final : public Sink {
@@ -126,7 +126,7 @@ TEST_F(TelemetryTest, ShapesComeAtSixtyHertzAndOnlyWhenNew) {
   outlets->shape.back().p_W_m[1] = {1.0F, 2.0F, 3.0F};
   outlets->shape.publish();
   telemetry.step(at(0));
-  telemetry.step(at(20'000));  // nothing new
+  telemetry.step(at(20'000));  // no new shape
   ASSERT_EQ(sink.shapes.size(), 1U);
   EXPECT_EQ(sink.shapes[0].count, 2);
   EXPECT_EQ(sink.shapes[0].p_W_m[1][2], 3.0F);
@@ -134,7 +134,8 @@ TEST_F(TelemetryTest, ShapesComeAtSixtyHertzAndOnlyWhenNew) {
     outlets->shape.publish();
     telemetry.step(at(us));
   }
-  EXPECT_NEAR(static_cast<double>(sink.shapes.size()), 51.0, 10.0);  // every 20 ms: the first step after 16.7
+  // one about every 20 ms: at the first step that is 16.7 ms after the previous one
+  EXPECT_NEAR(static_cast<double>(sink.shapes.size()), 51.0, 10.0);
 }
 
 TEST_F(TelemetryTest, StatusCountsMissesAndLostPeriods) {
@@ -155,7 +156,7 @@ TEST_F(TelemetryTest, StatusCountsMissesAndLostPeriods) {
   EXPECT_EQ(sink.statuses[1].recorder_file, "flight.rec");
 }
 
-/// Whatever is done to the clock on the wall, and whatever it shows at the start (1970 on a board without a battery).
+/// The wall clock may be set at any time and may start anywhere (1970 on a board without battery).
 TEST_F(TelemetryTest, AWallClockThatIsSetChangesTimeStampsOnly) {
   constexpr std::int64_t kSecond = 1'000'000, kBegin = 5 * kSecond;
   for (const std::int64_t step_s : {-60, 3600, -86'400 * 365 * 50}) {
@@ -183,7 +184,7 @@ TEST_F(TelemetryTest, EventsAreReadOutOfTheRecords) {
   record.grasped_node[1] = 17;
   record.flags = rt::kLeftLimited;
   push(1);
-  record.flags = rt::kLeftLimited | rt::kPeriodLost;  // held values are no news
+  record.flags = rt::kLeftLimited | rt::kPeriodLost;  // a lost period's record repeats held values, which give no event
   push(2);
   record.flags = 0;
   record.grasped_node[1] = -1;
@@ -203,7 +204,7 @@ TEST_F(TelemetryTest, JawsThatCloseOnNothingAreAnEvent) {
   push(0);
   record.grip[1] = true;
   push(1);
-  push(2);  // once
+  push(2);  // reported once
   record.grip[1] = false;
   push(3);
   record.grip[1] = true;
@@ -218,7 +219,7 @@ TEST_F(TelemetryTest, JawsThatCloseOnNothingAreAnEvent) {
   EXPECT_EQ(sink.events[1].code, 3);
 }
 
-/// A mesh that adapts numbers its nodes anew while a hand holds one: nobody opened or closed jaws.
+/// An adaptive mesh renumbers its nodes while a hand holds one; that is neither a grasp nor a release.
 TEST_F(TelemetryTest, ANodeNumberedAnewIsNoGrasp) {
   std::int64_t tick = 0;
   push(tick);
@@ -306,7 +307,7 @@ TEST_F(TelemetryTest, ClutchAndMovesArePassedOnWhereTheyMakeSense) {
     EXPECT_EQ(static_cast<int>(passed.kind), kind);
   }
   EXPECT_EQ(telemetry.handle(command(8), at(0)).accepted, 0);
-  EXPECT_EQ(telemetry.handle(command(command_t::KIND_PARK), at(0)).accepted, 0);  // not armed
+  EXPECT_EQ(telemetry.handle(command(command_t::KIND_PARK), at(0)).accepted, 0);  // not armed yet
   record.armed = true;
   push(0);
   telemetry.step(at(0));
@@ -338,7 +339,8 @@ TEST(CommandOf, TakesWhatWasEncodedAndNothingElse) {
 }
 
 TEST(CommandOf, SurvivesEveryLengthThatATextCanClaim) {
-  constexpr std::size_t kTextLength = 8 + 8 + 8 + 8 + 8 + 1;  // hash, utime, id, session, challenge, kind
+  // offset of the text length: hash, utime, id, session, challenge, kind
+  constexpr std::size_t kTextLength = 8 + 8 + 8 + 8 + 8 + 1;
   auto message = bytes_of({});
   for (const unsigned claimed : {0U, 2U, 100U, 0x7FFF'FFFFU, 0x8000'0000U, 0xFFFF'FFFFU}) {
     for (std::size_t i = 0; i < 4; ++i) message[kTextLength + i] = static_cast<std::byte>(claimed >> (24 - 8 * i));

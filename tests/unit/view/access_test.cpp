@@ -11,11 +11,11 @@ namespace {
 
 TEST(Access, OnlyPagesOfThisServerMayOpenTheSocket) {
   EXPECT_TRUE(is_own_origin("http://127.0.0.1:8737", "127.0.0.1:8737"));
-  EXPECT_TRUE(is_own_origin("", "127.0.0.1:8737"));  // no browser
+  EXPECT_TRUE(is_own_origin("", "127.0.0.1:8737"));  // not a browser
   EXPECT_FALSE(is_own_origin("http://evil.example", "127.0.0.1:8737"));
-  EXPECT_FALSE(is_own_origin("http://127.0.0.1:8738", "127.0.0.1:8737"));  // another server of this machine
+  EXPECT_FALSE(is_own_origin("http://127.0.0.1:8738", "127.0.0.1:8737"));  // another server on this machine
   EXPECT_FALSE(is_own_origin("https://127.0.0.1:8737", "127.0.0.1:8737"));
-  EXPECT_FALSE(is_own_origin("null", "127.0.0.1:8737"));  // a file, a sandboxed frame
+  EXPECT_FALSE(is_own_origin("null", "127.0.0.1:8737"));  // a local file or a sandboxed frame
   EXPECT_FALSE(is_own_origin("http://", ""));
 }
 

@@ -8,7 +8,7 @@ namespace {
 using nlohmann::json;
 using namespace std::chrono_literals;
 
-/// A desk whose commands land in a list, on a clock that the test moves.
+/// A desk that collects its commands in a list; the test sets its clock.
 struct Desk {
   Access access{"0123456789abcdef", true};
   std::vector<ligature_msg::command_t> sent;

@@ -1,5 +1,4 @@
-// A recording that is in the repository replays to the labels, events and figures that it always had
-// (tests/fixtures/make_golden.py made it).
+// A stored recording (written by tests/fixtures/make_golden.py) always gives the same labels, events and figures.
 #include <gtest/gtest.h>
 
 #include <fstream>

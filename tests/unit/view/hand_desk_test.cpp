@@ -19,7 +19,7 @@ workspace_origin_m = [0.5, -0.4, 3.2]
 )";
 constexpr std::int64_t kSession = 77;
 
-/// A desk that has heard of a scene and of a free left hand, 0.1 m above its home in the world.
+/// A desk that has received a scene and the state of a free left hand, 0.1 m above its home in the world.
 struct Desk {
   Access access{"0123456789abcdef", true};
   std::vector<ligature_msg::hand_wish_t> sent;
@@ -145,12 +145,12 @@ TEST(HandDesk, WhoseConnectionEndsGivesItsHandBackWithTheDeadManLetGo) {
 TEST(HandDesk, TheDeviceSaysWhoHasTheHand) {
   Desk d;
   ASSERT_EQ(d.take(1)["accepted"], true);
-  d.hear();  // a state from before our first wish
+  d.hear();  // a state from before the first target was sent
   EXPECT_EQ(d.desk.told(d.now)["left"]["page"], 1);
   d.state.owner = d.sent[0].owner;
   d.hear();
   EXPECT_EQ(d.desk.told(d.now)["left"]["page"], 1);
-  d.state.owner = d.sent[0].owner ^ 2;  // another view was first
+  d.state.owner = d.sent[0].owner ^ 2;  // another view took the hand first
   d.hear();
   EXPECT_EQ(d.desk.told(d.now)["left"]["page"], 0);
   EXPECT_EQ(d.desk.told(d.now)["left"]["free"], false);

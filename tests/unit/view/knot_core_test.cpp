@@ -12,7 +12,7 @@ TEST(KnotCore, IsAPieceThatStillHoldsTheKnot) {
   ASSERT_EQ(whole.type, "3_1");
   const KnotCore core = find_core(points, whole);
   ASSERT_LT(core.first, core.last);
-  EXPECT_LT(core.last - core.first, points.size() - 20);  // the long ends are not part of it
+  EXPECT_LT(core.last - core.first, points.size() - 20);  // without the long ends
   const std::span piece(points.data() + core.first, core.last - core.first + 1);
   EXPECT_EQ(knot::recognise(piece, false).type, "3_1");
 }

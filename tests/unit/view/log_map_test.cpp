@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kBatches = 200;
 
-/// Batches of 20 ticks, 20 ms apart, with a foreign message after each.
+/// Batches of 20 ticks every 20 ms, with an unrelated message after each.
 std::string make_log(const test::TestFolder& folder) {
   const std::string path = folder.file("run.lcmlog");
   LogWriter log(path, false);
@@ -49,7 +49,7 @@ TEST(LogMap, FindsAMoment) {
   const test::TestFolder folder;
   const LogMap map(make_log(folder));
   EXPECT_EQ(map.after(-1.0), 0U);
-  EXPECT_EQ(map.after(1.0), 51U);  // entries at 0, 0.02, .. 1.0 are before
+  EXPECT_EQ(map.after(1.0), 51U);  // entries at 0, 0.02, .. 1.0 come before
   EXPECT_EQ(map.after(1e9), map.entries().size());
 }
 
@@ -62,7 +62,7 @@ TEST(LogMap, PlaysOnWhenTheClockOnTheWallWasSetMeanwhile) {
     LogWriter log(path, false);
     for (int i = 0; i < kBatches; ++i) {
       const std::int64_t passed_us = 20'000LL * i, begin_us = 1'800'000'000 * kSecond;
-      const bool is_set = i >= kBatches / 2 && i < kBatches - 10;  // and set right again at the end
+      const bool is_set = i >= kBatches / 2 && i < kBatches - 10;  // and set back near the end
       const bool is_extreme = step_us == largest || step_us == -largest;
       const auto stamp_us = !is_set ? begin_us + passed_us : is_extreme ? step_us : begin_us + step_us + passed_us;
       log.write(stamp_us, kTicksChannel, test::encoded(test::batch_of(1, 20 * i, 20)));

@@ -53,10 +53,10 @@ TEST(PageRecorder, LeavesItsFolderNeverAndReplacesNothing) {
   for (const auto* name : {"../up", "/etc/x", "a/b", ".hidden", "", "a b", "x\n"})
     EXPECT_EQ(r.ask("start", name)["accepted"], false) << name;
   EXPECT_EQ(r.ask("start", "one")["accepted"], true);
-  EXPECT_EQ(r.ask("start", "two")["accepted"], false);  // one at a time
+  EXPECT_EQ(r.ask("start", "two")["accepted"], false);  // only one recording at a time
   EXPECT_EQ(r.ask("stop")["accepted"], true);
   EXPECT_EQ(r.ask("stop")["accepted"], false);
-  EXPECT_EQ(r.ask("start", "one")["accepted"], false);  // exists
+  EXPECT_EQ(r.ask("start", "one")["accepted"], false);  // a recording of that name exists
   EXPECT_EQ(r.recorder.request({{"record", "start"}, {"name", "three"}, {"token", "wrong"}})["accepted"], false);
 }
 

@@ -30,15 +30,15 @@ TEST(Picture, TellsEachPageEachTickOnce) {
   EXPECT_EQ(frame(picture, page).ticks().size(), 20U);
   EXPECT_TRUE(frame(picture, page).ticks().empty());
   take(picture, kTicksChannel, test::batch_of(1, 20, 20));
-  take(picture, kTicksChannel, test::batch_of(1, 20, 20));  // sent twice by the network
+  take(picture, kTicksChannel, test::batch_of(1, 20, 20));  // delivered twice by the network
   EXPECT_EQ(frame(picture, page).ticks().front(), 20);
   Place late;
   EXPECT_EQ(frame(picture, late).ticks().size(), 40U);
 }
 
-/// However often the page asks, and when all of them come at once.
+/// At any request rate, also when all bins come at once.
 TEST(Picture, TellsEachPageEachBinOnce) {
-  for (const int batches_a_frame : {7, 5000}) {  // the last: more bins than fit in a frame
+  for (const int batches_a_frame : {7, 5000}) {  // 5000: more bins than fit in a frame
     Picture picture;
     Place page;
     std::vector<std::int64_t> told;
@@ -54,7 +54,7 @@ TEST(Picture, TellsEachPageEachBinOnce) {
     }
     while (ask()) {
     }
-    ASSERT_EQ(std::ssize(told), 20 * kBatches / kTicksPerBin - 1) << batches_a_frame;  // the last is not full
+    ASSERT_EQ(std::ssize(told), 20 * kBatches / kTicksPerBin - 1) << batches_a_frame;  // the last bin is not complete
     for (std::size_t i = 0; i < told.size(); ++i) ASSERT_EQ(told[i], static_cast<std::int64_t>(i)) << batches_a_frame;
   }
 }
@@ -68,7 +68,7 @@ TEST(Picture, GivesAPageThatFellBehindTheLatest) {
   const auto told = frame(picture, page);
   EXPECT_EQ(told.ticks().size(), static_cast<std::size_t>(Picture::kRowsPerFrame));
   EXPECT_EQ(told.ticks().back(), 39'999);
-  EXPECT_TRUE(told.sections.contains(Section::kBins));  // what lies between is there in bins
+  EXPECT_TRUE(told.sections.contains(Section::kBins));  // ticks that were left out are covered by bins
 }
 
 TEST(Picture, BoundsEveryFrame) {

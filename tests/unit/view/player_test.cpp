@@ -13,7 +13,7 @@ namespace {
 using test_frames::Read;
 using namespace std::chrono_literals;
 
-/// 40 s: straight until 20 s, then an overhand knot; the right hand grasps at 10 s.
+/// 40 s: a straight thread until 20 s, then an overhand knot; the right hand grasps at 10 s.
 struct Recording {
   test::TestFolder folder;
   std::string path = folder.file("run.lcmlog");
@@ -72,7 +72,8 @@ TEST(Player, JumpsAndShowsWhatLedThere) {
   (void)p.frame();
   EXPECT_TRUE(p.player.request({{"seek_s", 30.0}}, p.now).is_null());
   const auto told = p.frame();
-  EXPECT_EQ(told.doubles(Section::kNow)[2], 20.0 * 1500 + 19);  // the newest tick is the one at 30 s
+  // tick number of the newest tick, the last of the batch at 30 s
+  EXPECT_EQ(told.doubles(Section::kNow)[2], 20.0 * 1500 + 19);
   EXPECT_EQ(told.doubles(Section::kShape)[0], 20.0 * 1500);
   EXPECT_GE(told.ticks().front(), 18'000);
   EXPECT_TRUE(p.player.request({{"seek_s", -5}}, p.now).is_null());
@@ -100,7 +101,7 @@ TEST(LogSurvey, FindsGraspAndKnotAndTheSameEachTime) {
   EXPECT_EQ(again.marks(), p.survey.marks());
 }
 
-/// Two recordings are laid side by side by it: of either hand, and at the thread's first node, too.
+/// Two recordings are aligned by their first grasp: by either hand and at any node, the first one included.
 TEST(LogSurvey, FindsTheFirstGraspOfEitherHandAtAnyNode) {
   for (const int hand : {0, 1}) {
     const test::TestFolder folder;

@@ -1,4 +1,4 @@
-// The server's own limits, over real sockets of this machine.
+// Limits of the view server, tested over local sockets.
 #include "host/view/server.hpp"
 
 #include <arpa/inet.h>
@@ -18,7 +18,7 @@
 namespace ligature::host::view {
 namespace {
 
-/// A peer that may say something, or nothing.
+/// A client connection.
 class Peer {
  public:
   explicit Peer(std::uint16_t port) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
@@ -26,7 +26,7 @@ class Peer {
     at.sin_family = AF_INET;
     at.sin_port = htons(port);
     at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    const timeval patience{.tv_sec = 20, .tv_usec = 0};  // ends a hang, and nothing else
+    const timeval patience{.tv_sec = 20, .tv_usec = 0};  // only ends a test that hangs
     setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     connected_ = connect(socket_, reinterpret_cast<const sockaddr*>(&at), sizeof at) == 0;
   }
@@ -34,7 +34,7 @@ class Peer {
   Peer(const Peer&) = delete;
   Peer& operator=(const Peer&) = delete;
 
-  /// The beginning of the answer; empty when the server closes instead.
+  /// Sends a request. @return the beginning of the answer; empty if the server closes the connection.
   [[nodiscard]] std::string ask(std::string_view request) const {
     if (!connected_) return {};
     if (send(socket_, request.data(), request.size(), MSG_NOSIGNAL) < 0) return {};
@@ -44,7 +44,7 @@ class Peer {
     return answer;
   }
 
-  /// Status line and header fields of the answer; empty when the server closes instead.
+  /// Sends a request. @return status line and header fields of the answer; empty if the server closes the connection.
   [[nodiscard]] std::string head_of(std::string_view request) const {
     std::string head = ask(request);
     for (char c = 0; !head.empty() && head.find("\r\n\r\n") == std::string::npos && recv(socket_, &c, 1, 0) == 1;)
@@ -52,18 +52,18 @@ class Peer {
     return head;
   }
 
-  /// Becomes a page, as far as the server knows. @return whether it did.
+  /// Upgrades the connection to a web socket, as a page does. @return whether that succeeded.
   [[nodiscard]] bool upgrade() const {
     return ask("GET /socket HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
                "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n")
         .starts_with("HTTP/1.1 101");
   }
-  /// A short text message, masked with zeros.
+  /// Sends a short text message, masked with zeros.
   void say(const std::string& text) const {
     const std::string frame = std::string{'\x81', static_cast<char>(0x80 | text.size()), 0, 0, 0, 0} + text;
     (void)send(socket_, frame.data(), frame.size(), MSG_NOSIGNAL);
   }
-  /// Reads until the other end closes. @return whether it did.
+  /// Reads until the server closes the connection. @return whether it did.
   [[nodiscard]] bool is_closed() const {
     std::array<char, 4096> bytes{};
     for (;;) {
@@ -80,7 +80,7 @@ class Peer {
 const Access kToken{"0123456789abcdef", true};
 const std::string kGreeting = R"({"token":"0123456789abcdef"})";
 
-/// A server, and peers that do what `visit` says on a thread of its own.
+/// A server, and a second thread in which `visit` acts as its clients.
 class Visited {
  public:
   Visited(Access access, const ServerOptions& options, const std::function<void(Visited&)>& visit)
@@ -96,10 +96,10 @@ class Visited {
   [[nodiscard]] bool is_served() const {
     return peer()->ask("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n").starts_with("HTTP/1.1 200 OK");
   }
-  /// Asks for something and waits until that was heard. @return false when it never was.
+  /// Sends a command and waits until the server has handled it. @return false on timeout.
   [[nodiscard]] bool is_heard(const Peer& page) {
     const int before = heard_;
-    page.say(R"({"seen":0})");  // it is there, and not one of those who never answer
+    page.say(R"({"seen":0})");  // marks the page as active
     page.say(R"({"command":"stop","id":1})");
     for (int i = 0; i < 2000 && heard_ == before; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     return heard_ > before;
@@ -123,9 +123,9 @@ class Visited {
   Server server_;
 };
 
-constexpr int kMany = 200;  // more than three times the places
+constexpr int kMany = 200;  // more than three times the server's limit
 
-/// Peers that became pages and say nothing; all stay open.
+/// Clients that open a page and stay silent; their connections stay open.
 std::vector<std::unique_ptr<Peer>> crowd(const Visited& visited) {
   std::vector<std::unique_ptr<Peer>> peers;
   for (int i = 0; i < kMany; ++i) {
@@ -216,7 +216,7 @@ TEST(Server, APageThatFloodsEndsAndOneThatTalksDoesNot) {
     EXPECT_TRUE(visited.is_heard(*page)) << "300 a second are allowed";
     EXPECT_TRUE(flood->upgrade());
     flood->say(kGreeting);
-    for (int i = 0; i < 20'000; ++i) flood->say(R"({"seen":0})");  // more than a minute's worth
+    for (int i = 0; i < 20'000; ++i) flood->say(R"({"seen":0})");  // more than 300 per second for a minute
     EXPECT_TRUE(flood->is_closed());
     EXPECT_TRUE(visited.is_heard(*page));
   });

@@ -17,7 +17,7 @@ TEST(TraceRow, HoldsTheMessagesOwnNumbers) {
   const TraceRow row = trace_row(tick);
   EXPECT_EQ(row[kTick], 1234567.0);
   EXPECT_EQ(row[kRightY], -1.0 / 3.0);
-  EXPECT_EQ(row[kRight], magnitude(f));  // what export writes, bit for bit
+  EXPECT_EQ(row[kRight], magnitude(f));  // bit by bit what export writes
   EXPECT_EQ(row[kExecution_ns], 987654.0);
 }
 
