@@ -18,8 +18,8 @@ std::string file_to_write(const std::string& path) {
   fs::path target(path);
   for (int i = 0; fs::is_symlink(fs::symlink_status(target, none)); ++i) {
     if (i == kMostLinks) throw BadInput(path + ": is a circle of links; allowed: the name of a file");
-    target = target.parent_path() /
-             fs::read_symlink(target, none);  // operator/ discards the left side when the link is absolute
+    // operator/ discards the left side when the link is absolute
+    target = target.parent_path() / fs::read_symlink(target, none);
   }
   const auto found = fs::status(target, none);
   if (fs::is_directory(found)) throw BadInput(path + ": is a folder; allowed: the name of a file");

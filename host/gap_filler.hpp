@@ -53,8 +53,8 @@ class GapFiller {
 
   std::vector<std::filesystem::path> folders_;
   std::set<std::string> files_;  // named by a status, and inside an allowed folder
-  std::map<std::int64_t, std::int64_t>
-      searched_below_;  // per session: gaps that end before this tick have been searched for
+  // per session: gaps that end before this tick have been searched for
+  std::map<std::int64_t, std::int64_t> searched_below_;
   std::set<std::int64_t> ended_;
   std::string outside_;
 };

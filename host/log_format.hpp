@@ -90,8 +90,8 @@ struct LogCheck {
     if (beginning[0] == kLogSync[0] && log_check(beginning)) return true;
   return false;
 }
-inline constexpr std::size_t kBeginning =
-    1U << 16U;  ///< bytes that suffice for that: they hold several messages of the rig
+/// bytes that suffice for that: they hold several messages of the rig
+inline constexpr std::size_t kBeginning = 1U << 16U;
 
 [[nodiscard]] constexpr std::array<std::byte, kCheckBytes> encoded(const LogCheck& check) noexcept {
   std::array<std::byte, kCheckBytes> bytes{};

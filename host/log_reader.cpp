@@ -21,8 +21,8 @@ const LogEvent* LogReader::next() {
   for (std::int64_t candidate = offset_; candidate >= 0;) {
     const std::int64_t before = offset_;
     const bool is_sound = read_event_at(candidate);
-    if (offset_ > before)
-      skipped_bytes_ += candidate - before;  // bytes before an event that was found, or dropped as damaged
+    // bytes before an event that was found, or dropped as damaged
+    if (offset_ > before) skipped_bytes_ += candidate - before;
     if (is_sound) {
       ++events_;
       return &event_;
@@ -60,8 +60,8 @@ bool LogReader::read_event_at(std::int64_t offset) {
       offset_ = offset += whole;
       continue;
     }
-    if (has_checks_ && (channel == kCheckChannel || !is_whole(behind)))
-      return false;  // the event that this checksum belongs to is damaged
+    // the event that this checksum belongs to is damaged
+    if (has_checks_ && (channel == kCheckChannel || !is_whole(behind))) return false;
     const auto check = log_check(behind);
     const bool is_own = check && check->timestamp_us == head->timestamp_us;
     offset_ = offset +=

@@ -18,8 +18,8 @@
 namespace ligature::host {
 namespace {
 
-constexpr std::string_view kByteOrderMark =
-    "\xEF\xBB\xBF";                              // UTF-8 byte order mark; spreadsheets write it at the start
+// UTF-8 byte order mark; spreadsheets write it at the start
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::size_t kMostBytes = 64U << 20;    // largest input: a pipe may never end
 constexpr std::string_view kBlanks = " \t\r\"";  // quotation marks included: spreadsheets may quote fields
 

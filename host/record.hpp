@@ -11,10 +11,10 @@ struct RecordOptions {
   std::string out;
   std::string lcm_url{kDefaultLcmUrl};
   double duration_s = 0.0;  // 0: until a signal comes
-  std::vector<std::filesystem::path>
-      flight_folders{};  // folders whose flight recorder files may be read; empty: the default ones
-  bool force = false;    // may replace an existing file
-  bool quiet = false;    // no progress display
+  // folders whose flight recorder files may be read; empty: the default ones
+  std::vector<std::filesystem::path> flight_folders{};
+  bool force = false;  // may replace an existing file
+  bool quiet = false;  // no progress display
 };
 
 /// Records all messages on the rig's channels until the duration is over or a signal comes; then prints what was

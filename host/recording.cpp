@@ -7,8 +7,8 @@
 namespace ligature::host {
 
 void Recording::take(const Message& message) {
-  if (message.channel == kCheckChannel)
-    return;  // the checksum event of a log that is being played back; this log gets its own checksums
+  // the checksum event of a log that is being played back; this log gets its own checksums
+  if (message.channel == kCheckChannel) return;
   if (!LogWriter::takes(message.channel, message.data)) return tally_.refuse();
   log_.write(message.received_us, message.channel, message.data);
   tally_.add(message.channel, message.data);
@@ -23,8 +23,8 @@ void Recording::fetch(GapFiller::Ends ends) {
     waiting_.push_back(bytes_);
   };
   filled_ += filler_.fill(tally_.sessions(), emit, ends);
-  for (const auto& bytes : waiting_)
-    tally_.add(kTicksChannel, bytes);  // only now, because fill() was still reading the tally's gaps
+  // only now, because fill() was still reading the tally's gaps
+  for (const auto& bytes : waiting_) tally_.add(kTicksChannel, bytes);
   waiting_.clear();
 }
 

@@ -69,8 +69,8 @@ std::size_t RegularFile::read_at(void* to, std::size_t bytes, std::int64_t offse
 std::int64_t RegularFile::data_after(std::int64_t offset) const {
   const off_t found = lseek(file_, offset, SEEK_DATA);
   if (found >= 0) return found;
-  return errno == ENXIO ? size_
-                        : offset;  // ENXIO: only a hole follows; otherwise the file system does not support holes
+  // ENXIO: only a hole follows; otherwise the file system does not support holes
+  return errno == ENXIO ? size_ : offset;
 }
 
 }  // namespace ligature::host

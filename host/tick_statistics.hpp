@@ -54,9 +54,8 @@ class TickStatistics {
   [[nodiscard]] const ThreadStatistics& thread() const { return thread_; }
   [[nodiscard]] const ThreadTime& thread_time() const { return thread_time_; }
   [[nodiscard]] const std::array<HandStatistics, 2>& hands() const { return hands_; }
-  [[nodiscard]] const std::vector<FaultEntry>& faults() const {
-    return faults_;
-  }  ///< one entry for each change to a fault
+  /// one entry for each change to a fault
+  [[nodiscard]] const std::vector<FaultEntry>& faults() const { return faults_; }
   [[nodiscard]] Percentiles wakeup() const { return percentiles_of(wakeup_ns_); }
   [[nodiscard]] Percentiles control() const { return percentiles_of(control_ns_); }
   [[nodiscard]] Percentiles execution() const { return percentiles_of(execution_ns_); }

@@ -10,8 +10,8 @@ namespace ligature::knot {
 namespace {
 
 using Edge = int;
-using Pairing =
-    std::map<Edge, Edge>;  // ends of open strands: maps each end to the other end of its strand, in both directions
+// ends of open strands: maps each end to the other end of its strand, in both directions
+using Pairing = std::map<Edge, Edge>;
 
 /// The four edges at a crossing, counter-clockwise from the incoming under-strand.
 using Corner = std::array<Edge, 4>;

@@ -108,8 +108,8 @@ KnotName sum_of(const KnotName& a, const KnotName& b) {
     std::istringstream text(name);
     for (std::string part; std::getline(text, part, '#');) parts.push_back(part);
   }
-  std::sort(parts.begin(),
-            parts.end());  // all crossing numbers have one digit, so that alphabetical order is the order of the table
+  // all crossing numbers have one digit, so that alphabetical order is the order of the table
+  std::sort(parts.begin(), parts.end());
   std::string type;
   for (const auto& part : parts) type += (type.empty() ? "" : "#") + part;
   return {type, joined_hand(a.handedness, b.handedness)};

@@ -13,11 +13,8 @@ using Point = Eigen::Vector3d;
 /// is common: with three nearly collinear corners the direction of the normal is uncertain.
 struct Triangle {
   Triangle(const Point& a_, const Point& b_, const Point& c_) : a(a_), b(b_), c(c_), normal((b - a).cross(c - a)) {
-    constexpr double
-        kMargin = 1e-9,
-        kRounding = 4e-16,
-        kReach =
-            50.0;  // kReach: all coordinates are below 50 (the thread fits the unit cube; its closure reaches further)
+    // kReach: all coordinates are below 50 (the thread fits the unit cube; its closure reaches further)
+    constexpr double kMargin = 1e-9, kRounding = 4e-16, kReach = 50.0;
     const double rounding = kRounding * (b - a).norm() * (c - a).norm();
     doubt_ = rounding * kReach;
     slack_ = -kMargin * normal.squaredNorm() - rounding * normal.norm();

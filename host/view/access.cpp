@@ -19,7 +19,7 @@ bool is_address(const std::string& name) {
   return inet_pton(AF_INET, name.c_str(), binary.data()) == 1 || inet_pton(AF_INET6, name.c_str(), binary.data()) == 1;
 }
 
-/// "name:port", "name", "[v6]:port", "[v6]" -> the name; empty for anything else.
+/// The name in a Host header: "name:port", "name", "[v6]:port" or "[v6]"; empty for anything else.
 std::string without_port(std::string_view host) {
   const auto closing = host.starts_with('[') ? host.find(']') : 0;
   if (closing == std::string_view::npos) return {};

@@ -41,7 +41,7 @@ json CommandDesk::request(std::uint64_t page, const json& message, Clock::time_p
   return nullptr;
 }
 
-/// A failure is said by the answer that does not come.
+/// Ignores failures to send: the page then learns from the missing answer.
 void CommandDesk::publish_quietly(const Waiting& waiting) {
   try {
     publish_(waiting.exchange.message());

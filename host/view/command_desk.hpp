@@ -13,8 +13,8 @@
 
 namespace ligature::host::view {
 
-/// Passes commands of pages on to the firmware and its answers back. Every command is answered: accepted or refused
-/// with the reason, or that nobody answered.
+/// Passes commands from pages to the firmware and the answers back. Every command gets an answer: accepted, refused
+/// with a reason, or that no answer came in time.
 class CommandDesk {
  public:
   using Clock = std::chrono::steady_clock;
@@ -24,15 +24,15 @@ class CommandDesk {
 
   CommandDesk(const Access& access, Publish publish) : access_(access), publish_(std::move(publish)) {}
 
-  /// A request {"command": "arm", "id": 7, "token": "..."} of a page; "load-scene" has a "text", "set" a "text" and a
-  /// "value". @return an answer when there is one at once.
+  /// Handles a page's request {"command": "arm", "id": 7, "token": "..."}; "load-scene" also has a "text", "set" a
+  /// "text" and a "value". @return an answer that is known at once, else null.
   [[nodiscard]] nlohmann::json request(std::uint64_t page, const nlohmann::json& message, Clock::time_point now);
 
-  /// What the firmware answered; called by the thread that hears LCM.
+  /// Takes an answer of the firmware; called on the LCM thread.
   void take_ack(const ligature_msg::ack_t& ack);
 
-  /// Answers for pages that have come since the last call, and of those that nobody gave in time. Repeats a stop and
-  /// what only asks.
+  /// Answers for pages since the last call, including those for commands whose time ran out. Repeats messages that may
+  /// be repeated (Exchange::may_be_repeated).
   [[nodiscard]] std::multimap<std::uint64_t, nlohmann::json> answers(Clock::time_point now);
 
  private:
@@ -49,7 +49,7 @@ class CommandDesk {
   const Access& access_;
   Publish publish_;
   std::mutex mutex_;
-  std::map<std::int64_t, Waiting> waiting_;  // by the id of the command
+  std::map<std::int64_t, Waiting> waiting_;  // by command id
   std::multimap<std::uint64_t, nlohmann::json> ready_;
 };
 

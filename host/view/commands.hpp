@@ -6,7 +6,7 @@ class App;
 
 namespace ligature::host::view {
 
-/// Adds the subcommands of the page.
+/// Add the subcommands `view` and `replay`.
 void add_view(CLI::App& app);
 void add_replay(CLI::App& app);
 

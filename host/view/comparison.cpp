@@ -33,9 +33,10 @@ struct Comparison::Other {
   LogSurvey survey;
   Picture picture;
   Player player;
-  std::optional<std::int64_t> offset_ticks;  // a tick of it plus this is the tick of ours at the same place
-  bool is_whole = false;                     // was shown since all of it has been read
-  double shift_s = 0.0;                      // its log's time at our log's time 0
+  // added to a tick number of the other recording, gives the corresponding tick of this one
+  std::optional<std::int64_t> offset_ticks;
+  bool is_whole = false;  // the other was fully read at the last seek, so that its long windows are complete
+  double shift_s = 0.0;   // time in the other log at time 0 of this log
 
   Other(const fs::path& path, std::string align_)
       : name(path.filename()),
@@ -97,7 +98,7 @@ void Comparison::find_offset() {
     } else {
       const bool is_known =
           (ours.first_grasp || survey_.progress() >= 1.0) && (theirs.first_grasp || other_->survey.progress() >= 1.0);
-      if (!is_known) return;  // still reading
+      if (!is_known) return;  // wait until enough is read
       close();
       return tell("one of them has no grasp; align by start");
     }
@@ -111,7 +112,8 @@ void Comparison::find_offset() {
 void Comparison::follow(double position_s, Picture::Clock::time_point now) {
   if (other_ && !other_->offset_ticks) find_offset();
   if (!other_ || !other_->offset_ticks) return;
-  if (!other_->is_whole && other_->survey.progress() >= 1.0) {  // now its long windows have no holes
+  // fully read now: seek again, so that the long windows have no holes
+  if (!other_->is_whole && other_->survey.progress() >= 1.0) {
     other_->is_whole = true;
     other_->player.seek(position_s + other_->shift_s, now);
   }

@@ -11,21 +11,22 @@
 
 namespace ligature::host::view {
 
-/// A second recording beside the one that is played: its traces go to the pages too, at the same place of what both
-/// have in common: their first tick, or their first grasp. The server's thread only.
+/// Shows the traces of a second recording together with the one that is played. The two are aligned at their first tick
+/// or at their first grasp. Used on the server's thread only.
 class Comparison {
  public:
-  /// @param folder whose recordings a page may choose from; empty: none.
+  /// @param folder whose recordings a page may choose; empty: none.
   Comparison(const LogMap& map, const LogSurvey& survey, Picture& picture, std::filesystem::path folder);
   ~Comparison();
 
-  /// {"compare": "NAME" or "", "align": "start" or "grasp"}. @return null, or an answer that says why not.
+  /// Handles {"compare": "NAME" or "", "align": "start" or "grasp"}. @return null, or an answer with the reason for a
+  /// refusal.
   [[nodiscard]] nlohmann::json request(const nlohmann::json& message);
 
-  /// @throws BadInput when it is no recording.
+  /// Opens the second recording. @throws BadInput when the file is no recording.
   void open(const std::filesystem::path& path, const std::string& align);
 
-  /// Plays along; once both recordings have been read far enough to know where they meet.
+  /// Plays the second recording in step with the first; begins once both are read far enough to be aligned.
   void follow(double position_s, Picture::Clock::time_point now);
 
  private:

@@ -11,7 +11,7 @@ namespace ligature::host::view {
 
 static_assert(std::endian::native == std::endian::little, "the page reads little-endian");
 
-/// Kinds of sections in a frame (docs/view.md; page/frame.js reads them).
+/// Kinds of sections in a frame (docs/view.md); page/frame.js decodes them.
 enum class Section : std::uint32_t {
   kNow = 1,
   kShape = 2,
@@ -23,8 +23,8 @@ enum class Section : std::uint32_t {
   kBesideBins = 8
 };
 
-/// One binary WebSocket message: "LGF1", u32 frame number, then sections of u32 kind, u32 size in bytes, payload,
-/// each padded to 8 bytes so that the page can lay typed arrays over it without copying.
+/// Builds one binary WebSocket message: "LGF1", u32 frame number, then sections of u32 kind, u32 size in bytes and
+/// payload. Sections are padded to 8 bytes, so that the page can use typed arrays on the message without copying.
 class FrameWriter {
  public:
   explicit FrameWriter(std::uint32_t number) {

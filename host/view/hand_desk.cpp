@@ -15,7 +15,7 @@ using ligature_msg::hand_wish_t;
 using nlohmann::json;
 
 constexpr std::array<const char*, 2> kSides{"left", "right"};
-constexpr double kFarthest_m = 10.0;  // of a device metre; beyond every room
+constexpr double kFarthest_m = 10.0;  // limit on coordinates in the device's frame, m; larger than any room
 
 json answer(const json& message, bool accepted, const std::string& text) {
   const std::string word = text_of(message, "hand").substr(0, 10) + " " + text_of(message, "side").substr(0, 10);
@@ -74,6 +74,7 @@ json HandDesk::request(std::uint64_t page, const json& message, Clock::time_poin
   return done;
 }
 
+/// Position of a hand in world coordinates, m.
 /// @pre the hand has a state and the workspace is known.
 json HandDesk::place_of(const Hand& hand) const {
   json p_W = json::array();
@@ -82,7 +83,7 @@ json HandDesk::place_of(const Hand& hand) const {
   return p_W;
 }
 
-/// @return why not.
+/// Gives the hand to a page. @return the reason for a refusal; empty on success.
 std::string HandDesk::take(Hand& hand, std::uint64_t page, Clock::time_point now) {
   const std::string side = kSides[static_cast<std::size_t>(&hand - hands_.data())];
   if (!listens(hand, now))
@@ -95,7 +96,7 @@ std::string HandDesk::take(Hand& hand, std::uint64_t page, Clock::time_point now
   hand.session = hand.state->session;
   hand.owner = fresh_id();
   hand.sequence = 0;
-  auto first = next_of(hand);  // where it is, so that it is taken and does not move
+  auto first = next_of(hand);  // the present position, so that the device is taken without moving
   first.grip = hand.state->grip;
   std::ranges::copy(hand.state->p_home_m, first.p_home_m);
   publish_quietly(first);
@@ -135,7 +136,7 @@ hand_wish_t HandDesk::next_of(Hand& hand) {
   return wish;
 }
 
-/// The device notices what does not come, and lets go.
+/// Ignores failures to send: a device that receives nothing lets go.
 void HandDesk::publish_quietly(const hand_wish_t& wish) {
   try {
     publish_(wish);
@@ -159,7 +160,7 @@ void HandDesk::take_status(const ligature_msg::status_t& status) {
     workspace_ = Workspace{scene->hands.workspace_scale, scene->hands.workspace_origin_m};
 }
 
-/// Who is named by the device has the hand. A state from before our first wish names nobody yet.
+/// The device's state names the owner of the hand. State messages from before this page's first wish name no owner yet.
 void HandDesk::take_state(const ligature_msg::hand_state_t& state, Clock::time_point now) {
   const std::scoped_lock lock(mutex_);
   Hand& hand = hands_[static_cast<std::size_t>(state.hand)];

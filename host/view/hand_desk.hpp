@@ -18,45 +18,46 @@ namespace ligature::host::view {
 inline constexpr std::string_view kHandWishChannel = "LIGATURE_HAND_WISH";
 inline constexpr std::string_view kHandStateChannel = "LIGATURE_HAND_STATE";
 
-/// A state that anybody may have sent: every byte is used, and it is of one of two hands, within a room.
+/// Decodes a hand's state, which anybody on the network may have sent. Nothing unless the message is complete, its hand
+/// is 0 or 1, and its position is plausible.
 [[nodiscard]] std::optional<ligature_msg::hand_state_t> hand_state_of(Bytes message);
 
-/// Passes on where a page wants a simulated hand. A hand belongs to one page at a time, here and among all views of the
-/// rig: the device says who has it (protocol/lcm/hand_wish_t.lcm). Nothing is ever repeated: when a page falls silent,
-/// so does this, and the device lets go.
+/// Passes on the positions to which a page moves a simulated hand (its "wishes"). A hand belongs to one page at a time;
+/// the device decides which, also among several view programs (protocol/lcm/hand_wish_t.lcm). Wishes are never
+/// repeated: when the page stops sending, so does this class, and the device lets go.
 class HandDesk {
  public:
   using Clock = std::chrono::steady_clock;
   using Publish = std::function<void(const ligature_msg::hand_wish_t&)>;
-  static constexpr auto kDeafAfter = std::chrono::seconds(1);  // a hand that listens says so 20 times a second
+  static constexpr auto kDeafAfter = std::chrono::seconds(1);  // a simulated hand sends its state 20 times a second
 
   HandDesk(const Access& access, Publish publish) : access_(access), publish_(std::move(publish)) {}
 
-  /// {"hand": "take" | "leave", "side": "left" | "right", "id": 7, "token": ".."}, which is answered; or
-  /// {"wish": {"left": {"p": [x, y, z] in world metres, "dead": true, "grip": false}, "right": ..}, "token": ".."},
-  /// which is answered only where the token is wrong. A page wishes for the hands that it has taken.
+  /// Handles {"hand": "take" | "leave", "side": "left" | "right", "id": 7, "token": ".."}, which is always answered,
+  /// and {"wish": {"left": {"p": [x, y, z] in world metres, "dead": true, "grip": false}, "right": ..}, "token": ".."},
+  /// which is answered only when the token is wrong. Wishes for hands that the page has not taken are ignored.
   [[nodiscard]] nlohmann::json request(std::uint64_t page, const nlohmann::json& message, Clock::time_point now);
 
-  /// The page is gone: what it had is given back, with the dead-man let go.
+  /// Call when a page has gone: its hands are given back, with the dead-man released.
   void end(std::uint64_t page);
 
-  /// What the rig says; called by the thread that hears LCM.
+  /// Messages of the rig; called on the LCM thread.
   void take_status(const ligature_msg::status_t& status);
   void take_state(const ligature_msg::hand_state_t& state, Clock::time_point now);
 
-  /// For all pages: {"left": {"listens": .., "free": .., "page": who has it here or 0, "p_W": where it is, while one
-  /// has}, "right": .., "scale": world metres a device metre, 0 while no scene is known}.
+  /// State for all pages: {"left": {"listens": .., "free": .., "page": page that has the hand or 0, "p_W": its
+  /// position, while a page has it}, "right": .., "scale": world metres per device metre, 0 while no scene is known}.
   [[nodiscard]] nlohmann::json told(Clock::time_point now) const;
 
  private:
   struct Hand {
-    std::optional<ligature_msg::hand_state_t> state;  // newest
+    std::optional<ligature_msg::hand_state_t> state;  // newest received
     Clock::time_point heard;
-    std::uint64_t page = 0;  // that has it
+    std::uint64_t page = 0;  // page that has the hand; 0: none
     std::int64_t session = 0, owner = 0, sequence = 0;
   };
   struct Workspace {
-    double scale = 0.0;  // world metres a device metre
+    double scale = 0.0;  // world metres per device metre
     std::array<double, 3> origin_W_m{};
   };
 

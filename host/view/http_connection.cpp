@@ -7,7 +7,8 @@ namespace {
 
 constexpr auto kRequestWithin = std::chrono::seconds(10);
 
-/// Scripts, styles and sockets of this server only, and in no other site's frame: nobody else's page can borrow ours.
+/// Content security policy: scripts, styles and sockets from this server only, and no embedding in frames of other
+/// sites.
 constexpr const char* kPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";

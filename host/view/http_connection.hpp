@@ -10,7 +10,7 @@
 
 namespace ligature::host::view {
 
-/// One peer that speaks HTTP; becomes a PageConnection when a page asks for the WebSocket. 10 s for a request or a
+/// One HTTP client. Becomes a PageConnection when a page upgrades to a WebSocket. Time limit: 10 s for a request or a
 /// write.
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
  public:
@@ -20,7 +20,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   HttpConnection& operator=(const HttpConnection&) = delete;
 
   void read();
-  /// Whatever it waits for: somebody else needs its place.
+  /// Closes the connection in any state, because its place is needed for another one.
   void end() { stream_.close(); }
 
  private:

@@ -30,7 +30,8 @@ KnotCore find_core(std::span<const std::array<double, 3>> points, const knot::Kn
     return piece.type == whole.type && piece.handedness == whole.handedness;
   };
   KnotCore core{0, points.size() - 1};
-  for (std::size_t low = core.first, high = core.last; low + 1 < high;) {  // the last end that keeps the knot
+  // bisection for the smallest last node that keeps the knot
+  for (std::size_t low = core.first, high = core.last; low + 1 < high;) {
     const std::size_t middle = (low + high) / 2;
     (is_same(0, middle) ? high : low) = middle;
     core.last = high;
@@ -71,7 +72,8 @@ void KnotWatch::watch(const std::stop_token& stop) {
                  {"determinant", found.determinant},
                  {"alexander", found.alexander},
                  {"cost_ms", cost_ms}};
-    if (found.alexander.empty()) knot["crossings"] = knot["determinant"] = knot["alexander"] = nullptr;  // not computed
+    // could not be computed
+    if (found.alexander.empty()) knot["crossings"] = knot["determinant"] = knot["alexander"] = nullptr;
     if (core.last > core.first) {
       const double core_m = length(std::span(points).subspan(core.first, core.last - core.first + 1));
       knot["core"] = {core.first, core.last};

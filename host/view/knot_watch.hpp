@@ -10,16 +10,17 @@
 
 namespace ligature::host::view {
 
-/// Where in the thread the knot sits.
+/// The part of the thread that contains the knot.
 struct KnotCore {
   std::size_t first = 0, last = 0;  // nodes, inclusive; both 0 when there is no knot
 };
 
-/// The shortest piece of the thread, by cutting ends off while the rest has the same knot: two bisections, so about
-/// 2 log2(n) recognitions. Not always the very shortest: cutting is not monotonous for loose, tangled threads.
+/// Finds a short piece of the thread that contains the knot: cuts both ends off while the rest keeps the same knot, by
+/// two bisections, about 2 log2(n) recognitions. The piece is not always the shortest, because the knot type can change
+/// back and forth while a loose, tangled thread is cut.
 [[nodiscard]] KnotCore find_core(std::span<const std::array<double, 3>> points, const knot::KnotResult& whole);
 
-/// Names the knot of the newest shape 20 times a second on a thread of its own and tells the picture.
+/// Names the knot of the newest shape 20 times a second, on its own thread of execution, and gives it to the picture.
 class KnotWatch {
  public:
   explicit KnotWatch(Picture& picture);

@@ -17,7 +17,7 @@
 namespace ligature::host::view {
 namespace {
 
-/// What the hands' desk is told of the rig.
+/// Passes the hands' states and the status to the hand desk.
 void take(HandDesk& hands, const Message& message) {
   if (message.channel == kHandStateChannel) {
     if (const auto state = hand_state_of(message.data)) hands.take_state(*state, HandDesk::Clock::now());

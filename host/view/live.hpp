@@ -9,17 +9,17 @@ struct ViewOptions {
   ServerOptions server;
   std::string token_file;
   std::string lcm_url;
-  std::string recordings = ".";  // folder for what the page records
+  std::string recordings = ".";  // folder for recordings that the page starts
 };
 
-/// Shows the live rig until a signal comes. @throws BadInput, RunFailed.
+/// Serves the live view until a signal comes. @throws BadInput, RunFailed.
 void view_live(const ViewOptions& options);
 
-/// The rights that follow from where a server listens: on this machine alone the page carries a fresh token; elsewhere
-/// commands need the token of the file, and without a file there are none.
+/// Access rights that follow from the address of the server. On a loopback address the page carries a fresh token. On
+/// others, commands need the token of the file; without a file nobody may command.
 [[nodiscard]] Access access_for(const ServerOptions& server, const std::string& token_file);
 
-/// The address to open, said on standard output.
+/// Prints the address to open in the browser on standard output.
 void announce(const Server& server, const ServerOptions& options, const Access& access);
 
 }  // namespace ligature::host::view

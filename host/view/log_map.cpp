@@ -16,12 +16,14 @@ namespace {
 
 constexpr std::array kNames{kTicksChannel, kThreadChannel, kStatusChannel, kEventChannel};
 
-/// Reception times come from the clock on the wall, and somebody may have set it meanwhile: what follows a step of it
-/// goes on where the recording stood. So does what follows half a minute without a rig. Small disorder is left to sort.
+/// Turns reception times into a continuous time axis. They are CLOCK_REALTIME, which may be set during the recording: a
+/// step of more than 1 s back or 30 s forward is removed, and so is a pause of more than 30 s without messages. Smaller
+/// disorder is kept; the entries are sorted later.
 class Timeline {
  public:
   std::int64_t place(std::int64_t stamp_us) {
-    constexpr std::int64_t kFurthest_us = std::int64_t{1} << 61U;  // of a forged log: sums stay within the type
+    // limit on times in a forged log: sums must not overflow
+    constexpr std::int64_t kFurthest_us = std::int64_t{1} << 61U;
     constexpr std::int64_t kSetBack_us = 1'000'000, kSetForward_us = 30'000'000;
     stamp_us = std::clamp(stamp_us, -kFurthest_us, kFurthest_us);
     if (!last_us_) last_us_ = stamp_us;
@@ -37,7 +39,7 @@ class Timeline {
   std::int64_t shift_us_ = 0;
 };
 
-/// A checksum, and the header behind it, with its channel: one read for each event.
+/// Bytes read per event: a checksum event, and the head and channel name of the next event.
 constexpr std::size_t kGlance = kCheckEventBytes + LogEventHead::kBytes + kLongestChannel;
 
 }  // namespace
@@ -79,12 +81,12 @@ void LogMap::scan() {
     const auto check = log_check(seen);
     const auto known_bytes = std::min(seen.size(), kLogSync.size());
     if (has_checks && !std::ranges::equal(seen.first(known_bytes), std::span(kLogSync).first(known_bytes))) {
-      at = find_sync(file_, at + 1, &progress);  // its length is what was damaged
+      at = find_sync(file_, at + 1, &progress);  // the length field of this event is damaged
       continue;
     }
     at = end + (check ? static_cast<std::int64_t>(kCheckEventBytes) : 0);
     const bool is_own = check && check->timestamp_us == head->timestamp_us;
-    if (has_checks && !is_own && seen.size() >= kCheckEventBytes) continue;  // its checksum is damaged
+    if (has_checks && !is_own && seen.size() >= kCheckEventBytes) continue;  // the checksum event is damaged
     const auto known = std::ranges::find(kNames, name);
     if (known == kNames.end()) continue;
     entries_.push_back({timeline.place(head->timestamp_us), payload, static_cast<std::uint32_t>(head->data_bytes),

@@ -9,16 +9,16 @@
 
 namespace ligature::host::view {
 
-/// Where the messages of a log lie, so that any moment can be played without reading what is before it.
-/// Only headers are read: 32 bytes are kept of each message of ours (about 14 MB for an hour), and the payload is read
-/// when it is played. Broken stretches are skipped up to the next sound event, as host/log_reader.hpp does. A signal
-/// ends the reading (RunFailed).
+/// Index of the messages of a log, so that playback can start at any time without reading what is before.
+/// Only heads are read: 32 bytes are kept per message (about 14 MB for an hour), and payloads are read when played.
+/// Damaged parts are skipped up to the next intact event, as in host/log_reader.hpp. A stop signal ends the reading
+/// (RunFailed).
 class LogMap {
  public:
   enum class Channel : std::uint8_t { kTicks, kThread, kStatus, kEvent };
   struct Entry {
-    std::int64_t time_us;  // at reception, without what the clock on the wall was set by
-    std::int64_t offset;   // of the payload
+    std::int64_t time_us;  // reception time with steps of the system clock removed
+    std::int64_t offset;   // of the payload in the file
     std::uint32_t size;
     std::uint32_t checksum;  // of channel and payload
     Channel channel;
@@ -33,8 +33,8 @@ class LogMap {
   [[nodiscard]] double time_s(std::int64_t time_us) const;  ///< since the first entry
   /// Index of the first entry later than t.
   [[nodiscard]] std::size_t after(double t_s) const;
-  /// The payload of an entry; safe from several threads at once. @return false when the file has shrunk, or its
-  /// checksum is wrong.
+  /// Reads the payload of an entry; thread-safe. @return false when the file has become shorter, or the checksum is
+  /// wrong.
   bool read(const Entry& entry, std::vector<std::byte>& payload) const;
 
  private:
@@ -44,7 +44,7 @@ class LogMap {
   std::vector<Entry> entries_;
 };
 
-/// Name of a channel on the wire.
+/// LCM name of a channel.
 [[nodiscard]] std::string_view wire_name(LogMap::Channel channel);
 
 }  // namespace ligature::host::view

@@ -12,8 +12,8 @@
 
 namespace ligature::host::view {
 
-/// Goes once through a whole log in the background, while it is already being played: what to jump to, which knot
-/// when, and the traces as bins for the long windows.
+/// Reads a whole log once in the background while it is already being played. Collects marks to jump to, the knots over
+/// time, and the trace bins for the long windows.
 class LogSurvey {
  public:
   static constexpr std::size_t kMostBins = 864'000 /* 12 h */, kMostMarks = 5'000, kOverview = 600;
@@ -23,19 +23,20 @@ class LogSurvey {
 
   [[nodiscard]] double progress() const { return progress_; }  ///< 0 .. 1
 
-  /// Marks {t_s, kind, hand, text} in order of time, and the largest force of each hand in kOverview equal
-  /// stretches of the log, N. Complete when progress() is 1.
+  /// Marks {t_s, kind, hand, text} in order of time, and the largest force of each hand, N, in each of kOverview equal
+  /// parts of the log. Complete when progress() is 1.
   [[nodiscard]] nlohmann::json marks() const;
 
-  /// Where recordings can be laid over each other.
+  /// Points by which two recordings can be aligned.
   struct Landmarks {
-    std::optional<std::int64_t> first_tick, first_grasp;  ///< numbers; a grasp: the first tick with a node held
-    double first_tick_s = 0.0;                            ///< of the log, s
+    /// tick numbers; first_grasp: the first tick in which a hand holds a node
+    std::optional<std::int64_t> first_tick, first_grasp;
+    double first_tick_s = 0.0;  ///< time in the log, s
     double period_s = 1e-3;
   };
   [[nodiscard]] Landmarks landmarks() const;
 
-  /// The bins of the run of the firmware that is on at t, up to t, at most ten minutes of them.
+  /// The trace bins up to time t of the session that runs at t, at most the last ten minutes.
   [[nodiscard]] std::vector<TraceBin> history(double t_s) const;
 
  private:

@@ -8,8 +8,8 @@ namespace ligature::host::view {
 namespace {
 
 using Clock = Picture::Clock;
-constexpr auto kSilentPage = std::chrono::seconds(30);  // acknowledges nothing: gone, or not a page
-constexpr int kSocketBuffer = 128 * 1024;               // small, so that frames do not grow old in the kernel
+constexpr auto kSilentPage = std::chrono::seconds(30);  // a page that acknowledges nothing for so long is closed
+constexpr int kSocketBuffer = 128 * 1024;               // small, so that frames do not wait in the kernel
 
 }  // namespace
 
@@ -42,7 +42,7 @@ void PageConnection::accept(const http::request<http::string_body>& upgrade) {
   auto& tcp_socket = beast::get_lowest_layer(socket_).socket();
   tcp_socket.set_option(boost::asio::socket_base::send_buffer_size(kSocketBuffer), ignored);
   tcp_socket.set_option(tcp::no_delay(true), ignored);
-  beast::get_lowest_layer(socket_).expires_never();  // from here the WebSocket's own time limits hold
+  beast::get_lowest_layer(socket_).expires_never();  // from here on the WebSocket's own time limits apply
   beast::websocket::stream_base::timeout limits{};
   limits.handshake_timeout = std::chrono::seconds(10);
   limits.idle_timeout = kSilentPage;
@@ -60,7 +60,7 @@ void PageConnection::accept(const http::request<http::string_body>& upgrade) {
 
 void PageConnection::read() {
   socket_.async_read(inbox_, [self = shared_from_this()](beast::error_code error, std::size_t) {
-    if (error) return self->end();  // closed, too large, malformed, silent
+    if (error) return self->end();  // closed, too large, malformed or silent
     const auto data = self->inbox_.data();
     const bool goes_on = self->on_message({static_cast<const char*>(data.data()), data.size()});
     self->inbox_.clear();
@@ -86,7 +86,7 @@ bool PageConnection::on_message(std::string_view text) {
     return seen_ <= place_.frame;
   }
   look_at_token(message);
-  if (message.size() == 1 && message.contains("token")) return true;  // a greeting, nothing is asked
+  if (message.size() == 1 && message.contains("token")) return true;  // only shows the token and asks for nothing
   if (auto answer = shared_.hooks.on_message(id_, message); !answer.is_null()) add_answer(answer);
   return true;
 }

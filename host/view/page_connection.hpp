@@ -1,5 +1,5 @@
 #pragma once
-// One open page: a WebSocket that gets frames and sends small JSON messages.
+// One open page: a WebSocket that receives frames and sends small JSON messages.
 
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -17,14 +17,15 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 using tcp = boost::asio::ip::tcp;
 
-/// What every connection shares; lives as long as the server.
+/// Data shared by all connections; lives as long as the server.
 struct Shared {
   const Access& access;
   const Picture& picture;
   ServerHooks hooks;
   std::string machine_name;
-  Picture::Clock::duration token_within;     // for pages, where the page itself carries the token
-  std::size_t connections = 0, lookers = 0;  // all, and pages that have not shown the token
+  // time within which a page must show the token, when the page itself carries it
+  Picture::Clock::duration token_within;
+  std::size_t connections = 0, lookers = 0;  // all connections; pages that have not shown the token
   std::map<std::uint64_t, std::weak_ptr<class PageConnection>> pages;
   std::uint64_t last_page = 0;
 };
@@ -38,12 +39,12 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
 
   void accept(const http::request<http::string_body>& upgrade);
 
-  /// Sends a frame unless the page is behind.
+  /// Sends a frame, unless the page has too many unacknowledged ones.
   void offer_frame(Picture::Clock::time_point now);
   void add_answer(const nlohmann::json& answer);
-  /// Whether it has shown the token: then nobody takes its place.
+  /// Whether the page has shown the token; such a page is never displaced.
   [[nodiscard]] bool is_known() const { return is_known_; }
-  /// Without a closing handshake: its place is needed, or it does not keep to the rules or does not answer.
+  /// Closes without the closing handshake: the place is needed, or the page breaks the rules or does not answer.
   void close();
 
  private:
@@ -52,11 +53,11 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
   static constexpr std::size_t kMostAnswers = 100;
 
   void read();
-  /// @return false when the page breaks the rules and must go.
+  /// @return false when the page breaks the rules and must be closed.
   bool on_message(std::string_view text);
   void look_at_token(const nlohmann::json& message);
   void give_place_back();
-  /// At once, whatever still waits on the socket: somebody may count on it to be heard.
+  /// Ends at once, without waiting for unsent data: the hooks must learn immediately that the page has gone.
   void end();
 
   Shared& shared_;

@@ -12,19 +12,20 @@
 
 namespace ligature::host::view {
 
-/// Records the rig at a page's request, into a folder that was chosen at the start: a page names a file, never a place.
+/// Records the rig at a page's request into a folder that was chosen at the program's start: a page gives a file name,
+/// never a path.
 class PageRecorder {
  public:
-  static constexpr std::string_view kNotesChannel = "LIGATURE_NOTES";  // UTF-8 text, not an LCM type
+  static constexpr std::string_view kNotesChannel = "LIGATURE_NOTES";  // payload: UTF-8 text, not an LCM type
   static constexpr std::size_t kLongestName = 64, kLongestNotes = 2000;
 
   PageRecorder(const Access& access, std::filesystem::path folder, Picture& picture);
 
-  /// {"record": "start", "name": "knot-1", "notes": "...", "id", "token"} or {"record": "stop", ...}. @return its
-  /// answer.
+  /// Handles {"record": "start", "name": "knot-1", "notes": "...", "id", "token"} or {"record": "stop", ...}. @return
+  /// the answer.
   [[nodiscard]] nlohmann::json request(const nlohmann::json& message);
 
-  /// Writes what came while a recording runs; called by the thread that hears LCM. A full disk ends the recording.
+  /// Records a message while a recording runs; called on the LCM thread. A full disk ends the recording.
   void take(const Message& message);
 
  private:
@@ -41,7 +42,7 @@ class PageRecorder {
   std::int64_t messages_ = 0;
 };
 
-/// Whether a name is letters, digits, '-', '_' and '.', does not begin with '.', and is not too long.
+/// Whether a name consists of letters, digits, '-', '_' and '.', does not start with '.', and is not too long.
 [[nodiscard]] bool is_file_name(std::string_view name);
 
 }  // namespace ligature::host::view

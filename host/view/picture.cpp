@@ -47,7 +47,7 @@ void Picture::take(std::string_view channel, Bytes data, Clock::time_point now) 
   }
 }
 
-/// Pages are told at 1, 2, 4, .. : often enough to see that it goes on, too rarely to be a load.
+/// Pages are informed at counts 1, 2, 4, 8 ..: they see that the number rises, at little cost.
 void Picture::count_unreadable() {
   ++unreadable_;
   if (std::has_single_bit(static_cast<std::uint64_t>(unreadable_))) set_locked("unreadable", unreadable_);
@@ -59,7 +59,7 @@ void Picture::take_batch(const ligature_msg::tick_batch_t& batch) {
     session_ = batch.session;
   }
   for (const auto& tick : batch.ticks) {
-    if (last_ && tick.tick <= last_->tick) continue;  // sent twice
+    if (last_ && tick.tick <= last_->tick) continue;  // duplicate
     const TraceRow row = trace_row(tick);
     rows_.push(row);
     TraceBin done;
@@ -163,7 +163,7 @@ void Picture::write_beside(FrameWriter& frame, TracePlace& place) const {
 void Picture::write_now(FrameWriter& frame, Clock::time_point now) const {
   frame.begin(Section::kNow);
   frame.add(static_cast<double>(epoch_));
-  frame.add(heard_ ? milliseconds(now - *heard_) : -1.0);  // age of the newest ticks, ms; -1: never heard
+  frame.add(heard_ ? milliseconds(now - *heard_) : -1.0);  // age of the newest ticks, ms; -1: none yet
   if (last_) write_tick(frame, *last_);
   frame.end();
 }
@@ -182,7 +182,7 @@ void Picture::write_shape(FrameWriter& frame) const {
 
 void Picture::write_traces(FrameWriter& frame, TracePlace& place, Section rows, Section bins) const {
   place.row = std::max(place.row, rows_.begin());
-  if (rows_.end() - place.row > kRowsAtFirst)  // a page that fell behind: the latest wins, the bins fill the hole
+  if (rows_.end() - place.row > kRowsAtFirst)  // the page fell behind: skip to the newest rows; the bins cover the gap
     place.row = rows_.end() - kRowsPerFrame;
   const auto last_row = std::min(rows_.end(), place.row + kRowsPerFrame);
   if (place.row < last_row) {

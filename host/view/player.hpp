@@ -10,7 +10,7 @@
 
 namespace ligature::host::view {
 
-/// Plays a log into a picture: time goes on at 0.1 to 10 times the speed, stands, or jumps.
+/// Plays a log into a picture at 0.1 to 10 times real time; can pause and jump.
 class Player {
  public:
   static constexpr double kSlowest = 0.1, kFastest = 10.0, kLeadIn_s = 12.0;
@@ -18,16 +18,16 @@ class Player {
   Player(const LogMap& map, const LogSurvey& survey, Picture& picture)
       : map_(map), survey_(survey), picture_(picture) {}
 
-  /// A request of a page: {"play": true}, {"speed": 2}, {"seek_s": 12.5}; what is none of these is refused.
-  /// @return null, or an answer that says why not.
+  /// Handles a page's request: {"play": true}, {"speed": 2} or {"seek_s": 12.5}; anything else is refused.
+  /// @return null, or an answer with the reason for a refusal.
   nlohmann::json request(const nlohmann::json& message, Picture::Clock::time_point now);
 
-  /// Goes on by the time passed since the last call.
+  /// Plays on by the time passed since the last call.
   void advance(Picture::Clock::time_point now);
 
   void seek(double t_s, Picture::Clock::time_point now);
 
-  /// Is at t, for one that has no clock of its own: goes on when that is a little later, else jumps.
+  /// Moves to time t, for a player that follows another one: plays on when t is slightly later, otherwise jumps.
   void follow(double t_s, Picture::Clock::time_point now);
 
   [[nodiscard]] double position_s() const { return position_s_; }
@@ -40,7 +40,7 @@ class Player {
   const LogMap& map_;
   const LogSurvey& survey_;
   Picture& picture_;
-  std::size_t next_ = 0;  // entry to be played
+  std::size_t next_ = 0;  // index of the next entry to play
   double position_s_ = 0.0, speed_ = 1.0;
   bool playing_ = true, has_begun_ = false;
   Picture::Clock::time_point last_ = Picture::Clock::now();

@@ -17,14 +17,14 @@ void replay(const ReplayOptions& options) {
   const LogSurvey survey(map);
   Picture picture;
   Player player(map, survey, picture);
-  // Playing moves nothing but a picture, so everybody who may see it may scrub it, and no token is needed.
+  // Playback commands no rig, so that every viewer may control it without a token.
   const Access access{};
   picture.set("view", {{"mode", "replay"},
                        {"version", LIGATURE_VERSION},
                        {"file", std::filesystem::path(options.log).filename().string()},
                        {"may_command", false},
                        {"names", names_json()}});
-  // Who may reach this machine may see its other recordings too; who looks from elsewhere sees what is shown.
+  // Viewers on this machine may choose any recording of the folder; remote viewers see only the one that is shown.
   const auto folder = std::filesystem::path(options.log).parent_path();
   Comparison comparison(map, survey, picture,
                         !is_loopback(options.server) ? ""
@@ -45,7 +45,8 @@ void replay(const ReplayOptions& options) {
     if (!has_marks && survey.progress() >= 1.0) {
       has_marks = true;
       picture.set("marks", survey.marks());
-      if (player.position_s() > Player::kLeadIn_s) player.seek(player.position_s(), clock);  // history without holes
+      // reload: the traces' history is complete now
+      if (player.position_s() > Player::kLeadIn_s) player.seek(player.position_s(), clock);
     }
     auto now = player.state();
     now["survey"] = survey.progress();

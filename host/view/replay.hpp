@@ -7,12 +7,12 @@ namespace ligature::host::view {
 
 struct ReplayOptions {
   std::string log;
-  std::string compare;  // another one beside it; empty: none
+  std::string compare;  // second recording to compare with; empty: none
   std::string align = "start";
   ServerOptions server;
 };
 
-/// Shows a recording until a signal comes. @throws BadInput, RunFailed.
+/// Serves a recording until a signal comes. @throws BadInput, RunFailed.
 void replay(const ReplayOptions& options);
 
 }  // namespace ligature::host::view

@@ -5,7 +5,7 @@
 
 namespace ligature::host::view {
 
-/// The last `capacity` things, each known by its running number, so that every reader keeps its own place.
+/// The last `capacity` items. Each has a running number, so that every reader can keep its own position.
 template <class T>
 class Ring {
  public:
@@ -15,9 +15,9 @@ class Ring {
     items_[static_cast<std::size_t>(end_) % items_.size()] = item;
     ++end_;
   }
-  void clear() { begin_ = end_; }  // numbers go on, so that an old place is never mistaken for a new one
+  void clear() { begin_ = end_; }  // numbers continue, so that an old position never refers to a new item
 
-  /// Numbers of the oldest item kept and of the one to come.
+  /// Number of the oldest item kept, and of the next one to be pushed.
   [[nodiscard]] std::int64_t begin() const {
     const auto oldest = end_ - static_cast<std::int64_t>(items_.size());
     return oldest > begin_ ? oldest : begin_;

@@ -15,7 +15,8 @@ namespace {
 namespace asio = boost::asio;
 using Clock = Picture::Clock;
 constexpr std::size_t kMostConnections = 64;
-// Pages that have not shown the token: where the page carries it they are none of ours, elsewhere they may look.
+// Limits on pages that have not shown the token: few where the page carries it (such pages are foreign), many otherwise
+// (they may look without it).
 constexpr std::size_t kFewLookers = 16, kManyLookers = 48;
 constexpr auto kFramePeriod = std::chrono::microseconds(16'667);
 
@@ -38,12 +39,12 @@ bool is_loopback(const ServerOptions& options) {
 }
 
 struct Server::Parts {
-  Shared shared;  // first, so that it outlives the connections, which end with io
+  Shared shared;  // first member: must outlive the connections, which end with io
   asio::io_context io{1};
   tcp::acceptor acceptor{io};
   asio::steady_timer timer{io};
   Clock::time_point due = Clock::now();
-  std::deque<std::weak_ptr<HttpConnection>> visitors{};  // no pages yet; oldest first
+  std::deque<std::weak_ptr<HttpConnection>> visitors{};  // HTTP connections that are no pages yet; oldest first
 
   void accept() {
     acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
@@ -57,9 +58,9 @@ struct Server::Parts {
     });
   }
 
-  /// At the limit whoever has spoken HTTP longest makes room, then the page that has looked longest without the token:
-  /// peers that connect and say nothing keep no page out. With nothing but pages that have shown the token there is no
-  /// room, and the socket ends here.
+  /// Makes room for a new connection. At the limit the oldest HTTP connection is closed, then the oldest page without
+  /// the token, so that idle clients cannot keep pages out. @return false when only pages with the token are left; the
+  /// new socket is then refused.
   bool has_room() {
     std::erase_if(visitors, [](const auto& visitor) { return visitor.expired(); });
     while (shared.lookers > most_lookers() && end_oldest_looker()) {
@@ -71,14 +72,14 @@ struct Server::Parts {
     return true;
   }
 
-  /// Where there is a token, those who show it have most of the places.
+  /// When there is a token, most places are reserved for pages that have shown it.
   [[nodiscard]] std::size_t most_lookers() const {
     return shared.access.token.empty() ? kMostConnections : shared.access.gives_token ? kFewLookers : kManyLookers;
   }
 
-  /// The place of the longest looker; its socket is closed, and it is no longer counted on.
+  /// Closes the oldest page that has not shown the token. @return false when there is none.
   bool end_oldest_looker() {
-    for (const auto& [id, weak] : shared.pages) {  // in order of their coming
+    for (const auto& [id, weak] : shared.pages) {  // in order of connection
       const auto page = weak.lock();
       if (!page || page->is_known()) continue;
       page->close();
@@ -89,7 +90,7 @@ struct Server::Parts {
   }
 
   void tick() {
-    due = std::max(due + kFramePeriod, Clock::now());  // late frames are left out, not made up for
+    due = std::max(due + kFramePeriod, Clock::now());  // late frames are skipped, not made up for
     timer.expires_at(due);
     timer.async_wait([this](beast::error_code error) {
       if (error) return;
@@ -97,7 +98,7 @@ struct Server::Parts {
       const auto answers = shared.hooks.on_tick(more);
       if (!more) return io.stop();
       const auto now = Clock::now();
-      const auto pages = shared.pages;  // a page that goes takes itself off the list
+      const auto pages = shared.pages;  // a copy: a page that ends removes itself from the list
       for (const auto& [id, weak] : pages) {
         const auto page = weak.lock();
         if (!page) continue;

@@ -7,7 +7,8 @@
 
 namespace ligature::host::view {
 
-/// What the page's traces know of one tick, in the order of the wire (docs/view.md; page/frame.js has the same list).
+/// The values of a tick that the page's traces need, in the order in which they are sent (docs/view.md; same list in
+/// page/frame.js).
 enum Column : std::size_t {
   kTick,
   kLeftX,  // f_device_N of the left hand: x, y, z and magnitude
@@ -33,7 +34,7 @@ enum Column : std::size_t {
   kRightNode,
   kLeftWorld,  // |f_world_N|: the thread's tension at the hand
   kRightWorld,
-  kLeftPort_J,  // account of the device port, and what the passivity controller has taken out
+  kLeftPort_J,  // account of the device port, and energy dissipated by the passivity controller
   kRightPort_J,
   kLeftDissipated_J,
   kRightDissipated_J,
@@ -43,32 +44,33 @@ enum Column : std::size_t {
   kRightHeat,
   kLeftLimits,  // LIMIT_ bits of tick_t
   kRightLimits,
-  kLeftClutch,  // 1: the tool is parked
+  kLeftClutch,  // 1: clutch engaged, the tool stays where it is
   kRightClutch,
-  kDegradation,  // DEGRADED_ value of tick_t
-  kThreadDone_ns,  // of the thread's physics; 0: it was late
-  kTimeLost,       // share of the tick in which the thread stood still
+  kDegradation,    // DEGRADED_ value of tick_t
+  kThreadDone_ns,  // when the thread's physics was done; 0: it was late
+  kTimeLost,       // share of the tick in which the thread was not moved
   kColumns
 };
 
-/// Doubles throughout: every field of tick_t that is shown fits without loss, so that a value read in the page is the
-/// exported one to the last bit.
+/// Doubles, because they hold every field of tick_t without loss: a value shown in the page equals the exported one to
+/// the last bit.
 using TraceRow = std::array<double, kColumns>;
 
 [[nodiscard]] TraceRow trace_row(const ligature_msg::tick_t& tick);
 
-/// Smallest and largest value of each column over kTicksPerBin consecutive tick numbers (by tick / kTicksPerBin).
-/// kTick: the bin's number in two parts, low + high * kBinNumberPart: one float alone is exact for 9 days only.
-/// kFlags and the limits: `low` and, joined by or, `high`; so that one late tick among fifty is never hidden.
+/// Smallest and largest value of each column over kTicksPerBin consecutive ticks; a tick belongs to bin tick /
+/// kTicksPerBin.
+/// kTick holds the bin's number in two parts, low + high * kBinNumberPart, because one float is exact for 9 days only.
+/// kFlags and the limits: `high` is the bitwise or, so that one late tick among fifty is never hidden.
 struct TraceBin {
   std::array<float, kColumns> low{}, high{};
 };
 inline constexpr std::int64_t kTicksPerBin = 50, kBinNumberPart = std::int64_t{1} << 20;
 
-/// Collects rows into bins.
+/// Combines rows into bins.
 class BinMaker {
  public:
-  /// @return whether a bin was finished by the start of the next one; then `done` is it.
+  /// @return whether this row begins a new bin; then `done` is the one before.
   bool add(const TraceRow& row, TraceBin& done);
   void clear() { number_ = -1; }
 

@@ -1,5 +1,6 @@
-# Copies what the page needs out of node_modules: -D modules=DIR -D out=DIR. Add-ons of three.js name it by a bare
-# word that only a bundler understands, and each other by folders that the page does not have; they get the files' names.
+# Copies the files that the page needs out of node_modules: -D modules=DIR -D out=DIR. The add-ons of three.js import it
+# by a bare name, which only bundlers resolve, and each other by folders that the page does not have. These imports are
+# replaced by file names.
 foreach(addon controls/OrbitControls effects/AnaglyphEffect postprocessing/Pass utils/CameraUtils)
   file(READ ${modules}/three/examples/jsm/${addon}.js text)
   string(REPLACE "from 'three';" "from './three.module.js';" text "${text}")

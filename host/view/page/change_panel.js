@@ -1,9 +1,10 @@
-// Another scene, other parameters: the firmware says what may be asked for, and answers each request.
+// The panel that loads another scene or changes parameters. The firmware lists what can be changed, and answers each
+// request.
 import { toast } from './controls.js';
 
 const $ = (id) => document.getElementById(id);
 const STEPS = 200;
-const rows = new Map(); // by key
+const rows = new Map(); // by parameter key
 
 export function setUpChange(link) {
   const toggle = (on) => { $('change').hidden = !on; $('change-open').setAttribute('aria-expanded', on); };
@@ -32,7 +33,7 @@ export function showOffer({ scenes, parameters }) {
   for (const parameter of parameters) (rows.get(parameter.key) ?? makeRow(parameter.key)).show(parameter);
 }
 
-/** A slider and a number for one parameter: equal ratios are equal ways, unless the range begins at 0. */
+/** Makes a slider and a number field for one parameter. The slider is logarithmic, unless the range begins at 0. */
 function makeRow(key) {
   const box = document.createElement('div'), name = document.createElement('label'), slider = document.createElement('input');
   const number = document.createElement('input'), unit = document.createElement('span');

@@ -1,5 +1,5 @@
-// Colours of the thread: what each shows, computed from the shape alone. Scales are from blue-black to yellow
-// (cividis-like), which reads the same for every kind of colour vision and in grey.
+// Colours of the thread, computed from the shape alone. The scale runs from blue-black to yellow (like cividis),
+// readable with all forms of colour vision and in grey.
 const PLAIN = srgb(0xe9, 0xcf, 0x9b), ACCENT = srgb(0xff, 0x6a, 0x3d), HELD = [srgb(0x56, 0xb4, 0xe9), srgb(0xe6, 0x9f, 0x00)];
 const SCALE = [[0x2f, 0x4d, 0x8f], [0x57, 0x6b, 0x9a], [0x83, 0x8c, 0x8e], [0xb8, 0xa9, 0x72], [0xff, 0xe5, 0x4a]].map((c) => srgb(...c));
 export const SCALE_CSS = 'linear-gradient(90deg, #2f4d8f, #576b9a, #838c8e, #b8a972, #ffe54a)';
@@ -11,7 +11,10 @@ function onScale(share) {
   return SCALE[k].map((v, j) => v + (SCALE[k + 1][j] - v) * t);
 }
 
-/** @returns {{colours: Float32Array, legend: null | {title, low, high}}} colours n x 3. */
+/**
+ * Colours per node, n x 3, linear RGB, and the legend. @returns {{colours: Float32Array, legend: null | {title, low,
+ * high}}}.
+ */
 export function colourThread(mode, shape, { restLength_m, core } = {}) {
   const p = shape.p_W, n = p.length / 3, colours = new Float32Array(p.length);
   const paint = (i, c) => colours.set(c, 3 * i);
@@ -45,7 +48,10 @@ export function colourThread(mode, shape, { restLength_m, core } = {}) {
   return { colours, legend };
 }
 
-/** The end of a scale that fits the data: 1, 2 or 5 times a power of ten, so that it stays while they change a little. */
+/**
+ * Upper end of a scale: 1, 2 or 5 times a power of ten, at most `most`, so that it does not change with every small
+ * change of the data.
+ */
 export function scaleEnd(largest, most) {
   const least = Math.max(largest, 1e-3 * most), ten = 10 ** Math.floor(Math.log10(least));
   return Math.min(most, [1, 2, 5, 10].map((k) => k * ten).find((end) => end >= least) ?? most);
@@ -53,7 +59,7 @@ export function scaleEnd(largest, most) {
 
 function distance(p, a, b) { return Math.hypot(p[3 * a] - p[3 * b], p[3 * a + 1] - p[3 * b + 1], p[3 * a + 2] - p[3 * b + 2]); }
 
-/** Turning angle at a node over the mean length of its two edges, 1/m. */
+/** Curvature at a node, 1/m: turning angle / mean length of its two edges. */
 function curvature(p, i, n) {
   if (i === 0 || i === n - 1) return 0;
   const a = distance(p, i - 1, i), b = distance(p, i, i + 1);
@@ -63,7 +69,10 @@ function curvature(p, i, n) {
   return (2 * angle) / (a + b || 1);
 }
 
-/** Nodes of edges that come within 1.1 diameters of an edge that is not near along the thread. Cells keep it linear. */
+/**
+ * Nodes of edges that come within 1.1 diameters of another edge that is not adjacent along the thread. A grid of cells
+ * keeps the cost linear.
+ */
 function touching(p, n, radius) {
   let longest = 0;
   for (let i = 0; i + 1 < n; ++i) longest = Math.max(longest, distance(p, i, i + 1));
@@ -82,7 +91,10 @@ function touching(p, n, radius) {
   return found;
 }
 
-/** Smallest distance of edge i to edge k: the closest points of two segments (Ericson, Real-Time Collision Detection 5.1.9). */
+/**
+ * Smallest distance between edges i and k: closest points of two segments (Ericson, Real-Time Collision Detection
+ * 5.1.9).
+ */
 function edgeDistance(p, i, k) {
   const d1 = [], d2 = [], r = [];
   for (let j = 0; j < 3; ++j) {

@@ -1,9 +1,10 @@
-// Buttons and keys that command the rig, but STOP (guard.js). Each press is answered: done, or refused with the reason.
+// Buttons and keys that command the rig, except STOP (guard.js). The result of each command is shown: done, or refused
+// with the reason.
 const $ = (id) => document.getElementById(id);
 const COMMANDS = { arm: 'arm', disarm: 'disarm', 'reset-thread': 'reset-thread', 'reset-fault': 'reset-fault' };
 const KEYS = { a: 'arm', d: 'disarm', t: 'reset-thread', r: 'reset-fault' };
 const TOAST_MS = 4000;
-/** Keys (event.code) that mean something else for now: the hands' (hand_keys.js). */
+/** Keys (event.code) that are in use for moving the hands (hand_keys.js) and must not trigger commands. */
 export const takenKeys = new Set();
 
 export function setUpControls(link, isReplay) {
@@ -22,7 +23,7 @@ export function setUpControls(link, isReplay) {
   }, { capture: true });
 }
 
-/** Where guard.js did not come: STOP must work all the same. */
+/** Makes STOP work when guard.js was not loaded. */
 function standInForGuard(stop, isReplay) {
   $('stop').addEventListener('click', stop);
   addEventListener('keydown', (event) => {

@@ -1,4 +1,4 @@
-// What happened last, newest first, at the foot of the page.
+// List of the last events, newest first, at the bottom of the page.
 const SHOWN = 12, FAULT = 2;
 
 export function showEvents(events, period_s) {

@@ -1,9 +1,12 @@
-// The thread without WebGL: drawn in two dimensions from two sides, nearer strands over farther ones.
+// Draws the thread without WebGL, in two dimensions from two sides, nearer strands over farther ones.
 import { colourThread } from './colouring.js';
 import { sceneFacts } from './scene_facts.js';
 
 const HAND_CSS = ['#56b4e9', '#e69f00'], DRAW_MS = 40, AXES = 'xyz';
-/** Which axis goes to the right, which up, and which to the eye with what sign: as the 3-D view's buttons name them. */
+/**
+ * Per view: which axis points right, which up, and which (with which sign) towards the viewer. Same names as the
+ * buttons of the 3-D view.
+ */
 const SIDES = { front: { right: 0, up: 2, near: 1, sign: -1 }, side: { right: 1, up: 2, near: 0, sign: 1 }, top: { right: 0, up: 1, near: 2, sign: 1 } };
 
 export class FlatView {
@@ -15,17 +18,17 @@ export class FlatView {
     this.facts = { deskHeight_m: null, restLength_m: 0, fixed: [], maxForce_N: 3.3 };
     this.box = null;
     this.due = 0;
-    this.panes = []; // as scene.js has them
+    this.panes = []; // where each picture is drawn and how it maps to the world; as in scene.js
     host.prepend(this.canvas);
   }
 
   show(on) { this.canvas.hidden = !on; }
   dispose() { this.canvas.remove(); }
   setStatus(status) { this.facts = sceneFacts(status); }
-  setStereo() {} // needs depth
+  setStereo() {} // stereo needs depth
   view() { this.box = null; }
 
-  /** @returns legend. */
+  /** Takes a new shape. @returns the legend. */
   update(shape, now, core) {
     if (!shape) return null;
     Object.assign(this, { shape, now, core, isDirty: true });
@@ -39,7 +42,10 @@ export class FlatView {
     return [first, first === 'side' ? 'front' : 'side'];
   }
 
-  /** The view on the left as knot_diagram.js wants one: far away, so that it is as good as parallel. */
+  /**
+   * A camera for the left picture, in the form that knot_diagram.js needs: so far away that the projection is nearly
+   * parallel.
+   */
   get camera() {
     if (!this.shape) return null;
     const box = this.#frame(), { right, up, near, sign } = SIDES[this.sides[0]], m = new Array(16).fill(0);
@@ -52,7 +58,10 @@ export class FlatView {
     return { matrixWorldInverse: { elements: m } };
   }
 
-  /** What is to be in the picture: the thread and all places where it was, or the knot alone. */
+  /**
+   * The box to be shown: the thread and all its earlier places, or with `follow` the knot alone (without a knot, the
+   * held nodes).
+   */
   #frame() {
     const p = this.shape.p_W, { core, choice } = this, held = this.shape.grasped.filter((i) => i >= 0);
     const nodes = !choice.follow ? null : core ? [...range(core[0], core[1] + 1)] : held.length ? held : null;
@@ -62,7 +71,7 @@ export class FlatView {
     return widened(this.box, 12 * this.shape.radius_m);
   }
 
-  /** At most as often as the eye follows. */
+  /** Redraws at most every DRAW_MS. */
   draw(time) {
     const { canvas } = this, ratio = devicePixelRatio;
     const width = Math.round(canvas.clientWidth * ratio), height = Math.round(canvas.clientHeight * ratio);
@@ -78,7 +87,7 @@ export class FlatView {
     this.metresPerPixel = 1 / scale;
     this.panes = [];
     this.sides.forEach((name, i) => this.#pane(name, { x: isWide ? i * w : 0, y: isWide ? 0 : i * h, w, h }, box, scale));
-    c.fillStyle = '#c9d2de'; // on either side of the line between them
+    c.fillStyle = '#c9d2de'; // labels on both sides of the line between the two pictures
     c.font = '12px sans-serif';
     this.sides.forEach((name, i) => {
       c.textAlign = i || !isWide ? 'left' : 'right';
@@ -109,7 +118,9 @@ export class FlatView {
     c.restore();
   }
 
-  /** Piece by piece, the farthest first, each with a dark rim: what passes over cuts what passes under. */
+  /**
+   * Draws edges from back to front, each with a dark rim, so that an over-passing strand visibly cuts the one below.
+   */
   #thread({ near, sign }, place, thick) {
     const c = this.context, { p_W: p } = this.shape, n = p.length / 3, at = (i) => place([p[3 * i], p[3 * i + 1], p[3 * i + 2]]);
     const depth = (i) => sign * (p[3 * i + near] + p[3 * i + 3 + near]);
@@ -151,7 +162,7 @@ function polygon(c, points, colour) {
   c.fill();
 }
 
-/** From linear light to the screen's numbers. */
+/** Linear RGB to sRGB, as a CSS colour. */
 function css(colours, i) {
   return `rgb(${[0, 1, 2].map((j) => { const v = colours[3 * i + j]; return Math.round(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055)); }).join()})`;
 }

@@ -1,5 +1,5 @@
-// Reads one binary frame of the server (host/view/frame.hpp): "LGF1", u32 number, then sections of u32 kind, u32 size,
-// payload, padded to 8 bytes. Typed arrays are laid over the message without copying.
+// Decodes a binary frame of the server (host/view/frame.hpp): "LGF1", u32 number, then sections of u32 kind, u32 size
+// and payload, padded to 8 bytes. Typed arrays refer to the message without copying.
 
 export const COLUMNS = ['tick', 'leftX', 'leftY', 'leftZ', 'left', 'rightX', 'rightY', 'rightZ', 'right', 'wakeup_ns',
   'control_ns', 'execution_ns', 'flags', 'state', 'fault', 'kinetic_J', 'potential_J', 'maxStretch', 'minGap_m',
@@ -9,11 +9,14 @@ export const COLUMNS = ['tick', 'leftX', 'leftY', 'leftZ', 'left', 'rightX', 'ri
 export const C = Object.fromEntries(COLUMNS.map((name, i) => [name, i]));
 export const WIDTH = COLUMNS.length;
 export const TICKS_PER_BIN = 50;
-export const BIN_NUMBER_PART = 2 ** 20; // as kBinNumberPart of host/view/trace_row.hpp
+export const BIN_NUMBER_PART = 2 ** 20; // equals kBinNumberPart in host/view/trace_row.hpp
 const SECTION = { now: 1, shape: 2, rows: 3, bins: 4, text: 5, beside: 6, besideRows: 7, besideBins: 8 };
 const MAGIC = 0x3146474c; // "LGF1", little-endian
 
-/** @returns {{number, now, shape?, rows?, bins?, text?, beside?, besideRows?, besideBins?}}; throws on anything that is no frame. */
+/**
+ * @returns {{number, now, shape?, rows?, bins?, text?, beside?, besideRows?, besideBins?}}. @throws Error when the
+ * buffer is no valid frame.
+ */
 export function readFrame(buffer) {
   const view = new DataView(buffer);
   if (buffer.byteLength < 8 || view.getUint32(0, true) !== MAGIC) throw new Error('not a frame');
@@ -34,7 +37,7 @@ export function readFrame(buffer) {
   return frame;
 }
 
-/** Epoch, age of the newest ticks in ms (-1: none yet), and the newest tick. */
+/** Section `now`: the picture's epoch, age of the newest ticks in ms (-1: none yet), and the newest tick. */
 function readNow(v) {
   const now = { epoch: v[0], age_ms: v[1] };
   if (v.length < 6) return now;

@@ -1,21 +1,23 @@
-// STOP and the watch over the page itself. A classic script that imports nothing, so that no other file of the page can
-// take it down: it listens before the others are loaded, and sends by a socket of its own where theirs does not answer.
+// STOP, and the check that the page itself is alive. This classic script imports nothing, so that a failure of another
+// file cannot disable it. It is loaded first, and uses its own WebSocket when the page's does not answer.
 'use strict';
 (() => {
-  const PATIENCE_MS = 300; // the page's own connection answers within this, or STOP goes by a second one
+  const PATIENCE_MS = 300; // how long the page's own connection may take to answer before STOP is sent by a second one
   const ROUND_MS = 500, SILENT_ROUNDS = 4;
   const $ = (id) => document.getElementById(id);
   const isReplay = () => document.body.classList.contains('is-replay');
   let link = null, rounds = 0, hasLived = false;
 
-  /** The other scripts tell that they live: with each state that they have shown. */
+  /**
+   * Interface for the other scripts: beat() is called after each state that was shown and proves that they are alive.
+   */
   window.ligatureGuard = { useLink: (given) => { link = given; }, beat: () => { rounds = 0; hasLived = true; }, stop };
 
-  /** @returns {{accepted, text}} */
+  /** Sends STOP. @returns {{accepted, text}} */
   async function stop() {
     let answered = null;
     try {
-      if (link?.isOpen) answered = link.command('stop'); // sent here and now
+      if (link?.isOpen) answered = link.command('stop'); // sent immediately on the page's connection
     } catch { answered = null; }
     const patience = new Promise((resolve) => setTimeout(resolve, PATIENCE_MS, null));
     let answer = answered && await Promise.race([Promise.resolve(answered).catch(() => null), patience]);
@@ -41,11 +43,11 @@
     });
   }
 
-  /** As link.js has it; here for the time before it is there, or without it. */
+  /** Reads the token as link.js does; needed here in case link.js is not loaded. */
   function token() {
     const given = new URLSearchParams(location.hash.slice(1)).get('token');
     let kept = null;
-    try { kept = sessionStorage.getItem('ligature-token'); } catch { /* a browser that keeps nothing */ }
+    try { kept = sessionStorage.getItem('ligature-token'); } catch { /* this browser stores nothing */ }
     return given || document.querySelector('meta[name=ligature-token]').content || kept || '';
   }
 
@@ -59,11 +61,11 @@
 
   function isText(target) { return target.tagName === 'TEXTAREA' || (target.tagName === 'INPUT' && target.type === 'text'); }
 
-  // In the capture phase and before anything else: space stops, whatever has the focus.
+  // Capture phase, registered first: the space bar stops the rig, whatever has the focus.
   addEventListener('keydown', (event) => {
     if (event.code !== 'Space' || isReplay()) return;
     if (!event.repeat) stop();
-    if (isText(event.target)) return; // the blank is written as well
+    if (isText(event.target)) return; // in a text field the space is also typed
     event.preventDefault();
     event.stopImmediatePropagation();
   }, { capture: true });
@@ -74,7 +76,7 @@
     stop();
   }, { capture: true });
 
-  // A state that nobody keeps up to date must not stand there as if it were true.
+  // Replaces the state by UNKNOWN when the other scripts no longer update it.
   setInterval(() => {
     if (document.hidden || isReplay() || ++rounds < SILENT_ROUNDS) return;
     $('state').dataset.state = 'none';

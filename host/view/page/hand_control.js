@@ -1,5 +1,5 @@
-// A person moves simulated hands from this page: keys, mouse and gamepads together make one wish a hand, 50 times a second.
-// Whatever ends the wishes ends the dead-man: the device lets go when it hears nothing for 0.2 s.
+// Lets the user move simulated hands: keys, mouse and gamepads together give one target position per hand (a "wish"),
+// sent 50 times a second. When the wishes stop, the dead-man ends: the device lets go after 0.2 s without one.
 import { toast, isTyping } from './controls.js';
 import { HandKeys } from './hand_keys.js';
 import { HandMouse } from './hand_mouse.js';
@@ -9,11 +9,13 @@ import { showMode, showHandsHeld } from './hand_panel.js';
 
 const EVERY_MS = 20, LONGEST_STEP_S = 0.06;
 const SIDES = ['left', 'right'];
-const PACES_M_PER_S = [0.01, 0.02, 0.04, 0.08, 0.15], FIRST_PACE = 2; // of the device's tip
-const LEAD_M = { steady: 0.015, dragged: 0.06 }; // how far a wish may lie before the hand: what is out of reach is not wished on and on
+const PACES_M_PER_S = [0.01, 0.02, 0.04, 0.08, 0.15], FIRST_PACE = 2; // speed of the device's tip
+const LEAD_M = { steady: 0.015, dragged: 0.06 }; // how far a target may be ahead of the hand, so that a target out of reach does not run away
 
 export class HandControl {
-  /** @param panels {link, latest, picture}. @param run does one thing within the part, whose failure is the part's. */
+  /**
+   * @param panels {link, latest, picture}. @param run calls a function; errors are attributed to this part of the page.
+   */
   constructor({ link, latest, panels, run }) {
     Object.assign(this, { link, latest, panels, told: null, mine: {}, pace: FIRST_PACE, axes: null, last_ms: performance.now() });
     this.keys = new HandKeys({ jaws: (side) => this.jaws(side), pace: (step) => this.setPace(step), letGo: () => this.letGo() });
@@ -42,7 +44,7 @@ export class HandControl {
 
   get isOn() { return SIDES.some((side) => this.mine[side]); }
   get panes() { return this.panels.picture?.panes ?? []; }
-  /** Where a hand of ours is seen. */
+  /** World position of a hand that this page has taken, else null. */
   seenAt(side) { return this.mine[side] ? this.latest.now?.hands?.[SIDES.indexOf(side)]?.p_W ?? null : null; }
 
   async toggle() {
@@ -60,7 +62,7 @@ export class HandControl {
     this.hear(this.told);
   }
 
-  /** Gives back what we have. */
+  /** Gives the taken hands back. */
   end() {
     for (const side of SIDES) if (this.mine[side]) this.link.send({ hand: 'leave', side, token: this.link.token });
     this.forget();
@@ -73,7 +75,7 @@ export class HandControl {
     showMode(false);
   }
 
-  /** Of who has which hand. */
+  /** Takes the server's statement of which page has which hand. */
   hear(told) {
     this.told = told;
     if (!told) return;
@@ -91,14 +93,14 @@ export class HandControl {
   jaws(side) { if (this.mine[side]) this.mine[side].grip = !this.mine[side].grip; }
   setPace(step) { this.pace = Math.max(0, Math.min(PACES_M_PER_S.length - 1, this.pace + step)); }
 
-  /** Nothing is pressed any more, and the device is told so at once. */
+  /** Releases all keys and buttons and informs the device at once. */
   letGo() {
     this.keys.release();
     this.mouse.release();
     this.step();
   }
 
-  /** @param by_W world metres. */
+  /** Moves the target of a hand. @param by_W displacement in world metres. */
   move(side, by_W) {
     const hand = this.mine[side];
     if (!hand) return;
@@ -128,7 +130,7 @@ export class HandControl {
     else { this.forget(); toast('hands: the connection is lost, they have let go', true); }
   }
 
-  /** What each of our hands does, in words, and what it feels, in the gamepad. */
+  /** Shows what each taken hand does, and passes its force to the gamepad's rumble. */
   show(maxForce_N) {
     const hands = this.latest.now?.hands ?? [], share = (i) => Math.hypot(...(hands[i]?.f_device ?? [0])) / maxForce_N;
     showHandsHeld(this.mine, hands, PACES_M_PER_S[this.pace]);

@@ -1,18 +1,21 @@
-// Keys that move hands, by their place on the keyboard, whatever is printed on them. Each direction is [right, up, away]
-// as the picture shows it.
+// Keys that move the hands. They are identified by their place on the keyboard, not by their label. A direction is
+// [right, up, away] in the picture.
 import { takenKeys } from './controls.js';
 
 export const KEYS = {
   left: { KeyA: [-1, 0, 0], KeyD: [1, 0, 0], KeyS: [0, -1, 0], KeyW: [0, 1, 0], KeyQ: [0, 0, -1], KeyE: [0, 0, 1] },
   right: { KeyJ: [-1, 0, 0], KeyL: [1, 0, 0], KeyK: [0, -1, 0], KeyI: [0, 1, 0], KeyU: [0, 0, -1], KeyO: [0, 0, 1] },
 };
-const DEAD_MAN = { left: 'ShiftLeft', right: 'Semicolon' }, // not both shifts: of two, some systems tell the release of one only
+const DEAD_MAN = { left: 'ShiftLeft', right: 'Semicolon' }, // not both Shift keys: while both are pressed, some systems report the release of one only
   JAWS = { KeyF: 'left', KeyH: 'right' }, PACE = { Comma: -1, Period: 1 };
 const ALL = [...Object.values(KEYS).flatMap(Object.keys), ...Object.values(DEAD_MAN), ...Object.keys(JAWS), ...Object.keys(PACE)];
 const IS_TEXT = 'input[type=text], textarea';
 
 export class HandKeys {
-  /** @param tell {jaws(side), pace(step), letGo()}: what a press asks for; letGo: keys can no longer be trusted. */
+  /**
+   * @param tell {jaws(side), pace(step), letGo()}: callbacks; letGo: the state of the keys is uncertain, release
+   * everything.
+   */
   constructor(tell) {
     this.tell = tell;
     this.held = new Set();
@@ -23,7 +26,7 @@ export class HandKeys {
     this.on(false);
   }
 
-  /** While it is on, these keys mean nothing else. */
+  /** Switches the keys on or off; while on, they have no other function. */
   on(isOn) {
     this.isOn = isOn;
     this.held.clear();
@@ -35,10 +38,10 @@ export class HandKeys {
 
   down(event) {
     if (!this.isOn || !ALL.includes(event.code)) return;
-    // With these the system may keep the release of a key to itself.
+    // With these keys pressed, the system may not report the release of another key.
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches?.(IS_TEXT)) return this.tell.letGo();
     event.preventDefault();
-    this.up({ shiftKey: event.shiftKey }); // a release that nobody told
+    this.up({ shiftKey: event.shiftKey }); // finds a Shift release that was not reported
     if (event.repeat) return;
     this.held.add(event.code);
     if (JAWS[event.code]) this.tell.jaws(JAWS[event.code]);
@@ -50,7 +53,7 @@ export class HandKeys {
     if (!shiftKey) this.held.delete(DEAD_MAN.left);
   }
 
-  /** @returns [right, up, away], each -1 .. 1. */
+  /** Direction of the pressed keys. @returns [right, up, away], each -1 .. 1. */
   move(side) {
     const sum = [0, 0, 0];
     for (const [code, way] of Object.entries(KEYS[side])) if (this.held.has(code)) way.forEach((w, i) => { sum[i] += w; });

@@ -1,12 +1,13 @@
-// A hand that is dragged in the picture: in its plane, by the wheel in depth, by the right button its jaws. The button
-// that drags is the dead-man.
+// Drags a hand in the picture with the mouse: movement in the picture's plane, wheel for depth, right button for the
+// jaws. The dragging button is the dead-man.
 const NEAR_PX = 34, DEPTH_PER_NOTCH_PX = 25, NOTCH = 100, HIDE_MENU_MS = 500;
 const SIDES = ['left', 'right'];
 
 export class HandMouse {
   /**
-   * @param host the element that holds the pictures.
-   * @param tell {panes(), handAt(side): p_W or null where it is not ours, move(side, by_W), jaws(side), changed()}.
+   * @param host the element that contains the pictures.
+   * @param tell {panes(), handAt(side): p_W or null when this page does not have the hand, move(side, by_W),
+   * jaws(side), changed()}.
    */
   constructor(host, tell) {
     Object.assign(this, { host, tell, side: null });
@@ -34,13 +35,13 @@ export class HandMouse {
     const grabbed = this.under(event);
     if (!grabbed) return;
     Object.assign(this, grabbed, { pointer: event.pointerId, at: [event.clientX, event.clientY] });
-    event.stopImmediatePropagation(); // the camera stays where it is
+    event.stopImmediatePropagation(); // keeps the camera from moving
     event.preventDefault();
     event.target.setPointerCapture(event.pointerId);
     this.tell.changed();
   }
 
-  /** @returns {side, pane} of the hand that is seen nearest to the pointer, or null. */
+  /** @returns {side, pane} of the hand drawn nearest to the pointer, or null beyond NEAR_PX. */
   under(event) {
     const box = this.host.getBoundingClientRect(), at = [event.clientX - box.left, event.clientY - box.top];
     let nearest = null, least = NEAR_PX;
@@ -63,7 +64,7 @@ export class HandMouse {
 
   turn(event) {
     if (!this.side) return;
-    event.stopImmediatePropagation(); // no zoom while a hand is held
+    event.stopImmediatePropagation(); // no zoom while a hand is dragged
     event.preventDefault();
     const far = (-event.deltaY / NOTCH) * DEPTH_PER_NOTCH_PX * this.pane.metresPerPixel(this.tell.handAt(this.side) ?? [0, 0, 0]);
     this.tell.move(this.side, this.pane.away.map((a) => a * far));

@@ -1,4 +1,4 @@
-// What the page says of the hands that a person moves by it.
+// Panel with the state of the hands that the user moves from this page.
 const $ = (id) => document.getElementById(id);
 
 export function showMode(isOn) {
@@ -7,7 +7,7 @@ export function showMode(isOn) {
   $('hands-toggle').setAttribute('aria-pressed', String(isOn));
 }
 
-/** @param mine {left?: {grip, deadMan}, right?}. @param hands of the newest tick. */
+/** @param mine {left?: {grip, deadMan}, right?}, the taken hands. @param hands of the newest tick. */
 export function showHandsHeld(mine, hands, pace_m_per_s) {
   ['left', 'right'].forEach((side, i) => {
     const hand = mine[side], button = $(`jaws-${side}`);

@@ -1,6 +1,9 @@
-// Which way is right, up and away in the world for who looks at a picture.
+// Directions of a picture (right, up, away from the viewer) in world coordinates.
 
-/** Each of the picture's axes as the world's nearest one, so that a key moves along one axis alone. @returns {right, up, away}. */
+/**
+ * Replaces each of the picture's axes by the nearest world axis, so that a key moves along one axis only. @returns
+ * {right, up, away}.
+ */
 export function nearestAxes(pane) {
   const left = [0, 1, 2], pick = (direction) => {
     const axis = left.reduce((best, i) => (Math.abs(direction[i]) > Math.abs(direction[best]) ? i : best), left[0]);
@@ -11,5 +14,5 @@ export function nearestAxes(pane) {
   return { right, up, away: pick(pane.away) };
 }
 
-/** right, up and away, so far each, as one step in the world. */
+/** World displacement for r, u and a along right, up and away. */
 export function along({ right, up, away }, [r, u, a]) { return right.map((x, i) => x * r + up[i] * u + away[i] * a); }

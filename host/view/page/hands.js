@@ -1,10 +1,10 @@
-// The two grippers and the force on each hand.
+// Draws the two grippers and the force on each hand.
 import * as THREE from './three.module.js';
 
 export const HAND_COLOURS = [0x56b4e9, 0xe69f00];
 const DOWN = new THREE.Vector3(0, 0, -1);
 
-/** One hand: two jaws that close, a ring while the dead-man is pressed, an arrow as long as the force. */
+/** One hand: two jaws that open and close, a ring while the dead-man is pressed, an arrow for the force. */
 export class Hand {
   constructor(scene, index) {
     const material = new THREE.MeshStandardMaterial({ color: HAND_COLOURS[index], roughness: 0.4, metalness: 0.2 });
@@ -31,7 +31,7 @@ export class Hand {
     this.tool.visible = this.arrow.visible = false;
   }
 
-  /** @param size_m of a jaw. @param force_m length of the arrow of 1 N. */
+  /** @param size_m size of a jaw. @param force_m length of the arrow per newton. */
   update(hand, size_m, force_m) {
     this.tool.visible = true;
     this.tool.position.set(...hand.p_W);
@@ -50,7 +50,9 @@ export class Hand {
   }
 }
 
-/** An arrow of length 1 along -z: stem and head apart, so that the head keeps its shape. */
+/**
+ * An arrow of length 1 along -z. Stem and head are separate, so that the head keeps its shape when the stem is scaled.
+ */
 function makeArrow(colour) {
   const material = new THREE.MeshStandardMaterial({ color: colour, emissive: colour, emissiveIntensity: 0.35, roughness: 0.6 });
   const stem = new THREE.Mesh(new THREE.CylinderGeometry(0.5, 0.5, 1, 16).rotateX(Math.PI / 2).translate(0, 0, -0.5), material);

@@ -1,4 +1,4 @@
-// The help, by itself on the first visit.
+// The help dialog; opens by itself on the first visit.
 import { isTyping } from './controls.js';
 
 const SEEN = 'ligature-help-seen';
@@ -15,9 +15,9 @@ export class Help {
     if (!isKept(SEEN)) this.open();
   }
 
-  open() { if (!this.box.open && !document.querySelector('dialog[open]')) this.box.show(); } // not modal: STOP stays within reach
+  open() { if (!this.box.open && !document.querySelector('dialog[open]')) this.box.show(); } // not modal: STOP stays usable
 }
 
-// A browser that keeps nothing throws here: the help then opens each time.
-function keep(key) { try { localStorage.setItem(key, '1'); } catch { /* not kept */ } }
+// localStorage may be disabled and throw; the help then opens on each visit.
+function keep(key) { try { localStorage.setItem(key, '1'); } catch { /* not stored */ } }
 function isKept(key) { try { return localStorage.getItem(key) !== null; } catch { return false; } }

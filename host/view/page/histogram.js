@@ -1,10 +1,11 @@
-// Wake-up latency of the control loop as bars with logarithmic heights, so that one bad tick among a million is seen.
+// Histogram of the control loop's wake-up latency, with logarithmic heights, so that a single late tick among a million
+// is visible.
 import { C } from './frame.js';
 
 const BOUNDS_us = [2, 5, 10, 20, 50, 100, 200, 500, 1000];
 
 export class Histogram {
-  /** @param redraw asks for a drawing soon: a canvas of another size is empty. */
+  /** @param redraw requests a redraw; resizing clears the canvas. */
   constructor(host, redraw) {
     this.box = Object.assign(document.createElement('div'), { className: 'plot histogram' });
     this.box.innerHTML = '<h2>wake-up latency <em>µs, log count over the window</em></h2>';
@@ -23,7 +24,7 @@ export class Histogram {
   }
 }
 
-/** As many pixels as are seen, so that nothing is stretched. */
+/** Sets the canvas to as many pixels as are displayed, so that nothing is stretched. */
 function fitTo(canvas, box) {
   const width = Math.round(box.clientWidth * devicePixelRatio), height = Math.round(box.clientHeight * devicePixelRatio);
   if (canvas.width === width && canvas.height === height) return;

@@ -1,9 +1,10 @@
-// The knot as a drawing: its strands as the camera sees them, cut where they pass under, each crossing with its sign.
+// Draws the knot as a diagram: its strands as the camera sees them, with gaps where they pass under, and the sign of
+// each crossing.
 const MOST_POINTS = 160, GAP_PX = 6, MARGIN_PX = 14, MOST_SQUEEZED = 3;
 
 /**
- * @param core first and last node of the knot, or undefined: nothing is drawn then.
- * @returns {{x, y, sign}[]} the crossings, as seen.
+ * @param core first and last node of the knot; undefined: nothing is drawn.
+ * @returns {{x, y, sign}[]} the crossings in the picture.
  */
 export function drawDiagram(canvas, p_W, core, camera) {
   canvas.hidden = !core;
@@ -30,7 +31,7 @@ export function drawDiagram(canvas, p_W, core, camera) {
   return crossings;
 }
 
-/** The core's nodes in the camera's plane; larger depth is nearer. */
+/** The core's nodes projected to the camera's plane; larger depth is nearer. */
 function seen(p, [first, last], camera) {
   const m = camera.matrixWorldInverse.elements, step = Math.max(1, Math.ceil((last - first) / MOST_POINTS)), points = [];
   for (let i = first; i <= last; i += i + step > last && i < last ? last - i : step) {
@@ -41,7 +42,7 @@ function seen(p, [first, last], camera) {
   return points;
 }
 
-/** Where two edges meet in the picture: on which edges and how far along, the sign, and which passes over. */
+/** Crossings of the projected edges: which edges, where along them, the sign, and which passes over. */
 export function crossingsOf(points) {
   const found = [];
   for (let i = 0; i + 1 < points.length; ++i) {
@@ -63,11 +64,11 @@ function fit(points, canvas) {
   const x = points.map((p) => p[0]), y = points.map((p) => p[1]);
   const [left, right, low, high] = [Math.min(...x), Math.max(...x), Math.min(...y), Math.max(...y)];
   const full = [(canvas.width - 2 * MARGIN_PX) / (right - left || 1), (canvas.height - 2 * MARGIN_PX) / (high - low || 1)];
-  const [sx, sy] = full.map((s) => Math.min(s, MOST_SQUEEZED * Math.min(...full))); // stretching changes no crossing
+  const [sx, sy] = full.map((s) => Math.min(s, MOST_SQUEEZED * Math.min(...full))); // different scales in x and y do not change the crossings
   return (px, py) => [canvas.width / 2 + sx * (px - (left + right) / 2), canvas.height / 2 - sy * (py - (low + high) / 2)];
 }
 
-/** The strand in pieces: a gap on either side of each place where it passes under. */
+/** Cuts the strand into pieces, with a gap around each under-pass. */
 function pieces(points, crossings, place) {
   const line = points.map(([x, y]) => place(x, y)), along = [0];
   for (let i = 1; i < line.length; ++i) along.push(along[i - 1] + Math.hypot(line[i][0] - line[i - 1][0], line[i][1] - line[i - 1][1]));

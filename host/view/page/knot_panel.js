@@ -1,8 +1,8 @@
-// The knot's name, what is known of it, and the strip of when it changed.
+// Shows the knot's name and properties, and a strip with its changes over time.
 const $ = (id) => document.getElementById(id);
 const COMMON = { '0_1': 'no knot', '3_1': 'trefoil (overhand)', '4_1': 'figure-eight', '5_1': 'cinquefoil', '5_2': 'three-twist', '6_1': 'stevedore',
   '3_1#3_1 left': 'granny', '3_1#3_1 right': 'granny', '3_1#3_1 amphichiral': 'square (reef)' };
-/** What people call it, or ''. */
+/** Common name of a knot, or ''. */
 export function commonName(type, handedness) { return COMMON[`${type} ${handedness}`] ?? COMMON[type] ?? ''; }
 const TINTS = ['#56b4e9', '#e69f00', '#2fbf8f', '#cc79a7', '#f0e442', '#d55e00'];
 const STRIP_S = 120;
@@ -12,7 +12,10 @@ export class KnotPanel {
 
   clear() { this.history = []; }
 
-  /** What the strip shows before the first name that comes: a recording knows it. @param past [{label, from}], by tick. */
+  /**
+   * Fills the strip from the recording, before the first knot arrives. @param past [{label, from}], `from` is a tick
+   * number.
+   */
   seed(past) {
     if (!this.history.length) this.history = past.map(({ label, from }) => ({ label, type: label.split(' ')[0], from }));
   }
@@ -40,7 +43,7 @@ export class KnotPanel {
     return this.tints.get(type);
   }
 
-  /** Newest at the right end. */
+  /** Draws the strip, newest at the right end. */
   #strip(now, span) {
     const canvas = $('knot-strip'), ctx = canvas.getContext('2d');
     canvas.width = canvas.clientWidth;

@@ -1,4 +1,4 @@
-// The WebSocket to the server: frames in, small JSON messages out; comes back by itself when the server does.
+// WebSocket to the server: receives frames, sends small JSON messages, and reconnects by itself.
 import { readFrame } from './frame.js';
 
 const RETRY_MS = 500, WATCH_MS = 40, SILENT_ROUNDS = 3;
@@ -13,13 +13,14 @@ export class Link {
     this.nextId = 1;
     this.token = readToken();
     this.connect();
-    // Rounds and not only milliseconds: while the page itself is busy, messages wait too, and that is not the host's
-    // silence. After a pause of ours one round passes, and what has come in between is handled before the next.
+    // Silence is measured in timer rounds as well as in ms: while the page itself is busy, messages wait, and the host
+    // must not be blamed for that. After such a pause only one round is counted before the waiting messages are
+    // handled.
     this.rounds = 0;
     setInterval(() => { ++this.rounds; }, WATCH_MS);
   }
 
-  /** How long the host has said nothing, ms; 0 while it talks. */
+  /** Time since the host's last frame, ms; 0 while frames arrive. */
   get silent_ms() { return this.rounds >= SILENT_ROUNDS ? performance.now() - this.lastFrame : 0; }
 
   connect() {
@@ -27,13 +28,13 @@ export class Link {
     this.socket.binaryType = 'arraybuffer';
     this.socket.onopen = () => {
       this.isOpen = true;
-      if (this.token) this.send({ token: this.token }); // who shows it keeps its place, however many come
+      if (this.token) this.send({ token: this.token }); // pages that send the token cannot be displaced by other clients
     };
     this.socket.onmessage = ({ data }) => {
       const frame = readFrame(data);
       this.lastFrame = performance.now();
       this.rounds = 0;
-      this.send({ seen: frame.number }); // without it the server soon sends no more: nothing queues up for us
+      this.send({ seen: frame.number }); // the server sends no more than a few frames without this acknowledgement, so that no backlog builds up
       for (const answer of frame.text?.answers ?? []) this.settle(answer);
       this.onFrame(frame);
     };
@@ -48,10 +49,10 @@ export class Link {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
 
-  /** Sends a command; resolves with {accepted, text}. */
+  /** Sends a command. @returns a promise of {accepted, text}. */
   command(command) { return this.request({ command }); }
 
-  /** Sends a request that is answered. */
+  /** Sends a request that gets an answer. @returns a promise of the answer. */
   request(message) {
     const id = this.nextId++;
     return new Promise((resolve) => {
@@ -67,7 +68,10 @@ export class Link {
   }
 }
 
-/** From the page when this machine alone can ask for it, else from #token= of the address, kept for this tab. */
+/**
+ * The token: contained in the page when only this machine can load it, else from #token= in the address, stored for
+ * this tab.
+ */
 function readToken() {
   const given = new URLSearchParams(location.hash.slice(1)).get('token');
   if (given) {

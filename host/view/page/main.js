@@ -1,5 +1,5 @@
-// State and commands, which come first and need nothing that draws: all else (panels.js) is loaded beside them, is told
-// each frame after them, and may fail without them.
+// State display and commands. They come first and depend on no drawing code. Everything else (panels.js) is loaded
+// separately, receives each frame after them, and may fail without affecting them.
 import { COLUMNS, WIDTH } from './frame.js';
 import { Link } from './link.js';
 import { setUpControls } from './controls.js';
@@ -9,10 +9,10 @@ import { showAge, showHands, showState, showStatus } from './state_panel.js';
 const WATCH_MS = 20, LAG_KEPT_MS = 2000, MOST_WAITING = 300, RETRY_MS = 5000;
 const $ = (id) => document.getElementById(id);
 const latest = { now: null, shape: null, knot: null, epoch: null, row: null, isReplay: false };
-const page = { frames: 0, firstThread_ms: null, latest, columns: COLUMNS, troubles: {} }; // what tests and the curious look at
+const page = { frames: 0, firstThread_ms: null, latest, columns: COLUMNS, troubles: {} }; // for tests and for the browser's console
 window.ligature = page;
 
-/** Does one thing; what it throws is kept and said in the console, and stops nothing else. */
+/** Calls `what`. An error is stored and printed on the console, and does not affect other parts. */
 function attempt(name, what) {
   try { return what(); } catch (error) {
     if (page.troubles[name] !== error.message) console.warn(`${name}: ${error.message}`);
@@ -45,7 +45,7 @@ function onFrame(frame) {
 
 let heartbeat = performance.now(), lag_ms = 0, lagAt_ms = 0;
 
-/** At each frame and by a timer: state and age must not wait until something is drawn. */
+/** Called for each frame and by a timer: the state and its age must not wait for drawing. */
 function showNow() {
   attempt('state', () => {
     if (latest.now) showState(latest.now);
@@ -56,7 +56,10 @@ function showNow() {
   });
 }
 
-/** How far this page is behind its own timer, the most of the last seconds: a slow computer, and no word about the rig. */
+/**
+ * Measures how late this page's timer is (largest delay of the last seconds). A large delay means a slow computer and
+ * says nothing about the rig.
+ */
 function watch() {
   const now = performance.now(), late_ms = now - heartbeat - WATCH_MS;
   heartbeat = now;

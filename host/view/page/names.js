@@ -1,11 +1,11 @@
-// What the wire's numbers are called; the host says it once at the start (host/names.hpp), so there is one list.
+// Names of numeric codes. The host sends them once at the start (host/names.hpp), so that there is only one list.
 export const names = { states: [], limits: [], degradations: [], faults: [] };
 
 export function setNames(given) { Object.assign(names, given); }
 
 export function stateName(number) { return names.states[number] ?? '?'; }
 
-/** Words for the bits that are set. */
+/** Names of the set bits. */
 export function limitNames(bits) { return names.limits.filter(([bit]) => bits & bit).map(([, word]) => word); }
 
 export function degradationName(code) { return names.degradations.find(([number]) => number === code)?.[1] ?? ''; }

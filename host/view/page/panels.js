@@ -1,10 +1,11 @@
-// All that is not state and commands: gathers what the host says and hands it to the parts, each of which may fail alone.
+// Everything except state and commands: collects what the host sends and passes it to the parts, each of which may fail
+// alone.
 import { Part } from './part.js';
 import { allParts } from './part_list.js';
 import { TraceStore } from './trace_store.js';
 
 export class Panels {
-  /** @param page what main.js shows to tests; its `latest` is kept by main.js. */
+  /** @param page the object that main.js exposes to tests; main.js updates its `latest`. */
   constructor(page, link) {
     Object.assign(this, { page, link, latest: page.latest, told: {}, events: [], isNew: true });
     page.store = this.store = new TraceStore();
@@ -20,7 +21,7 @@ export class Panels {
     requestAnimationFrame((time) => this.draw(time));
   }
 
-  /** What the thread is drawn by now, or null. */
+  /** The part that draws the thread now (3-D or flat), or null. */
   get picture() { return this.parts.scene.value ?? this.parts.flat.value; }
 
   onFrame(frame) {
@@ -47,7 +48,7 @@ export class Panels {
     this.events.splice(0, this.events.length - 40);
     Object.assign(this.told, text);
     delete this.told.answers;
-    delete this.told.events; // kept above
+    delete this.told.events; // stored above
     if (text.status) this.period_s = text.status.period_s;
     if (text.knot) this.latest.knot = text.knot;
     for (const part of Object.values(this.parts)) part.text(text);

@@ -1,17 +1,18 @@
-// One part of the page that draws: it fails alone, says so in its place, and is made again after a while.
+// One drawing part of the page. It fails alone, shows its error in its own place, and is restarted after a while.
 const FIRST_WAIT_MS = 1000, LONGEST_WAIT_MS = 32_000, SOUND_AFTER_MS = 10_000;
 
 export class Part {
   /**
-   * @param what {name, place(), make(attempt), dispose?(value), text?(value, text), frame?(value, frame), draw?(value, time_ms)}:
-   *   `place` gives the element that a failure is told in; `make` gives the part's object, or a promise of it; `attempt`
-   *   is 0 at first: a module that failed is only loaded again under another address.
+   * @param what {name, place(), make(attempt), dispose?(value), text?(value, text), frame?(value, frame), draw?(value,
+   * time_ms)}:
+   * `place` returns the element that shows a failure; `make` returns the part's object, or a promise of it; `attempt`
+   * is 0 at first and is used to change the module's address, because a browser does not load a failed module again.
    */
   constructor(what) {
     Object.assign(this, { what, value: null, attempt: 0, wait_ms: FIRST_WAIT_MS, failures: 0 });
   }
 
-  /** @param told all that the host has said so far: what is made now has missed it. */
+  /** @param told everything the host has sent so far, for a part that is made later. */
   async start(told) {
     this.told = told;
     try {
@@ -23,7 +24,7 @@ export class Part {
     } catch (error) { this.#fail(error); }
   }
 
-  /** @returns what `use` gives, or undefined where the part is not there or fails at it. */
+  /** @returns the result of `use`, or undefined when the part does not exist or throws. */
   run(use) {
     if (this.value === null) return undefined;
     try { return use(this.value); } catch (error) { this.#fail(error); return undefined; }
@@ -33,14 +34,14 @@ export class Part {
   frame(frame) { if (this.what.frame) this.run((value) => this.what.frame(value, frame)); }
   draw(time_ms) { if (this.what.draw) this.run((value) => this.what.draw(value, time_ms)); }
 
-  /** For a failure that no call of ours sees. */
+  /** Reports a failure that did not occur inside one of the part's calls. */
   fail(error) { if (this.value !== null) this.#fail(error); }
 
   #fail(error) {
     const value = this.value;
     this.value = null;
     ++this.failures;
-    try { this.what.dispose?.(value); } catch { /* it is broken already */ }
+    try { this.what.dispose?.(value); } catch { /* it has failed already */ }
     if (performance.now() - this.made_ms > SOUND_AFTER_MS) this.wait_ms = FIRST_WAIT_MS;
     this.#say(`${this.what.name}: ${error?.message ?? error}. Next try in ${this.wait_ms / 1000} s.`);
     setTimeout(() => this.start(this.told), this.wait_ms);

@@ -1,17 +1,18 @@
-// Which parts there are, where each says that it failed, and what it is told. Each is loaded by itself, when it is made.
+// The parts of the page: where each shows its failure, and which data it gets. Each is a module of its own, loaded when
+// it is made.
 const $ = (id) => document.getElementById(id);
 const HANDS_MS = 100, DIAGRAM_MS = 200, TRACES_MS = 50, LONG_TRACES_MS = 200, LONG_WINDOW_S = 10;
 
 const load = (file, attempt) => import(`./${file}${attempt ? `?try=${attempt}` : ''}`);
 
-/** @param panels what the parts share: the stores, what the host has said, what the person has chosen. */
+/** @param panels shared by the parts: the trace stores, the host's data and the user's choices. */
 export function allParts(panels) {
   return { ...pictures(panels), ...knots(panels), ...plots(panels), ...tools(panels), ...hands(panels) };
 }
 
 function pictures(panels) {
   const { latest, choice } = panels;
-  const isWanted = (key) => key === 'scene' || !panels.parts.scene.value; // drawn flat while there is no 3-D view
+  const isWanted = (key) => key === 'scene' || !panels.parts.scene.value; // the flat view is used while there is no 3-D view
   const picture = (key, name, file, className) => ({
     name, place: () => $('scene-notes'),
     make: async (attempt) => new (await load(file, attempt))[className]($('scene'), choice, (why) => panels.parts[key].fail(new Error(why))),
@@ -52,10 +53,10 @@ function knots(panels) {
   };
 }
 
-/** In a recording: not while a jump is under way, and with what came before on the strip. */
+/** Updates the knot panel. In a recording: not during a jump, and with the earlier knots on the strip. */
 function showKnot(panels, value, knot) {
   const { latest } = panels, period_s = panels.period_s;
-  if (latest.isReplay && Math.abs(latest.now.tick - knot.tick) * period_s > 1) return; // the next is on its way
+  if (latest.isReplay && Math.abs(latest.now.tick - knot.tick) * period_s > 1) return; // belongs to the time before the jump; the next one follows soon
   if (latest.isReplay) panels.parts.replay.run((bar) => value.seed(bar.knotsUntil(knot.tick, period_s)));
   value.update(knot, period_s);
 }
@@ -70,7 +71,7 @@ function plots(panels) {
         const { Traces, describeRow } = await load('traces.js', attempt);
         const traces = new Traces($('plots'), panels.store, panels.beside, panels.choice, (row) => {
           $('cursor').textContent = describeRow(row, traces.period_s, traces.third, traces.besideRow(row));
-          $('cursor').dataset.row = row ? JSON.stringify([...row].map((v) => (Object.is(v, -0) ? '-0' : v))) : ''; // JSON knows no -0
+          $('cursor').dataset.row = row ? JSON.stringify([...row].map((v) => (Object.is(v, -0) ? '-0' : v))) : ''; // JSON has no -0
         });
         panels.hurryTraces();
         return traces;
@@ -85,7 +86,7 @@ function plots(panels) {
         if (time < due) return;
         value.draw();
         panels.parts.histogram.run((histogram) => histogram.draw(panels.store, value.histogramFrom, panels.period_s));
-        due = time + (value.window_s <= LONG_WINDOW_S ? TRACES_MS : LONG_TRACES_MS); // long windows move slowly
+        due = time + (value.window_s <= LONG_WINDOW_S ? TRACES_MS : LONG_TRACES_MS); // long windows move slowly and are drawn less often
       },
     },
     histogram: {

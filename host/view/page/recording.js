@@ -1,16 +1,16 @@
-// The button that records, and the dialog for the recording's name and notes.
+// The record button, and the dialog for the recording's name and notes.
 import { toast } from './controls.js';
 
 const $ = (id) => document.getElementById(id);
 
-/** The button that starts a recording with a name and notes, and ends it. */
+/** Sets up the button, which starts a recording with name and notes, and ends it. */
 export function setUpRecording(link) {
   const say = (answer, what) => toast(`${what}: ${answer.accepted ? answer.text : `refused – ${answer.text}`}`, !answer.accepted);
   $('record').addEventListener('click', async () => {
     if ($('record').dataset.on === 'true') return say(await link.request({ record: 'stop' }), 'recorded');
     $('record-name').value = new Date().toISOString().slice(0, 19).replace(/[:T]/g, '-');
     $('record-notes').value = '';
-    $('record-dialog').show(); // not modal: STOP stays within reach
+    $('record-dialog').show(); // not modal: STOP stays usable
     $('record-name').focus();
   });
   $('record-dialog').addEventListener('close', async () => {

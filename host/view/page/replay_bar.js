@@ -1,4 +1,5 @@
-// The bar of a recording: play, speed, scrub, jump to marks; forces and knots of the whole recording behind it.
+// Playback bar of a recording: play, speed, scrub, jump to marks. Its background shows forces and knots of the whole
+// recording.
 import { isTyping } from './controls.js';
 
 const $ = (id) => document.getElementById(id);
@@ -43,10 +44,10 @@ export class ReplayBar {
     if (mark) this.seek(mark.t_s);
   }
 
-  /** What comes of it is told to every page by the topic 'compare'. */
+  /** Requests a comparison; the result is sent to all pages as topic 'compare'. */
   #compare() { this.link.send({ compare: $('compare').value, align: $('align').value }); }
 
-  /** The topic 'compare': which recordings there are, and which one is beside this one. */
+  /** Topic 'compare': the list of recordings, and the one that is compared with this one. */
   setCompare({ files, file, align, offset_ticks, why }) {
     const names = [...new Set([...files, ...(file ? [file] : [])])];
     $('compare').replaceChildren(new Option('compare with…', ''), ...names.map((name) => new Option(name, name)));
@@ -55,7 +56,7 @@ export class ReplayBar {
     $('compare-note').textContent = file && offset_ticks === null ? 'reading…' : why;
   }
 
-  /** Knots of the recording up to now, for the strip. @param tick that is shown. */
+  /** Knots of the recording up to now, for the strip. @param tick number of the displayed tick. */
   knotsUntil(tick, period_s) {
     const at = this.state.position_s, first = { label: '0_1 none', from: tick - at / period_s };
     return [first, ...this.marks.filter((m) => m.kind === KIND.knot && m.t_s <= at)

@@ -1,4 +1,4 @@
-// The three-dimensional picture: thread, hands, desk, frame; camera and light.
+// The 3-D picture: thread, hands, desk and coordinate frame; camera and light.
 import * as THREE from './three.module.js';
 import { OrbitControls } from './OrbitControls.js';
 import { Tube } from './tube.js';
@@ -10,7 +10,9 @@ const QUALITIES = [{}, { ratio: 1, shadow: 1024 }, { ratio: 0.6, shadow: 512 }];
 const VIEWS = { front: [0, -1, 0.12], side: [1, 0, 0.12], top: [0, -0.02, 1], iso: [0.62, -0.9, 0.42] };
 
 export class Scene {
-  /** @param choice {colour, follow, stereo, view} of the person. @param onLost called when the browser takes WebGL away. */
+  /**
+   * @param choice {colour, follow, stereo, view} of the user. @param onLost called when the browser withdraws WebGL.
+   */
   constructor(host, choice, onLost) {
     this.choice = choice;
     this.canvas = Object.assign(document.createElement('canvas'), { id: 'canvas', className: 'picture', hidden: true });
@@ -90,7 +92,10 @@ export class Scene {
     this.isDirty = true;
   }
 
-  /** @param now the newest tick's hands; @param core nodes of the knot or undefined. @returns legend. */
+  /**
+   * Takes a new shape. @param now the newest tick, with the hands; @param core nodes of the knot or undefined. @returns
+   * the legend.
+   */
   update(shape, now, core) {
     this.isDirty = true;
     let legend = null;
@@ -111,7 +116,7 @@ export class Scene {
     return legend;
   }
 
-  /** Desk, frame, light and camera in the size of this thread. */
+  /** Scales desk, frame, light and camera to this thread. */
   #layOut(shape) {
     const box = boxOf(shape.p_W);
     let length = 0;
@@ -154,7 +159,7 @@ export class Scene {
     this.sun.shadow.normalBias = 0.0012 * length;
   }
 
-  /** Until a person moves the camera: steps back when the thread goes where the picture does not. */
+  /** Moves the camera back when the thread leaves the picture, until the user moves the camera. */
   #keepInPicture(shape) {
     if (this.touched || this.choice.follow) return;
     this.seen.union(boxOf(shape.p_W));
@@ -164,13 +169,16 @@ export class Scene {
     this.framed.copy(this.seen).expandByScalar(0.02 * this.extent);
   }
 
-  /** At the middle of the picture. */
+  /** At the centre of the picture. */
   get metresPerPixel() {
     const distance = this.camera.position.distanceTo(this.controls.target);
     return (2 * distance * Math.tan((this.camera.fov * Math.PI) / 360)) / Math.max(1, this.canvas.clientHeight);
   }
 
-  /** How the picture lies in the world, for who moves something in it: pixels of the element, unit vectors of the world. */
+  /**
+   * How the picture maps to the world, for dragging hands: rectangle in pixels of the element, directions as unit
+   * vectors in world coordinates.
+   */
   get panes() {
     const { clientWidth: w, clientHeight: h } = this.canvas, { camera } = this;
     camera.updateMatrixWorld();
@@ -181,7 +189,7 @@ export class Scene {
     return [{ x: 0, y: 0, w, h, right: axis(0, 1), up: axis(1, 1), away: axis(2, -1), place, metresPerPixel }];
   }
 
-  /** A standard view, or 'fit': the same direction with everything in the picture. */
+  /** Sets a standard view, or 'fit': same direction, with everything in the picture. */
   view(name, box = this.shape && boxOf(this.shape.p_W)) {
     if (!box) return;
     this.touched = true;
@@ -198,7 +206,7 @@ export class Scene {
     this.controls.update();
   }
 
-  /** The knot, or the held nodes when there is none, moves to the middle; distance and direction stay. */
+  /** Moves the knot (without one, the held nodes) towards the centre; distance and direction stay. */
   #followKnot() {
     const p = this.shape.p_W, nodes = [];
     if (this.core) for (let i = this.core[0]; i <= this.core[1]; ++i) nodes.push(i);
@@ -212,7 +220,7 @@ export class Scene {
     this.controls.update();
   }
 
-  /** Draws when something changed. @param time of this animation frame, ms. */
+  /** Draws if anything changed. @param time of this animation frame, ms. */
   draw(time) {
     this.#keepPace(time);
     if (!this.isDirty) return;
@@ -232,9 +240,9 @@ export class Scene {
     }
   }
 
-  /** 'off', 'side' or 'anaglyph'. */
+  /** @param mode 'off', 'side' or 'anaglyph'. */
   async setStereo(mode) {
-    if (mode === 'anaglyph') this.AnaglyphEffect ??= (await import('./AnaglyphEffect.js')).AnaglyphEffect; // not before it is wanted
+    if (mode === 'anaglyph') this.AnaglyphEffect ??= (await import('./AnaglyphEffect.js')).AnaglyphEffect; // loaded only when needed
     this.stereoMode = mode;
     this.anaglyph?.dispose();
     this.anaglyph = null;
@@ -256,7 +264,7 @@ export class Scene {
     this.renderer.setScissorTest(true);
   }
 
-  /** On a machine that cannot draw 15 pictures a second, coarser pictures instead of rarer ones. */
+  /** Reduces resolution and shadows when the machine draws fewer than 15 pictures a second. */
   #keepPace(time) {
     const step = Math.min(time - (this.lastTime ?? time), 1000);
     this.lastTime = time;
@@ -297,7 +305,7 @@ function nameSprite(name) {
   context.textAlign = 'center';
   context.textBaseline = 'middle';
   context.fillText(name, 32, 30);
-  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: new THREE.CanvasTexture(canvas), depthTest: false, depthWrite: false })); // over all else: whole letters
+  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: new THREE.CanvasTexture(canvas), depthTest: false, depthWrite: false })); // no depth test: letters are drawn over everything else
   sprite.scale.setScalar(0.45);
   return sprite;
 }

@@ -1,4 +1,5 @@
-// Facts of the scene's text that the picture needs; a TOML reader is not: keys are one to a line in our files.
+// Extracts from the scene's text the facts that the picture needs. Regular expressions suffice instead of a TOML
+// parser, because our files have one key per line.
 
 export function sceneFacts(status) {
   const toml = status.scene_toml ?? '', number = (key) => { const m = toml.match(new RegExp(`^\\s*${key}\\s*=\\s*([-+0-9.eE_]+)`, 'm')); return m ? Number(m[1]) : null; };

@@ -1,4 +1,4 @@
-// Buttons, keys and legend of the picture, whichever is there: three-dimensional or flat.
+// Buttons, keys and legend of the picture, for both the 3-D and the flat view.
 import { SCALE_CSS } from './colouring.js';
 import { isTyping } from './controls.js';
 
@@ -18,7 +18,7 @@ export class SceneTools {
     addEventListener('keydown', (event) => { if (!isTyping(event) && !document.querySelector('dialog[open]')) keys[event.key.toLowerCase()]?.(); });
   }
 
-  /** A bar of a round length, between 40 and 100 pixels. */
+  /** Shows a scale bar of a round length, 40 to 100 pixels long. */
   showScale(metresPerPixel) {
     const bar = $('scale-bar');
     bar.hidden = !(metresPerPixel > 0);

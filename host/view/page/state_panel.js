@@ -1,8 +1,8 @@
-// State, fault and staleness: what must be seen from across the room.
+// State, fault and age of the data, large enough to be read from across the room.
 import { C } from './frame.js';
 import { degradationName, explainFault, limitNames, stateName } from './names.js';
 
-export const STALE_MS = 120; // shown within 200: a timer looks every 20
+export const STALE_MS = 120; // outdated data is marked within 200 ms: a timer checks every 20 ms
 const SLOW_MS = 250, LONGEST_LAG_MS = 1000;
 const NOTES = {
   OFF: 'drives are off', CALIBRATE: 'looking at the encoders', IDLE: 'ready, no force', ENGAGE: 'armed: hold still, press the dead-man',
@@ -29,9 +29,10 @@ export function showState(now) {
 }
 
 /**
- * Whether what is shown is old, and whose fault that is: the rig's or the host's silence, or this computer's slowness.
- * @param age_ms of the newest ticks as the host knows it, -1 none yet. @param silent_ms since the host's last frame.
- * @param lag_ms how far this page is behind its own timer: what is old by no more may have waited here.
+ * Decides whether the display is outdated, and why: the rig or the host is silent, or this computer is slow.
+ * @param age_ms age of the newest ticks as measured by the host, -1: none yet. @param silent_ms since the host's last
+ * frame.
+ * @param lag_ms delay of this page's own timer; data older by no more than this may have waited in this page.
  * @returns {{text, isOld, isSlow}}
  */
 export function judgeAge(age_ms, silent_ms, lag_ms, { isReplay, unreadable }) {
@@ -44,7 +45,7 @@ export function judgeAge(age_ms, silent_ms, lag_ms, { isReplay, unreadable }) {
   return { text: `slow picture: this computer is up to ${seconds(Math.max(lag_ms, age_ms))} behind${isReplay ? '' : '; the rig is heard'}`, isOld: false, isSlow: true };
 }
 
-/** @returns whether the picture is old. */
+/** Shows the warnings. @returns whether the display is outdated. */
 export function showAge(age_ms, silent_ms, lag_ms, rig) {
   const { text, isOld, isSlow } = judgeAge(age_ms, silent_ms, lag_ms, rig);
   $('stale').hidden = !isOld;
@@ -65,7 +66,10 @@ export function showStatus(status) {
   $('scene-file').textContent = `${status.scene_file.split('/').pop()}, firmware ${status.firmware_version}`;
 }
 
-/** What each hand does and what holds it back, and what the solver gave up. @param row newest tick's trace row or null. */
+/**
+ * Shows what each hand does, which limits act on it, and which accuracy the solver gave up. @param row newest tick's
+ * trace row or null.
+ */
 export function showHands(now, row) {
   now?.hands?.forEach((hand, i) => {
     const force = Math.hypot(...hand.f_device), isClutched = row?.[i ? C.rightClutch : C.leftClutch];

@@ -1,5 +1,5 @@
-// What the traces are drawn from: every tick of the last minute, and bins of 50 ticks with smallest and largest value
-// for the last ten minutes. Memory is fixed.
+// Data of the traces: every tick of the last minute, and for the last ten minutes bins of 50 ticks with their smallest
+// and largest values. Memory is fixed.
 import { BIN_NUMBER_PART, C, TICKS_PER_BIN, WIDTH } from './frame.js';
 
 const ROWS = 60_000, BINS = 12_000;
@@ -27,7 +27,7 @@ export class TraceStore {
   get binBegin() { return Math.max(0, this.binEnd - BINS); }
   row(i) { const at = (i % ROWS) * WIDTH; return this.rows.subarray(at, at + WIDTH); }
   tickOfRow(i) { return this.rows[(i % ROWS) * WIDTH]; }
-  /** A bin's number comes as two floats (host/view/trace_row.hpp): one is exact for 9 days only. */
+  /** A bin's number is sent as two floats (host/view/trace_row.hpp): a single float would be exact for 9 days only. */
   tickOfBin(i) { const at = (i % BINS) * 2 * WIDTH; return (this.bins[at] + this.bins[at + WIDTH] * BIN_NUMBER_PART) * TICKS_PER_BIN; }
   get lastTick() { return this.rowEnd > this.rowBegin ? this.tickOfRow(this.rowEnd - 1) : null; }
 
@@ -44,10 +44,10 @@ export class TraceStore {
   }
 
   /**
-   * Columns over ticks [from, to) in at most `pixels` stretches: two points each, its smallest and largest value, so
-   * that a spike of one tick is never hidden. Where there are fewer ticks than pixels, the ticks themselves. A hole in
-   * the ticks is a hole (null) in the line.
-   * @returns [x in ticks, ...one array for each column].
+   * Reduces columns over ticks [from, to) to at most `pixels` cells, two points each: the smallest and the largest
+   * value, so that a spike of one tick is never hidden. With fewer ticks than pixels the ticks themselves are returned.
+   * Missing ticks become null, a gap in the line.
+   * @returns [x in ticks, ...one array per column].
    */
   series(from, to, pixels, columns) {
     const first = this.rowFrom(from), last = this.rowFrom(to);
@@ -90,7 +90,7 @@ export class TraceStore {
     return out;
   }
 
-  /** Counts of a column's values in the bounds' intervals over the ticks since `from`; skips lost periods. */
+  /** Counts a column's values in the intervals between `bounds`, over the ticks since `from`; skips lost periods. */
   histogram(column, bounds, from) {
     const counts = new Array(bounds.length + 1).fill(0);
     let max = 0;
@@ -124,7 +124,7 @@ function assemble(from, to, cells, low, high) {
 
 function lowerBound(begin, end, isEnough) {
   while (begin < end) {
-    const middle = Math.floor((begin + end) / 2); // no shift: it ends at 31 bits
+    const middle = Math.floor((begin + end) / 2); // a shift would be limited to 32 bits
     if (isEnough(middle)) end = middle; else begin = middle + 1;
   }
   return begin;

@@ -1,9 +1,10 @@
-// Buttons and keys of the traces. What is chosen is kept apart from them: traces that are made again find it.
+// Buttons and keys of the traces. The user's choices are stored in panels.choice, so that traces that are restarted
+// keep them.
 import { isTyping } from './controls.js';
 
 const $ = (id) => document.getElementById(id);
 export const WINDOWS_S = [1, 5, 10, 30, 60, 300, 600];
-/** What the third plot can show: the names of THIRD in traces.js. */
+/** Choices for the third plot: names of THIRD in traces.js. */
 const THIRD = ['tick time', 'tension', 'passivity', 'taken out', 'bus load', 'motor heat', 'energy', 'stretch', 'gap', 'contacts'];
 
 export class TraceTools {

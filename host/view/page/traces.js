@@ -1,10 +1,13 @@
-// Forces and timing against time (uPlot).
+// Plots of forces and timing over time (uPlot).
 import uPlot from './uPlot.esm.js';
 import { C } from './frame.js';
 import { stateName } from './names.js';
 import { axisLabels, describeTime, labelRoom } from './times.js';
 
-/** What the third plot can show: two columns and their names, their SI unit, a factor to the unit drawn, least height. */
+/**
+ * Choices for the third plot: two columns, their names and SI unit, the factor to the displayed unit, and the smallest
+ * height of the axis.
+ */
 export const THIRD = {
   'tick time': { names: ['whole', 'control'], si: 'ns', columns: [C.execution_ns, C.control_ns], factor: 1e-3, unit: 'µs: whole, control only', least: 100, isTime: true },
   'thread time': { names: ['done', 'loop'], si: 'ns', columns: [C.threadDone_ns, C.execution_ns], factor: 1e-3, unit: 'µs after the wake-up: thread done, loop done', least: 100, isTime: true },
@@ -20,14 +23,17 @@ export const THIRD = {
   contacts: { names: ['in action'], si: '', columns: [C.contacts, C.contacts], factor: 1, unit: 'number in action', least: 4 },
 };
 const FORCES = [C.left, C.leftX, C.leftY, C.leftZ, C.right, C.rightX, C.rightY, C.rightZ];
-const BESIDE = 14; // where the other recording's columns begin in the data
-const FAR = 1e8; // a gap of 1e9 m says that nothing is near
+const BESIDE = 14; // index of the other recording's first column in the data
+const FAR = 1e8; // gaps above 1e8 m are not drawn: 1e9 m means that nothing is near
 const FLAG = { lost: 1, missed: 2, limited: [16, 32], full: 64 };
 const AXIS = { x: '#ff9d7a', y: '#7fd1ae', z: '#b9a5ff' };
 const GREY = '#9aa6b6';
 
 export class Traces {
-  /** @param beside the other recording's store. @param choice {window_s, third, components}. @param onCursor called with the row under the cursor, or null. */
+  /**
+   * @param beside trace store of the second recording. @param choice {window_s, third, components}. @param onCursor
+   * called with the row under the cursor, or null.
+   */
   constructor(host, store, beside, choice, onCursor) {
     const { window_s, third } = choice;
     Object.assign(this, { host, store, onCursor, window_s, period_s: 1e-3, limit_N: null, end: null, third: { title: third, ...THIRD[third] } });
@@ -64,7 +70,7 @@ export class Traces {
     const series = [{}, ...columns.map((_, i) => ({
       stroke: i === 0 ? colour : hand === null ? GREY : AXIS[names[i]], width: i === 0 ? 1.6 : 1,
       dash: hand !== null && i ? [[], [6, 3], [2, 2], [8, 2, 2, 2]][i] : undefined, points: { show: false },
-    })), { stroke: '#ff9ad5', width: 1.3, dash: [6, 4], points: { show: false }, show: false }]; // the other recording
+    })), { stroke: '#ff9ad5', width: 1.3, dash: [6, 4], points: { show: false }, show: false }]; // the second recording
     const axis = { stroke: GREY, grid: { stroke: '#2b3441', width: 1 }, ticks: { stroke: '#2b3441', size: 4 }, font: '11px sans-serif' };
     const plot = new uPlot({
       width: 400, height: 150, series, legend: { show: false }, padding: [8, 8, 0, 0],
@@ -86,7 +92,7 @@ export class Traces {
     this.onCursor(t_s === null ? null : this.store.nearest(Math.round(t_s / this.period_s)));
   }
 
-  /** Limits, misses and faults, and the force limit as a line. */
+  /** Draws marks of limits, deadline misses and faults, and the force limit as a line. */
   #drawMarks(u, hand) {
     const { ctx, bbox } = u, flags = this.data?.[11], faults = this.data?.[12], degraded = this.data?.[13], x = this.data?.[0];
     if (!x) return;
@@ -95,15 +101,15 @@ export class Traces {
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
     ctx.fillStyle = '#ff5c4740';
-    for (let i = 0; i < x.length; ++i) { // a stretch with a fault is one band
+    for (let i = 0; i < x.length; ++i) { // consecutive ticks with a fault form one band
       if (!faults[i]) continue;
       const first = i;
-      while (i + 1 < x.length && (faults[i + 1] || faults[i + 1] === undefined)) ++i; // undefined: only the other has this x
+      while (i + 1 < x.length && (faults[i + 1] || faults[i + 1] === undefined)) ++i; // undefined: only the second recording has this x
       const from = u.valToPos(x[first], 'x', true), until = u.valToPos(x[i], 'x', true);
       ctx.fillRect(from, bbox.top, Math.max(2, until - from), bbox.height);
     }
     for (let i = 0; i < x.length; ++i) {
-      if (hand === null && (degraded[i] || flags[i] & FLAG.full)) { // the solver gave something up
+      if (hand === null && (degraded[i] || flags[i] & FLAG.full)) { // the solver gave up accuracy
         ctx.fillStyle = '#f0e442';
         ctx.fillRect(u.valToPos(x[i], 'x', true) - 1, bbox.top + bbox.height - 6, 2, 6);
       }
@@ -137,7 +143,7 @@ export class Traces {
     this.#writeTitles();
   }
 
-  /** The topic 'compare': which recording is beside this one, and where both meet. */
+  /** Topic 'compare': which recording is compared with this one, and the offset in ticks. */
   compareWith({ file, offset_ticks }) {
     Object.assign(this.beside, { name: file, offset_ticks: file ? offset_ticks : null });
     for (const { plot } of this.plots) plot.setSeries(plot.series.length - 1, { show: this.isComparing });
@@ -146,7 +152,7 @@ export class Traces {
 
   get isComparing() { return this.beside?.offset_ticks != null; }
 
-  /** The other recording's row at the place of this one's, or null. */
+  /** Row of the second recording that corresponds to this row, or null. */
   besideRow(row) {
     const wanted = row && this.isComparing ? row[C.tick] - this.beside.offset_ticks : null;
     const found = wanted === null ? null : this.beside.store.nearest(wanted);
@@ -161,11 +167,14 @@ export class Traces {
     }
   }
 
-  /** Holds the traces at this moment, or lets them run. */
+  /** Stops the traces at this moment, or lets them run. */
   pause(on) { this.end = on ? this.store.lastTick : null; }
   get isPaused() { return this.end !== null; }
 
-  /** x, this recording's columns, marks, and from BESIDE on the other's: |F| left, |F| right, the third plot's first. */
+  /**
+   * x, this recording's columns, marks, and from index BESIDE on the second recording's columns: |F| left, |F| right,
+   * and the third plot's first.
+   */
   #series(from, end, pixels) {
     const own = this.store.series(from, end, pixels, [...FORCES, ...this.third.columns, C.flags, C.fault, C.degradation]);
     if (!this.isComparing) return [...own, ...[0, 1, 2].map(() => new Array(own[0].length).fill(null))];
@@ -176,7 +185,7 @@ export class Traces {
     return isSameGrid ? [...own, ...other.slice(1)] : uPlot.join([own, other]);
   }
 
-  /** One scale for both hands, so that equal forces are equally high. */
+  /** One vertical scale for both hands, so that equal forces have equal heights. */
   #commonRange(data) {
     let low = 0, high = 0;
     for (const { plot, columns, hand } of this.plots) {
@@ -216,7 +225,10 @@ function niceRange(low, high, least) {
   return [bottom, top];
 }
 
-/** The exact values of a tick, SI, in the shortest digits that are read back as the same number: the exported ones. */
+/**
+ * The exact values of a tick in SI units, as the shortest decimals that read back as the same number; identical to the
+ * exported ones.
+ */
 export function describeRow(row, period_s, third, other) {
   if (!row) return '';
   const beside = other ? ` · other: left ${other[C.left]} N, right ${other[C.right]} N` : '';

@@ -1,17 +1,17 @@
-// The thread as a smooth tube of its true radius: one geometry, updated in place.
+// The thread as a smooth tube of its true radius; the geometry is allocated once and updated in place.
 import * as THREE from './three.module.js';
 
 const SIDES = 14, MOST_RINGS = 4000;
-const STRIPE = 0.22; // how bright the stripe is that shows the twist
-const RIM = 0.09; // how far the dark rim stands out beyond the tube, in radii
+const STRIPE = 0.22; // brightness of the stripe that shows the twist
+const RIM = 0.09; // by how much the dark rim extends beyond the tube, in radii
 
 export class Tube {
   constructor(scene) {
     this.group = new THREE.Group();
     scene.add(this.group);
     this.material = new THREE.MeshStandardMaterial({ vertexColors: true, roughness: 0.55, metalness: 0.0 });
-    // A second, slightly thicker skin seen from its inside only: it shows just beyond the edge of a strand, so a strand
-    // that passes over another one cuts it with a dark rim, as in a drawing of a knot.
+    // A second, slightly thicker tube of which only the inside is drawn. It is visible just beyond the edge of a
+    // strand, so that a strand that passes over another one has a dark rim, as in a drawing of a knot.
     this.rimMaterial = new THREE.MeshBasicMaterial({ color: 0x05070a, side: THREE.BackSide });
     this.rimMaterial.onBeforeCompile = (shader) => {
       shader.uniforms.grow = this.grow = this.grow ?? { value: 0 };
@@ -19,12 +19,15 @@ export class Tube {
         .replace('#include <begin_vertex>', 'vec3 transformed = position + normal * grow;');
     };
     this.grow = { value: 0 };
-    // Where the tube is thinner than a pixel this line still shows where it runs.
+    // This line keeps the thread visible where the tube is thinner than a pixel.
     this.lineMaterial = new THREE.LineBasicMaterial({ color: 0xd9bf8c });
     this.rings = 0;
   }
 
-  /** @param p_W n x 3 node positions. @param colours n x 3, linear RGB. @param turn_rad n: twist, drawn as a stripe. */
+  /**
+   * @param p_W n x 3 node positions, m. @param colours n x 3, linear RGB. @param turn_rad n: twist angle, drawn as a
+   * stripe.
+   */
   update(p_W, radius_m, colours, turn_rad) {
     const n = p_W.length / 3, per = Math.max(1, Math.min(10, Math.floor(MOST_RINGS / n)));
     const rings = (n - 1) * per + 1;
@@ -56,7 +59,7 @@ export class Tube {
         const a = r * SIDES + s, b = r * SIDES + ((s + 1) % SIDES);
         index.push(a, b, a + SIDES, b, b + SIDES, a + SIDES);
       }
-    for (let s = 0; s < SIDES; ++s) { // lids
+    for (let s = 0; s < SIDES; ++s) { // end caps
       const t = (s + 1) % SIDES, last = (rings - 1) * SIDES;
       index.push(rings * SIDES, t, s, rings * SIDES + 1, last + s, last + t);
     }
@@ -70,7 +73,7 @@ export class Tube {
     this.group.add(...parts);
   }
 
-  /** Catmull-Rom curve through the nodes, `per` pieces an edge; colours go along linearly. */
+  /** Catmull-Rom curve through the nodes, `per` pieces per edge; colours are interpolated linearly. */
   #centreline(p, colours, turn, n, per) {
     const out = this.centre, tint = this.tint;
     for (let i = 0, o = 0; i < n; ++i) {
@@ -87,8 +90,10 @@ export class Tube {
     }
   }
 
-  /** A circle around each point, carried along the curve without twist (the smallest turn from tangent to tangent), then
-   *  turned by the thread's own: its first side is the stripe. */
+  /**
+   * A circle around each point. Its frame is carried along the curve without twist (smallest rotation from tangent to
+   * tangent) and then rotated by the thread's own twist angle; its first side is the stripe.
+   */
   #skin(radius) {
     const x = this.centre, n = this.rings;
     const position = this.geometry.attributes.position.array, normal = this.geometry.attributes.normal.array;
@@ -98,10 +103,10 @@ export class Tube {
       const a = 3 * Math.max(i - 1, 0), b = 3 * Math.min(i + 1, n - 1);
       const dx = x[b] - x[a], dy = x[b + 1] - x[a + 1], dz = x[b + 2] - x[a + 2], length = Math.hypot(dx, dy, dz);
       if (length > 0) { tx = dx / length; ty = dy / length; tz = dz / length; }
-      let along = ux * tx + uy * ty + uz * tz; // u stays square to the tangent
+      let along = ux * tx + uy * ty + uz * tz; // removes u's component along the tangent
       ux -= along * tx; uy -= along * ty; uz -= along * tz;
       let size = Math.hypot(ux, uy, uz);
-      if (size < 1e-6) { // any direction square to the tangent
+      if (size < 1e-6) { // any direction normal to the tangent
         ux = Math.abs(tx) < 0.9 ? 1 : 0; uy = Math.abs(tx) < 0.9 ? 0 : 1; uz = 0;
         along = ux * tx + uy * ty;
         ux -= along * tx; uy -= along * ty; uz = -along * tz;
