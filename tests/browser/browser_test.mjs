@@ -21,7 +21,7 @@ const steps = {
     await page.waitForFunction(() => ligature.firstThread_ms);
     const first_ms = await page.evaluate(() => ligature.firstThread_ms);
     console.log(`    first thread after ${first_ms.toFixed(0)} ms`);
-    await page.locator('#help').waitFor({ state: 'visible' }); // first run
+    await page.locator('#help').waitFor({ state: 'visible' }); // shown at the first visit
     await page.screenshot({ path: join(out, 'help.png') });
     await page.click('#help button');
   },
@@ -40,7 +40,7 @@ const steps = {
     await page.selectOption('#colour', 'knot');
     await page.click('#follow');
     await page.waitForTimeout(300);
-    // Marked on the label, as seen from here.
+    // Crossings are marked on the label, with their signs as seen from this view.
     await until(page, () => (ligature.crossings ?? []).length >= 2 && ligature.crossings.every((c) => Math.abs(c.sign) === 1));
     await page.screenshot({ path: join(out, 'knot.png') });
     await page.selectOption('#colour', 'tension');
@@ -151,7 +151,8 @@ const steps = {
   'old data is shown as old, and fresh data as fresh again': async () => {
     rig.tell('quiet');
     await until(page, () => !document.getElementById('stale').hidden);
-    // Shown at the first frame or timer after 120 ms; how soon is printed, for wall time is no verdict on a shared machine.
+    // Shown at the first frame or timer after 120 ms. The delay is printed but not limited, since wall time varies on a
+    // shared machine.
     const { age_ms, pace_ms } = await page.evaluate(() => ({ age_ms: ligature.staleAt_ms, pace_ms: ligature.scene.pace ?? 0 }));
     console.log(`    shown as old at ${age_ms.toFixed(0)} ms, one picture takes ${pace_ms.toFixed(0)} ms`);
     assert.ok(age_ms >= 120, `${age_ms} ms`);
@@ -193,7 +194,7 @@ const steps = {
     const deaf = [];
     while (deaf.length < 50) {
       deaf.push(await clientOf(at, { reads: false }));
-      deaf.at(-1).send(JSON.stringify({ token })); // without it all but 16 would have to go
+      deaf.at(-1).send(JSON.stringify({ token })); // without the token only 16 clients may stay
     }
     const drawn = await page.evaluate(() => ligature.frames);
     await page.waitForFunction((n) => ligature.frames > n + 30, drawn);
@@ -250,7 +251,7 @@ const steps = {
     replay = new Program(host, ['replay', log, '--port', '0']);
     page = await browser.open(await replay.says(/open (\S+)/));
     await page.waitForFunction(() => ligature.firstThread_ms);
-    await page.locator('#help').waitFor({ state: 'visible' }); // a new address: the first visit
+    await page.locator('#help').waitFor({ state: 'visible' }); // a new origin, so a first visit
     await page.evaluate(() => document.getElementById('help').close());
     await until(page, () => document.querySelectorAll('#marks button').length >= 2);
     const titles = await page.locator('#marks button').evaluateAll((all) => all.map((b) => b.title).join('\n'));
@@ -266,7 +267,7 @@ const steps = {
     const columns = await page.evaluate(() => ligature.columns);
     compare(rows, columns, forces, ticks);
     await page.screenshot({ path: join(out, 'replay.png') });
-    // What the cursor reads is the exported number, too.
+    // The values at the cursor are the exported numbers.
     await page.click('#windows button[value="1"]');
     const box = await page.locator('.plot .u-over').first().boundingBox();
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
@@ -294,7 +295,7 @@ const steps = {
   },
 };
 
-/** The exported column of each of the page's (host/view/page/frame.js), hand by hand. */
+/** For each of the page's columns (host/view/page/frame.js), for each hand, the name of the exported column. */
 function exportedNames() {
   const names = { wakeup_ns: 'wakeup_latency_ns', maxStretch: 'max_stretch', minGap_m: 'min_gap_m', threadDone_ns: 'thread_done_ns', timeLost: 'time_lost' };
   for (const same of ['control_ns', 'execution_ns', 'flags', 'state', 'fault', 'kinetic_J', 'potential_J', 'contacts', 'degradation']) names[same] = same;
@@ -310,7 +311,7 @@ function table(file) {
   return { head, lines: new Map(lines.map((line) => [Number(line[0]), line])) };
 }
 
-/** Every column of each row that the page shows against the exported files, as the numbers that both mean: to the last bit. */
+/** Compares every column of each row shown with the exported files, bit by bit. */
 function compare(rows, columns, ...files) {
   const tables = files.map(table), names = exportedNames();
   assert.deepEqual(columns.filter((name) => name !== 'tick' && !names[name]), [], 'columns without an exported one');

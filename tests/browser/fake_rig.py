@@ -1,10 +1,10 @@
-"""A rig for tests of the page: publishes what ligature-firmware would, and obeys lines on standard input.
+"""A fake rig for tests of the page: publishes messages as ligature-firmware does, controlled by lines on standard input.
 
     fault N     latch fault N        knot | unknot   the thread's shape        spike F   one tick with F newton
-    limit BITS  what holds the left hand back   clutch B   left tool parked   degrade N   what the solver gave up
+    limit BITS  force limits of the left hand   clutch B   left tool parked   degrade N   reduced accuracy of the solver
     arm         go to FORCE
-    quiet       send nothing more    go              send again                restart [T]   another session, from tick T
-It says "ready" when it publishes and "command NAME" for each command that it hears. Nothing here is physics.
+    quiet       stop publishing      go              publish again             restart [T]   another session, from tick T
+It prints "ready" when it publishes and "command NAME" for each command received. All values are made up.
 """
 
 import argparse
@@ -33,7 +33,7 @@ desk_height_m = 0.0
 
 
 def trefoil(n):
-    """The long trefoil (t^3 - 3t, t^4 - 4t^2, t^5 - 10t) [Shastri 1992] with its ends drawn out."""
+    """The long trefoil (t^3 - 3t, t^4 - 4t^2, t^5 - 10t) [Shastri 1992] with extended ends."""
     points = []
     for i in range(n):
         t = -2.12 + 4.24 * i / (n - 1)
@@ -42,7 +42,7 @@ def trefoil(n):
 
 
 def unknot(n):
-    """A hanging bow in a plane."""
+    """A hanging plane curve."""
     return [[-1.6 + 3.2 * i / (n - 1), 0.0, 2.6 - 1.8 * math.sin(math.pi * i / (n - 1))] for i in range(n)]
 
 
@@ -92,7 +92,7 @@ class Rig:
         self.publish_offer()
 
     def is_fresh(self, command):
-        """As the firmware's gate: a command without a challenge is given one."""
+        """As in the firmware's command gate: a command without a challenge is answered with one."""
         if command.challenge and self.challenges.pop(command.id, 0) == command.challenge:
             return True
         ack = ack_t()
@@ -207,7 +207,8 @@ def main():
         if rig.lcm.fileno() in ready:
             rig.lcm.handle()
         if sys.stdin in ready:
-            heard = os.read(sys.stdin.fileno(), 4096).decode()  # not readline: a second line would hide in its buffer
+            # not readline, whose buffer could hold back a second line
+            heard = os.read(sys.stdin.fileno(), 4096).decode()
             if not heard:
                 return
             for line in heard.splitlines():

@@ -1,5 +1,6 @@
-// `view --listen` beyond this machine, on an address of a private network: who may look, and who may command.
-//   node listen_test.mjs --host BIN --python PYTHON --rig SCRIPT --modules DIR --out DIR     (inside scripts/private-net)
+// `view --listen` on an address of a private network: who may see the page, and who may send commands.
+//   node listen_test.mjs --host BIN --python PYTHON --rig SCRIPT --modules DIR --out DIR     (inside
+// scripts/private-net)
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, writeFileSync } from 'node:fs';
@@ -14,7 +15,7 @@ execFileSync('ip', ['address', 'add', `${ADDRESS}/32`, 'dev', 'lo']);
 writeFileSync(join(out, 'token'), `${TOKEN}\n`, { mode: 0o600 });
 const rig = new Program(python, [rigScript]);
 
-/** @returns {status, body} of GET / with these headers. */
+/** Sends GET / with these headers. @returns {status, body}. */
 function get(at, headers = {}) {
   const [hostname, port] = at.split(':');
   return new Promise((resolve, reject) => {

@@ -1,12 +1,12 @@
-// A server between browser and host that breaks one file of the page: what is loaded throws at once (`load`), every
-// function and constructor that it gives throws (`make`), or every method of its classes (`run`). All else passes through.
+// A proxy between browser and host that breaks one file of the page: it throws when loaded (`load`), or all functions
+// and constructors that it exports throw (`make`), or all methods of its classes (`run`). Other requests pass unchanged.
 import { createServer, request } from 'node:http';
 import { connect } from 'node:net';
 
 export const WAYS = ['load', 'make', 'run'];
 
 export class Saboteur {
-  /** @param to "name:port" of the host. */
+  /** @param to address of the host as "name:port". */
   static async between(to) {
     const self = new Saboteur();
     self.to = to;
@@ -18,7 +18,7 @@ export class Saboteur {
     return self;
   }
 
-  /** @param file as "scene.js", or null. */
+  /** @param file e.g. "scene.js", or null for none. @param way one of WAYS. */
   breaks(file, way) { this.broken = file && { file, way }; }
 
   stop() { this.server.closeAllConnections(); this.server.close(); }
@@ -69,7 +69,7 @@ const spoil = (v) => (typeof v !== 'function' ? v : ${way === 'run' ? 'isClass(v
   return `import * as real from './${path}?real';\n${helpers}${names.map((name) => `export const ${name} = spoil(real.${name});`).join('\n')}\n`;
 }
 
-/** @returns the ways in which breaking this file differs. */
+/** @returns the ways of breaking this file that differ from each other. */
 export function waysFor(text) {
   if (!/^export /m.test(text)) return ['load'];
   return [...(/^export (?:async )?(function|class)/m.test(text) ? ['load', 'make'] : ['load']), ...(/^export class/m.test(text) ? ['run'] : [])];

@@ -1,5 +1,5 @@
-// Nothing that draws stands between a person and STOP: with WebGL and without, with each file of the page broken in each
-// way, the page stops a rig in FORCE, and never says a state that the rig does not have.
+// STOP works even if drawing fails: with WebGL and without it, and with each file of the page broken in each way, the
+// page stops a rig in FORCE, and never shows a state that the rig is not in.
 //   node stop_test.mjs --browser chromium|firefox --host BIN --python BIN --rig SCRIPT --page DIR --modules DIR --out DIR
 import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync, readdirSync } from 'node:fs';
@@ -17,12 +17,12 @@ const saboteur = await Saboteur.between(own.host);
 const CORE = ['guard.js', 'main.js', 'link.js', 'frame.js', 'names.js', 'state_panel.js', 'controls.js'];
 let failures = 0, cases = 0;
 
-/** Opens the page on a rig in FORCE, looks at what it says, and stops. @param file that is broken, or null. */
+/** Opens the page on a rig in FORCE, checks its state display, and stops. @param file the broken file, or null. */
 async function stops(browser, name, file, look) {
   ++cases;
   const began = Date.now(), mayNotKnow = CORE.includes(file), heard = rig.heard.length;
   const page = await browser.sheet();
-  // Again and again: where the answer was late, the page before has sent a second STOP, which may come only now.
+  // Repeatedly, because a late second STOP of the previous page may disarm the rig again.
   const arming = setInterval(() => rig.tell('arm'), 500);
   try {
     await page.goto(saboteur.url);
@@ -42,7 +42,7 @@ async function stops(browser, name, file, look) {
   }
 }
 
-/** Waits until the page says one of these states; @returns which. */
+/** Waits until the page shows one of these states. @returns that state. */
 async function shows(page, states) {
   await page.waitForFunction((wanted) => document.readyState === 'complete' && wanted.includes(document.getElementById('state-name').textContent), states);
   return page.evaluate(() => document.getElementById('state-name').textContent);
@@ -63,10 +63,10 @@ for (const webgl of [false, true]) {
     await browser.resize(width, height);
     await stops(browser, `${kind}, WebGL ${webgl ? 'on' : 'off'}, ${width}x${height}`, null, (page) => draws(page, webgl, `${kind}-${webgl ? 'webgl' : 'flat'}-${width}x${height}`));
   }
-  // With WebGL only what draws by it: the others have been broken without it, which is quicker.
+  // With WebGL only the files that draw with it; the others were tested without WebGL, which is faster.
   const files = webgl ? ['scene.js', 'tube.js', 'hands.js', 'three.module.js'] : [...readdirSync(pageFolder), 'uPlot.esm.js'];
   for (const file of files.filter(isOurs)) {
-    // In Firefox one way is enough: what is tried there is the browser, not the page's parts.
+    // In Firefox one way is enough: there the browser is tested, not each file.
     const ways = kind === 'firefox' || file.includes('three') || file.includes('uPlot') ? ['load'] : waysFor(readFileSync(join(pageFolder, file), 'utf8'));
     for (const way of ways) {
       saboteur.breaks(file, way);
@@ -77,7 +77,7 @@ for (const webgl of [false, true]) {
   await browser.stop();
 }
 
-/** A picture is there, traces are, and no part complains but the one that needs WebGL. */
+/** The thread and the traces are drawn, and no part reports an error except the one that needs WebGL. */
 async function draws(page, webgl, name) {
   await until(page, () => window.ligature?.traces && ligature.store.rowEnd > 500 && ligature.scene?.shape);
   await page.waitForFunction((id) => document.getElementById(id)?.width > 100, webgl ? 'canvas' : 'flat');
@@ -91,11 +91,11 @@ async function draws(page, webgl, name) {
   const { width, height } = page.viewportSize();
   await fits(page, width, height);
   await page.screenshot({ path: join(out, `${name}.png`) });
-  await page.evaluate(() => document.getElementById('help').show()); // STOP is within reach beside it
+  await page.evaluate(() => document.getElementById('help').show()); // STOP stays reachable beside the dialog
   rig.tell('unknot');
 }
 
-/** At widths from a phone's to a desk's, with every panel and dialog open: STOP is not covered, and nothing sticks out. */
+/** From a phone's to a desktop's width, with each panel and dialog open: STOP is not covered, and nothing overflows. */
 async function fits(page, width, height) {
   for (const open of ['', 'change', 'help', 'record-dialog', 'hand-panel']) {
     await page.evaluate((id) => {
@@ -110,7 +110,7 @@ async function fits(page, width, height) {
   await page.evaluate(() => { document.getElementById('hand-panel').hidden = true; });
 }
 
-/** @returns what covers STOP, what is wider than the page, and what sticks out of the box that it belongs to. */
+/** @returns what covers STOP, what is wider than the page, and what overflows its box. */
 function outside() {
   const wrong = [], box = (e) => e.getBoundingClientRect(), name = (e) => e.id || e.className || e.tagName;
   const stop = document.getElementById('stop'), r = box(stop);
@@ -135,7 +135,7 @@ function outside() {
   return wrong;
 }
 
-/** How many pixels of the flat view have the thread's colour, give or take. */
+/** Number of pixels of the flat view with about the thread's colour. */
 function inked() {
   const canvas = document.getElementById('flat'), { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
   let count = 0;
@@ -143,7 +143,7 @@ function inked() {
   return count;
 }
 
-/** What broke says so on the page or in its console record; the rest of the page goes on. */
+/** A broken part reports that on the page or in the console record; the rest of the page works on. */
 async function tells(page, file) {
   if (CORE.includes(file)) return;
   await until(page, () => document.querySelector('.part-note:not([hidden])') || Object.keys(window.ligature?.troubles ?? {}).length);

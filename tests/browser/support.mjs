@@ -1,4 +1,4 @@
-// Programs, a browser and raw WebSocket peers for the tests of the page.
+// Child processes, a browser and raw WebSocket clients for the tests of the page.
 import { spawn } from 'node:child_process';
 import { createServer } from 'node:http';
 import { connect } from 'node:net';
@@ -6,7 +6,8 @@ import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
 
-const PATIENCE_MS = Number(process.env.LIGATURE_PATIENCE_MS ?? 60_000); // a shared machine may be slow; every wait is for a condition
+// for slow shared machines; every wait is for a condition
+const PATIENCE_MS = Number(process.env.LIGATURE_PATIENCE_MS ?? 60_000);
 
 export function arguments_() {
   const given = {};
@@ -17,7 +18,7 @@ export function arguments_() {
 /** Waits until a condition holds in the page. */
 export function until(page, condition) { return page.waitForFunction(condition, null, { timeout: PATIENCE_MS }); }
 
-/** A program of ours whose words are remembered. */
+/** A child process whose output is stored. */
 export class Program {
   constructor(command, args) {
     this.heard = '';
@@ -26,7 +27,7 @@ export class Program {
     this.end_ = new Promise((resolve) => this.child.on('exit', (code) => { this.news?.(); resolve(code); }));
   }
 
-  /** @returns the first group of the pattern, or all of it, once it has been said. */
+  /** Waits for output that matches the pattern. @returns its first group, or the whole match. */
   async says(pattern) {
     const until_ms = Date.now() + PATIENCE_MS;
     for (;;) {
@@ -39,7 +40,7 @@ export class Program {
   }
 
   tell(line) { this.child.stdin.write(`${line}\n`); }
-  /** Ends it in order; @returns its exit code. */
+  /** Ends the process with SIGTERM. @returns its exit code. */
   stop() { this.child.kill('SIGTERM'); return this.end_; }
   ended() { return this.end_; }
   peakMemory_kB() { return Number(readFileSync(`/proc/${this.child.pid}/status`, 'utf8').match(/VmHWM:\s+(\d+)/)[1]); }
@@ -53,7 +54,7 @@ function startChromium({ chromium }, webgl) {
   });
 }
 
-/** Without a screen Firefox has no WebGL: with it, it gets a virtual one, whose number Xvfb chooses and says. */
+/** Headless Firefox has no WebGL; for WebGL it runs on a virtual screen, whose number Xvfb chooses and prints. */
 async function startFirefox({ _bidiFirefox: firefox }, webgl) {
   const screen = webgl ? new Program('Xvfb', ['-displayfd', '1', '-screen', '0', '1600x1000x24', '-nolisten', 'tcp']) : null;
   const env = screen ? { ...process.env, DISPLAY: `:${await screen.says(/^(\d+)\n/)}`, LIBGL_ALWAYS_SOFTWARE: '1' } : process.env;
@@ -66,7 +67,7 @@ async function startFirefox({ _bidiFirefox: firefox }, webgl) {
 }
 
 export class Browser {
-  /** @param kind 'chromium', or 'firefox', which is driven by WebDriver BiDi. @param webgl whether pages get it. */
+  /** @param kind 'chromium', or 'firefox', driven by WebDriver BiDi. @param webgl whether pages have WebGL. */
   static async start({ kind = 'chromium', webgl = true } = {}) {
     const { modules } = arguments_(), playwright = createRequire(join(modules, 'x.js'))('playwright-core');
     const browser = new Browser();
@@ -77,20 +78,20 @@ export class Browser {
     return browser;
   }
 
-  /** For the pages to come, and the sheet. */
+  /** Sets the size of later pages and of the sheet. */
   async resize(width, height) {
     this.viewport = { width, height };
     await (await this.sheet()).setViewportSize(this.viewport);
   }
 
-  /** One page that may complain, used again and again. */
+  /** A page that is reused and whose console errors are allowed. */
   async sheet() {
     this.sheet_ ??= await this.context.newPage();
     this.sheet_.setDefaultTimeout(PATIENCE_MS);
     return this.sheet_;
   }
 
-  /** A page of ours: everything that it complains of in the console is a failure. */
+  /** Opens a page of ours; any console error is a failure. */
   async open(url) {
     const page = await this.context.newPage();
     page.setDefaultTimeout(PATIENCE_MS);
@@ -107,7 +108,7 @@ export class Browser {
     return page;
   }
 
-  /** Serves one page from another port, that is another origin. @returns the port. */
+  /** Serves one page from another port, i.e. another origin. @returns the port. */
   serve(html) {
     const server = createServer((_, response) => response.setHeader('Content-Type', 'text/html').end(html));
     this.servers.push(server);
@@ -120,7 +121,7 @@ export class Browser {
   }
 }
 
-/** A WebSocket peer on a bare socket: it can do what no browser does. */
+/** A WebSocket client on a plain socket, which can break the protocol as no browser does. */
 export function clientOf(at, { reads = true } = {}) {
   const [hostname, port] = at.split(':');
   const socket = connect(Number(port), hostname);
@@ -137,13 +138,13 @@ export function clientOf(at, { reads = true } = {}) {
     }
   };
   const peer = {
-    /** One masked text frame. */
+    /** Sends one masked text frame. */
     send(text) {
       const payload = Buffer.from(text), mask = Buffer.from([1, 2, 3, 4]);
       const head = payload.length < 126 ? Buffer.from([0x81, 0x80 | payload.length]) : Buffer.from([0x81, 0xfe, payload.length >> 8, payload.length & 255]);
       socket.write(Buffer.concat([head, mask, payload.map((byte, i) => byte ^ mask[i % 4])]));
     },
-    /** The beginning of a text frame that says it is this long, and a megabyte of it. */
+    /** Sends the header of a text frame of the given length, and one megabyte of data. */
     sendHeaderOf(size) {
       const head = Buffer.alloc(14);
       head.set([0x81, 0xff]);
@@ -151,7 +152,7 @@ export function clientOf(at, { reads = true } = {}) {
       socket.write(Buffer.concat([head, Buffer.alloc(1 << 20)]));
     },
     closed: () => waitFor(() => isClosed),
-    /** Waits until something that came holds an answer; @returns all that came, as text. */
+    /** Waits until an answer has arrived. @returns everything received, as text. */
     text: async () => { await waitFor(() => received.includes('"answers"')); return received.toString('latin1'); },
     end: () => socket.destroy(),
   };

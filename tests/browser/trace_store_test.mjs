@@ -1,4 +1,4 @@
-// The page's trace memory and frame reader, as plain functions.
+// Unit tests of the page's trace store and frame reader.
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { BIN_NUMBER_PART, C, TICKS_PER_BIN, WIDTH, readFrame } from '../../host/view/page/frame.js';
@@ -28,8 +28,8 @@ test('a hole in the ticks is a hole in the line', () => {
   const store = new TraceStore();
   store.addRows(rows(0, 100));
   store.addRows(rows(200, 100));
-  assert.ok(store.series(0, 300, 400, [C.left])[1].includes(null)); // as they are
-  assert.ok(store.series(0, 300, 30, [C.left])[1].includes(null)); // thinned
+  assert.ok(store.series(0, 300, 400, [C.left])[1].includes(null)); // every tick
+  assert.ok(store.series(0, 300, 30, [C.left])[1].includes(null)); // decimated
 });
 
 test('bins stand in for ticks that are gone, and only for those', () => {
@@ -43,7 +43,7 @@ test('bins stand in for ticks that are gone, and only for those', () => {
   assert.equal(Math.max(...left.filter((_, i) => x[i] >= 50)), 2);
 });
 
-// After a year at 1 kHz, and where 31 and 32 bits end.
+// Tick numbers after a year at 1 kHz, and near the limits of 31 and 32 bits.
 for (const start of [31_536_000_000, 2 ** 31 - 100, 2 ** 32 - 100]) {
   test(`ticks are exact from ${start} on`, () => {
     const store = new TraceStore(), first = Math.floor(start / TICKS_PER_BIN);
@@ -61,7 +61,7 @@ for (const start of [31_536_000_000, 2 ** 31 - 100, 2 ** 32 - 100]) {
     assert.equal(store.lastTick, from + 499);
     const [x, left] = store.series(from, from + 500, 500, [C.left]);
     assert.equal(x[left.indexOf(7)], from + 77);
-    const [wideX, wide] = store.series(first * TICKS_PER_BIN, from + 500, 70, [C.left]); // ten ticks a stretch
+    const [wideX, wide] = store.series(first * TICKS_PER_BIN, from + 500, 70, [C.left]); // ten ticks per point
     assert.ok(Math.abs(wideX[wide.indexOf(7)] - (from + 77)) <= 10);
     assert.ok(Math.abs(wideX[wide.indexOf(3)] - (first + 3) * TICKS_PER_BIN) <= 10);
     assert.equal(store.histogram(C.wakeup_ns, [1], from + 100).counts[0], 400);
@@ -126,12 +126,13 @@ test('knots have the names that people give them, in the words of the recogniser
 test('a slow computer is told apart from a silent rig and a silent host', () => {
   const live = { isReplay: false };
   assert.deepEqual(judgeAge(30, 0, 5, live), { text: '', isOld: false, isSlow: false });
-  for (const age_ms of [130, 250, 400]) { // two to four pictures a second, the rig healthy
-    assert.equal(judgeAge(age_ms, 0, 5, live).isOld, true); // nothing here was slow: the rig is
+  for (const age_ms of [130, 250, 400]) { // two to four pictures per second, with a healthy rig
+    assert.equal(judgeAge(age_ms, 0, 5, live).isOld, true); // a fast page with an old picture: the rig is late
     const slow = judgeAge(age_ms, 0, 400, live);
     assert.deepEqual([slow.isOld, slow.isSlow], [false, true]);
   }
-  for (const lag_ms of [0, 400, 5000, 1e9]) { // however slow the page is: after a second more it is the rig, or the host
+  // with any delay of the page, another second of delay is the rig's or the host's
+  for (const lag_ms of [0, 400, 5000, 1e9]) {
     assert.match(judgeAge(1200, 0, lag_ms, live).text, lag_ms < 1000 ? /^Old picture/ : /Old picture/);
     assert.match(judgeAge(30, 1200, lag_ms, live).text, /^No word from the host/);
   }
@@ -139,7 +140,8 @@ test('a slow computer is told apart from a silent rig and a silent host', () => 
 });
 
 test('the scale of curvature fits the thread: it is not painted in one colour', () => {
-  const n = 100, p_W = new Float32Array(3 * n), bent = 0.15e-3; // a suture, radius 0.15 mm, in a bow that tightens
+  // a suture of radius 0.15 mm, in a bow whose curvature increases
+  const n = 100, p_W = new Float32Array(3 * n), bent = 0.15e-3;
   for (let i = 0, angle = 0, x = 0, z = 0; i < n; ++i) {
     p_W.set([x, 0, z], 3 * i);
     x += 2e-3 * Math.cos(angle); z += 2e-3 * Math.sin(angle); angle += 0.001 * i;

@@ -14,10 +14,10 @@ namespace {
 
 const std::string kScene = std::string(LIGATURE_SOURCE_DIR) + "/scenes/paper.toml";
 constexpr double kShippedCoupling_N_per_m = 1200.0;
-constexpr int kStranger = 5;  // a client of the bus that is not the firmware
+constexpr int kStranger = 5;  // bus client number of a foreign node
 constexpr std::size_t kStrangersQueue = 16;
 
-/// Takes the thread, pulls it tight and lets it go, within the workspace box.
+/// A hand that grips the thread, pulls it tight and releases it, within the workspace box.
 class Pulling final : public sim::Intention {
  public:
   Pulling(const AttackPlan& plan, std::size_t hand)
@@ -115,7 +115,7 @@ void AttackPlan::choose_faults(test::Random& random) {
   for (std::size_t h = 0; h < 2; ++h) {
     if (!random.happens(0.4)) continue;
     scene::FaultScript f;
-    // Sensors that lie are half of them.
+    // About half of the kinds are encoder faults.
     constexpr std::array kKinds{scene::FaultKind::kLose,    scene::FaultKind::kDelay,     scene::FaultKind::kDuplicate,
                                 scene::FaultKind::kReorder, scene::FaultKind::kCorrupt,   scene::FaultKind::kReboot,
                                 scene::FaultKind::kButton,  scene::FaultKind::kEmergency, scene::FaultKind::kFreeze,
@@ -232,7 +232,7 @@ AttackedRig::AttackedRig(const AttackPlan& plan) : rig(setup_of(plan), hands_of(
 
 std::optional<std::string> AttackedRig::run() { return rig.run(kAttackTicks); }
 
-/// Between two ticks.
+/// Applies the planned events; called between two ticks.
 void AttackedRig::befall() {
   const auto tick = rig.cycle.periods();
   for (const auto& f : plan_.foreign) {

@@ -12,7 +12,7 @@ using Torques = std::array<std::int16_t, 3>;
 const std::string kForeignRpdo = "a foreign RPDO, until its fault takes all torque";
 const std::string kOutsideBox = "tip outside the device's workspace box";
 
-/// One hand of one run.
+/// Evaluates one hand in one run.
 class Judge {
  public:
   Judge(const AttackPlan& plan, const lab::VirtualRig& rig, Index hand)
@@ -39,8 +39,8 @@ class Judge {
   }
 
  private:
-  /// What only a controller sends is a fault in the tick that reads it: the next one, unless the bus or the loop is
-  /// away.
+  /// A frame that only a controller may send must be a fault in the tick after it, unless the bus is cut or full or the
+  /// loop stalls.
   void see_foreign(const AttackPlan::Foreign& f) {
     const bool only_ours = f.what == "RPDO" || f.what == "SYNC" || f.what == "NMT" || f.what == "SDO write";
     const bool away = plan_.cut_at >= 0 && f.hand == 0 && f.from + kTicksToSee >= plan_.cut_at;
@@ -56,7 +56,7 @@ class Judge {
     if (const auto* r = record(last); r != nullptr && r->fault == 0)
       note(last, {"foreign frames are a fault", kUnexplained}, static_cast<double>(kTicksToSee));
   }
-  /// Strangers' RPDOs are process data: the wire loses them as it loses ours.
+  /// Foreign RPDOs are process data, so they may be lost like ours.
   [[nodiscard]] bool may_be_lost(const AttackPlan::Foreign& f) const {
     return f.what == "RPDO" && plan_.frame_loss > 0.0;
   }
@@ -81,7 +81,7 @@ class Judge {
     const auto* r = record(tick);
     return r != nullptr && r->torque_permille[hand_] == tips_[k].permille;
   }
-  /// Each joint makes something that the firmware sent it a moment ago, or nothing.
+  /// Each joint makes a torque that the firmware has sent recently, or none.
   [[nodiscard]] bool is_ours(Index k) const {
     const Index longest = near_foreign(k, {"flood"}, kTicksOfFlood) ? kTicksOfFlood + kTicksOfFault : kTicksOfFault + 2;
     for (Index j = 0; j < 3; ++j) {
@@ -92,19 +92,19 @@ class Judge {
     }
     return true;
   }
-  /// All joints make what one tick sent: nothing is mixed.
+  /// The torques of all joints come from the same tick.
   [[nodiscard]] bool is_whole(Index k) const {
     for (Index back = 1; back <= kTicksOfFault && back <= k; ++back)
       if (is_sent(k, k - back)) return true;
     return false;
   }
-  /// The torques of two ticks in a row act in a row: a step that the law chose.
+  /// The torques at k - 1 and k were sent in consecutive ticks, so their step was chosen by the control law.
   [[nodiscard]] bool is_in_turn(Index k) const {
     for (Index back = 1; back <= kTicksOfFault && back < k; ++back)
       if (is_sent(k, k - back) && is_sent(k - 1, k - back - 1)) return true;
     return false;
   }
-  /// Such frames were on this hand's bus, so many ticks ago at most.
+  /// Foreign frames of these kinds were on this hand's bus within the last `ago` ticks; no kinds: any.
   [[nodiscard]] bool near_foreign(Index k, std::initializer_list<std::string_view> kinds, std::int64_t ago) const {
     return std::ranges::any_of(plan_.foreign, [&](const auto& f) {
       const auto tick = static_cast<std::int64_t>(k);
@@ -112,7 +112,7 @@ class Judge {
       return here && (kinds.size() == 0 || std::ranges::find(kinds, f.what) != kinds.end());
     });
   }
-  /// A torque of somebody else acts, for as long as it takes to see his first frame and to take it back.
+  /// A foreign torque acts, within the time that its detection and removal take.
   [[nodiscard]] bool is_strangers(Index k) const {
     return !is_ours(k) && std::ranges::any_of(plan_.foreign, [&](const auto& f) {
       const auto late = static_cast<std::int64_t>(k) - f.from;
@@ -134,7 +134,8 @@ class Judge {
       return order.kind == rt::CommandKind::kStop && order.tick == static_cast<std::int64_t>(tick);
     });
   }
-  /// Armed, no fault and the dead-man truly pressed, all at once, now or as long ago as a force may take to end.
+  /// Armed, without fault and with the dead-man truly pressed at one moment within the time that a force may take to
+  /// end.
   [[nodiscard]] bool may_push(Index k) const {
     for (Index i = 0; i <= static_cast<Index>(kTicksToEnd) && i <= k; ++i) {
       const auto* r = record(k - i);
@@ -164,7 +165,7 @@ class Judge {
     if (!tips_[k].drives_on) return "the drives go off by themselves";
     for (Index i = 0; i <= static_cast<Index>(kTicksOfFault) && i <= k; ++i)
       if (is_stop(k - i)) return "`stop`";
-    const int late = plan_.loses_frames() ? kTicksOfFault : 4;  // an RPDO that says zero may be lost, too
+    const int late = plan_.loses_frames() ? kTicksOfFault : 4;  // an RPDO with zero torque may be lost, too
     const auto let_go = [this](const auto& r) {
       return (r.limits[hand_] & rt::kPassivityLimit) != 0 && r.torque_permille[hand_] == Torques{};
     };

@@ -1,6 +1,6 @@
 #pragma once
-// What an attacked rig truly did to two hands, judged SYNC by SYNC from the torques that the motors made and the poses
-// that the arms truly had.
+// What an attacked rig really did to two hands, evaluated at each SYNC from the motors' true torques and the arms' true
+// poses.
 
 #include <map>
 #include <string>
@@ -9,34 +9,35 @@
 
 namespace ligature {
 
-/// A promise that was not kept at some SYNCs, and why.
+/// A promise of the rig that was broken at some SYNCs, and the cause.
 struct Exception {
   std::string promise, cause;
   auto operator<=>(const Exception&) const = default;
 };
 struct Times {
-  int runs = 0, syncs = 0;         ///< syncs: both hands'
-  double worst = 0.0;              ///< N; for "outside ARM and dead-man" ticks in a row
-  std::uint64_t seed = 0;          ///< of the worst
-  std::size_t hand = 0, tick = 0;  ///< there
+  int runs = 0, syncs = 0;         ///< number of SYNCs, summed over both hands
+  double worst = 0.0;              ///< in N; for "outside ARM and dead-man" in consecutive ticks
+  std::uint64_t seed = 0;          ///< of the run with the worst value
+  std::size_t hand = 0, tick = 0;  ///< of the worst value
 };
 
-/// Of one run, or of many.
+/// Results of one run, or summed over many.
 struct Findings {
-  int runs = 0, refused = 0, pushed = 0, faulted = 0, lying = 0;  ///< refused: did not start; pushed: above 0.5 N
-  double peak_N = 0.0, step_N = 0.0;                              ///< true and within the promises: largest
+  /// refused: did not start; pushed: force above 0.5 N; lying: with encoder faults
+  int runs = 0, refused = 0, pushed = 0, faulted = 0, lying = 0;
+  double peak_N = 0.0, step_N = 0.0;  ///< largest true values within the promises
   std::map<Exception, Times> exceptions;
-  std::map<int, int> faults;  ///< number -> runs
+  std::map<int, int> faults;  ///< fault number -> number of runs
 
   void add(const Findings& other);
 };
 
 inline constexpr double kTrueForce_N = 3.4, kTrueStep_N = 0.55;
-inline constexpr int kTicksToEnd = 152;     ///< of a force after its arming or dead-man went
-inline constexpr int kTicksOfFault = 24;    ///< until the drives are free by themselves, at the latest
-inline constexpr int kTicksOfFlood = 40;    ///< the same while a stranger leaves hardly any room on the bus
-inline constexpr int kTicksOfStranger = 4;  ///< of torque that somebody else commands, from his first frame on
-inline constexpr int kTicksOfLoss = 12;     ///< in a row that a frame may be lost: 0.2^12
+inline constexpr int kTicksToEnd = 152;     ///< until a force has ended after disarming or release of the dead-man
+inline constexpr int kTicksOfFault = 24;    ///< until the drives switch off by their own watchdog, at the latest
+inline constexpr int kTicksOfFlood = 40;    ///< the same while foreign frames fill the bus
+inline constexpr int kTicksOfStranger = 4;  ///< for which a foreign torque may act after its first frame
+inline constexpr int kTicksOfLoss = 12;     ///< for which a frame may be lost in a row (probability 0.2^12)
 inline constexpr int kTicksToSee = 3;       ///< until a foreign frame is a fault in the records
 inline const std::string kUnexplained = "unexplained";
 

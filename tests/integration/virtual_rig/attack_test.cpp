@@ -1,5 +1,5 @@
-// The random attack: what the motors truly do to a hand, whatever goes wrong. LIGATURE_ATTACK_RUNS and
-// LIGATURE_ATTACK_SEED ask for other runs than the forty of every day; docs/attack.md has the result of many.
+// Random attacks: what the motors really do to a hand under random faults. LIGATURE_ATTACK_RUNS and
+// LIGATURE_ATTACK_SEED select other runs than the default forty; docs/attack.md has the results of many.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ void expect_explained(const AttackPlan& plan, const Findings& found) {
                                              << times.worst << " at tick " << times.tick << "; " << plan.text();
 }
 
-/// Periods in which a hand's motors pushed after the first fault, when its bus is flooded while it is pulled.
+/// Number of periods in which a hand's motors pushed after the first fault, when its bus is flooded during a pull.
 int ticks_of_old_torque(std::uint64_t seed, int frames_a_tick) {
   AttackPlan plan = AttackPlan::pulls(seed);
   plan.foreign.push_back(AttackPlan::flood(0, 1500, 400, frames_a_tick));
@@ -59,7 +59,7 @@ TEST(RandomAttack, NoTorqueWaitsInAQueueWhileTheBusIsFlooded) {
   }
 }
 
-/// Loose hands jump on a thread that is stiff; meanwhile an axis of the left one counts backwards.
+/// Loose hands jump while holding a stiff thread, and one axis of the left hand starts to count backwards.
 TEST(RandomAttack, AnAxisThatReversesInAHardPullKeepsToThePromises) {
   Findings all;
   for (std::uint64_t seed = 20; seed <= 40; ++seed) {
@@ -98,7 +98,7 @@ TEST(RandomAttack, EveryForceIsWithinItsPromiseOrItsCauseIsNamed) {
     all.add(found);
   }
   print(all);
-  if (runs < 30) return;  // somebody looks at a seed
+  if (runs < 30) return;  // a single seed is being examined
   EXPECT_GT(all.pushed, all.runs / 3) << "an attack on a rig that does not push says nothing";
   EXPECT_GT(all.lying, all.runs / 10);
 }

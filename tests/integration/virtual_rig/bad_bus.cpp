@@ -21,7 +21,7 @@ scene::FaultScript wrong_bits(double share, std::uint64_t seed) {
 
 BadBusEnd end_of(const BadBus& bus, std::uint64_t seed) {
   AttackPlan plan = AttackPlan::pulls(seed);
-  plan.jumps = false;  // some of those who jump by 3 cm are too fast, which is another fault
+  plan.jumps = false;  // jumps of 3 cm would cause velocity faults
   AttackedRig attacked(plan);
   lab::VirtualRig& rig = attacked.rig;
   lab::DeviceBus* const hands[] = {bus.left ? &rig.left : nullptr, bus.right ? &rig.right : nullptr};
@@ -36,7 +36,7 @@ BadBusEnd end_of(const BadBus& bus, std::uint64_t seed) {
 
   BadBusEnd end;
   for (const auto& r : rig.records) {
-    if (r.tick >= kBadBusOnset + bus.ticks) break;  // the shut-down
+    if (r.tick >= kBadBusOnset + bus.ticks) break;  // the run is being shut down
     if (end.fault == 0 && r.fault != 0) end.fault = r.fault, end.to_fault = r.tick - kBadBusOnset;
     const bool sent = std::ranges::any_of(
         r.torque_permille, [](const auto& hand) { return std::ranges::any_of(hand, [](auto t) { return t != 0; }); });

@@ -1,5 +1,5 @@
 #pragma once
-// A bus that is bad and not dead, under hands that pull hard: what becomes of the force.
+// A bus that loses or corrupts frames, with hands that pull hard: what happens to the force.
 
 #include <cstdint>
 #include <string>
@@ -8,28 +8,28 @@
 namespace ligature {
 
 struct BadBus {
-  double lost = 0.0;   ///< share of process data frames, either way
+  double lost = 0.0;   ///< share of process data frames lost, in either direction
   double wrong = 0.0;  ///< share of the drives' frames with a wrong bit
   bool left = true, right = false;
-  std::int64_t ticks = 300;  ///< to look at after the onset
+  std::int64_t ticks = 300;  ///< number of ticks evaluated after the onset
 };
 
-/// In ticks of 1 ms from the onset.
+/// Times are in ticks of 1 ms after the onset.
 struct BadBusEnd {
   int fault = 0;
   std::int64_t to_fault = -1;
   std::int64_t to_zero = 0;   ///< until no motor of the rig has torque
   bool pushed_after = false;  ///< a torque was sent after the fault
-  double peak_N = 0.0;        ///< true force at either tip after the onset
+  double peak_N = 0.0;        ///< largest true force at either tip after the onset
 };
 
 inline constexpr std::int64_t kBadBusOnset = 1500;
 
-/// One run in virtual time. The hands (AttackPlan::pulls) and what is lost come from the seed.
+/// One run in virtual time. The seed determines the hands (AttackPlan::pulls) and the losses.
 [[nodiscard]] BadBusEnd end_of(const BadBus& bus, std::uint64_t seed);
 
-/// From which share of frames lost on a hand's bus is always a fault, and within how many ticks all force is then gone;
-/// 0 where it need not be one. The ticks are those of LossWatch.ABadBus..., with the way to the motors.
+/// Ticks within which all force must be gone for this share of lost frames on a hand's bus; 0 where no fault is
+/// required. As in LossWatch.ABadBus..., plus the time to the motors.
 [[nodiscard]] std::int64_t ticks_to_zero_at(double frames_lost);
 
 }  // namespace ligature

@@ -1,5 +1,5 @@
-// Every share of lost frames: a fault where force is no longer true, in bounded time, and none on an honest rig.
-// 300 draws of each share: bad_bus_study, whose tables stand in docs/fault-matrix.md.
+// Lost frames, for all shares: a fault within bounded time where the force can no longer be correct, and none on a good
+// bus. bad_bus_study makes 300 draws of each share; its tables are in docs/fault-matrix.md.
 #include "tests/integration/virtual_rig/bad_bus.hpp"
 
 #include <gtest/gtest.h>

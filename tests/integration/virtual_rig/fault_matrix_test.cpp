@@ -1,6 +1,6 @@
-// Every script of scenes/faults against the whole rig in virtual time: what happens, to the tick.
-// A script's [fault] says what goes wrong, its [expect] what the rig has to make of it; docs/fault-matrix.md is printed
-// from both (LIGATURE_WRITE_DOCS=1 writes it anew).
+// Every script of scenes/faults with the whole rig in virtual time, exact to the tick. A script's [fault] defines what
+// goes wrong, its [expect] the required reaction; docs/fault-matrix.md is generated from both (LIGATURE_WRITE_DOCS=1
+// writes it).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ const std::string kScenes = std::string(LIGATURE_SOURCE_DIR) + "/scenes/";
 constexpr std::int64_t kOnset = 1500, kTicks = 2200;
 const std::string kByChance = "\n## A bad bus";
 
-/// A lost period's record holds the last values: nothing was commanded in it.
+/// Records of lost periods are skipped: they repeat the last values, but nothing was sent.
 bool pushes(const rt::TickRecord& r) {
   return (r.flags & rt::kPeriodLost) == 0 && std::ranges::any_of(r.torque_permille, [](const auto& hand) {
            return std::ranges::any_of(hand, [](auto t) { return t != 0; });
@@ -36,10 +36,10 @@ bool pushes(const rt::TickRecord& r) {
 
 struct Outcome {
   int fault = 0;
-  std::int64_t ticks_to_fault = -1;  // from the onset; -1 none
-  std::int64_t ticks_to_zero = 0;    // from the onset until no motor of the rig has torque
-  double peak_N = 0.0;               // true force at either tip after the onset
-  double step_N = 0.0;               // true step there, but for those by which a fault takes all force
+  std::int64_t ticks_to_fault = -1;  // after the onset; -1: no fault
+  std::int64_t ticks_to_zero = 0;    // after the onset, until no motor of the rig has torque
+  double peak_N = 0.0;               // largest true force at either tip after the onset
+  double step_N = 0.0;               // largest true step there, except where a fault removes all force
   bool pushed_before = false;
 };
 
@@ -65,7 +65,7 @@ Outcome outcome_of(const SimulatedRig& rig, std::int64_t onset) {
   return o;
 }
 
-/// Something that befalls the rig 1.5 s after the first SYNC.
+/// A fault that occurs 1.5 s after the first SYNC.
 struct Case {
   std::string name, title;
   std::optional<scene::FaultScript> script;
@@ -83,7 +83,8 @@ Case of_script(const fs::path& file) {
   return {file.stem().string(), s.title, s, false, Nanoseconds(0), s.expected_fault, s.within_ticks};
 }
 
-/// Which fault it ends in, and when, is its draw's: one draw says little, and has no row.
+/// The resulting fault and its time depend on the random draw; a single draw would not be representative, so it has no
+/// row.
 bool is_by_chance(const Case& c) { return c.script && c.script->share < 1.0 && c.fault != 0; }
 
 std::vector<Case> scripts() {
@@ -93,7 +94,7 @@ std::vector<Case> scripts() {
   return cases;
 }
 
-/// The scripts, and what is not the hand's doing.
+/// The scripts, and faults outside the hand.
 std::vector<Case> all_cases() {
   using std::chrono::milliseconds;
   std::vector<Case> cases = scripts();
@@ -111,7 +112,7 @@ void arrange(SimulatedRig& rig, const Case& c) {
   rig.stall_for = c.stall;
 }
 
-/// Torque that is not ours is taken by a fault, but not before it was there.
+/// Foreign torque is removed by a fault, but only after it has acted.
 bool others_push(const Case& c) {
   return c.script && (c.script->kind == scene::FaultKind::kAstray ||
                       (c.script->kind == scene::FaultKind::kForeign && c.script->frame == scene::ForeignFrame::kRpdo));
@@ -177,7 +178,7 @@ const std::string kHead =
     "lost. `lose-50` and `corrupt-1` end as their draw says: the last tables are of 300 draws a row.\n\n"
     "| script | what happens | fault | stated | seen |\n|---|---|---|---|---|\n";
 
-/// An encoder of the left hand that lies from 1.0 s on, while both hands pull as hard as the rig lets them.
+/// A wrong encoder of the left hand from 1.0 s on, while both hands pull with the largest force that the rig allows.
 struct Lie {
   scene::FaultKind kind;
   const char* title;
@@ -253,14 +254,15 @@ TEST(FaultMatrix, EveryCaseEndsAsItSays) {
   }
   table += lies();
   const std::string page = std::string(LIGATURE_SOURCE_DIR) + "/docs/fault-matrix.md", before = text_of(page);
-  const std::size_t by_chance = std::min(before.find(kByChance), before.size());  // that part is bad_bus_study's
+  // the rest is written by bad_bus_study
+  const std::size_t by_chance = std::min(before.find(kByChance), before.size());
   if (std::getenv("LIGATURE_WRITE_DOCS") != nullptr) std::ofstream(page) << table << before.substr(by_chance);
-  if (test::seed_shift() != 0) return;  // the page shows the draw without a shift
+  if (test::seed_shift() != 0) return;  // the page shows results without a seed shift
   EXPECT_EQ(text_of(page).substr(0, by_chance), table)
       << "docs/fault-matrix.md is old: LIGATURE_WRITE_DOCS=1 writes it anew";
 }
 
-/// Whatever is drawn: a fault, and no force after it.
+/// For every draw: a fault, and no force after it.
 TEST(FaultMatrix, WhatEndsByChanceAlwaysEndsInAFault) {
   const auto scene = std::get<scene::Scene>(scene::load_scene(kScenes + "paper.toml"));
   const auto hands = std::get<scene::GripperScript>(scene::load_gripper_script(kScenes + "operators/overhand.csv"));
@@ -288,7 +290,7 @@ TEST(FaultMatrix, WhatEndsByChanceAlwaysEndsInAFault) {
   EXPECT_EQ(found, 2U);
 }
 
-/// The drives' own watchdog: a controller that sleeps leaves no torque on for longer than it.
+/// The drives' own watchdog: when the controller stalls, no torque stays on for longer than its timeout.
 TEST(FaultMatrix, DrivesOfASleepingControllerFallFreeByThemselves) {
   SimulatedRig rig(std::get<scene::Scene>(scene::load_scene(kScenes + "paper.toml")),
                    std::get<scene::GripperScript>(scene::load_gripper_script(kScenes + "operators/overhand.csv")));

@@ -1,4 +1,5 @@
-// Somebody else on a hand's bus, and drives that push by themselves: in every state; and what must never look like it.
+// A foreign node on a hand's bus, and drives that push by themselves, in every state; and normal errors that must not
+// be mistaken for either.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +35,7 @@ struct Rig : lab::VirtualRig {
   }
 };
 
-/// Ticks from the blow to the fault, and to the last torque on any motor.
+/// Ticks from the event to the fault, and to the last torque of any motor.
 struct Found {
   Fault fault = Fault::kNone;
   std::int64_t ticks_to_fault = -1, ticks_to_zero = 0;
@@ -55,8 +56,8 @@ Found found(bool armed, double from_s, scene::FaultScript script) {
   return f;
 }
 
-/// A full bus may begin while the master's heartbeat waits for it: then NMT stop waits behind the heartbeat, and the
-/// drives let go by themselves when they have missed it for its timeout. In all 50 phases of the heartbeat.
+/// A foreign node may fill the bus while the master's heartbeat is queued. NMT stop is then queued behind it, and the
+/// drives switch off by themselves when the heartbeat's timeout is over. All 50 phases of the heartbeat are tried.
 TEST(Intruder, AFullBusRarelyHoldsUpTheStopAndNeverTheDrivesOwnWatch) {
   int held_up = 0;
   for (int phase = 0; phase < 50; ++phase) {
@@ -69,7 +70,7 @@ TEST(Intruder, AFullBusRarelyHoldsUpTheStopAndNeverTheDrivesOwnWatch) {
   EXPECT_LE(held_up, 1);
 }
 
-/// Five RPDOs a period, for ever: the drives are off the network, and take none.
+/// A foreign node sends five RPDOs per period all the time; the stopped drives must ignore them.
 TEST(Intruder, WhoKeepsCommandingTorqueGetsNoneInAnyState) {
   for (const bool armed : {false, true}) {
     for (const double from_s : {0.02, 0.2, 0.6, 1.4}) {  // CALIBRATE, IDLE or ENGAGE, ENGAGE, FORCE
@@ -101,8 +102,8 @@ TEST(Intruder, ADriveThatPushesByItselfIsFoundInAnyState) {
   }
 }
 
-/// Losses, delays, doubled and reordered frames, a drive that starts anew, orders to reset and to arm: other faults may
-/// come of them, but not these.
+/// Lost, delayed, duplicated and reordered frames, a restarting drive, and commands to reset and arm: they may cause
+/// other faults, but not these.
 TEST(Intruder, NoHonestTroubleLooksLikeOne) {
   test::Random random(92);
   const auto any = [&](int below) { return static_cast<int>(random() % static_cast<unsigned>(below)); };

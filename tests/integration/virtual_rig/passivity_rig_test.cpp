@@ -1,4 +1,5 @@
-// The device ports in the whole rig: counts, frames, one sample of delay, hands that mean ill.
+// Passivity of the device ports in the whole rig: quantised positions, CAN frames, one sample of delay, adversarial
+// hands.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,14 +15,15 @@ namespace {
 
 const std::string kScenes = std::string(LIGATURE_SOURCE_DIR) + "/scenes/";
 constexpr double kFloor_J = 1e-6;
-constexpr double kStep_N = 0.5, kRounding_N = 0.02;  // the record has the force before it became quanta of torque
+constexpr double kStep_N = 0.5, kRounding_N = 0.02;  // records hold the force before its torques are rounded
 
 scene::Scene scene_with(std::vector<std::string> overrides) {
   overrides.emplace_back("suture.nodes=12");
   return std::get<scene::Scene>(scene::load_scene(kScenes + "paper.toml", overrides));
 }
 
-/// Takes the thread's end, pulls it tight, lets it go; again and again. Abrupt: the wish jumps by `jump_m` of device.
+/// Grips the thread's end, pulls it tight and releases it, repeatedly. With `jumps` the target position jumps by the
+/// amplitude.
 class Pulling final : public sim::Intention {
  public:
   Pulling(const sim::Vec3& at, double period_s, double amplitude_m, bool jumps)
@@ -32,7 +34,7 @@ class Pulling final : public sim::Intention {
     const double phase = std::fmod(t_s - 1.0, period_s_) / period_s_;
     const double share = jumps_ ? (phase < 0.5 ? 1.0 : 0.0) : 0.5 - 0.5 * std::cos(2.0 * std::acos(-1.0) * phase);
     now.p_DH += amplitude_m_ * share * sim::Vec3(1.0, 0.3, -0.5);
-    now.grip = now.grip && std::fmod(t_s, 1.7) < 1.6;  // slips now and then
+    now.grip = now.grip && std::fmod(t_s, 1.7) < 1.6;  // releases the thread from time to time
     return now;
   }
   [[nodiscard]] double end_s() const noexcept override { return 1e9; }
@@ -46,9 +48,10 @@ class Pulling final : public sim::Intention {
 
 struct Outcome {
   double lowest_J = 0.0, peak_N = 0.0;
-  double step_N = 0.0;      ///< largest; neither a fault's nor of a hand let go
-  double let_go_N = 0.0;    ///< largest step of a hand let go: to nothing, by passivity
-  double felt_share = 0.0;  ///< of the time, once it has begun: both hands feel four fifths of what the coupling asks
+  double step_N = 0.0;    ///< largest step of force, except for faults and hands that are let go
+  double let_go_N = 0.0;  ///< largest step by which passivity lets a hand go (to zero)
+  /// share of the pulling time in which both hands feel at least four fifths of the coupling's force
+  double felt_share = 0.0;
   int fault = 0;
   int limits = 0;
 };
@@ -82,7 +85,7 @@ struct Hands {
   double tightness = 0.5;
   double period_s = 0.7, amplitude_m = 0.03;
   bool jumps = false;
-  double lead_s = 0.0;  // of an adversary
+  double lead_s = 0.0;  // prediction time of an adversarial hand
   double frame_loss = 0.0;
 };
 
@@ -106,7 +109,7 @@ Outcome play(const scene::Scene& scene, const Hands& hands, const device::Device
   return outcome_of(rig);
 }
 
-/// Ten times the shipped coupling: 720 N/m at the device, where it renders 440 stably.
+/// Ten times the shipped coupling: 720 N/m at the device, which renders 440 stably.
 std::vector<std::string> stiff() { return {"hands.coupling_N_per_m=12000", "hands.override_passivity=true"}; }
 
 TEST(PassivityRig, NoHandGetsEnergyOutOfAPort) {
@@ -154,7 +157,7 @@ TEST(PassivityRig, WithoutTheControllerOneOfThemIsAMotor) {
   EXPECT_GE(held.lowest_J, -kFloor_J);
 }
 
-TEST(PassivityRig, AnotherDeviceIsAFile) {  // three drums instead of an arm, through the same wire
+TEST(PassivityRig, AnotherDeviceIsAFile) {  // a Cartesian device instead of an arm, with the same CAN messages
   const auto device = std::get<device::Device>(device::load_device(kScenes + "devices/cartesian.toml"));
   const Outcome o = play(scene_with({}), {"a calm pull and release"}, device);
   EXPECT_EQ(o.fault, 0);

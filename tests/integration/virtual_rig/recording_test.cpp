@@ -1,4 +1,4 @@
-// What the virtual rig writes is what the host's programs read.
+// The host's programs can read what the virtual rig records.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -20,7 +20,7 @@ const std::string kScenes = std::string(LIGATURE_SOURCE_DIR) + "/scenes/";
 
 scene::Scene paper() { return std::get<scene::Scene>(scene::load_scene(kScenes + "paper.toml")); }
 
-/// Holds both tools where they start, then draws the right one aside; remembers what it saw.
+/// An operator that holds both tools at their start and then draws the right one aside; stores what it perceives.
 class Drawer final : public lab::SeeingOperator {
  public:
   std::array<sim::Vec3, 2> start_W_m() const override { return {sim::Vec3(0.2, 0, 3.0), sim::Vec3(0.2, 0, 1.5)}; }
@@ -58,7 +58,7 @@ TEST(RigRecording, ASeeingOperatorSeesEachMillisecondFeelsAndEnds) {
   for (std::size_t i = 1; i < 2000; ++i) ASSERT_NEAR(drawer.times[i] - drawer.times[i - 1], 1e-3, 1e-9) << i;
   EXPECT_EQ(drawer.nodes, rig.thread.nodes_W().size());
   EXPECT_GT(drawer.felt_N, 0.1);
-  EXPECT_NEAR(drawer.tool.x(), 3.2, 0.1);  // fingers give way to the thread by millimetres of the device
+  EXPECT_NEAR(drawer.tool.x(), 3.2, 0.1);  // the fingers yield to the thread by millimetres of the device
 }
 
 TEST(RigRecording, TheHostReadsEveryTickAndNamesTheKnot) {
@@ -76,13 +76,13 @@ TEST(RigRecording, TheHostReadsEveryTickAndNamesTheKnot) {
   EXPECT_EQ(host::describe_knot(options).substr(0, 3), "3_1") << host::describe_knot(options);
 }
 
-TEST(RigRecording, AFullDiskEndsTheRunAndIsSaid) {  // it was thrown where nothing may be: the program aborted
+TEST(RigRecording, AFullDiskEndsTheRunAndIsSaid) {  // the error must not abort the program
   Drawer drawer;
   lab::VirtualRig rig({.scene = paper()}, drawer);
   rig.record(test::temp_folder() + "full.lcmlog");
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-  const rlimit full{300'000, before.rlim_max};  // bytes of any file
+  const rlimit full{300'000, before.rlim_max};  // file size limit in bytes
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
   std::string said = "nothing";

@@ -1,5 +1,4 @@
-// A recorded run done again from its records: the same to the bit, whatever happened in it; and what shows when it is
-// not.
+// A recorded run is repeated from its records, bit by bit, whatever happened in it; and deviations are detected.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -30,9 +29,9 @@ constexpr std::int64_t kTicks = 2400, kBit = 690;
 struct Case {
   const char* file;
   std::array<std::vector<scene::GripKey>, 2> keys;
-  const char* parameter;  // changed while force flows
-  const char* other;      // override of the scene that is loaded
-  Nanoseconds cut;        // between two questions: too much for a tick
+  const char* parameter;  // override that is applied while force is on
+  const char* other;      // override of the scene that replaces the first one
+  Nanoseconds cut;        // duration of each piece of the thread's work, too long for a tick
 };
 
 const Case kPaper{"paper.toml",
@@ -69,7 +68,7 @@ lab::RigSetup setup_of(const Case& c) {
   return setup;
 }
 
-/// A rig in which everything happens that a record can tell.
+/// A rig in which every kind of recorded event occurs.
 struct EventfulRig : lab::VirtualRig {
   EventfulRig(const Case& c, std::uint64_t seed) : VirtualRig(setup_of(c), script_of(c)), what(c), random(seed) {
     cycle.listen(plants);
@@ -111,7 +110,7 @@ struct EventfulRig : lab::VirtualRig {
   scene::Scene next;
 };
 
-/// All that shall be in the recording is there.
+/// Checks that all these events are in the recording.
 void expect_eventful(const EventfulRig& rig) {
   std::int64_t lost = 0, late = 0, cut = 0, held = 0, several = 0, bent = 0;
   for (const auto& r : rig.records) {
@@ -146,7 +145,7 @@ std::string recorded(const Case& c, const std::string& name) {
   return log;
 }
 
-/// Changes a recording, message by message; false leaves one out.
+/// Copies a recording and applies `change` to each message; a message is left out if it returns false.
 template <class Change>
 std::string changed(const std::string& log, const std::string& name, Change change) {
   const std::string to = test::temp_folder() + name;

@@ -1,5 +1,5 @@
 #pragma once
-// The virtual rig as the tests use it: armed, the scene's own hands, a script.
+// The virtual rig as tests use it: armed, with the scene's own hands, playing a script.
 
 #include "host/lab/rig/virtual_rig.hpp"
 #include "protocol/scene/scene_file.hpp"

@@ -1,5 +1,5 @@
-// Both hands on the real suture through the whole chain: what they feel is what it does to the jaws; it goes from hand
-// to hand under load; a hand reaches round with the clutch. Virtual time.
+// Both hands on the realistic suture through the whole chain, in virtual time: the felt force is the thread's force on
+// the jaws; the thread is passed from hand to hand under load; the clutch extends a hand's reach.
 
 #include <gtest/gtest.h>
 
@@ -11,12 +11,12 @@
 namespace ligature {
 namespace {
 
-constexpr double kThread_N_per_m = 1000.0;                            // the scene's spring on the thread's side,
-constexpr double kDevice_N_per_m = kThread_N_per_m * 500.0 / 1500.0;  // and both in a row
-constexpr double kHand_N_per_m = 800.0;                               // of the simulated hand
+constexpr double kThread_N_per_m = 1000.0;                            // coupling on the thread's side,
+constexpr double kDevice_N_per_m = kThread_N_per_m * 500.0 / 1500.0;  // and in series with the device's side
+constexpr double kHand_N_per_m = 800.0;                               // stiffness of the simulated hand
 constexpr double kEA_N = 71.0, kTop_m = 0.35;
-constexpr double kStep_N = 0.5;  // the device record's
-constexpr int kNearTop = 5;      // a segment that no hand comes near
+constexpr double kStep_N = 0.5;  // step limit of the device file
+constexpr int kNearTop = 5;      // a segment that no hand touches
 
 using Keys = std::vector<scene::GripKey>;
 
@@ -27,7 +27,7 @@ scene::Scene suture(const std::vector<std::string>& overrides = {}) {
 double size(const rt::Triple& f) { return std::hypot(f[0], f[1], f[2]); }
 double apart(const rt::Triple& a, const rt::Triple& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
-/// A script played, and the tension next to the anchor after each of the rig's records.
+/// A played script, and the tension next to the anchor at each record.
 struct Played {
   Played(const scene::Scene& scene, Keys left, Keys right, std::function<void(SimulatedRig&, double)> each = {})
       : rig(scene, script_of(std::move(left), std::move(right))), tension_N(scene.suture.nodes) {
@@ -54,7 +54,7 @@ struct Played {
   }
   [[nodiscard]] double tension_at(double t_s) const { return top_N[tick_at(t_s)]; }
   [[nodiscard]] const rt::TickRecord& at(double t_s) const { return rig.records[tick_at(t_s) - 1]; }
-  /// The largest change of what is sent, from one period to the next.
+  /// The largest change of the force that is sent, from one period to the next.
   [[nodiscard]] double step_N(std::size_t hand, double from_s = 0.0, double to_s = 1e9) const {
     double most = 0.0;
     for (std::size_t k = std::max<std::size_t>(tick_at(from_s), 1); k < std::min(tick_at(to_s), rig.records.size());
@@ -68,19 +68,20 @@ struct Played {
   std::vector<double> top_N, at_s;
 };
 
-/// Tension of a thread of that length, pulled by a hand that means to be `way_m` beyond its unstretched place.
+/// Expected tension of a thread of that length when a hand's target is `way_m` beyond the unstretched position.
 double pulled_N(double way_m, double length_m) {
   return way_m / (length_m / kEA_N + 1.0 / kDevice_N_per_m + 1.0 / kHand_N_per_m);
 }
 
-/// The jaws hold several nodes, none of which need be in their middle, and the couple that holds the thread's direction
-/// is shared among them: none of that is a force on the hand.
+/// The jaws hold several nodes, not centred between them, which share the moment that holds the thread's direction.
+/// None of this may appear as a force on the hand.
 TEST(SutureHands, FeelWhatTheThreadDoesToTheJaws) {
   struct Pull {
     double way_m;
     std::vector<std::string> overrides;
   };
-  for (const auto& [way_m, overrides] : {Pull{0.004, {}}, Pull{0.02, {"hands.pinch_force_N=0.5"}}}) {  // slips at 0.3 N
+  // the second thread slips at 0.3 N
+  for (const auto& [way_m, overrides] : {Pull{0.004, {}}, Pull{0.02, {"hands.pinch_force_N=0.5"}}}) {
     const Played p(suture(overrides),
                    {{0.0, {0.0, 0.0, 0.20}, false},
                     {0.3, {0.0, 0.0, 0.20}, true},
@@ -98,12 +99,12 @@ TEST(SutureHands, FeelWhatTheThreadDoesToTheJaws) {
                 size(p.at(2.4).f_world_N[0]), size(p.at(2.4).f_world_N[1]), p.tension_at(2.4));
     EXPECT_LT(off_N, 0.002);
     EXPECT_NEAR(p.at(2.4).f_wish_N[0][2], p.tension_at(2.4), 0.01 * p.tension_at(2.4));
-    EXPECT_LT(size(p.at(2.4).f_wish_N[1]), 0.02);  // it holds the slack half
+    EXPECT_LT(size(p.at(2.4).f_wish_N[1]), 0.02);  // it holds the slack part
   }
 }
 
-/// The free end, a fifth of a millinewton, carried along. The coupling knows it where it was a tick before: a drag of
-/// K_t T v, which takes energy; taken to be where it is by now, the ports gave energy out.
+/// The free end weighs a fifth of a millinewton. The coupling uses its position of the previous tick, which acts as a
+/// drag of K_t T v and absorbs energy; an extrapolated position would make the ports deliver energy.
 TEST(SutureHands, CarryAnEndThatWeighsNothing) {
   const Played p(suture(), {},
                  {{0.0, {0.0, 0.0, 0.06}, false},
@@ -122,7 +123,7 @@ TEST(SutureHands, CarryAnEndThatWeighsNothing) {
   EXPECT_NEAR(felt_N, kThread_N_per_m * 1e-3 * speed_m_per_s, 0.03 * felt_N);
 }
 
-/// The right hand takes it above the left one, draws until the tension would be the same without the left one, which
+/// The right hand grips above the left one and draws until the tension would be the same without the left hand, which
 /// then lets go.
 TEST(SutureHands, HandTheThreadOverUnderLoad) {
   constexpr double kClosed_s = 2.6, kBoth_s = 4.4, kOpen_s = 4.5, kWay_m = 0.0042;
@@ -143,7 +144,7 @@ TEST(SutureHands, HandTheThreadOverUnderLoad) {
                   {5.5, {0.0, 0.0, kPlace_m - kWay_m}, true}});
   const double before_N = p.tension_at(2.5), both_N = p.tension_at(kBoth_s), after_N = p.tension_at(5.4);
   EXPECT_NEAR(before_N, pulled_N(0.007, 0.2), 0.05 * before_N);
-  // Closed, the right hand's own spring stands where the thread was stretched to.
+  // When the right hand closes, its spring is at rest at the stretched thread's position.
   EXPECT_NEAR(after_N, pulled_N(kWay_m + before_N * kLength_m / kEA_N, kLength_m), 0.03 * after_N);
   const auto range = std::minmax_element(p.top_N.begin() + static_cast<std::ptrdiff_t>(p.tick_at(2.5)),
                                          p.top_N.begin() + static_cast<std::ptrdiff_t>(p.tick_at(5.4)));
@@ -152,17 +153,17 @@ TEST(SutureHands, HandTheThreadOverUnderLoad) {
   EXPECT_GT(*range.first, 0.97 * before_N);
   EXPECT_LT(*range.second, 1.01 * both_N);
   EXPECT_LT(both_N, 1.5 * before_N);
-  // What each hand feels.
+  // Force that each hand feels.
   EXPECT_NEAR(size(p.at(2.5).f_device_N[0]), before_N, 0.01 * before_N);
   EXPECT_NEAR(size(p.at(5.4).f_device_N[1]), after_N, 0.01 * after_N);
-  EXPECT_LT(size(p.at(2.9).f_wish_N[1]), 0.01 * before_N);  // closing is no tug
-  EXPECT_GT(size(p.at(kBoth_s).f_device_N[0]), kStep_N);    // so letting go is more than one step
+  EXPECT_LT(size(p.at(2.9).f_wish_N[1]), 0.01 * before_N);  // closing causes no force
+  EXPECT_GT(size(p.at(kBoth_s).f_device_N[0]), kStep_N);    // letting go is more than one step of the step limit
   for (std::size_t h = 0; h < 2; ++h) EXPECT_LE(p.step_N(h), kStep_N) << h;
   EXPECT_EQ(size(p.at(kOpen_s + 0.05).f_device_N[0]), 0.0);
 }
 
-/// Beside a thread that the left hand has drawn taut the right hand closes 14 mm off: out of reach it holds nothing;
-/// within, what it feels grows to what the taut thread pulls it back by, T x / l to either side.
+/// Beside a thread that the left hand holds taut, the right hand closes 14 mm away from it. Out of reach it holds
+/// nothing; within reach its force grows gradually to the taut thread's pull, T x / l to either side.
 TEST(SutureHands, CloseFarOffWithoutAStep) {
   constexpr double kOff_m = 0.014, kClosed_s = 2.6;
   for (const bool within : {false, true}) {
@@ -177,7 +178,7 @@ TEST(SutureHands, CloseFarOffWithoutAStep) {
     const rt::TickRecord& last = p.at(4.4);
     EXPECT_TRUE(last.grip[1]);
     EXPECT_EQ(last.grasped_node[1] >= 0, within);
-    double wish_step_N = 0.0;  // what it would be without gain, limits and passivity
+    double wish_step_N = 0.0;  // the coupling's force before gain, limits and passivity
     for (std::size_t k = p.tick_at(kClosed_s - 0.1); k < p.tick_at(4.4); ++k)
       wish_step_N = std::max(wish_step_N, apart(p.rig.records[k].f_wish_N[1], p.rig.records[k - 1].f_wish_N[1]));
     std::printf("closed 14 mm off: feels %.3f N of %.3f, in steps of %.3f N (%.3f asked); the other hand %.3f N\n",
@@ -186,13 +187,13 @@ TEST(SutureHands, CloseFarOffWithoutAStep) {
     EXPECT_EQ(size(last.f_wish_N[1]) > 0.1, within);
     EXPECT_EQ(size(last.f_wish_N[1]) == 0.0, !within);
     EXPECT_LT(wish_step_N, 0.03);
-    // Passivity holds back what is not earned yet, and lets it go at the slew limit, 0.15 N a tick; how much of it the
-    // joints may make in any pose changes from tick to tick, too, and adds up to an eighth.
+    // Passivity withholds force that is not paid for yet and releases it at the slew limit, 0.15 N per tick. The limit
+    // on torques in any pose also changes from tick to tick, by up to an eighth.
     for (std::size_t h = 0; h < 2; ++h) EXPECT_LT(p.step_N(h, kClosed_s - 0.1, 4.4), 0.175) << h;
   }
 }
 
-/// A hand that has come to its workspace's end presses the clutch, reaches back, and draws on from there.
+/// A hand at the end of its workspace presses the clutch, moves back, and continues the pull.
 TEST(SutureHands, ReachRoundWithTheClutch) {
   constexpr double kPress_s = 2.0, kRelease_s = 3.5, kLength_m = 0.2;
   sim::Vec3 hand_m[2];
@@ -215,14 +216,14 @@ TEST(SutureHands, ReachRoundWithTheClutch) {
                  {}, clutch);
   const double before_N = p.tension_at(1.9), felt_N = size(p.at(1.9).f_device_N[0]);
   EXPECT_NEAR(before_N, pulled_N(0.0028, kLength_m), 0.05 * before_N);
-  EXPECT_GT(felt_N, 0.2);  // of a slow pull passivity keeps back a share
+  EXPECT_GT(felt_N, 0.2);  // passivity withholds a share in a slow pull
   EXPECT_GT((hand_m[0] - hand_m[1]).norm(), 0.04);
   for (std::size_t k = p.tick_at(kPress_s + 0.1); k + 2 < p.tick_at(kRelease_s); ++k) {
     ASSERT_EQ(p.rig.records[k].p_WT_m[0], p.at(kPress_s + 0.1).p_WT_m[0]);
     ASSERT_NEAR(p.top_N[k], before_N, 0.005 * before_N);
     ASSERT_EQ(size(p.rig.records[k].f_device_N[0]), 0.0);
   }
-  // The force is back, and the hand has given way to it.
+  // The force is back, and the hand has yielded to it.
   const double again_N = size(p.at(4.9).f_device_N[0]), after_N = p.tension_at(4.9);
   const double gave_way_N = again_N / kHand_N_per_m / (kLength_m / kEA_N + 1.0 / kDevice_N_per_m);
   std::printf("clutch: %.3f N, felt %.3f; then %.3f, felt %.3f; largest step %.3f N\n", before_N, felt_N, after_N,
@@ -230,7 +231,7 @@ TEST(SutureHands, ReachRoundWithTheClutch) {
   EXPECT_GT(again_N, 0.7 * felt_N);
   EXPECT_NEAR(after_N, before_N - gave_way_N, 0.02 * before_N);
   EXPECT_LT(apart(p.at(4.9).p_WT_m[0], p.at(1.9).p_WT_m[0]), 5e-4);
-  EXPECT_LT(p.step_N(0, 1.9), 0.05);  // by the gain, at either end
+  EXPECT_LT(p.step_N(0, 1.9), 0.05);  // limited by the gain at both ends
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Throws through the whole chain, where hands give way as hands do.
+// Throws through the whole chain, where the simulated hands yield to the force.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace ligature::lab {
 namespace {
 
-/// Ties until a move begins, by name.
+/// An operator that ties until the named move begins.
 class Until final : public SeeingOperator {
  public:
   Until(sim::KnotTier tier, std::string move) : tier_(std::move(tier)), move_(std::move(move)) {
@@ -25,7 +25,7 @@ class Until final : public SeeingOperator {
   }
   [[nodiscard]] bool is_done() const override { return !shape.empty() || tier_.is_done(); }
 
-  std::vector<std::array<double, 3>> shape;  ///< of the thread when it began
+  std::vector<std::array<double, 3>> shape;  ///< of the thread when that move began
 
  private:
   sim::KnotTier tier_;
@@ -33,7 +33,7 @@ class Until final : public SeeingOperator {
   std::array<sim::Vec3, 2> start_W_{};
 };
 
-/// The knot in the thread when the operator comes to `move`, "done" at the last.
+/// The knot in the thread when the operator begins `move`; "done": at the end.
 std::string knot_before(const char* move, const char* name, const char* knot, std::uint32_t seed,
                         const std::vector<std::string>& overrides = {}) {
   const std::string file = std::string(LIGATURE_SOURCE_DIR "/scenes/") + name;
@@ -48,21 +48,21 @@ std::string knot_before(const char* move, const char* name, const char* knot, st
   return found.type + " " + found.handedness;
 }
 
-/// Where the end goes through it must come to the front well inside the loop: beside the corner's strand it came out
-/// behind that strand as often as in front of it, and a turn was missing (5 of 8).
+/// The end must pass to the front well inside the loop. Next to the strand at the corner it came out behind that strand
+/// in half of the cases, and a turn was missing (5 of 8).
 TEST(Tying, AFirstThrowOfTwoTurnsInTheSutureHasTwoTurns) {
   for (const std::uint32_t seed : {57U, 60U, 62U})
     EXPECT_EQ(knot_before("draw through", "suture-3-0.toml", "surgeon", seed), "5_1 right") << seed;
 }
 
-/// A whole turn about the standing part is dragged over the corner; round the arch's lower strand it stays. Bends set:
-/// an elastic figure-eight opens at this friction.
+/// A whole turn about the standing part would be dragged over the corner; round the lower strand of the arch it stays.
+/// Bending is plastic here, since an elastic figure-eight opens at this friction.
 TEST(Tying, AFigureEightInTheSutureIsOneAndStays) {
   EXPECT_EQ(knot_before("draw through", "suture-3-0.toml", "figure-eight", 1), "4_1 amphichiral");
   EXPECT_EQ(knot_before("done", "suture-3-0.toml", "figure-eight", 2, {"suture.yield_strain=0.1"}), "4_1 amphichiral");
 }
 
-/// What scripts/make-operators made, played without looking by hands that begin apart from each other.
+/// A script written by scripts/make-operators, played without feedback, with hands at other start positions.
 TEST(Tying, AScriptOfTheSutureTies) {
   RigSetup setup;
   setup.scene = std::get<scene::Scene>(scene::load_scene(LIGATURE_SOURCE_DIR "/scenes/suture-3-0.toml", {}));
@@ -77,7 +77,8 @@ TEST(Tying, AScriptOfTheSutureTies) {
   EXPECT_EQ(found.type + " " + found.handedness, "3_1 right");
 }
 
-/// Without bend damping a thread let go where it was drawn, nearly level, whipped its second throw open (9 of 20).
+/// Without bend damping, a nearly level thread that is released where it was drawn could whip its second throw open (9
+/// of 20).
 TEST(Tying, ASquareKnotStaysInAnUndampedThread) {
   for (const std::uint32_t seed : {3U, 7U})
     EXPECT_EQ(knot_before("done", "paper.toml", "square", seed, {"suture.model=\"paper-2\""}), "3_1#3_1 amphichiral")

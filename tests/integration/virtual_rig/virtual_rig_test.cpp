@@ -1,4 +1,4 @@
-// The whole rig without wall-clock time: everything that is luck on a loaded machine is exact here.
+// The whole rig in virtual time: results that depend on timing on a real machine are exact here.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -99,11 +99,12 @@ TEST(VirtualRig, ARunThatEndsInForceLeavesEveryDriveOff) {
   }
 }
 
-/// A simulated operator lets go of the dead-man while the drives are off: force comes back after a fault.
+/// A simulated operator releases the dead-man while the drives are off, so force can return after the fault.
 TEST(VirtualRig, AFaultIsLeftByResetArmAndANewPress) {
   SimulatedRig rig(paper(), overhand());
   rig.left.faults.emplace(
-      std::get<scene::FaultScript>(scene::load_fault_script(kScenes + "faults/emergency.toml")));  // at 1.5 s
+      // the fault is at 1.5 s
+      std::get<scene::FaultScript>(scene::load_fault_script(kScenes + "faults/emergency.toml")));
   rig.each_tick = [&] {
     if (rig.cycle.periods() == 1700) rig.outlets->commands.push({1, rt::CommandKind::kResetFault});
     if (rig.cycle.periods() == 2100) rig.outlets->commands.push({2, rt::CommandKind::kArm});
