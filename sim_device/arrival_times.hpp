@@ -1,6 +1,6 @@
 #pragma once
-// When frames came that were read late. The simulated wire must not be slow because this process was: frames that piled
-// up in the socket get back the beat they were sent with.
+// Reconstructs arrival times of frames that this process read late, so that a delay of the process does not delay the
+// simulated bus.
 
 #include <algorithm>
 #include <span>
@@ -12,9 +12,10 @@
 
 namespace ligature::sim {
 
-/// Arrival times of what one client sent between two looks at its socket. With at most one SYNC among them all came
-/// now. With n SYNCs, whole periods were slept through: the last SYNC came now, each one before it a period earlier,
-/// and every frame with the SYNC it follows; never before `last_look`. Times do not decrease.
+/// Arrival times of the frames that a client sent between two reads of its socket. With at most one SYNC among them:
+/// all `now`. With n SYNCs the process missed whole periods: the last SYNC arrived now, each earlier one a period
+/// before, and every other frame together with the SYNC before it; never earlier than `last_look`. Times do not
+/// decrease.
 [[nodiscard]] inline std::vector<Time> arrival_times(std::span<const Received> frames, Time last_look, Time now,
                                                      Time period) {
   auto to_come = std::count_if(frames.begin(), frames.end(), [](const Received& r) { return can::is_sync(r.frame); });

@@ -41,7 +41,7 @@ void CanPort::receive(std::vector<Received>& frames, std::vector<int>&) {
 }
 
 void CanPort::send(const can::Frame& frame, int except_client) {
-  if (except_client == 0) return;  // the bus itself has passed it on
+  if (except_client == 0) return;  // a frame from the bus has already reached all its nodes
   const can::LocalPacket image = can::to_packet(frame);
   if (write(socket_.get(), image.data(), image.size()) < 0) ++dropped_;
 }

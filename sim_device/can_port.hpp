@@ -1,6 +1,5 @@
 #pragma once
-// `socketcan:` bus: one raw CAN socket of the kernel. The kernel is the only client; who is behind it, it does not
-// tell.
+// `socketcan:` bus: one raw CAN socket. The bus counts as a single client, because CAN frames do not name their sender.
 
 #include "sim_device/file_descriptor.hpp"
 #include "sim_device/port.hpp"

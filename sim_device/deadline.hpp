@@ -1,11 +1,11 @@
 #pragma once
-// A point in time that may come. Time is an argument everywhere in the simulated device: tests own the clock.
+// A deadline that may be armed. The simulated device takes time as an argument everywhere, so that tests control it.
 
 #include <chrono>
 
 namespace ligature::sim {
 
-using Time = std::chrono::nanoseconds;  ///< since any fixed origin; the running device uses CLOCK_MONOTONIC
+using Time = std::chrono::nanoseconds;  ///< since any fixed origin; the real program uses CLOCK_MONOTONIC
 inline constexpr Time kNever = Time::max();
 
 class Deadline {

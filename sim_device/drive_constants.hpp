@@ -1,5 +1,5 @@
 #pragma once
-// What a drive says of itself in its object dictionary, and what its counts and per mille are worth.
+// Constants of a drive: values in its object dictionary, and the scale of its counts and per mille.
 
 #include <cstdint>
 #include <numbers>
@@ -13,7 +13,7 @@ struct DriveConstants {
   std::uint32_t rated_torque_mNm = can::profile::kRatedTorque_mNm;
   std::int32_t max_torque_permille = can::profile::kMaxTorque_permille;
 
-  /// Of an absolute encoder whose count 0 is angle 0; nearest count.
+  /// Counts of an absolute encoder whose count 0 is angle 0, rounded.
   [[nodiscard]] std::int32_t counts_of(double angle_rad) const noexcept {
     const double rad_per_count = 2.0 * std::numbers::pi / counts_per_revolution;
     return can::round_clipped(angle_rad / rad_per_count, 0x3FFF'FFFF);

@@ -24,7 +24,7 @@ void DriveNode::power_off() noexcept {
   state_ = State::kNotReadyToSwitchOn;
 }
 
-/// The way into pre-operational: the node says boot-up once and forgets what the bus told it.
+/// Enters pre-operational: sends boot-up once and discards all earlier commands.
 void DriveNode::boot(Time now, std::vector<can::Frame>& out) {
   take_torque_away();
   received_ = acting_ = can::Rpdo1{};
@@ -63,7 +63,7 @@ void DriveNode::on_frame(const can::Frame& frame, Time now, const Sensed& sensed
     case can::Service::kEmcy:
     case can::Service::kTpdo1:
     case can::Service::kSdoResponse:
-      break;  // of other nodes
+      break;  // sent by other nodes
   }
 }
 
@@ -86,7 +86,7 @@ void DriveNode::on_nmt(const can::NmtMessage& message, Time now, std::vector<can
       boot(now, out);
       break;
   }
-  // Outside operational nobody commands the drive: it is disabled, not faulted, and waits to be enabled again.
+  // Outside operational no RPDO is obeyed: the drive is disabled without a fault, and must be enabled again.
   take_torque_away();
   rpdo_watch_.disarm();
   has_received_ = false;
@@ -105,7 +105,7 @@ void DriveNode::on_sync(const Sensed& sensed, std::vector<can::Frame>& out) {
     has_received_ = false;
     act_on(received_, out);
   } else if (state_ == State::kOperationEnabled) {
-    ++stats_.syncs_without_rpdo;  // the last torque holds until the watchdog takes it away
+    ++stats_.syncs_without_rpdo;  // the last torque continues until the watchdog removes it
   }
 }
 
@@ -120,7 +120,8 @@ void DriveNode::on_rpdo(const can::Rpdo1& rpdo, Time now) {
 void DriveNode::act_on(const can::Rpdo1& rpdo, std::vector<can::Frame>& out) {
   if (const auto event = cia402::event_of(acting_.controlword, rpdo.controlword)) react(*event, out);
   acting_ = rpdo;
-  if (state_ == State::kQuickStopActive) react(Event::kDisableVoltage, out);  // 0x605A = 0: stop by taking torque away
+  // 0x605A = 0: quick stop removes the torque at once
+  if (state_ == State::kQuickStopActive) react(Event::kDisableVoltage, out);
   if (!cia402::may_produce_torque(state_)) return take_torque_away();
   const auto limit = static_cast<std::int16_t>(objects_.value(od::kMaxTorque));
   torque_permille_ = std::clamp(rpdo.target_torque_permille, static_cast<std::int16_t>(-limit), limit);
@@ -152,7 +153,7 @@ void DriveNode::on_sdo(const can::Sdo& request, Time now, std::vector<can::Frame
     const auto period = milliseconds(objects_.value(od::kProducerHeartbeat));
     period > milliseconds(0) ? own_heartbeat_.arm(now + period) : own_heartbeat_.disarm();
   }
-  if (request.object == od::kConsumerHeartbeat) master_watch_.disarm();  // the watch starts with the first heartbeat
+  if (request.object == od::kConsumerHeartbeat) master_watch_.disarm();  // monitoring starts with the first heartbeat
 }
 
 void DriveNode::on_master_heartbeat(Time now) {
@@ -181,12 +182,12 @@ Time DriveNode::next_deadline() const noexcept {
   return std::min({rpdo_watch_.at(), master_watch_.at(), own_heartbeat_.at()});
 }
 
-/// The link is gone: torque away first, then the fault is latched and told.
+/// Connection lost: removes the torque first, then latches and reports the fault.
 void DriveNode::trip(std::uint16_t code, std::vector<can::Frame>& out) {
   take_torque_away();
   ++stats_.watchdog_trips;
   has_received_ = false;
-  if (state_ == State::kFault) return;  // already told
+  if (state_ == State::kFault) return;  // already reported
   react(Event::kFaultDetected, out);
   react(Event::kFaultReactionDone, out);
   const std::uint8_t error_register = can::emcy::kGenericBit | can::emcy::kCommunicationBit;

@@ -15,7 +15,7 @@ enum class CommandKind : std::int8_t {
   kStop = 3,
   kResetFault = 4,
   kResetThread = 5,
-  kClutchLeft = 9,  ///< 6 to 8 are handled elsewhere and never reach the loop
+  kClutchLeft = 9,  ///< 6 and 7 (load-scene, set) are handled by telemetry; 8 is unused
   kUnclutchLeft = 10,
   kClutchRight = 11,
   kUnclutchRight = 12,

@@ -1,5 +1,6 @@
 #pragma once
-// Every tick on this machine's disk, whatever becomes of the network, the host, this process or the disk's patience.
+// Flight recorder: stores every tick on this machine's disk, independent of network and host, also if the process
+// crashes.
 
 #include <atomic>
 #include <chrono>
@@ -19,58 +20,58 @@
 
 namespace ligature::telemetry {
 
-/// What became of ticks, for people.
+/// A message for people about recorded or lost ticks.
 struct FlightNote {
   std::int64_t tick = 0;
-  std::int32_t fault = 0;  ///< whose ticks were saved; 0: ticks are missing
+  std::int32_t fault = 0;  ///< fault whose preceding ticks were saved; 0: ticks are missing
   std::string text;
 };
 
-/// A ring of memory that the loop writes into, a thread that takes it to the disk, and a thread that asks the disk to
-/// keep up.
+/// A ring in memory that the loop writes, a thread that copies it to the file, and a thread that syncs the file.
 ///
 ///   loop --inlet(), 60 s of ticks--> writer --pwrite, every 5 ms--> page cache --fdatasync, every 0.5 s--> disk
 ///
-/// The loop never waits; neither does telemetry, which has a ring of its own. What is in the page cache survives
-/// SIGKILL of any process, what is synced a power cut. A disk that stands still for longer than the ring lasts costs
-/// ticks: counted, named in a note, and a hole in the numbers of the file. A new fault saves the ticks before it to a
-/// file of their own; that is noted, too.
+/// The loop never waits, nor does telemetry, which has a ring of its own. Data in the page cache survives SIGKILL of
+/// any process; synced data survives a power cut. If the disk blocks for longer than the ring lasts, ticks are lost:
+/// they are counted, reported in a note, and leave a gap in the file's tick numbers. On a new fault the ticks before it
+/// are also saved to a separate file, and a note reports it.
 class FlightRecorder {
  public:
-  static constexpr std::size_t kRoom = 60'000;  ///< ticks in memory, 45 MB
+  static constexpr std::size_t kRoom = 60'000;  ///< ticks buffered in memory, 45 MB
   static constexpr std::int64_t kTicksPerFault = 2000;
-  static constexpr int kMaxNotesOfLoss = 100;  ///< a run; all are counted
+  static constexpr int kMaxNotesOfLoss = 100;  ///< per run; further losses are only counted
 
-  /// @param slots ticks to keep. @return the recorder, or one line that says why there is none (no room, no right,
-  /// another process records into this file).
+  /// @param slots number of ticks to keep. @return the recorder, or one line that says why there is none (no space, no
+  /// permission, another process records into this file).
   [[nodiscard]] static std::variant<std::unique_ptr<FlightRecorder>, std::string> open(const std::string& path,
                                                                                        const FlightFacts& facts,
                                                                                        std::int64_t slots);
-  /// @param path of the file, for its neighbours. @param room ticks in memory.
+  /// @param path of the file; saved ticks are put beside it. @param room ticks buffered in memory.
   FlightRecorder(std::unique_ptr<Disk> disk, const std::string& path, const recorder::Header& header,
                  std::size_t room = kRoom);
   ~FlightRecorder() { finish(); }
   FlightRecorder(const FlightRecorder&) = delete;
   FlightRecorder& operator=(const FlightRecorder&) = delete;
 
-  /// Where one thread, the loop, puts its records; their ticks count from 0 on.
+  /// Ring into which one thread, the loop, pushes its records; their ticks start at 0.
   [[nodiscard]] rt::SpscRing<rt::TickRecord>& inlet() noexcept { return inlet_; }
 
-  /// A change of scene is under way: the loop may have taken it before scene_changed() says so. What is saved with a
-  /// fault waits for that, for a moment at most. Any thread; never waits for the disk.
+  /// Announces that a change of scene is in progress (the loop may already have it) or over. Ticks saved with a fault
+  /// meanwhile wait up to 0.1 s for scene_changed(), so that they name the right scene. Any thread; never waits for the
+  /// disk.
   void expect_scene(bool expected);
-  /// Another scene or parameter is in force since its first tick. Any thread; never waits for the disk.
+  /// Reports a new scene or parameter with its first tick. Any thread; never waits for the disk.
   void scene_changed(FlightScene scene);
 
-  /// After the last record: returns when all are on the disk. The second time it does nothing.
+  /// Call after the last record: returns when all records are on the disk. A second call does nothing.
   void finish();
 
-  /// What has happened since the last call. Any thread; never waits for the disk.
+  /// Notes since the last call. Any thread; never waits for the disk.
   [[nodiscard]] std::vector<FlightNote> take_notes();
 
-  /// Ticks that are not in the file and never will be. Any thread.
+  /// Ticks that are lost for the file. Any thread.
   [[nodiscard]] std::int64_t missing() const noexcept { return missing_.load(std::memory_order_relaxed); }
-  /// What a power cut would have cost at the worst moment, beside the half second between two of them. Any thread.
+  /// Longest duration of a sync. A power cut loses at most this time plus the 0.5 s between syncs. Any thread.
   [[nodiscard]] std::chrono::milliseconds slowest_sync() const noexcept {
     return std::chrono::milliseconds(slowest_sync_ms_.load(std::memory_order_relaxed));
   }
@@ -90,14 +91,14 @@ class FlightRecorder {
   std::unique_ptr<Disk> disk_;
   FlightSlots slots_;
   rt::SpscRing<rt::TickRecord> inlet_;
-  // of the writer
+  // Used by the writer only.
   std::vector<rt::TickRecord> batch_;
   std::int64_t next_tick_ = 0, holes_ = 0;
   std::int16_t fault_ = 0;
   int notes_of_loss_ = 0;
-  // of all
+  // Used by several threads.
   std::atomic<std::int64_t> missing_{0}, slowest_sync_ms_{0};
-  std::mutex mutex_;  // of what follows; held for a moment only, never over a call to the disk
+  std::mutex mutex_;  // protects the members below; held only briefly, never during a disk operation
   std::condition_variable wake_;
   bool ending_ = false, scene_expected_ = false;
   std::vector<FlightScene> scenes_;

@@ -9,20 +9,20 @@
 namespace ligature::telemetry {
 namespace {
 
-constexpr std::size_t kAtOnce = 64;  // slots a write: 32 kB
+constexpr std::size_t kAtOnce = 64;  // slots per write: 32 kB
 
-/// One slot, all of it.
+/// Encodes a record as a complete slot: head, payload, zero padding.
 void encode(const rt::TickRecord& record, std::uint64_t sequence, std::span<std::byte> slot) {
   const auto payload = slot.subspan(sizeof(recorder::SlotHead));
   const int n = to_message(record)._encodeNoHash(payload.data(), 0, static_cast<int>(payload.size()));
-  const auto bytes = static_cast<std::size_t>(n);  // never too little room: slot_bytes_for() was asked
+  const auto bytes = static_cast<std::size_t>(n);  // always fits: the slot size comes from slot_bytes_for()
   std::ranges::fill(payload.subspan(bytes), std::byte{0});
   recorder::SlotHead head{sequence, static_cast<std::uint32_t>(bytes), 0};
   head.crc = recorder::crc_of(head, payload.first(bytes));
   std::memcpy(slot.data(), &head, sizeof head);
 }
 
-/// The tick of slot 0: the first field of a tick_t, big-endian.
+/// Tick of slot 0: the first field of a tick_t, big-endian.
 std::int64_t first_tick_in(std::span<const std::byte> image) {
   std::uint64_t tick = 0;
   for (const auto byte : image.subspan(recorder::kHeaderBytes + sizeof(recorder::SlotHead), 8))
@@ -34,7 +34,7 @@ std::int64_t first_tick_in(std::span<const std::byte> image) {
 
 recorder::Header header_of(const FlightFacts& facts, std::int64_t slots) {
   recorder::Header h;
-  std::memset(static_cast<void*>(&h), 0, sizeof h);  // gaps between members count in the CRC
+  std::memset(static_cast<void*>(&h), 0, sizeof h);  // padding between members is part of the CRC
   h.magic = recorder::kMagic;
   h.version = recorder::kVersion;
   h.slot_bytes = recorder::slot_bytes_for(static_cast<std::size_t>(ligature_msg::tick_t{}._getEncodedSizeNoHash()));
@@ -85,7 +85,7 @@ std::size_t FlightSlots::append(std::span<const rt::TickRecord> records) {
 
 void FlightSlots::add(const FlightScene& scene) {
   recorder::SceneEntry& e = scenes_.emplace_back();
-  std::memset(static_cast<void*>(&e), 0, sizeof e);  // gaps between members count in the CRC
+  std::memset(static_cast<void*>(&e), 0, sizeof e);  // padding between members is part of the CRC
   e.number = ++scene_number_;
   e.first_tick = scene.first_tick;
   e.max_force_N = scene.max_force_N;
@@ -98,7 +98,7 @@ void FlightSlots::add(const FlightScene& scene) {
   if (scenes_.size() > recorder::kMostScenes) scenes_.pop_front();
 }
 
-/// Those in force at that tick or later.
+/// The scenes in force at that tick or later.
 std::vector<const recorder::SceneEntry*> FlightSlots::scenes_from(std::int64_t tick) const {
   std::vector<const recorder::SceneEntry*> wanted;
   for (std::size_t i = 0; i < scenes_.size(); ++i)
@@ -106,7 +106,7 @@ std::vector<const recorder::SceneEntry*> FlightSlots::scenes_from(std::int64_t t
   return wanted;
 }
 
-/// Records are numbered anew, from 1, so that the file is as small as what it holds.
+/// A complete file with the last `count` records, renumbered from 1, so that it has no unused slots.
 std::vector<std::byte> FlightSlots::image_of_last(std::uint64_t count, std::int32_t fault) {
   recorder::Header header = header_;
   header.slots = static_cast<std::int64_t>(count);

@@ -1,5 +1,5 @@
 #pragma once
-// Ticks as slots of a flight recorder file (protocol/recorder/flight_file.hpp): a ring of the newest ones.
+// The slots of a flight recorder file (protocol/recorder/flight_file.hpp): a ring of the newest ticks.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace ligature::telemetry {
 
-/// What the file says about itself, so that it can be read alone.
+/// Description of the run, stored in the file's header so that the file can be read on its own.
 struct FlightFacts {
   std::int64_t session = 0;
   double period_s = 0.001;
@@ -22,7 +22,7 @@ struct FlightFacts {
   std::string firmware_version, scene_file, scene_toml;
 };
 
-/// A scene that came in force while the rig ran.
+/// A scene or parameter change during the run.
 struct FlightScene {
   std::int64_t first_tick = 0;
   double max_force_N = 0.0;
@@ -30,28 +30,28 @@ struct FlightScene {
   std::string scene_file, scene_toml;
 };
 
-/// @param slots ticks to keep.
+/// @param slots number of ticks to keep.
 [[nodiscard]] recorder::Header header_of(const FlightFacts& facts, std::int64_t slots);
-/// @param scenes that the file has room for.
+/// Size of the file. @param scenes number of scene entries.
 [[nodiscard]] std::size_t file_bytes(const recorder::Header& header, std::size_t scenes = recorder::kMostScenes);
 
-/// One thread uses it; it waits for the disk.
+/// Not thread-safe; calls wait for the disk.
 class FlightSlots {
  public:
-  static constexpr int kMaxSaved = 32;  ///< a run; a fault that flaps must not fill the disk
+  static constexpr int kMaxSaved = 32;  ///< per run; so that a recurring fault does not fill the disk
 
-  /// Writes the header. @param path of the file, which saved ticks are put beside.
+  /// Writes the header. @param path of the file; saved ticks are put beside it.
   FlightSlots(std::string path, Disk& disk, const recorder::Header& header);
 
-  /// @return how many of them the disk did not take; these are not in the file.
+  /// @return how many records the disk did not accept; these are lost.
   std::size_t append(std::span<const rt::TickRecord> records);
 
-  /// From its first tick on; the last kMostScenes of them are kept.
+  /// Adds a scene with its first tick; the newest kMostScenes are kept.
   void add(const FlightScene& scene);
 
-  /// The last `ticks`, and the scenes in force at them, as a file of the same format beside this one, complete or not
-  /// at all.
-  /// @return its path, or nothing when it could not be written or kMaxSaved were.
+  /// Saves the last `ticks` records, and the scenes in force during them, as a complete file of the same format beside
+  /// this one.
+  /// @return its path, or an empty string if writing failed or kMaxSaved files exist already
   [[nodiscard]] std::string save_last(std::int64_t ticks, std::int32_t fault);
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
@@ -66,7 +66,7 @@ class FlightSlots {
   recorder::Header header_;
   std::uint64_t sequence_ = 0;
   int saved_ = 0;
-  std::deque<recorder::SceneEntry> scenes_;  // the newest, oldest first
+  std::deque<recorder::SceneEntry> scenes_;  // the newest ones, oldest first
   std::uint64_t scene_number_ = 0;
   std::vector<std::byte> scratch_;
 };

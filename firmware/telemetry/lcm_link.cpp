@@ -17,7 +17,7 @@ std::string objection_to_url(const std::string& url) {
   if (url == "memq://") return {};
   if (!url.starts_with(kMulticast)) return why;
   const std::string place = url.substr(kMulticast.size(), url.find('?') - kMulticast.size());
-  if (place.empty()) return {};  // the library's own address
+  if (place.empty()) return {};  // the LCM library's default address
   const auto colon = place.find(':');
   in_addr address{};
   if (inet_pton(AF_INET, place.substr(0, colon).c_str(), &address) != 1) return why;
@@ -33,7 +33,7 @@ LcmLink::LcmLink(const std::string& url, OnEvent on_event) : on_event_(std::move
   const lcm_tools::QuietStderr one_line_is_enough;
   lcm_ = std::make_unique<lcm::LCM>(url);
   open_ = lcm_->good();
-  // Subscribing is what tries the network.
+  // Subscribing is the first use of the network, so it shows whether the network works.
   listening_ = open_ && lcm_->subscribeFunction("LIGATURE_COMMAND", &LcmLink::receive, this) != nullptr;
   open_ = listening_;
 }
@@ -51,7 +51,7 @@ void LcmLink::wait(std::int64_t at_most_ms) {
   }
 }
 
-/// Decoded here and not by the library, whose generated decoder a hostile message can make throw.
+/// Decodes with our own checks, because the decoder that lcm-gen generates can throw on a malicious message.
 void LcmLink::receive(const lcm::ReceiveBuffer* received, const std::string&, LcmLink* link) {
   if (!link->on_command_) return;
   const auto command = command_of({static_cast<const std::byte*>(received->data), received->data_size});

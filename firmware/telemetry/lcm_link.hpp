@@ -1,5 +1,5 @@
 #pragma once
-// The LCM end of telemetry. What LCM cannot do is counted and told; it never holds anything up.
+// LCM connection of telemetry. Messages that cannot be sent are counted; nothing blocks.
 
 #include <lcm/lcm-cpp.hpp>
 
@@ -13,26 +13,27 @@
 
 namespace ligature::telemetry {
 
-/// Why a URL cannot be one, or empty: "udpm://ADDRESS:PORT[?..]" with a multicast address, or "memq://" (this process).
+/// Why a URL is not allowed; empty if it is: "udpm://ADDRESS:PORT[?..]" with a multicast address, or "memq://" (this
+/// process).
 [[nodiscard]] std::string objection_to_url(const std::string& url);
 
 class LcmLink final : public Sink {
  public:
-  /// The answer, or nothing when it takes a while: then answer() gives it.
+  /// Handles a command. @return the answer, or nothing if it comes later by answer().
   using OnCommand = std::function<std::optional<ligature_msg::ack_t>(const ligature_msg::command_t&)>;
   using OnEvent = std::function<void(const ligature_msg::event_t&)>;
 
-  /// Opens the URL; may take seconds when multicast is misconfigured, so before the loop starts.
+  /// Opens the URL. Takes seconds if multicast is misconfigured, so call it before the loop starts.
   LcmLink(const std::string& url, OnEvent on_event);
 
-  /// False when the URL is none, or the network refuses (no multicast route).
+  /// False if the URL is invalid or the network refuses it (no multicast route).
   [[nodiscard]] bool is_open() const noexcept { return open_; }
   [[nodiscard]] std::int64_t failures() const noexcept { return failures_; }
 
-  /// Hears commands and answers each with an ack; those from before are forgotten.
+  /// Starts to handle commands, and answers each with an ack. Commands received earlier are discarded.
   void listen(OnCommand on_command);
 
-  /// Waits for commands, at most so long; also the pause between two steps.
+  /// Handles commands for at most this time; also serves as the pause between two steps of telemetry.
   void wait(std::int64_t at_most_ms);
 
   void answer(const ligature_msg::ack_t& ack) { publish("LIGATURE_ACK", ack); }
@@ -51,9 +52,9 @@ class LcmLink final : public Sink {
   void publish(const char* channel, const Message& m) {
     if (!open_ || lcm_->publish(channel, &m) != 0) ++failures_;
   }
-  /// A plain function: what the library makes of a member function does not survive GCC's -fsanitize=vptr, which uses
-  /// an object's address before it has computed it where a member is called through a pointer found in a polymorphic
-  /// one.
+  /// A static function rather than a member: LCM's wrapper for member functions is miscompiled by GCC's
+  /// -fsanitize=vptr, which uses an object's address before it is computed when a member is called through a pointer
+  /// stored in a polymorphic object.
   static void receive(const lcm::ReceiveBuffer* received, const std::string& channel, LcmLink* link);
 
   std::unique_ptr<lcm::LCM> lcm_;

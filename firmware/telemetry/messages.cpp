@@ -12,7 +12,7 @@ void copy(const std::array<rt::Triple, N>& from, double (&to)[N][3]) {
   for (std::size_t h = 0; h < N; ++h) std::ranges::copy(from[h], to[h]);
 }
 
-// The record and the message name the same bits.
+// TickRecord and tick_t must use the same values.
 static_assert(rt::kPeriodLost == 1 && rt::kDeadlineMissed == 2 && rt::kContactCap == 64);
 static_assert(static_cast<int>(rt::kOverworked) == ligature_msg::tick_t::FLAG_OVERWORKED);
 static_assert(static_cast<int>(rt::kThreadLate) == ligature_msg::tick_t::FLAG_THREAD_LATE);
@@ -99,22 +99,23 @@ ligature_msg::thread_t to_message(const rt::ThreadSnapshot& s, double radius_m, 
 
 namespace {
 
-/// The generated decoder believes the length that a text claims; INT_MIN, less its zero, is 2 GB to it.
-/// @return whether the text of this command_t fills exactly what the fields about it leave.
+/// The generated decoder trusts a string's length field; a length of INT_MIN minus the final zero becomes 2 GB.
+/// @return whether the length field of a command_t's text matches the size of the message
 bool text_fits(std::span<const std::byte> message) {
   constexpr std::size_t kLength =
-      8 + 8 + 8 + 8 + 8 + 1;  // behind hash, utime, id, session, challenge, kind: four bytes, the greatest first
-  constexpr std::size_t kRest = kLength + 4 + 8;  // value follows
+      // offset of the text's length (4 bytes, big-endian): after hash, utime, id, session, challenge, kind
+      8 + 8 + 8 + 8 + 8 + 1;
+  constexpr std::size_t kRest = kLength + 4 + 8;  // length field and the final `value`
   if (message.size() <= kRest) return false;
   std::size_t length = 0;
   for (const auto byte : message.subspan(kLength, 4)) length = length << 8U | std::to_integer<std::size_t>(byte);
-  return length == message.size() - kRest;  // one at least, its zero
+  return length == message.size() - kRest;  // at least 1: the final zero
 }
 
 }  // namespace
 
 std::optional<ligature_msg::command_t> command_of(std::span<const std::byte> message) {
-  constexpr std::size_t kLongest = 65'536;  // a name of a scene or parameter needs far less
+  constexpr std::size_t kLongest = 65'536;  // a scene or parameter name is far shorter
   if (message.size() > kLongest || !text_fits(message)) return std::nullopt;
   ligature_msg::command_t command;
   const auto size = static_cast<int>(message.size());

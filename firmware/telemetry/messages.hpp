@@ -1,5 +1,5 @@
 #pragma once
-// Records of the real-time thread as LCM messages. Allocates, so never on that thread.
+// Converts real-time records to LCM messages. Allocates, so not for use in the real-time thread.
 
 #include <cstddef>
 #include <optional>
@@ -16,8 +16,8 @@ namespace ligature::telemetry {
 [[nodiscard]] ligature_msg::thread_t to_message(const rt::ThreadSnapshot& snapshot, double radius_m,
                                                 std::int64_t utime);
 
-/// A command as anybody on the network may have sent it. Nothing for another type, a length that is not that of its
-/// parts, or a text without its final zero: the generated decoder throws at some of these and reads past others.
+/// Decodes a command from the network, which may be malicious. Returns nothing for another type, inconsistent lengths,
+/// or a text without its final zero; on some of these the generated decoder throws, on others it reads out of bounds.
 [[nodiscard]] std::optional<ligature_msg::command_t> command_of(std::span<const std::byte> message);
 
 }  // namespace ligature::telemetry

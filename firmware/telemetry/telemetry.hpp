@@ -1,5 +1,5 @@
 #pragma once
-// Drains what the real-time thread leaves and decides what is sent when. Time comes in as an argument.
+// Reads the records of the real-time thread and decides which messages are sent when. Time is passed as an argument.
 
 #include <cstdint>
 #include <optional>
@@ -19,7 +19,7 @@
 
 namespace ligature::telemetry {
 
-/// Where messages go. Implementations may lose them, but neither block for long nor throw.
+/// Receiver of messages. Implementations may drop messages, but must not block for long or throw.
 class Sink {
  public:
   virtual ~Sink() = default;
@@ -30,23 +30,23 @@ class Sink {
   virtual void send(const ligature_msg::offer_t& m) = 0;
 };
 
-/// One instant on two clocks. What is due when goes by the first alone; the second stamps messages and may be set back.
+/// The present time on two clocks. Schedules use only the first; the second stamps messages and may be set back.
 struct Moment {
   std::int64_t monotonic_us = 0;  ///< CLOCK_MONOTONIC
   std::int64_t utime = 0;         ///< CLOCK_REALTIME, microseconds
 };
 
-/// What a change of scene changes.
+/// Properties of the scene in force.
 struct SceneFacts {
   std::string scene_file;
   std::string scene_toml;
   double max_force_N = 0.0;
   double radius_m = 0.0;
-  bool admitted = true;         ///< its worst tick fits; false: run by --force, as its text says, too
-  std::int64_t first_tick = 0;  ///< in force from it on
+  bool admitted = true;         ///< whether admission accepted it; false: runs by --force (also noted in scene_toml)
+  std::int64_t first_tick = 0;  ///< first tick with this scene
 };
 
-/// What does not change during a run, and the scene that it began with.
+/// Constant properties of a run, and the scene at its start.
 struct Session {
   std::int64_t id = 0;  ///< CLOCK_REALTIME at start, microseconds
   std::string firmware_version;
@@ -56,9 +56,9 @@ struct Session {
   std::string recorder_file;  ///< empty: none
 };
 
-/// One thread uses it. Every record goes into exactly one batch, in order; a batch has 20 of them, the last one what is
-/// left. Shapes at 60 Hz, status at 10 Hz, the offer at 1 Hz, events at once; among them what the flight recorder
-/// notes. Commands that were played back are told once a second at most, however many come.
+/// Not thread-safe. Every record goes into exactly one batch, in order; a batch has 20 records, the last batch the
+/// remainder. Shapes are sent at 60 Hz, status at 10 Hz, the offer at 1 Hz, events at once, including notes of the
+/// flight recorder. Refused replays of commands are reported once per second at most.
 class Telemetry {
  public:
   static constexpr std::size_t kTicksPerBatch = 20;
@@ -67,31 +67,32 @@ class Telemetry {
   static constexpr std::int64_t kOfferPeriod_us = 1'000'000;
   static constexpr std::int64_t kRefusalPeriod_us = 1'000'000;
 
-  /// @param recorder whose notes are passed on; may be missing.
+  /// @param recorder its notes are forwarded; may be null.
   Telemetry(Session session, const Names& names, rt::Outlets& outlets, Sink& sink, FlightRecorder* recorder = nullptr);
 
-  /// Takes everything that is there.
+  /// Processes all available records and sends what is due.
   void step(Moment now);
 
-  /// The last step: also what does not fill a batch, the last shape and a last status.
+  /// Last step: also sends an incomplete batch, the last shape and a last status.
   void finish(Moment now);
 
-  /// The scenes and parameters that may be asked for; told from now on.
+  /// Sets the scenes and parameters that commands may request; sent from now on.
   void set_offer(ligature_msg::offer_t offer);
 
-  /// Another scene or parameter is in force since its first tick: told at once, with the words of the event.
+  /// Reports that a new scene or parameter is in force since its first tick; sends an event with `text` at once.
   void scene_changed(const SceneFacts& facts, const std::string& text, Moment now);
 
-  /// The state after the newest record: what a request is judged by before the loop judges it.
+  /// The newest record, by which requests are checked before the loop checks them again.
   [[nodiscard]] const rt::TickRecord& last() const noexcept { return last_; }
 
-  /// The answer to a command that goes no further: it only asked for its challenge, or was played back, which is told.
+  /// The answer to a command that is not executed: one that only asked for a challenge, or a refused replay (which is
+  /// also reported). Empty: the command may be executed.
   [[nodiscard]] std::optional<ligature_msg::ack_t> turn_away(const ligature_msg::command_t& command, Moment now);
 
-  /// Who answers, and when.
+  /// Fills in the answer's time and session.
   void stamp(ligature_msg::ack_t& ack, Moment now) const;
 
-  /// Passes a request on, or says why not.
+  /// Passes a command to the loop, or refuses it.
   [[nodiscard]] ligature_msg::ack_t handle(const ligature_msg::command_t& command, Moment now);
 
  private:

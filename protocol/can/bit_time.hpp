@@ -1,7 +1,7 @@
 #pragma once
-// How long a frame holds the bus. Classic CAN, 11-bit identifier (ISO 11898-1): start bit, identifier, control field,
-// data and CRC are 34 + 8 n bits and are stuffed; CRC delimiter, acknowledge, end of frame and the 3 bits of
-// interframe space are 13 more. Stuffing adds at most floor((34 + 8 n - 1) / 4).
+// Duration of a frame on the bus. Classic CAN, 11-bit identifier (ISO 11898-1): start bit, identifier, control field,
+// data and CRC are 34 + 8 n bits (n data bytes) and are stuffed; CRC delimiter, acknowledge, end of frame and the 3
+// bits of interframe space are 13 more. Stuffing adds at most floor((34 + 8 n - 1) / 4) bits.
 
 #include <cstdint>
 
@@ -21,8 +21,8 @@ inline constexpr unsigned kUnstuffedTailBits = 10 + kInterframeBits;
   return min_frame_bits(dlc) + (stuffable_bits(dlc) - 1) / 4;
 }
 
-/// Feeds a frame's bits one by one into the CRC (polynomial x^15+x^14+x^10+x^8+x^7+x^4+x^3+1) and the stuffing rule:
-/// after five equal bits one of the other kind is inserted, and that one counts as the first of the next run.
+/// Computes the CRC and counts stuff bits of a frame, bit by bit. CRC polynomial: x^15+x^14+x^10+x^8+x^7+x^4+x^3+1.
+/// Stuffing: after five equal bits one opposite bit is inserted, which counts as the first of the next run.
 class StuffCounter {
  public:
   constexpr void push(bool bit) noexcept {
@@ -34,7 +34,7 @@ class StuffCounter {
   constexpr void push(std::uint32_t value, int bits) noexcept {
     for (int i = bits - 1; i >= 0; --i) push(((value >> i) & 1U) != 0);
   }
-  /// Ends the frame with its CRC; returns the number of bits that were inserted.
+  /// Appends the CRC to the frame. @return the number of stuff bits inserted.
   [[nodiscard]] constexpr unsigned finish() noexcept {
     const std::uint32_t crc = crc_;
     for (int i = 14; i >= 0; --i) stuff(((crc >> i) & 1U) != 0);
@@ -58,7 +58,7 @@ class StuffCounter {
   bool last_ = false;
 };
 
-/// Exact bits of this very frame on the wire, stuffing and interframe space included. About 0.3 us.
+/// Exact number of bits of this frame on the wire, including stuff bits and interframe space. Takes about 0.3 us.
 [[nodiscard]] constexpr unsigned frame_bits(const Frame& f) noexcept {
   StuffCounter counter;
   counter.push(false);  // start of frame
@@ -71,7 +71,7 @@ class StuffCounter {
 
 [[nodiscard]] constexpr std::int64_t bits_to_ns(unsigned bits) noexcept { return bits * profile::kBitTime_ns; }
 
-/// One tick of one hand: SYNC, three 8-byte TPDOs, three 4-byte RPDOs.
+/// All frames of one hand in one tick: SYNC, three 8-byte TPDOs, three 4-byte RPDOs.
 inline constexpr unsigned kMinCycleBits = min_frame_bits(0) + 3 * min_frame_bits(8) + 3 * min_frame_bits(4);
 inline constexpr unsigned kMaxCycleBits = max_frame_bits(0) + 3 * max_frame_bits(8) + 3 * max_frame_bits(4);
 static_assert(kMinCycleBits == 617 && kMaxCycleBits == 745);  // 61.7 .. 74.5 % of a 1 ms period

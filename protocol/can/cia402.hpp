@@ -1,6 +1,7 @@
 #pragma once
-// The CiA 402 drive state machine as data: states by statusword, commands by controlword, transitions as a table and a
-// pure function. The drive runs next(); the master reads state_of() and sends controlword_towards_operation().
+// CiA 402 drive state machine: states and their statusword patterns, commands and their controlword patterns, a
+// transition table and a pure transition function. A drive runs next(); the master uses state_of() and
+// controlword_towards_operation().
 
 #include <array>
 #include <cstdint>
@@ -19,17 +20,17 @@ enum class State : std::uint8_t {
   kFault,
 };
 
-/// Commands as the controlword carries them, and the drive's own events.
+/// Commands by controlword, and events inside the drive.
 enum class Event : std::uint8_t {
-  kInitialised,        // drive's own: self test done
+  kInitialised,        // inside the drive: self test done
   kShutdown,           // xxxx x110
-  kSwitchOn,           // xxxx 0111; "disable operation" when operation is enabled
+  kSwitchOn,           // xxxx 0111; in Operation Enabled it means "disable operation"
   kEnableOperation,    // xxxx 1111
   kDisableVoltage,     // xxxx xx0x
   kQuickStop,          // xxxx x01x
   kFaultReset,         // rising edge of bit 7
-  kFaultDetected,      // drive's own
-  kFaultReactionDone,  // drive's own: torque is zero
+  kFaultDetected,      // inside the drive
+  kFaultReactionDone,  // inside the drive: torque is zero
 };
 
 struct StatusPattern {
@@ -47,12 +48,13 @@ inline constexpr std::array kStatusPatterns{
 // Statusword bits outside the state pattern.
 inline constexpr std::uint16_t kVoltageEnabledBit = 1U << 4;
 inline constexpr std::uint16_t kRemoteBit = 1U << 9;
-inline constexpr std::uint16_t kInternalLimitBit = 1U << 11;  ///< torque less than asked: clipped at 0x6072, or guarded
-inline constexpr std::uint16_t kFollowsTargetBit = 1U << 12;  ///< CST: target torque is acted upon
-/// Maker's own: the torque made is not the one acted upon, nor one between it and zero.
+/// torque is less than commanded: clipped at 0x6072, or the drive protects its winding
+inline constexpr std::uint16_t kInternalLimitBit = 1U << 11;
+inline constexpr std::uint16_t kFollowsTargetBit = 1U << 12;  ///< CST mode: the drive follows the target torque
+/// Manufacturer-specific bit: the torque made is not between zero and the commanded one.
 inline constexpr std::uint16_t kTorqueAstrayBit = 1U << 14;
 
-/// State a statusword shows; nothing for a pattern the standard does not define.
+/// State shown by a statusword; nothing for a pattern that the standard does not define.
 [[nodiscard]] constexpr std::optional<State> state_of(std::uint16_t statusword) noexcept {
   for (const StatusPattern& p : kStatusPatterns) {
     if ((statusword & p.mask) == p.value) return p.state;
@@ -85,7 +87,7 @@ inline constexpr std::array kControlPatterns{
     ControlPattern{Event::kQuickStop, 0x0086, 0x0002},
 };
 
-/// Command of a controlword; fault reset needs the edge, hence the word before it.
+/// Command given by a controlword; fault reset is a rising edge, so the previous word is needed.
 [[nodiscard]] constexpr std::optional<Event> event_of(std::uint16_t before, std::uint16_t controlword) noexcept {
   if ((controlword & kControlFaultReset) != 0 && (before & kControlFaultReset) == 0) return Event::kFaultReset;
   for (const ControlPattern& p : kControlPatterns) {
@@ -103,13 +105,14 @@ inline constexpr std::array kTransitions{
     Transition{State::kNotReadyToSwitchOn, Event::kInitialised, State::kSwitchOnDisabled},  // 1
     Transition{State::kSwitchOnDisabled, Event::kShutdown, State::kReadyToSwitchOn},        // 2
     Transition{State::kReadyToSwitchOn, Event::kSwitchOn, State::kSwitchedOn},              // 3
-    Transition{State::kReadyToSwitchOn, Event::kEnableOperation, State::kSwitchedOn},       // 3, then 4 at the next one
-    Transition{State::kSwitchedOn, Event::kEnableOperation, State::kOperationEnabled},      // 4
-    Transition{State::kOperationEnabled, Event::kSwitchOn, State::kSwitchedOn},             // 5
-    Transition{State::kSwitchedOn, Event::kShutdown, State::kReadyToSwitchOn},              // 6
-    Transition{State::kReadyToSwitchOn, Event::kDisableVoltage, State::kSwitchOnDisabled},  // 7
-    Transition{State::kReadyToSwitchOn, Event::kQuickStop, State::kSwitchOnDisabled},       // 7
-    Transition{State::kOperationEnabled, Event::kShutdown, State::kReadyToSwitchOn},        // 8
+    // 3; 4 follows with the next controlword
+    Transition{State::kReadyToSwitchOn, Event::kEnableOperation, State::kSwitchedOn},
+    Transition{State::kSwitchedOn, Event::kEnableOperation, State::kOperationEnabled},       // 4
+    Transition{State::kOperationEnabled, Event::kSwitchOn, State::kSwitchedOn},              // 5
+    Transition{State::kSwitchedOn, Event::kShutdown, State::kReadyToSwitchOn},               // 6
+    Transition{State::kReadyToSwitchOn, Event::kDisableVoltage, State::kSwitchOnDisabled},   // 7
+    Transition{State::kReadyToSwitchOn, Event::kQuickStop, State::kSwitchOnDisabled},        // 7
+    Transition{State::kOperationEnabled, Event::kShutdown, State::kReadyToSwitchOn},         // 8
     Transition{State::kOperationEnabled, Event::kDisableVoltage, State::kSwitchOnDisabled},  // 9
     Transition{State::kSwitchedOn, Event::kDisableVoltage, State::kSwitchOnDisabled},        // 10
     Transition{State::kSwitchedOn, Event::kQuickStop, State::kSwitchOnDisabled},             // 10
@@ -120,18 +123,18 @@ inline constexpr std::array kTransitions{
 };
 
 [[nodiscard]] constexpr State next(State s, Event e) noexcept {
-  if (e == Event::kFaultDetected) return s == State::kFault ? s : State::kFaultReactionActive;  // 13, from anywhere
+  if (e == Event::kFaultDetected) return s == State::kFault ? s : State::kFaultReactionActive;  // 13, from any state
   for (const Transition& t : kTransitions) {
     if (t.from == s && t.on == e) return t.to;
   }
-  return s;  // a pair not listed changes nothing
+  return s;  // events that are not listed for a state have no effect
 }
 
-/// Only one state lets torque through.
+/// Torque is possible only in Operation Enabled.
 [[nodiscard]] constexpr bool may_produce_torque(State s) noexcept { return s == State::kOperationEnabled; }
 
-/// Controlword that brings a drive one step nearer to Operation Enabled. A fault is not reset from here: whether to
-/// reset one is the caller's decision, by kControlFaultReset.
+/// Controlword that brings a drive one step closer to Operation Enabled. It never resets a fault; the caller decides
+/// that, with kControlFaultReset.
 [[nodiscard]] constexpr std::uint16_t controlword_towards_operation(State s) noexcept {
   switch (s) {
     case State::kSwitchOnDisabled:
@@ -146,20 +149,20 @@ inline constexpr std::array kTransitions{
   }
 }
 
-static_assert([] {  // the two directions of the statusword table agree
+static_assert([] {  // state_of() and statusword_of() are inverse
   for (const StatusPattern& p : kStatusPatterns) {
     if (state_of(statusword_of(p.state)) != p.state) return false;
   }
   return true;
 }());
-static_assert([] {  // a fault latches: of all events only a reset leaves it
+static_assert([] {  // FAULT is left only by a fault reset
   for (int e = 0; e <= static_cast<int>(Event::kFaultReactionDone); ++e) {
     if (static_cast<Event>(e) != Event::kFaultReset && next(State::kFault, static_cast<Event>(e)) != State::kFault)
       return false;
   }
   return next(State::kFault, Event::kFaultReset) == State::kSwitchOnDisabled;
 }());
-static_assert([] {  // from Switch On Disabled the master's words reach Operation Enabled in three steps
+static_assert([] {  // from Switch On Disabled the master's controlwords reach Operation Enabled in three steps
   State s = State::kSwitchOnDisabled;
   std::uint16_t before = 0;
   for (int i = 0; i < 3; ++i) {

@@ -1,7 +1,7 @@
 #pragma once
-// Who speaks and about what: node ids, and the identifiers CiA 301 derives from them ("predefined connection set").
-//   NMT 0x000 · SYNC 0x080 · EMCY 0x080+n · TPDO1 0x180+n · RPDO1 0x200+n · SDO 0x580+n (answer), 0x600+n (request)
-//   · heartbeat 0x700+n.   The lower identifier wins the bus, so this list is also the list of priorities.
+// Node ids, and the frame identifiers that CiA 301 derives from them ("predefined connection set"):
+//  NMT 0x000 · SYNC 0x080 · EMCY 0x080+n · TPDO1 0x180+n · RPDO1 0x200+n · SDO 0x580+n (answer), 0x600+n (request)
+//  · heartbeat 0x700+n.   On the bus the lower identifier has priority, so this list is in order of priority.
 
 #include <compare>
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace ligature::can {
 
-/// Node number on one bus, 1 .. 127. A type of its own, so that it cannot be swapped with an index or an identifier.
+/// Node id on one bus, 1 .. 127. A type of its own, so that it cannot be confused with an index or identifier.
 struct NodeId {
   std::uint8_t value = 0;
   friend constexpr auto operator<=>(const NodeId&, const NodeId&) = default;
 };
 
-/// Communication object identifier: the 11 bits on the wire.
+/// Communication object identifier (COB-ID): the 11-bit frame identifier.
 struct CobId {
   std::uint32_t value = 0;
   friend constexpr auto operator<=>(const CobId&, const CobId&) = default;
@@ -25,9 +25,9 @@ struct CobId {
 
 inline constexpr NodeId kWaist{1};
 inline constexpr NodeId kShoulder{2};
-inline constexpr NodeId kElbow{3};         ///< forearm drive; also reads the stylus buttons
-inline constexpr NodeId kMasterNode{127};  ///< the controller, as producer of its own heartbeat
-inline constexpr NodeId kAllNodes{0};      ///< only as the target of an NMT command
+inline constexpr NodeId kElbow{3};         ///< forearm drive; also reports the stylus buttons
+inline constexpr NodeId kMasterNode{127};  ///< the controller, as sender of its heartbeat
+inline constexpr NodeId kAllNodes{0};      ///< only as target of an NMT command
 inline constexpr std::uint8_t kMaxNodeId = 127;
 
 enum class Service : std::uint8_t { kNmt, kSync, kEmcy, kTpdo1, kRpdo1, kSdoResponse, kSdoRequest, kHeartbeat };
@@ -37,7 +37,7 @@ enum class Service : std::uint8_t { kNmt, kSync, kEmcy, kTpdo1, kRpdo1, kSdoResp
   switch (s) {
     case Service::kNmt:
       return 0x000;
-    case Service::kSync:  // node 0 of EMCY's range
+    case Service::kSync:  // identifier 0x080, with node id 0
     case Service::kEmcy:
       return 0x080;
     case Service::kTpdo1:
@@ -59,14 +59,14 @@ enum class Service : std::uint8_t { kNmt, kSync, kEmcy, kTpdo1, kRpdo1, kSdoResp
 inline constexpr CobId kNmtCobId{base_id(Service::kNmt)};
 inline constexpr CobId kSyncCobId{base_id(Service::kSync)};
 
-/// What an identifier stands for. NMT and SYNC carry node 0.
+/// Meaning of an identifier. NMT and SYNC have node id 0.
 struct Address {
   Service service = Service::kNmt;
   NodeId node;
   friend constexpr bool operator==(const Address&, const Address&) = default;
 };
 
-/// Inverse of cob_id(); nothing for an identifier this rig does not use (other PDOs, LSS, TIME).
+/// Inverse of cob_id(); nothing for an identifier that this rig does not use (other PDOs, LSS, TIME).
 [[nodiscard]] constexpr std::optional<Address> address_of(std::uint32_t id) noexcept {
   if (id == kNmtCobId.value) return Address{Service::kNmt, NodeId{0}};
   if (id == kSyncCobId.value) return Address{Service::kSync, NodeId{0}};

@@ -1,5 +1,6 @@
 #pragma once
-// PDO <-> frame for both ends of the wire, from the one table. Little endian, as CANopen. Constant time, no allocation.
+// Encodes and decodes PDOs for both ends of the bus, from the table in pdo_map.hpp. Little endian, as in CANopen.
+// Constant time, no allocation.
 
 #include <cstdint>
 #include <optional>
@@ -10,7 +11,7 @@
 
 namespace ligature::can {
 
-/// What a drive says after a SYNC. A node has either torque or buttons; the other stays zero.
+/// A drive's answer to SYNC. A node sends either torque or buttons; the other stays zero.
 struct Tpdo1 {
   std::uint16_t statusword = 0;
   std::int32_t position_counts = 0;
@@ -19,7 +20,7 @@ struct Tpdo1 {
   friend constexpr bool operator==(const Tpdo1&, const Tpdo1&) = default;
 };
 
-/// What a drive is told; acts at the next SYNC.
+/// Command to a drive; takes effect at the next SYNC.
 struct Rpdo1 {
   std::uint16_t controlword = 0;
   std::int16_t target_torque_permille = 0;
@@ -37,13 +38,13 @@ constexpr void set_data_word(Frame& f, std::uint64_t word) noexcept {
   for (std::size_t i = 0; i < 8; ++i) f.data[i] = static_cast<std::uint8_t>(word >> (8 * i));
 }
 
-/// Writes the low f.bits of value at the field's place. @pre the field's bits of the frame are zero.
+/// Writes the low f.bits of value at the field's position. @pre these bits of the frame are zero.
 constexpr void put(Frame& frame, const PdoField& f, std::int64_t value) noexcept {
   const std::uint64_t mask = (std::uint64_t{1} << f.bits) - 1;
   set_data_word(frame, data_word(frame) | ((static_cast<std::uint64_t>(value) & mask) << f.offset_bits));
 }
 
-/// Reads the field, sign-extended where the table says signed.
+/// Reads the field, sign-extended if the table says so.
 [[nodiscard]] constexpr std::int64_t get(const Frame& frame, const PdoField& f) noexcept {
   const std::uint64_t mask = (std::uint64_t{1} << f.bits) - 1;
   const std::uint64_t raw = (data_word(frame) >> f.offset_bits) & mask;
@@ -76,7 +77,7 @@ inline constexpr PdoField kTargetTorque = field_of(Pdo::kRpdo1, od::kTargetTorqu
   return f;
 }
 
-/// Nothing when the frame is not this node's TPDO1 or has another length than the map says.
+/// Empty if the frame is not this node's TPDO1, or its length differs from the map.
 [[nodiscard]] constexpr std::optional<Tpdo1> decode_tpdo1(NodeId node, const Frame& f) noexcept {
   if (f.id != cob_id(Service::kTpdo1, node).value || f.dlc != length_bytes(Pdo::kTpdo1, node)) return std::nullopt;
   Tpdo1 p;
@@ -87,7 +88,7 @@ inline constexpr PdoField kTargetTorque = field_of(Pdo::kRpdo1, od::kTargetTorqu
   return p;
 }
 
-/// Nothing when the frame is not this node's RPDO1 or has another length than the map says.
+/// Empty if the frame is not this node's RPDO1, or its length differs from the map.
 [[nodiscard]] constexpr std::optional<Rpdo1> decode_rpdo1(NodeId node, const Frame& f) noexcept {
   if (f.id != cob_id(Service::kRpdo1, node).value || f.dlc != length_bytes(Pdo::kRpdo1, node)) return std::nullopt;
   return Rpdo1{static_cast<std::uint16_t>(get(f, field::kControlword)),

@@ -1,5 +1,5 @@
 #pragma once
-// EMCY: a drive tells once, at once, that something broke, and once that it is over (CiA 301).
+// EMCY: a drive sends one when an error occurs, and one when it is over (CiA 301).
 
 #include <cstdint>
 #include <optional>
@@ -10,10 +10,10 @@
 namespace ligature::can {
 
 namespace emcy {
-inline constexpr std::uint16_t kNoError = 0x0000;        ///< all errors reset
+inline constexpr std::uint16_t kNoError = 0x0000;        ///< all errors are reset
 inline constexpr std::uint16_t kHeartbeatLost = 0x8130;  ///< life guard or heartbeat error
 inline constexpr std::uint16_t kRpdoTimeout = 0x8250;    ///< RPDO event timer ran out
-inline constexpr std::uint8_t kGenericBit = 1U << 0;     ///< of the error register 0x1001
+inline constexpr std::uint8_t kGenericBit = 1U << 0;     ///< bit of the error register 0x1001
 inline constexpr std::uint8_t kCommunicationBit = 1U << 4;
 }  // namespace emcy
 

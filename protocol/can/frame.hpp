@@ -1,5 +1,5 @@
 #pragma once
-// One classic CAN frame with an 11-bit identifier, as every part of the rig passes it around.
+// A classic CAN frame with an 11-bit identifier.
 
 #include <array>
 #include <cstdint>
@@ -8,8 +8,8 @@
 namespace ligature::can {
 
 struct Frame {
-  std::uint32_t id = 0;                ///< 11-bit identifier; in CANopen words the COB-ID
-  std::uint8_t dlc = 0;                ///< data bytes, 0 .. 8
+  std::uint32_t id = 0;                ///< 11-bit identifier; CANopen's COB-ID
+  std::uint8_t dlc = 0;                ///< number of data bytes, 0 .. 8
   std::array<std::uint8_t, 8> data{};  ///< bytes beyond dlc are zero
 
   friend constexpr bool operator==(const Frame&, const Frame&) = default;
@@ -18,6 +18,6 @@ struct Frame {
 inline constexpr std::uint32_t kMaxId = 0x7FF;
 inline constexpr std::uint8_t kMaxDlc = 8;
 
-static_assert(std::is_trivially_copyable_v<Frame>);  // crosses threads by memcpy
+static_assert(std::is_trivially_copyable_v<Frame>);  // passed between threads by memcpy
 
 }  // namespace ligature::can

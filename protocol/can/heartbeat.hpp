@@ -1,5 +1,5 @@
 #pragma once
-// Heartbeat: every node, the master included, tells its NMT state now and then; silence is a fault of the link.
+// Heartbeat: every node, including the master, reports its NMT state periodically; its absence is a fault.
 
 #include <cstdint>
 #include <optional>
@@ -21,11 +21,11 @@ struct Heartbeat {
   return Frame{cob_id(Service::kHeartbeat, h.node).value, 1, {static_cast<std::uint8_t>(h.state)}};
 }
 
-/// Nothing for another service, a wrong length or a state the standard does not know.
+/// Empty for another service, a wrong length or an undefined state.
 [[nodiscard]] constexpr std::optional<Heartbeat> decode_heartbeat(const Frame& f) noexcept {
   const auto address = address_of(f.id);
   if (!address || address->service != Service::kHeartbeat || f.dlc != 1) return std::nullopt;
-  const auto state = static_cast<NmtState>(f.data[0] & 0x7FU);  // bit 7 is the toggle of old node guarding
+  const auto state = static_cast<NmtState>(f.data[0] & 0x7FU);  // bit 7 is the toggle bit of the older node guarding
   switch (state) {
     case NmtState::kBootUp:
     case NmtState::kStopped:
@@ -36,7 +36,7 @@ struct Heartbeat {
   return std::nullopt;
 }
 
-/// Value of object 0x1016:01: whom to listen to and for how many ms silence is allowed; 0 ms switches the watch off.
+/// Value of object 0x1016:01: the node to monitor and the longest allowed silence in ms; 0 ms switches monitoring off.
 [[nodiscard]] constexpr std::uint32_t consumer_heartbeat_value(NodeId producer, std::uint16_t timeout_ms) noexcept {
   return (static_cast<std::uint32_t>(producer.value) << 16U) | timeout_ms;
 }

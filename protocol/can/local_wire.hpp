@@ -1,6 +1,6 @@
 #pragma once
-// The image of a frame in one packet of a `local:` bus: the 16 bytes of Linux' struct can_frame
-// (identifier u32 in host order, length u8, three bytes unused, eight data bytes), so that tools can share code.
+// Packet format of a `local:` bus: the 16 bytes of Linux' struct can_frame (identifier u32 in host byte order, length
+// u8, three unused bytes, eight data bytes), so that both back ends can share code.
 
 #include <array>
 #include <cstdint>
@@ -23,12 +23,12 @@ using LocalPacket = std::array<std::uint8_t, kLocalPacketBytes>;
   return p;
 }
 
-/// Nothing for another size, more than 8 bytes of data, or anything but a data frame with an 11-bit identifier.
+/// Empty for another size, more than 8 data bytes, or anything but a data frame with an 11-bit identifier.
 [[nodiscard]] inline std::optional<Frame> from_packet(std::span<const std::uint8_t> p) noexcept {
   if (p.size() != kLocalPacketBytes || p[4] > kMaxDlc) return std::nullopt;
   Frame f;
   std::memcpy(&f.id, p.data(), 4);
-  if (f.id > kMaxId) return std::nullopt;  // the upper bits flag extended, remote and error frames
+  if (f.id > kMaxId) return std::nullopt;  // the upper bits mark extended, remote and error frames
   f.dlc = p[4];
   std::memcpy(f.data.data(), p.data() + 8, f.dlc);
   return f;

@@ -1,5 +1,5 @@
 #pragma once
-// NMT: the master's word over the communication state of the nodes (CiA 301). And SYNC, the beat of the bus.
+// NMT: the master's commands that set the communication state of nodes (CiA 301). And SYNC, which starts each period.
 
 #include <cstdint>
 #include <optional>
@@ -13,7 +13,7 @@ enum class NmtCommand : std::uint8_t {
   kStart = 0x01,
   kStop = 0x02,
   kEnterPreOperational = 0x80,
-  kResetNode = 0x81,           ///< like power off and on
+  kResetNode = 0x81,           ///< like switching power off and on
   kResetCommunication = 0x82,  ///< communication objects to their defaults; a drive fault stays latched
 };
 
@@ -41,7 +41,7 @@ struct NmtMessage {
   return std::nullopt;
 }
 
-/// SYNC without a counter: no data. Every drive latches its inputs and acts on its last RPDO when it ends.
+/// SYNC without a counter: no data. Every drive samples its inputs and applies its last RPDO when the frame ends.
 [[nodiscard]] constexpr Frame sync_frame() noexcept { return Frame{kSyncCobId.value, 0, {}}; }
 [[nodiscard]] constexpr bool is_sync(const Frame& f) noexcept { return f.id == kSyncCobId.value; }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Names of the object dictionary entries the rig speaks about (CiA 301 communication, CiA 402 drive profile, ours).
+// Object dictionary entries that the rig uses (CiA 301 communication, CiA 402 drive profile, manufacturer-specific).
 
 #include <compare>
 #include <cstdint>
@@ -19,15 +19,15 @@ inline constexpr Object kErrorRegister{0x1001, 0};
 inline constexpr Object kConsumerHeartbeat{0x1016, 1};  ///< (producer node << 16) | milliseconds
 inline constexpr Object kProducerHeartbeat{0x1017, 0};  ///< ms, 0 = off
 inline constexpr Object kVendorId{0x1018, 1};
-inline constexpr Object kRpdo1CobId{0x1400, 1};  ///< bit 31 set = PDO off
+inline constexpr Object kRpdo1CobId{0x1400, 1};  ///< bit 31 set: PDO disabled
 inline constexpr Object kRpdo1TransmissionType{0x1400, 2};
-inline constexpr Object kRpdo1EventTimer{0x1400, 5};  ///< ms without RPDO until the drive faults, 0 = off
+inline constexpr Object kRpdo1EventTimer{0x1400, 5};  ///< ms without RPDO until the drive faults; 0: off
 inline constexpr Object kRpdo1MapCount{0x1600, 0};
 inline constexpr Object kTpdo1CobId{0x1800, 1};
 inline constexpr Object kTpdo1TransmissionType{0x1800, 2};
 inline constexpr Object kTpdo1MapCount{0x1A00, 0};
 inline constexpr Object kStylusButtons{0x2100, 1};          ///< bit 0 grip, bit 1 dead-man
-inline constexpr Object kAbortConnectionOption{0x6007, 0};  ///< 1 = fault
+inline constexpr Object kAbortConnectionOption{0x6007, 0};  ///< reaction to a lost connection; 1: fault
 inline constexpr Object kErrorCode{0x603F, 0};
 inline constexpr Object kControlword{0x6040, 0};
 inline constexpr Object kStatusword{0x6041, 0};
@@ -39,7 +39,7 @@ inline constexpr Object kTargetTorque{0x6071, 0};       ///< per mille of rated 
 inline constexpr Object kMaxTorque{0x6072, 0};          ///< per mille of rated torque
 inline constexpr Object kRatedTorque{0x6076, 0};        ///< mN m
 inline constexpr Object kTorqueActual{0x6077, 0};       ///< per mille of rated torque
-inline constexpr Object kEncoderIncrements{0x608F, 1};  ///< per motor revolution = joint revolution here
+inline constexpr Object kEncoderIncrements{0x608F, 1};  ///< per motor revolution, which here is a joint revolution
 inline constexpr Object kSupportedModes{0x6502, 0};     ///< bit 9 = cyclic synchronous torque
 }  // namespace od
 

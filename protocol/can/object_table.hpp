@@ -1,5 +1,5 @@
 #pragma once
-// The object dictionary of one drive as rows: what the simulated drive serves and what its EDS promises.
+// The object dictionary of a drive as a table: served by the simulated drive and exported as EDS.
 
 #include <array>
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace ligature::can {
 
-/// CiA 301 codes of static data types.
+/// Data type codes of CiA 301.
 enum class DataType : std::uint8_t { kI8 = 0x02, kI16 = 0x03, kI32 = 0x04, kU8 = 0x05, kU16 = 0x06, kU32 = 0x07 };
 enum class Access : std::uint8_t { kConst, kReadOnly, kReadWrite };
 
@@ -40,7 +40,7 @@ struct ObjectRow {
   Access access = Access::kReadOnly;
   std::int64_t initial = 0;
   std::string_view name;      ///< of the entry
-  std::string_view group;     ///< of the whole index; empty for an index without sub-indices
+  std::string_view group;     ///< name of the whole index; empty for an index without sub-indices
   bool adds_node_id = false;  ///< initial contains the node id ($NODEID in the EDS)
 };
 
@@ -59,7 +59,7 @@ struct ObjectTable {
   }
 };
 
-/// Communication and mapping parameters of one PDO, as it leaves the factory: mapped as pdo_map.hpp says, synchronous.
+/// Communication and mapping parameters of one PDO with factory defaults: mapped as in pdo_map.hpp, synchronous.
 constexpr void add_pdo_objects(ObjectTable& table, Pdo pdo, NodeId node) {
   const bool rpdo = pdo == Pdo::kRpdo1;
   const std::uint16_t communication = rpdo ? 0x1400 : 0x1800;
@@ -89,7 +89,7 @@ constexpr void add_pdo_objects(ObjectTable& table, Pdo pdo, NodeId node) {
   }
 }
 
-/// Every object of a drive with this node id.
+/// All objects of the drive with this node id.
 [[nodiscard]] constexpr ObjectTable object_table(NodeId node) {
   ObjectTable t;
   t.add({od::kDeviceType, DataType::kU32, Access::kConst, 0x0002'0192, "Device type", ""});  // CiA 402, servo drive
@@ -125,7 +125,7 @@ constexpr void add_pdo_objects(ObjectTable& table, Pdo pdo, NodeId node) {
   return t;
 }
 
-static_assert([] {  // what the PDO map carries exists, with the same width and sign
+static_assert([] {  // every object in the PDO map exists, with the same width and sign
   for (const NodeId node : profile::kJointNodes) {
     const ObjectTable table = object_table(node);
     for (const PdoField& f : kPdoFields) {

@@ -1,6 +1,6 @@
 #pragma once
-// THE table of process data: which object lies where in which PDO. C++ codec, EDS, DBC and the start-up SDOs all come
-// from it; nothing else in the rig states an offset.
+// The table of process data: which object is at which position in which PDO. C++ codec, EDS, DBC and start-up SDOs are
+// all derived from it; no other place defines an offset.
 
 #include <array>
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace ligature::can {
 
-enum class Pdo : std::uint8_t { kTpdo1, kRpdo1 };  ///< TPDO: drive to us; RPDO: us to drive
+enum class Pdo : std::uint8_t { kTpdo1, kRpdo1 };  ///< TPDO: from drive to controller; RPDO: from controller to drive
 enum class Carriers : std::uint8_t { kEveryNode, kWithoutButtons, kWithButtons };
 
 struct PdoField {
@@ -20,7 +20,7 @@ struct PdoField {
   Carriers carriers;  ///< nodes whose PDO has this field
   Object object;
   std::uint8_t bits;
-  std::uint8_t offset_bits;  ///< from bit 0 of byte 0, little endian
+  std::uint8_t offset_bits;  ///< counted from bit 0 of byte 0, little endian
   bool is_signed;
   std::string_view name;
   std::string_view unit;  ///< empty: bit field
@@ -63,7 +63,7 @@ struct PdoLayout {
   return static_cast<std::uint8_t>(bits / 8);
 }
 
-/// The row of one object; use at compile time only, an object that is not mapped does not compile.
+/// The table row of one object; compile time only: for an object that is not mapped, compilation fails.
 [[nodiscard]] consteval PdoField field_of(Pdo pdo, Object object) {
   for (const PdoField& f : kPdoFields) {
     if (f.pdo == pdo && f.object == object) return f;
@@ -71,13 +71,13 @@ struct PdoLayout {
   throw "object is not in this PDO";
 }
 
-/// Mapping entry as objects 0x1600 and 0x1A00 hold it: index, sub-index, length in bits.
+/// Mapping entry as stored in objects 0x1600 and 0x1A00: index, sub-index, length in bits.
 [[nodiscard]] constexpr std::uint32_t mapping_word(const PdoField& f) noexcept {
   return (static_cast<std::uint32_t>(f.object.index) << 16U) | (static_cast<std::uint32_t>(f.object.sub) << 8U) |
          f.bits;
 }
 
-/// CANopen packs fields one behind the other: no gap, no overlap, at most 8 bytes.
+/// Checks that fields are packed as CANopen requires: no gap, no overlap, at most 8 bytes.
 [[nodiscard]] constexpr bool is_packed(Pdo pdo, NodeId node) noexcept {
   unsigned next = 0;
   for (const PdoField& f : layout_of(pdo, node)) {

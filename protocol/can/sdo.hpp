@@ -1,6 +1,6 @@
 #pragma once
-// SDO, expedited only (at most 4 bytes a transfer): reading and writing a drive's objects at start-up (CiA 301).
-// Words: download = write to the drive, upload = read from it.
+// SDO, expedited transfers only (at most 4 bytes): reads and writes a drive's objects at start-up (CiA 301). In CiA
+// terms download means writing to the drive, upload reading from it.
 
 #include <cstdint>
 #include <optional>
@@ -27,7 +27,7 @@ enum class SdoKind : std::uint8_t {
   kRead,        // master -> drive
   kWritten,     // drive -> master
   kValue,       // drive -> master
-  kAbort,       // either way; value is the abort code
+  kAbort,       // either direction; value is the abort code
   kUnsupported  // segmented or block transfer
 };
 
@@ -59,7 +59,7 @@ struct Sdo {
   return 0;
 }
 
-/// Frame of a transfer. to_drive chooses the direction of an abort; the other kinds know theirs.
+/// Frame of a transfer. to_drive sets the direction of an abort; other kinds have a fixed direction.
 [[nodiscard]] constexpr Frame encode(const Sdo& s, bool to_drive = false) noexcept {
   const bool request = s.kind == SdoKind::kWrite || s.kind == SdoKind::kRead || (s.kind == SdoKind::kAbort && to_drive);
   Frame f{cob_id(request ? Service::kSdoRequest : Service::kSdoResponse, s.node).value, 8, {}};
@@ -78,7 +78,7 @@ struct Sdo {
   return encode(Sdo{SdoKind::kRead, node, object, 0, 0});
 }
 
-/// Both directions; nothing when the frame is no SDO at all.
+/// Decodes both directions; empty if the frame is not an SDO.
 [[nodiscard]] constexpr std::optional<Sdo> decode_sdo(const Frame& f) noexcept {
   const auto address = address_of(f.id);
   if (!address || f.dlc != 8) return std::nullopt;

@@ -1,6 +1,6 @@
 #pragma once
-// What the master writes into a drive before NMT start, in order. The PDO mapping comes from pdo_map.hpp, so a drive
-// out of its box is brought to the layout that the codec speaks.
+// SDO writes that the master sends to a drive before NMT start, in order. The PDO mapping comes from pdo_map.hpp, so
+// that a drive with factory settings gets the layout that the codec uses.
 
 #include <array>
 #include <cstddef>
@@ -17,7 +17,7 @@ struct SdoWrite {
   std::uint8_t bytes = 0;
 };
 
-/// What a device's record says of each of its drives.
+/// Values of the device record for each drive.
 struct DriveFacts {
   std::uint32_t rated_torque_mNm = profile::kRatedTorque_mNm;
   std::uint32_t counts_per_revolution = static_cast<std::uint32_t>(profile::kCountsPerRevolution);
@@ -25,9 +25,10 @@ struct DriveFacts {
 };
 
 struct StartupTimes {
-  std::uint16_t rpdo_timeout_ms = profile::kDefaultRpdoTimeout_ms;  ///< drive zeroes torque after this silence
+  /// after this time without RPDO the drive sets its torque to zero
+  std::uint16_t rpdo_timeout_ms = profile::kDefaultRpdoTimeout_ms;
   std::uint16_t heartbeat_timeout_ms = profile::kDefaultHeartbeatTimeout_ms;  ///< the same for the master's heartbeat
-  std::uint16_t heartbeat_period_ms = profile::kDefaultHeartbeat_ms;          ///< of the drive
+  std::uint16_t heartbeat_period_ms = profile::kDefaultHeartbeat_ms;          ///< of the drive's own heartbeat
   DriveFacts drive{};
 };
 
@@ -42,7 +43,7 @@ struct StartupPlan {
   [[nodiscard]] constexpr const SdoWrite* end() const noexcept { return writes.data() + count; }
 };
 
-/// Switches a PDO off, maps it, makes it synchronous, switches it on again: the order CiA 301 asks for.
+/// Disables a PDO, maps it, makes it synchronous, enables it again: the order that CiA 301 requires.
 constexpr void add_pdo_setup(StartupPlan& plan, Pdo pdo, NodeId node) {
   const bool rpdo = pdo == Pdo::kRpdo1;
   const Object communication = rpdo ? od::kRpdo1CobId : od::kTpdo1CobId;

@@ -1,5 +1,5 @@
 #pragma once
-// Counts and per mille of the shipped device <-> SI; a rig with another device record scales by that.
+// Conversion between counts or per mille and SI units for the shipped device; other devices use their record's values.
 
 #include <cstdint>
 #include <numbers>
@@ -8,7 +8,7 @@
 
 namespace ligature::can {
 
-/// Nearest integer, halves away from zero; not a number gives 0, and what does not fit is clipped to +-limit.
+/// Nearest integer, halves away from zero, clipped to +-limit; NaN gives 0.
 [[nodiscard]] constexpr std::int32_t round_clipped(double value, std::int32_t limit) noexcept {
   if (!(value == value)) return 0;
   if (value >= limit) return limit;
@@ -25,10 +25,10 @@ inline constexpr double kNmPerPermille = profile::kRatedTorque_mNm * 1e-3 * 1e-3
   return round_clipped(angle_rad / kRadPerCount, 0x3FFF'FFFF);
 }
 
-/// Joint torque of a wire value, N m. Resolution 0.3 mN m.
+/// Joint torque from its value on the wire, N m. Resolution 0.3 mN m.
 [[nodiscard]] constexpr double torque_Nm(std::int16_t permille) noexcept { return permille * kNmPerPermille; }
 
-/// Wire value of a joint torque, clipped at the drive's maximum; a torque that is not a number becomes 0.
+/// Value on the wire for a joint torque, clipped to the drive's maximum; NaN gives 0.
 [[nodiscard]] constexpr std::int16_t permille_of(double torque_Nm) noexcept {
   return static_cast<std::int16_t>(round_clipped(torque_Nm / kNmPerPermille, profile::kMaxTorque_permille));
 }

@@ -1,6 +1,6 @@
 #pragma once
-// What one must know of a haptic device to drive it: numbers only. Files: scenes/devices/*.toml (device_file.hpp reads
-// them). SI units; D is the device's base frame (x right, y away from the person, z up), T the tip.
+// Parameters of a haptic device. Files: scenes/devices/*.toml (read by device_file.hpp). SI units; D is the device's
+// base frame (x right, y away from the person, z up), T the tip.
 
 #include <array>
 #include <cstdint>
@@ -11,13 +11,14 @@ namespace ligature::device {
 
 using Vec = std::array<double, 3>;
 
-/// Which function leads from joint angles to the tip; firmware and simulated device each have their own of each.
+/// Kind of linkage: selects the function from joint angles to the tip. Firmware and simulated device implement each one
+/// separately.
 enum class Kinematics : std::uint8_t {
   kOmniSerial,  ///< waist, shoulder, forearm driven from the base: links[0] upper arm, links[1] forearm
   kCartesian,   ///< three linear axes, each pulled by a drum: links[i] = drum radius, p = home + links * q
 };
 
-/// Where a number comes from.
+/// Origin of a value.
 enum class Source : std::uint8_t { kAssumed, kDatasheet, kMeasured };
 
 struct Device {
@@ -26,19 +27,20 @@ struct Device {
 
   // Geometry.
   Vec links_m{};
-  Vec home_tip_m{};                      ///< tip position that maps to the scene's workspace_origin_m
-  Vec joint_min_rad{}, joint_max_rad{};  ///< stops; of an Omni's third joint: of the angle between the links, q3 - q2
-  Vec workspace_min_m{}, workspace_max_m{};  ///< box in D in which the tip is used
+  Vec home_tip_m{};  ///< tip position that maps to the scene's workspace_origin_m
+  /// stops; for the Omni's third joint they limit the angle between the links, q3 - q2
+  Vec joint_min_rad{}, joint_max_rad{};
+  Vec workspace_min_m{}, workspace_max_m{};  ///< box in D within which the tip is used
 
-  // Drives, seen from the joint.
-  int motor_counts = 0;                ///< encoder counts of one motor revolution, after quadrature
+  // Drives; values refer to the joint.
+  int motor_counts = 0;                ///< encoder counts per motor revolution, after quadrature
   double gear = 1.0;                   ///< motor revolutions per joint revolution
   double rated_torque_Nm = 0.0;        ///< 0x6076
   int max_torque_permille = 0;         ///< 0x6072
-  int torque_tolerance_permille = 50;  ///< a drive's torque may be told so much beyond what it was asked for
-  double delay_s = 0.0;                ///< from the sample of a position to the effect of the torque made of it
+  int torque_tolerance_permille = 50;  ///< a drive's reported torque may exceed the commanded one by this
+  double delay_s = 0.0;                ///< from a position sample to the effect of the torque computed from it
 
-  // What a hand feels of it when it is off, at the tip in the home pose.
+  // Passive dynamics of the device when it is off, at the tip in the home pose.
   double apparent_mass_kg = 0.0;
   double damping_N_s_per_m = 0.0;  ///< b
   double coulomb_N = 0.0;
@@ -46,12 +48,12 @@ struct Device {
   // Limits.
   double peak_force_N = 0.0;
   double continuous_force_N = 0.0;
-  double thermal_time_s = 0.0;  ///< time constant of the motors' winding
+  double thermal_time_s = 0.0;  ///< thermal time constant of the motors' windings
   double velocity_limit_m_per_s = 0.0;
   double force_step_N = 0.0;        ///< largest change within one period
   double force_slew_N_per_s = 0.0;  ///< largest rate of change over many periods
   double hand_acceleration_m_per_s2 =
-      0.0;  ///< that a hand may give the tip; the passivity controller keeps room for it
+      0.0;  ///< largest acceleration that a hand gives the tip, assumed by the passivity controller
 
   [[nodiscard]] double counts_per_revolution() const noexcept { return motor_counts * gear; }
   [[nodiscard]] double rad_per_count() const noexcept { return 2.0 * std::numbers::pi / counts_per_revolution(); }
@@ -59,8 +61,8 @@ struct Device {
   [[nodiscard]] double max_torque_Nm() const noexcept { return Nm_per_permille() * max_torque_permille; }
 };
 
-/// The shipped Omni-class device, scenes/devices/omni.toml as it was when this was built: what programs use without
-/// --device. The first call parses it.
+/// The shipped Omni-class device: the record scenes/devices/omni.toml as compiled in, the default without --device. The
+/// first call parses it.
 [[nodiscard]] const Device& omni();
 
 }  // namespace ligature::device

@@ -19,9 +19,9 @@ constexpr std::pair<const char*, Source> kSources[] = {
     {"assumed", Source::kAssumed}, {"datasheet", Source::kDatasheet}, {"measured", Source::kMeasured}};
 constexpr Range kPositive{1e-6, 1e6};
 constexpr Range kNotNegative{0.0, 1e6};
-constexpr double kFar = 100.0;  // m or rad
+constexpr double kFar = 100.0;  // m or rad: largest coordinate or angle
 
-/// Reads {value = .., source = ".."} entries and notes the sources.
+/// Reads entries {value = .., source = ".."} and stores their sources.
 class Marked {
  public:
   Marked(StrictTable& table, std::string path, DeviceFile& out) : table_(table), path_(std::move(path)), out_(out) {}
@@ -102,7 +102,7 @@ void read_limits(Marked t, Device& d) {
   t.number("hand_acceleration_m_per_s2", d.hand_acceleration_m_per_s2, kPositive);
 }
 
-/// What ties values together.
+/// Checks relations between values.
 void check(StrictTable& geometry, StrictTable& limits, const Device& d) {
   const int links = d.kinematics == Kinematics::kCartesian ? 3 : 2;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -160,7 +160,8 @@ std::variant<Device, Error> load_device(const std::filesystem::path& path) {
 const Device& omni() {
   static const Device device = [] {
     auto parsed = parse_device(kOmniText, "scenes/devices/omni.toml");
-    if (auto* error = std::get_if<Error>(&parsed)) throw std::logic_error(error->text);  // a test reads the same text
+    // impossible in practice: a test parses the same text
+    if (auto* error = std::get_if<Error>(&parsed)) throw std::logic_error(error->text);
     return std::get<DeviceFile>(parsed).device;
   }();
   return device;

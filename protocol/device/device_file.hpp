@@ -1,5 +1,5 @@
 #pragma once
-// Device records from TOML. Strict, as scenes are; each number says where it comes from:
+// Reads device records from TOML, as strictly as scene files. Each number states its source:
 //   peak_force_N = {value = 3.3, source = "datasheet"}          source: "measured" | "datasheet" | "assumed"
 
 #include <filesystem>
@@ -13,17 +13,17 @@
 
 namespace ligature::device {
 
-/// A record and the source of each of its values, by dotted key, in the file's order.
+/// A record and the source of each value, by dotted key, in the file's order.
 struct DeviceFile {
   Device device;
   std::vector<std::pair<std::string, Source>> sources;
 };
 
-/// @return the record, or the one line that says what is wrong: file, line, key, what was found, what is allowed. Every
-/// key must be there: a device has no defaults.
+/// @return the record, or one line that says what is wrong: file, line, key, what was found, what is allowed. No key
+/// has a default; all must be present.
 [[nodiscard]] std::variant<DeviceFile, scene::Error> load_device_file(const std::filesystem::path& path);
 [[nodiscard]] std::variant<Device, scene::Error> load_device(const std::filesystem::path& path);
-/// The same from a text; `name` stands for the file in messages.
+/// The same from a text; `name` is used as file name in messages.
 [[nodiscard]] std::variant<DeviceFile, scene::Error> parse_device(const std::string& toml, const std::string& name);
 
 }  // namespace ligature::device

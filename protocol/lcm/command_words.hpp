@@ -1,5 +1,5 @@
 #pragma once
-// What the kinds of command_t are called, on the command line, in the page and in the firmware's answers.
+// Names of the kinds of command_t: for the command line, the page and the firmware's answers.
 
 #include <array>
 #include <cstdint>
@@ -28,14 +28,14 @@ inline constexpr std::array<CommandWord, 13> kCommandWords{{{1, "arm"},
                                                             {13, "park"},
                                                             {14, "calibrate"}}};
 
-/// Nothing for any other word.
+/// Kind for a name; nothing for an unknown name.
 [[nodiscard]] constexpr std::optional<std::int8_t> command_kind(std::string_view word) {
   for (const auto& known : kCommandWords)
     if (known.word == word) return known.kind;
   return std::nullopt;
 }
 
-/// "command 99" for a kind that is none.
+/// Name of a kind; "command 99" for an unknown kind.
 [[nodiscard]] inline std::string command_word(std::int8_t kind) {
   for (const auto& known : kCommandWords)
     if (known.kind == kind) return std::string(known.word);

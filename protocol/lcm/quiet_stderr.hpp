@@ -4,7 +4,7 @@
 
 namespace ligature::lcm_tools {
 
-/// Keeps the library's page of text off stderr while it opens the network: the program says the same in one line.
+/// Suppresses the long message that LCM prints to stderr if the network fails; our programs print one line instead.
 class QuietStderr {
  public:
   QuietStderr() : saved_(dup(STDERR_FILENO)), null_(open("/dev/null", O_WRONLY | O_CLOEXEC)) {

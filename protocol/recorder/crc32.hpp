@@ -22,7 +22,8 @@ inline constexpr auto kCrcTable = crc_table();
 
 }  // namespace detail
 
-/// @param before the CRC of what precedes these bytes; 0 for none. @return the CRC of both. One table look-up a byte.
+/// @param before the CRC of the preceding bytes; 0 for none. @return the CRC of all together. One table look-up per
+/// byte.
 [[nodiscard]] constexpr std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t before = 0) noexcept {
   std::uint32_t c = ~before;
   for (const std::byte b : bytes) c = detail::kCrcTable[(c ^ std::to_integer<std::uint32_t>(b)) & 0xFFU] ^ (c >> 8U);

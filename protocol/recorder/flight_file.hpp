@@ -1,16 +1,16 @@
 #pragma once
-// Layout of a flight recorder file: a header, then a ring of slots, each with one tick. Little-endian.
+// Layout of a flight recorder file: a header, then a ring of slots with one tick each. Little-endian.
 //
-//   0       Header, kHeaderBytes, with a CRC of its own
+//   0       Header, kHeaderBytes, with its own CRC
 //   + i S   slot i of S = slot_bytes: SlotHead, then `bytes` of payload: a tick_t in LCM encoding, without its hash
-//   + j K   from version 3 on, scene j of K = kSceneBytes: a SceneEntry for each change of scene or parameter; as many
-//           as the file's size leaves room for
+//   + j K   from version 3 on, scene j of K = kSceneBytes: a SceneEntry per change of scene or parameter; their number
+//           follows from the file's size
 //
-// Record number q (from 1) lies in slot (q - 1) mod slots. The CRC of a slot covers number, length and payload, so that
-// a slot that was being written when everything stopped, or that the disk lost, is seen as such: at most one of them by
-// the death of the writer, whatever its moment. Scene entry number e (from 1) lies in place (e - 1) mod their count,
-// and is written in the same way. The header's scene is in force from the first tick on, an entry's from its
-// first_tick. Nothing else is ever rewritten, so there is no index to repair.
+// Record number q (from 1) is in slot (q - 1) mod slots. The CRC of a slot covers number, length and payload, so it
+// reveals a slot that was being written when the machine stopped, or that the disk lost. If the writer dies, at most
+// one slot is incomplete. Scene entry number e (from 1) is at place (e - 1) mod their count, protected in the same way.
+// The header's scene is valid from the first tick on, an entry's from its first_tick. Nothing else is rewritten, so no
+// index can be damaged.
 
 #include <array>
 #include <cstddef>
@@ -35,7 +35,7 @@ struct Header {
   std::uint32_t version = kVersion;
   std::uint32_t slot_bytes = 0;
   std::int64_t slots = 0;
-  std::int64_t tick_hash = 0;  ///< LCM's hash of tick_t: a changed message has another one
+  std::int64_t tick_hash = 0;  ///< LCM's hash of tick_t; differs if the message type was changed
   std::int64_t session = 0;    ///< as in tick_batch_t: CLOCK_REALTIME at the run's start, microseconds
   double period_s = 0.0;
   double max_force_N = 0.0;
@@ -43,12 +43,12 @@ struct Header {
   std::uint32_t toml_bytes = 0;
   std::array<char, 32> firmware_version{};
   std::array<char, 256> scene_file{};
-  std::array<char, 61440> scene_toml{};  ///< cut off when longer
-  std::uint32_t crc = 0;                 ///< of everything before it
+  std::array<char, 61440> scene_toml{};  ///< truncated if longer
+  std::uint32_t crc = 0;                 ///< of all bytes before it
 };
 static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) <= kHeaderBytes);
 
-/// A scene that came in force while the rig ran.
+/// A scene that was put in force while the rig ran.
 struct SceneEntry {
   std::uint64_t number = 0;  ///< 0: never written
   std::int64_t first_tick = 0;
@@ -56,8 +56,8 @@ struct SceneEntry {
   std::int32_t admitted = 0;  ///< 0: run by --force
   std::uint32_t toml_bytes = 0;
   std::array<char, 256> scene_file{};
-  std::array<char, 61440> scene_toml{};  ///< with its overrides; cut off when longer
-  std::uint32_t crc = 0;                 ///< of everything before it
+  std::array<char, 61440> scene_toml{};  ///< with its overrides; truncated if longer
+  std::uint32_t crc = 0;                 ///< of all bytes before it
 };
 inline constexpr std::size_t kSceneBytes = 65536;
 inline constexpr std::size_t kMostScenes = 64;
@@ -86,7 +86,7 @@ static_assert(sizeof(SlotHead) == 16);
   return static_cast<std::size_t>((sequence - 1) % static_cast<std::uint64_t>(slots));
 }
 
-/// The room that a tick needs, rounded up to whole cache lines.
+/// Slot size for a payload, rounded up to whole cache lines.
 [[nodiscard]] constexpr std::uint32_t slot_bytes_for(std::size_t payload) noexcept {
   return static_cast<std::uint32_t>((sizeof(SlotHead) + payload + 63) / 64 * 64);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Lines of comma-separated values in parts: what every reader of such files here shares.
+// Splitting and parsing of comma-separated lines, shared by all CSV readers here.
 
 #include <charconv>
 #include <cmath>
@@ -9,14 +9,14 @@
 
 namespace ligature::scene {
 
-/// Without the blanks at both ends.
+/// Text without blanks at both ends.
 [[nodiscard]] inline std::string_view trim(std::string_view s, std::string_view blanks = " \t\r") noexcept {
   const auto first = s.find_first_not_of(blanks);
   if (first == std::string_view::npos) return {};
   return s.substr(first, s.find_last_not_of(blanks) - first + 1);
 }
 
-/// The cells of a line, trimmed; views into it. At least one.
+/// The trimmed cells of a line, as views into it; at least one.
 [[nodiscard]] inline std::vector<std::string_view> split(std::string_view line, std::string_view blanks = " \t\r") {
   std::vector<std::string_view> cells;
   for (;;) {
@@ -27,7 +27,7 @@ namespace ligature::scene {
   }
 }
 
-/// A finite decimal number and nothing else, or false.
+/// Parses a finite decimal number; false for anything else.
 [[nodiscard]] inline bool parse_number(std::string_view cell, double& out) noexcept {
   if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), out);

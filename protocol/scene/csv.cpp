@@ -30,7 +30,7 @@ std::variant<std::vector<CsvRow>, Error> read_csv(const std::filesystem::path& p
   const auto read = read_text(path, kMostCsv_bytes);
   if (const auto* error = std::get_if<Error>(&read)) return *error;
   std::string_view rest = std::get<std::string>(read);
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // the byte order mark of UTF-8
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // byte order mark of UTF-8
   auto columns = split(header);
   std::vector<CsvRow> rows;
   bool header_seen = false;

@@ -1,5 +1,5 @@
 #pragma once
-// A fault that shall happen to one hand, and what the rig has to make of it. Files: scenes/faults/*.toml.
+// A fault to inject into one hand, and the reaction expected of the rig. Files: scenes/faults/*.toml.
 
 #include <cstdint>
 #include <filesystem>
@@ -11,22 +11,22 @@
 namespace ligature::scene {
 
 enum class FaultKind : std::uint8_t {
-  kLose,       ///< frames of the drives do not arrive
-  kDelay,      ///< they arrive delay_s later
-  kDuplicate,  ///< they arrive twice
-  kReorder,    ///< they arrive after the next one
-  kCorrupt,    ///< a bit of their data is wrong, beyond what a CAN controller's own CRC lets through
+  kLose,       ///< frames of the drives are lost
+  kDelay,      ///< frames of the drives arrive delay_s later
+  kDuplicate,  ///< frames of the drives arrive twice
+  kReorder,    ///< each frame arrives after the next one
+  kCorrupt,    ///< a data bit is wrong although the CAN CRC is right
   kFreeze,     ///< the encoder of `node` stands still
-  kJump,       ///< it is off by `counts`
-  kReverse,    ///< it counts backwards from where it was
-  kButton,     ///< the stylus buttons stay as they were
-  kReboot,     ///< the drive `node` starts anew, once
-  kEmergency,  ///< the drive `node` sends an emergency, once
-  kAstray,     ///< the drive `node` makes `permille` more torque than it is asked for
-  kForeign,    ///< somebody else on the bus sends `frame` to `node` every period_s
+  kJump,       ///< the encoder of `node` is off by `counts`
+  kReverse,    ///< the encoder of `node` counts backwards from its present value
+  kButton,     ///< the stylus buttons keep their last values
+  kReboot,     ///< the drive `node` reboots, once
+  kEmergency,  ///< the drive `node` sends an EMCY, once
+  kAstray,     ///< the drive `node` makes `permille` more torque than commanded
+  kForeign,    ///< another node on the bus sends `frame` to `node` every period_s
 };
 
-/// What somebody who is not the controller may send.
+/// Frames of another controller.
 enum class ForeignFrame : std::uint8_t {
   kRpdo,
   kSync,
@@ -43,21 +43,21 @@ struct FaultScript {
   FaultKind kind = FaultKind::kLose;
   int hand = 0;         ///< 0 left, 1 right
   int node = 0;         ///< 1 .. 3; 0 = all of the hand's drives
-  double share = 1.0;   ///< of the frames, 0 .. 1
-  double from_s = 0.0;  ///< since the first SYNC
+  double share = 1.0;   ///< share of the frames that is affected, 0 .. 1
+  double from_s = 0.0;  ///< time since the first SYNC
   double until_s = 1e9;
   double delay_s = 0.0;
   int counts = 0;
-  int seed = 1;      ///< which frames, when share < 1
-  int permille = 0;  ///< torque, of the rated one
+  int seed = 1;      ///< selects the affected frames if share < 1
+  int permille = 0;  ///< torque, per mille of the rated torque
   ForeignFrame frame = ForeignFrame::kRpdo;
   double period_s = 1e-3;
 
-  int expected_fault = 0;  ///< number of docs/architecture.md; 0: the rig carries on
-  int within_ticks = 0;    ///< from the onset until no torque is commanded to either hand
+  int expected_fault = 0;  ///< fault number (docs/architecture.md); 0: the rig continues
+  int within_ticks = 0;    ///< latest tick, from the start of the fault, at which no torque is commanded to either hand
 };
 
-/// @return the script, or the one line that says what is wrong with the file. Strict, as scenes are.
+/// @return the script, or one line that says what is wrong with the file. As strict as scene files.
 [[nodiscard]] std::variant<FaultScript, Error> load_fault_script(const std::filesystem::path& path);
 
 }  // namespace ligature::scene

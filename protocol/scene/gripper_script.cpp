@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view kHeader = "time,hand,x,y,z,grip", kTurning = "time,hand,x,y,z,grip,turn_x,turn_y,turn_z";
 
-/// With at most so many decimals, and no zeros at the end. @pre |value| <= 1e9
+/// Number with at most that many decimals, without trailing zeros. @pre |value| <= 1e9
 std::string shortest(double value, int decimals) {
   std::array<char, 32> cell{};
   const auto end = std::to_chars(cell.data(), cell.data() + cell.size(), value, std::chars_format::fixed, decimals);
@@ -23,7 +23,7 @@ std::string shortest(double value, int decimals) {
   return text == "-0" ? "0" : text;
 }
 
-/// Empty when it is one.
+/// Reads the `motion` setting. @return empty, or what is wrong with it.
 std::string read_motion(const CsvSetting& setting, Motion& motion) {
   if (setting.line == 0 || setting.value == "rests") return {};
   motion = Motion::kMonotoneCubic;
@@ -31,7 +31,7 @@ std::string read_motion(const CsvSetting& setting, Motion& motion) {
   return "motion: found '" + shown(setting.value) + "', allowed rests or monotone-cubic";
 }
 
-/// One row as a key of one hand; the text says what is wrong with it, empty when nothing is.
+/// Reads one row as a key of a hand. @return empty, or what is wrong with it.
 std::string read_row(const CsvRow& row, int& hand, GripKey& key) {
   constexpr const char* kNumbers[] = {"time", "x", "y", "z", "turn_x", "turn_y", "turn_z"};
   constexpr std::size_t kCells[] = {0, 2, 3, 4, 6, 7, 8};
@@ -44,7 +44,7 @@ std::string read_row(const CsvRow& row, int& hand, GripKey& key) {
       return std::string("column '") + kNumbers[i] + "': found '" + shown(cell) + "', allowed a finite number";
     }
   }
-  constexpr double kMost = 1e6;  // s, m, degrees: differences of these are numbers too
+  constexpr double kMost = 1e6;  // s, m, degrees; differences of such values stay finite
   for (std::size_t i = 0; i < numbers; ++i) {
     const double least = i == 0 ? 0.0 : -kMost;
     if (*out[i] < least || *out[i] > kMost)

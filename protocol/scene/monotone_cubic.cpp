@@ -3,7 +3,8 @@
 namespace ligature::scene {
 namespace {
 
-/// @param d0,d1 mean velocities of the intervals before and after the key;  @param h0_s,h1_s their lengths
+/// Velocity at a key: weighted harmonic mean, see pass_through().
+/// @param d0,d1 mean velocities of the intervals before and after the key;  @param h0_s,h1_s their durations
 double passing(double d0, double d1, double h0_s, double h1_s) noexcept {
   if (!(d0 * d1 > 0.0)) return 0.0;
   const double w0 = h0_s + 2.0 * h1_s, w1 = 2.0 * h0_s + h1_s;

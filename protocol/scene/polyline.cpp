@@ -7,13 +7,13 @@
 namespace ligature::scene {
 namespace {
 
-constexpr double kFar_m = 1e6;  // as in scene files: squares of these are numbers
+constexpr double kFar_m = 1e6;  // as in scene files; squares of such values stay finite
 
 Vec minus(const Vec& a, const Vec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 Vec plus(const Vec& a, double s, const Vec& b) { return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]}; }
 double dot(const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// The direction of the last segment that has a length; straight down when there is none.
+/// Direction of the last segment with non-zero length; straight down if there is none.
 Vec end_direction(std::span<const Vec> points) {
   for (std::size_t k = points.size() - 1; k > 0; --k) {
     const Vec d = minus(points[k], points[k - 1]);
@@ -46,14 +46,15 @@ std::variant<std::vector<Vec>, Error> load_polyline(const std::filesystem::path&
 
 std::vector<Vec> lay_out(std::span<const Vec> points, int n, double rest_m) {
   std::vector<Vec> nodes{points.front()};
-  std::size_t k = 1;  // the segment points[k - 1] .. points[k] is searched next
-  double from = 0.0;  // where on it, 0 .. 1
+  std::size_t k = 1;  // the next node is searched on segment points[k - 1] .. points[k]
+  double from = 0.0;  // from this parameter on, 0 .. 1
   const Vec onward = end_direction(points);
   while (nodes.size() < static_cast<std::size_t>(n)) {
     const Vec c = nodes.back();
     bool found = false;
     for (; k < points.size() && !found; ++k, from = 0.0) {
-      // |a + u d - c| = rest: the sphere around the last node leaves the segment at the larger root.
+      // a + u d - c| = rest: intersection of the segment with the sphere around the last node; the larger root leaves
+      // it.
       const Vec a = points[k - 1], d = minus(points[k], a), ac = minus(a, c);
       const double A = dot(d, d), B = dot(ac, d), C = dot(ac, ac) - rest_m * rest_m, D = B * B - A * C;
       if (A == 0.0 || D < 0.0) continue;
@@ -65,7 +66,7 @@ std::vector<Vec> lay_out(std::span<const Vec> points, int n, double rest_m) {
       break;
     }
     if (found) continue;
-    // Past the end: straight on; the first such node starts from the polyline's last point's own line.
+    // Beyond the polyline's end the chain continues straight along `onward`.
     const Vec ec = minus(points.back(), c);
     const double B = dot(ec, onward), C = dot(ec, ec) - rest_m * rest_m;
     const double s = C < 0.0 ? -B + std::sqrt(B * B - C) : 0.0;

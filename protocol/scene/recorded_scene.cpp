@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view kAsRun = "\n# as run:", kSet = "# --set ", kShape = "# shape ";
 
-/// Of the shape as it is laid out: whatever its file is called and says beside it.
+/// Checksum of the start shape's points; independent of the file's name and comments.
 std::uint32_t shape_of(const Scene& scene) {
   return recorder::crc32(std::as_bytes(std::span(scene.suture.initial_polyline_m)));
 }
@@ -38,7 +38,7 @@ std::string recorded_text(std::string text, std::span<const std::string> overrid
   return text;
 }
 
-/// The last such line is the recording's own: a text that was recorded may have been run and recorded again.
+/// Searches for the last "# as run:" line: a text taken from a recording may contain earlier ones.
 RecordedScene split_recorded(const std::string& recorded) {
   RecordedScene found{recorded, {}, {}};
   const auto at = recorded.rfind(kAsRun);

@@ -1,5 +1,6 @@
 #pragma once
-// How a recording carries a scene: its file's text, and behind it, as comments, what else made it what it was.
+// How recordings store a scene: the text of its file, followed by comments with everything else that determined the
+// run.
 
 #include <cstdint>
 #include <optional>
@@ -13,16 +14,16 @@
 
 namespace ligature::scene {
 
-/// The text of a recording, which is a scene file still, and lines may be added to it:
-///   ... the file, as it was read
+/// The text stored in a recording. It is itself a valid scene file; further lines may be appended:
+///   ... the file as read
 ///   # as run:
-///   # shape 0123abcd            CRC-32 of the initial shape, where the scene takes it from a file of its own
+///   # shape 0123abcd            CRC-32 of the start shape, if the scene reads it from a separate file
 ///   # --set suture.nodes=35     each override, in order
-///   # --force: why              it is not admitted
-///   # seed 7                    of a simulated operator
+///   # --force: why              reason why it was not admitted
+///   # seed 7                    seed of a simulated operator
 [[nodiscard]] std::string recorded_text(std::string text, std::span<const std::string> overrides, const Scene& scene);
 
-/// One more override, after the others.
+/// Appends one more override.
 void add_override(std::string& recorded, std::string_view override);
 
 struct RecordedScene {
@@ -32,13 +33,13 @@ struct RecordedScene {
 };
 [[nodiscard]] RecordedScene split_recorded(const std::string& recorded);
 
-/// The scene again, with other overrides on top: one that names a key of a recorded override comes in its place.
-/// @param path of the scene's file, for its messages and for the shape that it names.
-/// @return the scene, or one line that says what is missing or wrong, a shape that is another one now included.
+/// Parses a recorded scene, with further overrides: one with the key of a recorded override replaces that one.
+/// @param path of the scene's file, for messages and for finding its shape file
+/// @return the scene, or one line that says what is missing or wrong, for example if the shape file has changed
 [[nodiscard]] std::variant<Scene, Error> parse_recorded(const std::string& recorded, const std::string& path,
                                                         std::span<const std::string> overrides = {});
 
-/// The key of a `key=value`, without blanks.
+/// The key of `key=value`, without blanks.
 [[nodiscard]] std::string_view key_of(std::string_view override);
 
 }  // namespace ligature::scene

@@ -1,5 +1,5 @@
 #pragma once
-// Private to scene_file.cpp: the keys of the rod model and the named threads.
+// Private to scene_file.cpp: keys of the rod model, and presets of suture materials.
 
 #include <string>
 
@@ -7,21 +7,21 @@
 
 namespace ligature::scene {
 
-/// A thread that can be bought, as far as it is known (tests/reference/08_sutures.json).
+/// A commercial suture, as far as its properties are known (tests/reference/08_sutures.json).
 struct RodPreset {
   const char* name;
   double diameter_m;  ///< middle of the USP range
   double density_kg_per_m3;
   double modulus_Pa;
-  double bend_share;  ///< EI over that of a solid rod: 1 for a monofilament, less for a braid
+  double bend_share;  ///< EI relative to a solid rod: 1 for a monofilament, less for a braid
 };
 
 /// Diameters: middle of the range of the metric size. Densities: Morton & Hearle, Physical Properties of Textile
 /// Fibres, table 5.1. Moduli: nylon 6.6 fibre of medium tenacity, ibid. table 13.2; silk and rapid polyglactin sutures,
-/// 3-0: Naleway et al., J. Biomed. Mater. Res. B 103 (2015) 735, abstract. Assumed, since no source could be read: that
-/// a nylon suture is as stiff as the fibre, and other sizes of a braid as 3-0; polypropylene's modulus; polyglactin's
-/// density; that a braid is as dense as its fibres (no packing fraction); the bend share of braids; Poisson's ratio 0.4
-/// in GJ. Friction is not suture data and stays the scene's.
+/// 3-0: Naleway et al., J. Biomed. Mater. Res. B 103 (2015) 735, abstract. Assumed without a source: a nylon suture is
+/// as stiff as the fibre; other sizes of a braid are as 3-0; polypropylene's modulus; polyglactin's density; a braid is
+/// as dense as its fibres (no packing fraction); the bend share of braids; Poisson's ratio 0.4 in GJ. Friction is no
+/// suture property here; scenes set it.
 inline constexpr RodPreset kRodPresets[] = {
     {"nylon-2-0", 0.325e-3, 1140.0, 3.42e9, 1.0},       {"nylon-3-0", 0.225e-3, 1140.0, 3.42e9, 1.0},
     {"nylon-4-0", 0.175e-3, 1140.0, 3.42e9, 1.0},       {"nylon-5-0", 0.125e-3, 1140.0, 3.42e9, 1.0},
@@ -32,11 +32,11 @@ inline constexpr RodPreset kRodPresets[] = {
     {"polyglactin-2-0", 0.325e-3, 1400.0, 9.32e9, 0.1}, {"polyglactin-3-0", 0.225e-3, 1400.0, 9.32e9, 0.1},
     {"polyglactin-4-0", 0.175e-3, 1400.0, 9.32e9, 0.1}, {"polyglactin-5-0", 0.125e-3, 1400.0, 9.32e9, 0.1}};
 
-/// Reads the rod's keys of [suture]: `preset` first, then whatever is given beside it.
-/// @param radius_m set by a preset; a `radius_m` of the file, read later, replaces it.
+/// Reads the rod's keys of [suture]: `preset` first, then keys that override its values.
+/// @param radius_m set by a preset; a `radius_m` in the file is read later and replaces it
 void read_rod(StrictTable& t, RodParameters& rod, double& radius_m);
 
-/// world.pegs.
+/// Reads world.pegs.
 void read_pegs(StrictTable& t, World& world);
 
 }  // namespace ligature::scene

@@ -1,6 +1,6 @@
 #pragma once
-// A scene as plain numbers: what scene files say (scene_file.hpp reads them) and every program understands.
-// SI units; vectors are x, y, z in the world frame W (x right, y away from the person, z up).
+// A scene as plain data: the content of scene files (read by scene_file.hpp), used by all programs. SI units; vectors
+// are x, y, z in the world frame W (x right, y away from the person, z up).
 
 #include <array>
 #include <cstdint>
@@ -16,18 +16,20 @@ using Vec = std::array<double, 3>;
 enum class Model : std::uint8_t { kPaper1, kPaper2, kPaper3, kPaper4, kPaper5, kRod };
 enum class ContactSolver : std::uint8_t { kNone, kPaper, kImplicit };
 enum class BroadPhase : std::uint8_t { kAuto, kBrute, kSweep, kBvh };
-enum class SwivelDamper : std::uint8_t { kInternal, kPaper };  ///< four-point dihedral rate, or the paper's (13)-(15)
+/// from the rate of the dihedral angle of four points, or the paper's (13)-(15)
+enum class SwivelDamper : std::uint8_t { kInternal, kPaper };
 enum class QuadraticStretch : std::uint8_t {
   kStiff,
   kPrinted
-};  ///< model 5: constant that stretches less, or Table I's
+};  ///< model 5: the stiffer constant, or the one printed in Table I
 
-/// How dampers act: on the velocities they leave behind (stable at any step), or as printed, on those they find.
+/// Evaluation of damping: implicit, with the velocities after the step (stable at any step size), or explicit, as
+/// printed in the paper.
 enum class Damping : std::uint8_t { kImplicit, kExplicit };
-/// Order of the Euler update: velocity first, or position and velocity both from the old state.
+/// Euler update: semi-implicit (velocity first), or forward (both from the old state).
 enum class Integrator : std::uint8_t { kSemiImplicit, kForward };
 
-/// The paper's Table I, per node; used by paper-1 .. paper-5.
+/// Parameters of the paper's Table I, per node; used by paper-1 .. paper-5.
 struct PaperParameters {
   double node_mass_kg = 0.05;    ///< m
   double stretch_N = 800.0;      ///< k_l: force per unit strain, i.e. EA
@@ -35,12 +37,12 @@ struct PaperParameters {
   double bend = 10.0;            ///< k_ts, N m (torque is k_ts alpha / pi)
   double bend_damping = 0.05;    ///< k_td, N m s
   double swivel_damping = 0.2;   ///< k_sw, N s
-  /// Node count at which the values above hold, 2 .. 5000. When given, another `nodes` simulates the same thread: mass,
-  /// EA, EI and losses per length are kept. When absent, the values are per node whatever `nodes` is, as in the paper.
+  /// Node count for which the values above hold, 2 .. 5000. If given, another `nodes` simulates the same thread: mass,
+  /// EA, EI and losses per length are kept. If absent, the values are per node for any `nodes`, as in the paper.
   std::optional<int> reference_nodes;                 ///< key suture.reference_nodes
   Damping damping = Damping::kImplicit;               ///< key suture.damping = "implicit" | "explicit"
   Integrator integrator = Integrator::kSemiImplicit;  ///< key suture.integrator = "semi-implicit" | "forward"
-  double air_drag_per_s = 0.0;                        ///< key suture.air_drag_per_s: a = -c v, 0 .. 1e6
+  double air_drag_per_s = 0.0;                        ///< acceleration -c v, 0 .. 1e6
   SwivelDamper swivel = SwivelDamper::kInternal;
   QuadraticStretch quadratic_stretch = QuadraticStretch::kStiff;
 };
@@ -48,22 +50,24 @@ struct PaperParameters {
 enum class Spacing : std::uint8_t { kUniform, kAdaptive };
 enum class Accuracy : std::uint8_t { kFast, kBalanced, kFine };
 
-/// A rod's material, per length; suture.model = "rod". Keys of [suture] with these names; `preset` fills them in.
+/// Properties of a rod; suture.model = "rod". The keys of [suture] have these names; `preset` sets several of them.
 struct RodParameters {
   double density_kg_per_m = 8e-5;
-  double EA_N = 71.0;                  ///< axial stiffness
-  double EI_N_m2 = 4e-7;               ///< bending stiffness
-  double GJ_N_m2 = 2.86e-7;            ///< twisting stiffness; 0: twist is not modelled
-  double rest_curvature_per_m = 0.0;   ///< of the thread without stress, about an axis that is fixed in its material
-  double rest_twist_per_m = 0.0;       ///< rad/m: that axis turns along the thread; with a curvature, a helix
-  std::optional<double> yield_strain;  ///< of the outer fibre, beyond which a bend stays; absent: never
-  double set_fraction = 0.5;           ///< share of the bending stiffness that gives way there
-  double damping_s = 2e-3;             ///< Kelvin-Voigt time of bending
-  double stretch_damping_s = 5e-4;     ///< of stretch
-  double air_drag_per_s = 5.0;         ///< a = -c v
+  double EA_N = 71.0;                 ///< axial stiffness
+  double EI_N_m2 = 4e-7;              ///< bending stiffness
+  double GJ_N_m2 = 2.86e-7;           ///< twisting stiffness; 0: twist is not modelled
+  double rest_curvature_per_m = 0.0;  ///< curvature without stress, about an axis fixed in the material
+  /// rad/m, twist without stress: that axis turns along the thread; with a curvature, a helix
+  double rest_twist_per_m = 0.0;
+  std::optional<double> yield_strain;  ///< strain of the outer fibre above which bending is plastic; absent: never
+  double set_fraction = 0.5;           ///< share of the bending stiffness that yields
+  double damping_s = 2e-3;             ///< Kelvin-Voigt time constant of bending
+  double stretch_damping_s = 5e-4;     ///< Kelvin-Voigt time constant of stretching
+  double air_drag_per_s = 5.0;         ///< acceleration -c v
   Spacing spacing = Spacing::kAdaptive;
   Accuracy accuracy = Accuracy::kBalanced;
-  int work_instructions = 0;  ///< what contact may cost in a tick; 0: as `accuracy` has it, or what the rig can afford
+  /// contact budget per tick, in instructions; 0: by `accuracy`, or what the machine can afford
+  int work_instructions = 0;
 };
 
 struct Suture {
@@ -71,9 +75,9 @@ struct Suture {
   int nodes = 50;
   double length_m = 5.0;
   double radius_m = 0.05;
-  std::string initial = "hanging";      ///< "hanging": straight down from node 0; else the file it was read from
-  std::vector<Vec> initial_polyline_m;  ///< empty when hanging; else equally far apart, as many as
-                                        ///< nodes, or finer for a rod whose nodes move along it
+  std::string initial = "hanging";  ///< "hanging": straight down from node 0; else the file name of the shape
+  /// empty if hanging; else equally spaced, one point per node, or denser for a rod with adaptive spacing
+  std::vector<Vec> initial_polyline_m;
   PaperParameters paper;
   RodParameters rod;
 };
@@ -81,18 +85,19 @@ struct Suture {
 struct Contact {
   ContactSolver solver = ContactSolver::kImplicit;
   double friction = 0.3;                  ///< kinetic Coulomb coefficient; key contact.friction
-  std::optional<double> static_friction;  ///< same as friction when absent
-  bool turns_thread = false;              ///< friction turns the thread about its axis: it rolls; rod model only
+  std::optional<double> static_friction;  ///< equal to friction if absent
+  bool turns_thread = false;              ///< whether friction can roll the thread about its axis; rod model only
   double repulsion_N_per_m = 100.0;       ///< k_rs of (2), solver "paper" only
   double repulsion_N_s_per_m = 5.0;       ///< k_rd of (2), solver "paper" only
-  bool friction_cap = true;  ///< key contact.friction_cap; solver "paper": at most stop slip; false: as printed
+  /// key contact.friction_cap; solver "paper": friction at most stops slip; false: as printed
+  bool friction_cap = true;
   BroadPhase broad_phase = BroadPhase::kAuto;
 };
 
 struct FixedNode {
-  int node = 0;  ///< -1 is the last
+  int node = 0;  ///< -1: the last node
   Vec position_m{0.0, 0.0, 0.0};
-  std::optional<Vec> direction;  ///< clamps the tangent too
+  std::optional<Vec> direction;  ///< if set, the tangent is clamped as well
 };
 
 struct Load {
@@ -113,7 +118,7 @@ struct World {
   std::vector<Peg> pegs;
   std::optional<double> desk_height_m;
   bool grippers_collide = true;
-  bool frame_collides = true;  ///< a hook above each fixed node
+  bool frame_collides = true;  ///< each fixed node has a hook above it, which the thread collides with
 };
 
 struct Time {
@@ -124,22 +129,23 @@ struct Time {
 struct Hands {
   double coupling_N_per_m = 1200.0;
   double coupling_N_s_per_m = 6.0;
-  std::optional<double> reach_m;        ///< jaws close on thread no further from the tip than this; absent: any
-  double pinch_width_m = 0.0;           ///< jaws hold the nodes across their width, and their direction; 0: one node
-  std::optional<double> pinch_force_N;  ///< of each jaw on the thread: it slips at 2 mu times this; absent: never
-  /// Device side of the coupling, at the device; absent: rigid, the tool is where the device is.
+  std::optional<double> reach_m;  ///< jaws grip thread within this distance of the tip; absent: at any distance
+  double pinch_width_m = 0.0;     ///< jaws hold all nodes within their width, and their direction; 0: one node
+  /// force of each jaw on the thread, which slips at 2 mu times this; absent: never slips
+  std::optional<double> pinch_force_N;
+  /// Stiffness of the coupling's device side, at the device; absent: rigid, the tool is where the device is.
   std::optional<double> device_N_per_m;
   double device_N_s_per_m = 0.5;
-  bool passivity = true;            ///< key hands.passivity: the controller over each device port acts
-  bool override_passivity = false;  ///< key hands.override_passivity: take a coupling beyond the admissible one
-  double energy_credit_J = 0.0;     ///< opening balance of each port's account; 0: all must be earned
-  double force_scale = 0.003;       ///< world newtons -> device newtons
+  bool passivity = true;            ///< key hands.passivity: whether the passivity controller limits forces
+  bool override_passivity = false;  ///< key hands.override_passivity: allow a coupling above the stability limit
+  double energy_credit_J = 0.0;     ///< start value of each port's energy account; 0: the hand must first put energy in
+  double force_scale = 0.003;       ///< factor from world newtons to device newtons
   double max_force_N = 3.3;         ///< at the device
   bool propagation = false;
   double min_length = 0.9;  ///< of rest length
   double max_length = 1.1;
-  double workspace_scale = 20.0;          ///< world metres per device metre
-  Vec workspace_origin_m{0.0, 0.0, 0.0};  ///< world point of the device's home pose
+  double workspace_scale = 20.0;          ///< factor from device metres to world metres
+  Vec workspace_origin_m{0.0, 0.0, 0.0};  ///< world position of the device's home pose
 };
 
 struct Scene {
@@ -150,7 +156,7 @@ struct Scene {
   Hands hands;
 };
 
-/// One line a person can act on: where, what was found, what is allowed.
+/// One line that tells a user where, what was found, and what is allowed.
 struct Error {
   std::string text;
 };

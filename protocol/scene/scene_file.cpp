@@ -15,10 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Wide, experiments go to the ends; but a grain of dust and a ship's hawser are threads, and 1e-300 m is none.
+// Ranges are wide, to allow experiments with extreme sizes, but exclude values such as 1e-300 m.
 constexpr double kFar_m = 1e4;           // coordinates
 constexpr Range kCoefficient{0.0, 1e9};  // stiffness and damping
-constexpr int kMostWork = 2'000'000;     // nodes x substeps: some tenths of a second a tick
+constexpr int kMostWork = 2'000'000;     // nodes x substeps: a tick takes some tenths of a second
 constexpr std::size_t kMostLoads = 5000;
 constexpr const char* kOfTheRod = "with suture.model \"rod\"";
 constexpr const char* kOfThePaper = "with suture.model \"paper-1\" .. \"paper-5\"";
@@ -41,7 +41,8 @@ constexpr std::pair<const char*, Integrator> kIntegrators[] = {{"semi-implicit",
 constexpr std::pair<const char*, QuadraticStretch> kQuadratics[] = {{"stiff", QuadraticStretch::kStiff},
                                                                     {"printed", QuadraticStretch::kPrinted}};
 
-/// Nodes that move along the thread may begin anywhere: their shape is kept to about a diameter.
+/// Number of points that a start shape needs. Nodes with adaptive spacing may start anywhere, so the shape is stored
+/// with a spacing of about one diameter.
 int initial_points(const Suture& s) {
   if (s.model != Model::kRod || s.rod.spacing != Spacing::kAdaptive) return s.nodes;
   constexpr double kMost = 5000.0;
@@ -164,7 +165,7 @@ void read_hands(StrictTable& t, const Suture& suture, Hands& h) {
   t.vector("workspace_origin_m", h.workspace_origin_m, kFar_m);
 }
 
-/// Puts one `key=value` into the tree, creating tables on the way; false when it is not of that form.
+/// Inserts one `key=value` into the tree and creates tables as needed; false if the text is malformed.
 bool override_key(toml::table& root, const std::string& text, ReadContext& context) {
   const auto equals = text.find('=');
   const std::string key(trim(std::string_view(text).substr(0, equals)));
@@ -184,7 +185,7 @@ bool override_key(toml::table& root, const std::string& text, ReadContext& conte
     if (plain.empty() || plain.find_first_of("[]{}\"'=,") != std::string::npos) {
       return bad("the value is not TOML, allowed for example 0.5, [0.0, 0.0, 1.0] or \"text\"");
     }
-    value = toml::table{{"v", plain}};  // suture.model=paper-1 without the quotes that a shell eats
+    value = toml::table{{"v", plain}};  // accepts suture.model=paper-1, because a shell removes the quotes
   }
   if (value.size() != 1) return bad("allowed one value");
   toml::table* table = &root;

@@ -1,8 +1,9 @@
 #pragma once
-// A TOML table read key by key, that refuses whatever nobody asked for. Private to the readers of scene, device and
-// fault files: whoever includes it compiles toml++.
+// A TOML table that is read key by key and refuses keys that were not read. Private to the readers of scene, device and
+// fault files, because including it compiles toml++.
 
-// Found by fuzzing: one of the parser's own assertions fails on a zero byte in a key, which it then refuses anyhow.
+// Disables the parser's assertions: one fails on a zero byte in a key (found by fuzzing), although the parser then
+// refuses it.
 #define TOML_ASSERT(expr) static_assert(true)
 #include <toml++/toml.h>
 #include <array>
@@ -22,10 +23,10 @@
 
 namespace ligature::scene {
 
-/// Where values came from and the first thing wrong with them; everything read after an error is ignored.
+/// Overrides in force, and the first error; values read after an error are ignored.
 struct ReadContext {
   std::string file;
-  std::map<std::string, std::string> overridden;  ///< dotted key -> the text of its --set
+  std::map<std::string, std::string> overridden;  ///< dotted key -> text of its --set
   std::optional<Error> error;
 
   [[nodiscard]] bool is_overridden(const std::string& key) const { return overridden.contains(root_of(key)); }
@@ -33,8 +34,7 @@ struct ReadContext {
   void refuse(const std::string& key, const toml::node& where, const std::string& what) {
     if (error) return;
     auto set = overridden.find(root_of(key));
-    if (set == overridden.end() &&
-        where.source().begin.line == 0) {  // a table that only an override brought into being
+    if (set == overridden.end() && where.source().begin.line == 0) {  // a table that exists only by an override
       set = overridden.lower_bound(key + ".");
     }
     const auto place =
@@ -43,7 +43,8 @@ struct ReadContext {
   }
 
  private:
-  /// The override that `key` lies in: itself or a prefix of it that ends at a dot or bracket; itself when none.
+  /// The override that contains `key`: the same key, or a prefix that ends before a dot or bracket; `key` itself if
+  /// there is none.
   [[nodiscard]] std::string root_of(const std::string& key) const {
     for (const auto& [prefix, text] : overridden) {
       const bool inside = key.size() > prefix.size() && key.starts_with(prefix) &&
@@ -54,7 +55,7 @@ struct ReadContext {
   }
 };
 
-/// What a number may be: low and high included.
+/// Allowed range of a number, both ends included.
 struct Range {
   double low;
   double high;
@@ -120,7 +121,7 @@ class StrictTable {
     out = *node->value<std::string>();
   }
 
-  /// One of the names of a table of {name, value}.
+  /// Reads a name from a table of {name, value}.
   template <class Enum, std::size_t N>
   void choice(std::string_view key, Enum& out, const std::pair<const char*, Enum> (&names)[N], const char* note = "") {
     const auto* node = take(key);
@@ -157,7 +158,7 @@ class StrictTable {
     out = v;
   }
 
-  /// Calls read(StrictTable&) for the table under `key`, if there.
+  /// Calls read(StrictTable&) for the table under `key`, if present.
   template <class Read>
   void table(std::string_view key, Read read) {
     const auto* node = take(key);
@@ -168,7 +169,7 @@ class StrictTable {
     inner.finish();
   }
 
-  /// Calls read(StrictTable&) for each table of the array under `key`, if there.
+  /// Calls read(StrictTable&) for each table of the array under `key`, if present.
   template <class Read>
   void tables(std::string_view key, Read read) {
     const auto* node = take(key);
@@ -185,8 +186,8 @@ class StrictTable {
     }
   }
 
-  /// Keys that `read` asks for belong to `owner` alone, for example "suture.model \"rod\"": where another is simulated
-  /// (`here` is false), one that stands in the file is refused and not taken for something that would then do nothing.
+  /// Reads keys that only `owner` uses, for example "suture.model \"rod\"". If the scene uses another model (`here` is
+  /// false), such a key in the file is refused rather than silently ignored.
   template <class Read>
   void keys_of(bool here, const char* owner, Read read) {
     elsewhere_ = here ? nullptr : owner;
@@ -194,14 +195,14 @@ class StrictTable {
     elsewhere_ = nullptr;
   }
 
-  /// Refuses a key that must be there and is not.
+  /// Refuses the table if a required key is missing.
   void require(std::string_view key) {
     if (!table_.contains(key))
       context_.refuse(path_, table_,
                       (path_.empty() ? "" : "'" + path_ + "': ") + "key '" + std::string(key) + "' is missing");
   }
 
-  /// Refuses the first key that was never asked for.
+  /// Refuses the first key in the file that was never read.
   void finish() {
     for (const auto& [key, node] : table_) {
       if (asked_.contains(std::string(key.str()))) continue;
@@ -217,7 +218,7 @@ class StrictTable {
     context_.refuse(full(key), node, "key '" + full(key) + "': found " + shown(node) + ", allowed " + allowed);
   }
 
-  /// The same for a rule that ties keys together, after they were read.
+  /// Refuses a key for a rule between several keys, after they were read.
   void refuse(std::string_view key, const std::string& allowed) {
     if (const auto* node = table_.get(key)) refuse(key, *node, allowed);
   }
@@ -238,8 +239,8 @@ class StrictTable {
   [[nodiscard]] std::string full(std::string_view key) const {
     return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
   }
-  /// What was found, on one line, 80 characters at most. A list is written here, value by value: toml++ measures one
-  /// before it writes it, and turns the negative logarithm of 0.05 into an unsigned number there (found by fuzzing).
+  /// The value found, on one line of at most 80 characters. Lists are written here value by value, because toml++'s own
+  /// width estimate converts the negative logarithm of a value such as 0.05 to unsigned (found by fuzzing).
   static std::string shown(const toml::node& node) {
     std::string s;
     write(node, s);
@@ -264,7 +265,8 @@ class StrictTable {
       const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number->get()).ptr;
       const std::string_view text(digits.data(), end);
       out += text;
-      if (text.find_first_not_of("-0123456789") == text.npos) out += ".0";  // 50.0, where an integer is asked for
+      // 50.0, so that it is clear why it is not an integer
+      if (text.find_first_not_of("-0123456789") == text.npos) out += ".0";
     } else {
       std::ostringstream value;
       node.visit([&](const auto& v) { value << v; });
@@ -276,7 +278,7 @@ class StrictTable {
   std::string path_;
   ReadContext& context_;
   std::set<std::string> asked_;
-  const char* elsewhere_ = nullptr;  ///< whose keys are read, when it is not what is simulated
+  const char* elsewhere_ = nullptr;  ///< owner of the keys being read, if another model is used; else nullptr
 };
 
 }  // namespace ligature::scene

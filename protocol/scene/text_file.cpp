@@ -11,7 +11,7 @@
 namespace ligature::scene {
 namespace {
 
-/// Up to so many bytes of an open file, or the errno.
+/// Reads up to that many bytes of an open file. @return the text, or the errno.
 std::variant<std::string, int> all_of(int fd, std::size_t most_bytes) {
   std::string text(most_bytes, '\0');
   std::size_t done = 0;
@@ -31,7 +31,7 @@ std::variant<std::string, int> all_of(int fd, std::size_t most_bytes) {
 
 std::variant<std::string, Error> read_text(const std::filesystem::path& path, std::size_t most_bytes) {
   const auto refused = [&](const std::string& why) { return Error{path.string() + ": " + why}; };
-  // Without O_NONBLOCK, opening a pipe waits for its other end, for ever.
+  // Without O_NONBLOCK, opening a pipe would wait for its writer, possibly forever.
   const int fd = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
   if (fd < 0) return refused(std::string("cannot be read: ") + std::strerror(errno));
   struct stat found {};
@@ -42,7 +42,8 @@ std::variant<std::string, Error> read_text(const std::filesystem::path& path, st
                                                    : "cannot be read: found a pipe or device, allowed a regular file");
   }
   const auto size = static_cast<std::size_t>(found.st_size);
-  auto read = all_of(fd, std::min(size, most_bytes) + 1);  // one more than allowed tells a file that grows
+  // one byte more than expected reveals a file that is too long or growing
+  auto read = all_of(fd, std::min(size, most_bytes) + 1);
   ::close(fd);
   if (const int* error = std::get_if<int>(&read))
     return refused(std::string("cannot be read: ") + std::strerror(*error));

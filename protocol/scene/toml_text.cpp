@@ -7,12 +7,13 @@
 namespace ligature::scene {
 namespace {
 
-/// Bytes of the quote that starts here: three of a multi-line string, or one.
+/// Length of the quote that starts here: 3 for a multi-line string, else 1.
 std::size_t quote_at(std::string_view rest) {
   return rest.size() >= 3 && rest[1] == rest[0] && rest[2] == rest[0] ? 3 : 1;
 }
 
-/// Bytes of a string with its quotes; an unfinished one ends where the parser will stop at it: at its line or the text.
+/// Length of a quoted string, quotes included. An unterminated one ends where the parser stops: at the line's end, or
+/// at the text's end if multi-line.
 std::size_t quoted(std::string_view rest) {
   const auto quote = rest.substr(0, quote_at(rest));
   for (std::size_t i = quote.size(); i < rest.size(); ++i) {

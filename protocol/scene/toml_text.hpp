@@ -1,5 +1,5 @@
 #pragma once
-// TOML text to a tree, for the readers of scene, device and fault files.
+// Parses TOML text into a tree, for readers of scene, device and fault files.
 
 #include <filesystem>
 #include <string>
@@ -10,18 +10,19 @@
 
 namespace ligature::scene {
 
-/// The first line with a byte outside ASCII that is not in a comment; 0 when there is none. toml++ 3.0 looks whether
-/// such a character is a space, in places that depend on what is around it and also within quotes, and answers for some
-/// (U+031B, found by fuzzing) with undefined behaviour. In quotes an escape says the same: "\u00e9".
+/// First line with a non-ASCII byte outside comments; 0: none. Such bytes are refused because toml++ 3.0 has undefined
+/// behaviour for some of them, even within quotes (U+031B, found by fuzzing). In strings they can be written as
+/// escapes: "\u00e9".
 [[nodiscard]] int line_of_stray_character(std::string_view text);
 
-/// Dots in a key, and brackets in brackets: the parser and its tree call themselves once for each.
+/// Limit for dots in a key and for nested brackets, because toml++ recurses for each.
 inline constexpr std::size_t kDeepest = 8;
 
-/// The first line with more of them; 0 when there is none.
+/// First line that exceeds kDeepest; 0: none.
 [[nodiscard]] int line_too_deep(std::string_view text);
 
-/// @param name of the source in messages. @return the tree, or one line that names the source and its line.
+/// @param name of the source, for messages. @return the tree, or one line that names the source and the line of the
+/// error.
 [[nodiscard]] std::variant<toml::table, Error> parse_toml(const std::string& text, const std::string& name);
 
 /// The same from a file.

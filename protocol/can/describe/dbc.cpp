@@ -5,7 +5,7 @@
 namespace ligature::can {
 namespace {
 
-/// A signal of the services beside the PDOs: unsigned, little endian, no unit.
+/// DBC signal that is unsigned, little endian and without unit.
 std::string plain_signal(const char* name, int first_bit, int bits) {
   return " SG_ " + std::string(name) + " : " + std::to_string(first_bit) + "|" + std::to_string(bits) +
          "@1+ (1,0) [0|0] \"\" Vector__XXX\n";
@@ -15,7 +15,7 @@ std::string head(std::uint32_t id, const std::string& name, int bytes, const std
   return "BO_ " + std::to_string(id) + " " + name + ": " + std::to_string(bytes) + " " + sender + "\n";
 }
 
-/// Of CiA 301: what a node says of itself, and how its objects are read and written.
+/// Messages of the CiA 301 services EMCY, SDO and heartbeat of one node.
 std::string services_of(NodeId node) {
   const std::string drive = node_name(node.value);
   const auto id = [node](Service s) { return cob_id(s, node).value; };

@@ -1,5 +1,5 @@
 #pragma once
-// DBC of one hand's bus, written from the PDO table: for cantools, SavvyCAN and the like.
+// DBC file of one hand's bus, generated from the PDO table; for tools such as cantools and SavvyCAN.
 
 #include <string>
 

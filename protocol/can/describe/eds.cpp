@@ -10,7 +10,7 @@
 namespace ligature::can {
 namespace {
 
-/// printf that appends.
+/// Appends formatted text.
 [[gnu::format(printf, 2, 3)]] void add(std::string& text, const char* format, ...) {
   char line[256];
   va_list arguments;
@@ -105,7 +105,7 @@ std::string eds_text(NodeId node) {
       continue;
     }
     const std::string_view group = rows.front().group;
-    const unsigned type = index == 0x1016 ? 0x8 : 0x9;  // array, record
+    const unsigned type = index == 0x1016 ? 0x8 : 0x9;  // object type: array, or record
     add(eds, "ParameterName=%.*s\nObjectType=0x%X\nSubNumber=%zu\n\n", static_cast<int>(group.size()), group.data(),
         type, rows.size());
     for (const ObjectRow& row : rows) {

@@ -1,5 +1,5 @@
 #pragma once
-// Electronic data sheet (CiA 306) of one drive, written from its object table.
+// Electronic data sheet (EDS, CiA 306) of one drive, generated from its object table.
 
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace ligature::can {
 
-/// Text of the EDS of the drive with this node id (the elbow's differs: its TPDO carries buttons).
+/// EDS text of the drive with this node id. The elbow's differs: its TPDO has buttons.
 [[nodiscard]] std::string eds_text(NodeId node);
 
 }  // namespace ligature::can

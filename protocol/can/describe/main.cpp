@@ -1,8 +1,8 @@
-// ligature-can-describe: says what the wire looks like, in the languages other tools read. Prints to stdout only.
+// ligature-can-describe: exports the CAN protocol in formats of other tools. Prints to stdout only.
 //   eds NODE | dbc | constants | encode | decode
-// encode and decode work on lines of stdin, one frame a line, so that a test can drive thousands through one process:
+// encode and decode process lines of stdin, one frame per line, so that a test can check thousands in one process:
 //   encode  "tpdo1 NODE statusword position torque buttons" or "rpdo1 NODE controlword torque"  ->  "ID DATA" in hex
-//   decode  "ID DATA" in hex  ->  the same words, or "none" for what is no PDO of the map
+//   decode  "ID DATA" in hex  ->  the same words, or "none" if it is no mapped PDO
 
 #include <charconv>
 #include <cstdio>
@@ -48,7 +48,7 @@ std::string hex(const Frame& f) {
   return text;
 }
 
-/// "ID DATA" in hex; false when it is not.
+/// Parses "ID DATA" in hex; false if the line has another form.
 bool parse(const std::string& line, Frame& f) {
   std::istringstream in(line);
   std::string id, data;
@@ -67,7 +67,7 @@ bool parse(const std::string& line, Frame& f) {
 
 constexpr const char* kForm = "allowed the form that --help shows";
 
-/// Reads a field's number into `out`. @return nothing, or why it is none that fits.
+/// Reads an integer into `out`. @return empty, or why the word is no valid integer.
 template <class T>
 std::string read_field(std::istringstream& in, const char* name, T& out) {
   std::string word;
@@ -78,7 +78,7 @@ std::string read_field(std::istringstream& in, const char* name, T& out) {
          std::to_string(std::numeric_limits<T>::min()) + " .. " + std::to_string(std::numeric_limits<T>::max());
 }
 
-/// Each line's work returns nothing, or what is wrong with the line.
+/// Handles one line. @return empty, or what is wrong with the line.
 std::string encode_line(const std::string& line) {
   std::istringstream in(line);
   std::string kind, word, why;
@@ -106,7 +106,7 @@ std::string encode_line(const std::string& line) {
   return {};
 }
 
-/// The PDO that an identifier carries has a fixed length.
+/// Error text if a PDO's frame is shorter than its fixed length, else empty.
 std::string objection_to_length(const Frame& f) {
   const auto address = address_of(f.id);
   if (!address || !is_joint(address->node.value)) return {};
