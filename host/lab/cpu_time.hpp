@@ -3,7 +3,7 @@
 
 namespace ligature::lab {
 
-/// CPU time of this thread, us: what a tick costs, whatever else the machine is doing.
+/// CPU time of the calling thread, us: the cost of a tick, independent of the machine's other load.
 [[nodiscard]] inline double thread_cpu_us() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

@@ -3,7 +3,7 @@
 
 namespace ligature::lab {
 
-/// Due at multiples of a period, however the ticks fall on them.
+/// A timer for actions at multiples of a period that need not be a multiple of the tick.
 class Every {
  public:
   explicit Every(double period_s) : period_s_(period_s) {}

@@ -39,7 +39,7 @@ Exit: 0 all claims hold; 2 usage or scenes refused; 3 a claim fails.
 Example
   ligature-lab experiment knotting --out out/knotting)";
 
-/// The scenes folder: as given, else ./scenes, else installed beside the program, else of the source tree.
+/// The scenes folder: as given, else ./scenes, else the one installed beside the program, else that of the source tree.
 fs::path find_scenes(const std::string& given) {
   std::error_code none;
   const auto installed = fs::read_symlink("/proc/self/exe", none).parent_path().parent_path() / "share/ligature/scenes";

@@ -14,7 +14,7 @@ struct Limit {
   double largest_dt_s;
 };
 
-/// x, or a step that is never overstepped when the term is absent.
+/// x, or a huge time step when x is not finite because the term is absent.
 double or_never(double x) { return std::isfinite(x) ? x : 1e300; }
 
 std::vector<Limit> limits(const scene::Scene& s) {

@@ -1,4 +1,4 @@
-// ligature-lab: the thread without the rig. Same physics library as the firmware, no clock, no bus.
+// ligature-lab: runs the thread offline, with the firmware's physics library, without real time and without a CAN bus.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -21,7 +21,7 @@ constexpr const char* kAbout =
     "Plays scenes offline, with the physics that the real-time firmware runs, as fast as the machine can.\n"
     "Start with:  ligature-lab run scenes/paper.toml --grippers scenes/operators/overhand.csv --out out/overhand";
 
-/// One line, whatever the library put into it.
+/// Prints one line on stderr; line breaks in the text are removed.
 void complain(std::string text) {
   for (auto& c : text) {
     if (c == '\n') c = ' ';

@@ -1,5 +1,5 @@
 #pragma once
-// How a command of the lab ends.
+// Exit codes of the lab's commands.
 
 #include <stdexcept>
 #include <string>
@@ -7,12 +7,12 @@
 namespace ligature::lab {
 
 inline constexpr int kDone = 0;
-inline constexpr int kMissed = 1;         ///< what should come out the same does not
+inline constexpr int kMissed = 1;         ///< a result that should be reproduced differs
 inline constexpr int kBadInput = 2;       ///< usage, scene or script refused; nothing was written
-inline constexpr int kRunFailed = 3;      ///< diverged, or a claim does not hold
-inline constexpr int kInterrupted = 130;  ///< by SIGINT or SIGTERM, as shells say it; what was done is kept
+inline constexpr int kRunFailed = 3;      ///< the run diverged, or a claim does not hold
+inline constexpr int kInterrupted = 130;  ///< by SIGINT or SIGTERM, numbered as shells do; finished results are kept
 
-/// Ends the command with one line on stderr.
+/// Ends the command with one line on stderr and the exit code `code`.
 struct Refusal : std::runtime_error {
   explicit Refusal(const std::string& line, int exit_code = kBadInput) : std::runtime_error(line), code(exit_code) {}
   int code;

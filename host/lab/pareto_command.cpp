@@ -51,7 +51,7 @@ struct Point {
   bool on_swing_front = false, on_knot_front = false;
 };
 
-/// Marks the points of one model that no other beats in cost and error.
+/// Marks the Pareto front of each model: points that no other point of the model beats in cost and error.
 template <class Error, class Mark>
 void mark_front(std::vector<Point>& points, Error error, Mark mark) {
   for (auto& p : points) {
@@ -64,8 +64,8 @@ void mark_front(std::vector<Point>& points, Error error, Mark mark) {
   }
 }
 
-/// What the picture shows: the worse of shape and swing; NaN where the shape is not known (explicit models beyond 50
-/// nodes), for the swing alone would look ten times better than what it stands beside.
+/// Error drawn in the picture: the larger of shape and swing. NaN when the shape error was not measured (explicit
+/// models beyond 50 nodes), because the swing error alone would not be comparable.
 double motion_error(const Point& p) {
   return std::isnan(p.errors.shape) ? p.errors.shape : std::fmax(p.errors.shape, p.errors.swing);
 }
@@ -140,7 +140,7 @@ void print_fronts(const std::vector<Point>& points) {
   t.print();
 }
 
-/// One setting's knot alone: what callgrind runs.
+/// Runs the knot of one setting only; called under callgrind.
 int run_one(const Arguments& a) {
   const auto traces = run_trials(setting_of(a.one), a.ticks);
   const auto us = spread_of(traces.us);
@@ -174,7 +174,7 @@ void count(std::vector<Point>& points) {
     progress.show(done++ / static_cast<double>(points.size()), "instructions, " + p.setting.text());
     if (!there || console::stop_requested()) break;
     if (!p.on_swing_front && !p.on_knot_front && p.setting.preset.empty()) continue;
-    if (p.setting.nodes > 200) continue;  // minutes each
+    if (p.setting.nodes > 200) continue;  // takes minutes each
     p.instructions = count_instructions(p.setting, 250);
     there = p.instructions.has_value();
   }

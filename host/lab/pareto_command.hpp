@@ -6,7 +6,7 @@ class App;
 
 namespace ligature::lab {
 
-/// `pareto`: what accuracy costs, for every model.
+/// Adds the subcommand `pareto`: cost against accuracy of every model.
 void add_pareto_command(CLI::App& app, int& exit_code);
 
 }  // namespace ligature::lab

@@ -1,5 +1,5 @@
 #pragma once
-// A scene and an operator's script played through the physics, tick by tick, without a clock.
+// Plays a scene and an operator's script through the physics, tick by tick, without real time.
 
 #include <array>
 #include <cmath>
@@ -16,43 +16,45 @@
 
 namespace ligature::lab {
 
-/// Reads a scene or throws the one-line Refusal.
+/// Reads a scene. @throws Refusal with one line.
 [[nodiscard]] scene::Scene load_scene_or_refuse(const std::string& path, const std::vector<std::string>& overrides);
 
-/// The same in two steps, for those who record what they have read.
+/// The same in two steps, for callers that also record the text.
 [[nodiscard]] std::string read_scene_text_or_refuse(const std::string& path);
 [[nodiscard]] scene::Scene parse_scene_or_refuse(const std::string& text, const std::string& path,
                                                  const std::vector<std::string>& overrides);
 
-/// Reads a script or throws the one-line Refusal.
+/// Reads a script. @throws Refusal with one line.
 [[nodiscard]] scene::GripperScript load_script_or_refuse(const std::string& path);
 
-/// Builds the simulation or throws the one-line Refusal with the physics' own reason.
+/// Builds the simulation. @throws Refusal with one line, the physics' own reason.
 [[nodiscard]] physics::Simulation make_or_refuse(const scene::Scene& scene, const std::string& scene_name);
 
 class Rehearsal {
  public:
-  /// @param scene_name how messages call the scene;  @throws Refusal when the physics refuses the scene.
+  /// @param scene_name name in messages;  @throws Refusal when the physics refuses the scene.
   Rehearsal(const scene::Scene& scene, scene::GripperScript script, const std::string& scene_name = "scene");
 
-  /// From now on the hands are an operator's, who sees the thread as it was a tick ago; the script is not played.
+  /// From now on a simulated operator moves the hands, seeing the thread as it was one tick ago; the script is ignored.
   void let(sim::KnotTier tier) { tier_.emplace(std::move(tier)); }
   [[nodiscard]] const std::optional<sim::KnotTier>& tier() const noexcept { return tier_; }
 
-  /// One tick: both hands where the script has them at the end of the tick. False once the state is not finite.
+  /// Runs one tick with both hands at the script's positions for the end of the tick. False when the state is not
+  /// finite.
   bool tick();
 
-  /// Ticks until time t (to the nearest tick); false when the run diverged before.
+  /// Runs until time t (nearest tick); false when the run diverged before.
   bool run_until(double t_s);
 
-  /// Divided by a whole rate where there is one: 700 * 0.001 is 0.7000000000000001, 700 / 1000 is 0.7.
+  /// Time, s. Dividing by an integer rate gives the double nearest to the decimal number: 700 * 0.001 is
+  /// 0.7000000000000001, 700 / 1000 is 0.7.
   [[nodiscard]] double time_s() const noexcept {
     const double rate_Hz = 1.0 / tick_s_, whole_Hz = std::round(rate_Hz);
     const bool is_whole = std::abs(rate_Hz - whole_Hz) <= 1e-12 * rate_Hz;
     return is_whole ? static_cast<double>(ticks_) / whole_Hz : static_cast<double>(ticks_) * tick_s_;
   }
   [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
-  [[nodiscard]] double last_tick_us() const noexcept { return last_tick_us_; }  ///< CPU time of this thread
+  [[nodiscard]] double last_tick_us() const noexcept { return last_tick_us_; }  ///< CPU time of the calling thread
   [[nodiscard]] physics::Simulation& simulation() noexcept { return simulation_; }
   [[nodiscard]] const physics::Simulation& simulation() const noexcept { return simulation_; }
   [[nodiscard]] const scene::Scene& scene() const noexcept { return scene_; }
@@ -70,7 +72,7 @@ class Rehearsal {
   double last_tick_us_ = 0.0;
 };
 
-/// The knot of a thread with free ends.
+/// Names the knot of a thread with free ends.
 [[nodiscard]] knot::KnotResult knot_of(const physics::Simulation& simulation);
 
 }  // namespace ligature::lab

@@ -14,7 +14,7 @@ std::string text_of(const Cell& cell, int significant) {
   return digits(std::get<double>(cell), significant);
 }
 
-/// A cell of a CSV file; texts with commas are quoted.
+/// A CSV cell; texts with commas are put in quotation marks.
 std::string quoted(std::string text) {
   if (text.find(',') == std::string::npos) return text;
   return "\"" + text + "\"";

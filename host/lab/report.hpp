@@ -1,5 +1,5 @@
 #pragma once
-// What an experiment hands over: tables, and claims that hold or do not.
+// Results of an experiment: tables, and claims with their verdicts.
 
 #include <filesystem>
 #include <initializer_list>
@@ -11,7 +11,7 @@ namespace ligature::lab {
 
 using Cell = std::variant<double, std::string>;
 
-/// Rows under named columns (units in the names), printed aligned and kept as CSV.
+/// A table with named columns (units in the names), printed aligned and written as CSV.
 class Table {
  public:
   explicit Table(std::vector<std::string> columns) : columns_(std::move(columns)) {}
@@ -24,12 +24,12 @@ class Table {
   std::vector<std::vector<Cell>> rows_;
 };
 
-/// The claims of one experiment, each with the number that decides it.
+/// The claims of an experiment, each with the measured number that decides it.
 class Verdict {
  public:
   explicit Verdict(std::string experiment) : experiment_(std::move(experiment)) {}
   void claim(bool holds, const std::string& what, const std::string& measured, const std::string& allowed);
-  /// Prints a PASS or FAIL line for each claim and writes EXPERIMENT-verdict.csv.
+  /// Prints a PASS or FAIL line per claim and writes EXPERIMENT-verdict.csv.
   /// @return kDone, or kRunFailed when a claim does not hold.
   int conclude(const std::filesystem::path& folder) const;
 
@@ -42,10 +42,10 @@ class Verdict {
   std::vector<Claim> claims_;
 };
 
-/// A number with a few significant digits, for sentences.
+/// A number with a few significant digits, for use in sentences.
 [[nodiscard]] std::string digits(double value, int significant = 3);
 
-/// Draws a picture by `python host/lab/plots/SCRIPT DATA.. PICTURE`; says so aloud when there is no Python to do it.
+/// Draws a picture with `python host/lab/plots/SCRIPT DATA.. PICTURE`; prints a message when there is no Python.
 void draw(const std::string& script, const std::vector<std::filesystem::path>& data,
           const std::filesystem::path& picture);
 

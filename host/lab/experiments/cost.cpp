@@ -1,4 +1,4 @@
-// What a tick costs, N = 20 .. 1000, hanging free and coiled upon itself.
+// CPU time of a tick for N = 20 .. 1000 nodes: thread hanging free, and thread coiled in contact with itself.
 
 #include <cmath>
 #include <numbers>
@@ -15,7 +15,7 @@ namespace {
 constexpr int kNodes[] = {20, 50, 100, 200, 500, 1000};
 constexpr int kWarmUp = 300, kTimed = 3000;
 
-/// A helix whose turns lie on each other: many near pairs at every N.
+/// Lays the thread as a helix whose turns touch: many contact pairs at every N.
 void lay_coiled(scene::Scene& s) {
   const double l = s.suture.length_m / (s.suture.nodes - 1), pitch_m = 2.02 * s.suture.radius_m;
   constexpr double kRadius_m = 0.35;

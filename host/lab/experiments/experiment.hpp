@@ -1,5 +1,5 @@
 #pragma once
-// The paper's experiments: each fills a folder with a table, a picture and a verdict.
+// The experiments of the lab. Each writes a table, a picture and a verdict to a folder.
 
 #include <filesystem>
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace ligature::lab {
 
-/// Where an experiment finds its scenes and puts its results.
+/// Input and output folders of an experiment.
 struct Bench {
   std::filesystem::path scenes;  ///< folder with paper.toml, desk.toml and operators/
-  std::filesystem::path out;     ///< made before the experiment starts
+  std::filesystem::path out;     ///< created before the experiment starts
 };
 
-// Each returns kDone, or kRunFailed when a claim does not hold.
+// Each returns kDone, or kRunFailed when one of its claims does not hold.
 int experiment_models(const Bench& bench);
 int experiment_knotting(const Bench& bench);
 int experiment_pulling(const Bench& bench);
@@ -23,10 +23,10 @@ int experiment_stability(const Bench& bench);
 int experiment_extremes(const Bench& bench);
 int experiment_cost(const Bench& bench);
 int experiment_haptics(const Bench& bench);
-/// @param quick the least that shows each claim, without pictures: for ctest.
+/// @param quick the smallest set of runs that tests each claim, without pictures: for ctest.
 int experiment_haptics(const Bench& bench, bool quick);
 
-/// A thread of `nodes` nodes stretched out level from its fixed end, every segment at rest length.
+/// Lays the thread's `nodes` nodes in a horizontal straight line from its fixed end, every segment at rest length.
 void lay_level(scene::Scene& scene);
 
 }  // namespace ligature::lab

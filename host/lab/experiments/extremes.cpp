@@ -1,4 +1,5 @@
-// How far parameters may be pushed: finite, or stopped in time and named; never a non-finite number, never a hang.
+// Experiment `extremes`: how far parameters may be changed. A run must stay finite, or stop with the cause named; it
+// must never return a non-finite number, and never hang.
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +32,7 @@ bool all_finite(const physics::Simulation& sim) {
          !std::isnan(d.min_gap_m);
 }
 
-/// The right hand takes the tip and draws it aside; the left takes the middle. Scaled to the ticks of the trial.
+/// The right hand pulls the free end aside while the left hand holds the middle. The motion takes `whole_s`.
 scene::GripperScript tug(double whole_s, double reach_m) {
   scene::GripperScript s;
   s.keys[0] = {{0.0, {0, 0, 3.0}, true}, {0.5 * whole_s, {0.3, 0, 3.2}, true}};
@@ -55,7 +56,7 @@ std::vector<Dial> dials() {
   };
 }
 
-/// The odd ones: name and scene.
+/// Unusual scenes, by name, each run to its ending.
 OddEndings odd_cases(const scene::Scene& base) {
   OddEndings all;
   const auto with = [&](const char* name, int ticks, const std::function<void(scene::Scene&)>& change) {

@@ -1,5 +1,5 @@
 #pragma once
-// One trial of `extremes`: a scene, a script, so many ticks; finite, or stopped in time and named.
+// One trial of `extremes`: plays a script on a scene for some ticks and reports how it ended.
 
 #include <functional>
 #include <string>
@@ -13,31 +13,31 @@ namespace ligature::lab {
 
 /// How a trial ended.
 struct Ending {
-  std::string word;  ///< "finite", "stopped", "refused", or "LEAKED": a non-finite number got out
+  std::string word;  ///< "finite", "stopped", "refused", or "LEAKED": the physics returned a non-finite number
   double tick = 0.0;
-  double node = 0.0;  ///< -1: none, or a hand was
+  double node = 0.0;  ///< -1: no node, or the cause was a hand
   std::string cause;
-  bool by_hand = false;  ///< stopped by where the script had a hand, before it reached the thread
+  bool by_hand = false;  ///< stopped because the script gave a hand an invalid position, before the thread was affected
 };
 
 [[nodiscard]] Ending trial(const scene::Scene& scene, const scene::GripperScript& script, int ticks);
 
-/// A parameter and how a factor acts on it.
+/// A parameter that is varied, and how a factor is applied to it.
 struct Dial {
   const char* name;
-  int low, high;  ///< decades
+  int low, high;  ///< range of the factor, as powers of ten
   std::function<void(scene::Scene&, double)> turn;
 };
 
-/// An odd scene by name, with how it ended.
+/// Unusual scenes by name, with their endings.
 using OddEndings = std::vector<std::pair<std::string, Ending>>;
 
-/// Tables and counts of one model's map.
+/// Tables and counts of all trials of one model.
 struct ExtremesMap {
   Table map{{"parameter", "factor", "step_s", "ending", "tick", "node", "likely_cause"}};
   Table odd{{"case", "ending", "tick", "node", "likely_cause"}};
   int trials = 0, finite = 0, refused = 0, leaked = 0, unnamed = 0;
-  bool as_shipped = false;  ///< finite with every factor 1 at 1 ms
+  bool as_shipped = false;  ///< finite at 1 ms with all parameters unchanged
 
   void add(const char* parameter, double factor, double step_s, const Ending& e);
   void add(const std::string& odd_case, const Ending& e);
@@ -46,8 +46,8 @@ struct ExtremesMap {
   void count(const Ending& e);
 };
 
-/// The rod's map: scenes/suture-3-0.toml and suture-3-0-knot.toml, every dial over its decades at six steps, odd
-/// scenes.
+/// All trials of the rod, on scenes/suture-3-0.toml and suture-3-0-knot.toml: every parameter over its range at six
+/// time steps, and unusual scenes.
 [[nodiscard]] ExtremesMap rod_extremes(const std::filesystem::path& scenes);
 
 }  // namespace ligature::lab

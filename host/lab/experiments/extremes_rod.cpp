@@ -1,4 +1,4 @@
-// How far the rod may be pushed.
+// Experiment `extremes` for the rod.
 
 #include <cmath>
 #include <limits>
@@ -12,7 +12,8 @@ namespace {
 constexpr int kTicks = 300;
 constexpr double kSteps_s[] = {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1};
 
-/// The right hand takes the tip and draws it aside and up, the left the middle; out and back within the trial.
+/// The right hand pulls the free end aside and up, then back; the left hand holds the middle. The motion takes
+/// `whole_s`.
 scene::GripperScript tug(double whole_s, double reach_m) {
   scene::GripperScript s;
   s.keys[0] = {{0.0, {0, 0, 0.2}, true}, {0.5 * whole_s, {0.3 * reach_m, 0, 0.22}, true}};
@@ -20,7 +21,7 @@ scene::GripperScript tug(double whole_s, double reach_m) {
   return s;
 }
 
-/// Both ends of the knotted thread, apart at `speed` each.
+/// The hands pull the two ends of the knotted thread apart, each at `speed_m_per_s`.
 scene::GripperScript pull(const scene::Scene& s, double whole_s, double speed_m_per_s) {
   const auto& line = s.suture.initial_polyline_m;
   scene::GripperScript script;
@@ -106,7 +107,7 @@ void add_odd_ones(ExtremesMap& result, const scene::Scene& base, const scene::Sc
     result.add("knot pulled at " + digits(speed) + " m/s", trial(knot, pull(knot, whole_s, speed), kTicks));
   }
   auto thick = knot;
-  thick.suture.radius_m *= 10.0;  // every crossing of the start overlaps
+  thick.suture.radius_m *= 10.0;  // makes every crossing of the start shape overlap
   result.add("knot that starts overlapped", trial(thick, pull(thick, kTicks * 1e-3, 0.2), kTicks));
   scene::GripperScript jump;
   jump.keys[1] = {{0.0, {0, 0, 0.05}, true}, {0.1, {0, 0, 0.05}, true}, {0.1 + 1e-9, {1.0, 0, 0.05}, true}};

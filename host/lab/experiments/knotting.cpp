@@ -1,4 +1,5 @@
-// Two hands tie a trefoil and a figure-eight, and mirror images of both; the knots must stay when let go.
+// Experiment `knotting`: two hands tie a trefoil and a figure-eight, and the mirror image of each. The knots must
+// remain after the release.
 
 #include <algorithm>
 
@@ -16,7 +17,7 @@ constexpr double kWait_s = 10.0;
 
 struct Tied {
   knot::KnotResult at_release, later;
-  double peak_N = 0.0;       ///< largest hand force while tying, world
+  double peak_N = 0.0;       ///< largest hand force during tying, in the thread's world
   double last_pull_N = 0.0;  ///< largest hand force in the last 10 ms before release
 };
 

@@ -1,4 +1,4 @@
-// The paper's Table II in numbers: what each of the five models adds.
+// Experiment `models`: the paper's Table II in numbers, what each of the five models adds.
 
 #include <array>
 #include <cmath>
@@ -14,15 +14,15 @@ namespace {
 
 constexpr std::array kModels{scene::Model::kPaper1, scene::Model::kPaper2, scene::Model::kPaper3, scene::Model::kPaper4,
                              scene::Model::kPaper5};
-constexpr double kStep_s = 0.0002;  // small enough for the integrator to add no loss that shows
+constexpr double kStep_s = 0.0002;  // small enough to make the integrator's numerical dissipation negligible
 
 using physics::Vec3;
 
 struct Measured {
   double bend_J = 0.0;      ///< energy to fold the straight thread by 90 degrees at one node
-  double ring_left = 0.0;   ///< energy left 1 s after a zigzag kick, of the kick's
-  double orbit_left = 0.0;  ///< energy left after 20 s on a conical orbit, of the orbit's
-  double stretch = 0.0;     ///< of the hanging thread at rest
+  double ring_left = 0.0;   ///< share of the energy of a zigzag kick that is left after 1 s
+  double orbit_left = 0.0;  ///< share of the energy of a conical orbit that is left after 20 s
+  double stretch = 0.0;     ///< strain of the hanging thread at rest
 };
 
 scene::Scene with(scene::Scene s, scene::Model model) {
@@ -36,7 +36,7 @@ double energy(const Rehearsal& r) {
   return r.simulation().diagnostics().kinetic_J + r.simulation().diagnostics().potential_J;
 }
 
-/// The hanging thread at rest: its length comes from a run under heavy air drag.
+/// Node positions of the hanging thread at rest, from a run with strong air drag.
 std::vector<Vec3> rest_shape(scene::Scene s) {
   s.suture.paper.air_drag_per_s = 3.0;
   Rehearsal r(s, {});
@@ -45,7 +45,7 @@ std::vector<Vec3> rest_shape(scene::Scene s) {
   return {nodes.begin(), nodes.end()};
 }
 
-/// Energy above rest that is left after t, of what the thread had when it started with this shape and these velocities.
+/// Share of the energy above rest that is left after t_s, for a start with positions p and velocities v.
 double energy_left(const scene::Scene& s, const std::vector<Vec3>& rest, const std::vector<Vec3>& p,
                    const std::vector<Vec3>& v, double t_s) {
   Rehearsal still(s, {}), kicked(s, {});
@@ -69,7 +69,7 @@ double bend_energy(scene::Scene s) {
       p.emplace_back(aside, 0.0, 5.5 - along - (folded ? 0.0 : l * std::max(0, k - n / 2)));
     }
     auto tiny = s;
-    tiny.time.tick_s = 1e-7;  // the energies of a tick later are those of the shape itself
+    tiny.time.tick_s = 1e-7;  // the energies after such a short tick are still those of the start shape
     Rehearsal r(tiny, {});
     r.simulation().set_state(p, {});
     r.tick();
@@ -81,8 +81,8 @@ double bend_energy(scene::Scene s) {
 Measured measure(const scene::Scene& s) {
   const auto rest = rest_shape(s);
   const double l = s.suture.length_m / (s.suture.nodes - 1);
-  // Zigzag: every node kicked aside, neighbours oppositely. Orbit: the thread bent out to one side, tip by 1.5 m, and
-  // every node kicked across that plane, so it circles instead of swinging.
+  // Zigzag: neighbouring nodes are kicked aside in opposite directions. Orbit: the thread is bent to one side, its free
+  // end by 1.5 m, and kicked perpendicular to that plane, so that it circles instead of swinging.
   std::vector<Vec3> zigzag, bent, orbit;
   const double omega = std::sqrt(9.8 / s.suture.length_m) * 1.2;
   for (std::size_t k = 0; k < rest.size(); ++k) {
@@ -99,7 +99,7 @@ Measured measure(const scene::Scene& s) {
   return m;
 }
 
-/// Side by side: the same thread let go from level, its shape every 0.1 s.
+/// Shapes every 0.1 s of a thread that is released from the horizontal, for the comparison of the models.
 void record_shapes(const scene::Scene& s, CsvFile& file, double number) {
   auto level = s;
   lay_level(level);

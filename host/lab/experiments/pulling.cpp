@@ -1,4 +1,5 @@
-// The paper's Table III: force per haptic frame for one-hand and two-hand pulls, with its conditions A, B and C.
+// Experiment `pulling`: the paper's Table III, force per haptic frame for one-hand and two-hand pulls, with its
+// conditions A, B and C.
 
 #include <algorithm>
 #include <array>
@@ -20,7 +21,7 @@ struct Pull {
   scene::GripperScript script;
 };
 
-/// One hand takes the thread 1 m above its tip, draws it aside, and back; the other is away.
+/// One hand takes the thread 1 m above its free end, pulls it aside and comes back; the other hand is absent.
 Pull one_hand() {
   return {"one-hand",
           {{{},
@@ -33,7 +34,7 @@ Pull one_hand() {
              {8.5, {0.5, 0, 1.6}, false}}}}};
 }
 
-/// Two hands take the thread a metre apart and draw it taut between them.
+/// Two hands take the thread one metre apart and pull it taut between them.
 Pull two_hands() {
   return {"two-hand",
           {{{{0.2, {0, 0, 3.0}, false},
@@ -53,10 +54,10 @@ Pull two_hands() {
 }
 
 struct Felt {
-  double peak_N = 0.0;                   ///< at the device, after scaling and limiting
-  double peak_unlimited_N = 0.0;         ///< after scaling, before limiting
-  std::array<int, 4> frames{};           ///< how many frames each condition governed
-  double longest = 0.0, shortest = 2.0;  ///< segment length of rest
+  double peak_N = 0.0;                   ///< at the device, after scaling and the force limit
+  double peak_unlimited_N = 0.0;         ///< after scaling, before the force limit
+  std::array<int, 4> frames{};           ///< number of frames in which each condition determined the force
+  double longest = 0.0, shortest = 2.0;  ///< longest and shortest segment, relative to the rest length
   bool finite = true;
 };
 

@@ -1,4 +1,4 @@
-// The largest step that a model survives, by bisection.
+// Experiment `stability`: the largest stable time step of each model, by bisection.
 
 #include <array>
 #include <cmath>
@@ -15,13 +15,13 @@
 namespace ligature::lab {
 namespace {
 
-constexpr double kSwing_s = 20.0;  // one trial: from level, let go, swing
-constexpr double kMaxGain = 0.02;  // of M g L: what an integrator that does not blow up may wobble
+constexpr double kSwing_s = 20.0;  // duration of a trial: released from the horizontal, swinging freely
+constexpr double kMaxGain = 0.02;  // of M g L: energy error allowed for a stable integrator
 constexpr int kNodes[] = {20, 35, 50, 100};
 constexpr std::array kModels{scene::Model::kPaper1, scene::Model::kPaper2, scene::Model::kPaper3, scene::Model::kPaper4,
                              scene::Model::kPaper5};
 
-/// Does a swing of 20 s at this step stay finite and gain less than 2 % of M g L?
+/// Whether a swing of 20 s with this step stays finite and gains less than 2 % of M g L.
 bool survives(scene::Scene scene, double dt_s) {
   scene.time = {dt_s, 1};
   Rehearsal r(scene, {});
@@ -36,7 +36,8 @@ bool survives(scene::Scene scene, double dt_s) {
   return true;
 }
 
-/// Bisection in the logarithm to 2 %; `low` when even that is too long, `high` when all that is asked for is stable.
+/// Bisection in the logarithm of the step, to 2 %. Returns `low` when even that is unstable, `high` when that is
+/// stable.
 double largest_step(const scene::Scene& scene, double low, double high) {
   if (survives(scene, high)) return high;
   if (!survives(scene, low)) return low;
@@ -47,15 +48,15 @@ double largest_step(const scene::Scene& scene, double low, double high) {
   return low;
 }
 
-/// What an independent prototype of the same equations measured, ms; 0 where it found nothing in its range.
+/// Largest stable steps measured with an independent prototype of the same equations, ms; 0: not found in its range.
 struct Reference {
   scene::Integrator integrator;
   std::array<std::array<double, 4>, 5> largest_ms;  ///< [model][nodes]
 };
 
-/// Forward Euler without bend damping only grows slowly, and where to call that unstable depends on how the energy is
-/// watched, which is not known of the prototype: it found 0.11, 0.07, 0.06 ms for model 1, so models 1 and 2 have no
-/// reference there. With bend damping the limit is sharp: k_d l / k_l.
+/// Explicit Euler without bending damping becomes unstable slowly, so that the limit depends on how the energy is
+/// monitored. That is unknown for the prototype (it found 0.11, 0.07, 0.06 ms for model 1), so models 1 and 2 have no
+/// reference there. With bending damping the limit is sharp: k_d l / k_l.
 constexpr Reference kReferences[] = {
     {scene::Integrator::kSemiImplicit,
      {{{3.66, 2.86, 2.32, 1.67},
@@ -75,7 +76,8 @@ scene::Scene scene_for(scene::Scene s, scene::Model model, int nodes) {
   return s;
 }
 
-/// The paper's explicit scheme, model by model, beside the reference.
+/// Measures the paper's explicit scheme for each model and compares it with the reference. @return the largest relative
+/// deviation.
 double add_explicit(const scene::Scene& base, const Reference& ref, Table& table, console::Progress& progress) {
   const bool forward = ref.integrator == scene::Integrator::kForward;
   double worst = 0.0;
@@ -100,7 +102,8 @@ double add_explicit(const scene::Scene& base, const Reference& ref, Table& table
   return worst;
 }
 
-/// What Ligature runs by default: dampers implicit. Returns the smallest margin over 1 ms at N = 20, 35, 50.
+/// Measures the default scheme, with implicit damping. @return the smallest ratio of limit to 1 ms at N = 20, 35, 50
+/// (paper-4).
 double add_default(const scene::Scene& base, Table& table, console::Progress& progress) {
   double margin = 1e9;
   for (const auto model : kModels) {

@@ -1,4 +1,5 @@
-// Figs. 6 and 7 of the paper, a map of what unties, and the planner that the paper leaves out.
+// Experiment `unknotting`: Figs. 6 and 7 of the paper, a map of the pulls that open a knot, and a planner of such
+// pulls, which the paper does not give.
 
 #include <cmath>
 
@@ -17,11 +18,12 @@ namespace {
 using physics::Vec3;
 
 constexpr double kSettle_s = 5.0;
-const Pull kWrong{49, {1.0, 0.0, 0.0}};  // the tail's own end, drawn on the way it already runs
-constexpr int kKnots = 10;               // of each kind, for the planner
+// a pull that does not open the knot: the last node, in the direction in which the tail already runs
+const Pull kWrong{49, {1.0, 0.0, 0.0}};
+constexpr int kKnots = 10;  // number of knots of each kind, for the planner
 constexpr int kEnough = 8;
 
-/// The loop that is left when the planner's or a wrong node is pulled on the desk; shapes for the picture.
+/// Pulls the loop on the desk at the planner's node and at a wrong one; keeps the shapes for the picture.
 void pull_on_desk(const Bench& bench, Table& table, Verdict& v) {
   const auto scene = load_scene_or_refuse((bench.scenes / "desk.toml").string(), {});
   Rehearsal r(scene, {});
@@ -65,7 +67,7 @@ void pull_on_desk(const Bench& bench, Table& table, Verdict& v) {
   file.close();
 }
 
-/// Every node, six directions.
+/// Tries a pull at every node in six directions. @return how many open the knot.
 int map_pulls(const LooseKnot& knot, Table& map, console::Progress& progress) {
   const int n = static_cast<int>(knot.thread.nodes_W().size());
   const std::vector<Vec3> shape(knot.thread.nodes_W().begin(), knot.thread.nodes_W().end());
@@ -81,7 +83,7 @@ int map_pulls(const LooseKnot& knot, Table& map, console::Progress& progress) {
   return untie;
 }
 
-/// The planner sees the shape, names a pull, and the thread itself is pulled.
+/// The planner chooses a pull from the shape, and the pull is applied to the thread. @return how many knots opened.
 int undo_ten(const std::string& scene, const scene::GripperScript& script, const std::string& type, Table& plans,
              console::Progress& progress) {
   int undone = 0, drawn = 0;

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Runs valgrind with its chatter thrown away. @return true when it ended well.
+/// Runs valgrind with its output discarded. @return whether it succeeded.
 bool run_quietly(std::vector<std::string> words) {
   std::vector<char*> argv;
   for (auto& w : words) argv.push_back(w.data());
@@ -34,7 +34,7 @@ bool run_quietly(std::vector<std::string> words) {
   return status == 0;
 }
 
-/// The count of one dump: its line "totals: N" or "summary: N".
+/// The instruction count in a callgrind dump: its line "totals: N".
 std::optional<double> total_of(const fs::path& file) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
@@ -51,7 +51,7 @@ std::optional<Spread> count_instructions(const Setting& setting, int ticks) {
   const fs::path folder(name);
   std::error_code none;
   const auto self = fs::read_symlink("/proc/self/exe", none).string();
-  // Two patterns for one function: callgrind keeps one setting a pattern.
+  // two patterns that match the same function, because callgrind keeps only one setting per pattern
   const std::string tick = "ligature::lab::measured_tick*", same_tick = "*measured_tick*";
   const bool ran = run_quietly({"valgrind", "--tool=callgrind", "--toggle-collect=" + tick, "--dump-after=" + same_tick,
                                 "--callgrind-out-file=" + (folder / "out").string(), self, "pareto", "--one",

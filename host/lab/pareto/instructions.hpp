@@ -7,8 +7,8 @@
 
 namespace ligature::lab {
 
-/// Instructions of every tick of the knot's pull, counted by callgrind running this program again; nothing when there
-/// is no valgrind. @param ticks how many. About 40 times slower than the ticks themselves.
+/// Instruction counts of the ticks of the knot's pull, measured by running this program again under callgrind; nothing
+/// without valgrind. @param ticks number of ticks. About 40 times slower than the ticks themselves.
 [[nodiscard]] std::optional<Spread> count_instructions(const Setting& setting, int ticks);
 
 }  // namespace ligature::lab

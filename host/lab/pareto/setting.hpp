@@ -1,5 +1,5 @@
 #pragma once
-// A point of the map of cost against error: a model and how finely it is computed.
+// One setting in the diagram of cost against error: a model and its numerical resolution.
 
 #include <string>
 #include <vector>
@@ -11,22 +11,23 @@ namespace ligature::lab {
 struct Setting {
   scene::Model model = scene::Model::kRod;
   int nodes = 154;
-  int substeps = 16;     ///< of a 1 ms tick
-  int passes = 0;        ///< of the rod's contact solver, most and on average; 0: as the preset has them
-  std::string preset{};  ///< "fast", "balanced", "fine": the scene key `accuracy` as it is; empty: substeps and passes
+  int substeps = 16;  ///< per tick of 1 ms
+  int passes = 0;     ///< of the rod's contact solver, both limit and average; 0: as in the preset
+  /// "fast", "balanced", "fine": value of the scene's key `accuracy`; empty: `substeps` and `passes` apply
+  std::string preset{};
 
-  /// "rod/154/16/40" or "rod/154/fine": what --one takes and the table names.
+  /// "rod/154/16/40" or "rod/154/fine": argument of --one, and name in the table.
   [[nodiscard]] std::string text() const;
 };
 
-/// @throws Refusal when the text is none of Setting::text().
+/// @throws Refusal when the text does not have the form of Setting::text().
 [[nodiscard]] Setting setting_of(const std::string& text);
 
-/// Every model, N = 20 .. 500, substeps (an explicit model's: what its stability limit asks for, and twice) and
-/// passes. @param quick about a sixth of them.
+/// All settings of the diagram: every model, N = 20 .. 500, several substeps (for an explicit model the number that its
+/// stability needs, and twice that) and passes. @param quick about a sixth of them.
 [[nodiscard]] std::vector<Setting> all_settings(bool quick);
 
-/// The one that others are measured against.
+/// The setting whose result is taken as the truth.
 [[nodiscard]] Setting finest(scene::Model model);
 
 }  // namespace ligature::lab

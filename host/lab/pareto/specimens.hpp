@@ -1,5 +1,5 @@
 #pragma once
-// The two threads of the map, ready for its experiments at any setting.
+// The threads used in the pareto measurements, at any setting.
 
 #include <optional>
 #include <variant>
@@ -10,7 +10,8 @@
 
 namespace ligature::lab {
 
-/// A thread behind either facade: the rod's own one lets its numerics be set.
+/// A thread behind either interface: physics::Simulation, or RodSimulation, which also lets numerical parameters be
+/// set.
 class Specimen {
  public:
   /// @throws std::runtime_error when the physics refuses the scene.
@@ -25,13 +26,14 @@ class Specimen {
   std::variant<std::monostate, physics::Simulation, physics::rod::RodSimulation> thread_;
 };
 
-/// The 0.3 m suture, or the paper's 5 m thread (Table I per length), at the setting's nodes and time steps; gravity.
+/// Scene with the 0.3 m suture, or with the paper's 5 m thread (Table I, per length), with the setting's nodes and time
+/// steps, under gravity.
 [[nodiscard]] scene::Scene thread_of(const Setting& setting);
 
-/// Fewest substeps of a 1 ms tick at which an explicit model is well inside its stability limit.
+/// Smallest number of substeps per 1 ms tick at which an explicit model is stable with a margin.
 [[nodiscard]] int stable_substeps(scene::Model model, int nodes);
 
-/// Instructions are counted in here and nowhere else.
+/// One tick; the only function whose instructions callgrind counts.
 void measured_tick(Specimen& specimen, const validate::Tools& tools) noexcept;
 
 }  // namespace ligature::lab

@@ -17,7 +17,8 @@ using validate::Tools;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// The thread, level, one end fixed, let go: the first half second (rod) or two seconds (5 m of paper thread).
+/// The free end's motion after a release from the horizontal with one end fixed: the first 0.5 s (rod) or 2 s (5 m of
+/// paper thread).
 std::vector<Vec3> swing_of(const Setting& setting) {
   auto scene = thread_of(setting);
   scene.contact.solver = scene::ContactSolver::kNone;
@@ -38,7 +39,7 @@ struct Pull {
 };
 Pull pull_of(scene::Model m) { return m == scene::Model::kRod ? Pull{0.0138, 0.2, 1.0} : Pull{0.45, 0.5, 30.0}; }
 
-/// A loose overhand, both hands apart until they feel the force, then held.
+/// Pulls a loose overhand knot with both hands until a given force is reached, then holds it.
 void pull_knot(const Setting& setting, int cost_only, Traces& t) {
   auto scene = thread_of(setting);
   scene.world.gravity_m_per_s2 = {0, 0, 0};
@@ -74,8 +75,8 @@ void pull_knot(const Setting& setting, int cost_only, Traces& t) {
   t.knot = knot::recognise(points, false).type;
 }
 
-/// Worst finding of elastica and catenary, a share of L or of the quantity. The explicit models need minutes for it
-/// beyond 50 nodes: NaN.
+/// Largest error of elastica and catenary, relative to L or to the quantity. NaN for explicit models beyond 50 nodes,
+/// which would take minutes.
 double static_error(const Setting& setting) {
   if (setting.model != scene::Model::kRod && setting.nodes > 50) return kNan;
   double worst = 0.0;
@@ -98,7 +99,7 @@ Traces run_trials(const Setting& setting, int cost_only) {
 
 Errors errors_of(const Setting& setting, const Traces& mine, const Traces& finest) {
   Errors e;
-  static std::map<std::pair<scene::Model, int>, double> statics;  // the same for every time step
+  static std::map<std::pair<scene::Model, int>, double> statics;  // cached: independent of the time step
   const auto key = std::pair(setting.model, setting.nodes);
   if (!statics.contains(key)) statics[key] = static_error(setting);
   e.shape = statics[key];

@@ -1,5 +1,5 @@
 #pragma once
-// What a setting errs by and what it costs.
+// Error and cost of a setting.
 
 #include <string>
 #include <vector>
@@ -9,24 +9,25 @@
 
 namespace ligature::lab {
 
-/// A swing and a knot of one setting, to be compared with the finest one's.
+/// Results of a swing and a knot at one setting, for comparison with the finest setting.
 struct Traces {
-  std::vector<physics::Vec3> swing;  ///< the free end every 50 ms, m; level at first, held at the other end
-  double hold_m = 0.0;               ///< between the hands in the hold, m
-  double grip_m = 0.0;               ///< length of the thread, m
-  double penetration = 0.0;          ///< worst of the pull, diameters
-  std::string knot;                  ///< after the hold
-  std::vector<double> us;            ///< thread-CPU time of every tick of the pull and the hold
+  /// position of the free end every 50 ms, m; the thread starts horizontal, the other end is held
+  std::vector<physics::Vec3> swing;
+  double hold_m = 0.0;       ///< distance of the hands while the knot is held, m
+  double grip_m = 0.0;       ///< length of the thread, m
+  double penetration = 0.0;  ///< largest overlap during the pull, diameters
+  std::string knot;          ///< type after the hold
+  std::vector<double> us;    ///< thread CPU time of every tick of pull and hold
   bool finite = true;
 };
 
-/// @param cost_only  the knot alone, for so many ticks (0: all)
+/// @param cost_only number of ticks of the knot trial to run, without the swing; 0: run everything
 [[nodiscard]] Traces run_trials(const Setting& setting, int cost_only = 0);
 
 struct Errors {
-  double shape = 0.0;  ///< worst static error of elastica and catenary, of L; NaN: not measured
+  double shape = 0.0;  ///< largest static error of elastica and catenary, of L; NaN: not measured
   double swing = 0.0;  ///< rms distance of the free end, of L
-  double knot = 0.0;   ///< difference of the distance between the hands at one force, diameters; NaN: knot lost
+  double knot = 0.0;   ///< difference of the hands' distance at equal force, diameters; NaN: the knot was lost
 };
 
 [[nodiscard]] Errors errors_of(const Setting& setting, const Traces& mine, const Traces& finest);

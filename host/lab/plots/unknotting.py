@@ -20,7 +20,7 @@ grid = figure.add_gridspec(2, 6)
 for line, knot in enumerate(["3_1", "4_1"]):
     axis = figure.add_subplot(grid[0, 3 * line : 3 * line + 3])
     mine = [p for p in pulls if p["knot"] == knot]
-    for after, colour in (("0_1", "#0072B2"), ("", "#E69F00")):  # told apart by colour-blind readers too
+    for after, colour in (("0_1", "#0072B2"), ("", "#E69F00")):  # distinguishable with colour blindness
         chosen = [p for p in mine if (p["after"] == "0_1") == (after == "0_1")]
         axis.scatter([int(float(p["node"])) for p in chosen], [DIRECTIONS.index(p["direction"]) for p in chosen], marker="s", s=28,
                      color=colour, label="unties" if after else "stays knotted")

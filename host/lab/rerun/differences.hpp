@@ -1,5 +1,5 @@
 #pragma once
-// What a rerun's thread does otherwise than the recorded one.
+// Differences between the recorded thread and the recomputed one.
 
 #include <array>
 #include <cstddef>
@@ -15,31 +15,31 @@
 
 namespace ligature::lab {
 
-/// The columns of a tick (host/tick_columns.hpp) that the thread makes. All are the physics' own numbers to the bit but
-/// for: min_gap_m, where none near is 1e9; contacts, at most 32767; time_lost, a float. Shapes are floats.
+/// The columns of a tick (host/tick_columns.hpp) that come from the thread. All are recorded exactly, except:
+/// min_gap_m, 1e9 when nothing is near; contacts, at most 32767; time_lost, a float. Shapes are floats.
 [[nodiscard]] const std::vector<std::string>& columns_of_thread();
 
-/// |f| of what lies between the thread's forces on a hand, N.
+/// Magnitude of the difference of the thread's forces on a hand, N.
 [[nodiscard]] double apart_N(const ligature_msg::tick_t& recorded, const ligature_msg::tick_t& again, std::size_t hand);
 
-/// Root mean square and largest of a force, N.
+/// Root mean square and maximum of a force, N.
 struct ForceOf {
   double squares_N2 = 0.0, peak_N = 0.0;
   void add(double force_N);
   [[nodiscard]] double rms_N(std::int64_t ticks) const;
 };
 
-/// When which knot was in the thread.
+/// The knots over time: (time in s, type), one entry per change.
 using KnotHistory = std::vector<std::pair<double, std::string>>;
 
-/// How far two shapes are apart, node by node; one of another number of nodes is compared at the same shares of its
-/// length. m.
+/// Distance between two shapes, node by node, m. With different numbers of nodes, points at equal shares of the node
+/// index are compared.
 struct ShapeDistance {
   double rms_m = 0.0, largest_m = 0.0;
 };
 [[nodiscard]] ShapeDistance distance(const ligature_msg::thread_t& a, const ligature_msg::thread_t& b);
 
-/// Recorded against rerun, tick by tick and shape by shape.
+/// Compares recorded and recomputed ticks and shapes.
 class Differences {
  public:
   explicit Differences(double period_s) : period_s_(period_s) {}
@@ -48,7 +48,7 @@ class Differences {
   void add(const ligature_msg::thread_t& recorded, const ligature_msg::thread_t& again);
 
   [[nodiscard]] bool are_none() const { return different_ticks_ + different_shapes_ == 0; }
-  /// "tick 1201: left_world_f_x_N 0.25 recorded, 0.26 now"; empty: none.
+  /// The first difference, such as "tick 1201: left_world_f_x_N 0.25 recorded, 0.26 now"; empty: none.
   [[nodiscard]] const std::string& first() const { return first_; }
 
   struct Side {
@@ -59,7 +59,7 @@ class Differences {
   };
   [[nodiscard]] const Side& recorded() const { return recorded_; }
   [[nodiscard]] const Side& again() const { return again_; }
-  [[nodiscard]] const std::array<ForceOf, 2>& apart() const { return apart_; }  ///< of the two forces
+  [[nodiscard]] const std::array<ForceOf, 2>& apart() const { return apart_; }  ///< difference of the two forces
   [[nodiscard]] std::int64_t ticks() const { return ticks_; }
   [[nodiscard]] std::int64_t different_ticks() const { return different_ticks_; }
   [[nodiscard]] std::int64_t shapes() const { return shapes_; }

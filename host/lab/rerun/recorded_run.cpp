@@ -20,7 +20,8 @@ constexpr const char* kSince = "recorded since status_t.protocol_version 2 (CHAN
 
 struct Session {
   std::int64_t ticks = 0, first = -1;
-  bool says_how_it_lay = false;  ///< from some tick on
+  /// some tick defines the thread's state (start of the run, reset or new scene): a rerun can begin there
+  bool says_how_it_lay = false;
   std::optional<ligature_msg::tick_t> last;
   std::map<std::int64_t, RecordedSceneText> scenes;
   double period_s = 0.0;
@@ -46,7 +47,7 @@ class Survey {
     s.firmware_version = m.firmware_version;
     s.scenes.try_emplace(m.scene_first_tick, RecordedSceneText{m.scene_first_tick, m.scene_file, m.scene_toml});
   }
-  /// Those with ticks, in order of appearance.
+  /// The sessions that have ticks, in order of appearance.
   [[nodiscard]] std::vector<std::pair<std::int64_t, const Session*>> sessions() const {
     std::vector<std::pair<std::int64_t, const Session*>> found;
     for (const auto id : order_)

@@ -23,7 +23,7 @@ namespace {
 using ligature_msg::thread_t;
 using ligature_msg::tick_t;
 
-/// Shapes and ticks come on channels of their own: whichever of the two is first waits for the other.
+/// Limit on shapes or ticks that wait for their counterpart: the two come on different channels, in either order.
 constexpr std::size_t kWaiting = 1024;
 
 class Play {
@@ -92,7 +92,7 @@ class Play {
   }
 
   void take(thread_t shape) {
-    if (shape.tick == compared_tick_) return;  // told twice: the last one of `lab tie`
+    if (shape.tick == compared_tick_) return;  // duplicate: `lab tie` writes its last shape twice
     if (const auto at = played_.find(shape.tick); at != played_.end()) {
       compare(shape, at->second);
       played_.erase(at);
@@ -108,8 +108,8 @@ class Play {
     if (files_) files_->add(recorded, again);
   }
 
-  /// The hands are the recorded ones; what the device would have been asked for differs by what the thread does. The
-  /// law of a period uses the grasp after the one before.
+  /// Device forces of the rerun. The hands' motion is the recorded one, so the force changes only by the difference of
+  /// the thread's force. The control law of a period uses the grasp of the period before.
   tick_t with_device_forces(const tick_t& recorded, tick_t again) {
     const double scale = player_.force_scale(), most_N = player_.max_force_N();
     for (std::size_t h = 0; h < 2; ++h) {
@@ -134,8 +134,8 @@ class Play {
   host::GapCounter seen_;
   host::TickOrder order_;
   ligature_msg::tick_batch_t like_{};
-  std::map<std::int64_t, thread_t> recorded_, played_;  // by tick; those whose other half has not come yet
-  std::array<std::array<double, 3>, 2> more_N_{};       // f_world of the tick before, beyond the recorded one
+  std::map<std::int64_t, thread_t> recorded_, played_;  // by tick: shapes whose counterpart has not come yet
+  std::array<std::array<double, 3>, 2> more_N_{};       // f_world of the tick before, minus the recorded one
   std::int64_t compared_tick_ = -1;
   bool is_ours_ = false;
 };
@@ -143,7 +143,7 @@ class Play {
 }  // namespace
 
 RerunOutcome rerun(const RerunOptions& options) {
-  platform::flush_denormals();  // as the firmware does
+  platform::flush_denormals();  // as in the firmware
   const RecordedRun run = survey(options.log, options.session);
   Play play(options, run);
   console::Progress progress("rerun");

@@ -1,5 +1,5 @@
 #pragma once
-// A recording's hands played through the physics once more, and what came of it.
+// Plays the recorded hand motion of a session through the physics again and compares the result.
 
 #include <filesystem>
 #include <string>
@@ -13,23 +13,23 @@ namespace ligature::lab {
 struct RerunOptions {
   std::string log{};
   std::vector<std::string> overrides{};
-  bool cuts = true;                ///< the clock's cuts are done again
-  int session = 0;                 ///< from 1; 0: the only one
-  std::filesystem::path folder{};  ///< of the files; empty: none
+  bool cuts = true;                ///< repeat the recorded ticks' early ends by the clock at the same substep
+  int session = 0;                 ///< number from 1; 0: the only one
+  std::filesystem::path folder{};  ///< for output files; empty: write none
 };
 
 struct RerunOutcome {
   Differences differences;
-  std::int64_t ticks = 0;  ///< of the run in the log
+  std::int64_t ticks = 0;  ///< ticks of the session in the log
   double period_s = 0.001;
-  std::int64_t unknown_ticks = 0;  ///< in which it is not known how the thread lay
-  std::string why_unknown;         ///< the last time
-  std::int64_t shapes_alone = 0;   ///< recorded ones of ticks that are not known
-  bool interrupted = false;        ///< by SIGINT or SIGTERM before its end
+  std::int64_t unknown_ticks = 0;  ///< ticks for which the thread's state is unknown, because records are missing
+  std::string why_unknown;         ///< reason of the last such gap
+  std::int64_t shapes_alone = 0;   ///< recorded shapes of such ticks, which have nothing to compare with
+  bool interrupted = false;        ///< stopped by SIGINT or SIGTERM before the end
 };
 
-/// Plays to the end or to a stop signal, and writes DIR/rerun.lcmlog, forces.csv and shapes.csv.
-/// @throws Refusal, before anything is written when the recording or the settings are refused.
+/// Runs to the end or to a stop signal, and writes DIR/rerun.lcmlog, forces.csv and shapes.csv.
+/// @throws Refusal when the recording or the settings are refused; nothing has been written then.
 [[nodiscard]] RerunOutcome rerun(const RerunOptions& options);
 
 }  // namespace ligature::lab

@@ -6,7 +6,7 @@ class App;
 
 namespace ligature::lab {
 
-/// `ligature-lab rerun`.
+/// Adds `ligature-lab rerun`.
 void add_rerun_command(CLI::App& app, int& exit_code);
 
 }  // namespace ligature::lab

@@ -1,5 +1,5 @@
 #pragma once
-// What a rerun leaves in its folder.
+// Output files of a rerun.
 
 #include <filesystem>
 #include <optional>
@@ -14,10 +14,10 @@ namespace ligature::lab {
 
 struct RerunOutcome;
 
-/// The recording and two tables; each table has its name when it is complete.
+/// The rerun's log and two tables; each table gets its final name when it is complete.
 class RerunFiles {
  public:
-  /// Makes the folder and takes away what an earlier rerun left there. @throws Refusal, host::BadInput.
+  /// Creates the folder and removes the files of an earlier rerun. @throws Refusal, host::BadInput.
   RerunFiles(const std::filesystem::path& folder, const std::vector<std::string>& overrides, double period_s);
 
   void add(const ligature_msg::tick_t& recorded, const ligature_msg::tick_t& again, std::optional<double> cost_us);
@@ -31,10 +31,10 @@ class RerunFiles {
   double period_s_;
 };
 
-/// Refuses a folder whose rerun.lcmlog is the recording that is read. @throws Refusal.
+/// Refuses a folder whose rerun.lcmlog is the recording to be read. @throws Refusal.
 void refuse_own_output(const std::string& log, const std::filesystem::path& folder);
 
-/// summary.json
+/// Text of summary.json.
 [[nodiscard]] std::string to_json(const RerunOutcome& outcome);
 
 }  // namespace ligature::lab

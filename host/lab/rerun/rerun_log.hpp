@@ -1,5 +1,5 @@
 #pragma once
-// A rerun as a recording of its own, for `ligature-host replay` and the others.
+// Writes a rerun as a recording of its own, for `ligature-host replay` and other readers.
 
 #include <cstdint>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace ligature::lab {
 
-/// Everything of the recorded one but its thread, at its times.
+/// A log with everything of the recorded one, at its times; the thread's data are those of the rerun.
 class RerunLog {
  public:
   /// @throws host::BadInput when the file exists or cannot be made.
@@ -23,10 +23,10 @@ class RerunLog {
   void begin(const host::LogEvent& event) { at_us_ = event.timestamp_us; }
   void add(const ligature_msg::tick_t& tick) { ticks_.push_back(tick); }
   void add(ligature_msg::thread_t shape, std::int64_t utime);
-  /// With the overrides of the rerun behind those of its text.
+  /// Writes a status message; the rerun's overrides are appended to its scene text.
   void add(ligature_msg::status_t status);
   void copy(const host::LogEvent& event) { log_.write(at_us_, event.channel, event.data); }
-  /// What was added since the last batch. @param like it, but for the ticks.
+  /// Writes the ticks added since the last batch. @param like the batch whose other fields are copied.
   void end_batch(const ligature_msg::tick_batch_t& like);
   void close() { log_.close(); }
 

@@ -34,7 +34,7 @@ void ThreadPlayer::forget(const std::string& why) {
 
 std::optional<tick_t> ThreadPlayer::take(const tick_t& tick) {
   cost_us_.reset();
-  if (next_tick_ < 0 && tick.tick == 0) {  // the run begins here, as its scene says
+  if (next_tick_ < 0 && tick.tick == 0) {  // the run starts here: its scene defines the thread's state
     thread_ = made(0);
     orders_ = control::ThreadOrders{};
   } else if (tick.tick != next_tick_) {
@@ -58,7 +58,7 @@ void ThreadPlayer::remember(const tick_t& tick) {
   requests_.push_back({tick.tick, {tool_of(tick, 0), tool_of(tick, 1)}, orders_of(tick)});
 }
 
-/// The tools of that period, whatever older ones were passed over.
+/// Repeats the thread's tick for that period; requests of older periods were skipped by the firmware, too.
 void ThreadPlayer::step(std::int64_t tick, int cut_at) {
   while (!requests_.empty() && requests_.front().tick < tick) requests_.pop_front();
   if (requests_.empty() || requests_.front().tick != tick)
@@ -69,11 +69,11 @@ void ThreadPlayer::step(std::int64_t tick, int cut_at) {
   last_step_ = tick;
 }
 
-/// As ThreadContext::compute().
+/// Carries out a request as ThreadContext::compute() does.
 void ThreadPlayer::obey(const Request& request, int cut_at) {
   const auto& now = request.orders;
   const auto was = std::exchange(orders_, now);
-  if (!was) return;  // how it lay before is not known, and what was asked of it with these tools neither
+  if (!was) return;  // the orders before are unknown, so that resets and scene changes cannot be detected
   if (now.resets != was->resets) {
     if (!thread_) thread_ = made(current_ = scene_at(last_step_));
     thread_->reset();
@@ -90,7 +90,7 @@ void ThreadPlayer::obey(const Request& request, int cut_at) {
   note_result(request.tick);
 }
 
-/// @return false when nothing says which scene it was.
+/// @return false when the recording lacks the scene.
 bool ThreadPlayer::take_scene(const Request& request, bool keeps_motion) {
   const std::size_t next = scene_at(request.tick);
   if (scenes_[next].first_tick <= last_step_ || scenes_[next].first_tick > request.tick) {
@@ -118,7 +118,8 @@ void ThreadPlayer::snapshot() {
   shapes_.push_back(telemetry::to_message(*shape_, scenes_[current_].scene.suture.radius_m, 0));
 }
 
-/// As PeriodLog tells it: a lost period repeats the record before it, a late one has the values of an older tick.
+/// Writes the thread's fields as PeriodLog does: a lost period repeats the record before it, and a late one has the
+/// values of an older tick.
 void ThreadPlayer::put_thread(tick_t& tick) {
   rt::TickRecord record;
   if (!is_lost(tick)) {
@@ -144,13 +145,13 @@ void ThreadPlayer::put_thread(tick_t& tick) {
     tick.step_cut_at[i] = result_.last_steps[static_cast<std::size_t>(tick.thread_steps - 1 - i)].cut_at;
 }
 
-/// The last that is in force by then.
+/// Index of the last scene that is in force at that tick.
 std::size_t ThreadPlayer::scene_at(std::int64_t tick) const {
   const auto after = std::ranges::upper_bound(scenes_, tick, {}, &PlayedScene::first_tick);
   return after == scenes_.begin() ? 0 : static_cast<std::size_t>(after - scenes_.begin()) - 1;
 }
 
-/// The scenes were made once before anything was played, so they can be.
+/// Cannot fail: scenes_of() has built each scene before.
 physics::Simulation ThreadPlayer::made(std::size_t scene) const {
   return std::get<physics::Simulation>(physics::Simulation::make(scenes_[scene].scene));
 }

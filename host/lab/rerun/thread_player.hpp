@@ -1,5 +1,5 @@
 #pragma once
-// The thread's ticks done again from the records: the same tools, the same orders, cut at the same questions.
+// Recomputes the thread's ticks from the records: same tool positions, same orders, ended early at the same places.
 
 #include <array>
 #include <cstdint>
@@ -18,23 +18,23 @@
 
 namespace ligature::lab {
 
-/// A scene as the rerun has it, in force from that tick on.
+/// A scene of the rerun, in force from `first_tick` on.
 struct PlayedScene {
   std::int64_t first_tick = 0;
   scene::Scene scene;
 };
 
-/// Does what firmware/thread_context.hpp did, by the records alone. The thread is known from the run's first tick on;
-/// after a hole in the records it is not known, until a reset or another scene says how it lies.
+/// Repeats what firmware/thread_context.hpp did, from the records alone. The thread's state is known from the first
+/// tick of the run on. After missing records it is unknown until a reset or another scene defines it again.
 class ThreadPlayer {
  public:
-  /// @param scenes in order of their first ticks. @param cuts whether the clock's cuts are done again.
+  /// @param scenes in order of their first ticks. @param cuts whether early ends by the clock are repeated.
   ThreadPlayer(std::vector<PlayedScene> scenes, bool cuts);
 
-  /// The next record. @return it with the thread's part as it is now; nothing while the thread is not known.
+  /// Takes the next record. @return the record with recomputed thread fields; nothing while the state is unknown.
   std::optional<ligature_msg::tick_t> take(const ligature_msg::tick_t& tick);
 
-  /// A shape of one of the ticks since the last call, as telemetry would have told it.
+  /// Shapes of ticks since the last call, in the form that telemetry sends.
   [[nodiscard]] std::vector<ligature_msg::thread_t> take_shapes() { return std::exchange(shapes_, {}); }
 
   /// CPU time of the ticks that ended with the last record, us; nothing when none did.
@@ -63,14 +63,14 @@ class ThreadPlayer {
 
   std::vector<PlayedScene> scenes_;
   bool cuts_;
-  std::size_t current_ = 0;                    // of the scenes
-  std::optional<physics::Simulation> thread_;  // nothing: not known
+  std::size_t current_ = 0;                    // index of the scene in force
+  std::optional<physics::Simulation> thread_;  // empty: the state is unknown
   std::string why_unknown_ = "its beginning is missing";
-  std::deque<Request> requests_;  // not looked at yet
+  std::deque<Request> requests_;  // not yet carried out
   std::int64_t next_tick_ = -1, last_step_ = -1, shape_of_ = -1;
-  std::optional<control::ThreadOrders> orders_;  // of the last step; nothing: it was not recorded
+  std::optional<control::ThreadOrders> orders_;  // of the last step; empty: not recorded
   control::ThreadResult result_;
-  ligature_msg::tick_t told_{};  // the last record
+  ligature_msg::tick_t told_{};  // the last record returned
   std::vector<ligature_msg::thread_t> shapes_;
   std::unique_ptr<rt::ThreadSnapshot> shape_ = std::make_unique<rt::ThreadSnapshot>();
   std::optional<double> cost_us_;

@@ -8,7 +8,7 @@ bool DeviceBus::loses(const can::Frame& frame) noexcept {
   if (lost_share_ <= 0.0) return false;
   const auto address = can::address_of(frame.id);
   if (!address || (address->service != can::Service::kRpdo1 && address->service != can::Service::kTpdo1)) return false;
-  // 53 bits of the generator: the standard distributions are not the same everywhere.
+  // uses the generator's upper 53 bits, because standard distributions differ between platforms
   const bool lost = static_cast<double>(random_() >> 11) * 0x1p-53 < lost_share_;
   frames_lost += lost;
   return lost;
@@ -28,7 +28,7 @@ platform::Receive DeviceBus::receive(can::Frame& frame) noexcept {
   while (!out.empty() && out.front().due <= now_) {
     const sim::Delivery first = out.front();
     out.erase(out.begin());
-    if (first.sender == sim::HandDevice::kFirstClient) continue;  // nobody hears itself
+    if (first.sender == sim::HandDevice::kFirstClient) continue;  // a sender does not receive its own frames
     if (loses(first.frame)) continue;
     frame = first.frame;
     return platform::Receive::kFrame;

@@ -1,5 +1,5 @@
 #pragma once
-// The cable between a simulated hand and the firmware, on a clock that is a number.
+// The CAN connection between a simulated hand and the firmware, on a simulated clock.
 
 #include <chrono>
 #include <cstddef>
@@ -17,17 +17,17 @@ namespace ligature::lab {
 
 using Nanoseconds = std::chrono::nanoseconds;
 
-/// Frames come when their last bit has passed.
+/// A frame is received when its last bit has been transmitted.
 class DeviceBus final : public platform::CanBus {
  public:
-  /// Frames that the firmware's interface has room for, as on a rig (docs/deployment.md).
+  /// Length of the firmware interface's transmit queue, in frames, as on a rig (docs/deployment.md).
   static constexpr std::size_t kQueue = 8;
 
   DeviceBus(std::unique_ptr<sim::Intention> intention, const sim::Body& body, const Nanoseconds& now)
       : device(std::move(intention), now, body), now_(now) {}
 
-  /// From now on this share of the process data frames of either direction is lost, 0 .. 1; the same ones for the same
-  /// seed. SYNC, NMT, SDO and heartbeats pass.
+  /// From now on loses this share of the process data frames (PDOs) in both directions, 0 .. 1; equal seeds lose equal
+  /// frames. SYNC, NMT, SDO and heartbeats are never lost.
   void lose_frames(double share, std::uint64_t seed) noexcept {
     lost_share_ = share;
     random_.seed(seed);
@@ -40,7 +40,7 @@ class DeviceBus final : public platform::CanBus {
 
   sim::HandDevice device;
   std::optional<sim::FaultInjector> faults;
-  bool cut = false;  ///< the hand's process was killed
+  bool cut = false;  ///< true: the process of the hand was killed
   std::int64_t frames_lost = 0;
 
  private:

@@ -19,9 +19,10 @@ sim::Mat3 tip_N_per_Nm(const sim::Mechanics& m) {
 
 Watched watch(VirtualRig& rig, std::int64_t ticks, std::size_t look_at) {
   Watched w;
-  const double count_rad = 2.0 * std::numbers::pi / rig.setup.body[0].drives.counts_per_revolution;  // both hands alike
+  // both hands have equal encoders
+  const double count_rad = 2.0 * std::numbers::pi / rig.setup.body[0].drives.counts_per_revolution;
   std::array<sim::Vec3, 2> made_Nm{sim::Vec3::Zero(), sim::Vec3::Zero()};
-  std::array<sim::Mat3, 2> pose{sim::Mat3::Zero(), sim::Mat3::Zero()};  // at the SYNC before
+  std::array<sim::Mat3, 2> pose{sim::Mat3::Zero(), sim::Mat3::Zero()};  // torque-to-tip-force matrix at the SYNC before
   rig.each_tick = [&] {
     std::array<sim::Vec3, 2> force;
     std::array<double, 2> size{}, port{}, step{};
@@ -65,7 +66,8 @@ Watched watch(VirtualRig& rig, std::int64_t ticks, std::size_t look_at) {
   return w;
 }
 
-/// What is sent in a tick is made two ticks later, and later yet where its RPDOs are lost.
+/// The motors make a torque two ticks after it was sent, and later when its RPDOs are lost. So steps up to kLate ticks
+/// after a fault or a let-go are attributed to it.
 void Watched::sort_steps(const std::vector<rt::TickRecord>& records) {
   constexpr std::size_t kLate = 10;
   for (std::size_t h = 0; h < 2; ++h) {
@@ -97,7 +99,7 @@ double Watched::chatter_N(std::size_t hand, std::size_t first, std::size_t last)
       in[s] = x;
       x = out[s];
     }
-    if (i < first + 100) continue;  // the filter's own start
+    if (i < first + 100) continue;  // skips the filter's transient
     sum += x.squaredNorm();
     ++count;
   }

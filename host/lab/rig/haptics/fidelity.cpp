@@ -1,4 +1,4 @@
-// Does the hand feel what the thread does: tension, quiet, action and reaction.
+// Does the hand feel the thread's force? Tests tension, noise, and action = reaction.
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 namespace ligature::lab {
 namespace {
 
-/// What the thread's two sides do to a node: each edge's stiffness times its strain, along it. Also the side that hangs
-/// on its frame counts: it is pressed a little.
+/// Sum of the tensions of the two edges at a node (stiffness times strain, along the edge). The slack side counts, too:
+/// it is slightly compressed.
 sim::Vec3 pull_on(const Watched& w, const scene::Suture& suture, int node) {
   const double rest_m = suture.length_m / (suture.nodes - 1);
   sim::Vec3 sum = sim::Vec3::Zero();
@@ -25,8 +25,8 @@ sim::Vec3 pull_on(const Watched& w, const scene::Suture& suture, int node) {
   return sum;
 }
 
-/// A straight weightless thread of the paper's model between two hands: its tension is its stiffness times its strain,
-/// whatever the coupling or the contacts do.
+/// A straight weightless thread of the paper's model between two hands: its tension is stiffness times strain,
+/// independent of coupling and contacts.
 void steady_pull(const HapticsBench& bench, Verdict& v) {
   RigSetup setup;
   setup.scene = load_scene_or_refuse((bench.scenes / "paper.toml").string(),
@@ -63,7 +63,7 @@ void steady_pull(const HapticsBench& bench, Verdict& v) {
           digits(worst) + " at " + digits(least_N) + " N", "up to 0.02");
 }
 
-/// Of the thread half way from a hand to the knot, mean of a centimetre and more.
+/// Tension of the thread between a hand and the knot, mean over nodes 5 to 8 cm from the middle.
 double tension_N(const Watched& w, std::size_t hand) {
   double sum = 0.0;
   int count = 0;
@@ -76,7 +76,7 @@ double tension_N(const Watched& w, std::size_t hand) {
   return count > 0 ? sum / count : 0.0;
 }
 
-/// The knotted suture drawn tight and held.
+/// The knotted suture, pulled tight and held.
 void tight_knot(const HapticsBench& bench, Verdict& v) {
   RigSetup setup;
   setup.scene = load_scene_or_refuse((bench.scenes / "suture-3-0-knot.toml").string(), {kWeightless});

@@ -15,7 +15,7 @@ scene::GripKey key(double t, std::size_t hand, double x, bool grip) {
   return {t, {hand == 0 ? -x : x, kY_m, kZ_m}, grip};
 }
 
-/// Of both hands together, from where they had drawn the thread tight.
+/// A common displacement of both hands, relative to where they pulled the thread tight.
 struct Shift {
   double takes_s, x_m, y_m;
   bool grip = true;
@@ -53,10 +53,10 @@ double apart_when_felt_m(const scene::Scene& knotted, double force_N) {
 scene::GripperScript pull_and_release(double apart_m, double draw_s, double rest_s) {
   scene::GripperScript script;
   for (std::size_t h = 0; h < 2; ++h) {
-    double t = 1.2;  // the rig engages first
+    double t = 1.2;  // first key after the rig's start-up (ENGAGE)
     script.keys[h] = {key(0.5, h, kHold_m, false), key(t, h, kHold_m, true)};
     script.keys[h].push_back(key(t += draw_s, h, apart_m, true));
-    script.keys[h].push_back(key(t += rest_s, h, apart_m, false));  // lets go under tension
+    script.keys[h].push_back(key(t += rest_s, h, apart_m, false));  // released under tension
     script.keys[h].push_back(key(t += 0.5, h, apart_m, false));
   }
   return script;
@@ -96,7 +96,8 @@ scene::GripperScript against_peg(double apart_m, double push_m) {
   return draw_and_shift(apart_m, 1.2, {{0.6, 0.0, y}, {0.6, 0.0, 0.5 * y}, {0.6, 0.0, y}, {0.4, 0.0, y, false}});
 }
 
-scene::GripperScript give_way(double apart_m, double shift_m) {  // both to the left: the right one is dragged
+// both move to the left, so that the right one is dragged
+scene::GripperScript give_way(double apart_m, double shift_m) {
   const double x = -shift_m;
   return draw_and_shift(apart_m, 1.5, {{1.0, x, 0.0}, {0.5, x, 0.0}, {0.3, x, 0.0, false}});
 }

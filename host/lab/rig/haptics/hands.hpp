@@ -1,5 +1,6 @@
 #pragma once
-// Scripts and hands of the haptics runs, for the knotted suture of scenes/suture-3-0-knot.toml: world = device, 1 : 1.
+// Scripts and hand models for the haptics experiments, on the knotted suture of scenes/suture-3-0-knot.toml. Scale 1:
+// one device metre is one world metre.
 
 #include <array>
 #include <memory>
@@ -11,30 +12,31 @@
 
 namespace ligature::lab {
 
-/// Both its ends are free: without this it falls before it is taken.
+/// No gravity: both ends of the thread are free, and it would fall before it is grasped.
 inline constexpr const char* kWeightless = "world.gravity_m_per_s2=[0,0,0]";
 
-/// Of each hand from the middle when it first feels so much of the knotted suture, drawn slowly. A rig that does it
-/// says this, and not the scene: the loose knot springs open before it is taken, and how far is the solver's business.
+/// Distance of each hand from the middle at which it first feels `force_N`, when the knotted suture is pulled slowly.
+/// Measured by a run, because the loose knot springs open before it is grasped, by an amount that depends on the
+/// solver.
 [[nodiscard]] double apart_when_felt_m(const scene::Scene& knotted, double force_N);
 
-/// Both hands take the thread 8 cm from the knot's middle, draw apart to `apart_m` each, rest there, let go.
+/// Both hands grasp the thread 8 cm from the knot's middle, pull to `apart_m` from the middle each, rest and release.
 [[nodiscard]] scene::GripperScript pull_and_release(double apart_m, double draw_s = 2.0, double rest_s = 1.5);
-/// Drawn apart and back in `beat_s`, again and again: the knot jams a little more each time.
+/// Pulls and relaxes within `beat_s`, repeatedly: the knot jams a little more each time.
 [[nodiscard]] scene::GripperScript jam(double apart_m, double beat_s, int times);
-/// The right hand lets go and takes hold again under tension, every 0.3 s.
+/// The right hand releases and grasps again under tension, every 0.3 s.
 [[nodiscard]] scene::GripperScript slip(double apart_m);
 
-/// Away from the person by `push_m` and half back, again: against a peg if the scene has one in the way.
+/// Moves away from the user by `push_m` and half back, twice; against a peg, if the scene has one there.
 [[nodiscard]] scene::GripperScript against_peg(double apart_m, double push_m);
 inline constexpr const char* kPeg = "world.pegs=[{from_m=[0,0.004,-0.1],to_m=[0,0.004,0.2],radius_m=0.002}]";
-/// Drawn apart, then both to the left by `shift_m`: the left hand pulls, the right one gives way.
+/// Pulls the thread tight, then both hands move left by `shift_m`: the left hand pulls, the right one is dragged.
 [[nodiscard]] scene::GripperScript give_way(double apart_m, double shift_m);
-/// The left hand pulls down the end of a thread of 2 cm that hangs from a post (short_thread()): a stiff thing.
+/// The left hand pulls down the end of a stiff object: a thread of 2 cm that hangs from a post (short_thread()).
 [[nodiscard]] scene::GripperScript on_a_short_thread(double pull_m);
 [[nodiscard]] std::vector<std::string> short_thread();
 
-/// A hand that is elsewhere between two moments, at once.
+/// A hand that is displaced by `by_m` between two times, with a jump at each.
 class Teleporting final : public sim::Intention {
  public:
   Teleporting(std::unique_ptr<sim::Intention> calm, double from_s, double to_s, const sim::Vec3& by_m)
@@ -53,7 +55,7 @@ class Teleporting final : public sim::Intention {
   sim::Vec3 by_m_;
 };
 
-/// Two scripted intentions, each wrapped by `wrap` (or as they are).
+/// Two scripted hands, each passed through `wrap`.
 template <class Wrap>
 [[nodiscard]] VirtualRig::Intentions wrapped(const RigSetup& setup, const scene::GripperScript& script, Wrap wrap) {
   VirtualRig::Intentions hands = scripted_hands(setup, script);

@@ -1,5 +1,5 @@
 #pragma once
-// The haptics experiment in its parts. Each fills its tables and adds its claims.
+// The parts of the haptics experiment. Each fills its tables and adds its claims.
 
 #include <filesystem>
 
@@ -7,13 +7,14 @@
 
 namespace ligature::lab {
 
-inline constexpr double kTaut_N = 0.7;  ///< below what an Omni-class device may do for ever
+inline constexpr double kTaut_N = 0.7;  ///< below the continuous force of an Omni-class device
 
-/// How much of it: the quick one is for ctest, the whole one for the docs.
+/// Folders and extent of the experiment: quick for ctest, complete for the docs.
 struct HapticsBench {
   std::filesystem::path scenes, out;
   bool quick = false;
-  /// Of each hand from the middle when the knotted suture pulls at it by kTaut_N; and with the peg in its way.
+  /// Distance of each hand from the middle at which the knotted suture pulls with kTaut_N; the same with the peg in the
+  /// way.
   double taut_m = 0.0, taut_at_peg_m = 0.0;
 };
 

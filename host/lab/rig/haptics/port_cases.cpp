@@ -6,8 +6,8 @@
 namespace ligature::lab {
 namespace {
 
-/// Drives that guard their windings at a third of what the record allows, after half a second: long before the
-/// controller's own limit would act.
+/// Drives that reduce their torque to 0.3 of the continuous rating after 0.5 s to protect their windings, long before
+/// the controller's own limit would act.
 void hot_drives(RigSetup& setup) {
   for (auto& body : setup.body) body.motors = {0.3 * body.motors.continuous_Nm, 0.5};
 }
@@ -80,7 +80,7 @@ void add_hands(const HapticsBench& bench, std::vector<PortCase>& all) {
   std::vector<std::string> taut = short_thread();
   taut.emplace_back(kWeightless);
   taut.emplace_back("suture.stretch_damping_s=0");
-  // Two fingers on the stylus, which damp least, and one short tug.
+  // Two fingers on the stylus (least damping), and one short tug.
   all.push_back({.name = "short thread; too stiff; two fingers",
                  .script = on_a_short_thread(0.02),
                  .hand = {60.0, 0.5, 0.0, 0.0, 0.0},

@@ -1,5 +1,5 @@
 #pragma once
-// What hands do to a thread in the experiment on the device ports: a name, a script, a kind of hand, a kind of trouble.
+// Cases of the experiment on the device ports: a name, a script, a hand model and a disturbance.
 
 #include <functional>
 #include <string>
@@ -19,18 +19,20 @@ struct PortCase {
   sim::Hand hand{};
   std::function<Will(Will)> wrap = [](Will will) { return will; };
   double frame_loss = 0.0;
-  double stiffness = 1.0;  ///< times the scene's coupling, beyond what is admissible
+  double stiffness = 1.0;  ///< factor on the scene's coupling; above 1 it exceeds the admissible value
   std::vector<std::string> overrides = {kWeightless};
   std::function<void(RigSetup&)> trouble = [](RigSetup&) {};
-  bool gives_way = false;  ///< one hand is pulled by the other: its port gives out what the other's took in
-  bool wild = false;       ///< hands that fight back, wilder than the device record takes them to be: may be let go
-  bool unstable_without = false;  ///< without the controller
+  /// one hand is dragged by the other: its port delivers the energy that the other one took in
+  bool gives_way = false;
+  bool wild = false;              ///< the hands fight back harder than the device record assumes; they may be let go
+  bool unstable_without = false;  ///< without the passivity controller
   bool in_quick = false;
 };
 
 [[nodiscard]] std::vector<PortCase> port_cases(const HapticsBench& bench);
 
-/// The knotted suture of scenes/suture-3-0-knot.toml. @param controller of passivity.
+/// Runs a case with the knotted suture of scenes/suture-3-0-knot.toml. @param controller whether the passivity
+/// controller acts.
 [[nodiscard]] Watched play(const HapticsBench& bench, const PortCase& c, bool controller);
 
 }  // namespace ligature::lab

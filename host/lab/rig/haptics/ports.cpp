@@ -1,4 +1,4 @@
-// Energy at both device ports in everything that a hand may do to a thread, with the passivity controller and without.
+// Energy at both device ports for many kinds of hand motion, with and without the passivity controller.
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 double least(const std::array<double, 2>& of) { return std::min(of[0], of[1]); }
 
-/// Worst of all runs with the controller.
+/// Extreme values over all runs with the controller.
 struct Worst {
   double account_J = 0.0, bound_J = 0.0, proved_J = 0.0, sum_J = 0.0, alone_J = 0.0, step_N = 0.0;
   int runs = 0, let_go = 0, let_go_wild = 0;
@@ -30,7 +30,7 @@ struct Worst {
   }
 };
 
-/// The table and the traces of all runs.
+/// Writes the table and the traces of all runs.
 class PortFiles {
  public:
   explicit PortFiles(const HapticsBench& bench)
@@ -60,14 +60,14 @@ class PortFiles {
                 "step_N", "cut_N", "let_go", "above_30Hz_mN", "fault"}};
 };
 
-/// A port that another hand pulls gives out energy, and must: without, it feels nothing.
+/// The port of a hand that is dragged must deliver energy to it; if lending of energy is off, that hand feels nothing.
 void measure_giving_way(const HapticsBench& bench, Verdict& v) {
   for (const PortCase& c : port_cases(bench)) {
     if (!c.gives_way) continue;
     PortCase alone = c;
     alone.trouble = [](RigSetup& setup) { setup.settings.lending = false; };
     const Watched together = play(bench, c, true), apart = play(bench, alone, true);
-    const std::size_t from = 3800, to = 4100;  // dragged, and at rest again
+    const std::size_t from = 3800, to = 4100;  // ticks in which the hand is dragged and comes to rest
     const auto share = [&](const Watched& w) { return w.mean_N(1, from, to).norm() / w.mean_N(0, from, to).norm(); };
     v.claim(together.lowest_port_J[1] < -1e-3, "Ports: the hand that gives way gets energy of the one that pulls, J",
             digits(together.lowest_port_J[1]), "below -1e-3");
@@ -77,7 +77,7 @@ void measure_giving_way(const HapticsBench& bench, Verdict& v) {
   }
 }
 
-/// Drawn tight and held below any limit, with every twentieth frame lost.
+/// Knot pulled tight and held below all limits, with 5 % of the frames lost: the force must be kept.
 void measure_lossy_feel(const HapticsBench& bench, Verdict& v) {
   constexpr std::size_t kFrom = 4800, kTo = 6800;
   PortCase pull;
@@ -103,7 +103,8 @@ void measure_lossy_feel(const HapticsBench& bench, Verdict& v) {
           "0.9 or more, -1e-6 or more");
 }
 
-/// A wall ten times too stiff, pushed by 0.5 N with nobody holding on: the simplest thing that is unstable without.
+/// A wall ten times too stiff, pushed with 0.5 N while no hand holds the device: the simplest case that is unstable
+/// without the controller.
 void measure_instability(Verdict& v) {
   Wall wall;
   wall.K_N_per_m = 2000.0;
