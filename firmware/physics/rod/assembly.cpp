@@ -5,14 +5,14 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr double kSupportMass_kg = 1e6;  // moves a millionth of a nanometre a substep under 1 N
+constexpr double kSupportMass_kg = 1e6;  // large: under 1 N a support moves 1e-14 m per substep at most
 
 // Tangents e / l, units u and tensions EA (|e| / l - 1) of every segment.
 void measure(const Material& m, const State& state, Forces& f) noexcept {
   const Mesh& mesh = state.mesh;
   const std::size_t count = mesh.s.size() - 1;
   std::size_t j = 0;
-  for (; j + 4 <= count; j += 4) {  // four at a time: roots and divisions are most of it
+  for (; j + 4 <= count; j += 4) {  // four at a time, as square roots and divisions dominate the cost
     const Vec* const x = state.x.data() + j;
     const Vec e0 = x[1] - x[0], e1 = x[2] - x[1], e2 = x[3] - x[2], e3 = x[4] - x[3];
     const Lanes length2 = squares(e0, e1, e2, e3), inverse = 1.0 / root(length2);
@@ -38,7 +38,7 @@ void measure(const Material& m, const State& state, Forces& f) noexcept {
 // kappa b of a vertex [Bergou 2008]: 2 a x c / (1 + a . c) of unit tangents.
 Vec binormal(Vec a, Vec c) noexcept { return 2.0 / (1.0 + dot(a, c)) * cross(a, c); }
 
-// M / (1 + a . c) of the inner vertices: what makes M kappa b / 2 of a x c. Four at a time.
+// M / (1 + a . c) at the inner vertices, four at a time: multiplied by a x c it gives M kappa b / 2.
 void half_twists(Forces& f, std::size_t n) noexcept {
   const Vec* const u = f.unit.data();
   std::size_t i = 1;
@@ -50,8 +50,8 @@ void half_twists(Forces& f, std::size_t n) noexcept {
   for (; i + 1 < n; ++i) f.half_twist[i] = f.twist_moment[i] / (1.0 + dot(u[i - 1], u[i]));
 }
 
-// What every vertex passes to its two segments: the bending moment Q = w (t_i - t_{i-1} - rest), whose difference along
-// a segment is the transverse force, and half the twist term M kappa b, which acts on both segments alike.
+// Moments of every vertex on its two segments: the bending moment Q = w (t_i - t_{i-1} - rest), whose difference along
+// a segment is the transverse force, and half of the twist term M kappa b on each of the two.
 template <bool Twist>
 void vertices(const Material& m, const State& state, Forces& f) noexcept {
   const Mesh& mesh = state.mesh;
@@ -122,7 +122,7 @@ void assemble(const Material& material, const State& state, Vec gravity, double 
     if (i + 1 < n) {
       const double tension = forces.tension[i], l = mesh.inv_rest[i];
       here = tension * forces.unit[i] - l * (forces.moment_in[i + 1] - forces.moment_out[i]);
-      across = dt_s * dt_s * std::max(tension, 0.0) * l;  // |e| taken as l: strains are per cents
+      across = dt_s * dt_s * std::max(tension, 0.0) * l;  // |e| approximated by l: strains are a few per cent
       stiff = dyad(forces.unit[i], axial * l - across);
       put(solver.couple[i], scaled_identity(bend * mesh.ke[i] - across) - stiff);
     }

@@ -1,5 +1,5 @@
 #pragma once
-// The equation of one substep: linearised implicit Euler for the new velocities.
+// The linear system of one substep: linearised implicit Euler for the new velocities.
 
 #include "firmware/physics/rod/band_solver.hpp"
 #include "firmware/physics/rod/state.hpp"
@@ -16,12 +16,11 @@ template <bool Twist>
 void assemble(const Material& material, const State& state, Vec gravity, double dt_s, Forces& forces,
               BandSolver& solver) noexcept;
 
-/// Kinetic energy and what is stored, J, and the largest strain of a segment. Elastic energy is that of the stress:
-/// what nodes that moved along the thread left of strain and bend without any (State::rest_strain, rest_bend) stores
-/// none.
+/// Kinetic and potential energies, J, and the largest strain of a segment. The stress-free parts of strain and bend
+/// (State::rest_strain, rest_bend) store no elastic energy.
 struct Energy {
   double kinetic_J = 0.0, stretch_J = 0.0, bend_J = 0.0, gravity_J = 0.0, max_strain = 0.0;
-  double give_J = 0.0;  ///< of contacts (ContactSet::give_J)
+  double give_J = 0.0;  ///< elastic energy of contacts (ContactSet::give_J)
 };
 [[nodiscard]] Energy energy(const Material& material, const State& state, Vec gravity) noexcept;
 

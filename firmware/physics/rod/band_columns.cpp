@@ -57,7 +57,8 @@ bool BandColumns::want(std::int32_t node) noexcept {
   return true;
 }
 
-// BandSolver::solve() with a unit right-hand side at one node: nothing between the ends and that node is eliminated.
+// BandSolver::solve() for unit right-hand sides at one node. Elimination starts there, as everything further from the
+// core is zero.
 void BandColumns::solve(std::ptrdiff_t node) noexcept {
   const std::ptrdiff_t core = core_, l = core + 1, wide = width();
   Mat* const x = x_.data();

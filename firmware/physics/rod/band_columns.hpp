@@ -1,5 +1,5 @@
 #pragma once
-// Columns of the inverse of a factorised matrix, on a window, one at a time: only for nodes that touch something.
+// Columns of the inverse of a factorised matrix on a window, computed one at a time: only for nodes with contacts.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,14 +13,13 @@ namespace ligature::physics::rod {
 
 class BandSolver;
 
-/// Z = A^-1 of the moment of take(), however often the solver has been factorised since. A column costs what a solution
-/// of the window with three right-hand sides does, and is kept until the next take(). Real time: no allocation after
-/// reserve().
+/// Z = A^-1 at the time of take(), independent of later factorisations. A column costs as much as solving the window
+/// with three right-hand sides, and is kept until the next take(). Real time: no allocation after reserve().
 class BandColumns {
  public:
-  static constexpr int kWidest = 640;              ///< nodes of a window
-  static constexpr std::size_t kBlock = 12;        ///< numbers a node: what its x, y and z answer, four each
-  static constexpr std::size_t kRoom = 192 * 256;  ///< blocks of all columns together
+  static constexpr int kWidest = 640;              ///< most nodes in a window
+  static constexpr std::size_t kBlock = 12;        ///< numbers per node: a 3 x 3 block, each column padded to four
+  static constexpr std::size_t kRoom = 192 * 256;  ///< most blocks, in all columns together
 
   void reserve();
   void forget() noexcept { last_ = -1, first_ = 0; }
@@ -28,15 +27,15 @@ class BandColumns {
   [[nodiscard]] int first() const noexcept { return first_; }
   [[nodiscard]] int width() const noexcept { return last_ - first_ + 1; }
 
-  /// @pre last - first < kWidest, the solver's core in between.
+  /// Copies the factors of the window. @pre last - first < kWidest, the solver's core nodes lie in the window.
   void take(const BandSolver& solver, int first, int last) noexcept;
 
-  /// Makes room for the column of a node, counted from first(). @return false when there is none.
+  /// Requests the column of a node, counted from first(). @return false when there is no room for it.
   [[nodiscard]] bool want(std::int32_t node) noexcept;
   [[nodiscard]] int missing() const noexcept { return static_cast<int>(wanted_.size()) - made_; }
-  /// Makes what was wanted. @return false when the time was over first: what was made stays.
+  /// Computes the requested columns. @return false when the time was over first; columns computed so far are kept.
   bool make_missing(TickTime& time = TickTime::endless()) noexcept;
-  /// Z_{q node} of each node q of the window, counted from first(). @pre made.
+  /// The blocks Z_{q node} for each node q of the window. @param node  counted from first(); its column is computed.
   [[nodiscard]] const float* column(std::int32_t node) const noexcept {
     return columns_.data() + static_cast<std::size_t>(place_[static_cast<std::size_t>(node)]) * stride();
   }
@@ -46,18 +45,18 @@ class BandColumns {
 
  private:
   void solve(std::ptrdiff_t node) noexcept;
-  /// One lane of the solver's steps: `count` nodes away from its core.
+  /// Copies one lane of the solver's steps: the `count` nodes next to the core on that side.
   template <int Lane>
   void take_chain(const BandSolver& solver, std::ptrdiff_t count) noexcept;
 
   int first_ = 0, last_ = -1, made_ = 0;
   std::ptrdiff_t core_ = 0;           // counted from first_
   std::vector<Mat> out_, s_inverse_;  // -H^T towards the node one further out, and S^-1, of BandSolver
-  std::vector<Mat> one_, two_;        // what a node takes of those one and two nearer to the core
-  std::vector<double> skip_;          // couples i and i + 2
+  std::vector<Mat> one_, two_;        // back substitution: factors of the nodes one and two nearer to the core
+  std::vector<double> skip_;          // coupling of i and i + 2
   Mat between_, next_h_;
-  std::vector<Mat> x_;                // the column that is being made
-  std::vector<std::int32_t> place_;   // of each node's column, or -1
+  std::vector<Mat> x_;                // the column that is being computed
+  std::vector<std::int32_t> place_;   // index of each node's column, or -1
   std::vector<std::int32_t> wanted_;  // nodes, in the order of their columns
   Floats columns_;
 };

@@ -6,7 +6,7 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr Mat kNothing{}, kUnit{{kAxisX}, {kAxisY}, {kAxisZ}};  // where a lane has no node
+constexpr Mat kNothing{}, kUnit{{kAxisX}, {kAxisY}, {kAxisZ}};  // blocks for a lane without a node
 
 // A_ip - A_iq H_p.
 [[gnu::always_inline]] inline TwoMats towards(const TwoSyms& e, Two b, const TwoMats& h) noexcept {
@@ -15,12 +15,12 @@ constexpr Mat kNothing{}, kUnit{{kAxisX}, {kAxisY}, {kAxisZ}};  // where a lane 
           {e.xz - b * h.z.x, e.yz - b * h.z.y, e.zz - b * h.z.z}};
 }
 
-// a F^T, with columns that belong to the rows of F.
+// a F^T.
 [[gnu::always_inline]] inline TwoMats times_transposed(const TwoSyms& a, const TwoMats& f) noexcept {
   return {a * Twos{f.x.x, f.y.x, f.z.x}, a * Twos{f.x.y, f.y.y, f.z.y}, a * Twos{f.x.z, f.y.z, f.z.z}};
 }
 
-// F G where that is symmetric.
+// F G, if the product is symmetric.
 [[gnu::always_inline]] inline TwoSyms product(const TwoMats& f, const TwoMats& g) noexcept {
   const Twos r0{f.x.x, f.y.x, f.z.x}, r1{f.x.y, f.y.y, f.z.y}, r2{f.x.z, f.y.z, f.z.z};
   return {dot(r0, g.x), dot(r1, g.x), dot(r2, g.x), dot(r1, g.y), dot(r2, g.y), dot(r2, g.z)};
@@ -33,7 +33,7 @@ constexpr Mat kNothing{}, kUnit{{kAxisX}, {kAxisY}, {kAxisZ}};  // where a lane 
   return {a, 1.0 / (s.xx * a.xx + s.xy * a.xy + s.xz * a.xz)};
 }
 
-// H_i and y_i of the nodes of a step. @return S_i.
+// Computes H_i and y_i of the nodes of a step. @return S_i.
 [[gnu::always_inline]] inline TwoSyms BandSolver::eliminate(const Rows& a, const Step& p, Step& q, const Pivot& pivot,
                                                             TwoMats& h, Twos& y) noexcept {
   q.skip = a.skip;
@@ -84,7 +84,7 @@ void BandSolver::factor(int core) noexcept {
     s.s_inverse = pivot.scale * pivot.adjugate;
     s.z = s.s_inverse * y;
   }
-  // The core nodes: the chain on the other side reaches past each of them to the next.
+  // The core nodes: each is also coupled, by `skip`, to the first node of the chain on the other side.
   Step &one = step[0], &two = step[1];
   TwoSyms s = eliminate(rows(-1), one, two, pivot, core_h_, y);
   const Two across{core > 0 ? skip[static_cast<std::size_t>(core) - 1] : 0.0,
@@ -108,7 +108,7 @@ void BandSolver::solve(int first, int last, const Vec* extra, Vec* out, bool bas
   const std::ptrdiff_t count = std::max(lefts, rights);
   Vec at_core{}, at_next{};
   if (extra != nullptr) {
-    Twos y{}, one{}, two{};  // y of the step before, z of that and of the one before
+    Twos y{}, one{}, two{};  // y of the previous step; z of the previous step and of the one before it
     const auto pull = [&](std::ptrdiff_t i, std::ptrdiff_t j, const TwoMats& h, Two b) {
       const Twos r = both(i >= first ? extra[i] : Vec{}, j <= last ? extra[j] : Vec{});
       y = less_transposed(r - b * two, h, y);
@@ -143,7 +143,7 @@ void BandSolver::solve_outside(int first, int last, Vec* v) const noexcept {
   const std::ptrdiff_t l = core_ + 1, lefts = core_ - first, rights = last - l, n = n_;
   std::ptrdiff_t k = std::min(lefts, rights);
   Twos one = both(v[core_ - k], v[l + k]), two = both(v[l - k], v[core_ + k]);
-  for (; k < std::max(lefts, rights); ++k) {  // one side is still in the window, and known
+  for (; k < std::max(lefts, rights); ++k) {  // one side is still inside the window and already solved
     const std::ptrdiff_t i = core_ - 1 - k, j = l + 1 + k;
     const Twos x = substitute(k, step[k].z, one, two);
     if (k >= lefts && i >= 0) v[i] = lane<0>(x);

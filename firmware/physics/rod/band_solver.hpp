@@ -1,5 +1,6 @@
 #pragma once
-// The linear system of one substep: block pentadiagonal, symmetric positive definite, solved from both ends inwards.
+// Solver for the linear system of one substep: block pentadiagonal, symmetric positive definite, factorised from both
+// ends inwards.
 
 #include <cstddef>
 #include <vector>
@@ -11,15 +12,17 @@ namespace ligature::physics::rod {
 
 /// A v = r for n nodes with 3 x 3 blocks
 ///   A(i, i) = diagonal[i],  A(i, i+1) = couple[i] (symmetric),  A(i, i+2) = skip[i] I.
-/// Block LDL^T from both ends towards two core nodes, the two chains in the two lanes of a register. A window around
-/// the core can be solved again for right-hand sides that differ only inside it, at the cost of the window: what
-/// contacts need. With p, q the two nodes eliminated just before i (i-1, i-2 from the left; i+1, i+2 from the right):
+/// Block LDL^T from both ends towards two core nodes; the two chains are computed in the two lanes of a register. For
+/// right-hand sides that differ only inside a window around the core, which is what contacts need, a new solution in
+/// the window costs O(window). With p, q the nodes eliminated just before i (i-1, i-2 from the left; i+1, i+2 from the
+/// right):
 ///   F_i = A_ip - A_iq H_p,  H_i = S_p^-1 F_i^T,  S_i = A_ii - A_iq^2 S_q^-1 - F_i H_i,
 ///   y_i = r_i - H_i^T y_p - A_iq z_q,  z_i = S_i^-1 y_i.
-/// Each node waits for the one before, so latency counts: S_p^-1 is used as adjugate / determinant, with the division
-/// beside F_i adj(S_p) F_i^T, and y waits for one product a node. S is kept as a triangle, exactly symmetric: a skew
-/// rounding error would double from node to node. Since A_iq is a multiple of the identity a node costs about a hundred
-/// and twenty multiply-adds. Real time: no allocation after resize(); O(max(core, n - core)). @pre A positive definite.
+/// Each node depends on the one before, so latency dominates: S_p^-1 is used as adjugate / determinant, so that the
+/// division runs in parallel with F_i adj(S_p) F_i^T, and y needs one dependent product per node. S is stored as a
+/// triangle, because an unsymmetric rounding error would double from node to node. As A_iq is a multiple of the
+/// identity, a node costs about 120 multiply-adds. Real time: no allocation after resize(); O(max(core, n - core)).
+/// @pre A positive definite.
 class BandSolver {
  public:
   void resize(int n);
@@ -29,33 +32,34 @@ class BandSolver {
   std::vector<double> skip;           ///< n - 2 scalars (sized n)
   std::vector<Vec> rhs;               ///< n right-hand sides
 
-  /// Factorises, and eliminates `rhs`. @param core  core nodes are core and core + 1. @pre 0 <= core < n - 1.
+  /// Factorises A and eliminates `rhs`. The core nodes are core and core + 1. @pre 0 <= core < n - 1.
   void factor(int core) noexcept;
 
-  /// out[first .. last] = (A^-1 rhs)[first .. last], complete to the ends by first = 0, last = n - 1.
-  /// @param extra  added to rhs, zero outside the window: read on [first, last]; may be null.
-  /// @pre first <= core, core + 1 <= last. @param base false: the answer to `extra` alone.
+  /// out[first .. last] = (A^-1 (rhs + extra))[first .. last]; O(last - first).
+  /// @param extra  read on [first, last], zero elsewhere; may be null
+  /// @param base  false: A^-1 extra only
+  /// @pre first <= core, core + 1 <= last
   void solve(int first, int last, const Vec* extra, Vec* out, bool base) noexcept;
 
-  /// After solve() with base: completes `v` outside [first, last].
+  /// After solve() with base = true: computes the rest of `v`, outside [first, last].
   void solve_outside(int first, int last, Vec* v) const noexcept;
 
  private:
   friend class BandColumns;
-  /// What is kept of the nodes that are k + 1 nodes left of the core and right of it.
+  /// Factors of the two nodes that are k + 1 nodes left and right of the core.
   struct Step {
-    TwoMats h;          // towards the nodes one further out
+    TwoMats h;          // H towards the nodes one further out
     TwoSyms s_inverse;  // S^-1
     Twos z;             // eliminated right-hand sides
-    Two skip;           // couples them to the nodes two further in
+    Two skip;           // coupling to the nodes two further in
   };
-  /// Of the nodes of a step, in the system: A_ii, A_ip, A_iq, r_i. Lanes without a node: 1, 0, 0, 0.
+  /// Entries A_ii, A_ip, A_iq, r_i of the system for the nodes of a step; 1, 0, 0, 0 in a lane without a node.
   struct Rows {
     TwoSyms diagonal, couple;
     Two skip;
     Twos rhs;
   };
-  /// S^-1 of the step before, in two factors.
+  /// S^-1 of the previous step, in two factors.
   struct Pivot {
     TwoSyms adjugate{};
     Two scale{};  // 1 / det(S)
@@ -64,7 +68,7 @@ class BandSolver {
   [[nodiscard]] std::ptrdiff_t steps() const noexcept;
   static Pivot pivot_of(const TwoSyms& s) noexcept;
   static TwoSyms eliminate(const Rows& a, const Step& p, Step& q, const Pivot& pivot, TwoMats& h, Twos& y) noexcept;
-  /// The nodes of step k, from what is known of the steps k - 1 and k - 2.
+  /// Back substitution: solution at step k from those at steps k - 1 (one) and k - 2 (two).
   [[nodiscard]] Twos substitute(std::ptrdiff_t k, const Twos& w, const Twos& one, const Twos& two) const noexcept {
     const Step& s = steps_[static_cast<std::size_t>(k)];
     const TwoMats& h = k > 0 ? steps_[static_cast<std::size_t>(k) - 1].h : core_h_;

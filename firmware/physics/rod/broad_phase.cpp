@@ -10,17 +10,19 @@
 namespace ligature::physics::rod {
 namespace {
 
-// Float rounding: a centre errs by 6e-8 of the thread's length, two of a thread a thousand diameters long by 2e-4
-// diameters together; the least that is compared, 2.5 diameters, covers that. A longer one eats into the skin.
+// Factor against float rounding. A centre has an error of 6e-8 of the thread's length; for two centres of a thread 1000
+// diameters long that is 2e-4 diameters, and this factor covers it, as no compared distance is below 2.5 diameters. For
+// a longer thread the error reduces the skin.
 constexpr float kSlack = 1.0001F;
-// Of the gap that a straight thread leaves between its own neighbours. From the first on their spheres will do: it
-// saves measuring, and square and surgeon's knots are pulled and held alike with 0.8 and 0.999. Within the second they
-// are contacts: of segments a diameter long it is more than near_m, so for shorter ones alone; with a third of the gap
-// a square lay 0.09 d in itself in the pull, not 0.05.
+// Shares of the gap between neighbours along a straight thread (see BroadPhase).
+// kStraight: if the spheres alone show at least this share of the gap, the exact distance is not computed. Pulled and
+// held square and surgeon's knots do not differ between 0.8 and 0.999.
+// kBent: below this share neighbours are contacts. It matters only for segments shorter than a diameter, since for
+// others near_m is smaller. With 1/3 a pulled square knot overlapped by 0.09 d instead of 0.05 d.
 constexpr double kStraight = 0.95, kBent = 2.0 / 3.0;
 constexpr std::size_t kLeastTable = 2048;
 
-// A string without bending stiffness has the corners that it is given.
+// Without bending stiffness corners are real, so contact is computed on the chords.
 bool is_stiff(const Mesh& mesh, std::size_t j) noexcept { return mesh.weight[j] > 0.0 || mesh.weight[j + 1] > 0.0; }
 
 }  // namespace
@@ -31,12 +33,12 @@ void BroadPhase::reserve(int nodes, int pairs) {
   blocks_.resize(n / kBlock);
   for (int level = 0; level < kLevels; ++level) tree_[level].resize((n / kBlock >> level) + 1);
   capacity_ = pairs;
-  // Any number of the pairs may have an impulse, and at least half of the places stay empty.
+  // All pairs may have an impulse; at least half of the hash table stays empty.
   places_.assign(std::max(kLeastTable, std::bit_ceil(2 * static_cast<std::size_t>(pairs))), kNobody);
   kept_.reserve(static_cast<std::size_t>(pairs));
 }
 
-/// Where the pair is, or would be put.
+/// Index of the pair in the hash table, or the free index for it.
 std::size_t BroadPhase::place_of(std::int32_t a, std::int32_t b) const noexcept {
   const std::size_t mask = places_.size() - 1;
   std::size_t at = (static_cast<std::size_t>(a) * 2654435761U + static_cast<std::size_t>(b) * 40503U) & mask;
@@ -47,10 +49,10 @@ std::size_t BroadPhase::place_of(std::int32_t a, std::int32_t b) const noexcept 
   return at;
 }
 
-// Spheres of segments and of blocks.
+// Computes the bounding spheres of segments and blocks.
 void BroadPhase::place(const State& state, const Motion& motion, float horizon_s) noexcept {
   const std::size_t segments = state.x.size() - 1, blocks = (segments + kBlock - 1) / kBlock;
-  const Vec origin = state.x[0];  // floats are relative to the thread, so a far-away thread loses nothing
+  const Vec origin = state.x[0];  // coordinates relative to the thread keep float precision anywhere in the world
   for (std::size_t j = 0; j < blocks * kBlock; ++j) {
     if (j >= segments) {  // padding: far from everything
       x_[j] = y_[j] = z_[j] = 1e18F;
@@ -80,7 +82,7 @@ void BroadPhase::place(const State& state, const Motion& motion, float horizon_s
   grow_tree(blocks);
 }
 
-// A sphere around each two of the level below, about the middle between them.
+// Each sphere of a level encloses two of the level below, centred midway between them.
 void BroadPhase::grow_tree(std::size_t blocks) noexcept {
   for (int level = 1; level < kLevels && (blocks >> level) > 0; ++level) {
     const auto& below = tree_[level - 1];
@@ -94,7 +96,7 @@ void BroadPhase::grow_tree(std::size_t blocks) noexcept {
 }
 
 void BroadPhase::keep_impulses(const std::vector<Candidate>& list) noexcept {
-  for (const Kept& k : kept_) places_[k.at] = kNobody;  // the table is large, what it held is not
+  for (const Kept& k : kept_) places_[k.at] = kNobody;  // cheaper than clearing the whole table
   kept_.clear();
   for (const auto& c : list) {
     if (dot(c.impulse, c.impulse) == 0.0) continue;
@@ -103,7 +105,7 @@ void BroadPhase::keep_impulses(const std::vector<Candidate>& list) noexcept {
       places_[at] = static_cast<std::uint32_t>(kept_.size());
       kept_.push_back({c.a, c.b, static_cast<std::uint32_t>(at), c.impulse, c.touch, c.stuck});
     } else {
-      kept_[places_[at]].impulse += c.impulse;  // two, when their segments were merged
+      kept_[places_[at]].impulse += c.impulse;  // two pairs became one when their segments were merged
     }
   }
 }
@@ -139,7 +141,7 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
   const float dx = x_[b] - x_[a], dy = y_[b] - y_[a], dz = z_[b] - z_[a];
   const float halves = half_[a] + half_[b], within = (halves + static_cast<float>(limit)) * kSlack;
   const float apart2 = dx * dx + dy * dy + dz * dz;
-  if (apart2 > within * within) return true;  // allowed its own motion, it stays away
+  if (apart2 > within * within) return true;  // cannot touch at its own relative speed
   spent_ += price::kList;
   Candidate pair;
   pair.a = static_cast<std::int32_t>(a);
@@ -147,7 +149,7 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
   pair.reach_m = reach;
   pair.bulge_m = bulge;
   pair.near_m = std::min(outlook.near_m, kBent * (arc - reach));
-  // Where the thread is straight its neighbours are as far apart as their spheres, which need no measuring.
+  // On a straight thread the spheres of neighbours give their exact gap, so it need not be measured.
   pair.due = along ? static_cast<double>(std::sqrt(apart2) / kSlack - halves) - reach : 0.0;
   if (!along || pair.due < kStraight * (arc - reach)) {
     spent_ += price::kExact;
@@ -172,7 +174,7 @@ unsigned BroadPhase::near(std::size_t a, std::size_t q, float reach) const noexc
     const float apart = half_[base + l] + bulge_[base + l] + own;
     hits |= static_cast<unsigned>(dx * dx + dy * dy + dz * dz <= apart * apart) << l;
   }
-  return base < a + 2 ? hits & ~0U << (a + 2 - base) : hits;  // a pair once, and no neighbours
+  return base < a + 2 ? hits & ~0U << (a + 2 - base) : hits;  // each pair once, without adjacent segments
 }
 
 bool BroadPhase::blocks(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p, std::size_t q,
@@ -185,8 +187,7 @@ bool BroadPhase::blocks(const State& state, const Motion& motion, const Outlook&
   const float x = blocks_[q].x - blocks_[p].x, y = blocks_[q].y - blocks_[p].y, z = blocks_[q].z - blocks_[p].z;
   const float within = blocks_[p].r + blocks_[q].r + reach;
   if (x * x + y * y + z * z > within * within) return true;
-  // The lanes that fill up the last block are far away; a thread that diverges, or is no number, reaches them all the
-  // same.
+  // Excludes the padding of the last block. It lies far away, but a diverging thread, or NaN, could still reach it.
   const std::size_t left = state.x.size() - 1 - q * kBlock;
   const unsigned real = left >= kBlock ? ~0U : (1U << left) - 1U;
   PairGroup group;
@@ -205,7 +206,8 @@ bool BroadPhase::blocks(const State& state, const Motion& motion, const Outlook&
   return true;
 }
 
-// The largest sphere that begins with block q: what it does not meet is passed over at once.
+// At each block q, descends from the largest sphere of the tree that begins with q; if that sphere is out of reach, all
+// its blocks are skipped.
 bool BroadPhase::search(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p,
                         const PairList& list) noexcept {
   const std::size_t count = (state.x.size() - 1 + kBlock - 1) / kBlock;
@@ -226,8 +228,8 @@ bool BroadPhase::search(const State& state, const Motion& motion, const Outlook&
   return true;
 }
 
-// Counted (callgrind, an overhand knot at 1 m/s): 133 a node for spheres and their tree, and 2100 to keep the impulses
-// of its contacts; 5 for each of 2048 places is for those of a jam.
+// Counted with callgrind (overhand knot at 1 m/s): 133 instructions per node for the spheres and their tree, and 2100
+// to keep the impulses of its contacts. The allowance of 5 per entry of the least table covers those of a jam.
 long BroadPhase::least_cost(int nodes) noexcept { return 5L * static_cast<long>(kLeastTable) + 155L * nodes; }
 
 bool BroadPhase::build(const State& state, Motion& motion, const Outlook& outlook, long allowance, Work& work,
@@ -238,7 +240,7 @@ bool BroadPhase::build(const State& state, Motion& motion, const Outlook& outloo
   place(state, motion, static_cast<float>(outlook.horizon_s));
   const std::size_t segments = state.x.size() - 1, count = (segments + kBlock - 1) / kBlock;
   spent_ = least_cost(state.nodes());
-  asked_ = spent_ - Work::kPiece;  // after what is linear in the nodes
+  asked_ = spent_ - Work::kPiece;  // so that the clock is queried first thing, after the O(n) part above
   allowance_ = allowance;
   time_ = &work.time();
   bool good = true;

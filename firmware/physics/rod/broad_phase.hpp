@@ -1,5 +1,5 @@
 #pragma once
-// Which pairs of segments could touch before the list is made again.
+// Broad phase: the list of segment pairs that could touch before the list is rebuilt.
 
 #include <cstdint>
 #include <vector>
@@ -11,73 +11,73 @@
 
 namespace ligature::physics::rod {
 
-/// A pair that is watched, and what is known about it. Kept from substep to substep.
+/// A pair on the list, with its state from substep to substep.
 struct Candidate {
   std::int32_t a = 0;    ///< segment of the thread
   std::int32_t b = 0;    ///< another segment, >= a + 2
-  double reach_m = 0.0;  ///< centre distance at which they touch
-  double near_m = 0.0;   ///< gap within which they are a contact at any speed
-  double due = 0.0;      ///< gap when last measured + Motion::gone then: minus gone now, a lower bound of the gap
-  Touch touch{};         ///< where the impulse acted in the last substep
-  Touch next{};          ///< and does in this one
-  Vec impulse{};         ///< of the last substep, on b's side, N s
-  char stuck = 0;        ///< 1: inside the friction cone then
-  double bulge_m = 0.0;  ///< that the smooth curves (smooth.hpp) may be nearer than their chords; 0: chords touch
+  double reach_m = 0.0;  ///< distance of the centrelines at which they touch
+  double near_m = 0.0;   ///< gap below which they are a contact at any speed
+  double due = 0.0;      ///< gap + Motion::gone() when last measured; due - gone() is a lower bound of the present gap
+  Touch touch{};         ///< points at which the impulse acted in the last substep
+  Touch next{};          ///< points at which it acts in this substep
+  Vec impulse{};         ///< of the last substep, on segment b, N s
+  char stuck = 0;        ///< 1: static friction held in the last substep
+  double bulge_m = 0.0;  ///< by how much the smooth curves can be nearer than the chords; 0: contact is between chords
 };
 
-/// The pairs first .. last - 1 of a list: those between two blocks of segments (motion.hpp). What is due for none of
-/// them is looked at once, not pair by pair.
+/// The pairs first .. last - 1 of a list: those between two blocks of segments (motion.hpp). One test of the group can
+/// show that none of its pairs must be measured.
 struct PairGroup {
   std::int32_t first = 0, last = 0;
   std::int32_t p = 0, q = 0;  ///< the blocks
-  double due = kAtOnce;       ///< least of their dues minus near_m: minus Motion::gone_of_blocks, a lower bound
+  double due = kAtOnce;       ///< smallest due - near_m of the pairs; minus Motion::gone_of_blocks(), a lower bound
 
-  static constexpr double kAtOnce = -1e300;  ///< when one of them touched
+  static constexpr double kAtOnce = -1e300;  ///< value of `due` when a pair touched: always test the pairs
 };
 
-/// Where a list is made: pairs in the order of their groups.
+/// The list that is built: pairs in the order of their groups.
 struct PairList {
   std::vector<Candidate>& pairs;
   std::vector<PairGroup>& groups;
 };
 
-/// How far ahead a list looks: pairs within reach + skin + horizon x their rate of approach (motion.hpp) are on it.
+/// Margins of a list: it holds all pairs nearer than reach + skin + horizon x Motion::rate().
 struct Outlook {
   double diameter_m = 0.0, skin_m = 0.0, near_m = 0.0, horizon_s = 0.0;
 };
 
-/// Blocks of eight neighbouring segments first, in a tree of bounding spheres, then the segments' spheres, then the
-/// exact distance of what is left, so the cost grows like the thread's length. Each pair is allowed its own motion: one
-/// fast end does not fill the list, nor does a thread that is fast as a whole.
-/// Pairs nearer than 0.6 diameters along the thread are left out: they cannot pass each other without folding it;
-/// pairs an arc a < pi d / 2 apart touch at d sin(a / d), as near as a bent tube of constant thickness allows, and are
-/// contacts when they have come nearer than in a straight thread: within 2/3 of what that leaves, if that is less than
-/// near_m.
+/// Tests blocks of eight neighbouring segments in a tree of bounding spheres, then the spheres of segments, then exact
+/// distances of the rest, so the cost grows in proportion to the thread's length. The margin depends on the relative
+/// speed of each pair, so neither one fast end nor a fast motion of the whole thread makes the list long.
+/// Pairs less than 0.6 diameters apart along the thread are left out: they can cross only if the thread folds. Pairs an
+/// arc a < pi d / 2 apart touch at the distance d sin(a / d), the smallest that a bent tube of constant thickness
+/// allows. In a straight thread their gap is a - d sin(a / d); they become contacts below 2/3 of that, or below near_m
+/// if that is smaller.
 class BroadPhase {
  public:
-  static constexpr double kLeastArc = 0.6;     ///< of a diameter, along the thread
-  static constexpr double kLeastReach = 0.56;  ///< sin(kLeastArc), rounded down: no pair on a list touches nearer
+  static constexpr double kLeastArc = 0.6;     ///< smallest distance along the thread of a listed pair, in diameters
+  static constexpr double kLeastReach = 0.56;  ///< sin(kLeastArc), rounded down: smallest reach_m, in diameters
 
   void reserve(int nodes, int pairs);
 
-  /// Impulses of the list, for the lists to come; all of them. @pre no more pairs than there is room for
+  /// Stores the impulses of all pairs, so that build() can give them to the new list. @pre not more pairs than reserved
   void keep_impulses(const std::vector<Candidate>& list) noexcept;
 
-  /// Rebuilds `list`, every pair measured and counted from motion.restart() on; kept impulses are given to their pairs.
-  /// @param allowance  what it may spend. @return false, and the list is of no use, when that, the room for pairs or
-  /// the tick's time did not do.
+  /// Rebuilds `list`, with the gap of every pair measured and the kept impulses restored. Calls motion.restart().
+  /// @param allowance  most work it may use. @return false, and the list is invalid, when allowance, room for pairs or
+  /// the tick's time was too small.
   bool build(const State& state, Motion& motion, const Outlook& outlook, long allowance, Work& work,
              const PairList& list) noexcept;
 
-  /// After a build that failed: the kept impulses' pairs and nothing else, so that keep_impulses() finds them again.
+  /// After a failed build(): fills the list with the pairs of the kept impulses only, for the next keep_impulses().
   void put_back(const PairList& list) const noexcept;
 
-  /// What a build costs before it has found anything.
+  /// Fixed cost of a build(), in instructions.
   [[nodiscard]] static long least_cost(int nodes) noexcept;
 
  private:
   static constexpr std::size_t kBlock = Motion::kBlock;
-  static constexpr int kLevels = 12;  ///< of the tree: 2^11 blocks in its largest sphere, 16384 segments
+  static constexpr int kLevels = 12;  ///< of the tree; the largest sphere holds 2^11 blocks, 16384 segments
   struct Ball {
     float x, y, z, r;
   };
@@ -85,19 +85,19 @@ class BroadPhase {
   [[nodiscard]] std::size_t place_of(std::int32_t a, std::int32_t b) const noexcept;
   void grow_tree(std::size_t blocks) noexcept;
   void give_back(Candidate& pair) const noexcept;
-  /// Adds the pair if it is near enough. @return false when there was no room.
+  /// Adds the pair to the list if it is near enough. @return false when there was no room.
   bool consider(const State& state, const Motion& motion, const Outlook& outlook, std::size_t a, std::size_t b,
                 std::vector<Candidate>& list) noexcept;
-  /// Bits of those segments of block q whose spheres come within `reach` of segment a's.
+  /// Bit mask of the segments of block q whose spheres are within `reach` of segment a's sphere.
   [[nodiscard]] unsigned near(std::size_t a, std::size_t q, float reach) const noexcept;
-  /// All pairs of a segment of block p and one of block q. @return false when out of room or work.
+  /// Considers all pairs of a segment of block p and one of block q. @return false when out of room or work.
   bool blocks(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p, std::size_t q,
               const PairList& list) noexcept;
-  /// The same for block p and all from itself on.
+  /// The same for block p and all blocks q >= p.
   bool search(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p,
               const PairList& list) noexcept;
 
-  /// Does the tick's time do for more? Asked once in Work::kPiece.
+  /// Is there time left? Queries the clock once per Work::kPiece instructions.
   [[nodiscard]] bool has_time() noexcept {
     if (spent_ - asked_ < Work::kPiece) return true;
     asked_ = spent_;
@@ -107,22 +107,22 @@ class BroadPhase {
   static constexpr std::uint32_t kNobody = 0xFFFFFFFFU;
   struct Kept {
     std::int32_t a = 0, b = 0;
-    std::uint32_t at = 0;  // its place
+    std::uint32_t at = 0;  // index in places_
     Vec impulse{};
     Touch touch{};
     char stuck = 0;
   };
   int capacity_ = 0;
-  long spent_ = 0, allowance_ = 0;  // of this build
-  long asked_ = 0;                  // what was spent when the time was last asked for
+  long spent_ = 0, allowance_ = 0;  // work of this build, and its limit
+  long asked_ = 0;                  // spent_ at the last clock query
   TickTime* time_ = nullptr;
-  std::vector<float> x_, y_, z_;       // middles of segments
-  std::vector<float> half_;            // half their lengths
-  std::vector<float> bulge_;           // of their smooth curves
-  std::vector<Ball> blocks_;           // around the segments of a block, as they are
-  std::vector<Ball> tree_[kLevels];    // around 2^level blocks, swollen by what each may move
-  std::vector<Kept> kept_;             // impulses
-  std::vector<std::uint32_t> places_;  // open addressing, a power of two: which of kept_
+  std::vector<float> x_, y_, z_;       // midpoints of segments
+  std::vector<float> half_;            // half lengths of segments
+  std::vector<float> bulge_;           // largest distance of the smooth curve from its chord
+  std::vector<Ball> blocks_;           // bounding spheres of blocks, at the present positions
+  std::vector<Ball> tree_[kLevels];    // spheres of 2^level blocks, enlarged by horizon x speed
+  std::vector<Kept> kept_;             // stored impulses
+  std::vector<std::uint32_t> places_;  // hash table, open addressing, size a power of two: indices into kept_
 };
 
 }  // namespace ligature::physics::rod

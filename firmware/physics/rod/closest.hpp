@@ -5,8 +5,8 @@
 
 namespace ligature::physics::rod {
 
-/// Points a0 + s (a1 - a0) and b0 + t (b1 - b0) at the smallest distance; between = second - first. Of one pair, or of
-/// four (Vecs, Lanes).
+/// Points a0 + s (a1 - a0) and b0 + t (b1 - b0) at the smallest distance; between = second - first. For one pair (Vec,
+/// double) or four at once (Vecs, Lanes).
 template <class Vector, class Number>
 struct ClosestOf {
   Number s{}, t{}, distance2{};
@@ -15,8 +15,8 @@ struct ClosestOf {
 using Closest = ClosestOf<Vec, double>;
 using FourClosest = ClosestOf<Vecs, Lanes>;
 
-/// Of a0 + s da and a0 + r + t db. Exact for every case, parallel and degenerate included (in parallel overlap one of
-/// the minima). About 60 operations.
+/// Closest points of a0 + s da and a0 + r + t db, 0 <= s, t <= 1. Exact in all cases, parallel and degenerate ones
+/// included (of overlapping parallel segments, one of the minima). About 60 operations.
 template <class Vector, class Number>
 [[nodiscard]] inline ClosestOf<Vector, Number> closest_along(const Vector& da, const Vector& db,
                                                              const Vector& r) noexcept {

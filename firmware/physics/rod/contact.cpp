@@ -36,7 +36,7 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
 
 namespace {
 
-constexpr double kStill_m_per_s = 1e-5;  // slip below which a contact rests: a thirtieth of a diameter a second
+constexpr double kStill_m_per_s = 1e-5;  // slip below which a contact counts as sticking: 1/30 diameter per second
 
 }  // namespace
 
@@ -56,7 +56,7 @@ ContactSet& ContactSet::operator=(const ContactSet& other) {
   if (this == &other) return *this;
   begin();
   contacts_ = other.contacts_;
-  for (auto& c : contacts_) c.keep = nullptr, c.pair = nullptr, c.stuck = nullptr;  // into the other's lists
+  for (auto& c : contacts_) c.keep = nullptr, c.pair = nullptr, c.stuck = nullptr;  // they point into other's lists
   rows_ = other.rows_;
   pairs.reserve(other.pairs.capacity());
   pairs = other.pairs;
@@ -69,7 +69,7 @@ ContactSet& ContactSet::operator=(const ContactSet& other) {
   return *this;
 }
 
-// sum of 1/2 p . (u + u_free) - target p_n + 1/2 soft p_n^2: what the impulses of the frictionless problem minimise.
+// sum of 1/2 p . (u + u_free) - target p_n + 1/2 soft p_n^2: the objective that frictionless impulses minimise.
 template <bool Turns>
 double ContactSet::merit(const Vec* v) const noexcept {
   double sum = 0.0;
@@ -96,7 +96,7 @@ double ContactSet::push(BandSolver& solver, Vec* v) noexcept {
   return largest2[0] + largest2[1] + largest2[2];
 }
 
-// B = C^-1 J^T of a row, eight nodes at a time, and its own number J B.
+// Column B = C^-1 J^T of a row, eight nodes at a time, and its diagonal entry J B.
 void ContactSet::make_column(Contact& c, const ContactMetric& metric, float* column) const noexcept {
   const auto offset = static_cast<std::size_t>(window_first_ - metric.first());
   const float* r[Contact::kMostNodes];
@@ -135,7 +135,7 @@ void ContactSet::sweep(const Vec* v, TickTime& time) noexcept {
   swept_.load(v + window_first_, window_last_ - window_first_ + 1);
   const float* column = columns_.data();
   for (int index = 0; index < rows_ && pieces.allow(115 + static_cast<long>(stride_) * 3 / 2);
-       ++index, column += stride_) {  // a part of a sweep is one, too
+       ++index, column += stride_) {  // a sweep cut off by the clock is still a valid sweep of fewer rows
     Contact& c = contacts_[static_cast<std::size_t>(index)];
     Vec u = swept_.mix(c.place, c.weight, c.count) - c.surface;
     if constexpr (Turns) u += turning_.slip(index);
@@ -162,10 +162,11 @@ void ContactSet::sweep(const Vec* v, TickTime& time) noexcept {
   }
 }
 
-// The wanted normal velocity, the old impulse turned to today's normal and cone; velocities without and with those.
+// Target normal velocities; warm start with the old impulses, limited to the new cones; velocities without and with
+// these impulses.
 template <bool Turns>
 void ContactSet::start(BandSolver& solver, const Numerics& numerics, double dt_s, Vec* v) noexcept {
-  const double longer = per_second_ > 0.0 ? dt_s * per_second_ : 1.0;  // than the last substep: forces stay
+  const double longer = per_second_ > 0.0 ? dt_s * per_second_ : 1.0;  // ratio of time steps, to keep the same forces
   per_second_ = 1.0 / dt_s;
   if constexpr (Turns) turning_.prepare(contacts_.data(), rows_, segments_, radius_m_, *spin_);
   solver.solve(window_first_, window_last_, nullptr, v, true);
@@ -201,7 +202,8 @@ double ContactSet::plain_pass(BandSolver& solver, Vec* v, TickTime& time) noexce
   return push(solver, v);
 }
 
-// The mixture, brought back into the cones, counts only if it is better than the plain pass.
+// Anderson mixing: the mixed impulses, limited to their cones, are kept only if their merit is no worse than that of
+// the plain pass.
 template <bool Turns>
 void ContactSet::mix(BandSolver& solver, Vec* v) noexcept {
   if (!mixing_.step(p_.data(), residual_.data(), loaded_.size())) return;
@@ -238,7 +240,7 @@ bool ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const E
     ++report.passes;
     report.work += price::pass(rows_, static_cast<long>(loaded_.size()), nodes) + turning;
     if (largest2 < settled2 && !effort.time.is_over()) return true;
-    // The next pass can at worst load every row.
+    // In the worst case every row carries an impulse in the next pass.
     report.change_m_per_s = std::sqrt(largest2);
     report.cut_short = report.passes >= effort.passes ||
                        report.work + price::pass(rows_, rows_, nodes) + turning > effort.work || !effort.time.allows();
@@ -248,13 +250,14 @@ bool ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const E
 }
 
 double ContactSet::unsettled_fraction(const Vec* v, double dt_s) const noexcept {
-  constexpr double kCreep = 1e-4;  // of the distance of touch; at 2e-3 a jammed square knot lets half its tension go
+  // Allowed deepening per substep, in units of reach_m; at 2e-3 a jammed square knot lost half of its tension.
+  constexpr double kCreep = 1e-4;
   constexpr double kGive = 0.3;
   double share = 1.0;
   for (int k = 0; k < rows_; ++k) {
     const Contact& c = contacts_[static_cast<std::size_t>(k)];
     const double closing_m = -dt_s * dot(velocity<false>(k, v), c.n);
-    const double spare_m = c.is_pair() ? 0.0 : kGive * c.reach_m;  // what lies on a desk does not jam
+    const double spare_m = c.is_pair() ? 0.0 : kGive * c.reach_m;  // contacts with floor and bodies do not jam
     const double room_m = std::max(c.gap_m + spare_m, kCreep * c.reach_m);
     if (closing_m > room_m) share = std::min(share, room_m / closing_m);
   }
@@ -277,7 +280,7 @@ void ContactSet::store() noexcept {
   }
 }
 
-// What slides is on the cone, and moves: one that is on it while its neighbours hold it does not.
+// A contact slides if its impulse is on the cone and it slips; on the cone without slip it still sticks.
 template <bool Turns>
 void ContactSet::note_stuck(const Vec* v) noexcept {
   constexpr double kInside = 1.0 - 1e-9;

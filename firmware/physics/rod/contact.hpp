@@ -1,5 +1,5 @@
 #pragma once
-// Contacts of the thread with itself and with fixed bodies, solved together with the rod in every substep.
+// Contacts of the thread with itself and with bodies, solved together with the rod's equations in every substep.
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@
 
 namespace ligature::physics::rod {
 
-/// A rigid capsule in the world: a peg, or a gripper's jaw. An infinite plane is a `floor_m`.
+/// A rigid capsule in the world: a peg or a gripper. (The floor plane is Rod::floor_m.)
 struct Body {
   Vec p0{}, p1{};  ///< axis, m
   double radius_m = 0.0;
@@ -26,181 +26,187 @@ struct Body {
   double friction = 0.3;
 };
 
-/// One touching pair. The relative point velocity is u = sum_k w_k v[node_k] - surface; the impulse p acts on node k as
-/// w_k p. Of the thread with itself: first the nodes of the two segments, then the others that the points of the smooth
-/// curves depend on (smooth.hpp).
+/// One contact. The relative velocity of its two points is u = sum_k w_k v[node_k] - surface; the impulse p acts on
+/// node k as w_k p. In a contact of the thread with itself, nodes 0 to 3 are the ends of the two segments; any further
+/// nodes are those on which the points of the smooth curves depend (smooth.hpp).
 struct Contact {
   static constexpr int kMostNodes = ContactNewton::kMostNodes;
   std::int32_t node[kMostNodes] = {};
   double w[kMostNodes] = {};
-  Vec n{};                  ///< unit normal, direction of a separating u
+  Vec n{};                  ///< unit normal: u . n > 0 separates
   Vec surface{};            ///< velocity of the body's surface, m/s
   Vec p{};                  ///< impulse, N s; p . n >= 0
-  Vec u_free{};             ///< u without any impulse
+  Vec u_free{};             ///< u if no contact had an impulse
   double gap_m = 0.0;       ///< surface distance, negative: overlap
-  double target = 0.0;      ///< least normal velocity, m/s
+  double target = 0.0;      ///< smallest admissible normal velocity, m/s
   double inv_w = 0.0;       ///< 1 / (J C^-1 J^T)
-  double soft = 0.0;        ///< give of the normal: u_n + soft p_n >= target, 1/kg
+  double soft = 0.0;        ///< normal compliance: u_n + soft p_n >= target, 1/kg
   double inv_soft_w = 0.0;  ///< 1 / (J C^-1 J^T + soft)
   double mu = 0.0;
-  std::int32_t first = 0, last = 0;     ///< lowest and highest of the nodes
+  std::int32_t first = 0, last = 0;     ///< lowest and highest node index
   std::int32_t count = 4;               ///< nodes in use
-  double reach_m = 0.0;                 ///< centre distance at which the pair touches
-  double distance_m = 0.0;              ///< of the chords, for the guard
+  double reach_m = 0.0;                 ///< distance of the centrelines at which the pair touches
+  double distance_m = 0.0;              ///< distance of the chords, for the guard
   bool loaded = false;                  ///< has carried an impulse in this substep
-  Vec* keep = nullptr;                  ///< where the impulse is kept between substeps
-  Candidate* pair = nullptr;            ///< of the thread with itself
-  char* stuck = nullptr;                ///< where it is kept whether friction held
-  std::int32_t place[kMostNodes] = {};  ///< of the nodes in SweptVelocities
-  float weight[kMostNodes] = {};        ///< w for it
+  Vec* keep = nullptr;                  ///< storage of the impulse between substeps
+  Candidate* pair = nullptr;            ///< its pair in the list, if the thread touches itself
+  char* stuck = nullptr;                ///< storage between substeps: did static friction hold?
+  std::int32_t place[kMostNodes] = {};  ///< indices of the nodes in SweptVelocities
+  float weight[kMostNodes] = {};        ///< w in single precision
 
   [[nodiscard]] bool is_pair() const noexcept { return count >= 4; }
 };
 
-/// What happened in a substep or, summed by the caller, in a tick.
+/// Result of the contact solver in one substep.
 struct ContactReport {
   int passes = 0;
-  long work = 0;                ///< of the passes
-  bool cut_short = false;       ///< they ended before the contacts had settled
-  double change_m_per_s = 0.0;  ///< of a velocity in the last pass, or more
-  double min_gap_m = 1e9;       ///< of thread-thread contacts before the substep
-  int rows_left_out = 0;        ///< contacts that were only guarded: no room, or no work left for them
+  long work = 0;                ///< of the passes, in instructions
+  bool cut_short = false;       ///< the solver stopped before it converged
+  double change_m_per_s = 0.0;  ///< upper bound of the velocity change in the last pass (Newton: of the error)
+  double min_gap_m = 1e9;       ///< smallest thread-thread gap before the substep
+  int rows_left_out = 0;        ///< contacts not solved for lack of room or work, only guarded
 };
 
-/// How hard the contacts of a substep are worked on.
+/// Limits and tolerances of the contact solver in one substep.
 struct Effort {
   TickTime& time;
-  int passes = 0;                ///< at most
-  long work = 0;                 ///< for all of them, in instructions (work.hpp); the first pass is always done
-  double settled_m_per_s = 0.0;  ///< a pass that changes no velocity by more is the last
-  double enough_m_per_s = 0.0;   ///< what Newton's method may leave over beyond its fair share of the work
-  long fair = 0;                 ///< that share
+  int passes = 0;                ///< most passes
+  long work = 0;                 ///< most work for all passes, in instructions (work.hpp); one pass is always done
+  double settled_m_per_s = 0.0;  ///< tolerance: a pass that changes no velocity by more is the last
+  double enough_m_per_s = 0.0;   ///< looser tolerance of Newton's method, once it has used more work than `fair`
+  long fair = 0;                 ///< work per substep if the rest of the tick's work is shared out equally
 };
 
-/// Of settle_directly().
+/// Result of settle_directly().
 enum class Outcome : std::uint8_t {
-  kSettled,
-  kLater,     ///< the work ran out: the same substep, done again, goes on from there
-  kUnsolved,  ///< too much for Newton's method, or it found no answer: sweeps are for it
+  kSettled,   ///< converged
+  kLater,     ///< work or time ran out: repeating the substep continues from the impulses found so far
+  kUnsolved,  ///< system too large for Newton's method, or no convergence: use the sweep solver
 };
 
 inline constexpr int kMaxContacts = 768;  ///< rows that can be solved at once
 
-/// Contacts of one rod. Collect, choose rows, then settle; everything is preallocated, and every step says what it
-/// spends (work.hpp). What is collected but not chosen feels no impulse, but the guard holds it.
+/// Contacts of one rod: collect them, choose which become rows of the system, then solve. All memory is preallocated,
+/// and every step charges its work to the budget (work.hpp). A contact that is collected but not chosen gets no
+/// impulse; only the guard keeps it from passing through.
 ///
-/// A contact wants u_n >= -gap / dt when apart (nothing before they meet), u_n >= min(-beta gap / dt, limit) when
-/// overlapping, and u_t = 0 with |p_t| <= mu p_n: true static friction, no slip tolerance. With a static coefficient of
-/// its own (let_stick()), mu is that of sticking as long as the contact held in the last substep.
+/// Conditions of a contact: u_n >= -gap / dt while apart, u_n >= min(-beta gap / dt, limit) while overlapping, and
+/// u_t = 0 unless |p_t| = mu p_n. Friction is exact Coulomb friction, without a slip tolerance. With a separate static
+/// coefficient (let_stick()), mu is the static one as long as the contact did not slide in the last substep.
 ///
-/// settle(): p and v start from the last substep's impulses. Each pass runs one projected Gauss-Seidel sweep in the
-/// metric C (contact_metric.hpp), then pushes the change of p through the true matrix A; passes are mixed (mixing.hpp),
-/// because C knows nothing of stretch and alone would need hundreds along the thread's axis. It ends when no velocity
-/// changes by more than `settled_m_per_s`, or after `passes`. Each pass costs the contact window alone.
+/// settle() starts from the impulses of the last substep. Each pass runs one projected Gauss-Seidel sweep with the
+/// simplified matrix C (contact_metric.hpp), then applies the change of p with the full matrix A. C lacks the stretch
+/// terms, so along the thread's axis this alone would need hundreds of passes; Anderson mixing speeds it up
+/// (mixing.hpp). It ends when a pass changes no velocity by more than `settled_m_per_s`, or after `passes`. A pass
+/// costs in proportion to rows x nodes of the contact window, not of the whole thread.
 class ContactSet {
  public:
   ContactSet() = default;
   ContactSet(const ContactSet& other) = delete;  // contacts point into the lists
-  /// Impulses, pairs and the contacts of the last substep, which remeshing asks for; what is known of the matrix is not
-  /// copied, nor where a contact's impulse is kept. @pre both reserved alike, or other is larger.
+  /// Copies impulses, pairs and the contacts of the last substep (which remeshing reads), but neither the matrices nor
+  /// the contacts' pointers into the lists. @pre both were reserved with equal sizes, or other with larger ones.
   ContactSet& operator=(const ContactSet& other);
   ContactSet(ContactSet&&) noexcept = default;
   ContactSet& operator=(ContactSet&&) noexcept = default;
   ~ContactSet() = default;
 
   void reserve(int nodes, int bodies, int window);
-  /// For settle<.., true>.
+  /// Needed before settle<.., true>.
   void reserve_turning() { turning_.reserve(kMaxContacts); }
 
-  /// Watched thread-thread pairs; rebuilt by BroadPhase.
+  /// Thread-thread pairs that may touch; rebuilt by BroadPhase.
   std::vector<Candidate> pairs;
   std::vector<PairGroup> groups;
 
   void begin() noexcept { contacts_.clear(), watched_.clear(), rows_ = 0, overflow_ = false; }
 
-  /// Measures pairs that may have come within their near_m + 2 dt x their rate (motion.hpp); those within near_m + 2 dt
-  /// x relative speed become contacts. @return false when there is not work enough left to measure them all.
+  /// Computes the distance of every pair whose gap may have fallen below near_m + 2 dt x its rate (motion.hpp). Those
+  /// with a gap below near_m + 2 dt x relative speed become contacts. @return false when the work or time left is too
+  /// small for all of them.
   [[nodiscard]] bool collect_thread(const State& state, const Motion& motion, double dt_s, double mu, Work& work,
                                     ContactReport& report) noexcept;
-  /// Every node against the plane z = floor_m.
+  /// Contacts of nodes with the plane z = floor_m that are nearer than look_m.
   void collect_floor(const State& state, double floor_m, double radius_m, double look_m, double mu,
                      Work& work) noexcept;
-  /// Every segment against a capsule; not even looked at while the thread, travel_m on its way in this tick, cannot
-  /// have reached it.
+  /// Contacts of segments with a capsule that are nearer than look_m. Skips the capsule while it is out of reach even
+  /// for a node that has moved travel_m in this tick.
   void collect_body(const State& state, const Body& body, int index, double radius_m, double look_m, double travel_m,
                     Work& work) noexcept;
-  /// Bodies may have moved: look at each again.
+  /// Call when bodies may have moved: the next collect_body() of each measures again.
   void forget_bodies() noexcept { std::fill(body_due_.begin(), body_due_.end(), -1.0); }
 
-  /// Does the work left do for the floor and all bodies, wherever the thread is?
+  /// Is the work left enough to check floor and all bodies, in the worst case?
   [[nodiscard]] static bool afford_world(int nodes, int bodies, const Work& work) noexcept;
 
-  /// Nodes of everything collected; last < first when nothing was.
+  /// Range of the nodes of all collected contacts; last < first when there are none.
   struct Span {
     int first, last;
   };
   [[nodiscard]] Span span() const noexcept;
-  /// Does the thread touch nothing but itself?
+  /// Are all contacts those of the thread with itself?
   [[nodiscard]] bool only_pairs() const noexcept {
     return std::all_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.is_pair(); });
   }
 
-  /// Decides which contacts are solved: the `most` deepest, on a window of at most `widest` nodes. @pre nodes >= 2.
+  /// Chooses the contacts to be solved: at most `most`, loaded and deep ones first, within a window of at most `widest`
+  /// nodes. @pre nodes >= 2.
   void choose_rows(int most, int widest, int nodes, ContactReport& report) noexcept;
 
-  /// Contacts that held in the last substep, and new ones that begin at rest, may be held by mu_static.
+  /// Gives mu_static to contacts that did not slide in the last substep, and to new ones whose slip at `v` is zero.
   void let_stick(double mu_static, const Vec* v) noexcept;
 
   [[nodiscard]] int rows() const noexcept { return rows_; }  ///< 0: nothing to settle
   [[nodiscard]] int window_first() const noexcept { return window_first_; }
   [[nodiscard]] int window_last() const noexcept { return window_last_; }
 
-  /// First of all: what rows want, and the window's velocities v with the impulses of the last substep. @pre rows() >
-  /// 0, the solver's core lies in the window. Turns: segments turn too; turn_with() was called.
+  /// First step of the solution: the targets of all rows, and the window's velocities v with the impulses of the last
+  /// substep. Turns: friction also rolls the segments; turn_with() must have been called.
+  /// @pre rows() > 0, the solver's core lies in the window.
   template <bool Turns>
   void start(BandSolver& solver, const Numerics& numerics, double dt_s, Vec* v) noexcept;
 
-  /// Solves for v by Newton's method (contact_newton.hpp). Not settled: impulses and v as after start().
+  /// Solves for v by Newton's method (contact_newton.hpp). If it does not converge, impulses and v are left as after
+  /// start().
   template <bool Friction>
   Outcome settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept;
-  /// What settle_directly() knows of the matrix is of another mesh or time step.
+  /// Call when mesh or time step have changed: settle_directly() then computes the inverse matrix again.
   void forget_matrix() noexcept { newton_.forget(); }
 
-  /// Solves for the window's velocities v with all rows. @pre rows() > 0, the solver's core lies in the window, the
-  /// metric covers it. Turns: segments turn too; turn_with() was called. @return false, and nothing is solved, when the
-  /// time was over before the first pass.
+  /// Solves for the window's velocities v by sweeps. Turns: as in start().
+  /// @pre rows() > 0, the solver's core lies in the window, the metric covers it.
+  /// @return false, and nothing is solved, when the time was over before the first pass.
   template <bool Friction, bool Turns>
   [[nodiscard]] bool settle(BandSolver& solver, const ContactMetric& metric, const Effort& effort, Vec* v,
-              ContactReport& report) noexcept;
+                            ContactReport& report) noexcept;
   void turn_with(Spin& spin, int segments, double radius_m) noexcept {
     spin_ = &spin, segments_ = segments, radius_m_ = radius_m;
   }
 
-  /// After nodes moved along the thread: pairs with an impulse find their segments again by material coordinate.
+  /// After remeshing: gives pairs with an impulse the segments that now contain their material coordinates.
   void relabel(const std::vector<double>& s) noexcept;
 
-  /// What the give of contacts stores, 1/2 k overlap^2 each, J, where the velocities v lead in step_s.
+  /// Elastic energy of the contacts, sum of 1/2 k overlap^2, J, with overlaps extrapolated by step_s at velocities v.
   [[nodiscard]] double give_J(double k_N_per_m, const Vec* v, double step_s) const noexcept;
 
-  /// Turns impulses of the last substep into forces, 1/s.
+  /// Factor from impulses of the last substep to forces, 1/s.
   [[nodiscard]] double per_second() const noexcept { return per_second_; }
 
-  /// Keeps the impulses for the next substep.
+  /// Stores the impulses for the next substep.
   void store() noexcept;
-  /// Which contacts hold at the velocities solved for, for let_stick().
+  /// Stores which contacts stick at the velocities v, for let_stick() in the next substep.
   template <bool Turns>
   void note_stuck(const Vec* v) noexcept;
 
-  /// Largest alpha <= 1 with which no measured pair moves by more than 0.9 of its centre distance; 0 when there was no
-  /// room to note all that is near.
+  /// The guard: largest alpha <= 1 such that a step of alpha dt_s moves no measured pair by more than 0.9 of its
+  /// distance; 0 when not all near pairs could be stored.
   [[nodiscard]] double safe_fraction(const Motion& motion, const State& state, double dt_s) const noexcept;
 
-  /// After a substep whose contacts did not settle: largest alpha <= 1 with which no row begins to overlap, or overlaps
-  /// by hardly more than it did. Else a jam would burst within a few substeps; so it waits.
+  /// The brake, for velocities that did not converge: largest alpha <= 1 such that alpha v makes no row overlap, or
+  /// deepens an overlap only slightly. Without it the overlaps of a jam would grow until strands pass through.
   [[nodiscard]] double unsettled_fraction(const Vec* v, double dt_s) const noexcept;
 
-  /// The same for every pair on the list, by the least distance it can have: what it had when last measured, less what
-  /// it may have gone since.
+  /// As safe_fraction(), for every pair on the list, with a lower bound of its distance: the last measured distance
+  /// minus the largest possible motion since.
   [[nodiscard]] double safe_fraction_of_pairs(const Motion& motion, const State& state, double dt_s) const noexcept;
 
   [[nodiscard]] const std::vector<Contact>& contacts() const noexcept { return contacts_; }
@@ -212,23 +218,23 @@ class ContactSet {
  private:
   [[nodiscard]] Contact* add() noexcept;
   [[nodiscard]] bool find_due(const Motion& motion, double dt_s, Work& work) noexcept;
-  /// What is known of a pair that was measured.
+  /// Closest points of a pair.
   struct Measured {
-    Vec between;                       ///< from the closest point of the first to that of the second, m
-    double s, t, distance_m, chord_m;  ///< where; how far apart; how far the chords are
-    bool smooth;                       ///< between smooth curves
+    Vec between;                       ///< from the point on the first segment to that on the second, m
+    double s, t, distance_m, chord_m;  ///< parameters of the points; their distance; distance of the chords
+    bool smooth;                       ///< points of the smooth curves, not of the chords
   };
   template <bool Smooth>
   void measure(const std::int32_t* places, const State& state) noexcept;
   void bend(const State& state) noexcept;
   void bend_row(Contact& c, int at, double s, const State& state) const noexcept;
-  /// @return true when it became a contact.
+  /// Makes a measured pair a contact if it is near enough. @return true when it touches.
   bool take(Candidate& pair, const Measured& measured, const State& state, const Motion& motion, double dt_s, double mu,
             ContactReport& report) noexcept;
   [[nodiscard]] bool make_columns(const ContactMetric& metric, TickTime& time) noexcept;
   void make_column(Contact& c, const ContactMetric& metric, float* column) const noexcept;
   [[nodiscard]] Contact& loaded(std::size_t k) noexcept { return contacts_[static_cast<std::size_t>(loaded_[k])]; }
-  /// @return the square of the largest step of a velocity, or more.
+  /// One pass without mixing. @return an upper bound of the largest squared velocity change.
   template <bool Friction, bool Turns>
   double plain_pass(BandSolver& solver, Vec* v, TickTime& time) noexcept;
   template <bool Turns>
@@ -248,13 +254,13 @@ class ContactSet {
   void clear_extra() noexcept;
   template <bool Friction, bool Turns>
   void sweep(const Vec* v, TickTime& time) noexcept;
-  /// Newton's method in a substep: what it may do, and how far it is.
+  /// Limits and progress of Newton's method in a substep.
   struct Search {
     const Effort& effort;
     ContactReport& report;
-    long nodes;  ///< of the window
-    int look = 0;
-    bool fresh = false, resumed = false;  ///< the matrix is today's; it goes on from where the last tick was
+    long nodes;                           ///< of the window
+    int look = 0;                         ///< checks of all contacts so far
+    bool fresh = false, resumed = false;  ///< Z is of this substep; started from the impulses of a put-off substep
     [[nodiscard]] bool can_pay(long cost) const noexcept { return report.work + cost <= effort.work; }
     [[nodiscard]] bool pay(long cost) noexcept {
       return can_pay(cost) && effort.time.allows() && ((report.work += cost), true);
@@ -268,42 +274,42 @@ class ContactSet {
   Outcome newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept;
   void take_impulses(BandSolver& solver, Vec* v) noexcept;
 
-  /// A pair that is near but no contact in this substep; only the guard looks at it again.
+  /// A pair that is near but not a contact in this substep; only the guard checks it again.
   struct Watched {
     std::int32_t a, b;
     double distance_m;
   };
 
-  std::vector<Contact> contacts_;  // rows first, then what is left out
+  std::vector<Contact> contacts_;  // rows first, then contacts that are not solved
   std::vector<Watched> watched_;
-  std::vector<std::int32_t> awake_, due_;  // groups, and pairs, to look at in this substep
-  std::vector<std::int32_t> close_, far_;  // places in due_: those to measure between smooth curves, and the others
-  std::vector<Measured> measured_;         // like due_
-  std::vector<Vec> corner_;                // of the smooth curve, at the nodes of bent_
-  std::vector<double> share_;              // of a corner that is cut: 1, or less where that would be too much
-  Span bent_{0, -1};                       // of close pairs
+  std::vector<std::int32_t> awake_, due_;  // groups and pairs to be measured in this substep
+  std::vector<std::int32_t> close_, far_;  // indices into due_: measured between smooth curves; between chords only
+  std::vector<Measured> measured_;         // in the order of due_
+  std::vector<Vec> corner_;                // k_i of the smooth curve at the nodes of bent_
+  std::vector<double> share_;              // scale of k_i there, below 1 where the corner's cut is limited
+  Span bent_{0, -1};                       // range of the nodes of close_
   std::vector<double> gaps_;               // scratch of choose_rows()
   std::vector<float> columns_;             // C^-1 J^T of every row on the window, padded
   SweptVelocities swept_;
   std::vector<Vec> extra_, step_;
-  std::vector<std::int32_t> loaded_;  // rows that have carried an impulse in this substep: the others are not mixed
-  std::vector<Vec> p_, plain_, residual_;  // their impulses and their change in a pass, as the mixing wants them
+  std::vector<std::int32_t> loaded_;       // rows that have carried an impulse in this substep; only these are mixed
+  std::vector<Vec> p_, plain_, residual_;  // of loaded_: mixed and unmixed impulses, and their change in a pass
   Mixing mixing_;
   ContactNewton newton_;
   std::vector<Vec> u_, v_start_, p_start_;
-  double start_error2_ = 0.0;  // with the impulses of the last substep, (m/s)^2
+  double start_error2_ = 0.0;  // squared error of Newton's method at the impulses of the last substep, (m/s)^2
   Turning turning_;
   Spin* spin_ = nullptr;
   int segments_ = 0;
   double radius_m_ = 0.0;
-  std::vector<double> body_due_;  // least gap of a body when last measured + travel then
+  std::vector<double> body_due_;  // per body: last measured gap + the thread's travel at that time
   std::size_t stride_ = 0;
   double per_second_ = 0.0;
   int rows_ = 0, window_first_ = 0, window_last_ = 1;
   bool overflow_ = false;
 };
 
-/// The impulse of Coulomb's cone about n, half-angle atan(mu), that has p's normal part and is nearest to it.
+/// p with its tangential part limited to mu p_n (Coulomb's cone about n); zero when p_n <= 0.
 [[nodiscard]] inline Vec in_cone(Vec p, Vec n, double mu) noexcept {
   const double pn = dot(p, n);
   if (pn <= 0.0) return Vec{};

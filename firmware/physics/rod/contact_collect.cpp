@@ -1,4 +1,4 @@
-// Contacts with the world, and which of all that was collected are solved.
+// Contacts with floor and bodies, and the choice of the contacts that are solved.
 
 #include <algorithm>
 
@@ -9,12 +9,12 @@ namespace ligature::physics::rod {
 
 namespace {
 
-/// The less, the more a contact wants to be solved: those that carry load first, then the nearest.
+/// Sort key, smallest first: contacts that carry load, then the others; within each by gap.
 double urgency(const Contact& c) noexcept { return c.gap_m - (dot(c.p, c.p) > 0.0 ? c.reach_m : 0.0); }
 
 }  // namespace
 
-// A contact to fill in, where it is: they are large. @return nullptr when there is no room.
+// Appends a contact to be filled in place, as contacts are large. @return nullptr when there is no room.
 Contact* ContactSet::add() noexcept {
   if (contacts_.size() < contacts_.capacity()) return &contacts_.emplace_back();
   overflow_ = true;
@@ -35,7 +35,7 @@ ContactSet::Span ContactSet::span() const noexcept {
   return span;
 }
 
-// Contacts become rows in the order in which they were found; those left out move behind them.
+// Rows keep the order in which contacts were collected; contacts that are not solved are moved behind them.
 void ContactSet::choose_rows(int most, int widest, int nodes, ContactReport& report) noexcept {
   const std::size_t found = contacts_.size(), room = static_cast<std::size_t>(std::clamp(most, 0, kMaxContacts));
   double deepest = 1e300, cut = 1e300;
@@ -50,7 +50,7 @@ void ContactSet::choose_rows(int most, int widest, int nodes, ContactReport& rep
     cut = gaps_[room];
   }
   const Span all = span();
-  const bool narrow = all.last - all.first >= widest;  // then: from the deepest contact's first node on
+  const bool narrow = all.last - all.first >= widest;  // then the window begins at the most urgent contact
   rows_ = 0, window_first_ = nodes, window_last_ = -1;
   for (std::size_t k = 0; k < found; ++k) {
     Contact& c = contacts_[k];
@@ -111,7 +111,7 @@ void ContactSet::collect_body(const State& state, const Body& body, int index, d
   for (std::size_t j = 0; j + 1 < n; ++j) {
     Vec& keep = body_impulse[static_cast<std::size_t>(index) * n + j];
     const Vec off = 0.5 * (state.x[j] + state.x[j + 1]) - middle;
-    const double within = half + state.mesh.rest[j] + reach;  // generous: half a segment may be stretched
+    const double within = half + state.mesh.rest[j] + reach;  // full rest length for half a segment: allows stretch
     const double far = within + look_m, off2 = dot(off, off);
     if (off2 > far * far) {
       keep = Vec{};

@@ -6,7 +6,7 @@
 namespace ligature::physics::rod {
 namespace {
 
-// Rows of eight numbers, `stride` apart, become columns.
+// Transposes an 8 x 8 block: rows are `stride` numbers apart in `from`, `to_stride` in `to`.
 inline void transpose(const float* from, std::size_t stride, float* to, std::size_t to_stride) noexcept {
   Eight row[8], pair[8];
   for (std::size_t k = 0; k < 8; ++k) row[k] = load_eight(from + k * stride);
@@ -26,8 +26,8 @@ inline void transpose(const float* from, std::size_t stride, float* to, std::siz
 
 }  // namespace
 
-// What eight contacts from a on have for eight from b on, which come before them, the other way round. Beyond the last
-// contact it moves what nobody reads.
+// W_ba = W_ab^T for the eight contacts from a on and the eight from b on, b < a. Entries beyond the last contact are
+// copied too but never read.
 void Couplings::mirror_block(std::size_t a, std::size_t b) noexcept {
   const float* const from = block(a, b);
   float* const to = w_.data() + b * stride_ + a * 9;
@@ -37,7 +37,7 @@ void Couplings::mirror_block(std::size_t a, std::size_t b) noexcept {
   }
 }
 
-// The same among themselves.
+// W_ba = W_ab^T among the contacts a to end - 1.
 void Couplings::mirror_diagonal(std::size_t a, std::size_t end) noexcept {
   for (std::size_t k = a + 1; k < end; ++k) {
     const float* const from = w_.data() + k * stride_ + a * 9;

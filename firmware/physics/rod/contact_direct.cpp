@@ -1,4 +1,5 @@
-// Contacts solved directly: looks at what approaches, steps of Newton's method in between, within the tick's work.
+// Driver of Newton's method for contacts: checks all contacts for violations, takes Newton steps on those in the
+// system, and repeats, within the tick's work.
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +10,11 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr int kMargin = 6;      // nodes by which the window may grow before a new matrix is needed
-constexpr double kNear = 3.0;   // an error is at most that, a pass's last change at least
-constexpr double kLoose = 3.0;  // times what is settled: may be left over beyond a fair share of the work
+constexpr int kMargin = 6;      // nodes by which the window may grow before Z is computed again
+constexpr double kNear = 3.0;   // Newton's residual may be this times the tolerance, which is meant for sweeps
+constexpr double kLoose = 3.0;  // tolerance multiplier once more than the fair share of the work is used
 
-constexpr double kUnknown = 1e300;  // square of an error
+constexpr double kUnknown = 1e300;  // squared error that has not been computed
 
 double square_of_enough(const Effort& effort) noexcept {
   const double enough = kNear * std::max(kLoose * effort.settled_m_per_s, effort.enough_m_per_s);
@@ -22,7 +23,7 @@ double square_of_enough(const Effort& effort) noexcept {
 
 }  // namespace
 
-// Impulses of p_ instead of today's, in the rows that newton_ knows; v answers.
+// Replaces the impulses of the rows in newton_'s system by p_, and updates v with the present A.
 void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
   clear_extra();
   for (const auto k : newton_.rows()) {
@@ -34,7 +35,7 @@ void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
   push(solver, v);
 }
 
-// Columns of today's A^-1, for which newton_ learns its contacts anew. @return false when there is no work for them.
+// Takes Z from the present A and restarts newton_ with it. @return false when there is not enough work left.
 bool ContactSet::renew_matrix(const BandSolver& solver, Search& search) noexcept {
   const int first = std::max(window_first_ - kMargin, 0), last = std::min(window_last_ + kMargin, solver.nodes() - 1);
   if (!search.pay(price::factors(last - first + 1))) return false;
@@ -43,14 +44,15 @@ bool ContactSet::renew_matrix(const BandSolver& solver, Search& search) noexcept
   return search.fresh = true;
 }
 
-// Takes in what approaches too fast, and couples it. @return kLater when there is no work or time for that.
+// Adds contacts that violate their condition to the system, and computes their couplings. @return kSettled when done,
+// kLater when there is not enough work or time, kUnsolved when the system is full.
 Outcome ContactSet::look_at_all(const BandSolver& solver, const Vec* v, Search& search) noexcept {
   const Contact* const rows = contacts_.data();
   const Vec* const p = p_.data();
   Vec* const u = u_.data();
   if (!search.pay(price::look(rows_))) return Outcome::kLater;
   for (int k = 0; k < rows_; ++k) u[k] = velocity<false>(k, v);
-  if (!newton_.look(rows, rows_, p, u)) {  // full of what has gone?
+  if (!newton_.look(rows, rows_, p, u)) {  // full: a new matrix drops contacts that no longer carry load
     if (search.fresh || !renew_matrix(solver, search) || !newton_.look(rows, rows_, p, u)) return Outcome::kUnsolved;
   }
   const auto uncoupled = newton_.uncoupled();
@@ -60,12 +62,13 @@ Outcome ContactSet::look_at_all(const BandSolver& solver, const Vec* v, Search& 
   return newton_.couple(search.effort.time) ? Outcome::kSettled : Outcome::kLater;
 }
 
-// Steps from what a look saw to impulses that are settled as far as newton_ knows, or, beyond a fair share of the work,
-// to the best it came by. @return nothing when the true A has to say whether they are; else how it ended.
+// Newton steps until the residual, with newton_'s possibly old Z, meets the tolerance; once the fair share of the work
+// is used, the best impulses found so far do if they meet the looser one. @return nothing when the velocities must be
+// computed with the present A to confirm the result; otherwise the outcome.
 template <bool Friction>
 std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
   constexpr int kMostSteps = 48, kSweeps = 2;
-  constexpr double kOld = 10.0;  // what an old matrix may leave over
+  constexpr double kOld = 10.0;  // tolerance multiplier after the first check, as Z may be old
   const Effort& effort = search.effort;
   ContactReport& report = search.report;
   const double settled = kNear * effort.settled_m_per_s, settled2 = settled * settled;
@@ -73,11 +76,11 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
   const Contact* const rows = contacts_.data();
   Vec *const p = p_.data(), *const u = u_.data();
   const auto wait = [&] { return newton_.put_off(p), Outcome::kLater; };
-  double best2 = kUnknown;  // error of the best step; its impulses are in plain_
+  double best2 = kUnknown;  // smallest squared residual; its impulses are in plain_
   for (int step = 0;; ++step) {
     const double error2 = newton_.read<Friction>(rows, p, u);
     const bool begins = step == 0 && search.look == 0;
-    if (step == 0) {  // what the true A says
+    if (step == 0) {  // u was computed with the present A
       if (begins && !search.resumed) start_error2_ = error2;
       report.change_m_per_s = std::sqrt(error2);
       if (error2 < (begins ? 1.0 : kOld * kOld) * settled2) return Outcome::kSettled;
@@ -158,7 +161,7 @@ Outcome ContactSet::settle_directly(BandSolver& solver, const Effort& effort, Ve
   for (int k = 0; k < rows_; ++k) contacts_[static_cast<std::size_t>(k)].p.v = p_start_[static_cast<std::size_t>(k)].v;
   std::copy(v_start_.begin(), v_start_.begin() + nodes, v + window_first_);
   if (start_error2_ >= square_of_enough(effort)) return outcome;
-  newton_.give_up();  // what they began with is good, and they found no better
+  newton_.give_up();  // the initial impulses already meet the looser tolerance
   report.change_m_per_s = std::sqrt(start_error2_);
   return Outcome::kSettled;
 }

@@ -1,4 +1,4 @@
-// How near pairs of the thread's segments are, four at a time, and which of them touch.
+// Distances of segment pairs of the thread, four at a time, and the contacts among them.
 
 #include <algorithm>
 #include <array>
@@ -10,14 +10,14 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr double kClose = 2.0;  // near_m's: what is nearer than that is measured between smooth curves
+constexpr double kClose = 2.0;  // multiple of near_m below which pairs are measured between smooth curves
 
 template <class F>
 [[nodiscard]] Lanes each(F number_of) noexcept {
   return Lanes{number_of(0), number_of(1), number_of(2), number_of(3)};
 }
 
-/// Four segments, their nodes gathered.
+/// Four segments, with their nodes stored by component.
 struct FourSegments {
   std::array<std::size_t, 4> j;
   Vecs x, e;
@@ -37,7 +37,7 @@ struct FourSegments {
   }
 };
 
-/// Closest points become those at which the pair's impulse acts.
+/// Replaces the closest points s, t by the points at which the pair's impulse acts (touch.hpp).
 void press(Candidate& pair, const Mesh& mesh, double& s, double& t) noexcept {
   const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
   const double at_a = mesh.s[a] + s * mesh.rest[a], at_b = mesh.s[b] + t * mesh.rest[b];
@@ -50,8 +50,8 @@ void press(Candidate& pair, const Mesh& mesh, double& s, double& t) noexcept {
 
 }  // namespace
 
-// Groups that may hold a pair that is due, and those pairs, which is paid for here. The other pairs cannot meet, even
-// at twice today's speed. @return false when there is not work enough.
+// Finds the pairs that must be measured in this substep, and charges the work of measuring them. The others cannot
+// touch within it, even at twice the present speed. @return false when there is not enough work left.
 bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcept {
   awake_.clear();
   for (auto* list : {&due_, &close_, &far_}) list->clear();
@@ -93,7 +93,7 @@ bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcep
   return true;
 }
 
-// Of four pairs, those at `places` of due_: closest points, and how near they are.
+// Closest points and distances of four pairs; `places` are their indices in due_.
 template <bool Smooth>
 void ContactSet::measure(const std::int32_t* places, const State& state) noexcept {
   const auto pair = [&](std::size_t l) -> const Candidate& {
@@ -125,7 +125,7 @@ void ContactSet::measure(const std::int32_t* places, const State& state) noexcep
   }
 }
 
-// Corners of the smooth curve, as far as nodes of close pairs go. All of these touch at the same distance.
+// Corners k_i of the smooth curve over the node range of the close pairs. All of these have the same reach_m.
 void ContactSet::bend(const State& state) noexcept {
   if (close_.empty()) return;
   const double diameter_m = pairs[static_cast<std::size_t>(due_[static_cast<std::size_t>(close_[0])])].reach_m;
@@ -135,7 +135,8 @@ void ContactSet::bend(const State& state) noexcept {
                           share_[static_cast<std::size_t>(i)]);
 }
 
-// The point s of the smooth curve in place of that of its chord, which begins with node[at].
+// Changes the nodes and weights of a contact from the point s of the chord to the point s of the smooth curve. The
+// chord begins with node[at].
 void ContactSet::bend_row(Contact& c, int at, double s, const State& state) const noexcept {
   const auto j = static_cast<std::size_t>(c.node[at]);
   const double side = at == 0 ? -0.25 : 0.25, h_before = state.cut_before[j], h_after = state.cut_after[j];
@@ -198,18 +199,18 @@ bool ContactSet::take(Candidate& pair, const Measured& m, const State& state, co
   double s = m.s, t = m.t;
   pair.due = std::min(m.distance_m, m.chord_m - pair.bulge_m) - pair.reach_m + motion.gone(a, b);
   report.min_gap_m = std::min(report.min_gap_m, gap);
-  // Far enough for one substep at today's relative speed (half the bound of above is usually wasted).
+  // Only near_m + 2 dt x the points' own relative speed counts, a tighter test than the bound used in find_due().
   const Vec u = (1.0 - t) * state.v[b] + t * state.v[b + 1] - (1.0 - s) * state.v[a] - s * state.v[a + 1];
   const bool full = contacts_.size() >= static_cast<std::size_t>(kMaxContacts);
   if (full || (spare > 0.0 && spare * spare > 4.0 * dt_s * dt_s * dot(u, u))) {
     report.rows_left_out += full;
     pair.impulse = Vec{};
-    watched_.push_back({pair.a, pair.b, m.chord_m});  // has room for every pair
+    watched_.push_back({pair.a, pair.b, m.chord_m});  // never allocates: reserved for all pairs
     return false;
   }
   press(pair, state.mesh, s, t);
   Contact* const made = add();
-  if (made == nullptr) return pair.impulse = Vec{}, true;  // the guard lets nothing move then
+  if (made == nullptr) return pair.impulse = Vec{}, true;  // safe_fraction() is then 0: nothing moves
   Contact& contact = *made;
   contact.node[0] = pair.a, contact.node[1] = pair.a + 1, contact.node[2] = pair.b, contact.node[3] = pair.b + 1;
   contact.w[0] = s - 1.0, contact.w[1] = -s, contact.w[2] = 1.0 - t, contact.w[3] = t;

@@ -24,13 +24,13 @@ bool ContactMetric::prepare(const Mesh& mesh, const Material& material, double d
   return false;
 }
 
-// LDL^T of C with everything outside the window eliminated.
+// LDL^T of C, with all nodes outside the window eliminated.
 void ContactMetric::factor(const Mesh& mesh, const Material& material, double dt_s) noexcept {
   const auto n = static_cast<std::size_t>(mesh.nodes()), z = static_cast<std::size_t>(last_);
   const double bend = dt_s * (dt_s + material.bend_tau_s), inertia = 1.0 + material.drag_per_s * dt_s;
   const auto diag = [&](std::size_t i) { return mesh.mass[i] * inertia + bend * mesh.kd[i]; };
-  // Right of the window, backwards: only d, f (coupling to the next node inwards) are needed.
-  double d1 = 0.0, d2 = 0.0, f1 = 0.0;  // d of i+1 and i+2; elimination factor of i+1 towards i+2
+  // Nodes right of the window, from the end inwards: only the pivots d and the factors f need be kept.
+  double d1 = 0.0, d2 = 0.0, f1 = 0.0;  // pivots of i+1 and i+2; elimination factor of i+1
   double on_last = 0.0, on_before = 0.0, on_pair = 0.0;
   for (std::size_t i = n; i-- > z;) {
     const double skip = i + 2 < n ? bend * mesh.kb[i] : 0.0;
@@ -50,7 +50,7 @@ void ContactMetric::factor(const Mesh& mesh, const Material& material, double dt
     d1 = diag(i) - less;
     f1 = g;
   }
-  // Left of the window and the window itself, forwards.
+  // Nodes left of the window and the window itself, from the start forwards.
   for (std::size_t i = 0; i <= z; ++i) {
     const double skip = i > 1 ? bend * mesh.kb[i - 2] : 0.0;
     double f = i > 0 ? bend * mesh.ke[i - 1] : 0.0;
@@ -64,7 +64,7 @@ void ContactMetric::factor(const Mesh& mesh, const Material& material, double dt
   }
 }
 
-// Columns of the inverse, all at once: row operations on the identity.
+// All columns of the inverse at once, by row operations on the identity matrix.
 bool ContactMetric::invert(TickTime& time) noexcept {
   const auto a = static_cast<std::size_t>(first_), w = static_cast<std::size_t>(last_ - first_ + 1);
   stride_ = (w + 3) & ~std::size_t{3};
@@ -86,7 +86,7 @@ bool ContactMetric::invert(TickTime& time) noexcept {
       for (std::size_t j = 0; j + 1 < i; ++j) r[j] -= g * p[j];
     }
   }
-  std::fill(row_at(w), row_at(w + 2), 0.0);  // so that the last rows are like the others
+  std::fill(row_at(w), row_at(w + 2), 0.0);  // two zero rows, so that the last rows need no special case
   for (std::size_t i = w; i-- > 0;) {
     if (!pieces.allow(4 * static_cast<long>(w))) return false;
     double* const __restrict r = row_at(i);

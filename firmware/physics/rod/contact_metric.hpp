@@ -1,5 +1,5 @@
 #pragma once
-// The constant metric in which contacts are solved.
+// The simplified constant matrix C with which contact sweeps are computed.
 
 #include <vector>
 
@@ -10,14 +10,14 @@ namespace ligature::physics::rod {
 
 /// C = M (1 + c dt) + dt (dt + tau_b) K_b: the matrix A of a substep (assembly.hpp) without its stretch, geometric and
 /// hold terms. C is a scalar pentadiagonal matrix times the 3 x 3 identity and constant while mesh and dt are. Because
-/// A >= C, J A^-1 J^T <= J C^-1 J^T: an impulse step computed with C never over-shoots (a majorise-minimise argument
-/// for the frictionless problem), and normal and friction of a contact share one number.
+/// A >= C, J A^-1 J^T <= J C^-1 J^T, so an impulse step computed with C never overshoots (a majorise-minimise argument
+/// for the frictionless problem). A contact's response to C is the same number for normal and friction.
 class ContactMetric {
  public:
   void reserve(int nodes, int window);
 
-  /// C^-1 on the nodes [first, last]. O(n + w^2), no allocation. @pre last - first < capacity. @return false, and it
-  /// covers nothing, when the time was over first.
+  /// Computes C^-1 on the nodes [first, last], w of them. O(n + w^2), no allocation. @pre last - first < capacity.
+  /// @return false, and the table is invalid, when the time was over first.
   [[nodiscard]] bool prepare(const Mesh& mesh, const Material& material, double dt_s, int first, int last,
                              TickTime& time) noexcept;
 
@@ -27,7 +27,8 @@ class ContactMetric {
   [[nodiscard]] int last() const noexcept { return last_; }
   [[nodiscard]] int capacity() const noexcept { return capacity_; }
 
-  /// Row of C^-1 of a node, single precision; entry j belongs to node first() + j. Seven more may be read at its end.
+  /// Row of C^-1 of a node, single precision; entry j belongs to node first() + j. Reading up to seven entries past its
+  /// end is allowed.
   [[nodiscard]] const float* row(int node) const noexcept {
     return row_.data() + static_cast<std::size_t>(node - first_) * stride_;
   }
@@ -39,7 +40,7 @@ class ContactMetric {
   [[nodiscard]] bool invert(TickTime& time) noexcept;
 
   std::vector<double> table_;
-  std::vector<float> row_;           // the table for those who sweep
+  std::vector<float> row_;           // table_ in single precision
   std::vector<double> d_, l1_, l2_;  // scalar LDL^T
 };
 

@@ -35,7 +35,7 @@ void ContactNewton::measure(const BandSolver& solver, int first, int last) noexc
 }
 
 bool ContactNewton::has_moved(const Slot& slot, const Contact& c, std::int32_t first) noexcept {
-  constexpr double kMoved = 0.16;  // of all weights: a slot that has moved more is made anew
+  constexpr double kMoved = 0.16;  // sum of weight changes above which the slot's column is computed again
   if (slot.count != c.count) return true;
   double sum = 0.0;
   bool same = true;
@@ -47,7 +47,7 @@ bool ContactNewton::has_moved(const Slot& slot, const Contact& c, std::int32_t f
 }
 
 void ContactNewton::start(const Contact* rows, int count) noexcept {
-  constexpr int kIdle = 4;  // substeps without load, after which a slot goes
+  constexpr int kIdle = 4;  // a slot is removed after more substeps than this without load
   slot_.assign(static_cast<std::size_t>(count), -1);
   rows_.clear();
   begins_ = begins_ || !put_off_;
@@ -75,7 +75,7 @@ void ContactNewton::start(const Contact* rows, int count) noexcept {
   }
 }
 
-// Slots by first node, none of them with a row.
+// Index of slots by first node, for find(). Clears every slot's row.
 void ContactNewton::index_slots() noexcept {
   at_.assign(static_cast<std::size_t>(z_.width()), -1);
   for (std::size_t s = slots_.size(); s-- > 0;) {
@@ -104,7 +104,7 @@ bool ContactNewton::resume(Vec* p) noexcept {
   return std::exchange(put_off_, false);
 }
 
-// Row k may carry load.
+// Adds a slot for row k.
 bool ContactNewton::take(const Contact* rows, int k) noexcept {
   const std::size_t slot = slots_.size();
   if (slot == static_cast<std::size_t>(kMostRows)) return false;
@@ -124,7 +124,7 @@ bool ContactNewton::take(const Contact* rows, int k) noexcept {
   return true;
 }
 
-// Z J^T of a slot, from one node to another.
+// Z J^T of a slot, at the nodes first to last.
 void ContactNewton::spread(const Slot& slot, std::int32_t first, std::int32_t last) noexcept {
   const auto begin = (BandColumns::kBlock * static_cast<std::size_t>(first)) & ~std::size_t{7},
              end = BandColumns::kBlock * static_cast<std::size_t>(last + 1);
@@ -142,7 +142,7 @@ void ContactNewton::spread(const Slot& slot, std::int32_t first, std::int32_t la
   }
 }
 
-// What the slot of spread() does to this one: its columns x, y, z.
+// W block: velocity of this slot's contact per impulse on the slot of spread(), columns x, y, z.
 std::array<Four, 3> ContactNewton::answer_at(const Slot& slot) const noexcept {
   std::array<Four, 3> sum{};
   for (int j = 0; j < slot.count; ++j) {
@@ -153,14 +153,14 @@ std::array<Four, 3> ContactNewton::answer_at(const Slot& slot) const noexcept {
   return sum;
 }
 
-// How far the map of a contact steps.
+// Step lengths r_n, r_t of a contact's map: inverse of its own response along and across the normal.
 void ContactNewton::set_steps(Slot& slot, const std::array<Four, 3>& w) noexcept {
   const Mat own{{__builtin_convertvector(w[0], Lanes)},
                 {__builtin_convertvector(w[1], Lanes)},
                 {__builtin_convertvector(w[2], Lanes)}};
   const Vec on_n = own * slot.n;
   const double normal = dot(on_n, slot.n);
-  // Across n the block has trace t and squares s; its larger eigenvalue:
+  // Projected across n, the 3 x 3 block has trace t and squared Frobenius norm s; `across` is its larger eigenvalue.
   const double t = own.x[0] + own.y[1] + own.z[2] - normal;
   const double s = dot(own.x, own.x) + dot(own.y, own.y) + dot(own.z, own.z) - 2.0 * dot(on_n, on_n) + normal * normal;
   const double across = 0.5 * (t + std::sqrt(std::max(0.0, 2.0 * s - t * t)));
@@ -169,7 +169,7 @@ void ContactNewton::set_steps(Slot& slot, const std::array<Four, 3>& w) noexcept
   slot.r_t = 1.0 / slot.per_r_t;
 }
 
-// What new slots do to the others, and they to them.
+// W blocks between the new slots and all slots before them.
 bool ContactNewton::couple(TickTime& time) noexcept {
   if (coupled_ == slots_.size()) return true;
   if (!z_.make_missing(time)) return false;

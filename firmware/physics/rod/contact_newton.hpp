@@ -1,5 +1,5 @@
 #pragma once
-// Contacts solved by Newton's method: few of them carry load, so what couples those is a small dense system.
+// Newton's method for contacts. Few contacts carry load, so their equations form a small dense system.
 
 #include <array>
 #include <cstdint>
@@ -20,42 +20,45 @@ struct Contact;
 /// A contact is solved when its impulse p is a fixed point of its natural map: with u its relative velocity,
 ///   p_n = max(0, p_n - r_n (u_n + soft p_n - target)),   p_t = disc(mu p_n, p_t - r_t u_t),
 /// disc(s, q) the point of the disc of radius s nearest to q [Alart & Curnier 1991]. u = u_free + W p, and W = J Z J^T
-/// with Z = A^-1, so stretch is in it. The map is linear where nothing changes its kind, so each step solves for
-/// impulses of today's kinds: an open contact has none; one that sticks three; one that slides p_n (n + mu d) and,
-/// across its direction d, what turning d costs. The kinds are then read anew (a primal-dual active set [Hintermueller
-/// 2003]); impulses may leave their cones on the way.
+/// with Z = A^-1, stretch included. The map is linear as long as no contact changes its kind (open, sticking, sliding).
+/// So each step fixes the kinds and solves a linear system: an open contact has no unknown; a sticking one has three;
+/// a sliding one has two, along p_n (n + mu d) and across its sliding direction d, where a compliance stands for the
+/// rotation of d. Then the kinds are determined again (a primal-dual active set method [Hintermueller 2003]). Impulses
+/// may leave their cones on the way.
 ///
-/// Left to itself it circles: a few kinds misread, and impulses that hardly move anything (cond W is 1e5) become a
-/// thousand times too large, which misreads all others. So the first step takes a change of an impulse to cost some of
-/// what it does to its own contact (a proximal point [Rockafellar 1976]): weak directions wait. The cost fades from
-/// step to step, at once where no kind changes, grows when a step has made the error larger, and is whole again when
-/// contacts come in that no step has seen.
-/// Z may be some substeps old: the caller answers each step with the true A.
+/// Without damping this cycles: a few wrong kinds, and impulses to which velocities hardly respond (cond W is 1e5)
+/// become a thousand times too large, which makes all other kinds wrong. So a term proportional to the change of each
+/// impulse is added to its equation (a proximal point method [Rockafellar 1976]), which mostly damps such weak
+/// directions. The factor of this term shrinks from step to step, faster when no kind changes, grows when a step has
+/// increased the error, and is reset to 1 when new contacts enter. See set_cost().
+///
+/// Z may be some substeps old: after each step the caller computes the velocities with the present A.
 class ContactNewton {
  public:
-  static constexpr int kMostRows = 96;       ///< that carry load, or would
-  static constexpr int kMostUnknowns = 192;  ///< impulses in them
+  static constexpr int kMostRows = 96;       ///< contacts that carry load, or would
+  static constexpr int kMostUnknowns = 192;  ///< their impulse components
   static constexpr int kWidest = BandColumns::kWidest;
   static constexpr int kMostNodes = 8;  ///< of a contact
 
   void reserve();
 
-  /// Z is that of another mesh, or time step.
+  /// Call when mesh or time step have changed: Z is no longer valid.
   void forget() noexcept { z_.forget(); }
   [[nodiscard]] bool covers(int first, int last) const noexcept { return z_.covers(first, last); }
-  /// Z of today. @pre last - first < kWidest; solver factorised.
+  /// Takes Z = A^-1 from the present factorisation. @pre last - first < kWidest; solver factorised.
   void measure(const BandSolver& solver, int first, int last) noexcept;
 
-  /// The contacts of a substep, `count` of them. What is known of those that were here before is kept, until measure().
+  /// Begins a substep with `count` contacts. Couplings of contacts known from earlier substeps are kept, until
+  /// measure().
   void start(const Contact* rows, int count) noexcept;
 
-  /// Velocities u of all contacts: those that approach too fast are taken in. @return false when there is no room.
+  /// Adds to the system all contacts whose velocity u violates u_n >= target. @return false when there is no room.
   [[nodiscard]] bool look(const Contact* rows, int count, const Vec* p, const Vec* u) noexcept;
 
-  /// What those new ones do to the others, and they to them. After look(), before read(). @return false when the time
-  /// was over first: what was made is kept.
+  /// Computes the blocks of W for the added contacts. Call after look(), before read(). @return false when the time was
+  /// over first; the blocks computed so far are kept.
   bool couple(TickTime& time = TickTime::endless()) noexcept;
-  /// What couple() has yet to see: columns of Z; contacts; pairs of contacts.
+  /// Amount of work that couple() has yet to do: columns of Z, contacts, pairs of contacts.
   struct Uncoupled {
     long columns, contacts, pairs;
   };
@@ -65,61 +68,62 @@ class ContactNewton {
   }
   [[nodiscard]] int nodes() const noexcept { return z_.width(); }  ///< of Z
 
-  /// What impulses p and velocities u make of each contact taken in: its kind. @return the square of the largest error,
-  /// m/s: how far an impulse is from its map times what it moves its contact by.
+  /// Determines the kind of each contact in the system from impulses p and velocities u. @return the square of the
+  /// largest residual, (m/s)^2: distance of an impulse from its map, times the velocity per impulse of its contact.
   template <bool Friction>
   [[nodiscard]] double read(const Contact* rows, const Vec* p, const Vec* u) noexcept;
 
-  /// One sweep over the contacts taken in: settles what is easy. p and u follow.
+  /// One Gauss-Seidel sweep over the contacts in the system, as a cheap first improvement. Updates p and u.
   template <bool Friction>
   void sweep(const Contact* rows, Vec* p, Vec* u) noexcept;
 
-  /// There was no work for more steps: in the next substep they go on from these impulses.
+  /// Work or time ran out: stores the impulses, so that the repeated substep can resume() from them.
   void put_off(const Vec* p) noexcept;
-  /// They do not: the substep was done without.
+  /// The substep was solved another way: nothing to resume.
   void give_up() noexcept { put_off_ = false; }
-  /// Where put_off() was, into p. @return false when it was not.
+  /// Writes the impulses of put_off() into p. @return false when there are none.
   [[nodiscard]] bool resume(Vec* p) noexcept;
 
-  [[nodiscard]] int unknowns() const noexcept { return count_; }                          ///< impulses to solve for
-  [[nodiscard]] const std::vector<std::int32_t>& rows() const noexcept { return rows_; }  ///< that carry load, or did
+  [[nodiscard]] int unknowns() const noexcept { return count_; }  ///< size of the next step's linear system
+  [[nodiscard]] const std::vector<std::int32_t>& rows() const noexcept { return rows_; }  ///< contacts in the system
   [[nodiscard]] int slots() const noexcept { return static_cast<int>(slots_.size()); }
-  [[nodiscard]] int exchanges() const noexcept;  ///< that the next step makes
+  [[nodiscard]] int exchanges() const noexcept;  ///< slots that the next step must reorder
   [[nodiscard]] int loaded() const noexcept { return static_cast<int>(rows_.size()); }
 
-  /// Impulses that solve the kinds last read, into p; u follows. @return false when they cannot be had, or the time was
-  /// over first: p and u are what they were.
+  /// One Newton step: solves for the impulses p with the kinds of the last read(), and updates u. @return false when
+  /// the system is singular or the time was over first (p and u are unchanged), or when the solution is not finite.
   template <bool Friction>
   bool solve(const Contact* rows, Vec* p, Vec* u, TickTime& time = TickTime::endless()) noexcept;
 
  private:
   enum class Kind : std::uint8_t { kNew, kOpen, kSticks, kSlides };
-  /// A contact that carries load, or did since measure(): who it is, how far its map steps, and what it reads there.
+  /// A contact that carries load, or did since measure(): its geometry, the step lengths r_n, r_t of its map, and the
+  /// map's value.
   struct Slot {
     std::int32_t count = 0;
-    std::int32_t node[kMostNodes] = {};  ///< counted from the first of Z
-    std::int32_t row = -1;               ///< or none
-    std::int32_t next = -1;              ///< slot with the same first node
+    std::int32_t node[kMostNodes] = {};  ///< counted from the first node of Z
+    std::int32_t row = -1;               ///< index of its contact in this substep; -1: none
+    std::int32_t next = -1;              ///< next slot with the same first node; -1: none
     double w[kMostNodes] = {};
     Vec n{};
     double soft = 0.0, r_n = 0.0, r_t = 0.0, per_r_n = 0.0, per_r_t = 0.0;
-    bool dead = false;  ///< its contact has moved on, or carries nothing any more
+    bool dead = false;  ///< to be removed: its contact has moved too far, or no longer carries load
     int idle = 0;       ///< substeps since it carried load
     Kind kind = Kind::kNew;
-    Vec guess{};        ///< impulse when the work ran out
+    Vec guess{};        ///< impulse at put_off()
     Vec q{};            ///< p_t - r_t u_t
-    Vec along{};        ///< its direction
-    double most = 0.0;  ///< radius of its disc
+    Vec along{};        ///< direction of q
+    double most = 0.0;  ///< radius of the friction disc, mu p_n
     [[nodiscard]] bool carries() const noexcept { return row >= 0 && kind >= Kind::kSticks; }
   };
-  /// One impulse x `with`, so large that along . u + give x = wanted. Solved for is what it is more than `now`, so that
-  /// single precision does not limit the answer.
+  /// One unknown x: the impulse x `with`, subject to along . u + give x = wanted. The system is solved for x - now, so
+  /// that single precision limits the change only.
   struct Unknown {
     std::size_t slot;
     Vec along, with;
     double give, wanted, now;
   };
-  /// Direction in which one that sticks would slide.
+  /// Direction in which a sticking contact would slide.
   struct Stuck {
     std::size_t slot;
     float x, y, z;
@@ -157,27 +161,27 @@ class ContactNewton {
     return slot / kLanes * 3 * kLanes + slot % kLanes;
   }
   BandColumns z_;
-  Floats spread_;                   // Z J^T of the slot that is being coupled, as a column of Z
+  Floats spread_;                   // Z J^T of the slot that is being coupled, stored like a column of Z
   std::vector<std::int32_t> slot_;  // of each row, or -1
   std::vector<std::int32_t> at_;    // first slot of each first node, or -1
   std::vector<std::int32_t> rows_;
   std::vector<Slot> slots_;
-  std::size_t coupled_ = 0;  // slots that W is known of
+  std::size_t coupled_ = 0;  // number of slots whose blocks of W are computed
   bool put_off_ = false;
-  bool begins_ = true;                       // there are contacts that no step has seen
-  int changed_ = 0;                          // kinds that the last read() changed
-  double error2_ = 0.0, last_error2_ = 0.0;  // that it saw, and the one that the last step began with
-  double cost_ = 1.0;                        // of a change, 1 at first
-  Couplings w_;                              // of all slots
-  std::vector<Unknown>
-      unknowns_;  // along n of the first carrying_ slots; across their sliding; along it, if they stick
+  bool begins_ = true;                       // the system has contacts that no step has solved yet
+  int changed_ = 0;                          // kinds changed by the last read()
+  double error2_ = 0.0, last_error2_ = 0.0;  // squared residual of the last read(); at the start of the last step
+  double cost_ = 1.0;                        // factor of the proximal term, 0 to 1
+  Couplings w_;                              // W of all slots
+  // Of the first carrying_ slots: along n; then across the sliding direction; then along it, of those that stick.
+  std::vector<Unknown> unknowns_;
   int count_ = 0;
   std::size_t carrying_ = 0;
   Dense dense_;
   // Scratch of assemble().
-  Floats on_;  // velocities of slots: eight x, eight y, eight z
+  Floats on_;  // velocity changes of slots in blocks: eight x, eight y, eight z
   std::vector<Stuck> stuck_;
-  Floats with_;  // planes x, y, z along n, then across
+  Floats with_;  // Unknown::with by components: x, y, z of the normal unknowns, then of those across
   std::vector<Vec> rest_;
 };
 

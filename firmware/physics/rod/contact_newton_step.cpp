@@ -1,4 +1,4 @@
-// A step of Newton's method: kinds of contact, the system they make, impulses that solve it.
+// One step of Newton's method: kinds of the contacts, the linear system for these kinds, its solution.
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +35,7 @@ double ContactNewton::read(const Contact* rows, const Vec* p, const Vec* u) noex
 
 template <bool Friction>
 void ContactNewton::sweep(const Contact* rows, Vec* p, Vec* u) noexcept {
-  constexpr double kShare = 0.8;  // of a step: the whole of it leaves more to the contacts beside it
+  constexpr double kShare = 0.8;  // under-relaxation: a full step leaves a larger error in neighbouring contacts
   on_.clear();
   for (const auto k : rows_) {
     const Contact& c = rows[k];
@@ -54,7 +54,7 @@ void ContactNewton::sweep(const Contact* rows, Vec* p, Vec* u) noexcept {
   for (const auto k : rows_) u[k] += moved(slot_of(k));
 }
 
-// on_ += W (x, y) for impulses x and y on two contacts, or x on one: W is symmetric, so that is a sum of its rows.
+// on_ += W p for an impulse x on `slot` and, if Two, y on `other`. W is symmetric, so rows are summed, not columns.
 template <bool Two>
 void ContactNewton::answer(std::size_t slot, Vec x, std::size_t other, Vec y) noexcept {
   const Eight x0 = all_eight(static_cast<float>(x[0])), x1 = all_eight(static_cast<float>(x[1])),
@@ -72,11 +72,11 @@ void ContactNewton::answer(std::size_t slot, Vec x, std::size_t other, Vec y) no
   }
 }
 
-// W x for one impulse each, by slot.
+// on_ = W change, with one impulse for each slot.
 void ContactNewton::answer_all(const Vec* change) noexcept {
   constexpr auto kNone = static_cast<std::size_t>(-1);
   on_.clear();
-  std::size_t waiting = kNone;  // for a second one
+  std::size_t waiting = kNone;  // slot to be paired with the next one
   for (const auto k : rows_) {
     const std::size_t slot = slot_of(k);
     if (dot(change[slot], change[slot]) == 0.0) continue;
@@ -108,7 +108,7 @@ int ContactNewton::exchanges() const noexcept {
   return static_cast<int>(std::count_if(slots_.begin(), end, [](const Slot& slot) { return !slot.carries(); }));
 }
 
-// Contacts that carry load become the first ones, so that all that is known of them lies side by side.
+// Reorders slots so that those that carry load come first and their part of W is contiguous.
 void ContactNewton::bring_forward() noexcept {
   carrying_ = carrying();
   std::size_t behind = slots_.size();
@@ -122,8 +122,8 @@ void ContactNewton::bring_forward() noexcept {
 
 template <bool Friction>
 void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* u) noexcept {
-  constexpr double kCostNormal = 0.05, kCostAlong = 0.1;  // of a change at first, of what it does to its own contact
-  constexpr double kHardly = 1e-6;                        // of q: what slides without friction turns freely
+  constexpr double kCostNormal = 0.05, kCostAlong = 0.1;  // proximal terms, relative to the contact's own response
+  constexpr double kHardly = 1e-6;                        // least disc radius / |q|: bounds `give` without friction
   unknowns_.clear();
   stuck_.clear();
   const auto add = [&](std::size_t s, Vec along, Vec with, double give, double cost, double wanted) {
@@ -165,8 +165,8 @@ void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* 
   }
 }
 
-// Row i: along_i . W_ij with_j + give_i. From the last contacts to the first, as each eight numbers may spill into what
-// follows them.
+// Row i of the matrix: along_i . W_ij with_j for all unknowns j, and give_i on the diagonal. The loop over contacts
+// runs backwards: a vector store may write past the last contact, and what belongs there is written later.
 template <bool Friction>
 [[gnu::always_inline]] inline void ContactNewton::make_row(std::size_t i) noexcept {
   const Unknown& unknown = unknowns_[i];
@@ -210,7 +210,7 @@ bool ContactNewton::assemble(const Vec* p, TickTime& time) noexcept {
     if (!pieces.allow(300 + 8 * static_cast<long>(n))) return false;
     make_row<Friction>(i);
   }
-  // Of today's impulses, what the unknowns cannot say goes.
+  // Velocity change of setting to zero those parts of the present impulses that no unknown can represent.
   for (const auto k : rows_) rest_[slot_of(k)].v = p[k].v;
   for (const auto& x : unknowns_) rest_[x.slot] -= x.now * x.with;
   answer_all(rest_.data());
@@ -221,9 +221,9 @@ bool ContactNewton::assemble(const Vec* p, TickTime& time) noexcept {
   return true;
 }
 
-// What a change of an impulse costs in this step.
+// Factor of the proximal term in this step.
 void ContactNewton::set_cost() noexcept {
-  constexpr double kFade = 0.6, kFadeWhenKnown = 0.1;  // from step to step; when no kind changes
+  constexpr double kFade = 0.6, kFadeWhenKnown = 0.1;  // decrease per step; when no kind has changed
   constexpr double kWorse = 2.0, kMore = 4.0, kLeast = 1e-4;
   const bool worse = error2_ > kWorse * kWorse * last_error2_;
   if (std::exchange(begins_, false)) {

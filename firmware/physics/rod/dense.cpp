@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kPanel = 4;
 
-// a -= factors[0] top + factors[1] (the row under it) ..., all times scale. The factors may lie in `a`.
+// a = scale (a - sum_q factors[q] x row q of `top`). The factors may lie in `a` itself.
 template <std::size_t Rows>
 inline void take_away(float* a, const float* factors, const float* top, std::size_t from, std::size_t stride,
                       float scale = 1.0F) noexcept {
@@ -19,7 +19,7 @@ inline void take_away(float* a, const float* factors, const float* top, std::siz
   for (std::size_t j = from; j < stride; j += 8) {
     Eight sum = load_eight(a + j);
     for (std::size_t q = 0; q < Rows && q < kPanel; ++q) sum -= f[q] * load_eight(top + q * stride + j);
-    if constexpr (Rows > kPanel) {  // two chains of arithmetic
+    if constexpr (Rows > kPanel) {  // two independent sums, for latency
       Eight more = f[kPanel] * load_eight(top + kPanel * stride + j);
       for (std::size_t q = kPanel + 1; q < Rows; ++q) more += f[q] * load_eight(top + q * stride + j);
       sum -= more;
@@ -39,7 +39,7 @@ void Dense::reserve(std::size_t most) {
   panels_.reserve(most);
 }
 
-// Brings the row below with the largest entry of column k up, and clears that column under it.
+// Partial pivoting for column k: exchanges rows, scales the pivot to 1, and eliminates the column below it.
 bool Dense::pivot(std::size_t k) noexcept {
   const std::size_t from = k & ~std::size_t{7};
   std::size_t best = k;
@@ -54,11 +54,11 @@ bool Dense::pivot(std::size_t k) noexcept {
   return true;
 }
 
-// Row k + Before is cleared of the pivots from k on, and made 1 in its own; those are cleared of it. @return false, and
-// nothing is done, when its pivot has shrunk.
+// Adds row i = k + Before to the panel that begins at k: eliminates the panel's pivots from it, scales its pivot to 1,
+// and eliminates column i from the panel's rows. @return false, and nothing is changed, when its pivot has shrunk.
 template <std::size_t Before>
 bool Dense::join(std::size_t k) noexcept {
-  constexpr float kShrunk = 1e-4F, kNoise = 1e-6F;  // of what it was before this panel, and at first
+  constexpr float kShrunk = 1e-4F, kNoise = 1e-6F;  // least pivot relative to its value before this panel; initially
   const std::size_t i = k + Before, from = k & ~std::size_t{7};
   float *const a = row(i), *const top = row(k);
   float left = a[i];
@@ -70,7 +70,7 @@ bool Dense::join(std::size_t k) noexcept {
   return true;
 }
 
-// A unit matrix in up to four columns and rows from k on. @return how many of them, until a pivot shrinks.
+// Reduces up to four rows and columns from k on to a unit matrix. @return their number; fewer when a pivot shrinks.
 std::size_t Dense::panel(std::size_t k) noexcept {
   const std::size_t rows = std::min(kPanel, n_ - k);
   if (!join<0>(k)) return 0;
@@ -79,8 +79,8 @@ std::size_t Dense::panel(std::size_t k) noexcept {
   return rows < 4 || !join<3>(k) ? 3 : 4;
 }
 
-// Takes `pivots` rows from k on, a unit matrix in their columns, from all rows under them, beginning with one. What
-// lies left of the columns is not read again.
+// Eliminates the `pivots` columns from k on, in which the rows from k on are a unit matrix, from all rows >= first.
+// Entries left of the remaining columns are not updated, as they are not read again.
 void Dense::clear_below(std::size_t k, std::size_t pivots, std::size_t first) noexcept {
   const std::size_t from = (k + pivots) & ~std::size_t{7};
   const float* const top = row(k);
@@ -96,7 +96,7 @@ void Dense::clear_below(std::size_t k, std::size_t pivots, std::size_t first) no
   }
 }
 
-// Eight columns from k on, as two panels. @return how many were cleared.
+// Eliminates eight columns from k on, as two panels; the first is already reduced. @return the number of columns done.
 std::size_t Dense::two_panels(std::size_t k) noexcept {
   const std::size_t l = k + kPanel, end = l + kPanel;
   for (std::size_t i = l; i < end; ++i) take_away<kPanel>(row(i), row(i) + k, row(k), l & ~std::size_t{7}, stride_);
@@ -111,21 +111,21 @@ std::size_t Dense::two_panels(std::size_t k) noexcept {
   return 2 * kPanel;
 }
 
-// Rows of a panel do not wait for each other: each has a unit matrix there.
+// Back substitution. The rows of a panel are independent of each other, as they are a unit matrix in its columns.
 void Dense::substitute() noexcept {
   x_.clear();
   float* const x = x_.data();
   for (std::size_t end = n_; end > 0;) {
     const std::size_t k = panels_.back();
     panels_.pop_back();
-    const float* rows[2 * kPanel];  // of a smaller panel some are read in vain
+    const float* rows[2 * kPanel];  // for a smaller panel some sums are not used
     for (std::size_t i = 0; i < 2 * kPanel; ++i) rows[i] = row(std::min(k + i, n_ - 1));
     Eight sum[2 * kPanel] = {};
     for (std::size_t j = end & ~std::size_t{7}; j < n_; j += 8) {
       const Eight at = load_eight(x + j);
       for (std::size_t i = 0; i < 2 * kPanel; ++i) sum[i] += load_eight(rows[i] + j) * at;
     }
-    // x is zero up to the end of the panel, so what elimination left there does not count.
+    // x is still zero up to the end of the panel, so left-over matrix entries there add nothing.
     for (std::size_t i = 0; k + i < end; ++i) {
       const Eight s = sum[i];
       x[k + i] = rows[i][n_] - (((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7])));

@@ -1,5 +1,5 @@
 #pragma once
-// A small dense system of equations in single precision.
+// Solver for a small dense linear system in single precision.
 
 #include <cstddef>
 #include <vector>
@@ -9,16 +9,16 @@
 
 namespace ligature::physics::rod {
 
-/// M x = b. Elimination makes a unit matrix of eight columns and rows at a time, takes them from the rows below, and
-/// exchanges rows only where a pivot has shrunk to 1e-4 of what it was: nearly all of M is symmetric and positive.
-/// O(n^3 / 15) instructions; relative accuracy 1e-6 times the condition of M.
+/// M x = b by block Gauss elimination: up to eight columns at a time (two panels of four) are reduced to a unit matrix
+/// and eliminated from the rows below. Rows are exchanged only where a pivot has shrunk to 1e-4 of its value, since
+/// nearly all of M is symmetric positive definite. About n^3 / 15 instructions; relative accuracy 1e-6 x cond(M).
 class Dense {
  public:
   void reserve(std::size_t most);
   void resize(std::size_t unknowns) noexcept { n_ = unknowns, stride_ = (unknowns + 8) & ~std::size_t{7}; }
 
-  /// Row i of M; b_i behind it, and zeros up to the end of the row, a multiple of eight. Up to eight more numbers may
-  /// be written behind what is asked for, if rows are written in order.
+  /// Row i of M, then b_i, then zeros up to the end of the row, whose length is a multiple of eight. If rows are
+  /// written in order, up to eight numbers may be written past the end of a row.
   [[nodiscard]] float* row(std::size_t i) noexcept { return m_.data() + i * stride_; }
 
   /// @return false when M is singular, or the time was over first. M is lost.
@@ -34,8 +34,8 @@ class Dense {
   void clear_below(std::size_t k, std::size_t pivots, std::size_t first) noexcept;
   void substitute() noexcept;
 
-  Floats m_, x_, first_;             // the diagonal before elimination
-  std::vector<std::size_t> panels_;  // rows in which they begin
+  Floats m_, x_, first_;             // first_: absolute values of the diagonal before elimination
+  std::vector<std::size_t> panels_;  // first row of each panel
   std::size_t n_ = 0, stride_ = 8;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// A rod for those who look at it.
+// Tension and twist along a rod, for displays.
 
 #include <span>
 
@@ -7,7 +7,7 @@
 
 namespace ligature::physics::rod {
 
-/// As Simulation::describe(). The turn grows along an edge by M ds / GJ, from the twisting moments of the last tick.
+/// As Simulation::describe(). The angle grows along a segment by M ds / GJ, with the twisting moments of the last tick.
 void describe(const Rod& rod, std::span<float> tension_N, std::span<float> turn_rad) noexcept;
 
 }  // namespace ligature::physics::rod

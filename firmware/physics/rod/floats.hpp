@@ -1,5 +1,5 @@
 #pragma once
-// Single precision numbers that begin where a cache line does: eight of them are then never in two lines.
+// Array of floats aligned to a cache line, so that an aligned group of eight never spans two lines.
 
 #include <algorithm>
 #include <cstddef>

@@ -26,12 +26,12 @@ Material material_of(const scene::Scene& scene) noexcept {
   m.static_friction = scene.contact.static_friction.value_or(0.0);
   m.born_curvature_per_m = r.rest_curvature_per_m;
   m.born_twist_per_m = r.rest_twist_per_m;
-  m.yield_curvature_per_m = r.yield_strain.value_or(0.0) / m.radius_m;  // strain of the outer fibre: radius x curvature
+  m.yield_curvature_per_m = r.yield_strain.value_or(0.0) / m.radius_m;  // strain at the surface = radius x curvature
   m.set_fraction = r.set_fraction;
   return m;
 }
 
-// Straight down from where node 0 is fixed.
+// Places the thread straight down from the fixed position of node 0, or from the origin.
 void hang(const scene::Scene& scene, State& state) noexcept {
   Vec top{};
   for (const auto& f : scene.world.fixed) {
@@ -51,23 +51,24 @@ std::vector<double> curvature_of(const std::vector<scene::Vec>& line) {
   return curvature;
 }
 
-/// Does the scene say where each node is, stretched or not?
+/// Does the scene give one point per node, so that points are used as they are, stretched or not?
 bool is_node_by_node(const scene::Scene& scene) noexcept {
   return static_cast<int>(scene.suture.initial_polyline_m.size()) == scene.suture.nodes &&
          scene.suture.rod.spacing == scene::Spacing::kUniform;
 }
 
-// Along the scene's polyline, each node one rest length from the last as the crow flies, so that nothing is stretched:
-// where the thread bends, chords are shorter than the line, and a segment of 71 N must not begin 1 % short.
+// Places nodes along the scene's polyline, each at a straight distance of one rest length from the last, so that no
+// segment is stretched. Equal distances along the line would make chords in bends 1 % too short, a large compression
+// at EA = 71 N.
 void lay_along(const std::vector<scene::Vec>& line, State& state) noexcept {
   state.x[0] = vec(line[0]);
-  std::size_t k = 1;  // the line's segment k - 1 .. k is searched next, from u on
+  std::size_t k = 1;  // the search goes on in the line's segment k - 1 .. k, at parameter u
   double u = 0.0;
   const Vec onward = vec(line.back()) - vec(line[line.size() - 2]);
   for (std::size_t i = 1; i < state.x.size(); ++i) {
     const double rest = state.mesh.s[i] - state.mesh.s[i - 1];
     const Vec c = state.x[i - 1];
-    for (;; ++k, u = 0.0) {  // |a + u d - c| = rest, the larger root; the last segment goes on for ever
+    for (;; ++k, u = 0.0) {  // larger root of |a + u d - c| = rest; the last segment is extended without end
       const bool last = k + 1 >= line.size();
       const Vec a = last ? vec(line.back()) - onward : vec(line[k - 1]), d = last ? onward : vec(line[k]) - a;
       const double A = dot(d, d), B = dot(a - c, d), D = B * B - A * (dot(a - c, a - c) - rest * rest);
@@ -80,13 +81,13 @@ void lay_along(const std::vector<scene::Vec>& line, State& state) noexcept {
   }
 }
 
-/// What the scene asks of a rod and no rod can do, or nothing.
+/// Reason why the rod model cannot simulate the scene, or an empty string.
 std::string objection_to(const scene::Scene& scene) {
   if (scene.suture.nodes < 4)
     return "suture.nodes: found " + std::to_string(scene.suture.nodes) + ", the rod model needs 4 or more";
   if (scene.contact.solver == scene::ContactSolver::kPaper)
     return "contact.solver: found \"paper\", the rod model has \"none\" and \"implicit\"";
-  if (scene.suture.rod.GJ_N_m2 == 0.0) {  // without twist a thread has no sides
+  if (scene.suture.rod.GJ_N_m2 == 0.0) {  // without twist there are no material frames
     if (scene.suture.rod.rest_curvature_per_m != 0.0)
       return "suture.rest_curvature_per_m: needs suture.GJ_N_m2 above 0";
     if (scene.suture.rod.rest_twist_per_m != 0.0) return "suture.rest_twist_per_m: needs suture.GJ_N_m2 above 0";
@@ -113,7 +114,7 @@ Numerics numerics_of(const scene::Scene& scene) noexcept {
       n.substeps = 10;
       n.max_substeps = 16;
       n.rush = 0.25;
-      n.work = 2'610'000;  // 154 nodes: 3.0 M, which 60 % of a period holds where 4.5 M are refused
+      n.work = 2'610'000;  // 3.0 M for 154 nodes: fits into 60 % of a period on machines where 4.5 M do not
       break;
     case scene::Accuracy::kBalanced:
       break;

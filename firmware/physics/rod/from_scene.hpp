@@ -1,5 +1,5 @@
 #pragma once
-// From a scene's numbers to a rod ready to tick.
+// Builds a rod from a scene.
 
 #include <string>
 #include <variant>
@@ -9,14 +9,14 @@
 
 namespace ligature::physics::rod {
 
-/// Settings behind `accuracy` (docs/accuracy.md states what each costs and errs).
+/// Settings of the scene's `accuracy` (docs/accuracy.md gives cost and error of each).
 [[nodiscard]] Numerics numerics_of(const scene::Scene& scene) noexcept;
 
-/// Parts that the scene asks for and no others.
+/// The effects that the scene needs.
 [[nodiscard]] Parts parts_of(const scene::Scene& scene) noexcept;
 
-/// @return the rod in its initial shape, held by the scene's supports, with room for two gripper capsules after the
-/// pegs; or why not.
+/// @return the rod in its initial shape, with the scene's supports and room for two gripper capsules after the pegs; or
+/// the reason why the scene is refused.
 [[nodiscard]] std::variant<Rod, std::string> rod_of(const scene::Scene& scene);
 
 }  // namespace ligature::physics::rod

@@ -1,5 +1,5 @@
-// The guard: no pair of segments may move, relative to each other, by more than its distance, but where it stays on two
-// sides of a plane.
+// The guard: limits a substep so that no two segments move, relative to each other, by more than 0.9 of their distance.
+// Exception: pairs that a plane separates throughout the motion.
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@
 namespace ligature::physics::rod {
 namespace {
 
-/// Smallest share of a substep's motion that anything seen so far may make.
+/// Largest admissible share of a substep's motion, over all pairs tested so far.
 struct Share {
   const Vec *x, *v;
   double dt_s;
@@ -27,15 +27,15 @@ struct Share {
   void pair(std::int32_t a, std::int32_t b, double distance, const Motion& m) noexcept {
     const auto p = static_cast<std::size_t>(a), q = static_cast<std::size_t>(b);
     if (m.rate(p, q) * dt_s <= 0.9 * distance) return;
-    // Points in between move no more than the ends.
+    // Relative velocities of inner points are convex combinations of those of the ends.
     const Lanes ends2 = squares(v[b] - v[a], v[b + 1] - v[a], v[b] - v[a + 1], v[b + 1] - v[a + 1]);
     const double most2 = std::max(std::max(ends2[0], ends2[1]), std::max(ends2[2], ends2[3]));
     if (most2 * dt_s * dt_s <= 0.81 * distance * distance || passes_by(a, b)) return;
     faster(most2, distance);
   }
-  /// Nodes go straight, and all points of a segment lie between its ends: what is on two sides of a plane before and
-  /// after is so all the time. The plane is across the shortest way; a tenth of that remains, as when a pair moves by
-  /// 0.9 of it.
+  /// Is the pair separated by a plane during the whole step? Nodes move on straight lines, so it suffices that the
+  /// plane separates the segments before and after. Its normal is the shortest connection of the segments; a tenth of
+  /// their distance must remain, as in the other test.
   [[nodiscard]] bool passes_by(std::int32_t a, std::int32_t b) const noexcept {
     const Closest c = closest(x[a], x[a + 1], x[b], x[b + 1]);
     const auto along = [&](Vec q) { return dot(c.between, q); };
@@ -57,7 +57,7 @@ double ContactSet::safe_fraction(const Motion& motion, const State& state, doubl
     const double distance = c.is_pair() ? c.distance_m : c.gap_m + c.reach_m;
     if (c.is_pair()) {
       share.pair(c.node[0], c.node[2], distance, motion);
-    } else if (c.count == 1) {  // a plane: what is below it already may only come up
+    } else if (c.count == 1) {  // floor: limits the downward motion of a node that is above it
       share.fall(-dot(v[c.node[0]] - c.surface, c.n), distance);
     } else {
       for (int i = 0; i < c.count; ++i) share.motion(v[c.node[i]] - c.surface, distance);

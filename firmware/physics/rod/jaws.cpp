@@ -41,7 +41,7 @@ void Jaws::close(Rod& rod, int node, Vec tool, const Mat* R_WT) noexcept {
   turning_ = R_WT != nullptr;
   roll_hold_ = -1;
   if (turning_) along_T_ = transposed(*R_WT) * along_;
-  const bool directed = turning_ && settings_.width_m <= 0.0;  // nodes across a width have a direction themselves
+  const bool directed = turning_ && settings_.width_m <= 0.0;  // with a width, several nodes define the direction
   const Vec target = tool + (state.mesh.s[static_cast<std::size_t>(node)] - s_m_) * along_;
   hold_[0] = rod.grip(node, settings_.stiffness_N_per_m, settings_.damping_N_s_per_m, target, true, directed);
   count_ = hold_[0] >= 0 ? 1 : 0;
@@ -52,7 +52,7 @@ void Jaws::open(Rod& rod) noexcept {
   count_ = 0;
 }
 
-/// Lets go of nodes that are no longer between the jaws and takes those that have come in.
+/// Releases nodes that are no longer between the jaws and grips those that have moved in.
 void Jaws::choose(Rod& rod, Vec tool) noexcept {
   const State& state = rod.state();
   const auto& s = state.mesh.s;
@@ -61,7 +61,7 @@ void Jaws::choose(Rod& rod, Vec tool) noexcept {
   if (s_m_ < -half || s_m_ > s.back() + half) return open(rod);
   int first = static_cast<int>(std::lower_bound(s.begin(), s.end(), s_m_ - half) - s.begin());
   int last = static_cast<int>(std::upper_bound(s.begin(), s.end(), s_m_ + half) - s.begin()) - 1;
-  if (first > last) std::swap(first, last);  // no node inside: the two around
+  if (first > last) std::swap(first, last);  // no node between the jaws: the two nodes around s_c
   first = std::clamp(first, 0, n - 1), last = std::clamp(last, 0, n - 1);
   if (settings_.width_m <= 0.0) {
     const auto nearer = [&](int k) { return std::abs(s[static_cast<std::size_t>(k)] - s_m_); };
@@ -94,11 +94,11 @@ void Jaws::choose(Rod& rod, Vec tool) noexcept {
   }
 }
 
-/// Moves s_c so far that the coupling pulls along the thread by no more than slip_N.
+/// Moves s_c until the coupling pulls along the thread by no more than slip_N.
 void Jaws::slip(Rod& rod, Vec tool) noexcept {
   if (settings_.slip_N <= 0.0 || count_ == 0) return;
   const State& state = rod.state();
-  double stretch_m = 0.0;  // mean of the nodes' way ahead of their targets, along the thread
+  double stretch_m = 0.0;  // mean distance of the nodes from their targets, along t
   for (int k = 0; k < count_; ++k) {
     const auto node =
         static_cast<std::size_t>(state.holds[static_cast<std::size_t>(hold_[static_cast<std::size_t>(k)])].node);
@@ -110,7 +110,7 @@ void Jaws::slip(Rod& rod, Vec tool) noexcept {
   slides_m_per_s_ = -over_m / rod.numerics().tick_s;
 }
 
-// What is held keeps its place in the tool.
+// Turns direction and director with the tool.
 void Jaws::turn(Rod& rod, const Mat& R_WT) noexcept {
   along_ = R_WT * along_T_;
   for (int k = 0; k < count_; ++k) {

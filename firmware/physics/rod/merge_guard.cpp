@@ -1,4 +1,4 @@
-// Nothing is cut when two segments become one.
+// Safety test for merging two segments: nothing may be crossed on the way to their chord.
 
 #include <cmath>
 #include <numbers>
@@ -25,7 +25,7 @@ bool merge_is_clear(const Material& material, const State& state, const std::vec
     return closest(before, here, p, q).distance2 > least2 && closest(here, after, p, q).distance2 > least2;
   };
   for (std::size_t j = 0; j + 1 < x.size(); ++j) {
-    if (j + 2 >= node && j <= node + 1) continue;  // the two, and those that share an end with the chord
+    if (j + 2 >= node && j <= node + 1) continue;  // the two segments themselves, and those adjacent to the chord
     const double arc = j > node ? s[j] - s[node + 1] : s[node - 1] - s[j + 1];
     if (!clear(x[j], x[j + 1], arc < bent_arc ? 1.001 * h : h + diameter)) return false;
   }

@@ -1,5 +1,5 @@
 #pragma once
-// The nodes of a rod: where they sit along the thread, what mass they carry, and the constant bending matrix.
+// The mesh of a rod: material coordinates and masses of its nodes, and the constant bending matrix.
 
 #include <cstdint>
 #include <span>
@@ -9,14 +9,15 @@
 
 namespace ligature::physics::rod {
 
-/// How a node's tangent is held.
+/// Is the tangent at a node free or imposed?
 enum class Clamp : std::uint8_t { kFree, kClamped };
 
 /// Rest lengths l_j, lumped masses m_i = rho (l_{i-1} + l_i) / 2, and the scalar pentadiagonal bending matrix K_b of
 ///   E_b = sum_i w_i / 2 |t_i - t_{i-1}|^2,  w_i = 2 EI / (l_{i-1} + l_i),  t_j = (x_{j+1} - x_j) / l_j,
-/// which is quadratic in the positions: linear force, the same constant matrix for x, y and z, and nothing special at
-/// unequal segments (a clamped end adds a half vertex of weight 2 EI / l with the clamp's direction for the missing
-/// tangent). Second order in l for smooth shapes; saturates in a fold (E <= 2 EI / l), so a knot needs l <= diameter.
+/// which is quadratic in the positions: the force is linear, with the same constant matrix for x, y and z, also for
+/// unequal segments. A clamped end adds a half vertex of weight 2 EI / l, with the clamp's direction as the missing
+/// tangent. The error is second order in l for smooth shapes. In a fold the energy is limited to 2 EI / l, so a knot
+/// needs l <= diameter.
 struct Mesh {
   std::vector<double> s;           ///< n material coordinates, m, from 0 to the length
   std::vector<double> rest;        ///< n - 1 rest lengths (sized n; the last is 0)
@@ -29,7 +30,7 @@ struct Mesh {
   [[nodiscard]] int nodes() const noexcept { return static_cast<int>(s.size()); }
   void resize(int n);
 
-  /// Everything but `s` and `clamp`, from them. O(n), no allocation.
+  /// Computes all other members from `s` and `clamp`. O(n), no allocation.
   void rebuild(const Material& material) noexcept;
 };
 

@@ -6,11 +6,11 @@ namespace ligature::physics::rod {
 namespace {
 
 constexpr double kRidge = 1e-6,
-                 kLeast = 1e-14;  // of a change's own square, of the trace: keeps weights from being huge
+                 kLeast = 1e-14;  // Tikhonov terms, relative to the diagonal entry and to the trace
 
 using Row = std::array<double, Mixing::kDepth>;
 
-// Gaussian elimination of a small symmetric positive definite system, in place; the answer is left in b.
+// Gaussian elimination of a small symmetric positive definite system, in place; b becomes the solution.
 void solve(std::array<Row, Mixing::kDepth>& a, Row& b, std::size_t n) noexcept {
   for (std::size_t k = 0; k < n; ++k) {
     for (std::size_t i = k + 1; i < n; ++i) {
@@ -29,7 +29,8 @@ double sum(Lanes a) noexcept { return (a[0] + a[1]) + a[2]; }
 
 }  // namespace
 
-// The newest change goes into `slot`; its products with all changes, and theirs with r. One pass, eight registers.
+// Stores the newest change in `slot`; computes its products with all changes, and theirs with r (theta). One pass over
+// the impulses.
 void Mixing::measure(const Vec* p, const Vec* r, std::size_t impulses, std::size_t slot, Row& theta) noexcept {
   Lanes g0{}, g1{}, g2{}, g3{}, b0{}, b1{}, b2{}, b3{};
   for (std::size_t i = 0; i < impulses; ++i) {

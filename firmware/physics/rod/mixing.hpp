@@ -1,5 +1,5 @@
 #pragma once
-// Anderson mixing: makes a slowly converging fixed point converge fast, at the cost of a few dot products.
+// Anderson mixing: accelerates a slowly converging fixed-point iteration at the cost of a few dot products.
 
 #include <array>
 #include <vector>
@@ -8,14 +8,14 @@
 
 namespace ligature::physics::rod {
 
-/// Fixed point p = G(p). After each evaluation p+ = G(p), r = p+ - p, the
-/// next argument is the mixture of the last few p+ whose residuals cancel best:
+/// Solves p = G(p). After each evaluation p+ = G(p), with residual r = p+ - p, the next argument is the combination of
+/// the last few p+ that minimises the combined residual:
 ///   theta = argmin |r - sum theta_j dr_j|^2,   p = p+ - sum theta_j dp_j   [Anderson 1965]
-/// with dr_j, dp_j the changes of r and p+ from one evaluation to the next,
-/// which on a linear map does what GMRES does [Walker & Ni 2011]. With cones in G a mixture can be far off: the
-/// caller compares it with p+ and restarts when it is worse. Impulses may be added at the end from one evaluation to
-/// the next; they count as zero until then. Products of the changes are kept, so an evaluation costs eight dot
-/// products. No allocation after reserve().
+/// with dr_j, dp_j the changes of r and p+ from one evaluation to the next. For a linear G this is equivalent to GMRES
+/// [Walker & Ni 2011]. As G contains projections onto friction cones, the combination can be worse than p+: the caller
+/// compares the two and calls restart() if so. Impulses may be appended between evaluations; their past values count
+/// as zero. Scalar products of the changes are kept, so an evaluation costs eight dot products. No allocation after
+/// reserve().
 class Mixing {
  public:
   static constexpr int kDepth = 4;
@@ -23,12 +23,13 @@ class Mixing {
   void reserve(std::size_t impulses) { past_.resize(impulses); }
   void restart() noexcept { held_ = next_ = 0, primed_ = false; }
 
-  /// @param p  in: p+; out: what to try next.  @param r p+ - p.  @return false when there is no past to mix with yet.
+  /// @param p  in: p+; out: the next argument.  @param r  p+ - p.  @return false, and p is unchanged, when there are no
+  /// earlier evaluations to combine with.
   bool step(Vec* p, const Vec* r, std::size_t impulses) noexcept;
 
  private:
   struct Past {
-    std::array<Vec, kDepth> dr, dp;  // by slot; newest in the slot before next_
+    std::array<Vec, kDepth> dr, dp;  // ring buffers; the newest entry is the one before next_
     Vec r, p;                        // of the last evaluation
   };
   void measure(const Vec* p, const Vec* r, std::size_t impulses, std::size_t slot,
@@ -36,7 +37,7 @@ class Mixing {
 
   std::vector<Past> past_;
   std::array<std::array<double, kDepth>, kDepth> products_{};  // dr_j . dr_k
-  std::size_t known_ = 0;                                      // impulses that have a past
+  std::size_t known_ = 0;                                      // impulses with an initialised entry in past_
   int next_ = 0, held_ = 0;
   bool primed_ = false;
 };

@@ -6,7 +6,7 @@
 namespace ligature::physics::rod {
 namespace {
 
-// max over a < b of (P_b - P_a): the most that a bound which is a difference of prefix sums is exceeded by.
+// Running maximum over a < b of P_b - P_a, for values P given in order: the largest difference of two prefix sums.
 struct Rise {
   double least = 0.0, most = 0.0;
   void next(double p) noexcept {
@@ -15,7 +15,7 @@ struct Rise {
   }
 };
 
-// Largest of every block of segments.
+// Maximum of every block of segments.
 void blocks_of(const std::vector<double>& of, std::vector<double>& blocks) noexcept {
   const std::size_t n = of.size();
   for (std::size_t k = 0, i = 0; i < n; ++k) {
@@ -61,7 +61,7 @@ void Motion::measure(const Vec* v) noexcept {
     speed[i] = std::sqrt(speed[i] > speed[i + 1] ? speed[i] : speed[i + 1]);
     link[i] = std::sqrt(link[i]);
   }
-  speed[n - 1] = 0.0;  // no segment's
+  speed[n - 1] = 0.0;  // there is no segment n - 1
   double sum = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     drift[i] = sum;
@@ -91,8 +91,7 @@ void Motion::restart() noexcept {
   std::copy(drift_.begin(), drift_.end(), drift_allowed_.begin());
 }
 
-// A pair's bound is the lesser of two sums, and so is what it was allowed; if each sum alone stays within what was
-// allowed, so does the lesser.
+// Tests each of the two bounds separately: if both stay within their own allowance, so does the smaller of them.
 bool Motion::used_up(double spare_m, double horizon_s, double ahead_s) const noexcept {
   if (2.0 * (furthest_ + ahead_s * fastest_) <= spare_m) return false;
   double one = 0.0;

@@ -8,20 +8,20 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr double kTurn = 0.35;       // rad per node
-constexpr double kStartTurn = 0.5;   // the same for the shape a loose thread begins in
-constexpr double kBendLength = 0.4;  // of sqrt(EI / T)
+constexpr double kTurn = 0.35;       // wanted angle between neighbouring segments, rad
+constexpr double kStartTurn = 0.5;   // the same for the initial mesh
+constexpr double kBendLength = 0.4;  // wanted length at a contact, in units of sqrt(EI / T)
 constexpr double kGrading = 0.2;
-constexpr double kCut = 0.5;         // of a segment, up to where its corners are cut
-constexpr double kAway = 0.5;        // of a unit, gone in which what is kept at a node fades by e
-constexpr double kLeastFade = 1e-3;  // so that Spin::before_fading() can make up for it
+constexpr double kCut = 0.5;         // default h of smooth.hpp, as a share of the segment
+constexpr double kAway = 0.5;        // distance moved in a tick, in mesh units, at which offsets fade to 1/e
+constexpr double kLeastFade = 1e-3;  // > 0, as Spin::before_fading() divides by the factor
 constexpr double kRests_m_per_s = 1e-3;
 constexpr double kSwings_m_per_s = 0.05;
-constexpr double kFirst = 0.7;  // of a unit: what rests against a segment of one is split before other places
-constexpr double kWorth = 1.5;  // a change must better the worst by this factor
-constexpr int kTries = 4;       // merges looked at for a change, so that a tangle costs no more than that
+constexpr double kFirst = 0.7;  // wanted length, in units, of segments at rest against a unit segment: split first
+constexpr double kWorth = 1.5;  // least improvement factor of the worst ratio by a change
+constexpr int kTries = 4;       // most merges tried per change, which bounds the cost in a tangle
 
-// Moves array[from + 1 ..] one place: opens a slot at `at`, or closes it. Sizes stay n: the slot at the end is spare.
+// Shift the tail of an array by one place, to open a slot at `at` or to close it. The size stays the same.
 template <class T>
 void open_slot(std::vector<T>& array, std::size_t at) noexcept {
   std::move_backward(array.begin() + static_cast<std::ptrdiff_t>(at), array.end() - 1, array.end());
@@ -32,14 +32,14 @@ void close_slot(std::vector<T>& array, std::size_t at) noexcept {
             array.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
-// A segment to be: how much too long it is, and of two equals the one nearer to the middle first.
+// A segment of the initial mesh, ordered by its ratio of length to wanted length, then by nearness to the middle.
 struct Piece {
   double excess;
   std::int32_t nearness, at, length;
   auto operator<=>(const Piece&) const = default;
 };
 
-// Wanted length at every unit of a thread that is not pulled, graded; the same everywhere when no curvature is given.
+// Wanted length at every unit of the thread, from the given curvature, graded; constant when no curvature is given.
 std::vector<double> wanted_at_rest(int units, double unit_m, std::span<const double> curvature_per_m) {
   std::vector<double> wanted(static_cast<std::size_t>(units), unit_m * (1 << Refine::kLevels));
   const double per_place = static_cast<double>(units) / static_cast<double>(curvature_per_m.size());
@@ -145,9 +145,9 @@ void Refine::grade(const Mesh& mesh) noexcept {
   }
 }
 
-// What lies against the finest segments goes before all else: it is as fine as they are though other places are then up
-// to twice as long as they want to be. What slides slowly, as a loop that swings, is at most twice as long; what slides
-// fast asks for nothing: its nodes would come and go all the time, each time with a small step of the force.
+// Two segments in contact get equal wanted lengths if the contact is at rest, and within a factor of two if it slides
+// slowly, as under a swinging loop. Fast sliding has no effect: nodes would be moved continually, each time with a
+// small step of the force. A segment at rest against one of unit length has priority over all others (kFirst).
 void Refine::want_at_rest(const State& state, const ContactSet& contacts) noexcept {
   for (const auto& c : contacts.contacts()) {
     if (!c.is_pair() || dot(c.p, c.p) == 0.0) continue;
@@ -201,10 +201,11 @@ int Refine::cheapest_merge(double most) const noexcept {
   return best;
 }
 
-// Node i goes; its two segments become one.
+// Removes node i; its two segments become one.
 void Refine::merge(const Material& material, State& state, int node) noexcept {
   const auto i = static_cast<std::size_t>(node);
-  const double half = 0.5 * material.density_kg_per_m * (state.mesh.s[i] - state.mesh.s[i - 1]);  // = ours / 2
+  // Half of node i's mass, as its two segments are equally long.
+  const double half = 0.5 * material.density_kg_per_m * (state.mesh.s[i] - state.mesh.s[i - 1]);
   for (const std::size_t k : {i - 1, i + 1}) {
     const double before = k > 0 ? state.mesh.s[k] - state.mesh.s[k - 1] : 0.0;
     const double after = k + 1 < at_.size() ? state.mesh.s[k + 1] - state.mesh.s[k] : 0.0;
@@ -212,7 +213,7 @@ void Refine::merge(const Material& material, State& state, int node) noexcept {
     state.v[k] = (1.0 / (mass + half)) * (mass * state.v[k] + half * state.v[i]);
   }
   tension_[i - 1] = 0.5 * (tension_[i - 1] + tension_[i]);
-  state.cut_before[i - 1] *= 0.5;  // of the whole it is half as much
+  state.cut_before[i - 1] *= 0.5;  // the same length, as a share of a segment twice as long
   state.cut_after[i - 1] = 0.5 * state.cut_after[i];
   close_slot(state.cut_before, i);
   close_slot(state.cut_after, i);
@@ -229,7 +230,7 @@ void Refine::merge(const Material& material, State& state, int node) noexcept {
   }
 }
 
-// A node in the middle of a segment, on its chord.
+// Inserts a node in the middle of a segment's chord.
 void Refine::split(const Material&, State& state, int segment) noexcept {
   const auto j = static_cast<std::size_t>(segment), i = j + 1;
   const auto insert = [&](auto& array, auto value) {
@@ -255,8 +256,8 @@ void Refine::split(const Material&, State& state, int segment) noexcept {
   }
 }
 
-// What is kept at a node belongs to the place where it was when nodes moved along the thread. Squared: what creeps, and
-// what the fading itself moves, loses none of it.
+// Offsets hold only for the place where a node was when they were set, so they fade faster as the node moves away. The
+// exponent is quadratic in the speed, so that slow motion, such as that caused by the fading itself, adds nothing.
 void Refine::slide(const State& state, double tick_s, bool drifts) noexcept {
   const double per_m = tick_s / (kAway * unit_m_);
   const Vec drift = drifts ? mean_velocity(state) : Vec{};
@@ -267,7 +268,7 @@ void Refine::slide(const State& state, double tick_s, bool drifts) noexcept {
   std::fill(strain_fade_.begin(), strain_fade_.end(), kFade);
 }
 
-// What fading frees is stress: where that grows, energy comes from nowhere.
+// Fading an offset adds stress or removes it; where it adds stress, the elastic energy grows without a source.
 double Refine::hold_back(const Material& material, const State& state, std::span<const Vec> born,
                          double allowance_J) noexcept {
   const Mesh& mesh = state.mesh;
@@ -288,7 +289,7 @@ double Refine::hold_back(const Material& material, const State& state, std::span
   for (std::size_t i = 1; i + 1 < n; ++i) count(bend_gain(i));
   for (std::size_t j = 0; j + 1 < n; ++j) count(strain_gain(j));
   if (up_J + down_J <= allowance_J) return up_J + down_J;
-  const double share = (allowance_J - down_J) / up_J;  // gains are convex, so a share of the way gains less than that
+  const double share = (allowance_J - down_J) / up_J;  // gains are convex: `share` of the fading gains <= share x gain
   for (std::size_t i = 1; i + 1 < n; ++i)
     if (bend_gain(i) > 0.0) fade_[i] = 1.0 - share * (1.0 - fade_[i]);
   for (std::size_t j = 0; j + 1 < n; ++j)

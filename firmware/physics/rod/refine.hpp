@@ -1,5 +1,5 @@
 #pragma once
-// Nodes where they are needed: a fixed number of them, moved along the thread by splitting here and merging there.
+// Remeshing: a fixed number of nodes is moved along the thread, by merging two segments here and splitting one there.
 
 #include <cstdint>
 #include <span>
@@ -9,49 +9,49 @@
 
 namespace ligature::physics::rod {
 
-/// A dyadic mesh: every segment is unit x 2^k long, unit being the finest wanted (about a diameter), 0 <= k <= kLevels.
-/// Wanted length of a segment, the least of
+/// A dyadic mesh: every segment has the length unit x 2^k, 0 <= k <= kLevels, where unit is about a diameter.
+/// The wanted length of a segment is at least a unit; else the smallest of
 ///   0.35 / curvature,
-///   0.4 sqrt(EI / T) at a contact, T its force or the tension: the length over which a pulled thread bends away,
-///   the wanted length of a place nearby + 0.2 x distance (grading),
-///   that of the place it lies against, however lightly, when it lies still; twice that while it slides slowly,
-/// and never below a unit. Where the longest segment, relative to what is wanted, is much worse off than a merged pair
-/// elsewhere would be, that pair is merged and the segment split. Nothing jumps:
-/// - a new node lies on the chord of its segment, so the thread's shape, gaps and stretch are untouched;
-/// - a merge shares the node's momentum out, and only nearly straight, free nodes away from contacts are merged;
-/// - a merge is refused when anything is so near that the two segments could pass or touch it on their way to the chord
+///   0.4 sqrt(EI / T) at a contact, the length over which a pulled thread bends; T the larger of force and tension,
+///   the wanted length at another place + 0.2 x the distance to it (grading),
+///   the wanted length of the segment it touches, if the contact is at rest; twice that while it slides slowly.
+/// Each change merges one pair of segments and splits another segment: the one that is longest relative to its wanted
+/// length, if its ratio is clearly worse than that of the merged pair. State changes by a change of the mesh:
+/// - a split puts its node on the chord, so shape, gaps and stretch stay the same;
+/// - a merge distributes the node's momentum to its neighbours; held, loaded and touching nodes are not merged;
+/// - a merge is refused when something is so near that the segments could touch or cross it on the way to the chord
 ///   (merge_is_clear);
-/// - bending moments and tension stay what they were: what the new polygon would change is kept as a stress-free offset
-///   (State::rest_bend, rest_strain) that fades within some ticks, sooner where the thread moves;
-/// - a split leaves the smooth curve where it is (smooth.hpp): corners are cut as far as before, which fades likewise.
+/// - bending moments and tensions are kept: the difference that the new polygon makes is stored as a stress-free
+///   offset (State::rest_bend, rest_strain), which fades within some ticks, faster where the thread moves;
+/// - a split keeps the smooth curve (smooth.hpp) by changed State::cut_before, cut_after, which fade likewise.
 class Refine {
  public:
-  /// Lays out n nodes: units for the finest length wanted_m, coarse segments, then splits of the longest; of the
-  /// longest for its curvature, where that is given, at places equally far apart along the whole thread.
-  /// @return false when n is too small or too large for the length.
+  /// Initial mesh of n nodes: the coarsest segments, then the longest one is halved until there are n nodes. With
+  /// curvature_per_m, sampled at equal distances along the thread, longest means relative to the wanted length there.
+  /// @param wanted_m  approximate unit, m. @return false when n is too small or too large for the thread's length.
   bool start(const Material& material, double wanted_m, State& state, std::span<const double> curvature_per_m = {});
 
-  /// Before update(): how far nodes went in a tick, and so how much of their offsets is left. A thread that `drifts`
-  /// falls or flies as a whole: that is no way along anything.
+  /// Before update(): computes the factors by which the offsets fade in this tick, from the nodes' speeds. With
+  /// `drifts` the mean velocity does not count, as for a thread that falls or flies as a whole.
   void slide(const State& state, double tick_s, bool drifts) noexcept;
-  /// The same: fading may raise the energy by no more than allowance_J. `born` is the part of State::rest_bend that
-  /// does not fade, or empty. @return by how much it does, or less than that: what is lower by it is given away.
+  /// After slide(): weakens the fading where needed so that it raises the elastic energy by no more than allowance_J.
+  /// `born` is the part of State::rest_bend that does not fade, or empty. @return upper bound of the energy change, J.
   double hold_back(const Material& material, const State& state, std::span<const Vec> born,
                    double allowance_J) noexcept;
   [[nodiscard]] std::span<const double> fade() const noexcept { return fade_; }
 
-  /// Offsets become what is left of them.
+  /// Multiplies the offsets by their factors.
   void fade_offsets(State& state) const noexcept;
 
-  /// One tick's worth of changes, an eighth of its work at most. @return true when nodes moved. O(n); no allocation.
+  /// The changes of one tick, with an eighth of its work at most. @return true when nodes moved. O(n); no allocation.
   bool update(const Material& material, State& state, const Forces& forces, ContactSet& contacts,
               const std::vector<Body>& bodies, Work& work) noexcept;
 
-  /// After update() returned true and the mesh was rebuilt: offsets that keep moments and tensions.
+  /// Call after update() returned true and the mesh was rebuilt: sets the offsets so that moments and tensions stay.
   void keep_stress(const Material& material, State& state) noexcept;
 
   static constexpr int kLevels = 4;
-  static constexpr double kFade = 0.8;  ///< of the offsets, per tick, where nothing moves
+  static constexpr double kFade = 0.8;  ///< factor of the offsets per tick where the thread is at rest
   static constexpr int kChangesPerTick = 6;
 
  private:
@@ -59,9 +59,9 @@ class Refine {
   void grade(const Mesh& mesh) noexcept;
   void want_at_rest(const State& state, const ContactSet& contacts) noexcept;
   [[nodiscard]] int worst_segment() const noexcept;
-  /// Node whose merged pair is least too long, below `most` times what is wanted. @return -1 when there is none.
+  /// Node whose merged pair would have the smallest ratio of length to wanted length. @return -1 when none is < `most`.
   [[nodiscard]] int cheapest_merge(double most) const noexcept;
-  /// The same among those that may be merged; the others are struck off on the way.
+  /// As cheapest_merge(), but only nodes that pass merge_is_clear(); the others are marked as not free.
   int best_merge(const Material& material, const State& state, const std::vector<Body>& bodies, double most) noexcept;
   void merge(const Material& material, State& state, int node) noexcept;
   void split(const Material& material, State& state, int segment) noexcept;
@@ -70,16 +70,16 @@ class Refine {
   std::vector<std::int32_t> at_;     // node positions in units
   std::vector<double> wanted_;       // per segment, m
   std::vector<char> free_;           // node may be merged
-  std::vector<Vec> moment_;          // Q of every vertex
-  std::vector<double> fade_;         // of what is kept at a node, in this tick
-  std::vector<double> strain_fade_;  // and in a segment
+  std::vector<Vec> moment_;          // bending moment Q of every vertex
+  std::vector<double> fade_;         // factors of the offsets at nodes, in this tick
+  std::vector<double> strain_fade_;  // factors of the strain offsets of segments
   std::vector<double> tension_;
 };
 
-/// May segments node - 1 and node become their chord? Every point of them then moves by at most h, the distance of the
-/// node from the chord's material middle. So what is farther than h from both cannot be passed; asked for is h + the
-/// distance of touch, so that no contact begins with an overlap either. Neighbours along the thread, which are always
-/// near, need more than h alone. O(n), a bounding sphere for most.
+/// Can segments node - 1 and node be replaced by their chord without touching anything? Every point of them then moves
+/// by at most h, the distance of the node from the chord's point with the same material coordinate. So anything farther
+/// away than h cannot be crossed. The test demands h + the distance of touch, so that no overlap arises either; for
+/// neighbours along the thread, which are always near, only h. O(n); a bounding sphere excludes most segments.
 [[nodiscard]] bool merge_is_clear(const Material& material, const State& state, const std::vector<Body>& bodies,
                                   std::size_t node) noexcept;
 

@@ -8,17 +8,18 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr int kNodesInPiece = 500;  // whose forces or matrix take no more than a piece may
-constexpr int kWindow = 1024;      // nodes on which contacts can be solved together
-constexpr double kRelax_s = 0.02;  // in which a pulled thread comes to rest when the hands do; 0.005, 0.1: no matter
+constexpr int kNodesInPiece = 500;  // assembling this many nodes takes at most TickTime::kPiece_ns
+constexpr int kWindow = 1024;       // most nodes on which contacts are solved together
+constexpr double kRelax_s = 0.02;   // decay time of pace_m_per_s_ once the hands stop; 0.005 to 0.1 makes no difference
 constexpr double kMostLeniency = 6.0;  // see Rod::settled
-// Diameters within which a pair is a contact at any speed. With 0.05 and 0.2 a square and a surgeon's knot pulled at
-// 0.2 m/s to 5 N stand still for 10 and 23 % of the pull, with this for 9 and 20 (one pull each).
+// Gap, in diameters, below which a pair is a contact at any speed. Time lost while a square and a surgeon's knot are
+// pulled at 0.2 m/s to 5 N: 9 and 20 % with this, 10 and 23 % with 0.05 and with 0.2 (one pull each).
 constexpr double kNear = 0.1;
-// A thread that is alone: of what the tick lost, and of what its bends store, that fading may give it back.
+// Energy that fading the remeshing offsets may add to a thread that is alone: this share of what the tick has
+// dissipated, plus this share of the bending energy.
 constexpr double kFadeShare = 0.5, kFadeLeast = 1e-6;
 
-// How fast the fastest node moves among the others.
+// Largest speed of a node relative to the mean velocity.
 double stir(const std::vector<Vec>& v) noexcept {
   Vec mean{};
   for (const auto& each : v) mean += each;
@@ -59,7 +60,7 @@ Rod::Rod(const Material& material, const Numerics& numerics, const Parts& parts,
   moved();
 }
 
-// Copies of vectors have no spare room; ours must, or a tick would allocate.
+// A copied vector loses its spare capacity, and a tick would then allocate. So: construct with capacity, then assign.
 Rod::Rod(const Rod& other)
     : Rod(other.material_, other.numerics_, other.parts_, other.state_.nodes(),
           static_cast<int>(other.bodies.capacity())) {
@@ -120,7 +121,7 @@ void Rod::spread(std::span<const double> curvature_per_m) {
 
 void Rod::moved() noexcept {
   give_J_ = 0.0;
-  alone_ = faded_ = false;  // what it has is counted anew
+  alone_ = faded_ = false;  // kept_J_ no longer holds
   mesh_changed();
   if (parts_.frames()) spin_.start(material_, state_);
 }
@@ -250,7 +251,7 @@ Rod::HandSpeed Rod::set_hands(const std::array<Vec, kMaxHolds>& goals, std::arra
 
 void Rod::begin_tick(const HandSpeed& hands, const TimeLeft& left) noexcept {
   constexpr double kTired = 0.9, kRested = 0.25, kThrown_m_per_s = 10.0;
-  constexpr int kFewest = 10;  // substeps of a thread that labours: with six it errs and overlaps, and labours more
+  constexpr int kFewest = 10;  // substeps; with six the larger errors cause overlaps, which cost more than was saved
   labours_ = static_cast<double>(report_.work) >
                  (labours_ ? kRested : kTired) * static_cast<double>(numerics_.budget(state_.nodes(), 0.0)) ||
              report_.cut_at >= 0;
@@ -258,7 +259,7 @@ void Rod::begin_tick(const HandSpeed& hands, const TimeLeft& left) noexcept {
   leniency_ = report_.cut_short > 0 ? std::min(kMostLeniency, 1.5 * leniency_) : std::max(1.0, 0.9 * leniency_);
   report_ = TickReport{};
   const bool fast = numerics_.is_fast(hands.fastest);
-  // What is linear in the nodes is asked for between its parts: forces, matrix, solution.
+  // The clock is queried between forces, matrix and solution, each O(n): so the longest piece grows with n.
   const std::int64_t piece_ns = TickTime::kPiece_ns * std::max(1, state_.nodes() / kNodesInPiece);
   work_.start(numerics_.budget(state_.nodes(), hands.fastest), left, piece_ns);
   look_cost_ = rows_cost_ = 0;
@@ -282,7 +283,7 @@ void Rod::begin_tick(const HandSpeed& hands, const TimeLeft& left) noexcept {
                      : waits_ > 0 ? substeps_before
                      : labours_   ? std::min(numerics_.substeps, std::max(kFewest, 5 * numerics_.substeps / 8))
                                   : numerics_.substeps;
-  if (parts_.contact || parts_.world) {  // velocities and bodies may have been changed from outside
+  if (parts_.contact || parts_.world) {  // the caller may have changed velocities or bodies
     motion_.measure(state_.v.data());
     stir_m_per_s_ = stir(state_.v);
     contacts_.forget_bodies();
@@ -330,10 +331,10 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals, const TimeLeft& left) no
     if (!moving) report_.time_lost += 1.0 / report_.substeps;
   }
   if (measured_) give_J_ = contacts_.give_J(numerics_.contact_N_per_m, state_.v.data(), since_look_s_);
-  if (report_.time_lost > 0.999 && waits_ == 0) {  // slower, there is less to look at in the next tick
+  if (report_.time_lost > 0.999 && waits_ == 0) {  // at half the speed the next tick has fewer pairs to check
     for (auto& v : state_.v) v = 0.5 * v;
   }
-  if (alone_ && parts_.adaptive && !mesh_held_) fade(), faded_ = true;  // of what this tick has lost
+  if (alone_ && parts_.adaptive && !mesh_held_) fade(), faded_ = true;  // limited by what this tick has dissipated
   report_.work = work_.used();
   report_.cut_at = work_.time().cut_at();
   if (!braked_) feel_hands(0.0);

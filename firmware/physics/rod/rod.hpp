@@ -1,5 +1,5 @@
 #pragma once
-// A rod in its world: the parts together, and the list of verbs that is a tick.
+// The rod: state, material, solvers and contacts together, and the tick that advances them.
 
 #include <cstdint>
 #include <optional>
@@ -13,42 +13,43 @@
 
 namespace ligature::physics::rod {
 
-/// What a scene models. Each combination is its own compiled substep; what is absent is not executed.
+/// Effects that a scene models. Rod::substep is compiled once per combination, so an absent effect costs nothing.
 struct Parts {
   bool twist = true;
-  bool contact = true;  ///< of the thread with itself
+  bool contact = true;  ///< contact of the thread with itself
   bool friction = true;
-  bool world = false;     ///< floor and bodies
-  bool adaptive = false;  ///< nodes move along the thread to where they are needed
-  bool roll = false;      ///< every segment rolls by itself (spin.hpp): needs twist
-  bool turning = false;   ///< friction turns the thread: needs roll and friction
-  bool set = false;       ///< sharp bends stay (spin_set.cpp): needs twist
+  bool world = false;     ///< contact with floor and bodies
+  bool adaptive = false;  ///< remeshing: nodes move along the thread to where a fine mesh is needed (refine.hpp)
+  bool roll = false;      ///< every segment has its own roll angle (spin.hpp); needs twist
+  bool turning = false;   ///< contact friction rolls the thread about its axis; needs roll and friction
+  bool set = false;       ///< plastic bending: sharp bends become permanent (spin_set.cpp); needs twist
 
-  /// Does every segment have a frame of its own? With `roll` they turn in every substep, else once a tick.
+  /// Does every segment have a material frame? With `roll` the frames turn in every substep, otherwise once per tick.
   [[nodiscard]] constexpr bool frames() const noexcept { return roll || set; }
 };
 
-/// What a tick did. Plain values.
+/// Counters and measures of one tick.
 struct TickReport {
   int substeps = 0, passes = 0, contacts = 0, guard_events = 0, broad_phases = 0, remeshes = 0;
   double min_gap_m = 1e9;  ///< smallest thread-thread gap in any substep; negative: overlap
-  long work = 0;           ///< spent on contact, of Numerics::budget()
+  long work = 0;           ///< instructions spent on contact, out of Numerics::budget()
 
-  double set_J = 0.0;  ///< lost in bends that set
+  double set_J = 0.0;  ///< energy dissipated by plastic bending
 
-  // What was given up, in this order.
-  int cut_short = 0;       ///< substeps whose contacts used up their passes before they settled
-  int rows_left_out = 0;   ///< contacts that were only guarded, at most in a substep
-  double time_lost = 0.0;  ///< share of the tick in which the thread was not moved: nobody knew whether it could be
-  int cut_at = -1;         ///< question at which the tick's time was over (time_left.hpp); -1: it was not
+  // What was given up for lack of budget or time, the mildest loss first.
+  int cut_short = 0;       ///< substeps whose contact solver stopped before it converged
+  int rows_left_out = 0;   ///< largest number of contacts in a substep that were not solved, only guarded
+  double time_lost = 0.0;  ///< share of the tick in which the thread was not moved, as no safe motion was known
+  int cut_at = -1;         ///< number of the clock query that ended the tick early (time_left.hpp); -1: none did
 };
 
-/// A rod. Build it, place it with state(), then tick. Only the constructor allocates. Copyable: all of its state goes
-/// along; the list of pairs and the matrices of contact are made anew, for reset() copies in the loop and they are
-/// large.
+/// A simulated thread. Construct it, set its shape through state(), then call tick(). Only the constructor allocates.
+/// A copy takes the whole state except the list of pairs and the contact matrices: these are large, and reset() copies
+/// within the real-time loop, so the copy rebuilds them when it needs them.
 class Rod {
  public:
-  /// @param n nodes, >= 3, equally spaced to begin with; straight along +x from the origin, at rest.
+  /// Starts straight along +x from the origin, at rest, with equally spaced nodes.
+  /// @param n  number of nodes, >= 3
   Rod(const Material& material, const Numerics& numerics, const Parts& parts, int n, int bodies = 0);
 
   Rod(const Rod& other);
@@ -76,60 +77,62 @@ class Rod {
   [[nodiscard]] const Forces& forces() const noexcept { return forces_; }
   [[nodiscard]] const ContactSet& contact_set() const noexcept { return contacts_; }
 
-  /// Where nodes move: lays them out anew for a thread curved so at places equally far apart along it. For a rod that
-  /// has not moved yet; positions are the caller's, from state().mesh.s.
+  /// With Parts::adaptive: chooses the initial node spacing for a given curvature, 1/m, sampled at equal distances
+  /// along the thread. Call before the first tick; the caller then sets positions from state().mesh.s.
   void spread(std::span<const double> curvature_per_m);
 
-  /// After positions, clamps or spacing were changed from outside: constants of the mesh again, contacts forgotten, the
-  /// thread without twist where every segment rolls by itself.
+  /// Call after positions, clamps or spacing were changed from outside: recomputes the mesh constants and forgets the
+  /// contacts. With Parts::frames() the thread then starts without twist.
   void moved() noexcept;
 
-  /// The motion, holds and twist of another rod, with this one's material. @return false, and nothing done, when it has
-  /// another number of nodes. No allocation.
+  /// Takes over the motion, holds and twist of another rod but keeps this one's material. No allocation.
+  /// @return false, and nothing is changed, when the numbers of nodes differ.
   [[nodiscard]] bool continue_from(const Rod& other) noexcept;
 
-  /// Holds a node: rigidly at p, m; rigidly with the unit tangent along `direction` and the roll; or by a hand at
-  /// `tool`, f = K (tool - x) + B (v_tool - v) on the node, implicit, with the roll and (directed) the tangent that it
-  /// has now. @return index of the hold, -1 when kMaxHolds hold already. O(1) but with a direction: O(n), no
-  /// allocation.
+  /// Three ways to hold a node. Each returns the index of the hold, or -1 when all kMaxHolds are in use.
+  /// support: fixes the position p, m. clamp: also fixes the tangent along `direction`, and the roll.
+  /// grip: a hand's spring and damper, f = K (tool - x) + B (v_tool - v) on the node, integrated implicitly; it keeps
+  /// the present roll (holds_roll) and the present tangent (directed).
+  /// O(1), or O(n) when a tangent is fixed; no allocation.
   int support(int node, Vec p) noexcept;
   int clamp(int node, Vec p, Vec direction) noexcept;
   int grip(int node, double stiffness_N_per_m, double damping_N_s_per_m, Vec tool, bool holds_roll = true,
            bool directed = false) noexcept;
-  /// Lets go: the next tick may have more substeps for what that throws. @pre an index that one of the above returned.
+  /// Ends a hold; the next ticks use more substeps while the released thread is fast. @pre a valid index of a hold.
   void release(int hold) noexcept;
 
-  /// Advances by numerics().tick_s. `goals` are the hold targets at the end of the tick, m (unmoved holds: their
-  /// target). Without error: what could not be done is in report(). Costs O(n) a substep and at most
-  /// Numerics::budget() instructions on contact; no allocation, no exception. When the time left does not do, the
-  /// thread stands still for the rest of the tick, as it does when the work is spent.
+  /// Advances by numerics().tick_s. `goals` are the targets of the holds at the end of the tick, m; for a hold that
+  /// does not move, its present target. Cost: O(n) per substep, plus at most Numerics::budget() instructions for
+  /// contact; no allocation, no exception. When the budget or the time `left` runs out, the thread is not moved for the
+  /// rest of the tick, which report() tells.
   void tick(const std::array<Vec, kMaxHolds>& goals, const TimeLeft& left = {}) noexcept;
   void tick() noexcept;
-  /// All that the tick is for has been done: how long that took after the last question is for the next tick to know.
+  /// Call when the caller's work for this tick is done too: measures the time since the last clock query, which later
+  /// ticks then reserve.
   void tick_ended() noexcept { work_.time().end(); }
 
-  /// The first verb of a tick, on its own: nodes move along the thread. @return true when some did.
+  /// The remeshing step of a tick alone. @return true when nodes moved along the thread.
   bool remesh() noexcept;
-  /// A hand that holds roll and turns the thread: from the next tick on the hold's director is along `steer`, and with
-  /// a directed hold its tangent along `direction`.
+  /// Turns a hold that fixes roll: from the next tick on its director points along `steer` and, if the hold is
+  /// directed, its tangent along `direction`.
   void steer(int hold, Vec steer, Vec direction) noexcept;
-  /// Keeps tick() from moving nodes along the thread, until told otherwise. For those who call remesh() themselves.
+  /// Switches remeshing inside tick() off (true) or on (false), for callers that call remesh() themselves.
   void hold_mesh(bool on) noexcept { mesh_held_ = on; }
 
   [[nodiscard]] const TickReport& report() const noexcept { return report_; }
-  /// The give of contacts is that at the end of the last tick; without twist_energy_J().
+  /// Energy without twist_energy_J(); the elastic energy of contacts is that at the end of the last tick.
   [[nodiscard]] Energy energy() const noexcept {
     Energy e = rod::energy(material_, state_, gravity);
     e.give_J = give_J_;
     return e;
   }
-  /// All of energy(), of twist, of the holds' springs and of the constant loads.
+  /// Total energy: all terms of `e`, plus twist, the springs of the holds and the potential of the constant loads.
   [[nodiscard]] double all_J(const Energy& e) const noexcept;
 
  private:
   using Substep = bool (Rod::*)(double) noexcept;
   static Substep pick(const Parts& parts) noexcept;
-  /// @return false, and nothing moved, when the work left does not do for it.
+  /// One time step of dt_s. @return false, and nothing is moved, when the budget or time left is too small.
   template <unsigned Bits>
   bool substep(double dt_s) noexcept;
   template <unsigned Bits>
@@ -140,10 +143,11 @@ class Rod {
   bool settle(double dt_s) noexcept;
   void mesh_changed() noexcept;
   [[nodiscard]] bool sticks() const noexcept { return material_.static_friction > material_.friction; }
-  /// Newton's method is for the jams of knots; where the thread lies on something, sweeps do.
+  /// Newton's method serves the tight contacts of knots; contact with floor and bodies is solved by sweeps.
   [[nodiscard]] bool solves_directly() const noexcept { return !parts_.turning && contacts_.only_pairs(); }
+  /// Nodes in the window; work for the rows with the fewest passes; work for the rows with all passes.
   struct Allowance {
-    long window, rows, passes;  // nodes; work for rows with the least passes; work for rows with all passes
+    long window, rows, passes;
   };
   [[nodiscard]] Allowance work_allowed(bool metric_too) const noexcept;
   [[nodiscard]] double settled() const noexcept;
@@ -156,23 +160,23 @@ class Rod {
   std::optional<double> guard_unseen(double dt_s) noexcept;
   template <bool Friction>
   Outcome settle_directly(const Effort& effort) noexcept;
-  static constexpr double kPatience = 12.0;  ///< ticks in which a substep may wait to be solved, and guarded, at most
+  static constexpr double kPatience = 12.0;  ///< most ticks for which an unsolved substep may be continued
   [[nodiscard]] bool can_wait() const noexcept { return solves_directly() && waits_ + 1 <= patience_; }
   bool put_off() noexcept;
   bool give_up() noexcept;
   double brake(double dt_s) noexcept;
 
-  /// Of the holds: the fastest, and how fast two of them part (or one drags the thread), m/s.
+  /// Speed of the fastest hold, and largest relative speed of two holds (of a single hold: its speed), m/s.
   struct HandSpeed {
     double fastest = 0.0, apart = 0.0;
     int holds = 0;
   };
   HandSpeed set_hands(const std::array<Vec, kMaxHolds>& goals, std::array<Vec, kMaxHolds>& starts) noexcept;
   void begin_tick(const HandSpeed& hands, const TimeLeft& left) noexcept;
-  /// Forces on the hands where the thread will be in `ahead_s`.
+  /// Coupling forces on the hands, for the positions x + ahead_s v.
   void feel_hands(double ahead_s) noexcept;
   int add_hold(const Hold& hold) noexcept;
-  /// What remeshing left, of bends, strains and corners, fades.
+  /// Reduces the stress-free bends, strains and corner offsets that remeshing has left.
   void fade() noexcept;
 
   Material material_;
@@ -190,35 +194,35 @@ class Rod {
   TickReport report_;
   Substep substep_;
   Work work_;
-  long look_cost_ = 0, rows_cost_ = 0;  // of the last substep
-  long list_cost_ = 0;                  // of the last list
+  long look_cost_ = 0, rows_cost_ = 0;  // work of the last substep's contact detection; work of its rows
+  long list_cost_ = 0;                  // work of the last broad phase
   double metric_dt_ = 0.0;
-  double pace_m_per_s_ = 0.0;    // of the hands from the middle between them, fading once they stop
-  double leniency_ = 1.0;        // how much less a pass need settle, since ticks' work did not do for all passes
-  bool braked_ = false;          // the last substep was slowed; what hands felt is known
-  int waits_ = 0;                // ticks in which the work ran out before the next substep was done
-  double patience_ = kPatience;  // how many it may wait: less where substeps waited in vain, more where they settle
-  bool sweeps_only_ = false;     // the next substep is done without Newton's method
-  double stir_m_per_s_ = 0.0;    // how fast the fastest node moves among the others
-  double give_J_ = 0.0;          // stored in contacts
-  bool alone_ = false;           // nothing that holds or touches it moves in this tick, and one hold at most holds it
-  bool faded_ = false;           // what remeshing left has faded for the tick to come
-  double kept_J_ = 0.0;          // of a thread that is alone: what the last tick left it
-  bool measured_ = false;        // all of them are known, from before the last move
-  double since_look_s_ = 0.0;    // how long that was
-  std::vector<Vec> v_before_;    // the substep's first velocities
-  bool labours_ = false;         // the work hardly did for the last tick, so this one has fewer substeps
-  bool letting_go_ = false;      // a hold let go, and what it threw still flies
+  double pace_m_per_s_ = 0.0;    // half the relative speed of the hands; decays exponentially once they stop
+  double leniency_ = 1.0;        // tolerance multiplier, 1 to 6; grows after ticks whose contact solver was cut short
+  bool braked_ = false;          // velocities of the last substep were scaled down after the hand forces were computed
+  int waits_ = 0;                // consecutive ticks that put the present substep off
+  double patience_ = kPatience;  // limit of waits_: falls when waiting did not help, rises when Newton converges
+  bool sweeps_only_ = false;     // the next substep is solved without Newton's method
+  double stir_m_per_s_ = 0.0;    // largest nodal speed relative to the mean velocity
+  double give_J_ = 0.0;          // elastic energy of the contacts
+  bool alone_ = false;           // at most one hold, and nothing that holds or touches the thread moves (glossary)
+  bool faded_ = false;           // the remeshing offsets have already been reduced for the next tick
+  double kept_J_ = 0.0;          // alone only: total energy at the end of the last tick
+  bool measured_ = false;        // contact detection of this substep is complete
+  double since_look_s_ = 0.0;    // time moved since contacts were detected
+  std::vector<Vec> v_before_;    // velocities at the start of the substep
+  bool labours_ = false;         // the last tick used most of its budget, so this one has fewer substeps
+  bool letting_go_ = false;      // a hold was released, and the thread is still fast
   Motion motion_;
   ContactReport seen_;          // of this substep
-  double near_m_ = 0.0;         // within which a pair is a contact at any speed
-  double horizon_s_ = 0.0;      // how far the list of pairs looks ahead
-  double tick_travel_m_ = 0.0;  // what the fastest node may have gone since the tick began
+  double near_m_ = 0.0;         // gap below which a pair is a contact at any speed
+  double horizon_s_ = 0.0;      // time for which the list of pairs is valid at the speeds of when it was made
+  double tick_travel_m_ = 0.0;  // upper bound of any node's travel since the tick began
   int substep_index_ = 0;
   bool mesh_held_ = false;
-  bool remeshed_ = false;  // nodes moved since the spin was last brought along
-  bool released_ = false;  // a hold let go since the last tick
-  bool stale_ = true;      // the list must be made again
+  bool remeshed_ = false;  // nodes moved along the thread since spin_ was last updated
+  bool released_ = false;  // a hold was released since the last tick
+  bool stale_ = true;      // the list of pairs must be rebuilt
 };
 
 }  // namespace ligature::physics::rod

@@ -8,8 +8,8 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr double kOutOfRange = 1e9;  // m or m/s: a run that gets there has diverged
-constexpr double kReach = 4.0;  // a gripper is a capsule of the thread's radius, four radii long, towards the person
+constexpr double kOutOfRange = 1e9;  // m or m/s; larger values count as divergence
+constexpr double kReach = 4.0;       // length of a gripper's capsule, along -y, in radii; its radius is the thread's
 
 Vec vec(const Vec3& a) noexcept { return make(a.x(), a.y(), a.z()); }
 Vec3 vec3(Vec a) noexcept { return {a[0], a[1], a[2]}; }
@@ -145,7 +145,7 @@ void RodSimulation::update_grasp(const std::array<ToolInput, 2>& tools) noexcept
   }
 }
 
-// A gripper that holds does not touch; one that has let go touches again once it is clear of the thread.
+// A gripper that holds the thread has no contacts; after it lets go they start again once it is clear of the thread.
 void RodSimulation::update_grippers(const std::array<ToolInput, 2>& tools) noexcept {
   const double radius = rod_.material().radius_m;
   for (std::size_t h = 0; h < 2; ++h) {
@@ -170,7 +170,7 @@ void RodSimulation::stop(int bad_node) noexcept {
   health_.finite = false;
   health_.bad_node = bad_node;
   health_.bad_tick = ticks_;
-  hands_ = {};  // no force is the safe one to leave behind
+  hands_ = {};  // zero force is the safe final value
 }
 
 bool RodSimulation::is_finite() noexcept {
@@ -178,7 +178,7 @@ bool RodSimulation::is_finite() noexcept {
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     double most = 0.0;
     for (int k = 0; k < 3; ++k) most += std::abs(state.x[i][k]) + std::abs(state.v[i][k]);
-    if (most < kOutOfRange) continue;  // false for NaN
+    if (most < kOutOfRange) continue;  // a NaN does not pass
     stop(static_cast<int>(i));
     return false;
   }
@@ -188,7 +188,7 @@ bool RodSimulation::is_finite() noexcept {
 void RodSimulation::tick(const std::array<ToolInput, 2>& tools, const TimeLeft& left) noexcept {
   if (!health_.finite) return;
   State& state = rod_.state();
-  x_before_ = state.x;  // same size: copies, does not allocate
+  x_before_ = state.x;  // same size, so no allocation
   v_before_ = state.v;
   for (int h = 0; h < state.hold_count; ++h)
     goals_[static_cast<std::size_t>(h)] = state.holds[static_cast<std::size_t>(h)].target;
@@ -218,7 +218,7 @@ void RodSimulation::publish() noexcept {
     if (!jaws_[h].holds()) continue;
     const Hold& hold = state.holds[static_cast<std::size_t>(jaws_[h].middle(rod_))];
     c.node = hold.node;
-    c.p_WG = vec3(jaws_[h].place(rod_)) - closing_[h].offset_m();  // the coupling makes of these the force on the hand
+    c.p_WG = vec3(jaws_[h].place(rod_)) - closing_[h].offset_m();  // the coupling computes the hand's force from these
     c.v_WG = vec3(jaws_[h].velocity(rod_)) - closing_[h].rate_m_per_s();
     c.f_W = vec3(jaws_[h].force(rod_));
   }

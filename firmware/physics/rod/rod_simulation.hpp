@@ -1,5 +1,5 @@
 #pragma once
-// The rod behind the facade of firmware/physics/simulation.hpp: a scene in, two tools, nodes and hand forces out.
+// The rod model behind firmware/physics/simulation.hpp: built from a scene, driven by two tools.
 
 #include <array>
 #include <span>
@@ -15,13 +15,13 @@
 
 namespace ligature::physics::rod {
 
-/// Same contract as physics::Simulation. With spacing "adaptive" a node index is not a material point: nodes move along
-/// the thread to where they are needed (refine.hpp); their number stays.
+/// Same contract as physics::Simulation. With spacing "adaptive" a node index is not a fixed material point: nodes move
+/// along the thread (refine.hpp); their number is constant.
 class RodSimulation {
  public:
   static std::variant<RodSimulation, std::string> make(const scene::Scene& scene);
 
-  /// As after a divergence: the state stays, hands are open and without force.
+  /// Freezes the thread as after a divergence: the state is kept, hands are open and without force.
   void stop(int bad_node) noexcept;
   void tick(const std::array<ToolInput, 2>& tools, const TimeLeft& left = {}) noexcept;
   [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept { return nodes_; }
@@ -36,7 +36,7 @@ class RodSimulation {
   [[nodiscard]] bool continue_from(const RodSimulation& other) noexcept;
   void set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept;
 
-  /// The rod itself, for those who look deeper than the facade.
+  /// The rod itself, for tests and studies.
   [[nodiscard]] const Rod& rod() const noexcept { return rod_; }
   [[nodiscard]] Rod& rod() noexcept { return rod_; }
 

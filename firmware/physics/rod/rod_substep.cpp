@@ -1,4 +1,4 @@
-// One substep of a rod: what touches what, velocities, positions; within the work the tick has left.
+// One substep of a rod: contact detection, velocities, positions; within the work that the tick has left.
 
 #include <algorithm>
 #include <array>
@@ -11,15 +11,15 @@ namespace ligature::physics::rod {
 namespace {
 
 constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32, kSet = 64;
-constexpr double kEnough = 10.0;        // times what is settled: may be left over beyond a fair share of the work
-constexpr double kWild_m_per_s = 1e-3;  // change of a last pass above which velocities are not trusted
-constexpr double kLess = 0.8;           // of its patience is left where a substep has waited in vain
-constexpr double kMore = 0.02;          // patience from one substep to the next, up to 1, where there is none
-constexpr int kLeastPasses = 3;         // rows that cannot have these are left out; one where they are solved directly
-constexpr double kSkin = 0.5;           // diameters a list of pairs looks ahead at any speed
+constexpr double kEnough = 10.0;        // tolerance multiplier once more than the fair share of the work is used
+constexpr double kWild_m_per_s = 1e-3;  // change in the last pass above which velocities are scaled down (the brake)
+constexpr double kLess = 0.8;           // factor of patience_ when a substep has waited and did not converge
+constexpr double kMore = 0.02;          // recovery of patience_ per substep while it is below 1
+constexpr int kLeastPasses = 3;         // only as many rows are solved as can have these; Newton's method needs one
+constexpr double kSkin = 0.5;           // margin of the list of pairs, in diameters, at zero speed
 
-/// How far ahead a list looks at today's speeds, in ticks, and the share of the tick's work it may cost. Too much is
-/// near? Then look less far, again the sooner.
+/// Time for which a list of pairs is made valid at the present speeds, in ticks, and the share of the tick's work it
+/// may cost. If too many pairs are near, the next entry is tried: a shorter time, so the list is rebuilt sooner.
 struct Ahead {
   double ticks;
   double share;
@@ -28,7 +28,7 @@ constexpr Ahead kAhead[] = {{1.2, 0.3}, {0.15, 0.25}, {0.0, 0.4}};
 
 }  // namespace
 
-// Lists what may touch, leaving `reserve` of the work. @return false when nobody knows what may.
+// Rebuilds the list of pairs, leaving `reserve` of the work. @return false when no list could be afforded.
 bool Rod::relist(long reserve) noexcept {
   Outlook outlook{2.0 * material_.radius_m, 2.0 * material_.radius_m * kSkin, near_m_, 0.0};
   broad_.keep_impulses(contacts_.pairs);
@@ -55,7 +55,7 @@ bool Rod::list_is_good(double dt_s) noexcept {
   return relist(0);
 }
 
-// Everything that may touch in this substep.
+// Contact detection: collects all contacts of this substep. @return false when the work or time left is too small.
 template <unsigned Bits>
 bool Rod::look(double dt_s) noexcept {
   contacts_.begin();
@@ -87,10 +87,10 @@ bool Rod::look(double dt_s) noexcept {
   return measured_ = true;
 }
 
-// The substeps to come are expected to need what the last one did: a look and half as much again, its rows, and the
-// least passes over them; and one of them a new list.
-// Rows may have all else that is left; more passes than the least twice a fair share of it, so that a hard substep does
-// not starve the next. Where they are solved directly they may have it all: what has not settled waits.
+// Work that this substep's rows and passes may use. Reserved for each later substep of the tick: 1.5 times the last
+// contact detection, and the rows with their fewest passes; and once the cost of a new list. Rows may use all that is
+// left. Passes beyond the fewest get twice an equal share of what is not reserved, so that a hard substep leaves work
+// for the next. Newton's method may use everything, as a substep that does not converge is continued in the next tick.
 Rod::Allowance Rod::work_allowed(bool metric_too) const noexcept {
   const long after = report_.substeps - substep_index_ - 1;
   const auto span = contacts_.span();
@@ -111,11 +111,12 @@ bool Rod::prepare_metric(double dt_s) noexcept {
   return metric_.prepare(state_.mesh, material_, dt_s, from, to, work_.time());
 }
 
-// A pass that changes no velocity by more is the last. In the tick of a release the thread is faster than any hand; one
-// that hardly moves must not creep by what a pass leaves over. A thread that is alone settles its contacts however fast
-// its ends whip: by 0.01 m/s that contacts closed too fast, a released surgeon's knot came by 3 % of what it stored. A
-// jam that has to go without passes gets by with less settled ones, by and by: that much in every substep is better
-// than all of it in some, with none left for the others.
+// Tolerance of the contact solver, m/s: a pass that changes no velocity by more is the last. It grows with the speed of
+// the hands or, as after a release, of the thread itself (stir_m_per_s_), but stays below a tenth of the fastest node's
+// speed, so that a nearly resting thread does not drift. For a thread that is alone its own speed does not count: with
+// contacts closing 0.01 m/s too fast, a released surgeon's knot gained 3 % of its stored energy. leniency_ loosens the
+// tolerance after ticks that were cut short: a moderate error in every substep is better than some converged substeps
+// and no passes for the rest.
 double Rod::settled() const noexcept {
   constexpr double kStir = 0.15, kCreep = 0.1, kStill_m_per_s = 1e-6;
   const double speed = std::max(pace_m_per_s_, alone_ ? 0.0 : kStir * stir_m_per_s_);
@@ -123,8 +124,9 @@ double Rod::settled() const noexcept {
   return std::min(settled, std::max(kStill_m_per_s, kCreep * motion_.fastest()));
 }
 
-// Which contacts are solved, and the window that is factorised for them. @return nothing when they had better wait for
-// the next tick: only in its first substep, with all the work before it, is a contact ever left out.
+// Chooses the contacts that are solved, and the window of nodes for them. @return nothing when not all can be afforded
+// and the substep is not the tick's first: it then waits for the next tick. So contacts are left out only when the
+// whole budget of a tick is too small for them.
 std::optional<Effort> Rod::choose_rows(double dt_s) noexcept {
   const long passes = solves_directly() ? 1 : kLeastPasses;
   const auto span = contacts_.span();
@@ -135,12 +137,12 @@ std::optional<Effort> Rod::choose_rows(double dt_s) noexcept {
   const long rows = contacts_.rows(), nodes = contacts_.window_last() - contacts_.window_first() + 1;
   const long least = passes * price::pass(rows, rows, nodes);
   rows_cost_ = rows > 0 ? price::rows(rows, nodes) + least : 0;
-  return Effort{work_.time(), numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)), settled(),
-                kEnough * numerics_.settled_m_per_s};
+  return Effort{work_.time(), numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)),
+                settled(), kEnough * numerics_.settled_m_per_s};
 }
 
-// Newton's method, as long as it may take all the work there is; else with no more than a fair share of it. @return
-// kLater when it had better go on in the next tick.
+// Newton's method with all the work that is left, as long as the substep may wait; otherwise with a share of it.
+// @return kLater when the substep is to be continued in the next tick.
 template <bool Friction>
 Outcome Rod::settle_directly(const Effort& effort) noexcept {
   if (!solves_directly() || sweeps_only_) return Outcome::kUnsolved;
@@ -151,13 +153,13 @@ Outcome Rod::settle_directly(const Effort& effort) noexcept {
   if (!can_wait()) own.work = std::min(effort.work, work_.unspent() / (after + 2));
   const Outcome outcome = contacts_.settle_directly<Friction>(solver_, own, state_.v.data(), seen_);
   if (outcome == Outcome::kSettled) return patience_ = std::min(kPatience, patience_ + 1.0), outcome;
-  const bool worked = 4 * (effort.work - seen_.work) < work_.budget();  // and left too little for sweeps
+  const bool worked = 4 * (effort.work - seen_.work) < work_.budget();  // the rest is too little for sweeps
   const bool wait = can_wait() && (outcome == Outcome::kLater || worked);
   sweeps_only_ = outcome == Outcome::kUnsolved || waits_ + 2 > patience_;
   return wait ? Outcome::kLater : Outcome::kUnsolved;
 }
 
-// Velocities with contact.
+// Solves for the new velocities with contacts. @return false when the substep must wait for the next tick.
 template <unsigned Bits>
 bool Rod::settle(double dt_s) noexcept {
   constexpr bool kRubs = (Bits & kFriction) != 0, kTurns = kRubs && (Bits & kTurning) != 0;
@@ -179,8 +181,7 @@ bool Rod::settle(double dt_s) noexcept {
       }
     }
     if (outcome != Outcome::kSettled) {
-      if (!prepare_metric(dt_s) ||
-          !contacts_.settle<kRubs, kTurns>(solver_, metric_, *effort, state_.v.data(), seen_))
+      if (!prepare_metric(dt_s) || !contacts_.settle<kRubs, kTurns>(solver_, metric_, *effort, state_.v.data(), seen_))
         return give_up();
     }
     work_.spend(price::rows(contacts_.rows(), last - first + 1) + seen_.work);
@@ -194,7 +195,7 @@ bool Rod::settle(double dt_s) noexcept {
   return true;
 }
 
-// The substep has to wait for the next tick, and all its work.
+// Leaves the substep to the next tick with its full budget; Newton's method then continues. Always false.
 bool Rod::put_off() noexcept {
   state_.v = v_before_;
   ++waits_;
@@ -202,7 +203,7 @@ bool Rod::put_off() noexcept {
   return false;
 }
 
-// The tick's time is over: the substep will be done again, from the start, in the next one.
+// The tick's time is over during sweeps: the substep is repeated from its start in the next tick. Always false.
 bool Rod::give_up() noexcept {
   state_.v = v_before_;
   work_.spend(seen_.work);
@@ -210,9 +211,10 @@ bool Rod::give_up() noexcept {
   return false;
 }
 
-// After a jerk, such as a release, pairs that nobody measured in this substep may meet: those on the list are held to
-// what is known of them, the others to what the list has looked ahead; or all to a new list. @return nothing when there
-// is no work for that and the substep can wait.
+// Guard for pairs that this substep has not measured, which may meet after a sudden acceleration such as a release.
+// Listed pairs are limited by a lower bound of their distance, all others by the margin with which the list was made;
+// if that shortens the step and work is left, by a new list. @return the admissible share of dt_s, or nothing when
+// there is not enough work and the substep can wait.
 std::optional<double> Rod::guard_unseen(double dt_s) noexcept {
   const double diameter = 2.0 * material_.radius_m, unseen = 0.9 * (diameter * BroadPhase::kLeastReach + near_m_);
   const double ahead_m = diameter * (kSkin + 0.9 * BroadPhase::kLeastReach);
@@ -232,8 +234,9 @@ std::optional<double> Rod::guard_unseen(double dt_s) noexcept {
                   motion_.share_within(ahead_m, horizon_s_, dt_s));
 }
 
-// Velocities that never settled must not press a jam ever tighter: the thread is as slow as it may move. Hands feel
-// what was solved for: their damping would take the slowing for a blow.
+// Scales all velocities down so that unconverged ones cannot deepen the overlaps of a jam. Hand forces are computed
+// from the unscaled velocities: the dampers of the couplings would turn the sudden slowing into a force peak.
+// @return the scale factor.
 double Rod::brake(double dt_s) noexcept {
   const double share = contacts_.unsettled_fraction(state_.v.data(), dt_s);
   if (share < 1.0) {
@@ -244,8 +247,8 @@ double Rod::brake(double dt_s) noexcept {
   return share;
 }
 
-// The share of dt_s that everything may move without passing anything, or nothing: that had better wait. New velocities
-// are measured here.
+// The guard: share of dt_s for which everything can move without strands passing through each other; nothing when the
+// substep must wait. Also updates motion_ with the new velocities, and applies the brake.
 template <unsigned Bits>
 std::optional<double> Rod::guard(double dt_s) noexcept {
   motion_.measure(state_.v.data());
@@ -256,9 +259,9 @@ std::optional<double> Rod::guard(double dt_s) noexcept {
     share = std::min(share, *unseen);
   }
   report_.guard_events += share < 1.0;
-  // Sweeps in place of steps that ran out creep: their last change is small, what is left 100 times that.
+  // Sweeps that replace an unfinished Newton solve converge slowly: the true error is about 100 times the last change.
   const bool wild = seen_.cut_short && (seen_.change_m_per_s > kWild_m_per_s || (alone_ && sweeps_only_));
-  const double slow = wild ? brake(dt_s) : 1.0;  // slowed velocities have moved less already
+  const double slow = wild ? brake(dt_s) : 1.0;  // counts towards the share: slower velocities already move less
   report_.time_lost += (1.0 - std::min(share, slow)) / report_.substeps;
   return std::min(1.0, share / std::max(slow, 1e-9));
 }
@@ -281,7 +284,7 @@ void Rod::move(double dt_s, double share) noexcept {
 
 template <unsigned Bits>
 bool Rod::substep(double dt_s) noexcept {
-  constexpr unsigned kRest = Bits & ~kSet;  // what contact needs to know
+  constexpr unsigned kRest = Bits & ~kSet;  // contact does not depend on plastic bending: fewer instantiations
   constexpr bool kTouches = (Bits & (kContact | kWorld)) != 0;
   if constexpr (kTouches) {
     v_before_ = state_.v;

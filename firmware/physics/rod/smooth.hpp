@@ -1,5 +1,5 @@
 #pragma once
-// The thread as a smooth curve: what touches, in place of a polygon whose corners would catch.
+// The smooth curve on which contacts are computed: strands would catch at the corners of the polygon of segments.
 
 #include <algorithm>
 #include <cstddef>
@@ -12,12 +12,13 @@ namespace ligature::physics::rod {
 /// Segment j of the quadratic B-spline of the nodes, which touches every chord in its middle and cuts the corners:
 ///   P(s) = x_j + s e_j + 1/8 (1 - s / h)_+^2 k_j + 1/8 (1 - (1 - s) / h')_+^2 k_{j+1}
 /// with h = h' = 1/2 and k_i = e_i - e_{i-1}; an end of the thread has no corner. Position and tangent are continuous
-/// from segment to segment, so the normal of a contact turns smoothly as strands slide; between chords it jumps by the
-/// angle of a corner, and the force with it. A corner is the parabola from x_i - h' e_{i-1} to x_i + h e_i, so
-///   k_i = 2 (h e_i - h' e_{i-1}),
-/// and when a segment is split the curve stays if the halves' h are twice as large (State::cut_before, cut_after); they
-/// fade to 1/2 (refine.hpp). P is linear in the nodes: an impulse in it acts on each with its weight there.
-/// Vector, Number: Vec and double, or Vecs and Lanes for four of them.
+/// from segment to segment, so the contact normal turns smoothly as strands slide; on the polygon the normal, and with
+/// it the force, would jump by the angle of a corner. The corner at node i is a parabola from x_i - h' e_{i-1} to
+/// x_i + h e_i, so in general
+///   k_i = 2 (h e_i - h' e_{i-1}).
+/// When a segment is split, doubling the h of the halves keeps the curve unchanged; h then fades back to 1/2
+/// (State::cut_before, cut_after; refine.hpp). P is linear in the nodes, so an impulse at P acts on each node with
+/// that node's weight in P. Vector, Number: Vec and double for one segment, Vecs and Lanes for four.
 template <class Vector, class Number>
 struct SmoothOf {
   Vector x{}, e{}, before{}, after{};  ///< node, chord, k_j and k_{j+1}, m
@@ -36,7 +37,7 @@ struct SmoothOf {
 };
 
 struct SmoothSegment : SmoothOf<Vec, double> {
-  /// Of a diameter, the most that is cut off a corner: then chords stay apart where their curves do.
+  /// Largest distance, in diameters, by which the curve cuts a corner: chords then cannot cross while curves touch.
   static constexpr double kMostCut = 0.35;
 
   SmoothSegment(const State& state, std::size_t j, double diameter_m) noexcept {
@@ -47,7 +48,7 @@ struct SmoothSegment : SmoothOf<Vec, double> {
     if (j + 2 < state.x.size()) corner(state, j + 1, diameter_m, after, share);
   }
 
-  /// k_i of an inner node i, m: no larger than cuts off kMostCut, for which it is a share of what it would be.
+  /// k_i of an inner node i, m, scaled by `share` <= 1 so that the corner is cut by at most kMostCut diameters.
   static void corner(const State& state, std::size_t i, double diameter_m, Vec& k_i, double& share) noexcept {
     const double most_m = 8.0 * kMostCut * diameter_m;
     const Vec k = 2.0 * state.cut_before[i] * (state.x[i + 1] - state.x[i]) -
@@ -57,16 +58,16 @@ struct SmoothSegment : SmoothOf<Vec, double> {
     k_i = share * k;
   }
 
-  /// How far the curve gets from its chord, m.
+  /// Largest distance of the curve from its chord, m.
   [[nodiscard]] double bulge() const noexcept {
     const auto across2 = [&](Vec k) { return std::max(0.0, dot(k, k) - dot(k, e) * dot(k, e) / dot(e, e)); };
     return 0.125 * std::sqrt(std::max(across2(before), across2(after)));
   }
 };
 
-/// Closest points of two smooth segments, from those of their chords on: two steps of Gauss and Newton, which leave out
-/// the curvature. Good to a hundredth of a diameter; after one the normal still jumps by a third of a corner (tests).
-/// About 460 instructions, for one pair or for four.
+/// Closest points of two smooth segments: two Gauss-Newton steps (curvature neglected) from the closest points `c` of
+/// the chords. Error about 0.01 diameters; after a single step the normal still jumps by a third of a corner's angle
+/// (tests). About 460 instructions, for one pair or for four at once.
 template <class Vector, class Number>
 [[nodiscard]] inline ClosestOf<Vector, Number> closest(const SmoothOf<Vector, Number>& a,
                                                        const SmoothOf<Vector, Number>& b,

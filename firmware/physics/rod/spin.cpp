@@ -1,4 +1,4 @@
-// Rates of the segments: moments, the tridiagonal system of a substep, and its answer to contacts.
+// Roll rates of the segments: moments, the tridiagonal system of a substep, and the response to contacts.
 
 #include "firmware/physics/rod/spin.hpp"
 
@@ -16,12 +16,12 @@ double inertia(const Material& m, double length) noexcept {
 void Spin::give_moments(const Material& material, const State& state, Forces& forces) const noexcept {
   const std::size_t edges = state.x.size() - 1;
   for (std::size_t i = 0; i <= edges; ++i) {
-    const double share = i == 0 || i == edges ? 1.0 : 0.5;  // an end has one side only
+    const double share = i == 0 || i == edges ? 1.0 : 0.5;  // mean of both sides; an end has only one
     forces.twist_moment[i] = share * (into_vertex(material, state, i) + out_of_vertex(material, state, i));
   }
 }
 
-// Twisting moment on the near side of vertex i, that of segment i - 1, and on its far side.
+// Twisting moment at vertex i on the side of segment i - 1 (into) and on the side of segment i (out of).
 double Spin::into_vertex(const Material& m, const State& state, std::size_t i) const noexcept {
   if (i == 0) return 0.0;
   if (held_[i]) return m.GJ_N_m2 * (2.0 * before_[i] * state.mesh.inv_rest[i - 1] - m.born_twist_per_m);
@@ -68,8 +68,8 @@ void Spin::assemble(const Material& m, const State& state, double dt_s) noexcept
   solve(rhs_);
 }
 
-// From both ends: w_j = down_j w_{j+1} + .. and w_{j+1} = up_j w_j + .., so that the answer to a torque spreads by
-// products.
+// Elimination from both ends: w_j = down_j w_{j+1} + .. and w_{j+1} = up_j w_j + .., so that push() gets the response
+// of neighbouring segments by one multiplication each.
 void Spin::eliminate() noexcept {
   const std::size_t edges = tangent_.size() - 1;
   double d = diag_[0];
@@ -87,7 +87,7 @@ void Spin::solve(const std::vector<double>& b) noexcept {
   const std::size_t edges = tangent_.size() - 1;
   double carried = 0.0;
   for (std::size_t j = 0; j < edges; ++j) {
-    rate_[j] = b[j] + carried;  // right-hand side after elimination
+    rate_[j] = b[j] + carried;  // eliminated right-hand side
     if (j + 1 < edges) carried = down_[j] * rate_[j];
   }
   double next = 0.0;
@@ -152,7 +152,7 @@ double Spin::energy_J(const Material& m, const State& state) const noexcept {
     }
   }
   for (std::size_t j = 0; j < edges; ++j) sum += 0.5 * inertia(m, state.mesh.rest[j]) * rate_[j] * rate_[j];
-  const double locked = 0.5 * m.set_fraction * (1.0 - m.set_fraction);  // in bends that set
+  const double locked = 0.5 * m.set_fraction * (1.0 - m.set_fraction);  // energy that plastic bends keep stored
   for (std::size_t i = 1; locked > 0.0 && i < edges; ++i) sum += locked * state.mesh.weight[i] * dot(set_[i], set_[i]);
   return sum;
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Roll of every segment about the thread's axis, where it is not the same all along a span: a thread that contacts
-// turn, or one that is born curved. Twist (twist.hpp) is the cheaper law for all others.
+// A roll angle for every segment, needed where twist is not uniform along a span: if friction rolls the thread, or if
+// it is curved when stress-free. Otherwise the cheaper model of twist.hpp serves.
 
 #include <algorithm>
 #include <cstdint>
@@ -13,51 +13,53 @@ namespace ligature::physics::rod {
 
 /// Material frames: segment j carries a unit director u_j across its tangent t_j and turns at rate w_j about it.
 ///   I_j dw_j/dt = M_{j+1} - M_j + bending + contacts,   I_j = rho r^2 l_j / 2,   M_i = C (m_i / l_i - born twist),
-/// m_i the angle from u_{i-1}, carried from t_{i-1} to t_i without twist, to u_i; l_i = (l_{i-1} + l_i) / 2. A hold
-/// with roll stands between the halves of its two segments: M = 2 C angle / l_j each [Bergou 2008, material frames,
-/// with the thread's own inertia]. A thread born with curvature k about a material axis is at rest where
-///   t_i - t_{i-1} = 2 sin(k l_i / 2) d_i,   d_i the mean director of the vertex,
-/// which turns it by k l_i Q_i . (t_i x d_i), Q_i the bending moment. Implicit Euler in w (tridiagonal); the mesh's
-/// tangents are followed once a tick. Bends that set add to what the thread was born with (spin_set.cpp).
+/// m_i the angle from u_{i-1}, parallel-transported from t_{i-1} to t_i, to u_i. In M_i, l_i is the vertex length: the
+/// mean of the two segments. A hold that fixes roll acts on the halves of its two segments: M = 2 C angle / l_j each
+/// [Bergou 2008, material frames, here with the thread's rotational inertia]. A thread whose stress-free curvature
+/// about a material axis is k has no bending moment where
+///   t_i - t_{i-1} = 2 sin(k l_i / 2) d_i,   d_i the mean director of the vertex.
+/// Elsewhere the bending moment Q_i turns it about its axis, by the torque k l_i Q_i . (t_i x d_i). Implicit Euler in w
+/// (tridiagonal system); frames are aligned with the new tangents once per tick. Plastic bends add to the stress-free
+/// curvature (spin_set.cpp).
 class Spin {
  public:
   void reserve(int nodes);
 
-  /// Directors untwisted along the thread as it lies; at rest. Holds with roll take theirs.
+  /// Initial frames: untwisted along the present shape, at rest. Holds that fix roll get matching directors.
   void start(const Material& material, State& state) noexcept;
-  /// A hold's director that twists nothing. @pre after start().
+  /// Sets a hold's director so that it causes no twist. @pre after start().
   void attach(State& state, int hold) const noexcept;
 
-  /// What Refine's fading of State::rest_bend must leave: call before, with its factors.
+  /// Part of State::rest_bend that is the thread's own stress-free shape and must not fade.
   [[nodiscard]] std::span<const Vec> born() const noexcept { return born_; }
+  /// Call before Refine::fade_offsets(), with its factors: enlarges born() so that the fading leaves it unchanged.
   void before_fading(State& state, std::span<const double> fade) const noexcept;
-  /// Once a tick: directors follow the tangents (and nodes that moved along the thread), angles and moments are
-  /// measured.
-  /// @param remeshed  State::rest_bend was set anew, the born part included.
-  /// @param once  the segments roll here, for the whole tick, and not in its substeps: without contacts that turn them
-  /// and births that do, roll is as quick as twist, and that crosses the thread within a tick.
-  /// What a hold was turned since the last tick, it turns evenly in this one.
+  /// Once per tick: aligns the frames with the new tangents (and the new mesh), and computes angles and moments. A
+  /// hold's rotation since the last tick is applied at a constant rate during this one.
+  /// @param remeshed  nodes moved, and State::rest_bend was computed again, born() included
+  /// @param once  advances the roll here by the whole tick, instead of in every substep. Enough without
+  /// friction or stress-free curvature that roll the thread, as twist waves cross it in less than a tick.
   void update(const Material& material, State& state, Forces& forces, double tick_s, bool remeshed,
               bool once = false) noexcept;
 
-  /// A substep's flow of the bends that set, at the positions of now. @return energy dissipated, J.
+  /// Plastic flow of the bends in a substep, at the present positions. @return energy dissipated, J.
   double yield(const Material& material, State& state) noexcept;
-  /// Back bend of a vertex, as a change of t: the stress-free bend is set_fraction of it.
+  /// z_i of spin_set.cpp, as a change of tangent: the plastic part of the stress-free bend is set_fraction x z_i.
   [[nodiscard]] Vec set(int vertex) const noexcept { return set_[static_cast<std::size_t>(vertex)]; }
 
-  /// Matrix and right-hand side of a substep; solves for the rates without contacts.
+  /// Sets up and solves the system of a substep for the rates, without torques of contacts.
   void assemble(const Material& material, const State& state, double dt_s) noexcept;
-  /// Rates with the torque impulses noted since assemble(); then everything turns for dt_s.
+  /// Solves again with the torque impulses since assemble(), then turns all frames for dt_s.
   void advance(const Material& material, State& state, Forces& forces, double dt_s) noexcept;
 
-  // For contacts, between assemble() and advance().
+  // For contacts; valid between assemble() and advance().
   [[nodiscard]] double rate(int segment) const noexcept { return rate_[static_cast<std::size_t>(segment)]; }
   [[nodiscard]] Vec tangent(int segment) const noexcept { return tangent_[static_cast<std::size_t>(segment)]; }
-  /// Rate that a unit torque impulse on a segment gives it, 1/(kg m^2).
+  /// Change of a segment's rate per unit torque impulse on it, 1/(kg m^2).
   [[nodiscard]] double answer(int segment) const noexcept { return answer_[static_cast<std::size_t>(segment)]; }
-  /// Torque impulse on a segment, N m s: all rates in [first, last] answer at once.
+  /// Applies a torque impulse to a segment, N m s, and updates the rates of all segments in [first, last].
   void push(int segment, double torque_Nms, int first, int last) noexcept;
-  /// Rates and torque impulses of [first, last], to come back to.
+  /// Saves and restores rates and torque impulses of [first, last].
   void save(int first, int last) noexcept;
   void restore(int first, int last) noexcept;
 
@@ -86,20 +88,20 @@ class Spin {
   }
 
   std::vector<Vec> director_, tangent_;
-  std::vector<double> rate_, rolled_;  // rad/s; rad since the tick began
-  std::vector<double> middle_m_;       // material coordinates of the segments' middles, as of director_
-  std::vector<double> before_,
-      after_;  // angles at vertex i: free: before_ = m_i; held: to and from the hold's director
-  std::vector<double> drift_before_, drift_after_;  // what the turning of a hold adds to them, rad/s
+  std::vector<double> rate_, rolled_;  // w_j, rad/s; angle turned since the tick began, rad
+  std::vector<double> middle_m_;       // material coordinates of the segments' midpoints, as of director_
+  // Angles at vertex i. Without a hold: before_ = m_i. With one: angle to and from the hold's director.
+  std::vector<double> before_, after_;
+  std::vector<double> drift_before_, drift_after_;  // rates of these angles by the hold's rotation, rad/s
   std::vector<char> held_, was_held_;
   std::vector<Vec> normal_, binormal_;  // d_i and t_i x d_i of the vertices
-  std::vector<Vec> born_, across_;      // stress-free bend, and where it goes when the thread rolls
-  std::vector<double> born_size_;       // its part along d_i that the thread was born with
-  std::vector<Vec> set_;                // z_i: in the world during a tick; along d_i, t_i x d_i between ticks
-  std::vector<double> limit2_;          // squared bend beyond which it moves
+  std::vector<Vec> born_, across_;      // stress-free bend, and its derivative by the roll angle
+  std::vector<double> born_size_;       // 2 sin(k l_i / 2): its elastic part, along d_i
+  std::vector<Vec> set_;                // z_i: world frame during a tick; components along d_i, t_i x d_i in update()
+  std::vector<double> limit2_;          // square of the yield limit of a vertex
   std::vector<double> torque_;          // impulse on each segment since assemble()
   std::vector<double> diag_, off_, rhs_, down_, up_, answer_, saved_rate_, saved_torque_;
-  // Scratch of resample(): frames by the old mesh.
+  // Scratch of resample(): frames of the old mesh.
   std::vector<Vec> old_director_, old_tangent_;
   std::vector<double> old_rate_, old_middle_m_;
   std::vector<Vec> old_set_;

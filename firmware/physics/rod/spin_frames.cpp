@@ -1,4 +1,4 @@
-// Frames of the segments: laid, carried along with the thread, and what angles are between them. Once a tick.
+// Material frames of the segments, once per tick: initialisation, transport with the thread, angles between them.
 
 #include <algorithm>
 #include <cmath>
@@ -69,7 +69,7 @@ void Spin::before_fading(State& state, std::span<const double> fade) const noexc
   for (std::size_t i = 0; i < born_.size(); ++i) state.rest_bend[i] += (1.0 / fade[i] - 1.0) * born_[i];
 }
 
-// Nodes moved along the thread: frames between the middles of the old segments turn evenly from one to the next.
+// After remeshing: frames and rates at the new midpoints, interpolated between the old midpoints.
 void Spin::resample(const State& state) noexcept {
   const std::size_t edges = state.x.size() - 1;
   std::copy(director_.begin(), director_.end(), old_director_.begin());
@@ -91,7 +91,7 @@ void Spin::resample(const State& state) noexcept {
   }
 }
 
-// Directors go along with their tangents.
+// Parallel transport of the directors to the new tangents.
 void Spin::follow(const State& state) noexcept {
   const std::size_t edges = state.x.size() - 1;
   for (std::size_t j = 0; j < edges; ++j) {
@@ -136,7 +136,8 @@ void Spin::measure(const State& state, double tick_s, bool remeshed) noexcept {
   }
 }
 
-// The angles jump by what the hold was turned; they are let grow by that in the course of the tick.
+// A hold's rotation would make its angles jump at the start of the tick; the jump is instead turned into a constant
+// rate over the tick.
 void Spin::measure_hold(const State& state, const Hold& hold, double tick_s, bool fresh) noexcept {
   const auto i = static_cast<std::size_t>(hold.node);
   held_[i] = 1;
@@ -152,7 +153,7 @@ void Spin::measure_hold(const State& state, const Hold& hold, double tick_s, boo
          angle_about(tangent_[i], transport(hold.director, hold.tangent, tangent_[i]), director_[i]));
 }
 
-// Where the thread would lie without stress, for every vertex: State::rest_bend gets the difference to before.
+// Stress-free bend of every vertex; its change is added to State::rest_bend.
 void Spin::bear(const Material& material, State& state, bool keep_rest) noexcept {
   const std::size_t edges = state.x.size() - 1;
   for (std::size_t i = 1; i < edges; ++i) {
@@ -176,11 +177,11 @@ Vec Spin::shape_of(const Material& material, std::size_t i) noexcept {
   return along * normal_[i] + aside * binormal_[i];
 }
 
-// The same for what was rolled in dt_s.
+// The same after a substep's roll: turns d_i, t_i x d_i and the stress-free bends with the segments.
 void Spin::turn_born(const Material& material, State& state, double dt_s) noexcept {
   const std::size_t edges = state.x.size() - 1;
   for (std::size_t i = 1; i < edges; ++i) {
-    const double a = 0.25 * dt_s * (rate_[i - 1] + rate_[i]);  // tangent of half the angle, next to
+    const double a = 0.25 * dt_s * (rate_[i - 1] + rate_[i]);  // half the angle, approximating its tangent
     const double sine = 2.0 * a / (1.0 + a * a), cosine = 1.0 - a * sine;
     const Vec d = normal_[i], b = binormal_[i];
     normal_[i] = cosine * d + sine * b;

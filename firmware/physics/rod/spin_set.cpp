@@ -1,12 +1,13 @@
-// Bends that set: a share f of the bending stiffness gives way where the thread is bent too sharply, and stays bent.
-//   M = B (kappa - f z),   |kappa - z| <= kappa_y,   z follows kappa only where the bound would be broken:
-// two bending springs side by side, (1 - f) B and f B, the second behind a slider. Linear kinematic hardening [Prager]:
-// M has the slope B up to B kappa_y and (1 - f) B beyond; the slider works against f B kappa_y, so
+// Plastic bending ("set"): beyond the curvature kappa_y a share f of the bending stiffness B yields.
+//   M = B (kappa - f z),   |kappa - z| <= kappa_y,   the plastic curvature z changes only to keep this bound.
+// This is two bending springs in parallel, (1 - f) B and f B, the second in series with a friction slider: linear
+// kinematic hardening [Prager]. M rises with slope B up to B kappa_y, then with slope (1 - f) B. The slider resists
+// with the moment f B kappa_y, so
 //   energy per length = B / 2 ((1 - f) kappa^2 + f (kappa - z)^2),   dissipation = f B (kappa - z) . dz >= 0.
-// Bent to kappa and let go a thread keeps f (kappa - kappa_y), or f kappa_y / (1 - f) where that is less: more is taken
-// back by the spring that did not give way. kappa and z are vectors across the thread and roll with it; in a vertex
-// they are the turns t_i - t_{i-1} that they make in its share l_i of the thread. kappa counts from the shape it was
-// born with.
+// A thread bent to kappa and released keeps the curvature f (kappa - kappa_y), but at most f kappa_y / (1 - f), where
+// the elastic spring makes the slider yield back. kappa and z are vectors perpendicular to the thread and roll with it;
+// at a vertex they are stored as the change of tangent t_i - t_{i-1} over its length l_i. kappa is measured from the
+// thread's initial stress-free shape.
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +16,8 @@
 
 namespace ligature::physics::rod {
 
-// Return mapping: with z moved straight towards D the bound holds at once, so any step is stable and dissipates. What
-// remeshing left over (State::rest_bend - born_) is no bend of the thread.
+// Return mapping: z moves along kappa - z until the bound holds, so a step of any size is stable and dissipates energy.
+// Remeshing offsets (State::rest_bend - born_) do not count as curvature.
 double Spin::yield(const Material& m, State& state) noexcept {
   const Mesh& mesh = state.mesh;
   const std::size_t edges = state.x.size() - 1;
@@ -39,7 +40,7 @@ double Spin::yield(const Material& m, State& state) noexcept {
   return lost_J;
 }
 
-// Between ticks z is told along d_i and t_i x d_i, so that frames carry it.
+// z in components along d_i and t_i x d_i, so that it turns with the frames when these are updated.
 void Spin::set_to_material() noexcept {
   for (std::size_t i = 1; i < set_.size(); ++i)
     set_[i] = make(dot(set_[i], normal_[i]), dot(set_[i], binormal_[i]), 0.0);
@@ -49,12 +50,13 @@ void Spin::set_to_world(const Material& material, const Mesh& mesh) noexcept {
   for (std::size_t i = 1; i + 1 < set_.size(); ++i) {
     set_[i] = set_[i][0] * normal_[i] + set_[i][1] * binormal_[i];
     const double limit = material.yield_curvature_per_m * share_of_vertex(mesh, i);
-    limit2_[i] = mesh.weight[i] > 0.0 ? limit * limit : 1e9;  // a clamp's half segments do not set
+    limit2_[i] = mesh.weight[i] > 0.0 ? limit * limit : 1e9;  // vertices at a clamp do not yield
   }
 }
 
-// Nodes moved along the thread: its set bends are spread evenly over the shares of the old vertices, and a new vertex
-// gets what lies in its own. The sum stays. Shares end in the middles of the segments, but at the ends of the thread.
+// After remeshing: the plastic bend of each old vertex is distributed evenly over its length, and each new vertex gets
+// what falls into its own. The sum is conserved. The length of a vertex reaches from midpoint to midpoint of its
+// segments; the first and last vertex reach to the thread's ends.
 void Spin::resample_set(double length_m) noexcept {
   const std::size_t last = set_.size() - 2;  // vertices 1 .. last
   std::copy(set_.begin(), set_.end(), old_set_.begin());

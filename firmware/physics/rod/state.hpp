@@ -1,5 +1,5 @@
 #pragma once
-// How a rod moves, what holds it, and the scratch of its laws. Sized once.
+// State of a rod: positions, velocities, holds, and the internal forces of the last substep. Allocated once.
 
 #include <array>
 #include <vector>
@@ -9,19 +9,19 @@
 
 namespace ligature::physics::rod {
 
-/// Something that holds a node: a support of the scene, or a hand's gripper.
+/// A constraint on one node: a support of the scene, or a hand's gripper.
 struct Hold {
-  int node = -1;                                            ///< -1: holds nothing
+  int node = -1;                                            ///< -1: this slot is unused
   bool rigid = false;                                       ///< position imposed (support) instead of a spring (hand)
   bool directed = false;                                    ///< imposes the tangent too
-  bool holds_roll = false;                                  ///< the thread cannot turn about its axis here
+  bool holds_roll = false;                                  ///< fixes the thread's rotation about its axis
   double stiffness_N_per_m = 0.0, damping_N_s_per_m = 0.0;  ///< of a hand's coupling
-  Vec target{}, velocity{};  ///< where the holder is at the end of the substep, m, and how it moves
-  Vec force{};               ///< on the holder, N, of the last substep
-  Vec direction{};           ///< unit tangent imposed, when directed
-  Vec director{};            ///< unit normal glued to the thread here, when holds_roll
-  Vec tangent{};             ///< unit tangent the director belongs to
-  bool steered = false;  ///< the holder turns the thread: the director is what is next to `steer` across the tangent
+  Vec target{}, velocity{};  ///< position of the holder at the end of the substep, m, and its velocity, m/s
+  Vec force{};               ///< on the holder, N, in the last substep
+  Vec direction{};           ///< if directed: the imposed unit tangent
+  Vec director{};            ///< if holds_roll: unit normal fixed to the thread's material here
+  Vec tangent{};             ///< unit tangent to which the director is perpendicular
+  bool steered = false;      ///< the director follows `steer`, projected perpendicular to the tangent
   Vec steer{};
 };
 
@@ -31,9 +31,9 @@ struct State {
   Mesh mesh;
   std::vector<Vec> x, v;                      ///< n positions, m, and velocities, m/s
   std::vector<Vec> load;                      ///< n constant forces, N
-  std::vector<Vec> rest_bend;                 ///< n: part of t_i - t_{i-1} that is stress free
-  std::vector<double> cut_before, cut_after;  ///< of segment j, how far the corners at j and j + 1 are cut (smooth.hpp)
-  std::vector<double> rest_strain;            ///< n - 1 (sized n): part of l / l_rest - 1 that is stress free
+  std::vector<Vec> rest_bend;                 ///< n: stress-free part of the bend t_i - t_{i-1}
+  std::vector<double> cut_before, cut_after;  ///< h and h' of segment j's smooth curve, 0 .. 1 (smooth.hpp)
+  std::vector<double> rest_strain;            ///< n - 1 (sized n): stress-free part of the strain l / l_rest - 1
   std::array<Hold, kMaxHolds> holds;
   int hold_count = 0;
 
@@ -46,16 +46,16 @@ struct State {
   }
 };
 
-/// Forces of the last assembly, kept for those who measure.
+/// Internal forces of the last assembly.
 struct Forces {
   std::vector<Vec> tangent, unit;  ///< e_j / l_j and e_j / |e_j|
   std::vector<Vec> moment_in,
-      moment_out;                    ///< of vertex i on the segment before and after it, N m: bending -+ half twist
-  std::vector<Vec> edge;             ///< P_j: the force segment j exerts on node j (and - on j + 1)
+      moment_out;                    ///< moment of vertex i on the segments before and after it, N m
+  std::vector<Vec> edge;             ///< force of segment j on node j, N (on node j + 1: the opposite)
   std::vector<double> shortening;    ///< l_rest / |e|
   std::vector<double> tension;       ///< EA strain, N
-  std::vector<double> twist_moment;  ///< M of vertex i, N m
-  std::vector<double> half_twist;    ///< M / (1 + cos) of the angle there
+  std::vector<double> twist_moment;  ///< twisting moment M at vertex i, N m
+  std::vector<double> half_twist;    ///< M / (1 + cos a) at vertex i, a the angle between its segments
 
   void resize(int n) {
     const auto size = static_cast<std::size_t>(n);

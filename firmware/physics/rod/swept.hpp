@@ -1,5 +1,5 @@
 #pragma once
-// Velocities of the contact window in the course of a sweep: single precision, eight nodes a register.
+// Velocities of the contact window during a sweep: single precision, eight nodes per register.
 
 #include <cstdint>
 #include <cstring>
@@ -27,17 +27,17 @@ inline void store_four(float* at, Four value) noexcept { std::memcpy(at, &value,
 inline void store_eight(float* at, Eight value) noexcept { std::memcpy(at, &value, sizeof value); }
 [[nodiscard]] inline Eight all_eight(float a) noexcept { return Eight{a, a, a, a, a, a, a, a}; }
 
-/// Blocks of eight nodes: eight x, eight y, eight z. A sweep is only a guess of what the true matrix will answer, so
-/// rounding to 1e-7 of a velocity is far below what a pass leaves over; impulses stay in double precision.
+/// Blocks of eight nodes: eight x, eight y, eight z. A sweep only approximates the solution with the full matrix, so
+/// rounding to 1e-7 of a velocity is far below the error of a pass; impulses stay in double precision.
 class SweptVelocities {
  public:
   void reserve(int nodes) { xyz_.assign(3 * (static_cast<std::size_t>(nodes) + 16), 0.0F); }
 
-  /// Nodes in whole blocks, as columns must be padded.
+  /// Number of nodes rounded up to whole blocks, the length of a padded column.
   [[nodiscard]] static std::size_t padded(int nodes) noexcept {
     return (static_cast<std::size_t>(nodes) + 7) & ~std::size_t{7};
   }
-  /// Where the x of a node of the window is; y and z follow 8 and 16 later.
+  /// Index of the x of a node of the window; y and z follow 8 and 16 later.
   [[nodiscard]] static std::int32_t place(int node) noexcept { return (node >> 3) * 24 + (node & 7); }
 
   void load(const Vec* v, int nodes) noexcept {
@@ -61,7 +61,7 @@ class SweptVelocities {
     return make(x, y, z);
   }
 
-  /// v_j += column_j p for every node. @param nodes padded.
+  /// v_j += column_j p for every node. @param nodes  as padded() gives it.
   void push(const float* column, std::size_t nodes, Vec p) noexcept {
     const Eight px = all_eight(static_cast<float>(p[0])), py = all_eight(static_cast<float>(p[1])),
                 pz = all_eight(static_cast<float>(p[2]));

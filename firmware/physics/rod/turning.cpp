@@ -19,12 +19,12 @@ void Turning::prepare(const Contact* contacts, int count, int segments, double r
     if (c.is_pair()) {
       row.segment[1] = c.node[2];
       row.count = 2;
-    } else if (c.count == 1 && c.node[0] > 0 && c.node[0] < segments) {  // a node: half of either segment
+    } else if (c.count == 1 && c.node[0] > 0 && c.node[0] < segments) {  // a node: half for each of its two segments
       row.segment[1] = c.node[0] - 1;
       row.count = 2;
       weight = 0.5;
     }
-    double root = 0.0;  // square root of what a unit of friction can turn, at most
+    double root = 0.0;  // square root of row.answer
     for (int e = 0; e < row.count; ++e) {
       row.g[e] = (-weight * radius_m) * cross(spin.tangent(row.segment[e]), c.n);
       root += std::sqrt(spin.answer(row.segment[e]) * dot(row.g[e], row.g[e]));

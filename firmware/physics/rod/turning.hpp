@@ -1,5 +1,6 @@
 #pragma once
-// Contacts that turn the segments they touch: the surface of a rolling thread moves, and friction there is a torque.
+// Friction that rolls the thread: a segment that turns about its axis moves its surface at a contact, and friction
+// there is a torque on the segment.
 
 #include <vector>
 
@@ -9,20 +10,21 @@ namespace ligature::physics::rod {
 
 struct Contact;
 
-/// At a contact with normal n a segment's surface moves with v + w t x (-r n), whichever side it is on: the slip gains
+/// A segment with tangent t that turns at rate w (rad/s) moves its surface, at a contact with normal n, at the velocity
+/// w t x (-r n), on either side of the contact. So the slip velocity gains
 ///   w g,  g = -r t x n,   and the impulse p gives the segment the torque impulse g . p.
-/// g is across n, so only friction knows of it. Rates answer every push exactly, along the whole thread (Spin::push): a
-/// sweep is Gauss-Seidel in them too.
+/// g is perpendicular to n, so only friction is affected. Each impulse updates the rates of all segments in range at
+/// once and exactly (Spin::push), so a sweep is Gauss-Seidel in the rates too.
 class Turning {
  public:
   void reserve(int rows) { rows_.reserve(static_cast<std::size_t>(rows)); }
 
-  /// One row for each of `contacts`. @param radius_m of the thread. The spin must be assembled.
+  /// Computes g for each of `contacts`. @param radius_m  of the thread. @pre spin.assemble() was called.
   void prepare(const Contact* contacts, int count, int segments, double radius_m, Spin& spin) noexcept;
-  /// Makes their tangential steps so small that they cannot over-shoot with the segments' answers added.
+  /// Reduces Contact::inv_w by the segments' response, so that tangential steps cannot overshoot.
   void shorten_steps(Contact* contacts) const noexcept;
 
-  /// What spinning adds to the relative velocity of row k.
+  /// Contribution of the segments' rotation to the relative velocity of row k.
   [[nodiscard]] Vec slip(int k) const noexcept {
     const Row& row = rows_[static_cast<std::size_t>(k)];
     return spin_->rate(row.segment[0]) * row.g[0] + spin_->rate(row.segment[1]) * row.g[1];
@@ -34,14 +36,14 @@ class Turning {
   void save() noexcept { spin_->save(first_, last_); }
   void restore() noexcept { spin_->restore(first_, last_); }
 
-  /// What a pass costs more, in instructions (work.hpp).
+  /// Additional cost of a pass, in instructions (work.hpp).
   [[nodiscard]] long price(int rows) const noexcept { return rows * (60 + 8L * (last_ - first_ + 1)); }
 
  private:
   struct Row {
     std::int32_t segment[2] = {0, 0};
     int count = 1;
-    double answer = 0.0;  // how fast a unit of friction turns them, at most
+    double answer = 0.0;  // upper bound of the slip velocity per unit of friction impulse, 1/kg
     Vec g[2];
   };
   Spin* spin_ = nullptr;

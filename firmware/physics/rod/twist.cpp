@@ -13,7 +13,7 @@ Vec edge(const State& state, int j) noexcept {
   return unit(state.x[k + 1] - state.x[k]);
 }
 
-// u carried along the centreline from one hold's tangent to another's.
+// The first hold's director, parallel-transported along the centreline to the second hold.
 Vec carried(const State& state, const Hold& from, const Hold& to) noexcept {
   Vec u = from.director, t = from.tangent;
   for (int j = from.node; j < to.node; ++j) {
@@ -64,7 +64,7 @@ void Twist::attach(State& state, int hold) noexcept {
   turn_[at] = 0.0;
   const Vec any = std::abs(h.tangent[0]) < 0.7 ? make(1, 0, 0) : make(0, 1, 0);
   h.director = unit(cross(h.tangent, any));
-  if (k == 0 || k + 1 == count_) {  // a new end: its span starts untwisted
+  if (k == 0 || k + 1 == count_) {  // first or last hold: the new span starts untwisted
     if (k > 0) h.director = carried(state, hold_of(state, order_[at - 1]), h), turn_[at - 1] = 0.0;
     if (k == 0 && count_ > 1) turn_[0] = raw_turn(state, order_[0], order_[1]), roll(h, turn_[0]), turn_[0] = 0.0;
     return;

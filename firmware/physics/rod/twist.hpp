@@ -1,5 +1,5 @@
 #pragma once
-// Twist of the thread between the places that hold its roll, quasi-static.
+// Quasi-static twist of the thread between the holds that fix its roll.
 
 #include <array>
 
@@ -7,26 +7,26 @@
 
 namespace ligature::physics::rod {
 
-/// Between two places that hold roll the twist is uniform (a twist wave crosses 0.3 m of nylon in 0.4 ms, faster than a
-/// tick), so one angle a span tells all of it [Bergou 2008, quasi-static material frame]:
-///   E = C Theta^2 / 2 L,   M = C Theta / L,
-/// Theta the angle from the director of one end, transported along the centreline by the Bishop (parallel) frame, to
-/// that of the other; it counts whole turns. A span with a free end has M = 0. The force on the centreline is
-/// -M grad(Theta), from the vertex binormals (assembly.cpp).
+/// Between two holds that fix roll (a span) the twist is uniform, because a twist wave crosses 0.3 m of nylon in
+/// 0.4 ms, less than a tick. So one angle Theta per span describes it [Bergou 2008, quasi-static material frame]:
+///   E = C Theta^2 / 2 L,   M = C Theta / L.
+/// Theta is the angle from the director at one end, transported along the centreline by the Bishop (parallel) frame, to
+/// the director at the other end, whole turns included. A span with a free end has M = 0. The force on the centreline
+/// is -M grad(Theta), computed from the vertex binormals (assembly.cpp).
 class Twist {
  public:
-  /// Starts holding roll at a hold, without changing the twist anywhere.
+  /// Fixes the roll at a hold, without changing the twist anywhere.
   void attach(State& state, int hold) noexcept;
   void detach(State& state, int hold) noexcept;
 
   /// Turns a hold's director about its tangent by angle_rad (a gripper that rolls the thread).
   static void roll(Hold& hold, double angle_rad) noexcept;
 
-  /// Directors of all holds go along with their tangents, or with the hand that steers them.
+  /// Updates the directors of all holds: parallel transport to the new tangent, or the hand's direction if steered.
   void carry(State& state) const noexcept;
 
-  /// Once a tick: carries directors along with the tangents, measures every span and writes M into forces.
-  /// O(n), no allocation. Valid while no span turns half a revolution in a tick.
+  /// Once per tick: carry(), then the angle of every span, and M into forces. O(n), no allocation. Valid while no span
+  /// turns by half a revolution or more in one tick.
   void update(const Material& material, State& state, Forces& forces) noexcept;
 
   [[nodiscard]] double energy_J() const noexcept { return energy_J_; }
@@ -37,8 +37,8 @@ class Twist {
  private:
   [[nodiscard]] double raw_turn(const State& state, int from, int to) const noexcept;
 
-  std::array<int, kMaxHolds> order_{};    // holds by node
-  std::array<double, kMaxHolds> turn_{};  // of the span after order_[k]
+  std::array<int, kMaxHolds> order_{};    // holds that fix roll, in the order of their nodes
+  std::array<double, kMaxHolds> turn_{};  // Theta of the span after order_[k]
   std::array<double, kMaxHolds> moment_{};
   int count_ = 0;
   double energy_J_ = 0.0;

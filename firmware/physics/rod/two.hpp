@@ -1,5 +1,5 @@
 #pragma once
-// Two doubles as one register: the same arithmetic for two chains of nodes at once, without a shuffle in between.
+// Two doubles in one register: the same arithmetic for two chains of nodes at once, without shuffles.
 
 #include "firmware/physics/rod/vec.hpp"
 
@@ -23,7 +23,7 @@ struct Twos {
 }
 template <int Lane>
 [[nodiscard]] inline Vec lane(const Twos& a) noexcept {
-  // Blended with zeros last: a lone z over zeros becomes `vmovq` of two registers, which valgrind does not know.
+  // Blended with zeros last: otherwise the compiler emits a `vmovq` of two registers, which valgrind does not support.
   const Two xy = __builtin_shufflevector(a.x, a.y, Lane, 2 + Lane), zz = __builtin_shufflevector(a.z, a.z, Lane, Lane);
   const Lanes xyzz = __builtin_shufflevector(xy, zz, 0, 1, 2, 3);
   return {__builtin_shufflevector(xyzz, Lanes{}, 0, 1, 2, 7)};
@@ -38,7 +38,7 @@ struct TwoMats {
   Twos x, y, z;
 };
 
-/// r - A b and r - A^T b, summed so that a chain of them waits for three multiply-adds each.
+/// less: r - A b. less_transposed: r - A^T b. The order of summation keeps the latency at three multiply-adds each.
 [[nodiscard]] inline Twos less(const Twos& r, const TwoMats& a, const Twos& b) noexcept {
   return {r.x - a.x.x * b.x - a.y.x * b.y - a.z.x * b.z, r.y - a.x.y * b.x - a.y.y * b.y - a.z.y * b.z,
           r.z - a.x.z * b.x - a.y.z * b.y - a.z.z * b.z};
@@ -53,7 +53,7 @@ template <int Lane>
   return {lane<Lane>(a.x), lane<Lane>(a.y), lane<Lane>(a.z)};
 }
 
-/// A symmetric one: its lower triangle.
+/// A symmetric 3 x 3 matrix in each lane: its lower triangle.
 struct TwoSyms {
   Two xx, xy, xz, yy, yz, zz;
 };
@@ -82,7 +82,7 @@ template <int Lane>
   return {lane<Lane>(Twos{a.xx, a.xy, a.xz}), lane<Lane>(Twos{a.xy, a.yy, a.yz}), lane<Lane>(Twos{a.xz, a.yz, a.zz})};
 }
 
-/// What det(a) makes of the inverse.
+/// adj(a) = det(a) a^-1.
 [[nodiscard]] inline TwoSyms adjugate(const TwoSyms& a) noexcept {
   return {a.yy * a.zz - a.yz * a.yz, a.xz * a.yz - a.xy * a.zz, a.xy * a.yz - a.xz * a.yy,
           a.xx * a.zz - a.xz * a.xz, a.xy * a.xz - a.xx * a.yz, a.xx * a.yy - a.xy * a.xy};

@@ -30,7 +30,7 @@ inline Vec& operator-=(Vec& a, Vec b) noexcept { return a = a - b; }
   const Lanes p = a.v * b.v;
   return (p[0] + p[1]) + p[2];
 }
-/// The sum of each one's lanes: a transposition and adds.
+/// Lane k of the result is the sum of the lanes of the k-th argument.
 [[nodiscard]] inline Lanes sums(Lanes p, Lanes q, Lanes r, Lanes s) noexcept {
   const Lanes pq = __builtin_shufflevector(p, q, 0, 4, 2, 6) + __builtin_shufflevector(p, q, 1, 5, 3, 7);
   const Lanes rs = __builtin_shufflevector(r, s, 0, 4, 2, 6) + __builtin_shufflevector(r, s, 1, 5, 3, 7);
@@ -60,7 +60,7 @@ inline void store(double* at, Lanes value) noexcept { std::memcpy(at, &value, si
   return {__builtin_shufflevector(c, c, 1, 2, 0, 3)};
 }
 
-/// Four vectors, component by component: what is written for Vec and double does four of them with Vecs and Lanes.
+/// Four vectors, stored by component. A template written for Vec and double handles four pairs with Vecs and Lanes.
 struct Vecs {
   Lanes x, y, z;
 };
@@ -76,7 +76,7 @@ struct Vecs {
           __builtin_shufflevector(ab, cd, 2, 3, 6, 7)};
 }
 
-/// q, but no less than 0; and no more than 1.
+/// at_least_0: max(q, 0). clamp01: q limited to [0, 1].
 [[nodiscard]] inline double at_least_0(double q) noexcept { return q > 0.0 ? q : 0.0; }
 [[nodiscard]] inline Lanes at_least_0(Lanes q) noexcept { return q > Lanes{} ? q : Lanes{}; }
 [[nodiscard]] inline double clamp01(double q) noexcept { return at_least_0(q < 1.0 ? q : 1.0); }
@@ -90,7 +90,7 @@ struct Mat {
   Vec x, y, z;
 };
 
-/// to = from, column by column: what gcc 12 makes of a plain copy goes through memory and general registers.
+/// to = from, column by column: gcc 12 compiles a plain copy to moves through memory and general registers.
 inline void put(Mat& to, const Mat& from) noexcept {
   to.x.v = from.x.v;
   to.y.v = from.y.v;

@@ -1,5 +1,5 @@
 #pragma once
-// What touching may cost in a tick: priced before it is done, in instructions, so that the bound holds for any state.
+// The contact budget of a tick, in instructions. Work is charged before it is done, so the bound holds for any state.
 
 #include <algorithm>
 
@@ -7,65 +7,65 @@
 
 namespace ligature::physics::rod {
 
-/// Prices in instructions of the x86-64-v3 build, rounded up; docs/accuracy.md says how they were counted. What a
-/// substep costs without contact (forces, matrix, one solution) is linear in the nodes and not on the meter.
+/// Prices in instructions of the x86-64-v3 build, rounded up; docs/accuracy.md says how they were counted. The cost of
+/// a substep without contact (forces, matrix, one solution) is linear in the nodes and is not charged.
 namespace price {
-inline constexpr long kCheck = 45;           ///< a listed pair, or a group of them, in a substep: can it meet?
-inline constexpr long kMeasure = 340;        ///< four that can: their closest points
-inline constexpr long kSmooth = 450;         ///< four that are near: between smooth curves instead
-inline constexpr long kTake = 210;           ///< one that was measured: a row to be
-inline constexpr long kCorner = 20;          ///< and each node from the first of these to the last
-inline constexpr long kGuard = 130;          ///< its part in the guard
-inline constexpr long kGuardListed = 60;     ///< that of a pair that was not measured
-inline constexpr long kWorldNode = 60;       ///< a node against the floor or a body
-inline constexpr long kBody = 190;           ///< and it may touch the body
-inline constexpr long kBall = 60;            ///< broad phase: a block against a sphere of the tree
-inline constexpr long kSphere = 130;         ///< broad phase: a segment against a block of eight
-inline constexpr long kConsider = 75;        ///< broad phase: a pair whose spheres meet
-inline constexpr long kList = 140;           ///< broad phase: such a pair listed
-inline constexpr long kExact = 100;          ///< broad phase: and measured before
-inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one split
+inline constexpr long kCheck = 45;           ///< test whether a listed pair, or a group of pairs, must be measured
+inline constexpr long kMeasure = 340;        ///< closest points of the chords of four pairs
+inline constexpr long kSmooth = 450;         ///< added for four pairs that are near: the smooth curves
+inline constexpr long kTake = 210;           ///< making a contact of a measured pair
+inline constexpr long kCorner = 20;          ///< corner of the smooth curve at one node
+inline constexpr long kGuard = 130;          ///< guard check of a measured pair or a contact
+inline constexpr long kGuardListed = 60;     ///< guard check of a pair that was not measured
+inline constexpr long kWorldNode = 60;       ///< one node against the floor or one body
+inline constexpr long kBody = 190;           ///< added when the node may touch the body
+inline constexpr long kBall = 60;            ///< broad phase: block against a sphere of the tree
+inline constexpr long kSphere = 130;         ///< broad phase: segment against a block of eight
+inline constexpr long kConsider = 75;        ///< broad phase: pair whose spheres overlap
+inline constexpr long kList = 140;           ///< broad phase: adding such a pair to the list
+inline constexpr long kExact = 100;          ///< broad phase: exact distance of such a pair
+inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one split, per node of the thread
 
-/// Making `rows` rows on a window of `nodes`, and the two solutions that start them.
+/// Setting up `rows` rows on a window of `nodes`, with the two solutions of ContactSet::start().
 [[nodiscard]] constexpr long rows(long rows, long nodes) noexcept { return 260 * rows + 170 * nodes; }
-/// One pass over them, of which `loaded` carry an impulse and are mixed.
+/// One pass over `rows` rows, of which `loaded` carry an impulse and are mixed.
 [[nodiscard]] constexpr long pass(long rows, long loaded, long nodes) noexcept {
   return rows * (115 + 3 * nodes / 2) + loaded * 180 + 130 * nodes;
 }
-/// Keeping the factors of a window, and a column of their inverse.
+/// factors: copying the factors of a window. column: one column of the inverse.
 [[nodiscard]] constexpr long factors(long nodes) noexcept { return 60 * nodes; }
 [[nodiscard]] constexpr long column(long nodes) noexcept { return 95 * nodes; }
-/// What impulses make of `rows` contacts.
+/// Relative velocities of `rows` contacts, and the check for violations.
 [[nodiscard]] constexpr long look(long rows) noexcept { return 170 * rows; }
-/// Contacts that are to be coupled densely on a window of `nodes`, and pairs of them. This, exchanges and sweeps wait
-/// for memory or for the last result: their prices are what their time would buy of the other instructions.
+/// Blocks of W for new contacts and pairs of contacts on a window of `nodes`. This, exchange() and dense_sweep() are
+/// limited by latency, so their prices exceed their instruction counts, in proportion to their time.
 [[nodiscard]] constexpr long couple(long contacts, long pairs, long nodes) noexcept {
   return contacts * (200 + 35 * nodes) + 70 * pairs;
 }
-/// What impulses make of contacts that are coupled densely.
+/// Kinds and residuals of contacts in Newton's system.
 [[nodiscard]] constexpr long read(long loaded) noexcept { return 200 * loaded; }
-/// The velocities that answer to new impulses of `loaded` contacts.
+/// Velocities of the window after new impulses of `loaded` contacts, with the present A.
 [[nodiscard]] constexpr long answer(long loaded, long nodes) noexcept { return 55 * loaded + 100 * nodes; }
-/// A sweep over `loaded` contacts that are coupled densely, and what it makes of them.
+/// A sweep over the `loaded` contacts of Newton's system, and its read().
 [[nodiscard]] constexpr long dense_sweep(long loaded) noexcept { return loaded * (550 + 2 * loaded); }
-/// Contacts that change places among `slots`, so that those which carry load come first.
+/// Reordering: `changes` exchanges in a table of `slots` contacts.
 [[nodiscard]] constexpr long exchange(long changes, long slots) noexcept { return 140 * changes * slots; }
-/// One of Newton's steps: `loaded` contacts, `unknowns` impulses.
+/// One Newton step with `loaded` contacts and `unknowns` unknowns.
 [[nodiscard]] constexpr long newton(long loaded, long unknowns) noexcept {
   return unknowns * (300 + 8 * unknowns + unknowns * unknowns / 14) + 1500 + 400 * loaded;
 }
-/// The most rows for which `passes` passes can be paid.
+/// Largest number of rows for which setup and `passes` passes cost no more than `allowance`.
 [[nodiscard]] constexpr long affordable_rows(long allowance, long nodes, long passes) noexcept {
   const long fixed = rows(0, nodes) + passes * pass(0, 0, nodes);
   return std::max(0L, allowance - fixed) /
          (rows(1, nodes) - rows(0, nodes) + passes * (pass(1, 1, nodes) - pass(0, 0, nodes)));
 }
-/// The table of C^-1.
+/// Computing the table of C^-1 (contact_metric.hpp).
 [[nodiscard]] constexpr long metric(long nodes, long window) noexcept { return 45 * nodes + 9 * window * window / 2; }
 }  // namespace price
 
-/// The meter of a tick. Spending is the caller's promise; the meter only counts. It ends early when the tick's time is
-/// over, which is asked where a piece of work begins: no more than kPiece lies between two questions.
+/// Counts the work of a tick against its budget. Callers charge their own work with spend(). left() becomes 0 early
+/// when the tick's time is over; the clock is queried between pieces of work of at most kPiece instructions.
 class Work {
  public:
   static constexpr long kPiece = 100'000;
@@ -77,7 +77,7 @@ class Work {
   void spend(long instructions) noexcept { used_ += instructions; }
   [[nodiscard]] long budget() const noexcept { return budget_; }
   [[nodiscard]] long used() const noexcept { return used_; }
-  [[nodiscard]] long unspent() const noexcept { return std::max(0L, budget_ - used_); }  ///< whatever the time
+  [[nodiscard]] long unspent() const noexcept { return std::max(0L, budget_ - used_); }  ///< ignores the clock
   [[nodiscard]] long left() const noexcept { return time_.is_over() ? 0 : unspent(); }
   [[nodiscard]] TickTime& time() noexcept { return time_; }
   [[nodiscard]] const TickTime& time() const noexcept { return time_; }
@@ -87,7 +87,7 @@ class Work {
   TickTime time_;
 };
 
-/// Between many small pieces: asks once in Work::kPiece.
+/// Groups many small pieces of work: queries the clock once per Work::kPiece instructions.
 class Pieces {
  public:
   explicit Pieces(TickTime& time) noexcept : time_(time) {}
