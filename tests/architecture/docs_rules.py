@@ -1,8 +1,8 @@
-"""What the documentation names must exist: links, tests, files, identifiers, scene keys, options, pages named in code.
+"""Everything that the documentation names must exist: links, tests, files, identifiers, scene keys, options, and pages
+that code names.
 
-Run: python3 tests/architecture/docs_rules.py [ROOT]; exit 1 and one line per fault. Lines of prose on the pages of docs/
-and in README.md are at most 120 characters long (tables, code and links may be longer).
-"""
+Run: python3 tests/architecture/docs_rules.py [ROOT]; prints one line per error and exits with 1 if any. Also: lines of
+prose in docs/ and README.md have at most 120 characters (tables, code and links may be longer)."""
 
 import functools
 import pathlib
@@ -12,7 +12,8 @@ import sys
 WIDEST, WRAPPED = 120, re.compile(r"README\.md|docs/(?!fault-matrix)")  # fault matrices are printed by tests
 SOURCES = {".cpp", ".hpp", ".h", ".py", ".js", ".mjs", ".css", ".html", ".toml", ".lcm", ".cmake", ".txt", ".csv", ".json", ".md", ".in", ""}
 SKIPPED = {"build", "out", ".git", "node_modules", "__pycache__"}
-# Made when a program runs or the tree is built, or part of another machine: named by pages, not in the tree.
+# Files that exist only at run time, after a build, or on another machine: pages may name them although the tree has
+# none.
 MADE = re.compile(
     r"^(build|BUILD|out|share|usr|var|proc|dev|sys)/|^/|[A-Z]{3}|\b(a|b|t|knot|golden)\.\w+$"
     r"|^\.\w+$|^scene-N|^haptics-|^(trace|shape|forces|ticks|events|summary|report|knot|columns|start|held|end)\.(csv|json|png|lcmlog)$|^[\w-]+\.(rec|lcmlog|mcap|h5|deb|conf|eds|dbc|service)$"
@@ -22,7 +23,7 @@ TEST = re.compile(r"^[A-Z]\w+\.(?:[A-Z]\w*(?:\.{2,3})?|\*)$")
 MEMBER = re.compile(r"^\w+::(\w+)(?:\(\))?$")
 KEY = re.compile(r"^(?:suture|contact|world|time|hands)\.([a-z]\w*)$", re.A)
 OPTION = re.compile(r"(?<![\w-])(--[a-z][\w-]+)")
-FOREIGN = re.compile(r"^(?:groupadd|cmake|ctest|test_\w+) ")  # programs with options of their own
+FOREIGN = re.compile(r"^(?:groupadd|cmake|ctest|test_\w+) ")  # commands whose options are not ours
 DECLARED = re.compile(
     r"\bTEST(?:_[FP])?\(\s*(\w+),\s*(\w+)"
     r"|(?:add_test\(NAME|ligature_rig_test\(|ligature_hil_test\(|ligature_python_test\(|ligature_browser_test\()\s*([\w.]+)"
@@ -31,7 +32,7 @@ PAGE_IN_CODE = re.compile(r"\bdocs/[\w-]+\.md")
 
 
 class Tree:
-    """The text of every file of ours, and what it declares."""
+    """The text of every file of the project, and what it declares."""
 
     def __init__(self, root):
         self.root = root
@@ -52,7 +53,7 @@ class Tree:
         self.folders = {parent.as_posix() for p in self.text for parent in pathlib.PurePosixPath(p).parents}
 
     def has_file(self, name):
-        """A file or folder that ends in this name, with * for any part of its last component."""
+        """Whether a file or folder path ends in this name; * stands for any part of its last component."""
         if name.rstrip("/") in self.folders or any(f.endswith("/" + name.rstrip("/")) for f in self.folders):
             return True
         pattern = re.compile("(?:.*/)?" + re.escape(name).replace(r"\*", r"[^/]*") + "$")
@@ -69,7 +70,7 @@ class Tree:
 
 
 def anchor_of(heading):
-    """As GitHub makes it: links and marks dropped, lower case, blanks to hyphens."""
+    """The anchor that GitHub generates: without links and markup, in lower case, blanks as hyphens."""
     plain = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading).replace("`", "").strip().lower()
     return re.sub(r"[^\w\- ]", "", plain).replace(" ", "-")
 
@@ -87,7 +88,7 @@ def link_fault(tree, page, target):
 
 
 def span_fault(tree, span):
-    """What a span of code says that is not so, or None. Only what looks like a name of ours is judged."""
+    """The error in an inline code span, or None. Only spans that look like names of this project are checked."""
     for option in OPTION.findall(span) if not FOREIGN.match(span) else ():
         if option not in tree.options:
             return f"no option {option}"
@@ -103,7 +104,7 @@ def span_fault(tree, span):
 
 
 def faults(tree, page, text, narrow=False):
-    """Lines 'page:line: what' of one page."""
+    """The errors of one page, as lines 'page:line: what'."""
     found, fenced = [], False
     for number, line in enumerate(text.split("\n"), 1):
         fenced ^= line.startswith("```")
@@ -117,7 +118,7 @@ def faults(tree, page, text, narrow=False):
 
 
 def self_check(tree):
-    """The rules must be able to fail."""
+    """Checks that the rules reject bad examples."""
     for bad in (
         "[a](nowhere.md)", "[a](#no-such-heading)", "`BandSolver.NoSuchTest`", "`NoSuchSuite.*`", "`no_such_file.cpp`",
         "`firmware/nowhere/`", "`Rod::no_such_member`", "`suture.no_such_key`", "`ligature-lab run --no-such-option`",
@@ -134,7 +135,7 @@ def main():
     found = []
     for path, text in tree.text.items():
         if path == "CHANGELOG.md":
-            continue  # says what was
+            continue  # describes past versions
         if path.endswith(".md"):
             found += faults(tree, path, text, narrow=bool(WRAPPED.match(path)))
         elif not path.endswith("docs_rules.py"):

@@ -1,8 +1,7 @@
-"""Who may include whom. What the table does not list is forbidden.
+"""Which folder may include which; what the table does not list is forbidden.
 
-The rules keep the real-time thread honest by construction: what cannot be included cannot be called.
-Run: python3 tests/architecture/include_rules.py [ROOT]; exit 1 and one line per violation.
-"""
+The real-time thread cannot call what it cannot include. Run: python3 tests/architecture/include_rules.py [ROOT]; prints
+one line per violation and exits with 1 if any."""
 
 import pathlib
 import re
@@ -17,7 +16,7 @@ RULES = {
     "protocol/can": ([], []),
     "protocol/can/describe": (["protocol/can"], ["OS"]),
     "protocol/scene": (["protocol/recorder/crc32.hpp"], ["toml++/"]),
-    "protocol/scene/text_file.cpp": (["protocol/scene"], ["OS"]),  # the one place that opens files
+    "protocol/scene/text_file.cpp": (["protocol/scene"], ["OS"]),  # the only file that opens files
     "protocol/device": ([SCENE_STRUCT, "protocol/scene/toml_text.hpp"], ["toml++/", "OS"]),
     "protocol/recorder": ([], []),
     "protocol/lcm": ([], ["OS"]),
@@ -30,27 +29,27 @@ RULES = {
     "firmware/cycle.hpp": (["firmware/rt", "firmware/control", "firmware/physics", "firmware/clock.hpp"], []),
     "firmware/thread_context.hpp": (["firmware/rt", "firmware/control", "firmware/physics", "firmware/clock.hpp"], []),
     "firmware/app": (["firmware", "protocol", "ligature_msg"], ["CLI/", "spdlog/", "OS"]),
-    # What a page may do to a simulated hand: beside it, and out of reach of the firmware.
+    # What a page may do to a simulated hand; separate from the firmware, which cannot include it.
     "sim_device/page": (["sim_device", "protocol/lcm", "ligature_msg"], ["ruckig/", "Eigen/", "lcm/", "OS"]),
     "sim_device": (["protocol/can", "protocol/scene", "protocol/device", "sim_device/page"], ["ruckig/", "Eigen/", "CLI/", "spdlog/", "nlohmann/", "OS"]),
     "host/knot": ([], ["Eigen/"]),
     "host/console": (["host/errors.hpp"], ["OS"]),
     "host/lab/tie": (["firmware/physics", "sim_device", "protocol/scene", "host"], ["CLI/", "Eigen/", "OS"]),
     "host/lab": (["firmware/physics", "firmware/rt", "protocol/scene", "sim_device/operator", "host/console", "host/errors.hpp", "host/knot", "host/lab/tie", "host/lab/rerun"], ["CLI/", "nlohmann/", "Eigen/", "OS"]),
-    # Records are told again by the firmware's own reporting, so that they can be the same to the bit.
+    # Uses the firmware's own reporting code, so that repeated records can be bit-identical.
     "host/lab/rerun": (["firmware", "protocol/scene", "host", "ligature_msg"], ["CLI/", "nlohmann/", "Eigen/", "OS"]),
-    # The whole rig in one process and in virtual time: it is made of everything, and only the lab's rig may be.
+    # The whole rig in one process and in virtual time; only this folder may include all parts.
     "host/lab/rig": (["firmware", "sim_device", "protocol/can", "protocol/scene", "protocol/device", "host", "ligature_msg"], ["Eigen/", "OS"]),
     "host": (["protocol/scene", "protocol/recorder", "protocol/lcm", "host/console", "host/knot", "host/view", "ligature_msg"], ["lcm/", "CLI/", "nlohmann/", "spdlog/", "OS"]),
-    # Shows a recording: nothing that could send a message of it.
+    # Shows a recording; must not be able to send messages.
     "host/view/replay.cpp": (["host/console", "host/view"], ["OS"]),
     "host/view": (["host", "protocol/scene", "protocol/lcm", "ligature_msg"], ["boost/", "CLI/", "nlohmann/", "OS"]),
-    # The Python package: the thread, its scenes, knots and recordings; no rig.
+    # The Python package: thread, scenes, knots and recordings, without the rig.
     "python/src": (["firmware/physics", "protocol/scene", "host/errors.hpp", "host/knot", "host/lab/every.hpp", "host/lab/outcome.hpp", "host/lab/script_tools.hpp", "host/lab/trace_row.hpp", "host/rig_facts.hpp", "host/recording_reader.hpp", "host/export_sink.hpp", "host/tick_columns.hpp"], ["nanobind/", "OS"]),
 }
 
-# Headers of the operating system and of what it does: files, clocks, threads, sockets, streams. A folder without "OS" in its
-# row may use none of them; chrono is a type, not a clock, and stays allowed.
+# Operating system headers and those for files, clocks, threads, sockets and streams. Folders without "OS" in their row
+# may use none of them. <chrono> is allowed: its durations need no clock.
 OS_HEADERS = re.compile(
     r"^(sys|linux|net|netinet|arpa)/|^(unistd|fcntl|poll|pthread|sched|signal|time|errno|dirent|termios|glob|malloc)\.h$"
     r"|^(fstream|iostream|filesystem|thread|mutex|condition_variable|future|csignal|ctime|cstdio|syncstream|semaphore)$"
@@ -59,18 +58,18 @@ STRANGE_RANDOM = re.compile(r"std::mt19937\w*|std::\w+_distribution|std::random_
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 
 
-# A wish of a page moves a simulated hand alone: no other program can so much as read one.
+# Only these folders may use the messages by which a page moves a simulated hand.
 ONLY = {"ligature_msg/hand_wish_t.hpp": ("sim_device/page/", "host/view/")}
 
 
 def folder_of(path):
-    """The most specific rule that governs a file, or None."""
+    """The most specific folder of the table that contains the file, or None."""
     matches = [f for f in RULES if path == f or path.startswith(f + "/")]
     return max(matches, key=len) if matches else None
 
 
 def violations(path, text):
-    """Lines 'file: includes X, which FOLDER may not' of one source file."""
+    """Violations of one source file, as lines 'file: includes X, which FOLDER may not'."""
     folder = folder_of(path)
     if folder is None:
         return [f"{path}: lies in no folder of the include table"]
@@ -93,13 +92,14 @@ def violations(path, text):
 
 
 def random_violations(path, text):
-    """Random input of tests comes from tests/support/random.hpp: the same everywhere, and shifted by one variable."""
+    """Random input of tests must come from tests/support/random.hpp: reproducible everywhere, and shifted by one
+    variable."""
     found = sorted(set(STRANGE_RANDOM.findall(text)))
     return [f"{path}: uses {word}; random input comes from tests/support/random.hpp" for word in found]
 
 
 def self_check():
-    """The rules must be able to fail."""
+    """Checks that the rules reject bad examples."""
     assert random_violations("tests/a.cpp", "std::mt19937 random(1);")
     assert not random_violations("tests/a.cpp", "test::Random random(1);")
     assert violations("firmware/physics/a.cpp", "#include <fstream>\n")

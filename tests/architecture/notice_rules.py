@@ -1,14 +1,14 @@
-"""NOTICE.md names everything that the project's files install: Python and npm packages, libraries of apt.
+"""NOTICE.md names everything that the project installs: Python and npm packages, libraries from apt.
 
-Run: python3 tests/architecture/notice_rules.py [ROOT]; exit 1 and one line per package that is missing, or named and gone.
-"""
+Run: python3 tests/architecture/notice_rules.py [ROOT]; prints one line per package that is missing or no longer
+installed, and exits with 1 if any."""
 
 import json
 import pathlib
 import re
 import sys
 
-NAMED_TOO = {"ruckig", "liblcm-bin"}  # an archive that CMake unpacks; programs that are run
+NAMED_TOO = {"ruckig", "liblcm-bin"}  # an archive that CMake unpacks, and programs that are run
 
 
 def python_packages(root):
@@ -22,9 +22,9 @@ def npm_packages(root):
 
 
 def apt_libraries(root):
-    """What is compiled or linked into programs; compilers, browsers and emulators are only run."""
+    """Libraries that are compiled or linked into programs; compilers, browsers and emulators are only run."""
     words = set(re.findall(r"\b(?:lib|nlohmann)[\w-]*-dev\b", (root / "scripts/setup").read_text()))
-    return words - {"libclang-rt-dev"}  # clang's own, for the fuzzers
+    return words - {"libclang-rt-dev"}  # clang's own library, for fuzzing
 
 
 def faults(wanted, notice):
@@ -34,7 +34,7 @@ def faults(wanted, notice):
 
 
 def self_check():
-    """The rules must be able to fail."""
+    """Checks that the rules reject bad examples."""
     assert faults({"numpy", "three"}, "`numpy`") == ["NOTICE.md: does not name three, which the project installs"]
     assert faults({"numpy"}, "`numpy` `scipy`") == ["NOTICE.md: names scipy, which nothing installs"]
     assert not faults({"numpy"}, "`numpy`")

@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
-"""The same thread and the same knot in MuJoCo and here, side by side, on one machine in one run.
+"""The same thread and the same knot in MuJoCo and in Ligature, compared on one machine in one run.
 
 usage: peers.py [--lab ligature-lab] [--host ligature-host] [--venv build/peers] [--nodes 50 100 200] [--steps 1e-3 2e-4 1e-4]
                 [--runs 3]
 
-MuJoCo 4.0.0 from PyPI goes into a virtual environment of its own (made on the first run; needs the network). Its native
-1D flex (a discrete elastic rod, implicit under integrator "discrete") gets the thread of scenes/suture-3-0-knot.toml:
+MuJoCo 4.0.0 from PyPI is installed in a separate virtual environment (at the first run; needs the network). Its native
+1D flex (a discrete elastic rod, implicit under integrator "discrete") models the thread of scenes/suture-3-0-knot.toml:
 0.3 m, 0.3 mm, E 1 GPa, friction 0.3, started from the same loose overhand. Two hands draw the ends apart to 93 % of the
-length in 0.25 s and hold. Times are CPU time of the thread, per 1 ms tick, of the pull and the hold. Both are deterministic:
-each is run three times, which must end in the same shape, and every tick counts by its fastest run, so that what other
-processes and the hypervisor take from one run is in nobody's figures. The first run as it was stands beside.
+length in 0.25 s and hold. Times are CPU times of the thread of execution per 1 ms tick, in pull and hold. Both programs
+are deterministic: each is run three times, which must end in the same shape, and each tick counts with its fastest run,
+to exclude disturbances by other processes and the hypervisor. The first run's own times are printed beside.
 
-The peer is given its best chance: contacts as hard as it allows (solimp 0.9999; with its defaults the light loop sinks
-through itself), the start brought to rest at steps of 0.1 ms in a thick fluid until the knot lies in its own contacts,
-and ten times our bending damping. It runs at 1 ms, and at smaller steps to see which keeps the knot and what it costs.
-Prints a table and verdicts; exit 1 when one fails.
+MuJoCo's settings are chosen in its favour: the hardest contacts it allows (solimp 0.9999; with its defaults the light
+loop sinks through itself), a start brought to rest at steps of 0.1 ms with strong drag until the knot is supported by
+its contacts, and ten times our bending damping. It runs at 1 ms and at smaller steps, to find those that keep the knot,
+and their cost. Prints a table and verdicts; exit code 1 when one fails.
 """
 import argparse
 import csv
@@ -30,12 +30,13 @@ import venv
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PACKAGES = ("mujoco==4.0.0", "numpy==2.4.6")
 SETTLE_S, PULL_S, HOLD_S, SHARE = 0.1, 0.25, 0.25, 0.93
-DRAGS_PER_S, DRAG_S, DRAG_STEP_S = (5e4, 5e3, 500.0, 500.0), 0.05, 1e-4  # of the peer's start
+# for the start in MuJoCo: damping per second, duration of each, time step
+DRAGS_PER_S, DRAG_S, DRAG_STEP_S = (5e4, 5e3, 500.0, 500.0), 0.05, 1e-4
 LENGTH_M, RADIUS_M, YOUNG_PA, POISSON, KG_PER_M = 0.3, 1.5e-4, 1e9, 0.4, 8e-5
 
 
 def own_python(folder):
-    """Python of the virtual environment, made when it is not there."""
+    """The Python interpreter of the virtual environment, which is created if it does not exist."""
     python = folder / "bin/python"
     if not (folder / "ready").exists():
         print(f"making {folder} with {', '.join(PACKAGES)}", flush=True)
@@ -46,7 +47,7 @@ def own_python(folder):
 
 
 def start_shape(nodes):
-    """The scene's loose overhand, `nodes` points equally spaced along it, m."""
+    """The scene's loose overhand as `nodes` equally spaced points, m."""
     lines = (ROOT / "scenes/shapes/overhand-loose.csv").read_text().splitlines()
     points = [tuple(map(float, line.split(","))) for line in lines if line and line[0] in "-0123456789"]
     return [tuple((1 - f) * a + f * b for a, b in zip(points[k], points[min(k + 1, len(points) - 1)]))
@@ -59,14 +60,15 @@ def way_of_each_end(points):
 
 
 def least_of(who, runs):
-    """Of each tick the least time; runs are (times, end shape) and must agree in the shape."""
-    if any(repr(shape) != repr(runs[0][1]) for _, shape in runs):  # as text: a NaN is not equal to itself
+    """For each tick the shortest time of all runs. Runs are (times, end shape) and must have the same shape."""
+    # compared as text, because a NaN is not equal to itself
+    if any(repr(shape) != repr(runs[0][1]) for _, shape in runs):
         raise SystemExit(f"{who}: two runs of the same pull end differently; their ticks cannot be compared")
     return [min(ticks) for ticks in zip(*(times for times, _ in runs))]
 
 
 def ours(lab, nodes, folder):
-    """Per-tick times, us, the end shape and the knot, from one `ligature-lab run`."""
+    """One `ligature-lab run`: times per tick, us, the end shape and the knot."""
     points = start_shape(nodes)
     way = way_of_each_end(points)
     script = pathlib.Path(folder) / "pull.csv"
@@ -87,7 +89,7 @@ def ours(lab, nodes, folder):
 
 
 def flex_xml(nodes):
-    """The thread straight along x, its rest shape, in millimetres, grams and seconds."""
+    """The thread straight along x, which is its rest shape, in millimetres, grams and seconds."""
     step = 1e3 * LENGTH_M / (nodes - 1)
     points = " ".join(f"{i * step:.9f} 0 0" for i in range(nodes))
     elements = " ".join(f"{i} {i + 1}" for i in range(nodes - 1))
@@ -104,7 +106,8 @@ def flex_xml(nodes):
 
 
 def laid_out(nodes):
-    """Model and data with the thread in the start shape, and that shape, mm. Inside the virtual environment."""
+    """MuJoCo model and data with the thread in the start shape, and that shape in mm. Runs in the virtual environment.
+    """
     import mujoco
     import numpy
     model = mujoco.MjModel.from_xml_string(flex_xml(nodes))
@@ -112,7 +115,7 @@ def laid_out(nodes):
     points = 1e3 * numpy.array(start_shape(nodes))
     mujoco.mj_forward(model, data)
     moved = points - data.flexvert_xpos
-    for i in range(nodes):  # every vertex is a body with three slides
+    for i in range(nodes):  # every vertex is a body with three slide joints
         body = model.flex_vertbodyid[i]
         first = model.jnt_qposadr[model.body_jntadr[body]]
         data.qpos[first:first + 3] = moved[i]
@@ -123,12 +126,12 @@ def laid_out(nodes):
         model.dof_damping[:] = node_g * drag
         for _ in range(round(DRAG_S / DRAG_STEP_S)):
             mujoco.mj_step(model, data)
-    model.dof_damping[:] = node_g * 5.0  # air, as ours
+    model.dof_damping[:] = node_g * 5.0  # air drag as in our scene
     return model, data, points
 
 
 def theirs(nodes, step_s):
-    """Runs inside the virtual environment: times of 1 ms, us, the shapes at the begin and the end, m, as JSON."""
+    """Runs in the virtual environment. Prints as JSON: times per 1 ms, us, and the first and last shapes, m."""
     import mujoco
     model, data, points = laid_out(nodes)
     begin = (1e-3 * data.flexvert_xpos).tolist()
@@ -139,7 +142,7 @@ def theirs(nodes, step_s):
         spent = 0
         for k in range(steps):
             u = min(1e-3 * (tick + (k + 1) / steps) / PULL_S, 1.0)
-            aside = way * u * u * (3 - 2 * u)  # as a hand of ours moves
+            aside = way * u * u * (3 - 2 * u)  # the same motion as our hands
             data.mocap_pos[0][0], data.mocap_pos[1][0] = points[0][0] - aside, points[-1][0] + aside
             before = time.thread_time_ns()
             mujoco.mj_step(model, data)

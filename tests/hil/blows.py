@@ -1,6 +1,5 @@
-"""What befalls a rig in force in the guest, and what must follow, to the tick. SYNC is sent once a tick: counting it
-numbers the ticks on the wire.
-"""
+"""Faults of a rig that renders force in the guest, and the required reaction, exact to the tick. Every executed tick
+sends one SYNC, so counting SYNCs gives the tick numbers on the bus."""
 
 import subprocess
 
@@ -13,15 +12,15 @@ ERROR_FRAME, BUS_OFF = 0x20000000, 0x20000040  # linux/can/error.h
 
 
 class Blows(Scenario):
-    """Each blow finds the rig in force; `at` is the tick at which it can first be seen. A test's first line says what
-    happens; with what it states and saw that makes a row of docs/fault-matrix-guest.md."""
+    """Each fault occurs while the rig renders force; `at` is the first tick that can see it. The first line of a test's
+    docstring, with the stated and the observed reaction, is a row of docs/fault-matrix-guest.md."""
 
     def row(self, stated, seen):
         self.rows[self._testMethodName] = (self._testMethodDoc.strip().splitlines()[0].rstrip("."), stated, seen)
         print(f"  {self._testMethodName[5:]}: {seen}; stated: {stated}", flush=True)
 
     def read(self, name, ours="vcan0", other="vcan1"):
-        """@param ours, other the controller's interfaces, left and right."""
+        """@param ours, other the controller's left and right interfaces."""
         folder = self.of_run = self.folder / name
         wire = wire_of(folder)
         left = [f for f in wire if f[0] == ours]
@@ -32,13 +31,13 @@ class Blows(Scenario):
 
     @staticmethod
     def tick_before(rows, frames, position):
-        """The tick that had begun when frame number `position` was on the bus; a lost period sends no SYNC."""
+        """The tick during which frame number `position` was on the bus. Lost periods send no SYNC."""
         executed = [r["tick"] for r in rows if not r["flags"] & LOST]
         return executed[sum(f[1] == 0x080 for f in frames[:position + 1]) - 1]
 
     @staticmethod
     def sync_of(rows, frames, tick, interface):
-        """Position of the SYNC that began a tick, on an interface that carried all of them."""
+        """Position of a tick's SYNC among the frames of an interface that carried all of them."""
         executed = [r["tick"] for r in rows if not r["flags"] & LOST]
         return [i for i, f in enumerate(frames) if f[0] == interface and f[1] == 0x080][executed.index(tick)]
 
@@ -47,7 +46,7 @@ class Blows(Scenario):
         return next(i for i, f in enumerate(frames) if f[1] == identifier and (data is None or f[2] == data))
 
     def torque_on_the_wire(self, rows, frames, first_tick):
-        """Target torques of every RPDO from a tick on."""
+        """Target torques of all RPDOs from a tick on."""
         executed = [r["tick"] for r in rows if not r["flags"] & LOST]
         syncs, seen = 0, []
         for _, identifier, data in frames:
@@ -57,8 +56,8 @@ class Blows(Scenario):
         return seen
 
     def ends_in(self, faults, rows, left, right, at, within, besides=""):
-        """A fault of `faults`, latched from one of the first ticks after `at` on, and no torque of either hand in any
-        record or frame from there. `besides`: what widens `within` in this run."""
+        """Expects one of `faults` within the ticks `within` after `at`, and from then on no torque of either hand in
+        any record or frame. `besides`: what extends `within` in this run."""
         before = rows[at - 2]
         self.assertEqual((before["state"], pushes(before)), (FORCE, True), "the blow must find the rig in force")
         first = next(r for r in rows if r["fault"] != 0)
@@ -79,11 +78,12 @@ class Blows(Scenario):
 class FirstBlows:
     def test_a_killed_hand(self):
         """A hand is killed (SIGKILL).
-        The watchdog runs from its last complete set of samples."""
+        The watchdog's time starts at its last complete set of samples."""
         rows, left, right = self.read("hand-killed")
         last = max(i for i, f in enumerate(left) if 0x181 <= f[1] <= 0x183)
         at = self.tick_before(rows, left, last)
-        lost = sum(r["flags"] & LOST != 0 for r in rows[at:at + WATCHDOG_TICKS])  # killing costs the one CPU a period
+        # killing a process takes the only CPU for some periods
+        lost = sum(r["flags"] & LOST != 0 for r in rows[at:at + WATCHDOG_TICKS])
         self.ends_in((11,), rows, left, right, at, range(WATCHDOG_TICKS - 1, WATCHDOG_TICKS + lost + 1),
                      " and the periods that killing costs the one CPU")
         first = next(r for r in rows if r["fault"] != 0)
@@ -97,7 +97,7 @@ class FirstBlows:
 
     def test_bus_off(self):
         """Bus-off, told by the driver's error frame (vcan).
-        A bus that is off takes no SYNC."""
+        In bus-off no further SYNC can be sent."""
         rows, left, right = self.read("bus-off")
         last = max(i for i, f in enumerate(left) if f[1] == 0x080)
         self.ends_in((10,), rows, left, right, self.tick_before(rows, left, last), (0, 1))
@@ -118,14 +118,14 @@ class FirstBlows:
 class OtherBlows:
     def test_somebody_else_stops_a_drive(self):
         """A foreign NMT command stops a drive.
-        Its torque goes at once; we hear the command itself."""
+        That drive's torque ends at once; the controller receives the NMT command, too, and reports a fault."""
         rows, left, right = self.read("stranger")
         at = self.tick_before(rows, left, self.position(left, 0x000, bytes.fromhex("8002")))
         self.ends_in((15,), rows, left, right, at, (0, 1))
 
     def test_somebody_else_commands_torque(self):
         """A foreign RPDO commands 3000 per mille.
-        Ours of the same period follows; the drives are stopped by NMT from the fault on."""
+        The controller's own RPDO of that period follows; from the fault on NMT stops the drives."""
         rows, left, right = self.read("foreign-rpdo")
         alien = self.position(left, 0x201, bytes.fromhex("0f00b80b"))
         at = self.tick_before(rows, left, alien)
@@ -137,7 +137,7 @@ class OtherBlows:
 
     def test_a_stopped_controller(self):
         """SIGSTOP of the controller for 0.1 s, SIGCONT.
-        The drives take the torque away by themselves, the controller wakes up into an overrun."""
+        The drives remove the torque by themselves; the controller, when continued, has an overrun fault."""
         rows, left, right = self.read("controller-stopped")
         for frames in (left, right):
             told = [f for f in frames if 0x081 <= f[1] <= 0x083 and f[2][:2] == bytes.fromhex("5082")]
@@ -162,7 +162,7 @@ class OtherBlows:
 
     def test_an_interface_that_goes_down_under_the_sja1000_driver(self):
         """Interface down under the SJA1000 driver.
-        Its queue stops first; the news comes when the driver has closed it, or the watchdog is faster."""
+        Its queue stops first; the loss is reported when the driver has closed it, unless the watchdog expires before."""
         rows, left, right = self.read("sja1000-pulled", "can0")
         last = max(i for i, f in enumerate(left) if f[1] == 0x080)
         self.ends_in((10, 11), rows, left, right, self.tick_before(rows, left, last), range(WATCHDOG_TICKS + 2))
@@ -173,7 +173,7 @@ class OtherBlows:
         self.comes_back_by_order(rows, 600)
 
     def comes_back_by_order(self, rows, at_least):
-        """@return the tick in which the order to arm was obeyed."""
+        """@return the tick in which the command to arm was executed."""
         faulted = [r["tick"] for r in rows if r["state"] == FAULT]
         self.assertGreater(len(faulted), at_least, "without a bus, then 0.5 s with one: it stays a fault")
         self.assertEqual(faulted, list(range(faulted[0], faulted[-1] + 1)))
@@ -187,12 +187,13 @@ class OtherBlows:
         return disarmed[-1]["tick"] + 1
 
     def slcan(self):
-        """The rig whose left controller goes bus-off: rows, frames on its interface, on the right one, and on all of them."""
+        """The run in which the left controller goes bus-off: records, frames on its interface, on the right one, and on
+        all."""
         return *self.read("slcan-bus-off", "slcan0", "wire1"), wire_of(self.folder / "slcan-bus-off", by_time=True)
 
     def test_bus_off_of_a_controller_with_error_counters(self):
         """Bus-off of a controller with error counters (slcan): state of its interface, no carrier.
-        Its driver takes it off the bus by the kernel's own can_bus_off()."""
+        The driver calls the kernel's can_bus_off()."""
         rows, left, right, wire = self.slcan()
         logs = [(self.folder / f"slcan-bus-off/slcan-{when}.log").read_text() for when in ("before", "after")]
         for log, state, flags in zip(logs, ("ERROR-ACTIVE", "BUS-OFF"), ("<NOARP,UP,LOWER_UP>", "<NO-CARRIER,NOARP,UP>"), strict=True):

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Runs one command in a throw-away PREEMPT_RT guest with SocketCAN, and ends with its exit code.
+"""Runs one command in a temporary PREEMPT_RT guest with SocketCAN, and ends with its exit code.
 
-The guest sees this machine's root read-only below a tmpfs: it may write anywhere, nothing is kept but what it puts
-into /hil. It has lo, vcan0 and vcan1, and can0 and can1 on a pair of emulated SJA1000 controllers (down at first).
-QEMU runs at normal priority, always: under a real-time one it would starve the machine.
+The guest sees this machine's root file system read-only below a tmpfs: it may write anywhere, but only files in /hil are
+kept. It has lo, vcan0 and vcan1, and can0 and can1 on two emulated SJA1000 controllers (initially down). QEMU always
+runs at normal priority: with a real-time priority it would take the machine's CPU from everything else.
 
 Example: guest.py --out build/hil/look --icount 1 -- uname -a
-Exit: the command's; 124 out of time; 125 the guest never told one."""
+Exit: the command's; 124: time limit reached; 125: the guest reported no exit code."""
 
 import argparse
 import ctypes
@@ -77,7 +77,7 @@ def machine(options, folder, initrd):
 
 
 def dies_with_us():
-    """Whatever ends this process ends QEMU."""
+    """QEMU is killed when this process ends for any reason."""
     ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
 
 

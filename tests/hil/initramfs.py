@@ -1,4 +1,4 @@
-"""The guest's first files as a cpio archive (format "newc"), made without any tool or root right."""
+"""The guest's initial files as a cpio archive (format "newc"), built without external tools or root rights."""
 
 import stat
 
@@ -17,7 +17,7 @@ def padded(data):
 
 
 def archive(files):
-    """@param files name -> bytes, all executable; folders are made as needed."""
+    """@param files name -> bytes, all executable; folders are created as needed."""
     folders = {"/".join(name.split("/")[:i]) for name in files for i in range(1, name.count("/") + 1)}
     parts = [entry(f, DIRECTORY) for f in sorted(folders)]
     parts += [entry(name, PROGRAM, data) for name, data in files.items()]

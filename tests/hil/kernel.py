@@ -1,4 +1,4 @@
-"""Debian's PREEMPT_RT kernel, unpacked into a folder: never installed, never booted on this machine itself.
+"""Unpacks Debian's PREEMPT_RT kernel into a folder; it is neither installed nor booted on this machine.
 
 Usage: kernel.py FOLDER; scripts/setup hil does it."""
 
@@ -11,20 +11,20 @@ import zlib
 
 import zstandard
 
-# How kernels are packed: first bytes, and what unpacks them. Each ignores what follows its stream.
+# Kernel compression formats: magic bytes and decompressor, each of which ignores data after its stream.
 PACKED = (
     (b"\xfd7zXZ\x00", lambda data: lzma.LZMADecompressor(lzma.FORMAT_XZ).decompress(data)),
     (b"\x28\xb5\x2f\xfd", lambda data: zstandard.ZstdDecompressor().decompressobj().decompress(data)),
     (b"\x1f\x8b\x08", lambda data: zlib.decompressobj(wbits=31).decompress(data)),
 )
-# What the guest needs, in no order; what these need is found in the modules themselves.
+# Modules that the guest needs; their dependencies are read from the modules.
 MODULES = ("virtio_pci", "virtio_console", "virtio-rng", "9pnet_virtio", "9p", "overlay",
            "can", "can-raw", "can-bcm", "vcan", "kvaser_pci", "slcan")
 OF_A_DISK = ("virtio_blk", "crc32c_generic", "ext4")
 
 
 def package():
-    """Name of the package with the newest kernel, which the meta package depends on."""
+    """Name of the package with the newest kernel, from the dependencies of the meta package."""
     depends = subprocess.run(["apt-cache", "depends", "linux-image-rt-amd64"], capture_output=True, text=True)
     names = [line.split()[-1] for line in depends.stdout.splitlines() if "Depends: linux-image-" in line]
     if not names:
@@ -33,8 +33,8 @@ def package():
 
 
 def fetch(cache):
-    """@return the folder with boot/ and the modules of the kernel; the package is downloaded once, anew only when that
-    folder is removed or a module is wanted that was not kept."""
+    """@return the folder with boot/ and the kernel's modules. The package is downloaded once, and again only if that
+    folder was removed or lacks a module."""
     here = sorted(mark.parent for mark in cache.glob("*/complete"))
     if here and complete(here[-1]):
         return here[-1]
@@ -51,7 +51,7 @@ def fetch(cache):
     archive.unlink()
     unpack(next((folder / "boot").glob("vmlinuz-*")), folder / "vmlinux")
     unpack_modules(folder)
-    needed = set(modules(folder, MODULES + OF_A_DISK))  # of 400 MB
+    needed = set(modules(folder, MODULES + OF_A_DISK))  # a small part of 400 MB
     for module in folder.rglob("*.ko"):
         if module not in needed:
             module.unlink()
@@ -60,11 +60,11 @@ def fetch(cache):
 
 
 def unpack(bzimage, to):
-    """The kernel as ELF: an emulated CPU would need seconds to unpack it at every start."""
+    """The kernel as an uncompressed ELF file; an emulated CPU would need seconds to decompress it at every boot."""
     data = bzimage.read_bytes()
     for magic, unpacked in PACKED:
         at = data.find(magic)
-        while at >= 0:  # the first bytes may also stand in code
+        while at >= 0:  # the magic bytes may also occur in code
             try:
                 elf = unpacked(data[at:])
             except (lzma.LZMAError, zstandard.ZstdError, zlib.error):
@@ -77,14 +77,14 @@ def unpack(bzimage, to):
 
 
 def unpack_modules(folder):
-    """Plain .ko files, as the guest's insmod reads them: Debian 13 packs each of them with xz."""
+    """Decompresses modules to plain .ko files for the guest's insmod; Debian 13 compresses each with xz."""
     for packed in pathlib.Path(folder).rglob("*.ko.xz"):
         packed.with_suffix("").write_bytes(lzma.decompress(packed.read_bytes()))
         packed.unlink()
 
 
 def needs(module):
-    """Names of the modules that one asks for, from its own .modinfo."""
+    """Names of the modules on which this one depends, from its .modinfo section."""
     data = module.read_bytes()
     at = data.find(b"\0depends=")
     at = at + 9 if at >= 0 else data.find(b"depends=") + 8
@@ -100,8 +100,8 @@ def complete(folder):
 
 
 def modules(folder, names=MODULES):
-    """Files of modules and all they need, in an order in which they can be loaded."""
-    folder = pathlib.Path(folder)  # /lib/modules in Debian 12, /usr/lib/modules in 13
+    """Files of the modules and their dependencies, in loading order."""
+    folder = pathlib.Path(folder)  # modules are in /lib/modules in Debian 12, in /usr/lib/modules in 13
     found = {f.stem.replace("-", "_"): f for f in folder.rglob("*.ko")}
     inside = {pathlib.PurePath(line).stem.replace("-", "_") for list_ in folder.rglob("modules.builtin") for line in list_.read_text().splitlines()}
     order = []

@@ -1,9 +1,8 @@
-"""Runs scenarios in the guest and reads what they left: the flight recorder, which holds every tick, and candump, which
-shares no code with us.
+"""Runs scenarios in the guest and reads their results: the flight recorder, which holds every tick, and the log of
+candump, which shares no code with this project.
 
-Time in the guest is virtual (-icount): an instruction takes 1 ns and waiting takes none of this machine's time, so that a
-deadline is a property of the program and can be asserted.
-"""
+Time in the guest is virtual (-icount): an instruction takes 1 ns, and waiting takes no real time. A deadline is
+therefore a property of the program and can be asserted."""
 
 import csv
 import os
@@ -22,13 +21,13 @@ BIN = pathlib.Path(os.environ["LIGATURE_BIN"])
 OUT = pathlib.Path(os.environ.get("LIGATURE_HIL_OUT", ROOT / "build/hil"))
 LOST, MISSED = 1, 2
 IDLE, ENGAGE, FORCE, FAULT = 2, 3, 4, 6
-LONGEST_S = 2000  # of this machine's time, when others load it; alone a scenario takes one to three minutes
+LONGEST_S = 2000  # real time on a loaded machine; on an idle one a scenario takes one to three minutes
 
 
 def guest(name, *options, timeout=LONGEST_S):
-    """Runs one scenario. @return the folder with what it left."""
+    """Runs one scenario. @return the folder with its results, and the exit code."""
     out = OUT / name
-    if os.environ.get("LIGATURE_HIL_JUDGE_ONLY"):  # what the last run left
+    if os.environ.get("LIGATURE_HIL_JUDGE_ONLY"):  # evaluate the results of the last run
         return out, 0
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir(parents=True)
@@ -51,7 +50,7 @@ VIRTUAL = ("--icount", "0")
 
 
 def ticks_of(folder, recorded="flight.rec"):
-    """The flight recorder, or what it saved at a fault, as a list of rows."""
+    """The flight recorder's file, or the copy saved at a fault, as a list of rows."""
     made = folder / f"{recorded}.csv"
     subprocess.run([BIN / "ligature-host", "export", folder / recorded, "--ticks", made], check=True, capture_output=True, timeout=120)
     with open(made) as file:
@@ -64,7 +63,8 @@ def pushes(row):
 
 
 def wire_of(folder, by_time=False):
-    """candump's log: (interface, identifier, data) in its order, which is that of each bus, or of the kernel's time stamps."""
+    """candump's log as (interface, identifier, data), in its order, which is correct within each bus, or sorted by the
+    kernel's time stamps."""
     line_of = re.compile(r"\((\d+\.\d+)\) +(\S+) ([0-9A-F]+)#([0-9A-F]*)")
     lines = [m for m in map(line_of.match, (folder / "can.log").read_text().splitlines()) if m]
     if by_time:
@@ -78,7 +78,7 @@ class Guest(unittest.TestCase):
 
 
 class Scenario(Guest):
-    """Boots once for all of its tests."""
+    """Boots the guest once for all of its tests."""
     name = None
 
     @classmethod

@@ -1,4 +1,4 @@
-"""What the guest proves. Each class boots it once; what a run left is judged out here (scenario.py)."""
+"""Tests in the guest. Each class boots it once; the results are evaluated on the host (scenario.py)."""
 
 import json
 import os
@@ -51,7 +51,8 @@ class Faults(FirstBlows, OtherBlows, Blows):
 
     @classmethod
     def tearDownClass(cls):
-        """The page holds what is stated; what was seen is of the run that wrote it."""
+        """Compares the page's stated reactions with this run's; the observed values on the page are from the run that
+        wrote it."""
         made = PAGE_HEAD + "".join(f"| {what} | {stated} | {seen} |\n" for _, (what, stated, seen) in sorted(cls.rows.items()))
         if os.environ.get("LIGATURE_WRITE_DOCS"):
             PAGE.write_text(made)
@@ -60,7 +61,7 @@ class Faults(FirstBlows, OtherBlows, Blows):
 
 
 class Short(Deadlines, FirstBlows, Blows):
-    """What CI asks at each change, in one boot."""
+    """The short form for every change, in one boot."""
     name = "short"
     rows = {}
 

@@ -1,7 +1,7 @@
-"""Two hands and a controller as processes on the local: bus, without LCM: for tests of how a controller starts and runs.
+"""Two hands and a controller as processes on the `local:` bus, without LCM, for tests of the controller's start and
+operation.
 
-Nothing here asserts wall-clock time: every wait is for a condition, with a bound that only ends a hang.
-"""
+Wall-clock time is not asserted: every wait is for a condition, with a limit that only ends a hang."""
 
 import os
 import pathlib
@@ -20,7 +20,7 @@ def pause(seconds):
 
 
 class BareRig(unittest.TestCase):
-    """Whatever a test starts ends with it."""
+    """Ends every process that a test has started."""
 
     def setUp(self):
         self.path = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="bare-")))

@@ -1,13 +1,14 @@
-"""Knots given by planar diagrams, drawn in space: an independent way to make a known knot, and the published hard unknots.
+"""Knots given by planar diagrams and drawn in space, as known knots from an independent source, and published hard
+unknots.
 
-A diagram is a list of crossings, each the labels of its four edges counter-clockwise from the incoming under one (PD code).
-"""
+A diagram is a list of crossings in PD code: the labels of a crossing's four edges, counter-clockwise from the incoming
+under one."""
 
 import math
 
 import numpy as np
 
-# Diagrams of the unknot on which no move that lowers or keeps the number of crossings leads to the circle.
+# Diagrams of the unknot that cannot be undone by moves that lower or keep the number of crossings.
 HARD_UNKNOTS = {
     "Goeritz": [(11, 1, 12, 0), (1, 13, 2, 12), (13, 3, 14, 2), (3, 15, 4, 14), (4, 21, 5, 0), (20, 5, 21, 6), (15, 11, 16, 10),
                 (10, 16, 9, 17), (6, 17, 7, 18), (18, 7, 19, 8), (8, 19, 9, 20)],
@@ -24,7 +25,8 @@ HARD_UNKNOTS = {
 
 
 def strands(diagram):
-    """Ends are (crossing, place). @returns the edges in the order of the walk, and the other end and label of each end."""
+    """@returns the edges in the order of the walk, and for each end (crossing, place) the edge's other end and its
+    label."""
     ends = {}
     for crossing, labels in enumerate(diagram):
         for place, label in enumerate(labels):
@@ -42,7 +44,7 @@ def strands(diagram):
 
 
 def faces_of(diagram, across, path):
-    """The corners of each face, which lies to the left of them."""
+    """The corners of each face, in the order in which the face lies to the left."""
     faces, seen = [], set()
     for start in ((c, k) for c in range(len(diagram)) for k in range(4)):
         face, at = [], start
@@ -58,9 +60,9 @@ def faces_of(diagram, across, path):
 
 
 def drawn(diagram, outer=0):
-    """The diagram as a closed polygon: a Tutte drawing of its graph, overs lifted and unders lowered.
-    Every edge has two bends and every face but the outer one a hub, so the graph is simple and its drawing has no fold [Tutte 1963].
-    """
+    """The diagram as a closed polygon: a Tutte drawing of its graph, with over strands raised and under strands
+    lowered. Every edge has two bends and every face but the outer one a hub, so that the graph is simple and the
+    drawing has no fold [Tutte 1963]."""
     walk, across = strands(diagram)
     path = {}
     for a, b, label in walk:
@@ -76,9 +78,9 @@ def drawn(diagram, outer=0):
         pull[number[p], number[q]] = pull[number[q], number[p]] = 1.0
     rim = [number[p] for p in outside]
     fixed = np.zeros((len(number), 2))
-    turn = -2 * math.pi * np.arange(len(rim)) / len(rim)  # clockwise, for its inside is out here
+    turn = -2 * math.pi * np.arange(len(rim)) / len(rim)  # clockwise, because the drawing is outside of this face
     fixed[rim] = np.stack([np.cos(turn), np.sin(turn)], 1)
-    for _ in range(30):  # longer edges pull harder, so that small faces grow
+    for _ in range(30):  # longer edges get larger weights, so that small faces grow
         balance = np.diag(pull.sum(axis=1)) - pull
         balance[rim] = 0.0
         balance[rim, rim] = 1.0

@@ -1,10 +1,10 @@
-"""Polylines of known knots: closed braids, disguised by moves that keep the type, turned, noisy, open and closed."""
+"""Polylines of known knots: closed braids, disguised by moves that keep the type, rotated, noisy, open and closed."""
 
 import math
 
 import numpy as np
 
-# KnotInfo's braid words, as in tests/unit/knot/recognise_test.cpp; right is the hand of the word given.
+# KnotInfo's braid words, as in tests/unit/knot/recognise_test.cpp; the handedness is that of the given word.
 BRAIDS = {
     ("0_1", "none"): (4, (1, -2, 3)),
     ("3_1", "right"): (2, (1, 1, 1)),
@@ -33,7 +33,8 @@ OTHER = {"right": "left", "left": "right"}
 
 
 def closed_braid(strands, word):
-    """The braid runs along x, the strands return far outside; positive letters make right-handed crossings."""
+    """Closure of a braid that runs along x; the strands return far outside; positive letters make right-handed
+    crossings."""
     end, line, at = 2.0 * len(word) + 1.0, [], 0
     while True:
         line.append((0.0, at, 0.0))
@@ -71,7 +72,7 @@ def refined(points, pieces):
 
 
 def pierced(a, b, c, starts, ends):
-    """Does any segment meet the triangle (with a margin)?"""
+    """Whether any segment intersects the triangle, with a margin."""
     normal = np.cross(b - a, c - a)
     area2 = normal @ normal
     if area2 < 1e-18:
@@ -89,7 +90,7 @@ def pierced(a, b, c, starts, ends):
 
 
 def disguised(points, rng, moves, reach):
-    """Random moves of single corners, each sweeping two triangles that no other edge pierces: the type stays."""
+    """Moves random corners; each move sweeps two triangles that no other edge intersects, so the type is kept."""
     p, n = points.copy(), len(points)
     done = 0
     for _ in range(8 * moves):
@@ -100,7 +101,7 @@ def disguised(points, rng, moves, reach):
         to = b + reach * rng.normal(size=3)
         keep = [k for k in range(n) if k not in ((i - 1) % n, i)]
         starts, ends = p[keep], p[[(k + 1) % n for k in keep]]
-        # Edges beside the moved ones share a corner with a triangle; the part of them beyond it still counts.
+        # The neighbours of the moved edges share a corner with a triangle; the rest of them must not intersect it.
         starts, ends = starts + 1e-6 * (ends - starts), ends + 1e-6 * (starts - ends)
         if pierced(a, b, to, starts, ends) or pierced(b, c, to, starts, ends):
             continue
@@ -110,7 +111,7 @@ def disguised(points, rng, moves, reach):
 
 
 def opened(points, rng):
-    """Cut in its outermost corner, both ends drawn straight out to twice the size, where nothing is: the type stays."""
+    """Opens the line at its outermost corner and extends both ends outwards to twice the size, so the type is kept."""
     centre = points.mean(axis=0)
     away = points - centre
     cut = int(np.argmax((away ** 2).sum(axis=1)))
@@ -122,14 +123,15 @@ def opened(points, rng):
 
 
 def smooth_unknot(rng, n):
-    """Tangled to look at, but z rises all the way and the return runs outside: the unknot."""
+    """An unknot that looks tangled: z rises monotonically and the return path runs outside."""
     t, phase = np.linspace(0.0, 2 * math.pi, n, endpoint=False), rng.uniform(0, 2 * math.pi, 2)
     body = np.stack([np.sin(5 * t + phase[0]) + np.cos(9 * t), np.cos(7 * t + phase[1]) - np.sin(4 * t), 0.02 * np.arange(n)], 1)
     return np.vstack([body, [6.0, 0.0, 0.02 * n + 1], [6.0, 0.0, -1.0]])
 
 
 def doubled_trefoil(n, twist):
-    """A long bight tied in a trefoil, its strands twisted about each other: drawing it back undoes it. The unknot."""
+    """The unknot: a long bight laid along a trefoil, its strands twisted about each other; pulling the bight back
+    undoes it."""
     def at(t, side):
         base = np.stack([np.sin(t) + 2 * np.sin(2 * t), np.cos(t) - 2 * np.cos(2 * t), -np.sin(3 * t)], 1)
         return base + side * 0.08 * np.stack([np.cos(twist * t), np.sin(twist * t), np.sin(twist * t + 1.0)], 1)

@@ -1,7 +1,6 @@
-"""The whole rig as processes on the local: bus, for tests: devices, firmware, recorder and an LCM listener.
+"""The whole rig as processes on the `local:` bus, for tests: devices, firmware, recorder and an LCM listener.
 
-Nothing here asserts wall-clock time: every wait is for a condition, with a bound that only ends a hang.
-"""
+Wall-clock time is not asserted: every wait is for a condition, with a limit that only ends a hang."""
 
 import json
 import os
@@ -28,12 +27,12 @@ LCM_URL = "udpm://239.255.76.67:7667?ttl=0"
 
 
 def run(program, *args, timeout=60):
-    """Runs one of our programs to its end."""
+    """Runs one of the project's programs to its end."""
     return subprocess.run([BIN / program, *map(str, args)], capture_output=True, text=True, timeout=timeout, cwd=ROOT)
 
 
 class Listener(threading.Thread):
-    """An independent LCM peer that keeps the ticks and the last status the firmware sent."""
+    """An LCM client that keeps the ticks and the last status that the firmware sent."""
 
     def __init__(self):
         super().__init__(daemon=True)
@@ -52,18 +51,20 @@ class Listener(threading.Thread):
         while not self.stop:
             try:
                 self._lcm.handle_timeout(100)
-            except (ValueError, struct.error):  # what a test of garbage sends; a firmware's batch that is lost shows as a hole
+            # invalid data that a test sends; a lost batch of the firmware would show as a gap
+            except (ValueError, struct.error):
                 pass
 
 
 class Rig:
-    """Two devices, the firmware and, on request, the recorder. Use as a context manager; everything it started ends with it.
+    """Two devices, the firmware and optionally the recorder, as a context manager that ends all processes.
 
-    The watchdog is long, because a stall of the machine is not what these tests are about; the ones that are set their own."""
+    The default watchdog is long, so that a stall of the machine is no fault; tests of the watchdog set their own."""
 
     def __init__(self, operator="scenes/operators/overhand.csv", scene="scenes/paper.toml", watchdog_ms=1000, record=False, extra=(),
                  prefix=(), flight=None):
-        """@param prefix what the firmware's command line begins with; flight: its recorder, else a file of this rig's own."""
+        """@param prefix start of the firmware's command line; flight: file of its flight recorder, by default this
+        rig's own."""
         self.folder = self.folder_of_its_own()
         self.path = pathlib.Path(self.folder.name)
         self.prefix, self.flight = list(prefix), flight or self.path / "flight.rec"
@@ -98,8 +99,8 @@ class Rig:
                    "--operator", self.operator, "--stats", self.path / f"{hand}.json")
 
     def start_firmware(self):
-        # Each lost period costs energy that a hand has not paid yet (docs/haptics.md); a machine that loses many would
-        # never push both hands at once, which is where these tests begin.
+        # Each lost period costs energy before a hand has supplied any (docs/haptics.md). Without initial credit, a
+        # machine that loses many periods would never push both hands at once, as these tests require.
         self.start("firmware", "ligature-firmware", "run", "--scene", self.scene, "--left", self.bus["left"],
                    "--right", self.bus["right"], "--arm", "--watchdog-ms", self.watchdog_ms, "--recorder", self.flight, "--set", "hands.energy_credit_J=0.02", *self.extra,
                    *os.environ.get("LIGATURE_RIG_ARGS", "").split(), prefix=self.prefix)
@@ -109,7 +110,7 @@ class Rig:
         self.processes[name].wait()
 
     def end(self, name, how=signal.SIGTERM, bound_s=20):
-        """Ends one process politely and returns its exit code; a hang is an error."""
+        """Ends one process by a signal and returns its exit code; a hang is an error."""
         process = self.processes[name]
         if process.poll() is None:
             process.send_signal(how)
@@ -130,16 +131,16 @@ class Rig:
         return bool(self.listener.ticks) and self.listener.ticks[-1].state == state
 
     def said(self, name):
-        """What one process has printed so far."""
+        """Output of one process so far."""
         return (self.path / f"{name}.log").read_text()
 
     def device_stats(self, hand):
-        """Ends a device and reads what it says about itself; its torque is from before it was switched off."""
+        """Ends a device and reads its statistics; their torque is from before it was switched off."""
         self.end(hand)
         return json.loads((self.path / f"{hand}.json").read_text())
 
     def words(self):
-        """What every process printed, for failure messages."""
+        """Output of every process, for failure messages."""
         return "\n".join(f"--- {p.name}\n{p.read_text()[-2000:]}" for p in sorted(self.path.glob("*.log")))
 
     def __exit__(self, *_):

@@ -1,9 +1,9 @@
-"""Seeds of the Python tests' random input, shifted like those of tests/support/random.hpp: LIGATURE_TEST_SEED."""
+"""Seeds for the random input of the Python tests, shifted by LIGATURE_TEST_SEED as in tests/support/random.hpp."""
 import os
 
 
 def shifted(seed):
-    """Another seed for each shift; the seed itself without one."""
+    """A different seed for each shift; the seed itself without a shift."""
     text = os.environ.get("LIGATURE_TEST_SEED") or "0"
     if not (text.isascii() and text.isdigit()):
         raise SystemExit(f"LIGATURE_TEST_SEED is {text!r}, allowed: a whole number, 0 .. 2^64 - 1")

@@ -1,4 +1,4 @@
-"""docs/analysis.md: its examples run, and every format holds the numbers of the messages to the last bit."""
+"""The examples of docs/analysis.md run, and every export format holds the messages' numbers exactly."""
 
 import json
 import os
@@ -24,7 +24,7 @@ TICKS, SCENE, OTHER = 4321, "[suture]\nnodes = 4\n", "[suture]\nnodes = 6\n"
 
 
 def awkward(rng):
-    """A double that short digits do not reach."""
+    """A double with many significant digits."""
     return rng.uniform(-4.0, 4.0) * 10.0 ** rng.randint(-12, 3)
 
 
@@ -112,7 +112,7 @@ class Analysis(unittest.TestCase):
         self.assertFalse((self.folder / "no.svg").exists())
 
     def columns(self):
-        """Name and value of a tick in the message itself."""
+        """Names and values of a tick's columns, from the message itself."""
         axes = "xyz"
         for hand, name in enumerate(("left", "right")):
             for field, quantity, unit in (("p_WT_m", "p_WT", "_m"), ("f_device_N", "device_f", "_N"), ("f_world_N", "world_f", "_N")):
@@ -161,7 +161,7 @@ class Analysis(unittest.TestCase):
         done = subprocess.run([HOST, "compare", "knot.lcmlog", "knot.lcmlog", "--out", "c.svg"], cwd=self.folder, capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stdout.count("root mean square 0.0000 N, largest 0.0000 N"), 2)
-        self.assertIn("[suture]", (self.folder / "c.svg").read_text())  # the scene is in the picture
+        self.assertIn("[suture]", (self.folder / "c.svg").read_text())  # the scene is embedded in the picture
 
     def test_nothing_is_left_of_a_refused_export(self):
         (self.folder / "bad.lcmlog").write_bytes(b"no log")

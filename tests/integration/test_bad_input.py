@@ -1,4 +1,5 @@
-"""Every program refuses bad input with exit 2 and one line that names the place; nothing half-written stays."""
+"""Every program rejects bad input with exit code 2 and one line that names the place, and leaves no partly written
+files."""
 
 import os
 import pathlib
@@ -35,7 +36,7 @@ class BadInput(unittest.TestCase):
         self.addCleanup(self.folder.cleanup)
 
     def refused(self, result, *named):
-        """Exit 2, one line, and the line says these words."""
+        """Expects exit code 2 and a single line that contains these words."""
         self.assertEqual(result.returncode, 2, result.stderr)
         self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
         for word in named:
@@ -57,11 +58,12 @@ class BadInput(unittest.TestCase):
         self.assertFalse((self.path / "out").exists(), "a refused run left something behind")
 
     def test_a_coupling_that_the_device_cannot_render(self):
-        """(b + B) / (T / 2 + delay) = (0.3 + 0.36) / 1.5 ms = 440 N/m; 9000 N/m x scales 0.06 = 540 N/m."""
+        """Limit: (b + B) / (T / 2 + delay) = (0.3 + 0.36) / 1.5 ms = 440 N/m; requested: 9000 N/m x scales 0.06 = 540
+        N/m."""
         rig = ("ligature-firmware", "run", "--scene", ROOT / "scenes/paper.toml", "--left", f"local:{self.path}/l", "--right",
                f"local:{self.path}/r", "--set", "hands.coupling_N_per_m=9000")
         self.refused(run(*rig), "hands.coupling_N_per_m", "540 N/m", "440 N/m", "--override-passivity")
-        taken = run(*rig, "--override-passivity")  # and goes on to a bus that is not there
+        taken = run(*rig, "--override-passivity")  # accepted, and fails at the missing bus
         self.assertEqual(taken.returncode, 3, taken.stderr)
         self.assertIn("bus", taken.stderr)
         self.assertIn("remedy: start the hand", taken.stderr)
@@ -89,7 +91,7 @@ class BadInput(unittest.TestCase):
             line = str(len(text.splitlines()))
             for name, command in self.programs(ROOT / "scenes/paper.toml", script):
                 if name == "firmware":
-                    continue  # it reads no script
+                    continue  # the firmware reads no script
                 with self.subTest(script=what, program=name):
                     self.refused(run(*command), "bad.csv", line)
 

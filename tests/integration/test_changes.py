@@ -1,4 +1,4 @@
-"""Another scene and other parameters while the rig runs: acknowledged or refused, through the real firmware."""
+"""Changes of scene and parameters during a run, accepted or rejected by the real firmware."""
 
 import os
 import pathlib
@@ -36,7 +36,8 @@ class Changes(unittest.TestCase):
             self.assertEqual((code, said), (0, f"load-scene accepted: scene desk.toml loaded{held}\n"))
             rig.wait_for(lambda r: r.listener.status.scene_file.endswith("desk.toml"), "the new scene's name")
             self.assertEqual(rig.listener.status.max_force_N, 2.5)
-            code, said = send("load-scene", "paper.toml suture.model=paper-2 suture.nodes=35")  # these come with a scene
+            # keys that can be changed only with a scene
+            code, said = send("load-scene", "paper.toml suture.model=paper-2 suture.nodes=35")
             self.assertEqual((code, said), (0, f"load-scene accepted: scene paper.toml loaded with suture.model=paper-2 suture.nodes=35{held}\n"))
             rig.wait_for(lambda r: "suture.model=paper-2" in r.listener.status.scene_toml, "the model in the scene's text")
             code, said = send("load-scene", "paper.toml suture.model=rubber")
@@ -82,7 +83,8 @@ class Changes(unittest.TestCase):
             self.assertEqual(rig.end("firmware"), 0)
 
     def test_nothing_else_on_the_loops_core(self):
-        """During live changes, in force and not, no thread of the firmware or of its children may run where the loop runs."""
+        """During live changes, with and without force, no other thread of the firmware or its children may run on the
+        loop's core."""
         with Rig(extra=("--rt=warn",)) as rig:
             rig.wait_for(lambda r: r.state_is(STATE_FORCE), "force")
             pid = rig.processes["firmware"].pid
@@ -103,7 +105,7 @@ class Changes(unittest.TestCase):
 
 
 def loops_core():
-    """As firmware/platform/realtime.cpp chooses it."""
+    """The core that firmware/platform/realtime.cpp chooses."""
     isolated = pathlib.Path("/sys/devices/system/cpu/isolated").read_text().strip()
     return int(isolated.replace("-", ",").split(",")[-1]) if isolated else max(os.sched_getaffinity(0))
 
@@ -117,7 +119,7 @@ def children_of(pid):
 
 
 def allowed_on(core, pid):
-    """The threads of a process that may run on that core; none when it has ended meanwhile."""
+    """The threads of a process that may run on that core; none if the process has ended."""
     found = set()
     for task in tasks_of(pid):
         try:
@@ -129,7 +131,7 @@ def allowed_on(core, pid):
 
 
 class CoreWatch(threading.Thread):
-    """Looks every millisecond who may run on a core: threads of a process and of its children."""
+    """Checks every millisecond which threads of a process and its children may run on a core."""
 
     def __init__(self, core, pid):
         super().__init__(daemon=True)
@@ -143,7 +145,7 @@ class CoreWatch(threading.Thread):
                 for child in children_of(self.pid):
                     self.seen |= allowed_on(self.core, child)
                     self.children.add(child)
-            except (FileNotFoundError, ProcessLookupError):  # ended meanwhile
+            except (FileNotFoundError, ProcessLookupError):  # ended in the meantime
                 pass
 
     def end(self):

@@ -1,4 +1,5 @@
-"""Every program on CPUs that lack instructions of its build: one line that names them and the remedy, exit 3."""
+"""Every program on CPUs that lack instructions of its build: exit code 3 and one line that names them and the remedy.
+"""
 
 import os
 import shutil
@@ -8,7 +9,7 @@ import unittest
 
 BIN = os.environ["LIGATURE_BIN"]
 PROGRAMS = ("ligature-firmware", "ligature-device", "ligature-host", "ligature-lab")
-# CPUs of QEMU, and for each the builds (LIGATURE_ARCH) that it cannot run with what they would miss first.
+# CPUs of QEMU; for each the builds (LIGATURE_ARCH) that cannot run on it, with the first missing feature.
 LACKING = {"Nehalem": {"default": "avx", "x86-64-v3": "avx"}, "qemu64": {"default": "avx", "x86-64-v2": "ssse3"}}
 
 

@@ -1,7 +1,7 @@
-"""Every field of tick, thread, status and event, from the bytes of its message to CSV, HDF5 and MCAP.
+"""Every field of tick, thread, status and event, from the encoded message to CSV, HDF5 and MCAP.
 
-The fields are walked by the .lcm definitions, and each number of a message is one that no other has: a column that carries another
-field's value, a field that no format has, and a column that no field has are found. How the messages come about: EveryField.*.
+Fields are enumerated from the .lcm definitions, and each number of a message is unique. Therefore swapped columns,
+fields missing from a format, and columns without a field are found. The path to the message is tested by EveryField.*.
 """
 
 import csv
@@ -24,7 +24,7 @@ from ligature_msg import event_t, status_t, thread_t, tick_batch_t, tick_t  # no
 from mcap.reader import make_reader  # noqa: E402
 
 HANDS, TICKS, SHAPES, EVENTS, SESSION = ("left", "right"), 7, 3, 4, 99
-# Columns are called after their fields but for these: quantity and unit of a vector, and its axes.
+# Columns have their fields' names, except for vectors: here their quantity, unit and axes.
 VECTORS = {"p_WT_m": ("p_WT", "_m", "xyz"), "v_WT_m_per_s": ("v_WT", "_m_per_s", "xyz"), "f_world_N": ("world_f", "_N", "xyz"),
            "f_device_N": ("device_f", "_N", "xyz"), "f_wish_N": ("wish_f", "_N", "xyz"), "q_rad": ("q", "_rad", "123"),
            "torque_permille": ("torque", "_permille", "123"), "tool_p_W_m": ("tool_p_W", "_m", "xyz"), "tool_v_W_m_per_s": ("tool_v_W", "_m_per_s", "xyz")}
@@ -32,8 +32,8 @@ NUMBERED = {"step_age_ticks": "step_{}_age_ticks", "step_cut_at": "step_{}_cut_a
 RENAMED = {"grasped_node": "node"}
 UNITS = (("_m_per_s", "m/s"), ("_N_s_per_m", "N s/m"), ("_permille", "1/1000 of rated"), ("_ticks", "ticks"), ("_rad", "rad"), ("_ns", "ns"),
          ("_m", "m"), ("_N", "N"), ("_J", "J"), ("_s", "s"))
-# What a recording in another format does not have: times of sending (the row has the time of its tick), what counts rows, the nodes
-# held that the ticks have at that tick, and what a status says about the moment it was sent (`report` and the page show it).
+# Fields that exports leave out: sending times (a row has its tick's time), row counts, held nodes (the tick has them),
+# and what a status says about its own moment (shown by `report` and the page).
 LEFT_OUT = {"tick_t": set(), "thread_t": {"utime", "grasped_node"}, "event_t": {"utime"},
             "status_t": {"utime", "session", "protocol_version", "recorder_file", "state", "fault", "deadline_misses", "periods_lost", "realtime",
                          "armed", "admitted", "tick"}}
@@ -46,7 +46,7 @@ def fields_of(name):
 
 
 class Numbers:
-    """Each asked for once; whole ones as large as the type takes, broken ones exact in a float."""
+    """Unique numbers: integers as large as the type allows, fractions that are exact in a float."""
 
     def __init__(self):
         self.count = 0
@@ -59,7 +59,7 @@ class Numbers:
 
 
 def fill(message, name, numbers, sizes):
-    """Every field of a message from its definition. @param sizes of the arrays whose length a field says."""
+    """Fills every field of a message from its definition. @param sizes lengths of the arrays that a field gives."""
     for kind, field, dimensions in fields_of(name):
         def value(left):
             if left:
@@ -70,7 +70,7 @@ def fill(message, name, numbers, sizes):
 
 
 def columns_of_tick():
-    """Column and (field, indices) of every number of a tick."""
+    """Column name and (field, indices) of every number of a tick."""
     for _, field, sizes in fields_of("tick_t"):
         name = RENAMED.get(field, field)
         if not sizes:
@@ -80,7 +80,7 @@ def columns_of_tick():
         elif sizes == ["3"]:
             yield from ((NUMBERED[field].format(i + 1), field, (i,)) for i in range(3))
         elif sizes == ["2", "3"]:
-            quantity, unit, axes = VECTORS[field]  # a new vector needs its line there
+            quantity, unit, axes = VECTORS[field]  # a new vector needs an entry in VECTORS
             yield from ((f"{hand}_{quantity}_{axis}{unit}", field, (h, a)) for h, hand in enumerate(HANDS) for a, axis in enumerate(axes))
         else:
             raise AssertionError(f"{field} has another shape: {sizes}")
@@ -110,7 +110,7 @@ class EveryField(unittest.TestCase):
         cls.status = fill(status_t(), "status_t", numbers, {})
         cls.status.session, cls.status.period_s, cls.status.max_force_N = SESSION, 0.004, 2.75
         for i, tick in enumerate(cls.ticks):
-            tick.tick = 40 + i  # columns are in order of ticks, one session's
+            tick.tick = 40 + i  # columns are in the order of one session's ticks
         batch = tick_batch_t()
         batch.session, batch.count, batch.ticks = SESSION, TICKS, cls.ticks
         log = lcm.EventLog(str(cls.folder / "a.lcmlog"), "w", overwrite=True)
@@ -131,7 +131,7 @@ class EveryField(unittest.TestCase):
         return [at(tick, field, indices) for tick in self.ticks]
 
     def test_no_two_fields_have_the_same_numbers(self):
-        """What the others rest on."""
+        """Precondition of the other tests."""
         seen = [tuple(self.truth(field, indices)) for _, field, indices in self.columns]
         self.assertEqual(len(seen), len(set(seen)))
 

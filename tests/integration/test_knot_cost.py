@@ -1,8 +1,7 @@
-"""Instructions to name a thread of 500 nodes, counted by callgrind: 5 ms of a core at 20 Hz is the bar.
+"""Instructions for recognising the knot of 500 nodes, counted by callgrind. The limit is 5 ms of a core, at 20 Hz.
 
-Counted and not timed, so that other work on the machine changes nothing. Measured: 8 to 14 million instructions a
-millisecond of thread time on a shared virtual core, so 30 million are inside the 5 ms even there.
-"""
+Counted instead of timed, so that other load has no influence. A shared virtual core executes 8 to 14 million
+instructions per millisecond (measured), so 30 million take less than 5 ms even there."""
 
 import os
 import pathlib

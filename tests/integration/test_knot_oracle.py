@@ -1,7 +1,6 @@
-"""`ligature-host knot` against labels known by construction and against topoly, which shares no code with it.
+"""`ligature-host knot` against knots known by construction and against topoly, which shares no code with it.
 
-test_knot_oracle.py [--cases N]     200 by default; more by hand
-"""
+test_knot_oracle.py [--cases N]     default 200; more for a manual run"""
 
 import json
 import os
@@ -30,13 +29,14 @@ def name(points, closed, folder):
 
 
 def disguise(points, rng, kind):
-    """What makes a knot hard to see; the type stays."""
+    """Makes a knot hard to recognise while its type is kept."""
     if kind == 0:
         return shapes.turned(shapes.refined(points, 4), rng, 0.02)
     if kind == 1:
         return shapes.turned(shapes.disguised(points, rng, 6 * len(points), 0.5), rng)
     if kind == 2:
-        return shapes.turned(shapes.disguised(shapes.refined(points, 2), rng, 300, 0.8), rng)  # noise could cut its near misses
+        # without noise, which could make near misses cross
+        return shapes.turned(shapes.disguised(shapes.refined(points, 2), rng, 300, 0.8), rng)
     return shapes.turned(shapes.refined(points, 500 // len(points) + 1), rng, 1e-3)
 
 
@@ -80,7 +80,7 @@ class Oracle(unittest.TestCase):
     def test_the_published_hard_unknots(self):
         rng = np.random.default_rng(shifted(23))
         for who, diagram in diagrams.HARD_UNKNOTS.items():
-            for outer in range(3):  # seen from three sides
+            for outer in range(3):  # with three different outer faces
                 line = diagrams.drawn(diagram, outer)
                 line = shapes.turned(shapes.refined(line, int(rng.integers(1, 8))), rng)
                 self.assertEqual(name(line, True, self.folder), ("0_1", "none"), who)
@@ -88,7 +88,8 @@ class Oracle(unittest.TestCase):
 
     def test_a_drawn_diagram_is_its_knot(self):
         rolfsen_7_6 = [(1, 4, 2, 5), (3, 8, 4, 9), (5, 12, 6, 13), (9, 1, 10, 14), (13, 11, 14, 10), (11, 6, 12, 7), (7, 2, 8, 3)]
-        self.assertEqual(name(diagrams.drawn(rolfsen_7_6), True, self.folder), ("7_6", "left"))  # its writhe is -3
+        # the diagram's writhe is -3
+        self.assertEqual(name(diagrams.drawn(rolfsen_7_6), True, self.folder), ("7_6", "left"))
 
     def test_random_polygons_are_what_topoly_calls_them_or_unknown(self):
         try:
@@ -101,7 +102,7 @@ class Oracle(unittest.TestCase):
             steps = rng.normal(size=(40 + 2 * (number % 20), 3))
             points = np.cumsum(steps - steps.mean(axis=0), axis=0)
             theirs = homfly(points.tolist(), closure=Closure.CLOSED)
-            if theirs == "TMC":  # too many crossings for it
+            if theirs == "TMC":  # topoly's "too many crossings"
                 continue
             ours, _ = name(points, True, self.folder)
             if ours == "unknown":

@@ -1,6 +1,6 @@
-"""A bus has one controller. Two that start together as real processes: at most one of them runs, and it runs undisturbed;
-whoever is refused ends with exit 3 and one line. On one machine by a claim before the first frame. Two network
-namespaces stand in for two machines on one cable: no claim is shared there, only the bus is, and it is listened to.
+"""A bus has one controller. When two start at the same time as real processes, at most one runs, undisturbed; a refused
+one ends with exit code 3 and one line. On one machine a claim before the first frame decides. Two network namespaces
+stand for two machines on one cable: they share no claim, only the bus, on which each controller listens for the other.
 """
 
 import random
@@ -14,7 +14,8 @@ APART_MS = (0, 1, 3, 10, 30)
 
 class OneController(BareRig):
     def outcome(self, controllers):
-        """Exit codes, and what those said that were refused. Whoever ran had no fault."""
+        """Exit codes of the controllers, and the messages of the refused ones. A controller that ran must have had no
+        fault."""
         ended = [(c, *c.communicate(timeout=120)) for c in controllers]
         refused = []
         for controller, _, wrong in ended:

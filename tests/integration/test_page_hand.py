@@ -1,4 +1,5 @@
-"""A simulated hand that is moved over LCM as the page's host does it: it lets go in silence, and no recording moves it."""
+"""A simulated hand moved over LCM, as by the page's host: it releases the thread when messages stop, and a recording
+does not move it."""
 
 import random
 import threading
@@ -10,13 +11,13 @@ from rig import LCM_URL, STATE_ENGAGE, Rig, run
 import lcm
 from ligature_msg import hand_state_t, hand_wish_t
 
-LEFT, TIMES, LONGEST_RAMP_TICKS = 0, 100, 150  # from the dead-man to no force: docs/haptics.md
+LEFT, TIMES, LONGEST_RAMP_TICKS = 0, 100, 150  # ticks from the release of the dead-man to zero force: docs/haptics.md
 ORIGIN, SCALE = (0.5, -0.4, 3.2), 20.0  # scenes/paper.toml
 ON_THE_THREAD, ABOVE = (0.0, 0.0, 2.3), (0.6, 0.0, 4.4)
 
 
 class Sender(threading.Thread):
-    """Says 50 times a second what it is told to wish of the left hand; remembers all that it said."""
+    """Sends targets for the left hand 50 times per second, and stores all of them."""
 
     def __init__(self):
         super().__init__(daemon=True)
@@ -32,7 +33,7 @@ class Sender(threading.Thread):
             self.state = state
 
     def take(self):
-        """Begins a holding of its own."""
+        """Starts a holding: takes the hand with a new owner id."""
         self.session, self.owner, self.sequence = self.state.session, random.getrandbits(62) + 1, 0
 
     def wish(self, **other):
@@ -49,7 +50,7 @@ class Sender(threading.Thread):
         self._lcm.publish("LIGATURE_HAND_WISH", data)
 
     def fall_silent(self):
-        """@returns the last sequence that was said."""
+        """Stops sending. @returns the last sequence number sent."""
         with self._lock:
             self.talks = False
             return self.sequence
@@ -85,7 +86,7 @@ class PageHand(unittest.TestCase):
         self.rig.wait_for(lambda _: self.tick().tick > until, f"{count} ticks")
 
     def edges(self):
-        """When the dead-man changed, lately: (tick, pressed, age of the sample)."""
+        """Recent changes of the dead-man: (tick, pressed, age of the sample)."""
         ticks = self.rig.listener.ticks
         return [(b.tick, b.dead_man[LEFT], b.tpdo_age_ticks[LEFT]) for a, b in zip(ticks, ticks[1:]) if a.dead_man[LEFT] != b.dead_man[LEFT]]
 
@@ -97,7 +98,7 @@ class PageHand(unittest.TestCase):
         self.rig.wait_for(lambda _: self.moved_from(place) < 0.05, f"the hand at {place}")
 
     def holds_the_thread(self):
-        """Takes the hand, and lifts the thread by it."""
+        """Takes the hand and lifts the thread with it."""
         self.hand.take()
         self.hand.talks = True
         self.go(ON_THE_THREAD)
@@ -106,7 +107,7 @@ class PageHand(unittest.TestCase):
         self.go(ABOVE)
 
     def say_all(self, **what):
-        """Changes what is wished, and waits until the device has heard of it: on a busy machine messages queue up."""
+        """Changes the target and waits until the device has received it; on a busy machine messages queue up."""
         for name, value in what.items():
             setattr(self.hand, name, value)
         said = self.hand.sequence + (1 if self.hand.talks else 0)
@@ -114,7 +115,7 @@ class PageHand(unittest.TestCase):
         self.ticks_pass(50)
 
     def presses_until_force(self):
-        """Presses, and again where this process was too slow and the hand had let go; until the drives push."""
+        """Presses the dead-man until the drives push, again if this process was too slow and the hand let go."""
         for _ in range(50):
             self.say_all(dead_man=1)
             from_tick = self.tick().tick
@@ -140,7 +141,7 @@ class PageHand(unittest.TestCase):
             self.assertFalse([t.tick for t in late], f"torque long after the dead-man, let go in {released}: {self.edges()}")
             let_go.append(max([t.tick for t in ticks if any(t.torque_permille[LEFT])], default=released) - released)
             del self.rig.listener.ticks[:-1000]
-            self.say_all(talks=True)  # held on all along: it does not count again by itself
+            self.say_all(talks=True)  # a dead-man held all along must not count again by itself
             self.assertFalse(self.tick().dead_man[LEFT], f"pressed again by nobody: {self.edges()}")
             self.say_all(dead_man=0)
         self.assertEqual(self.tick().fault, 0, "no fault did it")

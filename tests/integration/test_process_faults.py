@@ -1,7 +1,7 @@
-"""What befalls the rig's processes, its network and its disk, while both hands are in force. Part of the fault matrix:
-each test's first lines say what happens and what the rig does; together they are docs/fault-matrix-processes.md.
+"""Faults of the rig's processes, its network and its disk while both hands render force. Part of the fault matrix: the
+@row texts state each fault and the rig's reaction; together they are docs/fault-matrix-processes.md.
 
-Real processes, so nothing here is timed; what must hold to the tick is in FaultMatrix.* and scripts/test-hil.
+These are real processes, so no times are asserted; reactions exact to the tick are in FaultMatrix.* and scripts/test-hil.
 """
 
 import json
@@ -44,7 +44,7 @@ def pushes(rig):
 
 
 def is_armed(rig):
-    """By its state: when force comes depends on what the operator does at that moment."""
+    """Force comes later, when the operator's motion allows it."""
     return rig.state_is(STATE_ENGAGE) or rig.state_is(STATE_FORCE)
 
 
@@ -59,14 +59,15 @@ class InForce(unittest.TestCase):
         return rig
 
     def carries_on(self, rig, ticks=300):
-        """Still in force, without a fault, so many ticks later."""
+        """Still in force, without a fault, after that many more ticks."""
         seen = rig.listener.ticks[-1].tick
         rig.wait_for(lambda r: r.listener.ticks[-1].tick > seen + ticks, "more ticks")
         self.assertEqual([t.fault for t in rig.listener.ticks if t.fault], [])
         self.assertTrue(rig.state_is(STATE_FORCE), rig.words())
 
     def ends_in(self, rig, faults):
-        """Latched, no torque in any executed tick from then on, both hands' drives without torque."""
+        """Expects one of `faults`, latched, and from then on no torque in any executed tick and none in both hands'
+        drives."""
         rig.wait_for(lambda r: r.state_is(STATE_FAULT), "the fault")
         seen = rig.listener.ticks[-1].tick
         rig.wait_for(lambda r: r.listener.ticks[-1].tick > seen + 100, "more ticks")
@@ -76,7 +77,7 @@ class InForce(unittest.TestCase):
         self.assertFalse(any(any(hand) for t in faulted if not t.flags & FLAG_PERIOD_LOST for hand in t.torque_permille))
 
     def every_tick(self, rig):
-        """The flight recorder, after the run: all ticks, in order."""
+        """After the run: the flight recorder has all ticks, in order."""
         rig.end("firmware")
         ticks = rig.path / "ticks.csv"
         self.assertEqual(run("ligature-host", "export", rig.flight, "--ticks", ticks).returncode, 0)
@@ -130,7 +131,8 @@ class Network(InForce):
         command = command_t()
         for i in range(20_000):
             command.id, command.kind = i, command_t.KIND_ARM
-            command.session, command.challenge = (17, i) if i % 2 else (0, 0)  # of a recording, or only asking
+            # as from a recording, or only requesting a challenge
+            command.session, command.challenge = (17, i) if i % 2 else (0, 0)
             link.publish("LIGATURE_COMMAND", command.encode())
         self.carries_on(rig)
         self.assertEqual(run("ligature-host", "send", "arm").returncode, 0)
@@ -160,7 +162,7 @@ class Network(InForce):
         self.assertEqual(run("ligature-host", "send", "arm").returncode, 0, "a living sender is heard")
 
     def arms_when_played_back(self, rig):
-        """Plays the recording into the rig's own network. @return how often it has left IDLE meanwhile, by its own words."""
+        """Plays the recording into the rig's own network. @return how often the firmware has left IDLE meanwhile."""
         before = rig.said("firmware").count("IDLE -> ENGAGE")
         subprocess.run(["lcm-logplayer", "--speed=4", f"--lcm-url={LCM_URL}", rig.log], check=True, capture_output=True, timeout=60)
         pause(0.3)
@@ -178,8 +180,10 @@ class Network(InForce):
         channels = ("LIGATURE_COMMAND", "LIGATURE_TICKS", "LIGATURE_STATUS", "LIGATURE_EVENT", "LIGATURE_THREAD", "LIGATURE_ACK")
         for i in range(300):
             raw.sendto(chance.randbytes(chance.randint(1, 1400)), GROUP)
-            raw.sendto(struct.pack(">II", 0x4C433032, i) + b"LIGATURE_COMMAND" * 60, GROUP)  # no zero ends the channel
-            raw.sendto(struct.pack(">IIIIHH", 0x4C433033, i, 1 << 31, 0, chance.randint(0, 9), 3) + b"x" * 64, GROUP)  # a fragment that lies
+            # a channel name without terminating zero
+            raw.sendto(struct.pack(">II", 0x4C433032, i) + b"LIGATURE_COMMAND" * 60, GROUP)
+            # a fragment with a false length
+            raw.sendto(struct.pack(">IIIIHH", 0x4C433033, i, 1 << 31, 0, chance.randint(0, 9), 3) + b"x" * 64, GROUP)
             channel = channels[i % len(channels)]
             link.publish(channel, chance.randbytes(chance.randint(0, 600)))
             link.publish(channel, good[:8] + b"\xff" * 40)
@@ -217,7 +221,7 @@ class Recorders(InForce):
             log = rig.path / f"{i}.lcmlog"
             rig.start("recorder", "ligature-host", "record", "--out", log, "--quiet")
             pause(chance.uniform(0.005, 0.12))
-            if i % 10 == 0:  # some die late enough to have recorded something, whatever the machine
+            if i % 10 == 0:  # so that some recorders have recorded something, on any machine
                 rig.wait_for(lambda _, log=log: log.exists() and log.stat().st_size > 30_000, "ticks in the log")
             rig.kill("recorder")
         self.carries_on(rig)
@@ -229,18 +233,19 @@ class Recorders(InForce):
         self.assertEqual(json.loads(run("ligature-host", "report", last, "--json").stdout)["ticks_lost"], 0)
         readable = [log for log in rig.path.glob("*.lcmlog") if log.stat().st_size > 0]
         whole = {log: sum(tick_batch_t.decode(event.data).count for event in lcm.EventLog(str(log), "r") if event.channel == "LIGATURE_TICKS")
-                 for log in readable}  # by LCM's own reader
+                 for log in readable}  # read by LCM's own reader
         self.assertGreaterEqual(sum(ticks > 0 for ticks in whole.values()), KILLS // 10)
         for log in {*chance.sample(readable, min(10, len(readable))), max(whole, key=whole.get)}:
             done = run("ligature-host", "export", log, "--forces", rig.path / "forces.csv")
-            self.assertEqual(done.returncode, 0 if whole[log] else 2, done.stderr)  # 2: killed before the first tick was written
+            # 2: killed before the first tick was written
+            self.assertEqual(done.returncode, 0 if whole[log] else 2, done.stderr)
             self.assertRegex(done.stdout + done.stderr, rf"exported {whole[log]} ticks" if whole[log] else "holds no readable tick")
         print(f"{KILLS} recorders killed, {len(readable)} left a log; {ticks} ticks, none missing")
 
 
 class Disk(InForce):
     def small(self, folder, *command):
-        """A command line that sees a disk of 1 MB at `folder`, and nobody else does."""
+        """A command line with a disk of 1 MB mounted at `folder`, visible to that command only."""
         return ["unshare", "-m", "sh", "-c", f"mount -t tmpfs -o size=1m tmpfs '{folder}' && exec \"$@\"", "small", *map(str, command)]
 
     @row("a full disk under the recorder", "the recorder says so and ends with 3; nothing happens to the rig")

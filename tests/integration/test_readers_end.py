@@ -1,7 +1,6 @@
-"""Whoever reads a recording ends: at the end of what is there, however large the file says it is, and when a signal asks for it.
+"""Programs that read a recording end: at the end of the data, whatever size the file claims, and on a signal.
 
-Every wait is for a condition, with a bound that only ends a hang.
-"""
+Every wait is for a condition, with a limit that only ends a hang."""
 
 import os
 import pathlib

@@ -1,7 +1,7 @@
-"""The recorder beside peers that lie, beside a second recorder, and after a killed firmware. No rig runs: the ticks are made here.
+"""The recorder with peers that send false data, with a second recorder, and after a killed firmware. No rig runs; the
+test makes the ticks.
 
-Every wait is for a condition, with a bound that only ends a hang.
-"""
+Every wait is for a condition, with a limit that only ends a hang."""
 
 import os
 import pathlib
@@ -21,7 +21,7 @@ BIN = pathlib.Path(os.environ["LIGATURE_BIN"])
 BOUND_S = 60
 SESSION = 1_700_000_000_000_000
 HEADER_BYTES, SLOT_BYTES = 65536, 1024
-CHECK_BYTES = 28 + len("LIGATURE_CHECK") + 12  # behind each event of a log (host/log_format.hpp)
+CHECK_BYTES = 28 + len("LIGATURE_CHECK") + 12  # after each event of a log (host/log_format.hpp)
 
 
 def batch(session, first, count):
@@ -42,7 +42,8 @@ def status(session, recorder_file):
 
 
 def flight_file(path, session, ticks):
-    """As protocol/recorder/flight_file.hpp lays it out, by other means than the firmware's."""
+    """Writes a flight recorder's file as specified in protocol/recorder/flight_file.hpp, independently of the firmware.
+    """
     header = struct.pack("<8sIIqqqddiI", b"LGFLIGHT", 3, SLOT_BYTES, len(ticks), struct.unpack(">q", tick_t._get_packed_fingerprint())[0],
                          session, 0.001, 3.3, 0, 0) + bytes(32 + 256 + 61440)
     header += struct.pack("<I", zlib.crc32(header))
@@ -59,7 +60,7 @@ def ticks_of(session, first, count):
 
 
 class Recorder:
-    """One recorder, and the network that it hears."""
+    """A recorder process and the network on which it listens."""
 
     def __init__(self, folder, name="a.lcmlog", *more):
         self.log = folder / name
@@ -70,7 +71,7 @@ class Recorder:
         return self.log.exists() and self.log.stat().st_size >= size
 
     def end(self):
-        """Exit code and words after SIGTERM."""
+        """Exit code and output after SIGTERM."""
         self.process.send_signal(signal.SIGTERM)
         out, err = self.process.communicate(timeout=BOUND_S)
         return self.process.returncode, out + err
@@ -91,13 +92,13 @@ class Records(unittest.TestCase):
         self.written = 0
 
     def recorder(self, *more, name="a.lcmlog"):
-        """One that hears: before it does, messages are not lost but never heard."""
+        """Starts a recorder and waits until it receives messages; earlier messages would not be recorded."""
         recorder = self.enterContext(Recorder(self.path, name, *more))
         self.until(recorder, lambda: recorder.has(1), lambda: self.lcm.publish("LIGATURE_HELLO", b"hello"))
         return recorder
 
     def until(self, recorder, condition, do=lambda: None):
-        """Repeats `do` until the condition holds; a recorder that ends is an error."""
+        """Repeats `do` until the condition holds; it is an error if the recorder ends."""
         for _ in range(BOUND_S * 100):
             do()
             if condition():
@@ -107,7 +108,7 @@ class Records(unittest.TestCase):
         self.fail("did not come")
 
     def say(self, recorder, *messages):
-        """Publishes, a few at a time, and waits until the log has them all."""
+        """Publishes messages, a few at a time, and waits until the log holds all of them."""
         size = recorder.log.stat().st_size
         for i, (channel, data) in enumerate(messages):
             self.lcm.publish(channel, data)
@@ -123,7 +124,8 @@ class Records(unittest.TestCase):
 
 class Forged(Records):
     def test_what_a_status_names_cannot_hold_the_recorder_up(self):
-        """Pipes, devices, links, folders, and what lies elsewhere: none is waited for, and a run's gaps stay named."""
+        """Status messages may name pipes, devices, links, folders or files elsewhere: the recorder waits for none of
+        them and still reports the gaps."""
         os.mkfifo(self.path / "pipe")
         (self.path / "link").symlink_to("pipe")
         (self.path / "folder").mkdir()
@@ -135,7 +137,7 @@ class Forged(Records):
                      f"{self.path}/../{elsewhere.parent.name}/flight.rec", elsewhere, "flight.rec", self.path, "/"):
             self.say(recorder, ("LIGATURE_STATUS", status(SESSION, name)))
         self.say(recorder, ("LIGATURE_TICKS", batch(SESSION, 0, 20)), ("LIGATURE_TICKS", batch(SESSION, 40, 20)))
-        # Gaps are looked for once a second: it goes on writing after that.
+        # Gaps are looked for once a second; the recorder must go on writing afterwards.
         size = recorder.log.stat().st_size
         self.until(recorder, lambda: recorder.has(size + 250 * (40 + CHECK_BYTES)), lambda: self.lcm.publish("LIGATURE_HELLO", b"hello"))
         code, words = recorder.end()
@@ -153,7 +155,7 @@ class Forged(Records):
         self.assertIn("recorded 40 of at least 60 ticks, 20 known to be lost", words)
 
     def test_sessions_without_end_hide_no_ticks(self):
-        """1000 forged ids fill the table; what comes after is kept and counted as what it is."""
+        """1000 forged session ids fill the table; later ticks are still recorded and counted correctly."""
         recorder = self.recorder()
         self.say(recorder, *[("LIGATURE_TICKS", batch(i + 1, 0, 1)) for i in range(1000)],
                  *[("LIGATURE_TICKS", batch(SESSION, 20 * i, 20)) for i in range(130)])
@@ -181,7 +183,7 @@ class Forged(Records):
 class Damaged(Records):
     def test_a_damaged_record_is_left_out_and_said(self):
         recorder = self.recorder()
-        false_check = struct.pack(">qI", 0, 0)  # what a played log would bring, or a stranger
+        false_check = struct.pack(">qI", 0, 0)  # as from a replayed log, or forged
         self.say(recorder, *[("LIGATURE_TICKS", batch(SESSION, 20 * i, 20)) for i in range(10)])
         self.lcm.publish("LIGATURE_CHECK", false_check)
         self.say(recorder, *[("LIGATURE_TICKS", batch(SESSION, 20 * i, 20)) for i in range(10, 20)])
@@ -190,7 +192,7 @@ class Damaged(Records):
         self.assertIn("400 recorded, 0 lost", sound)
         self.assertNotIn("damaged", sound)
         log = bytearray(recorder.log.read_bytes())
-        log[log.index(b"LIGATURE_TICKS", len(log) // 2) + 500] ^= 4  # within a tick
+        log[log.index(b"LIGATURE_TICKS", len(log) // 2) + 500] ^= 4  # a byte within a tick
         recorder.log.write_bytes(log)
         damaged = self.report(recorder.log)
         self.assertIn("380 recorded, 20 lost", damaged)
@@ -216,7 +218,7 @@ class Beside(Records):
         self.assertEqual(code, 0, words)
         self.assertIn("40 recorded", self.report(first.log))
         size = first.log.stat().st_size
-        again = self.recorder("--force")  # the lock goes with the process
+        again = self.recorder("--force")  # the lock ends with the process
         self.until(again, lambda: not again.has(size))
         self.say(again, ("LIGATURE_TICKS", batch(SESSION, 0, 20)))
         self.assertEqual(again.end()[0], 0)
@@ -253,7 +255,7 @@ class Ends(Records):
         self.assertIn("session 1 ended after tick 19 or later", words)
 
     def test_forged_names_do_not_keep_the_right_one_out(self):
-        """16 names have room; those that are no flight recorder go when they were looked at."""
+        """The list has room for 16 file names; names that turn out not to be a flight recorder are removed."""
         flight_file(self.path / "flight.rec", SESSION, ticks_of(SESSION, 0, 60))
         recorder = self.recorder()
         self.say(recorder, *[("LIGATURE_STATUS", status(SESSION, self.path / f"forged-{i}")) for i in range(40)],

@@ -1,4 +1,5 @@
-"""A run of the real programs, recorded over LCM, done again by `ligature-lab rerun`: the same to the bit. And how it ends early."""
+"""A run of the real programs, recorded over LCM and repeated by `ligature-lab rerun`, bit by bit; and how a rerun ends
+early."""
 
 import json
 import pathlib
@@ -28,7 +29,7 @@ def send(*words):
 
 class Rerun(unittest.TestCase):
     def test_a_live_recording(self):
-        """Force, a parameter under force, a reset, another scene; then equal, other settings, and SIGINT."""
+        """With force, a live parameter, a reset and another scene. Then: equal, different settings, and SIGINT."""
         with Rig(record=True, extra=("--rt=warn",)) as rig:
             rig.wait_for(lambda r: r.state_is(STATE_FORCE), "force")
             rig.wait_for(lambda r: max(r.listener.ticks[-1].grasped_node) >= 0, "a grasp")
@@ -53,7 +54,7 @@ class Rerun(unittest.TestCase):
         self.interrupted(log, pathlib.Path(scratch.name) / "interrupted")
 
     def test_a_live_recording_of_a_suture(self):
-        """The budget that this machine affords is part of it."""
+        """The machine's contact budget is recorded, too."""
         scratch = tempfile.TemporaryDirectory(prefix="rerun-")
         self.addCleanup(scratch.cleanup)
         hands = pathlib.Path(scratch.name) / "pull.csv"

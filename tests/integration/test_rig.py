@@ -1,4 +1,4 @@
-"""The rig end to end, as separate processes: it ties a knot, and any one process may die."""
+"""The whole rig as separate processes: it ties a knot, and any single process may die."""
 
 import json
 import math
@@ -14,7 +14,7 @@ def torque_of(tick):
 
 
 def pushes_both_hands(rig):
-    """Full force, and both hands' drives are told to push: what a death must take away is there."""
+    """Full force and torque on both hands, so that there is something for a fault to remove."""
     return rig.state_is(STATE_FORCE) and all(any(hand) for hand in rig.listener.ticks[-1].torque_permille)
 
 
@@ -33,7 +33,7 @@ class WholeRig(unittest.TestCase):
         self.assertEqual(knot["type"], "3_1")
         self.assertEqual(report["ticks_lost"], 0)
         self.assertEqual(report["ticks_recorded"], len(rows))
-        self.assertAlmostEqual(len(rows), 23000, delta=100)  # a tick a period, lost periods flagged, ramp-down included
+        self.assertAlmostEqual(len(rows), 23000, delta=100)  # one tick per period, lost ones flagged, fade-out included
         numbers = [t.tick for t in ticks]
         self.assertEqual(numbers, list(range(numbers[0], numbers[0] + len(numbers))), "an independent listener saw a hole")
         magnitudes = [math.hypot(*t.f_device_N[h]) for t in ticks for h in (0, 1)]

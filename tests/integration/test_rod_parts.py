@@ -1,8 +1,8 @@
-"""What a scene does not name is not executed: instructions of the rod's ticks by source file, counted by callgrind.
+"""Parts of the rod that a scene does not use are not executed: instructions of ticks by source file, counted by
+callgrind.
 
-A loose knot over a desk is pulled with every part but one. None of that part's code may run, and the tick must cost less
-than with it. The counts come from debug lines, so code that was inlined elsewhere counts as the file it was written in.
-"""
+A loose knot over a desk is pulled with all parts but one. None of that part's code may run, and the tick must cost less
+than with it. Counts are by debug lines, so inlined code counts for the file in which it was written."""
 
 import collections
 import os
@@ -17,7 +17,7 @@ SCENES = pathlib.Path(os.environ["LIGATURE_SOURCE"]) / "scenes"
 ROD = "firmware/physics/rod/"
 TICKS = 30
 
-# What only runs for one part. Files; or functions, where a part is a template argument or shares a file.
+# Code that runs only for one part: files, or functions where a part is a template argument or shares a file.
 TWIST = ["twist.cpp"]
 ROLL = ["spin.cpp", "spin_frames.cpp", "spin_set.cpp", "turning.cpp"]
 CONTACT = ["broad_phase.cpp", "contact_collect.cpp", "contact_couplings.cpp", "contact_measure.cpp",
@@ -33,12 +33,12 @@ WITHOUT = {
     "contact": ['contact.solver="none"'],
     "friction": ["contact.friction=0"],
     "adaptivity": ['suture.spacing="uniform"'],
-    "world": [],  # nothing but the thread: see counts()
+    "world": [],  # without desk etc.: see counts()
 }
 
 
 class Counts:
-    """Own instructions of every file and function under the ticks."""
+    """Exclusive instruction counts of every file and function called by the ticks."""
 
     def __init__(self, path):
         self.files, self.functions, self.total = collections.Counter(), collections.Counter(), 0
@@ -61,7 +61,7 @@ class Counts:
             elif line.startswith("cfn="):
                 name("function", line[4:])
             elif line.startswith("calls="):
-                skip = True  # the next line is what was called, not what was done here
+                skip = True  # the next line counts the called function
             elif re.match(r"[+\-*0-9]", line) and len(line.split()) >= 2:
                 if not skip:
                     count = int(line.split()[1])
@@ -123,7 +123,8 @@ class Parts(unittest.TestCase):
             self.assertEqual(self.executed(self.bare, TWIST + ROLL + CONTACT + ADAPTIVE), {})
 
     def test_a_bare_thread_costs_a_part_of_it(self):
-        for part in ("twist", "contact", "adaptivity", "world"):  # without friction more slides, which takes more passes
+        # not friction: without it more contacts slide, which takes more passes
+        for part in ("twist", "contact", "adaptivity", "world"):
             self.assertLess(self.without[part].total, self.full.total, part)
         self.assertLess(self.bare.total, 0.4 * self.full.total)
 

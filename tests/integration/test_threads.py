@@ -1,6 +1,5 @@
-"""What the threads of a running controller have got, as the kernel tells it: cores, policy, priority; and that
---rt=enforce ends a run that does not get it. Where this machine refuses a right the refusal must be told.
-"""
+"""Cores, policy and priority of a running controller's threads, as the kernel reports them; --rt=enforce ends a run
+that does not get them. Where this machine refuses a right, the program must report it."""
 
 import os
 import pathlib
@@ -9,7 +8,7 @@ import unittest
 from bare_rig import BareRig
 
 FIFO, LOOP, PHYSICS = 1, 80, 70
-LOCKS = not os.environ.get("LIGATURE_SANITIZE")  # a sanitizer's mlockall locks nothing and says that it did
+LOCKS = not os.environ.get("LIGATURE_SANITIZE")  # with a sanitizer mlockall locks nothing and reports success
 
 
 class Thread:
@@ -38,7 +37,7 @@ def core_for_real_time():
 
 class Threads(BareRig):
     def the_pair(self, process, core):
-        """The loop and the thread's physics: they beat on their core, and sleep once a period."""
+        """The loop's and the physics' threads: each is bound to the core and sleeps once per period."""
         self.assertIsNone(process.poll(), "it ended")
         beating = [t for t in threads_of(process) if t.cores == {core} and t.sleeps > 100]
         return beating if len(beating) == 2 else None

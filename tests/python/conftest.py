@@ -1,4 +1,4 @@
-"""What the tests of the Python package share: the tree, its programs, scripts of hands."""
+"""Shared by the tests of the Python package: source tree, programs, gripper scripts."""
 
 import os
 import pathlib
@@ -20,7 +20,7 @@ def run_program(name, *args):
 
 @pytest.fixture
 def paper():
-    """A short thread of the paper's."""
+    """A short thread of the paper's model."""
     return ligature.Scene.load(SCENES / "paper.toml", {"suture.nodes": 20})
 
 

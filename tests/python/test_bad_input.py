@@ -1,7 +1,7 @@
-"""Nothing that Python can pass crashes the interpreter: calls drawn at random, for some seconds here, longer by hand.
+"""No argument from Python may crash the interpreter: random calls, for some seconds here, longer when run by hand.
 
-    PYTHONPATH=BUILD/python-package LIGATURE_SOURCE=. LIGATURE_BIN=BUILD/bin python tests/python/test_bad_input.py SECONDS [SEED]
-"""
+    PYTHONPATH=BUILD/python-package LIGATURE_SOURCE=. LIGATURE_BIN=BUILD/bin python tests/python/test_bad_input.py
+SECONDS [SEED]"""
 
 import os
 import random
@@ -23,7 +23,7 @@ KEYS = ["suture.nodes", "suture.length_m", "suture.radius_m", "suture.model", "c
 
 
 class Drawn:
-    """Values of every kind."""
+    """Random values of every kind."""
 
     def __init__(self, seed):
         self.r = random.Random(seed)
@@ -53,7 +53,7 @@ class Drawn:
 
 
 def one_call(d, sim):
-    """One call with drawn arguments; a new simulation or the old one."""
+    """One call with random arguments, with a new simulation or the given one."""
     r = d.r
     kind = r.randrange(13)
     if kind == 0:
@@ -104,7 +104,7 @@ def draw_for(seconds, seed):
     while time.monotonic() < end:
         calls += 1
         try:
-            signal.setitimer(signal.ITIMER_REAL, 0.2)  # long runs are ended as by Ctrl-C
+            signal.setitimer(signal.ITIMER_REAL, 0.2)  # long runs are interrupted as by Ctrl-C
             sim = one_call(d, sim)
         except ALLOWED:
             refused += 1
@@ -117,7 +117,7 @@ def draw_for(seconds, seed):
 
 
 def test_random_calls():
-    """In a process of its own: a crash is a failed test and not the end of all."""
+    """In a child process, so that a crash is a failed test and does not end the others."""
     seed = os.environ.get("LIGATURE_TEST_SEED", "0")
     done = subprocess.run([sys.executable, __file__, "8", seed], capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, (done.returncode, done.stdout[-500:], done.stderr[-2000:])

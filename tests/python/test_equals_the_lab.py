@@ -1,4 +1,4 @@
-"""What Python computes is what `ligature-lab run` writes, to the last bit: its files have the shortest exact digits."""
+"""Python computes exactly what `ligature-lab run` writes; its files hold the shortest exact digits."""
 
 import csv
 import pathlib
@@ -21,7 +21,7 @@ CASES = [("paper", 3.0), ("paper-long", 1.0), ("desk", 3.0), ("suture-3-0-knot",
 
 
 def script_for(name, folder):
-    """The shipped overhand, or for real threads both ends pulled apart."""
+    """The shipped overhand; for realistic threads a script that pulls both ends apart."""
     if not name.startswith("suture"):
         return OVERHAND
     nodes = ligature.Simulation(ligature.Scene.load(SCENES / f"{name}.toml")).nodes
@@ -51,16 +51,16 @@ def test_equal_to_the_bit(name, duration_s, tmp_path):
     scene = ligature.Scene.load(SCENES / f"{name}.toml")
     run = ligature.Simulation(scene).run(ligature.Script.load(script), duration_s, shape_every_s=0.03)
     assert run.finite and run.failure == ""
-    assert np.array_equal(run.trace, trace[:, :12])  # the last column is what a tick cost
+    assert np.array_equal(run.trace, trace[:, :12])  # without the last column, the cost of a tick
     assert np.array_equal(np.repeat(run.shape_t_s, scene.nodes), shape[:, 0])
     assert np.array_equal(run.shapes.reshape(-1, 3), shape[:, 2:])
-    if name != "paper-long":  # its script takes longer to reach the thread
+    if name != "paper-long":  # its script reaches the thread later than this run's end
         assert np.abs(run["left_fx_N"]).max() > 0.0, "no hand felt anything"
 
 
 @pytest.mark.parametrize("name,duration_s", CASES)
 def test_tick_by_tick_is_the_run(name, duration_s, tmp_path):
-    """A loop of one's own over tick() is run()."""
+    """A Python loop over tick() computes the same as run()."""
     scene = ligature.Scene.load(SCENES / f"{name}.toml")
     script = ligature.Script.load(script_for(name, tmp_path))
     run = ligature.Simulation(scene).run(script, 0.3)

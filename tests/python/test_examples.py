@@ -1,4 +1,4 @@
-"""Each script of examples/ runs as it stands, says what it should, and is short enough to be read."""
+"""Each script of examples/ runs unchanged, prints what it should, and is short."""
 
 import os
 import subprocess

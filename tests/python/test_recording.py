@@ -1,4 +1,4 @@
-"""A recording from Python is what `ligature-host export` writes of it, number by number."""
+"""A recording read from Python equals what `ligature-host export` writes, number by number."""
 
 import csv
 
@@ -69,7 +69,7 @@ def test_what_is_no_recording_is_refused_in_the_programs_words(tmp_path):
 
 def test_damage_is_told_and_the_rest_read(recording, tmp_path):
     data = bytearray(GOLDEN.read_bytes())
-    data[data.index(b"\xed\xa1\xda\x01", len(data) // 2)] ^= 0xFF  # an event begins with these
+    data[data.index(b"\xed\xa1\xda\x01", len(data) // 2)] ^= 0xFF  # the bytes with which an event begins
     path = tmp_path / "damaged.lcmlog"
     path.write_bytes(bytes(data))
     damaged = ligature.Recording(path)

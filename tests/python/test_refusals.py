@@ -1,4 +1,4 @@
-"""What is wrong with input is said by the line that the programs print."""
+"""Errors in input are reported with the same text as by the programs."""
 
 import pathlib
 

@@ -1,4 +1,4 @@
-"""A simulation from Python: views, copies, pieces, rollouts, looks, knots."""
+"""A simulation from Python: array views, copies, partial runs, rollouts, queries, knots."""
 
 import copy
 import ctypes
@@ -31,7 +31,7 @@ def test_nodes_are_a_view_that_follows_the_thread(name):
     sim.reset()
     assert np.array_equal(nodes, before) and sim.ticks == 0 and not np.any(velocities)
     with pytest.raises(ValueError):
-        nodes[0, 0] = 1.0  # the thread is not moved behind its own back
+        nodes[0, 0] = 1.0  # views are read-only
     del sim
     gc.collect()
     assert np.array_equal(nodes, before), "the view keeps its simulation alive"
@@ -84,7 +84,7 @@ def test_other_python_threads_go_on_and_may_not_touch_a_running_simulation():
             except RuntimeError as error:
                 seen.append(str(error))
                 continue
-            break  # the run has ended, or not begun
+            break  # the run has ended or not begun
         time.sleep(0.001)
     assert turns > 3, "the run kept Python's lock"
     assert set(seen) == {"this simulation is running in another thread"}
@@ -95,7 +95,7 @@ def test_floating_point_mode_of_the_process_changes_nothing(paper, overhand):
     expected = ligature.Simulation(paper).run(overhand, 1.0).trace
     times_s = [(k + 1) * 0.001 for k in range(1000)]
     libm = ctypes.CDLL("libm.so.6")
-    libm.fesetround(0xC00)  # towards zero
+    libm.fesetround(0xC00)  # round towards zero
     try:
         sim = ligature.Simulation(paper)
         got = sim.run(overhand, 1.0).trace
@@ -119,7 +119,7 @@ def test_curvature_is_that_of_the_circle_through_three_nodes(paper):
 def test_tension_of_a_hanging_thread_is_the_weight_below(paper):
     sim = ligature.Simulation(ligature.Scene.load(SCENES / "paper.toml", {"suture.air_drag_per_s": 100.0}))
     sim.run(duration_s=60.0)
-    below = 0.05 * 9.8 * np.arange(49, 0, -1)  # nodes of 0.05 kg beyond each edge
+    below = 0.05 * 9.8 * np.arange(49, 0, -1)  # weight of the nodes of 0.05 kg below each segment
     assert np.allclose(sim.tension_N[:-1], below, rtol=1e-3)
     assert sim.tension_N[-1] == sim.tension_N[-2] and np.allclose(sim.turn_rad, 0.0)
 

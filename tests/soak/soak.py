@@ -1,12 +1,13 @@
-"""A script in a loop for minutes, firmware and both hands as processes: what must not change in time does not.
+"""Soak test: repeats a script for minutes, with firmware and both hands as processes, and checks for changes over time.
 
-Between two rounds the hands let go and the thread is reset. Judged: every tick recorded, the schedule on its grid to the
-nanosecond, no page fault and no growth of the firmware after its start; each late tick with its cause, none of which may
-be that the loop itself computed for longer. Wall time is told, not judged: this machine may be anybody's.
+Between two rounds the hands let go and the thread is reset. Checked: every tick is recorded, the schedule is exact to
+the nanosecond, and after its start the firmware has no page fault and does not grow. Each late tick is listed with its
+cause; a tick whose own computation took too long is an error. Wall time is printed but not judged, since the machine
+may be shared.
 
-With --disk another process writes to the recorder's disk all the while, 512 MB after 512 MB, each until it is synced.
+With --disk another process writes to the recorder's disk all the time, 512 MB after 512 MB, each synced at its end.
 
-Exit: 0, 2 for bad usage, or 3 when something changed that must not.
+Exit: 0; 2 for bad usage; 3 when a check failed.
 """
 
 import argparse
@@ -25,18 +26,18 @@ import numpy as np
 
 ROOT = pathlib.Path(os.environ["LIGATURE_SOURCE"])
 BIN = pathlib.Path(os.environ.get("LIGATURE_BIN", ROOT / "build/release/bin"))
-PAUSE_S, RESET_AFTER_S = 3.0, 1.5  # between two rounds; the thread is reset in it
+PAUSE_S, RESET_AFTER_S = 3.0, 1.5  # between two rounds; the thread is reset during the pause
 PERIOD_NS = 1_000_000
 HEADER_BYTES = 65536
 SETTLED_S = 5.0
 LOST, MISSED, OVERWORKED, THREAD_LATE = 1, 2, 128, 256
-BUS_NS = 460_000  # what SYNC and TPDOs take
+BUS_NS = 460_000  # time for SYNC and TPDOs
 
 NUMPY = {"double": ">f8", "float": ">f4", "int8_t": "i1", "int16_t": ">i2", "int32_t": ">i4", "int64_t": ">i8"}
 
 
 def record_layout(slot_bytes):
-    """A slot of the flight recorder: its head (protocol/recorder/flight_file.hpp), then tick_t as LCM packs it."""
+    """Layout of a flight recorder slot: its head (protocol/recorder/flight_file.hpp), then tick_t as packed by LCM."""
     text = (ROOT / "protocol/lcm/tick_t.lcm").read_text()
     fields = re.findall(r"^  (double|float|int\d+_t)\s+(\w+)((?:\[\d+\])*);", text, re.M)
     head = np.dtype([("sequence", "<u8"), ("bytes", "<u4"), ("crc", "<u4")])
@@ -47,7 +48,7 @@ def record_layout(slot_bytes):
 
 
 class Changes(threading.Thread):
-    """Sends a live change of friction every two seconds; keeps when, on the clock of the schedule."""
+    """Sends a live change of friction every two seconds; stores the times, on the schedule's clock."""
 
     def __init__(self, count):
         super().__init__(daemon=True)
@@ -61,7 +62,7 @@ class Changes(threading.Thread):
             self.refused += said.returncode != 0
 
     def report(self, ticks):
-        """Periods lost and late in the second after each change, beside the second after that one."""
+        """Periods lost and late within one second after each change, compared with the second after that."""
         say(f"{len(self.sent_ns)} live changes, {self.refused} refused")
         for what, flag in (("lost", LOST), ("late", MISSED)):
             at = ticks["scheduled_ns"][ticks["flags"] & flag != 0]
@@ -70,9 +71,9 @@ class Changes(threading.Thread):
 
 
 def script_in_a_loop(script, folder, length_s):
-    """@return the file with the script over and over for so long, the number of rounds and the length of one."""
+    """@return the file with the script repeated for that time, the number of rounds and the length of one."""
     lines = [line for line in script.read_text().splitlines() if line and not line.startswith("#")]
-    heads = [line for line in lines if not line[0].isdigit()]  # how to move between keys, names of the columns
+    heads = [line for line in lines if not line[0].isdigit()]  # interpolation and column names
     keys = [line.split(",") for line in lines if line[0].isdigit()]
     round_s = np.ceil(float(keys[-1][0])) + PAUSE_S
     rounds = max(1, int(np.ceil(length_s / round_s)))
@@ -85,14 +86,14 @@ def script_in_a_loop(script, folder, length_s):
 
 
 class Firmware:
-    """What Linux says of the process and of its real-time thread."""
+    """What Linux reports about the process and its real-time thread."""
 
     def __init__(self, pid):
         self.pid = pid
         self.loop = next((t for t in os.listdir(f"/proc/{pid}/task") if os.sched_getscheduler(int(t)) == os.SCHED_FIFO), str(pid))
 
     def faults(self):
-        """(minor, major) of the real-time thread."""
+        """(minor, major) page faults of the real-time thread."""
         fields = pathlib.Path(f"/proc/{self.pid}/task/{self.loop}/stat").read_text().rsplit(")", 1)[1].split()
         return int(fields[7]), int(fields[9])
 
@@ -126,7 +127,7 @@ def ticks_of(file):
         _, told_bytes = struct.unpack("<QI", opened.read(12))
     layout, tick_bytes = record_layout(slot)
     assert tick_bytes == told_bytes, f"a tick has {told_bytes} bytes in the recorder, {tick_bytes} in tick_t.lcm"
-    raw = np.fromfile(file, dtype=layout, offset=HEADER_BYTES, count=slots)  # scenes follow
+    raw = np.fromfile(file, dtype=layout, offset=HEADER_BYTES, count=slots)  # scenes follow after the slots
     raw = raw[raw["sequence"] > 0]
     return raw[np.argsort(raw["sequence"])]
 
@@ -142,7 +143,7 @@ def say(line):
 
 
 def judge(ticks, before, after):
-    """@return what is wrong."""
+    """@return the errors found."""
     wrong = []
     if not np.array_equal(ticks["tick"], np.arange(len(ticks))):
         wrong.append("a tick is missing from the recorder")
@@ -159,9 +160,9 @@ def judge(ticks, before, after):
 
 
 def causes(done, waiting, computing):
-    """@return how many late ticks woke up late, waited for a hand, or were kept from computing; and apart those whose own
-    CPU time, which the loop reads when the samples are in and at the end, is more than the bus leaves of a period: only these are the
-    program's."""
+    """@return the number of late ticks by cause: woke up late, waited for a hand, or did not get the CPU. Counted
+    separately: ticks whose own CPU time, from the samples to the end, exceeds what the bus leaves of a period; only
+    these are due to the program."""
     names = {"woke up late": 0, "waited for a hand": 0, "were kept from computing": 0, "worked for too long": 0}
     told = []
     for tick, waited, took in zip(done, waiting, computing):
@@ -180,7 +181,7 @@ def causes(done, waiting, computing):
 
 
 def report(ticks):
-    """@return how many ticks worked for longer than there is time."""
+    """@return the number of ticks that computed for longer than the time available."""
     lost = ticks["flags"] & LOST != 0
     done = ticks[~lost]
     waiting = done["tpdo_ns"] - done["sync_ns"]
@@ -259,7 +260,7 @@ def main():
             say(f"firmware: exit {code}, loop used {after['cpu_s']:.1f} s of CPU; load {os.getloadavg()[0]:.1f}")
             print((folder / "2.log").read_text())
             ticks = ticks_of(folder / "flight.rec")
-            if asked.changes:  # what they are built in grows and then stays: told, not judged
+            if asked.changes:  # memory grows with the first changes and then stays; printed, not judged
                 say(f"memory {before['memory']['VmRSS']} -> {after['memory']['VmRSS']} kB")
                 after["memory"] = before["memory"]
             wrong = judge(ticks, before, after)

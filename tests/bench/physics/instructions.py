@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Instructions per tick, counted by callgrind (not timed: the same on a loaded machine).
+"""Instructions per tick, counted by callgrind, hence independent of the machine's load.
 
 usage: instructions.py PATH/TO/physics-step-cost
 
-Prints one line per scenario and exits 1 when a bar is missed: paper-4 at N = 50 takes at most 10,000 instructions without
-contact and 25,000 in a loosely tied trefoil; paper-1 at most half of paper-4; cost grows no faster than N log N; a
-scene without contact enters no function of the contact solver or its broad phases, one with contact does.
-"""
+Prints one line per scenario and exits with 1 when a limit is exceeded. Limits: paper-4 at N = 50 takes at most 10,000
+instructions without contact and 25,000 in a loosely tied trefoil; paper-1 at most half of paper-4; the cost grows no
+faster than N log N. A scene without contact must call no function of the contact solver or its broad phases, and one
+with contact must."""
 import math
 import re
 import subprocess
@@ -48,7 +48,7 @@ def main():
     for model in ("paper-2", "paper-3", "paper-5"):
         count(program, "tied", 50, none, f"suture.model={model}")
     bar(count(program, "tied", 50), 25_000, "paper-4 in a loosely tied trefoil")
-    count(program, "tightened", 50)  # seven contacts that all matter: no bar, but worth watching
+    count(program, "tightened", 50)  # seven contacts that all carry load: no limit, only printed
     small = count(program, "coil", 100)
     for nodes in (200, 500, 1000):
         grown = count(program, "coil", nodes)

@@ -1,9 +1,9 @@
-"""What Python costs over C++: a tick's overhead, and how much faster 64 runs are on two cores than on one.
+"""Cost of Python over C++: the overhead per tick, and how much faster 64 runs are on two cores than on one.
 
     PYTHONPATH=build/dev/python-package build/venv/bin/python tests/bench/python/bench.py
 
-Ratios of one process, both sides in turns, the least of several rounds each: what else the machine does adds to both.
-"""
+Ratios are measured within one process, both sides alternating, with the fastest of several rounds each, so that other
+load on the machine affects both."""
 
 import time
 
@@ -19,7 +19,7 @@ def timed(work):
 
 
 def overhead_us(scene, ticks):
-    """Python's loop with two tools that stand still, against the same ticks in C++."""
+    """A Python loop with two resting tools against the same ticks in C++."""
     sim = ligature.Simulation(scene)
     away = [0.0, 0.0, -1000.0, 0]
     script = ligature.Script.of_keys([[0.0, *away]], [[0.0, *away]])

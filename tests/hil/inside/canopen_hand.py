@@ -1,7 +1,7 @@
-"""Three CiA 402 drives by python-canopen, slaves of ligature-firmware on vcan0: SDO, NMT, PDO, heartbeat and EMCY are
-its own. What came is written to /run/canopen.json. SYNC and RPDO, 4000 frames a second, go past its dispatcher, which an
-emulated CPU is too slow for; how they are mapped is what canopen read from the objects that the firmware wrote.
-"""
+"""Three CiA 402 drives implemented with python-canopen, controlled by ligature-firmware on vcan0. SDO, NMT, PDO,
+heartbeat and EMCY are python-canopen's own; what was received is written to /run/canopen.json. SYNC and RPDO, 4000
+frames per second, bypass its dispatcher, which is too slow on the emulated CPU; their mapping is read by canopen from
+the objects that the firmware has written."""
 
 import json
 import socket
@@ -17,9 +17,9 @@ ELBOW = 3
 GRIP_AND_DEAD_MAN = 3
 SHUTDOWN, SWITCH_ON, ENABLE, FAULT_RESET, DISABLE = 0x06, 0x07, 0x0F, 0x80, 0x00
 NOT_READY, DISABLED, READY, SWITCHED_ON, ENABLED, FAULT = 0x00, 0x40, 0x21, 0x23, 0x27, 0x08
-START = {1: -431, 2: 1664, 3: 892}  # counts of the pose where the overhand begins, (0, 0, 2.3) in the world
-STILL = 900  # SYNCs: force is ramped in on a hand that rests
-IMAGE = struct.Struct("=IB3x8s")  # Linux' struct can_frame
+START = {1: -431, 2: 1664, 3: 892}  # counts, at the start pose of the overhand script: (0, 0, 2.3) in the world
+STILL = 900  # number of SYNCs at rest, during which the gain rises
+IMAGE = struct.Struct("=IB3x8s")  # layout of Linux' struct can_frame
 RUN_S, AFTER_S, BOUND_S = 2.0, 0.3, 20.0
 
 
@@ -37,7 +37,7 @@ class Drive:
         self.states.append(self.local.nmt.state)
 
     def on_rpdo(self, data):
-        """As mapped by the firmware: controlword, target torque."""
+        """Decodes an RPDO as mapped by the firmware: controlword, target torque."""
         word, torque = struct.unpack("<Hh", data)
         self.rpdos += 1
         self.torques.append(torque)
@@ -57,7 +57,8 @@ class Hand:
         self.socket = socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
         self.socket.bind(("vcan0",))
         nothing = [{"can_id": 0x7FF, "can_mask": 0x7FF}]
-        self.network = canopen.Network(can.Bus("vcan0", interface="socketcan", can_filters=nothing))  # sends; we receive
+        # only sends; frames are received below
+        self.network = canopen.Network(can.Bus("vcan0", interface="socketcan", can_filters=nothing))
         self.drives = [Drive(self.network, n) for n in NODES]
         self.syncs, self.heartbeats, self.maps = 0, 0, {}
         self.network.subscribe(0x77F, self.on_heartbeat)
@@ -86,12 +87,13 @@ class Hand:
         for drive in self.drives:
             if drive.local.nmt.state != "OPERATIONAL":
                 continue
-            if drive.id not in self.maps:  # what the firmware wrote over SDO, as canopen reads it
+            if drive.id not in self.maps:  # the mapping written by SDO, as canopen decodes it
                 drive.local.tpdo[1].read(from_od=True)
                 tpdo = drive.local.tpdo[1]
                 self.maps[drive.id] = {"cob_id": tpdo.cob_id, "type": tpdo.trans_type, "map": [[v.index, v.subindex, v.length] for v in tpdo.map]}
             if drive.id == 1:
-                drive.counts = START[1] + max(0, min((self.syncs - STILL) // 4, 200))  # the waist turns: the thread pulls at the hand
+                # the waist turns, so the thread pulls on the hand
+                drive.counts = START[1] + max(0, min((self.syncs - STILL) // 4, 200))
             self.socket.send(IMAGE.pack(0x180 + drive.id, 8, drive.image()))
 
     def report(self, emergency_at):

@@ -1,5 +1,5 @@
 #!/bin/bash
-# python-canopen as the three drives of the left hand, driven by the firmware; the right hand is ours.
+# python-canopen as the three drives of the left hand, controlled by the firmware; the right hand is ligature-device.
 . tests/hil/inside/rig.sh
 warm chrt "$LIGATURE_VENV"
 for node in 1 2 3; do "$LIGATURE_BIN/ligature-can-describe" eds "$node" > "/run/node-$node.eds"; done

@@ -1,20 +1,20 @@
 #!/bin/bash
-# What befalls a rig in force, once each: a rig of its own, the blow half a second into full force, 0.6 s to see the end.
+# Faults of a rig that renders force. Each has a new rig, occurs half a second after full force, and is observed for 0.6 s.
 . tests/hil/inside/rig.sh
 warm chrt candump cansend ip grep pgrep
 ip link set can0 up type can bitrate 1000000 sample-point 0.8
 ip link set can1 up type can bitrate 1000000 sample-point 0.8
 
-chosen=$*  # names, or all
+chosen=$*  # names of the faults to run; empty: all
 right=vcan1
-also=      # an interface more to listen to
+also=      # an additional interface to record
 # run NAME LEFT-INTERFACE-OF-THE-FIRMWARE LEFT-INTERFACE-OF-THE-HAND COMMAND...
 run() {
   local name=$1 ours=$2 theirs=$3
   shift 3
   [[ " $chosen " == *" $name "* || -z $chosen ]] || return 0
   echo "faults: $name"
-  ip link set can0 up; ip link set can1 up  # the row before may have pulled one
+  ip link set can0 up; ip link set can1 up  # the previous fault may have taken one down
   listen "$ours,0:0,#FFFFFFFF" "$right" $also
   hand left "$theirs"; hand right "$right"
   sleep 0.5
@@ -29,9 +29,9 @@ run() {
 }
 
 killed() { kill -KILL "$left_pid"; }
-emergency() { cansend vcan0 082#5082110000000000; }             # of the shoulder, as its drive would send it
+emergency() { cansend vcan0 082#5082110000000000; }             # as sent by the shoulder's drive
 stranger() { cansend vcan0 000#8002; }                           # an NMT command: shoulder to pre-operational
-foreign_rpdo() { cansend vcan0 201#0F00B80B; }                    # somebody commands 3000 per mille
+foreign_rpdo() { cansend vcan0 201#0F00B80B; }                    # another node commands 3000 per mille
 bus_off() { cansend vcan0 20000040#0000000000000000; }           # the error frame of a driver
 silent() { kill -STOP "$firmware_pid"; sleep 0.1; kill -CONT "$firmware_pid"; }
 clock_step() { date -s '+1 day' > /dev/null; sleep 0.3; date -s '-2 days' > /dev/null; }
@@ -43,15 +43,15 @@ pulled_and_back() {
   by_order
 }
 by_order() {
-  sleep 0.5                                                      # nothing happens by itself
+  sleep 0.5                                                      # it must stay in the fault
   "$LIGATURE_BIN/ligature-host" send reset-fault > /run/send.log 2>&1
   sleep 0.5                                                      # enabled again, not armed
   "$LIGATURE_BIN/ligature-host" send arm >> /run/send.log 2>&1
   sleep 0.8
 }
-# slcan0: a serial adapter, whose driver has the states of a CAN controller, between the controller and wire0. wire0 and
-# wire1 are vcans under another name: no bits are charged on them, since what the one CPU does for the serial line takes
-# that time. It goes before the loop, as the interrupts of an adapter would.
+# slcan0 is a serial adapter between the controller and wire0; its driver has the states of a CAN controller. wire0 and
+# wire1 are vcans under other names, so no transmission time is simulated on them; handling the serial line takes the
+# CPU about that time. The adapter has a higher priority than the loop, like the interrupts of a real one.
 adapter() {
   [[ -z $chosen || " $chosen " == *" slcan-bus-off "* ]] || return 0
   for i in 0 1; do ip link add dev wire$i type vcan; ip link set wire$i up; done
@@ -64,10 +64,10 @@ adapter() {
 }
 controller_off_and_back() {
   ip -details link show slcan0 > /run/slcan-before.log
-  kill -USR1 "$adapter_pid"                                      # its error counter says 256: bus-off
+  kill -USR1 "$adapter_pid"                                      # error counter 256: bus-off
   sleep 0.2
   ip -details link show slcan0 > /run/slcan-after.log
-  kill -USR2 "$adapter_pid"                                      # and the controller comes back by itself
+  kill -USR2 "$adapter_pid"                                      # the controller recovers
   sleep 0.2
   ip link set slcan0 down
   ip link set slcan0 up

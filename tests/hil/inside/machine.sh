@@ -1,5 +1,5 @@
 #!/bin/bash
-# The socket back ends' own tests, doctor on a kernel that can, and --rt=enforce where it must refuse.
+# Tests of the socket back ends, `doctor` on a PREEMPT_RT kernel, and --rt=enforce where it must refuse to run.
 . tests/hil/inside/rig.sh
 echo "machine: back end on vcan"
 "$LIGATURE_TESTS/test_socketcan" > /hil/socketcan.log 2>&1 || { cat /hil/socketcan.log; exit 1; }

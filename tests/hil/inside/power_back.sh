@@ -1,5 +1,5 @@
 #!/bin/bash
-# The same disk with power again: ext4 replays its journal, and the recorder's file is what it is.
+# Boot after the power cut, with the same disk: ext4 replays its journal, and the recorder's file is kept as it then is.
 . tests/hil/inside/rig.sh
 mkdir /run/disk
 mount /dev/vda /run/disk

@@ -1,6 +1,6 @@
 #!/bin/bash
-# A rig in force that records to a disk of its own, and then no power. What the recorder had written is copied from the
-# kernel's memory first: for that the controller is killed, and nothing but itself may bring its pages to the disk.
+# The power is cut while a rig renders force and records to a separate disk. Just before, the controller is killed and the
+# file is copied from the page cache, for comparison. Only the recorder itself may have synced its pages to the disk.
 . tests/hil/inside/rig.sh
 warm chrt grep
 mkfs.ext4 -q /dev/vda
@@ -15,4 +15,4 @@ in_force
 kill -KILL "$firmware_pid"
 keep power-cut
 echo "HIL-EXIT 0" > /dev/ttyS0
-echo b > /proc/sysrq-trigger                                     # at once: nothing is synced, nothing unmounted
+echo b > /proc/sysrq-trigger                                     # immediate reboot without sync or unmount

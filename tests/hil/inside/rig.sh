@@ -1,11 +1,10 @@
-# Sourced by the scenarios: a rig of processes in the guest. Where hardware would run beside the controller, the one
-# virtual CPU must run it before the controller, or the controller would hold up its own bus: the hands are at 85, the
-# loop at 80.
+# Sourced by the scenarios: a rig of processes in the guest. Simulated hardware shares the one virtual CPU with the
+# controller and must have the higher priority, or the controller would delay its own bus: hands at 85, loop at 80.
 set -eu
 export XDG_STATE_HOME=/run/state
 flight=/run/flight.rec
 
-# Files on the host are read before time counts: waiting for one takes no virtual time at all, or any amount.
+# Reads all needed files in advance, because file access to the host takes an unpredictable amount of virtual time.
 warm() {
   local programs=("$LIGATURE_BIN"/ligature-{firmware,device,host} $(type -P "$@" bash sleep cat cp date rm mkdir))
   { printf '%s\n' "${programs[@]}"; ldd "${programs[@]}" 2>/dev/null | grep -o '/[^ :]*' || true; } | sort -u | xargs cat > /dev/null
@@ -20,7 +19,7 @@ hand() {
   printf -v "${side}_pid" %d $!
 }
 
-# firmware LEFT-INTERFACE RIGHT-INTERFACE [ARGUMENT...]; admission is forced: an emulated CPU fails it, and says so
+# firmware LEFT-INTERFACE RIGHT-INTERFACE [ARGUMENT...]; --force, because an emulated CPU fails the admission
 firmware() {
   local left=$1 right=$2
   shift 2
@@ -30,7 +29,7 @@ firmware() {
   firmware_pid=$!
 }
 
-# Returns half a second after the rig has come to full force.
+# Returns half a second after the rig has reached full force.
 in_force() {
   local tries
   for tries in {1..600}; do
@@ -46,10 +45,10 @@ listen() {
   candump_pid=$!
 }
 
-# gone PID: ends it politely and waits
+# gone PID: ends a process with SIGTERM and waits for it
 gone() { kill -TERM "$1" 2>/dev/null || true; wait "$1" || true; }
 
-# keep NAME: what a run left, into the folder that stays
+# keep NAME: copies a run's results to the folder that outlives the guest
 keep() {
   mkdir -p "/hil/$1"
   cp "$flight"* /run/*.log /run/*.json "/hil/$1/" 2>/dev/null || true

@@ -1,4 +1,4 @@
-"""python-can bus over the rig's `local:` socket, so that python-canopen can be the master of a simulated hand."""
+"""A python-can bus over the rig's `local:` socket, so that python-canopen can control a simulated hand."""
 
 import select
 import socket
@@ -6,7 +6,7 @@ import struct
 
 import can
 
-IMAGE = struct.Struct("=IB3x8s")  # Linux' struct can_frame
+IMAGE = struct.Struct("=IB3x8s")  # layout of Linux' struct can_frame
 
 
 class LocalBus(can.BusABC):

@@ -1,4 +1,5 @@
-"""C++ codec, EDS and DBC say the same: held together by cantools and python-canopen, which know none of our code."""
+"""The C++ codec, the EDS and the DBC agree, as checked with cantools and python-canopen, which share no code with us.
+"""
 
 import io
 import json
@@ -22,7 +23,7 @@ SEED = shifted(20260101)
 
 
 def describe(*args, lines=None):
-    """Runs the generator; with lines, feeds them and returns its lines."""
+    """Runs the generator; with `lines`, feeds them to it and returns its output lines."""
     given = None if lines is None else "\n".join(lines) + "\n"
     result = subprocess.run([DESCRIBE, *map(str, args)], input=given, capture_output=True, text=True, timeout=60, check=True)
     return result.stdout if lines is None else result.stdout.splitlines()
@@ -40,7 +41,7 @@ class Readers(unittest.TestCase):
         return canopen.import_od(text, node_id=node)
 
     def words(self, kind, node):
-        """Random field values of one PDO, extremes included: the order of our encode line, and by signal name."""
+        """Random field values of one PDO, extremes included: in the order of our encode line, and by signal name."""
         def pick(low, high):
             return self.random.choice([low, high, 0, self.random.randint(low, high)])
 
@@ -80,7 +81,7 @@ class Readers(unittest.TestCase):
     def test_canopen_maps_the_pdos_of_the_eds_as_the_codec_does(self):
         for node in NODES:
             drive = canopen.LocalNode(node, self.eds(node))
-            canopen.Network().add_node(drive)  # a network without a bus: reading a map subscribes to it
+            canopen.Network().add_node(drive)  # a network without bus, because reading a map subscribes to it
             for pdo, kind, base in ((drive.tpdo[1], "tpdo1", 0x180), (drive.rpdo[1], "rpdo1", 0x200)):
                 pdo.read(from_od=True)
                 self.assertEqual(pdo.cob_id, base + node)

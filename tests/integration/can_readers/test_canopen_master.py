@@ -1,7 +1,6 @@
-"""python-canopen as the master of a simulated hand: our reading of the standard against somebody else's.
+"""python-canopen as the master of a simulated hand: an independent implementation of the standard against ours.
 
-Real processes, but nothing is timed: every wait is for a condition, with a bound that only ends a hang.
-"""
+Real processes without time limits: every wait is for a condition, with a limit that only ends a hang."""
 
 import io
 import json
@@ -28,7 +27,7 @@ class Hand(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="hand-")
         self.addCleanup(folder.cleanup)
         self.path = pathlib.Path(folder.name)
-        interface = os.environ.get("LIGATURE_HAND_CAN")  # a SocketCAN interface that is up, instead of a local bus
+        interface = os.environ.get("LIGATURE_HAND_CAN")  # a SocketCAN interface that is up, instead of a `local:` bus
         bus = f"socketcan:{interface}" if interface else f"local:{self.path / 'bus'}"
         with open(self.path / "device.log", "w") as log:
             self.device = subprocess.Popen([DEVICE, "--hand", "left", "--bus", bus, "--stats", self.path / "stats.json"], stdout=log)
@@ -41,7 +40,8 @@ class Hand(unittest.TestCase):
             text.name = f"node-{node}.eds"
             self.network.add_node(canopen.RemoteNode(node, canopen.import_od(text, node)))
         self.drives = [self.network[node] for node in NODES]
-        # canopen's own waits see only what comes after the call; three drives answer at once, so receptions are counted.
+        # canopen's own waits miss answers that came before the call; three drives answer at once, so receptions are
+        # counted.
         self.boots, self.tpdos = dict.fromkeys(NODES, 0), dict.fromkeys(NODES, 0)
         for node in NODES:
             self.network.subscribe(0x700 + node, lambda id, data, _: self.count(self.boots, id - 0x700, data[0] == 0))
@@ -52,9 +52,9 @@ class Hand(unittest.TestCase):
         what[node] += counts
 
     def end(self):
-        """Ends the device politely; its exit code and what it says about itself."""
+        """Ends the device with SIGTERM. @return its exit code and its statistics."""
         if hasattr(self, "network"):
-            self.network.disconnect()  # before the bus goes
+            self.network.disconnect()  # before the bus is closed
         self.device.send_signal(signal.SIGTERM)
         code = self.device.wait(timeout=BOUND_S)
         stats = self.path / "stats.json"
@@ -67,7 +67,7 @@ class Hand(unittest.TestCase):
             time.sleep(0.001)
 
     def start_up(self, rpdo_timeout_ms=0):
-        """Boot, parameters by SDO, PDO maps as the drives tell them, NMT start."""
+        """Boot-up, parameters by SDO, PDO maps as read from the drives, NMT start."""
         self.network.nmt.send_command(0x82)
         self.wait_for(lambda: all(self.boots.values()), "a boot-up of every drive")
         for drive in self.drives:
@@ -78,7 +78,7 @@ class Hand(unittest.TestCase):
         self.network.nmt.state = "OPERATIONAL"
 
     def command(self, word, torque=0):
-        """RPDO to every drive, then the SYNC at which it acts and that latches the state before it."""
+        """An RPDO to every drive, then a SYNC, at which it acts and which samples the state before it."""
         for drive in self.drives:
             drive.rpdo[1]["Controlword"].raw = word
             drive.rpdo[1]["TargetTorque"].raw = torque
@@ -120,7 +120,7 @@ class Hand(unittest.TestCase):
             self.assertEqual(refused.exception.code, 0x06090030)
 
     def test_silence_is_told_by_emcy_and_left_by_fault_reset(self):
-        self.start_up(rpdo_timeout_ms=2000)  # long, so that a loaded machine does not trip it before its time
+        self.start_up(rpdo_timeout_ms=2000)  # long, so that it does not expire early on a loaded machine
         self.enable()
         self.wait_for(lambda: all(d.emcy.active for d in self.drives), "an EMCY of every drive")
         self.assertEqual({d.emcy.active[-1].code for d in self.drives}, {0x8250})
@@ -136,7 +136,7 @@ class Hand(unittest.TestCase):
     def test_a_lost_heartbeat_of_the_master_is_told_by_emcy(self):
         self.start_up()
         for drive in self.drives:
-            drive.sdo[0x1016][1].raw = 127 << 16 | 1500  # ms; the watch begins with the first heartbeat
+            drive.sdo[0x1016][1].raw = 127 << 16 | 1500  # ms; monitoring starts with the first heartbeat
         self.enable()
         self.command(ENABLE, torque=200)
         self.network.send_message(0x77F, [0x05])

@@ -1,7 +1,6 @@
-"""ligature-lab as a user calls it: exit codes, one line on stderr, nothing half-written.
+"""ligature-lab as called by a user: exit codes, one line on stderr, no partly written files.
 
-Run: python3 command_line_test.py LIGATURE_LAB SCENES
-"""
+Run: python3 command_line_test.py LIGATURE_LAB SCENES"""
 
 import csv
 import json
@@ -22,7 +21,7 @@ def lab(*args):
 
 
 def refused(folder, *args):
-    """Exit 2, one line, no folder made."""
+    """Expects exit code 2, one line and no output folder."""
     out = folder / "refused"
     done = lab("run", *args, "--out", out)
     assert done.returncode == 2, (args, done)
@@ -48,7 +47,8 @@ def bad_input(folder):
     assert "bad.csv:3: column 'grip': found '7'" in refused(folder, PAPER, "--grippers", script)
     assert "--duration" in refused(folder, PAPER, "--duration", "-1")
     assert "--shape-every" in refused(folder, PAPER, "--shape-every", "0")
-    assert len(refused(folder, PAPER, "--duration", "1e300")) < 120  # a number of 300 digits tells nobody anything
+    # a number of 300 digits must not be printed in full
+    assert len(refused(folder, PAPER, "--duration", "1e300")) < 120
     for wrong in (["--model", "paper-9"], ["--nodes", "77"], ["--only", "tea"], ["--accuracy", "best"],
                   ["--share", "0"], ["--share", "nan"]):
         done = lab("validate", *wrong)
@@ -89,15 +89,16 @@ def validation(folder):
     assert len(json.loads((out / "validate.json").read_text())) == len(rows)
     done = lab("validate", "--only", "capstan", "--nodes", "50", "--model", "paper-4")
     assert done.returncode == 0 and "not modelled" in done.stdout, done
-    done = lab("validate", "--only", "elastic-string", "--nodes", "50", "--share", "1e-9")  # nothing is that good
+    # a limit that no solution meets
+    done = lab("validate", "--only", "elastic-string", "--nodes", "50", "--share", "1e-9")
     assert done.returncode == 1 and "FAIL" in done.stdout, done
 
 
 def interruption():
-    """A case of half a minute ends within a second or so, in one line."""
+    """A case of half a minute is interrupted within a few seconds, with one line of output."""
     with subprocess.Popen([LAB, "validate", "--only", "overhand-hysteresis", "--nodes", "200"], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True) as validate:
-        time.sleep(0.5)  # past the start, far from the end
+        time.sleep(0.5)  # after the start, long before the end
         validate.send_signal(signal.SIGINT)
         try:
             out, complaint = validate.communicate(timeout=5)

@@ -1,8 +1,7 @@
-"""What a pass over contacts is charged (rod/work.hpp), against what callgrind counts.
+"""The price of a pass over contacts (rod/work.hpp) against its instructions as counted by callgrind.
 
-Two runs of one substep that differ in nothing but the number of passes: the difference is theirs alone. The bound on a
-tick's time stands on the price being no less than the cost; much more, and work that is there is not used.
-"""
+Two runs of one substep differ only in the number of passes, so the difference is the cost of passes alone. The bound on
+a tick's time requires price >= cost; a much higher price would leave budget unused."""
 
 import os
 import pathlib
@@ -31,7 +30,7 @@ class PassPrice(unittest.TestCase):
             cost, price = (many[0] - few[0]) / (MANY - FEW), (many[1] - few[1]) / (MANY - FEW)
             print(f"seed {seed}, {many[3]} contacts: a pass costs {cost:,.0f} instructions, its price is {price:,.0f}: {price / cost:.2f}")
             self.assertGreater(many[3], 50)
-            self.assertGreater(price, 0.8 * cost)  # prices are those of a release build; this one has asserts
+            self.assertGreater(price, 0.8 * cost)  # prices are for release builds; this build has asserts
             self.assertLess(price, 1.7 * cost)
 
 
