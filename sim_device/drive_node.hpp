@@ -1,5 +1,5 @@
 #pragma once
-// One simulated CiA 402 servo drive in cyclic synchronous torque mode, as seen from its CAN connector.
+// A simulated CiA 402 servo drive in cyclic synchronous torque mode, as it behaves on the CAN bus.
 
 #include <array>
 #include <cstdint>
@@ -15,42 +15,42 @@
 
 namespace ligature::sim {
 
-/// What the drive's sensors read at a moment.
+/// Sensor readings of a drive at one moment.
 struct Sensed {
   std::int32_t position_counts = 0;
   std::uint16_t buttons = 0;
-  bool guarded = false;              ///< the power stage keeps the torque below what is asked, to spare the winding
-  std::int16_t torque_permille = 0;  ///< that it lets through then
+  bool guarded = false;              ///< the power stage limits the torque to protect the winding
+  std::int16_t torque_permille = 0;  ///< the limited torque, if guarded
 };
 
 struct DriveStats {
-  std::int64_t watchdog_trips = 0;      ///< times the drive took torque away by itself
-  std::int64_t syncs_without_rpdo = 0;  ///< while operation enabled
-  std::int64_t late_rpdos = 0;          ///< second RPDO between two SYNCs: the first one never acted
+  std::int64_t watchdog_trips = 0;      ///< times that the drive removed torque by itself
+  std::int64_t syncs_without_rpdo = 0;  ///< SYNCs without a new RPDO while in Operation Enabled
+  std::int64_t late_rpdos = 0;          ///< a second RPDO between two SYNCs: the first one never acted
 };
 
-/// At a SYNC the drive first latches its inputs into the TPDO, then acts on the RPDO it holds; an RPDO that comes after
-/// the SYNC waits for the next one. Silence of RPDOs (0x1400:05) or of the master's heartbeat (0x1016:01) takes torque
-/// away at once, is told by EMCY, and latches a fault that only a fault reset leaves. Every call appends what the drive
-/// sends to `out`. Time must not run backwards.
+/// At a SYNC the drive first samples its inputs for the TPDO, then applies the RPDO that it holds; an RPDO that comes
+/// after the SYNC waits for the next one. If RPDOs (0x1400:05) or the master's heartbeat (0x1016:01) stay away too
+/// long, the drive removes its torque at once, sends an EMCY, and latches a fault that only a fault reset clears. Every
+/// call appends the frames that the drive sends to `out`. Time must not run backwards.
 class DriveNode {
  public:
   explicit DriveNode(can::NodeId id, const DriveConstants& constants = {}) : id_(id), objects_(id, constants) {}
 
   void power_on(Time now, std::vector<can::Frame>& out);
   void on_frame(const can::Frame& frame, Time now, const Sensed& sensed, std::vector<can::Frame>& out);
-  /// Looks at the clock: watchdogs and the drive's own heartbeat. Due again at next_deadline().
+  /// Checks watchdogs and sends the drive's heartbeat if due. Call again at next_deadline().
   void poll(Time now, std::vector<can::Frame>& out);
   [[nodiscard]] Time next_deadline() const noexcept;
-  /// Power off: no torque from here on.
+  /// Power off: no torque from now on.
   void power_off() noexcept;
-  /// Its current loop is out of order: while the power stage is on it makes so much more than it was asked for.
+  /// Injects a fault: while the power stage is on, the drive makes this much more torque than commanded.
   void go_astray(std::int16_t by_permille) noexcept { astray_permille_ = by_permille; }
 
   [[nodiscard]] can::NodeId id() const noexcept { return id_; }
   [[nodiscard]] can::cia402::State state() const noexcept { return state_; }
   [[nodiscard]] can::NmtState nmt_state() const noexcept { return nmt_; }
-  /// Torque the motor makes now, per mille of rated.
+  /// Torque that the motor makes now, per mille of rated torque.
   [[nodiscard]] std::int16_t torque_permille() const noexcept;
   [[nodiscard]] const DriveStats& stats() const noexcept { return stats_; }
 
@@ -73,13 +73,13 @@ class DriveNode {
   ObjectDictionary objects_;
   can::NmtState nmt_ = can::NmtState::kBootUp;
   can::cia402::State state_ = can::cia402::State::kNotReadyToSwitchOn;
-  can::Rpdo1 received_;               ///< written by the bus at any time
-  bool has_received_ = false;         ///< since the last SYNC
-  can::Rpdo1 acting_;                 ///< taken over from received_ at SYNC
-  std::int16_t torque_permille_ = 0;  // as asked for
+  can::Rpdo1 received_;               ///< last RPDO from the bus
+  bool has_received_ = false;         ///< an RPDO came since the last SYNC
+  can::Rpdo1 acting_;                 ///< copied from received_ at SYNC
+  std::int16_t torque_permille_ = 0;  // as commanded
   std::int16_t astray_permille_ = 0;
-  std::uint8_t life_ = 0;  // of the buttons
-  int held_syncs_ = 0;     // the acting torque's RPDO is so many SYNCs older than it should be
+  std::uint8_t life_ = 0;  // counter in the buttons' word
+  int held_syncs_ = 0;     // SYNCs for which the torque was repeated because no RPDO came
   bool is_limited_ = false;
   Deadline rpdo_watch_, master_watch_, own_heartbeat_;
   DriveStats stats_;

@@ -19,7 +19,7 @@ void EventLoop::serve(Time now) {
   received_.clear();
   left_.clear();
   port_.receive(received_, left_);
-  for (auto first = received_.begin(); first != received_.end();) {  // one client's frames lie together
+  for (auto first = received_.begin(); first != received_.end();) {  // frames of one client are consecutive
     const auto last =
         std::find_if(first, received_.end(), [&](const Received& r) { return r.client != first->client; });
     const std::vector<Time> times = arrival_times({first, last}, last_look_, now, HandDevice::kPeriod);

@@ -1,5 +1,5 @@
 #pragma once
-// The simulated hand in real time: waits for frames or for the device's next moment, never spins.
+// Runs the simulated hand in real time: sleeps until frames arrive or the device's next event is due.
 
 #include <csignal>
 #include <vector>
@@ -10,24 +10,25 @@
 
 namespace ligature::sim {
 
-/// CLOCK_MONOTONIC.
+/// Time of CLOCK_MONOTONIC.
 [[nodiscard]] Time now_monotonic() noexcept;
 
 struct LoopStats {
   std::int64_t wakeups = 0;
-  Time worst_lateness{};    ///< of a timed wake-up
-  std::int64_t stalls = 0;  ///< looks at the socket that found several SYNCs: this process had been late
+  Time worst_lateness{};    ///< of a wake-up by timer
+  std::int64_t stalls = 0;  ///< reads that found several SYNCs, because this process was late
 };
 
 class EventLoop {
  public:
-  /// @param faults what shall go wrong on the way out; may be missing.
+  /// @param faults modifies the outgoing frames; may be null.
   EventLoop(HandDevice& device, Port& port, FaultInjector* faults = nullptr)
       : device_(device), port_(port), faults_(faults) {}
 
-  /// One round: take frames in, let time pass in the device, send what is due.
+  /// One round: receives frames, advances the device, sends what is due.
   void serve(Time now);
-  /// Sleeps until a frame, the device's next moment, a signal that `during_sleep` lets through, or `at_most`.
+  /// Sleeps until a frame arrives, the device's next event is due, a signal allowed by `during_sleep` comes, or
+  /// `at_most`.
   void wait(Time at_most, const sigset_t& during_sleep);
   [[nodiscard]] const LoopStats& stats() const noexcept { return stats_; }
 

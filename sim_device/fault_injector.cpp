@@ -55,7 +55,7 @@ void FaultInjector::once(HandDevice& device, Time now) {
   if (script_.kind == FaultKind::kForeign) next_foreign_ = now;
 }
 
-/// As a second controller would: `node` 0 means all of the hand's drives.
+/// Sends a frame as a second controller would; `node` 0 means all of the hand's drives.
 void FaultInjector::send_foreign(HandDevice& device, Time now) const {
   const auto put = [&](const can::Frame& f) { device.submit(f, HandDevice::kStranger, now); };
   const can::NodeId target{static_cast<std::uint8_t>(script_.node)};
@@ -81,7 +81,7 @@ void FaultInjector::send_foreign(HandDevice& device, Time now) const {
       return put(can::encode_nmt(can::NmtCommand::kResetNode, target));
     case ForeignFrame::kSdoRead:
       return to_each([](can::NodeId n) { return can::sdo_read(n, can::od::kStatusword); });
-    case ForeignFrame::kSdoWrite:  // the watch over silence, off
+    case ForeignFrame::kSdoWrite:  // switches off the RPDO watchdog
       return to_each([](can::NodeId n) { return can::sdo_write(n, can::od::kRpdo1EventTimer, 0, 2); });
   }
 }
@@ -97,7 +97,7 @@ void FaultInjector::change(const Delivery& delivery, std::vector<Delivery>& out)
   Delivery d = delivery;
   const bool hit = is_hit(d);
   d.frame = with_wrong_reading(d.frame, hit);
-  if (held_) {  // the one that was overtaken follows at once
+  if (held_) {  // a frame was held back (kReorder): it follows this one at once
     out.push_back(d);
     held_->due = d.due;
     out.push_back(*held_);
@@ -125,7 +125,7 @@ void FaultInjector::change(const Delivery& delivery, std::vector<Delivery>& out)
   }
 }
 
-/// What the joint message says when its sensor lies. Until the fault begins, remembers what is true.
+/// Replaces the readings in a joint message while the fault is active; before that, stores the true ones.
 can::Frame FaultInjector::with_wrong_reading(const can::Frame& frame, bool active) {
   const auto address = can::address_of(frame.id);
   if (!address || address->service != can::Service::kTpdo1) return frame;

@@ -1,5 +1,5 @@
 #pragma once
-// Things that go wrong between a hand's drives and whoever listens to them, by script.
+// Injects faults between a hand's drives and the bus, as a script describes.
 
 #include <array>
 #include <optional>
@@ -11,15 +11,15 @@
 
 namespace ligature::sim {
 
-/// Changes what the outside hears of a device; the device itself does not know (a reboot, an emergency and a drive
-/// astray excepted: those it really does). Deterministic in its script. Times are since the first SYNC.
+/// Changes the frames that a device sends; the device itself is not affected, except by kReboot, kEmergency and
+/// kAstray, which it executes. Deterministic for a given script. Times count from the first SYNC.
 class FaultInjector {
  public:
   explicit FaultInjector(const scene::FaultScript& script)
       : script_(script), random_(static_cast<std::mt19937::result_type>(script.seed)) {}
 
-  /// To be called after HandDevice::advance(): changes the frames that were added since the last call, and makes the
-  /// device do what the script says. Keeps deliveries() in the order of their times.
+  /// Call after HandDevice::advance(): changes the frames added since the last call, and triggers the script's faults
+  /// in the device. Keeps deliveries() ordered by time.
   void apply(HandDevice& device, Time now);
 
  private:
@@ -34,9 +34,9 @@ class FaultInjector {
   Time onset_ = kNever, end_ = kNever;
   bool done_once_ = false;
   Time next_foreign_ = kNever;
-  std::array<std::int32_t, 3> before_counts_{};  // of each node when the fault began
+  std::array<std::int32_t, 3> before_counts_{};  // true readings of each node when the fault began
   std::uint16_t before_buttons_ = 0;
-  std::optional<Delivery> held_;  // waits for the next one
+  std::optional<Delivery> held_;  // frame held back until the next one (kReorder)
 };
 
 }  // namespace ligature::sim

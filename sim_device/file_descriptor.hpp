@@ -1,5 +1,5 @@
 #pragma once
-// A descriptor that closes itself.
+// Owns a file descriptor.
 
 #include <unistd.h>
 

@@ -1,32 +1,31 @@
 #pragma once
-// The fingers and the arm behind them, from the intended point H to the stylus T, all in D:
+// Model of a person's arm and fingers, between the intended point H and the stylus T, all in D:
 //
 //   H --[K, B]-- m --[pad]-- T         m ẍ = K (p_DH − x) + B (v_DH − ẋ) − F,   F = k (x − p_DT) + b (ẋ − v_DT)
 //
-// With m = 0 the arm's spring and damper act on the stylus itself. The values are of the size that studies of fingers,
-// wrist and stylus grips report (mass 5 .. 200 g, stiffness 50 .. 2000 N/m, damping 1 .. 25 N s/m); they are
-// assumptions of that size, not one person's numbers.
+// With m = 0 the arm's spring and damper act on the stylus directly. The values are assumptions within the range that
+// studies of fingers, wrist and stylus grips report (mass 5 .. 200 g, stiffness 50 .. 2000 N/m, damping 1 .. 25 N s/m).
 
 #include "sim_device/kinematics.hpp"
 
 namespace ligature::sim {
 
 struct Hand {
-  // A light stylus grip: stiff enough that the device follows within a millimetre, soft enough that the thread's pull
-  // is seen as motion (3.3 N moves the tip by 4 mm).
+  // Default, a light stylus grip: the device follows within a millimetre, but the thread's pull is still visible as
+  // motion (3.3 N moves the tip by 4 mm).
   double stiffness_N_per_m = 800.0;
   double damping_N_s_per_m = 8.0;
   double mass_kg = 0.0;
-  double pad_stiffness_N_per_m = 4000.0;  ///< of the fingertips; unused without mass
+  double pad_stiffness_N_per_m = 4000.0;  ///< of the fingertips; unused if mass is 0
   double pad_damping_N_s_per_m = 6.0;
 
-  /// From a hand that hardly holds on (0) to a clenched fist (1); geometric in between.
+  /// A grip between very loose (0) and clenched (1); values are interpolated geometrically.
   [[nodiscard]] static Hand holding(double tightness) noexcept {
     const auto between = [t = tightness](double loose, double tight) { return loose * std::pow(tight / loose, t); };
     return {between(80.0, 1600.0), between(2.0, 24.0), between(0.04, 0.20), between(1500.0, 6000.0),
             between(3.0, 12.0)};
   }
-  /// Nobody touches the stylus.
+  /// No hand on the stylus.
   [[nodiscard]] static Hand absent() noexcept { return {0.0, 0.0, 0.0, 0.0, 0.0}; }
 
   [[nodiscard]] Vec3 arm_force_D_N(const Vec3& p_DH, const Vec3& v_DH, const Vec3& p_D,
@@ -35,12 +34,12 @@ struct Hand {
   }
 };
 
-/// One hand's state.
+/// State of one hand.
 class Fingers {
  public:
   Fingers(const Hand& hand, const Vec3& p_D) : hand_(hand), p_D_(p_D) {}
 
-  /// @return force on the stylus at (p_DT, v_DT), N, before the step; then moves the hand's mass by dt_s.
+  /// @return force on the stylus at (p_DT, v_DT), N, before the step; then advances the hand's mass by dt_s.
   Vec3 step(const Vec3& p_DH, const Vec3& v_DH, const Vec3& p_DT, const Vec3& v_DT, double dt_s) noexcept {
     if (hand_.mass_kg <= 0.0) return hand_.arm_force_D_N(p_DH, v_DH, p_DT, v_DT);
     Vec3 pad = hand_.pad_stiffness_N_per_m * (p_D_ - p_DT) + hand_.pad_damping_N_s_per_m * (v_D_ - v_DT);

@@ -28,7 +28,7 @@ void HandDevice::advance(Time now) {
   poll(now);
 }
 
-/// Time first, then the frame: a watchdog that ran out before the frame came has won.
+/// Advances the time before handling the frame, so that a watchdog that expired before the frame's end acts first.
 void HandDevice::hear(const Transmission& heard) {
   poll(heard.end);
   const bool changes_torque = can::is_sync(heard.frame) || heard.frame.id == can::kNmtCobId.value;
@@ -56,11 +56,11 @@ void HandDevice::poll(Time now) {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const Time due = drives_[i].next_deadline();
     if (due > now_) continue;
-    move(due);  // torque until the watchdog's moment, none after it
+    move(due);  // the torque lasts until the watchdog expires
     drives_[i].poll(now_, outgoing_);
     send(i, due);
   }
-  if (now_ - bus_.last_sync > kPeriod) move(now_);  // nobody beats the time: do not let the mechanics fall behind
+  if (now_ - bus_.last_sync > kPeriod) move(now_);  // without SYNCs nothing else advances the mechanics
 }
 
 void HandDevice::move(Time now) noexcept {
@@ -93,7 +93,7 @@ void HandDevice::note(const can::Frame& frame, Time end) noexcept {
 Time HandDevice::wake_at(int listeners) const noexcept {
   Time at = kNever;
   for (const DriveNode& d : drives_) at = std::min(at, d.next_deadline());
-  // What a lone controller sends and no drive answers (RPDO, its heartbeat) can wait for the frame after it.
+  // Frames of a single controller that no drive answers (RPDO, heartbeat) need no wake-up of their own.
   const auto matters = [&](const can::Frame& f, int sender) {
     const auto address = can::address_of(f.id);
     const bool silent =

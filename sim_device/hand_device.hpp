@@ -1,5 +1,5 @@
 #pragma once
-// One simulated hand: three drives on one cable, and the mechanics they turn. Knows no socket and no clock.
+// One simulated hand: three drives on one bus, and the mechanics that they move. Uses no sockets and no clock.
 
 #include <array>
 #include <cstdint>
@@ -12,47 +12,47 @@
 
 namespace ligature::sim {
 
-/// A frame that the outside hears: from a drive, or from another client.
+/// A frame to be sent to the clients: from a drive, or from another client.
 struct Delivery {
   can::Frame frame;
-  int sender = 0;              ///< the client that must not hear itself; below kFirstClient it is a drive
-  Time due{};                  ///< when its last bit has passed
-  bool passed_faults = false;  ///< a FaultInjector has looked at it
+  int sender = 0;              ///< the sender, which does not get its own frame; a drive if below kFirstClient
+  Time due{};                  ///< end of the frame's last bit
+  bool passed_faults = false;  ///< a FaultInjector has processed it
 };
 
 struct BusStats {
   std::int64_t syncs = 0;
-  std::int64_t missed_syncs = 0;  ///< gaps between SYNCs, in periods of the nominal 1 ms, less one
+  std::int64_t missed_syncs = 0;  ///< periods of 1 ms without SYNC between two SYNCs
   Time first_sync{}, last_sync{};
-  Time busy_at_first_sync{};  ///< bus load counts from here
-  Time worst_rpdo{};          ///< latest end of an RPDO after its SYNC's end; the budget is one period
+  Time busy_at_first_sync{};  ///< bus time used before the first SYNC, excluded from the bus load
+  Time worst_rpdo{};          ///< latest end of an RPDO after the end of its SYNC; must stay below one period
 };
 
 class HandDevice {
  public:
   static constexpr int kFirstClient = 3;
   static constexpr int kMaxClients = 12;
-  static constexpr int kStranger = kFirstClient + kMaxClients;  ///< on the cable, but no client: a script puts it there
+  static constexpr int kStranger = kFirstClient + kMaxClients;  ///< sender index of frames injected by a fault script
   static constexpr Time kPeriod = std::chrono::milliseconds(1);
 
   HandDevice(OperatorPath path, Time now, bool charge_bus_time = true);
   HandDevice(std::unique_ptr<Intention> intention, Time now, const Body& body = {}, bool charge_bus_time = true);
 
-  /// A client puts a frame into its queue at `when`; per client, time must not run backwards.
+  /// A client queues a frame at time `when`; per client, time must not decrease.
   void submit(const can::Frame& frame, int client, Time when);
-  /// Frames that wait in that queue.
+  /// Number of frames waiting in that queue.
   [[nodiscard]] std::size_t pending(int client) const noexcept { return wire_.pending(client); }
   void drop_client(int client) noexcept { wire_.drop(client); }
-  /// Everything that happens until `now`: bus, drives, mechanics, in the order of their times.
+  /// Simulates bus, drives and mechanics until `now`, in order of time.
   void advance(Time now);
-  /// Frames that clients are to hear; the caller sends what is due and erases it.
+  /// Frames for the clients; the caller sends those that are due and erases them.
   [[nodiscard]] std::vector<Delivery>& deliveries() noexcept { return deliveries_; }
-  /// Next time at which advance() has something to do that cannot wait for the next frame. A burst of frames is one
-  /// wake-up, at its end: a controller needs the whole set of TPDOs anyhow. `listeners` = number of clients.
+  /// Next time at which advance() must be called even if no frame arrives. A burst of frames causes one wake-up, at its
+  /// end, because a controller needs all TPDOs anyway. `listeners`: number of clients.
   [[nodiscard]] Time wake_at(int listeners) const noexcept;
 
   void power_off() noexcept;
-  /// One drive loses power and gets it back.
+  /// Power-cycles one drive.
   void restart(std::size_t drive, Time now);
   void lead_astray(std::size_t drive, std::int16_t by_permille) noexcept { drives_[drive].go_astray(by_permille); }
 
@@ -61,7 +61,7 @@ class HandDevice {
   [[nodiscard]] const std::array<DriveNode, 3>& drives() const noexcept { return drives_; }
   [[nodiscard]] const WireStats& wire_stats() const noexcept { return wire_.stats(); }
   [[nodiscard]] const BusStats& bus_stats() const noexcept { return bus_; }
-  /// Share of time the bus was busy between the first and the last SYNC; 0 before there are two.
+  /// Share of time in which the bus was busy between the first and the last SYNC; 0 with fewer than two.
   [[nodiscard]] double bus_load() const noexcept;
 
  private:
@@ -75,7 +75,7 @@ class HandDevice {
   Mechanics mechanics_;
   std::array<DriveNode, 3> drives_;
   std::vector<Delivery> deliveries_;
-  std::vector<can::Frame> outgoing_;  // of one drive's reaction; kept to spare allocations
+  std::vector<can::Frame> outgoing_;  // frames that a drive's reaction produces; a member to avoid allocations
   BusStats bus_;
   Time now_;
 };

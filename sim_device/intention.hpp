@@ -1,39 +1,40 @@
 #pragma once
-// What moves a hand from within: a script, an eye on the thread, a tremor, ill will.
+// Interface of what moves a simulated person's hand: a script, a controller that sees the thread, tremor, or an
+// adversary.
 
 #include "sim_device/kinematics.hpp"
 
 namespace ligature::sim {
 
-inline constexpr double kEndless_s = 1e300;  ///< end of what nobody has ended yet
+inline constexpr double kEndless_s = 1e300;  ///< end time of an intention that has no end yet
 
-/// Where the hand wants the stylus, in D, and what its fingers press.
+/// Target of the stylus in D, and the pressed buttons.
 struct Intent {
   Vec3 p_DH = Vec3::Zero();
   Vec3 v_DH = Vec3::Zero();
   bool grip = false;
-  bool dead_man = true;  ///< held, while the drives are on
+  bool dead_man = true;  ///< pressed, as long as the drives are on
 };
 
-/// Where the stylus is.
+/// State of the stylus.
 struct Touch {
   Vec3 p_DT = Vec3::Zero();
   Vec3 v_DT = Vec3::Zero();
 };
 
-/// A pure function of time and touch, so that a run can be repeated to the last bit.
+/// A function of time and stylus state only, so that runs can be repeated bit by bit.
 class Intention {
  public:
   virtual ~Intention() = default;
-  /// @param t_s since the start, minus infinity before it. @param touch what the fingers feel of the stylus.
+  /// @param t_s time since the start; minus infinity before it. @param touch state of the stylus.
   [[nodiscard]] virtual Intent at(double t_s, const Touch& touch) const noexcept = 0;
-  /// Nothing changes after this; the dead-man is let go a second later.
+  /// End of the intention: after this nothing changes; the dead-man is released one second later.
   [[nodiscard]] virtual double end_s() const noexcept = 0;
-  /// Where the device rests before the start. @pre within its reach.
+  /// Position at which the device rests before the start. @pre within its reach.
   [[nodiscard]] virtual Vec3 start_D_m() const noexcept = 0;
 };
 
-/// What somebody else decided, once a millisecond; carried on at its velocity in between.
+/// An intention that is set from outside once per millisecond, and extrapolated with its velocity in between.
 class HeldIntention final : public Intention {
  public:
   explicit HeldIntention(const Vec3& start_D_m) : start_D_m_(start_D_m) { intent_.p_DH = start_D_m; }

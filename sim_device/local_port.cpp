@@ -17,7 +17,8 @@ FileDescriptor make_socket() {
   return FileDescriptor(socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
 }
 
-/// Makes room for a socket at an address: nothing there, or a dead socket that is removed. Else why not.
+/// Prepares an address for a new socket: removes a socket on which nobody listens. @return empty, or why the path is
+/// taken.
 std::string clear_way(const sockaddr_un& address) {
   struct stat info {};
   if (lstat(address.sun_path, &info) != 0) return {};
@@ -74,18 +75,18 @@ void LocalPort::accept_clients() {
     FileDescriptor client(accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (!client) return;
     const auto slot = std::find_if(clients_.begin(), clients_.end(), [](const FileDescriptor& c) { return !c; });
-    if (slot != clients_.end()) *slot = std::move(client);  // else: all places are taken, it is shut out
+    if (slot != clients_.end()) *slot = std::move(client);  // no free slot: the connection is closed
   }
 }
 
 bool LocalPort::read_all(std::size_t slot, std::vector<Received>& frames) {
   for (;;) {
-    std::array<std::uint8_t, can::kLocalPacketBytes + 1> packet;  // one more, to notice packets that are too long
+    std::array<std::uint8_t, can::kLocalPacketBytes + 1> packet;  // one byte more, to detect packets that are too long
     const ssize_t n = recv(clients_[slot].get(), packet.data(), packet.size(), 0);
     if (n < 0) return errno == EAGAIN || errno == EINTR;
     if (n == 0) return false;
     const auto frame = can::from_packet({packet.data(), static_cast<std::size_t>(n)});
-    if (frame) frames.push_back({*frame, static_cast<int>(slot)});  // what is no frame was never on the wire
+    if (frame) frames.push_back({*frame, static_cast<int>(slot)});  // malformed packets are ignored
   }
 }
 

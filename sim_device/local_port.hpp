@@ -1,5 +1,6 @@
 #pragma once
-// `local:` bus: a Unix socket that keeps packet borders; several clients, as many controllers on one cable.
+// `local:` bus: a packet-preserving Unix socket (SOCK_SEQPACKET); several clients act as several controllers on one
+// bus.
 
 #include <sys/types.h>
 
@@ -13,9 +14,9 @@ namespace ligature::sim {
 
 class LocalPort final : public Port {
  public:
-  /// Listens at path. A socket nobody listens on any more is replaced; a live one, or another kind of file, is refused.
+  /// Listens at path. Replaces a socket on which nobody listens; refuses one in use, and any other kind of file.
   [[nodiscard]] static std::variant<std::unique_ptr<Port>, std::string> open(const std::string& path);
-  ~LocalPort() override;  ///< removes the socket, unless somebody has put another one in its place
+  ~LocalPort() override;  ///< removes the socket file, unless it has been replaced meanwhile
 
   void add_descriptors(std::vector<pollfd>& fds) const override;
   void receive(std::vector<Received>& frames, std::vector<int>& left) override;
@@ -28,7 +29,7 @@ class LocalPort final : public Port {
   LocalPort(std::string path, FileDescriptor listener, ino_t inode)
       : path_(std::move(path)), listener_(std::move(listener)), inode_(inode) {}
   void accept_clients();
-  /// Reads one client empty; false when it is gone.
+  /// Reads everything from one client; false if it has disconnected.
   bool read_all(std::size_t slot, std::vector<Received>& frames);
 
   std::string path_;

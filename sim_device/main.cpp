@@ -1,4 +1,4 @@
-// ligature-device: wiring only. Read the inputs, open the bus, let the hand live until told to stop, say how it went.
+// ligature-device: reads its inputs, opens the bus, runs the simulated hand until it is told to stop, and reports.
 
 #include <csignal>
 #include <cstdio>
@@ -20,12 +20,12 @@ using namespace ligature;
 constexpr int kBadInput = 2, kRunFailed = 3;
 constexpr sim::Time kLongestSleep = std::chrono::milliseconds(100);
 constexpr sim::Time kFarewell =
-    std::chrono::milliseconds(200);  // the controller sees the dead-man go before the bus does
+    std::chrono::milliseconds(200);  // time for the controller to see the dead-man released before the bus closes
 
 volatile std::sig_atomic_t g_stop = 0;
 void on_signal(int) { g_stop = 1; }
 
-/// SIGINT and SIGTERM reach the process only while it sleeps. Returns the mask to sleep with.
+/// Blocks SIGINT and SIGTERM except while the process sleeps. @return the signal mask for sleeping.
 sigset_t take_signals() {
   struct sigaction action {};
   action.sa_handler = on_signal;
@@ -39,7 +39,7 @@ sigset_t take_signals() {
   return before;
 }
 
-/// Exit code of a run that went well otherwise: what was said on stdout must have gone out.
+/// Exit code of a successful run: checks that everything printed to stdout was written.
 int done() {
   if (std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
   std::fputs("ligature-device: standard output cannot be written\n", stderr);
@@ -64,7 +64,7 @@ std::variant<sim::Body, std::string> read_body(const sim::Options& o) {
   return body;
 }
 
-/// What shall go wrong: nothing, when no script is given.
+/// The fault script as an injector; none if no script is given.
 std::variant<std::optional<sim::FaultInjector>, std::string> read_faults(const sim::Options& o) {
   if (o.faults.empty()) return std::optional<sim::FaultInjector>();
   const auto read = scene::load_fault_script(o.faults);
@@ -102,7 +102,8 @@ int main(int argc, char** argv) {
   if (const auto* why = std::get_if<std::string>(&body)) return refuse(*why);
   const sigset_t during_sleep = take_signals();
   auto found =
-      sim::mover_of(options, std::get<sim::Body>(body).plant.linkage);  // its threads take no signal and no priority
+      // started here, so that its threads have the signals blocked and normal priority
+      sim::mover_of(options, std::get<sim::Body>(body).plant.linkage);
   if (const auto* why = std::get_if<std::string>(&found)) return refuse(*why);
   auto& mover = std::get<sim::Mover>(found);
   auto faults = read_faults(options);
@@ -121,7 +122,7 @@ int main(int argc, char** argv) {
   live(device, port, loop, narrator, mover.page.get(), options.exit_when_done, during_sleep);
 
   const std::string text = sim::stats_json(options.hand(), device, loop.stats(), port.dropped_frames());
-  device.power_off();  // after the statistics: their torque is what the drives had, not what switching them off leaves
+  device.power_off();  // after the statistics, which report the torques before power-off
   narrator.say("off");
   if (options.stats.empty()) return done();
   if (sim::write_file(options.stats, text)) return done();

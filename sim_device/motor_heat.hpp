@@ -1,7 +1,7 @@
 #pragma once
-// What a motor bears: its winding's temperature as a share h of what it may have, and the drive that guards it.
+// Thermal model of a motor, and its drive's protection. h is the winding's temperature rise as a share of its limit:
 //   dh/dt = ((τ / τ_continuous)² − h) / time constant
-// At h = 1 the drive holds the torque down to τ_continuous until h has fallen below 0.95 (I²t with hysteresis).
+// From h = 1 on the drive limits the torque to τ_continuous until h has fallen below 0.95 (I²t with hysteresis).
 
 #include <algorithm>
 #include <array>
@@ -11,16 +11,16 @@
 namespace ligature::sim {
 
 struct MotorRating {
-  // 0.88 N continuous at the tip, times lever: 0.17 m (waist, home pose), 0.134 m, 0.1325 m.
+  // 0.88 N continuous force at the tip times the lever arms: 0.17 m (waist, home pose), 0.134 m, 0.1325 m.
   Vec3 continuous_Nm{0.150, 0.118, 0.117};
-  double time_constant_s = 20.0;  ///< assumption: small motors in a closed housing
+  double time_constant_s = 20.0;  ///< assumed: small motors in a closed housing
 };
 
 class MotorHeat {
  public:
   explicit MotorHeat(const MotorRating& rating = {}) : rating_(rating) {}
 
-  /// Torque that the drives let through for dt_s of `wanted_Nm`; the windings warm by it.
+  /// The torque that the drives let through for dt_s if `wanted_Nm` is commanded; heats the windings.
   Vec3 pass(const Vec3& wanted_Nm, double dt_s) noexcept {
     Vec3 passed = wanted_Nm;
     for (Eigen::Index j = 0; j < 3; ++j) {

@@ -1,5 +1,5 @@
 #pragma once
-// Tells on stdout what happens to a hand: connections, script, watchdogs; on a terminal also how far the script is.
+// Prints events of a hand to stdout: connections, script, watchdogs; on a terminal also the script's progress.
 
 #include <string>
 
@@ -10,7 +10,7 @@ namespace ligature::sim {
 class Narrator {
  public:
   explicit Narrator(std::string hand);
-  /// Prints what changed since the last call; cheap when nothing did.
+  /// Prints what has changed since the last call; cheap if nothing has.
   void look(const HandDevice& device, int clients, Time now);
   void say(const std::string& what) const;
 

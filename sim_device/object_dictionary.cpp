@@ -8,7 +8,7 @@ namespace {
 using can::DataType;
 namespace od = can::od;
 
-/// Bits of an SDO as a number of the object's type.
+/// Converts an SDO's raw value to the object's type.
 std::int64_t widen(std::uint32_t raw, DataType type) noexcept {
   switch (type) {
     case DataType::kI8:
@@ -95,7 +95,7 @@ std::optional<can::Sdo> ObjectDictionary::serve(const can::Sdo& request) noexcep
   const auto abort = [&](std::uint32_t code) {
     return can::Sdo{SdoKind::kAbort, request.node, request.object, code, 0};
   };
-  if (request.kind == SdoKind::kAbort) return std::nullopt;  // nothing is under way that it could end
+  if (request.kind == SdoKind::kAbort) return std::nullopt;  // no transfer is in progress that it could abort
   if (request.kind != SdoKind::kWrite && request.kind != SdoKind::kRead) return abort(can::sdo_abort::kUnknownCommand);
 
   const can::ObjectRow* row = table_.find(request.object);

@@ -1,5 +1,5 @@
 #pragma once
-// The values behind a drive's objects, and who may change them when.
+// Values of a drive's objects, and the rules for changing them.
 
 #include <array>
 #include <cstdint>
@@ -15,19 +15,18 @@ class ObjectDictionary {
  public:
   explicit ObjectDictionary(can::NodeId node, const DriveConstants& constants = {});
 
-  /// All objects, or those of the communication profile (index below 0x2000) only, back to their initial values.
+  /// Resets all objects, or only those of the communication profile (index below 0x2000), to their initial values.
   void reset() noexcept;
   void reset_communication() noexcept;
 
-  /// Reads from inside the drive. @pre the object exists (asserted).
+  /// Read by the drive itself. @pre the object exists (asserted).
   [[nodiscard]] std::int64_t value(can::Object object) const noexcept;
-  /// Writes from inside the drive, access rights aside. @pre the object exists (asserted).
+  /// Written by the drive itself, regardless of access rights. @pre the object exists (asserted).
   void set(can::Object object, std::int64_t value) noexcept;
 
-  /// Serves one request of the bus: the answer, an abort included; nothing for what needs no answer.
-  /// Rules beyond access and length: a mapping may change only while its PDO is off and then only to what the drive can
-  /// map (its pdo_map.hpp layout, CiA 301's abort 0x06040041 otherwise); the mode must be cyclic synchronous torque or
-  /// 0.
+  /// Handles one SDO request. @return the answer, possibly an abort; nothing if no answer is needed. Rules besides
+  /// access and length: a mapping may change only while its PDO is disabled, and only to the drive's pdo_map.hpp layout
+  /// (else abort 0x06040041 of CiA 301); the mode must be cyclic synchronous torque or 0.
   [[nodiscard]] std::optional<can::Sdo> serve(const can::Sdo& request) noexcept;
 
   [[nodiscard]] bool is_pdo_on(can::Pdo pdo) const noexcept;

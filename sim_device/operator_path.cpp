@@ -10,9 +10,10 @@
 namespace ligature::sim {
 namespace {
 
-constexpr double kPeakVelocity = 1.5, kPeakAcceleration = 4.9, kPeakJerk = 180.0;  // in L/T, L/T², L/T³
-constexpr double kSlack = 1.005;  // the fastest motion is then shorter than T, and ruckig stretches it to T exactly
-constexpr double kLeastTravel_m = 1e-4;  // an axis that hardly moves still needs limits above zero
+constexpr double kPeakVelocity = 1.5, kPeakAcceleration = 4.9, kPeakJerk = 180.0;  // limits in L/T, L/T², L/T³
+// the fastest motion is then slightly shorter than T, and ruckig extends it to exactly T
+constexpr double kSlack = 1.005;
+constexpr double kLeastTravel_m = 1e-4;  // an axis without motion still needs limits above zero
 
 bool plan(const Vec3& from, const Vec3& to, double duration_s, ruckig::Trajectory<3>& trajectory) {
   ruckig::InputParameter<3> in;
@@ -39,7 +40,8 @@ std::variant<OperatorPath, std::string> OperatorPath::make(std::span<const scene
     if (auto why = objection_to(key, map); !why.empty()) return why;
     path.keys_.push_back({key.time_s, map.to_device({key.p_W_m[0], key.p_W_m[1], key.p_W_m[2]}), key.grip});
   }
-  if (path.keys_.empty()) path.keys_.push_back({0.0, map.linkage.home_D_m(), false});  // an idle hand rests at home
+  if (path.keys_.empty())
+    path.keys_.push_back({0.0, map.linkage.home_D_m(), false});  // a hand without keys rests at home
   path.segments_.resize(path.keys_.size() - 1);
   for (std::size_t i = 0; i < path.segments_.size(); ++i) {
     const Key &from = path.keys_[i], &to = path.keys_[i + 1];

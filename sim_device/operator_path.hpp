@@ -1,5 +1,5 @@
 #pragma once
-// What the operator's hand intends: through the key poses of a script, jerk-limited, at rest in every key.
+// Intended motion of an operator's hand through the keys of a script: jerk-limited, at rest in every key.
 
 #include <ruckig/ruckig.hpp>
 #include <span>
@@ -13,15 +13,15 @@
 
 namespace ligature::sim {
 
-/// Between two keys L metres and T seconds apart every axis has the limits v = 1.5 L/T, a = 4.9 L/T², j = 180 L/T³:
-/// of all jerk-limited motions that take exactly T these come nearest to the smoothstep 3u² − 2u³ the offline lab moves
-/// by (at most 2 % of L apart, on the same straight line), so that a script that ties a knot there ties it here.
+/// For two keys L metres and T seconds apart, every axis has the limits v = 1.5 L/T, a = 4.9 L/T², j = 180 L/T³. Of all
+/// jerk-limited motions that take exactly T, these come closest to the smoothstep 3u² − 2u³ of the offline lab (within
+/// 2 % of L, on the same straight line). So a script that ties a knot in the lab also ties it here.
 class OperatorPath final : public Intention {
  public:
-  /// Builds all segments; refused, with the key's time, when a key cannot be reached by the device.
+  /// Plans all segments. @return the path, or an error with the key's time if the device cannot reach a key.
   [[nodiscard]] static std::variant<OperatorPath, std::string> make(std::span<const scene::GripKey> keys,
                                                                     const WorkspaceMap& map);
-  /// Intent at t_s after the script's start; held before the first key and after the last one.
+  /// Intent at t_s after the script's start; constant before the first and after the last key.
   [[nodiscard]] Intent at(double t_s) const noexcept;
   [[nodiscard]] Intent at(double t_s, const Touch&) const noexcept override { return at(t_s); }
   [[nodiscard]] double end_s() const noexcept override { return keys_.back().time_s; }

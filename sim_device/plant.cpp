@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kGravity_m_per_s2 = 9.81;
 
-/// Inelastic end stop: the joint stays at the end and gives up the speed that leads further out.
+/// Inelastic end stop: the joint stays at the stop, and loses velocity that points outwards.
 void stop(double& q, double& omega, double low, double high) noexcept {
   if (q < low) {
     q = low;
@@ -44,8 +44,8 @@ void Plant::stop_at_ends() noexcept {
   if (angle == clipped) return;
   q_[2] = q_[1] + clipped;
   const double opening = omega_[2] - omega_[1];
-  if ((angle > clipped) != (opening > 0.0)) return;  // already on its way back
-  // The two links meet without rebound and share their angular momentum; energy can only fall.
+  if ((angle > clipped) != (opening > 0.0)) return;  // already moving back
+  // Inelastic impact between the two links: they share their angular momentum, so energy does not increase.
   const Vec3& inertia = parameters_.inertia_kg_m2;
   const double shared = (inertia[1] * omega_[1] + inertia[2] * omega_[2]) / (inertia[1] + inertia[2]);
   omega_[1] = omega_[2] = shared;

@@ -1,28 +1,29 @@
 #pragma once
-// The moving parts of one device: three joints that motors and a hand turn.
+// Mechanics of one device: three joints driven by motors and by a hand,
 //   I_j dω_j/dt = τ_motor + (Jᵀ F_hand)_j + (1 − c) τ_gravity,j − b_j ω_j − τc_j sign(ω_j),   dq/dt = ω,
-// within the joint stops. τ_gravity = −dV/dq with V = g (μ₂ sin q₂ − μ₃ cos q₃), μ the links' mass times lever; c is
-// the share that springs and counterweights take. The inertia of the links is taken as constant and diagonal, about 45
-// g at the tip in the home pose; Coriolis terms (below 1 mN at the speeds of a hand) are left out with it.
+// within the joint stops. τ_gravity = −dV/dq with V = g (μ₂ sin q₂ − μ₃ cos q₃); μ is mass times lever of each link, c
+// the share compensated by springs and counterweights. The inertia of the links is taken as constant and diagonal,
+// about 45 g at the tip in the home pose. Coriolis terms are neglected (below 1 mN at hand speeds).
 
 #include "sim_device/kinematics.hpp"
 
 namespace ligature::sim {
 
 struct PlantParameters {
-  // 45 g seen at the tip, times lever squared: 0.17 m (waist, home pose), 0.134 m, 0.1325 m.
+  // 45 g at the tip times the squared lever arms: 0.17 m (waist, home pose), 0.134 m, 0.1325 m.
   Vec3 inertia_kg_m2{1.30e-3, 8.08e-4, 7.90e-4};
-  // Losses of the class, below the 0.26 N back-drive friction of its data sheet: 0.1 N and 0.3 N s/m at the tip.
+  // Friction of this device class: 0.1 N and 0.3 N s/m at the tip, below the 0.26 N back-drive friction of its data
+  // sheet.
   Vec3 coulomb_Nm{0.0170, 0.0134, 0.0133};
   Vec3 viscous_Nm_s{8.7e-3, 5.4e-3, 5.3e-3};
   double max_torque_Nm = 0.9;  ///< 3000 per mille of 300 mN m
-  // 45 g at each link's end. 0.8 would leave about 0.1 N at the tip, which the friction holds.
+  // 45 g at each link's end. With a compensation of 0.8 about 0.1 N remain at the tip, which friction can hold.
   double upper_arm_kg_m = 6.0e-3, forearm_kg_m = 6.0e-3;
   double gravity_compensation = 1.0;
-  Linkage linkage{};  ///< with its stops
+  Linkage linkage{};  ///< includes the joint stops
 
-  /// Masses, losses and torques at the joints that give what the record says of the tip in its home pose. Weightless:
-  /// the record does not say.
+  /// Joint inertias, friction and torques that match the record's values at the tip in the home pose. Weight is zero,
+  /// because the record has none.
   [[nodiscard]] static PlantParameters of(const device::Device& device);
 };
 
@@ -30,9 +31,9 @@ class Plant {
  public:
   explicit Plant(const Vec3& q_rad, const PlantParameters& parameters = {}) : parameters_(parameters), q_(q_rad) {}
 
-  /// One step of dt_s (0.1 ms or less). Semi-implicit Euler: velocity first, dry and viscous friction implicitly, so
-  /// that neither can reverse a joint and a joint at rest stays at rest below its Coulomb torque; then position; then
-  /// stops.
+  /// One step of dt_s (at most 0.1 ms). Semi-implicit Euler: velocity first, with implicit dry and viscous friction, so
+  /// that friction cannot reverse a joint, and a joint at rest stays at rest below its Coulomb torque; then position;
+  /// then stops.
   void step(const Vec3& motor_Nm, const Vec3& hand_force_D_N, double dt_s) noexcept;
 
   [[nodiscard]] const Vec3& q_rad() const noexcept { return q_; }
@@ -40,9 +41,9 @@ class Plant {
   [[nodiscard]] Vec3 tip_D_m() const noexcept { return parameters_.linkage.tip_D_m(q_); }
   [[nodiscard]] Vec3 tip_velocity_D_m_per_s() const noexcept { return parameters_.linkage.jacobian_D(q_) * omega_; }
   [[nodiscard]] double kinetic_J() const noexcept;
-  /// Of the weight that is not compensated.
+  /// Potential energy of the uncompensated weight.
   [[nodiscard]] double potential_J() const noexcept;
-  /// Joint torques of the weight that is not compensated.
+  /// Joint torques of the uncompensated weight.
   [[nodiscard]] Vec3 gravity_Nm() const noexcept;
   [[nodiscard]] const PlantParameters& parameters() const noexcept { return parameters_; }
 

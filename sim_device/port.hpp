@@ -1,5 +1,5 @@
 #pragma once
-// Where the simulated cable meets the outside: a set of clients that put frames on it and hear it.
+// Connects the simulated bus to its clients, which send and receive frames.
 
 #include <poll.h>
 
@@ -14,10 +14,10 @@ namespace ligature::sim {
 
 struct Received {
   can::Frame frame;
-  int client = 0;  ///< 0 .. clients() - 1 or higher: a slot, reused after its client left
+  int client = 0;  ///< slot of the client, from 0; reused after the client has left
 };
 
-/// Nothing here blocks.
+/// No function blocks.
 class Port {
  public:
   virtual ~Port() = default;
@@ -25,19 +25,21 @@ class Port {
   Port(const Port&) = delete;
   Port& operator=(const Port&) = delete;
 
-  /// Descriptors to wait for; appended.
+  /// Appends the descriptors to wait for.
   virtual void add_descriptors(std::vector<pollfd>& fds) const = 0;
-  /// Takes in new clients and everything they sent, in order per client; both lists are appended to.
+  /// Accepts new clients and reads all frames, in order per client; appends frames, and the slots of clients that left.
   virtual void receive(std::vector<Received>& frames, std::vector<int>& left) = 0;
-  /// Everybody but one hears a frame; a client that does not read fast enough loses it, as on a full controller.
+  /// Sends a frame to all clients but one; a client that does not read fast enough loses it, as with a full CAN
+  /// controller.
   virtual void send(const can::Frame& frame, int except_client) = 0;
   [[nodiscard]] virtual int clients() const noexcept = 0;
-  /// True when the medium below takes the time a frame needs, so that the simulated wire must not.
+  /// True if the medium itself takes the time of a frame, so that the simulated bus must not add it.
   [[nodiscard]] virtual bool charges_bit_time() const noexcept = 0;
   [[nodiscard]] virtual long dropped_frames() const noexcept = 0;
 };
 
-/// Opens `local:/path/socket` (and listens there) or `socketcan:interface`; or says in one line why not.
+/// Opens `local:/path/socket` (and listens there) or `socketcan:interface`. @return the port, or one line that says why
+/// not.
 [[nodiscard]] std::variant<std::unique_ptr<Port>, std::string> open_port(const std::string& url);
 
 }  // namespace ligature::sim

@@ -10,8 +10,9 @@
 namespace ligature::sim {
 namespace {
 
-constexpr int kPriority = 40;  // the controller's thread runs above: it must never wait for its simulation
-constexpr unsigned long kTimerSlack_ns = 1;  // the default of 50 us would make every TPDO late
+// below the controller's priority, which must never wait for the simulation
+constexpr int kPriority = 40;
+constexpr unsigned long kTimerSlack_ns = 1;  // the default of 50 us would delay every TPDO
 
 }  // namespace
 

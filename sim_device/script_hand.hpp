@@ -1,5 +1,5 @@
 #pragma once
-// The hand that plays a script, in the way that the script's `motion` asks for.
+// Creates the hand that plays a script, with the interpolation that the script's `motion` selects.
 
 #include <memory>
 #include <string>
@@ -11,12 +11,12 @@
 
 namespace ligature::sim {
 
-/// @param hand 0 left, 1 right;  @return or why not: a key, by its time, that the device cannot reach.
+/// @param hand 0 left, 1 right. @return the hand, or an error with the key's time if the device cannot reach a key.
 [[nodiscard]] std::variant<std::unique_ptr<Intention>, std::string> script_hand(const scene::GripperScript& script,
                                                                                 std::size_t hand,
                                                                                 const WorkspaceMap& map);
 
-/// Why the device cannot be at a key; empty when it can.
+/// Why the device cannot reach a key; empty if it can.
 [[nodiscard]] std::string objection_to(const scene::GripKey& key, const WorkspaceMap& map);
 
 }  // namespace ligature::sim

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Symbolic links followed, also one that points at nothing yet.
+/// The path with symbolic links resolved, even if the target does not exist yet.
 fs::path without_links(fs::path path) {
   std::error_code none;
   for (int i = 0; i < 40 && fs::is_symlink(fs::symlink_status(path, none)); ++i)
@@ -37,17 +37,17 @@ std::string stats_json(const std::string& hand, const HandDevice& device, const 
   j["missed_syncs"] = device.bus_stats().missed_syncs;
   j["bus_load"] = device.bus_load();  // share of time, 0 .. 1
   j["frames"] = device.wire_stats().frames;
-  j["worst_bus_wait_us"] = microseconds(device.wire_stats().worst_wait);  // queued until sent
+  j["worst_bus_wait_us"] = microseconds(device.wire_stats().worst_wait);  // longest time from queueing to sending
   j["worst_rpdo_after_sync_us"] = microseconds(device.bus_stats().worst_rpdo);
-  j["syncs_without_rpdo"] = syncs_without_rpdo;           // drive-SYNCs while enabled
-  j["replaced_rpdos"] = replaced;                         // came twice between two SYNCs
-  j["watchdog_trips"] = trips;                            // drives that zeroed torque by themselves
-  j["final_torque_permille"] = device.torque_permille();  // when told to end, power still on
+  j["syncs_without_rpdo"] = syncs_without_rpdo;           // summed over drives, while enabled
+  j["replaced_rpdos"] = replaced;                         // replaced by a second RPDO before the next SYNC
+  j["watchdog_trips"] = trips;                            // times that a drive removed its torque by itself
+  j["final_torque_permille"] = device.torque_permille();  // at the end, before power-off
   j["script_done"] = device.mechanics().is_done();
   j["wakeups"] = loop.wakeups;
   j["worst_wakeup_lateness_us"] = microseconds(loop.worst_lateness);
   j["stalls"] = loop.stalls;
-  j["dropped_frames"] = dropped_frames;  // a client did not read
+  j["dropped_frames"] = dropped_frames;  // not read by a client in time
   return j.dump(2) + "\n";
 }
 
@@ -62,7 +62,7 @@ std::string objection_to(const std::string& path) {
 }
 
 bool write_file(const std::string& path, const std::string& text) {
-  if (!objection_to(path).empty()) return false;  // it may have changed since the start
+  if (!objection_to(path).empty()) return false;  // the path may have changed since the check at the start
   const fs::path target = without_links(path);
   const std::string beside = target.string() + ".part-" + std::to_string(getpid());
   std::ofstream file(beside, std::ios::trunc);

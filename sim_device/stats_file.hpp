@@ -1,5 +1,5 @@
 #pragma once
-// What a simulated hand says about its run.
+// Statistics of a simulated hand's run.
 
 #include <string>
 
@@ -8,15 +8,15 @@
 
 namespace ligature::sim {
 
-/// JSON with one unit-suffixed field a line; see stats_file.cpp for the list.
+/// JSON with one field per line and units in the names; stats_file.cpp explains the fields.
 [[nodiscard]] std::string stats_json(const std::string& hand, const HandDevice& device, const LoopStats& loop,
                                      long dropped_frames);
 
-/// Why no file can be made at path, or empty: asked before the run, so that it is not lost after it. What is there and
-/// no regular file (a device, a pipe, a folder) is never replaced; a symbolic link is followed.
+/// Why a file cannot be created at path, or empty. Checked before the run, so that its results are not lost. Only
+/// regular files are replaced (no devices, pipes or folders); symbolic links are followed.
 [[nodiscard]] std::string objection_to(const std::string& path);
 
-/// Writes the whole text or nothing: a file beside it first, then a rename. False when it could not.
+/// Writes the file completely or not at all, by a temporary file and a rename. @return false on failure.
 [[nodiscard]] bool write_file(const std::string& path, const std::string& text);
 
 }  // namespace ligature::sim

@@ -1,5 +1,6 @@
 #pragma once
-// The links bend: between the point L that the joints know of and the point T that the fingers hold.
+// Elastic links: a spring and damper between the point L computed from the joints and the point T that the fingers
+// hold,
 //   m ẍ = F_hand − F,   F = k (x − p_DL) + b (ẋ − v_DL)  acts on the linkage,   all in D; k per axis
 
 #include "sim_device/kinematics.hpp"
@@ -7,11 +8,12 @@
 namespace ligature::sim {
 
 struct Compliance {
-  double tip_mass_kg = 0.0;                        ///< 0: rigid links, T is L
-  Vec3 stiffness_N_per_m{1260.0, 2310.0, 1020.0};  ///< x, y, z of the class's data sheet, as lower bounds
-  double damping_N_s_per_m = 0.5;                  ///< assumption: metal and plastic, some per cent of critical
+  double tip_mass_kg = 0.0;                        ///< 0: rigid links, T = L
+  Vec3 stiffness_N_per_m{1260.0, 2310.0, 1020.0};  ///< x, y, z: data sheet of the device class, as lower bounds
+  /// assumed: some per cent of critical damping, as for metal and plastic
+  double damping_N_s_per_m = 0.5;
 
-  /// Links that bend, with 10 g of stylus and gimbal beyond the bend (assumption).
+  /// Elastic links with 10 g of stylus and gimbal beyond the spring (assumed).
   [[nodiscard]] static Compliance of_the_class() noexcept {
     Compliance c;
     c.tip_mass_kg = 0.010;
@@ -25,7 +27,7 @@ class Stylus {
 
   [[nodiscard]] bool is_rigid() const noexcept { return compliance_.tip_mass_kg <= 0.0; }
 
-  /// @return force on the linkage, N, before the step; then moves the tip's mass by dt_s.
+  /// @return force on the linkage, N, before the step; then advances the tip's mass by dt_s.
   Vec3 step(const Vec3& hand_D_N, const Vec3& p_DL, const Vec3& v_DL, double dt_s) noexcept {
     if (is_rigid()) return hand_D_N;
     Vec3 bend = compliance_.stiffness_N_per_m.cwiseProduct(p_D_ - p_DL) + compliance_.damping_N_s_per_m * (v_D_ - v_DL);

@@ -1,5 +1,5 @@
 #pragma once
-// Hands that are not at peace: around what they intend, they shake, or they work against the device.
+// Hands that disturb: with tremor, or pushing against the device's stability.
 
 #include <array>
 #include <cmath>
@@ -12,7 +12,8 @@
 
 namespace ligature::sim {
 
-/// Physiological tremor: p_DH + A sin(2π f t + φ) on each axis, phases by seed, f spread by 10 % over the axes.
+/// Physiological tremor added to another intention: p_DH + A sin(2π f t + φ) on each axis; random phases, f differs by
+/// 10 % between axes.
 class Trembling final : public Intention {
  public:
   Trembling(std::unique_ptr<Intention> calm, double amplitude_m, double frequency_Hz, std::uint32_t seed = 1)
@@ -43,8 +44,8 @@ class Trembling final : public Intention {
   std::array<double, 3> phase_rad_{}, pulsation_rad_per_s_{};
 };
 
-/// Pushes on in whatever direction the stylus moves: p_DH + reach tanh(lead v / reach), which feels like negative
-/// damping of stiffness times lead: the most that a hand of this reach can do to make a contact ring.
+/// Pushes in the direction of the stylus' motion: p_DH + reach tanh(lead v / reach). This acts like a negative damping
+/// of stiffness times lead, the worst case for stability with a hand of this reach.
 class Adversarial final : public Intention {
  public:
   Adversarial(std::unique_ptr<Intention> calm, double lead_s, double reach_m)
@@ -54,7 +55,7 @@ class Adversarial final : public Intention {
     const double speed = touch.v_DT.norm();
     if (!(t_s > 0.0) || speed < 1e-9) return now;
     now.p_DH += reach_m_ * std::tanh(lead_s_ * speed / reach_m_) / speed * touch.v_DT;
-    now.v_DH = touch.v_DT;  // and does not damp
+    now.v_DH = touch.v_DT;  // and does not damp the motion
     return now;
   }
   [[nodiscard]] double end_s() const noexcept override { return calm_->end_s(); }

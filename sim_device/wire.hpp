@@ -1,5 +1,5 @@
 #pragma once
-// The cable of one hand: one frame at a time, each as long as its bits, the lowest identifier first.
+// The simulated CAN bus of one hand: one frame at a time, for its duration in bits; the lowest identifier has priority.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,35 +13,34 @@
 
 namespace ligature::sim {
 
-/// A frame that won the bus. Who hears it hears it at `end`; what lies behind it is fixed from `start` on, because
-/// nothing can interrupt a frame.
+/// A frame that won arbitration. It is received at `end`; from `start` on nothing can change it.
 struct Transmission {
   can::Frame frame;
   int sender = 0;
   Time start{};
-  Time end{};  ///< last bit of the frame; the bus is free again 3 bits later
+  Time end{};  ///< end of the last bit; the bus is free 3 bits later
 };
 
 struct WireStats {
   std::int64_t frames = 0;
-  Time busy{};        ///< interframe space included
-  Time worst_wait{};  ///< from submit to start
+  Time busy{};        ///< including interframe space
+  Time worst_wait{};  ///< longest time from submit to start
 };
 
-/// Each sender has a queue of its own, in order, as a CAN controller has; the heads of the queues arbitrate.
-/// With charge_time off (a real bus below charges its own) frames pass in no time, in the same order.
+/// Each sender has a queue, in order, as in a CAN controller; the first frames of the queues arbitrate. If charge_time
+/// is false (a real bus takes the time), frames pass in zero time, in the same order.
 class Wire {
  public:
   explicit Wire(bool charge_time = true) : charge_time_(charge_time) {}
 
-  /// Sender indices are small and dense (0 .. 15). `ready` must not decrease for one sender.
+  /// Queues a frame at time `ready`, which must not decrease for a sender. Sender indices are 0 .. 15.
   void submit(const can::Frame& frame, int sender, Time ready);
-  /// The next frame that wins the bus at or before `now`; call until it gives nothing. Frames submitted in between
-  /// take part as of their own ready time.
+  /// The next frame that wins the bus at or before `now`; call until it returns nothing. Frames submitted in between
+  /// take part from their own ready time on.
   [[nodiscard]] std::optional<Transmission> advance(Time now);
-  /// When the frames known so far will all have been heard if nobody adds one; kNever if the wire is idle.
+  /// Time at which all queued frames will have been sent if none is added; kNever if the bus is idle.
   [[nodiscard]] Time quiet_at() const noexcept;
-  /// True when a frame for which predicate(frame, sender) holds waits for the bus.
+  /// Whether a frame with predicate(frame, sender) waits for the bus.
   template <class Predicate>
   [[nodiscard]] bool any_pending(Predicate predicate) const {
     for (std::size_t sender = 0; sender < queues_.size(); ++sender) {
@@ -51,12 +50,12 @@ class Wire {
     }
     return false;
   }
-  /// Of one sender, waiting for the bus.
+  /// Number of frames of one sender that wait for the bus.
   [[nodiscard]] std::size_t pending(int sender) const noexcept {
     const auto index = static_cast<std::size_t>(sender);
     return index < queues_.size() ? queues_[index].size() : 0;
   }
-  /// Forgets what a sender that left has not yet sent.
+  /// Discards the waiting frames of a sender that left.
   void drop(int sender) noexcept;
 
   [[nodiscard]] const WireStats& stats() const noexcept { return stats_; }
@@ -65,7 +64,7 @@ class Wire {
   struct Pending {
     can::Frame frame;
     Time ready;
-    Time bits;  ///< time the frame holds the bus
+    Time bits;  ///< duration of the frame on the bus
   };
   [[nodiscard]] Time earliest_ready() const noexcept;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Where a point of the world lies for the device: p_WT = origin + scale (p_DT − p_DT_home), axes of D and W parallel.
+// Map between world and device: p_WT = origin + scale (p_DT − p_DT_home); the axes of D and W are parallel.
 
 #include "protocol/scene/scene.hpp"
 #include "sim_device/kinematics.hpp"

@@ -9,16 +9,16 @@
 namespace ligature::sim {
 namespace {
 
-/// A place where the eye sees one strand pass another.
+/// A crossing of two strands in the projection, met while following the thread (each crossing is met twice).
 struct Visit {
-  double at;  ///< edge number and share of the edge
+  double at;  ///< edge index plus fraction along the edge
   int crossing;
   bool over;
 };
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// All visits in the order of the thread; the edge that joins the ends is nearest to the eye.
+/// All crossings in order along the thread. The closing edge, which joins the two ends, lies nearest to the eye.
 std::vector<Visit> visits(std::span<const Vec3> p, const Vec3& eye) {
   const Vec3 right = eye.unitOrthogonal(), up = eye.cross(right);
   const std::size_t n = p.size();
@@ -56,7 +56,7 @@ int seen_determinant(std::span<const Vec3> thread_W, const Vec3& towards) {
   const auto m = static_cast<Eigen::Index>(order.size() / 2);
   if (m < 3) return 1;
   Eigen::MatrixXd colours = Eigen::MatrixXd::Zero(m, m);
-  Eigen::Index arc = 0;  // from one under-pass to the next
+  Eigen::Index arc = 0;  // an arc runs from one under-crossing to the next
   for (const Visit& v : order) {
     if (v.over) {
       colours(v.crossing, arc) += 2.0;

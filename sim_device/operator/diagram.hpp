@@ -1,5 +1,5 @@
 #pragma once
-// What the eye makes of a tangle: over and under, and whether it would hold.
+// Recognises knots from the thread's projection: crossings, over and under.
 
 #include <span>
 
@@ -7,10 +7,10 @@
 
 namespace ligature::sim {
 
-/// Determinant of the knot in a thread looked at along -`towards` (towards the looker), both of whose ends are led
-/// straight to the looker and joined there: |det| of the colouring matrix (2 over - in - out = 0 at each crossing, one
-/// row and one column left out). 1: comes undone; overhand 3, figure-eight 5, square and granny 9.
-/// O(n^2 + m^3), n points, m crossings.
+/// Determinant of the knot in a thread seen from the direction `towards`, with both ends extended to the viewer and
+/// joined there: |det| of the colouring matrix (2 over - in - out = 0 at each crossing; one row and one column
+/// removed). 1: unknotted or not recognised as knotted; overhand 3, figure-eight 5, square and granny 9. O(n^2 + m^3)
+/// for n points and m crossings.
 [[nodiscard]] int seen_determinant(std::span<const Vec3> thread_W, const Vec3& towards);
 
 }  // namespace ligature::sim

@@ -9,7 +9,8 @@
 namespace ligature::sim {
 namespace {
 
-/// As carry, but to where the place was when the move began: a ring that the hand drags along cannot be chased.
+/// As carry(), but the goal is fixed when the move begins: a goal on a loop that the hand itself drags along would keep
+/// moving away.
 Move carry_straight(std::size_t hand, std::string name, Where where, double near) {
   auto goal = std::make_shared<std::optional<Vec3>>();
   return {std::move(name), [=](const Look& look) {
@@ -24,9 +25,10 @@ Move carry_straight(std::size_t hand, std::string name, Where where, double near
 
 constexpr double kTurn = 2.0 * 3.14159265358979323846;
 
-constexpr double kWound = 1.07 * kTurn;  // once round and in front again
-constexpr double kSlack = 0.9;           // from the top on: so many clearances further out ..
-constexpr double kBack = 0.048;          // .. and this share of the thread nearer to the anchor: the end trails loosely
+constexpr double kWound = 1.07 * kTurn;  // once round the standing part, until in front again
+constexpr double kSlack = 0.9;           // from the top of the turn on, this many clearances further out ..
+// .. and this share of the thread length closer to the anchor, so that the end trails loosely
+constexpr double kBack = 0.048;
 
 Move orbit(std::shared_ptr<Loop> loop, WhereAlong s) {
   return {"round the standing part", [=](const Look& look) {
@@ -42,7 +44,8 @@ Move orbit(std::shared_ptr<Loop> loop, WhereAlong s) {
           }};
 }
 
-/// A place on the line from X through the loop's centre, `way` clearances off the loop's plane against the turn.
+/// A point on the line from the crossing X through the loop's centre, offset by `way` clearances from the loop's plane,
+/// against the sense of the turn.
 Where across_loop(std::shared_ptr<Loop> loop, double share, double way) {
   return [=](const Look& look) -> Vec3 {
     loop->look(look);
@@ -62,7 +65,7 @@ Moves lay_turn(std::shared_ptr<Loop> loop, WhereAlong s) {
 }
 
 Moves pass_through(std::shared_ptr<Loop> loop, const Throw& t, WhereAlong s) {
-  // The end drags the loop along; where it is passed moves on until the end is in front of it.
+  // The end drags the loop along, so the steps repeat until the end has passed through.
   Moves steps{carry(kRightHand, "before the loop", across_loop(loop, 1.17, -1.2), 0.5),
               carry_straight(kRightHand, "through", across_loop(loop, 1.17, 3.1), 0.5), orbit(loop, s)};
   const auto is_through = [=](const Look& look) {
@@ -91,7 +94,8 @@ Move draw_through(std::shared_ptr<Loop> loop, const Throw& t, Vec3 direction) {
             const double out = std::max(0.0, way.dot(h.p_W() - corner)), step = 0.1 * look.place.length_m;
             h.goal_W = corner + (out + step) * way + look.place.clearance_m * side;
             const double pull_N = -way.dot(look.sight.force_W_N[kRightHand]);
-            if (out < step && look.in_move_s < 8.0) return false;  // past the corner first, whatever it catches on
+            // the end must first be past the corner, even if it catches on something
+            if (out < step && look.in_move_s < 8.0) return false;
             if (loop->around_m() > 20.0 * look.place.diameter_m && pull_N < 0.5 * look.place.tension_N) return false;
             h.goal_W = h.p_W();
             return true;

@@ -1,6 +1,7 @@
 #pragma once
-// A throw against the turn, a figure-eight's: the end goes once more round the standing part and comes back through the
-// loop from the front. Then the drawing of a throw around a corner that is held, this one or a springy thread's.
+// A throw whose end passes the loop against the turn, as in a figure-eight: the end goes once round the standing part
+// and through the loop from the front. Also drawing a throw tight while the corner is held, for this throw and springy
+// threads.
 
 #include <memory>
 
@@ -9,13 +10,13 @@
 
 namespace ligature::sim {
 
-/// The end, held by the right hand, goes around the standing part at place `s`, a whole turn: the second time nearer to
-/// the anchor than X, until it is in front of the loop.
+/// The right hand leads the end a whole turn around the standing part at place `s`, ending in front of the loop and
+/// closer to the anchor than the crossing X.
 [[nodiscard]] Moves lay_turn(std::shared_ptr<Loop> loop, WhereAlong s);
-/// The end goes through the loop. Looked at (over, under: is it a knot?) and done again when it missed.
+/// The end passes through the loop. The crossings are checked (is it a knot?), and the move repeats if it missed.
 [[nodiscard]] Moves pass_through(std::shared_ptr<Loop> loop, const Throw& t, WhereAlong s);
-/// The right hand draws the end out along `direction`, past the corner that the left hand still holds, until the loop
-/// is small or the pull is felt: so the knot forms where the corner is, and does not run off the end.
+/// The right hand pulls the end along `direction`, past the corner that the left hand still holds, until the loop is
+/// small or the pull is felt. So the knot forms at the corner and does not slip off the end.
 [[nodiscard]] Move draw_through(std::shared_ptr<Loop> loop, const Throw& t, Vec3 direction);
 
 }  // namespace ligature::sim

@@ -1,5 +1,5 @@
 #pragma once
-// Two hands that move smoothly towards wherever the operator is looking.
+// Two hands that move smoothly towards goals set by the operator.
 
 #include <array>
 #include <ruckig/ruckig.hpp>
@@ -8,20 +8,21 @@
 
 namespace ligature::sim {
 
-/// One hand: follows a goal that may change at any time, within speed, acceleration and jerk (ruckig, online).
+/// One hand: follows a goal that may change at any time, with limited speed, acceleration and jerk (ruckig, online).
 class MovingHand {
  public:
   explicit MovingHand(double tick_s) : planner_(tick_s) {}
 
-  /// At rest at a place. @param speed_m_per_s at pace 1; reached within 0.15 s, its acceleration within 0.05 s.
+  /// Places the hand at rest. @param speed_m_per_s speed at pace 1; full speed is reached within 0.15 s, full
+  /// acceleration within 0.05 s.
   void rest_at(const Vec3& start_W, double speed_m_per_s);
 
   Vec3 goal_W = Vec3::Zero();
   double pace = 1.0;     ///< share of the full speed
-  bool is_wary = false;  ///< four times as quick to stop
+  bool is_wary = false;  ///< brakes four times as fast
   bool grip = false;
 
-  /// One tick on. On a goal that ruckig refuses (not finite) the hand stays where it is.
+  /// Advances by one tick. If ruckig refuses the goal (not finite), the hand stays where it is.
   void tick();
 
   [[nodiscard]] const Vec3& p_W() const noexcept { return p_W_; }

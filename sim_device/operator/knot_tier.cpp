@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLook_s = 0.01;
 constexpr int kMostAgain = 3;
-constexpr double kTremor_m = 1e-4;  // of a hand at rest, in the hand's own measure
+constexpr double kTremor_m = 1e-4;  // tremor amplitude of a hand at rest, at hand scale
 
 Vec3 vec(const scene::Vec& a) { return {a[0], a[1], a[2]}; }
 
@@ -36,14 +36,13 @@ Workplace workplace_of(const scene::Scene& scene, const Vec3& anchor_W) {
   return w;
 }
 
-/// Nodes that a chain needs for segments no longer than the knot bears (Knot::longest_segment). A mesh that adapts
-/// needs none.
+/// Nodes that a chain needs so that its segments are not longer than Knot::longest_segment. The rod needs no minimum.
 int least_nodes(const scene::Suture& s, const Knot& knot) {
   if (s.model == scene::Model::kRod) return 0;
   return 1 + static_cast<int>(std::ceil(s.length_m / (knot.longest_segment * 2.0 * s.radius_m) - 1e-9));
 }
 
-/// 4.5 as "4.5".
+/// Number as text without trailing zeros: 4.5 as "4.5".
 std::string shortest(double value) {
   std::array<char, 32> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
@@ -92,7 +91,7 @@ KnotTier::KnotTier(const scene::Scene& scene, const Knot& knot, const Workplace&
   ticks_a_look_ = std::max(1, static_cast<int>(std::lround(kLook_s / tick_s_)));
 }
 
-/// The plan from here on, with moments of rest that differ from person to person.
+/// Makes `moves` the plan, with random short pauses as different persons would make.
 void KnotTier::lay_out(Moves moves) {
   plan_.clear();
   next_ = 0;
@@ -105,7 +104,7 @@ void KnotTier::lay_out(Moves moves) {
 void KnotTier::begin_again() {
   ++begun_again_;
   Moves moves{let_go(kRightHand), let_go(kLeftHand), hang_out()};
-  place_.clearance_m *= dice_.between(0.8, 1.25);  // not quite the same again
+  place_.clearance_m *= dice_.between(0.8, 1.25);  // varied slightly, so that the next attempt differs
   if (is_springy(place_)) {
     append(moves, draw_straight());
     moves.push_back({"count the throws", [](const Look&) { return true; }});
@@ -116,10 +115,11 @@ void KnotTier::begin_again() {
   lay_out(std::move(moves));
 }
 
-/// No move pulls much harder than a tight knot needs: a hand that feels more gives way, whatever it was about to do.
+/// Limits the pull: a hand that feels much more than a tight knot needs slows down, and finally yields.
 void KnotTier::mind_the_pull(const Sight& sight) {
-  constexpr double kFirm = 0.4, kMost = 1.3;  // of a tight knot's pull
-  if (!is_springy(place_)) return;            // a stout one is drawn at several times that (wound_throw)
+  constexpr double kFirm = 0.4, kMost = 1.3;  // shares of a tight knot's pull
+  // a limp, stout thread is drawn with several times that pull (wound_throw)
+  if (!is_springy(place_)) return;
   for (std::size_t h = 0; h < 2; ++h) {
     MovingHand& hand = hands_[h];
     const Vec3& pull_N = sight.force_W_N[h];
@@ -133,7 +133,7 @@ void KnotTier::mind_the_pull(const Sight& sight) {
 
 void KnotTier::look(const Sight& sight) {
   thread_.look(sight.thread_W);
-  for (int steps = 0; steps < 4 && !is_done(); ++steps) {  // moves that are done at once need no look of their own
+  for (int steps = 0; steps < 4 && !is_done(); ++steps) {  // moves that end at once need no further look
     Move& move = plan_[next_];
     const Look now{thread_, sight, place_, hands_, t_s_ - began_s_};
     const bool done = move.act(now);

@@ -1,5 +1,5 @@
 #pragma once
-// An operator that ties a named knot by looking at the thread.
+// An operator that sees the thread and ties a named knot.
 
 #include <random>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace ligature::sim {
 
-/// Uniform between two numbers, the same on every machine.
+/// Uniform random numbers, identical on every machine.
 class Dice {
  public:
   explicit Dice(std::uint32_t seed) : random_(seed * 2654435761U + 12345U) {}
@@ -26,29 +26,29 @@ class Dice {
   std::mt19937 random_;
 };
 
-/// Ties one knot with two hands. Seeds differ in where the hands start, how fast they are, when they begin, how long
-/// they dwell and how they tremble (8-12 Hz). It looks 100 times a second; between looks the hands go on. What went
-/// wrong before anything was drawn tight is let go, hangs out, and is begun again, three times at most.
+/// Ties one knot with two hands. The seed varies start positions, speed, start time, pauses and tremor (8-12 Hz). It
+/// looks at the thread 100 times a second; between looks the hands continue. If a throw fails before it is drawn tight,
+/// the hands let go, wait until the thread hangs still, and start again, at most three times.
 class KnotTier {
  public:
-  /// @return or why not: an unknown knot, or a scene in which node 0 is not held.
+  /// @return the operator, or why not: unknown knot, or a scene in which node 0 is not held.
   static std::variant<KnotTier, std::string> make(const scene::Scene& scene, const std::string& knot,
                                                   std::uint32_t seed);
 
-  /// One tick: what both hands want now. @param sight may be older than now; nothing is assumed about how much.
+  /// One tick: where both hands want to be now. @param sight may be outdated by an unknown time.
   const std::array<HandWish, 2>& tick(const Sight& sight);
 
   [[nodiscard]] const std::array<HandWish, 2>& wish() const noexcept { return wish_; }
-  /// The same without the tremor.
+  /// The same without tremor.
   [[nodiscard]] std::array<HandWish, 2> calm_wish() const noexcept {
     std::array<HandWish, 2> calm;
     for (std::size_t h = 0; h < 2; ++h) calm[h] = {hands_[h].p_W(), hands_[h].v_W(), hands_[h].grip};
     return calm;
   }
   [[nodiscard]] bool is_done() const noexcept { return next_ >= plan_.size(); }
-  /// What it is doing, for those who watch.
+  /// Name of the present move, for display.
   [[nodiscard]] std::string doing() const { return is_done() ? "done" : plan_[next_].name; }
-  /// Moves that ran out of patience; empty when all went well.
+  /// Moves that did not finish in time; empty if all did.
   [[nodiscard]] const std::vector<std::string>& missed() const noexcept { return missed_; }
   [[nodiscard]] const Knot& knot() const noexcept { return knot_; }
 

@@ -27,48 +27,49 @@ constexpr std::array kKnots{
     Knot{"surgeon", "3_1#5_1", "mixed", kSurgeon, 60.0},
 };
 
-const Vec3 kSlant = Vec3(-0.75, 0.0, -0.66).normalized();  // past the corner, down to the left
+const Vec3 kSlant = Vec3(-0.75, 0.0, -0.66).normalized();  // direction past the corner, down to the left
 const Vec3 kDown = Vec3(-0.1, 0.0, -1.0).normalized();
 
 const Vec3 kFront = -Vec3::UnitY();
 
-constexpr double kWatch_s = 5.0;  // after letting go: does it stay?
+constexpr double kWatch_s = 5.0;  // waiting time after the last release, to see whether the knot stays
 
 WhereAlong the_end() {
   return [](const Look& look) { return look.thread.length_m(); };
 }
 
-/// How a single knot is laid out: where the left hand takes the thread (share of its length), how much of that it
-/// stretches, level to the left, and where the end goes round it (share of the standing part).
+/// Layout of a single knot: where the left hand holds the thread (share of its length), how far it stretches that part
+/// horizontally to the left (share of that part), and where the end goes around it (share of the standing part).
 struct Layout {
   double corner, stretch, turn;
 };
 
-/// A figure-eight's standing part is led level to its corner and sags: a turn that is not yet locked stays in the belly
-/// instead of slipping over the corner while the end crosses the loop. A springy thread has it taut.
+/// For a figure-eight in a limp thread, the standing part sags between anchor and corner: so a turn that is not locked
+/// yet stays at the lowest point, instead of slipping over the corner while the end passes the loop. A springy thread
+/// is held nearly taut.
 Layout layout_of(const Throw& t, bool springy) {
   if (!springy) return {0.403, 0.866, 0.49};
   return t.against ? Layout{0.35, 0.96, 0.45} : Layout{0.4, 0.96, 0.5};
 }
 
-/// Length that knots before the place `s` have taken up, m.
+/// Length consumed by knots that lie before place `s`, m.
 double taken_up(const Look& look, double s) {
   const Tangle knotted = tangle(look);
   if (knotted.first_m >= knotted.last_m || knotted.last_m > s) return 0.0;
   return knotted.last_m - knotted.first_m - (look.thread.at(knotted.last_m) - look.thread.at(knotted.first_m)).norm();
 }
 
-/// Holds the corner at `s` with the left hand as the layout says.
+/// The left hand holds place `s` at the position given by the layout.
 Move hold_corner(const Workplace& place, const Layout& layout, WhereAlong s) {
   return carry(kLeftHand, "hold the corner", [anchor = place.anchor_W, layout, s](const Look& look) -> Vec3 {
     return anchor + layout.stretch * (s(look) - taken_up(look, s(look))) * -Vec3::UnitX();
   });
 }
 
-/// The right hand holds the end down, the thread just straight: beside a knot it would hang askew, and jaws keep the
-/// direction that they close on.
+/// The right hand holds the end down with the thread just straight. Otherwise the thread beside a knot would hang at an
+/// angle, and jaws keep the direction in which they close.
 Moves hold_down() {
-  constexpr double kStraight = 0.1;  // of a tight knot's pull
+  constexpr double kStraight = 0.1;  // share of a tight knot's pull
   Moves m{take(kRightHand, the_end())};
   append(m, pull_tight(kDown, kStraight));
   return m;
@@ -93,8 +94,8 @@ std::optional<Knot> knot_named(std::string_view name) {
 
 namespace {
 
-/// Where the corner of one throw of several is and where the end goes over, as places of the thread: the first near the
-/// anchor, each further one beyond what is knotted already.
+/// For one throw of several: where on the thread the corner is and where the end crosses over, m. The first throw is
+/// near the anchor, each further one beyond the existing knot.
 struct Places {
   double corner = 0.0, turn = 0.0;
 };
@@ -111,7 +112,7 @@ Move see_the_places(std::shared_ptr<Places> places) {
           }};
 }
 
-/// One throw with the corner held by the left hand, drawn tight, and both hands empty again.
+/// One throw, with the corner held by the left hand, drawn tight; both hands are empty at the end.
 Moves held_throw(const Throw& t, const Workplace& place, bool alone) {
   const bool springy = is_springy(place);
   const Layout layout = layout_of(t, springy);
@@ -157,7 +158,7 @@ bool hangs_straight(const Look& look) {
   return (look.thread.at(all) - look.thread.at(0.0)).norm() > kStraight * all;
 }
 
-/// `moves`, or nothing of them if, when their turn comes, there is no need.
+/// `moves`, or none of them if `needless` is true when the first one starts.
 Moves unless(std::function<bool(const Look&)> needless, Moves moves) {
   auto skip = std::make_shared<std::optional<bool>>();
   for (Move& m : moves)

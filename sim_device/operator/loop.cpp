@@ -9,7 +9,7 @@
 namespace ligature::sim {
 namespace {
 
-/// The part of a that is across the unit vector `along`, as a unit vector.
+/// The component of a perpendicular to the unit vector `along`, normalised.
 Vec3 across(const Vec3& a, const Vec3& along) {
   const Vec3 rest = a - a.dot(along) * along;
   return rest.norm() > 1e-6 ? Vec3(rest.normalized()) : Vec3(along.unitOrthogonal());
@@ -29,7 +29,8 @@ double Loop::angle_of(const Look& look, const Vec3& p_W) const {
   return std::atan2(to.dot(up_), to.dot(front_));
 }
 
-/// Angle gone through from one place of the working part to another; in steps that are short beside the distance.
+/// Angle that the working part winds around the standing part between two places, with steps short compared to its
+/// distance.
 double Loop::wind(const Look& look, double from, double to) const {
   double sum = 0.0, before = angle_of(look, look.thread.at(from));
   const double finest = 0.1 * look.place.diameter_m;
@@ -57,7 +58,7 @@ void Loop::look(const Look& look) {
     if (const double r = apart(w); r > most) most = r, far_ = w;
     w += step;
   }
-  // X is where it first comes to the standing part: a turn further on may lie as near.
+  // X is the first place where the working part comes close to the standing part; a later turn may be equally close.
   w = far_;
   while (w < end - 0.7 * look.place.clearance_m) {
     const double r = apart(w);

@@ -7,10 +7,10 @@
 namespace ligature::sim {
 namespace {
 
-constexpr double kMoment_s = 0.15;  // what fingers need to close or open
+constexpr double kMoment_s = 0.15;  // time that fingers need to close or open
 const Vec3 kFront = -Vec3::UnitY();
 
-/// Is the thread's place `s` between the jaws?
+/// Whether place `s` of the thread is between the jaws; the tolerance grows after 0.5 s.
 bool is_between_jaws(const Look& look, std::size_t hand, double s, double waited_s) {
   const double off_m = (look.sight.tool_W[hand] - look.thread.at(s)).norm();
   return off_m < (waited_s < 0.5 ? 0.4 : 1.5) * look.place.diameter_m;
@@ -18,7 +18,7 @@ bool is_between_jaws(const Look& look, std::size_t hand, double s, double waited
 }  // namespace
 
 Move take(std::size_t hand, const WhereAlong& s) {
-  constexpr double kLong_s = 3.0, kSlide_per_s = 0.04, kMost = 0.06;  // shares of the thread's length
+  constexpr double kLong_s = 3.0, kSlide_per_s = 0.04, kMost = 0.06;  // the last two are shares of the thread's length
   enum Phase { kBefore, kNear, kClosed };
   struct State {
     Phase phase = kBefore;
@@ -57,7 +57,7 @@ Move let_go(std::size_t hand) {
             h.grip = false;
             if (look.in_move_s < kMoment_s) return false;
             h.pace = 0.5;
-            h.goal_W = h.p_W() + 1.5 * look.place.clearance_m * kFront;  // out of the thread's way
+            h.goal_W = h.p_W() + 1.5 * look.place.clearance_m * kFront;  // moves out of the thread's way
             return look.in_move_s > 2.0 * kMoment_s;
           }};
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A loop of thread as a hole that an end can be passed through.
+// A closed loop of thread, as a polygon.
 
 #include <vector>
 
@@ -7,17 +7,17 @@
 
 namespace ligature::sim {
 
-/// A closed polygon in space and the disc it spans, taken as the fan of triangles from its centre.
+/// A closed polygon in space.
 class Ring {
  public:
-  /// @param points three or more, in order; the last is joined to the first.
+  /// @param points three or more, in order; the last is connected to the first.
   explicit Ring(std::vector<Vec3> points);
 
-  /// Mean of the edge, weighted by length, m.
+  /// Centre of the edges, weighted by length, m.
   [[nodiscard]] const Vec3& centre() const noexcept { return centre_; }
-  /// Unit normal of the area vector A = 1/2 sum (p_k - c) x (p_k+1 - c): thumb of a right hand that follows the ring.
+  /// Unit normal of the area vector A = 1/2 sum (p_k - c) x (p_k+1 - c), by the right-hand rule.
   [[nodiscard]] const Vec3& normal() const noexcept { return normal_; }
-  /// |A|, m^2: what is left of the hole when it is looked at along the normal.
+  /// A|, m^2: area of the projection along the normal.
   [[nodiscard]] double area_m2() const noexcept { return area_m2_; }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// What an operator sees and feels, and what it wants its hands to do. World frame W, SI.
+// What an operator sees and feels, and the commands for its hands. World frame W, SI units.
 
 #include <Eigen/Core>
 #include <array>
@@ -12,16 +12,17 @@ using Vec3 = Eigen::Vector3d;
 
 inline constexpr std::size_t kLeftHand = 0, kRightHand = 1;
 
-/// One look: the thread as a polyline from its first node on, and both tool tips.
+/// One look: the thread as a polyline from its first node, and both tool tips.
 struct Sight {
   double t_s = 0.0;
   std::span<const Vec3> thread_W;
   std::array<Vec3, 2> tool_W{Vec3::Zero(), Vec3::Zero()};
-  std::array<Vec3, 2> force_W_N{Vec3::Zero(), Vec3::Zero()};  ///< felt by each hand, world newtons; 0: nothing held
-  std::array<bool, 2> holds{true, true};  ///< there is thread between the jaws; asked of closed ones
+  /// force felt by each hand, world newtons; 0: nothing held
+  std::array<Vec3, 2> force_W_N{Vec3::Zero(), Vec3::Zero()};
+  std::array<bool, 2> holds{true, true};  ///< whether thread is between the jaws; only meaningful for closed jaws
 };
 
-/// Where a hand wants its tool to be, and whether it squeezes.
+/// Commanded position and velocity of a tool, and whether its jaws close.
 struct HandWish {
   Vec3 p_W = Vec3::Zero();
   Vec3 v_W = Vec3::Zero();

@@ -13,23 +13,23 @@ namespace ligature::sim {
 namespace {
 
 constexpr double kSpringy = 0.2;
-constexpr double kNear = 0.045, kArrived = 0.02, kPast = 0.025;  // shares of the working part
+constexpr double kNear = 0.045, kArrived = 0.02, kPast = 0.025;  // tolerances, as shares of the working part's length
 
-/// A place of the path, in shares of the working part from the corner or from the turn: to the front, up, out past the
-/// corner.
+/// A way point of the end, in shares of the working part's length, relative to the corner or to the turn: towards the
+/// front, upwards, and outwards past the corner.
 struct Stop {
   bool from_corner;
   double front, up, out;
 };
 
 constexpr Stop kOnce[] = {
-    {true, 0.12, -0.18, 0.0},                                     // out in front, so that the arch opens there
+    {true, 0.12, -0.18, 0.0},                                     // far to the front, so that the arch opens there
     {false, 0.09, 0.018, 0.0},                                    // up
     {false, 0.045, 0.042, 0.0},                                   //
     {false, 0.0, 0.042, 0.0},                                     // over
     {false, -0.03, -0.012, 0.0},                                  // behind
     {true, -0.024, -0.042, -0.06}, {true, 0.006, -0.042, -0.03},  // forward, under the standing part
-    {true, 0.06, -0.03, 0.09},                                    // and through
+    {true, 0.06, -0.03, 0.09},                                    // through the loop
 };
 
 constexpr Stop kTwice[] = {
@@ -38,15 +38,15 @@ constexpr Stop kTwice[] = {
     {false, 0.045, 0.042, 0.0},                               //
     {false, 0.0, 0.042, 0.0},                                 //
     {false, -0.03, -0.012, 0.0},                              //
-    {true, -0.03, -0.08, -0.12}, {true, 0.02, -0.08, -0.12},  // .. but under it further from the corner,
+    {true, -0.03, -0.08, -0.12}, {true, 0.02, -0.08, -0.12},  // .. but under the standing part further from the corner,
     {true, 0.06, 0.0, -0.12},    {true, 0.03, 0.06, -0.1},    // up and
-    {true, -0.03, 0.06, -0.08},  {true, -0.06, 0.0, -0.07},   // over once more, the arch now along the standing part
-    {true, -0.06, -0.09, -0.07}, {true, 0.06, -0.1, -0.07},   // under, to the front well before the corner's strand,
-    {true, 0.09, -0.07, 0.09},                                // and through
+    {true, -0.03, 0.06, -0.08},  {true, -0.06, 0.0, -0.07},   // over once more, the arch along the standing part
+    {true, -0.06, -0.09, -0.07}, {true, 0.06, -0.1, -0.07},   // under, to the front well away from the corner,
+    {true, 0.09, -0.07, 0.09},                                // through the loop
 };
 
 constexpr Stop kAgainst[] = {
-    {true, 0.12, -0.18, 0.0},                                // as above: over, and behind
+    {true, 0.12, -0.18, 0.0},                                // as above: over the standing part, and behind
     {false, 0.09, 0.018, 0.0},                               //
     {false, 0.045, 0.042, 0.0},                              //
     {false, 0.0, 0.042, 0.0},                                //
@@ -54,7 +54,7 @@ constexpr Stop kAgainst[] = {
     {true, -0.15, -0.15, -0.2},                              // further behind, on the anchor's side,
     {true, -0.12, -0.42, -0.2},  {true, 0.15, -0.42, -0.2},  // down, and forward below the arch, not through it,
     {true, 0.2, -0.1, -0.15},    {true, 0.08, -0.05, -0.1},  // up in front,
-    {true, -0.06, -0.1, -0.08},  {true, -0.1, -0.03, 0.09},  // and through to the back
+    {true, -0.06, -0.1, -0.08},  {true, -0.1, -0.03, 0.09},  // through the loop to the back
 };
 
 std::span<const Stop> path_of(const Throw& t) {
@@ -63,7 +63,7 @@ std::span<const Stop> path_of(const Throw& t) {
   return kOnce;
 }
 
-/// Would the thread hold this throw more with its ends led away to the front, and out past the corner?
+/// Whether the thread would hold this throw if its ends were led away to the front, and also outwards past the corner.
 bool is_tied(const Look& look, const Throw& t, const Vec3& front, const Vec3& out) {
   const auto thread = look.thread.between(0.0, look.thread.length_m());
   const int tied = determinant_of(t) * t.tied_already;
@@ -75,7 +75,7 @@ bool is_tied(const Look& look, const Throw& t, const Vec3& front, const Vec3& ou
 bool is_springy(const Workplace& place) { return place.bend_length_m > kSpringy * place.length_m; }
 
 Move open_arch(const Throw& t, const WhereAlong& corner) {
-  constexpr double kLow = -0.62, kHigh = -0.18, kOut = 0.12;  // shares of the working part
+  constexpr double kLow = -0.62, kHigh = -0.18, kOut = 0.12;  // shares of the working part's length
   constexpr double kQuarter = 0.5 * std::numbers::pi;
   enum Phase { kRaise, kAside, kToFront };
   struct State {

@@ -1,35 +1,33 @@
 #pragma once
-// A throw in a thread that stands by itself: the loop between two pairs of jaws is an elastic arch, not a hanging
-// bight.
+// Throws in a springy thread: between the two hands the thread stands as an elastic arch instead of hanging in a bight.
 
 #include "sim_device/operator/throw.hpp"
 
 namespace ligature::sim {
 
-/// Does a piece of the length that a throw is made of stand by itself? Bend length (EI / weight per length)^(1/3)
-/// against the thread's length: nylon 3-0 of 0.3 m 0.27, the paper's suture 0.12.
+/// Whether a piece as long as a throw's loop stands by its own stiffness: ratio of the bend length (EI / weight per
+/// length)^(1/3) to the thread's length. Nylon 3-0 of 0.3 m: 0.27; the paper's suture: 0.12.
 [[nodiscard]] bool is_springy(const Workplace& place);
 
-/// The end is raised below the corner until the thread between them gives way to one side, then led round to the front
-/// so that the arch comes to stand out past the corner. It does so about the vertical in one sense only: an arch and
-/// its mirror image do not turn into each other, so where the thread gave way to decides where the end goes first.
+/// The right hand raises the end to below the corner until the thread between the hands buckles to one side, then leads
+/// it round to the front, so that the arch stands outwards past the corner. An arch and its mirror image cannot turn
+/// into each other, so the side of buckling decides in which direction the end must go first.
 [[nodiscard]] Move open_arch(const Throw& t, const WhereAlong& corner);
 
-/// The end, held by the right hand, goes over the standing part and through the loop, in one path without a stop: an
-/// overhand that is still open. The left hand holds the corner, the standing part is level: on a slope X, where the
-/// end crosses over, slides down to the corner and there is no room left to pass.
+/// The right hand leads the end over the standing part and through the loop, in one path without a stop. The result is
+/// a loose overhand knot. The left hand holds the corner with the standing part horizontal: on a slope the crossing X
+/// would slide to the corner and leave no room for the end.
 ///
-/// Both pairs of jaws closed on the hanging thread, so both ends of the arch point straight down for good. Such an arch
-/// can turn about the vertical without bending or twisting more, and turns until it stands out on the side away from
-/// the end. So: the end is led far out to the front and up, over the standing part (the arch stands out in front),
-/// close behind it towards the corner (the arch turns to the anchor and the end is ahead of X), forward under the
-/// standing part and on past the corner, before the arch has turned once more.
-/// @param corner, turn places along the thread of the corner and of where the end goes over. All lengths of the path
-/// are shares of the working part. With `t.passes` 2 it goes round the standing part once more on the way.
+/// Both jaws closed on the hanging thread, so both ends of the arch stay directed downwards. Such an arch turns freely
+/// about the vertical, until it stands on the side away from the end. So the path is: far to the front and up; over the
+/// standing part (the arch now stands in front); close behind it towards the corner (the arch turns to the anchor, and
+/// the end is past X); forward under the standing part and on past the corner, before the arch has turned again.
+/// @param corner, turn positions along the thread: of the corner, and where the end crosses over. All path lengths are
+/// shares of the working part's length. With `t.passes` = 2 the end goes round the standing part once more.
 ///
-/// With `t.against` (figure-eight) it does not come forward through the arch but round below it, and goes through to the
-/// back. A whole turn about the standing part, as in a rope, is dragged over the corner by the arch; round the arch's
-/// lower strand it is the same knot, and that strand cannot run away.
+/// With `t.against` (figure-eight) the end does not come forward through the arch but passes below it, and then goes
+/// through the arch to the back. A whole turn about the standing part, as in a limp thread, would be dragged over the
+/// corner by the arch. A turn around the arch's lower strand gives the same knot, and that strand stays in place.
 [[nodiscard]] Move springy_throw(const Throw& t, const WhereAlong& corner, const WhereAlong& turn);
 
 }  // namespace ligature::sim

@@ -1,5 +1,5 @@
 #pragma once
-// A thread by arc length: the only way an operator speaks about it, so that nothing depends on how many nodes it has.
+// A thread described by arc length, so that an operator does not depend on the number of nodes.
 
 #include <span>
 #include <vector>
@@ -8,20 +8,20 @@
 
 namespace ligature::sim {
 
-/// A polyline seen as a curve. s is arc length from the first node, m, along the shape as it is now.
+/// A polyline as a curve. s is the arc length from the first node, m, in the present shape.
 class ThreadView {
  public:
-  /// Looks at n >= 2 points. Copies nothing but the lengths; the points must outlive the view's use. O(n).
+  /// Takes n >= 2 points. Stores only their arc lengths; the points must outlive this view. O(n).
   void look(std::span<const Vec3> nodes_W);
 
   [[nodiscard]] double length_m() const noexcept { return s_.back(); }
-  /// Point and unit tangent at s (clamped to the thread). O(log n).
+  /// at(): point at s; along(): unit tangent at s. s is clamped to the thread. O(log n).
   [[nodiscard]] Vec3 at(double s) const noexcept;
   [[nodiscard]] Vec3 along(double s) const noexcept;
-  /// s of the point of first .. last nearest to p. O(n).
+  /// Arc length of the point nearest to p within first .. last. O(n).
   [[nodiscard]] double nearest(const Vec3& p, double first, double last) const noexcept;
   [[nodiscard]] double nearest(const Vec3& p) const noexcept { return nearest(p, 0.0, length_m()); }
-  /// The curve from s = first to last (or back, when last < first) as points, ends included.
+  /// The curve from s = first to last as points, ends included; in reverse order if last < first.
   [[nodiscard]] std::vector<Vec3> between(double first, double last) const;
 
  private:

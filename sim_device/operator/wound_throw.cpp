@@ -10,19 +10,22 @@ namespace ligature::sim {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kRadius = 1.1;                          // of the screw, in clearances
-constexpr double kFirst = 0.3, kLast = 0.8;              // where it begins and ends, as shares of the standing part
-const Vec3 kOut = Vec3(0.85, 0.0, 0.52).normalized();    // the standing part runs up to the right
-const Vec3 kAway = Vec3(0.89, 0.0, -0.45).normalized();  // the end is drawn past the corner and down
-const Vec3 kHang = Vec3(0.3, 0.0, -1.0).normalized();    // nearly as it hangs: the end itself may be out of reach
+constexpr double kRadius = 1.1;                        // of the helix, in clearances
+constexpr double kFirst = 0.3, kLast = 0.8;            // start and end of the helix, as shares of the standing part
+const Vec3 kOut = Vec3(0.85, 0.0, 0.52).normalized();  // direction of the standing part: to the right and up
+// direction in which the end is drawn: past the corner and down
+const Vec3 kAway = Vec3(0.89, 0.0, -0.45).normalized();
+// almost straight down: the thread's own hanging end may be out of reach
+const Vec3 kHang = Vec3(0.3, 0.0, -1.0).normalized();
 
-/// What a short thread must be pulled at, in pulls of a tight knot: all of it that a knot keeps is missing later.
+/// Pull in multiples of a tight knot's pull, larger for short thick threads, because length that stays in a loose knot
+/// is missing for the next throw.
 double firm(const Workplace& place) { return std::clamp(200.0 * place.diameter_m / place.length_m, 1.0, 4.0); }
 
-/// The side on which the end sets out and comes out again, +y or -y.
+/// Direction of the side on which the end starts and comes out again: +y or -y.
 Vec3 front_of(const Throw& t) { return static_cast<double>(t.side) * Vec3::UnitY(); }
 
-/// The standing part as the hand sees it: places along it by share, directions across it by angle (0 in front, a
+/// Coordinates about the standing part: position along it as a share, direction across it as an angle (0 in front, a
 /// quarter turn above).
 class Standing {
  public:
@@ -39,7 +42,7 @@ class Standing {
   [[nodiscard]] Vec3 beside(double share, double radius_m, double angle) const {
     return at(share) + radius_m * (std::cos(angle) * front_ + std::sin(angle) * up_);
   }
-  /// Angle of a point about that place of the (slack) standing part which it is level with.
+  /// Angle of a point about the standing part, at the position along it that is level with the point.
   [[nodiscard]] double angle_of(const Vec3& p_W) const {
     const Vec3 off = p_W - at(std::clamp((p_W - from_).dot(along_) / length_m_, 0.05, 0.95));
     return std::atan2(off.dot(up_), off.dot(front_));
@@ -57,8 +60,8 @@ class Standing {
   double length_m_ = 0.0;
 };
 
-/// The left hand swings the corner out on an arc about the anchor. Straight on it would carry the corner past what is
-/// knotted already, with the thread slack, and through its open loops.
+/// The left hand moves the corner outwards on an arc about the anchor. On a straight line the slack corner could pass
+/// through open loops of the existing knot.
 Move swing_out() {
   auto reach_m = std::make_shared<double>(-1.0);
   return {"swing the corner out",
@@ -77,13 +80,13 @@ Move swing_out() {
           25.0};
 }
 
-/// Would it hold, were it drawn past the corner now?
+/// Whether the throw would hold if the end were drawn past the corner now.
 bool is_laid(const Look& look, const Throw& t) {
   return would_hold(look, t, front_of(t)) && would_hold(look, t, 0.8 * front_of(t) + 0.6 * kAway);
 }
 
-/// The end goes round the standing part, `turns` times and the way in, and from the top of the first turn on also along
-/// it; a little further where the bight swings after it and is not passed yet.
+/// The end goes `t.passes` times round the standing part, and from the top of the first turn on also along it. It goes
+/// slightly further if the swinging bight has not been passed yet.
 Move wind(const Throw& t, const std::shared_ptr<const Site>& site) {
   auto wound = std::make_shared<std::optional<double>>();
   constexpr double kFurther = 0.6;
@@ -104,7 +107,7 @@ Move wind(const Throw& t, const std::shared_ptr<const Site>& site) {
           15.0 * (1 + t.passes), [=](const Look& look) { return is_laid(look, t); }};
 }
 
-/// Is what is knotted as short as a pull makes it? A turn of a stout thread takes 12 diameters; a springy one stays
+/// Whether the knot is as short as pulling makes it. A turn of a thick thread takes 12 diameters; a springy one stays
 /// wider.
 bool is_small(const Look& look, int turns) {
   const Tangle knotted = tangle(look);
@@ -112,7 +115,7 @@ bool is_small(const Look& look, int turns) {
   return knotted.last_m - knotted.first_m < longest;
 }
 
-/// The end is drawn past the corner, which the left hand still holds, until the throw is small around it.
+/// The end is drawn past the corner, which the left hand still holds, until the throw is small.
 Move draw(const Throw& t) {
   constexpr double kMost = 2.0;
   return {"draw", [=](const Look& look) {
@@ -129,7 +132,7 @@ Move draw(const Throw& t) {
           }};
 }
 
-/// Away from the anchor, wherever the end is, until the knot is felt to be tight; then back until half of that is gone.
+/// Moves away from the anchor until the knot is tight, then back until half of the pull is gone.
 Moves pull_and_ease() {
   const auto pull_N = [](const Look& look, const Vec3& way) { return -way.dot(look.sight.force_W_N[kRightHand]); };
   Moves m;
@@ -164,7 +167,7 @@ Moves pull_and_ease() {
 Tangle tangle(const Look& look) {
   const double step = look.place.diameter_m, all = look.thread.length_m();
   constexpr std::size_t kNeighbours = 3;
-  constexpr double kTouch = 1.6;  // diameters: a coarse thread's corners stand apart
+  constexpr double kTouch = 1.6;  // in diameters: in a coarse thread the strands at a knot stay further apart
   std::vector<Vec3> points;
   double s = 0.0;
   while (s < all) {
@@ -185,7 +188,7 @@ Tangle tangle(const Look& look) {
 Moves wound_throw(const Throw& t, const std::shared_ptr<const Site>& site) {
   const auto corner = [site](const Look&) { return site->corner; };
   const auto end = [](const Look& look) { return look.thread.length_m(); };
-  const auto before = [site, t](const Look& look) {  // below and in front of the place where the screw begins
+  const auto before = [site, t](const Look& look) {  // a point below and in front of the start of the helix
     return Standing(look, *site, t).beside(kFirst, 2.0 * look.place.clearance_m, -0.3 * kPi);
   };
   Moves m{take(kLeftHand, corner), swing_out(), take(kRightHand, end)};
@@ -194,7 +197,7 @@ Moves wound_throw(const Throw& t, const std::shared_ptr<const Site>& site) {
   m.push_back(draw(t));
   m.push_back(let_go(kLeftHand));
   append(m, pull_and_ease());
-  m.push_back(swing(kHang));  // let go where it was drawn, a thread without damping whips its knot open
+  m.push_back(swing(kHang));  // released under tension, an undamped thread would whip its knot open
   m.push_back(let_go(kRightHand));
   return m;
 }
@@ -202,7 +205,7 @@ Moves wound_throw(const Throw& t, const std::shared_ptr<const Site>& site) {
 Moves throws_in_a_row(std::span<const Throw> throws) {
   auto site = std::make_shared<Site>();
   Moves m;
-  m.push_back(wait(2.0));  // the thread hangs still, or does so again
+  m.push_back(wait(2.0));  // until the thread hangs still
   for (const Throw& t : throws) {
     const double more = 1.0 + 0.25 * (t.passes - 1);
     m.push_back({"see the knot", [site, more](const Look& look) {

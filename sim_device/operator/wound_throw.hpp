@@ -1,5 +1,5 @@
 #pragma once
-// A throw laid as a screw around the standing part, and knots of several such throws, one beside the other.
+// A throw wound as a helix around the standing part, and knots of several such throws side by side.
 
 #include <memory>
 #include <span>
@@ -8,26 +8,27 @@
 
 namespace ligature::sim {
 
-/// Where a throw goes along the thread, m, as the thread is when the throw begins.
+/// Places of a throw along the thread, m, at the time when it begins.
 struct Site {
-  double base = 0.0;    ///< here the standing part begins: the anchor, or the end of what is knotted already
-  double corner = 0.0;  ///< here the left hand holds it
+  double base = 0.0;    ///< start of the standing part: the anchor, or the end of the existing knot
+  double corner = 0.0;  ///< where the left hand holds the thread
 };
 
-/// One throw. The left hand holds the standing part out and up, so the thread behind the corner hangs in a bight: a
-/// loop whose upper edge is the standing part. The end is led up beside it and wound round it, on towards the corner
-/// all the time, so that it passes the loop once a turn: one turn makes an overhand (3_1), two a surgeon's first throw
-/// (5_1). Upwards, because a thread that hangs over the standing part slides down it, away from the place where the end
-/// passes; downwards it slides to the corner and closes the loop before the end is there. Both hands are empty before
-/// and after. `t.against` means nothing here.
+/// One throw. The left hand holds the standing part outwards and upwards, so that the thread beyond the corner hangs in
+/// a bight: a loop whose upper edge is the standing part. The right hand leads the end up beside the standing part and
+/// winds it around, moving towards the corner. So the end passes through the loop once per turn: one turn makes an
+/// overhand (3_1), two turns a surgeon's first throw (5_1). The standing part rises towards the corner because thread
+/// hung over it then slides away from the corner, where the end passes; if it sloped down, that thread would slide to
+/// the corner and close the loop too early. Both hands are empty before and after. `t.against` is ignored.
 [[nodiscard]] Moves wound_throw(const Throw& t, const std::shared_ptr<const Site>& site);
 
-/// All throws, the next beyond the last, and a look at the whole. Each is drawn small, so that the knot is the sum of
-/// them: nothing passes through an earlier throw, because the corner is swung out on an arc with the thread taut.
+/// All throws, each beyond the previous one, with a check of the whole thread after each. Each throw is drawn small,
+/// and the corner is swung out on an arc with the thread taut, so that nothing passes through an earlier throw: the
+/// knot is the sum of its throws.
 [[nodiscard]] Moves throws_in_a_row(std::span<const Throw> throws);
 
-/// Where the thread touches itself: arc length of the first and of the last such place, m; {length, 0} if nowhere.
-/// Sampled once a diameter, O((l/d)^2); neighbours within three diameters do not count.
+/// Extent of the knotted part: arc length of the first and the last place where the thread touches itself, m; {length,
+/// 0} if there is none. Sampled once per diameter, O((l/d)^2); neighbours within three diameters do not count.
 struct Tangle {
   double first_m = 0.0, last_m = 0.0;
 };
