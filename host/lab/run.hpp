@@ -1,5 +1,5 @@
 #pragma once
-// One offline run: play it, write it down, sum it up.
+// An offline run: plays a scene, writes tables and a summary.
 
 #include <filesystem>
 #include <string>
@@ -17,31 +17,31 @@ struct RunOptions {
   double shape_every_s = 0.02;
 };
 
-/// What summary.json says.
+/// Content of summary.json.
 struct RunSummary {
   std::string model;
   int nodes = 0;
   std::int64_t ticks = 0;
   double duration_s = 0.0;
   bool finite = true;
-  bool interrupted = false;  ///< by SIGINT or SIGTERM before its end
+  bool interrupted = false;  ///< stopped by SIGINT or SIGTERM before the end
   knot::KnotResult knot;
   std::vector<std::pair<double, std::string>>
-      knot_history;  ///< from t = 0 on, one entry a change, looked at every 20 ms
+      knot_history;  ///< from t = 0 on, one entry per change; checked every 20 ms
   double max_stretch = 0.0;
   double min_gap_m = 0.0;
   double max_penetration_diameters = 0.0;
-  MaxMean left_N, right_N;  ///< force on the hand, world newtons
+  MaxMean left_N, right_N;  ///< force on the hand in the thread's world, N
   Spread step_us;
-  double realtime_factor = 0.0;  ///< simulated seconds per second of CPU spent in ticks
-  std::string failure;           ///< empty, or the line that names tick, node and likely cause
+  double realtime_factor = 0.0;  ///< simulated time / CPU time spent in ticks
+  std::string failure;           ///< empty, or the line with tick, node and likely cause
 };
 
-/// Runs to the end, to a stop signal, or to the first tick that is not finite (nothing of which is written), and writes
-/// trace.csv, shape.csv and summary.json.  @throws Refusal when a file cannot be written.
+/// Runs to the end, to a stop signal, or to the first non-finite tick (which is not written), and writes trace.csv,
+/// shape.csv and summary.json.  @throws Refusal when a file cannot be written.
 RunSummary run(Rehearsal& rehearsal, const RunOptions& options);
 
-/// summary.json
+/// Text of summary.json.
 [[nodiscard]] std::string to_json(const RunSummary& summary);
 
 }  // namespace ligature::lab

@@ -44,7 +44,7 @@ Example: an overhand knot tied in the paper's suture, with 35 nodes instead of 5
 and in a real one, by an operator that looks:
   ligature-lab run scenes/suture-3-0.toml --tie overhand --seed 3 --duration 25 --out out/tied)";
 
-constexpr double kTyingTakes_s = 60.0;  // more than any operator needs, with the knot watched for some time after
+constexpr double kTyingTakes_s = 60.0;  // longer than any operator needs, with time left to watch the knot
 
 void print(const RunSummary& s, const std::string& folder) {
   std::printf("%s, %d nodes, %lld ticks, %.3f s\n", s.model.c_str(), s.nodes, static_cast<long long>(s.ticks),

@@ -9,7 +9,7 @@ class App;
 
 namespace ligature::lab {
 
-/// `ligature-lab run`: adds the subcommand; its callback stores the exit code.
+/// Adds `ligature-lab run`; its callback stores the exit code.
 void add_run_command(CLI::App& app, int& exit_code);
 
 }  // namespace ligature::lab

@@ -1,5 +1,5 @@
 #pragma once
-// The two tables a run writes while it goes. Numbers are printed so that they read back exactly.
+// The two tables that a run writes while it proceeds. Numbers are printed so that they read back exactly.
 
 #include <cstdio>
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace ligature::lab {
 
 struct TraceRow {
   double t_s = 0.0;
-  physics::Vec3 left_N = physics::Vec3::Zero();  ///< on the hand, world newtons, before force_scale
+  physics::Vec3 left_N = physics::Vec3::Zero();  ///< force on the hand in the thread's world, N, before force_scale
   physics::Vec3 right_N = physics::Vec3::Zero();
   double kinetic_J = 0.0;
   double potential_J = 0.0;
@@ -26,15 +26,15 @@ struct TraceRow {
   [[nodiscard]] bool is_finite() const noexcept;
 };
 
-/// A CSV file that has its name only when it is complete: written as NAME.part, renamed by close(), removed when that
-/// was not reached. Throws Refusal when it cannot be made, or (exit 3) when the disk fills.
+/// A CSV file that gets its name only when it is complete: written as NAME.part, renamed by close(), removed otherwise.
+/// @throws Refusal when it cannot be created, and with exit code 3 when the disk is full.
 class CsvFile {
  public:
   CsvFile(const std::filesystem::path& path, const char* header);
   ~CsvFile();
   CsvFile(const CsvFile&) = delete;
   CsvFile& operator=(const CsvFile&) = delete;
-  /// One row; each number in its shortest exact form.
+  /// Writes one row; each number in its shortest exact form.
   void row(std::span<const double> cells);
   void close();
 
@@ -66,15 +66,14 @@ class ShapeFile {
   CsvFile file_;
 };
 
-/// Makes the folder of a run, or throws Refusal.
+/// Creates the folder of a run. @throws Refusal.
 void make_folder(const std::filesystem::path& folder);
 
-/// Removes what an earlier run left in the folder, so that one that fails or is killed leaves nothing that looks like
-/// its own. @throws Refusal.
+/// Removes the files of an earlier run, so that they cannot be taken for results of a run that failed. @throws Refusal.
 void remove_old_outputs(const std::filesystem::path& folder,
                         std::initializer_list<const char*> names = {"summary.json", "trace.csv", "shape.csv"});
 
-/// Writes a text file in one go (beside it first, then renamed over it), or throws Refusal.
+/// Writes a text file atomically (temporary file, then rename). @throws Refusal.
 void write_text(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace ligature::lab

@@ -1,20 +1,20 @@
 #pragma once
-// Scripts changed as a whole: another pose, the mirror image, another pace.
+// Transformations of a whole script: rotation, mirror image, speed.
 
 #include "protocol/scene/gripper_script.hpp"
 
 namespace ligature::lab {
 
-/// Mirrored in the plane x = 0, which maps the paper's frame and thread onto themselves.
+/// Mirror image in the plane x = 0, which maps the paper's frame and thread onto themselves.
 [[nodiscard]] scene::GripperScript mirrored(scene::GripperScript script);
 
-/// Turned about the z axis by an angle, rad.
+/// Rotated about the z axis by an angle, rad.
 [[nodiscard]] scene::GripperScript turned(scene::GripperScript script, double angle_rad);
 
-/// Played `factor` times as fast.
+/// Played at `factor` times the speed.
 [[nodiscard]] scene::GripperScript paced(scene::GripperScript script, double factor);
 
-/// When each hand lets go for the last time, s; the script's end when it never does.
+/// Time of the last release of the last hand, s; the script's end when no hand releases.
 [[nodiscard]] double release_time_s(const scene::GripperScript& script);
 
 }  // namespace ligature::lab

@@ -1,5 +1,5 @@
 #pragma once
-// A script's hands as the physics is told of them.
+// Converts a script's keys to the tool input of the physics.
 
 #include <array>
 
@@ -8,10 +8,10 @@
 
 namespace ligature::lab {
 
-/// Both tools at a time of the script, s; a hand without keys waits far away.
+/// Both tools at time t_s of the script; a hand without keys is placed far away.
 [[nodiscard]] std::array<physics::ToolInput, 2> tools_at(const scene::GripperScript& script, double t_s);
 
-/// How long a run lasts that nobody gave a time: the script and nine seconds after; ten seconds when no hand is there.
+/// Default duration of a run: the script and nine seconds more; ten seconds when the script has no keys.
 [[nodiscard]] double default_duration_s(const scene::GripperScript& script);
 
 }  // namespace ligature::lab

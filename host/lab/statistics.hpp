@@ -10,7 +10,7 @@ struct Spread {
   double max = 0.0;
 };
 
-/// Order statistics (nearest rank); zeros when there are no values.
+/// Order statistics (nearest rank); zeros for an empty vector.
 [[nodiscard]] Spread spread_of(std::vector<double> values);
 
 /// Largest and mean of a non-negative quantity, one value at a time.

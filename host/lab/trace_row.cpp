@@ -23,7 +23,7 @@ TraceRow row_of(const physics::Simulation& simulation, const scene::Scene& scene
 std::string divergence(const physics::Diagnostics& d, const scene::Scene& scene, std::int64_t tick, double t_s) {
   std::ostringstream text;
   text << "diverged at tick " << (d.bad_tick >= 0 ? d.bad_tick : tick) << " (t = " << t_s << " s), ";
-  if (!d.finite && d.bad_node < 0)  // stopped before it reached the thread
+  if (!d.finite && d.bad_node < 0)  // the hand's input was invalid; the thread is unaffected
     text << "by a hand whose position or speed is no number, or beyond 1e9";
   else
     text << "node " << d.bad_node << "; likely cause: " << likely_cause(scene);

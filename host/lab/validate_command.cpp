@@ -81,7 +81,7 @@ std::vector<int> nodes_of(const Arguments& a) {
   return {*a.nodes};
 }
 
-/// What came of a case: not modelled, or findings.
+/// Result of a case: not modelled, or its findings.
 struct Outcome {
   const v::Case* examined;
   int nodes = 0;
@@ -92,7 +92,7 @@ struct Outcome {
     return std::all_of(findings.begin(), findings.end(), [](const v::Finding& f) { return f.holds(); }) &&
            !(modelled && findings.empty());
   }
-  /// The finding that is worst, seen from its own tolerance; NaN is worse than all.
+  /// The finding with the largest error relative to its tolerance; NaN counts as worst.
   [[nodiscard]] const v::Finding* worst() const {
     const auto badness = [](const v::Finding& f) {
       if (!(f.error == f.error)) return 1e300;

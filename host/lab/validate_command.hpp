@@ -6,7 +6,7 @@ class App;
 
 namespace ligature::lab {
 
-/// `validate`: the models against references with a known answer. exit_code receives 0, or 1 when a case fails.
+/// Adds `ligature-lab validate`: compares the models with references. exit_code becomes 0, or 1 when a case fails.
 void add_validate_command(CLI::App& app, int& exit_code);
 
 }  // namespace ligature::lab

@@ -11,7 +11,7 @@
 namespace ligature::lab {
 namespace {
 
-constexpr std::int64_t kSession = 1;  // a run of a simulated clock has no date
+constexpr std::int64_t kSession = 1;  // constant, because a run on a simulated clock has no date
 
 constexpr telemetry::Names kNames{
     [](int s) { return control::name(static_cast<control::State>(s)); },

@@ -1,6 +1,6 @@
 #pragma once
-// A run of the virtual rig as the LCM log that `ligature-host record` would have made of it: same channels, same
-// messages, same writer; times are those of the simulated clock.
+// Writes a run of the virtual rig as the LCM log that `ligature-host record` would write: same channels, messages and
+// writer. Times are those of the simulated clock.
 
 #include <string>
 #include <vector>
@@ -18,16 +18,16 @@ class Recording {
   static constexpr std::size_t kTicksPerBatch = 20;
   static constexpr std::int64_t kShapePeriod_ticks = 16, kStatusPeriod_ticks = 100;  ///< 62 Hz and 10 Hz
 
-  /// @throws host::BadInput when the file exists or cannot be made.
-  /// @param scene_toml as scene::recorded_text() makes it.
+  /// @throws host::BadInput when the file exists or cannot be created.
+  /// @param scene_toml as made by scene::recorded_text().
   Recording(const std::string& path, const scene::Scene& scene, std::string scene_file, std::string scene_toml);
 
-  /// @throws host::RunFailed when the disk is full.
+  /// @throws host::RunFailed when writing fails (disk full).
   void take(const rt::TickRecord& record);
   void take(const rt::ThreadSnapshot& shape);
-  /// Another scene or parameter is in force from that tick on.
+  /// Another scene or other parameters are in force from tick `first_tick` on.
   void scene_changed(const scene::Scene& scene, std::string scene_toml, std::int64_t first_tick);
-  /// What does not fill a batch, the last shape and a last status.
+  /// Writes the incomplete batch, the last shape and a last status.
   void close();
 
  private:

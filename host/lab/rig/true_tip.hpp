@@ -1,5 +1,5 @@
 #pragma once
-// What a device's motors truly do at its tip, whatever the wire, the encoders and the firmware say.
+// The true motion and force at a device's tip, independent of bus, encoders and firmware.
 
 #include <array>
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace ligature::lab {
 
-/// In the period that ended just before a SYNC.
+/// State during the period that ended just before a SYNC.
 struct TrueTip {
-  sim::Vec3 f_N = sim::Vec3::Zero();       ///< of the torques made, in the pose at the period's end
-  double step_N = 0.0;                     ///< of the change of these torques, in the pose in which they changed
-  bool in_workspace = true;                ///< the tip is within the device's workspace box
-  bool guarded = false;                    ///< a drive makes less than it was asked for, to spare its winding
-  bool dead_man = false;                   ///< the button is truly pressed
-  bool drives_on = false;                  ///< all three, at the period's end
-  std::array<std::int16_t, 3> permille{};  ///< the torques made, of the rated ones
+  sim::Vec3 f_N = sim::Vec3::Zero();  ///< tip force of the motors' torques, in the pose at the period's end
+  double step_N = 0.0;                ///< tip force of the change of these torques, in the pose in which they changed
+  bool in_workspace = true;           ///< the tip is within the device's workspace box
+  bool guarded = false;               ///< a drive makes less torque than commanded, to protect its winding
+  bool dead_man = false;              ///< the dead-man button is really pressed
+  bool drives_on = false;             ///< all three drives are on at the period's end
+  std::array<std::int16_t, 3> permille{};  ///< the motors' torques in permille of the rated ones
 };
 
-/// Looks at one device once a period. The linkage is the simulation's own, not the controller's.
+/// Observes one device once a period. Uses the simulation's linkage, not the controller's.
 class TruthWatch {
  public:
   explicit TruthWatch(const device::Device& device)

@@ -11,7 +11,7 @@ namespace ligature::lab {
 namespace {
 
 using rt::kPeriod;
-constexpr Nanoseconds kGlance = std::chrono::microseconds(20);  // between two looks at the buses
+constexpr Nanoseconds kGlance = std::chrono::microseconds(20);  // interval at which the buses are polled
 
 control::Settings settings_of(const RigSetup& setup) {
   control::Settings settings = setup.settings;
@@ -25,7 +25,7 @@ physics::Simulation thread_of(const scene::Scene& scene) {
   return std::get<physics::Simulation>(std::move(made));
 }
 
-/// For as long as this lives.
+/// Sets the firmware's floating-point mode (denormals flushed to zero) for its lifetime.
 class FlushedDenormals {
  public:
   FlushedDenormals() {
@@ -126,7 +126,7 @@ void VirtualRig::sleep_until(Nanoseconds at) noexcept {
   }
 }
 
-/// Between two ticks, where nothing may be thrown: a disk that refuses ends the run, and run() says so.
+/// Called between two ticks, where nothing may be thrown: a failure to write ends the run, and run() rethrows it.
 void VirtualRig::take_records() noexcept {
   try {
     for (rt::TickRecord r; outlets->records.pop(r);) {
@@ -141,7 +141,7 @@ void VirtualRig::take_records() noexcept {
   }
 }
 
-/// What a person would see on the screen and feel in the fingers, and what the hands do about it.
+/// Gives the seeing operator what a person would see on the screen and feel, and applies its hand motion.
 void VirtualRig::look_and_act() {
   const std::array<const sim::Mechanics*, 2> hands{&left.device.mechanics(), &right.device.mechanics()};
   if (!hands[0]->has_started() || !hands[1]->has_started() || cycle.periods() == 0) return;

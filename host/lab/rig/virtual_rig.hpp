@@ -1,11 +1,11 @@
 #pragma once
-// The firmware's real-time side and two simulated hands, joined by CAN frames, on one clock that is a number: faster
-// than real time, and the same to the last bit in every run.
+// The firmware's real-time part and two simulated hands, connected by CAN frames, on a simulated clock: faster than
+// real time, and bit-identical in every run.
 //
-//   VirtualRig rig({.scene = paper}, script);            // or a SeeingOperator, or any two intentions
-//   rig.record("run.lcmlog");                            // what `ligature-host record` would have written
-//   if (const auto why = rig.run(23000)) ...             // start-up, ticks, shut-down
-//   rig.records, rig.thread, rig.controller ...          // what came of it
+//    VirtualRig rig({.scene = paper}, script);            // or a SeeingOperator, or any two intentions
+//    rig.record("run.lcmlog");                            // what `ligature-host record` would have written
+//    if (const auto why = rig.run(23000)) ...             // start-up, ticks, shut-down
+//    rig.records, rig.thread, rig.controller ...          // results
 
 #include <array>
 #include <exception>
@@ -30,16 +30,17 @@ namespace ligature::lab {
 
 struct RigSetup {
   scene::Scene scene;
-  device::Device device = device::omni();                                       ///< of both hands
-  std::array<sim::Body, 2> body{sim::Body::of(device), sim::Body::of(device)};  ///< devices and hands, left and right
-  control::Settings settings{20, true};                                         ///< armed from the start
-  double frame_loss = 0.0;           ///< share of process data frames that is lost, 0 .. 1
-  std::uint64_t seed = 1;            ///< of the losses
-  std::string scene_file = "scene";  ///< how a recording calls the scene,
-  std::string scene_toml{};          ///< and its text (scene::recorded_text)
+  device::Device device = device::omni();  ///< device record, for both hands
+  /// simulated devices and hands, left and right
+  std::array<sim::Body, 2> body{sim::Body::of(device), sim::Body::of(device)};
+  control::Settings settings{20, true};  ///< watchdog of 20 ticks, armed from the start
+  double frame_loss = 0.0;               ///< share of process data frames (PDOs) that are lost, 0 .. 1
+  std::uint64_t seed = 1;                ///< of the random frame losses
+  std::string scene_file = "scene";      ///< name of the scene in a recording
+  std::string scene_toml{};              ///< text of the scene in a recording (scene::recorded_text)
 };
 
-/// The script's hands. @throws std::runtime_error when a key pose is out of reach.
+/// Two hands that play the script. @throws std::runtime_error when a key pose is out of reach.
 [[nodiscard]] std::array<std::unique_ptr<sim::Intention>, 2> scripted_hands(const RigSetup& setup,
                                                                             const scene::GripperScript& script);
 
@@ -55,19 +56,21 @@ class VirtualRig {
   VirtualRig(const VirtualRig&) = delete;
   VirtualRig& operator=(const VirtualRig&) = delete;
 
-  /// Writes an LCM log of everything from here on. @throws when the file exists or cannot be made.
+  /// Writes an LCM log from now on. @throws host::BadInput when the file exists or cannot be created.
   void record(const std::string& path);
 
-  /// Another scene or parameter is in force since that tick: for the recording.
+  /// For the recording: another scene or other parameters are in force from tick `first_tick` on.
   void scene_changed(const scene::Scene& scene, std::string scene_toml, std::int64_t first_tick) {
     if (recording_) recording_->scene_changed(scene, std::move(scene_toml), first_tick);
   }
 
-  /// Start-up, so many ticks (or fewer: `end_when_done` ends with the operator), shut-down, recording closed.
-  /// @return why it did not start, or nothing. @throws host::RunFailed when the recording could not be written.
+  /// Start-up, at most `ticks` ticks, shut-down; closes the recording. With `end_when_done` the run ends when the
+  /// operator is done.
+  /// @return the reason when it did not start, else nothing. @throws host::RunFailed when the recording could not be
+  /// written.
   std::optional<std::string> run(std::int64_t ticks, bool end_when_done = false);
 
-  [[nodiscard]] bool is_done() const noexcept;  ///< both operators' hands have let go
+  [[nodiscard]] bool is_done() const noexcept;  ///< both hands have released
 
   struct Wait final : platform::BusWait {
     explicit Wait(VirtualRig& r) : rig(r) {}
@@ -88,16 +91,18 @@ class VirtualRig {
   const RigSetup setup;
 
  private:
-  std::array<sim::HeldIntention*, 2> held_{};  // of a seeing operator; before the devices, which own them
+  // the hands of a seeing operator; declared before the devices, which own them
+  std::array<sim::HeldIntention*, 2> held_{};
 
  public:
   Nanoseconds time{0};
-  std::vector<bool> drives_push;  ///< a motor has torque, at the end of the period before each SYNC
-  std::array<TruthWatch, 2> truth{TruthWatch(setup.device), TruthWatch(setup.device)};  ///< as often as drives_push
-  std::int64_t cut_left_at = -1;  ///< tick at which the left hand's process dies
-  std::int64_t stall_at = 0;      ///< tick at which the real-time thread sleeps too long, once
+  std::vector<bool> drives_push;  ///< per tick: whether a motor had torque at the end of the period before the SYNC
+  std::array<TruthWatch, 2> truth{TruthWatch(setup.device), TruthWatch(setup.device)};  ///< per tick, as drives_push
+  std::int64_t cut_left_at = -1;  ///< tick at which the left hand's process is killed; -1: never
+  std::int64_t stall_at = 0;      ///< tick at which the real-time loop is delayed once by stall_for
   Nanoseconds stall_for{0};
-  std::function<void()> each_tick;  ///< called between two ticks, the devices just before the next SYNC
+  /// called between two ticks, with the devices at the time just before the next SYNC
+  std::function<void()> each_tick;
 
   physics::Simulation thread;
   DeviceBus left, right;

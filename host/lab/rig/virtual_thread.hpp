@@ -1,6 +1,6 @@
 #pragma once
-// The thread's physics beside the loop, on a clock that is a number: it runs in the gaps in which the loop sleeps or
-// waits, and takes as much simulated time as it is told to.
+// Runs the thread's physics on the simulated clock: in the gaps in which the loop sleeps or waits, and for a simulated
+// duration that can be set.
 
 #include <algorithm>
 #include <chrono>
@@ -12,9 +12,9 @@
 
 namespace ligature::lab {
 
-/// Stands for the thread that ThreadContext::run() has in the program. Whoever moves the simulated time calls advance()
-/// before the loop looks: a request is taken up at the moment at which it would have been, and its result is there from
-/// the moment on at which the tick has ended.
+/// Replaces the thread of execution that runs ThreadContext::run() in the firmware. The code that advances the
+/// simulated time must call advance() before the loop looks: a request is then started at its proper time, and its
+/// result becomes visible at the time at which the tick ends.
 class VirtualThread {
  public:
   VirtualThread(const Nanoseconds& now, physics::Simulation& thread, control::ThreadExchange& exchange,
@@ -23,10 +23,11 @@ class VirtualThread {
   VirtualThread(const VirtualThread&) = delete;
   VirtualThread& operator=(const VirtualThread&) = delete;
 
-  Nanoseconds per_question{0};                      ///< what lies between two questions for the time, before and after
-  std::function<Nanoseconds(std::int64_t)> stalls;  ///< of a tick: so much longer, and nobody asks
+  Nanoseconds per_question{0};  ///< simulated time between two checks of the clock during a tick
+  /// additional time of a tick in which the clock is not checked (a stall), by tick number
+  std::function<Nanoseconds(std::int64_t)> stalls;
 
-  /// The loop's wake-up.
+  /// The loop wakes the physics.
   void wake() noexcept {
     woken_ = true;
     woken_at_ = now_;
@@ -58,7 +59,7 @@ class VirtualThread {
       return time;
     }
     void sleep_until(Nanoseconds) noexcept {}
-    Nanoseconds worked() noexcept {  // before a tick, and after it
+    Nanoseconds worked() noexcept {  // called at the start and at the end of a tick
       if (std::exchange(inside, !inside)) time += std::exchange(stall, Nanoseconds::zero());
       return time;
     }

@@ -13,7 +13,8 @@ double distance_m(const scene::Vec& a, const scene::Vec& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// The wish between two keys that the motion misses by most, where that is too much; else the first of the two.
+/// The recorded position between two keys that the interpolation misses most, if by more than the tolerance; else
+/// `from`.
 std::size_t worst_between(const Keys& wishes, std::size_t from, std::size_t to, const Keys& keys, double tolerance_m) {
   std::size_t worst = from;
   double most_m = tolerance_m;
@@ -59,7 +60,7 @@ bool HandRecord::is_within_reach(const sim::Vec3& p_W) const {
   return q && map_.linkage.is_within_stops(*q);
 }
 
-/// As it is written: so many of the arm's metres, and within its reach.
+/// The position as written: rounded to 1e-5 device metres, and moved within the arm's reach.
 sim::Vec3 HandRecord::written(const sim::Vec3& wish_W) const {
   constexpr int kHalvings = 20;
   const double unit_m = 1e-5 * map_.scale;
@@ -68,7 +69,7 @@ sim::Vec3 HandRecord::written(const sim::Vec3& wish_W) const {
     return ((home_W + share * (wish_W - home_W)) / unit_m).array().round() * unit_m;
   };
   if (is_within_reach(at(1.0))) return at(1.0);
-  double out = 0.0;  // share of the way from home to the wish
+  double out = 0.0;  // share of the way from home to the wanted position
   for (double step = 0.5; step > std::ldexp(1.0, -kHalvings); step /= 2.0)
     if (is_within_reach(at(out + step))) out += step;
   return at(out);

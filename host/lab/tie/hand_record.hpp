@@ -1,5 +1,6 @@
 #pragma once
-// What both hands wanted while they tied, as a script that a device plays without looking.
+// Records the positions to which a seeing operator moves the hands, and turns them into a script that can be played
+// without seeing.
 
 #include <array>
 #include <string>
@@ -13,15 +14,15 @@ namespace ligature::lab {
 
 class HandRecord {
  public:
-  /// @param map where the arm is in the world: what it cannot reach is not written
+  /// @param map maps world to device coordinates; positions out of the arm's reach are moved within it
   explicit HandRecord(const sim::WorkspaceMap& map) : map_(map) {}
 
-  /// Once a tick, in order of time. @param wish of a hand without its tremor. A wish out of the arm's reach is drawn
-  /// back, towards the middle of its reach, until it can be reached.
+  /// Call once a tick, in order of time. @param wish wanted position of each hand, without tremor. A position out of
+  /// reach is moved towards the middle of the arm's range until it is within reach.
   void add(double t_s, const std::array<sim::HandWish, 2>& wish);
 
-  /// Keys where the jaws open or close, at both ends, and as many between as a monotone cubic needs to pass within
-  /// `tolerance_m` of every wish.
+  /// The script: keys where the jaws open or close, at start and end, and as many between as a monotone cubic
+  /// interpolation needs to pass every recorded position within `tolerance_m`.
   [[nodiscard]] scene::GripperScript script(double tolerance_m) const;
 
  private:

@@ -37,7 +37,7 @@ Examples:
   ligature-lab play square.csv --scene scenes/suture-3-0.toml --knot square --seeds 1-20
   ligature-lab play square.csv --scene scenes/suture-3-0.toml --knot square --tremor-mm 0.3 --frame-loss 0.02)";
 
-/// @throws Refusal before anything runs.
+/// Checks that every key is within reach. @throws Refusal before anything runs.
 void check_reach(const Arguments& a, const scene::Scene& scene, const scene::GripperScript& script) {
   for (std::size_t h = 0; h < 2; ++h) {
     const auto hand = sim::script_hand(script, h, sim::WorkspaceMap(scene.hands));

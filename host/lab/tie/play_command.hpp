@@ -6,7 +6,7 @@ class App;
 
 namespace ligature::lab {
 
-/// `ligature-lab play`.
+/// Adds `ligature-lab play`.
 void add_play_command(CLI::App& app, int& exit_code);
 
 }  // namespace ligature::lab

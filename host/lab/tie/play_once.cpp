@@ -13,10 +13,10 @@
 namespace ligature::lab {
 namespace {
 
-constexpr double kWatched_s = 5.0;  // after the last key
+constexpr double kWatched_s = 5.0;  // duration of the run after the last key
 constexpr double kLongestStall_ticks = 10.0;
 
-/// The same hand, later.
+/// Delays a hand.
 class Late final : public sim::Intention {
  public:
   Late(std::unique_ptr<sim::Intention> hand, double late_s) : hand_(std::move(hand)), late_s_(late_s) {}

@@ -1,5 +1,5 @@
 #pragma once
-// Several runs by their seeds: N or FIRST-LAST.
+// A range of random seeds, written as N or FIRST-LAST.
 
 #include <charconv>
 #include <cstdint>
@@ -13,7 +13,7 @@ struct Seeds {
   std::uint32_t first = 1, last = 1;
 };
 
-/// @throws Refusal
+/// Parses a range. @throws Refusal
 inline Seeds read_seeds(const std::string& text) {
   Seeds s;
   const char* end = text.data() + text.size();

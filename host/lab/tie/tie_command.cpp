@@ -30,7 +30,7 @@ struct Arguments {
   std::string seeds = "1-20";
   std::string out = "out/tie";
   std::string script_out;
-  double script_within = 0.3;  // diameters of the thread
+  double script_within = 0.3;  // tolerance of the written script, in thread diameters
 };
 
 constexpr const char* kFooter = R"(
@@ -56,7 +56,7 @@ struct Count {
   [[nodiscard]] std::string text() const { return std::to_string(tied) + " of " + std::to_string(tried); }
 };
 
-/// A script is of one run, and goes into a folder that is there. @throws Refusal
+/// Checks --script-out: a script can be written for one run only, into an existing folder. @throws Refusal
 void check_script_out(const Arguments& a, const Seeds& seeds) {
   if (a.script_out.empty()) return;
   const auto runs = a.knots.size() * std::max<std::size_t>(1, a.models.size()) * (seeds.last - seeds.first + 1);
@@ -67,15 +67,15 @@ void check_script_out(const Arguments& a, const Seeds& seeds) {
     throw Refusal("--script-within: found " + digits(a.script_within) + ", allowed more than 0, at most 10");
 }
 
-/// One knot in one model.
+/// One knot tied in one model.
 struct Cell {
-  std::string knot, model;  ///< model empty: the scene's own
+  std::string knot, model;  ///< model empty: the scene's own model
   std::string file, folder;
   scene::Scene scene;
-  std::string toml;  // for the recordings
+  std::string toml;  // the scene's text for the recordings
 };
 
-/// @throws Refusal when the scene or the knot in it is refused; before anything runs or is written.
+/// @throws Refusal when the scene is refused or the knot cannot be tied in it; nothing has run or been written then.
 Cell cell_of(const Arguments& a, const std::string& knot, const std::string& model) {
   if (!sim::knot_named(knot)) throw Refusal("knot: found \"" + knot + "\", allowed " + sim::knot_names());
   Cell c{knot, model, a.scene, model.empty() ? a.out : a.out + "/" + model, {}, {}};
@@ -104,7 +104,7 @@ void write_script(const Arguments& a, const Cell& c, std::uint32_t seed, const H
               a.script_out.c_str(), digits(within_m).c_str());
 }
 
-/// All seeds; one line each.
+/// Ties the knot once per seed and prints a line for each.
 Count tie_all(const Arguments& a, const Cell& c, const Seeds& seeds) {
   make_folder(c.folder);
   Count count;
@@ -128,7 +128,7 @@ const char* model_name(const Arguments& a, std::size_t k) {
   return a.models[k].empty() ? "the scene's" : a.models[k].c_str();
 }
 
-/// A line for each model, a column for each knot.
+/// Prints the table of successes: one line per model, one column per knot.
 void print_table(const Arguments& a, const std::vector<Count>& counts) {
   std::printf("\n%-12s", "model");
   for (const auto& knot : a.knots) std::printf(" %14s", knot.c_str());

@@ -6,7 +6,7 @@ class App;
 
 namespace ligature::lab {
 
-/// `ligature-lab tie`.
+/// Adds `ligature-lab tie`.
 void add_tie_command(CLI::App& app, int& exit_code);
 
 }  // namespace ligature::lab

@@ -1,6 +1,6 @@
 #pragma once
-// One knot, tied by an operator who sees the thread and moves two simulated devices: counts, frames, coupling, and the
-// recording that the knot is read back from.
+// Ties one knot with an operator that sees the thread and moves two simulated devices: through encoder counts, CAN
+// frames and coupling. The result is read from the recording.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,17 +13,18 @@
 namespace ligature::lab {
 
 struct Tied {
-  std::string wanted, found;  ///< type and handedness by host/knot ("3_1 right"); found: in the recording's last shape
-  double seconds = 0.0;       ///< of the rig's clock, watching the knot included
-  std::vector<std::string> missed;  ///< moves that ran out of patience
+  /// type and handedness as named by host/knot ("3_1 right"); found: in the recording's last shape
+  std::string wanted, found;
+  double seconds = 0.0;             ///< on the rig's clock, including the time in which the knot is watched
+  std::vector<std::string> missed;  ///< moves of the operator that exceeded their time limit
   std::filesystem::path recording;
   [[nodiscard]] bool good() const { return wanted == found; }
 };
 
-/// @param scene_toml as scene::recorded_text() makes it; the operator's knot and seed are added.
-/// @param folder where KNOT-SEED.lcmlog goes; one of that name is replaced.  @param hands gets what they wanted.
-/// @throws Refusal for an unknown knot or a scene that the operator cannot work in; std::runtime_error when the rig
-/// does not start or the file cannot be made.
+/// @param scene_toml as made by scene::recorded_text(); the operator's knot and seed are added.
+/// @param folder of KNOT-SEED.lcmlog; an existing file is replaced.  @param hands records the hands' motion.
+/// @throws Refusal for an unknown knot or a scene in which the operator cannot work; std::runtime_error when the rig
+/// does not start or the file cannot be created.
 [[nodiscard]] Tied tie_once(const scene::Scene& scene, const std::string& scene_file, const std::string& scene_toml,
                             const std::string& knot, std::uint32_t seed, const std::filesystem::path& folder,
                             HandRecord* hands = nullptr);

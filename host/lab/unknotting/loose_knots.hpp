@@ -1,5 +1,5 @@
 #pragma once
-// Loosely tied knots to undo: the same script, never twice the same hand.
+// Makes loosely tied knots for the planner: one script, with different random hand motion each time.
 
 #include <cstdint>
 #include <string>
@@ -15,9 +15,9 @@ struct LooseKnot {
   std::uint32_t seed = 0;
 };
 
-/// Ties the script's knot with a hand that trembles (each key up to 1.5 cm aside), hurries or dawdles (5 % either way)
-/// and lets go; with nodes 35 and 50 in turn. Draws again, from seeds of its own, whenever what came out is not `type`.
-/// @param number which one of a series, from 0;  @param drawn counts the tries.
+/// Ties the script's knot with disturbed hand motion (each key moved by up to 1.5 cm, speed changed by up to 5 %) and
+/// releases it; with 35 and 50 nodes in turn. Repeats with other seeds until the knot is of `type`.
+/// @param number index in a series, from 0;  @param drawn is increased by the number of tries.
 [[nodiscard]] LooseKnot tie_loosely(const std::string& scene_path, const scene::GripperScript& script,
                                     const std::string& type, std::uint32_t number, int& drawn);
 

@@ -10,11 +10,11 @@ namespace {
 
 using physics::Vec3;
 
-/// Candidates in the order in which they are worth trying.
+/// Candidate pulls, most promising first.
 std::vector<Pull> ranked(std::span<const Vec3> shape_W) {
   const int n = static_cast<int>(shape_W.size());
   const auto core = core_of(shape_W);
-  if (core.first > core.last) return {};  // nothing to undo
+  if (core.first > core.last) return {};  // no knot
   const auto at = [&](int k) { return shape_W[static_cast<std::size_t>(std::clamp(k, 0, n - 1))]; };
   const Vec3 along_tail = (at(core.last + 3) - at(core.last - 1)).normalized();
   struct Scored {
@@ -24,8 +24,9 @@ std::vector<Pull> ranked(std::span<const Vec3> shape_W) {
   std::vector<Scored> all;
   for (int node = core.first; node <= std::min(core.last + 1, n - 2); ++node) {
     for (const auto& d : six_directions()) {
-      const double inside = std::abs(node - (core.last - 3));  // a few nodes in: the hand gets hold of the last loop
-      const double against = 1.0 + d.dot(along_tail);          // 0: straight against the tail's run
+      // best: a few nodes inside the core, where the hand holds the last loop
+      const double inside = std::abs(node - (core.last - 3));
+      const double against = 1.0 + d.dot(along_tail);  // 0: exactly against the tail's direction
       all.push_back({{node, d}, inside + 2.0 * against});
     }
   }

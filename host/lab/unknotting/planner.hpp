@@ -1,5 +1,5 @@
 #pragma once
-// Which node to pull, and which way, so that the knot comes undone: the planning that the paper leaves out.
+// Plans a pull (node and direction) that opens the knot; the paper leaves this planning out.
 
 #include <optional>
 
@@ -9,14 +9,14 @@ namespace ligature::lab {
 
 struct Plan {
   Pull pull;
-  int tried = 0;  ///< pulls rehearsed before this one was found
+  int tried = 0;  ///< pulls simulated before this one was found
 };
 
-/// Plans from the shape alone. The tail is what follows the knot's core; a knot opens when the tail is drawn back
-/// through its last loop, so nodes just inside the core's tail end come first, then further in, and for each node the
-/// directions that lead the tail back (against its own run) before the others. Each is rehearsed on a thread of its
-/// own, started at rest from this shape, and the first that ends as an unknot is the plan.
-/// @param shape_W nodes as seen (no velocities);  @param scene the thread's properties as the planner believes them.
+/// Plans from the shape alone. The tail is the thread after the knot's core. A knot opens when the tail is pulled back
+/// through its last loop. So nodes just inside the core's tail end are tried first, then nodes further in; and for each
+/// node first the directions against the tail. Each pull is simulated on a separate thread that starts at rest from
+/// this shape. The first pull that ends with an unknot is the plan.
+/// @param shape_W node positions (no velocities);  @param scene the thread's properties assumed by the planner.
 /// @return nothing when no pull that was tried opens the knot.
 [[nodiscard]] std::optional<Plan> plan_pull(std::span<const physics::Vec3> shape_W, const scene::Scene& scene);
 

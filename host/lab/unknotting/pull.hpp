@@ -1,5 +1,5 @@
 #pragma once
-// One pull at one node, on the thread itself or tried on another of the same shape.
+// A pull at one node, on the thread itself or on a copy of its shape.
 
 #include <span>
 #include <string>
@@ -9,34 +9,33 @@
 
 namespace ligature::lab {
 
-/// Take a node and draw it away, straight.
+/// Grasp a node and pull it away along a straight line.
 struct Pull {
   int node = 0;
   physics::Vec3 direction = physics::Vec3::UnitZ();  ///< unit vector
 };
 
 struct PullResult {
-  knot::KnotResult knot;     ///< after the pull and a second of rest
-  double peak_N = 0.0;       ///< largest hand force, world
-  double knot_size_m = 0.0;  ///< length of thread in the knot afterwards; 0 when there is none
+  knot::KnotResult knot;     ///< after the pull and one second of rest
+  double peak_N = 0.0;       ///< largest hand force in the thread's world
+  double knot_size_m = 0.0;  ///< length of thread in the knot afterwards; 0 without a knot
   bool finite = true;
 };
 
 inline constexpr double kPullLength_m = 1.8;
-inline constexpr double kPullSpeed_m_per_s = 0.6;  ///< mean; the hand starts and ends at rest
+inline constexpr double kPullSpeed_m_per_s = 0.6;  ///< mean speed; the hand starts and ends at rest
 
-/// A thread of its own with this shape, at rest: what a pull can be tried on.
+/// A separate thread with this shape, at rest, for trying pulls.
 [[nodiscard]] physics::Simulation thread_of_shape(std::span<const physics::Vec3> shape_W, const scene::Scene& scene);
 
-/// Pulls with the right hand, then holds for a second, on a thread of its own.
+/// Pulls with the right hand, then holds for one second, on a separate thread.
 [[nodiscard]] PullResult try_pull(std::span<const physics::Vec3> shape_W, const scene::Scene& scene, const Pull& pull);
 
-/// The same pull on the thread itself.
+/// The same pull on the given thread.
 PullResult do_pull(physics::Simulation& thread, const scene::Scene& scene, const Pull& pull);
 
-/// Where the knot sits: the shortest stretch of nodes first .. last such that the thread before `first` and after
-/// `last` can be cut off and the knot is still there. Empty (first > last) when there is no knot. Cost O(n)
-/// recognitions.
+/// Position of the knot: nodes first .. last of the shortest piece that still contains it when the thread before and
+/// after is cut off. Empty (first > last) without a knot. Cost O(n) recognitions.
 struct Core {
   int first = 0;
   int last = -1;

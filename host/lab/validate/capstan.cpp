@@ -1,4 +1,5 @@
-// A thread slipping slowly round a peg: tension ratio against the polygon's and against the smooth cylinder's.
+// Capstan test: a thread slips slowly round a peg; the tension ratio is compared with the solutions for a polygon and
+// for a smooth cylinder.
 
 #include <algorithm>
 #include <cmath>
@@ -13,14 +14,15 @@
 namespace ligature::validate {
 namespace {
 
-constexpr double kRadius_m = 0.02;  // of the thread's centre line on the peg
+constexpr double kRadius_m = 0.02;  // of the thread's centreline on the peg
 constexpr double kSpeed_m_per_s = 0.005;
-constexpr double kPitch_m = 0.0024;  // of a whole turn: the thread must not lie on itself; lengthens the way by 0.02 %
+// axial advance per turn, so that the thread does not lie on itself; lengthens the path by 0.02 %
+constexpr double kPitch_m = 0.0024;
 
-/// T1 / T2 with `wrapped` segments on an arc of `angle_rad`: one end loaded with 1 N, the other drawn along, averaged
-/// over one segment's length, because the polygon's corners come and go.
+/// T1 / T2 with `wrapped` segments on an arc of `angle_rad`: one end is loaded with 1 N, the other is pulled. Averaged
+/// over one segment's length, because polygon corners move on and off the peg.
 double tension_ratio(const Subject& subject, double mu, double angle_rad, int wrapped) {
-  const double rise = angle_rad > 6.0 ? kPitch_m / (2.0 * std::numbers::pi) : 0.0;  // along the peg, per radian
+  const double rise = angle_rad > 6.0 ? kPitch_m / (2.0 * std::numbers::pi) : 0.0;  // advance along the peg per radian
   const double per_rad = std::hypot(kRadius_m, rise), arc = angle_rad * per_rad, l = arc / wrapped;
   auto scene = real_thread(subject, 1.0, mu);
   scene.suture.length_m = l * (subject.nodes - 1);
@@ -32,7 +34,8 @@ double tension_ratio(const Subject& subject, double mu, double angle_rad, int wr
   const auto tangent = [&](double a) -> Vec3 {
     return Vec3(kRadius_m * std::sin(a), rise, kRadius_m * std::cos(a)) / per_rad;
   };
-  const Vec3 up = tangent(0.0), pull = tangent(angle_rad);  // where the thread meets the peg, and leaves it
+  // tangents where the thread meets the peg and where it leaves it
+  const Vec3 up = tangent(0.0), pull = tangent(angle_rad);
   lay(scene, [&](double s) -> Vec3 {
     const double a = std::clamp((s - tail) / per_rad, 0.0, angle_rad);
     const Vec3 on_peg(-kRadius_m * std::cos(a), rise * a, kRadius_m * std::sin(a));
@@ -45,7 +48,7 @@ double tension_ratio(const Subject& subject, double mu, double angle_rad, int wr
   tools[1].p_WT = sim.nodes_W().back();
   tools[1].v_WT = kSpeed_m_per_s * pull;
   const double step = kSpeed_m_per_s * scene.time.tick_s;
-  // The hand, the tail and what lies on the peg give first; twice that way and all of it slips.
+  // The hand's spring, the tail and the wrapped thread stretch first; after twice that distance all of it slips.
   const double most_N = std::exp(mu * angle_rad), strain = most_N / scene.suture.rod.EA_N;
   const double gives = most_N / scene.hands.coupling_N_per_m + strain * (tail + per_rad / mu);
   const int counted = static_cast<int>(std::lround(l / step));
@@ -59,16 +62,17 @@ double tension_ratio(const Subject& subject, double mu, double angle_rad, int wr
   return sum;
 }
 
-/// The table's polygon touches the peg with its corners; our contacts lie in the middle of segments, and push and brake
-/// both ends. Balance at a corner where two segments meet at 2 a, T and N growing by (1 + g) / (1 - g) a segment:
-/// g (1 + s^2) + mu s g^2 = mu s, s = tan a. To second order it errs by -(2a)^2 / 6 of mu theta, the table by + / 12.
+/// Tension ratio of the simulated polygon. The table's polygon touches the peg with its corners; our contacts are at
+/// the middle of segments and act on both end nodes. Balance at a corner between two segments that meet at an angle 2a,
+/// with T and N growing by (1 + g) / (1 - g) per segment: g (1 + s^2) + mu s g^2 = mu s, s = tan a. To second order,
+/// the relative error of the exponent mu theta is -(2a)^2 / 6 here and +(2a)^2 / 12 in the table.
 double by_segments(double mu, double angle_rad, int wrapped) {
   const double s = std::tan(0.5 * angle_rad / wrapped), b = 1.0 + s * s;
   const double g = 2.0 * mu * s / (b + std::sqrt(b * b + 4.0 * mu * mu * s * s));
   return std::pow((1.0 + g) / (1.0 - g), wrapped);
 }
 
-/// Measured once: both cases ask.
+/// Cached, because two cases need the same measurement.
 double measured_ratio(const Subject& subject, double mu, double angle_rad, int wrapped) {
   static std::map<std::tuple<std::optional<scene::Accuracy>, double, double, int>, double> known;
   const auto [at, is_new] = known.try_emplace({subject.accuracy, mu, angle_rad, wrapped});
@@ -83,7 +87,7 @@ Findings compare(const Subject& subject, bool polygon) {
     const double mu = number(row, "mu"), degrees = number(row, "wrap_angle_deg");
     if (number(row, "N_contact_nodes") != wrapped) continue;
     const double angle = degrees * std::numbers::pi / 180.0;
-    // In a whole turn of 32 segments the two polygons are up to 4 % apart, in half a turn 0.5 %.
+    // With 32 segments the two polygons differ by up to 4 % for a whole turn, by 0.5 % for half a turn.
     const double corners = degrees > 180.0 ? by_segments(mu, angle, wrapped) : number(row, "T1_over_T2");
     const double truth = polygon ? corners : std::exp(mu * angle);
     all.push_back(relative("mu = " + row.at("mu") + ", " + row.at("wrap_angle_deg") + " deg: T1/T2", truth,

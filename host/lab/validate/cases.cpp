@@ -11,7 +11,7 @@ using scene::Model;
 bool every(Model) { return true; }
 bool rod(Model m) { return m == Model::kRod; }
 bool bends(Model m) { return m != Model::kPaper1; }
-bool hookean(Model m) { return m != Model::kPaper5; }  // model 5 stretches by a quadratic law
+bool hookean(Model m) { return m != Model::kPaper5; }  // model 5 has a quadratic law of stretch
 
 constexpr Case kCases[] = {
     {"elastica-tip", "elliptic integrals, PL2/EI 0.1 .. 10", bends, elastica_tip_load, 0, true},

@@ -1,5 +1,5 @@
 #pragma once
-// Every case of the validation: what it checks, on which models, and the experiment itself.
+// The validation cases: what each checks, for which models, and its experiment.
 
 #include <optional>
 #include <span>
@@ -10,16 +10,16 @@
 
 namespace ligature::validate {
 
-/// Whom a case examines.
+/// The model and resolution that a case examines.
 struct Subject {
   scene::Model model = scene::Model::kRod;
   int nodes = 50;
-  std::optional<scene::Accuracy> accuracy{};  ///< of the rod; absent: balanced, but as a case needs it
+  std::optional<scene::Accuracy> accuracy{};  ///< of the rod; absent: balanced, unless the case needs another one
 };
 
-/// One number against its reference. The error is in the unit of the tolerance.
+/// One measured number and its reference. `error` has the unit of `tolerance`.
 struct Finding {
-  std::string what;  ///< conditions and quantity, with the unit or scale of reference and measured
+  std::string what;  ///< conditions and quantity, with the unit or scale of reference and measured value
   double reference = 0.0, measured = 0.0;
   double error = 0.0, tolerance = 0.0;
   std::string unit;  ///< of error and tolerance: "of L", "relative", "deg", ..
@@ -31,24 +31,24 @@ using Findings = std::vector<Finding>;
 [[nodiscard]] Finding absolute(std::string what, double reference, double measured, double tolerance, std::string unit);
 /// |measured / reference - 1|.
 [[nodiscard]] Finding relative(std::string what, double reference, double measured, double tolerance);
-/// least <= measured <= most; the error is how far outside.
+/// least <= measured <= most; the error is the distance from this range.
 [[nodiscard]] Finding within(std::string what, double least, double most, double measured);
 
 struct Case {
   const char* name;
-  const char* about;  ///< reference, in a few words
+  const char* about;  ///< the reference, in a few words
   bool (*is_modelled)(scene::Model);
   Findings (*examine)(const Subject&);
-  int only_nodes;  ///< 0: at whatever is asked for; else the experiment has its own number of nodes
-  bool quick;      ///< takes a moment: the tests run it
+  int only_nodes;  ///< 0: any number of nodes; else the number that the experiment needs
+  bool quick;      ///< short enough for the unit tests
 };
 
 /// In the order of the printed table.
 [[nodiscard]] std::span<const Case> all_cases();
-/// nullptr when there is none of that name.
+/// nullptr when no case has that name.
 [[nodiscard]] const Case* find_case(const std::string& name);
 
-// The experiments, by file.
+// The experiments, sorted by the file that defines them.
 Findings elastica_tip_load(const Subject&);  // elastica.cpp
 Findings elastica_heavy(const Subject&);
 Findings catenary(const Subject&);  // strings.cpp

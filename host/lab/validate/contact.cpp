@@ -1,4 +1,4 @@
-// Frictionless contact: two taut threads that cross, a heavy rod lifted from a plane.
+// Frictionless contact tests: two crossing threads under tension, and a heavy rod lifted from a plane.
 
 #include <cmath>
 #include <limits>
@@ -9,12 +9,12 @@
 namespace ligature::validate {
 namespace {
 
-/// How many segments each strand takes, so that both have segments of one length and a node in their middle.
+/// Number of segments of each strand: equal segment lengths, and a node in the middle of each strand.
 struct Shares {
   int a, b;
 };
 Shares shares_of(int nodes, double a_m, double b_m) {
-  const int a = a_m == b_m ? 16 : 20, b = static_cast<int>(std::lround(a * b_m / a_m));  // 20 : 12 and 20 : 10
+  const int a = a_m == b_m ? 16 : 20, b = static_cast<int>(std::lround(a * b_m / a_m));  // ratios 20 : 12 and 20 : 10
   return nodes >= 200 ? Shares{4 * a, 4 * b} : Shares{a, b};
 }
 
@@ -22,10 +22,12 @@ struct Crossing {
   double z_a = 0.0, z_b = 0.0, force_N = 0.0, tension_N = 0.0;
 };
 
-/// One thread makes both: strand A along x, a slack bridge out of the way, strand B along y under it.
+/// Both strands are parts of one thread: strand A along x, a slack connecting piece off to the side, strand B along y
+/// below A.
 Crossing crossing(const Subject& subject, const Row& row) {
   const double a = number(row, "a_m"), b = number(row, "b_m"), H = number(row, "H_m"), d = number(row, "d_contact_m");
-  // T = T0 + EA (l / l0 - 1) is a Hookean thread of EA - T0 and rest length l0 (EA - T0) / EA.
+  // The reference's thread T = T0 + EA (l / l0 - 1) equals a Hookean thread with stiffness EA - T0 and rest length l0
+  // (EA - T0) / EA.
   const double EA = number(row, "EA_N") - number(row, "T0_A_N"), shorter = EA / number(row, "EA_N");
   const auto [ka, kb] = shares_of(subject.nodes, a, b);
   auto scene = real_thread(subject, 1.0, 0.0);
@@ -34,9 +36,9 @@ Crossing crossing(const Subject& subject, const Row& row) {
   scene.suture.length_m = l * (subject.nodes - 1);
   scene.suture.paper.node_mass_kg = 8e-5 * l;
   scene.suture.paper.bend_damping = scene.suture.paper.swivel_damping = 0.0;
-  // The explicit models apply dampers before contacts in a step; in a balance that leaves an axial force of the order
-  // damper x step, so theirs is what calms a strand and no more (its first axial mode: 1e5 1/s). A balance knows
-  // neither.
+  // The explicit models apply dampers before contacts in a step, which leaves an axial force error of the order damper
+  // x step. So the damping is set just high enough to damp the strand's first axial mode (1e5 1/s). It does not affect
+  // the balance.
   scene.suture.paper.stretch_damping = 1e-5 * EA / l;
   set_bending(scene, 0.0);
   set_stretch(scene, EA);
@@ -75,10 +77,11 @@ Crossing crossing(const Subject& subject, const Row& row) {
 
 }  // namespace
 
-Findings crossing_threads(const Subject& subject) {  // forces in balance
+Findings crossing_threads(const Subject& subject) {  // reference: balance of forces
   Findings all;
   for (const auto& row : reference_rows("06_crossing_threads.csv")) {
-    if (row.at("kind") != "elastic") continue;  // a tension that does not change with length: no model's thread
+    // other rows have a tension independent of length, which no model's thread has
+    if (row.at("kind") != "elastic") continue;
     const auto c = crossing(subject, row);
     const auto at = "a, b " + row.at("a_m") + ", " + row.at("b_m") + ", T0 " + row.at("T0_A_N") + ", H " +
                     row.at("H_m") + ", EA " + row.at("EA_N");
@@ -90,7 +93,8 @@ Findings crossing_threads(const Subject& subject) {  // forces in balance
   return all;
 }
 
-Findings heavy_rod_lifted(const Subject& subject) {  // nonlinear boundary value problem, 1e-9; Lb = (B / w)^(1/3)
+// reference: nonlinear boundary value problem, solved to 1e-9; Lb = (B / w)^(1/3)
+Findings heavy_rod_lifted(const Subject& subject) {
   Findings all;
   for (const auto& row : reference_rows("06_heavy_rod_lifted_from_plane.csv")) {
     const double height = number(row, "H_over_Lb");
@@ -103,7 +107,8 @@ Findings heavy_rod_lifted(const Subject& subject) {  // nonlinear boundary value
     scene.suture.paper.node_mass_kg = per_m * segment_m(scene);
     set_bending(scene, B);
     set_drag(scene, rod ? 30.0 : 10.0);
-    scene.suture.paper.bend_damping *= 0.1;  // as in crossing(): a balance has no use for it, a step is disturbed by it
+    // as in crossing(): a small damper; it does not affect the balance, and a larger one disturbs the explicit steps
+    scene.suture.paper.bend_damping *= 0.1;
     scene.suture.paper.stretch_damping *= 0.1;
     if (!rod) scene.hands.coupling_N_per_m = 2e4;
     scene.world.desk_height_m = 0.0;
@@ -113,7 +118,8 @@ Findings heavy_rod_lifted(const Subject& subject) {  // nonlinear boundary value
     auto sim = build(scene);
     Tools tools = no_hands();
     tools[0] = {sim.nodes_W().front(), Vec3::Zero(), true};
-    const double give = number(row, "lift_force_over_wLb") * w / scene.hands.coupling_N_per_m;  // of its spring, of Lb
+    // elongation of the hand's spring, in Lb
+    const double give = number(row, "lift_force_over_wLb") * w / scene.hands.coupling_N_per_m;
     const double ahead = height + give;
     const int rise = rod ? 300 : 1000, ticks = rod ? 1200 : 4000;
     for (int k = 0; k < ticks && sim.diagnostics().finite; ++k) {

@@ -10,7 +10,7 @@
 namespace ligature::validate {
 namespace {
 
-constexpr double kLoad = 10.0;  // P L^2 / EI: the linear theory has no part in it
+constexpr double kLoad = 10.0;  // P L^2 / EI: far outside the linear theory
 
 Rod cantilever(int n, double step_s, int substeps, double drag_per_s) {
   Material m = unit_rod();
@@ -35,17 +35,17 @@ double elastica_error(int n) {
   return 0.0;
 }
 
-/// Tip of the cantilever at t = 0.25, half way down after the load was put on, in 25 ticks.
+/// Tip of the cantilever at t = 0.25, half way down after the load was applied, computed in 25 ticks.
 Vec swung_tip(int substeps) {
   Rod rod = cantilever(50, 0.01, substeps, 0.0);
   for (int k = 0; k < 25; ++k) proceed(rod);
   return rod.state().x.back();
 }
 
-/// First frequency of a hanging chain from the quarter period of its first mode: when the projection first crosses
-/// zero.
+/// Error of the first frequency of a hanging chain, measured from the quarter period of the first mode: the time at
+/// which its amplitude first crosses zero.
 double chain_error(int n, double steps_per_unit) {
-  const double truth = 1.20241277885;  // j01 / 2 sqrt(g / L)
+  const double truth = 1.20241277885;  // first zero of J0, divided by 2, times sqrt(g / L)
   const double dt = 1.0 / steps_per_unit;
   Material m = unit_rod();
   m.EI_N_m2 = 0.0;

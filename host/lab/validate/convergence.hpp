@@ -1,21 +1,21 @@
 #pragma once
-// How fast the rod approaches the truth: order in N and in the number of substeps.
+// Order of convergence of the rod in the number of nodes and of substeps.
 
 #include <string>
 #include <vector>
 
 namespace ligature::validate {
 
-/// Errors of one quantity at resolutions that double.
+/// Errors of one quantity at successively doubled resolutions.
 struct Ladder {
-  std::string what;                ///< quantity and what is refined
+  std::string what;                ///< the quantity, and what is refined
   std::vector<double> resolution;  ///< nodes, or substeps
   std::vector<double> error;
-  /// Least-squares slope of -log(error) over log(resolution).
+  /// Observed order: least-squares slope of -log(error) over log(resolution).
   [[nodiscard]] double order() const;
 };
 
-/// Elastica, hanging chain and localised helix, each in N and in substeps.
+/// Convergence studies of elastica, hanging chain and localised helix, each in nodes and in substeps.
 [[nodiscard]] std::vector<Ladder> convergence();
 
 }  // namespace ligature::validate

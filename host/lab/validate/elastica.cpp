@@ -1,4 +1,4 @@
-// Large deflection of a cantilever against the elastica: under a tip load and under its own weight.
+// Large deflection of a cantilever, compared with the elastica: under a tip load and under its own weight.
 
 #include <cmath>
 #include <limits>
@@ -9,13 +9,14 @@
 namespace ligature::validate {
 namespace {
 
-/// Clamped along +x, loaded along -y, free length 1: where the tip comes to rest, seen from the clamp.
+/// Position of the tip at rest, relative to the clamp. The rod is clamped along +x, loaded along -y, and has free
+/// length 1.
 Vec3 tip(const Subject& subject, double tip_load, double weight) {
   auto scene = unit_thread(subject, 0.2, 7.0);
-  if (!is_rod(scene)) {  // lengthened by the half segment that the clamp takes
+  if (!is_rod(scene)) {  // longer by half a segment, which the clamp holds
     scene.suture.length_m = (subject.nodes - 1) / (subject.nodes - 1.5);
     scene.suture.paper.node_mass_kg = segment_m(scene);
-    scene.suture.paper.bend_damping = 0.02 / segment_m(scene);  // calms the high modes; does not move the balance
+    scene.suture.paper.bend_damping = 0.02 / segment_m(scene);  // damps the high modes; does not affect the balance
     set_bending(scene, 1.0);
     lay(scene, [](double s) { return Vec3(s, 0, 0); });
   }
@@ -37,7 +38,7 @@ Findings compare(const Subject& subject, const char* table, const char* column, 
     const Vec3 truth(number(row, "tip_x_over_L"), -number(row, "tip_y_over_L"), 0.0);
     auto finding = absolute((heavy ? "wL3/EI = " : "PL2/EI = ") + row.at(column) + ": tip y/L", truth.y(), p.y(),
                             tolerance, "of L");
-    finding.error = (p - truth).norm();  // distance of the tips, not of one coordinate
+    finding.error = (p - truth).norm();  // distance of the tips, not only of their y
     all.push_back(finding);
   }
   return all;
@@ -45,11 +46,11 @@ Findings compare(const Subject& subject, const char* table, const char* column, 
 
 }  // namespace
 
-Findings elastica_tip_load(const Subject& subject) {  // elliptic integrals, closed form
+Findings elastica_tip_load(const Subject& subject) {  // reference: elliptic integrals, closed form
   return compare(subject, "01_elastica_tip_load.csv", "PL2_over_EI", false);
 }
 
-Findings elastica_heavy(const Subject& subject) {  // shooting, 1e-9
+Findings elastica_heavy(const Subject& subject) {  // reference: shooting method, to 1e-9
   return compare(subject, "01_heavy_elastica.csv", "wL3_over_EI", true);
 }
 

@@ -1,4 +1,4 @@
-// A thread on a tilted desk: Coulomb's threshold, true stick, the way it slides to rest.
+// Friction on a tilted desk: Coulomb's threshold, sticking without creep, and the stopping distance.
 
 #include <cmath>
 #include <numbers>
@@ -14,12 +14,11 @@ constexpr double kG = 9.81;
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
-/// A tenth of the thread lying across a desk that is tilted about it; no drag.
+/// A tenth of the thread, lying straight across a tilted desk; no drag.
 scene::Scene lying(const Subject& subject, double mu, double degrees) {
   auto scene = real_thread(subject, 0.1, mu);
-  // 200 contacts on a desk are more than a tick of the rig can settle: it loses a fifth to a half of its time then
-  // (docs/accuracy.md), and what is slowed so can neither stop in time nor creep. Friction is judged where none is
-  // lost.
+  // 200 contacts on a desk exceed the work budget of a rod's tick at `balanced`: up to a fifth of the simulated time is
+  // lost (docs/accuracy.md), and the slowed thread shows neither the stopping distance nor creep. Therefore `fine`.
   if (subject.nodes >= 200 && !subject.accuracy) scene.suture.rod.accuracy = scene::Accuracy::kFine;
   set_drag(scene, 0.0);
   scene.world.desk_height_m = 0.0;
@@ -36,7 +35,8 @@ double way_after(physics::Simulation& sim, int ticks) {
   return along(sim) - from;
 }
 
-/// In 0.3 s, further than a tenth of what a quarter of a degree above the threshold would give.
+/// Whether the thread moves, in 0.3 s, more than a tenth of the distance that it would slide a quarter of a degree
+/// above the threshold.
 bool slides(const Subject& subject, double mu, double degrees) {
   auto sim = build(lying(subject, mu, degrees));
   return std::abs(way_after(sim, 300)) > 0.1 * 0.5 * kG * radians(0.25) * 0.3 * 0.3;
@@ -44,7 +44,7 @@ bool slides(const Subject& subject, double mu, double degrees) {
 
 }  // namespace
 
-Findings incline_threshold(const Subject& subject) {  // atan(mu)
+Findings incline_threshold(const Subject& subject) {  // reference: atan(mu)
   Findings all;
   for (const double mu : {0.1, 0.3, 0.5}) {
     const double truth = std::atan(mu) * 180.0 / std::numbers::pi;
@@ -59,7 +59,8 @@ Findings incline_threshold(const Subject& subject) {  // atan(mu)
   return all;
 }
 
-Findings stick_creep(const Subject& subject) {  // half a degree below the threshold, after 0.1 s; must be nothing
+// displacement half a degree below the threshold, after the first 0.1 s; must be zero
+Findings stick_creep(const Subject& subject) {
   Findings all;
   for (const double mu : {0.1, 0.3, 0.5}) {
     const auto scene = lying(subject, mu, std::atan(mu) * 180.0 / std::numbers::pi - 0.5);
@@ -72,15 +73,15 @@ Findings stick_creep(const Subject& subject) {  // half a degree below the thres
   return all;
 }
 
-Findings stopping_distance(const Subject& subject) {  // v^2 / 2 mu g
+Findings stopping_distance(const Subject& subject) {  // reference: v^2 / (2 mu g)
   Findings all;
   for (const auto& row : reference_rows("05_stopping_distance.csv")) {
     const double mu = number(row, "mu"), speed = number(row, "v0_m_s"), time = number(row, "time_s");
     const auto scene = lying(subject, mu, 0.0);
     auto sim = build(scene);
     const std::vector<Vec3> places(sim.nodes_W().begin(), sim.nodes_W().end());
-    // A velocity of the state is the way of the last step over its time, so it is that of the step's middle: what
-    // slides at v0 now slid faster half a step ago. (Started with v0 it is v0 dt / 2 short: 3 % of a stop in 2 ms.)
+    // The state's velocity is the last step's displacement / dt, so it belongs to the middle of the step. For a speed
+    // v0 now, it must be mu g dt / 2 higher. (With v0 the distance would be v0 dt / 2 short: 3 % for a stop in 2 ms.)
     const double earlier = speed + 0.5 * step_s(scene) * mu * kG;
     sim.set_state(places, std::vector<Vec3>(places.size(), Vec3(0, earlier, 0)));
     const double way = way_after(sim, static_cast<int>(1000.0 * time) + 50);

@@ -1,4 +1,4 @@
-// A long rod, wound 27 turns and shortened by 3 %, localises into one helical bulge.
+// Localised buckling: a long rod, twisted by 27 turns and shortened by 3 %, forms one helical bulge.
 
 #include "host/lab/validate/helix.hpp"
 
@@ -15,7 +15,8 @@ namespace ligature::validate {
 namespace {
 
 struct Profile {
-  std::vector<double> place, cosine;  // of every segment: material coordinate, cosine of the angle to the axis
+  // per segment: material coordinate, and cosine of the angle between tangent and axis
+  std::vector<double> place, cosine;
   double centre = 0.0, least = 1.0;
 };
 
@@ -34,7 +35,7 @@ Profile profile_of(const Rod& rod) {
   }
   p.centre /= mass;
   p.least = p.cosine[lowest];
-  if (lowest > 0 && lowest + 1 < p.cosine.size()) {  // the least value lies between segments: a parabola through three
+  if (lowest > 0 && lowest + 1 < p.cosine.size()) {  // the minimum lies between segments: parabola through three values
     const double a = p.cosine[lowest - 1], b = p.least, c = p.cosine[lowest + 1];
     p.least = b - (c - a) * (c - a) / (8.0 * std::max(a + c - 2.0 * b, 1e-12));
   }
@@ -43,7 +44,7 @@ Profile profile_of(const Rod& rod) {
 
 }  // namespace
 
-HelixTruth helix_truth() {  // of the two solutions, the smooth bulge: the one with the larger m
+HelixTruth helix_truth() {  // of the two solutions the smooth bulge, with the larger m
   const auto json = nlohmann::json::parse(reference_text("04_localised_helical_buckling.json"));
   HelixTruth truth{};
   double largest = 0.0;
@@ -67,7 +68,7 @@ Helix localised_helix_of(int n, int substeps, bool adaptive) {
   m.stretch_tau_s = m.bend_tau_s = 0.0;
   Numerics numerics = steps_of(0.1);
   numerics.substeps = numerics.max_substeps = substeps;
-  m.radius_m = 0.5;  // the finest segment is one unit: the decay length is 4.6
+  m.radius_m = 0.5;  // limits the finest segment to one unit; the decay length is 4.6
   Rod rod(m, numerics, Parts{true, false, false, false, adaptive}, n);
   rod.clamp(0, make(0, 0, 0), make(1, 0, 0));
   const int end = rod.clamp(n - 1, make(100, 0, 0), make(1, 0, 0));
@@ -96,7 +97,8 @@ Helix localised_helix_of(int n, int substeps, bool adaptive) {
   return helix;
 }
 
-Findings localised_helix(const Subject& subject) {  // the infinite rod's solution; finite length errs by exp(-21)
+// reference: solution for an infinite rod; the finite length changes it by exp(-21)
+Findings localised_helix(const Subject& subject) {
   const auto truth = helix_truth();
   const Helix found = localised_helix_of(subject.nodes, 1, true);
   return {absolute("envelope: largest |f - tanh^2(sigma s)|", 0.0, found.envelope_error, 0.03, "of 1"),

@@ -4,17 +4,17 @@
 
 namespace ligature::validate {
 
-/// What a twisted and shortened rod of n nodes settles into.
+/// Equilibrium of a twisted and shortened rod of n nodes.
 struct Helix {
-  double angle_rad = 0.0;  ///< largest angle between tangent and axis, interpolated
+  double angle_rad = 0.0;  ///< largest angle between tangent and axis, interpolated between segments
   double moment_Nm = 0.0;
   double envelope_error = 0.0;  ///< largest |f - tanh^2(sigma s)|
 };
 /// @param substeps implicit steps per 0.1 s
-/// @param adaptive nodes gather in the bulge (where there are too many for that, they stay equally spaced)
+/// @param adaptive true: nodes concentrate in the bulge (with too many nodes for that they stay equally spaced)
 [[nodiscard]] Helix localised_helix_of(int n, int substeps, bool adaptive);
 
-/// Angle, moment and decay rate of the infinite rod's solution.
+/// Angle, moment and decay rate of the solution for an infinite rod.
 struct HelixTruth {
   double phi0_rad, M, sigma;
 };

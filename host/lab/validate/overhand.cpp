@@ -1,4 +1,5 @@
-// A loose open overhand knot against the theory of elastic knots: without friction, and tightened and loosened with it.
+// A loose open overhand knot, compared with the theory of elastic knots: at rest without friction, and tightened and
+// loosened with friction.
 
 #include "host/lab/validate/overhand.hpp"
 
@@ -17,9 +18,9 @@ namespace {
 
 using physics::rod::RodSimulation;
 
-constexpr double kB = 4e-7, kA_m = 1.5e-4;  // bending stiffness and radius of the suture
+constexpr double kB = 4e-7, kA_m = 1.5e-4;  // the suture's bending stiffness and radius
 
-/// The suture's radius, of another bending stiffness, with a knot whose excess length is 2 pi R; drag calms it.
+/// A thread of the suture's radius with another bending stiffness, laid as a knot of excess length 2 pi R, with drag.
 scene::Scene knotted(const Subject& subject, double R_m, double EI_N_m2, double friction) {
   auto scene = real_thread(subject, 1.0, friction);
   scene.suture.length_m = 1.3 * 2.0 * std::numbers::pi * R_m;
@@ -39,7 +40,8 @@ double resting_tension(const Subject& subject, double a_over_R) {
   return pull.tension_N() * kA_m * kA_m / kB;
 }
 
-/// Nodes where the strands touch: segments of h there, growing by a quarter of the way off, h such that all n are used.
+/// Node positions concentrated where the strands touch: segments of length h there, growing by a quarter of the
+/// distance from there. h is chosen such that all n nodes are used.
 std::vector<double> gathered(int n, const OverhandCurve& curve, double reach_m) {
   const auto wanted = [&](double s, double h) {
     double off = curve.length_m;
@@ -48,7 +50,7 @@ std::vector<double> gathered(int n, const OverhandCurve& curve, double reach_m) 
   };
   constexpr int kCells = 20000;
   const double cell = curve.length_m / kCells;
-  const auto count = [&](double h) {  // segments that h asks for
+  const auto count = [&](double h) {  // number of segments for a given h
     double sum = 0.0;
     for (int k = 0; k < kCells; ++k) sum += cell / wanted((k + 0.5) * cell, h);
     return sum;
@@ -66,7 +68,7 @@ std::vector<double> gathered(int n, const OverhandCurve& curve, double reach_m) 
   return s;
 }
 
-/// The same thread with its nodes gathered in the braid, and laid anew.
+/// The same thread with its nodes concentrated in the braid, laid along the curve again.
 RodSimulation gathered_knot(const scene::Scene& scene, double R_m, double travel_m) {
   auto made = RodSimulation::make(scene);
   if (auto* why = std::get_if<std::string>(&made)) throw std::runtime_error(*why);
@@ -89,17 +91,19 @@ RodSimulation gathered_knot(const scene::Scene& scene, double R_m, double travel
   return sim;
 }
 
-/// T a^2/B of a knot that is tightened (+1) or loosened (-1), slowly, past the wanted size: the mean over one segment's
-/// length, because a polygon's corners come and go. Bending is stiffer than the suture's, so that drag has no share.
+/// T a^2/B of a knot that is slowly tightened (sense +1) or loosened (-1) through the wanted size. Averaged over one
+/// segment's length, because polygon corners pass the contact. Bending is stiffer than the suture's, which makes drag
+/// negligible.
 double sliding_tension(const Subject& subject, double a_over_R, double friction, int sense) {
   const double EI = 100.0 * kB, R = kA_m / a_over_R, target = 2.0 * std::numbers::pi * R, speed = 0.005;
   auto scene = knotted(subject, R, EI, friction);
-  scene.suture.rod.spacing = scene::Spacing::kUniform;  // until gathered_knot() says where the nodes are
+  scene.suture.rod.spacing = scene::Spacing::kUniform;  // until gathered_knot() places the nodes
   const double travel = 0.04 * target;
   auto sim = gathered_knot(scene, R, travel);
   EndPull pull(sim);
   const double dt = scene.time.tick_s, L = scene.suture.length_m;
-  const auto go_to = [&](double excess, double at_speed) {  // mean tension on the way
+  // moves to the given excess length; returns the mean tension on the way
+  const auto go_to = [&](double excess, double at_speed) {
     double sum = 0.0, count = 0.0;
     for (int k = 0; k < 100000 && sim.diagnostics().finite; ++k) {
       const double left = L - pull.distance_m() - excess;
@@ -141,7 +145,7 @@ Vec3 OverhandCurve::at(double along) const {
   const double a = radius_m, round = 2.0 * kPi * loop_m, natural = 2.5 * std::sqrt(2.0 * a * loop_m), half = half_m;
   const double aside = half > natural ? 2.0 * a : 1.2 * a;
   const double bow = (round - 4.0 * half) / (2.0 * kPi);  // radius of the loop's two half circles
-  // Once round the loop, from the middle of its foot: foot, half circle, top, half circle, foot.
+  // Path of the loop, from the middle of its foot: foot, half circle, top, half circle, foot.
   const auto loop = [&](double at) -> Vec3 {
     if (at < half) return {at, 0, 0};
     at -= half;
@@ -152,7 +156,7 @@ Vec3 OverhandCurve::at(double along) const {
     if (at < kPi * bow) return {-half - bow * std::sin(at / bow), bow * (1.0 + std::cos(at / bow)), 0};
     return {at - kPi * bow - half, 0, 0};
   };
-  // Three half turns while a strand passes the foot.
+  // Each strand makes three half turns along the foot.
   const auto turn = [&](double at) { return 3.0 * kPi * std::clamp(0.5 * (at / half + 1.0), 0.0, 1.0); };
   const auto [first_m, second_m] = crossings_m();
   const double first = along - first_m, second = along - second_m;
@@ -166,8 +170,8 @@ void lay_overhand(scene::Scene& s, double loop_m) {
   lay(s, [&](double along) { return curve.at(along); });
 }
 
-Findings loose_overhand(
-    const Subject& subject) {  // first order in sqrt(a / R); the leading order alone is 9 % off at 0.01
+// reference: first order in sqrt(a / R); the leading order alone errs by 9 % at 0.01
+Findings loose_overhand(const Subject& subject) {
   Findings all;
   for (const double a_over_R : {0.01, 0.005}) {
     const auto row = row_of(a_over_R, 0.0);
@@ -178,8 +182,9 @@ Findings loose_overhand(
   return all;
 }
 
-// Half the loop's width, mu sigma (a / R)^(3/2), is a leading order: the next one adds about 5 sqrt(a / R) of it (15 %
-// at 0.001, 48 % at 0.01; docs/accuracy.md), so the knot is as loose as a tolerance of 20 % asks for.
+// Reference for half the width of the hysteresis loop: mu sigma (a / R)^(3/2), a leading order. The next order adds
+// about 5 sqrt(a / R) times as much (15 % at 0.001, 48 % at 0.01; docs/accuracy.md). So the knot is loose enough for a
+// tolerance of 20 %.
 Findings overhand_hysteresis(const Subject& subject) {
   const double a_over_R = 0.001, mu = 0.02;
   double sigma = 0.0;

@@ -1,4 +1,4 @@
-// Stiff against soft: the rod with the paper's parameters against paper-4, at rest and tied.
+// Compares the rod (with the paper's parameters) with paper-4: shapes at rest, and tied knots.
 
 #include "host/lab/validate/paper_shapes.hpp"
 
@@ -17,13 +17,13 @@ using Shape = std::vector<Vec3>;
 
 Shape at_rest(scene::Scene s) {
   auto& drag = is_rod(s) ? s.suture.rod.air_drag_per_s : s.suture.paper.air_drag_per_s;
-  drag = 3.0;  // sooner at rest; changes no balance
+  drag = 3.0;  // shortens the time to rest; does not affect the balance
   auto sim = build(s);
   settle(sim, no_hands(), 2e-4, 20000);
   return {sim.nodes_W().begin(), sim.nodes_W().end()};
 }
 
-/// Largest distance of a node of one shape from the same node of the other.
+/// Largest distance between corresponding nodes of two shapes.
 double apart(const Shape& a, const Shape& b) {
   double most = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, (a[i] - b[i]).norm());
@@ -114,7 +114,7 @@ scene::Scene paper_scene(scene::Model model) {
   return s;
 }
 
-Findings paper_static_shapes(const Subject&) {  // at the paper's own 50 nodes
+Findings paper_static_shapes(const Subject&) {  // with the paper's 50 nodes
   Findings all;
   for (const auto& pose : kPoses) {
     Shape shapes[2];
@@ -129,7 +129,7 @@ Findings paper_static_shapes(const Subject&) {  // at the paper's own 50 nodes
   return all;
 }
 
-Findings paper_knots(const Subject&) {  // the operators' scripts, ten seconds after they let go
+Findings paper_knots(const Subject&) {  // the operators' scripts; checked ten seconds after the release
   Findings all;
   const std::pair<const char*, const char*> scripts[] = {{"overhand.csv", "3_1"}, {"figure-eight.csv", "4_1"}};
   for (const auto& [name, wanted] : scripts) {

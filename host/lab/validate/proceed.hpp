@@ -1,5 +1,5 @@
 #pragma once
-// One tick of a case, unless the user has had enough: a case may take minutes.
+// Runs one tick of a case, or stops when the user asks for it, because a case may take minutes.
 
 #include <stdexcept>
 
@@ -9,10 +9,10 @@ struct Interrupted : std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// Whether to give up; who catches Interrupted may say. @see console::stop_requested
+/// Whether to stop. Set by a program that catches Interrupted. @see console::stop_requested
 inline bool (*stop_asked)() noexcept = []() noexcept { return false; };
 
-/// @throws Interrupted
+/// Runs one tick. @throws Interrupted
 template <class Thread, class... Input>
 void proceed(Thread& thread, const Input&... input) {
   if (stop_asked()) throw Interrupted();

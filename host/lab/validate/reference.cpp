@@ -33,7 +33,7 @@ std::string reference_text(const std::string& name) {
 std::vector<Row> reference_rows(const std::string& name) {
   std::stringstream text(reference_text(name));
   std::string line;
-  while (std::getline(text, line) && line.starts_with('#')) {  // remarks before the header
+  while (std::getline(text, line) && line.starts_with('#')) {  // skips comments before the header
   }
   const auto header = cells_of(line);
   std::vector<Row> rows;

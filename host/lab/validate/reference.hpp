@@ -1,5 +1,5 @@
 #pragma once
-// The tables of tests/reference: truth computed elsewhere (see the README there). Built into the program.
+// The reference tables of tests/reference, computed independently (see the README there) and compiled into the program.
 
 #include <cstddef>
 #include <map>
@@ -15,16 +15,16 @@ struct EmbeddedTable {
 extern const EmbeddedTable kEmbeddedTables[];
 extern const std::size_t kEmbeddedTableCount;
 
-/// One row of a table by column name; text cells are kept as text.
+/// One row of a table by column name; cells are kept as text.
 using Row = std::map<std::string, std::string>;
 
-/// The text of a table. @throws std::runtime_error when there is none of that name.
+/// The text of a table. @throws std::runtime_error when no table has that name.
 [[nodiscard]] std::string reference_text(const std::string& name);
 
 /// The rows of a CSV table. @throws std::runtime_error.
 [[nodiscard]] std::vector<Row> reference_rows(const std::string& name);
 
-/// A cell as a number. @throws std::out_of_range when there is no such column.
+/// A cell as a number. @throws std::out_of_range when the column does not exist.
 [[nodiscard]] inline double number(const Row& row, const std::string& column) { return std::stod(row.at(column)); }
 
 }  // namespace ligature::validate

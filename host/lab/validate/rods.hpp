@@ -1,5 +1,5 @@
 #pragma once
-// Bare rods for what the facade does not offer: clamps that roll, closed loops, chosen masses.
+// Rods used directly, for features that physics::Simulation does not offer: rolling clamps, closed loops, given masses.
 
 #include <algorithm>
 #include <array>
@@ -20,7 +20,7 @@ using physics::rod::Vec;
 inline constexpr Parts kBare{false, false, false, false, false};
 inline constexpr Parts kTwisting{true, false, false, false, false};
 
-/// Length, density and bending stiffness 1; stretch 1e6 EI / L^2, so that its share of any result is 1e-6.
+/// A rod with length, density and bending stiffness 1; stretch 1e6 EI / L^2, so that it changes results by 1e-6 only.
 [[nodiscard]] inline Material unit_rod() {
   Material m;
   m.length_m = 1.0;
@@ -35,7 +35,7 @@ inline constexpr Parts kTwisting{true, false, false, false, false};
   return m;
 }
 
-/// One implicit Euler step a tick: as much damping as the step is long.
+/// One implicit Euler step per tick, whose numerical damping is proportional to the tick's length.
 [[nodiscard]] inline Numerics steps_of(double tick_s) {
   Numerics n;
   n.tick_s = tick_s;
@@ -43,7 +43,7 @@ inline constexpr Parts kTwisting{true, false, false, false, false};
   return n;
 }
 
-/// Runs until nothing moves faster than still_m_per_s. @return false when that takes more than `most` ticks.
+/// Runs until no node is faster than still_m_per_s. @return false when that takes more than `most` ticks.
 inline bool settle(Rod& rod, double still_m_per_s, int most) {
   for (int k = 0; k < most; ++k) {
     proceed(rod);
@@ -54,7 +54,7 @@ inline bool settle(Rod& rod, double still_m_per_s, int most) {
   return false;
 }
 
-/// Turns a hold's end by `angle_rad` in steps that the turn counter can follow.
+/// Rotates a hold's end by `angle_rad`, in steps small enough for the turn counter.
 void wind(Rod& rod, int hold, double angle_rad);
 
 }  // namespace ligature::validate

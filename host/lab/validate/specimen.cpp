@@ -55,7 +55,7 @@ scene::Scene real_thread(const Subject& subject, double share, double friction) 
     s.suture.rod.accuracy = subject.accuracy.value_or(scene::Accuracy::kBalanced);
     s.hands.coupling_N_per_m = 1000.0;
     s.hands.coupling_N_s_per_m = 0.5;
-  } else {  // Table I at 50 nodes, per length
+  } else {  // Table I for 50 nodes, converted to values per length
     s.suture.length_m = 5.0 * share;
     const double finer = segment_m(s) / (5.0 / 49.0);
     auto& p = s.suture.paper;

@@ -1,5 +1,5 @@
 #pragma once
-// Threads for experiments: the same piece of thread in any model, and what holds, weighs and settles it.
+// Threads for the experiments: the same piece of thread in any model; clamps, weight, and running to rest.
 
 #include <array>
 #include <vector>
@@ -15,13 +15,13 @@ using Tools = std::array<physics::ToolInput, 2>;
 
 [[nodiscard]] inline bool is_rod(const scene::Scene& s) noexcept { return s.suture.model == scene::Model::kRod; }
 
-/// Length, density and EI 1, EA so large that its share of any result is 1e-5; straight along +x from the origin; no
-/// gravity, contact, twist or damping but air drag `drag_per_s`. One tick lasts tick_s, in ten implicit steps (rod) or
-/// as many explicit ones as make_stable() finds (paper models).
+/// Length, density and EI are 1, and EA is so large that it changes results by 1e-5 only. Straight along +x from the
+/// origin; no gravity, contact, twist or damping except air drag `drag_per_s`. One tick lasts tick_s: ten implicit
+/// steps (rod), or as many explicit ones as make_stable() chooses (paper models).
 [[nodiscard]] scene::Scene unit_thread(const Subject& subject, double tick_s, double drag_per_s);
 
-/// The thread of scenes/suture-3-0.toml (0.3 mm nylon), or of scenes/paper.toml for a paper model, of another length
-/// (of 0.3 m or 5 m: `share`); straight along +x from the origin, no gravity, friction as given, shipped damping.
+/// The thread of scenes/suture-3-0.toml (0.3 mm nylon), or of scenes/paper.toml for a paper model, with `share` of its
+/// length (0.3 m or 5 m). Straight along +x from the origin, no gravity, given friction, damping as in the scene.
 [[nodiscard]] scene::Scene real_thread(const Subject& subject, double share, double friction);
 
 void set_bending(scene::Scene& scene, double EI_N_m2);
@@ -33,16 +33,16 @@ void set_drag(scene::Scene& scene, double per_s);
   return s.suture.length_m / (s.suture.nodes - 1);
 }
 
-/// Holds node 0 at the origin with its tangent along +x. A paper clamp pins two nodes and bends first at the second, so
-/// the free part begins half a segment along.
+/// Holds node 0 at the origin with its tangent along +x. A paper model's clamp fixes two nodes and the thread bends
+/// first at the second one, so its free part begins after half a segment.
 void clamp_start(scene::Scene& scene);
 [[nodiscard]] double clamp_end_m(const scene::Scene& scene);
 
-/// Weight per length w, downwards along -axis (1: y, 2: z), as a dead load on every node for its share of the thread. A
-/// paper model's own masses are equal, so its last node would weigh twice its share.
+/// Weight per length w along -axis (1: y, 2: z), as a constant load on every node for its share of the thread. Gravity
+/// is not used, because a paper model has equal masses and its last node would weigh twice its share.
 void weigh(scene::Scene& scene, double w_N_per_m, int axis);
 
-/// Lays the thread out: node k at place(s_k).
+/// Lays the thread along a curve: node k at place(s_k).
 template <class Place>
 void lay(scene::Scene& scene, Place place) {
   scene.suture.initial = "laid";
@@ -53,19 +53,19 @@ void lay(scene::Scene& scene, Place place) {
   }
 }
 
-/// At least as many substeps as keep an explicit model well inside its stability limit, but for model 5's stretch.
+/// Sets enough substeps to keep an explicit model stable with a margin. Does not cover model 5's stretch.
 void make_stable(scene::Scene& scene);
 
-/// How long one step lasts, s: of a rod that does not labour, of a paper model made stable.
+/// Duration of one step, s: for a rod with its regular number of substeps, for a paper model after make_stable().
 [[nodiscard]] double step_s(const scene::Scene& scene);
 
 /// @throws std::runtime_error when the physics refuses the scene.
 [[nodiscard]] physics::Simulation build(const scene::Scene& scene);
 
-/// Open hands, far away.
+/// Two open hands, far away from the thread.
 [[nodiscard]] Tools no_hands();
 
-/// Ticks until no node is faster than still_m_per_s. @return false when that takes more than `most` ticks.
+/// Runs until no node is faster than still_m_per_s. @return false when that takes more than `most` ticks.
 bool settle(physics::Simulation& sim, const Tools& tools, double still_m_per_s, int most);
 
 [[nodiscard]] double fastest(const physics::Simulation& sim);

@@ -1,4 +1,4 @@
-// Hanging threads without bending: catenary, elastic string.
+// Hanging threads without bending stiffness: catenary and elastic string.
 
 #include <algorithm>
 #include <cmath>
@@ -16,11 +16,11 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// The depth of the lowest point of the smooth line through equally spaced nodes: of a cubic through four. The lowest
-/// node is up to half a segment beside it, 0.27 % of the sag where 50 nodes hang from supports 0.2 S apart.
+/// Depth of the lowest point of a smooth line through equally spaced nodes, from a cubic through four nodes. The lowest
+/// node alone may be half a segment beside it: 0.27 % of the sag for 50 nodes and supports 0.2 S apart.
 double sag_of(std::span<const Vec3> x) {
   const auto z = [&](std::size_t i) { return -x[i].z(); };
-  std::size_t at = 0;  // the first of the four deepest
+  std::size_t at = 0;  // first of the four deepest nodes
   for (std::size_t i = 0; i + 3 < x.size(); ++i) {
     if (std::min(z(i), z(i + 3)) > std::min(z(at), z(at + 3))) at = i;
   }
@@ -32,8 +32,9 @@ double sag_of(std::span<const Vec3> x) {
   return sag;
 }
 
-/// Mean strain of a catenary of length 1, weight 1 and horizontal tension H: so much shorter is it born, to hang 1
-/// long. The table's thread does not stretch; at a span of 0.999 a strain of 1e-5 were 0.5 % of the sag.
+/// Mean strain of a catenary with length 1, weight 1 and horizontal tension H. The thread's rest length is shortened by
+/// it, so that it is 1 long when it hangs: the table's thread is inextensible, and at a span of 0.999 a strain of 1e-5
+/// would change the sag by 0.5 %.
 double mean_strain(const scene::Scene& scene, double H) {
   const double tension = 0.5 * std::hypot(H, 0.5) + H * H * std::asinh(0.5 / H), EA = scene.suture.rod.EA_N;
   return scene.suture.model == scene::Model::kPaper5 ? std::sqrt(tension / EA) : tension / EA;
@@ -41,22 +42,25 @@ double mean_strain(const scene::Scene& scene, double H) {
 
 }  // namespace
 
-Findings catenary(const Subject& subject) {  // closed form; two hands hold the ends and feel what the supports carry
+// reference: closed form; two hands hold the ends and measure the supports' forces
+Findings catenary(const Subject& subject) {
   Findings all;
   for (const auto& row : reference_rows("02_catenary_inextensible.csv")) {
     const double span = number(row, "span_over_S"), depth = std::sqrt(1.0 - span * span);
     auto scene = unit_thread(subject, 0.1, 4.0);
     set_bending(scene, is_rod(scene) ? 1e-7 : 0.0);
-    scene.suture.paper.quadratic_stretch = scene::QuadraticStretch::kPrinted;  // of stretch_N itself, not 100 times it
+    // uses stretch_N itself, not 100 times it
+    scene.suture.paper.quadratic_stretch = scene::QuadraticStretch::kPrinted;
     scene.suture.length_m = 1.0 - mean_strain(scene, number(row, "H_over_wS"));
-    const double K = is_rod(scene) ? scene.suture.rod.EA_N / segment_m(scene) : 1e5;  // no more: steps are explicit
+    // limited by the stability of explicit steps
+    const double K = is_rod(scene) ? scene.suture.rod.EA_N / segment_m(scene) : 1e5;
     scene.hands.coupling_N_per_m = K;
     scene.hands.coupling_N_s_per_m = is_rod(scene) ? 0.0 : 1.0;
     scene.suture.paper.stretch_damping = 1.0;
     const double L = scene.suture.length_m;
-    lay(scene, [&](double s) { return Vec3(span * s / L, 0, -depth * std::min(s, L - s) / L); });  // a V to start from
+    lay(scene, [&](double s) { return Vec3(span * s / L, 0, -depth * std::min(s, L - s) / L); });  // start shape: a V
     weigh(scene, 1.0 / L, 2);
-    if (scene.suture.model == scene::Model::kPaper5) {  // its stretch is the stiffer the more it is drawn
+    if (scene.suture.model == scene::Model::kPaper5) {  // its stiffness grows with the strain
       const double slope =
           2.0 * std::sqrt(scene.suture.paper.stretch_N * number(row, "Tend_over_wS")) / segment_m(scene);
       scene.time.substeps =
@@ -64,7 +68,8 @@ Findings catenary(const Subject& subject) {  // closed form; two hands hold the 
     }
     auto sim = build(scene);
     Tools tools = no_hands();
-    const double give = number(row, "H_over_wS") / K, lift = 0.5 / K;  // of the hands' springs: so far are they ahead
+    // elongation of the hands' springs; the hands are placed so much further out
+    const double give = number(row, "H_over_wS") / K, lift = 0.5 / K;
     tools[0] = {Vec3(-give, 0, lift), Vec3::Zero(), true};
     tools[1] = {Vec3(span + give, 0, lift), Vec3::Zero(), true};
     const bool still = settle(sim, tools, 1e-5, 4000);
@@ -78,7 +83,7 @@ Findings catenary(const Subject& subject) {  // closed form; two hands hold the 
 
 namespace {
 
-/// Nodes of a hung string of length 1 at rest; none when it finds none.
+/// Node positions of a hanging string of length 1 at rest; empty when it does not come to rest.
 std::vector<Vec3> hung(const Subject& subject, double softness, double weight) {
   auto scene = unit_thread(subject, 0.2, 4.0);
   set_bending(scene, 0.0);
@@ -96,7 +101,7 @@ std::vector<Vec3> hung(const Subject& subject, double softness, double weight) {
 
 }  // namespace
 
-Findings elastic_string(const Subject& subject) {  // closed form; lumped masses are exact to O(1 / N^2)
+Findings elastic_string(const Subject& subject) {  // reference: closed form; lumped masses give an error of O(1 / N^2)
   Findings all;
   std::map<std::pair<double, double>, std::vector<Vec3>> hangs;
   for (const auto& row : reference_rows("02_hanging_elastic_string.csv")) {

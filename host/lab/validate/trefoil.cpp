@@ -1,4 +1,4 @@
-// A closed trefoil, shrunk without friction until it is tight: length over diameter.
+// Ideal trefoil: a closed trefoil is shrunk without friction until it is tight; the result is length / diameter.
 
 #include <cmath>
 #include <limits>
@@ -14,24 +14,24 @@ namespace ligature::validate {
 namespace {
 
 constexpr double kRadius = 1.5e-4;
-constexpr double kTension_N = 0.005;  // that counts as tight: ten times the drag of shrinking
+constexpr double kTension_N = 0.005;  // tension at which the knot counts as tight: ten times the drag of shrinking
 
 struct Tight {
   double length_over_diameter = std::numeric_limits<double>::quiet_NaN();
   std::string knot;
 };
 
-/// Of the closed polygon whose last edge is the bridge between the clamps.
+/// Length of the closed polygon; its last edge is the straight bridge between the clamps.
 double contour(const std::vector<Vec>& x) {
   double length = 0.0;
   for (std::size_t j = 0; j < x.size(); ++j) length += norm(x[(j + 1) % x.size()] - x[j]);
   return length;
 }
 
-/// Smallest distance of strands at least a quarter turn of the thread's own radius apart along it.
+/// Smallest distance between strands that are at least pi radii apart along the thread.
 double nearest_strands(const std::vector<Vec>& x, double length) {
   const std::size_t edges = x.size();
-  std::vector<double> s{0.0};  // where each edge begins
+  std::vector<double> s{0.0};  // arc length at the start of each edge
   for (std::size_t j = 0; j < edges; ++j) s.push_back(s.back() + norm(x[(j + 1) % edges] - x[j]));
   const double skip = 0.5 * std::numbers::pi * 2.0 * kRadius;
   double least = 1e9;
@@ -44,10 +44,11 @@ double nearest_strands(const std::vector<Vec>& x, double length) {
   return least;
 }
 
-/// The rod has no closed form: the ends are clamped in line, so near that nothing fits between them (and so far that
-/// only the clamped nodes themselves touch), and the straight bridge between them counts as part of the knot. The
-/// thread's length shrinks until it is taut. At 50 nodes a segment of the tight knot is 0.34 diameters; contacts of
-/// segments less than 0.6 diameters apart are not watched, so more nodes would only add contacts.
+/// The rod cannot be closed. Therefore its ends are clamped in line with each other, and the straight bridge between
+/// them counts as part of the knot. The gap is too small for a strand to fit in, and large enough that only the clamped
+/// nodes touch each other. The thread's length is reduced until it is taut. With 50 nodes a segment of the tight knot
+/// is 0.34 diameters long; contacts between segments less than 0.6 diameters apart along the thread are ignored, so
+/// more nodes would only add contacts.
 Tight tighten(int n) {
   Material m;
   const double bridge = 0.7 * 2.0 * kRadius, whole = 40.0 * 2.0 * kRadius;
@@ -78,7 +79,7 @@ Tight tighten(int n) {
   rod.clamp(n - 1, state.x.back(), tangent);
   double tension = 0.0, natural = m.length_m;
   for (int k = 0; k < 20000 && tension < kTension_N; ++k) {
-    const double shrink = tension < 0.1 * kTension_N ? 2e-4 : 2e-5;  // of its length a tick
+    const double shrink = tension < 0.1 * kTension_N ? 2e-4 : 2e-5;  // share of the length per tick
     natural *= 1.0 - shrink;
     for (auto& at : state.mesh.s) at *= 1.0 - shrink;
     rod.moved();
@@ -94,7 +95,7 @@ Tight tighten(int n) {
 
 }  // namespace
 
-Findings tight_trefoil(const Subject&) {  // ideal: 16.37; a simulated one must lie above
+Findings tight_trefoil(const Subject&) {  // the ideal value is 16.37; a simulated knot must be above it
   const Tight t = tighten(50);
   return {within("length / diameter (smallest strand distance), knot " + t.knot, 16.4, 18.0,
                  t.knot == "3_1" ? t.length_over_diameter : std::numeric_limits<double>::quiet_NaN())};

@@ -1,5 +1,5 @@
-// Twist: two classic instabilities. A straight clamped rod and a ring are wound to 2 % under and over the critical
-// moment.
+// Two classic instabilities of twisted rods: a straight clamped rod and a ring, each twisted to 2 % below and above the
+// critical value.
 
 #include <cmath>
 #include <numbers>
@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// A tiny disturbance grows or fades exponentially. @return its growth rate per tick, from two stretches of `ticks`.
+/// Growth rate per tick of a tiny disturbance, which grows or decays exponentially; measured over two intervals of
+/// `ticks`.
 double clamped_rod_growth(int n, double moment) {
   Material m = unit_rod();
   m.EA_N = 1e4;
@@ -39,7 +40,7 @@ double clamped_rod_growth(int n, double moment) {
   return 0.5 * std::log(size() / early) / ticks;
 }
 
-/// A buckled ring turns over and gives its twist to writhe.
+/// Whether a twisted ring buckles: it then flips, and its twist turns into writhe.
 bool twisted_ring_buckles(int n, double turns_over_critical, double bend_over_twist) {
   Material m = unit_rod();
   m.GJ_N_m2 = m.EI_N_m2 / bend_over_twist;
@@ -61,7 +62,7 @@ bool twisted_ring_buckles(int n, double turns_over_critical, double bend_over_tw
   return std::abs(rod.twist().turn_rad(0) - angle) > 1.0;
 }
 
-/// Where `unstable` turns true, between low and high, halved `times` times.
+/// Bisection for the value between low and high at which `unstable` becomes true, in `times` steps.
 template <class Unstable>
 double threshold(double low, double high, int times, Unstable unstable) {
   for (int k = 0; k < times; ++k) {
@@ -81,7 +82,7 @@ void wind(Rod& rod, int hold, double angle_rad) {
   }
 }
 
-Findings clamped_twist(const Subject& subject) {  // ML/B = 8.98682, root of tan(x/2) = x/2
+Findings clamped_twist(const Subject& subject) {  // reference: ML/B = 8.98682, root of tan(x/2) = x/2
   double critical = 0.0;
   for (const auto& row : reference_rows("04_twist_buckling_straight_rod.csv")) {
     if (number(row, "TL2_over_B") == 0.0) critical = number(row, "ML_over_B_clamped_clamped");
@@ -92,8 +93,8 @@ Findings clamped_twist(const Subject& subject) {  // ML/B = 8.98682, root of tan
   return {relative("ML/B at which the straight rod buckles", critical, found, 0.02)};
 }
 
-Findings michell_ring(
-    const Subject& subject) {  // sqrt(3) B / C turns [Michell 1890]; clamped at one point: rigid motion
+// reference: sqrt(3) B / C turns [Michell 1890]; the clamp at one point prevents rigid motion only
+Findings michell_ring(const Subject& subject) {
   Findings all;
   for (const auto& row : reference_rows("04_michell_ring.csv")) {
     const double ratio = number(row, "B_over_C(=EI/GJ=1+nu_for_circular)");

@@ -1,4 +1,4 @@
-// Natural frequencies by zero crossings of the modal amplitude, and what the time step damps of a mode.
+// Natural frequencies, from zero crossings of the modal amplitude, and numerical damping of a mode by the time step.
 
 #include <cmath>
 #include <numbers>
@@ -12,10 +12,12 @@
 namespace ligature::validate {
 namespace {
 
-constexpr double kStep = 0.01;  // of 1 / omega: implicit Euler then errs by 3e-5 and damps by half a per cent
+// times 1 / omega: implicit Euler then errs by 3e-5 in frequency and has 0.5 % of critical damping
+constexpr double kStep = 0.01;
 constexpr double kSmall = 1e-4;
 
-/// Angular frequency from the mean distance of zero crossings. Each call of `next` is one tick and gives the amplitude.
+/// Angular frequency from the mean distance of zero crossings. `next` runs one tick and returns the amplitude; `before`
+/// is the amplitude at the start.
 template <class Next>
 double frequency(double before, double tick_s, int crossings, Next next) {
   double first = 0.0, last = 0.0, t = 0.0;
@@ -33,13 +35,13 @@ double frequency(double before, double tick_s, int crossings, Next next) {
   return std::numbers::pi * crossings / (last - first);
 }
 
-/// Mode `omega` of N equal masses at the ends of N links, from its top (0) to its free end (1).
-/// Laguerre recurrence from the free end: tension in a link is the weight below it.
+/// Shape of the mode with frequency `omega` of N equal masses at the ends of N links, from the top (0) to the free end
+/// (1). Laguerre recurrence from the free end; the tension in a link is the weight below it.
 std::vector<double> chain_shape(int masses, double omega) {
   std::vector<double> y(static_cast<std::size_t>(masses) + 1, 1.0);
   double slope = 0.0;
   for (int k = masses; k > 0; --k) {
-    const double below = masses - k;  // weights below the link under node k, in units of m g
+    const double below = masses - k;  // weight below the link under node k, in units of m g
     slope = (below * slope + omega * omega * y[static_cast<std::size_t>(k)]) / (below + 1.0);
     y[static_cast<std::size_t>(k - 1)] = y[static_cast<std::size_t>(k)] - slope / masses;
   }
@@ -55,7 +57,8 @@ double chain_frequency_of_rod(int masses, double omega, const std::vector<double
   rod.gravity = make(0, 0, -1);
   rod.support(0, make(0, 0, 0));
   rod.moved();
-  for (auto& mass : state.mesh.mass) mass = 1.0 / masses;  // equal masses: the last is not half
+  // equal masses, as in the reference: the last one is not halved
+  for (auto& mass : state.mesh.mass) mass = 1.0 / masses;
   for (std::size_t i = 0; i < y.size(); ++i) state.x[i] = make(kSmall * (y[i] - y[0]), 0, -state.mesh.s[i]);
   const auto amplitude = [&] {
     double q = 0.0;
@@ -85,7 +88,7 @@ double chain_frequency_of_paper(const Subject& subject, double omega, const std:
   return frequency(amplitude(), tick, 6, [&] { return proceed(sim, tools), amplitude(); });
 }
 
-/// A cantilever in one of its modes, behind the facade.
+/// A cantilever that vibrates in one of its modes, simulated by physics::Simulation.
 struct Ringing {
   Ringing(scene::Scene s, double beta, double length_m) : scene(std::move(s)), beta_(beta), length_m_(length_m) {
     clamp_start(scene);
@@ -93,7 +96,7 @@ struct Ringing {
     sim = build(scene);
   }
   double shape(double s) const { return cantilever_shape(beta_, std::max(0.0, s - clamp_end_m(scene)) / length_m_); }
-  /// Projection on the mode: others drop out.
+  /// Projection on the mode's shape, which filters out other modes.
   double amplitude() const {
     double q = 0.0;
     for (int i = 0; i < scene.suture.nodes; ++i) {
@@ -116,7 +119,7 @@ double cantilever_shape(double beta, double s) {
   return std::cosh(beta * s) - std::cos(beta * s) - c * (std::sinh(beta * s) - std::sin(beta * s));
 }
 
-Findings hanging_chain(const Subject& subject) {  // zeros of Laguerre polynomials, exact
+Findings hanging_chain(const Subject& subject) {  // reference: zeros of Laguerre polynomials, exact
   Findings all;
   for (const auto& row : reference_rows("03_hanging_chain_modes_discrete.csv")) {
     const int masses = static_cast<int>(number(row, "N_masses"));
@@ -131,12 +134,14 @@ Findings hanging_chain(const Subject& subject) {  // zeros of Laguerre polynomia
   return all;
 }
 
-Findings cantilever_frequencies(const Subject& subject) {  // cosh beta cos beta = -1; lumping lowers them by O(1 / N^2)
+// reference: cosh beta cos beta = -1; lumped masses lower the frequencies by O(1 / N^2)
+Findings cantilever_frequencies(const Subject& subject) {
   Findings all;
   for (const auto& row : reference_rows("03_bending_modes.csv")) {
     if (row.at("ends") != "cantilever" || number(row, "mode") > 3) continue;
     const double omega = number(row, "omega_times_L2_sqrt(rhoA_over_EI)");
-    // A paper thread's equal masses reach half a segment past its last node, as far as the clamp takes at its first.
+    // In a paper model the last mass represents half a segment beyond the last node. That equals the half segment that
+    // the clamp holds at the start, so the free length is 1.
     Ringing r(unit_thread(subject, 0.1 / omega, 0.0), number(row, "beta_L"), 1.0);
     const double found =
         frequency(r.amplitude(), 0.1 / omega, 6, [&] { return proceed(*r.sim, no_hands()), r.amplitude(); });
@@ -156,7 +161,7 @@ double numerical_damping(const Subject& subject, scene::Accuracy accuracy, int m
   const double omega = beta * beta * std::sqrt(r.EI_N_m2 / r.density_kg_per_m) / (length * length);
   Ringing ringing(scene, beta, length);
   const double from = std::abs(ringing.amplitude());
-  // Whole periods later the amplitude is at its peak again, to second order in the error of the period.
+  // After whole periods the amplitude is at its peak again; an error of the period changes it to second order only.
   const int periods = 4,
             ticks = static_cast<int>(std::lround(periods * 2.0 * std::numbers::pi / omega / scene.time.tick_s));
   double peak = 0.0;

@@ -1,4 +1,5 @@
-// The firmware's velocity estimator on counts: noise at steady speeds, lag under acceleration, beside what it replaces.
+// Tests the firmware's velocity estimator on encoder counts: noise at constant speed and lag under acceleration,
+// compared with a simple difference and a low-pass.
 
 #include <cmath>
 #include <random>
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double kT_s = 1e-3;
 
-/// Backward difference, and the same through a first-order low-pass at 35 Hz.
+/// Backward difference, and the same after a first-order low-pass at 35 Hz.
 struct Plain {
   double last = 0.0, raw = 0.0, filtered = 0.0;
   bool seeded = false;
@@ -29,7 +30,8 @@ struct Errors {
   double window = 0.0, raw = 0.0, filtered = 0.0;
 };
 
-/// rms error of the three estimates of v(t) = v0 + a t, x in metres at the tip, counted. The start is left out.
+/// rms errors of the three estimates for v(t) = v0 + a t at the tip, from positions rounded to quantum_m. The start is
+/// skipped.
 Errors rms(double v0, double a, double quantum_m, double& mean_window_error) {
   std::mt19937 random(7);
   Errors sum;

@@ -13,7 +13,8 @@ namespace {
 constexpr double kT_s = 1e-3;
 constexpr double kWindow_s = 0.5;
 
-/// One metre of drum: torque is force and angle is metre, so that the controller's joint is our axis.
+/// A device with unit geometry: torque equals force and joint angle equals metres, so that one controller joint is the
+/// axis of this test.
 device::Device one_axis(device::Device d) {
   d.kinematics = device::Kinematics::kCartesian;
   d.links_m = {1, 1, 1};
@@ -21,7 +22,8 @@ device::Device one_axis(device::Device d) {
   return d;
 }
 
-/// m v' = F - k x - b v over one period with F constant: exact for k = 0, by small exact steps of it else.
+/// m v' = F - k x - b v over one period with constant F: exact for k = 0, otherwise in small steps, each exact for
+/// constant k x.
 struct Mass {
   double m, b, k;
   double x, v = 0.0;
@@ -30,7 +32,7 @@ struct Mass {
     const int steps = k > 0.0 ? 20 : 1;
     const double h = kT_s / steps, decay = std::exp(-b / m * h);
     for (int i = 0; i < steps; ++i) {
-      const double end = (F - k * x) / b;  // speed it would tend to
+      const double end = (F - k * x) / b;  // terminal speed
       const double next = end + (v - end) * decay;
       x += end * h + (v - end) * (1.0 - decay) * m / b;
       v = next;
@@ -42,7 +44,7 @@ double law(const Wall& w, const std::vector<double>& x, std::int64_t n) {
   const auto at = [&](std::int64_t i) { return i >= 0 ? x[static_cast<std::size_t>(i)] : x.front(); };
   if (n < 0 || (!w.two_sided && at(n) <= 0.0)) return 0.0;
   const double f = -w.K_N_per_m * at(n) - w.B_N_s_per_m * (at(n) - at(n - 1)) / kT_s;
-  return w.two_sided ? f : std::clamp(f, -w.peak_N, 0.0);  // a wall does not pull
+  return w.two_sided ? f : std::clamp(f, -w.peak_N, 0.0);  // a wall pushes only
 }
 
 }  // namespace
@@ -59,7 +61,7 @@ WallRun press(const Wall& w, double time_s) {
     if (w.delay == 0) {
       acting = law(w, run.x_m, n);
     } else {
-      // The wire's own period is the controller's business, further ones lie between the sample and the law.
+      // Delay: the passivity controller models one period itself (the bus); further periods lie between sample and law.
       acting = on_its_way;
       if (n > 0) v = (mass.x - run.x_m[static_cast<std::size_t>(n - 1)]) / kT_s;
       passivity.observe(n, {{mass.x, 0, 0}, {mass.x, 0, 0}});
@@ -91,7 +93,8 @@ bool is_stable(const Wall& wall, double time_s) {
   const WallRun run = press(wall, time_s);
   if (!run.finite) return false;
   const double early = run.swing_m(0.25 * time_s), late = run.swing_m(time_s - kWindow_s);
-  // A saturated limit cycle neither grows nor decays: nothing that swings wider than what it began with has settled.
+  // In a limit cycle at the force limit the amplitude neither grows nor decays; so a run whose amplitude stays well
+  // above its initial displacement is not stable either.
   const double begun = std::max(wall.start_m, wall.push_N / std::max(wall.K_N_per_m, 1.0));
   return late < 1e-6 || (late < 0.98 * early && late < 2.2 * begun);
 }

@@ -1,4 +1,4 @@
-// Which walls can be rendered: with and without the passivity controller, and how near theory is.
+// Which walls can be rendered (Z-width), with and without the passivity controller, and comparison with theory.
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kT_s = 1e-3, kPush_N = 0.5;
 
-/// Every case of the reference table, by bisection of the simulated loop.
+/// Compares the simulated stability limit, found by bisection, with every case of the reference table.
 void against_reference(const HapticsBench& bench, Verdict& v) {
   CsvFile file(bench.out / "haptics-wall-reference.csv",
                "m_kg,b_Ns_m,B_Ns_m,delay_samples,reference_K_N_m,simulated_K_N_m,deviation");
@@ -44,7 +44,7 @@ struct Count {
   [[nodiscard]] std::string text() const { return std::to_string(stable) + " of " + std::to_string(points); }
 };
 
-/// The map: a steady push of 0.5 N against each wall, beginning at its face.
+/// Map of stable walls: a constant push of 0.5 N against each wall, starting at its surface.
 void sweep(const HapticsBench& bench, const device::Device& device, const char* name, Verdict& v) {
   CsvFile file(bench.out / name,
                "delay_samples,controller,B_N_s_per_m,K_N_per_m,stable,swing_mm,depth_mm,lowest_port_J");
@@ -90,7 +90,7 @@ void sweep(const HapticsBench& bench, const device::Device& device, const char* 
           "-1e-6 or more");
 }
 
-/// What a hand adds: the largest stiffness that a delay of one sample allows in each grip.
+/// Influence of the hand: the largest stable stiffness for each grip and delay.
 void hands(const HapticsBench& bench, Verdict& v) {
   Table table({"hand", "mass_g", "stiffness_N_per_m", "damping_N_s_per_m", "K_max_0", "K_max_1", "K_max_2", "K_max_3"});
   struct Kind {
