@@ -13,7 +13,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from plot_forces import embedded, read, save, thinned
+from plot_forces import drawn, embedded, read, save, thinned
 
 COLOURS = {"a": "#0072B2", "b": "#D55E00", "difference": "#444444"}
 HANDS = ("left", "right")
@@ -74,12 +74,7 @@ def main():
     parser.add_argument("--align", choices=("start", "grasp"), default="start")
     parser.add_argument("--shift", type=float, default=0.0, help="b later, s")
     arguments = parser.parse_args()
-    try:
-        draw((arguments.tables[:2], arguments.tables[2:]), arguments.out, arguments.align, arguments.shift)
-    except (OSError, ValueError) as error:
-        print(error, file=sys.stderr)
-        return 1
-    return 0
+    return drawn(draw, (arguments.tables[:2], arguments.tables[2:]), arguments.out, arguments.align, arguments.shift)
 
 
 if __name__ == "__main__":

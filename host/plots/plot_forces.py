@@ -158,6 +158,16 @@ def draw(path, out, title, limit_N, frames):
     save(figure, out, embedded(path))
 
 
+def drawn(draw, *arguments):
+    """Exit code of a drawing: 1, with one line on stderr, where a file or its numbers do not allow it."""
+    try:
+        draw(*arguments)
+    except (OSError, ValueError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    return 0
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("forces")
@@ -166,12 +176,7 @@ def main():
     parser.add_argument("--limit", type=float, default=3.3, help="force limit of the device, N")
     parser.add_argument("--frames", action="store_true", help="against the number of the haptic frame, as the paper's Table III")
     arguments = parser.parse_args()
-    try:
-        draw(arguments.forces, arguments.out, arguments.title, arguments.limit, arguments.frames)
-    except (OSError, ValueError) as error:
-        print(error, file=sys.stderr)
-        return 1
-    return 0
+    return drawn(draw, arguments.forces, arguments.out, arguments.title, arguments.limit, arguments.frames)
 
 
 if __name__ == "__main__":

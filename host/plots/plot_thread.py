@@ -13,7 +13,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection
-from plot_forces import save
+from plot_forces import drawn, save
 
 NEAR = 1.5  # in diameters: strands closer than this count as touching
 STEP, BESIDE = 0.15, 40  # in diameters: distance of drawn points; number of points drawn before and after the knot
@@ -116,12 +116,7 @@ def main():
     parser.add_argument("--out", required=True)
     parser.add_argument("--title", default="thread")
     arguments = parser.parse_args()
-    try:
-        draw(arguments.shape, arguments.radius, arguments.out, arguments.title)
-    except (OSError, ValueError) as error:
-        print(error, file=sys.stderr)
-        return 1
-    return 0
+    return drawn(draw, arguments.shape, arguments.radius, arguments.out, arguments.title)
 
 
 if __name__ == "__main__":
