@@ -55,10 +55,7 @@ Keys thinned(const Keys& wishes, double tolerance_m) {
 
 }  // namespace
 
-bool HandRecord::is_within_reach(const sim::Vec3& p_W) const {
-  const auto q = map_.linkage.joints(map_.to_device(p_W));
-  return q && map_.linkage.is_within_stops(*q);
-}
+bool HandRecord::is_within_reach(const sim::Vec3& p_W) const { return map_.linkage.reaches(map_.to_device(p_W)); }
 
 /// The position as written: rounded to 1e-5 device metres, and moved within the arm's reach.
 sim::Vec3 HandRecord::written(const sim::Vec3& wish_W) const {

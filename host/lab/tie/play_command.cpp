@@ -10,7 +10,7 @@
 #include "host/lab/report.hpp"
 #include "host/lab/run_files.hpp"
 #include "host/lab/tie/play_once.hpp"
-#include "host/lab/tie/seeds.hpp"
+#include "host/lab/tie/recordings.hpp"
 #include "protocol/scene/recorded_scene.hpp"
 #include "sim_device/operator/knots.hpp"
 #include "sim_device/script_hand.hpp"
@@ -23,6 +23,7 @@ struct Arguments {
   std::vector<std::string> overrides;
   std::string seeds = "1-20", out;
   double least = 0.95;
+  bool force = false;
   Trouble trouble;
 };
 
@@ -55,13 +56,15 @@ int execute(const Arguments& a) {
   (void)make_or_refuse(scene, a.scene);
   const auto script = load_script_or_refuse(a.script);
   check_reach(a, scene, script);
-  if (!a.out.empty()) make_folder(a.out);
+  if (!a.out.empty()) {
+    check_free(a.out, a.knot, seeds, a.force);
+    make_folder(a.out);
+  }
   const auto toml = scene::recorded_text(text, a.overrides, scene) + "\n# play " + a.script;
   int tied = 0, played = 0;
   std::printf("%6s  %-24s %8s %13s %14s %6s\n", "seed", "found", "seconds", "periods lost", "stood still, s", "fault");
   for (std::uint32_t seed = seeds.first; seed <= seeds.last && !console::stop_requested(); ++seed) {
-    const std::filesystem::path log =
-        a.out.empty() ? "" : a.out + "/" + a.knot + "-" + std::to_string(seed) + ".lcmlog";
+    const auto log = a.out.empty() ? std::filesystem::path() : recording_of(a.out, a.knot, seed);
     const auto p = play_once(scene, a.scene, toml, script, a.trouble, seed, log);
     ++played;
     tied += p.found == wanted;
@@ -100,6 +103,7 @@ void add_play_command(CLI::App& app, int& exit_code) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   play->add_option("--seeds", a->seeds, "N or FIRST-LAST: another day each")->capture_default_str();
   play->add_option("--out", a->out, "Folder for the recordings; without it there are none")->type_name("DIR");
+  play->add_flag("--force", a->force, "Replace the recordings of an earlier call");
   play->add_option("--least", a->least, "Share that must be that knot")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();

@@ -4,8 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "host/knot/recognise.hpp"
-#include "host/lab/outcome.hpp"
+#include "host/lab/rehearsal.hpp"
 #include "host/lab/rig/virtual_rig.hpp"
 #include "sim_device/operator/knot_tier.hpp"
 #include "sim_device/unrest.hpp"
@@ -75,9 +74,7 @@ Played play_once(const scene::Scene& scene, const std::string& scene_file, const
     played.stood_still_s += 1e-3 * static_cast<double>(r.time_lost);
     if (r.fault != 0) played.fault = r.fault;
   }
-  std::vector<std::array<double, 3>> shape;
-  for (const auto& p : rig.thread.nodes_W()) shape.push_back({p.x(), p.y(), p.z()});
-  const auto knot = knot::recognise(shape, false);
+  const auto knot = knot_of(rig.thread);
   played.found = knot.type + " " + knot.handedness;
   return played;
 }

@@ -10,7 +10,7 @@
 #include "host/lab/rehearsal.hpp"
 #include "host/lab/report.hpp"
 #include "host/lab/run_files.hpp"
-#include "host/lab/tie/seeds.hpp"
+#include "host/lab/tie/recordings.hpp"
 #include "host/lab/tie/tie_once.hpp"
 #include "protocol/scene/recorded_scene.hpp"
 #include "sim_device/operator/knot_tier.hpp"
@@ -31,6 +31,7 @@ struct Arguments {
   std::string out = "out/tie";
   std::string script_out;
   double script_within = 0.3;  // tolerance of the written script, in thread diameters
+  bool force = false;
 };
 
 constexpr const char* kFooter = R"(
@@ -43,7 +44,8 @@ Several knots or models end with a table.
 --script-out writes what the hands wanted, without their tremor and within the arm's reach, as a script for
 `ligature-device --operator`: it plays on a rig and does not look. `ligature-lab play` counts how often it ties.
 
-Exit: 0 done; 2 knot, scene or seeds refused; 3 fewer than 95 % tied of any knot in any model.
+DIR/results.csv has one row for each run. Exit: 0 done; 2 knot, scene or seeds refused; 3 fewer than 95 % tied of any
+knot in any model; 130 interrupted, what was done is kept.
 
 Examples:
   ligature-lab tie overhand figure-eight square granny surgeon --models paper-1,paper-4 --seeds 1-4
@@ -104,19 +106,26 @@ void write_script(const Arguments& a, const Cell& c, std::uint32_t seed, const H
               a.script_out.c_str(), digits(within_m).c_str());
 }
 
-/// Ties the knot once per seed and prints a line for each.
-Count tie_all(const Arguments& a, const Cell& c, const Seeds& seeds) {
-  make_folder(c.folder);
+std::string missed_in_one_cell(const Tied& t) {
+  std::string cell;
+  for (const auto& move : t.missed) cell += (cell.empty() ? "" : "; ") + move;
+  return cell;
+}
+
+/// Ties the knot once per seed; prints a line and adds a row to results.csv for each.
+Count tie_all(const Arguments& a, const Cell& c, const Seeds& seeds, std::string& results) {
   Count count;
   std::printf("%6s  %-20s %8s  %s\n", "seed", "found", "seconds", "moves given up");
   for (std::uint32_t seed = seeds.first; seed <= seeds.last && !console::stop_requested(); ++seed) {
     HandRecord hands(sim::WorkspaceMap(c.scene.hands));
-    const Tied t = tie_once(c.scene, c.file, c.toml, c.knot, seed, c.folder, a.script_out.empty() ? nullptr : &hands);
+    const Tied t = tie_once(c.scene, c.file, c.toml, c.knot, seed, recording_of(c.folder, c.knot, seed),
+                            a.script_out.empty() ? nullptr : &hands);
     ++count.tried;
     count.tied += t.good();
-    std::string missed;
-    for (const auto& m : t.missed) missed += (missed.empty() ? "" : ", ") + m;
-    std::printf("%6u  %-20s %8.1f  %s\n", seed, t.found.c_str(), t.seconds, missed.c_str());
+    std::printf("%6u  %-20s %8.1f  %s\n", seed, t.found.c_str(), t.seconds, missed_in_one_cell(t).c_str());
+    results += c.model + "," + c.knot + "," + std::to_string(seed) + "," + t.found + "," + digits(t.seconds) + "," +
+               (t.good() ? "1," : "0,") + missed_in_one_cell(t) + "\n";
+    write_text(a.out + "/results.csv", results);
     if (!a.script_out.empty() && t.good()) write_script(a, c, seed, hands);
     std::fflush(stdout);
   }
@@ -146,10 +155,14 @@ int execute(Arguments a) {
   std::vector<Cell> cells;
   for (const auto& model : a.models)
     for (const auto& knot : a.knots) cells.push_back(cell_of(a, knot, model));
+  for (const Cell& c : cells) check_free(c.folder, c.knot, seeds, a.force);
+  for (const Cell& c : cells) make_folder(c.folder);
+  std::string results = "model,knot,seed,found,seconds,tied,moves given up\n";
   std::vector<Count> counts;
   counts.reserve(cells.size());
-  for (const Cell& c : cells) counts.push_back(tie_all(a, c, seeds));
+  for (const Cell& c : cells) counts.push_back(tie_all(a, c, seeds, results));
   if (counts.size() > 1) print_table(a, counts);
+  if (console::stop_requested()) return kInterrupted;
   return std::all_of(counts.begin(), counts.end(), [](const Count& c) { return c.is_enough(); }) ? kDone : kRunFailed;
 }
 
@@ -169,6 +182,7 @@ void add_tie_command(CLI::App& app, int& exit_code) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   tie->add_option("--seeds", a->seeds, "N or FIRST-LAST: another operator each")->capture_default_str();
   tie->add_option("--out", a->out, "Folder for the recordings")->type_name("DIR")->capture_default_str();
+  tie->add_flag("--force", a->force, "Replace the recordings of an earlier call");
   tie->add_option("--script-out", a->script_out, "Of one run that ties: what the hands wanted, as a gripper script")
       ->type_name("FILE");
   tie->add_option("--script-within", a->script_within, "How near the script comes to it, in diameters of the thread")

@@ -37,26 +37,25 @@ class Person final : public SeeingOperator {
 }  // namespace
 
 Tied tie_once(const scene::Scene& scene, const std::string& scene_file, const std::string& scene_toml,
-              const std::string& knot, std::uint32_t seed, const std::filesystem::path& folder, HandRecord* hands) {
+              const std::string& knot, std::uint32_t seed, const std::filesystem::path& recording, HandRecord* hands) {
   auto made = sim::KnotTier::make(scene, knot, seed);
   if (const auto* why = std::get_if<std::string>(&made)) throw Refusal(scene_file + ": " + *why);
   Person person(std::get<sim::KnotTier>(std::move(made)), hands);
   Tied tied;
   tied.wanted = std::string(person.tier().knot().type) + " " + std::string(person.tier().knot().handedness);
-  tied.recording = folder / (knot + "-" + std::to_string(seed) + ".lcmlog");
-  std::filesystem::remove(tied.recording);
+  std::filesystem::remove(recording);
   RigSetup setup;
   setup.scene = scene;
   setup.seed = seed;
   setup.scene_file = scene_file;
   setup.scene_toml = scene_toml + "\n# tie " + knot + "\n# seed " + std::to_string(seed);
   VirtualRig rig(setup, person);
-  rig.record(tied.recording.string());
+  rig.record(recording.string());
   if (const auto why = rig.run(kMost_ticks, true)) throw std::runtime_error("the rig did not start: " + *why);
   tied.seconds = 1e-3 * static_cast<double>(rig.records.size());
   tied.missed = person.tier().missed();
   if (!person.is_done()) tied.missed.push_back("time");
-  const auto shape = host::read_polyline_log(tied.recording.string(), std::nullopt);
+  const auto shape = host::read_polyline_log(recording.string(), std::nullopt);
   const auto found = knot::recognise(shape.points, false);
   tied.found = found.type + " " + found.handedness;
   return tied;

@@ -17,16 +17,15 @@ struct Tied {
   std::string wanted, found;
   double seconds = 0.0;             ///< on the rig's clock, including the time in which the knot is watched
   std::vector<std::string> missed;  ///< moves of the operator that exceeded their time limit
-  std::filesystem::path recording;
   [[nodiscard]] bool good() const { return wanted == found; }
 };
 
 /// @param scene_toml as made by scene::recorded_text(); the operator's knot and seed are added.
-/// @param folder of KNOT-SEED.lcmlog; an existing file is replaced.  @param hands records the hands' motion.
+/// @param recording path of the LCM log; an existing file is replaced.  @param hands records the hands' motion.
 /// @throws Refusal for an unknown knot or a scene in which the operator cannot work; std::runtime_error when the rig
 /// does not start or the file cannot be created.
 [[nodiscard]] Tied tie_once(const scene::Scene& scene, const std::string& scene_file, const std::string& scene_toml,
-                            const std::string& knot, std::uint32_t seed, const std::filesystem::path& folder,
+                            const std::string& knot, std::uint32_t seed, const std::filesystem::path& recording,
                             HandRecord* hands = nullptr);
 
 }  // namespace ligature::lab

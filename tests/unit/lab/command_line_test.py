@@ -108,6 +108,30 @@ def interruption():
     assert complaint == "ligature-lab: validate: interrupted in overhand-hysteresis, nothing written\n", complaint
 
 
+def recordings(folder):
+    """A recording of an earlier call is replaced only when asked to, and nothing has run before the refusal."""
+    script = SCENES / "operators" / "suture-overhand.csv"
+    there = folder / "overhand-3.lcmlog"
+    for command in (["tie", "overhand"], ["play", script, "--scene", SCENES / "suture-3-0.toml", "--knot", "overhand"]):
+        there.write_text("an earlier one")
+        done = lab(*command, "--seeds", "1-5", "--out", folder)
+        assert done.returncode == 2 and done.stderr.count("\n") == 1, done
+        assert "overhand-3.lcmlog: exists" in done.stderr and "--force" in done.stderr, done.stderr
+        assert [path.name for path in folder.iterdir()] == [there.name] and there.read_text() == "an earlier one"
+    with subprocess.Popen([LAB, "tie", "overhand", "--scene", PAPER, "--seeds", "3-5", "--force", "--out", folder], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True) as tie:
+        for line in tie.stdout:
+            if line.split()[0] == "3":
+                break
+        tie.send_signal(signal.SIGINT)
+        tie.communicate(timeout=100)
+    assert tie.returncode == 130, tie.returncode
+    assert there.stat().st_size > 10_000  # with --force it is another
+    rows = list(csv.DictReader((folder / "results.csv").open()))
+    assert rows[0]["knot"] == "overhand" and rows[0]["seed"] == "3" and rows[0]["found"].startswith("3_1"), rows
+    assert len(rows) < 3
+
+
 def teaching():
     assert lab("--version").stdout.startswith("ligature-lab ")
     assert "Example" in lab("run", "--help").stdout
@@ -118,6 +142,8 @@ with tempfile.TemporaryDirectory() as name:
     good_run(pathlib.Path(name))
     failed_run(pathlib.Path(name))
     validation(pathlib.Path(name))
+with tempfile.TemporaryDirectory() as name:
+    recordings(pathlib.Path(name))
 interruption()
 teaching()
 print("ligature-lab: command line behaves")

@@ -1,0 +1,29 @@
+#pragma once
+// The recordings of several runs: DIR/KNOT-SEED.lcmlog each.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "host/lab/outcome.hpp"
+#include "host/lab/tie/seeds.hpp"
+
+namespace ligature::lab {
+
+[[nodiscard]] inline std::filesystem::path recording_of(const std::filesystem::path& folder, const std::string& knot,
+                                                        std::uint32_t seed) {
+  return folder / (knot + "-" + std::to_string(seed) + ".lcmlog");
+}
+
+/// Called before the first run, so that a refusal costs no work.
+/// @throws Refusal that names the first recording that is there already, unless `replace`.
+inline void check_free(const std::filesystem::path& folder, const std::string& knot, const Seeds& seeds, bool replace) {
+  if (replace) return;
+  for (std::uint32_t seed = seeds.first; seed <= seeds.last; ++seed) {
+    const auto path = recording_of(folder, knot, seed);
+    if (std::filesystem::exists(std::filesystem::symlink_status(path)))
+      throw Refusal(path.string() + ": exists; allowed: another --out, or --force to replace it");
+  }
+}
+
+}  // namespace ligature::lab
