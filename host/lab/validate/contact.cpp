@@ -29,7 +29,8 @@ Crossing crossing(const Subject& subject, const Row& row) {
   // The reference's thread T = T0 + EA (l / l0 - 1) equals a Hookean thread with stiffness EA - T0 and rest length l0
   // (EA - T0) / EA.
   const double EA = number(row, "EA_N") - number(row, "T0_A_N"), shorter = EA / number(row, "EA_N");
-  const auto [ka, kb] = shares_of(subject.nodes, a, b);
+  const auto shares = shares_of(subject.nodes, a, b);
+  const int ka = shares.a, kb = shares.b;
   auto scene = real_thread(subject, 1.0, 0.0);
   scene.suture.radius_m = 0.5 * d;
   const double l = 2.0 * a * shorter / ka;
