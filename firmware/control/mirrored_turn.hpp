@@ -1,5 +1,5 @@
 #pragma once
-// How much a joint's turn looks like an encoder that begins to count backwards.
+// Tells a joint that turns round from an encoder that begins to count backwards.
 
 #include <algorithm>
 #include <array>
@@ -8,34 +8,34 @@
 
 namespace ligature::control {
 
-/// From the sample x0 on, an encoder that was reversed tells 2 x0 - x. Told back, the two halves are one smooth curve.
-/// Those of a hand that turns with the acceleration a at speed u are not: it takes 2 u / a for it, and they lie a step
-/// of u^2 / a apart. Looked for is a turn whose halves, the second one told back, are one parabola but for what counts
-/// hide. A step of two counts is never taken for one: a hand of up to u^2 / 2 is
-/// honest, at 1.4 counts a period (70 mm/s at an Omni's tip) one of 49 m/s2. A slow hand turns with less, over more
-/// samples: the slower, the longer the halves that are looked at. How often the sharpest hands are suspected, and what
-/// is missed: docs/encoder-watch.md. All O(kLongest), no allocation.
+/// An encoder that is reversed at the sample x0 reports 2 x0 - x from there on. Mirrored at x0, the samples after the
+/// turn continue those before it as one smooth curve. A hand that turns at speed u with acceleration a needs the time
+/// 2 u / a for it, so its mirrored halves lie u^2 / a apart. The test: a turn is suspected when one parabola fits both
+/// halves, the second one mirrored, within the rounding to counts. Halves that lie two counts apart are never
+/// suspected: a hand at u counts a period is cleared up to the acceleration u^2 / 2, which is 49 m/s2 at 1.4 counts a
+/// period (70 mm/s at an Omni's tip). A slower hand has less acceleration, so longer halves are tested for it. False
+/// alarms and missed reversals: docs/encoder-watch.md. O(kLongest), no allocation.
 class MirroredTurn {
  public:
   struct Look {
-    std::size_t half;  ///< samples of a half
+    std::size_t half;  ///< samples in each half
     double moving;     ///< least speed at the turn, counts a period
-    double rough;      ///< rms, counts; counts alone make 0.29
-    bool alone;        ///< else another joint has to move on as before
+    double rough;      ///< largest rms residual of the parabola, counts; rounding alone makes 0.29
+    bool alone;        ///< false: suspected only if another joint moves on as before
   };
   static constexpr std::array<Look, 4> kLooks{
       {{6, 1.4, 0.4, true}, {12, 0.85, 0.4, true}, {24, 0.6, 0.4, true}, {24, 0.44, 0.36, false}}};
   static constexpr std::size_t kLongest = 24;
 
-  /// Speed at the turn, counts a period, of samples x(2 half - 1) .. x(0), the newest last; x(half) is the last true
-  /// one. 0: it is no turn, or no such one.
+  /// @param x samples x(2 half - 1) .. x(0), the newest is x(0); x(half) is the last one before the suspected reversal.
+  /// @return speed at the turn, counts a period; 0 where the samples do not turn, or not as a reversed encoder's do.
   template <class Sample>
   [[nodiscard]] static double speed(Sample x, const Look& look) noexcept {
     const std::size_t n = 2 * look.half;
     const double x0 = x(look.half), before = x0 - x(n - 1), after = x(0) - x0;
     const double least = 0.5 * look.moving * static_cast<double>(look.half);
     if (before * after >= 0.0 || std::min(std::abs(before), std::abs(after)) < least) return 0.0;
-    // The least squares' parabola, over polynomials that are orthogonal: 1, p, p^2 - spread.
+    // Least-squares parabola in the orthogonal polynomials 1, p, p^2 - spread.
     const double points = static_cast<double>(n), spread = (points * points - 1.0) / 12.0;
     double sum = 0.0, slope = 0.0, bend = 0.0, squares = 0.0, bends = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
