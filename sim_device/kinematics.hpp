@@ -80,6 +80,11 @@ class Linkage {
     const Vec3 bounded = is_serial() ? Vec3(q[0], q[1], q[2] - q[1]) : q;
     return (bounded.array() >= min_rad_.array()).all() && (bounded.array() <= max_rad_.array()).all();
   }
+  /// Whether the tip can be there with every joint between its stops.
+  [[nodiscard]] bool reaches(const Vec3& p_DT) const noexcept {
+    const auto q = joints(p_DT);
+    return q && is_within_stops(*q);
+  }
 
  private:
   device::Kinematics kind_;

@@ -32,8 +32,7 @@ class PassingHand final : public Intention {
 
 std::string objection_to(const scene::GripKey& key, const WorkspaceMap& map) {
   const Vec3 p_D = map.to_device(vec(key.p_W_m));
-  const auto q = map.linkage.joints(p_D);
-  if (q && map.linkage.is_within_stops(*q)) return {};
+  if (map.linkage.reaches(p_D)) return {};
   char line[200];
   std::snprintf(line, sizeof line,
                 "key at time %g s lies at (%.3f, %.3f, %.3f) m for the device, out of its reach; "

@@ -21,7 +21,7 @@ enum class Fault : std::int16_t {
   kVelocityLimit = 21,    ///< tip faster than kVelocityFault times the device's limit
   kEncoderFrozen = 22,    ///< a joint's reading suddenly stopped while the others moved on
   kAxisReversed = 23,     ///< a joint's reading reversed its motion within one period, as if its sign had flipped
-  kButtonsStuck = 24,     ///< the button module's counter stands still, or two redundant contacts disagree
+  kButtonsStuck = 24,     ///< the button module's counter stands still
   kForceStays = 25,       ///< force is still not zero long after the gain became 0
   kTorqueAstray = 26,     ///< a drive reports a torque that it was not asked for
   kOverrun = 30,          ///< the loop lost as many periods in a row as the watchdog allows

@@ -36,7 +36,7 @@ struct HandReading {
   bool valid = false;                ///< a complete set has arrived since the start
   bool enabled = false;              ///< every drive is in Operation enabled
   bool drive_fault = false;          ///< a drive is in Fault, sent an emergency or fell out of NMT operational
-  bool buttons_stuck = false;        ///< the button module's counter stands still, or contacts disagree
+  bool buttons_stuck = false;        ///< the button module's counter stands still
   bool torque_astray = false;        ///< a drive reports that its torque is neither the commanded one nor less
   bool bus_lost = false;             ///< the bus is lost
   Foreign foreign = Foreign::kNone;  ///< kind of the first frame from another controller in this run

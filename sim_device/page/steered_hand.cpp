@@ -43,16 +43,12 @@ SteeredHand::Motion SteeredHand::motion(double t_s) const noexcept {
 
 Vec3 SteeredHand::within_reach(const Vec3& p_D_m) const noexcept {
   constexpr int kHalvings = 20;  // a metre to a micrometre
-  const auto is_reached = [this](const Vec3& p) {
-    const auto q = linkage_.joints(p);
-    return q && linkage_.is_within_stops(*q);
-  };
-  if (is_reached(p_D_m)) return p_D_m;
+  if (linkage_.reaches(p_D_m)) return p_D_m;
   const Vec3& home = linkage_.home_D_m();
   double good = 0.0, bad = 1.0;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (good + bad);
-    (is_reached(home + middle * (p_D_m - home)) ? good : bad) = middle;
+    (linkage_.reaches(home + middle * (p_D_m - home)) ? good : bad) = middle;
   }
   return home + good * (p_D_m - home);
 }

@@ -1,9 +1,10 @@
 #pragma once
-// The linkage of the shipped device.
+// The linkage of the shipped device, and its place in the paper's scene.
 
 #include <optional>
 
 #include "sim_device/kinematics.hpp"
+#include "sim_device/workspace_map.hpp"
 
 namespace ligature::sim {
 
@@ -11,5 +12,15 @@ namespace ligature::sim {
 [[nodiscard]] inline Vec3 tip_D_m(const Vec3& q_rad) noexcept { return Linkage().tip_D_m(q_rad); }
 [[nodiscard]] inline Mat3 tip_jacobian_D(const Vec3& q_rad) noexcept { return Linkage().jacobian_D(q_rad); }
 [[nodiscard]] inline std::optional<Vec3> joints_of_tip(const Vec3& p_DT) noexcept { return Linkage().joints(p_DT); }
+
+inline constexpr double kPaperScale = 20.0;
+
+/// As scenes/paper.toml has it.
+[[nodiscard]] inline WorkspaceMap paper_map() {
+  scene::Hands hands;
+  hands.workspace_scale = kPaperScale;
+  hands.workspace_origin_m = {0.5, -0.4, 3.2};
+  return WorkspaceMap(hands);
+}
 
 }  // namespace ligature::sim

@@ -8,15 +8,6 @@
 namespace ligature::sim {
 namespace {
 
-constexpr double kScale = 20.0;
-
-WorkspaceMap paper_map() {
-  scene::Hands hands;
-  hands.workspace_scale = kScale;
-  hands.workspace_origin_m = {0.5, -0.4, 3.2};
-  return WorkspaceMap(hands);
-}
-
 scene::GripperScript overhand() {
   return std::get<scene::GripperScript>(
       scene::load_gripper_script(LIGATURE_SOURCE_DIR "/scenes/operators/overhand.csv"));

@@ -3,18 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "protocol/scene/monotone_cubic.hpp"
+#include "tests/unit/sim_device/omni.hpp"
 
 namespace ligature::sim {
 namespace {
-
-constexpr double kScale = 20.0;
-
-WorkspaceMap map() {
-  scene::Hands hands;
-  hands.workspace_scale = kScale;
-  hands.workspace_origin_m = {0.5, -0.4, 3.2};
-  return WorkspaceMap(hands);
-}
 
 scene::GripperScript script(double far_m = 0.2) {
   scene::GripperScript s;
@@ -28,7 +20,7 @@ scene::GripperScript script(double far_m = 0.2) {
 }
 
 std::unique_ptr<Intention> made(const scene::GripperScript& s, std::size_t hand) {
-  auto hands = script_hand(s, hand, map());
+  auto hands = script_hand(s, hand, paper_map());
   return std::get<std::unique_ptr<Intention>>(std::move(hands));
 }
 
@@ -39,8 +31,8 @@ TEST(ScriptHand, PassesWhereTheLabPasses) {
   for (double t_s = -1.0; t_s < 5.0; t_s += 0.037) {
     const auto intent = hand->at(t_s, {});
     const auto lab = scene::sample(s.keys[1], t_s);
-    EXPECT_LT((map().to_world(intent.p_DH) - Vec3(lab.p_W_m.data())).norm(), 1e-12) << t_s;
-    EXPECT_LT((kScale * intent.v_DH - Vec3(lab.v_W_m_per_s.data())).norm(), 1e-12) << t_s;
+    EXPECT_LT((paper_map().to_world(intent.p_DH) - Vec3(lab.p_W_m.data())).norm(), 1e-12) << t_s;
+    EXPECT_LT((kPaperScale * intent.v_DH - Vec3(lab.v_W_m_per_s.data())).norm(), 1e-12) << t_s;
     EXPECT_EQ(intent.grip, lab.grip) << t_s;
   }
   EXPECT_GT(hand->at(1.0, {}).v_DH.norm(), 0.0);  // in motion
@@ -58,13 +50,15 @@ TEST(ScriptHand, RefusesAKeyOutOfReachByItsTimeInEitherMotion) {
   for (const auto motion : {scene::Motion::kRests, scene::Motion::kMonotoneCubic}) {
     auto s = script(9.0);
     s.motion = motion;
-    const auto refused = script_hand(s, 1, map());
+    const auto refused = script_hand(s, 1, paper_map());
     ASSERT_TRUE(std::holds_alternative<std::string>(refused));
     EXPECT_NE(std::get<std::string>(refused).find("key at time 2.5 s"), std::string::npos);
   }
 }
 
-TEST(ScriptHand, AnAbsentHandRestsAtHome) { EXPECT_EQ(made(script(), 0)->at(3.0, {}).p_DH, map().linkage.home_D_m()); }
+TEST(ScriptHand, AnAbsentHandRestsAtHome) {
+  EXPECT_EQ(made(script(), 0)->at(3.0, {}).p_DH, paper_map().linkage.home_D_m());
+}
 
 }  // namespace
 }  // namespace ligature::sim
