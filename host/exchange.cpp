@@ -1,7 +1,7 @@
 #include "host/exchange.hpp"
 
-#include "host/fresh_id.hpp"
 #include "host/wall_clock.hpp"
+#include "protocol/lcm/fresh_id.hpp"
 
 namespace ligature::host {
 namespace {
@@ -12,7 +12,7 @@ using ligature_msg::command_t;
 
 Exchange::Exchange(std::int8_t kind, const std::string& text, double value) {
   command_.utime = now_us();
-  command_.id = fresh_id();
+  command_.id = lcm_tools::fresh_id();
   command_.kind = kind;
   command_.text = text;
   command_.value = value;

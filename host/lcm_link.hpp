@@ -7,15 +7,13 @@
 #include <vector>
 
 #include "host/messages.hpp"
+#include "protocol/lcm/default_url.hpp"
 
 namespace lcm {
 class LCM;
 }
 
 namespace ligature::host {
-
-/// ttl=0: packets stay on this machine. The receive buffer is large, because overflow of a small one loses messages.
-inline constexpr std::string_view kDefaultLcmUrl = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304";
 
 /// One received message.
 struct Message {

@@ -9,7 +9,7 @@ namespace ligature::host {
 
 struct RecordOptions {
   std::string out;
-  std::string lcm_url{kDefaultLcmUrl};
+  std::string lcm_url{lcm_tools::kDefaultUrl};
   double duration_s = 0.0;  // 0: until a signal comes
   // folders whose flight recorder files may be read; empty: the default ones
   std::vector<std::filesystem::path> flight_folders{};

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "protocol/lcm/default_url.hpp"
 #include "sim_device/hand.hpp"
 
 namespace ligature::sim {
@@ -16,7 +17,7 @@ struct Options {
   std::string bus;
   std::string scene;   ///< empty: default workspace
   std::string script;  ///< empty: the hand rests; "page": whoever steers it from a page
-  std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304";
+  std::string lcm_url{lcm_tools::kDefaultUrl};
   std::string stats;   ///< empty: none
   std::string faults;  ///< empty: nothing goes wrong
   std::vector<std::string> overrides;

@@ -1,8 +1,9 @@
 #include "firmware/telemetry/command_gate.hpp"
 
 #include <algorithm>
-#include <random>
 #include <utility>
+
+#include "protocol/lcm/fresh_id.hpp"
 
 namespace ligature::telemetry {
 namespace {
@@ -13,14 +14,9 @@ constexpr bool only_takes_force_away(std::int8_t kind) {
   return kind == command_t::KIND_STOP || kind == command_t::KIND_DISARM;
 }
 
-std::int64_t from_the_system() {
-  std::random_device device;
-  return static_cast<std::int64_t>(std::uint64_t{device()} << 32U | device());
-}
-
 }  // namespace
 
-CommandGate::CommandGate(std::int64_t session) : CommandGate(session, from_the_system) {}
+CommandGate::CommandGate(std::int64_t session) : CommandGate(session, lcm_tools::fresh_id) {}
 
 CommandGate::Judgement CommandGate::judge(const command_t& command, std::int64_t monotonic_us) {
   if (only_takes_force_away(command.kind)) return {true, 0, {}};

@@ -13,7 +13,7 @@ namespace ligature::host {
 
 void add_send(CLI::App& app) {
   struct Options {
-    std::string word, text, lcm_url{kDefaultLcmUrl};
+    std::string word, text, lcm_url{lcm_tools::kDefaultUrl};
     std::optional<double> value;
   };
   auto* command = app.add_subcommand("send", "Send the firmware a command and print its answer");

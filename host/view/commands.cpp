@@ -23,7 +23,7 @@ void add_address(CLI::App& command, ServerOptions& server) {
 void add_view(CLI::App& app) {
   auto* command = app.add_subcommand("view", "Show the running rig in a browser");
   const auto options = std::make_shared<ViewOptions>();
-  options->lcm_url = kDefaultLcmUrl;
+  options->lcm_url = lcm_tools::kDefaultUrl;
   add_address(*command, options->server);
   command->add_option("--token-file", options->token_file,
                       "file whose first line is the token that commands need; without it commands are given only "

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/fresh_id.hpp"
 #include "host/view/json_text.hpp"
 #include "host/wall_clock.hpp"
+#include "protocol/lcm/fresh_id.hpp"
 #include "protocol/scene/recorded_scene.hpp"
 
 namespace ligature::host::view {
@@ -94,7 +94,7 @@ std::string HandDesk::take(Hand& hand, std::uint64_t page, Clock::time_point now
   if (hand.page != 0 || hand.state->owner != 0) return "somebody else has the " + side + " hand";
   hand.page = page;
   hand.session = hand.state->session;
-  hand.owner = fresh_id();
+  hand.owner = lcm_tools::fresh_id();
   hand.sequence = 0;
   auto first = next_of(hand);  // the present position, so that the device is taken without moving
   first.grip = hand.state->grip;

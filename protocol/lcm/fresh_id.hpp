@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <random>
 
-namespace ligature::host {
+namespace ligature::lcm_tools {
 
 /// A random positive number that cannot be guessed, even with a wrong clock. Used as an identifier that no recording
 /// can contain.
@@ -12,4 +12,4 @@ namespace ligature::host {
   return static_cast<std::int64_t>(((std::uint64_t{device()} << 32U | device()) & kPositive) | 1U);
 }
 
-}  // namespace ligature::host
+}  // namespace ligature::lcm_tools

@@ -4,10 +4,10 @@
 #include <chrono>
 #include <cmath>
 #include <lcm/lcm-cpp.hpp>
-#include <random>
 
 #include "ligature_msg/hand_state_t.hpp"
 #include "ligature_msg/hand_wish_t.hpp"
+#include "protocol/lcm/fresh_id.hpp"
 #include "protocol/lcm/quiet_stderr.hpp"
 
 namespace ligature::sim {
@@ -16,12 +16,6 @@ namespace {
 constexpr const char* kWishChannel = "LIGATURE_HAND_WISH";
 constexpr const char* kStateChannel = "LIGATURE_HAND_STATE";
 constexpr int kMostWishesALook = 64;  // a flood holds nobody up
-
-std::int64_t fresh_number() {
-  std::random_device device;
-  constexpr std::uint64_t kPositive = ~(std::uint64_t{1} << 63U);
-  return static_cast<std::int64_t>((std::uint64_t{device()} << 32U | device()) & kPositive);
-}
 
 /// Every byte of what anybody may have sent must be a wish's.
 std::optional<ligature_msg::hand_wish_t> wish_of(const lcm::ReceiveBuffer& received) {
@@ -36,7 +30,7 @@ std::optional<ligature_msg::hand_wish_t> wish_of(const lcm::ReceiveBuffer& recei
 }  // namespace
 
 PageLink::PageLink(const std::string& url, bool is_left, SteeredHand& hand)
-    : hand_(hand), index_(is_left ? 0 : 1), holding_(fresh_number) {
+    : hand_(hand), index_(is_left ? 0 : 1), holding_(lcm_tools::fresh_id) {
   const lcm_tools::QuietStderr one_line_is_enough;
   lcm_ = std::make_unique<lcm::LCM>(url);
   if (!lcm_->good() || lcm_->subscribeFunction(kWishChannel, &PageLink::receive, this) == nullptr)

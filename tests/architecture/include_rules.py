@@ -31,7 +31,7 @@ RULES = {
     "firmware/app": (["firmware", "protocol", "ligature_msg"], ["CLI/", "spdlog/", "OS"]),
     # What a page may do to a simulated hand; separate from the firmware, which cannot include it.
     "sim_device/page": (["sim_device", "protocol/lcm", "ligature_msg"], ["ruckig/", "Eigen/", "lcm/", "OS"]),
-    "sim_device": (["protocol/can", "protocol/scene", "protocol/device", "sim_device/page"], ["ruckig/", "Eigen/", "CLI/", "spdlog/", "nlohmann/", "OS"]),
+    "sim_device": (["protocol/can", "protocol/scene", "protocol/device", "protocol/lcm/default_url.hpp", "sim_device/page"], ["ruckig/", "Eigen/", "CLI/", "spdlog/", "nlohmann/", "OS"]),
     "host/knot": ([], ["Eigen/"]),
     "host/console": (["host/errors.hpp"], ["OS"]),
     "host/lab/tie": (["firmware/physics", "sim_device", "protocol/scene", "host"], ["CLI/", "Eigen/", "OS"]),
