@@ -24,7 +24,7 @@ namespace ligature {
 // clang-format off
 template <class B>
 concept Bus = requires(B b, Nanoseconds deadline, const rt::RigCommand& command) {
-  // drives sample their encoders and apply the last RPDO's torque
+  // Drives sample their encoders and apply the last RPDO's torque
   { b.send_sync() } noexcept;
   { b.read_tpdos(deadline) } noexcept -> std::same_as<rt::RigReading>;  // returns as soon as all TPDOs have come
   { b.write_rpdos(command) } noexcept -> std::same_as<rt::WireTorque>;  // takes effect at the next SYNC
@@ -83,7 +83,7 @@ class Cycle {
       thread_.hand_over(tick_, controller_.tools(), thread_deadline_.before(wake_at_ + periods * kPeriod));
       physics_.wake();  // the physics may use the core until the next samples
       at.done = clock_.now();
-      // record of the previous period: its physics result is known only now
+      // Record of the previous period: its physics result is known only now
       log_.finish(thread_.result(), in.thread_late_ticks);
       log_.begin(tick_, at, clock_.worked() - worked_before, torque, controller_, thread_.orders(), in.grasp_age_ticks);
       const auto missed = (at.done - wake_at_) / kPeriod;

@@ -102,7 +102,7 @@ int main(int argc, char** argv) {
   if (const auto* why = std::get_if<std::string>(&body)) return refuse(*why);
   const sigset_t during_sleep = take_signals();
   auto found =
-      // started here, so that its threads have the signals blocked and normal priority
+      // Started here, so that its threads have the signals blocked and normal priority
       sim::mover_of(options, std::get<sim::Body>(body).plant.linkage);
   if (const auto* why = std::get_if<std::string>(&found)) return refuse(*why);
   auto& mover = std::get<sim::Mover>(found);

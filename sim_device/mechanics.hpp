@@ -13,7 +13,7 @@
 
 namespace ligature::sim {
 
-/// longest time step; intervals are divided into equal steps
+/// Longest time step; intervals are divided into equal steps
 inline constexpr Time kPlantStep = std::chrono::microseconds(100);
 inline constexpr double kDeadManAfterScript_s = 1.0;
 inline constexpr Time kPressesAgainAfter = std::chrono::milliseconds(200);

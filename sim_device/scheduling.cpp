@@ -10,7 +10,7 @@
 namespace ligature::sim {
 namespace {
 
-// below the controller's priority, which must never wait for the simulation
+// Below the controller's priority, which must never wait for the simulation
 constexpr int kPriority = 40;
 constexpr unsigned long kTimerSlack_ns = 1;  // the default of 50 us would delay every TPDO
 

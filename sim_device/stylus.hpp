@@ -10,7 +10,7 @@ namespace ligature::sim {
 struct Compliance {
   double tip_mass_kg = 0.0;                        ///< 0: rigid links, T = L
   Vec3 stiffness_N_per_m{1260.0, 2310.0, 1020.0};  ///< x, y, z: data sheet of the device class, as lower bounds
-  /// assumed: some per cent of critical damping, as for metal and plastic
+  /// Assumed: some per cent of critical damping, as for metal and plastic
   double damping_N_s_per_m = 0.5;
 
   /// Elastic links with 10 g of stylus and gimbal beyond the spring (assumed).

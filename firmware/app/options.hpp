@@ -35,7 +35,7 @@ struct RunOptions {
   bool force = false;    ///< run even if admission refuses
   double budget_percent = kDefaultBudget_percent;
   double no_loss_m_per_s = 0.0;  ///< hand speed up to which drawing a knot must lose no time; 0: no such demand
-  /// executable started as a child process to rehearse scenes that commands ask for
+  /// Executable started as a child process to rehearse scenes that commands ask for
   std::string program = "/proc/self/exe";
 };
 

@@ -132,7 +132,7 @@ std::optional<Refusal> configure(const Buses& buses, const RunOptions& options, 
   times.heartbeat_timeout_ms = std::max(times.heartbeat_timeout_ms, times.rpdo_timeout_ms);
   platform::PollWait wait(*buses.left, *buses.right);
   for (auto [hand, bus] : {std::pair{"left", buses.left.get()}, std::pair{"right", buses.right.get()}}) {
-    // waits on this bus only: unread frames of the other would wake us for nothing
+    // Waits on this bus only: unread frames of the other would wake us for nothing
     platform::PollWait alone(*bus, *bus);
     if (const auto why = platform::other_master(*bus, alone)) return Refusal{3, std::string(hand) + " hand: " + *why};
   }

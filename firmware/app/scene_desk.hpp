@@ -91,7 +91,7 @@ class SceneDesk {
   RunOptions options_;
   device::Device device_;
   std::string loop_excess_;  // why no scene is admitted (loop too slow); empty: no such reason
-  // contact budget of this machine in instructions; 0: unknown, as the launch's model has none
+  // Contact budget of this machine in instructions; 0: unknown, as the launch's model has none
   long work_;
   Launch launch_;
   std::vector<std::string> scenes_;

@@ -6,7 +6,7 @@
 namespace ligature::control {
 namespace {
 
-// lower bound of 1 - |x|: near a singular pose the allowed force goes to 0 without NaN
+// Lower bound of 1 - |x|: near a singular pose the allowed force goes to 0 without NaN
 constexpr double kNearStretched = 1e-6;
 
 /// Smallest and largest |x| for x in [low, high].

@@ -70,7 +70,7 @@ void Controller::change_force_scale(double force_scale) noexcept {
 void Controller::step_force_scale() noexcept {
   const double now = hands_[0].force_scale(), left = scale_goal_ - now;
   if (left == 0.0) return;
-  // set exactly, so that rounding errors of the steps do not remain
+  // Set exactly, so that rounding errors of the steps do not remain
   const bool arrives = std::abs(left) <= scale_step_ * (1.0 + 1e-9);
   for (HandControl& h : hands_) h.set_force_scale(arrives ? scale_goal_ : now + std::copysign(scale_step_, left));
 }

@@ -19,12 +19,12 @@ namespace ligature::control {
 using rt::kPeriod_s;
 
 struct Settings {
-  /// limit, in ticks, for the age of joint messages, for lost periods in a row and for physics lateness; reaching it is
+  /// Limit, in ticks, for the age of joint messages, for lost periods in a row and for physics lateness; reaching it is
   /// a fault
   std::int32_t watchdog_ticks = 20;
   bool armed = false;  ///< at start; a fault or a disarm clears it
   device::Device device = device::omni();
-  /// false: the hands' accounts lend no energy to each other, so no hand can be pulled by the other (for experiments)
+  /// False: the hands' accounts lend no energy to each other, so no hand can be pulled by the other (for experiments)
   bool lending = true;
 };
 

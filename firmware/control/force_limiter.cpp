@@ -31,7 +31,7 @@ Vec3 ForceLimiter::limit(const Vec3& wish_N, const MostByJoints& most) noexcept 
   if (size_N <= allowance_N_) return capped.f_N;
   codes_ |= allowance_N_ < step_N_ ? rt::kSlewLimit : rt::kStepLimit;
   constexpr double kRounding = 1.0 - 4.0 * std::numeric_limits<double>::epsilon();
-  // on the line between two allowed forces, so allowed
+  // On the line between two allowed forces, so allowed
   return before_N_ + change * (allowance_N_ * kRounding / size_N);
 }
 

@@ -7,7 +7,7 @@
 namespace ligature::control {
 namespace {
 
-// tip force per joint torque above which a pose counts as singular: 1 / 2.5 mm
+// Tip force per joint torque above which a pose counts as singular: 1 / 2.5 mm
 constexpr double kSingular_per_m = 400.0;
 constexpr double kAbove_m = 0.01;  // height of the parked tip above the workspace's floor
 
@@ -137,19 +137,19 @@ std::array<double, rt::kJoints> HandControl::command(std::int64_t tick) noexcept
   Vec3 torque_Nm = Vec3::Zero(), paid_N = Vec3::Zero();
   if (!lets_go_) {
     const auto torque = [this](const Vec3& f) { return sendable_torque(f); };
-    // force of the last torques in the present pose: sending the same torques again changes nothing
+    // Force of the last torques in the present pose: sending the same torques again changes nothing
     const Vec3 before_N = from_torque_ * torque_Nm_;
     paid_N = passivity_.control(tick, decided_N_, v_DT_, before_N, torque);
     torque_Nm = sendable_torque(paid_N);
-    // can fail only by rounding
+    // Only rounding can violate the step limit here; then the last torques are repeated.
     if (!passivity_.released() && !passivity_.is_a_step(torque_Nm)) torque_Nm = torque_Nm_;
-    // the hand exceeds the acceleration bound, or frames are lost: all force is removed
+    // The hand exceeds the acceleration bound, or frames are lost: all force is removed
     if (passivity_.released()) end_move();
     if (passivity_.acts()) limits |= rt::kPassivityLimit;
     if (passivity_.stepped()) limits |= rt::kStepLimit;
     const Vec3 exact_Nm = jacobian_.transpose() * paid_N;
     if (exact_Nm.lpNorm<Eigen::Infinity>() > max_torque_Nm_) limits |= rt::kTorqueLimit;
-    // passivity may have turned the force's direction, so the limits are checked again
+    // Passivity may have turned the force's direction, so the limits are checked again
     paid_N *= std::min({1.0, safe_share(exact_Nm), windings_.share(exact_Nm)});
   }
   if (torque_Nm.isZero(0.0)) paid_N = Vec3::Zero();

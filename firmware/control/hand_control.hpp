@@ -31,7 +31,7 @@ struct HandState {
   Vec3 f_device_N = Vec3::Zero();  ///< after gain, limits and passivity, as made by the torques sent
   double gain = 0.0;
   double port_energy_J = 0.0, dissipated_J = 0.0, injected_N_s_per_m = 0.0, heat = 0.0;
-  /// part of port_energy_J that was received: lent by the other hand's account, or granted for a guided move
+  /// Part of port_energy_J that was received: lent by the other hand's account, or granted for a guided move
   double received_J = 0.0;
   std::int16_t limits = 0;     ///< rt::LimitCode bits
   bool limited = false;        ///< f_device_N is at a magnitude limit while the gain is 1

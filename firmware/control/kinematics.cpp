@@ -59,14 +59,14 @@ std::array<bool, 3> Linkage::far_from_stops(const JointAngles& q_rad) const noex
   std::array<bool, 3> far{};
   for (std::size_t j = 0; j < far.size(); ++j)
     far[j] = stop[j] > min_rad_[j] + kFar_rad && stop[j] < max_rad_[j] - kFar_rad;
-  // the stop between the links limits both joints
+  // The stop between the links limits both joints
   if (kind_ == device::Kinematics::kOmniSerial) far[1] = far[1] && far[2];
   return far;
 }
 
 bool Linkage::is_plausible(const JointAngles& q_rad) const noexcept {
   JointAngles stop = q_rad;
-  if (kind_ == device::Kinematics::kOmniSerial) stop[2] -= q_rad[1];  // the links' stop is on the angle between them
+  if (kind_ == device::Kinematics::kOmniSerial) stop[2] -= q_rad[1];  // the stop limits the angle between the links
   for (std::size_t j = 0; j < stop.size(); ++j) {
     const bool within = stop[j] >= min_rad_[j] - kPlausible_rad && stop[j] <= max_rad_[j] + kPlausible_rad;
     if (!within) return false;  // also for NaN

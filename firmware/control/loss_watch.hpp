@@ -22,7 +22,7 @@ class LossWatch {
 
   explicit LossWatch(std::int32_t watchdog_ticks = 20) noexcept : most_(std::max(kMost, 3 * watchdog_ticks)) {}
 
-  /// This tick's reading.
+  /// Counts the losses in this tick's reading.
   void look(const rt::HandReading& reading) noexcept {
     const bool fresh = reading.valid && reading.age_ticks != last_age_ + 1;
     last_age_ = reading.age_ticks;

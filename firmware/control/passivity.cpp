@@ -24,7 +24,7 @@ void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {
   if (sampled_ >= 0 && tick > sampled_) {
     if (tick > sampled_ + 1) lossy_until_ = tick + kWary;
     for (Eigen::Index j = 0; j < 3; ++j) {
-      // the velocity estimate lags if the joint is fast
+      // The velocity estimate lags if the joint is fast
       const double turned_rad = periods * period_s_ * s.rate_rad_per_s[j];
       if (std::abs(turned_rad) < kSlowCounts * periods * s.count_rad)
         q_rad[j] = std::clamp(q_rad_[j] + turned_rad, counted_rad[j] - half_rad, counted_rad[j] + half_rad);
@@ -152,7 +152,7 @@ double Passivity::shortage_J(std::int64_t tick, const Vec3& f_N, bool and_back) 
 /// Adds damping against the motion, limited to one step.
 Vec3 Passivity::damped(std::int64_t tick, const Vec3& wish_N, const Vec3& v, const Vec3& before_N) noexcept {
   const double speed = v.norm();
-  // the force takes energy from the hand: no damping needed
+  // The force takes energy from the hand: no damping needed
   if (wish_N.dot(v) <= 0.0 || speed <= kSlow_m_per_s) return wish_N;
   injected_ = std::min(kMaxDamping_N_s_per_m, shortage_J(tick, wish_N) / (period_s_ * speed * speed));
   dissipated_J_ += injected_ * speed * speed * period_s_;

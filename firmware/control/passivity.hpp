@@ -66,18 +66,18 @@ class Passivity {
  public:
   static constexpr double kFloor_J = 1e-6;
   static constexpr double kCredit_J = 0.02;  ///< the energy of a 3.3 N spring of 270 N/m, or of 0.88 N at 19 N/m
-  /// the most that a device of this class renders stably at 1 kHz
+  /// The most that a device of this class renders stably at 1 kHz
   static constexpr double kMaxDamping_N_s_per_m = 5.0;
   static constexpr std::int64_t kWary = 10'000;  ///< ticks after a lost RPDO in which another loss is anticipated
-  /// factor on the acceleration bound after two periods without a sample
+  /// Factor on the acceleration bound after two periods without a sample
   static constexpr double kLater = 0.3;
   static constexpr double kMore = 3.0;  ///< further periods of the present motion that must be paid for
-  /// forces up to this are exempt when frames are lost; otherwise no force could begin
+  /// Forces up to this are exempt when frames are lost; otherwise no force could begin
   static constexpr double kSlight_N = 0.006;
-  /// per period; a slower joint's position is interpolated between counts
+  /// Per period; a slower joint's position is interpolated between counts
   static constexpr double kSlowCounts = 0.25;
   static constexpr double kSlow_m_per_s = 5e-3;  ///< below this speed the velocity is mostly quantisation noise
-  /// factor on the step limit in any pose, in case encoders are wrong: 0.52 N
+  /// Factor on the step limit in any pose, in case encoders are wrong: 0.52 N
   static constexpr double kAnyPose = 1.04;
 
   Passivity(const device::Device& device, double period_s, bool active, double credit_J) noexcept;
@@ -149,18 +149,18 @@ class Passivity {
     received_J_ = granted_J_ = 0.0;
   }
 
-  /// false: the account is kept but never limits the force. @pre no force flows.
+  /// False: the account is kept but never limits the force. @pre no force flows.
   void set_active(bool active) noexcept { active_ = active; }
 
   /// Energy put in by this hand, minus energy returned to it, plus what lend() and grant() added.
   [[nodiscard]] double energy_J() const noexcept { return energy_J_; }
-  /// added by lend() and grant() since the start
+  /// Added by lend() and grant() since the start
   [[nodiscard]] double received_J() const noexcept { return received_J_; }
   [[nodiscard]] double dissipated_J() const noexcept { return dissipated_J_; }
   [[nodiscard]] double injected_N_s_per_m() const noexcept { return injected_; }
   [[nodiscard]] bool acts() const noexcept { return acts_; }
   [[nodiscard]] bool stepped() const noexcept { return stepped_; }  ///< the wish was more than one step away
-  /// all force was removed: the hand exceeds the acceleration bound, or frames are lost
+  /// All force was removed: the hand exceeds the acceleration bound, or frames are lost
   [[nodiscard]] bool released() const noexcept { return released_; }
   /// Whether lost frames are anticipated in this tick.
   [[nodiscard]] bool is_wary(std::int64_t tick) const noexcept { return tick > sampled_ || tick < lossy_until_; }
@@ -226,11 +226,11 @@ class Passivity {
 
   [[nodiscard]] double step_along_N(const Vec3& along) const noexcept;
 
-  double period_s_, reach_m_, step_N_;  // reach: a T^2
+  double period_s_, reach_m_, step_N_;  // reach: acceleration bound times T^2
   AnyPose any_pose_;
   bool active_;
   double credit_J_, energy_J_, received_J_ = 0.0, granted_J_ = 0.0, dissipated_J_ = 0.0, injected_ = 0.0;
-  // error of step_m_ by encoder counts, and by unseen motion between two samples
+  // Error of step_m_ by encoder counts, and by unseen motion between two samples
   double count_m_ = 0.0, doubt_m_ = 0.0;
   bool acts_ = false, stepped_ = false, released_ = false;
   Mat3 tip_N_per_Nm_ = Mat3::Identity(), Nm_per_tip_N_ = Mat3::Identity();

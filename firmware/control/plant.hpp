@@ -12,9 +12,9 @@ namespace ligature::control {
 struct Plant {
   physics::Simulation thread;
   scene::Hands hands;
-  /// true: new parameters, the thread continues from its present state; false: another scene, from its start
+  /// True: new parameters, the thread continues from its present state; false: another scene, from its start
   bool keeps_motion = false;
-  /// set by the loop; false: refused, because force may flow or the parameters do not fit the thread
+  /// Set by the loop; false: refused, because force may flow or the parameters do not fit the thread
   bool taken = false;
   std::int64_t first_tick = -1;  ///< set by the loop: first tick with this plant
 };

@@ -18,7 +18,7 @@ namespace ligature::platform {
 
 /// One expedited SDO transfer: sends the request and waits for its answer; other frames are skipped.
 struct SdoAnswer {
-  /// empty: no answer in time, another controller was heard, or the bus is lost
+  /// Empty: no answer in time, another controller was heard, or the bus is lost
   std::optional<can::Sdo> sdo;
   std::optional<std::string> other_master{};  ///< description of another controller that was heard meanwhile
 };

@@ -24,7 +24,7 @@ inline constexpr std::chrono::nanoseconds kMostWork = kPeriod - kSamplesLatest -
 class ThreadDeadline {
  public:
   static constexpr std::chrono::nanoseconds kMargin = std::chrono::microseconds(25);
-  /// per period, by which the earliest time relaxes
+  /// Per period, by which the earliest time relaxes
   static constexpr std::chrono::nanoseconds kForgets = std::chrono::nanoseconds(20);
 
   /// Records that the samples were complete this long after the wake-up.

@@ -13,7 +13,7 @@ namespace ligature::rt {
 template <class T>
 class Handover {
  public:
-  /// Lender: @pre the last object has been collected.
+  /// Lender: lends an object. @pre the previous one has been collected.
   void offer(T* object) noexcept { forth_.store(object, std::memory_order_release); }
   /// Lender: the returned object, or nullptr.
   [[nodiscard]] T* collect() noexcept { return swap_out(back_); }

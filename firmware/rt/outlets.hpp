@@ -16,8 +16,8 @@ namespace ligature::rt {
 struct Outlets {
   static constexpr std::size_t kRecords = 8192;  ///< 8 s of buffer if the telemetry thread is delayed
 
-  SpscRing<TickRecord> records{kRecords};  ///< real time -> telemetry, one a period
-  /// real time -> flight recorder, the same records; set before the loop starts
+  SpscRing<TickRecord> records{kRecords};  ///< real time -> telemetry, one per period
+  /// Real time -> flight recorder, the same records; set before the loop starts
   SpscRing<TickRecord>* flight = nullptr;
   LatestValue<ThreadSnapshot> shape;  ///< real time -> telemetry
   SpscRing<Command> commands{64};     ///< telemetry -> real time

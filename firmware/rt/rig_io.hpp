@@ -40,7 +40,7 @@ struct HandReading {
   bool torque_astray = false;        ///< a drive reports that its torque is neither the commanded one nor less
   bool bus_lost = false;             ///< the bus is lost
   Foreign foreign = Foreign::kNone;  ///< kind of the first frame from another controller in this run
-  /// share of the previous period in which this hand's bus was busy, stuff bits included
+  /// Share of the previous period in which this hand's bus was busy, stuff bits included
   float bus_load = 0.0F;
   std::int32_t age_ticks = 0;  ///< periods since the last complete set; 0: sampled at this period's SYNC
 };

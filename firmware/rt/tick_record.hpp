@@ -98,7 +98,7 @@ struct TickRecord {
   std::int32_t thread_done_ns = 0;
   std::int32_t thread_work_ns = 0;
   std::int8_t thread_end = 0;  ///< physics::TickEnd
-  /// index of the deadline query at which the tick was ended; -1: not ended by the deadline
+  /// Index of the deadline query at which the tick was ended; -1: not ended by the deadline
   std::int32_t thread_cut_at = -1;
   float time_lost = 0.0F;  ///< share of the tick in which the thread was not moved
 
@@ -124,7 +124,7 @@ struct ThreadSnapshot {
   std::array<std::int16_t, kHands> grasped_node{-1, -1};
   std::array<std::array<float, 3>, kMaxNodes> p_W_m{};
   std::array<float, kMaxNodes> tension_N{};  ///< tension of the segment after each node
-  /// angle of the material frame against the twist-free frame that starts at node 0
+  /// Angle of the material frame against the twist-free frame that starts at node 0
   std::array<float, kMaxNodes> turn_rad{};
 };
 

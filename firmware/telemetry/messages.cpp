@@ -103,7 +103,7 @@ namespace {
 /// @return whether the length field of a command_t's text matches the size of the message
 bool text_fits(std::span<const std::byte> message) {
   constexpr std::size_t kLength =
-      // offset of the text's length (4 bytes, big-endian): after hash, utime, id, session, challenge, kind
+      // Offset of the text's length (4 bytes, big-endian): after hash, utime, id, session, challenge, kind
       8 + 8 + 8 + 8 + 8 + 1;
   constexpr std::size_t kRest = kLength + 4 + 8;  // length field and the final `value`
   if (message.size() <= kRest) return false;

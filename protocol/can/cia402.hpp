@@ -20,7 +20,7 @@ enum class State : std::uint8_t {
   kFault,
 };
 
-/// Commands by controlword, and events inside the drive.
+/// Commands with their controlword bits (x: any value), and events inside the drive.
 enum class Event : std::uint8_t {
   kInitialised,        // inside the drive: self test done
   kShutdown,           // xxxx x110
@@ -48,7 +48,7 @@ inline constexpr std::array kStatusPatterns{
 // Statusword bits outside the state pattern.
 inline constexpr std::uint16_t kVoltageEnabledBit = 1U << 4;
 inline constexpr std::uint16_t kRemoteBit = 1U << 9;
-/// torque is less than commanded: clipped at 0x6072, or the drive protects its winding
+/// Torque is less than commanded: clipped at 0x6072, or the drive protects its winding
 inline constexpr std::uint16_t kInternalLimitBit = 1U << 11;
 inline constexpr std::uint16_t kFollowsTargetBit = 1U << 12;  ///< CST mode: the drive follows the target torque
 /// Manufacturer-specific bit: the torque made is not between zero and the commanded one.

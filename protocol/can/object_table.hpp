@@ -39,7 +39,7 @@ struct ObjectRow {
   DataType type = DataType::kU8;
   Access access = Access::kReadOnly;
   std::int64_t initial = 0;
-  std::string_view name;      ///< of the entry
+  std::string_view name;      ///< name of the entry
   std::string_view group;     ///< name of the whole index; empty for an index without sub-indices
   bool adds_node_id = false;  ///< initial contains the node id ($NODEID in the EDS)
 };

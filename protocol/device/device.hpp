@@ -35,14 +35,14 @@ struct Device {
   // Drives; values refer to the joint.
   int motor_counts = 0;                ///< encoder counts per motor revolution, after quadrature
   double gear = 1.0;                   ///< motor revolutions per joint revolution
-  double rated_torque_Nm = 0.0;        ///< 0x6076
-  int max_torque_permille = 0;         ///< 0x6072
+  double rated_torque_Nm = 0.0;        ///< object 0x6076
+  int max_torque_permille = 0;         ///< object 0x6072
   int torque_tolerance_permille = 50;  ///< a drive's reported torque may exceed the commanded one by this
   double delay_s = 0.0;                ///< from a position sample to the effect of the torque computed from it
 
   // Passive dynamics of the device when it is off, at the tip in the home pose.
   double apparent_mass_kg = 0.0;
-  double damping_N_s_per_m = 0.0;  ///< b
+  double damping_N_s_per_m = 0.0;  ///< viscous damping b
   double coulomb_N = 0.0;
 
   // Limits.
@@ -57,7 +57,9 @@ struct Device {
 
   [[nodiscard]] double counts_per_revolution() const noexcept { return motor_counts * gear; }
   [[nodiscard]] double rad_per_count() const noexcept { return 2.0 * std::numbers::pi / counts_per_revolution(); }
-  [[nodiscard]] double Nm_per_permille() const noexcept { return rated_torque_Nm * 1e-3; }  ///< the torque quantum
+  [[nodiscard]] double Nm_per_permille() const noexcept {
+    return rated_torque_Nm * 1e-3;
+  }  ///< torque quantum: resolution on the bus
   [[nodiscard]] double max_torque_Nm() const noexcept { return Nm_per_permille() * max_torque_permille; }
 };
 

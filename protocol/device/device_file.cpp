@@ -160,7 +160,7 @@ std::variant<Device, Error> load_device(const std::filesystem::path& path) {
 const Device& omni() {
   static const Device device = [] {
     auto parsed = parse_device(kOmniText, "scenes/devices/omni.toml");
-    // impossible in practice: a test parses the same text
+    // Impossible in practice: a test parses the same text
     if (auto* error = std::get_if<Error>(&parsed)) throw std::logic_error(error->text);
     return std::get<DeviceFile>(parsed).device;
   }();

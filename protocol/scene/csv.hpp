@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "protocol/scene/cells.hpp"  // parse_number, for those who read rows
+#include "protocol/scene/cells.hpp"  // parse_number, for readers of rows
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::scene {

@@ -23,7 +23,7 @@ struct GripKey {
   double time_s = 0.0;
   Vec p_W_m{};
   bool grip = false;
-  /// rotation vector of the tool since its rest pose, about the axes of W; may exceed 360
+  /// Rotation vector of the tool since its rest pose, about the axes of W; may exceed 360
   Vec turn_deg{};
   Vec v_W_m_per_s{}, turn_deg_per_s{};  ///< velocities with which the hand passes the key; zero: it stops there
 };

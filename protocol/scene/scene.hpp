@@ -16,7 +16,7 @@ using Vec = std::array<double, 3>;
 enum class Model : std::uint8_t { kPaper1, kPaper2, kPaper3, kPaper4, kPaper5, kRod };
 enum class ContactSolver : std::uint8_t { kNone, kPaper, kImplicit };
 enum class BroadPhase : std::uint8_t { kAuto, kBrute, kSweep, kBvh };
-/// from the rate of the dihedral angle of four points, or the paper's (13)-(15)
+/// From the rate of the dihedral angle of four points, or the paper's (13)-(15)
 enum class SwivelDamper : std::uint8_t { kInternal, kPaper };
 enum class QuadraticStretch : std::uint8_t {
   kStiff,
@@ -66,7 +66,7 @@ struct RodParameters {
   double air_drag_per_s = 5.0;         ///< acceleration -c v
   Spacing spacing = Spacing::kAdaptive;
   Accuracy accuracy = Accuracy::kBalanced;
-  /// contact budget per tick, in instructions; 0: by `accuracy`, or what the machine can afford
+  /// Contact budget per tick, in instructions; 0: by `accuracy`, or what the machine can afford
   int work_instructions = 0;
 };
 
@@ -76,7 +76,7 @@ struct Suture {
   double length_m = 5.0;
   double radius_m = 0.05;
   std::string initial = "hanging";  ///< "hanging": straight down from node 0; else the file name of the shape
-  /// empty if hanging; else equally spaced, one point per node, or denser for a rod with adaptive spacing
+  /// Empty if hanging; else equally spaced, one point per node, or denser for a rod with adaptive spacing
   std::vector<Vec> initial_polyline_m;
   PaperParameters paper;
   RodParameters rod;
@@ -89,7 +89,7 @@ struct Contact {
   bool turns_thread = false;              ///< whether friction can roll the thread about its axis; rod model only
   double repulsion_N_per_m = 100.0;       ///< k_rs of (2), solver "paper" only
   double repulsion_N_s_per_m = 5.0;       ///< k_rd of (2), solver "paper" only
-  /// key contact.friction_cap; solver "paper": friction at most stops slip; false: as printed
+  /// Key contact.friction_cap; solver "paper": friction at most stops slip; false: as printed
   bool friction_cap = true;
   BroadPhase broad_phase = BroadPhase::kAuto;
 };
@@ -131,7 +131,7 @@ struct Hands {
   double coupling_N_s_per_m = 6.0;
   std::optional<double> reach_m;  ///< jaws grip thread within this distance of the tip; absent: at any distance
   double pinch_width_m = 0.0;     ///< jaws hold all nodes within their width, and their direction; 0: one node
-  /// force of each jaw on the thread, which slips at 2 mu times this; absent: never slips
+  /// Force of each jaw on the thread, which slips at 2 mu times this; absent: never slips
   std::optional<double> pinch_force_N;
   /// Stiffness of the coupling's device side, at the device; absent: rigid, the tool is where the device is.
   std::optional<double> device_N_per_m;

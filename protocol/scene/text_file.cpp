@@ -42,7 +42,7 @@ std::variant<std::string, Error> read_text(const std::filesystem::path& path, st
                                                    : "cannot be read: found a pipe or device, allowed a regular file");
   }
   const auto size = static_cast<std::size_t>(found.st_size);
-  // one byte more than expected reveals a file that is too long or growing
+  // One byte more than expected reveals a file that is too long or growing
   auto read = all_of(fd, std::min(size, most_bytes) + 1);
   ::close(fd);
   if (const int* error = std::get_if<int>(&read))

@@ -94,7 +94,7 @@ Move draw_through(std::shared_ptr<Loop> loop, const Throw& t, Vec3 direction) {
             const double out = std::max(0.0, way.dot(h.p_W() - corner)), step = 0.1 * look.place.length_m;
             h.goal_W = corner + (out + step) * way + look.place.clearance_m * side;
             const double pull_N = -way.dot(look.sight.force_W_N[kRightHand]);
-            // the end must first be past the corner, even if it catches on something
+            // The end must first be past the corner, even if it catches on something
             if (out < step && look.in_move_s < 8.0) return false;
             if (loop->around_m() > 20.0 * look.place.diameter_m && pull_N < 0.5 * look.place.tension_N) return false;
             h.goal_W = h.p_W();

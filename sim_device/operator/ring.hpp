@@ -17,7 +17,7 @@ class Ring {
   [[nodiscard]] const Vec3& centre() const noexcept { return centre_; }
   /// Unit normal of the area vector A = 1/2 sum (p_k - c) x (p_k+1 - c), by the right-hand rule.
   [[nodiscard]] const Vec3& normal() const noexcept { return normal_; }
-  /// A|, m^2: area of the projection along the normal.
+  /// |A|, m^2: area of the projection along the normal.
   [[nodiscard]] double area_m2() const noexcept { return area_m2_; }
 
  private:

@@ -17,7 +17,7 @@ struct Sight {
   double t_s = 0.0;
   std::span<const Vec3> thread_W;
   std::array<Vec3, 2> tool_W{Vec3::Zero(), Vec3::Zero()};
-  /// force felt by each hand, world newtons; 0: nothing held
+  /// Force felt by each hand, world newtons; 0: nothing held
   std::array<Vec3, 2> force_W_N{Vec3::Zero(), Vec3::Zero()};
   std::array<bool, 2> holds{true, true};  ///< whether thread is between the jaws; only meaningful for closed jaws
 };

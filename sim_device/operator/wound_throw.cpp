@@ -13,9 +13,9 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kRadius = 1.1;                        // of the helix, in clearances
 constexpr double kFirst = 0.3, kLast = 0.8;            // start and end of the helix, as shares of the standing part
 const Vec3 kOut = Vec3(0.85, 0.0, 0.52).normalized();  // direction of the standing part: to the right and up
-// direction in which the end is drawn: past the corner and down
+// Direction in which the end is drawn: past the corner and down
 const Vec3 kAway = Vec3(0.89, 0.0, -0.45).normalized();
-// almost straight down: the thread's own hanging end may be out of reach
+// Almost straight down: the thread's own hanging end may be out of reach
 const Vec3 kHang = Vec3(0.3, 0.0, -1.0).normalized();
 
 /// Pull in multiples of a tight knot's pull, larger for short thick threads, because length that stays in a loose knot
