@@ -75,7 +75,7 @@ void LocalPort::accept_clients() {
     FileDescriptor client(accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (!client) return;
     const auto slot = std::find_if(clients_.begin(), clients_.end(), [](const FileDescriptor& c) { return !c; });
-    if (slot != clients_.end()) *slot = std::move(client);  // no free slot: the connection is closed
+    if (slot != clients_.end()) *slot = std::move(client);  // without a free slot the connection is closed
   }
 }
 

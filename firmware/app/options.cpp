@@ -29,7 +29,7 @@ could not be started.)";
 const std::map<std::string, RtMode> kModes{
     {"enforce", RtMode::kEnforce}, {"warn", RtMode::kWarn}, {"off", RtMode::kOff}};
 
-/// CLI::Range accepts nan, because every comparison with nan is false.
+/// CLI::Range accepts nan, because every comparison with nan is false; this validator refuses it.
 CLI::Validator within(double low, double high) {
   const std::string allowed = CLI::detail::to_string(low) + " .. " + CLI::detail::to_string(high);
   return {[=](const std::string& word) {

@@ -17,8 +17,8 @@ struct Phases {
 };
 
 /// A period's record needs the physics result, which comes in the next period: begin() is called in the period,
-/// finish() in the next one, with the result or if it is late. Lost periods repeat the record, flagged. No allocation
-/// after construction.
+/// finish() in the next one, when the result has come or is late. Lost periods repeat the record, flagged. No
+/// allocation after construction.
 class PeriodLog {
  public:
   explicit PeriodLog(rt::Outlets& out) noexcept : out_(out) {}

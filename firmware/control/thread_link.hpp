@@ -24,7 +24,7 @@ struct ThreadRequest {
   std::array<physics::ToolInput, 2> tools;
   std::chrono::nanoseconds deadline{};  ///< on the loop's clock
   std::int64_t resets = 0;              ///< resets requested so far; if larger than before, the thread restarts
-  std::int64_t plants = 0;              ///< plants handed over so far, including this one
+  std::int64_t plants = 0;              ///< changes (plants) handed over so far, including this one
   Plant* plant = nullptr;               ///< owned by the loop's side; lent until a result reports it as processed
 };
 
@@ -42,7 +42,7 @@ struct ThreadResult {
   physics::Diagnostics health;
   std::chrono::nanoseconds began{}, done{};               ///< on the loop's clock
   std::chrono::nanoseconds work{};                        ///< CPU time
-  std::int64_t plants = 0;                                ///< plants processed so far
+  std::int64_t plants = 0;                                ///< changes (plants) processed so far
   std::int64_t steps = 0;                                 ///< requests answered so far
   std::array<ThreadStep, rt::kThreadSteps> last_steps{};  ///< newest first
 
@@ -54,7 +54,7 @@ struct ThreadResult {
   }
 };
 
-/// Orders to the physics so far, besides ticks.
+/// Numbers of resets, scene changes and parameter changes ordered from the physics so far.
 struct ThreadOrders {
   std::int64_t resets = 0, scenes = 0, parameters = 0;
 };

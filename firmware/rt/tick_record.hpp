@@ -27,8 +27,8 @@ enum TickFlag : std::int32_t {
 enum LimitCode : std::int16_t {
   kPeakLimit = 1,        ///< magnitude at max_force_N or the device's peak
   kContinuousLimit = 2,  ///< the motors' thermal limit (I2t) is reached
-  kStepLimit = 4,        ///< change within one period
-  kSlewLimit = 8,        ///< rate of change over many periods
+  kStepLimit = 4,        ///< largest change within one period
+  kSlewLimit = 8,        ///< largest rate of change over many periods
   kVelocityBrake = 16,   ///< tip too fast: the rig goes to BRAKE
   kPassivityLimit = 32,  ///< the port's energy account is short: the force is damped or reduced
   kTorqueLimit = 64,     ///< a drive has reached its maximum torque, or torques are limited to be safe in any pose
@@ -98,7 +98,7 @@ struct TickRecord {
   std::int32_t thread_done_ns = 0;
   std::int32_t thread_work_ns = 0;
   std::int8_t thread_end = 0;  ///< physics::TickEnd
-  /// Index of the deadline query at which the tick was ended; -1: not ended by the deadline
+  /// Index of the check for remaining time that ended the tick; -1: not ended by the deadline
   std::int32_t thread_cut_at = -1;
   float time_lost = 0.0F;  ///< share of the tick in which the thread was not moved
 

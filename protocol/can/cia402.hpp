@@ -101,6 +101,7 @@ struct Transition {
   Event on;
   State to;
 };
+/// Transitions, with their numbers in CiA 402.
 inline constexpr std::array kTransitions{
     Transition{State::kNotReadyToSwitchOn, Event::kInitialised, State::kSwitchOnDisabled},  // 1
     Transition{State::kSwitchOnDisabled, Event::kShutdown, State::kReadyToSwitchOn},        // 2
@@ -123,7 +124,8 @@ inline constexpr std::array kTransitions{
 };
 
 [[nodiscard]] constexpr State next(State s, Event e) noexcept {
-  if (e == Event::kFaultDetected) return s == State::kFault ? s : State::kFaultReactionActive;  // 13, from any state
+  if (e == Event::kFaultDetected)
+    return s == State::kFault ? s : State::kFaultReactionActive;  // transition 13, from any state
   for (const Transition& t : kTransitions) {
     if (t.from == s && t.on == e) return t.to;
   }

@@ -47,7 +47,7 @@ std::variant<std::vector<Vec>, Error> load_polyline(const std::filesystem::path&
 std::vector<Vec> lay_out(std::span<const Vec> points, int n, double rest_m) {
   std::vector<Vec> nodes{points.front()};
   std::size_t k = 1;  // the next node is searched on segment points[k - 1] .. points[k]
-  double from = 0.0;  // from this parameter on, 0 .. 1
+  double from = 0.0;  // from this fraction of the segment on, 0 .. 1
   const Vec onward = end_direction(points);
   while (nodes.size() < static_cast<std::size_t>(n)) {
     const Vec c = nodes.back();
