@@ -30,7 +30,7 @@ import venv
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PACKAGES = ("mujoco==4.0.0", "numpy==2.4.6")
 SETTLE_S, PULL_S, HOLD_S, SHARE = 0.1, 0.25, 0.25, 0.93
-# for the start in MuJoCo: damping per second, duration of each, time step
+# For the start in MuJoCo: damping per second, duration of each, time step.
 DRAGS_PER_S, DRAG_S, DRAG_STEP_S = (5e4, 5e3, 500.0, 500.0), 0.05, 1e-4
 LENGTH_M, RADIUS_M, YOUNG_PA, POISSON, KG_PER_M = 0.3, 1.5e-4, 1e9, 0.4, 8e-5
 
@@ -61,7 +61,7 @@ def way_of_each_end(points):
 
 def least_of(who, runs):
     """For each tick the shortest time of all runs. Runs are (times, end shape) and must have the same shape."""
-    # compared as text, because a NaN is not equal to itself
+    # Compared as text, because a NaN is not equal to itself.
     if any(repr(shape) != repr(runs[0][1]) for _, shape in runs):
         raise SystemExit(f"{who}: two runs of the same pull end differently; their ticks cannot be compared")
     return [min(ticks) for ticks in zip(*(times for times, _ in runs))]

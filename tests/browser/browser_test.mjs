@@ -1,4 +1,4 @@
-// The page in a real browser against a fake rig, and a recording of it. Waits on conditions only.
+// The page in a real browser, with a fake rig and with a recording of it. All waits are for conditions.
 //   node browser_test.mjs [--browser firefox] [--webgl off] --host BIN --python BIN --rig SCRIPT --modules DIR --out DIR     (inside scripts/private-net)
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -335,7 +335,7 @@ for (const [name, step] of Object.entries(steps)) {
     ++failed;
     console.log(`FAIL ${name}\n${error.stack}\n${rig.heard}`);
     await page?.screenshot({ path: join(out, 'failure.png') }).catch(() => {});
-    break; // the steps build on each other
+    break; // later steps depend on this one
   }
 }
 if (browser.complaints.length) { ++failed; console.log('FAIL console is quiet\n', browser.complaints.join('\n')); }

@@ -207,7 +207,7 @@ def main():
         if rig.lcm.fileno() in ready:
             rig.lcm.handle()
         if sys.stdin in ready:
-            # not readline, whose buffer could hold back a second line
+            # Not readline, whose buffer could hold back a second line.
             heard = os.read(sys.stdin.fileno(), 4096).decode()
             if not heard:
                 return

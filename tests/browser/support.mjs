@@ -6,7 +6,7 @@ import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
 
-// for slow shared machines; every wait is for a condition
+// For slow shared machines; every wait is for a condition.
 const PATIENCE_MS = Number(process.env.LIGATURE_PATIENCE_MS ?? 60_000);
 
 export function arguments_() {

@@ -131,7 +131,7 @@ test('a slow computer is told apart from a silent rig and a silent host', () => 
     const slow = judgeAge(age_ms, 0, 400, live);
     assert.deepEqual([slow.isOld, slow.isSlow], [false, true]);
   }
-  // with any delay of the page, another second of delay is the rig's or the host's
+  // With any delay of the page, another second of delay is the rig's or the host's.
   for (const lag_ms of [0, 400, 5000, 1e9]) {
     assert.match(judgeAge(1200, 0, lag_ms, live).text, lag_ms < 1000 ? /^Old picture/ : /Old picture/);
     assert.match(judgeAge(30, 1200, lag_ms, live).text, /^No word from the host/);
@@ -140,7 +140,7 @@ test('a slow computer is told apart from a silent rig and a silent host', () => 
 });
 
 test('the scale of curvature fits the thread: it is not painted in one colour', () => {
-  // a suture of radius 0.15 mm, in a bow whose curvature increases
+  // A suture of radius 0.15 mm, in a bow whose curvature increases.
   const n = 100, p_W = new Float32Array(3 * n), bent = 0.15e-3;
   for (let i = 0, angle = 0, x = 0, z = 0; i < n; ++i) {
     p_W.set([x, 0, z], 3 * i);

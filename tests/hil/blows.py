@@ -82,7 +82,7 @@ class FirstBlows:
         rows, left, right = self.read("hand-killed")
         last = max(i for i, f in enumerate(left) if 0x181 <= f[1] <= 0x183)
         at = self.tick_before(rows, left, last)
-        # killing a process takes the only CPU for some periods
+        # Killing a process takes the only CPU for some periods.
         lost = sum(r["flags"] & LOST != 0 for r in rows[at:at + WATCHDOG_TICKS])
         self.ends_in((11,), rows, left, right, at, range(WATCHDOG_TICKS - 1, WATCHDOG_TICKS + lost + 1),
                      " and the periods that killing costs the one CPU")

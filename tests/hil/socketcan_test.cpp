@@ -1,4 +1,4 @@
-// The SocketCAN back ends on a real AF_CAN: vcan0 must be there. Runs in the guest of scripts/test-hil, as root.
+// The SocketCAN back ends with the kernel's AF_CAN; needs vcan0. Runs in the guest of scripts/test-hil, as root.
 #include <gtest/gtest.h>
 #include <linux/can.h>
 #include <linux/can/error.h>
@@ -22,7 +22,7 @@ const can::Frame kFrame{0x181, 3, {1, 2, 3}};
 
 std::unique_ptr<platform::CanBus> opened() { return std::move(std::get<0>(platform::open_can_bus("socketcan:vcan0"))); }
 
-/// Somebody else on the bus, who may send what our own code never would.
+/// Another node on the bus, which can also send frames that our own code never sends.
 class Stranger {
  public:
   Stranger() : fd_(socket(PF_CAN, SOCK_RAW, CAN_RAW)) {
@@ -61,7 +61,7 @@ void set_up(bool up) {
   close(fd);
 }
 
-/// The next frame or loss; waits for it.
+/// Waits up to 1 s for the next frame or the loss of the bus.
 Receive next(platform::CanBus& bus, can::Frame& frame) {
   pollfd p{bus.descriptor(), POLLIN, 0};
   poll(&p, 1, 1000);

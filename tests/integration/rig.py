@@ -51,7 +51,7 @@ class Listener(threading.Thread):
         while not self.stop:
             try:
                 self._lcm.handle_timeout(100)
-            # invalid data that a test sends; a lost batch of the firmware would show as a gap
+            # Invalid data that a test sends; a lost batch of the firmware would show as a gap.
             except (ValueError, struct.error):
                 pass
 

@@ -35,7 +35,7 @@ def disguise(points, rng, kind):
     if kind == 1:
         return shapes.turned(shapes.disguised(points, rng, 6 * len(points), 0.5), rng)
     if kind == 2:
-        # without noise, which could make near misses cross
+        # Without noise, which could make near misses cross.
         return shapes.turned(shapes.disguised(shapes.refined(points, 2), rng, 300, 0.8), rng)
     return shapes.turned(shapes.refined(points, 500 // len(points) + 1), rng, 1e-3)
 
@@ -88,7 +88,7 @@ class Oracle(unittest.TestCase):
 
     def test_a_drawn_diagram_is_its_knot(self):
         rolfsen_7_6 = [(1, 4, 2, 5), (3, 8, 4, 9), (5, 12, 6, 13), (9, 1, 10, 14), (13, 11, 14, 10), (11, 6, 12, 7), (7, 2, 8, 3)]
-        # the diagram's writhe is -3
+        # The diagram's writhe is -3.
         self.assertEqual(name(diagrams.drawn(rolfsen_7_6), True, self.folder), ("7_6", "left"))
 
     def test_random_polygons_are_what_topoly_calls_them_or_unknown(self):

@@ -32,7 +32,7 @@ ROWS = []
 
 
 def row(what, ends):
-    """A line of the page."""
+    """Decorator: adds a test's row to the page."""
     def mark(test):
         ROWS.append((what, ends, test.__name__))
         return test
@@ -133,7 +133,7 @@ class Network(InForce):
         command = command_t()
         for i in range(20_000):
             command.id, command.kind = i, command_t.KIND_ARM
-            # as from a recording, or only requesting a challenge
+            # As from a recording, or only requesting a challenge.
             command.session, command.challenge = (17, i) if i % 2 else (0, 0)
             link.publish("LIGATURE_COMMAND", command.encode())
         self.carries_on(rig)
@@ -182,9 +182,9 @@ class Network(InForce):
         channels = ("LIGATURE_COMMAND", "LIGATURE_TICKS", "LIGATURE_STATUS", "LIGATURE_EVENT", "LIGATURE_THREAD", "LIGATURE_ACK")
         for i in range(300):
             raw.sendto(chance.randbytes(chance.randint(1, 1400)), GROUP)
-            # a channel name without terminating zero
+            # A channel name without terminating zero.
             raw.sendto(struct.pack(">II", 0x4C433032, i) + b"LIGATURE_COMMAND" * 60, GROUP)
-            # a fragment with a false length
+            # A fragment with a false length.
             raw.sendto(struct.pack(">IIIIHH", 0x4C433033, i, 1 << 31, 0, chance.randint(0, 9), 3) + b"x" * 64, GROUP)
             channel = channels[i % len(channels)]
             link.publish(channel, chance.randbytes(chance.randint(0, 600)))

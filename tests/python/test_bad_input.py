@@ -15,7 +15,7 @@ import numpy as np
 import ligature
 
 SOURCE = os.environ["LIGATURE_SOURCE"]
-# What a call may say no with: anything else is a fault of the package.
+# Exceptions by which a call may reject its arguments; any other one is an error of the package.
 ALLOWED = (ValueError, TypeError, RuntimeError, OSError, IndexError, MemoryError)  # Refusal is a ValueError; OSError: TimeoutError
 DTYPES = ["f8", "f4", "f2", "i8", "u1", "?", "c16", "O", "U3", "S2", "M8[s]", ">f8"]
 KEYS = ["suture.nodes", "suture.length_m", "suture.radius_m", "suture.model", "contact.friction", "contact.solver", "time.tick_s",

@@ -121,7 +121,7 @@ TEST(NoAllocation, TheWholeCycleWithEveryModelAndSolver) {
       scene::Scene s = small_scene();
       s.suture.model = model;
       s.contact.solver = solver;
-      // a combination that make() rejects
+      // A combination that make() rejects.
       if (!std::holds_alternative<physics::Simulation>(physics::Simulation::make(s))) continue;
       expect_quiet(s);
     }

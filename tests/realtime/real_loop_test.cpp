@@ -106,7 +106,7 @@ void begin_to_watch(int, siginfo_t*, void* context) {
   ++watched;
 }
 
-/// A rig as `run` builds it.
+/// The rig, built as by `ligature-firmware run`.
 struct RealRig {
   explicit RealRig(const std::string& folder)
       : options(with(folder)), plan(std::get<Plan>(make_plan(options))), buses(open()) {}

@@ -112,7 +112,7 @@ int denormals_on_the_way_to_rest(bool flushed) {
   std::thread([&] {
     if (flushed) platform::flush_denormals();
     scene::Scene scene = small_scene();
-    // at this drag velocities fall below 10^-308 within 210 s; with less or more drag later
+    // At this drag velocities fall below 10^-308 within 210 s; with less or more drag later.
     scene.suture.paper.air_drag_per_s = 7.0;
     VirtualRig rig(scene);
     const auto hanging = rig.thread.nodes_W();

@@ -1,4 +1,4 @@
-// Linked into every gtest program: a test that fails says with which seed, and how to repeat it.
+// Linked into every gtest program: a failing test prints its seed and the command that repeats it.
 #include <gtest/gtest.h>
 
 #include <cerrno>

@@ -18,8 +18,8 @@ struct Chatter {
 /// half the stretch if that is shorter. A parabola is used because a pull's force rises ever more steeply; about a
 /// moving mean that rise alone would count as 2.4 % at 0.2 m/s. Stretches are kept apart because the force drops to
 /// zero when an overhand's loop snaps over during the pull; a fit across the gap would count that jump as chatter. The
-/// fitted value at the middle of 2 m + 1 ticks is the weighted sum with weights 3 (3 m^2 + 3 m - 1 - 5 k^2) / ((2 m -
-/// 1) (2 m + 1) (2 m + 3)), k = -m .. m [Savitzky & Golay 1964].
+/// fitted value at the middle of 2 m + 1 ticks is the weighted sum with weights
+///   3 (3 m^2 + 3 m - 1 - 5 k^2) / ((2 m - 1) (2 m + 1) (2 m + 3)), k = -m .. m [Savitzky & Golay 1964].
 [[nodiscard]] inline Chatter chatter(std::span<const double> force_N, double floor_N) {
   constexpr int kHalf = 25, kLeast = 3;
   double squares = 0.0, sum = 0.0;

@@ -32,7 +32,7 @@ struct PullResult {
   knot::KnotResult begun, left;
   int guard = 0;
   double pull_d = 0.0, hold_d = 0.0, after_d = 0.0;  ///< largest penetration in each stage, in thread diameters
-  /// share of each stage's time in which the thread was not moved (time lost)
+  /// Share of each stage's time in which the thread was not moved (time lost)
   double pull_lost = 0.0, hold_lost = 0.0, after_lost = 0.0;
   double strain = 0.0, tension_N = 0.0;    ///< measured in the hold
   double turn_rad = 0.0, segment_d = 0.0;  ///< sharpest turn and longest segment in contact, measured in the hold

@@ -57,7 +57,7 @@ class Hand:
         self.socket = socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
         self.socket.bind(("vcan0",))
         nothing = [{"can_id": 0x7FF, "can_mask": 0x7FF}]
-        # only sends; frames are received below
+        # Only sends; frames are received below.
         self.network = canopen.Network(can.Bus("vcan0", interface="socketcan", can_filters=nothing))
         self.drives = [Drive(self.network, n) for n in NODES]
         self.syncs, self.heartbeats, self.maps = 0, 0, {}
@@ -92,7 +92,7 @@ class Hand:
                 tpdo = drive.local.tpdo[1]
                 self.maps[drive.id] = {"cob_id": tpdo.cob_id, "type": tpdo.trans_type, "map": [[v.index, v.subindex, v.length] for v in tpdo.map]}
             if drive.id == 1:
-                # the waist turns, so the thread pulls on the hand
+                # The waist turns, so the thread pulls on the hand.
                 drive.counts = START[1] + max(0, min((self.syncs - STILL) // 4, 200))
             self.socket.send(IMAGE.pack(0x180 + drive.id, 8, drive.image()))
 

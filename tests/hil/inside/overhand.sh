@@ -1,5 +1,5 @@
 #!/bin/bash
-# Ten seconds of the overhand, both hands over vcan.
+# Ten seconds of the overhand script, with both hands on vcan.
 . tests/hil/inside/rig.sh
 warm chrt
 hand left vcan0; hand right vcan1

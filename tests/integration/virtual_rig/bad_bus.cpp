@@ -53,7 +53,7 @@ BadBusEnd end_of(const BadBus& bus, std::uint64_t seed) {
 
 std::int64_t ticks_to_zero_at(double frames_lost) {
   constexpr std::int64_t kWay =
-      25;  // a torque acts at the next SYNC; a drive that hears nothing waits for its watchdog
+      25;  // time until the torque is off: the next SYNC, or the drive's watchdog if it receives nothing
   if (frames_lost >= 0.5) return 65 + kWay;
   if (frames_lost >= 0.25) return 220 + kWay;
   if (frames_lost >= 0.2) return 430 + kWay;

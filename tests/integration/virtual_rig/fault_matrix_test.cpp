@@ -254,7 +254,7 @@ TEST(FaultMatrix, EveryCaseEndsAsItSays) {
   }
   table += lies();
   const std::string page = std::string(LIGATURE_SOURCE_DIR) + "/docs/fault-matrix.md", before = text_of(page);
-  // the rest is written by bad_bus_study
+  // The rest is written by bad_bus_study.
   const std::size_t by_chance = std::min(before.find(kByChance), before.size());
   if (std::getenv("LIGATURE_WRITE_DOCS") != nullptr) std::ofstream(page) << table << before.substr(by_chance);
   if (test::seed_shift() != 0) return;  // the page shows results without a seed shift

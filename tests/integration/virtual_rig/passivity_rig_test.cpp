@@ -50,7 +50,7 @@ struct Outcome {
   double lowest_J = 0.0, peak_N = 0.0;
   double step_N = 0.0;    ///< largest step of force, except for faults and hands that are let go
   double let_go_N = 0.0;  ///< largest step by which passivity lets a hand go (to zero)
-  /// share of the pulling time in which both hands feel at least four fifths of the coupling's force
+  /// Share of the pulling time in which both hands feel at least four fifths of the coupling's force.
   double felt_share = 0.0;
   int fault = 0;
   int limits = 0;

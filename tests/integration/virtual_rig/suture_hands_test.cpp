@@ -80,7 +80,7 @@ TEST(SutureHands, FeelWhatTheThreadDoesToTheJaws) {
     double way_m;
     std::vector<std::string> overrides;
   };
-  // the second thread slips at 0.3 N
+  // The second thread slips at 0.3 N.
   for (const auto& [way_m, overrides] : {Pull{0.004, {}}, Pull{0.02, {"hands.pinch_force_N=0.5"}}}) {
     const Played p(suture(overrides),
                    {{0.0, {0.0, 0.0, 0.20}, false},

@@ -75,7 +75,7 @@ TEST(Sdo, BytesAreThoseOfTheStandard) {
 }
 
 TEST(Sdo, SegmentedTransfersAreNamedUnsupported) {
-  // a download that is not expedited
+  // A download that is not expedited.
   EXPECT_EQ(decode_sdo(Frame{0x601, 8, {0x21, 0x00, 0x10}})->kind, SdoKind::kUnsupported);
   EXPECT_FALSE(decode_sdo(Frame{0x601, 7, {0x40}}));
 }

@@ -143,7 +143,7 @@ TEST(ControllerFaults, OldJointMessagesAreHeldAndThenAFault) {
 }
 
 TEST(ControllerFaults,
-     // samples of ticks 3 and 4 are missing, period 5 is lost: the sample of tick 2 stays the latest
+     // Samples of ticks 3 and 4 are missing, period 5 is lost: the sample of tick 2 stays the latest.
      ALostPeriodMakesNoOldSampleNew) {
   Rig rig;
   rig.to_force();

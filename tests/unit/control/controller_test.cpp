@@ -8,7 +8,7 @@
 namespace ligature::control {
 namespace {
 
-// torques are sent in whole per mille of 0.3 N m, rounded towards zero
+// Torques are sent in whole per mille of 0.3 N m, rounded towards zero.
 constexpr double kStay_Nm = 0.7 * 0.3e-3 * (1 + 1e-9);
 
 TEST(Controller, ComesUpThroughEveryStateToForce) {
@@ -163,7 +163,7 @@ TEST(Controller, NeedsBothArmingAndThatHandsDeadMan) {
   EXPECT_EQ(Rig::largest(rig.tick()), 0.0);
 }
 
-// the largest force needs 14 more steps of the step limit
+// The largest force needs 14 more steps of the step limit.
 TEST(Controller, ReleasedDeadManTakesTheForceInFiftyMilliseconds) {
   for (const bool largest : {false, true}) {
     Rig rig;

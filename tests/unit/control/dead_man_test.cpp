@@ -120,7 +120,7 @@ TEST(NewPress, IsSeenInFreshSamplesOnly) {  // an old sample that is held counts
   expect_no_force(rig);
 }
 
-// samples a constant period late count as new; otherwise a release would be ignored
+// Samples a constant period late count as new; otherwise a release would be ignored.
 TEST(LetGo, IsSeenInSamplesThatComeLate) {
   for (int age = 0; age <= 3; ++age) {
     Rig rig;

@@ -220,7 +220,7 @@ TEST(EncoderWatch, UnderTorqueAJointMayRestForAHundredSamples) {  // as in a fas
 TEST(EncoderWatch, UnderTorqueAJointIsAskedForAFifthOfItsTorqueAndTravelElsewhere) {
   EXPECT_EQ(UnderTorque{.torque = 0.19}.told_after(), 0);
   EXPECT_EQ(UnderTorque{.torque = -0.21}.told_after(), 100);
-  // when the two other joints together have moved 300 counts
+  // When the two other joints together have moved 300 counts.
   EXPECT_EQ(UnderTorque{.per_sample = 0.5}.told_after(), 301);
   EXPECT_EQ((UnderTorque{.per_sample = 0.5, .samples = 300}.told_after()), 0);
 }

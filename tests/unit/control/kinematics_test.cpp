@@ -87,7 +87,7 @@ TEST(Kinematics, TheHomePoseIsReachableAndPlausible) {  // solved by Newton's me
   EXPECT_FALSE(arm().is_plausible({std::nan(""), 0.4, 0.6}));
 }
 
-// a Cartesian device, three drums: linear motion, force = torque / radius
+// A Cartesian device, three drums: linear motion, force = torque / radius.
 TEST(Kinematics, AnotherDeviceIsAFileAndAFunction) {
   device::Device d = device::omni();
   d.kinematics = device::Kinematics::kCartesian;

@@ -344,7 +344,7 @@ TEST(LedMove, CalibrateFindsAnEncoderThatLiedFromTheStart) {
     for (int joint = 0; joint < 3; ++joint) {
       Arms arms;
       (expected == Fault::kAxisReversed ? arms.reversed : arms.frozen) = joint;
-      // tested below: the pose is impossible, so there is no force at all
+      // Tested below: the pose is impossible, so there is no force at all.
       if (expected == Fault::kAxisReversed && joint > 0) continue;
       arms.to_force();
       arms.controller.command(rt::CommandKind::kCalibrate);

@@ -45,7 +45,7 @@ class PassivityBounds {
     const std::int64_t m = last_sent(n);
     if (m < 0) return;
     const double more_J = beyond_J(m, n) + counted_J(m, n);
-    // minus the energy delivered since that sample
+    // Minus the energy delivered since that sample.
     double account_J = accounts_J_[static_cast<std::size_t>(at(m).sample)];
     for (std::int64_t p = at(m).sample; p < n; ++p) account_J -= at(p).given_J;
     below_J = std::max(below_J, -Passivity::kFloor_J - more_J - account_J);

@@ -71,7 +71,7 @@ TEST(PassivityBounds, WhatNobodySawIsWorthHalfAStepTimesTheAcceleration) {
     p.begin(1), p.sent(1, Vec3(0.3, 0, 0), Vec3(0.3, 0, 0));
     p.begin(2), p.sent(2, Vec3(0.3, 0, 0), Vec3(0.3, 0, 0));
     p.begin(3);
-    // motion in period 1 to 2 and in period 2 to 3
+    // Motion in period 1 to 2 and in period 2 to 3.
     const double d1 = 1e-5, d2 = d1 + share * a * kT_s * kT_s, start_m = 2e-5;
     Passivity q = p;
     q.observe(1, sample(start_m, 0.0));

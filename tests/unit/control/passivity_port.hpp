@@ -66,7 +66,7 @@ struct Port {
 
   Passivity passivity;
   Chain chain;
-  // force made by the torques of a force, which the drive rounds
+  // Force made by the torques of a force, which the drive rounds.
   std::function<Vec3(const Vec3&)> made_of = [](const Vec3& f) { return f; };
   test::Random random;
   PassivityBounds bounds;

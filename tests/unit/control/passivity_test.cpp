@@ -19,7 +19,7 @@ TEST(Passivity, TheAccountIsTheWorkToTheLastDigit) {  // against the work that t
   EXPECT_NEAR(port.passivity.energy_J(), before, 1e-12);
 }
 
-// in a full swing the hand would get more energy than it gives
+// In a full swing the hand would get more energy than it gives.
 TEST(Passivity, ASampledSpringMakesEnergyAndTheControllerRefusesIt) {
   const auto swing = [](bool active) {
     Port port(active);
@@ -82,7 +82,7 @@ TEST(Passivity, HandsWithinTheBoundAreCutByAStepButWhereTheyAreLetGo) {
   EXPECT_LE(let_go, 6) << "of 80";
 }
 
-// except where all force is dropped, for lack of energy
+// Except where all force is dropped, for lack of energy.
 TEST(Passivity, WhatTheDrivesMakeChangesByAStepWhateverIsLost) {
   const Chain whole{}, lossy{.lost = 0.05}, very{.lost = 0.3}, blind{.lost_samples = 0.14};
   const Chain both{.lost = 0.05, .lost_samples = 0.14}, silent{.lost = 0.05, .tells_torque = false};
@@ -101,7 +101,7 @@ TEST(Passivity, WhatTheDrivesMakeChangesByAStepWhateverIsLost) {
   }
 }
 
-// up to the energy that quantised positions hide at each change of force
+// Up to the energy that quantised positions hide at each change of force.
 TEST(Passivity, OnCountsTheTrueWorkIsWithinItsBounds) {
   double lowest_J = 0.0, most_hidden_J = 0.0;
   play_adversaries({.count_m = 5e-5}, [&](const Port& port) {
@@ -121,7 +121,7 @@ TEST(Passivity, BetweenCountsASlowJointIsWhereItsSpeedSays) {  // a tenth of a c
     if (i == 100) port.largest_excess_J = port.largest_shortfall_J = -1e9;  // the estimators have converged
     port.tick([&](const Vec3&, const Vec3&) { return Vec3(force_N, 0, 0); }, Vec3::Zero());
   }
-  // without interpolation this would be one count's worth
+  // Without interpolation this would be one count's worth.
   const double hidden_J = port.largest_excess_J + port.largest_shortfall_J;
   std::printf("between counts: %.2f of a count's energy hidden\n", hidden_J / (force_N * port.chain.count_m));
   EXPECT_LT(hidden_J, 0.5 * force_N * port.chain.count_m);
@@ -140,14 +140,14 @@ TEST(Passivity, TheAccountIsNeverAboveTheTrueWork) {
   }
 }
 
-// the torque that acted instead is known once the drive reports it
+// The torque that acted instead is known once the drive reports it.
 TEST(Passivity, ALostTorqueIsBookedToTheLastDigit) {
   for (const bool tells : {true, false}) {
     const auto look = [](const Port& port) {
       EXPECT_LE(port.largest_excess_J, 1e-10);
       EXPECT_LE(port.largest_shortfall_J, 1e-10);
     };
-    // passivity off: when on, it gives up credit after losses
+    // Passivity off: when on, it gives up credit after losses.
     play_adversaries({.lost = 0.3, .tells_torque = tells}, look, 1.0, false);
   }
 }
@@ -189,7 +189,7 @@ TEST(Passivity, AMotorGetsNothingFromAHandThatNeverPaid) {  // constant force al
   EXPECT_GE(port.lowest_J, -Passivity::kFloor_J);
 }
 
-// pull 1 cm slowly and hold: the hand feels the force whose energy it has supplied
+// Pull 1 cm slowly and hold: the hand feels the force whose energy it has supplied.
 TEST(Passivity, APaidSpringIsFeltInFull) {
   Port port(true);
   const double rate = 2.0 * std::acos(-1.0);

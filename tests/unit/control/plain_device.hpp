@@ -5,7 +5,7 @@ namespace ligature::control {
 
 inline constexpr double kT_s = 1e-3;
 
-/// Three drums of 1 m radius, so that torque equals force and angle equals position. Exact between samples.
+/// Three drums of 1 m radius, so that torque equals force and angle equals position.
 inline device::Device plain() {
   device::Device d = device::omni();
   d.kinematics = device::Kinematics::kCartesian;

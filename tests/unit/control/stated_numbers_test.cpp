@@ -104,7 +104,7 @@ TEST(StatedNumbers, AChangeOfTheForceScaleTakesTwoTenthsOfASecond) {  // linearl
   }
 }
 
-// a parked tool must not keep the hand's velocity, or it would throw what it holds
+// A parked tool must not keep the hand's velocity, or it would throw what it holds.
 TEST(StatedNumbers, AParkedToolStands) {
   Rig rig;
   rig.to_force();

@@ -49,7 +49,7 @@ TEST(Cycle, EveryRecordSaysWhenItsPhasesEnded) {
   }
 }
 
-// the tick at 10 ms ends at 13.7 ms, so periods 11, 12 and 13 are lost
+// The tick at 10 ms ends at 13.7 ms, so periods 11, 12 and 13 are lost.
 TEST(Cycle, SkipsAndCountsLostPeriodsAfterAStall) {
   VirtualRig rig;
   rig.bus.stalls[10] = 3240us;

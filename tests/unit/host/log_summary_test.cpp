@@ -62,7 +62,7 @@ TEST(LogSummary, TableAndJsonSayTheSame) {
   EXPECT_DOUBLE_EQ(json["executed_percent"].get<double>(), 100.0 * 1979 / 1980);
   EXPECT_DOUBLE_EQ(json["executed_per_s"].get<double>(), 1000.0 * 1979 / 1980);
   EXPECT_EQ(json["periods_lost"], 1);
-  // of the values 0 .. 1999 without 400 .. 419 and 1900
+  // Of the values 0 .. 1999 without 400 .. 419 and 1900.
   EXPECT_DOUBLE_EQ(json["wakeup_us"]["p50"].get<double>(), 1.009);
   EXPECT_DOUBLE_EQ(json["wakeup_us"]["p99"].get<double>(), 1.98);
   EXPECT_EQ(json["knot"]["type"], "3_1");

@@ -155,7 +155,7 @@ TEST_F(Replay, MarksAreTheSameEvents) {
       {"left hand holds node 7", 1.234}, {"knot 3_1 left", 2.0}, {"fault 30", 4.0}, {"knot 0_1 none", 5.0}};
   for (std::size_t i = 0; i < golden.size(); ++i) {
     EXPECT_EQ(marks[i].first, golden[i].first);
-    // knots are recognised only that often
+    // Knots are recognised only that often.
     EXPECT_NEAR(marks[i].second, golden[i].second, LogSurvey::kKnotPeriod_s) << golden[i].first;
   }
   EXPECT_EQ(survey.landmarks().first_tick, 0);

@@ -128,7 +128,7 @@ TEST(Recognise, OpenThreadsWithTheirEndsOutside) {
 TEST(Recognise, DegenerateInput) {
   EXPECT_EQ(named({}), "0_1 none");
   EXPECT_EQ(named({{0, 0, 0}}, false), "0_1 none");
-  // any shape far from the origin loses its details to rounding like this
+  // Any shape far from the origin loses its details to rounding like this.
   EXPECT_EQ(named(Polyline(20, {1, 1, 1}), false), "unknown none");
   EXPECT_EQ(named(Polyline(20, {1, 1, 1})), "unknown none");
   auto line = trefoil(60);

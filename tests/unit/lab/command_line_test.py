@@ -47,7 +47,7 @@ def bad_input(folder):
     assert "bad.csv:3: column 'grip': found '7'" in refused(folder, PAPER, "--grippers", script)
     assert "--duration" in refused(folder, PAPER, "--duration", "-1")
     assert "--shape-every" in refused(folder, PAPER, "--shape-every", "0")
-    # a number of 300 digits must not be printed in full
+    # A number of 300 digits must not be printed in full.
     assert len(refused(folder, PAPER, "--duration", "1e300")) < 120
     for wrong in (["--model", "paper-9"], ["--nodes", "77"], ["--only", "tea"], ["--accuracy", "best"],
                   ["--share", "0"], ["--share", "nan"]):
@@ -89,7 +89,7 @@ def validation(folder):
     assert len(json.loads((out / "validate.json").read_text())) == len(rows)
     done = lab("validate", "--only", "capstan", "--nodes", "50", "--model", "paper-4")
     assert done.returncode == 0 and "not modelled" in done.stdout, done
-    # a limit that no solution meets
+    # A limit that no solution meets.
     done = lab("validate", "--only", "elastic-string", "--nodes", "50", "--share", "1e-9")
     assert done.returncode == 1 and "FAIL" in done.stdout, done
 

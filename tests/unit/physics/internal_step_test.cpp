@@ -100,7 +100,7 @@ TEST(InternalStep, ASwivelDamperTakesEnergyFromWhatSwings) {
         for (int k = 0; k < 200; ++k) {
           Thread t = random_thread(4 + k % 40, random);
           t.m.swivel_N_s = 0.2;
-          // short segments make the printed explicit law overshoot
+          // Short segments make the printed explicit law overshoot.
           if (damping == scene::Damping::kExplicit) t.m.swivel_N_s *= 1e-4;
           const double before = kinetic_J(t);
           const Lane3 v = t.s.v;

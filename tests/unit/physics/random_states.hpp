@@ -19,7 +19,7 @@ class Random : public ligature::test::Random {
  public:
   using ligature::test::Random::Random;
   double log_in(double low, double high) { return std::pow(10.0, in(std::log10(low), std::log10(high))); }
-  // braces define the order of evaluation
+  // Braces define the order of evaluation.
   V vector(double size = 1.0) { return {in(-size, size), in(-size, size), in(-size, size)}; }
   V unit() {
     for (;;)

@@ -95,7 +95,7 @@ TEST_F(CanMasterTest, StartingIsOneNmtCommandToAll) {
   EXPECT_EQ(bus.sent, std::vector<can::Frame>{can::encode_nmt(can::NmtCommand::kStart)});
 }
 
-// torques are per mille of the rated torque, so forces would be wrong
+// Torques are per mille of the rated torque, so forces would be wrong.
 TEST_F(CanMasterTest, ADriveOfAnotherSizeIsRefused) {
   values[can::od::kRatedTorque] = 1000;
   EXPECT_EQ(configure(), "node 1, object 0x6076:00: found 1000, allowed 300");

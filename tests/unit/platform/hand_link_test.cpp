@@ -86,7 +86,7 @@ TEST_F(HandLinkTest, TwoOfThreeAreNoPose) {  // without the third joint the prev
   EXPECT_DOUBLE_EQ(link.reading().q_rad[0], can::angle_rad(100));
 }
 
-// joints of different SYNCs must not be combined to a pose
+// Joints of different SYNCs must not be combined to a pose.
 TEST_F(HandLinkTest, AJointOfTheLastSyncMakesNoSetWithTwoOfThis) {
   period();
   link.send_sync();

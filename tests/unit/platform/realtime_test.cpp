@@ -81,7 +81,7 @@ rlim_t data_now() {
 /// Removes all rights that a real-time thread needs from this process, also when started by root.
 void give_up_rights() {
   constexpr uid_t kNobody = 65534;
-  // too little for writable copies of the code
+  // Too little for writable copies of the code.
   const rlimit none{0, 0}, hardly_any{data_now() + 65536, data_now() + 65536};
   bool gone = setrlimit(RLIMIT_RTPRIO, &none) == 0 && setrlimit(RLIMIT_MEMLOCK, &none) == 0 &&
               setrlimit(RLIMIT_DATA, &hardly_any) == 0;

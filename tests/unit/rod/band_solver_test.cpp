@@ -94,7 +94,7 @@ TEST(BandColumns, SayWhenThereIsNoRoom) {
   EXPECT_TRUE(columns.want(made - 1));
 }
 
-// well-conditioned matrices: tolerance of a hundred roundings
+// Well-conditioned matrices: tolerance of a hundred roundings.
 TEST(BandSolver, AgreesWithADenseSolverForEveryCoreAndWindow) {
   for (const int n : {3, 4, 5, 17, 60}) {
     for (int core = 0; core + 1 < n; core += 1 + n / 20) {

@@ -31,7 +31,7 @@ TEST(Chatter, FindsAKnownTremble) {
 
 TEST(Chatter, IsNotThePull) {
   EXPECT_LT(chatter(pull(250, 0.0, 1.0), 0.04).share(), 1e-3);
-  // five times as fast, so the stretch is shorter than the fit's window
+  // Five times as fast, so the stretch is shorter than the fit's window.
   EXPECT_LT(chatter(pull(50, 0.0, 1.0), 0.04).share(), 2e-3);
 }
 

@@ -197,7 +197,7 @@ TEST(Hold, MovesOnlyWhatIsSettledInTheTrueMatrix) {
     pull.sim().tick(pull.tools());
     if (k < 300) continue;
     overlap_m = std::max(overlap_m, -pull.sim().diagnostics().min_gap_m);
-    // its contacts belong to a substep that was not carried out
+    // Its contacts belong to a substep that was not carried out.
     if (pull.sim().rod().report().time_lost > 0.0) continue;
     ++moved;
     worst = std::max(worst, lack(pull.sim()));

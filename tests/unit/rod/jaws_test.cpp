@@ -94,7 +94,7 @@ TEST(Jaws, TheHandFeelsWhatTheyDoToTheThread) {  // for any position of the node
   EXPECT_LT(off_the_coupling_N(aside, hands_at(aside.nodes_W()[60], Vec3(1, 1, 1)),
                                [](int, ToolInput& tool) { tool.p_WT += Vec3(1e-4, 0, 5e-5); }),
             1e-9);
-  // the grip slips from node to node
+  // The grip slips from node to node.
   auto slips = simulation(thread({"hands.pinch_width_m=0.004", "hands.pinch_force_N=1.0"}));
   EXPECT_LT(off_the_coupling_N(slips, hands_at(slips.nodes_W()[30], Vec3(1, 1, 1)),
                                [](int, ToolInput& tool) { tool.p_WT.z() -= 2e-5; }),
@@ -200,7 +200,7 @@ TEST(Jaws, CloseFarOffWithoutAJerk) {
   }
 }
 
-// held upright, pushed sideways at the free end: two nodes hold the direction, one does not
+// Held upright, pushed sideways at the free end: two nodes hold the direction, one does not.
 TEST(Jaws, HoldTheDirectionToo) {
   const auto lean = [](const char* width) {
     auto sim = simulation(thread(

@@ -269,7 +269,7 @@ TEST(RodScene, RefusesWhatItCannotDo) {  // each is rejected with an error text
   EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(paper)));
   for (const char* key : {"contact.turns_thread=true", "suture.rest_curvature_per_m=20", "suture.rest_twist_per_m=1",
                           "suture.yield_strain=0.1"}) {
-    // roll and its parameters need a twist stiffness
+    // Roll and its parameters need a twist stiffness.
     auto no_sides = load("suture-3-0.toml", {"suture.GJ_N_m2=0", key});
     EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(no_sides))) << key;
   }

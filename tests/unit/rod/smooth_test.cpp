@@ -98,7 +98,7 @@ TEST(Smooth, FourAtATimeAreAsOne) {
     for (int l = 0; l < 4; ++l) {
       const Closest chord = closest(a[l].x, a[l].x + a[l].e, b[l].x, b[l].x + b[l].e);
       EXPECT_NEAR(chords.distance2[l], chord.distance2, 1e-9 * kDiameter_m * kDiameter_m) << round << ' ' << l;
-      // for parallel segments any point is correct
+      // For parallel segments any point is correct.
       EXPECT_NEAR(chords.s[l], chord.s, l == 1 ? 1.0 : 1e-6) << round << ' ' << l;
       if (l == 2) continue;  // a curve without a chord has no tangent at its middle
       const Closest curve = closest(a[l], b[l], Closest{chords.s[l], chords.t[l], 0.0, Vec{}});
@@ -120,7 +120,7 @@ TEST(Smooth, ClosestPointsOfBentStrands) {
         const SmoothSegment one(a, i, kDiameter_m), other(b, j, kDiameter_m);
         const Closest chords = closest(a.x[i], a.x[i + 1], b.x[j], b.x[j + 1]);
         const double least = closest_by_trying(one, other);
-        // no contact, or an overlap that does not occur
+        // No contact, or an overlap that does not occur.
         if (least > 1.2 * kDiameter_m || least < 0.9 * kDiameter_m) continue;
         EXPECT_NEAR(std::sqrt(closest(one, other, chords).distance2), least, 1e-2 * kDiameter_m) << k;
         EXPECT_LT(std::abs(least - std::sqrt(chords.distance2)), one.bulge() + other.bulge() + 1e-9);

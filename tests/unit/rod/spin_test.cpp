@@ -57,8 +57,8 @@ TEST(RestCurvature, WithARestTwistAFreeThreadRelaxesToAHelix) {
   Rod rod(m, Numerics{}, kRolling, 80);
   for (int k = 0; k < 4000; ++k) rod.tick();
   const auto& x = rod.state().x;
-  // Chord of an arc of length s of a helix: (2 a sin(w s / 2))^2 + (b w s)^2, w^2 = k^2 + t^2, a = k / w^2, b = t /
-  // w^2.
+  // Squared chord of an arc s of a helix: (2 a sin(w s / 2))^2 + (b w s)^2 with
+  // w^2 = k^2 + t^2, a = k / w^2, b = t / w^2.
   const double w = std::hypot(60.0, 80.0), a = 60.0 / (w * w), rise = 80.0 / w;
   for (const std::size_t span : {20U, 40U, 60U}) {
     const double s = 0.06 * static_cast<double>(span) / 79.0;

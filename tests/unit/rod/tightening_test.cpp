@@ -87,7 +87,7 @@ TEST(Sliding, ForcesActOnWhatTheGapIsMeasuredOn) {
 // A slack loop that touches the tight knot is meshed as finely as the knot, not with segments of two to four diameters.
 TEST(FineZone, CoversWhatLiesAgainstIt) {
   Tightening pull({}, "suture-3-0-square.toml");
-  // converging a tight knot needs more passes than the default budget allows
+  // Converging a tight knot needs more passes than the default budget allows.
   pull.sim().rod().numerics().work = 40'000'000;
   for (int k = 0; k < 100; ++k) pull.tick(0.0);
   for (int k = 0; k < 1000 && Tightening::force(pull.sim()) < 5.0; ++k) pull.tick(0.2);

@@ -39,7 +39,7 @@ TEST(SceneFile, AFileWithoutASutureIsNoScene) {
 }
 
 TEST(SceneFile, ReadsTheShippedScenes) {
-  // with the height of the frame in m
+  // With the height of the frame in m.
   const std::pair<const char*, double> scenes[] = {{"paper.toml", 5.5}, {"desk.toml", 1.1}};
   for (const auto& [name, frame_m] : scenes) {
     const auto read = load_scene(std::string(LIGATURE_SOURCE_DIR "/scenes/") + name);

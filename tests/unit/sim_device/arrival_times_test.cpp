@@ -24,7 +24,7 @@ TEST(ArrivalTimes, PeriodsSleptThroughGetTheirBeatBack) {
   EXPECT_EQ(arrival_times(frames, milliseconds(6), milliseconds(10), kPeriod), expected);
 }
 
-// two SYNCs within half a period: neither may be dated before the previous read
+// Two SYNCs within half a period: neither may be dated before the previous read.
 TEST(ArrivalTimes, NothingCameBeforeTheLastLook) {
   const std::vector<Received> frames{kSync, kSync};
   const Time look = milliseconds(10) - std::chrono::microseconds(500);

@@ -18,7 +18,7 @@ std::vector<scene::GripKey> overhand(int hand) {
       .keys[hand];
 }
 
-// with soft fingers and joint friction, and no force from the thread
+// With soft fingers and joint friction, and no force from the thread.
 TEST(Mechanics, TheTipReachesEveryKeyWithinAMillimetre) {
   for (const int hand : {0, 1}) {
     const auto keys = overhand(hand);

@@ -97,7 +97,7 @@ TEST(Plant, ApparentMassAtTheHomePoseIsAbout45Grams) {  // 1 / (u' J I^-1 J' u) 
 }
 
 TEST(Hand,
-     // spring plus kinetic energy, up to the integrator's O(h) oscillation
+     // Spring plus kinetic energy, up to the integrator's O(h) oscillation.
      BringsTheDeviceToItsPointAndTheEnergyFalls) {
   const Hand hand;
   const Vec3 anchor = home_tip_D_m() + Vec3(0.02, 0.01, 0.015);

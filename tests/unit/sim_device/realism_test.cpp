@@ -16,7 +16,7 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::seconds;
 constexpr double kWaistLever_m = 0.17;
-// apparent mass for sideways motion by the waist alone: 45 g
+// Apparent mass for sideways motion by the waist alone: 45 g.
 constexpr double kTipMass_kg = 1.30e-3 / (kWaistLever_m * kWaistLever_m);
 
 PlantParameters frictionless() {

@@ -203,7 +203,7 @@ TEST_F(FlightSlotsTest, AHundredKillsLoseNothingThatWasWritten) {
     ASSERT_FALSE(ticks.empty());
     EXPECT_GE(ticks.back() + 1, written) << kill_number;
     for (std::size_t i = 1; i < ticks.size(); ++i) ASSERT_EQ(ticks[i], ticks[i - 1] + 1);
-    // a partly written slot has replaced the oldest tick
+    // A partly written slot has replaced the oldest tick.
     const auto wanted = std::min<std::int64_t>(ticks.back() + 1, 2000 - 1);
     EXPECT_GE(static_cast<std::int64_t>(ticks.size()), wanted) << kill_number;
   }

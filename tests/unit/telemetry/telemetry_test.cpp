@@ -134,7 +134,7 @@ TEST_F(TelemetryTest, ShapesComeAtSixtyHertzAndOnlyWhenNew) {
     outlets->shape.publish();
     telemetry.step(at(us));
   }
-  // one about every 20 ms: at the first step that is 16.7 ms after the previous one
+  // One about every 20 ms: at the first step that is 16.7 ms after the previous one.
   EXPECT_NEAR(static_cast<double>(sink.shapes.size()), 51.0, 10.0);
 }
 
@@ -339,7 +339,7 @@ TEST(CommandOf, TakesWhatWasEncodedAndNothingElse) {
 }
 
 TEST(CommandOf, SurvivesEveryLengthThatATextCanClaim) {
-  // offset of the text length: hash, utime, id, session, challenge, kind
+  // Offset of the text length: hash, utime, id, session, challenge, kind.
   constexpr std::size_t kTextLength = 8 + 8 + 8 + 8 + 8 + 1;
   auto message = bytes_of({});
   for (const unsigned claimed : {0U, 2U, 100U, 0x7FFF'FFFFU, 0x8000'0000U, 0xFFFF'FFFFU}) {

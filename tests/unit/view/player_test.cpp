@@ -72,7 +72,7 @@ TEST(Player, JumpsAndShowsWhatLedThere) {
   (void)p.frame();
   EXPECT_TRUE(p.player.request({{"seek_s", 30.0}}, p.now).is_null());
   const auto told = p.frame();
-  // tick number of the newest tick, the last of the batch at 30 s
+  // Tick number of the newest tick, the last of the batch at 30 s.
   EXPECT_EQ(told.doubles(Section::kNow)[2], 20.0 * 1500 + 19);
   EXPECT_EQ(told.doubles(Section::kShape)[0], 20.0 * 1500);
   EXPECT_GE(told.ticks().front(), 18'000);
