@@ -1,4 +1,4 @@
-"""The whole rig as separate processes: it ties a knot, and any single process may die."""
+"""The whole rig as separate processes: it ties a knot, and the death of any single process leaves no torque."""
 
 import json
 import math

@@ -91,7 +91,7 @@ def test_other_python_threads_go_on_and_may_not_touch_a_running_simulation():
 
 
 def test_floating_point_mode_of_the_process_changes_nothing(paper, overhand):
-    """The modes are set here as by a library built with -ffast-math, which flushes denormals in the loading thread."""
+    """A library may leave another rounding or denormal mode, e.g. one built with -ffast-math; here: round towards zero."""
     expected = ligature.Simulation(paper).run(overhand, 1.0).trace
     times_s = [(k + 1) * 0.001 for k in range(1000)]
     libm = ctypes.CDLL("libm.so.6")

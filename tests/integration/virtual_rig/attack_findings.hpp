@@ -33,12 +33,12 @@ struct Findings {
 };
 
 inline constexpr double kTrueForce_N = 3.4, kTrueStep_N = 0.55;
-inline constexpr int kTicksToEnd = 152;     ///< until a force has ended after disarming or release of the dead-man
-inline constexpr int kTicksOfFault = 24;    ///< until the drives switch off by their own watchdog, at the latest
-inline constexpr int kTicksOfFlood = 40;    ///< the same while foreign frames fill the bus
-inline constexpr int kTicksOfStranger = 4;  ///< for which a foreign torque may act after its first frame
-inline constexpr int kTicksOfLoss = 12;     ///< for which a frame may be lost in a row (probability 0.2^12)
-inline constexpr int kTicksToSee = 3;       ///< until a foreign frame is a fault in the records
+inline constexpr int kTicksToEnd = 152;   ///< ticks until a force has ended after disarming or release of the dead-man
+inline constexpr int kTicksOfFault = 24;  ///< ticks until the drives switch off by their own watchdog, at the latest
+inline constexpr int kTicksOfFlood = 40;  ///< the same while foreign frames fill the bus
+inline constexpr int kTicksOfStranger = 4;  ///< ticks for which a foreign torque may act after its first frame
+inline constexpr int kTicksOfLoss = 12;     ///< ticks in a row in which a frame may be lost (probability 0.2^12)
+inline constexpr int kTicksToSee = 3;       ///< ticks until the records show a fault for a foreign frame
 inline const std::string kUnexplained = "unexplained";
 
 [[nodiscard]] Findings judge(const AttackPlan& plan, const lab::VirtualRig& rig);

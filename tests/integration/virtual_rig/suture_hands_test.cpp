@@ -178,7 +178,7 @@ TEST(SutureHands, CloseFarOffWithoutAStep) {
     const rt::TickRecord& last = p.at(4.4);
     EXPECT_TRUE(last.grip[1]);
     EXPECT_EQ(last.grasped_node[1] >= 0, within);
-    double wish_step_N = 0.0;  // the coupling's force before gain, limits and passivity
+    double wish_step_N = 0.0;  // largest step of the coupling's force, before gain, limits and passivity
     for (std::size_t k = p.tick_at(kClosed_s - 0.1); k < p.tick_at(4.4); ++k)
       wish_step_N = std::max(wish_step_N, apart(p.rig.records[k].f_wish_N[1], p.rig.records[k - 1].f_wish_N[1]));
     std::printf("closed 14 mm off: feels %.3f N of %.3f, in steps of %.3f N (%.3f asked); the other hand %.3f N\n",

@@ -85,7 +85,7 @@ TEST(AnyPose, OfThreeDrumsIsTheForceItself) {
   EXPECT_NEAR(AnyPose(d).most_N(Vec3(0.02 * 1.0, 0.03 * -2.0, 0.05 * 2.0)), 3.0, 1e-12);
 }
 
-// The box contains a singular pose: no force, and the bound stays finite.
+// The workspace box contains a singular pose: the bound is finite, but so large that no force is allowed.
 TEST(AnyPose, AnArmThatMayBeStretchedGetsNoForce) {
   device::Device d = device::omni();
   d.workspace_min_m[1] = -0.30;

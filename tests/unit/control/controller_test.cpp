@@ -163,7 +163,7 @@ TEST(Controller, NeedsBothArmingAndThatHandsDeadMan) {
   EXPECT_EQ(Rig::largest(rig.tick()), 0.0);
 }
 
-// The largest force needs 14 more steps of the step limit.
+// From the largest force, the step limit takes 14 more ticks.
 TEST(Controller, ReleasedDeadManTakesTheForceInFiftyMilliseconds) {
   for (const bool largest : {false, true}) {
     Rig rig;

@@ -209,7 +209,7 @@ TEST(LedMove, TakingTheThreadOrTheClutchEndsItForGood) {
 TEST(LedMove, AMoveThatIsRefusedIsAsIfNobodyHadAskedForIt) {
   struct Reason {
     const char* name;
-    State state;  // 5 ticks before the command
+    State state;  // the controller's state 5 ticks before the command
     void (*forbid)(Arms&);
   };
   const std::vector<Reason> reasons{

@@ -1,4 +1,4 @@
-// After a move led by the controller: commanded against measured joint motion, in encoder counts.
+// MoveCheck compares commanded with measured joint motion, in encoder counts, after a move led by the controller.
 #include "firmware/control/move_check.hpp"
 
 #include <gtest/gtest.h>

@@ -54,7 +54,7 @@ void play_adversaries(const Chain& chain, Look look, double wildness = 1.0, bool
       const bool with_the_force = seed % 2 == 0 && !port.made.isZero();
       Vec3 acceleration = a * (with_the_force ? Vec3(port.made.normalized()) : push) * share();
       if (port.v.norm() > 1.0) acceleration = -a * port.v.normalized();
-      const double gain = seed % 3 == 0 ? 400.0 : -400.0;  // a negative spring acts as a motor
+      const double gain = seed % 3 == 0 ? 400.0 : -400.0;  // positive: pushes outwards like a motor; negative: a spring
       const auto law = [gain](const Vec3& p, const Vec3& v) { return saturated(gain * p + 0.5 * gain * 0.01 * v); };
       port.tick(law, acceleration);
     }

@@ -1,4 +1,4 @@
-// Reported against commanded drive torques, over links that lose, delay, duplicate and reorder frames.
+// Compares reported with commanded drive torques, over links that lose, delay, duplicate and reorder frames.
 #include "firmware/control/torque_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -131,7 +131,7 @@ TEST(TorqueWatch, APushThatNobodyAskedForIsFoundInItsSecondSample) {
   }
 }
 
-/// Up to the tolerance of the device file, from either side, for torques of either sign.
+/// Torque errors up to the device file's tolerance are accepted, in both directions and for torques of either sign.
 TEST(TorqueWatch, ToleratesWhatTheRecordSaysAndNoMore) {
   device::Device d = device::omni();
   for (const int permille : {10, 50, 200}) {

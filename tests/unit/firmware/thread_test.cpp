@@ -141,7 +141,7 @@ TEST(Thread, TwoThousandNodesUnderForceHoldUpNothingAndTheLossIsTold) {
 TEST(Thread, ATickOfTheLoopThatIsLateTakesNothingFromTheThread) {
   HeldRig rig;
   rig.physics.per_question = 40us;
-  rig.bus.stalls[100] = 900us;  // the tools come after the thread's deadline, and the next samples a period later
+  rig.bus.stalls[100] = 900us;  // the loop's tools arrive after the thread's deadline, its next samples a period later
   rig.bus.stalls[200] = 3240us;
   const auto records = rig.run(300);
   EXPECT_EQ(rig.cycle.timing().periods_lost, 4U);

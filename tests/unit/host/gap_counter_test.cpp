@@ -1,4 +1,4 @@
-// Compared with the set of received numbers, by hand or by std::set.
+// GapCounter compared with the set of received numbers, counted by hand or by std::set.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Compared with the definition, on sorted samples.
+// percentile() compared with its definition, on sorted samples.
 #include <gtest/gtest.h>
 
 #include <numeric>

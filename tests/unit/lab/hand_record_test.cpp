@@ -66,7 +66,7 @@ TEST(HandRecord, StaysWithinTheArmsReach) {
     EXPECT_EQ(sim::objection_to(key, map()), "");
     lowest_m = std::min(lowest_m, key.p_W_m[2]);
   }
-  EXPECT_LT(lowest_m, -0.05);  // the limit of the reach
+  EXPECT_LT(lowest_m, -0.05);  // the path is recorded down to the limit of the reach
   EXPECT_GT(lowest_m, -0.4);
 }
 

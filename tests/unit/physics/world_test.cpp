@@ -87,8 +87,8 @@ TEST(Refinement, KeepsTheThreadWhenNodesChange) {
   EXPECT_NEAR(tip[2] / tip[1], 1.0, 0.02);
 }
 
-// A clamped thread without gravity under an end load: reference_nodes preserves the bending stiffness EI = k_ts l_r /
-// pi, so the small deflection F L^3 / (3 EI) does not depend on `nodes`.
+// A clamped thread without gravity under an end load: reference_nodes preserves the bending stiffness
+// EI = k_ts l_r / pi, so the small deflection F L^3 / (3 EI) does not depend on `nodes`.
 TEST(Refinement, KeepsTheBendingStiffness) {
   for (const int nodes : {26, 51}) {
     Simulation sim = make(

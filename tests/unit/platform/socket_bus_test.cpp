@@ -190,7 +190,7 @@ TEST_F(Interface, ThatIsDownIsLostUntilItsFirstFrame) {
     EXPECT_TRUE(error == &recv_error ? receive() == Receive::kLost : !bus->send(kFrame));
     EXPECT_TRUE(bus->is_lost());
     *error = 0;
-    put(told_by_driver(CAN_ERR_RESTARTED));  // of a bus-off that was not ours
+    put(told_by_driver(CAN_ERR_RESTARTED));  // ends a bus-off, which was not the cause of this loss
     EXPECT_EQ(receive(), Receive::kLost) << "no frame yet";
     put(kFrame);
     EXPECT_EQ(receive(), Receive::kFrame);

@@ -170,9 +170,10 @@ TEST(Overhand, MayBeLetGoAtTenNewtons) {  // the end flies off at 20 m/s; the gu
   EXPECT_LT(p.penetration, 0.5);
 }
 
-// After the release, bending opens the loop until friction in the braid holds it: 1/2 e^4 = 0.492 mu e^3 with e^2 = a /
-// R, a the thread's radius, R the loop's [Audoly, Clauvelin, Neukirch 2007]. The loop, 2 pi R, is most of the length
-// between the outermost contacts. The theory is for loose knots, hence the tolerance of 20 %.
+// After the release, bending opens the loop until friction in the braid holds it:
+//   1/2 e^4 = 0.492 mu e^3, e^2 = a / R, a the thread's radius, R the loop's [Audoly, Clauvelin, Neukirch 2007].
+// The loop, 2 pi R, is most of the length between the outermost contacts. The theory is for loose knots, hence the
+// tolerance of 20 %.
 TEST(Overhand, OpensAsFarAsFrictionLets) {
   for (const double mu : {0.2, 0.25}) {
     const Pull p = pull(load("suture-3-0-knot.toml", {"contact.friction=" + std::to_string(mu)}), 1.0, 3.0);

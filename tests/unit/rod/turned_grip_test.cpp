@@ -68,7 +68,7 @@ TEST(TurnedGrip, TwistsTheThreadByItsAngle) {
   }
 }
 
-// Four whole turns, in steps small enough for a quaternion: the thread counts them.
+// Two whole turns, in steps small enough to be unambiguous as quaternions: the thread's twist counts them.
 TEST(TurnedGrip, CountsWholeTurns) {
   auto sim = thread(0.0);
   turn(sim, Vec3(1, 0, 0), 4.0 * kPi);

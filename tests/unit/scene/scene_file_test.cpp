@@ -111,7 +111,7 @@ TEST(SceneFile, EveryRefusalIsOneLineWithItsLineNumber) {
   }
 }
 
-// A key of another model would have no effect, although its author expects one.
+// Keys of another thread model are rejected, because they would silently have no effect.
 TEST(SceneFile, AKeyOfAnotherModelIsRefused) {
   const struct {
     const char *table, *keys;

@@ -36,7 +36,7 @@ TEST(Picture, TellsEachPageEachTickOnce) {
   EXPECT_EQ(frame(picture, late).ticks().size(), 40U);
 }
 
-/// At any request rate, also when all bins come at once.
+/// Each page gets each bin once, at any request rate, also when all bins come at once.
 TEST(Picture, TellsEachPageEachBinOnce) {
   for (const int batches_a_frame : {7, 5000}) {  // 5000: more bins than fit in a frame
     Picture picture;
