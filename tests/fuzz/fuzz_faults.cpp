@@ -1,4 +1,4 @@
-// Fault scripts.
+// Fuzz target: fault scripts.
 #include "protocol/scene/fault_script.hpp"
 #include "tests/fuzz/target.hpp"
 

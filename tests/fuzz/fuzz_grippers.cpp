@@ -1,4 +1,4 @@
-// Gripper scripts.
+// Fuzz target: gripper scripts.
 #include "protocol/scene/gripper_script.hpp"
 #include "tests/fuzz/target.hpp"
 

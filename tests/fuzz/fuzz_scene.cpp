@@ -15,8 +15,7 @@ using ligature::physics::Simulation;
 using ligature::physics::ToolInput;
 using ligature::physics::Vec3;
 
-/// Largest nodes x substeps that is stepped here; a slower scene would exceed the time limit of a run, not reveal an
-/// error.
+/// Largest nodes x substeps that is stepped here; in use, the limits of the rehearsal process end slower scenes.
 constexpr int kMostWork = 20'000;
 
 void require(bool good, const char* what) {

@@ -38,7 +38,7 @@ class Arms {
     }
     auto now = in;
     for (auto& hand : now.reading.hand) hand.dead_man = hand.dead_man && released >= DeadMan::kReleased;
-    if (released < DeadMan::kReleased) ++released;  // an earlier press does not count
+    if (released < DeadMan::kReleased) ++released;  // ticks since the release; an earlier press does not count
     const auto command = controller.tick(now);
     ++in.tick;
     for (std::size_t h = 0; h < 2; ++h) {

@@ -147,7 +147,7 @@ TEST(Passivity, ALostTorqueIsBookedToTheLastDigit) {
       EXPECT_LE(port.largest_excess_J, 1e-10);
       EXPECT_LE(port.largest_shortfall_J, 1e-10);
     };
-    // Passivity off: when on, it gives up credit after losses.
+    // active = false: active passivity gives up credit after losses, so the account would not be exact.
     play_adversaries({.lost = 0.3, .tells_torque = tells}, look, 1.0, false);
   }
 }
