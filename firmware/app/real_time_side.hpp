@@ -19,7 +19,7 @@
 namespace ligature::app {
 
 /// Each thread first requests its real-time rights and reports refusals. The loop's thread then waits for start(), and
-/// ends without running the loop if start() never comes; the physics thread waits for the loop.
+/// ends without running the loop if end() is called first; the physics thread waits for the loop.
 class RealTimeSide {
  public:
   using RigCycle = Cycle<platform::RigBus, platform::MonotonicClock, platform::WakeUp>;

@@ -65,7 +65,7 @@ class HandControl {
   /// The loop was delayed while it read this tick's samples: their time is unknown, so no velocity is derived from
   /// them.
   void doubt_time_of(std::int64_t tick) noexcept { doubtful_tick_ = tick; }
-  /// After a fault: its cause (such as an encoder jump) may have been booked as work.
+  /// Resets the energy account after a fault, whose cause (such as an encoder jump) may have been booked as work.
   void restart_account() noexcept { passivity_.restart(); }
   void hold_clutch(bool held) noexcept { clutch_command_ = held; }
   /// A pressed dead-man no longer counts until it is released and pressed again.

@@ -31,7 +31,7 @@ enum LimitCode : std::int16_t {
   kSlewLimit = 8,        ///< largest rate of change over many periods
   kVelocityBrake = 16,   ///< tip too fast: the rig goes to BRAKE
   kPassivityLimit = 32,  ///< the port's energy account is short: the force is damped or reduced
-  kTorqueLimit = 64,     ///< a drive has reached its maximum torque, or torques are limited to be safe in any pose
+  kTorqueLimit = 64,     ///< a drive's maximum torque, or the peak force that the torques could make in any pose
 };
 
 /// How the thread's solver degraded in this tick, in order of severity; values of TickRecord::degradation.

@@ -54,7 +54,7 @@ struct FaultScript {
   double period_s = 1e-3;
 
   int expected_fault = 0;  ///< fault number (docs/architecture.md); 0: the rig continues
-  int within_ticks = 0;    ///< latest tick, from the start of the fault, at which no torque is commanded to either hand
+  int within_ticks = 0;    ///< ticks after the start of the fault within which both hands' torques must become zero
 };
 
 /// @return the script, or one line that says what is wrong with the file. As strict as scene files.
