@@ -1,5 +1,6 @@
-// Linked into every program and test. Says in one line what this machine's CPU lacks, where the first instruction that
-// it does not know would end the program with SIGILL. Compiled for every x86-64, and run before any other constructor.
+// Linked into every program and test. Prints which required CPU features this machine lacks; otherwise the program
+// would end with SIGILL at the first unsupported instruction. Compiled for the x86-64 baseline, and run before all
+// other constructors.
 
 #if defined(__x86_64__) && LIGATURE_X86_64_LEVEL >= 2
 #include <unistd.h>

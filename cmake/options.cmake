@@ -1,4 +1,4 @@
-# ligature_options: what every target of ours is compiled with.
+# ligature_options: compile options of all targets of this project.
 add_library(ligature_options INTERFACE)
 target_compile_features(ligature_options INTERFACE cxx_std_20)
 target_include_directories(ligature_options INTERFACE ${PROJECT_SOURCE_DIR})
@@ -8,15 +8,16 @@ target_compile_options(ligature_options INTERFACE
   $<$<BOOL:${LIGATURE_WERROR}>:-Werror>
   -fno-math-errno -ffp-contract=fast)
 
-# Code generation is portable: the same binary runs on every x86-64 made since 2013, and under valgrind.
-# Eigen's alignment depends on these flags, so they are set for the whole build, not per target.
+# Portable code: one binary runs on every x86-64 CPU since 2013, and under valgrind. Eigen's alignment depends on these
+# flags, so they are set for the whole build, not per target.
 if(NOT LIGATURE_ARCH STREQUAL "default")
   add_compile_options(-march=${LIGATURE_ARCH})
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   add_compile_options(-march=x86-64-v3)
 endif()
 
-# Before the first instruction that a CPU may not know: cpu_check.cpp. An object, for a library would leave it out.
+# cpu_check.cpp must run before the first instruction that a CPU may lack. An object library, because the linker would
+# drop an unreferenced member of a static library.
 add_library(ligature_cpu_check OBJECT ${CMAKE_CURRENT_LIST_DIR}/cpu_check.cpp)
 if(LIGATURE_ARCH STREQUAL "default" OR LIGATURE_ARCH STREQUAL "x86-64-v3")
   target_compile_definitions(ligature_cpu_check PRIVATE LIGATURE_X86_64_LEVEL=3)
@@ -26,7 +27,7 @@ else()
   target_compile_definitions(ligature_cpu_check PRIVATE LIGATURE_X86_64_LEVEL=1)
 endif()
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  target_compile_options(ligature_cpu_check PRIVATE -march=x86-64)  # the last of two counts
+  target_compile_options(ligature_cpu_check PRIVATE -march=x86-64)  # the last of two -march options applies
 endif()
 function(ligature_check_cpu target)
   target_sources(${target} PRIVATE $<TARGET_OBJECTS:ligature_cpu_check>)

@@ -1,4 +1,5 @@
-# `cpack -G DEB`: everything a rig needs, installed by apt. scripts/package builds and checks it.
+# `cpack -G DEB`: a package with everything that a rig needs, for installation with apt. scripts/package builds and
+# checks it.
 if(LIGATURE_INSTALL_SYSTEM)
   include(cmake/package_docs.cmake)
 endif()

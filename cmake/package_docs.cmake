@@ -1,4 +1,4 @@
-# What Debian wants to read in a package: copyright, changelog, and the licences of what is inside the programs but not ours.
+# Files that Debian requires in a package: copyright, changelog, and the licences of third-party code in the programs.
 install(FILES firmware/deploy/copyright CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 configure_file(firmware/deploy/changelog.in ${PROJECT_BINARY_DIR}/changelog @ONLY)
 execute_process(COMMAND gzip -9nf ${PROJECT_BINARY_DIR}/changelog COMMAND_ERROR_IS_FATAL ANY)

@@ -1,6 +1,6 @@
-# ruckig::ruckig: an installed one wins; else its C++ sources come from the PyPI source archive, which is
-# the only packaged form of them, at a pinned version and hash. Cloud client, examples and Python module
-# are left out: we compile the eleven solver files and nothing that could open a connection.
+# ruckig::ruckig: the installed library, if any; else built from the source archive on PyPI, with pinned version and
+# hash. PyPI is the only place with packaged C++ sources. Only the eleven solver files are compiled: no cloud client
+# (nothing can open a connection), examples or Python module.
 find_package(ruckig QUIET)
 if(TARGET ruckig::ruckig)
   message(STATUS "ruckig: installed one")
@@ -17,7 +17,7 @@ if(NOT EXISTS ${ruckig_dir}/CMakeLists.txt)
   file(MAKE_DIRECTORY ${LIGATURE_DEPS_DIR})
   file(WRITE ${LIGATURE_DEPS_DIR}/ruckig.txt "ruckig==${RUCKIG_VERSION} --hash=sha256:${RUCKIG_SHA256}\n")
   message(STATUS "ruckig: fetching the source of ${RUCKIG_VERSION} with pip")
-  # only ruckig itself from source: with ":all:" pip would compile its own build tools, CMake among them, for half an hour
+  # only ruckig from source: with ":all:" pip would also compile its build tools, CMake among them, for half an hour
   execute_process(
     COMMAND ${PYTHON3} -m pip download --quiet --disable-pip-version-check --no-deps --no-binary ruckig
             --require-hashes -r ${LIGATURE_DEPS_DIR}/ruckig.txt -d ${LIGATURE_DEPS_DIR}

@@ -1,8 +1,9 @@
-# ligature_add_test(NAME target SOURCES files... LIBS libraries... [RESOURCE what only one test at a time may use])
-# Builds one GoogleTest executable and registers each of its TESTs with ctest.
+# ligature_add_test(NAME target SOURCES files... LIBS libraries... [RESOURCE name])
+# Builds one GoogleTest executable and registers each of its TESTs with ctest. Tests with the same RESOURCE do not run
+# at the same time.
 if(LIGATURE_TESTS)
   enable_testing()
-  if(CMAKE_CROSSCOMPILING)  # the packaged library is this machine's; its package has the sources beside it
+  if(CMAKE_CROSSCOMPILING)  # the packaged library is for this machine; its sources are packaged, too
     add_subdirectory(/usr/src/googletest/googletest googletest EXCLUDE_FROM_ALL)
   else()
     find_package(GTest REQUIRED)

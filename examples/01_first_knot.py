@@ -1,4 +1,4 @@
-"""An overhand knot tied by a script, and when it was there: `python examples/01_first_knot.py`."""
+"""Ties an overhand knot with a script and prints when the knot appeared: `python examples/01_first_knot.py`."""
 
 import ligature
 

@@ -1,4 +1,6 @@
-"""What the hands felt in a recording: `python examples/02_forces_of_a_recording.py RECORDING` (LCM log or flight recorder)."""
+"""Forces that the hands felt in a recording (LCM log or flight recorder file):
+  `python examples/02_forces_of_a_recording.py RECORDING`
+"""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""A scene of one's own: a nylon thread across a peg, its ends loaded; friction holds what the capstan law says it holds."""
+"""Your own scene: a nylon thread over a peg with loaded ends. Friction holds as much as the capstan equation says."""
 
 import numpy as np
 

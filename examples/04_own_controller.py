@@ -1,4 +1,4 @@
-"""A controller of one's own: a hand that pulls the thread's free end with 2 N, whatever the thread does."""
+"""Your own controller: a hand that pulls the thread's free end with a constant force of 2 N."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ down = np.array([0.0, 0.0, -1.0])
 simulation.tick(right=ligature.Tool(position_m, grip=True))  # the jaws close on the last node
 
 for tick in range(8000):
-    pull_N = -np.dot(simulation.right.f_W_N, down)  # the thread pulls the hand up
+    pull_N = -np.dot(simulation.right.f_W_N, down)  # upward force of the thread on the hand
     velocity = GAIN_M_PER_N_S * (WANTED_N - pull_N) * down
     position_m += velocity * scene.tick_s
     if not simulation.tick(right=ligature.Tool(position_m, velocity, grip=True)):

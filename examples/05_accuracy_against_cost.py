@@ -1,4 +1,4 @@
-"""What accuracy costs: a square knot pulled at each setting, against the finest; CPU time of a tick on this machine."""
+"""Cost of accuracy: a square knot is pulled at each setting and compared with the finest; CPU time per tick."""
 
 import time
 

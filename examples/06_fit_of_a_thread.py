@@ -1,4 +1,4 @@
-"""A bending stiffness fitted to a measured sag: the thread is clamped level at one end and hangs down at the other."""
+"""Fits a bending stiffness to a measured sag: the thread is clamped horizontally at one end and hangs down."""
 
 import numpy as np
 
@@ -30,7 +30,7 @@ def sag_m(EI_N_m2):
 
 truth = 4e-7
 measured_m = sag_m(truth)
-low, high = np.log([5e-8, 5e-6])  # a softer thread sags more
+low, high = np.log([5e-8, 5e-6])  # bisection in the logarithm; a softer thread sags more
 while high - low > 1e-2:
     middle = 0.5 * (low + high)
     low, high = (middle, high) if sag_m(np.exp(middle)) > measured_m else (low, middle)

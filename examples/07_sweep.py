@@ -1,4 +1,6 @@
-"""A sweep on all cores: an overhand knot in a real thread pulled tight, over friction and speed: peak force and knot."""
+"""Parameter sweep on all cores: an overhand knot in a real thread is pulled tight at several frictions and speeds;
+prints peak force and knot.
+"""
 
 import numpy as np
 

@@ -1,4 +1,6 @@
-"""A picture for a paper: the thread while its knot is tied, and what the hands felt: `.. 08_plot_for_a_paper.py OUT.pdf`."""
+"""A figure for a paper: the thread while its knot is tied, and the forces on the hands:
+  `python examples/08_plot_for_a_paper.py OUT.pdf`
+"""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Hook of mkdocs.yml: pages of the root folder join those of docs/, and Markdown is read as GitHub reads it."""
+"""Hook for mkdocs.yml: adds the pages of the root folder to those of docs/, and adapts GitHub's Markdown."""
 
 import pathlib
 import re
@@ -19,7 +19,7 @@ def on_files(files, config):
 
 
 def on_page_markdown(markdown, **_):
-    """GitHub begins a list or a table right after a line of text; Python-Markdown wants an empty line between them."""
+    """Inserts the empty line that Python-Markdown needs before a list or a table, and GitHub does not."""
     lines, fenced, inside = [], False, False
     for line in markdown.replace("](../README.md)", "](index.md)").splitlines():
         begins = bool(ITEM.match(line) or ROW.match(line))

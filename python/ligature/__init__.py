@@ -1,13 +1,12 @@
-"""Ligature for Python: a suture's thread, its scenes, its knots and its recordings.
+"""Ligature for Python: the simulated suture thread, scenes, knots and recordings.
 
     import ligature
-
     scene = ligature.Scene.load(ligature.SCENES / "paper.toml", {"suture.nodes": 35})
     run = ligature.Simulation(scene).run(ligature.Script.load(ligature.SCENES / "operators/overhand.csv"))
     print(ligature.knot(run.shapes[-1]).type)  # 3_1
 
-SI units; vectors are x, y, z in the world frame W (x right, y away from the person, z up). What is wrong with input is
-said by one line: `Refusal`, a ValueError, with the text that the programs print.
+SI units; vectors are x, y, z in the world frame W (x right, y away from the user, z up). Invalid input raises
+`Refusal`, a ValueError, with the one-line message that the programs print.
 """
 
 import pathlib
@@ -21,7 +20,7 @@ from ligature.inputs import Scene, Script, knot  # noqa: E402
 from ligature.recording import TICK_COLUMNS, Recording  # noqa: E402
 from ligature.simulation import Run, Simulation  # noqa: E402
 
-SCENES = pathlib.Path(__file__).parent / "scenes"  # the shipped ones
+SCENES = pathlib.Path(__file__).parent / "scenes"  # the shipped scenes
 
 __all__ = [
     "SCENES", "TICK_COLUMNS", "Diagnostics", "Hand", "Knot", "Recording", "Refusal", "Run", "Scene", "Script", "Simulation",

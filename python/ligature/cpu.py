@@ -1,4 +1,4 @@
-"""Says in one line what this CPU lacks, where the extension's first instruction would end the interpreter."""
+"""Checks the CPU before the extension is loaded, whose first unsupported instruction would kill the interpreter."""
 
 import pathlib
 
@@ -8,13 +8,14 @@ NEEDED = {"x86-64-v3": ("avx", "avx2", "fma", "bmi2"), "x86-64-v2": ("ssse3", "s
 
 
 def lacking(arch: str, cpuinfo: str) -> list[str]:
-    """The features of `arch` that no line `flags` of /proc/cpuinfo has; none where nothing is known."""
+    """Features that `arch` needs and the first `flags` line of /proc/cpuinfo lacks; empty when there is no such line.
+    """
     flags = next((line.split() for line in cpuinfo.splitlines() if line.startswith("flags")), None)
     return [] if flags is None else [feature for feature in NEEDED.get(arch, ()) if feature not in flags]
 
 
 def require() -> None:
-    """Raises ImportError when this CPU lacks something."""
+    """Raises ImportError when this CPU lacks a needed feature."""
     try:
         missing = lacking(ARCH, pathlib.Path("/proc/cpuinfo").read_text())
     except OSError:

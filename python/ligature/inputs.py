@@ -1,4 +1,4 @@
-"""What goes in: scenes, scripts of hands, polylines."""
+"""Inputs of a simulation: scenes, scripts of the hands, polylines."""
 
 import os
 from collections.abc import Iterable, Mapping
@@ -13,7 +13,7 @@ Overrides = Mapping[str, Any] | Iterable[str]
 
 
 def numbers(value: Any, name: str) -> np.ndarray:
-    """`value` as doubles in rows, or a Refusal that names it."""
+    """`value` as an array of doubles. Raises Refusal with `name` in the message."""
     try:
         with np.errstate(all="ignore"):
             array = np.asarray(value)
@@ -25,7 +25,7 @@ def numbers(value: Any, name: str) -> np.ndarray:
 
 
 def number(value: Any, name: str) -> float:
-    """`value` as a double, or a Refusal that names it."""
+    """`value` as a double. Raises Refusal with `name` in the message."""
     try:
         return float(value)
     except (TypeError, ValueError, OverflowError):
@@ -33,7 +33,7 @@ def number(value: Any, name: str) -> float:
 
 
 def path_of(path: Path) -> str:
-    """A path as text. What no file can be called is refused."""
+    """A path as text. Raises Refusal for text that cannot be a file name."""
     text = os.fspath(path)
     if not isinstance(text, str) or "\0" in text or any("\ud800" <= c <= "\udfff" for c in text):
         raise _core.Refusal("path: found what is no text in UTF-8, or a null character; allowed a text without")
@@ -41,7 +41,8 @@ def path_of(path: Path) -> str:
 
 
 def toml_of(value: Any) -> str:
-    """A value as TOML writes it. A text stays as it is: the scene's reader takes it with quotes and without."""
+    """A value in TOML syntax. Text is returned unchanged, because the scene reader accepts it with or without quotes.
+    """
     if isinstance(value, str):
         return value
     if isinstance(value, (bool, np.bool_)):
@@ -58,14 +59,14 @@ def toml_of(value: Any) -> str:
 
 
 def quoted(value: Any) -> str:
-    """A text inside a list or a table needs its quotes."""
+    """A value in TOML syntax, with text in quotes, as lists and tables need it."""
     if not isinstance(value, str):
         return toml_of(value)
     return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
 def lines_of(overrides: Overrides | None) -> list[str]:
-    """["suture.nodes=35"] from a mapping or from such lines."""
+    """Overrides as lines such as "suture.nodes=35", from a mapping or from such lines."""
     if overrides is None:
         return []
     if isinstance(overrides, Mapping):
@@ -76,25 +77,25 @@ def lines_of(overrides: Overrides | None) -> list[str]:
 
 
 class Scene(_core.Scene):
-    """A scene file, read and checked. Its numbers are read by the programs' own reader (protocol/scene/scene_file.hpp)."""
+    """A scene, read and checked by the same reader as in the programs (protocol/scene/scene_file.hpp)."""
 
     @classmethod
     def load(cls, path: Path, overrides: Overrides | None = None) -> Self:
-        """Reads a scene file (TOML), strictly, and the overrides on top of it.
+        """Reads a scene file (TOML; unknown keys are errors) and applies the overrides.
 
-        overrides: {"suture.nodes": 35, "contact.friction": 0.2}, or lines "suture.nodes=35" as --set takes them.
-        Raises Refusal with the line that the programs print: file and line, key, what was found, what is allowed.
+        overrides: {"suture.nodes": 35, "contact.friction": 0.2}, or lines such as "suture.nodes=35" (as for --set).
+        Raises Refusal with the programs' message: file and line, key, what was found, what is allowed.
         """
         return cls(path_of(path), lines_of(overrides))
 
     @classmethod
     def parse(cls, text: str, overrides: Overrides | None = None, path: Path = "scene.toml") -> Self:
-        """The same from a text. path: what messages call it, and where a polyline that it names is looked for."""
+        """As load(), from a text. path: file name for messages; a polyline file of the scene is searched beside it."""
         return cls(path_of(path), lines_of(overrides), text)
 
 
 class Script(_core.Script):
-    """What two hands do over time. Between keys a hand moves by 3u^2 - 2u^3: every key is a rest point."""
+    """Motion of the two hands over time. Between keys a hand moves by 3u^2 - 2u^3, so it is at rest at every key."""
 
     @classmethod
     def load(cls, path: Path) -> Self:
@@ -103,9 +104,10 @@ class Script(_core.Script):
 
     @classmethod
     def of_keys(cls, left: Any = (), right: Any = ()) -> Self:
-        """From arrays, one row a key: time s, x, y, z m, grip 0 or 1; and three turns in degrees where tools turn.
+        """Makes a script from arrays, one row per key: time s, x, y, z m, grip 0 or 1, and optionally three rotation
+        angles of the tool in degrees.
 
-        Times rise from 0 on, at most 1e6. A hand without rows is absent. Raises Refusal with row and column.
+        Times rise from 0 to at most 1e6. A hand without rows is absent. Raises Refusal with row and column.
         """
         script = cls()
         script._add_keys(0, numbers(left, "left"))
@@ -116,8 +118,8 @@ class Script(_core.Script):
 def knot(points: Any, closed: bool = False) -> _core.Knot:
     """Names the knot in a polyline: type, handedness, determinant, Alexander polynomial.
 
-    points: n x 3, m, in order along the thread, at most 20000. closed: the last point is joined to the first; else the
-    thread is open and is closed in several ways, of which most must agree. About 1 ms for 500 points.
-    Raises Refusal for another shape, or a coordinate that is no number or beyond 1e9. Source: host/knot/recognise.hpp.
+    points: n x 3, m, in order along the thread, at most 20000. closed: the last point is joined to the first. An open
+    thread is closed in several ways, and the majority of the results decides. About 1 ms for 500 points.
+    Raises Refusal for another shape, or a coordinate that is not finite or beyond 1e9. Source: host/knot/recognise.hpp.
     """
     return _core.knot(numbers(points, "points"), bool(closed))

@@ -11,7 +11,7 @@ std::span<const double> rows_of(const Numbers& array, const char* name, std::siz
   }
   const std::span<const double> values(array.data(), array.shape(0) * columns);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (std::abs(values[i]) <= most) continue;  // false for what is no number, too
+    if (std::abs(values[i]) <= most) continue;  // false for nan, too
     char text[120];
     std::snprintf(text, sizeof text, ": row %zu, column %zu: found %g, allowed -%g .. %g", i / columns, i % columns,
                   values[i], most, most);

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers that cross the boundary: NumPy looks at ours without a copy, we at NumPy's after a check.
+// Exchange of arrays with NumPy: results are views without a copy; inputs are checked.
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -25,13 +25,13 @@ using Points = View<double, nb::shape<-1, 3>>;
 
 inline std::array<double, 3> plain(const physics::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-/// n x 3, read-only, of memory that `owner` keeps alive.
+/// Read-only n x 3 view of memory that `owner` keeps alive.
 inline Points points_view(std::span<const physics::Vec3> points, nb::handle owner) {
   static_assert(sizeof(physics::Vec3) == 3 * sizeof(double));
   return Points(points.empty() ? nullptr : points.front().data(), {points.size(), 3}, owner);
 }
 
-/// An array that owns what it shows.
+/// An array that owns its data.
 template <class T>
 View<T> array_of(std::vector<T> values, std::initializer_list<std::size_t> shape) {
   auto kept = std::make_unique<std::vector<T>>(std::move(values));
@@ -41,10 +41,11 @@ View<T> array_of(std::vector<T> values, std::initializer_list<std::size_t> shape
   return View<T>(data, shape, owner);
 }
 
-/// What Python hands over as numbers: any array or sequence that NumPy makes doubles of.
+/// Numeric input from Python: an array or sequence that NumPy converts to doubles.
 using Numbers = nb::ndarray<const double, nb::numpy, nb::c_contig, nb::device::cpu>;
 
-/// `array` as rows of `columns` finite numbers, none beyond `most`. @throws lab::Refusal "NAME: found .., allowed ..".
+/// `array` as rows of `columns` finite numbers with magnitude <= `most`. @throws lab::Refusal "NAME: found .., allowed
+/// ..".
 std::span<const double> rows_of(const Numbers& array, const char* name, std::size_t columns, double most);
 
 }  // namespace ligature::python

@@ -9,7 +9,7 @@ namespace ligature::python {
 namespace {
 
 constexpr double kMost_m = 1e9;
-constexpr std::size_t kMostPoints = 20'000;  // the cost grows with their square
+constexpr std::size_t kMostPoints = 20'000;  // the cost is quadratic
 
 knot::KnotResult name_knot(const Numbers& array, bool closed) {
   const auto values = rows_of(array, "points", 3, kMost_m);

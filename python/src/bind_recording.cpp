@@ -1,4 +1,4 @@
-// A recording's columns, shapes, events and scenes, read by the host's own readers.
+// Binds recordings: columns, shapes, events and scenes, read by the host's readers.
 
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -19,7 +19,7 @@ Recorded read(const std::string& path) {
   return recorded;
 }
 
-/// Python may have an array as it is: moved out, not copied.
+/// Moves a column's data into a NumPy array without a copy.
 template <class T>
 auto taken(std::vector<T>& values) {
   const std::size_t n = values.size();

@@ -1,4 +1,4 @@
-// Run: what came of a script.
+// Binds Run: the results of a script.
 
 #include "python/src/arrays.hpp"
 #include "python/src/bindings.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 using RunSelf = nb::pointer_and_handle<Run>;
 
-/// Rows, or a column of them, of a run that stays alive with the array.
+/// Arrays that view a run's memory and keep the run alive.
 auto trace_of(const RunSelf& self) {
   return View<double, nb::shape<-1, Run::kColumns>>(self.p->trace.data(),
                                                     {self.p->trace.size() / Run::kColumns, Run::kColumns}, self.h);

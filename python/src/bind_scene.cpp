@@ -1,4 +1,4 @@
-// Scene, Script, Tool: what goes in.
+// Binds Scene, Script and Tool: the inputs of a simulation.
 
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
@@ -19,9 +19,9 @@
 namespace ligature::python {
 namespace {
 
-constexpr double kMost = 1e6;  // s, m, degrees; as in files
+constexpr double kMost = 1e6;  // limit of values in s, m and degrees, as for script files
 
-/// The keys of one hand: time, x, y, z, grip, and three turns where the script has them.
+/// Adds the keys of one hand from rows of time, x, y, z, grip, and optionally three rotation angles.
 void add_keys(scene::GripperScript& script, int hand, const Numbers& array) {
   const char* name = hand == 0 ? "left" : "right";
   if (array.size() == 0) return;

@@ -1,4 +1,4 @@
-// Simulation: the thread in its world.
+// Binds Simulation.
 
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
@@ -30,7 +30,7 @@ std::span<const physics::Vec3> as_points(std::span<const double> values) {
 }
 
 void set_state(Sim& sim, const Numbers& nodes, const std::optional<Numbers>& velocities) {
-  constexpr double kFar = 1e9;  // m, m/s; beyond it the thread counts as diverged
+  constexpr double kFar = 1e9;  // m, m/s; the physics treats larger values as divergence
   const std::size_t n = sim.idle().simulation().nodes_W().size();
   const auto same = [n](const Numbers& array, const char* name) {
     const auto points = as_points(rows_of(array, name, 3, kFar));

@@ -1,5 +1,5 @@
 #pragma once
-// What the module is made of, one function a file.
+// The parts of the module, one function per file.
 
 #include <nanobind/nanobind.h>
 
@@ -7,7 +7,7 @@
 
 namespace ligature::python {
 
-/// Bytes of anybody as text: what is no UTF-8 becomes a replacement character.
+/// Converts bytes to a Python string; invalid UTF-8 becomes a replacement character.
 inline nanobind::str text_of(std::string_view bytes) {
   return nanobind::steal<nanobind::str>(
       PyUnicode_DecodeUTF8(bytes.data(), static_cast<Py_ssize_t>(bytes.size()), "replace"));

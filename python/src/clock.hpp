@@ -3,7 +3,7 @@
 
 namespace ligature::python {
 
-/// Tells the time of a tick as a recording of that period does.
+/// A clock whose time_s() gives the same times of ticks as a recording with that period.
 [[nodiscard]] inline host::RigFacts clock_of(double tick_s) {
   host::RigFacts clock;
   clock.period_s = tick_s;

@@ -1,5 +1,5 @@
 #pragma once
-// Rounding as the laboratory's programs have it, whatever a library in the same process has done to it.
+// Sets the floating-point mode of the lab's programs, which other libraries in the process may have changed.
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -7,8 +7,8 @@
 
 namespace ligature::python {
 
-/// While it lives: round to nearest, denormals kept. A shared library built with -ffast-math switches them off for the
-/// thread that loads it, and results would differ from a run without that library.
+/// While an object lives: rounding to nearest, denormals kept. A shared library built with -ffast-math switches
+/// denormals off for the thread that loads it; results would then differ from those of the lab's programs.
 class DefaultFloats {
  public:
 #if defined(__x86_64__)
@@ -22,7 +22,7 @@ class DefaultFloats {
   DefaultFloats& operator=(const DefaultFloats&) = delete;
 
  private:
-  static constexpr unsigned kDefault = 0x1f80, kModes = 0xffc0;  // the other bits only remember what has happened
+  static constexpr unsigned kDefault = 0x1f80, kModes = 0xffc0;  // kModes: control bits; the others are status flags
   [[nodiscard]] bool is_strange() const { return (before_ & kModes) != kDefault; }
   unsigned before_;
 #endif

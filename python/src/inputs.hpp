@@ -7,7 +7,7 @@ namespace ligature::python {
 
 struct Scene {
   scene::Scene scene;
-  std::string path;  ///< how messages call it
+  std::string path;  ///< name in messages
 };
 
 }  // namespace ligature::python

@@ -56,7 +56,8 @@ Reals curvature_per_m(const physics::Simulation& simulation) {
   std::vector<double> values(p.size());
   for (std::size_t i = 1; i + 1 < p.size(); ++i) {
     const physics::Vec3 before = p[i] - p[i - 1], after = p[i + 1] - p[i], across = p[i + 1] - p[i - 1];
-    const double product = before.norm() * after.norm() * across.norm();  // circle of three points: 4 area / product
+    // curvature of the circle through three points: 4 area / product
+    const double product = before.norm() * after.norm() * across.norm();
     values[i] = product > 0.0 ? 2.0 * before.cross(after).norm() / product : 0.0;
   }
   return one_row(std::move(values));

@@ -1,5 +1,5 @@
 #pragma once
-// What there is to see of a simulation.
+// Read access to the state of a simulation.
 
 #include "python/src/arrays.hpp"
 #include "python/src/sim.hpp"
@@ -13,7 +13,7 @@ using Reals = View<double, nb::ndim<1>>;
 [[nodiscard]] Floats turn_rad(const physics::Simulation& simulation);
 [[nodiscard]] Reals curvature_per_m(const physics::Simulation& simulation);
 
-/// Hand and Diagnostics.
+/// Binds Hand and Diagnostics.
 void bind_looks(nb::module_& module);
 
 }  // namespace ligature::python

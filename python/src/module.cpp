@@ -1,4 +1,4 @@
-// ligature._core: the thread's physics, its scenes, its knots and recordings, as the programs have them.
+// The module ligature._core: physics of the thread, scenes, knots and recordings, as in the programs.
 
 #include <nanobind/nanobind.h>
 
@@ -15,10 +15,10 @@ namespace {
 
 PyObject* g_refusal = nullptr;
 
-/// Errors of the programs become exceptions with the same line.
+/// Translates the programs' exceptions to Python exceptions with the same message.
 void translate(const std::exception_ptr& thrown, void*) {
   namespace python = ligature::python;
-  const auto raise = [](PyObject* type, std::string line) {  // one line, whatever a library put into it
+  const auto raise = [](PyObject* type, std::string line) {  // replaces line breaks, so that the message is one line
     std::ranges::replace(line, '\n', ' ');
     PyErr_SetObject(type, python::text_of(line).ptr());
   };

@@ -8,7 +8,7 @@
 
 namespace ligature::python {
 
-/// What was read, or its one line as a Refusal.
+/// Returns what was read. @throws lab::Refusal with the reader's one-line error.
 template <class T>
 [[nodiscard]] T or_refuse(std::variant<T, scene::Error> read) {
   if (const auto* error = std::get_if<scene::Error>(&read)) throw lab::Refusal(error->text);

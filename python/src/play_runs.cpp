@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMostThreads = 256;
 
-/// Lets Python look at its signals now and then; says no once one of them raised.
+/// Lets Python handle signals every 50 ms; returns false once a handler has raised an exception (Ctrl-C).
 class Signals {
  public:
   bool operator()() {
@@ -23,7 +23,7 @@ class Signals {
     if (raised_ && !error_ && PyErr_Occurred()) error_.emplace();
     return !raised_;
   }
-  /// With Python's lock: raises what a signal's handler raised.
+  /// Raises the handler's exception. The caller must hold the GIL.
   void rethrow() {
     if (error_) throw nb::python_error(std::move(*error_));
   }
@@ -45,7 +45,7 @@ Run run_here(Sim& sim, const scene::GripperScript& script, std::optional<double>
              double start_s) {
   const auto& scene = sim.idle().scene().scene;
   const auto orders = orders_of(scene, start_s, duration_of(script, duration_s), shape_every_s, 1);
-  const auto played = script;  // Python may change the other one meanwhile
+  const auto played = script;  // a copy: other Python threads may change the script during the run
   Signals signals;
   Run run;
   {

@@ -1,5 +1,5 @@
 #pragma once
-// Runs as Python asks for them: others may go on meanwhile, and Ctrl-C ends them.
+// Runs started from Python. The GIL is released meanwhile, and Ctrl-C stops them.
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>

@@ -1,5 +1,5 @@
 #pragma once
-// A whole recording in memory, column by column.
+// Collects a whole recording in memory, column by column.
 
 #include <cstdint>
 #include <string>
@@ -64,7 +64,8 @@ struct Recorded final : host::ExportSink {
   host::ExportResult result;
   std::vector<double> t_s;
   std::vector<std::int64_t> session;
-  std::vector<std::variant<std::vector<std::int64_t>, std::vector<double>>> columns;  // as host::tick_columns()
+  // in the order of host::tick_columns()
+  std::vector<std::variant<std::vector<std::int64_t>, std::vector<double>>> columns;
   std::vector<double> shape_t_s;
   std::vector<std::int64_t> shape_tick, shape_count;
   std::vector<float> radius_m, p_W_m, tension_N, turn_rad;

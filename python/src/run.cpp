@@ -18,7 +18,7 @@
 namespace ligature::python {
 namespace {
 
-constexpr double kMostBytes = 4e9;  // of all that runs keep
+constexpr double kMostBytes = 4e9;  // limit on the memory for the results of all runs
 constexpr double kLongest_s = 1e6;
 constexpr int kTicksAQuestion = 32;
 

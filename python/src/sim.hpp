@@ -1,5 +1,5 @@
 #pragma once
-// A simulation as Python holds it.
+// A simulation as a Python object.
 
 #include <Python.h>
 
@@ -15,13 +15,14 @@
 
 namespace ligature::python {
 
-/// Python's threads take turns, but a run lets others in: what it works on must not be touched until it ends.
+/// Protects the simulation while a run has released the GIL: other Python threads must not change it before the run
+/// ends.
 class Sim {
  public:
   explicit Sim(const Scene& scene) : scene_(std::make_shared<const Scene>(scene)), simulation_(make(scene)) {}
   Sim(const Sim& other) = default;
 
-  /// @throws std::runtime_error while a run of another Python thread works on it.
+  /// @throws std::runtime_error while a run in another Python thread uses it.
   Sim& idle() {
     if (busy_.is_set) throw std::runtime_error("this simulation is running in another thread");
     return *this;
@@ -49,7 +50,7 @@ class Sim {
     refresh();
   }
 
-  /// Views of these are kept up to date from now on.
+  /// NumPy views of these arrays are kept up to date after the first call.
   [[nodiscard]] std::span<const physics::Vec3> nodes_W() {
     shows_nodes_ = true;
     return simulation_.nodes_W();
@@ -63,7 +64,7 @@ class Sim {
   [[nodiscard]] physics::Simulation& simulation() { return simulation_; }
   [[nodiscard]] std::int64_t ticks() const { return ticks_; }
 
-  /// Held by a run, with Python's lock when it begins and when it ends.
+  /// Marks the simulation as busy during a run; created and destroyed with the GIL held.
   class Busy {
    public:
     explicit Busy(Sim& sim) : sim_(sim) { sim_.busy_.is_set = true; }
@@ -76,7 +77,7 @@ class Sim {
   };
 
  private:
-  struct Flag {  // a copy is not busy
+  struct Flag {  // not copied: a copy is not busy
     Flag() = default;
     Flag(const Flag&) {}
     bool is_set = false;
