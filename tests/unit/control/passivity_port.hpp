@@ -66,7 +66,7 @@ struct Port {
 
   Passivity passivity;
   Chain chain;
-  // Force made by the torques of a force, which the drive rounds.
+  // The force that really acts for a sent force, after its joint torques are rounded; here without rounding.
   std::function<Vec3(const Vec3&)> made_of = [](const Vec3& f) { return f; };
   test::Random random;
   PassivityBounds bounds;

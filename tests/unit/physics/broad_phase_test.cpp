@@ -11,7 +11,7 @@ namespace {
 
 using test::V;
 
-/// Test shape number k with n nodes; half of the shapes are degenerate or regular.
+/// Test shape number k with n nodes: one of five regular or degenerate kinds, else a random walk.
 Lane3 shape(int k, int n, test::Random& random) {
   Lane3 p(n);
   V at = random.vector(3.0);

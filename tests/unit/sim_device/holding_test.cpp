@@ -47,7 +47,7 @@ TEST(Holding, ALongSilenceFreesTheHandAndEndsTheSession) {
   h.holding.look(Holding::kFreeAfter + Time(1));
   EXPECT_EQ(h.holding.owner(), 0);
   EXPECT_NE(h.holding.session(), session);
-  // The previous holder is rejected, too.
+  // The previous session is rejected, even from the same owner.
   EXPECT_FALSE(h.holding.accept({session, 7, 2}, Holding::kFreeAfter + milliseconds(1)));
   EXPECT_TRUE(h.holding.accept({h.holding.session(), 8, 1}, Holding::kFreeAfter + milliseconds(1)));
 }
