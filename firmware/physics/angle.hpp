@@ -6,11 +6,11 @@
 
 namespace ligature::physics {
 
-/// Angle between two unit vectors from the sine and cosine of it, without a branch: atan2(s, c) for s >= 0.
+/// Angle between two unit vectors from its sine and cosine, without branches: atan2(s, c) for s >= 0.
 ///   alpha = 2 atan(s / (1 + |c|)),  pi minus that when c < 0;   atan by a polynomial of degree 17 in t^2 on [0, 1]
 ///   (interpolated at the Chebyshev points).
-/// Instead of the paper's arcsin (or acos): those lose half the digits near a right angle (or when straight) and turn
-/// NaN as soon as rounding lifts their argument over 1, which the printed form does in 5 % of right-angled bends.
+/// The paper's arcsin (or acos) loses half of the digits near a right angle (or when straight), and is NaN when
+/// rounding lifts its argument above 1, as happens with the printed form in 5 % of right-angled bends.
 /// @param s  >= 0    @param c  any sign; s^2 + c^2 near 1 (or both 0, which gives 0)
 /// @return rad in [0, pi]; absolute error below 4e-15. Cost: 18 multiply-adds and one division.
 template <class S>

@@ -1,6 +1,6 @@
 #pragma once
-// Symmetric positive definite systems of small bandwidth, solved in place by L D L^T without pivoting (none is needed:
-// all our matrices are the identity plus something positive semidefinite).
+// Symmetric positive definite systems of small bandwidth, solved in place by L D L^T. No pivoting is needed: all
+// matrices here are the identity plus a positive semidefinite matrix.
 
 namespace ligature::physics {
 

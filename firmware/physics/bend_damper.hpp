@@ -13,8 +13,8 @@ S bend_rate(const V3<S>& grad_left, const V3<S>& grad_right, const V3<S>& v_left
 }
 
 /// Torsional damper, equations (10)-(12), as a generalised force on the bend angle: M = -k_td alpha', N m.
-///   f_{i-1} = M grad_{i-1}, f_{i+1} = M grad_{i+1}, f_i = minus their sum. The paper's sign is the other one and feeds
-///   energy in (power > 0 in 100 % of random states); this one takes it out, and nothing in rigid motion.
+///   f_{i-1} = M grad_{i-1}, f_{i+1} = M grad_{i+1}, f_i = minus their sum. The paper has the opposite sign, which adds
+///   energy (power > 0 in all of the random states tested); this one dissipates energy, and is zero in rigid motion.
 template <class S>
 S bend_damper_moment_N_m(S rate, double k_N_m_s) noexcept {
   return -k_N_m_s * rate;

@@ -4,7 +4,7 @@
 
 namespace ligature::physics {
 
-/// How two joined segments bend: the angle, the axis, and how the angle changes with the three nodes.
+/// The bend between two adjacent segments: angle, axis, and gradients of the angle by the positions of the three nodes.
 template <class S>
 struct Bend {
   V3<S> axis;        ///< unit binormal u1 x u2 / |u1 x u2|; zero when exactly straight
@@ -14,7 +14,7 @@ struct Bend {
   V3<S> grad_right;  ///< d alpha / d P_{i+1} = -t_{i+1} / l_i, 1/m;   d alpha / d P_i is minus their sum
 };
 
-/// Any unit vector across u: the axis of a bend that is folded back exactly, where every axis is as good.
+/// A unit vector perpendicular to u: the axis of a bend that is folded back exactly, where the axis is arbitrary.
 inline V3<double> across(const V3<double>& u) noexcept {
   const V3<double> helper = magnitude(u.x) < 0.6 ? V3<double>{1.0, 0.0, 0.0} : V3<double>{0.0, 1.0, 0.0};
   const V3<double> a = cross(u, helper);
@@ -31,12 +31,12 @@ inline V3<double> across(const V3<double>& u) noexcept {
 
 /// Bend of the joint between two segments; the geometry behind (7)-(15).
 ///   s = u1 x u2 / |u1 x u2|,  t_{i-1} = u1 x s,  t_{i+1} = u2 x s,  alpha = atan2(|u1 x u2|, u1 . u2)
-/// The paper calls t a unit vector but its formula has length sin alpha; here it has length 1, which is what makes
-/// (7)-(9) the gradient of an energy. s is made orthogonal to both segments a second time, because near straight (or
-/// folded) the cross product keeps only its leading digits; so torques cancel to rounding at every angle.
+/// The paper calls t a unit vector, but its formula has length sin alpha. Here it has length 1, so that (7)-(9) are the
+/// gradient of an energy. Near straight (or folded) the cross product loses digits; so s is orthogonalised to both
+/// segments once more, and torques cancel to rounding error at every angle. For an exact fold the axis is across(u1).
 /// @param u1, u2         unit segment directions, or zero where there is no segment (all results are then finite)
 /// @param inv_l1, inv_l2 inverse segment lengths, 1/m
-/// Folded back exactly the axis is chosen across u1. Cost: about 110 operations, one root, two divisions.
+/// Cost: about 110 operations, one root, two divisions.
 template <class S>
 [[gnu::always_inline]] inline Bend<S> bend_of(const V3<S>& u1, const V3<S>& u2, S inv_l1, S inv_l2) noexcept {
   constexpr double kNothing = 1e-30, kUnsure = 1e-12;
@@ -54,7 +54,7 @@ template <class S>
   }
   const S one = floor - floor + 1.0;
   const S side = b.cosine < 0.0 ? -one : one;
-  const V3<S> q = u1 + side * u2;  // along the bisector, or across it when folded: well away from zero
+  const V3<S> q = u1 + side * u2;  // sum or, for angles above pi / 2, difference of u1 and u2: never near zero
   b.axis = b.axis - (0.5 * dot(q, b.axis) / (1.0 + magnitude(b.cosine))) * q;
   b.grad_left = (-inv_l1) * cross(u1, b.axis);
   b.grad_right = (-inv_l2) * cross(u2, b.axis);

@@ -7,9 +7,10 @@
 namespace ligature::physics {
 
 /// Torsional spring, equations (7)-(9), as a generalised force on the bend angle.
-///   M = -(k_ts / pi) alpha, N m;   f_{i-1} = M d alpha/dP_{i-1},  f_{i+1} = M d alpha/dP_{i+1},  f_i = -(f_{i-1} +
-///   f_{i+1}) which is (7)-(9) with unit t: the force is minus the gradient of E = k_ts alpha^2 / (2 pi). The printed t
-///   of length sin alpha would give no linear stiffness when straight and no force when folded.
+///   M = -(k_ts / pi) alpha, N m;   f_{i-1} = M d alpha/dP_{i-1},  f_{i+1} = M d alpha/dP_{i+1},
+///   f_i = -(f_{i-1} + f_{i+1}).
+/// This is (7)-(9) with a unit vector t: the force is minus the gradient of E = k_ts alpha^2 / (2 pi). With the printed
+/// t, of length sin alpha, a straight bend would have no linear stiffness and a folded one no force.
 /// @param k_N_m  k_ts
 template <class S>
 S bend_moment_N_m(S angle, double k_N_m) noexcept {

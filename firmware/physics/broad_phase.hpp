@@ -14,7 +14,7 @@ struct SegmentPair {
   friend auto operator<=>(const SegmentPair&, const SegmentPair&) = default;
 };
 
-/// Bounding spheres of all segments: centres (m) and half lengths (m), in lanes; sized once.
+/// Bounding spheres of all segments: centres, m, and half lengths, m. Allocated once.
 struct SegmentSpheres {
   Lane3 centre;
   Lane half_m;
@@ -25,7 +25,7 @@ struct SegmentSpheres {
   void update(const Lane3& p) noexcept;
 };
 
-/// A fixed-capacity list: full means that further pairs are dropped and `overflow` is set.
+/// A list with fixed capacity: when it is full, further pairs are dropped and `overflow` is set.
 struct PairList {
   RoomyVector<SegmentPair> pairs;  ///< reserved once
   bool overflow = false;
@@ -37,8 +37,8 @@ struct PairList {
   }
 };
 
-/// Whether two spheres are within reach of each other: |c_i - c_j| <= h_i + h_j + reach. Every broad phase decides by
-/// this one expression on packs, so that all of them agree to the last bit.
+/// Are two spheres within reach of each other: |c_i - c_j| <= h_i + h_j + reach? All broad phases use this one
+/// expression, so their results are identical.
 inline PackMask spheres_near(const V3<Pack>& ci, Pack hi_and_reach, const SegmentSpheres& s, int j) noexcept {
   const V3<Pack> apart = s.centre.pack(j) - ci;
   const Pack limit = hi_and_reach + s.half_m.pack(j);
@@ -49,7 +49,7 @@ inline bool segments_near(const SegmentSpheres& s, int i, int j, double reach_m)
   return spheres_near(c, splat(reach_m + s.half_m[i]), s, j)[0] != 0;
 }
 
-/// All pairs whose spheres are within reach_m of each other, and whose indices differ by at least skip; in rising
+/// All pairs whose spheres are within reach_m of each other and whose indices differ by at least skip, in ascending
 /// order. Cost: n^2 / 2 tests, four at a time.
 void find_pairs_brute(const SegmentSpheres& s, double reach_m, int skip, PairList& out) noexcept;
 

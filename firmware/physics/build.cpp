@@ -8,11 +8,11 @@
 namespace ligature::physics {
 namespace {
 
-constexpr int kBruteUpTo = 600;  // nodes; above, the sweep is cheaper (docs/physics.md, "Broad phases")
+constexpr int kBruteUpTo = 600;  // nodes; for more, Sweep is cheaper (docs/physics.md, "Broad phases")
 
 V3<double> to_v3(const scene::Vec& a) { return {a[0], a[1], a[2]}; }
 
-/// Table I per node, or the same thread per length spread over another number of nodes.
+/// Constants of Table I per node; with reference_nodes, rescaled to another number of nodes (see build_thread()).
 void set_constants(const scene::Scene& scene, ThreadModel& m) {
   const scene::PaperParameters& p = scene.suture.paper;
   const double shorter = p.reference_nodes ? (*p.reference_nodes - 1.0) / (m.nodes - 1.0) : 1.0;  // l / l0
@@ -53,7 +53,8 @@ void pin(BuiltThread& t, int node, const V3<double>& p) {
   t.model.free[node] = 0.0;
 }
 
-/// A clamp pins the neighbours too: the tangent, along growing node numbers, is then the given direction.
+/// Fixes the scene's nodes. A clamp also fixes the neighbours, so that the tangent towards higher node numbers is the
+/// given direction.
 void fix_nodes(const scene::Scene& scene, BuiltThread& t) {
   for (const scene::FixedNode& f : scene.world.fixed) {
     const int node = f.node < 0 ? t.model.nodes - 1 : f.node;
@@ -101,8 +102,7 @@ ContactSettings build_contact(const scene::Scene& scene, const ThreadModel& m) {
   ContactSettings c;
   c.slip = scene.contact.friction;
   c.stick = scene.contact.static_friction.value_or(c.slip);
-  // A thread of radius r cannot turn back on itself within an arc of pi r: pairs closer along the thread are
-  // neighbours.
+  // A thread of radius r cannot touch itself within an arc of pi r: pairs closer along the thread count as neighbours.
   c.skip = 1 + static_cast<int>(std::ceil(std::numbers::pi * m.radius_m / m.rest_m - 1e-9));
   if (c.skip < 2) c.skip = 2;
   c.desk_m = scene.world.desk_height_m;

@@ -16,10 +16,11 @@ struct BuiltThread {
   ThreadState initial;
 };
 
-/// Per-node constants from the scene. With reference_nodes N0 the Table I values are read as properties per length,
-///   density m N0 / L,  EA = k_l,  EI = k_ts l0 / pi,  stretch loss k_d l0,  bend loss k_td l0,  twist loss k_sw l0^2,
-/// with l0 = L / (N0 - 1), and spread over `nodes`; without it they are per node, exactly as in the paper.
-/// @return the thread, or why the scene cannot be simulated (allocates; never called in the cycle)
+/// Builds a thread of one of the paper's models. Without reference_nodes the values of Table I apply to each node, as
+/// in the paper. With reference_nodes N0 they are converted to properties per length,
+///   density m N0 / L,  EA = k_l,  EI = k_ts l0 / pi,  damping: stretch k_d l0, bend k_td l0, swivel k_sw l0^2,
+/// with l0 = L / (N0 - 1), and then to constants for `nodes` nodes.
+/// @return the thread, or why the scene cannot be simulated. Allocates; not for the real-time loop.
 [[nodiscard]] std::variant<BuiltThread, std::string> build_thread(const scene::Scene& scene);
 
 [[nodiscard]] ContactSettings build_contact(const scene::Scene& scene, const ThreadModel& model);

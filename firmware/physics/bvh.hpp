@@ -6,22 +6,21 @@
 
 namespace ligature::physics {
 
-/// The paper's broad phase (V.A): a hierarchy of bounding spheres built from the bottom up, segment by segment along
-/// the thread, and explored against itself from the top down. Neighbours along the thread are near in space too, so the
-/// tree's shape never changes; only its spheres do. Cost: n to build, n log n and more to explore a thread that touches
-/// itself.
+/// The paper's broad phase (V.A): a tree of bounding spheres, built bottom-up over consecutive segments and tested
+/// against itself top-down. Segments near along the thread are near in space, so the tree's topology never changes,
+/// only its spheres. Cost: O(n) to build; O(n log n) or more to find the pairs of a thread that touches itself.
 class SphereTree {
  public:
   SphereTree() = default;
   explicit SphereTree(int segments);
 
-  /// The same pairs, in the same order, as find_pairs_brute.
+  /// Finds the same pairs, in the same order, as find_pairs_brute().
   void find_pairs(const SegmentSpheres& s, double reach_m, int skip, PairList& out) noexcept;
 
  private:
   struct Ball {
     V3<double> centre{};
-    double radius_m = -1.0;  ///< negative: nothing below
+    double radius_m = -1.0;  ///< negative: no segments below this node
     int first = 0, last = -1;
   };
   struct Search {

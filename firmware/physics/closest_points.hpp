@@ -4,7 +4,7 @@
 
 namespace ligature::physics {
 
-/// Where two segments are nearest: fractions along each, and the vector from the second to the first.
+/// Closest points of two segments: fractions along each, and the vector from the second to the first.
 struct ClosestPoints {
   double a = 0.0;      ///< fraction along P1 Q1, 0 .. 1
   double b = 0.0;      ///< fraction along P2 Q2, 0 .. 1
@@ -12,7 +12,7 @@ struct ClosestPoints {
   double distance_m = 0.0;
 };
 
-/// Nearest points of two segments, exact for crossing, parallel, touching and zero-length ones.
+/// Closest points of two segments; exact also for crossing, parallel, touching and zero-length ones.
 ///   Minimises |P1 + a (Q1 - P1) - P2 - b (Q2 - P2)|^2 over the unit square: unconstrained a from the 2 x 2 system (one
 ///   half when parallel), then b clamped for that a, then a clamped for that b.
 /// Cost: about 70 operations, three divisions, one root.

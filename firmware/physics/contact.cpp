@@ -2,15 +2,15 @@
 
 #include <limits>
 
-// Contacts of one step as rows of a small problem, solved by sweeps.
+// Contact rows of one step, solved by Gauss-Seidel sweeps.
 
 namespace ligature::physics {
 namespace {
 
 constexpr int kFewestSweeps = 4, kMostSweeps = 40;
-constexpr double kSettled = 1e-5;          // of radius per step: a change of relative velocity too small to matter
-constexpr double kRecovery = 0.2;          // share of an overlap that is undone per step ...
-constexpr double kFastestRecovery = 0.01;  // ... but at most this many radii per step
+constexpr double kSettled = 1e-5;          // tolerance: change of a relative velocity per sweep, in radii per step
+constexpr double kRecovery = 0.2;          // share of an overlap that is removed per step
+constexpr double kFastestRecovery = 0.01;  // most overlap that is removed per step, in radii
 
 }  // namespace
 
@@ -37,8 +37,8 @@ void ContactSolver::forget() noexcept {
   report_ = {};
 }
 
-/// A row for every candidate that could touch in the coming step. One comparison per four candidates rules out the
-/// rest: a gap measured at odometer reading t cannot be below gap + t - travel now.
+/// Makes a row for every candidate that could touch in the coming step. One comparison for four candidates excludes the
+/// others: a gap measured at travel t is now at least gap + t - travel_m_.
 void ContactSolver::make_rows(const ThreadModel& m, const ThreadState& s, double near_m) noexcept {
   rows_.clear();
   const Pack limit = splat(near_m + travel_m_);
@@ -73,11 +73,11 @@ void ContactSolver::try_row(const ThreadModel& m, const ThreadState& s, double n
   rows_.pop_back();
 }
 
-/// Masses, target and warm start of a measured row. @return whether anything in it can move
+/// Sets masses, target and warm start of a measured row. @return false when none of its nodes can move
 bool ContactSolver::finish_row(const ThreadModel& m, const Candidate& c, ContactRow& row) const noexcept {
   double mobility = 0.0;
   for (int e = 0; e < 4; ++e) {
-    row.push[e] = row.weight[e] * m.inverse_mass_per_kg[row.node[e]];  // nobody is past the last node: 0
+    row.push[e] = row.weight[e] * m.inverse_mass_per_kg[row.node[e]];  // 0 for the extra node of bodies without nodes
     mobility += row.push[e] * row.weight[e];
   }
   if (!(mobility > 0.0)) return false;
@@ -109,7 +109,8 @@ void ContactSolver::gather_velocities(const ThreadState& s) noexcept {
     for (int k = 0; k < 4; ++k) velocity_[static_cast<std::size_t>(r.node[k])].v = to_pack(s.v.at(r.node[k]));
 }
 
-/// Bound on any speed in the coming step, m/s; keeps the books on obstacles that move, come or go.
+/// Upper bound of all speeds in the coming step, m/s. Also adds the motion of obstacles to travel_m_, and requests new
+/// candidates when an obstacle has appeared or disappeared.
 double ContactSolver::fastest(const ThreadState& s) noexcept {
   Pack speeds2 = splat(0.0);
   for (int i = 0; i < nodes_; i += kLanes) {
@@ -119,7 +120,7 @@ double ContactSolver::fastest(const ThreadState& s) noexcept {
   double fastest2 = largest(speeds2);
   for (std::size_t k = 0; k < kObstacles; ++k) {
     const Obstacle& o = obstacles_[k];
-    if (o.present != known_[k].present) margin_m_ = -1.0;  // look for candidates anew
+    if (o.present != known_[k].present) margin_m_ = -1.0;  // candidates must be found again
     if (o.present) {
       fastest2 = larger(fastest2, dot(o.v_m_per_s, o.v_m_per_s));
       travel_m_ += norm(o.p0_m - known_[k].p0_m);
@@ -132,7 +133,7 @@ double ContactSolver::fastest(const ThreadState& s) noexcept {
 void ContactSolver::solve(const ThreadModel& m, ThreadState& s) noexcept {
   ++step_;
   report_.cap_hit = false;
-  // How far two bodies may close in on each other in this step, and a little for what impulses add to that.
+  // Upper bound of a gap's decrease in this step, plus a margin for the velocity changes by contact impulses.
   const double near_m = 2.0 * fastest(s) * m.step_s + 0.02 * radius_m_;
   if (margin_m_ < 0.0 || travel_m_ - found_at_m_ + near_m > margin_m_) {
     margin_m_ = radius_m_ + 4.0 * near_m;

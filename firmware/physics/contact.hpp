@@ -14,30 +14,29 @@
 
 namespace ligature::physics {
 
-/// A capsule of the thread's radius that the thread feels and that does not feel the thread: a gripper, the frame's
-/// hook.
+/// A capsule with the thread's radius whose motion is prescribed: a gripper, or a hook of the frame.
 struct Obstacle {
   V3<double> p0_m{}, p1_m{}, v_m_per_s{};
-  int skip_first = 0, skip_last = -1;  ///< segments that it does not touch (those it holds)
+  int skip_first = 0, skip_last = -1;  ///< range of segments without contact (those that it holds)
   bool present = false;
 };
 
 struct ContactSettings {
   double stick = 0.3, slip = 0.3;  ///< static and kinetic friction
-  int skip = 2;                    ///< segments whose indices differ by less are neighbours along the thread
+  int skip = 2;                    ///< segments whose indices differ by less cannot touch: neighbours along the thread
   std::optional<double> desk_m;    ///< height of the desk
-  scene::BroadPhase broad_phase = scene::BroadPhase::kBrute;  ///< which search; kAuto is resolved before
+  scene::BroadPhase broad_phase = scene::BroadPhase::kBrute;  ///< never kAuto: build_contact() chooses
 };
 
-/// Two bodies worth watching: measured when they may have come close, remembered from step to step.
+/// Two bodies that may touch soon, with their state from step to step. Measured again only when they may be close.
 struct Candidate {
   enum class Kind : std::int8_t { kSegments, kObstacle, kDesk };
   Kind kind = Kind::kSegments;
   int first = 0;           ///< segment (desk: node)
-  int second = 0;          ///< segment, or number of the obstacle
+  int second = 0;          ///< segment, or index of the obstacle
   double gap_m = 0.0;      ///< surface gap when last measured
-  double travel_m = 0.0;   ///< odometer when last measured; see ContactSolver::travel_m_
-  std::int64_t step = -1;  ///< when last measured
+  double travel_m = 0.0;   ///< ContactSolver::travel_m_ when last measured
+  std::int64_t step = -1;  ///< step in which it was last measured
   V3<double> normal{};     ///< unit, when last measured
   Pack impulse{};          ///< of the last step, N s: the warm start
 };
@@ -49,9 +48,9 @@ struct ContactReport {
   int sweeps = 0;
 };
 
-/// Keeps the thread out of itself, of the desk and of obstacles, with static Coulomb friction.
-///   Velocity level: before positions move, impulses make every gap's rate at least -gap/dt (so a fast approach stops
-///   at touch instead of being noticed afterwards), inside the friction cone; projected Gauss-Seidel, warm-started.
+/// Contact of the thread with itself, the desk and obstacles, with static and kinetic Coulomb friction. Before
+/// positions are advanced, impulses within the friction cone make every gap's rate at least -gap/dt, so that a fast
+/// approach stops at touch. Solved by projected Gauss-Seidel with warm start.
 class ContactSolver {
  public:
   static constexpr int kObstacles = 8;
@@ -61,10 +60,10 @@ class ContactSolver {
 
   std::array<Obstacle, kObstacles>& obstacles() noexcept { return obstacles_; }
 
-  /// Changes the velocities so that no body enters another in the coming step of model.step_s.
+  /// Changes the velocities so that no overlap arises in the coming step of model.step_s.
   void solve(const ThreadModel& model, ThreadState& state) noexcept;
 
-  /// Tells how far things moved: speed bound of the nodes in the step just taken, m/s.
+  /// Call after each step. @param speed_m_per_s  upper bound of the nodes' speeds in it
   void moved(double speed_m_per_s, double step_s) noexcept { travel_m_ += 2.0 * speed_m_per_s * step_s; }
 
   [[nodiscard]] const ContactReport& report() const noexcept { return report_; }
@@ -90,19 +89,19 @@ class ContactSolver {
   ContactSettings settings_;
   double radius_m_ = 0.0;
   int nodes_ = 0;
-  std::array<Obstacle, kObstacles> obstacles_{}, known_{};  ///< now, and in the last step
+  std::array<Obstacle, kObstacles> obstacles_{}, known_{};  ///< in this step, and in the last one
   SegmentSpheres spheres_;
   Sweep sweep_;
   SphereTree tree_;
   PairList pairs_;
   RoomyVector<Candidate> candidates_, old_candidates_;
-  Lane due_m_;  ///< per candidate: odometer reading before which it cannot have gap zero
+  Lane due_m_;  ///< per candidate: value of travel_m_ up to which its gap is certainly positive
   Lane gap_m_;  ///< per candidate: gap when last measured; infinite for the desk and obstacles
   RoomyVector<ContactRow> rows_;
-  std::vector<NodeVelocity> velocity_;  ///< one more than nodes: the last is massless and at rest
-  double travel_m_ = 0.0;               ///< bound on how much any gap can have closed since the start
-  double found_at_m_ = 0.0;             ///< travel when candidates were last found
-  double margin_m_ = -1.0;              ///< gap up to which all pairs are candidates; < 0: none found yet
+  std::vector<NodeVelocity> velocity_;  ///< of all nodes, and one more that never moves, for bodies without nodes
+  double travel_m_ = 0.0;               ///< upper bound of how much any gap has closed since the start
+  double found_at_m_ = 0.0;             ///< travel_m_ when candidates were last found
+  double margin_m_ = -1.0;              ///< all pairs with a smaller gap were candidates then; < 0: must be found
   std::int64_t step_ = 0;
   ContactReport report_;
 };

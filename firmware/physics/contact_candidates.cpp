@@ -3,7 +3,7 @@
 
 #include "firmware/physics/contact.hpp"
 
-// Which bodies are worth watching: found now and then, with a margin that motion has to use up first.
+// Search for candidates. It is repeated only when the motion since the last search may have used up its margin.
 
 namespace ligature::physics {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 bool same_bodies(const Candidate& a, const Candidate& b) noexcept {
   return a.kind == b.kind && a.first == b.first && a.second == b.second;
 }
-/// The order in which candidates are found: pairs of segments, then obstacle by obstacle, then the desk.
+/// Order of the candidate list: pairs of segments, then obstacles one after the other, then the desk.
 bool in_order(const Candidate& a, const Candidate& b) noexcept {
   const auto group = [](const Candidate& c) { return c.kind == Candidate::Kind::kObstacle ? c.second : 0; };
   return std::tuple(a.kind, group(a), a.first, a.second) < std::tuple(b.kind, group(b), b.first, b.second);
@@ -22,7 +22,7 @@ bool in_order(const Candidate& a, const Candidate& b) noexcept {
 void ContactSolver::keep(const ThreadState& state, Candidate c) noexcept {
   ContactRow unused;
   measure(state, c, unused);
-  c.step = -1;  // its side is known from now on, not from before
+  c.step = -1;  // measured from scratch: orient() may not assume on which side the bodies were before
   if (!(c.gap_m < margin_m_)) return;
   if (candidates_.size() < candidates_.capacity())
     candidates_.push_back(c);
@@ -30,7 +30,7 @@ void ContactSolver::keep(const ThreadState& state, Candidate c) noexcept {
     report_.cap_hit = true;
 }
 
-/// Both lists are in rising order, so memories are carried over in one pass.
+/// Copies the state of candidates that were in the old list. Both lists are sorted, so one pass is enough.
 void ContactSolver::inherit_impulses() noexcept {
   auto old = old_candidates_.begin();
   for (Candidate& c : candidates_) {
@@ -85,7 +85,7 @@ void ContactSolver::find_candidates(const ThreadState& s) noexcept {
   found_at_m_ = travel_m_;
 }
 
-/// The two numbers that decide each step whether a candidate must be looked at, side by side for packs.
+/// Copies due time and gap of all candidates into lanes, for the test of four at a time in make_rows().
 void ContactSolver::index_candidates() noexcept {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const int count = static_cast<int>(candidates_.size());

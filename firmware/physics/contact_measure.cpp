@@ -1,15 +1,15 @@
 #include "firmware/physics/closest_points.hpp"
 #include "firmware/physics/contact.hpp"
 
-// Narrow phase: how far a candidate is apart, where, and on which side.
+// Narrow phase: gap, closest points and normal of a candidate.
 
 namespace ligature::physics {
 namespace {
-constexpr double kRoundOff = 1e-9;  // of radius: centre lines this close have no direction from one to the other
+constexpr double kRoundOff = 1e-9;  // in radii: centrelines closer than this do not define a normal
 }
 
-/// Sets the candidate's normal and gap. Two centre lines that were near one step ago cannot have changed sides since
-/// unless they went through each other: then the old side is kept and the overlap counted as deeper than a diameter.
+/// Sets the candidate's normal and gap. If the normal of two near centrelines has reversed within one step, they have
+/// crossed: then the old normal is kept, and the overlap counts as deeper than a diameter.
 void ContactSolver::orient(Candidate& c, const V3<double>& apart, double distance_m,
                            const V3<double>& axis) const noexcept {
   const bool fresh = c.step >= 0 && c.step + 1 >= step_;
@@ -29,7 +29,7 @@ void ContactSolver::orient(Candidate& c, const V3<double>& apart, double distanc
   c.travel_m = travel_m_;
 }
 
-/// Measures a candidate and returns where its contact would be; weights and nodes only.
+/// Measures a candidate and sets nodes, weights and the obstacle's velocity of its row.
 void ContactSolver::measure(const ThreadState& s, Candidate& c, ContactRow& row) const noexcept {
   const int i = c.first, j = c.second, nobody = nodes_;
   if (c.kind == Candidate::Kind::kDesk) {

@@ -6,7 +6,7 @@ namespace ligature::physics {
 
 inline Pack to_pack(const V3<double>& a) noexcept { return Pack{a.x, a.y, a.z, 0.0}; }
 
-/// x, y, z, 0 of one node: what a contact reads and writes in one instruction; m/s.
+/// x, y, z, 0 of one node in one register, m/s.
 struct NodeVelocity {
   Pack v{};
 };
@@ -16,25 +16,25 @@ inline double dot3(Pack a, Pack b) noexcept {
   return p[0] + p[1] + p[2];
 }
 
-/// One contact between two points of the thread, or of the thread and something that does not feel it.
+/// One contact between two points of the thread, or between the thread and the desk or an obstacle.
 ///   u = sum_k weight_k v_k - v_outside: velocity of the first point relative to the second
-/// Filled whole by its maker, so nothing is cleared first.
+/// Members have no initial values, as try_row() sets all of them.
 struct ContactRow {
   Pack normal;            ///< unit, from the second body to the first
   Pack impulse;           ///< N s, on the first body
   Pack v_outside;         ///< m/s, of a moving obstacle; zero between segments
-  int node[4];            ///< two of the first body, two of the second (a massless node where there is none)
+  int node[4];            ///< two of the first body, two of the second (the extra, immobile node if it has none)
   double weight[4];       ///< barycentric, negative for the second body
   double push[4];         ///< weight_k / m_k, 1/kg
   double mass_kg;         ///< 1 / sum_k weight_k^2 / m_k
-  double target_m_per_s;  ///< lowest allowed normal velocity: -gap/dt while apart, a gentle recovery when overlapping
+  double target_m_per_s;  ///< smallest admissible normal velocity: -gap/dt while apart; > 0 to recover from an overlap
   double stick, slip;     ///< static and kinetic friction coefficients
-  int candidate;          ///< whose memory keeps the impulse
+  int candidate;          ///< index of the candidate that stores the impulse
 };
 
-/// Projects an impulse onto the Coulomb cone of its normal: inside the static cone it sticks (any tangential impulse
-/// that stops slip), outside it slides with the kinetic coefficient. Equations (1), (3) with the stick that the paper
-/// leaves to future work: there is no 0/0 at zero slip and friction never exceeds what stops it.
+/// Projects an impulse onto the Coulomb cone about its normal. Inside the static cone the contact sticks and the
+/// impulse is unchanged; outside, friction is slip x normal impulse. Equations (1), (3) of the paper, extended by
+/// static friction: no 0/0 at zero slip, and friction never exceeds what stops the slip.
 inline Pack project_on_cone(Pack impulse, Pack normal, double stick, double slip) noexcept {
   const double along = dot3(impulse, normal);
   if (along <= 0.0) return Pack{};
@@ -44,8 +44,8 @@ inline Pack project_on_cone(Pack impulse, Pack normal, double stick, double slip
   return along * normal + (slip * along / std::sqrt(size2)) * across;
 }
 
-/// One projected Gauss-Seidel visit: the impulse that gives this contact its target normal velocity and no slip, as far
-/// as the cone allows; applied to the velocities at once.
+/// One projected Gauss-Seidel step of a contact: the impulse for the target normal velocity and zero slip, projected on
+/// the cone, and applied to the velocities at once.
 /// @return squared change of the relative velocity, (m/s)^2
 inline double relax(ContactRow& r, NodeVelocity* v) noexcept {
   Pack u = r.weight[0] * v[r.node[0]].v + r.weight[1] * v[r.node[1]].v;

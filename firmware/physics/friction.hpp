@@ -10,7 +10,7 @@ inline V3<double> slip_velocity(const V3<double>& v_relative, const V3<double>& 
 }
 
 /// Coulomb friction, equations (1) and (3): f_f = mu |n| e^, e^ against the slip, N, on the first body.
-///   As printed it is 0/0 at zero slip (here: zero) and has no bound: at mu = 10 it reverses the slip within one step.
+///   As printed it is 0/0 at zero slip (here: zero), and unlimited: at mu = 10 it reverses the slip within one step.
 inline V3<double> coulomb_friction_N(double mu, double normal_N, const V3<double>& v_relative,
                                      const V3<double>& normal) noexcept {
   const V3<double> slip = slip_velocity(v_relative, normal);
@@ -20,8 +20,8 @@ inline V3<double> coulomb_friction_N(double mu, double normal_N, const V3<double
 }
 
 /// The same as an impulse, N s, and no more than what stops the slip: min(mu |i|, m |slip|) e^.
-///   With stick: inside the static cone slip is stopped whole, outside kinetic friction acts (the paper's stated next
-///   step).
+///   Inside the static cone the slip is stopped completely; outside, kinetic friction acts (the paper names static
+///   friction as future work).
 /// @param mass_kg  effective mass of the contact: 1 / sum_k weight_k^2 / m_k
 inline V3<double> capped_friction_N_s(double mu_static, double mu_kinetic, double normal_N_s, double mass_kg,
                                       const V3<double>& v_relative, const V3<double>& normal) noexcept {

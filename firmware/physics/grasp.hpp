@@ -10,9 +10,9 @@ namespace ligature::physics {
 
 /// Virtual coupling between a tool and the node it holds (paper III.A.2), thread side.
 ///   f = K' (p_T - p_G) + B' (v_T - v_G) on the node;  B' = B / (1 + dt B / m),  K' = min(K, m / (2 dt^2))
-/// B' is the damper taken at the end of the step; K' is K unless K is out of proportion (Table I: dt^2 K / m = 0.024).
-/// So neither a strong damper nor a stiff spring is unstable, and a hand at rest feels exactly K times the distance.
-/// The hand feels -f.
+/// B' is the damper, integrated implicitly; K' = K unless K is too stiff for the time step (Table I: dt^2 K / m =
+/// 0.024). So no damper or spring is unstable, and at rest the force is exactly K times the distance. The force on the
+/// hand is -f.
 struct Coupling {
   double N_per_m = 0.0;
   double N_s_per_m = 0.0;
@@ -27,9 +27,9 @@ struct Coupling {
   return spring * (p_WT - p) + damper * (v_WT - v);
 }
 
-/// What each hand holds. A hand that closes takes the nearest node that is neither fixed nor held, if the thread beside
-/// it is within reach, and brings it to itself if it is further off than its radius (closing.hpp); one that opens lets
-/// go.
+/// The node that each hand holds. A closing hand takes the nearest node that is neither fixed nor held, if the thread
+/// next to it is within reach. If the thread is farther away than its radius, it is brought to the hand smoothly
+/// (closing.hpp). An opening hand releases its node.
 class Grasp {
  public:
   Grasp() = default;
@@ -37,7 +37,7 @@ class Grasp {
 
   void update(const std::array<ToolInput, 2>& tools, const ThreadModel& model, const ThreadState& state) noexcept;
   void release_all() noexcept { *this = Grasp(reach_m_); }
-  /// A tick has passed.
+  /// Advances the closing motion of both hands by one tick.
   void step(double tick_s) noexcept {
     for (Closing& c : closing_) c.step(tick_s);
   }

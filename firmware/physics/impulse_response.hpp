@@ -4,18 +4,17 @@
 
 namespace ligature::physics {
 
-/// How an impulse at a contact is shared by the four end nodes: C a fraction a along P_a P_b, E a fraction b along P_c
-/// P_d.
+/// Shares of the four end nodes in an impulse at a contact: point C at fraction a along P_a P_b, E at fraction b along
+/// P_c P_d.
 struct Shares {
   double a, b, c, d;  ///< positive on the first segment, negative on the second
 };
 inline Shares shares(double a, double b) noexcept { return {1.0 - a, a, -(1.0 - b), -b}; }
 
-/// Size of the impulse that (19)-(22) apply, equation (18): i' = 2 |i| / (a^2 + b^2 + (1-a)^2 + (1-b)^2), i = n dt, N
-/// s.
-///   The reference for i is misprinted: (2), not (3). The factor 2 over the sum is Bridson's, whose i is half the
-///   relative impulse; here the contact gets 1.00 to 2.00 times n dt. |i| would turn an attraction into a repulsion, so
-///   i >= 0.
+/// Size of the impulse in (19)-(22), equation (18): i' = 2 |i| / (a^2 + b^2 + (1-a)^2 + (1-b)^2), with i = n dt, N s.
+///   The paper's reference for i is misprinted: it must be (2), not (3). The factor 2 is Bridson's, whose i is
+///   half of the relative impulse; so here a contact gets 1 to 2 times n dt. |i| would turn an attraction into a
+///   repulsion, so callers pass i >= 0.
 inline double bridson_impulse_N_s(double i_N_s, double a, double b) noexcept {
   return 2.0 * i_N_s / (a * a + b * b + (1.0 - a) * (1.0 - a) + (1.0 - b) * (1.0 - b));
 }

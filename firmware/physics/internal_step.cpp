@@ -9,19 +9,20 @@
 #include "firmware/physics/stretch_spring.hpp"
 #include "firmware/physics/swivel_damper.hpp"
 
-// Every loop runs over packs of four nodes and may compute up to three that are not there. Those have zero-length
-// segments, hence no direction, no axis and no gradient: whatever they compute is finite and multiplied by zero.
+// Every loop runs over packs of four nodes and may include up to three nodes past the end. Their segments have zero
+// length, so direction, axis and gradients are zero: all results there are finite and multiplied by zero.
 
 namespace ligature::physics {
 namespace {
 
-constexpr double kShortest = 1e-9;  // of rest length: a shorter segment counts as this long where it divides
+constexpr double kShortest = 1e-9;  // lower bound of a segment's length in divisions, relative to the rest length
 
-// Swivel dampers share nodes with at most three others of either side: four colours, so the sum of their weighted
-// projections is at most the identity when each takes a quarter (1 / (1 + 4 k dt g^T M^-1 g)).
+// A swivel damper shares nodes with up to three others on each side, so dampers can be divided into four sets (colours)
+// without common nodes. A Jacobi step with weight 1/4 for each, 1 / (1 + 4 k dt g^T M^-1 g), then cannot overshoot.
 constexpr double kColours = 4.0;
 
-/// Directions and lengths, the springs' stretch impulses dt T_i, and how much a rate adds to each: gain_i.
+/// Directions and lengths of segments, impulses dt T_i of the stretch springs, and gain_i: additional impulse per
+/// stretch rate.
 template <Terms T>
 void measure_segments(const ThreadModel& m, const ThreadState& s, InternalWorkspace& w) noexcept {
   using Law = std::conditional_t<T.quadratic_stretch, QuadraticStretchLaw, LinearStretch>;
@@ -35,7 +36,7 @@ void measure_segments(const ThreadModel& m, const ThreadState& s, InternalWorksp
     w.u.set(i, seg.u);
     w.inv_length.set(i, seg.inv_length);
     Pack gain = splat(m.stretch_N_s_per_m * dt);
-    // Model 5 gets stiffer without bound as it stretches, so there the spring is implicit as well.
+    // The stiffness of model 5 grows without bound with the strain, so its spring is treated implicitly too.
     if constexpr (T.quadratic_stretch && !T.explicit_damping)
       gain += dt * dt * Law::slope_N_per_m(strain, m.stretch_N, m.rest_m);
     w.pull.set(i, dt * Law::tension_N(strain, m.stretch_N));
@@ -45,7 +46,8 @@ void measure_segments(const ThreadModel& m, const ThreadState& s, InternalWorksp
   w.stretch_J = sum(energy);
 }
 
-/// Adds the damper to the pulls, right for the rates that the pulls leave behind, and applies them.
+/// Adds the stretch dampers to the springs' impulses and applies them. Implicit: the damper acts on the rate after the
+/// step,
 ///   pull_i = dt T_i + gain_i rate_i(v after)
 template <Terms T>
 void apply_stretch(const ThreadModel& m, ThreadState& s, const Lane3& rate_v, InternalWorkspace& w) noexcept {
@@ -67,7 +69,7 @@ void apply_stretch(const ThreadModel& m, ThreadState& s, const Lane3& rate_v, In
   }
 }
 
-/// Angles, axes and gradients of all bends, and the springs' bend impulses dt M_i.
+/// Angles, axes and gradients of all bends, and impulses dt M_i of the bend springs.
 template <Terms T>
 void measure_bends(const ThreadModel& m, InternalWorkspace& w) noexcept {
   const double dt = m.step_s;
@@ -87,7 +89,7 @@ void measure_bends(const ThreadModel& m, InternalWorkspace& w) noexcept {
   w.bend_J = sum(energy);
 }
 
-/// Velocities changed by the bend impulses in w.turn.
+/// Applies the bend impulses in w.turn to the velocities.
 void apply_turns(const ThreadModel& m, ThreadState& s, const InternalWorkspace& w) noexcept {
   for (int i = 0; i < m.nodes; i += kLanes) {
     const Pack before = w.turn.pack(i - 1), here = w.turn.pack(i), after = w.turn.pack(i + 1);
@@ -143,9 +145,9 @@ void measure_swivel(const ThreadModel& m, const Lane3& rate_v, InternalWorkspace
   }
 }
 
-/// Turns swivel rates into impulses along the axes of the two bends that a dihedral joins: bend i is the first of
-/// dihedral i (swing_left, swing_right, overwriting its rates, which nobody needs any more) and the second of dihedral
-/// i - 1.
+/// Impulses of the dihedral dampers, along the axes of the two bends that a dihedral joins. Dihedral i joins bends i
+/// and i + 1: its part for bend i overwrites the rates in swing_left and swing_right, which are no longer needed; its
+/// part for bend i + 1 goes into next_left and next_right.
 template <Terms T>
 void couple_dihedrals(const ThreadModel& m, InternalWorkspace& w) noexcept {
   const Lane& mass = m.inverse_mass_per_kg;
@@ -182,8 +184,8 @@ void apply_swivel(const ThreadModel& m, ThreadState& s, const InternalWorkspace&
   }
 }
 
-/// Springs first, then dampers: at rest the dampers then see velocities of zero, so that damping cannot shift a
-/// balance.
+/// Springs act before dampers: in equilibrium the velocities are then zero when the dampers act, so damping cannot
+/// shift the equilibrium.
 template <Terms T>
 void internal_step(const ThreadModel& m, ThreadState& s, const Lane3& before_v, InternalWorkspace& w) noexcept {
   const Lane3& rate_v = T.explicit_damping ? before_v : s.v;

@@ -1,6 +1,6 @@
 #pragma once
-// Numbers of all nodes side by side (structure of arrays), zero-padded at both ends so that loops over packs may read
-// one neighbour to the left, three to the right and write past the last node without a special case.
+// Arrays of one number per node (structure of arrays), zero-padded at both ends: loops over packs may read one node
+// before the first and several past the last, and write past the last, without special cases.
 
 #include <cstddef>
 #include <vector>

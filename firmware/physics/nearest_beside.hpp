@@ -4,7 +4,7 @@
 
 namespace ligature::physics {
 
-/// A place of the thread beside a node: `share` of the way to the neighbour `next`, at x.
+/// A point of the thread next to a node: at `share` of the way to the neighbour `next`, position x.
 template <class Vector>
 struct Beside {
   int next = 0;
@@ -12,7 +12,7 @@ struct Beside {
   Vector x{};
 };
 
-/// Nearest to p on the half segments beside a node: what a gripper that takes the node has between its jaws.
+/// Point nearest to p on the two half segments next to a node: what is between the jaws of a gripper that holds it.
 /// @param x  position of a node, x(int) -> Vector
 template <class Vector, class Position>
 [[nodiscard]] Beside<Vector> nearest_beside(int node, int nodes, const Position& x, const Vector& p) noexcept {

@@ -13,7 +13,7 @@ V3<double> gravity_of(const scene::Scene& scene) noexcept {
   return {g[0], g[1], g[2]};
 }
 
-/// Without gravity no hook has a direction.
+/// Hooks point against gravity, so there are none without it.
 bool has_hooks(const scene::Scene& scene) noexcept {
   return scene.world.frame_collides && norm(gravity_of(scene)) > 0.0;
 }

@@ -10,16 +10,15 @@
 
 namespace ligature::physics {
 
-/// What the thread meets in its world besides itself and the desk: two grippers and the hooks of the frame, all
-/// capsules of the thread's own radius.
-///   Gripper: from the tool tip 4 radii towards the person (-y). It does not touch the segments around the node it
-///   holds. A hand that lets go is inside the thread, so its gripper touches nothing again until it has come clear.
+/// Obstacles of the thread: two grippers and the hooks of the frame, all capsules with the thread's radius.
+///   Gripper: from the tool tip 4 radii towards the operator (-y). It has no contact with the segments around the node
+///   it holds. When a hand lets go its gripper overlaps the thread, so it has no contacts until it is clear of it.
 ///   Hook: from each fixed node 4 radii upwards (against gravity); it does not touch the segments around that node.
 class ObstacleCourse {
  public:
   static constexpr std::size_t kMostHooks = ContactSolver::kObstacles - 2;
 
-  /// Why there is no course for a scene, or empty: it has more hooks than the solver has room for.
+  /// Reason why the scene's obstacles cannot be simulated (more hooks than the solver has room for), or empty.
   [[nodiscard]] static std::string objection(const scene::Scene& scene);
 
   ObstacleCourse() = default;
@@ -36,7 +35,7 @@ class ObstacleCourse {
 
   bool grippers_ = false;
   int skip_ = 2;
-  std::array<bool, 2> inside_{true, true};  // an open gripper that still overlaps what it let go of
+  std::array<bool, 2> inside_{true, true};  // gripper without contacts until it is clear of the thread
   std::vector<Obstacle> hooks_;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// Four doubles that compute together. Laws are templates over their scalar, so that the same text is a pure function of
-// doubles in a test and four nodes at once in the loop. GCC/Clang vector types: any target, AVX2 on x86-64-v3.
+// A SIMD register of four doubles. Force laws are templates over their scalar type, so the same code is tested with
+// doubles and runs on four nodes at once in the loop. GCC/Clang vector types: any target, AVX2 on x86-64-v3.
 
 #include <cmath>
 
@@ -12,8 +12,8 @@ inline constexpr int kLanes = 4;
 
 inline Pack splat(double a) noexcept { return Pack{a, a, a, a}; }
 
-/// Unaligned load and store: bends start at node 1, so most accesses are off the natural alignment. By a copy: clang
-/// ignores a smaller alignment given to an alias of a vector type, loads as if aligned, and the program is killed.
+/// Unaligned load and store: bends start at node 1, so most accesses are not aligned. By memcpy, because clang ignores
+/// a reduced alignment of an alias of a vector type, and its aligned load would fault.
 inline Pack load(const double* p) noexcept {
   Pack a;
   __builtin_memcpy(&a, p, sizeof a);

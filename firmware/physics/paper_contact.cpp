@@ -9,7 +9,7 @@
 namespace ligature::physics {
 namespace {
 constexpr double kSafety =
-    0.01;  // eps of the separation, in radii: the paper's "slight safety margin", not given there
+    0.01;  // eps of the separation, in radii: the paper's "slight safety margin", for which it gives no value
 }
 
 PaperContact::PaperContact(const ThreadModel& model, const PaperContactSettings& settings)

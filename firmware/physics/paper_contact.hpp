@@ -6,14 +6,14 @@
 
 namespace ligature::physics {
 
-/// The paper's self-contact, section V.A with (1)-(3) and (18)-(22), for comparison: every pair that overlaps gets the
-/// impulse of its repulsion and friction, then is shifted apart. It acts after the fact, so fast threads pass through
-/// each other; the implicit solver is the one to use.
+/// The paper's self-contact, section V.A with (1)-(3) and (18)-(22), for comparison: every overlapping pair gets the
+/// impulse of its repulsion and friction, then is shifted apart. As it acts only after an overlap has occurred, fast
+/// strands pass through each other; use the implicit solver (contact.hpp) instead.
 struct PaperContactSettings {
   Repulsion repulsion;
   double stick = 10.0, slip = 10.0;
   int skip = 2;
-  bool capped = true;  ///< repulsion never attracts, friction at most stops slip; false: as printed
+  bool capped = true;  ///< no attraction, and friction at most stops the slip; false: as printed in the paper
 };
 
 class PaperContact {
@@ -24,7 +24,7 @@ class PaperContact {
   /// Impulses into the velocities and separation into the positions of all overlapping pairs, one after the other.
   void solve(const ThreadModel& model, ThreadState& state) noexcept;
 
-  /// What was reported last.
+  /// Clears the reported values.
   void forget() noexcept {
     active_ = 0;
     min_gap_m_ = 0.0;

@@ -10,8 +10,8 @@
 namespace ligature::physics {
 namespace {
 
-constexpr std::int64_t kSubstep_ns = 400'000;  // is one piece: half of what a tick has
-constexpr double kOutOfRange = 1e9;            // m/s or m: beyond any thread; a run that gets there has diverged
+constexpr std::int64_t kSubstep_ns = 400'000;  // longest time of a substep, the piece of work between clock queries
+constexpr double kOutOfRange = 1e9;            // m/s or m; larger values count as divergence
 
 V3<double> to_v3(const Vec3& a) noexcept { return {a.x(), a.y(), a.z()}; }
 V3<double> to_v3(const scene::Vec& a) noexcept { return {a[0], a[1], a[2]}; }
@@ -36,8 +36,8 @@ std::array<V3<double>, 2> PaperSimulation::hand_forces_N(const std::array<ToolIn
   return force;
 }
 
-/// Drag, gravity, loads and hands: everything that is not the thread's own. Each acts on the motion that there was,
-/// none on what another one is adding, so that no damping shifts a balance.
+/// External forces: drag, gravity, loads and hands. Drag and the hands' dampers act on the velocities before this
+/// step's forces, so that damping cannot shift an equilibrium.
 void PaperSimulation::add_external(const std::array<ToolInput, 2>& tools) noexcept {
   const double dt = model_.step_s;
   const auto force = hand_forces_N(tools);
@@ -71,7 +71,7 @@ double PaperSimulation::integrate(const Lane3& v_W) noexcept {
 }
 
 void PaperSimulation::step(const std::array<ToolInput, 2>& tools) noexcept {
-  if (explicit_damping_ || forward_) rate_v_ = state_.v;  // same size: copies, does not allocate
+  if (explicit_damping_ || forward_) rate_v_ = state_.v;  // same size, so no allocation
   add_external(tools);
   if (has_limits_) limits_.warm_start(model_, state_);
   internal_(model_, state_, rate_v_, work_);
@@ -88,7 +88,7 @@ double PaperSimulation::fastest() const noexcept {
   return std::sqrt(largest(fastest2));
 }
 
-/// Keeps the state that a tick starts from. In packs: six calls of memcpy cost four times as much at 50 nodes.
+/// Stores the state at the start of a tick. Copied in packs: six calls of memcpy take four times as long at 50 nodes.
 void PaperSimulation::remember() noexcept {
   for (int i = 0; i < model_.nodes; i += kLanes) {
     before_.p.set(i, state_.p.pack(i));
@@ -101,10 +101,10 @@ void PaperSimulation::stop(int bad_node) noexcept {
   health_.finite = false;
   health_.bad_node = bad_node;
   health_.bad_tick = ticks_;
-  hands_ = {};  // no force is the safe one to leave behind
+  hands_ = {};  // zero force is the safe final value
 }
 
-/// Finite and in range; if not, the state goes back to the last tick's and stays there.
+/// Is the state finite and in range? If not, it is reset to the start of the tick and frozen.
 bool PaperSimulation::check() noexcept {
   if (kinetic_J_ < model_.mass_kg * kOutOfRange * kOutOfRange && std::isfinite(weight_J_)) return true;
   for (int i = 0; i < model_.nodes; ++i) {
@@ -117,7 +117,7 @@ bool PaperSimulation::check() noexcept {
   return true;
 }
 
-/// Nodes as vectors, for those who look.
+/// Converts packed nodes to vectors if they have changed since the last call.
 std::span<const Vec3> PaperSimulation::unpacked(const Lane3& from, std::vector<Vec3>& to, bool& stale) noexcept {
   for (std::size_t i = 0; stale && i < to.size(); ++i) to[i] = to_vec3(from.at(static_cast<int>(i)));
   stale = false;
@@ -138,7 +138,7 @@ void PaperSimulation::publish_contacts() noexcept {
   }
 }
 
-/// Paper section IV: does the hand's force stay in the springs (A) or pass along a segment on its limit (B, C)?
+/// Paper section IV: is the hand's force transmitted by springs only (A), or by a segment at a length limit (B, C)?
 Propagation PaperSimulation::condition(int node, bool other_holds) const noexcept {
   if (!has_limits_) return Propagation::kNone;
   const bool passes =
@@ -169,7 +169,7 @@ void PaperSimulation::restart() noexcept {
   course_.reset();
   limits_.forget();
   paper_contact_.forget();
-  kinetic_J_ = weight_J_ = 0.0;  // nothing was measured yet: a tick without time says so
+  kinetic_J_ = weight_J_ = 0.0;  // not computed yet; published like this if the first tick has no time for a substep
   work_.stretch_J = work_.bend_J = work_.max_strain = 0.0;
   hands_ = {};
   health_ = {};
@@ -255,7 +255,7 @@ void PaperSimulation::tick(const std::array<ToolInput, 2>& tools, const TimeLeft
   time_.end();
 }
 
-/// Of a tick that ended early: the mean over what was done of it, or what was felt before.
+/// Hand forces of a tick that ended early: the mean over the substeps done or, if there were none, the last tick's.
 void PaperSimulation::feel_what_was_done(int substeps, const std::array<Vec3, 2>& before) noexcept {
   for (std::size_t h = 0; h < 2; ++h) {
     if (substeps > 0) {

@@ -1,5 +1,5 @@
 #pragma once
-// The paper's models behind the facade of simulation.hpp: a scene in, two tools, nodes and hand forces out.
+// The paper's models behind simulation.hpp: built from a scene, driven by two tools.
 
 #include <array>
 #include <cstdint>
@@ -26,7 +26,7 @@ class PaperSimulation {
  public:
   static std::variant<PaperSimulation, std::string> make(const scene::Scene& scene);
 
-  /// As after a divergence: the state stays, hands are open and without force.
+  /// Freezes the thread as after a divergence: the state is kept, hands are open and without force.
   void stop(int bad_node) noexcept;
   void tick(const std::array<ToolInput, 2>& tools, const TimeLeft& left = {}) noexcept;
   [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept { return unpacked(state_.p, nodes_W_, nodes_stale_); }
@@ -58,13 +58,13 @@ class PaperSimulation {
   static std::span<const Vec3> unpacked(const Lane3& from, std::vector<Vec3>& to, bool& stale) noexcept;
 
   ThreadModel model_;
-  ThreadState initial_, state_, before_;  // before: of the last finite tick
+  ThreadState initial_, state_, before_;  // before_: state at the start of the tick
   InternalWorkspace work_;
   InternalStep internal_ = nullptr;
   bool quadratic_ = false, forward_ = false, explicit_damping_ = false, has_limits_ = false;
   scene::ContactSolver contact_kind_ = scene::ContactSolver::kNone;
   ContactSolver contact_;       // implicit
-  PaperContact paper_contact_;  // for comparison
+  PaperContact paper_contact_;  // the paper's own solver, for comparison
   ObstacleCourse course_;       // grippers and the frame's hooks
   LengthLimits limits_;
   Coupling coupling_;
@@ -79,7 +79,7 @@ class PaperSimulation {
   Lane3 rate_v_;
   std::array<HandContact, 2> hands_{};
   Diagnostics health_{};
-  mutable std::vector<Vec3> nodes_W_, velocities_W_;  // made when asked for: most ticks nobody looks
+  mutable std::vector<Vec3> nodes_W_, velocities_W_;  // converted on demand, as most ticks do not need them
   mutable bool nodes_stale_ = true, velocities_stale_ = true;
 };
 

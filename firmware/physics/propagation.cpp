@@ -6,7 +6,7 @@
 namespace ligature::physics {
 namespace {
 constexpr int kMostIterations = 40;
-constexpr double kStiffer = 1e-12;  // relative, on the diagonal: a taut straight thread between fixed nodes is singular
+constexpr double kStiffer = 1e-12;  // relative regularisation: a taut straight thread between fixed nodes is singular
 }  // namespace
 
 LengthLimits::LengthLimits(const ThreadModel& m, double min_length, double max_length)
@@ -57,7 +57,7 @@ bool LengthLimits::measure(const ThreadModel& m, const ThreadState& s) noexcept 
   return outside;
 }
 
-/// A limit pulls at the longest and pushes at the shortest length, never the other way round.
+/// Deactivates a limit whose total impulse has the wrong sign: a longest length can only pull, a shortest only push.
 void LengthLimits::let_go_of_pushed(int i) noexcept {
   Bound& bound = bound_[static_cast<std::size_t>(i)];
   const double total = impulse_[i] + lambda_[i] / step_s_;
@@ -67,7 +67,7 @@ void LengthLimits::let_go_of_pushed(int i) noexcept {
   }
 }
 
-/// One Newton step: the tridiagonal system of all held segments, whose solution moves positions and velocities alike.
+/// One Newton step: solves the tridiagonal system of all active limits and corrects positions and velocities.
 void LengthLimits::correct(const ThreadModel& m, ThreadState& s) noexcept {
   const Lane& w = m.inverse_mass_per_kg;
   for (int i = 0; i < segments_; ++i) {
@@ -92,8 +92,8 @@ void LengthLimits::correct(const ThreadModel& m, ThreadState& s) noexcept {
   extend_last_node(s.p, m.nodes);
 }
 
-/// Puts a node as far from its neighbour as the limits allow, in the direction where it is; what would take it farther
-/// out of them is taken from its velocity (and nothing added: this is a rescue, it must not do work).
+/// Moves a node along the connection to its neighbour until the length is within the limits. Removes the part of its
+/// relative velocity that would violate the limit further; as a fallback it must not add energy.
 void LengthLimits::place(const ThreadModel& m, ThreadState& s, int from, int to) noexcept {
   if (m.free[to] == 0.0) return;
   const V3<double> e = s.p.at(to) - s.p.at(from);
@@ -106,8 +106,8 @@ void LengthLimits::place(const ThreadModel& m, ThreadState& s, int from, int to)
   if ((rate > 0.0) == (length > wanted)) s.v.put(to, s.v.at(to) - rate * u);
 }
 
-/// When Newton gives up (a hand that teleports, two fixed nodes): node by node from the first fixed one, which always
-/// ends.
+/// Fallback when Newton's method does not converge (a hand that jumps, two fixed nodes too far apart): enforces the
+/// limits node by node, outwards from the first fixed node.
 void LengthLimits::walk_outwards(const ThreadModel& m, ThreadState& s) noexcept {
   int start = 0;
   while (start < segments_ && m.free[start] != 0.0) ++start;
@@ -131,7 +131,7 @@ int LengthLimits::enforce(const ThreadModel& m, ThreadState& s) noexcept {
   }
   if (outside) {
     walk_outwards(m, s);
-    forget();  // tensions that lead nowhere are no start for the next step
+    forget();  // unconverged constraint forces would be a bad warm start
   }
   holding_ = false;
   for (int i = 0; i < segments_; ++i) {

@@ -4,14 +4,14 @@
 
 namespace ligature::physics {
 
-/// Force propagation along the thread, paper section IV, as one solve for both hands. What a taut segment passes is the
-/// axial part of the force, equation (16): (f_h . e_i) e_i. Equation (17) as printed passes the part ACROSS the segment
-/// and is not used (docs/physics.md).
-///   Condition A: a segment strictly inside (l_min, l_max) passes nothing; its spring carries what it can.
-///   Condition B: a segment on its limit is rigid, so the axial force passes through: tension at l_max, push at l_min.
-///   Condition C: two hands are two loads of one tridiagonal system G M^-1 G^T lambda = violation, not two passes.
-/// Lengths are held by Newton on the positions (the system is solved anew with the new directions), so that no segment
-/// is outside its limits by more than kTolerance of rest length after a step, whatever pulls.
+/// Force propagation along the thread, paper section IV, as length limits of the segments, solved for both hands at
+/// once. A taut segment transmits the axial part of the force, equation (16): (f_h . e_i) e_i. Equation (17) as printed
+/// transmits the part ACROSS the segment and is not used (docs/physics.md).
+///   Condition A: a segment strictly inside (l_min, l_max) has no constraint force; only its spring acts.
+///   Condition B: a segment at a limit is rigid and transmits the axial force: tension at l_max, compression at l_min.
+///   Condition C: two hands are two loads of one tridiagonal system G M^-1 G^T lambda = violation.
+/// Newton iterations on the positions (each with new directions) keep every segment within its limits to kTolerance of
+/// its rest length after each step, for any load.
 class LengthLimits {
  public:
   static constexpr double kTolerance = 1e-7;
@@ -19,20 +19,20 @@ class LengthLimits {
   LengthLimits() = default;
   LengthLimits(const ThreadModel& model, double min_length, double max_length);
 
-  /// Velocity level, before dampers and contacts: applies last step's tensions again. So dampers see no speed in a
-  /// balance, and contacts feel the pull that passes through.
+  /// Velocity level, before dampers and contacts: applies the constraint forces of the last step again. So velocities
+  /// are zero in equilibrium when the dampers act, and contacts include the transmitted force.
   void warm_start(const ThreadModel& model, ThreadState& state) noexcept;
 
-  /// Position level, after positions moved: corrects them and the velocities. @return Newton iterations used
+  /// Position level, after positions were advanced: corrects positions and velocities. @return Newton iterations used
   int enforce(const ThreadModel& model, ThreadState& state) noexcept;
 
-  /// Force that segment i passed on beside its spring, N (mean of the last step), positive in tension; 0 in condition
-  /// A.
+  /// Constraint force of a segment, in addition to its spring, N (mean over the last step), positive in tension; 0 in
+  /// condition A.
   [[nodiscard]] double passed_N(int segment) const noexcept { return impulse_[segment] / step_s_; }
   void forget() noexcept;
 
  private:
-  /// Where a segment is: inside its limits, held at the longest or at the shortest length, or let go in this step.
+  /// Active limit of a segment: none, the longest or the shortest length.
   enum class Bound : signed char { kInside, kLongest, kShortest };
 
   [[nodiscard]] bool measure(const ThreadModel& model, const ThreadState& state) noexcept;

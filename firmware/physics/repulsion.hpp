@@ -12,9 +12,9 @@ struct Repulsion {
 
 /// Repulsion between two points of the thread, equation (2): n = (k_rs (2 r - d) - k_rd v_r . n^) n^; its size along
 /// n^, N.
-///   n^ from E to C, v_r of C relative to E. As printed it can turn attractive while points separate (n < 0); `clamped`
-///   (the default) keeps it a repulsion. It still jumps at touch (2 r = d while approaching) and knows neither mass nor
-///   step.
+///   n^ points from E to C; v_r is the velocity of C relative to E. As printed it attracts (n < 0) while points
+///   separate; `clamped` (the default) limits it to n >= 0. The force still jumps at touch (2 r = d while approaching),
+///   and does not depend on mass or time step, so it is not unconditionally stable.
 inline double repulsion_N(const Repulsion& k, double radius_m, double distance_m, double normal_rate_m_per_s,
                           bool clamped = true) noexcept {
   const double n = k.N_per_m * (2.0 * radius_m - distance_m) - k.N_s_per_m * normal_rate_m_per_s;

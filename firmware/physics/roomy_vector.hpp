@@ -1,12 +1,12 @@
 #pragma once
-// A vector whose capacity is its limit, also in a copy.
+// A vector that keeps its capacity when it is copied.
 
 #include <vector>
 
 namespace ligature::physics {
 
-/// std::vector copies elements but not room: a copy of a reserved list is full at once, and a solver that drops what
-/// does not fit would lose all its contacts. A copy of this one has the room of its original.
+/// A copy of a std::vector has only the capacity of its elements. A solver that treats capacity as a limit, to avoid
+/// allocation, would then drop contacts in a copied simulation. A copy of this one has the capacity of the original.
 template <class T>
 class RoomyVector : public std::vector<T> {
  public:

@@ -11,7 +11,7 @@ namespace ligature::physics {
 
 namespace {
 
-constexpr double kFarthest = 1e9;  // m, m/s: what is further away has diverged
+constexpr double kFarthest = 1e9;  // m or m/s; larger values count as divergence
 
 bool is_number(const Vec3& a) noexcept { return a.cwiseAbs().maxCoeff() < kFarthest && a.allFinite(); }
 

@@ -14,7 +14,7 @@ struct Segment {
   S inv_length;  ///< 1 / l_i, 1/m; bounded by 1 / floor_m
 };
 
-/// @param floor_m  lengths below it count as this long where they divide; far below any real length
+/// @param floor_m  lower bound of the length in divisions; far below any real length
 template <class S>
 Segment<S> segment_of(const V3<S>& p_left, const V3<S>& p_right, S floor_m) noexcept {
   Segment<S> s;
@@ -26,8 +26,9 @@ Segment<S> segment_of(const V3<S>& p_left, const V3<S>& p_right, S floor_m) noex
 }
 
 /// Linear spring, equation (5), models 1-4: T = k_l (l - l_r) / l_r, N, positive pulls the two nodes together.
-///   Force +T e on P_i and -T e on P_{i+1}. The paper does not state the reaction; without it 3.4 times the largest
-///   force would be left over. k_l is a force per unit strain, i.e. EA.   Energy k_l l_r strain^2 / 2.
+///   Force +T e on P_i and -T e on P_{i+1}. The paper does not state the reaction force; without it the net force on
+///   the thread was 3.4 times the largest spring force. k_l is a force per unit strain, i.e. EA.
+///   Energy k_l l_r strain^2 / 2.
 struct LinearStretch {
   template <class S>
   static S tension_N(S strain, double k_N) noexcept {
@@ -44,10 +45,9 @@ struct LinearStretch {
   }
 };
 
-/// Model 5: the force goes with the square of the strain, keeping its sign: T = k_l |strain| strain.
-///   With the printed k_l it stretches more, not less (strain^2 < strain below 100 %): 11.7 % against 1.5 % for the
-///   hanging thread of Table I. See kStiffQuadratic for the constant that does what the paper says. Energy k_l l_r
-///   |strain|^3 / 3.
+/// Model 5: the force is quadratic in the strain: T = k_l |strain| strain. Energy k_l l_r |strain|^3 / 3.
+///   With the printed k_l it stretches more than model 4, not less as the paper says (strain^2 < strain below 100 %):
+///   11.7 % instead of 1.5 % for the hanging thread of Table I. With kStiffQuadratic it stretches less.
 struct QuadraticStretchLaw {
   template <class S>
   static S tension_N(S strain, double k_N) noexcept {
@@ -63,8 +63,9 @@ struct QuadraticStretchLaw {
   }
 };
 
-/// Model 5 stretches less than model 4 wherever k5 strain^2 > k_l strain, i.e. above strain k_l / k5. A factor of 100
-/// puts that at 1 %: the hanging thread of Table I (top strain 3 %) stretches by less, and ten times less at 100 N.
+/// Factor of k_l in model 5. It stretches less than model 4 where k5 strain^2 > k_l strain, i.e. above the strain
+/// k_l / k5. A factor of 100 makes that 1 %: the hanging thread of Table I (top strain 3 %) then stretches less, and a
+/// pull of 100 N stretches it ten times less.
 inline constexpr double kStiffQuadratic = 100.0;
 
 }  // namespace ligature::physics

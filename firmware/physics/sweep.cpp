@@ -5,7 +5,7 @@
 namespace ligature::physics {
 namespace {
 
-/// The lane of centres with the largest variance: sweeping along it separates most.
+/// The coordinate of the centres with the largest variance: along it the fewest intervals overlap.
 const Lane& widest_axis(const SegmentSpheres& s) noexcept {
   const Lane* widest = &s.centre.x;
   double most = -1.0;
@@ -26,13 +26,13 @@ Sweep::Sweep(int segments) : intervals_(static_cast<std::size_t>(segments)) {
 
 void Sweep::sort_intervals(const SegmentSpheres& s, double reach_m) noexcept {
   const Lane& axis = widest_axis(s);
-  const double slack = 1e-9 * reach_m;  // intervals round differently from the spheres' own test, which decides
+  const double slack = 1e-9 * reach_m;  // margin for rounding; segments_near() decides exactly
   for (Interval& i : intervals_) {
     const double half = s.half_m[i.segment] + 0.5 * reach_m + slack;
     i.low_m = axis[i.segment] - half, i.high_m = axis[i.segment] + half;
   }
   const auto lower = [](const Interval& a, const Interval& b) { return a.low_m < b.low_m; };
-  std::size_t moves = 0;  // insertion sort while the old order is nearly right, else start afresh
+  std::size_t moves = 0;  // insertion sort is fast if the old order is nearly right; otherwise std::sort below
   for (std::size_t i = 1; i < intervals_.size() && moves < 4 * intervals_.size(); ++i) {
     const Interval here = intervals_[i];
     std::size_t j = i;

@@ -6,15 +6,15 @@
 
 namespace ligature::physics {
 
-/// Sweep and prune: segments sorted by their lower end along the axis on which the thread is most spread out; only
-/// those whose intervals overlap are tested. The order is kept from call to call, so that sorting is nearly free while
-/// the thread moves little. Cost: n log n at worst for sorting, plus the overlapping intervals.
+/// Sweep and prune: segments are sorted by their lower end along the axis of the thread's largest extent; only pairs
+/// with overlapping intervals are tested. The order is kept between calls, so sorting is cheap while the thread moves
+/// little. Cost: sorting O(n log n) at worst, plus the number of overlapping intervals.
 class Sweep {
  public:
   Sweep() = default;
   explicit Sweep(int segments);
 
-  /// The same pairs, in the same order, as find_pairs_brute.
+  /// Finds the same pairs, in the same order, as find_pairs_brute().
   void find_pairs(const SegmentSpheres& s, double reach_m, int skip, PairList& out) noexcept;
 
  private:

@@ -4,7 +4,8 @@
 
 namespace ligature::physics {
 
-/// How fast the two ends of a bend leave its plane: velocities along the unit axis relative to the middle node, m/s.
+/// Swivel rates: speeds at which the two end nodes of a bend leave its plane, along the bend's unit axis and relative
+/// to the middle node, m/s.
 template <class S>
 struct SwivelRates {
   S left, right;
@@ -19,17 +20,17 @@ SwivelRates<S> swivel_rates(const V3<S>& axis, const V3<S>& v_left, const V3<S>&
 ///   f_{i-1} = -k_sw ((v_{i-1} - v_i) . s) s / l_{i-1},   f_{i+1} likewise over l_i,   f_i = minus their sum,
 ///   s = e_{i-1} x e_i made a unit vector, as the text calls it (the formula has length sin alpha); zero when exactly
 ///   straight.
-/// As printed (plus sign) it is a motor. Even so three points have only three internal motions (two lengths and an
-/// angle), so no swivel force between three points is internal: it leaves a torque and brakes rigid rotation, i.e. acts
-/// as a drag.
+/// As printed (plus sign) it adds energy. With either sign it is not an internal force: three points have only three
+/// internal degrees of freedom (two lengths and an angle), so it leaves a net torque and damps rigid rotation, like a
+/// drag.
 /// @return coefficient of the unit axis per unit swivel rate, N s/m
 template <class S>
 S paper_swivel_N_s_per_m(S inv_length, double k_N_s) noexcept {
   return k_N_s * inv_length;
 }
 
-/// The internal swivel damper: on the rate of the dihedral angle phi of four nodes, weighted to stay finite when
-/// straight.
+/// The internal swivel damper acts on the rate of the dihedral angle phi of four nodes. The weight w keeps it finite on
+/// a straight thread, where phi is undefined.
 ///   rate = w phi',  w = sin(alpha_1) sin(alpha_2);   force on node j: -k (w phi') (w d phi/dP_j)
 ///   w grad phi lies along the two axes s1 (nodes 0, 1, 2) and s2 (nodes 1, 2, 3):
 ///     node 0:  p0 s1    node 1: p1 s1 + q1 s2    node 2: p2 s1 + q2 s2    node 3: q3 s2

@@ -1,5 +1,5 @@
 #pragma once
-// What a thread is (ThreadModel, constant), how it moves (ThreadState) and scratch sized once (InternalWorkspace).
+// A thread of the paper's models: constants (ThreadModel), state (ThreadState), work arrays (InternalWorkspace).
 
 #include "firmware/physics/lanes.hpp"
 
@@ -20,7 +20,7 @@ struct ThreadModel {
   double step_s = 0.0;
   Lane inverse_mass_per_kg;  ///< 0 for fixed nodes
   Lane free;                 ///< 1, or 0 for fixed nodes
-  Lane segment;              ///< 1 where there is a segment i .. i + 1, else 0
+  Lane segment;              ///< 1 if segment i .. i + 1 exists, else 0
 };
 
 struct ThreadState {
@@ -28,18 +28,18 @@ struct ThreadState {
   Lane3 v;  ///< m/s
 };
 
-/// Everything a step computes on the way; index i of a bend is its middle node, of a segment its left node.
+/// Intermediate results of a step. Index i of a bend is its middle node, of a segment its left node.
 struct InternalWorkspace {
   Lane3 u;                  ///< segment directions, (4)
   Lane inv_length;          ///< 1/m
-  Lane pull;                ///< stretch impulse, N s, positive pulls
-  Lane gain, link;          ///< of the implicit stretch damper: impulse per rate, kg; coupling of neighbours, 1/kg
+  Lane pull;                ///< stretch impulse, N s, positive in tension
+  Lane gain, link;          ///< implicit stretch damper: impulse per stretch rate, kg; coupling of neighbours, 1/kg
   Lane diag, one, two;      ///< banded matrices of the implicit dampers
   Lane3 axis, left, right;  ///< of each bend; see Bend
   Lane sine, cosine;
   Lane turn;                     ///< bend impulse, N m s
   Lane swing_left, swing_right;  ///< swivel rates, then swivel impulses along the axis, at the nodes before and after
-  Lane next_left, next_right;    ///< what the dihedral adds to those of the next bend
+  Lane next_left, next_right;    ///< impulses of dihedral i at the next bend, i + 1
   double max_strain = 0.0;
   double stretch_J = 0.0, bend_J = 0.0;
 
@@ -65,7 +65,7 @@ struct InternalWorkspace {
         next_right(n) {}
 };
 
-/// Repeats the last node behind the last one, so that the segment that is not there has length zero and no direction.
+/// Repeats the last position past the end, so that segments that do not exist have length zero and no direction.
 inline void extend_last_node(Lane3& p, int nodes) noexcept {
   const V3<double> last = p.at(nodes - 1);
   for (int k = 0; k < kLanes; ++k) p.put(nodes + k, last);

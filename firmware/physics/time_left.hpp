@@ -1,5 +1,5 @@
 #pragma once
-// How much longer a tick of the thread may take. Physics has no clock: it is told.
+// Time limit of a tick of the thread. The physics has no clock of its own: it queries one that the caller supplies.
 
 #include <algorithm>
 #include <cstdint>
@@ -7,15 +7,15 @@
 
 namespace ligature::physics {
 
-/// What a tick is given along with its tools. By default there is time without end, as in every offline run.
+/// The time limit that is passed to a tick. By default there is none, as in every offline run.
 class TimeLeft {
  public:
   using Teller = std::int64_t (*)(void*) noexcept;  ///< ns until the tick must have ended; may be negative
 
   TimeLeft() = default;
-  /// Whoever calls tick() keeps `context` alive until it returns.
+  /// @param context  passed to `teller`; must stay valid until tick() returns
   TimeLeft(Teller teller, void* context) noexcept : teller_(teller), context_(context) {}
-  /// A tick done again: it ends where Diagnostics::cut_at says that it did, whatever the time.
+  /// For replaying a recorded tick: it ends at clock query `number` (Diagnostics::cut_at), whatever the time.
   [[nodiscard]] static TimeLeft until_question(int number) noexcept {
     TimeLeft again;
     again.question_ = number;
@@ -33,23 +33,24 @@ class TimeLeft {
   int question_ = -1;
 };
 
-/// Asks between pieces of a tick's work whether there is time for another one. Once the answer was no it stays no. The
-/// answers are all that time does to a tick, and the questions depend on the thread alone, so the number of the first
-/// no says everything: the same tools, and the same no, give the same tick to the bit.
+/// Queries the clock between pieces of a tick's work: is there time for another piece? After the first "no" the answer
+/// stays "no". Time influences a tick only through these answers, and the queries depend only on the state of the
+/// thread. So a tick can be reproduced bit for bit from its tools and the number of the first query answered "no".
 ///
-/// A piece is begun only when there is time for the longest of late, and then for what ends a tick. Both are measured.
-/// They fade, and no more counts than a piece can take: else what interrupts a tick would cost the ticks after it.
+/// A piece is begun only if the time left covers the longest recent piece and the work after the last query of a tick.
+/// Both durations are measured. They decay from tick to tick and are limited to piece_ns, so that one interruption by
+/// the operating system does not cut the ticks after it.
 class TickTime {
  public:
   static constexpr std::int64_t kPiece_ns = 60'000;
 
-  /// For those who have all the time there is: never asks, so everybody may share it.
+  /// A shared object without a time limit; it never queries a clock.
   [[nodiscard]] static TickTime& endless() noexcept {
     static TickTime time;
     return time;
   }
 
-  /// @param piece_ns  the most that may lie between two questions, and between the last one and the end.
+  /// @param piece_ns  longest time of one piece of work, and of the work after the last query
   void start(const TimeLeft& left, std::int64_t piece_ns = kPiece_ns) noexcept {
     left_ = left;
     piece_ns_ = piece_ns;
@@ -64,17 +65,17 @@ class TickTime {
   [[nodiscard]] bool allows() noexcept { return left_.is_endless() || ask(); }
   [[nodiscard]] bool is_over() const noexcept { return cut_at_ >= 0; }
 
-  /// The tick has ended.
+  /// Call at the end of the tick: measures the time since the last query.
   void end() noexcept {
     if (left_.has_teller()) tail_ns_ = std::max(tail_ns_, std::min(last_ns_ - left_.ns(), piece_ns_));
   }
 
-  /// Number of the question that was answered with no, from 0; -1: none was.
+  /// Number of the first query that was answered "no", counted from 0; -1: none was.
   [[nodiscard]] int cut_at() const noexcept { return cut_at_; }
   [[nodiscard]] std::int64_t longest_ns() const noexcept { return longest_ns_; }
 
  private:
-  static constexpr std::int64_t kFade = 8;  // a share of 1 / kFade goes in each tick
+  static constexpr std::int64_t kFade = 8;  // measured durations decay by 1 / kFade per tick
 
   bool ask() noexcept {
     if (is_over()) return false;
@@ -95,9 +96,9 @@ class TickTime {
   TimeLeft left_;
   int asked_ = 0, cut_at_ = -1;
   std::int64_t piece_ns_ = kPiece_ns;
-  std::int64_t last_ns_ = 0;     // what was left at the last question
-  std::int64_t longest_ns_ = 0;  // between two questions
-  std::int64_t tail_ns_ = 0;     // from the last question to the end of the tick
+  std::int64_t last_ns_ = 0;     // time left at the last query
+  std::int64_t longest_ns_ = 0;  // longest recent time between two queries
+  std::int64_t tail_ns_ = 0;     // longest recent time from the last query to the end of the tick
 };
 
 }  // namespace ligature::physics

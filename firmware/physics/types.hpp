@@ -1,5 +1,5 @@
 #pragma once
-// The vector of the physics' outside: positions, velocities and forces in world coordinates.
+// The vector type of the physics' interface: positions, velocities and forces in world coordinates.
 
 #include <Eigen/Core>
 
