@@ -34,7 +34,7 @@ class AnyPose {
  private:
   static constexpr std::size_t kSlices = 6;
   struct Slice {
-    double u = 0.0, v = 0.0, w = 0.0;  // u is for tau1 / 1 m, as in per_m_
+    double u = 0.0, v = 0.0, w = 0.0;  // factors in the formula of |f|^2; u belongs to tau1 / 1 m
   };
   void cut(const device::Device& device) noexcept;
   /// Square of the force; arguments: squared waist force, a, b.

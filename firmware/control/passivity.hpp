@@ -137,7 +137,7 @@ class Passivity {
   /// other: an account that is short for its wish gets what the other can spare. The sum is unchanged.
   static void lend(std::int64_t tick, Passivity& a, const Vec3& wish_a_N, Passivity& b, const Vec3& wish_b_N) noexcept;
 
-  /// Adds an energy allowance for a guided move. Counts as received.
+  /// Adds an energy allowance for a guided move; included in received_J().
   void grant(double energy_J) noexcept;
   /// End of the guided move: takes back the unused allowance.
   void revoke() noexcept;
