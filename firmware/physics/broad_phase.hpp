@@ -53,7 +53,7 @@ inline bool segments_near(const SegmentSpheres& s, int i, int j, double reach_m)
 /// order. Cost: n^2 / 2 tests, four at a time.
 void find_pairs_brute(const SegmentSpheres& s, double reach_m, int skip, PairList& out) noexcept;
 
-/// All segments whose sphere, grown by reach_m, overlaps one given sphere; as pairs {segment, segment}.
+/// All segments whose sphere is within reach_m of a given sphere; listed as pairs {segment, segment}.
 void find_near_sphere(const SegmentSpheres& s, const V3<double>& centre, double half_m, double reach_m,
                       PairList& out) noexcept;
 

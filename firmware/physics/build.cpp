@@ -15,7 +15,8 @@ V3<double> to_v3(const scene::Vec& a) { return {a[0], a[1], a[2]}; }
 /// Constants of Table I per node; with reference_nodes, rescaled to another number of nodes (see build_thread()).
 void set_constants(const scene::Scene& scene, ThreadModel& m) {
   const scene::PaperParameters& p = scene.suture.paper;
-  const double shorter = p.reference_nodes ? (*p.reference_nodes - 1.0) / (m.nodes - 1.0) : 1.0;  // l / l0
+  // Ratios of segment lengths, l / l0, and of node masses, to those with reference_nodes.
+  const double shorter = p.reference_nodes ? (*p.reference_nodes - 1.0) / (m.nodes - 1.0) : 1.0;
   const double fewer = p.reference_nodes ? *p.reference_nodes / static_cast<double>(m.nodes) : 1.0;
   m.mass_kg = p.node_mass_kg * fewer;
   m.stretch_N = p.stretch_N;

@@ -77,7 +77,7 @@ void ContactSolver::try_row(const ThreadModel& m, const ThreadState& s, double n
 bool ContactSolver::finish_row(const ThreadModel& m, const Candidate& c, ContactRow& row) const noexcept {
   double mobility = 0.0;
   for (int e = 0; e < 4; ++e) {
-    row.push[e] = row.weight[e] * m.inverse_mass_per_kg[row.node[e]];  // 0 for the extra node of bodies without nodes
+    row.push[e] = row.weight[e] * m.inverse_mass_per_kg[row.node[e]];  // 0 for the immobile node
     mobility += row.push[e] * row.weight[e];
   }
   if (!(mobility > 0.0)) return false;

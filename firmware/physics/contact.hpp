@@ -22,7 +22,7 @@ struct Obstacle {
 };
 
 struct ContactSettings {
-  double stick = 0.3, slip = 0.3;  ///< static and kinetic friction
+  double stick = 0.3, slip = 0.3;  ///< static and kinetic friction coefficients
   int skip = 2;                    ///< segments whose indices differ by less cannot touch: neighbours along the thread
   std::optional<double> desk_m;    ///< height of the desk
   scene::BroadPhase broad_phase = scene::BroadPhase::kBrute;  ///< never kAuto: build_contact() chooses
@@ -98,10 +98,10 @@ class ContactSolver {
   Lane due_m_;  ///< per candidate: value of travel_m_ up to which its gap is certainly positive
   Lane gap_m_;  ///< per candidate: gap when last measured; infinite for the desk and obstacles
   RoomyVector<ContactRow> rows_;
-  std::vector<NodeVelocity> velocity_;  ///< of all nodes, and one more that never moves, for bodies without nodes
+  std::vector<NodeVelocity> velocity_;  ///< of all nodes, and of an immobile one for desk and obstacles
   double travel_m_ = 0.0;               ///< upper bound of how much any gap has closed since the start
   double found_at_m_ = 0.0;             ///< travel_m_ when candidates were last found
-  double margin_m_ = -1.0;              ///< all pairs with a smaller gap were candidates then; < 0: must be found
+  double margin_m_ = -1.0;  ///< then all pairs with a smaller gap were candidates; < 0: a new search is needed
   std::int64_t step_ = 0;
   ContactReport report_;
 };

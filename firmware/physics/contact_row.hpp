@@ -23,7 +23,7 @@ struct ContactRow {
   Pack normal;            ///< unit, from the second body to the first
   Pack impulse;           ///< N s, on the first body
   Pack v_outside;         ///< m/s, of a moving obstacle; zero between segments
-  int node[4];            ///< two of the first body, two of the second (the extra, immobile node if it has none)
+  int node[4];            ///< two of the first body, two of the second (desk, obstacle: an immobile node)
   double weight[4];       ///< barycentric, negative for the second body
   double push[4];         ///< weight_k / m_k, 1/kg
   double mass_kg;         ///< 1 / sum_k weight_k^2 / m_k
@@ -33,8 +33,8 @@ struct ContactRow {
 };
 
 /// Projects an impulse onto the Coulomb cone about its normal. Inside the static cone the contact sticks and the
-/// impulse is unchanged; outside, friction is slip x normal impulse. Equations (1), (3) of the paper, extended by
-/// static friction: no 0/0 at zero slip, and friction never exceeds what stops the slip.
+/// impulse is unchanged; outside, friction is the kinetic coefficient times the normal impulse. Equations (1), (3) of
+/// the paper, extended by static friction: no 0/0 at zero slip, and friction never exceeds what stops the slip.
 inline Pack project_on_cone(Pack impulse, Pack normal, double stick, double slip) noexcept {
   const double along = dot3(impulse, normal);
   if (along <= 0.0) return Pack{};

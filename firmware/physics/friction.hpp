@@ -19,7 +19,7 @@ inline V3<double> coulomb_friction_N(double mu, double normal_N, const V3<double
   return (-mu * magnitude(normal_N) / speed) * slip;
 }
 
-/// The same as an impulse, N s, and no more than what stops the slip: min(mu |i|, m |slip|) e^.
+/// Coulomb friction as an impulse, N s, limited to what stops the slip: min(mu |i|, m |slip|) e^, i the normal impulse.
 ///   Inside the static cone the slip is stopped completely; outside, kinetic friction acts (the paper names static
 ///   friction as future work).
 /// @param mass_kg  effective mass of the contact: 1 / sum_k weight_k^2 / m_k

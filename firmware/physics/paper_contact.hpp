@@ -21,7 +21,7 @@ class PaperContact {
   PaperContact() = default;
   PaperContact(const ThreadModel& model, const PaperContactSettings& settings);
 
-  /// Impulses into the velocities and separation into the positions of all overlapping pairs, one after the other.
+  /// For each overlapping pair in turn: applies the contact impulse to velocities and the separation to positions.
   void solve(const ThreadModel& model, ThreadState& state) noexcept;
 
   /// Clears the reported values.

@@ -63,7 +63,7 @@ class PaperSimulation {
   InternalStep internal_ = nullptr;
   bool quadratic_ = false, forward_ = false, explicit_damping_ = false, has_limits_ = false;
   scene::ContactSolver contact_kind_ = scene::ContactSolver::kNone;
-  ContactSolver contact_;       // implicit
+  ContactSolver contact_;       // the implicit solver
   PaperContact paper_contact_;  // the paper's own solver, for comparison
   ObstacleCourse course_;       // grippers and the frame's hooks
   LengthLimits limits_;

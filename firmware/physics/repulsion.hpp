@@ -6,15 +6,15 @@ namespace ligature::physics {
 
 /// Constants of the paper's contact; Table I.
 struct Repulsion {
-  double N_per_m = 100.0;  ///< k_rs
-  double N_s_per_m = 5.0;  ///< k_rd
+  double N_per_m = 100.0;  ///< k_rs, stiffness
+  double N_s_per_m = 5.0;  ///< k_rd, damping
 };
 
-/// Repulsion between two points of the thread, equation (2): n = (k_rs (2 r - d) - k_rd v_r . n^) n^; its size along
-/// n^, N.
+/// Repulsive force between two points C and E of the thread, equation (2): n = (k_rs (2 r - d) - k_rd v_r . n^) n^.
 ///   n^ points from E to C; v_r is the velocity of C relative to E. As printed it attracts (n < 0) while points
 ///   separate; `clamped` (the default) limits it to n >= 0. The force still jumps at touch (2 r = d while approaching),
 ///   and does not depend on mass or time step, so it is not unconditionally stable.
+/// @return component of n along n^, N
 inline double repulsion_N(const Repulsion& k, double radius_m, double distance_m, double normal_rate_m_per_s,
                           bool clamped = true) noexcept {
   const double n = k.N_per_m * (2.0 * radius_m - distance_m) - k.N_s_per_m * normal_rate_m_per_s;

@@ -8,15 +8,15 @@ namespace ligature::physics {
 /// Constants of one simulated thread, per node; SI.
 struct ThreadModel {
   int nodes = 0;
-  double rest_m = 0.0;  ///< l_r
+  double rest_m = 0.0;  ///< l_r, rest length of a segment
   double radius_m = 0.0;
-  double mass_kg = 0.0;            ///< of one node
-  double stretch_N = 0.0;          ///< k_l (model 5: already scaled)
-  double stretch_N_s_per_m = 0.0;  ///< k_d
-  double bend_N_m = 0.0;           ///< k_ts
-  double bend_N_m_s = 0.0;         ///< k_td
-  double swivel_N_s = 0.0;         ///< k_sw
-  double drag_per_s = 0.0;         ///< a = -c v
+  double mass_kg = 0.0;            ///< mass of one node
+  double stretch_N = 0.0;          ///< k_l, stretch stiffness (model 5: times kStiffQuadratic if the scene says so)
+  double stretch_N_s_per_m = 0.0;  ///< k_d, stretch damping
+  double bend_N_m = 0.0;           ///< k_ts, bending stiffness
+  double bend_N_m_s = 0.0;         ///< k_td, bending damping
+  double swivel_N_s = 0.0;         ///< k_sw, swivel damping
+  double drag_per_s = 0.0;         ///< c of the air drag a = -c v
   double step_s = 0.0;
   Lane inverse_mass_per_kg;  ///< 0 for fixed nodes
   Lane free;                 ///< 1, or 0 for fixed nodes
@@ -35,7 +35,7 @@ struct InternalWorkspace {
   Lane pull;                ///< stretch impulse, N s, positive in tension
   Lane gain, link;          ///< implicit stretch damper: impulse per stretch rate, kg; coupling of neighbours, 1/kg
   Lane diag, one, two;      ///< banded matrices of the implicit dampers
-  Lane3 axis, left, right;  ///< of each bend; see Bend
+  Lane3 axis, left, right;  ///< axis and gradients of each bend; see Bend
   Lane sine, cosine;
   Lane turn;                     ///< bend impulse, N m s
   Lane swing_left, swing_right;  ///< swivel rates, then swivel impulses along the axis, at the nodes before and after

@@ -57,7 +57,7 @@ class BandColumns {
   Mat between_, next_h_;
   std::vector<Mat> x_;                // the column that is being computed
   std::vector<std::int32_t> place_;   // index of each node's column, or -1
-  std::vector<std::int32_t> wanted_;  // nodes, in the order of their columns
+  std::vector<std::int32_t> wanted_;  // nodes of the requested columns
   Floats columns_;
 };
 

@@ -30,7 +30,8 @@ struct Candidate {
 struct PairGroup {
   std::int32_t first = 0, last = 0;
   std::int32_t p = 0, q = 0;  ///< the blocks
-  double due = kAtOnce;       ///< smallest due - near_m of the pairs; minus Motion::gone_of_blocks(), a lower bound
+  double due = kAtOnce;       ///< smallest due - near_m of the pairs, so that due - Motion::gone_of_blocks() is a lower
+                              ///< bound of gap - near_m for all of them
 
   static constexpr double kAtOnce = -1e300;  ///< value of `due` when a pair touched: always test the pairs
 };

@@ -39,7 +39,7 @@ struct Contact {
   Vec u_free{};             ///< u if no contact had an impulse
   double gap_m = 0.0;       ///< surface distance, negative: overlap
   double target = 0.0;      ///< smallest admissible normal velocity, m/s
-  double inv_w = 0.0;       ///< 1 / (J C^-1 J^T)
+  double inv_w = 0.0;       ///< 1 / (J C^-1 J^T), effective mass of the contact with C (contact_metric.hpp), kg
   double soft = 0.0;        ///< normal compliance: u_n + soft p_n >= target, 1/kg
   double inv_soft_w = 0.0;  ///< 1 / (J C^-1 J^T + soft)
   double mu = 0.0;
@@ -155,7 +155,7 @@ class ContactSet {
   /// Gives mu_static to contacts that did not slide in the last substep, and to new ones whose slip at `v` is zero.
   void let_stick(double mu_static, const Vec* v) noexcept;
 
-  [[nodiscard]] int rows() const noexcept { return rows_; }  ///< 0: nothing to settle
+  [[nodiscard]] int rows() const noexcept { return rows_; }  ///< number of contacts to be solved
   [[nodiscard]] int window_first() const noexcept { return window_first_; }
   [[nodiscard]] int window_last() const noexcept { return window_last_; }
 
@@ -249,7 +249,7 @@ class ContactSet {
     for (int j = 0; j < c.count; ++j) u += c.w[j] * v[c.node[j]];
     return u;
   }
-  /// v += A^-1 extra_ on the window. @return the sum over axes of the largest squares of that step.
+  /// v += A^-1 extra_ on the window. @return an upper bound of the largest squared velocity change.
   double push(BandSolver& solver, Vec* v) noexcept;
   void clear_extra() noexcept;
   template <bool Friction, bool Turns>
@@ -258,7 +258,7 @@ class ContactSet {
   struct Search {
     const Effort& effort;
     ContactReport& report;
-    long nodes;                           ///< of the window
+    long nodes;                           ///< number of nodes in the window
     int look = 0;                         ///< checks of all contacts so far
     bool fresh = false, resumed = false;  ///< Z is of this substep; started from the impulses of a put-off substep
     [[nodiscard]] bool can_pay(long cost) const noexcept { return report.work + cost <= effort.work; }
@@ -292,8 +292,10 @@ class ContactSet {
   std::vector<float> columns_;             // C^-1 J^T of every row on the window, padded
   SweptVelocities swept_;
   std::vector<Vec> extra_, step_;
-  std::vector<std::int32_t> loaded_;       // rows that have carried an impulse in this substep; only these are mixed
-  std::vector<Vec> p_, plain_, residual_;  // of loaded_: mixed and unmixed impulses, and their change in a pass
+  std::vector<std::int32_t> loaded_;  // rows that have carried an impulse in this substep; only these are mixed
+  // Sweeps, in the order of loaded_: mixed impulses, unmixed impulses, change in a pass. Newton's method, by row: p_
+  // has the present impulses, plain_ the best ones so far.
+  std::vector<Vec> p_, plain_, residual_;
   Mixing mixing_;
   ContactNewton newton_;
   std::vector<Vec> u_, v_start_, p_start_;

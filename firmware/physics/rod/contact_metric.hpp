@@ -11,7 +11,7 @@ namespace ligature::physics::rod {
 /// C = M (1 + c dt) + dt (dt + tau_b) K_b: the matrix A of a substep (assembly.hpp) without its stretch, geometric and
 /// hold terms. C is a scalar pentadiagonal matrix times the 3 x 3 identity and constant while mesh and dt are. Because
 /// A >= C, J A^-1 J^T <= J C^-1 J^T, so an impulse step computed with C never overshoots (a majorise-minimise argument
-/// for the frictionless problem). A contact's response to C is the same number for normal and friction.
+/// for the frictionless problem). With C a contact has the same effective mass in all directions.
 class ContactMetric {
  public:
   void reserve(int nodes, int window);

@@ -162,8 +162,8 @@ class ContactNewton {
   }
   BandColumns z_;
   Floats spread_;                   // Z J^T of the slot that is being coupled, stored like a column of Z
-  std::vector<std::int32_t> slot_;  // of each row, or -1
-  std::vector<std::int32_t> at_;    // first slot of each first node, or -1
+  std::vector<std::int32_t> slot_;  // per row: index of its slot, or -1
+  std::vector<std::int32_t> at_;    // per node: first slot in the list of slots that begin with this node, or -1
   std::vector<std::int32_t> rows_;
   std::vector<Slot> slots_;
   std::size_t coupled_ = 0;  // number of slots whose blocks of W are computed

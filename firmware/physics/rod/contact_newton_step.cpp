@@ -166,7 +166,7 @@ void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* 
 }
 
 // Row i of the matrix: along_i . W_ij with_j for all unknowns j, and give_i on the diagonal. The loop over contacts
-// runs backwards: a vector store may write past the last contact, and what belongs there is written later.
+// runs backwards: a store of eight numbers may write past the last contact, into entries that are set afterwards.
 template <bool Friction>
 [[gnu::always_inline]] inline void ContactNewton::make_row(std::size_t i) noexcept {
   const Unknown& unknown = unknowns_[i];
@@ -210,7 +210,8 @@ bool ContactNewton::assemble(const Vec* p, TickTime& time) noexcept {
     if (!pieces.allow(300 + 8 * static_cast<long>(n))) return false;
     make_row<Friction>(i);
   }
-  // Velocity change of setting to zero those parts of the present impulses that no unknown can represent.
+  // The step removes those parts of the present impulses that no unknown represents; their velocities enter the
+  // right-hand side.
   for (const auto k : rows_) rest_[slot_of(k)].v = p[k].v;
   for (const auto& x : unknowns_) rest_[x.slot] -= x.now * x.with;
   answer_all(rest_.data());

@@ -35,7 +35,7 @@ struct Numerics {
   int max_passes = 80;            ///< most passes of the sweep solver per substep
   long work = 4'300'000;          ///< contact budget of a tick, in instructions (work.hpp)
   long work_per_node = 2500;      ///< added to the budget for each node
-  double rush = 0.75;             ///< budget increase when a hand is faster than 2 fast_m_per_s (above 1 x: a quarter)
+  double rush = 0.75;             ///< relative budget increase for hands faster than 2 fast_m_per_s (1 x: 0.25)
   long given_work = 0;            ///< > 0: replaces the whole budget, for any thread and hands
   double settled_m_per_s = 3e-5;  ///< tolerance: passes end when none changes a velocity by more
   double settled_share = 0.004;   ///< added to the tolerance: this times half the relative speed of the hands

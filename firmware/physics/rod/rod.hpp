@@ -70,7 +70,7 @@ class Rod {
   [[nodiscard]] const Numerics& numerics() const noexcept { return numerics_; }
   [[nodiscard]] Twist& twist() noexcept { return twist_; }
   [[nodiscard]] const Twist& twist() const noexcept { return twist_; }
-  [[nodiscard]] const Spin& spin() const noexcept { return spin_; }  ///< with Parts::frames()
+  [[nodiscard]] const Spin& spin() const noexcept { return spin_; }  ///< used with Parts::frames() only
   [[nodiscard]] double twist_energy_J() const noexcept {
     return parts_.frames() ? spin_.energy_J(material_, state_) : twist_.energy_J();
   }
@@ -214,7 +214,7 @@ class Rod {
   bool labours_ = false;         // the last tick used most of its budget, so this one has fewer substeps
   bool letting_go_ = false;      // a hold was released, and the thread is still fast
   Motion motion_;
-  ContactReport seen_;          // of this substep
+  ContactReport seen_;          // result of the contact solver in this substep
   double near_m_ = 0.0;         // gap below which a pair is a contact at any speed
   double horizon_s_ = 0.0;      // time for which the list of pairs is valid at the speeds of when it was made
   double tick_travel_m_ = 0.0;  // upper bound of any node's travel since the tick began

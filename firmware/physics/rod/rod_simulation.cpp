@@ -23,7 +23,7 @@ std::optional<Mat> axes_of(const ToolInput& tool) noexcept {
 
 Jaws jaws_of(const scene::Scene& scene) noexcept {
   const auto& h = scene.hands;
-  const double slip_N = h.pinch_force_N ? 2.0 * scene.contact.friction * *h.pinch_force_N : 0.0;  // two jaws
+  const double slip_N = h.pinch_force_N ? 2.0 * scene.contact.friction * *h.pinch_force_N : 0.0;  // from both jaws
   return Jaws({h.pinch_width_m, slip_N, h.coupling_N_per_m, h.coupling_N_s_per_m});
 }
 

@@ -82,7 +82,7 @@ void Spin::eliminate() noexcept {
   }
 }
 
-// rate_ = A^-1 b by the factors of eliminate().
+// rate_ = A^-1 b, with the factors of eliminate().
 void Spin::solve(const std::vector<double>& b) noexcept {
   const std::size_t edges = tangent_.size() - 1;
   double carried = 0.0;

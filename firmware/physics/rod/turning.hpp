@@ -48,7 +48,7 @@ class Turning {
   };
   Spin* spin_ = nullptr;
   std::vector<Row> rows_;
-  int first_ = 0, last_ = 0;  // segments
+  int first_ = 0, last_ = 0;  // range of the segments that have contacts
 };
 
 }  // namespace ligature::physics::rod

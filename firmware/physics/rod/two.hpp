@@ -5,7 +5,7 @@
 
 namespace ligature::physics::rod {
 
-/// Lane 0: the chain on the left; lane 1: the one on the right.
+/// Lane 0: the chain of nodes left of the core; lane 1: the chain right of it (band_solver.hpp).
 using Two = double __attribute__((vector_size(16)));
 
 /// A vector in each lane.

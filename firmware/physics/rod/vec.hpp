@@ -60,7 +60,8 @@ inline void store(double* at, Lanes value) noexcept { std::memcpy(at, &value, si
   return {__builtin_shufflevector(c, c, 1, 2, 0, 3)};
 }
 
-/// Four vectors, stored by component. A template written for Vec and double handles four pairs with Vecs and Lanes.
+/// Four vectors, stored by component. Templates over a vector and a number type take either Vec and double, or Vecs and
+/// Lanes to compute four cases at once.
 struct Vecs {
   Lanes x, y, z;
 };
@@ -110,8 +111,8 @@ template <int K>
 [[nodiscard]] inline Mat operator-(const Mat& a, const Mat& b) noexcept { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 [[nodiscard]] inline Mat operator+(const Mat& a, const Mat& b) noexcept { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 [[nodiscard]] inline Mat operator*(const Mat& a, const Mat& b) noexcept { return {a * b.x, a * b.y, a * b.z}; }
-/// Unit vectors; s * kAxis[k] keeps a scalar in one register (valgrind 3.19 cannot read the move that make(s, 0, 0)
-/// becomes).
+/// Unit vectors; s * kAxis[k] keeps a scalar in one register (valgrind 3.19 does not support the instruction that
+/// make(s, 0, 0) becomes).
 inline constexpr Lanes kAxisX = {1, 0, 0, 0}, kAxisY = {0, 1, 0, 0}, kAxisZ = {0, 0, 1, 0};
 [[nodiscard]] inline Mat scaled_identity(double s) noexcept { return {{s * kAxisX}, {s * kAxisY}, {s * kAxisZ}}; }
 
