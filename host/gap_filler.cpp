@@ -75,7 +75,7 @@ std::int64_t GapFiller::fill(const SessionTally& sessions, const Emit& emit, End
   const auto files = files_;
   for (const auto& file : files) {
     filled += fill_from(file, sessions, emit, ends);
-    filled += fill_from(file + ".previous", sessions, emit, ends);  // a restarted firmware renames its old file so
+    filled += fill_from(file + ".previous", sessions, emit, ends);  // old file after a restart
   }
   return filled;
 }

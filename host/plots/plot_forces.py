@@ -159,7 +159,7 @@ def draw(path, out, title, limit_N, frames):
 
 
 def drawn(draw, *arguments):
-    """Exit code of a drawing: 1, with one line on stderr, where a file or its numbers do not allow it."""
+    """Runs draw(*arguments). @return exit code 0; 1 with one line on stderr when a file or its numbers are invalid."""
     try:
         draw(*arguments)
     except (OSError, ValueError) as error:

@@ -29,7 +29,7 @@ class HandDesk {
  public:
   using Clock = std::chrono::steady_clock;
   using Publish = std::function<void(const ligature_msg::hand_wish_t&)>;
-  static constexpr auto kDeafAfter = std::chrono::seconds(1);  // a simulated hand sends its state 20 times a second
+  static constexpr auto kDeafAfter = std::chrono::seconds(1);  // a hand without a state message for so long is absent
 
   HandDesk(const Access& access, Publish publish) : access_(access), publish_(std::move(publish)) {}
 

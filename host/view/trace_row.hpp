@@ -70,7 +70,7 @@ inline constexpr std::int64_t kTicksPerBin = 50, kBinNumberPart = std::int64_t{1
 /// Combines rows into bins.
 class BinMaker {
  public:
-  /// @return whether this row begins a new bin; then `done` is the one before.
+  /// @return whether this row completes a bin by starting the next one; then `done` is the complete bin.
   bool add(const TraceRow& row, TraceBin& done);
   void clear() { number_ = -1; }
 

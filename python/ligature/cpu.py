@@ -1,4 +1,4 @@
-"""Checks the CPU before the extension is loaded, whose first unsupported instruction would kill the interpreter."""
+"""Checks the CPU before the extension is loaded: an unsupported instruction would kill the interpreter."""
 
 import pathlib
 

@@ -1,4 +1,4 @@
-"""Map of what stays finite: factor against step, one panel a parameter. Usage: extremes.py extremes.csv extremes.png"""
+"""Trials that stay finite: factor against time step, one panel per parameter. Usage: extremes.py extremes.csv extremes.png"""
 
 import csv
 import math

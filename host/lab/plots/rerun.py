@@ -1,4 +1,4 @@
-"""A rerun beside its recording: force on each hand, what lies between, shapes. Usage: rerun.py forces.csv shapes.csv rerun.png"""
+"""Compares a rerun with its recording: forces on the hands, their difference, shapes. Usage: rerun.py forces.csv shapes.csv rerun.png"""
 
 import sys
 

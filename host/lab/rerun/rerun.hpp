@@ -13,7 +13,7 @@ namespace ligature::lab {
 struct RerunOptions {
   std::string log{};
   std::vector<std::string> overrides{};
-  bool cuts = true;                ///< repeat the recorded ticks' early ends by the clock at the same substep
+  bool cuts = true;                ///< end ticks early where the recorded ones ran out of time
   int session = 0;                 ///< number from 1; 0: the only one
   std::filesystem::path folder{};  ///< for output files; empty: write none
 };

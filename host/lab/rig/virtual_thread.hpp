@@ -13,8 +13,8 @@
 namespace ligature::lab {
 
 /// Replaces the thread of execution that runs ThreadContext::run() in the firmware. The code that advances the
-/// simulated time must call advance() before the loop looks: a request is then started at its proper time, and its
-/// result becomes visible at the time at which the tick ends.
+/// simulated time must call advance() before the loop reads results: a request is then started at its proper time, and
+/// its result becomes visible at the time at which the tick ends.
 class VirtualThread {
  public:
   VirtualThread(const Nanoseconds& now, physics::Simulation& thread, control::ThreadExchange& exchange,

@@ -24,7 +24,7 @@ std::vector<Pull> ranked(std::span<const Vec3> shape_W) {
   std::vector<Scored> all;
   for (int node = core.first; node <= std::min(core.last + 1, n - 2); ++node) {
     for (const auto& d : six_directions()) {
-      // best: a few nodes inside the core, where the hand holds the last loop
+      // 0: three nodes inside the core's end, where the hand holds the last loop
       const double inside = std::abs(node - (core.last - 3));
       const double against = 1.0 + d.dot(along_tail);  // 0: exactly against the tail's direction
       all.push_back({{node, d}, inside + 2.0 * against});

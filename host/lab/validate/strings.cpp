@@ -60,7 +60,7 @@ Findings catenary(const Subject& subject) {
     const double L = scene.suture.length_m;
     lay(scene, [&](double s) { return Vec3(span * s / L, 0, -depth * std::min(s, L - s) / L); });  // start shape: a V
     weigh(scene, 1.0 / L, 2);
-    if (scene.suture.model == scene::Model::kPaper5) {  // its stiffness grows with the strain
+    if (scene.suture.model == scene::Model::kPaper5) {  // stiffness grows with strain: needs more substeps
       const double slope =
           2.0 * std::sqrt(scene.suture.paper.stretch_N * number(row, "Tend_over_wS")) / segment_m(scene);
       scene.time.substeps =

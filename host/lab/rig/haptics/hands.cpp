@@ -53,7 +53,7 @@ double apart_when_felt_m(const scene::Scene& knotted, double force_N) {
 scene::GripperScript pull_and_release(double apart_m, double draw_s, double rest_s) {
   scene::GripperScript script;
   for (std::size_t h = 0; h < 2; ++h) {
-    double t = 1.2;  // first key after the rig's start-up (ENGAGE)
+    double t = 1.2;  // time of the grasp; the rig needs until then to start up and engage
     script.keys[h] = {key(0.5, h, kHold_m, false), key(t, h, kHold_m, true)};
     script.keys[h].push_back(key(t += draw_s, h, apart_m, true));
     script.keys[h].push_back(key(t += rest_s, h, apart_m, false));  // released under tension
