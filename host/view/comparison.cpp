@@ -4,6 +4,7 @@
 
 #include "host/errors.hpp"
 #include "host/view/json_text.hpp"
+#include "host/view/log_map.hpp"
 #include "host/view/page_recorder.hpp"
 
 namespace ligature::host::view {
@@ -46,8 +47,8 @@ struct Comparison::Other {
         player(map, survey, picture) {}
 };
 
-Comparison::Comparison(const LogMap& map, const LogSurvey& survey, Picture& picture, fs::path folder)
-    : map_(map), survey_(survey), picture_(picture), folder_(std::move(folder)) {
+Comparison::Comparison(const LogSurvey& survey, Picture& picture, fs::path folder)
+    : survey_(survey), picture_(picture), folder_(std::move(folder)) {
   tell();
 }
 

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "host/view/log_map.hpp"
 #include "host/view/log_survey.hpp"
 #include "host/view/picture.hpp"
 #include "host/view/player.hpp"
@@ -16,7 +15,7 @@ namespace ligature::host::view {
 class Comparison {
  public:
   /// @param folder whose recordings a page may choose; empty: none.
-  Comparison(const LogMap& map, const LogSurvey& survey, Picture& picture, std::filesystem::path folder);
+  Comparison(const LogSurvey& survey, Picture& picture, std::filesystem::path folder);
   ~Comparison();
 
   /// Handles {"compare": "NAME" or "", "align": "start" or "grasp"}. @return null, or an answer with the reason for a
@@ -35,7 +34,6 @@ class Comparison {
   void find_offset();
   void tell(const std::string& why = "");
 
-  const LogMap& map_;
   const LogSurvey& survey_;
   Picture& picture_;
   std::filesystem::path folder_;

@@ -26,7 +26,7 @@ void replay(const ReplayOptions& options) {
                        {"names", names_json()}});
   // Viewers on this machine may choose any recording of the folder; remote viewers see only the one that is shown.
   const auto folder = std::filesystem::path(options.log).parent_path();
-  Comparison comparison(map, survey, picture,
+  Comparison comparison(survey, picture,
                         !is_loopback(options.server) ? ""
                         : folder.empty()             ? std::filesystem::path(".")
                                                      : folder);

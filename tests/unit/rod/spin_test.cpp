@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "tests/unit/rod/rods.hpp"
 
@@ -12,7 +11,7 @@ namespace {
 
 using physics::rod::kMaxHolds;
 
-constexpr double kPi = std::numbers::pi, kG = 9.81;
+constexpr double kG = 9.81;
 constexpr Parts kRolling{
     .twist = true, .contact = false, .friction = false, .world = false, .adaptive = false, .roll = true};
 constexpr Parts kOnADesk{
