@@ -152,7 +152,8 @@ class ContactSet {
   /// nodes. @pre nodes >= 2.
   void choose_rows(int most, int widest, int nodes, ContactReport& report) noexcept;
 
-  /// Gives mu_static to contacts that did not slide in the last substep, and to new ones whose slip at `v` is zero.
+  /// Gives mu_static to contacts that did not slide in the last substep, and to new ones that do not slip at
+  /// velocities v.
   void let_stick(double mu_static, const Vec* v) noexcept;
 
   [[nodiscard]] int rows() const noexcept { return rows_; }  ///< number of contacts to be solved
@@ -228,7 +229,7 @@ class ContactSet {
   void measure(const std::int32_t* places, const State& state) noexcept;
   void bend(const State& state) noexcept;
   void bend_row(Contact& c, int at, double s, const State& state) const noexcept;
-  /// Makes a measured pair a contact if it is near enough. @return true when it touches.
+  /// Makes a measured pair a contact if it is near enough. @return true when it is (also if there was no room for it).
   bool take(Candidate& pair, const Measured& measured, const State& state, const Motion& motion, double dt_s, double mu,
             ContactReport& report) noexcept;
   [[nodiscard]] bool make_columns(const ContactMetric& metric, TickTime& time) noexcept;

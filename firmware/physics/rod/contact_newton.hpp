@@ -22,9 +22,9 @@ struct Contact;
 /// disc(s, q) the point of the disc of radius s nearest to q [Alart & Curnier 1991]. u = u_free + W p, and W = J Z J^T
 /// with Z = A^-1, stretch included. The map is linear as long as no contact changes its kind (open, sticking, sliding).
 /// So each step fixes the kinds and solves a linear system: an open contact has no unknown; a sticking one has three;
-/// a sliding one has two, along p_n (n + mu d) and across its sliding direction d, where a compliance stands for the
-/// rotation of d. Then the kinds are determined again (a primal-dual active set method [Hintermueller 2003]). Impulses
-/// may leave their cones on the way.
+/// a sliding one, with sliding direction d, has two: one along n + mu d, and one across d with a compliance that
+/// accounts for the rotation of d. Then the kinds are determined again (a primal-dual active set method [Hintermueller
+/// 2003]). Impulses may leave their cones on the way.
 ///
 /// Without damping this cycles: a few wrong kinds, and impulses to which velocities hardly respond (cond W is 1e5)
 /// become a thousand times too large, which makes all other kinds wrong. So a term proportional to the change of each
@@ -52,7 +52,8 @@ class ContactNewton {
   /// measure().
   void start(const Contact* rows, int count) noexcept;
 
-  /// Adds to the system all contacts whose velocity u violates u_n >= target. @return false when there is no room.
+  /// Adds to the system all contacts that have an impulse or whose velocity violates u_n >= target. @return false when
+  /// there is no room.
   [[nodiscard]] bool look(const Contact* rows, int count, const Vec* p, const Vec* u) noexcept;
 
   /// Computes the blocks of W for the added contacts. Call after look(), before read(). @return false when the time was

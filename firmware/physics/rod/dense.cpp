@@ -58,7 +58,8 @@ bool Dense::pivot(std::size_t k) noexcept {
 // and eliminates column i from the panel's rows. @return false, and nothing is changed, when its pivot has shrunk.
 template <std::size_t Before>
 bool Dense::join(std::size_t k) noexcept {
-  constexpr float kShrunk = 1e-4F, kNoise = 1e-6F;  // least pivot relative to its value before this panel; initially
+  // A pivot has shrunk if it is below kShrunk times its value before this panel, or kNoise times its initial value.
+  constexpr float kShrunk = 1e-4F, kNoise = 1e-6F;
   const std::size_t i = k + Before, from = k & ~std::size_t{7};
   float *const a = row(i), *const top = row(k);
   float left = a[i];

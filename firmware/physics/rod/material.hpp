@@ -32,13 +32,14 @@ struct Numerics {
   int substeps = 16;      ///< time steps per tick
   int max_substeps = 16;  ///< time steps per tick when a hand is faster than fast_m_per_s
   double fast_m_per_s = 0.3;
-  int max_passes = 80;            ///< most passes of the sweep solver per substep
-  long work = 4'300'000;          ///< contact budget of a tick, in instructions (work.hpp)
-  long work_per_node = 2500;      ///< added to the budget for each node
-  double rush = 0.75;             ///< relative budget increase for hands faster than 2 fast_m_per_s (1 x: 0.25)
+  int max_passes = 80;        ///< most passes of the sweep solver per substep
+  long work = 4'300'000;      ///< contact budget of a tick, in instructions (work.hpp)
+  long work_per_node = 2500;  ///< added to the budget for each node
+  /// Relative budget increase for hands faster than 2 fast_m_per_s; between 1 and 2 fast_m_per_s it is 0.25.
+  double rush = 0.75;
   long given_work = 0;            ///< > 0: replaces the whole budget, for any thread and hands
   double settled_m_per_s = 3e-5;  ///< tolerance: passes end when none changes a velocity by more
-  double settled_share = 0.004;   ///< added to the tolerance: this times half the relative speed of the hands
+  double settled_share = 0.004;   ///< added to the tolerance: this times half the hands' relative speed (Rod::settled)
   /// Least tolerance of Newton's method, whose single precision leaves an error of 5 um/s in a held knot. A thread at
   /// rest does not drift at this tolerance, as it would with the sweeps: converged impulses are not changed any more.
   double newton_m_per_s = 1e-5;

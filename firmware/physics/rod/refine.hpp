@@ -16,7 +16,7 @@ namespace ligature::physics::rod {
 ///   the wanted length at another place + 0.2 x the distance to it (grading),
 ///   the wanted length of the segment it touches, if the contact is at rest; twice that while it slides slowly.
 /// Each change merges one pair of segments and splits another segment: the one that is longest relative to its wanted
-/// length, if its ratio is clearly worse than that of the merged pair. State changes by a change of the mesh:
+/// length, if its ratio is clearly worse than that of the merged pair. Effects on the state:
 /// - a split puts its node on the chord, so shape, gaps and stretch stay the same;
 /// - a merge distributes the node's momentum to its neighbours; held, loaded and touching nodes are not merged;
 /// - a merge is refused when something is so near that the segments could touch or cross it on the way to the chord

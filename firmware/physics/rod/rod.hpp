@@ -198,7 +198,7 @@ class Rod {
   long list_cost_ = 0;                  // work of the last broad phase
   double metric_dt_ = 0.0;
   double pace_m_per_s_ = 0.0;    // half the relative speed of the hands; decays exponentially once they stop
-  double leniency_ = 1.0;        // tolerance multiplier, 1 to 6; grows after ticks whose contact solver was cut short
+  double leniency_ = 1.0;        // 1 to 6: factor of the tolerance's speed-dependent part; grows after ticks cut short
   bool braked_ = false;          // velocities of the last substep were scaled down after the hand forces were computed
   int waits_ = 0;                // consecutive ticks that put the present substep off
   double patience_ = kPatience;  // limit of waits_: falls when waiting did not help, rises when Newton converges

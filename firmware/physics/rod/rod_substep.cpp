@@ -203,7 +203,8 @@ bool Rod::put_off() noexcept {
   return false;
 }
 
-// The tick's time is over during sweeps: the substep is repeated from its start in the next tick. Always false.
+// The tick's time was over before the first sweep: the substep is repeated from its start in the next tick. Always
+// false.
 bool Rod::give_up() noexcept {
   state_.v = v_before_;
   work_.spend(seen_.work);

@@ -32,7 +32,8 @@ class Spin {
 
   /// Part of State::rest_bend that is the thread's own stress-free shape and must not fade.
   [[nodiscard]] std::span<const Vec> born() const noexcept { return born_; }
-  /// Call before Refine::fade_offsets(), with its factors: enlarges born() so that the fading leaves it unchanged.
+  /// Call before Refine::fade_offsets(), with its factors: scales the born() part of State::rest_bend up, so that it
+  /// has its old value after the fading.
   void before_fading(State& state, std::span<const double> fade) const noexcept;
   /// Once per tick: aligns the frames with the new tangents (and the new mesh), and computes angles and moments. A
   /// hold's rotation since the last tick is applied at a constant rate during this one.
