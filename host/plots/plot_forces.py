@@ -60,8 +60,7 @@ def spans(values):
 
 
 def mark_losses(axes, time):
-    """Hatches the times of samples that were not recorded, so that a line drawn across the gap is not taken for data.
-    """
+    """Hatches the times of samples that were not recorded: a line drawn across such a gap is no data."""
     steps = np.diff(time)
     holes = np.flatnonzero(steps > 1.5 * np.median(steps)) if len(steps) else []
     for i, hole in enumerate(holes):

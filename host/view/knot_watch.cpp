@@ -72,7 +72,7 @@ void KnotWatch::watch(const std::stop_token& stop) {
                  {"determinant", found.determinant},
                  {"alexander", found.alexander},
                  {"cost_ms", cost_ms}};
-    // could not be computed
+    // null: could not be computed
     if (found.alexander.empty()) knot["crossings"] = knot["determinant"] = knot["alexander"] = nullptr;
     if (core.last > core.first) {
       const double core_m = length(std::span(points).subspan(core.first, core.last - core.first + 1));

@@ -8,8 +8,7 @@ NEEDED = {"x86-64-v3": ("avx", "avx2", "fma", "bmi2"), "x86-64-v2": ("ssse3", "s
 
 
 def lacking(arch: str, cpuinfo: str) -> list[str]:
-    """Features that `arch` needs and the first `flags` line of /proc/cpuinfo lacks; empty when there is no such line.
-    """
+    """Features that `arch` needs and the first `flags` line of /proc/cpuinfo lacks; empty without such a line."""
     flags = next((line.split() for line in cpuinfo.splitlines() if line.startswith("flags")), None)
     return [] if flags is None else [feature for feature in NEEDED.get(arch, ()) if feature not in flags]
 

@@ -41,8 +41,7 @@ def path_of(path: Path) -> str:
 
 
 def toml_of(value: Any) -> str:
-    """A value in TOML syntax. Text is returned unchanged, because the scene reader accepts it with or without quotes.
-    """
+    """A value in TOML syntax. Text is returned unchanged: the scene reader accepts it with or without quotes."""
     if isinstance(value, str):
         return value
     if isinstance(value, (bool, np.bool_)):

@@ -27,12 +27,12 @@ class RecordedScene(NamedTuple):
 
 
 class Shapes:
-    """The recorded shapes of the thread (60 Hz). Shapes may have different numbers of nodes."""
+    """The k recorded shapes of the thread (60 Hz). Shapes may have different numbers of nodes."""
 
     def __init__(self, columns: dict[str, np.ndarray]) -> None:
-        self.t_s: np.ndarray = columns["t_s"]  # k, s
-        self.tick: np.ndarray = columns["tick"]  # k: number of the period of the shape
-        self.radius_m: np.ndarray = columns["radius_m"]  # k, m
+        self.t_s: np.ndarray = columns["t_s"]  # k values, s
+        self.tick: np.ndarray = columns["tick"]  # k values: number of the period of each shape
+        self.radius_m: np.ndarray = columns["radius_m"]  # k values, m
         self._ends = np.cumsum(columns["count"])
         self._columns = columns
 
@@ -51,8 +51,7 @@ class Shapes:
         return (self[i] for i in range(len(self)))
 
     def tension_N(self, i: int) -> np.ndarray:
-        """n float32, N: tension of the edge after each node, positive for pull; the last value repeats the one before.
-        """
+        """n float32, N: tension of the edge after each node, positive for pull; the last repeats the one before."""
         return self._part("tension_N", i)
 
     def turn_rad(self, i: int) -> np.ndarray:

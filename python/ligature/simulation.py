@@ -20,7 +20,7 @@ class Run:
 
     def __init__(self, run: _core._Run) -> None:
         self.trace: np.ndarray = run.trace  # ticks x 12: COLUMNS, as in trace.csv of `ligature-lab run`
-        self.shape_t_s: np.ndarray = run.shape_t_s  # k, s: at the start, every shape_every_s, at the end
+        self.shape_t_s: np.ndarray = run.shape_t_s  # k times, s: at the start, every shape_every_s, at the end
         self.shapes: np.ndarray = run.shapes  # k x nodes x 3, m
         self.finite: bool = run.finite  # False: stopped early, at a tick with a non-finite state
         self.failure: str = run.failure  # "" or one line: tick, node, likely cause
@@ -36,8 +36,7 @@ class Run:
 
     @property
     def left_N(self) -> np.ndarray:
-        """ticks x 3, N: force on the left hand in the thread's world, before hands.force_scale and a device's limits.
-        """
+        """ticks x 3, N: force on the left hand in the thread's world, before force_scale and a device's limits."""
         return self.trace[:, 1:4]
 
     @property

@@ -21,8 +21,8 @@ struct Wall {
   double push_N = 0.0;   ///< constant push by the hand
   double start_m = 0.0;  ///< starts at rest
   double peak_N = 3.3;   ///< force limit of the motor
-  // A hand on the device: the arm's spring (to x = 0) and damper, as in sim_device/hand.hpp. The hand's mass is not
-  // used.
+  // A hand that holds the device: the arm's spring (to x = 0) and damper, as in sim_device/hand.hpp. Its mass moves
+  // rigidly with the device's mass.
   double hand_N_per_m = 0.0, hand_N_s_per_m = 0.0, hand_mass_kg = 0.0;
   device::Device device = device::omni();  ///< the controller's limits are those of this device
 
