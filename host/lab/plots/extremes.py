@@ -1,4 +1,7 @@
-"""Trials that stay finite: factor against time step, one panel per parameter. Usage: extremes.py extremes.csv extremes.png"""
+"""Trials that stay finite: factor against time step, one panel per parameter.
+
+Usage: extremes.py extremes.csv extremes.png
+"""
 
 import csv
 import math

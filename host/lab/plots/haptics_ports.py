@@ -1,4 +1,7 @@
-"""Draws force and energy at both device ports, one row per run. Usage: haptics_ports.py haptics-ports.csv haptics-ports-table.csv out.png"""
+"""Draws force and energy at both device ports, one row per run.
+
+Usage: haptics_ports.py haptics-ports.csv haptics-ports-table.csv out.png
+"""
 
 import csv
 import sys

@@ -1,4 +1,7 @@
-"""Draws which walls the loop renders stably (Z-width). Usage: haptics_zwidth.py haptics-zwidth.csv haptics-wall-reference.csv out.png"""
+"""Draws which walls the loop renders stably (Z-width).
+
+Usage: haptics_zwidth.py haptics-zwidth.csv haptics-wall-reference.csv out.png
+"""
 
 import csv
 import sys

@@ -1,4 +1,7 @@
-"""Compares a rerun with its recording: forces on the hands, their difference, shapes. Usage: rerun.py forces.csv shapes.csv rerun.png"""
+"""Compares a rerun with its recording: forces on the hands, their difference, shapes.
+
+Usage: rerun.py forces.csv shapes.csv rerun.png
+"""
 
 import sys
 

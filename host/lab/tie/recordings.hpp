@@ -1,5 +1,5 @@
 #pragma once
-// The recordings of several runs: DIR/KNOT-SEED.lcmlog each.
+// File names of the recordings of several runs: DIR/KNOT-SEED.lcmlog.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,8 +15,8 @@ namespace ligature::lab {
   return folder / (knot + "-" + std::to_string(seed) + ".lcmlog");
 }
 
-/// Called before the first run, so that a refusal costs no work.
-/// @throws Refusal that names the first recording that is there already, unless `replace`.
+/// Checks that no recording exists yet. Call before the first run, so that no work is lost by a refusal.
+/// @throws Refusal with the name of the first recording that exists, unless `replace` is true.
 inline void check_free(const std::filesystem::path& folder, const std::string& knot, const Seeds& seeds, bool replace) {
   if (replace) return;
   for (std::uint32_t seed = seeds.first; seed <= seeds.last; ++seed) {
