@@ -1,12 +1,12 @@
 #pragma once
-// Geometry of the linkages, derived here on their own: the controller has its own derivation, and a test that runs both
-// against each other would see a mistake in either.
+// Kinematics of the devices, derived independently of the firmware's: a test compares both, which reveals a mistake in
+// either.
 //
-// Omni class: the upper arm (l1) rises by q2 from the horizontal; the forearm (l2) hangs from its end and is turned by
-// q3 out of the vertical. q3 is absolute: the parallelogram keeps the forearm's motor on the base. Both lie in a
-// vertical plane that q1 turns about the base's z axis. In that plane, with r outwards and z up, the tip is
+// Omni class: the upper arm (l1) rises by q2 from the horizontal; the forearm (l2) hangs from its end, turned by q3
+// from the vertical. q3 is an absolute angle, because a parallelogram drives the forearm from the base. Both links lie
+// in a vertical plane that q1 turns about the base's z axis. In that plane, with r outwards and z up, the tip is at
 //   r = l1 cos q2 + l2 sin q3,   z = l1 sin q2 - l2 cos q3,   and in D   p_DT = (r sin q1, -r cos q1, z).
-// Cartesian: three axes at right angles, each wound off a drum of radius r_i:   p_DT,i = home_i + r_i q_i.
+// Cartesian: three perpendicular axes, each moved by a drum of radius r_i:   p_DT,i = home_i + r_i q_i.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace ligature::sim {
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
-/// From joint angles to the tip and back, and how far the joints go.
+/// Forward and inverse kinematics of a device, and its joint limits.
 class Linkage {
  public:
   /// The shipped device.
@@ -34,9 +34,9 @@ class Linkage {
         max_rad_(d.joint_max_rad.data()) {}
 
   [[nodiscard]] bool is_serial() const noexcept { return kind_ == device::Kinematics::kOmniSerial; }
-  /// Tip of a device at rest in the middle of its reach; the world's workspace_origin_m lies here.
+  /// Tip position in the home pose; it maps to the world's workspace_origin_m.
   [[nodiscard]] const Vec3& home_D_m() const noexcept { return home_m_; }
-  /// Stops; of a serial linkage's third joint they bound the angle between the links, q3 - q2.
+  /// Joint stops; for a serial linkage's third joint they limit the angle between the links, q3 - q2.
   [[nodiscard]] const Vec3& min_rad() const noexcept { return min_rad_; }
   [[nodiscard]] const Vec3& max_rad() const noexcept { return max_rad_; }
 
@@ -47,7 +47,7 @@ class Linkage {
     return {r * std::sin(q[0]), -r * std::cos(q[0]), z};
   }
 
-  /// Columns: velocity of the tip in D, m/s, for 1 rad/s of each joint. Joint torque of a tip force is J^T F.
+  /// Columns: velocity of the tip in D, m/s, at 1 rad/s of each joint. The joint torques of a tip force are J^T F.
   [[nodiscard]] Mat3 jacobian_D(const Vec3& q) const noexcept {
     if (!is_serial()) return links_m_.asDiagonal();
     const Vec3 outwards{std::sin(q[0]), -std::cos(q[0]), 0.0};
@@ -60,8 +60,8 @@ class Linkage {
     return jacobian;
   }
 
-  /// Joint angles of a tip position, a serial elbow up (it cannot fold the other way); nothing when out of reach. The
-  /// stops are another matter.
+  /// Joint angles of a tip position (serial: the only solution has the elbow up); nothing if it is out of reach. Joint
+  /// stops are not checked.
   [[nodiscard]] std::optional<Vec3> joints(const Vec3& p_DT) const noexcept {
     if (!is_serial()) return (p_DT - home_m_).cwiseQuotient(links_m_);
     const double l1 = links_m_[0], l2 = links_m_[1];
@@ -80,7 +80,7 @@ class Linkage {
     const Vec3 bounded = is_serial() ? Vec3(q[0], q[1], q[2] - q[1]) : q;
     return (bounded.array() >= min_rad_.array()).all() && (bounded.array() <= max_rad_.array()).all();
   }
-  /// Whether the tip can be there with every joint between its stops.
+  /// Whether the tip can be at this position with every joint within its stops.
   [[nodiscard]] bool reaches(const Vec3& p_DT) const noexcept {
     const auto q = joints(p_DT);
     return q && is_within_stops(*q);

@@ -1,5 +1,6 @@
 #pragma once
-// Who moves the hand of this run: a script, a person at a page, or nobody; and what besides moves it.
+// Creates what moves the hand in this run: a script, a person at a page, or nothing; plus tremor or an adversary if
+// asked.
 
 #include <memory>
 #include <string>
@@ -13,10 +14,10 @@ namespace ligature::sim {
 
 struct Mover {
   std::unique_ptr<Intention> will;
-  std::unique_ptr<PageLink> page;  ///< tells the will what a page wishes; null where none does
+  std::unique_ptr<PageLink> page;  ///< passes a page's targets to `will`; null without a page
 };
 
-/// @return one line that says why not, for what cannot be read, reached or heard.
+/// @return the mover, or one line that says why not: a file that cannot be read, a key out of reach, no network.
 [[nodiscard]] std::variant<Mover, std::string> mover_of(const Options& options, const Linkage& linkage);
 
 }  // namespace ligature::sim

@@ -21,7 +21,7 @@ constexpr const char* kExample =
     "A clenched, trembling hand:  ... --hold clenched --tremor-mm 0.5 --tremor-hz 9\n"
     "Exit: 0 ended (SIGINT, SIGTERM or script), 2 bad usage or input, 3 the run failed.";
 
-/// CLI11's own range lets nan pass: no comparison with it is true.
+/// CLI::Range accepts nan, because every comparison with nan is false; this validator refuses it.
 CLI::Validator within(double low, double high) {
   return {[=](const std::string& word) {
             double value = 0.0;
@@ -45,7 +45,7 @@ std::optional<Hand> hand_of(const std::string& hold) {
     std::size_t used = 0;
     const double tightness = std::stod(hold, &used);
     if (used == hold.size() && tightness >= 0.0 && tightness <= 1.0) return Hand::holding(tightness);
-  } catch (const std::exception&) {  // no number: falls through
+  } catch (const std::exception&) {  // not a number: refused below
   }
   return std::nullopt;
 }

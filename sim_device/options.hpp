@@ -1,5 +1,5 @@
 #pragma once
-// The command line of ligature-device.
+// Command line of ligature-device.
 
 #include <cstdint>
 #include <optional>
@@ -15,18 +15,18 @@ namespace ligature::sim {
 struct Options {
   bool is_left = true;
   std::string bus;
-  std::string scene;   ///< empty: default workspace
-  std::string script;  ///< empty: the hand rests; "page": whoever steers it from a page
+  std::string scene;   ///< empty: default workspace mapping
+  std::string script;  ///< empty: the hand rests; "page": steered from a page
   std::string lcm_url{lcm_tools::kDefaultUrl};
-  std::string stats;   ///< empty: none
-  std::string faults;  ///< empty: nothing goes wrong
+  std::string stats;   ///< file for statistics; empty: none
+  std::string faults;  ///< fault script; empty: no faults
   std::vector<std::string> overrides;
   bool exit_when_done = false;
   bool real_time = false;
-  int cpu = -1;  ///< -1: any
+  int cpu = -1;  ///< CPU to run on; -1: any
 
-  std::string device;  ///< record; empty: the Omni class
-  std::string hold;    ///< empty: a light stylus grip
+  std::string device;  ///< device record; empty: the Omni class
+  std::string hold;    ///< see hand_of(); empty: a light stylus grip
   double tremor_mm = 0.0, tremor_Hz = 10.0;
   double adversary_lead_s = 0.0, adversary_reach_mm = 5.0;
   bool links_bend = false;
@@ -37,10 +37,11 @@ struct Options {
   [[nodiscard]] std::string hand() const { return is_left ? "left" : "right"; }
 };
 
-/// The hand that --hold names: loose, light, firm, clenched, none, or a tightness 0 .. 1; nothing for another word.
+/// The hand named by --hold: loose, light, firm, clenched, none, or a tightness 0 .. 1; nothing for another word.
 [[nodiscard]] std::optional<Hand> hand_of(const std::string& hold);
 
-/// Options, or the exit code of a command line that is over (help, version: 0; a mistake: 2, told in one line).
+/// @return the options, or the exit code if nothing is left to do: help and version (0), bad usage (2, one line on
+/// stderr).
 [[nodiscard]] std::variant<Options, int> parse_options(int argc, char** argv);
 
 }  // namespace ligature::sim

@@ -11,7 +11,8 @@ namespace {
 
 Vec3 vec(const scene::Vec& v) { return {v[0], v[1], v[2]}; }
 
-/// Passes the keys as the offline lab does: the same cubics, in the device's measure. @pre at least one key
+/// Passes the keys without stopping, with the same cubics as the offline lab, in device coordinates. @pre at least one
+/// key
 class PassingHand final : public Intention {
  public:
   PassingHand(std::vector<scene::GripKey> keys_W, const WorkspaceMap& map) : keys_W_(std::move(keys_W)), map_(map) {}

@@ -1,5 +1,6 @@
 #pragma once
-// An encoder that lies tells a possible story afterwards, but not in the moment it begins to lie.
+// Detects encoders that freeze or begin to count backwards, at the moment when it happens; later the readings look
+// plausible.
 
 #include <algorithm>
 #include <array>
@@ -11,28 +12,34 @@
 
 namespace ligature::control {
 
-/// One hand's three encoders. A hand is a mass on a spring: no joint of it changes its speed from one period to the
-/// next. A joint that does counts backwards (mirrored_turn.hpp), or froze: over two windows of kWindow samples that
-/// meet in a corner, both straight within one count (slope u before, counts a period), while another joint moves on at
-/// an unchanged speed,
-///   |u| >= kBrisk and the joint stands to the count from there on, while the others travel kTravel counts.
-/// A slow joint may simply stop. A joint in its stop does stand still; near one nothing is looked for. An encoder that
-/// froze while its joint rested is seen once the joint's torque has changed by kPushed of the rated one and the other
-/// joints have travelled kElsewhere since its last count: no hand is so stiff. One that was reversed at rest is seen by
-/// a led move only (move_check.hpp), or as an impossible pose. Gaps between samples start the watch anew. O(kWindow),
-/// no allocation.
+/// Checks one hand's three encoders. A hand is a mass on a spring, so no joint changes its speed abruptly from one
+/// period to the next. A faulty encoder does: it counts backwards (mirrored_turn.hpp) or freezes. Two tests find a
+/// frozen encoder.
+/// Frozen in motion: in a window of kWindow samples the joint moved evenly (within one count of a straight line) at a
+/// speed of at least kBrisk. In the next window it does not change by a single count, while another joint moves on at
+/// an unchanged speed, and it stays unchanged until the other joints have travelled kTravel. (A slow joint may simply
+/// stop.)
+/// Frozen at rest: the joint has not changed by a count although its torque has varied by kPushed of the rated torque
+/// and the other joints have travelled kElsewhere; no hand is that stiff.
+/// Near its stops a joint may really stand still, so no test is made there. A reversal at rest is found only by a
+/// guided move (move_check.hpp) or as an impossible pose. A gap between samples restarts the first test. O(kWindow), no
+/// allocation.
 class EncoderWatch {
  public:
   static constexpr std::size_t kJoints = 3, kWindow = 24, kLength = 128;
-  static constexpr double kMoving = 0.34, kBrisk = 0.8, kSame = 0.17;  ///< counts a period; of another joint, of it
-  static constexpr double kTravel = 60.0;                              ///< counts, about 3 mm at the tip
-  static constexpr double kElsewhere = 300.0;                          ///< counts
-  static constexpr int kRested = 100;                                  ///< samples; a fast hand turns round in fewer
-  static constexpr double kPushed = 0.2;  ///< of the rated torque; of an Omni 0.4 N at the tip, four times its friction
+  /// Counts per period: least speed of another joint, least speed of the suspect, largest change of the other's speed.
+  static constexpr double kMoving = 0.34, kBrisk = 0.8, kSame = 0.17;
+  static constexpr double kTravel = 60.0;      ///< counts, about 3 mm at the tip
+  static constexpr double kElsewhere = 300.0;  ///< counts
+  static constexpr int kRested = 100;          ///< samples; a hand that turns round needs fewer
+  /// Share of the rated torque; for an Omni 0.4 N at the tip, four times its friction.
+  static constexpr double kPushed = 0.2;
 
-  /// A new sample, in counts. @param gap whole periods since the last one. @param free per joint: far from its stops.
-  /// @param torque that acts on each joint, share of the rated one.
-  /// @return what is wrong, latched by the caller.
+  /// Adds a sample, in counts.
+  /// @param gap whole periods since the last sample
+  /// @param free for each joint: whether it is far from its stops
+  /// @param torque acting on each joint, as a share of the rated torque
+  /// @return the fault found; the caller latches it
   [[nodiscard]] Fault add(const std::array<double, kJoints>& counts, std::int64_t gap,
                           const std::array<bool, kJoints>& free,
                           const std::array<double, kJoints>& torque = {}) noexcept {
@@ -45,7 +52,8 @@ class EncoderWatch {
     return reversal(free) >= 1.0 ? Fault::kAxisReversed : Fault::kNone;
   }
 
-  /// Of the newest sample: speed of a mirrored turn against the least that is one, the most of all looks and joints.
+  /// Suspicion of a reversal at the newest sample: the speed of the mirrored turn divided by the least speed that
+  /// counts, the largest over all tests and joints; >= 1: reversed.
   [[nodiscard]] double reversal(const std::array<bool, kJoints>& free) const noexcept {
     double most = 0.0;
     for (std::size_t j = 0; j < kJoints; ++j) {
@@ -64,7 +72,7 @@ class EncoderWatch {
     bool straight = false;
   };
 
-  /// What has happened since a joint's last count.
+  /// What has happened since a joint's reading last changed: range of its torque, travel of the joints (`elsewhere`).
   struct Rest {
     double count = 0.0, low = 0.0, high = 0.0, elsewhere = 0.0;
     int samples = 0;
@@ -85,7 +93,7 @@ class EncoderWatch {
       ++r.samples;
       if (r.high - r.low < kPushed || r.elsewhere < kElsewhere || r.samples < kRested) continue;
       stands = true;
-      r = {counts[j], torque[j], torque[j], 0.0, 0};  // told; from here it must show itself again
+      r = {counts[j], torque[j], torque[j], 0.0, 0};  // reported; the test starts again from here
     }
     last_ = counts;
     seen_ = true;
@@ -96,7 +104,8 @@ class EncoderWatch {
     return x_[joint][(newest_ + kLength - ago) % kLength];
   }
 
-  /// Samples ago + kWindow - 1 .. ago through their ends.
+  /// Straight line through the ends of samples ago + kWindow - 1 .. ago, and whether all samples lie within one count
+  /// of it.
   [[nodiscard]] Line line(std::size_t joint, std::size_t ago) const noexcept {
     constexpr double kSteps = kWindow - 1;
     const double first = at(joint, ago + kWindow - 1);
@@ -108,7 +117,7 @@ class EncoderWatch {
     return l;
   }
 
-  /// Another joint than `joint` goes through the corner as if there were none.
+  /// Whether another joint moves on through both windows at an unchanged speed.
   [[nodiscard]] bool other_moves_on(std::size_t joint) const noexcept {
     for (std::size_t k = 0; k < kJoints; ++k) {
       if (k == joint) continue;
@@ -118,7 +127,8 @@ class EncoderWatch {
     return false;
   }
 
-  /// First the corner, then the others' travel while the suspect stands to the count.
+  /// Test for an encoder that freezes in motion: first finds a suspect, then waits for the other joints' travel while
+  /// the suspect does not change.
   [[nodiscard]] bool is_frozen(const std::array<bool, kJoints>& free) noexcept {
     if (suspect_ < kJoints) {
       if (at(suspect_, 0) != at(suspect_, 1)) {
@@ -129,7 +139,7 @@ class EncoderWatch {
       return travel_ >= kTravel;
     }
     for (std::size_t j = 0; j < kJoints; ++j) {
-      if (!free[j] || !is_constant(j)) continue;  // few are: the rest is for them
+      if (!free[j] || !is_constant(j)) continue;  // most joints are excluded here, which saves time
       const Line before = line(j, kWindow);
       if (before.straight && std::abs(before.slope) >= kBrisk && other_moves_on(j)) {
         suspect_ = j;

@@ -11,7 +11,7 @@ enum class State : std::uint8_t {
   kOff = 0,        ///< drives off or starting up to Operation enabled; no torque
   kCalibrate = 1,  ///< drives on; encoders must show a possible pose for 50 ticks; no torque
   kIdle = 2,       ///< ready; no torque
-  /// armed; each hand waits until its dead-man is pressed, it is still and its force small; then the gain rises
+  /// Armed; each hand waits until its dead-man is pressed, it is still and its force small; then the gain rises
   kEngage = 3,
   kForce = 4,  ///< at least one hand has full force
   kBrake = 5,  ///< forces ramp to zero

@@ -31,7 +31,7 @@ CommandGate::Judgement CommandGate::judge(const command_t& command, std::int64_t
   return {false, open.challenge, {}};
 }
 
-/// Uses the challenge up when there is none.
+/// Why the command must not be executed; empty if it may, and then its challenge is used up.
 std::string CommandGate::objection(const command_t& command, std::int64_t monotonic_us) {
   if (command.session != session_)
     return "command of session " + std::to_string(command.session) + ", this is session " + std::to_string(session_) +

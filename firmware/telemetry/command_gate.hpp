@@ -1,5 +1,5 @@
 #pragma once
-// Whether a command is said now, to this run of the firmware, or played back from a recording.
+// Distinguishes commands sent now, to this run of the firmware, from replays of a recording.
 
 #include <array>
 #include <cstdint>
@@ -11,25 +11,25 @@
 
 namespace ligature::telemetry {
 
-/// Every command but `stop` and `disarm` is sent twice: first without a challenge, which asks for one, then with the
-/// challenge that the answer carries. A challenge is a random number, good for one command, for that sender's id and
-/// kind, and for two seconds of the monotonic clock. A recording holds challenges that were used, so playing it back
-/// does nothing. `stop` and `disarm` only take force away: they are done whoever said them and whenever.
-/// This tells a recording from a living sender; it does not tell one living sender from another.
+/// Every command except `stop` and `disarm` is sent twice: first without a challenge, to request one, then with the
+/// challenge that the answer carries. A challenge is a random number; it is valid once, for the same command id and
+/// kind, and for two seconds of the monotonic clock. A recording contains only used challenges, so replaying it has no
+/// effect. `stop` and `disarm` only remove force, so they are always executed.
+/// This detects replays; it does not authenticate senders.
 class CommandGate {
  public:
   static constexpr std::int64_t kLongest_us = 2'000'000;
-  static constexpr std::size_t kMostOpen = 256;  ///< the oldest goes when more are asked for
+  static constexpr std::size_t kMostOpen = 256;  ///< open challenges; a further one replaces the oldest
 
-  /// Random numbers; from the system's where none is given.
+  /// Source of random numbers; by default the system's.
   using Draw = std::function<std::int64_t()>;
   explicit CommandGate(std::int64_t session);
   CommandGate(std::int64_t session, Draw draw) : session_(session), draw_(std::move(draw)) {}
 
   struct Judgement {
     bool may_be_done = false;
-    std::int64_t challenge = 0;  ///< not 0: the command only asked for it
-    std::string why;             ///< not empty: it was played back, or meant for another run
+    std::int64_t challenge = 0;  ///< not 0: the command only requested this challenge
+    std::string why;             ///< not empty: refused as a replay, or as meant for another run
   };
   [[nodiscard]] Judgement judge(const ligature_msg::command_t& command, std::int64_t monotonic_us);
 

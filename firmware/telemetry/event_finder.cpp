@@ -33,7 +33,7 @@ std::vector<ligature_msg::event_t> EventFinder::next(const rt::TickRecord& r) {
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     const auto hand = static_cast<std::int8_t>(h);
     const std::string who = kHandNames[h];
-    // a remesh may renumber the held node, so only held or not is compared
+    // A remesh may renumber the held node, so only held or not is compared
     const int was = last_.grasped_node[h], is = r.grasped_node[h];
     if (was >= 0 && is < 0) {
       events.push_back(event(r.tick, event_t::KIND_RELEASE, hand, was, who + " releases node " + std::to_string(was)));

@@ -57,7 +57,7 @@ struct RodParameters {
   double EI_N_m2 = 4e-7;              ///< bending stiffness
   double GJ_N_m2 = 2.86e-7;           ///< twisting stiffness; 0: twist is not modelled
   double rest_curvature_per_m = 0.0;  ///< curvature without stress, about an axis fixed in the material
-  /// rad/m, twist without stress: that axis turns along the thread; with a curvature, a helix
+  /// Twist without stress, rad/m: that axis turns along the thread; with a curvature, a helix
   double rest_twist_per_m = 0.0;
   std::optional<double> yield_strain;  ///< strain of the outer fibre above which bending is plastic; absent: never
   double set_fraction = 0.5;           ///< share of the bending stiffness that yields

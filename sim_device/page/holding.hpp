@@ -1,5 +1,5 @@
 #pragma once
-// Who may steer a hand: one at a time, and nobody from a recording.
+// Decides which sender may steer a hand: one at a time, and no replay of a recording.
 
 #include <cstdint>
 #include <functional>
@@ -9,22 +9,22 @@
 
 namespace ligature::sim {
 
-/// What a wish says of itself (protocol/lcm/hand_wish_t.lcm).
+/// Identification in a hand_wish_t (protocol/lcm/hand_wish_t.lcm).
 struct Claim {
   std::int64_t session = 0, owner = 0, sequence = 0;
   bool leaves = false;
 };
 
-/// The first who says the session has the hand, until he leaves or is silent for kFreeAfter. Then the session is
-/// another one, and all that was said in the one before is worth nothing.
+/// The first sender that uses the present session becomes the hand's owner, until it leaves or is silent for
+/// kFreeAfter. Then the session changes, and messages of the old session are ignored.
 class Holding {
  public:
   static constexpr Time kFreeAfter = std::chrono::seconds(5);
-  using FreshNumber = std::function<std::int64_t()>;  ///< never the same twice, not to be guessed
+  using FreshNumber = std::function<std::int64_t()>;  ///< unpredictable and never repeated
 
   explicit Holding(FreshNumber fresh) : fresh_(std::move(fresh)) { end(); }
 
-  /// @return whether what came with the claim is to be done. Who leaves is done with, too.
+  /// @return whether the message with this claim may be applied, including a last one by which its owner leaves.
   [[nodiscard]] bool accept(const Claim& claim, Time now) {
     look(now);
     if (claim.session != session_ || claim.owner == 0 || claim.sequence <= sequence_) return false;
@@ -36,7 +36,7 @@ class Holding {
     return true;
   }
 
-  /// Lets go of who has been silent for too long.
+  /// Ends the ownership of a sender that has been silent for too long.
   void look(Time now) {
     if (owner_ != 0 && now - heard_ > kFreeAfter) end();
   }

@@ -15,9 +15,9 @@ namespace {
 
 constexpr const char* kWishChannel = "LIGATURE_HAND_WISH";
 constexpr const char* kStateChannel = "LIGATURE_HAND_STATE";
-constexpr int kMostWishesALook = 64;  // a flood holds nobody up
+constexpr int kMostWishesALook = 64;  // per look; bounds the time if somebody floods the channel
 
-/// Every byte of what anybody may have sent must be a wish's.
+/// Decodes a message of unknown origin: only the exact size of a hand_wish_t and plausible positions are accepted.
 std::optional<ligature_msg::hand_wish_t> wish_of(const lcm::ReceiveBuffer& received) {
   ligature_msg::hand_wish_t wish{};
   const int size = wish.getEncodedSize();
@@ -78,7 +78,7 @@ void PageLink::tell(const Mechanics& mechanics) {
   state.dead_man = (buttons & can::profile::kButtonDeadMan) != 0 ? 1 : 0;
   state.grip = (buttons & can::profile::kButtonGrip) != 0 ? 1 : 0;
   std::copy_n(p_home_m.data(), 3, state.p_home_m);
-  lcm_->publish(kStateChannel, &state);  // one that is lost is followed by the next
+  lcm_->publish(kStateChannel, &state);  // a failure does not matter: the next message follows soon
 }
 
 }  // namespace ligature::sim

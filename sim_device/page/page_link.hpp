@@ -1,5 +1,5 @@
 #pragma once
-// Between LCM and a steered hand: wishes in, where it is and who has it out.
+// LCM connection of a steered hand: receives targets, publishes the hand's state and owner.
 
 #include <memory>
 #include <string>
@@ -19,16 +19,16 @@ class PageLink {
  public:
   static constexpr Time kStateEvery = std::chrono::milliseconds(50);
 
-  /// @param hand lives longer. Signals that are blocked now never come to the library's thread.
+  /// @param hand must outlive this. Signals blocked at this call stay blocked in LCM's thread.
   PageLink(const std::string& url, bool is_left, SteeredHand& hand);
   ~PageLink();
   PageLink(const PageLink&) = delete;
   PageLink& operator=(const PageLink&) = delete;
 
-  /// Why there is no network; empty when there is one.
+  /// Why the network could not be opened; empty if it is open.
   [[nodiscard]] const std::string& objection() const noexcept { return objection_; }
 
-  /// Takes the wishes that have come, and tells the state when it is due. Never waits.
+  /// Applies the targets that have arrived, and publishes the state if it is due. Never waits.
   void look(const Mechanics& mechanics, Time now);
 
  private:
@@ -42,7 +42,7 @@ class PageLink {
   std::unique_ptr<lcm::LCM> lcm_;
   std::string objection_;
   Vec3 home_D_m_ = Vec3::Zero();
-  double t_s_ = 0.0;  // of the look that goes on
+  double t_s_ = 0.0;  // time of the present look()
   Time now_{}, tell_at_{};
 };
 

@@ -42,7 +42,7 @@ SteeredHand::Motion SteeredHand::motion(double t_s) const noexcept {
 }
 
 Vec3 SteeredHand::within_reach(const Vec3& p_D_m) const noexcept {
-  constexpr int kHalvings = 20;  // a metre to a micrometre
+  constexpr int kHalvings = 20;  // bisection from a metre to a micrometre
   if (linkage_.reaches(p_D_m)) return p_D_m;
   const Vec3& home = linkage_.home_D_m();
   double good = 0.0, bad = 1.0;
@@ -64,8 +64,8 @@ ruckig::InputParameter<3> SteeredHand::beginning(const Motion& from) const noexc
   return in;
 }
 
-/// The way there, and the way to rest from where it would be when nobody has said more. Both can always be made: all
-/// motions keep to the same limits. If not, the hand stays where it is.
+/// Plans the motion to the target, and the stop that follows if no target comes within kLongestSilence_s. Both always
+/// exist, because all motions obey the same limits; if planning fails all the same, the hand stays where it is.
 void SteeredHand::plan(const Motion& from, const Vec3& to_D_m) noexcept {
   rest_ = {from.p, {}, {}};
   auto in = beginning(from);

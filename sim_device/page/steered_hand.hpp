@@ -1,6 +1,6 @@
 #pragma once
-// A hand that somebody steers from afar: it goes where it is wished, as fast as an arm does, and lets go when it hears
-// nothing.
+// A hand steered by a remote person: follows targets at the speed of an arm, and releases the dead-man if no message
+// comes.
 
 #include <array>
 #include <ruckig/ruckig.hpp>
@@ -9,24 +9,24 @@
 
 namespace ligature::sim {
 
-/// What an arm at a desk does without haste; the device's own limit is 2 m/s. By axis of D.
+/// Limits of an arm's unhurried motion, for each axis of D; the device's own speed limit is 2 m/s.
 struct ArmLimits {
   double speed_m_per_s = 0.3;
   double acceleration_m_per_s2 = 4.0;
   double jerk_m_per_s3 = 100.0;
 };
 
-/// Jerk-limited from wherever it is to the newest wish, at rest there. After kLongestSilence_s without a wish it comes
-/// to rest on the spot with the dead-man let go, and the dead-man counts again only after it was wished released.
+/// Moves with limited jerk from its present state to rest at the newest target. After kLongestSilence_s without a
+/// message it stops and releases the dead-man; the dead-man counts again only after a message with it released.
 class SteeredHand final : public Intention {
  public:
-  /// A page that draws in software may be busy for 100 ms; who steers notices less than twice that.
+  /// A page that renders in software may be busy for 100 ms; the person notices less than twice that.
   static constexpr double kLongestSilence_s = 0.2;
 
   explicit SteeredHand(const Linkage& linkage, const ArmLimits& limits = {});
 
-  /// @param t_s not before the last one; before the start (minus infinity) nothing is taken.
-  /// @param p_D_m what is out of reach is brought back towards home.
+  /// @param t_s must not decrease; ignored before the start (minus infinity)
+  /// @param p_D_m target; if out of reach, it is moved towards home until reachable
   void wish(double t_s, const Vec3& p_D_m, bool dead_man, bool grip) noexcept;
 
   [[nodiscard]] Intent at(double t_s, const Touch&) const noexcept override { return at(t_s); }
@@ -52,10 +52,10 @@ class SteeredHand final : public Intention {
   Linkage linkage_;
   ArmLimits limits_;
   ruckig::Ruckig<3> planner_;
-  Trajectory towards_, halt_;  // from heard_s_ on, and from kLongestSilence_s later
-  Motion rest_;                // while there is no plan
+  Trajectory towards_, halt_;  // start at heard_s_, and kLongestSilence_s later
+  Motion rest_;                // state without a plan
   bool has_plan_ = false, dead_man_ = false, grip_ = false;
-  bool must_release_ = true;  // the dead-man, before it counts
+  bool must_release_ = true;  // the dead-man must be released once before it counts
   double heard_s_ = kNever_s;
 };
 
