@@ -8,7 +8,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kWritePeriod(5);
 constexpr std::chrono::milliseconds kSyncPeriod(500);
-constexpr std::chrono::milliseconds kScenePatience(100);  // telemetry polls every 5 ms
+constexpr std::chrono::milliseconds kScenePatience(
+    100);  // longest wait for scene_changed(); telemetry polls every 5 ms
 constexpr std::size_t kBatch = 256;
 
 }  // namespace

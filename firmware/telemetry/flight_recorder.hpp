@@ -69,7 +69,7 @@ class FlightRecorder {
   /// Notes since the last call. Any thread; never waits for the disk.
   [[nodiscard]] std::vector<FlightNote> take_notes();
 
-  /// Ticks that are lost for the file. Any thread.
+  /// Ticks that the file lacks for good. Any thread.
   [[nodiscard]] std::int64_t missing() const noexcept { return missing_.load(std::memory_order_relaxed); }
   /// Longest duration of a sync. A power cut loses at most this time plus the 0.5 s between syncs. Any thread.
   [[nodiscard]] std::chrono::milliseconds slowest_sync() const noexcept {
