@@ -8,8 +8,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kWritePeriod(5);
 constexpr std::chrono::milliseconds kSyncPeriod(500);
-constexpr std::chrono::milliseconds kScenePatience(
-    100);  // longest wait for scene_changed(); telemetry polls every 5 ms
+constexpr std::chrono::milliseconds kScenePatience(100);  // longest wait for scene_changed()
 constexpr std::size_t kBatch = 256;
 
 }  // namespace
