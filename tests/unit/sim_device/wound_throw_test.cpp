@@ -27,7 +27,7 @@ class Trail {
     hands_[kLeftHand].rest_at({-1.0, -1.0, -2.0}, place_.speed_m_per_s);
     hands_[kRightHand].rest_at({1.0, -1.0, -2.0}, place_.speed_m_per_s);
     bool drawn = false;
-    for (Move& m : wound_throw(t, std::make_shared<Site>(0.0, 1.0))) {
+    for (Move& m : wound_throw(t, std::make_shared<Site>(Site{0.0, 1.0}))) {
       if (drawn && m.name != "draw") break;  // the moves after it need a simulated thread
       drawn = m.name == "draw";
       run(m);
