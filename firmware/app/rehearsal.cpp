@@ -11,6 +11,7 @@
 #include "firmware/app/admission.hpp"
 #include "firmware/app/rig_setup.hpp"
 #include "firmware/platform/realtime.hpp"
+#include "firmware/platform/sanitized.hpp"
 #include "protocol/scene/text_file.hpp"
 
 namespace ligature::app {
@@ -30,7 +31,7 @@ void limit(int what, rlim_t most) {
 /// Limits this process's memory, CPU time and files, whatever the scene needs. Not with sanitizers, whose shadow memory
 /// would count.
 void bound_this_process() {
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef LIGATURE_SANITIZED
   limit(RLIMIT_AS, kMostMemory_bytes);
   limit(RLIMIT_CPU, kMostCpu_s);
 #endif

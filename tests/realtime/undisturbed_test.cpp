@@ -15,9 +15,10 @@
 #include <thread>
 
 #include "firmware/platform/realtime.hpp"
+#include "firmware/platform/sanitized.hpp"
 #include "tests/realtime/quiet_rig.hpp"
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef LIGATURE_SANITIZED
 #define LIGATURE_WATCHED 0  // a sanitizer itself causes page faults and system calls
 #else
 #define LIGATURE_WATCHED 1

@@ -1,4 +1,5 @@
 #include "tests/realtime/watch.hpp"
+#include "firmware/platform/sanitized.hpp"
 
 #include <dlfcn.h>
 #include <pthread.h>
@@ -12,7 +13,7 @@ std::atomic<long> allocations{0}, locks{0};
 
 }  // namespace ligature::watch
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef LIGATURE_SANITIZED
 
 namespace {
 

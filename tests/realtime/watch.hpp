@@ -3,9 +3,11 @@
 
 #include <atomic>
 
+#include "firmware/platform/sanitized.hpp"
+
 namespace ligature::watch {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef LIGATURE_SANITIZED
 inline constexpr bool kCounts = false;  // a sanitizer replaces both itself
 #else
 inline constexpr bool kCounts = true;

@@ -13,6 +13,7 @@
 
 #include "firmware/app/rehearsal.hpp"
 #include "firmware/app/rehearsal_process.hpp"
+#include "firmware/platform/sanitized.hpp"
 
 namespace ligature::app {
 namespace {
@@ -31,7 +32,7 @@ class SceneDeskTest : public ::testing::Test {
     write("huge.toml", "[suture]\nnodes = 5000\nlength_m = 50.0\nradius_m = 0.003\n");
     options.scene = (folder / "small.toml").string();
     options.program = LIGATURE_FIRMWARE;
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef LIGATURE_SANITIZED
     options.force = true;  // a sanitizer slows the program down, so admission would fail
 #endif
   }
