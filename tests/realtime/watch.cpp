@@ -1,5 +1,4 @@
 #include "tests/realtime/watch.hpp"
-#include "firmware/platform/sanitized.hpp"
 
 #include <dlfcn.h>
 #include <pthread.h>
