@@ -32,7 +32,7 @@ PAGE_IN_CODE = re.compile(r"\bdocs/[\w-]+\.md")
 
 
 class Tree:
-    """The text of every file of the project, and what it declares."""
+    """The text of every file of the project, and the names in it: tests, options, scene keys and words of the code."""
 
     def __init__(self, root):
         self.root = root
@@ -53,7 +53,8 @@ class Tree:
         self.folders = {parent.as_posix() for p in self.text for parent in pathlib.PurePosixPath(p).parents}
 
     def has_file(self, name):
-        """Whether a file or folder path ends in this name; * stands for any part of its last component."""
+        """Whether the path of a file or folder of the project ends in `name`; * stands for any part of its last
+        component."""
         if name.rstrip("/") in self.folders or any(f.endswith("/" + name.rstrip("/")) for f in self.folders):
             return True
         pattern = re.compile("(?:.*/)?" + re.escape(name).replace(r"\*", r"[^/]*") + "$")
@@ -135,7 +136,7 @@ def main():
     found = []
     for path, text in tree.text.items():
         if path == "CHANGELOG.md":
-            continue  # describes past versions
+            continue  # may name what existed in past versions only
         if path.endswith(".md"):
             found += faults(tree, path, text, narrow=bool(WRAPPED.match(path)))
         elif not path.endswith("docs_rules.py"):

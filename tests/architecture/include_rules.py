@@ -1,7 +1,7 @@
-"""Which folder may include which; what the table does not list is forbidden.
+"""Checks every #include against the table RULES: which folder may include which; all others are forbidden.
 
-The real-time thread cannot call what it cannot include. Run: python3 tests/architecture/include_rules.py [ROOT]; prints
-one line per violation and exits with 1 if any."""
+This keeps, for example, file access and locks out of the code of the real-time threads. Run: python3
+tests/architecture/include_rules.py [ROOT]; prints one line per violation and exits with 1 if any."""
 
 import pathlib
 import re
@@ -29,14 +29,14 @@ RULES = {
     "firmware/cycle.hpp": (["firmware/rt", "firmware/control", "firmware/physics", "firmware/clock.hpp"], []),
     "firmware/thread_context.hpp": (["firmware/rt", "firmware/control", "firmware/physics", "firmware/clock.hpp"], []),
     "firmware/app": (["firmware", "protocol", "ligature_msg"], ["CLI/", "spdlog/", "OS"]),
-    # What a page may do to a simulated hand; separate from the firmware, which cannot include it.
+    # Lets a web page steer a simulated hand; in a folder of its own, because the firmware must not include it.
     "sim_device/page": (["sim_device", "protocol/lcm", "ligature_msg"], ["ruckig/", "Eigen/", "lcm/", "OS"]),
     "sim_device": (["protocol/can", "protocol/scene", "protocol/device", "protocol/lcm/default_url.hpp", "sim_device/page"], ["ruckig/", "Eigen/", "CLI/", "spdlog/", "nlohmann/", "OS"]),
     "host/knot": ([], ["Eigen/"]),
     "host/console": (["host/errors.hpp"], ["OS"]),
     "host/lab/tie": (["firmware/physics", "sim_device", "protocol/scene", "host"], ["CLI/", "Eigen/", "OS"]),
     "host/lab": (["firmware/physics", "firmware/rt", "protocol/scene", "sim_device/operator", "host/console", "host/errors.hpp", "host/knot", "host/lab/tie", "host/lab/rerun"], ["CLI/", "nlohmann/", "Eigen/", "OS"]),
-    # Uses the firmware's own reporting code, so that repeated records can be bit-identical.
+    # Repeats a recorded run; with the firmware's own reporting code, so that both runs' records can be bit-identical.
     "host/lab/rerun": (["firmware", "protocol/scene", "host", "ligature_msg"], ["CLI/", "nlohmann/", "Eigen/", "OS"]),
     # The whole rig in one process and in virtual time; only this folder may include all parts.
     "host/lab/rig": (["firmware", "sim_device", "protocol/can", "protocol/scene", "protocol/device", "host", "ligature_msg"], ["Eigen/", "OS"]),
@@ -58,7 +58,7 @@ STRANGE_RANDOM = re.compile(r"std::mt19937\w*|std::\w+_distribution|std::random_
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 
 
-# Only these folders may use the messages by which a page moves a simulated hand.
+# Message header -> the only folders that may include it: hand_wish_t is how a web page moves a simulated hand.
 ONLY = {"ligature_msg/hand_wish_t.hpp": ("sim_device/page/", "host/view/")}
 
 
@@ -92,8 +92,8 @@ def violations(path, text):
 
 
 def random_violations(path, text):
-    """Random input of tests must come from tests/support/random.hpp: reproducible everywhere, and shifted by one
-    variable."""
+    """Random input of tests must come from tests/support/random.hpp: reproducible everywhere, and other seeds can be
+    chosen with the variable LIGATURE_TEST_SEED."""
     found = sorted(set(STRANGE_RANDOM.findall(text)))
     return [f"{path}: uses {word}; random input comes from tests/support/random.hpp" for word in found]
 

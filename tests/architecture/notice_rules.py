@@ -8,7 +8,7 @@ import pathlib
 import re
 import sys
 
-NAMED_TOO = {"ruckig", "liblcm-bin"}  # an archive that CMake unpacks, and programs that are run
+NAMED_TOO = {"ruckig", "liblcm-bin"}  # ruckig: an archive that CMake unpacks; liblcm-bin: programs that are only run
 
 
 def python_packages(root):
@@ -22,7 +22,8 @@ def npm_packages(root):
 
 
 def apt_libraries(root):
-    """Libraries that are compiled or linked into programs; compilers, browsers and emulators are only run."""
+    """apt packages of libraries that are compiled or linked into programs. Compilers, browsers and emulators are left
+    out."""
     words = set(re.findall(r"\b(?:lib|nlohmann)[\w-]*-dev\b", (root / "scripts/setup").read_text()))
     return words - {"libclang-rt-dev"}  # clang's own library, for fuzzing
 

@@ -60,7 +60,8 @@ def way_of_each_end(points):
 
 
 def least_of(who, runs):
-    """For each tick the shortest time of all runs. Runs are (times, end shape) and must have the same shape."""
+    """For each tick the shortest time of all runs. A run is (times per tick, end shape); all end shapes must be
+    equal."""
     # Compared as text, because a NaN is not equal to itself.
     if any(repr(shape) != repr(runs[0][1]) for _, shape in runs):
         raise SystemExit(f"{who}: two runs of the same pull end differently; their ticks cannot be compared")
@@ -89,7 +90,8 @@ def ours(lab, nodes, folder):
 
 
 def flex_xml(nodes):
-    """The thread straight along x, which is its rest shape, in millimetres, grams and seconds."""
+    """MuJoCo's model, in millimetres, grams and seconds: the thread straight along x (its rest shape), a hand at each
+    end."""
     step = 1e3 * LENGTH_M / (nodes - 1)
     points = " ".join(f"{i * step:.9f} 0 0" for i in range(nodes))
     elements = " ".join(f"{i} {i + 1}" for i in range(nodes - 1))
@@ -126,7 +128,7 @@ def laid_out(nodes):
         model.dof_damping[:] = node_g * drag
         for _ in range(round(DRAG_S / DRAG_STEP_S)):
             mujoco.mj_step(model, data)
-    model.dof_damping[:] = node_g * 5.0  # air drag as in our scene
+    model.dof_damping[:] = node_g * 5.0  # air drag as in Ligature's scene, 5 per second
     return model, data, points
 
 
@@ -142,7 +144,7 @@ def theirs(nodes, step_s):
         spent = 0
         for k in range(steps):
             u = min(1e-3 * (tick + (k + 1) / steps) / PULL_S, 1.0)
-            aside = way * u * u * (3 - 2 * u)  # the same motion as our hands
+            aside = way * u * u * (3 - 2 * u)  # the same motion as that of the hands in Ligature's run
             data.mocap_pos[0][0], data.mocap_pos[1][0] = points[0][0] - aside, points[-1][0] + aside
             before = time.thread_time_ns()
             mujoco.mj_step(model, data)

@@ -1,4 +1,4 @@
-// The page in a real browser, with a fake rig and with a recording of it. All waits are for conditions.
+// Tests of the web page of `ligature-host view` in a real browser: first with a fake rig, then with a recording of it.
 //   node browser_test.mjs [--browser firefox] [--webgl off] --host BIN --python BIN --rig SCRIPT --modules DIR --out DIR     (inside scripts/private-net)
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -40,7 +40,7 @@ const steps = {
     await page.selectOption('#colour', 'knot');
     await page.click('#follow');
     await page.waitForTimeout(300);
-    // Crossings are marked on the label, with their signs as seen from this view.
+    // The knot's crossings in this view are marked, each with its sign.
     await until(page, () => (ligature.crossings ?? []).length >= 2 && ligature.crossings.every((c) => Math.abs(c.sign) === 1));
     await page.screenshot({ path: join(out, 'knot.png') });
     await page.selectOption('#colour', 'tension');
@@ -151,8 +151,8 @@ const steps = {
   'old data is shown as old, and fresh data as fresh again': async () => {
     rig.tell('quiet');
     await until(page, () => !document.getElementById('stale').hidden);
-    // Shown at the first frame or timer after 120 ms. The delay is printed but not limited, since wall time varies on a
-    // shared machine.
+    // The warning appears at the first frame or timer after 120 ms without data. The delay is printed but not limited,
+    // since wall time varies on a shared machine.
     const { age_ms, pace_ms } = await page.evaluate(() => ({ age_ms: ligature.staleAt_ms, pace_ms: ligature.scene.pace ?? 0 }));
     console.log(`    shown as old at ${age_ms.toFixed(0)} ms, one picture takes ${pace_ms.toFixed(0)} ms`);
     assert.ok(age_ms >= 120, `${age_ms} ms`);
@@ -251,7 +251,7 @@ const steps = {
     replay = new Program(host, ['replay', log, '--port', '0']);
     page = await browser.open(await replay.says(/open (\S+)/));
     await page.waitForFunction(() => ligature.firstThread_ms);
-    await page.locator('#help').waitFor({ state: 'visible' }); // a new origin, so a first visit
+    await page.locator('#help').waitFor({ state: 'visible' }); // another origin, hence a first visit
     await page.evaluate(() => document.getElementById('help').close());
     await until(page, () => document.querySelectorAll('#marks button').length >= 2);
     const titles = await page.locator('#marks button').evaluateAll((all) => all.map((b) => b.title).join('\n'));
@@ -267,7 +267,7 @@ const steps = {
     const columns = await page.evaluate(() => ligature.columns);
     compare(rows, columns, forces, ticks);
     await page.screenshot({ path: join(out, 'replay.png') });
-    // The values at the cursor are the exported numbers.
+    // The values shown at the cursor are compared with the exported numbers.
     await page.click('#windows button[value="1"]');
     const box = await page.locator('.plot .u-over').first().boundingBox();
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);

@@ -207,7 +207,7 @@ def main():
         if rig.lcm.fileno() in ready:
             rig.lcm.handle()
         if sys.stdin in ready:
-            # Not readline, whose buffer could hold back a second line.
+            # os.read, because readline() could buffer a second line, which select() would then not report.
             heard = os.read(sys.stdin.fileno(), 4096).decode()
             if not heard:
                 return

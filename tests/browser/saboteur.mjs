@@ -69,7 +69,7 @@ const spoil = (v) => (typeof v !== 'function' ? v : ${way === 'run' ? 'isClass(v
   return `import * as real from './${path}?real';\n${helpers}${names.map((name) => `export const ${name} = spoil(real.${name});`).join('\n')}\n`;
 }
 
-/** @returns the ways of breaking this file that differ from each other. */
+/** @returns the WAYS that have an effect on this file, from what it exports. */
 export function waysFor(text) {
   if (!/^export /m.test(text)) return ['load'];
   return [...(/^export (?:async )?(function|class)/m.test(text) ? ['load', 'make'] : ['load']), ...(/^export class/m.test(text) ? ['run'] : [])];

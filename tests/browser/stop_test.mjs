@@ -66,7 +66,7 @@ for (const webgl of [false, true]) {
   // With WebGL only the files that draw with it; the others were tested without WebGL, which is faster.
   const files = webgl ? ['scene.js', 'tube.js', 'hands.js', 'three.module.js'] : [...readdirSync(pageFolder), 'uPlot.esm.js'];
   for (const file of files.filter(isOurs)) {
-    // In Firefox one way is enough: there the browser is tested, not each file.
+    // In Firefox, and for third-party files, one way of breaking a file is enough.
     const ways = kind === 'firefox' || file.includes('three') || file.includes('uPlot') ? ['load'] : waysFor(readFileSync(join(pageFolder, file), 'utf8'));
     for (const way of ways) {
       saboteur.breaks(file, way);
@@ -77,7 +77,7 @@ for (const webgl of [false, true]) {
   await browser.stop();
 }
 
-/** The thread and the traces are drawn, and no part reports an error except the one that needs WebGL. */
+/** Checks that thread and traces are drawn, and that no part reports an error except the one that needs WebGL. */
 async function draws(page, webgl, name) {
   await until(page, () => window.ligature?.traces && ligature.store.rowEnd > 500 && ligature.scene?.shape);
   await page.waitForFunction((id) => document.getElementById(id)?.width > 100, webgl ? 'canvas' : 'flat');
@@ -95,7 +95,7 @@ async function draws(page, webgl, name) {
   rig.tell('unknot');
 }
 
-/** From a phone's to a desktop's width, with each panel and dialog open: STOP is not covered, and nothing overflows. */
+/** Checks, with each panel and dialog open at this page size, that STOP is not covered and nothing overflows. */
 async function fits(page, width, height) {
   for (const open of ['', 'change', 'help', 'record-dialog', 'hand-panel']) {
     await page.evaluate((id) => {
@@ -143,7 +143,7 @@ function inked() {
   return count;
 }
 
-/** A broken part reports that on the page or in the console record; the rest of the page works on. */
+/** Checks that the broken part reports its error and that the rest of the page still works. */
 async function tells(page, file) {
   if (CORE.includes(file)) return;
   await until(page, () => document.querySelector('.part-note:not([hidden])') || Object.keys(window.ligature?.troubles ?? {}).length);

@@ -6,7 +6,7 @@ import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
 
-// For slow shared machines; every wait is for a condition.
+// Longest wait for a condition; long, because shared machines can be slow.
 const PATIENCE_MS = Number(process.env.LIGATURE_PATIENCE_MS ?? 60_000);
 
 export function arguments_() {
@@ -78,7 +78,7 @@ export class Browser {
     return browser;
   }
 
-  /** Sets the size of later pages and of the sheet. */
+  /** Sets the size of later pages and of the reused page (sheet()). */
   async resize(width, height) {
     this.viewport = { width, height };
     await (await this.sheet()).setViewportSize(this.viewport);
@@ -91,7 +91,7 @@ export class Browser {
     return this.sheet_;
   }
 
-  /** Opens a page of ours; any console error is a failure. */
+  /** Opens a new page; any console error in it is a failure of the test. */
   async open(url) {
     const page = await this.context.newPage();
     page.setDefaultTimeout(PATIENCE_MS);

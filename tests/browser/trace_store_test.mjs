@@ -28,8 +28,8 @@ test('a hole in the ticks is a hole in the line', () => {
   const store = new TraceStore();
   store.addRows(rows(0, 100));
   store.addRows(rows(200, 100));
-  assert.ok(store.series(0, 300, 400, [C.left])[1].includes(null)); // every tick
-  assert.ok(store.series(0, 300, 30, [C.left])[1].includes(null)); // decimated
+  assert.ok(store.series(0, 300, 400, [C.left])[1].includes(null)); // one point per tick; null: ticks 100 to 199
+  assert.ok(store.series(0, 300, 30, [C.left])[1].includes(null)); // ten ticks per point
 });
 
 test('bins stand in for ticks that are gone, and only for those', () => {
@@ -126,12 +126,12 @@ test('knots have the names that people give them, in the words of the recogniser
 test('a slow computer is told apart from a silent rig and a silent host', () => {
   const live = { isReplay: false };
   assert.deepEqual(judgeAge(30, 0, 5, live), { text: '', isOld: false, isSlow: false });
-  for (const age_ms of [130, 250, 400]) { // two to four pictures per second, with a healthy rig
-    assert.equal(judgeAge(age_ms, 0, 5, live).isOld, true); // a fast page with an old picture: the rig is late
+  for (const age_ms of [130, 250, 400]) { // ages of the data on a page that draws two to four pictures per second
+    assert.equal(judgeAge(age_ms, 0, 5, live).isOld, true); // the page's own lag is 5 ms, so the data come late
     const slow = judgeAge(age_ms, 0, 400, live);
     assert.deepEqual([slow.isOld, slow.isSlow], [false, true]);
   }
-  // With any delay of the page, another second of delay is the rig's or the host's.
+  // Whatever the page's own lag, data or host messages older than a second are reported.
   for (const lag_ms of [0, 400, 5000, 1e9]) {
     assert.match(judgeAge(1200, 0, lag_ms, live).text, lag_ms < 1000 ? /^Old picture/ : /Old picture/);
     assert.match(judgeAge(30, 1200, lag_ms, live).text, /^No word from the host/);

@@ -1,4 +1,4 @@
-// CAN frames from a hand's bus: every decoder, and the cyclic reader.
+// Fuzz target: CAN frames from a hand's bus, for every decoder and for HandLink, which reads the bus in each tick.
 #include <algorithm>
 #include <cstring>
 #include <deque>

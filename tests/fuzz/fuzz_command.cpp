@@ -1,4 +1,4 @@
-// Commands from the network through the firmware's decoder.
+// Fuzz target: command messages from the network, for the firmware's decoder.
 #include <span>
 
 #include "firmware/telemetry/messages.hpp"

@@ -1,4 +1,5 @@
-// Flight recorder files. Half of the inputs get a valid header CRC, which random mutations would never have.
+// Fuzz target: flight recorder files. Half of the inputs get a valid header CRC, which random mutations would never
+// have.
 #include <cstring>
 
 #include "host/errors.hpp"

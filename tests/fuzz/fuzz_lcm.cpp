@@ -1,4 +1,4 @@
-// LCM messages from the network through the host's decoders. The first byte selects the type.
+// Fuzz target: LCM messages from the network, for the host's decoders. The first byte selects the message type.
 #include <span>
 
 #include "host/messages.hpp"

@@ -1,4 +1,4 @@
-// LCM logs: framing, damaged files, and decoding of every message in them.
+// Fuzz target: LCM log files, intact and damaged, and the decoding of every message in them.
 #include "host/errors.hpp"
 #include "host/log_reader.hpp"
 #include "tests/fuzz/target.hpp"

@@ -1,4 +1,4 @@
-// Scene files: every scene that is accepted is built and stepped, and its state stays finite or is reported as not
+// Fuzz target: scene files. Every accepted scene is built and stepped; its state must stay finite or be reported as not
 // finite.
 #include <array>
 #include <cmath>
@@ -15,7 +15,8 @@ using ligature::physics::Simulation;
 using ligature::physics::ToolInput;
 using ligature::physics::Vec3;
 
-/// Largest nodes x substeps that is stepped here; in use, the limits of the rehearsal process end slower scenes.
+/// Largest nodes x substeps that is stepped here. The firmware rejects slower scenes: it tries each in a child process
+/// (the rehearsal) that has a time limit.
 constexpr int kMostWork = 20'000;
 
 void require(bool good, const char* what) {

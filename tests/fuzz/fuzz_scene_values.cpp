@@ -1,5 +1,5 @@
-// Scenes with extreme values for their keys. Every scene that is accepted is built or rejected; a built one is stepped,
-// and its state stays finite or is reported as not finite.
+// Scenes with extreme values for their keys. Every scene that the reader accepts is built or rejected; a built one is
+// stepped, and its state must stay finite or be reported as not finite.
 //   fuzz_scene_values [TRIALS [SEED]]     the same SEED gives the same scenes; exit code 0 and counts if all held
 #include <cmath>
 #include <cstdio>
@@ -166,7 +166,7 @@ bool ticks(Simulation& thread, const std::vector<std::string>& scene) {
       if (!p.allFinite()) fail(scene, "a node that is no number");
     for (const auto hand : {ligature::physics::Hand::kLeft, ligature::physics::Hand::kRight})
       if (!thread.hand(hand).f_W.allFinite()) fail(scene, "a force that is no number");
-    if (!thread.diagnostics().finite) return false;  // reported; the rehearsal rejects such a scene
+    if (!thread.diagnostics().finite) return false;  // reported; the firmware rejects such a scene in a trial run
   }
   return true;
 }
@@ -179,7 +179,7 @@ int main(int argc, char** argv) {
   std::printf("seed %llu, LIGATURE_TEST_SEED=%llu\n", static_cast<unsigned long long>(seed),
               static_cast<unsigned long long>(ligature::test::seed_shift()));
   std::fflush(stdout);
-  constexpr int kMostWork = 20'000;  // nodes x substeps; the rehearsal's limits end slower scenes
+  constexpr int kMostWork = 20'000;  // nodes x substeps; the firmware's trial run rejects slower scenes
   Wild wild(seed);
   const ligature::fuzz::MemoryFile empty(reinterpret_cast<const std::uint8_t*>("[suture]\n"), 9);
   int taken = 0, built = 0, finite = 0;

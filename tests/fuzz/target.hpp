@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 namespace ligature::fuzz {
 
-/// Valid inputs, defined by each target.
+/// Valid inputs from which mutations start; each target defines its own.
 [[nodiscard]] std::vector<std::string> seeds();
 
 /// Bytes as an in-memory file (memfd), for readers that take a path.

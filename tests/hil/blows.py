@@ -37,7 +37,7 @@ class Blows(Scenario):
 
     @staticmethod
     def sync_of(rows, frames, tick, interface):
-        """Position of a tick's SYNC among the frames of an interface that carried all of them."""
+        """Index in `frames` of a tick's SYNC on an interface; every executed tick must have sent one there."""
         executed = [r["tick"] for r in rows if not r["flags"] & LOST]
         return [i for i, f in enumerate(frames) if f[0] == interface and f[1] == 0x080][executed.index(tick)]
 
@@ -46,7 +46,7 @@ class Blows(Scenario):
         return next(i for i, f in enumerate(frames) if f[1] == identifier and (data is None or f[2] == data))
 
     def torque_on_the_wire(self, rows, frames, first_tick):
-        """Target torques of all RPDOs from a tick on."""
+        """Target torques of all RPDOs that were sent from tick `first_tick` on."""
         executed = [r["tick"] for r in rows if not r["flags"] & LOST]
         syncs, seen = 0, []
         for _, identifier, data in frames:
@@ -57,7 +57,7 @@ class Blows(Scenario):
 
     def ends_in(self, faults, rows, left, right, at, within, besides=""):
         """Expects one of `faults` within the ticks `within` after `at`, and from then on no torque of either hand in
-        any record or frame. `besides`: what extends `within` in this run."""
+        any record or frame. `besides`: text for the page's row: why the reaction may take longer in this run."""
         before = rows[at - 2]
         self.assertEqual((before["state"], pushes(before)), (FORCE, True), "the blow must find the rig in force")
         first = next(r for r in rows if r["fault"] != 0)
@@ -82,7 +82,7 @@ class FirstBlows:
         rows, left, right = self.read("hand-killed")
         last = max(i for i, f in enumerate(left) if 0x181 <= f[1] <= 0x183)
         at = self.tick_before(rows, left, last)
-        # Killing a process takes the only CPU for some periods.
+        # While the kernel kills the process, the guest's only CPU is busy, and the controller loses some periods.
         lost = sum(r["flags"] & LOST != 0 for r in rows[at:at + WATCHDOG_TICKS])
         self.ends_in((11,), rows, left, right, at, range(WATCHDOG_TICKS - 1, WATCHDOG_TICKS + lost + 1),
                      " and the periods that killing costs the one CPU")

@@ -51,7 +51,7 @@ def fetch(cache):
     archive.unlink()
     unpack(next((folder / "boot").glob("vmlinuz-*")), folder / "vmlinux")
     unpack_modules(folder)
-    needed = set(modules(folder, MODULES + OF_A_DISK))  # a small part of 400 MB
+    needed = set(modules(folder, MODULES + OF_A_DISK))  # all modules together have 400 MB
     for module in folder.rglob("*.ko"):
         if module not in needed:
             module.unlink()

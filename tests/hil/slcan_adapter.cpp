@@ -116,7 +116,7 @@ class Adapter {
 
   void heard() {
     can_frame frame;
-    if (line_ == "O") is_off_ = false;  // interface reopened: the controller has been reset
+    if (line_ == "O") is_off_ = false;  // the driver reopens the interface, which resets the controller
     if (is_off_ || !to_frame(line_, frame)) return;
     if (write(wire_, &frame, sizeof frame) != sizeof frame) std::perror("write to the wire");
   }

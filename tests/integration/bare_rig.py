@@ -20,7 +20,7 @@ def pause(seconds):
 
 
 class BareRig(unittest.TestCase):
-    """Ends every process that a test has started."""
+    """Base class of tests: starts the processes, and ends them all after each test."""
 
     def setUp(self):
         self.path = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="bare-")))

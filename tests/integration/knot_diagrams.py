@@ -1,5 +1,5 @@
-"""Knots given by planar diagrams and drawn in space, as known knots from an independent source, and published hard
-unknots.
+"""Known knots from the literature as input for knot recognition: planar diagrams, drawn as polygons in space; among
+them published diagrams of the unknot that are hard to recognise.
 
 A diagram is a list of crossings in PD code: the labels of a crossing's four edges, counter-clockwise from the incoming
 under one."""
@@ -25,8 +25,8 @@ HARD_UNKNOTS = {
 
 
 def strands(diagram):
-    """@returns the edges in the order of the walk, and for each end (crossing, place) the edge's other end and its
-    label."""
+    """@returns the edges in the order of a walk along the knot; and for each end of an edge, given as (crossing,
+    place), the edge's other end and its label."""
     ends = {}
     for crossing, labels in enumerate(diagram):
         for place, label in enumerate(labels):
@@ -44,7 +44,7 @@ def strands(diagram):
 
 
 def faces_of(diagram, across, path):
-    """The corners of each face, in the order in which the face lies to the left."""
+    """For each face its corners, in the order of a walk round it with the face on the left."""
     faces, seen = [], set()
     for start in ((c, k) for c in range(len(diagram)) for k in range(4)):
         face, at = [], start
@@ -61,8 +61,8 @@ def faces_of(diagram, across, path):
 
 def drawn(diagram, outer=0):
     """The diagram as a closed polygon: a Tutte drawing of its graph, with over strands raised and under strands
-    lowered. Every edge has two bends and every face but the outer one a hub, so that the graph is simple and the
-    drawing has no fold [Tutte 1963]."""
+    lowered. Two extra vertices on every edge (bends) and one inside every face but the outer one (hub) make the graph
+    simple, so that the drawing has no fold [Tutte 1963]."""
     walk, across = strands(diagram)
     path = {}
     for a, b, label in walk:

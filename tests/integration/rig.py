@@ -51,7 +51,8 @@ class Listener(threading.Thread):
         while not self.stop:
             try:
                 self._lcm.handle_timeout(100)
-            # Invalid data that a test sends; a lost batch of the firmware would show as a gap.
+            # Tests also send invalid data, which is ignored here. If a batch of the firmware were lost, tick numbers
+            # would be missing.
             except (ValueError, struct.error):
                 pass
 
@@ -63,8 +64,8 @@ class Rig:
 
     def __init__(self, operator="scenes/operators/overhand.csv", scene="scenes/paper.toml", watchdog_ms=1000, record=False, extra=(),
                  prefix=(), flight=None):
-        """@param prefix start of the firmware's command line; flight: file of its flight recorder, by default this
-        rig's own."""
+        """@param prefix command that starts the firmware, e.g. ("taskset", "-c", "1"). @param flight file of the flight
+        recorder, by default in the rig's folder."""
         self.folder = self.folder_of_its_own()
         self.path = pathlib.Path(self.folder.name)
         self.prefix, self.flight = list(prefix), flight or self.path / "flight.rec"
@@ -99,8 +100,9 @@ class Rig:
                    "--operator", self.operator, "--stats", self.path / f"{hand}.json")
 
     def start_firmware(self):
-        # Each lost period costs energy before a hand has supplied any (docs/haptics.md). Without initial credit, a
-        # machine that loses many periods would never push both hands at once, as these tests require.
+        # A hand's energy account is debited for each lost period, even if the hand has not supplied any energy yet.
+        # These tests need force on both hands at once; without the initial credit of 0.02 J, a machine that loses many
+        # periods would never get there.
         self.start("firmware", "ligature-firmware", "run", "--scene", self.scene, "--left", self.bus["left"],
                    "--right", self.bus["right"], "--arm", "--watchdog-ms", self.watchdog_ms, "--recorder", self.flight, "--set", "hands.energy_credit_J=0.02", *self.extra,
                    *os.environ.get("LIGATURE_RIG_ARGS", "").split(), prefix=self.prefix)
@@ -135,7 +137,8 @@ class Rig:
         return (self.path / f"{name}.log").read_text()
 
     def device_stats(self, hand):
-        """Ends a device and reads its statistics; their torque is from before it was switched off."""
+        """Ends a device and reads its statistics. The torque in them is the last one before the drives were switched
+        off."""
         self.end(hand)
         return json.loads((self.path / f"{hand}.json").read_text())
 

@@ -58,8 +58,8 @@ class BadInput(unittest.TestCase):
         self.assertFalse((self.path / "out").exists(), "a refused run left something behind")
 
     def test_a_coupling_that_the_device_cannot_render(self):
-        """Limit: (b + B) / (T / 2 + delay) = (0.3 + 0.36) / 1.5 ms = 440 N/m; requested: 9000 N/m x scales 0.06 = 540
-        N/m."""
+        """Largest passive stiffness at the device: (device damping + coupling damping) / (half a period + delay) = (0.3
+        + 0.36) N s/m / 1.5 ms = 440 N/m. Requested: 9000 N/m times the scales, 0.06, = 540 N/m."""
         rig = ("ligature-firmware", "run", "--scene", ROOT / "scenes/paper.toml", "--left", f"local:{self.path}/l", "--right",
                f"local:{self.path}/r", "--set", "hands.coupling_N_per_m=9000")
         self.refused(run(*rig), "hands.coupling_N_per_m", "540 N/m", "440 N/m", "--override-passivity")

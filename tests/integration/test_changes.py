@@ -36,7 +36,7 @@ class Changes(unittest.TestCase):
             self.assertEqual((code, said), (0, f"load-scene accepted: scene desk.toml loaded{held}\n"))
             rig.wait_for(lambda r: r.listener.status.scene_file.endswith("desk.toml"), "the new scene's name")
             self.assertEqual(rig.listener.status.max_force_N, 2.5)
-            # Keys that can be changed only with a scene.
+            # The thread model and the number of nodes can only be changed by loading a scene.
             code, said = send("load-scene", "paper.toml suture.model=paper-2 suture.nodes=35")
             self.assertEqual((code, said), (0, f"load-scene accepted: scene paper.toml loaded with suture.model=paper-2 suture.nodes=35{held}\n"))
             rig.wait_for(lambda r: "suture.model=paper-2" in r.listener.status.scene_toml, "the model in the scene's text")

@@ -110,7 +110,7 @@ class EveryField(unittest.TestCase):
         cls.status = fill(status_t(), "status_t", numbers, {})
         cls.status.session, cls.status.period_s, cls.status.max_force_N = SESSION, 0.004, 2.75
         for i, tick in enumerate(cls.ticks):
-            tick.tick = 40 + i  # columns are in the order of one session's ticks
+            tick.tick = 40 + i  # exports are sorted by tick number
         batch = tick_batch_t()
         batch.session, batch.count, batch.ticks = SESSION, TICKS, cls.ticks
         log = lcm.EventLog(str(cls.folder / "a.lcmlog"), "w", overwrite=True)

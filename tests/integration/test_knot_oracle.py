@@ -88,7 +88,7 @@ class Oracle(unittest.TestCase):
 
     def test_a_drawn_diagram_is_its_knot(self):
         rolfsen_7_6 = [(1, 4, 2, 5), (3, 8, 4, 9), (5, 12, 6, 13), (9, 1, 10, 14), (13, 11, 14, 10), (11, 6, 12, 7), (7, 2, 8, 3)]
-        # The diagram's writhe is -3.
+        # A sum of crossing signs (writhe) of -3: left-handed.
         self.assertEqual(name(diagrams.drawn(rolfsen_7_6), True, self.folder), ("7_6", "left"))
 
     def test_random_polygons_are_what_topoly_calls_them_or_unknown(self):

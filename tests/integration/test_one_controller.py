@@ -1,7 +1,7 @@
 """A bus has one controller. When two start at the same time as real processes, at most one runs, undisturbed; a refused
-one ends with exit code 3 and one line. On one machine a claim before the first frame decides. Two network namespaces
-stand for two machines on one cable: they share no claim, only the bus, on which each controller listens for the other.
-"""
+one ends with exit code 3 and one line. On one machine a lock decides, which a controller takes before its first frame.
+Two network namespaces stand for two machines on one cable: the lock does not reach across them, so each controller
+listens on the bus for the other."""
 
 import random
 import unittest

@@ -33,7 +33,7 @@ class Sender(threading.Thread):
             self.state = state
 
     def take(self):
-        """Starts a holding: takes the hand with a new owner id."""
+        """Takes control of the hand: the next messages have a new owner id and are numbered from 1."""
         self.session, self.owner, self.sequence = self.state.session, random.getrandbits(62) + 1, 0
 
     def wish(self, **other):
@@ -115,7 +115,8 @@ class PageHand(unittest.TestCase):
         self.ticks_pass(50)
 
     def presses_until_force(self):
-        """Presses the dead-man until the drives push, again if this process was too slow and the hand let go."""
+        """Presses the dead-man until the drives push. Presses again if this process was too slow, so that the device
+        took its silence for a release."""
         for _ in range(50):
             self.say_all(dead_man=1)
             from_tick = self.tick().tick
@@ -141,7 +142,7 @@ class PageHand(unittest.TestCase):
             self.assertFalse([t.tick for t in late], f"torque long after the dead-man, let go in {released}: {self.edges()}")
             let_go.append(max([t.tick for t in ticks if any(t.torque_permille[LEFT])], default=released) - released)
             del self.rig.listener.ticks[:-1000]
-            self.say_all(talks=True)  # a dead-man held all along must not count again by itself
+            self.say_all(talks=True)  # messages resume, with the dead-man pressed all along: no new press
             self.assertFalse(self.tick().dead_man[LEFT], f"pressed again by nobody: {self.edges()}")
             self.say_all(dead_man=0)
         self.assertEqual(self.tick().fault, 0, "no fault did it")

@@ -44,7 +44,7 @@ def pushes(rig):
 
 
 def is_armed(rig):
-    """Force comes later, when the operator's motion allows it."""
+    """Whether the rig is armed. Its state is ENGAGE until the operator's motion allows force, then FORCE."""
     return rig.state_is(STATE_ENGAGE) or rig.state_is(STATE_FORCE)
 
 
@@ -59,8 +59,8 @@ class InForce(unittest.TestCase):
         return rig
 
     def carries_on(self, rig, ticks=300):
-        """No fault so many ticks later, and in force: at that moment, or again, where this machine held a hand up for so
-        long that its next position looked too fast and the rig braked, which is no fault and ends by itself."""
+        """Expects no fault within so many ticks, and force afterwards. Force may take a while: if this machine delays a
+        hand's process for long, its next position looks too fast, and the rig brakes for a moment, without a fault."""
         seen = rig.listener.ticks[-1].tick
         rig.wait_for(lambda r: r.listener.ticks[-1].tick > seen + ticks, "more ticks")
         self.assertEqual([t.fault for t in rig.listener.ticks if t.fault], [])
@@ -79,7 +79,7 @@ class InForce(unittest.TestCase):
         self.assertFalse(any(any(hand) for t in faulted if not t.flags & FLAG_PERIOD_LOST for hand in t.torque_permille))
 
     def every_tick(self, rig):
-        """After the run: the flight recorder has all ticks, in order."""
+        """Ends the run and checks that the flight recorder has all ticks, in order."""
         rig.end("firmware")
         ticks = rig.path / "ticks.csv"
         self.assertEqual(run("ligature-host", "export", rig.flight, "--ticks", ticks).returncode, 0)
@@ -133,7 +133,7 @@ class Network(InForce):
         command = command_t()
         for i in range(20_000):
             command.id, command.kind = i, command_t.KIND_ARM
-            # As from a recording, or only requesting a challenge.
+            # Odd i: session and challenge of another run, as in a recording. Even i: a request for a challenge.
             command.session, command.challenge = (17, i) if i % 2 else (0, 0)
             link.publish("LIGATURE_COMMAND", command.encode())
         self.carries_on(rig)

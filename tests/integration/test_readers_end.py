@@ -1,4 +1,5 @@
-"""Programs that read a recording end: at the end of the data, whatever size the file claims, and on a signal.
+"""Programs that read a recording must end: at the end of the data, whatever size the file header claims, and on a
+signal.
 
 Every wait is for a condition, with a limit that only ends a hang."""
 

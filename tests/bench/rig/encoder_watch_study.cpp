@@ -25,8 +25,8 @@ void count(double most, Hits& hits) {
   for (std::size_t i = 0; i < kScales.size(); ++i) hits[i] += most >= kScales[i];
 }
 
-/// Number of 5 s runs of a healthy hand that would raise an alarm: per threshold for a reversed axis, and for a frozen
-/// one.
+/// Number of 5 s runs of a healthy hand that raise a false alarm: "axis reversed" (for each threshold), and "axis
+/// frozen".
 struct Honest {
   Hits reversed{};
   int frozen = 0, runs = 0;

@@ -1,5 +1,5 @@
-// Tests the passivity bounds of docs/passivity.md with randomly drawn and with optimised attacks; prints that page's
-// tables.
+// Attacks the passivity controller with hand motions and frame losses, drawn at random or optimised, and checks the
+// bounds on the account's error and on the energy that the motors give (docs/passivity.md). Prints that page's tables.
 // Usage: passivity_study [draws = 10000] [optimised attacks = 200] [optimiser steps = 1000] [first seed = 1]
 // Exit code 3 when a bound was broken.
 #include <algorithm>
@@ -69,8 +69,8 @@ bool draw(int draws, test::Random& random) {
   return sound;
 }
 
-/// Optimises attacks, one third each for: the least work, the account's excess over the work, the account's lower
-/// bound.
+/// Optimises attacks. One third each of them seeks: the most energy from the motors, the largest excess of the account
+/// over the true work, and the largest violation of the account's lower bound.
 bool climb_all(int hands, int steps, test::Random& random) {
   bool sound = true;
   std::printf("\n");

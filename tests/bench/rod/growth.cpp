@@ -1,6 +1,6 @@
 // Cost of a tick by number of nodes, for an equally spaced 0.3 mm suture: swinging from level, held at one end, without
 // and with contact, and drawn along by both hands at 1 m/s. Prints per tick: thread CPU time and, for the last two,
-// contact work (rod/work.hpp), pairs on the contact list, and lists built.
+// contact work in instructions (rod/work.hpp), pairs on the contact list, and how often that list was built.
 //
 // Usage: rod_growth [nodes ...]   (default 50 100 200 256 512 1024 2000)
 // For instruction counts: valgrind --tool=callgrind --toggle-collect='*Rod::tick*' rod_growth 1024

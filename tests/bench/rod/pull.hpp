@@ -36,7 +36,7 @@ struct PullResult {
   double pull_lost = 0.0, hold_lost = 0.0, after_lost = 0.0;
   double strain = 0.0, tension_N = 0.0;    ///< measured in the hold
   double turn_rad = 0.0, segment_d = 0.0;  ///< sharpest turn and longest segment in contact, measured in the hold
-  double chatter = 0.0, sliding = 0.0;     ///< see chatter.hpp: measured in the hold, and during the pull
+  double chatter = 0.0, sliding = 0.0;     ///< chatter of the force (chatter.hpp) in the hold, during the pull
   std::vector<Tick> ticks;
 
   [[nodiscard]] bool kept() const { return left.type == begun.type && left.handedness == begun.handedness; }
@@ -51,11 +51,11 @@ class Puller {
   [[nodiscard]] double force() const;
   [[nodiscard]] std::vector<std::array<double, 3>> points() const;
   void save(const std::string& name) const;
-  /// Ends after `seconds`, or earlier: with until_N > 0 when the force exceeds it, with until_N < 0 when it falls below
-  /// -until_N.
+  /// Moves `hands` hands apart at `speed` each, m/s, for `seconds`. Ends earlier if until_N > 0 and the force exceeds
+  /// it, or if until_N < 0 and the force falls below -until_N.
   void phase(double seconds, double speed, int hands, double until_N);
   void tick();
-  /// Share of time lost since the previous call.
+  /// Share of the ticks' time in which the thread was not moved, since the previous call.
   [[nodiscard]] double lost();
   /// Largest turn at a node in contact, rad, and longest segment in contact, in diameters.
   [[nodiscard]] std::pair<double, double> sharpness() const;
@@ -67,7 +67,7 @@ class Puller {
   std::vector<Tick> ticks_;
   std::vector<double> forces_;
   double penetration_ = 0.0, lost_ = 0.0;
-  std::size_t lost_from_ = 0;  // tick from which lost() counts
+  std::size_t lost_from_ = 0;  // first tick that the next call of lost() evaluates
   int guard_ = 0;
 };
 

@@ -50,7 +50,7 @@ struct Disturbances {
   }
 };
 
-/// One tick: its time, and what it computed, which is the same in every repetition.
+/// One tick: its time, and what it computed, which is equal in every repetition.
 struct Tick {
   double us = 0.0;
   long work = 0;            ///< spent on contact (rod/work.hpp), instructions

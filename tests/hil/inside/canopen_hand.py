@@ -57,7 +57,7 @@ class Hand:
         self.socket = socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
         self.socket.bind(("vcan0",))
         nothing = [{"can_id": 0x7FF, "can_mask": 0x7FF}]
-        # Only sends; frames are received below.
+        # canopen uses this bus only to send (the filter lets nothing in); all frames are received through self.socket.
         self.network = canopen.Network(can.Bus("vcan0", interface="socketcan", can_filters=nothing))
         self.drives = [Drive(self.network, n) for n in NODES]
         self.syncs, self.heartbeats, self.maps = 0, 0, {}

@@ -7,7 +7,7 @@ ip link set can1 up type can bitrate 1000000 sample-point 0.8
 
 chosen=$*  # names of the faults to run; empty: all
 right=vcan1
-also=      # an additional interface to record
+also=      # further interface whose frames are recorded; empty: none
 # run NAME LEFT-INTERFACE-OF-THE-FIRMWARE LEFT-INTERFACE-OF-THE-HAND COMMAND...
 run() {
   local name=$1 ours=$2 theirs=$3
@@ -43,9 +43,9 @@ pulled_and_back() {
   by_order
 }
 by_order() {
-  sleep 0.5                                                      # it must stay in the fault
+  sleep 0.5                                                      # the controller must stay in state FAULT
   "$LIGATURE_BIN/ligature-host" send reset-fault > /run/send.log 2>&1
-  sleep 0.5                                                      # enabled again, not armed
+  sleep 0.5                                                      # drives enabled again, no force allowed yet
   "$LIGATURE_BIN/ligature-host" send arm >> /run/send.log 2>&1
   sleep 0.8
 }

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Ten seconds of the overhand script, with both hands on vcan.
+# Ten seconds of the script in which the hands tie an overhand knot; both hands are on virtual CAN buses (vcan).
 . tests/hil/inside/rig.sh
 warm chrt
 hand left vcan0; hand right vcan1
