@@ -23,7 +23,8 @@ class Launch {
   /// that a command can set is hands.force_scale, and highest() bounds it.
   [[nodiscard]] std::vector<std::string> with(const std::vector<std::string>& live) const;
 
-  /// As above; also lowers the force limit to that of the scene in `file` if it is lower than the launch's.
+  /// Overrides for a scene that a command loads, read from `file`: as above, and the force limit is the lower one of
+  /// the launch's and the scene's.
   [[nodiscard]] std::vector<std::string> with(const std::vector<std::string>& live, const std::string& file,
                                               const std::string& text) const;
 

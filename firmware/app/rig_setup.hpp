@@ -28,7 +28,7 @@ struct Plan {
   std::string toml;  ///< the scene's text with the overrides as comments, stored in recordings
 };
 [[nodiscard]] std::variant<Plan, Refusal> make_plan(const RunOptions& options);
-/// The same for a scene whose text was already read from `file`. The exit code in a Refusal is not used then.
+/// As make_plan(), for a scene whose text was already read from `file`. The exit code of a Refusal has no meaning here.
 [[nodiscard]] std::variant<Plan, Refusal> plan_of(const std::string& file, const std::string& text,
                                                   const std::vector<std::string>& overrides,
                                                   const device::Device& device = device::omni());

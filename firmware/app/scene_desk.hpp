@@ -34,8 +34,8 @@ struct Changed {
 /// Used from the telemetry thread; it builds in another thread, one change at a time. The scene file is read once. A
 /// child process builds it and rehearses it: the state must stay finite and, with --no-loss and without --force, its
 /// knot must lose no time. Only then is it built in this process and handed over. None of this runs on the loop's core
-/// or at its priority. The loop checks the rig's state once more before it accepts. Plants that the loop gives back are
-/// destroyed here.
+/// or at its priority. The loop checks the rig's state once more before it accepts. Simulations that the loop gives
+/// back are destroyed here.
 class SceneDesk {
  public:
   /// @param plan of the start, as it will be run

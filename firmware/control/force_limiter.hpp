@@ -11,7 +11,8 @@
 
 namespace ligature::control {
 
-/// Largest force that the joints allow in the wish's direction, N.
+/// Largest forces, in the direction of the requested force, for which the joint torques stay allowed, N: in any pose by
+/// the peak force, and in the present pose by the windings' heat.
 struct MostByJoints {
   double in_any_pose_N = std::numeric_limits<double>::infinity();
   double by_heat_N = std::numeric_limits<double>::infinity();

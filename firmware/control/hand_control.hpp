@@ -27,7 +27,7 @@ struct HandState {
   JointAngles q_rad{};
   Vec3 p_WT = Vec3::Zero();
   Vec3 v_WT = Vec3::Zero();
-  Vec3 f_wish_N = Vec3::Zero();    // at the device: the coupling's force
+  Vec3 f_wish_N = Vec3::Zero();    ///< at the device: the force that the coupling asks for
   Vec3 f_device_N = Vec3::Zero();  ///< after gain, limits and passivity, as made by the torques sent
   double gain = 0.0;
   double port_energy_J = 0.0, dissipated_J = 0.0, injected_N_s_per_m = 0.0, heat = 0.0;

@@ -18,7 +18,8 @@ struct Acted {
   static constexpr double kNotTold = std::numeric_limits<double>::quiet_NaN();
   Vec3 torque_Nm{kNotTold, kNotTold, kNotTold};  ///< torque made, by joint; NaN if the message has none
   std::array<bool, 3> limited{};                 ///< the drive made less torque than commanded
-  /// SYNCs since the last new RPDO, from a drive whose message reports no torque
+  /// For how many SYNCs the drive has repeated an older torque because RPDOs were lost, as the drive counts them; 0:
+  /// none. Used for drives whose message has no torque.
   std::array<int, 3> held{};
 };
 
@@ -238,7 +239,7 @@ class Passivity {
   Vec3 q_rad_ = Vec3::Zero();                            // at the last sample, interpolated between counts
   Vec3 p_m_ = Vec3::Zero(), step_m_ = Vec3::Zero();      // step: motion in the period before the last sample
   Vec3 low_Nm_ = Vec3::Zero(), high_Nm_ = Vec3::Zero();  // range of torques that acted in that period
-  std::array<bool, 3> guarded_{};                        // joints whose drive limited its torque then
+  std::array<bool, 3> guarded_{};                        // joints whose drive limited its torque in that period
   SentTorques sent_;
   Box under_way_;                                 // torques that may act until the next SYNC
   double under_way_J_ = 0.0, under_way_N_ = 0.0;  // their largest loss and largest force

@@ -31,7 +31,7 @@ struct ThreadRequest {
 /// A request that the physics has answered.
 struct ThreadStep {
   std::int64_t tick = -1;
-  int cut_at = -1;  ///< see physics::Diagnostics
+  int cut_at = -1;  ///< number of the clock query that ended the physics tick early; -1: it ended regularly
 };
 
 /// Result of the newest answered request.

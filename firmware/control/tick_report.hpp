@@ -13,7 +13,7 @@ namespace ligature::control {
   return {contact.node >= 0, contact.p_WG, contact.v_WG};
 }
 
-/// Copies the state of controller and thread into the record; the cycle itself fills in times, tick and torques.
+/// Copy the state of controller, hands and thread into the record; PeriodLog fills in times, tick and torques.
 void report(const Controller& controller, rt::TickRecord& record) noexcept;
 void report(const HandState& hand, std::size_t number, rt::TickRecord& record) noexcept;
 void report(const ThreadOrders& orders, rt::TickRecord& record) noexcept;
@@ -23,7 +23,7 @@ void report(const physics::HandContact& contact, std::size_t hand, rt::TickRecor
 
 /// Node positions, up to the snapshot's capacity.
 void report(std::span<const physics::Vec3> nodes_W, const ThreadResult& thread, rt::ThreadSnapshot& snapshot) noexcept;
-/// Node positions, tension and turn.
+/// Node positions, tension and twist angle.
 void report(const physics::Simulation& thread, const ThreadResult& result, rt::ThreadSnapshot& snapshot) noexcept;
 
 }  // namespace ligature::control

@@ -4,7 +4,7 @@
 
 namespace ligature::physics {
 
-/// Rate of the bend angle, rad/s: the bracket of (10) and (11) up to sign,
+/// Rate of the bend angle, rad/s: the bracket of the paper's equations (10) and (11) up to sign,
 ///   alpha' = grad_{i-1} . (v_{i-1} - v_i) + grad_{i+1} . (v_{i+1} - v_i)
 template <class S>
 S bend_rate(const V3<S>& grad_left, const V3<S>& grad_right, const V3<S>& v_left, const V3<S>& v_middle,

@@ -35,7 +35,7 @@ struct Candidate {
   int first = 0;           ///< segment (desk: node)
   int second = 0;          ///< segment, or index of the obstacle
   double gap_m = 0.0;      ///< surface gap when last measured
-  double travel_m = 0.0;   ///< ContactSolver::travel_m_ when last measured
+  double travel_m = 0.0;   ///< value of ContactSolver::travel_m_ (motion so far) when last measured
   std::int64_t step = -1;  ///< step in which it was last measured
   V3<double> normal{};     ///< unit, when last measured
   Pack impulse{};          ///< of the last step, N s: the warm start
@@ -101,7 +101,7 @@ class ContactSolver {
   std::vector<NodeVelocity> velocity_;  ///< of all nodes, and of an immobile one for desk and obstacles
   double travel_m_ = 0.0;               ///< upper bound of how much any gap has closed since the start
   double found_at_m_ = 0.0;             ///< travel_m_ when candidates were last found
-  double margin_m_ = -1.0;  ///< then all pairs with a smaller gap were candidates; < 0: a new search is needed
+  double margin_m_ = -1.0;  ///< gap below which all pairs became candidates in that search; < 0: search again
   std::int64_t step_ = 0;
   ContactReport report_;
 };

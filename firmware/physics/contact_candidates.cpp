@@ -3,7 +3,8 @@
 
 #include "firmware/physics/contact.hpp"
 
-// Search for candidates. It is repeated only when the motion since the last search may have used up its margin.
+// Search for candidates: pairs of bodies that may touch soon. It is repeated only when the motion since the last search
+// may have used up its margin.
 
 namespace ligature::physics {
 namespace {
@@ -85,7 +86,8 @@ void ContactSolver::find_candidates(const ThreadState& s) noexcept {
   found_at_m_ = travel_m_;
 }
 
-/// Copies due time and gap of all candidates into lanes, for the test of four at a time in make_rows().
+/// Copies due_m_ (the motion up to which a candidate cannot touch) and gap of all candidates into arrays, so that
+/// make_rows() can test four at a time.
 void ContactSolver::index_candidates() noexcept {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const int count = static_cast<int>(candidates_.size());

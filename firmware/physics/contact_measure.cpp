@@ -1,7 +1,7 @@
 #include "firmware/physics/closest_points.hpp"
 #include "firmware/physics/contact.hpp"
 
-// Narrow phase: gap, closest points and normal of a candidate.
+// Narrow phase: gap, closest points and normal of a candidate, that is a pair of bodies that may touch soon.
 
 namespace ligature::physics {
 namespace {

@@ -138,7 +138,8 @@ void PaperSimulation::publish_contacts() noexcept {
   }
 }
 
-/// Paper section IV: is the hand's force transmitted by springs only (A), or by a segment at a length limit (B, C)?
+/// Condition of the paper's section IV for a hand that holds `node`. A: only springs transmit its force. B: a
+/// neighbouring segment is at its length limit and transmits it. C: as B, and the other hand holds the thread too.
 Propagation PaperSimulation::condition(int node, bool other_holds) const noexcept {
   if (!has_limits_) return Propagation::kNone;
   const bool passes =

@@ -9,7 +9,8 @@ namespace ligature::physics {
 /// transmits the part ACROSS the segment and is not used (docs/physics.md).
 ///   Condition A: a segment strictly inside (l_min, l_max) has no constraint force; only its spring acts.
 ///   Condition B: a segment at a limit is rigid and transmits the axial force: tension at l_max, compression at l_min.
-///   Condition C: two hands are two loads of one tridiagonal system G M^-1 G^T lambda = violation.
+///   Condition C: both hands hold the thread; they are two loads of one tridiagonal system G M^-1 G^T lambda =
+///   violation (G: gradients of the lengths, lambda: constraint impulses).
 /// Newton iterations on the positions (each with new directions) keep every segment within its limits to kTolerance of
 /// its rest length after each step, for any load.
 class LengthLimits {

@@ -1,6 +1,6 @@
 #pragma once
-// Recognises frames that only a controller sends. Neither back end returns our own frames, so each such frame comes
-// from another controller.
+// Recognises frames that only a controller sends. The bus sockets do not return the frames that this program has sent,
+// so each such frame comes from another controller.
 
 #include "firmware/rt/rig_io.hpp"
 #include "protocol/can/cob_id.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-// The loop's clock.
+// The clock of the real-time loop and of the physics thread.
 
 #include <time.h>
 

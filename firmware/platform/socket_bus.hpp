@@ -1,6 +1,6 @@
 #pragma once
-// Both back ends (Unix socket, SocketCAN). They carry the same 16-byte frame images in packets, so one class serves
-// both.
+// CAN bus over a socket: a Unix socket to a simulated hand, or SocketCAN. Both carry the same 16-byte frame images in
+// packets, so one class serves both.
 
 #include <cstdint>
 #include <memory>
@@ -14,9 +14,9 @@
 
 namespace ligature::platform {
 
-/// A lost `local:` bus stays lost, because its peer is gone. A CAN interface may recover: after being down, with its
-/// first frame; after bus-off, when its driver reports a restart. Frames queued before that are dropped. Force does not
-/// return by itself, because losing the bus is a latched fault.
+/// A lost bus of a simulated hand (URL `local:`) stays lost, because its peer is gone. A CAN interface may recover:
+/// after being down, with its first frame; after bus-off, when its driver reports a restart. Frames queued before that
+/// are dropped. Force does not return by itself, because losing the bus is a latched fault.
 class SocketBus final : public CanBus {
  public:
   /// Takes ownership of the descriptor, which must be non-blocking.

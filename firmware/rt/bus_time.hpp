@@ -24,7 +24,7 @@ inline constexpr std::chrono::nanoseconds kMostWork = kPeriod - kSamplesLatest -
 class ThreadDeadline {
  public:
   static constexpr std::chrono::nanoseconds kMargin = std::chrono::microseconds(25);
-  /// Per period, by which the earliest time relaxes
+  /// Growth of the stored earliest time per period, so that old observations are forgotten
   static constexpr std::chrono::nanoseconds kForgets = std::chrono::nanoseconds(20);
 
   /// Records that the samples were complete this long after the wake-up.

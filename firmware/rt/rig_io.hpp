@@ -28,7 +28,8 @@ struct HandReading {
   /// Torque made in the period before the sample; kNotTold for a joint whose message has no torque.
   std::array<double, kJoints> torque_Nm{kNotTold, kNotTold, kNotTold};
   std::array<bool, kJoints> torque_limited{};  ///< the drive makes less torque than commanded
-  /// SYNCs beyond the first since the RPDO of that torque, for drives that report it
+  /// For how many SYNCs the drive has repeated an older torque because RPDOs were lost, as the drive counts them; 0:
+  /// none, or the drive does not report it.
   std::array<int, kJoints> torque_held{};
   bool grip = false;
   bool dead_man = false;
@@ -38,7 +39,7 @@ struct HandReading {
   bool drive_fault = false;          ///< a drive is in Fault, sent an emergency or fell out of NMT operational
   bool buttons_stuck = false;        ///< the button module's counter stands still
   bool torque_astray = false;        ///< a drive reports that its torque is neither the commanded one nor less
-  bool bus_lost = false;             ///< the bus is lost
+  bool bus_lost = false;             ///< the bus is not usable: interface down, bus-off, or peer gone
   Foreign foreign = Foreign::kNone;  ///< kind of the first frame from another controller in this run
   /// Share of the previous period in which this hand's bus was busy, stuff bits included
   float bus_load = 0.0F;

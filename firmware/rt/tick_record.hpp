@@ -73,7 +73,7 @@ struct TickRecord {
   std::array<bool, kHands> dead_man{};
   std::array<std::int16_t, kHands> tpdo_age_ticks{};
 
-  // The hand's device port.
+  // Each hand's device port: the tip, with its force and energy account.
   std::array<Triple, kHands> q_rad{};
   std::array<Triple, kHands> f_wish_N{};
   std::array<double, kHands> gain{};

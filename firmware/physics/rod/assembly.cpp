@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kSupportMass_kg = 1e6;  // large: under 1 N a support moves 1e-14 m per substep at most
 
-// Tangents e / l, units u and tensions EA (|e| / l - 1) of every segment.
+// For every segment e of rest length l: tangent e / l, unit vector e / |e|, and tension EA (|e| / l - 1).
 void measure(const Material& m, const State& state, Forces& f) noexcept {
   const Mesh& mesh = state.mesh;
   const std::size_t count = mesh.s.size() - 1;
@@ -35,10 +35,12 @@ void measure(const Material& m, const State& state, Forces& f) noexcept {
   }
 }
 
-// kappa b of a vertex [Bergou 2008]: 2 a x c / (1 + a . c) of unit tangents.
+// Curvature binormal kappa b of a vertex with unit tangents a before and c after it: 2 a x c / (1 + a . c)
+// [Bergou 2008].
 Vec binormal(Vec a, Vec c) noexcept { return 2.0 / (1.0 + dot(a, c)) * cross(a, c); }
 
-// M / (1 + a . c) at the inner vertices, four at a time: multiplied by a x c it gives M kappa b / 2.
+// M / (1 + a . c) at the inner vertices, with the twisting moment M and the unit tangents a, c before and after the
+// vertex. Times a x c it is half of M times the curvature binormal. Computed four at a time.
 void half_twists(Forces& f, std::size_t n) noexcept {
   const Vec* const u = f.unit.data();
   std::size_t i = 1;
@@ -50,8 +52,9 @@ void half_twists(Forces& f, std::size_t n) noexcept {
   for (; i + 1 < n; ++i) f.half_twist[i] = f.twist_moment[i] / (1.0 + dot(u[i - 1], u[i]));
 }
 
-// Moments of every vertex on its two segments: the bending moment Q = w (t_i - t_{i-1} - rest), whose difference along
-// a segment is the transverse force, and half of the twist term M kappa b on each of the two.
+// Moments of every vertex on its two segments: the bending moment w (t_i - t_{i-1} - stress-free bend) on both, and on
+// each one half of the twisting moment times the curvature binormal. The difference of the moments at the two ends of a
+// segment is its transverse force.
 template <bool Twist>
 void vertices(const Material& m, const State& state, Forces& f) noexcept {
   const Mesh& mesh = state.mesh;

@@ -9,9 +9,11 @@ namespace ligature::physics::rod {
 /// Fills solver with A and r of  A v = r,
 ///   A = M (1 + c dt) + dt (dt + tau_b) K_b + dt (dt + tau_s) K_ax + dt^2 K_geo + holds,
 ///   r = M v0 + dt f(x0) + holds,
-/// where K_ax = (EA / l) u u^T, K_geo = max(T, 0) / |e| (I - u u^T) (dropped in compression: A stays positive definite)
-/// and f is gravity, loads, stretch, bending and, with `Twist`, the twisting moment on the centreline (twist.hpp).
-/// Supports enter as a large mass, hands as implicit spring and damper. O(n); no allocation.
+/// with the masses M, air drag c, damping times tau_b (bending) and tau_s (stretch), the bending matrix K_b (mesh.hpp),
+/// K_ax = (EA / l) u u^T and K_geo = max(T, 0) / |e| (I - u u^T) of every segment e = |e| u with tension T (dropped in
+/// compression: A stays positive definite). f is gravity, loads, stretch, bending and, with `Twist`, the twisting
+/// moment on the centreline (twist.hpp). Supports enter as a large mass, hands as implicit spring and damper. O(n); no
+/// allocation.
 template <bool Twist>
 void assemble(const Material& material, const State& state, Vec gravity, double dt_s, Forces& forces,
               BandSolver& solver) noexcept;

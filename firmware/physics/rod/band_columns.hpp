@@ -1,5 +1,6 @@
 #pragma once
-// Columns of the inverse of a factorised matrix on a window, computed one at a time: only for nodes with contacts.
+// Columns of the inverse of a substep's matrix, on a range of nodes. Each is computed when it is requested: only the
+// columns of nodes with contacts are needed.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,8 +14,9 @@ namespace ligature::physics::rod {
 
 class BandSolver;
 
-/// Z = A^-1 at the time of take(), independent of later factorisations. A column costs as much as solving the window
-/// with three right-hand sides, and is kept until the next take(). Real time: no allocation after reserve().
+/// Z = A^-1 on a range of nodes (the window), for the matrix A that BandSolver had factorised at take(); later
+/// factorisations do not change it. A column costs as much as solving the window for three right-hand sides, and is
+/// kept until the next take(). Real time: no allocation after reserve().
 class BandColumns {
  public:
   static constexpr int kWidest = 640;              ///< most nodes in a window
@@ -27,7 +29,8 @@ class BandColumns {
   [[nodiscard]] int first() const noexcept { return first_; }
   [[nodiscard]] int width() const noexcept { return last_ - first_ + 1; }
 
-  /// Copies the factors of the window. @pre last - first < kWidest, the solver's core nodes lie in the window.
+  /// Copies the solver's factors for the nodes first to last. @pre last - first < kWidest; both core nodes of the
+  /// solver, at which its two eliminations meet, lie in this range.
   void take(const BandSolver& solver, int first, int last) noexcept;
 
   /// Requests the column of a node, counted from first(). @return false when there is no room for it.
@@ -45,15 +48,15 @@ class BandColumns {
 
  private:
   void solve(std::ptrdiff_t node) noexcept;
-  /// Copies one lane of the solver's steps: the `count` nodes next to the core on that side.
+  /// Copies the factors of the `count` nodes next to the core on one side (Lane 0: left, 1: right).
   template <int Lane>
   void take_chain(const BandSolver& solver, std::ptrdiff_t count) noexcept;
 
   int first_ = 0, last_ = -1, made_ = 0;
-  std::ptrdiff_t core_ = 0;           // counted from first_
-  std::vector<Mat> out_, s_inverse_;  // -H^T towards the node one further out, and S^-1, of BandSolver
-  std::vector<Mat> one_, two_;        // back substitution: factors of the nodes one and two nearer to the core
-  std::vector<double> skip_;          // coupling of i and i + 2
+  std::ptrdiff_t core_ = 0;           // left core node, counted from first_
+  std::vector<Mat> out_, s_inverse_;  // per node: -H^T and S^-1, factors of BandSolver
+  std::vector<Mat> one_, two_;        // back substitution: factors of the nodes one and two places nearer to the core
+  std::vector<double> skip_;          // coupling of nodes i and i + 2
   Mat between_, next_h_;
   std::vector<Mat> x_;                // the column that is being computed
   std::vector<std::int32_t> place_;   // index of each node's column, or -1

@@ -8,19 +8,19 @@ namespace {
 
 constexpr Mat kNothing{}, kUnit{{kAxisX}, {kAxisY}, {kAxisZ}};  // blocks for a lane without a node
 
-// A_ip - A_iq H_p.
+// F_i = A_ip - A_iq H_p (see BandSolver) for two nodes i at once: e is A_ip, b is A_iq, h is H_p.
 [[gnu::always_inline]] inline TwoMats towards(const TwoSyms& e, Two b, const TwoMats& h) noexcept {
   return {{e.xx - b * h.x.x, e.xy - b * h.x.y, e.xz - b * h.x.z},
           {e.xy - b * h.y.x, e.yy - b * h.y.y, e.yz - b * h.y.z},
           {e.xz - b * h.z.x, e.yz - b * h.z.y, e.zz - b * h.z.z}};
 }
 
-// a F^T.
+// a f^T, a symmetric.
 [[gnu::always_inline]] inline TwoMats times_transposed(const TwoSyms& a, const TwoMats& f) noexcept {
   return {a * Twos{f.x.x, f.y.x, f.z.x}, a * Twos{f.x.y, f.y.y, f.z.y}, a * Twos{f.x.z, f.y.z, f.z.z}};
 }
 
-// F G, if the product is symmetric.
+// f g, for matrices whose product is symmetric.
 [[gnu::always_inline]] inline TwoSyms product(const TwoMats& f, const TwoMats& g) noexcept {
   const Twos r0{f.x.x, f.y.x, f.z.x}, r1{f.x.y, f.y.y, f.z.y}, r2{f.x.z, f.y.z, f.z.z};
   return {dot(r0, g.x), dot(r1, g.x), dot(r2, g.x), dot(r1, g.y), dot(r2, g.y), dot(r2, g.z)};

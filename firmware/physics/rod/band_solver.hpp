@@ -37,7 +37,7 @@ class BandSolver {
 
   /// out[first .. last] = (A^-1 (rhs + extra))[first .. last]; O(last - first).
   /// @param extra  read on [first, last], zero elsewhere; may be null
-  /// @param base  false: A^-1 extra only
+  /// @param base  false: out = A^-1 extra, without rhs
   /// @pre first <= core, core + 1 <= last
   void solve(int first, int last, const Vec* extra, Vec* out, bool base) noexcept;
 
@@ -48,9 +48,9 @@ class BandSolver {
   friend class BandColumns;
   /// Factors of the two nodes that are k + 1 nodes left and right of the core.
   struct Step {
-    TwoMats h;          // H towards the nodes one further out
+    TwoMats h;          // H_i of the formulas above, for the two nodes i
     TwoSyms s_inverse;  // S^-1
-    Twos z;             // eliminated right-hand sides
+    Twos z;             // z_i: right-hand sides after elimination
     Two skip;           // coupling to the nodes two further in
   };
   /// Entries A_ii, A_ip, A_iq, r_i of the system for the nodes of a step; 1, 0, 0, 0 in a lane without a node.
@@ -68,7 +68,8 @@ class BandSolver {
   [[nodiscard]] std::ptrdiff_t steps() const noexcept;
   static Pivot pivot_of(const TwoSyms& s) noexcept;
   static TwoSyms eliminate(const Rows& a, const Step& p, Step& q, const Pivot& pivot, TwoMats& h, Twos& y) noexcept;
-  /// Back substitution: solution at step k from those at steps k - 1 (one) and k - 2 (two).
+  /// Back substitution: solution at step k, from the eliminated right-hand side w and the solutions at steps k - 1
+  /// (one) and k - 2 (two).
   [[nodiscard]] Twos substitute(std::ptrdiff_t k, const Twos& w, const Twos& one, const Twos& two) const noexcept {
     const Step& s = steps_[static_cast<std::size_t>(k)];
     const TwoMats& h = k > 0 ? steps_[static_cast<std::size_t>(k) - 1].h : core_h_;
@@ -77,7 +78,7 @@ class BandSolver {
 
   int n_ = 0, core_ = 0;
   std::vector<Step> steps_;
-  TwoMats core_h_;              // H of the core nodes, each towards the chain on its side
+  TwoMats core_h_;              // H_i of the two core nodes, from the elimination on their own side
   Vec core_z_, next_z_;         // z of the core nodes
   Mat core_inverse_, between_;  // S^-1 of node core, and A(core + 1, core) once the chains are eliminated
   Mat next_inverse_, next_h_;   // S^-1 and H of node core + 1, the last

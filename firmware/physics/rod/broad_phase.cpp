@@ -22,7 +22,8 @@ constexpr float kSlack = 1.0001F;
 constexpr double kStraight = 0.95, kBent = 2.0 / 3.0;
 constexpr std::size_t kLeastTable = 2048;
 
-// Without bending stiffness corners are real, so contact is computed on the chords.
+// Has a segment bending stiffness at one of its ends? Without it the corners of the polygon are real, and contact is
+// computed on the chord instead of a smooth curve.
 bool is_stiff(const Mesh& mesh, std::size_t j) noexcept { return mesh.weight[j] > 0.0 || mesh.weight[j + 1] > 0.0; }
 
 }  // namespace
@@ -141,7 +142,7 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
   const float dx = x_[b] - x_[a], dy = y_[b] - y_[a], dz = z_[b] - z_[a];
   const float halves = half_[a] + half_[b], within = (halves + static_cast<float>(limit)) * kSlack;
   const float apart2 = dx * dx + dy * dy + dz * dz;
-  if (apart2 > within * within) return true;  // cannot touch at its own relative speed
+  if (apart2 > within * within) return true;  // cannot touch within the horizon at the pair's relative speed
   spent_ += price::kList;
   Candidate pair;
   pair.a = static_cast<std::int32_t>(a);
@@ -174,7 +175,8 @@ unsigned BroadPhase::near(std::size_t a, std::size_t q, float reach) const noexc
     const float apart = half_[base + l] + bulge_[base + l] + own;
     hits |= static_cast<unsigned>(dx * dx + dy * dy + dz * dz <= apart * apart) << l;
   }
-  return base < a + 2 ? hits & ~0U << (a + 2 - base) : hits;  // each pair once, without adjacent segments
+  // Only segments from a + 2 on count: so each pair is found once, and adjacent segments are left out.
+  return base < a + 2 ? hits & ~0U << (a + 2 - base) : hits;
 }
 
 bool BroadPhase::blocks(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p, std::size_t q,
@@ -229,7 +231,8 @@ bool BroadPhase::search(const State& state, const Motion& motion, const Outlook&
 }
 
 // Counted with callgrind (overhand knot at 1 m/s): 133 instructions per node for the spheres and their tree, and 2100
-// to keep the impulses of its contacts. The allowance of 5 per entry of the least table covers those of a jam.
+// in all to keep the impulses of the knot's contacts. For these, 5 per entry of the smallest hash table are charged,
+// enough for the contacts of a tight knot too.
 long BroadPhase::least_cost(int nodes) noexcept { return 5L * static_cast<long>(kLeastTable) + 155L * nodes; }
 
 bool BroadPhase::build(const State& state, Motion& motion, const Outlook& outlook, long allowance, Work& work,

@@ -17,7 +17,8 @@ struct Candidate {
   std::int32_t b = 0;    ///< another segment, >= a + 2
   double reach_m = 0.0;  ///< distance of the centrelines at which they touch
   double near_m = 0.0;   ///< gap below which they are a contact at any speed
-  double due = 0.0;      ///< gap + Motion::gone() when last measured; due - gone() is a lower bound of the present gap
+  double due = 0.0;      ///< gap + relative motion so far (Motion::gone()), both when the pair was last measured; due
+                         ///< minus the relative motion until now is a lower bound of the present gap
   Touch touch{};         ///< points at which the impulse acted in the last substep
   Touch next{};          ///< points at which it acts in this substep
   Vec impulse{};         ///< of the last substep, on segment b, N s
@@ -29,7 +30,7 @@ struct Candidate {
 /// show that none of its pairs must be measured.
 struct PairGroup {
   std::int32_t first = 0, last = 0;
-  std::int32_t p = 0, q = 0;  ///< the blocks
+  std::int32_t p = 0, q = 0;  ///< indices of the two blocks
   double due = kAtOnce;       ///< smallest due - near_m of the pairs, so that due - Motion::gone_of_blocks() is a lower
                               ///< bound of gap - near_m for all of them
 
@@ -42,7 +43,8 @@ struct PairList {
   std::vector<PairGroup>& groups;
 };
 
-/// Margins of a list: it holds all pairs nearer than reach + skin + horizon x Motion::rate().
+/// Margins of a list: it holds all pairs nearer than the distance of touch + skin + horizon x their relative speed (an
+/// upper bound: Motion::rate()).
 struct Outlook {
   double diameter_m = 0.0, skin_m = 0.0, near_m = 0.0, horizon_s = 0.0;
 };
@@ -64,7 +66,8 @@ class BroadPhase {
   /// Stores the impulses of all pairs, so that build() can give them to the new list. @pre not more pairs than reserved
   void keep_impulses(const std::vector<Candidate>& list) noexcept;
 
-  /// Rebuilds `list`, with the gap of every pair measured and the kept impulses restored. Calls motion.restart().
+  /// Rebuilds `list`, with the gap of every pair measured and the kept impulses restored. Calls motion.restart(),
+  /// so that relative motion counts from this moment.
   /// @param allowance  most work it may use. @return false, and the list is invalid, when allowance, room for pairs or
   /// the tick's time was too small.
   bool build(const State& state, Motion& motion, const Outlook& outlook, long allowance, Work& work,
@@ -73,7 +76,7 @@ class BroadPhase {
   /// After a failed build(): fills the list with the pairs of the kept impulses only, for the next keep_impulses().
   void put_back(const PairList& list) const noexcept;
 
-  /// Fixed cost of a build(), in instructions.
+  /// Cost of a build() in which no segments are near each other, in instructions.
   [[nodiscard]] static long least_cost(int nodes) noexcept;
 
  private:

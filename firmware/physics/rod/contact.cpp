@@ -96,7 +96,8 @@ double ContactSet::push(BandSolver& solver, Vec* v) noexcept {
   return largest2[0] + largest2[1] + largest2[2];
 }
 
-// Column B = C^-1 J^T of a row, eight nodes at a time, and its diagonal entry J B.
+// Column B = C^-1 J^T of a row (velocities of the nodes per unit impulse), eight nodes at a time, and J B, the row's
+// own velocity per unit impulse.
 void ContactSet::make_column(Contact& c, const ContactMetric& metric, float* column) const noexcept {
   const auto offset = static_cast<std::size_t>(window_first_ - metric.first());
   const float* r[Contact::kMostNodes];
@@ -162,8 +163,8 @@ void ContactSet::sweep(const Vec* v, TickTime& time) noexcept {
   }
 }
 
-// Target normal velocities; warm start with the old impulses, limited to the new cones; velocities without and with
-// these impulses.
+// Computes the target normal velocities, the starting impulses (those of the last substep, limited to the new friction
+// cones), and the velocities without and with these impulses.
 template <bool Turns>
 void ContactSet::start(BandSolver& solver, const Numerics& numerics, double dt_s, Vec* v) noexcept {
   const double longer = per_second_ > 0.0 ? dt_s * per_second_ : 1.0;  // ratio of time steps, to keep the same forces

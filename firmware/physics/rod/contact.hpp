@@ -39,7 +39,7 @@ struct Contact {
   Vec u_free{};             ///< u if no contact had an impulse
   double gap_m = 0.0;       ///< surface distance, negative: overlap
   double target = 0.0;      ///< smallest admissible normal velocity, m/s
-  double inv_w = 0.0;       ///< 1 / (J C^-1 J^T), effective mass of the contact with C (contact_metric.hpp), kg
+  double inv_w = 0.0;       ///< 1 / (J C^-1 J^T): effective mass with the sweeps' matrix C (contact_metric.hpp), kg
   double soft = 0.0;        ///< normal compliance: u_n + soft p_n >= target, 1/kg
   double inv_soft_w = 0.0;  ///< 1 / (J C^-1 J^T + soft)
   double mu = 0.0;
@@ -64,7 +64,7 @@ struct ContactReport {
   bool cut_short = false;       ///< the solver stopped before it converged
   double change_m_per_s = 0.0;  ///< upper bound of the velocity change in the last pass (Newton: of the error)
   double min_gap_m = 1e9;       ///< smallest thread-thread gap before the substep
-  int rows_left_out = 0;        ///< contacts not solved for lack of room or work, only guarded
+  int rows_left_out = 0;        ///< contacts not solved for lack of room or work; only the guard separates them
 };
 
 /// Limits and tolerances of the contact solver in one substep.
@@ -97,8 +97,10 @@ inline constexpr int kMaxContacts = 768;  ///< rows that can be solved at once
 /// settle() starts from the impulses of the last substep. Each pass runs one projected Gauss-Seidel sweep with the
 /// simplified matrix C (contact_metric.hpp), then applies the change of p with the full matrix A. C lacks the stretch
 /// terms, so along the thread's axis this alone would need hundreds of passes; Anderson mixing speeds it up
-/// (mixing.hpp). It ends when a pass changes no velocity by more than `settled_m_per_s`, or after `passes`. A pass
-/// costs in proportion to rows x nodes of the contact window, not of the whole thread.
+/// (mixing.hpp). It ends when a pass changes no velocity by more than `settled_m_per_s`, or after `passes`.
+///
+/// The window is the range of nodes from the first to the last on which any row acts. Only its velocities are solved
+/// with contacts, so a pass costs in proportion to rows x nodes of the window, not of the whole thread.
 class ContactSet {
  public:
   ContactSet() = default;
@@ -111,7 +113,7 @@ class ContactSet {
   ~ContactSet() = default;
 
   void reserve(int nodes, int bodies, int window);
-  /// Needed before settle<.., true>.
+  /// Allocates for friction that rolls the thread: needed before the functions below are called with Turns.
   void reserve_turning() { turning_.reserve(kMaxContacts); }
 
   /// Thread-thread pairs that may touch; rebuilt by BroadPhase.
@@ -120,9 +122,9 @@ class ContactSet {
 
   void begin() noexcept { contacts_.clear(), watched_.clear(), rows_ = 0, overflow_ = false; }
 
-  /// Computes the distance of every pair whose gap may have fallen below near_m + 2 dt x its rate (motion.hpp). Those
-  /// with a gap below near_m + 2 dt x relative speed become contacts. @return false when the work or time left is too
-  /// small for all of them.
+  /// Measures the distance of every pair whose gap may be below near_m + 2 dt x its bound of relative speed
+  /// (Motion::rate()). Pairs with a gap below near_m + 2 dt x actual relative speed become contacts. @return false when
+  /// the work or time left is too small for all of them.
   [[nodiscard]] bool collect_thread(const State& state, const Motion& motion, double dt_s, double mu, Work& work,
                                     ContactReport& report) noexcept;
   /// Contacts of nodes with the plane z = floor_m that are nearer than look_m.
@@ -157,23 +159,25 @@ class ContactSet {
   void let_stick(double mu_static, const Vec* v) noexcept;
 
   [[nodiscard]] int rows() const noexcept { return rows_; }  ///< number of contacts to be solved
+  /// First and last node on which the chosen contacts act.
   [[nodiscard]] int window_first() const noexcept { return window_first_; }
   [[nodiscard]] int window_last() const noexcept { return window_last_; }
 
-  /// First step of the solution: the targets of all rows, and the window's velocities v with the impulses of the last
-  /// substep. Turns: friction also rolls the segments; turn_with() must have been called.
+  /// First step of the solution: computes the target velocities of all rows, and the velocities v of the window's nodes
+  /// with the impulses of the last substep. Turns: friction also rolls the segments about their axes; turn_with() must
+  /// have been called.
   /// @pre rows() > 0, the solver's core lies in the window.
   template <bool Turns>
   void start(BandSolver& solver, const Numerics& numerics, double dt_s, Vec* v) noexcept;
 
-  /// Solves for v by Newton's method (contact_newton.hpp). If it does not converge, impulses and v are left as after
-  /// start().
+  /// Solves for the velocities v of the window's nodes by Newton's method (contact_newton.hpp). If it does not
+  /// converge, impulses and v are left as after start().
   template <bool Friction>
   Outcome settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept;
   /// Call when mesh or time step have changed: settle_directly() then computes the inverse matrix again.
   void forget_matrix() noexcept { newton_.forget(); }
 
-  /// Solves for the window's velocities v by sweeps. Turns: as in start().
+  /// Solves for the velocities v of the window's nodes by sweeps. Turns: friction also rolls the segments.
   /// @pre rows() > 0, the solver's core lies in the window, the metric covers it.
   /// @return false, and nothing is solved, when the time was over before the first pass.
   template <bool Friction, bool Turns>
@@ -250,7 +254,8 @@ class ContactSet {
     for (int j = 0; j < c.count; ++j) u += c.w[j] * v[c.node[j]];
     return u;
   }
-  /// v += A^-1 extra_ on the window. @return an upper bound of the largest squared velocity change.
+  /// v += A^-1 extra_ for the window's nodes (extra_: impulses to add, per node). @return an upper bound of the largest
+  /// squared velocity change.
   double push(BandSolver& solver, Vec* v) noexcept;
   void clear_extra() noexcept;
   template <bool Friction, bool Turns>
@@ -259,9 +264,11 @@ class ContactSet {
   struct Search {
     const Effort& effort;
     ContactReport& report;
-    long nodes;                           ///< number of nodes in the window
-    int look = 0;                         ///< checks of all contacts so far
-    bool fresh = false, resumed = false;  ///< Z is of this substep; started from the impulses of a put-off substep
+    long nodes;    ///< number of nodes in the window
+    int look = 0;  ///< checks of all contacts so far
+    /// Was the inverse matrix Z = A^-1 computed in this substep? Did the search begin with the impulses of an earlier,
+    /// unfinished attempt at this substep?
+    bool fresh = false, resumed = false;
     [[nodiscard]] bool can_pay(long cost) const noexcept { return report.work + cost <= effort.work; }
     [[nodiscard]] bool pay(long cost) noexcept {
       return can_pay(cost) && effort.time.allows() && ((report.work += cost), true);
@@ -283,14 +290,14 @@ class ContactSet {
 
   std::vector<Contact> contacts_;  // rows first, then contacts that are not solved
   std::vector<Watched> watched_;
-  std::vector<std::int32_t> awake_, due_;  // groups and pairs to be measured in this substep
+  std::vector<std::int32_t> awake_, due_;  // indices of the groups and pairs that must be measured in this substep
   std::vector<std::int32_t> close_, far_;  // indices into due_: measured between smooth curves; between chords only
   std::vector<Measured> measured_;         // in the order of due_
-  std::vector<Vec> corner_;                // k_i of the smooth curve at the nodes of bent_
-  std::vector<double> share_;              // scale of k_i there, below 1 where the corner's cut is limited
-  Span bent_{0, -1};                       // range of the nodes of close_
+  std::vector<Vec> corner_;                // corner vectors k_i of the smooth curve (smooth.hpp) at nodes
+  std::vector<double> share_;              // per node: factor <= 1 by which k_i is reduced to limit the corner's cut
+  Span bent_{0, -1};                       // nodes from the first to the last of the pairs in close_
   std::vector<double> gaps_;               // scratch of choose_rows()
-  std::vector<float> columns_;             // C^-1 J^T of every row on the window, padded
+  std::vector<float> columns_;             // per row: C^-1 J^T, velocity of each window node per impulse; padded
   SweptVelocities swept_;
   std::vector<Vec> extra_, step_;
   std::vector<std::int32_t> loaded_;  // rows that have carried an impulse in this substep; only these are mixed

@@ -111,7 +111,7 @@ void ContactSet::collect_body(const State& state, const Body& body, int index, d
   for (std::size_t j = 0; j + 1 < n; ++j) {
     Vec& keep = body_impulse[static_cast<std::size_t>(index) * n + j];
     const Vec off = 0.5 * (state.x[j] + state.x[j + 1]) - middle;
-    const double within = half + state.mesh.rest[j] + reach;  // full rest length for half a segment: allows stretch
+    const double within = half + state.mesh.rest[j] + reach;  // half a rest length would do without stretch
     const double far = within + look_m, off2 = dot(off, off);
     if (off2 > far * far) {
       keep = Vec{};

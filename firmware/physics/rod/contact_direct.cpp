@@ -1,5 +1,5 @@
-// Driver of Newton's method for contacts: checks all contacts for violations, takes Newton steps on those in the
-// system, and repeats, within the tick's work.
+// Driver of Newton's method for contacts: checks all contacts for violated conditions, takes Newton steps on those in
+// the system, and repeats, until all hold or the work allowed for this tick is used.
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr int kMargin = 6;      // nodes by which the window may grow before Z is computed again
+constexpr int kMargin = 6;      // nodes by which the window may grow before the inverse matrix Z must be computed again
 constexpr double kNear = 3.0;   // Newton's residual may be this times the tolerance, which is meant for sweeps
 constexpr double kLoose = 3.0;  // tolerance multiplier once more than the fair share of the work is used
 
@@ -23,7 +23,7 @@ double square_of_enough(const Effort& effort) noexcept {
 
 }  // namespace
 
-// Replaces the impulses of the rows in newton_'s system by p_, and updates v with the present A.
+// Gives the rows in newton_'s system the impulses p_, and updates the velocities v with the present matrix A.
 void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
   clear_extra();
   for (const auto k : newton_.rows()) {
@@ -35,7 +35,8 @@ void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
   push(solver, v);
 }
 
-// Takes Z from the present A and restarts newton_ with it. @return false when there is not enough work left.
+// Computes the inverse matrix Z from the present matrix A, and restarts newton_ with it. @return false when there is
+// not enough work left.
 bool ContactSet::renew_matrix(const BandSolver& solver, Search& search) noexcept {
   const int first = std::max(window_first_ - kMargin, 0), last = std::min(window_last_ + kMargin, solver.nodes() - 1);
   if (!search.pay(price::factors(last - first + 1))) return false;
@@ -62,13 +63,14 @@ Outcome ContactSet::look_at_all(const BandSolver& solver, const Vec* v, Search& 
   return newton_.couple(search.effort.time) ? Outcome::kSettled : Outcome::kLater;
 }
 
-// Newton steps until the residual, with newton_'s possibly old Z, meets the tolerance; once the fair share of the work
-// is used, the best impulses found so far do if they meet the looser one. @return nothing when the velocities must be
-// computed with the present A to confirm the result; otherwise the outcome.
+// Newton steps until the residual meets the tolerance; once the fair share of the work is used, the best impulses so
+// far are accepted if they meet a looser tolerance. newton_'s inverse matrix may be from an earlier substep. @return
+// nothing when the result must be confirmed by computing the velocities with the present matrix A; otherwise the
+// outcome.
 template <bool Friction>
 std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
   constexpr int kMostSteps = 48, kSweeps = 2;
-  constexpr double kOld = 10.0;  // tolerance multiplier after the first check, as Z may be old
+  constexpr double kOld = 10.0;  // tolerance multiplier after the first check, as newton_'s matrix may be old
   const Effort& effort = search.effort;
   ContactReport& report = search.report;
   const double settled = kNear * effort.settled_m_per_s, settled2 = settled * settled;
@@ -80,7 +82,7 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
   for (int step = 0;; ++step) {
     const double error2 = newton_.read<Friction>(rows, p, u);
     const bool begins = step == 0 && search.look == 0;
-    if (step == 0) {  // u was computed with the present A
+    if (step == 0) {  // u was computed with the present matrix A
       if (begins && !search.resumed) start_error2_ = error2;
       report.change_m_per_s = std::sqrt(error2);
       if (error2 < (begins ? 1.0 : kOld * kOld) * settled2) return Outcome::kSettled;

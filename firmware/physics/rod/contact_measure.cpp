@@ -125,7 +125,8 @@ void ContactSet::measure(const std::int32_t* places, const State& state) noexcep
   }
 }
 
-// Corners k_i of the smooth curve over the node range of the close pairs. All of these have the same reach_m.
+// Computes the corner vectors k_i of the smooth curve (smooth.hpp) at the nodes of the close pairs. All close pairs
+// touch at the same distance, the diameter.
 void ContactSet::bend(const State& state) noexcept {
   if (close_.empty()) return;
   const double diameter_m = pairs[static_cast<std::size_t>(due_[static_cast<std::size_t>(close_[0])])].reach_m;
@@ -135,8 +136,8 @@ void ContactSet::bend(const State& state) noexcept {
                           share_[static_cast<std::size_t>(i)]);
 }
 
-// Changes the nodes and weights of a contact from the point s of the chord to the point s of the smooth curve. The
-// chord begins with node[at].
+// Changes nodes and weights of a contact so that it acts at parameter s of the smooth curve instead of the chord. The
+// chord begins at node[at].
 void ContactSet::bend_row(Contact& c, int at, double s, const State& state) const noexcept {
   const auto j = static_cast<std::size_t>(c.node[at]);
   const double side = at == 0 ? -0.25 : 0.25, h_before = state.cut_before[j], h_after = state.cut_after[j];

@@ -24,7 +24,7 @@ bool ContactMetric::prepare(const Mesh& mesh, const Material& material, double d
   return false;
 }
 
-// LDL^T of C, with all nodes outside the window eliminated.
+// Factorises C = L D L^T on the nodes first_ to last_, with all other nodes eliminated.
 void ContactMetric::factor(const Mesh& mesh, const Material& material, double dt_s) noexcept {
   const auto n = static_cast<std::size_t>(mesh.nodes()), z = static_cast<std::size_t>(last_);
   const double bend = dt_s * (dt_s + material.bend_tau_s), inertia = 1.0 + material.drag_per_s * dt_s;

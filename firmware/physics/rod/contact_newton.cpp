@@ -75,7 +75,7 @@ void ContactNewton::start(const Contact* rows, int count) noexcept {
   }
 }
 
-// Index of slots by first node, for find(). Clears every slot's row.
+// Builds the table of slots by their first node, for find(). Marks every slot as without a row.
 void ContactNewton::index_slots() noexcept {
   at_.assign(static_cast<std::size_t>(z_.width()), -1);
   for (std::size_t s = slots_.size(); s-- > 0;) {
@@ -124,7 +124,7 @@ bool ContactNewton::take(const Contact* rows, int k) noexcept {
   return true;
 }
 
-// Z J^T of a slot, at the nodes first to last.
+// spread_ = Z J^T of a slot: velocities of the nodes first to last per unit impulse on the slot.
 void ContactNewton::spread(const Slot& slot, std::int32_t first, std::int32_t last) noexcept {
   const auto begin = (BandColumns::kBlock * static_cast<std::size_t>(first)) & ~std::size_t{7},
              end = BandColumns::kBlock * static_cast<std::size_t>(last + 1);
@@ -142,7 +142,8 @@ void ContactNewton::spread(const Slot& slot, std::int32_t first, std::int32_t la
   }
 }
 
-// W block: velocity of this slot's contact per impulse on the slot of spread(), columns x, y, z.
+// A 3 x 3 block of W: relative velocity at this slot's contact per impulse on the slot last given to spread(). Columns:
+// impulse along x, y, z.
 std::array<Four, 3> ContactNewton::answer_at(const Slot& slot) const noexcept {
   std::array<Four, 3> sum{};
   for (int j = 0; j < slot.count; ++j) {

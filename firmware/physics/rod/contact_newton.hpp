@@ -35,7 +35,7 @@ struct Contact;
 /// Z may be some substeps old: after each step the caller computes the velocities with the present A.
 class ContactNewton {
  public:
-  static constexpr int kMostRows = 96;       ///< contacts that carry load, or would
+  static constexpr int kMostRows = 96;       ///< contacts that carry load, or approach too fast without it
   static constexpr int kMostUnknowns = 192;  ///< their impulse components
   static constexpr int kWidest = BandColumns::kWidest;
   static constexpr int kMostNodes = 8;  ///< of a contact
@@ -67,7 +67,7 @@ class ContactNewton {
     const auto all = static_cast<long>(slots_.size()), seen = static_cast<long>(coupled_);
     return {z_.missing(), all - seen, (all * (all + 1) - seen * (seen + 1)) / 2};
   }
-  [[nodiscard]] int nodes() const noexcept { return z_.width(); }  ///< of Z
+  [[nodiscard]] int nodes() const noexcept { return z_.width(); }  ///< number of nodes that Z covers
 
   /// Determines the kind of each contact in the system from impulses p and velocities u. @return the square of the
   /// largest residual, (m/s)^2: distance of an impulse from its map, times the velocity per impulse of its contact.
@@ -117,8 +117,8 @@ class ContactNewton {
     double most = 0.0;  ///< radius of the friction disc, mu p_n
     [[nodiscard]] bool carries() const noexcept { return row >= 0 && kind >= Kind::kSticks; }
   };
-  /// One unknown x: the impulse x `with`, subject to along . u + give x = wanted. The system is solved for x - now, so
-  /// that single precision limits the change only.
+  /// One unknown number x: the contact gets x times the impulse vector `with`, and x is chosen so that along . u + give
+  /// x = wanted. The system is solved for x - now, so that single precision limits only the accuracy of the change.
   struct Unknown {
     std::size_t slot;
     Vec along, with;
@@ -174,7 +174,8 @@ class ContactNewton {
   double error2_ = 0.0, last_error2_ = 0.0;  // squared residual of the last read(); at the start of the last step
   double cost_ = 1.0;                        // factor of the proximal term, 0 to 1
   Couplings w_;                              // W of all slots
-  // Of the first carrying_ slots: along n; then across the sliding direction; then along it, of those that stick.
+  // Unknowns of the first carrying_ slots: first those along the normals, then those across the sliding directions,
+  // then those along the sliding directions, which only sticking contacts have.
   std::vector<Unknown> unknowns_;
   int count_ = 0;
   std::size_t carrying_ = 0;

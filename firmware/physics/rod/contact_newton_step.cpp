@@ -54,7 +54,8 @@ void ContactNewton::sweep(const Contact* rows, Vec* p, Vec* u) noexcept {
   for (const auto k : rows_) u[k] += moved(slot_of(k));
 }
 
-// on_ += W p for an impulse x on `slot` and, if Two, y on `other`. W is symmetric, so rows are summed, not columns.
+// Adds to on_ the velocity changes of all slots by an impulse x on `slot` and, if Two, y on `other`. The coupling
+// matrix W is symmetric, so its rows are read instead of its columns.
 template <bool Two>
 void ContactNewton::answer(std::size_t slot, Vec x, std::size_t other, Vec y) noexcept {
   const Eight x0 = all_eight(static_cast<float>(x[0])), x1 = all_eight(static_cast<float>(x[1])),
@@ -72,7 +73,7 @@ void ContactNewton::answer(std::size_t slot, Vec x, std::size_t other, Vec y) no
   }
 }
 
-// on_ = W change, with one impulse for each slot.
+// Sets on_ to the velocity changes of all slots by the impulses change[slot].
 void ContactNewton::answer_all(const Vec* change) noexcept {
   constexpr auto kNone = static_cast<std::size_t>(-1);
   on_.clear();
@@ -123,7 +124,7 @@ void ContactNewton::bring_forward() noexcept {
 template <bool Friction>
 void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* u) noexcept {
   constexpr double kCostNormal = 0.05, kCostAlong = 0.1;  // proximal terms, relative to the contact's own response
-  constexpr double kHardly = 1e-6;                        // least disc radius / |q|: bounds `give` without friction
+  constexpr double kHardly = 1e-6;  // least radius / |q| of a friction disc: bounds `give` at mu = 0
   unknowns_.clear();
   stuck_.clear();
   const auto add = [&](std::size_t s, Vec along, Vec with, double give, double cost, double wanted) {
@@ -210,8 +211,8 @@ bool ContactNewton::assemble(const Vec* p, TickTime& time) noexcept {
     if (!pieces.allow(300 + 8 * static_cast<long>(n))) return false;
     make_row<Friction>(i);
   }
-  // The step removes those parts of the present impulses that no unknown represents; their velocities enter the
-  // right-hand side.
+  // Parts of the present impulses along which there is no unknown are removed by this step. The velocity change of
+  // removing them enters the right-hand side.
   for (const auto k : rows_) rest_[slot_of(k)].v = p[k].v;
   for (const auto& x : unknowns_) rest_[x.slot] -= x.now * x.with;
   answer_all(rest_.data());
@@ -222,7 +223,7 @@ bool ContactNewton::assemble(const Vec* p, TickTime& time) noexcept {
   return true;
 }
 
-// Factor of the proximal term in this step.
+// Sets cost_, the factor of the proximal (damping) terms in this step.
 void ContactNewton::set_cost() noexcept {
   constexpr double kFade = 0.6, kFadeWhenKnown = 0.1;  // decrease per step; when no kind has changed
   constexpr double kWorse = 2.0, kMore = 4.0, kLeast = 1e-4;

@@ -80,8 +80,8 @@ std::size_t Dense::panel(std::size_t k) noexcept {
   return rows < 4 || !join<3>(k) ? 3 : 4;
 }
 
-// Eliminates the `pivots` columns from k on, in which the rows from k on are a unit matrix, from all rows >= first.
-// Entries left of the remaining columns are not updated, as they are not read again.
+// Eliminates columns k to k + pivots - 1 from all rows >= first. Rows k to k + pivots - 1 must hold a unit matrix in
+// these columns. In the other rows the eliminated entries are not set to zero, as they are not read again.
 void Dense::clear_below(std::size_t k, std::size_t pivots, std::size_t first) noexcept {
   const std::size_t from = (k + pivots) & ~std::size_t{7};
   const float* const top = row(k);
@@ -112,7 +112,8 @@ std::size_t Dense::two_panels(std::size_t k) noexcept {
   return 2 * kPanel;
 }
 
-// Back substitution. The rows of a panel are independent of each other, as they are a unit matrix in its columns.
+// Back substitution, panel by panel from the last. Elimination has left a unit matrix in each panel's own rows and
+// columns, so the unknowns of one panel do not depend on each other.
 void Dense::substitute() noexcept {
   x_.clear();
   float* const x = x_.data();

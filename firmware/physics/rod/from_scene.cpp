@@ -114,7 +114,7 @@ Numerics numerics_of(const scene::Scene& scene) noexcept {
       n.substeps = 10;
       n.max_substeps = 16;
       n.rush = 0.25;
-      n.work = 2'610'000;  // 3.0 M for 154 nodes: fits into 60 % of a period on machines where 4.5 M do not
+      n.work = 2'610'000;  // 3.0 M instructions with 154 nodes: fits in 60 % of a period where 4.5 M would not
       break;
     case scene::Accuracy::kBalanced:
       break;

@@ -9,7 +9,7 @@
 namespace ligature::physics::rod {
 namespace {
 
-/// Largest admissible share of a substep's motion, over all pairs tested so far.
+/// Largest share of a substep's motion that all pairs tested so far allow: `least`.
 struct Share {
   const Vec *x, *v;
   double dt_s;
@@ -35,7 +35,7 @@ struct Share {
   }
   /// Is the pair separated by a plane during the whole step? Nodes move on straight lines, so it suffices that the
   /// plane separates the segments before and after. Its normal is the shortest connection of the segments; a tenth of
-  /// their distance must remain, as in the other test.
+  /// their distance must remain, as in the test by speed.
   [[nodiscard]] bool passes_by(std::int32_t a, std::int32_t b) const noexcept {
     const Closest c = closest(x[a], x[a + 1], x[b], x[b + 1]);
     const auto along = [&](Vec q) { return dot(c.between, q); };

@@ -110,7 +110,7 @@ void Jaws::slip(Rod& rod, Vec tool) noexcept {
   slides_m_per_s_ = -over_m / rod.numerics().tick_s;
 }
 
-// Turns direction and director with the tool.
+// Turns the held thread's direction, and the director that fixes its roll, with the tool.
 void Jaws::turn(Rod& rod, const Mat& R_WT) noexcept {
   along_ = R_WT * along_T_;
   for (int k = 0; k < count_; ++k) {

@@ -65,11 +65,11 @@ class Jaws {
   JawSettings settings_;
   std::array<int, kMost> hold_{};  // indices into State::holds
   int count_ = 0;
-  double s_m_ = 0.0, slides_m_per_s_ = 0.0;  // s_c; rate at which slip moves it
+  double s_m_ = 0.0, slides_m_per_s_ = 0.0;  // coordinate s_c of the jaws' centre on the thread; its rate by slip
   Vec along_{};
   bool turning_ = false;
-  int roll_hold_ = -1;            // hold to which director_T_ belongs
-  Vec along_T_{}, director_T_{};  // t and the hold's director in the tool's frame
+  int roll_hold_ = -1;            // index of the hold whose director is director_T_
+  Vec along_T_{}, director_T_{};  // direction t and the hold's director, in the tool's coordinates
 };
 
 }  // namespace ligature::physics::rod

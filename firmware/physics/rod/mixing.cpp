@@ -6,7 +6,7 @@ namespace ligature::physics::rod {
 namespace {
 
 constexpr double kRidge = 1e-6,
-                 kLeast = 1e-14;  // Tikhonov terms, relative to the diagonal entry and to the trace
+                 kLeast = 1e-14;  // regularisation added to the diagonal: relative to its entry, to the trace
 
 using Row = std::array<double, Mixing::kDepth>;
 
@@ -29,8 +29,8 @@ double sum(Lanes a) noexcept { return (a[0] + a[1]) + a[2]; }
 
 }  // namespace
 
-// Stores the newest change in `slot`; computes its products with all changes, and theirs with r (theta). One pass over
-// the impulses.
+// Stores the newest changes dr, dp in `slot`. Computes the dot products of the new dr with all stored dr (products_),
+// and of all stored dr with r (theta). One pass over the impulses.
 void Mixing::measure(const Vec* p, const Vec* r, std::size_t impulses, std::size_t slot, Row& theta) noexcept {
   Lanes g0{}, g1{}, g2{}, g3{}, b0{}, b1{}, b2{}, b3{};
   for (std::size_t i = 0; i < impulses; ++i) {

@@ -15,7 +15,7 @@ struct Rise {
   }
 };
 
-// Maximum of every block of segments.
+// Maximum of a per-segment value in every block of kBlock segments.
 void blocks_of(const std::vector<double>& of, std::vector<double>& blocks) noexcept {
   const std::size_t n = of.size();
   for (std::size_t k = 0, i = 0; i < n; ++k) {
@@ -91,7 +91,7 @@ void Motion::restart() noexcept {
   std::copy(drift_.begin(), drift_.end(), drift_allowed_.begin());
 }
 
-// Tests each of the two bounds separately: if both stay within their own allowance, so does the smaller of them.
+// Tests the two bounds of the motion separately: if each stays within its own allowance, so does the smaller of them.
 bool Motion::used_up(double spare_m, double horizon_s, double ahead_s) const noexcept {
   if (2.0 * (furthest_ + ahead_s * fastest_) <= spare_m) return false;
   double one = 0.0;

@@ -12,7 +12,7 @@ constexpr double kTurn = 0.35;       // wanted angle between neighbouring segmen
 constexpr double kStartTurn = 0.5;   // the same for the initial mesh
 constexpr double kBendLength = 0.4;  // wanted length at a contact, in units of sqrt(EI / T)
 constexpr double kGrading = 0.2;
-constexpr double kCut = 0.5;         // default h of smooth.hpp, as a share of the segment
+constexpr double kCut = 0.5;         // share of a segment that the smooth curve cuts off at a corner (h, smooth.hpp)
 constexpr double kAway = 0.5;        // distance moved in a tick, in mesh units, at which offsets fade to 1/e
 constexpr double kLeastFade = 1e-3;  // > 0, as Spin::before_fading() divides by the factor
 constexpr double kRests_m_per_s = 1e-3;
@@ -256,8 +256,9 @@ void Refine::split(const Material&, State& state, int segment) noexcept {
   }
 }
 
-// Offsets hold only for the place where a node was when they were set, so they fade faster as the node moves away. The
-// exponent is quadratic in the speed, so that slow motion, such as that caused by the fading itself, adds nothing.
+// Fading factors of the offsets (stress-free bends and strains that remeshing has left). An offset is right only at the
+// place where its node was when it was set, so it fades faster the faster the node moves. The exponent is quadratic in
+// the speed, so that slow motion, such as that caused by the fading itself, adds nothing.
 void Refine::slide(const State& state, double tick_s, bool drifts) noexcept {
   const double per_m = tick_s / (kAway * unit_m_);
   const Vec drift = drifts ? mean_velocity(state) : Vec{};
@@ -289,7 +290,8 @@ double Refine::hold_back(const Material& material, const State& state, std::span
   for (std::size_t i = 1; i + 1 < n; ++i) count(bend_gain(i));
   for (std::size_t j = 0; j + 1 < n; ++j) count(strain_gain(j));
   if (up_J + down_J <= allowance_J) return up_J + down_J;
-  const double share = (allowance_J - down_J) / up_J;  // gains are convex: `share` of the fading gains <= share x gain
+  // The energy gain is convex in the amount of fading: a share of the fading gains at most that share of the energy.
+  const double share = (allowance_J - down_J) / up_J;
   for (std::size_t i = 1; i + 1 < n; ++i)
     if (bend_gain(i) > 0.0) fade_[i] = 1.0 - share * (1.0 - fade_[i]);
   for (std::size_t j = 0; j + 1 < n; ++j)

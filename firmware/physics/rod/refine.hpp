@@ -67,9 +67,9 @@ class Refine {
   void split(const Material& material, State& state, int segment) noexcept;
 
   double unit_m_ = 0.0;
-  std::vector<std::int32_t> at_;     // node positions in units
+  std::vector<std::int32_t> at_;     // material coordinates of nodes, in mesh units
   std::vector<double> wanted_;       // per segment, m
-  std::vector<char> free_;           // node may be merged
+  std::vector<char> free_;           // may this node be removed by a merge?
   std::vector<Vec> moment_;          // bending moment Q of every vertex
   std::vector<double> fade_;         // factors of the offsets at nodes, in this tick
   std::vector<double> strain_fade_;  // factors of the strain offsets of segments

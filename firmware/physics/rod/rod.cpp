@@ -13,7 +13,7 @@ constexpr int kWindow = 1024;       // most nodes on which contacts are solved t
 constexpr double kRelax_s = 0.02;   // decay time of pace_m_per_s_ once the hands stop; 0.005 to 0.1 makes no difference
 constexpr double kMostLeniency = 6.0;  // upper bound of leniency_, see Rod::settled()
 // Gap, in diameters, below which a pair is a contact at any speed. Time lost while a square and a surgeon's knot are
-// pulled at 0.2 m/s to 5 N: 9 and 20 % with this, 10 and 23 % with 0.05 and with 0.2 (one pull each).
+// pulled at 0.2 m/s to 5 N: 9 and 20 % with 0.1; 10 and 23 % with 0.05 and also with 0.2 (one pull each).
 constexpr double kNear = 0.1;
 // Energy that fading the remeshing offsets may add to a thread that is alone: this share of what the tick has
 // dissipated, plus this share of the bending energy.

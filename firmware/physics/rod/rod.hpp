@@ -145,7 +145,8 @@ class Rod {
   [[nodiscard]] bool sticks() const noexcept { return material_.static_friction > material_.friction; }
   /// Newton's method serves the tight contacts of knots; contact with floor and bodies is solved by sweeps.
   [[nodiscard]] bool solves_directly() const noexcept { return !parts_.turning && contacts_.only_pairs(); }
-  /// Nodes in the window; work for the rows with the fewest passes; work for the rows with all passes.
+  /// Number of nodes that contacts act on (the window); work that rows with their fewest passes may use; work that rows
+  /// with all their passes may use.
   struct Allowance {
     long window, rows, passes;
   };
@@ -200,7 +201,7 @@ class Rod {
   double pace_m_per_s_ = 0.0;    // half the relative speed of the hands; decays exponentially once they stop
   double leniency_ = 1.0;        // 1 to 6: factor of the tolerance's speed-dependent part; grows after ticks cut short
   bool braked_ = false;          // velocities of the last substep were scaled down after the hand forces were computed
-  int waits_ = 0;                // consecutive ticks that put the present substep off
+  int waits_ = 0;                // consecutive ticks in which the present substep was begun but not finished
   double patience_ = kPatience;  // limit of waits_: falls when waiting did not help, rises when Newton converges
   bool sweeps_only_ = false;     // the next substep is solved without Newton's method
   double stir_m_per_s_ = 0.0;    // largest nodal speed relative to the mean velocity
@@ -216,7 +217,7 @@ class Rod {
   Motion motion_;
   ContactReport seen_;          // result of the contact solver in this substep
   double near_m_ = 0.0;         // gap below which a pair is a contact at any speed
-  double horizon_s_ = 0.0;      // time for which the list of pairs is valid at the speeds of when it was made
+  double horizon_s_ = 0.0;      // time for which the list of pairs is valid if speeds stay as when it was built
   double tick_travel_m_ = 0.0;  // upper bound of any node's travel since the tick began
   int substep_index_ = 0;
   bool mesh_held_ = false;

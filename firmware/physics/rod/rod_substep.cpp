@@ -15,7 +15,7 @@ constexpr double kEnough = 10.0;        // tolerance multiplier once more than t
 constexpr double kWild_m_per_s = 1e-3;  // change in the last pass above which velocities are scaled down (the brake)
 constexpr double kLess = 0.8;           // factor of patience_ when a substep has waited and did not converge
 constexpr double kMore = 0.02;          // recovery of patience_ per substep while it is below 1
-constexpr int kLeastPasses = 3;         // only as many rows are solved as can have these; Newton's method needs one
+constexpr int kLeastPasses = 3;         // sweeps solve only as many rows as can have this many passes each
 constexpr double kSkin = 0.5;           // margin of the list of pairs, in diameters, at zero speed
 
 /// Time for which a list of pairs is made valid at the present speeds, in ticks, and the share of the tick's work it
@@ -153,7 +153,8 @@ Outcome Rod::settle_directly(const Effort& effort) noexcept {
   if (!can_wait()) own.work = std::min(effort.work, work_.unspent() / (after + 2));
   const Outcome outcome = contacts_.settle_directly<Friction>(solver_, own, state_.v.data(), seen_);
   if (outcome == Outcome::kSettled) return patience_ = std::min(kPatience, patience_ + 1.0), outcome;
-  const bool worked = 4 * (effort.work - seen_.work) < work_.budget();  // the rest is too little for sweeps
+  // Newton's method has left less than a quarter of the budget, too little for sweeps.
+  const bool worked = 4 * (effort.work - seen_.work) < work_.budget();
   const bool wait = can_wait() && (outcome == Outcome::kLater || worked);
   sweeps_only_ = outcome == Outcome::kUnsolved || waits_ + 2 > patience_;
   return wait ? Outcome::kLater : Outcome::kUnsolved;
@@ -262,7 +263,7 @@ std::optional<double> Rod::guard(double dt_s) noexcept {
   report_.guard_events += share < 1.0;
   // Sweeps that replace an unfinished Newton solve converge slowly: the true error is about 100 times the last change.
   const bool wild = seen_.cut_short && (seen_.change_m_per_s > kWild_m_per_s || (alone_ && sweeps_only_));
-  const double slow = wild ? brake(dt_s) : 1.0;  // counts towards the share: slower velocities already move less
+  const double slow = wild ? brake(dt_s) : 1.0;  // braked velocities move less, so the guard shortens the step less
   report_.time_lost += (1.0 - std::min(share, slow)) / report_.substeps;
   return std::min(1.0, share / std::max(slow, 1e-9));
 }

@@ -82,7 +82,7 @@ void Spin::eliminate() noexcept {
   }
 }
 
-// rate_ = A^-1 b, with the factors of eliminate().
+// Solves the tridiagonal system A rate_ = b with the factors that eliminate() has computed.
 void Spin::solve(const std::vector<double>& b) noexcept {
   const std::size_t edges = tangent_.size() - 1;
   double carried = 0.0;

@@ -45,22 +45,23 @@ class Spin {
 
   /// Plastic flow of the bends in a substep, at the present positions. @return energy dissipated, J.
   double yield(const Material& material, State& state) noexcept;
-  /// z_i of spin_set.cpp, as a change of tangent: the plastic part of the stress-free bend is set_fraction x z_i.
+  /// Plastic state z_i of a vertex: a vector, the bend (change of unit tangent) up to which its yielding part has
+  /// followed. The stress-free bend has changed by set_fraction x z_i (model: spin_set.cpp).
   [[nodiscard]] Vec set(int vertex) const noexcept { return set_[static_cast<std::size_t>(vertex)]; }
 
   /// Sets up and solves the system of a substep for the rates, without torques of contacts.
   void assemble(const Material& material, const State& state, double dt_s) noexcept;
-  /// Solves again with the torque impulses since assemble(), then turns all frames for dt_s.
+  /// Solves again with the torque impulses of contacts since assemble(), then turns all frames for dt_s.
   void advance(const Material& material, State& state, Forces& forces, double dt_s) noexcept;
 
-  // For contacts; valid between assemble() and advance().
+  /// Roll rate, rad/s, and tangent of a segment, for contacts. Valid between assemble() and advance().
   [[nodiscard]] double rate(int segment) const noexcept { return rate_[static_cast<std::size_t>(segment)]; }
   [[nodiscard]] Vec tangent(int segment) const noexcept { return tangent_[static_cast<std::size_t>(segment)]; }
   /// Change of a segment's rate per unit torque impulse on it, 1/(kg m^2).
   [[nodiscard]] double answer(int segment) const noexcept { return answer_[static_cast<std::size_t>(segment)]; }
   /// Applies a torque impulse to a segment, N m s, and updates the rates of all segments in [first, last].
   void push(int segment, double torque_Nms, int first, int last) noexcept;
-  /// Saves and restores rates and torque impulses of [first, last].
+  /// Saves and restores rates and torque impulses of the segments first to last.
   void save(int first, int last) noexcept;
   void restore(int first, int last) noexcept;
 
@@ -90,17 +91,18 @@ class Spin {
 
   std::vector<Vec> director_, tangent_;
   std::vector<double> rate_, rolled_;  // w_j, rad/s; angle turned since the tick began, rad
-  std::vector<double> middle_m_;       // material coordinates of the segments' midpoints, as of director_
-  // Angles at vertex i. Without a hold: before_ = m_i. With one: angle to and from the hold's director.
+  std::vector<double> middle_m_;       // material coordinates of the segments' midpoints when director_ was set
+  // Twist angles at vertex i, rad. Without a hold: before_ is the angle m_i between the directors of its two segments.
+  // With one: before_ and after_ are the angles to the hold's director and from it.
   std::vector<double> before_, after_;
   std::vector<double> drift_before_, drift_after_;  // rates of these angles by the hold's rotation, rad/s
   std::vector<char> held_, was_held_;
-  std::vector<Vec> normal_, binormal_;  // d_i and t_i x d_i of the vertices
+  std::vector<Vec> normal_, binormal_;  // mean director d_i of each vertex, and t_i x d_i
   std::vector<Vec> born_, across_;      // stress-free bend, and its derivative by the roll angle
-  std::vector<double> born_size_;       // 2 sin(k l_i / 2): its elastic part, along d_i
-  std::vector<Vec> set_;                // z_i: world frame during a tick; components along d_i, t_i x d_i in update()
-  std::vector<double> limit2_;          // square of the yield limit of a vertex
-  std::vector<double> torque_;          // impulse on each segment since assemble()
+  std::vector<double> born_size_;       // 2 sin(k l_i / 2): stress-free bend without its plastic part, along d_i
+  std::vector<Vec> set_;        // plastic states z_i: world coordinates, but inside update() along d_i and t_i x d_i
+  std::vector<double> limit2_;  // square of the yield limit of a vertex
+  std::vector<double> torque_;  // torque impulse on each segment since assemble()
   std::vector<double> diag_, off_, rhs_, down_, up_, answer_, saved_rate_, saved_torque_;
   // Scratch of resample(): frames of the old mesh.
   std::vector<Vec> old_director_, old_tangent_;

@@ -136,8 +136,8 @@ void Spin::measure(const State& state, double tick_s, bool remeshed) noexcept {
   }
 }
 
-// A hold's rotation would make its angles jump at the start of the tick; the jump is instead turned into a constant
-// rate over the tick.
+// Measures the twist angles between a hold and its segments. If the hold has turned since the last tick, they would
+// jump; instead the difference becomes a constant rate of the angles during this tick.
 void Spin::measure_hold(const State& state, const Hold& hold, double tick_s, bool fresh) noexcept {
   const auto i = static_cast<std::size_t>(hold.node);
   held_[i] = 1;
@@ -153,7 +153,7 @@ void Spin::measure_hold(const State& state, const Hold& hold, double tick_s, boo
          angle_about(tangent_[i], transport(hold.director, hold.tangent, tangent_[i]), director_[i]));
 }
 
-// Stress-free bend of every vertex; its change is added to State::rest_bend.
+// Computes the stress-free bend of every vertex, and adds its change to State::rest_bend.
 void Spin::bear(const Material& material, State& state, bool keep_rest) noexcept {
   const std::size_t edges = state.x.size() - 1;
   for (std::size_t i = 1; i < edges; ++i) {
@@ -177,11 +177,12 @@ Vec Spin::shape_of(const Material& material, std::size_t i) noexcept {
   return along * normal_[i] + aside * binormal_[i];
 }
 
-// The same after a substep's roll: turns d_i, t_i x d_i and the stress-free bends with the segments.
+// After the segments have rolled for dt_s: turns the vertices' directors normal_, binormal_ and the stress-free bends
+// with them, and adds the change of the bends to State::rest_bend.
 void Spin::turn_born(const Material& material, State& state, double dt_s) noexcept {
   const std::size_t edges = state.x.size() - 1;
   for (std::size_t i = 1; i < edges; ++i) {
-    const double a = 0.25 * dt_s * (rate_[i - 1] + rate_[i]);  // half the angle, approximating its tangent
+    const double a = 0.25 * dt_s * (rate_[i - 1] + rate_[i]);  // half the angle, used in place of its tangent
     const double sine = 2.0 * a / (1.0 + a * a), cosine = 1.0 - a * sine;
     const Vec d = normal_[i], b = binormal_[i];
     normal_[i] = cosine * d + sine * b;

@@ -16,8 +16,8 @@
 
 namespace ligature::physics::rod {
 
-// Return mapping: z moves along kappa - z until the bound holds, so a step of any size is stable and dissipates energy.
-// Remeshing offsets (State::rest_bend - born_) do not count as curvature.
+// Return mapping: z moves towards kappa until |kappa - z| is within the yield limit, so a step of any size is stable
+// and dissipates energy. Remeshing offsets (State::rest_bend - born_) do not count as curvature.
 double Spin::yield(const Material& m, State& state) noexcept {
   const Mesh& mesh = state.mesh;
   const std::size_t edges = state.x.size() - 1;
@@ -40,7 +40,8 @@ double Spin::yield(const Material& m, State& state) noexcept {
   return lost_J;
 }
 
-// z in components along d_i and t_i x d_i, so that it turns with the frames when these are updated.
+// Changes the plastic states z_i from world coordinates to components along normal_ and binormal_ of the vertex, so
+// that they turn with the frames when these are updated. set_to_world() changes them back.
 void Spin::set_to_material() noexcept {
   for (std::size_t i = 1; i < set_.size(); ++i)
     set_[i] = make(dot(set_[i], normal_[i]), dot(set_[i], binormal_[i]), 0.0);

@@ -1,5 +1,5 @@
 #pragma once
-// Velocities of the contact window during a sweep: single precision, eight nodes per register.
+// Velocities, during a contact sweep, of the nodes on which contacts act: single precision, eight nodes per register.
 
 #include <cstdint>
 #include <cstring>
@@ -37,7 +37,7 @@ class SweptVelocities {
   [[nodiscard]] static std::size_t padded(int nodes) noexcept {
     return (static_cast<std::size_t>(nodes) + 7) & ~std::size_t{7};
   }
-  /// Index of the x of a node of the window; y and z follow 8 and 16 later.
+  /// Index of a node's x component, nodes counted from the first one loaded. Its y and z are 8 and 16 places later.
   [[nodiscard]] static std::int32_t place(int node) noexcept { return (node >> 3) * 24 + (node & 7); }
 
   void load(const Vec* v, int nodes) noexcept {

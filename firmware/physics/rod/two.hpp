@@ -5,7 +5,8 @@
 
 namespace ligature::physics::rod {
 
-/// Lane 0: the chain of nodes left of the core; lane 1: the chain right of it (band_solver.hpp).
+/// One number for each of the two chains of nodes that band_solver.hpp eliminates towards its two middle (core) nodes.
+/// Lane 0: the left chain; lane 1: the right one.
 using Two = double __attribute__((vector_size(16)));
 
 /// A vector in each lane.
@@ -68,7 +69,7 @@ struct TwoSyms {
   return {a.xx * b.x + a.xy * b.y + a.xz * b.z, a.xy * b.x + a.yy * b.y + a.yz * b.z,
           a.xz * b.x + a.yz * b.y + a.zz * b.z};
 }
-/// Only the lower triangles are read.
+/// Two symmetric matrices, one for each lane; only their lower triangles are read.
 [[nodiscard]] inline TwoSyms both(const Mat& left, const Mat& right) noexcept {
   const Twos x = both(left.x, right.x), y = both(left.y, right.y), z = both(left.z, right.z);
   return {x.x, x.y, x.z, y.y, y.z, z.z};

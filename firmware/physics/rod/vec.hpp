@@ -98,7 +98,7 @@ inline void put(Mat& to, const Mat& from) noexcept {
   to.z.v = from.z.v;
 }
 
-/// Lane k in all four lanes.
+/// Component K of a vector in all four lanes.
 template <int K>
 [[nodiscard]] inline Lanes all(Vec a) noexcept {
   return __builtin_shufflevector(a.v, a.v, K, K, K, K);
