@@ -8,7 +8,8 @@
 namespace ligature::host {
 
 /// The three tables of `export`: header line, and one row of values in the header's order.
-/// @param row scratch, empty before and after. @param session 1, 2, .. in order of appearance.
+/// @param row scratch buffer, empty before and after the call. @param session number of the firmware run in the
+/// recording: 1, 2, .. in order of appearance.
 [[nodiscard]] std::string forces_header();
 [[nodiscard]] const std::string& forces_row(CsvRow& row, const ligature_msg::tick_t& tick, double t_s, int session);
 

@@ -57,8 +57,8 @@ GapFiller::GapFiller(const std::vector<fs::path>& folders) {
   }
 }
 
-/// Checks only the text of the path. Any access to a folder that a stranger chose could block for ever on a network
-/// file system.
+/// Remembers the flight recorder file that a status names, if it is in an allowed folder. Only the text of the path is
+/// checked: accessing a folder that a stranger chose could block for ever on a network file system.
 void GapFiller::note(const ligature_msg::status_t& status) {
   if (status.recorder_file.empty()) return;
   const fs::path file = fs::path(status.recorder_file).lexically_normal();
@@ -75,7 +75,7 @@ std::int64_t GapFiller::fill(const SessionTally& sessions, const Emit& emit, End
   const auto files = files_;
   for (const auto& file : files) {
     filled += fill_from(file, sessions, emit, ends);
-    filled += fill_from(file + ".previous", sessions, emit, ends);  // old file after a restart
+    filled += fill_from(file + ".previous", sessions, emit, ends);  // a restarted firmware renames its old file so
   }
   return filled;
 }
@@ -91,7 +91,7 @@ std::int64_t GapFiller::fill_from(const std::string& path, const SessionTally& s
   const auto file = open(path);
   const auto id = file ? session_of(*file) : std::nullopt;
   if (!id) {
-    files_.erase(path);  // makes room when a forged status named it; the firmware repeats its own ten times a second
+    files_.erase(path);  // may come from a forged status; the firmware names its own file again within 0.1 s
     return 0;
   }
   const auto session = std::ranges::find(sessions.sessions(), *id, &Session::id);

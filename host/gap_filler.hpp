@@ -40,7 +40,8 @@ class GapFiller {
   /// @return number of ticks fetched.
   std::int64_t fill(const SessionTally& sessions, const Emit& emit, Ends ends = Ends::kOpen);
 
-  /// Whether a flight recorder of this session was read to its end, with `ends` = kClosed.
+  /// Whether fill() with kClosed has read this session's flight recorder file, so that the session's last tick is
+  /// known.
   [[nodiscard]] bool knows_end_of(std::int64_t session) const { return ended_.contains(session); }
   /// A flight recorder file that a status named outside the allowed folders; empty when there was none.
   [[nodiscard]] const std::string& outside() const { return outside_; }

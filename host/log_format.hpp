@@ -90,7 +90,7 @@ struct LogCheck {
     if (beginning[0] == kLogSync[0] && log_check(beginning)) return true;
   return false;
 }
-/// bytes that suffice for that: they hold several messages of the rig
+/// Number of bytes that has_checksums() needs: they hold several messages of the rig.
 inline constexpr std::size_t kBeginning = 1U << 16U;
 
 [[nodiscard]] constexpr std::array<std::byte, kCheckBytes> encoded(const LogCheck& check) noexcept {

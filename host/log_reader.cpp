@@ -77,14 +77,15 @@ bool LogReader::read_event_at(std::int64_t offset) {
   }
 }
 
-/// In a log with checksums, another event must follow, or the end of the file (recorder killed). Otherwise the length
-/// field of this event is damaged, and using it would skip the intact events that follow.
+/// Whether an event's length field is plausible, judged by the bytes `behind` the event. In a log with checksums these
+/// begin the next event, or the file ends (recorder killed). Otherwise the length field is damaged, and using it would
+/// skip intact events.
 bool LogReader::is_whole(std::span<const unsigned char> behind) {
   const auto known = std::min(behind.size(), kLogSync.size());
   return std::ranges::equal(behind.first(known), std::span(kLogSync).first(known));
 }
 
-/// Whether a checksum event follows whose name, time or sum is damaged.
+/// Whether the bytes `behind` an event are a checksum event whose name, time or sum is damaged.
 bool LogReader::is_like_check(std::span<const unsigned char> behind) {
   if (behind.size() < kCheckEventBytes) return false;
   const auto head = log_event_head(behind.first<LogEventHead::kBytes>());

@@ -26,7 +26,7 @@ struct LogSummary {
   std::vector<KnotSpan> knots;  // changes over time, oldest first
   std::optional<ligature_msg::status_t> last_status;
   std::int64_t unreadable_messages = 0, shapes = 0;
-  std::string damage;  // of the log; empty when it is intact
+  std::string damage;  // one line about damaged parts of the log; empty when it is intact
 
   /// Time on the controller's clock from the first to the last tick, summed over sessions.
   [[nodiscard]] double duration_s() const;

@@ -62,7 +62,8 @@ class Progress {
   double ticks_per_s_ = 0.0;
 };
 
-/// Receives until the stop. The link's handler records and counts messages; this loop fills gaps.
+/// Receives until the stop. The link's handler records and counts the messages. This loop calls recording.fill() once a
+/// second: ticks that the network lost are copied from the firmware's flight recorder file.
 void record_until_stopped(LcmLink& link, const LiveTally& tally, const RecordOptions& options, Recording& recording) {
   const auto start = Clock::now();
   auto filled = start;

@@ -23,7 +23,7 @@ void Recording::fetch(GapFiller::Ends ends) {
     waiting_.push_back(bytes_);
   };
   filled_ += filler_.fill(tally_.sessions(), emit, ends);
-  // only now, because fill() was still reading the tally's gaps
+  // the fetched ticks are counted only now, because fill() reads the tally's list of gaps
   for (const auto& bytes : waiting_) tally_.add(kTicksChannel, bytes);
   waiting_.clear();
 }

@@ -17,9 +17,9 @@ class Recording {
       : log_(log), tally_(tally), filler_(flight_folders) {}
 
   void take(const Message& message);
-  /// Fetches missing ticks between received ones.
+  /// Adds ticks that are missing between received ones, from the flight recorder.
   void fill() { fetch(GapFiller::Ends::kOpen); }
-  /// Fetches missing ticks for the last time, including those after each session's last received tick.
+  /// Adds missing ticks from the flight recorder for the last time, also those after each session's last received tick.
   /// @param is_quiet true: nothing is being sent any more. false: the newest session still runs, and its end is not
   /// looked for.
   void finish(bool is_quiet);

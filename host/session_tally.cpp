@@ -7,7 +7,8 @@
 namespace ligature::host {
 
 int SessionTally::find_or_add(std::int64_t id) {
-  for (std::size_t i = sessions_.size(); i-- > 0;)  // newest first: nearly always that one
+  for (std::size_t i = sessions_.size();
+       i-- > 0;)  // newest first, because nearly all ticks belong to the newest session
     if (sessions_[i].id == id) return static_cast<int>(i);
   if (sessions_.size() >= kMaxSessions) return -1;
   sessions_.push_back({.id = id, .ring_dropped = 0, .ticks = {}});

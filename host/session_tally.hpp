@@ -11,7 +11,7 @@ namespace ligature::host {
 /// What was received of one session (one run of the firmware).
 struct Session {
   std::int64_t id = 0;            // CLOCK_REALTIME at the session's start, us
-  std::int64_t ring_dropped = 0;  // ticks that the firmware's ring buffer dropped: part of the missing ones
+  std::int64_t ring_dropped = 0;  // ticks that the firmware's ring buffer dropped, included in ticks.missing()
   GapCounter ticks;
   std::int8_t last_state = 0;  // STATE_ of tick_t, of the tick with the highest number
 };
@@ -37,7 +37,7 @@ class SessionTally {
   [[nodiscard]] std::int64_t duplicates() const;
   [[nodiscard]] std::int64_t left_out() const {
     return left_out_;
-  }  ///< of sessions beyond kMaxSessions; not in received()
+  }  ///< ticks of sessions beyond kMaxSessions; not in received()
   /// The first session whose last tick is not in state OFF, null when there is none. Every run that ends normally ends
   /// in OFF. Otherwise the firmware or the recorder was killed, or the recorder was stopped first, and it is unknown
   /// how many ticks followed.

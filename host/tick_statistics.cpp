@@ -34,7 +34,7 @@ void TickStatistics::add_thread(const ligature_msg::tick_t& tick) {
   thread_.lost_ticks += static_cast<double>(tick.time_lost);
 }
 
-/// Lost periods count too: the device kept the last force.
+/// Adds a tick to the force statistics. Lost periods count too, because the device kept the last force.
 void TickStatistics::add_hand(std::size_t hand, const ligature_msg::tick_t& tick) {
   auto& felt = hands_[hand];
   const double force_N = magnitude(tick.f_device_N[hand]);

@@ -10,9 +10,9 @@ namespace ligature::host {
 
 /// Force statistics of one hand.
 struct HandStatistics {
-  double peak_N = 0.0;  // largest |f_device|
+  double peak_N = 0.0;  // largest force at the device
   std::int64_t peak_tick = -1;
-  double sum_N = 0.0;  // of |f_device| over the ticks with a grasp
+  double sum_N = 0.0;  // sum of the force at the device over the ticks with a grasp
   std::int64_t grasp_ticks = 0;
   std::int64_t limited_ticks = 0;  // force reduced by a limit
   [[nodiscard]] double mean_N() const { return grasp_ticks ? sum_N / static_cast<double>(grasp_ticks) : 0.0; }
@@ -54,7 +54,7 @@ class TickStatistics {
   [[nodiscard]] const ThreadStatistics& thread() const { return thread_; }
   [[nodiscard]] const ThreadTime& thread_time() const { return thread_time_; }
   [[nodiscard]] const std::array<HandStatistics, 2>& hands() const { return hands_; }
-  /// one entry for each change to a fault
+  /// One entry each time the fault number changes to another fault.
   [[nodiscard]] const std::vector<FaultEntry>& faults() const { return faults_; }
   [[nodiscard]] Percentiles wakeup() const { return percentiles_of(wakeup_ns_); }
   [[nodiscard]] Percentiles control() const { return percentiles_of(control_ns_); }

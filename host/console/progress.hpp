@@ -28,7 +28,8 @@ class Progress {
   /// Whether the line should be printed again; lets a caller build its text only then. Cheap enough for every tick.
   [[nodiscard]] bool is_due() { return is_on_ && ++calls_ % 64 == 0 && is_due(Clock::now()); }
   [[nodiscard]] bool is_due(Clock::time_point now);
-  /// For slow steps: printed at once.  @param share 0 .. 1 done;  @param step the current step, a short phrase.
+  /// For slow steps: printed at once.  @param share fraction done, 0 .. 1;  @param step the current step, a short
+  /// phrase.
   void show(double share, const std::string& step) { show(share, step, Clock::now()); }
   void show(double share, const std::string& step, Clock::time_point now);
   /// Prints a step whose progress cannot be measured, such as "making the MCAP file".

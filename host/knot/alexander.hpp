@@ -13,7 +13,7 @@ namespace ligature::knot {
 /// 29 crossings; simplify larger diagrams first. Cost O(n^4).
 [[nodiscard]] std::vector<int> alexander(const Diagram& d);
 
-/// |Delta(-1)|
+/// The knot's determinant |Delta(-1)|. @param alexander coefficients of the Alexander polynomial Delta.
 [[nodiscard]] int determinant(const std::vector<int>& alexander) noexcept;
 
 }  // namespace ligature::knot

@@ -35,12 +35,12 @@ std::vector<Point> way_home(std::span<const Point> thread, const Point& first, c
   const double far = 20.0 * radius;
   const Point from = (thread.back() + far * last - centre).normalized(),
               to = (thread.front() + far * first - centre).normalized();
-  // Great circle through from and to; any great circle when they are opposite.
+  // Axis of the great circle through `from` and `to`; of any great circle when they are opposite.
   Point axis = from.cross(to);
   if (axis.norm() < 1e-6) axis = from.unitOrthogonal();
   const double angle = std::atan2(from.cross(to).norm(), from.dot(to));
   std::vector<Point> way;
-  constexpr int kSteps = 4;  // a chord of at most 45 degrees on the sphere of 20 radii stays beyond 18 radii
+  constexpr int kSteps = 4;  // chords of at most 45 degrees between points 20 thread radii out stay beyond 18 radii
   for (int k = 0; k <= kSteps; ++k) {
     const Point p = Eigen::AngleAxisd(angle * k / kSteps, axis.normalized()) * from;
     way.push_back(centre + far * p);

@@ -74,7 +74,7 @@ class Pass {
 
   [[nodiscard]] bool meets_block(const Triangle& triangle, std::size_t block, const Slot (&skipped)[4]) const {
     const auto end = static_cast<Slot>(std::min(corners_.size(), (block + 1) * kBlock));
-    Slot known = kNone;  // slot of the last height that was computed; consecutive edges share a corner
+    Slot known = kNone;  // corner whose height above the triangle is known from the edge before
     double height = 0.0;
     for (auto k = static_cast<Slot>(block * kBlock); k < end; ++k) {
       const Slot next = after_[index(k)];

@@ -8,7 +8,8 @@
 
 namespace ligature::knot {
 
-/// A straight edge from one end of an open polyline that later closes it. Moves must not cross it either.
+/// A straight edge from one end of an open polyline to the point `to`, with which the closing path begins later. No
+/// corner is removed if its triangle is pierced by a bar.
 struct Bar {
   bool from_front;  ///< true: starts at the front; false: at the back
   Point to;

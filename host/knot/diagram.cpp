@@ -22,8 +22,8 @@ void erase(Diagram& d, std::size_t a, std::size_t b) {
   d.signs = std::move(signs);
 }
 
-/// Removes a nugatory crossing c: the walk is c A c B, and A and B share no crossing. Turning the part A by 180 degrees
-/// removes c. A's crossings keep their signs, and over and under swap.
+/// Removes a nugatory crossing c: the walk along the knot is c A c B, where the pieces A and B have no crossing in
+/// common. Turning A by 180 degrees removes c. A's crossings keep their signs, and their over and under passes swap.
 bool undo_one_nugatory(Diagram& d) {
   const std::size_t n = d.passes.size();
   for (std::size_t i = 0; i < n; ++i) {

@@ -91,7 +91,7 @@ KnotResult recognise_ring(std::vector<Point> ring) {
   return seen.best;
 }
 
-/// The closures that are tried: both ends outwards from the centre, then both ends in one common direction.
+/// Closing paths to try for an open thread: both ends led outwards from the centre, then both in a common direction.
 std::vector<std::vector<Point>> ways_home(std::span<const Point> thread) {
   constexpr int kCommon = 8;
   std::vector<std::vector<Point>> ways{

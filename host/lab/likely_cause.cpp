@@ -14,7 +14,7 @@ struct Limit {
   double largest_dt_s;
 };
 
-/// x, or a huge time step when x is not finite because the term is absent.
+/// A term's largest stable time step x; a huge step when x is not finite, because the scene lacks that term.
 double or_never(double x) { return std::isfinite(x) ? x : 1e300; }
 
 std::vector<Limit> limits(const scene::Scene& s) {

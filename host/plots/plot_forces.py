@@ -39,7 +39,9 @@ def read(path):
 
 
 def thinned(time, values):
-    """Reduces each bin of samples to its smallest and largest value, so that no spike is lost."""
+    """At most about POINTS points of a curve: divides its samples into bins of equal size, and keeps the smallest and
+    the largest value of each, so that no spike is lost.
+    """
     bins = len(values) // (POINTS // 2)
     if bins < 2:
         return time, values
@@ -99,7 +101,7 @@ def draw_hand(axes, column, time, hand, limit_N, frames):
     axes.plot(*thinned(time, force_N), color=colour, linewidth=1.1, label="|F| commanded to the device")
     axes.axhline(limit_N, color=LIMIT, linestyle="--", linewidth=1.0, label=f"limit {limit_N:g} N")
     marks = {"grasp": [], "release": []}
-    for first, after, held in spans(node >= 0):  # remeshing renumbers the held node
+    for first, after, held in spans(node >= 0):  # not by equal node number, which remeshing changes
         if not held:
             continue
         axes.axvspan(time[first], time[after - 1], color=colour, alpha=0.08, linewidth=0)

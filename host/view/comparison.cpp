@@ -36,7 +36,7 @@ struct Comparison::Other {
   Player player;
   // added to a tick number of the other recording, gives the corresponding tick of this one
   std::optional<std::int64_t> offset_ticks;
-  bool is_whole = false;  // the other was fully read at the last seek, so that its long windows are complete
+  bool is_whole = false;  // its last jump came after its survey was complete, so that its traces have no holes
   double shift_s = 0.0;   // time in the other log at time 0 of this log
 
   Other(const fs::path& path, std::string align_)
@@ -99,7 +99,7 @@ void Comparison::find_offset() {
     } else {
       const bool is_known =
           (ours.first_grasp || survey_.progress() >= 1.0) && (theirs.first_grasp || other_->survey.progress() >= 1.0);
-      if (!is_known) return;  // wait until enough is read
+      if (!is_known) return;  // the surveys have not read far enough to find both grasps
       close();
       return tell("one of them has no grasp; align by start");
     }
@@ -113,7 +113,7 @@ void Comparison::find_offset() {
 void Comparison::follow(double position_s, Picture::Clock::time_point now) {
   if (other_ && !other_->offset_ticks) find_offset();
   if (!other_ || !other_->offset_ticks) return;
-  // fully read now: seek again, so that the long windows have no holes
+  // the other recording is fully read now: jump to the same time again, so that its traces have no holes
   if (!other_->is_whole && other_->survey.progress() >= 1.0) {
     other_->is_whole = true;
     other_->player.seek(position_s + other_->shift_s, now);

@@ -13,7 +13,7 @@
 namespace ligature::host::view {
 
 /// Reads a whole log once in the background while it is already being played. Collects marks to jump to, the knots over
-/// time, and the trace bins for the long windows.
+/// time, and the trace bins (smallest and largest values of 50 ticks each) for the page's long time windows.
 class LogSurvey {
  public:
   static constexpr std::size_t kMostBins = 864'000 /* 12 h */, kMostMarks = 5'000, kOverview = 600;
@@ -31,12 +31,12 @@ class LogSurvey {
   struct Landmarks {
     /// tick numbers; first_grasp: the first tick in which a hand holds a node
     std::optional<std::int64_t> first_tick, first_grasp;
-    double first_tick_s = 0.0;  ///< time in the log, s
+    double first_tick_s = 0.0;  ///< time of first_tick since the log's first message, s
     double period_s = 1e-3;
   };
   [[nodiscard]] Landmarks landmarks() const;
 
-  /// The trace bins up to time t of the session that runs at t, at most the last ten minutes.
+  /// The trace bins of the ten minutes before time t, as far as they belong to the session that runs at t.
   [[nodiscard]] std::vector<TraceBin> history(double t_s) const;
 
  private:

@@ -86,7 +86,8 @@ bool PageConnection::on_message(std::string_view text) {
     return seen_ <= place_.frame;
   }
   look_at_token(message);
-  if (message.size() == 1 && message.contains("token")) return true;  // only shows the token and asks for nothing
+  if (message.size() == 1 && message.contains("token"))
+    return true;  // the message only shows the token and contains no request
   if (auto answer = shared_.hooks.on_message(id_, message); !answer.is_null()) add_answer(answer);
   return true;
 }

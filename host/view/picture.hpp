@@ -17,7 +17,7 @@ namespace ligature::host::view {
 
 /// How far a page has received a picture's traces.
 struct TracePlace {
-  std::int64_t epoch = -1;  // of the picture; when it changes, the page discards everything
+  std::int64_t epoch = -1;  // the picture's epoch that the page knows; when it changes, the page discards everything
   std::int64_t row = 0, bin = 0;
 };
 
@@ -66,7 +66,7 @@ class Picture {
   [[nodiscard]] std::int64_t unreadable() const;
 
  private:
-  /// Unique over all pictures.
+  /// A number that no other picture has had: it marks the data since the last start_again().
   static std::int64_t next_epoch();
   void count_unreadable();
   void take_batch(const ligature_msg::tick_batch_t& batch);
@@ -75,7 +75,7 @@ class Picture {
   void write_now(FrameWriter& frame, Clock::time_point now) const;
   void write_shape(FrameWriter& frame) const;
   void write_beside(FrameWriter& frame, TracePlace& place) const;
-  /// @return whether the page must start again.
+  /// @return whether the page must discard the traces that it has, because the picture's epoch has changed.
   bool begin_traces(TracePlace& place) const;
   void write_traces(FrameWriter& frame, TracePlace& place, Section rows, Section bins) const;
   [[nodiscard]] nlohmann::json changes_since(Place& place) const;
@@ -83,7 +83,7 @@ class Picture {
   mutable std::mutex mutex_;
   const Picture* beside_ = nullptr;
   std::int64_t epoch_ = next_epoch(), session_ = -1, unreadable_ = 0;
-  std::optional<Clock::time_point> heard_;  // time of the last ticks
+  std::optional<Clock::time_point> heard_;  // when the last ticks were received
   std::optional<ligature_msg::tick_t> last_;
   ligature_msg::thread_t thread_{};
   std::int64_t shape_version_ = 0;

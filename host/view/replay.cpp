@@ -45,7 +45,7 @@ void replay(const ReplayOptions& options) {
     if (!has_marks && survey.progress() >= 1.0) {
       has_marks = true;
       picture.set("marks", survey.marks());
-      // reload: the traces' history is complete now
+      // jumps to the same time again, because the history of the traces is complete now
       if (player.position_s() > Player::kLeadIn_s) player.seek(player.position_s(), clock);
     }
     auto now = player.state();

@@ -69,7 +69,7 @@ void write_tick(FrameWriter& frame, const ligature_msg::tick_t& tick) {
 }
 
 bool is_drawable(const ligature_msg::thread_t& thread) {
-  constexpr std::size_t kMostNodes = 5000;  // suture.nodes of the scene file ends there
+  constexpr std::size_t kMostNodes = 5000;  // upper limit of suture.nodes in scene files
   const auto is_finite = [](const auto& p) { return std::ranges::all_of(p, [](float x) { return std::isfinite(x); }); };
   return thread.p_W_m.size() >= 2 && thread.p_W_m.size() <= kMostNodes && std::isfinite(thread.radius_m) &&
          thread.radius_m > 0.0F && std::ranges::all_of(thread.p_W_m, is_finite) && is_finite(thread.tension_N) &&

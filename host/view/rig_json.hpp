@@ -10,10 +10,10 @@
 
 namespace ligature::host::view {
 
-/// Kind of an event that the host itself found, beside those of event_t.
+/// Event kind for a change of the knot. The host finds it, so it is no KIND_ of event_t.
 inline constexpr int kKnotEvent = 100;
 
-/// What the page is told of a message; field names and units as in the .lcm files.
+/// A message as JSON for the page; field names and units as in the .lcm files.
 [[nodiscard]] nlohmann::json to_json(const ligature_msg::status_t& status);
 [[nodiscard]] nlohmann::json to_json(const ligature_msg::event_t& event);
 [[nodiscard]] nlohmann::json to_json(const ligature_msg::offer_t& offer);
@@ -24,7 +24,7 @@ inline constexpr int kKnotEvent = 100;
 /// State, hands and counters of one tick as doubles, in the order that page/frame.js reads.
 void write_tick(FrameWriter& frame, const ligature_msg::tick_t& tick);
 
-/// Finite positions, a radius, and no more nodes than the firmware can have.
+/// Whether a shape can be drawn: finite positions, a positive radius, and no more nodes than a scene may have.
 [[nodiscard]] bool is_drawable(const ligature_msg::thread_t& thread);
 
 }  // namespace ligature::host::view

@@ -34,7 +34,7 @@ enum Column : std::size_t {
   kRightNode,
   kLeftWorld,  // |f_world_N|: the thread's tension at the hand
   kRightWorld,
-  kLeftPort_J,  // account of the device port, and energy dissipated by the passivity controller
+  kLeftPort_J,  // energy account of each device port; below, energy removed by the passivity controller
   kRightPort_J,
   kLeftDissipated_J,
   kRightDissipated_J,
@@ -47,7 +47,7 @@ enum Column : std::size_t {
   kLeftClutch,  // 1: clutch engaged, the tool stays where it is
   kRightClutch,
   kDegradation,    // DEGRADED_ value of tick_t
-  kThreadDone_ns,  // when the thread's physics was done; 0: it was late
+  kThreadDone_ns,  // from the wake-up until the thread's physics was done; 0: it was late
   kTimeLost,       // share of the tick in which the thread was not moved
   kColumns
 };

@@ -14,7 +14,7 @@ struct Bench {
   std::filesystem::path out;     ///< created before the experiment starts
 };
 
-// Each returns kDone, or kRunFailed when one of its claims does not hold.
+// One function per experiment. @return kDone, or kRunFailed when one of the experiment's claims does not hold.
 int experiment_models(const Bench& bench);
 int experiment_knotting(const Bench& bench);
 int experiment_pulling(const Bench& bench);

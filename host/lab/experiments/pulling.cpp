@@ -1,5 +1,7 @@
-// Experiment `pulling`: the paper's Table III, force per haptic frame for one-hand and two-hand pulls, with its
-// conditions A, B and C.
+// Experiment `pulling`: the paper's Table III, the force in each haptic frame (here: each tick of 1 ms) for one-hand
+// and two-hand pulls. The table also gives the condition under which force passes along the thread: A, no segment is at
+// its limit of length and only the springs act; B, segments at a limit are rigid and pass the force on; C, as B, with
+// two hands (firmware/physics/propagation.hpp).
 
 #include <algorithm>
 #include <array>
@@ -56,7 +58,7 @@ Pull two_hands() {
 struct Felt {
   double peak_N = 0.0;                   ///< at the device, after scaling and the force limit
   double peak_unlimited_N = 0.0;         ///< after scaling, before the force limit
-  std::array<int, 4> frames{};           ///< number of frames in which each condition determined the force
+  std::array<int, 4> frames{};           ///< number of ticks under each condition: none, A, B, C
   double longest = 0.0, shortest = 2.0;  ///< longest and shortest segment, relative to the rest length
   bool finite = true;
 };

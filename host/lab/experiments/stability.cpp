@@ -16,12 +16,12 @@ namespace ligature::lab {
 namespace {
 
 constexpr double kSwing_s = 20.0;  // duration of a trial: released from the horizontal, swinging freely
-constexpr double kMaxGain = 0.02;  // of M g L: energy error allowed for a stable integrator
+constexpr double kMaxGain = 0.02;  // energy gain, as a fraction of M g L, from which a run counts as unstable
 constexpr int kNodes[] = {20, 35, 50, 100};
 constexpr std::array kModels{scene::Model::kPaper1, scene::Model::kPaper2, scene::Model::kPaper3, scene::Model::kPaper4,
                              scene::Model::kPaper5};
 
-/// Whether a swing of 20 s with this step stays finite and gains less than 2 % of M g L.
+/// Whether a swing of 20 s with this step stays finite and gains less energy than 2 % of M g L (M mass, L length).
 bool survives(scene::Scene scene, double dt_s) {
   scene.time = {dt_s, 1};
   Rehearsal r(scene, {});
@@ -48,7 +48,8 @@ double largest_step(const scene::Scene& scene, double low, double high) {
   return low;
 }
 
-/// Largest stable steps measured with an independent prototype of the same equations, ms; 0: not found in its range.
+/// Largest stable time steps, ms, measured with an independent prototype of the same equations; 0: the prototype found
+/// no limit in the range that it searched.
 struct Reference {
   scene::Integrator integrator;
   std::array<std::array<double, 4>, 5> largest_ms;  ///< [model][nodes]
@@ -56,7 +57,8 @@ struct Reference {
 
 /// Explicit Euler without bending damping becomes unstable slowly, so that the limit depends on how the energy is
 /// monitored. That is unknown for the prototype (it found 0.11, 0.07, 0.06 ms for model 1), so models 1 and 2 have no
-/// reference there. With bending damping the limit is sharp: k_d l / k_l.
+/// reference for the forward scheme. With bending damping the limit is sharp: k_d l / k_l (k_d stretch damping, k_l
+/// stretch stiffness, l segment length).
 constexpr Reference kReferences[] = {
     {scene::Integrator::kSemiImplicit,
      {{{3.66, 2.86, 2.32, 1.67},
@@ -102,8 +104,8 @@ double add_explicit(const scene::Scene& base, const Reference& ref, Table& table
   return worst;
 }
 
-/// Measures the default scheme, with implicit damping. @return the smallest ratio of limit to 1 ms at N = 20, 35, 50
-/// (paper-4).
+/// Measures the default scheme, with implicit damping. @return the largest stable step of paper-4 divided by 1 ms, the
+/// smallest of the values at N = 20, 35 and 50 nodes.
 double add_default(const scene::Scene& base, Table& table, console::Progress& progress) {
   double margin = 1e9;
   for (const auto model : kModels) {

@@ -75,8 +75,8 @@ void pull_knot(const Setting& setting, int cost_only, Traces& t) {
   t.knot = knot::recognise(points, false).type;
 }
 
-/// Largest error of elastica and catenary, relative to L or to the quantity. NaN for explicit models beyond 50 nodes,
-/// which would take minutes.
+/// Largest error of the validation cases for elastica and catenary: position errors relative to the length L, other
+/// quantities relative to themselves. NaN for explicit models beyond 50 nodes, which would take minutes.
 double static_error(const Setting& setting) {
   if (setting.model != scene::Model::kRod && setting.nodes > 50) return kNan;
   double worst = 0.0;

@@ -25,9 +25,10 @@ struct Traces {
 [[nodiscard]] Traces run_trials(const Setting& setting, int cost_only = 0);
 
 struct Errors {
-  double shape = 0.0;  ///< largest static error of elastica and catenary, of L; NaN: not measured
-  double swing = 0.0;  ///< rms distance of the free end, of L
-  double knot = 0.0;   ///< difference of the hands' distance at equal force, diameters; NaN: the knot was lost
+  double shape =
+      0.0;  ///< largest error of the shapes at rest (elastica, catenary), relative to the length L; NaN: not measured
+  double swing = 0.0;  ///< rms distance of the swinging free end from the finest setting's, relative to L
+  double knot = 0.0;   ///< difference of hold_m from the finest setting's, diameters; NaN: the knot was lost
 };
 
 [[nodiscard]] Errors errors_of(const Setting& setting, const Traces& mine, const Traces& finest);

@@ -1,4 +1,4 @@
-"""Cost of a tick against N, log-log. Usage: bench.py bench.csv bench.png"""
+"""CPU time of a tick against the number of nodes N, log-log. Usage: bench.py bench.csv bench.png"""
 
 import csv
 import math

@@ -1,4 +1,4 @@
-"""Trials that stay finite: factor against time step, one panel per parameter.
+"""Which runs stay finite: factor on a parameter against time step, one panel per parameter.
 
 Usage: extremes.py extremes.csv extremes.png
 """

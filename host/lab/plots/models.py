@@ -1,4 +1,6 @@
-"""The five models let go from level, side by side, a shape every 0.1 s. Usage: models.py models-shapes.csv models.png"""
+"""The paper's five models side by side, released from the horizontal; a shape every 0.1 s.
+Usage: models.py models-shapes.csv models.png
+"""
 
 import csv
 import sys

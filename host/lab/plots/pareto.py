@@ -1,4 +1,4 @@
-"""Cost of a tick against error, every model, fronts drawn. Usage: pareto.py pareto.csv pareto.png"""
+"""CPU time of a tick against error, every model, with Pareto fronts. Usage: pareto.py pareto.csv pareto.png"""
 
 import csv
 import sys

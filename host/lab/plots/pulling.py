@@ -1,4 +1,6 @@
-"""Force per haptic frame, conditions A, B, C as background. Usage: pulling.py frames.csv pulling.png"""
+"""Force in each haptic frame (tick); the background shows the paper's condition of force propagation, A, B or C.
+Usage: pulling.py frames.csv pulling.png
+"""
 
 import csv
 import sys

@@ -1,4 +1,6 @@
-"""The map of pulls, and the desk before and after. Usage: unknotting.py map.csv desk.csv unknotting.png"""
+"""Which pulls open the knot, by node and direction; and the thread on the desk before and after a pull.
+Usage: unknotting.py map.csv desk.csv unknotting.png
+"""
 
 import csv
 import sys

@@ -55,7 +55,7 @@ bool same_bits(const thread_t& a, const thread_t& b) {
          std::ranges::equal(a.p_W_m, b.p_W_m, [](const auto& p, const auto& q) { return same_bits(p, q); });
 }
 
-/// The point at a share 0 .. 1 of the node indices, interpolated linearly.
+/// The point at a fraction 0 .. 1 (`share`) of the largest node index, interpolated linearly.
 std::array<double, 3> point_at(const thread_t& thread, double share) {
   const double at = share * static_cast<double>(thread.p_W_m.size() - 1);
   const auto before = std::min(static_cast<std::size_t>(at), thread.p_W_m.size() - 2);

@@ -16,7 +16,7 @@
 namespace ligature::lab {
 
 /// The columns of a tick (host/tick_columns.hpp) that come from the thread. All are recorded exactly, except:
-/// min_gap_m, 1e9 when nothing is near; contacts, at most 32767; time_lost, a float. Shapes are floats.
+/// min_gap_m is 1e9 when nothing is near, contacts is clipped to 32767, time_lost is rounded to a float.
 [[nodiscard]] const std::vector<std::string>& columns_of_thread();
 
 /// Magnitude of the difference of the thread's forces on a hand, N.
@@ -32,7 +32,7 @@ struct ForceOf {
 /// The knots over time: (time in s, type), one entry per change.
 using KnotHistory = std::vector<std::pair<double, std::string>>;
 
-/// Distance between two shapes, node by node, m. With different numbers of nodes, points at equal shares of the node
+/// Distance between two shapes, node by node, m. With different numbers of nodes, points at equal fractions of the node
 /// index are compared.
 struct ShapeDistance {
   double rms_m = 0.0, largest_m = 0.0;
@@ -59,7 +59,9 @@ class Differences {
   };
   [[nodiscard]] const Side& recorded() const { return recorded_; }
   [[nodiscard]] const Side& again() const { return again_; }
-  [[nodiscard]] const std::array<ForceOf, 2>& apart() const { return apart_; }  ///< difference of the two forces
+  [[nodiscard]] const std::array<ForceOf, 2>& apart() const {
+    return apart_;
+  }  ///< |recorded - recomputed force|, per hand
   [[nodiscard]] std::int64_t ticks() const { return ticks_; }
   [[nodiscard]] std::int64_t different_ticks() const { return different_ticks_; }
   [[nodiscard]] std::int64_t shapes() const { return shapes_; }

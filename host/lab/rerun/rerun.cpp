@@ -134,8 +134,8 @@ class Play {
   host::GapCounter seen_;
   host::TickOrder order_;
   ligature_msg::tick_batch_t like_{};
-  std::map<std::int64_t, thread_t> recorded_, played_;  // by tick: shapes whose counterpart has not come yet
-  std::array<std::array<double, 3>, 2> more_N_{};       // f_world of the tick before, minus the recorded one
+  std::map<std::int64_t, thread_t> recorded_, played_;  // by tick: shapes not yet compared
+  std::array<std::array<double, 3>, 2> more_N_{};       // f_world of the last tick: recomputed minus recorded
   std::int64_t compared_tick_ = -1;
   bool is_ours_ = false;
 };

@@ -13,7 +13,7 @@
 
 namespace ligature::lab {
 
-/// A log with everything of the recorded one, at its times; the thread's data are those of the rerun.
+/// A copy of the recorded log, with the same times; the thread's data in it are those of the rerun.
 class RerunLog {
  public:
   /// @throws host::BadInput when the file exists or cannot be made.

@@ -90,7 +90,8 @@ void ThreadPlayer::obey(const Request& request, int cut_at) {
   note_result(request.tick);
 }
 
-/// @return false when the recording lacks the scene.
+/// Builds the thread of the scene in force at the request's tick. With `keeps_motion` (only parameters have changed) it
+/// continues from the present shape and velocities. @return false when the recording lacks the scene.
 bool ThreadPlayer::take_scene(const Request& request, bool keeps_motion) {
   const std::size_t next = scene_at(request.tick);
   if (scenes_[next].first_tick <= last_step_ || scenes_[next].first_tick > request.tick) {

@@ -1,5 +1,6 @@
 #pragma once
-// Recomputes the thread's ticks from the records: same tool positions, same orders, ended early at the same places.
+// Recomputes the thread's ticks from the records: with the same tool positions, the same resets and scene changes, and
+// ticks ended early at the same point of the computation.
 
 #include <array>
 #include <cstdint>
@@ -68,7 +69,7 @@ class ThreadPlayer {
   std::string why_unknown_ = "its beginning is missing";
   std::deque<Request> requests_;  // not yet carried out
   std::int64_t next_tick_ = -1, last_step_ = -1, shape_of_ = -1;
-  std::optional<control::ThreadOrders> orders_;  // of the last step; empty: not recorded
+  std::optional<control::ThreadOrders> orders_;  // counts of resets and changes at the last step; empty: not recorded
   control::ThreadResult result_;
   ligature_msg::tick_t told_{};  // the last record returned
   std::vector<ligature_msg::thread_t> shapes_;

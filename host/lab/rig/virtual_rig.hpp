@@ -97,7 +97,8 @@ class VirtualRig {
  public:
   Nanoseconds time{0};
   std::vector<bool> drives_push;  ///< per tick: whether a motor had torque at the end of the period before the SYNC
-  std::array<TruthWatch, 2> truth{TruthWatch(setup.device), TruthWatch(setup.device)};  ///< per tick, as drives_push
+  /// true motion and force at each hand's tip, one entry per tick
+  std::array<TruthWatch, 2> truth{TruthWatch(setup.device), TruthWatch(setup.device)};
   std::int64_t cut_left_at = -1;  ///< tick at which the left hand's process is killed; -1: never
   std::int64_t stall_at = 0;      ///< tick at which the real-time loop is delayed once by stall_for
   Nanoseconds stall_for{0};

@@ -14,9 +14,9 @@ namespace ligature::lab {
 struct Trouble {
   double tremor_mm = 0.1;     ///< amplitude of each hand's tremor at the device, per axis, 8 to 12 Hz
   double late_ms = 20.0;      ///< largest delay of one hand after the other
-  double lost_share = 0.002;  ///< share of lost periods, in stalls of 1 .. 10 periods
+  double lost_share = 0.002;  ///< fraction of the control periods that the loop loses, in stalls of 1 .. 10 periods
   double frame_loss = 0.0;    ///< share of process data frames (PDOs) that are lost
-  double work_share = 1.0;    ///< share of the thread's work budget per tick that is available
+  double work_share = 1.0;    ///< fraction of the contact budget per tick that the thread's physics may use
 };
 
 struct Played {

@@ -19,8 +19,8 @@ constexpr double kSpeed_m_per_s = 0.005;
 // axial advance per turn, so that the thread does not lie on itself; lengthens the path by 0.02 %
 constexpr double kPitch_m = 0.0024;
 
-/// T1 / T2 with `wrapped` segments on an arc of `angle_rad`: one end is loaded with 1 N, the other is pulled. Averaged
-/// over one segment's length, because polygon corners move on and off the peg.
+/// Tension ratio T1 / T2 with `wrapped` segments on an arc of `angle_rad`: T2 = 1 N loads one end, T1 is the pull at
+/// the other end. Averaged over one segment's length, because polygon corners move on and off the peg.
 double tension_ratio(const Subject& subject, double mu, double angle_rad, int wrapped) {
   const double rise = angle_rad > 6.0 ? kPitch_m / (2.0 * std::numbers::pi) : 0.0;  // advance along the peg per radian
   const double per_rad = std::hypot(kRadius_m, rise), arc = angle_rad * per_rad, l = arc / wrapped;
@@ -48,7 +48,8 @@ double tension_ratio(const Subject& subject, double mu, double angle_rad, int wr
   tools[1].p_WT = sim.nodes_W().back();
   tools[1].v_WT = kSpeed_m_per_s * pull;
   const double step = kSpeed_m_per_s * scene.time.tick_s;
-  // The hand's spring, the tail and the wrapped thread stretch first; after twice that distance all of it slips.
+  // `gives`: distance by which the hand's spring, the free tail and the wrapped thread stretch before the whole thread
+  // slips. The average begins after twice this distance.
   const double most_N = std::exp(mu * angle_rad), strain = most_N / scene.suture.rod.EA_N;
   const double gives = most_N / scene.hands.coupling_N_per_m + strain * (tail + per_rad / mu);
   const int counted = static_cast<int>(std::lround(l / step));
@@ -62,10 +63,11 @@ double tension_ratio(const Subject& subject, double mu, double angle_rad, int wr
   return sum;
 }
 
-/// Tension ratio of the simulated polygon. The table's polygon touches the peg with its corners; our contacts are at
-/// the middle of segments and act on both end nodes. Balance at a corner between two segments that meet at an angle 2a,
-/// with T and N growing by (1 + g) / (1 - g) per segment: g (1 + s^2) + mu s g^2 = mu s, s = tan a. To second order,
-/// the relative error of the exponent mu theta is -(2a)^2 / 6 here and +(2a)^2 / 12 in the table.
+/// Closed form of the tension ratio T1 / T2 for the simulated polygon. The polygon of the reference table touches the
+/// peg with its corners; in the simulation contacts are at the middle of segments and act on both end nodes. Balance of
+/// forces at a corner between two segments that meet at an angle 2a, with tension and normal force growing by
+/// (1 + g) / (1 - g) per segment: g (1 + s^2) + mu s g^2 = mu s, s = tan a. To second order, the relative error of the
+/// exponent mu theta is -(2a)^2 / 6 here and +(2a)^2 / 12 in the table.
 double by_segments(double mu, double angle_rad, int wrapped) {
   const double s = std::tan(0.5 * angle_rad / wrapped), b = 1.0 + s * s;
   const double g = 2.0 * mu * s / (b + std::sqrt(b * b + 4.0 * mu * mu * s * s));
@@ -87,7 +89,8 @@ Findings compare(const Subject& subject, bool polygon) {
     const double mu = number(row, "mu"), degrees = number(row, "wrap_angle_deg");
     if (number(row, "N_contact_nodes") != wrapped) continue;
     const double angle = degrees * std::numbers::pi / 180.0;
-    // With 32 segments the two polygons differ by up to 4 % for a whole turn, by 0.5 % for half a turn.
+    // With 32 segments the simulated and the table's polygon differ by up to 4 % for a whole turn, 0.5 % for half a
+    // turn.
     const double corners = degrees > 180.0 ? by_segments(mu, angle, wrapped) : number(row, "T1_over_T2");
     const double truth = polygon ? corners : std::exp(mu * angle);
     all.push_back(relative("mu = " + row.at("mu") + ", " + row.at("wrap_angle_deg") + " deg: T1/T2", truth,

@@ -81,7 +81,7 @@ Crossing crossing(const Subject& subject, const Row& row) {
 Findings crossing_threads(const Subject& subject) {  // reference: balance of forces
   Findings all;
   for (const auto& row : reference_rows("06_crossing_threads.csv")) {
-    // other rows have a tension independent of length, which no model's thread has
+    // rows of another kind have a tension independent of length, which no model's thread has
     if (row.at("kind") != "elastic") continue;
     const auto c = crossing(subject, row);
     const auto at = "a, b " + row.at("a_m") + ", " + row.at("b_m") + ", T0 " + row.at("T0_A_N") + ", H " +
@@ -94,7 +94,8 @@ Findings crossing_threads(const Subject& subject) {  // reference: balance of fo
   return all;
 }
 
-// reference: nonlinear boundary value problem, solved to 1e-9; Lb = (B / w)^(1/3)
+// reference: nonlinear boundary value problem, solved to 1e-9; bend length Lb = (B / w)^(1/3), B bending stiffness, w
+// weight per length
 Findings heavy_rod_lifted(const Subject& subject) {
   Findings all;
   for (const auto& row : reference_rows("06_heavy_rod_lifted_from_plane.csv")) {
@@ -108,7 +109,7 @@ Findings heavy_rod_lifted(const Subject& subject) {
     scene.suture.paper.node_mass_kg = per_m * segment_m(scene);
     set_bending(scene, B);
     set_drag(scene, rod ? 30.0 : 10.0);
-    // as in crossing(): a small damper; it does not affect the balance, and a larger one disturbs the explicit steps
+    // a small damper, because explicit steps err by damper x step; it does not affect the balance
     scene.suture.paper.bend_damping *= 0.1;
     scene.suture.paper.stretch_damping *= 0.1;
     if (!rod) scene.hands.coupling_N_per_m = 2e4;
@@ -119,7 +120,7 @@ Findings heavy_rod_lifted(const Subject& subject) {
     auto sim = build(scene);
     Tools tools = no_hands();
     tools[0] = {sim.nodes_W().front(), Vec3::Zero(), true};
-    // elongation of the hand's spring, in Lb
+    // elongation of the hand's spring, as a multiple of the bend length Lb
     const double give = number(row, "lift_force_over_wLb") * w / scene.hands.coupling_N_per_m;
     const double ahead = height + give;
     const int rise = rod ? 300 : 1000, ticks = rod ? 1200 : 4000;

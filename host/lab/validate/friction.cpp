@@ -14,7 +14,7 @@ constexpr double kG = 9.81;
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
-/// A tenth of the thread, lying straight across a tilted desk; no drag.
+/// A tenth of the suture's length, lying straight across the slope of a tilted desk; no drag.
 scene::Scene lying(const Subject& subject, double mu, double degrees) {
   auto scene = real_thread(subject, 0.1, mu);
   // 200 contacts on a desk exceed the work budget of a rod's tick at `balanced`: up to a fifth of the simulated time is
@@ -59,7 +59,7 @@ Findings incline_threshold(const Subject& subject) {  // reference: atan(mu)
   return all;
 }
 
-// displacement half a degree below the threshold, after the first 0.1 s; must be zero
+// displacement on a desk half a degree below the angle at which the thread slides, from 0.1 s on; must be zero
 Findings stick_creep(const Subject& subject) {
   Findings all;
   for (const double mu : {0.1, 0.3, 0.5}) {

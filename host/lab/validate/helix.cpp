@@ -44,7 +44,7 @@ Profile profile_of(const Rod& rod) {
 
 }  // namespace
 
-HelixTruth helix_truth() {  // of the two solutions the smooth bulge, with the larger m
+HelixTruth helix_truth() {  // of the table's two solutions the one with the larger moment m: a smooth bulge
   const auto json = nlohmann::json::parse(reference_text("04_localised_helical_buckling.json"));
   HelixTruth truth{};
   double largest = 0.0;

@@ -20,7 +20,8 @@ using physics::rod::RodSimulation;
 
 constexpr double kB = 4e-7, kA_m = 1.5e-4;  // the suture's bending stiffness and radius
 
-/// A thread of the suture's radius with another bending stiffness, laid as a knot of excess length 2 pi R, with drag.
+/// A thread of the suture's radius with another bending stiffness, laid as an overhand knot with air drag. The loop's
+/// excess length (thread length less the distance of the ends) is about 2 pi R.
 scene::Scene knotted(const Subject& subject, double R_m, double EI_N_m2, double friction) {
   auto scene = real_thread(subject, 1.0, friction);
   scene.suture.length_m = 1.3 * 2.0 * std::numbers::pi * R_m;
@@ -31,7 +32,7 @@ scene::Scene knotted(const Subject& subject, double R_m, double EI_N_m2, double 
   return scene;
 }
 
-/// T a^2/B of a knot held at rest, without friction.
+/// Tension T of a knot held at rest without friction, as T a^2/B (a: thread radius, B: bending stiffness).
 double resting_tension(const Subject& subject, double a_over_R) {
   auto scene = knotted(subject, kA_m / a_over_R, kB, 0.0);
   auto sim = build(scene);
@@ -68,7 +69,8 @@ std::vector<double> gathered(int n, const OverhandCurve& curve, double reach_m) 
   return s;
 }
 
-/// The same thread with its nodes concentrated in the braid, laid along the curve again.
+/// The scene's thread with its nodes concentrated where the two strands wind round each other (the braid), laid along
+/// the curve of a loose overhand knot.
 RodSimulation gathered_knot(const scene::Scene& scene, double R_m, double travel_m) {
   auto made = RodSimulation::make(scene);
   if (auto* why = std::get_if<std::string>(&made)) throw std::runtime_error(*why);
@@ -91,9 +93,9 @@ RodSimulation gathered_knot(const scene::Scene& scene, double R_m, double travel
   return sim;
 }
 
-/// T a^2/B of a knot that is slowly tightened (sense +1) or loosened (-1) through the wanted size. Averaged over one
-/// segment's length, because polygon corners pass the contact. Bending is stiffer than the suture's, which makes drag
-/// negligible.
+/// Tension T of a knot that is slowly tightened (sense +1) or loosened (-1) and passes the wanted size, as T a^2/B.
+/// Averaged over one segment's length, because polygon corners pass the contact. The bending stiffness B is larger than
+/// the suture's, which makes drag negligible.
 double sliding_tension(const Subject& subject, double a_over_R, double friction, int sense) {
   const double EI = 100.0 * kB, R = kA_m / a_over_R, target = 2.0 * std::numbers::pi * R, speed = 0.005;
   auto scene = knotted(subject, R, EI, friction);
@@ -102,7 +104,7 @@ double sliding_tension(const Subject& subject, double a_over_R, double friction,
   auto sim = gathered_knot(scene, R, travel);
   EndPull pull(sim);
   const double dt = scene.time.tick_s, L = scene.suture.length_m;
-  // moves to the given excess length; returns the mean tension on the way
+  // moves the hands until the excess length is `excess`; returns the mean tension during this motion
   const auto go_to = [&](double excess, double at_speed) {
     double sum = 0.0, count = 0.0;
     for (int k = 0; k < 100000 && sim.diagnostics().finite; ++k) {
@@ -170,7 +172,7 @@ void lay_overhand(scene::Scene& s, double loop_m) {
   lay(s, [&](double along) { return curve.at(along); });
 }
 
-// reference: first order in sqrt(a / R); the leading order alone errs by 9 % at 0.01
+// reference: expansion to first order in sqrt(a / R); its leading term alone errs by 9 % at a / R = 0.01
 Findings loose_overhand(const Subject& subject) {
   Findings all;
   for (const double a_over_R : {0.01, 0.005}) {
@@ -182,9 +184,10 @@ Findings loose_overhand(const Subject& subject) {
   return all;
 }
 
-// Reference for half the width of the hysteresis loop: mu sigma (a / R)^(3/2), a leading order. The next order adds
-// about 5 sqrt(a / R) times as much (15 % at 0.001, 48 % at 0.01; docs/accuracy.md). So the knot is loose enough for a
-// tolerance of 20 %.
+// Reference for half the width of the hysteresis loop of T a^2/B between tightening and loosening:
+// mu sigma (a / R)^(3/2), sigma a constant of the reference table. This is the leading order; the next one adds a
+// fraction of about 5 sqrt(a / R) (15 % at a / R = 0.001, 48 % at 0.01; docs/accuracy.md). Therefore the test uses
+// 0.001 with a tolerance of 20 %.
 Findings overhand_hysteresis(const Subject& subject) {
   const double a_over_R = 0.001, mu = 0.02;
   double sigma = 0.0;

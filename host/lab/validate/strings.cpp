@@ -17,7 +17,7 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Depth of the lowest point of a smooth line through equally spaced nodes, from a cubic through four nodes. The lowest
-/// node alone may be half a segment beside it: 0.27 % of the sag for 50 nodes and supports 0.2 S apart.
+/// node alone may be half a segment beside it: 0.27 % of the sag for 50 nodes and supports 0.2 thread lengths apart.
 double sag_of(std::span<const Vec3> x) {
   const auto z = [&](std::size_t i) { return -x[i].z(); };
   std::size_t at = 0;  // first of the four deepest nodes
@@ -49,10 +49,10 @@ Findings catenary(const Subject& subject) {
     const double span = number(row, "span_over_S"), depth = std::sqrt(1.0 - span * span);
     auto scene = unit_thread(subject, 0.1, 4.0);
     set_bending(scene, is_rod(scene) ? 1e-7 : 0.0);
-    // uses stretch_N itself, not 100 times it
+    // paper-5: the force law uses stretch_N itself, not 100 times its value
     scene.suture.paper.quadratic_stretch = scene::QuadraticStretch::kPrinted;
     scene.suture.length_m = 1.0 - mean_strain(scene, number(row, "H_over_wS"));
-    // limited by the stability of explicit steps
+    // stiffness of the hands' springs; in paper models limited by the stability of explicit steps
     const double K = is_rod(scene) ? scene.suture.rod.EA_N / segment_m(scene) : 1e5;
     scene.hands.coupling_N_per_m = K;
     scene.hands.coupling_N_s_per_m = is_rod(scene) ? 0.0 : 1.0;

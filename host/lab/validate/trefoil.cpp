@@ -79,7 +79,7 @@ Tight tighten(int n) {
   rod.clamp(n - 1, state.x.back(), tangent);
   double tension = 0.0, natural = m.length_m;
   for (int k = 0; k < 20000 && tension < kTension_N; ++k) {
-    const double shrink = tension < 0.1 * kTension_N ? 2e-4 : 2e-5;  // share of the length per tick
+    const double shrink = tension < 0.1 * kTension_N ? 2e-4 : 2e-5;  // fraction of the length removed per tick
     natural *= 1.0 - shrink;
     for (auto& at : state.mesh.s) at *= 1.0 - shrink;
     rod.moved();

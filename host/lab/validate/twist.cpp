@@ -82,7 +82,7 @@ void wind(Rod& rod, int hold, double angle_rad) {
   }
 }
 
-Findings clamped_twist(const Subject& subject) {  // reference: ML/B = 8.98682, root of tan(x/2) = x/2
+Findings clamped_twist(const Subject& subject) {  // reference: moment M with ML/B = 8.98682, a root of tan(x/2) = x/2
   double critical = 0.0;
   for (const auto& row : reference_rows("04_twist_buckling_straight_rod.csv")) {
     if (number(row, "TL2_over_B") == 0.0) critical = number(row, "ML_over_B_clamped_clamped");
@@ -93,7 +93,8 @@ Findings clamped_twist(const Subject& subject) {  // reference: ML/B = 8.98682, 
   return {relative("ML/B at which the straight rod buckles", critical, found, 0.02)};
 }
 
-// reference: sqrt(3) B / C turns [Michell 1890]; the clamp at one point prevents rigid motion only
+// reference: sqrt(3) B / C turns, B bending and C twisting stiffness [Michell 1890]. The clamp at one point only
+// prevents rigid motion.
 Findings michell_ring(const Subject& subject) {
   Findings all;
   for (const auto& row : reference_rows("04_michell_ring.csv")) {

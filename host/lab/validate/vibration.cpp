@@ -12,7 +12,8 @@
 namespace ligature::validate {
 namespace {
 
-// times 1 / omega: implicit Euler then errs by 3e-5 in frequency and has 0.5 % of critical damping
+// time step, as a multiple of 1 / omega: implicit Euler then errs by 3e-5 in frequency and has 0.5 % of critical
+// damping
 constexpr double kStep = 0.01;
 constexpr double kSmall = 1e-4;
 

@@ -37,7 +37,10 @@ export function readFrame(buffer) {
   return frame;
 }
 
-/** Section `now`: the picture's epoch, age of the newest ticks in ms (-1: none yet), and the newest tick. */
+/**
+ * Section `now`: the epoch (a number that changes when earlier data must be discarded), age of the newest ticks in ms
+ * (-1: none yet), and the newest tick.
+ */
 function readNow(v) {
   const now = { epoch: v[0], age_ms: v[1] };
   if (v.length < 6) return now;

@@ -13,9 +13,9 @@ export class Link {
     this.nextId = 1;
     this.token = readToken();
     this.connect();
-    // Silence is measured in timer rounds as well as in ms: while the page itself is busy, messages wait, and the host
-    // must not be blamed for that. After such a pause only one round is counted before the waiting messages are
-    // handled.
+    // The host's silence is measured in timer rounds as well as in ms. While the page itself is busy, messages wait in
+    // the browser although the host is not silent. After such a pause only one round is counted before these messages
+    // are handled.
     this.rounds = 0;
     setInterval(() => { ++this.rounds; }, WATCH_MS);
   }

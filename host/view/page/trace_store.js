@@ -90,7 +90,7 @@ export class TraceStore {
     return out;
   }
 
-  /** Counts a column's values in the intervals between `bounds`, over the ticks since `from`; skips lost periods. */
+  /** Counts a column's values in each interval between `bounds`, for ticks from `from` on; skips lost periods. */
   histogram(column, bounds, from) {
     const counts = new Array(bounds.length + 1).fill(0);
     let max = 0;

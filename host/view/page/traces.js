@@ -172,8 +172,8 @@ export class Traces {
   get isPaused() { return this.end !== null; }
 
   /**
-   * x, this recording's columns, marks, and from index BESIDE on the second recording's columns: |F| left, |F| right,
-   * and the third plot's first.
+   * The plots' data: x, this recording's columns, the columns for marks, and from index BESIDE on the second
+   * recording's columns: |F| left, |F| right, and the first column of the third plot.
    */
   #series(from, end, pixels) {
     const own = this.store.series(from, end, pixels, [...FORCES, ...this.third.columns, C.flags, C.fault, C.degradation]);

@@ -13,14 +13,17 @@ namespace ligature::lab {
 struct Watched {
   /// Smallest net energy that each hand has put into its port, from the motors' true work, J.
   std::array<double, 2> lowest_port_J{};
-  /// Smallest value of that energy plus the energy that the other hand's account has lent, J.
+  /// Smallest sum of that energy and the energy that the other hand's account has lent to this hand, J.
   std::array<double, 2> lowest_bound_J{};
-  /// Energy that encoder quantisation can hide: sum of count |tau(n) - tau(n-1)| (docs/haptics.md), J.
+  /// Largest energy that the firmware's account can miss because encoders are quantised, J: the sum over all ticks n
+  /// and joints of (encoder count in rad) |tau(n) - tau(n-1)|, tau the joint's torque (docs/haptics.md).
   std::array<double, 2> hidden_J{};
-  /// Smallest value over both ports of (bound + hidden energy so far), J. Passivity requires it not to be negative.
+  /// Smallest value, over both ports and all ticks, of (port energy + energy lent to this hand + hidden_J so far), J.
+  /// Passivity requires it not to be negative.
   double lowest_proved_J = 0.0;
   std::array<double, 2> lowest_account_J{};  ///< the firmware's energy account, computed from encoder counts
-  double lowest_sum_J = 0.0;  ///< true energy of both ports; the thread transfers energy between the hands
+  double lowest_sum_J =
+      0.0;  ///< smallest sum of the true energies of both ports; the thread transfers energy between the hands
   double peak_N = 0.0;
   /// Largest change of the motors' tip force per SYNC, apart from removals of the whole force.
   double largest_step_N = 0.0;
@@ -43,7 +46,7 @@ struct Watched {
   [[nodiscard]] double unrest_N(std::size_t first, std::size_t last) const;
   /// chatter_N() over the whole run after the first 0.5 s, larger value of the two hands.
   [[nodiscard]] double worst_chatter_N() const;
-  /// Computes largest_step_N, largest_cut_N and let_go.
+  /// Computes largest_step_N, largest_cut_N and let_go from step_N and the loop's records.
   void sort_steps(const std::vector<rt::TickRecord>& records);
 };
 

@@ -96,7 +96,7 @@ scene::GripperScript against_peg(double apart_m, double push_m) {
   return draw_and_shift(apart_m, 1.2, {{0.6, 0.0, y}, {0.6, 0.0, 0.5 * y}, {0.6, 0.0, y}, {0.4, 0.0, y, false}});
 }
 
-// both move to the left, so that the right one is dragged
+// both hands move to the left, so that the left hand drags the right one by the thread
 scene::GripperScript give_way(double apart_m, double shift_m) {
   const double x = -shift_m;
   return draw_and_shift(apart_m, 1.5, {{1.0, x, 0.0}, {0.5, x, 0.0}, {0.3, x, 0.0, false}});

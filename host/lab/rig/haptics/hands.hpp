@@ -22,12 +22,14 @@ inline constexpr const char* kWeightless = "world.gravity_m_per_s2=[0,0,0]";
 
 /// Both hands grasp the thread 8 cm from the knot's middle, pull to `apart_m` from the middle each, rest and release.
 [[nodiscard]] scene::GripperScript pull_and_release(double apart_m, double draw_s = 2.0, double rest_s = 1.5);
-/// Pulls and relaxes within `beat_s`, repeatedly: the knot jams a little more each time.
+/// Pulls the knot tight, then relaxes and pulls again `times` times, each motion in `beat_s`: the knot jams more each
+/// time.
 [[nodiscard]] scene::GripperScript jam(double apart_m, double beat_s, int times);
 /// The right hand releases and grasps again under tension, every 0.3 s.
 [[nodiscard]] scene::GripperScript slip(double apart_m);
 
-/// Moves away from the user by `push_m` and half back, twice; against a peg, if the scene has one there.
+/// Pulls the thread tight, moves it away from the user by `push_m`, half back, and forward again. With kPeg in the
+/// scene the thread is pushed against a peg.
 [[nodiscard]] scene::GripperScript against_peg(double apart_m, double push_m);
 inline constexpr const char* kPeg = "world.pegs=[{from_m=[0,0.004,-0.1],to_m=[0,0.004,0.2],radius_m=0.002}]";
 /// Pulls the thread tight, then both hands move left by `shift_m`: the left hand pulls, the right one is dragged.

@@ -25,7 +25,7 @@ struct PortCase {
   /// one hand is dragged by the other: its port delivers the energy that the other one took in
   bool gives_way = false;
   bool wild = false;              ///< the hands fight back harder than the device record assumes; they may be let go
-  bool unstable_without = false;  ///< without the passivity controller
+  bool unstable_without = false;  ///< unstable when the passivity controller is off
   bool in_quick = false;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 double least(const std::array<double, 2>& of) { return std::min(of[0], of[1]); }
 
-/// Extreme values over all runs with the controller.
+/// Extreme values over all runs with the passivity controller.
 struct Worst {
   double account_J = 0.0, bound_J = 0.0, proved_J = 0.0, sum_J = 0.0, alone_J = 0.0, step_N = 0.0;
   int runs = 0, let_go = 0, let_go_wild = 0;
@@ -60,7 +60,8 @@ class PortFiles {
                 "step_N", "cut_N", "let_go", "above_30Hz_mN", "fault"}};
 };
 
-/// The port of a hand that is dragged must deliver energy to it; if lending of energy is off, that hand feels nothing.
+/// A hand that is dragged must receive energy through its port; if the accounts of the two hands may not lend energy to
+/// each other, that hand feels less than half of the force.
 void measure_giving_way(const HapticsBench& bench, Verdict& v) {
   for (const PortCase& c : port_cases(bench)) {
     if (!c.gives_way) continue;
