@@ -5,7 +5,7 @@ target_include_directories(ligature_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_definitions(ligature_options INTERFACE LIGATURE_VERSION="${PROJECT_VERSION}")
 target_compile_options(ligature_options INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor
-  $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>  # as GCC, whose -Wconversion leaves it out in C++
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>  # GCC's -Wconversion does not include it for C++ either
   $<$<BOOL:${LIGATURE_WERROR}>:-Werror>
   -fno-math-errno -ffp-contract=fast)
 

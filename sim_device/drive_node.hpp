@@ -26,7 +26,7 @@ struct Sensed {
 struct DriveStats {
   std::int64_t watchdog_trips = 0;      ///< times that the drive removed torque by itself
   std::int64_t syncs_without_rpdo = 0;  ///< SYNCs without a new RPDO while in Operation Enabled
-  std::int64_t late_rpdos = 0;          ///< a second RPDO between two SYNCs: the first one never acted
+  std::int64_t late_rpdos = 0;  ///< RPDOs replaced by a second one before the next SYNC, so that they had no effect
 };
 
 /// At a SYNC the drive first samples its inputs for the TPDO, then applies the RPDO that it holds; an RPDO that comes
@@ -78,7 +78,7 @@ class DriveNode {
   can::Rpdo1 acting_;                 ///< copied from received_ at SYNC
   std::int16_t torque_permille_ = 0;  // as commanded
   std::int16_t astray_permille_ = 0;
-  std::uint8_t life_ = 0;  // counter in the buttons' word
+  std::uint8_t life_ = 0;  // counter of SYNCs, sent in bits 8 .. 15 of the buttons' word
   int held_syncs_ = 0;     // SYNCs for which the torque was repeated because no RPDO came
   bool is_limited_ = false;
   Deadline rpdo_watch_, master_watch_, own_heartbeat_;

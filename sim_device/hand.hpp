@@ -1,5 +1,6 @@
 #pragma once
-// Model of a person's arm and fingers, between the intended point H and the stylus T, all in D:
+// Model of a person's arm and fingers, between the intended point H and the stylus T, in the device's base frame D. x
+// is the position of the hand's mass m, F the force on the stylus:
 //
 //   H --[K, B]-- m --[pad]-- T         m ẍ = K (p_DH − x) + B (v_DH − ẋ) − F,   F = k (x − p_DT) + b (ẋ − v_DT)
 //

@@ -40,7 +40,7 @@ class HandDevice {
 
   /// A client queues a frame at time `when`; per client, time must not decrease.
   void submit(const can::Frame& frame, int client, Time when);
-  /// Number of frames waiting in that queue.
+  /// Number of a client's frames that wait for the bus.
   [[nodiscard]] std::size_t pending(int client) const noexcept { return wire_.pending(client); }
   void drop_client(int client) noexcept { wire_.drop(client); }
   /// Simulates bus, drives and mechanics until `now`, in order of time.
@@ -61,7 +61,7 @@ class HandDevice {
   [[nodiscard]] const std::array<DriveNode, 3>& drives() const noexcept { return drives_; }
   [[nodiscard]] const WireStats& wire_stats() const noexcept { return wire_.stats(); }
   [[nodiscard]] const BusStats& bus_stats() const noexcept { return bus_; }
-  /// Share of time in which the bus was busy between the first and the last SYNC; 0 with fewer than two.
+  /// Fraction of the time from the first to the last SYNC in which the bus was busy; 0 with fewer than two SYNCs.
   [[nodiscard]] double bus_load() const noexcept;
 
  private:

@@ -22,7 +22,7 @@ struct Touch {
   Vec3 v_DT = Vec3::Zero();
 };
 
-/// A function of time and stylus state only, so that runs can be repeated bit by bit.
+/// The result of at() depends only on the time and the state of the stylus, so that runs can be repeated bit by bit.
 class Intention {
  public:
   virtual ~Intention() = default;

@@ -62,9 +62,9 @@ class Mechanics {
     if (!stylus_.is_rigid()) return {stylus_.position_D_m(), stylus_.velocity_D_m_per_s()};
     return {plant_.tip_D_m(), plant_.tip_velocity_D_m_per_s()};
   }
-  /// Work that the motors have done on the linkage, J: the exact work at the port, without encoder resolution.
+  /// Work that the motors have done on the linkage, J. It is exact: not computed from quantised encoder positions.
   [[nodiscard]] double motor_work_J() const noexcept { return motor_work_J_; }
-  /// Torques of the last step, N m: as commanded, minus what the drives held back.
+  /// Motor torques of the last step, N m: as commanded, but limited where a drive protects its winding.
   [[nodiscard]] const Vec3& made_Nm() const noexcept { return made_Nm_; }
   [[nodiscard]] const MotorHeat& motors() const noexcept { return motors_; }
   [[nodiscard]] const Fingers& fingers() const noexcept { return fingers_; }

@@ -1,5 +1,6 @@
 #pragma once
-// Thermal model of a motor, and its drive's protection. h is the winding's temperature rise as a share of its limit:
+// Thermal model of a motor, and its drive's protection. h is the winding's temperature rise divided by its limit, τ the
+// torque:
 //   dh/dt = ((τ / τ_continuous)² − h) / time constant
 // From h = 1 on the drive limits the torque to τ_continuous until h has fallen below 0.95 (I²t with hysteresis).
 

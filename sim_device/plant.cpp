@@ -44,7 +44,7 @@ void Plant::stop_at_ends() noexcept {
   if (angle == clipped) return;
   q_[2] = q_[1] + clipped;
   const double opening = omega_[2] - omega_[1];
-  if ((angle > clipped) != (opening > 0.0)) return;  // already moving back
+  if ((angle > clipped) != (opening > 0.0)) return;  // the joint is already moving away from its stop
   // Inelastic impact between the two links: they share their angular momentum, so energy does not increase.
   const Vec3& inertia = parameters_.inertia_kg_m2;
   const double shared = (inertia[1] * omega_[1] + inertia[2] * omega_[2]) / (inertia[1] + inertia[2]);

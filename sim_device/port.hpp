@@ -17,7 +17,7 @@ struct Received {
   int client = 0;  ///< slot of the client, from 0; reused after the client has left
 };
 
-/// No function blocks.
+/// The clients of a simulated bus. No function blocks.
 class Port {
  public:
   virtual ~Port() = default;

@@ -55,7 +55,7 @@ class Adversarial final : public Intention {
     const double speed = touch.v_DT.norm();
     if (!(t_s > 0.0) || speed < 1e-9) return now;
     now.p_DH += reach_m_ * std::tanh(lead_s_ * speed / reach_m_) / speed * touch.v_DT;
-    now.v_DH = touch.v_DT;  // and does not damp the motion
+    now.v_DH = touch.v_DT;  // the hand's damper then does not damp the motion
     return now;
   }
   [[nodiscard]] double end_s() const noexcept override { return calm_->end_s(); }

@@ -106,7 +106,7 @@ inline constexpr std::array kTransitions{
     Transition{State::kNotReadyToSwitchOn, Event::kInitialised, State::kSwitchOnDisabled},  // 1
     Transition{State::kSwitchOnDisabled, Event::kShutdown, State::kReadyToSwitchOn},        // 2
     Transition{State::kReadyToSwitchOn, Event::kSwitchOn, State::kSwitchedOn},              // 3
-    // 3; 4 follows with the next controlword
+    // transition 3 only: transition 4 follows with the next controlword
     Transition{State::kReadyToSwitchOn, Event::kEnableOperation, State::kSwitchedOn},
     Transition{State::kSwitchedOn, Event::kEnableOperation, State::kOperationEnabled},       // 4
     Transition{State::kOperationEnabled, Event::kSwitchOn, State::kSwitchedOn},              // 5

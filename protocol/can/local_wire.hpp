@@ -1,6 +1,6 @@
 #pragma once
 // Packet format of a `local:` bus: the 16 bytes of Linux' struct can_frame (identifier u32 in host byte order, length
-// u8, three unused bytes, eight data bytes), so that both back ends can share code.
+// u8, three unused bytes, eight data bytes), so that the `local:` and the `socketcan:` back end can share code.
 
 #include <array>
 #include <cstdint>

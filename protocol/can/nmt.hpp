@@ -14,7 +14,7 @@ enum class NmtCommand : std::uint8_t {
   kStop = 0x02,
   kEnterPreOperational = 0x80,
   kResetNode = 0x81,           ///< like switching power off and on
-  kResetCommunication = 0x82,  ///< communication objects to their defaults; a drive fault stays latched
+  kResetCommunication = 0x82,  ///< sets communication objects to their defaults; a drive fault stays latched
 };
 
 struct NmtMessage {

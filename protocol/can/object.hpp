@@ -26,7 +26,7 @@ inline constexpr Object kRpdo1MapCount{0x1600, 0};
 inline constexpr Object kTpdo1CobId{0x1800, 1};
 inline constexpr Object kTpdo1TransmissionType{0x1800, 2};
 inline constexpr Object kTpdo1MapCount{0x1A00, 0};
-inline constexpr Object kStylusButtons{0x2100, 1};          ///< bit 0 grip, bit 1 dead-man
+inline constexpr Object kStylusButtons{0x2100, 1};          ///< bits: profile::kButton*, with_held(), with_life()
 inline constexpr Object kAbortConnectionOption{0x6007, 0};  ///< reaction to a lost connection; 1: fault
 inline constexpr Object kErrorCode{0x603F, 0};
 inline constexpr Object kControlword{0x6040, 0};

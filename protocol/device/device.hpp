@@ -28,7 +28,7 @@ struct Device {
   // Geometry.
   Vec links_m{};
   Vec home_tip_m{};  ///< tip position that maps to the scene's workspace_origin_m
-  /// Stops; for the Omni's third joint they limit the angle between the links, q3 - q2
+  /// Joint stops, rad. For the Omni's third joint they limit the angle between the links, q3 - q2.
   Vec joint_min_rad{}, joint_max_rad{};
   Vec workspace_min_m{}, workspace_max_m{};  ///< box in D within which the tip is used
 

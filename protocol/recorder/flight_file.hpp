@@ -9,8 +9,8 @@
 // Record number q (from 1) is in slot (q - 1) mod slots. The CRC of a slot covers number, length and payload, so it
 // reveals a slot that was being written when the machine stopped, or that the disk lost. If the writer dies, at most
 // one slot is incomplete. Scene entry number e (from 1) is at place (e - 1) mod their count, protected in the same way.
-// The header's scene is valid from the first tick on, an entry's from its first_tick. Nothing else is rewritten, so no
-// index can be damaged.
+// The header's scene is valid from the first tick on, an entry's from its first_tick. The file has no
+// index that a crash could damage.
 
 #include <array>
 #include <cstddef>

@@ -13,7 +13,7 @@ struct RodPreset {
   double diameter_m;  ///< middle of the USP range
   double density_kg_per_m3;
   double modulus_Pa;
-  double bend_share;  ///< EI relative to a solid rod: 1 for a monofilament, less for a braid
+  double bend_share;  ///< EI / EI of a solid rod: 1 for a monofilament, less for a braid
 };
 
 /// Diameters: middle of the range of the metric size. Densities: Morton & Hearle, Physical Properties of Textile

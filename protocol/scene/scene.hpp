@@ -16,12 +16,13 @@ using Vec = std::array<double, 3>;
 enum class Model : std::uint8_t { kPaper1, kPaper2, kPaper3, kPaper4, kPaper5, kRod };
 enum class ContactSolver : std::uint8_t { kNone, kPaper, kImplicit };
 enum class BroadPhase : std::uint8_t { kAuto, kBrute, kSweep, kBvh };
-/// From the rate of the dihedral angle of four points, or the paper's (13)-(15)
+/// How the swivel damper's force is computed: from the rate of the dihedral angle of four points, or by equations
+/// (13)-(15) of the paper.
 enum class SwivelDamper : std::uint8_t { kInternal, kPaper };
 enum class QuadraticStretch : std::uint8_t {
   kStiff,
   kPrinted
-};  ///< model 5: the stiffer constant, or the one printed in Table I
+};  ///< stretch constant of paper-5: 100 times the one printed in the paper's Table I, or the printed one
 
 /// Evaluation of damping: implicit, with the velocities after the step (stable at any step size), or explicit, as
 /// printed in the paper.
@@ -57,10 +58,10 @@ struct RodParameters {
   double EI_N_m2 = 4e-7;              ///< bending stiffness
   double GJ_N_m2 = 2.86e-7;           ///< twisting stiffness; 0: twist is not modelled
   double rest_curvature_per_m = 0.0;  ///< curvature without stress, about an axis fixed in the material
-  /// Twist without stress, rad/m: that axis turns along the thread; with a curvature, a helix
+  /// Twist without stress: rotation of the axis of rest_curvature along the thread, rad/m; both together give a helix
   double rest_twist_per_m = 0.0;
   std::optional<double> yield_strain;  ///< strain of the outer fibre above which bending is plastic; absent: never
-  double set_fraction = 0.5;           ///< share of the bending stiffness that yields
+  double set_fraction = 0.5;           ///< fraction of the bending stiffness that yields above yield_strain
   double damping_s = 2e-3;             ///< Kelvin-Voigt time constant of bending
   double stretch_damping_s = 5e-4;     ///< Kelvin-Voigt time constant of stretching
   double air_drag_per_s = 5.0;         ///< acceleration -c v
@@ -87,9 +88,10 @@ struct Contact {
   double friction = 0.3;                  ///< kinetic Coulomb coefficient; key contact.friction
   std::optional<double> static_friction;  ///< equal to friction if absent
   bool turns_thread = false;              ///< whether friction can roll the thread about its axis; rod model only
-  double repulsion_N_per_m = 100.0;       ///< k_rs of (2), solver "paper" only
-  double repulsion_N_s_per_m = 5.0;       ///< k_rd of (2), solver "paper" only
-  /// Key contact.friction_cap; solver "paper": friction at most stops slip; false: as printed
+  double repulsion_N_per_m = 100.0;       ///< k_rs of the paper's equation (2); solver "paper" only
+  double repulsion_N_s_per_m = 5.0;       ///< k_rd of the paper's equation (2); solver "paper" only
+  /// Key contact.friction_cap, solver "paper" only. true: friction can stop slip but not reverse it; false: the paper's
+  /// formula without this limit
   bool friction_cap = true;
   BroadPhase broad_phase = BroadPhase::kAuto;
 };

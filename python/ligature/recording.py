@@ -81,7 +81,7 @@ class Recording:
         self.period_s: float = recorded.period_s  # of the loop
         self.max_force_N: float = recorded.max_force_N  # limit at the device
         self.firmware_version: str = recorded.firmware_version
-        self.missing: int = recorded.missing  # ticks missing between the first and the last of a session
+        self.missing: int = recorded.missing  # ticks missing between the first and last of each session, summed
         self.damage: str = recorded.damage  # one line; "" for an intact file
 
     @property

@@ -85,7 +85,7 @@ class Simulation(_core.Simulation):
         return self.copy()
 
     def set_state(self, nodes: Any, velocities: Any = None) -> None:
-        """Sets positions and velocities; both hands open. nodes: n x 3, m; velocities: n x 3, m/s, None: at rest.
+        """Sets positions and velocities, and opens both hands. nodes: n x 3, m; velocities: n x 3, m/s, None: at rest.
 
         Fixed nodes stay where they are. Raises Refusal for another shape, or values that are not finite or beyond 1e9.
         """

@@ -25,9 +25,9 @@ Move carry_straight(std::size_t hand, std::string name, Where where, double near
 
 constexpr double kTurn = 2.0 * 3.14159265358979323846;
 
-constexpr double kWound = 1.07 * kTurn;  // once round the standing part, until in front again
-constexpr double kSlack = 0.9;           // from the top of the turn on, this many clearances further out ..
-// .. and this share of the thread length closer to the anchor, so that the end trails loosely
+constexpr double kWound = 1.07 * kTurn;  // angle of the end's turn about the standing part, until in front again
+constexpr double kSlack = 0.9;           // extra distance from the standing part after the turn's top, in clearances
+// shift towards the anchor after the turn's top, as a fraction of the thread's length: the end then trails loosely
 constexpr double kBack = 0.048;
 
 Move orbit(std::shared_ptr<Loop> loop, WhereAlong s) {
@@ -44,8 +44,8 @@ Move orbit(std::shared_ptr<Loop> loop, WhereAlong s) {
           }};
 }
 
-/// A point on the line from the crossing X through the loop's centre, offset by `way` clearances from the loop's plane,
-/// against the sense of the turn.
+/// A point near the loop: `share` of the way from the crossing X to the loop's centre (above 1: beyond it), and `way`
+/// clearances out of the loop's plane, against the direction in which the turn passes through the loop.
 Where across_loop(std::shared_ptr<Loop> loop, double share, double way) {
   return [=](const Look& look) -> Vec3 {
     loop->look(look);

@@ -11,7 +11,7 @@
 namespace ligature::sim {
 
 /// The right hand leads the end a whole turn around the standing part at place `s`, ending in front of the loop and
-/// closer to the anchor than the crossing X.
+/// closer to the anchor than X, the crossing of standing and working part that closes the loop.
 [[nodiscard]] Moves lay_turn(std::shared_ptr<Loop> loop, WhereAlong s);
 /// The end passes through the loop. The crossings are checked (is it a knot?), and the move repeats if it missed.
 [[nodiscard]] Moves pass_through(std::shared_ptr<Loop> loop, const Throw& t, WhereAlong s);

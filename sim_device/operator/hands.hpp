@@ -18,8 +18,8 @@ class MovingHand {
   void rest_at(const Vec3& start_W, double speed_m_per_s);
 
   Vec3 goal_W = Vec3::Zero();
-  double pace = 1.0;     ///< share of the full speed
-  bool is_wary = false;  ///< brakes four times as fast
+  double pace = 1.0;     ///< factor on the full speed
+  bool is_wary = false;  ///< the hand feels a high pull: acceleration and braking are four times as fast
   bool grip = false;
 
   /// Advances by one tick. If ruckig refuses the goal (not finite), the hand stays where it is.

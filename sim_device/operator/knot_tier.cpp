@@ -118,7 +118,7 @@ void KnotTier::begin_again() {
 /// Limits the pull: a hand that feels much more than a tight knot needs slows down, and finally yields.
 void KnotTier::mind_the_pull(const Sight& sight) {
   constexpr double kFirm = 0.4, kMost = 1.3;  // shares of a tight knot's pull
-  // A limp, thick thread is drawn with several times that pull (wound_throw)
+  // not for a limp thread: a thick one is drawn tight with up to 4 times a tight knot's pull (wound_throw.cpp)
   if (!is_springy(place_)) return;
   for (std::size_t h = 0; h < 2; ++h) {
     MovingHand& hand = hands_[h];

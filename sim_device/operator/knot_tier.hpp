@@ -35,11 +35,12 @@ class KnotTier {
   static std::variant<KnotTier, std::string> make(const scene::Scene& scene, const std::string& knot,
                                                   std::uint32_t seed);
 
-  /// One tick: where both hands want to be now. @param sight may be outdated by an unknown time.
+  /// One tick: where both hands want to be now. @param sight what the operator sees; it may be of an
+  /// earlier time, by an unknown amount.
   const std::array<HandWish, 2>& tick(const Sight& sight);
 
   [[nodiscard]] const std::array<HandWish, 2>& wish() const noexcept { return wish_; }
-  /// The same without tremor.
+  /// Where both hands want to be, without tremor.
   [[nodiscard]] std::array<HandWish, 2> calm_wish() const noexcept {
     std::array<HandWish, 2> calm;
     for (std::size_t h = 0; h < 2; ++h) calm[h] = {hands_[h].p_W(), hands_[h].v_W(), hands_[h].grip};

@@ -38,8 +38,10 @@ WhereAlong the_end() {
   return [](const Look& look) { return look.thread.length_m(); };
 }
 
-/// Layout of a single knot: where the left hand holds the thread (share of its length), how far it stretches that part
-/// horizontally to the left (share of that part), and where the end goes around it (share of the standing part).
+/// Layout of a single throw. `corner`: where the left hand holds the thread, as a fraction of its length; the standing
+/// part is the thread from the anchor to there. `stretch`: horizontal distance of the corner from the anchor, to the
+/// left, as a fraction of the standing part's length. `turn`: where on the standing part the end goes around it, as a
+/// fraction of its length.
 struct Layout {
   double corner, stretch, turn;
 };
@@ -52,7 +54,7 @@ Layout layout_of(const Throw& t, bool springy) {
   return t.against ? Layout{0.35, 0.96, 0.45} : Layout{0.4, 0.96, 0.5};
 }
 
-/// Length consumed by knots that lie before place `s`, m.
+/// Length of thread that is used up by knots between the anchor and place `s`, m.
 double taken_up(const Look& look, double s) {
   const Tangle knotted = tangle(look);
   if (knotted.first_m >= knotted.last_m || knotted.last_m > s) return 0.0;
@@ -94,8 +96,8 @@ std::optional<Knot> knot_named(std::string_view name) {
 
 namespace {
 
-/// For one throw of several: where on the thread the corner is and where the end crosses over, m. The first throw is
-/// near the anchor, each further one beyond the existing knot.
+/// For one throw of several: positions along the thread, m, of the corner and of the place where the end crosses over
+/// the standing part. The first throw is near the anchor, each further one beyond the existing knot.
 struct Places {
   double corner = 0.0, turn = 0.0;
 };

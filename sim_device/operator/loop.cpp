@@ -9,7 +9,7 @@
 namespace ligature::sim {
 namespace {
 
-/// The component of a perpendicular to the unit vector `along`, normalised.
+/// Unit vector of the component of `a` that is perpendicular to the unit vector `along`.
 Vec3 across(const Vec3& a, const Vec3& along) {
   const Vec3 rest = a - a.dot(along) * along;
   return rest.norm() > 1e-6 ? Vec3(rest.normalized()) : Vec3(along.unitOrthogonal());
@@ -29,8 +29,8 @@ double Loop::angle_of(const Look& look, const Vec3& p_W) const {
   return std::atan2(to.dot(up_), to.dot(front_));
 }
 
-/// Angle that the working part winds around the standing part between two places, with steps short compared to its
-/// distance.
+/// Angle by which the working part winds around the standing part between two places of the thread, rad. It is summed
+/// in steps that are short compared with the distance between the two parts.
 double Loop::wind(const Look& look, double from, double to) const {
   double sum = 0.0, before = angle_of(look, look.thread.at(from));
   const double finest = 0.1 * look.place.diameter_m;

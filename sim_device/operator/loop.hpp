@@ -15,7 +15,7 @@ class Loop {
   /// @param corner position of the corner along the thread, m. @param side sense of the turn, +1 or -1.
   Loop(WhereAlong corner, int side) : corner_(std::move(corner)), side_(side) {}
 
-  /// Recomputes everything. O(n^2) with a small n.
+  /// Recomputes everything from the thread's present shape. Cost: some hundred searches for a nearest point, O(n) each.
   void look(const Look& look);
 
   [[nodiscard]] Vec3 centre() const noexcept { return centre_W_; }

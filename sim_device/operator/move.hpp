@@ -45,7 +45,8 @@ struct Move {
   /// Checked at the end of the move: did it succeed? If not, the operator lets go and starts again.
   std::function<bool(const Look&)> good{};
   bool ends_throw = false;  ///< a throw is complete: starting again resumes after this move
-  bool then_plans = false;  ///< the following moves are planned when this one has ended
+  bool then_plans =
+      false;  ///< when this move has ended, the operator counts the tied throws and plans the following moves
 };
 
 using Moves = std::vector<Move>;

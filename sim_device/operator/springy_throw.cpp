@@ -13,10 +13,10 @@ namespace ligature::sim {
 namespace {
 
 constexpr double kSpringy = 0.2;
-constexpr double kNear = 0.045, kArrived = 0.02, kPast = 0.025;  // tolerances, as shares of the working part's length
+constexpr double kNear = 0.045, kArrived = 0.02, kPast = 0.025;  // distances, as fractions of the working part's length
 
-/// A way point of the end, in shares of the working part's length, relative to the corner or to the turn: towards the
-/// front, upwards, and outwards past the corner.
+/// A way point of the thread's end: its offset from the corner, or from the place on the standing part where the end
+/// crosses over. front: towards the front; up; out: away from the anchor. In fractions of the working part's length.
 struct Stop {
   bool from_corner;
   double front, up, out;
@@ -24,37 +24,37 @@ struct Stop {
 
 constexpr Stop kOnce[] = {
     {true, 0.12, -0.18, 0.0},                                     // far to the front, so that the arch opens there
-    {false, 0.09, 0.018, 0.0},                                    // up
-    {false, 0.045, 0.042, 0.0},                                   //
-    {false, 0.0, 0.042, 0.0},                                     // over
-    {false, -0.03, -0.012, 0.0},                                  // behind
+    {false, 0.09, 0.018, 0.0},                                    // up, in front of the standing part
+    {false, 0.045, 0.042, 0.0},                                   // higher than the standing part, still in front
+    {false, 0.0, 0.042, 0.0},                                     // straight above the standing part
+    {false, -0.03, -0.012, 0.0},                                  // down behind it
     {true, -0.024, -0.042, -0.06}, {true, 0.006, -0.042, -0.03},  // forward, under the standing part
     {true, 0.06, -0.03, 0.09},                                    // through the loop
 };
 
 constexpr Stop kTwice[] = {
-    {true, 0.12, -0.18, 0.0},                                 // as above ..
-    {false, 0.09, 0.018, 0.0},                                //
-    {false, 0.045, 0.042, 0.0},                               //
-    {false, 0.0, 0.042, 0.0},                                 //
-    {false, -0.03, -0.012, 0.0},                              //
-    {true, -0.03, -0.08, -0.12}, {true, 0.02, -0.08, -0.12},  // .. but under the standing part further from the corner,
-    {true, 0.06, 0.0, -0.12},    {true, 0.03, 0.06, -0.1},    // up and
-    {true, -0.03, 0.06, -0.08},  {true, -0.06, 0.0, -0.07},   // over once more, the arch along the standing part
-    {true, -0.06, -0.09, -0.07}, {true, 0.06, -0.1, -0.07},   // under, to the front well away from the corner,
+    {true, 0.12, -0.18, 0.0},                                 // far to the front, so that the arch opens there
+    {false, 0.09, 0.018, 0.0},                                // up, in front of the standing part
+    {false, 0.045, 0.042, 0.0},                               // higher than the standing part, still in front
+    {false, 0.0, 0.042, 0.0},                                 // straight above the standing part
+    {false, -0.03, -0.012, 0.0},                              // down behind it
+    {true, -0.03, -0.08, -0.12}, {true, 0.02, -0.08, -0.12},  // forward under it, further from the corner than in kOnce
+    {true, 0.06, 0.0, -0.12},    {true, 0.03, 0.06, -0.1},    // second turn: up in front, to above the standing part
+    {true, -0.03, 0.06, -0.08},  {true, -0.06, 0.0, -0.07},   // second turn: over it and down behind it
+    {true, -0.06, -0.09, -0.07}, {true, 0.06, -0.1, -0.07},   // forward under it, well away from the corner
     {true, 0.09, -0.07, 0.09},                                // through the loop
 };
 
 constexpr Stop kAgainst[] = {
-    {true, 0.12, -0.18, 0.0},                                // as above: over the standing part, and behind
-    {false, 0.09, 0.018, 0.0},                               //
-    {false, 0.045, 0.042, 0.0},                              //
-    {false, 0.0, 0.042, 0.0},                                //
-    {false, -0.06, -0.012, 0.0},                             //
-    {true, -0.15, -0.15, -0.2},                              // further behind, on the anchor's side,
-    {true, -0.12, -0.42, -0.2},  {true, 0.15, -0.42, -0.2},  // down, and forward below the arch, not through it,
-    {true, 0.2, -0.1, -0.15},    {true, 0.08, -0.05, -0.1},  // up in front,
-    {true, -0.06, -0.1, -0.08},  {true, -0.1, -0.03, 0.09},  // through the loop to the back
+    {true, 0.12, -0.18, 0.0},                                // far to the front, so that the arch opens there
+    {false, 0.09, 0.018, 0.0},                               // up, in front of the standing part
+    {false, 0.045, 0.042, 0.0},                              // higher than the standing part, still in front
+    {false, 0.0, 0.042, 0.0},                                // straight above the standing part
+    {false, -0.06, -0.012, 0.0},                             // down behind it
+    {true, -0.15, -0.15, -0.2},                              // further behind and down, towards the anchor
+    {true, -0.12, -0.42, -0.2},  {true, 0.15, -0.42, -0.2},  // forward below the whole arch, not through it
+    {true, 0.2, -0.1, -0.15},    {true, 0.08, -0.05, -0.1},  // up in front of the arch
+    {true, -0.06, -0.1, -0.08},  {true, -0.1, -0.03, 0.09},  // through the loop, to the back
 };
 
 std::span<const Stop> path_of(const Throw& t) {

@@ -25,8 +25,8 @@ double firm(const Workplace& place) { return std::clamp(200.0 * place.diameter_m
 /// Direction of the side on which the end starts and comes out again: +y or -y.
 Vec3 front_of(const Throw& t) { return static_cast<double>(t.side) * Vec3::UnitY(); }
 
-/// Coordinates about the standing part: position along it as a share, direction across it as an angle (0 in front, a
-/// quarter turn above).
+/// Coordinates about the standing part: position along it as a fraction of its length, direction across it as an angle
+/// (0 in front, a quarter turn above).
 class Standing {
  public:
   Standing(const Look& look, const Site& site, const Throw& t) : look_(look), site_(site) {
@@ -107,8 +107,8 @@ Move wind(const Throw& t, const std::shared_ptr<const Site>& site) {
           15.0 * (1 + t.passes), [=](const Look& look) { return is_laid(look, t); }};
 }
 
-/// Whether the knot is as short as pulling makes it. A turn of a thick thread takes 12 diameters; a springy one stays
-/// wider.
+/// Whether the knot is as short as pulling can make it: 10 diameters plus 12 per turn in a thread thicker than 1/200 of
+/// its length, twice that in a thinner one.
 bool is_small(const Look& look, int turns) {
   const Tangle knotted = tangle(look);
   const double longest = (10.0 + 12.0 * turns) * look.place.diameter_m * (firm(look.place) > 1.0 ? 1.0 : 2.0);

@@ -53,7 +53,7 @@ class SteeredHand final : public Intention {
   ArmLimits limits_;
   ruckig::Ruckig<3> planner_;
   Trajectory towards_, halt_;  // start at heard_s_, and kLongestSilence_s later
-  Motion rest_;                // state without a plan
+  Motion rest_;                // where the hand stays while there is no plan
   bool has_plan_ = false, dead_man_ = false, grip_ = false;
   bool must_release_ = true;  // the dead-man must be released once before it counts
   double heard_s_ = kNever_s;
