@@ -137,7 +137,7 @@ class Forged(Records):
                      f"{self.path}/../{elsewhere.parent.name}/flight.rec", elsewhere, "flight.rec", self.path, "/"):
             self.say(recorder, ("LIGATURE_STATUS", status(SESSION, name)))
         self.say(recorder, ("LIGATURE_TICKS", batch(SESSION, 0, 20)), ("LIGATURE_TICKS", batch(SESSION, 40, 20)))
-        # Gaps are looked for once a second; the recorder must go on writing afterwards.
+        # The recorder looks for missing ticks once a second; it must go on writing afterwards.
         size = recorder.log.stat().st_size
         self.until(recorder, lambda: recorder.has(size + 250 * (40 + CHECK_BYTES)), lambda: self.lcm.publish("LIGATURE_HELLO", b"hello"))
         code, words = recorder.end()
@@ -155,7 +155,8 @@ class Forged(Records):
         self.assertIn("recorded 40 of at least 60 ticks, 20 known to be lost", words)
 
     def test_sessions_without_end_hide_no_ticks(self):
-        """1000 forged session ids fill the table; later ticks are still recorded and counted correctly."""
+        """1000 forged session ids fill the recorder's list of sessions; later ticks are still recorded and counted
+        correctly."""
         recorder = self.recorder()
         self.say(recorder, *[("LIGATURE_TICKS", batch(i + 1, 0, 1)) for i in range(1000)],
                  *[("LIGATURE_TICKS", batch(SESSION, 20 * i, 20)) for i in range(130)])
@@ -183,7 +184,8 @@ class Forged(Records):
 class Damaged(Records):
     def test_a_damaged_record_is_left_out_and_said(self):
         recorder = self.recorder()
-        false_check = struct.pack(">qI", 0, 0)  # as from a replayed log, or forged
+        # A checksum message that does not belong to the event before it, replayed or forged.
+        false_check = struct.pack(">qI", 0, 0)
         self.say(recorder, *[("LIGATURE_TICKS", batch(SESSION, 20 * i, 20)) for i in range(10)])
         self.lcm.publish("LIGATURE_CHECK", false_check)
         self.say(recorder, *[("LIGATURE_TICKS", batch(SESSION, 20 * i, 20)) for i in range(10, 20)])
@@ -255,7 +257,8 @@ class Ends(Records):
         self.assertIn("session 1 ended after tick 19 or later", words)
 
     def test_forged_names_do_not_keep_the_right_one_out(self):
-        """The list has room for 16 file names; names that turn out not to be a flight recorder are removed."""
+        """The recorder keeps at most 16 names of flight recorder files; names of other files are dropped, so the right
+        one still has room."""
         flight_file(self.path / "flight.rec", SESSION, ticks_of(SESSION, 0, 60))
         recorder = self.recorder()
         self.say(recorder, *[("LIGATURE_STATUS", status(SESSION, self.path / f"forged-{i}")) for i in range(40)],

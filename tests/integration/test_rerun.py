@@ -54,7 +54,7 @@ class Rerun(unittest.TestCase):
         self.interrupted(log, pathlib.Path(scratch.name) / "interrupted")
 
     def test_a_live_recording_of_a_suture(self):
-        """The machine's contact budget is recorded, too."""
+        """The rod's contact budget depends on the machine; it is recorded, so that a rerun uses the same."""
         scratch = tempfile.TemporaryDirectory(prefix="rerun-")
         self.addCleanup(scratch.cleanup)
         hands = pathlib.Path(scratch.name) / "pull.csv"

@@ -17,7 +17,7 @@ SCENES = pathlib.Path(os.environ["LIGATURE_SOURCE"]) / "scenes"
 ROD = "firmware/physics/rod/"
 TICKS = 30
 
-# Code that runs only for one part: files, or functions where a part is a template argument or shares a file.
+# Code that runs only for one part of the rod model: whole files, or single functions.
 TWIST = ["twist.cpp"]
 ROLL = ["spin.cpp", "spin_frames.cpp", "spin_set.cpp", "turning.cpp"]
 CONTACT = ["broad_phase.cpp", "contact_collect.cpp", "contact_couplings.cpp", "contact_measure.cpp",
@@ -33,7 +33,7 @@ WITHOUT = {
     "contact": ['contact.solver="none"'],
     "friction": ["contact.friction=0"],
     "adaptivity": ['suture.spacing="uniform"'],
-    "world": [],  # without desk etc.: see counts()
+    "world": [],  # counts() uses a scene without a desk
 }
 
 

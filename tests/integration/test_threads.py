@@ -37,7 +37,8 @@ def core_for_real_time():
 
 class Threads(BareRig):
     def the_pair(self, process, core):
-        """The loop's and the physics' threads: each is bound to the core and sleeps once per period."""
+        """The threads of the loop and of the physics, recognised by what they do: bound to `core`, and asleep once per
+        period. None unless there are exactly two."""
         self.assertIsNone(process.poll(), "it ended")
         beating = [t for t in threads_of(process) if t.cores == {core} and t.sleeps > 100]
         return beating if len(beating) == 2 else None

@@ -16,7 +16,8 @@ import ligature
 
 SOURCE = os.environ["LIGATURE_SOURCE"]
 # Exceptions by which a call may reject its arguments; any other one is an error of the package.
-ALLOWED = (ValueError, TypeError, RuntimeError, OSError, IndexError, MemoryError)  # Refusal is a ValueError; OSError: TimeoutError
+# Includes Refusal and TimeoutError, which derive from them.
+ALLOWED = (ValueError, TypeError, RuntimeError, OSError, IndexError, MemoryError)
 DTYPES = ["f8", "f4", "f2", "i8", "u1", "?", "c16", "O", "U3", "S2", "M8[s]", ">f8"]
 KEYS = ["suture.nodes", "suture.length_m", "suture.radius_m", "suture.model", "contact.friction", "contact.solver", "time.tick_s",
         "time.substeps", "world.gravity_m_per_s2", "world.fixed", "hands.coupling_N_per_m", "suture.stretch_N", "", "a.b", "\0"]

@@ -1,4 +1,5 @@
-"""Python computes exactly what `ligature-lab run` writes; its files hold the shortest exact digits."""
+"""Python computes exactly what `ligature-lab run` writes. Its files hold each number with as many digits as are needed
+to read it back bit by bit."""
 
 import csv
 import pathlib
@@ -54,7 +55,7 @@ def test_equal_to_the_bit(name, duration_s, tmp_path):
     assert np.array_equal(run.trace, trace[:, :12])  # without the last column, the cost of a tick
     assert np.array_equal(np.repeat(run.shape_t_s, scene.nodes), shape[:, 0])
     assert np.array_equal(run.shapes.reshape(-1, 3), shape[:, 2:])
-    if name != "paper-long":  # its script reaches the thread later than this run's end
+    if name != "paper-long":  # there the hands reach the thread only after the end of this run
         assert np.abs(run["left_fx_N"]).max() > 0.0, "no hand felt anything"
 
 

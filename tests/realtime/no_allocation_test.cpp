@@ -82,7 +82,7 @@ TEST(NoAllocation, TheWholeCycleWithAThreadWhoseTicksTheClockEnds) {
   expect_quiet(s, std::chrono::microseconds(200));
   s.suture.model = scene::Model::kRod;
   s.suture.radius_m = 1e-3;
-  expect_quiet(s, std::chrono::microseconds(50));  // no part of a rod's tick takes longer than 60 us
+  expect_quiet(s, std::chrono::microseconds(50));  // virtual time of each piece of work; the clock then ends ticks
 }
 
 TEST(NoAllocation, TakingAnotherSceneOrOtherParameters) {
@@ -121,7 +121,7 @@ TEST(NoAllocation, TheWholeCycleWithEveryModelAndSolver) {
       scene::Scene s = small_scene();
       s.suture.model = model;
       s.contact.solver = solver;
-      // A combination that make() rejects.
+      // make() rejects this combination of model and solver.
       if (!std::holds_alternative<physics::Simulation>(physics::Simulation::make(s))) continue;
       expect_quiet(s);
     }

@@ -115,7 +115,8 @@ struct RealRig {
     RunOptions o;
     o.scene = std::string(LIGATURE_SOURCE_DIR) + "/scenes/paper.toml";
     o.left = "local:" + folder + "left", o.right = "local:" + folder + "right";
-    o.overrides = {"hands.energy_credit_J=0.02"};  // as for a rig that may lose periods
+    // Initial credit, because lost periods are debited to a hand's energy account.
+    o.overrides = {"hands.energy_credit_J=0.02"};
     o.arm = true;
     o.watchdog_ms = 2000;
     return o;

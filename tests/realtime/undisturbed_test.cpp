@@ -1,6 +1,6 @@
 // After start-up the loop and the thread's physics cause no page fault, no system call except for bus and clock, no
-// denormal number and no exception. Each check is first shown to detect a violation. (Their wake-up system call:
-// RealLoop.*)
+// denormal number and no exception. Each check is first shown to detect a violation. (The system call by which the loop
+// wakes the physics is checked by RealLoop.*.)
 #include <gtest/gtest.h>
 #include <linux/seccomp.h>
 #include <sys/mman.h>
@@ -55,7 +55,7 @@ TEST(Undisturbed, NoPageFaultAfterStart) {
   ASSERT_GT(page_faults(), start) << "the guard must see a first touch";
   munmap(fresh, 1 << 16);
 
-  // As the program does. Where mlockall is refused, the warm run still maps code and heap.
+  // Locks the memory, as the program does. Where that is refused, the warm-up run still maps code and heap.
   (void)platform::lock_memory();
   Grasping warm, run;
   for (auto* each : {&warm, &run}) each->quiet.cycle.end_after(5000);

@@ -39,7 +39,7 @@ inline std::vector<LcmField> lcm_fields(const std::string& type) {
   return found;
 }
 
-/// A value as text; equal for equal bits.
+/// A value as text; two texts are equal exactly if the values' bits are.
 inline std::string word(const std::string& value) { return value; }
 template <class T>
 std::string word(T value) {

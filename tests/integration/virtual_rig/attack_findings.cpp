@@ -39,8 +39,8 @@ class Judge {
   }
 
  private:
-  /// A frame that only a controller may send must be a fault in the tick after it, unless the bus is cut or full or the
-  /// loop stalls.
+  /// Checks that a foreign frame of a kind that only a controller may send is reported as a fault in the next ticks,
+  /// unless the bus is cut or full or the loop stalls.
   void see_foreign(const AttackPlan::Foreign& f) {
     const bool only_ours = f.what == "RPDO" || f.what == "SYNC" || f.what == "NMT" || f.what == "SDO write";
     const bool away = plan_.cut_at >= 0 && f.hand == 0 && f.from + kTicksToSee >= plan_.cut_at;
@@ -81,7 +81,7 @@ class Judge {
     const auto* r = record(tick);
     return r != nullptr && r->torque_permille[hand_] == tips_[k].permille;
   }
-  /// Each joint makes a torque that the firmware has sent recently, or none.
+  /// Whether at SYNC k each joint makes a torque that the firmware has sent recently, or none.
   [[nodiscard]] bool is_ours(Index k) const {
     const Index longest = near_foreign(k, {"flood"}, kTicksOfFlood) ? kTicksOfFlood + kTicksOfFault : kTicksOfFault + 2;
     for (Index j = 0; j < 3; ++j) {
@@ -92,19 +92,20 @@ class Judge {
     }
     return true;
   }
-  /// The torques of all joints come from the same tick.
+  /// Whether the joints' torques at SYNC k were all sent in the same tick.
   [[nodiscard]] bool is_whole(Index k) const {
     for (Index back = 1; back <= kTicksOfFault && back <= k; ++back)
       if (is_sent(k, k - back)) return true;
     return false;
   }
-  /// The torques at k - 1 and k were sent in consecutive ticks, so their step was chosen by the control law.
+  /// Whether the torques that act at SYNC k - 1 and k were sent in consecutive ticks, so that the control law chose
+  /// their step.
   [[nodiscard]] bool is_in_turn(Index k) const {
     for (Index back = 1; back <= kTicksOfFault && back < k; ++back)
       if (is_sent(k, k - back) && is_sent(k - 1, k - back - 1)) return true;
     return false;
   }
-  /// Foreign frames of these kinds were on this hand's bus within the last `ago` ticks; no kinds: any.
+  /// Whether foreign frames of these kinds (none given: any) were on this hand's bus within the last `ago` ticks.
   [[nodiscard]] bool near_foreign(Index k, std::initializer_list<std::string_view> kinds, std::int64_t ago) const {
     return std::ranges::any_of(plan_.foreign, [&](const auto& f) {
       const auto tick = static_cast<std::int64_t>(k);
@@ -112,7 +113,7 @@ class Judge {
       return here && (kinds.size() == 0 || std::ranges::find(kinds, f.what) != kinds.end());
     });
   }
-  /// A foreign torque acts, within the time that its detection and removal take.
+  /// Whether a foreign torque acts at SYNC k, so shortly after the first foreign frame that it cannot be removed yet.
   [[nodiscard]] bool is_strangers(Index k) const {
     return !is_ours(k) && std::ranges::any_of(plan_.foreign, [&](const auto& f) {
       const auto late = static_cast<std::int64_t>(k) - f.from;
@@ -134,8 +135,8 @@ class Judge {
       return order.kind == rt::CommandKind::kStop && order.tick == static_cast<std::int64_t>(tick);
     });
   }
-  /// Armed, without fault and with the dead-man truly pressed at one moment within the time that a force may take to
-  /// end.
+  /// Whether a force at SYNC k is legitimate: at some moment within the time that a force takes to fade, the rig was
+  /// armed and without fault, and the dead-man was truly pressed.
   [[nodiscard]] bool may_push(Index k) const {
     for (Index i = 0; i <= static_cast<Index>(kTicksToEnd) && i <= k; ++i) {
       const auto* r = record(k - i);

@@ -15,8 +15,9 @@ struct Exception {
   auto operator<=>(const Exception&) const = default;
 };
 struct Times {
-  int runs = 0, syncs = 0;         ///< number of SYNCs, summed over both hands
-  double worst = 0.0;              ///< in N; for "outside ARM and dead-man" in consecutive ticks
+  int runs = 0, syncs = 0;  ///< number of SYNCs, summed over both hands
+  /// Largest value, N; for the promise "outside ARM and dead-man": number of consecutive ticks.
+  double worst = 0.0;
   std::uint64_t seed = 0;          ///< of the run with the worst value
   std::size_t hand = 0, tick = 0;  ///< of the worst value
 };

@@ -1,5 +1,6 @@
 #pragma once
-// A bus that loses or corrupts frames, with hands that pull hard: what happens to the force.
+// Runs of the virtual rig on a bus that loses or corrupts frames while hands pull hard: the fault, and the force after
+// it.
 
 #include <cstdint>
 #include <string>
@@ -29,7 +30,8 @@ inline constexpr std::int64_t kBadBusOnset = 1500;
 [[nodiscard]] BadBusEnd end_of(const BadBus& bus, std::uint64_t seed);
 
 /// Ticks within which all force must be gone for this share of lost frames on a hand's bus; 0 where no fault is
-/// required. As in LossWatch.ABadBus..., plus the time to the motors.
+/// required. The times to the fault are stated in docs/architecture.md and hold except once in a million runs; added is
+/// the time until the motors' torque is off.
 [[nodiscard]] std::int64_t ticks_to_zero_at(double frames_lost);
 
 }  // namespace ligature

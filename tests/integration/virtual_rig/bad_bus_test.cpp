@@ -1,5 +1,5 @@
-// Lost frames, for all shares: a fault within bounded time where the force can no longer be correct, and none on a good
-// bus. bad_bus_study makes 300 draws of each share; its tables are in docs/fault-matrix.md.
+// Loss of any share of the CAN frames: it must become a fault within bounded time where the force can no longer be
+// correct, and none on a good bus. bad_bus_study makes 300 draws of each share; its tables are in docs/fault-matrix.md.
 #include "tests/integration/virtual_rig/bad_bus.hpp"
 
 #include <gtest/gtest.h>

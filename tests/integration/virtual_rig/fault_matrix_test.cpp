@@ -27,7 +27,7 @@ const std::string kScenes = std::string(LIGATURE_SOURCE_DIR) + "/scenes/";
 constexpr std::int64_t kOnset = 1500, kTicks = 2200;
 const std::string kByChance = "\n## A bad bus";
 
-/// Records of lost periods are skipped: they repeat the last values, but nothing was sent.
+/// Whether torques were sent in this tick. Records of lost periods repeat the last values, but nothing was sent.
 bool pushes(const rt::TickRecord& r) {
   return (r.flags & rt::kPeriodLost) == 0 && std::ranges::any_of(r.torque_permille, [](const auto& hand) {
            return std::ranges::any_of(hand, [](auto t) { return t != 0; });
@@ -83,7 +83,7 @@ Case of_script(const fs::path& file) {
   return {file.stem().string(), s.title, s, false, Nanoseconds(0), s.expected_fault, s.within_ticks};
 }
 
-/// The resulting fault and its time depend on the random draw; a single draw would not be representative, so it has no
+/// Whether the fault and its time depend on a random draw. One draw would not be representative, so such a case has no
 /// row.
 bool is_by_chance(const Case& c) { return c.script && c.script->share < 1.0 && c.fault != 0; }
 
@@ -94,7 +94,7 @@ std::vector<Case> scripts() {
   return cases;
 }
 
-/// The scripts, and faults outside the hand.
+/// All rows of the table: the fault scripts, and faults outside the hand (its bus is cut, the controller stalls).
 std::vector<Case> all_cases() {
   using std::chrono::milliseconds;
   std::vector<Case> cases = scripts();
@@ -112,7 +112,7 @@ void arrange(SimulatedRig& rig, const Case& c) {
   rig.stall_for = c.stall;
 }
 
-/// Foreign torque is removed by a fault, but only after it has acted.
+/// Whether the torque does not come from the controller. It is removed by a fault, but only after it has acted.
 bool others_push(const Case& c) {
   return c.script && (c.script->kind == scene::FaultKind::kAstray ||
                       (c.script->kind == scene::FaultKind::kForeign && c.script->frame == scene::ForeignFrame::kRpdo));
@@ -254,7 +254,7 @@ TEST(FaultMatrix, EveryCaseEndsAsItSays) {
   }
   table += lies();
   const std::string page = std::string(LIGATURE_SOURCE_DIR) + "/docs/fault-matrix.md", before = text_of(page);
-  // The rest is written by bad_bus_study.
+  // The page from this heading on is written by bad_bus_study.
   const std::size_t by_chance = std::min(before.find(kByChance), before.size());
   if (std::getenv("LIGATURE_WRITE_DOCS") != nullptr) std::ofstream(page) << table << before.substr(by_chance);
   if (test::seed_shift() != 0) return;  // the page shows results without a seed shift
@@ -262,7 +262,7 @@ TEST(FaultMatrix, EveryCaseEndsAsItSays) {
       << "docs/fault-matrix.md is old: LIGATURE_WRITE_DOCS=1 writes it anew";
 }
 
-/// For every draw: a fault, and no force after it.
+/// Cases that depend on a random draw: every draw must end in a fault, and no force may follow it.
 TEST(FaultMatrix, WhatEndsByChanceAlwaysEndsInAFault) {
   const auto scene = std::get<scene::Scene>(scene::load_scene(kScenes + "paper.toml"));
   const auto hands = std::get<scene::GripperScript>(scene::load_gripper_script(kScenes + "operators/overhand.csv"));

@@ -109,7 +109,7 @@ Outcome play(const scene::Scene& scene, const Hands& hands, const device::Device
   return outcome_of(rig);
 }
 
-/// Ten times the shipped coupling: 720 N/m at the device, which renders 440 stably.
+/// Ten times the shipped coupling stiffness: 720 N/m at the device, which renders at most 440 N/m stably.
 std::vector<std::string> stiff() { return {"hands.coupling_N_per_m=12000", "hands.override_passivity=true"}; }
 
 TEST(PassivityRig, NoHandGetsEnergyOutOfAPort) {

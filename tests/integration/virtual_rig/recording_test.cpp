@@ -58,7 +58,8 @@ TEST(RigRecording, ASeeingOperatorSeesEachMillisecondFeelsAndEnds) {
   for (std::size_t i = 1; i < 2000; ++i) ASSERT_NEAR(drawer.times[i] - drawer.times[i - 1], 1e-3, 1e-9) << i;
   EXPECT_EQ(drawer.nodes, rig.thread.nodes_W().size());
   EXPECT_GT(drawer.felt_N, 0.1);
-  EXPECT_NEAR(drawer.tool.x(), 3.2, 0.1);  // the fingers yield to the thread by millimetres of the device
+  // The simulated fingers yield to the thread's pull, by millimetres at the device.
+  EXPECT_NEAR(drawer.tool.x(), 3.2, 0.1);
 }
 
 TEST(RigRecording, TheHostReadsEveryTickAndNamesTheKnot) {

@@ -31,7 +31,8 @@ struct Case {
   std::array<std::vector<scene::GripKey>, 2> keys;
   const char* parameter;  // override that is applied while force is on
   const char* other;      // override of the scene that replaces the first one
-  Nanoseconds cut;        // duration of each piece of the thread's work, too long for a tick
+  // Time that each piece of the physics' work takes, so long that a tick is cut off by its deadline.
+  Nanoseconds cut;
 };
 
 const Case kPaper{"paper.toml",
@@ -110,7 +111,7 @@ struct EventfulRig : lab::VirtualRig {
   scene::Scene next;
 };
 
-/// Checks that all these events are in the recording.
+/// Checks that the recording has events of every kind: lost periods, late and cut ticks, grasps, and so on.
 void expect_eventful(const EventfulRig& rig) {
   std::int64_t lost = 0, late = 0, cut = 0, held = 0, several = 0, bent = 0;
   for (const auto& r : rig.records) {

@@ -11,12 +11,13 @@
 namespace ligature {
 namespace {
 
-constexpr double kThread_N_per_m = 1000.0;                            // coupling on the thread's side,
-constexpr double kDevice_N_per_m = kThread_N_per_m * 500.0 / 1500.0;  // and in series with the device's side
-constexpr double kHand_N_per_m = 800.0;                               // stiffness of the simulated hand
+constexpr double kThread_N_per_m = 1000.0;  // coupling's spring on the thread's side
+// In series with the spring on the device's side, 500 N/m.
+constexpr double kDevice_N_per_m = kThread_N_per_m * 500.0 / 1500.0;
+constexpr double kHand_N_per_m = 800.0;  // stiffness of the simulated hand
 constexpr double kEA_N = 71.0, kTop_m = 0.35;
 constexpr double kStep_N = 0.5;  // step limit of the device file
-constexpr int kNearTop = 5;      // a segment that no hand touches
+constexpr int kNearTop = 5;      // number of a segment near the anchor, which no hand touches
 
 using Keys = std::vector<scene::GripKey>;
 
@@ -80,7 +81,7 @@ TEST(SutureHands, FeelWhatTheThreadDoesToTheJaws) {
     double way_m;
     std::vector<std::string> overrides;
   };
-  // The second thread slips at 0.3 N.
+  // In the second case the jaws pinch so weakly that the thread slips at 0.3 N.
   for (const auto& [way_m, overrides] : {Pull{0.004, {}}, Pull{0.02, {"hands.pinch_force_N=0.5"}}}) {
     const Played p(suture(overrides),
                    {{0.0, {0.0, 0.0, 0.20}, false},
@@ -99,12 +100,13 @@ TEST(SutureHands, FeelWhatTheThreadDoesToTheJaws) {
                 size(p.at(2.4).f_world_N[0]), size(p.at(2.4).f_world_N[1]), p.tension_at(2.4));
     EXPECT_LT(off_N, 0.002);
     EXPECT_NEAR(p.at(2.4).f_wish_N[0][2], p.tension_at(2.4), 0.01 * p.tension_at(2.4));
-    EXPECT_LT(size(p.at(2.4).f_wish_N[1]), 0.02);  // it holds the slack part
+    EXPECT_LT(size(p.at(2.4).f_wish_N[1]), 0.02);  // the right hand holds the slack part of the thread
   }
 }
 
 /// The free end weighs a fifth of a millinewton. The coupling uses its position of the previous tick, which acts as a
-/// drag of K_t T v and absorbs energy; an extrapolated position would make the ports deliver energy.
+/// drag (spring constant x period x speed) and absorbs energy; an extrapolated position would make the ports deliver
+/// energy.
 TEST(SutureHands, CarryAnEndThatWeighsNothing) {
   const Played p(suture(), {},
                  {{0.0, {0.0, 0.0, 0.06}, false},
@@ -153,17 +155,18 @@ TEST(SutureHands, HandTheThreadOverUnderLoad) {
   EXPECT_GT(*range.first, 0.97 * before_N);
   EXPECT_LT(*range.second, 1.01 * both_N);
   EXPECT_LT(both_N, 1.5 * before_N);
-  // Force that each hand feels.
+  // The force that each hand feels before and after is the thread's tension.
   EXPECT_NEAR(size(p.at(2.5).f_device_N[0]), before_N, 0.01 * before_N);
   EXPECT_NEAR(size(p.at(5.4).f_device_N[1]), after_N, 0.01 * after_N);
-  EXPECT_LT(size(p.at(2.9).f_wish_N[1]), 0.01 * before_N);  // closing causes no force
-  EXPECT_GT(size(p.at(kBoth_s).f_device_N[0]), kStep_N);    // letting go is more than one step of the step limit
+  EXPECT_LT(size(p.at(2.9).f_wish_N[1]), 0.01 * before_N);  // the jaws' closing itself causes no force
+  EXPECT_GT(size(p.at(kBoth_s).f_device_N[0]), kStep_N);    // this force cannot end within one step
   for (std::size_t h = 0; h < 2; ++h) EXPECT_LE(p.step_N(h), kStep_N) << h;
   EXPECT_EQ(size(p.at(kOpen_s + 0.05).f_device_N[0]), 0.0);
 }
 
 /// Beside a thread that the left hand holds taut, the right hand closes 14 mm away from it. Out of reach it holds
-/// nothing; within reach its force grows gradually to the taut thread's pull, T x / l to either side.
+/// nothing; within reach it draws the thread aside by x, and its force grows gradually to T x / l from either side (T
+/// tension, l length to the next hold).
 TEST(SutureHands, CloseFarOffWithoutAStep) {
   constexpr double kOff_m = 0.014, kClosed_s = 2.6;
   for (const bool within : {false, true}) {
@@ -231,7 +234,7 @@ TEST(SutureHands, ReachRoundWithTheClutch) {
   EXPECT_GT(again_N, 0.7 * felt_N);
   EXPECT_NEAR(after_N, before_N - gave_way_N, 0.02 * before_N);
   EXPECT_LT(apart(p.at(4.9).p_WT_m[0], p.at(1.9).p_WT_m[0]), 5e-4);
-  EXPECT_LT(p.step_N(0, 1.9), 0.05);  // limited by the gain at both ends
+  EXPECT_LT(p.step_N(0, 1.9), 0.05);  // the gain ramps the force down at the press and up at the release
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Throws through the whole chain, where the simulated hands yield to the force.
+// Knots tied by the simulated operator through the whole rig (encoders, CAN, coupling), where its hands yield to the
+// force.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,7 @@
 namespace ligature::lab {
 namespace {
 
-/// An operator that ties until the named move begins.
+/// Runs an operator until the named move (step of its procedure) begins.
 class Until final : public SeeingOperator {
  public:
   Until(sim::KnotTier tier, std::string move) : tier_(std::move(tier)), move_(std::move(move)) {
@@ -48,15 +49,16 @@ std::string knot_before(const char* move, const char* name, const char* knot, st
   return found.type + " " + found.handedness;
 }
 
-/// The end must pass to the front well inside the loop. Next to the strand at the corner it came out behind that strand
-/// in half of the cases, and a turn was missing (5 of 8).
+/// The thread's end must pass to the front well inside the loop. If it passes next to the strand that the left hand
+/// holds, it can come out behind that strand, and one of the two turns is missing (in 5 of 8 runs).
 TEST(Tying, AFirstThrowOfTwoTurnsInTheSutureHasTwoTurns) {
   for (const std::uint32_t seed : {57U, 60U, 62U})
     EXPECT_EQ(knot_before("draw through", "suture-3-0.toml", "surgeon", seed), "5_1 right") << seed;
 }
 
-/// A whole turn about the standing part would be dragged over the corner; round the lower strand of the arch it stays.
-/// Bending is plastic here, since an elastic figure-eight opens at this friction.
+/// The end makes its extra turn round the lower strand of the arch between the hands. A turn round the standing part
+/// (the thread above the left hand) would slip off over the left hand's grip when it is drawn. Bending is plastic here,
+/// since an elastic figure-eight opens at this friction.
 TEST(Tying, AFigureEightInTheSutureIsOneAndStays) {
   EXPECT_EQ(knot_before("draw through", "suture-3-0.toml", "figure-eight", 1), "4_1 amphichiral");
   EXPECT_EQ(knot_before("done", "suture-3-0.toml", "figure-eight", 2, {"suture.yield_strain=0.1"}), "4_1 amphichiral");

@@ -103,7 +103,7 @@ TEST(VirtualRig, ARunThatEndsInForceLeavesEveryDriveOff) {
 TEST(VirtualRig, AFaultIsLeftByResetArmAndANewPress) {
   SimulatedRig rig(paper(), overhand());
   rig.left.faults.emplace(
-      // The fault is at 1.5 s.
+      // A drive sends an emergency message at 1.5 s.
       std::get<scene::FaultScript>(scene::load_fault_script(kScenes + "faults/emergency.toml")));
   rig.each_tick = [&] {
     if (rig.cycle.periods() == 1700) rig.outlets->commands.push({1, rt::CommandKind::kResetFault});

@@ -1,4 +1,4 @@
-"""Where tables go, and a check that raises."""
+"""Helpers of the table generators: wcsv and wjson write a table to tests/reference, check raises on a wrong value."""
 import csv
 import json
 import os

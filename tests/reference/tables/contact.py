@@ -26,10 +26,11 @@ def tables():
     # heavy rod on a rigid plane, one end lifted to height H by a vertical force, moment free. Lb=(EI/w)^(1/3)
     rows = []
     for h in (0.001, 0.01, 0.05, 0.1, 0.2, 0.5, 1.0):   # H/Lb
-        def rhs(x, y, p):  # x in 0..1, s=p*x, y=(theta,kappa,X,Z); vertical force at lift-off V0=p0/.. : theta''=-(V)cos; unknown length l and reaction R
+        def rhs(x, y, p):  # x in 0..1, s = l x, y = (theta, kappa, X, Z); unknown: lifted length l and reaction R
             l, R = p; s = l*x; th, ka, X, Z = y
             return l*np.vstack([ka, (R-s)*np.cos(th), np.cos(th), np.sin(th)])
-        # internal shear: upward reaction R at lift-off point, weight s after it; M'=(R-s)cos(theta)  (units Lb, w Lb, w Lb^2)
+        # Equilibrium: the ground's reaction R acts at the lift-off point and the weight of the lifted length s hangs on
+        # the rod, so theta'' = M' = (R - s) cos(theta); units: length Lb, force w Lb, moment w Lb^2.
         bc = lambda ya, yb, p: np.array([ya[0], ya[1], ya[2], ya[3], yb[3]-h, yb[1]])
         l0 = (24*h)**.25; x = np.linspace(0, 1, 60); s = l0*x
         z = -s**4/24+l0*s**3/12; zp = -s**3/6+l0*s*s/4; zpp = -s*s/2+l0*s/2

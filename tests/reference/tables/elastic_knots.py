@@ -1,4 +1,4 @@
-"""Loose elastic knots."""
+"""Loose elastic knots: the contact problem of the braid, after Audoly, Clauvelin and Neukirch (2007)."""
 import numpy as np
 
 from tables.common import check, wcsv
@@ -21,7 +21,7 @@ def braid(n, S=9.0, N=900, newton=60, rho0=20., verbose=False):
     Kx, Ky = Dx.T@W@Dx, Dy.T@W@Dy      # 1/4 int over full line = 1/2 int over half; E = 1/2 v.K v
     K = sp.block_diag([Kx, Ky]).tocsc()
     b = np.zeros(2*(N+1)); b[N] = 1/h; b[N-1] = -1/h; b *= 1.0     # v_x'(S) at S-h/2 ; -1/2*(2 v_x'(S)) = -v_x'
-    # natural end condition acts at S-h/2: correct length below through J with S_eff=S-h/2
+    # The end slope is that at S - h/2, so J below is computed with the length S_e = S - h/2.
     s = np.arange(N+1)*h
     ang = np.pi/2-0*s; wind = (2*n+1)*np.pi/2
     L0 = 1.6*n+0.8; th = wind*np.clip(s/L0, 0, 1); rho = np.where(s < L0, 1.02, np.sqrt(1.02+((s-L0)**2/2)**2))

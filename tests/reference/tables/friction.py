@@ -7,7 +7,8 @@ from tables.common import wcsv
 def tables():
     rows = [[mu, th, np.exp(mu*np.radians(th))] for mu in (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.7, 1.0) for th in (30, 45, 60, 90, 120, 180, 270, 360, 540, 720, 1080)]
     wcsv("05_capstan.csv", ["mu", "wrap_angle_deg", "T1_over_T2"], rows)
-    # polygonal wrap: N equal kinks of angle theta/N, each a point contact with Coulomb limit and frictionless geometry on the bisector
+    # Capstan as a polygon: N equal kinks of angle theta / N, each a point contact at the limit of Coulomb friction,
+    # whose normal is the kink's bisector.
     rows = []
     for mu in (0.1, 0.2, 0.3, 0.5):
         for th in (90, 180, 360):
@@ -25,7 +26,7 @@ def tables():
     for mu in (0.1, 0.2, 0.3, 0.5):
         for v in (0.01, 0.05, 0.1, 0.5, 1.0): rows.append([mu, v, v*v/(2*mu*g), v/(mu*g)])
     wcsv("05_stopping_distance.csv", ["mu", "v0_m_s", "distance_m(g=9.81)", "time_s"], rows)
-    # force ramp on a block tied through a spring: stick force limit + slip distance
+    # Block on a slowly pulled spring: the elongation at which it begins to slip, and the distance that it slips.
     rows = []
     for mu, k, m in ((0.3, 100., 0.001), (0.3, 1000., 0.001), (0.5, 100., 0.01)):
         rows.append([mu, k, m, mu*m*g/k, 2*mu*m*g/k])

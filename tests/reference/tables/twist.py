@@ -7,7 +7,8 @@ from tables.common import check, wcsv, wjson
 
 
 def clamped_twist_det(m, t):
-    """B w''''-iM w'''-T w''=0 on (0,1), clamped-clamped, m=ML/B, t=TL^2/B."""
+    """Determinant of the buckling problem of a twisted clamped rod; zero at buckling. B w'''' - i M w''' - T w'' = 0 on
+    (0, 1) for the complex deflection w; m = M L / B, t = T L^2 / B."""
     disc = np.sqrt(complex(4*t-m*m)); l1 = (1j*m+disc)/2; l2 = (1j*m-disc)/2
     if abs(l1) < 1e-9 or abs(l2) < 1e-9 or abs(l1-l2) < 1e-9: return np.nan
     f = [lambda s: 1, lambda s: s, lambda s: np.exp(l1*s), lambda s: np.exp(l2*s)]
@@ -23,7 +24,8 @@ def clamped_m(t):
             r = brentq(lambda m: clamped_twist_det(m, t), a, b, xtol=1e-12)
             if r > lo+2e-3: return r
 def disc_twist_m(t, N=400):
-    """independent: finite-difference second variation of the same problem (energy form), smallest m with a zero eigenvalue."""
+    """Critical m = M L / B by another method than clamped_twist_det(): finite differences of the energy's second
+    variation; the smallest m with a zero eigenvalue."""
     h = 1./N; n = N-1
     D2 = (np.diag(-2*np.ones(n))+np.diag(np.ones(n-1), 1)+np.diag(np.ones(n-1), -1))/h**2
     e0 = np.zeros(n); e0[0] = 1; e1 = np.zeros(n); e1[-1] = 1

@@ -23,7 +23,7 @@ def tables():
         A = np.diag(2*np.arange(N)+1.)-np.diag(np.arange(1, N), 1)-np.diag(np.arange(1, N), -1)
         e = np.sort(np.linalg.eigvalsh(A))[:3]
         rows += [[N, i+1, np.sqrt(e[i]*N), np.sqrt(e[i]*N)/(j[i]/2)-1] for i in range(min(3, N))]
-        # direct check against the linearised chain
+        # check against the eigenvalues of the linearised chain of 10 masses
         if N == 10:
             T = np.arange(N, 0, -1)*1.0  # tension above mass k (k=0 top) in mg, g=l=m=1
             K = np.zeros((N, N))

@@ -30,7 +30,7 @@ TEST(Units, TorqueIsClippedAndNeverNotANumber) {
   EXPECT_EQ(permille_of(-std::numeric_limits<double>::infinity()), -3000);
 }
 
-TEST(Units, TorqueReachesTheForceLimitAtFullReach) {  // 3.3 N at a lever of 0.134 + 0.1325 m
+TEST(Units, TorqueReachesTheForceLimitAtFullReach) {  // largest force 3.3 N, stretched arm of 0.134 + 0.1325 m
   EXPECT_LT(3.3 * (0.134 + 0.1325), torque_Nm(profile::kMaxTorque_permille));
 }
 

@@ -1,4 +1,5 @@
-// The largest tip force that given torques can make in any pose: a force limit that holds even if encoders are wrong.
+// AnyPose: the largest tip force that given joint torques can make in any pose of the arm. A force limit based on it
+// holds even if encoders are wrong.
 #include "firmware/control/any_pose.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,8 @@ namespace ligature::control {
 namespace {
 
 constexpr double kPeak_N = 3.3, kStep_N = 0.53;
-constexpr double kQuanta_N = 0.02;  // half a per mille of each joint's torque, at the pose with the shortest levers
+// Rounding of torques to 1/1000 of the rated torque, as a force at the pose with the shortest levers.
+constexpr double kQuanta_N = 0.02;
 
 /// Random poses of an Omni with the tip in its workspace box.
 class Poses {
@@ -94,7 +96,8 @@ TEST(AnyPose, AnArmThatMayBeStretchedGetsNoForce) {
   EXPECT_GT(most_N, 100.0);
 }
 
-/// Cost of the limit: the forces that remain available with correct encoders, over workspace and directions.
+/// The limit costs some force even if the encoders are correct: what remains, over poses of the workspace and
+/// directions.
 TEST(AnyPose, LeavesAnHonestHandMostOfTheForce) {
   const AnyPose any(device::omni());
   Poses poses(3U);

@@ -1,4 +1,5 @@
-// Every fault removes the force; which of them can be reset, and how. The readings are artificial.
+// Every fault of the controller removes the force; which faults can be reset, and how. The drives' readings are set by
+// the tests.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -60,7 +61,7 @@ TEST(ControllerFaults, EachTakesAllTorqueInTheSameTickAndLatches) {
   }
 }
 
-/// In every state, armed or not: whether a stranger is on the bus does not depend on the controller's state.
+/// Frames or torques of another sender on the bus are a fault in every state of the controller, armed or not.
 TEST(ControllerFaults, SomebodyElseOnTheBusIsAFaultInEveryStateAndNoResetLeavesIt) {
   for (const int ticks : {0, 1, 30, 200, 1000}) {  // OFF, CALIBRATE, IDLE or rising force, FORCE
     for (const bool armed : {false, true}) {

@@ -1,5 +1,5 @@
 #pragma once
-// The control law without drives: the test sets the readings and the positions of the held nodes.
+// Fixture: the control law without drives. The test sets the encoder readings and the positions of the held nodes.
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@ namespace ligature::control {
 
 inline constexpr int kWatchdog = 20;
 
-/// A controller with two resting hands; each holds a node 5 cm above its tool and presses the dead-man as soon as it
-/// counts.
+/// A controller with two resting hands; each holds a node 5 cm above its tool and presses the dead-man as soon as a
+/// press is accepted.
 class Rig {
  public:
   explicit Rig(const scene::Hands& hands = scene(), const device::Device& device = device::omni(),
@@ -34,7 +34,7 @@ class Rig {
     return hands;
   }
 
-  /// A Cartesian device: its force does not depend on its pose.
+  /// A Cartesian device of three cable drums: the force that its torques make does not depend on its pose.
   static device::Device drums() {
     device::Device d = device::omni();
     d.kinematics = device::Kinematics::kCartesian;

@@ -1,4 +1,4 @@
-// The whole control law with artificial readings: start-up to force, limits, clutch, and end of force.
+// The whole control law with encoder readings set by the tests: start-up to force, limits, clutch, and end of force.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -8,7 +8,7 @@
 namespace ligature::control {
 namespace {
 
-// Torques are sent in whole per mille of 0.3 N m, rounded towards zero.
+// Tolerance for the rounding of torques, which are sent in whole per mille of 0.3 N m.
 constexpr double kStay_Nm = 0.7 * 0.3e-3 * (1 + 1e-9);
 
 TEST(Controller, ComesUpThroughEveryStateToForce) {

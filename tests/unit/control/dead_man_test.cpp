@@ -6,7 +6,7 @@
 namespace ligature::control {
 namespace {
 
-constexpr int kLong = 2000;  // ticks; four times the way to full force
+constexpr int kLong = 2000;  // ticks; four times as long as the rise to full force takes
 
 TEST(DeadMan, CountsAfterItWasSeenReleased) {
   DeadMan d;
@@ -104,7 +104,7 @@ TEST(NewPress, OfAButtonHeldSinceTheStart) {
   press_anew(rig);
 }
 
-TEST(NewPress, IsSeenInFreshSamplesOnly) {  // an old sample that is held counts once
+TEST(NewPress, IsSeenInFreshSamplesOnly) {  // while no new sample arrives, the last one is repeated; it counts once
   Rig rig;
   rig.to_force();
   rig.controller.command(rt::CommandKind::kStop);
@@ -120,7 +120,7 @@ TEST(NewPress, IsSeenInFreshSamplesOnly) {  // an old sample that is held counts
   expect_no_force(rig);
 }
 
-// Samples a constant period late count as new; otherwise a release would be ignored.
+// Samples that always come the same number of periods late are fresh, too; otherwise a release would be ignored.
 TEST(LetGo, IsSeenInSamplesThatComeLate) {
   for (int age = 0; age <= 3; ++age) {
     Rig rig;

@@ -16,7 +16,8 @@ namespace {
 constexpr std::array<bool, 3> kFree{true, true, true};
 using Counts = std::array<double, 3>;
 
-/// A slow motion: 0.45, 1.0 and 1.6 counts per period at t = 0, as by the fault scripts' operator at the fault's onset.
+/// A slow motion of the three joints: 0.45, 1.0 and 1.6 counts per period at t = 0, the moment at which the encoder
+/// fails.
 Counts motion(int t) { return {0.45 * t - 1e-4 * t * t, 1.0 * t - 2e-3 * t * t, 1.6 * t - 2e-3 * t * t}; }
 
 Counts counted(Counts c) {
@@ -90,8 +91,8 @@ TEST(EncoderWatch, HandsThatTurnStopAndTrembleAreNotSuspected) {
   }
 }
 
-/// The watch's limit: a joint that reverses from speed u with constant acceleration, which differs by two counts or
-/// more from an instant reversal.
+/// A hand may itself reverse a joint's motion. If it takes so long (constant acceleration of at most `most`) that the
+/// path differs by two counts or more from an instant reversal, it must not be taken for an encoder fault.
 TEST(EncoderWatch, ATurnThatTakesItsTimeIsNotSuspected) {
   test::Random random(24);
   for (const MirroredTurn::Look& look : MirroredTurn::kLooks) {
@@ -161,8 +162,8 @@ TEST(EncoderWatch, AJointThatNobodyPushesMayRestForEver) {
   }
 }
 
-/// A wrong encoder that is found within 120 samples (above) is not found if a time gap interrupts them every 20
-/// samples.
+/// Gaps restart the check: an encoder fault that takes up to 120 samples to find is not found if a gap interrupts the
+/// samples every 20 samples.
 TEST(EncoderWatch, AGapStartsAnew) {
   for (const bool reversed : {true, false}) {
     for (const std::int64_t gap : {1, 0, 2}) {  // periods; 0: unknown length
@@ -178,7 +179,8 @@ TEST(EncoderWatch, AGapStartsAnew) {
   }
 }
 
-/// During a gap the joint may have moved: here it went on for 30 samples and then stopped normally.
+/// After a gap in the samples an earlier suspicion must be dropped: here the joint moves again for 30 samples and then
+/// stops normally.
 TEST(EncoderWatch, ASuspicionEndsWithAGap) {
   const auto frozen = [](int t) {
     Counts c = counted(motion(t));

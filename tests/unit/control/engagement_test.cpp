@@ -1,4 +1,4 @@
-// The gain of a hand's coupling over time.
+// Engagement: the gain, 0 to 1, by which a hand's coupling force fades in and out.
 #include "firmware/control/engagement.hpp"
 
 #include <gtest/gtest.h>

@@ -48,7 +48,7 @@ class Arms {
       acting[h] = vector_of(command.hand[h].torque_Nm);
       most_N = std::max(most_N, controller.hand(h).f_device_N.norm());
       most_J = std::max(most_J, work_J[h]);
-      // Energy that the port delivers beyond its allowance.
+      // Energy lent to the port for the move, minus the energy that its motors have delivered.
       least_bound_J = std::min(least_bound_J, controller.hand(h).received_J - work_J[h]);
     }
   }
@@ -69,7 +69,7 @@ class Arms {
   std::array<double, 2> work_J{};
   Vec3 first = Vec3::Zero();
   double most_N = 0.0, most_J = 0.0, speed = 0.0, least_bound_J = 0.0;
-  int reversed = -1, frozen = -1;  // that joint of the left hand; -1: none
+  int reversed = -1, frozen = -1;  // joint of the left hand whose encoder counts backwards; or stands still. -1: none
   int released = 0;
   bool held = false;  // both arms are held fast
 
@@ -105,7 +105,8 @@ TEST(LedMove, ParkLeadsBothHandsGentlyToTheRestingPose) {
   EXPECT_GE(arms.least_bound_J, -1e-6);
   EXPECT_GT(arms.controller.hand(0).received_J, 0.0);
   EXPECT_LT(arms.controller.hand(0).received_J, HandControl::kLeadEnergy_J);
-  EXPECT_LT(std::abs(arms.controller.hand(0).port_energy_J), 1e-6);  // the rest of the loan was returned
+  // Unused energy that was lent for the move has been returned.
+  EXPECT_LT(std::abs(arms.controller.hand(0).port_energy_J), 1e-6);
 }
 
 TEST(LedMove, NothingIsGrippedOnTheWay) {
@@ -249,8 +250,8 @@ TEST(LedMove, AMoveThatIsRefusedIsAsIfNobodyHadAskedForIt) {
   }
 }
 
-/// The command arrives while the gain still rises, and its condition ends before the gain is full: a later press must
-/// not start the move.
+/// The command for a move arrives while the gain still rises, and what the move requires (e.g. the dead-man) ends
+/// before the gain is full: a later press must not start the move.
 TEST(LedMove, OneThatHasNotBegunIsOverForGood) {
   using Set = void (*)(Arms&, bool);
   const std::vector<std::pair<const char*, Set>> ends{

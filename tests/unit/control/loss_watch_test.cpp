@@ -1,4 +1,5 @@
-// How much loss makes a bus a fault, how fast, and how rarely a good bus is reported.
+// LossWatch reports a fault when too many frames of a bus are lost: at which loss, how fast, and how rarely on a good
+// bus.
 #include "firmware/control/loss_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -45,7 +46,7 @@ struct Bound {
   int ticks;
 };
 
-// These bounds are stated in docs/architecture.md.
+// Ticks until the fault, as docs/architecture.md states them.
 TEST(LossWatch, ABadBusIsNamedWithinABoundedTimeButOnceInAMillionTimes) {
   for (const auto& [frames, ticks] : {Bound{0.15, 2100}, Bound{0.2, 430}, Bound{0.25, 220}, Bound{0.5, 65}}) {
     Count count(samples_lost(frames));

@@ -1,5 +1,5 @@
-// Before a port sends a force, it budgets for the ticks to come and for torques still in transit; lending between
-// ports.
+// Before a force is sent to a hand's motors (its port), the hand's energy account must cover what the force and the
+// torques still in transit may deliver in the coming ticks. Also: energy that one hand's account lends to the other.
 #include <gtest/gtest.h>
 
 #include "firmware/control/passivity.hpp"
@@ -15,8 +15,8 @@ Passivity resting(double credit_J) {
   return p;
 }
 
-/// A port whose first RPDO was lost `later` ticks ago. Its hand moves along `axis` at 0.05 m/s, and 0.3 N are in
-/// transit.
+/// A port whose first torque message (RPDO) was lost `later` ticks ago. The hand moves along `axis` at 0.05 m/s, and a
+/// force of 0.3 N is on its way to the drives.
 struct Lossy {
   Lossy(const Vec3& axis, double credit_J, int later) : passivity(plain(), kT_s, true, credit_J) {
     for (int n = 0; n <= later + 2; ++n) {
@@ -43,7 +43,7 @@ struct Lossy {
   std::int64_t tick = 0;
 };
 
-/// Torques in transit are budgeted joint by joint; no axis and no direction gets less.
+/// The account's reserve for torques in transit is the same for every axis and direction.
 TEST(Passivity, NoAxisIsForeseenLessThanAnother) {
   const double first_N = Lossy(Vec3(1, 0, 0), 2e-4, 5).most_N(Vec3(1, 0, 0));
   ASSERT_GT(first_N, 0.01);

@@ -1,5 +1,6 @@
 #pragma once
-// Evaluates the bounds of docs/passivity.md during a run: limits for a port's account and for the motors' true work.
+// Evaluates two inequalities (docs/passivity.md) during a run: how far the firmware's account of a hand's energy may be
+// from the true work, and how much energy the motors may give the hand.
 
 #include <algorithm>
 #include <array>
@@ -12,9 +13,11 @@
 
 namespace ligature::control {
 
-/// Bounds for a hand whose tip acceleration is at most `wildness` times the device file's limit; all terms >= 0:
+/// Bounds for a hand whose tip acceleration is at most `wildness` times the device file's limit:
 ///   account <= work + hidden + unseen
 ///   work    >= -1 uJ - hidden - unseen - counted - beyond
+/// Four error terms, all >= 0: hidden, by rounded positions in what was booked; unseen, by unknown motion between two
+/// samples; counted, by rounded positions in what was budgeted; beyond, by lost frames that the budget did not expect.
 class PassivityBounds {
  public:
   PassivityBounds(double count_m, double wildness)
@@ -32,7 +35,7 @@ class PassivityBounds {
     hidden_J_ += count_m_ * (now.made_N - before_N).lpNorm<1>();
     periods_.push_back(now);
   }
-  /// An encoder sample arrived at SYNC n.
+  /// To be called when an encoder sample arrives at SYNC n, with the account after it and the true work.
   void seen(std::int64_t n, double account_J, double work_J) {
     unseen_J_ += wildness_ * reach_m_ * unseen_N(periods_.empty() ? n : periods_.back().sample, n);
     accounts_J_.resize(static_cast<std::size_t>(n + 1), accounts_J_.back());
@@ -45,7 +48,7 @@ class PassivityBounds {
     const std::int64_t m = last_sent(n);
     if (m < 0) return;
     const double more_J = beyond_J(m, n) + counted_J(m, n);
-    // Minus the energy delivered since that sample.
+    // The account at the sample on which tick m was based, minus the energy delivered since.
     double account_J = accounts_J_[static_cast<std::size_t>(at(m).sample)];
     for (std::int64_t p = at(m).sample; p < n; ++p) account_J -= at(p).given_J;
     below_J = std::max(below_J, -Passivity::kFloor_J - more_J - account_J);
@@ -58,7 +61,8 @@ class PassivityBounds {
   double work_below_J = -1e9;  ///< the same for the work's lower bound
   double unseen_share = 0.0, most_beyond_J = 0.0;
   [[nodiscard]] double unseen_J() const { return unseen_J_; }
-  /// Work that quantised positions hide: at each change of force, half a count by the encoder, half by interpolation.
+  /// The term "hidden": work that rounded positions hide. One count per change of force: half by the encoder, half by
+  /// the interpolation between counts.
   [[nodiscard]] double hidden_J() const {
     return periods_.empty() ? 0.0 : hidden_J_ + count_m_ * periods_.back().made_N.lpNorm<1>();
   }
@@ -73,8 +77,8 @@ class PassivityBounds {
     return -1;
   }
 
-  /// Work that is uncertain because the tip's motion between two samples is unknown: sum over t of |sum over later
-  /// periods of (force - mean force)|.
+  /// The term "unseen" per a T^2 of tip motion: the tip's motion between two samples is unknown. Sum over periods t of
+  /// |sum over the periods after t of (force - mean force)|.
   [[nodiscard]] double unseen_N(std::int64_t from, std::int64_t to) const {
     Vec3 mean_N = Vec3::Zero(), before_N = Vec3::Zero();
     double sum_N = 0.0;
@@ -83,7 +87,7 @@ class PassivityBounds {
     return sum_N;
   }
 
-  /// Energy delivered between the sample of decision m and SYNC n that this decision did not budget for.
+  /// The term "beyond": energy delivered up to SYNC n that was not budgeted when the force of tick m was chosen.
   [[nodiscard]] double beyond_J(std::int64_t m, std::int64_t n) const {
     double sum_J = 0.0;
     for (std::int64_t p = at(m).sample; p < n; ++p) {
@@ -95,8 +99,8 @@ class PassivityBounds {
     }
     return sum_J;
   }
-  /// Shortfall of that budget from the third period without a sample on: the hand may accelerate more than was assumed,
-  /// and very small forces are not budgeted for at all.
+  /// Part of "beyond" in period p, from the third period without a sample on: the hand may accelerate more than the
+  /// budget of tick m assumed, and very small forces are not in that budget at all.
   [[nodiscard]] double wilder_J(std::int64_t m, std::int64_t p) const {
     const std::int64_t sample = at(m).sample, gap = sample > 0 ? sample - at(sample - 1).sample : 1;
     const auto j = static_cast<double>(p - sample + 1);
@@ -105,7 +109,8 @@ class PassivityBounds {
     const double doubt_m = reach_m_ * (spread + 0.5 * static_cast<double>(gap - 1)) + count_m_;
     return size_N * reach_m_ * std::max(0.0, wildness_ * j - spread) + std::min(size_N, Passivity::kSlight_N) * doubt_m;
   }
-  /// Error of the last known motion, one count per joint; the decision budgets for one count along the force.
+  /// The term "counted": the last known motion is uncertain by one count per joint, and the budget of tick m allows for
+  /// one count along the force only.
   [[nodiscard]] double counted_J(std::int64_t m, std::int64_t n) const {
     double sum_N = 0.0;
     for (std::int64_t p = at(m).sample; p < n; ++p) sum_N += at(p).made_N.lpNorm<1>() - at(p).made_N.norm();

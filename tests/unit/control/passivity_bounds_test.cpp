@@ -1,4 +1,5 @@
-// The bounds of docs/passivity.md for random and for optimised attacks, as a short form of passivity_study.
+// Random and optimised attacks on the energy account of a hand must keep within the bounds of docs/passivity.md.
+// passivity_study runs many more of them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -55,9 +56,9 @@ TEST(PassivityBounds, HoldForHandsThatClimb) {
   }
 }
 
-/// Between two samples the account assumes uniform motion. With two periods between the samples and 0.3 N in the
-/// second, a hand that waits and then follows the force gets 0.3 N a T^2 / 2 more than is debited. No hand within the
-/// acceleration a gets more.
+/// Between two samples the account assumes uniform motion. With two periods T between the samples and 0.3 N in the
+/// second, a hand that waits and then follows the force gets 0.3 N a T^2 / 2 more than is debited. A hand of at most
+/// the acceleration a cannot get more.
 TEST(PassivityBounds, WhatNobodySawIsWorthHalfAStepTimesTheAcceleration) {
   const double a = plain().hand_acceleration_m_per_s2;
   const auto excess_J = [&](double share) {

@@ -11,15 +11,15 @@
 
 namespace ligature::control {
 
-/// Parameters of one attack, which an optimiser may change. Each knot, a stretch of equal length, has an acceleration
-/// and a share of it that acts along the motors' force.
+/// Parameters of one attack, which an optimiser may change. Time is divided into stretches of equal length ("knots" of
+/// the path); each has an acceleration of the hand and a share of it along the motors' force.
 struct Attacker {
   static constexpr std::size_t kKnots = 40;
   std::array<Vec3, kKnots> push{};
   std::array<double, kKnots> along{};
   /// Coefficients of the control law; with a negative gain it is a spring.
   double gain_N_per_m = 400.0, damping_s = 0.01;
-  int hold = 10;  ///< length of a knot in periods
+  int hold = 10;  ///< length of a stretch in periods
   Chain chain;
 
   /// Random parameters. With `loses`, up to 30 % of RPDOs, of samples or of both are lost.
@@ -43,7 +43,7 @@ struct Attacker {
     return a;
   }
 
-  /// A mutation: some knots, and sometimes the control law or the losses.
+  /// A copy with random changes: of some stretches, and sometimes of the control law or the losses.
   [[nodiscard]] Attacker changed(test::Random& random, double size) const {
     Attacker a = *this;
     for (std::size_t k = 0; k < kKnots; ++k) {

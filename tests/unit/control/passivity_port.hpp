@@ -1,5 +1,6 @@
 #pragma once
-// A passivity port with a simulated plant: a mass moved by a hand and the motors, quantised positions and lost frames.
+// The passivity controller of one hand with a simulated plant: a mass moved by a hand and by motors, rounded positions
+// and lost frames.
 
 #include <algorithm>
 #include <array>
@@ -20,10 +21,11 @@ struct Chain {
   double count_m = 0.0;  // encoder resolution at the tip
   double lost = 0.0;     // share of RPDOs that are lost
   double lost_samples = 0.0;
-  double guard_N = 1e9;      // the drive limits its force to this
-  bool tells_torque = true;  // else the drive reports only that it limits, and the age of its torque
-  std::uint64_t seed = 1;    // of the random losses
-  double wildness = 1.0;     // the hand's acceleration as a share of the device file's limit
+  double guard_N = 1e9;  // the drive limits its force to this
+  // Whether the drive reports its torque; else only that it limits it, and the age of its command.
+  bool tells_torque = true;
+  std::uint64_t seed = 1;  // of the random losses
+  double wildness = 1.0;   // the hand's acceleration as a share of the device file's limit
 };
 
 inline WindowVelocity velocity_of(const Chain& c) { return {kT_s, std::max(c.count_m, 1e-9)}; }

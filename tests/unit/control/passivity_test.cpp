@@ -1,4 +1,5 @@
-// The port's account in a simulated plant: it is exact, and no hand within the acceleration bound overdraws it.
+// The energy account of a hand with a simulated plant: it is exact, and no hand within the acceleration bound overdraws
+// it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +20,7 @@ TEST(Passivity, TheAccountIsTheWorkToTheLastDigit) {  // against the work that t
   EXPECT_NEAR(port.passivity.energy_J(), before, 1e-12);
 }
 
-// In a full swing the hand would get more energy than it gives.
+// Sampling delays a spring's force, so in each full oscillation the hand would get more energy than it gives.
 TEST(Passivity, ASampledSpringMakesEnergyAndTheControllerRefusesIt) {
   const auto swing = [](bool active) {
     Port port(active);
@@ -67,7 +68,8 @@ TEST(Passivity, NoHandWithinTheBoundOverdrawsTheAccount) {
   play_adversaries({}, [](const Port& port) { EXPECT_GE(port.lowest_J, -Passivity::kFloor_J); });
 }
 
-/// Whether the force is dropped at once depends on the random draw (docs/passivity.md has the shares): here it is rare.
+/// The force changes by at most a step per tick, except where all of it is dropped for lack of energy. How often that
+/// happens depends on the random draw; here it is rare.
 TEST(Passivity, HandsWithinTheBoundAreCutByAStepButWhereTheyAreLetGo) {
   double felt_N = 0.0;
   int let_go = 0;
@@ -77,12 +79,14 @@ TEST(Passivity, HandsWithinTheBoundAreCutByAStepButWhereTheyAreLetGo) {
     felt_N = std::max(felt_N, port.made.norm());
   };
   play_adversaries({}, look);
-  play_adversaries({.count_m = 5e-5}, look, 0.4);  // one count of motion within a period looks like 50 m/s2
+  // One count of 0.05 mm in a period of 1 ms looks like 50 m/s2, half of the bound.
+  play_adversaries({.count_m = 5e-5}, look, 0.4);
   EXPECT_GT(felt_N, 0.5);
   EXPECT_LE(let_go, 6) << "of 80";
 }
 
-// Except where all force is dropped, for lack of energy.
+// The force that the drives really make changes by at most a step per tick, except where it is dropped for lack of
+// energy.
 TEST(Passivity, WhatTheDrivesMakeChangesByAStepWhateverIsLost) {
   const Chain whole{}, lossy{.lost = 0.05}, very{.lost = 0.3}, blind{.lost_samples = 0.14};
   const Chain both{.lost = 0.05, .lost_samples = 0.14}, silent{.lost = 0.05, .tells_torque = false};
@@ -101,7 +105,7 @@ TEST(Passivity, WhatTheDrivesMakeChangesByAStepWhateverIsLost) {
   }
 }
 
-// Up to the energy that quantised positions hide at each change of force.
+// With rounded positions the account may be wrong by one count per joint at each change of force.
 TEST(Passivity, OnCountsTheTrueWorkIsWithinItsBounds) {
   double lowest_J = 0.0, most_hidden_J = 0.0;
   play_adversaries({.count_m = 5e-5}, [&](const Port& port) {
@@ -121,13 +125,14 @@ TEST(Passivity, BetweenCountsASlowJointIsWhereItsSpeedSays) {  // a tenth of a c
     if (i == 100) port.largest_excess_J = port.largest_shortfall_J = -1e9;  // the estimators have converged
     port.tick([&](const Vec3&, const Vec3&) { return Vec3(force_N, 0, 0); }, Vec3::Zero());
   }
-  // Without interpolation this would be one count's worth.
+  // Without interpolation between counts the hidden energy would be that of one count.
   const double hidden_J = port.largest_excess_J + port.largest_shortfall_J;
   std::printf("between counts: %.2f of a count's energy hidden\n", hidden_J / (force_N * port.chain.count_m));
   EXPECT_LT(hidden_J, 0.5 * force_N * port.chain.count_m);
 }
 
-/// Except for quantisation and for the unknown motion between samples; whatever torque the drive made of its command.
+/// The account may exceed the true work only by rounding of positions and by unknown motion between samples, whatever
+/// torque the drive made of its command.
 TEST(Passivity, TheAccountIsNeverAboveTheTrueWork) {
   const Chain plainly{}, counted{.count_m = 5e-5};
   const Chain guarded{.guard_N = 0.3}, silent{.guard_N = 0.3, .tells_torque = false};
@@ -140,7 +145,7 @@ TEST(Passivity, TheAccountIsNeverAboveTheTrueWork) {
   }
 }
 
-// The torque that acted instead is known once the drive reports it.
+// When a torque message is lost, an older torque acts. The account is corrected when the drive reports which.
 TEST(Passivity, ALostTorqueIsBookedToTheLastDigit) {
   for (const bool tells : {true, false}) {
     const auto look = [](const Port& port) {
@@ -156,7 +161,7 @@ TEST(Passivity, AHeldTorqueIsBookedExactlyOverLostSamples) {
   Port port(false, 0.0, {.lost_samples = 0.5});
   const auto hold = [](const Vec3&, const Vec3&) { return Vec3(0.3, 0, 0); };
   for (int i = 0; i < 500; ++i) {
-    if (i == 20) port.largest_excess_J = port.largest_shortfall_J = -1e9;  // the torque has begun to act
+    if (i == 20) port.largest_excess_J = port.largest_shortfall_J = -1e9;  // from here on the torque acts
     port.tick(hold, Vec3(std::cos(0.05 * i), 0, 0));
   }
   EXPECT_LE(port.largest_excess_J + port.largest_shortfall_J, 1e-12);

@@ -38,7 +38,7 @@ TEST(StatedNumbers, CalibrationTakesFiftyPossiblePosesInARow) {
   Rig rig;
   EXPECT_EQ(ticks_in_calibrate(rig), 50);
 
-  // 30 plausible samples, then implausible ones (beyond the stop's margin of 0.25 rad), so the count restarts
+  // 30 plausible samples, then implausible ones (more than 0.25 rad beyond the joint's stop), so the count restarts.
   Rig doubtful;
   for (auto& hand : doubtful.in.reading.hand) hand.q_rad[0] = 1.22;
   doubtful.ticks(31);
@@ -48,7 +48,7 @@ TEST(StatedNumbers, CalibrationTakesFiftyPossiblePosesInARow) {
   }
   ASSERT_EQ(doubtful.controller.state(), State::kCalibrate);
   doubtful.in.reading.hand[1].q_rad[0] -= 0.005;
-  EXPECT_EQ(ticks_in_calibrate(doubtful), 48);  // the samples at 1.23 and 1.225 already count
+  EXPECT_EQ(ticks_in_calibrate(doubtful), 48);  // the last two samples of the loop above were plausible already
 }
 
 TEST(StatedNumbers, TheGainRisesInHalfASecondAndFallsInFiftyMilliseconds) {

@@ -104,7 +104,7 @@ TEST(VirtualCoupling, TellsWhatIsNoNumber) {
   }
 }
 
-TEST(Admissible, IsTheBoundOfTheDevice) {  // b = 0.3, B = 0.36 N s/m, T/2 + t_d = 1.5 ms: 440 N/m
+TEST(Admissible, IsTheBoundOfTheDevice) {  // dampings 0.3 and 0.36 N s/m, half a period + delay = 1.5 ms: 440 N/m
   scene::Hands h = hands();
   h.workspace_scale = 20.0;
   const Admissible a = admissible(h, device::omni(), kT_s);

@@ -79,7 +79,8 @@ TEST(Windings, ThePeakHeldForEverGetsAsHotAsTheClosedFormSays) {
     windings.sent(wish * std::min(1.0, windings.share(wish)));
     hottest = std::max(hottest, windings.heat());
   }
-  // While the cap falls from r to 1 in 0.5 s, the mean of its square acts, and the winding cools by at least h = 1.
+  // The torque limit, as a multiple of the continuous torque, falls from `peak` to 1 in 0.5 s. Meanwhile the winding is
+  // heated by the mean square of the limit and cooled in proportion to its heat, which is at least 1.
   const double fall = 0.5 / d.thermal_time_s, square = (peak * peak + peak + 1.0) / 3.0;
   EXPECT_LT(hottest, 1.0 + fall * (square - 1.0) + 1e-3);
   EXPECT_GT(hottest, 1.0 + fall * (square - 1.3));
@@ -118,7 +119,7 @@ double hottest_of(const JointAngles& pose, const Vec3& along) {
   return drives.hottest;
 }
 
-// 0.88 N at full reach is 1.4 times the waist's continuous torque
+// The continuous force of 0.88 N at full reach takes 1.4 times the waist's continuous torque.
 TEST(Windings, NoPullInAnyPoseMakesADriveGuardItself) {
   test::Random random(56);
   const auto share = [&] { return random.share(); };
