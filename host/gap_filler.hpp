@@ -33,8 +33,8 @@ class GapFiller {
   void note(const ligature_msg::status_t& status);
 
   /// Emits the missing ticks of every session in batches like the firmware's. A gap is searched for once, when the
-  /// recorder already holds later ticks: it writes in order, so that a tick absent by then never comes. Cost: nothing
-  /// without gaps, else one reading of the recorder's file.
+  /// flight recorder already holds later ticks: it writes in order, so that a tick absent by then never comes. Cost:
+  /// nothing without gaps, else one reading of the recorder's file.
   /// @param ends kClosed: ticks after a session's last received one count as missing, too (the last batch of a killed
   /// firmware).
   /// @return number of ticks fetched.
@@ -54,7 +54,7 @@ class GapFiller {
 
   std::vector<std::filesystem::path> folders_;
   std::set<std::string> files_;  // named by a status, and inside an allowed folder
-  // per session: gaps that end before this tick have been searched for
+  // session id -> tick; gaps of the session that end before this tick have been searched for already
   std::map<std::int64_t, std::int64_t> searched_below_;
   std::set<std::int64_t> ended_;
   std::string outside_;

@@ -20,8 +20,9 @@ struct LogEventHead {
 };
 
 inline constexpr std::array<unsigned char, 4> kLogSync{0xED, 0xA1, 0xDA, 0x01};
-inline constexpr std::int32_t kLongestChannel = 63;     ///< LCM_MAX_CHANNEL_NAME_LENGTH
-inline constexpr std::int32_t kLargestData = 16 << 20;  ///< per event; the rig's messages have about 10 KB
+inline constexpr std::int32_t kLongestChannel = 63;  ///< LCM_MAX_CHANNEL_NAME_LENGTH
+inline constexpr std::int32_t kLargestData = 16
+                                             << 20;  ///< bytes of data per event; the rig's messages have about 10 KB
 
 // LCM's log format has no checksum. Therefore a checksum event follows each event that we write, on a channel that
 // other readers ignore. Its data: the big-endian int64 timestamp of the event, and the CRC-32 of its channel and data.

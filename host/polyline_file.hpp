@@ -9,8 +9,8 @@ namespace ligature::host {
 /// A centreline read from a file; points in m, in order along the thread.
 struct Polyline {
   std::vector<std::array<double, 3>> points;
-  std::optional<double> time_s;  // of the shape that was chosen from several
-  double radius_m = 0.0;         // of the recorded thread, m; 0 when unknown
+  std::optional<double> time_s;  // time of the shape, when the file has several
+  double radius_m = 0.0;         // radius of the recorded thread, m; 0 when unknown
   bool last_is_cut_off = false;  // the file's last shape is incomplete and was ignored
 };
 

@@ -47,7 +47,7 @@ class SessionTally {
   [[nodiscard]] std::size_t restarts() const { return sessions_.empty() ? 0 : sessions_.size() - 1; }
 
  private:
-  std::vector<Session> sessions_;  // in order of their first message
+  std::vector<Session> sessions_;  // the sessions, in order of their first message
   bool interleaved_ = false;
   std::int64_t left_out_ = 0;
 };

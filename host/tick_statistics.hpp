@@ -21,7 +21,7 @@ struct HandStatistics {
 /// How well the thread's physics kept up with real time.
 struct ThreadStatistics {
   std::int64_t by_work = 0, by_clock = 0;  // ticks cut short: work budget used up, time over
-  std::int64_t late = 0;                   // ticks not finished when the next samples came
+  std::int64_t late = 0;                   // ticks that the physics had not finished when the next samples came
   double lost_ticks = 0.0;                 // time lost, in ticks: the thread was not moved
 };
 

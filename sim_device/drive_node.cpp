@@ -131,7 +131,7 @@ void DriveNode::act_on(const can::Rpdo1& rpdo, std::vector<can::Frame>& out) {
 void DriveNode::react(Event event, std::vector<can::Frame>& out) {
   const bool enables = cia402::next(state_, event) == State::kOperationEnabled;
   if (enables && objects_.value(od::kModeOfOperation) != can::profile::kCyclicSynchronousTorque)
-    return;  // no operating mode is set
+    return;  // the mode of operation has not been set
   const State before = state_;
   state_ = cia402::next(state_, event);
   if (before == State::kFault && state_ != State::kFault) {

@@ -76,7 +76,7 @@ class DriveNode {
   can::Rpdo1 received_;               ///< last RPDO from the bus
   bool has_received_ = false;         ///< an RPDO came since the last SYNC
   can::Rpdo1 acting_;                 ///< copied from received_ at SYNC
-  std::int16_t torque_permille_ = 0;  // as commanded
+  std::int16_t torque_permille_ = 0;  // commanded torque in effect
   std::int16_t astray_permille_ = 0;
   std::uint8_t life_ = 0;  // counter of SYNCs, sent in bits 8 .. 15 of the buttons' word
   int held_syncs_ = 0;     // SYNCs for which the torque was repeated because no RPDO came

@@ -15,7 +15,7 @@ namespace ligature::sim {
 
 struct LoopStats {
   std::int64_t wakeups = 0;
-  Time worst_lateness{};    ///< of a wake-up by timer
+  Time worst_lateness{};    ///< largest delay of a wake-up by the timer
   std::int64_t stalls = 0;  ///< reads that found several SYNCs, because this process was late
 };
 

@@ -17,7 +17,7 @@ struct Hand {
   double stiffness_N_per_m = 800.0;
   double damping_N_s_per_m = 8.0;
   double mass_kg = 0.0;
-  double pad_stiffness_N_per_m = 4000.0;  ///< of the fingertips; unused if mass is 0
+  double pad_stiffness_N_per_m = 4000.0;  ///< stiffness of the fingertips; unused if mass is 0
   double pad_damping_N_s_per_m = 6.0;
 
   /// A grip between very loose (0) and clenched (1); values are interpolated geometrically.
@@ -26,7 +26,7 @@ struct Hand {
     return {between(80.0, 1600.0), between(2.0, 24.0), between(0.04, 0.20), between(1500.0, 6000.0),
             between(3.0, 12.0)};
   }
-  /// No hand on the stylus.
+  /// Parameters for a stylus that no hand holds.
   [[nodiscard]] static Hand absent() noexcept { return {0.0, 0.0, 0.0, 0.0, 0.0}; }
 
   [[nodiscard]] Vec3 arm_force_D_N(const Vec3& p_DH, const Vec3& v_DH, const Vec3& p_D,

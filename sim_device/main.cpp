@@ -122,7 +122,7 @@ int main(int argc, char** argv) {
   live(device, port, loop, narrator, mover.page.get(), options.exit_when_done, during_sleep);
 
   const std::string text = sim::stats_json(options.hand(), device, loop.stats(), port.dropped_frames());
-  device.power_off();  // after the statistics, which report the torques before power-off
+  device.power_off();  // only now, because the statistics report the torques before power-off
   narrator.say("off");
   if (options.stats.empty()) return done();
   if (sim::write_file(options.stats, text)) return done();

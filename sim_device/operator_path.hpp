@@ -34,7 +34,7 @@ class OperatorPath final : public Intention {
     Vec3 p_D;
     bool grip;
   };
-  std::vector<Key> keys_;                        // at least one
+  std::vector<Key> keys_;                        // keys of the script, at least one
   std::vector<ruckig::Trajectory<3>> segments_;  // segment i leads from key i to key i + 1
 };
 

@@ -42,12 +42,12 @@ std::string stats_json(const std::string& hand, const HandDevice& device, const 
   j["syncs_without_rpdo"] = syncs_without_rpdo;           // summed over drives, while enabled
   j["replaced_rpdos"] = replaced;                         // replaced by a second RPDO before the next SYNC
   j["watchdog_trips"] = trips;                            // times that a drive removed its torque by itself
-  j["final_torque_permille"] = device.torque_permille();  // at the end, before power-off
+  j["final_torque_permille"] = device.torque_permille();  // motor torques at the end, before power-off
   j["script_done"] = device.mechanics().is_done();
   j["wakeups"] = loop.wakeups;
   j["worst_wakeup_lateness_us"] = microseconds(loop.worst_lateness);
   j["stalls"] = loop.stalls;
-  j["dropped_frames"] = dropped_frames;  // not read by a client in time
+  j["dropped_frames"] = dropped_frames;  // frames that a client did not read in time
   return j.dump(2) + "\n";
 }
 

@@ -13,7 +13,7 @@ struct Prime {
   std::size_t crossings;
   bool chiral;
   std::vector<int> alexander;
-  Laurent jones;  ///< of the right-handed form
+  Laurent jones;  ///< Jones polynomial of the right-handed form
 };
 
 /// The table of prime knots (Rolfsen's numbering). A test derives each row again from a diagram.

@@ -19,7 +19,7 @@ namespace ligature::lab {
 /// Reads a scene. @throws Refusal with one line.
 [[nodiscard]] scene::Scene load_scene_or_refuse(const std::string& path, const std::vector<std::string>& overrides);
 
-/// The same in two steps, for callers that also record the text.
+/// load_scene_or_refuse() in two steps (read, parse), for callers that also record the text.
 [[nodiscard]] std::string read_scene_text_or_refuse(const std::string& path);
 [[nodiscard]] scene::Scene parse_scene_or_refuse(const std::string& text, const std::string& path,
                                                  const std::vector<std::string>& overrides);

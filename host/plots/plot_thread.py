@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from plot_forces import drawn, save
 
-NEAR = 1.5  # in diameters: strands closer than this count as touching
+NEAR = 1.5  # strands closer than this many diameters count as touching
 STEP, BESIDE = 0.15, 40  # in diameters: distance of drawn points; number of points drawn before and after the knot
 APART = 8.0  # in diameters along the thread: two places further apart belong to different strands
 FROM_THE_FRONT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # direction of view: x to the right, z up

@@ -49,7 +49,7 @@ class CommandDesk {
   const Access& access_;
   Publish publish_;
   std::mutex mutex_;
-  std::map<std::int64_t, Waiting> waiting_;  // by command id
+  std::map<std::int64_t, Waiting> waiting_;  // commands without an answer, by command id
   std::multimap<std::uint64_t, nlohmann::json> ready_;
 };
 

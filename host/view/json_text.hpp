@@ -10,7 +10,7 @@ namespace ligature::host::view {
   return found != message.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-/// The number by which a page knows its request; null for anything else.
+/// The field "id": the number that a page gave to its request; null when it is absent or no number.
 [[nodiscard]] inline nlohmann::json id_of(const nlohmann::json& message) {
   const auto found = message.find("id");
   return found != message.end() && found->is_number() ? *found : nlohmann::json(nullptr);

@@ -18,9 +18,9 @@ class LogMap {
   enum class Channel : std::uint8_t { kTicks, kThread, kStatus, kEvent };
   struct Entry {
     std::int64_t time_us;  // reception time with steps of the system clock removed
-    std::int64_t offset;   // of the payload in the file
+    std::int64_t offset;   // position of the message's payload in the file
     std::uint32_t size;
-    std::uint32_t checksum;  // of channel and payload
+    std::uint32_t checksum;  // CRC-32 of channel and payload
     Channel channel;
     bool has_checksum;
   };
@@ -28,7 +28,9 @@ class LogMap {
   /// @throws BadInput when the file cannot be read, is no LCM log or holds no message of the rig.
   explicit LogMap(const std::string& path);
 
-  [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }  ///< in order of time
+  [[nodiscard]] const std::vector<Entry>& entries() const {
+    return entries_;
+  }  ///< one entry per message, in order of time
   [[nodiscard]] double duration_s() const { return time_s(entries_.back().time_us); }
   [[nodiscard]] double time_s(std::int64_t time_us) const;  ///< since the first entry
   /// Index of the first entry later than t.

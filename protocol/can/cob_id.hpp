@@ -27,7 +27,7 @@ inline constexpr NodeId kWaist{1};
 inline constexpr NodeId kShoulder{2};
 inline constexpr NodeId kElbow{3};         ///< forearm drive; also reports the stylus buttons
 inline constexpr NodeId kMasterNode{127};  ///< the controller, as sender of its heartbeat
-inline constexpr NodeId kAllNodes{0};      ///< only as target of an NMT command
+inline constexpr NodeId kAllNodes{0};      ///< every node; only as the target of an NMT command
 inline constexpr std::uint8_t kMaxNodeId = 127;
 
 enum class Service : std::uint8_t { kNmt, kSync, kEmcy, kTpdo1, kRpdo1, kSdoResponse, kSdoRequest, kHeartbeat };

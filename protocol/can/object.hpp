@@ -34,12 +34,12 @@ inline constexpr Object kStatusword{0x6041, 0};
 inline constexpr Object kQuickStopOption{0x605A, 0};
 inline constexpr Object kModeOfOperation{0x6060, 0};
 inline constexpr Object kModeOfOperationDisplay{0x6061, 0};
-inline constexpr Object kPositionActual{0x6064, 0};     ///< encoder counts
-inline constexpr Object kTargetTorque{0x6071, 0};       ///< per mille of rated torque
-inline constexpr Object kMaxTorque{0x6072, 0};          ///< per mille of rated torque
+inline constexpr Object kPositionActual{0x6064, 0};     ///< position, encoder counts
+inline constexpr Object kTargetTorque{0x6071, 0};       ///< commanded torque, per mille of rated torque
+inline constexpr Object kMaxTorque{0x6072, 0};          ///< limit of the torque, per mille of rated torque
 inline constexpr Object kRatedTorque{0x6076, 0};        ///< mN m
-inline constexpr Object kTorqueActual{0x6077, 0};       ///< per mille of rated torque
-inline constexpr Object kEncoderIncrements{0x608F, 1};  ///< per motor revolution, which here is a joint revolution
+inline constexpr Object kTorqueActual{0x6077, 0};       ///< torque made, per mille of rated torque
+inline constexpr Object kEncoderIncrements{0x608F, 1};  ///< counts per motor revolution, here per joint revolution
 inline constexpr Object kSupportedModes{0x6502, 0};     ///< bit 9 = cyclic synchronous torque
 }  // namespace od
 

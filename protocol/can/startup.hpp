@@ -25,12 +25,11 @@ struct DriveFacts {
 };
 
 struct StartupTimes {
-  /// After this time without RPDO the drive sets its torque to zero
+  /// After this time without an RPDO the drive sets its torque to zero.
   std::uint16_t rpdo_timeout_ms = profile::kDefaultRpdoTimeout_ms;
-  std::uint16_t heartbeat_timeout_ms =
-      profile::kDefaultHeartbeatTimeout_ms;  ///< after this time without the master's heartbeat the drive sets its
-                                             ///< torque to zero
-  std::uint16_t heartbeat_period_ms = profile::kDefaultHeartbeat_ms;  ///< of the drive's own heartbeat
+  /// After this time without the master's heartbeat the drive sets its torque to zero.
+  std::uint16_t heartbeat_timeout_ms = profile::kDefaultHeartbeatTimeout_ms;
+  std::uint16_t heartbeat_period_ms = profile::kDefaultHeartbeat_ms;  ///< period of the drive's own heartbeat
   DriveFacts drive{};
 };
 

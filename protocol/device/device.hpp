@@ -35,8 +35,8 @@ struct Device {
   // Drives; values refer to the joint.
   int motor_counts = 0;                ///< encoder counts per motor revolution, after quadrature
   double gear = 1.0;                   ///< motor revolutions per joint revolution
-  double rated_torque_Nm = 0.0;        ///< object 0x6076
-  int max_torque_permille = 0;         ///< object 0x6072
+  double rated_torque_Nm = 0.0;        ///< rated torque of a drive at the joint (object 0x6076)
+  int max_torque_permille = 0;         ///< largest torque, per mille of the rated one (object 0x6072)
   int torque_tolerance_permille = 50;  ///< a drive's reported torque may exceed the commanded one by this
   double delay_s = 0.0;                ///< from a position sample to the effect of the torque computed from it
 

@@ -36,15 +36,15 @@ struct Header {
   std::uint32_t slot_bytes = 0;
   std::int64_t slots = 0;
   std::int64_t tick_hash = 0;  ///< LCM's hash of tick_t; differs if the message type was changed
-  std::int64_t session = 0;    ///< as in tick_batch_t: CLOCK_REALTIME at the run's start, microseconds
+  std::int64_t session = 0;    ///< id of the firmware's run: CLOCK_REALTIME at its start, microseconds
   double period_s = 0.0;
   double max_force_N = 0.0;
-  std::int32_t fault = 0;  ///< in a file saved with a fault: its number; else 0
+  std::int32_t fault = 0;  ///< number of the fault because of which the file was saved; else 0
   std::uint32_t toml_bytes = 0;
   std::array<char, 32> firmware_version{};
   std::array<char, 256> scene_file{};
-  std::array<char, 61440> scene_toml{};  ///< truncated if longer
-  std::uint32_t crc = 0;                 ///< of all bytes before it
+  std::array<char, 61440> scene_toml{};  ///< the scene's text; truncated if longer
+  std::uint32_t crc = 0;                 ///< CRC-32 of all bytes before it
 };
 static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) <= kHeaderBytes);
 
@@ -56,8 +56,8 @@ struct SceneEntry {
   std::int32_t admitted = 0;  ///< 0: run by --force
   std::uint32_t toml_bytes = 0;
   std::array<char, 256> scene_file{};
-  std::array<char, 61440> scene_toml{};  ///< with its overrides; truncated if longer
-  std::uint32_t crc = 0;                 ///< of all bytes before it
+  std::array<char, 61440> scene_toml{};  ///< the scene's text with its overrides; truncated if longer
+  std::uint32_t crc = 0;                 ///< CRC-32 of all bytes before it
 };
 inline constexpr std::size_t kSceneBytes = 65536;
 inline constexpr std::size_t kMostScenes = 64;

@@ -7,7 +7,7 @@
 namespace ligature::scene {
 namespace {
 
-constexpr double kFar_m = 1e6;  // as in scene files; squares of such values stay finite
+constexpr double kFar_m = 1e6;  // largest coordinate, m; squares of such values stay finite
 
 Vec minus(const Vec& a, const Vec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 Vec plus(const Vec& a, double s, const Vec& b) { return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]}; }
@@ -47,7 +47,7 @@ std::variant<std::vector<Vec>, Error> load_polyline(const std::filesystem::path&
 std::vector<Vec> lay_out(std::span<const Vec> points, int n, double rest_m) {
   std::vector<Vec> nodes{points.front()};
   std::size_t k = 1;  // the next node is searched on segment points[k - 1] .. points[k]
-  double from = 0.0;  // from this fraction of the segment on, 0 .. 1
+  double from = 0.0;  // the search begins at this fraction 0 .. 1 of the segment
   const Vec onward = end_direction(points);
   while (nodes.size() < static_cast<std::size_t>(n)) {
     const Vec c = nodes.back();

@@ -32,12 +32,12 @@ enum class Integrator : std::uint8_t { kSemiImplicit, kForward };
 
 /// Parameters of the paper's Table I, per node; used by paper-1 .. paper-5.
 struct PaperParameters {
-  double node_mass_kg = 0.05;    ///< m
+  double node_mass_kg = 0.05;    ///< m: mass of a node
   double stretch_N = 800.0;      ///< k_l: force per unit strain, i.e. EA
-  double stretch_damping = 1.0;  ///< k_d, N s/m
-  double bend = 10.0;            ///< k_ts, N m (torque is k_ts alpha / pi)
-  double bend_damping = 0.05;    ///< k_td, N m s
-  double swivel_damping = 0.2;   ///< k_sw, N s
+  double stretch_damping = 1.0;  ///< k_d: damping of stretch, N s/m
+  double bend = 10.0;            ///< k_ts, N m: the bending torque is k_ts alpha / pi at a bending angle alpha
+  double bend_damping = 0.05;    ///< k_td: damping of bending, N m s
+  double swivel_damping = 0.2;   ///< k_sw: damping of swivel, N s
   /// Node count for which the values above hold, 2 .. 5000. If given, another `nodes` simulates the same thread: mass,
   /// EA, EI and losses per length are kept. If absent, the values are per node for any `nodes`, as in the paper.
   std::optional<int> reference_nodes;                 ///< key suture.reference_nodes
@@ -142,9 +142,9 @@ struct Hands {
   bool override_passivity = false;  ///< key hands.override_passivity: allow a coupling above the stability limit
   double energy_credit_J = 0.0;     ///< start value of each port's energy account; 0: the hand must first put energy in
   double force_scale = 0.003;       ///< factor from world newtons to device newtons
-  double max_force_N = 3.3;         ///< at the device
+  double max_force_N = 3.3;         ///< force limit at the device
   bool propagation = false;
-  double min_length = 0.9;  ///< of rest length
+  double min_length = 0.9;  ///< limit of a segment's length / rest length, with propagation only
   double max_length = 1.1;
   double workspace_scale = 20.0;          ///< factor from device metres to world metres
   Vec workspace_origin_m{0.0, 0.0, 0.0};  ///< world position of the device's home pose

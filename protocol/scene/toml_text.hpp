@@ -25,7 +25,7 @@ inline constexpr std::size_t kDeepest = 8;
 /// error.
 [[nodiscard]] std::variant<toml::table, Error> parse_toml(const std::string& text, const std::string& name);
 
-/// The same from a file.
+/// Parses the TOML text of a file; result as parse_toml().
 [[nodiscard]] std::variant<toml::table, Error> parse_toml_file(const std::filesystem::path& path);
 
 }  // namespace ligature::scene

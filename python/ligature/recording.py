@@ -78,7 +78,7 @@ class Recording:
         self.shapes = Shapes(recorded.shapes())  # empty for a flight recorder file
         self.events: np.ndarray = np.array(recorded.events(), dtype=EVENT)  # t_s, tick, kind, hand, code, text
         self.scenes = [RecordedScene(*row) for row in recorded.scenes()]
-        self.period_s: float = recorded.period_s  # of the loop
+        self.period_s: float = recorded.period_s  # control period of the loop, s
         self.max_force_N: float = recorded.max_force_N  # limit at the device
         self.firmware_version: str = recorded.firmware_version
         self.missing: int = recorded.missing  # ticks missing between the first and last of each session, summed

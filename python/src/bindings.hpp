@@ -1,5 +1,5 @@
 #pragma once
-// The parts of the module, one function per file.
+// Functions that add classes and functions to the Python module, one for each bind_*.cpp.
 
 #include <nanobind/nanobind.h>
 

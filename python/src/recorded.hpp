@@ -64,7 +64,7 @@ struct Recorded final : host::ExportSink {
   host::ExportResult result;
   std::vector<double> t_s;
   std::vector<std::int64_t> session;
-  // in the order of host::tick_columns()
+  // all values of each tick column, in the order of host::tick_columns()
   std::vector<std::variant<std::vector<std::int64_t>, std::vector<double>>> columns;
   std::vector<double> shape_t_s;
   std::vector<std::int64_t> shape_tick, shape_count;

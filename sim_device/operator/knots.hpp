@@ -28,7 +28,7 @@ struct Knot {
 /// handedness, 3_1#3_1 (amphichiral).
 [[nodiscard]] std::span<const Knot> knots();
 [[nodiscard]] std::optional<Knot> knot_named(std::string_view name);
-/// Their names, separated by ", ", for messages.
+/// Names of all knots, separated by ", ", for messages.
 [[nodiscard]] std::string knot_names();
 
 /// How many throws of the knot are recognised in the thread as it hangs; nothing if it is no part of this knot.

@@ -56,8 +56,8 @@ Pull two_hands() {
 }
 
 struct Felt {
-  double peak_N = 0.0;                   ///< at the device, after scaling and the force limit
-  double peak_unlimited_N = 0.0;         ///< after scaling, before the force limit
+  double peak_N = 0.0;                   ///< largest hand force at the device, after scaling and the force limit
+  double peak_unlimited_N = 0.0;         ///< largest force after scaling, before the force limit
   std::array<int, 4> frames{};           ///< number of ticks under each condition: none, A, B, C
   double longest = 0.0, shortest = 2.0;  ///< longest and shortest segment, relative to the rest length
   bool finite = true;

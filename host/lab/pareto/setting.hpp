@@ -11,7 +11,7 @@ namespace ligature::lab {
 struct Setting {
   scene::Model model = scene::Model::kRod;
   int nodes = 154;
-  int substeps = 16;  ///< per tick of 1 ms
+  int substeps = 16;  ///< time steps per tick of 1 ms
   /// Largest number of passes of the rod's contact solver per substep; 0: as in the preset. From 40 on the solver also
   /// gets a tolerance of 1e-5 m/s and a budget of 4e7 instructions.
   int passes = 0;

@@ -20,7 +20,7 @@ struct RecordedRun {
   std::size_t sessions = 0;  ///< number of sessions in the log
   double period_s = 0.001;
   std::string firmware_version;
-  std::vector<RecordedSceneText> scenes;  // in order of time
+  std::vector<RecordedSceneText> scenes;  // the run's scenes, in order of time
 };
 
 /// Reads the log once. @param number of the session, from 1; 0: the log must have only one.

@@ -143,7 +143,7 @@ class Play {
 }  // namespace
 
 RerunOutcome rerun(const RerunOptions& options) {
-  platform::flush_denormals();  // as in the firmware
+  platform::flush_denormals();  // the firmware runs in this floating-point mode, too
   const RecordedRun run = survey(options.log, options.session);
   Play play(options, run);
   console::Progress progress("rerun");

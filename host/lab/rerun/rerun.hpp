@@ -15,7 +15,7 @@ struct RerunOptions {
   std::vector<std::string> overrides{};
   bool cuts = true;                ///< end ticks early where the recorded ones ran out of time
   int session = 0;                 ///< number from 1; 0: the only one
-  std::filesystem::path folder{};  ///< for output files; empty: write none
+  std::filesystem::path folder{};  ///< folder for output files; empty: none are written
 };
 
 struct RerunOutcome {

@@ -67,7 +67,7 @@ class ThreadPlayer {
   std::size_t current_ = 0;                    // index of the scene in force
   std::optional<physics::Simulation> thread_;  // empty: the state is unknown
   std::string why_unknown_ = "its beginning is missing";
-  std::deque<Request> requests_;  // not yet carried out
+  std::deque<Request> requests_;  // requests to the physics that are not carried out yet, oldest first
   std::int64_t next_tick_ = -1, last_step_ = -1, shape_of_ = -1;
   std::optional<control::ThreadOrders> orders_;  // counts of resets and changes at the last step; empty: not recorded
   control::ThreadResult result_;

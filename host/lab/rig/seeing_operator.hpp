@@ -15,8 +15,8 @@ class SeeingOperator {
 
   /// Position of the tools before the start, world metres. @pre within the devices' reach.
   [[nodiscard]] virtual std::array<sim::Vec3, 2> start_W_m() const = 0;
-  /// @param sight what is seen and felt now; t_s = 0 when the drives of both hands first follow. The thread's points
-  /// are valid during the call only.
+  /// @param sight what is seen and felt now. Its time t_s counts from when the drives of both hands are first on. The
+  /// thread's points are valid during the call only.
   [[nodiscard]] virtual std::array<sim::HandWish, 2> act(const sim::Sight& sight) = 0;
   /// True: finished; the dead-men are released one second later.
   [[nodiscard]] virtual bool is_done() const = 0;

@@ -35,7 +35,7 @@ struct RigSetup {
   std::array<sim::Body, 2> body{sim::Body::of(device), sim::Body::of(device)};
   control::Settings settings{20, true};  ///< watchdog of 20 ticks, armed from the start
   double frame_loss = 0.0;               ///< share of process data frames (PDOs) that are lost, 0 .. 1
-  std::uint64_t seed = 1;                ///< of the random frame losses
+  std::uint64_t seed = 1;                ///< seed of the random frame losses
   std::string scene_file = "scene";      ///< name of the scene in a recording
   std::string scene_toml{};              ///< text of the scene in a recording (scene::recorded_text)
 };
@@ -70,7 +70,7 @@ class VirtualRig {
   /// written.
   std::optional<std::string> run(std::int64_t ticks, bool end_when_done = false);
 
-  [[nodiscard]] bool is_done() const noexcept;  ///< both hands have released
+  [[nodiscard]] bool is_done() const noexcept;  ///< whether both hands' motion is over and their dead-men released
 
   struct Wait final : platform::BusWait {
     explicit Wait(VirtualRig& r) : rig(r) {}

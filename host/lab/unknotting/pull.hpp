@@ -16,7 +16,7 @@ struct Pull {
 };
 
 struct PullResult {
-  knot::KnotResult knot;     ///< after the pull and one second of rest
+  knot::KnotResult knot;     ///< knot after the pull and one second of rest
   double peak_N = 0.0;       ///< largest hand force in the thread's world
   double knot_size_m = 0.0;  ///< length of thread in the knot afterwards; 0 without a knot
   bool finite = true;
@@ -31,7 +31,7 @@ inline constexpr double kPullSpeed_m_per_s = 0.6;  ///< mean speed; the hand sta
 /// Pulls with the right hand, then holds for one second, on a separate thread.
 [[nodiscard]] PullResult try_pull(std::span<const physics::Vec3> shape_W, const scene::Scene& scene, const Pull& pull);
 
-/// The same pull on the given thread.
+/// Pulls with the right hand, then holds for one second, on the given thread.
 PullResult do_pull(physics::Simulation& thread, const scene::Scene& scene, const Pull& pull);
 
 /// Position of the knot: nodes first .. last of the shortest piece that still contains it when the thread before and

@@ -14,7 +14,7 @@
 namespace ligature::validate {
 namespace {
 
-constexpr double kRadius_m = 0.02;  // of the thread's centreline on the peg
+constexpr double kRadius_m = 0.02;  // radius of the thread's centreline on the peg
 constexpr double kSpeed_m_per_s = 0.005;
 // axial advance per turn, so that the thread does not lie on itself; lengthens the path by 0.02 %
 constexpr double kPitch_m = 0.0024;

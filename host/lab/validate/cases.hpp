@@ -14,7 +14,7 @@ namespace ligature::validate {
 struct Subject {
   scene::Model model = scene::Model::kRod;
   int nodes = 50;
-  std::optional<scene::Accuracy> accuracy{};  ///< of the rod; absent: balanced, unless the case needs another one
+  std::optional<scene::Accuracy> accuracy{};  ///< accuracy of the rod; absent: balanced, or what the case needs
 };
 
 /// One measured number and its reference. `error` has the unit of `tolerance`.
@@ -22,7 +22,7 @@ struct Finding {
   std::string what;  ///< conditions and quantity, with the unit or scale of reference and measured value
   double reference = 0.0, measured = 0.0;
   double error = 0.0, tolerance = 0.0;
-  std::string unit;  ///< of error and tolerance: "of L", "relative", "deg", ..
+  std::string unit;  ///< unit of error and tolerance: "of L", "relative", "deg", ..
   [[nodiscard]] bool holds() const noexcept { return error <= tolerance; }  // false for NaN
 };
 using Findings = std::vector<Finding>;
@@ -43,7 +43,7 @@ struct Case {
   bool quick;      ///< short enough for the unit tests
 };
 
-/// In the order of the printed table.
+/// All validation cases, in the order of the printed table.
 [[nodiscard]] std::span<const Case> all_cases();
 /// nullptr when no case has that name.
 [[nodiscard]] const Case* find_case(const std::string& name);

@@ -114,7 +114,7 @@ scene::Scene paper_scene(scene::Model model) {
   return s;
 }
 
-Findings paper_static_shapes(const Subject&) {  // with the paper's 50 nodes
+Findings paper_static_shapes(const Subject&) {  // compares at the paper's 50 nodes
   Findings all;
   for (const auto& pose : kPoses) {
     Shape shapes[2];

@@ -1,5 +1,5 @@
 #pragma once
-// Runs one tick of a case, or stops when the user asks for it, because a case may take minutes.
+// Runs one tick of a validation case, or stops it when the user asks for that, because a case may take minutes.
 
 #include <stdexcept>
 

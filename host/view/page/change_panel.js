@@ -4,7 +4,7 @@ import { toast } from './controls.js';
 
 const $ = (id) => document.getElementById(id);
 const STEPS = 200;
-const rows = new Map(); // by parameter key
+const rows = new Map(); // the panel's rows, by parameter key
 
 export function setUpChange(link) {
   const toggle = (on) => { $('change').hidden = !on; $('change-open').setAttribute('aria-expanded', on); };

@@ -47,7 +47,7 @@
   function token() {
     const given = new URLSearchParams(location.hash.slice(1)).get('token');
     let kept = null;
-    try { kept = sessionStorage.getItem('ligature-token'); } catch { /* this browser stores nothing */ }
+    try { kept = sessionStorage.getItem('ligature-token'); } catch { /* storage is disabled in this browser */ }
     return given || document.querySelector('meta[name=ligature-token]').content || kept || '';
   }
 

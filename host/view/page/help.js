@@ -19,5 +19,5 @@ export class Help {
 }
 
 // localStorage may be disabled and throw; the help then opens on each visit.
-function keep(key) { try { localStorage.setItem(key, '1'); } catch { /* not stored */ } }
+function keep(key) { try { localStorage.setItem(key, '1'); } catch { /* storage is disabled */ } }
 function isKept(key) { try { return localStorage.getItem(key) !== null; } catch { return false; } }

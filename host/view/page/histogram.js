@@ -5,7 +5,7 @@ import { C } from './frame.js';
 const BOUNDS_us = [2, 5, 10, 20, 50, 100, 200, 500, 1000];
 
 export class Histogram {
-  /** @param redraw requests a redraw; resizing clears the canvas. */
+  /** @param redraw callback that requests a redraw, because resizing clears the canvas. */
   constructor(host, redraw) {
     this.box = Object.assign(document.createElement('div'), { className: 'plot histogram' });
     this.box.innerHTML = '<h2>wake-up latency <em>µs, log count over the window</em></h2>';

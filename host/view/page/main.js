@@ -9,7 +9,7 @@ import { showAge, showHands, showState, showStatus } from './state_panel.js';
 const WATCH_MS = 20, LAG_KEPT_MS = 2000, MOST_WAITING = 300, RETRY_MS = 5000;
 const $ = (id) => document.getElementById(id);
 const latest = { now: null, shape: null, knot: null, epoch: null, row: null, isReplay: false };
-const page = { frames: 0, firstThread_ms: null, latest, columns: COLUMNS, troubles: {} }; // for tests and for the browser's console
+const page = { frames: 0, firstThread_ms: null, latest, columns: COLUMNS, troubles: {} }; // for tests and the browser's console
 window.ligature = page;
 
 /** Calls `what`. An error is stored and printed on the console, and does not affect other parts. */

@@ -169,7 +169,7 @@ export class Scene {
     this.framed.copy(this.seen).expandByScalar(0.02 * this.extent);
   }
 
-  /** At the centre of the picture. */
+  /** World metres per pixel at the centre of the picture. */
   get metresPerPixel() {
     const distance = this.camera.position.distanceTo(this.controls.target);
     return (2 * distance * Math.tan((this.camera.fov * Math.PI) / 360)) / Math.max(1, this.canvas.clientHeight);

@@ -3,7 +3,7 @@ import * as THREE from './three.module.js';
 
 const SIDES = 14, MOST_RINGS = 4000;
 const STRIPE = 0.22; // brightness of the stripe that shows the twist
-const RIM = 0.09; // by how much the dark rim extends beyond the tube, in radii
+const RIM = 0.09; // width of the dark rim beyond the tube, in tube radii
 
 export class Tube {
   constructor(scene) {

@@ -33,7 +33,7 @@ struct Watched {
   int let_go = 0;
   int fault = 0;
   std::vector<std::array<double, 2>> tip_force_N;    ///< magnitude of the motors' force at each tip, per tick
-  std::vector<std::array<sim::Vec3, 2>> rendered_N;  ///< the same as vectors
+  std::vector<std::array<sim::Vec3, 2>> rendered_N;  ///< the motors' force at each tip as vectors, per tick
   std::vector<std::array<double, 2>> port_J;
   std::vector<std::array<double, 2>> step_N;  ///< change of that force at each SYNC
   std::vector<sim::Vec3> nodes_W;             ///< thread's nodes at tick look_at

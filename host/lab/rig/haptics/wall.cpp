@@ -22,8 +22,8 @@ device::Device one_axis(device::Device d) {
   return d;
 }
 
-/// m v' = F - k x - b v over one period with constant F: exact for k = 0, otherwise in small steps, each exact for
-/// constant k x.
+/// A mass with spring and damper. move() integrates m v' = F - k x - b v over one period with constant F: exactly for
+/// k = 0, otherwise in small steps, each exact for constant k x.
 struct Mass {
   double m, b, k;
   double x, v = 0.0;

@@ -36,7 +36,7 @@ struct Wall {
 };
 
 struct WallRun {
-  std::vector<double> x_m, f_N;  ///< at each sample
+  std::vector<double> x_m, f_N;  ///< position and force at each sample
   double lowest_port_J = 0.0;    ///< smallest net energy that entered the port, exact (no quantisation)
   bool finite = true;
 
