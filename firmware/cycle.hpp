@@ -51,7 +51,7 @@ class Cycle {
       : bus_(bus), clock_(clock), controller_(controller), thread_(exchange), physics_(physics), out_(out), log_(out) {}
 
   void end_after(std::int64_t ticks) noexcept { last_tick_ = ticks; }
-  /// Source of new scenes and parameters.
+  /// Sets the channel through which new scenes and parameters reach the loop.
   void listen(control::PlantHandover& plants) noexcept { plants_ = &plants; }
   [[nodiscard]] const rt::CycleTiming& timing() const noexcept { return log_.timing(); }
   [[nodiscard]] std::int64_t periods() const noexcept { return tick_; }

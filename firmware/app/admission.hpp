@@ -29,15 +29,14 @@ struct Admission {
 inline constexpr int kAnyCore = -1;
 
 struct AdmissionSettings {
-  double seconds = 0.3;  ///< spent on worst-case shapes
+  double seconds = 0.3;  ///< time spent on measuring worst-case shapes
   int core = kAnyCore;
   double budget_percent = kDefaultBudget_percent;
   bool draw_knots = false;
 };
 
 /// @param scene one that physics::Simulation::make() accepts. Without `suture.work_instructions` the work budget is
-/// chosen so that even the most expensive tick of drawing a knot tight ends within the budget; costlier ticks end at
-/// the deadline.
+/// chosen so that 99 % of the ticks of drawing a knot tight end in time; costlier ticks end at the deadline.
 [[nodiscard]] Admission admit(const scene::Scene& scene, const AdmissionSettings& settings);
 
 /// Table for people: cost of each phase against its allowance, and the share of time that the thread loses.

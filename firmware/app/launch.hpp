@@ -23,8 +23,8 @@ class Launch {
   /// that a command can set is hands.force_scale, and highest() bounds it.
   [[nodiscard]] std::vector<std::string> with(const std::vector<std::string>& live) const;
 
-  /// Overrides for a scene that a command loads, read from `file`: as above, and the force limit is the lower one of
-  /// the launch's and the scene's.
+  /// Overrides for a scene that a command loads from `file`: as above, except that a force limit set at the launch
+  /// gives way to the scene's own limit if that is lower.
   [[nodiscard]] std::vector<std::string> with(const std::vector<std::string>& live, const std::string& file,
                                               const std::string& text) const;
 

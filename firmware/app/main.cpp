@@ -14,7 +14,7 @@
 
 namespace {
 
-/// 0 if everything printed to standard output was written, else 3.
+/// Exit code: 0 if everything printed to standard output was written, else 3.
 int told() {
   if (std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
   std::fputs("ligature-firmware: standard output cannot be written\n", stderr);

@@ -19,13 +19,13 @@
 namespace ligature::app {
 namespace {
 
-constexpr int kRepeats = 3;             // of the same tick; the smallest time counts
+constexpr int kRepeats = 3;             // runs of the same tick; the smallest time counts
 constexpr int kTicksPerShape = 4;       // the first tick finds the contacts, the next ones resolve them
 constexpr long kMostWork = 16'000'000;  // instructions per tick; more helps no knot (docs/rod-knots.md)
 constexpr long kLeastWork = 1'000'000;  // smallest budget, as with less no knot holds; longer ticks end at the deadline
 constexpr long kLeastOfANode = 2'000;   // twice the cost of a contact search per node; with less the thread never moves
 constexpr double kSpare = 0.95;         // share of the given time that is used; the rest is reserve for cases not tried
-// Instructions; budgets are rounded to this, so that a machine finds the same one again
+// Budgets are rounded to this number of instructions, so that repeated measurements on a machine give the same one
 constexpr double kRound = 100'000.0;
 
 /// Time left until a given CPU time of this thread, for physics::TimeLeft.

@@ -15,7 +15,7 @@ namespace ligature::control {
 struct Admissible {
   double K_N_per_m = 0.0;
   double B_N_s_per_m = 0.0;
-  double largest_N_per_m = 0.0;  ///< K must stay below it
+  double largest_N_per_m = 0.0;  ///< stability limit of K
 
   [[nodiscard]] bool holds() const noexcept { return K_N_per_m < largest_N_per_m; }
 };

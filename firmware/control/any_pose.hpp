@@ -28,7 +28,7 @@ class AnyPose {
   explicit AnyPose(const device::Device& device) noexcept;
 
   [[nodiscard]] double most_N(const Vec3& torque_Nm) const noexcept;
-  /// The same, over all torques that lie joint by joint between these two.
+  /// Largest tip force over all torques that lie, joint by joint, between these two.
   [[nodiscard]] double most_N(const Vec3& low_Nm, const Vec3& high_Nm) const noexcept;
 
  private:
@@ -37,7 +37,8 @@ class AnyPose {
     double u = 0.0, v = 0.0, w = 0.0;  // factors in the formula of |f|^2; u belongs to tau1 / 1 m
   };
   void cut(const device::Device& device) noexcept;
-  /// Square of the force; arguments: squared waist force, a, b.
+  /// Largest square of the tip force over all slices. @param waist  (tau1 / 1 m)^2. @param a, b  as in the class
+  /// comment.
   [[nodiscard]] double most_of_slices(double waist, double a, double b) const noexcept;
 
   Vec3 per_m_ = Vec3::Zero();  // factors from joint torques to (tau1 / 1 m, a, b)

@@ -48,8 +48,8 @@ void Controller::command(rt::CommandKind kind) noexcept {
   }
 }
 
-/// Starts the move on each hand whose dead-man is pressed and which holds nothing; the other hands are not affected. If
-/// the clutch is pressed, the move ends at once (HandControl::lead_force).
+/// Starts a guided move on each hand whose dead-man is pressed and which holds nothing; the other hands are not
+/// affected. If the clutch is pressed, the move ends at once (HandControl::lead_force).
 void Controller::begin_moves(Move move) noexcept {
   if (!armed_ || !may_push(state_) || braking_) return;
   for (HandControl& h : hands_) {

@@ -55,7 +55,7 @@ class Controller {
   /// A request of the host or the operator; acts in the next tick.
   void command(rt::CommandKind kind) noexcept;
 
-  /// Installs another scene's hands at once. @pre no force may flow.
+  /// Installs the hand settings of another scene at once. @pre no force may flow.
   void change_hands(const scene::Hands& hands) noexcept;
   /// Changes the force scale linearly over kScaleTicks, so that a rendered force does not jump.
   void change_force_scale(double force_scale) noexcept;

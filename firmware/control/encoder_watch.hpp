@@ -27,7 +27,8 @@ namespace ligature::control {
 class EncoderWatch {
  public:
   static constexpr std::size_t kJoints = 3, kWindow = 24, kLength = 128;
-  /// Counts per period: least speed of another joint, least speed of the suspect, largest change of the other's speed.
+  /// Thresholds in counts per period: least speed of another joint, least speed of the suspect, largest change of the
+  /// other's speed.
   static constexpr double kMoving = 0.34, kBrisk = 0.8, kSame = 0.17;
   static constexpr double kTravel = 60.0;      ///< counts, about 3 mm at the tip
   static constexpr double kElsewhere = 300.0;  ///< counts
@@ -52,8 +53,9 @@ class EncoderWatch {
     return reversal(free) >= 1.0 ? Fault::kAxisReversed : Fault::kNone;
   }
 
-  /// Suspicion of a reversal at the newest sample: the speed of the mirrored turn divided by the least speed that
-  /// counts, the largest over all tests and joints; >= 1: reversed.
+  /// How strongly the newest samples look like an encoder that has begun to count backwards: speed at the suspected
+  /// turn (MirroredTurn::speed()) divided by the least speed at which the test is reliable; the largest over all joints
+  /// and lengths of the test. >= 1: reversed.
   [[nodiscard]] double reversal(const std::array<bool, kJoints>& free) const noexcept {
     double most = 0.0;
     for (std::size_t j = 0; j < kJoints; ++j) {

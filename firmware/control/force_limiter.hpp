@@ -11,8 +11,8 @@
 
 namespace ligature::control {
 
-/// Largest forces, in the direction of the requested force, for which the joint torques stay allowed, N: in any pose by
-/// the peak force, and in the present pose by the windings' heat.
+/// Two limits of the joints on a force in the requested direction, N: its torques must not exceed the peak force in any
+/// pose, and they must not overheat a winding.
 struct MostByJoints {
   double in_any_pose_N = std::numeric_limits<double>::infinity();
   double by_heat_N = std::numeric_limits<double>::infinity();

@@ -137,7 +137,7 @@ std::array<double, rt::kJoints> HandControl::command(std::int64_t tick) noexcept
   Vec3 torque_Nm = Vec3::Zero(), paid_N = Vec3::Zero();
   if (!lets_go_) {
     const auto torque = [this](const Vec3& f) { return sendable_torque(f); };
-    // Force of the last torques in the present pose: sending the same torques again changes nothing
+    // Tip force that the last torques make in the present pose: sending the same torques again changes nothing
     const Vec3 before_N = from_torque_ * torque_Nm_;
     paid_N = passivity_.control(tick, decided_N_, v_DT_, before_N, torque);
     torque_Nm = sendable_torque(paid_N);

@@ -53,7 +53,7 @@ class HandControl {
  public:
   HandControl(const device::Device& device, const scene::Hands& hands, double period_s) noexcept;
 
-  /// Installs another scene's hands at once. @pre no force may flow.
+  /// Installs the hand settings of another scene at once. @pre no force may flow.
   void change_hands(const scene::Hands& hands) noexcept;
   void set_force_scale(double scale) noexcept { coupling_.set_force_scale(scale); }
   [[nodiscard]] double force_scale() const noexcept { return coupling_.force_scale(); }
@@ -100,7 +100,7 @@ class HandControl {
 
   [[nodiscard]] const HandState& state() const noexcept { return state_; }
   [[nodiscard]] bool is_finite() const noexcept { return finite_; }
-  /// Encoder fault of the last sample, or of the guided move that ended with it.
+  /// Encoder fault found in the last sample, or by a guided move that ended at that sample.
   [[nodiscard]] Fault encoder_fault() const noexcept {
     return move_fault_ != Fault::kNone ? move_fault_ : encoder_fault_;
   }

@@ -49,7 +49,7 @@ class Linkage {
   /// For each joint: whether it is more than 0.05 rad from its stops.
   [[nodiscard]] std::array<bool, 3> far_from_stops(const JointAngles& q_rad) const noexcept;
 
-  /// Tip position that maps to the workspace's origin
+  /// Tip position, in device coordinates, that maps to the origin of the workspace
   [[nodiscard]] const Vec3& home_m() const noexcept { return home_m_; }
 
  private:

@@ -103,7 +103,8 @@ double Passivity::most_given_J(Eigen::Index j, std::int64_t tick, double dq_rad,
   return given_J;
 }
 
-/// Largest loss by tip force f that acts for `periods` periods, beginning `start` periods after the SYNC of the sample.
+/// Loss: energy that the motors give to the hand. Largest loss by a tip force f that acts for `periods` periods,
+/// beginning `start` periods after the SYNC of the sample.
 double Passivity::loss_J(const Vec3& f_N, std::int64_t start, std::int64_t periods, double counts) const noexcept {
   const auto s = static_cast<double>(start), d = static_cast<double>(periods);
   const double spread_m = reach_m_ * (d * s + 0.5 * d * (d + 1.0)) + d * (doubt_m_ + counts * count_m_);
@@ -122,8 +123,8 @@ double Passivity::blind_loss_J(const Vec3& f_N, std::int64_t start, std::int64_t
   return lost_J;
 }
 
-/// Loss by f in a period with the last period's motion. If it is a gain, one encoder count of it may be false, and is
-/// not credited.
+/// Energy that tip force f gives to the hand in a period with the last period's motion. If it is negative (the hand
+/// gives energy), the motion may be one encoder count less, and that part is not credited.
 double Passivity::along_J(const Vec3& f_N) const noexcept {
   const double given_J = f_N.dot(step_m_);
   return given_J > 0.0 ? given_J : std::min(0.0, given_J + f_N.norm() * count_m_);

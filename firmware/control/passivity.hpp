@@ -67,35 +67,37 @@ class Passivity {
  public:
   static constexpr double kFloor_J = 1e-6;
   static constexpr double kCredit_J = 0.02;  ///< the energy of a 3.3 N spring of 270 N/m, or of 0.88 N at 19 N/m
-  /// The most that a device of this class renders stably at 1 kHz
+  /// Largest damping that a device of this class renders stably at 1 kHz
   static constexpr double kMaxDamping_N_s_per_m = 5.0;
   static constexpr std::int64_t kWary = 10'000;  ///< ticks after a lost RPDO in which another loss is anticipated
   /// Factor on the acceleration bound after two periods without a sample
   static constexpr double kLater = 0.3;
   static constexpr double kMore = 3.0;  ///< further periods of the present motion that must be paid for
-  /// Forces up to this are exempt when frames are lost; otherwise no force could begin
+  /// While frames are lost, the uncertainty of the motion is not charged for this much of a force; otherwise no force
+  /// could begin
   static constexpr double kSlight_N = 0.006;
-  /// Per period; a slower joint's position is interpolated between counts
+  /// Counts per period; the position of a joint that is slower is interpolated between counts
   static constexpr double kSlowCounts = 0.25;
   static constexpr double kSlow_m_per_s = 5e-3;  ///< below this speed the velocity is mostly quantisation noise
-  /// Factor on the step limit in any pose, in case encoders are wrong: 0.52 N
+  /// A change of torque may change the tip force, in any pose, by at most this times the step limit (0.52 N): so the
+  /// limit holds even if encoders are wrong
   static constexpr double kAnyPose = 1.04;
 
   Passivity(const device::Device& device, double period_s, bool active, double credit_J) noexcept;
 
-  /// Call when the SYNC of `tick` has been sent; observe() and sent() imply it.
+  /// Call when the SYNC of `tick` has been sent.
   void begin(std::int64_t tick) noexcept {
     sent_.begin(tick);
     look_under_way(tick);
   }
 
-  /// Books the work since the last sample.
+  /// Adds the work done since the last sample to the account.
   void observe(std::int64_t tick, const PortSample& sample) noexcept;
 
   /// The force that may be sent in `tick` (not before the last observed tick): as far from `before_N` (sent last)
-  /// towards `wish_N` as the account and the step limit allow. Does not book anything; sent() does. Paying takes
-  /// precedence over the wish: if the stepwise reduction to zero can no longer be paid for, the force is reduced at
-  /// once by a step; if not even the next period can, all force is removed and released() is true.
+  /// towards `wish_N` as the account and the step limit allow. Only computes; sent() records what was sent.
+  /// If the account cannot pay for a stepwise reduction to zero later, the force is reduced at once by a step, whatever
+  /// the wish; if it cannot even pay for the next period, all force is removed and released() is true.
   /// @param torque maps a tip force to the joint torques that would be sent, in whole quanta
   template <class Torque>
   [[nodiscard]] Vec3 control(std::int64_t tick, const Vec3& wish_N, const Vec3& v_m_per_s, const Vec3& before_N,
@@ -131,7 +133,7 @@ class Passivity {
   [[nodiscard]] bool allows(std::int64_t tick, const Vec3& f_N) const noexcept {
     return !active_ || f_N.isZero(0.0) || shortage_J(tick, f_N) <= 0.0;
   }
-  /// Records what was sent in `tick`, and the tip force that it makes.
+  /// Records the torques sent in `tick`, and the tip force that they make.
   void sent(std::int64_t tick, const Vec3& torque_Nm, const Vec3& f_N) noexcept;
 
   /// Moves energy between the accounts while both hands hold the thread, which carries energy from one hand to the
@@ -153,9 +155,10 @@ class Passivity {
   /// False: the account is kept but never limits the force. @pre no force flows.
   void set_active(bool active) noexcept { active_ = active; }
 
-  /// Energy put in by this hand, minus energy returned to it, plus what lend() and grant() added.
+  /// Balance of the account: energy put in by this hand, minus energy returned to it, plus what lend() and grant()
+  /// added.
   [[nodiscard]] double energy_J() const noexcept { return energy_J_; }
-  /// Added by lend() and grant() since the start
+  /// Energy added by lend() and grant() since the start
   [[nodiscard]] double received_J() const noexcept { return received_J_; }
   [[nodiscard]] double dissipated_J() const noexcept { return dissipated_J_; }
   [[nodiscard]] double injected_N_s_per_m() const noexcept { return injected_; }
@@ -231,7 +234,8 @@ class Passivity {
   AnyPose any_pose_;
   bool active_;
   double credit_J_, energy_J_, received_J_ = 0.0, granted_J_ = 0.0, dissipated_J_ = 0.0, injected_ = 0.0;
-  // Error of step_m_ by encoder counts, and by unseen motion between two samples
+  // Errors of step_m_: by the resolution of the encoders; and, after lost samples, because the mean motion over several
+  // periods stands for that of the last one
   double count_m_ = 0.0, doubt_m_ = 0.0;
   bool acts_ = false, stepped_ = false, released_ = false;
   Mat3 tip_N_per_Nm_ = Mat3::Identity(), Nm_per_tip_N_ = Mat3::Identity();
@@ -242,7 +246,7 @@ class Passivity {
   std::array<bool, 3> guarded_{};                        // joints whose drive limited its torque in that period
   SentTorques sent_;
   Box under_way_;                                 // torques that may act until the next SYNC
-  double under_way_J_ = 0.0, under_way_N_ = 0.0;  // their largest loss and largest force
+  double under_way_J_ = 0.0, under_way_N_ = 0.0;  // largest energy loss by under_way_, and its largest tip force
 };
 
 }  // namespace ligature::control

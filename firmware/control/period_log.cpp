@@ -90,7 +90,7 @@ void PeriodLog::tell(const ThreadResult& thread) noexcept {
   tell_lost();
 }
 
-/// Physics ticks completed since the last record. Results that the loop skipped are included with the next one.
+/// Enters the physics ticks completed since the last record into the record; if several were completed, all of them.
 void PeriodLog::tell_steps(const ThreadResult& thread) noexcept {
   record_.thread_steps = narrow<std::int8_t>(thread.steps - std::exchange(steps_, thread.steps));
   const auto told = std::min<std::size_t>(static_cast<std::size_t>(record_.thread_steps), rt::kThreadSteps);

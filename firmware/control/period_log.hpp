@@ -25,7 +25,7 @@ class PeriodLog {
 
   void begin(std::int64_t tick, const Phases& at, std::chrono::nanoseconds work, const rt::WireTorque& torque,
              const Controller& controller, const ThreadOrders& orders, std::int64_t grasp_age_ticks) noexcept;
-  /// Periods that were skipped; `tick` and `scheduled` are those of the first.
+  /// Records periods that the loop has skipped; `tick` and `scheduled` are those of the first one.
   void lose(std::int64_t tick, std::chrono::nanoseconds scheduled, std::int64_t periods) noexcept;
   /// Writes the record that was begun, and those of periods lost since. @param late_ticks how far the physics is
   /// behind.

@@ -36,7 +36,7 @@ class SentTorques {
   }
 
   [[nodiscard]] std::int64_t newest() const noexcept { return newest_; }
-  /// Cycle i; zero torque for cycles before the first and for forgotten ones.
+  /// What was sent in cycle i; zero torque for cycles before the first one, and for those older than kMemory.
   [[nodiscard]] const Cycle& at(std::int64_t i) const noexcept {
     return i >= 0 && i <= newest_ && i > newest_ - kMemory ? ring_[index(i)] : kNothing;
   }

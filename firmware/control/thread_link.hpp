@@ -36,8 +36,8 @@ struct ThreadStep {
 
 /// Result of the newest answered request.
 struct ThreadResult {
-  std::int64_t tick = -1;   ///< of that request
-  std::int64_t number = 0;  ///< of that request
+  std::int64_t tick = -1;   ///< period in which that request was made
+  std::int64_t number = 0;  ///< number of that request
   std::array<physics::HandContact, 2> hand;
   physics::Diagnostics health;
   std::chrono::nanoseconds began{}, done{};               ///< on the loop's clock
@@ -90,7 +90,7 @@ class ThreadLink {
   /// Takes the newest result. @return a plant that the physics has processed, whether accepted or not; else nullptr.
   [[nodiscard]] Plant* collect() noexcept;
   [[nodiscard]] const ThreadResult& result() const noexcept { return exchange_.results.front(); }
-  /// Orders contained in the newest request.
+  /// Numbers of resets and changes ordered up to the newest request.
   [[nodiscard]] const ThreadOrders& orders() const noexcept { return orders_; }
   /// Number of requests newer than the one that the newest result answers; 0: the physics is in time.
   [[nodiscard]] std::int64_t late_ticks() const noexcept { return number_ - result().number; }

@@ -12,7 +12,8 @@
 
 namespace ligature::control {
 
-/// Joint torques that the record's continuous force needs in the home pose, for which the maker states it. N m.
+/// Continuous torque limits of the joints, N m: the torques that the device's continuous tip force needs in the home
+/// pose, for which the maker states this force.
 [[nodiscard]] inline Vec3 continuous_torque_Nm(const device::Device& d) noexcept {
   return d.continuous_force_N * levers_at_home_m(d);
 }

@@ -73,7 +73,8 @@ void ContactSolver::try_row(const ThreadModel& m, const ThreadState& s, double n
   rows_.pop_back();
 }
 
-/// Sets masses, target and warm start of a measured row. @return false when none of its nodes can move
+/// Sets masses, target velocity and starting impulse of a row whose gap was measured. @return false when none of its
+/// nodes can move
 bool ContactSolver::finish_row(const ThreadModel& m, const Candidate& c, ContactRow& row) const noexcept {
   double mobility = 0.0;
   for (int e = 0; e < 4; ++e) {

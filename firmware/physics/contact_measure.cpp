@@ -29,7 +29,8 @@ void ContactSolver::orient(Candidate& c, const V3<double>& apart, double distanc
   c.travel_m = travel_m_;
 }
 
-/// Measures a candidate and sets nodes, weights and the obstacle's velocity of its row.
+/// Measures a candidate (two bodies that may touch soon), and sets nodes, weights and the obstacle's velocity of its
+/// contact row.
 void ContactSolver::measure(const ThreadState& s, Candidate& c, ContactRow& row) const noexcept {
   const int i = c.first, j = c.second, nobody = nodes_;
   if (c.kind == Candidate::Kind::kDesk) {

@@ -6,7 +6,7 @@ namespace ligature::physics {
 
 inline Pack to_pack(const V3<double>& a) noexcept { return Pack{a.x, a.y, a.z, 0.0}; }
 
-/// x, y, z, 0 of one node in one register, m/s.
+/// Velocity of one node in one register: x, y, z, 0, in m/s.
 struct NodeVelocity {
   Pack v{};
 };

@@ -18,7 +18,7 @@ struct Coupling {
   double N_s_per_m = 0.0;
 };
 
-/// Force on the held node, N; pure.
+/// Force of the coupling on the held node, N. Without side effects.
 [[nodiscard]] inline V3<double> coupling_force_N(const Coupling& c, double inverse_mass_per_kg, double step_s,
                                                  const V3<double>& p_WT, const V3<double>& v_WT, const V3<double>& p,
                                                  const V3<double>& v) noexcept {

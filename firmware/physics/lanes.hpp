@@ -1,6 +1,6 @@
 #pragma once
-// Arrays of one number per node (structure of arrays), zero-padded at both ends: loops over packs may read one node
-// before the first and several past the last, and write past the last, without special cases.
+// Arrays of one number per node (structure of arrays), zero-padded at both ends: loops over packs of four nodes may
+// read one node before the first and several past the last, and write past the last, without special cases.
 
 #include <cstddef>
 #include <vector>

@@ -22,7 +22,7 @@ class ObstacleCourse {
   [[nodiscard]] static std::string objection(const scene::Scene& scene);
 
   ObstacleCourse() = default;
-  /// @pre no objection.
+  /// @pre objection(scene) is empty.
   ObstacleCourse(const scene::Scene& scene, const ThreadModel& model, const ContactSettings& contact);
 
   /// Moves the grippers to the tools. Call once per tick, after the grasp.

@@ -37,7 +37,8 @@ void LengthLimits::warm_start(const ThreadModel& m, ThreadState& s) noexcept {
   }
 }
 
-/// Directions and lengths. @return whether a segment is outside its limits by more than the tolerance
+/// Computes directions and lengths of all segments. @return whether a segment is outside its limits by more than the
+/// tolerance
 bool LengthLimits::measure(const ThreadModel& m, const ThreadState& s) noexcept {
   const Pack low = splat(shortest_m_ - kTolerance * rest_m_), high = splat(longest_m_ + kTolerance * rest_m_);
   bool outside = false;

@@ -1,6 +1,6 @@
 #pragma once
 // LIGATURE_SANITIZED: this is a build with AddressSanitizer or ThreadSanitizer, which replace the allocator and the
-// locks, cause page faults and need much memory. GCC tells by a macro, clang by a feature.
+// locks, cause page faults and need much memory. GCC defines a macro for them, clang a feature.
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define LIGATURE_SANITIZED 1

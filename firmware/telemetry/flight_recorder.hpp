@@ -56,9 +56,9 @@ class FlightRecorder {
   /// Ring into which one thread, the loop, pushes its records; their ticks start at 0.
   [[nodiscard]] rt::SpscRing<rt::TickRecord>& inlet() noexcept { return inlet_; }
 
-  /// Announces that a change of scene is in progress (the loop may already have it) or over. Ticks saved with a fault
-  /// meanwhile wait up to 0.1 s for scene_changed(), so that they name the right scene. Any thread; never waits for the
-  /// disk.
+  /// Announces that a change of scene is in progress (the loop may already use the new scene), or that it is over. If a
+  /// fault occurs in between, its ticks are saved up to 0.1 s later, after scene_changed(), so that the file names the
+  /// right scene. Any thread; never waits for the disk.
   void expect_scene(bool expected);
   /// Reports a new scene or parameter with its first tick. Any thread; never waits for the disk.
   void scene_changed(FlightScene scene);
@@ -66,7 +66,7 @@ class FlightRecorder {
   /// Call after the last record: returns when all records are on the disk. A second call does nothing.
   void finish();
 
-  /// Notes since the last call. Any thread; never waits for the disk.
+  /// Takes the messages for people that have arisen since the last call. Any thread; never waits for the disk.
   [[nodiscard]] std::vector<FlightNote> take_notes();
 
   /// Ticks that the file lacks for good. Any thread.

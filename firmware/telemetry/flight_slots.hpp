@@ -30,7 +30,7 @@ struct FlightScene {
   std::string scene_file, scene_toml;
 };
 
-/// @param slots number of ticks to keep.
+/// Header of a new flight recorder file. @param slots number of ticks to keep.
 [[nodiscard]] recorder::Header header_of(const FlightFacts& facts, std::int64_t slots);
 /// Size of the file. @param scenes number of scene entries.
 [[nodiscard]] std::size_t file_bytes(const recorder::Header& header, std::size_t scenes = recorder::kMostScenes);

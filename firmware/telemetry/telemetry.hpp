@@ -76,7 +76,7 @@ class Telemetry {
   /// Last step: also sends an incomplete batch, the last shape and a last status.
   void finish(Moment now);
 
-  /// Sets the scenes and parameters that commands may request; sent from now on.
+  /// Sets the list of scenes and parameters that commands may request; it is sent regularly from now on.
   void set_offer(ligature_msg::offer_t offer);
 
   /// Reports that a new scene or parameter is in force since its first tick; sends an event with `text` at once.

@@ -38,7 +38,8 @@ class BandColumns {
   [[nodiscard]] int missing() const noexcept { return static_cast<int>(wanted_.size()) - made_; }
   /// Computes the requested columns. @return false when the time was over first; columns computed so far are kept.
   bool make_missing(TickTime& time = TickTime::endless()) noexcept;
-  /// The blocks Z_{q node} for each node q of the window. @param node  counted from first(); its column is computed.
+  /// One column of Z: its 3 x 3 blocks for all nodes of the window. @param node  counted from first(). @pre this column
+  /// was requested and computed.
   [[nodiscard]] const float* column(std::int32_t node) const noexcept {
     return columns_.data() + static_cast<std::size_t>(place_[static_cast<std::size_t>(node)]) * stride();
   }

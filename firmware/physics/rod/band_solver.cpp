@@ -33,7 +33,7 @@ constexpr Mat kNothing{}, kUnit{{kAxisX}, {kAxisY}, {kAxisZ}};  // blocks for a 
   return {a, 1.0 / (s.xx * a.xx + s.xy * a.xy + s.xz * a.xz)};
 }
 
-// Computes H_i and y_i of the nodes of a step. @return S_i.
+// Elimination of the two nodes i of a step: computes their H_i and y_i (see BandSolver). @return S_i.
 [[gnu::always_inline]] inline TwoSyms BandSolver::eliminate(const Rows& a, const Step& p, Step& q, const Pivot& pivot,
                                                             TwoMats& h, Twos& y) noexcept {
   q.skip = a.skip;

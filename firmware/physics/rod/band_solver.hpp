@@ -53,7 +53,7 @@ class BandSolver {
     Twos z;             // z_i: right-hand sides after elimination
     Two skip;           // coupling to the nodes two further in
   };
-  /// Entries A_ii, A_ip, A_iq, r_i of the system for the nodes of a step; 1, 0, 0, 0 in a lane without a node.
+  /// Entries A_ii, A_ip, A_iq, r_i of the system for the two nodes i of a step; 1, 0, 0, 0 in a lane without a node.
   struct Rows {
     TwoSyms diagonal, couple;
     Two skip;

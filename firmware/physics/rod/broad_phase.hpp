@@ -11,7 +11,7 @@
 
 namespace ligature::physics::rod {
 
-/// A pair on the list, with its state from substep to substep.
+/// A pair of segments that may touch soon, with its state from substep to substep.
 struct Candidate {
   std::int32_t a = 0;    ///< segment of the thread
   std::int32_t b = 0;    ///< another segment, >= a + 2
@@ -73,7 +73,8 @@ class BroadPhase {
   bool build(const State& state, Motion& motion, const Outlook& outlook, long allowance, Work& work,
              const PairList& list) noexcept;
 
-  /// After a failed build(): fills the list with the pairs of the kept impulses only, for the next keep_impulses().
+  /// After a failed build(): fills the list with only those pairs that have a kept impulse, so that the next
+  /// keep_impulses() keeps them again.
   void put_back(const PairList& list) const noexcept;
 
   /// Cost of a build() in which no segments are near each other, in instructions.
@@ -89,7 +90,7 @@ class BroadPhase {
   [[nodiscard]] std::size_t place_of(std::int32_t a, std::int32_t b) const noexcept;
   void grow_tree(std::size_t blocks) noexcept;
   void give_back(Candidate& pair) const noexcept;
-  /// Adds the pair to the list if it is near enough. @return false when there was no room.
+  /// Adds segments a and b as a pair to the list if they are near enough. @return false when there was no room.
   bool consider(const State& state, const Motion& motion, const Outlook& outlook, std::size_t a, std::size_t b,
                 std::vector<Candidate>& list) noexcept;
   /// Bit mask of the segments of block q whose spheres are within `reach` of segment a's sphere.
@@ -97,7 +98,7 @@ class BroadPhase {
   /// Considers all pairs of a segment of block p and one of block q. @return false when out of room or work.
   bool blocks(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p, std::size_t q,
               const PairList& list) noexcept;
-  /// The same for block p and all blocks q >= p.
+  /// Calls blocks() for block p and every block q >= p that is near. @return false when out of room or work.
   bool search(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p,
               const PairList& list) noexcept;
 

@@ -60,7 +60,7 @@ struct Contact {
 /// Result of the contact solver in one substep.
 struct ContactReport {
   int passes = 0;
-  long work = 0;                ///< of the passes, in instructions
+  long work = 0;                ///< work of the passes, in instructions
   bool cut_short = false;       ///< the solver stopped before it converged
   double change_m_per_s = 0.0;  ///< upper bound of the velocity change in the last pass (Newton: of the error)
   double min_gap_m = 1e9;       ///< smallest thread-thread gap before the substep
@@ -77,7 +77,7 @@ struct Effort {
   long fair = 0;                 ///< work per substep if the rest of the tick's work is shared out equally
 };
 
-/// Result of settle_directly().
+/// Result of Newton's method in a substep (ContactSet::settle_directly()).
 enum class Outcome : std::uint8_t {
   kSettled,   ///< converged
   kLater,     ///< work or time ran out: repeating the substep continues from the impulses found so far
@@ -127,11 +127,11 @@ class ContactSet {
   /// the work or time left is too small for all of them.
   [[nodiscard]] bool collect_thread(const State& state, const Motion& motion, double dt_s, double mu, Work& work,
                                     ContactReport& report) noexcept;
-  /// Contacts of nodes with the plane z = floor_m that are nearer than look_m.
+  /// Collects contacts of nodes with the plane z = floor_m whose gap is below look_m.
   void collect_floor(const State& state, double floor_m, double radius_m, double look_m, double mu,
                      Work& work) noexcept;
-  /// Contacts of segments with a capsule that are nearer than look_m. Skips the capsule while it is out of reach even
-  /// for a node that has moved travel_m in this tick.
+  /// Collects contacts of segments with a capsule whose gap is below look_m. Skips the capsule while it is out of reach
+  /// even for a node that has moved travel_m in this tick.
   void collect_body(const State& state, const Body& body, int index, double radius_m, double look_m, double travel_m,
                     Work& work) noexcept;
   /// Call when bodies may have moved: the next collect_body() of each measures again.
@@ -150,12 +150,12 @@ class ContactSet {
     return std::all_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.is_pair(); });
   }
 
-  /// Chooses the contacts to be solved: at most `most`, loaded and deep ones first, within a window of at most `widest`
-  /// nodes. @pre nodes >= 2.
+  /// Chooses the contacts to be solved: at most `most`, first those with an impulse, then by gap, and only such that
+  /// all of them act within a range of `widest` nodes. @pre nodes >= 2.
   void choose_rows(int most, int widest, int nodes, ContactReport& report) noexcept;
 
-  /// Gives mu_static to contacts that did not slide in the last substep, and to new ones that do not slip at
-  /// velocities v.
+  /// Sets the friction coefficient mu_static for contacts that did not slide in the last substep, and for new ones that
+  /// do not slip at velocities v.
   void let_stick(double mu_static, const Vec* v) noexcept;
 
   [[nodiscard]] int rows() const noexcept { return rows_; }  ///< number of contacts to be solved
@@ -166,7 +166,7 @@ class ContactSet {
   /// First step of the solution: computes the target velocities of all rows, and the velocities v of the window's nodes
   /// with the impulses of the last substep. Turns: friction also rolls the segments about their axes; turn_with() must
   /// have been called.
-  /// @pre rows() > 0, the solver's core lies in the window.
+  /// @pre rows() > 0; the window contains the solver's two core nodes.
   template <bool Turns>
   void start(BandSolver& solver, const Numerics& numerics, double dt_s, Vec* v) noexcept;
 
@@ -178,7 +178,7 @@ class ContactSet {
   void forget_matrix() noexcept { newton_.forget(); }
 
   /// Solves for the velocities v of the window's nodes by sweeps. Turns: friction also rolls the segments.
-  /// @pre rows() > 0, the solver's core lies in the window, the metric covers it.
+  /// @pre rows() > 0; the window contains the solver's two core nodes, and `metric` covers the window.
   /// @return false, and nothing is solved, when the time was over before the first pass.
   template <bool Friction, bool Turns>
   [[nodiscard]] bool settle(BandSolver& solver, const ContactMetric& metric, const Effort& effort, Vec* v,
@@ -190,7 +190,8 @@ class ContactSet {
   /// After remeshing: gives pairs with an impulse the segments that now contain their material coordinates.
   void relabel(const std::vector<double>& s) noexcept;
 
-  /// Elastic energy of the contacts, sum of 1/2 k overlap^2, J, with overlaps extrapolated by step_s at velocities v.
+  /// Elastic energy of the contacts with stiffness k, sum of 1/2 k overlap^2, J. Overlaps are extrapolated by step_s at
+  /// the velocities v.
   [[nodiscard]] double give_J(double k_N_per_m, const Vec* v, double step_s) const noexcept;
 
   /// Factor from impulses of the last substep to forces, 1/s.
@@ -223,7 +224,7 @@ class ContactSet {
  private:
   [[nodiscard]] Contact* add() noexcept;
   [[nodiscard]] bool find_due(const Motion& motion, double dt_s, Work& work) noexcept;
-  /// Closest points of a pair.
+  /// Closest points of a pair of segments.
   struct Measured {
     Vec between;                       ///< from the point on the first segment to that on the second, m
     double s, t, distance_m, chord_m;  ///< parameters of the points; their distance; distance of the chords
@@ -239,14 +240,15 @@ class ContactSet {
   [[nodiscard]] bool make_columns(const ContactMetric& metric, TickTime& time) noexcept;
   void make_column(Contact& c, const ContactMetric& metric, float* column) const noexcept;
   [[nodiscard]] Contact& loaded(std::size_t k) noexcept { return contacts_[static_cast<std::size_t>(loaded_[k])]; }
-  /// One pass without mixing. @return an upper bound of the largest squared velocity change.
+  /// One pass of the sweep solver, without Anderson mixing. @return an upper bound of the largest squared velocity
+  /// change.
   template <bool Friction, bool Turns>
   double plain_pass(BandSolver& solver, Vec* v, TickTime& time) noexcept;
   template <bool Turns>
   void mix(BandSolver& solver, Vec* v) noexcept;
   template <bool Turns>
   [[nodiscard]] double merit(const Vec* v) const noexcept;
-  /// Relative velocity of row k.
+  /// Relative velocity of the two points of contact row k, m/s.
   template <bool Turns>
   [[nodiscard]] Vec velocity(int k, const Vec* v) const noexcept;
   [[nodiscard]] static Vec velocity(const Contact& c, const Vec* v) noexcept {
@@ -301,8 +303,8 @@ class ContactSet {
   SweptVelocities swept_;
   std::vector<Vec> extra_, step_;
   std::vector<std::int32_t> loaded_;  // rows that have carried an impulse in this substep; only these are mixed
-  // Sweeps, in the order of loaded_: mixed impulses, unmixed impulses, change in a pass. Newton's method, by row: p_
-  // has the present impulses, plain_ the best ones so far.
+  // Impulses. In sweeps, in the order of loaded_: after mixing (p_), before mixing (plain_), and their change in a pass
+  // (residual_). In Newton's method, by row: present ones (p_) and the best so far (plain_).
   std::vector<Vec> p_, plain_, residual_;
   Mixing mixing_;
   ContactNewton newton_;

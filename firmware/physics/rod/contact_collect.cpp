@@ -9,7 +9,8 @@ namespace ligature::physics::rod {
 
 namespace {
 
-/// Sort key, smallest first: contacts that carry load, then the others; within each by gap.
+/// Sort key of a contact, smallest first: contacts that carry load come before the others, and within each of these two
+/// groups those with the smaller gap come first.
 double urgency(const Contact& c) noexcept { return c.gap_m - (dot(c.p, c.p) > 0.0 ? c.reach_m : 0.0); }
 
 }  // namespace

@@ -31,7 +31,7 @@ class Couplings {
   }
   /// Fills in W_ba = W_ab^T after put() of the rows from <= a < end. About 6 (end^2 - from^2) instructions.
   void mirror(std::size_t from, std::size_t end) noexcept;
-  /// Exchanges contacts a and b in a table of `count`.
+  /// Exchanges contacts a and b in a table of `count` contacts.
   void exchange(std::size_t a, std::size_t b, std::size_t count) noexcept;
 
  private:

@@ -50,8 +50,8 @@ void press(Candidate& pair, const Mesh& mesh, double& s, double& t) noexcept {
 
 }  // namespace
 
-// Finds the pairs that must be measured in this substep, and charges the work of measuring them. The others cannot
-// touch within it, even at twice the present speed. @return false when there is not enough work left.
+// Finds the pairs that must be measured in this substep, and charges the work of measuring them. Other pairs
+// cannot touch within the substep, even at twice the present speed. @return false when there is not enough work left.
 bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcept {
   awake_.clear();
   for (auto* list : {&due_, &close_, &far_}) list->clear();
@@ -93,7 +93,7 @@ bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcep
   return true;
 }
 
-// Closest points and distances of four pairs; `places` are their indices in due_.
+// Computes closest points and distances of four pairs at once; `places` are the indices of these pairs in due_.
 template <bool Smooth>
 void ContactSet::measure(const std::int32_t* places, const State& state) noexcept {
   const auto pair = [&](std::size_t l) -> const Candidate& {

@@ -16,7 +16,7 @@ class ContactMetric {
  public:
   void reserve(int nodes, int window);
 
-  /// Computes C^-1 on the nodes [first, last], w of them. O(n + w^2), no allocation. @pre last - first < capacity.
+  /// Computes C^-1 on the w nodes from first to last. O(n + w^2), no allocation. @pre last - first < capacity.
   /// @return false, and the table is invalid, when the time was over first.
   [[nodiscard]] bool prepare(const Mesh& mesh, const Material& material, double dt_s, int first, int last,
                              TickTime& time) noexcept;

@@ -84,7 +84,7 @@ void ContactNewton::index_slots() noexcept {
   }
 }
 
-// The slot of segments a and b, or -1.
+// Index of the slot of the contact between segments a and b, or -1.
 std::int32_t ContactNewton::find(std::int32_t a, std::int32_t b) const noexcept {
   std::int32_t s = at_[static_cast<std::size_t>(a)];
   while (s >= 0 && (slots_[static_cast<std::size_t>(s)].node[2] != b || slots_[static_cast<std::size_t>(s)].dead))
@@ -104,7 +104,7 @@ bool ContactNewton::resume(Vec* p) noexcept {
   return std::exchange(put_off_, false);
 }
 
-// Adds a slot for row k.
+// Adds row k to the contacts of Newton's system (slots_). @return false when there is no room.
 bool ContactNewton::take(const Contact* rows, int k) noexcept {
   const std::size_t slot = slots_.size();
   if (slot == static_cast<std::size_t>(kMostRows)) return false;
@@ -154,7 +154,8 @@ std::array<Four, 3> ContactNewton::answer_at(const Slot& slot) const noexcept {
   return sum;
 }
 
-// Step lengths r_n, r_t of a contact's map: inverse of its own response along and across the normal.
+// Sets the step lengths r_n and r_t of a contact's natural map (see ContactNewton): the inverse of its own velocity per
+// impulse along the normal and across it.
 void ContactNewton::set_steps(Slot& slot, const std::array<Four, 3>& w) noexcept {
   const Mat own{{__builtin_convertvector(w[0], Lanes)},
                 {__builtin_convertvector(w[1], Lanes)},
@@ -170,7 +171,7 @@ void ContactNewton::set_steps(Slot& slot, const std::array<Four, 3>& w) noexcept
   slot.r_t = 1.0 / slot.per_r_t;
 }
 
-// W blocks between the new slots and all slots before them.
+// Computes the blocks of the coupling matrix W between each new slot and all slots before it.
 bool ContactNewton::couple(TickTime& time) noexcept {
   if (coupled_ == slots_.size()) return true;
   if (!z_.make_missing(time)) return false;

@@ -36,9 +36,9 @@ struct Contact;
 class ContactNewton {
  public:
   static constexpr int kMostRows = 96;       ///< contacts that carry load, or approach too fast without it
-  static constexpr int kMostUnknowns = 192;  ///< their impulse components
+  static constexpr int kMostUnknowns = 192;  ///< unknown impulse components of all contacts together
   static constexpr int kWidest = BandColumns::kWidest;
-  static constexpr int kMostNodes = 8;  ///< of a contact
+  static constexpr int kMostNodes = 8;  ///< nodes on which one contact can act
 
   void reserve();
 
@@ -56,8 +56,8 @@ class ContactNewton {
   /// there is no room.
   [[nodiscard]] bool look(const Contact* rows, int count, const Vec* p, const Vec* u) noexcept;
 
-  /// Computes the blocks of W for the added contacts. Call after look(), before read(). @return false when the time was
-  /// over first; the blocks computed so far are kept.
+  /// Computes the blocks of the coupling matrix W for the added contacts. Call after look(), before read(). @return
+  /// false when the time was over first; the blocks computed so far are kept.
   bool couple(TickTime& time = TickTime::endless()) noexcept;
   /// Amount of work that couple() has yet to do: columns of Z, contacts, pairs of contacts.
   struct Uncoupled {
@@ -69,8 +69,9 @@ class ContactNewton {
   }
   [[nodiscard]] int nodes() const noexcept { return z_.width(); }  ///< number of nodes that Z covers
 
-  /// Determines the kind of each contact in the system from impulses p and velocities u. @return the square of the
-  /// largest residual, (m/s)^2: distance of an impulse from its map, times the velocity per impulse of its contact.
+  /// Determines the kind (open, sticking, sliding) of each contact in the system from impulses p and velocities u.
+  /// @return the square of the largest residual, (m/s)^2: distance of an impulse from its value under the natural map,
+  /// times the contact's own velocity per impulse.
   template <bool Friction>
   [[nodiscard]] double read(const Contact* rows, const Vec* p, const Vec* u) noexcept;
 
@@ -98,8 +99,8 @@ class ContactNewton {
 
  private:
   enum class Kind : std::uint8_t { kNew, kOpen, kSticks, kSlides };
-  /// A contact that carries load, or did since measure(): its geometry, the step lengths r_n, r_t of its map, and the
-  /// map's value.
+  /// A contact that carries load, or did since measure(): its geometry, the step lengths r_n and r_t of its natural map
+  /// (class comment), and that map's value.
   struct Slot {
     std::int32_t count = 0;
     std::int32_t node[kMostNodes] = {};  ///< counted from the first node of Z

@@ -94,7 +94,7 @@ void Jaws::choose(Rod& rod, Vec tool) noexcept {
   }
 }
 
-/// Moves s_c until the coupling pulls along the thread by no more than slip_N.
+/// Moves the jaws' centre s_c along the thread until the coupling pulls along it by no more than slip_N.
 void Jaws::slip(Rod& rod, Vec tool) noexcept {
   if (settings_.slip_N <= 0.0 || count_ == 0) return;
   const State& state = rod.state();

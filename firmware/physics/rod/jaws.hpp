@@ -13,7 +13,7 @@ struct JawSettings {
   double stiffness_N_per_m = 0.0, damping_N_s_per_m = 0.0;  ///< of the hand's coupling, shared by the nodes held
 };
 
-/// A place of the thread.
+/// A point on the thread's centreline.
 struct Place {
   double s_m = 0.0;  ///< material coordinate
   Vec x{};
@@ -41,13 +41,14 @@ class Jaws {
   /// Place that jaws at `tool` would hold: with a width, the nearest place next to the node; without, the node.
   [[nodiscard]] Place would_hold(const Rod& rod, int node, Vec tool) const noexcept;
   void open(Rod& rod) noexcept;
-  /// Call before each tick with the tool's position at the end of the tick, m. Fills in the goals of the holds.
+  /// Call before each tick with the tool's position at the end of the tick, m. Writes the target positions of the held
+  /// nodes into `goals`.
   void follow(Rod& rod, Vec tool, std::array<Vec, kMaxHolds>& goals, const Mat* R_WT = nullptr) noexcept;
   /// Call when the rod was reset: its holds no longer exist.
   void forget() noexcept { count_ = 0; }
 
   [[nodiscard]] bool holds() const noexcept { return count_ > 0; }
-  /// Index into State::holds of the node nearest to the middle. @pre holds().
+  /// Index into State::holds of the held node nearest to the middle of the jaws. @pre holds().
   [[nodiscard]] int middle(const Rod& rod) const noexcept;
   /// Position and velocity of the thread at s_c: the mean over the held nodes, each shifted along t to s_c, so that
   ///   force() = K (place - tool) + B (velocity - the tool's).

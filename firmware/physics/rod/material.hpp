@@ -19,7 +19,7 @@ struct Material {
   double born_curvature_per_m = 0.0;   ///< curvature of the stress-free thread, about a material axis (spin.hpp)
   double born_twist_per_m = 0.0;       ///< twist of the stress-free thread, rad/m
   double yield_curvature_per_m = 0.0;  ///< 2 x yield strain / diameter: sharper bends set (spin_set.cpp); 0: off
-  double set_fraction = 0.0;           ///< share of the bending stiffness that yields there
+  double set_fraction = 0.0;           ///< share of the bending stiffness that yields beyond this curvature
 
   [[nodiscard]] constexpr bool sets() const noexcept { return yield_curvature_per_m > 0.0 && set_fraction > 0.0; }
   /// Is there a stress-free shape that is not straight?

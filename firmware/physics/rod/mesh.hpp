@@ -22,7 +22,7 @@ struct Mesh {
   std::vector<double> s;           ///< n material coordinates, m, from 0 to the length
   std::vector<double> rest;        ///< n - 1 rest lengths (sized n; the last is 0)
   std::vector<double> inv_rest;    ///< 1 / rest
-  std::vector<double> mass;        ///< n
+  std::vector<double> mass;        ///< n lumped masses, kg
   std::vector<double> weight;      ///< w_i of vertex i; 0 at free ends
   std::vector<double> kd, ke, kb;  ///< K_b(i, i), (i, i+1), (i, i+2)
   std::vector<Clamp> clamp;        ///< of node i; a clamped inner node has half vertices on both sides

@@ -18,7 +18,8 @@ class Motion {
  public:
   void reserve(int nodes);
 
-  /// Computes speed and drift from new velocities; keeps the previous values for outran().
+  /// Computes speed_j of every segment and drift_i of every node (class comment) from new velocities v; keeps the
+  /// previous values for outran().
   void measure(const Vec* v) noexcept;
   /// Adds a step of step_s at the velocities last measured to the integrals.
   void advance(double step_s) noexcept;
@@ -44,15 +45,16 @@ class Motion {
     return std::min(block_travel_[p] + block_travel_[q], strayed_[end(q)] - strayed_[p * kBlock]);
   }
 
-  /// Can any pair have moved since restart(), ahead_s from now included, by more than spare_m + horizon_s x its rate at
-  /// restart()?
+  /// Can any pair have moved since restart(), ahead_s from now included, by more than spare_m + horizon_s x its rate()
+  /// at restart()?
   [[nodiscard]] bool used_up(double spare_m, double horizon_s, double ahead_s) const noexcept;
 
   /// Share of a step dt_s at the present velocities for which used_up() is still false; rounded down to a power of 1/2,
   /// or 0.
   [[nodiscard]] double share_within(double spare_m, double horizon_s, double dt_s) const noexcept;
 
-  /// Can any pair, in dt_s, move by more than spare_m + 2 dt_s x its rate before the last measure()?
+  /// Can any pair move, relative to each other and in dt_s, by more than spare_m + 2 dt_s x its rate() before the last
+  /// measure()?
   [[nodiscard]] bool outran(double spare_m, double dt_s) const noexcept;
 
  private:

@@ -9,7 +9,7 @@ namespace ligature::physics::rod {
 namespace {
 
 constexpr double kTurn = 0.35;       // wanted angle between neighbouring segments, rad
-constexpr double kStartTurn = 0.5;   // the same for the initial mesh
+constexpr double kStartTurn = 0.5;   // wanted angle in the initial mesh, rad
 constexpr double kBendLength = 0.4;  // wanted length at a contact, in units of sqrt(EI / T)
 constexpr double kGrading = 0.2;
 constexpr double kCut = 0.5;         // share of a segment that the smooth curve cuts off at a corner (h, smooth.hpp)
@@ -39,7 +39,8 @@ struct Piece {
   auto operator<=>(const Piece&) const = default;
 };
 
-// Wanted length at every unit of the thread, from the given curvature, graded; constant when no curvature is given.
+// Wanted segment length at every unit of the thread, from the given curvature; it changes only gradually along the
+// thread (kGrading). Constant when no curvature is given.
 std::vector<double> wanted_at_rest(int units, double unit_m, std::span<const double> curvature_per_m) {
   std::vector<double> wanted(static_cast<std::size_t>(units), unit_m * (1 << Refine::kLevels));
   const double per_place = static_cast<double>(units) / static_cast<double>(curvature_per_m.size());
@@ -204,7 +205,7 @@ int Refine::cheapest_merge(double most) const noexcept {
 // Removes node i; its two segments become one.
 void Refine::merge(const Material& material, State& state, int node) noexcept {
   const auto i = static_cast<std::size_t>(node);
-  // Half of node i's mass, as its two segments are equally long.
+  // Mass that each neighbour gets: half of node i's, as the two segments of a merged pair are equally long.
   const double half = 0.5 * material.density_kg_per_m * (state.mesh.s[i] - state.mesh.s[i - 1]);
   for (const std::size_t k : {i - 1, i + 1}) {
     const double before = k > 0 ? state.mesh.s[k] - state.mesh.s[k - 1] : 0.0;

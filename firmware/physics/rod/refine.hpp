@@ -31,8 +31,8 @@ class Refine {
   /// @param wanted_m  approximate unit, m. @return false when n is too small or too large for the thread's length.
   bool start(const Material& material, double wanted_m, State& state, std::span<const double> curvature_per_m = {});
 
-  /// Before update(): computes the factors by which the offsets fade in this tick, from the nodes' speeds. With
-  /// `drifts` the mean velocity does not count, as for a thread that falls or flies as a whole.
+  /// Before update(): computes the factors by which the stress-free offsets fade in this tick, from the nodes' speeds.
+  /// With `drifts` the mean velocity does not count, as for a thread that falls or flies as a whole.
   void slide(const State& state, double tick_s, bool drifts) noexcept;
   /// After slide(): weakens the fading where needed so that it raises the elastic energy by no more than allowance_J.
   /// `born` is the part of State::rest_bend that does not fade, or empty. @return upper bound of the energy change, J.
@@ -40,10 +40,11 @@ class Refine {
                    double allowance_J) noexcept;
   [[nodiscard]] std::span<const double> fade() const noexcept { return fade_; }
 
-  /// Multiplies the offsets by their factors.
+  /// Multiplies the stress-free offsets by the factors that slide() and hold_back() have computed.
   void fade_offsets(State& state) const noexcept;
 
-  /// The changes of one tick, with an eighth of its work at most. @return true when nodes moved. O(n); no allocation.
+  /// Merges and splits segments for one tick, with at most an eighth of the tick's work budget. @return true when nodes
+  /// moved. O(n); no allocation.
   bool update(const Material& material, State& state, const Forces& forces, ContactSet& contacts,
               const std::vector<Body>& bodies, Work& work) noexcept;
 
@@ -59,7 +60,8 @@ class Refine {
   void grade(const Mesh& mesh) noexcept;
   void want_at_rest(const State& state, const ContactSet& contacts) noexcept;
   [[nodiscard]] int worst_segment() const noexcept;
-  /// Node whose merged pair would have the smallest ratio of length to wanted length. @return -1 when none is < `most`.
+  /// The node whose two segments, merged into one, would have the smallest ratio of length to wanted length. @return -1
+  /// when no ratio is below `most`.
   [[nodiscard]] int cheapest_merge(double most) const noexcept;
   /// As cheapest_merge(), but only nodes that pass merge_is_clear(); the others are marked as not free.
   int best_merge(const Material& material, const State& state, const std::vector<Body>& bodies, double most) noexcept;

@@ -38,7 +38,7 @@ struct TickReport {
 
   // What was given up for lack of budget or time, the mildest loss first.
   int cut_short = 0;       ///< substeps whose contact solver stopped before it converged
-  int rows_left_out = 0;   ///< largest number of contacts in a substep that were not solved, only guarded
+  int rows_left_out = 0;   ///< largest number of contacts in a substep that only the guard kept apart
   double time_lost = 0.0;  ///< share of the tick in which the thread was not moved, as no safe motion was known
   int cut_at = -1;         ///< number of the clock query that ended the tick early (time_left.hpp); -1: none did
 };
@@ -174,7 +174,7 @@ class Rod {
   };
   HandSpeed set_hands(const std::array<Vec, kMaxHolds>& goals, std::array<Vec, kMaxHolds>& starts) noexcept;
   void begin_tick(const HandSpeed& hands, const TimeLeft& left) noexcept;
-  /// Coupling forces on the hands, for the positions x + ahead_s v.
+  /// Computes the coupling forces on the hands, at the node positions x + ahead_s v.
   void feel_hands(double ahead_s) noexcept;
   int add_hold(const Hold& hold) noexcept;
   /// Reduces the stress-free bends, strains and corner offsets that remeshing has left.

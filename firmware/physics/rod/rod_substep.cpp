@@ -28,7 +28,8 @@ constexpr Ahead kAhead[] = {{1.2, 0.3}, {0.15, 0.25}, {0.0, 0.4}};
 
 }  // namespace
 
-// Rebuilds the list of pairs, leaving `reserve` of the work. @return false when no list could be afforded.
+// Rebuilds the list of segment pairs that may touch; leaves at least `reserve` instructions of the tick's work. @return
+// false when there is not enough work even for a list with the shortest validity.
 bool Rod::relist(long reserve) noexcept {
   Outlook outlook{2.0 * material_.radius_m, 2.0 * material_.radius_m * kSkin, near_m_, 0.0};
   broad_.keep_impulses(contacts_.pairs);

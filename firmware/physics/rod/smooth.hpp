@@ -28,7 +28,7 @@ struct SmoothOf {
     const Number p = near_before(s), q = near_after(s);
     return x + s * e + (0.125 * p * p) * before + (0.125 * q * q) * after;
   }
-  /// dP / ds.
+  /// Derivative of the curve, dP / ds.
   [[nodiscard]] Vector along(Number s) const noexcept {
     return e - (0.25 * h_before * near_before(s)) * before + (0.25 * h_after * near_after(s)) * after;
   }
@@ -48,7 +48,8 @@ struct SmoothSegment : SmoothOf<Vec, double> {
     if (j + 2 < state.x.size()) corner(state, j + 1, diameter_m, after, share);
   }
 
-  /// k_i of an inner node i, m, scaled by `share` <= 1 so that the corner is cut by at most kMostCut diameters.
+  /// Corner vector k_i of an inner node i, m, scaled by `share` <= 1 so that the curve cuts the corner by at most
+  /// kMostCut diameters.
   static void corner(const State& state, std::size_t i, double diameter_m, Vec& k_i, double& share) noexcept {
     const double most_m = 8.0 * kMostCut * diameter_m;
     const Vec k = 2.0 * state.cut_before[i] * (state.x[i + 1] - state.x[i]) -

@@ -68,8 +68,8 @@ void Spin::assemble(const Material& m, const State& state, double dt_s) noexcept
   solve(rhs_);
 }
 
-// Elimination from both ends: w_j = down_j w_{j+1} + .. and w_{j+1} = up_j w_j + .., so that push() gets the response
-// of neighbouring segments by one multiplication each.
+// Elimination of the roll rates w from both ends: w_j = down_j w_{j+1} + .. and w_{j+1} = up_j w_j + .., so that push()
+// gets the response of neighbouring segments by one multiplication each.
 void Spin::eliminate() noexcept {
   const std::size_t edges = tangent_.size() - 1;
   double d = diag_[0];

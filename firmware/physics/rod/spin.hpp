@@ -45,11 +45,11 @@ class Spin {
 
   /// Plastic flow of the bends in a substep, at the present positions. @return energy dissipated, J.
   double yield(const Material& material, State& state) noexcept;
-  /// Plastic state z_i of a vertex: a vector, the bend (change of unit tangent) up to which its yielding part has
-  /// followed. The stress-free bend has changed by set_fraction x z_i (model: spin_set.cpp).
+  /// Plastic bend z_i of a vertex, as a change of unit tangent: how far the friction slider of the plastic model has
+  /// moved (spin_set.cpp). It has changed the stress-free bend by set_fraction x z_i.
   [[nodiscard]] Vec set(int vertex) const noexcept { return set_[static_cast<std::size_t>(vertex)]; }
 
-  /// Sets up and solves the system of a substep for the rates, without torques of contacts.
+  /// Sets up and solves the system of a substep for the roll rates w_j, without torques of contacts.
   void assemble(const Material& material, const State& state, double dt_s) noexcept;
   /// Solves again with the torque impulses of contacts since assemble(), then turns all frames for dt_s.
   void advance(const Material& material, State& state, Forces& forces, double dt_s) noexcept;
@@ -100,7 +100,7 @@ class Spin {
   std::vector<Vec> normal_, binormal_;  // mean director d_i of each vertex, and t_i x d_i
   std::vector<Vec> born_, across_;      // stress-free bend, and its derivative by the roll angle
   std::vector<double> born_size_;       // 2 sin(k l_i / 2): stress-free bend without its plastic part, along d_i
-  std::vector<Vec> set_;        // plastic states z_i: world coordinates, but inside update() along d_i and t_i x d_i
+  std::vector<Vec> set_;        // plastic bends z_i: world coordinates, but inside update() along d_i and t_i x d_i
   std::vector<double> limit2_;  // square of the yield limit of a vertex
   std::vector<double> torque_;  // torque impulse on each segment since assemble()
   std::vector<double> diag_, off_, rhs_, down_, up_, answer_, saved_rate_, saved_torque_;

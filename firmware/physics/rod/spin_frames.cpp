@@ -69,7 +69,7 @@ void Spin::before_fading(State& state, std::span<const double> fade) const noexc
   for (std::size_t i = 0; i < born_.size(); ++i) state.rest_bend[i] += (1.0 / fade[i] - 1.0) * born_[i];
 }
 
-// After remeshing: frames and rates at the new midpoints, interpolated between the old midpoints.
+// After remeshing: directors and roll rates of the new segments, interpolated between the midpoints of the old ones.
 void Spin::resample(const State& state) noexcept {
   const std::size_t edges = state.x.size() - 1;
   std::copy(director_.begin(), director_.end(), old_director_.begin());

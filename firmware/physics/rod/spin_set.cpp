@@ -40,7 +40,7 @@ double Spin::yield(const Material& m, State& state) noexcept {
   return lost_J;
 }
 
-// Changes the plastic states z_i from world coordinates to components along normal_ and binormal_ of the vertex, so
+// Changes the plastic bends z_i from world coordinates to components along normal_ and binormal_ of the vertex, so
 // that they turn with the frames when these are updated. set_to_world() changes them back.
 void Spin::set_to_material() noexcept {
   for (std::size_t i = 1; i < set_.size(); ++i)

@@ -46,7 +46,7 @@ struct State {
   }
 };
 
-/// Internal forces of the last assembly.
+/// Internal forces, as computed when the linear system of the last substep was assembled.
 struct Forces {
   std::vector<Vec> tangent, unit;  ///< e_j / l_j and e_j / |e_j|
   std::vector<Vec> moment_in,

@@ -49,7 +49,7 @@ class SweptVelocities {
     }
   }
 
-  /// sum_k w_k v[place_k], k < count.
+  /// Weighted sum of `count` nodes' velocities: sum_k w_k v[place_k].
   [[nodiscard]] Vec mix(const std::int32_t* places, const float* w, int count) const noexcept {
     float x = 0.0F, y = 0.0F, z = 0.0F;
     for (int k = 0; k < count; ++k) {
@@ -61,7 +61,7 @@ class SweptVelocities {
     return make(x, y, z);
   }
 
-  /// v_j += column_j p for every node. @param nodes  as padded() gives it.
+  /// Adds the velocity changes by an impulse p: v_j += column_j p for every node. @param nodes  as padded() gives it.
   void push(const float* column, std::size_t nodes, Vec p) noexcept {
     const Eight px = all_eight(static_cast<float>(p[0])), py = all_eight(static_cast<float>(p[1])),
                 pz = all_eight(static_cast<float>(p[2]));

@@ -25,8 +25,8 @@ class Twist {
   /// Updates the directors of all holds: parallel transport to the new tangent, or the hand's direction if steered.
   void carry(State& state) const noexcept;
 
-  /// Once per tick: carry(), then the angle of every span, and M into forces. O(n), no allocation. Valid while no span
-  /// turns by half a revolution or more in one tick.
+  /// Once per tick: carry(), then computes the twist angle of every span, and writes the twisting moments M to
+  /// `forces`. O(n), no allocation. Valid while no span turns by half a revolution or more in one tick.
   void update(const Material& material, State& state, Forces& forces) noexcept;
 
   [[nodiscard]] double energy_J() const noexcept { return energy_J_; }

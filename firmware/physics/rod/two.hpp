@@ -9,7 +9,7 @@ namespace ligature::physics::rod {
 /// Lane 0: the left chain; lane 1: the right one.
 using Two = double __attribute__((vector_size(16)));
 
-/// A vector in each lane.
+/// Two vectors, one in each lane.
 struct Twos {
   Two x, y, z;
 };

@@ -25,7 +25,7 @@ struct Vec {
 inline Vec& operator+=(Vec& a, Vec b) noexcept { return a = a + b; }
 inline Vec& operator-=(Vec& a, Vec b) noexcept { return a = a - b; }
 
-/// a . b over all four lanes (padding is zero).
+/// a . b; the padding lane is left out.
 [[nodiscard]] inline double dot(Vec a, Vec b) noexcept {
   const Lanes p = a.v * b.v;
   return (p[0] + p[1]) + p[2];
