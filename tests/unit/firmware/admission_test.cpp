@@ -6,6 +6,7 @@
 #include "firmware/app/doctor.hpp"
 #include "firmware/app/worst_case.hpp"
 #include "firmware/physics/simulation.hpp"
+#include "firmware/platform/sanitized.hpp"
 #include "protocol/scene/scene_file.hpp"
 
 namespace ligature::app {
@@ -74,8 +75,10 @@ TEST(Admission, AThreadThatTakesTooLongInItsWorstShapesLosesTimeAndIsEndedByTheC
 TEST(Admission, WorkIsWhatTheTimeGivenBuys) {
   const auto scene = scene_of("suture-3-0-square.toml", 154);
   const auto all = measure_thread(scene, 800.0, 0.0), third = measure_thread(scene, 270.0, 0.0);
+#ifndef LIGATURE_SANITIZED  // so slow that neither time buys more than the least budget
   EXPECT_GT(all.work, third.work);
   EXPECT_LT(static_cast<double>(third.work), 0.6 * static_cast<double>(all.work));
+#endif
   auto own = scene;
   own.suture.rod.work_instructions = 1'234'567;
   EXPECT_EQ(measure_thread(own, 800.0, 0.0).work, 1'234'567) << "a scene's own is taken as it is";
