@@ -11,7 +11,7 @@
 
 namespace ligature::app {
 
-/// m/s of each hand. 0.25 covers 99.9 % of the measured speeds of surgeons, 0.4 all of them.
+/// Speeds of each hand that are measured, m/s. 0.25 covers 99.9 % of the measured speeds of surgeons, 0.4 all of them.
 inline constexpr std::array<double, 4> kHandSpeeds_m_per_s{0.05, 0.1, 0.25, 0.4};
 
 /// A loose overhand knot with straight tails along x. Its middle is `middle_W_m`; its length is that of the thread.

@@ -30,7 +30,8 @@ class RealTimeSide {
   RealTimeSide(const RealTimeSide&) = delete;
   RealTimeSide& operator=(const RealTimeSide&) = delete;
 
-  /// @param ask false: request no rights. @return the refusals, each already logged.
+  /// Requests the process's real-time rights and starts both threads, which request theirs. @param ask false: request
+  /// none. @return the refusals, each already logged.
   platform::Refusals prepare(bool ask, int core);
   void start();
   /// Waits until the loop has ended; if start() was not called, the loop never runs.

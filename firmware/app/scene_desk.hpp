@@ -31,7 +31,8 @@ struct Changed {
 /// Text appended to a scene that runs by --force although it was not admitted: "\n# --force: <reason>", or empty.
 [[nodiscard]] std::string forced(const std::string& excess);
 
-/// Used from the telemetry thread; it builds in another thread, one change at a time. The scene file is read once. A
+/// Handles commands that change scene or parameters. Called from the telemetry thread; builds in another thread, one
+/// change at a time. The scene file is read once. A
 /// child process builds it and rehearses it: the state must stay finite and, with --no-loss and without --force, its
 /// knot must lose no time. Only then is it built in this process and handed over. None of this runs on the loop's core
 /// or at its priority. The loop checks the rig's state once more before it accepts. Simulations that the loop gives

@@ -27,8 +27,8 @@ namespace ligature::control {
 class EncoderWatch {
  public:
   static constexpr std::size_t kJoints = 3, kWindow = 24, kLength = 128;
-  /// Thresholds in counts per period: least speed of another joint, least speed of the suspect, largest change of the
-  /// other's speed.
+  /// Thresholds in counts per period: least speed of another joint, least speed of the joint under suspicion,
+  /// largest change of the other joint's speed.
   static constexpr double kMoving = 0.34, kBrisk = 0.8, kSame = 0.17;
   static constexpr double kTravel = 60.0;      ///< counts, about 3 mm at the tip
   static constexpr double kElsewhere = 300.0;  ///< counts

@@ -43,7 +43,7 @@ class Linkage {
     return jacobian(q_rad).transpose() * f_D_N;
   }
 
-  /// Whether the angles can be those of this device: its stops with 0.25 rad of margin.
+  /// Whether the angles can be those of this device: between its stops, with 0.25 rad of margin.
   [[nodiscard]] bool is_plausible(const JointAngles& q_rad) const noexcept;
 
   /// For each joint: whether it is more than 0.05 rad from its stops.

@@ -24,7 +24,7 @@ void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {
   if (sampled_ >= 0 && tick > sampled_) {
     if (tick > sampled_ + 1) lossy_until_ = tick + kWary;
     for (Eigen::Index j = 0; j < 3; ++j) {
-      // Only slow joints: for fast ones the velocity estimate lags
+      // Interpolates between encoder counts, for slow joints only: for fast ones the velocity estimate lags.
       const double turned_rad = periods * period_s_ * s.rate_rad_per_s[j];
       if (std::abs(turned_rad) < kSlowCounts * periods * s.count_rad)
         q_rad[j] = std::clamp(q_rad_[j] + turned_rad, counted_rad[j] - half_rad, counted_rad[j] + half_rad);

@@ -35,12 +35,12 @@ class Windings {
     }
     return least;
   }
-  /// Call once per tick. @param periods since the last call.
+  /// Updates the windings' heat with the torques sent. Call once per tick. @param periods since the last call.
   void sent(const Vec3& torque_Nm, std::int64_t periods = 1) noexcept {
     for (std::size_t j = 0; j < caps_.size(); ++j)
       caps_[j].sent(std::abs(torque_Nm[static_cast<Eigen::Index>(j)]), periods);
   }
-  /// Heat of the hottest winding; at 1 its cap begins to fall.
+  /// Temperature rise of the hottest winding, relative to that at continuous torque; at 1 its cap begins to fall.
   [[nodiscard]] double heat() const noexcept { return std::max({caps_[0].heat(), caps_[1].heat(), caps_[2].heat()}); }
 
  private:

@@ -11,7 +11,7 @@ namespace ligature::physics {
 ///   f_i = -(f_{i-1} + f_{i+1}).
 /// This is (7)-(9) with a unit vector t: the force is minus the gradient of E = k_ts alpha^2 / (2 pi). With the printed
 /// t, of length sin alpha, a straight bend would have no linear stiffness and a folded one no force.
-/// @param k_N_m  k_ts
+/// @param k_N_m  k_ts, bending stiffness
 template <class S>
 S bend_moment_N_m(S angle, double k_N_m) noexcept {
   return (-k_N_m / std::numbers::pi) * angle;

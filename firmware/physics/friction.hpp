@@ -10,7 +10,8 @@ inline V3<double> slip_velocity(const V3<double>& v_relative, const V3<double>& 
 }
 
 /// Coulomb friction, equations (1) and (3): f_f = mu |n| e^, e^ against the slip, N, on the first body.
-///   As printed it is 0/0 at zero slip (here: zero), and unlimited: at mu = 10 it reverses the slip within one step.
+///   As printed in the paper it is 0/0 at zero slip (here: zero), and unlimited: at mu = 10 it reverses the slip within
+///   one step.
 inline V3<double> coulomb_friction_N(double mu, double normal_N, const V3<double>& v_relative,
                                      const V3<double>& normal) noexcept {
   const V3<double> slip = slip_velocity(v_relative, normal);

@@ -1,5 +1,6 @@
 #pragma once
-// The paper's models behind simulation.hpp: built from a scene, driven by two tools.
+// The thread models of the paper of 2007 behind the interface of simulation.hpp: built from a scene, driven by two
+// tools.
 
 #include <array>
 #include <cstdint>

@@ -9,7 +9,8 @@ inline double separation_m(double radius_m, double distance_m, double safety_m) 
   return distance_m < 2.0 * radius_m ? radius_m - 0.5 * distance_m + 0.5 * safety_m : 0.0;
 }
 
-/// Displacements of the four end nodes along the normal that separate C and E by twice separation_m.
+/// Displacements of the four end nodes along the normal that separate the closest points C and E of two segments by
+/// twice separation_m.
 ///   The paper shifts all four by the same amount, which adds a rigid rotation (median: 1.5 times the shift). Here the
 ///   shifts are proportional to share_k / m_k, as for an impulse, so that the centre of mass stays.
 /// @param w  inverse masses, 1/kg   @return factors: node k moves by factor_k along the normal, m

@@ -40,8 +40,8 @@ void HandLink::send_sync() noexcept {
 
 /// A heartbeat has the lowest priority on the bus: while others send, it waits and so does everything queued behind it.
 /// So it is sent after the drives have answered, when the bus is free. After a foreign controller was heard, no more
-/// are sent: on a flooded bus NMT stop would wait behind the heartbeat. Drives that miss heartbeats switch off by
-/// themselves.
+/// heartbeats are sent: on a flooded bus NMT stop would wait behind the heartbeat. Drives that miss heartbeats switch
+/// off by themselves.
 void HandLink::beat() noexcept {
   if (foreign_ != rt::Foreign::kNone) return;
   if (--periods_to_heartbeat_ >= 0) return;

@@ -71,7 +71,7 @@ Check memory_limit(const std::string& root) {
   return {Grade::kFail, "locked memory", amount(allowed) + " bytes, wanted unlimited", kLimits};
 }
 
-/// Checks that a core list of the kernel contains our core.
+/// Checks that a core list of the kernel (such as the isolated cores) contains the real-time loop's core.
 Check core_list(const std::string& root, const char* what, const std::string& file, const std::string& option,
                 int core) {
   const std::string list = text_of(root + file);
@@ -145,7 +145,7 @@ double number_after(const std::string& text, const std::string& word) {
   return at == std::string::npos ? -1.0 : std::atof(text.c_str() + at + word.size());
 }
 
-/// Checks that no interrupt of the interface may be handled by our core.
+/// Checks that the real-time loop's core handles no interrupt of the CAN interface.
 Check interrupts(const std::string& root, const std::string& interface, int core) {
   std::istringstream lines(text_of(root + "proc/interrupts"));
   for (std::string line; std::getline(lines, line);) {

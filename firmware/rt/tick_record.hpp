@@ -98,7 +98,7 @@ struct TickRecord {
   std::int32_t thread_done_ns = 0;
   std::int32_t thread_work_ns = 0;
   std::int8_t thread_end = 0;  ///< physics::TickEnd
-  /// Index of the check for remaining time that ended the tick; -1: not ended by the deadline
+  /// Number of the clock query ("is there time left?") that ended the physics tick early; -1: none did
   std::int32_t thread_cut_at = -1;
   float time_lost = 0.0F;  ///< share of the tick in which the thread was not moved
 

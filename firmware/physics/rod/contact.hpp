@@ -194,7 +194,7 @@ class ContactSet {
   /// the velocities v.
   [[nodiscard]] double give_J(double k_N_per_m, const Vec* v, double step_s) const noexcept;
 
-  /// Factor from impulses of the last substep to forces, 1/s.
+  /// Factor that converts impulses of the last substep to forces, 1/s: the inverse of its time step.
   [[nodiscard]] double per_second() const noexcept { return per_second_; }
 
   /// Stores the impulses for the next substep.

@@ -71,7 +71,8 @@ bool Dense::join(std::size_t k) noexcept {
   return true;
 }
 
-// Reduces up to four rows and columns from k on to a unit matrix. @return their number; fewer when a pivot shrinks.
+// Reduces up to four rows and columns from k on to a unit matrix. @return their number; fewer than four if a pivot
+// is too small.
 std::size_t Dense::panel(std::size_t k) noexcept {
   const std::size_t rows = std::min(kPanel, n_ - k);
   if (!join<0>(k)) return 0;

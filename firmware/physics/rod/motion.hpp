@@ -53,8 +53,8 @@ class Motion {
   /// or 0.
   [[nodiscard]] double share_within(double spare_m, double horizon_s, double dt_s) const noexcept;
 
-  /// Can any pair move, relative to each other and in dt_s, by more than spare_m + 2 dt_s x its rate() before the last
-  /// measure()?
+  /// Can the two segments of any pair move relative to each other, in dt_s, by more than spare_m + 2 dt_s x the rate()
+  /// that they had before the last measure()?
   [[nodiscard]] bool outran(double spare_m, double dt_s) const noexcept;
 
  private:

@@ -88,10 +88,11 @@ bool Rod::look(double dt_s) noexcept {
   return measured_ = true;
 }
 
-// Work that this substep's rows and passes may use. Reserved for each later substep of the tick: 1.5 times the last
-// contact detection, and the rows with their fewest passes; and once the cost of a new list. Rows may use all that is
-// left. Passes beyond the fewest get twice an equal share of what is not reserved, so that a hard substep leaves work
-// for the next. Newton's method may use everything, as a substep that does not converge is continued in the next tick.
+// Work that this substep may spend on setting up its contact rows and on passes over them. For each later substep of
+// the tick, 1.5 times the cost of the last contact detection and the cost of the last rows with their fewest passes are
+// reserved; and once the cost of a new list of pairs. Setting up rows may use all that is left. Passes beyond the
+// fewest get twice an equal share of what is not reserved, so that a hard substep leaves work for the next. Newton's
+// method may use everything, as a substep that does not converge is continued in the next tick.
 Rod::Allowance Rod::work_allowed(bool metric_too) const noexcept {
   const long after = report_.substeps - substep_index_ - 1;
   const auto span = contacts_.span();
@@ -214,10 +215,10 @@ bool Rod::give_up() noexcept {
   return false;
 }
 
-// Guard for pairs that this substep has not measured, which may meet after a sudden acceleration such as a release.
-// Listed pairs are limited by a lower bound of their distance, all others by the margin with which the list was made;
-// if that shortens the step and work is left, by a new list. @return the admissible share of dt_s, or nothing when
-// there is not enough work and the substep can wait.
+// Guard for pairs of segments that this substep has not measured, which may meet after a sudden acceleration such as a
+// release. The step is limited for pairs on the list by a lower bound of their distance, and for all other pairs by the
+// margin with which the list was made. If the margin shortens the step and work is left, a new list is made. @return
+// the admissible share of dt_s, or nothing when there is not enough work and the substep can wait.
 std::optional<double> Rod::guard_unseen(double dt_s) noexcept {
   const double diameter = 2.0 * material_.radius_m, unseen = 0.9 * (diameter * BroadPhase::kLeastReach + near_m_);
   const double ahead_m = diameter * (kSkin + 0.9 * BroadPhase::kLeastReach);

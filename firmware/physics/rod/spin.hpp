@@ -25,9 +25,10 @@ class Spin {
  public:
   void reserve(int nodes);
 
-  /// Initial frames: untwisted along the present shape, at rest. Holds that fix roll get matching directors.
+  /// Sets the initial frames: untwisted along the present shape, at rest. Holds that fix roll get matching directors (a
+  /// director is a direction across the thread, fixed to its material).
   void start(const Material& material, State& state) noexcept;
-  /// Sets a hold's director so that it causes no twist. @pre after start().
+  /// Sets the director of a hold so that the hold causes no twist. @pre after start().
   void attach(State& state, int hold) const noexcept;
 
   /// Part of State::rest_bend that is the thread's own stress-free shape and must not fade.

@@ -26,32 +26,33 @@ inline constexpr long kList = 140;           ///< broad phase: adding such a pai
 inline constexpr long kExact = 100;          ///< broad phase: exact distance of such a pair
 inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one split, per node of the thread
 
-/// Setting up `rows` contact rows that act on a range of `nodes` nodes, with the two solutions of ContactSet::start().
+/// Price of setting up `rows` contact rows that act on a range of `nodes` nodes, with the two solutions of
+/// ContactSet::start().
 [[nodiscard]] constexpr long rows(long rows, long nodes) noexcept { return 260 * rows + 170 * nodes; }
-/// One pass over `rows` rows, of which `loaded` carry an impulse and are mixed.
+/// Price of one pass of sweeps over `rows` rows, of which `loaded` carry an impulse and take part in Anderson mixing.
 [[nodiscard]] constexpr long pass(long rows, long loaded, long nodes) noexcept {
   return rows * (115 + 3 * nodes / 2) + loaded * 180 + 130 * nodes;
 }
-/// factors: copying the matrix factors of a range of nodes. column: one column of the inverse matrix on it.
+/// Prices on a range of `nodes` nodes. factors: copying the matrix factors. column: one column of the inverse matrix.
 [[nodiscard]] constexpr long factors(long nodes) noexcept { return 60 * nodes; }
 [[nodiscard]] constexpr long column(long nodes) noexcept { return 95 * nodes; }
-/// Relative velocities of `rows` contacts, and the check for violations.
+/// Price of the relative velocities of `rows` contacts, and of checking their conditions.
 [[nodiscard]] constexpr long look(long rows) noexcept { return 170 * rows; }
-/// Coupling matrix of contacts, for new contacts and new pairs of contacts, on a range of `nodes` nodes. couple(),
-/// exchange() and dense_sweep() are limited by latency, so their prices are set by their time and exceed their
-/// instruction counts.
+/// Price of the coupling matrix of contacts: for new contacts and new pairs of contacts, on a range of `nodes` nodes.
+/// couple(), exchange() and dense_sweep() are limited by latency, so their prices are set by their time and exceed
+/// their instruction counts.
 [[nodiscard]] constexpr long couple(long contacts, long pairs, long nodes) noexcept {
   return contacts * (200 + 35 * nodes) + 70 * pairs;
 }
-/// Kinds (open, sticking, sliding) and residuals of the `loaded` contacts in Newton's system.
+/// Price of determining kinds (open, sticking, sliding) and residuals of the `loaded` contacts in Newton's system.
 [[nodiscard]] constexpr long read(long loaded) noexcept { return 200 * loaded; }
-/// Velocities of a range of `nodes` nodes for new impulses of `loaded` contacts, by one solution of the full system.
+/// Price of the velocities of `nodes` nodes for new impulses of `loaded` contacts, by one solution of the full system.
 [[nodiscard]] constexpr long answer(long loaded, long nodes) noexcept { return 55 * loaded + 100 * nodes; }
-/// A sweep over the `loaded` contacts of Newton's system, with the following determination of their kinds.
+/// Price of a sweep over the `loaded` contacts of Newton's system, with the following determination of their kinds.
 [[nodiscard]] constexpr long dense_sweep(long loaded) noexcept { return loaded * (550 + 2 * loaded); }
-/// Reordering: `changes` exchanges in a table of `slots` contacts.
+/// Price of `changes` exchanges of two contacts in a coupling matrix of `slots` contacts.
 [[nodiscard]] constexpr long exchange(long changes, long slots) noexcept { return 140 * changes * slots; }
-/// One Newton step with `loaded` contacts and `unknowns` unknowns.
+/// Price of one Newton step with `loaded` contacts and `unknowns` unknowns.
 [[nodiscard]] constexpr long newton(long loaded, long unknowns) noexcept {
   return unknowns * (300 + 8 * unknowns + unknowns * unknowns / 14) + 1500 + 400 * loaded;
 }
@@ -61,7 +62,8 @@ inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one 
   return std::max(0L, allowance - fixed) /
          (rows(1, nodes) - rows(0, nodes) + passes * (pass(1, 1, nodes) - pass(0, 0, nodes)));
 }
-/// Inverse of the sweeps' simplified matrix (contact_metric.hpp) on `window` nodes of a thread of `nodes` nodes.
+/// Price of the inverse of the sweeps' simplified matrix (contact_metric.hpp) on `window` nodes of a thread of `nodes`
+/// nodes.
 [[nodiscard]] constexpr long metric(long nodes, long window) noexcept { return 45 * nodes + 9 * window * window / 2; }
 }  // namespace price
 
