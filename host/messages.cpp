@@ -41,8 +41,8 @@ bool skip_strings(Bytes message, std::size_t& offset, int count) {
 
 bool strings_fit(Bytes message, std::size_t offset, int count) { return skip_strings(message, offset, count); }
 
-/// Layout of offer_t: scene names, then parameters of three strings and three doubles each, up to the end of the
-/// message.
+/// Whether the message has the layout of offer_t: scene names, then parameters of three strings and three doubles each,
+/// up to the end of the message.
 bool offer_fits(Bytes message) {
   std::size_t at = kHash + 2 * kInt64;
   const auto scenes = int32_at(message, at);

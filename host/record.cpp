@@ -20,8 +20,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr auto kTerminalEvery = milliseconds(250);  // interval of progress on a terminal
-constexpr auto kPlainEvery = milliseconds(5000);    // interval of progress otherwise (a log file)
+constexpr auto kTerminalEvery = milliseconds(250);  // interval of progress reports on a terminal
+constexpr auto kPlainEvery = milliseconds(5000);    // interval of progress reports when stderr is no terminal
 constexpr auto kFillEvery = milliseconds(1000);     // interval of filling gaps from the flight recorder
 constexpr auto kLongestDrain = milliseconds(300);   // after the stop: longest wait for messages still in transit
 constexpr int kQuiet_ms = 100;                      // when no message came for so long, none is in transit

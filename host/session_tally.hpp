@@ -35,9 +35,8 @@ class SessionTally {
   [[nodiscard]] std::int64_t received() const;
   [[nodiscard]] std::int64_t missing() const;
   [[nodiscard]] std::int64_t duplicates() const;
-  [[nodiscard]] std::int64_t left_out() const {
-    return left_out_;
-  }  ///< ticks of sessions beyond kMaxSessions; not in received()
+  /// Ticks of sessions beyond kMaxSessions; not in received()
+  [[nodiscard]] std::int64_t left_out() const { return left_out_; }
   /// The first session whose last tick is not in state OFF, null when there is none. Every run that ends normally ends
   /// in OFF. Otherwise the firmware or the recorder was killed, or the recorder was stopped first, and it is unknown
   /// how many ticks followed.

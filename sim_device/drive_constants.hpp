@@ -9,8 +9,8 @@
 namespace ligature::sim {
 
 struct DriveConstants {
-  std::uint32_t counts_per_revolution =
-      can::profile::kCountsPerRevolution;  ///< encoder counts per revolution of the joint
+  /// Encoder counts per revolution of the joint
+  std::uint32_t counts_per_revolution = can::profile::kCountsPerRevolution;
   std::uint32_t rated_torque_mNm = can::profile::kRatedTorque_mNm;
   std::int32_t max_torque_permille = can::profile::kMaxTorque_permille;
 

@@ -8,7 +8,7 @@ namespace ligature::sim {
 
 inline constexpr double kEndless_s = 1e300;  ///< end time of an intention that has no end yet
 
-/// Target of the stylus in D, and the pressed buttons.
+/// Target of the stylus in the device's base frame D (x right, y away, z up), and the pressed buttons.
 struct Intent {
   Vec3 p_DH = Vec3::Zero();
   Vec3 v_DH = Vec3::Zero();

@@ -10,8 +10,9 @@
 namespace ligature::sim {
 namespace {
 
-constexpr double kPeakVelocity = 1.5, kPeakAcceleration = 4.9, kPeakJerk = 180.0;  // limits in L/T, L/T², L/T³
-// Enlarges the limits, so that the fastest motion is slightly shorter than T; ruckig then extends it to exactly T.
+constexpr double kPeakVelocity = 1.5, kPeakAcceleration = 4.9, kPeakJerk = 180.0;  // in L/T, L/T², L/T³
+// Enlarges these limits of a motion over a distance L in a time T, so that the fastest motion takes slightly less than
+// T; ruckig then extends it to exactly T.
 constexpr double kSlack = 1.005;
 constexpr double kLeastTravel_m = 1e-4;  // an axis without motion still needs limits above zero
 

@@ -11,8 +11,8 @@ namespace ligature::knot {
 
 struct KnotName {
   std::string type;  ///< "3_1", "3_1#4_1": Alexander-Briggs names; the parts of a sum in rising order
-  std::string
-      handedness;  ///< "right", "left", "amphichiral", "mixed" (a sum of parts of different hands), "none" (0_1)
+  /// "right", "left", "amphichiral", "mixed" (a sum of parts of different hands), "none" (0_1)
+  std::string handedness;
 };
 
 /// Table of the prime knots up to seven crossings and their sums up to ten. "right" is the form whose reduced

@@ -1,5 +1,6 @@
 #pragma once
-// Triangle-edge intersection test: the condition for every move that must not change a knot.
+// Triangle-edge intersection test. A corner of a polygon may move without changing the knot if no other edge pierces
+// the triangle that the corner sweeps.
 
 #include <Eigen/Geometry>
 #include <cmath>

@@ -19,7 +19,7 @@ constexpr std::size_t kTangled = 300;  // with more corners left, shaking does n
 
 KnotResult unknown() { return {"unknown", "none", 0, {}, {}, 0}; }
 
-/// Names the factors one by one, when the diagram shows them side by side.
+/// Names a composite knot by its factors, when the diagram splits into them; else nothing.
 std::optional<KnotName> name_by_factors(const Diagram& d) {
   const auto factors = visible_factors(d);
   if (factors.size() < 2) return std::nullopt;
@@ -134,7 +134,8 @@ KnotResult recognise_open(std::vector<Point> thread) {
 /// 1/64, so that a thread of one metre there has lost its shape.
 bool normalise(std::vector<Point>& points) {
   constexpr double kLeastExtent = 1e-290;  // smaller extents are near the subnormal numbers; 0: all points coincide
-  constexpr double kCoarsest = 1e-8;       // resolution / extent; strands are told apart at 1e-9
+  constexpr double kCoarsest =
+      1e-8;  // limit on rounding / extent; strands are distinguished down to 1e-9 of the extent
   Point low = points.front(), high = low;
   for (const auto& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const double half_extent = (0.5 * high - 0.5 * low).maxCoeff();  // halved first: the difference could overflow

@@ -54,7 +54,7 @@ class Rehearsal {
     return is_whole ? static_cast<double>(ticks_) / whole_Hz : static_cast<double>(ticks_) * tick_s_;
   }
   [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
-  [[nodiscard]] double last_tick_us() const noexcept { return last_tick_us_; }  ///< CPU time of the calling thread
+  [[nodiscard]] double last_tick_us() const noexcept { return last_tick_us_; }  ///< CPU time of the last tick, us
   [[nodiscard]] physics::Simulation& simulation() noexcept { return simulation_; }
   [[nodiscard]] const physics::Simulation& simulation() const noexcept { return simulation_; }
   [[nodiscard]] const scene::Scene& scene() const noexcept { return scene_; }

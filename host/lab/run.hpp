@@ -26,8 +26,8 @@ struct RunSummary {
   bool finite = true;
   bool interrupted = false;  ///< stopped by SIGINT or SIGTERM before the end
   knot::KnotResult knot;
-  std::vector<std::pair<double, std::string>>
-      knot_history;  ///< from t = 0 on, one entry per change; checked every 20 ms
+  /// The knot over time as (time in s, type), from t = 0 on, one entry per change; checked every 20 ms
+  std::vector<std::pair<double, std::string>> knot_history;
   double max_stretch = 0.0;
   double min_gap_m = 0.0;
   double max_penetration_diameters = 0.0;

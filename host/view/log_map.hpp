@@ -28,9 +28,8 @@ class LogMap {
   /// @throws BadInput when the file cannot be read, is no LCM log or holds no message of the rig.
   explicit LogMap(const std::string& path);
 
-  [[nodiscard]] const std::vector<Entry>& entries() const {
-    return entries_;
-  }  ///< one entry per message, in order of time
+  /// One entry per message, in order of time
+  [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
   [[nodiscard]] double duration_s() const { return time_s(entries_.back().time_us); }
   [[nodiscard]] double time_s(std::int64_t time_us) const;  ///< since the first entry
   /// Index of the first entry later than t.

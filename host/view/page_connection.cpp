@@ -60,7 +60,7 @@ void PageConnection::accept(const http::request<http::string_body>& upgrade) {
 
 void PageConnection::read() {
   socket_.async_read(inbox_, [self = shared_from_this()](beast::error_code error, std::size_t) {
-    if (error) return self->end();  // closed, too large, malformed or silent
+    if (error) return self->end();  // connection closed, message too large or malformed, or page silent for too long
     const auto data = self->inbox_.data();
     const bool goes_on = self->on_message({static_cast<const char*>(data.data()), data.size()});
     self->inbox_.clear();

@@ -25,7 +25,7 @@ struct TracePlace {
 struct Place {
   TracePlace traces, beside;
   std::int64_t event = 0, shape = -1;
-  std::map<std::string, std::int64_t> topics;  // version sent, by topic
+  std::map<std::string, std::int64_t> topics;  // per topic: the version that the page has
   std::uint32_t frame = 0;
 };
 

@@ -48,7 +48,7 @@ enum Column : std::size_t {
   kRightClutch,
   kDegradation,    // DEGRADED_ value of tick_t
   kThreadDone_ns,  // from the wake-up until the thread's physics was done; 0: it was late
-  kTimeLost,       // share of the tick in which the thread was not moved
+  kTimeLost,       // fraction of the tick in which the thread was not moved
   kColumns
 };
 

@@ -23,12 +23,12 @@ enum class State : std::uint8_t {
 /// Commands with their controlword bits (x: any value), and events inside the drive.
 enum class Event : std::uint8_t {
   kInitialised,        // inside the drive: self test done
-  kShutdown,           // xxxx x110
-  kSwitchOn,           // xxxx 0111; in Operation Enabled it means "disable operation"
-  kEnableOperation,    // xxxx 1111
-  kDisableVoltage,     // xxxx xx0x
-  kQuickStop,          // xxxx x01x
-  kFaultReset,         // rising edge of bit 7
+  kShutdown,           // controlword xxxx x110
+  kSwitchOn,           // controlword xxxx 0111; in Operation Enabled it means "disable operation"
+  kEnableOperation,    // controlword xxxx 1111
+  kDisableVoltage,     // controlword xxxx xx0x
+  kQuickStop,          // controlword xxxx x01x
+  kFaultReset,         // rising edge of controlword bit 7
   kFaultDetected,      // inside the drive
   kFaultReactionDone,  // inside the drive: torque is zero
 };
@@ -103,24 +103,24 @@ struct Transition {
 };
 /// Transitions, with their numbers in CiA 402.
 inline constexpr std::array kTransitions{
-    Transition{State::kNotReadyToSwitchOn, Event::kInitialised, State::kSwitchOnDisabled},  // 1
-    Transition{State::kSwitchOnDisabled, Event::kShutdown, State::kReadyToSwitchOn},        // 2
-    Transition{State::kReadyToSwitchOn, Event::kSwitchOn, State::kSwitchedOn},              // 3
+    Transition{State::kNotReadyToSwitchOn, Event::kInitialised, State::kSwitchOnDisabled},  // transition 1
+    Transition{State::kSwitchOnDisabled, Event::kShutdown, State::kReadyToSwitchOn},        // transition 2
+    Transition{State::kReadyToSwitchOn, Event::kSwitchOn, State::kSwitchedOn},              // transition 3
     // transition 3 only: transition 4 follows with the next controlword
     Transition{State::kReadyToSwitchOn, Event::kEnableOperation, State::kSwitchedOn},
-    Transition{State::kSwitchedOn, Event::kEnableOperation, State::kOperationEnabled},       // 4
-    Transition{State::kOperationEnabled, Event::kSwitchOn, State::kSwitchedOn},              // 5
-    Transition{State::kSwitchedOn, Event::kShutdown, State::kReadyToSwitchOn},               // 6
-    Transition{State::kReadyToSwitchOn, Event::kDisableVoltage, State::kSwitchOnDisabled},   // 7
-    Transition{State::kReadyToSwitchOn, Event::kQuickStop, State::kSwitchOnDisabled},        // 7
-    Transition{State::kOperationEnabled, Event::kShutdown, State::kReadyToSwitchOn},         // 8
-    Transition{State::kOperationEnabled, Event::kDisableVoltage, State::kSwitchOnDisabled},  // 9
-    Transition{State::kSwitchedOn, Event::kDisableVoltage, State::kSwitchOnDisabled},        // 10
-    Transition{State::kSwitchedOn, Event::kQuickStop, State::kSwitchOnDisabled},             // 10
-    Transition{State::kOperationEnabled, Event::kQuickStop, State::kQuickStopActive},        // 11
-    Transition{State::kQuickStopActive, Event::kDisableVoltage, State::kSwitchOnDisabled},   // 12
-    Transition{State::kFaultReactionActive, Event::kFaultReactionDone, State::kFault},       // 14
-    Transition{State::kFault, Event::kFaultReset, State::kSwitchOnDisabled},                 // 15
+    Transition{State::kSwitchedOn, Event::kEnableOperation, State::kOperationEnabled},       // transition 4
+    Transition{State::kOperationEnabled, Event::kSwitchOn, State::kSwitchedOn},              // transition 5
+    Transition{State::kSwitchedOn, Event::kShutdown, State::kReadyToSwitchOn},               // transition 6
+    Transition{State::kReadyToSwitchOn, Event::kDisableVoltage, State::kSwitchOnDisabled},   // transition 7
+    Transition{State::kReadyToSwitchOn, Event::kQuickStop, State::kSwitchOnDisabled},        // transition 7
+    Transition{State::kOperationEnabled, Event::kShutdown, State::kReadyToSwitchOn},         // transition 8
+    Transition{State::kOperationEnabled, Event::kDisableVoltage, State::kSwitchOnDisabled},  // transition 9
+    Transition{State::kSwitchedOn, Event::kDisableVoltage, State::kSwitchOnDisabled},        // transition 10
+    Transition{State::kSwitchedOn, Event::kQuickStop, State::kSwitchOnDisabled},             // transition 10
+    Transition{State::kOperationEnabled, Event::kQuickStop, State::kQuickStopActive},        // transition 11
+    Transition{State::kQuickStopActive, Event::kDisableVoltage, State::kSwitchOnDisabled},   // transition 12
+    Transition{State::kFaultReactionActive, Event::kFaultReactionDone, State::kFault},       // transition 14
+    Transition{State::kFault, Event::kFaultReset, State::kSwitchOnDisabled},                 // transition 15
 };
 
 [[nodiscard]] constexpr State next(State s, Event e) noexcept {

@@ -16,7 +16,7 @@ struct Tpdo1 {
   std::uint16_t statusword = 0;
   std::int32_t position_counts = 0;
   std::int16_t torque_permille = 0;
-  std::uint16_t buttons = 0;  ///< profile::kButton*
+  std::uint16_t buttons = 0;  ///< bits: profile::kButton*, with_held(), with_life()
   friend constexpr bool operator==(const Tpdo1&, const Tpdo1&) = default;
 };
 

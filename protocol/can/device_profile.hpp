@@ -53,7 +53,7 @@ inline constexpr std::uint16_t kButtonClutch = 1U << 2;
 
 inline constexpr std::uint16_t kDefaultRpdoTimeout_ms = 20;
 inline constexpr std::uint16_t kDefaultHeartbeat_ms = 100;         ///< heartbeat period of the drives and of the master
-inline constexpr std::uint16_t kDefaultHeartbeatTimeout_ms = 300;  ///< three lost in a row
+inline constexpr std::uint16_t kDefaultHeartbeatTimeout_ms = 300;  ///< three heartbeats lost in a row
 
 [[nodiscard]] constexpr bool has_stylus_buttons(NodeId node) noexcept { return node == kElbow; }
 

@@ -36,7 +36,7 @@ struct Sdo {
   NodeId node;
   Object object;
   std::uint32_t value = 0;
-  std::uint8_t bytes = 0;  ///< 1 .. 4 for kWrite and kValue, else 0
+  std::uint8_t bytes = 0;  ///< size of `value`: 1 .. 4 for kWrite and kValue, else 0
   friend constexpr bool operator==(const Sdo&, const Sdo&) = default;
 };
 

@@ -52,14 +52,13 @@ struct Device {
   double velocity_limit_m_per_s = 0.0;
   double force_step_N = 0.0;        ///< largest change within one period
   double force_slew_N_per_s = 0.0;  ///< largest rate of change over many periods
-  double hand_acceleration_m_per_s2 =
-      0.0;  ///< largest acceleration that a hand gives the tip, assumed by the passivity controller
+  /// Largest acceleration that a hand gives the tip, assumed by the passivity controller
+  double hand_acceleration_m_per_s2 = 0.0;
 
   [[nodiscard]] double counts_per_revolution() const noexcept { return motor_counts * gear; }
   [[nodiscard]] double rad_per_count() const noexcept { return 2.0 * std::numbers::pi / counts_per_revolution(); }
-  [[nodiscard]] double Nm_per_permille() const noexcept {
-    return rated_torque_Nm * 1e-3;
-  }  ///< torque quantum: resolution on the bus
+  /// Torque quantum: resolution on the bus
+  [[nodiscard]] double Nm_per_permille() const noexcept { return rated_torque_Nm * 1e-3; }
   [[nodiscard]] double max_torque_Nm() const noexcept { return Nm_per_permille() * max_torque_permille; }
 };
 

@@ -53,7 +53,7 @@ struct SceneEntry {
   std::uint64_t number = 0;  ///< 0: never written
   std::int64_t first_tick = 0;
   double max_force_N = 0.0;
-  std::int32_t admitted = 0;  ///< 0: run by --force
+  std::int32_t admitted = 0;  ///< 0: not admitted, run because of --force
   std::uint32_t toml_bytes = 0;
   std::array<char, 256> scene_file{};
   std::array<char, 61440> scene_toml{};  ///< the scene's text with its overrides; truncated if longer

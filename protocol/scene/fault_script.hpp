@@ -44,7 +44,7 @@ struct FaultScript {
   int hand = 0;         ///< 0 left, 1 right
   int node = 0;         ///< 1 .. 3; 0 = all of the hand's drives
   double share = 1.0;   ///< fraction of the frames that is affected, 0 .. 1
-  double from_s = 0.0;  ///< time since the first SYNC
+  double from_s = 0.0;  ///< start of the fault, s after the first SYNC
   double until_s = 1e9;
   double delay_s = 0.0;
   int counts = 0;

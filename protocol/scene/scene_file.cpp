@@ -16,8 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // Ranges are wide, to allow experiments with extreme sizes, but exclude values such as 1e-300 m.
-constexpr double kFar_m = 1e4;           // largest coordinate
-constexpr Range kCoefficient{0.0, 1e9};  // stiffness and damping
+constexpr double kFar_m = 1e4;           // largest allowed coordinate
+constexpr Range kCoefficient{0.0, 1e9};  // allowed range of stiffness and damping
 constexpr int kMostWork = 2'000'000;     // nodes x substeps: a tick takes some tenths of a second
 constexpr std::size_t kMostLoads = 5000;
 constexpr const char* kOfTheRod = "with suture.model \"rod\"";

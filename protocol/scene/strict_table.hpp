@@ -265,7 +265,7 @@ class StrictTable {
       const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number->get()).ptr;
       const std::string_view text(digits.data(), end);
       out += text;
-      // 50.0, so that it is clear why it is not an integer
+      // 50.0 is not shortened to 50: the message must show why it is no integer
       if (text.find_first_not_of("-0123456789") == text.npos) out += ".0";
     } else {
       std::ostringstream value;

@@ -7,13 +7,13 @@
 namespace ligature::scene {
 namespace {
 
-/// Length of the quote that starts here: 3 for a multi-line string, else 1.
+/// Length of the quotation mark at the start of `rest`: 3 for a multi-line string, else 1.
 std::size_t quote_at(std::string_view rest) {
   return rest.size() >= 3 && rest[1] == rest[0] && rest[2] == rest[0] ? 3 : 1;
 }
 
-/// Length of a quoted string, quotes included. An unterminated one ends where the parser stops: at the line's end, or
-/// at the text's end if multi-line.
+/// Length of the quoted string at the start of `rest`, quotation marks included. An unterminated string ends where the
+/// parser stops: at the line's end, or at the text's end if it is a multi-line string.
 std::size_t quoted(std::string_view rest) {
   const auto quote = rest.substr(0, quote_at(rest));
   for (std::size_t i = quote.size(); i < rest.size(); ++i) {

@@ -82,7 +82,7 @@ class Recording:
         self.max_force_N: float = recorded.max_force_N  # limit at the device
         self.firmware_version: str = recorded.firmware_version
         self.missing: int = recorded.missing  # ticks missing between the first and last of each session, summed
-        self.damage: str = recorded.damage  # one line; "" for an intact file
+        self.damage: str = recorded.damage  # one line about damaged parts; "" for an intact file
 
     @property
     def t_s(self) -> np.ndarray:

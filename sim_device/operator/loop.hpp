@@ -1,5 +1,5 @@
 #pragma once
-// Geometry of the loop of a throw, computed anew at each look.
+// Geometry of the loop of a throw, computed anew each time the operator looks at the thread.
 
 #include "sim_device/operator/move.hpp"
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a move of the operator's hands can see and use.
+// Moves: the steps of the operator's plan, and the data that a move gets when the operator looks at the thread.
 
 #include <array>
 #include <functional>
@@ -45,8 +45,8 @@ struct Move {
   /// Checked at the end of the move: did it succeed? If not, the operator lets go and starts again.
   std::function<bool(const Look&)> good{};
   bool ends_throw = false;  ///< a throw is complete: starting again resumes after this move
-  bool then_plans =
-      false;  ///< when this move has ended, the operator counts the tied throws and plans the following moves
+  /// When this move has ended, the operator counts the tied throws and plans the following moves
+  bool then_plans = false;
 };
 
 using Moves = std::vector<Move>;

@@ -12,7 +12,7 @@ using Vec3 = Eigen::Vector3d;
 
 inline constexpr std::size_t kLeftHand = 0, kRightHand = 1;
 
-/// One look: the thread as a polyline from its first node, and both tool tips.
+/// What the operator sees and feels at one moment: the thread as a polyline from its first node, and both tools.
 struct Sight {
   double t_s = 0.0;
   std::span<const Vec3> thread_W;

@@ -15,19 +15,20 @@ namespace ligature::sim {
 [[nodiscard]] Move open_arch(const Throw& t, const WhereAlong& corner);
 
 /// The right hand leads the end over the standing part and through the loop, in one path without a stop. The result is
-/// a loose overhand knot. The left hand holds the corner with the standing part horizontal: on a slope the crossing X
-/// would slide to the corner and leave no room for the end.
+/// a loose overhand knot. The left hand keeps the standing part horizontal: on a slope the place X where the end
+/// crosses it would slide to the corner and leave no room for the end.
 ///
 /// Both jaws closed on the hanging thread, so both ends of the arch stay directed downwards. Such an arch turns freely
 /// about the vertical, until it stands on the side away from the end. So the path is: far to the front and up; over the
 /// standing part (the arch now stands in front); close behind it towards the corner (the arch turns to the anchor, and
 /// the end is past X); forward under the standing part and on past the corner, before the arch has turned again.
-/// @param corner, turn positions along the thread: of the corner, and where the end crosses over. All path lengths are
-/// shares of the working part's length. With `t.passes` = 2 the end goes round the standing part once more.
+/// @param corner, turn positions along the thread: of the corner, and of X. All path lengths are fractions of the
+/// working part's length. With `t.passes` = 2 the end goes round the standing part once more.
 ///
-/// With `t.against` (figure-eight) the end does not come forward through the arch but passes below it, and then goes
-/// through the arch to the back. A whole turn about the standing part, as in a limp thread, would be dragged over the
-/// corner by the arch. A turn around the arch's lower strand gives the same knot, and that strand stays in place.
+/// With `t.against` (figure-eight) the end passes below the arch and then goes through it to the back. In a limp thread
+/// the end goes once round the standing part instead. Here the arch would drag that turn over the corner and undo it.
+/// With the end led below the arch, the turn is around the arch's lower strand, which stays in place; the knot is the
+/// same.
 [[nodiscard]] Move springy_throw(const Throw& t, const WhereAlong& corner, const WhereAlong& turn);
 
 }  // namespace ligature::sim

@@ -1,5 +1,5 @@
-// Experiment `unknotting`: Figs. 6 and 7 of the paper, a map of the pulls that open a knot, and a planner of such
-// pulls, which the paper does not give.
+// Experiment `unknotting`: a pull that opens a loop on the desk, as in Figs. 6 and 7 of the paper; a map of all pulls
+// that open a knot; and a planner that chooses such a pull, which the paper does not give.
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Error and cost of a setting.
+// Runs that measure the error and the cost of one numerical setting, for `ligature-lab pareto`.
 
 #include <string>
 #include <vector>
@@ -25,8 +25,8 @@ struct Traces {
 [[nodiscard]] Traces run_trials(const Setting& setting, int cost_only = 0);
 
 struct Errors {
-  double shape =
-      0.0;  ///< largest error of the shapes at rest (elastica, catenary), relative to the length L; NaN: not measured
+  /// Largest error of the shapes at rest (elastica, catenary), relative to the length L; NaN: not measured
+  double shape = 0.0;
   double swing = 0.0;  ///< rms distance of the swinging free end from the finest setting's, relative to L
   double knot = 0.0;   ///< difference of hold_m from the finest setting's, diameters; NaN: the knot was lost
 };

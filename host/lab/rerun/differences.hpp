@@ -59,9 +59,8 @@ class Differences {
   };
   [[nodiscard]] const Side& recorded() const { return recorded_; }
   [[nodiscard]] const Side& again() const { return again_; }
-  [[nodiscard]] const std::array<ForceOf, 2>& apart() const {
-    return apart_;
-  }  ///< |recorded - recomputed force|, per hand
+  /// |recorded - recomputed force|, per hand
+  [[nodiscard]] const std::array<ForceOf, 2>& apart() const { return apart_; }
   [[nodiscard]] std::int64_t ticks() const { return ticks_; }
   [[nodiscard]] std::int64_t different_ticks() const { return different_ticks_; }
   [[nodiscard]] std::int64_t shapes() const { return shapes_; }

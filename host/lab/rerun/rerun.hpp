@@ -23,7 +23,7 @@ struct RerunOutcome {
   std::int64_t ticks = 0;  ///< ticks of the session in the log
   double period_s = 0.001;
   std::int64_t unknown_ticks = 0;  ///< ticks for which the thread's state is unknown, because records are missing
-  std::string why_unknown;         ///< reason of the last such gap
+  std::string why_unknown;         ///< why the state became unknown the last time
   std::int64_t shapes_alone = 0;   ///< recorded shapes of such ticks, which have nothing to compare with
   bool interrupted = false;        ///< stopped by SIGINT or SIGTERM before the end
 };

@@ -34,7 +34,7 @@ struct RigSetup {
   /// simulated devices and hands, left and right
   std::array<sim::Body, 2> body{sim::Body::of(device), sim::Body::of(device)};
   control::Settings settings{20, true};  ///< watchdog of 20 ticks, armed from the start
-  double frame_loss = 0.0;               ///< share of process data frames (PDOs) that are lost, 0 .. 1
+  double frame_loss = 0.0;               ///< fraction of the process data frames (PDOs) that are lost, 0 .. 1
   std::uint64_t seed = 1;                ///< seed of the random frame losses
   std::string scene_file = "scene";      ///< name of the scene in a recording
   std::string scene_toml{};              ///< text of the scene in a recording (scene::recorded_text)

@@ -13,9 +13,9 @@ namespace ligature::lab {
 /// Disturbances of a live run. Random details depend on the seed only.
 struct Trouble {
   double tremor_mm = 0.1;     ///< amplitude of each hand's tremor at the device, per axis, 8 to 12 Hz
-  double late_ms = 20.0;      ///< largest delay of one hand after the other
+  double late_ms = 20.0;      ///< largest random delay of one hand behind the other
   double lost_share = 0.002;  ///< fraction of the control periods that the loop loses, in stalls of 1 .. 10 periods
-  double frame_loss = 0.0;    ///< share of process data frames (PDOs) that are lost
+  double frame_loss = 0.0;    ///< fraction of the process data frames (PDOs) that are lost
   double work_share = 1.0;    ///< fraction of the contact budget per tick that the thread's physics may use
 };
 

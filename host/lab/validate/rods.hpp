@@ -1,5 +1,6 @@
 #pragma once
-// Rods used directly, for features that physics::Simulation does not offer: rolling clamps, closed loops, given masses.
+// Rods used without physics::Simulation, for features that it does not offer: rolling clamps, closed loops, given
+// masses.
 
 #include <algorithm>
 #include <array>

@@ -48,7 +48,7 @@ export class Panels {
     this.events.splice(0, this.events.length - 40);
     Object.assign(this.told, text);
     delete this.told.answers;
-    delete this.told.events; // stored above
+    delete this.told.events; // kept in this.events
     if (text.status) this.period_s = text.status.period_s;
     if (text.knot) this.latest.knot = text.knot;
     for (const part of Object.values(this.parts)) part.text(text);

@@ -13,7 +13,7 @@ namespace ligature::lab {
 struct Watched {
   /// Smallest net energy that each hand has put into its port, from the motors' true work, J.
   std::array<double, 2> lowest_port_J{};
-  /// Smallest sum of that energy and the energy that the other hand's account has lent to this hand, J.
+  /// Smallest sum of the net energy of a hand's port and the energy that the other hand's account has lent to it, J.
   std::array<double, 2> lowest_bound_J{};
   /// Largest energy that the firmware's account can miss because encoders are quantised, J: the sum over all ticks n
   /// and joints of (encoder count in rad) |tau(n) - tau(n-1)|, tau the joint's torque (docs/haptics.md).
@@ -22,8 +22,8 @@ struct Watched {
   /// Passivity requires it not to be negative.
   double lowest_proved_J = 0.0;
   std::array<double, 2> lowest_account_J{};  ///< the firmware's energy account, computed from encoder counts
-  double lowest_sum_J =
-      0.0;  ///< smallest sum of the true energies of both ports; the thread transfers energy between the hands
+  /// Smallest sum of the true energies of both ports; the thread transfers energy between the hands
+  double lowest_sum_J = 0.0;
   double peak_N = 0.0;
   /// Largest change of the motors' tip force per SYNC, apart from removals of the whole force.
   double largest_step_N = 0.0;

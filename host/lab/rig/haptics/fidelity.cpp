@@ -25,8 +25,8 @@ sim::Vec3 pull_on(const Watched& w, const scene::Suture& suture, int node) {
   return sum;
 }
 
-/// A straight weightless thread of the paper's model between two hands: its tension is stiffness times strain,
-/// independent of coupling and contacts.
+/// Compares the hands' force with the tension of a straight weightless thread of the paper's model between them. This
+/// tension is stiffness times strain, independent of coupling and contacts.
 void steady_pull(const HapticsBench& bench, Verdict& v) {
   RigSetup setup;
   setup.scene = load_scene_or_refuse((bench.scenes / "paper.toml").string(),

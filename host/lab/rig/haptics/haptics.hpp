@@ -1,5 +1,5 @@
 #pragma once
-// The parts of the haptics experiment. Each fills its tables and adds its claims.
+// The parts of the haptics experiment. Each writes its tables and adds its claims to the verdict.
 
 #include <filesystem>
 
