@@ -1,4 +1,5 @@
-// Every model against the quick validation cases with 50 nodes; the rod also with 200 where that is quick.
+// Runs the quick cases of `ligature-lab validate` for every thread model with 50 nodes; for the rod also with 200 where
+// that is quick.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// Noise and lag of the velocity estimator, compared with a first-order low-pass. Prints the table of docs/haptics.md.
+// WindowVelocity estimates a velocity from encoder counts: its noise and lag, compared with a first-order low-pass.
+// Prints the table of docs/haptics.md.
 #include "firmware/control/window_velocity.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Device files: shipped ones can be read, and errors are reported in one line.
+// Device files (TOML records of a haptic device): shipped ones can be read, and errors are reported in one line.
 #include "protocol/device/device_file.hpp"
 
 #include <gtest/gtest.h>

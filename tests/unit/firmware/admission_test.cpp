@@ -1,4 +1,5 @@
-// Admission: the test shapes are as demanding as claimed, and the verdict follows the measured cost.
+// Admission measures before a run whether the loop can keep its period: the thread shapes that it measures are as
+// demanding as claimed, and the verdict follows the measured cost.
 #include "firmware/app/admission.hpp"
 
 #include <gtest/gtest.h>
@@ -104,7 +105,7 @@ TEST(Admission, MoreWorkLosesLessOfASquareKnot) {
   EXPECT_LT(much, 0.2 * little);
 }
 
-/// A measurement result with the given values.
+/// A result of admission with these measured values.
 Admission found(double computing_us, double lost_at_quarter) {
   Admission a;
   a.loop = {0.5 * computing_us, 0.5 * computing_us};

@@ -1,4 +1,4 @@
-// The knot that admission measures is a knot and is drawn tight.
+// Admission measures the physics' cost on a knot that it draws tight: that shape is a knot, and it becomes tight.
 #include "firmware/app/drawn_knot.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Changes during a run: which are rejected, with which messages, and that lent objects are returned.
+// SceneDesk handles commands that change scene or parameters during a run: which are rejected, with which messages, and
+// that it gets back what it hands to the loop.
 #include "firmware/app/scene_desk.hpp"
 
 #include <gtest/gtest.h>
@@ -51,7 +52,7 @@ class SceneDeskTest : public ::testing::Test {
   }
   SceneDesk desk() const { return SceneDesk(options, std::get<Plan>(make_plan(options))); }
 
-  /// Runs the loop until the desk has answered.
+  /// Acts as the loop until the desk has answered. @param takes whether the loop accepts what the desk offers.
   SceneDesk::Outcome outcome(SceneDesk& desk, bool takes = true) {
     for (;;) {
       if (auto* plant = desk.handover().take()) {
@@ -68,7 +69,7 @@ class SceneDeskTest : public ::testing::Test {
 
   const fs::path folder = fs::temp_directory_path() / ("ligature-desk-" + std::to_string(getpid()));
   RunOptions options;
-  scene::Hands hands;  // of the latest plant
+  scene::Hands hands;  // as handed to the loop last
   int nodes = 0;
 };
 
@@ -240,7 +241,7 @@ TEST_F(SceneDeskTest, LoadsASceneWithAnotherNumberOfNodes) {
         << bad;
 }
 
-/// A shell script that takes the place of the rehearsal program.
+/// Writes a shell script that takes the place of the rehearsal: the child process that tries out a scene.
 std::string script(const fs::path& folder, const std::string& body) {
   const auto path = folder / "program.sh";
   std::ofstream(path) << "#!/bin/sh\n" << body << "\n";

@@ -48,7 +48,8 @@ void expect_loop_in_time(const HeldRig& rig, const std::vector<rt::TickRecord>& 
   }
 }
 
-/// Time from handing over the tools, `law` after the samples, to the thread's deadline: the least of 1000 ticks.
+/// Shortest time that the physics has in one of 1000 ticks: from when it gets the tools' positions, `law` after the
+/// encoder samples, until its deadline in the next period.
 Nanoseconds usable(Nanoseconds law) {
   rt::ThreadDeadline deadline;
   Nanoseconds least = 1s;
@@ -73,7 +74,8 @@ TEST(Thread, HasMostOfAPeriod) {
 
 TEST(Thread, AThreadThatFitsIsNeverOlderThanOnePeriod) {
   HeldRig rig;
-  rig.physics.per_question = 40us;  // eight substeps plus start and end of a tick: 440 us
+  // Virtual time between two queries of the clock; eight substeps, start and end take 440 us.
+  rig.physics.per_question = 40us;
   const auto records = rig.run(1500);
   expect_loop_in_time(rig, records);
   for (const auto& r : records) {
@@ -102,7 +104,7 @@ TEST(Thread, WhatItCostsChangesNothingAsLongAsItFits) {
 
 TEST(Thread, TheClockEndsATickThatDoesNotFit) {
   HeldRig rig;
-  rig.physics.per_question = 150us;  // time for three or four of eight substeps
+  rig.physics.per_question = 150us;  // virtual time between two queries: only three or four of eight substeps fit
   const auto records = rig.run(1500);
   expect_loop_in_time(rig, records);
   for (const auto& r : records) {
@@ -156,7 +158,7 @@ TEST(Thread, AnEndlessTickHoldsUpNothingAndIsAFaultAfterTheWatchdogsTime) {
   expect_loop_in_time(rig, records);
   std::int64_t late = 0;
   for (const auto& r : records) late += (r.flags & rt::kThreadLate) != 0;
-  EXPECT_EQ(late, 59);  // after 60 ms the thread takes the tools of the 60th period
+  EXPECT_EQ(late, 59);  // the physics is busy for 60 ms and gets new tool positions in the 60th period
   for (std::int64_t k = 1201; k < 1219; ++k) {
     ASSERT_EQ(records[static_cast<std::size_t>(k)].grasp_age_ticks, k - 1199);
     ASSERT_EQ(records[static_cast<std::size_t>(k)].fault, 0) << "the law goes on with the grasp that it has";

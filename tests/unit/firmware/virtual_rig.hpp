@@ -14,7 +14,7 @@ namespace ligature {
 class VirtualClock {
  public:
   Nanoseconds now() noexcept {
-    if (thread != nullptr) thread->advance();  // the physics catches up to the current time
+    if (thread != nullptr) thread->advance();  // the physics, which shares this clock, computes up to the current time
     return time;
   }
   void sleep_until(Nanoseconds at) noexcept {
@@ -24,7 +24,7 @@ class VirtualClock {
   }
   Nanoseconds worked() noexcept { return work; }
   Nanoseconds time{0}, work{0};
-  Nanoseconds late_by{0};  // applies to the next wake-up only
+  Nanoseconds late_by{0};  // delay of the next wake-up; later ones are in time
   std::vector<Nanoseconds> woken;
   lab::VirtualThread* thread = nullptr;
 };

@@ -1,4 +1,4 @@
-// What a flight recorder's file may add to a recording: only missing ticks of the same session.
+// GapFiller takes ticks that a recording lacks from the flight recorder's file: only ticks of the same session.
 #include "host/gap_filler.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The host's LCM connection within one process, without network.
+// LcmLink, the host's connection to LCM, within one process and without network.
 #include "host/lcm_link.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Files written by LCM's own event log writer, then damaged.
+// LogReader reads LCM logs: files written by LCM's own event log writer, and damaged ones.
 #include <gtest/gtest.h>
 #include <signal.h>
 

@@ -1,4 +1,5 @@
-// The host's names for protocol numbers against the firmware's own lists; only here both may be included.
+// The host's names for protocol numbers against the firmware's own lists; host code itself may not include the
+// firmware.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -155,14 +155,15 @@ TEST_F(Replay, MarksAreTheSameEvents) {
       {"left hand holds node 7", 1.234}, {"knot 3_1 left", 2.0}, {"fault 30", 4.0}, {"knot 0_1 none", 5.0}};
   for (std::size_t i = 0; i < golden.size(); ++i) {
     EXPECT_EQ(marks[i].first, golden[i].first);
-    // Knots are recognised only that often.
+    // While surveying a log, knots are looked for only once per kKnotPeriod_s.
     EXPECT_NEAR(marks[i].second, golden[i].second, LogSurvey::kKnotPeriod_s) << golden[i].first;
   }
   EXPECT_EQ(survey.landmarks().first_tick, 0);
   EXPECT_EQ(survey.landmarks().first_grasp, 1234);
 }
 
-/// What a page receives of a second recording, and its position.
+/// A second recording is shown beside the first, both aligned at their first grasp: what the page receives of it, and
+/// its position.
 TEST_F(Replay, AnotherRecordingRunsBesideItFromTheCommonGrasp) {
   write_golden(folder_.file("other.lcmlog"), 2000);
   const LogMap map(path_);

@@ -73,7 +73,8 @@ TEST(TickStatistics, AFaultCountsOnceUntilItIsLeft) {
   EXPECT_EQ(statistics.faults()[2].fault, 5);
 }
 
-/// One period as the loop records it.
+/// A tick whose SYNC was sent at 30 us, whose encoder samples were complete at joints_us, and which ended at
+/// execution_us after its start.
 tick_t period_of(int number, std::int32_t wakeup_us, std::int32_t joints_us, std::int32_t execution_us) {
   auto tick = test::tick_of(number);
   tick.scheduled_ns = std::int64_t{number} * 1'000'000;
@@ -88,8 +89,10 @@ TEST(ThreadTime, IsFromTheToolsToTheNextJointsWithoutTheSync) {
   TickStatistics statistics;
   statistics.add(period_of(1, 10, 450, 500));
   EXPECT_FALSE(statistics.thread_time().known());
-  statistics.add(period_of(2, 20, 400, 480));  // 1000 + 20 + 400 - 25 - 30 - (10 + 500)
-  // 1000 + 0 + 460 - 25 - 30 - (20 + 480): 600 us counts as 460, the latest arrival
+  // 1000 + 20 + 400 - 25 - 30 - (10 + 500): from the end of tick 1 to the samples of tick 2, less 25 us margin and
+  // SYNC.
+  statistics.add(period_of(2, 20, 400, 480));
+  // 1000 + 0 + 460 - 25 - 30 - (20 + 480): samples that arrive at 600 us count as 460, the latest time allowed for.
   statistics.add(period_of(3, 0, 600, 700));
   EXPECT_EQ(statistics.thread_time().at_least_ns(50), 905'000);
   statistics.add(period_of(4, 5, 420, 500));  // 1000 + 5 + 420 - 25 - 30 - (0 + 700)

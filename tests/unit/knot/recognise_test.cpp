@@ -162,13 +162,15 @@ TEST(Recognise, AClosedLineThatLiesInItselfIsNotGuessed) {
   Polyline there_and_back, twice;
   for (int k = 0; k <= 20; ++k) there_and_back.push_back({1.0 * k, 2.0 * k, -0.5 * k});
   for (int k = 19; k > 0; --k) there_and_back.push_back({1.0 * k, 2.0 * k, -0.5 * k});
-  EXPECT_EQ(named(there_and_back), "0_1 none");  // one maximum in this direction: bridge number 1
+  // Along its own direction the line has one maximum only, so it is unknotted (bridge number 1).
+  EXPECT_EQ(named(there_and_back), "0_1 none");
   for (int k = 0; k < 2; ++k) twice.insert(twice.end(), there_and_back.begin(), there_and_back.end());
   EXPECT_EQ(named(twice), "unknown none");
   EXPECT_TRUE(recognise(twice, true).alexander.empty());
 }
 
-/// Straight edges and planar polygons, as in drawings: moves that are uncertain by rounding are rejected (pierce.hpp).
+/// Straight edges and planar polygons, as in drawings: such lines make simplifying moves uncertain by rounding; those
+/// are rejected (pierce.hpp).
 TEST(Recognise, StraightEdgesOfManyPointsInAPlane) {
   for (const int pieces : {2, 7, 20}) {
     for (const auto& b : braids()) {

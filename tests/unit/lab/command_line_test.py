@@ -109,7 +109,8 @@ def interruption():
 
 
 def recordings(folder):
-    """A recording of an earlier call is replaced only when asked to, and nothing has run before the refusal."""
+    """A recording of an earlier call is replaced only with --force; without it the program refuses before it runs
+    anything."""
     script = SCENES / "operators" / "suture-overhand.csv"
     there = folder / "overhand-3.lcmlog"
     for command in (["tie", "overhand"], ["play", script, "--scene", SCENES / "suture-3-0.toml", "--knot", "overhand"]):
@@ -126,7 +127,7 @@ def recordings(folder):
         tie.send_signal(signal.SIGINT)
         tie.communicate(timeout=100)
     assert tie.returncode == 130, tie.returncode
-    assert there.stat().st_size > 10_000  # with --force it is another
+    assert there.stat().st_size > 10_000  # with --force the earlier file has been replaced
     rows = list(csv.DictReader((folder / "results.csv").open()))
     assert rows[0]["knot"] == "overhand" and rows[0]["seed"] == "3" and rows[0]["found"].startswith("3_1"), rows
     assert len(rows) < 3

@@ -1,4 +1,5 @@
-// How a trial of `extremes` ends, and which ends count as a stop without a known cause.
+// `ligature-lab experiment extremes` runs trials with extreme parameters: how a trial ends, and which ends count as a
+// stop without a known cause.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The haptics experiment in its short form: the same claims, on fewer cases.
+// `ligature-lab experiment haptics` in a short form: the same claims on fewer cases.
 #include <gtest/gtest.h>
 
 #include "host/lab/experiments/experiment.hpp"

@@ -1,5 +1,5 @@
-// The paper's equations (1)-(3), (18)-(22) and the separation of section V.A as pure functions, as printed and
-// corrected.
+// Contact laws of the paper of 2007 as pure functions, as printed and corrected: equations (1)-(3), (18)-(22) and the
+// separation of section V.A.
 #include <gtest/gtest.h>
 
 #include "firmware/physics/contact_row.hpp"

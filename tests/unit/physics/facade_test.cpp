@@ -1,4 +1,4 @@
-// What the facade guarantees for every thread model.
+// Guarantees of physics::Simulation, the interface (facade) of all thread models.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// The paper's equations (4)-(15) as pure functions: momentum, energy and gradients for 2,000 random and for degenerate
-// states.
+// Internal forces of the thread, equations (4)-(15) of the paper of 2007, as pure functions: momentum, energy and
+// gradients for 2,000 random and for degenerate states.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -97,8 +97,8 @@ void expect_idle_in_rigid_motion(int n, const Law& law) {
     EXPECT_LE(test::largest_of(law(s)), 1e-12 * std::max(1.0, moving));
   }
 }
-/// Central difference with step ~eps^(1/3); error ~eps^(2/3) of energy / step. States with a bend within 0.01 of
-/// straight or folded are skipped: the energy has a kink there.
+/// Central difference with step ~eps^(1/3); error ~eps^(2/3) of energy / step. States that are nearly straight or
+/// folded are skipped, since the energy has a kink there, and so are very short segments.
 void expect_minus_gradient(int n, const Law& law, const std::function<double(const Nodes&)>& energy) {
   test::Random random(10);
   constexpr double h = 6e-6;
@@ -160,7 +160,7 @@ TEST(BendSpring, PushesFoldedSegmentsApartAtFullForce) {
 TEST(BendSpring, HasLinearStiffnessWhenStraight) {
   Nodes s;
   s.p = {
-      {0, 0, 0}, {1, 0, 0}, {2, 1e-7, 0}};  // alpha = 1e-7, so |f| = (k / pi) 1e-7; the printed t would give its square
+      {0, 0, 0}, {1, 0, 0}, {2, 1e-7, 0}};  // angle 1e-7, so |f| = (k / pi) 1e-7; the law as printed gives about 1e-14
   EXPECT_NEAR(norm(bend_spring(s)[2]) / (10.0 / 3.141592653589793 * 1e-7), 1.0, 1e-9);
 }
 TEST(DihedralDamper, TakesTheFullRateOfTheDihedralAngleAtRightAngles) {

@@ -1,4 +1,4 @@
-// The internal-force step: properties of implicit dampers for every model and any coefficient.
+// One time step of the thread's internal forces: implicit dampers are stable for every model and any coefficient.
 #include <gtest/gtest.h>
 
 #include "firmware/physics/internal_step.hpp"
@@ -110,7 +110,7 @@ TEST(InternalStep, ASwivelDamperTakesEnergyFromWhatSwings) {
       }
 }
 
-// Equations (13)-(15) exactly, with the sign that damps: explicit, one bend.
+// The explicit swivel damper on one bend is exactly the paper's equations (13)-(15), with the sign that damps.
 TEST(InternalStep, ThePapersSwivelDamperBrakesEachEndAcrossThePlaneOfItsBend) {
   test::Random random(6);
   scene::Suture s = suture(scene::Model::kPaper4, scene::SwivelDamper::kPaper);

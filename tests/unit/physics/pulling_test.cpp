@@ -88,7 +88,8 @@ TEST(Pulling, ALetGoFromAHundredNewtonsStaysFinite) {
   }
 }
 
-// The scene's limits l_min, l_max are 0.9 and 1.1; lengths are computed from the published positions.
+// Segments must stay within the scene's limits of 0.9 and 1.1 times the rest length, as computed from the node
+// positions.
 TEST(Propagation, NoSegmentLeavesItsLimitsUpTo5MetresPerSecondAnd500Newtons) {
   for (const int nodes : {20, 35, 50})
     for (const double speed : {0.1, 0.5, 2.0, 5.0}) {

@@ -1,5 +1,5 @@
-// A tick whose time budget is over ends between two pieces of work; the thread does not move for the rest of the tick,
-// and the tick can be repeated.
+// A tick of the physics ends between two pieces of work when its time is over; the thread does not move for the rest of
+// the tick. A rerun that ends its ticks at the same pieces gives the same result.
 #include <gtest/gtest.h>
 
 #include "tests/support/random.hpp"

@@ -43,7 +43,8 @@ TEST(HangingThread, StretchesLessInModel5OnlyWithTheStiffConstant) {
     return 0.5 - sim.nodes_W().back().z();
   };
   const double four = tip("paper-4", "stiff"), stiff = tip("paper-5", "stiff"), printed = tip("paper-5", "printed");
-  EXPECT_NEAR(four / 5.0, 0.0153, 1e-3);  // strains of 1.5 % and 11.7 %: the prototype's values for N = 50
+  // Strains of 1.5 % and 11.7 %, as an independent program computed them for 50 nodes.
+  EXPECT_NEAR(four / 5.0, 0.0153, 1e-3);
   EXPECT_NEAR(printed / 5.0, 0.117, 2e-3);
   EXPECT_LT(stiff, 0.85 * four);
 }
@@ -214,7 +215,7 @@ TEST(Grasp, TakesTheNearestNodeThatIsNeitherFixedNorHeld) {
   Simulation sim = make(paper_scene());
   const ToolInput top{Vec3(0, 0, 5.6), Vec3::Zero(), true};
   sim.tick({top, top});
-  EXPECT_EQ(sim.hand(Hand::kLeft).node, 1);   // node 0 is fixed
+  EXPECT_EQ(sim.hand(Hand::kLeft).node, 1);   // node 0 is fixed, so node 1 is the nearest that can be held
   EXPECT_EQ(sim.hand(Hand::kRight).node, 2);  // node 1 is held by the other hand
   sim.tick({ToolInput{top.p_WT, Vec3::Zero(), false}, top});
   EXPECT_EQ(sim.hand(Hand::kLeft).node, -1);

@@ -1,4 +1,4 @@
-// The machine checks of `doctor`, on machines simulated by files.
+// Machine checks of `ligature-firmware doctor`, on machines simulated by files of /proc and /sys.
 #include "firmware/platform/machine.hpp"
 
 #include <gtest/gtest.h>

@@ -167,7 +167,8 @@ TEST(IdleGuard, AsksForZeroMicrosecondsAndHoldsTheRequest) {
   EXPECT_EQ(times_open(device), 0);
 }
 
-/// A new thread's own settings after it has requested its rights, on a stack that has not been used before.
+/// A new thread that requests real-time rights, on a stack that has not been used before; stores the settings that the
+/// kernel then reports.
 struct OwnThread {
   static constexpr std::size_t kStack = std::size_t{1} << 20, kPage = 4096;
   Refusals refusals;

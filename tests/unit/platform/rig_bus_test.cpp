@@ -1,4 +1,4 @@
-// Both hands' buses within one period.
+// RigBus: the CAN traffic of both hands within one period.
 #include "firmware/platform/rig_bus.hpp"
 
 #include <vector>

@@ -1,4 +1,5 @@
-// The socket back end, over a socket pair like that of `local:`.
+// SocketBus, the CAN bus on a socket, here on a pair of Unix sockets; `local:` buses between processes use the same
+// kind.
 #include "firmware/platform/socket_bus.hpp"
 
 #include <gtest/gtest.h>
@@ -220,7 +221,7 @@ TEST_F(Interface, ThatIsGoneStaysGone) {
   EXPECT_TRUE(bus->is_lost());
 }
 
-/// With the first frame on either hand's bus; the deadline is never reached here.
+/// Waiting must end with the first frame on either hand's bus; the deadline is never reached here.
 TEST_F(SocketBusTest, WaitingEndsWithTheFirstFrameOfEitherBus) {
   int pair[2];
   ASSERT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0, pair), 0);

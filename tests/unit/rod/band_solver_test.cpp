@@ -1,4 +1,5 @@
-// The banded solver against a dense solver, for every position of the window, and on a matrix that is numerically hard.
+// The banded solver of one substep's linear system against a dense solver: for every window (the range of nodes whose
+// solution is asked for), and on a matrix that is numerically hard.
 
 #include "firmware/physics/rod/band_solver.hpp"
 
@@ -51,7 +52,8 @@ BandSolver random_system(int n, unsigned seed) {
   return s;
 }
 
-// Columns of the inverse stay those of the matrix that was taken, even after the solver has factorised another one.
+// BandColumns gives columns of the inverse of the matrix that it was given, even after the solver has factorised
+// another one.
 TEST(BandColumns, AreThoseOfTheInverse) {
   BandColumns columns;
   columns.reserve();
@@ -94,7 +96,7 @@ TEST(BandColumns, SayWhenThereIsNoRoom) {
   EXPECT_TRUE(columns.want(made - 1));
 }
 
-// Well-conditioned matrices: tolerance of a hundred roundings.
+// The matrices are well-conditioned, so the tolerance is a hundred roundings.
 TEST(BandSolver, AgreesWithADenseSolverForEveryCoreAndWindow) {
   for (const int n : {3, 4, 5, 17, 60}) {
     for (int core = 0; core + 1 < n; core += 1 + n / 20) {

@@ -1,4 +1,4 @@
-// The contact list names only existing segments, whatever the velocities.
+// The contact list of the rod contains only existing segments, whatever the velocities.
 
 #include "firmware/physics/rod/broad_phase.hpp"
 

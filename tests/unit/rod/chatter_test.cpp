@@ -1,4 +1,4 @@
-// The measure of chatter, on forces with known chatter.
+// chatter() measures the rms deviation of a force from a smooth curve; here for forces whose deviation is known.
 
 #include "tests/bench/rod/chatter.hpp"
 
@@ -13,7 +13,8 @@ namespace {
 using bench::Chatter;
 using bench::chatter;
 
-// A pull's force: grows exponentially as an overhand's does, plus a sinusoidal fluctuation.
+// Force of a pull, N per tick: it grows exponentially, as when an overhand knot is pulled tight, plus a sinusoidal
+// fluctuation.
 std::vector<double> pull(int ticks, double tremble_N, double period_ticks) {
   std::vector<double> f;
   for (int k = 0; k < ticks; ++k)
@@ -35,11 +36,11 @@ TEST(Chatter, IsNotThePull) {
   EXPECT_LT(chatter(pull(50, 0.0, 1.0), 0.04).share(), 2e-3);
 }
 
-// A complete pull at 1 m/s to 1 N. The value for a smooth force is far below the measured ones.
+// At 1 m/s a complete pull to 1 N takes only 14 ticks. A smooth force must count as nearly no chatter even then.
 TEST(Chatter, IsNotAPullOfFourteenTicks) { EXPECT_LT(chatter(pull(14, 0.0, 1.0), 0.04).share(), 2e-3); }
 
-// Independent fluctuations add as squares, so the mesh's contribution can be separated from the thread's own vibration
-// (docs/rod-knots.md).
+// Independent fluctuations add as squares. docs/rod-knots.md uses this to separate the mesh's contribution from the
+// thread's own vibration.
 TEST(Chatter, AddsCausesAsSquares) {
   const auto one = pull(250, 3e-3, 5.3), other = pull(250, 4e-3, 3.7), smooth = pull(250, 0.0, 1.0);
   auto both = one;

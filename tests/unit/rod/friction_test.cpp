@@ -1,4 +1,4 @@
-// Separate static friction: a resting thread holds up to mu_s, a sliding one is braked by mu_k.
+// Static friction mu_s above the kinetic mu_k: a resting thread holds up to mu_s, a sliding one is braked by mu_k.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Which motions the guard shortens and which it lets pass.
+// The guard shortens substeps in which strands could pass through each other: which motions it shortens and which not.
 
 #include <gtest/gtest.h>
 

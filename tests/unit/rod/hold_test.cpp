@@ -12,9 +12,9 @@
 namespace ligature::test {
 namespace {
 
-// A square knot drawn tight and held. Two rules of the contacts keep the time lost low: old impulses start as they
-// were, not projected onto their cones, and contact points do not oscillate (touch.hpp). Without both, 50 % of the time
-// was lost at 0.2 m/s; without the first 20 % (0.15 m/s), without the second 74 % (0.22 m/s).
+// A square knot drawn tight and held. Two rules keep the time lost low: the solver starts from the old impulses
+// unchanged, not projected onto the friction cones; and contact points do not oscillate (touch.hpp). Without both, 50 %
+// of the time was lost at 0.2 m/s; without the first 20 % (0.15 m/s), without the second 74 % (0.22 m/s).
 TEST(Hold, OfTwoThrowsLosesHardlyAnyTime) {
   for (const double speed : {0.15, 0.2, 0.22, 0.23}) {
     Tightening pull({}, "suture-3-0-square.toml");
@@ -106,9 +106,9 @@ Tightening held(double speed) {
   return pull;
 }
 
-// At rest the tolerance has a lower bound, set by single precision. If it were always a tenth of the motion, some holds
-// would spend their whole budget in every tick on differences of 5 um/s. Two copies of the same state are compared,
-// because which holds do so is random (work ratio 0.72; one of the five spends all of it in either copy).
+// The solver's tolerance has a lower bound, set by single precision. If it were always a tenth of the motion, some
+// knots at rest would spend their whole budget in every tick on differences of 5 um/s. Two copies of the same state are
+// compared, because which holds do so is random (work ratio 0.72; one of the five spends all of it in either copy).
 TEST(Hold, OfTwoThrowsAtRestIsCheap) {
   double work = 0.0, finer = 0.0;
   for (const double speed : {0.16, 0.18, 0.2, 0.22, 0.24}) {

@@ -64,7 +64,7 @@ struct Pull {
   std::string knot;
   double penetration = 0.0, hold_penetration = 0.0, force_N = 0.0, strain = 0.0;
   double length = 0.0;  // between the outermost contacts at the end, diameters
-  double lost = 0.0;    // time lost, as a share
+  double lost = 0.0;    // share of the time in which the thread was not moved
   long allocations = 0;
   int guard = 0;
 };
@@ -263,7 +263,7 @@ TEST(RodScene, SaysInWhichTickItDiverged) {  // the first tick is number 0; also
   EXPECT_EQ(sim.diagnostics().bad_tick, 0);
 }
 
-TEST(RodScene, RefusesWhatItCannotDo) {  // each is rejected with an error text
+TEST(RodScene, RefusesWhatItCannotDo) {  // each of these scenes is rejected with an error text
   auto few = load("suture-3-0.toml", {"suture.nodes=3"});
   EXPECT_TRUE(std::holds_alternative<std::string>(RodSimulation::make(few)));
   auto paper = load("suture-3-0.toml", {"contact.solver=\"paper\""});

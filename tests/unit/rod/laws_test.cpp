@@ -1,4 +1,4 @@
-// Contact and energy of the rod against closed forms: friction cone, moving bodies, slow slip, unconverged solves,
+// Contact and energy of the rod against closed forms: friction cone, moving belts, slow slip, unconverged solves,
 // springs.
 
 #include <gtest/gtest.h>
@@ -146,8 +146,9 @@ TEST(Energy, TheGiveOfContactsIsThatOfTheirSprings) {
   EXPECT_NEAR(rod.all_J(e), e.kinetic_J + e.stretch_J + e.bend_J + e.gravity_J + e.give_J, 1e-3 * stored_J);
 }
 
-// A rod between a fixed end and a hand's spring, stretched and twisted, under a constant load. Energy: T^2 / 2K + T^2 L
-// / 2EA + C phi^2 / 2L - F x (F x: work of the load).
+// A rod between a fixed end and a hand's spring, stretched and twisted, under a constant load. Energy: T^2 / 2K of the
+// spring + T^2 L / 2EA of stretch + C phi^2 / 2L of twist - F x of the load (T tension, C twist stiffness, phi end
+// rotation, F load, x its shift).
 TEST(Energy, AllOfItIsTheSumOfItsSprings) {
   constexpr double kSpring_N_per_m = 50.0, kPull_N = 20.0, kTurn = 0.5, kLoad_N = 5.0;
   for (const bool rolls : {false, true}) {

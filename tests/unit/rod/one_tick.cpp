@@ -1,5 +1,6 @@
-// usage: rod-one-tick SEED PASSES: a ball of thread hits a floor; one substep with that many passes over its contacts.
-// Prints the work it was charged and what it did; test_pass_price.py counts the instructions it really took.
+// usage: rod-one-tick SEED PASSES: one substep of a ball of thread that hits a floor, with PASSES passes of the solver
+// over the contacts. Prints the work that was charged, the passes made and the contacts; test_pass_price.py counts the
+// instructions it really took.
 
 #include <cstdio>
 #include <cstdlib>

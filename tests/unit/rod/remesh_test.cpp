@@ -12,8 +12,9 @@
 namespace ligature::test {
 namespace {
 
-// A wide helix whose turns pass close outside a straight strand of the same thread, and a tight coil that attracts
-// nodes. Merging two segments of the helix into their chord would cut the strand where it runs between arc and chord.
+// A wide helix whose turns pass close outside a straight strand of the same thread, and a tight coil, into which the
+// adaptive mesh moves nodes. Merging two segments of the helix into their chord would cut the strand where it runs
+// between arc and chord.
 void helix_around_a_strand(Rod& rod, double phase, double inside_m) {
   constexpr double kRadius = 6.4e-3, kPitch = 4e-3, kTurns = 3.5, kCoil = 1.2e-3;
   std::vector<Vec> line;

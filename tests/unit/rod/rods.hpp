@@ -1,5 +1,5 @@
 #pragma once
-// The validation's rods without a scene, for tests of parts of the rod model.
+// Makes the rods of `ligature-lab validate`, which need no scene file, available to tests of parts of the rod model.
 
 #include "host/lab/validate/rods.hpp"
 

@@ -79,7 +79,8 @@ TEST(Set, BelowYieldNothingDiffersInAnyBit) {
     for (int k = 0; k < 3; ++k) EXPECT_EQ(with.rod.state().x[i][k], without.rod.state().x[i][k]) << i;
 }
 
-// Bent to curvature kappa: z = kappa - kappa_y and M = B (kappa - f z). After unloading the curvature f z stays.
+// A rod of bending stiffness B is bent to curvature kappa, z = kappa - kappa_y beyond yield. The moment is B (kappa - f
+// z), with f the material's set fraction; after unloading the curvature f z stays.
 TEST(Set, WhatABendKeepsIsItsFractionOfWhatExceedsYield) {
   for (const double f : {0.3, 0.5, 0.8}) {
     Bender b(setting_rod(f));
@@ -92,13 +93,14 @@ TEST(Set, WhatABendKeepsIsItsFractionOfWhatExceedsYield) {
       EXPECT_NEAR(bent[k], 1.2, 0.1);
       EXPECT_NEAR(norm(b.rod.spin().set(static_cast<int>(kAt[k]))) * 60.0, bent[k], 0.01 * bent[k]);
     }
-    b.bend(f * bent[1], 6000);  // slow unloading; an oscillation would yield the thread further near the clamp
+    b.bend(f * bent[1], 6000);  // slow unloading: an oscillation would bend the rod beyond yield again near the clamp
     b.let_go(4000);
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(b.curvature(kAt[k]), f * bent[k], 0.01 * f * bent[k]) << f;
   }
 }
 
-// For bends beyond kappa_y (2 - f) / (1 - f), the elastic share yields the plastic one in reverse during unloading.
+// After a bend beyond kappa_y (2 - f) / (1 - f) (kappa_y yield curvature, f set fraction) the rod springs back so
+// strongly that it yields in reverse, and only f kappa_y / (1 - f) stays.
 TEST(Set, OfASharpBendItKeepsNoMoreThanTheOtherShareAllows) {
   Bender b(setting_rod(0.3));
   b.bend(4.0, 12000);
@@ -107,11 +109,12 @@ TEST(Set, OfASharpBendItKeepsNoMoreThanTheOtherShareAllows) {
   b.bend(0.43, 2000);
   b.let_go(4000);
   const double kept = 0.3 * kYield / 0.7;
-  // In that state every small oscillation of the unloading matters.
+  // The tolerance is 2 %: small oscillations during unloading make it yield a little further.
   for (const std::size_t i : {20U, 30U, 40U}) EXPECT_NEAR(b.curvature(i), kept, 0.02 * kept);
 }
 
-// Cycle between +k and -k: the hysteresis loop of moment and curvature has the area 4 f B k_y (k - k_y) per length.
+// Bent to and fro between curvatures +k and -k, the hysteresis loop of moment and curvature has the area 4 f B k_y (k -
+// k_y) per length (f set fraction, B bending stiffness, k_y yield curvature).
 TEST(Set, ALoopCostsItsArea) {
   constexpr double f = 0.4, k = 2.0;
   Bender b(setting_rod(f));
@@ -221,7 +224,7 @@ TEST(Set, MovingNodesKeepsIt) {
   }
   EXPECT_NEAR(sum(), whole, 1e-9 * whole);
   EXPECT_GE(moved, 4);
-  EXPECT_LT(fastest, 0.02);  // a coarse bow becomes smooth
+  EXPECT_LT(fastest, 0.02);  // not zero: remeshing smooths a coarse bow
 }
 
 }  // namespace

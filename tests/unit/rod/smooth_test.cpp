@@ -1,4 +1,4 @@
-// The smooth curves between which contact is computed.
+// Smooth curves through the thread's segments; contact is computed between them.
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ TEST(Smooth, HasNoCorners) {
   }
 }
 
-// Splitting a segment at a point of its chord, as Refine does, leaves the curve unchanged.
+// Splitting a segment at a point of its chord, as remeshing does, leaves the smooth curve unchanged.
 TEST(Smooth, StaysWhereASegmentIsSplit) {
   const State whole = nodes_on_a_circle(9, 0.6e-3, 0.5);
   State split;
@@ -120,7 +120,7 @@ TEST(Smooth, ClosestPointsOfBentStrands) {
         const SmoothSegment one(a, i, kDiameter_m), other(b, j, kDiameter_m);
         const Closest chords = closest(a.x[i], a.x[i + 1], b.x[j], b.x[j + 1]);
         const double least = closest_by_trying(one, other);
-        // No contact, or an overlap that does not occur.
+        // Skipped: too far apart for a contact, or a deeper overlap than occurs.
         if (least > 1.2 * kDiameter_m || least < 0.9 * kDiameter_m) continue;
         EXPECT_NEAR(std::sqrt(closest(one, other, chords).distance2), least, 1e-2 * kDiameter_m) << k;
         EXPECT_LT(std::abs(least - std::sqrt(chords.distance2)), one.bulge() + other.bulge() + 1e-9);

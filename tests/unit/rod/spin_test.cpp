@@ -1,4 +1,5 @@
-// Roll of the segments: threads with a curved rest shape, and threads that friction rolls.
+// Roll, the rotation of segments about the thread's axis: of threads with a curved rest shape, and of threads that
+// friction makes roll.
 
 #include <gtest/gtest.h>
 

@@ -42,16 +42,17 @@ MeshSteps steps_of_a_pull(double speed) {
   return steps;
 }
 
-// Limit: 0.5 % of the tension plus 3 mN, because strands slide by more than a segment per tick in either mesh.
+// Limit of a force step by remeshing at a fast pull: 0.5 % of the tension plus 3 mN, because strands slide by more than
+// a segment per tick in either mesh.
 TEST(FineZone, MovesWithoutAForceStep) {
   const MeshSteps steps = steps_of_a_pull(0.2);
   EXPECT_GT(steps.remeshes, 10);
   EXPECT_LT(steps.beyond_N, 3e-3);
 }
 
-// Strands slide by a tenth of a segment per tick, so remeshing alone is measured. Limit: 0.5 % of the tension.
-// Measured: 0.25 mN below it; 0.17 mN above it if a split does not preserve the bending moments, and 0.55 mN above it
-// if a split does not preserve the smooth curve. The faster pull does not detect these errors.
+// At this slow pull strands slide by a tenth of a segment per tick, so the force step is due to remeshing alone. Limit:
+// 0.5 % of the tension. Measured: 0.25 mN below it; 0.17 mN above it if a split does not preserve the bending moments,
+// and 0.55 mN above it if a split does not preserve the smooth curve. The faster pull does not detect these errors.
 TEST(FineZone, ItselfHardlyStepsTheForce) {
   const MeshSteps steps = steps_of_a_pull(0.02);
   EXPECT_GT(steps.remeshes, 10);

@@ -1,4 +1,5 @@
-// Contact points follow sliding strands, and do not oscillate although the strands respond one substep late.
+// Touch moves a contact point along two strands: it follows sliding strands, and does not oscillate although the
+// strands respond one substep late.
 
 #include <gtest/gtest.h>
 

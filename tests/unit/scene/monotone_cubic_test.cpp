@@ -20,12 +20,13 @@ std::vector<GripKey> along_x(const std::vector<std::array<double, 2>>& t_and_x) 
 double x_at(const std::vector<GripKey>& keys, double t_s) { return sample(keys, t_s).p_W_m[0]; }
 
 TEST(MonotoneCubic, VelocitiesAreTheWeightedHarmonicMeans) {
-  // Steps of 1 s and 2 s with means 1 and 4 m/s: w = 1 + 4, 2 + 2; (5 + 4) / (5 / 1 + 4 / 4) = 1.5.
+  // Before and after key 1: 1 s at a mean of 1 m/s, 2 s at 4 m/s. Weights 1 + 2 * 2 = 5 and 2 * 1 + 2 = 4 give (5 + 4)
+  // / (5 / 1 + 4 / 4) = 1.5 m/s.
   const auto keys = along_x({{0, 0}, {1, 1}, {3, 9}, {4, 9}, {5, 8}, {6, 9}});
   EXPECT_DOUBLE_EQ(keys[1].v_W_m_per_s[0], 1.5);
   EXPECT_DOUBLE_EQ(keys[1].turn_deg_per_s[0], 1.5);
   EXPECT_EQ(keys[2].v_W_m_per_s[0], 0.0);  // the next segment is a rest
-  EXPECT_EQ(keys[4].v_W_m_per_s[0], 0.0);  // an extremum
+  EXPECT_EQ(keys[4].v_W_m_per_s[0], 0.0);  // the position has an extremum here
   EXPECT_EQ(keys[1].v_W_m_per_s[1], 0.0);
 }
 

@@ -18,7 +18,7 @@ std::vector<scene::GripKey> overhand(int hand) {
       .keys[hand];
 }
 
-// With soft fingers and joint friction, and no force from the thread.
+// The simulated hand moves the device with soft fingers against joint friction; the thread exerts no force.
 TEST(Mechanics, TheTipReachesEveryKeyWithinAMillimetre) {
   for (const int hand : {0, 1}) {
     const auto keys = overhand(hand);

@@ -15,7 +15,7 @@ namespace ligature::sim {
 
 inline constexpr double kPaperScale = 20.0;
 
-/// As scenes/paper.toml has it.
+/// Map from the device's to the world's coordinates, as in scenes/paper.toml.
 [[nodiscard]] inline WorkspaceMap paper_map() {
   scene::Hands hands;
   hands.workspace_scale = kPaperScale;

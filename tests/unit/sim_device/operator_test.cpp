@@ -1,4 +1,5 @@
-// What the simulated operator perceives (arc length, holes), and that it ties the requested knot with any seed.
+// The simulated operator: what it perceives of the thread (arc length, loops to pass through), and that it ties the
+// requested knot with any seed.
 
 #include <gtest/gtest.h>
 

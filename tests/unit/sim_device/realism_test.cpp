@@ -31,7 +31,7 @@ std::unique_ptr<HeldIntention> resting() { return std::make_unique<HeldIntention
 /// Motor torque that pulls the tip sideways with `force_N`.
 Vec3 sideways(double force_N) { return {force_N * kWaistLever_m, 0.0, 0.0}; }
 
-/// Free oscillation: deflected by the motor, released, and sampled every 0.1 ms.
+/// Free oscillation of the tip: deflected sideways by the motor with force_N, released, and sampled every 0.1 ms.
 std::vector<double> ring(Mechanics& m, double force_N, double time_s) {
   m.advance(seconds(1), sideways(force_N));
   std::vector<double> x;
@@ -42,7 +42,7 @@ std::vector<double> ring(Mechanics& m, double force_N, double time_s) {
   return x;
 }
 
-/// From rising zero crossings, interpolated linearly.
+/// Frequency of an oscillation sampled every 0.1 ms, from its rising zero crossings, interpolated linearly.
 double frequency_Hz(const std::vector<double>& x) {
   std::vector<double> at;
   for (std::size_t i = 1; i < x.size(); ++i)
@@ -136,7 +136,7 @@ TEST(Realism, WhatIsLeftOfTheWeightIsATenthOfANewtonAndFrictionHoldsIt) {
   EXPECT_EQ(plant.q_rad(), *joints_of_tip(home_tip_D_m()));
 }
 
-/// Work in = energy stored + energy dissipated, to 1 % of the work, with all laws active.
+/// The work done on device and hand equals the energy stored plus the energy dissipated, to 1 % of the work.
 TEST(Realism, EnergyBalances) {
   const Hand hand = Hand::holding(0.6);
   PlantParameters p;

@@ -24,7 +24,7 @@ std::unique_ptr<Intention> made(const scene::GripperScript& s, std::size_t hand)
   return std::get<std::unique_ptr<Intention>>(std::move(hands));
 }
 
-/// The offline lab and the simulated device follow the same path.
+/// For the same script, a simulated device's hand follows the same path as the tools in `ligature-lab`.
 TEST(ScriptHand, PassesWhereTheLabPasses) {
   const auto s = script();
   const auto hand = made(s, 1);

@@ -1,4 +1,4 @@
-// Throws in a thread that stands by its own stiffness.
+// Steps (moves) of the simulated operator with a thread so stiff that it stands by itself.
 
 #include "sim_device/operator/springy_throw.hpp"
 

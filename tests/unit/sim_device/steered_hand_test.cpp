@@ -118,7 +118,8 @@ TEST(SteeredHand, KeepsToTheLimitsOfAnArmWhateverIsWished) {
   }
 }
 
-/// The device's buttons are all that the firmware learns of the person.
+/// A person steers the hand from the page. The device reports the person's dead-man as its own button while the drives
+/// are on.
 TEST(SteeredHand, ThePersonsDeadManIsTheDevicesWhileItsDrivesAreOn) {
   auto steered = std::make_unique<SteeredHand>(Linkage{});
   SteeredHand& hand = *steered;

@@ -1,5 +1,5 @@
 #pragma once
-// A scripted CANopen master on the simulated cable, in virtual time; it takes the controller's place.
+// A scripted CANopen master on the simulated CAN bus, in virtual time; it takes the controller's place.
 
 #include <array>
 #include <chrono>

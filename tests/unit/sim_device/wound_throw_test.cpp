@@ -1,5 +1,5 @@
-// Throws wound round the standing part: the knot that the hand's path alone makes, and knots of two throws in a
-// simulated thread.
+// Throws for which the operator winds the end round the standing part (the thread above the left hand): the knot that
+// the hand's path alone makes, and knots of two throws in a simulated thread.
 
 #include "sim_device/operator/wound_throw.hpp"
 
@@ -28,7 +28,7 @@ class Trail {
     hands_[kRightHand].rest_at({1.0, -1.0, -2.0}, place_.speed_m_per_s);
     bool drawn = false;
     for (Move& m : wound_throw(t, std::make_shared<Site>(Site{0.0, 1.0}))) {
-      if (drawn && m.name != "draw") break;  // the moves after it need a simulated thread
+      if (drawn && m.name != "draw") break;  // the operator's steps after "draw" need a simulated thread
       drawn = m.name == "draw";
       run(m);
     }
@@ -87,7 +87,7 @@ TEST(WoundThrow, ThrowsInARowAreTheNamedKnots) {
   }
 }
 
-/// Tied at the facade; checked five seconds after the hands let go.
+/// Tied with hands that move the simulated thread directly; checked five seconds after they let go.
 TEST(WoundThrow, TiesKnotsOfTwoThrows) {
   EXPECT_EQ(tied("paper.toml", "square", 4), "3_1#3_1 amphichiral");
   EXPECT_EQ(tied("paper.toml", "granny", 104), "3_1#3_1 left");

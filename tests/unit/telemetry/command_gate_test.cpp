@@ -1,4 +1,4 @@
-// New commands are distinguished from those that a replayed recording repeats.
+// CommandGate distinguishes new commands from those that a replayed recording repeats.
 #include "firmware/telemetry/command_gate.hpp"
 
 #include <gtest/gtest.h>
@@ -68,7 +68,7 @@ TEST_F(CommandGateTest, ARecordingOfAnEarlierRunIsNamedAndRefused) {
   EXPECT_EQ(judged.why,
             "command of session 42, this is session 43: played back from a recording, or meant for another rig");
   auto question = recorded;
-  question.challenge = 0;  // a challenge of another run, so it is ignored
+  question.challenge = 0;  // the first message of the other run's sender, which asks for a challenge, gets none either
   EXPECT_EQ(next_run.judge(question, kLater_us).challenge, 0);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Flight recorder files for tests.
+// Makes small flight recorder files for tests.
 
 #include <gtest/gtest.h>
 

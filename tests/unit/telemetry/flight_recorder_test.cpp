@@ -134,7 +134,7 @@ TEST_F(FlightRecorderTest, ADiskThatStandsStillForThreeSecondsCostsNoTickAndHold
 
 TEST_F(FlightRecorderTest, ANetworkThatStandsStillCostsTheRecorderNothing) {
   start();
-  // telemetry's ring overflows, because nothing reads from it
+  // Telemetry's ring buffer overflows, because nothing reads from it.
   tick(static_cast<std::int64_t>(rt::Outlets::kRecords) + 500);
   EXPECT_EQ(outlets->records.dropped(), 500U);
   recorder->finish();

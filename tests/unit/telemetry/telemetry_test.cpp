@@ -1,4 +1,4 @@
-// Output of telemetry for given input, with time as an argument and a sink that stores everything.
+// The messages that telemetry sends for given tick records, with time as an argument and a sink that stores everything.
 #include "firmware/telemetry/telemetry.hpp"
 
 #include <gtest/gtest.h>

@@ -46,7 +46,7 @@ struct Read {
     for (std::size_t i = 0; i < rows.size(); i += kColumns) found.push_back(static_cast<std::int64_t>(rows[i]));
     return found;
   }
-  /// The numbers of the trace bins in the frame.
+  /// Numbers of the trace bins (summaries of some ticks each) in the frame.
   [[nodiscard]] std::vector<std::int64_t> bins() const {
     std::vector<std::int64_t> found;
     if (!sections.contains(Section::kBins)) return found;

@@ -1,4 +1,4 @@
-// A stored recording (written by tests/fixtures/make_golden.py) always gives the same labels, events and figures.
+// The view of a stored recording (tests/fixtures/make_golden.py) always has the same knot names, events and numbers.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -36,7 +36,7 @@ TEST(Picture, TellsEachPageEachTickOnce) {
   EXPECT_EQ(frame(picture, late).ticks().size(), 40U);
 }
 
-/// Each page gets each bin once, at any request rate, also when all bins come at once.
+/// Each page gets each trace bin (summary of some ticks) once, at any request rate, also when all bins come at once.
 TEST(Picture, TellsEachPageEachBinOnce) {
   for (const int batches_a_frame : {7, 5000}) {  // 5000: more bins than fit in a frame
     Picture picture;
@@ -68,7 +68,7 @@ TEST(Picture, GivesAPageThatFellBehindTheLatest) {
   const auto told = frame(picture, page);
   EXPECT_EQ(told.ticks().size(), static_cast<std::size_t>(Picture::kRowsPerFrame));
   EXPECT_EQ(told.ticks().back(), 39'999);
-  EXPECT_TRUE(told.sections.contains(Section::kBins));  // ticks that were left out are covered by bins
+  EXPECT_TRUE(told.sections.contains(Section::kBins));  // ticks that are not in the frame are summarised in trace bins
 }
 
 TEST(Picture, BoundsEveryFrame) {
