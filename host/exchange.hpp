@@ -20,7 +20,7 @@ class Exchange {
   [[nodiscard]] std::int64_t id() const { return command_.id; }
 
   enum class Step : std::uint8_t {
-    kWait,      ///< answers another program's command, or changes nothing
+    kWait,      ///< the message answers another program's command, or changes nothing
     kSay,       ///< the challenge has arrived: publish message() once
     kAnswered,  ///< the final answer to the command has arrived
   };

@@ -13,7 +13,7 @@ struct Session {
   std::int64_t id = 0;            // CLOCK_REALTIME at the session's start, us
   std::int64_t ring_dropped = 0;  // ticks that the firmware's ring buffer dropped, included in ticks.missing()
   GapCounter ticks;
-  std::int8_t last_state = 0;  // STATE_ of tick_t, of the tick with the highest number
+  std::int8_t last_state = 0;  // state (STATE_ of tick_t) in the tick with the highest number
 };
 
 /// Counts received and missing ticks per session. Sessions are kept apart because a restarted firmware counts from zero

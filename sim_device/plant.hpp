@@ -2,7 +2,7 @@
 // Mechanics of one device: three joints driven by motors and by a hand,
 //   I_j dω_j/dt = τ_motor + (Jᵀ F_hand)_j + (1 − c) τ_gravity,j − b_j ω_j − τc_j sign(ω_j),   dq/dt = ω,
 // within the joint stops. τ_gravity = −dV/dq with V = g (μ₂ sin q₂ − μ₃ cos q₃); μ is mass times lever of each link, c
-// the share compensated by springs and counterweights. The inertia of the links is taken as constant and diagonal,
+// the fraction compensated by springs and counterweights. The inertia of the links is taken as constant and diagonal,
 // about 45 g at the tip in the home pose. Coriolis terms are neglected (below 1 mN at hand speeds).
 
 #include "sim_device/kinematics.hpp"

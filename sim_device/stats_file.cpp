@@ -35,7 +35,7 @@ std::string stats_json(const std::string& hand, const HandDevice& device, const 
   j["hand"] = hand;
   j["syncs"] = device.bus_stats().syncs;
   j["missed_syncs"] = device.bus_stats().missed_syncs;
-  j["bus_load"] = device.bus_load();  // share of time, 0 .. 1
+  j["bus_load"] = device.bus_load();  // fraction of time, 0 .. 1
   j["frames"] = device.wire_stats().frames;
   j["worst_bus_wait_us"] = microseconds(device.wire_stats().worst_wait);  // longest time from queueing to sending
   j["worst_rpdo_after_sync_us"] = microseconds(device.bus_stats().worst_rpdo);

@@ -29,8 +29,8 @@ inline constexpr auto kMaxTorque_permille = static_cast<std::int16_t>(omni::kMax
 /// Torque deviation above which a drive sets kTorqueAstrayBit.
 inline constexpr int kTorqueTolerance_permille = 50;
 
-inline constexpr std::int8_t kCyclicSynchronousTorque = 10;  ///< value of 0x6060
-inline constexpr std::uint8_t kSynchronousEverySync = 1;     ///< PDO transmission type
+inline constexpr std::int8_t kCyclicSynchronousTorque = 10;  ///< mode of operation (object 0x6060)
+inline constexpr std::uint8_t kSynchronousEverySync = 1;     ///< PDO transmission type: at each SYNC
 
 inline constexpr std::uint16_t kButtonGrip = 1U << 0;
 inline constexpr std::uint16_t kButtonDeadMan = 1U << 1;

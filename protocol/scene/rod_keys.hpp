@@ -10,7 +10,7 @@ namespace ligature::scene {
 /// A commercial suture, as far as its properties are known (tests/reference/08_sutures.json).
 struct RodPreset {
   const char* name;
-  double diameter_m;  ///< middle of the USP range
+  double diameter_m;  ///< middle of the range allowed for this suture size (US Pharmacopeia)
   double density_kg_per_m3;
   double modulus_Pa;
   double bend_share;  ///< EI / EI of a solid rod: 1 for a monofilament, less for a braid
@@ -20,7 +20,7 @@ struct RodPreset {
 /// Fibres, table 5.1. Moduli: nylon 6.6 fibre of medium tenacity, ibid. table 13.2; silk and rapid polyglactin sutures,
 /// 3-0: Naleway et al., J. Biomed. Mater. Res. B 103 (2015) 735, abstract. Assumed without a source: a nylon suture is
 /// as stiff as the fibre; other sizes of a braid are as 3-0; polypropylene's modulus; polyglactin's density; a braid is
-/// as dense as its fibres (no packing fraction); the bend share of braids; Poisson's ratio 0.4 in GJ. Friction is no
+/// as dense as its fibres (no packing fraction); bend_share of braids; Poisson's ratio 0.4 in GJ. Friction is no
 /// suture property here; scenes set it.
 inline constexpr RodPreset kRodPresets[] = {
     {"nylon-2-0", 0.325e-3, 1140.0, 3.42e9, 1.0},       {"nylon-3-0", 0.225e-3, 1140.0, 3.42e9, 1.0},

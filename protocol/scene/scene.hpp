@@ -77,7 +77,7 @@ struct Suture {
   double length_m = 5.0;
   double radius_m = 0.05;
   std::string initial = "hanging";  ///< "hanging": straight down from node 0; else the file name of the shape
-  /// Empty if hanging; else equally spaced, one point per node, or denser for a rod with adaptive spacing
+  /// Points of the start shape, equally spaced: one per node, or more for a rod with adaptive spacing; empty if hanging
   std::vector<Vec> initial_polyline_m;
   PaperParameters paper;
   RodParameters rod;

@@ -18,7 +18,8 @@ struct Visit {
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// All crossings in order along the thread. The closing edge, which joins the two ends, lies nearest to the eye.
+/// All crossings in order along the thread. The edge that closes the thread, from one end to the other, passes over all
+/// strands.
 std::vector<Visit> visits(std::span<const Vec3> p, const Vec3& eye) {
   const Vec3 right = eye.unitOrthogonal(), up = eye.cross(right);
   const std::size_t n = p.size();

@@ -117,7 +117,7 @@ void KnotTier::begin_again() {
 
 /// Limits the pull: a hand that feels much more than a tight knot needs slows down, and finally yields.
 void KnotTier::mind_the_pull(const Sight& sight) {
-  constexpr double kFirm = 0.4, kMost = 1.3;  // shares of a tight knot's pull
+  constexpr double kFirm = 0.4, kMost = 1.3;  // fractions of a tight knot's pull
   // not for a limp thread: a thick one is drawn tight with up to 4 times a tight knot's pull (wound_throw.cpp)
   if (!is_springy(place_)) return;
   for (std::size_t h = 0; h < 2; ++h) {
@@ -133,7 +133,8 @@ void KnotTier::mind_the_pull(const Sight& sight) {
 
 void KnotTier::look(const Sight& sight) {
   thread_.look(sight.thread_W);
-  for (int steps = 0; steps < 4 && !is_done(); ++steps) {  // moves that end at once need no further look
+  for (int steps = 0; steps < 4 && !is_done();
+       ++steps) {  // a move that is done at once is followed by the next one without delay
     Move& move = plan_[next_];
     const Look now{thread_, sight, place_, hands_, t_s_ - began_s_};
     const bool done = move.act(now);

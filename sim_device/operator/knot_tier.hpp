@@ -35,8 +35,8 @@ class KnotTier {
   static std::variant<KnotTier, std::string> make(const scene::Scene& scene, const std::string& knot,
                                                   std::uint32_t seed);
 
-  /// One tick: where both hands want to be now. @param sight what the operator sees; it may be of an
-  /// earlier time, by an unknown amount.
+  /// One tick: where both hands want to be now. @param sight what the operator sees; it may be of an earlier time, by
+  /// an unknown amount.
   const std::array<HandWish, 2>& tick(const Sight& sight);
 
   [[nodiscard]] const std::array<HandWish, 2>& wish() const noexcept { return wish_; }

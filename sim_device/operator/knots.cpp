@@ -71,7 +71,7 @@ Move hold_corner(const Workplace& place, const Layout& layout, WhereAlong s) {
 /// The right hand holds the end down with the thread just straight. Otherwise the thread beside a knot would hang at an
 /// angle, and jaws keep the direction in which they close.
 Moves hold_down() {
-  constexpr double kStraight = 0.1;  // share of a tight knot's pull
+  constexpr double kStraight = 0.1;  // fraction of a tight knot's pull
   Moves m{take(kRightHand, the_end())};
   append(m, pull_tight(kDown, kStraight));
   return m;

@@ -17,9 +17,10 @@ struct Knot {
   std::string_view handedness;
   std::span<const Throw> throws;
   double least_diameters = 0.0;  ///< minimal length of the thread, in diameters
-  /// Longest segment of a chain, in diameters d, for which the knot holds. A segment of length a that lies d off a
-  /// strand's axis bends by 2 atan(a / 2 d) at each node. Above a = 1.2 d (1.1 rad) a second turn beside the first does
-  /// not stay. A single turn stays for every chain tried, up to a = 2.65 d.
+  /// Longest segment of a paper model's chain, in thread diameters d, for which the knot holds. Segments of length a
+  /// that wind round a strand at the distance d from its axis bend by 2 atan(a / 2 d) at each node. In simulations with
+  /// a above 1.2 d (1.1 rad) a second turn beside the first slipped off. A single turn held up to a = 2.65 d, the
+  /// longest that was tried.
   double longest_segment = 1.2;
 };
 

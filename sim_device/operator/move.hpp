@@ -37,7 +37,8 @@ struct Look {
   }
 };
 
-/// One step of a plan: looks at the thread, sets the hands' goals, and tells when it is done.
+/// One step of a plan. act() is called each time the operator looks at the thread: it sets the hands' goals and returns
+/// whether the move is done.
 struct Move {
   std::string name;
   std::function<bool(const Look&)> act;

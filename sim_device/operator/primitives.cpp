@@ -18,7 +18,8 @@ bool is_between_jaws(const Look& look, std::size_t hand, double s, double waited
 }  // namespace
 
 Move take(std::size_t hand, const WhereAlong& s) {
-  constexpr double kLong_s = 3.0, kSlide_per_s = 0.04, kMost = 0.06;  // the last two are shares of the thread's length
+  constexpr double kLong_s = 3.0, kSlide_per_s = 0.04,
+                   kMost = 0.06;  // the last two are fractions of the thread's length
   enum Phase { kBefore, kNear, kClosed };
   struct State {
     Phase phase = kBefore;

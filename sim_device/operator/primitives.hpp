@@ -12,13 +12,13 @@ namespace ligature::sim {
 [[nodiscard]] Move take(std::size_t hand, const WhereAlong& s);
 /// Opens the jaws, waits for that, and backs off to the front.
 [[nodiscard]] Move let_go(std::size_t hand);
-/// Moves to a goal that may change; done within `near` clearances of it. @param pace share of full speed
+/// Moves to a goal that may change; done within `near` clearances of it. @param pace factor on the full speed
 [[nodiscard]] Move carry(std::size_t hand, std::string name, const Where& where, double near = 0.5, double pace = 1.0);
 /// Waits.
 [[nodiscard]] Move wait(double seconds);
 /// Waits until the end of the hanging thread no longer swings.
 [[nodiscard]] Move hang_out();
-/// The right hand moves away from the anchor along `direction` until the pull reaches `share` of a tight knot's pull.
+/// The right hand moves away from the anchor along `direction` until the pull is `share` times that of a tight knot.
 [[nodiscard]] Moves pull_tight(const Vec3& direction, double share);
 /// The right hand swings the thread about the anchor until it points along `direction`, at no larger distance than
 /// before.

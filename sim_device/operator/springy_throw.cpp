@@ -75,7 +75,7 @@ bool is_tied(const Look& look, const Throw& t, const Vec3& front, const Vec3& ou
 bool is_springy(const Workplace& place) { return place.bend_length_m > kSpringy * place.length_m; }
 
 Move open_arch(const Throw& t, const WhereAlong& corner) {
-  constexpr double kLow = -0.62, kHigh = -0.18, kOut = 0.12;  // shares of the working part's length
+  constexpr double kLow = -0.62, kHigh = -0.18, kOut = 0.12;  // fractions of the working part's length
   constexpr double kQuarter = 0.5 * std::numbers::pi;
   enum Phase { kRaise, kAside, kToFront };
   struct State {

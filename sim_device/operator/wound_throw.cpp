@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kRadius = 1.1;                        // radius of the helix, in clearances
-constexpr double kFirst = 0.3, kLast = 0.8;            // start and end of the helix, as shares of the standing part
+constexpr double kFirst = 0.3, kLast = 0.8;            // start and end of the helix, as fractions of the standing part
 const Vec3 kOut = Vec3(0.85, 0.0, 0.52).normalized();  // direction of the standing part: to the right and up
 // Direction in which the end is drawn: past the corner and down
 const Vec3 kAway = Vec3(0.89, 0.0, -0.45).normalized();

@@ -15,8 +15,8 @@ namespace {
 
 constexpr const char* kWishChannel = "LIGATURE_HAND_WISH";
 constexpr const char* kStateChannel = "LIGATURE_HAND_STATE";
-constexpr int kMostWishesALook =
-    64;  // wishes handled per call of look(); bounds its time if somebody floods the channel
+// wishes handled per call of look(); bounds its time if somebody floods the channel
+constexpr int kMostWishesALook = 64;
 
 /// Decodes a message of unknown origin: only the exact size of a hand_wish_t and plausible positions are accepted.
 std::optional<ligature_msg::hand_wish_t> wish_of(const lcm::ReceiveBuffer& received) {

@@ -29,7 +29,7 @@ struct Dial {
   std::function<void(scene::Scene&, double)> turn;
 };
 
-/// Unusual scenes by name, with their endings.
+/// Trials of unusual scenes: name and ending of each.
 using OddEndings = std::vector<std::pair<std::string, Ending>>;
 
 /// Tables and counts of all trials of one model.

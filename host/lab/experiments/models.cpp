@@ -21,8 +21,8 @@ using physics::Vec3;
 
 struct Measured {
   double bend_J = 0.0;      ///< energy to fold the straight thread by 90 degrees at one node
-  double ring_left = 0.0;   ///< share of the energy of a zigzag kick that is left after 1 s
-  double orbit_left = 0.0;  ///< share of the energy of a conical orbit that is left after 20 s
+  double ring_left = 0.0;   ///< fraction of the energy of a zigzag kick that is left after 1 s
+  double orbit_left = 0.0;  ///< fraction of the energy of a conical orbit that is left after 20 s
   double stretch = 0.0;     ///< strain of the hanging thread at rest
 };
 
@@ -46,7 +46,8 @@ std::vector<Vec3> rest_shape(scene::Scene s) {
   return {nodes.begin(), nodes.end()};
 }
 
-/// Share of the energy above rest that is left after t_s, for a start with positions p and velocities v.
+/// Fraction of the energy above the state at rest that is left after t_s, for a start with positions p and velocities
+/// v.
 double energy_left(const scene::Scene& s, const std::vector<Vec3>& rest, const std::vector<Vec3>& p,
                    const std::vector<Vec3>& v, double t_s) {
   Rehearsal still(s, {}), kicked(s, {});

@@ -26,8 +26,8 @@ class DeviceBus final : public platform::CanBus {
   DeviceBus(std::unique_ptr<sim::Intention> intention, const sim::Body& body, const Nanoseconds& now)
       : device(std::move(intention), now, body), now_(now) {}
 
-  /// From now on loses this share of the process data frames (PDOs) in both directions, 0 .. 1; equal seeds lose equal
-  /// frames. SYNC, NMT, SDO and heartbeats are never lost.
+  /// From now on loses this fraction (`share`) of the process data frames (PDOs) in both directions, 0 .. 1; equal
+  /// seeds lose equal frames. SYNC, NMT, SDO and heartbeats are never lost.
   void lose_frames(double share, std::uint64_t seed) noexcept {
     lost_share_ = share;
     random_.seed(seed);

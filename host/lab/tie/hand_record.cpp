@@ -66,7 +66,7 @@ sim::Vec3 HandRecord::written(const sim::Vec3& wish_W) const {
     return ((home_W + share * (wish_W - home_W)) / unit_m).array().round() * unit_m;
   };
   if (is_within_reach(at(1.0))) return at(1.0);
-  double out = 0.0;  // share of the way from home to the wanted position
+  double out = 0.0;  // fraction of the way from home to the wanted position
   for (double step = 0.5; step > std::ldexp(1.0, -kHalvings); step /= 2.0)
     if (is_within_reach(at(out + step))) out += step;
   return at(out);

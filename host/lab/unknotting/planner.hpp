@@ -1,5 +1,5 @@
 #pragma once
-// Plans a pull (node and direction) that opens the knot; the paper leaves this planning out.
+// Plans a pull (node and direction) that opens the knot. The paper does not describe such planning.
 
 #include <optional>
 

@@ -38,8 +38,8 @@ void set_drag(scene::Scene& scene, double per_s);
 void clamp_start(scene::Scene& scene);
 [[nodiscard]] double clamp_end_m(const scene::Scene& scene);
 
-/// Weight per length w along -axis (1: y, 2: z), as a constant load on every node for its share of the thread. Gravity
-/// is not used, because a paper model has equal masses and its last node would weigh twice its share.
+/// Weight per length w along -axis (1: y, 2: z), as a constant load on every node for its part of the thread's length.
+/// Gravity is not used, because a paper model has equal masses and its last node would weigh twice as much as its part.
 void weigh(scene::Scene& scene, double w_N_per_m, int axis);
 
 /// Lays the thread along a curve: node k at place(s_k).

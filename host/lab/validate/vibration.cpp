@@ -141,8 +141,8 @@ Findings cantilever_frequencies(const Subject& subject) {
   for (const auto& row : reference_rows("03_bending_modes.csv")) {
     if (row.at("ends") != "cantilever" || number(row, "mode") > 3) continue;
     const double omega = number(row, "omega_times_L2_sqrt(rhoA_over_EI)");
-    // In a paper model the last mass represents half a segment beyond the last node. That equals the half segment that
-    // the clamp holds at the start, so the free length is 1.
+    // In a paper model the last node has a full mass, as if the thread were half a segment longer. The clamp holds half
+    // a segment at the start, so the free length is 1.
     Ringing r(unit_thread(subject, 0.1 / omega, 0.0), number(row, "beta_L"), 1.0);
     const double found =
         frequency(r.amplitude(), 0.1 / omega, 6, [&] { return proceed(*r.sim, no_hands()), r.amplitude(); });
