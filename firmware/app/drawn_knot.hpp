@@ -29,7 +29,7 @@ inline constexpr std::array<double, 4> kHandSpeeds_m_per_s{0.05, 0.1, 0.25, 0.4}
 struct DrawnKnot {
   double speed_m_per_s = 0.0;
   double pull_lost = 0.0;  ///< share of time in which the thread was not moved while the hands drew
-  double hold_lost = 0.0;  ///< the same in the 0.3 s after that, while the hands held still
+  double hold_lost = 0.0;  ///< the same share in the next 0.3 s, while the hands held still
   int ticks = 0;
 };
 

@@ -12,15 +12,16 @@ namespace ligature::control {
 /// encoder, so a wrong encoder cannot invalidate it. It is a norm (convex, symmetric): any torque between two safe
 /// torques is safe.
 ///
-/// omni-serial: let a = tau2 / l1 and b = tau3 / l2 (forces at the tip due to shoulder and forearm torque) and x =
-/// sin(q3 - q2), the sine of the angle between the links. Solving tau = J^T f gives
+/// Device kind omni-serial: let a = tau2 / l1 and b = tau3 / l2 (forces at the tip due to shoulder and forearm torque)
+/// and x = sin(q3 - q2), the sine of the angle between the links. Solving tau = J^T f gives
 ///   |f|^2 = tau1^2 / rho^2 + (a^2 + b^2 - 2 a b x) / (1 - x^2)
 ///         = u tau1^2 + v (a - b)^2 / 2 + w (a + b)^2 / 2,     u = 1 / rho^2,  v = 1 / (1 - x),  w = 1 / (1 + x)
 /// rho is the tip's distance from the waist axis. With rho^2 + z^2 = l1^2 + l2^2 + 2 l1 l2 x the pose enters only
 /// through rho and z^2. The box's range of rho is divided into kSlices. In each slice u, v and w take their largest
 /// values: u at the least rho, v at the largest rho and z^2, w at the least rho and z^2. The result is at most 10 %
 /// above the maximum found by a search of the box. Outside the box (arm nearly stretched, tip near the waist axis) the
-/// same torques can make a larger force. cartesian: |f| does not depend on the pose.
+/// same torques can make a larger force. Device kind cartesian: |f| does not depend on the
+/// pose.
 ///
 /// All O(1), no allocation.
 class AnyPose {

@@ -143,7 +143,7 @@ std::array<double, rt::kJoints> HandControl::command(std::int64_t tick) noexcept
     torque_Nm = sendable_torque(paid_N);
     // Only rounding can violate the step limit here; then the last torques are repeated.
     if (!passivity_.released() && !passivity_.is_a_step(torque_Nm)) torque_Nm = torque_Nm_;
-    // The hand exceeds the acceleration bound, or frames are lost: all force is removed
+    // All force was removed, because the hand exceeds the acceleration bound or frames are lost: a guided move ends
     if (passivity_.released()) end_move();
     if (passivity_.acts()) limits |= rt::kPassivityLimit;
     if (passivity_.stepped()) limits |= rt::kStepLimit;

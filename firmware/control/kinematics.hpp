@@ -19,7 +19,7 @@ using JointAngles = std::array<double, 3>;  ///< rad, as the drives report them
 
 /// Tip T in the device base D (x right, y away from the person, z up) and J = d p_DT / d q.
 ///
-/// omni-serial: waist q1, shoulder q2, forearm q3 against the vertical; links l1, l2.
+/// Device kind omni-serial: waist q1, shoulder q2, forearm q3 against the vertical; links l1, l2.
 ///   rho = l1 cos q2 + l2 sin q3        reach, horizontally, out of the waist axis towards the person
 ///   p_DT = (rho sin q1, -rho cos q1, l1 sin q2 - l2 cos q3)
 /// The parallel linkage drives the forearm from the base, so q3 is its absolute angle (0 hangs down) and does not
@@ -27,7 +27,7 @@ using JointAngles = std::array<double, 3>;  ///< rad, as the drives report them
 ///   dp/dq1 = ( rho cos q1,           rho sin q1,           0         )
 ///   dp/dq2 = (-l1 sin q2 sin q1,     l1 sin q2 cos q1,     l1 cos q2 )
 ///   dp/dq3 = ( l2 cos q3 sin q1,    -l2 cos q3 cos q1,     l2 sin q3 )
-/// cartesian: p_DT = home + (r1 q1, r2 q2, r3 q3), r the drums' radii.
+/// Device kind cartesian: p_DT = home + (r1 q1, r2 q2, r3 q3), r the drums' radii.
 ///
 /// All O(1), no allocation; not-a-number in, not-a-number out.
 class Linkage {

@@ -39,7 +39,7 @@ class Ramp {
     if (!plans_ || at_s_ >= plan_.get_duration() || std::abs(value_ - target) < kNear) settle(target);
     return value_;
   }
-  /// Sets the value at once, at rest.
+  /// Sets the value at once, with zero speed and acceleration.
   void settle(double value) noexcept {
     value_ = value;
     input_.current_position[0] = input_.target_position[0] = value;

@@ -23,8 +23,8 @@ class ThermalCap {
     fall_s_ = std::min(kFall_s, kMostOver * tau_s_ / std::max(rise, 1e-9));
   }
 
-  /// Call once per tick with the new value. @param periods since the last call; the value given then acted in all of
-  /// them.
+  /// Call once per tick with the force or torque now sent. @param periods since the last call; the value of the last
+  /// call acted in all of them.
   void sent(double size, std::int64_t periods = 1) noexcept {
     const double load = sent_ / continuous_,
                  time_s = period_s_ * static_cast<double>(std::max<std::int64_t>(periods, 1));

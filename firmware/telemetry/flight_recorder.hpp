@@ -57,8 +57,8 @@ class FlightRecorder {
   [[nodiscard]] rt::SpscRing<rt::TickRecord>& inlet() noexcept { return inlet_; }
 
   /// Announces that a change of scene is in progress (the loop may already use the new scene), or that it is over. If a
-  /// fault occurs in between, its ticks are saved up to 0.1 s later, after scene_changed(), so that the file names the
-  /// right scene. Any thread; never waits for the disk.
+  /// fault occurs in between, saving its ticks waits up to 0.1 s for scene_changed(), so that the file names the right
+  /// scene. Any thread; never waits for the disk.
   void expect_scene(bool expected);
   /// Reports a new scene or parameter with its first tick. Any thread; never waits for the disk.
   void scene_changed(FlightScene scene);

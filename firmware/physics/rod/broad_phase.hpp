@@ -77,7 +77,7 @@ class BroadPhase {
   /// keep_impulses() keeps them again.
   void put_back(const PairList& list) const noexcept;
 
-  /// Cost of a build() in which no segments are near each other, in instructions.
+  /// Part of the cost of a build() that does not depend on how many segments are near each other, in instructions.
   [[nodiscard]] static long least_cost(int nodes) noexcept;
 
  private:

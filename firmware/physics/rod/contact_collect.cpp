@@ -51,7 +51,7 @@ void ContactSet::choose_rows(int most, int widest, int nodes, ContactReport& rep
     cut = gaps_[room];
   }
   const Span all = span();
-  const bool narrow = all.last - all.first >= widest;  // then the window begins at the most urgent contact
+  const bool narrow = all.last - all.first >= widest;  // only contacts near the most urgent one
   rows_ = 0, window_first_ = nodes, window_last_ = -1;
   for (std::size_t k = 0; k < found; ++k) {
     Contact& c = contacts_[k];

@@ -9,9 +9,10 @@
 
 namespace ligature::physics::rod {
 
-/// W of up to `most` contacts: u_a += W_ab p_b, a 3 x 3 block per pair, W_ba = W_ab^T; both triangles are stored. The
-/// row of contact a is stored in groups of eight contacts b: for each i, j the eight numbers W_ab(i, j) are adjacent,
-/// at offset (3 i + j) x 8. So a row is read sequentially with vector loads: the table exceeds the first-level cache.
+/// Coupling matrix W of up to `most` contacts: impulse p_b at contact b changes the velocity at a by W_ab p_b. One 3 x
+/// 3 block per pair, W_ba = W_ab^T; both triangles are stored. The row of contact a is stored in groups of eight
+/// contacts b: for each i, j the eight numbers W_ab(i, j) are adjacent, at offset (3 i + j) x 8. So a row is read
+/// sequentially with vector loads: the table exceeds the first-level cache.
 class Couplings {
  public:
   static constexpr std::size_t kLanes = 8, kBlock = 9 * kLanes;

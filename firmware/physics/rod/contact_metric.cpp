@@ -29,7 +29,7 @@ void ContactMetric::factor(const Mesh& mesh, const Material& material, double dt
   const auto n = static_cast<std::size_t>(mesh.nodes()), z = static_cast<std::size_t>(last_);
   const double bend = dt_s * (dt_s + material.bend_tau_s), inertia = 1.0 + material.drag_per_s * dt_s;
   const auto diag = [&](std::size_t i) { return mesh.mass[i] * inertia + bend * mesh.kd[i]; };
-  // Nodes right of the window, from the end inwards: only the pivots d and the factors f need be kept.
+  // Nodes from the thread's end down to last_: only the pivots d and the factors f need be kept.
   double d1 = 0.0, d2 = 0.0, f1 = 0.0;  // pivots of i+1 and i+2; elimination factor of i+1
   double on_last = 0.0, on_before = 0.0, on_pair = 0.0;
   for (std::size_t i = n; i-- > z;) {
@@ -50,7 +50,7 @@ void ContactMetric::factor(const Mesh& mesh, const Material& material, double dt
     d1 = diag(i) - less;
     f1 = g;
   }
-  // Nodes left of the window and the window itself, from the start forwards.
+  // Nodes from the thread's start up to last_.
   for (std::size_t i = 0; i <= z; ++i) {
     const double skip = i > 1 ? bend * mesh.kb[i - 2] : 0.0;
     double f = i > 0 ? bend * mesh.ke[i - 1] : 0.0;

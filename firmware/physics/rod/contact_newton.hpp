@@ -81,7 +81,7 @@ class ContactNewton {
 
   /// Work or time ran out: stores the impulses, so that the repeated substep can resume() from them.
   void put_off(const Vec* p) noexcept;
-  /// The substep was solved another way: nothing to resume.
+  /// Forgets the impulses of put_off(), as the substep was solved another way.
   void give_up() noexcept { put_off_ = false; }
   /// Writes the impulses of put_off() into p. @return false when there are none.
   [[nodiscard]] bool resume(Vec* p) noexcept;

@@ -38,7 +38,7 @@ struct Numerics {
   /// Relative budget increase for hands faster than 2 fast_m_per_s; between 1 and 2 fast_m_per_s it is 0.25.
   double rush = 0.75;
   long given_work = 0;            ///< > 0: replaces the whole budget, for any thread and hands
-  double settled_m_per_s = 3e-5;  ///< tolerance: passes end when none changes a velocity by more
+  double settled_m_per_s = 3e-5;  ///< tolerance: a pass that changes no velocity by more is the last
   double settled_share = 0.004;   ///< added to the tolerance: this times half the hands' relative speed (Rod::settled)
   /// Least tolerance of Newton's method, whose single precision leaves an error of 5 um/s in a held knot. A thread at
   /// rest does not drift at this tolerance, as it would with the sweeps: converged impulses are not changed any more.

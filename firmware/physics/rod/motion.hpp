@@ -35,7 +35,8 @@ class Motion {
   }
   [[nodiscard]] double fastest() const noexcept { return fastest_; }
 
-  /// The same bounds for any segment of block p and any of block q >= p; a block is kBlock neighbouring segments.
+  /// Bounds as speed(), rate() and gone(), for any segment of block p and any of block q >= p; a block is kBlock
+  /// neighbouring segments.
   static constexpr std::size_t kBlock = 8;
   [[nodiscard]] double speed_of_block(std::size_t p) const noexcept { return block_speed_[p]; }
   [[nodiscard]] double rate_of_blocks(std::size_t p, std::size_t q) const noexcept {

@@ -126,9 +126,9 @@ double Rod::settled() const noexcept {
   return std::min(settled, std::max(kStill_m_per_s, kCreep * motion_.fastest()));
 }
 
-// Chooses the contacts that are solved, and the window of nodes for them. @return nothing when not all can be afforded
-// and the substep is not the tick's first: it then waits for the next tick. So contacts are left out only when the
-// whole budget of a tick is too small for them.
+// Chooses the contacts that are solved, and with them the range of nodes that is solved with contacts. @return nothing
+// when not all can be afforded and the substep is not the tick's first: it then waits for the next tick. So contacts
+// are left out only when the whole budget of a tick is too small for them.
 std::optional<Effort> Rod::choose_rows(double dt_s) noexcept {
   const long passes = solves_directly() ? 1 : kLeastPasses;
   const auto span = contacts_.span();
@@ -217,7 +217,7 @@ bool Rod::give_up() noexcept {
 
 // Guard for pairs of segments that this substep has not measured, which may meet after a sudden acceleration such as a
 // release. The step is limited for pairs on the list by a lower bound of their distance, and for all other pairs by the
-// margin with which the list was made. If the margin shortens the step and work is left, a new list is made. @return
+// margin with which the list was made. If this shortens the step and work is left, a new list is made. @return
 // the admissible share of dt_s, or nothing when there is not enough work and the substep can wait.
 std::optional<double> Rod::guard_unseen(double dt_s) noexcept {
   const double diameter = 2.0 * material_.radius_m, unseen = 0.9 * (diameter * BroadPhase::kLeastReach + near_m_);
