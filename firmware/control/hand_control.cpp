@@ -217,7 +217,7 @@ double HandControl::safe_share(const Vec3& torque_Nm) const noexcept {
 
 /// Torques to send: J^T f, limited to the drives' range, to what is safe in any pose and to what the windings allow, in
 /// whole torque quanta. A joint keeps its last torque if the change is below kStay quanta: rapid toggling is audible,
-/// and hides energy from the account within encoder counts.
+/// and its work can stay below the encoders' resolution, where the energy account cannot see it.
 Vec3 HandControl::sendable_torque(const Vec3& f_N) const noexcept {
   constexpr double kStay = 0.7;
   Vec3 exact = (jacobian_.transpose() * f_N).cwiseMax(-max_torque_Nm_).cwiseMin(max_torque_Nm_);

@@ -54,8 +54,8 @@ struct Outlook {
 /// speed of each pair, so neither one fast end nor a fast motion of the whole thread makes the list long.
 /// Pairs less than 0.6 diameters apart along the thread are left out: they can cross only if the thread folds. Pairs an
 /// arc a < pi d / 2 apart touch at the distance d sin(a / d), the smallest that a bent tube of constant thickness
-/// allows. In a straight thread their gap is a - d sin(a / d); they become contacts below 2/3 of that, or below near_m
-/// if that is smaller.
+/// allows. In a straight thread their gap is a - d sin(a / d); they become contacts when it falls below 2/3 of that, or
+/// below near_m if near_m is smaller.
 class BroadPhase {
  public:
   static constexpr double kLeastArc = 0.6;     ///< smallest distance along the thread of a listed pair, in diameters
