@@ -63,7 +63,7 @@ class FlightReader {
     std::uint64_t sequence;
     std::size_t slot;
   };
-  std::vector<Entry> sound_;  // ordered by sequence number
+  std::vector<Entry> sound_;  // the valid slots, ordered by sequence number
   std::int64_t damaged_ = 0;
 };
 

@@ -13,7 +13,7 @@ class Handle {
  public:
   using Close = herr_t (*)(hid_t);
   Handle() = default;
-  /// @param doing what the call tried, for the message. @throws RunFailed when `id` is invalid.
+  /// @param doing what the HDF5 call tried to do, for the error message. @throws RunFailed when `id` is invalid.
   Handle(hid_t id, Close close, const char* doing);
   [[nodiscard]] hid_t id() const { return *id_; }
 

@@ -8,7 +8,7 @@ namespace ligature::console {
 /// A temporary folder, deleted with its contents by the destructor.
 class ScratchFolder {
  public:
-  /// @throws RunFailed.
+  /// Creates the folder. @throws RunFailed when that is not possible.
   ScratchFolder();
   ~ScratchFolder();
   ScratchFolder(const ScratchFolder&) = delete;

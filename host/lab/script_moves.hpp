@@ -5,13 +5,13 @@
 
 namespace ligature::lab {
 
-/// Mirror image in the plane x = 0, which maps the paper's frame and thread onto themselves.
+/// The script's mirror image in the plane x = 0, which maps the paper's frame and thread onto themselves.
 [[nodiscard]] scene::GripperScript mirrored(scene::GripperScript script);
 
-/// Rotated about the z axis by an angle, rad.
+/// The script rotated about the z axis by an angle, rad.
 [[nodiscard]] scene::GripperScript turned(scene::GripperScript script, double angle_rad);
 
-/// Played at `factor` times the speed.
+/// The script played at `factor` times the speed.
 [[nodiscard]] scene::GripperScript paced(scene::GripperScript script, double factor);
 
 /// Time of the last release of the last hand, s; the script's end when no hand releases.

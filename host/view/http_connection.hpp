@@ -20,7 +20,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   HttpConnection& operator=(const HttpConnection&) = delete;
 
   void read();
-  /// Closes the connection in any state, because its place is needed for another one.
+  /// Closes the connection in any state, to make room for a new connection.
   void end() { stream_.close(); }
 
  private:

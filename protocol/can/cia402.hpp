@@ -22,15 +22,15 @@ enum class State : std::uint8_t {
 
 /// Commands with their controlword bits (x: any value), and events inside the drive.
 enum class Event : std::uint8_t {
-  kInitialised,        // inside the drive: self test done
+  kInitialised,        // event inside the drive: self test done
   kShutdown,           // controlword xxxx x110
   kSwitchOn,           // controlword xxxx 0111; in Operation Enabled it means "disable operation"
   kEnableOperation,    // controlword xxxx 1111
   kDisableVoltage,     // controlword xxxx xx0x
   kQuickStop,          // controlword xxxx x01x
   kFaultReset,         // rising edge of controlword bit 7
-  kFaultDetected,      // inside the drive
-  kFaultReactionDone,  // inside the drive: torque is zero
+  kFaultDetected,      // event inside the drive
+  kFaultReactionDone,  // event inside the drive: torque is zero
 };
 
 struct StatusPattern {

@@ -1,5 +1,5 @@
 #pragma once
-// EMCY: a drive sends one when an error occurs, and one when it is over (CiA 301).
+// EMCY, the error message of a drive: sent when an error occurs, and again when it is over (CiA 301).
 
 #include <cstdint>
 #include <optional>

@@ -16,8 +16,8 @@ struct Object {
 namespace od {
 inline constexpr Object kDeviceType{0x1000, 0};
 inline constexpr Object kErrorRegister{0x1001, 0};
-inline constexpr Object kConsumerHeartbeat{0x1016, 1};  ///< (producer node << 16) | milliseconds
-inline constexpr Object kProducerHeartbeat{0x1017, 0};  ///< ms, 0 = off
+inline constexpr Object kConsumerHeartbeat{0x1016, 1};  ///< (node to monitor << 16) | longest silence in ms
+inline constexpr Object kProducerHeartbeat{0x1017, 0};  ///< period of the heartbeat, ms; 0: off
 inline constexpr Object kVendorId{0x1018, 1};
 inline constexpr Object kRpdo1CobId{0x1400, 1};  ///< bit 31 set: PDO disabled
 inline constexpr Object kRpdo1TransmissionType{0x1400, 2};

@@ -23,7 +23,7 @@ class Signals {
     if (raised_ && !error_ && PyErr_Occurred()) error_.emplace();
     return !raised_;
   }
-  /// Raises the handler's exception. The caller must hold the GIL.
+  /// Rethrows the exception that a Python signal handler has raised. The caller must hold the GIL.
   void rethrow() {
     if (error_) throw nb::python_error(std::move(*error_));
   }

@@ -22,7 +22,7 @@ struct Workplace {
   double bend_length_m = 0.0;  ///< (EI / weight per length)^(1/3): shorter pieces stand by their own stiffness
 };
 
-/// All information that a move uses, at one look.
+/// All information that a move gets when the operator looks at the thread.
 struct Look {
   const ThreadView& thread;
   const Sight& sight;

@@ -20,7 +20,7 @@ struct ArmLimits {
 /// message it stops and releases the dead-man; the dead-man counts again only after a message with it released.
 class SteeredHand final : public Intention {
  public:
-  /// A page that renders in software may be busy for 100 ms; the person notices less than twice that.
+  /// Twice the 100 ms for which a page that renders in software may be busy; still too short for a person to notice.
   static constexpr double kLongestSilence_s = 0.2;
 
   explicit SteeredHand(const Linkage& linkage, const ArmLimits& limits = {});

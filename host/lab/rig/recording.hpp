@@ -25,7 +25,7 @@ class Recording {
   /// @throws host::RunFailed when writing fails (disk full).
   void take(const rt::TickRecord& record);
   void take(const rt::ThreadSnapshot& shape);
-  /// Another scene or other parameters are in force from tick `first_tick` on.
+  /// Call when another scene or other parameters are in force from tick `first_tick` on.
   void scene_changed(const scene::Scene& scene, std::string scene_toml, std::int64_t first_tick);
   /// Writes the incomplete batch, the last shape and a last status.
   void close();

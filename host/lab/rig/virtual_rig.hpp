@@ -59,7 +59,7 @@ class VirtualRig {
   /// Writes an LCM log from now on. @throws host::BadInput when the file exists or cannot be created.
   void record(const std::string& path);
 
-  /// For the recording: another scene or other parameters are in force from tick `first_tick` on.
+  /// Notes in the recording that another scene or other parameters are in force from tick `first_tick` on.
   void scene_changed(const scene::Scene& scene, std::string scene_toml, std::int64_t first_tick) {
     if (recording_) recording_->scene_changed(scene, std::move(scene_toml), first_tick);
   }

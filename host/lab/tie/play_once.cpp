@@ -15,7 +15,7 @@ namespace {
 constexpr double kWatched_s = 5.0;  // duration of the run after the last key
 constexpr double kLongestStall_ticks = 10.0;
 
-/// Delays a hand.
+/// Delays the motion of a hand by `late_s`.
 class Late final : public sim::Intention {
  public:
   Late(std::unique_ptr<sim::Intention> hand, double late_s) : hand_(std::move(hand)), late_s_(late_s) {}

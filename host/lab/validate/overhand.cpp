@@ -93,9 +93,9 @@ RodSimulation gathered_knot(const scene::Scene& scene, double R_m, double travel
   return sim;
 }
 
-/// Tension T of a knot that is slowly tightened (sense +1) or loosened (-1) and passes the wanted size, as T a^2/B.
-/// Averaged over one segment's length, because polygon corners pass the contact. The bending stiffness B is larger than
-/// the suture's, which makes drag negligible.
+/// Tension T of a knot that is slowly tightened (sense +1) or loosened (-1), measured while its size passes the given
+/// a / R; as T a^2/B. Averaged over one segment's length, because polygon corners pass the contact. The bending
+/// stiffness B is larger than the suture's, which makes drag negligible.
 double sliding_tension(const Subject& subject, double a_over_R, double friction, int sense) {
   const double EI = 100.0 * kB, R = kA_m / a_over_R, target = 2.0 * std::numbers::pi * R, speed = 0.005;
   auto scene = knotted(subject, R, EI, friction);

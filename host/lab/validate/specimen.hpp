@@ -1,5 +1,6 @@
 #pragma once
-// Threads for the experiments: the same piece of thread in any model; clamps, weight, and running to rest.
+// Threads for the validation experiments: the same piece of thread in any model; and functions that clamp it, apply its
+// weight and run it to rest.
 
 #include <array>
 #include <vector>

@@ -14,7 +14,8 @@ const LEAD_M = { steady: 0.015, dragged: 0.06 }; // how far a target may be ahea
 
 export class HandControl {
   /**
-   * @param panels {link, latest, picture}. @param run calls a function; errors are attributed to this part of the page.
+   * @param latest newest data from the host. @param panels its `picture` is the view that draws the thread. @param run
+   * calls a function; errors are attributed to this part of the page.
    */
   constructor({ link, latest, panels, run }) {
     Object.assign(this, { link, latest, panels, told: null, mine: {}, pace: FIRST_PACE, axes: null, last_ms: performance.now() });

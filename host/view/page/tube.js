@@ -106,7 +106,7 @@ export class Tube {
       let along = ux * tx + uy * ty + uz * tz; // removes u's component along the tangent
       ux -= along * tx; uy -= along * ty; uz -= along * tz;
       let size = Math.hypot(ux, uy, uz);
-      if (size < 1e-6) { // any direction normal to the tangent
+      if (size < 1e-6) { // u was parallel to the tangent: take any direction normal to it
         ux = Math.abs(tx) < 0.9 ? 1 : 0; uy = Math.abs(tx) < 0.9 ? 0 : 1; uz = 0;
         along = ux * tx + uy * ty;
         ux -= along * tx; uy -= along * ty; uz = -along * tz;

@@ -14,7 +14,7 @@ namespace ligature::lab {
 
 struct Wall {
   double K_N_per_m = 0.0, B_N_s_per_m = 0.0;
-  int delay = 1;            ///< periods, 0 .. 3; with the controller at least 1 (the bus)
+  int delay = 1;            ///< periods from sample to force, 0 .. 3; with the controller at least 1 (the bus)
   bool two_sided = false;   ///< true: a spring instead of a wall, so that the loop is linear
   bool controller = false;  ///< true: the firmware's passivity controller is between the law and the motor
   double mass_kg = 0.045, damping_N_s_per_m = 0.3;
