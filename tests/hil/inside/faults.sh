@@ -8,7 +8,7 @@ ip link set can1 up type can bitrate 1000000 sample-point 0.8
 chosen=$*  # names of the faults to run; empty: all
 right=vcan1
 also=      # further interface whose frames are recorded; empty: none
-# run NAME LEFT-INTERFACE-OF-THE-FIRMWARE LEFT-INTERFACE-OF-THE-HAND COMMAND...
+# Runs one fault: run NAME LEFT-INTERFACE-OF-THE-FIRMWARE LEFT-INTERFACE-OF-THE-HAND COMMAND-THAT-CAUSES-THE-FAULT...
 run() {
   local name=$1 ours=$2 theirs=$3
   shift 3

@@ -10,7 +10,7 @@ warm() {
   { printf '%s\n' "${programs[@]}"; ldd "${programs[@]}" 2>/dev/null | grep -o '/[^ :]*' || true; } | sort -u | xargs cat > /dev/null
 }
 
-# hand left|right INTERFACE [ARGUMENT...]
+# hand left|right INTERFACE [ARGUMENT...]: starts a simulated hand (ligature-device) on a CAN interface
 hand() {
   local side=$1 interface=$2
   shift 2
@@ -19,7 +19,8 @@ hand() {
   printf -v "${side}_pid" %d $!
 }
 
-# firmware LEFT-INTERFACE RIGHT-INTERFACE [ARGUMENT...]; --force, because an emulated CPU fails the admission
+# firmware LEFT-INTERFACE RIGHT-INTERFACE [ARGUMENT...]: starts the controller; with --force, because an emulated CPU is
+# too slow for the admission test
 firmware() {
   local left=$1 right=$2
   shift 2

@@ -37,7 +37,7 @@ struct AttackPlan {
   std::array<double, 2> tightness{0.5, 0.5}, period_s{0.7, 0.8}, amplitude_m{0.03, 0.03};
   std::array<sim::Vec3, 2> along;  ///< direction of each hand's pull, a unit vector
   bool jumps = false;
-  double lead_s = 0.0;      ///< prediction time of hands that push adversarially; 0: none
+  double lead_s = 0.0;      ///< an adversarial hand pushes this far ahead, in time, along the tip's velocity; 0: none
   double let_go_s = 1e9;    ///< when both dead-men are released, since the script's start
   double frame_loss = 0.0;  ///< share of process data frames lost, in either direction
   std::array<std::optional<scene::FaultScript>, 2> faults;

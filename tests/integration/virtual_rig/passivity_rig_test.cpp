@@ -85,7 +85,7 @@ struct Hands {
   double tightness = 0.5;
   double period_s = 0.7, amplitude_m = 0.03;
   bool jumps = false;
-  double lead_s = 0.0;  // prediction time of an adversarial hand
+  double lead_s = 0.0;  // an adversarial hand pushes this far ahead, in time, along the tip's velocity; 0: none
   double frame_loss = 0.0;
 };
 

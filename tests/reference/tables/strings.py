@@ -9,7 +9,8 @@ from tables.common import check, wcsv
 def tables():
     rows = []
     for d in (0.2, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.999):   # span / length
-        u = brentq(lambda u: np.sinh(u)/u-1/d, 1e-9, 50, xtol=1e-15)           # u = span/(2a)
+        # u = span / (2 a), a the catenary's parameter (horizontal tension / weight per length).
+        u = brentq(lambda u: np.sinh(u)/u-1/d, 1e-9, 50, xtol=1e-15)
         a = d/(2*u); rows.append([d, a, a*(np.cosh(u)-1), a, a*np.cosh(u), np.sinh(u), np.degrees(np.arctan(np.sinh(u)))])
         assert abs(2*a*np.sinh(u)-1) < 1e-11
     wcsv("02_catenary_inextensible.csv", ["span_over_S", "a_over_S", "sag_over_S", "H_over_wS", "Tend_over_wS", "slope_at_end", "angle_at_end_deg"], rows)

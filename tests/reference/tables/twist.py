@@ -38,7 +38,7 @@ def disc_twist_m(t, N=400):
         for k, c in ((-2, -.5), (-1, 1.), (1, -1.), (2, .5)):
             j = i+k
             if 0 <= j < n: D3[i, j] += c/h**3
-            elif j in (-2, n+1): # ghost: w(-h)=w(h)
+            elif j in (-2, n+1): # node beyond a clamped end: w(-h) = w(h)
                 jj = 0 if j == -2 else n-1; D3[i, jj] += c/h**3
     S = 1j*D3; S = (S+S.conj().T)/2
     ev = np.linalg.eigvals(np.linalg.solve(K4-t*D2, S)).real   # K w = m S w
@@ -62,7 +62,8 @@ def michell_check(n=2, eps=0.02, N=400):
         return 0.5*(kap**2*v).mean()*2*np.pi*(v.mean()*2*np.pi)    # scale invariant: E*L (B=1)
     E0 = Eb(curve2(0, 0)); a = (Eb(curve2(eps, 0))-E0)/eps**2; b = (Eb(curve2(0, eps))-E0)/eps**2
     w = (gauss_writhe(curve2(eps, eps))-gauss_writhe(curve2(eps, -eps)))/(2*eps**2)
-    # E*L = a e^2 + b d^2 + C/2 (2 pi)^2 (Tw0 - w e d)^2 ; unstable when C(2pi)^2 Tw0 |w| = 2 sqrt(ab)
+    # Energy times length of a ring with twist Tw0 turns and modes of amplitude e (out of plane) and d (in plane): E*L =
+    # a e^2 + b d^2 + C/2 (2 pi)^2 (Tw0 - w e d)^2; unstable when C (2 pi)^2 Tw0 |w| = 2 sqrt(a b).
     return 2*np.sqrt(a*b)/((2*np.pi)**2*abs(w))                     # critical Tw0 * C/B, in turns
 def tables():
     rows = []

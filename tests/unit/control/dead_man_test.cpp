@@ -165,7 +165,7 @@ TEST(NewPress, AMoveIsNotBegunByAnOldOne) {
   rig.controller.command(rt::CommandKind::kArm);
   rig.ticks(100);
   rig.controller.command(rt::CommandKind::kCalibrate);
-  rig.released = 0;  // a press after the command does not start it either
+  rig.released = 0;  // nor does a new press start the calibration's motion
   for (int i = 0; i < kLong; ++i) ASSERT_EQ(Rig::largest(rig.tick()), 0.0) << "tick " << i;
 }
 

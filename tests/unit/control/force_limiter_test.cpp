@@ -80,7 +80,8 @@ TEST(ForceLimiter, PeakForAWhileThenTheContinuousForce) {
   ForceLimiter l = limiter();
   int peak_ms = 0;
   for (int i = 0; i < 10'000; ++i) peak_ms += send(l, Vec3(0, 0, 50)).norm() > 3.29;
-  // At 3.3 N = 3.75 times the continuous force, the heat reaches 1 after tau ln(14.06 / 13.06) = 0.74 s.
+  // 3.3 N are 3.75 times the continuous force: heating by 3.75^2 = 14.06, the heat reaches 1 after (thermal time
+  // constant) x ln(14.06 / 13.06) = 0.74 s.
   EXPECT_GT(peak_ms, 500);
   EXPECT_LT(peak_ms, 1000);
   EXPECT_NEAR(send(l, Vec3(0, 0, 50)).norm(), 0.88, 1e-9);

@@ -52,7 +52,7 @@ TEST(VirtualCoupling, AnEmptyHandFeelsNothing) {
   EXPECT_EQ(felt(hands(), {false, Vec3(1, 1, 1), Vec3::Zero()}), Vec3::Zero());
 }
 
-TEST(VirtualCoupling, PullsTowardsTheNode) {  // node 0.1 m above: 1200 x 0.1 x 0.003 = 0.36 N upwards
+TEST(VirtualCoupling, PullsTowardsTheNode) {  // node 0.1 m above: 1200 N/m x 0.1 m x force scale 0.003 = 0.36 N
   EXPECT_NEAR(felt(hands(), {true, Vec3(0, 0, 0.1), Vec3::Zero()}).z(), 0.36, 1e-12);
 }
 

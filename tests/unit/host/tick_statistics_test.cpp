@@ -95,7 +95,7 @@ TEST(ThreadTime, IsFromTheToolsToTheNextJointsWithoutTheSync) {
   // 1000 + 0 + 460 - 25 - 30 - (20 + 480): samples that arrive at 600 us count as 460, the latest time allowed for.
   statistics.add(period_of(3, 0, 600, 700));
   EXPECT_EQ(statistics.thread_time().at_least_ns(50), 905'000);
-  statistics.add(period_of(4, 5, 420, 500));  // 1000 + 5 + 420 - 25 - 30 - (0 + 700)
+  statistics.add(period_of(4, 5, 420, 500));  // 1000 + 5 + 420 - 25 - 30 - (0 + 700), as above
   EXPECT_EQ(statistics.thread_time().at_least_ns(50), 855'000);
   EXPECT_EQ(statistics.thread_time().at_least_ns(100), 670'000);
 }

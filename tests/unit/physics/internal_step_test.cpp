@@ -133,8 +133,8 @@ TEST(InternalStep, ThePapersSwivelDamperBrakesEachEndAcrossThePlaneOfItsBend) {
   }
 }
 
-// Two nodes at rest, stretched or compressed: the velocity changes by dt T / m, divided by 1 + 2 dt^2 (dT/dl) / m where
-// the spring is implicit (model 5).
+// Two nodes of mass m at rest, the spring between them under tension T: the velocity changes by dt T / m, divided by 1
+// + 2 dt^2 (dT/dl) / m where the spring is implicit (model 5).
 TEST(InternalStep, TheSpringIsLinearInModel4AndQuadraticInModel5) {
   test::Random random(7);
   for (const auto model : {scene::Model::kPaper4, scene::Model::kPaper5})

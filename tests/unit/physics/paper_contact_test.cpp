@@ -1,5 +1,5 @@
-// PaperContact, the paper's self-contact, for random crossings against closed forms: equations (2), (18)-(22) for the
-// normal direction, (1) and (3) for friction, and the separation of section V.A.
+// PaperContact, the self-contact of the paper of 2007, for random crossings against closed forms: its equations (2),
+// (18)-(22) for the normal direction, (1) and (3) for friction, and the separation of section V.A.
 #include "firmware/physics/paper_contact.hpp"
 
 #include <gtest/gtest.h>
@@ -42,9 +42,9 @@ struct Crossing {
     for (int k = 0; k < 4; ++k) u = u + part[k] * of.at(k);
     return u;
   }
-  /// Equation (2) before clamping, N.
+  /// Repulsion by the paper's equation (2), N; negative: attraction.
   double repulsion() const { return -100.0 * gap_m - 5.0 * dot(relative(t.s.v), n); }
-  /// Equation (18) for a force of the given size, N s.
+  /// Impulse of a repulsion of force_N in one step by the paper's equation (18), N s.
   double impulse(double force_N) const {
     return 2.0 * force_N * t.m.step_s / (a * a + b * b + (1 - a) * (1 - a) + (1 - b) * (1 - b));
   }

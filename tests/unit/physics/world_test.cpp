@@ -18,7 +18,8 @@ void settle(Simulation& sim, double seconds) {
   for (int k = 0; k < static_cast<int>(seconds * 1000); ++k) sim.tick(kNoHands);
 }
 
-/// Tip height of a hanging thread: segment i carries the nodes below it, so l_i = l_r (1 + (n - 1 - i) m g / k_l).
+/// Tip height of a hanging thread of n nodes: segment i carries the n - 1 - i nodes below it, so its length is (rest
+/// length) (1 + (n - 1 - i) m g / 800 N).
 double hanging_tip_m(int nodes, double mass_kg) {
   double z = 5.5;
   for (int i = 0; i + 1 < nodes; ++i) z -= 5.0 / (nodes - 1) * (1.0 + (nodes - 1 - i) * mass_kg * 9.8 / 800.0);
@@ -88,8 +89,8 @@ TEST(Refinement, KeepsTheThreadWhenNodesChange) {
   EXPECT_NEAR(tip[2] / tip[1], 1.0, 0.02);
 }
 
-// A clamped thread without gravity under an end load: reference_nodes preserves the bending stiffness
-// EI = k_ts l_r / pi, so the small deflection F L^3 / (3 EI) does not depend on `nodes`.
+// A clamped thread without gravity under an end load F: reference_nodes preserves the bending stiffness EI = (bending
+// constant) (rest length) / pi, so the small deflection F L^3 / (3 EI) does not depend on `nodes`.
 TEST(Refinement, KeepsTheBendingStiffness) {
   for (const int nodes : {26, 51}) {
     Simulation sim = make(

@@ -70,8 +70,8 @@ TEST(Jaws, ForcesOnTheNodesAddUpToTheLoad) {  // no fixed node: three nodes betw
   EXPECT_NEAR(f.x(), 0.0, 1e-3 * kWeight_N);
 }
 
-/// Largest deviation of the hand's force from K (p_G - p_T) + B (v_G - v_T), N, while `move` moves the left hand for
-/// 800 ticks.
+/// Largest deviation of the hand's force from that of the coupling's spring and damper between tool (T) and held point
+/// (G), K (p_G - p_T) + B (v_G - v_T), N, while `move` moves the left hand for 800 ticks.
 template <class Move>
 double off_the_coupling_N(RodSimulation& sim, std::array<ToolInput, 2> tools, Move move) {
   double most = 0.0;

@@ -98,9 +98,9 @@ TEST(Smooth, FourAtATimeAreAsOne) {
     for (int l = 0; l < 4; ++l) {
       const Closest chord = closest(a[l].x, a[l].x + a[l].e, b[l].x, b[l].x + b[l].e);
       EXPECT_NEAR(chords.distance2[l], chord.distance2, 1e-9 * kDiameter_m * kDiameter_m) << round << ' ' << l;
-      // For parallel segments any point is correct.
+      // Case 1 has parallel segments, where any point is correct.
       EXPECT_NEAR(chords.s[l], chord.s, l == 1 ? 1.0 : 1e-6) << round << ' ' << l;
-      if (l == 2) continue;  // a curve without a chord has no tangent at its middle
+      if (l == 2) continue;  // case 2 has a segment of zero length, whose curve has no tangent at its middle
       const Closest curve = closest(a[l], b[l], Closest{chords.s[l], chords.t[l], 0.0, Vec{}});
       EXPECT_NEAR(curves.distance2[l], curve.distance2, 1e-9 * kDiameter_m * kDiameter_m) << round << ' ' << l;
       EXPECT_NEAR(curves.t[l], curve.t, 1e-6) << round << ' ' << l;

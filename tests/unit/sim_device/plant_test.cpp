@@ -87,7 +87,7 @@ TEST(Plant, MotorTorqueJTransposeFBalancesAForceAtTheTip) {  // statics by virtu
   }
 }
 
-TEST(Plant, ApparentMassAtTheHomePoseIsAbout45Grams) {  // 1 / (u' J I^-1 J' u) for each axis u
+TEST(Plant, ApparentMassAtTheHomePoseIsAbout45Grams) {  // 1 / (u' J I^-1 J' u), u axis, J Jacobian, I inertia
   const Mat3 jacobian = tip_jacobian_D(home_joints());
   const Mat3 mobility = jacobian * PlantParameters{}.inertia_kg_m2.cwiseInverse().asDiagonal() * jacobian.transpose();
   for (int axis = 0; axis < 3; ++axis) {
