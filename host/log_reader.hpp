@@ -37,9 +37,9 @@ class LogReader {
 
   [[nodiscard]] std::int64_t offset() const { return offset_; }  ///< bytes read
   [[nodiscard]] std::int64_t size() const { return file_.size(); }
-  [[nodiscard]] std::int64_t events() const { return events_; }                ///< returned by next()
-  [[nodiscard]] std::int64_t damaged() const { return damaged_; }              ///< dropped: wrong checksum
-  [[nodiscard]] std::int64_t unchecked() const { return unchecked_; }          ///< dropped: no checksum of their own
+  [[nodiscard]] std::int64_t events() const { return events_; }        ///< returned by next()
+  [[nodiscard]] std::int64_t damaged() const { return damaged_; }      ///< events dropped: wrong checksum
+  [[nodiscard]] std::int64_t unchecked() const { return unchecked_; }  ///< events dropped: no checksum of their own
   [[nodiscard]] std::int64_t skipped_bytes() const { return skipped_bytes_; }  ///< damaged bytes between intact events
   [[nodiscard]] bool is_truncated() const { return tail_bytes_ > 0; }          ///< the last event is cut off
   [[nodiscard]] std::int64_t tail_bytes() const { return tail_bytes_; }

@@ -8,7 +8,7 @@ namespace ligature::host {
 /// The report as a table for people.
 [[nodiscard]] std::string report_table(const LogSummary& summary);
 
-/// The same numbers as one JSON object; SI units, durations in us as the keys say.
+/// The numbers of report_table() as one JSON object; SI units, but durations in us where the key says so.
 [[nodiscard]] std::string report_json(const LogSummary& summary);
 
 }  // namespace ligature::host

@@ -8,7 +8,7 @@ namespace ligature::host {
 /// Facts that a reader of a log needs before the first tick.
 struct RigFacts {
   double period_s = 1e-3;    // control period; the default when the log has no status message
-  double max_force_N = 3.3;  // force limit at the device; default likewise
+  double max_force_N = 3.3;  // force limit at the device; the default when the log has no status message
   bool has_status = false;   // false: the two numbers above are defaults
   std::string scene_file, scene_toml;
   std::string firmware_version;

@@ -19,8 +19,8 @@ namespace {
 using namespace ligature;
 constexpr int kBadInput = 2, kRunFailed = 3;
 constexpr sim::Time kLongestSleep = std::chrono::milliseconds(100);
-constexpr sim::Time kFarewell =
-    std::chrono::milliseconds(200);  // time for the controller to see the dead-man released before the bus closes
+// time for the controller to see the dead-man released before the bus closes
+constexpr sim::Time kFarewell = std::chrono::milliseconds(200);
 
 volatile std::sig_atomic_t g_stop = 0;
 void on_signal(int) { g_stop = 1; }

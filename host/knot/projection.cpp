@@ -70,7 +70,7 @@ std::optional<Diagram> project(std::span<const Point> corners, const Point& dire
   std::sort(meetings.begin(), meetings.end(), [](const Meeting& a, const Meeting& b) { return a.at < b.at; });
   for (std::size_t k = 0; k < meetings.size(); ++k) {
     if (k > 0 && meetings[k].at - meetings[k - 1].at < 1e-12 * static_cast<double>(n))
-      return std::nullopt;  // triple point
+      return std::nullopt;  // three strands meet in one point of the projection
     diagram.passes.push_back(meetings[k].pass);
   }
   return diagram;

@@ -134,8 +134,7 @@ KnotResult recognise_open(std::vector<Point> thread) {
 /// 1/64, so that a thread of one metre there has lost its shape.
 bool normalise(std::vector<Point>& points) {
   constexpr double kLeastExtent = 1e-290;  // smaller extents are near the subnormal numbers; 0: all points coincide
-  constexpr double kCoarsest =
-      1e-8;  // limit on rounding / extent; strands are distinguished down to 1e-9 of the extent
+  constexpr double kCoarsest = 1e-8;       // limit on rounding / extent; strands are resolved down to 1e-9 of it
   Point low = points.front(), high = low;
   for (const auto& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const double half_extent = (0.5 * high - 0.5 * low).maxCoeff();  // halved first: the difference could overflow

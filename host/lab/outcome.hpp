@@ -10,8 +10,8 @@ inline constexpr int kDone = 0;
 inline constexpr int kMissed = 1;     ///< a result that should be reproduced differs
 inline constexpr int kBadInput = 2;   ///< usage, scene or script refused; nothing was written
 inline constexpr int kRunFailed = 3;  ///< the run diverged, or a claim does not hold
-inline constexpr int kInterrupted =
-    130;  ///< SIGINT or SIGTERM came; number as shells use it; finished results are kept
+/// SIGINT or SIGTERM came; the number that shells use for it; finished results are kept
+inline constexpr int kInterrupted = 130;
 
 /// Ends the command with one line on stderr and the exit code `code`.
 struct Refusal : std::runtime_error {

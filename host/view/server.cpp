@@ -15,8 +15,8 @@ namespace {
 namespace asio = boost::asio;
 using Clock = Picture::Clock;
 constexpr std::size_t kMostConnections = 64;
-// Limits on pages that have not shown the token: few where the page carries it (such pages are foreign), many otherwise
-// (they may look without it).
+// Limits on pages that have not shown the token. Where the page itself carries the token, only foreign pages lack it:
+// few places. Otherwise viewers enter the token by hand, and may look without it: many places.
 constexpr std::size_t kFewLookers = 16, kManyLookers = 48;
 constexpr auto kFramePeriod = std::chrono::microseconds(16'667);
 

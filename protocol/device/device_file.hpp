@@ -23,7 +23,7 @@ struct DeviceFile {
 /// has a default; all must be present.
 [[nodiscard]] std::variant<DeviceFile, scene::Error> load_device_file(const std::filesystem::path& path);
 [[nodiscard]] std::variant<Device, scene::Error> load_device(const std::filesystem::path& path);
-/// The same from a text; `name` is used as file name in messages.
+/// Parses a device record from a text; result as load_device_file(). `name` is used as file name in messages.
 [[nodiscard]] std::variant<DeviceFile, scene::Error> parse_device(const std::string& toml, const std::string& name);
 
 }  // namespace ligature::device

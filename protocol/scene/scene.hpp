@@ -19,10 +19,8 @@ enum class BroadPhase : std::uint8_t { kAuto, kBrute, kSweep, kBvh };
 /// How the swivel damper's force is computed: from the rate of the dihedral angle of four points, or by equations
 /// (13)-(15) of the paper.
 enum class SwivelDamper : std::uint8_t { kInternal, kPaper };
-enum class QuadraticStretch : std::uint8_t {
-  kStiff,
-  kPrinted
-};  ///< stretch constant of paper-5: 100 times the one printed in the paper's Table I, or the printed one
+/// Stretch constant of paper-5: 100 times the one printed in the paper's Table I, or the printed one.
+enum class QuadraticStretch : std::uint8_t { kStiff, kPrinted };
 
 /// Evaluation of damping: implicit, with the velocities after the step (stable at any step size), or explicit, as
 /// printed in the paper.
@@ -88,8 +86,8 @@ struct Contact {
   double friction = 0.3;                  ///< kinetic Coulomb coefficient; key contact.friction
   std::optional<double> static_friction;  ///< equal to friction if absent
   bool turns_thread = false;              ///< whether friction can roll the thread about its axis; rod model only
-  double repulsion_N_per_m = 100.0;       ///< k_rs of the paper's equation (2); solver "paper" only
-  double repulsion_N_s_per_m = 5.0;       ///< k_rd of the paper's equation (2); solver "paper" only
+  double repulsion_N_per_m = 100.0;       ///< k_rs of the paper's (2), stiffness; solver "paper" only
+  double repulsion_N_s_per_m = 5.0;       ///< k_rd of the paper's (2), damping; solver "paper" only
   /// Key contact.friction_cap, solver "paper" only. true: friction can stop slip but not reverse it; false: the paper's
   /// formula without this limit
   bool friction_cap = true;

@@ -21,7 +21,7 @@ namespace ligature::scene {
 [[nodiscard]] std::variant<Scene, Error> load_scene(const std::filesystem::path& path,
                                                     std::span<const std::string> overrides = {});
 
-/// The same from a text that was already read from `path`, so that the scene run and the scene recorded are the same.
+/// As load_scene(), for a text that was already read from `path`: so the scene that is run is the one that is recorded.
 [[nodiscard]] std::variant<Scene, Error> parse_scene(const std::string& text, const std::filesystem::path& path,
                                                      std::span<const std::string> overrides = {});
 

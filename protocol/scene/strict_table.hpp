@@ -218,7 +218,7 @@ class StrictTable {
     context_.refuse(full(key), node, "key '" + full(key) + "': found " + shown(node) + ", allowed " + allowed);
   }
 
-  /// Refuses a key for a rule between several keys, after they were read.
+  /// Refuses a key that breaks a rule between several keys; to be called after these were read.
   void refuse(std::string_view key, const std::string& allowed) {
     if (const auto* node = table_.get(key)) refuse(key, *node, allowed);
   }

@@ -74,7 +74,7 @@ double by_segments(double mu, double angle_rad, int wrapped) {
   return std::pow((1.0 + g) / (1.0 - g), wrapped);
 }
 
-/// Cached, because two cases need the same measurement.
+/// tension_ratio(), cached because two cases need the same measurement.
 double measured_ratio(const Subject& subject, double mu, double angle_rad, int wrapped) {
   static std::map<std::tuple<std::optional<scene::Accuracy>, double, double, int>, double> known;
   const auto [at, is_new] = known.try_emplace({subject.accuracy, mu, angle_rad, wrapped});

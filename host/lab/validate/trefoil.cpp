@@ -14,8 +14,8 @@ namespace ligature::validate {
 namespace {
 
 constexpr double kRadius = 1.5e-4;
-constexpr double kTension_N =
-    0.005;  // tension at which the knot counts as tight: ten times the drag force while the thread shrinks
+// tension at which the knot counts as tight: ten times the drag force while the thread shrinks
+constexpr double kTension_N = 0.005;
 
 struct Tight {
   double length_over_diameter = std::numeric_limits<double>::quiet_NaN();

@@ -13,8 +13,8 @@ inline constexpr double kTaut_N = 0.7;  ///< below the continuous force of an Om
 struct HapticsBench {
   std::filesystem::path scenes, out;
   bool quick = false;
-  /// Distance of each hand from the middle at which the knotted suture pulls with kTaut_N; the same with the peg in the
-  /// way.
+  /// Distance of each hand from the middle at which the knotted suture pulls with kTaut_N, without and with a peg in
+  /// its way.
   double taut_m = 0.0, taut_at_peg_m = 0.0;
 };
 

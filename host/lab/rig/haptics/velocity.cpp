@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kT_s = 1e-3;
 
-/// Backward difference, and the same after a first-order low-pass at 35 Hz.
+/// Two simple velocity estimates for comparison: the backward difference, raw and after a first-order low-pass at 35
+/// Hz.
 struct Plain {
   double last = 0.0, raw = 0.0, filtered = 0.0;
   bool seeded = false;
