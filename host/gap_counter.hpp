@@ -35,7 +35,7 @@ class GapCounter {
   void open_hole(TickRange hole);
   bool fill(std::int64_t number);
 
-  std::map<std::int64_t, std::int64_t> holes_;  // first -> last
+  std::map<std::int64_t, std::int64_t> holes_;  // holes: first missing number -> last missing number
   std::int64_t first_ = 0, last_ = 0;
   std::int64_t received_ = 0, missing_ = 0, duplicates_ = 0, late_ = 0;
 };

@@ -53,7 +53,8 @@ std::string joined_hand(const std::string& a, const std::string& b) {
   return a == b ? a : "mixed";
 }
 
-/// Adds to the table every sum of `sum` and primes from index `first` on, in both hands, up to kMostCrossings.
+/// Adds to the table every connected sum of `sum` with prime knots from index `first` on, right- and left-handed, up to
+/// kMostCrossings crossings.
 void extend(Table& table, const Invariants& sum, const KnotName& name, std::size_t first, std::size_t crossings) {
   for (std::size_t k = first; k < primes().size(); ++k) {
     const auto& p = primes()[k];

@@ -14,10 +14,10 @@ namespace ligature::knot {
 struct KnotResult {
   std::string type;        ///< "0_1", "3_1", "3_1#3_1", ..; "unknown" when no entry of the table is certain
   std::string handedness;  ///< "right", "left", "amphichiral", "mixed", "none"; the right-handed trefoil has writhe +3
-  int determinant = 1;     ///< |Delta(-1)|; meaningless when alexander is empty
-  std::vector<int> alexander;  ///< from t^0 up, first coefficient positive; empty when nothing could be computed
+  int determinant = 1;     ///< of the knot, |Delta(-1)|; meaningless when alexander is empty
+  std::vector<int> alexander;  ///< polynomial: coefficients from t^0 up, the first one positive; empty: not computed
   Laurent jones;
-  std::size_t crossings = 0;  ///< of the simplest diagram found; usually the knot's crossing number, for a named knot
+  std::size_t crossings = 0;  ///< of the simplest diagram found; for a named knot usually its crossing number
 };
 
 /// Names the knot of a polyline.

@@ -26,7 +26,7 @@ struct Setting {
 [[nodiscard]] Setting setting_of(const std::string& text);
 
 /// All settings of the diagram: every model, N = 20 .. 500, several substeps (for an explicit model the number that its
-/// stability needs, and twice that) and passes. @param quick about a sixth of them.
+/// stability needs, and twice that) and passes. @param quick returns only about a sixth of them.
 [[nodiscard]] std::vector<Setting> all_settings(bool quick);
 
 /// The setting whose result is the reference for all others of this model.
