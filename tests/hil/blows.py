@@ -187,8 +187,8 @@ class OtherBlows:
         return disarmed[-1]["tick"] + 1
 
     def slcan(self):
-        """The run in which the left controller goes bus-off: records, frames on its interface, on the right one, and on
-        all."""
+        """@return of the run in which the left CAN controller goes bus-off: tick records; frames on the left interface,
+        on the right one, and on all."""
         return *self.read("slcan-bus-off", "slcan0", "wire1"), wire_of(self.folder / "slcan-bus-off", by_time=True)
 
     def test_bus_off_of_a_controller_with_error_counters(self):

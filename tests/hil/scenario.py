@@ -78,7 +78,7 @@ class Guest(unittest.TestCase):
 
 
 class Scenario(Guest):
-    """Boots the guest once for all of its tests."""
+    """Base class of tests that share one boot of the guest, in which the scenario `name` runs."""
     name = None
 
     @classmethod

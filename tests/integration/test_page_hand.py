@@ -107,7 +107,7 @@ class PageHand(unittest.TestCase):
         self.go(ABOVE)
 
     def say_all(self, **what):
-        """Changes the target and waits until the device has received it; on a busy machine messages queue up."""
+        """Changes what is sent and waits until the device has received it; on a busy machine messages queue up."""
         for name, value in what.items():
             setattr(self.hand, name, value)
         said = self.hand.sequence + (1 if self.hand.talks else 0)

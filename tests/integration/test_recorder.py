@@ -21,7 +21,7 @@ BIN = pathlib.Path(os.environ["LIGATURE_BIN"])
 BOUND_S = 60
 SESSION = 1_700_000_000_000_000
 HEADER_BYTES, SLOT_BYTES = 65536, 1024
-CHECK_BYTES = 28 + len("LIGATURE_CHECK") + 12  # after each event of a log (host/log_format.hpp)
+CHECK_BYTES = 28 + len("LIGATURE_CHECK") + 12  # checksum after each event of a log (host/log_format.hpp)
 
 
 def batch(session, first, count):

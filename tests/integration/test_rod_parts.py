@@ -123,7 +123,7 @@ class Parts(unittest.TestCase):
             self.assertEqual(self.executed(self.bare, TWIST + ROLL + CONTACT + ADAPTIVE), {})
 
     def test_a_bare_thread_costs_a_part_of_it(self):
-        # Not friction: without it more contacts slide, which takes more passes.
+        # Not "friction": without friction more contacts slide, and the solver needs more iterations.
         for part in ("twist", "contact", "adaptivity", "world"):
             self.assertLess(self.without[part].total, self.full.total, part)
         self.assertLess(self.bare.total, 0.4 * self.full.total)

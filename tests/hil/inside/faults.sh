@@ -29,7 +29,7 @@ run() {
 }
 
 killed() { kill -KILL "$left_pid"; }
-emergency() { cansend vcan0 082#5082110000000000; }             # as sent by the shoulder's drive
+emergency() { cansend vcan0 082#5082110000000000; }             # EMCY as from the shoulder's drive
 stranger() { cansend vcan0 000#8002; }                           # an NMT command: shoulder to pre-operational
 foreign_rpdo() { cansend vcan0 201#0F00B80B; }                    # another node commands 3000 per mille
 bus_off() { cansend vcan0 20000040#0000000000000000; }           # the error frame of a driver

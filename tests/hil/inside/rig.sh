@@ -40,7 +40,7 @@ in_force() {
   echo "the rig does not come to force"; cat /run/firmware.log; return 1
 }
 
-# Every frame of both virtual buses, in order, with its interface.
+# Starts candump, which logs every frame of the given interfaces, in order.
 listen() {
   candump -L -D -r 67108864 "$@" > /run/can.log 2> /run/candump.log &
   candump_pid=$!

@@ -81,7 +81,8 @@ class Readers(unittest.TestCase):
     def test_canopen_maps_the_pdos_of_the_eds_as_the_codec_does(self):
         for node in NODES:
             drive = canopen.LocalNode(node, self.eds(node))
-            canopen.Network().add_node(drive)  # a network without bus, because reading a map subscribes to it
+            # A network without bus, needed because reading a PDO map subscribes to the network.
+            canopen.Network().add_node(drive)
             for pdo, kind, base in ((drive.tpdo[1], "tpdo1", 0x180), (drive.rpdo[1], "rpdo1", 0x200)):
                 pdo.read(from_od=True)
                 self.assertEqual(pdo.cob_id, base + node)

@@ -78,7 +78,8 @@ class Hand(unittest.TestCase):
         self.network.nmt.state = "OPERATIONAL"
 
     def command(self, word, torque=0):
-        """An RPDO to every drive, then a SYNC, at which it acts and which samples the state before it."""
+        """Sends an RPDO to every drive, then a SYNC. At the SYNC the RPDO acts; the samples are of the state just
+        before."""
         for drive in self.drives:
             drive.rpdo[1]["Controlword"].raw = word
             drive.rpdo[1]["TargetTorque"].raw = torque
@@ -120,7 +121,7 @@ class Hand(unittest.TestCase):
             self.assertEqual(refused.exception.code, 0x06090030)
 
     def test_silence_is_told_by_emcy_and_left_by_fault_reset(self):
-        self.start_up(rpdo_timeout_ms=2000)  # long, so that it does not expire early on a loaded machine
+        self.start_up(rpdo_timeout_ms=2000)  # long timeout, so that a loaded machine does not let it expire early
         self.enable()
         self.wait_for(lambda: all(d.emcy.active for d in self.drives), "an EMCY of every drive")
         self.assertEqual({d.emcy.active[-1].code for d in self.drives}, {0x8250})

@@ -24,7 +24,7 @@ struct Times {
 
 /// Results of one run, or summed over many.
 struct Findings {
-  /// refused: did not start; pushed: force above 0.5 N; lying: with encoder faults
+  /// Numbers of runs; refused: the rig did not start; pushed: force above 0.5 N; lying: with encoder faults.
   int runs = 0, refused = 0, pushed = 0, faulted = 0, lying = 0;
   double peak_N = 0.0, step_N = 0.0;  ///< largest true values within the promises
   std::map<Exception, Times> exceptions;

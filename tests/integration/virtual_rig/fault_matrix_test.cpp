@@ -290,7 +290,7 @@ TEST(FaultMatrix, WhatEndsByChanceAlwaysEndsInAFault) {
   EXPECT_EQ(found, 2U);
 }
 
-/// The drives' own watchdog: when the controller stalls, no torque stays on for longer than its timeout.
+/// When the controller stalls, the drives' own watchdogs end the torque: none stays on for longer than their timeout.
 TEST(FaultMatrix, DrivesOfASleepingControllerFallFreeByThemselves) {
   SimulatedRig rig(std::get<scene::Scene>(scene::load_scene(kScenes + "paper.toml")),
                    std::get<scene::GripperScript>(scene::load_gripper_script(kScenes + "operators/overhand.csv")));

@@ -1,5 +1,5 @@
-// Both hands on the realistic suture through the whole chain, in virtual time: the felt force is the thread's force on
-// the jaws; the thread is passed from hand to hand under load; the clutch extends a hand's reach.
+// Both hands of the whole rig on the realistic suture, in virtual time: the felt force is the thread's force on the
+// jaws; the thread is passed from hand to hand under load; the clutch extends a hand's reach.
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 namespace ligature {
 namespace {
 
-constexpr double kThread_N_per_m = 1000.0;  // coupling's spring on the thread's side
-// In series with the spring on the device's side, 500 N/m.
+constexpr double kThread_N_per_m = 1000.0;  // coupling: spring on the thread's side
+// Coupling: both springs in series, with 500 N/m on the device's side.
 constexpr double kDevice_N_per_m = kThread_N_per_m * 500.0 / 1500.0;
 constexpr double kHand_N_per_m = 800.0;  // stiffness of the simulated hand
 constexpr double kEA_N = 71.0, kTop_m = 0.35;

@@ -197,8 +197,8 @@ TEST(EncoderWatch, ASuspicionEndsWithAGap) {
   }
 }
 
-/// A joint that rests from the start, so its position curve has no corner; the others move, and its torque changes
-/// once.
+/// Joint 0 rests from the start, so the watch sees no sudden stop of it; the other joints move, and the torque of joint
+/// 0 changes once.
 struct UnderTorque {
   double torque = 0.3, per_sample = 20.0;  ///< share of the rated torque; counts per sample of each other joint
   int samples = 500;

@@ -174,7 +174,7 @@ TEST(LedMove, LettingGoOfTheDeadManEndsIt) {
   arms.in.reading.hand[0].dead_man = true;
   const Vec3 there = arms.q[0];
   arms.ticks(2000);
-  EXPECT_LT((arms.q[0] - there).norm(), 1e-2);  // it coasts at most
+  EXPECT_LT((arms.q[0] - there).norm(), 1e-2);  // the arm coasts at most
 }
 
 TEST(LedMove, AHandThatHoldsTheThreadIsNotLed) {
@@ -345,7 +345,8 @@ TEST(LedMove, CalibrateFindsAnEncoderThatLiedFromTheStart) {
     for (int joint = 0; joint < 3; ++joint) {
       Arms arms;
       (expected == Fault::kAxisReversed ? arms.reversed : arms.frozen) = joint;
-      // Tested below: the pose is impossible, so there is no force at all.
+      // Angles of a reversed shoulder or elbow are an impossible pose, so force never begins
+      // (AReversedShoulderNeverComesUp).
       if (expected == Fault::kAxisReversed && joint > 0) continue;
       arms.to_force();
       arms.controller.command(rt::CommandKind::kCalibrate);

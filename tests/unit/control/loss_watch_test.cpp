@@ -87,7 +87,8 @@ TEST(LossWatch, CountsSamplesAndTorquesEachForItself) {
   }
 }
 
-/// Total silence is left to the watchdog, whatever its length; the loss of half of the samples is still found.
+/// If no samples come at all, LossWatch leaves the fault to the watchdog, whatever that one's time limit; the loss of
+/// half of the samples is still found.
 TEST(LossWatch, LeavesASilenceToTheWatchdog) {
   for (const int watchdog : {2, 20, 21, 300, 1000, 10000}) {
     LossWatch silent(watchdog), half(watchdog);

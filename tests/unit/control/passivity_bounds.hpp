@@ -28,7 +28,7 @@ class PassivityBounds {
     Vec3 sent_N, made_N;
     double given_J = 0.0;
     std::int64_t sample = 0;  ///< index of the latest encoder sample
-    bool wary = false;        ///< lost frames were expected
+    bool wary = false;        ///< the port expected lost frames
   };
   void period(const Period& now) {
     const Vec3 before_N = periods_.empty() ? Vec3(Vec3::Zero()) : periods_.back().made_N;
@@ -57,7 +57,7 @@ class PassivityBounds {
   }
 
   double above_J = -1e9;       ///< largest excess of the account over its upper bound; positive: broken
-  double below_J = -1e9;       ///< the same for the account's lower bound, less what was delivered since its sample
+  double below_J = -1e9;       ///< the same for the lower bound of account minus energy delivered since its sample
   double work_below_J = -1e9;  ///< the same for the work's lower bound
   double unseen_share = 0.0, most_beyond_J = 0.0;
   [[nodiscard]] double unseen_J() const { return unseen_J_; }

@@ -17,7 +17,7 @@ struct Attacker {
   static constexpr std::size_t kKnots = 40;
   std::array<Vec3, kKnots> push{};
   std::array<double, kKnots> along{};
-  /// Coefficients of the control law; with a negative gain it is a spring.
+  /// Coefficients of the control law (force = gain x position, with damping); a negative gain makes a spring.
   double gain_N_per_m = 400.0, damping_s = 0.01;
   int hold = 10;  ///< length of a stretch in periods
   Chain chain;

@@ -1,5 +1,5 @@
 #pragma once
-// Random and degenerate node configurations for property tests, and sums over the forces of a few nodes.
+// Random and degenerate configurations of a few nodes for tests of force laws, and sums over their forces.
 
 #include <algorithm>
 #include <vector>

@@ -25,7 +25,7 @@
 
 namespace {
 
-int send_error = 0, recv_error = 0;  // errno that send and recv are to fail with; 0: none. recv reports it once
+int send_error = 0, recv_error = 0;  // errno with which send and recv fail (recv once); 0: none
 
 }  // namespace
 

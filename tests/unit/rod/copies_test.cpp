@@ -1,4 +1,4 @@
-// A copy made during a pull continues like the original.
+// A copy of a simulation, made while a knot is pulled tight, continues like the original.
 
 #include <gtest/gtest.h>
 

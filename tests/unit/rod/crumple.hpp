@@ -1,5 +1,5 @@
 #pragma once
-// A crumpled thread, for tests of contact and its cost.
+// Makes a crumpled thread, for tests of contact and of the cost of contact.
 
 #include <cmath>
 

@@ -56,7 +56,7 @@ TEST(Hold, OfTwoThrowsIsLetOffWithoutStandingStill) {
 
 // At rest the solver converges again in each substep, even with about half the budget. A single hold scatters (time
 // lost 0 or 0.07), so ten holds with three budgets each are averaged: 0.02, and 0.03 without a fair share of the budget
-// per substep. The limit only bounds the time lost; it does not test that rule.
+// per substep. The limit below only bounds the time lost; it cannot show that the budget is shared fairly.
 TEST(Hold, OfTwoThrowsCanDoWithHalfTheWork) {
   double lost = 0.0;
   for (int i = 0; i < 10; ++i) {
@@ -125,8 +125,7 @@ TEST(Hold, OfTwoThrowsAtRestIsCheap) {
   EXPECT_LT(work, 0.85 * finer);
 }
 
-// A loop that touches the thread beside a tight knot with only 0.1 mN is meshed there as finely as the thread it
-// touches.
+// A loop of thread that touches the thread beside a tight knot with only 0.1 mN is meshed there as finely as the knot.
 TEST(FineZone, ReachesTheLoopThatTouches) {
   for (const double speed : {0.16, 0.19, 0.22, 0.24}) {
     Tightening pull = held(speed);
@@ -197,7 +196,7 @@ TEST(Hold, MovesOnlyWhatIsSettledInTheTrueMatrix) {
     pull.sim().tick(pull.tools());
     if (k < 300) continue;
     overlap_m = std::max(overlap_m, -pull.sim().diagnostics().min_gap_m);
-    // Its contacts belong to a substep that was not carried out.
+    // If time was lost, the contacts in the report belong to a substep that was not carried out.
     if (pull.sim().rod().report().time_lost > 0.0) continue;
     ++moved;
     worst = std::max(worst, lack(pull.sim()));

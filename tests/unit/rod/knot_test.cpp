@@ -1,5 +1,5 @@
-// The thread of scenes/suture-3-0-knot.toml through the facade: pulled tight, held and released, without allocation in
-// a tick.
+// The loose knots of the scenes suture-3-0-*.toml as RodSimulation, the rod's interface for the firmware: pulled tight,
+// held and released, without allocation in a tick.
 
 #include <gtest/gtest.h>
 
@@ -127,9 +127,9 @@ Pull pull(const scene::Scene& scene, double force_N, double wait_s, const Hands&
   return result;
 }
 
-// A knot that waits for a solution does not move and so seems perfect; therefore the time lost is checked. The square:
-// 0.10; it would be 0.27 if substeps never took more than their fair share of the budget and an unsuccessful wait were
-// not shortened.
+// While the solver has no solution the thread is not moved, and such a knot seems perfect; therefore the share of time
+// lost is checked. The square: 0.10; it would be 0.27 if substeps never took more than their fair share of the budget
+// and an unsuccessful wait were not shortened.
 TEST(Overhand, IsDrawnTightWithoutStandingStill) {
   EXPECT_LT(pull(load("suture-3-0-knot.toml"), 5.0, 1.0).lost, 0.005);
 }

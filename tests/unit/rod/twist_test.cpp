@@ -1,4 +1,4 @@
-// The twist force against its energy. (Twist instabilities are validation cases.)
+// The rod's twist force is minus the gradient of its twist energy. (Instabilities by twist: `ligature-lab validate`.)
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// Statistics in constant memory against the same values computed from all samples.
+// The loop's timing statistics (maximum, quantiles), which need constant memory, against the same values computed from
+// all samples.
 #include "firmware/rt/cycle_timing.hpp"
 
 #include <gtest/gtest.h>

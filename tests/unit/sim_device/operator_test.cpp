@@ -46,8 +46,9 @@ TEST(Ring, HasACentreANormalAndAnArea) {
   EXPECT_LT(ring.centre().norm(), 1e-12);
 }
 
-/// The knots as drawn: the standing part from the right to the corner, down, back below itself, up in front of itself
-/// (y < 0), over, and down behind it; then the end. side -1 gives the mirror image in y.
+/// Points of an overhand or figure-eight knot as one draws it: the thread comes from the right, turns down at a corner,
+/// runs back below itself, up in front of its first part (y < 0), over it, and down behind it; then the end. side -1
+/// gives the mirror image in y.
 std::vector<Vec3> drawn(bool figure_eight, double side) {
   std::vector<Vec3> p{{3, 0, 0}, {-3, 0, 0}, {-3, 0, -2}, {0, 0, -2}, {0, -0.5, 0}, {0, 0, 1}, {1.5, 0.3, 1}};
   p.insert(p.end(), {{1.5, 0.5, 0}, {1.5, 0.2, -1}});
@@ -68,7 +69,7 @@ TEST(PlannedKnots, AreTheNamedOnesInBothHands) {
 }
 
 TEST(SeenDeterminant, TellsThemApartFromTheirPicture) {
-  const Vec3 from_below(0.1, 0.2, -1.0);  // both ends are led away downwards without passing the loop again
+  const Vec3 from_below(0.1, 0.2, -1.0);  // view direction; both ends are led away downwards, clear of the loop
   for (const double side : {1.0, -1.0}) {
     EXPECT_EQ(seen_determinant(drawn(false, side), from_below), 3);
     EXPECT_EQ(seen_determinant(drawn(true, side), from_below), 5);

@@ -23,7 +23,8 @@ TEST(SteeredHand, RestsAtHomeWithTheDeadManLetGoUntilItIsWishedElsewhere) {
     EXPECT_EQ(hand.at(t_s).p_DH, home_tip_D_m());
     EXPECT_FALSE(hand.at(t_s).dead_man);
   }
-  hand.wish(-std::numeric_limits<double>::infinity(), kThere, true, true);  // before the drives are enabled
+  // This target comes before the drives are enabled, so it is ignored.
+  hand.wish(-std::numeric_limits<double>::infinity(), kThere, true, true);
   EXPECT_EQ(hand.at(1.0).p_DH, home_tip_D_m());
   EXPECT_FALSE(hand.at(1.0).grip);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A simulated operator at the facade: its hands move the thread directly, without devices and wire.
+// Runs a simulated operator whose hands move the simulated thread directly, without haptic devices and CAN.
 
 #include <array>
 #include <string>

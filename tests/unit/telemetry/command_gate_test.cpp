@@ -22,7 +22,8 @@ class CommandGateTest : public ::testing::Test {
     c.id = id;
     return c;
   }
-  /// The command with the answer to the gate's challenge, as its sender repeats it.
+  /// Gives the gate a new command, which the gate answers with a challenge. @return the command with that challenge, as
+  /// its sender repeats it.
   command_t asked(command_t c, std::int64_t at_us = 0) {
     const auto judged = gate.judge(c, at_us);
     EXPECT_FALSE(judged.may_be_done);

@@ -1,4 +1,4 @@
-// The recorder's file with its reader: written ticks survive a killed process, and damaged slots are reported.
+// The flight recorder's file and its reader: written ticks survive a killed process, and damaged slots are reported.
 #include "firmware/telemetry/flight_slots.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ using test::kFacts;
 using test::record_of;
 using test::ticks_in;
 
-/// A file and its writer, in this thread.
+/// An open flight recorder file and its writer, without a thread of its own.
 struct Open {
   Open(const std::string& path, std::int64_t count)
       : disk(test::disk_or_die(path, count)), slots(path, *disk, header_of(kFacts, count)) {}

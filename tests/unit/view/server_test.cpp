@@ -1,4 +1,4 @@
-// Limits of the view server, tested over local sockets.
+// The server of `ligature-host view` limits clients, requests and messages; tested over local sockets.
 #include "host/view/server.hpp"
 
 #include <arpa/inet.h>
