@@ -33,7 +33,8 @@ class WholeRig(unittest.TestCase):
         self.assertEqual(knot["type"], "3_1")
         self.assertEqual(report["ticks_lost"], 0)
         self.assertEqual(report["ticks_recorded"], len(rows))
-        self.assertAlmostEqual(len(rows), 23000, delta=100)  # one tick per period, lost ones flagged, fade-out included
+        # One row per period, including lost periods and the fade-out of the force at the end.
+        self.assertAlmostEqual(len(rows), 23000, delta=100)
         numbers = [t.tick for t in ticks]
         self.assertEqual(numbers, list(range(numbers[0], numbers[0] + len(numbers))), "an independent listener saw a hole")
         magnitudes = [math.hypot(*t.f_device_N[h]) for t in ticks for h in (0, 1)]

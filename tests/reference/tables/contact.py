@@ -8,7 +8,8 @@ from tables.common import wcsv
 
 def tables():
     rows = []
-    # thread A along x, ends (+-a,0,0). thread B along y, ends (0,+-b,H). A passes over B: zA = zB + d. point contact, frictionless
+    # Two crossing threads: A along x with ends (+-a, 0, 0), B along y with ends (0, +-b, H). A passes over B, zA = zB +
+    # d; frictionless point contact.
     for a, b, H, d in ((0.05, 0.05, 0.01, 3e-4), (0.05, 0.05, 0.002, 3e-4), (0.05, 0.03, 0.01, 3e-4), (0.1, 0.05, 0.02, 1e-3)):
         for TA, TB in ((1., 1.), (1., 2.), (0.5, 5.)):
             def F(z): return 2*TA*z/np.hypot(z, a)-2*TB*(H-(z-d))/np.hypot(H-(z-d), b)
@@ -18,12 +19,13 @@ def tables():
             def F(z): q = H-(z-d); return 2*TT(z, a)*z/np.hypot(z, a)-2*TT(q, b)*q/np.hypot(q, b)
             z = brentq(F, 1e-9, H+d, xtol=1e-16); q = H-(z-d); rows.append(["elastic", a, b, H, d, T0, T0, EA, z, z-d, 2*TT(z, a)*z/np.hypot(z, a), TT(z, a), TT(q, b)])
     wcsv("06_crossing_threads.csv", ["kind", "a_m", "b_m", "H_m", "d_contact_m", "T0_A_N", "T0_B_N", "EA_N", "zA_m", "zB_m", "contact_force_N", "T_A_N", "T_B_N"], rows)
-    # Winkler beam: point force on long rod on elastic foundation (penalty plane k per unit length)
+    # Winkler beam: a point force P on a long rod on an elastic foundation (a plane with contact stiffness k per
+    # length).
     rows = []
     for EI, k, P in ((1e-6, 1e4, 1e-3), (1e-6, 1e5, 1e-2), (1e-5, 1e5, 1e-2), (1e-7, 1e6, 1e-2)):
         l = (k/(4*EI))**.25; rows.append([EI, k, P, 1/l, P*l/(2*k), P/(4*l), P*l/2])
     wcsv("06_rod_on_penalty_plane_point_load.csv", ["EI_Nm2", "k_N_per_m2", "P_N", "decay_length_1_over_lambda_m", "max_penetration_m", "max_moment_Nm", "max_line_pressure_N_m"], rows)
-    # heavy rod on a rigid plane, one end lifted to height H by a vertical force, moment free. Lb=(EI/w)^(1/3)
+    # A heavy rod on a rigid plane, one end lifted to height H by a vertical force, without moment. Lb = (EI/w)^(1/3).
     rows = []
     for h in (0.001, 0.01, 0.05, 0.1, 0.2, 0.5, 1.0):   # H/Lb
         def rhs(x, y, p):  # x in 0..1, s = l x, y = (theta, kappa, X, Z); unknown: lifted length l and reaction R

@@ -5,12 +5,15 @@ from tables.common import check, wcsv
 
 
 def braid(n, S=9.0, N=900, newton=60, rho0=20., verbose=False):
-    """Braid problem of the loose open (2n+1)-crossing knot (Audoly, Clauvelin, Neukirch 2007): difference vector v(s) in units of the
-    contact distance d; s in units sqrt(dR). min 1/4 int |v''|^2 - 1/2[v_x'(S)+v_x'(-S)], |v|>=1, total winding (2n+1) pi.
-    half domain [0,S]: v_x odd, v_y even. Augmented Lagrangian + damped Newton, finite differences. returns Q=int q ds (q: v''''=q v/|v|), J."""
+    """Braid of the loose open knot with 2n+1 crossings (Audoly, Clauvelin, Neukirch 2007). Unknown: the vector v(s)
+    between the two strands, in units of the contact distance d; s in units of sqrt(d R), R the loop's radius. Minimises
+    1/4 int |v''|^2 - 1/2 [v_x'(S) + v_x'(-S)] with |v| >= 1 and a total winding of (2n+1) pi, on the half domain [0, S]
+    (v_x odd, v_y even), by finite differences, an augmented Lagrangian and damped Newton steps. Returns, among others,
+    the minimum J and Q = int q ds, q the contact force: v'''' = q v/|v|."""
     import scipy.sparse as sp, scipy.sparse.linalg as sl
     h = S/N; sgn = -1 if n % 2 == 1 else 1
-    # nodes 0..N at s=i h ; D2 rows i=0..N-1 (row 0 uses symmetry); weights trapezoid
+    # Nodes 0 .. N at s = i h. Second differences at nodes 0 .. N-1 (at 0 by symmetry); integrals by the trapezoidal
+    # rule.
     def D2mat(par):
         D = sp.lil_matrix((N, N+1))
         for i in range(1, N): D[i, i-1] = 1; D[i, i] = -2; D[i, i+1] = 1
@@ -18,9 +21,9 @@ def braid(n, S=9.0, N=900, newton=60, rho0=20., verbose=False):
         return (D/h**2).tocsr()
     w = np.ones(N); w[0] = .5; W = sp.diags(w*h)
     Dx, Dy = D2mat("odd"), D2mat("even")
-    Kx, Ky = Dx.T@W@Dx, Dy.T@W@Dy      # 1/4 int over full line = 1/2 int over half; E = 1/2 v.K v
+    Kx, Ky = Dx.T@W@Dx, Dy.T@W@Dy      # bending energy of the half domain: 1/2 v . K v
     K = sp.block_diag([Kx, Ky]).tocsc()
-    b = np.zeros(2*(N+1)); b[N] = 1/h; b[N-1] = -1/h; b *= 1.0     # v_x'(S) at S-h/2 ; -1/2*(2 v_x'(S)) = -v_x'
+    b = np.zeros(2*(N+1)); b[N] = 1/h; b[N-1] = -1/h; b *= 1.0     # end term -v_x'(S)
     # The end slope is that at S - h/2, so J below is computed with the length S_e = S - h/2.
     s = np.arange(N+1)*h
     ang = np.pi/2-0*s; wind = (2*n+1)*np.pi/2
@@ -38,7 +41,7 @@ def braid(n, S=9.0, N=900, newton=60, rho0=20., verbose=False):
             x, y, r, g = parts(v); t = np.maximum(0, lam+rp*g); act = t > 0; nx, ny = x/r, y/r
             G = K@v-b; G[:N+1] -= wt*t*nx; G[N+1:] -= wt*t*ny
             if np.abs(G[free]).max() < tol: break
-            c = np.where(act, rp, 0)*wt; q = -wt*t/r     # curvature term (negative tangential stiffness)
+            c = np.where(act, rp, 0)*wt; q = -wt*t/r     # q: contact force turns with the strand
             q = np.where(act, q, 0)
             mu = 0.0
             for tr in range(12):
@@ -47,7 +50,7 @@ def braid(n, S=9.0, N=900, newton=60, rho0=20., verbose=False):
                 st = np.zeros_like(v); st[free] = sl.spsolve(H[free][:, free].tocsc(), -G[free])
                 if st@G < 0: break
                 mu = max(10*mu, 1e-6)
-            # limit node steps so the strands cannot pass through each other
+            # Steps of the nodes are limited, so that the strands cannot pass through each other.
             mx = np.abs(st).max(); a = min(1., 0.25/max(1e-12, np.abs(st[np.r_[r < 3, r < 3]]).max() if (r < 3).any() else mx)); f0 = phi(v, lam, rp)
             while phi(v+a*st, lam, rp) > f0+1e-4*a*(G@st) and a > 1e-8: a *= .5
             v = v+a*st
@@ -57,8 +60,8 @@ def braid(n, S=9.0, N=900, newton=60, rho0=20., verbose=False):
         x, y, r, g = parts(v); lam = np.maximum(0, lam+rho_p*g); viol = max(0, g.max())
         if viol < 1e-8 and it < 3: break
         if k < 14: rho_p *= 1.6
-    # energies. lam*wt is the nodal contact force of functional J: dJ/dgap ; q relation: J-eq: 1/2 v'''' = lam n -> q = 2 lam
-    Q = 2*(wt*lam).sum()      # lam = q = v'''' on the half line; scaling identity: Q = J
+    # The multiplier lam of the half-domain problem is the contact force per length, q = v''''.
+    Q = 2*(wt*lam).sum()      # over the full line; a scaling identity says Q = J
     E = .5*v@(K@v)-b@v; S_e = S-h/2; J = E+S_e/2
     ang = np.unwrap(np.arctan2(y, x)); turns = abs(ang[-1]-ang[0])/np.pi*2
     con = lam > 1e-6*lam.max(); runs = []

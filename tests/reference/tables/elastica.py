@@ -10,12 +10,13 @@ mp.mp.dps = 30
 
 
 def elastica_tip(alpha):
-    """dead load P normal to the undeformed axis; alpha=P L^2/EI. Returns phi, x/L, y/L (y = deflection)."""
+    """Tip of a clamped rod under a dead load P normal to its undeformed axis; alpha = P L^2 / EI. Returns the tip angle
+    phi, x/L and y/L (y: deflection)."""
     alpha = mp.mpf(alpha)
     def res(phi):
         k2 = (1+mp.sin(phi))/2; k = mp.sqrt(k2); t1 = mp.asin(1/(k*mp.sqrt(2)))
         return mp.ellipk(k2)-mp.ellipf(t1, k2)-mp.sqrt(alpha)
-    # bisection: res is monotone in phi
+    # bisection, because res is monotone in phi
     lo, hi = mp.mpf('1e-12'), mp.pi/2-mp.mpf('1e-20')
     for _ in range(95):
         m = (lo+hi)/2

@@ -13,7 +13,7 @@ def tables():
     for mu in (0.1, 0.2, 0.3, 0.5):
         for th in (90, 180, 360):
             for N in (2, 4, 8, 16, 32, 64):
-                q = np.tan(np.radians(th)/N/2)   # (T1-T2)cos(a)=mu(T1+T2)sin(a), a=half kink
+                q = np.tan(np.radians(th)/N/2)   # (T1 - T2) cos(a) = mu (T1 + T2) sin(a), a: half the kink; q = tan(a)
                 rows.append([mu, th, N, ((1+mu*q)/(1-mu*q))**N, ((1+mu*q)/(1-mu*q))**N/np.exp(mu*np.radians(th))-1])
     wcsv("05_capstan_polygonal.csv", ["mu", "wrap_angle_deg", "N_contact_nodes", "T1_over_T2", "relative_to_exponential"], rows)
     g = 9.81; rows = []

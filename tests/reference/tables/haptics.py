@@ -1,4 +1,5 @@
-"""Virtual walls: passivity and stability."""
+"""Largest stiffness of a virtual wall (spring K, damper B) on a device with damping b, sampled with period T: for
+passivity, and for stability."""
 import numpy as np
 from scipy.optimize import brentq
 
@@ -11,7 +12,8 @@ def tables():
         for B in (0., 0.1, 0.5, 1.0, 2.0, 5.0):
             if B < b: rows.append([T, b, B, 2*(b-B)/T])
     wcsv("09_virtual_wall_passivity.csv", ["T_s", "device_damping_b_Ns_m", "virtual_damping_B_Ns_m(backward_difference)", "max_passive_K_N_m"], rows)
-    # verify Colgate-Schenkel directly: b > T/2 1/(1-cos wT) Re{(1-e^{-jwT}) H(e^{jwT})}, H = (K + B(z-1)/(Tz)) z^-d
+    # Damping b that passivity needs, by the condition of Colgate and Schenkel at each frequency w: b > T/2 / (1 - cos
+    # wT) Re{(1 - e^{-jwT}) H(e^{jwT})}, with H = (K + B (z-1) / (T z)) z^-d and d samples of delay.
     def need(K, B, d, n=20001):
         w = np.linspace(1e-4, np.pi, n)/T; z = np.exp(1j*w*T); H = (K+B*(z-1)/(T*z))*z**(-d)
         return (T/2/(1-np.cos(w*T))*((1-1/z)*H).real).max()
@@ -25,7 +27,7 @@ def tables():
                 K = brentq(lambda K: need(K, B, d)-b, 0, 1e6, xtol=1e-6); rows.append([T, d, b, B, K])
     wcsv("09_virtual_wall_passivity_delay.csv", ["T_s", "delay_samples", "b_Ns_m", "B_Ns_m", "max_passive_K_N_m"], rows)
     r = [q for q in rows if q[1] == 1 and q[3] == 0.0 and q[2] == 1.0][0]; check("one-sample delay, B=0: K = b/(T/2+T)", r[4], 1/(1.5*T), 1.0)
-    # uncoupled stability (mass m, damper b, zero-order hold, no human): exact discrete limit
+    # Stability without a hand: mass m and damper b with zero-order hold, solved exactly in discrete time.
     rows = []
     for m in (0.05, 0.1, 0.2):
         for b in (0.1, 0.5, 1., 2., 5.):
@@ -34,7 +36,8 @@ def tables():
                     e = np.exp(-b*T/m)
                     A = np.array([[1, m/b*(1-e)], [0, e]]); Bd = np.array([T/b-m/b**2*(1-e), (1-e)/b])
                     def rad(K):
-                        # states x_k, v_k, x_{k-1}, (x_{k-2}); F=-(K x + B (x-xprev)/T) delayed d samples
+                        # States x_k, v_k, x_{k-1}, x_{k-2}; force -(K x + B (x - previous x) / T), delayed by d
+                        # samples.
                         nS = 4; M = np.zeros((nS, nS)); M[:2, :2] = A; M[2, 0] = 1; M[3, 2] = 1
                         g = np.zeros(nS)
                         if d == 0: g[0] = K+B/T; g[2] = -B/T

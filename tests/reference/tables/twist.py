@@ -32,7 +32,7 @@ def disc_twist_m(t, N=400):
     D1 = (np.diag(np.ones(n-1), 1)-np.diag(np.ones(n-1), -1))/(2*h)
     K4 = D2@D2+2*(np.outer(e0, e0)+np.outer(e1, e1))/h**4-0*D2
     K4[0, 0] = 7/h**4; K4[-1, -1] = 7/h**4
-    # M-term: i w''' -> hermitian form  i D1 D2 symmetrised
+    # The term i M w''' of the twisting moment, as a Hermitian matrix.
     D3 = np.zeros((n, n))
     for i in range(n):
         for k, c in ((-2, -.5), (-1, 1.), (1, -1.), (2, .5)):
@@ -44,7 +44,8 @@ def disc_twist_m(t, N=400):
     ev = np.linalg.eigvals(np.linalg.solve(K4-t*D2, S)).real   # K w = m S w
     return 1/np.max(np.abs(ev))
 def gauss_writhe(r):
-    """writhe of a smooth closed curve sampled uniformly in parameter; spectral derivative, trapezoid off the diagonal."""
+    """Writhe of a smooth closed curve, sampled uniformly in its parameter, by Gauss' double integral: derivatives by
+    Fourier transform, the trapezoidal rule without the diagonal."""
     n = len(r); k = np.fft.fftfreq(n, 1./n)
     d = np.real(np.fft.ifft(1j*k[:, None]*np.fft.fft(r, axis=0), axis=0))
     D = r[:, None]-r[None]; c = np.cross(d[:, None], d[None]); R = np.linalg.norm(D, axis=2)+np.eye(n)
@@ -52,19 +53,20 @@ def gauss_writhe(r):
 def michell_check(n=2, eps=0.02, N=400):
     ph = np.arange(N)*2*np.pi/N
     def curve(e, d): return np.c_[(1+d*np.sin(n*ph))*np.cos(ph), (1+d*np.sin(n*ph))*np.sin(ph), e*np.cos(n*ph)]
-    def curve2(e, d): # in-plane mode made inextensible to first order (tangential part)
+    def curve2(e, d): # tangential part u: keeps the length to first order
         u = d*np.cos(n*ph)/n; er = np.c_[np.cos(ph), np.sin(ph), 0*ph]; et = np.c_[-np.sin(ph), np.cos(ph), 0*ph]
         return er*(1+d*np.sin(n*ph))[:, None]+et*u[:, None]+np.c_[0*ph, 0*ph, e*np.cos(n*ph)]
     def Eb(r):
         k = np.fft.fftfreq(N, 1./N)[:, None]; F = np.fft.fft(r, axis=0)
         d1 = np.real(np.fft.ifft(1j*k*F, axis=0)); d2 = np.real(np.fft.ifft(-k*k*F, axis=0)); v = np.linalg.norm(d1, axis=1)
         kap = np.linalg.norm(np.cross(d1, d2), axis=1)/v**3
-        return 0.5*(kap**2*v).mean()*2*np.pi*(v.mean()*2*np.pi)    # scale invariant: E*L (B=1)
+        # Bending energy times length, independent of scale (B = 1).
+        return 0.5*(kap**2*v).mean()*2*np.pi*(v.mean()*2*np.pi)
     E0 = Eb(curve2(0, 0)); a = (Eb(curve2(eps, 0))-E0)/eps**2; b = (Eb(curve2(0, eps))-E0)/eps**2
     w = (gauss_writhe(curve2(eps, eps))-gauss_writhe(curve2(eps, -eps)))/(2*eps**2)
     # Energy times length of a ring with twist Tw0 turns and modes of amplitude e (out of plane) and d (in plane): E*L =
     # a e^2 + b d^2 + C/2 (2 pi)^2 (Tw0 - w e d)^2; unstable when C (2 pi)^2 Tw0 |w| = 2 sqrt(a b).
-    return 2*np.sqrt(a*b)/((2*np.pi)**2*abs(w))                     # critical Tw0 * C/B, in turns
+    return 2*np.sqrt(a*b)/((2*np.pi)**2*abs(w))                     # critical twist times C/B, in turns
 def tables():
     rows = []
     for t in (-30., -20., -10., -5., -1., 0.001, 1., 2., 5., 10., 20., 50., 100., 200., 500.):
@@ -83,7 +85,8 @@ def tables():
     for BC in (1.0, 1.25, 1.3, 1.4, 1.5, 2.0, 0.5): R.append([BC, np.sqrt(3)*BC, 2*np.pi*np.sqrt(3)*BC])
     wcsv("04_michell_ring.csv", ["B_over_C(=EI/GJ=1+nu_for_circular)", "critical_twist_turns", "critical_twist_rad"], R)
     wcsv("04_michell_ring_modes.csv", ["mode_n", "critical_Tw_times_C_over_B_turns_formula", "direct_numerical_check"], rows)
-    # localised helical buckling (writhing): infinite rod homoclinic. B, C, L, total end rotation Phi, end shortening D
+    # Localised helical buckling (writhing), by the solution for an infinite rod: stiffnesses B (bending) and C (twist),
+    # length L, total end rotation Phi, end shortening D.
     def loc(B, C, L, Phi, D):
         def F(q):
             m = q[0]; T = q[1]; return [2*m*np.sqrt(B*T)*L/C+4*np.arccos(m)-Phi, 4*np.sqrt(B/T)*np.sqrt(1-m*m)-D]
@@ -106,13 +109,13 @@ def tables():
             env.append([k, s, f, np.arccos(min(1, u))])
     wjson("04_localised_helical_buckling.json", dict(case=case, note="infinite-rod homoclinic solution; each entry a solution branch of (rotation, shortening); envelope f=(cos phi-cos phi0)/(1-cos phi0)=tanh^2(sigma s)", branches=out))
     wcsv("04_localised_helical_buckling_envelope.csv", ["branch", "s_from_middle", "envelope_f", "phi_rad"], env)
-    # check of the closed forms by direct quadrature of the ODE solution
+    # The closed forms are checked by integrating the solution of the differential equation numerically.
     o = out[0]; u0 = 2*o["m"]**2-1; U = lambda s: u0+(1-u0)*np.tanh(o["decay_rate_sigma"]*s)**2
     check("end shortening by quadrature", quad(lambda s: 1-U(s), -400, 400, limit=2000, points=[0])[0], case["end_shortening"], 1e-6)
     rot = o["M"]*100/case["C"]+o["M"]/case["B"]*quad(lambda s: (1-U(s))/(1+U(s)), -400, 400, limit=2000, points=[0])[0]
     check("end rotation by quadrature", rot, 2*np.pi*27, 1e-5)
-    # u' check: u'^2=(1-u)^2[(2T/B)(1+u)-(M/B)^2]
+    # The solution U(s) must satisfy u'^2 = (1-u)^2 [(2T/B)(1+u) - (M/B)^2].
     s0, h = 2.0, 1e-4; du = (U(s0+h)-U(s0-h))/2/h; u = U(s0)
     check("first integral", du**2, (1-u)**2*(2*o["T"]/case["B"]*(1+u)-(o["M"]/case["B"])**2), 1e-7)
-    # general dimensionless curve
+    # The same solution as a dimensionless curve.
     wcsv("04_localised_helical_buckling_curve.csv", ["M_over_2sqrt(BT)", "phi0_rad", "D_times_sqrt(T_over_B)", "writhe_rotation_rad"], [[m, np.arccos(2*m*m-1), 4*np.sqrt(1-m*m), 4*np.arccos(m)] for m in np.linspace(0, 1, 41)])

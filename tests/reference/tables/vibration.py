@@ -16,16 +16,17 @@ def tables():
     rows += [["pinned_pinned", i, i*np.pi, (i*np.pi)**2] for i in (1, 2, 3)]
     wcsv("03_bending_modes.csv", ["ends", "mode", "beta_L", "omega_times_L2_sqrt(rhoA_over_EI)"], rows)
     j = jn_zeros(0, 5); wcsv("03_hanging_chain_modes.csv", ["mode", "j0n", "omega_times_sqrt(L_over_g)"], [[i+1, j[i], j[i]/2] for i in range(5)])
-    # discrete chain: N equal masses, massless inextensible links l=L/N, mass at each link end: omega^2 = (g/l) * roots of Laguerre L_N
+    # Hanging chain of N equal masses on massless inextensible links of length l = L/N: omega^2 = (g/l) times the roots
+    # of the Laguerre polynomial L_N.
     rows = []
     for N in (2, 3, 10, 20, 50, 100, 200):
-        # Jacobi matrix of Laguerre polynomials has the roots as eigenvalues
+        # The roots are the eigenvalues of the Jacobi matrix of the Laguerre polynomials.
         A = np.diag(2*np.arange(N)+1.)-np.diag(np.arange(1, N), 1)-np.diag(np.arange(1, N), -1)
         e = np.sort(np.linalg.eigvalsh(A))[:3]
         rows += [[N, i+1, np.sqrt(e[i]*N), np.sqrt(e[i]*N)/(j[i]/2)-1] for i in range(min(3, N))]
         # check against the eigenvalues of the linearised chain of 10 masses
         if N == 10:
-            T = np.arange(N, 0, -1)*1.0  # tension above mass k (k=0 top) in mg, g=l=m=1
+            T = np.arange(N, 0, -1)*1.0  # tension above mass k (0: top) in units of m g; g = l = m = 1
             K = np.zeros((N, N))
             for k in range(N):
                 K[k, k] += T[k]

@@ -35,7 +35,8 @@ double error_of(Dense& dense, const std::vector<double>& m, std::size_t n, unsig
   return worst;
 }
 
-TEST(Dense, SolvesWhatIsNearlySymmetric) {  // all sizes up to eight panels, so that every remainder of a row occurs
+// All sizes up to 61, as the solver treats remainders of four and eight columns separately.
+TEST(Dense, SolvesWhatIsNearlySymmetric) {
   Dense dense;
   dense.reserve(kMost);
   for (std::size_t n = 1; n <= kMost; ++n) {

@@ -101,7 +101,8 @@ TEST(Jaws, TheHandFeelsWhatTheyDoToTheThread) {  // for any position of the node
             1e-9);
 }
 
-TEST(Jaws, SlipAtCoulombsLimit) {  // 2 mu N = 0.6 N; pulled at 20 mm/s the thread slips at 0.6 N within 2 %
+// Friction of two jaws, 2 mu N = 0.6 N: pulled at 20 mm/s the thread slips at that force within 2 %.
+TEST(Jaws, SlipAtCoulombsLimit) {
   auto sim = simulation(thread({"hands.pinch_width_m=0.004", "hands.pinch_force_N=1.0"}));
   auto tools = hands_at(sim.nodes_W()[30], Vec3(1, 1, 1));
   tools[0].grip = true;
@@ -123,7 +124,8 @@ TEST(Jaws, DoNotSlipBelowTheLimit) {
   auto tools = hands_at(sim.nodes_W()[30], Vec3(1, 1, 1));
   tools[0].grip = true;
   sim.tick(tools);
-  tools[0].p_WT.z() -= 1e-3;  // stretched by 1 mm: 71 N x 1 / 150 in series with the coupling, some 0.3 N
+  // 150 mm stretched by 1 mm: EA / 150 = 71 N / 150 in series with the coupling, about 0.3 N.
+  tools[0].p_WT.z() -= 1e-3;
   for (int k = 0; k < 500; ++k) sim.tick(tools);
   EXPECT_LT(sim.hand(Hand::kLeft).f_W.z(), 0.58);
   EXPECT_GT(sim.hand(Hand::kLeft).f_W.z(), 0.1);
@@ -152,7 +154,7 @@ TEST(Jaws, CloseOnATautThreadWithoutATug) {
     auto tools = hands_at(sim.nodes_W()[50], Vec3(1, 1, 1));
     tools[0].grip = true;
     for (int k = 0; k < 500; ++k) {
-      tools[0].p_WT.z() -= 1e-5;  // 71 N x 5 / 250 in series with the coupling, 1.1 N
+      tools[0].p_WT.z() -= 1e-5;  // 250 mm stretched by 5 mm: EA x 5 / 250 in series with the coupling, 1.1 N
       sim.tick(tools);
     }
     for (int k = 0; k < 300; ++k) sim.tick(tools);

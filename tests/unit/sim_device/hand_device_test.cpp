@@ -75,7 +75,7 @@ TEST(HandDevice, EncodersFollowTheOperator) {
   r.ticks(500);
   const Vec3 q{can::angle_rad(r.master.tpdo[0].position_counts), can::angle_rad(r.master.tpdo[1].position_counts),
                can::angle_rad(r.master.tpdo[2].position_counts)};
-  EXPECT_NEAR((tip_D_m(q) - Vec3(0.0, -0.17, 0.02)).norm(), 0.0, 1e-3);  // 0.4 m in the world at scale 20
+  EXPECT_NEAR((tip_D_m(q) - Vec3(0.0, -0.17, 0.02)).norm(), 0.0, 1e-3);  // z: 0.4 m in the world / scale 20
   EXPECT_EQ(r.master.tpdo[2].buttons & 0xFF, can::profile::kButtonGrip | can::profile::kButtonDeadMan);
   r.ticks(600);
   EXPECT_EQ(r.master.tpdo[2].buttons & 0xFF, can::profile::kButtonDeadMan);

@@ -11,7 +11,7 @@ namespace {
 
 TEST(Access, OnlyPagesOfThisServerMayOpenTheSocket) {
   EXPECT_TRUE(is_own_origin("http://127.0.0.1:8737", "127.0.0.1:8737"));
-  EXPECT_TRUE(is_own_origin("", "127.0.0.1:8737"));  // not a browser
+  EXPECT_TRUE(is_own_origin("", "127.0.0.1:8737"));  // no Origin header: not a browser
   EXPECT_FALSE(is_own_origin("http://evil.example", "127.0.0.1:8737"));
   EXPECT_FALSE(is_own_origin("http://127.0.0.1:8738", "127.0.0.1:8737"));  // another server on this machine
   EXPECT_FALSE(is_own_origin("https://127.0.0.1:8737", "127.0.0.1:8737"));
