@@ -239,7 +239,7 @@ class Recorders(InForce):
         self.assertGreaterEqual(sum(ticks > 0 for ticks in whole.values()), KILLS // 10)
         for log in {*chance.sample(readable, min(10, len(readable))), max(whole, key=whole.get)}:
             done = run("ligature-host", "export", log, "--forces", rig.path / "forces.csv")
-            # 2: killed before the first tick was written
+            # exit code 2: the recorder was killed before it wrote the first tick
             self.assertEqual(done.returncode, 0 if whole[log] else 2, done.stderr)
             self.assertRegex(done.stdout + done.stderr, rf"exported {whole[log]} ticks" if whole[log] else "holds no readable tick")
         print(f"{KILLS} recorders killed, {len(readable)} left a log; {ticks} ticks, none missing")

@@ -29,7 +29,8 @@ def send(*words):
 
 class Rerun(unittest.TestCase):
     def test_a_live_recording(self):
-        """With force, a live parameter, a reset and another scene. Then: equal, different settings, and SIGINT."""
+        """Records a run with force, a changed parameter, a reset and another scene. Then reruns it: it must be equal;
+        with other settings it must differ; and SIGINT must end it."""
         with Rig(record=True, extra=("--rt=warn",)) as rig:
             rig.wait_for(lambda r: r.state_is(STATE_FORCE), "force")
             rig.wait_for(lambda r: max(r.listener.ticks[-1].grasped_node) >= 0, "a grasp")

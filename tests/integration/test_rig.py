@@ -14,7 +14,7 @@ def torque_of(tick):
 
 
 def pushes_both_hands(rig):
-    """Full force and torque on both hands, so that there is something for a fault to remove."""
+    """Whether the rig is in state FORCE with torque on both hands, so that there is something for a fault to remove."""
     return rig.state_is(STATE_FORCE) and all(any(hand) for hand in rig.listener.ticks[-1].torque_permille)
 
 

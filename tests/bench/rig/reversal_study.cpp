@@ -19,7 +19,7 @@ constexpr std::int64_t kLookTicks = 500;
 
 struct End {
   int fault = 0;
-  double speed = 0.0;    ///< of the joint at the onset, counts per period
+  double speed = 0.0;    ///< joint speed when it starts to count backwards, counts per period
   double given_J = 0.0;  ///< largest energy that the hand's motors have delivered since the onset
   double peak_N = 0.0;
 };

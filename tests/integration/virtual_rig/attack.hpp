@@ -59,7 +59,7 @@ struct AttackPlan {
 
 inline constexpr std::int64_t kAttackTicks = 2200;
 
-/// A virtual rig to which an AttackPlan happens when run() runs it.
+/// A virtual rig in which the events of an AttackPlan occur.
 class AttackedRig {
  public:
   explicit AttackedRig(const AttackPlan& plan);

@@ -76,7 +76,7 @@ class VirtualBus {
   // called with the SYNC's number; its changes take effect in the next period
   std::function<void(std::int64_t)> on_sync;
   std::vector<Nanoseconds> sampled_at;
-  double waist_rad_per_s = 0.0;  // of both hands; a stall also delays the drives, which sample after it
+  double waist_rad_per_s = 0.0;  // speed of both hands' waist joints, also during a stall; the drives sample after it
 
  private:
   VirtualClock& clock_;

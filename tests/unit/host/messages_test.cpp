@@ -117,7 +117,8 @@ TEST(Messages, SurvivesRandomAndMutatedBytesOnEveryChannel) {
   for (int round = 0; round < 3000; ++round) {
     Bytes_ bytes = seeds[random() % seeds.size()];
     for (auto changes = random() % 8; changes > 0; --changes)
-      bytes[8 + random() % (bytes.size() - 8)] = static_cast<std::byte>(random());  // after the hash of the type
+      // Leaves the 8 bytes of the type's hash.
+      bytes[8 + random() % (bytes.size() - 8)] = static_cast<std::byte>(random());
     if (random() % 4 == 0) bytes.resize(random() % (2 * bytes.size()));
     for (const auto channel :
          {kTicksChannel, kThreadChannel, kStatusChannel, kEventChannel, kAckChannel, kCommandChannel, kOfferChannel})

@@ -15,7 +15,8 @@ sim::WorkspaceMap map() {
   return sim::WorkspaceMap(hands);
 }
 
-/// The left hand on a helix with jaws that close and open; the right hand moves out of reach and back.
+/// Motion of the hands at time t_s: the left one on a helix, with jaws that close and open; the right one out of reach
+/// and back.
 std::array<sim::HandWish, 2> wish_at(double t_s) {
   std::array<sim::HandWish, 2> wish;
   wish[0].p_W = {0.03 * std::cos(2.0 * t_s), 0.03 * std::sin(2.0 * t_s), 0.01 * t_s};

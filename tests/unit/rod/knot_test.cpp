@@ -128,8 +128,8 @@ Pull pull(const scene::Scene& scene, double force_N, double wait_s, const Hands&
 }
 
 // While the solver has no solution the thread is not moved, and such a knot seems perfect; therefore the share of time
-// lost is checked. The square: 0.10; it would be 0.27 if substeps never took more than their fair share of the budget
-// and an unsuccessful wait were not shortened.
+// lost is checked. For the square knot it is 0.10, and would be 0.27 if a substep never took more than its fair share
+// of the budget and an unsuccessful wait were not shortened.
 TEST(Overhand, IsDrawnTightWithoutStandingStill) {
   EXPECT_LT(pull(load("suture-3-0-knot.toml"), 5.0, 1.0).lost, 0.005);
 }
@@ -143,7 +143,7 @@ TEST(SquareKnot, IsDrawnTightWithoutStandingStillForLong) {
   RecordProperty("share_of_time_lost", std::to_string(p.lost));
 }
 
-TEST(Overhand, HoldsAfterAPullToFiveNewtons) {  // friction 0.3; penetration in diameters, strain against T / EA
+TEST(Overhand, HoldsAfterAPullToFiveNewtons) {  // friction 0.3; penetration in diameters; strain = tension / EA
   const Pull p = pull(load("suture-3-0-knot.toml"), 5.0, 1.0);
   EXPECT_EQ(p.knot, "3_1");
   EXPECT_EQ(p.guard, 0);

@@ -19,8 +19,8 @@ std::string knot_of(std::span<const Vec3> line) {
   return k.type + " " + k.handedness;
 }
 
-/// An ideal thread without weight and stiffness and of any length: straight down from the anchor, straight to the left
-/// hand, down to where the right hand took the end, and then along the right hand's path.
+/// An ideal thread without weight and stiffness and of any length. It runs straight from the anchor to the left hand,
+/// down to where the right hand took the end, and then along the path that the right hand has moved on.
 class Trail {
  public:
   Line after(const Throw& t) {
