@@ -119,6 +119,7 @@ struct World {
   std::optional<double> desk_height_m;
   bool grippers_collide = true;
   bool frame_collides = true;  ///< each fixed node has a hook above it, which the thread collides with
+  // With contact.solver = "paper" both are false by default and refused when true, and so is a desk.
 };
 
 struct Time {

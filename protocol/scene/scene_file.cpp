@@ -98,7 +98,21 @@ void read_contact(StrictTable& t, bool is_rod, Contact& c) {
 
 double length_of(const Vec& v) { return std::hypot(v[0], v[1], v[2]); }
 
-void read_world(StrictTable& t, const Suture& suture, World& w) {
+/// The paper's contact separates the thread from itself alone, so a scene must not ask for more and get nothing.
+void read_obstacles(StrictTable& t, bool is_rod, ContactSolver solver, World& w) {
+  const bool itself_alone = !is_rod && solver == ContactSolver::kPaper;
+  if (itself_alone) w.grippers_collide = w.frame_collides = false;
+  t.number("desk_height_m", w.desk_height_m, {-kFar_m, kFar_m});
+  t.boolean("grippers_collide", w.grippers_collide);
+  t.keys_of(!is_rod, kOfThePaper, [&] { t.boolean("frame_collides", w.frame_collides); });
+  if (!itself_alone) return;
+  const std::string why = " with contact.solver = \"paper\", which separates the thread from itself alone";
+  if (w.desk_height_m) t.refuse("desk_height_m", "no desk" + why);
+  if (w.grippers_collide) t.refuse("grippers_collide", "false" + why);
+  if (w.frame_collides) t.refuse("frame_collides", "false" + why);
+}
+
+void read_world(StrictTable& t, const Suture& suture, ContactSolver solver, World& w) {
   const int nodes = suture.nodes;
   const bool is_rod = suture.model == Model::kRod;
   t.vector("gravity_m_per_s2", w.gravity_m_per_s2, 1e4);
@@ -126,9 +140,7 @@ void read_world(StrictTable& t, const Suture& suture, World& w) {
   });
   if (w.loads.size() > kMostLoads) t.refuse("loads", std::to_string(kMostLoads) + " at most");
   t.keys_of(is_rod, kOfTheRod, [&] { read_pegs(t, w); });
-  t.number("desk_height_m", w.desk_height_m, {-kFar_m, kFar_m});
-  t.boolean("grippers_collide", w.grippers_collide);
-  t.keys_of(!is_rod, kOfThePaper, [&] { t.boolean("frame_collides", w.frame_collides); });
+  read_obstacles(t, is_rod, solver, w);
 }
 
 void read_time(StrictTable& t, int nodes, Time& time) {
@@ -230,7 +242,7 @@ std::variant<Scene, Error> parse_scene(const std::string& text, const fs::path& 
   StrictTable top(root, "", context);
   top.table("suture", [&](StrictTable& t) { read_suture(t, path.parent_path(), scene.suture); });
   top.table("contact", [&](StrictTable& t) { read_contact(t, scene.suture.model == Model::kRod, scene.contact); });
-  top.table("world", [&](StrictTable& t) { read_world(t, scene.suture, scene.world); });
+  top.table("world", [&](StrictTable& t) { read_world(t, scene.suture, scene.contact.solver, scene.world); });
   top.table("time", [&](StrictTable& t) { read_time(t, scene.suture.nodes, scene.time); });
   top.table("hands", [&](StrictTable& t) { read_hands(t, scene.suture, scene.hands); });
   top.finish();

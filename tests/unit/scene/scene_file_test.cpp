@@ -143,6 +143,20 @@ TEST(SceneFile, AKeyOfAnotherModelIsRefused) {
   EXPECT_EQ(why_refused("[suture]\nmodel = \"rod\"\nair_drag_per_s = 1\n[hands]\nreach_m = 0.1\n"), "");
 }
 
+TEST(SceneFile, ThePapersContactTakesNoObstacles) {
+  const std::string paper = "[suture]\n[contact]\nsolver = \"paper\"\n[world]\n";
+  for (const std::string asked : {"desk_height_m = 0.0", "grippers_collide = true", "frame_collides = true"}) {
+    const auto why = why_refused(paper + asked + "\n");
+    const auto key = asked.substr(0, asked.find(' '));
+    EXPECT_TRUE(why.starts_with(test::temp_folder() + "scene.toml:5: key 'world." + key + "': found ")) << why;
+    EXPECT_TRUE(why.ends_with("with contact.solver = \"paper\", which separates the thread from itself alone")) << why;
+    EXPECT_EQ(why_refused("[suture]\n[world]\n" + asked + "\n"), "");
+  }
+  EXPECT_EQ(why_refused(paper + "grippers_collide = false\nframe_collides = false\n"), "");
+  const auto scene = std::get<Scene>(load_scene(write("scene.toml", paper), {}));
+  EXPECT_FALSE(scene.world.grippers_collide || scene.world.frame_collides);
+}
+
 TEST(SceneFile, RefusesAMissingFileAndAFolder) {
   EXPECT_NE(std::get<Error>(load_scene("no/such.toml")).text.find("no/such.toml: cannot be read"), std::string::npos);
   EXPECT_NE(std::get<Error>(load_scene(test::temp_folder())).text.find("cannot be read"), std::string::npos);
