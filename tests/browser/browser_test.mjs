@@ -199,7 +199,8 @@ const steps = {
     const drawn = await page.evaluate(() => ligature.frames);
     await page.waitForFunction((n) => ligature.frames > n + 30, drawn);
     console.log(`    host peak memory ${(view.peakMemory_kB() / 1024).toFixed(0)} MB with 50 deaf peers`);
-    assert.ok(view.peakMemory_kB() < 300 * 1024);
+    // AddressSanitizer keeps freed memory back, so that its later use is seen.
+    assert.ok(view.peakMemory_kB() < (process.env.LIGATURE_SANITIZE ? 1200 : 300) * 1024);
     deaf.forEach((peer) => peer.end());
     assert.equal(rig.heard.slice(before).includes('command arm'), false);
   },
