@@ -1,5 +1,5 @@
 #pragma once
-// Chatter: the rapid fluctuation of a slowly changing force.
+// Measures chatter, the rapid fluctuation of a force that otherwise changes slowly.
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// The host's programs can read what the virtual rig records.
+// The host's programs can read the recordings of the virtual rig, which runs in one process.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 

@@ -1,4 +1,4 @@
-// Every force limit holds for any requested force.
+// ForceLimiter: every limit (peak, continuous, step) holds for any requested force.
 #include "firmware/control/force_limiter.hpp"
 
 #include <gtest/gtest.h>

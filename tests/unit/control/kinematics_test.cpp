@@ -33,7 +33,7 @@ std::vector<JointAngles> poses() {
 TEST(Kinematics, UpperArmLevelAndForearmHangingIsReadOffTheDrawing) {
   const Vec3 p = arm().position({0.0, 0.0, 0.0});
   EXPECT_NEAR(p.x(), 0.0, 1e-15);
-  EXPECT_NEAR(p.y(), -kUpperArm_m, 1e-15);  // towards the operator
+  EXPECT_NEAR(p.y(), -kUpperArm_m, 1e-15);  // -y points towards the operator
   EXPECT_NEAR(p.z(), -kForearm_m, 1e-15);
 }
 

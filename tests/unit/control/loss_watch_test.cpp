@@ -46,7 +46,7 @@ struct Bound {
   int ticks;
 };
 
-// Ticks until the fault, as docs/architecture.md states them.
+// For these shares of lost frames the fault comes within so many ticks, except once in a million runs.
 TEST(LossWatch, ABadBusIsNamedWithinABoundedTimeButOnceInAMillionTimes) {
   for (const auto& [frames, ticks] : {Bound{0.15, 2100}, Bound{0.2, 430}, Bound{0.25, 220}, Bound{0.5, 65}}) {
     Count count(samples_lost(frames));

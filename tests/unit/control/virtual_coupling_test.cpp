@@ -1,4 +1,4 @@
-// The coupling's force: signs, scale and limits.
+// Force of the virtual coupling between tool and held point: signs, scale and limits.
 #include "firmware/control/virtual_coupling.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The loop in virtual time, so that all times are exact.
+// The real-time loop (Cycle) in virtual time, so that all times are exact.
 #include <gtest/gtest.h>
 
 #include "tests/unit/firmware/virtual_rig.hpp"

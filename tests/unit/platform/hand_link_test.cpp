@@ -147,7 +147,7 @@ TEST_F(HandLinkTest, SyncCarriesNothing) {
   EXPECT_EQ(bus.sent.front(), (can::Frame{0x080, 0, {}}));
 }
 
-/// Each bit of the buttons word separately.
+/// Tests each bit of the buttons word separately.
 TEST_F(HandLinkTest, ReadsEachButtonAndHowLongATorqueWasHeld) {
   const auto told = [this](std::uint16_t buttons) {
     link.send_sync();
@@ -247,7 +247,7 @@ TEST_F(HandLinkTest, WritesPerMilleAndSaysWhatItSent) {
   EXPECT_EQ(last_rpdo(1).controlword, can::cia402::kControlEnableOperation);
 }
 
-TEST_F(HandLinkTest, BringsADriveUpAndDown) {  // the drive is protocol's own state machine, two periods of delay
+TEST_F(HandLinkTest, BringsADriveUpAndDown) {  // simulated drive: state machine of CiA 402, two periods of delay
   State drive = State::kFault;
   std::uint16_t before = 0;
   const auto run = [&](rt::DriveRequest request, int periods) {

@@ -1,4 +1,4 @@
-// The dense solver reproduces known solutions.
+// Dense, the solver for small dense systems M x = b, reproduces known solutions.
 
 #include "firmware/physics/rod/dense.hpp"
 

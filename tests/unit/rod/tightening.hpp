@@ -1,5 +1,5 @@
 #pragma once
-// A scene's loose knot pulled tight by two hands, tick by tick.
+// Pulls a scene's loose knot tight with two hands, tick by tick.
 
 #include <array>
 #include <stdexcept>

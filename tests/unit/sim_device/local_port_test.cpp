@@ -1,4 +1,4 @@
-// Real sockets in a temporary folder; nothing waits.
+// LocalPort, the simulated device's end of a `local:` bus, with real sockets in a temporary folder; nothing waits.
 
 #include "sim_device/local_port.hpp"
 

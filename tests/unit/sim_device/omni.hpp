@@ -1,5 +1,5 @@
 #pragma once
-// The linkage of the shipped device, and its place in the paper's scene.
+// The arm of the shipped haptic device (Omni class), and its place in the scene paper.toml.
 
 #include <optional>
 

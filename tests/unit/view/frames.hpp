@@ -1,5 +1,5 @@
 #pragma once
-// Decodes view frames as the browser page does.
+// Decodes the binary frames that the host sends to the web page, as the page does.
 
 #include <cstddef>
 #include <cstdint>
