@@ -8,10 +8,13 @@
 #include <cstdlib>
 #include <new>
 
+#include "firmware/platform/sanitized.hpp"
+
 namespace {
 long allocations = 0;
 }  // namespace
 
+#ifndef LIGATURE_SANITIZED  // sanitizers bring their own; there nothing is counted
 void* operator new(std::size_t size) {
   ++allocations;
   if (void* p = std::malloc(size)) return p;
@@ -19,6 +22,7 @@ void* operator new(std::size_t size) {
 }
 void operator delete(void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+#endif
 
 namespace ligature::control {
 namespace {

@@ -170,7 +170,7 @@ TEST_F(Replay, AnotherRecordingRunsBesideItFromTheCommonGrasp) {
   const LogSurvey survey(map);
   wait_for(survey);
   Picture picture;
-  Comparison comparison(map, survey, picture, folder_.path());
+  Comparison comparison(survey, picture, folder_.path());
   EXPECT_FALSE(comparison.request({{"compare", "../golden.lcmlog"}, {"align", "grasp"}})["accepted"].get<bool>());
   EXPECT_FALSE(comparison.request({{"compare", "other.lcmlog"}, {"align", "middle"}})["accepted"].get<bool>());
   EXPECT_TRUE(comparison.request({{"compare", "other.lcmlog"}, {"align", "grasp"}}).is_null());

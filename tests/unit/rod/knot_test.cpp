@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "firmware/physics/rod/rod_simulation.hpp"
+#include "firmware/platform/sanitized.hpp"
 #include "host/knot/recognise.hpp"
 #include "protocol/scene/scene_file.hpp"
 
@@ -18,6 +19,7 @@ namespace {
 std::atomic<long> allocations{0};
 }  // namespace
 
+#ifndef LIGATURE_SANITIZED  // sanitizers bring their own; there nothing is counted
 void* operator new(std::size_t size) {
   ++allocations;
   if (void* p = std::malloc(size)) return p;
@@ -33,6 +35,7 @@ void operator delete(void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+#endif
 
 namespace ligature::test {
 namespace {
