@@ -27,10 +27,10 @@ struct ThreadCost {
 /// Runs on the calling thread and takes some tenths of a second.
 [[nodiscard]] LoopCost measure_loop(const scene::Scene& scene);
 
-/// Measures the worst-case shapes for `seconds`, each at least once.
+/// Measures ticks of the thread in its worst-case shapes (worst_case.hpp) for `seconds`, each shape at least once.
 /// @param scene one that physics::Simulation::make() accepts. Its suture.work_instructions is used if set; else the
-/// budget is chosen by its measured cost on this core while a knot is drawn, so that such a tick ends before the
-/// deadline.
+/// budget is chosen by its measured cost on this core while a knot is tightened, so that 99 % of these ticks end
+/// before the deadline.
 /// @param given_us time available in each period
 [[nodiscard]] ThreadCost measure_thread(const scene::Scene& scene, double given_us, double seconds);
 

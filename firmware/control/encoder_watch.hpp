@@ -119,7 +119,7 @@ class EncoderWatch {
     return l;
   }
 
-  /// Whether another joint moves on through both windows at an unchanged speed.
+  /// Whether another joint has the same speed in the earlier and the later window.
   [[nodiscard]] bool other_moves_on(std::size_t joint) const noexcept {
     for (std::size_t k = 0; k < kJoints; ++k) {
       if (k == joint) continue;

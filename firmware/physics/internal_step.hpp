@@ -15,10 +15,11 @@ struct Terms {
   bool explicit_damping = false;
 };
 
-/// Applies the impulses of one step's internal forces to the velocities: springs, then stretch, bend and swivel
-/// dampers. Dampers are implicit: stretch solves a tridiagonal system, bend a pentadiagonal one, and swivel takes one
-/// weighted Jacobi step that never overshoots. So they dissipate energy for any coefficient and time step, and conserve
-/// linear and angular momentum. With explicit_damping they act as printed in the paper.
+/// Applies the impulses of one step's internal forces to the velocities: springs, then dampers of stretch, bend and
+/// swivel (rotation of neighbouring segments about the normal of their common plane). Dampers are implicit: stretch
+/// solves a tridiagonal system, bend a pentadiagonal one, and swivel takes one weighted Jacobi step that never
+/// overshoots. So they dissipate energy for any coefficient and time step, and conserve linear and angular momentum.
+/// With explicit_damping they act as printed in the paper.
 /// @param rate_v  velocities at the beginning of the step, for explicit dampers; unused otherwise
 using InternalStep = void (*)(const ThreadModel&, ThreadState&, const Lane3& rate_v, InternalWorkspace&) noexcept;
 

@@ -103,8 +103,8 @@ std::vector<std::vector<Point>> ways_home(std::span<const Point> thread) {
   return ways;
 }
 
-/// Simplifies the open thread once, together with the bars of all closures, which keeps the knot of every closure. Then
-/// closes it in each way; the results vote.
+/// Closes the thread in each way; the results vote. The open thread is simplified only once: no point of it may cross a
+/// bar, the straight line by which a way begins at an end of the thread, so every closure keeps its knot.
 KnotResult recognise_open(std::vector<Point> thread) {
   constexpr std::size_t kEnough = 3;
   const auto ways = ways_home(thread);

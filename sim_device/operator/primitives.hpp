@@ -18,7 +18,8 @@ namespace ligature::sim {
 [[nodiscard]] Move wait(double seconds);
 /// Waits until the end of the hanging thread no longer swings.
 [[nodiscard]] Move hang_out();
-/// The right hand moves away from the anchor along `direction` until the pull is `share` times that of a tight knot.
+/// The right hand moves away from the anchor along `direction` until its force is `share` times that at which a knot is
+/// tight.
 [[nodiscard]] Moves pull_tight(const Vec3& direction, double share);
 /// The right hand swings the thread about the anchor until it points along `direction`, at no larger distance than
 /// before.

@@ -31,7 +31,7 @@ inline constexpr double kPullSpeed_m_per_s = 0.6;  ///< mean speed; the hand sta
 /// Pulls with the right hand, then holds for one second, on a separate thread.
 [[nodiscard]] PullResult try_pull(std::span<const physics::Vec3> shape_W, const scene::Scene& scene, const Pull& pull);
 
-/// Pulls with the right hand, then holds for one second, on the given thread.
+/// Pulls with the right hand, then holds still for one second. Changes `thread`.
 PullResult do_pull(physics::Simulation& thread, const scene::Scene& scene, const Pull& pull);
 
 /// Position of the knot: nodes first .. last of the shortest piece that still contains it when the thread before and

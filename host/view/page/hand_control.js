@@ -1,5 +1,5 @@
 // Lets the user move simulated hands: keys, mouse and gamepads together give one target position per hand (a "wish"),
-// sent 50 times a second. When the wishes stop, the dead-man ends: the device lets go after 0.2 s without one.
+// sent 50 times a second. After 0.2 s without a wish the device releases its dead-man.
 import { toast, isTyping } from './controls.js';
 import { HandKeys } from './hand_keys.js';
 import { HandMouse } from './hand_mouse.js';

@@ -22,7 +22,8 @@ struct Chain {
   double lost = 0.0;     // share of RPDOs that are lost
   double lost_samples = 0.0;
   double guard_N = 1e9;  // the drive limits its force to this
-  // Whether the drive reports its torque; else only that it limits it, and the age of its command.
+  // true: the drive reports its torque. false: it reports whether it limits the torque, and the age of its last
+  // command.
   bool tells_torque = true;
   std::uint64_t seed = 1;  // of the random losses
   double wildness = 1.0;   // the hand's acceleration as a share of the device file's limit
