@@ -62,7 +62,9 @@ TEST(Admission, TheLoopFitsWhateverTheThread) {
     EXPECT_GT(a.loop.control_us, 0.0);
     EXPECT_GT(a.loop.calls_us, 0.0);
     EXPECT_GE(a.thread.given_us, 850.0 - a.computing_us()) << "most of the period is the thread's";
+#ifndef LIGATURE_SANITIZED  // so slow that the time ends before the first contact is found
     EXPECT_GT(a.thread.most_contacts, 0) << "the shapes must press it together";
+#endif
   }
 }
 

@@ -113,7 +113,7 @@ def recordings(folder):
     anything."""
     script = SCENES / "operators" / "suture-overhand.csv"
     there = folder / "overhand-3.lcmlog"
-    for command in (["tie", "overhand"], ["play", script, "--scene", SCENES / "suture-3-0.toml", "--knot", "overhand"]):
+    for command in (["tie", "overhand", "--scene", PAPER], ["play", script, "--scene", SCENES / "suture-3-0.toml", "--knot", "overhand"]):
         there.write_text("an earlier one")
         done = lab(*command, "--seeds", "1-5", "--out", folder)
         assert done.returncode == 2 and done.stderr.count("\n") == 1, done
