@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "protocol/device/device_keys.hpp"
 #include "protocol/device/omni_text.hpp"
 #include "protocol/scene/toml_text.hpp"
 
@@ -114,14 +115,8 @@ void check(StrictTable& geometry, StrictTable& limits, const Device& d) {
   if (d.continuous_force_N > d.peak_force_N) limits.refuse("continuous_force_N", "at most peak_force_N");
 }
 
-std::variant<DeviceFile, Error> read(const toml::table& root, const std::string& name) {
-  ReadContext context{name, {}, {}};
-  DeviceFile out;
+void read_record(StrictTable& top, DeviceFile& out) {
   Device& d = out.device;
-  StrictTable top(root, "", context);
-  for (const char* table : {"device", "geometry", "drives", "feel", "limits"}) {
-    if (!root.contains(table)) return Error{name + ": no [" + table + "] table, allowed a device record with one"};
-  }
   top.table("device", [&](StrictTable& t) { read_identity(t, d); });
   top.table("drives", [&](StrictTable& t) { read_drives(Marked(t, "drives", out), d); });
   top.table("feel", [&](StrictTable& t) { read_feel(Marked(t, "feel", out), d); });
@@ -133,11 +128,31 @@ std::variant<DeviceFile, Error> read(const toml::table& root, const std::string&
     });
   });
   top.finish();
+}
+
+std::variant<DeviceFile, Error> read(const toml::table& root, const std::string& name) {
+  for (const char* table : {"device", "geometry", "drives", "feel", "limits"}) {
+    if (!root.contains(table)) return Error{name + ": no [" + table + "] table, allowed a device record with one"};
+  }
+  ReadContext context{name, {}, {}};
+  DeviceFile out;
+  StrictTable top(root, "", context);
+  read_record(top, out);
   if (context.error) return *context.error;
   return out;
 }
 
 }  // namespace
+
+std::vector<scene::KeyRow> device_keys() {
+  std::vector<scene::KeyRow> rows;
+  ReadContext context{{}, {}, {}, &rows};
+  const toml::table root;
+  DeviceFile out;
+  StrictTable top(root, "", context);
+  read_record(top, out);
+  return rows;
+}
 
 std::variant<DeviceFile, Error> parse_device(const std::string& text, const std::string& name) {
   auto parsed = scene::parse_toml(text, name);

@@ -19,8 +19,8 @@ struct DeviceFile {
   std::vector<std::pair<std::string, Source>> sources;
 };
 
-/// @return the record, or one line that says what is wrong: file, line, key, what was found, what is allowed. No key
-/// has a default; all must be present.
+/// @return the record, or one line that says what is wrong: file, line, key, what was found, what is allowed. All keys
+/// must be present, except drives.torque_tolerance_permille.
 [[nodiscard]] std::variant<DeviceFile, scene::Error> load_device_file(const std::filesystem::path& path);
 [[nodiscard]] std::variant<Device, scene::Error> load_device(const std::filesystem::path& path);
 /// Parses a device record from a text; result as load_device_file(). `name` is used as file name in messages.

@@ -37,7 +37,27 @@ void read_fault(StrictTable& t, FaultScript& s) {
   t.number("period_s", s.period_s, {1e-4, 10.0});
 }
 
+void read_script(StrictTable& top, FaultScript& script) {
+  top.require("fault");
+  top.table("fault", [&](StrictTable& t) { read_fault(t, script); });
+  top.table("expect", [&](StrictTable& t) {
+    t.integer("fault", script.expected_fault, 0, 99);
+    t.integer("within_ticks", script.within_ticks, 0, 1000);
+  });
+  top.finish();
+}
+
 }  // namespace
+
+std::vector<KeyRow> fault_keys() {
+  std::vector<KeyRow> rows;
+  ReadContext context{{}, {}, {}, &rows};
+  const toml::table root;
+  FaultScript script;
+  StrictTable top(root, "", context);
+  read_script(top, script);
+  return rows;
+}
 
 std::variant<FaultScript, Error> load_fault_script(const std::filesystem::path& path) {
   ReadContext context{path.string(), {}, {}};
@@ -46,13 +66,7 @@ std::variant<FaultScript, Error> load_fault_script(const std::filesystem::path& 
   const auto& root = std::get<toml::table>(parsed);
   FaultScript script;
   StrictTable top(root, "", context);
-  top.require("fault");
-  top.table("fault", [&](StrictTable& t) { read_fault(t, script); });
-  top.table("expect", [&](StrictTable& t) {
-    t.integer("fault", script.expected_fault, 0, 99);
-    t.integer("within_ticks", script.within_ticks, 0, 1000);
-  });
-  top.finish();
+  read_script(top, script);
   if (context.error) return *context.error;
   return script;
 }

@@ -177,6 +177,15 @@ void read_hands(StrictTable& t, const Suture& suture, Hands& h) {
   t.vector("workspace_origin_m", h.workspace_origin_m, kFar_m);
 }
 
+void read_scene(StrictTable& top, const fs::path& folder, Scene& s) {
+  top.table("suture", [&](StrictTable& t) { read_suture(t, folder, s.suture); });
+  top.table("contact", [&](StrictTable& t) { read_contact(t, s.suture.model == Model::kRod, s.contact); });
+  top.table("world", [&](StrictTable& t) { read_world(t, s.suture, s.contact.solver, s.world); });
+  top.table("time", [&](StrictTable& t) { read_time(t, s.suture.nodes, s.time); });
+  top.table("hands", [&](StrictTable& t) { read_hands(t, s.suture, s.hands); });
+  top.finish();
+}
+
 /// Inserts one `key=value` into the tree and creates tables as needed; false if the text is malformed.
 bool override_key(toml::table& root, const std::string& text, ReadContext& context) {
   const auto equals = text.find('=');
@@ -222,6 +231,16 @@ const char* name(Model model) noexcept {
   return "unknown";
 }
 
+std::vector<KeyRow> scene_keys(Model model) {
+  std::vector<KeyRow> rows;
+  ReadContext context{{}, {}, {}, &rows};
+  const toml::table root{{"suture", toml::table{{"model", name(model)}}}};
+  Scene scene;
+  StrictTable top(root, "", context);
+  read_scene(top, {}, scene);
+  return rows;
+}
+
 std::variant<Scene, Error> load_scene(const fs::path& path, std::span<const std::string> overrides) {
   const auto read = read_text(path, kMostScene_bytes);
   if (const auto* error = std::get_if<Error>(&read)) return *error;
@@ -240,12 +259,7 @@ std::variant<Scene, Error> parse_scene(const std::string& text, const fs::path& 
   }
   Scene scene;
   StrictTable top(root, "", context);
-  top.table("suture", [&](StrictTable& t) { read_suture(t, path.parent_path(), scene.suture); });
-  top.table("contact", [&](StrictTable& t) { read_contact(t, scene.suture.model == Model::kRod, scene.contact); });
-  top.table("world", [&](StrictTable& t) { read_world(t, scene.suture, scene.contact.solver, scene.world); });
-  top.table("time", [&](StrictTable& t) { read_time(t, scene.suture.nodes, scene.time); });
-  top.table("hands", [&](StrictTable& t) { read_hands(t, scene.suture, scene.hands); });
-  top.finish();
+  read_scene(top, path.parent_path(), scene);
   if (context.error) return *context.error;
   if (!has_suture) return Error{path.string() + ": no [suture] table, allowed a scene with one (it may be empty)"};
   return scene;

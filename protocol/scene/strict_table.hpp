@@ -1,6 +1,6 @@
 #pragma once
-// A TOML table that is read key by key and refuses keys that were not read. Private to the readers of scene, device and
-// fault files, because including it compiles toml++.
+// A TOML table that is read key by key and refuses keys that were not read. It can also list the keys. Private to the
+// readers of scene, device and fault files, because including it compiles toml++.
 
 // Disables the parser's assertions: one fails on a zero byte in a key (found by fuzzing), although the parser then
 // refuses it.
@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "protocol/scene/csv.hpp"
+#include "protocol/scene/key_list.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::scene {
@@ -28,6 +29,8 @@ struct ReadContext {
   std::string file;
   std::map<std::string, std::string> overridden;  ///< dotted key -> text of its --set
   std::optional<Error> error;
+  /// If set, every key that a reader asks for is appended, in absent tables too, and a missing key is no error.
+  std::vector<KeyRow>* listed = nullptr;
 
   [[nodiscard]] bool is_overridden(const std::string& key) const { return overridden.contains(root_of(key)); }
 
@@ -74,6 +77,7 @@ class StrictTable {
       : table_(table), path_(std::move(path)), context_(context) {}
 
   void number(std::string_view key, double& out, Range range) {
+    if (lists()) list(key, "number " + range.text(), digits(out));
     const auto* node = take(key);
     if (!node) return;
     const auto value = node->value<double>();
@@ -84,30 +88,36 @@ class StrictTable {
   }
 
   void number(std::string_view key, std::optional<double>& out, Range range) {
-    if (!table_.contains(key)) return void(take(key));
+    if (!table_.contains(key)) {
+      if (lists()) list(key, "number " + range.text(), "none");
+      return void(take(key));
+    }
     double value = range.high;
     number(key, value, range);
     out = value;
   }
 
   void integer(std::string_view key, int& out, int low, int high) {
+    if (lists()) list(key, whole(low, high), std::to_string(out));
     const auto* node = take(key);
     if (!node) return;
     const auto value = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
-    if (!value || *value < low || *value > high) {
-      return refuse(key, *node, "integer " + std::to_string(low) + " .. " + std::to_string(high));
-    }
+    if (!value || *value < low || *value > high) return refuse(key, *node, whole(low, high));
     out = static_cast<int>(*value);
   }
 
   void integer(std::string_view key, std::optional<int>& out, int low, int high) {
-    if (!table_.contains(key)) return void(take(key));
+    if (!table_.contains(key)) {
+      if (lists()) list(key, whole(low, high), "none");
+      return void(take(key));
+    }
     int value = low;
     integer(key, value, low, high);
     out = value;
   }
 
   void boolean(std::string_view key, bool& out) {
+    if (lists()) list(key, "true or false", out ? "true" : "false");
     const auto* node = take(key);
     if (!node) return;
     if (!node->is_boolean()) return refuse(key, *node, "true or false");
@@ -115,6 +125,7 @@ class StrictTable {
   }
 
   void text(std::string_view key, std::string& out) {
+    if (lists()) list(key, "a text", out.empty() ? "none" : "\"" + out + "\"");
     const auto* node = take(key);
     if (!node) return;
     if (!node->is_string() || node->value<std::string>()->empty()) return refuse(key, *node, "a text");
@@ -124,17 +135,23 @@ class StrictTable {
   /// Reads a name from a table of {name, value}.
   template <class Enum, std::size_t N>
   void choice(std::string_view key, Enum& out, const std::pair<const char*, Enum> (&names)[N], const char* note = "") {
+    std::string allowed, standard = "none";
+    for (const auto& [label, value] : names) {
+      const std::string quoted = "\"" + std::string(label) + "\"";
+      allowed += (allowed.empty() ? "" : ", ") + quoted;
+      if (value == out) standard = quoted;
+    }
+    if (lists()) list(key, "one of " + allowed + note, standard);
     const auto* node = take(key);
     if (!node) return;
-    std::string allowed;
     for (const auto& [label, value] : names) {
       if (node->is_string() && *node->value<std::string>() == label) return void(out = value);
-      allowed += (allowed.empty() ? "\"" : ", \"") + std::string(label) + "\"";
     }
     refuse(key, *node, "one of " + allowed + note);
   }
 
   void vector(std::string_view key, Vec& out, double limit) {
+    if (lists()) list(key, within(limit), "[" + digits(out[0]) + ", " + digits(out[1]) + ", " + digits(out[2]) + "]");
     const auto* node = take(key);
     if (!node) return;
     const auto* array = node->as_array();
@@ -145,14 +162,15 @@ class StrictTable {
       good = value && std::isfinite(*value) && std::abs(*value) <= limit;
       if (good) v[i] = *value;
     }
-    std::ostringstream allowed;
-    allowed << "three numbers [x, y, z], each -" << limit << " .. " << limit;
-    if (!good) return refuse(key, *node, allowed.str());
+    if (!good) return refuse(key, *node, within(limit));
     out = v;
   }
 
   void vector(std::string_view key, std::optional<Vec>& out, double limit) {
-    if (!table_.contains(key)) return void(take(key));
+    if (!table_.contains(key)) {
+      if (lists()) list(key, within(limit), "none");
+      return void(take(key));
+    }
     Vec v{};
     vector(key, v, limit);
     out = v;
@@ -161,8 +179,9 @@ class StrictTable {
   /// Calls read(StrictTable&) for the table under `key`, if present.
   template <class Read>
   void table(std::string_view key, Read read) {
+    if (lists()) list(key, "a table", "none");
     const auto* node = take(key);
-    if (!node) return;
+    if (!node) return list_inner(full(key), read);
     if (!node->is_table()) return refuse(key, *node, "a table");
     StrictTable inner(*node->as_table(), full(key), context_);
     read(inner);
@@ -172,13 +191,15 @@ class StrictTable {
   /// Calls read(StrictTable&) for each table of the array under `key`, if present.
   template <class Read>
   void tables(std::string_view key, Read read) {
+    const std::string kind = "an array of tables [{...}, ...]";
+    if (lists()) list(key, kind, "none");
     const auto* node = take(key);
-    if (!node) return;
+    if (!node) return list_inner(full(key) + "[]", read);
     const auto* array = node->as_array();
     for (std::size_t i = 0; array && i < array->size(); ++i) {
       if (!(*array)[i].is_table()) array = nullptr;
     }
-    if (!array) return refuse(key, *node, "an array of tables [{...}, ...]");
+    if (!array) return refuse(key, *node, kind);
     for (std::size_t i = 0; i < array->size(); ++i) {
       StrictTable inner(*(*array)[i].as_table(), full(key) + "[" + std::to_string(i) + "]", context_);
       read(inner);
@@ -191,12 +212,15 @@ class StrictTable {
   template <class Read>
   void keys_of(bool here, const char* owner, Read read) {
     elsewhere_ = here ? nullptr : owner;
+    owner_ = owner;
     read();
     elsewhere_ = nullptr;
+    owner_.clear();
   }
 
   /// Refuses the table if a required key is missing.
   void require(std::string_view key) {
+    if (lists()) return void(required_.emplace(key));
     if (!table_.contains(key))
       context_.refuse(path_, table_,
                       (path_.empty() ? "" : "'" + path_ + "': ") + "key '" + std::string(key) + "' is missing");
@@ -236,6 +260,32 @@ class StrictTable {
     if (node != nullptr) refuse(key, *node, std::string(elsewhere_) + " only");
     return nullptr;
   }
+  [[nodiscard]] bool lists() const { return context_.listed != nullptr; }
+  void list(std::string_view key, const std::string& allowed, const std::string& standard) {
+    const bool required = required_.contains(std::string(key));
+    context_.listed->push_back({full(key), allowed, required ? "required" : standard, owner_});
+  }
+  /// Lists the keys of an absent table.
+  template <class Read>
+  void list_inner(const std::string& path, Read read) {
+    if (!lists()) return;
+    const toml::table none;
+    StrictTable inner(none, path, context_);
+    inner.owner_ = owner_;
+    read(inner);
+  }
+  static std::string whole(int low, int high) {
+    return "integer " + std::to_string(low) + " .. " + std::to_string(high);
+  }
+  static std::string within(double limit) {
+    std::ostringstream allowed;
+    allowed << "three numbers [x, y, z], each -" << limit << " .. " << limit;
+    return allowed.str();
+  }
+  static std::string digits(double value) {
+    std::array<char, 32> text{};
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+  }
   [[nodiscard]] std::string full(std::string_view key) const {
     return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
   }
@@ -261,12 +311,10 @@ class StrictTable {
     } else if (node.is_table()) {
       out += "a table";
     } else if (const auto* number = node.as_floating_point()) {
-      std::array<char, 32> digits{};
-      const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number->get()).ptr;
-      const std::string_view text(digits.data(), end);
+      const std::string text = digits(number->get());
       out += text;
       // 50.0 is not shortened to 50: the message must show why it is no integer
-      if (text.find_first_not_of("-0123456789") == text.npos) out += ".0";
+      if (text.find_first_not_of("-0123456789") == std::string::npos) out += ".0";
     } else {
       std::ostringstream value;
       node.visit([&](const auto& v) { value << v; });
@@ -278,6 +326,8 @@ class StrictTable {
   std::string path_;
   ReadContext& context_;
   std::set<std::string> asked_;
+  std::set<std::string> required_;   ///< when listing: the keys that must be present
+  std::string owner_;                ///< owner of the keys being read; empty: all models
   const char* elsewhere_ = nullptr;  ///< owner of the keys being read, if another model is used; else nullptr
 };
 

@@ -17,7 +17,7 @@ RULES = {
     "protocol/can/describe": (["protocol/can"], ["OS"]),
     "protocol/scene": (["protocol/recorder/crc32.hpp"], ["toml++/"]),
     "protocol/scene/text_file.cpp": (["protocol/scene"], ["OS"]),  # the only file that opens files
-    "protocol/device": ([SCENE_STRUCT, "protocol/scene/toml_text.hpp"], ["toml++/", "OS"]),
+    "protocol/device": ([SCENE_STRUCT, "protocol/scene/key_list.hpp", "protocol/scene/toml_text.hpp"], ["toml++/", "OS"]),
     "protocol/recorder": ([], []),
     "protocol/lcm": ([], ["OS"]),
     "firmware/rt": ([], []),
