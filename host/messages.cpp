@@ -5,27 +5,14 @@
 #include <cstdint>
 #include <limits>
 
+#include "protocol/lcm/array_fits.hpp"
+
 namespace ligature::host {
 namespace {
 
-constexpr std::size_t kHash = 8, kInt64 = 8, kInt32 = 4, kInt8 = 1, kFloat = 4;  // encoded sizes in bytes
+using lcm_tools::int32_at, lcm_tools::kHash, lcm_tools::kInt32, lcm_tools::kInt64, lcm_tools::kInt8;
+
 constexpr std::int64_t kLargestTick = std::int64_t{1} << 40;  // 35 years at 1 kHz; larger numbers are rejected
-
-/// The big-endian int32 at an offset; nothing when the message is too short.
-std::optional<std::int32_t> int32_at(Bytes message, std::size_t offset) {
-  if (message.size() < offset + kInt32) return std::nullopt;
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < kInt32; ++i) value = value << 8U | std::to_integer<std::uint32_t>(message[offset + i]);
-  return static_cast<std::int32_t>(value);
-}
-
-/// Whether the message has exactly the length that an array with its count at `count_offset` and a tail of fixed size
-/// need.
-bool array_fits(Bytes message, std::size_t count_offset, std::size_t element_size, std::size_t tail_size) {
-  const auto count = int32_at(message, count_offset);
-  if (!count || *count < 0) return false;
-  return message.size() == count_offset + kInt32 + static_cast<std::size_t>(*count) * element_size + tail_size;
-}
 
 /// Moves `offset` past `count` consecutive strings (length including the terminator, bytes, 0). False when one exceeds
 /// the message.
@@ -80,7 +67,7 @@ bool is_rising(const std::vector<ligature_msg::tick_t>& ticks) {
 template <>
 std::optional<ligature_msg::tick_batch_t> decode(Bytes message) {
   static const auto tick_size = static_cast<std::size_t>(ligature_msg::tick_t{}._getEncodedSizeNoHash());
-  if (!array_fits(message, kHash + 3 * kInt64, tick_size, 0)) return std::nullopt;
+  if (!lcm_tools::tick_batch_fits(message, tick_size)) return std::nullopt;
   auto batch = decode_checked<ligature_msg::tick_batch_t>(message);
   if (batch && !is_rising(batch->ticks)) return std::nullopt;
   return batch;
@@ -88,8 +75,7 @@ std::optional<ligature_msg::tick_batch_t> decode(Bytes message) {
 
 template <>
 std::optional<ligature_msg::thread_t> decode(Bytes message) {
-  // Per node: position, tension and turn (bending angle), as three arrays of one length.
-  if (!array_fits(message, kHash + 2 * kInt64 + kFloat, 5 * kFloat, 2 * sizeof(std::int16_t))) return std::nullopt;
+  if (!lcm_tools::thread_fits(message)) return std::nullopt;
   auto thread = decode_checked<ligature_msg::thread_t>(message);
   if (thread && !is_tick_number(thread->tick)) return std::nullopt;
   return thread;

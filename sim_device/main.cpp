@@ -75,14 +75,17 @@ std::variant<std::optional<sim::FaultInjector>, std::string> read_faults(const s
   return std::optional<sim::FaultInjector>(script);
 }
 
-void live(sim::HandDevice& device, sim::Port& port, sim::EventLoop& loop, sim::Narrator& narrator, sim::PageLink* page,
+void live(sim::HandDevice& device, sim::Port& port, sim::EventLoop& loop, sim::Narrator& narrator, sim::Link* link,
           bool exit_when_done, const sigset_t& during_sleep) {
   sim::Time end = sim::kNever;
   while (g_stop == 0) {
     loop.wait(kLongestSleep, during_sleep);
     const sim::Time now = sim::now_monotonic();
     loop.serve(now);
-    if (page != nullptr) page->look(device.mechanics(), now);
+    if (link != nullptr) {
+      link->look(device.mechanics(), now);
+      for (const std::string& line : link->news()) narrator.say(line);
+    }
     narrator.look(device, port.clients(), now);
     if (exit_when_done && end == sim::kNever && device.mechanics().is_done()) end = now + kFarewell;
     if (now >= end) return;
@@ -119,7 +122,7 @@ int main(int argc, char** argv) {
                          !port.charges_bit_time());
   sim::EventLoop loop(device, port, injector ? &*injector : nullptr);
   narrator.say("on " + options.bus + ", waiting for a controller");
-  live(device, port, loop, narrator, mover.page.get(), options.exit_when_done, during_sleep);
+  live(device, port, loop, narrator, mover.link.get(), options.exit_when_done, during_sleep);
 
   const std::string text = sim::stats_json(options.hand(), device, loop.stats(), port.dropped_frames());
   device.power_off();  // only now, because the statistics report the torques before power-off

@@ -54,6 +54,8 @@ class Mechanics {
   [[nodiscard]] const Body& body() const noexcept { return body_; }
   [[nodiscard]] const Plant& plant() const noexcept { return plant_; }
   [[nodiscard]] Intent intent() const noexcept { return intention_->at(script_time_s(), touch()); }
+  /// Time at which the script started; kNever before it.
+  [[nodiscard]] Time started_at() const noexcept { return started_at_; }
   /// Time since the script's start; minus infinity before it.
   [[nodiscard]] double script_time_s() const noexcept;
   [[nodiscard]] double script_end_s() const noexcept { return intention_->end_s(); }

@@ -2,28 +2,47 @@
 
 #include "protocol/scene/gripper_script.hpp"
 #include "protocol/scene/scene_file.hpp"
+#include "sim_device/page/page_link.hpp"
 #include "sim_device/script_hand.hpp"
+#include "sim_device/tying/tying_link.hpp"
 #include "sim_device/unrest.hpp"
 
 namespace ligature::sim {
 namespace {
 
-std::variant<std::unique_ptr<Intention>, std::string> read_script(const Options& o, const Linkage& linkage) {
-  scene::Scene scene;
-  if (!o.scene.empty()) {
-    auto read = scene::load_scene(o.scene, o.overrides);
-    if (const auto* e = std::get_if<scene::Error>(&read)) return e->text;
-    scene = std::get<scene::Scene>(std::move(read));
-  }
+std::variant<Mover, std::string> scripted(const Options& o, const scene::Scene& scene, const Linkage& linkage) {
   scene::GripperScript script;
-  if (!o.script.empty() && !o.is_steered()) {
+  if (!o.script.empty()) {
     auto read = scene::load_gripper_script(o.script);
     if (const auto* e = std::get_if<scene::Error>(&read)) return e->text;
     script = std::get<scene::GripperScript>(std::move(read));
   }
   auto path = script_hand(script, o.is_left ? 0 : 1, WorkspaceMap(scene.hands, linkage));
   if (const auto* why = std::get_if<std::string>(&path)) return o.script + ": " + *why;
-  return path;
+  return Mover{std::get<std::unique_ptr<Intention>>(std::move(path)), nullptr};
+}
+
+std::variant<Mover, std::string> steered(const Options& o, const Linkage& linkage) {
+  auto hand = std::make_unique<SteeredHand>(linkage);
+  auto link = std::make_unique<PageLink>(o.lcm_url, o.is_left, *hand);
+  if (!link->objection().empty()) return link->objection();
+  return Mover{std::move(hand), std::move(link)};
+}
+
+std::variant<Mover, std::string> tying(const Options& o, const scene::Scene& scene, const Linkage& linkage) {
+  const auto refused = [&o](const std::string& why) { return "--operator " + o.script + ": " + why; };
+  if (o.scene.empty()) return refused("needs --scene, which says where the thread hangs");
+  auto tier = tier_of(o.script, scene);
+  if (const auto* why = std::get_if<std::string>(&tier)) return refused(*why);
+  const std::size_t index = o.is_left ? kLeftHand : kRightHand;
+  const WorkspaceMap map(scene.hands, linkage);
+  const Vec3 start_W = std::get<KnotTier>(tier).wish()[index].p_W;
+  const auto q = linkage.joints(map.to_device(start_W));
+  if (!q || !linkage.is_within_stops(*q)) return refused("this hand would begin out of the device's reach");
+  auto hand = std::make_unique<PlayedHand>(map, index, start_W);
+  auto link = std::make_unique<TyingLink>(o.lcm_url, TyingPlan(std::get<KnotTier>(std::move(tier)), scene), *hand);
+  if (!link->objection().empty()) return link->objection();
+  return Mover{std::move(hand), std::move(link)};
 }
 
 std::unique_ptr<Intention> with_unrest(std::unique_ptr<Intention> will, const Options& o) {
@@ -36,19 +55,17 @@ std::unique_ptr<Intention> with_unrest(std::unique_ptr<Intention> will, const Op
 }  // namespace
 
 std::variant<Mover, std::string> mover_of(const Options& options, const Linkage& linkage) {
-  auto script = read_script(options, linkage);
-  if (const auto* why = std::get_if<std::string>(&script)) return *why;
-  Mover mover;
-  if (options.is_steered()) {
-    auto hand = std::make_unique<SteeredHand>(linkage);
-    mover.page = std::make_unique<PageLink>(options.lcm_url, options.is_left, *hand);
-    if (!mover.page->objection().empty()) return mover.page->objection();
-    mover.will = std::move(hand);
-  } else {
-    mover.will = std::get<std::unique_ptr<Intention>>(std::move(script));
+  scene::Scene scene;
+  if (!options.scene.empty()) {
+    auto read = scene::load_scene(options.scene, options.overrides);
+    if (const auto* e = std::get_if<scene::Error>(&read)) return e->text;
+    scene = std::get<scene::Scene>(std::move(read));
   }
-  mover.will = with_unrest(std::move(mover.will), options);
-  return mover;
+  auto found = options.is_steered() ? steered(options, linkage)
+               : options.is_tying() ? tying(options, scene, linkage)
+                                    : scripted(options, scene, linkage);
+  if (auto* mover = std::get_if<Mover>(&found)) mover->will = with_unrest(std::move(mover->will), options);
+  return found;
 }
 
 }  // namespace ligature::sim

@@ -1,20 +1,20 @@
 #pragma once
-// Creates what moves the hand in this run: a script, a person at a page, or nothing; plus tremor or an adversary if
-// asked.
+// Creates what moves the hand in this run: a script, a person at a page, an operator that sees the thread, or nothing;
+// plus tremor or an adversary if asked.
 
 #include <memory>
 #include <string>
 #include <variant>
 
 #include "sim_device/intention.hpp"
+#include "sim_device/link.hpp"
 #include "sim_device/options.hpp"
-#include "sim_device/page/page_link.hpp"
 
 namespace ligature::sim {
 
 struct Mover {
   std::unique_ptr<Intention> will;
-  std::unique_ptr<PageLink> page;  ///< passes a page's targets to `will`; null without a page
+  std::unique_ptr<Link> link;  ///< passes received messages to `will`; null if `will` needs none
 };
 
 /// @return the mover, or one line that says why not: a file that cannot be read, a key out of reach, no network.

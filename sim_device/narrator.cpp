@@ -25,8 +25,8 @@ void Narrator::look(const HandDevice& device, int clients, Time now) {
   const Mechanics& m = device.mechanics();
   const bool has_end = m.script_end_s() < kEndless_s;
   if (m.has_started() && !std::exchange(started_, true))
-    say(has_end ? "drives enabled, script begins" : "drives enabled, follows the page");
-  if (started_ && m.is_done() && !std::exchange(done_, true)) say("script done, dead-man let go");
+    say(has_end ? "drives enabled, script begins" : "drives enabled, the operator begins");
+  if (started_ && m.is_done() && !std::exchange(done_, true)) say("done, dead-man let go");
   if (!is_terminal_ || !started_ || !has_end || done_ || now < next_progress_) return;
   next_progress_ = now + std::chrono::seconds(1);
   std::printf("\r%s hand: %.0f s of %.0f s ", hand_.c_str(), m.script_time_s(), m.script_end_s());

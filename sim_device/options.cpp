@@ -18,6 +18,8 @@ constexpr const char* kExample =
     "dead-man from then until 1 s after the last key. docs/wire.md describes the bus.\n"
     "A hand that a person moves with mouse, keys or gamepad:  ... --operator page, and ligature-host view "
     "(docs/view.md)\n"
+    "Both hands of an operator who ties by looking at what the rig publishes on LCM:  ... --operator tie:square:7 "
+    "(docs/tying.md)\n"
     "A clenched, trembling hand:  ... --hold clenched --tremor-mm 0.5 --tremor-hz 9\n"
     "Exit: 0 ended (SIGINT, SIGTERM or script), 2 bad usage or input, 3 the run failed.";
 
@@ -66,8 +68,9 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
   app.add_option(
       "--operator", o.script,
       "Script, CSV: time,hand,x,y,z,grip in world metres; or the word page: a person moves the hand from the "
-      "page of ligature-host view; without it the hand rests");
-  app.add_option("--lcm-url", o.lcm_url, "LCM network of the rig, for --operator page")->capture_default_str();
+      "page of ligature-host view; or tie:KNOT[:SEED]: an operator ties overhand, figure-eight, square, granny or "
+      "surgeon by looking at the thread; without it the hand rests");
+  app.add_option("--lcm-url", o.lcm_url, "LCM network of the rig, for --operator page and tie:")->capture_default_str();
   app.add_option("--faults", o.faults, "Fault script (TOML, see scenes/faults): what shall go wrong, and when");
   app.add_flag("--exit-when-done", o.exit_when_done, "End after the script, once the dead-man is let go");
   app.add_option("--stats", o.stats, "At the end, write JSON: SYNCs, bus load, watchdog trips, final torque");

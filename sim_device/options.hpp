@@ -16,7 +16,7 @@ struct Options {
   bool is_left = true;
   std::string bus;
   std::string scene;   ///< empty: default workspace mapping
-  std::string script;  ///< empty: the hand rests; "page": steered from a page
+  std::string script;  ///< empty: the hand rests; "page": steered from a page; "tie:KNOT[:SEED]"
   std::string lcm_url{lcm_tools::kDefaultUrl};
   std::string stats;   ///< file for statistics; empty: none
   std::string faults;  ///< fault script; empty: no faults
@@ -34,6 +34,7 @@ struct Options {
   std::uint32_t seed = 1;
 
   [[nodiscard]] bool is_steered() const { return script == "page"; }
+  [[nodiscard]] bool is_tying() const { return script.starts_with("tie:"); }
   [[nodiscard]] std::string hand() const { return is_left ? "left" : "right"; }
 };
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "sim_device/mechanics.hpp"
+#include "sim_device/link.hpp"
 #include "sim_device/page/holding.hpp"
 #include "sim_device/page/steered_hand.hpp"
 
@@ -15,21 +15,19 @@ struct ReceiveBuffer;
 
 namespace ligature::sim {
 
-class PageLink {
+class PageLink final : public Link {
  public:
   static constexpr Time kStateEvery = std::chrono::milliseconds(50);
 
   /// @param hand must outlive this. Signals blocked at this call stay blocked in LCM's thread.
   PageLink(const std::string& url, bool is_left, SteeredHand& hand);
-  ~PageLink();
-  PageLink(const PageLink&) = delete;
-  PageLink& operator=(const PageLink&) = delete;
+  ~PageLink() override;
 
   /// Why the network could not be opened; empty if it is open.
   [[nodiscard]] const std::string& objection() const noexcept { return objection_; }
 
   /// Applies the targets that have arrived, and publishes the state if it is due. Never waits.
-  void look(const Mechanics& mechanics, Time now);
+  void look(const Mechanics& mechanics, Time now) override;
 
  private:
   static void receive(const lcm::ReceiveBuffer* received, const std::string& channel, PageLink* link);

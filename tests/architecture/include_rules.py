@@ -31,7 +31,9 @@ RULES = {
     "firmware/app": (["firmware", "protocol", "ligature_msg"], ["CLI/", "spdlog/", "OS"]),
     # Lets a web page steer a simulated hand; in a folder of its own, because the firmware must not include it.
     "sim_device/page": (["sim_device", "protocol/lcm", "ligature_msg"], ["ruckig/", "Eigen/", "lcm/", "OS"]),
-    "sim_device": (["protocol/can", "protocol/scene", "protocol/device", "protocol/lcm/default_url.hpp", "sim_device/page"], ["ruckig/", "Eigen/", "CLI/", "spdlog/", "nlohmann/", "OS"]),
+    # A simulated operator that sees the thread by LCM messages, which anybody may have sent.
+    "sim_device/tying": (["sim_device", "protocol/lcm", "protocol/scene", "ligature_msg"], ["lcm/", "OS"]),
+    "sim_device": (["protocol/can", "protocol/scene", "protocol/device", "protocol/lcm/default_url.hpp", "sim_device/page", "sim_device/tying"], ["ruckig/", "Eigen/", "CLI/", "spdlog/", "nlohmann/", "OS"]),
     "host/knot": ([], ["Eigen/"]),
     "host/console": (["host/errors.hpp"], ["OS"]),
     "host/lab/tie": (["firmware/physics", "sim_device", "protocol/scene", "host"], ["CLI/", "Eigen/", "OS"]),

@@ -79,6 +79,14 @@ class BadInput(unittest.TestCase):
             self.refused(run("ligature-device", "--hand", "left", "--bus", f"local:{self.path}/bus", "--cpu", value),
                          "--cpu", f"found '{value}'", "0 .. 1023")
 
+    def test_an_operator_who_ties(self):
+        device = ("ligature-device", "--hand", "left", "--bus", f"local:{self.path}/bus")
+        scene = ("--scene", ROOT / "scenes/paper.toml")
+        self.refused(run(*device, "--operator", "tie:square"), "tie:square", "--scene")
+        self.refused(run(*device, *scene, "--operator", "tie:bow:1"), 'found "bow"', "overhand", "surgeon")
+        self.refused(run(*device, *scene, "--operator", "tie:square:x"), 'found "x"', "0 .. 4294967295")
+        self.refused(run(*device, *scene, "--operator", "tie:surgeon"), "suture.length_m", "6 or more")
+
     def test_a_missing_scene(self):
         for name, command in self.programs(self.path / "nowhere.toml"):
             with self.subTest(program=name):

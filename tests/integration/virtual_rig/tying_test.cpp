@@ -7,6 +7,7 @@
 #include "host/lab/rig/virtual_rig.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "sim_device/operator/knot_tier.hpp"
+#include "tests/integration/virtual_rig/heard_rig.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -85,6 +86,21 @@ TEST(Tying, ASquareKnotStaysInAnUndampedThread) {
   for (const std::uint32_t seed : {3U, 7U})
     EXPECT_EQ(knot_before("done", "paper.toml", "square", seed, {"suture.model=\"paper-2\""}), "3_1#3_1 amphichiral")
         << seed;
+}
+
+/// As two processes of ligature-device do it: each plans for both hands, and sees only batches of messages, up to 30 ms
+/// late.
+TEST(Tying, HandsThatOnlyHearTheRigTieKnotsOfTwoThrows) {
+  RigSetup setup;
+  setup.scene = std::get<scene::Scene>(scene::load_scene(LIGATURE_SOURCE_DIR "/scenes/suture-3-0.toml", {}));
+  const std::array<std::pair<const char*, const char*>, 2> knots{
+      {{"square", "3_1#3_1 amphichiral"}, {"surgeon", "3_1#5_1 mixed"}}};
+  for (const auto& [name, type] : knots) {
+    test::HeardRig heard(setup, name, 2, {.latest_s = 0.03});
+    EXPECT_EQ(heard.tie(120'000), type);
+    EXPECT_EQ(heard.parted_m(), 0.0) << "both processes heard the same, and planned the same";
+    EXPECT_EQ(heard.plan(0).lost_ticks(), 0);
+  }
 }
 
 }  // namespace
