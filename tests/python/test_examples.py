@@ -18,6 +18,7 @@ SAYS = {
     "06_fit_of_a_thread": "true 4e-07",
     "07_sweep": "3_1",
     "08_plot_for_a_paper": "knot 3_1",
+    "09_gym": "trained - random: 0.",
 }
 
 

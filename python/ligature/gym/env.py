@@ -12,6 +12,7 @@ from ligature.inputs import Overrides, Path, Scene, lines_of, numbers
 from ligature.simulation import Simulation
 
 RENDER_PX = 256
+Seen = dict[str, np.ndarray]  # an observation
 
 
 class ThreadEnv(gymnasium.Env):
@@ -38,19 +39,25 @@ class ThreadEnv(gymnasium.Env):
     OPTIONS: tuple[str, ...] = ()  # what reset(options) accepts
 
     def __init__(self, scene: Path | None = None, overrides: Overrides | None = None, observation: str = "shape",
-                 step_s: float = 0.02, speed_m_per_s: float | None = None, size_px: int = 64, render_mode: str | None = None) -> None:
-        """scene: path, None: the task's own. overrides: as for Scene.load. step_s: rounded to whole ticks. Raises Refusal."""
+                 step_s: float = 0.02, speed_m_per_s: float | None = None, size_px: int = 64,
+                 render_mode: str | None = None) -> None:
+        """scene: path; None: the task's own. overrides: as for Scene.load. step_s: rounded to whole ticks.
+
+        Raises Refusal.
+        """
         if observation not in ("shape", "camera"):
             raise _core.Refusal(f"observation: found {observation!r}, allowed 'shape' or 'camera'")
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise _core.Refusal(f"render_mode: found {render_mode!r}, allowed None or 'rgb_array'")
         self.render_mode = render_mode
-        self.simulation = Simulation(Scene.load(SCENES / self.SCENE, lines_of(self.OVERRIDES) + lines_of(overrides)) if scene is None
-                                     else Scene.load(scene, overrides))
+        if scene is None:
+            scene, overrides = SCENES / self.SCENE, lines_of(self.OVERRIDES) + lines_of(overrides)
+        self.simulation = Simulation(Scene.load(scene, overrides))
         tick_s = self.simulation.scene.tick_s
         self._ticks = round(within(step_s, "step_s", tick_s, 1.0) / tick_s)  # of a step
         self.step_s = self._ticks * tick_s
-        self.speed_m_per_s = within(self.SPEED_M_PER_S if speed_m_per_s is None else speed_m_per_s, "speed_m_per_s", 1e-6, 100.0)
+        speed = self.SPEED_M_PER_S if speed_m_per_s is None else speed_m_per_s
+        self.speed_m_per_s = within(speed, "speed_m_per_s", 1e-6, 100.0)
         if self.SETTLE_S > 0.0:
             self.simulation.run(duration_s=self.SETTLE_S)
         self._start = self.simulation.nodes.copy()
@@ -74,7 +81,7 @@ class ThreadEnv(gymnasium.Env):
                  else shape_spaces(self._low, self._high, n))
         return sight | hand_spaces(self._low, self._high, n, len(self.HANDS))
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Seen, dict[str, Any]]:
         """Starts an episode. The same seed gives the same start to the bit. options: see the task. Raises Refusal."""
         if unknown := [key for key in options or {} if key not in self.OPTIONS]:
             raise _core.Refusal(f"options: found {unknown[0]!r}, allowed {', '.join(self.OPTIONS) or 'none'}")
@@ -89,13 +96,14 @@ class ThreadEnv(gymnasium.Env):
         self._playing = True
         return self._observation(), self._info()
 
-    def step(self, action: Any) -> tuple[dict[str, np.ndarray], float, bool, bool, dict[str, Any]]:
-        """Moves the hands for step_s. Raises Refusal for an action of another shape or with a value that is no number."""
+    def step(self, action: Any) -> tuple[Seen, float, bool, bool, dict[str, Any]]:
+        """Moves the hands for step_s. Raises Refusal for an action of another shape or with a value not finite."""
         if not self._playing:
             raise _core.Refusal("step: found no episode, allowed after reset() and until terminated")
         wanted = numbers(action, "action")
         if wanted.shape != self.action_space.shape or not np.all(np.isfinite(wanted)):
-            raise _core.Refusal(f"action: found shape {wanted.shape} or no number, allowed {self.action_space.shape[0]} finite numbers")
+            raise _core.Refusal(f"action: found shape {wanted.shape} or a value that is not finite, "
+                                f"allowed {self.action_space.shape[0]} finite numbers")
         wanted = np.clip(wanted, -1.0, 1.0).reshape(-1, 4)
         from_m = self._hands_m
         to_m = np.clip(from_m + self.speed_m_per_s * self.step_s * wanted[:, :3], self._low, self._high)
@@ -129,15 +137,16 @@ class ThreadEnv(gymnasium.Env):
         """Hold of the k-th of HANDS."""
         return getattr(self.simulation, self.HANDS[k])
 
-    def _observation(self) -> dict[str, np.ndarray]:
+    def _observation(self) -> Seen:
         hands = [self.hand(k) for k in range(len(self.HANDS))]
         sight = ({"camera": self._camera.grey(self.simulation.nodes)[:, :, None]} if self._camera
                  else {"nodes_m": self.simulation.nodes, "velocities_m_per_s": self.simulation.velocities})
-        touch = {"hands_m": self._hands_m, "held": [hand.node for hand in hands], "forces_N": [hand.f_W_N for hand in hands]}
+        touch = {"hands_m": self._hands_m, "held": [hand.node for hand in hands],
+                 "forces_N": [hand.f_W_N for hand in hands]}
         return cut(self.observation_space, sight | touch | self._extra())
 
     def render(self) -> np.ndarray | None:
-        """The thread in grey, the left hand in red and the right in blue: 256 x 256 x 3 uint8. None without render_mode."""
+        """The thread in grey, left hand red, right hand blue: 256 x 256 x 3 uint8; None without render_mode."""
         if self.render_mode is None:
             return None
         colours = [{"left": LEFT_RGB, "right": RIGHT_RGB}[name] for name in self.HANDS]

@@ -21,12 +21,14 @@ def within(value: Any, name: str, low: float, high: float) -> float:
 
 def box(low: Any, high: Any, *shape: int) -> gymnasium.spaces.Box:
     """Arrays of float32; the bounds are numbers or arrays that fit the shape."""
-    return gymnasium.spaces.Box(*(np.broadcast_to(np.asarray(limit, np.float32), shape) for limit in (low, high)), dtype=np.float32)
+    limits = (np.broadcast_to(np.asarray(limit, np.float32), shape) for limit in (low, high))
+    return gymnasium.spaces.Box(*limits, dtype=np.float32)
 
 
 def shape_spaces(low_m: np.ndarray, high_m: np.ndarray, nodes: int) -> dict[str, gymnasium.Space]:
     """The thread's shape, within a box of the world."""
-    return {"nodes_m": box(low_m, high_m, nodes, 3), "velocities_m_per_s": box(-FASTEST_M_PER_S, FASTEST_M_PER_S, nodes, 3)}
+    return {"nodes_m": box(low_m, high_m, nodes, 3),
+            "velocities_m_per_s": box(-FASTEST_M_PER_S, FASTEST_M_PER_S, nodes, 3)}
 
 
 def hand_spaces(low_m: np.ndarray, high_m: np.ndarray, nodes: int, hands: int) -> dict[str, gymnasium.Space]:
