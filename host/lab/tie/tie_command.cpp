@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "host/console/stop_signal.hpp"
+#include "host/errors.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/rehearsal.hpp"
 #include "host/lab/report.hpp"
@@ -118,8 +119,14 @@ Count tie_all(const Arguments& a, const Cell& c, const Seeds& seeds, std::string
   std::printf("%6s  %-20s %8s  %s\n", "seed", "found", "seconds", "moves given up");
   for (std::uint32_t seed = seeds.first; seed <= seeds.last && !console::stop_requested(); ++seed) {
     HandRecord hands(sim::WorkspaceMap(c.scene.hands));
-    const Tied t = tie_once(c.scene, c.file, c.toml, c.knot, seed, recording_of(c.folder, c.knot, seed),
-                            a.script_out.empty() ? nullptr : &hands);
+    Tied t;
+    try {
+      t = tie_once(c.scene, c.file, c.toml, c.knot, seed, recording_of(c.folder, c.knot, seed),
+                   a.script_out.empty() ? nullptr : &hands);
+    } catch (const host::RunFailed&) {
+      if (!console::stop_requested()) throw;
+      break;  // a signal ends the reading of the recording
+    }
     ++count.tried;
     count.tied += t.good();
     std::printf("%6u  %-20s %8.1f  %s\n", seed, t.found.c_str(), t.seconds, missed_in_one_cell(t).c_str());
