@@ -1,4 +1,4 @@
-"""Draws a thread: whole, as the operator sees it, and its knot magnified, nearer strands over farther ones.
+"""Draws a thread: whole, as the operator sees it, and each part of its knot magnified, nearer strands over farther ones.
 
 python3 plot_thread.py shape.csv --radius M --out thread.png [--title TEXT]
 shape.csv: x,y,z, metres, a row a node. Needs numpy and matplotlib.
@@ -17,6 +17,7 @@ from plot_forces import drawn, save
 
 NEAR = 1.5  # strands closer than this many diameters count as touching
 STEP, BESIDE = 0.15, 40  # in diameters: distance of drawn points; number of points drawn before and after the knot
+MOST_PARTS = 3  # of a knot that are magnified
 APART = 8.0  # in diameters along the thread: two places further apart belong to different strands
 FROM_THE_FRONT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # direction of view: x to the right, z up
 
@@ -29,13 +30,20 @@ def fine(points, step):
 
 
 def knotted(points, along, diameter):
-    """First and last index of the part where strands touch each other; the whole thread when none do."""
-    places = []
+    """(first, last) index of each part in which strands touch, from contact to contact; the whole thread when none do.
+
+    Parts that share points are one, so a knot is one part and two throws far from each other are two."""
+    parts = []
     for i, point in enumerate(points):
         near = np.linalg.norm(points - point, axis=1) < NEAR * diameter
-        if (near & (np.abs(along - along[i]) > APART * diameter)).any():
-            places.append(i)
-    return (places[0], places[-1]) if places else (0, len(points) - 1)
+        touching = np.flatnonzero(near & (along - along[i] > APART * diameter))
+        if not len(touching):
+            continue
+        if parts and i <= parts[-1][1]:
+            parts[-1][1] = max(parts[-1][1], touching[-1])
+        else:
+            parts.append([i, touching[-1]])
+    return parts or [[0, len(points) - 1]]
 
 
 def flattest(points):
@@ -90,13 +98,14 @@ def draw(path, radius, out, title):
     points = np.loadtxt(path, delimiter=",", ndmin=2)
     diameter = 2.0 * radius
     points, along = fine(points, STEP * diameter)
-    first, last = knotted(points, along, diameter)
     share = (along[:-1] + along[1:]) / 2 / along[-1]
-    core = points[first:last + 1]
-    near = slice(max(0, first - BESIDE), last + BESIDE + 1)
-    panels = (("from the front", points, share, FROM_THE_FRONT, 0.05 * np.ptp(points, axis=0).max()),
-              ("the knot", points[near], share[near], flattest(core), 4.0 * diameter))
-    figure, axes = plt.subplots(1, 2, figsize=(12, 7), dpi=130, width_ratios=[1, 2])
+    panels = [("from the front", points, share, FROM_THE_FRONT, 0.05 * np.ptp(points, axis=0).max())]
+    parts = knotted(points, along, diameter)[:MOST_PARTS]
+    for k, (first, last) in enumerate(parts):
+        near = slice(max(0, first - BESIDE), last + BESIDE + 1)
+        name = "the knot" if len(parts) == 1 else f"the knot, part {k + 1} of {len(parts)}"
+        panels.append((name, points[near], share[near], flattest(points[first:last + 1]), 4.0 * diameter))
+    figure, axes = plt.subplots(1, len(panels), figsize=(12, 7), dpi=130, width_ratios=[1] + [2 / len(parts)] * len(parts))
     figure.subplots_adjust(0.02, 0.02, 0.98, 0.9, 0.04)
     for axis, (name, shown, along_it, view, margin) in zip(axes, panels):
         frame(axis, shown @ view.T, margin)

@@ -16,6 +16,7 @@ sys.path.insert(0, os.environ["LIGATURE_LCM_PYTHON"])
 
 import h5py  # noqa: E402
 import lcm  # noqa: E402
+import numpy as np  # noqa: E402
 from ligature_msg import event_t, status_t, thread_t, tick_batch_t, tick_t  # noqa: E402
 from mcap.reader import make_reader  # noqa: E402
 from seeds import shifted  # noqa: E402
@@ -122,6 +123,23 @@ class Analysis(unittest.TestCase):
             yield f"{name}_node", lambda t, h=hand: t.grasped_node[h]
         for name in ("tick", "scheduled_ns", "flags", "state", "potential_J", "min_gap_m"):
             yield name, lambda t, n=name: getattr(t, n)
+
+    def test_throws_that_lie_apart_are_magnified_one_by_one(self):
+        sys.path.insert(0, str(ROOT / "host/plots"))
+        from plot_thread import knotted
+        angle = np.linspace(0.0, 2.0 * np.pi, 200)
+        loop = np.stack([10.0 * np.sin(angle), 10.0 - 10.0 * np.cos(angle), np.linspace(0.0, 1.0, 200)], axis=1)  # touches at its foot
+        straight = np.stack([np.linspace(0.5, 100.0, 200), np.zeros(200), np.ones(200)], axis=1)
+        for throws in (0, 1, 2, 3):
+            line = [straight - [100.0, 0.0, 1.0]]
+            for k in range(throws):
+                line += [loop + [100.0 * k, 0.0, k], straight + [100.0 * k, 0.0, k]]
+            points = np.concatenate(line)
+            along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+            parts = knotted(points, along, 1.0)
+            self.assertEqual(len(parts), max(1, throws))
+            for k, (first, last) in enumerate(parts if throws else []):
+                self.assertLess(np.linalg.norm(points[first:last + 1].mean(axis=0) - loop.mean(axis=0) - [100.0 * k, 0.0, k]), 1.0)
 
     def test_hdf5_and_csv_hold_the_messages_to_the_last_bit(self):
         head, *lines = (self.folder / "ticks.csv").read_text().strip().split("\n")
