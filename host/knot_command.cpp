@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/errors.hpp"
+#include "host/knot/common_name.hpp"
 #include "host/knot/recognise.hpp"
 #include "host/polyline_file.hpp"
 #include "host/text.hpp"
@@ -18,12 +19,18 @@ std::string json_line(const knot::KnotResult& found) {
     json["determinant"] = found.determinant;
     json["alexander"] = found.alexander;
   }
+  const auto common = knot::common_name(found.type, found.handedness);
+  json["common_name"] = common.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(common);
+  json["candidates"] = found.candidates;
   return json.dump() + "\n";
 }
 
 std::string words(const knot::KnotResult& found, const Polyline& line) {
   std::string result = found.type;
   if (found.handedness != "none") result += " " + found.handedness;
+  if (const auto common = knot::common_name(found.type, found.handedness); !common.empty()) result += ", " + common;
+  for (std::size_t k = 0; k < found.candidates.size(); ++k)
+    result += (k == 0 ? ", candidates: " : ", ") + found.candidates[k];
   if (found.alexander.empty())
     result += "  (no invariant could be computed";
   else

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "host/knot/common_name.hpp"
 #include "host/names.hpp"
 #include "host/text.hpp"
 
@@ -52,6 +53,7 @@ std::string knot_words(const LogSummary& s) {
   if (last.type == "0_1") return "0_1 (no knot)";
   std::string words = last.type;
   if (last.handedness != "none") words += " " + last.handedness;
+  if (const auto common = knot::common_name(last.type, last.handedness); !common.empty()) words += ", " + common;
   words += text("; first tied at %.2f s", s.knot_first_s());
   if (s.knot_since_s() > s.knot_first_s()) words += text(", unchanged since %.2f s", s.knot_since_s());
   return words;
@@ -144,11 +146,15 @@ std::string report_json(const LogSummary& s) {
   for (const auto& entry : s.ticks.faults())
     faults.push_back({{"t_s", s.facts.time_s(entry.tick)}, {"fault", entry.fault}});
   for (const auto& span : s.knots) history.push_back({span.from_s, span.type});
-  if (!s.knots.empty())
-    knot = {{"type", s.knots.back().type},
-            {"handedness", s.knots.back().handedness},
+  if (!s.knots.empty()) {
+    const auto& last = s.knots.back();
+    const auto common = knot::common_name(last.type, last.handedness);
+    knot = {{"type", last.type},
+            {"handedness", last.handedness},
             {"first_tied_s", s.knot_first_s()},
-            {"unchanged_since_s", s.knot_since_s()}};
+            {"unchanged_since_s", s.knot_since_s()},
+            {"common_name", common.empty() ? Json(nullptr) : Json(common)}};
+  }
   const Json json = {{"duration_s", s.duration_s()},
                      {"scene", s.facts.scene_file},
                      {"firmware_version", s.facts.firmware_version},

@@ -22,14 +22,18 @@ void add_knot(CLI::App& app) {
       ->check(finite);
   command->add_flag("--json", options->json, "as one JSON line");
   command->footer(
-      "Without --closed and --open a polyline is closed when its last point repeats its first. A knot that cannot be\n"
-      "named is 'unknown', with its invariants. Alexander coefficients stand from the lowest power.\n\n"
+      "Without --closed and --open a polyline is closed when its last point repeats its first. Named are the prime\n"
+      "knots to eight crossings and their sums to ten. Any other knot is 'unknown', with its invariants, and, when a\n"
+      "diagram of at most ten crossings was found, with its candidates: it is one of them. Alexander coefficients\n"
+      "stand from the lowest power.\n\n"
       "Right is the trefoil whose crossings count +3, the one that scripts/demo ties; of any other knot the hand "
       "whose\n"
-      "reduced alternating diagram counts above 0 (tables that go by Rolfsen's drawings may have 7_7 the other "
-      "way).\n\n"
+      "reduced alternating diagram counts above 0; where none does (8_4, 8_19 to 8_21), the hand in whose Jones\n"
+      "polynomial lowest and highest exponent have a positive sum. Tables that go by Rolfsen's drawings may differ "
+      "(7_7).\n\n"
       "Example:\n  ligature-host knot knot.lcmlog --json\n"
-      "  {\"type\":\"3_1\",\"handedness\":\"right\",\"determinant\":3,\"alexander\":[1,-1,1]}");
+      "  {\"type\":\"3_1\",\"handedness\":\"right\",\"determinant\":3,\"alexander\":[1,-1,1],"
+      "\"common_name\":\"overhand\",\"candidates\":[]}");
   command->callback([options] { std::fputs(describe_knot(*options).c_str(), stdout); });
 }
 

@@ -5,6 +5,8 @@
 #include <sstream>
 #include <utility>
 
+#include "host/knot/nine_and_ten.hpp"
+
 namespace ligature::knot {
 namespace {
 
@@ -33,16 +35,33 @@ const std::vector<Prime>& primes() {
       {"7_5", 7, true, {2, -4, 5, -4, 2}, {2, {1, -1, 3, -3, 3, -3, 2, -1}}},
       {"7_6", 7, true, {1, -5, 7, -5, 1}, {-1, {1, -2, 3, -3, 4, -3, 2, -1}}},
       {"7_7", 7, true, {1, -5, 9, -5, 1}, {-3, {-1, 3, -3, 4, -4, 3, -2, 1}}},
+      {"8_1", 8, true, {3, -7, 3}, {-2, {1, -1, 2, -2, 2, -2, 1, -1, 1}}},
+      {"8_2", 8, true, {1, -3, 3, -3, 3, -3, 1}, {0, {1, -1, 2, -2, 3, -3, 2, -2, 1}}},
+      {"8_3", 8, false, {4, -9, 4}, {-4, {1, -1, 2, -3, 3, -3, 2, -1, 1}}},
+      {"8_4", 8, true, {2, -5, 5, -5, 2}, {-3, {1, -1, 2, -3, 3, -3, 3, -2, 1}}},
+      {"8_5", 8, true, {1, -3, 4, -5, 4, -3, 1}, {0, {1, -1, 3, -3, 3, -4, 3, -2, 1}}},
+      {"8_6", 8, true, {2, -6, 7, -6, 2}, {-1, {1, -1, 3, -4, 4, -4, 3, -2, 1}}},
+      {"8_7", 8, true, {1, -3, 5, -5, 5, -3, 1}, {-2, {-1, 2, -2, 4, -4, 4, -3, 2, -1}}},
+      {"8_8", 8, true, {2, -6, 9, -6, 2}, {-3, {-1, 2, -3, 5, -4, 4, -3, 2, -1}}},
+      {"8_9", 8, false, {1, -3, 5, -7, 5, -3, 1}, {-4, {1, -2, 3, -4, 5, -4, 3, -2, 1}}},
+      {"8_10", 8, true, {1, -3, 6, -7, 6, -3, 1}, {-2, {-1, 2, -3, 5, -4, 5, -4, 2, -1}}},
+      {"8_11", 8, true, {2, -7, 9, -7, 2}, {-1, {1, -2, 4, -4, 5, -5, 3, -2, 1}}},
+      {"8_12", 8, false, {1, -7, 13, -7, 1}, {-4, {1, -2, 4, -5, 5, -5, 4, -2, 1}}},
+      {"8_13", 8, true, {2, -7, 11, -7, 2}, {-3, {-1, 3, -4, 5, -5, 5, -3, 2, -1}}},
+      {"8_14", 8, true, {2, -8, 11, -8, 2}, {-1, {1, -2, 4, -5, 6, -5, 4, -3, 1}}},
+      {"8_15", 8, true, {3, -8, 11, -8, 3}, {2, {1, -2, 5, -5, 6, -6, 4, -3, 1}}},
+      {"8_16", 8, true, {1, -4, 8, -9, 8, -4, 1}, {-2, {-1, 3, -4, 6, -6, 6, -5, 3, -1}}},
+      {"8_17", 8, false, {1, -4, 8, -11, 8, -4, 1}, {-4, {1, -3, 5, -6, 7, -6, 5, -3, 1}}},
+      {"8_18", 8, false, {1, -5, 10, -13, 10, -5, 1}, {-4, {1, -4, 6, -7, 9, -7, 6, -4, 1}}},
+      {"8_19", 8, true, {1, -1, 0, 1, 0, -1, 1}, {3, {1, 0, 1, 0, 0, -1}}},
+      {"8_20", 8, true, {1, -2, 3, -2, 1}, {-1, {-1, 2, -1, 2, -1, 1, -1}}},
+      {"8_21", 8, true, {1, -4, 5, -4, 1}, {1, {2, -2, 3, -3, 2, -2, 1}}},
   };
   return kPrimes;
 }
 
 constexpr std::size_t kMostCrossings = 10;
 constexpr std::size_t kUnknotCrossings = 24;
-
-/// {name, crossings}: from this many crossings on, another knot has both polynomials of the named one: 10_132 those of
-/// 5_1, and 9_12 those of 4_1#5_2.
-constexpr std::pair<const char*, std::size_t> kShared[] = {{"5_1", 10}, {"4_1#5_2", 9}};
 
 using Invariants = std::pair<std::vector<int>, Laurent>;
 using Table = std::map<Invariants, KnotName>;
@@ -87,17 +106,26 @@ Table make_table() {
   return table;
 }
 
+const Table& table() {
+  static const Table kTable = make_table();
+  return kTable;
+}
+
 }  // namespace
 
+std::vector<std::string> candidates(const std::vector<int>& alexander, const Laurent& jones, std::size_t crossings) {
+  if (crossings > kMostCrossings) return {};
+  std::vector<std::string> types;
+  if (const auto found = table().find({alexander, jones}); found != table().end()) types.push_back(found->second.type);
+  for (auto& type : of_nine_and_ten(alexander, jones, crossings)) types.push_back(std::move(type));
+  return types;
+}
+
 std::optional<KnotName> name_of(const std::vector<int>& alexander, const Laurent& jones, std::size_t crossings) {
-  static const Table kTable = make_table();
   if (crossings <= kUnknotCrossings && jones == Laurent{0, {1}}) return KnotName{"0_1", "none"};
   if (crossings > kMostCrossings) return std::nullopt;
-  const auto found = kTable.find({alexander, jones});
-  if (found == kTable.end()) return std::nullopt;
-  for (const auto& [type, from] : kShared) {
-    if (found->second.type == type && crossings >= from) return std::nullopt;
-  }
+  const auto found = table().find({alexander, jones});
+  if (found == table().end() || !of_nine_and_ten(alexander, jones, crossings).empty()) return std::nullopt;
   return found->second;
 }
 
@@ -109,8 +137,11 @@ KnotName sum_of(const KnotName& a, const KnotName& b) {
     std::istringstream text(name);
     for (std::string part; std::getline(text, part, '#');) parts.push_back(part);
   }
-  // all crossing numbers have one digit, so that alphabetical order is the order of the table
-  std::sort(parts.begin(), parts.end());
+  const auto place = [](const std::string& part) {  // in the table: 8_2 stands before 8_10
+    const auto bar = part.find('_');
+    return std::pair{std::stoi(part.substr(0, bar)), std::stoi(part.substr(bar + 1))};
+  };
+  std::sort(parts.begin(), parts.end(), [&](const auto& x, const auto& y) { return place(x) < place(y); });
   std::string type;
   for (const auto& part : parts) type += (type.empty() ? "" : "#") + part;
   return {type, joined_hand(a.handedness, b.handedness)};

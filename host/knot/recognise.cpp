@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kExact = 29;     // largest number of crossings for which every invariant is exact
 constexpr std::size_t kTangled = 300;  // with more corners left, shaking does not lead to a name in reasonable time
 
-KnotResult unknown() { return {"unknown", "none", 0, {}, {}, 0}; }
+KnotResult unknown() { return {"unknown", "none", 0, {}, {}, 0, {}}; }
 
 /// Names a composite knot by its factors, when the diagram splits into them; else nothing.
 std::optional<KnotName> name_by_factors(const Diagram& d) {
@@ -41,7 +41,10 @@ KnotResult from_diagram(const Diagram& d) {
   r.jones = jones(d);
   auto name = name_by_factors(d);
   if (!name) name = name_of(r.alexander, r.jones, r.crossings);
-  if (!name) return r;
+  if (!name) {
+    r.candidates = candidates(r.alexander, r.jones, r.crossings);
+    return r;
+  }
   // A sum of a knot and its own mirror image is amphichiral, although its parts have different hands.
   if (name->handedness == "mixed" && r.jones == mirrored(r.jones)) name->handedness = "amphichiral";
   r.type = name->type;
@@ -53,10 +56,11 @@ KnotResult from_diagram(const Diagram& d) {
 struct Seen {
   KnotResult best = unknown();
   std::size_t fewest = static_cast<std::size_t>(-1);  // crossings of the best diagram so far
-  bool is_named() const { return best.type != "unknown"; }
+  /// A single candidate is the knot, so that a simpler diagram would add nothing.
+  bool is_certain() const { return best.type != "unknown" || best.candidates.size() == 1; }
 };
 
-/// Projects the polygon; while the result has no name, shakes and simplifies it and projects again.
+/// Projects the polygon; while the result is not certain, shakes and simplifies it and projects again.
 void shake_and_look(Polygon polygon, Draw draw, Seen& seen) {
   constexpr int kRounds = 12, kShakes = 8, kViews = 40;
   for (int round = 0; round < kRounds; ++round) {
@@ -68,7 +72,7 @@ void shake_and_look(Polygon polygon, Draw draw, Seen& seen) {
     if (const auto diagram = simplest_view(polygon.corners(), kViews); diagram && diagram->crossings() < seen.fewest) {
       seen.fewest = diagram->crossings();
       seen.best = from_diagram(*diagram);
-      if (seen.is_named()) return;
+      if (seen.is_certain()) return;
     }
     for (int k = 0; k < kShakes; ++k) polygon.shake(draw);
     polygon.cut_corners();
@@ -80,13 +84,13 @@ void shake_and_look(Polygon polygon, Draw draw, Seen& seen) {
 /// depend on one seed.
 KnotResult recognise_ring(std::vector<Point> ring) {
   constexpr std::uint64_t kCourses = 12;
-  constexpr std::size_t kNear = 14;  // knots of the table have at most 7 crossings, sums more
+  constexpr std::size_t kNear = 14;  // named knots have at most 8 crossings, sums and candidates 10
   Polygon polygon(std::move(ring));
   polygon.cut_corners();
   Seen seen;
   for (std::uint64_t course = 1; course <= kCourses; ++course) {
     shake_and_look(polygon, Draw(course), seen);
-    if (seen.is_named() || seen.fewest > kNear) break;
+    if (seen.is_certain() || seen.fewest > kNear) break;
   }
   return seen.best;
 }

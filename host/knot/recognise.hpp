@@ -18,6 +18,9 @@ struct KnotResult {
   std::vector<int> alexander;  ///< polynomial: coefficients from t^0 up, the first one positive; empty: not computed
   Laurent jones;
   std::size_t crossings = 0;  ///< of the simplest diagram found; for a named knot usually its crossing number
+  /// For "unknown" with a diagram of at most ten crossings: every knot of so few crossings that has these polynomials,
+  /// either hand. With one entry the knot is that one.
+  std::vector<std::string> candidates;
 };
 
 /// Names the knot of a polyline.

@@ -119,6 +119,7 @@ test('what is no frame is refused', () => {
 test('knots have the names that people give them, in the words of the recogniser', () => {
   assert.equal(commonName('3_1#3_1', 'amphichiral'), 'square (reef)');
   assert.equal(commonName('3_1#3_1', 'left'), 'granny');
+  assert.equal(commonName('3_1#5_1', 'mixed'), "surgeon's");
   assert.equal(commonName('4_1', 'amphichiral'), 'figure-eight');
   assert.equal(commonName('7_4', 'right'), '');
 });

@@ -29,7 +29,7 @@ class Cost(unittest.TestCase):
     def test_an_open_thread_of_500_nodes(self):
         rng = np.random.default_rng(shifted(30))
         with tempfile.TemporaryDirectory(prefix="knots-") as folder:
-            for label in (("3_1", "right"), ("3_1#3_1", "amphichiral"), ("3_1#3_1#3_1", "right"), ("7_7", "right")):
+            for label in (("3_1", "right"), ("3_1#3_1", "amphichiral"), ("3_1#3_1#3_1", "right"), ("7_7", "right"), ("8_18", "amphichiral")):
                 points = shapes.turned(resampled(shapes.opened(shapes.closed_braid(*shapes.BRAIDS[label]), rng), NODES), rng, 2e-3)
                 path = pathlib.Path(folder) / "line.csv"
                 np.savetxt(path, points, delimiter=",")

@@ -1,7 +1,7 @@
 // Shows the knot's name and properties, and a strip with its changes over time.
 const $ = (id) => document.getElementById(id);
 const COMMON = { '0_1': 'no knot', '3_1': 'trefoil (overhand)', '4_1': 'figure-eight', '5_1': 'cinquefoil', '5_2': 'three-twist', '6_1': 'stevedore',
-  '3_1#3_1 left': 'granny', '3_1#3_1 right': 'granny', '3_1#3_1 amphichiral': 'square (reef)' };
+  '3_1#3_1 left': 'granny', '3_1#3_1 right': 'granny', '3_1#3_1 amphichiral': 'square (reef)', '3_1#5_1 mixed': "surgeon's" };
 /** Common name of a knot, or ''. */
 export function commonName(type, handedness) { return COMMON[`${type} ${handedness}`] ?? COMMON[type] ?? ''; }
 const TINTS = ['#56b4e9', '#e69f00', '#2fbf8f', '#cc79a7', '#f0e442', '#d55e00'];

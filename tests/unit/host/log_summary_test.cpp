@@ -66,12 +66,13 @@ TEST(LogSummary, TableAndJsonSayTheSame) {
   EXPECT_DOUBLE_EQ(json["wakeup_us"]["p50"].get<double>(), 1.009);
   EXPECT_DOUBLE_EQ(json["wakeup_us"]["p99"].get<double>(), 1.98);
   EXPECT_EQ(json["knot"]["type"], "3_1");
+  EXPECT_EQ(json["knot"]["common_name"], "overhand");
   EXPECT_EQ(json["hand_force"]["left"]["peak_N"], 3.0);
   EXPECT_EQ(json["wakeup_us"]["max"], 1.999);
   const auto table = report_table(summary);
   EXPECT_NE(table.find("1980 recorded, 20 lost"), std::string::npos) << table;
   EXPECT_NE(table.find("999.5 ticks per second, 99.949 % of periods executed"), std::string::npos) << table;
-  EXPECT_NE(table.find("3_1"), std::string::npos) << table;
+  EXPECT_NE(table.find("overhand; first tied"), std::string::npos) << table;
   EXPECT_NE(table.find("peak 3.000 N at 0.777 s"), std::string::npos) << table;
 }
 

@@ -122,7 +122,8 @@ TEST_F(PolylineFile, ALogGivesItsLastOrNearestShape) {
 TEST_F(PolylineFile, AnInvariantThatCouldNotBeComputedIsNull) {
   test::write_text(path_, "x,y,z\n0,0,0\n1,0,0\n0,0,0\n1,0,0\n");
   EXPECT_EQ(describe_knot({.file = path_, .closed = true, .json = true}),
-            "{\"type\":\"unknown\",\"handedness\":\"none\",\"determinant\":null,\"alexander\":null}\n");
+            "{\"type\":\"unknown\",\"handedness\":\"none\",\"determinant\":null,\"alexander\":null,"
+            "\"common_name\":null,\"candidates\":[]}\n");
   EXPECT_NE(describe_knot({.file = path_, .closed = true}).find("no invariant"), std::string::npos);
 }
 
@@ -133,7 +134,9 @@ TEST_F(PolylineFile, TheKnotOfAFileIsPrintedAsTheDesignSays) {
   test::write_text(path_, csv);
   const auto line = describe_knot({.file = path_, .json = true});
   EXPECT_TRUE(line.starts_with("{\"type\":\"3_1\",\"handedness\":\"")) << line;
-  EXPECT_TRUE(line.ends_with("\",\"determinant\":3,\"alexander\":[1,-1,1]}\n")) << line;
+  EXPECT_TRUE(
+      line.ends_with("\",\"determinant\":3,\"alexander\":[1,-1,1],\"common_name\":\"overhand\",\"candidates\":[]}\n"))
+      << line;
   EXPECT_TRUE(describe_knot({.file = path_}).starts_with("3_1 "));
   EXPECT_THROW(static_cast<void>(describe_knot({.file = path_, .at_s = 1.0})), BadInput);
 }

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "host/knot/knot_table.hpp"
 #include "tests/support/random.hpp"
 #include "tests/unit/knot/shapes.hpp"
 
@@ -61,6 +60,27 @@ const std::vector<Braid>& braids() {
       {"7_5", "right", 3, {1, 1, 1, 1, 2, -1, 2, 2}},
       {"7_6", "right", 4, {1, 1, -2, 1, 3, -2, 3}},
       {"7_7", "right", 4, {1, -2, 1, -2, 3, -2, 3}},
+      {"8_1", "right", 5, {1, 1, 2, -1, 2, 3, -2, -4, 3, -4}},
+      {"8_2", "right", 3, {1, 1, 1, 1, 1, -2, 1, -2}},
+      {"8_3", "amphichiral", 5, {1, 1, 2, -1, -3, 2, -3, -4, 3, -4}},
+      {"8_4", "right", 4, {1, 1, 1, -2, 1, -2, -3, 2, -3}},
+      {"8_5", "right", 3, {1, 1, 1, -2, 1, 1, 1, -2}},
+      {"8_6", "right", 4, {1, 1, 1, 1, 2, -1, -3, 2, -3}},
+      {"8_7", "right", 3, {1, 1, 1, 1, -2, 1, -2, -2}},
+      {"8_8", "right", 4, {1, 1, 1, 2, -1, -3, 2, -3, -3}},
+      {"8_9", "amphichiral", 3, {1, 1, 1, -2, 1, -2, -2, -2}},
+      {"8_10", "right", 3, {1, 1, 1, -2, 1, 1, -2, -2}},
+      {"8_11", "right", 4, {1, 1, 2, -1, 2, 2, -3, 2, -3}},
+      {"8_12", "amphichiral", 5, {1, -2, 1, 3, -2, -4, 3, -4}},
+      {"8_13", "right", 4, {-1, -1, 2, -1, 2, 2, 3, -2, 3}},
+      {"8_14", "right", 4, {1, 1, 1, 2, -1, 2, -3, 2, -3}},
+      {"8_15", "right", 4, {1, 1, -2, 1, 3, 2, 2, 2, 3}},
+      {"8_16", "right", 3, {1, 1, -2, 1, 1, -2, 1, -2}},
+      {"8_17", "amphichiral", 3, {1, 1, -2, 1, -2, 1, -2, -2}},
+      {"8_18", "amphichiral", 3, {1, -2, 1, -2, 1, -2, 1, -2}},
+      {"8_19", "right", 3, {1, 1, 1, 2, 1, 1, 1, 2}},
+      {"8_20", "right", 3, {-1, -1, -1, 2, 1, 1, 1, 2}},
+      {"8_21", "right", 3, {1, 1, 1, 2, -1, -1, 2, 2}},
       {"3_1#3_1", "right", 3, {1, 1, 1, 2, 2, 2}},
       {"3_1#3_1", "amphichiral", 3, {1, 1, 1, -2, -2, -2}},
       {"3_1#4_1", "right", 4, {1, 1, 1, 2, -3, 2, -3}},
@@ -180,15 +200,19 @@ TEST(Recognise, StraightEdgesOfManyPointsInAPlane) {
   }
 }
 
-TEST(KnotTable, NamesNothingWhereTwoKnotsShareTheirPolynomials) {
-  const std::vector<int> a{1, -1, 1, -1, 1};
-  const Laurent v{2, {1, 0, 1, -1, 1, -1}};
-  EXPECT_EQ(name_of(a, v, 9)->type, "5_1");
-  EXPECT_FALSE(name_of(a, v, 10));  // could also be 10_132
-  const auto sum = product(Laurent{-2, {1, -1, 1, -1, 1}}, Laurent{1, {1, -1, 2, -1, 1, -1}});
-  EXPECT_FALSE(name_of({2, -9, 13, -9, 2}, sum, 9));  // 4_1#5_2 or 9_12
-  EXPECT_FALSE(name_of({1, -1, 1}, {1, {1, 0, 1, -1}}, 11));
-  EXPECT_FALSE(name_of({9, 9}, {0, {7}}, 4));
+TEST(Recognise, KnotsOfNineAndTenCrossingsAreUnknownWithTheirCandidates) {
+  test::Random random(17);
+  const auto found = [&](const std::vector<int>& word, int strands) {
+    return recognise(posed(refined(braid_closure(word, strands), 2), random, 1e-3), true);
+  };
+  const auto torus = found({1, 1, 1, 1, 1, 1, 1, 1, 1}, 2);
+  EXPECT_EQ(torus.type, "unknown");
+  EXPECT_EQ(torus.candidates, std::vector<std::string>{"9_1"});
+  EXPECT_EQ(torus.determinant, 9);
+  EXPECT_EQ(found({1, 1, 1, 2, 1, 1, 1, 1, 1, 2}, 3).candidates, std::vector<std::string>{"10_124"});
+  // 10_132 has the polynomials of 5_1.
+  EXPECT_EQ(found({1, 1, 1, -2, -1, -1, -2, -3, 2, -3, -3}, 4).candidates, (std::vector<std::string>{"5_1", "10_132"}));
+  EXPECT_TRUE(found({1, 1, 1, 1, 1}, 2).candidates.empty());
 }
 
 }  // namespace

@@ -1,0 +1,13 @@
+#include "host/knot/common_name.hpp"
+
+namespace ligature::knot {
+
+std::string common_name(const std::string& type, const std::string& handedness) {
+  if (type == "3_1") return "overhand";
+  if (type == "4_1") return "figure-eight";
+  if (type == "3_1#3_1") return handedness == "amphichiral" ? "square" : "granny";
+  if (type == "3_1#5_1" && handedness == "mixed") return "surgeon's";
+  return "";
+}
+
+}  // namespace ligature::knot
