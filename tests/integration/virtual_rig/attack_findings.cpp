@@ -50,9 +50,11 @@ class Judge {
     });
     const bool lost = may_be_lost(f) && f.ticks <= kTicksOfLoss;
     if (!only_ours || f.hand != static_cast<int>(hand_) || away || busy || lost) return;
-    const bool stalls = plan_.stall_at >= f.from && plan_.stall_at <= f.from + kTicksToSee;
-    const auto last = static_cast<Index>(f.from + kTicksToSee + (stalls ? plan_.stall_ticks : 0) +
-                                         (may_be_lost(f) ? kTicksOfLoss : 0));
+    // A loop that is stalled sees nothing: the part of the stall that lies in the time it has to see the frames is
+    // added.
+    const bool stalls = plan_.stall_at <= f.from + kTicksToSee && plan_.stall_at + plan_.stall_ticks > f.from;
+    const auto asleep = stalls ? plan_.stall_at + plan_.stall_ticks - std::max(plan_.stall_at, f.from) : 0;
+    const auto last = static_cast<Index>(f.from + kTicksToSee + asleep + (may_be_lost(f) ? kTicksOfLoss : 0));
     if (const auto* r = record(last); r != nullptr && r->fault == 0)
       note(last, {"foreign frames are a fault", kUnexplained}, static_cast<double>(kTicksToSee));
   }
