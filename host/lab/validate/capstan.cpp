@@ -1,6 +1,8 @@
 // Capstan test: a thread slips slowly round a peg; the tension ratio is compared with the solutions for a polygon and
 // for a smooth cylinder.
 
+#include "host/lab/validate/capstan.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -19,8 +21,44 @@ constexpr double kSpeed_m_per_s = 0.005;
 // axial advance per turn, so that the thread does not lie on itself; lengthens the path by 0.02 %
 constexpr double kPitch_m = 0.0024;
 
-/// Tension ratio T1 / T2 with `wrapped` segments on an arc of `angle_rad`: T2 = 1 N loads one end, T1 is the pull at
-/// the other end. Averaged over one segment's length, because polygon corners move on and off the peg.
+/// Closed form of the tension ratio T1 / T2 for the simulated polygon. The polygon of the reference table touches the
+/// peg with its corners; in the simulation contacts are at the middle of segments and act on both end nodes. Balance of
+/// forces at a corner between two segments that meet at an angle 2a, with tension and normal force growing by
+/// (1 + g) / (1 - g) per segment: g (1 + s^2) + mu s g^2 = mu s, s = tan a. To second order, the relative error of the
+/// exponent mu theta is -(2a)^2 / 6 here and +(2a)^2 / 12 in the table.
+double by_segments(double mu, double angle_rad, int wrapped) {
+  const double s = std::tan(0.5 * angle_rad / wrapped), b = 1.0 + s * s;
+  const double g = 2.0 * mu * s / (b + std::sqrt(b * b + 4.0 * mu * mu * s * s));
+  return std::pow((1.0 + g) / (1.0 - g), wrapped);
+}
+
+/// tension_ratio(), cached because two cases need the same measurement.
+double measured_ratio(const Subject& subject, double mu, double angle_rad, int wrapped) {
+  static std::map<std::tuple<std::optional<scene::Accuracy>, double, double, int>, double> known;
+  const auto [at, is_new] = known.try_emplace({subject.accuracy, mu, angle_rad, wrapped});
+  if (is_new) at->second = tension_ratio(subject, mu, angle_rad, wrapped);
+  return at->second;
+}
+
+Findings compare(const Subject& subject, bool polygon) {
+  const int wrapped = subject.nodes >= 200 ? 64 : 32;
+  Findings all;
+  for (const auto& row : reference_rows("05_capstan_polygonal.csv")) {
+    const double mu = number(row, "mu"), degrees = number(row, "wrap_angle_deg");
+    if (number(row, "N_contact_nodes") != wrapped) continue;
+    const double angle = degrees * std::numbers::pi / 180.0;
+    // With 32 segments the simulated and the table's polygon differ by up to 4 % for a whole turn, 0.5 % for half a
+    // turn.
+    const double corners = degrees > 180.0 ? by_segments(mu, angle, wrapped) : number(row, "T1_over_T2");
+    const double truth = polygon ? corners : std::exp(mu * angle);
+    all.push_back(relative("mu = " + row.at("mu") + ", " + row.at("wrap_angle_deg") + " deg: T1/T2", truth,
+                           measured_ratio(subject, mu, angle, wrapped), polygon ? 0.02 : 0.05));
+  }
+  return all;
+}
+
+}  // namespace
+
 double tension_ratio(const Subject& subject, double mu, double angle_rad, int wrapped) {
   const double rise = angle_rad > 6.0 ? kPitch_m / (2.0 * std::numbers::pi) : 0.0;  // advance along the peg per radian
   const double per_rad = std::hypot(kRadius_m, rise), arc = angle_rad * per_rad, l = arc / wrapped;
@@ -62,44 +100,6 @@ double tension_ratio(const Subject& subject, double mu, double angle_rad, int wr
   }
   return sum;
 }
-
-/// Closed form of the tension ratio T1 / T2 for the simulated polygon. The polygon of the reference table touches the
-/// peg with its corners; in the simulation contacts are at the middle of segments and act on both end nodes. Balance of
-/// forces at a corner between two segments that meet at an angle 2a, with tension and normal force growing by
-/// (1 + g) / (1 - g) per segment: g (1 + s^2) + mu s g^2 = mu s, s = tan a. To second order, the relative error of the
-/// exponent mu theta is -(2a)^2 / 6 here and +(2a)^2 / 12 in the table.
-double by_segments(double mu, double angle_rad, int wrapped) {
-  const double s = std::tan(0.5 * angle_rad / wrapped), b = 1.0 + s * s;
-  const double g = 2.0 * mu * s / (b + std::sqrt(b * b + 4.0 * mu * mu * s * s));
-  return std::pow((1.0 + g) / (1.0 - g), wrapped);
-}
-
-/// tension_ratio(), cached because two cases need the same measurement.
-double measured_ratio(const Subject& subject, double mu, double angle_rad, int wrapped) {
-  static std::map<std::tuple<std::optional<scene::Accuracy>, double, double, int>, double> known;
-  const auto [at, is_new] = known.try_emplace({subject.accuracy, mu, angle_rad, wrapped});
-  if (is_new) at->second = tension_ratio(subject, mu, angle_rad, wrapped);
-  return at->second;
-}
-
-Findings compare(const Subject& subject, bool polygon) {
-  const int wrapped = subject.nodes >= 200 ? 64 : 32;
-  Findings all;
-  for (const auto& row : reference_rows("05_capstan_polygonal.csv")) {
-    const double mu = number(row, "mu"), degrees = number(row, "wrap_angle_deg");
-    if (number(row, "N_contact_nodes") != wrapped) continue;
-    const double angle = degrees * std::numbers::pi / 180.0;
-    // With 32 segments the simulated and the table's polygon differ by up to 4 % for a whole turn, 0.5 % for half a
-    // turn.
-    const double corners = degrees > 180.0 ? by_segments(mu, angle, wrapped) : number(row, "T1_over_T2");
-    const double truth = polygon ? corners : std::exp(mu * angle);
-    all.push_back(relative("mu = " + row.at("mu") + ", " + row.at("wrap_angle_deg") + " deg: T1/T2", truth,
-                           measured_ratio(subject, mu, angle, wrapped), polygon ? 0.02 : 0.05));
-  }
-  return all;
-}
-
-}  // namespace
 
 Findings capstan_polygonal(const Subject& subject) { return compare(subject, true); }
 Findings capstan_exponential(const Subject& subject) { return compare(subject, false); }

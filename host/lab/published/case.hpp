@@ -1,0 +1,49 @@
+#pragma once
+// Experiments that others published: what a case measures, and the list of all cases. @see docs/published.md
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host/lab/validate/cases.hpp"
+
+namespace ligature::published {
+
+using validate::Finding;
+
+/// How a case is run.
+struct Subject {
+  scene::Accuracy accuracy = scene::Accuracy::kBalanced;
+  bool quick = false;  ///< fewer or smaller runs: at most 20 s of CPU time
+};
+
+/// One point of a case's picture. NaN: there is no theory, or no measurement, at x.
+struct Point {
+  std::string curve;
+  double x = 0.0, theory = 0.0, measured = 0.0;
+};
+
+struct Result {
+  std::vector<Finding> findings;
+  std::vector<Point> points;
+};
+
+struct Case {
+  const char* name;
+  const char* about;            ///< what is compared, in a few words
+  const char* source;           ///< who published it
+  const char *x_axis, *y_axis;  ///< of the picture
+  Result (*measure)(const Subject&);
+};
+
+/// All cases, in the order of the printed table.
+[[nodiscard]] std::span<const Case> all_cases();
+
+/// A figure that is only reported: no published number decides on it. NaN still counts as a miss.
+[[nodiscard]] Finding reported(std::string what, double measured, std::string unit);
+[[nodiscard]] bool is_judged(const Finding& f) noexcept;
+
+// The cases, one file each.
+Result capstan(const Subject&);
+
+}  // namespace ligature::published
