@@ -20,6 +20,7 @@ HANDS = {"left": "#0072B2", "right": "#D55E00"}
 LIMIT = "#000000"
 STATES = {0: ("OFF", "#999999"), 1: ("CALIBRATE", "#56B4E9"), 2: ("IDLE", "#DDDDDD"), 3: ("ENGAGE", "#F0E442"),
           4: ("FORCE", "#009E73"), 5: ("BRAKE", "#CC79A7"), 6: ("FAULT", "#882255")}
+LABEL = 0.05  # width of a node's label, as a share of the time axis
 POINTS = 6000  # largest number of points drawn per curve, a few per pixel column
 
 
@@ -94,13 +95,31 @@ def save(figure, out, metadata):
             os.remove(part)
 
 
-def draw_hand(axes, column, time, hand, limit_N, frames):
+def top_N(peaks_N, limit_N):
+    """Upper end of the force axis, the same for both hands: with the limit when a force comes near it, else by the
+    largest force.
+    """
+    largest_N = max(peaks_N)
+    return max(1.12 * limit_N, 1.05 * largest_N) if largest_N > 0.5 * limit_N else max(1.15 * largest_N, 1e-3 * limit_N)
+
+
+def apart(times, least):
+    """Those of the rising times that are at least `least` after the one before, so that their labels do not overlap."""
+    kept = []
+    for time in times:
+        if not kept or time - kept[-1] >= least:
+            kept.append(time)
+    return kept
+
+
+def draw_hand(axes, column, time, hand, limit_N, top, frames):
     colour = HANDS[hand]
     force_N = column[f"{hand}_device_f_N"]
     node = column[f"{hand}_node"]
     axes.plot(*thinned(time, force_N), color=colour, linewidth=1.1, label="|F| commanded to the device")
-    axes.axhline(limit_N, color=LIMIT, linestyle="--", linewidth=1.0, label=f"limit {limit_N:g} N")
-    marks = {"grasp": [], "release": []}
+    above = ", above the axis" if limit_N > top else ""
+    axes.axhline(limit_N, color=LIMIT, linestyle="--", linewidth=1.0, label=f"limit {limit_N:g} N{above}")
+    marks, nodes = {"grasp": [], "release": []}, {}
     for first, after, held in spans(node >= 0):  # not by equal node number, which remeshing changes
         if not held:
             continue
@@ -109,11 +128,14 @@ def draw_hand(axes, column, time, hand, limit_N, frames):
             marks["grasp"].append(time[first])
         if after < len(time):
             marks["release"].append(time[after])
-        axes.annotate(f"node {int(node[first])}", (time[first], 1.0), xycoords=("data", "axes fraction"), xytext=(3, -11),
+        nodes[time[first]] = int(node[first])
+    for at in apart(nodes, LABEL * (time[-1] - time[0])):
+        axes.annotate(f"node {nodes[at]}", (at, 1.0), xycoords=("data", "axes fraction"), xytext=(3, -11),
                       textcoords="offset points", fontsize=7, color=colour)
     mark_losses(axes, time)
-    top = limit_N * 1.12
     for name, marker in (("grasp", "^"), ("release", "v")):
+        if not marks[name]:
+            continue  # markers without a place leave the axes no room in the picture
         axes.vlines(marks[name], 0, top, color=colour, linewidth=0.6, linestyle=":")
         axes.plot(marks[name], np.zeros(len(marks[name])), marker, color=colour, markeredgecolor="black", markersize=7,
                   clip_on=False, linestyle="none", label=name, zorder=5)
@@ -121,7 +143,7 @@ def draw_hand(axes, column, time, hand, limit_N, frames):
     held = node >= 0
     mean = f", mean while holding {force_N[held].mean():.2f} N" if held.any() else ""
     axes.set_title(f"{hand} hand: peak {force_N[peak]:.2f} N at {time[peak]:.{0 if frames else 2}f}{'' if frames else ' s'}{mean}", loc="left", fontsize=10)
-    axes.set_ylim(0, max(top, force_N[peak] * 1.05))
+    axes.set_ylim(0, top)
     axes.set_ylabel("force magnitude, N")
     axes.grid(True, color="#dddddd", linewidth=0.5)
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8, frameon=False)
@@ -151,8 +173,9 @@ def draw(path, out, title, limit_N, frames):
         time = column["tick"]
     figure, axes = plt.subplots(3, 1, sharex=True, figsize=(12, 7), dpi=130, height_ratios=[6, 6, 0.8],
                                 layout="constrained")
+    top = top_N([column[f"{hand}_device_f_N"].max() for hand in HANDS], limit_N)
     for axis, hand in zip(axes, HANDS):
-        draw_hand(axis, column, time, hand, limit_N, frames)
+        draw_hand(axis, column, time, hand, limit_N, top, frames)
     draw_states(axes[2], column, time, frames)
     axes[2].set_xlim(time[0], max(time[-1], time[0] + 1e-3))
     figure.suptitle(f"Force on each hand, {title}: {len(time)} ticks")
