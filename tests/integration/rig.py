@@ -154,3 +154,10 @@ class Rig:
         self.listener.stop = True
         self.listener.join()
         self.folder.cleanup()
+
+
+class PageRig(Rig):
+    """Its hands are moved by a page, or by whoever sends the messages of one."""
+
+    def start_device(self, hand):
+        self.start(hand, "ligature-device", "--hand", hand, "--bus", self.bus[hand], "--scene", self.scene, "--operator", "page", "--rt")

@@ -6,7 +6,7 @@ import threading
 import time
 import unittest
 
-from rig import LCM_URL, STATE_ENGAGE, Rig, run
+from rig import LCM_URL, STATE_ENGAGE, PageRig, run
 
 import lcm
 from ligature_msg import hand_state_t, hand_wish_t
@@ -63,11 +63,6 @@ class Sender(threading.Thread):
                 if self.talks:
                     self.said.append(self.wish())
                     self.say(self.said[-1])
-
-
-class PageRig(Rig):
-    def start_device(self, hand):
-        self.start(hand, "ligature-device", "--hand", hand, "--bus", self.bus[hand], "--operator", "page", "--rt")
 
 
 class PageHand(unittest.TestCase):

@@ -1,28 +1,31 @@
-// Lets the user move simulated hands: keys, mouse and gamepads together give one target position per hand (a "wish"),
-// sent 50 times a second. After 0.2 s without a wish the device releases its dead-man.
+// Lets the user move simulated hands: keys, mouse and gamepads together say how each hand should move. A worker
+// (hand_worker.js) makes wishes of it and sends them, independent of how long the page draws.
 import { toast, isTyping } from './controls.js';
 import { HandKeys } from './hand_keys.js';
 import { HandMouse } from './hand_mouse.js';
 import { HandPads } from './hand_pads.js';
+import { SIDES } from './hand_wisher.js';
 import { along, nearestAxes } from './hand_views.js';
 import { showMode, showHandsHeld } from './hand_panel.js';
 
-const EVERY_MS = 20, LONGEST_STEP_S = 0.06;
-const SIDES = ['left', 'right'];
+const EVERY_MS = 20;
 const PACES_M_PER_S = [0.01, 0.02, 0.04, 0.08, 0.15], FIRST_PACE = 2; // speed of the device's tip
-const LEAD_M = { steady: 0.015, dragged: 0.06 }; // how far a target may be ahead of the hand, so that a target out of reach does not run away
+const WHY_LOST = 'it was free for too long, or the device went. M takes it again';
 
 export class HandControl {
   /**
    * @param latest newest data from the host. @param panels its `picture` is the view that draws the thread. @param run
-   * calls a function; errors are attributed to this part of the page.
+   * calls a function; errors are attributed to this part of the page. @param fail tells that this part has failed.
    */
-  constructor({ link, latest, panels, run }) {
-    Object.assign(this, { link, latest, panels, told: null, mine: {}, pace: FIRST_PACE, axes: null, last_ms: performance.now() });
-    this.keys = new HandKeys({ jaws: (side) => this.jaws(side), pace: (step) => this.setPace(step), letGo: () => this.letGo() });
+  constructor({ link, latest, panels, run, fail }) {
+    Object.assign(this, { link, latest, panels, mine: {}, pace: FIRST_PACE, axes: null });
+    this.worker = new Worker('./hand_worker.js', { type: 'module' });
+    this.worker.onmessage = ({ data }) => run((it) => it.hear(data));
+    this.worker.onerror = (event) => fail(new Error(event.message || 'hand_worker.js did not load'));
+    this.keys = new HandKeys({ jaws: (side) => this.jaws(side), pace: (step) => this.setPace(step), letGo: () => this.letGo(), changed: () => run((it) => it.step()) });
     this.pads = new HandPads();
     this.mouse = new HandMouse(document.getElementById('scene'), { panes: () => this.panes, handAt: (side) => this.seenAt(side),
-      move: (side, by) => this.move(side, by), jaws: (side) => this.jaws(side), changed: () => run((it) => it.step()) });
+      move: (side, by_W) => this.worker.postMessage({ move: { side, by_W } }), jaws: (side) => this.jaws(side), changed: () => run((it) => it.step()) });
     this.ending = new AbortController();
     const { signal } = this.ending;
     addEventListener('keydown', (event) => { if (event.code === 'KeyM' && !isTyping(event) && !document.querySelector('dialog[open]')) this.toggle(); }, { signal });
@@ -39,6 +42,7 @@ export class HandControl {
     clearInterval(this.timer);
     this.ending.abort();
     this.end();
+    this.worker.terminate();
     this.keys.dispose();
     this.mouse.dispose();
   }
@@ -48,24 +52,36 @@ export class HandControl {
   /** World position of a hand that this page has taken, else null. */
   seenAt(side) { return this.mine[side] ? this.latest.now?.hands?.[SIDES.indexOf(side)]?.p_W ?? null : null; }
 
-  async toggle() {
-    if (this.isOn) { this.end(); return; }
-    if (this.latest.isReplay) return;
-    const answers = await Promise.all(SIDES.map((side) => this.link.request({ hand: 'take', side })));
-    answers.forEach((answer, i) => {
-      if (answer.accepted) this.mine[SIDES[i]] = { page: answer.page, target: answer.p_W, grip: answer.grip, deadMan: false };
-    });
-    const refused = answers.filter((answer) => !answer.accepted);
+  toggle() {
+    if (this.isOn) this.end();
+    else if (!this.latest.isReplay) this.worker.postMessage({ take: this.link.token });
+  }
+
+  /** Takes the worker's word: which hands were taken, or lost. */
+  hear({ taken, lost }) {
+    if (taken) return this.#begin(taken);
+    if (lost === 'connection') {
+      if (this.isOn) toast('hands: the connection is lost, they have let go', true);
+      this.mine = {};
+    } else if (this.mine[lost]) {
+      delete this.mine[lost];
+      toast(`${lost} hand: ${WHY_LOST}`, true);
+    }
+    if (!this.isOn) this.forget();
+  }
+
+  #begin(taken) {
+    const refused = SIDES.map((side) => taken[side]).filter((answer) => !answer.accepted);
+    for (const side of SIDES) if (taken[side].accepted) this.mine[side] = { grip: taken[side].grip, deadMan: false };
     if (!this.isOn) toast(`hands: refused – ${refused[0].text}`, true);
     else if (refused.length) toast(refused[0].text, true);
     this.keys.on(this.isOn);
     showMode(this.isOn);
-    this.hear(this.told);
   }
 
   /** Gives the taken hands back. */
   end() {
-    for (const side of SIDES) if (this.mine[side]) this.link.send({ hand: 'leave', side, token: this.link.token });
+    this.worker.postMessage({ end: true });
     this.forget();
   }
 
@@ -74,21 +90,6 @@ export class HandControl {
     this.keys.on(false);
     this.mouse.release();
     showMode(false);
-  }
-
-  /** Takes the server's statement of which page has which hand. */
-  hear(told) {
-    this.told = told;
-    if (!told) return;
-    for (const side of SIDES) {
-      const hand = this.mine[side];
-      if (!hand || told[side].page === hand.page) continue;
-      delete this.mine[side];
-      toast(`${side} hand: it was free for too long, or the device went. M takes it again`, true);
-    }
-    if (this.scale !== told.scale) for (const side of SIDES) if (this.mine[side] && told[side].p_W) this.mine[side].target = [...told[side].p_W];
-    this.scale = told.scale;
-    if (!this.isOn) this.forget();
   }
 
   jaws(side) { if (this.mine[side]) this.mine[side].grip = !this.mine[side].grip; }
@@ -101,34 +102,21 @@ export class HandControl {
     this.step();
   }
 
-  /** Moves the target of a hand. @param by_W displacement in world metres. */
-  move(side, by_W) {
-    const hand = this.mine[side];
-    if (!hand) return;
-    hand.target = hand.target.map((x, i) => x + by_W[i]);
-    const from = this.told?.[side]?.p_W, far = from ? Math.hypot(...hand.target.map((x, i) => x - from[i])) : 0;
-    const most = (this.mouse.deadMan(side) ? LEAD_M.dragged : LEAD_M.steady) * this.scale;
-    if (far > most) hand.target = hand.target.map((x, i) => from[i] + ((x - from[i]) * most) / far);
-  }
-
+  /** Tells the worker what the user holds now. */
   step() {
-    const now = performance.now(), step_s = Math.min((now - this.last_ms) / 1000, LONGEST_STEP_S), pads = this.pads.read(), pane = this.panes[0];
-    this.last_ms = now;
+    const pads = this.pads.read(), pane = this.panes[0], isWatched = document.hasFocus() && !document.hidden, input = {};
     if (pane) this.axes = nearestAxes(pane);
-    const isWatched = document.hasFocus() && !document.hidden, wish = {};
     for (const side of SIDES) {
-      const keys = this.keys.move(side), pad = pads[side], hand = this.mine[side], isPressed = this.keys.deadMan(side) || pad.deadMan || this.mouse.deadMan(side);
-      const speed = PACES_M_PER_S[this.pace] * (this.scale ?? 0), way = keys.map((k, i) => Math.max(-1, Math.min(1, k + pad.move[i])));
-      const by_W = this.axes ? along(this.axes, way.map((w) => w * speed * step_s)) : [0, 0, 0];
+      const keys = this.keys.move(side), pad = pads[side], hand = this.mine[side];
       if (!hand) continue;
-      if (isWatched && way.some((w) => w)) this.move(side, by_W);
+      const way = keys.map((k, i) => (isWatched ? Math.max(-1, Math.min(1, k + pad.move[i])) * PACES_M_PER_S[this.pace] : 0));
       if (pad.jaws && isWatched) this.jaws(side);
-      hand.deadMan = isPressed && isWatched;
-      wish[side] = { p: hand.target, dead: hand.deadMan, grip: hand.grip };
+      hand.deadMan = isWatched && (this.keys.deadMan(side) || pad.deadMan || this.mouse.deadMan(side));
+      input[side] = { velocity: this.axes ? along(this.axes, way) : [0, 0, 0], dead: hand.deadMan, grip: hand.grip, isDragged: this.mouse.deadMan(side) };
     }
     if (!this.isOn) return;
-    if (this.link.isOpen) this.link.send({ wish, token: this.link.token });
-    else { this.forget(); toast('hands: the connection is lost, they have let go', true); }
+    if (this.link.isOpen) this.worker.postMessage({ input });
+    else { this.end(); toast('hands: the connection is lost, they have let go', true); }
   }
 
   /** Shows what each taken hand does, and passes its force to the gamepad's rumble. */

@@ -13,8 +13,8 @@ const IS_TEXT = 'input[type=text], textarea';
 
 export class HandKeys {
   /**
-   * @param tell {jaws(side), pace(step), letGo()}: callbacks; letGo: the state of the keys is uncertain, release
-   * everything.
+   * @param tell {jaws(side), pace(step), letGo(), changed()}: callbacks; letGo: the state of the keys is uncertain,
+   * release everything; changed: another key is down or up.
    */
   constructor(tell) {
     this.tell = tell;
@@ -46,11 +46,14 @@ export class HandKeys {
     this.held.add(event.code);
     if (JAWS[event.code]) this.tell.jaws(JAWS[event.code]);
     if (PACE[event.code]) this.tell.pace(PACE[event.code]);
+    this.tell.changed();
   }
 
   up({ code, shiftKey }) {
+    const before = this.held.size;
     this.held.delete(code);
     if (!shiftKey) this.held.delete(DEAD_MAN.left);
+    if (this.held.size !== before) this.tell.changed();
   }
 
   /** Direction of the pressed keys. @returns [right, up, away], each -1 .. 1. */

@@ -123,9 +123,9 @@ function hands(panels) {
   return {
     hands: {
       name: 'moving hands', place: () => $('scene-notes'),
-      make: async (attempt) => new (await load('hand_control.js', attempt)).HandControl({ link, latest, panels, run: (use) => panels.parts.hands.run(use) }),
+      make: async (attempt) => new (await load('hand_control.js', attempt)).HandControl({ link, latest, panels, run: (use) => panels.parts.hands.run(use), fail: (error) => panels.parts.hands.fail(error) }),
       dispose: (value) => value?.dispose(),
-      text: (value, { hands: told, status }) => { if (status) maxForce_N = status.max_force_N; if (told) value.hear(told); },
+      text: (value, { status }) => { if (status) maxForce_N = status.max_force_N; },
       draw: (value, time) => { if (time >= due) { due = time + HANDS_MS; value.show(maxForce_N); } },
     },
   };

@@ -1,0 +1,89 @@
+// A person at the page, for test_hands.py: opens the page in Chromium and holds keys, as told by lines on standard input.
+//   open             opens the page, chooses the front view, takes the hands by M
+//   keys CODE,..     these keys are down, all others up (KeyboardEvent.code; "none": none)
+//   tap CODE         one key, down and up
+//   close | blur | cut | freeze    the tab is closed | another window comes to the front | all connections are closed
+//                    | nothing passes through them any more
+//   heal             the opposite of blur and freeze
+//   draw PATH        a picture of the page
+// Each is answered by "done N" with N the number of the line, or by "failed N REASON".
+//   node hands_page.mjs --to HOST:PORT --modules DIR [--webgl off] [--size WxH]
+import { connect, createServer } from 'node:net';
+import { createInterface } from 'node:readline';
+import { Browser, arguments_, until } from './support.mjs';
+
+/** A proxy between browser and host whose connections can be cut or frozen. */
+class Wire {
+  static async to(address) {
+    const wire = new Wire(), [hostname, port] = address.split(':');
+    wire.pairs = new Set();
+    wire.server = createServer((socket) => {
+      const there = connect(Number(port), hostname), pair = [socket, there];
+      wire.pairs.add(pair);
+      socket.pipe(there).pipe(socket);
+      for (const end of pair) end.on('error', () => {}).on('close', () => { wire.pairs.delete(pair); for (const other of pair) other.destroy(); });
+    });
+    await new Promise((resolve) => wire.server.listen(0, '127.0.0.1', resolve));
+    wire.url = `http://127.0.0.1:${wire.server.address().port}/`;
+    return wire;
+  }
+
+  cut() { for (const pair of this.pairs) for (const end of pair) end.resetAndDestroy(); }
+  freeze() { for (const [a, b] of this.pairs) { a.unpipe(b); b.unpipe(a); a.pause(); b.pause(); } }
+  heal() { for (const [a, b] of this.pairs) a.pipe(b).pipe(a); }
+  stop() { this.cut(); this.server.close(); }
+}
+
+const { to, webgl, size = '1280x800' } = arguments_();
+const [width, height] = size.split('x').map(Number);
+const wire = await Wire.to(to);
+const browser = await Browser.start({ webgl: webgl !== 'off' });
+browser.viewport = { width, height };
+let page = null, other = null, held = new Set();
+
+const acts = {
+  async open() {
+    if (!page) {
+      page = await browser.open(wire.url);
+      const devtools = await browser.context.newCDPSession(page);
+      await devtools.send('Emulation.setFocusEmulationEnabled', { enabled: false }); // the page must notice other windows
+      await page.bringToFront();
+    }
+    await until(page, () => window.ligature?.latest.now?.hands && ligature.panels?.parts.hands.value && ligature.scene?.panes?.length);
+    await page.evaluate(() => document.getElementById('help').close());
+    await until(page, () => document.hasFocus());
+    await page.keyboard.press('Digit1');
+    // The hand may still be in the previous page's possession, or its device be absent for a moment.
+    for (;;) {
+      if (await page.evaluate(() => ligature.panels.parts.hands.value.isOn)) return;
+      await page.keyboard.press('KeyM');
+      await Promise.race([until(page, () => ligature.panels.parts.hands.value.isOn), new Promise((resolve) => setTimeout(resolve, 1000))]);
+    }
+  },
+  async keys(list) {
+    const wanted = new Set(list === 'none' ? [] : list.split(','));
+    for (const code of [...held].filter((c) => !wanted.has(c))) { held.delete(code); await page.keyboard.up(code); }
+    for (const code of [...wanted].filter((c) => !held.has(c))) { held.add(code); await page.keyboard.down(code); }
+  },
+  async tap(code) { await page.keyboard.press(code); },
+  async close() { await page.close(); page = null; held = new Set(); },
+  async blur() { other ??= await browser.context.newPage(); await other.bringToFront(); await until(page, () => !document.hasFocus()); },
+  cut() { wire.cut(); },
+  freeze() { wire.freeze(); },
+  async heal() { wire.heal(); await page.bringToFront(); },
+  async draw(path) { await page.screenshot({ path }); },
+};
+
+console.log(`ready ${wire.url}`);
+let number = 0;
+for await (const line of createInterface({ input: process.stdin })) {
+  const [act, argument] = line.trim().split(' ');
+  ++number;
+  try {
+    await acts[act](argument);
+    console.log(`done ${number}`);
+  } catch (error) { console.log(`failed ${number} ${act}: ${error.message.split('\n')[0]}`); }
+}
+for (const complaint of browser.complaints) console.log(`complaint ${complaint}`);
+await browser.stop();
+wire.stop();
