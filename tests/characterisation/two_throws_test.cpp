@@ -1,0 +1,187 @@
+// Knots of two throws under too small a budget: time lost, cost at rest, and the mesh where strands touch.
+//
+// Rounding decides how a single pull goes, so no claim here is about one pull. Each test draws the speeds of several
+// pulls (LIGATURE_TEST_SEED draws others), and judges a mean or a share of them. What must hold in every pull is
+// asserted for every pull.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "tests/support/random.hpp"
+#include "tests/unit/rod/tightening.hpp"
+
+namespace ligature::test {
+namespace {
+
+/// Speeds of a hand in n pulls, m/s, one in each of n equal parts of the range.
+std::vector<double> speeds(int n, double low, double high, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<double> all;
+  for (int i = 0; i < n; ++i) all.push_back(low + (high - low) * (i + random.share()) / n);
+  return all;
+}
+
+/// Pulls a shipped loose knot to 5 N at this speed, after 0.1 s of rest. `each` is called after each tick of the pull.
+template <class Each>
+Tightening pulled(const char* scene, double speed, const std::vector<std::string>& overrides, Each each) {
+  Tightening pull(overrides, scene);
+  for (int k = 0; k < 100; ++k) pull.tick(0.0);
+  for (int k = 0; k < 1000 && Tightening::force(pull.sim()) < 5.0; ++k) {
+    pull.tick(speed);
+    each(pull.sim());
+  }
+  return pull;
+}
+Tightening pulled(const char* scene, double speed) {
+  return pulled(scene, speed, {}, [](const RodSimulation&) {});
+}
+
+constexpr const char* kSquare = "suture-3-0-square.toml";
+constexpr const char* kSurgeons = "suture-3-0-surgeons.toml";
+
+/// Share of the time lost in the next ticks with the hands moving at this speed; adds up guard events.
+double lost_share(Tightening& pull, int ticks, double speed = 0.0, int* guard = nullptr) {
+  double lost = 0.0;
+  for (int k = 0; k < ticks; ++k) {
+    pull.tick(speed);
+    lost += pull.sim().rod().report().time_lost;
+    if (guard != nullptr) *guard += pull.sim().rod().report().guard_events;
+  }
+  return lost / ticks;
+}
+
+// Two rules keep the time lost in a hold low: the solver starts from the old impulses unchanged, not projected onto the
+// friction cones; and contact points do not oscillate (touch.hpp). Without both, 50 % of the time was lost at 0.2 m/s;
+// without the first 20 % (0.15 m/s), without the second 74 % (0.22 m/s).
+TEST(Hold, OfTwoThrowsLosesHardlyAnyTime) {
+  double mean = 0.0;
+  const auto drawn = speeds(8, 0.15, 0.24, 601);
+  for (const double speed : drawn) {
+    Tightening pull = pulled(kSquare, speed);
+    for (int k = 0; k < 400; ++k) pull.tick(0.0);
+    int guard = 0;
+    const double lost = lost_share(pull, 500, 0.0, &guard);
+    mean += lost / 8;
+    EXPECT_EQ(guard, 0) << speed;
+    RecordProperty("lost_" + std::to_string(speed), std::to_string(lost));
+  }
+  RecordProperty("mean", std::to_string(mean));
+  EXPECT_LT(mean, 0.05);
+}
+
+// A held surgeon's knot is slackened slowly, so half of its contacts change between stick, slip and open. Newton's
+// steps cycle if their proximal term (contact_newton.hpp) is dropped as soon as no contact changes its kind.
+TEST(Hold, OfTwoThrowsIsSlackenedInTime) {
+  double lost = 0.0;
+  int ticks = 0;
+  for (const double speed : speeds(4, 0.16, 0.24, 602)) {
+    Tightening pull = pulled(kSurgeons, speed);
+    for (int k = 0; k < 400; ++k) pull.tick(0.0);
+    for (int k = 0; k < 500 && Tightening::force(pull.sim()) > 0.5; ++k, ++ticks) lost += lost_share(pull, 1, -0.02);
+  }
+  RecordProperty("lost", std::to_string(lost / ticks));
+  EXPECT_GT(ticks, 600);
+  EXPECT_LT(lost / ticks, 0.15);
+}
+
+// A substep takes no more than its fair share of the tick's budget if it has a solution that is good enough. Mean time
+// lost over pulls of a surgeon's knot: 0.21 (standard error 0.01); 0.31 if each substep may take all that is left.
+TEST(Labour, IsSharedFairly) {
+  double lost = 0.0;
+  for (const double speed : speeds(8, 0.161, 0.233, 604)) {
+    double sum = 0.0;
+    int ticks = 0;
+    pulled(kSurgeons, speed, {}, [&](const RodSimulation& sim) { sum += sim.rod().report().time_lost, ++ticks; });
+    lost += sum / ticks / 8;
+  }
+  RecordProperty("lost", std::to_string(lost));
+  EXPECT_LT(lost, 0.25);
+}
+
+// With suture.accuracy = "fast" a tick has ten substeps, also when the budget runs out. With six, square knots pulled
+// to 5 N had up to 59 guard events, were held with 0.02 to 3.6 N, and lost no less time. `fast` loses time at these
+// speeds, so some of its knots hold less than the 5 N; the mean says how well the pulls were followed.
+TEST(Labour, LeavesTenSubsteps) {
+  double mean_N = 0.0;
+  for (const double speed : speeds(8, 0.15, 0.25, 605)) {
+    int guard = 0, fewest = 100;
+    const auto look = [&](const RodSimulation& sim) {
+      guard += sim.rod().report().guard_events;
+      fewest = std::min(fewest, sim.rod().report().substeps);
+    };
+    Tightening pull = pulled(kSquare, speed, {"suture.accuracy=\"fast\""}, look);
+    for (int k = 0; k < 500; ++k) {
+      pull.tick(0.0);
+      look(pull.sim());
+    }
+    EXPECT_EQ(guard, 0) << speed;
+    EXPECT_EQ(fewest, 10) << speed;
+    mean_N += Tightening::force(pull.sim()) / 8;
+    RecordProperty("force_" + std::to_string(speed), std::to_string(Tightening::force(pull.sim())));
+  }
+  RecordProperty("mean_N", std::to_string(mean_N));
+  EXPECT_GT(mean_N, 3.5);
+}
+
+/// A surgeon's knot drawn tight by two hands and held for 0.7 s.
+Tightening held(double speed) {
+  Tightening pull = pulled(kSurgeons, speed);
+  for (int k = 0; k < 700; ++k) pull.tick(0.0);
+  return pull;
+}
+
+// The solver's tolerance has a lower bound, set by single precision. If it were always a tenth of the motion, some
+// knots at rest would spend more work on differences of 5 um/s. Two copies of the same state are compared, because some
+// holds spend their whole budget in either copy. Ratio of work over 40 pulls: mean 0.85, standard deviation 0.15; so
+// the mean of 24 is above 0.99 less than once in a million draws. Without the bound it is 1.
+TEST(Hold, OfTwoThrowsAtRestIsCheaper) {
+  constexpr int kPulls = 24;
+  double ratio = 0.0;
+  for (const double speed : speeds(kPulls, 0.15, 0.25, 606)) {
+    Tightening pull = held(speed);
+    RodSimulation twin = pull.sim();
+    twin.rod().numerics().newton_m_per_s = 0.0;
+    double work = 0.0, finer = 0.0;
+    for (int k = 0; k < 200; ++k) {
+      pull.tick(0.0);
+      twin.tick(pull.tools());
+      work += static_cast<double>(pull.sim().rod().report().work);
+      finer += static_cast<double>(twin.rod().report().work);
+    }
+    ratio += work / finer / kPulls;
+  }
+  RecordProperty("ratio", std::to_string(ratio));
+  EXPECT_LT(ratio, 0.99);
+}
+
+/// Longest segment in a loaded contact, in diameters of the thread.
+double longest_in_contact(const RodSimulation& sim) {
+  double longest = 0.0;
+  int loaded = 0;
+  for (const auto& c : sim.rod().contact_set().contacts()) {
+    if (dot(c.p, c.p) == 0.0) continue;
+    ++loaded;
+    for (const int k : {0, 2})
+      longest = std::max(longest, sim.rod().state().mesh.rest[static_cast<std::size_t>(c.node[k])]);
+  }
+  EXPECT_GT(loaded, 20);
+  return longest / 3e-4;
+}
+
+// A loop of thread that touches the thread beside a tight knot with only 0.1 mN is meshed there as finely as the knot:
+// by segments of one diameter in 58 of 60 pulls (89 to 99.6 %), of two in the others. Without the rule for contacts at
+// rest (refine.cpp) 16 of 40 pulls had segments of two to four diameters. If 3 % are coarse, more than 8 of 32 come
+// less than once in a million draws; if 40 % are, in 94 of 100.
+TEST(FineZone, ReachesTheLoopThatTouches) {
+  constexpr int kPulls = 32;
+  int coarse = 0;
+  for (const double speed : speeds(kPulls, 0.15, 0.25, 607)) coarse += longest_in_contact(held(speed).sim()) > 1.2;
+  RecordProperty("coarse", coarse);
+  EXPECT_LE(coarse, 8);
+}
+
+}  // namespace
+}  // namespace ligature::test
