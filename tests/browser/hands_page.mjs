@@ -2,6 +2,8 @@
 //   open             opens the page, chooses the front view, takes the hands by M
 //   keys CODE,..     these keys are down, all others up (KeyboardEvent.code; "none": none)
 //   tap CODE         one key, down and up
+//   pads JSON        these gamepads are there: [{"axes": [..], "pressed": [buttons]}, ..], objects as the Gamepad API has
+//   rumbled          waits until a gamepad was told to vibrate
 //   close | blur | cut | freeze    the tab is closed | another window comes to the front | all connections are closed
 //                    | nothing passes through them any more
 //   heal             the opposite of blur and freeze
@@ -65,6 +67,15 @@ const acts = {
     for (const code of [...held].filter((c) => !wanted.has(c))) { held.delete(code); await page.keyboard.up(code); }
     for (const code of [...wanted].filter((c) => !held.has(c))) { held.add(code); await page.keyboard.down(code); }
   },
+  async pads(list) {
+    await page.evaluate((pads) => {
+      const buttons = (pressed) => Array.from({ length: 17 }, (_, i) => ({ value: pressed.includes(i) ? 1 : 0 }));
+      const vibrationActuator = { async playEffect(kind, { strongMagnitude }) { if (strongMagnitude > 0) window.rumbled = kind; } };
+      window.pads = pads.map(({ axes = [0, 0, 0, 0], pressed = [] }) => ({ connected: true, mapping: 'standard', axes, buttons: buttons(pressed), vibrationActuator }));
+      Object.defineProperty(navigator, 'getGamepads', { value: () => window.pads, configurable: true });
+    }, JSON.parse(list));
+  },
+  async rumbled() { await until(page, () => window.rumbled === 'dual-rumble'); },
   async tap(code) { await page.keyboard.press(code); },
   async close() { await page.close(); page = null; held = new Set(); },
   async blur() { other ??= await browser.context.newPage(); await other.bringToFront(); await until(page, () => !document.hasFocus()); },

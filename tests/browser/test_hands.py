@@ -1,5 +1,5 @@
 """Both hands of a rig steered from the page in Chromium: the keyboard alone ties a knot, and whatever takes the person
-away from the page while a force acts ends it by the dead-man.
+away from the page while a force acts ends it by the dead-man; simulated gamepads move the hands, too.
 
 LIGATURE_TIMES is how often the person is taken away (default 8; the figure in docs/view.md is for 100). LIGATURE_PAGE
 holds other options for hands_page.mjs, LIGATURE_OUT the file for a picture of the page with the knot."""
@@ -79,6 +79,24 @@ class Hands(unittest.TestCase):
     def tick(self):
         return self.rig.listener.ticks[-1]
 
+    def at(self, hand, ahead_s=0.0):
+        i = HANDS.index(hand)
+        return [p + ahead_s * v for p, v in zip(self.tick().p_WT_m[i], self.tick().v_WT_m_per_s[i])]
+
+    def pushes(self):
+        t = self.tick()
+        return t.dead_man[0] and t.gain[0] == 1.0 and any(t.torque_permille[0])
+
+    def assert_lets_go(self, from_tick, why):
+        """Waits for the left dead-man. @returns for how many ticks torque lasted after it."""
+        self.rig.wait_for(lambda _: not self.tick().dead_man[0], f"the dead-man let go after {why}")
+        self.ticks_pass(LONGEST_RAMP_TICKS + 50)
+        ticks = [t for t in self.rig.listener.ticks if t.tick >= from_tick]
+        released = next(t.tick for t in ticks if not t.dead_man[0])
+        last = max([t.tick for t in ticks if any(t.torque_permille[0])], default=released)
+        self.assertLessEqual(last - released, LONGEST_RAMP_TICKS, f"{why}: torque long after the dead-man")
+        return last - released
+
     def holds(self, hand):
         return self.tick().grasped_node[HANDS.index(hand)] >= 0
 
@@ -116,10 +134,6 @@ class Keyboard(Hands):
             self.person.keys(*DEAD_MAN.values(), *keys)
             self.ticks_pass(10)
 
-    def at(self, hand, ahead_s=0.0):
-        i = HANDS.index(hand)
-        return [p + ahead_s * v for p, v in zip(self.tick().p_WT_m[i], self.tick().v_WT_m_per_s[i])]
-
     def test_the_keyboard_alone_ties_an_overhand(self):
         self.person.does("open")
         self.go(left=(0.0, 0.0, 2.3), right=(0.0, 0.0, 0.5))
@@ -144,6 +158,57 @@ class Keyboard(Hands):
         self.assertEqual((found["type"], found["handedness"]), ("3_1", "right"))
 
 
+class Gamepad(Hands):
+    """Objects as the Gamepad API has them take the place of gamepads; the standard layout is that of the API."""
+
+    BUMPERS, TRIGGERS, PAD_UP, TOP = (4, 5), (6, 7), 12, 3
+
+    def pads(self, *pads):
+        self.person.does("pads", json.dumps(pads, separators=(",", ":")))
+
+    def moves(self, axis, hand, *pads):
+        """Holds the gamepads so until the hand has moved along an axis of the world, and lets the sticks go."""
+        begin = [self.at(h) for h in HANDS]
+        self.pads(*pads)
+        self.rig.wait_for(lambda _: self.at(hand)[axis] > begin[HANDS.index(hand)][axis] + 0.3, f"the {hand} hand along axis {axis}")
+        self.pads(*({} for _ in pads))
+        self.rig.wait_for(lambda _: self.rests(), "hands at rest")  # ticks come late on a busy machine
+        for h, was in zip(HANDS, begin):
+            off = [abs(a - b) for a, b in zip(self.at(h), was)]
+            self.assertLess(max(d for i, d in enumerate(off) if (h, i) != (hand, axis)), 0.1, f"{h} hand: {off}")
+
+    def rests(self):
+        return all(abs(v) < 0.05 for t in self.rig.listener.ticks[-300:] for hand in t.v_WT_m_per_s for v in hand)
+
+    def presses_bumper(self, hand):
+        self.pads({"pressed": [self.BUMPERS[HANDS.index(hand)]]})
+        self.rig.wait_for(lambda _: self.tick().grip[HANDS.index(hand)], f"jaws of the {hand} hand")
+        self.pads({})
+
+    def test_one_gamepad_moves_both_hands_and_two_one_each(self):
+        self.person.does("open")
+        self.pads({})
+        self.moves(0, "left", {"axes": [1, 0, 0, 0]})
+        self.moves(2, "right", {"axes": [0, 0, 0, -1]})
+        self.moves(1, "left", {"pressed": [self.PAD_UP]})
+        self.moves(1, "right", {"pressed": [self.TOP]})
+        self.moves(0, "right", {}, {"axes": [1, 0, 0, 0]})
+        self.moves(1, "left", {"axes": [0, 0, 0, -1]}, {})
+
+    def test_its_trigger_is_the_dead_man_and_ends_with_the_gamepad(self):
+        self.person.does("open")
+        self.presses_bumper("left")
+        self.rig.wait_for(lambda _: self.holds("left"), "a grasp")
+        self.moves(2, "left", {"axes": [0, -1, 0, 0]})
+        self.assertFalse(self.tick().dead_man[0], "no trigger is pressed yet")
+        self.pads({"pressed": [self.TRIGGERS[0]]})
+        self.rig.wait_for(lambda _: self.pushes(), "force")
+        self.person.does("rumbled")
+        from_tick = self.tick().tick
+        self.pads()
+        self.assert_lets_go(from_tick, "no gamepad")
+
+
 class TakenAway(Hands):
     ways = ("close", "blur", "cut", "freeze")
 
@@ -165,10 +230,6 @@ class TakenAway(Hands):
             self.person.keys()
         self.fail(f"no force comes\n{self.rig.words()}")
 
-    def pushes(self):
-        t = self.tick()
-        return t.dead_man[0] and t.gain[0] == 1.0 and any(t.torque_permille[0])
-
     def test_whoever_is_taken_away_in_force_leaves_no_torque(self):
         to_zero = {way: [] for way in self.ways}
         for k in range(TIMES):
@@ -177,13 +238,7 @@ class TakenAway(Hands):
             self.presses_until_force()
             from_tick = self.tick().tick
             self.person.does(way)
-            self.rig.wait_for(lambda _: not self.tick().dead_man[0], f"the dead-man let go after {way}")
-            self.ticks_pass(LONGEST_RAMP_TICKS + 50)
-            ticks = [t for t in self.rig.listener.ticks if t.tick >= from_tick]
-            released = next(t.tick for t in ticks if not t.dead_man[0])
-            last = max([t.tick for t in ticks if any(t.torque_permille[0])], default=released)
-            self.assertLessEqual(last - released, LONGEST_RAMP_TICKS, f"{way}: torque long after the dead-man")
-            to_zero[way].append(last - released)
+            to_zero[way].append(self.assert_lets_go(from_tick, way))
             del self.rig.listener.ticks[:-1000]
             if way in ("blur", "freeze"):
                 self.person.does("heal")  # the key is still down: that is no new press
