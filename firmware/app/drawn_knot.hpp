@@ -33,7 +33,7 @@ struct DrawnKnot {
   int ticks = 0;
 };
 
-/// Steps the thread by one tick with the work budget, or the time limit, that a rig has.
+/// Steps the thread by one tick with the work budget and the time limit that a rig has.
 using Tick = std::function<void(physics::Simulation& thread, const std::array<physics::ToolInput, 2>& tools)>;
 
 /// Grips both ends and moves them apart, each at `speed_m_per_s`, until the strain is 7 % somewhere or the ends are

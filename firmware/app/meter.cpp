@@ -36,11 +36,6 @@ struct CpuTime {
   }
 };
 
-void tick_until(physics::Simulation& thread, const std::array<physics::ToolInput, 2>& tools, double end_us) noexcept {
-  CpuTime clock{end_us};
-  thread.tick(tools, physics::TimeLeft(&CpuTime::left_ns, &clock));
-}
-
 /// CPU time in us of a tick without any contact, the least of several.
 double own_cost_us(scene::Scene scene) {
   constexpr int kTicks = 10;
@@ -133,7 +128,7 @@ class ThreadMeter {
         const auto tools = grips();
         cold_();
         const double before = cpu_us();
-        tick_until(thread_, tools, before + cost_.given_us);
+        tick_within(thread_, tools, cost_.given_us);
         least_us[k] = std::min(least_us[k], cpu_us() - before);
         if (repeat == 0) lost += thread_.diagnostics().time_lost / kTicksPerShape;
         look_at(thread_.diagnostics());
@@ -177,8 +172,8 @@ class ThreadMeter {
 
 void tick_within(physics::Simulation& thread, const std::array<physics::ToolInput, 2>& tools,
                  double given_us) noexcept {
-  if (thread.work() > 0) return thread.tick(tools);
-  tick_until(thread, tools, cpu_us() + given_us);
+  CpuTime clock{cpu_us() + given_us};
+  thread.tick(tools, physics::TimeLeft(&CpuTime::left_ns, &clock));
 }
 
 ThreadCost measure_thread(const scene::Scene& scene, double given_us, double seconds) {

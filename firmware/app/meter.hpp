@@ -34,7 +34,7 @@ struct ThreadCost {
 /// @param given_us time available in each period
 [[nodiscard]] ThreadCost measure_thread(const scene::Scene& scene, double given_us, double seconds);
 
-/// Steps a thread as a rig does: with its contact budget or, for a model without one, with `given_us` of CPU time.
+/// Steps a thread as a rig does: its contact budget or, after `given_us` of CPU time, the clock ends the tick.
 void tick_within(physics::Simulation& thread, const std::array<physics::ToolInput, 2>& tools, double given_us) noexcept;
 
 }  // namespace ligature::app

@@ -107,6 +107,19 @@ TEST(Admission, MoreWorkLosesLessOfASquareKnot) {
   EXPECT_LT(much, 0.2 * little);
 }
 
+/// Without the clock, a thread of 2000 nodes would seem to lose nothing: its contact budget does not count the
+/// milliseconds that its nodes take.
+TEST(Admission, ADrawnKnotIsEndedByTheClockAsOnARig) {
+  for (const auto& scene : {scene_of("suture-3-0-square.toml", 154), paper(20)}) {
+    auto thread = std::get<physics::Simulation>(physics::Simulation::make(scene));
+    tick_within(thread, {}, 0.0);
+    EXPECT_EQ(thread.diagnostics().end, physics::TickEnd::kClock) << scene::name(scene.suture.model);
+    EXPECT_EQ(thread.diagnostics().time_lost, 1.0);
+    tick_within(thread, {}, 1e9);
+    EXPECT_EQ(thread.diagnostics().end, physics::TickEnd::kWhole);
+  }
+}
+
 /// A result of admission with these measured values.
 Admission found(double computing_us, double lost_at_quarter) {
   Admission a;
