@@ -64,6 +64,16 @@ Check priority_limit(const std::string& root) {
   return {Grade::kFail, "real-time priority", "up to " + amount(allowed) + ", wanted 80", kLimits};
 }
 
+/// Linux stops all real-time threads of a core for the rest of each second in which they have used this much. With a
+/// large scene the physics computes until shortly before the next samples, and then the loop would be stopped, too.
+Check whole_core(const std::string& root) {
+  const std::string found = text_of(root + "proc/sys/kernel/sched_rt_runtime_us");
+  if (found.empty() || found == "-1") return good("real-time share", "the whole core");
+  return {Grade::kWarn, "real-time share",
+          found + " us of each " + text_of(root + "proc/sys/kernel/sched_rt_period_us") + ", wanted -1: no limit",
+          "sysctl -w kernel.sched_rt_runtime_us=-1"};
+}
+
 Check memory_limit(const std::string& root) {
   if (has_capability(root, kCapIpcLock)) return good("locked memory", "allowed by CAP_IPC_LOCK");
   const long allowed = limit(root, "Max locked memory");
@@ -197,6 +207,7 @@ std::vector<Check> check_machine(const Machine& machine, int core) {
   const std::string& root = machine.root;
   return {kernel(root),
           priority_limit(root),
+          whole_core(root),
           memory_limit(root),
           core_list(root, "own core", "sys/devices/system/cpu/isolated", "isolcpus", core),
           core_list(root, "timer ticks", "sys/devices/system/cpu/nohz_full", "nohz_full", core),

@@ -51,6 +51,7 @@ class MachineTest : public ::testing::Test {
         "eth0\t00000000\t0100A8C0\t0003\t0\t0\t0\t00000000\t0\t0\t0\n"
         "lo\t000000E0\t00000000\t0001\t0\t0\t0\t000000F0\t0\t0\t0");
     put("proc/sys/net/core/rmem_max", "4194304");
+    put("proc/sys/kernel/sched_rt_runtime_us", "-1");
   }
 
   std::string folder, details;
@@ -76,6 +77,7 @@ TEST_F(MachineTest, EachFlawIsFoundInItsRowWithARemedy) {
       {"sys/devices/system/cpu/cpu3/cpufreq/scaling_governor", "powersave", "frequency", Grade::kWarn},
       {"sys/devices/system/cpu/cpu3/cpuidle/state1/latency", "133", "idle states", Grade::kWarn},
       {"sys/devices/system/clocksource/clocksource0/current_clocksource", "hpet", "clock source", Grade::kWarn},
+      {"proc/sys/kernel/sched_rt_runtime_us", "950000", "real-time share", Grade::kWarn},
       {"proc/net/route", "Iface", "LCM multicast", Grade::kFail},
       {"proc/sys/net/core/rmem_max", "212992", "receive buffer", Grade::kWarn},
   };
