@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 // Ranges are wide, to allow experiments with extreme sizes, but exclude values such as 1e-300 m.
 constexpr double kFar_m = 1e4;           // largest allowed coordinate
 constexpr Range kCoefficient{0.0, 1e9};  // allowed range of stiffness and damping
+constexpr Range kEitherSign{-1e9, 1e9};  // of the two dampers whose printed sign feeds energy in
 constexpr int kMostWork = 2'000'000;     // nodes x substeps: a tick takes some tenths of a second
 constexpr std::size_t kMostLoads = 5000;
 constexpr const char* kOfTheRod = "with suture.model \"rod\"";
@@ -49,18 +50,31 @@ int initial_points(const Suture& s) {
   return std::max(s.nodes, 1 + static_cast<int>(std::min(0.5 * s.length_m / s.radius_m, kMost)));
 }
 
+/// A negative coefficient is the sign that the paper prints. Implicitly such a damper has no solution in general, and
+/// the internal swivel damper is none of the paper's.
+void refuse_printed_signs(StrictTable& t, const PaperParameters& p) {
+  const char* const why =
+      "0 or more, or suture.damping = \"explicit\": only explicitly has the printed sign a solution";
+  const bool implicit = p.damping == Damping::kImplicit;
+  if (p.bend_damping < 0.0 && implicit) t.refuse("bend_damping", why);
+  if (p.swivel_damping < 0.0 && implicit) t.refuse("swivel_damping", why);
+  if (p.swivel_damping < 0.0 && p.swivel == SwivelDamper::kInternal)
+    t.refuse("swivel_damping", "0 or more, or suture.swivel = \"paper\": the paper prints no internal damper");
+}
+
 void read_paper(StrictTable& t, PaperParameters& p) {
   t.number("node_mass_kg", p.node_mass_kg, {1e-9, 1e4});
   t.number("stretch_N", p.stretch_N, kCoefficient);
   t.number("stretch_damping", p.stretch_damping, kCoefficient);
   t.number("bend", p.bend, kCoefficient);
-  t.number("bend_damping", p.bend_damping, kCoefficient);
-  t.number("swivel_damping", p.swivel_damping, kCoefficient);
+  t.number("bend_damping", p.bend_damping, kEitherSign);
+  t.number("swivel_damping", p.swivel_damping, kEitherSign);
   t.integer("reference_nodes", p.reference_nodes, 2, 5000);
   t.choice("damping", p.damping, kDampings);
   t.choice("integrator", p.integrator, kIntegrators);
   t.choice("swivel", p.swivel, kSwivels);
   t.choice("quadratic_stretch", p.quadratic_stretch, kQuadratics);
+  refuse_printed_signs(t, p);
 }
 
 void read_suture(StrictTable& t, const fs::path& folder, Suture& s) {
@@ -194,7 +208,8 @@ bool override_key(toml::table& root, const std::string& text, ReadContext& conte
     context.error = Error{"--set " + text + ": " + why};
     return false;
   };
-  if (equals == std::string::npos || key.empty()) return bad("allowed key=value, for example suture.nodes=35");
+  if (equals == std::string::npos || key.empty())
+    return bad("allowed key=value without spaces, for example suture.nodes=35");
   if (std::ranges::count(key, '.') > static_cast<std::ptrdiff_t>(kDeepest))
     return bad("nested too deep, allowed " + std::to_string(kDeepest) + " dots");
   toml::table value;
