@@ -7,6 +7,7 @@
 #include "host/console/stop_signal.hpp"
 #include "host/console/unknown_command.hpp"
 #include "host/lab/experiment_command.hpp"
+#include "host/lab/fit_command.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/pareto_command.hpp"
 #include "host/lab/published/published_command.hpp"
@@ -52,6 +53,7 @@ int main(int argc, char** argv) {
   add_validate_command(app, exit_code);
   add_published_command(app, exit_code);
   add_pareto_command(app, exit_code);
+  add_fit_command(app, exit_code);
   if (const auto unknown = ligature::console::unknown_command(app, argc, argv); !unknown.empty()) {
     complain(unknown);
     return kBadInput;

@@ -37,7 +37,9 @@ RULES = {
     "host/knot": ([], ["Eigen/"]),
     "host/console": (["host/errors.hpp"], ["OS"]),
     "host/lab/tie": (["firmware/physics", "sim_device", "protocol/scene", "host"], ["CLI/", "Eigen/", "OS"]),
-    "host/lab": (["firmware/physics", "firmware/rt", "protocol/scene", "sim_device/operator", "host/console", "host/errors.hpp", "host/knot", "host/lab/tie", "host/lab/rerun"], ["CLI/", "nlohmann/", "Eigen/", "OS"]),
+    "host/lab": (["firmware/physics", "firmware/rt", "protocol/scene", "sim_device/operator", "host/console", "host/errors.hpp", "host/knot", "host/lab/tie", "host/lab/rerun", "host/lab/fit"], ["CLI/", "nlohmann/", "Eigen/", "OS"]),
+    # Least squares with Eigen's Levenberg-Marquardt, which it calls unsupported.
+    "host/lab/fit": (["host/lab", "protocol/scene"], ["Eigen/", "unsupported/Eigen/", "OS"]),
     # Repeats a recorded run; with the firmware's own reporting code, so that both runs' records can be bit-identical.
     "host/lab/rerun": (["firmware", "protocol/scene", "host", "ligature_msg"], ["CLI/", "nlohmann/", "Eigen/", "OS"]),
     # The whole rig in one process and in virtual time; only this folder may include all parts.

@@ -53,6 +53,13 @@ def bad_input(folder):
                   ["--share", "0"], ["--share", "nan"]):
         done = lab("validate", *wrong)
         assert done.returncode == 2 and done.stderr.count("\n") == 1, (wrong, done)
+    measured = folder / "measured.csv"
+    measured.write_text("length_m,mass_kg\n1,8e-5\n1,8.1e-5\n1,-1\n")
+    for wrong in (["fit", folder / "none.csv"],
+                  ["fit", measured, "--out", folder / "refused.toml"]):
+        done = lab(*wrong)
+        assert done.returncode == 2 and done.stderr.count("\n") == 1, (wrong, done)
+    assert not (folder / "refused.toml").exists()
     for args in ([], ["fly"], ["run"], ["run", PAPER, "--nonsense"]):
         done = lab(*args)
         assert done.returncode == 2 and done.stderr.count("\n") == 1, (args, done)
@@ -70,6 +77,21 @@ def good_run(folder):
     assert summary["ticks"] == 500 and summary["finite"] and summary["nodes"] == 20
     assert summary["knot"] == {"type": "0_1", "handedness": "none"}
     assert summary["knot_history"] == [[0.0, "0_1"]]
+
+
+def fitted(folder):
+    measured, out = folder / "weigh.csv", folder / "thread.toml"
+    measured.write_text("# by hand\nlength_m,mass_kg\n1,7.9e-5\n1,8e-5\n2,16.2e-5\n")
+    done = lab("fit", measured, "--out", out)
+    assert done.returncode == 0, done
+    lines = out.read_text().splitlines()
+    assert lines[:2] == ["[suture]", 'model = "rod"'] and len(lines) == 3, lines
+    key, value = lines[2].split("#")[0].split("=")
+    assert key.strip() == "density_kg_per_m" and abs(float(value) - 8e-5) < 1e-8, lines
+    scene = folder / "mine.toml"
+    scene.write_text(out.read_text() + "\n[hands]\ncoupling_N_per_m = 100\n")
+    done = lab("run", scene, "--set", "suture.nodes=20", "--duration", "0.01", "--out", folder / "mine")
+    assert done.returncode == 0, done
 
 
 def failed_run(folder):
@@ -141,6 +163,7 @@ def teaching():
 with tempfile.TemporaryDirectory() as name:
     bad_input(pathlib.Path(name))
     good_run(pathlib.Path(name))
+    fitted(pathlib.Path(name))
     failed_run(pathlib.Path(name))
     validation(pathlib.Path(name))
 with tempfile.TemporaryDirectory() as name:

@@ -1,0 +1,31 @@
+#pragma once
+// Least squares: the material that explains a lab's measurements best.
+
+#include <optional>
+#include <vector>
+
+#include "host/lab/fit/measurement.hpp"
+
+namespace ligature::fit {
+
+struct Estimate {
+  double value = 0.0;
+  double half_95 = 0.0;  ///< half the width of the 95 % interval
+};
+/// How far the rows of a measurement lie from the fitted law, rms, in the unit of the law's figure.
+struct Misfit {
+  const Law* law;
+  const char* figure;
+  double rms;
+  std::size_t rows;
+};
+struct Fitted {
+  std::array<std::optional<Estimate>, kParameters> found;  ///< absent: no measurement tells
+  std::vector<Misfit> misfits;
+};
+
+/// Fits by Levenberg-Marquardt in the logarithms of the parameters. Each kind of figure is weighted by its own scatter.
+/// @pre check_enough(all)  @throws lab::Refusal (exit code 3) when the fit does not converge.
+[[nodiscard]] Fitted fit(const std::vector<Measurement>& all);
+
+}  // namespace ligature::fit
