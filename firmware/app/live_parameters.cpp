@@ -4,21 +4,24 @@ namespace ligature::app {
 namespace {
 
 constexpr double kFurthest = 4.0;
-constexpr double kMostFriction = 2.0;
+constexpr double kMostFriction = 10.0;    // the paper's Table I
+constexpr double kMostRodFriction = 2.0;  // no pair of real threads has more
 
 using Get = double (*)(const scene::Scene&);
 struct Row {
   const char *key, *name, *unit;
   Get get;
+  scene::Model first = scene::Model::kPaper1;  ///< the first of the paper's models on which it acts
 };
 
 constexpr Row kPaper[] = {
     {"suture.stretch_N", "stiffness, stretch", "N", [](const scene::Scene& s) { return s.suture.paper.stretch_N; }},
-    {"suture.bend", "stiffness, bending", "N m", [](const scene::Scene& s) { return s.suture.paper.bend; }},
+    {"suture.bend", "stiffness, bending", "N m", [](const scene::Scene& s) { return s.suture.paper.bend; },
+     scene::Model::kPaper2},
     {"suture.stretch_damping", "damping, stretch", "N s/m",
      [](const scene::Scene& s) { return s.suture.paper.stretch_damping; }},
     {"suture.bend_damping", "damping, bending", "N m s",
-     [](const scene::Scene& s) { return s.suture.paper.bend_damping; }},
+     [](const scene::Scene& s) { return s.suture.paper.bend_damping; }, scene::Model::kPaper3},
     {"suture.air_drag_per_s", "damping, air", "1/s",
      [](const scene::Scene& s) { return s.suture.paper.air_drag_per_s; }},
 };
@@ -43,11 +46,13 @@ std::vector<LiveParameter> live_parameters(const scene::Scene& file, const scene
   // The rod fixes at construction whether there is friction at all, so a scene without friction cannot get it while
   // running.
   if (has_contact && (!is_rod || file.contact.friction > 0.0))
-    list.push_back({"contact.friction", "friction", "", now.contact.friction, is_rod ? 0.01 : 0.0, kMostFriction});
+    list.push_back({"contact.friction", "friction", "", now.contact.friction, is_rod ? 0.01 : 0.0,
+                    is_rod ? kMostRodFriction : kMostFriction});
   if (is_rod)
     for (const Row& row : kRod) add(row);
   else
-    for (const Row& row : kPaper) add(row);
+    for (const Row& row : kPaper)
+      if (now.suture.model >= row.first) add(row);
   add(kForceScale);
   return list;
 }

@@ -13,8 +13,9 @@ struct LiveParameter {
   double value, lowest, highest;
 };
 
-/// Ranges: friction 0 .. 2; every other parameter from a quarter to four times the value in the scene file. Larger
-/// changes need another scene. Parameters that are zero in the file, or that its model lacks, are left out.
+/// Ranges: friction 0 .. 10 as in the paper's Table I, on a rod 0.01 .. 2; every other parameter from a quarter to four
+/// times the value in the scene file. Larger changes need another scene. Parameters that are zero in the file, or that
+/// its model lacks, are left out.
 /// @param file the scene as in its file
 /// @param now the scene as it runs
 [[nodiscard]] std::vector<LiveParameter> live_parameters(const scene::Scene& file, const scene::Scene& now);

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <thread>
 
 #include "firmware/app/rehearsal.hpp"
@@ -84,6 +85,33 @@ TEST_F(SceneDeskTest, OffersTheScenesBesideTheFirstAndParametersWithRanges) {
   }
 }
 
+TEST_F(SceneDeskTest, OffersOnlyWhatActsOnTheModelThatRuns) {
+  const auto keys = [this](const std::string& model) {
+    options.overrides = {"suture.model=" + model};
+    std::set<std::string> offered;
+    for (const auto& p : desk().offer().parameters) offered.insert(p.key);
+    return offered;
+  };
+  const std::set<std::string> first{"contact.friction", "suture.stretch_N", "suture.stretch_damping",
+                                    "hands.force_scale"};
+  auto wanted = first;
+  EXPECT_EQ(keys("paper-1"), wanted);
+  wanted.insert("suture.bend");
+  EXPECT_EQ(keys("paper-2"), wanted);
+  wanted.insert("suture.bend_damping");
+  for (const char* model : {"paper-3", "paper-4", "paper-5"}) EXPECT_EQ(keys(model), wanted) << model;
+  options.overrides = {"contact.solver=none"};
+  EXPECT_EQ(desk().offer().parameters[0].key, "suture.stretch_N") << "without contact there is no friction";
+}
+
+TEST_F(SceneDeskTest, FrictionMayBeRaisedToThePapers) {
+  auto d = desk();
+  ASSERT_FALSE(d.request(set("contact.friction", 10.0), true).has_value());
+  const auto o = outcome(d);
+  ASSERT_EQ(o.ack.accepted, 1) << o.ack.reason;
+  EXPECT_NE(o.changed->toml.find("# --set contact.friction=10"), std::string::npos) << o.changed->toml;
+}
+
 TEST_F(SceneDeskTest, LoadsAScene) {
   auto d = desk();
   ASSERT_FALSE(d.request(load("longer.toml", 7), false).has_value());
@@ -107,7 +135,7 @@ TEST_F(SceneDeskTest, RefusesWithTheReason) {
     EXPECT_NE(ack->reason.find("allowed"), std::string::npos);
   }
   EXPECT_NE(d.request(set("suture.nodes", 12.0), false)->reason.find("no such parameter"), std::string::npos);
-  EXPECT_NE(d.request(set("contact.friction", 2.1), false)->reason.find("allowed 0 .. 2"), std::string::npos);
+  EXPECT_NE(d.request(set("contact.friction", 10.1), false)->reason.find("allowed 0 .. 10"), std::string::npos);
   EXPECT_NE(d.request(set("contact.friction", std::nan("")), false)->reason.find("allowed"), std::string::npos);
 }
 
