@@ -32,6 +32,16 @@ void expect_met(const std::string& name, const std::set<std::string>& missed = {
   EXPECT_GT(judged, 0);
 }
 
+// knots and braids in an elastic thread
+TEST(Published, Trefoil) { expect_met("trefoil"); }
+TEST(Published, Braid) { expect_met("braid", {"n = 2: F over eq. (5)", "n = 2: l/n over 2 pi 12^(1/4) sqrt(h R)"}); }
+TEST(Published, HelicesRoundABentBackbone) {
+  std::set<std::string> missed;
+  for (const char* radius : {"100", "70", "50", "35", "30", "20", "15"})
+    missed.insert("backbone radius " + std::string(radius) + ": squared curvature of the rod");
+  expect_met("helices", missed);
+}
+
 // friction round a bar
 TEST(Published, Capstan) {
   expect_met("capstan", {"peg, mu = 0.3, 1.00 turns: T_hi/T_lo"});

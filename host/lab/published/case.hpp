@@ -44,6 +44,9 @@ struct Case {
 [[nodiscard]] bool is_judged(const Finding& f) noexcept;
 
 // The cases, one file each.
+Result trefoil(const Subject&);
+Result braid(const Subject&);
+Result helices(const Subject&);
 Result capstan(const Subject&);
 
 }  // namespace ligature::published

@@ -7,9 +7,16 @@ namespace ligature::published {
 namespace {
 
 constexpr Case kCases[] = {
+    // knots and braids in an elastic thread
+    {"trefoil", "tension of an overhand knot that slides, friction 0.05",
+     "Audoly, Clauvelin, Neukirch, PRL 99 (2007), constant as in dismech-newton", "sqrt(h / R)", "F h^2 / B", trefoil},
+    {"braid", "overhand knots of n turns that slide, friction 0.119", "Jawed, Dieleman, Audoly, Reis, PRL 115 (2015)",
+     "turns n", "n^2 F h^2 / (mu B)", braid},
+    {"helices", "squared curvature of two strands round a bent backbone", "StructuresComp/surgeons-knot",
+     "curvature of the backbone over k", "<delta''^2>, relative to a straight backbone", helices},
     // friction round a bar
-    {"capstan", "T_hi = T_lo exp(mu theta) round a peg and round a drum that turns", "Euler (1769), Eytelwein (1808)",
-     "mu theta", "T_hi / T_lo", capstan},
+    {"capstan", "T_hi = T_lo exp(mu theta) round a peg", "Euler (1769), Eytelwein (1808)", "mu theta", "T_hi / T_lo",
+     capstan},
 };
 
 }  // namespace

@@ -1,19 +1,24 @@
 #pragma once
 // Builds a loose overhand knot in any thread, and pulls it.
 
+#include "firmware/physics/rod/rod_simulation.hpp"
 #include "host/lab/validate/specimen.hpp"
 
 namespace ligature::validate {
 
 /// The curve of a loose overhand knot: tails along -x and +x, above them one loop of length 2 pi loop_m, and along its
-/// foot three half turns of the two strands about each other. The excess length is close to 2 pi loop_m.
+/// foot 2 turns + 1 half turns of the two strands about each other. The excess length is close to 2 pi loop_m.
 struct OverhandCurve {
   double length_m = 0.0, radius_m = 0.0, loop_m = 0.0;
-  double half_m = 0.0;  ///< half the length of the foot
+  double half_m = 0.0;              ///< half the length of the foot
+  double aside_m = 1.2 * radius_m;  ///< distance of each strand from the middle of the foot
+  int turns = 1;                    ///< 1: overhand knot; n: the strands make 2 n + 1 half turns about each other
 
   /// @param finest_m length of the thread's segments in the foot. The foot is made long enough for a polygon of such
   /// segments to contain the knot.
   OverhandCurve(double length, double radius, double loop, double finest_m);
+  /// Makes the foot long enough for segments of that length.
+  void suit(double finest_m);
   [[nodiscard]] Vec3 at(double along) const;
   /// Distances along the thread at which the middle of the foot is passed first and last, m.
   [[nodiscard]] std::array<double, 2> crossings_m() const;
@@ -21,6 +26,19 @@ struct OverhandCurve {
 
 /// Lays the scene's thread along that curve, nodes equally spaced.
 void lay_overhand(scene::Scene& scene, double loop_m);
+
+/// Bending stiffness of the suture of scenes/suture-3-0.toml, N m^2.
+inline constexpr double kOverhandB_N_m2 = 4e-7;
+
+/// A thread of the suture's radius with another bending stiffness, laid as an overhand knot, with air drag. The loop's
+/// excess length (thread length less the distance of the ends) is 2 pi loop_m.
+[[nodiscard]] scene::Scene knotted(const Subject& subject, double loop_m, double EI_N_m2, double friction);
+
+/// The scene's thread laid along the curve, with its nodes concentrated where the two strands wind round each other
+/// (the braid), and where they do after a motion of travel_m. Elsewhere a
+/// segment is longer by growth times its distance from there.
+[[nodiscard]] physics::rod::RodSimulation gathered_knot(scene::Scene scene, OverhandCurve curve, double travel_m,
+                                                        double growth = 0.25);
 
 /// Both hands hold the ends; tick() moves them apart along x.
 template <class Thread>  // Thread: physics::Simulation, or a class with the same interface

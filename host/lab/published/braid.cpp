@@ -1,0 +1,64 @@
+// Overhand knots of n full turns: two strands braided over a length l, below an elastic loop, drawn tight with
+// friction.
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "host/lab/published/sliding_knot.hpp"
+
+namespace ligature::published {
+namespace {
+
+constexpr double kPi = std::numbers::pi, kFriction = 0.119;
+constexpr double kShare =
+    0.005;  // n^2 h / e of all knots: far from tight, and sqrt(h / R) 0.13 .. 0.065 for n = 2 .. 4
+
+/// The theory at a given n^2 h / e; lengths in R, the loop's radius where it leaves the braid.
+struct Theory {
+  double braid = 0.0, loop = 0.0;  ///< x = l / R and lambda / R
+  /// n^2 F h^2 / (mu B)
+  [[nodiscard]] double force() const { return std::pow(braid, 3) / (96.0 * std::sqrt(3.0) * kPi * kPi); }
+};
+
+/// Solves n^2 h / e = g / (8 sqrt(3) pi^2), g = x^2 / (x + lambda / R), for the loop's elliptic modulus, by bisection.
+Theory theory_at(double share) {
+  Theory found;
+  double low = 1e-4, high = 1.0 - 1e-12;
+  for (int k = 0; k < 100; ++k) {
+    const double modulus = 0.5 * (low + high), m = modulus * modulus;
+    const double K = std::comp_ellint_1(modulus), E = std::comp_ellint_2(modulus);
+    found = {8.0 * (K - E) / m - 4.0 * K, 4.0 * K};
+    const double g = found.braid * found.braid / (found.braid + found.loop);
+    (g < 8.0 * std::sqrt(3.0) * kPi * kPi * share ? low : high) = modulus;
+  }
+  return found;
+}
+
+/// A judged ratio for n >= 2; for n = 1, to which the theory does not apply, only the figure.
+Finding ratio(int n, const std::string& what, double value) {
+  const std::string text = "n = " + std::to_string(n) + ": " + what;
+  return n >= 2 ? validate::relative(text, 1.0, value, 0.10) : reported(text, value, "");
+}
+
+}  // namespace
+
+Result braid(const Subject& subject) {
+  Result result;
+  const Theory theory = theory_at(kShare);
+  for (const int n : subject.quick ? std::vector{2} : std::vector{1, 2, 3, 4}) {
+    const double excess = n * n / kShare, R_laid = excess / (theory.braid + theory.loop);
+    const auto knot = draw_knot(subject, {n, kFriction, excess, theory.braid * R_laid, 150 + 50 * n});
+    const double k = knot.wave_number, R = 1.0 / knot.exit_curvature;
+    const double from_radius = 1.0 / std::sqrt(std::sqrt(12.0) * R);
+    const double force = knot.tension * n * n / kFriction;
+    result.findings.push_back(ratio(n, "F over eq. (5)", force / theory.force()));
+    result.findings.push_back(ratio(n, "l/n over 2 pi 12^(1/4) sqrt(h R)", from_radius / k));
+    result.findings.push_back(
+        ratio(n, "F/(B k^2) over mu 2 pi n h k", knot.tension / (k * k * kFriction * 2.0 * kPi * n * k)));
+    result.points.push_back({"n^2 F h^2 / (mu B)", double(n), theory.force(), force});
+  }
+  return result;
+}
+
+}  // namespace ligature::published
