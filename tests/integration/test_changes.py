@@ -20,9 +20,9 @@ class Changes(unittest.TestCase):
         with Rig(extra=("--rt=warn", "--set", "hands.max_force_N=2.5")) as rig:
             rig.wait_for(lambda r: r.listener.ticks and r.listener.ticks[-1].state >= STATE_ENGAGE, "arming")
             self.assertEqual(send("set", "contact.friction", "0.5")[0], 0)
-            code, said = send("set", "contact.friction", "9")
+            code, said = send("set", "contact.friction", "11")
             self.assertEqual(code, 3)
-            self.assertIn("found 9, allowed 0 .. 2", said)
+            self.assertIn("found 11, allowed 0 .. 10", said)
             code, said = send("load-scene", "desk.toml")
             self.assertEqual(code, 3)
             self.assertIn("disarm first", said)
