@@ -6,6 +6,7 @@
 #include "firmware/control/state_machine.hpp"
 #include "firmware/rt/period.hpp"
 #include "firmware/telemetry/messages.hpp"
+#include "host/lab/rig/virtual_rig.hpp"
 #include "host/messages.hpp"
 
 namespace ligature::lab {
@@ -98,6 +99,10 @@ void Recording::write_status() {
   m.armed = last_.armed ? 1 : 0;
   m.admitted = 1;
   write(host::kStatusChannel, m);
+}
+
+void VirtualRig::record(const std::string& path) {
+  recording_ = std::make_unique<Recording>(path, setup.scene, setup.scene_file, setup.scene_toml);
 }
 
 }  // namespace ligature::lab

@@ -7,13 +7,14 @@
 
 #include "firmware/rt/tick_record.hpp"
 #include "firmware/telemetry/event_finder.hpp"
+#include "host/lab/rig/rig_log.hpp"
 #include "host/log_writer.hpp"
 #include "ligature_msg/tick_batch_t.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::lab {
 
-class Recording {
+class Recording final : public RigLog {
  public:
   static constexpr std::size_t kTicksPerBatch = 20;
   static constexpr std::int64_t kShapePeriod_ticks = 16, kStatusPeriod_ticks = 100;  ///< 62 Hz and 10 Hz
@@ -22,13 +23,11 @@ class Recording {
   /// @param scene_toml as made by scene::recorded_text().
   Recording(const std::string& path, const scene::Scene& scene, std::string scene_file, std::string scene_toml);
 
-  /// @throws host::RunFailed when writing fails (disk full).
-  void take(const rt::TickRecord& record);
-  void take(const rt::ThreadSnapshot& shape);
-  /// Call when another scene or other parameters are in force from tick `first_tick` on.
-  void scene_changed(const scene::Scene& scene, std::string scene_toml, std::int64_t first_tick);
+  void take(const rt::TickRecord& record) override;
+  void take(const rt::ThreadSnapshot& shape) override;
+  void scene_changed(const scene::Scene& scene, std::string scene_toml, std::int64_t first_tick) override;
   /// Writes the incomplete batch, the last shape and a last status.
-  void close();
+  void close() override;
 
  private:
   template <class Message>

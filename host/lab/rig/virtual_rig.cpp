@@ -79,10 +79,6 @@ VirtualRig::VirtualRig(RigSetup s, Intentions intentions)
   right.lose_frames(setup.frame_loss, 2 * setup.seed + 1);
 }
 
-void VirtualRig::record(const std::string& path) {
-  recording_ = std::make_unique<Recording>(path, setup.scene, setup.scene_file, setup.scene_toml);
-}
-
 std::optional<std::string> VirtualRig::run(std::int64_t ticks, bool end_when_done) {
   const FlushedDenormals like_the_firmware;
   end_when_done_ = end_when_done;

@@ -19,7 +19,7 @@
 #include "firmware/platform/can_master.hpp"
 #include "firmware/platform/rig_bus.hpp"
 #include "host/lab/rig/device_bus.hpp"
-#include "host/lab/rig/recording.hpp"
+#include "host/lab/rig/rig_log.hpp"
 #include "host/lab/rig/seeing_operator.hpp"
 #include "host/lab/rig/true_tip.hpp"
 #include "host/lab/rig/virtual_thread.hpp"
@@ -124,7 +124,7 @@ class VirtualRig {
   void look_at_drives();
 
   SeeingOperator* seeing_ = nullptr;
-  std::unique_ptr<Recording> recording_;
+  std::unique_ptr<RigLog> recording_;
   std::exception_ptr unwritten_;
   bool end_when_done_ = false;
 };

@@ -11,6 +11,7 @@
 #include "host/lab/rerun/rerun.hpp"
 #include "host/lab/rerun/rerun_files.hpp"
 #include "host/log_reader.hpp"
+#include "host/log_writer.hpp"
 #include "host/messages.hpp"
 #include "protocol/scene/recorded_scene.hpp"
 #include "protocol/scene/text_file.hpp"
