@@ -78,6 +78,8 @@ def lines_of(overrides: Overrides | None) -> list[str]:
 class Scene(_core.Scene):
     """A scene, read and checked by the same reader as in the programs (protocol/scene/scene_file.hpp)."""
 
+    source: tuple[str, str | None, list[str]] | None = None  # path, text unless it is that file's, overrides
+
     @classmethod
     def load(cls, path: Path, overrides: Overrides | None = None) -> Self:
         """Reads a scene file (TOML; unknown keys are errors) and applies the overrides.
@@ -85,12 +87,30 @@ class Scene(_core.Scene):
         overrides: {"suture.nodes": 35, "contact.friction": 0.2}, or lines such as "suture.nodes=35" (as for --set).
         Raises Refusal with the programs' message: file and line, key, what was found, what is allowed.
         """
-        return cls(path_of(path), lines_of(overrides))
+        return cls._made(path_of(path), None, lines_of(overrides))
 
     @classmethod
     def parse(cls, text: str, overrides: Overrides | None = None, path: Path = "scene.toml") -> Self:
         """As load(), from a text. path: file name for messages; a polyline file of the scene is searched beside it."""
-        return cls(path_of(path), lines_of(overrides), text)
+        return cls._made(path_of(path), text, lines_of(overrides))
+
+    @classmethod
+    def _made(cls, path: str, text: str | None, overrides: list[str]) -> Self:
+        made = cls(path, overrides, text)
+        made.source = (path, text, overrides)
+        return made
+
+    def source_file(self, folder: os.PathLike[str]) -> tuple[str, list[str]]:
+        """A file for a program's --scene, written into `folder` if this scene is a text, and overrides for --set."""
+        if self.source is None:
+            raise _core.Refusal(f"{self.path}: found a scene without a file, allowed one of Scene.load or Scene.parse")
+        path, text, overrides = self.source
+        if text is None:
+            return os.path.abspath(path), overrides
+        file = os.path.join(folder, os.path.basename(path) or "scene.toml")
+        with open(file, "w", encoding="utf-8") as out:
+            out.write(text)
+        return file, overrides
 
 
 class Script(_core.Script):

@@ -19,6 +19,8 @@ class Run:
                "potential_J", "max_stretch", "min_gap_m", "contacts")
 
     def __init__(self, run: _core._Run) -> None:
+        if not isinstance(run, _core._Run):
+            raise TypeError(f"Run: found a {type(run).__name__}, allowed what Simulation.run and rollout make")
         self.trace: np.ndarray = run.trace  # ticks x 12: COLUMNS, as in trace.csv of `ligature-lab run`
         self.shape_t_s: np.ndarray = run.shape_t_s  # k times, s: at the start, every shape_every_s, at the end
         self.shapes: np.ndarray = run.shapes  # k x nodes x 3, m

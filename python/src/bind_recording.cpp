@@ -19,22 +19,6 @@ Recorded read(const std::string& path) {
   return recorded;
 }
 
-/// Moves a column's data into a NumPy array without a copy.
-template <class T>
-auto taken(std::vector<T>& values) {
-  const std::size_t n = values.size();
-  return array_of(std::move(values), {n});
-}
-
-nb::dict ticks(Recorded& r) {
-  nb::dict columns;
-  columns["t_s"] = taken(r.t_s);
-  columns["session"] = taken(r.session);
-  for (std::size_t i = 0; i < r.columns.size(); ++i)
-    std::visit([&](auto& values) { columns[host::tick_columns()[i].name.c_str()] = taken(values); }, r.columns[i]);
-  return columns;
-}
-
 nb::dict shapes(Recorded& r) {
   nb::dict columns;
   columns["t_s"] = taken(r.shape_t_s);
@@ -73,7 +57,7 @@ nb::dict meanings() {
 
 void bind_recording(nb::module_& module) {
   nb::class_<Recorded>(module, "_Recorded")
-      .def("ticks", &ticks)
+      .def("ticks", &ticks_of)
       .def("shapes", &shapes)
       .def("events", &events)
       .def("scenes", &scenes)

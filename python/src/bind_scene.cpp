@@ -84,7 +84,13 @@ void bind_scene(nb::module_& module) {
       .def_prop_ro(
           "friction", [](const Scene& s) { return s.scene.contact.friction; }, "Kinetic Coulomb coefficient.")
       .def_prop_ro(
-          "tick_s", [](const Scene& s) { return s.scene.time.tick_s; }, "What a tick simulates, s.");
+          "tick_s", [](const Scene& s) { return s.scene.time.tick_s; }, "What a tick simulates, s.")
+      .def_prop_ro(
+          "workspace_scale", [](const Scene& s) { return s.scene.hands.workspace_scale; },
+          "World metres for each metre of a device's motion.")
+      .def_prop_ro(
+          "workspace_origin_m", [](const Scene& s) { return s.scene.hands.workspace_origin_m; },
+          "x, y, z, m: where a device's home pose is in the world.");
 
   nb::class_<scene::GripperScript>(module, "Script", "What two hands do over time: see Script.load, Script.of_keys.")
       .def(

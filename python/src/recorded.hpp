@@ -9,6 +9,7 @@
 #include "host/export_sink.hpp"
 #include "host/recording_reader.hpp"
 #include "host/tick_columns.hpp"
+#include "python/src/arrays.hpp"
 
 namespace ligature::python {
 
@@ -72,5 +73,22 @@ struct Recorded final : host::ExportSink {
   std::vector<Event> events;
   std::vector<SceneText> scenes;
 };
+
+/// Moves a column's data into a NumPy array without a copy.
+template <class T>
+auto taken(std::vector<T>& values) {
+  const std::size_t n = values.size();
+  return array_of(std::move(values), {n});
+}
+
+/// All tick columns, which are empty afterwards.
+inline nb::dict ticks_of(Recorded& r) {
+  nb::dict columns;
+  columns["t_s"] = taken(r.t_s);
+  columns["session"] = taken(r.session);
+  for (std::size_t i = 0; i < r.columns.size(); ++i)
+    std::visit([&](auto& values) { columns[host::tick_columns()[i].name.c_str()] = taken(values); }, r.columns[i]);
+  return columns;
+}
 
 }  // namespace ligature::python

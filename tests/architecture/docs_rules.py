@@ -9,7 +9,7 @@ import pathlib
 import re
 import sys
 
-WIDEST, WRAPPED = 120, re.compile(r"README\.md|docs/(?!fault-matrix)")  # fault matrices are printed by tests
+WIDEST, WRAPPED = 120, re.compile(r"README\.md|docs/(?!fault-matrix|python-api)")  # fault matrices and the Python reference are printed
 SOURCES = {".cpp", ".hpp", ".h", ".py", ".js", ".mjs", ".css", ".html", ".toml", ".lcm", ".cmake", ".txt", ".csv", ".json", ".md", ".in", ""}
 SKIPPED = {"build", "out", ".git", "node_modules", "__pycache__"}
 # Files that exist only at run time, after a build, or on another machine: pages may name them although the tree has

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "host/knot/recognise.hpp"
-#include "protocol/scene/fault_script.hpp"
 #include "tests/integration/virtual_rig/simulated_rig.hpp"
 
 namespace ligature {
@@ -97,25 +96,6 @@ TEST(VirtualRig, ARunThatEndsInForceLeavesEveryDriveOff) {
     EXPECT_EQ(bus->device.torque_permille(), (std::array<std::int16_t, 3>{}));
     for (const auto& drive : bus->device.drives()) EXPECT_FALSE(can::cia402::may_produce_torque(drive.state()));
   }
-}
-
-/// A simulated operator releases the dead-man while the drives are off, so force can return after the fault.
-TEST(VirtualRig, AFaultIsLeftByResetArmAndANewPress) {
-  SimulatedRig rig(paper(), overhand());
-  rig.left.faults.emplace(
-      // A drive sends an emergency message at 1.5 s.
-      std::get<scene::FaultScript>(scene::load_fault_script(kScenes + "faults/emergency.toml")));
-  rig.each_tick = [&] {
-    if (rig.cycle.periods() == 1700) rig.outlets->commands.push({1, rt::CommandKind::kResetFault});
-    if (rig.cycle.periods() == 2100) rig.outlets->commands.push({2, rt::CommandKind::kArm});
-  };
-  ASSERT_EQ(rig.run(3000), std::nullopt);
-  EXPECT_EQ(rig.records[1600].fault, 12);
-  for (std::size_t i = 1520; i < 2100; ++i) ASSERT_EQ(rig.records[i].gain[0] + rig.records[i].gain[1], 0.0) << i;
-  EXPECT_FALSE(rig.records[1750].dead_man[0] || rig.records[1750].dead_man[1]);
-  EXPECT_EQ(rig.records[2900].fault, 0);
-  EXPECT_EQ(rig.records[2900].gain[0], 1.0);
-  EXPECT_EQ(rig.records[2900].gain[1], 1.0);
 }
 
 }  // namespace
