@@ -48,6 +48,12 @@ TEST(Published, Capstan) {
   expect_met("capstan", {}, scene::Accuracy::kFine);
 }
 
+TEST(Published, CapstanPulledAlongItsAxis) {
+  const std::string at = "theta = 4.00 pi: F / (mu T) at T R^2 / B = ";
+  expect_met("capstan-axis", {at + "1", at + "9"});
+  expect_met("capstan-axis", {at + "1"}, scene::Accuracy::kFine);
+}
+
 TEST(Published, EveryCaseHasItsOwnNameAndASource) {
   std::set<std::string> names;
   for (const auto& c : all_cases()) {

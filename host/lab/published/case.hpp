@@ -48,5 +48,6 @@ Result trefoil(const Subject&);
 Result braid(const Subject&);
 Result helices(const Subject&);
 Result capstan(const Subject&);
+Result capstan_axis(const Subject&);
 
 }  // namespace ligature::published
