@@ -2,12 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <memory>
-#include <system_error>
 
 #include "host/lab/experiments/experiment.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/run_files.hpp"
+#include "host/lab/scenes_folder.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -38,17 +39,6 @@ Exit: 0 all claims hold; 2 usage or scenes refused; 3 a claim fails.
 
 Example
   ligature-lab experiment knotting --out out/knotting)";
-
-/// The scenes folder: as given, else ./scenes, else the one installed beside the program, else that of the source tree.
-fs::path find_scenes(const std::string& given) {
-  std::error_code none;
-  const auto installed = fs::read_symlink("/proc/self/exe", none).parent_path().parent_path() / "share/ligature/scenes";
-  for (const auto& folder : {fs::path(given), fs::path("scenes"), installed, fs::path(LIGATURE_SCENES_DIR)}) {
-    if (!folder.empty() && fs::exists(folder / "paper.toml", none)) return folder;
-    if (!given.empty()) break;
-  }
-  throw Refusal("--scenes " + given + ": found no paper.toml, allowed a folder of scenes");
-}
 
 struct Arguments {
   std::string name = "all";

@@ -11,6 +11,7 @@
 #include "host/lab/outcome.hpp"
 #include "host/lab/pareto_command.hpp"
 #include "host/lab/published/published_command.hpp"
+#include "host/lab/regress/regress_command.hpp"
 #include "host/lab/rerun/rerun_command.hpp"
 #include "host/lab/run_command.hpp"
 #include "host/lab/tie/play_command.hpp"
@@ -52,6 +53,7 @@ int main(int argc, char** argv) {
   add_rerun_command(app, exit_code);
   add_validate_command(app, exit_code);
   add_published_command(app, exit_code);
+  add_regress_command(app, exit_code);
   add_pareto_command(app, exit_code);
   add_fit_command(app, exit_code);
   if (const auto unknown = ligature::console::unknown_command(app, argc, argv); !unknown.empty()) {
