@@ -16,7 +16,7 @@ HEAD = """# Python reference
 Every public name of the package `ligature`, with shapes, units and errors. [Python](python.md) explains how they are used
 together. This page is made from the docstrings of the package (`scripts/python_api.py`).
 """
-MODULES = ("ligature", "ligature.rig", "ligature.gym")
+MODULES = ("ligature", "ligature.rig", "ligature.gym", "ligature.study")
 
 
 def told(thing):
@@ -46,11 +46,13 @@ def members(cls, told_elsewhere):
 
 
 def attributes(cls):
-    """Attributes that are set in __init__, with the comments beside them as the source has them."""
+    """Attributes that are set in __init__, or fields of a named tuple, with the comments beside them as the source has them."""
     try:
         source = inspect.getsource(cls)
     except (OSError, TypeError):
         return {}
+    if issubclass(cls, tuple):
+        return dict(re.findall(r"^    ([a-z]\w*): .*?  # (.+)$", source, re.M))
     return dict(re.findall(r"^        self\.([a-z]\w*)(?:: [^=]+)? = .*?  # (.+)$", source, re.M))
 
 
@@ -61,7 +63,7 @@ def of_class(name, cls, told_elsewhere, missing):
         yield f"\n**`.{attribute}`**: {meaning}\n"
     for member, value in members(cls, told_elsewhere).items():
         value = value.__func__ if isinstance(value, (classmethod, staticmethod)) else value
-        if isinstance(value, (str, tuple, type(None))) or not (callable(value) or hasattr(value, "__get__")):
+        if type(value).__name__ == "_tuplegetter" or isinstance(value, (str, tuple, type(None))) or not (callable(value) or hasattr(value, "__get__")):
             continue
         shown = f".{signature(member, value)}" if callable(value) else f".{member}"
         yield f"\n**`{shown}`**\n\n{told(value) or missing(f'{name}.{member}')}\n"

@@ -20,15 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string find_python() {
-  const char* chosen = getenv("LIGATURE_PYTHON");
-  std::string python = chosen && *chosen ? chosen : LIGATURE_DEFAULT_PYTHON;
-  if (access(python.c_str(), X_OK) == 0) return python;
-  throw host::BadInput("no Python at " + python +
-                       "; remedy: run scripts/setup, or set LIGATURE_PYTHON to one that has the packages of "
-                       "requirements.txt");
-}
-
 std::string find_script(const std::string& name, const fs::path& source_folder) {
   std::error_code none;
   const fs::path installed =
@@ -83,6 +74,15 @@ std::string last_line(const std::string& path) {
 }
 
 }  // namespace
+
+std::string find_python() {
+  const char* chosen = getenv("LIGATURE_PYTHON");
+  std::string python = chosen && *chosen ? chosen : LIGATURE_DEFAULT_PYTHON;
+  if (access(python.c_str(), X_OK) == 0) return python;
+  throw host::BadInput("no Python at " + python +
+                       "; remedy: run scripts/setup, or set LIGATURE_PYTHON to one that has the packages of "
+                       "requirements.txt");
+}
 
 ScratchFolder::ScratchFolder() {
   std::string name = (fs::temp_directory_path() / "ligature-XXXXXX").string();

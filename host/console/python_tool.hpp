@@ -19,11 +19,13 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
+/// Path of the Python of scripts/setup, or of LIGATURE_PYTHON. @throws BadInput when there is none.
+[[nodiscard]] std::string find_python();
+
 /// One of this project's Python scripts: beside the installed program, else in the source folder it was built from.
 class PythonTool {
  public:
-  /// @throws BadInput when neither the virtual environment of scripts/setup nor LIGATURE_PYTHON gives a Python;
-  /// RunFailed when the script is missing.
+  /// @throws BadInput as find_python(); RunFailed when the script is missing.
   PythonTool(const std::string& script, const std::filesystem::path& source_folder);
 
   /// Runs the script without a shell and waits; its stderr goes to the file `complaints`. @throws RunFailed with the

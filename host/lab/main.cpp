@@ -14,6 +14,7 @@
 #include "host/lab/regress/regress_command.hpp"
 #include "host/lab/rerun/rerun_command.hpp"
 #include "host/lab/run_command.hpp"
+#include "host/lab/study_command.hpp"
 #include "host/lab/tie/play_command.hpp"
 #include "host/lab/tie/tie_command.hpp"
 #include "host/lab/validate_command.hpp"
@@ -56,6 +57,7 @@ int main(int argc, char** argv) {
   add_regress_command(app, exit_code);
   add_pareto_command(app, exit_code);
   add_fit_command(app, exit_code);
+  add_study_command(app);
   if (const auto unknown = ligature::console::unknown_command(app, argc, argv); !unknown.empty()) {
     complain(unknown);
     return kBadInput;

@@ -64,7 +64,10 @@ void add_motion(nb::class_<Sim>& type) {
           "ticks", [](Sim& s) { return s.idle().ticks(); }, "Ticks since the start or the last reset.")
       .def_prop_ro(
           "time_s", [](Sim& s) { return clock_of(s.scene().scene.time.tick_s).time_s(s.idle().ticks()); },
-          "Their time, s.");
+          "Their time, s.")
+      .def_prop_ro(
+          "budget", [](Sim& s) { return s.idle().simulation().work(); },
+          "Most work on contact in a tick, instructions; 0: the model has no budget.");
 }
 
 void add_shape(nb::class_<Sim>& type) {

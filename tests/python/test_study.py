@@ -1,0 +1,202 @@
+"""Studies: designs, refusals, rows, failed runs, resumption, and the jobs that Slurm would get."""
+
+import json
+import math
+import random
+
+import pytest
+
+import ligature
+from conftest import BIN, SCENES, SOURCE, run_program
+from ligature.study import Study, rows
+from ligature.study.cluster import slurm_cluster
+from ligature.study.progress import Progress, span
+from ligature.study.store import Store
+from ligature.study.work import execute
+from studies import SEED, called, comparable, stored, study_file
+
+RUN = '[task]\nkind = "run"\nscene = "paper.toml"\nduration_s = 0.02\n'
+BAD = [
+    ("seeds = ", ": Invalid value"), ("sedes = 3\n" + RUN, "key 'sedes': found no such key, allowed seeds"),
+    ("", "key 'task': found no table, allowed [task]"), ('[task]\nkind = "jump"\n', "key 'task.kind': found 'jump', allowed one of run"),
+    ('[task]\nkind = "pull"\nscene = "paper.toml"\n', "key 'task.speed_m_per_s': found no value"),
+    ('[task]\nkind = "pull"\nscene = "paper.toml"\nspeed_m_per_s = -1\n', "found -1, allowed a number 0.0001 .. 10"),
+    ('[task]\nkind = "run"\nscene = "nowhere.toml"\n', "nowhere.toml: found no such file"),
+    (RUN + "sped = 3\n", "key 'task.sped': found no such key"),
+    (RUN + "[parameters]\ncontact.friction = [0.1, -1]\n", "contact.friction"),
+    (RUN + "[parameters]\nsuture.nodes = {from = 10, to = 12, step = 1.5}\n", "suture.nodes"),
+    (RUN + "[parameters]\ncontact.friction = 0.3\n", "key 'parameters.contact.friction': found 0.3, allowed a list"),
+    (RUN + "[parameters]\ncontact.friction = [0.1, 0.1]\n", "allowed different values"),
+    (RUN + "[parameters]\ncontact.friction = {from = 0.3, to = 0.1, count = 3}\n", "found [0.3, 0.1], allowed a smaller and a larger"),
+    (RUN + "[parameters]\ncontact.friction = {from = 0.1, to = 0.3}\n", "either 'step' or 'count'"),
+    (RUN + "[parameters]\ncontact.friction = {from = 0, to = 0.3, count = 3, log = true}\n", "both above 0"),
+    (RUN + "[parameters]\ncontact.friction = {from = 0, to = 1e9, step = 1e-3}\n", "at most 1000000 values"),
+    (RUN + "[parameters]\ncontact.friction = {latin = [0.1, 0.3]}\n", "key 'latin': found no table, allowed 'points'"),
+    (RUN + "[latin]\npoints = 4\n", "key 'latin'"), (RUN + "[parameters]\nstatus = [1]\n", "key 'parameters.status': found 'a column that each row has', allowed another name"),
+    ("seeds = [1, 1]\n" + RUN, "key 'seeds': found [1, 1]"), ('seeds = "9-1"\n' + RUN, "key 'seeds': found '9-1'"),
+    ("seeds = [1.5]\n" + RUN, "key 'seeds': found 1.5, allowed an integer"), ('seeds = "1-2000000"\n' + RUN, "found '2000000 runs'"),
+    ('measures = ["speed"]\n' + RUN, "key 'measures': found 'speed', allowed one of knot"),
+    ('[task]\nkind = "no_such_module:f"\n', "found no module 'no_such_module'"), ('[task]\nkind = "math:nothing"\n', "found no function 'nothing'"),
+    (RUN + '[[plot]]\nkind = "map"\nx = "seed"\ny = "width"\n', "key 'plot.y': found 'width', allowed one of run"),
+    (RUN + '[[plot]]\nkind = "pie"\n', "key 'plot.kind': found 'pie'"),
+    (RUN + '[[plot]]\nkind = "front"\ncost = "cpu_s"\nerror = "kinetic_J"\nname = "a/b"\n', "key 'plot.name'"),
+]
+
+
+def study_of(text, tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text(text)
+    return Study.load(path)
+
+
+@pytest.mark.parametrize("text,says", BAD, ids=range(len(BAD)))
+def test_refusals(text, says, tmp_path):
+    with pytest.raises(ligature.Refusal) as caught:
+        study_of(text, tmp_path)
+    assert says in str(caught.value) and "\n" not in str(caught.value), str(caught.value)
+    assert str(caught.value).startswith(str(tmp_path / "own.toml"))
+
+
+def test_the_command_refuses_before_it_writes(tmp_path):
+    (tmp_path / "own.toml").write_text("seeds = 1\n")
+    out = tmp_path / "out"
+    for words in ((tmp_path / "own.toml", "--out", out), (tmp_path / "missing.toml", "--out", out), (tmp_path / "own.toml",),
+                  (tmp_path / "own.toml", "--out", out, "--workers", 0)):
+        done = called(*words)
+        assert done.returncode == 2 and done.stderr.count("\n") == 1 and not out.exists(), done
+    # ligature-lab becomes the same program, and says how to install what is missing.
+    done = run_program("ligature-lab", "study", tmp_path / "missing.toml", "--out", out)
+    assert done.returncode == 2 and "missing.toml: No such file" in done.stderr and not out.exists(), done
+
+
+def test_designs(tmp_path):
+    study = study_of('seeds = "7-9"\n' + RUN + "[parameters]\ncontact.friction = {from = 0.1, to = 0.5, step = 0.1}\n"
+                     "suture.nodes = [20, 10]\nsuture.bend = {from = 1, to = 100, count = 3, log = true}\n", tmp_path)
+    assert len(study) == 5 * 2 * 3 * 3
+    runs = [study.design[run] for run in range(len(study))]
+    assert len({repr(each) for each in runs}) == len(study) and runs[0] == ({"contact.friction": 0.1, "suture.nodes": 20, "suture.bend": 1.0}, 7)
+    assert [runs[18 * i][0]["contact.friction"] for i in range(5)] == [0.1, 0.2, 0.3, 0.4, 0.5]
+    assert {each[0]["suture.bend"] for each in runs} == {1.0, 10.0, 100.0}
+
+
+def test_latin_hypercube(tmp_path):
+    seed = random.Random(SEED).randrange(10**6)
+    study = study_of(RUN + "[parameters]\ncontact.friction = {latin = [0.0, 0.5]}\nsuture.bend = {latin = [1, 100], log = true}\n"
+                     f"[latin]\npoints = 20\nseed = {seed}\n", tmp_path)
+    points = [study.design[run][0] for run in range(len(study))]
+    parts = [sorted(int(40 * each["contact.friction"]) for each in points), sorted(int(10 * math.log10(each["suture.bend"])) for each in points)]
+    assert parts == [list(range(20)), list(range(20))]
+    assert len({(int(40 * each["contact.friction"]) - int(10 * math.log10(each["suture.bend"]))) for each in points}) > 2  # shuffled
+
+
+def test_rows_of_runs(tmp_path):
+    """A study's numbers are those of the package, and each row says where it comes from."""
+    study = study_of(RUN + "suture.nodes = 12\n[parameters]\nworld.gravity_m_per_s2 = [[0, 0, -9.8], [0, 0, -1.6]]\n", tmp_path)
+    assert study.run(tmp_path / "out", workers=1, progress=None) == (2, 0, 0)
+    found = rows(tmp_path / "out").to_pylist()
+    scene = ligature.Scene.load(ligature.SCENES / "paper.toml", {"suture.nodes": 12, "world.gravity_m_per_s2": [0, 0, -1.6]})
+    assert found[1]["kinetic_J"] == ligature.Simulation(scene).run(duration_s=0.02)["kinetic_J"][-1]
+    assert found[1]["world.gravity_m_per_s2"] == "[0, 0, -1.6]" and found[0]["scene_hash"] != found[1]["scene_hash"]
+    for row in found:
+        assert row["status"] == "done" and len(row["scene_hash"]) == 16 and row["machine"] and row["cpu_s"] > 0 and row["ended"] > "2026"
+        assert row["commit"] == "unknown" or len(row["commit"].removesuffix("-changed")) == 40
+    with pytest.raises(ligature.Refusal, match="found rows of a study with other seeds"):
+        study_of("seeds = 2\n" + study.text, tmp_path).run(tmp_path / "out", progress=None)
+
+
+def test_failed_runs_are_kept(tmp_path):
+    path = study_file(tmp_path, "fails", 5, more='', seeds="1")
+    path.write_text('measures = ["square", "odd"]\n' + path.read_text())
+    done = called(path, "--out", tmp_path / "out", "--workers", 2)
+    assert done.returncode == 3 and "5 of them new, 2 of the new ones failed" in done.stdout, done
+    found = rows(tmp_path / "out").to_pylist()
+    assert [row["status"] for row in found] == ["done", "done", "failed", "failed", "done"]
+    assert found[2]["reason"] == "ValueError: three lines" and "measure 'square': found nothing" in found[3]["reason"]
+    assert [row["square"] for row in found] == [2, 5, None, None, 26] and [row["odd"] for row in found][:2] == [True, False]
+    assert "0 of them new" in called(path, "--out", tmp_path / "out").stdout  # failed runs are finished, too
+    assert "2 of them new" in called(path, "--out", tmp_path / "out", "--workers", 1, "--retry-failed").stdout
+    assert sorted(row["run"] for row in stored(tmp_path / "out")) == list(range(5))
+
+
+def test_a_run_that_ends_its_worker_fails_alone(tmp_path):
+    study = Study.load(study_file(tmp_path, "dies", 6, seeds="1"))
+    assert study.run(tmp_path / "out", workers=1, progress=None) == (6, 0, 1)
+    found = rows(tmp_path / "out").to_pylist()
+    assert [row["status"] for row in found] == ["done", "done", "failed", "done", "done", "done"]
+    assert found[2]["reason"] == "its worker process died each time" and found[5]["square"] == 37
+
+
+def test_one_thread_in_a_worker(tmp_path):
+    Study.load(study_file(tmp_path, "threads", 1, seeds="1")).run(tmp_path / "out", workers=1, progress=None)
+    assert rows(tmp_path / "out")["threads"].to_pylist() == ["11"]
+
+
+def test_store_survives_a_kill_at_each_step(tmp_path):
+    """A journal without a part, half a line, a part whose journal is still there, and an unfinished part."""
+    row = {"run": 0, "x": 1.5, "status": "done"}
+    with Store(tmp_path / "out", {"seeds": [1]}, "") as store:
+        store.add(row)
+        with pytest.raises(ligature.Refusal, match="another study is running there"), Store(tmp_path / "out", {"seeds": [1]}, ""):
+            pass
+    journal, parts = tmp_path / "out/journal", tmp_path / "out/rows"
+    (journal / "part-000000.jsonl").write_text(json.dumps(row) + "\n")
+    (journal / "part-000001.jsonl").write_text(json.dumps(row | {"run": 1}) + "\n" + json.dumps(row | {"run": 2})[:9])
+    (parts / ".part-000002.parquet.unfinished").write_text("PAR1")
+    with Store(tmp_path / "out", {"seeds": [1]}, "") as store:
+        assert store.done() == {0, 1}
+        store.add(row | {"run": 2})
+    assert [each["run"] for each in stored(tmp_path / "out")] == [0, 1, 2] and not list(journal.iterdir())
+
+
+def test_pull_locks_as_a_single_simulation_says(tmp_path):
+    """Square knots: at friction 0.4 one locks, at 0.2 one slips. Rows are equal, whoever computed them."""
+    path = tmp_path / "own.toml"
+    path.write_text('[task]\nkind = "pull"\nscene = "suture-3-0-square.toml"\nspeed_m_per_s = 0.3\nhold_s = 0.3\n'
+                    "[parameters]\ncontact.friction = [0.2, 0.4]\n")
+    study = Study.load(path)
+    assert study.run(tmp_path / "out", workers=2, progress=None).failed == 0
+    slipped, locked = rows(tmp_path / "out").to_pylist()
+    assert not slipped["locked"] and slipped["kept"] and slipped["force_left_N"] < 4
+    assert locked["locked"] and locked["knot"] == "3_1#3_1" and locked["budget"] > 1e6 and 0.02 < locked["way_m"] < 0.3
+    again = execute(study.payload(1))
+    left = comparable([again])[1], comparable([locked])[1]
+    assert {**left[0], "tick_us": 0} == {**left[1], "tick_us": 0}
+
+
+def test_tie_and_rerun_call_the_lab(tmp_path, monkeypatch):
+    monkeypatch.setenv("LIGATURE_LAB", str(SOURCE / "nowhere"))
+    tie = '[task]\nkind = "tie"\nknot = "overhand"\n'
+    with pytest.raises(ligature.Refusal, match="ligature-lab: not found"):
+        study_of(tie, tmp_path)
+    monkeypatch.setenv("LIGATURE_LAB", str(BIN / "ligature-lab"))
+    study_of(tie, tmp_path).run(tmp_path / "tied", workers=1, progress=None)
+    tied = rows(tmp_path / "tied").to_pylist()[0]
+    assert (tied["status"], tied["tied"], tied["found"]) == ("done", True, "3_1 right") and tied["cpu_s"] > 0.1
+    recorded = run_program("ligature-lab", "tie", "overhand", "--scene", SCENES / "paper.toml", "--out", tmp_path / "recorded", "--seeds", 1)
+    assert recorded.returncode == 0, recorded
+    text = f'[task]\nkind = "rerun"\nrecording = "{tmp_path}/recorded/overhand-1.lcmlog"\n[parameters]\nsuture.bend = [10, 5]\n'
+    study_of(text, tmp_path).run(tmp_path / "again", workers=1, progress=None)
+    same, softer = rows(tmp_path / "again").to_pylist()
+    assert same["left_apart_rms_N"] == 0 and softer["left_apart_rms_N"] > 0 and same["knot"] == softer["knot"] == "3_1"
+
+
+def test_slurm_jobs():
+    """What Slurm would get; without Slurm."""
+    cluster = slurm_cluster({"queue": "short", "account": "hands", "walltime": "00:10:00", "interface": "lo"})
+    try:
+        script = cluster.job_script()
+    finally:
+        cluster.close()
+    for line in ("#SBATCH -p short", "#SBATCH -A hands", "#SBATCH -t 00:10:00", "#SBATCH --cpus-per-task=1", "export OMP_NUM_THREADS=1"):
+        assert line in script, script
+    assert "distributed.cli.dask_worker" in script and "--nthreads 1" in script
+    with pytest.raises(ligature.Refusal, match="--slurm-set: .*que"):
+        slurm_cluster({"que": "short"})
+
+
+def test_progress():
+    assert [span(each) for each in (4.6, 62, 7320)] == ["5 s", "1 min 2 s", "2 h 2 min"]
+    shown = Progress(200, 100, None)
+    shown.one_more(False)
+    shown.one_more(True)
+    assert shown.text(10.0) == f"[{'#' * 15:30}] 102 of 200, 1 failed, 8 min 10 s left"
