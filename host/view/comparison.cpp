@@ -5,26 +5,13 @@
 #include "host/errors.hpp"
 #include "host/view/json_text.hpp"
 #include "host/view/log_map.hpp"
-#include "host/view/page_recorder.hpp"
+#include "host/view/recordings.hpp"
 
 namespace ligature::host::view {
 namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-constexpr std::size_t kMostFiles = 200;
-
-std::vector<std::string> recordings_in(const fs::path& folder) {
-  std::vector<std::string> names;
-  std::error_code none;
-  for (const auto& entry : fs::directory_iterator(folder, none)) {
-    const std::string name = entry.path().filename();
-    if (name.ends_with(".lcmlog") && is_file_name(name) && entry.is_regular_file(none)) names.push_back(name);
-  }
-  std::ranges::sort(names);
-  if (names.size() > kMostFiles) names.resize(kMostFiles);
-  return names;
-}
 
 }  // namespace
 
@@ -70,7 +57,7 @@ json Comparison::request(const json& message) {
     tell();
     return nullptr;
   }
-  const auto names = folder_.empty() ? std::vector<std::string>() : recordings_in(folder_);
+  const auto names = folder_.empty() ? std::vector<std::string>() : recording_names(folder_);
   if (std::ranges::find(names, name) == names.end()) return refuse("allowed: a recording in the same folder");
   try {
     open(folder_ / name, align);
@@ -122,7 +109,7 @@ void Comparison::follow(double position_s, Picture::Clock::time_point now) {
 }
 
 void Comparison::tell(const std::string& why) {
-  json told = {{"files", folder_.empty() ? std::vector<std::string>() : recordings_in(folder_)},
+  json told = {{"files", folder_.empty() ? std::vector<std::string>() : recording_names(folder_)},
                {"file", ""},
                {"align", "start"},
                {"offset_ticks", nullptr},

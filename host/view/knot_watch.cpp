@@ -1,8 +1,12 @@
 #include "host/view/knot_watch.hpp"
 
 #include <cmath>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "host/thread_knot.hpp"
+#include "host/view/knot_core.hpp"
 #include "host/view/rig_json.hpp"
 
 namespace ligature::host::view {
@@ -13,36 +17,17 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kPeriod = std::chrono::milliseconds(50);
 constexpr auto kCorePeriod = std::chrono::milliseconds(500);
 
-double length(std::span<const std::array<double, 3>> points) {
+/// Length of a piece of the thread in diameters of the thread.
+double length_d(std::span<const std::array<double, 3>> thread, KnotCore piece, double radius_m) {
+  const auto points = thread.subspan(piece.first, piece.last - piece.first + 1);
   double sum = 0.0;
   for (std::size_t i = 1; i < points.size(); ++i)
     sum +=
         std::hypot(points[i][0] - points[i - 1][0], points[i][1] - points[i - 1][1], points[i][2] - points[i - 1][2]);
-  return sum;
+  return sum / (2.0 * radius_m);
 }
 
 }  // namespace
-
-KnotCore find_core(std::span<const std::array<double, 3>> points, const knot::KnotResult& whole) {
-  if (whole.type == "0_1" || whole.type == "unknown" || points.size() < 5) return {};
-  const auto is_same = [&](std::size_t first, std::size_t last) {
-    const auto piece = knot::recognise(points.subspan(first, last - first + 1), false);
-    return piece.type == whole.type && piece.handedness == whole.handedness;
-  };
-  KnotCore core{0, points.size() - 1};
-  // bisection for the smallest last node that keeps the knot
-  for (std::size_t low = core.first, high = core.last; low + 1 < high;) {
-    const std::size_t middle = (low + high) / 2;
-    (is_same(0, middle) ? high : low) = middle;
-    core.last = high;
-  }
-  for (std::size_t low = 0, high = core.last; low + 1 < high;) {
-    const std::size_t middle = (low + high) / 2;
-    (is_same(middle, core.last) ? low : high) = middle;
-    core.first = low;
-  }
-  return core;
-}
 
 KnotWatch::KnotWatch(Picture& picture)
     : picture_(picture), thread_([this](const std::stop_token& stop) { watch(stop); }) {}
@@ -50,7 +35,9 @@ KnotWatch::KnotWatch(Picture& picture)
 void KnotWatch::watch(const std::stop_token& stop) {
   std::int64_t known = 0;
   KnotCore core;
+  std::vector<KnotCore> throws;
   std::string named;
+  std::size_t nodes = 0;
   auto core_due = Clock::now();
   for (auto due = Clock::now(); !stop.stop_requested(); std::this_thread::sleep_until(due)) {
     due = std::max(due + kPeriod, Clock::now());
@@ -61,9 +48,11 @@ void KnotWatch::watch(const std::stop_token& stop) {
     const auto found = knot::recognise(points, false);
     const double cost_ms = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
     const std::string name = found.type + " " + found.handedness;
-    if (Clock::now() >= core_due || name != named) {
+    if (Clock::now() >= core_due || name != named || points.size() != nodes) {
       core = find_core(points, found);
+      throws = find_throws(points, found, core);
       core_due = Clock::now() + kCorePeriod;
+      nodes = points.size();
     }
     json knot = {{"tick", shape->tick},
                  {"type", found.type},
@@ -75,9 +64,11 @@ void KnotWatch::watch(const std::stop_token& stop) {
     // null: could not be computed
     if (found.alexander.empty()) knot["crossings"] = knot["determinant"] = knot["alexander"] = nullptr;
     if (core.last > core.first) {
-      const double core_m = length(std::span(points).subspan(core.first, core.last - core.first + 1));
+      const auto radius_m = static_cast<double>(shape->radius_m);
       knot["core"] = {core.first, core.last};
-      knot["core_diameters"] = core_m / (2.0 * static_cast<double>(shape->radius_m));
+      knot["core_diameters"] = length_d(points, core, radius_m);
+      for (const KnotCore& one : throws)
+        knot["throws"].push_back({{"nodes", {one.first, one.last}}, {"diameters", length_d(points, one, radius_m)}});
     }
     picture_.set("knot", std::move(knot));
     if (name != named && !named.empty())

@@ -1,26 +1,12 @@
 #include "host/view/page_recorder.hpp"
 
-#include <algorithm>
-#include <cctype>
-
 #include "host/errors.hpp"
 #include "host/view/json_text.hpp"
+#include "host/view/recordings.hpp"
 #include "host/wall_clock.hpp"
 
 namespace ligature::host::view {
-namespace {
-
 using nlohmann::json;
-
-}  // namespace
-
-bool is_file_name(std::string_view name) {
-  const auto is_allowed = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.';
-  };
-  return !name.empty() && name.size() <= PageRecorder::kLongestName && name.front() != '.' &&
-         std::ranges::all_of(name, is_allowed);
-}
 
 PageRecorder::PageRecorder(const Access& access, std::filesystem::path folder, Picture& picture)
     : access_(access), folder_(std::move(folder)), picture_(picture) {
@@ -34,10 +20,15 @@ json PageRecorder::request(const json& message) {
   };
   if (!is_token(text_of(message, "token"), access_.token))
     return answer(false, "recording needs the token of this view");
+  if (word == "record list") {
+    auto listed = answer(true, folder_.string());
+    listed["files"] = recordings_in(folder_);
+    return listed;
+  }
   const std::scoped_lock lock(mutex_);
   try {
     if (word == "record start") return answer(true, start(text_of(message, "name"), text_of(message, "notes")));
-    if (word != "record stop") return answer(false, "allowed start, stop");
+    if (word != "record stop") return answer(false, "allowed start, stop, list");
     if (!log_) return answer(false, "nothing is being recorded");
     const std::string done = file_ + ", " + std::to_string(messages_) + " messages";
     stop("");

@@ -17,12 +17,12 @@ namespace ligature::host::view {
 class PageRecorder {
  public:
   static constexpr std::string_view kNotesChannel = "LIGATURE_NOTES";  // payload: UTF-8 text, not an LCM type
-  static constexpr std::size_t kLongestName = 64, kLongestNotes = 2000;
+  static constexpr std::size_t kLongestNotes = 2000;
 
   PageRecorder(const Access& access, std::filesystem::path folder, Picture& picture);
 
-  /// Handles {"record": "start", "name": "knot-1", "notes": "...", "id", "token"} or {"record": "stop", ...}. @return
-  /// the answer.
+  /// Handles {"record": "start", "name": "knot-1", "notes": "...", "id", "token"}, {"record": "stop", ...} or
+  /// {"record": "list", ...}. @return the answer; that to "list" has the folder's recordings in `files`.
   [[nodiscard]] nlohmann::json request(const nlohmann::json& message);
 
   /// Records a message while a recording runs; called on the LCM thread. A full disk ends the recording.
@@ -41,8 +41,5 @@ class PageRecorder {
   std::string file_;
   std::int64_t messages_ = 0;
 };
-
-/// Whether a name consists of letters, digits, '-', '_' and '.', does not start with '.', and is not too long.
-[[nodiscard]] bool is_file_name(std::string_view name);
 
 }  // namespace ligature::host::view

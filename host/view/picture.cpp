@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "host/view/rig_json.hpp"
+#include "host/view/scene_facts.hpp"
 
 namespace ligature::host::view {
 namespace {
@@ -35,7 +36,7 @@ void Picture::take(std::string_view channel, Bytes data, Clock::time_point now) 
   } else if (channel == kStatusChannel) {
     const auto status = decode<ligature_msg::status_t>(data);
     if (!status || status->scene_toml.size() > kLargestStatusText) return count_unreadable();
-    set_locked("status", to_json(*status));
+    take_status(*status);
   } else if (channel == kEventChannel) {
     const auto event = decode<ligature_msg::event_t>(data);
     if (!event) return count_unreadable();
@@ -44,6 +45,14 @@ void Picture::take(std::string_view channel, Bytes data, Clock::time_point now) 
     const auto offer = decode<ligature_msg::offer_t>(data);
     if (!offer) return count_unreadable();
     if (json told = to_json(*offer); topics_["offer"].what != told) set_locked("offer", std::move(told));
+  }
+}
+
+void Picture::take_status(const ligature_msg::status_t& status) {
+  set_locked("status", to_json(status));
+  if (auto scene = status.scene_file + "\n" + status.scene_toml; scene != scene_) {
+    scene_ = std::move(scene);
+    set_locked("scene", scene_facts(status.scene_toml, status.scene_file));
   }
 }
 

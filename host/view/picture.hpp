@@ -47,8 +47,8 @@ class Picture {
   /// Marks the data as current although nothing new came: a paused recording is not outdated.
   void hold(Clock::time_point now);
 
-  /// Sets the content of a topic ("status", "knot", "view", "replay", "marks"). Pages receive it when it changes and
-  /// when they connect.
+  /// Sets the content of a topic ("status", "scene", "knot", "view", "replay", "marks"). Pages receive it when it
+  /// changes and when they connect.
   void set(const std::string& topic, nlohmann::json what);
   void add_event(const nlohmann::json& event);
 
@@ -70,6 +70,7 @@ class Picture {
   static std::int64_t next_epoch();
   void count_unreadable();
   void take_batch(const ligature_msg::tick_batch_t& batch);
+  void take_status(const ligature_msg::status_t& status);
   void start_again_locked();
   void set_locked(const std::string& topic, nlohmann::json what);
   void write_now(FrameWriter& frame, Clock::time_point now) const;
@@ -92,6 +93,7 @@ class Picture {
     nlohmann::json what;
   };
   std::map<std::string, Topic> topics_;
+  std::string scene_;  // file and text of the scene whose facts are in topic "scene"
   Ring<TraceRow> rows_{kRows};
   Ring<TraceBin> bins_{kBins};
   Ring<nlohmann::json> events_{kEvents};

@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
 
-#include "host/view/knot_watch.hpp"
+#include <array>
+#include <span>
+#include <vector>
+
+#include "host/view/knot_core.hpp"
 #include "tests/unit/host/synthetic_log.hpp"
 
 namespace ligature::host::view {
@@ -21,6 +25,46 @@ TEST(KnotCore, IsNowhereInAStraightThread) {
   const auto points = test::straight_points(60);
   const KnotCore core = find_core(points, knot::recognise(points, false));
   EXPECT_EQ(core.last, 0U);
+}
+
+using Points = std::vector<std::array<double, 3>>;
+
+/// Two overhands in a row; the second is mirrored, or not.
+Points two_overhands(bool is_mirrored) {
+  Points points = test::overhand_points(160);
+  for (const auto& [x, y, z] : test::overhand_points(160))
+    points.push_back({60.0 - x, -y, 6.0 + (is_mirrored ? -z : z)});  // 20 further, with a straight piece between them
+  return points;
+}
+
+TEST(KnotThrows, OfASumAreItsSummandsWithoutTheThreadBetweenThem) {
+  for (const bool is_square : {true, false}) {
+    const Points points = two_overhands(is_square);
+    const auto whole = knot::recognise(points, false);
+    ASSERT_EQ(whole.type, "3_1#3_1");
+    ASSERT_EQ(whole.handedness == "amphichiral", is_square);
+    const KnotCore core = find_core(points, whole);
+    const auto throws = find_throws(points, whole, core);
+    ASSERT_EQ(throws.size(), 2U);
+    EXPECT_LT(throws[0].last, throws[1].first);
+    for (const KnotCore& one : throws) {
+      const std::span piece(points.data() + one.first, one.last - one.first + 1);
+      EXPECT_EQ(knot::recognise(piece, false).type, "3_1");
+      EXPECT_GE(one.first, core.first);
+      EXPECT_LE(one.last, core.last);
+    }
+  }
+}
+
+TEST(KnotThrows, OfAPrimeKnotIsTheKnotAndOfNoKnotNothing) {
+  const auto points = test::overhand_points(160);
+  const auto whole = knot::recognise(points, false);
+  const KnotCore core = find_core(points, whole);
+  const auto throws = find_throws(points, whole, core);
+  ASSERT_EQ(throws.size(), 1U);
+  EXPECT_EQ(throws[0].first, core.first);
+  EXPECT_EQ(throws[0].last, core.last);
+  EXPECT_TRUE(find_throws(test::straight_points(60), {}, {}).empty());
 }
 
 }  // namespace

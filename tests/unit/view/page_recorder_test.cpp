@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "host/log_reader.hpp"
+#include "host/view/recordings.hpp"
 #include "tests/unit/host/synthetic_log.hpp"
 
 namespace ligature::host::view {
@@ -38,6 +39,23 @@ TEST(PageRecorder, WritesWhatItHearsBetweenStartAndStop) {
   while (const auto* event = log.next()) channels.emplace_back(event->channel);
   EXPECT_EQ(channels, (std::vector<std::string>{std::string(PageRecorder::kNotesChannel), std::string(kTicksChannel),
                                                 std::string(kTicksChannel)}));
+}
+
+TEST(PageRecorder, ListsTheRecordingsOfItsFolder) {
+  Recorder r;
+  EXPECT_EQ(r.ask("list")["files"], json::array());
+  (void)r.ask("start", "knot-1");
+  r.hear();
+  (void)r.ask("stop");
+  test::write_text(r.folder.file("notes.txt"), "no recording");
+  test::write_text(r.folder.file(".hidden.lcmlog"), "not named by a page");
+  const json listed = r.ask("list");
+  EXPECT_EQ(listed["accepted"], true);
+  ASSERT_EQ(listed["files"].size(), 1U) << listed;
+  EXPECT_EQ(listed["files"][0]["name"], "knot-1.lcmlog");
+  EXPECT_EQ(listed["files"][0]["bytes"], std::filesystem::file_size(r.folder.file("knot-1.lcmlog")));
+  EXPECT_GT(listed["files"][0]["modified_s"], 1.6e9);
+  EXPECT_EQ(r.recorder.request({{"record", "list"}, {"token", "wrong"}})["accepted"], false);
 }
 
 TEST(PageRecorder, NamesHaveLettersDigitsAndThreeSigns) {

@@ -1,0 +1,106 @@
+#include "host/view/knot_core.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+namespace ligature::host::view {
+namespace {
+
+using Points = std::span<const std::array<double, 3>>;
+
+Points piece_of(Points points, KnotCore at) { return points.subspan(at.first, at.last - at.first + 1); }
+
+/// Prime knots of a type, e.g. {"3_1", "5_1"}, sorted.
+std::vector<std::string> summands_of(const std::string& type) {
+  std::vector<std::string> found;
+  for (std::size_t begin = 0; begin <= type.size();) {
+    const auto end = std::min(type.find('#', begin), type.size());
+    found.push_back(type.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+/// The short piece of points[at] that contains its knot; nothing when there is no knot.
+std::optional<KnotCore> core_in(Points points, KnotCore at) {
+  if (at.last < at.first + 4) return std::nullopt;
+  const Points piece = piece_of(points, at);
+  const KnotCore found = find_core(piece, knot::recognise(piece, false));
+  if (found.last == 0) return std::nullopt;
+  return KnotCore{at.first + found.first, at.first + found.last};
+}
+
+std::string type_in(Points points, KnotCore at) {
+  return at.last < at.first + 4 ? "0_1" : knot::recognise(piece_of(points, at), false).type;
+}
+
+/// Cuts the first throw off. @return where it ends; nothing when no cut leaves one of the summands before it and the
+/// others behind it.
+std::optional<std::size_t> first_cut(Points points, KnotCore at, const std::vector<std::string>& summands) {
+  const auto is_cut = [&](std::size_t cut) {
+    auto both = summands_of(type_in(points, {cut, at.last}));
+    both.push_back(type_in(points, {at.first, cut}));
+    std::ranges::sort(both);
+    return both == summands;
+  };
+  const auto bisect = [&](const auto& is_enough) {  // smallest cut for which it holds
+    std::size_t low = at.first, high = at.last;
+    while (low + 1 < high) {
+      const std::size_t middle = (low + high) / 2;
+      (is_enough(middle) ? high : low) = middle;
+    }
+    return high;
+  };
+  // between the end of the first knot before the cut, and the last start of a knot behind it
+  const std::size_t earliest = bisect([&](std::size_t cut) { return type_in(points, {at.first, cut}) != "0_1"; });
+  const std::size_t latest = bisect([&](std::size_t cut) { return type_in(points, {cut, at.last}) == "0_1"; }) - 1;
+  for (const std::size_t cut : {(earliest + latest) / 2, latest, earliest})
+    if (cut > at.first && cut < at.last && is_cut(cut)) return cut;
+  return std::nullopt;
+}
+
+}  // namespace
+
+KnotCore find_core(Points points, const knot::KnotResult& whole) {
+  if (whole.type == "0_1" || whole.type == "unknown" || points.size() < 5) return {};
+  const auto is_same = [&](std::size_t first, std::size_t last) {
+    const auto piece = knot::recognise(points.subspan(first, last - first + 1), false);
+    return piece.type == whole.type && piece.handedness == whole.handedness;
+  };
+  KnotCore core{0, points.size() - 1};
+  // bisection for the smallest last node that keeps the knot
+  for (std::size_t low = core.first, high = core.last; low + 1 < high;) {
+    const std::size_t middle = (low + high) / 2;
+    (is_same(0, middle) ? high : low) = middle;
+    core.last = high;
+  }
+  for (std::size_t low = 0, high = core.last; low + 1 < high;) {
+    const std::size_t middle = (low + high) / 2;
+    (is_same(middle, core.last) ? low : high) = middle;
+    core.first = low;
+  }
+  return core;
+}
+
+std::vector<KnotCore> find_throws(Points points, const knot::KnotResult& whole, KnotCore core) {
+  if (core.last == 0) return {};
+  std::vector<KnotCore> found;
+  auto summands = summands_of(whole.type);
+  for (KnotCore rest = core; summands.size() > 1;) {
+    const auto cut = first_cut(points, rest, summands);
+    const auto one = cut ? core_in(points, {rest.first, *cut}) : std::nullopt;
+    if (!one) return {core};
+    summands.erase(std::ranges::find(summands, type_in(points, {rest.first, *cut})));
+    found.push_back(*one);
+    rest.first = *cut;
+    if (summands.size() > 1) continue;
+    const auto last = core_in(points, rest);
+    if (!last) return {core};
+    found.push_back(*last);
+  }
+  return found.empty() ? std::vector{core} : found;
+}
+
+}  // namespace ligature::host::view
