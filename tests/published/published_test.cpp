@@ -41,6 +41,10 @@ TEST(Published, HelicesRoundABentBackbone) {
     missed.insert("backbone radius " + std::string(radius) + ": squared curvature of the rod");
   expect_met("helices", missed);
 }
+TEST(Published, PlyWithoutFriction) {
+  expect_met("ply");
+  expect_met("ply", {}, scene::Accuracy::kFine);
+}
 
 // friction round a bar
 TEST(Published, Capstan) {

@@ -47,6 +47,7 @@ struct Case {
 Result trefoil(const Subject&);
 Result braid(const Subject&);
 Result helices(const Subject&);
+Result ply(const Subject&);
 Result capstan(const Subject&);
 Result capstan_axis(const Subject&);
 

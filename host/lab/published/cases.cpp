@@ -14,6 +14,8 @@ constexpr Case kCases[] = {
      "turns n", "n^2 F h^2 / (mu B)", braid},
     {"helices", "squared curvature of two strands round a bent backbone", "StructuresComp/surgeons-knot",
      "curvature of the backbone over k", "<delta''^2>, relative to a straight backbone", helices},
+    {"ply", "a thread wound up by 20 turns, without friction", "Clauvelin, Audoly, Neukirch, JoMMS 4 (2009)",
+     "angle of the ply (deg)", "F R^2 / B, M R / B", ply},
     // friction round a bar
     {"capstan", "T_hi = T_lo exp(mu theta) round a peg", "Euler (1769), Eytelwein (1808)", "mu theta", "T_hi / T_lo",
      capstan},
