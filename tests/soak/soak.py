@@ -206,6 +206,7 @@ def arguments():
     parser = argparse.ArgumentParser(prog="soak", description=__doc__.splitlines()[0])
     parser.add_argument("minutes", nargs="?", type=float, default=10.0, help="10 when nothing is said; whole rounds of the script")
     parser.add_argument("--scene", default="scenes/paper.toml", help="default: %(default)s")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a key of the scene; may be given again")
     parser.add_argument("--operator", default="scenes/operators/overhand.csv", metavar="SCRIPT", help="default: %(default)s")
     parser.add_argument("--disk", action="store_true", help="keep the recorder's disk busy meanwhile")
     parser.add_argument("--changes", type=int, default=0, metavar="N", help="send so many live changes of friction, one every two seconds")
@@ -236,7 +237,7 @@ def main():
             length_s = rounds * round_s
             firmware = start("ligature-firmware", "run", "--scene", asked.scene, "--left", buses["left"], "--right", buses["right"],
                              "--arm", "--duration", length_s, "--watchdog-ms", 1000, "--recorder", folder / "flight.rec",
-                             "--recorder-s", int(length_s) + 30)
+                             "--recorder-s", int(length_s) + 30, *(word for one in asked.set for word in ("--set", one)))
             say(f"{rounds} rounds, {length_s:.0f} s; load {os.getloadavg()[0]:.1f}")
             time.sleep(SETTLED_S)
             if firmware.poll() is not None:
