@@ -180,6 +180,18 @@ def test_tie_and_rerun_call_the_lab(tmp_path, monkeypatch):
     assert same["left_apart_rms_N"] == 0 and softer["left_apart_rms_N"] > 0 and same["knot"] == softer["knot"] == "3_1"
 
 
+def test_shipped_studies(monkeypatch):
+    monkeypatch.setenv("LIGATURE_LAB", str(BIN / "ligature-lab"))
+    shipped = {path.stem: Study.load(path) for path in (SOURCE / "examples/studies").glob("*.toml")}
+    assert {name: len(study) for name, study in shipped.items()} == {"locking": 2000, "extremes": 780, "tie": 500}
+    extremes = shipped["extremes"]
+    for wanted, ending in ((("paper", "stretch", 0.0, 1e-3), "finite"), (("paper", "stretch", 6.0, 0.1), "stopped"),
+                           (("paper", "coupling", 6.0, 1e-3), "refused")):
+        run = next(run for run in range(len(extremes)) if tuple(extremes.design[run][0].values()) == wanted)
+        row = execute(extremes.payload(run))
+        assert row["status"] == "done" and row["ending"] == ending and row["stays_finite"] == (ending == "finite"), row
+
+
 def test_slurm_jobs():
     """What Slurm would get; without Slurm."""
     cluster = slurm_cluster({"queue": "short", "account": "hands", "walltime": "00:10:00", "interface": "lo"})

@@ -130,7 +130,7 @@ class Study:
                                      arguments)
         job = Job(checked, overrides, self.seeds[0], self.folder)
         for name in ("scene", "script", "recording"):
-            if name in checked and checked[name] != "none":
+            if name in arguments and checked[name] != "none":
                 path = job.file(name)
                 if name == "scene":
                     Scene.load(path, overrides)

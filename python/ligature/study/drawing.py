@@ -22,7 +22,8 @@ def _title(names: list[str], group: tuple[Any, ...]) -> str:
 def _sheet(lines: Rows, names: list[str], width: float, height: float) -> tuple[Any, list[tuple[Any, Rows]]]:
     """A figure with one panel for each group of lines."""
     panels = list(groups(lines, names))
-    columns = min(len(panels), 4)
+    last = len({group[-1] for group, _ in panels if group})
+    columns = last if len(names) > 1 and last <= 6 else min(len(panels), 4)
     figure, axes = plt.subplots(math.ceil(len(panels) / columns), columns, squeeze=False, layout="constrained",
                                 figsize=(width * columns, height * math.ceil(len(panels) / columns)))
     for spare in axes.flat[len(panels):]:

@@ -35,6 +35,8 @@ def _call(out: str, *words: str | os.PathLike[str], overrides: dict[str, Any], g
 
 def tie(job: Job) -> dict[str, Any]:
     """The simulated operator ties a knot through the whole chain; the seed is its hand."""
+    if job.arguments["scene"] == "by the knot":  # as ligature-lab tie chooses
+        job.arguments["scene"] = "paper-long.toml" if job.arguments["knot"].startswith("surgeon") else "paper.toml"
     job.scene()
     with tempfile.TemporaryDirectory() as folder:
         out = _call(folder, "tie", job.arguments["knot"], "--scene", job.file("scene"), "--seeds", str(job.seed),

@@ -46,7 +46,11 @@ class Threshold(NamedTuple):
     at: float
     low: float  # 95 % interval
     high: float
-    side: str  # "within", "below" or "above" the tested values; "unknown": there are fewer than two
+    side: str  # "within", "below" or "above" the tested values; "not rising": no such fit; "unknown": fewer than two values
+
+
+def _shares(level: np.ndarray, slope: np.ndarray, x: np.ndarray) -> np.ndarray:
+    return 1 / (1 + np.exp(-np.clip(level[:, None] + slope[:, None] * x, -30, 30)))
 
 
 def _fit(x: np.ndarray, yes: np.ndarray, of: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -56,7 +60,7 @@ def _fit(x: np.ndarray, yes: np.ndarray, of: np.ndarray) -> tuple[np.ndarray, np
     """
     level, slope = np.zeros(len(yes)), np.zeros(len(yes))
     for _ in range(STEPS):
-        p = 1 / (1 + np.exp(-np.clip(level[:, None] + slope[:, None] * x, -30, 30)))
+        p = _shares(level, slope, x)
         weight = of * p * (1 - p)
         s0, s1, s2 = weight.sum(1), (weight * x).sum(1), (weight * x * x).sum(1)
         det = np.maximum(s0 * s2 - s1 * s1, 1e-12)
@@ -78,11 +82,19 @@ def _crossing(level: np.ndarray, slope: np.ndarray, yes: np.ndarray, of: np.ndar
     return np.where(rises, -level / np.where(rises, slope, 1), never)
 
 
+def _deviance(p: np.ndarray, yes: np.ndarray, of: np.ndarray) -> np.ndarray:
+    """How badly each fit describes the outcomes: twice the loss of log-likelihood against their own shares."""
+    parts = [np.where(k > 0, k * np.log(np.maximum(k, 1e-300) / np.maximum(of * q, 1e-300)), 0.0)
+             for k, q in ((yes, p), (of - yes, 1 - p))]
+    return 2 * (parts[0] + parts[1]).sum(-1)
+
+
 def threshold(x: Any, outcome: Any, seed: int = 1) -> Threshold:
     """The value of x above which an outcome comes in more than half of the runs, from a logistic fit.
 
     x, outcome: one number and one truth value for each run; the share must rise with x. The interval is a parametric
-    bootstrap: outcomes are drawn 1000 times from the fit, and fitted again.
+    bootstrap: outcomes are drawn 1000 times from the fit, and fitted again. If not one in a hundred of these draws
+    deviates as much from its fit as the outcomes do, there is no threshold ("not rising").
     """
     x, outcome = np.asarray(x, dtype=float), np.asarray(outcome, dtype=bool)
     places, which = np.unique(x, return_inverse=True)
@@ -94,11 +106,14 @@ def threshold(x: Any, outcome: Any, seed: int = 1) -> Threshold:
         return Threshold(math.nan, math.nan, math.nan, "below" if yes.sum() else "above")
     middle, half = 0.5 * (places[0] + places[-1]), 0.5 * (places[-1] - places[0])
     u = (places - middle) / half
-    level, slope = _fit(u, yes, of)
-    at = _crossing(level, slope, yes, of)[0]
-    p = 1 / (1 + np.exp(-np.clip(level[0] + slope[0] * u, -30, 30)))
-    drawn = np.random.default_rng(seed).binomial(of.astype(int), p, (DRAWS, len(u))).astype(float)
-    again = np.sort(_crossing(*_fit(u, drawn, of), drawn, of))
+    fit = _fit(u, yes, of)
+    at = _crossing(*fit, yes, of)[0]
+    p = _shares(*fit, u)
+    drawn = np.random.default_rng(seed).binomial(of.astype(int), p[0], (DRAWS, len(u))).astype(float)
+    fits = _fit(u, drawn, of)
+    if np.mean(_deviance(_shares(*fits, u), drawn, of) >= _deviance(p, yes, of) - 1e-9) < 0.01 or fit[1][0] <= 0:
+        return Threshold(math.nan, math.nan, math.nan, "not rising")
+    again = np.sort(_crossing(*fits, drawn, of))
     low, high = again[round(0.025 * DRAWS)], again[round(0.975 * DRAWS) - 1]
     side = "below" if at < -1 else "above" if at > 1 else "within"
     inside = [middle + half * value if -1 <= value <= 1 else math.nan for value in (at, low, high)]

@@ -48,7 +48,7 @@ TASKS = {
                         "least_share": (Number(0, 1), 0.8)},
                  {"locked": "bool", "kept": "bool", "force_left_N": "float", "peak_N": "float", "way_m": "float",
                   "time_lost": "float", "knot": "text", "tick_us": "float"}),
-    "tie": Task(tie, {"scene": (Text(), "paper.toml"), "knot": (Text(), REQUIRED)},
+    "tie": Task(tie, {"scene": (Text(), "by the knot"), "knot": (Text(), REQUIRED)},
                 {"tied": "bool", "found": "text", "seconds": "float", "given_up": "text"}),
     "rerun": Task(rerun, {"recording": (Text(), REQUIRED)},
                   {"left_peak_N": "float", "right_peak_N": "float", "left_apart_rms_N": "float", "right_apart_rms_N": "float",
