@@ -46,6 +46,10 @@ TEST(Published, PlyWithoutFriction) {
   expect_met("ply", {}, scene::Accuracy::kFine);
 }
 
+// knots of throws in sutures
+TEST(Published, Locking) { expect_met("locking"); }
+TEST(Published, Threshold) { expect_met("threshold"); }
+
 // friction round a bar
 TEST(Published, Capstan) {
   expect_met("capstan", {"peg, mu = 0.3, 1.00 turns: T_hi/T_lo"});

@@ -48,6 +48,8 @@ Result trefoil(const Subject&);
 Result braid(const Subject&);
 Result helices(const Subject&);
 Result ply(const Subject&);
+Result locking(const Subject&);
+Result threshold(const Subject&);
 Result capstan(const Subject&);
 Result capstan_axis(const Subject&);
 

@@ -16,6 +16,12 @@ constexpr Case kCases[] = {
      "curvature of the backbone over k", "<delta''^2>, relative to a straight backbone", helices},
     {"ply", "a thread wound up by 20 turns, without friction", "Clauvelin, Audoly, Neukirch, JoMMS 4 (2009)",
      "angle of the ply (deg)", "F R^2 / B, M R / B", ply},
+    // knots of throws in sutures
+    {"locking", "friction at which square, granny, thief and grief lock",
+     "Patil, Sandt, Kolle, Dunkel, Science 367 (2020)", "knot: 1 reef, 2 granny, 3 thief, 4 grief", "friction",
+     locking},
+    {"threshold", "friction above which a square knot holds, drawn at 5 mm/s", "no publication with figures found",
+     "drawn knot", "friction", threshold},
     // friction round a bar
     {"capstan", "T_hi = T_lo exp(mu theta) round a peg", "Euler (1769), Eytelwein (1808)", "mu theta", "T_hi / T_lo",
      capstan},
