@@ -31,7 +31,7 @@ wheel=$(ls "$out"/*.whl)
 wrong=0
 note() { echo "package wheel: $*" >&2; wrong=1; }
 for file in ligature/_core.pyi ligature/py.typed ligature/scenes/paper.toml ligature/scenes/operators/overhand.csv \
-    ligature/scenes/shapes/overhand-loose.csv ligature/scenes/faults/emergency.toml ligature/rig/plugin.py ligature_msg/tick_t.py; do
+    ligature/scenes/shapes/overhand-loose.csv ligature/scenes/faults/emergency.toml ligature/rig/plugin.py ligature/study/__main__.py ligature_msg/tick_t.py; do
   grep -q "^$file " "$out/contents.txt" || note "$file is missing"
 done
 grep -q '^ligature/_core\..*\.so ' "$out/contents.txt" || note "the extension is missing"

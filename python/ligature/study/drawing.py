@@ -38,7 +38,7 @@ def _map(plot: dict[str, Any], lines: Rows) -> Any:
     values = [line["value"] for line in lines if not math.isnan(line["value"])]
     share = any(line["yes"] is not None for line in lines)
     low, high = (0.0, 1.0) if share or not values else (min(values), max(values))
-    figure, panels = _sheet(lines, plot["panels"], 1.4 + 0.52 * len(x), 1.3 + 0.42 * len(y))
+    figure, panels = _sheet(lines, plot["panels"], 1.3 + 0.34 * len(x), 1.3 + 0.34 * len(y))
     for axis, members in panels:
         cells = [[math.nan] * len(x) for _ in y]
         for line in members:
@@ -52,7 +52,7 @@ def _map(plot: dict[str, Any], lines: Rows) -> Any:
         axis.set_xticks(range(len(x)), [text(value) for value in x], fontsize=8, rotation=45)
         axis.set_yticks(range(len(y)), [text(value) for value in y], fontsize=8)
         axis.set(xlabel=plot["x"], ylabel=plot["y"])
-    figure.colorbar(image, ax=[axis for axis, _ in panels], label=f"share of runs with {plot['measure']}; cells: %" if share else plot["measure"])
+    figure.colorbar(image, ax=[axis for axis, _ in panels], label=f"share with {plot['measure']}; cells: %" if share else plot["measure"])
     return figure
 
 
