@@ -150,7 +150,7 @@ std::array<double, rt::kJoints> HandControl::command(std::int64_t tick) noexcept
     const Vec3 exact_Nm = jacobian_.transpose() * paid_N;
     if (exact_Nm.lpNorm<Eigen::Infinity>() > max_torque_Nm_) limits |= rt::kTorqueLimit;
     // Passivity may have turned the force's direction, so the limits are checked again
-    paid_N *= std::min({1.0, safe_share(exact_Nm), windings_.share(exact_Nm)});
+    paid_N *= allowed_share(paid_N, exact_Nm);
   }
   if (torque_Nm.isZero(0.0)) paid_N = Vec3::Zero();
   overtime_ticks_ = gain() > 0.0 || torque_Nm.isZero(0.0) ? 0 : overtime_ticks_ + 1;
@@ -215,13 +215,20 @@ double HandControl::safe_share(const Vec3& torque_Nm) const noexcept {
   return most_N > 0.0 ? limiter_.peak_N() / most_N : std::numeric_limits<double>::infinity();
 }
 
+/// Factor on a tip force and its torques that keeps the peak in this pose (outside the workspace box safe_share() does
+/// not), the peak in any pose of the box, and the heat of the windings.
+double HandControl::allowed_share(const Vec3& f_N, const Vec3& torque_Nm) const noexcept {
+  const double size_N = std::max(f_N.norm(), 1e-300);
+  return std::min({1.0, limiter_.peak_N() / size_N, safe_share(torque_Nm), windings_.share(torque_Nm)});
+}
+
 /// Torques to send: J^T f, limited to the drives' range, to what is safe in any pose and to what the windings allow, in
 /// whole torque quanta. A joint keeps its last torque if the change is below kStay quanta: rapid toggling is audible,
 /// and its work can stay below the encoders' resolution, where the energy account cannot see it.
 Vec3 HandControl::sendable_torque(const Vec3& f_N) const noexcept {
   constexpr double kStay = 0.7;
   Vec3 exact = (jacobian_.transpose() * f_N).cwiseMax(-max_torque_Nm_).cwiseMin(max_torque_Nm_);
-  exact *= std::min({1.0, safe_share(exact), windings_.share(exact)});
+  exact *= allowed_share(f_N, exact);
   Vec3 torque_Nm;
   for (Eigen::Index j = 0; j < 3; ++j) {
     const bool stays = std::abs(exact[j] - torque_Nm_[j]) < kStay * quantum_Nm_;

@@ -126,6 +126,7 @@ class HandControl {
   void map(const Vec3& p_DT) noexcept;
   void step_clutch(bool pressed, const Vec3& p_DT) noexcept;
   [[nodiscard]] double safe_share(const Vec3& torque_Nm) const noexcept;
+  [[nodiscard]] double allowed_share(const Vec3& f_N, const Vec3& torque_Nm) const noexcept;
   [[nodiscard]] Vec3 sendable_torque(const Vec3& f_N) const noexcept;
   [[nodiscard]] Vec3 brake_force() noexcept;
   [[nodiscard]] Vec3 lead_force() noexcept;

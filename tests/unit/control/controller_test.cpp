@@ -101,6 +101,34 @@ TEST(Controller, AnArmGetsWhatIsSafeInEveryPoseAndReportsIt) {
   EXPECT_EQ(rig.controller.fault(), Fault::kNone);
 }
 
+// Outside the workspace box the bound for any pose is no bound. There, torques that the step limit keeps make another
+// force when the arm has moved on.
+TEST(Controller, ThePeakHoldsForAnArmThatMovesOutsideItsWorkspaceBox) {
+  auto hands = Rig::scene();
+  hands.passivity = false;
+  Rig rig(hands);
+  const auto move = [&](double t_s) {
+    rig.in.reading.hand[0].q_rad = {0.3 * std::sin(3.0 * t_s), 0.79 + 0.05 * std::sin(20.0 * t_s), 0.38 + 0.03 * std::sin(17.0 * t_s)};
+  };
+  move(0.0);
+  rig.to_force();
+  double most_N = 0.0;
+  int at_peak = 0;
+  for (int i = 1; i < 400; ++i) {
+    const double t_s = 1e-3 * i;
+    move(t_s);
+    const Vec3 along(-0.2, -0.4 * std::sin(250.0 * t_s), -1.0);
+    rig.in.grasp[0].p_WG = rig.controller.hand(0).p_WT + 50.0 * along.normalized();
+    rig.tick_as_is();
+    const double f_N = rig.controller.hand(0).f_device_N.norm();
+    most_N = std::max(most_N, f_N);
+    at_peak += f_N > 3.29 ? 1 : 0;
+  }
+  EXPECT_LE(most_N, 3.3 * (1.0 + 1e-12));
+  EXPECT_GT(at_peak, 20);
+  EXPECT_EQ(rig.controller.fault(), Fault::kNone);
+}
+
 TEST(Controller, ASceneTakenOnTheWayBringsItsForceLimitAndItsPassivity) {
   Rig rig(Rig::scene(), Rig::drums());
   rig.ticks(60);
