@@ -5,7 +5,7 @@ import pytest
 
 import ligature
 
-FROM_S = 6.0  # in the fault script below
+FROM_S = 8.0  # in the fault script below
 
 
 @pytest.fixture

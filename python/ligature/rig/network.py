@@ -11,6 +11,7 @@ from ligature_msg import hand_state_t, hand_wish_t, status_t, thread_t
 from ligature import Refusal, _core
 from ligature.inputs import Scene
 from ligature.rig.forms import Columns, Expected
+from ligature.rig.hand import SIDES
 
 URL = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304"  # protocol/lcm/default_url.hpp
 WISH_EVERY_S = 0.02
@@ -45,7 +46,9 @@ class Network(threading.Thread):
                 continue
             if time.monotonic() >= due_s:
                 due_s = time.monotonic() + WISH_EVERY_S
-                self._say()
+                with self._heard:
+                    for hand in self._claims:
+                        self._say(hand)
 
     def end(self) -> None:
         self._ended = True
@@ -56,10 +59,16 @@ class Network(threading.Thread):
 
     def take(self, hand: int) -> None:
         """Takes a simulated hand: from now on it follows wish()."""
-        self._claims[hand] = [self.hands[hand].session, random.getrandbits(62) + 1, 0]
+        with self._heard:
+            self._claims[hand] = [self.hands[hand].session, random.getrandbits(62) + 1, 0]
 
     def wish(self, hand: int, place: tuple[float, float, float], dead_man: bool, grip: bool) -> None:
-        self._wishes[hand] = (place, dead_man, grip)
+        """Sends a target and waits until the device has it: a dead-man counts only after a message with it released."""
+        with self._heard:
+            self._wishes[hand] = (place, dead_man, grip)
+            sent = self._say(hand)
+            if not self._heard.wait_for(lambda: self._takes(hand, sent), SILENCE_S):
+                raise Expected(f"expected: a {SIDES[hand]} hand that follows this test; its device has not answered for {SILENCE_S:g} s")
 
     def latest(self) -> Columns:
         with self._heard:
@@ -82,8 +91,7 @@ class Network(threading.Thread):
             until = self._periods + periods
             while self._periods < until:
                 before = self._periods
-                self._heard.wait(SILENCE_S)
-                if self._periods == before:
+                if not self._heard.wait_for(lambda last=before: self._periods != last, SILENCE_S):
                     raise Expected(f"expected: a rig that sends; nothing has come for {SILENCE_S:g} s")
 
     def _on_ticks(self, _: str, data: bytes) -> None:
@@ -105,18 +113,26 @@ class Network(threading.Thread):
 
     def _on_hand(self, _: str, data: bytes) -> None:
         state = hand_state_t.decode(data)
-        self.hands[state.hand] = state
+        with self._heard:
+            self.hands[state.hand] = state
+            self._heard.notify_all()
 
-    def _say(self) -> None:
-        for hand, claim in list(self._claims.items()):
-            place, dead_man, grip = self._wishes.get(hand, (tuple(self._scene.workspace_origin_m), False, False))
-            claim[2] += 1
-            wish = hand_wish_t()
-            wish.utime = time.time_ns() // 1000
-            wish.session, wish.owner, wish.sequence = claim
-            wish.hand, wish.dead_man, wish.grip = hand, dead_man, grip
-            wish.p_home_m = [(p - o) / self._scene.workspace_scale for p, o in zip(place, self._scene.workspace_origin_m, strict=True)]
-            self._lcm.publish("LIGATURE_HAND_WISH", wish.encode())
+    def _takes(self, hand: int, sequence: int) -> bool:
+        state = self.hands[hand]
+        return [state.session, state.owner] == self._claims[hand][:2] and state.sequence >= sequence
+
+    def _say(self, hand: int) -> int:
+        """Sends the newest target of one hand. The caller holds the lock. @returns the message's number."""
+        claim = self._claims[hand]
+        place, dead_man, grip = self._wishes.get(hand, (tuple(self._scene.workspace_origin_m), False, False))
+        claim[2] += 1
+        wish = hand_wish_t()
+        wish.utime = time.time_ns() // 1000
+        wish.session, wish.owner, wish.sequence = claim
+        wish.hand, wish.dead_man, wish.grip = hand, dead_man, grip
+        wish.p_home_m = [(p - o) / self._scene.workspace_scale for p, o in zip(place, self._scene.workspace_origin_m, strict=True)]
+        self._lcm.publish("LIGATURE_HAND_WISH", wish.encode())
+        return claim[2]
 
 
 def _opened(url: str) -> lcm.LCM:

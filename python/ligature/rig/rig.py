@@ -75,13 +75,13 @@ class Rig:
         self.command("arm")
         for hand in (self.left, self.right):
             hand.press()
-        self.wait_for(lambda rig: rig.left.gain == rig.right.gain == 1.0, limit_s, lambda: f"full force on both hands (state {self.state})")
+        self.wait_for(lambda rig: rig.left.gain == rig.right.gain == 1.0, limit_s, lambda: "full force on both hands")
 
     def disarm(self, limit_s: float = 5.0) -> None:
         """Takes the force away in steps and waits until the rig is idle. Dry form: sends nothing. Raises Expected."""
         if not self.dry:
             self.command("disarm")
-            self.wait_for(lambda rig: rig.state in ("IDLE", "FAULT"), limit_s, lambda: f"an idle rig (state {self.state})")
+            self.wait_for(lambda rig: rig.state in ("IDLE", "FAULT"), limit_s, lambda: "an idle rig")
 
     def stop(self) -> None:
         """Takes the force away at once, and 20 ms later reads no torque. Dry form: sends nothing. Raises Expected."""
@@ -93,7 +93,7 @@ class Rig:
         """Leaves a fault and waits until the rig is idle. Dry form: sends nothing. Raises Expected."""
         if not self.dry:
             self.command("reset-fault")
-            self.wait_for(lambda rig: rig.state == "IDLE" and rig.fault == 0, limit_s, lambda: f"an idle rig (fault {self.fault})")
+            self.wait_for(lambda rig: rig.state == "IDLE" and rig.fault == 0, limit_s, lambda: "an idle rig")
 
     def command(self, word: str) -> None:
         """Sends arm, disarm, stop, reset-fault, reset-thread, park or calibrate, and waits for nothing further.
@@ -119,7 +119,8 @@ class Rig:
                 return
             self._pass(LOOK_EVERY)
         if not (self._has_ticks() and condition(self)):
-            raise Expected(f"expected within {limit_s:g} s: {what() if what else 'the condition'}")
+            text = what() if what else "the condition"
+            raise Expected(f"expected within {limit_s:g} s: {text}" + (f"; {self.state}, fault {self.fault}" if self._has_ticks() else ""))
 
     # What a test sees
 

@@ -7,7 +7,7 @@ import pytest
 
 import ligature
 
-FROM_S, CODE = 5.0, 12
+FROM_S, CODE = 8.0, 12
 
 
 @pytest.fixture
