@@ -1,5 +1,6 @@
 #include "protocol/scene/rod_keys.hpp"
 
+#include <cmath>
 #include <numbers>
 
 namespace ligature::scene {
@@ -62,6 +63,10 @@ void read_pegs(StrictTable& t, World& world) {
     p.vector("from_m", peg.from_m, 1e4);
     p.vector("to_m", peg.to_m, 1e4);
     p.number("radius_m", peg.radius_m, {1e-6, 100.0});
+    p.number("surface_m_per_s", peg.surface_m_per_s, {-1e3, 1e3});
+    const auto &a = peg.from_m, &b = peg.to_m;
+    if (peg.surface_m_per_s != 0.0 && !(std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) >= 1e-6))
+      p.refuse("surface_m_per_s", "0 for a bar shorter than 1e-6 m");
     world.pegs.push_back(peg);
   });
   constexpr std::size_t kMostPegs = 100;

@@ -105,10 +105,12 @@ struct Load {
   Vec force_N{0.0, 0.0, 0.0};
 };
 
-/// A fixed round bar, key world.pegs = [{from_m, to_m, radius_m}]; rod model only.
+/// A fixed round bar, key world.pegs = [{from_m, to_m, radius_m}]; rod model only. With a surface speed it is a drum
+/// that turns about its axis.
 struct Peg {
   Vec from_m{0.0, 0.0, 0.0}, to_m{0.0, 0.0, 0.0};
   double radius_m = 0.0;
+  double surface_m_per_s = 0.0;  ///< positive: right-handed about the direction from from_m to to_m
 };
 
 struct World {

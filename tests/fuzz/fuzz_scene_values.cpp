@@ -125,7 +125,8 @@ class Wild {
 
   std::string peg() {
     const std::string parts[]{vector(), vector(), number()};
-    return "[{from_m = " + parts[0] + ", to_m = " + parts[1] + ", radius_m = " + parts[2] + "}]";
+    const std::string turns = below(2) == 0 ? ", surface_m_per_s = " + number() : "";
+    return "[{from_m = " + parts[0] + ", to_m = " + parts[1] + ", radius_m = " + parts[2] + turns + "}]";
   }
 
   std::vector<std::string> scene() {

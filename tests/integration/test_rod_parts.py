@@ -25,9 +25,12 @@ CONTACT = ["broad_phase.cpp", "contact_collect.cpp", "contact_couplings.cpp", "c
            "guard.cpp", "mixing.cpp", "motion.cpp", "motion.hpp", "smooth.hpp", "touch.hpp"]
 ADAPTIVE = ["refine.cpp", "merge_guard.cpp"]
 WORLD = re.compile(r"collect_floor|collect_body|afford_world")
+DRUM = re.compile(r"collect_body<true>")
 RUBS = re.compile(r"settle(_directly)?<true|note_stuck|let_stick")
 
 FULL = ["world.desk_height_m=0.05"]
+# A bar far from the thread, whose surface turns.
+TURNS = FULL + ["world.pegs=[{from_m=[0,1,0],to_m=[0,1,1],radius_m=0.01,surface_m_per_s=0.1}]"]
 WITHOUT = {
     "twist": ["suture.GJ_N_m2=0"],
     "contact": ['contact.solver="none"'],
@@ -90,6 +93,7 @@ class Parts(unittest.TestCase):
         with tempfile.TemporaryDirectory(prefix="parts-") as name:
             folder = pathlib.Path(name)
             cls.full = counts(folder, "suture-3-0-knot.toml", FULL)
+            cls.drum = counts(folder, "suture-3-0-knot.toml", TURNS)
             cls.without = {
                 part: counts(folder, "suture-3-0-knot.toml",
                              (["world.grippers_collide=false"] if part == "world" else FULL) + off)
@@ -117,6 +121,9 @@ class Parts(unittest.TestCase):
         for part, functions in (("world", WORLD), ("friction", RUBS)):
             with self.subTest(without=part):
                 self.assertEqual(self.called(self.without[part], functions), [])
+        with self.subTest(without="drum"):
+            self.assertTrue(self.called(self.drum, DRUM))
+            self.assertEqual(self.called(self.full, DRUM), [])
         with self.subTest(without="roll, turning, set"):
             self.assertEqual(self.executed(self.full, ROLL), {})
         with self.subTest(without="all"):

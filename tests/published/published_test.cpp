@@ -62,6 +62,11 @@ TEST(Published, CapstanPulledAlongItsAxis) {
   expect_met("capstan-axis", {at + "1"}, scene::Accuracy::kFine);
 }
 
+TEST(Published, Drum) {
+  expect_met("drum");
+  expect_met("drum", {}, scene::Accuracy::kFine);
+}
+
 TEST(Published, EveryCaseHasItsOwnNameAndASource) {
   std::set<std::string> names;
   for (const auto& c : all_cases()) {

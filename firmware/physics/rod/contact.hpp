@@ -24,6 +24,7 @@ struct Body {
   double radius_m = 0.0;
   Vec velocity{};
   double friction = 0.3;
+  Vec spin{};  ///< of a drum: unit vector along the axis, times the speed at which the surface turns, m/s
 };
 
 /// One contact. The relative velocity of its two points is u = sum_k w_k v[node_k] - surface; the impulse p acts on
@@ -131,7 +132,8 @@ class ContactSet {
   void collect_floor(const State& state, double floor_m, double radius_m, double look_m, double mu,
                      Work& work) noexcept;
   /// Collects contacts of segments with a capsule whose gap is below look_m. Skips the capsule while it is out of reach
-  /// even for a node that has moved travel_m in this tick.
+  /// even for a node that has moved travel_m in this tick. Drum: adds the motion of a surface that turns (Body::spin).
+  template <bool Drum>
   void collect_body(const State& state, const Body& body, int index, double radius_m, double look_m, double travel_m,
                     Work& work) noexcept;
   /// Call when bodies may have moved: the next collect_body() of each measures again.

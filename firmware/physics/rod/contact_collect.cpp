@@ -100,6 +100,7 @@ void ContactSet::collect_floor(const State& state, double floor_m, double radius
   work.spend(price::kWorldNode * static_cast<long>(state.x.size()));
 }
 
+template <bool Drum>
 void ContactSet::collect_body(const State& state, const Body& body, int index, double radius_m, double look_m,
                               double travel_m, Work& work) noexcept {
   double& due = body_due_[static_cast<std::size_t>(index)];
@@ -139,6 +140,7 @@ void ContactSet::collect_body(const State& state, const Body& body, int index, d
     contact.w[0] = 1.0 - c.t, contact.w[1] = c.t;
     contact.n = distance > 1e-12 ? (1.0 / distance) * c.between : make(0, 0, 1);
     contact.surface = body.velocity;
+    if constexpr (Drum) contact.surface += cross(body.spin, contact.n);
     contact.gap_m = gap;
     contact.reach_m = reach;
     contact.mu = body.friction;
@@ -150,5 +152,8 @@ void ContactSet::collect_body(const State& state, const Body& body, int index, d
   work.spend(price::kWorldNode * static_cast<long>(n));
   due = std::min(least, std::sqrt(nearest2) - longest) + travel_m;
 }
+
+template void ContactSet::collect_body<true>(const State&, const Body&, int, double, double, double, Work&) noexcept;
+template void ContactSet::collect_body<false>(const State&, const Body&, int, double, double, double, Work&) noexcept;
 
 }  // namespace ligature::physics::rod

@@ -138,6 +138,8 @@ Parts parts_of(const scene::Scene& scene) noexcept {
   p.world =
       p.contact && (scene.world.desk_height_m.has_value() || !scene.world.pegs.empty() || scene.world.grippers_collide);
   p.friction = p.contact && std::max(scene.contact.friction, scene.contact.static_friction.value_or(0.0)) > 0.0;
+  const auto turns = [](const scene::Peg& peg) { return peg.surface_m_per_s != 0.0; };
+  p.drum = p.world && p.friction && std::any_of(scene.world.pegs.begin(), scene.world.pegs.end(), turns);
   p.turning = p.twist && p.friction && scene.contact.turns_thread;
   p.roll = p.twist &&
            (p.turning || scene.suture.rod.rest_curvature_per_m != 0.0 || scene.suture.rod.rest_twist_per_m != 0.0);
@@ -156,7 +158,9 @@ std::variant<Rod, std::string> rod_of(const scene::Scene& scene) {
   if (scene.world.desk_height_m) rod.has_floor = true, rod.floor_m = *scene.world.desk_height_m;
   rod.floor_friction = scene.contact.friction;
   for (const auto& peg : scene.world.pegs) {
-    rod.bodies.push_back({vec(peg.from_m), vec(peg.to_m), peg.radius_m, Vec{}, scene.contact.friction});
+    const Vec axis = vec(peg.to_m) - vec(peg.from_m);
+    const Vec spin = peg.surface_m_per_s != 0.0 ? (peg.surface_m_per_s / norm(axis)) * axis : Vec{};
+    rod.bodies.push_back({vec(peg.from_m), vec(peg.to_m), peg.radius_m, Vec{}, scene.contact.friction, spin});
   }
   const auto& line = scene.suture.initial_polyline_m;
   if (line.size() < 2) {

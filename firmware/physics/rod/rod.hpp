@@ -23,6 +23,7 @@ struct Parts {
   bool roll = false;      ///< every segment has its own roll angle (spin.hpp); needs twist
   bool turning = false;   ///< contact friction rolls the thread about its axis; needs roll and friction
   bool set = false;       ///< plastic bending: sharp bends become permanent (spin_set.cpp); needs twist
+  bool drum = false;      ///< bars whose surface turns; needs contact, friction and world
 
   /// Does every segment have a material frame? With `roll` the frames turn in every substep, otherwise once per tick.
   [[nodiscard]] constexpr bool frames() const noexcept { return roll || set; }

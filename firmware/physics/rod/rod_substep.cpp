@@ -10,7 +10,8 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32, kSet = 64;
+constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32, kSet = 64,
+                   kDrum = 128;
 constexpr double kEnough = 10.0;        // tolerance multiplier once more than the fair share of the work is used
 constexpr double kWild_m_per_s = 1e-3;  // change in the last pass above which velocities are scaled down (the brake)
 constexpr double kLess = 0.8;           // factor of patience_ when a substep has waited and did not converge
@@ -77,7 +78,7 @@ bool Rod::look(double dt_s) noexcept {
     for (int b = 0; b < count; ++b) {
       if (!work_.time().allows()) return false;
       const Body& body = bodies[static_cast<std::size_t>(b)];
-      contacts_.collect_body(state_, body, b, material_.radius_m, look_m, tick_travel_m_, work_);
+      contacts_.collect_body<(Bits & kDrum) != 0>(state_, body, b, material_.radius_m, look_m, tick_travel_m_, work_);
     }
   }
   if constexpr ((Bits & kFriction) != 0) {
@@ -288,11 +289,13 @@ void Rod::move(double dt_s, double share) noexcept {
 
 template <unsigned Bits>
 bool Rod::substep(double dt_s) noexcept {
-  constexpr unsigned kRest = Bits & ~kSet;  // contact does not depend on plastic bending: fewer instantiations
+  // Contact does not depend on plastic bending, and a drum matters only when contacts are collected: fewer
+  // instantiations.
+  constexpr unsigned kLook = Bits & ~kSet, kRest = kLook & ~kDrum;
   constexpr bool kTouches = (Bits & (kContact | kWorld)) != 0;
   if constexpr (kTouches) {
     v_before_ = state_.v;
-    if (!look<kRest>(dt_s)) return false;
+    if (!look<kLook>(dt_s)) return false;
   }
   if constexpr ((Bits & kSet) != 0) report_.set_J += spin_.yield(material_, state_);
   if (!work_.time().allows()) return false;
@@ -335,10 +338,14 @@ Rod::Substep Rod::pick(const Parts& parts) noexcept {
   }
   (std::make_index_sequence<8 * std::size(kWith)>{});
   static_assert(2 * 7 == (kContact | kFriction | kWorld));
+  static constexpr auto kDrums = []<std::size_t... I>(std::index_sequence<I...>) {
+    return std::array<Substep, sizeof...(I)>{&Rod::substep<kDrum | kContact | kFriction | kWorld | kWith[I]>...};
+  }
+  (std::make_index_sequence<std::size(kWith)>{});
   const std::size_t touches = (parts.contact ? 1 : 0) | (parts.friction ? 2 : 0) | (parts.world ? 4 : 0);
   const std::size_t set = parts.set ? 1 : 0;
   const std::size_t with = parts.roll ? (parts.turning ? 5 : 3) + set : parts.set ? 2 : parts.twist ? 1 : 0;
-  return kTable[8 * with + touches];
+  return parts.drum && touches == 7 ? kDrums[with] : kTable[8 * with + touches];
 }
 
 }  // namespace ligature::physics::rod

@@ -52,5 +52,6 @@ Result locking(const Subject&);
 Result threshold(const Subject&);
 Result capstan(const Subject&);
 Result capstan_axis(const Subject&);
+Result drum(const Subject&);
 
 }  // namespace ligature::published

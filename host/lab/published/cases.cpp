@@ -25,6 +25,8 @@ constexpr Case kCases[] = {
     // friction round a bar
     {"capstan", "T_hi = T_lo exp(mu theta) round a peg", "Euler (1769), Eytelwein (1808)", "mu theta", "T_hi / T_lo",
      capstan},
+    {"drum", "the same with a drum that turns below a thread that is held", "Euler (1769), Eytelwein (1808)",
+     "mu theta", "T_hand / T_load", drum},
     {"capstan-axis", "a thread round a peg that moves along its axis: sliding force against tension",
      "Sabater, Park, Crassous, Neukirch, Reis, JMPS 213:106628 (2026)", "T R^2 / B", "F / (mu T)", capstan_axis},
 };

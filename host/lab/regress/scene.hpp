@@ -44,6 +44,7 @@ Figures surgeons(const Bench&);
 Figures desk(const Bench&);
 Figures static_friction(const Bench&);
 Figures peg(const Bench&);
+Figures drum(const Bench&);
 Figures gripper(const Bench&);
 Figures clamp_and_load(const Bench&);
 Figures jaws(const Bench&);

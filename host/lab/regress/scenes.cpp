@@ -15,6 +15,7 @@ constexpr RegressScene kScenes[] = {
     {"desk", "a thread slides on a desk until it stops", true, desk},
     {"static-friction", "a thread on a tilted desk, held by static friction alone", true, static_friction},
     {"peg", "a thread slips half a turn round a peg", true, peg},
+    {"drum", "a drum turns below a thread that is held, half a turn round it", true, drum},
     {"gripper", "an open gripper pushes a hanging thread aside", true, gripper},
     {"clamp-and-load", "a clamped thread is bent by its weight and a load", true, clamp_and_load},
     {"jaws", "jaws of finite width and force slip along a thread", true, jaws},

@@ -68,6 +68,11 @@ Figures peg(const Bench&) {
            tension_ratio({scene::Model::kRod, 49, kSubject.accuracy}, 0.3, std::numbers::pi, 24), 0.02}};
 }
 
+Figures drum(const Bench&) {
+  return {{"ratio of the tensions, friction 0.3",
+           tension_ratio({scene::Model::kRod, 49, kSubject.accuracy}, 0.3, std::numbers::pi, 24, 0.005), 0.02}};
+}
+
 Figures gripper(const Bench&) {
   auto scene = hanging();
   scene.world.grippers_collide = true;

@@ -59,7 +59,7 @@ Findings compare(const Subject& subject, bool polygon) {
 
 }  // namespace
 
-double tension_ratio(const Subject& subject, double mu, double angle_rad, int wrapped) {
+double tension_ratio(const Subject& subject, double mu, double angle_rad, int wrapped, double drum_m_per_s) {
   const double rise = angle_rad > 6.0 ? kPitch_m / (2.0 * std::numbers::pi) : 0.0;  // advance along the peg per radian
   const double per_rad = std::hypot(kRadius_m, rise), arc = angle_rad * per_rad, l = arc / wrapped;
   auto scene = real_thread(subject, 1.0, mu);
@@ -67,7 +67,8 @@ double tension_ratio(const Subject& subject, double mu, double angle_rad, int wr
   set_bending(scene, 1e-11);
   set_stretch(scene, 1000.0);
   scene.hands.coupling_N_per_m = 2e4;
-  scene.world.pegs.push_back({{0, -1, 0}, {0, 1, 0}, kRadius_m - scene.suture.radius_m});
+  // From the load the thread goes round the bar's axis (+y) in the right-handed sense.
+  scene.world.pegs.push_back({{0, -1, 0}, {0, 1, 0}, kRadius_m - scene.suture.radius_m, -drum_m_per_s});
   const double tail = 0.5 * (scene.suture.length_m - arc);
   const auto tangent = [&](double a) -> Vec3 {
     return Vec3(kRadius_m * std::sin(a), rise, kRadius_m * std::cos(a)) / per_rad;
@@ -84,8 +85,9 @@ double tension_ratio(const Subject& subject, double mu, double angle_rad, int wr
   Tools tools = no_hands();
   tools[1].grip = true;
   tools[1].p_WT = sim.nodes_W().back();
-  tools[1].v_WT = kSpeed_m_per_s * pull;
-  const double step = kSpeed_m_per_s * scene.time.tick_s;
+  const double hand_m_per_s = drum_m_per_s == 0.0 ? kSpeed_m_per_s : 0.0;
+  tools[1].v_WT = hand_m_per_s * pull;
+  const double step = kSpeed_m_per_s * scene.time.tick_s;  // of the slip, or about that much
   // `gives`: distance by which the hand's spring, the free tail and the wrapped thread stretch before the whole thread
   // slips. The average begins after twice this distance.
   const double most_N = std::exp(mu * angle_rad), strain = most_N / scene.suture.rod.EA_N;
@@ -94,7 +96,7 @@ double tension_ratio(const Subject& subject, double mu, double angle_rad, int wr
   const int ticks = 200 + static_cast<int>(2.0 * gives / step) + counted;
   double sum = 0.0;
   for (int k = 0; k < ticks; ++k) {
-    tools[1].p_WT += step * pull;
+    tools[1].p_WT += scene.time.tick_s * tools[1].v_WT;
     proceed(sim, tools);
     if (k >= ticks - counted) sum -= sim.hand(physics::Hand::kRight).f_W.dot(pull) / counted;
   }

@@ -7,6 +7,9 @@ namespace ligature::validate {
 
 /// Tension ratio T1 / T2 with `wrapped` segments on an arc of `angle_rad`: T2 = 1 N loads one end, T1 is the pull at
 /// the other end. Averaged over one segment's length, because polygon corners move on and off the peg.
-[[nodiscard]] double tension_ratio(const Subject& subject, double mu, double angle_rad, int wrapped);
+/// @param drum_m_per_s  0: the thread is drawn round a peg. Else it is held, and the surface turns at this speed,
+/// towards the load (positive) or away from it.
+[[nodiscard]] double tension_ratio(const Subject& subject, double mu, double angle_rad, int wrapped,
+                                   double drum_m_per_s = 0.0);
 
 }  // namespace ligature::validate

@@ -281,6 +281,9 @@ TEST(ScenePage, HasEveryRuleBetweenKeys) {
       {"world.fixed[].node", fixed + "}, {node = 1, position_m = [0, 0, 0]}]\n"},
       {"world.loads", loads + "]\n"},
       {"world.pegs", pegs + "]\n"},
+      {"world.pegs[].surface_m_per_s",
+       "[suture]\nmodel = \"rod\"\n[world]\npegs = [{from_m = [0, 0, 0], to_m = [0, 0, 0], radius_m = 1, "
+       "surface_m_per_s = 1}]\n"},
       {"world.desk_height_m", paper + "desk_height_m = 0\n"},
       {"world.grippers_collide", paper + "grippers_collide = true\n"},
       {"world.frame_collides", paper + "frame_collides = true\n"},
