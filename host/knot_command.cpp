@@ -1,5 +1,6 @@
 #include "host/knot_command.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +12,8 @@
 
 namespace ligature::host {
 namespace {
+
+constexpr double kAtWithin_s = 1.0;  // --at takes the nearest shape, unless it is further away
 
 std::string json_line(const knot::KnotResult& found) {
   nlohmann::ordered_json json = {
@@ -47,6 +50,9 @@ std::string describe_knot(const KnotOptions& options) {
   Polyline line = is_lcm_log(options.file) ? read_polyline_log(options.file, options.at_s)
                                            : read_polyline_csv(options.file, options.at_s);
   if (options.at_s && !line.time_s) throw BadInput(options.file + ": --at needs a column t_s, found none");
+  if (options.at_s && std::abs(*line.time_s - *options.at_s) > kAtWithin_s)
+    throw BadInput(options.file + text(": --at: found %g s, the nearest shape is at %.3f s; allowed up to %g s from it",
+                                       *options.at_s, *line.time_s, kAtWithin_s));
   if (line.last_is_cut_off)
     std::fprintf(stderr, "ligature-host: %s: the last shape is cut off; took %s whole one\n", options.file.c_str(),
                  options.at_s ? "the nearest" : "the last");

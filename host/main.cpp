@@ -6,6 +6,7 @@
 #include <string>
 
 #include "host/commands.hpp"
+#include "host/console/likely_option.hpp"
 #include "host/console/stop_signal.hpp"
 #include "host/console/unknown_command.hpp"
 #include "host/errors.hpp"
@@ -58,7 +59,7 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error) == 0 && is_told() ? 0 : complain(kUntold, 3);
-    return complain(std::string(error.what()) + " (see --help)", 2);
+    return complain(error.what() + ligature::console::likely_option(app, argc, argv) + " (see --help)", 2);
   } catch (const BadInput& error) {
     return complain(error.what(), 2);
   } catch (const std::exception& error) {

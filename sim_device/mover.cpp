@@ -10,6 +10,9 @@
 namespace ligature::sim {
 namespace {
 
+/// Without a scene the script's places are taken for metres of the device itself.
+std::string no_scene(const Options& o) { return o.scene.empty() ? "; --scene says them, and is not given" : ""; }
+
 std::variant<Mover, std::string> scripted(const Options& o, const scene::Scene& scene, const Linkage& linkage) {
   scene::GripperScript script;
   if (!o.script.empty()) {
@@ -18,7 +21,7 @@ std::variant<Mover, std::string> scripted(const Options& o, const scene::Scene& 
     script = std::get<scene::GripperScript>(std::move(read));
   }
   auto path = script_hand(script, o.is_left ? 0 : 1, WorkspaceMap(scene.hands, linkage));
-  if (const auto* why = std::get_if<std::string>(&path)) return o.script + ": " + *why;
+  if (const auto* why = std::get_if<std::string>(&path)) return o.script + ": " + *why + no_scene(o);
   return Mover{std::get<std::unique_ptr<Intention>>(std::move(path)), nullptr};
 }
 

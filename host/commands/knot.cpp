@@ -18,7 +18,9 @@ void add_knot(CLI::App& app) {
       ->required();
   auto* closed = command->add_flag("--closed", options->closed, "the last point joins the first");
   command->add_flag("--open", options->open, "it does not")->excludes(closed);
-  command->add_option("--at", options->at_s, "time of the shape, s: the nearest one (default: the last one)")
+  command
+      ->add_option("--at", options->at_s,
+                   "time of the shape, s: the nearest one, at most 1 s away (default: the last one)")
       ->check(finite);
   command->add_flag("--json", options->json, "as one JSON line");
   command->footer(

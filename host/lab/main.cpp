@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "host/console/likely_option.hpp"
 #include "host/console/stop_signal.hpp"
 #include "host/console/unknown_command.hpp"
 #include "host/lab/experiment_command.hpp"
@@ -70,7 +71,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& success) {
     app.exit(success);
   } catch (const CLI::ParseError& error) {
-    complain(std::string(error.what()) + " (see ligature-lab --help)");
+    complain(error.what() + ligature::console::likely_option(app, argc, argv) + " (see ligature-lab --help)");
     return kBadInput;
   } catch (const std::exception& error) {
     complain(error.what());

@@ -73,6 +73,26 @@ TEST_F(Program, RefusesNumbersThatAreNone) {
   }
 }
 
+TEST_F(Program, NamesTheOptionThatWasProbablyMeant) {
+  EXPECT_EQ(run("export a.lcmlog --force f.csv"), 2);
+  EXPECT_NE(err().find("did you mean --forces?"), std::string::npos) << err();
+  EXPECT_EQ(std::ranges::count(err(), '\n'), 1) << err();
+  EXPECT_EQ(run("export a.lcmlog --zebra=f.csv"), 2);
+  EXPECT_EQ(err().find("did you mean"), std::string::npos) << err();
+}
+
+TEST_F(Program, NamesNoKnotFarFromTheTimeThatWasAskedFor) {
+  LogWriter log(folder_.file("a.lcmlog"), false);
+  test::write(log, kTicksChannel, test::batch_of(1, 0, 20));
+  test::write(log, kThreadChannel, test::thread_of(500, test::overhand_points(100)));
+  log.close();
+  EXPECT_EQ(run("knot a.lcmlog --at 1.4"), 0) << err();
+  for (const char* at : {"1.6", "99", "-1"}) {
+    EXPECT_EQ(run(std::string("knot a.lcmlog --at ") + at), 2) << at;
+    EXPECT_NE(err().find("nearest shape is at 0.500 s"), std::string::npos) << err();
+  }
+}
+
 TEST_F(Program, HelpTeachesEveryCommandByExample) {
   EXPECT_EQ(run("--help"), 0);
   EXPECT_NE(out().find("Example"), std::string::npos);
