@@ -1,6 +1,7 @@
 #include "host/view/knot_core.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -56,8 +57,13 @@ std::optional<std::size_t> first_cut(Points points, KnotCore at, const std::vect
   // between the end of the first knot before the cut, and the last start of a knot behind it
   const std::size_t earliest = bisect([&](std::size_t cut) { return type_in(points, {at.first, cut}) != "0_1"; });
   const std::size_t latest = bisect([&](std::size_t cut) { return type_in(points, {cut, at.last}) == "0_1"; }) - 1;
-  for (const std::size_t cut : {(earliest + latest) / 2, latest, earliest})
+  // A cut through a loose knot can give any type, so that several places are tried, from the middle outwards.
+  const double middle = 0.5 * static_cast<double>(earliest + latest);
+  const double half = middle - static_cast<double>(std::min(earliest, latest));
+  for (const double share : {0.0, 0.5, -0.5, 0.25, -0.25, 0.75, -0.75, 1.0, -1.0}) {
+    const auto cut = static_cast<std::size_t>(std::lround(middle + share * half));
     if (cut > at.first && cut < at.last && is_cut(cut)) return cut;
+  }
   return std::nullopt;
 }
 
@@ -88,7 +94,8 @@ std::vector<KnotCore> find_throws(Points points, const knot::KnotResult& whole, 
   if (core.last == 0) return {};
   std::vector<KnotCore> found;
   auto summands = summands_of(whole.type);
-  for (KnotCore rest = core; summands.size() > 1;) {
+  // With the thread's long ends: a piece that is cut close to the knot on both sides is less surely recognised.
+  for (KnotCore rest{0, points.size() - 1}; summands.size() > 1;) {
     const auto cut = first_cut(points, rest, summands);
     const auto one = cut ? core_in(points, {rest.first, *cut}) : std::nullopt;
     if (!one) return {core};

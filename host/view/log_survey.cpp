@@ -43,11 +43,13 @@ void LogSurvey::take_batch(double t_s, const std::vector<std::byte>& payload) {
   if (!batch) return;
   if (batch->session != session_) bin_maker_.clear();
   session_ = batch->session;
-  const double share = map_.duration_s() > 0.0 ? t_s / map_.duration_s() : 0.0;
-  const auto column = std::min(kOverview - 1, static_cast<std::size_t>(share * static_cast<double>(kOverview)));
   const std::scoped_lock lock(mutex_);
   for (const auto& tick : batch->ticks) {
     const TraceRow row = trace_row(tick);
+    // The message comes after its last tick. In a short recording its ticks belong to several columns.
+    const double tick_s = t_s - static_cast<double>(batch->ticks.back().tick - tick.tick) * landmarks_.period_s;
+    const double share = map_.duration_s() > 0.0 ? std::clamp(tick_s / map_.duration_s(), 0.0, 1.0) : 0.0;
+    const auto column = std::min(kOverview - 1, static_cast<std::size_t>(share * static_cast<double>(kOverview)));
     if (!landmarks_.first_tick) landmarks_.first_tick = tick.tick, landmarks_.first_tick_s = t_s;
     if (!landmarks_.first_grasp && (tick.grasped_node[0] >= 0 || tick.grasped_node[1] >= 0))
       landmarks_.first_grasp = tick.tick;

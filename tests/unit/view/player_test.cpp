@@ -87,6 +87,22 @@ TEST(Player, RefusesWhatARecordingCannot) {
   EXPECT_EQ(p.player.request({{"command", "arm"}}, p.now)["accepted"], false);
 }
 
+TEST(LogSurvey, TheOverviewOfAShortRecordingHasNoHoles) {
+  const test::TestFolder folder;
+  LogWriter log(folder.file("short.lcmlog"), false);
+  for (int i = 0; i < 50; ++i) {  // one second: twelve columns of the overview for each message
+    auto batch = test::batch_of(1, 20 * i, 20);
+    batch.utime = 1'000'000 + 20'000LL * i;
+    for (auto& tick : batch.ticks) tick.f_device_N[0][2] = 1.0;
+    test::write(log, kTicksChannel, batch);
+  }
+  log.close();
+  const LogMap map(folder.file("short.lcmlog"));
+  const LogSurvey survey(map);
+  while (survey.progress() < 1.0) std::this_thread::yield();
+  EXPECT_EQ(survey.marks()["left_N"], nlohmann::json(std::vector<float>(LogSurvey::kOverview, 1.0F)));
+}
+
 TEST(LogSurvey, FindsGraspAndKnotAndTheSameEachTime) {
   Playing p;
   p.wait_for_survey();
