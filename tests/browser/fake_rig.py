@@ -1,6 +1,7 @@
 """A fake rig for tests of the page: publishes messages as ligature-firmware does, controlled by lines on standard input.
 
-    fault N     latch fault N        knot | unknot   the thread's shape        spike F   one tick with F newton
+    fault N     latch fault N        knot | unknot | square   the thread's shape   spike F   one tick with F newton
+    set KEY=V   the scene runs with this override         friction F   as set by somebody else
     limit BITS  force limits of the left hand   clutch B   left tool parked   degrade N   reduced accuracy of the solver
     arm         go to FORCE
     quiet       stop publishing      go              publish again             restart [T]   another session, from tick T
@@ -46,6 +47,12 @@ def unknot(n):
     return [[-1.6 + 3.2 * i / (n - 1), 0.0, 2.6 - 1.8 * math.sin(math.pi * i / (n - 1))] for i in range(n)]
 
 
+def square(n):
+    """Two trefoils in a row, one the mirror image of the other."""
+    first = trefoil(n // 2)
+    return first + [[x + 3.0, 0.4 - y, z + 3.5] for x, y, z in trefoil(n - n // 2)]
+
+
 class Rig:
     def __init__(self, url):
         self.lcm = lcm.LCM(url)
@@ -53,7 +60,7 @@ class Rig:
         self.state, self.fault, self.armed = 2, 0, False
         self.shape, self.spike, self.quiet = unknot(KNOT_NODES), 0.0, False
         self.limit, self.clutch, self.degraded = 0, 0, 0
-        self.scene, self.friction = "fake.toml", 0.3
+        self.scene, self.friction, self.overrides = "fake.toml", 0.3, []
         self.restart()
 
     def restart(self, tick=0):
@@ -127,8 +134,13 @@ class Rig:
             self.fault = int(value)
             self.event(2, self.fault, f"fault {self.fault}")
             self.go_to(6)
-        elif word in ("knot", "unknot"):
-            self.shape = trefoil(KNOT_NODES) if word == "knot" else unknot(KNOT_NODES)
+        elif word in SHAPES:
+            self.shape = SHAPES[word](KNOT_NODES)
+        elif word == "friction":
+            self.friction = float(value)
+            self.publish_offer()
+        elif word == "set":
+            self.overrides.append(value)
         elif word == "spike":
             self.spike = float(value)
         elif word == "limit":
@@ -189,10 +201,14 @@ class Rig:
     def publish_status(self):
         status = status_t()
         status.session, status.protocol_version, status.firmware_version = self.session, 1, "test"
-        status.scene_file, status.scene_toml = f"scenes/{self.scene}", SCENE
+        status.scene_file = f"scenes/{self.scene}"
+        status.scene_toml = SCENE + "\n# as run:" + "".join(f"\n# --set {each}" for each in self.overrides)
         status.period_s, status.max_force_N, status.tick = 1e-3, 3.3, self.tick
         status.state, status.fault, status.realtime, status.armed = self.state, self.fault, 1, int(self.armed)
         self.lcm.publish("LIGATURE_STATUS", status.encode())
+
+
+SHAPES = {"knot": trefoil, "unknot": unknot, "square": square}
 
 
 def main():

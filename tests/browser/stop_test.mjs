@@ -14,7 +14,7 @@ await rig.says(/ready/);
 const view = new Program(host, ['view', '--port', '0', '--recordings', out]);
 const own = new URL(await view.says(/open (\S+)/));
 const saboteur = await Saboteur.between(own.host);
-const CORE = ['guard.js', 'main.js', 'link.js', 'frame.js', 'names.js', 'state_panel.js', 'controls.js'];
+const CORE = ['guard.js', 'main.js', 'link.js', 'frame.js', 'names.js', 'numbers.js', 'state_panel.js', 'controls.js'];
 let failures = 0, cases = 0;
 
 /** Opens the page on a rig in FORCE, checks its state display, and stops. @param file the broken file, or null. */
@@ -97,10 +97,11 @@ async function draws(page, webgl, name) {
 
 /** Checks, with each panel and dialog open at this page size, that STOP is not covered and nothing overflows. */
 async function fits(page, width, height) {
-  for (const open of ['', 'change', 'help', 'record-dialog', 'hand-panel']) {
+  for (const open of ['', 'change', 'exercise', 'tools', 'help', 'record-dialog', 'hand-panel']) {
     await page.evaluate((id) => {
       for (const box of document.querySelectorAll('dialog[open]')) box.close();
-      for (const panel of ['change', 'hand-panel']) document.getElementById(panel).hidden = id !== panel;
+      for (const panel of ['change', 'exercise', 'hand-panel']) document.getElementById(panel).hidden = id !== panel;
+      document.getElementById('tools').classList.toggle('is-open', id === 'tools');
       document.getElementById(id)?.show?.();
       for (const side of ['left', 'right']) Object.assign(document.getElementById(`jaws-${side}`), { hidden: false, textContent: `${side} jaws: close` });
     }, open);
@@ -119,7 +120,7 @@ function outside() {
     if (!stop.contains(top)) wrong.push(`STOP is under ${top ? name(top) : 'nothing: outside the window'}`);
   }
   if (document.documentElement.scrollWidth > innerWidth) wrong.push(`${document.documentElement.scrollWidth - innerWidth} px too wide`);
-  for (const panel of document.querySelectorAll('header, .scene, .traces, #change, dialog, .trace-tools')) {
+  for (const panel of document.querySelectorAll('header, .scene, .traces, .change, dialog, .trace-tools')) {
     const p = box(panel);
     if (!p.width) continue;
     for (const e of panel.querySelectorAll('button, input, select, label, h2, .overlay')) {

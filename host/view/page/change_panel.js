@@ -1,13 +1,16 @@
 // The panel that loads another scene or changes parameters. The firmware lists what can be changed, and answers each
 // request.
-import { toast } from './controls.js';
+import { showPanel, toast } from './controls.js';
 
 const $ = (id) => document.getElementById(id);
 const STEPS = 200;
 const rows = new Map(); // the panel's rows, by parameter key
+const asked = new Set(); // keys whose change is not answered yet: what is offered may be the value before or after
+const changes = []; // of parameters, made in this page: {key, name, from, to, isTold: the
+// firmware has offered `to`}; the last one can be undone
 
 export function setUpChange(link) {
-  const toggle = (on) => { $('change').hidden = !on; $('change-open').setAttribute('aria-expanded', on); };
+  const toggle = (on) => { showPanel('change', on); };
   $('change-open').addEventListener('click', () => toggle($('change').hidden));
   $('change-close').addEventListener('click', () => toggle(false));
   const ask = async (what, words) => {
@@ -22,7 +25,34 @@ export function setUpChange(link) {
     await ask({ command: 'load-scene', text: $('scenes').value + changes }, 'load scene');
     $('load-scene').disabled = false;
   });
+  $('undo').addEventListener('click', async () => {
+    const last = changes.at(-1);
+    $('undo').disabled = true;
+    asked.add(last.key);
+    if (await ask({ command: 'set', text: last.key, value: last.from }, `${last.name}, undone`)) changes.splice(changes.indexOf(last), 1);
+    asked.delete(last.key);
+    showUndo();
+  });
   setUpChange.ask = ask;
+}
+
+/** Shows which change would be undone. */
+function showUndo() {
+  const last = changes.at(-1);
+  $('undo').disabled = !last;
+  $('undo').textContent = last ? `Undo ${last.name}: ${last.to} → ${last.from}` : 'Undo';
+}
+
+/** Forgets changes that no longer hold: another scene was loaded, or another page or program set the parameter. */
+function forgetOld(parameters) {
+  const now = new Map(parameters.map(({ key, value }) => [key, value]));
+  for (let i = changes.length - 1; i >= 0; --i) {
+    const { key, to, from, isTold } = changes[i];
+    if (asked.has(key)) continue;
+    if (now.get(key) === to) { changes[i].isTold = true; now.set(key, from); } // before this change it had the value `from`
+    else if (isTold || !now.has(key)) changes.splice(i, 1);
+  }
+  showUndo();
 }
 
 export function showOffer({ scenes, parameters }) {
@@ -30,6 +60,7 @@ export function showOffer({ scenes, parameters }) {
   $('scenes').replaceChildren(...scenes.map((name) => new Option(name, name)));
   if (scenes.includes(chosen)) $('scenes').value = chosen;
   for (const [key, row] of rows) if (!parameters.some((p) => p.key === key)) { row.box.remove(); rows.delete(key); }
+  forgetOld(parameters);
   for (const parameter of parameters) (rows.get(parameter.key) ?? makeRow(parameter.key)).show(parameter);
 }
 
@@ -52,7 +83,13 @@ function makeRow(key) {
   const settle = () => { number.value = is.value; slider.value = toSlider(is.value); };
   const give = async (value) => {
     if (!Number.isFinite(value)) { toast(`${is.name}: found '${number.value}', allowed a number`, true); return settle(); }
-    if (!await setUpChange.ask({ command: 'set', text: key, value }, is.name)) settle();
+    const from = is.value;
+    asked.add(key);
+    const isDone = await setUpChange.ask({ command: 'set', text: key, value }, is.name);
+    asked.delete(key);
+    if (!isDone) return settle();
+    if (value !== from) changes.push({ key, name: is.name, from, to: value, isTold: is.value === value });
+    showUndo();
   };
   slider.addEventListener('input', () => { number.value = fromSlider(Number(slider.value)); });
   slider.addEventListener('change', () => give(Math.min(is.highest, Math.max(is.lowest, fromSlider(Number(slider.value))))));

@@ -1,5 +1,7 @@
-// Colours of the thread, computed from the shape alone. The scale runs from blue-black to yellow (like cividis),
+// Colours of the thread, computed from its shape, facts of the scene and the knot. The scale runs from blue-black to yellow (like cividis),
 // readable with all forms of colour vision and in grey.
+import { throwsOf } from './throws.js';
+
 const PLAIN = srgb(0xe9, 0xcf, 0x9b), ACCENT = srgb(0xff, 0x6a, 0x3d), HELD = [srgb(0x56, 0xb4, 0xe9), srgb(0xe6, 0x9f, 0x00)];
 const SCALE = [[0x2f, 0x4d, 0x8f], [0x57, 0x6b, 0x9a], [0x83, 0x8c, 0x8e], [0xb8, 0xa9, 0x72], [0xff, 0xe5, 0x4a]].map((c) => srgb(...c));
 export const SCALE_CSS = 'linear-gradient(90deg, #2f4d8f, #576b9a, #838c8e, #b8a972, #ffe54a)';
@@ -15,7 +17,7 @@ function onScale(share) {
  * Colours per node, n x 3, linear RGB, and the legend. @returns {{colours: Float32Array, legend: null | {title, low,
  * high}}}.
  */
-export function colourThread(mode, shape, { restLength_m, core } = {}) {
+export function colourThread(mode, shape, facts = {}, knot = null) {
   const p = shape.p_W, n = p.length / 3, colours = new Float32Array(p.length);
   const paint = (i, c) => colours.set(c, 3 * i);
   let legend = null;
@@ -24,15 +26,12 @@ export function colourThread(mode, shape, { restLength_m, core } = {}) {
     const bends = Array.from({ length: n }, (_, i) => curvature(p, i, n)), most = scaleEnd(Math.max(...bends), 1 / (2 * shape.radius_m));
     for (let i = 0; i < n; ++i) paint(i, onScale(bends[i] / most));
     legend = { title: 'curvature', low: '0', high: `${format(most)} 1/m` };
-  } else if (mode === 'stretch' && restLength_m > 0) {
-    const rest = restLength_m / (n - 1), span = 0.05;
-    for (let i = 0; i < n; ++i) {
-      const a = Math.max(i - 1, 0), b = Math.min(i + 1, n - 1);
-      let length = 0;
-      for (let k = a; k < b; ++k) length += distance(p, k, k + 1);
-      paint(i, onScale(0.5 + (length / ((b - a) * rest) - 1) / (2 * span)));
-    }
-    legend = { title: 'stretch', low: '−5 %', high: '+5 %' };
+  } else if (mode === 'stretch') {
+    const strain = strainOf(shape, n, facts);
+    if (strain) legend = paintBothWays(strain, 'stretch', 1, (most) => [`−${format(100 * most)} %`, `+${format(100 * most)} %`], paint);
+    else legend = { title: 'stretch: not known of this thread; tension shows it' };
+  } else if (mode === 'twist') {
+    legend = paintBothWays(twistOf(shape, n), 'twist', 1 / shape.radius_m, (most) => [`−${format(most)} rad/m`, `+${format(most)} rad/m`], paint);
   } else if (mode === 'tension') {
     const most = Math.max(1e-9, ...shape.tension_N.map(Math.abs));
     for (let i = 0; i < n; ++i) paint(i, onScale(Math.max(0, i ? Math.max(shape.tension_N[i - 1], shape.tension_N[i]) : shape.tension_N[0]) / most));
@@ -41,19 +40,45 @@ export function colourThread(mode, shape, { restLength_m, core } = {}) {
     for (const i of touching(p, n, shape.radius_m)) paint(i, ACCENT);
     legend = { title: 'orange: strand within a tenth of its diameter of another' };
   } else if (mode === 'knot') {
-    if (core) for (let i = core[0]; i <= core[1] && i < n; ++i) paint(i, ACCENT);
-    legend = { title: 'orange: shortest piece that holds the knot' };
+    const throws = throwsOf(knot, shape);
+    for (const [first, last] of throws) for (let i = first; i <= last; ++i) paint(i, ACCENT);
+    legend = { title: `orange: shortest piece${throws.length > 1 ? 's that hold a throw' : ' that holds the knot'}` };
   }
   shape.grasped.forEach((node, hand) => { if (node >= 0 && node < n) paint(node, HELD[hand]); });
   return { colours, legend };
 }
 
 /**
+ * Paints the nodes on a scale whose middle is 0. @param perSegment values of the segments; a node has the mean of its
+ * two. @param limit largest end of the scale. @param ends texts for the ends.
+ */
+function paintBothWays(perSegment, title, limit, ends, paint) {
+  const last = perSegment.length - 1, most = scaleEnd(Math.max(...perSegment.map(Math.abs)), limit, 1e-9);
+  for (let i = 0; i <= last + 1; ++i) paint(i, onScale(0.5 + (perSegment[Math.max(i - 1, 0)] + perSegment[Math.min(i, last)]) / 2 / (2 * most)));
+  const [low, high] = ends(most);
+  return { title, low, high };
+}
+
+/**
+ * Strain of each segment, or null. Equal segments have a known rest length. Those of a rod that moves its nodes along the
+ * thread have not: there the strain is tension / EA.
+ */
+function strainOf({ p_W: p, tension_N }, n, { length_m, equal_segments, EA_N }) {
+  if (equal_segments) return length_m > 0 ? Array.from({ length: n - 1 }, (_, i) => (distance(p, i, i + 1) * (n - 1)) / length_m - 1) : null;
+  return EA_N > 0 ? Array.from({ length: n - 1 }, (_, i) => tension_N[i] / EA_N) : null;
+}
+
+/** Twist of each segment, rad/m: the turn of the material from end to end, per length. */
+function twistOf({ p_W: p, turn_rad }, n) {
+  return Array.from({ length: n - 1 }, (_, i) => (turn_rad[i + 1] - turn_rad[i]) / (distance(p, i, i + 1) || 1));
+}
+
+/**
  * Upper end of a scale: 1, 2 or 5 times a power of ten, at most `most`, so that it does not change with every small
  * change of the data.
  */
-export function scaleEnd(largest, most) {
-  const least = Math.max(largest, 1e-3 * most), ten = 10 ** Math.floor(Math.log10(least));
+export function scaleEnd(largest, most, smallest = 1e-3) {
+  const least = Math.max(largest, smallest * most), ten = 10 ** Math.floor(Math.log10(least));
   return Math.min(most, [1, 2, 5, 10].map((k) => k * ten).find((end) => end >= least) ?? most);
 }
 

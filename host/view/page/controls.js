@@ -39,6 +39,16 @@ export function isTyping(event) {
   return takenKeys.has(event.code) || event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === 'SELECT' || isText(event.target);
 }
 
+/** Opens or closes a panel (`change`, `exercise`). Only one is open at a time, because they have the same place. */
+export function showPanel(id, on) {
+  for (const panel of document.querySelectorAll('section.change')) {
+    const isOpen = on && panel.id === id;
+    if (panel.id !== id && !on) continue;
+    panel.hidden = !isOpen;
+    $(`${panel.id}-open`).setAttribute('aria-expanded', isOpen);
+  }
+}
+
 export function toast(text, refused) {
   const box = document.createElement('div');
   box.className = refused ? 'toast refused' : 'toast';

@@ -1,6 +1,7 @@
 // Draws the thread without WebGL, in two dimensions from two sides, nearer strands over farther ones.
 import { colourThread } from './colouring.js';
-import { sceneFacts } from './scene_facts.js';
+import { NO_FACTS } from './scene_facts.js';
+import { followed, middleOf } from './throws.js';
 
 const HAND_CSS = ['#56b4e9', '#e69f00'], DRAW_MS = 40, AXES = 'xyz';
 /**
@@ -15,7 +16,8 @@ export class FlatView {
     this.canvas = Object.assign(document.createElement('canvas'), { id: 'flat', className: 'picture', hidden: true });
     this.context = this.canvas.getContext('2d');
     if (!this.context) throw new Error('this browser draws on no canvas');
-    this.facts = { deskHeight_m: null, restLength_m: 0, fixed: [], maxForce_N: 3.3 };
+    this.facts = NO_FACTS;
+    this.maxForce_N = 3.3;
     this.box = null;
     this.due = 0;
     this.panes = []; // where each picture is drawn and how it maps to the world; as in scene.js
@@ -24,15 +26,16 @@ export class FlatView {
 
   show(on) { this.canvas.hidden = !on; }
   dispose() { this.canvas.remove(); }
-  setStatus(status) { this.facts = sceneFacts(status); }
+  setForce(maxForce_N) { this.maxForce_N = maxForce_N || this.maxForce_N; }
+  setFacts(facts) { this.facts = facts ?? NO_FACTS; this.isDirty = true; }
   setStereo() {} // stereo needs depth
   view() { this.box = null; }
 
   /** Takes a new shape. @returns the legend. */
-  update(shape, now, core) {
+  update(shape, now, knot) {
     if (!shape) return null;
-    Object.assign(this, { shape, now, core, isDirty: true });
-    const { colours, legend } = colourThread(this.choice.colour, shape, { restLength_m: this.facts.restLength_m, core });
+    Object.assign(this, { shape, now, knot, isDirty: true });
+    const { colours, legend } = colourThread(this.choice.colour, shape, this.facts, knot);
     this.colours = colours;
     return legend;
   }
@@ -59,14 +62,15 @@ export class FlatView {
   }
 
   /**
-   * The box to be shown: the thread and all its earlier places, or with `follow` the knot alone (without a knot, the
-   * held nodes).
+   * The box to be shown: the thread and all its earlier places, or with `follow` one throw of the knot alone (without
+   * a knot, the held nodes).
    */
   #frame() {
-    const p = this.shape.p_W, { core, choice } = this, held = this.shape.grasped.filter((i) => i >= 0);
-    const nodes = !choice.follow ? null : core ? [...range(core[0], core[1] + 1)] : held.length ? held : null;
-    const box = boxOf(p, nodes ?? range(0, p.length / 3));
-    if (nodes) return widened(box, 12 * this.shape.radius_m);
+    const p = this.shape.p_W, pieces = this.choice.follow ? followed(this.knot, this.shape, this.at ?? [0, 0, 0]) : [];
+    const nodes = pieces.flatMap(([first, last]) => [...range(first, last + 1)]);
+    if (nodes.length) this.at = middleOf(p, pieces[0]);
+    const box = boxOf(p, nodes.length ? nodes : range(0, p.length / 3));
+    if (nodes.length) return widened(box, 12 * this.shape.radius_m);
     this.box = this.box ? joined(this.box, box) : box;
     return widened(this.box, 12 * this.shape.radius_m);
   }
@@ -104,7 +108,7 @@ export class FlatView {
     c.beginPath(); c.rect(x, y, w, h); c.clip();
     c.fillStyle = '#222a35';
     c.fillRect(x, y, w, h);
-    const { deskHeight_m } = this.facts;
+    const { desk_height_m: deskHeight_m } = this.facts;
     if (deskHeight_m !== null && side.up === 2) {
       const level = place([0, 0, deskHeight_m])[1];
       c.fillStyle = '#3a4452';
@@ -112,7 +116,7 @@ export class FlatView {
     }
     for (const p of this.facts.fixed) { const [u, v] = place(p); polygon(c, [[u, v - 6], [u + 6, v], [u, v + 6], [u - 6, v]], '#b8c2cf'); }
     this.#thread(side, place, Math.max(1.6, 2 * scale * this.shape.radius_m));
-    this.now?.hands?.forEach((hand, i) => this.#hand(hand, i, side, place, 0.3 * Math.min(w, h) / this.facts.maxForce_N));
+    this.now?.hands?.forEach((hand, i) => this.#hand(hand, i, side, place, 0.3 * Math.min(w, h) / this.maxForce_N));
     c.strokeStyle = '#323b49';
     c.strokeRect(x - 0.5, y - 0.5, w + 1, h + 1);
     c.restore();

@@ -1,6 +1,7 @@
 // Histogram of the control loop's wake-up latency, with logarithmic heights, so that a single late tick among a million
 // is visible.
 import { C } from './frame.js';
+import { three } from './numbers.js';
 
 const BOUNDS_us = [2, 5, 10, 20, 50, 100, 200, 500, 1000];
 
@@ -8,7 +9,7 @@ export class Histogram {
   /** @param redraw callback that requests a redraw, because resizing clears the canvas. */
   constructor(host, redraw) {
     this.box = Object.assign(document.createElement('div'), { className: 'plot histogram' });
-    this.box.innerHTML = '<h2>wake-up latency <em>µs, log count over the window</em></h2>';
+    this.box.innerHTML = '<h2>wake-up latency <em>µs, log count</em></h2>';
     this.canvas = document.createElement('canvas');
     this.box.append(this.canvas);
     host.append(this.box);
@@ -42,13 +43,15 @@ function drawHistogram(canvas, store, from, period_s) {
   const most = Math.max(10, ...counts), cell = (width - left - 8) / counts.length, tall = height - bottom - top;
   ctx.font = '11px sans-serif';
   ctx.textAlign = 'center';
+  const widest = ctx.measureText(`<${BOUNDS_us.at(-1)}`).width;
   counts.forEach((count, i) => {
     const x = left + i * cell, h = count ? Math.max(3, (tall * Math.log10(1 + count)) / Math.log10(1 + most)) : 0;
     const isLate = i > 0 && BOUNDS_us[i - 1] * 1e-6 >= period_s;
     ctx.fillStyle = isLate ? '#ff5c47' : '#7b8da6';
     ctx.fillRect(x + 2, height - bottom - h, cell - 4, h);
     ctx.fillStyle = '#9aa6b6';
-    ctx.fillText(i < BOUNDS_us.length ? `<${BOUNDS_us[i]}` : `≥${BOUNDS_us.at(-1)}`, x + cell / 2, height - 4);
+    const label = i < BOUNDS_us.length ? `<${BOUNDS_us[i]}` : `≥${BOUNDS_us.at(-1)}`, isRoom = cell > 1.05 * widest || (counts.length - 1 - i) % 2 === 0;
+    if (isRoom) ctx.fillText(label, x + cell / 2, height - 4);
     if (count) {
       ctx.fillStyle = '#e8ecf2';
       ctx.fillText(count >= 10000 ? `${(count / 1000).toFixed(0)}k` : count, x + cell / 2, height - bottom - h - 3);
@@ -56,5 +59,5 @@ function drawHistogram(canvas, store, from, period_s) {
   });
   ctx.textAlign = 'right';
   ctx.fillStyle = '#e8ecf2';
-  ctx.fillText(`max ${(max / 1000).toFixed(0)} µs`, width - 10, 12);
+  ctx.fillText(`max ${three(max / 1000)} µs`, width - 10, 14);
 }

@@ -4,6 +4,18 @@ const COMMON = { '0_1': 'no knot', '3_1': 'trefoil (overhand)', '4_1': 'figure-e
   '3_1#3_1 left': 'granny', '3_1#3_1 right': 'granny', '3_1#3_1 amphichiral': 'square (reef)', '3_1#5_1 mixed': "surgeon's" };
 /** Common name of a knot, or ''. */
 export function commonName(type, handedness) { return COMMON[`${type} ${handedness}`] ?? COMMON[type] ?? ''; }
+/** The text of an event, with the knot's common name when it is about a knot. */
+export function withKnotName(text) {
+  const [, type, handedness] = text.match(/^knot (\S+) (\S+)$/) ?? [], name = type && commonName(type, handedness);
+  return name ? `${text}, ${name}` : text;
+}
+
+/** Length of each throw in diameters of the thread, without the thread between them. */
+export function tightness(knot) {
+  const lengths = (knot.throws ?? []).map(({ diameters }) => diameters.toFixed(0));
+  return lengths.length ? `tightness: ${lengths.join(' and ')} diameters of thread` : '';
+}
+
 const TINTS = ['#56b4e9', '#e69f00', '#2fbf8f', '#cc79a7', '#f0e442', '#d55e00'];
 const STRIP_S = 120;
 
@@ -30,7 +42,7 @@ export class KnotPanel {
     const common = commonName(knot.type, knot.handedness);
     const least = knot.type === 'unknown' ? null : knot.type.split('#').reduce((sum, part) => sum + (part === '0_1' ? 0 : parseInt(part, 10)), 0);
     $('knot-note').textContent = [hand, common, knot.type === '0_1' || knot.crossings === null ? '' : `crossings ${knot.crossings}${least === null ? '' : ` (least ${least})`}`,
-      knot.core_diameters ? `tightness: ${knot.core_diameters.toFixed(0)} diameters of thread` : ''].filter(Boolean).join(' · ');
+      tightness(knot)].filter(Boolean).join(' · ');
     const label = `${knot.type} ${knot.handedness}`, last = this.history.at(-1);
     if (last && knot.tick < last.from) this.history = [];
     if (this.history.at(-1)?.label !== label) this.history.push({ label, type: knot.type, from: knot.tick });

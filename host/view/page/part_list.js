@@ -1,5 +1,7 @@
 // The parts of the page: where each shows its failure, and which data it gets. Each is a module of its own, loaded when
 // it is made.
+import { exact, three } from './numbers.js';
+
 const $ = (id) => document.getElementById(id);
 const HANDS_MS = 100, DIAGRAM_MS = 200, TRACES_MS = 50, LONG_TRACES_MS = 200, LONG_WINDOW_S = 10;
 
@@ -17,8 +19,11 @@ function pictures(panels) {
     name, place: () => $('scene-notes'),
     make: async (attempt) => new (await load(file, attempt))[className]($('scene'), choice, (why) => panels.parts[key].fail(new Error(why))),
     dispose: (value) => value?.dispose(),
-    text: (value, { status }) => { if (status) value.setStatus(status); },
-    update: (value) => { if (isWanted(key)) panels.parts.sceneTools.run((t) => t.showLegend(value.update(latest.shape, latest.now, latest.knot?.core))); },
+    text: (value, { status, scene }) => {
+      if (status) value.setForce(status.max_force_N);
+      if (scene !== undefined) value.setFacts(scene);
+    },
+    update: (value) => { if (isWanted(key)) panels.parts.sceneTools.run((t) => t.showLegend(value.update(latest.shape, latest.now, latest.knot))); },
     draw: (value, time) => {
       value.show(isWanted(key));
       if (!isWanted(key)) return;
@@ -70,7 +75,9 @@ function plots(panels) {
       make: async (attempt) => {
         const { Traces, describeRow } = await load('traces.js', attempt);
         const traces = new Traces($('plots'), panels.store, panels.beside, panels.choice, (row) => {
-          $('cursor').textContent = describeRow(row, traces.period_s, traces.third, traces.besideRow(row));
+          const said = (digits) => describeRow(row, traces.period_s, traces.third, traces.besideRow(row), digits);
+          $('cursor').textContent = said(three);
+          $('cursor').dataset.exact = said(exact);
           $('cursor').dataset.row = row ? JSON.stringify([...row].map((v) => (Object.is(v, -0) ? '-0' : v))) : ''; // JSON has no -0
         });
         panels.hurryTraces();
@@ -78,7 +85,9 @@ function plots(panels) {
       },
       dispose: (value) => value?.dispose(),
       forget: (value) => { if (value.isPaused) panels.parts.traceTools.run((t) => t.togglePause()); },
-      text: (value, { status, compare }) => {
+      text: (value, { status, compare, marks, replay }) => {
+        if (marks) value.marks = marks;
+        if (replay) value.replay = replay;
         if (status) Object.assign(value, { period_s: status.period_s, limit_N: status.max_force_N });
         if (compare) { value.compareWith(compare); panels.hurryTraces(); }
       },
@@ -104,7 +113,8 @@ function tools(panels) {
     sceneTools: part('view buttons', 'scene_tools.js', ({ SceneTools }) => new SceneTools(panels)),
     traceTools: part('trace buttons', 'trace_tools.js', ({ TraceTools }) => new TraceTools(panels)),
     replay: part('replay bar', 'replay_bar.js', ({ ReplayBar }) => new ReplayBar(link), {
-      text: (value, { replay, marks, compare }) => {
+      text: (value, { view, replay, marks, compare }) => {
+        if (view?.mode === 'replay') value.showFile(view.file);
         if (replay) value.update(replay);
         if (marks) value.setMarks(marks);
         if (compare) value.setCompare(compare);
@@ -113,8 +123,20 @@ function tools(panels) {
     change: part('scene and parameters', 'change_panel.js', (module) => { module.setUpChange(link); return module; }, { text: (value, { offer }) => { if (offer) value.showOffer(offer); } }),
     recording: part('recording', 'recording.js', (module) => { module.setUpRecording(link); return module; }, { text: (value, { recording }) => { if (recording) value.showRecording(recording); } }),
     events: part('events', 'events.js', (module) => module, { text: (value) => value.showEvents(panels.events, panels.period_s) }),
+    saving: part('saving', 'saving.js', ({ Saving }) => new Saving(panels), { dispose: (value) => value?.dispose(), draw: (value, time) => value.draw(time) }),
+    copying: part('copying', 'copying.js', ({ setUpCopying }) => setUpCopying(() => $('cursor').dataset.exact ?? ''), { dispose: (end) => end?.() }),
+    exercise: exercise(panels, part),
     help: part('help', 'help.js', ({ Help }) => new Help(() => latest.isReplay)),
   };
+}
+
+function exercise(panels, part) {
+  let due = 0;
+  return part('exercise', 'exercise.js', ({ Exercise }) => new Exercise(panels), {
+    dispose: (value) => value?.dispose(),
+    forget: (value) => value.forget(),
+    draw: (value, time) => { if (time >= due) { due = time + HANDS_MS; value.show(); } },
+  });
 }
 
 function hands(panels) {

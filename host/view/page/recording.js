@@ -1,5 +1,6 @@
 // The record button, and the dialog for the recording's name and notes.
 import { toast } from './controls.js';
+import { listRecordings } from './recordings_list.js';
 
 const $ = (id) => document.getElementById(id);
 
@@ -12,6 +13,7 @@ export function setUpRecording(link) {
     $('record-notes').value = '';
     $('record-dialog').show(); // not modal: STOP stays usable
     $('record-name').focus();
+    listRecordings(link);
   });
   $('record-dialog').addEventListener('close', async () => {
     if ($('record-dialog').returnValue !== 'start') return;

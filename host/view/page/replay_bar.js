@@ -1,6 +1,8 @@
 // Playback bar of a recording: play, speed, scrub, jump to marks. Its background shows forces and knots of the whole
 // recording.
-import { isTyping } from './controls.js';
+import { isTyping, toast } from './controls.js';
+import { withKnotName } from './knot_panel.js';
+import { offerRecordings } from './recordings_list.js';
 
 const $ = (id) => document.getElementById(id);
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10];
@@ -19,6 +21,7 @@ export class ReplayBar {
     $('previous').addEventListener('click', () => this.jump(-1));
     $('next').addEventListener('click', () => this.jump(1));
     for (const id of ['compare', 'align']) $(id).addEventListener('change', () => this.#compare());
+    $('open').addEventListener('change', () => this.#open());
     addEventListener('keydown', (event) => this.#key(event), { capture: true });
     new ResizeObserver(() => this.#drawOverview()).observe($('overview'));
   }
@@ -43,6 +46,14 @@ export class ReplayBar {
     const mark = direction > 0 ? marks.find((m) => m.t_s > at + 0.02) : marks.findLast((m) => m.t_s < at - 0.3);
     if (mark) this.seek(mark.t_s);
   }
+
+  /** Plays another recording of the folder, for all pages. */
+  async #open() {
+    const answer = await this.link.request({ open: $('open').value });
+    if (!answer.accepted) toast(`open: refused – ${answer.text}`, true);
+  }
+
+  showFile(name) { offerRecordings(this.link, name); }
 
   /** Requests a comparison; the result is sent to all pages as topic 'compare'. */
   #compare() { this.link.send({ compare: $('compare').value, align: $('align').value }); }
@@ -77,7 +88,7 @@ export class ReplayBar {
     this.forces = [marks.left_N, marks.right_N];
     $('marks').replaceChildren(...this.marks.filter((m) => TINT[m.kind]).slice(0, 400).map((mark) => {
       const button = document.createElement('button');
-      button.title = `${mark.t_s.toFixed(2)} s: ${mark.text}`;
+      button.title = `${mark.t_s.toFixed(2)} s: ${withKnotName(mark.text)}`;
       button.tabIndex = -1;
       button.style.left = `calc(8px + (100% - 16px) * ${mark.t_s / this.state.duration_s})`;
       button.style.setProperty('--tint', TINT[mark.kind]);

@@ -4,7 +4,9 @@ import { OrbitControls } from './OrbitControls.js';
 import { Tube } from './tube.js';
 import { Hand } from './hands.js';
 import { colourThread } from './colouring.js';
-import { sceneFacts } from './scene_facts.js';
+import { NO_FACTS } from './scene_facts.js';
+import { ThrowViews } from './throw_views.js';
+import { followed, middleOf } from './throws.js';
 
 const QUALITIES = [{}, { ratio: 1, shadow: 1024 }, { ratio: 0.6, shadow: 512 }];
 const VIEWS = { front: [0, -1, 0.12], side: [1, 0, 0.12], top: [0, -0.02, 1], iso: [0.62, -0.9, 0.42] };
@@ -38,17 +40,21 @@ export class Scene {
     this.#addSurroundings();
     this.tube = new Tube(this.scene);
     this.hands = [0, 1].map((i) => new Hand(this.scene, i));
-    this.facts = { deskHeight_m: null, restLength_m: 0, fixed: [], maxForce_N: 3.3 };
+    this.facts = NO_FACTS;
+    this.maxForce_N = 3.3;
+    this.throws = new ThrowViews(document.getElementById('throws'));
     this.setStereo(choice.stereo);
     this.resizes = new ResizeObserver(() => { this.isDirty = true; });
     this.resizes.observe(this.canvas);
     host.prepend(this.canvas);
+    this.host = host;
   }
 
   show(on) { this.canvas.hidden = !on; }
 
   dispose() {
     this.canvas.remove();
+    this.throws.show(null);
     this.resizes.disconnect();
     this.controls.dispose();
     this.renderer.dispose();
@@ -82,35 +88,34 @@ export class Scene {
     this.scene.add(this.desk, this.grid, this.axes, this.posts);
   }
 
-  setStatus(status) {
-    const facts = sceneFacts(status);
-    const is = JSON.stringify(facts);
-    if (is === this.factsText) return;
-    this.factsText = is;
-    this.facts = { ...this.facts, ...facts };
+  setForce(maxForce_N) { this.maxForce_N = maxForce_N || this.maxForce_N; }
+
+  setFacts(facts) {
+    this.facts = facts ?? NO_FACTS;
     if (this.shape) this.#layOut(this.shape);
     this.isDirty = true;
   }
 
   /**
-   * Takes a new shape. @param now the newest tick, with the hands; @param core nodes of the knot or undefined. @returns
-   * the legend.
+   * Takes a new shape. @param now the newest tick, with the hands; @param knot topic of the host, or undefined.
+   * @returns the legend.
    */
-  update(shape, now, core) {
+  update(shape, now, knot) {
     this.isDirty = true;
     let legend = null;
     if (shape) {
-      const painted = colourThread(this.choice.colour, shape, { restLength_m: this.facts.restLength_m, core });
+      const painted = colourThread(this.choice.colour, shape, this.facts, knot);
       legend = painted.legend;
       this.tube.update(shape.p_W, shape.radius_m, painted.colours, shape.turn_rad);
       if (!this.shape || this.shape.p_W.length !== shape.p_W.length || this.shape.radius_m !== shape.radius_m) this.#layOut(shape);
       this.shape = shape;
-      this.core = core;
+      this.knot = knot;
+      this.throws.show(this.stereoMode === 'off' ? knot : null, shape);
       this.#keepInPicture(shape);
     }
     if (now?.hands && this.extent) {
-      const size = Math.max(1.6 * (this.shape?.radius_m ?? 0), 0.013 * this.extent);
-      now.hands.forEach((hand, i) => this.hands[i].update(hand, size, (0.3 * this.extent) / this.facts.maxForce_N));
+      const jaw = { radius_m: this.shape?.radius_m ?? 0, collides_m: this.facts.gripper_m, least_m: 0.03 * this.extent };
+      now.hands.forEach((hand, i) => this.hands[i].update(hand, jaw, (0.3 * this.extent) / this.maxForce_N));
     }
     if (this.choice.follow && this.shape) this.#followKnot();
     return legend;
@@ -123,7 +128,7 @@ export class Scene {
     for (let i = 3; i < shape.p_W.length; i += 3) length += Math.hypot(shape.p_W[i] - shape.p_W[i - 3], shape.p_W[i + 1] - shape.p_W[i - 2], shape.p_W[i + 2] - shape.p_W[i - 1]);
     this.extent = length;
     const centre = box.getCenter(new THREE.Vector3());
-    const floor = this.facts.deskHeight_m ?? Math.min(0, box.min.z - 0.02 * length) * (box.min.z < 0 ? 1 : 0);
+    const floor = this.facts.desk_height_m ?? Math.min(0, box.min.z - 0.02 * length) * (box.min.z < 0 ? 1 : 0);
     this.desk.position.set(centre.x, centre.y, floor);
     this.desk.scale.setScalar(4 * length);
     this.grid.position.set(centre.x, centre.y, floor + 1e-4 * length);
@@ -139,7 +144,7 @@ export class Scene {
   }
 
   #putPosts(length) {
-    this.desk.visible = this.grid.visible = this.facts.deskHeight_m !== null;
+    this.desk.visible = this.grid.visible = this.facts.desk_height_m !== null;
     this.posts.clear();
     for (const p of this.facts.fixed) {
       const knob = new THREE.Mesh(new THREE.OctahedronGeometry(0.012 * length), new THREE.MeshStandardMaterial({ color: 0xb8c2cf, roughness: 0.5 }));
@@ -198,7 +203,8 @@ export class Scene {
     const direction = VIEWS[name] ? new THREE.Vector3(...VIEWS[name]) : this.camera.position.clone().sub(this.controls.target);
     this.camera.near = 0.002 * this.extent;
     this.camera.far = 30 * this.extent;
-    const narrow = Math.min(1, this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight));
+    const { clientWidth, clientHeight } = this.host; // a hidden canvas has no size
+    const narrow = Math.min(1, Math.max(1, clientWidth) / Math.max(1, clientHeight));
     const distance = (1.06 * radius) / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;
     this.controls.target.copy(centre);
     this.camera.position.copy(centre).addScaledVector(direction.normalize(), distance);
@@ -206,15 +212,13 @@ export class Scene {
     this.controls.update();
   }
 
-  /** Moves the knot (without one, the held nodes) towards the centre; distance and direction stay. */
+  /** Moves the nearest throw (without a knot, the held nodes) towards the centre; distance and direction stay. */
   #followKnot() {
-    const p = this.shape.p_W, nodes = [];
-    if (this.core) for (let i = this.core[0]; i <= this.core[1]; ++i) nodes.push(i);
-    else nodes.push(...this.shape.grasped.filter((i) => i >= 0));
-    if (!nodes.length) return;
+    const pieces = followed(this.knot, this.shape, this.controls.target.toArray());
+    if (!pieces.length) return;
     const middle = new THREE.Vector3();
-    for (const i of nodes) middle.add(new THREE.Vector3(p[3 * i], p[3 * i + 1], p[3 * i + 2]));
-    const step = middle.divideScalar(nodes.length).sub(this.controls.target).multiplyScalar(0.2);
+    for (const piece of pieces) middle.add(new THREE.Vector3(...middleOf(this.shape.p_W, piece)));
+    const step = middle.divideScalar(pieces.length).sub(this.controls.target).multiplyScalar(0.2);
     this.controls.target.add(step);
     this.camera.position.add(step);
     this.controls.update();
@@ -238,6 +242,13 @@ export class Scene {
       renderer.setScissor(left, 0, wide, height);
       renderer.render(this.scene, eye);
     }
+    this.throws.draw(renderer, this.scene, this.tube, this.camera, this.controls.target, this.canvas);
+  }
+
+  /** Draws at once, for a copy of the picture in the same task. */
+  drawNow() {
+    this.isDirty = true;
+    this.draw(this.lastTime ?? performance.now());
   }
 
   /** @param mode 'off', 'side' or 'anaglyph'. */

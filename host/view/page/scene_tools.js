@@ -1,6 +1,7 @@
 // Buttons, keys and legend of the picture, for both the 3-D and the flat view.
 import { SCALE_CSS } from './colouring.js';
 import { isTyping } from './controls.js';
+import { roundLength } from './round_length.js';
 
 const $ = (id) => document.getElementById(id);
 
@@ -13,6 +14,7 @@ export class SceneTools {
     $('follow').addEventListener('change', () => { choice.follow = $('follow').checked; pictures(() => {}); });
     $('colour').addEventListener('change', () => { choice.colour = $('colour').value; pictures(() => {}); });
     $('stereo').addEventListener('change', () => { choice.stereo = $('stereo').value; pictures((p) => p.setStereo(choice.stereo)); });
+    $('tools-open').addEventListener('click', () => $('tools-open').setAttribute('aria-expanded', $('tools').classList.toggle('is-open')));
     const keys = { 1: () => view('front'), 2: () => view('side'), 3: () => view('top'), 4: () => view('iso'), f: () => view('fit'),
       k: () => $('follow').click(), c: () => { if (!panels.latest.isReplay) $('change-open').click(); } };
     addEventListener('keydown', (event) => { if (!isTyping(event) && !document.querySelector('dialog[open]')) keys[event.key.toLowerCase()]?.(); });
@@ -23,10 +25,9 @@ export class SceneTools {
     const bar = $('scale-bar');
     bar.hidden = !(metresPerPixel > 0);
     if (bar.hidden) return;
-    const ten = 10 ** Math.floor(Math.log10(100 * metresPerPixel)), length_m = [5, 2, 1].map((k) => k * ten).find((l) => l <= 100 * metresPerPixel);
+    const { length_m, text } = roundLength(100 * metresPerPixel);
     bar.style.width = `${length_m / metresPerPixel}px`;
-    const [unit, factor] = length_m >= 1 ? ['m', 1] : length_m >= 1e-3 ? ['mm', 1e3] : ['µm', 1e6];
-    bar.firstElementChild.textContent = `${+(length_m * factor).toPrecision(3)} ${unit}`;
+    bar.firstElementChild.textContent = text;
   }
 
   showLegend(legend) {

@@ -1,5 +1,6 @@
 // State, fault and age of the data, large enough to be read from across the room.
 import { C } from './frame.js';
+import { exact, three } from './numbers.js';
 import { degradationName, explainFault, limitNames, stateName } from './names.js';
 
 export const STALE_MS = 120; // outdated data is marked within 200 ms: a timer checks every 20 ms
@@ -66,6 +67,12 @@ export function showStatus(status) {
   $('scene-file').textContent = `${status.scene_file.split('/').pop()}, firmware ${status.firmware_version}`;
 }
 
+/** Writes into the same text node, so that a selection in it stays. */
+function write(element, text) {
+  element.firstChild ?? element.append('');
+  if (element.firstChild.data !== text) element.firstChild.data = text;
+}
+
 /**
  * Shows what each hand does, which limits act on it, and which accuracy the solver gave up. @param row newest tick's
  * trace row or null.
@@ -77,10 +84,12 @@ export function showHands(now, row) {
     document.querySelector(`[data-command="clutch ${side}"]`).hidden = !!isClutched;
     document.querySelector(`[data-command="unclutch ${side}"]`).hidden = !isClutched;
     const limits = limitNames(row?.[i ? C.rightLimits : C.leftLimits] ?? 0);
-    $(i ? 'hand-right' : 'hand-left').title = `${force} N`;
-    $(i ? 'hand-right' : 'hand-left').textContent = `${force.toFixed(3)} N · ${hand.node >= 0 ? `holds node ${hand.node}` : hand.grip ? 'closed' : 'open'}`
+    const [number, words] = $(`hand-${side}`).children;
+    number.dataset.exact = `${exact(force)} N`;
+    write(number, `${force < 5e-4 ? '0' : three(force)} N`);
+    write(words, ` · ${hand.node >= 0 ? `holds node ${hand.node}` : hand.grip ? 'closed' : 'open'}`
       + `${hand.deadMan ? ' · dead-man' : ''}${isClutched ? ' · clutch: tool parked' : ''}${hand.age > 1 ? ` · ${hand.age} ticks old` : ''}`
-      + (limits.length ? ` · limited: ${limits.join(', ')}` : '');
+      + (limits.length ? ` · limited: ${limits.join(', ')}` : ''));
   });
   const given = degradationName(row?.[C.degradation] ?? 0);
   $('degraded').hidden = !given;

@@ -51,28 +51,35 @@ export class TraceStore {
    */
   series(from, to, pixels, columns) {
     const first = this.rowFrom(from), last = this.rowFrom(to);
-    if (to - from <= pixels && first < last && this.tickOfRow(first) <= from + TICKS_PER_BIN) return this.#exact(first, last, columns);
-    const cells = Math.max(1, Math.floor(pixels));
+    const isWhole = first < last && last - first === this.tickOfRow(last - 1) - this.tickOfRow(first) + 1;
+    if (to - from <= pixels && isWhole && this.tickOfRow(first) <= from + TICKS_PER_BIN) return this.#exact(first, last, columns);
+    const cells = Math.max(1, Math.min(Math.floor(pixels), to - from));
     const low = columns.map(() => new Float64Array(cells).fill(Infinity));
     const high = columns.map(() => new Float64Array(cells).fill(-Infinity));
-    const put = (tick, at, lows, highs, highAt) => {
-      const cell = Math.min(cells - 1, Math.floor(((tick - from) / (to - from)) * cells));
+    const cellOf = (tick) => Math.min(cells - 1, Math.max(0, Math.floor(((tick - from) / (to - from)) * cells)));
+    const put = (cell, at, lows, highs, highAt) => {
       for (let k = 0; k < columns.length; ++k) {
         const c = columns[k];
         if (lows[at + c] < low[k][cell]) low[k][cell] = lows[at + c];
         if (highs[highAt + c] > high[k][cell]) high[k][cell] = highs[highAt + c];
       }
     };
-    const rowsStart = first < this.rowEnd ? this.tickOfRow(first) : Infinity;
-    for (let i = this.binFrom(from); i < this.binEnd && this.tickOfBin(i) < Math.min(to, rowsStart); ++i) {
-      const at = (i % BINS) * 2 * WIDTH;
-      put(this.tickOfBin(i), at, this.bins, this.bins, at + WIDTH);
+    for (let i = this.binFrom(from); i < this.binEnd && this.tickOfBin(i) < to; ++i) {
+      const at = (i % BINS) * 2 * WIDTH, tick = this.tickOfBin(i), end = Math.min(tick + TICKS_PER_BIN, to);
+      if (!this.#lacksRows(tick, end)) continue;
+      for (let cell = cellOf(tick); cell <= cellOf(end - 1); ++cell) put(cell, at, this.bins, this.bins, at + WIDTH); // a bin may be wider than a cell
     }
     for (let i = first; i < last; ++i) {
       const at = (i % ROWS) * WIDTH;
-      put(this.tickOfRow(i), at, this.rows, this.rows, at);
+      put(cellOf(this.tickOfRow(i)), at, this.rows, this.rows, at);
     }
     return assemble(from, to, cells, low, high);
+  }
+
+  /** Whether rows of these ticks are missing: too old, or skipped because this page is slow. */
+  #lacksRows(from, to) {
+    const first = this.rowFrom(from);
+    return first >= this.rowEnd || this.tickOfRow(first) !== from || this.rowFrom(to) - first < to - from;
   }
 
   #exact(first, last, columns) {

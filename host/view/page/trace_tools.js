@@ -3,7 +3,8 @@
 import { isTyping } from './controls.js';
 
 const $ = (id) => document.getElementById(id);
-export const WINDOWS_S = [1, 5, 10, 30, 60, 300, 600];
+/** 'run': the whole of a recording. */
+export const WINDOWS_S = [1, 5, 10, 30, 60, 300, 600, 'run'];
 /** Choices for the third plot: names of THIRD in traces.js. */
 const THIRD = ['tick time', 'tension', 'passivity', 'taken out', 'bus load', 'motor heat', 'energy', 'stretch', 'gap', 'contacts'];
 
@@ -13,7 +14,7 @@ export class TraceTools {
     const traces = (use) => { panels.parts.traces.run(use); panels.hurryTraces(); };
     this.traces = traces;
     $('windows').replaceChildren(...WINDOWS_S.map((s) => {
-      const button = Object.assign(document.createElement('button'), { value: s, textContent: s < 60 ? `${s} s` : `${s / 60} min` });
+      const button = Object.assign(document.createElement('button'), { value: s, textContent: s === 'run' ? s : s < 60 ? `${s} s` : `${s / 60} min` });
       button.addEventListener('click', () => this.setWindow(s));
       return button;
     }));
@@ -29,7 +30,7 @@ export class TraceTools {
   setWindow(seconds) {
     this.panels.choice.window_s = seconds;
     this.traces((t) => { t.window_s = seconds; });
-    for (const button of $('windows').children) button.classList.toggle('on', Number(button.value) === seconds);
+    for (const button of $('windows').children) button.classList.toggle('on', button.value === String(seconds));
   }
 
   togglePause() {
@@ -42,6 +43,7 @@ export class TraceTools {
 
   #step(by) {
     const at = WINDOWS_S.indexOf(this.panels.choice.window_s) + by;
-    this.setWindow(WINDOWS_S[Math.min(Math.max(at, 0), WINDOWS_S.length - 1)]);
+    const last = WINDOWS_S.length - (this.panels.latest.isReplay ? 1 : 2); // a live rig has no whole run
+    this.setWindow(WINDOWS_S[Math.min(Math.max(at, 0), last)]);
   }
 }

@@ -3,6 +3,7 @@ import uPlot from './uPlot.esm.js';
 import { C } from './frame.js';
 import { stateName } from './names.js';
 import { axisLabels, describeTime, labelRoom } from './times.js';
+import { wholeRun } from './whole_run.js';
 
 /**
  * Choices for the third plot: two columns, their names and SI unit, the factor to the displayed unit, and the smallest
@@ -23,11 +24,11 @@ export const THIRD = {
   contacts: { names: ['in action'], si: '', columns: [C.contacts, C.contacts], factor: 1, unit: 'number in action', least: 4 },
 };
 const FORCES = [C.left, C.leftX, C.leftY, C.leftZ, C.right, C.rightX, C.rightY, C.rightZ];
-const BESIDE = 14; // index of the other recording's first column in the data
+export const BESIDE = 14; // index of the other recording's first column in the data
 const FAR = 1e8; // gaps above 1e8 m are not drawn: 1e9 m means that nothing is near
 const FLAG = { lost: 1, missed: 2, limited: [16, 32], full: 64 };
 const AXIS = { x: '#ff9d7a', y: '#7fd1ae', z: '#b9a5ff' };
-const GREY = '#9aa6b6';
+const GREY = '#9aa6b6', VALUES_PX = 50; // VALUES_PX: width of the axis of values
 
 export class Traces {
   /**
@@ -38,6 +39,7 @@ export class Traces {
     const { window_s, third } = choice;
     Object.assign(this, { host, store, onCursor, window_s, period_s: 1e-3, limit_N: null, end: null, third: { title: third, ...THIRD[third] } });
     this.forceRange = [0, 0.1];
+    this.position_s = null; // where the recording is, on a plot of all of it
     this.beside = { store: beside, offset_ticks: null, name: '' };
     this.plots = [];
     try {
@@ -76,7 +78,7 @@ export class Traces {
       width: 400, height: 150, series, legend: { show: false }, padding: [8, 8, 0, 0],
       cursor: { sync: { key: 'ligature' }, drag: { x: false, y: false }, points: { size: 6 } },
       scales: { x: { time: false, auto: false }, y: { range: (_, low, high) => (hand === null ? niceRange(low, high, this.third.least) : this.forceRange) } },
-      axes: [{ ...axis, size: 24, values: (_, marks) => axisLabels(marks), space: () => labelRoom(this.end_s ?? 0, this.window_s / 10) }, { ...axis, size: 50 }],
+      axes: [{ ...axis, size: 24, values: (u, marks) => axisLabels(marks, (t) => u.width - u.valToPos(t, 'x') - VALUES_PX), space: () => labelRoom(this.end_s ?? 0, (this.shown_s ?? 10) / 10) }, { ...axis, size: VALUES_PX }],
       hooks: {
         draw: [(u) => this.#drawMarks(u, hand)],
         setCursor: [(u) => { if (u === this.pointed) this.#readCursor(u); }],
@@ -117,6 +119,10 @@ export class Traces {
       const at = u.valToPos(x[i], 'x', true);
       if (hand === null && flags[i] & (FLAG.lost | FLAG.missed)) triangle(ctx, at, bbox.top + 1, '#ff5c47', 6);
       if (hand !== null && flags[i] & FLAG.limited[hand]) triangle(ctx, at, bbox.top + 1, '#f0e442', 5);
+    }
+    if (this.position_s !== null) {
+      ctx.fillStyle = '#e8ecf2';
+      ctx.fillRect(u.valToPos(this.position_s, 'x', true) - 1, bbox.top, 2, bbox.height);
     }
     const level = hand !== null ? this.limit_N : this.third.isTime ? this.period_s * 1e6 : null;
     const y = level ? u.valToPos(level, 'y', true) : -1;
@@ -196,22 +202,28 @@ export class Traces {
     return niceRange(low, high, 0.1);
   }
 
-  draw() {
-    const end = (this.end ?? this.store.lastTick ?? 0) + 1, from = end - this.window_s / this.period_s;
+  /** The data of the chosen window up to tick `end`, times in s and the third plot in its unit. */
+  #window(end) {
+    const from = end - (this.window_s === 'run' ? 10 : this.window_s) / this.period_s;
     const data = this.#series(from, end, this.plots[0].plot.bbox.width / devicePixelRatio);
-    this.end_s = end * this.period_s;
     data[0] = Array.from(data[0], (tick) => tick * this.period_s);
     for (const k of [9, 10, BESIDE + 2]) data[k] = Array.from(data[k], (v) => (v == null || v > FAR && !this.third.isTime ? v === undefined ? v : null : v * this.third.factor));
-    this.data = data;
+    return { data, from_s: from * this.period_s, end_s: end * this.period_s };
+  }
+
+  draw() {
+    const end = (this.end ?? this.store.lastTick ?? 0) + 1, now_s = (end - 1) * this.period_s;
+    const whole = this.window_s === 'run' ? wholeRun(this.marks, this.replay, now_s) : null, { data, from_s, end_s } = whole ?? this.#window(end);
+    Object.assign(this, { data, end_s, shown_s: end_s - from_s, position_s: whole ? now_s : null });
     this.forceRange = this.#commonRange(data);
     for (const [i, { plot, columns }] of this.plots.entries()) {
       plot.batch(() => {
         plot.setData([data[0], ...columns.map((c) => data[c + 1]), data[BESIDE + i]], false);
-        plot.setScale('x', { min: from * this.period_s, max: end * this.period_s });
+        plot.setScale('x', { min: from_s, max: end_s });
       });
       if (plot === this.pointed) this.#readCursor(plot);
     }
-    this.histogramFrom = Math.max(from, end - 60 / this.period_s);
+    this.histogramFrom = Math.max(from_s / this.period_s, end - 60 / this.period_s);
   }
 }
 
@@ -226,14 +238,14 @@ function niceRange(low, high, least) {
 }
 
 /**
- * The exact values of a tick in SI units, as the shortest decimals that read back as the same number; identical to the
- * exported ones.
+ * The values of a tick in SI units. @param digits `three` for the page or `exact` for a copy, which is identical to the
+ * exported values (numbers.js).
  */
-export function describeRow(row, period_s, third, other) {
+export function describeRow(row, period_s, third, other, digits) {
   if (!row) return '';
-  const beside = other ? ` · other: left ${other[C.left]} N, right ${other[C.right]} N` : '';
+  const beside = other ? ` · other: left ${digits(other[C.left])} N, right ${digits(other[C.right])} N` : '';
   const fault = row[C.fault] ? ` fault ${row[C.fault]}` : '';
-  const more = third.names.map((name, i) => `${name} ${row[third.columns[i]]}${third.si && ` ${third.si}`}`).join(', ');
-  return `${describeTime(row[C.tick], period_s)} · left ${row[C.left]} N · right ${row[C.right]} N · `
+  const more = third.names.map((name, i) => `${name} ${digits(row[third.columns[i]])}${third.si && ` ${third.si}`}`).join(', ');
+  return `${describeTime(row[C.tick], period_s)} · left ${digits(row[C.left])} N · right ${digits(row[C.right])} N · `
     + `tick ${row[C.tick]} ${stateName(row[C.state])}${fault} · ${third.title}: ${more}${beside}`;
 }

@@ -31,6 +31,7 @@ export class Tube {
   update(p_W, radius_m, colours, turn_rad) {
     const n = p_W.length / 3, per = Math.max(1, Math.min(10, Math.floor(MOST_RINGS / n)));
     const rings = (n - 1) * per + 1;
+    this.per = per;
     if (rings !== this.rings) this.#allocate(rings);
     this.#centreline(p_W, colours, turn_rad, n, per);
     this.#skin(radius_m);
@@ -39,6 +40,13 @@ export class Tube {
     this.line.attributes.position.needsUpdate = true;
     this.geometry.computeBoundingSphere();
     this.line.computeBoundingSphere();
+  }
+
+  /** Draws only the piece between two nodes, or with null all. */
+  only(piece) {
+    const [first, count] = piece ? [piece[0] * this.per, (piece[1] - piece[0]) * this.per] : [0, Infinity];
+    this.geometry?.setDrawRange(6 * SIDES * first, 6 * SIDES * count);
+    this.line?.setDrawRange(first, count + 1);
   }
 
   #allocate(rings) {
