@@ -36,6 +36,7 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=pathlib.Path, required=True, help="folder that the guest sees as /hil; logs go there, too")
     parser.add_argument("--icount", type=int, metavar="N", help="virtual time: an instruction takes 2^N ns, waiting takes none; one CPU")
+    parser.add_argument("--per-ns", type=int, default=1, metavar="N", help="with --icount 0: N instructions take 1 ns")
     parser.add_argument("--cpus", type=int, default=1, help="without --icount")
     parser.add_argument("--isolate", action="store_true", help="keep the last CPU free: isolcpus, nohz_full, rcu_nocbs")
     parser.add_argument("--disk", type=pathlib.Path, help="file that the guest has as /dev/vda, with ext4 to mount it")
@@ -60,6 +61,8 @@ def machine(options, folder, initrd):
     if options.isolate:
         last = options.cpus - 1
         line += f" isolcpus=managed_irq,domain,{last} nohz_full={last} rcu_nocbs={last} irqaffinity=0"
+    if options.per_ns > 1:
+        line += f" tsc_early_khz={1_000_000 * options.per_ns}"
     if options.icount is None:
         time_base = ["-accel", "tcg,thread=multi", "-smp", str(options.cpus)]
     else:

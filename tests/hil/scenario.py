@@ -19,7 +19,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 BIN = pathlib.Path(os.environ["LIGATURE_BIN"])
 OUT = pathlib.Path(os.environ.get("LIGATURE_HIL_OUT", ROOT / "build/hil"))
-LOST, MISSED = 1, 2
+LOST, MISSED, OVERWORKED, LATE = 1, 2, 128, 256
 IDLE, ENGAGE, FORCE, FAULT = 2, 3, 4, 6
 LONGEST_S = 2000  # real time on a loaded machine; on an idle one a scenario takes one to three minutes
 
@@ -47,6 +47,7 @@ def guest(name, *options, timeout=LONGEST_S):
 
 
 VIRTUAL = ("--icount", "0")
+AS_FAST_AS_A_RIG = (*VIRTUAL, "--per-ns", "5")  # 5 million instructions per ms, as the physics assumes of a rig's core
 
 
 def ticks_of(folder, recorded="flight.rec"):
@@ -80,10 +81,11 @@ class Guest(unittest.TestCase):
 class Scenario(Guest):
     """Base class of tests that share one boot of the guest, in which the scenario `name` runs."""
     name = None
+    time = VIRTUAL
 
     @classmethod
     def setUpClass(cls):
-        cls.folder, cls.code = guest(cls.name, *VIRTUAL)
+        cls.folder, cls.code = guest(cls.name, *cls.time)
 
     def setUp(self):
         self.assertEqual(self.code, 0, f"the guest's scenario {self.name}")

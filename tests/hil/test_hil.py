@@ -5,7 +5,8 @@ import os
 import unittest
 
 from blows import Blows, FirstBlows, OtherBlows
-from scenario import FORCE, LOST, MISSED, OUT, ROOT, VIRTUAL, Guest, Scenario, guest, pushes, ticks_of
+from scenario import AS_FAST_AS_A_RIG, FORCE, LOST, MISSED, OUT, ROOT, VIRTUAL, Guest, Scenario, guest, pushes, ticks_of
+from sutures import SutureInTime, TiedSuture
 
 PAGE = ROOT / "docs/fault-matrix-guest.md"
 PAGE_HEAD = """# Fault matrix, guest
@@ -45,6 +46,11 @@ class Overhand(Deadlines, Scenario):
     name = "overhand"
 
 
+class Suture(TiedSuture, Scenario):
+    name = "suture"
+    time = AS_FAST_AS_A_RIG
+
+
 class Faults(FirstBlows, OtherBlows, Blows):
     name = "faults"
     rows = {}
@@ -64,6 +70,11 @@ class Short(Deadlines, FirstBlows, Blows):
     """The short form for every change, in one boot."""
     name = "short"
     rows = {}
+
+
+class ShortSuture(SutureInTime, Scenario):
+    name = "short_suture"
+    time = AS_FAST_AS_A_RIG
 
 
 class Canopen(Guest):

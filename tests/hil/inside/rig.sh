@@ -1,8 +1,15 @@
 # Sourced by the scenarios: a rig of processes in the guest. Simulated hardware shares the one virtual CPU with the
-# controller and must have the higher priority, or the controller would delay its own bus: hands at 85, loop at 80.
+# controller and must have the higher priority, or the controller would delay its own bus: hands at 85, loop at 80. Where an
+# instruction takes less than 1 ns, 75 is enough: then the hands take time only from the physics.
 set -eu
 export XDG_STATE_HOME=/run/state
 flight=/run/flight.rec
+scene=scenes/paper.toml script=scenes/operators/overhand.csv  # of both hands and the controller
+recorder_s=30                                                 # time that the flight recorder keeps
+hands_priority=85
+
+# As on a rig (docs/deployment.md). By default Linux stops real-time processes for 5 % of each second.
+echo -1 > /proc/sys/kernel/sched_rt_runtime_us
 
 # Reads all needed files in advance, because file access to the host takes an unpredictable amount of virtual time.
 warm() {
@@ -14,19 +21,19 @@ warm() {
 hand() {
   local side=$1 interface=$2
   shift 2
-  chrt -f 85 "$LIGATURE_BIN/ligature-device" --hand "$side" --bus "socketcan:$interface" --scene scenes/paper.toml \
-    --operator scenes/operators/overhand.csv --stats "/run/$side.json" "$@" > "/run/$side.log" 2>&1 &
+  chrt -f "$hands_priority" "$LIGATURE_BIN/ligature-device" --hand "$side" --bus "socketcan:$interface" --scene "$scene" \
+    --operator "$script" --stats "/run/$side.json" "$@" > "/run/$side.log" 2>&1 &
   printf -v "${side}_pid" %d $!
 }
 
-# firmware LEFT-INTERFACE RIGHT-INTERFACE [ARGUMENT...]: starts the controller; with --force, because an emulated CPU is
-# too slow for the admission test
+# firmware LEFT-INTERFACE RIGHT-INTERFACE [ARGUMENT...]: starts the controller; with --force, because the tests themselves
+# check whether the loop is in time
 firmware() {
   local left=$1 right=$2
   shift 2
   rm -f "$flight"*
-  "$LIGATURE_BIN/ligature-firmware" run --scene scenes/paper.toml --left "socketcan:$left" --right "socketcan:$right" \
-    --arm --force --rt=enforce --recorder "$flight" --recorder-s 30 "$@" > /run/firmware.log 2>&1 &
+  "$LIGATURE_BIN/ligature-firmware" run --scene "$scene" --left "socketcan:$left" --right "socketcan:$right" \
+    --arm --force --rt=enforce --recorder "$flight" --recorder-s "$recorder_s" "$@" > /run/firmware.log 2>&1 &
   firmware_pid=$!
 }
 
@@ -48,6 +55,20 @@ listen() {
 
 # gone PID: ends a process with SIGTERM and waits for it
 gone() { kill -TERM "$1" 2>/dev/null || true; wait "$1" || true; }
+
+# run_for SECONDS NAME [ARGUMENT...]: one run of the controller with both hands on vcan, kept as NAME
+run_for() {
+  local seconds=$1 name=$2 code=0
+  shift 2
+  hand left vcan0; hand right vcan1
+  sleep 0.5
+  firmware vcan0 vcan1 --duration "$seconds" "$@"
+  wait "$firmware_pid" || code=$?
+  gone "$left_pid"; gone "$right_pid"
+  cat /run/firmware.log
+  keep "$name"
+  return "$code"
+}
 
 # keep NAME: copies a run's results to the folder that outlives the guest
 keep() {
