@@ -155,6 +155,20 @@ def recordings(folder):
     assert len(rows) < 3
 
 
+def regression(folder):
+    assert lab("regress", "desk", "--scenes", SCENES).returncode == 0
+    text = "scene,figure,expected,tolerance\ndesk,distance until it stops (mm),1,0.1\ndesk,no such figure,1,0.1\n"
+    expected = folder / "expected.csv"
+    expected.write_text(text)
+    done = lab("regress", "desk", "--expected", expected, "--scenes", SCENES)
+    assert done.returncode == 3, done
+    assert all(word in done.stdout for word in ("BEYOND", "NEW", "GONE")), done.stdout
+    for wrong in (["--update", expected], ["tea"], ["desk", "--update", folder / "new.csv"], ["--expected", folder / "none.csv"]):
+        done = lab("regress", *wrong)
+        assert done.returncode == 2 and done.stderr.count("\n") == 1, (wrong, done)
+    assert expected.read_text() == text and not (folder / "new.csv").exists()
+
+
 def teaching():
     assert lab("--version").stdout.startswith("ligature-lab ")
     assert "Example" in lab("run", "--help").stdout
@@ -166,6 +180,7 @@ with tempfile.TemporaryDirectory() as name:
     fitted(pathlib.Path(name))
     failed_run(pathlib.Path(name))
     validation(pathlib.Path(name))
+    regression(pathlib.Path(name))
 with tempfile.TemporaryDirectory() as name:
     recordings(pathlib.Path(name))
 interruption()
