@@ -147,6 +147,15 @@ def too_long(*_):
     raise TimeoutError
 
 
+def call_for_a_while(d, sim):
+    """One call, interrupted as by Ctrl-C when it is long. The alarm may still come in `finally`: it leaves by here too."""
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.2)
+        return one_call(d, sim)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+
+
 def draw_for(seconds, seed):
     signal.signal(signal.SIGALRM, too_long)
     d, calls, refused = Drawn(seed), 0, 0
@@ -155,13 +164,9 @@ def draw_for(seconds, seed):
     while time.monotonic() < end:
         calls += 1
         try:
-            signal.setitimer(signal.ITIMER_REAL, 0.2)  # long runs are interrupted as by Ctrl-C
-            sim = one_call(d, sim)
+            sim = call_for_a_while(d, sim)
         except ALLOWED:
             refused += 1
-        finally:
-            with contextlib.suppress(TimeoutError):  # the alarm may come just here
-                signal.setitimer(signal.ITIMER_REAL, 0.0)
         if sim.scene.nodes > 200 or calls % 100 == 0:
             sim = fresh.copy()
     print(f"seed {seed}: {calls} calls, {refused} refused, {len(d.surface.missed())} members of the surface not called")
