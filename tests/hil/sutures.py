@@ -3,7 +3,7 @@
 import json
 import subprocess
 
-from scenario import BIN, FORCE, LATE, LOST, MISSED, OVERWORKED, ticks_of
+from scenario import BIN, CLOCK, CUT, FORCE, LATE, LOST, MISSED, OVERWORKED, pushes, ticks_of
 
 PERIOD_NS = 1_000_000
 JITTER_NS = 20_000  # of SYNC: one interrupt, and the calls that send a frame on both buses
@@ -71,3 +71,22 @@ class TiedSuture(SutureInTime):
         code, text = told("ligature-lab", "rerun", log)
         self.assertEqual(code, 0, text)
         self.assertIn("equal        to the bit", text)
+
+
+class LargeThread(Kept):
+    def test_a_thread_that_is_far_too_large_delays_nothing_and_its_loss_is_told(self):
+        rows = ticks_of(self.folder / "large")
+        force = self.the_loop_is_in_time(rows)
+        pulled = [r for r in force if min(r["left_node"], r["right_node"]) >= 0]
+        self.assertLess(len(rows) - len(pulled), 3000, "start and end of a run, and until both hands hold the thread")
+        self.assertGreater(sum(map(pushes, pulled)), 1000, "torque went out")
+        lost = self.lost_share(rows)
+        late = [r for r in rows if r["flags"] & LATE]
+        cut = sum(r["flags"] & CUT != 0 for r in rows)
+        print(f"  2000 nodes: {100 * lost:.1f} % of the thread's time lost; {cut} ticks ended by the clock, {len(late)} late, "
+              f"oldest grasp {max(r['grasp_age_ticks'] for r in force)} periods", flush=True)
+        self.assertGreater(lost, 0.1)
+        for r in rows:
+            self.assertEqual(r["flags"] & CUT != 0, r["thread_end"] == CLOCK and not r["flags"] & LATE)
+        summary = (self.folder / "large/firmware.log").read_text()
+        self.assertRegex(summary, rf"thread late +{len(late)}\n")

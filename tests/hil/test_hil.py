@@ -6,7 +6,7 @@ import unittest
 
 from blows import Blows, FirstBlows, OtherBlows
 from scenario import AS_FAST_AS_A_RIG, FORCE, LOST, MISSED, OUT, ROOT, VIRTUAL, Guest, Scenario, guest, pushes, ticks_of
-from sutures import SutureInTime, TiedSuture
+from sutures import LargeThread, SutureInTime, TiedSuture
 
 PAGE = ROOT / "docs/fault-matrix-guest.md"
 PAGE_HEAD = """# Fault matrix, guest
@@ -48,6 +48,11 @@ class Overhand(Deadlines, Scenario):
 
 class Suture(TiedSuture, Scenario):
     name = "suture"
+    time = AS_FAST_AS_A_RIG
+
+
+class Large(LargeThread, Scenario):
+    name = "large"
     time = AS_FAST_AS_A_RIG
 
 
