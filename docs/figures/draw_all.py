@@ -13,7 +13,7 @@ from drawing import IMAGES, save
 
 sys.dont_write_bytecode = True  # scenes/ is installed as it is; no compiled Python belongs there
 
-FIGURES = ("period", "states", "rod_tick", "contact_solve", "knots", "accuracy_cost")
+FIGURES = ("period", "states", "rod_tick", "contact_solve", "knots", "figure_eight", "accuracy_cost")
 NUMBER = re.compile(r"-?\d+\.\d+|\b[a-z][0-9a-f]{10}\b")  # coordinates; ids, which depend on them
 
 
