@@ -49,6 +49,9 @@ TEST(Published, PlyWithoutFriction) {
 // knots of throws in sutures
 TEST(Published, Locking) { expect_met("locking"); }
 TEST(Published, Threshold) { expect_met("threshold"); }
+// At balanced the knot of three throws needs more work than the budget has.
+TEST(Published, Cyclic) { expect_met("cyclic", {}, scene::Accuracy::kFine); }
+TEST(Published, Post) { expect_met("post"); }
 
 // friction round a bar
 TEST(Published, Capstan) {

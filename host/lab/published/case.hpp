@@ -50,6 +50,8 @@ Result helices(const Subject&);
 Result ply(const Subject&);
 Result locking(const Subject&);
 Result threshold(const Subject&);
+Result cyclic(const Subject&);
+Result post(const Subject&);
 Result capstan(const Subject&);
 Result capstan_axis(const Subject&);
 Result drum(const Subject&);

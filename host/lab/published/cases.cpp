@@ -22,6 +22,11 @@ constexpr Case kCases[] = {
      locking},
     {"threshold", "friction above which a square knot holds, drawn at 5 mm/s", "no publication with figures found",
      "drawn knot", "friction", threshold},
+    {"cyclic", "surgeon's knot 2-1-1 in 4-0 polypropylene under cycles of load",
+     "Lee, Wong, Tay, BJSTR 17 (2019) 12716", "cycles", "slip of the tail, d", cyclic},
+    {"post", "two-throw sliding knot tied on a post and let go",
+     "Johanns, Baek, Grandgeorge, Guerid, Chester, Reis, Science Advances 9 (2023)", "friction",
+     "strength over pre-tension", post},
     // friction round a bar
     {"capstan", "T_hi = T_lo exp(mu theta) round a peg", "Euler (1769), Eytelwein (1808)", "mu theta", "T_hi / T_lo",
      capstan},

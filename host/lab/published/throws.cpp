@@ -112,7 +112,7 @@ Line curve_of(const Throws& t, double diameter_m) {
   if (line.front().x() > line.back().x()) std::reverse(line.begin(), line.end());
   line.insert(line.begin(), line.front() - t.tail_d * Vec3::UnitX());
   line.push_back(line.back() + t.tail_d * Vec3::UnitX());
-  Line all = rounded(line, 1.5, 0.5);
+  Line all = rounded(line, t.rounding_d, 0.5);
   for (auto& p : all) p *= diameter_m;
   return all;
 }

@@ -23,6 +23,7 @@ struct Throws {
   double aside_d = 2.5;      ///< distance of each strand from the throw's axis
   double half_turn_d = 8.0;  ///< along the axis, for each half turn
   double between_d = 12.0;   ///< from one throw's axis to the next
+  double rounding_d = 1.5;   ///< width of the Gaussian that rounds the corners; it also narrows the windings
   double loop_d = 250.0;     ///< length of the slack loop
   double tail_d = 60.0;      ///< length of the straight pieces at the thread's ends
 };
