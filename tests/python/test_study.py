@@ -4,6 +4,7 @@ import json
 import math
 import random
 
+import dask
 import pytest
 
 import ligature
@@ -124,6 +125,13 @@ def test_a_run_that_ends_its_worker_fails_alone(tmp_path):
     found = rows(tmp_path / "out").to_pylist()
     assert [row["status"] for row in found] == ["done", "done", "failed", "done", "done", "done"]
     assert found[2]["reason"] == "its worker process died each time" and found[5]["square"] == 37
+
+
+def test_a_worker_that_restarts_slowly_is_replaced(tmp_path):
+    """Dask gives up a worker that is not back after 15 s, and here at once."""
+    study = Study.load(study_file(tmp_path, "dies", 4, seeds="1"))
+    with dask.config.set({"distributed.deploy.lost-worker-timeout": "1ms"}):
+        assert study.run(tmp_path / "out", workers=1, progress=None) == (4, 0, 1)
 
 
 def test_one_thread_in_a_worker(tmp_path):

@@ -8,6 +8,8 @@ from typing import Any
 
 import dask
 from distributed import Client, LocalCluster
+from distributed.core import Status
+from tornado.ioloop import PeriodicCallback
 
 from ligature._core import Refusal
 
@@ -15,6 +17,7 @@ from ligature._core import Refusal
 ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS",
                                      "NUMEXPR_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")}
 ANSWER_S = 10  # limit for the scheduler's first answer
+LOOK_MS = 1000  # between two looks for lost workers
 
 
 def slurm_cluster(options: dict[str, Any]) -> Any:
@@ -33,6 +36,20 @@ def slurm_cluster(options: dict[str, Any]) -> Any:
         return SLURMCluster(**asked, job_script_prologue=prologue)
     except (TypeError, ValueError, RuntimeError) as why:
         raise Refusal(f"--slurm-set: {str(why).splitlines()[0]}, allowed keywords of dask_jobqueue.SLURMCluster") from None
+
+
+def _keep(cluster: LocalCluster, count: int, stack: contextlib.ExitStack) -> None:
+    """Replaces workers that Dask gives up: on a busy machine a restart may take longer than it waits for."""
+
+    def look() -> None:
+        for name, worker in list(cluster.workers.items()):
+            if worker.status in (Status.failed, Status.closed):
+                del cluster.workers[name]
+        cluster.scale(count)
+
+    keeper = PeriodicCallback(look, LOOK_MS)
+    cluster.loop.add_callback(keeper.start)
+    stack.callback(cluster.loop.add_callback, keeper.stop)
 
 
 def _reached(scheduler: str) -> Client:
@@ -70,4 +87,5 @@ def workers_of(workers: int | None = None, scheduler: str | None = None, slurm: 
             count = workers or len(os.sched_getaffinity(0))
             cluster = stack.enter_context(LocalCluster(n_workers=count, threads_per_worker=1, processes=True,
                                                        dashboard_address="127.0.0.1:0", silence_logs=logging.ERROR))
+            _keep(cluster, count, stack)
         yield stack.enter_context(Client(cluster))
