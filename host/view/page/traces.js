@@ -78,7 +78,7 @@ export class Traces {
       width: 400, height: 150, series, legend: { show: false }, padding: [8, 8, 0, 0],
       cursor: { sync: { key: 'ligature' }, drag: { x: false, y: false }, points: { size: 6 } },
       scales: { x: { time: false, auto: false }, y: { range: (_, low, high) => (hand === null ? niceRange(low, high, this.third.least) : this.forceRange) } },
-      axes: [{ ...axis, size: 24, values: (u, marks) => axisLabels(marks, (t) => u.width - u.valToPos(t, 'x') - VALUES_PX), space: () => labelRoom(this.end_s ?? 0, (this.shown_s ?? 10) / 10) }, { ...axis, size: VALUES_PX }],
+      axes: [{ ...axis, size: 24, values: (u, marks) => axisLabels(marks, (t) => u.width - u.valToPos(t, 'x') - VALUES_PX), space: () => labelRoom(this.end_s ?? 0, (this.shown_s ?? 10) / 10) }, { ...axis, size: VALUES_PX, space: 18 }],
       hooks: {
         draw: [(u) => this.#drawMarks(u, hand)],
         setCursor: [(u) => { if (u === this.pointed) this.#readCursor(u); }],
