@@ -22,7 +22,7 @@ OUT = pathlib.Path(os.environ.get("LIGATURE_HIL_OUT", ROOT / "build/hil"))
 LOST, MISSED, OVERWORKED, LATE, CUT = 1, 2, 128, 256, 512
 CLOCK = 2  # thread_end: ended by the clock
 IDLE, ENGAGE, FORCE, FAULT = 2, 3, 4, 6
-LONGEST_S = 2000  # real time on a loaded machine; on an idle one a scenario takes one to three minutes
+LONGEST_S = 4000  # real time on a loaded machine; on an idle one a scenario takes one to four minutes
 
 
 def guest(name, *options, timeout=LONGEST_S):
