@@ -15,11 +15,12 @@ namespace {
 
 /// Runs a case's quick form. Every judged figure must hold, except those named in `missed`. These must miss: they are
 /// known and explained in docs/published.md, which must be changed when one of them holds.
-void expect_met(const std::string& name, const std::set<std::string>& missed = {},
-                scene::Accuracy accuracy = scene::Accuracy::kBalanced) {
+validate::Findings expect_met(const std::string& name, const std::set<std::string>& missed = {},
+                              scene::Accuracy accuracy = scene::Accuracy::kBalanced) {
   const auto all = all_cases();
   const auto c = std::find_if(all.begin(), all.end(), [&](const Case& k) { return name == k.name; });
-  ASSERT_NE(c, all.end());
+  EXPECT_NE(c, all.end());
+  if (c == all.end()) return {};
   const auto result = c->measure({accuracy, true});
   EXPECT_FALSE(result.points.empty());
   int judged = 0;
@@ -30,6 +31,7 @@ void expect_met(const std::string& name, const std::set<std::string>& missed = {
         << ", tolerance " << f.tolerance;
   }
   EXPECT_GT(judged, 0);
+  return result.findings;
 }
 
 // knots and braids in an elastic thread
@@ -48,7 +50,14 @@ TEST(Published, PlyWithoutFriction) {
 
 // knots of throws in sutures
 TEST(Published, Locking) { expect_met("locking"); }
-TEST(Published, Threshold) { expect_met("threshold"); }
+TEST(Published, Threshold) {
+  // No publication decides on the mean. Held near the documented one, it tells a wrong factor in the friction.
+  for (const auto& f : expect_met("threshold")) {
+    if (f.what.ends_with("mean")) {
+      EXPECT_NEAR(f.measured, 0.36, 0.04) << f.what;
+    }
+  }
+}
 // At balanced the knot of three throws needs more work than the budget has.
 TEST(Published, Cyclic) { expect_met("cyclic", {}, scene::Accuracy::kFine); }
 TEST(Published, Post) { expect_met("post"); }
