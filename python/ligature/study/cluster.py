@@ -74,8 +74,10 @@ def workers_of(workers: int | None = None, scheduler: str | None = None, slurm: 
         raise Refusal("--workers, --scheduler, --slurm: found several, allowed one")
     logging.getLogger("distributed").setLevel(logging.ERROR)
     with contextlib.ExitStack() as stack:
-        # A run that ends its worker twice is given up; else it would end all workers of a large cluster.
+        # A run that ends its worker twice is given up; else it would end all workers of a large cluster. No second run
+        # waits in a worker, since it would be blamed too.
         stack.enter_context(dask.config.set({"distributed.scheduler.allowed-failures": 1,
+                                             "distributed.scheduler.worker-saturation": 1.0,
                                              "distributed.nanny.pre-spawn-environ": ONE_THREAD}))
         if scheduler is not None:
             yield stack.enter_context(_reached(scheduler))

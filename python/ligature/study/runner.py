@@ -73,9 +73,9 @@ class _Queue:
             return future.result()
         if future.status == "error" and not isinstance(why := future.exception(), KilledWorker):
             return _failed(self._study, run, f"{type(why).__name__}: {why}".replace("\n", " ")[:500])
-        # A worker that dies takes the blame also for a run that only waited on it, so each gets a second chance.
+        # A worker that dies takes the blame also for a run that only waited on it, so each gets two more chances.
         self._lost[run] = self._lost.get(run, 0) + 1
-        return None if self._lost[run] < 2 else _failed(self._study, run, "its worker process died each time")
+        return None if self._lost[run] < 3 else _failed(self._study, run, "its worker process died each time")
 
 
 def run(study: "Study", out: str, retry_failed: bool = False, progress: TextIO | None = sys.stderr, **where: Any) -> Ended:
