@@ -1,4 +1,4 @@
-"""Error of the rod against computing time of a tick, from the table of settings in docs/accuracy.md."""
+"""Error of the rod against computing time of a tick, from the table of settings in docs/measurements/accuracy.md."""
 
 import matplotlib.pyplot as plt
 from drawing import BLACK, BLUE, GREEN, GREY, ORANGE, source
@@ -13,7 +13,7 @@ PANELS = (("error of the knot, diameters", 5, [0.05, 0.1, 0.2, 0.5, 1.0], BELOW)
 def settings():
     """Rows of the table for the rod, cheapest first: (median us, worst us, nodes, setting, cells)."""
     rows = []
-    for line in source("docs/accuracy.md").splitlines():
+    for line in source("docs/measurements/accuracy.md").splitlines():
         cells = [c.strip() for c in line.strip("|").split("|")]
         model, nodes, setting = (cells[0].split("/") + ["", ""])[:3]
         if model == "rod" and setting in KINDS and len(cells) == 7:

@@ -5,7 +5,7 @@ The times are those of a bus of 1 Mbit/s whose frames have their greatest length
 from drawing import BLACK, BLUE, GREEN, GREY, ORANGE, PALE, arrow, microseconds, sheet, write
 
 PERIOD, SEND = 1000, 20                 # us; SEND, the call that sends SYNC, is drawn without a measured length
-LAW = 30                                # us, control law and sending of torques: 21 to 31 (docs/timing.md)
+LAW = 30                                # us, control law and sending of torques: 21 to 31 (docs/measurements/timing.md)
 LEFT, SCALE = 78, 0.455                 # points; points per us
 BUS, LOOP, PHYSICS, HIGH = 226, 156, 86, 30  # lower edges of the three rows, and their height
 

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kRepeats = 3;             // runs of the same tick; the smallest time counts
 constexpr int kTicksPerShape = 4;       // the first tick finds the contacts, the next ones resolve them
-constexpr long kMostWork = 16'000'000;  // instructions per tick; more helps no knot (docs/rod-knots.md)
+constexpr long kMostWork = 16'000'000;  // instructions per tick; more helps no knot (docs/measurements/rod-knots.md)
 constexpr long kLeastWork = 1'000'000;  // smallest budget, as with less no knot holds; longer ticks end at the deadline
 constexpr long kLeastOfANode = 2'000;   // twice the cost of a contact search per node; with less the thread never moves
 constexpr double kSpare = 0.95;         // share of the given time that is used; the rest is reserve for cases not tried

@@ -28,7 +28,7 @@ Every model at N = 20 .. 500 with substeps and contact passes varied. For each s
           knot   distance between the hands in the hold, against the own finest, in diameters; empty: knot lost
 DIR holds pareto.csv and pareto.png (cost against error, the fronts drawn, 1 kHz marked). The rod is the 0.3 mm suture,
 the paper's models their 5 m thread; errors are relative to each model's own finest, so models are not compared with
-each other but in cost. docs/accuracy.md says which setting to take for what.
+each other but in cost. docs/measurements/accuracy.md says which setting to take for what.
 
 Example
   ligature-lab pareto --out out/pareto --quick)";

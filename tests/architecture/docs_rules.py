@@ -5,11 +5,12 @@ Run: python3 tests/architecture/docs_rules.py [ROOT]; prints one line per error 
 prose in docs/ and README.md have at most 120 characters (tables, code and links may be longer)."""
 
 import functools
+import os
 import pathlib
 import re
 import sys
 
-WIDEST, WRAPPED = 120, re.compile(r"README\.md|docs/(?!fault-matrix|python-api)")  # fault matrices and the Python reference are printed
+WIDEST, WRAPPED = 120, re.compile(r"README\.md|docs/(?!measurements/fault-matrix|python-api)")  # fault matrices and the Python reference are printed
 SOURCES = {".cpp", ".hpp", ".h", ".py", ".js", ".mjs", ".css", ".html", ".toml", ".lcm", ".cmake", ".txt", ".csv", ".json", ".md", ".in", ""}
 SKIPPED = {"build", "out", ".git", "node_modules", "__pycache__"}
 # Files that exist only at run time, after a build, or on another machine: pages may name them although the tree has
@@ -28,7 +29,7 @@ DECLARED = re.compile(
     r"\bTEST(?:_[FP])?\(\s*(\w+),\s*(\w+)"
     r"|(?:add_test\(NAME|ligature_rig_test\(|ligature_hil_test\(|ligature_python_test\(|ligature_browser_test\()\s*([\w.]+)"
 )
-PAGE_IN_CODE = re.compile(r"\bdocs/[\w-]+\.md")
+PAGE_IN_CODE = re.compile(r"\bdocs/(?:\w+/)?[\w-]+\.md")
 
 
 class Tree:
@@ -80,7 +81,7 @@ def link_fault(tree, page, target):
     if re.match(r"[a-z]+:", target):
         return None
     name, _, anchor = target.partition("#")
-    there = pathlib.PurePosixPath(page).parent / name if name else pathlib.PurePosixPath(page)
+    there = pathlib.PurePosixPath(os.path.normpath(pathlib.PurePosixPath(page).parent / name) if name else page)
     if not (tree.root / there).exists():
         return f"links to {target}, no such file"
     if anchor and anchor not in tree.anchors(there.as_posix()):

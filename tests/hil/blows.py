@@ -13,7 +13,7 @@ ERROR_FRAME, BUS_OFF = 0x20000000, 0x20000040  # linux/can/error.h
 
 class Blows(Scenario):
     """Each fault occurs while the rig renders force; `at` is the first tick that can see it. The first line of a test's
-    docstring, with the stated and the observed reaction, is a row of docs/fault-matrix-guest.md."""
+    docstring, with the stated and the observed reaction, is a row of docs/measurements/fault-matrix-guest.md."""
 
     def row(self, stated, seen):
         self.rows[self._testMethodName] = (self._testMethodDoc.strip().splitlines()[0].rstrip("."), stated, seen)

@@ -8,13 +8,13 @@ from blows import Blows, FirstBlows, OtherBlows
 from scenario import AS_FAST_AS_A_RIG, FORCE, LOST, MISSED, OUT, ROOT, VIRTUAL, Guest, Scenario, guest, pushes, ticks_of
 from sutures import LargeThread, SutureInTime, TiedSuture
 
-PAGE = ROOT / "docs/fault-matrix-guest.md"
+PAGE = ROOT / "docs/measurements/fault-matrix-guest.md"
 PAGE_HEAD = """# Fault matrix, guest
 
-Made by `scripts/test-hil Faults`: real processes over SocketCAN under a PREEMPT_RT kernel, in virtual time (docs/timing.md).
-Each row befalls the rig half a second into full force. Ticks of 1 ms are counted by SYNC in `candump` and in the flight
-recorder, from the one in which the blow is on the bus; from the fault on no record and no RPDO of either hand has torque.
-*Stated* is asserted; *seen* is of the run that wrote this page.
+Made by `scripts/test-hil Faults`: real processes over SocketCAN under a PREEMPT_RT kernel, in virtual time
+(see timing.md). Each row happens half a second after the coupling has reached its full force. Ticks of 1 ms are counted
+by SYNC in `candump` and in the flight recorder, from the tick in which the event is on the bus. After the fault no
+record and no RPDO of either hand has a torque. *Stated* is what the test requires; *seen* is from the run that wrote this page.
 
 | what happens | stated | seen |
 |---|---|---|

@@ -1,5 +1,5 @@
 """Faults of the rig's processes, its network and its disk while both hands render force. Part of the fault matrix: the
-@row texts state each fault and the rig's reaction; together they are docs/fault-matrix-processes.md.
+@row texts state each fault and the rig's reaction; together they are docs/measurements/fault-matrix-processes.md.
 
 These are real processes, so no times are asserted; reactions exact to the tick are in FaultMatrix.* and scripts/test-hil.
 """
@@ -23,7 +23,7 @@ sys.path.insert(0, os.environ["LIGATURE_LCM_PYTHON"])
 import lcm  # noqa: E402
 from ligature_msg import ack_t, command_t, tick_batch_t  # noqa: E402
 
-PAGE = ROOT / "docs/fault-matrix-processes.md"
+PAGE = ROOT / "docs/measurements/fault-matrix-processes.md"
 GROUP = ("239.255.76.67", 7667)
 SEED = shifted(20261121)
 KILLS = 100

@@ -14,7 +14,7 @@ namespace ligature::published {
 namespace {
 
 /// Runs a case's quick form. Every judged figure must hold, except those named in `missed`. These must miss: they are
-/// known and explained in docs/published.md, which must be changed when one of them holds.
+/// known and explained in docs/measurements/published.md, which must be changed when one of them holds.
 validate::Findings expect_met(const std::string& name, const std::set<std::string>& missed = {},
                               scene::Accuracy accuracy = scene::Accuracy::kBalanced) {
   const auto all = all_cases();

@@ -9,7 +9,7 @@
 
 namespace ligature::physics::rod {
 
-/// Time steps, tolerances and work limits for the scene's `accuracy` (docs/accuracy.md gives cost and error of each).
+/// Time steps, tolerances, work limits of a scene's `accuracy`; cost and error of each: docs/measurements/accuracy.md.
 [[nodiscard]] Numerics numerics_of(const scene::Scene& scene) noexcept;
 
 /// The effects that the scene needs.

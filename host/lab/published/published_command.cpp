@@ -23,7 +23,7 @@ constexpr const char* kFooter = R"(
 Each case repeats an experiment that a laboratory, or the author of another program, has published. A row of the table
 has the published value, the simulated one, the tolerance and the verdict: PASS, MISS, or "reported" where no published
 number decides. `balanced` is the setting of the rig at 1 kHz, `fine` has smaller steps and no limit of time: the
-difference between the two is what the rig's speed costs. docs/published.md explains every case.
+difference between the two is what the rig's speed costs. docs/measurements/published.md explains every case.
 
 DIR gets published.csv, the table; CASE.csv, the points of the picture; and CASE.png, theory and measurement in one
 plot. A picture needs the Python that scripts/setup installs (or $LIGATURE_PYTHON).

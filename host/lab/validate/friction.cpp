@@ -18,7 +18,7 @@ double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 scene::Scene lying(const Subject& subject, double mu, double degrees) {
   auto scene = real_thread(subject, 0.1, mu);
   // 200 contacts on a desk exceed the work budget of a rod's tick at `balanced`: up to a fifth of the simulated time is
-  // lost (docs/accuracy.md), and the slowed thread shows neither the stopping distance nor creep. Therefore `fine`.
+  // lost (docs/measurements/accuracy.md), and the thread shows neither stopping distance nor creep. Therefore `fine`.
   if (subject.nodes >= 200 && !subject.accuracy) scene.suture.rod.accuracy = scene::Accuracy::kFine;
   set_drag(scene, 0.0);
   scene.world.desk_height_m = 0.0;

@@ -1,5 +1,5 @@
 // Loss of any share of the CAN frames: it must become a fault within bounded time where the force can no longer be
-// correct, and none on a good bus. bad_bus_study makes 300 draws of each share; its tables are in docs/fault-matrix.md.
+// correct, and none on a good bus. bad_bus_study draws each share 300 times: docs/measurements/fault-matrix.md.
 #include "tests/integration/virtual_rig/bad_bus.hpp"
 
 #include <gtest/gtest.h>

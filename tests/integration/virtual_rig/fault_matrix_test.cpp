@@ -1,6 +1,6 @@
 // Every script of scenes/faults with the whole rig in virtual time, exact to the tick. A script's [fault] defines what
-// goes wrong, its [expect] the required reaction; docs/fault-matrix.md is generated from both (LIGATURE_WRITE_DOCS=1
-// writes it).
+// goes wrong, its [expect] the required reaction; docs/measurements/fault-matrix.md is made from both
+// (LIGATURE_WRITE_DOCS=1 writes it).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -253,13 +253,13 @@ TEST(FaultMatrix, EveryCaseEndsAsItSays) {
     table += row(c, o);
   }
   table += lies();
-  const std::string page = std::string(LIGATURE_SOURCE_DIR) + "/docs/fault-matrix.md", before = text_of(page);
+  const std::string page = std::string(LIGATURE_SOURCE_DIR) + "/docs/measurements/fault-matrix.md", before = text_of(page);
   // The page from this heading on is written by bad_bus_study.
   const std::size_t by_chance = std::min(before.find(kByChance), before.size());
   if (std::getenv("LIGATURE_WRITE_DOCS") != nullptr) std::ofstream(page) << table << before.substr(by_chance);
   if (test::seed_shift() != 0) return;  // the page shows results without a seed shift
   EXPECT_EQ(text_of(page).substr(0, by_chance), table)
-      << "docs/fault-matrix.md is old: LIGATURE_WRITE_DOCS=1 writes it anew";
+      << "docs/measurements/fault-matrix.md is old: LIGATURE_WRITE_DOCS=1 writes it anew";
 }
 
 /// Cases that depend on a random draw: every draw must end in a fault, and no force may follow it.
