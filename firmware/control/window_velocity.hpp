@@ -15,7 +15,7 @@ namespace ligature::control {
 /// k+1 samples:
 ///   v = sum (t_i - t_mean)(x_i - x_mean) / sum (t_i - t_mean)^2
 /// At rest and in slow motion the window is long and the quantisation noise small; in fast changes it is short, and so
-/// is the lag of k T / 2. docs/haptics.md compares it with a low-pass filter.
+/// is the lag of k T / 2. docs/measurements/haptics.md compares it with a low-pass filter.
 /// Lost samples are allowed: the samples' times are used. O(kWindow), no allocation.
 class WindowVelocity {
  public:

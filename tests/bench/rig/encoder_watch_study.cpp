@@ -1,5 +1,6 @@
 // Encoder watch at several thresholds: false alarms per hour with healthy hands, and reversed axes that it misses.
-// Usage: encoder_watch_study [hours = 100] [reversals = 1000] [first seed = 1]; prints tables of docs/encoder-watch.md.
+// Usage: encoder_watch_study [hours = 100] [reversals = 1000] [first seed = 1]; prints tables of
+// docs/measurements/encoder-watch.md.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Attacks the passivity controller with hand motions and frame losses, drawn at random or optimised, and checks the
-// bounds on the account's error and on the energy that the motors give (docs/passivity.md). Prints that page's tables.
-// Usage: passivity_study [draws = 10000] [optimised attacks = 200] [optimiser steps = 1000] [first seed = 1]
-// Exit code 3 when a bound was broken.
+// bounds on the account's error and on the energy that the motors give (docs/passivity.md). Prints the table of
+// docs/measurements/passivity.md. Usage: passivity_study [draws = 10000] [optimised attacks = 200] [optimiser steps =
+// 1000] [first seed = 1] Exit code 3 when a bound was broken.
 #include <algorithm>
 #include <array>
 #include <cstdio>

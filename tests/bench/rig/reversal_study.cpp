@@ -1,6 +1,6 @@
 // One axis of a pulling hand starts to count backwards at a random moment: which check detects it, and the energy that
 // the motors deliver until then. Usage: reversal_study [draws = 1000] [first seed = 1]; prints a table of
-// docs/encoder-watch.md.
+// docs/measurements/encoder-watch.md.
 #include <algorithm>
 #include <array>
 #include <cmath>

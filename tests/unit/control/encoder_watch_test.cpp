@@ -73,7 +73,7 @@ TEST(EncoderWatch, AJointInItsStopIsNoFault) {
   EXPECT_EQ(watch(stop, 300, {true, false, true}).first, Fault::kNone);
 }
 
-/// Twenty minutes of normal hand motions; docs/encoder-watch.md reports a hundred hours without an alarm.
+/// Twenty minutes of normal hand motions; docs/measurements/encoder-watch.md reports a hundred hours without an alarm.
 TEST(EncoderWatch, HandsThatTurnStopAndTrembleAreNotSuspected) {
   test::Random random(23);
   for (const auto kind : test::HonestHand::kKinds) {

@@ -1,5 +1,5 @@
 // WindowVelocity estimates a velocity from encoder counts: its noise and lag, compared with a first-order low-pass.
-// Prints the table of docs/haptics.md.
+// Prints the tables of docs/measurements/haptics.md.
 #include "firmware/control/window_velocity.hpp"
 
 #include <gtest/gtest.h>
