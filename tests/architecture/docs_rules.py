@@ -2,7 +2,8 @@
 that code names.
 
 Run: python3 tests/architecture/docs_rules.py [ROOT]; prints one line per error and exits with 1 if any. Also: lines of
-prose in docs/ and README.md have at most 120 characters (tables, code and links may be longer)."""
+prose in docs/ and README.md have at most 120 characters (tables, code and links may be longer), the overview of
+docs/measurements lists every page there, and only the design notes have commit hashes."""
 
 import functools
 import os
@@ -29,6 +30,7 @@ DECLARED = re.compile(
     r"\bTEST(?:_[FP])?\(\s*(\w+),\s*(\w+)"
     r"|(?:add_test\(NAME|ligature_rig_test\(|ligature_hil_test\(|ligature_python_test\(|ligature_browser_test\()\s*([\w.]+)"
 )
+HASH = re.compile(r"\b(?=[0-9a-f]*[a-f])(?=[0-9a-f]*[0-9])[0-9a-f]{7,40}\b")
 PAGE_IN_CODE = re.compile(r"\bdocs/(?:\w+/)?[\w-]+\.md")
 
 
@@ -119,6 +121,17 @@ def faults(tree, page, text, narrow=False):
     return found
 
 
+def misplaced(tree):
+    """The errors in how pages are sorted: a page of docs/measurements that its overview does not list, and a commit hash
+    in a page other than the design notes."""
+    folder, notes = "docs/measurements/", "docs/design-notes.md"
+    overview = tree.text.get(folder + "README.md", "")
+    pages = [p for p in tree.text if p.startswith("docs/") and p.endswith(".md")]
+    found = [f"{folder}README.md: lacks a row that links to {p.removeprefix(folder)}"
+             for p in pages if p.startswith(folder) and not p.endswith("README.md") and f"| [{pathlib.PurePosixPath(p).stem}](" not in overview]
+    return found + [f"{p}: has a commit hash, {h}; remedy: move it to {notes}" for p in pages if p != notes for h in HASH.findall(tree.text[p])]
+
+
 def self_check(tree):
     """Checks that the rules reject bad examples."""
     for bad in (
@@ -129,12 +142,13 @@ def self_check(tree):
         assert faults(tree, "README.md", bad, narrow=True), bad
     good = "`BandSolver.*` `rod.hpp` `Rod::tick()` `suture.nodes` `ligature-lab --help` [a](docs/rod.md#limits)"
     assert not faults(tree, "README.md", good), faults(tree, "README.md", good)
+    assert HASH.findall("at 7ddc0a8, 88420001, 2c5ea96f and effaced") == ["7ddc0a8", "2c5ea96f"]
 
 
 def main():
     tree = Tree(pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve())
     self_check(tree)
-    found = []
+    found = misplaced(tree)
     for path, text in tree.text.items():
         if path == "CHANGELOG.md":
             continue  # may name what existed in past versions only

@@ -24,6 +24,16 @@ import lcm  # noqa: E402
 from ligature_msg import ack_t, command_t, tick_batch_t  # noqa: E402
 
 PAGE = ROOT / "docs/measurements/fault-matrix-processes.md"
+HEAD = """# Fault matrix, processes
+
+This page shows what a rig of real processes does when one of them is stopped or killed, or gets bad input.
+`tests/integration/test_process_faults.py` makes it (`ctest -R ProcessFaults`) and fails if it is old. Each disturbance
+happens while both hands feel force. These tests do not measure times: [the fault matrix](fault-matrix.md) has the
+deadlines in ticks, and so has [the guest](fault-matrix-guest.md). `Rig.SurvivesDeaths` kills the programs by SIGKILL.
+
+| what happens | what the rig does | test |
+|---|---|---|
+"""
 GROUP = ("239.255.76.67", 7667)
 SEED = shifted(20261121)
 KILLS = 100
@@ -89,7 +99,7 @@ class InForce(unittest.TestCase):
 
 
 class Stopped(InForce):
-    @row("SIGSTOP of one hand for 0.6 s, watchdog 0.3 s", "fault 11 or 12 on both hands, latched; SIGCONT changes nothing")
+    @row("SIGSTOP of one hand for 0.6 s, watchdog 0.3 s", "fault 11 or 12 on both hands, until it is reset; SIGCONT changes nothing")
     def test_a_stopped_hand(self):
         rig = self.rig(watchdog_ms=300)
         left = rig.processes["left"]
@@ -99,7 +109,7 @@ class Stopped(InForce):
         self.ends_in(rig, (TOO_OLD, DRIVE_FAULT))
         self.assertEqual(rig.device_stats("right")["final_torque_permille"], [0, 0, 0])
 
-    @row("SIGSTOP of the controller for 0.6 s, watchdog 0.3 s", "the drives take the torque away by themselves; awake again: fault 12 or 30, latched")
+    @row("SIGSTOP of the controller for 0.6 s, watchdog 0.3 s", "the drives remove their torque by themselves; when the controller runs again, fault 12 or 30 follows and stays until it is reset")
     def test_a_stopped_controller(self):
         rig = self.rig(watchdog_ms=300)
         firmware = rig.processes["firmware"]
@@ -126,7 +136,7 @@ class Stopped(InForce):
 
 
 class Network(InForce):
-    @row("20 000 commands as fast as one process can send", "each answered or dropped, none delays a tick; the next command is taken")
+    @row("20 000 commands as fast as one process can send", "each is answered or dropped, none delays a tick; the next command is obeyed")
     def test_a_flood_of_commands(self):
         rig = self.rig()
         link = lcm.LCM("udpm://239.255.76.67:7667?ttl=0")
@@ -140,7 +150,7 @@ class Network(InForce):
         self.assertEqual(run("ligature-host", "send", "arm").returncode, 0)
         self.carries_on(rig, 50)
 
-    @row("a recording with an `arm` in it is played back (`lcm-logplayer`), of the run that goes on, then of an earlier one",
+    @row("a recording that contains the command `arm` is played back (`lcm-logplayer`): first one of the running rig, then one of an earlier run",
          "each command but `stop` and `disarm` is refused and named in an event; the rig stays in IDLE")
     def test_a_recording_played_back(self):
         rig = self.rig(record=True, extra=("--rt=warn",))
@@ -171,7 +181,7 @@ class Network(InForce):
         self.assertTrue(rig.alive("firmware"), rig.words())
         return rig.said("firmware").count("IDLE -> ENGAGE") - before
 
-    @row("LCM garbage: random packets, a channel without end, wrong type hash, cut-off and 1 MB messages, counts that lie", "ignored, by controller and recorder")
+    @row("invalid LCM packets: random bytes, a channel name without end, a wrong type hash, truncated messages, messages of 1 MB, wrong lengths", "controller and recorder ignore them")
     def test_garbage(self):
         rig = self.rig(record=True)
         chance = random.Random(SEED)
@@ -205,7 +215,7 @@ class Network(InForce):
         self.assertEqual(rig.end("recorder"), 0, rig.words())
         self.assertEqual(run("ligature-host", "report", rig.log, "--json").returncode, 0)
 
-    @row("a scene asked for while in force", "refused with the reason; the thread in the hands stays")
+    @row("a command to load another scene while the hands feel force", "refused with the reason; the hands keep their thread")
     def test_a_scene_while_in_force(self):
         rig = self.rig()
         refused = run("ligature-host", "send", "load-scene", "desk.toml")
@@ -215,7 +225,7 @@ class Network(InForce):
 
 
 class Recorders(InForce):
-    @row(f"SIGKILL of the recorder at {KILLS} random moments of one run", "nothing happens to the rig; the flight recorder has every tick, each log up to its death is readable")
+    @row(f"SIGKILL of the recorder at {KILLS} random moments of one run", "nothing happens to the rig; the flight recorder has every tick, and each log is readable up to the moment of the kill")
     def test_a_hundred_deaths_of_the_recorder(self):
         rig = self.rig()
         chance = random.Random(SEED)
@@ -271,13 +281,13 @@ class Disk(InForce):
 
 
 class Admission(InForce):
-    @row("a loop that does not fit into its budget", "`run` refuses with exit 3, the figures and the remedy; nothing is started")
+    @row("a loop that takes longer than its allowed time", "`run` ends with exit code 3 and prints the times and the remedy; nothing is started")
     def test_what_does_not_fit_is_refused(self):
         refused = run("ligature-firmware", "run", "--scene", "scenes/paper.toml", "--left", "local:/nowhere/l", "--right", "local:/nowhere/r", "--budget", 1)
         self.assertEqual(refused.returncode, 3, refused.stderr)
         self.assertRegex(refused.stderr, r"paper.toml: the loop does not fit: found \d+ us .* allowed 10; remedy: ")
 
-    @row("the same with `--force`", "runs, and every recording of it says that it was forced")
+    @row("the same with `--force`", "it runs, and every recording of it says that `--force` was given")
     def test_force_marks_the_recording(self):
         rig = self.rig(record=True, extra=("--budget", 1, "--force"))
         self.assertEqual(rig.listener.status.admitted, 0)
@@ -290,12 +300,7 @@ class Admission(InForce):
 
 class Page(unittest.TestCase):
     def test_the_page_is_these_tests(self):
-        page = ("# Fault matrix, processes\n\nMade by `tests/integration/test_process_faults.py`: each row befalls a rig of real processes while both hands\n"
-                "are in force (`ctest -R ProcessFaults`). Nothing is timed there; deadlines to the tick are in `fault-matrix.md` and in the\n"
-                "guest (`scripts/test-hil`: a killed hand, an emergency, a foreign NMT command, bus-off, a stopped controller, a step of\n"
-                "the wall clock, an interface going down and up). Deaths by SIGKILL: `Rig.SurvivesDeaths`.\n\n"
-                "| what happens | what the rig does | test |\n|---|---|---|\n"
-                + "".join(f"| {what} | {ends} | `{name[5:]}` |\n" for what, ends, name in ROWS))
+        page = HEAD + "".join(f"| {what} | {ends} | `{name[5:]}` |\n" for what, ends, name in ROWS)
         if os.environ.get("LIGATURE_WRITE_DOCS"):
             PAGE.write_text(page)
         self.assertEqual(PAGE.read_text() if PAGE.exists() else "", page, "old: LIGATURE_WRITE_DOCS=1 writes it anew")

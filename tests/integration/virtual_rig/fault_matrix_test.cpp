@@ -99,7 +99,7 @@ std::vector<Case> all_cases() {
   using std::chrono::milliseconds;
   std::vector<Case> cases = scripts();
   std::erase_if(cases, is_by_chance);
-  cases.push_back({"-", "a hand's bus is cut; its drives fall free by themselves", {}, true, {}, 10, 22});
+  cases.push_back({"-", "a hand's bus is cut; its drives remove their torque by themselves", {}, true, {}, 10, 22});
   cases.push_back({"-", "the real-time thread stalls for 5 ms", {}, false, milliseconds(5), 0, 0});
   cases.push_back({"-", "the real-time thread stalls for 50 ms", {}, false, milliseconds(50), 30, 22});
   cases.push_back({"-", "the real-time thread stalls for 500 ms", {}, false, milliseconds(500), 30, 22});
@@ -158,25 +158,30 @@ std::string text_of(const std::string& path) {
 }
 
 const std::string kHead =
-    "# Fault matrix\n\n"
-    "Printed by `FaultMatrix.EveryCaseEndsAsItSays`: each script of `scenes/faults` befalls one hand of the simulated\n"
-    "rig 1.5 s after the first SYNC, while both hands tie the overhand in force, in virtual time. *Stated* and "
-    "*seen*:\n"
-    "ticks of 1 ms from the onset until no motor of either hand has torque, as promised and as it was. In every row "
-    "the\n"
-    "true force at either tip stays below 3.4 N and its true steps below 0.55 N, both from the torques that the "
-    "motors\n"
-    "made and the pose that the arm truly had (not where somebody else pushes until the fault: rows `foreign-rpdo` "
-    "and\n"
-    "`astray`); every tick is recorded; a fault is latched, disarms, and takes both "
-    "hands.\n"
-    "While the controller sleeps or cannot be heard, the drives' own watchdog (20 ms) takes the torque.\n\n"
-    "What carries on does so on held or doubled samples. An encoder that freezes or turns round is known by the moment "
-    "in\n"
-    "which it does, while the hand moves: one that begins to lie at rest is not, and then the second table holds. "
-    "Wrong bits are a worst case: a CAN controller's own CRC drops such frames, which then count as "
-    "lost. `lose-50` and `corrupt-1` end as their draw says: the last tables are of 300 draws a row.\n\n"
-    "| script | what happens | fault | stated | seen |\n|---|---|---|---|---|\n";
+    R"(# Fault matrix
+
+This page shows what the rig does when something fails: which fault follows, and after how many ticks all torque is
+gone. `FaultMatrix.EveryCaseEndsAsItSays` prints it and fails if it is old. In virtual time, two simulated hands tie an
+overhand and feel force. 1.5 s after the first SYNC one script of `scenes/faults` disturbs one hand.
+
+The columns *stated* and *seen* count ticks of 1 ms, from the disturbance until no motor of either hand has torque.
+*Stated* is the largest number that the test allows. In a row with "none, carries on" the rig goes on without a fault,
+with the last samples that it has. In all rows:
+- The true force at either tip stays below 3.4 N, and its steps below 0.55 N. The true force follows from the torques
+  that the motors made and from the true pose of the arm. The rows `foreign-rpdo` and `astray` are excepted until their
+  fault, because something else than the controller makes the torque there.
+- Every tick is recorded.
+- A fault stays until it is reset, disarms the rig, and removes the force of both hands.
+- While the controller is asleep or cut off from the bus, the drives' own watchdog (20 ms) removes the torque.
+
+An encoder that stops or counts backwards is detected if it does so while the hand moves. If it does so at rest, it is
+not detected at once; the [second table](#wrong-encoders-at-hands-that-pull) shows what such a hand feels. `corrupt-all`
+is a worst case: a real CAN controller drops frames with wrong bits, and they then count as lost. How `lose-50` and
+`corrupt-1` end depends on random numbers, so they are in the [last tables](#a-bad-bus), with 300 runs in each row.
+
+| script | what happens | fault | stated | seen |
+|---|---|---|---|---|
+)";
 
 /// A wrong encoder of the left hand from 1.0 s on, while both hands pull with the largest force that the rig allows.
 struct Lie {
@@ -212,12 +217,17 @@ True lied_to(const Lie& lie, int node) {
 
 std::string lies() {
   std::string table =
-      "\n## Encoders that lie to hands that pull\n\n"
-      "Six runs a row of `FaultMatrix.EveryCaseEndsAsItSays`: both hands pull on a thread ten times as stiff as\n"
-      "shipped, and one encoder of the left hand lies from 1.1 to 1.6 s on. *True*: at the tip, of the torques made, "
-      "in\n"
-      "the pose that the arm truly has; the largest of the six runs, a fault's own fall to zero not counted.\n\n"
-      "| encoder | axis | runs that end in a fault | true force, N | true step, N |\n|---|---|---|---|---|\n";
+      R"(
+## Wrong encoders at hands that pull
+
+`FaultMatrix.EveryCaseEndsAsItSays` makes six runs for each row. Both hands pull at a thread ten times as stiff as the
+shipped one. One encoder of the left hand is wrong; it becomes so 1.1 to 1.6 s after the start. *True force* and *true
+step* are the largest of the six runs, computed from the torques that the motors made and the true pose of the arm. The
+step to zero of a fault is not counted.
+
+| encoder | axis | runs that end in a fault | true force, N | true step, N |
+|---|---|---|---|---|
+)";
   constexpr std::array kLies{Lie{scene::FaultKind::kFreeze, "stands still"},
                              Lie{scene::FaultKind::kReverse, "counts backwards"},
                              Lie{scene::FaultKind::kJump, "is off by 30 counts, 1.5 mm", 30}};
@@ -253,7 +263,8 @@ TEST(FaultMatrix, EveryCaseEndsAsItSays) {
     table += row(c, o);
   }
   table += lies();
-  const std::string page = std::string(LIGATURE_SOURCE_DIR) + "/docs/measurements/fault-matrix.md", before = text_of(page);
+  const std::string page = std::string(LIGATURE_SOURCE_DIR) + "/docs/measurements/fault-matrix.md",
+                    before = text_of(page);
   // The page from this heading on is written by bad_bus_study.
   const std::size_t by_chance = std::min(before.find(kByChance), before.size());
   if (std::getenv("LIGATURE_WRITE_DOCS") != nullptr) std::ofstream(page) << table << before.substr(by_chance);
