@@ -30,7 +30,7 @@ DECLARED = re.compile(
     r"\bTEST(?:_[FP])?\(\s*(\w+),\s*(\w+)"
     r"|(?:add_test\(NAME|ligature_rig_test\(|ligature_hil_test\(|ligature_python_test\(|ligature_browser_test\()\s*([\w.]+)"
 )
-HASH = re.compile(r"\b(?=[0-9a-f]*[a-f])(?=[0-9a-f]*[0-9])[0-9a-f]{7,40}\b")
+HASH = re.compile(r"\b(?=[0-9a-f]*[a-f])(?=[0-9a-f]*[0-9])[0-9a-f]{7,12}\b")
 PAGE_IN_CODE = re.compile(r"\bdocs/(?:\w+/)?[\w-]+\.md")
 
 
