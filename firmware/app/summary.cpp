@@ -38,7 +38,8 @@ std::string summary(const rt::CycleTiming& t, std::int64_t periods, const Losses
                 held_Hz, static_cast<unsigned long long>(executed), static_cast<long long>(periods),
                 static_cast<unsigned long long>(t.deadline_misses), static_cast<unsigned long long>(t.overworked),
                 static_cast<unsigned long long>(t.periods_lost), static_cast<unsigned long long>(t.thread_late),
-                static_cast<unsigned long long>(t.thread_cut), t.thread_lost_ticks, static_cast<unsigned long long>(losses.telemetry));
+                static_cast<unsigned long long>(t.thread_cut), t.thread_lost_ticks,
+                static_cast<unsigned long long>(losses.telemetry));
   return head + recorder_rows(losses) + "  us               p50       p99       max\n" + row("wakeup", t.wakeup) +
          row("control", t.control) + row("execution", t.execution) + row("CPU", t.work) + row("thread CPU", t.thread);
 }

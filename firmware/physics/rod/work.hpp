@@ -7,7 +7,7 @@
 
 namespace ligature::physics::rod {
 
-/// Prices in instructions of the x86-64-v3 build, rounded up (counted as docs/measurements/accuracy.md says). The cost of
+/// Prices in instructions of the x86-64-v3 build, rounded up; docs/measurements/accuracy.md says more. The cost of
 /// a substep without contact (forces, matrix, one solution) is linear in the nodes and is not charged.
 namespace price {
 inline constexpr long kCheck = 45;           ///< test whether a listed pair, or a group of pairs, must be measured

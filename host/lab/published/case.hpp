@@ -1,5 +1,5 @@
 #pragma once
-// Experiments that others published: what a case measures, and the list of all cases. @see docs/measurements/published.md
+// Experiments that others published: what a case measures; the list of cases. @see docs/measurements/published.md
 
 #include <span>
 #include <string>

@@ -76,7 +76,7 @@ Findings loose_overhand(const Subject& subject) {
 
 // Reference for half the width of the hysteresis loop of T a^2/B between tightening and loosening:
 // mu sigma (a / R)^(3/2), sigma a constant of the reference table. This is the leading order; the next one adds a
-// fraction of about 5 sqrt(a / R) (15 % at a / R = 0.001, 48 % at 0.01; docs/measurements/accuracy.md). So the test uses
+// fraction of about 5 sqrt(a / R) (15 % at a / R = 0.001, 48 % at 0.01; docs/measurements/accuracy.md). The test uses
 // 0.001 with a tolerance of 20 %.
 Findings overhand_hysteresis(const Subject& subject) {
   const double a_over_R = 0.001, mu = 0.02;

@@ -108,7 +108,8 @@ TEST(Controller, ThePeakHoldsForAnArmThatMovesOutsideItsWorkspaceBox) {
   hands.passivity = false;
   Rig rig(hands);
   const auto move = [&](double t_s) {
-    rig.in.reading.hand[0].q_rad = {0.3 * std::sin(3.0 * t_s), 0.79 + 0.05 * std::sin(20.0 * t_s), 0.38 + 0.03 * std::sin(17.0 * t_s)};
+    rig.in.reading.hand[0].q_rad = {0.3 * std::sin(3.0 * t_s), 0.79 + 0.05 * std::sin(20.0 * t_s),
+                                    0.38 + 0.03 * std::sin(17.0 * t_s)};
   };
   move(0.0);
   rig.to_force();
