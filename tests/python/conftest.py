@@ -3,12 +3,14 @@
 import os
 import pathlib
 import subprocess
+import sys
 
 import pytest
 
 import ligature
 
 SOURCE = pathlib.Path(os.environ["LIGATURE_SOURCE"])
+sys.path.append(str(SOURCE / "tests/integration"))  # of seeds.py
 BIN = pathlib.Path(os.environ["LIGATURE_BIN"])
 SCENES = SOURCE / "scenes"
 OVERHAND = SCENES / "operators/overhand.csv"

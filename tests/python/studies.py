@@ -1,12 +1,13 @@
 """Shared by the tests of studies: a study in a folder, its command, and its rows without what differs from run to run."""
 
-import os
 import subprocess
 import sys
 
 import pyarrow.parquet as pq
 
-SEED = int(os.environ.get("LIGATURE_TEST_SEED", "0"))
+from seeds import shifted
+
+SEED = shifted(0)
 VARYING = ("commit", "machine", "worker", "cpu_s", "ended")
 
 FUNCTIONS = '''

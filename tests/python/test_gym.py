@@ -1,6 +1,5 @@
 """Environments of ligature.gym: Gymnasium's own check, seeds, vectors, camera, refusals."""
 
-import os
 import subprocess
 import sys
 
@@ -12,8 +11,9 @@ from gymnasium.utils.env_checker import check_env
 import ligature
 import ligature.gym
 from conftest import SCENES
+from seeds import shifted
 
-SEED = int(os.environ.get("LIGATURE_TEST_SEED", "0"))
+SEED = shifted(0)
 IDS = ["ligature/TieOverhand-v0", "ligature/Untie-v0", "ligature/PullForce-v0"]
 
 

@@ -1,7 +1,5 @@
 """Tasks of ligature.gym: rewards by topology and by a closed form."""
 
-import os
-
 import gymnasium
 import numpy as np
 import pytest
@@ -9,8 +7,9 @@ import pytest
 import ligature
 import ligature.gym
 from conftest import OVERHAND, SCENES
+from seeds import shifted
 
-SEED = int(os.environ.get("LIGATURE_TEST_SEED", "0"))
+SEED = shifted(0)
 
 
 def followed(env, script, steps):

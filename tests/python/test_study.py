@@ -194,7 +194,7 @@ def test_tie_and_rerun_call_the_lab(tmp_path, monkeypatch):
 def test_shipped_studies(monkeypatch):
     monkeypatch.setenv("LIGATURE_LAB", str(BIN / "ligature-lab"))
     shipped = {path.stem: Study.load(path) for path in (SOURCE / "examples/studies").glob("*.toml")}
-    assert {name: len(study) for name, study in shipped.items()} == {"locking": 2000, "extremes": 780, "tie": 500}
+    assert {name: len(study) for name, study in shipped.items()} == {"locking": 2000, "extremes": 780, "tie": 500, "speeds": 160}
     extremes = shipped["extremes"]
     for wanted, ending in ((("paper", "stretch", 0.0, 1e-3), "finite"), (("paper", "stretch", 6.0, 0.1), "stopped"),
                            (("paper", "coupling", 6.0, 1e-3), "refused")):

@@ -6,7 +6,8 @@
 // separate statements or in a braced list: C++ leaves the evaluation order of function arguments and operands open.
 //
 // LIGATURE_TEST_SEED (0 .. 2^64 - 1, default 0; `scripts/test --seed N`) shifts all seeds at once. A failing test
-// prints the seed and the command that repeats the run (tests/support/seed_told.cpp).
+// prints the seed and the command that repeats the run (tests/support/seed_told.cpp). LIGATURE_TEST_DREW names a file
+// that the first draw of a process creates: so scripts/sweep learns which tests draw.
 
 #include <array>
 #include <cmath>
@@ -20,9 +21,11 @@
 
 namespace ligature::test {
 
-/// The value of LIGATURE_TEST_SEED; exits with code 2 when it is not a number.
+/// The value of LIGATURE_TEST_SEED; exits with code 2 when it is not a number. Creates the file LIGATURE_TEST_DREW.
 inline std::uint64_t seed_shift() {
   static const std::uint64_t shift = [] {
+    if (const char* drew = std::getenv("LIGATURE_TEST_DREW"))
+      if (std::FILE* file = std::fopen(drew, "w")) std::fclose(file);
     const char* text = std::getenv("LIGATURE_TEST_SEED");
     if (text == nullptr || *text == '\0') return std::uint64_t{0};
     std::uint64_t value = 0;

@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
 #include "host/knot/recognise.hpp"
 #include "host/lab/rig/virtual_rig.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "sim_device/operator/knot_tier.hpp"
 #include "tests/integration/virtual_rig/heard_rig.hpp"
+#include "tests/support/random.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -50,11 +53,27 @@ std::string knot_before(const char* move, const char* name, const char* knot, st
   return found.type + " " + found.handedness;
 }
 
+/// Expects a knot that is tied in at least 99 % of all runs: of three drawn operators, or of eight if one of the three
+/// misses. Four or more of eight miss less than once in a million draws then.
+template <class Tie>
+void expect_tied(const std::string& type, std::uint64_t seed, Tie tied) {
+  test::Random random(seed);
+  int misses = 0;
+  for (int runs = 0; runs < (misses == 0 ? 3 : 8); ++runs) {
+    const auto one = static_cast<std::uint32_t>(random());
+    const std::string found = tied(one);
+    misses += found != type;
+    std::printf("operator of seed %u: %s\n", one, found.c_str());
+  }
+  EXPECT_LE(misses, 3) << "of eight";
+}
+
 /// The thread's end must pass to the front well inside the loop. If it passes next to the strand that the left hand
 /// holds, it can come out behind that strand, and one of the two turns is missing (in 5 of 8 runs).
 TEST(Tying, AFirstThrowOfTwoTurnsInTheSutureHasTwoTurns) {
-  for (const std::uint32_t seed : {57U, 60U, 62U})
-    EXPECT_EQ(knot_before("draw through", "suture-3-0.toml", "surgeon", seed), "5_1 right") << seed;
+  expect_tied("5_1 right", 57, [](std::uint32_t seed) {
+    return knot_before("draw through", "suture-3-0.toml", "surgeon", seed);
+  });
 }
 
 /// The end makes its extra turn round the lower strand of the arch between the hands. A turn round the standing part
@@ -83,9 +102,9 @@ TEST(Tying, AScriptOfTheSutureTies) {
 /// Without bend damping, a nearly level thread that is released where it was drawn could whip its second throw open (9
 /// of 20).
 TEST(Tying, ASquareKnotStaysInAnUndampedThread) {
-  for (const std::uint32_t seed : {3U, 7U})
-    EXPECT_EQ(knot_before("done", "paper.toml", "square", seed, {"suture.model=\"paper-2\""}), "3_1#3_1 amphichiral")
-        << seed;
+  expect_tied("3_1#3_1 amphichiral", 3, [](std::uint32_t seed) {
+    return knot_before("done", "paper.toml", "square", seed, {"suture.model=\"paper-2\""});
+  });
 }
 
 /// As two processes of ligature-device do it: each plans for both hands, and sees only batches of messages, up to 30 ms
