@@ -24,15 +24,17 @@ knot::KnotResult name_knot(const Numbers& array, bool closed) {
 }  // namespace
 
 void bind_knot(nb::module_& module) {
-  nb::class_<knot::KnotResult>(module, "Knot", "What ligature.knot found.")
-      .def_ro("type", &knot::KnotResult::type, "'0_1', '3_1', '3_1#3_1', ..; 'unknown' when nothing decides.")
+  nb::class_<knot::KnotResult>(module, "Knot", "Result of ligature.knot.")
+      .def_ro("type", &knot::KnotResult::type,
+              "Type: '0_1', '3_1', '3_1#3_1', ..; 'unknown' if it could not be determined.")
       .def_ro("handedness", &knot::KnotResult::handedness, "'right', 'left', 'amphichiral', 'mixed' or 'none'.")
       .def_prop_ro(
           "determinant",
           [](const knot::KnotResult& k) {
             return k.alexander.empty() ? nb::object(nb::none()) : nb::object(nb::int_(k.determinant));
           },
-          nb::sig("def determinant(self) -> int | None"), "|Delta(-1)|; None when nothing could be computed.")
+          nb::sig("def determinant(self) -> int | None"),
+          "Knot determinant |Delta(-1)|; None if it could not be computed.")
       .def_ro("alexander", &knot::KnotResult::alexander,
               "Coefficients of the Alexander polynomial from t^0 up, the first one positive; empty as above.")
       .def_ro("crossings", &knot::KnotResult::crossings, "Crossings of the simplest diagram that was found.");

@@ -72,7 +72,7 @@ void bind_scene(nb::module_& module) {
       .def("__init__", &make_scene, nb::arg("path"), nb::arg("overrides"), nb::arg("text") = nb::none(),
            nb::arg("recorded") = false)
       .def_prop_ro(
-          "path", [](const Scene& s) { return text_of(s.path); }, "How messages call it.")
+          "path", [](const Scene& s) { return text_of(s.path); }, "Name of the scene in messages.")
       .def_prop_ro(
           "model", [](const Scene& s) { return scene::name(s.scene.suture.model); }, "'paper-1' .. 'paper-5' or 'rod'.")
       .def_prop_ro(
@@ -82,9 +82,10 @@ void bind_scene(nb::module_& module) {
       .def_prop_ro(
           "radius_m", [](const Scene& s) { return s.scene.suture.radius_m; }, "Its radius, m.")
       .def_prop_ro(
-          "friction", [](const Scene& s) { return s.scene.contact.friction; }, "Kinetic Coulomb coefficient.")
+          "friction", [](const Scene& s) { return s.scene.contact.friction; },
+          "Coulomb friction coefficient of a sliding contact.")
       .def_prop_ro(
-          "tick_s", [](const Scene& s) { return s.scene.time.tick_s; }, "What a tick simulates, s.")
+          "tick_s", [](const Scene& s) { return s.scene.time.tick_s; }, "Simulated time of a tick, s.")
       .def_prop_ro(
           "workspace_scale", [](const Scene& s) { return s.scene.hands.workspace_scale; },
           "World metres for each metre of a device's motion.")

@@ -61,7 +61,7 @@ void add_motion(nb::class_<Sim>& type) {
       .def_prop_ro(
           "scene", [](Sim& s) { return s.scene(); }, "A copy of the scene that it was made of.")
       .def_prop_ro(
-          "ticks", [](Sim& s) { return s.idle().ticks(); }, "Ticks since the start or the last reset.")
+          "ticks", [](Sim& s) { return s.idle().ticks(); }, "Number of ticks since the start or the last reset.")
       .def_prop_ro(
           "time_s", [](Sim& s) { return clock_of(s.scene().scene.time.tick_s).time_s(s.idle().ticks()); },
           "Their time, s.")
@@ -102,10 +102,10 @@ void add_shape(nb::class_<Sim>& type) {
 void add_state(nb::class_<Sim>& type) {
   const auto hand = [](physics::Hand which) { return [which](Sim& s) { return s.idle().simulation().hand(which); }; };
   type.def_prop_ro("left", hand(physics::Hand::kLeft), "The left hand's hold of the thread, a copy.")
-      .def_prop_ro("right", hand(physics::Hand::kRight), "The right hand's.")
+      .def_prop_ro("right", hand(physics::Hand::kRight), "The right hand's hold of the thread, a copy.")
       .def_prop_ro(
           "diagnostics", [](Sim& s) { return s.idle().simulation().diagnostics(); },
-          "Energies, stretch, gaps and health of the last tick, a copy.");
+          "Diagnostics of the last tick, a copy.");
 }
 
 }  // namespace

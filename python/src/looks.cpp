@@ -23,18 +23,20 @@ View<T, nb::ndim<1>> one_row(std::vector<T> values) {
 
 void bind_hand(nb::module_& module) {
   using physics::HandContact;
-  nb::class_<HandContact>(module, "Hand", "A hand's hold of the thread in the last tick.")
-      .def_ro("node", &HandContact::node, "Node held, the nearest to the middle of the jaws; -1: none.")
+  nb::class_<HandContact>(module, "Hand", "What a hand held in the last tick, and the force on it.")
+      .def_ro("node", &HandContact::node,
+              "The held node that is nearest to the middle of the jaws; -1 if the hand holds nothing.")
       .def_prop_ro(
-          "p_W_m", [](const HandContact& h) { return plain(h.p_WG); }, "Where the thread between the jaws is, m.")
+          "p_W_m", [](const HandContact& h) { return plain(h.p_WG); },
+          "Position of the thread at the middle of the jaws, m.")
       .def_prop_ro(
           "v_W_m_per_s", [](const HandContact& h) { return plain(h.v_WG); }, "Its velocity, m/s.")
       .def_prop_ro(
           "f_W_N", [](const HandContact& h) { return plain(h.f_W); },
-          "Force on the hand, world newtons, before hands.force_scale and the limits of a device.")
+          "Force on the hand in the simulated world, N: before hands.force_scale and the limits of a device.")
       .def_prop_ro(
           "condition", [](const HandContact& h) { return name(h.condition); },
-          "Which of the paper's conditions governs it: 'none', 'A', 'B', 'C'.");
+          "Condition A, B or C of the paper's force propagation (docs/physics.md), or 'none'.");
 }
 
 }  // namespace
@@ -66,23 +68,28 @@ Reals curvature_per_m(const physics::Simulation& simulation) {
 void bind_looks(nb::module_& module) {
   bind_hand(module);
   using physics::Diagnostics;
-  nb::class_<Diagnostics>(module, "Diagnostics", "State of health after a tick.")
+  nb::class_<Diagnostics>(module, "Diagnostics",
+                          "Numbers about the last tick: energies, contacts, work, and whether the state is finite.")
       .def_ro("kinetic_J", &Diagnostics::kinetic_J, "Kinetic energy, J.")
       .def_ro("potential_J", &Diagnostics::potential_J,
-              "Gravity (zero at z = 0), stretch, bending, twist, give of contacts, J.")
-      .def_ro("max_stretch", &Diagnostics::max_stretch, "Largest l / l_rest - 1.")
+              "Energy of weight (zero at z = 0), stretch, bending, twist and compressed contacts, J.")
+      .def_ro("max_stretch", &Diagnostics::max_stretch, "Largest strain of a segment: length / rest length - 1.")
       .def_ro("min_gap_m", &Diagnostics::min_gap_m,
-              "Surface gap of the closest pair of strands, m; negative: overlap; inf.")
-      .def_ro("contacts", &Diagnostics::contacts, "Contacts that carried an impulse in the last step.")
-      .def_ro("contact_cap_hit", &Diagnostics::contact_cap_hit, "More contacts than there was room or work for.")
+              "Smallest gap between the surfaces of two strands, m; negative if they overlap, inf if none are near.")
+      .def_ro("contacts", &Diagnostics::contacts, "Number of contacts that carried an impulse in the last step.")
+      .def_ro("contact_cap_hit", &Diagnostics::contact_cap_hit,
+              "True if contacts were left out, because there was no room or no work left for them.")
       .def_prop_ro(
           "degradation", [](const Diagnostics& d) { return name(d.degradation); },
-          "What the tick gave up because its work is bounded: 'none', 'iterations', 'contacts', 'motion'.")
+          "What the tick left out because its work is limited: 'none', 'iterations', 'contacts', 'motion'.")
       .def_ro("time_lost", &Diagnostics::time_lost, "Share of the tick in which the thread was not moved.")
-      .def_ro("work", &Diagnostics::work, "Instructions that contact took, as priced; 0: a model without a bound.")
-      .def_ro("finite", &Diagnostics::finite, "False: frozen at the last finite state, hands open and without force.")
-      .def_ro("bad_node", &Diagnostics::bad_node, "First node that was no number; -1: none, or a tool was.")
-      .def_ro("bad_tick", &Diagnostics::bad_tick, "The tick at which it was; -1: none.");
+      .def_ro("work", &Diagnostics::work,
+              "Work on contact in this tick, in instructions (sum of prices); 0 for models without a limit.")
+      .def_ro("finite", &Diagnostics::finite,
+              "False if a value was not finite: the state stays the last finite one, with open hands and no force.")
+      .def_ro("bad_node", &Diagnostics::bad_node,
+              "First node whose position was not a finite number; -1 if none, or if a tool was the cause.")
+      .def_ro("bad_tick", &Diagnostics::bad_tick, "Tick in which that happened; -1 if it did not.");
 }
 
 }  // namespace ligature::python

@@ -39,8 +39,9 @@ NB_MODULE(_core, module) {
   namespace python = ligature::python;
   module.attr("__version__") = LIGATURE_VERSION;
   g_refusal = PyErr_NewExceptionWithDoc(
-      "ligature.Refusal", "What was asked or read is wrong: one line with place, what was found, what is allowed.",
-      PyExc_ValueError, nullptr);
+      "ligature.Refusal",
+      "Raised for invalid input: one line that names the place, what was found and what is allowed.", PyExc_ValueError,
+      nullptr);
   module.attr("Refusal") = nb::handle(g_refusal);
   nb::register_exception_translator(translate);
   python::bind_scene(module);

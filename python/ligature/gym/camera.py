@@ -32,7 +32,7 @@ class Camera:
         """The thread as a line one pixel wide: size x size uint8, 0 where there is none.
 
         A pixel is 255 at the depth distance - 1.5 reach or nearer, 64 at distance + 1.5 reach or farther, and linear
-        between. Where two strands cross, the nearer one is seen, so the picture tells over from under.
+        between. Where two strands cross, the nearer one is seen, so the picture shows which strand is above.
         """
         between = 1 + int(np.ceil(2.0 * self.size_px / (len(nodes) - 1)))  # points a segment: less than a pixel apart
         u = np.arange(between)[None, :, None] / between

@@ -19,12 +19,12 @@ class ThreadEnv(gymnasium.Env):
     """A thread and h hands that an agent moves; the tasks are subclasses.
 
     Action, 4 h numbers in [-1, 1], for each hand: velocity x, y, z as a fraction of speed_m_per_s, and the jaws (closed
-    if > 0). Larger values are cut off. A hand moves evenly during a step and stops at the edge of its box: the scene's
+    if > 0). Larger values are clipped. A hand moves evenly during a step and stops at the edge of its box: the scene's
     settled thread with 1.2 of its length on every side.
 
     Observation, a dictionary of float32 arrays: nodes_m (n x 3), velocities_m_per_s (n x 3), hands_m (h x 3), held (h:
     number of the held node, -1: none), forces_N (h x 3: on each hand). With observation="camera", camera (size_px x
-    size_px x 1, uint8) takes the place of the first two. Values beyond the space's bounds are cut off.
+    size_px x 1, uint8) takes the place of the first two. Values beyond the space's bounds are clipped.
 
     reset(seed) draws the start: each node i of n moves with w i / (n - 1), w uniform in +-START_M_PER_S per axis, and
     each hand starts within +-START_M of its place. If the thread diverges, the episode ends with the reward -1.

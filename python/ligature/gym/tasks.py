@@ -16,7 +16,7 @@ LEAST_N, MOST_N = 0.5, 5.0  # of a wanted force
 
 class KnotEnv(ThreadEnv):
     """Reaches a knot type. The reward is 1 in the step in which ligature.knot has found the wanted type in all steps of
-    the last 0.5 s; this step ends the episode. Otherwise the reward is 0. Nothing but the topology decides.
+    the last 0.5 s; this step ends the episode. Otherwise the reward is 0. Only the type of the knot counts.
 
     info: knot (type of the present shape), success.
     """

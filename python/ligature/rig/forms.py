@@ -15,7 +15,7 @@ FORMS = ("virtual", "live", "real")
 
 
 class Expected(AssertionError):
-    """What a test waited for did not come."""
+    """Raised if something that a test waited for did not happen in time."""
 
 
 class Connection(Protocol):

@@ -55,7 +55,7 @@ class Hand:
         self._press(True, limit_s)
 
     def let_go(self, limit_s: float = 5.0) -> None:
-        """Releases the dead-man button, which takes the force away within 0.15 s. Raises Expected."""
+        """Releases the dead-man button; the force is gone within 0.15 s. Raises Expected."""
         self._press(False, limit_s)
 
     @property

@@ -78,13 +78,13 @@ class Rig:
         self.wait_for(lambda rig: rig.left.gain == rig.right.gain == 1.0, limit_s, lambda: "full force on both hands")
 
     def disarm(self, limit_s: float = 5.0) -> None:
-        """Takes the force away in steps and waits until the rig is idle. Dry form: sends nothing. Raises Expected."""
+        """Removes the force in steps and waits until the rig is idle. Dry form: sends nothing. Raises Expected."""
         if not self.dry:
             self.command("disarm")
             self.wait_for(lambda rig: rig.state in ("IDLE", "FAULT"), limit_s, lambda: "an idle rig")
 
     def stop(self) -> None:
-        """Takes the force away at once, and 20 ms later reads no torque. Dry form: sends nothing. Raises Expected."""
+        """Removes the force at once and waits until no torque is sent. Dry form: sends nothing. Raises Expected."""
         if not self.dry:
             self.command("stop")
             self.wait_for(lambda rig: not rig.pushes, 1.0, lambda: "motors without torque")
@@ -131,7 +131,7 @@ class Rig:
 
     @property
     def fault(self) -> int:
-        """The latched fault's number, 0 for none (docs/architecture.md)."""
+        """Number of the present fault, 0 for none (docs/architecture.md)."""
         return int(self._now("fault"))
 
     @property
