@@ -174,6 +174,14 @@ def test_pull_locks_as_a_single_simulation_says(tmp_path):
     assert {**left[0], "tick_us": 0} == {**left[1], "tick_us": 0}
 
 
+def test_time_lost_is_a_share_of_the_pull(tmp_path):
+    """Time is lost before the pull, too, while the thread rests: it does not count."""
+    text = ('[task]\nkind = "pull"\nscene = "suture-3-0-surgeons.toml"\nspeed_m_per_s = 0.391\nhold_s = 0.01\n'
+            'suture.accuracy = "fast"\n')
+    row = execute(study_of(text, tmp_path).payload(0))
+    assert 0.5 < row["time_lost"] <= 1.0, row
+
+
 def test_tie_and_rerun_call_the_lab(tmp_path, monkeypatch):
     monkeypatch.setenv("LIGATURE_LAB", str(SOURCE / "nowhere"))
     tie = '[task]\nkind = "tie"\nknot = "overhand"\n'

@@ -68,12 +68,12 @@ def pull(job: Job) -> dict[str, Any]:
     begun = simulation.knot()
     hands = _Hands(simulation, asked["hands"])
     _proceed(hands, 0.0, asked["settle_s"])
-    before = hands.places[1].copy(), hands.ticks
+    place, ticks, time_lost = hands.places[1].copy(), hands.ticks, hands.time_lost
     peak_N = _proceed(hands, speed, LONGEST_S, asked["force_N"])
     if peak_N < asked["force_N"]:
         raise RuntimeError(f"the pull reached {peak_N:.3g} N in {LONGEST_S:g} s, not {asked['force_N']:g} N")
-    pulled, lost = hands.ticks - before[1], hands.time_lost
-    way_m = float(np.dot(hands.places[1] - before[0], hands.along)) * asked["hands"]
+    pulled, lost = hands.ticks - ticks, hands.time_lost - time_lost
+    way_m = float(np.dot(hands.places[1] - place, hands.along)) * asked["hands"]
     peak_N = max(peak_N, _proceed(hands, 0.0, asked["hold_s"]))
     knot, left_N = simulation.knot(), hands.force_N()
     kept = (knot.type, knot.handedness) == (begun.type, begun.handedness)
