@@ -52,7 +52,8 @@ void print_times(const Tally& t) {
 
 void lost(int draws, std::uint64_t seed) {
   std::printf(
-      "| frames lost, %% | hands | no fault, %% | 17, %% | 11, %% | others, %% | median | worst | true force, N |\n"
+      "| frames lost, %% | hands | no fault, %% | fault 17, %% | fault 11, %% | others, %% | median | worst | true "
+      "force, N |\n"
       "|---|---|---|---|---|---|---|---|---|\n");
   for (int percent = 0; percent <= 100; percent += 5) {
     for (const bool both : {false, true}) {
@@ -70,7 +71,8 @@ void lost(int draws, std::uint64_t seed) {
 
 void wrong(int draws, std::uint64_t seed) {
   std::printf(
-      "\n| frames with a wrong bit, %% | no fault, %% | 21, %% | 12, %% | others, %% | median | worst | true force, N "
+      "\n| frames with a wrong bit, %% | no fault, %% | fault 21, %% | fault 12, %% | others, %% | median | worst | "
+      "true force, N "
       "|\n|---|---|---|---|---|---|---|---|\n");
   for (const double percent : {0.1, 1.0, 10.0}) {
     const Tally t = tally({.wrong = 0.01 * percent, .ticks = 1500}, draws, seed);
