@@ -143,15 +143,17 @@ class OtherBlows:
             told = [f for f in frames if 0x081 <= f[1] <= 0x083 and f[2][:2] == bytes.fromhex("5082")]
             self.assertEqual({f[1] for f in told}, {0x081, 0x082, 0x083}, "EMCY 0x8250: no RPDO for 20 ms")
         lost = [r["tick"] for r in rows if r["flags"] & LOST]
-        self.assertGreater(len(lost), 90)
-        self.assertEqual(lost, list(range(lost[0], lost[0] + len(lost))))
-        first = rows[lost[-1] + 1]
+        first = next(r for r in rows[lost[0]:] if not r["flags"] & LOST)
+        slept = first["tick"] - lost[0]
+        self.assertGreater(slept, 90)
+        # The signal may come late in a period. The tick of that period then ends late, and the next periods are lost, too.
+        self.assertLessEqual(set(lost[slept:]), {first["tick"] + 1, first["tick"] + 2})
         self.assertIn(first["fault"], (12, 30), "what it finds first: its drives in fault, or its own sleep")
         self.assertEqual(first["state"], FAULT)
         self.assertTrue(pushes(rows[lost[0] - 3]))
-        self.assertFalse(any(pushes(r) for r in rows[lost[-1] + 1:]))
+        self.assertFalse(any(pushes(r) for r in rows[first["tick"]:]))
         self.row("every drive tells EMCY 0x8250 and has no torque, by itself; fault 12 or 30 in the first executed tick",
-                 f"fault {first['fault']}, {len(lost)} periods lost")
+                 f"fault {first['fault']}, {slept} periods lost before it")
 
     def test_the_clock_on_the_wall_does_not_matter(self):
         """Wall clock +1 day, then -2 days."""
