@@ -62,7 +62,7 @@ class Blows(Scenario):
         self.assertEqual((before["state"], pushes(before)), (FORCE, True), "the blow must find the rig in force")
         first = next(r for r in rows if r["fault"] != 0)
         last = f"{within[-1]}" if not besides else f"{WATCHDOG_TICKS}{besides}"
-        self.row(f"fault {' or '.join(map(str, faults))}, tick +{within[0]} .. +{last}, both hands, latched",
+        self.row(f"fault {' or '.join(map(str, faults))}, tick +{within[0]} .. +{last}, both hands, until a reset",
                  f"fault {first['fault']}, tick +{first['tick'] - at}")
         self.assertIn(first["fault"], faults)
         self.assertIn(first["tick"] - at, within)
@@ -85,7 +85,7 @@ class FirstBlows:
         # While the kernel kills the process, the guest's only CPU is busy, and the controller loses some periods.
         lost = sum(r["flags"] & LOST != 0 for r in rows[at:at + WATCHDOG_TICKS])
         self.ends_in((11,), rows, left, right, at, range(WATCHDOG_TICKS - 1, WATCHDOG_TICKS + lost + 1),
-                     " and the periods that killing costs the one CPU")
+                     " and the periods that the one CPU needs for the killing")
         first = next(r for r in rows if r["fault"] != 0)
         self.assertEqual(first["left_tpdo_age_ticks"], WATCHDOG_TICKS)
 
@@ -96,7 +96,7 @@ class FirstBlows:
         self.ends_in((12,), rows, left, right, at, (0, 1))
 
     def test_bus_off(self):
-        """Bus-off, told by the driver's error frame (vcan).
+        """Bus-off, reported by an error frame of the driver (vcan).
         In bus-off no further SYNC can be sent."""
         rows, left, right = self.read("bus-off")
         last = max(i for i, f in enumerate(left) if f[1] == 0x080)
@@ -152,7 +152,7 @@ class OtherBlows:
         self.assertEqual(first["state"], FAULT)
         self.assertTrue(pushes(rows[lost[0] - 3]))
         self.assertFalse(any(pushes(r) for r in rows[first["tick"]:]))
-        self.row("every drive tells EMCY 0x8250 and has no torque, by itself; fault 12 or 30 in the first executed tick",
+        self.row("every drive sends EMCY 0x8250 and removes its torque by itself; fault 12 or 30 in the first executed tick",
                  f"fault {first['fault']}, {slept} periods lost before it")
 
     def test_the_clock_on_the_wall_does_not_matter(self):
@@ -170,7 +170,7 @@ class OtherBlows:
         self.ends_in((10, 11), rows, left, right, self.tick_before(rows, left, last), range(WATCHDOG_TICKS + 2))
 
     def test_force_comes_back_by_order_only(self):
-        """The same interface up again after 0.2 s, 0.5 s later `reset-fault`, 0.5 s later `arm`."""
+        """The same interface is up again after 0.2 s; 0.5 s later `reset-fault`, 0.5 s later `arm`."""
         rows, _, _ = self.read("sja1000-pulled-and-back", "can0")
         self.comes_back_by_order(rows, 600)
 
@@ -194,7 +194,7 @@ class OtherBlows:
         return *self.read("slcan-bus-off", "slcan0", "wire1"), wire_of(self.folder / "slcan-bus-off", by_time=True)
 
     def test_bus_off_of_a_controller_with_error_counters(self):
-        """Bus-off of a controller with error counters (slcan): state of its interface, no carrier.
+        """Bus-off of a CAN controller with error counters (slcan), reported by the state of its interface.
         The driver calls the kernel's can_bus_off()."""
         rows, left, right, wire = self.slcan()
         logs = [(self.folder / f"slcan-bus-off/slcan-{when}.log").read_text() for when in ("before", "after")]
@@ -208,7 +208,7 @@ class OtherBlows:
         self.assertEqual(told, {0x081, 0x082, 0x083}, "EMCY 0x8250: the drives took the torque by themselves, too")
 
     def test_bus_off_of_such_a_controller_is_over_by_order_only(self):
-        """The same controller back by itself after 0.2 s, its interface down and up after 0.4 s, 0.5 s later `reset-fault`, 0.5 s later `arm`."""
+        """The same CAN controller recovers on its own after 0.2 s, its interface goes down and up after 0.4 s; 0.5 s later `reset-fault`, 0.5 s later `arm`."""
         rows, left, right, wire = self.slcan()
         armed = self.comes_back_by_order(rows, 800)
         ours = left[self.position(left, BUS_OFF) + 1:]

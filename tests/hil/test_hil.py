@@ -12,7 +12,7 @@ PAGE = ROOT / "docs/measurements/fault-matrix-guest.md"
 PAGE_HEAD = """# Fault matrix, guest
 
 Made by `scripts/test-hil Faults`: real processes over SocketCAN under a PREEMPT_RT kernel, in virtual time
-(see timing.md). Each row happens half a second after the coupling has reached its full force. Ticks of 1 ms are counted
+([timing](timing.md)). Each row happens half a second after the coupling has reached its full force. Ticks of 1 ms are counted
 by SYNC in `candump` and in the flight recorder, from the tick in which the event is on the bus. After the fault no
 record and no RPDO of either hand has a torque. *Stated* is what the test requires; *seen* is from the run that wrote this page.
 
