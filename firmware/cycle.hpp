@@ -24,10 +24,11 @@ namespace ligature {
 // clang-format off
 template <class B>
 concept Bus = requires(B b, Nanoseconds deadline, const rt::RigCommand& command) {
-  // Drives sample their encoders and apply the last RPDO's torque
-  { b.send_sync() } noexcept;
-  { b.read_tpdos(deadline) } noexcept -> std::same_as<rt::RigReading>;  // returns as soon as all TPDOs have come
-  { b.write_rpdos(command) } noexcept -> std::same_as<rt::WireTorque>;  // takes effect at the next SYNC
+  // Drives sample their encoders and apply the torque that they got last
+  { b.request() } noexcept;
+  { b.read(deadline) } noexcept -> std::same_as<rt::RigReading>;  // returns as soon as all samples have come
+  { b.write(command) } noexcept -> std::same_as<rt::WireTorque>;  // takes effect at the next request
+  { b.bus_time() } noexcept -> std::same_as<rt::BusTime>;
 };
 template <class W>
 concept Waker = requires(W w) {
@@ -44,11 +45,18 @@ template <Bus BusT, Clock ClockT, Waker WakerT>
 class Cycle {
  public:
   static constexpr Nanoseconds kPeriod = rt::kPeriod;
-  static constexpr Nanoseconds kTpdoWait = std::chrono::microseconds(680);  ///< counted from SYNC
 
   Cycle(BusT& bus, ClockT& clock, control::Controller& controller, control::ThreadExchange& exchange, WakerT& physics,
         rt::Outlets& out) noexcept
-      : bus_(bus), clock_(clock), controller_(controller), thread_(exchange), physics_(physics), out_(out), log_(out) {}
+      : bus_(bus),
+        clock_(clock),
+        controller_(controller),
+        thread_(exchange),
+        physics_(physics),
+        out_(out),
+        log_(out, bus.bus_time().most_work()),
+        thread_deadline_(bus.bus_time()),
+        longest_wait_(bus.bus_time().longest_wait()) {}
 
   void end_after(std::int64_t ticks) noexcept { last_tick_ = ticks; }
   /// Sets the channel through which new scenes and parameters reach the loop.
@@ -67,16 +75,16 @@ class Cycle {
 
       take_commands();
       take_plant();
-      bus_.send_sync();  // all drives sample and apply the previous tick's torque
+      bus_.request();  // all drives sample and apply the previous tick's torque
       at.synced = clock_.now();
-      const rt::RigReading reading = bus_.read_tpdos(at.woke + kTpdoWait);
+      const rt::RigReading reading = bus_.read(at.woke + longest_wait_);
       at.sampled = clock_.now();
       const auto worked_before = clock_.worked();
       take_grasp();  // computed from the tools of the previous period
       const auto in = input(reading, at.sampled - at.woke >= kPeriod);
       const rt::RigCommand command = controller_.tick(in);
       at.decided = clock_.now();
-      const rt::WireTorque torque = bus_.write_rpdos(command);
+      const rt::WireTorque torque = bus_.write(command);
       at.controlled = clock_.now();
       thread_deadline_.note(at.sampled - at.woke);
       const auto periods = (at.controlled - wake_at_) / kPeriod + 1;  // a late tick also delays the next one
@@ -158,6 +166,7 @@ class Cycle {
   rt::Outlets& out_;
   control::PeriodLog log_;
   rt::ThreadDeadline thread_deadline_;
+  Nanoseconds longest_wait_;  // for samples, counted from the wake-up
   control::PlantHandover* plants_ = nullptr;
   bool arm_waits_ = false;  // ARM was requested while a new scene is being installed; it is executed after that
   Nanoseconds wake_at_{};

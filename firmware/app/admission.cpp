@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <thread>
 
+#include "firmware/platform/make_drives.hpp"
 #include "firmware/platform/realtime.hpp"
-#include "firmware/rt/bus_time.hpp"
 
 namespace ligature::app {
 namespace {
@@ -16,9 +16,9 @@ double us(std::chrono::nanoseconds t) { return 1e-3 * static_cast<double>(t.coun
 
 /// Shortest time that the physics gets per period: from the hand-over of the tools after the latest possible samples
 /// until before the earliest possible next samples.
-double given_us(const LoopCost& loop) {
-  constexpr auto kLeast = rt::kPeriod - (rt::kSamplesLatest - rt::kSamplesEarliest) - rt::ThreadDeadline::kMargin;
-  return us(kLeast) - loop.control_us - loop.calls_us;
+double given_us(const rt::BusTime& bus, const LoopCost& loop) {
+  const auto least = rt::kPeriod - (bus.samples_latest - bus.samples_earliest) - rt::ThreadDeadline::kMargin;
+  return us(least) - loop.control_us - loop.calls_us;
 }
 
 std::vector<DrawnKnot> draw_knots(const scene::Scene& scene, const ThreadCost& cost) {
@@ -54,11 +54,12 @@ std::string knots_table(const std::vector<DrawnKnot>& knots) {
 Admission admit(const scene::Scene& scene, const AdmissionSettings& settings) {
   Admission result;
   result.budget_percent = settings.budget_percent;
+  result.bus = platform::bus_time_of(settings.device);
   std::thread([&] {  // on the run's core, but without real-time priority: this computes for seconds
     if (settings.core != kAnyCore) platform::stay_on(settings.core);
     platform::flush_denormals();
-    result.loop = measure_loop(scene);
-    result.thread = measure_thread(scene, given_us(result.loop), settings.seconds);
+    result.loop = measure_loop(scene, settings.device);
+    result.thread = measure_thread(scene, given_us(result.bus, result.loop), settings.seconds);
     if (settings.draw_knots) result.knots = draw_knots(scene, result.thread);
   })
       .join();
@@ -68,7 +69,7 @@ Admission admit(const scene::Scene& scene, const AdmissionSettings& settings) {
 std::string table(const Admission& a) {
   char text[1024];
   const auto share = [](double part_us) { return 0.1 * part_us; };
-  const double bus_us = us(rt::kSamplesLatest), torques_us = us(rt::kTorquesLatest);
+  const double bus_us = us(a.bus.samples_latest), torques_us = us(a.bus.torques_latest);
   std::snprintf(text, sizeof text,
                 "period 1000 us\n"
                 "  loop                        us    %% of period\n"
@@ -103,7 +104,7 @@ std::optional<std::string> objection_of(const Admission& a, double no_loss_m_per
         text, sizeof text,
         "the loop does not fit: found %.0f us of computing from SYNC to record, allowed %.0f; remedy: a faster core, "
         "or --budget up to %.0f",
-        a.computing_us(), a.budget_us(), 1e-1 * us(rt::kMostWork));
+        a.computing_us(), a.budget_us(), 1e-1 * us(a.bus.most_work()));
     return text;
   }
   for (const auto& knot : a.knots) {

@@ -2,6 +2,7 @@
 // Admission: measures, before anybody can be armed, whether the loop keeps its period on this machine whatever the
 // thread does, and how much of its time the thread loses.
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,8 @@
 #include "firmware/app/drawn_knot.hpp"
 #include "firmware/app/meter.hpp"
 #include "firmware/app/options.hpp"
+#include "firmware/rt/bus_time.hpp"
+#include "protocol/device/device.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::app {
@@ -18,8 +21,12 @@ struct Admission {
   ThreadCost thread;
   std::vector<DrawnKnot> knots;  ///< empty: not measured
   double budget_percent = kDefaultBudget_percent;
+  rt::BusTime bus;
   [[nodiscard]] double computing_us() const noexcept { return loop.control_us + loop.calls_us; }
-  [[nodiscard]] double budget_us() const noexcept { return 10.0 * budget_percent; }
+  /// What the budget allows, but no more than the bus leaves.
+  [[nodiscard]] double budget_us() const noexcept {
+    return std::min(10.0 * budget_percent, 1e-3 * static_cast<double>(bus.most_work().count()));
+  }
   /// Whether the loop's work (control law, record, bus calls) fits the budget. The physics needs no check: it stops at
   /// its deadline and cannot delay the loop.
   [[nodiscard]] bool fits() const noexcept { return computing_us() <= budget_us(); }
@@ -33,6 +40,7 @@ struct AdmissionSettings {
   int core = kAnyCore;
   double budget_percent = kDefaultBudget_percent;
   bool draw_knots = false;
+  device::Device device = device::omni();  ///< its drives determine how long the bus takes
 };
 
 /// @param scene one that physics::Simulation::make() accepts. Without `suture.work_instructions` the work budget is

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <tuple>
 
 #include "firmware/app/admission.hpp"
 #include "firmware/app/rig_setup.hpp"
@@ -37,13 +38,15 @@ int admit_scene(const AdmitOptions& options) {
   RunOptions like_run;
   like_run.scene = options.scene;
   like_run.overrides = options.overrides;
+  like_run.device = options.device;
+  like_run.accept_no_drive_watchdog = true;  // nothing is moved here
   const auto planned = make_plan(like_run);
   if (const auto* refusal = std::get_if<Refusal>(&planned)) {
     std::fprintf(stderr, "ligature-firmware: %s\n", refusal->text.c_str());
     return refusal->exit_code;
   }
-  const auto& scene = std::get<Plan>(planned).scene;
-  const AdmissionSettings settings{options.seconds, platform::realtime_core(), options.budget_percent, true};
+  const auto& [scene, device] = std::tie(std::get<Plan>(planned).scene, std::get<Plan>(planned).device);
+  const AdmissionSettings settings{options.seconds, platform::realtime_core(), options.budget_percent, true, device};
   const Admission admission = admit(scene, settings);
   std::fputs(table(admission).c_str(), stdout);
   const auto objection = objection_of(admission, options.no_loss_m_per_s);

@@ -10,6 +10,7 @@
 #include <memory>
 #include <thread>
 
+#include "firmware/app/drive_checks.hpp"
 #include "firmware/platform/monotonic_clock.hpp"
 #include "firmware/platform/realtime.hpp"
 
@@ -109,12 +110,19 @@ int doctor(const DoctorOptions& options) {
   action.sa_handler = [](int) { g_stop = true; };
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  std::variant<std::vector<Check>, std::string> drives;
+  if (!options.device.empty()) drives = drive_checks(options.device);
+  if (const auto* why = std::get_if<std::string>(&drives)) {
+    std::fprintf(stderr, "ligature-firmware: %s\n", why->c_str());
+    return 2;
+  }
   const int core = platform::realtime_core();
   const platform::Machine machine{"/", ip_details};
   auto checks = platform::check_machine(machine, core);
   for (const auto& interface : options.can) {
     for (auto& c : platform::check_can(machine, interface, core)) checks.push_back(std::move(c));
   }
+  for (auto& c : std::get<0>(drives)) checks.push_back(std::move(c));
   std::printf("core of the loop: %d\n", core);
   std::fputs(table(checks).c_str(), stdout);
   std::fflush(stdout);

@@ -180,14 +180,14 @@ ThreadCost measure_thread(const scene::Scene& scene, double given_us, double sec
   return ThreadMeter(scene).run(given_us, seconds);
 }
 
-LoopCost measure_loop(const scene::Scene& scene) {
+LoopCost measure_loop(const scene::Scene& scene, const device::Device& device) {
   constexpr int kTicks = 100;
   LoopCost cost;
-  cost.calls_us = bus_calls_us();
+  cost.calls_us = bus_calls_us(device);
   ColdCaches cold;
   rt::TickRecord record;
   // A Controller can be copied but not assigned (Ruckig has const members), so an optional is emplaced instead.
-  std::optional<control::Controller> fresh(std::in_place, scene.hands, control::Settings{20, true});
+  std::optional<control::Controller> fresh(std::in_place, scene.hands, control::Settings{20, true, device});
   for (std::int64_t tick = 0; tick < kTicks; ++tick) {
     control::TickInput in;
     in.tick = tick;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "firmware/physics/simulation.hpp"
+#include "protocol/device/device.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::app {
@@ -25,7 +26,7 @@ struct ThreadCost {
 };
 
 /// Runs on the calling thread and takes some tenths of a second.
-[[nodiscard]] LoopCost measure_loop(const scene::Scene& scene);
+[[nodiscard]] LoopCost measure_loop(const scene::Scene& scene, const device::Device& device);
 
 /// Measures ticks of the thread in its worst-case shapes (worst_case.hpp) for `seconds`, each shape at least once.
 /// @param scene one that physics::Simulation::make() accepts. Its suture.work_instructions is used if set; else the

@@ -90,6 +90,8 @@ void add_run(CLI::App& run, RunOptions& o) {
   run.add_option("--device", o.device, "device record (TOML, see scenes/devices) of both hands; default: omni-class");
   run.add_flag("--override-passivity", o.override_passivity,
                "take a coupling stiffer than the device can render stably (docs/haptics.md)");
+  run.add_flag("--accept-no-drive-watchdog", o.accept_no_drive_watchdog,
+               "run drives that keep their last torque if this program dies (docs/drives.md)");
   run.add_flag("--arm", o.arm, "arm at start, as the local operator; else wait for the command");
   run.add_option("--duration", o.duration_s, "end after so many seconds")->check(within(0.001, 1e6));
   run.add_option("--lcm-url", o.lcm_url, "LCM provider")->capture_default_str();
@@ -153,6 +155,7 @@ void add_admit(CLI::App& admit, AdmitOptions& o) {
   add_scene(admit, o.scene, o.overrides);
   add_budget(admit, o.budget_percent);
   add_no_loss(admit, o.no_loss_m_per_s);
+  admit.add_option("--device", o.device, "device record (TOML) whose drives are on the buses; default: omni-class");
   admit.add_option("--seconds", o.seconds, "how long to try")->check(within(0.1, 3600.0))->capture_default_str();
 }
 
@@ -177,6 +180,7 @@ void add_doctor(CLI::App& doctor, DoctorOptions& o) {
   doctor.add_option("--seconds", o.seconds, "how long to measure wake-ups; 0 = only the table")
       ->check(within(0.0, 86400.0))
       ->capture_default_str();
+  doctor.add_option("--device", o.device, "device record (TOML): also says what its drives cannot promise");
   doctor.add_option("--can", o.can, "SocketCAN interface to look at, may be given again")
       ->allow_extra_args(false)
       ->check([](const std::string& name) {

@@ -8,8 +8,8 @@
 
 namespace ligature::app {
 
-/// Default budget of the loop's computing in percent of a period: the time left by the slowest bus (rt::kMostWork),
-/// less a fifth.
+/// Default budget of the loop's computing in percent of a period: the time that the bus of our own drives leaves
+/// (rt::BusTime::most_work), less a fifth.
 inline constexpr double kDefaultBudget_percent = 20.0;
 
 enum class RtMode { kEnforce, kWarn, kOff };
@@ -19,6 +19,7 @@ struct RunOptions {
   std::vector<std::string> overrides;
   std::string device;  ///< device record for both hands; empty: the built-in Omni-class record
   bool override_passivity = false;
+  bool accept_no_drive_watchdog = false;
   std::string left, right;
   bool arm = false;
   bool exit_on_fault = false;
@@ -48,6 +49,7 @@ struct RehearseOptions {
 
 struct AdmitOptions {
   std::string scene;
+  std::string device;  ///< as in RunOptions
   std::vector<std::string> overrides;
   double seconds = 3.0;
   double budget_percent = kDefaultBudget_percent;
@@ -55,6 +57,7 @@ struct AdmitOptions {
 };
 
 struct DoctorOptions {
+  std::string device;  ///< device record whose drives are judged; empty: none
   double seconds = 10.0;
   std::vector<std::string> can;  ///< CAN interfaces to check
 };

@@ -4,15 +4,13 @@
 
 #include <cmath>
 
-#include "firmware/platform/can_master.hpp"
-
 namespace ligature::app {
 
 RealTimeSide::RealTimeSide(const RunOptions& options, Plan& plan, const Buses& buses, rt::Outlets& outlets,
                            control::PlantHandover& plants)
     : buses_(buses),
       wait_(*buses.left, *buses.right),
-      bus_(*buses.left, *buses.right, wait_, plan.device),
+      bus_(*buses.drives[0], *buses.drives[1], wait_),
       controller_(plan.scene.hands, {options.watchdog_ms, options.arm, plan.device}),
       cycle_(bus_, clock_, controller_, exchange_, wake_physics_, outlets),
       physics_(clock_, plan.thread, exchange_, outlets.shape),
@@ -69,9 +67,10 @@ void RealTimeSide::stay_awake() {
 /// Switches the drives off at once, before their watchdogs expire. One hand at a time, so that one silent bus cannot
 /// delay the other.
 void RealTimeSide::release() {
-  for (platform::CanBus* bus : {buses_.left.get(), buses_.right.get()}) {
-    platform::PollWait alone(*bus, *bus);
-    platform::release_drives(*bus, alone);
+  const std::array bus{buses_.left.get(), buses_.right.get()};
+  for (std::size_t h = 0; h < rt::kHands; ++h) {
+    platform::PollWait alone(*bus[h], *bus[h]);
+    buses_.drives[h]->release(alone);
   }
 }
 

@@ -55,7 +55,8 @@ int try_out(const RehearseOptions& options) {
   const Plan& plan = std::get<Plan>(planned);
   if (const auto why = rehearse(plan.thread); !why.empty()) return refused({2, options.scene + ": " + why});
   if (options.no_loss_m_per_s == 0.0) return 0;
-  const auto excess = objection_of(admit(plan.scene, {.draw_knots = true}), options.no_loss_m_per_s);
+  const auto excess =
+      objection_of(admit(plan.scene, {.draw_knots = true, .device = plan.device}), options.no_loss_m_per_s);
   return excess ? refused({3, options.scene + ": " + *excess}) : 0;
 }
 

@@ -9,7 +9,7 @@
 #include "firmware/app/launch.hpp"
 #include "firmware/control/admissible.hpp"
 #include "firmware/control/controller.hpp"
-#include "firmware/platform/can_master.hpp"
+#include "firmware/platform/make_drives.hpp"
 #include "firmware/platform/socket_bus.hpp"
 #include "firmware/rt/tick_record.hpp"
 #include "protocol/device/device_file.hpp"
@@ -98,6 +98,10 @@ std::variant<Plan, Refusal> make_plan(const RunOptions& options) {
     if (const auto* error = std::get_if<scene::Error>(&loaded)) return Refusal{2, error->text};
     device = std::get<device::Device>(loaded);
   }
+  if (!options.accept_no_drive_watchdog && !platform::have_watchdog(device))
+    return Refusal{2, (options.device.empty() ? device.name : options.device) +
+                          ": the drives have no watchdog: if this program dies, the last torque acts on; allowed only "
+                          "with --accept-no-drive-watchdog and an emergency stop in reach (docs/drives.md)"};
   const auto text = scene::read_text(options.scene, scene::kMostScene_bytes);
   if (const auto* error = std::get_if<scene::Error>(&text)) return Refusal{2, error->text};
   auto plan = plan_of(options.scene, std::get<std::string>(text), launch_overrides(options), device);
@@ -115,30 +119,32 @@ void give_work(Plan& plan, long instructions) {
   plan.toml += "\n# --set suture.work_instructions=" + std::to_string(instructions);
 }
 
-std::variant<Buses, Refusal> open_buses(const RunOptions& options, const Pause& pause) {
+std::variant<Buses, Refusal> open_buses(const RunOptions& options, const device::Device& device, const Pause& pause) {
   Buses buses;
   for (auto [url, bus] : {std::pair{&options.left, &buses.left}, std::pair{&options.right, &buses.right}}) {
     auto opened = open_patiently(*url, options.wait_s, pause);
     if (auto* refusal = std::get_if<Refusal>(&opened)) return *refusal;
     *bus = std::move(std::get<0>(opened));
   }
+  buses.drives = {platform::make_drives(*buses.left, device, options.watchdog_ms, 0),
+                  platform::make_drives(*buses.right, device, options.watchdog_ms, 1)};
   return buses;
 }
 
-std::optional<Refusal> configure(const Buses& buses, const RunOptions& options, const device::Device& device) {
-  can::StartupTimes times;
-  times.drive = platform::drive_facts(device);
-  times.rpdo_timeout_ms = static_cast<std::uint16_t>(options.watchdog_ms);
-  times.heartbeat_timeout_ms = std::max(times.heartbeat_timeout_ms, times.rpdo_timeout_ms);
-  platform::PollWait wait(*buses.left, *buses.right);
-  for (auto [hand, bus] : {std::pair{"left", buses.left.get()}, std::pair{"right", buses.right.get()}}) {
+std::optional<Refusal> configure(const Buses& buses) {
+  constexpr std::array kNames{"left", "right"};
+  const std::array bus{buses.left.get(), buses.right.get()};
+  const auto refusal = [&](std::size_t h, const std::string& why) {
+    return Refusal{3, std::string(kNames[h]) + " hand: " + why};
+  };
+  for (std::size_t h = 0; h < rt::kHands; ++h) {
     // Waits on this bus only: unread frames of the other would wake us for nothing
-    platform::PollWait alone(*bus, *bus);
-    if (const auto why = platform::other_master(*bus, alone)) return Refusal{3, std::string(hand) + " hand: " + *why};
+    platform::PollWait alone(*bus[h], *bus[h]);
+    if (const auto why = buses.drives[h]->other_controller(alone)) return refusal(h, *why);
   }
-  for (auto [hand, bus] : {std::pair{"left", buses.left.get()}, std::pair{"right", buses.right.get()}}) {
-    if (const auto why = platform::configure_drives(*bus, wait, times))
-      return Refusal{3, std::string(hand) + " hand: " + *why};
+  platform::PollWait wait(*buses.left, *buses.right);
+  for (std::size_t h = 0; h < rt::kHands; ++h) {
+    if (const auto why = buses.drives[h]->configure(wait)) return refusal(h, *why);
   }
   return std::nullopt;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Builds what the command line names: scene, buses, configured drives.
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <string>
@@ -9,7 +10,7 @@
 
 #include "firmware/app/options.hpp"
 #include "firmware/physics/simulation.hpp"
-#include "firmware/platform/can_bus.hpp"
+#include "firmware/platform/hand_drives.hpp"
 #include "protocol/device/device.hpp"
 #include "protocol/scene/scene.hpp"
 
@@ -37,19 +38,21 @@ struct Plan {
 /// Does nothing if the model has no budget (0) or the scene sets it.
 void give_work(Plan& plan, long instructions);
 
+/// Both hands' buses, and the drives on them.
 struct Buses {
   std::unique_ptr<platform::CanBus> left, right;
+  std::array<std::unique_ptr<platform::HandDrives>, rt::kHands> drives;
 };
 
 /// Pauses for a moment. @return true if the program shall end.
 using Pause = std::function<bool()>;
 
 /// Opens both buses, retrying for options.wait_s, because a hand may start later than this program.
-[[nodiscard]] std::variant<Buses, Refusal> open_buses(const RunOptions& options, const Pause& pause);
+[[nodiscard]] std::variant<Buses, Refusal> open_buses(const RunOptions& options, const device::Device& device,
+                                                      const Pause& pause);
 
 /// Checks that nobody else commands the drives, then starts all six up to pre-operational. @return why it failed, if
 /// so.
-[[nodiscard]] std::optional<Refusal> configure(const Buses& buses, const RunOptions& options,
-                                               const device::Device& device);
+[[nodiscard]] std::optional<Refusal> configure(const Buses& buses);
 
 }  // namespace ligature::app

@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -15,7 +16,7 @@
 #include "firmware/app/scene_desk.hpp"
 #include "firmware/app/stop_signals.hpp"
 #include "firmware/app/summary.hpp"
-#include "firmware/platform/can_master.hpp"
+#include "firmware/platform/make_drives.hpp"
 #include "firmware/telemetry/flight_recorder.hpp"
 #include "firmware/telemetry/lcm_link.hpp"
 
@@ -118,6 +119,18 @@ std::string no_telemetry(const std::string& url) {
          "'ip link set lo up; ip route add 224.0.0.0/4 dev lo' as root; --no-telemetry runs without anybody listening";
 }
 
+/// Logs what the drives cannot promise; both hands' drives are of one record, so most lines are the same.
+void log_lacks(const Buses& buses) {
+  std::vector<std::string> told;
+  for (std::size_t h = 0; h < rt::kHands; ++h) {
+    for (const std::string& line : buses.drives[h]->lacks()) {
+      if (std::ranges::find(told, line) != told.end()) continue;
+      told.push_back(line);
+      spdlog::warn("drives: {}", line);
+    }
+  }
+}
+
 Losses losses(const rt::Outlets& outlets, const telemetry::FlightRecorder* recorder) {
   if (recorder == nullptr) return {outlets.records.dropped(), false, 0, {}};
   return {outlets.records.dropped(), true, recorder->missing(), recorder->slowest_sync()};
@@ -129,8 +142,7 @@ int run_loop(RealTimeSide& side, telemetry::LcmLink& link, telemetry::Telemetry&
              const StopSignals& signals) {
   std::atomic<bool> done{false};
   std::thread teller([&] { tell(link, telemetry, desk, recorder, done); });
-  platform::start_drives(*buses.left);
-  platform::start_drives(*buses.right);
+  for (const auto& drives : buses.drives) drives->start();
   side.start();
   while (side.is_beating()) {
     if (signals.wait()) outlets.stop = true;
@@ -162,7 +174,7 @@ int run(const RunOptions& options) {
   if (ask && options.physics_core >= 0) platform::keep_off(options.physics_core);
 
   const Admission admission =
-      admit(plan.scene, {kAdmission_s, core, options.budget_percent, options.no_loss_m_per_s > 0.0});
+      admit(plan.scene, {kAdmission_s, core, options.budget_percent, options.no_loss_m_per_s > 0.0, plan.device});
   const auto excess = objection_of(admission, options.no_loss_m_per_s);
   if (excess && !options.force) return fail({3, options.scene + ": " + *excess});
   if (excess) {
@@ -179,7 +191,7 @@ int run(const RunOptions& options) {
   if (!link.is_open()) return fail({3, no_telemetry(options.lcm_url)});
 
   bool interrupted = false;
-  auto opened = open_buses(options, [&] { return interrupted = interrupted || signals.wait(); });
+  auto opened = open_buses(options, plan.device, [&] { return interrupted = interrupted || signals.wait(); });
   if (interrupted) return 0;
   if (const auto* refusal = std::get_if<Refusal>(&opened)) return fail(*refusal);
   const Buses& buses = std::get<Buses>(opened);
@@ -191,7 +203,8 @@ int run(const RunOptions& options) {
   const auto side = std::make_unique<RealTimeSide>(options, plan, buses, *outlets, desk.handover());
   const auto refused = side->prepare(ask, core);
   if (options.rt == RtMode::kEnforce && !refused.empty()) return fail({3, "--rt=enforce: " + refused.front()});
-  if (const auto refusal = configure(buses, options, plan.device)) return fail(*refusal);
+  if (const auto refusal = configure(buses)) return fail(*refusal);
+  log_lacks(buses);
 
   telemetry::Telemetry telemetry(session(plan, options, id, ask && refused.empty(), !excess, recorder.get()), kNames,
                                  *outlets, link, recorder.get());

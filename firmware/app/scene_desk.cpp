@@ -129,7 +129,7 @@ std::optional<ligature_msg::ack_t> SceneDesk::request(const ligature_msg::comman
 /// the loop).
 long SceneDesk::work_of_this_machine(const Plan& plan) const {
   if (plan.thread.work() == 0 || work_ > 0) return plan.thread.work() == 0 ? 0 : work_;
-  return admit(plan.scene, {}).thread.work;
+  return admit(plan.scene, {.device = plan.device}).thread.work;
 }
 
 /// Rehearses the scene in a child process that may crash; if that succeeds, builds it in this process.

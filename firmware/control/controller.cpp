@@ -79,10 +79,11 @@ rt::RigCommand Controller::tick(const TickInput& in) noexcept {
   step_force_scale();
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     if (in.late) hands_[h].doubt_time_of(in.tick);
-    torque_[h].look(in.reading.hand[h]);
-    loss_[h].look(in.reading.hand[h]);
+    age_[h].look(in.reading.hand[h], in.tick, last_tick_);
+    torque_[h].look(in.reading.hand[h], age_[h].is_fresh());
+    loss_[h].look(in.reading.hand[h], age_[h].is_fresh());
     if (state_ == State::kOff) loss_[h].forget();  // drives are starting up, or a fault was reset
-    hands_[h].observe(in.reading.hand[h], in.grasp[h], in.tick, last_tick_);
+    hands_[h].observe(in.reading.hand[h], age_[h], in.grasp[h], in.tick);
   }
   step_state(in);
   step_gains();
@@ -130,15 +131,16 @@ Fault Controller::find_fault(const TickInput& in) const noexcept {
   if (in.thread_late_ticks >= settings_.watchdog_ticks) return Fault::kThreadLate;
   if (state_ == State::kOff) return Fault::kNone;
   for (std::size_t h = 0; h < rt::kHands; ++h) {
-    const Fault fault = find_hand_fault(hands_[h], in.reading.hand[h]);
+    const Fault fault = find_hand_fault(h, in.reading.hand[h]);
     if (fault != Fault::kNone) return fault;
     if (loss_[h].is_lossy()) return Fault::kFramesLost;
   }
   return Fault::kNone;
 }
 
-Fault Controller::find_hand_fault(const HandControl& hand, const rt::HandReading& reading) const noexcept {
-  if (hand.state().age_ticks >= settings_.watchdog_ticks) return Fault::kTpdoTooOld;
+Fault Controller::find_hand_fault(std::size_t h, const rt::HandReading& reading) const noexcept {
+  const HandControl& hand = hands_[h];
+  if (age_[h].is_too_old(settings_.watchdog_ticks)) return Fault::kTpdoTooOld;
   if (reading.drive_fault || !reading.enabled) return Fault::kDriveFault;
   if (reading.buttons_stuck) return Fault::kButtonsStuck;
   if (hand.encoder_fault() != Fault::kNone) return hand.encoder_fault();
@@ -149,9 +151,11 @@ Fault Controller::find_hand_fault(const HandControl& hand, const rt::HandReading
 }
 
 bool Controller::drives_are_up(const rt::RigReading& reading) const noexcept {
-  return std::ranges::all_of(reading.hand, [](const rt::HandReading& r) {
-    return r.valid && r.enabled && !r.drive_fault && r.age_ticks == 0;
-  });
+  const auto is_up = [&](std::size_t h) {
+    const rt::HandReading& r = reading.hand[h];
+    return age_[h].is_of_this_period() && r.enabled && !r.drive_fault;
+  };
+  return is_up(0) && is_up(1);
 }
 
 void Controller::step_state(const TickInput& in) noexcept {
@@ -242,8 +246,8 @@ bool Controller::any_pushes() const noexcept {
 
 std::array<physics::ToolInput, rt::kHands> Controller::tools() const noexcept {
   // A hand without fresh samples releases the thread.
-  const auto tool = [this](const HandControl& h) { return h.tool(h.state().age_ticks < settings_.watchdog_ticks); };
-  return {tool(hands_[0]), tool(hands_[1])};
+  const auto tool = [this](std::size_t h) { return hands_[h].tool(!age_[h].is_too_old(settings_.watchdog_ticks)); };
+  return {tool(0), tool(1)};
 }
 
 }  // namespace ligature::control

@@ -8,6 +8,7 @@
 #include "firmware/control/faults.hpp"
 #include "firmware/control/hand_control.hpp"
 #include "firmware/control/loss_watch.hpp"
+#include "firmware/control/sample_age.hpp"
 #include "firmware/control/state_machine.hpp"
 #include "firmware/control/torque_watch.hpp"
 #include "firmware/rt/command.hpp"
@@ -76,7 +77,7 @@ class Controller {
 
  private:
   [[nodiscard]] Fault find_fault(const TickInput& in) const noexcept;
-  [[nodiscard]] Fault find_hand_fault(const HandControl& hand, const rt::HandReading& reading) const noexcept;
+  [[nodiscard]] Fault find_hand_fault(std::size_t h, const rt::HandReading& reading) const noexcept;
   [[nodiscard]] bool drives_are_up(const rt::RigReading& reading) const noexcept;
   void step_state(const TickInput& in) noexcept;
   /// Transition event of this tick, other than a fault.
@@ -92,6 +93,7 @@ class Controller {
   [[nodiscard]] bool any_pushes() const noexcept;
 
   Settings settings_;
+  std::array<SampleAge, rt::kHands> age_;
   std::array<HandControl, rt::kHands> hands_;
   std::array<TorqueWatch, rt::kHands> torque_;
   std::array<LossWatch, rt::kHands> loss_;

@@ -54,8 +54,8 @@ void HandControl::map(const Vec3& p_DT) noexcept {
   state_.v_WT = map_.velocity(v_DT_);
 }
 
-void HandControl::observe(const rt::HandReading& reading, const Grasp& grasp, std::int64_t tick,
-                          std::int64_t last_tick) noexcept {
+void HandControl::observe(const rt::HandReading& reading, const SampleAge& age, const Grasp& grasp,
+                          std::int64_t tick) noexcept {
   passivity_.begin(tick);
   const bool clutch = reading.clutch || clutch_command_;
   if (!clutch) state_.grip = reading.grip && !is_led();  // under the clutch the tool keeps its grip
@@ -63,16 +63,11 @@ void HandControl::observe(const rt::HandReading& reading, const Grasp& grasp, st
   state_.bus_load = reading.bus_load;
   if (!reading.valid) return;
 
-  // reading.age_ticks counts executed periods: age 1 means sampled in the last executed period, `last_tick`.
-  const std::int64_t sampled = reading.age_ticks == 0 ? tick : last_tick - (reading.age_ticks - 1);
-  const bool same =
-      reading.age_ticks == last_age_ + 1;  // the same sample, one executed period older (also after lost periods)
-  last_age_ = reading.age_ticks;
-  if (sample_tick_ < 0 || (!same && sampled > sample_tick_)) {  // a new sample, possibly late
+  if (age.is_fresh()) {
     dead_man_.see(reading.dead_man);
-    sample(reading, sampled);
+    sample(reading, age.taken());
   }
-  state_.age_ticks = tick - sample_tick_;
+  state_.age_ticks = age.ticks();
   step_clutch(clutch, p_DT_);
   if (!state_.clutch) map(p_DT_);
 

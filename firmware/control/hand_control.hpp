@@ -12,6 +12,7 @@
 #include "firmware/control/kinematics.hpp"
 #include "firmware/control/move_check.hpp"
 #include "firmware/control/passivity.hpp"
+#include "firmware/control/sample_age.hpp"
 #include "firmware/control/virtual_coupling.hpp"
 #include "firmware/control/windings.hpp"
 #include "firmware/control/window_velocity.hpp"
@@ -60,8 +61,8 @@ class HandControl {
 
   /// Computes tip pose, tool pose in the world and the coupling's force from the joints. Without a new sample the last
   /// one is kept.
-  /// @param last_tick the period executed before this one; reading.age_ticks counts executed periods
-  void observe(const rt::HandReading& reading, const Grasp& grasp, std::int64_t tick, std::int64_t last_tick) noexcept;
+  /// @param age after look() at this reading
+  void observe(const rt::HandReading& reading, const SampleAge& age, const Grasp& grasp, std::int64_t tick) noexcept;
   /// The loop was delayed while it read this tick's samples: their time is unknown, so no velocity is derived from
   /// them.
   void doubt_time_of(std::int64_t tick) noexcept { doubtful_tick_ = tick; }
@@ -159,7 +160,6 @@ class HandControl {
   Vec3 p_DT_ = Vec3::Zero(), v_DT_ = Vec3::Zero();
   bool lets_go_ = true, finite_ = true, holds_ = false, clutch_command_ = false;
   std::int64_t sample_tick_ = -1, doubtful_tick_ = -1, commanded_tick_ = -1;
-  std::int32_t last_age_ = 0;
   int overtime_ticks_ = 0;
   EncoderWatch watch_;
   Fault encoder_fault_ = Fault::kNone;

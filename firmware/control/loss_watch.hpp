@@ -22,10 +22,8 @@ class LossWatch {
 
   explicit LossWatch(std::int32_t watchdog_ticks = 20) noexcept : most_(std::max(kMost, 3 * watchdog_ticks)) {}
 
-  /// Counts the losses in this tick's reading.
-  void look(const rt::HandReading& reading) noexcept {
-    const bool fresh = reading.valid && reading.age_ticks != last_age_ + 1;
-    last_age_ = reading.age_ticks;
+  /// Counts the losses in this tick's reading. @param fresh whether it is a new sample (SampleAge)
+  void look(const rt::HandReading& reading, bool fresh) noexcept {
     count(samples_, !fresh);
     if (!fresh) return;  // without a new sample nothing is known about the torques
     count(torques_, std::ranges::any_of(reading.torque_held, [](int held) { return held > 0; }));
@@ -37,7 +35,6 @@ class LossWatch {
   void count(int& losses, bool lost) const noexcept { losses = std::clamp(losses + (lost ? kLost : -kCame), 0, most_); }
 
   int most_;
-  std::int32_t last_age_ = 0;
   int samples_ = 0, torques_ = 0;
 };
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "firmware/control/tick_report.hpp"
-#include "firmware/rt/bus_time.hpp"
 #include "firmware/rt/period.hpp"
 
 namespace ligature::control {
@@ -27,7 +26,7 @@ void PeriodLog::begin(std::int64_t tick, const Phases& at, nanoseconds work, con
   timing_.control.add((at.controlled - at.woke).count());
   timing_.execution.add((at.done - at.woke).count());
   timing_.work.add(work.count());
-  const bool missed = at.done >= at.scheduled + rt::kPeriod, overworked = work > rt::kMostWork;
+  const bool missed = at.done >= at.scheduled + rt::kPeriod, overworked = work > most_work_;
   timing_.deadline_misses += missed;
   timing_.overworked += overworked;
 

@@ -21,7 +21,8 @@ struct Phases {
 /// allocation after construction.
 class PeriodLog {
  public:
-  explicit PeriodLog(rt::Outlets& out) noexcept : out_(out) {}
+  /// @param most_work computing time of the loop above which a tick is flagged as overworked
+  PeriodLog(rt::Outlets& out, std::chrono::nanoseconds most_work) noexcept : out_(out), most_work_(most_work) {}
 
   void begin(std::int64_t tick, const Phases& at, std::chrono::nanoseconds work, const rt::WireTorque& torque,
              const Controller& controller, const ThreadOrders& orders, std::int64_t grasp_age_ticks) noexcept;
@@ -41,6 +42,7 @@ class PeriodLog {
   void tell_lost() noexcept;
 
   rt::Outlets& out_;
+  std::chrono::nanoseconds most_work_;
   rt::CycleTiming timing_;
   rt::TickRecord record_;
   std::chrono::nanoseconds woke_{};  // of the tick in record_

@@ -28,10 +28,8 @@ class TorqueWatch {
       : tolerance_Nm_(device.torque_tolerance_permille * device.Nm_per_permille()),
         block_ticks_((watchdog_ticks + kWay) / static_cast<std::int32_t>(kBlocks - 1) + 1) {}
 
-  /// Checks this tick's reading; call before sent() of this tick.
-  void look(const rt::HandReading& reading) noexcept {
-    const bool fresh = reading.valid && reading.age_ticks != last_age_ + 1;
-    last_age_ = reading.age_ticks;
+  /// Checks this tick's reading; call before sent() of this tick. @param fresh whether it is a new sample (SampleAge)
+  void look(const rt::HandReading& reading, bool fresh) noexcept {
     if (!fresh) return;
     strange_ = is_strange(reading) ? std::min(strange_ + 1, kStrange) : 0;
   }
@@ -71,7 +69,7 @@ class TorqueWatch {
   }
 
   double tolerance_Nm_;
-  std::int32_t block_ticks_, ticks_ = 0, last_age_ = 0;
+  std::int32_t block_ticks_, ticks_ = 0;
   std::size_t newest_ = 0;
   std::array<std::array<Range, rt::kJoints>, kBlocks> blocks_{};  // ring; the newest block is still being filled
   int strange_ = 0;

@@ -1,6 +1,5 @@
 #include "firmware/platform/can_master.hpp"
 
-#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -23,30 +22,62 @@ std::string abort_text(std::uint32_t code) {
   return text;
 }
 
-/// Reads an object and checks that it has the value for which the unit conversions were computed.
-std::optional<std::string> expect(CanBus& bus, BusWait& wait, can::NodeId node, const can::Object& object,
-                                  std::uint32_t wanted, Nanoseconds patience) {
-  const auto [answer, other] = transfer(bus, wait, can::sdo_read(node, object), patience);
-  if (other) return other;
-  if (!answer) return describe(node, object, "no answer");
-  if (answer->kind != can::SdoKind::kValue) return describe(node, object, abort_text(answer->value));
-  if (answer->value == wanted) return std::nullopt;
-  return describe(node, object, "found " + std::to_string(answer->value) + ", allowed " + std::to_string(wanted));
-}
+/// Sets up one node.
+class Setup {
+ public:
+  Setup(CanBus& bus, BusWait& wait, can::NodeId node, const can::StartupTimes& times, Nanoseconds patience,
+        std::vector<std::string>* lacks)
+      : bus_(bus), wait_(wait), node_(node), times_(times), patience_(patience), lacks_(lacks) {}
 
-std::optional<std::string> configure(CanBus& bus, BusWait& wait, can::NodeId node, const can::StartupTimes& times,
-                                     Nanoseconds patience) {
-  if (auto e = expect(bus, wait, node, can::od::kRatedTorque, times.drive.rated_torque_mNm, patience)) return e;
-  if (auto e = expect(bus, wait, node, can::od::kEncoderIncrements, times.drive.counts_per_revolution, patience))
-    return e;
-  for (const can::SdoWrite& w : can::startup_plan(node, times)) {
-    const auto [answer, other] = transfer(bus, wait, can::sdo_write(node, w.object, w.value, w.bytes), patience);
-    if (other) return other;
-    if (!answer) return describe(node, w.object, "no answer");
-    if (answer->kind != can::SdoKind::kWritten) return describe(node, w.object, abort_text(answer->value));
+  std::optional<std::string> run() {
+    const can::DriveFacts& drive = times_.drive;
+    if (auto e = expect(drive.rated_torque_object, drive.rated_torque)) return e;
+    if (auto e = expect(drive.counts_object, drive.counts)) return e;
+    for (const can::SdoWrite& w : can::startup_plan(node_, times_)) {
+      const can::Sdo* answer = nullptr;
+      if (auto e = ask(w.object, can::sdo_write(node_, w.object, w.value, w.bytes), can::SdoKind::kWritten, answer))
+        return e;
+    }
+    return std::nullopt;
   }
-  return std::nullopt;
-}
+
+ private:
+  /// Reads an object and checks that it has the value for which the unit conversions were computed.
+  std::optional<std::string> expect(const can::Object& object, std::uint32_t wanted) {
+    if (object.index == 0) return std::nullopt;  // the drive does not tell this
+    const can::Sdo* answer = nullptr;
+    if (auto e = ask(object, can::sdo_read(node_, object), can::SdoKind::kValue, answer)) return e;
+    if (answer == nullptr || answer->value == wanted) return std::nullopt;
+    return describe(node_, object, "found " + std::to_string(answer->value) + ", allowed " + std::to_string(wanted));
+  }
+
+  /// One transfer. @param answer set unless an optional object is missing, which is noted and no error
+  std::optional<std::string> ask(const can::Object& object, const can::Frame& request, can::SdoKind wanted,
+                                 const can::Sdo*& answer) {
+    auto [got, other] = transfer(bus_, wait_, request, patience_);
+    if (other) return other;
+    if (!got) return describe(node_, object, "no answer");
+    const bool missing = got->kind == can::SdoKind::kAbort &&
+                         (got->value == can::sdo_abort::kNoSuchObject || got->value == can::sdo_abort::kNoSuchSubIndex);
+    if (missing && times_.drive.may_lack(object)) {
+      if (lacks_ != nullptr)
+        lacks_->push_back(describe(node_, object, "missing in this drive, optional in its record"));
+      return std::nullopt;
+    }
+    if (got->kind != wanted) return describe(node_, object, abort_text(got->value));
+    answer_ = *got;
+    answer = &answer_;
+    return std::nullopt;
+  }
+
+  CanBus& bus_;
+  BusWait& wait_;
+  can::NodeId node_;
+  const can::StartupTimes& times_;
+  Nanoseconds patience_;
+  std::vector<std::string>* lacks_;
+  can::Sdo answer_;
+};
 
 /// Error text for a frame that only a controller sends; nothing for a drive's frame.
 std::optional<std::string> told_of_other(const can::Frame& frame) {
@@ -60,12 +91,6 @@ std::optional<std::string> told_of_other(const can::Frame& frame) {
 }
 
 }  // namespace
-
-can::DriveFacts drive_facts(const device::Device& d) noexcept {
-  return {static_cast<std::uint32_t>(std::lround(1e3 * d.rated_torque_Nm)),
-          static_cast<std::uint32_t>(std::lround(d.counts_per_revolution())),
-          static_cast<std::uint16_t>(d.max_torque_permille)};
-}
 
 SdoAnswer transfer(CanBus& bus, BusWait& wait, const can::Frame& request, Nanoseconds patience) {
   const auto asked = can::decode_sdo(request);
@@ -87,18 +112,19 @@ SdoAnswer transfer(CanBus& bus, BusWait& wait, const can::Frame& request, Nanose
 }
 
 std::optional<std::string> configure_drives(CanBus& bus, BusWait& wait, const can::StartupTimes& times,
-                                            Nanoseconds patience) {
+                                            std::vector<std::string>* lacks, Nanoseconds patience) {
   if (!bus.send(can::encode_nmt(can::NmtCommand::kEnterPreOperational))) return "the bus takes no frames";
   for (const can::NodeId node : can::profile::kJointNodes) {
-    if (auto error = configure(bus, wait, node, times, patience)) return error;
+    if (auto error = Setup(bus, wait, node, times, patience, lacks).run()) return error;
   }
   return std::nullopt;
 }
 
 bool start_drives(CanBus& bus) noexcept { return bus.send(can::encode_nmt(can::NmtCommand::kStart)); }
 
-void release_drives(CanBus& bus, BusWait& wait, Nanoseconds patience) {
+void release_drives(CanBus& bus, BusWait& wait, can::Watchdog watchdog, Nanoseconds patience) {
   bus.send(can::encode_nmt(can::NmtCommand::kEnterPreOperational));
+  if (watchdog == can::Watchdog::kNone) return;
   for (const can::NodeId node : can::profile::kJointNodes)
     (void)transfer(bus, wait, can::sdo_write(node, can::od::kConsumerHeartbeat, 0, 4), patience);
 }

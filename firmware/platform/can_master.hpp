@@ -4,17 +4,14 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "firmware/platform/bus_wait.hpp"
 #include "firmware/platform/can_bus.hpp"
 #include "protocol/can/sdo.hpp"
 #include "protocol/can/startup.hpp"
-#include "protocol/device/device.hpp"
 
 namespace ligature::platform {
-
-/// Values that start-up checks and sets in the drives of a device.
-[[nodiscard]] can::DriveFacts drive_facts(const device::Device& device) noexcept;
 
 /// One expedited SDO transfer: sends the request and waits for its answer; other frames are skipped.
 struct SdoAnswer {
@@ -26,9 +23,11 @@ struct SdoAnswer {
 
 /// Puts the nodes into pre-operational, checks that rated torque and encoder resolution match the unit conversions, and
 /// writes startup_plan() (mapping, watchdogs, torque limit, cyclic synchronous torque mode).
+/// @param lacks gets one line for each object that is missing although it may be
 /// @return one line that says why it failed, or nothing. The nodes are left in pre-operational, where no torque is
 /// possible.
 [[nodiscard]] std::optional<std::string> configure_drives(CanBus& bus, BusWait& wait, const can::StartupTimes& times,
+                                                          std::vector<std::string>* lacks = nullptr,
                                                           Nanoseconds patience = std::chrono::milliseconds(500));
 
 /// NMT start: from now on the drives answer SYNC with TPDOs. They stay switched off until enabled by controlword.
@@ -36,7 +35,8 @@ bool start_drives(CanBus& bus) noexcept;
 
 /// End of a run: NMT pre-operational, in which drives are disabled and expect no RPDOs. Then switches off every drive's
 /// monitoring of our heartbeat, so that our silence causes no fault. Drives that do not answer are left as they are.
-void release_drives(CanBus& bus, BusWait& wait, Nanoseconds patience = std::chrono::milliseconds(20));
+void release_drives(CanBus& bus, BusWait& wait, can::Watchdog watchdog = can::Watchdog::kRpdoTimer,
+                    Nanoseconds patience = std::chrono::milliseconds(20));
 
 /// Listens for another master before this one sends anything; a bus has one master. Two masters that start at the same
 /// moment hear each other later, in transfer(). @return what was heard within `listening`, or nothing.

@@ -8,6 +8,7 @@
 #include "protocol/can/emcy.hpp"
 #include "protocol/can/heartbeat.hpp"
 #include "protocol/can/nmt.hpp"
+#include "protocol/can/startup.hpp"
 #include "protocol/can/units.hpp"
 
 namespace ligature::platform {
@@ -15,6 +16,7 @@ namespace {
 
 constexpr float kPeriod_ns = 1e6F;
 constexpr unsigned kAllJoints = (1U << rt::kJoints) - 1U;
+constexpr unsigned kInputsPart = 1U << rt::kJoints;
 
 /// Index of the joint with this node id; kJoints if there is none.
 constexpr std::size_t joint_of(can::NodeId node) noexcept {
@@ -25,6 +27,18 @@ constexpr std::size_t joint_of(can::NodeId node) noexcept {
 }
 
 }  // namespace
+
+HandLink::HandLink(CanBus& bus, const device::Device& device, int heartbeat_periods, std::size_t hand) noexcept
+    : bus_(bus),
+      rad_per_count_(device.rad_per_count()),
+      Nm_per_permille_(device.Nm_per_permille()),
+      max_permille_(device.max_torque_permille),
+      buttons_(device.cia402.buttons),
+      buttons_joint_(joint_of(can::NodeId{static_cast<std::uint8_t>(buttons_.node)})),
+      inputs_id_(buttons_.are_inputs() ? can::pdo_place(false, 2, can::profile::kJointNodes[buttons_joint_]).id : 0),
+      complete_(kAllJoints | (buttons_.are_inputs() ? kInputsPart : 0U)),
+      heartbeat_periods_(heartbeat_periods),
+      periods_to_heartbeat_(hand == 0 ? 0 : heartbeat_periods / 2) {}
 
 can::cia402::State HandLink::Node::state() const noexcept {
   return can::cia402::state_of(latest.statusword).value_or(can::cia402::State::kNotReadyToSwitchOn);
@@ -46,7 +60,7 @@ void HandLink::beat() noexcept {
   if (foreign_ != rt::Foreign::kNone) return;
   if (--periods_to_heartbeat_ >= 0) return;
   send(can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}));
-  periods_to_heartbeat_ = kHeartbeatPeriods - 1;
+  periods_to_heartbeat_ = heartbeat_periods_ - 1;
 }
 
 void HandLink::drain() noexcept {
@@ -67,13 +81,17 @@ bool HandLink::send(const can::Frame& frame) noexcept {
 void HandLink::take(const can::Frame& frame) noexcept {
   bits_ += can::frame_bits(frame);
   if (foreign_ == rt::Foreign::kNone) foreign_ = foreign_kind(frame);
+  if (inputs_id_ != 0 && frame.id == inputs_id_ && frame.dlc == buttons_.bits / 8) {
+    pending_inputs_ = static_cast<std::uint32_t>(can::data_word(frame));
+    return take_part(kInputsPart);
+  }
   const auto address = can::address_of(frame.id);
   if (!address) return;
   const std::size_t joint = joint_of(address->node);
   if (joint == rt::kJoints) return;
   switch (address->service) {
     case can::Service::kTpdo1:
-      if (const auto tpdo = can::decode_tpdo1(address->node, frame)) take_tpdo(joint, *tpdo);
+      if (const auto tpdo = can::decode_tpdo1(address->node, frame, has_word(joint))) take_tpdo(joint, *tpdo);
       break;
     case can::Service::kEmcy:
       if (const auto emergency = can::decode_emergency(frame)) nodes_[joint].emergency = emergency->code;
@@ -88,23 +106,29 @@ void HandLink::take(const can::Frame& frame) noexcept {
   }
 }
 
+/// Whether this joint's TPDO has our own buttons' word instead of the torque.
+bool HandLink::has_word(std::size_t joint) const noexcept { return !buttons_.are_inputs() && joint == buttons_joint_; }
+
 void HandLink::note_life(std::uint16_t buttons) noexcept {
-  constexpr std::size_t kStylus = rt::kJoints - 1;
-  static_assert(can::profile::has_stylus_buttons(can::profile::kJointNodes[kStylus]));
-  const bool moved = can::profile::life_of(buttons) != can::profile::life_of(nodes_[kStylus].latest.buttons);
+  const bool moved = can::profile::life_of(buttons) != can::profile::life_of(nodes_[buttons_joint_].latest.buttons);
   has_life_ = has_life_ || moved;
   still_sets_ = moved ? 0 : still_sets_ + (still_sets_ < kStillSets);
 }
 
-/// Joints are used only as a complete set sampled at one SYNC: a mixture of ages would be a pose that never existed.
 void HandLink::take_tpdo(std::size_t joint, const can::Tpdo1& tpdo) noexcept {
   pending_[joint] = tpdo;
-  arrived_ |= 1U << joint;
-  if (arrived_ != kAllJoints) return;
+  take_part(1U << joint);
+}
+
+/// Joints are used only as a complete set sampled at one SYNC: a mixture of ages would be a pose that never existed.
+void HandLink::take_part(unsigned part) noexcept {
+  arrived_ |= part;
+  if (arrived_ != complete_) return;
   for (std::size_t j = 0; j < rt::kJoints; ++j) {
-    if (can::profile::has_stylus_buttons(can::profile::kJointNodes[j]) && valid_) note_life(pending_[j].buttons);
+    if (has_word(j) && valid_) note_life(pending_[j].buttons);
     nodes_[j].latest = pending_[j];
   }
+  inputs_ = pending_inputs_;
   arrived_ = 0;
   valid_ = true;
   age_ticks_ = 0;
@@ -127,18 +151,25 @@ rt::HandReading HandLink::reading() const noexcept {
     r.enabled = r.enabled && state == State::kOperationEnabled;
     r.drive_fault = r.drive_fault || node.emergency != can::emcy::kNoError || !node.operational ||
                     (valid_ && (state == State::kFault || state == State::kFaultReactionActive));
-    r.torque_astray = r.torque_astray || (node.latest.statusword & can::cia402::kTorqueAstrayBit) != 0;
+    // Our own drives' bit; others use it for something else, but report the torque of every joint.
+    r.torque_astray =
+        r.torque_astray || (!buttons_.are_inputs() && (node.latest.statusword & can::cia402::kTorqueAstrayBit) != 0);
     r.torque_limited[j] = (node.latest.statusword & can::cia402::kInternalLimitBit) != 0;
-    if (!can::profile::has_stylus_buttons(can::profile::kJointNodes[j])) {
-      if (valid_) r.torque_Nm[j] = node.latest.torque_permille * Nm_per_permille_;
-    } else {
+    if (has_word(j))
       r.torque_held[j] = can::profile::held_of(node.latest.buttons);
-      r.grip = (node.latest.buttons & can::profile::kButtonGrip) != 0;
-      r.dead_man = (node.latest.buttons & can::profile::kButtonDeadMan) != 0;
-      r.clutch = (node.latest.buttons & can::profile::kButtonClutch) != 0;
-    }
+    else if (valid_)
+      r.torque_Nm[j] = node.latest.torque_permille * Nm_per_permille_;
   }
+  tell_buttons(r);
   return r;
+}
+
+void HandLink::tell_buttons(rt::HandReading& r) const noexcept {
+  const std::uint32_t word = buttons_.are_inputs() ? inputs_ : nodes_[buttons_joint_].latest.buttons;
+  const auto pressed = [word](int bit) { return bit >= 0 && ((word >> static_cast<unsigned>(bit)) & 1U) != 0; };
+  r.grip = pressed(buttons_.grip_bit);
+  r.dead_man = pressed(buttons_.dead_man_bit);
+  r.clutch = pressed(buttons_.clutch_bit);
 }
 
 std::int16_t HandLink::permille_of(double torque_Nm) const noexcept {

@@ -36,15 +36,11 @@ namespace ligature::platform {
 /// Real time: every call is bounded, does not allocate, and makes only the bus's system calls.
 class HandLink {
  public:
-  static constexpr int kHeartbeatPeriods = 50;  ///< half of the drives' default timeout, so that one may be lost
+  static constexpr int kHeartbeatPeriods = 50;  ///< half of our drives' timeout, so that one may be lost
 
-  /// @param first_heartbeat period, from 0, in which the first master heartbeat is sent
-  HandLink(CanBus& bus, const device::Device& device, int first_heartbeat = 0) noexcept
-      : bus_(bus),
-        rad_per_count_(device.rad_per_count()),
-        Nm_per_permille_(device.Nm_per_permille()),
-        max_permille_(device.max_torque_permille),
-        periods_to_heartbeat_(first_heartbeat) {}
+  /// @param hand index; the right hand's heartbeats are sent in other periods than the left one's
+  HandLink(CanBus& bus, const device::Device& device, int heartbeat_periods = kHeartbeatPeriods,
+           std::size_t hand = 0) noexcept;
 
   /// Begins a period: first reads late frames of the last period (as one period old), then sends SYNC.
   void send_sync() noexcept;
@@ -52,12 +48,12 @@ class HandLink {
   /// Reads all frames that have arrived.
   void drain() noexcept;
 
-  /// Whether waiting is over: all three drives have answered this period's SYNC, or the bus is lost.
+  /// Whether waiting is over: all drives have answered this period's SYNC, or the bus is lost.
   [[nodiscard]] bool is_settled() const noexcept { return age_ticks_ == 0 || bus_.is_lost(); }
   [[nodiscard]] rt::HandReading reading() const noexcept;
 
   /// Sends the torques. They are sent in every period, so that a foreign controller's RPDO acts for one period at most.
-  /// Every kHeartbeatPeriods the master's heartbeat is sent before them.
+  /// Every heartbeat_periods the master's heartbeat is sent before them.
   /// @return the torques as sent, per mille; zero if the bus is lost
   std::array<std::int16_t, rt::kJoints> write(const rt::HandCommand& command) noexcept;
 
@@ -79,20 +75,28 @@ class HandLink {
   [[nodiscard]] std::int16_t permille_of(double torque_Nm) const noexcept;
   void note_life(std::uint16_t buttons) noexcept;
   void take_tpdo(std::size_t joint, const can::Tpdo1& tpdo) noexcept;
+  void take_part(unsigned part) noexcept;
+  void tell_buttons(rt::HandReading& r) const noexcept;
+  [[nodiscard]] bool has_word(std::size_t joint) const noexcept;
 
   CanBus& bus_;
   double rad_per_count_, Nm_per_permille_;
   std::int32_t max_permille_;
+  device::ButtonsPlace buttons_;
+  std::size_t buttons_joint_;
+  std::uint32_t inputs_id_;  ///< of the TPDO with plain inputs; 0: there is none
+  unsigned complete_;        ///< the parts of a complete set, one bit each
   std::array<Node, rt::kJoints> nodes_{};
   std::array<can::Tpdo1, rt::kJoints> pending_{};
-  unsigned arrived_ = 0;  // joints that answered since the last SYNC, one bit each
+  std::uint32_t inputs_ = 0, pending_inputs_ = 0;
+  unsigned arrived_ = 0;  // parts that came since the last SYNC
   bool valid_ = false;
   bool was_lost_ = false;  // since the last reading; a bus may recover before it is read
   rt::Foreign foreign_ = rt::Foreign::kNone;
   bool has_life_ = false;  // the buttons' counter was seen to change; a drive without one is not checked
   int still_sets_ = 0;
   std::int32_t age_ticks_ = 1;
-  int periods_to_heartbeat_;
+  int heartbeat_periods_, periods_to_heartbeat_;
   unsigned bits_ = 0, bits_of_last_period_ = 0;  // bits on the wire, for the bus load
 };
 

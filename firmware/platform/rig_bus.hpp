@@ -1,24 +1,24 @@
 #pragma once
-// Both hands' buses as one, for the loop.
+// The drives of both hands as one bus, for the loop.
 
 #include "firmware/platform/bus_wait.hpp"
-#include "firmware/platform/hand_link.hpp"
+#include "firmware/platform/hand_drives.hpp"
 
 namespace ligature::platform {
 
 class RigBus {
  public:
-  RigBus(CanBus& left, CanBus& right, BusWait& wait, const device::Device& device = device::omni())
-      : hands_{HandLink(left, device), HandLink(right, device, HandLink::kHeartbeatPeriods / 2)}, wait_(wait) {}
+  RigBus(HandDrives& left, HandDrives& right, BusWait& wait) noexcept : hands_{&left, &right}, wait_(wait) {}
 
-  void send_sync() noexcept;
+  void request() noexcept;
   /// Returns as soon as both hands have answered, and at the deadline at the latest.
-  [[nodiscard]] rt::RigReading read_tpdos(Nanoseconds deadline) noexcept;
-  rt::WireTorque write_rpdos(const rt::RigCommand& command) noexcept;
+  [[nodiscard]] rt::RigReading read(Nanoseconds deadline) noexcept;
+  rt::WireTorque write(const rt::RigCommand& command) noexcept;
+  /// The slower hand's times.
+  [[nodiscard]] rt::BusTime bus_time() const noexcept;
 
  private:
-  // The two heartbeats are sent in different periods, to spread the work.
-  std::array<HandLink, rt::kHands> hands_;
+  std::array<HandDrives*, rt::kHands> hands_;
   BusWait& wait_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Time budget of a period on a classic CAN bus at 1 Mbit/s.
+// Time that the frames of one hand take on its bus in a period, and what it leaves to the loop and the physics.
 
 #include <algorithm>
 #include <chrono>
@@ -8,15 +8,25 @@
 
 namespace ligature::rt {
 
-/// Time from SYNC to the last bit of a hand's three joint messages: 47 + 3 x 111 bits without stuff bits, and with the
-/// largest number of stuff bits. Each hand has its own bus.
-inline constexpr std::chrono::nanoseconds kSamplesEarliest = std::chrono::microseconds(380);
-inline constexpr std::chrono::nanoseconds kSamplesLatest = std::chrono::microseconds(460);
-/// Longest time of a hand's three torque messages, which must be sent before the next SYNC.
-inline constexpr std::chrono::nanoseconds kTorquesLatest = std::chrono::microseconds(285);
+/// Told by the hand's drives (firmware/platform/hand_drives.hpp), because it depends on their protocol. Each hand has
+/// its own bus.
+struct BusTime {
+  /// From the request for samples to the last bit of all of them: without stuff bits, and with the most possible
+  std::chrono::nanoseconds samples_earliest{}, samples_latest{};
+  /// Longest time of what the loop sends after the samples; it must have passed before the next request
+  std::chrono::nanoseconds torques_latest{};
 
-/// Time left for the loop's computing; with more, torques would miss the SYNC at which they are to act.
-inline constexpr std::chrono::nanoseconds kMostWork = kPeriod - kSamplesLatest - kTorquesLatest;
+  /// Time left for the loop's computing; with more, torques would be late.
+  [[nodiscard]] constexpr std::chrono::nanoseconds most_work() const noexcept {
+    return kPeriod - samples_latest - torques_latest;
+  }
+  /// How long the loop waits for samples after it woke up: the torques must still be in time after that.
+  [[nodiscard]] constexpr std::chrono::nanoseconds longest_wait() const noexcept {
+    constexpr std::chrono::nanoseconds kControlLaw = std::chrono::microseconds(35);
+    return kPeriod - torques_latest - kControlLaw;
+  }
+  friend constexpr bool operator==(const BusTime&, const BusTime&) = default;
+};
 
 /// Deadline of the physics tick: before the next samples can be complete. Their arrival time is predicted from the
 /// earliest recent one, because the number of stuff bits changes little between periods; it is limited to what the bus
@@ -27,9 +37,11 @@ class ThreadDeadline {
   /// Growth of the stored earliest time per period, so that old observations are forgotten
   static constexpr std::chrono::nanoseconds kForgets = std::chrono::nanoseconds(20);
 
+  explicit ThreadDeadline(const BusTime& bus) noexcept : bus_(bus), earliest_(bus.samples_latest) {}
+
   /// Records that the samples were complete this long after the wake-up.
   void note(std::chrono::nanoseconds sampled) noexcept {
-    earliest_ = std::clamp(std::min(earliest_ + kForgets, sampled), kSamplesEarliest, kSamplesLatest);
+    earliest_ = std::clamp(std::min(earliest_ + kForgets, sampled), bus_.samples_earliest, bus_.samples_latest);
   }
   /// Deadline of the physics tick that ends before the samples of the period starting at `next_wake`.
   [[nodiscard]] std::chrono::nanoseconds before(std::chrono::nanoseconds next_wake) const noexcept {
@@ -37,7 +49,8 @@ class ThreadDeadline {
   }
 
  private:
-  std::chrono::nanoseconds earliest_ = kSamplesLatest;
+  BusTime bus_;
+  std::chrono::nanoseconds earliest_;
 };
 
 }  // namespace ligature::rt

@@ -78,14 +78,20 @@ inline constexpr PdoField kTargetTorque = field_of(Pdo::kRpdo1, od::kTargetTorqu
 }
 
 /// Empty if the frame is not this node's TPDO1, or its length differs from the map.
-[[nodiscard]] constexpr std::optional<Tpdo1> decode_tpdo1(NodeId node, const Frame& f) noexcept {
+/// @param buttons whether it has the buttons instead of the torque
+[[nodiscard]] constexpr std::optional<Tpdo1> decode_tpdo1(NodeId node, const Frame& f, bool buttons) noexcept {
   if (f.id != cob_id(Service::kTpdo1, node).value || f.dlc != length_bytes(Pdo::kTpdo1, node)) return std::nullopt;
   Tpdo1 p;
   p.statusword = static_cast<std::uint16_t>(get(f, field::kStatusword));
   p.position_counts = static_cast<std::int32_t>(get(f, field::kPosition));
-  if (carries(field::kTorqueActual, node)) p.torque_permille = static_cast<std::int16_t>(get(f, field::kTorqueActual));
-  if (carries(field::kButtons, node)) p.buttons = static_cast<std::uint16_t>(get(f, field::kButtons));
+  if (buttons)
+    p.buttons = static_cast<std::uint16_t>(get(f, field::kButtons));
+  else
+    p.torque_permille = static_cast<std::int16_t>(get(f, field::kTorqueActual));
   return p;
+}
+[[nodiscard]] constexpr std::optional<Tpdo1> decode_tpdo1(NodeId node, const Frame& f) noexcept {
+  return decode_tpdo1(node, f, carries(field::kButtons, node));
 }
 
 /// Empty if the frame is not this node's RPDO1, or its length differs from the map.

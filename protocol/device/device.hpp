@@ -7,6 +7,8 @@
 #include <numbers>
 #include <string>
 
+#include "protocol/device/cia402_profile.hpp"
+
 namespace ligature::device {
 
 using Vec = std::array<double, 3>;
@@ -39,6 +41,7 @@ struct Device {
   int max_torque_permille = 0;         ///< largest torque, per mille of the rated one (object 0x6072)
   int torque_tolerance_permille = 50;  ///< a drive's reported torque may exceed the commanded one by this
   double delay_s = 0.0;                ///< from a position sample to the effect of the torque computed from it
+  Cia402Profile cia402{};              ///< what the drives offer on the bus
 
   // Passive dynamics of the device when it is off, at the tip in the home pose.
   double apparent_mass_kg = 0.0;

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "protocol/device/cia402_reader.hpp"
 #include "protocol/device/device_keys.hpp"
 #include "protocol/device/omni_text.hpp"
 #include "protocol/scene/toml_text.hpp"
@@ -16,8 +17,6 @@ using scene::StrictTable;
 
 constexpr std::pair<const char*, Kinematics> kKinematics[] = {{"omni-serial", Kinematics::kOmniSerial},
                                                               {"cartesian", Kinematics::kCartesian}};
-constexpr std::pair<const char*, Source> kSources[] = {
-    {"assumed", Source::kAssumed}, {"datasheet", Source::kDatasheet}, {"measured", Source::kMeasured}};
 constexpr Range kPositive{1e-6, 1e6};
 constexpr Range kNotNegative{0.0, 1e6};
 constexpr double kFar = 100.0;  // m or rad: largest coordinate or angle
@@ -53,7 +52,7 @@ class Marked {
     t.require("source");
     read(t);
     Source source = Source::kAssumed;
-    t.choice("source", source, kSources);
+    t.choice("source", source, kSourceNames);
     out_.sources.emplace_back(path_ + "." + key, source);
   }
 
@@ -118,7 +117,12 @@ void check(StrictTable& geometry, StrictTable& limits, const Device& d) {
 void read_record(StrictTable& top, DeviceFile& out) {
   Device& d = out.device;
   top.table("device", [&](StrictTable& t) { read_identity(t, d); });
-  top.table("drives", [&](StrictTable& t) { read_drives(Marked(t, "drives", out), d); });
+  top.table("drives", [&](StrictTable& t) {
+    read_drives(Marked(t, "drives", out), d);
+    top.table("cia402", [&](StrictTable& p) { read_cia402(p, d.cia402); });
+    if (!t.failed() && d.motor_counts % d.cia402.counts_unit != 0)
+      t.refuse("motor_counts", "a multiple of cia402.counts_unit");
+  });
   top.table("feel", [&](StrictTable& t) { read_feel(Marked(t, "feel", out), d); });
   top.table("geometry", [&](StrictTable& g) {
     read_geometry(Marked(g, "geometry", out), d);

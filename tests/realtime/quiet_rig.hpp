@@ -21,12 +21,13 @@ class QuietClock {
 class QuietBus {
  public:
   QuietBus(VirtualBus& bus, QuietClock& clock) : bus_(bus), clock_(clock) {}
-  void send_sync() noexcept { bus_.send_sync(); }
-  rt::RigReading read_tpdos(Nanoseconds) noexcept {
-    clock_.time += rt::kSamplesLatest;
+  void request() noexcept { bus_.request(); }
+  rt::RigReading read(Nanoseconds) noexcept {
+    clock_.time += bus_.bus_time().samples_latest;
     return bus_.reading;
   }
-  rt::WireTorque write_rpdos(const rt::RigCommand& c) noexcept { return bus_.write_rpdos(c); }
+  rt::WireTorque write(const rt::RigCommand& c) noexcept { return bus_.write(c); }
+  [[nodiscard]] rt::BusTime bus_time() const noexcept { return bus_.bus_time(); }
 
  private:
   VirtualBus& bus_;

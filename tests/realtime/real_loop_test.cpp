@@ -27,7 +27,6 @@
 #include <vector>
 
 #include "firmware/app/real_time_side.hpp"
-#include "firmware/platform/can_master.hpp"
 #include "tests/realtime/watch.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -122,7 +121,7 @@ struct RealRig {
     return o;
   }
   Buses open() const {
-    auto opened = open_buses(options, [] {
+    auto opened = open_buses(options, plan.device, [] {
       std::this_thread::sleep_for(10ms);
       return false;
     });
@@ -136,9 +135,8 @@ struct RealRig {
     std::ranges::set_difference(threads(), before, std::back_inserter(fresh));
     std::ranges::copy_n(fresh.begin(), 2, contexts.begin());
     if (fresh.size() != 2) _exit(kNoRig);
-    if (configure(buses, options, plan.device)) _exit(kNoRig);
-    platform::start_drives(*buses.left);
-    platform::start_drives(*buses.right);
+    if (configure(buses)) _exit(kNoRig);
+    for (const auto& drives : buses.drives) drives->start();
     side.start();
   }
   /// Reads `executed` tick records from the loop's ring. @return how many of them had force enabled.

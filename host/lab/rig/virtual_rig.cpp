@@ -82,11 +82,10 @@ VirtualRig::VirtualRig(RigSetup s, Intentions intentions)
 std::optional<std::string> VirtualRig::run(std::int64_t ticks, bool end_when_done) {
   const FlushedDenormals like_the_firmware;
   end_when_done_ = end_when_done;
-  for (DeviceBus* b : {&left, &right}) {
-    if (auto why = platform::configure_drives(*b, wait, {.drive = platform::drive_facts(setup.device)})) return why;
+  for (const auto& hand : drives) {
+    if (auto why = hand->configure(wait)) return why;
   }
-  platform::start_drives(left);
-  platform::start_drives(right);
+  for (const auto& hand : drives) hand->start();
   cycle.end_after(ticks);
   cycle.run();
   take_records();

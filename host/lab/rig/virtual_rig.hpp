@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "firmware/cycle.hpp"
-#include "firmware/platform/can_master.hpp"
+#include "firmware/platform/make_drives.hpp"
 #include "firmware/platform/rig_bus.hpp"
 #include "host/lab/rig/device_bus.hpp"
 #include "host/lab/rig/rig_log.hpp"
@@ -88,6 +88,8 @@ class VirtualRig {
     VirtualRig& rig;
   };
 
+  static constexpr int kWatchdog_ms = 20;  ///< of the drives
+
   const RigSetup setup;
 
  private:
@@ -108,7 +110,10 @@ class VirtualRig {
   physics::Simulation thread;
   DeviceBus left, right;
   Wait wait{*this};
-  platform::RigBus bus{left, right, wait, setup.device};
+  std::array<std::unique_ptr<platform::HandDrives>, 2> drives{
+      platform::make_drives(left, setup.device, kWatchdog_ms, 0),
+      platform::make_drives(right, setup.device, kWatchdog_ms, 1)};
+  platform::RigBus bus{*drives[0], *drives[1], wait};
   Clock clock{*this};
   control::Controller controller;
   std::unique_ptr<rt::Outlets> outlets = std::make_unique<rt::Outlets>();

@@ -58,7 +58,7 @@ TEST(VirtualRig, TheSameRunTwiceIsTheSameToTheLastBit) {
 TEST(VirtualRig, ACleanEndIsNoFaultToTheDrives) {
   SimulatedRig rig(paper(), overhand());
   ASSERT_EQ(rig.run(1500), std::nullopt);
-  for (DeviceBus* bus : {&rig.left, &rig.right}) platform::release_drives(*bus, rig.wait);
+  for (const auto& drives : rig.drives) drives->release(rig.wait);
   rig.time += std::chrono::seconds(2);
   for (DeviceBus* bus : {&rig.left, &rig.right}) {
     bus->device.advance(rig.time);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "firmware/control/sample_age.hpp"
 #include "tests/support/random.hpp"
 #include "tests/unit/control/controller_rig.hpp"
 
@@ -62,9 +63,23 @@ TEST(LossWatch, AnHonestRigHasNoAlarm) {
   }
 }
 
+/// A LossWatch that gets the readings of successive ticks, as in the controller.
+struct Watched {
+  explicit Watched(std::int32_t watchdog_ticks = 20) : watch(watchdog_ticks) {}
+  void look(const rt::HandReading& r) {
+    age.look(r, tick, tick - 1);
+    ++tick;
+    watch.look(r, age.is_fresh());
+  }
+  [[nodiscard]] bool is_lossy() const { return watch.is_lossy(); }
+  LossWatch watch;
+  SampleAge age;
+  std::int64_t tick = 0;
+};
+
 /// Ticks until the fault, with independent random losses: `samples` of the samples, `torques` of the torques; -1: none.
 int ticks_to_fault(test::Random& random, double samples, double torques, int ticks) {
-  LossWatch watch;
+  Watched watch;
   rt::HandReading r;
   r.valid = true;
   for (int k = 1; k <= ticks; ++k) {
@@ -91,7 +106,7 @@ TEST(LossWatch, CountsSamplesAndTorquesEachForItself) {
 /// half of the samples is still found.
 TEST(LossWatch, LeavesASilenceToTheWatchdog) {
   for (const int watchdog : {2, 20, 21, 300, 1000, 10000}) {
-    LossWatch silent(watchdog), half(watchdog);
+    Watched silent(watchdog), half(watchdog);
     rt::HandReading r;
     r.valid = true;
     for (int k = 1; k <= watchdog; ++k) {
@@ -121,7 +136,7 @@ TEST(LossWatch, ASilenceOfAHandIsTheFaultOfTheRigsOwnWatchdog) {
 }
 
 TEST(LossWatch, ASampleThatComesAPeriodLateIsNotLost) {
-  LossWatch watch;
+  Watched watch;
   rt::HandReading r;
   r.valid = true;
   r.age_ticks = 1;

@@ -7,6 +7,7 @@
 #include <deque>
 #include <optional>
 
+#include "firmware/control/sample_age.hpp"
 #include "tests/support/random.hpp"
 
 namespace ligature::control {
@@ -22,6 +23,21 @@ rt::HandReading reading_of(const Torques& told_Nm, std::int32_t age = 0) {
   r.torque_Nm = told_Nm;
   return r;
 }
+
+/// A TorqueWatch that gets the readings of successive ticks, as in the controller.
+struct Watched {
+  Watched(const device::Device& device, std::int32_t watchdog_ticks) : watch(device, watchdog_ticks) {}
+  void look(const rt::HandReading& r) {
+    age.look(r, tick, tick - 1);
+    ++tick;
+    watch.look(r, age.is_fresh());
+  }
+  void sent(const Torques& torque_Nm) { watch.sent(torque_Nm); }
+  [[nodiscard]] bool is_astray() const { return watch.is_astray(); }
+  TorqueWatch watch;
+  SampleAge age;
+  std::int64_t tick = 0;
+};
 
 /// One joint's drive behind a link that loses, delays or duplicates frames in both directions.
 class Drive {
@@ -69,7 +85,7 @@ class Drive {
 /// Correct drives with torques that wander, jump and end. @return whether a fault was raised.
 bool alarms(unsigned seed, double loss, int most_delay) {
   test::Random random(seed);
-  TorqueWatch watch(device::omni(), kWatchdog);
+  Watched watch(device::omni(), kWatchdog);
   std::array<Drive, 3> drives{Drive(random, loss, most_delay), Drive(random, loss, most_delay),
                               Drive(random, loss, most_delay)};
   const auto step = [&] { return 0.05 * random.normal(); };
@@ -109,7 +125,7 @@ TEST(TorqueWatch, HonestDrivesNeverRaiseIt) {
 TEST(TorqueWatch, APushThatNobodyAskedForIsFoundInItsSecondSample) {
   for (std::size_t joint = 0; joint < 3; ++joint) {
     for (const double sign : {-1.0, 1.0}) {
-      TorqueWatch watch(device::omni(), kWatchdog);
+      Watched watch(device::omni(), kWatchdog);
       Torques told{};
       const double asked = 0.037;  // 123 per mille of the rated torque
       for (int i = 0; i < 50; ++i) watch.look(reading_of(told)), watch.sent({asked, asked, asked});
@@ -139,7 +155,7 @@ TEST(TorqueWatch, ToleratesWhatTheRecordSaysAndNoMore) {
     const double tolerance = permille * d.Nm_per_permille();
     for (const double asked : {-0.3, 0.0, 0.3}) {
       for (const double beyond : {-1e-6, 1e-6}) {
-        TorqueWatch watch(d, kWatchdog);
+        Watched watch(d, kWatchdog);
         for (int i = 0; i < 10; ++i) {
           const double away = (asked < 0.0 ? -1.0 : 1.0) * (tolerance + beyond);
           watch.look(reading_of({i < 3 ? 0.0 : asked + away, 0.0, 0.0}));
@@ -154,7 +170,7 @@ TEST(TorqueWatch, ToleratesWhatTheRecordSaysAndNoMore) {
 /// A command excuses a torque only for a limited time: a drive that keeps it is found about one watchdog time later.
 TEST(TorqueWatch, ForgetsWhatWasSentLongAgo) {
   for (const std::int32_t watchdog : {2, 5, 20, 100, 1000}) {
-    TorqueWatch watch(device::omni(), watchdog);
+    Watched watch(device::omni(), watchdog);
     const auto tick = [&](double told, double asked) {
       watch.look(reading_of({told, 0.0, 0.0}));
       watch.sent({asked, 0.0, 0.0});
@@ -168,7 +184,7 @@ TEST(TorqueWatch, ForgetsWhatWasSentLongAgo) {
 }
 
 TEST(TorqueWatch, AJointThatTellsNoTorqueTellsByABit) {
-  TorqueWatch watch(device::omni(), kWatchdog);
+  Watched watch(device::omni(), kWatchdog);
   rt::HandReading r = reading_of({0.0, 0.0, rt::HandReading::kNotTold});
   for (int i = 0; i < 5; ++i) watch.look(r), watch.sent({0.0, 0.0, 0.3});
   EXPECT_FALSE(watch.is_astray());

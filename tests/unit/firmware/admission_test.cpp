@@ -8,6 +8,7 @@
 #include "firmware/app/worst_case.hpp"
 #include "firmware/physics/simulation.hpp"
 #include "firmware/platform/sanitized.hpp"
+#include "protocol/device/device_file.hpp"
 #include "protocol/scene/scene_file.hpp"
 
 namespace ligature::app {
@@ -52,7 +53,7 @@ TEST(WorstCase, PressedTogetherItFillsTheContactLists) {
   EXPECT_GE(most, 50) << "more than one contact a node";
 }
 
-constexpr AdmissionSettings kQuick{0.05, kAnyCore, kDefaultBudget_percent, false};
+const AdmissionSettings kQuick{0.05, kAnyCore, kDefaultBudget_percent, false};
 
 TEST(Admission, TheLoopFitsWhateverTheThread) {
   for (const auto& scene : {paper(20), paper(1500), scene_of("suture-3-0-square.toml", 350)}) {
@@ -66,6 +67,16 @@ TEST(Admission, TheLoopFitsWhateverTheThread) {
     EXPECT_GT(a.thread.most_contacts, 0) << "the shapes must press it together";
 #endif
   }
+}
+
+/// Drives with buttons in a frame of their own and frequent heartbeats leave less of the period to loop and physics.
+TEST(Admission, CountsTheBusTimeOfTheRecordsDrives) {
+  AdmissionSettings settings = kQuick;
+  settings.device = std::get<device::Device>(device::load_device(LIGATURE_SOURCE_DIR "/scenes/devices/epos4.toml"));
+  const auto a = admit(paper(20), settings);
+  EXPECT_DOUBLE_EQ(a.budget_us(), 115.0) << "what the bus leaves, not the default of 20 %";
+  EXPECT_NEAR(a.thread.given_us, 1000.0 - (535.0 - 443.0) - 25.0 - a.computing_us(), 1e-6);
+  EXPECT_NE(table(a).find("535.0"), std::string::npos) << table(a);
 }
 
 TEST(Admission, AThreadThatTakesTooLongInItsWorstShapesLosesTimeAndIsEndedByTheClock) {

@@ -174,14 +174,15 @@ TEST(Cycle, TorqueActsExactlyOneSampleAfterItsMeasurement) {
   struct Watched {  // records what acts at each SYNC and what was computed in each period
     VirtualBus& bus;
     std::vector<rt::RigCommand> acting, computed;
-    void send_sync() noexcept {
-      bus.send_sync();
+    void request() noexcept {
+      bus.request();
       acting.push_back(bus.acting);
     }
-    rt::RigReading read_tpdos(Nanoseconds d) noexcept { return bus.read_tpdos(d); }
-    rt::WireTorque write_rpdos(const rt::RigCommand& c) noexcept {
+    rt::RigReading read(Nanoseconds d) noexcept { return bus.read(d); }
+    [[nodiscard]] rt::BusTime bus_time() const noexcept { return bus.bus_time(); }
+    rt::WireTorque write(const rt::RigCommand& c) noexcept {
       computed.push_back(c);
-      return bus.write_rpdos(c);
+      return bus.write(c);
     }
   } bus{rig.bus, {}, {}};
   for (auto& hand : rig.bus.reading.hand) hand.grip = true;

@@ -51,7 +51,7 @@ void expect_loop_in_time(const HeldRig& rig, const std::vector<rt::TickRecord>& 
 /// Shortest time that the physics has in one of 1000 ticks: from when it gets the tools' positions, `law` after the
 /// encoder samples, until its deadline in the next period.
 Nanoseconds usable(Nanoseconds law) {
-  rt::ThreadDeadline deadline;
+  rt::ThreadDeadline deadline(platform::cia402_time());
   Nanoseconds least = 1s;
   test::Random random(1);
   for (int k = 0; k < 1000; ++k) {  // arrival times of samples differ by a few bit times
@@ -64,7 +64,7 @@ Nanoseconds usable(Nanoseconds law) {
 
 TEST(Thread, HasMostOfAPeriod) {
   EXPECT_GE(usable(50us), 850us);
-  rt::ThreadDeadline deadline;
+  rt::ThreadDeadline deadline(platform::cia402_time());
   EXPECT_EQ(deadline.before(1ms), 1ms + 435us);
   deadline.note(100us);  // earlier than any bus could deliver
   EXPECT_EQ(deadline.before(1ms), 1ms + 355us);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware/cycle.hpp"
+#include "firmware/platform/cia402_time.hpp"
 #include "host/lab/rig/virtual_thread.hpp"
 
 namespace ligature {
@@ -40,12 +41,12 @@ class VirtualBus {
       r.valid = r.enabled = true;
     }
   }
-  void send_sync() noexcept {
+  void request() noexcept {
     acting = written;
     ++syncs;
     if (on_sync) on_sync(syncs);
   }
-  rt::RigReading read_tpdos(Nanoseconds) noexcept {
+  rt::RigReading read(Nanoseconds) noexcept {
     clock_.time += std::chrono::microseconds(460);
     if (const auto it = stalls.find(syncs); it != stalls.end()) clock_.time += it->second;
     sampled_at.push_back(clock_.time);
@@ -56,7 +57,7 @@ class VirtualBus {
     }
     return reading;
   }
-  rt::WireTorque write_rpdos(const rt::RigCommand& command) noexcept {
+  rt::WireTorque write(const rt::RigCommand& command) noexcept {
     written = command;
     if (const auto it = works.find(syncs); it != works.end()) clock_.time += it->second, clock_.work += it->second;
     rt::WireTorque wire{};
@@ -67,6 +68,8 @@ class VirtualBus {
     }
     return wire;
   }
+
+  [[nodiscard]] rt::BusTime bus_time() const noexcept { return platform::cia402_time(); }
 
   rt::RigReading reading;
   rt::RigCommand written, acting;

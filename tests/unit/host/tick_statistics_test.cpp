@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "firmware/rt/bus_time.hpp"
+#include "firmware/platform/cia402_time.hpp"
 #include "host/tick_statistics.hpp"
 #include "synthetic_log.hpp"
 
@@ -120,7 +120,7 @@ TEST(ThreadTime, IsToldOnlyByPeriodsThatFollowEachOther) {
 
 TEST(ThreadTime, HasTheLoopsOwnFigures) {
   EXPECT_EQ(ThreadTime::kMargin_ns, rt::ThreadDeadline::kMargin.count());
-  EXPECT_EQ(ThreadTime::kJointsLatest_ns, rt::kSamplesLatest.count());
+  EXPECT_EQ(ThreadTime::kJointsLatest_ns, platform::cia402_time().samples_latest.count());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <map>
 
+#include "firmware/platform/cia402_facts.hpp"
 #include "protocol/can/codec.hpp"
 #include "protocol/can/heartbeat.hpp"
 #include "protocol/can/nmt.hpp"

@@ -1,8 +1,11 @@
 // RigBus: the CAN traffic of both hands within one period.
 #include "firmware/platform/rig_bus.hpp"
 
+#include <array>
+#include <memory>
 #include <vector>
 
+#include "firmware/platform/make_drives.hpp"
 #include "protocol/can/emcy.hpp"
 #include "protocol/can/heartbeat.hpp"
 #include "protocol/can/nmt.hpp"
@@ -13,11 +16,18 @@
 namespace ligature::platform {
 namespace {
 
-TEST(RigBus, ReturnsAsSoonAsBothHandsAnswered) {
+struct TwoHands {
   FakeBus left, right;
   FakeWait wait;
-  RigBus rig(left, right, wait);
-  rig.send_sync();
+  std::array<std::unique_ptr<HandDrives>, 2> drives{make_drives(left, device::omni(), 20, 0),
+                                                    make_drives(right, device::omni(), 20, 1)};
+  RigBus rig{*drives[0], *drives[1], wait};
+};
+
+TEST(RigBus, ReturnsAsSoonAsBothHandsAnswered) {
+  TwoHands hands;
+  auto& [left, right, wait, drives, rig] = hands;
+  rig.request();
   wait.on_wait = [&] {
     for (FakeBus* bus : {&left, &right}) {
       if (wait.time == Nanoseconds(bus == &left ? 200'000 : 400'000)) {
@@ -25,26 +35,25 @@ TEST(RigBus, ReturnsAsSoonAsBothHandsAnswered) {
       }
     }
   };
-  const auto reading = rig.read_tpdos(std::chrono::microseconds(600));
+  const auto reading = rig.read(std::chrono::microseconds(600));
   EXPECT_EQ(wait.time, std::chrono::microseconds(400));
   EXPECT_EQ(reading.hand[0].age_ticks, 0);
   EXPECT_EQ(reading.hand[1].age_ticks, 0);
 }
 
 TEST(RigBus, EachHandHasItsOwnBus) {
-  FakeBus left, right;
-  FakeWait wait;
-  RigBus rig(left, right, wait);
-  rig.send_sync();
+  TwoHands hands;
+  auto& [left, right, wait, drives, rig] = hands;
+  rig.request();
   for (const auto node : kNodes) left.inbox.push_back(can::encode(node, can::Tpdo1{0x27, 10, 0, 0}));
   for (const auto node : kNodes) right.inbox.push_back(can::encode(node, can::Tpdo1{0x27, 20, 0, 0}));
-  const auto reading = rig.read_tpdos(std::chrono::microseconds(600));
+  const auto reading = rig.read(std::chrono::microseconds(600));
   EXPECT_DOUBLE_EQ(reading.hand[0].q_rad[0], can::angle_rad(10));
   EXPECT_DOUBLE_EQ(reading.hand[1].q_rad[0], can::angle_rad(20));
   rt::RigCommand command;
   command.hand[0] = {{0.03, 0.0, 0.0}, rt::DriveRequest::kOperate};
   command.hand[1] = {{-0.06, 0.0, 0.0}, rt::DriveRequest::kHold};
-  const auto sent = rig.write_rpdos(command);
+  const auto sent = rig.write(command);
   EXPECT_EQ(sent[0][0], 100);
   EXPECT_EQ(sent[1][0], -200);
   const auto first_rpdo = [](const FakeBus& bus) {
@@ -58,15 +67,14 @@ TEST(RigBus, EachHandHasItsOwnBus) {
 
 /// The heartbeat does not delay an answer to SYNC, and the two hands' heartbeats fall in different periods.
 TEST(RigBus, TheMastersHeartbeatGoesBeforeTheTorquesOfEveryFiftiethPeriod) {
-  FakeBus left, right;
-  FakeWait wait;
-  RigBus rig(left, right, wait);
+  TwoHands hands;
+  auto& [left, right, wait, drives, rig] = hands;
   std::vector<int> beats[2];
   for (int period = 0; period < 200; ++period) {
     for (FakeBus* bus : {&left, &right}) bus->sent.clear();
-    rig.send_sync();
+    rig.request();
     EXPECT_EQ(left.sent.size() + right.sent.size(), 2U) << "two SYNCs and nothing else";
-    (void)rig.write_rpdos({});
+    (void)rig.write({});
     for (FakeBus* bus : {&left, &right}) {
       if (bus->sent.size() == 4) continue;
       ASSERT_EQ(bus->sent.size(), 5U);
@@ -79,11 +87,10 @@ TEST(RigBus, TheMastersHeartbeatGoesBeforeTheTorquesOfEveryFiftiethPeriod) {
 }
 
 TEST(RigBus, DoesNotWaitBeyondTheDeadline) {
-  FakeBus left, right;
-  FakeWait wait;
-  RigBus rig(left, right, wait);
-  rig.send_sync();
-  EXPECT_FALSE(rig.read_tpdos(std::chrono::microseconds(600)).hand[0].valid);
+  TwoHands hands;
+  auto& [left, right, wait, drives, rig] = hands;
+  rig.request();
+  EXPECT_FALSE(rig.read(std::chrono::microseconds(600)).hand[0].valid);
   EXPECT_EQ(wait.time, std::chrono::microseconds(600));
 }
 

@@ -86,10 +86,9 @@ std::string plain(const std::string& text) {
 /// Unit of a key: the ending of its name; a few names have none.
 std::string unit_of(const std::string& key) {
   static const std::map<std::string, std::string> kNamed{
-      {"stretch_damping", "N s/m"}, {"bend", "N m"},
-      {"bend_damping", "N m s"},    {"swivel_damping", "N s"},
-      {"motor_counts", "counts"},   {"counts", "counts"},
-      {"within_ticks", "ticks"},    {"work_instructions", "instructions"}};
+      {"stretch_damping", "N s/m"},         {"bend", "N m"},      {"bend_damping", "N m s"}, {"swivel_damping", "N s"},
+      {"motor_counts", "counts"},           {"counts", "counts"}, {"counts_unit", "counts"}, {"within_ticks", "ticks"},
+      {"work_instructions", "instructions"}};
   static const std::vector<std::pair<std::string, std::string>> kEndings{{"_N_s_per_m", "N s/m"},
                                                                          {"_kg_per_m", "kg/m"},
                                                                          {"_N_per_m", "N/m"},
@@ -107,6 +106,7 @@ std::string unit_of(const std::string& key) {
                                                                          {"_N", "N"},
                                                                          {"_J", "J"},
                                                                          {"_m", "m"},
+                                                                         {"_ms", "ms"},
                                                                          {"_s", "s"}};
   const std::string last = key.substr(key.rfind('.') + 1);
   if (const auto named = kNamed.find(last); named != kNamed.end()) return named->second;
@@ -144,7 +144,7 @@ TEST(ScenePage, HasEveryKeyOfADeviceRecord) {
   std::string source;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     KeyRow row = keys[i];
-    if (row.key.ends_with(".source")) {
+    if (row.key.ends_with(".source") && row.key != "cia402.source") {
       EXPECT_EQ(row.standard, "required");
       source = row.allowed;
       EXPECT_NE(page().find(source), std::string::npos) << source;
@@ -157,8 +157,8 @@ TEST(ScenePage, HasEveryKeyOfADeviceRecord) {
       wanted.push_back("| `" + row.key + "` | " + unit_of(row.key) + " | " + row.standard + " | " + plain(row.allowed) +
                        " |");
     } else if (row.allowed != "a table") {
-      wanted.push_back("| `" + row.key + "` | " + unit_of(row.key) + " | " + row.standard + " | " + plain(row.allowed) +
-                       " |");
+      wanted.push_back("| `" + row.key + "` | " + unit_of(row.key) + " | " + plain(row.standard) + " | " +
+                       plain(row.allowed) + " |");
     }
   }
   hold("| device key |", wanted);

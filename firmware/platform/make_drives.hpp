@@ -1,0 +1,22 @@
+#pragma once
+// The drives that a device record describes. A new protocol is added here (docs/drives.md).
+
+#include <memory>
+
+#include "firmware/platform/hand_drives.hpp"
+#include "protocol/device/device.hpp"
+
+namespace ligature::platform {
+
+/// @param watchdog_ms requested time after which silent drives remove their torque
+/// @param hand index, 0 left or 1 right
+[[nodiscard]] std::unique_ptr<HandDrives> make_drives(CanBus& bus, const device::Device& device, int watchdog_ms,
+                                                      std::size_t hand);
+
+/// Bus time of these drives, known before a bus is open.
+[[nodiscard]] rt::BusTime bus_time_of(const device::Device& device) noexcept;
+
+/// Whether the drives remove their torque by themselves when the controller falls silent.
+[[nodiscard]] bool have_watchdog(const device::Device& device) noexcept;
+
+}  // namespace ligature::platform
