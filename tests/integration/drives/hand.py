@@ -1,6 +1,7 @@
 """A hand as a process: three drives of a third-party CANopen stack on a `local:` bus, and a hand that moves them.
 
-usage: hand.py STACK PATH [TABLE] [--still] [--change INDEX:SUB=VALUE|none].. . With --still nobody holds it. Its standard input takes words, one a line:
+usage: hand.py STACK PATH [TABLE] [--still] [--change INDEX:SUB=VALUE|none]..
+With --still nobody holds the hand. Its standard input takes words, one a line:
     release, press     the dead-man
     fail               drive 2 falls into a fault
 It says on standard output, one word a line with figures:
@@ -10,6 +11,7 @@ It says on standard output, one word a line with figures:
     gone                           the controller has left the bus while torque acts
     silent MS TORQUE               so many ms later the torque is zero, or after 5 s it still is TORQUE"""
 
+import os
 import select
 import sys
 import time
@@ -113,7 +115,17 @@ def changes_of(args):
         yield (int(index, 16), int(sub, 16)), None if value == "none" else int(value)
 
 
+def ask_for_priority():
+    """As `ligature-device --rt`: on a busy machine a hand that cannot keep up with 1000 SYNCs a second falls ever further behind.
+    Lower than the firmware; if it is refused, the hand runs without."""
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(10))
+    except PermissionError:
+        pass
+
+
 def main():
+    ask_for_priority()
     stack, path, *rest = sys.argv[1:]
     table = rest.pop(0) if rest and not rest[0].startswith("--") else None
     still = "--still" in rest
