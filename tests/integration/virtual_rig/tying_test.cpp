@@ -71,9 +71,8 @@ void expect_tied(const std::string& type, std::uint64_t seed, Tie tied) {
 /// The thread's end must pass to the front well inside the loop. If it passes next to the strand that the left hand
 /// holds, it can come out behind that strand, and one of the two turns is missing (in 5 of 8 runs).
 TEST(Tying, AFirstThrowOfTwoTurnsInTheSutureHasTwoTurns) {
-  expect_tied("5_1 right", 57, [](std::uint32_t seed) {
-    return knot_before("draw through", "suture-3-0.toml", "surgeon", seed);
-  });
+  expect_tied("5_1 right", 57,
+              [](std::uint32_t seed) { return knot_before("draw through", "suture-3-0.toml", "surgeon", seed); });
 }
 
 /// The end makes its extra turn round the lower strand of the arch between the hands. A turn round the standing part
