@@ -32,8 +32,8 @@ def source(path):
 
 
 def microseconds(path, name):
-    """The value of a constant of the C++ code, such as `kMargin = std::chrono::microseconds(25)`."""
-    return int(re.search(name + r" = std::chrono::microseconds\((\d+)\)", source(path))[1])
+    """A time that the C++ code states, such as `kMargin = std::chrono::microseconds(25)`, or in a static_assert with ==."""
+    return int(re.search(re.escape(name) + r" ==? std::chrono::microseconds\((\d+)\)", source(path))[1])
 
 
 def sheet(width, height):

@@ -29,10 +29,10 @@ def bar(axes, begin, end, row, colour, text="", filled=True):
 
 def draw():
     sync, sample, torque = longest_frame_us(0), longest_frame_us(8), longest_frame_us(4)
-    samples = microseconds("firmware/rt/bus_time.hpp", "kSamplesLatest")
+    bus = "firmware/platform/cia402_time.hpp"
+    samples, wait = microseconds(bus, "samples_latest"), microseconds(bus, "longest_wait()")
     margin = microseconds("firmware/rt/bus_time.hpp", "kMargin")
-    wait = microseconds("firmware/cycle.hpp", "kTpdoWait")
-    assert sync + 3 * sample == samples and 3 * torque == microseconds("firmware/rt/bus_time.hpp", "kTorquesLatest")
+    assert sync + 3 * sample == samples and samples + 3 * torque + microseconds(bus, "most_work()") == PERIOD
     sent = samples + LAW
 
     figure, axes = sheet(790, 322)
