@@ -53,19 +53,8 @@ void ContactSet::let_stick(double mu_static, const Vec* v) noexcept {
 }
 
 ContactSet& ContactSet::operator=(const ContactSet& other) {
-  if (this == &other) return *this;
-  begin();
-  contacts_ = other.contacts_;
-  for (auto& c : contacts_) c.keep = nullptr, c.pair = nullptr, c.stuck = nullptr;  // they point into other's lists
-  rows_ = other.rows_;
-  pairs.reserve(other.pairs.capacity());
-  pairs = other.pairs;
-  groups.clear();
-  floor_impulse = other.floor_impulse;
-  body_impulse = other.body_impulse;
-  floor_stuck = other.floor_stuck;
-  body_stuck = other.body_stuck;
-  per_second_ = other.per_second_;
+  ContactMemory::operator=(other);
+  forget_matrix();
   return *this;
 }
 
@@ -277,7 +266,7 @@ double ContactSet::give_J(double k_N_per_m, const Vec* v, double step_s) const n
 void ContactSet::store() noexcept {
   for (const auto& c : contacts_) {
     *c.keep = c.p;
-    if (c.pair != nullptr) c.pair->touch = c.pair->next;
+    if (c.pair) c.pair->touch = c.pair->next;
   }
 }
 

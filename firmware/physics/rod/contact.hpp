@@ -27,6 +27,25 @@ struct Body {
   Vec spin{};  ///< of a drum: unit vector along the axis, times the speed at which the surface turns, m/s
 };
 
+/// Pointer into a list of the object that holds it. A copy would point into the list of another object, so it is null.
+template <class T>
+class Borrowed {
+ public:
+  Borrowed() = default;
+  Borrowed(const Borrowed&) noexcept {}
+  Borrowed& operator=(const Borrowed&) noexcept { return at_ = nullptr, *this; }
+  Borrowed(Borrowed&&) = default;
+  Borrowed& operator=(Borrowed&&) = default;
+  ~Borrowed() = default;
+  Borrowed& operator=(T* at) noexcept { return at_ = at, *this; }
+  [[nodiscard]] T& operator*() const noexcept { return *at_; }
+  [[nodiscard]] T* operator->() const noexcept { return at_; }
+  [[nodiscard]] explicit operator bool() const noexcept { return at_ != nullptr; }
+
+ private:
+  T* at_ = nullptr;
+};
+
 /// One contact. The relative velocity of its two points is u = sum_k w_k v[node_k] - surface; the impulse p acts on
 /// node k as w_k p. In a contact of the thread with itself, nodes 0 to 3 are the ends of the two segments; any further
 /// nodes are those on which the points of the smooth curves depend (smooth.hpp).
@@ -49,9 +68,9 @@ struct Contact {
   double reach_m = 0.0;                 ///< distance of the centrelines at which the pair touches
   double distance_m = 0.0;              ///< distance of the chords, for the guard
   bool loaded = false;                  ///< has carried an impulse in this substep
-  Vec* keep = nullptr;                  ///< storage of the impulse between substeps
-  Candidate* pair = nullptr;            ///< its pair in the list, if the thread touches itself
-  char* stuck = nullptr;                ///< storage between substeps: did static friction hold?
+  Borrowed<Vec> keep;                   ///< storage of the impulse between substeps
+  Borrowed<Candidate> pair;             ///< its pair in the list, if the thread touches itself
+  Borrowed<char> stuck;                 ///< storage between substeps: did static friction hold?
   std::int32_t place[kMostNodes] = {};  ///< indices of the nodes in SweptVelocities
   float weight[kMostNodes] = {};        ///< w in single precision
 
@@ -87,6 +106,22 @@ enum class Outcome : std::uint8_t {
 
 inline constexpr int kMaxContacts = 768;  ///< rows that can be solved at once
 
+/// What a ContactSet keeps from substep to substep. A copy takes over all of it.
+class ContactMemory {
+ public:
+  /// Thread-thread pairs that may touch; rebuilt by BroadPhase.
+  std::vector<Candidate> pairs;
+  std::vector<PairGroup> groups;
+  std::vector<Vec> floor_impulse;  ///< per node
+  std::vector<Vec> body_impulse;   ///< per body and segment
+  std::vector<char> floor_stuck, body_stuck;
+
+ protected:
+  std::vector<Contact> contacts_;  // of the last substep: rows first, then contacts that are not solved
+  double per_second_ = 0.0;
+  int rows_ = 0;
+};
+
 /// Contacts of one rod: collect them, choose which become rows of the system, then solve. All memory is preallocated,
 /// and every step charges its work to the budget (work.hpp). A contact that is collected but not chosen gets no
 /// impulse; only the guard keeps it from passing through.
@@ -102,12 +137,12 @@ inline constexpr int kMaxContacts = 768;  ///< rows that can be solved at once
 ///
 /// The window is the range of nodes from the first to the last on which any row acts. Only its velocities are solved
 /// with contacts, so a pass costs in proportion to rows x nodes of the window, not of the whole thread.
-class ContactSet {
+class ContactSet : public ContactMemory {
  public:
   ContactSet() = default;
-  ContactSet(const ContactSet& other) = delete;  // contacts point into the lists
-  /// Copies impulses, pairs and the contacts of the last substep (which remeshing reads), but neither the matrices nor
-  /// the contacts' pointers into the lists. @pre both were reserved with equal sizes, or other with larger ones.
+  ContactSet(const ContactSet& other) = delete;  // a copied vector has no spare capacity: reserve(), then assign
+  /// Copies the ContactMemory; everything else is found again in the next substep. @pre both were reserved with equal
+  /// sizes.
   ContactSet& operator=(const ContactSet& other);
   ContactSet(ContactSet&&) noexcept = default;
   ContactSet& operator=(ContactSet&&) noexcept = default;
@@ -116,10 +151,6 @@ class ContactSet {
   void reserve(int nodes, int bodies, int window);
   /// Allocates for friction that rolls the thread: needed before the functions below are called with Turns.
   void reserve_turning() { turning_.reserve(kMaxContacts); }
-
-  /// Thread-thread pairs that may touch; rebuilt by BroadPhase.
-  std::vector<Candidate> pairs;
-  std::vector<PairGroup> groups;
 
   void begin() noexcept { contacts_.clear(), watched_.clear(), rows_ = 0, overflow_ = false; }
 
@@ -219,10 +250,6 @@ class ContactSet {
 
   [[nodiscard]] const std::vector<Contact>& contacts() const noexcept { return contacts_; }
 
-  std::vector<Vec> floor_impulse;  ///< per node
-  std::vector<Vec> body_impulse;   ///< per body and segment
-  std::vector<char> floor_stuck, body_stuck;
-
  private:
   [[nodiscard]] Contact* add() noexcept;
   [[nodiscard]] bool find_due(const Motion& motion, double dt_s, Work& work) noexcept;
@@ -292,7 +319,6 @@ class ContactSet {
     double distance_m;
   };
 
-  std::vector<Contact> contacts_;  // rows first, then contacts that are not solved
   std::vector<Watched> watched_;
   std::vector<std::int32_t> awake_, due_;  // indices of the groups and pairs that must be measured in this substep
   std::vector<std::int32_t> close_, far_;  // indices into due_: measured between smooth curves; between chords only
@@ -318,8 +344,7 @@ class ContactSet {
   double radius_m_ = 0.0;
   std::vector<double> body_due_;  // per body: last measured gap + the thread's travel at that time
   std::size_t stride_ = 0;
-  double per_second_ = 0.0;
-  int rows_ = 0, window_first_ = 0, window_last_ = 1;
+  int window_first_ = 0, window_last_ = 1;
   bool overflow_ = false;
 };
 

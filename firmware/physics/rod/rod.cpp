@@ -33,12 +33,12 @@ bool moves(const Body& body) noexcept { return dot(body.velocity, body.velocity)
 
 }  // namespace
 
-Rod::Rod(const Material& material, const Numerics& numerics, const Parts& parts, int n, int body_count)
-    : material_(material),
-      numerics_(numerics),
-      parts_(parts),
-      substep_(pick(parts)),
-      near_m_(2.0 * material.radius_m * kNear) {
+Rod::Rod(const Material& material, const Numerics& numerics, const Parts& parts, int n, int body_count) {
+  material_ = material;
+  numerics_ = numerics;
+  parts_ = parts;
+  substep_ = pick(parts);
+  near_m_ = 2.0 * material.radius_m * kNear;
   state_.resize(n);
   forces_.resize(n);
   solver_.resize(n);
@@ -67,50 +67,29 @@ Rod::Rod(const Rod& other)
   *this = other;
 }
 
+bool Rod::has_room_for(const Rod& other) const noexcept {
+  return parts_ == other.parts_ && state_.nodes() == other.state_.nodes() &&
+         bodies.capacity() == other.bodies.capacity();
+}
+
 Rod& Rod::operator=(const Rod& other) {
   if (this == &other) return *this;
-  gravity = other.gravity;
-  floor_m = other.floor_m, floor_friction = other.floor_friction, has_floor = other.has_floor;
-  bodies.reserve(other.bodies.capacity());
-  bodies = other.bodies;
-  material_ = other.material_, numerics_ = other.numerics_, parts_ = other.parts_;
-  state_ = other.state_;
-  forces_ = other.forces_;
-  contacts_ = other.contacts_;
-  twist_ = other.twist_;
-  spin_ = other.spin_;
-  refine_ = other.refine_;
-  alone_ = other.alone_, faded_ = other.faded_, kept_J_ = other.kept_J_, give_J_ = other.give_J_;
-  report_ = other.report_;
-  substep_ = other.substep_;
-  near_m_ = other.near_m_;
-  pace_m_per_s_ = other.pace_m_per_s_;
-  labours_ = other.labours_;
-  leniency_ = other.leniency_;
-  waits_ = other.waits_, patience_ = other.patience_, sweeps_only_ = other.sweeps_only_;
-  letting_go_ = other.letting_go_, released_ = other.released_;
-  motion_ = other.motion_;
-  list_cost_ = other.list_cost_;
-  mesh_held_ = other.mesh_held_, remeshed_ = other.remeshed_;
-  solver_.resize(state_.nodes());
-  metric_.invalidate();
-  contacts_.forget_matrix();
-  stale_ = true;
+  if (!has_room_for(other)) return *this = Rod(other);
+  RodKept::operator=(other);
+  RodNow::operator=({});
+  RodCache::forget();
   return *this;
 }
 
 bool Rod::continue_from(const Rod& other) noexcept {
-  if (state_.nodes() != other.state_.nodes()) return false;
-  state_ = other.state_;
-  forces_ = other.forces_;
-  twist_ = other.twist_;
-  if (parts_.frames() && other.parts_.frames()) spin_ = other.spin_;
-  refine_ = other.refine_;
-  report_ = other.report_;
-  pace_m_per_s_ = other.pace_m_per_s_;
-  leniency_ = other.leniency_;
-  alone_ = other.alone_, faded_ = other.faded_, kept_J_ = other.kept_J_, give_J_ = other.give_J_;
+  if (state_.nodes() != other.state_.nodes() || parts_.adaptive != other.parts_.adaptive) return false;
+  RodCourse::operator=(other);
   mesh_changed();
+  if (parts_.frames() && other.parts_.frames()) {
+    spin_ = other.spin_;
+  } else if (parts_.frames()) {
+    spin_.start(material_, state_);
+  }
   return true;
 }
 
@@ -133,9 +112,8 @@ void Rod::mesh_changed() noexcept {
     if (hold.node >= 0 && hold.directed) state_.mesh.clamp[static_cast<std::size_t>(hold.node)] = Clamp::kClamped;
   }
   state_.mesh.rebuild(material_);
-  metric_.invalidate();
   contacts_.forget_matrix();
-  stale_ = true;
+  RodCache::forget();
 }
 
 int Rod::add_hold(const Hold& hold) noexcept {
@@ -258,11 +236,11 @@ void Rod::begin_tick(const HandSpeed& hands, const TimeLeft& left) noexcept {
   const int substeps_before = report_.substeps;
   leniency_ = report_.cut_short > 0 ? std::min(kMostLeniency, 1.5 * leniency_) : std::max(1.0, 0.9 * leniency_);
   report_ = TickReport{};
+  RodNow::operator=({});
   const bool fast = numerics_.is_fast(hands.fastest);
   // The clock is queried between forces, matrix and solution, each O(n): so the longest piece grows with n.
   const std::int64_t piece_ns = TickTime::kPiece_ns * std::max(1, state_.nodes() / kNodesInPiece);
   work_.start(numerics_.budget(state_.nodes(), hands.fastest), left, piece_ns);
-  look_cost_ = rows_cost_ = 0;
   const bool was_alone = alone_;
   alone_ = hands.holds < 2 && hands.fastest == 0.0 && std::none_of(bodies.begin(), bodies.end(), moves);
   if (alone_ && !was_alone && parts_.adaptive) kept_J_ = all_J(energy());
@@ -288,7 +266,6 @@ void Rod::begin_tick(const HandSpeed& hands, const TimeLeft& left) noexcept {
     stir_m_per_s_ = stir(state_.v);
     contacts_.forget_bodies();
     if ((fast && waits_ == 0) || report_.substeps != substeps_before) contacts_.forget_matrix();
-    tick_travel_m_ = 0.0;
   }
 }
 

@@ -4,50 +4,17 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
-#include "firmware/physics/rod/assembly.hpp"
-#include "firmware/physics/rod/contact.hpp"
-#include "firmware/physics/rod/refine.hpp"
-#include "firmware/physics/rod/twist.hpp"
+#include "firmware/physics/rod/rod_memory.hpp"
 
 namespace ligature::physics::rod {
 
-/// Effects that a scene models. Rod::substep is compiled once per combination, so an absent effect costs nothing.
-struct Parts {
-  bool twist = true;
-  bool contact = true;  ///< contact of the thread with itself
-  bool friction = true;
-  bool world = false;     ///< contact with floor and bodies
-  bool adaptive = false;  ///< remeshing: nodes move along the thread to where a fine mesh is needed (refine.hpp)
-  bool roll = false;      ///< every segment has its own roll angle (spin.hpp); needs twist
-  bool turning = false;   ///< contact friction rolls the thread about its axis; needs roll and friction
-  bool set = false;       ///< plastic bending: sharp bends become permanent (spin_set.cpp); needs twist
-  bool drum = false;      ///< bars whose surface turns; needs contact, friction and world
-
-  /// Does every segment have a material frame? With `roll` the frames turn in every substep, otherwise once per tick.
-  [[nodiscard]] constexpr bool frames() const noexcept { return roll || set; }
-};
-
-/// Counters and measures of one tick.
-struct TickReport {
-  int substeps = 0, passes = 0, contacts = 0, guard_events = 0, broad_phases = 0, remeshes = 0;
-  double min_gap_m = 1e9;  ///< smallest thread-thread gap in any substep; negative: overlap
-  long work = 0;           ///< instructions spent on contact, out of Numerics::budget()
-
-  double set_J = 0.0;  ///< energy dissipated by plastic bending
-
-  // What was given up for lack of budget or time, the mildest loss first.
-  int cut_short = 0;       ///< substeps whose contact solver stopped before it converged
-  int rows_left_out = 0;   ///< largest number of contacts in a substep that only the guard kept apart
-  double time_lost = 0.0;  ///< share of the tick in which the thread was not moved, as no safe motion was known
-  int cut_at = -1;         ///< number of the clock query that ended the tick early (time_left.hpp); -1: none did
-};
-
-/// A simulated thread. Construct it, set its shape through state(), then call tick(). Only the constructor allocates.
-/// A copy takes the whole state except the list of pairs and the contact matrices: these are large, and reset() copies
-/// within the real-time loop, so the copy rebuilds them when it needs them.
-class Rod {
+/// A simulated thread. Construct it, set its shape through state(), then call tick(). Only the constructor allocates,
+/// and an assignment from a rod of another size. By what a copy does with them its data are in three structs
+/// (rod_memory.hpp): RodKept is copied, RodNow begins anew, RodCache is forgotten and computed again. Without contact a
+/// copy continues as its original, to the bit. With contact it makes the list of pairs and the contact matrices again,
+/// which changes rounding (Copy.* in copies_test.cpp): they are large, and reset() copies within the real-time loop.
+class Rod : private RodKept, private RodNow, private RodCache {
  public:
   /// Starts straight along +x from the origin, at rest, with equally spaced nodes.
   /// @param n  number of nodes, >= 3
@@ -59,10 +26,7 @@ class Rod {
   Rod& operator=(Rod&&) noexcept = default;
   ~Rod() = default;
 
-  Vec gravity{};
-  double floor_m = 0.0, floor_friction = 0.3;
-  bool has_floor = false;
-  std::vector<Body> bodies;
+  using World::bodies, World::floor_friction, World::floor_m, World::gravity, World::has_floor;
 
   [[nodiscard]] State& state() noexcept { return state_; }
   [[nodiscard]] const State& state() const noexcept { return state_; }
@@ -86,8 +50,9 @@ class Rod {
   /// contacts. With Parts::frames() the thread then starts without twist.
   void moved() noexcept;
 
-  /// Takes over the motion, holds and twist of another rod but keeps this one's material. No allocation.
-  /// @return false, and nothing is changed, when the numbers of nodes differ.
+  /// Takes over the motion and holds of another rod but keeps this one's material and surroundings. Twist is taken over
+  /// too, but a rod that alone of the two has Parts::frames() starts without. No allocation.
+  /// @return false, and nothing is changed, when the numbers of nodes or Parts::adaptive differ.
   [[nodiscard]] bool continue_from(const Rod& other) noexcept;
 
   /// Three ways to hold a node. Each returns the index of the hold, or -1 when all kMaxHolds are in use.
@@ -162,8 +127,8 @@ class Rod {
   std::optional<double> guard_unseen(double dt_s) noexcept;
   template <bool Friction>
   Outcome settle_directly(const Effort& effort) noexcept;
-  static constexpr double kPatience = 12.0;  ///< most ticks for which an unsolved substep may be continued
   [[nodiscard]] bool can_wait() const noexcept { return solves_directly() && waits_ + 1 <= patience_; }
+  [[nodiscard]] bool has_room_for(const Rod& other) const noexcept;
   bool put_off() noexcept;
   bool give_up() noexcept;
   double brake(double dt_s) noexcept;
@@ -180,51 +145,6 @@ class Rod {
   int add_hold(const Hold& hold) noexcept;
   /// Reduces the stress-free bends, strains and corner offsets that remeshing has left.
   void fade() noexcept;
-
-  Material material_;
-  Numerics numerics_;
-  Parts parts_;
-  State state_;
-  Forces forces_;
-  BandSolver solver_;
-  ContactMetric metric_;
-  ContactSet contacts_;
-  BroadPhase broad_;
-  Twist twist_;
-  Spin spin_;
-  Refine refine_;
-  TickReport report_;
-  Substep substep_;
-  Work work_;
-  long look_cost_ = 0, rows_cost_ = 0;  // work of the last substep's contact detection; work of its rows
-  long list_cost_ = 0;                  // work of the last broad phase
-  double metric_dt_ = 0.0;
-  double pace_m_per_s_ = 0.0;    // half the relative speed of the hands; decays exponentially once they stop
-  double leniency_ = 1.0;        // 1 to 6: factor of the tolerance's speed-dependent part; grows after ticks cut short
-  bool braked_ = false;          // velocities of the last substep were scaled down after the hand forces were computed
-  int waits_ = 0;                // consecutive ticks in which the present substep was begun but not finished
-  double patience_ = kPatience;  // limit of waits_: falls when waiting did not help, rises when Newton converges
-  bool sweeps_only_ = false;     // the next substep is solved without Newton's method
-  double stir_m_per_s_ = 0.0;    // largest nodal speed relative to the mean velocity
-  double give_J_ = 0.0;          // elastic energy of the contacts
-  bool alone_ = false;           // at most one hold, and nothing that holds or touches the thread moves (glossary)
-  bool faded_ = false;           // the remeshing offsets have already been reduced for the next tick
-  double kept_J_ = 0.0;          // alone only: total energy at the end of the last tick
-  bool measured_ = false;        // contact detection of this substep is complete
-  double since_look_s_ = 0.0;    // time moved since contacts were detected
-  std::vector<Vec> v_before_;    // velocities at the start of the substep
-  bool labours_ = false;         // the last tick used most of its budget, so this one has fewer substeps
-  bool letting_go_ = false;      // a hold was released, and the thread is still fast
-  Motion motion_;
-  ContactReport seen_;          // result of the contact solver in this substep
-  double near_m_ = 0.0;         // gap below which a pair is a contact at any speed
-  double horizon_s_ = 0.0;      // time for which the list of pairs is valid if speeds stay as when it was built
-  double tick_travel_m_ = 0.0;  // upper bound of any node's travel since the tick began
-  int substep_index_ = 0;
-  bool mesh_held_ = false;
-  bool remeshed_ = false;  // nodes moved along the thread since spin_ was last updated
-  bool released_ = false;  // a hold was released since the last tick
-  bool stale_ = true;      // the list of pairs must be rebuilt
 };
 
 }  // namespace ligature::physics::rod

@@ -38,9 +38,9 @@ std::variant<RodSimulation, std::string> RodSimulation::make(const scene::Scene&
 RodSimulation::RodSimulation(const scene::Scene& scene, Rod rod)
     : initial_(rod),
       rod_(std::move(rod)),
-      jaws_{jaws_of(scene), jaws_of(scene)},
       reach_m_(scene.hands.reach_m.value_or(std::numeric_limits<double>::infinity())),
       grippers_(scene.world.grippers_collide && parts_of(scene).world) {
+  jaws_ = {jaws_of(scene), jaws_of(scene)};
   gripper_body_ = static_cast<int>(rod_.bodies.size());
   if (grippers_) {
     const Body away{rod::make(1e6, 0, 0), rod::make(1e6, 0, 0), scene.suture.radius_m, Vec{}, scene.contact.friction};
@@ -71,13 +71,7 @@ void RodSimulation::reset() noexcept {
 
 bool RodSimulation::continue_from(const RodSimulation& other) noexcept {
   if (!rod_.continue_from(other.rod_)) return false;
-  jaws_ = other.jaws_, closing_ = other.closing_, closed_ = other.closed_, inside_ = other.inside_;
-  goals_ = other.goals_;
-  hands_ = other.hands_;
-  health_ = other.health_;
-  ticks_ = other.ticks_;
-  nodes_ = other.nodes_;
-  velocities_ = other.velocities_;
+  HandsCourse::operator=(other);
   return true;
 }
 

@@ -15,9 +15,21 @@
 
 namespace ligature::physics::rod {
 
+/// What the hands do and what was published last: with the rod's own course, all that continue_from() takes over.
+struct HandsCourse {
+  std::array<Jaws, 2> jaws_;
+  std::array<Closing, 2> closing_;
+  std::array<bool, 2> closed_{false, false}, inside_{true, true};
+  std::array<Vec, kMaxHolds> goals_{};
+  std::array<HandContact, 2> hands_{};
+  Diagnostics health_{};
+  std::int64_t ticks_ = 0;
+  std::vector<Vec3> nodes_, velocities_;
+};
+
 /// Same contract as physics::Simulation. With spacing "adaptive" a node index is not a fixed material point: nodes move
 /// along the thread (refine.hpp); their number is constant.
-class RodSimulation {
+class RodSimulation : private HandsCourse {
  public:
   static std::variant<RodSimulation, std::string> make(const scene::Scene& scene);
 
@@ -51,18 +63,10 @@ class RodSimulation {
   [[nodiscard]] bool is_finite() noexcept;
 
   Rod initial_, rod_;
-  std::array<Jaws, 2> jaws_;
   double reach_m_;
-  std::array<Closing, 2> closing_;
   bool grippers_ = false;
-  int gripper_body_ = 0;  // index of the left gripper's capsule
-  std::array<bool, 2> closed_{false, false}, inside_{true, true};
-  std::array<Vec, kMaxHolds> goals_{};
-  std::array<HandContact, 2> hands_{};
-  Diagnostics health_{};
-  std::int64_t ticks_ = 0;
-  std::vector<Vec> x_before_, v_before_;
-  std::vector<Vec3> nodes_, velocities_;
+  int gripper_body_ = 0;                // index of the left gripper's capsule
+  std::vector<Vec> x_before_, v_before_;  // scratch of tick()
 };
 
 }  // namespace ligature::physics::rod

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "firmware/physics/rod/rod_simulation.hpp"
 #include "protocol/scene/scene_file.hpp"
@@ -19,8 +20,8 @@ using physics::Hand;
 using physics::ToolInput;
 using physics::rod::RodSimulation;
 
-RodSimulation knotted() {
-  auto read = scene::load_scene(LIGATURE_SOURCE_DIR "/scenes/suture-3-0-knot.toml", {});
+RodSimulation knotted(const std::vector<std::string>& overrides = {}) {
+  auto read = scene::load_scene(LIGATURE_SOURCE_DIR "/scenes/suture-3-0-knot.toml", overrides);
   if (auto* error = std::get_if<scene::Error>(&read)) throw std::runtime_error(error->text);
   auto made = RodSimulation::make(std::get<scene::Scene>(read));
   if (auto* why = std::get_if<std::string>(&made)) throw std::runtime_error(*why);
@@ -54,6 +55,64 @@ TEST(Copy, RemeshesAsItsOriginal) {
   EXPECT_LT(apart_N, 5e-3);
   RecordProperty("apart_mN", std::to_string(1e3 * apart_N));
   RecordProperty("remeshes", remeshes);
+}
+
+std::array<ToolInput, 2> at_the_ends(const RodSimulation& sim) {
+  return {ToolInput{sim.nodes_W().front(), {-0.2, 0, 0}, true, {}}, ToolInput{sim.nodes_W().back(), {0.2, 0, 0}, true, {}}};
+}
+
+void pull(RodSimulation& sim, std::array<ToolInput, 2>& tools, int ticks) {
+  for (int k = 0; k < ticks; ++k) {
+    for (auto& tool : tools) tool.p_WT += 1e-3 * tool.v_WT;
+    sim.tick(tools);
+  }
+}
+
+bool same(const RodSimulation& a, const RodSimulation& b) {
+  return std::equal(a.nodes_W().begin(), a.nodes_W().end(), b.nodes_W().begin(), b.nodes_W().end());
+}
+
+/// What a rod keeps is copied, and what it forgets is computed again in the same way: with bends that set, twist and
+/// remeshing, but without contact, no bit differs.
+TEST(Copy, WithoutContactContinuesToTheBit) {
+  RodSimulation sim = knotted({"contact.solver=\"none\"", "suture.yield_strain=0.01", "suture.set_fraction=0.5"});
+  auto tools = at_the_ends(sim);
+  pull(sim, tools, 150);
+  tools[1].grip = false;  // the released end whips
+  RodSimulation copy = knotted({"suture.nodes=120"});
+  copy = sim;  // a rod of another size and with other parts
+  int remeshes = 0;
+  for (int k = 0; k < 300; ++k) {
+    sim.tick(tools);
+    copy.tick(tools);
+    ASSERT_TRUE(same(sim, copy)) << "tick " << k;
+    remeshes += sim.rod().report().remeshes;
+  }
+  EXPECT_GT(remeshes, 10);
+}
+
+/// reset() assigns the rod of the start to one that has a list of pairs, matrices and impulses of its own.
+TEST(Copy, ResetRepeatsThePullToTheBit) {
+  RodSimulation sim = knotted();
+  auto tools = at_the_ends(sim), again = tools;
+  pull(sim, tools, 250);
+  EXPECT_GT(sim.rod().report().contacts, 5);
+  const RodSimulation first = sim;
+  sim.reset();
+  pull(sim, again, 250);
+  EXPECT_TRUE(same(sim, first));
+}
+
+/// Frames that were never turned with the thread would twist it.
+TEST(Copy, RodWithFramesGoesOnFromOneWithoutUntwisted) {
+  RodSimulation sim = knotted();
+  auto tools = at_the_ends(sim);
+  pull(sim, tools, 100);
+  RodSimulation framed = knotted({"suture.yield_strain=0.02", "suture.set_fraction=0.5"}),
+                uniform = knotted({"suture.spacing=\"uniform\""});
+  EXPECT_FALSE(uniform.continue_from(sim)) << "a mesh that moves needs one that can";
+  ASSERT_TRUE(framed.continue_from(sim));
+  EXPECT_LT(framed.rod().twist_energy_J(), 1e-12);
 }
 
 }  // namespace
