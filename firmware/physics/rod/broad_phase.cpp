@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "firmware/physics/rod/smooth.hpp"
+#include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
 namespace {
@@ -14,12 +15,6 @@ namespace {
 // diameters long that is 2e-4 diameters, and this factor covers it, as no compared distance is below 2.5 diameters. For
 // a longer thread the error reduces the skin.
 constexpr float kSlack = 1.0001F;
-// Shares of the gap between neighbours along a straight thread (see BroadPhase).
-// kStraight: if the spheres alone show at least this share of the gap, the exact distance is not computed. Pulled and
-// held square and surgeon's knots do not differ between 0.8 and 0.999.
-// kBent: below this share neighbours are contacts. It matters only for segments shorter than a diameter, since for
-// others near_m is smaller. With 1/3 a pulled square knot overlapped by 0.09 d instead of 0.05 d.
-constexpr double kStraight = 0.95, kBent = 2.0 / 3.0;
 constexpr std::size_t kLeastTable = 2048;
 
 // Has a segment bending stiffness at one of its ends? Without it the corners of the polygon are real, and contact is
@@ -136,7 +131,7 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
   if (arc < kLeastArc * d) return true;
   const bool along = arc < 0.5 * std::numbers::pi * d;  // neighbours along the thread
   const double reach = along ? d * std::sin(arc / d) : d;
-  const auto cut = [&](std::size_t j) { return std::min(static_cast<double>(bulge_[j]), SmoothSegment::kMostCut * d); };
+  const auto cut = [&](std::size_t j) { return std::min(static_cast<double>(bulge_[j]), tuning.most_cut_d * d); };
   const double bulge = along ? 0.0 : cut(a) + cut(b);
   const double limit = reach + outlook.skin_m + outlook.horizon_s * motion.rate(a, b) + bulge;
   const float dx = x_[b] - x_[a], dy = y_[b] - y_[a], dz = z_[b] - z_[a];
@@ -149,10 +144,10 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
   pair.b = static_cast<std::int32_t>(b);
   pair.reach_m = reach;
   pair.bulge_m = bulge;
-  pair.near_m = std::min(outlook.near_m, kBent * (arc - reach));
+  pair.near_m = std::min(outlook.near_m, tuning.bent * (arc - reach));
   // On a straight thread the spheres of neighbours give their exact gap, so it need not be measured.
   pair.due = along ? static_cast<double>(std::sqrt(apart2) / kSlack - halves) - reach : 0.0;
-  if (!along || pair.due < kStraight * (arc - reach)) {
+  if (!along || pair.due < tuning.straight * (arc - reach)) {
     spent_ += price::kExact;
     const Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
     if (c.distance2 > limit * limit) return true;

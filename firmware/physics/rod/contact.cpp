@@ -1,4 +1,5 @@
 #include "firmware/physics/rod/contact.hpp"
+#include "firmware/physics/rod/tuning.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -34,19 +35,13 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   v_start_.assign(static_cast<std::size_t>(ContactNewton::kWidest), Vec{});
 }
 
-namespace {
-
-constexpr double kStill_m_per_s = 1e-5;  // slip below which a contact counts as sticking: 1/30 diameter per second
-
-}  // namespace
-
 void ContactSet::let_stick(double mu_static, const Vec* v) noexcept {
   for (auto& c : contacts_) {
     bool holds = *c.stuck != 0;
     if (dot(c.p, c.p) == 0.0) {
       Vec u = velocity(c, v);
       u -= dot(u, c.n) * c.n;
-      holds = dot(u, u) < kStill_m_per_s * kStill_m_per_s;
+      holds = dot(u, u) < tuning.stick_m_per_s * tuning.stick_m_per_s;
     }
     if (holds) c.mu = mu_static;
   }
@@ -240,15 +235,12 @@ bool ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const E
 }
 
 double ContactSet::unsettled_fraction(const Vec* v, double dt_s) const noexcept {
-  // Allowed deepening per substep, in units of reach_m; at 2e-3 a jammed square knot lost half of its tension.
-  constexpr double kCreep = 1e-4;
-  constexpr double kGive = 0.3;
   double share = 1.0;
   for (int k = 0; k < rows_; ++k) {
     const Contact& c = contacts_[static_cast<std::size_t>(k)];
     const double closing_m = -dt_s * dot(velocity<false>(k, v), c.n);
-    const double spare_m = c.is_pair() ? 0.0 : kGive * c.reach_m;  // contacts with floor and bodies do not jam
-    const double room_m = std::max(c.gap_m + spare_m, kCreep * c.reach_m);
+    const double spare_m = c.is_pair() ? 0.0 : tuning.brake_give * c.reach_m;  // only strands jam
+    const double room_m = std::max(c.gap_m + spare_m, tuning.brake_creep_d * c.reach_m);
     if (closing_m > room_m) share = std::min(share, room_m / closing_m);
   }
   return share;
@@ -280,7 +272,7 @@ void ContactSet::note_stuck(const Vec* v) noexcept {
     *c.stuck = 0;
     if (pn <= 0.0 || k >= rows_) continue;
     const Vec u = velocity<Turns>(k, v), along = u - dot(u, c.n) * c.n;
-    *c.stuck = dot(c.p, c.p) - pn * pn < most * most || dot(along, along) < kStill_m_per_s * kStill_m_per_s;
+    *c.stuck = dot(c.p, c.p) - pn * pn < most * most || dot(along, along) < tuning.stick_m_per_s * tuning.stick_m_per_s;
   }
 }
 

@@ -6,18 +6,17 @@
 #include <optional>
 
 #include "firmware/physics/rod/contact.hpp"
+#include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
 namespace {
 
-constexpr int kMargin = 6;      // nodes by which the window may grow before the inverse matrix Z must be computed again
-constexpr double kNear = 3.0;   // Newton's residual may be this times the tolerance, which is meant for sweeps
-constexpr double kLoose = 3.0;  // tolerance multiplier once more than the fair share of the work is used
 
 constexpr double kUnknown = 1e300;  // squared error that has not been computed
 
 double square_of_enough(const Effort& effort) noexcept {
-  const double enough = kNear * std::max(kLoose * effort.settled_m_per_s, effort.enough_m_per_s);
+  const double loose = std::max(tuning.newton_loose * effort.settled_m_per_s, effort.enough_m_per_s);
+  const double enough = tuning.newton_near * loose;
   return enough * enough;
 }
 
@@ -38,7 +37,8 @@ void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
 // Computes the inverse matrix Z from the present matrix A, and restarts newton_ with it. @return false when there is
 // not enough work left.
 bool ContactSet::renew_matrix(const BandSolver& solver, Search& search) noexcept {
-  const int first = std::max(window_first_ - kMargin, 0), last = std::min(window_last_ + kMargin, solver.nodes() - 1);
+  const int first = std::max(window_first_ - tuning.margin, 0);
+  const int last = std::min(window_last_ + tuning.margin, solver.nodes() - 1);
   if (!search.pay(price::factors(last - first + 1))) return false;
   newton_.measure(solver, first, last);
   newton_.start(contacts_.data(), rows_);
@@ -69,11 +69,9 @@ Outcome ContactSet::look_at_all(const BandSolver& solver, const Vec* v, Search& 
 // outcome.
 template <bool Friction>
 std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
-  constexpr int kMostSteps = 48, kSweeps = 2;
-  constexpr double kOld = 10.0;  // tolerance multiplier after the first check, as newton_'s matrix may be old
   const Effort& effort = search.effort;
   ContactReport& report = search.report;
-  const double settled = kNear * effort.settled_m_per_s, settled2 = settled * settled;
+  const double settled = tuning.newton_near * effort.settled_m_per_s, settled2 = settled * settled;
   const double enough2 = square_of_enough(effort);
   const Contact* const rows = contacts_.data();
   Vec *const p = p_.data(), *const u = u_.data();
@@ -85,7 +83,7 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
     if (step == 0) {  // u was computed with the present matrix A
       if (begins && !search.resumed) start_error2_ = error2;
       report.change_m_per_s = std::sqrt(error2);
-      if (error2 < (begins ? 1.0 : kOld * kOld) * settled2) return Outcome::kSettled;
+      if (error2 < (begins ? 1.0 : tuning.newton_old * tuning.newton_old) * settled2) return Outcome::kSettled;
     }
     if (error2 < settled2) return std::nullopt;
     if (error2 < best2 && error2 < enough2) {
@@ -93,7 +91,7 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
       for (const auto k : newton_.rows()) plain_[static_cast<std::size_t>(k)].v = p[k].v;
     }
     if (newton_.unknowns() > ContactNewton::kMostUnknowns) return Outcome::kUnsolved;
-    const long cost = begins ? kSweeps * price::dense_sweep(newton_.loaded())
+    const long cost = begins ? tuning.sweeps * price::dense_sweep(newton_.loaded())
                              : price::newton(newton_.loaded(), newton_.unknowns()) +
                                    price::exchange(newton_.exchanges(), newton_.slots());
     const long answering = price::answer(newton_.loaded(), search.nodes) + price::look(rows_);
@@ -106,8 +104,8 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
     }
     report.work += cost;
     if (begins) {
-      for (int k = 0; k < kSweeps; ++k) newton_.sweep<Friction>(rows, p, u);
-    } else if (++report.passes > kMostSteps || !newton_.solve<Friction>(rows, p, u, effort.time)) {
+      for (int k = 0; k < tuning.sweeps; ++k) newton_.sweep<Friction>(rows, p, u);
+    } else if (++report.passes > tuning.most_steps || !newton_.solve<Friction>(rows, p, u, effort.time)) {
       return effort.time.is_over() ? wait() : Outcome::kUnsolved;
     }
   }
@@ -115,7 +113,6 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
 
 template <bool Friction>
 Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
-  constexpr int kMostLooks = 12, kStale = 3;
   Search search{effort, report, window_last_ - window_first_ + 1};
   const auto answer = [&] {
     report.work += price::answer(newton_.loaded(), search.nodes);
@@ -129,8 +126,8 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
   start_error2_ = kUnknown;
   search.resumed = newton_.resume(p_.data());
   if (search.resumed) answer();
-  for (; search.look < kMostLooks; ++search.look) {
-    if (search.look == kStale && !search.fresh && !renew_matrix(solver, search)) break;
+  for (; search.look < tuning.most_looks; ++search.look) {
+    if (search.look == tuning.stale && !search.fresh && !renew_matrix(solver, search)) break;
     const Outcome looked = look_at_all(solver, v, search);
     if (looked == Outcome::kUnsolved) return looked;
     if (looked == Outcome::kLater) break;
@@ -144,8 +141,8 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
 template <bool Friction>
 Outcome ContactSet::settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
   const long nodes = window_last_ - window_first_ + 1;
-  if (nodes + 2 * kMargin > ContactNewton::kWidest) return Outcome::kUnsolved;
-  const long matrix = newton_.covers(window_first_, window_last_) ? 0 : price::factors(nodes + 2 * kMargin);
+  if (nodes + 2 * tuning.margin > ContactNewton::kWidest) return Outcome::kUnsolved;
+  const long matrix = newton_.covers(window_first_, window_last_) ? 0 : price::factors(nodes + 2 * tuning.margin);
   if (matrix + price::look(rows_) > effort.work) return Outcome::kLater;
   for (int k = 0; k < rows_; ++k) {
     const auto at = static_cast<std::size_t>(k);

@@ -6,11 +6,10 @@
 #include "firmware/physics/rod/closest.hpp"
 #include "firmware/physics/rod/contact.hpp"
 #include "firmware/physics/rod/smooth.hpp"
+#include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
 namespace {
-
-constexpr double kClose = 2.0;  // multiple of near_m below which pairs are measured between smooth curves
 
 template <class F>
 [[nodiscard]] Lanes each(F number_of) noexcept {
@@ -77,7 +76,7 @@ bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcep
       if (gap_m > pair.near_m + 2.0 * dt_s * motion.rate(a, b)) {
         pair.impulse = Vec{};
       } else {
-        const bool close = gap_m < kClose * pair.near_m && pair.bulge_m > 0.0;
+        const bool close = gap_m < tuning.close * pair.near_m && pair.bulge_m > 0.0;
         (close ? close_ : far_).push_back(static_cast<std::int32_t>(due_.size()));
         if (close) bent_ = {std::min(bent_.first, pair.a), std::max(bent_.last, pair.b + 1)};
         due_.push_back(k);
@@ -110,7 +109,7 @@ void ContactSet::measure(const std::int32_t* places, const State& state) noexcep
   auto smooth = chord < Lanes{};
   if constexpr (Smooth) {
     const Lanes within =
-        each([&](std::size_t l) { return pair(l).reach_m + kClose * pair(l).near_m + pair(l).bulge_m; });
+        each([&](std::size_t l) { return pair(l).reach_m + tuning.close * pair(l).near_m + pair(l).bulge_m; });
     const FourClosest curves = closest(a.smooth(state, corner_.data()), b.smooth(state, corner_.data()), c);
     const auto close = smooth = chord < within;
     c.s = close ? curves.s : c.s, c.t = close ? curves.t : c.t;

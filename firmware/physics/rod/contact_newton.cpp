@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "firmware/physics/rod/contact.hpp"
+#include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
 
@@ -35,7 +36,6 @@ void ContactNewton::measure(const BandSolver& solver, int first, int last) noexc
 }
 
 bool ContactNewton::has_moved(const Slot& slot, const Contact& c, std::int32_t first) noexcept {
-  constexpr double kMoved = 0.16;  // sum of weight changes above which the slot's column is computed again
   if (slot.count != c.count) return true;
   double sum = 0.0;
   bool same = true;
@@ -43,18 +43,17 @@ bool ContactNewton::has_moved(const Slot& slot, const Contact& c, std::int32_t f
     sum += std::abs(c.w[k] - slot.w[k]);
     same &= slot.node[k] + first == c.node[k];
   }
-  return !same || sum > kMoved;
+  return !same || sum > tuning.moved;
 }
 
 void ContactNewton::start(const Contact* rows, int count) noexcept {
-  constexpr int kIdle = 4;  // a slot is removed after more substeps than this without load
   slot_.assign(static_cast<std::size_t>(count), -1);
   rows_.clear();
   begins_ = begins_ || !put_off_;
   for (Slot& slot : slots_) {
     if (put_off_) break;
     slot.idle = slot.row < 0 || slot.kind == Kind::kOpen ? slot.idle + 1 : 0;
-    slot.dead = slot.dead || slot.idle > kIdle;
+    slot.dead = slot.dead || slot.idle > tuning.idle;
   }
   index_slots();
   for (int k = 0; k < count; ++k) {

@@ -6,6 +6,7 @@
 
 #include "firmware/physics/rod/contact.hpp"
 #include "firmware/physics/rod/contact_newton.hpp"
+#include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
 
@@ -35,7 +36,6 @@ double ContactNewton::read(const Contact* rows, const Vec* p, const Vec* u) noex
 
 template <bool Friction>
 void ContactNewton::sweep(const Contact* rows, Vec* p, Vec* u) noexcept {
-  constexpr double kShare = 0.8;  // under-relaxation: a full step leaves a larger error in neighbouring contacts
   on_.clear();
   for (const auto k : rows_) {
     const Contact& c = rows[k];
@@ -43,8 +43,8 @@ void ContactNewton::sweep(const Contact* rows, Vec* p, Vec* u) noexcept {
     const Slot& slot = slots_[at];
     const Vec now = u[k] + moved(at);
     const double un = dot(now, c.n), pn = dot(p[k], c.n);
-    const double to_n = std::max(0.0, pn - kShare * slot.r_n * (un + c.soft * pn - c.target));
-    const Vec q = (p[k] - pn * c.n) - kShare * slot.r_t * (now - un * c.n);
+    const double to_n = std::max(0.0, pn - tuning.sweep_share * slot.r_n * (un + c.soft * pn - c.target));
+    const Vec q = (p[k] - pn * c.n) - tuning.sweep_share * slot.r_t * (now - un * c.n);
     const double size2 = dot(q, q), most = Friction ? c.mu * to_n : 0.0;
     const Vec to = to_n * c.n + (size2 > most * most ? most / std::sqrt(size2) : 1.0) * q, step = to - p[k];
     if (dot(step, step) == 0.0) continue;
@@ -123,7 +123,6 @@ void ContactNewton::bring_forward() noexcept {
 
 template <bool Friction>
 void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* u) noexcept {
-  constexpr double kCostNormal = 0.05, kCostAlong = 0.1;  // proximal terms, relative to the contact's own response
   constexpr double kHardly = 1e-6;  // least radius / |q| of a friction disc: bounds `give` at mu = 0
   unknowns_.clear();
   stuck_.clear();
@@ -144,7 +143,7 @@ void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* 
     if constexpr (Friction) slot.along.v = direction(slot).v;
     const bool slides = Friction && slot.kind == Kind::kSlides;
     const Vec with = slides ? c.n + c.mu * slot.along : c.n;
-    add(s, c.n, with, c.soft, kCostNormal * slot.per_r_n, c.target);
+    add(s, c.n, with, c.soft, tuning.cost_normal * slot.per_r_n, c.target);
     for (std::size_t i = 0; i < 3; ++i) with_.data()[i * kPlane + s] = static_cast<float>(with.v[i]);
   }
   if constexpr (Friction) {
@@ -153,13 +152,13 @@ void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* 
       const Vec across = cross(rows[slot.row].n, slot.along);
       const double share = std::max(kHardly, slot.most / std::max(norm(slot.q), 1e-300));
       const double give = slot.kind == Kind::kSticks ? 0.0 : (1.0 - share) / share * slot.per_r_t;
-      add(s, across, across, give, kCostAlong * slot.per_r_t, 0.0);
+      add(s, across, across, give, tuning.cost_along * slot.per_r_t, 0.0);
       for (std::size_t i = 0; i < 3; ++i) with_.data()[(3 + i) * kPlane + s] = static_cast<float>(across.v[i]);
     }
     for (std::size_t s = 0; s < carrying_; ++s) {
       const Slot& slot = slots_[s];
       if (slot.kind != Kind::kSticks) continue;
-      add(s, slot.along, slot.along, 0.0, kCostAlong * slot.per_r_t, 0.0);
+      add(s, slot.along, slot.along, 0.0, tuning.cost_along * slot.per_r_t, 0.0);
       stuck_.push_back(
           {s, static_cast<float>(slot.along[0]), static_cast<float>(slot.along[1]), static_cast<float>(slot.along[2])});
     }
@@ -225,15 +224,13 @@ bool ContactNewton::assemble(const Vec* p, TickTime& time) noexcept {
 
 // Sets cost_, the factor of the proximal (damping) terms in this step.
 void ContactNewton::set_cost() noexcept {
-  constexpr double kFade = 0.6, kFadeWhenKnown = 0.1;  // decrease per step; when no kind has changed
-  constexpr double kWorse = 2.0, kMore = 4.0, kLeast = 1e-4;
-  const bool worse = error2_ > kWorse * kWorse * last_error2_;
+  const bool worse = error2_ > tuning.cost_worse * tuning.cost_worse * last_error2_;
   if (std::exchange(begins_, false)) {
     cost_ = 1.0;
   } else if (changed_ == 0) {
-    cost_ *= kFadeWhenKnown;
+    cost_ *= tuning.cost_fade_known;
   } else {
-    cost_ = worse ? std::min(1.0, kMore * std::max(kLeast, cost_)) : kFade * cost_;
+    cost_ = worse ? std::min(1.0, tuning.cost_more * std::max(tuning.cost_least, cost_)) : tuning.cost_fade * cost_;
   }
   last_error2_ = error2_;
 }

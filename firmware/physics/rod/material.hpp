@@ -1,6 +1,8 @@
 #pragma once
 // Material of a rod, and settings of its time integration and contact solver. SI units.
 
+#include "firmware/physics/rod/tuning.hpp"
+
 namespace ligature::physics::rod {
 
 /// A round, isotropic rod. Constant during a run.
@@ -29,23 +31,20 @@ struct Material {
 /// Time steps, tolerances and work limits. Every field trades computing time for accuracy (docs/rod-contact.md).
 struct Numerics {
   double tick_s = 1e-3;
-  int substeps = 16;      ///< time steps per tick
-  int max_substeps = 16;  ///< time steps per tick when a hand is faster than fast_m_per_s
-  double fast_m_per_s = 0.3;
-  int max_passes = 80;        ///< most passes of the sweep solver per substep
-  long work = 4'300'000;      ///< contact budget of a tick, in instructions (work.hpp)
-  long work_per_node = 2500;  ///< added to the budget for each node
-  /// Relative budget increase for hands faster than 2 fast_m_per_s; between 1 and 2 fast_m_per_s it is 0.25.
-  double rush = 0.75;
-  long given_work = 0;            ///< > 0: replaces the whole budget, for any thread and hands
-  double settled_m_per_s = 3e-5;  ///< tolerance: a pass that changes no velocity by more is the last
-  double settled_share = 0.004;   ///< added to the tolerance: this times half the hands' relative speed (Rod::settled)
-  /// Least tolerance of Newton's method, whose single precision leaves an error of 5 um/s in a held knot. A thread at
-  /// rest does not drift at this tolerance, as it would with the sweeps: converged impulses are not changed any more.
-  double newton_m_per_s = 1e-5;
-  double recovery = 0.3;  ///< share of a penetration that a substep removes
-  double max_recovery_m_per_s = 0.5;
-  double contact_N_per_m = 6e5;  ///< stiffness of a contact
+  int substeps = tuning.substeps;      ///< time steps per tick
+  int max_substeps = tuning.substeps;  ///< time steps per tick when a hand is faster than fast_m_per_s
+  double fast_m_per_s = tuning.fast_m_per_s;
+  int max_passes = tuning.max_passes;         ///< most passes of the sweep solver per substep
+  long work = tuning.work;                    ///< contact budget of a tick, in instructions (work.hpp)
+  long work_per_node = tuning.work_per_node;  ///< added to the budget for each node
+  double rush = tuning.rush;                  ///< relative budget increase for hands faster than 2 fast_m_per_s
+  long given_work = 0;                        ///< > 0: replaces the whole budget, for any thread and hands
+  double settled_m_per_s = tuning.settled_m_per_s;  ///< tolerance: a pass that changes no velocity by more is the last
+  double settled_share = tuning.settled_share;      ///< added to it: this times half the hands' relative speed
+  double newton_m_per_s = tuning.newton_m_per_s;    ///< least tolerance of Newton's method
+  double recovery = tuning.recovery;                ///< share of a penetration that a substep removes
+  double max_recovery_m_per_s = tuning.max_recovery_m_per_s;
+  double contact_N_per_m = tuning.contact_N_per_m;  ///< stiffness of a contact
 
   [[nodiscard]] constexpr bool is_fast(double hand_m_per_s) const noexcept {
     return hand_m_per_s > 1.001 * fast_m_per_s;
@@ -54,7 +53,7 @@ struct Numerics {
   [[nodiscard]] constexpr long budget(int nodes, double hand_m_per_s) const noexcept {
     if (given_work > 0) return given_work;
     const auto whole = static_cast<double>(work + work_per_node * nodes);
-    const double more = is_fast(0.5 * hand_m_per_s) ? rush : is_fast(hand_m_per_s) ? 0.25 : 0.0;
+    const double more = is_fast(0.5 * hand_m_per_s) ? rush : is_fast(hand_m_per_s) ? tuning.half_rush : 0.0;
     return static_cast<long>((1.0 + more) * whole);
   }
 };

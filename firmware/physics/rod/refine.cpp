@@ -1,4 +1,5 @@
 #include "firmware/physics/rod/refine.hpp"
+#include "firmware/physics/rod/tuning.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,18 +9,8 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr double kTurn = 0.35;       // wanted angle between neighbouring segments, rad
-constexpr double kStartTurn = 0.5;   // wanted angle in the initial mesh, rad
-constexpr double kBendLength = 0.4;  // wanted length at a contact, in units of sqrt(EI / T)
-constexpr double kGrading = 0.2;
 constexpr double kCut = 0.5;         // share of a segment that the smooth curve cuts off at a corner (h, smooth.hpp)
-constexpr double kAway = 0.5;        // distance moved in a tick, in mesh units, at which offsets fade to 1/e
 constexpr double kLeastFade = 1e-3;  // > 0, as Spin::before_fading() divides by the factor
-constexpr double kRests_m_per_s = 1e-3;
-constexpr double kSwings_m_per_s = 0.05;
-constexpr double kFirst = 0.7;  // wanted length, in units, of segments at rest against a unit segment: split first
-constexpr double kWorth = 1.5;  // least improvement factor of the worst ratio by a change
-constexpr int kTries = 4;       // most merges tried per change, which bounds the cost in a tangle
 
 // Shift the tail of an array by one place, to open a slot at `at` or to close it. The size stays the same.
 template <class T>
@@ -40,16 +31,17 @@ struct Piece {
 };
 
 // Wanted segment length at every unit of the thread, from the given curvature; it changes only gradually along the
-// thread (kGrading). Constant when no curvature is given.
+// thread (tuning.grading). Constant when no curvature is given.
 std::vector<double> wanted_at_rest(int units, double unit_m, std::span<const double> curvature_per_m) {
   std::vector<double> wanted(static_cast<std::size_t>(units), unit_m * (1 << Refine::kLevels));
   const double per_place = static_cast<double>(units) / static_cast<double>(curvature_per_m.size());
   for (std::size_t k = 0; k < curvature_per_m.size(); ++k) {
     auto& w = wanted[static_cast<std::size_t>(per_place * (static_cast<double>(k) + 0.5))];
-    w = std::max(unit_m, std::min(w, kStartTurn / std::max(curvature_per_m[k], 1e-9)));
+    w = std::max(unit_m, std::min(w, tuning.start_turn_rad / std::max(curvature_per_m[k], 1e-9)));
   }
-  for (std::size_t j = 1; j < wanted.size(); ++j) wanted[j] = std::min(wanted[j], wanted[j - 1] + kGrading * unit_m);
-  for (std::size_t j = wanted.size() - 1; j-- > 0;) wanted[j] = std::min(wanted[j], wanted[j + 1] + kGrading * unit_m);
+  const double more = tuning.grading * unit_m;
+  for (std::size_t j = 1; j < wanted.size(); ++j) wanted[j] = std::min(wanted[j], wanted[j - 1] + more);
+  for (std::size_t j = wanted.size() - 1; j-- > 0;) wanted[j] = std::min(wanted[j], wanted[j + 1] + more);
   return wanted;
 }
 
@@ -96,8 +88,8 @@ bool Refine::start(const Material& material, double wanted_m, State& state, std:
   wanted_.assign(n, 0.0);
   free_.assign(n, 1);
   moment_.assign(n, Vec{});
-  fade_.assign(n, kFade);
-  strain_fade_.assign(n, kFade);
+  fade_.assign(n, tuning.fade);
+  strain_fade_.assign(n, tuning.fade);
   tension_.assign(n, 0.0);
   return true;
 }
@@ -112,7 +104,7 @@ void Refine::want(const Material& material, const State& state, const Forces& fo
   free_[0] = free_[n - 1] = 0;
   for (std::size_t i = 1; i + 1 < n; ++i) {
     const Vec bend = forces.tangent[i] - forces.tangent[i - 1];
-    const double length = kTurn * 0.5 * (mesh.rest[i - 1] + mesh.rest[i]) / (norm(bend) + 1e-9);
+    const double length = tuning.turn_rad * 0.5 * (mesh.rest[i - 1] + mesh.rest[i]) / (norm(bend) + 1e-9);
     wanted_[i - 1] = std::min(wanted_[i - 1], length);
     wanted_[i] = std::min(wanted_[i], length);
     if (dot(state.load[i], state.load[i]) > 0.0) free_[i] = 0;
@@ -128,7 +120,7 @@ void Refine::want(const Material& material, const State& state, const Forces& fo
     for (int k = 0; k < std::min(c.count, 4); k += 2) {
       const auto j = std::min(static_cast<std::size_t>(c.node[k]), n - 2);
       const double pull = std::max({force, forces.tension[j], 1e-9});
-      wanted_[j] = std::min(wanted_[j], kBendLength * std::sqrt(material.EI_N_m2 / pull));
+      wanted_[j] = std::min(wanted_[j], tuning.bend_length * std::sqrt(material.EI_N_m2 / pull));
     }
   }
   grade(mesh);
@@ -139,16 +131,16 @@ void Refine::grade(const Mesh& mesh) noexcept {
   const std::size_t n = mesh.s.size();
   for (auto& w : wanted_) w = std::max(w, unit_m_);
   for (std::size_t j = 1; j + 1 < n; ++j) {
-    wanted_[j] = std::min(wanted_[j], wanted_[j - 1] + kGrading * 0.5 * (mesh.rest[j - 1] + mesh.rest[j]));
+    wanted_[j] = std::min(wanted_[j], wanted_[j - 1] + tuning.grading * 0.5 * (mesh.rest[j - 1] + mesh.rest[j]));
   }
   for (std::size_t j = n - 2; j-- > 0;) {
-    wanted_[j] = std::min(wanted_[j], wanted_[j + 1] + kGrading * 0.5 * (mesh.rest[j + 1] + mesh.rest[j]));
+    wanted_[j] = std::min(wanted_[j], wanted_[j + 1] + tuning.grading * 0.5 * (mesh.rest[j + 1] + mesh.rest[j]));
   }
 }
 
 // Two segments in contact get equal wanted lengths if the contact is at rest, and within a factor of two if it slides
 // slowly, as under a swinging loop. Fast sliding has no effect: nodes would be moved continually, each time with a
-// small step of the force. A segment at rest against one of unit length has priority over all others (kFirst).
+// small step of the force. A segment at rest against one of unit length has priority over all others (tuning.first).
 void Refine::want_at_rest(const State& state, const ContactSet& contacts) noexcept {
   for (const auto& c : contacts.contacts()) {
     if (!c.is_pair() || dot(c.p, c.p) == 0.0) continue;
@@ -156,14 +148,14 @@ void Refine::want_at_rest(const State& state, const ContactSet& contacts) noexce
     for (int k = 0; k < c.count; ++k) u += c.w[k] * state.v[static_cast<std::size_t>(c.node[k])];
     u -= dot(u, c.n) * c.n;
     const double slip2 = dot(u, u);
-    if (slip2 > kSwings_m_per_s * kSwings_m_per_s) continue;
+    if (slip2 > tuning.swings_m_per_s * tuning.swings_m_per_s) continue;
     double& one = wanted_[static_cast<std::size_t>(c.node[0])];
     double& other = wanted_[static_cast<std::size_t>(c.node[2])];
     const double least = std::max(unit_m_, std::min(one, other));
-    if (slip2 > kRests_m_per_s * kRests_m_per_s) {
+    if (slip2 > tuning.rests_m_per_s * tuning.rests_m_per_s) {
       one = std::min(one, 2.0 * least), other = std::min(other, 2.0 * least);
     } else {
-      one = other = least > unit_m_ ? least : kFirst * unit_m_;
+      one = other = least > unit_m_ ? least : tuning.first * unit_m_;
     }
   }
 }
@@ -181,7 +173,7 @@ int Refine::worst_segment() const noexcept {
 
 int Refine::best_merge(const Material& material, const State& state, const std::vector<Body>& bodies,
                        double most) noexcept {
-  for (int tries = 0; tries < kTries; ++tries) {
+  for (int tries = 0; tries < tuning.tries; ++tries) {
     const int best = cheapest_merge(most);
     if (best < 0) return -1;
     if (merge_is_clear(material, state, bodies, static_cast<std::size_t>(best))) return best;
@@ -261,13 +253,13 @@ void Refine::split(const Material&, State& state, int segment) noexcept {
 // place where its node was when it was set, so it fades faster the faster the node moves. The exponent is quadratic in
 // the speed, so that slow motion, such as that caused by the fading itself, adds nothing.
 void Refine::slide(const State& state, double tick_s, bool drifts) noexcept {
-  const double per_m = tick_s / (kAway * unit_m_);
+  const double per_m = tick_s / (tuning.away * unit_m_);
   const Vec drift = drifts ? mean_velocity(state) : Vec{};
   for (std::size_t i = 0; i < fade_.size(); ++i) {
     const Vec v = state.v[i] - drift;
-    fade_[i] = std::max(kLeastFade, kFade * std::exp(-per_m * per_m * dot(v, v)));
+    fade_[i] = std::max(kLeastFade, tuning.fade * std::exp(-per_m * per_m * dot(v, v)));
   }
-  std::fill(strain_fade_.begin(), strain_fade_.end(), kFade);
+  std::fill(strain_fade_.begin(), strain_fade_.end(), tuning.fade);
 }
 
 // Fading an offset adds stress or removes it; where it adds stress, the elastic energy grows without a source.
@@ -315,14 +307,15 @@ bool Refine::update(const Material& material, State& state, const Forces& forces
   const std::size_t n = at_.size();
   bool changed = false;
   const long price_of_one = price::kChangePerNode * static_cast<long>(n);
-  const long most = std::clamp(work.budget() / 8 / price_of_one, 1L, static_cast<long>(kChangesPerTick));
+  const long share = static_cast<long>(tuning.remesh_share * static_cast<double>(work.budget()));
+  const long most = std::clamp(share / price_of_one, 1L, static_cast<long>(tuning.changes));
   for (long k = 0; k < most && work.time().allows(); ++k) {
     work.spend(price_of_one);
     const int segment = worst_segment();
     if (segment < 0) break;
     const auto j = static_cast<std::size_t>(segment);
     const double bad = (at_[j + 1] - at_[j]) * unit_m_ / wanted_[j];
-    const int node = bad > 1.0 ? best_merge(material, state, bodies, bad / kWorth) : -1;
+    const int node = bad > 1.0 ? best_merge(material, state, bodies, bad / tuning.worth) : -1;
     if (node < 0 || segment == node || segment + 1 == node) break;
     if (!changed) {
       for (std::size_t q = 0; q + 1 < n; ++q) {

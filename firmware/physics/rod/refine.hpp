@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware/physics/rod/contact.hpp"
+#include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
 
@@ -52,8 +53,6 @@ class Refine {
   void keep_stress(const Material& material, State& state) noexcept;
 
   static constexpr int kLevels = 4;
-  static constexpr double kFade = 0.8;  ///< factor of the offsets per tick where the thread is at rest
-  static constexpr int kChangesPerTick = 6;
 
  private:
   void want(const Material& material, const State& state, const Forces& forces, const ContactSet& contacts) noexcept;

@@ -1,4 +1,5 @@
 #include "firmware/physics/rod/rod.hpp"
+#include "firmware/physics/rod/tuning.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,14 +11,6 @@ namespace {
 
 constexpr int kNodesInPiece = 500;  // assembling this many nodes takes at most TickTime::kPiece_ns
 constexpr int kWindow = 1024;       // most nodes on which contacts are solved together
-constexpr double kRelax_s = 0.02;   // decay time of pace_m_per_s_ once the hands stop; 0.005 to 0.1 makes no difference
-constexpr double kMostLeniency = 6.0;  // upper bound of leniency_, see Rod::settled()
-// Gap, in diameters, below which a pair is a contact at any speed. Time lost while a square and a surgeon's knot are
-// pulled at 0.2 m/s to 5 N: 9 and 20 % with 0.1; 10 and 23 % with 0.05 and also with 0.2 (one pull each).
-constexpr double kNear = 0.1;
-// Energy that fading the remeshing offsets may add to a thread that is alone: this share of what the tick has
-// dissipated, plus this share of the bending energy.
-constexpr double kFadeShare = 0.5, kFadeLeast = 1e-6;
 
 // Largest speed of a node relative to the mean velocity.
 double stir(const std::vector<Vec>& v) noexcept {
@@ -38,12 +31,12 @@ Rod::Rod(const Material& material, const Numerics& numerics, const Parts& parts,
   numerics_ = numerics;
   parts_ = parts;
   substep_ = pick(parts);
-  near_m_ = 2.0 * material.radius_m * kNear;
+  near_m_ = 2.0 * material.radius_m * tuning.near_d;
   state_.resize(n);
   forces_.resize(n);
   solver_.resize(n);
   bodies.reserve(static_cast<std::size_t>(body_count));
-  if (parts.contact || parts.world) {
+  if (touches()) {
     metric_.reserve(n + 4, kWindow);
     contacts_.reserve(n, body_count, metric_.capacity());
     broad_.reserve(n, static_cast<int>(contacts_.pairs.capacity()));
@@ -84,12 +77,8 @@ Rod& Rod::operator=(const Rod& other) {
 bool Rod::continue_from(const Rod& other) noexcept {
   if (state_.nodes() != other.state_.nodes() || parts_.adaptive != other.parts_.adaptive) return false;
   RodCourse::operator=(other);
+  if (parts_.frames() && other.parts_.frames()) spin_ = other.spin_;
   mesh_changed();
-  if (parts_.frames() && other.parts_.frames()) {
-    spin_ = other.spin_;
-  } else if (parts_.frames()) {
-    spin_.start(material_, state_);
-  }
   return true;
 }
 
@@ -185,7 +174,8 @@ void Rod::fade() noexcept {
   refine_.slide(state_, numerics_.tick_s, alone_);
   if (alone_) {
     const Energy e = energy();
-    const double now_J = all_J(e), most_J = kFadeShare * std::max(0.0, kept_J_ - now_J) + kFadeLeast * e.bend_J;
+    const double now_J = all_J(e), lost_J = std::max(0.0, kept_J_ - now_J);
+    const double most_J = tuning.fade_share * lost_J + tuning.fade_least * e.bend_J;
     const auto born = parts_.frames() ? spin_.born() : std::span<const Vec>{};
     kept_J_ = now_J + refine_.hold_back(material_, state_, born, most_J);
   }
@@ -228,21 +218,23 @@ Rod::HandSpeed Rod::set_hands(const std::array<Vec, kMaxHolds>& goals, std::arra
 }
 
 void Rod::begin_tick(const HandSpeed& hands, const TimeLeft& left) noexcept {
-  constexpr double kTired = 0.9, kRested = 0.25, kThrown_m_per_s = 10.0;
-  constexpr int kFewest = 10;  // substeps; with six the larger errors cause overlaps, which cost more than was saved
-  labours_ = static_cast<double>(report_.work) >
-                 (labours_ ? kRested : kTired) * static_cast<double>(numerics_.budget(state_.nodes(), 0.0)) ||
-             report_.cut_at >= 0;
-  const int substeps_before = report_.substeps;
-  leniency_ = report_.cut_short > 0 ? std::min(kMostLeniency, 1.5 * leniency_) : std::max(1.0, 0.9 * leniency_);
-  report_ = TickReport{};
-  RodNow::operator=({});
-  const bool fast = numerics_.is_fast(hands.fastest);
-  // The clock is queried between forces, matrix and solution, each O(n): so the longest piece grows with n.
-  const std::int64_t piece_ns = TickTime::kPiece_ns * std::max(1, state_.nodes() / kNodesInPiece);
-  work_.start(numerics_.budget(state_.nodes(), hands.fastest), left, piece_ns);
   const bool was_alone = alone_;
   alone_ = hands.holds < 2 && hands.fastest == 0.0 && std::none_of(bodies.begin(), bodies.end(), moves);
+  plan_ = plan(plan_, report_,
+               {.hand_m_per_s = hands.fastest,
+                .apart_m_per_s = hands.apart,
+                .alone = alone_,
+                .released = released_,
+                .waits = patience_.waits(),
+                .node_m_per_s = touches() ? motion_.fastest() : 0.0,
+                .nodes = state_.nodes()},
+               numerics_);
+  released_ = false;
+  report_ = TickReport{.substeps = plan_.substeps};
+  RodNow::operator=({});
+  // The clock is queried between forces, matrix and solution, each O(n): so the longest piece grows with n.
+  const std::int64_t piece_ns = TickTime::kPiece_ns * std::max(1, state_.nodes() / kNodesInPiece);
+  work_.start(plan_.budget, left, piece_ns);
   if (alone_ && !was_alone && parts_.adaptive) kept_J_ = all_J(energy());
   if (!mesh_held_) report_.remeshes += remesh();
   if (parts_.frames()) {
@@ -252,20 +244,11 @@ void Rod::begin_tick(const HandSpeed& hands, const TimeLeft& left) noexcept {
   } else if (parts_.twist) {
     twist_.update(material_, state_, forces_);
   }
-  const double fading = alone_ ? 0.0 : std::exp(-numerics_.tick_s / kRelax_s);
-  pace_m_per_s_ = std::max(0.5 * hands.apart, fading * pace_m_per_s_);
-  letting_go_ = released_ || (letting_go_ && (waits_ > 0 || motion_.fastest() > kThrown_m_per_s));
-  released_ = false;
-  report_.substeps = letting_go_  ? std::max(numerics_.max_substeps, 3 * numerics_.substeps / 2)
-                     : fast       ? numerics_.max_substeps
-                     : waits_ > 0 ? substeps_before
-                     : labours_   ? std::min(numerics_.substeps, std::max(kFewest, 5 * numerics_.substeps / 8))
-                                  : numerics_.substeps;
-  if (parts_.contact || parts_.world) {  // the caller may have changed velocities or bodies
+  if (touches()) {  // the caller may have changed velocities or bodies
     motion_.measure(state_.v.data());
     stir_m_per_s_ = stir(state_.v);
     contacts_.forget_bodies();
-    if ((fast && waits_ == 0) || report_.substeps != substeps_before) contacts_.forget_matrix();
+    if (plan_.new_matrix) contacts_.forget_matrix();
   }
 }
 
@@ -308,8 +291,8 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals, const TimeLeft& left) no
     if (!moving) report_.time_lost += 1.0 / report_.substeps;
   }
   if (measured_) give_J_ = contacts_.give_J(numerics_.contact_N_per_m, state_.v.data(), since_look_s_);
-  if (report_.time_lost > 0.999 && waits_ == 0) {  // at half the speed the next tick has fewer pairs to check
-    for (auto& v : state_.v) v = 0.5 * v;
+  if (report_.time_lost > 0.999 && !patience_.waits()) {  // at half the speed the next tick has fewer pairs to check
+    for (auto& v : state_.v) v = tuning.slowed * v;
   }
   if (alone_ && parts_.adaptive && !mesh_held_) fade(), faded_ = true;  // limited by what this tick has dissipated
   report_.work = work_.used();

@@ -50,8 +50,8 @@ class Rod : private RodKept, private RodNow, private RodCache {
   /// contacts. With Parts::frames() the thread then starts without twist.
   void moved() noexcept;
 
-  /// Takes over the motion and holds of another rod but keeps this one's material and surroundings. Twist is taken over
-  /// too, but a rod that alone of the two has Parts::frames() starts without. No allocation.
+  /// Takes over the motion, holds and twist of another rod but keeps this one's material and surroundings. No
+  /// allocation.
   /// @return false, and nothing is changed, when the numbers of nodes or Parts::adaptive differ.
   [[nodiscard]] bool continue_from(const Rod& other) noexcept;
 
@@ -108,6 +108,7 @@ class Rod : private RodKept, private RodNow, private RodCache {
   template <unsigned Bits>
   bool settle(double dt_s) noexcept;
   void mesh_changed() noexcept;
+  [[nodiscard]] bool touches() const noexcept { return parts_.contact || parts_.world; }
   [[nodiscard]] bool sticks() const noexcept { return material_.static_friction > material_.friction; }
   /// Newton's method serves the tight contacts of knots; contact with floor and bodies is solved by sweeps.
   [[nodiscard]] bool solves_directly() const noexcept { return !parts_.turning && contacts_.only_pairs(); }
@@ -127,7 +128,7 @@ class Rod : private RodKept, private RodNow, private RodCache {
   std::optional<double> guard_unseen(double dt_s) noexcept;
   template <bool Friction>
   Outcome settle_directly(const Effort& effort) noexcept;
-  [[nodiscard]] bool can_wait() const noexcept { return solves_directly() && waits_ + 1 <= patience_; }
+  [[nodiscard]] bool can_wait() const noexcept { return solves_directly() && patience_.lasts(); }
   [[nodiscard]] bool has_room_for(const Rod& other) const noexcept;
   bool put_off() noexcept;
   bool give_up() noexcept;

@@ -5,6 +5,7 @@
 
 #include "firmware/physics/rod/assembly.hpp"
 #include "firmware/physics/rod/contact.hpp"
+#include "firmware/physics/rod/plan.hpp"
 #include "firmware/physics/rod/refine.hpp"
 #include "firmware/physics/rod/twist.hpp"
 
@@ -29,21 +30,6 @@ struct Parts {
   [[nodiscard]] constexpr bool frames() const noexcept { return roll || set; }
 };
 
-/// Counters and measures of one tick.
-struct TickReport {
-  int substeps = 0, passes = 0, contacts = 0, guard_events = 0, broad_phases = 0, remeshes = 0;
-  double min_gap_m = 1e9;  ///< smallest thread-thread gap in any substep; negative: overlap
-  long work = 0;           ///< instructions spent on contact, out of Numerics::budget()
-
-  double set_J = 0.0;  ///< energy dissipated by plastic bending
-
-  // What was given up for lack of budget or time, the mildest loss first.
-  int cut_short = 0;       ///< substeps whose contact solver stopped before it converged
-  int rows_left_out = 0;   ///< largest number of contacts in a substep that only the guard kept apart
-  double time_lost = 0.0;  ///< share of the tick in which the thread was not moved, as no safe motion was known
-  int cut_at = -1;         ///< number of the clock query that ended the tick early (time_left.hpp); -1: none did
-};
-
 /// What surrounds a thread.
 struct World {
   Vec gravity{};
@@ -55,26 +41,19 @@ struct World {
 /// The thread's motion, and what earlier ticks have taught the rules that adapt to it: all that Rod::continue_from()
 /// takes over.
 struct RodCourse {
-  static constexpr double kPatience = 12.0;  ///< most ticks for which an unsolved substep may be continued
-
   State state_;
   Forces forces_;
   Twist twist_;
   Refine refine_;
   TickReport report_;
-  double pace_m_per_s_ = 0.0;    ///< half the relative speed of the hands; decays exponentially once they stop
-  double leniency_ = 1.0;        ///< 1 to 6: factor of the tolerance's speed-dependent part; grows after cut ticks
-  int waits_ = 0;                ///< consecutive ticks in which the present substep was begun but not finished
-  double patience_ = kPatience;  ///< limit of waits_: falls when waiting did not help, rises when Newton converges
-  bool sweeps_only_ = false;     ///< the next substep is solved without Newton's method
-  bool labours_ = false;         ///< the last tick used most of its budget, so this one has fewer substeps
-  bool released_ = false;        ///< a hold was released since the last tick
-  bool letting_go_ = false;      ///< a hold was released, and the thread is still fast
-  bool alone_ = false;           ///< at most one hold, and nothing that holds or touches the thread moves (glossary)
-  bool faded_ = false;           ///< the remeshing offsets have already been reduced for the next tick
-  bool remeshed_ = false;        ///< nodes moved along the thread since Spin was last updated
-  double kept_J_ = 0.0;          ///< alone only: total energy at the end of the last tick
-  double give_J_ = 0.0;          ///< elastic energy of the contacts
+  Plan plan_;
+  Patience patience_;
+  bool released_ = false;  ///< a hold was released since the last tick
+  bool alone_ = false;     ///< at most one hold, and nothing that holds or touches the thread moves (glossary)
+  bool faded_ = false;     ///< the remeshing offsets have already been reduced for the next tick
+  bool remeshed_ = false;  ///< nodes moved along the thread since Spin was last updated
+  double kept_J_ = 0.0;    ///< alone only: total energy at the end of the last tick
+  double give_J_ = 0.0;    ///< elastic energy of the contacts
 };
 
 /// What lasts from tick to tick. A copy takes over all of it.

@@ -6,18 +6,13 @@
 #include <utility>
 
 #include "firmware/physics/rod/rod.hpp"
+#include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
 namespace {
 
 constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32, kSet = 64,
                    kDrum = 128;
-constexpr double kEnough = 10.0;        // tolerance multiplier once more than the fair share of the work is used
-constexpr double kWild_m_per_s = 1e-3;  // change in the last pass above which velocities are scaled down (the brake)
-constexpr double kLess = 0.8;           // factor of patience_ when a substep has waited and did not converge
-constexpr double kMore = 0.02;          // recovery of patience_ per substep while it is below 1
-constexpr int kLeastPasses = 3;         // sweeps solve only as many rows as can have this many passes each
-constexpr double kSkin = 0.5;           // margin of the list of pairs, in diameters, at zero speed
 
 /// Time for which a list of pairs is made valid at the present speeds, in ticks, and the share of the tick's work it
 /// may cost. If too many pairs are near, the next entry is tried: a shorter time, so the list is rebuilt sooner.
@@ -25,17 +20,19 @@ struct Ahead {
   double ticks;
   double share;
 };
-constexpr Ahead kAhead[] = {{1.2, 0.3}, {0.15, 0.25}, {0.0, 0.4}};
 
 }  // namespace
 
 // Rebuilds the list of segment pairs that may touch; leaves at least `reserve` instructions of the tick's work. @return
 // false when there is not enough work even for a list with the shortest validity.
 bool Rod::relist(long reserve) noexcept {
-  Outlook outlook{2.0 * material_.radius_m, 2.0 * material_.radius_m * kSkin, near_m_, 0.0};
+  Outlook outlook{2.0 * material_.radius_m, 2.0 * material_.radius_m * tuning.skin_d, near_m_, 0.0};
   broad_.keep_impulses(contacts_.pairs);
   stale_ = true;
-  for (const Ahead& ahead : kAhead) {
+  const Ahead tries[] = {{tuning.ahead1_ticks, tuning.ahead1_share},
+                         {tuning.ahead2_ticks, tuning.ahead2_share},
+                         {0.0, tuning.ahead3_share}};
+  for (const Ahead& ahead : tries) {
     const long most =
         std::min(work_.left() - reserve, static_cast<long>(ahead.share * static_cast<double>(work_.budget())));
     if (most < BroadPhase::least_cost(state_.nodes())) break;
@@ -52,7 +49,7 @@ bool Rod::relist(long reserve) noexcept {
 }
 
 bool Rod::list_is_good(double dt_s) noexcept {
-  const double spare = 2.0 * material_.radius_m * kSkin - near_m_;
+  const double spare = 2.0 * material_.radius_m * tuning.skin_d - near_m_;
   if (!stale_ && !motion_.used_up(spare, horizon_s_, 2.0 * dt_s)) return true;
   return relist(0);
 }
@@ -99,10 +96,12 @@ Rod::Allowance Rod::work_allowed(bool metric_too) const noexcept {
   const auto span = contacts_.span();
   const long window = std::min(span.last - span.first + 1, metric_.capacity() - 4);
   const long metric = metric_too ? price::metric(state_.nodes(), window + 4) : 0;
-  const long looks = after * (look_cost_ + look_cost_ / 2) + (after > 0 ? list_cost_ : 0);
+  const long look = static_cast<long>(tuning.looks_reserve * static_cast<double>(look_cost_));
+  const long looks = after * look + (after > 0 ? list_cost_ : 0);
   const long left = std::max(0L, work_.left() - metric - looks);
   const long spare = std::max(0L, left - after * rows_cost_);
-  return {window, work_.left() - metric, solves_directly() ? work_.left() - metric : 2 * spare / (after + 2)};
+  const long for_passes = static_cast<long>(tuning.pass_share * static_cast<double>(spare)) / (after + 2);
+  return {window, work_.left() - metric, solves_directly() ? work_.left() - metric : for_passes};
 }
 
 bool Rod::prepare_metric(double dt_s) noexcept {
@@ -117,21 +116,20 @@ bool Rod::prepare_metric(double dt_s) noexcept {
 // Tolerance of the contact solver, m/s: a pass that changes no velocity by more is the last. It grows with the speed of
 // the hands or, as after a release, of the thread itself (stir_m_per_s_), but stays below a tenth of the fastest node's
 // speed, so that a nearly resting thread does not drift. For a thread that is alone its own speed does not count: with
-// contacts closing 0.01 m/s too fast, a released surgeon's knot gained 3 % of its stored energy. leniency_ loosens the
-// tolerance after ticks that were cut short: a moderate error in every substep is better than some converged substeps
-// and no passes for the rest.
+// contacts closing 0.01 m/s too fast, a released surgeon's knot gained 3 % of its stored energy. The plan's leniency
+// loosens the tolerance after ticks that were cut short: a moderate error in every substep is better than some
+// converged substeps and no passes for the rest.
 double Rod::settled() const noexcept {
-  constexpr double kStir = 0.15, kCreep = 0.1, kStill_m_per_s = 1e-6;
-  const double speed = std::max(pace_m_per_s_, alone_ ? 0.0 : kStir * stir_m_per_s_);
-  const double settled = numerics_.settled_m_per_s + leniency_ * numerics_.settled_share * speed;
-  return std::min(settled, std::max(kStill_m_per_s, kCreep * motion_.fastest()));
+  const double speed = std::max(plan_.pace_m_per_s, alone_ ? 0.0 : tuning.stir * stir_m_per_s_);
+  const double settled = numerics_.settled_m_per_s + plan_.leniency * numerics_.settled_share * speed;
+  return std::min(settled, std::max(tuning.still_m_per_s, tuning.creep * motion_.fastest()));
 }
 
 // Chooses the contacts that are solved, and with them the range of nodes that is solved with contacts. @return nothing
 // when not all can be afforded and the substep is not the tick's first: it then waits for the next tick. So contacts
 // are left out only when the whole budget of a tick is too small for them.
 std::optional<Effort> Rod::choose_rows(double dt_s) noexcept {
-  const long passes = solves_directly() ? 1 : kLeastPasses;
+  const long passes = solves_directly() ? 1 : tuning.least_passes;
   const auto span = contacts_.span();
   const Allowance allowed = work_allowed(dt_s != metric_dt_ || !metric_.covers(span.first, span.last));
   const long most = std::min<long>(price::affordable_rows(allowed.rows, allowed.window, passes), kMaxContacts);
@@ -141,26 +139,25 @@ std::optional<Effort> Rod::choose_rows(double dt_s) noexcept {
   const long least = passes * price::pass(rows, rows, nodes);
   rows_cost_ = rows > 0 ? price::rows(rows, nodes) + least : 0;
   return Effort{work_.time(), numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)),
-                settled(), kEnough * numerics_.settled_m_per_s};
+                settled(), tuning.enough * numerics_.settled_m_per_s};
 }
 
 // Newton's method with all the work that is left, as long as the substep may wait; otherwise with a share of it.
 // @return kLater when the substep is to be continued in the next tick.
 template <bool Friction>
 Outcome Rod::settle_directly(const Effort& effort) noexcept {
-  if (!solves_directly() || sweeps_only_) return Outcome::kUnsolved;
+  if (!solves_directly() || patience_.sweeps_only()) return Outcome::kUnsolved;
   const long after = report_.substeps - substep_index_ - 1;
   Effort own = effort;
   own.settled_m_per_s = std::max(effort.settled_m_per_s, numerics_.newton_m_per_s);
   own.fair = (effort.work - after * (look_cost_ + rows_cost_)) / (after + 1);
   if (!can_wait()) own.work = std::min(effort.work, work_.unspent() / (after + 2));
   const Outcome outcome = contacts_.settle_directly<Friction>(solver_, own, state_.v.data(), seen_);
-  if (outcome == Outcome::kSettled) return patience_ = std::min(kPatience, patience_ + 1.0), outcome;
+  if (outcome == Outcome::kSettled) return patience_.newton_solved(), outcome;
   // Newton's method has left less than a quarter of the budget, too little for sweeps.
-  const bool worked = 4 * (effort.work - seen_.work) < work_.budget();
-  const bool wait = can_wait() && (outcome == Outcome::kLater || worked);
-  sweeps_only_ = outcome == Outcome::kUnsolved || waits_ + 2 > patience_;
-  return wait ? Outcome::kLater : Outcome::kUnsolved;
+  const auto rest = static_cast<double>(effort.work - seen_.work);
+  const bool worked = rest < tuning.unworked * static_cast<double>(work_.budget());
+  return patience_.newton_failed(outcome == Outcome::kUnsolved, worked) ? Outcome::kLater : Outcome::kUnsolved;
 }
 
 // Solves for the new velocities with contacts. @return false when the substep must wait for the next tick.
@@ -202,7 +199,7 @@ bool Rod::settle(double dt_s) noexcept {
 // Leaves the substep to the next tick with its full budget; Newton's method then continues. Always false.
 bool Rod::put_off() noexcept {
   state_.v = v_before_;
-  ++waits_;
+  patience_.put_off();
   ++report_.cut_short;
   return false;
 }
@@ -222,7 +219,7 @@ bool Rod::give_up() noexcept {
 // the admissible share of dt_s, or nothing when there is not enough work and the substep can wait.
 std::optional<double> Rod::guard_unseen(double dt_s) noexcept {
   const double diameter = 2.0 * material_.radius_m, unseen = 0.9 * (diameter * BroadPhase::kLeastReach + near_m_);
-  const double ahead_m = diameter * (kSkin + 0.9 * BroadPhase::kLeastReach);
+  const double ahead_m = diameter * (tuning.skin_d + 0.9 * BroadPhase::kLeastReach);
   double share = motion_.share_within(ahead_m, horizon_s_, dt_s);
   if (share == 1.0 && !motion_.outran(unseen, dt_s)) return 1.0;
   const long listed = price::kGuardListed * static_cast<long>(contacts_.pairs.size());
@@ -265,7 +262,8 @@ std::optional<double> Rod::guard(double dt_s) noexcept {
   }
   report_.guard_events += share < 1.0;
   // Sweeps that replace an unfinished Newton solve converge slowly: the true error is about 100 times the last change.
-  const bool wild = seen_.cut_short && (seen_.change_m_per_s > kWild_m_per_s || (alone_ && sweeps_only_));
+  const bool far_off = seen_.change_m_per_s > tuning.wild_m_per_s || (alone_ && patience_.sweeps_only());
+  const bool wild = seen_.cut_short && far_off;
   const double slow = wild ? brake(dt_s) : 1.0;  // braked velocities move less, so the guard shortens the step less
   report_.time_lost += (1.0 - std::min(share, slow)) / report_.substeps;
   return std::min(1.0, share / std::max(slow, 1e-9));
@@ -315,10 +313,7 @@ bool Rod::substep(double dt_s) noexcept {
     const auto safe = guard<kRest>(dt_s);
     if (!safe) return put_off();
     share = *safe;
-    if (sweeps_only_ && waits_ > 0) patience_ *= kLess;
-    if (patience_ < 1.0) patience_ += kMore;
-    waits_ = 0;
-    sweeps_only_ = false;
+    patience_.moved();
   }
   if constexpr ((Bits & kRoll) != 0) spin_.advance(material_, state_, forces_, dt_s);
   move<kRest>(dt_s, share);

@@ -6,6 +6,7 @@
 
 #include "firmware/physics/rod/closest.hpp"
 #include "firmware/physics/rod/state.hpp"
+#include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
 
@@ -37,9 +38,6 @@ struct SmoothOf {
 };
 
 struct SmoothSegment : SmoothOf<Vec, double> {
-  /// Largest distance, in diameters, by which the curve cuts a corner: chords then cannot cross while curves touch.
-  static constexpr double kMostCut = 0.35;
-
   SmoothSegment(const State& state, std::size_t j, double diameter_m) noexcept {
     x = state.x[j], e = state.x[j + 1] - state.x[j];
     h_before = 1.0 / state.cut_before[j], h_after = 1.0 / state.cut_after[j];
@@ -49,9 +47,9 @@ struct SmoothSegment : SmoothOf<Vec, double> {
   }
 
   /// Corner vector k_i of an inner node i, m, scaled by `share` <= 1 so that the curve cuts the corner by at most
-  /// kMostCut diameters.
+  /// Tuning::most_cut_d diameters.
   static void corner(const State& state, std::size_t i, double diameter_m, Vec& k_i, double& share) noexcept {
-    const double most_m = 8.0 * kMostCut * diameter_m;
+    const double most_m = 8.0 * tuning.most_cut_d * diameter_m;
     const Vec k = 2.0 * state.cut_before[i] * (state.x[i + 1] - state.x[i]) -
                   2.0 * state.cut_after[i - 1] * (state.x[i] - state.x[i - 1]);
     const double size2 = dot(k, k);

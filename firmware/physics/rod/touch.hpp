@@ -2,6 +2,7 @@
 // The points along the thread at which a contact's impulse acts.
 
 #include <algorithm>
+#include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
 
@@ -11,8 +12,6 @@ namespace ligature::physics::rod {
 /// loose neighbour at 25 mm/s). So the points move only by `share` of the way to the closest points. The share is
 /// adapted by Aitken relaxation [Irons & Tuck 1969]; it is 1 where there is no such feedback, as when strands slide.
 struct Touch {
-  static constexpr double kLeastShare = 0.02, kMore = 1.2;
-
   double a = 0.0, b = 0.0;          ///< material coordinates, m
   double way_a = 0.0, way_b = 0.0;  ///< way to the closest points in the last substep, m
   double share = 1.0;               ///< share of that way by which the points moved
@@ -26,7 +25,7 @@ struct Touch {
     if (last2 > 0.0) {
       const double rest = (now_a * way_a + now_b * way_b) / last2;  // remaining share of the last way; < 0: overshoot
       const double best = rest < 1.0 ? share / (1.0 - rest) : 1.0;
-      share = std::clamp(best, kLeastShare, std::min(1.0, kMore * share));
+      share = std::clamp(best, tuning.least_share, std::min(1.0, tuning.more_share * share));
     }
     way_a = now_a, way_b = now_b;
     a += share * now_a, b += share * now_b;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <numbers>
 
 #include "tests/bench/rod/chatter.hpp"
 
@@ -18,6 +19,7 @@ Puller::Puller(const scene::Scene& scene, physics::rod::RodSimulation sim, const
 
 PullResult Puller::run(const Pull& pull) {
   PullResult r;
+  tremble_m_ = pull.tremble_m;
   save("start");
   r.begun = knot::recognise(points(), false);
   phase(0.1, 0.0, pull.hands, 0.0);
@@ -30,7 +32,9 @@ PullResult Puller::run(const Pull& pull) {
   phase(0.3, 0.0, pull.hands, 0.0);
   penetration_ = 0.0;
   forces_.clear();
+  rise_J_ = 0.0;
   phase(options_.hold_s, 0.0, pull.hands, 0.0);
+  r.held_J = rise_J_;
   save("held");
   r.hold_d = std::exchange(penetration_, 0.0);
   r.hold_lost = lost();
@@ -40,7 +44,11 @@ PullResult Puller::run(const Pull& pull) {
   r.chatter = chatter(forces_, 0.0).share();
   if (!pull.sudden) phase(10.0, -0.02, 2, -0.02 * pull.force_N);
   tools_[1].grip = false;
-  phase(options_.wait_s, 0.0, pull.hands, 0.0);
+  constexpr double kOpens_s = 0.002;  // a hold that ends takes its spring's energy along
+  phase(kOpens_s, 0.0, pull.hands, 0.0);
+  rise_J_ = 0.0;
+  phase(options_.wait_s - kOpens_s, 0.0, pull.hands, 0.0);
+  r.after_J = rise_J_;
   save("end");
   r.after_d = penetration_;
   r.after_lost = lost();
@@ -73,15 +81,22 @@ void Puller::save(const std::string& name) const {
 }
 
 void Puller::phase(double seconds, double speed, int hands, double until_N) {
-  for (int k = 0; k < static_cast<int>(1000.0 * seconds); ++k) {
+  for (int k = 0; k < static_cast<int>(std::lround(1000.0 * seconds)); ++k) {
     if (until_N > 0.0 && force() >= until_N) return;
     if (until_N < 0.0 && force() <= -until_N) return;
     for (std::size_t h = 0; h < 2; ++h) {
       const double v = h == 1 ? speed : hands == 2 ? -speed : 0.0;
       tools_[h].v_WT.x() = v;
       tools_[h].p_WT.x() += 1e-3 * v;
+      constexpr double kPerTick = 2.0 * std::numbers::pi * 9e-3;
+      const auto at = static_cast<double>(ticks_.size()) + 40.0 * static_cast<double>(h);
+      const double y = tremble_m_ * std::sin(kPerTick * at), before = tremble_m_ * std::sin(kPerTick * (at - 1.0));
+      tools_[h].p_WT.y() += y - before;
+      tools_[h].v_WT.y() = 1e3 * (y - before);
     }
+    const double before_J = energy_J();
     tick();
+    rise_J_ = std::max(rise_J_, energy_J() - before_J);
     guard_ += sim_.rod().report().guard_events;
     penetration_ = std::max(penetration_, -sim_.diagnostics().min_gap_m / (2.0 * scene_.suture.radius_m));
     forces_.push_back(force());

@@ -17,6 +17,7 @@ struct Pull {
   double speed_m_per_s = 0.2, force_N = 5.0;
   bool sudden = false;  ///< the hands let go under full force; else they move back first
   int hands = 2;        ///< number of hands that pull
+  double tremble_m = 0.0;  ///< amplitude of a tremble of both hands at 9 Hz, across the pull
 };
 
 /// Settings shared by all pulls of a study.
@@ -37,6 +38,7 @@ struct PullResult {
   double strain = 0.0, tension_N = 0.0;    ///< measured in the hold
   double turn_rad = 0.0, segment_d = 0.0;  ///< sharpest turn and longest segment in contact, measured in the hold
   double chatter = 0.0, sliding = 0.0;     ///< chatter of the force (chatter.hpp) in the hold, during the pull
+  double held_J = 0.0, after_J = 0.0;      ///< largest rise of the energy in a tick: in the hold, after the release
   std::vector<Tick> ticks;
 
   [[nodiscard]] bool kept() const { return left.type == begun.type && left.handedness == begun.handedness; }
@@ -57,6 +59,7 @@ class Puller {
   void tick();
   /// Share of the ticks' time in which the thread was not moved, since the previous call.
   [[nodiscard]] double lost();
+  [[nodiscard]] double energy_J() const { return sim_.rod().all_J(sim_.rod().energy()); }
   /// Largest turn at a node in contact, rad, and longest segment in contact, in diameters.
   [[nodiscard]] std::pair<double, double> sharpness() const;
 
@@ -66,7 +69,7 @@ class Puller {
   std::array<physics::ToolInput, 2> tools_{};
   std::vector<Tick> ticks_;
   std::vector<double> forces_;
-  double penetration_ = 0.0, lost_ = 0.0;
+  double penetration_ = 0.0, lost_ = 0.0, rise_J_ = 0.0, tremble_m_ = 0.0;
   std::size_t lost_from_ = 0;  // first tick that the next call of lost() evaluates
   int guard_ = 0;
 };

@@ -134,7 +134,7 @@ TEST(Smooth, ClosestPointsOfBentStrands) {
 TEST(Smooth, CutsNoMoreThanStrandsCanSpare) {
   const State state = nodes_on_a_circle(8, 12e-3, 0.5);
   const SmoothSegment segment(state, 3, kDiameter_m);
-  EXPECT_NEAR(norm(segment.at(0.0) - state.x[3]), SmoothSegment::kMostCut * kDiameter_m, 1e-9);
+  EXPECT_NEAR(norm(segment.at(0.0) - state.x[3]), physics::rod::tuning.most_cut_d * kDiameter_m, 1e-9);
 }
 
 // A straight strand slides along a bent one: the contact normal turns continuously. Between chords it would jump at
