@@ -21,6 +21,7 @@ std::vector<std::unique_ptr<ExportSink>> make_sinks(const ExportTargets& targets
   if (!forces.empty() || !shape.empty() || !ticks.empty()) sinks.push_back(make_csv_sink(targets.csv, facts, source));
   if (!targets.hdf5.empty()) sinks.push_back(make_hdf5_sink(targets.hdf5, facts, source));
   if (!targets.mcap.empty()) sinks.push_back(make_mcap_sink(targets.mcap, facts, source));
+  if (!targets.trace.path.empty()) sinks.push_back(make_trace_sink(targets.trace, facts, source));
   return sinks;
 }
 
@@ -29,14 +30,14 @@ std::vector<std::unique_ptr<ExportSink>> make_sinks(const ExportTargets& targets
 ExportResult export_recording(const std::string& log_path, const ExportTargets& targets) {
   const bool is_flight = is_flight_file(log_path);
   if (is_flight && !targets.csv.shape.empty())
-    throw BadInput(log_path + ": a flight recorder file holds no shapes; allowed --forces, --ticks, --hdf5, --mcap");
+    throw BadInput(log_path +
+                   ": a flight recorder file holds no shapes; allowed --forces, --ticks, --hdf5, --mcap, --trace");
   const RigFacts facts = read_rig_facts(log_path);
   const auto sinks = make_sinks(targets, facts, log_path);
   std::vector<ExportSink*> each;
   for (const auto& sink : sinks) each.push_back(sink.get());
   console::Progress progress("export");
   ExportResult result = read_recording(log_path, facts, each, &progress);
-  if (!is_flight && !targets.mcap.empty()) progress.say("making the MCAP file");
   for (auto* sink : each) sink->commit();
   return result;
 }

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "host/export_csv.hpp"
+#include "host/export_trace.hpp"
 
 namespace ligature::host {
 
@@ -10,6 +11,7 @@ namespace ligature::host {
 struct ExportTargets {
   CsvTargets csv{};
   std::string hdf5{}, mcap{};
+  TraceTarget trace{};
 };
 
 struct ExportResult {

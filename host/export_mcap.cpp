@@ -1,36 +1,68 @@
 #include "host/export_mcap.hpp"
 
-#include "host/atomic_file.hpp"
-#include "host/console/python_tool.hpp"
-#include "host/export_hdf5.hpp"
+#include <array>
+#include <charconv>
+
+#include "host/mcap/writer.hpp"
+#include "host/viewer_topics.hpp"
 
 namespace ligature::host {
 namespace {
 
-/// Collects everything in a temporary HDF5 file, which the script to_mcap.py converts to MCAP at commit().
+std::string shortest(double value) {
+  std::array<char, 32> digits{};
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+
 class McapSink final : public ExportSink {
  public:
   McapSink(const std::string& path, const RigFacts& facts, const std::string& source)
-      : target_(AtomicFile(path).path()),  // creates and removes the file: tests early that it can be created
-        tool_("to_mcap.py", LIGATURE_PLOTS_DIR),
-        gathered_(make_hdf5_sink(scratch_.file("recording.h5"), facts, source)) {}
+      : file_(path, "ligature-host " LIGATURE_VERSION),
+        facts_{{"format", "ligature recording 1"},
+               {"source", source},
+               {"host_version", LIGATURE_VERSION},
+               {"firmware_version", facts.firmware_version},
+               {"scene_file", facts.scene_file},
+               {"scene_toml", facts.scene_toml},
+               {"period_s", shortest(facts.period_s)},
+               {"max_force_N", shortest(facts.max_force_N)},
+               {"units", "SI; the schema of a topic has the unit and the meaning of each field"}} {
+    for (std::size_t i = 0; i < channels_.size(); ++i) {
+      const auto& [name, schema_name, schema] = viewer_topics()[i];
+      channels_[i] = file_.add_channel(name, schema_name, schema);
+    }
+  }
 
-  void add(const ligature_msg::tick_t& tick, double t_s, int session) override { gathered_->add(tick, t_s, session); }
-  void add(const ligature_msg::thread_t& thread, double t_s) override { gathered_->add(thread, t_s); }
-  void add(const ligature_msg::event_t& event, double t_s) override { gathered_->add(event, t_s); }
-  void add(const ligature_msg::status_t& status, double t_s) override { gathered_->add(status, t_s); }
-  void note(const std::string& text) override { gathered_->note(text); }
+  void add(const ligature_msg::tick_t& tick, double t_s, int session) override {
+    const auto& messages = tick_json_.write(tick, session);
+    for (std::size_t topic = 0; topic < messages.size(); ++topic) say(topic, t_s, messages[topic]);
+  }
+  void add(const ligature_msg::thread_t& thread, double t_s) override {
+    say(kThreadTopic, t_s, shape_json(thread, viewer_time_ns(t_s)));
+  }
+  void add(const ligature_msg::event_t& event, double t_s) override { say(kEventsTopic, t_s, event_json(event)); }
+  void add(const ligature_msg::status_t& status, double t_s) override {
+    file_.add_attachment("scene-" + std::to_string(++scenes_) + ".toml", "application/toml", viewer_time_ns(t_s),
+                         status.scene_toml);
+  }
+  void note(const std::string& text) override { notes_ += (notes_.empty() ? "" : "\n") + text; }
   void commit() override {
-    gathered_->commit();
-    gathered_.reset();
-    tool_.run({scratch_.file("recording.h5"), "--out", target_}, scratch_.file("complaints"));
+    facts_.emplace_back("notes", notes_);
+    file_.add_metadata("ligature", facts_);
+    file_.commit();
   }
 
  private:
-  std::string target_;
-  console::PythonTool tool_;
-  console::ScratchFolder scratch_;
-  std::unique_ptr<ExportSink> gathered_;
+  void say(std::size_t topic, double t_s, std::string_view message) {
+    file_.add_message(channels_[topic], viewer_time_ns(t_s), message);
+  }
+
+  mcap::Writer file_;
+  mcap::Pairs facts_;
+  TickJson tick_json_;
+  std::array<std::uint16_t, kViewerTopics> channels_{};
+  std::string notes_;
+  int scenes_ = 0;
 };
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 namespace ligature::host {
 
-/// Writes one MCAP file, for Foxglove, PlotJuggler and others; its topics are in docs/analysis.md. The `mcap` package
-/// of the Python environment from scripts/setup writes it. @throws BadInput without that environment.
+/// Writes one MCAP file, for Foxglove, PlotJuggler and others; its topics are in docs/analysis.md. Messages are in the
+/// order of the recording. @throws BadInput when the file cannot be created.
 [[nodiscard]] std::unique_ptr<ExportSink> make_mcap_sink(const std::string& path, const RigFacts& facts,
                                                          const std::string& source);
 

@@ -10,6 +10,7 @@
 #include "host/console/stop_signal.hpp"
 #include "host/console/unknown_command.hpp"
 #include "host/errors.hpp"
+#include "host/stream/command.hpp"
 #include "host/view/commands.hpp"
 
 namespace {
@@ -43,6 +44,7 @@ int main(int argc, char** argv) {
   add_send(app);
   view::add_view(app);
   view::add_replay(app);
+  stream::add_stream(app);
   app.footer(
       "Example: record a run, look at it, name the knot\n"
       "  ligature-host record --out knot.lcmlog\n"

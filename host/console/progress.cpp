@@ -39,11 +39,4 @@ void Progress::show(double share, const std::string& step, Clock::time_point now
   std::fflush(out_);
 }
 
-void Progress::say(const char* step) {
-  if (!is_on_) return;
-  has_line_ = true;
-  std::fprintf(out_, "\r%s: %s\033[K", what_, step);
-  std::fflush(out_);
-}
-
 }  // namespace ligature::console

@@ -32,8 +32,6 @@ class Progress {
   /// phrase.
   void show(double share, const std::string& step) { show(share, step, Clock::now()); }
   void show(double share, const std::string& step, Clock::time_point now);
-  /// Prints a step whose progress cannot be measured, such as "making the MCAP file".
-  void say(const char* step);
 
  private:
   const char* what_;

@@ -7,7 +7,7 @@ import pathlib
 import re
 import sys
 
-OURS = ("protocol/", "firmware/", "sim_device/", "host/", "python/")
+OURS = ("protocol/", "firmware/", "sim_device/", "bridge/", "host/", "python/")
 SCENE_STRUCT = "protocol/scene/scene.hpp"
 DEVICE_STRUCT = "protocol/device/device.hpp"
 
@@ -29,11 +29,15 @@ RULES = {
     "firmware/cycle.hpp": (["firmware/rt", "firmware/control", "firmware/physics", "firmware/clock.hpp"], []),
     "firmware/thread_context.hpp": (["firmware/rt", "firmware/control", "firmware/physics", "firmware/clock.hpp"], []),
     "firmware/app": (["firmware", "protocol", "ligature_msg"], ["CLI/", "spdlog/", "OS"]),
+    # Reports about the machine, read and written by `doctor` alone: never while the rig runs.
+    "firmware/app/doctor": (["firmware/app", "firmware/platform"], ["nlohmann/", "OS"]),
     # Lets a web page steer a simulated hand; in a folder of its own, because the firmware must not include it.
     "sim_device/page": (["sim_device", "protocol/lcm", "ligature_msg"], ["ruckig/", "Eigen/", "lcm/", "OS"]),
     # A simulated operator that sees the thread by LCM messages, which anybody may have sent.
     "sim_device/tying": (["sim_device", "protocol/lcm", "protocol/scene", "ligature_msg"], ["lcm/", "OS"]),
     "sim_device": (["protocol/can", "protocol/scene", "protocol/device", "protocol/lcm/default_url.hpp", "sim_device/page", "sim_device/tying"], ["ruckig/", "Eigen/", "CLI/", "spdlog/", "nlohmann/", "OS"]),
+    # A real device behind the drives of the simulated one; never the simulated mechanics.
+    "bridge": (["sim_device/drive_node.hpp", "sim_device/event_loop.hpp", "sim_device/hand_device.hpp", "sim_device/kinematics.hpp", "sim_device/port.hpp", "sim_device/scheduling.hpp", "sim_device/wire.hpp", "protocol/can", "protocol/device"], ["boost/", "CLI/", "nlohmann/", "OS"]),
     "host/knot": ([], ["Eigen/"]),
     "host/console": (["host/errors.hpp"], ["OS"]),
     "host/lab/tie": (["firmware/physics", "sim_device", "protocol/scene", "host"], ["CLI/", "Eigen/", "OS"]),
@@ -44,7 +48,8 @@ RULES = {
     "host/lab/rerun": (["firmware", "protocol/scene", "host", "ligature_msg"], ["CLI/", "nlohmann/", "Eigen/", "OS"]),
     # The whole rig in one process and in virtual time; only this folder may include all parts.
     "host/lab/rig": (["firmware", "sim_device", "protocol/can", "protocol/scene", "protocol/device", "host", "ligature_msg"], ["Eigen/", "OS"]),
-    "host": (["protocol/scene", "protocol/recorder", "protocol/lcm", "host/console", "host/knot", "host/view", "ligature_msg"], ["lcm/", "CLI/", "nlohmann/", "spdlog/", "OS"]),
+    "host": (["protocol/scene", "protocol/recorder", "protocol/lcm", "host/console", "host/knot", "host/stream", "host/view", "ligature_msg"], ["lcm/", "CLI/", "nlohmann/", "spdlog/", "OS"]),
+    "host/stream": (["host", "protocol/lcm", "ligature_msg"], ["boost/", "CLI/", "nlohmann/", "OS"]),
     # Shows a recording; must not be able to send messages.
     "host/view/replay.cpp": (["host/console", "host/view"], ["OS"]),
     "host/view": (["host", "protocol/scene", "protocol/lcm", "ligature_msg"], ["boost/", "CLI/", "nlohmann/", "OS"]),

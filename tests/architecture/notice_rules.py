@@ -29,7 +29,7 @@ def apt_libraries(root):
 
 
 def faults(wanted, notice):
-    named = set(re.findall(r"`([\w.-]+)`", notice))
+    named = set(re.findall(r"`((?:@[\w-]+/)?[\w.-]+)`", notice))
     missing = [f"NOTICE.md: does not name {name}, which the project installs" for name in sorted(wanted - named)]
     return missing + [f"NOTICE.md: names {name}, which nothing installs" for name in sorted(named - wanted - NAMED_TOO)]
 

@@ -18,7 +18,7 @@ import h5py  # noqa: E402
 import lcm  # noqa: E402
 import numpy as np  # noqa: E402
 from ligature_msg import event_t, status_t, thread_t, tick_batch_t, tick_t  # noqa: E402
-from mcap.reader import make_reader  # noqa: E402
+from mcap.reader import NonSeekingReader, SeekingReader, make_reader  # noqa: E402
 from seeds import shifted  # noqa: E402
 
 TICKS, SCENE, OTHER = 4321, "[suture]\nnodes = 4\n", "[suture]\nnodes = 6\n"
@@ -166,6 +166,24 @@ class Analysis(unittest.TestCase):
             self.assertEqual([m["potential_J"] for m in rig], [t.potential_J for t in self.ticks])
             attached = {a.name: a.data.decode() for a in reader.iter_attachments()}
             self.assertEqual(attached, {"scene-1.toml": SCENE, "scene-2.toml": OTHER})
+
+    def test_mcap_is_the_same_by_its_index_and_from_front_to_back(self):
+        path = self.folder / "knot.mcap"
+        with open(path, "rb") as file, open(path, "rb") as stream:
+            reader = SeekingReader(file, validate_crcs=True)
+            summary = reader.get_summary()
+            by_index = [(c.topic, m.log_time, m.sequence, m.data) for _, c, m in reader.iter_messages()]
+            in_order = [(c.topic, m.log_time, m.sequence, m.data) for _, c, m in NonSeekingReader(stream, validate_crcs=True).iter_messages(log_time_order=False)]
+        self.assertEqual(sorted(by_index), sorted(in_order))
+        counts = {summary.channels[channel].topic: count for channel, count in summary.statistics.channel_message_counts.items()}
+        self.assertEqual(counts, {"/rig": TICKS, "/left": TICKS, "/right": TICKS, "/thread": -(-TICKS // 20), "/events": 1})
+        self.assertEqual(summary.statistics.message_count, len(in_order))
+        self.assertEqual(summary.statistics.chunk_count, len(summary.chunk_indexes))
+        self.assertGreater(len(summary.chunk_indexes), 1)
+        self.assertEqual((summary.statistics.message_start_time, summary.statistics.message_end_time), (0, (TICKS - 1) * 1_000_000))
+        with open(path, "rb") as file:  # a span of time, found by the index
+            some = [m.log_time for _, _, m in SeekingReader(file).iter_messages(topics=["/rig"], starting_at=1_000_000_000, ending_before=1_100_000_000)]
+        self.assertEqual(some, [i * 1_000_000 for i in range(1000, 1100)])
 
     def test_every_csv_explains_every_column(self):
         for name in ("forces", "ticks", "shape"):

@@ -79,7 +79,7 @@ class Readers(unittest.TestCase):
         slow, started = self.path / "python", self.path / "started"
         slow.write_text(f"#!/bin/sh\ntouch {started}\nexec sleep 3600\n")
         slow.chmod(0o755)
-        for words in (("export", self.log, "--mcap", "a.mcap"), ("plot", self.log, "--out", "a.png"), ("compare", self.log, self.log, "--out", "a.png")):
+        for words in (("plot", self.log, "--out", "a.png"), ("compare", self.log, self.log, "--out", "a.png")):
             process = self.start(*words, env={**os.environ, "LIGATURE_PYTHON": str(slow)})
             for _ in range(BOUND_S * 20):
                 if started.exists():

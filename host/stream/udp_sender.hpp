@@ -1,0 +1,31 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/stream/foxglove_server.hpp"
+
+namespace ligature::host::stream {
+
+/// One JSON object of a whole tick: {"timestamp": seconds, "rig": {..}, "left": {..}, "right": {..}}.
+[[nodiscard]] std::string tick_datagram(const TopicMessage& rig, const TopicMessage& left, const TopicMessage& right);
+
+/// Sends each tick as one UDP datagram, for PlotJuggler's "UDP Server". Nobody needs to listen.
+class UdpSender {
+ public:
+  /// @param target ADDRESS:PORT. @throws BadInput for another form, RunFailed when no socket can be made.
+  explicit UdpSender(const std::string& target);
+  ~UdpSender();
+  UdpSender(const UdpSender&) = delete;
+  UdpSender& operator=(const UdpSender&) = delete;
+
+  /// @param messages of LiveTopics: the three messages of a tick follow each other; others are ignored.
+  void send(const std::vector<TopicMessage>& messages);
+
+ private:
+  struct Socket;
+  std::unique_ptr<Socket> socket_;
+};
+
+}  // namespace ligature::host::stream
