@@ -15,6 +15,7 @@ void PlayedHand::look(double t_s, Time started_at, std::span<const WishedTick> f
   if (!std::isfinite(t_s)) return;  // not started: the drives have never been enabled
   cursor_s_ = std::max(played_s(t_s), keys_.empty() ? t_s - kDelay_s : kLongAgo_s);
   look_s_ = t_s;
+  const bool begins = keys_.empty();
   for (const WishedTick& wish : fresh) {
     const double due_s = 1e-9 * (static_cast<double>(wish.due_ns) - static_cast<double>(started_at.count()));
     if (!(due_s > newest_s()) || due_s > t_s + kLongestSilence_s) continue;  // a repeated tick, or one of another clock
@@ -22,6 +23,7 @@ void PlayedHand::look(double t_s, Time started_at, std::span<const WishedTick> f
     keys_.push_back({due_s, map_.to_device(hand.p_W), hand.v_W / map_.scale, hand.grip});
     if (wish.is_done) end_s_ = std::min(end_s_, due_s + kDelay_s);
   }
+  if (begins && !keys_.empty()) cursor_s_ = std::min(cursor_s_, keys_.front().t_s);  // the first batch may be late, too
   const auto next = std::ranges::upper_bound(keys_, cursor_s_, {}, &Key::t_s);
   if (next - keys_.begin() > 1) keys_.erase(keys_.begin(), next - 1);
   pace_ = std::clamp(1.0 + (t_s - kDelay_s - cursor_s_) / kCatchUp_s, 0.0, kFastest);
