@@ -64,6 +64,15 @@ void plot_thread(const std::string& log_path, const std::string& out_path) {
            scratch.file("complaints"));
 }
 
+void plot_latency(const std::vector<std::string>& reports, const std::string& out_path) {
+  const std::string target = checked_target(out_path);
+  const console::PythonTool tool("plot_latency.py", LIGATURE_PLOTS_DIR);
+  const console::ScratchFolder scratch;
+  auto words = reports;
+  words.insert(words.end(), {"--out", target});
+  tool.run(words, scratch.file("complaints"));
+}
+
 void plot_comparison(const std::string& log_a, const std::string& log_b, const std::string& out_path,
                      const std::string& align, double shift_s) {
   const std::string target = checked_target(out_path);

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <vector>
 
 namespace ligature::host {
 
@@ -16,5 +17,8 @@ void plot_thread(const std::string& log_path, const std::string& out_path);
 /// first tick of each log; "grasp", its first grasp. @param shift_s delays the second log by this time.
 void plot_comparison(const std::string& log_a, const std::string& log_b, const std::string& out_path,
                      const std::string& align, double shift_s);
+
+/// Draws the wake-up latencies of reports of `ligature-firmware doctor --report` with plots/plot_latency.py.
+void plot_latency(const std::vector<std::string>& reports, const std::string& out_path);
 
 }  // namespace ligature::host

@@ -7,10 +7,22 @@
 #include <atomic>
 #include <bit>
 #include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <optional>
+#include <sstream>
 #include <thread>
 
+#include "firmware/app/admission.hpp"
+#include "firmware/app/doctor/can_echo.hpp"
+#include "firmware/app/doctor/hwlat.hpp"
+#include "firmware/app/doctor/load.hpp"
+#include "firmware/app/doctor/report.hpp"
 #include "firmware/app/drive_checks.hpp"
+#include "firmware/app/rig_setup.hpp"
+#include "firmware/platform/core_checks.hpp"
 #include "firmware/platform/monotonic_clock.hpp"
 #include "firmware/platform/realtime.hpp"
 
@@ -36,14 +48,22 @@ std::string ip_details(const std::string& interface) {
 
 struct Latency {
   rt::DurationStatistics wakeup;
+  LatencyHistogram fine;
   std::vector<std::uint64_t> bins = std::vector<std::uint64_t>(kBins);
+  std::array<LateWakeUp, 10> worst{};  // latest first
+  double seconds = 0.0;
   platform::Refusals refusals;
-};
 
-std::size_t bin_of(std::int64_t latency_ns) {
-  const auto us = static_cast<std::uint64_t>(std::max<std::int64_t>(latency_ns, 0)) / 1000;
-  return std::min<std::size_t>(static_cast<std::size_t>(std::bit_width(us)), kBins - 1);
-}
+  void add(std::int64_t late_ns, double at_s) noexcept {
+    wakeup.add(late_ns);
+    fine.add(late_ns);
+    const auto us = static_cast<std::uint64_t>(std::max<std::int64_t>(late_ns, 0)) / 1000;
+    ++bins[std::min<std::size_t>(static_cast<std::size_t>(std::bit_width(us)), kBins - 1)];
+    LateWakeUp one{at_s, 1e-3 * static_cast<double>(late_ns)};
+    for (auto& place : worst)
+      if (one.late_us > place.late_us) std::swap(one, place);
+  }
+};
 
 std::atomic<bool> g_stop{false};
 
@@ -54,17 +74,79 @@ Latency measure_wakeups(double seconds, int core) {
   std::thread([&] {
     for (const auto& r : platform::make_realtime(core)) result.refusals.push_back(r);
     platform::MonotonicClock clock;
-    auto due = clock.now() + kPeriod;
+    const auto begin = clock.now();
+    auto due = begin + kPeriod;
     const auto end = due + std::chrono::nanoseconds(static_cast<std::int64_t>(seconds * 1e9));
     for (; due < end && !g_stop; due += kPeriod) {
       clock.sleep_until(due);
       const auto late = clock.now() - due;
-      result.wakeup.add(late.count());
-      ++result.bins[bin_of(late.count())];
+      result.add(late.count(), std::chrono::duration<double>(due - begin).count());
       due += late / kPeriod * kPeriod;  // lost periods are skipped, as in the loop
     }
+    result.seconds = std::chrono::duration<double>(due - begin).count();
   }).join();
   return result;
+}
+
+std::string text_of(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+std::string cpu_name() {
+  const std::string text = text_of("/proc/cpuinfo");
+  const auto at = text.find("model name");
+  if (at == std::string::npos) return "not known";
+  const auto from = text.find(':', at) + 2;
+  return text.substr(from, text.find('\n', from) - from);
+}
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+/// How late the loop may wake up with a scene, so that its torques still reach the drives before the next SYNC.
+std::variant<double, Refusal> slack_of(const DoctorOptions& options, int core) {
+  RunOptions like_run;
+  like_run.scene = options.scene;
+  like_run.device = options.device;
+  const auto planned = make_plan(like_run);
+  if (const auto* refusal = std::get_if<Refusal>(&planned)) return *refusal;
+  const auto& plan = std::get<Plan>(planned);
+  AdmissionSettings settings;
+  settings.core = core;
+  settings.device = plan.device;
+  const auto found = admit(plan.scene, settings);
+  return std::chrono::duration<double, std::micro>(found.bus.most_work()).count() - found.computing_us();
+}
+
+Check gaps_row(const std::string& found) {
+  constexpr const char* kWhat = "hardware gaps";
+  if (found.starts_with("none")) return {Grade::kOk, kWhat, found, {}};
+  if (found.starts_with("gaps"))
+    return {Grade::kWarn, kWhat, found,
+            "BIOS: power management and SMI sources off; or a board made for real-time use"};
+  return {Grade::kWarn, kWhat, found, "run this as root on a kernel with CONFIG_HWLAT_TRACER"};
+}
+
+Check echo_row(const CanEcho& echo) {
+  if (!echo.problem.empty())
+    return {Grade::kFail, "CAN round trip", echo.interface + ": " + echo.problem,
+            "see the rows of this interface above"};
+  char found[160];
+  std::snprintf(found, sizeof found, "%s: p50 %.0f, p99.9 %.0f, worst %.0f us; %llu of %llu lost",
+                echo.interface.c_str(), echo.round_trips.quantile_us(0.5), echo.round_trips.quantile_us(0.999),
+                echo.round_trips.max_us(), static_cast<unsigned long long>(echo.lost),
+                static_cast<unsigned long long>(echo.lost + echo.round_trips.count()));
+  if (echo.lost > 0)
+    return {Grade::kFail, "CAN round trip", found, "cable, termination, and another node that is switched on"};
+  return {Grade::kOk, "CAN round trip", found, {}};
 }
 
 const char* word(Grade g) { return g == Grade::kOk ? "OK  " : g == Grade::kWarn ? "WARN" : "FAIL"; }
@@ -78,6 +160,18 @@ Check judge(const rt::DurationStatistics& wakeup) {
                 us(wakeup.quantile_ns(0.999)), us(wakeup.max_ns()));
   if (wakeup.max_ns() < kGood_ns) return {Grade::kOk, "wake-up latency", found, {}};
   return {wakeup.max_ns() < kUsable_ns ? Grade::kWarn : Grade::kFail, "wake-up latency", found,
+          "mend the rows above, take other work off this machine; 'rtla timerlat hist' finds the culprit"};
+}
+
+Check judge(const LatencyHistogram& wakeup, double slack_us) {
+  const auto late = wakeup.from(slack_us);
+  char found[160];
+  std::snprintf(found, sizeof found, "worst %.0f us, p99.99 %.0f; %llu of %llu later than the scene's %.0f us",
+                wakeup.max_us(), wakeup.quantile_us(0.9999), static_cast<unsigned long long>(late),
+                static_cast<unsigned long long>(wakeup.count()), slack_us);
+  constexpr const char* kWhat = "wake-up, this scene";
+  if (wakeup.max_us() < slack_us / 2) return {Grade::kOk, kWhat, found, {}};
+  return {wakeup.max_us() < slack_us ? Grade::kWarn : Grade::kFail, kWhat, found,
           "mend the rows above, take other work off this machine; 'rtla timerlat hist' finds the culprit"};
 }
 
@@ -105,7 +199,66 @@ std::string histogram(const rt::DurationStatistics& wakeup, const std::vector<st
   return text + "  " + std::to_string(wakeup.count()) + " in all\n";
 }
 
+namespace {
+
+/// Writes the report beside its name first, so that a report is there complete or not at all.
+bool write_report(const std::string& path, const DoctorReport& report) {
+  const std::string part = path + ".part";
+  std::ofstream file(part);
+  file << to_json(report) << std::flush;
+  std::error_code problem;
+  if (file.good()) std::filesystem::rename(part, path, problem);
+  return file.good() && !problem;
+}
+
+/// What can be measured only with time: hardware, CAN, wake-ups. Adds their rows to the report and prints them.
+void measure(const DoctorOptions& options, DoctorReport& report) {
+  std::vector<Check> rows;
+  std::optional<Load> load;
+  if (options.is_acceptance()) {
+    report.hardware = look_for_gaps("/sys/kernel/tracing", std::min(10.0, options.duration_s()));
+    rows.push_back(gaps_row(report.hardware));
+  }
+  if (options.load) {
+    load.emplace(options.duration_s() + 10.0 * static_cast<double>(options.can.size()) + 1.0);
+    report.load = load->kinds();
+  }
+  if (options.is_acceptance())
+    for (const auto& interface : options.can) {
+      report.can.push_back(measure_echo(interface, std::min(10.0, options.duration_s())));
+      rows.push_back(echo_row(report.can.back()));
+    }
+  std::fprintf(stderr, "measuring wake-ups for %.0f s%s ..\n", options.duration_s(), load ? " under load" : "");
+  const Latency latency = measure_wakeups(options.duration_s(), report.core);
+  report.wakeup = latency.fine;
+  report.seconds = latency.seconds;
+  for (const auto& late : latency.worst)
+    if (late.late_us > 0.0) report.worst.push_back(late);
+  for (const auto& r : latency.refusals) rows.push_back({Grade::kFail, "rights", r, {}});
+  rows.push_back(report.slack_us ? judge(latency.fine, *report.slack_us) : judge(latency.wakeup));
+  std::fputs((histogram(latency.wakeup, latency.bins) + table(rows)).c_str(), stdout);
+  report.checks.insert(report.checks.end(), rows.begin(), rows.end());
+}
+
+int compare_files(const std::vector<std::string>& files) {
+  std::vector<DoctorReport> reports;
+  for (const auto& file : files) {
+    const std::string text = text_of(file);
+    auto read = report_of(text);
+    if (const auto* why = std::get_if<std::string>(&read)) {
+      std::fprintf(stderr, "ligature-firmware: %s: %s\n", file.c_str(), text.empty() ? "cannot be read" : why->c_str());
+      return 2;
+    }
+    reports.push_back(std::get<DoctorReport>(std::move(read)));
+  }
+  std::fputs(compare(reports[0], files[0], reports[1], files[1]).c_str(), stdout);
+  return 0;
+}
+
+}  // namespace
+
 int doctor(const DoctorOptions& options) {
+  if (!options.compare.empty()) return compare_files(options.compare);
   struct sigaction action {};
   action.sa_handler = [](int) { g_stop = true; };
   sigaction(SIGINT, &action, nullptr);
@@ -116,30 +269,47 @@ int doctor(const DoctorOptions& options) {
     std::fprintf(stderr, "ligature-firmware: %s\n", why->c_str());
     return 2;
   }
-  const int core = platform::realtime_core();
+  DoctorReport report;
+  report.core = platform::realtime_core();
+  report.cores = static_cast<int>(std::thread::hardware_concurrency());
+  report.started = utc_now();
+  report.kernel = text_of("/proc/sys/kernel/osrelease");
+  if (!report.kernel.empty()) report.kernel.pop_back();  // the line's end
+  report.cpu = cpu_name();
+  report.ligature = LIGATURE_VERSION;
+  report.scene = options.scene;
+  if (!options.scene.empty()) {
+    const auto slack = slack_of(options, report.core);
+    if (const auto* refusal = std::get_if<Refusal>(&slack)) {
+      std::fprintf(stderr, "ligature-firmware: %s\n", refusal->text.c_str());
+      return refusal->exit_code;
+    }
+    report.slack_us = std::get<double>(slack);
+  }
+  if (!options.report.empty() && !write_report(options.report, report)) {
+    std::fprintf(stderr, "ligature-firmware: --report %s: cannot be written\n", options.report.c_str());
+    return 2;
+  }
   const platform::Machine machine{"/", ip_details};
-  auto checks = platform::check_machine(machine, core);
-  for (const auto& interface : options.can) {
-    for (auto& c : platform::check_can(machine, interface, core)) checks.push_back(std::move(c));
-  }
-  for (auto& c : std::get<0>(drives)) checks.push_back(std::move(c));
-  std::printf("core of the loop: %d\n", core);
-  std::fputs(table(checks).c_str(), stdout);
+  report.checks = platform::check_machine(machine, report.core);
+  for (auto& c : platform::check_core(machine, report.core)) report.checks.push_back(std::move(c));
+  for (const auto& interface : options.can)
+    for (auto& c : platform::check_can(machine, interface, report.core)) report.checks.push_back(std::move(c));
+  for (auto& c : std::get<0>(drives)) report.checks.push_back(std::move(c));
+  std::printf("core of the loop: %d\n", report.core);
+  std::fputs(table(report.checks).c_str(), stdout);
   std::fflush(stdout);
-  std::vector<Check> measured;
-  if (options.seconds > 0.0) {
-    std::fprintf(stderr, "measuring wake-ups for %.0f s ..\n", options.seconds);
-    const Latency latency = measure_wakeups(options.seconds, core);
-    for (const auto& r : latency.refusals) measured.push_back({Grade::kFail, "rights", r, {}});
-    measured.push_back(judge(latency.wakeup));
-    std::fputs((histogram(latency.wakeup, latency.bins) + table(measured)).c_str(), stdout);
-  }
-  checks.insert(checks.end(), measured.begin(), measured.end());
-  const auto count = [&](Grade g) { return std::ranges::count(checks, g, &Check::grade); };
+  if (options.duration_s() > 0.0) measure(options, report);
+  const auto count = [&](Grade g) { return std::ranges::count(report.checks, g, &Check::grade); };
+  report.verdict = count(Grade::kFail) > 0   ? "the rate cannot be promised on this machine"
+                   : count(Grade::kWarn) > 0 ? "the rate will be held most of the time"
+                                             : "ready";
   std::printf("%td OK, %td WARN, %td FAIL: %s\n", count(Grade::kOk), count(Grade::kWarn), count(Grade::kFail),
-              count(Grade::kFail) > 0   ? "the rate cannot be promised on this machine"
-              : count(Grade::kWarn) > 0 ? "the rate will be held most of the time"
-                                        : "ready");
+              report.verdict.c_str());
+  if (!options.report.empty() && !write_report(options.report, report)) {
+    std::fprintf(stderr, "ligature-firmware: --report %s: cannot be written\n", options.report.c_str());
+    return 3;
+  }
   return count(Grade::kFail) > 0 ? 3 : 0;
 }
 

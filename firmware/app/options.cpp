@@ -145,8 +145,14 @@ constexpr const char* kDoctorHelp =
     R"(One row a check, with the command that mends what is wrong; then the loop's wake-ups without its work. Run it as
 the user that will run the rig, with the machine loaded as it will be.
 
-Example:
+With --hours, --load or --report it is an acceptance test: it also sends empty frames (identifier 0x7FF) on the CAN
+interfaces and times their echo, and looks for gaps that the machine's own firmware makes (tracer hwlat, as root). Do it
+while no rig runs.
+
+Examples:
   ligature-firmware doctor --can can0 --can can1 --seconds 10
+  ligature-firmware doctor --hours 8 --load --can can0 --scene scenes/suture-3-0.toml --report monday.json
+  ligature-firmware doctor --compare monday.json tuesday.json
 
 Exit: 0 no FAIL, 2 bad usage, 3 at least one FAIL.)";
 
@@ -177,9 +183,15 @@ void add_rehearse(CLI::App& rehearse, RehearseOptions& o) {
 
 void add_doctor(CLI::App& doctor, DoctorOptions& o) {
   doctor.footer(kDoctorHelp);
-  doctor.add_option("--seconds", o.seconds, "how long to measure wake-ups; 0 = only the table")
-      ->check(within(0.0, 86400.0))
-      ->capture_default_str();
+  auto* const seconds = doctor.add_option("--seconds", o.seconds, "how long to measure wake-ups; 0 = only the table")
+                            ->check(within(0.0, 86400.0))
+                            ->capture_default_str();
+  doctor.add_option("--hours", o.hours, "the same in hours")->check(within(1e-4, 1000.0))->excludes(seconds);
+  doctor.add_flag("--load", o.load,
+                  "keep memory, disk, CPU and network busy meanwhile: four processes that end by themselves");
+  doctor.add_option("--scene", o.scene, "judge wake-ups by what this scene leaves, not by 100 and 300 us");
+  doctor.add_option("--report", o.report, "JSON file for everything found, with wake-ups in bins of 1 us");
+  doctor.add_option("--compare", o.compare, "print two reports side by side, and do nothing else")->expected(2);
   doctor.add_option("--device", o.device, "device record (TOML): also says what its drives cannot promise");
   doctor.add_option("--can", o.can, "SocketCAN interface to look at, may be given again")
       ->allow_extra_args(false)

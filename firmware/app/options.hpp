@@ -59,7 +59,16 @@ struct AdmitOptions {
 struct DoctorOptions {
   std::string device;  ///< device record whose drives are judged; empty: none
   double seconds = 10.0;
-  std::vector<std::string> can;  ///< CAN interfaces to check
+  double hours = 0.0;                ///< instead of `seconds`, when above 0
+  std::vector<std::string> can;      ///< CAN interfaces to check
+  bool load = false;                 ///< keep the machine busy while measuring
+  std::string scene;                 ///< judge by what this scene leaves; empty: fixed bounds
+  std::string report;                ///< file for the report; empty: none
+  std::vector<std::string> compare;  ///< two reports to print side by side, and nothing else
+
+  [[nodiscard]] double duration_s() const { return hours > 0.0 ? 3600.0 * hours : seconds; }
+  /// A long look at the machine, which also sends frames on the CAN interfaces and looks for gaps of the hardware.
+  [[nodiscard]] bool is_acceptance() const { return hours > 0.0 || load || !report.empty(); }
 };
 
 using Command = std::variant<RunOptions, AdmitOptions, RehearseOptions, DoctorOptions>;

@@ -1,6 +1,8 @@
 // Machine checks of `ligature-firmware doctor`, on machines simulated by files of /proc and /sys.
 #include "firmware/platform/machine.hpp"
 
+#include "firmware/platform/core_checks.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -138,6 +140,37 @@ TEST(Machine, ReadsCoreListsAndRoutes) {
   EXPECT_EQ(route_of("head\n" + loop, 0xEFFF4C43), "");
   EXPECT_EQ(route_of("head\n" + any + many + loop, 0xEFFF4C43), "eth1");
   EXPECT_EQ(route_of("head\n" + loop + many + any, 0xEFFF4C43), "eth1");
+}
+
+TEST_F(MachineTest, ASecondHardwareThreadOfTheCoreIsFound) {
+  const std::string file = "sys/devices/system/cpu/cpu3/topology/thread_siblings_list";
+  EXPECT_EQ(grade(check_core(machine, 3), "sibling thread"), Grade::kOk);  // a kernel that does not tell
+  put(file, "3");
+  EXPECT_EQ(grade(check_core(machine, 3), "sibling thread"), Grade::kOk);
+  for (const char* shared : {"3,7", "2-3"}) {
+    put(file, shared);
+    EXPECT_EQ(grade(check_core(machine, 3), "sibling thread"), Grade::kWarn) << shared;
+  }
+}
+
+TEST_F(MachineTest, InterruptThreadsAboveTheLoopAreFound) {
+  const auto stat = [](const char* name, int priority) {  // proc(5): priority is field 40, policy field 41
+    std::string line = std::string("77 (") + name + ") S";
+    for (int field = 4; field < 40; ++field) line += " 0";
+    return line + " " + std::to_string(priority) + " 1 0";
+  };
+  put("proc/77/comm", "irq/19-can0");
+  put("proc/77/stat", stat("irq/19-can0", 50));
+  put("proc/78/comm", "other");
+  put("proc/78/stat", stat("other", 99));
+  EXPECT_EQ(grade(check_core(machine, 3), "interrupt threads"), Grade::kOk);
+  put("proc/77/comm", "irq/19 a) b");
+  put("proc/77/stat", stat("irq/19 a) b", 80));
+  const auto checks = check_core(machine, 3);
+  EXPECT_EQ(grade(checks, "interrupt threads"), Grade::kWarn);
+  EXPECT_NE(checks[1].remedy.find("77"), std::string::npos);
+  put("proc/77/stat", "77 (irq/19 a) b) S 1 2");  // cut off
+  EXPECT_EQ(grade(check_core(machine, 3), "interrupt threads"), Grade::kOk);
 }
 
 }  // namespace

@@ -1,0 +1,61 @@
+#include "firmware/app/doctor/hwlat.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+namespace ligature::app {
+namespace {
+
+std::string content(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+bool put(const std::string& path, const char* word) {
+  std::ofstream file(path);
+  file << word << std::flush;
+  return file.good();
+}
+
+bool has_word(const std::string& text, const std::string& word) {
+  std::istringstream words(text);
+  for (std::string each; words >> each;)
+    if (each == word) return true;
+  return false;
+}
+
+}  // namespace
+
+std::optional<double> longest_gap_us(const std::string& trace) {
+  constexpr const char* kMark = "inner/outer(us):";
+  std::optional<double> longest;
+  for (auto at = trace.find(kMark); at != std::string::npos; at = trace.find(kMark, at + 1)) {
+    double inner = 0.0, outer = 0.0;
+    if (std::sscanf(trace.c_str() + at, "inner/outer(us): %lf/%lf", &inner, &outer) == 2)
+      longest = std::max({longest.value_or(0.0), inner, outer});
+  }
+  return longest;
+}
+
+std::string look_for_gaps(const std::string& folder, double seconds) {
+  if (!has_word(content(folder + "/available_tracers"), "hwlat"))
+    return "not looked for: this kernel has no tracer hwlat, or the user may not read its files";
+  if (!has_word(content(folder + "/current_tracer"), "nop")) return "not looked for: another tracer is in use";
+  if (!put(folder + "/current_tracer", "hwlat")) return "not looked for: the user may not start the tracer hwlat";
+  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  const auto longest = longest_gap_us(content(folder + "/trace"));
+  put(folder + "/current_tracer", "nop");
+  char text[96];
+  if (!longest)
+    std::snprintf(text, sizeof text, "none above 10 us in %.0f s (tracer hwlat)", seconds);
+  else
+    std::snprintf(text, sizeof text, "gaps of up to %.0f us in %.0f s (tracer hwlat)", *longest, seconds);
+  return text;
+}
+
+}  // namespace ligature::app

@@ -1,0 +1,30 @@
+#pragma once
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+namespace ligature::app {
+
+/// Keeps the machine busy while something is measured: four processes with normal priority that copy memory (64 MB),
+/// write to the disk (a nameless file of 32 MB in /var/tmp), compute, and send packets on the loopback of a network
+/// namespace of their own. Each ends by itself after `seconds`, and when this process ends.
+/// Start it before real-time priority is asked for and before threads exist.
+class Load {
+ public:
+  explicit Load(double seconds);
+  ~Load();
+  Load(const Load&) = delete;
+  Load& operator=(const Load&) = delete;
+
+  /// What was started, and what was refused and why.
+  [[nodiscard]] const std::vector<std::string>& kinds() const { return kinds_; }
+  /// Number of the processes that still run.
+  [[nodiscard]] int running();
+
+ private:
+  std::vector<pid_t> processes_;
+  std::vector<std::string> kinds_;
+};
+
+}  // namespace ligature::app
