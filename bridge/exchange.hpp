@@ -1,0 +1,60 @@
+#pragma once
+// Talks to the device on a thread of its own, so that a device that waits does not hold up the bus.
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "bridge/device.hpp"
+
+namespace ligature::bridge {
+
+using Nanoseconds = std::chrono::nanoseconds;
+
+/// The newest state of the device, and when the exchange ended that brought it.
+struct Heard {
+  DeviceState state;
+  Nanoseconds at{};
+  std::int64_t number = 0;
+};
+
+class Exchange {
+ public:
+  /// @param period shortest time between the starts of two exchanges. @param owner_within the force becomes zero when
+  /// set_force() has not been called for so long.
+  Exchange(std::unique_ptr<Device> device, Nanoseconds period, Nanoseconds owner_within);
+  /// Sends zero force, then closes the device.
+  ~Exchange();
+  Exchange(const Exchange&) = delete;
+  Exchange& operator=(const Exchange&) = delete;
+
+  void set_force(const Vec& force_D_N, Nanoseconds now);
+  [[nodiscard]] std::optional<Heard> newest() const;
+  /// Becomes readable when a new state has come; read it empty.
+  [[nodiscard]] int descriptor() const noexcept { return event_; }
+  void clear_event() const noexcept;
+  /// Why the device does not answer; empty: it does.
+  [[nodiscard]] std::string problem() const;
+  [[nodiscard]] std::int64_t exchanges() const noexcept { return exchanges_; }
+  [[nodiscard]] Nanoseconds longest_exchange() const;
+
+ private:
+  void live(const std::stop_token& stop);
+  [[nodiscard]] Vec force_now(Nanoseconds now) const;
+
+  std::unique_ptr<Device> device_;
+  Nanoseconds period_, owner_within_;
+  int event_;
+  mutable std::mutex mutex_;
+  Vec force_{};
+  Nanoseconds force_at_{}, longest_{};
+  std::optional<Heard> heard_;
+  std::string problem_ = "not heard yet";
+  std::atomic<std::int64_t> exchanges_{0};
+  std::jthread thread_;  // last: uses all of the above
+};
+
+}  // namespace ligature::bridge

@@ -1,0 +1,35 @@
+#pragma once
+// The JSON messages of Haply's Inverse Service, version 3 (https://docs.haply.co/inverseSDK/service): the service sends
+// one state for each message that it gets, and one unasked when a client connects.
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "bridge/device.hpp"
+
+namespace ligature::bridge {
+
+/// Which device of the service, and which buttons of its grip. Empty id: the first one.
+struct HaplyChoice {
+  std::string inverse3_id;
+  std::string grip_id;
+  std::string dead_man = "a", grip = "b", clutch = "c";  ///< keys in the grip's "buttons"
+};
+
+struct HaplyState {
+  std::string inverse3_id;
+  DeviceState state;
+  std::string problem;  ///< why the device must not be used now, such as "not calibrated"; empty: it may
+};
+
+/// What a message of the service says of the device. Later messages contain only what is new, so `before` is kept up to
+/// date: pass the same object for each message of a connection. @return nothing when the message is no valid JSON or
+/// does not contain the device.
+[[nodiscard]] std::optional<HaplyState> read_haply(std::string_view text, const HaplyChoice& choice,
+                                                   HaplyState& before);
+
+/// A command. @param is_first names this program to the service, which its first message must do.
+[[nodiscard]] std::string haply_command(const std::string& inverse3_id, const Vec& force_D_N, bool is_first);
+
+}  // namespace ligature::bridge
