@@ -43,14 +43,20 @@ inline constexpr std::array<CodeName, 3> kDegradationNames{
      {2, "too many contacts: shallowest only guarded"},
      {3, "too much is near: stood still for a part of the tick"}}};
 
+/// PROPAGATION_ values of tick_t: the paper's condition (section IV) for the force on a hand.
+inline constexpr std::array<CodeName, 3> kPropagationNames{{{1, "A: springs alone pass its force on"},
+                                                            {2, "B: rigid segments pass its force on"},
+                                                            {3, "C: rigid segments between both hands"}}};
+
 struct FaultText {
   int number;
   std::string_view meaning, remedy;
 };
 
 /// Fault numbers (docs/architecture.md), what they mean, and what the operator should do.
-inline constexpr std::array<FaultText, 18> kFaults{{
-    {10, "A hand's bus is gone", "Check the cable or the simulated hand, then reset the fault."},
+inline constexpr std::array<FaultText, 19> kFaults{{
+    {10, "A hand's bus is gone",
+     "Check the cable, then reset the fault. If a simulated hand was started again, restart ligature-firmware."},
     {11, "Joint messages too old",
      "A drive stopped sending, or the machine was too slow. Check load and bus, then reset."},
     {12, "A drive reports a fault", "Read the drive's own error code, clear its cause, then reset."},
@@ -63,6 +69,9 @@ inline constexpr std::array<FaultText, 18> kFaults{{
      "Take every other CANopen tool off the bus, then restart ligature-firmware, which writes them anew."},
     {17, "Too many of a hand's frames are lost",
      "Check that hand's cable, its terminators and the bus load, then reset."},
+    {18, "A hand's joint messages stopped, then came in a burst",
+     "Its drives, or the process of a simulated hand, stood still: lower the machine's load or start ligature-device "
+     "with --rt. Then reset."},
     {20, "A force or position is not a number", "Reset the thread, then the fault. If it returns, soften the scene."},
     {21, "The hand moved too fast", "Hold the stylus still, then reset the fault."},
     {22, "An encoder stands still while the others move", "Check that joint's encoder and its cable, then reset."},

@@ -146,7 +146,8 @@ Fault Controller::find_hand_fault(std::size_t h, const rt::HandReading& reading)
   if (hand.encoder_fault() != Fault::kNone) return hand.encoder_fault();
   if (!hand.is_finite()) return Fault::kNonFinite;
   if (hand.overtime_ticks() >= kMostOvertimeTicks) return Fault::kForceStays;
-  if (hand.speed_m_per_s() > kVelocityFault * settings_.device.velocity_limit_m_per_s) return Fault::kVelocityLimit;
+  if (hand.speed_m_per_s() > kVelocityFault * settings_.device.velocity_limit_m_per_s)
+    return hand.is_catching_up() ? Fault::kSamplesBurst : Fault::kVelocityLimit;
   return Fault::kNone;
 }
 

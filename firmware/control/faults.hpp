@@ -17,6 +17,7 @@ enum class Fault : std::int16_t {
   kForeignNetwork = 15,   ///< another node sends NMT commands
   kForeignObject = 16,    ///< another node sends SDO requests
   kFramesLost = 17,       ///< for a while more than a third of a hand's samples or torques were lost
+  kSamplesBurst = 18,     ///< the tip seems too fast, but its samples had stopped and may have come in a burst
   kNonFinite = 20,        ///< a force or position is not a number
   kVelocityLimit = 21,    ///< tip faster than kVelocityFault times the device's limit
   kEncoderFrozen = 22,    ///< a joint's reading suddenly stopped while the others moved on
@@ -71,6 +72,8 @@ enum class Fault : std::int16_t {
       return "somebody else on the bus reads or writes the drives' objects";
     case Fault::kFramesLost:
       return "too many frames lost";
+    case Fault::kSamplesBurst:
+      return "joint messages stopped, then came in a burst";
     case Fault::kNonFinite:
       return "force or position is not finite";
     case Fault::kVelocityLimit:

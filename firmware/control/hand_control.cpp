@@ -9,7 +9,8 @@ namespace {
 
 // Tip force per joint torque above which a pose counts as singular: 1 / 2.5 mm
 constexpr double kSingular_per_m = 400.0;
-constexpr double kAbove_m = 0.01;  // height of the parked tip above the workspace's floor
+constexpr std::int64_t kPause = 5;  // periods without a sample that are a pause; fewer are lost frames
+constexpr double kAbove_m = 0.01;   // height of the parked tip above the workspace's floor
 
 }  // namespace
 
@@ -83,6 +84,7 @@ void HandControl::sample(const rt::HandReading& reading, std::int64_t sampled) n
   jacobian_ = linkage_.jacobian(reading.q_rad);
   const bool timed = sampled != doubtful_tick_;
   const std::int64_t periods = sample_tick_ < 0 ? 0 : sampled - sample_tick_;
+  catching_up_ = periods > kPause ? periods : std::max<std::int64_t>(catching_up_ - 1, 0);
   Vec3 rate;
   for (std::size_t j = 0; j < velocity_.size(); ++j) {
     velocity_[j].add(reading.q_rad[j], periods);

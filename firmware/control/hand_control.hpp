@@ -105,6 +105,9 @@ class HandControl {
   [[nodiscard]] Fault encoder_fault() const noexcept {
     return move_fault_ != Fault::kNone ? move_fault_ : encoder_fault_;
   }
+  /// Samples stopped for a while, and fewer periods ago than they had stopped: the samples in between may come in a
+  /// burst, several periods of motion in one. This happens when the process of a simulated hand stood still.
+  [[nodiscard]] bool is_catching_up() const noexcept { return catching_up_ > 0; }
   /// Consecutive ticks with force although the gain is 0: the step limit allows it to fall only gradually.
   [[nodiscard]] int overtime_ticks() const noexcept { return overtime_ticks_; }
   [[nodiscard]] bool is_plausible() const noexcept { return linkage_.is_plausible(state_.q_rad); }
@@ -160,6 +163,7 @@ class HandControl {
   Vec3 p_DT_ = Vec3::Zero(), v_DT_ = Vec3::Zero();
   bool lets_go_ = true, finite_ = true, holds_ = false, clutch_command_ = false;
   std::int64_t sample_tick_ = -1, doubtful_tick_ = -1, commanded_tick_ = -1;
+  std::int64_t catching_up_ = 0;  // samples for which is_catching_up() holds
   int overtime_ticks_ = 0;
   EncoderWatch watch_;
   Fault encoder_fault_ = Fault::kNone;

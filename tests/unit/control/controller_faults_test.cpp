@@ -143,6 +143,28 @@ TEST(ControllerFaults, OldJointMessagesAreHeldAndThenAFault) {
   EXPECT_EQ(Rig::largest(command), 0.0);
 }
 
+/// Fault of a left hand whose samples stop for `pause` periods, come for `steady` ones, and then jump by 30 mm.
+Fault fault_of_a_jump_after(int pause, int steady) {
+  Rig rig;
+  rig.to_force();
+  for (int age = 1; age <= pause; ++age) {
+    rig.in.reading.hand[0].age_ticks = age;
+    rig.tick();
+  }
+  rig.in.reading.hand[0].age_ticks = 0;
+  rig.ticks(steady);
+  for (double& q : rig.in.reading.hand[0].q_rad) q += 0.2;
+  EXPECT_EQ(Rig::largest(rig.tick()), 0.0) << "either fault takes the force";
+  return rig.controller.fault();
+}
+
+TEST(ControllerFaults, AJumpSoonAfterAPauseIsToldFromAHandThatIsTooFast) {
+  EXPECT_EQ(fault_of_a_jump_after(10, 1), Fault::kSamplesBurst);
+  EXPECT_EQ(fault_of_a_jump_after(10, 10), Fault::kSamplesBurst);
+  EXPECT_EQ(fault_of_a_jump_after(10, 12), Fault::kVelocityLimit) << "longer ago than it lasted";
+  EXPECT_EQ(fault_of_a_jump_after(3, 1), Fault::kVelocityLimit) << "lost frames are no pause";
+}
+
 TEST(ControllerFaults,
      // Samples of ticks 3 and 4 are missing, period 5 is lost: the sample of tick 2 stays the latest.
      ALostPeriodMakesNoOldSampleNew) {
