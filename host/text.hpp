@@ -9,6 +9,6 @@ namespace ligature::host {
 /// printf into a string; the compiler checks the arguments against the format.
 [[nodiscard]] [[gnu::format(printf, 1, 2)]] std::string text(const char* format, ...);
 
-using scene::shown;
+using scene::shortened, scene::shown;
 
 }  // namespace ligature::host

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <string>
 
+#include "protocol/can/hand_of_bus.hpp"
 #include "protocol/device/device_file.hpp"
 #include "protocol/scene/fault_script.hpp"
 #include "sim_device/event_loop.hpp"
@@ -121,6 +122,7 @@ int main(int argc, char** argv) {
   sim::HandDevice device(std::move(mover.will), sim::now_monotonic(), std::get<sim::Body>(body),
                          !port.charges_bit_time());
   sim::EventLoop loop(device, port, injector ? &*injector : nullptr);
+  if (const auto doubt = can::doubt_about_hand(options.hand(), options.bus); !doubt.empty()) narrator.say(doubt);
   narrator.say("on " + options.bus + ", waiting for a controller");
   live(device, port, loop, narrator, mover.link.get(), options.exit_when_done, during_sleep);
 

@@ -34,11 +34,13 @@ class PassingHand final : public Intention {
 std::string objection_to(const scene::GripKey& key, const WorkspaceMap& map) {
   const Vec3 p_D = map.to_device(vec(key.p_W_m));
   if (map.linkage.reaches(p_D)) return {};
-  char line[200];
+  const Vec3 in_mm = map.to_device(1e-3 * vec(key.p_W_m));
+  char line[300];
   std::snprintf(line, sizeof line,
                 "key at time %g s lies at (%.3f, %.3f, %.3f) m for the device, out of its reach; "
-                "allowed: hands.workspace_scale and workspace_origin_m that bring it nearer",
-                key.time_s, p_D.x(), p_D.y(), p_D.z());
+                "allowed: hands.workspace_scale and workspace_origin_m that bring it nearer%s",
+                key.time_s, p_D.x(), p_D.y(), p_D.z(),
+                map.linkage.reaches(in_mm) ? ". Are the script's positions in mm? Their unit is m" : "");
   return line;
 }
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "firmware/app/admission.hpp"
 #include "firmware/app/real_time_side.hpp"
@@ -19,6 +20,7 @@
 #include "firmware/platform/make_drives.hpp"
 #include "firmware/telemetry/flight_recorder.hpp"
 #include "firmware/telemetry/lcm_link.hpp"
+#include "protocol/can/hand_of_bus.hpp"
 
 namespace ligature::app {
 namespace {
@@ -183,6 +185,8 @@ int run(const RunOptions& options) {
   }
   give_work(plan, admission.thread.work);
 
+  for (const auto& [hand, bus] : {std::pair("left", &options.left), std::pair("right", &options.right)})
+    if (const auto doubt = can::doubt_about_hand(hand, *bus); !doubt.empty()) spdlog::warn("{}", doubt);
   const auto outlets = std::make_unique<rt::Outlets>();
   telemetry::LcmLink link(options.no_telemetry ? "memq://" : options.lcm_url, [&](const ligature_msg::event_t& e) {
     log(e);

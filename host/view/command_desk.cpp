@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "host/send.hpp"
+#include "host/text.hpp"
 #include "host/view/json_text.hpp"
 #include "protocol/lcm/command_words.hpp"
 
@@ -57,7 +58,7 @@ void CommandDesk::take_ack(const ligature_msg::ack_t& ack) {
   const auto step = waiting.exchange.take(ack);
   if (step == Exchange::Step::kSay) publish_quietly(waiting);
   if (step != Exchange::Step::kAnswered) return;
-  ready_.emplace(waiting.page, answer(waiting.id, waiting.word, ack.accepted != 0, ack.reason.substr(0, 200)));
+  ready_.emplace(waiting.page, answer(waiting.id, waiting.word, ack.accepted != 0, shortened(ack.reason, 600)));
   waiting_.erase(found);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "host/messages.hpp"
+#include "host/text.hpp"
 #include "host/thread_knot.hpp"
 #include "host/view/picture.hpp"
 #include "host/view/rig_json.hpp"
@@ -77,7 +78,7 @@ void LogSurvey::take_shape(double t_s, const std::vector<std::byte>& payload) {
 void LogSurvey::add_mark(double t_s, int kind, int hand, const std::string& text) {
   const std::scoped_lock lock(mutex_);
   if (marks_.size() < kMostMarks)
-    marks_.push_back({{"t_s", t_s}, {"kind", kind}, {"hand", hand}, {"text", text.substr(0, 200)}});
+    marks_.push_back({{"t_s", t_s}, {"kind", kind}, {"hand", hand}, {"text", shortened(text, 200)}});
 }
 
 LogSurvey::Landmarks LogSurvey::landmarks() const {

@@ -21,6 +21,14 @@ std::string shown(std::string_view text) {
   return result;
 }
 
+std::string shortened(std::string_view text, std::size_t most) {
+  constexpr std::string_view kMore = " ..";
+  if (text.size() <= most || most < kMore.size()) return std::string(text.substr(0, most));
+  const std::string_view head = text.substr(0, most - kMore.size() + 1);  // one more: it may be the blank
+  const auto blank = head.rfind(' ');
+  return std::string(head.substr(0, blank == head.npos ? head.size() - 1 : blank)) + std::string(kMore);
+}
+
 Error at_line(const std::filesystem::path& path, std::size_t line, std::string_view what) {
   return {path.string() + ":" + std::to_string(line) + ": " + std::string(what)};
 }

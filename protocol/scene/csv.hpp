@@ -39,6 +39,9 @@ struct CsvSetting {
 /// Untrusted text for use in a message: control characters as \xNN, at most 60 characters.
 [[nodiscard]] std::string shown(std::string_view text);
 
+/// The text, or if it is longer than `most` characters, its whole words up to there and "..".
+[[nodiscard]] std::string shortened(std::string_view text, std::size_t most);
+
 /// "FILE:LINE: what"
 [[nodiscard]] Error at_line(const std::filesystem::path& path, std::size_t line, std::string_view what);
 

@@ -34,7 +34,9 @@ struct ReadContext {
 
   [[nodiscard]] bool is_overridden(const std::string& key) const { return overridden.contains(root_of(key)); }
 
-  void refuse(const std::string& key, const toml::node& where, const std::string& what) {
+  /// @param between_keys a rule between several keys is broken: if the message names the file's key, the overrides are
+  /// named too, because one of them may be the cause
+  void refuse(const std::string& key, const toml::node& where, const std::string& what, bool between_keys = false) {
     if (error) return;
     auto set = overridden.find(root_of(key));
     if (set == overridden.end() && where.source().begin.line == 0) {  // a table that exists only by an override
@@ -42,7 +44,10 @@ struct ReadContext {
     }
     const auto place =
         set != overridden.end() ? "--set " + set->second : file + ":" + std::to_string(where.source().begin.line);
-    error = Error{place + ": " + what};
+    std::string with;
+    for (const auto& [_, text] : overridden)
+      if (between_keys && set == overridden.end()) with += (with.empty() ? "; with --set " : " --set ") + text;
+    error = Error{place + ": " + what + with};
   }
 
  private:
@@ -238,13 +243,14 @@ class StrictTable {
     }
   }
 
-  void refuse(std::string_view key, const toml::node& node, const std::string& allowed) {
-    context_.refuse(full(key), node, "key '" + full(key) + "': found " + shown(node) + ", allowed " + allowed);
+  void refuse(std::string_view key, const toml::node& node, const std::string& allowed, bool between_keys = false) {
+    context_.refuse(full(key), node, "key '" + full(key) + "': found " + shown(node) + ", allowed " + allowed,
+                    between_keys);
   }
 
   /// Refuses a key that breaks a rule between several keys; to be called after these were read.
   void refuse(std::string_view key, const std::string& allowed) {
-    if (const auto* node = table_.get(key)) refuse(key, *node, allowed);
+    if (const auto* node = table_.get(key)) refuse(key, *node, allowed, true);
   }
 
   [[nodiscard]] bool was_overridden(std::string_view key) const { return context_.is_overridden(full(key)); }
@@ -257,7 +263,7 @@ class StrictTable {
       asked_.insert(std::string(key));
       return node;
     }
-    if (node != nullptr) refuse(key, *node, std::string(elsewhere_) + " only");
+    if (node != nullptr) refuse(key, *node, std::string(elsewhere_) + " only", true);
     return nullptr;
   }
   [[nodiscard]] bool lists() const { return context_.listed != nullptr; }

@@ -4,10 +4,19 @@
 
 #include <fstream>
 
+#include "protocol/scene/csv.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace ligature::scene {
 namespace {
+
+TEST(Text, IsShortenedBetweenWords) {
+  EXPECT_EQ(shortened("one two", 7), "one two");
+  EXPECT_EQ(shortened("one two three", 12), "one two ..");
+  EXPECT_EQ(shortened("one two three", 10), "one two ..");
+  EXPECT_EQ(shortened("one two three", 9), "one ..");
+  EXPECT_EQ(shortened("onetwothree", 8), "onetw ..") << "a word that does not fit";
+}
 
 std::string write(const std::string& text) {
   const auto path = test::temp_folder() + "grippers.csv";

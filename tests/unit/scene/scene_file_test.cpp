@@ -259,6 +259,17 @@ TEST(SceneFile, OverridesAreCheckedLikeTheFileAndNamedAsOverrides) {
   }
 }
 
+// The override fits its own range; the file's key is the one that no longer fits.
+TEST(SceneFile, ARuleBetweenKeysNamesTheOverridesToo) {
+  EXPECT_EQ(why_refused("[suture]\n[hands]\nreach_m = 0.06\n", {"suture.radius_m=0.15", "suture.nodes=20"}),
+            test::temp_folder() +
+                "scene.toml:3: key 'hands.reach_m': found 0.06, allowed suture.radius_m or more: it "
+                "goes to the thread's middle; with --set suture.nodes=20 --set suture.radius_m=0.15");
+  EXPECT_EQ(why_refused("[suture]\nnodes = 1\n", {"suture.radius_m=0.01"}),
+            test::temp_folder() + "scene.toml:2: key 'suture.nodes': found 1, allowed integer 2 .. 5000")
+      << "no override can be the cause";
+}
+
 TEST(SceneFile, LaysAPolylineOutAtRestLengthNextToTheSceneFile) {
   write("line.csv", "x,y,z\n0,0,0\n10,0,0\n");
   const auto read = load_scene(write("with_line.toml", "[suture]\nnodes = 3\nlength_m = 4\ninitial = \"line.csv\"\n"));

@@ -65,6 +65,16 @@ TEST(OperatorPath, RefusesAKeyOutOfReachByItsTime) {
   const auto made = OperatorPath::make(keys, paper_map());
   ASSERT_TRUE(std::holds_alternative<std::string>(made));
   EXPECT_NE(std::get<std::string>(made).find("2.5"), std::string::npos);
+  EXPECT_EQ(std::get<std::string>(made).find("mm"), std::string::npos) << "9 mm are out of its reach, too";
+}
+
+TEST(OperatorPath, AsksForMillimetresWhenTheyWouldBeInReach) {
+  auto keys = overhand().keys[0];
+  for (auto& key : keys)
+    for (double& x : key.p_W_m) x *= 1e3;
+  const auto made = OperatorPath::make(keys, paper_map());
+  ASSERT_TRUE(std::holds_alternative<std::string>(made));
+  EXPECT_NE(std::get<std::string>(made).find("in mm?"), std::string::npos) << std::get<std::string>(made);
 }
 
 TEST(OperatorPath, AnAbsentHandRestsAtHome) {
