@@ -88,6 +88,14 @@ double LogSummary::knot_first_s() const {
   return -1.0;
 }
 
+const KnotSpan* LogSummary::untied() const {
+  return knots.size() > 1 && knots.back().type == "0_1" ? &knots[knots.size() - 2] : nullptr;
+}
+
+bool LogSummary::was_tied() const {
+  return !knots.empty() && knots.back().type != "0_1" && knot_first_s() > knots.front().from_s;
+}
+
 LogSummary summarise(const std::string& log_path, double knot_every_s) {
   Summariser summariser(read_rig_facts(log_path), knot_every_s);
   console::Progress progress("reading");

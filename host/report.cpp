@@ -47,14 +47,23 @@ std::string hand_row(const LogSummary& s, std::size_t hand) {
   return row(text("force %s", kHandNames[hand].data()).c_str(), value);
 }
 
+/// Type, handedness and common name of a knot.
+std::string knot_name(const KnotSpan& knot) {
+  std::string words = knot.type;
+  if (knot.handedness != "none") words += " " + knot.handedness;
+  if (const auto common = knot::common_name(knot.type, knot.handedness); !common.empty()) words += ", " + common;
+  return words;
+}
+
 std::string knot_words(const LogSummary& s) {
   if (s.knots.empty()) return "no shape recorded";
+  if (const auto* before = s.untied())
+    return text("0_1 (no knot); untied at %.2f s, before that %s", s.knot_since_s(), knot_name(*before).c_str());
   const auto& last = s.knots.back();
   if (last.type == "0_1") return "0_1 (no knot)";
-  std::string words = last.type;
-  if (last.handedness != "none") words += " " + last.handedness;
-  if (const auto common = knot::common_name(last.type, last.handedness); !common.empty()) words += ", " + common;
-  words += text("; first tied at %.2f s", s.knot_first_s());
+  std::string words = knot_name(last);
+  words += text(s.was_tied() ? "; first tied at %.2f s" : "; there in the first recorded shape, at %.2f s",
+                s.knot_first_s());
   if (s.knot_since_s() > s.knot_first_s()) words += text(", unchanged since %.2f s", s.knot_since_s());
   return words;
 }
@@ -151,7 +160,8 @@ std::string report_json(const LogSummary& s) {
     const auto common = knot::common_name(last.type, last.handedness);
     knot = {{"type", last.type},
             {"handedness", last.handedness},
-            {"first_tied_s", s.knot_first_s()},
+            {"first_tied_s", s.was_tied() ? Json(s.knot_first_s()) : Json(nullptr)},
+            {"untied_s", s.untied() != nullptr ? Json(s.knot_since_s()) : Json(nullptr)},
             {"unchanged_since_s", s.knot_since_s()},
             {"common_name", common.empty() ? Json(nullptr) : Json(common)}};
   }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "host/errors.hpp"
@@ -74,6 +75,32 @@ TEST(LogSummary, TableAndJsonSayTheSame) {
   EXPECT_NE(table.find("999.5 ticks per second, 99.949 % of periods executed"), std::string::npos) << table;
   EXPECT_NE(table.find("overhand; first tied"), std::string::npos) << table;
   EXPECT_NE(table.find("peak 3.000 N at 0.777 s"), std::string::npos) << table;
+}
+
+/// Reports a log whose shapes are knotted in the first, second or third of its seconds, as `knotted` says.
+std::string report_of_seconds(const test::TestFolder& folder, std::array<bool, 3> knotted) {
+  LogWriter log(folder.file("seconds.lcmlog"), true);
+  for (int first = 5000; first < 8000; first += 20) {
+    test::write(log, kTicksChannel, test::batch_of(1, first, 20));
+    const bool is_knotted = knotted[static_cast<std::size_t>(first / 1000 - 5)];
+    test::write(log, kThreadChannel,
+                test::thread_of(first, is_knotted ? test::overhand_points(60) : test::straight_points(50)));
+  }
+  log.close();
+  return report_table(summarise(folder.file("seconds.lcmlog")));
+}
+
+TEST(LogSummary, SaysTiedOrUntiedOnlyOfWhatTheRecordingShows) {
+  const test::TestFolder folder;
+  const auto says = [&](std::array<bool, 3> knotted, const char* words) {
+    const auto table = report_of_seconds(folder, knotted);
+    EXPECT_NE(table.find(words), std::string::npos) << table;
+  };
+  says({false, false, true}, "overhand; first tied at 7.00 s\n");
+  says({false, true, false}, "0_1 (no knot); untied at 7.00 s, before that 3_1 ");
+  says({true, true, true}, "overhand; there in the first recorded shape, at 5.00 s\n");
+  says({true, false, true}, "overhand; there in the first recorded shape, at 5.00 s, unchanged since 7.00 s\n");
+  says({false, false, false}, "0_1 (no knot)\n");
 }
 
 /// "Zero lost" may be claimed only if the last recorded tick has the drives off: otherwise the run may have gone on.
