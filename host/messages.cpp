@@ -10,7 +10,7 @@
 namespace ligature::host {
 namespace {
 
-using lcm_tools::int32_at, lcm_tools::kHash, lcm_tools::kInt32, lcm_tools::kInt64, lcm_tools::kInt8;
+using lcm_tools::int32_at, lcm_tools::kFloat, lcm_tools::kHash, lcm_tools::kInt32, lcm_tools::kInt64, lcm_tools::kInt8;
 
 constexpr std::int64_t kLargestTick = std::int64_t{1} << 40;  // 35 years at 1 kHz; larger numbers are rejected
 
@@ -28,13 +28,25 @@ bool skip_strings(Bytes message, std::size_t& offset, int count) {
 
 bool strings_fit(Bytes message, std::size_t offset, int count) { return skip_strings(message, offset, count); }
 
-/// Whether the message has the layout of offer_t: scene names, then parameters of three strings and three doubles each,
-/// up to the end of the message.
+/// Moves `offset` past a preview_t: two strings, a float, and an array of points with its length. False when it exceeds
+/// the message.
+bool skip_preview(Bytes message, std::size_t& offset) {
+  if (!skip_strings(message, offset, 2)) return false;
+  const auto points = int32_at(message, offset += kFloat);
+  if (!points || *points < 0) return false;
+  offset += kInt32 + 3 * kFloat * static_cast<std::size_t>(*points);
+  return offset <= message.size();
+}
+
+/// Whether the message has the layout of offer_t: scene names, a preview of each, then parameters of three strings and
+/// three doubles each, up to the end of the message.
 bool offer_fits(Bytes message) {
   std::size_t at = kHash + 2 * kInt64;
   const auto scenes = int32_at(message, at);
   at += kInt32;
   if (!scenes || *scenes < 0 || !skip_strings(message, at, *scenes)) return false;
+  for (int i = 0; i < *scenes; ++i)
+    if (!skip_preview(message, at)) return false;
   const auto parameters = int32_at(message, at);
   at += kInt32;
   if (!parameters || *parameters < 0) return false;

@@ -152,6 +152,9 @@ Columns make() {
   add_plain(c, "time_lost", "", "share of the tick in which the thread stood still", &Tick::time_lost);
   for (std::size_t hand = 0; hand < 2; ++hand) add_tool(c, hand);
   add_steps(c);
+  for (std::size_t hand = 0; hand < 2; ++hand)
+    add_scalar(c, hand, "propagation", "", "the paper's condition for the hand's force: 0 none, 1 A, 2 B, 3 C",
+               &Tick::propagation);
   return c;
 }
 

@@ -8,6 +8,7 @@
 
 #include "firmware/app/admission.hpp"
 #include "firmware/app/rehearsal_process.hpp"
+#include "firmware/app/scene_preview.hpp"
 #include "firmware/platform/realtime.hpp"
 #include "protocol/scene/text_file.hpp"
 
@@ -50,7 +51,14 @@ SceneDesk::SceneDesk(const RunOptions& options, const Plan& plan, const std::str
       now_{options.scene, {}, plan.scene, plan.scene, excess} {
   const fs::path given = options.scenes.empty() ? fs::path(options.scene).parent_path() : fs::path(options.scenes);
   options_.scenes = given.empty() ? "." : given.string();
+  find_scenes();
+}
+
+/// Lists the scenes of the folder, and what each looks like.
+void SceneDesk::find_scenes() {
   scenes_ = scene_files(options_.scenes);
+  previews_.clear();
+  for (const auto& name : scenes_) previews_.push_back(preview_of(fs::path(options_.scenes) / name, launch_.with({})));
 }
 
 /// `wish` is "knot.toml" or "knot.toml suture.model=paper-2 suture.nodes=35": a scene, optionally with another model or
@@ -64,7 +72,7 @@ std::string SceneDesk::prepare_scene(const std::string& wish) {
     if (key_of(word) != "suture.model" && key_of(word) != "suture.nodes")
       return "found '" + word + "' after the scene, allowed suture.model=MODEL and suture.nodes=N";
   }
-  scenes_ = scene_files(options_.scenes);
+  find_scenes();
   if (std::ranges::find(scenes_, name) == scenes_.end()) {
     std::string allowed;
     for (const auto& s : scenes_) allowed += (allowed.empty() ? "" : ", ") + s;
@@ -189,6 +197,7 @@ std::optional<SceneDesk::Outcome> SceneDesk::poll() {
 ligature_msg::offer_t SceneDesk::offer() const {
   ligature_msg::offer_t offer{};
   offer.scenes = scenes_;
+  offer.previews = previews_;
   for (const auto& p : parameters()) {
     ligature_msg::parameter_t parameter{};
     parameter.key = p.key, parameter.name = p.name, parameter.unit = p.unit;

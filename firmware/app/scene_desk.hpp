@@ -82,6 +82,7 @@ class SceneDesk {
     Setup setup;
     std::string toml;
   };
+  void find_scenes();
   [[nodiscard]] std::string prepare_scene(const std::string& wish);
   [[nodiscard]] std::vector<LiveParameter> parameters() const;
   [[nodiscard]] std::string prepare_parameter(const std::string& key, double value);
@@ -96,6 +97,7 @@ class SceneDesk {
   long work_;
   Launch launch_;
   std::vector<std::string> scenes_;
+  std::vector<ligature_msg::preview_t> previews_;  // of the same scenes
   Setup now_;
   control::PlantHandover handover_;
 

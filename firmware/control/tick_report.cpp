@@ -10,6 +10,10 @@ constexpr double kNoGap_m = 1e9;  // value for "nothing near" on the wire, since
 
 rt::Triple triple(const Vec3& v) noexcept { return {v.x(), v.y(), v.z()}; }
 
+static_assert(static_cast<int>(physics::Propagation::kA) == static_cast<int>(rt::Propagation::kA) &&
+              static_cast<int>(physics::Propagation::kB) == static_cast<int>(rt::Propagation::kB) &&
+              static_cast<int>(physics::Propagation::kC) == static_cast<int>(rt::Propagation::kC));
+
 rt::Degradation given_up(const physics::Diagnostics& thread) noexcept {
   switch (thread.degradation) {
     case physics::Degradation::kMotion:
@@ -86,6 +90,7 @@ void report(const physics::Diagnostics& thread, rt::TickRecord& record) noexcept
 void report(const physics::HandContact& contact, std::size_t hand, rt::TickRecord& record) noexcept {
   record.f_world_N[hand] = triple(contact.f_W);
   record.grasped_node[hand] = static_cast<std::int16_t>(contact.node);
+  record.propagation[hand] = static_cast<std::int8_t>(contact.condition);
 }
 
 void report(std::span<const physics::Vec3> nodes_W, const ThreadResult& thread, rt::ThreadSnapshot& snapshot) noexcept {

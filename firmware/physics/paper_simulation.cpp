@@ -153,10 +153,10 @@ void PaperSimulation::publish() noexcept {
   for (int h = 0; h < 2; ++h) {
     HandContact& c = hands_[static_cast<std::size_t>(h)];
     c.node = grasp_.node(h);
+    c.condition = c.node < 0 ? Propagation::kNone : condition(c.node, grasp_.node(1 - h) >= 0);
     if (c.node < 0) continue;
     c.p_WG = to_vec3(state_.p.at(c.node)) - grasp_.closing(h).offset_m();
     c.v_WG = to_vec3(state_.v.at(c.node)) - grasp_.closing(h).rate_m_per_s();
-    c.condition = condition(c.node, grasp_.node(1 - h) >= 0);
   }
   health_.kinetic_J = kinetic_J_;
   health_.potential_J = weight_J_ + work_.stretch_J + work_.bend_J;

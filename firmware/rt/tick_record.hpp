@@ -42,6 +42,14 @@ enum class Degradation : std::int8_t {
   kCandidates = 3,  ///< not all near pairs could be checked or solved: the thread was not moved for part of the tick
 };
 
+/// Which of the paper's conditions (section IV) acts on a hand; values of TickRecord::propagation.
+enum class Propagation : std::int8_t {
+  kNone = 0,  ///< the hand holds nothing, or the scene has no propagation of forces
+  kA = 1,     ///< only springs pass the force on
+  kB = 2,     ///< a segment beside the hand is at a length limit and passes it on
+  kC = 3,     ///< as B, and the other hand holds the thread too
+};
+
 using Triple = std::array<double, 3>;
 
 /// Largest number of physics ticks that can end between two reads by the loop: the running one, one waiting request,
@@ -69,6 +77,7 @@ struct TickRecord {
   std::array<Triple, kHands> f_device_N{};
   WireTorque torque_permille{};
   std::array<std::int16_t, kHands> grasped_node{-1, -1};
+  std::array<std::int8_t, kHands> propagation{};  ///< rt::Propagation
   std::array<bool, kHands> grip{};
   std::array<bool, kHands> dead_man{};
   std::array<std::int16_t, kHands> tpdo_age_ticks{};

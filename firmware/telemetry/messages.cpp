@@ -19,6 +19,7 @@ static_assert(static_cast<int>(rt::kThreadLate) == ligature_msg::tick_t::FLAG_TH
 static_assert(static_cast<int>(rt::kThreadCut) == ligature_msg::tick_t::FLAG_THREAD_CUT);
 static_assert(rt::kPeakLimit == ligature_msg::tick_t::LIMIT_PEAK);
 static_assert(rt::kTorqueLimit == ligature_msg::tick_t::LIMIT_TORQUE);
+static_assert(static_cast<int>(rt::Propagation::kC) == ligature_msg::tick_t::PROPAGATION_C);
 static_assert(static_cast<int>(rt::Degradation::kCandidates) == ligature_msg::tick_t::DEGRADED_CANDIDATES);
 
 }  // namespace
@@ -52,6 +53,7 @@ ligature_msg::tick_t to_message(const rt::TickRecord& r) {
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     std::ranges::copy(r.torque_permille[h], m.torque_permille[h]);
     m.grasped_node[h] = r.grasped_node[h];
+    m.propagation[h] = r.propagation[h];
     m.grip[h] = r.grip[h] ? 1 : 0;
     m.dead_man[h] = r.dead_man[h] ? 1 : 0;
     m.clutch[h] = r.clutch[h] ? 1 : 0;

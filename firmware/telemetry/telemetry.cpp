@@ -107,6 +107,7 @@ void Telemetry::send_offer(Moment now) {
   offer_.utime = now.utime;
   offer_.session = session_.id;
   offer_.scene_count = static_cast<std::int32_t>(offer_.scenes.size());
+  offer_.previews.resize(offer_.scenes.size());
   offer_.parameter_count = static_cast<std::int32_t>(offer_.parameters.size());
   sink_.send(offer_);
 }

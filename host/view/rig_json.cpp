@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "host/names.hpp"
+#include "host/text.hpp"
 
 namespace ligature::host::view {
 
@@ -25,13 +27,33 @@ nlohmann::json to_json(const ligature_msg::status_t& s) {
 }
 
 nlohmann::json to_json(const ligature_msg::event_t& e) {
-  return {{"tick", e.tick}, {"kind", e.kind}, {"hand", e.hand}, {"code", e.code}, {"text", e.text.substr(0, 200)}};
+  return {{"tick", e.tick}, {"kind", e.kind}, {"hand", e.hand}, {"code", e.code}, {"text", shortened(e.text, 200)}};
 }
+
+namespace {
+
+/// Points that are not finite are left out, because JSON has no numbers for them.
+nlohmann::json to_json(const ligature_msg::preview_t& p) {
+  constexpr std::size_t kMostPoints = 100;
+  nlohmann::json points = nlohmann::json::array();
+  for (const auto& point : p.p_W_m)
+    if (points.size() < kMostPoints && std::ranges::all_of(point, [](float x) { return std::isfinite(x); }))
+      points.push_back(point);
+  return {{"about", shortened(p.about, 400)},
+          {"facts", shortened(p.facts, 200)},
+          {"desk_height_m", std::isfinite(p.desk_height_m) ? nlohmann::json(p.desk_height_m) : nlohmann::json()},
+          {"points", std::move(points)}};
+}
+
+}  // namespace
 
 nlohmann::json to_json(const ligature_msg::offer_t& o) {
   constexpr std::size_t kMost = 200;
-  nlohmann::json scenes = nlohmann::json::array(), parameters = nlohmann::json::array();
-  for (std::size_t i = 0; i < std::min(kMost, o.scenes.size()); ++i) scenes.push_back(o.scenes[i].substr(0, 100));
+  nlohmann::json scenes = nlohmann::json::array(), previews = scenes, parameters = scenes;
+  for (std::size_t i = 0; i < std::min(kMost, o.scenes.size()); ++i) {
+    scenes.push_back(o.scenes[i].substr(0, 100));
+    if (i < o.previews.size()) previews.push_back(to_json(o.previews[i]));
+  }
   for (std::size_t i = 0; i < std::min(kMost, o.parameters.size()); ++i) {
     const auto& p = o.parameters[i];
     parameters.push_back({{"key", p.key.substr(0, 100)},
@@ -41,15 +63,20 @@ nlohmann::json to_json(const ligature_msg::offer_t& o) {
                           {"lowest", p.lowest},
                           {"highest", p.highest}});
   }
-  return {{"scenes", std::move(scenes)}, {"parameters", std::move(parameters)}};
+  return {{"scenes", std::move(scenes)}, {"previews", std::move(previews)}, {"parameters", std::move(parameters)}};
 }
 
 nlohmann::json names_json() {
-  nlohmann::json limits, degradations, faults;
+  nlohmann::json limits, degradations, conditions, faults;
   for (const auto& [bit, name] : kLimitNames) limits.push_back({bit, name});
   for (const auto& [code, name] : kDegradationNames) degradations.push_back({code, name});
+  for (const auto& [code, name] : kPropagationNames) conditions.push_back({code, name});
   for (const auto& [number, meaning, remedy] : kFaults) faults.push_back({number, meaning, remedy});
-  return {{"states", kStateNames}, {"limits", limits}, {"degradations", degradations}, {"faults", faults}};
+  return {{"states", kStateNames},
+          {"limits", limits},
+          {"degradations", degradations},
+          {"conditions", conditions},
+          {"faults", faults}};
 }
 
 void write_tick(FrameWriter& frame, const ligature_msg::tick_t& tick) {

@@ -18,7 +18,8 @@ inline constexpr int kKnotEvent = 100;
 [[nodiscard]] nlohmann::json to_json(const ligature_msg::event_t& event);
 [[nodiscard]] nlohmann::json to_json(const ligature_msg::offer_t& offer);
 
-/// host/names.hpp for the page: {states: [..], limits: [[bit, name]..], degradations: [..], faults: [[number, ..]..]}.
+/// host/names.hpp for the page: {states: [..], limits: [[bit, name]..], degradations: [..], conditions: [..], faults:
+/// [[number, ..]..]}.
 [[nodiscard]] nlohmann::json names_json();
 
 /// State, hands and counters of one tick as doubles, in the order that page/frame.js reads.

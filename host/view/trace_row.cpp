@@ -22,6 +22,7 @@ TraceRow trace_row(const ligature_msg::tick_t& tick) {
     row[kLeftHeat + hand] = tick.heat[hand];
     row[kLeftLimits + hand] = tick.limits[hand];
     row[kLeftClutch + hand] = tick.clutch[hand];
+    row[kLeftPropagation + hand] = tick.propagation[hand];
   }
   row[kWakeup_ns] = tick.wakeup_latency_ns;
   row[kControl_ns] = tick.control_ns;

@@ -46,9 +46,11 @@ enum Column : std::size_t {
   kRightLimits,
   kLeftClutch,  // 1: clutch engaged, the tool stays where it is
   kRightClutch,
-  kDegradation,    // DEGRADED_ value of tick_t
-  kThreadDone_ns,  // from the wake-up until the thread's physics was done; 0: it was late
-  kTimeLost,       // fraction of the tick in which the thread was not moved
+  kDegradation,      // DEGRADED_ value of tick_t
+  kThreadDone_ns,    // from the wake-up until the thread's physics was done; 0: it was late
+  kTimeLost,         // fraction of the tick in which the thread was not moved
+  kLeftPropagation,  // PROPAGATION_ value of tick_t
+  kRightPropagation,
   kColumns
 };
 

@@ -91,7 +91,10 @@ const steps = {
     await page.locator('[data-command="unclutch left"]').waitFor();
     await page.click('#change-close');
     await page.screenshot({ path: join(out, 'limits.png') });
-    for (const line of ['limit 0', 'clutch 0', 'degrade 0']) rig.tell(line);
+    rig.tell('propagation 1 3');
+    await until(page, () => document.getElementById('hand-left').textContent.includes('A: springs') && document.getElementById('hand-right').textContent.includes('C: rigid'));
+    for (const line of ['limit 0', 'clutch 0', 'degrade 0', 'propagation 0 0']) rig.tell(line);
+    await until(page, () => !/A: |C: /.test(document.querySelector('.hands').textContent));
     await until(page, () => document.getElementById('degraded').hidden);
   },
   'the space bar stops, whatever has the focus': async () => {
@@ -120,7 +123,14 @@ const steps = {
     await page.keyboard.press('Enter');
     await page.getByText('friction: refused – contact.friction: found 3, allowed 0 .. 2').waitFor();
     await page.waitForFunction(() => document.querySelector('[data-key="contact.friction"] input[type=text]').value === '0.75');
+    await page.selectOption('#scenes', 'fake.toml');
+    await page.getByText('This one hangs.').waitFor();
     await page.selectOption('#scenes', 'desk.toml');
+    await page.getByText('This one lies on a desk.').waitFor();
+    assert.ok(await page.evaluate(() => { // the shape is drawn
+      const canvas = document.getElementById('preview-shape');
+      return canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.some((v) => v > 200);
+    }));
     await page.screenshot({ path: join(out, 'change.png') });
     await page.click('#load-scene');
     await page.getByText('load scene: scene desk.toml loaded').waitFor();

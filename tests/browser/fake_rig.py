@@ -3,7 +3,7 @@
     fault N     latch fault N        knot | unknot | square   the thread's shape   spike F   one tick with F newton
     set KEY=V   the scene runs with this override         friction F   as set by somebody else
     limit BITS  force limits of the left hand   clutch B   left tool parked   degrade N   reduced accuracy of the solver
-    arm         go to FORCE
+    propagation L R   the paper's condition at each hand   arm   go to FORCE
     quiet       stop publishing      go              publish again             restart [T]   another session, from tick T
 It prints "ready" when it publishes and "command NAME" for each command received. All values are made up.
 """
@@ -17,7 +17,7 @@ import sys
 import time
 
 import lcm
-from ligature_msg import ack_t, command_t, event_t, offer_t, parameter_t, status_t, thread_t, tick_batch_t, tick_t
+from ligature_msg import ack_t, command_t, event_t, offer_t, parameter_t, preview_t, status_t, thread_t, tick_batch_t, tick_t
 
 STATES = ["OFF", "CALIBRATE", "IDLE", "ENGAGE", "FORCE", "BRAKE", "FAULT"]
 KNOT_NODES, RADIUS_M = 120, 0.03
@@ -59,7 +59,7 @@ class Rig:
         self.lcm.subscribe("LIGATURE_COMMAND", self.on_command)
         self.state, self.fault, self.armed = 2, 0, False
         self.shape, self.spike, self.quiet = unknot(KNOT_NODES), 0.0, False
-        self.limit, self.clutch, self.degraded = 0, 0, 0
+        self.limit, self.clutch, self.degraded, self.conditions = 0, 0, 0, [0, 0]
         self.scene, self.friction, self.overrides = "fake.toml", 0.3, []
         self.restart()
 
@@ -112,6 +112,11 @@ class Rig:
     def publish_offer(self):
         offer = offer_t()
         offer.session, offer.scenes, offer.scene_count = self.session, ["desk.toml", "fake.toml"], 2
+        for name, points in (("lies on a desk", [[0.1 * math.cos(i), 0.1 * math.sin(i), 0.0] for i in range(30)]), ("hangs", [[0, 0, 1], [0, 0, 0.5]])):
+            preview = preview_t()
+            preview.about, preview.facts, preview.p_W_m, preview.point_count = f"This one {name}.", f"rod, {len(points)} nodes", points, len(points)
+            preview.desk_height_m = 0.0 if "desk" in name else math.nan
+            offer.previews.append(preview)
         friction, scale = parameter_t(), parameter_t()
         friction.key, friction.name, friction.value, friction.lowest, friction.highest = "contact.friction", "friction", self.friction, 0.0, 2.0
         scale.key, scale.name, scale.value, scale.lowest, scale.highest = "hands.force_scale", "force scale", 0.003, 0.00075, 0.012
@@ -147,6 +152,8 @@ class Rig:
             self.limit = int(value)
         elif word == "clutch":
             self.clutch = int(value)
+        elif word == "propagation":
+            self.conditions = [int(code) for code in value.split()]
         elif word == "degrade":
             self.degraded = int(value)
         elif word == "arm":
@@ -178,7 +185,7 @@ class Rig:
         tick.port_energy_J, tick.dissipated_J = [0.02 * math.sin(t), 0.01 * math.cos(t)], [1e-4 * t, 2e-4 * t]
         tick.f_world_N = [[200 * f for f in hand] for hand in tick.f_device_N]
         tick.limits, tick.clutch, tick.degradation = [self.limit, 0], [self.clutch, 0], self.degraded
-        tick.gain, tick.heat = [gain, gain], [0.1, 0.2]
+        tick.gain, tick.heat, tick.propagation = [gain, gain], [0.1, 0.2], self.conditions
         self.spike = 0.0
         self.tick += 1
         return tick

@@ -55,7 +55,7 @@ class Numbers:
         self.count += 1
         if kind in ("float", "double"):
             return self.count + 0.5 if kind == "float" else self.count + 1 / 3
-        return self.count if kind != "int8_t" else self.count % 100
+        return self.count if kind != "int8_t" else self.count % 127
 
 
 def fill(message, name, numbers, sizes):

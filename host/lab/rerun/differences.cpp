@@ -79,7 +79,8 @@ const std::vector<std::string>& columns_of_thread() {
                                               "right_world_f_z_N", "right_node",        "kinetic_J",
                                               "potential_J",       "max_stretch",       "min_gap_m",
                                               "contacts",          "degradation",       "thread_end",
-                                              "thread_cut_at",     "time_lost",         "flags"};
+                                              "thread_cut_at",     "time_lost",         "flags",
+                                              "left_propagation",  "right_propagation"};
   return names;
 }
 

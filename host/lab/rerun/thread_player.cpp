@@ -138,6 +138,7 @@ void ThreadPlayer::put_thread(tick_t& tick) {
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     std::ranges::copy(now.f_world_N[h], tick.f_world_N[h]);
     tick.grasped_node[h] = now.grasped_node[h];
+    tick.propagation[h] = now.propagation[h];
   }
   tick.kinetic_J = now.kinetic_J, tick.potential_J = now.potential_J, tick.max_stretch = now.max_stretch;
   tick.min_gap_m = now.min_gap_m, tick.contacts = now.contacts, tick.degradation = now.degradation;

@@ -1,11 +1,13 @@
 // The panel that loads another scene or changes parameters. The firmware lists what can be changed, and answers each
 // request.
 import { showPanel, toast } from './controls.js';
+import { showPreview } from './scene_preview.js';
 
 const $ = (id) => document.getElementById(id);
 const STEPS = 200;
 const rows = new Map(); // the panel's rows, by parameter key
 const asked = new Set(); // keys whose change is not answered yet: what is offered may be the value before or after
+let previews = new Map(); // of the offered scenes, by name
 const changes = []; // of parameters, made in this page: {key, name, from, to, isTold: the
 // firmware has offered `to`}; the last one can be undone
 
@@ -18,6 +20,7 @@ export function setUpChange(link) {
     toast(`${words}: ${answer.accepted ? answer.text : `refused – ${answer.text}`}`, !answer.accepted);
     return answer.accepted;
   };
+  $('scenes').addEventListener('change', () => showPreview(previews.get($('scenes').value)));
   $('load-scene').addEventListener('click', async () => {
     $('load-scene').disabled = true;
     const nodes = $('nodes').value.trim();
@@ -55,10 +58,12 @@ function forgetOld(parameters) {
   showUndo();
 }
 
-export function showOffer({ scenes, parameters }) {
+export function showOffer({ scenes, previews: told, parameters }) {
   const chosen = $('scenes').value;
+  previews = new Map(scenes.map((name, i) => [name, told[i]]));
   $('scenes').replaceChildren(...scenes.map((name) => new Option(name, name)));
   if (scenes.includes(chosen)) $('scenes').value = chosen;
+  showPreview(previews.get($('scenes').value));
   for (const [key, row] of rows) if (!parameters.some((p) => p.key === key)) { row.box.remove(); rows.delete(key); }
   forgetOld(parameters);
   for (const parameter of parameters) (rows.get(parameter.key) ?? makeRow(parameter.key)).show(parameter);

@@ -4,7 +4,7 @@ import { exact } from './numbers.js';
 
 const ALONE = { wakeup_ns: 'wakeup_latency_ns', maxStretch: 'max_stretch', minGap_m: 'min_gap_m', threadDone_ns: 'thread_done_ns', timeLost: 'time_lost' };
 const OF_HAND = { X: 'device_f_x_N', Y: 'device_f_y_N', Z: 'device_f_z_N', '': 'device_f_N', World: 'world_f_N', Node: 'node', Port_J: 'port_energy_J',
-  Dissipated_J: 'dissipated_J', BusLoad: 'bus_load', Heat: 'heat', Limits: 'limits', Clutch: 'clutch' };
+  Dissipated_J: 'dissipated_J', BusLoad: 'bus_load', Heat: 'heat', Limits: 'limits', Clutch: 'clutch', Propagation: 'propagation' };
 
 /** Name of a column of the page (frame.js) in the exported files. */
 export function exportedName(column) {

@@ -5,7 +5,8 @@ export const COLUMNS = ['tick', 'leftX', 'leftY', 'leftZ', 'left', 'rightX', 'ri
   'control_ns', 'execution_ns', 'flags', 'state', 'fault', 'kinetic_J', 'potential_J', 'maxStretch', 'minGap_m',
   'contacts', 'leftNode', 'rightNode', 'leftWorld', 'rightWorld', 'leftPort_J', 'rightPort_J', 'leftDissipated_J', 'rightDissipated_J',
   'leftBusLoad', 'rightBusLoad', 'leftHeat', 'rightHeat', 'leftLimits', 'rightLimits',
-  'leftClutch', 'rightClutch', 'degradation', 'threadDone_ns', 'timeLost'];
+  'leftClutch', 'rightClutch', 'degradation', 'threadDone_ns', 'timeLost',
+  'leftPropagation', 'rightPropagation'];
 export const C = Object.fromEntries(COLUMNS.map((name, i) => [name, i]));
 export const WIDTH = COLUMNS.length;
 export const TICKS_PER_BIN = 50;

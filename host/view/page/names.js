@@ -1,5 +1,5 @@
 // Names of numeric codes. The host sends them once at the start (host/names.hpp), so that there is only one list.
-export const names = { states: [], limits: [], degradations: [], faults: [] };
+export const names = { states: [], limits: [], degradations: [], conditions: [], faults: [] };
 
 export function setNames(given) { Object.assign(names, given); }
 
@@ -9,6 +9,9 @@ export function stateName(number) { return names.states[number] ?? '?'; }
 export function limitNames(bits) { return names.limits.filter(([bit]) => bits & bit).map(([, word]) => word); }
 
 export function degradationName(code) { return names.degradations.find(([number]) => number === code)?.[1] ?? ''; }
+
+/** The paper's condition (section IV) for the force on a hand; empty when none acts. */
+export function conditionName(code) { return names.conditions.find(([number]) => number === code)?.[1] ?? ''; }
 
 /** @returns [meaning, remedy]. */
 export function explainFault(number) {

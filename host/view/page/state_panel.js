@@ -1,7 +1,7 @@
 // State, fault and age of the data, large enough to be read from across the room.
 import { C } from './frame.js';
 import { exact, three } from './numbers.js';
-import { degradationName, explainFault, limitNames, stateName } from './names.js';
+import { conditionName, degradationName, explainFault, limitNames, stateName } from './names.js';
 
 export const STALE_MS = 120; // outdated data is marked within 200 ms: a timer checks every 20 ms
 const SLOW_MS = 250, LONGEST_LAG_MS = 1000;
@@ -84,12 +84,13 @@ export function showHands(now, row) {
     document.querySelector(`[data-command="clutch ${side}"]`).hidden = !!isClutched;
     document.querySelector(`[data-command="unclutch ${side}"]`).hidden = !isClutched;
     const limits = limitNames(row?.[i ? C.rightLimits : C.leftLimits] ?? 0);
+    const condition = conditionName(row?.[i ? C.rightPropagation : C.leftPropagation] ?? 0);
     const [number, words] = $(`hand-${side}`).children;
     number.dataset.exact = `${exact(force)} N`;
     write(number, `${force < 5e-4 ? '0' : three(force)} N`);
     write(words, ` · ${hand.node >= 0 ? `holds node ${hand.node}` : hand.grip ? 'closed' : 'open'}`
       + `${hand.deadMan ? ' · dead-man' : ''}${isClutched ? ' · clutch: tool parked' : ''}${hand.age > 1 ? ` · ${hand.age} ticks old` : ''}`
-      + (limits.length ? ` · limited: ${limits.join(', ')}` : ''));
+      + (limits.length ? ` · limited: ${limits.join(', ')}` : '') + (condition && ` · ${condition}`));
   });
   const given = degradationName(row?.[C.degradation] ?? 0);
   $('degraded').hidden = !given;

@@ -21,6 +21,7 @@ export const THIRD = {
   energy: { names: ['potential', 'kinetic'], si: 'J', columns: [C.potential_J, C.kinetic_J], factor: 1, unit: 'J: potential, kinetic', least: 1e-3 },
   stretch: { names: ['longest edge'], si: '', columns: [C.maxStretch, C.maxStretch], factor: 100, unit: '%, of the longest edge', least: 0.1 },
   gap: { names: ['smallest'], si: 'm', columns: [C.minGap_m, C.minGap_m], factor: 1000, unit: 'mm, smallest of the thread with itself; below zero: overlap', least: 1 },
+  propagation: { names: ['left', 'right'], si: '', columns: [C.leftPropagation, C.rightPropagation], factor: 1, unit: 'condition of the paper: 1 A, 2 B, 3 C; left; grey right', least: 3.2 },
   contacts: { names: ['in action'], si: '', columns: [C.contacts, C.contacts], factor: 1, unit: 'number in action', least: 4 },
 };
 const FORCES = [C.left, C.leftX, C.leftY, C.leftZ, C.right, C.rightX, C.rightY, C.rightZ];

@@ -15,7 +15,9 @@
 
 #include "firmware/app/rehearsal.hpp"
 #include "firmware/app/rehearsal_process.hpp"
+#include "firmware/app/scene_preview.hpp"
 #include "firmware/platform/sanitized.hpp"
+#include "protocol/scene/scene_file.hpp"
 
 namespace ligature::app {
 namespace {
@@ -82,6 +84,35 @@ TEST_F(SceneDeskTest, OffersTheScenesBesideTheFirstAndParametersWithRanges) {
   for (const auto& p : offer.parameters) {
     EXPECT_LE(p.lowest, p.value) << p.key;
     EXPECT_GE(p.highest, p.value) << p.key;
+  }
+}
+
+TEST_F(SceneDeskTest, PreviewsSayWhatASceneIsWithTheLaunchsOverrides) {
+  options.overrides = {"suture.length_m=4.0"};
+  const auto offer = desk().offer();
+  ASSERT_EQ(offer.previews.size(), offer.scenes.size());
+  EXPECT_EQ(offer.previews[1].facts, "paper-4, 20 nodes, 4 m long, 80 mm thick, fixed at 1 node, grippers collide");
+  EXPECT_TRUE(std::isnan(offer.previews[1].desk_height_m));
+  EXPECT_EQ(offer.previews[3].point_count, 0) << "wrong.toml";
+  EXPECT_EQ(offer.previews[3].about, (folder / "wrong.toml:2: key 'suture.nodes': found 1, allowed integer 2 .. 5000"));
+}
+
+// The preview simulates nothing, so its shape is compared with that of the physics.
+TEST(ScenePreview, ShowsTheStartShapeOfEachShippedScene) {
+  for (const auto& entry : fs::directory_iterator(LIGATURE_SOURCE_DIR "/scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    const auto preview = preview_of(entry.path(), {});
+    const auto scene = std::get<scene::Scene>(scene::load_scene(entry.path()));
+    const auto thread = std::get<physics::Simulation>(physics::Simulation::make(scene));
+    ASSERT_GE(preview.p_W_m.size(), 2U) << entry.path();
+    EXPECT_FALSE(preview.about.empty() || preview.facts.empty()) << entry.path();
+    EXPECT_EQ(!std::isnan(preview.desk_height_m), scene.world.desk_height_m.has_value());
+    const auto off_m = [](const std::vector<float>& p, const physics::Vec3& q) {
+      return std::hypot(p[0] - q.x(), p[1] - q.y(), p[2] - q.z());
+    };
+    const double most_m = 0.01 * scene.suture.length_m;
+    EXPECT_LT(off_m(preview.p_W_m.front(), thread.nodes_W().front()), most_m) << entry.path();
+    EXPECT_LT(off_m(preview.p_W_m.back(), thread.nodes_W().back()), most_m) << entry.path();
   }
 }
 

@@ -26,6 +26,10 @@ ligature_msg::offer_t some_offer() {
   ligature_msg::offer_t offer{};
   offer.scenes = {"paper.toml", "desk.toml"};
   offer.scene_count = 2;
+  offer.previews.resize(2);
+  offer.previews[1].about = "on a desk", offer.previews[1].facts = "paper-4";
+  offer.previews[1].p_W_m = {{0.0F, 0.0F, 1.0F}, {0.0F, 0.5F, 1.0F}};
+  offer.previews[1].point_count = 2;
   offer.parameters.resize(2);
   offer.parameter_count = 2;
   for (auto& p : offer.parameters) p.key = "contact.friction", p.name = "friction", p.value = 0.3, p.highest = 2.0;
@@ -56,6 +60,15 @@ TEST(Messages, RefusesEveryCutAndForgedCountOfAnOffer) {
   for (const std::uint32_t count : {0U, 1U, 3U, 0x7FFFFFFFU, 0x80000000U, 0xFFFFFFFFU}) {
     auto forged = whole;
     put_int32(forged, 24, count);
+    EXPECT_FALSE(decode<ligature_msg::offer_t>(forged)) << count;
+  }
+  auto many = some_offer();  // only the count of the points is wrong
+  many.previews[1].about.clear(), many.previews[1].facts.clear();
+  const auto points = encoded(many);
+  const std::size_t at = 24 + 4 + (4 + 11) + (4 + 10) + (5 + 5 + 4 + 4) + (5 + 5 + 4);
+  for (const std::uint32_t count : {0U, 1U, 3U, 0x7FFFFFFFU, 0x80000000U, 0xFFFFFFFFU}) {
+    auto forged = points;
+    put_int32(forged, at, count);
     EXPECT_FALSE(decode<ligature_msg::offer_t>(forged)) << count;
   }
   auto upside_down = some_offer();

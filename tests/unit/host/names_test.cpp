@@ -55,5 +55,11 @@ TEST(Names, EveryLimitAndDegradationHasOne) {
                            static_cast<int>(rt::Degradation::kCandidates)}));
 }
 
+TEST(Names, EveryConditionOfPropagationHasOne) {
+  EXPECT_EQ(codes(kPropagationNames),
+            (std::set<int>{static_cast<int>(rt::Propagation::kA), static_cast<int>(rt::Propagation::kB),
+                           static_cast<int>(rt::Propagation::kC)}));
+}
+
 }  // namespace
 }  // namespace ligature::host

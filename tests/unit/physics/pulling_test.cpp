@@ -129,6 +129,8 @@ TEST(Propagation, OneHandThatPullsTautIsConditionB) {
   EXPECT_EQ(sim.hand(Hand::kLeft).condition, Propagation::kB);
   // Statics: the fixed frame carries the hand's pull and the weight; every segment is at its limit.
   EXPECT_GT(sim.hand(Hand::kLeft).f_W.z(), 300.0);
+  sim.tick({ToolInput{Vec3(0.0, 0.0, -0.5), Vec3::Zero(), false}, away});
+  EXPECT_EQ(sim.hand(Hand::kLeft).condition, Propagation::kNone) << "a hand that has let go";
 }
 
 // Reported tensions of a thread that a hand pulls taut: each segment carries the hand's pull and the nodes below it,

@@ -75,6 +75,7 @@ struct Sources {
       s.clutch = yes == kClutch + h;
       s.age_ticks = yes == kStale + h ? 7 + h : 0;
       contact[h].node = 201 + h;
+      contact[h].condition = h == 0 ? physics::Propagation::kB : physics::Propagation::kC;
       contact[h].p_WG = d.vector(), contact[h].v_WG = d.vector(), contact[h].f_W = d.vector();
       for (std::size_t j = 0; j < 3; ++j)
         record.torque_permille[static_cast<std::size_t>(h)][j] =
@@ -133,6 +134,7 @@ struct Sources {
             {"f_device_N", xyz(l.f_device_N, r.f_device_N)},
             {"torque_permille", words(301, 302, 303, 304, 305, 306)},
             {"grasped_node", words(201, 202)},
+            {"propagation", words(2, 3)},
             {"grip", words(int{yes == kGrip}, int{yes == kGrip + 1})},
             {"dead_man", words(int{yes == kDeadMan}, int{yes == kDeadMan + 1})},
             {"tpdo_age_ticks", words(yes == kStale ? 7 : 0, yes == kStale + 1 ? 8 : 0)},
