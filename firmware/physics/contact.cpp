@@ -33,6 +33,7 @@ ContactSolver::ContactSolver(const ThreadModel& model, const ContactSettings& se
 void ContactSolver::forget() noexcept {
   candidates_.clear();
   old_candidates_.clear();
+  rows_.clear();
   margin_m_ = -1.0;
   report_ = {};
 }

@@ -2,10 +2,12 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "firmware/physics/broad_phase.hpp"
 #include "firmware/physics/bvh.hpp"
+#include "firmware/physics/contact_point.hpp"
 #include "firmware/physics/contact_row.hpp"
 #include "firmware/physics/roomy_vector.hpp"
 #include "firmware/physics/sweep.hpp"
@@ -67,6 +69,8 @@ class ContactSolver {
   void moved(double speed_m_per_s, double step_s) noexcept { travel_m_ += 2.0 * speed_m_per_s * step_s; }
 
   [[nodiscard]] const ContactReport& report() const noexcept { return report_; }
+  /// @see Simulation::contacts
+  std::size_t points(const ThreadState& state, double step_s, std::span<ContactPoint> out) const noexcept;
   void forget() noexcept;
 
  private:

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "firmware/physics/closest_points.hpp"
 #include "firmware/physics/contact.hpp"
 
@@ -54,6 +56,33 @@ void ContactSolver::measure(const ThreadState& s, Candidate& c, ContactRow& row)
   row.node[2] = outside ? nobody : j, row.node[3] = outside ? nobody : j + 1;
   row.weight[2] = outside ? 0.0 : near.b - 1.0, row.weight[3] = outside ? 0.0 : -near.b;
   row.v_outside = outside ? to_pack(o->v_m_per_s) : Pack{};
+}
+
+std::size_t ContactSolver::points(const ThreadState& s, double step_s, std::span<ContactPoint> out) const noexcept {
+  const auto vec3 = [](const V3<double>& a) { return Vec3(a.x, a.y, a.z); };
+  // Point of the row's first (0) or second (2) body; weights of the second one are negative.
+  const auto place = [&](const ContactRow& row, std::size_t body) -> Vec3 {
+    V3<double> sum{};
+    for (std::size_t k = body; k < body + 2; ++k)
+      if (row.weight[k] != 0.0) sum = sum + std::abs(row.weight[k]) * s.p.at(row.node[k]);
+    return vec3(sum);
+  };
+  std::size_t count = 0;
+  for (const ContactRow& row : rows_) {
+    if (count == out.size()) break;
+    if (!(dot3(row.impulse, row.impulse) > 0.0)) continue;
+    const Candidate& c = candidates_[static_cast<std::size_t>(row.candidate)];
+    const bool is_pair = c.kind == Candidate::Kind::kSegments;
+    ContactPoint& point = out[count++];
+    point.segment = c.first < nodes_ - 1 ? c.first : nodes_ - 2;  // the desk touches nodes, also the last one
+    point.other = is_pair ? c.second : -1;
+    point.normal_W = Vec3(row.normal[0], row.normal[1], row.normal[2]);
+    point.f_W = Vec3(row.impulse[0], row.impulse[1], row.impulse[2]) / step_s;
+    point.gap_m = c.gap_m;
+    const Vec3 at = place(row, 0);
+    point.p_W = is_pair ? Vec3(0.5 * (at + place(row, 2))) : Vec3(at - radius_m_ * point.normal_W);
+  }
+  return count;
 }
 
 }  // namespace ligature::physics

@@ -282,6 +282,10 @@ void PaperSimulation::describe(std::span<float> tension_N, std::span<float> turn
   }
 }
 
+std::size_t PaperSimulation::contacts(std::span<ContactPoint> out) const noexcept {
+  return contact_kind_ == scene::ContactSolver::kImplicit ? contact_.points(state_, model_.step_s, out) : 0;
+}
+
 void PaperSimulation::reset() noexcept {
   state_ = initial_;
   restart();

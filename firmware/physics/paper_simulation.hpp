@@ -35,6 +35,7 @@ class PaperSimulation {
     return unpacked(state_.v, velocities_W_, velocities_stale_);
   }
   void describe(std::span<float> tension_N, std::span<float> turn_rad) const noexcept;
+  std::size_t contacts(std::span<ContactPoint> out) const noexcept;
   [[nodiscard]] const HandContact& hand(Hand h) const noexcept { return hands_[static_cast<std::size_t>(h)]; }
   [[nodiscard]] const Diagnostics& diagnostics() const noexcept { return health_; }
   void reset() noexcept;

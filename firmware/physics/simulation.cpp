@@ -6,6 +6,7 @@
 #include "firmware/physics/paper_simulation.hpp"
 #include "firmware/physics/rod/describe.hpp"
 #include "firmware/physics/rod/rod_simulation.hpp"
+#include "firmware/physics/rod_contacts.hpp"
 
 namespace ligature::physics {
 
@@ -86,6 +87,10 @@ void Simulation::describe(std::span<float> tension_N, std::span<float> turn_rad)
   if (const auto* rod = std::get_if<rod::RodSimulation>(&impl_->model))
     return rod::describe(rod->rod(), tension_N, turn_rad);
   if (const auto* paper = std::get_if<PaperSimulation>(&impl_->model)) paper->describe(tension_N, turn_rad);
+}
+std::size_t Simulation::contacts(std::span<ContactPoint> out) const noexcept {
+  if (const auto* rod = std::get_if<rod::RodSimulation>(&impl_->model)) return rod_contacts(rod->rod(), out);
+  return std::get_if<PaperSimulation>(&impl_->model)->contacts(out);
 }
 const HandContact& Simulation::hand(Hand h) const noexcept {
   return std::visit([h](const auto& model) -> const HandContact& { return model.hand(h); }, impl_->model);

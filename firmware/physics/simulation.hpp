@@ -10,6 +10,7 @@
 #include <string>
 #include <variant>
 
+#include "firmware/physics/contact_point.hpp"
 #include "firmware/physics/time_left.hpp"
 #include "firmware/physics/types.hpp"
 #include "protocol/scene/scene.hpp"
@@ -104,6 +105,11 @@ class Simulation {
   /// material frame relative to the twist-free frame transported from node 0, rad. The spans are at most as long as
   /// nodes_W(). O(n).
   void describe(std::span<float> tension_N, std::span<float> turn_rad) const noexcept;
+  /// For displays and studies: the contacts that carried a force in the last step, as many as fit into `out`. None with
+  /// contact.solver = "paper", which keeps no forces. O(contacts).
+  /// @return number of contacts written
+  std::size_t contacts(std::span<ContactPoint> out) const noexcept;
+  static constexpr std::size_t kMostContacts = 4096;  ///< enough room for any thread
   [[nodiscard]] const HandContact& hand(Hand h) const noexcept;
   [[nodiscard]] const Diagnostics& diagnostics() const noexcept;
 

@@ -17,12 +17,12 @@ cpu.require()
 
 from ligature._core import Diagnostics, Hand, Knot, Refusal, Tool, __version__  # noqa: E402
 from ligature.inputs import Scene, Script, knot  # noqa: E402
-from ligature.recording import TICK_COLUMNS, Recording  # noqa: E402
-from ligature.simulation import Run, Simulation  # noqa: E402
+from ligature.recording import TICK_COLUMNS, Recording, Rerun, rerun  # noqa: E402
+from ligature.simulation import Contacts, Run, Simulation  # noqa: E402
 
 SCENES = pathlib.Path(__file__).parent / "scenes"  # the shipped scenes
 
 __all__ = [
-    "SCENES", "TICK_COLUMNS", "Diagnostics", "Hand", "Knot", "Recording", "Refusal", "Run", "Scene", "Script", "Simulation",
-    "Tool", "__version__", "knot",
+    "SCENES", "TICK_COLUMNS", "Contacts", "Diagnostics", "Hand", "Knot", "Recording", "Refusal", "Rerun", "Run", "Scene",
+    "Script", "Simulation", "Tool", "__version__", "knot", "rerun",
 ]

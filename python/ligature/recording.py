@@ -1,7 +1,7 @@
-"""Recordings as arrays: LCM logs of `ligature-host record`, and flight recorder files."""
+"""Recordings as arrays: LCM logs of `ligature-host record`, and flight recorder files; reruns."""
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -73,7 +73,10 @@ class Recording:
     """
 
     def __init__(self, path: Path) -> None:
-        recorded = _core._read_recording(path_of(path))
+        self.path: str = path_of(path)  # the file
+        self._take(_core._read_recording(self.path))
+
+    def _take(self, recorded: Any) -> None:
         self.ticks: dict[str, np.ndarray] = recorded.ticks()  # columns of ticks.csv: t_s, session, tick, left_p_WT_x_m, ..
         self.shapes = Shapes(recorded.shapes())  # empty for a flight recorder file
         self.events: np.ndarray = np.array(recorded.events(), dtype=EVENT)  # t_s, tick, kind, hand, code, text
@@ -95,6 +98,45 @@ class Recording:
         if missing := [name for name in names if name not in self.ticks]:
             raise _core.Refusal(f"ticks: no column '{missing[0]}'; allowed those of ligature.TICK_COLUMNS")
         return np.stack([self.ticks[name] for name in names], axis=1)
+
+
+class Rerun(Recording):
+    """A recording whose thread has been computed again (`rerun`). Its arrays are those of the rerun.
+
+    The tools are where they were; device forces are the recorded ones plus gain times force_scale times the difference
+    of the thread's forces, at most hands.max_force_N.
+    """
+
+    def __init__(self, path: str, made: _core._Rerun) -> None:
+        if not isinstance(made, _core._Rerun):
+            raise TypeError(f"Rerun: found a {type(made).__name__}, allowed what ligature.rerun makes")
+        self.path: str = path  # the recording that was computed again
+        self._take(made.recorded)
+        facts = made.facts()
+        self.equal: bool = facts["equal"]  # every number of the thread is the recorded one, to the bit
+        self.first_difference: str = facts["first_difference"]  # "" or tick, column and both values
+        self.unknown_ticks: int = facts["unknown_ticks"]  # not computed: a hole before them; their values are the recorded ones
+        self.left_peak_N: float = facts["left_peak_N"]  # largest force of the thread on the left hand
+        self.right_peak_N: float = facts["right_peak_N"]  # on the right hand
+        self.left_apart_rms_N: float = facts["left_apart_rms_N"]  # root mean square of the difference from the recorded force
+        self.right_apart_rms_N: float = facts["right_apart_rms_N"]  # on the right hand
+        self.lost_ticks: float = facts["lost_ticks"]  # time in which the thread was not moved, in ticks
+        self.knots: list[tuple[float, str]] = facts["knots"]  # time in s and type, one entry per change; looked at every 0.1 s
+        self.tick_us: np.ndarray = made.cost_us()  # CPU time of the thread's ticks, us
+
+
+def rerun(recording: Recording | Path, overrides: Overrides | None = None, session: int | None = None,
+          cuts: bool | None = None) -> Rerun:
+    """Computes the thread of a recorded run again, with the recorded motion of the tools: `ligature-lab rerun`.
+
+    recording: an LCM log, or a Recording of one. overrides: of every recorded scene. session: number from 1; None: the
+    only one. cuts: whether a tick ends early where it ran out of time in the recording; None: only without overrides.
+    Other Python threads run meanwhile; Ctrl-C stops. Raises Refusal for a recording that lacks something, or settings
+    that are not allowed. Source: host/lab/rerun/rerun.hpp.
+    """
+    path = recording.path if isinstance(recording, Recording) else path_of(recording)
+    lines = lines_of(overrides)
+    return Rerun(path, _core._rerun(path, lines, not lines if cuts is None else bool(cuts), 0 if session is None else session))
 
 
 TICK_COLUMNS: dict[str, tuple[str, str]] = _core._tick_meanings()  # name: (unit, meaning)

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterable
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -51,6 +51,19 @@ class Run:
         return knot(self.shapes[-1])
 
 
+class Contacts(NamedTuple):
+    """The k places where the thread touched itself, the desk or a body with a force, in the last time step of a tick.
+
+    Segment i lies between the nodes i and i + 1. A contact of two strands appears once.
+    """
+
+    pairs: np.ndarray  # k x 2: segment, and the other strand's segment; -1: the desk, a peg, a gripper or a hook
+    points_m: np.ndarray  # k x 3, m: between the two surfaces
+    normals: np.ndarray  # k x 3: unit vectors from the other towards the segment
+    forces_N: np.ndarray  # k x 3, N: on the segment, friction included; the other gets the opposite
+    gaps_m: np.ndarray  # k, m: distance of the surfaces before the step; negative: overlap
+
+
 class Simulation(_core.Simulation):
     """A thread in its world, simulated by the firmware's physics (firmware/physics/simulation.hpp).
 
@@ -76,6 +89,15 @@ class Simulation(_core.Simulation):
         count = len(os.sched_getaffinity(0)) if threads is None else threads
         runs = self._rollout(list(scripts), count, *_times(duration_s, shape_every_s, start_s))
         return [Run(run) for run in runs]
+
+    @property
+    def contacts(self) -> Contacts:
+        """The contacts that carried a force in the last time step, as new arrays.
+
+        Empty before the first tick, and with contact.solver = "paper", which keeps no forces. Source:
+        firmware/physics/contact_point.hpp.
+        """
+        return Contacts(*self._contacts())
 
     def copy(self) -> Self:
         """An independent simulation in the same state."""

@@ -89,6 +89,7 @@ void add_shape(nb::class_<Sim>& type) {
       .def_prop_ro(
           "curvature_per_m", [](Sim& s) { return curvature_per_m(s.idle().simulation()); }, nb::rv_policy::automatic,
           "n, 1/m, a new array: of the circle through a node and its two neighbours; 0 at the ends.")
+      .def("_contacts", [](Sim& s) { return contacts(s.idle().simulation()); })
       .def(
           "knot",
           [](Sim& s) {

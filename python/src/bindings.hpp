@@ -18,6 +18,7 @@ void bind_run(nanobind::module_& module);
 void bind_simulation(nanobind::module_& module);
 void bind_knot(nanobind::module_& module);
 void bind_recording(nanobind::module_& module);
+void bind_rerun(nanobind::module_& module);
 void bind_rig(nanobind::module_& module);
 
 }  // namespace ligature::python

@@ -65,6 +65,24 @@ Reals curvature_per_m(const physics::Simulation& simulation) {
   return one_row(std::move(values));
 }
 
+nb::tuple contacts(const physics::Simulation& simulation) {
+  std::vector<physics::ContactPoint> points(physics::Simulation::kMostContacts);
+  points.resize(simulation.contacts(points));
+  std::vector<std::int64_t> pairs;
+  std::vector<double> places, normals, forces, gaps;
+  for (const auto& c : points) {
+    pairs.insert(pairs.end(), {c.segment, c.other});
+    places.insert(places.end(), c.p_W.data(), c.p_W.data() + 3);
+    normals.insert(normals.end(), c.normal_W.data(), c.normal_W.data() + 3);
+    forces.insert(forces.end(), c.f_W.data(), c.f_W.data() + 3);
+    gaps.push_back(c.gap_m);
+  }
+  const std::size_t k = points.size();
+  return nb::make_tuple(array_of(std::move(pairs), {k, 2}), array_of(std::move(places), {k, 3}),
+                        array_of(std::move(normals), {k, 3}), array_of(std::move(forces), {k, 3}),
+                        array_of(std::move(gaps), {k}));
+}
+
 void bind_looks(nb::module_& module) {
   bind_hand(module);
   using physics::Diagnostics;

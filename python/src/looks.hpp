@@ -11,6 +11,8 @@ using Reals = View<double, nb::ndim<1>>;
 
 [[nodiscard]] Floats tension_N(const physics::Simulation& simulation);
 [[nodiscard]] Floats turn_rad(const physics::Simulation& simulation);
+/// pairs (k x 2), places, normals and forces (k x 3), gaps (k) of physics::Simulation::contacts().
+[[nodiscard]] nb::tuple contacts(const physics::Simulation& simulation);
 [[nodiscard]] Reals curvature_per_m(const physics::Simulation& simulation);
 
 /// Binds Hand and Diagnostics.

@@ -49,5 +49,6 @@ NB_MODULE(_core, module) {
   python::bind_simulation(module);
   python::bind_knot(module);
   python::bind_recording(module);
+  python::bind_rerun(module);
   python::bind_rig(module);
 }

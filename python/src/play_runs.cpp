@@ -1,39 +1,14 @@
 #include "python/src/play_runs.hpp"
 
-#include <chrono>
-
 #include "host/lab/outcome.hpp"
 #include "host/lab/script_tools.hpp"
 #include "python/src/arrays.hpp"
+#include "python/src/signals.hpp"
 
 namespace ligature::python {
 namespace {
 
 constexpr int kMostThreads = 256;
-
-/// Lets Python handle signals every 50 ms; returns false once a handler has raised an exception (Ctrl-C).
-class Signals {
- public:
-  bool operator()() {
-    const auto now = Clock::now();
-    if (now < due_) return true;
-    due_ = now + std::chrono::milliseconds(50);
-    const nb::gil_scoped_acquire lock;
-    raised_ = raised_ || PyErr_CheckSignals() != 0;
-    if (raised_ && !error_ && PyErr_Occurred()) error_.emplace();
-    return !raised_;
-  }
-  /// Rethrows the exception that a Python signal handler has raised. The caller must hold the GIL.
-  void rethrow() {
-    if (error_) throw nb::python_error(std::move(*error_));
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point due_ = Clock::now() + std::chrono::milliseconds(50);
-  bool raised_ = false;
-  std::optional<nb::python_error> error_;
-};
 
 double duration_of(const scene::GripperScript& script, std::optional<double> duration_s) {
   return duration_s.value_or(lab::default_duration_s(script));

@@ -54,6 +54,7 @@ RULES = {
     "host/view/replay.cpp": (["host/console", "host/view"], ["OS"]),
     "host/view": (["host", "protocol/scene", "protocol/lcm", "ligature_msg"], ["boost/", "CLI/", "nlohmann/", "OS"]),
     # The Python package: thread, scenes, knots and recordings; the rig only through the virtual one.
+    "python/src/bind_rerun.cpp": (["python/src", "host/gap_counter.hpp", "host/lab/rerun", "protocol/scene"], ["nanobind/"]),
     "python/src/bind_rig.cpp": (["python/src", "firmware/telemetry/messages.hpp", "host/lab/rig/stepped_rig.hpp", "host/messages.hpp", "protocol/lcm/command_words.hpp", "protocol/scene"], ["nanobind/"]),
     "python/src": (["firmware/physics", "protocol/scene", "host/errors.hpp", "host/knot", "host/lab/every.hpp", "host/lab/outcome.hpp", "host/lab/script_tools.hpp", "host/lab/trace_row.hpp", "host/rig_facts.hpp", "host/recording_reader.hpp", "host/export_sink.hpp", "host/tick_columns.hpp"], ["nanobind/", "OS"]),
 }

@@ -20,6 +20,7 @@ SAYS = {
     "08_plot_for_a_paper": "knot 3_1",
     "09_gym": "trained - random: 0.",
     "10_film": "100 pictures",
+    "11_contacts_in_a_knot": "knot 3_1",
 }
 
 

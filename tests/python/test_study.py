@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import random
 
 import dask
@@ -223,6 +224,34 @@ def test_slurm_jobs():
     assert "distributed.cli.dask_worker" in script and "--nthreads 1" in script
     with pytest.raises(ligature.Refusal, match="--slurm-set: .*que"):
         slurm_cluster({"que": "short"})
+
+
+SBATCH = """#!/bin/sh
+# A stand-in for Slurm's sbatch: starts the job's script on this machine, in a session of its own.
+cp "$1" {folder}/job-$$.sh
+setsid sh {folder}/job-$$.sh > {folder}/job-$$.out 2>&1 &
+echo "Submitted batch job $!"
+"""
+SCANCEL = """#!/bin/sh
+echo "$@" >> {folder}/cancelled
+kill -TERM -- "-$1"
+"""
+
+
+def test_a_study_in_jobs_of_a_stand_in_for_slurm(tmp_path, monkeypatch):
+    """Jobs are submitted, their workers come, do all runs, and are cancelled. Slurm itself is not there."""
+    for name, text in (("sbatch", SBATCH), ("scancel", SCANCEL)):
+        (tmp_path / name).write_text(text.format(folder=tmp_path))
+        (tmp_path / name).chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    study = Study.load(study_file(tmp_path, "square", 12, more="", seeds="1"))
+    ended = study.run(tmp_path / "out", slurm=2, slurm_options={"interface": "lo", "walltime": "00:05:00"}, progress=None)
+    assert ended == (12, 0, 0)
+    found = rows(tmp_path / "out").to_pylist()
+    assert [row["square"] for row in found] == [row["x"] ** 2 + 1 for row in found]
+    jobs = list(tmp_path.glob("job-*.sh"))
+    assert len(jobs) == 2 and all("#SBATCH -t 00:05:00" in job.read_text() for job in jobs)
+    assert len((tmp_path / "cancelled").read_text().split()) == 2, "no job outlives the study"
 
 
 def test_progress():

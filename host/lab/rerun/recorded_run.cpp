@@ -7,8 +7,8 @@
 
 #include "host/console/progress.hpp"
 #include "host/flight_reader.hpp"
+#include "host/lab/loading.hpp"
 #include "host/lab/outcome.hpp"
-#include "host/lab/rehearsal.hpp"
 #include "host/log_reader.hpp"
 #include "host/messages.hpp"
 #include "protocol/scene/recorded_scene.hpp"

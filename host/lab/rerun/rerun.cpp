@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <optional>
 
 #include "firmware/platform/realtime.hpp"
@@ -11,7 +12,6 @@
 #include "host/errors.hpp"
 #include "host/gap_counter.hpp"
 #include "host/lab/outcome.hpp"
-#include "host/lab/rerun/rerun_files.hpp"
 #include "host/lab/rerun/thread_player.hpp"
 #include "host/log_reader.hpp"
 #include "host/messages.hpp"
@@ -32,27 +32,27 @@ class Play {
       : run_(run),
         player_(scenes_of(options.log, run, options.overrides), options.cuts),
         outcome_{Differences(run.period_s), run.ticks, run.period_s, 0, {}, 0, false} {
-    if (!options.folder.empty()) files_.emplace(options.folder, options.overrides, run.period_s);
+    if (options.output) output_ = options.output(run);
   }
 
   void take(const host::LogEvent& event) {
-    if (files_) files_->log.begin(event);
+    if (output_) output_->begin(event);
     if (event.channel == host::kTicksChannel) {
       if (const auto batch = host::decode<ligature_msg::tick_batch_t>(event.data)) return take(*batch);
     } else if (event.channel == host::kThreadChannel) {
       if (auto shape = host::decode<thread_t>(event.data); shape && is_ours_) return take(std::move(*shape));
     } else if (event.channel == host::kStatusChannel) {
       const auto status = host::decode<ligature_msg::status_t>(event.data);
-      if (status && status->session == run_.session && files_) files_->log.add(*status);
-    } else if (event.channel == host::kEventChannel && is_ours_ && files_ &&
+      if (status && status->session == run_.session && output_) output_->add(*status);
+    } else if (event.channel == host::kEventChannel && is_ours_ && output_ &&
                host::is_readable(event.channel, event.data)) {
-      files_->log.copy(event);
+      output_->copy(event);
     }
   }
 
   RerunOutcome finish(bool interrupted) {
     order_.flush([this](const tick_t& t) { play(t); });
-    if (files_) files_->log.end_batch(like_), files_->close();
+    if (output_) output_->end_batch(like_), output_->close();
     outcome_.interrupted = interrupted;
     outcome_.shapes_alone += static_cast<std::int64_t>(recorded_.size());
     outcome_.why_unknown = outcome_.unknown_ticks > 0 ? player_.why_unknown() : "";
@@ -67,7 +67,7 @@ class Play {
     like_.ticks.clear();
     for (const auto& tick : batch.ticks)
       if (seen_.add(tick.tick)) order_.add(tick, [this](const tick_t& t) { play(t); });
-    if (files_) files_->log.end_batch(like_);
+    if (output_) output_->end_batch(like_);
   }
 
   void play(const tick_t& tick) {
@@ -75,10 +75,10 @@ class Play {
     if (again) {
       outcome_.differences.add(tick, *again, player_.cost_us());
       const tick_t felt = with_device_forces(tick, *again);
-      if (files_) files_->add(tick, felt, player_.cost_us());
+      if (output_) output_->add(tick, felt, player_.cost_us());
     } else {
       ++outcome_.unknown_ticks;
-      if (files_) files_->log.add(tick);
+      if (output_) output_->add_unknown(tick);
     }
     for (auto& shape : player_.take_shapes()) {
       if (const auto waits = recorded_.find(shape.tick); waits != recorded_.end()) {
@@ -105,7 +105,7 @@ class Play {
   void compare(const thread_t& recorded, const thread_t& again) {
     compared_tick_ = recorded.tick;
     outcome_.differences.add(recorded, again);
-    if (files_) files_->add(recorded, again);
+    if (output_) output_->add(recorded, again);
   }
 
   /// Device forces of the rerun. The hands' motion is the recorded one, so the force changes only by the difference of
@@ -130,7 +130,7 @@ class Play {
   const RecordedRun& run_;
   ThreadPlayer player_;
   RerunOutcome outcome_;
-  std::optional<RerunFiles> files_;
+  std::unique_ptr<RerunOutput> output_;
   host::GapCounter seen_;
   host::TickOrder order_;
   ligature_msg::tick_batch_t like_{};
@@ -150,6 +150,7 @@ RerunOutcome rerun(const RerunOptions& options) {
   host::LogReader log(options.log);
   try {
     while (const host::LogEvent* event = log.next()) {
+      if (!options.go_on()) return play.finish(true);
       play.take(*event);
       progress.show(log.offset(), log.size());
     }

@@ -1,21 +1,44 @@
 #pragma once
 // Plays the recorded hand motion of a session through the physics again and compares the result.
 
-#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "host/lab/rerun/differences.hpp"
 #include "host/lab/rerun/recorded_run.hpp"
+#include "host/log_reader.hpp"
+#include "ligature_msg/status_t.hpp"
+#include "ligature_msg/tick_batch_t.hpp"
 
 namespace ligature::lab {
+
+/// Takes a rerun as it comes: files, or arrays in memory. Everything is in the order of the recorded log.
+class RerunOutput {
+ public:
+  virtual ~RerunOutput() = default;
+  virtual void begin(const host::LogEvent& event) = 0;  ///< what follows comes from this recorded event
+  /// A recomputed tick with its device forces, and the recorded one. cost_us: CPU time of the thread's ticks.
+  virtual void add(const ligature_msg::tick_t& recorded, const ligature_msg::tick_t& again,
+                   std::optional<double> cost_us) = 0;
+  virtual void add_unknown(const ligature_msg::tick_t& recorded) = 0;  ///< a tick that could not be recomputed
+  virtual void add(const ligature_msg::thread_t& recorded, const ligature_msg::thread_t& again) = 0;
+  virtual void add(const ligature_msg::status_t& status) = 0;
+  virtual void copy(const host::LogEvent& event) = 0;                             ///< an event that is not the thread's
+  virtual void end_batch(const ligature_msg::tick_batch_t& like) { (void)like; }  ///< the ticks of a message are over
+  virtual void close() = 0;
+};
 
 struct RerunOptions {
   std::string log{};
   std::vector<std::string> overrides{};
-  bool cuts = true;                ///< end ticks early where the recorded ones ran out of time
-  int session = 0;                 ///< number from 1; 0: the only one
-  std::filesystem::path folder{};  ///< folder for output files; empty: none are written
+  bool cuts = true;  ///< end ticks early where the recorded ones ran out of time
+  int session = 0;   ///< number from 1; 0: the only one
+  /// Makes the output once recording and settings are accepted; absent: the differences alone are wanted.
+  std::function<std::unique_ptr<RerunOutput>(const RecordedRun& run)> output{};
+  std::function<bool()> go_on = [] { return true; };  ///< asked at each event of the log; false stops the rerun
 };
 
 struct RerunOutcome {
@@ -28,7 +51,7 @@ struct RerunOutcome {
   bool interrupted = false;        ///< stopped by SIGINT or SIGTERM before the end
 };
 
-/// Runs to the end or to a stop signal, and writes DIR/rerun.lcmlog, forces.csv and shapes.csv.
+/// Runs to the end or to a stop signal. Changes the floating-point mode of the calling thread, as the firmware does.
 /// @throws Refusal when the recording or the settings are refused; nothing has been written then.
 [[nodiscard]] RerunOutcome rerun(const RerunOptions& options);
 

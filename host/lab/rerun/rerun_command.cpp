@@ -104,13 +104,15 @@ int conclude(const RerunOutcome& o, bool as_recorded) {
 int execute(Arguments a) try {
   const bool as_recorded = a.options.overrides.empty() && a.cuts != "none";
   a.options.cuts = a.cuts.empty() ? a.options.overrides.empty() : a.cuts == "recorded";
-  a.options.folder = a.out;
-  if (!a.out.empty()) refuse_own_output(a.options.log, a.options.folder);
+  const std::filesystem::path folder(a.out);
+  if (!a.out.empty()) {
+    refuse_own_output(a.options.log, folder);
+    a.options.output = files_in(folder, a.options.overrides);
+  }
   const auto outcome = rerun(a.options);
   if (!a.out.empty()) {
-    write_text(a.options.folder / "summary.json", to_json(outcome));
-    draw("rerun.py", {a.options.folder / "forces.csv", a.options.folder / "shapes.csv"},
-         a.options.folder / "rerun.png");
+    write_text(folder / "summary.json", to_json(outcome));
+    draw("rerun.py", {folder / "forces.csv", folder / "shapes.csv"}, folder / "rerun.png");
   }
   print(outcome, outcome.period_s);
   return conclude(outcome, as_recorded);

@@ -4,7 +4,6 @@
 #include <system_error>
 
 #include "host/lab/outcome.hpp"
-#include "host/lab/rerun/rerun.hpp"
 #include "host/tick_statistics.hpp"
 
 namespace ligature::lab {
@@ -35,7 +34,7 @@ nlohmann::ordered_json json_of(const Differences::Side& side, std::int64_t ticks
 }  // namespace
 
 RerunFiles::RerunFiles(const std::filesystem::path& folder, const std::vector<std::string>& overrides, double period_s)
-    : log((emptied(folder) / kLog).string(), overrides),
+    : log_((emptied(folder) / kLog).string(), overrides),
       forces_(folder / kForces,
               "t_s,left_recorded_N,left_rerun_N,left_apart_N,right_recorded_N,right_rerun_N,right_apart_N,"
               "time_lost_recorded,time_lost_rerun,cost_recorded_us,cost_rerun_us"),
@@ -44,7 +43,7 @@ RerunFiles::RerunFiles(const std::filesystem::path& folder, const std::vector<st
 
 void RerunFiles::add(const ligature_msg::tick_t& recorded, const ligature_msg::tick_t& again,
                      std::optional<double> cost_us) {
-  log.add(again);
+  log_.add(again);
   const double cells[] = {static_cast<double>(recorded.tick) * period_s_,
                           host::magnitude(recorded.f_world_N[0]),
                           host::magnitude(again.f_world_N[0]),
@@ -60,16 +59,23 @@ void RerunFiles::add(const ligature_msg::tick_t& recorded, const ligature_msg::t
 }
 
 void RerunFiles::add(const ligature_msg::thread_t& recorded, const ligature_msg::thread_t& again) {
-  log.add(again, recorded.utime);
+  log_.add(again, recorded.utime);
   const auto off = distance(recorded, again);
   const double cells[] = {static_cast<double>(recorded.tick) * period_s_, off.rms_m, off.largest_m};
   shapes_.row(cells);
 }
 
 void RerunFiles::close() {
-  log.close();
+  log_.close();
   forces_.close();
   shapes_.close();
+}
+
+std::function<std::unique_ptr<RerunOutput>(const RecordedRun&)> files_in(const std::filesystem::path& folder,
+                                                                         const std::vector<std::string>& overrides) {
+  return [folder, overrides](const RecordedRun& run) {
+    return std::make_unique<RerunFiles>(folder, overrides, run.period_s);
+  };
 }
 
 void refuse_own_output(const std::string& log, const std::filesystem::path& folder) {

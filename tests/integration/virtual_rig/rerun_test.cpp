@@ -240,10 +240,8 @@ TEST_P(Rerun, IsTheSameToTheBitAndOneBitOfAToolShows) {
 
 TEST_P(Rerun, OtherSettingsDifferAndTheirRecordingIsOne) {
   const std::string log = recorded(*GetParam(), "base.lcmlog"), out = test::temp_folder() + "out";
-  const auto other = lab::rerun({.log = log,
-                                 .overrides = {"contact.friction=0.05", "hands.coupling_N_s_per_m=0.5"},
-                                 .cuts = false,
-                                 .folder = out});
+  const std::vector<std::string> set{"contact.friction=0.05", "hands.coupling_N_s_per_m=0.5"};
+  const auto other = lab::rerun({.log = log, .overrides = set, .cuts = false, .output = lab::files_in(out, set)});
   const auto& d = other.differences;
   EXPECT_GT(d.different_ticks(), 100);
   EXPECT_GT(d.different_shapes(), 10);
@@ -280,7 +278,7 @@ TEST(RerunRefuses, WhatHasNotWhatItNeedsAndWritesNothing) {
   rig.record(log);
   ASSERT_EQ(rig.run(300), std::nullopt);
   const auto refused = [&](const std::string& file, std::vector<std::string> set = {}) {
-    return refusal_of({.log = file, .overrides = std::move(set), .folder = out});
+    return refusal_of({.log = file, .overrides = std::move(set), .output = lab::files_in(out, {})});
   };
   EXPECT_NE(refused(changed(log, "no_scene.lcmlog", WithoutScene{})).find("holds no text of its scene"),
             std::string::npos);
@@ -289,7 +287,8 @@ TEST(RerunRefuses, WhatHasNotWhatItNeedsAndWritesNothing) {
   EXPECT_NE(refused(changed(log, "none.lcmlog", Without{{}, 0, 100000})).find("protocol_version 2"), std::string::npos);
   EXPECT_NE(refused(log, {"suture.nodes=1"}).find("allowed integer 2 .. 5000"), std::string::npos);
   EXPECT_NE(refused(log, {"time.tick_s=0.002"}).find("allowed the recording's period"), std::string::npos);
-  EXPECT_NE(refusal_of({.log = log, .session = 2, .folder = out}).find("--session: found 2, allowed 1 .. 1"),
+  EXPECT_NE(refusal_of({.log = log, .session = 2, .output = lab::files_in(out, {})})
+                .find("--session: found 2, allowed 1 .. 1"),
             std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(out));
 }
