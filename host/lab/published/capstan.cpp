@@ -27,8 +27,7 @@ Result capstan(const Subject& subject) {
     for (const double turn : turns) {
       const double angle = 2.0 * kPi * turn, truth = std::exp(mu * angle);
       const int wrapped = static_cast<int>(std::lround(kPerTurn * turn));
-      const double ratio =
-          validate::tension_ratio({scene::Model::kRod, 2 * wrapped + 1, subject.accuracy}, mu, angle, wrapped);
+      const double ratio = validate::tension_ratio(subject.rod(2 * wrapped + 1), mu, angle, wrapped);
       const std::string what = "mu = " + std::to_string(mu).substr(0, 3);
       result.findings.push_back(validate::relative(
           "peg, " + what + ", " + std::to_string(turn).substr(0, 4) + " turns: T_hi/T_lo", truth, ratio, 0.02));

@@ -75,8 +75,7 @@ class Pulled {
     const double rise = kPitch_m / (2.0 * kPi), per_rad = std::hypot(kRadius_m, rise);
     const double arc = theta * per_rad, l = arc / wrapped;
     const int tail_segments = static_cast<int>(std::lround(kTail_R * kRadius_m / l));
-    auto scene =
-        validate::real_thread({scene::Model::kRod, wrapped + 2 * tail_segments + 1, subject.accuracy}, 1.0, kFriction);
+    auto scene = validate::real_thread(subject.rod(wrapped + 2 * tail_segments + 1), 1.0, kFriction);
     scene.suture.length_m = l * (scene.suture.nodes - 1);
     validate::set_bending(scene, kEI_N_m2);
     validate::set_stretch(scene, kEA_N);

@@ -15,6 +15,10 @@ using validate::Finding;
 struct Subject {
   scene::Accuracy accuracy = scene::Accuracy::kBalanced;
   bool quick = false;  ///< fewer or smaller runs: at most 20 s of CPU time
+  long work = 0;       ///< contact budget of a tick, in instructions; 0: that of the accuracy
+
+  /// The rod with this many nodes, for the threads of `validate`.
+  [[nodiscard]] validate::Subject rod(int nodes) const { return {scene::Model::kRod, nodes, accuracy, work}; }
 };
 
 /// One point of a case's picture. NaN: there is no theory, or no measurement, at x.

@@ -23,8 +23,8 @@ Result drum(const Subject& subject) {
       for (const double sense : {1.0, -1.0}) {  // the hand has the larger tension, or the smaller one
         const double angle = 2.0 * kPi * turn, truth = std::exp(sense * mu * angle);
         const int wrapped = static_cast<int>(std::lround(kPerTurn * turn));
-        const double ratio = validate::tension_ratio({scene::Model::kRod, 2 * wrapped + 1, subject.accuracy}, mu, angle,
-                                                     wrapped, sense * kSurface_m_per_s);
+        const double ratio =
+            validate::tension_ratio(subject.rod(2 * wrapped + 1), mu, angle, wrapped, sense * kSurface_m_per_s);
         const std::string what = "mu = " + std::to_string(mu).substr(0, 3);
         const std::string to = sense > 0 ? "turns towards the load" : "turns to the hand";
         result.findings.push_back(validate::relative(

@@ -21,7 +21,7 @@ double excess_m(const physics::Simulation& sim) {
 
 /// The thread of scenes/suture-3-0.toml, without gravity.
 scene::Scene scene_of(const Subject& subject, const Drawing& d) {
-  auto scene = validate::real_thread({scene::Model::kRod, 154, subject.accuracy}, 1.0, d.friction);
+  auto scene = validate::real_thread(subject.rod(154), 1.0, d.friction);
   scene.suture.rod.GJ_N_m2 = 2.86e-7;
   scene.suture.rod.spacing = scene::Spacing::kAdaptive;
   lay_curve(scene, curve_of(d.throws, 2.0 * scene.suture.radius_m));

@@ -30,7 +30,7 @@ double force(double a) { return std::pow(std::sin(a), 3) * (std::cos(a) * std::t
 double moment(double a) { return 2.0 / std::sin(2.0 * a) * (0.5 * std::pow(std::sin(a), 4) + force(a)); }
 
 Rod straight(const Subject& subject, int nodes) {
-  auto scene = validate::real_thread({scene::Model::kRod, nodes, subject.accuracy}, 1.0, 0.0);
+  auto scene = validate::real_thread(subject.rod(nodes), 1.0, 0.0);
   scene.suture.length_m = kLength_h * scene.suture.radius_m;
   scene.suture.rod.GJ_N_m2 = kTwist_over_bend * scene.suture.rod.EI_N_m2;
   validate::set_stretch(scene, kStretch_factor * scene.suture.rod.EA_N);

@@ -45,7 +45,7 @@ std::vector<Vec3> sliding_curve(bool mirrored) {
 }
 
 scene::Scene scene_of(const Subject& subject, const PostKnot& knot) {
-  auto scene = validate::real_thread({scene::Model::kRod, 200, subject.accuracy}, 1.0, knot.friction);
+  auto scene = validate::real_thread(subject.rod(200), 1.0, knot.friction);
   const double d = 2.0 * scene.suture.radius_m;
   scene.suture.rod.spacing = scene::Spacing::kAdaptive;
   if (knot.sets) {

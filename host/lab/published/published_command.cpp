@@ -8,8 +8,9 @@
 
 #include "host/console/progress.hpp"
 #include "host/console/stop_signal.hpp"
+#include "host/lab/cpu_time.hpp"
 #include "host/lab/outcome.hpp"
-#include "host/lab/published/case.hpp"
+#include "host/lab/published/front.hpp"
 #include "host/lab/report.hpp"
 #include "host/lab/run_files.hpp"
 #include "host/lab/validate/proceed.hpp"
@@ -23,10 +24,14 @@ constexpr const char* kFooter = R"(
 Each case repeats an experiment that a laboratory, or the author of another program, has published. A row of the table
 has the published value, the simulated one, the tolerance and the verdict: PASS, MISS, or "reported" where no published
 number decides. `balanced` is the setting of the rig at 1 kHz, `fine` has smaller steps and no limit of time: the
-difference between the two is what the rig's speed costs. docs/measurements/published.md explains every case.
+difference between the two is what the rig's speed costs. --work adds settings between them: `balanced` with another
+budget for contact. A second table has this cost, the CPU time of a tick, and what it buys: the largest error of a
+case, as a multiple of its tolerance (inf: a yes-or-no figure misses). docs/measurements/published.md explains every
+case.
 
-DIR gets published.csv, the table; CASE.csv, the points of the picture; and CASE.png, theory and measurement in one
-plot. A picture needs the Python that scripts/setup installs (or $LIGATURE_PYTHON).
+DIR gets published.csv and front.csv, the two tables; front.png, cost against error; CASE.csv, the points of a case's
+picture; and CASE.png, theory and measurement in one plot. A picture needs the Python that scripts/setup installs (or
+$LIGATURE_PYTHON).
 
 Cases
 )";
@@ -37,19 +42,15 @@ Exit: 0 every judged figure is within its tolerance; 2 usage; 3 a case misses, o
 Examples
   ligature-lab published                                  all cases, at balanced and at fine
   ligature-lab published capstan --quick
-  ligature-lab published capstan --settings fine --out out/published)";
+  ligature-lab published capstan --settings fine --out out/published
+  ligature-lab published capstan-axis --settings all --work 10e6 --work 20e6     what more work buys)";
 
 struct Arguments {
   std::vector<std::string> cases;
   std::string settings = "both";
+  std::vector<double> work;
   std::string out;
   bool quick = false;
-};
-
-struct Outcome {
-  const p::Case* examined;
-  std::string setting;
-  p::Result result;
 };
 
 const char* verdict_of(const p::Finding& f) { return !f.holds() ? "MISS" : p::is_judged(f) ? "PASS" : "reported"; }
@@ -82,22 +83,18 @@ std::vector<const p::Case*> chosen(const std::vector<std::string>& names) {
   return all;
 }
 
-std::vector<std::pair<std::string, scene::Accuracy>> settings_of(const std::string& text) {
-  std::vector<std::pair<std::string, scene::Accuracy>> all;
-  if (text != "fine") all.emplace_back("balanced", scene::Accuracy::kBalanced);
-  if (text != "balanced") all.emplace_back("fine", scene::Accuracy::kFine);
-  return all;
-}
-
-p::Result measure(const p::Case& c, const p::Subject& subject) {
+p::Outcome measure(const p::Case& c, const p::Setting& setting, bool quick) {
+  const auto ticks = validate::ticks_done;
+  const double begun_us = thread_cpu_us();
   try {
-    return c.measure(subject);
+    auto result = c.measure({setting.accuracy, quick, setting.work});
+    return {&c, setting.name, std::move(result), validate::ticks_done - ticks, thread_cpu_us() - begun_us};
   } catch (const validate::Interrupted&) {
     throw Refusal("published: interrupted in " + std::string(c.name) + ", nothing written", kRunFailed);
   }
 }
 
-void write_files(const std::filesystem::path& out, const std::vector<Outcome>& outcomes) {
+void write_files(const std::filesystem::path& out, const std::vector<p::Outcome>& outcomes) {
   Table csv({"case", "setting", "what", "expected", "measured", "error", "tolerance", "unit", "verdict", "source"});
   for (const auto& o : outcomes) {
     for (const auto& f : o.result.findings) {
@@ -109,7 +106,7 @@ void write_files(const std::filesystem::path& out, const std::vector<Outcome>& o
   csv.write(out / "published.csv");
 }
 
-void draw_case(const std::filesystem::path& out, const p::Case& c, const std::vector<Outcome>& outcomes) {
+void draw_case(const std::filesystem::path& out, const p::Case& c, const std::vector<p::Outcome>& outcomes) {
   Table points({"curve", "setting", "x", "theory", "measured", "x_axis", "y_axis", "title"});
   for (const auto& o : outcomes) {
     if (o.examined != &c) continue;
@@ -124,31 +121,34 @@ void draw_case(const std::filesystem::path& out, const p::Case& c, const std::ve
 
 int execute(const Arguments& a) {
   const auto cases = chosen(a.cases);
-  const auto settings = settings_of(a.settings);
+  const auto settings = p::settings_of(a.settings, {a.work.begin(), a.work.end()});
   if (!a.out.empty()) make_folder(a.out);
   validate::stop_asked = console::stop_requested;
-  std::vector<Outcome> outcomes;
+  std::vector<p::Outcome> outcomes;
   Table table({"case", "setting", "figure", "expected", "measured", "tolerance", "verdict", "source"});
   int judged = 0, missed = 0;
   {
     console::Progress progress("published");
     double done = 0.0;
     for (const auto* c : cases) {
-      for (const auto& [name, accuracy] : settings) {
-        progress.show(done++ / static_cast<double>(cases.size() * settings.size()), std::string(c->name) + ", " + name);
-        outcomes.push_back({c, name, measure(*c, {accuracy, a.quick})});
+      for (const auto& setting : settings) {
+        progress.show(done++ / static_cast<double>(cases.size() * settings.size()),
+                      std::string(c->name) + ", " + setting.name);
+        outcomes.push_back(measure(*c, setting, a.quick));
+        judged += outcomes.back().judged(), missed += outcomes.back().missed();
         for (const auto& f : outcomes.back().result.findings) {
-          judged += p::is_judged(f), missed += !f.holds();
-          table.row({std::string(c->name), name, f.what, value_or_dash(f.reference), value_or_dash(f.measured),
+          table.row({std::string(c->name), setting.name, f.what, value_or_dash(f.reference), value_or_dash(f.measured),
                      tolerance_text(f), std::string(verdict_of(f)), std::string(c->source)});
         }
       }
     }
   }
   table.print();
+  p::print_front(outcomes);
   std::printf("%d judged, %d missed\n", judged, missed);
   if (!a.out.empty()) {
     write_files(a.out, outcomes);
+    p::write_front(a.out, outcomes);
     for (const auto* c : cases) draw_case(a.out, *c, outcomes);
     std::printf("table %s/published.csv\n", a.out.c_str());
   }
@@ -161,9 +161,17 @@ void add_published_command(CLI::App& app, int& exit_code) {
   auto a = std::make_shared<Arguments>();
   auto* command = app.add_subcommand("published", "The rod against experiments that others published");
   command->add_option("case", a->cases, "Names of cases [all]")->type_name("CASE");
-  command->add_option("--settings", a->settings, "balanced, fine or both")
-      ->check(CLI::IsMember({"balanced", "fine", "both"}))
+  command->add_option("--settings", a->settings, "balanced, fine, both, or all: fast too")
+      ->check(CLI::IsMember({"balanced", "fine", "both", "all"}))
       ->capture_default_str();
+  command
+      ->add_option(
+          "--work", a->work,
+          "Also balanced with this budget for contact, instructions a tick: suture.work_instructions; repeatable")
+      ->type_name("N")
+      ->expected(1)
+      ->check(CLI::Range(1e5, 1e9))
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--out", a->out, "Folder for table, points and pictures")->type_name("DIR");
   command->add_flag("--quick", a->quick, "The short form of each case, which the tests run");
   std::string footer = kFooter;

@@ -102,7 +102,7 @@ bool is_the_knot(Nodes nodes, int turns) {
 
 DrawnKnot draw_knot(const Subject& subject, const KnotPlan& plan) {
   const double EI = kStiffness * validate::kOverhandB_N_m2;
-  const validate::Subject rod{scene::Model::kRod, plan.nodes, subject.accuracy};
+  const validate::Subject rod = subject.rod(plan.nodes);
   const double h = validate::real_thread(rod, 1.0, plan.friction).suture.radius_m, excess = plan.excess_h * h;
   const double travel = 0.06 * excess, window = 0.02 * excess;
   auto scene = validate::knotted(rod, (excess + travel + window) / (2.0 * kPi), EI, plan.friction);

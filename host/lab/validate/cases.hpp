@@ -15,6 +15,7 @@ struct Subject {
   scene::Model model = scene::Model::kRod;
   int nodes = 50;
   std::optional<scene::Accuracy> accuracy{};  ///< accuracy of the rod; absent: balanced, or what the case needs
+  long work_instructions = 0;                 ///< budget of the rod's contacts in a tick; 0: by the accuracy
 };
 
 /// One measured number and its reference. `error` has the unit of `tolerance`.

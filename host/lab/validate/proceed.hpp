@@ -1,6 +1,7 @@
 #pragma once
 // Runs one tick of a validation case, or stops it when the user asks for that, because a case may take minutes.
 
+#include <cstdint>
 #include <stdexcept>
 
 namespace ligature::validate {
@@ -12,11 +13,15 @@ struct Interrupted : std::runtime_error {
 /// Whether to stop. Set by a program that catches Interrupted. @see console::stop_requested
 inline bool (*stop_asked)() noexcept = []() noexcept { return false; };
 
+/// Ticks of all cases so far; who wants the cost of a tick reads it before and after a case.
+inline std::int64_t ticks_done = 0;
+
 /// Runs one tick. @throws Interrupted
 template <class Thread, class... Input>
 void proceed(Thread& thread, const Input&... input) {
   if (stop_asked()) throw Interrupted();
   thread.tick(input...);
+  ++ticks_done;
 }
 
 }  // namespace ligature::validate

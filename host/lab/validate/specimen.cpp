@@ -53,6 +53,7 @@ scene::Scene real_thread(const Subject& subject, double share, double friction) 
     s.suture.rod.GJ_N_m2 = 0.0;
     s.suture.rod.spacing = scene::Spacing::kUniform;
     s.suture.rod.accuracy = subject.accuracy.value_or(scene::Accuracy::kBalanced);
+    s.suture.rod.work_instructions = static_cast<int>(subject.work_instructions);
     s.hands.coupling_N_per_m = 1000.0;
     s.hands.coupling_N_s_per_m = 0.5;
   } else {  // Table I for 50 nodes, converted to values per length
