@@ -134,9 +134,10 @@ Tightening held(double speed) {
 }
 
 // The solver's tolerance has a lower bound, set by single precision. If it were always a tenth of the motion, some
-// knots at rest would spend more work on differences of 5 um/s. Two copies of the same state are compared, because some
-// holds spend their whole budget in either copy. Ratio of work over 40 pulls: mean 0.85, standard deviation 0.15; so
-// the mean of 24 is above 0.99 less than once in a million draws. Without the bound it is 1.
+// knots at rest would spend more work on differences of 5 um/s. The same state is simulated twice, with the bound and
+// without it, and the ratio of the work is taken. (A limit of the work itself would not do: some holds use up the
+// budget in both.) Ratio over 40 pulls: mean 0.85, standard deviation 0.15; so the mean of 24 is above 0.99 in about
+// two of a million draws. Without the bound it is 1.
 TEST(Hold, OfTwoThrowsAtRestIsCheaper) {
   constexpr int kPulls = 24;
   double ratio = 0.0;

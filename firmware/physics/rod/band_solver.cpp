@@ -84,7 +84,8 @@ void BandSolver::factor(int core) noexcept {
     s.s_inverse = pivot.scale * pivot.adjugate;
     s.z = s.s_inverse * y;
   }
-  // The core nodes: each is also coupled, by `skip`, to the first node of the chain on the other side.
+  // The core: the two nodes where the eliminations from both ends meet. `skip` couples each of them with the nearest
+  // node of the other half.
   Step &one = step[0], &two = step[1];
   TwoSyms s = eliminate(rows(-1), one, two, pivot, core_h_, y);
   const Two across{core > 0 ? skip[static_cast<std::size_t>(core) - 1] : 0.0,

@@ -73,7 +73,8 @@ Vec3 OverhandCurve::at(double along) const {
     if (at < kPi * bow) return {-half - bow * std::sin(at / bow), bow * (1.0 + std::cos(at / bow)), 0};
     return {at - kPi * bow - half, 0, 0};
   };
-  // Each strand makes an odd number of half turns along the foot, so that it passes through the loop.
+  // At the base of the loop the two strands wind about each other by an odd number of half windings, so that the end
+  // passes through the loop.
   const auto turn = [&](double at) {
     return (2.0 * turns + 1.0) * kPi * std::clamp(0.5 * (at / half + 1.0), 0.0, 1.0);
   };
