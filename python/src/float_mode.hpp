@@ -1,5 +1,5 @@
 #pragma once
-// Sets the floating-point mode of the lab's programs, which other libraries in the process may have changed.
+// Gives Python's process the floating-point mode that ligature-lab computes with: another library may have changed it.
 
 #if defined(__x86_64__)
 #include <immintrin.h>

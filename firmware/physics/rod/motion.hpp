@@ -23,7 +23,8 @@ class Motion {
   void measure(const Vec* v) noexcept;
   /// Adds a step of step_s at the velocities last measured to the integrals.
   void advance(double step_s) noexcept;
-  /// Sets the integrals to zero, and stores the present rates as those for which the new list of pairs has a margin.
+  /// Call when a new list of pairs is made. The distances moved (the integrals) start at zero. The present speeds are
+  /// stored, because the list's margin of distance is chosen for them.
   void restart() noexcept;
 
   [[nodiscard]] double speed(std::size_t segment) const noexcept { return speed_[segment]; }

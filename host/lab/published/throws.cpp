@@ -28,7 +28,8 @@ Line resampled(const Line& line, double step) {
   return out;
 }
 
-/// The strand that enters a throw on `side` (-1 left, +1 right) below its axis, up to where it leaves opposite, above.
+/// Appends one strand of a throw to `line`: a helix about the throw's horizontal axis, which is at height z. The strand
+/// enters on `side` (-1 left, +1 right) below the axis and leaves on the other side above it.
 void wind(Line& line, const Throws& t, int half_turns, double half_width, double side, double z) {
   const double own = 0.5 * std::abs(half_turns) * t.half_turn_d;
   for (int k = 0; k <= 200; ++k) {

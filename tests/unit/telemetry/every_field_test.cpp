@@ -180,7 +180,7 @@ class EveryField : public ::testing::Test {
   Session session{42, "1.2.3", {"a.toml", "text", 3.25, 0.0625, false, 702}, 0.002, false, "flight.rec"};
 };
 
-/// Compares all fields by name; `open` names fields whose value does not come from these sources.
+/// Compares all fields by name. Each of them must be in `expected`, and no other may be there.
 void compare(const std::map<std::string, Words>& found, const std::map<std::string, Words>& expected) {
   for (const auto& [name, values] : found) {
     ASSERT_TRUE(expected.contains(name)) << name << ": a new field? Give it a source of its own value here";
