@@ -1,6 +1,7 @@
 #include "bridge/haply_messages.hpp"
 
 #include <cmath>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 
 #include "protocol/can/device_profile.hpp"
@@ -9,6 +10,8 @@ namespace ligature::bridge {
 namespace {
 
 using Json = nlohmann::json;
+
+constexpr const char* kGrips[] = {"wireless_verse_grip", "verse_grip"};
 
 const Json* member(const Json& json, const std::string& key) {
   if (!json.is_object()) return nullptr;
@@ -45,30 +48,53 @@ bool is_pressed(const Json& state, const std::string& button) {
   return value != nullptr && value->is_boolean() && value->get<bool>();
 }
 
-/// The status is sent when it changes; each of its facts that is false makes the device unusable.
-void read_status(const Json& device, std::string& problem) {
+/// Keeps those of the facts in `missing` that are false. The service sends a fact when it changes.
+void read_status(const Json& device, std::initializer_list<const char*> facts, std::set<std::string>& missing) {
   const Json* const status = member(device, "status");
   if (status == nullptr) return;
-  problem.clear();
-  for (const char* fact : {"ready", "calibrated", "power_supply"}) {
+  for (const char* fact : facts) {
     const Json* const value = member(*status, fact);
-    if (value != nullptr && value->is_boolean() && !value->get<bool>())
-      problem += (problem.empty() ? "not " : ", not ") + std::string(fact);
+    if (value == nullptr || !value->is_boolean()) continue;
+    if (value->get<bool>())
+      missing.erase(fact);
+    else
+      missing.insert(fact);
   }
 }
 
-void read_buttons(const Json& message, const HaplyChoice& choice, DeviceState& state) {
-  for (const char* kind : {"wireless_verse_grip", "verse_grip"}) {
-    const Json* const grip = device_in(message, kind, choice.grip_id);
-    const Json* const sent = grip != nullptr ? member(*grip, "state") : nullptr;
-    if (sent == nullptr) continue;
-    namespace profile = can::profile;
-    state.buttons = static_cast<std::uint16_t>((is_pressed(*sent, choice.grip) ? profile::kButtonGrip : 0) |
-                                               (is_pressed(*sent, choice.dead_man) ? profile::kButtonDeadMan : 0) |
-                                               (is_pressed(*sent, choice.clutch) ? profile::kButtonClutch : 0));
+void note_grips(const Json& message, std::set<std::string>& grips) {
+  for (const char* kind : kGrips) {
+    const Json* const list = member(message, kind);
+    if (list == nullptr || !list->is_array()) continue;
+    for (const Json& grip : *list) {
+      const Json* const id = member(grip, "device_id");
+      if (id != nullptr && id->is_string()) grips.insert(id->get<std::string>());
+    }
+  }
+}
+
+/// A grip that is not in the message, or that is asleep or not connected, must not hold the dead-man. Neither may one
+/// of several grips that was not named: it may be the other hand's.
+void read_buttons(const Json& message, const HaplyChoice& choice, HaplyState& known) {
+  known.state.buttons = 0;
+  note_grips(message, known.grips);
+  if (choice.grip_id.empty() && known.grips.size() > 1) {
+    known.problem = "several grips are connected; remedy: --grip-id";
     return;
   }
-  state.buttons = 0;  // a grip that is not in the message must not hold the dead-man
+  for (const char* kind : kGrips) {
+    const Json* const grip = device_in(message, kind, choice.grip_id);
+    if (grip == nullptr) continue;
+    read_status(*grip, {"connected", "awake", "ready"}, known.grip_missing);
+    const Json* const sent = member(*grip, "state");
+    if (sent == nullptr || !known.grip_missing.empty()) continue;
+    namespace profile = can::profile;
+    known.state.buttons =
+        static_cast<std::uint16_t>((is_pressed(*sent, choice.grip) ? profile::kButtonGrip : 0) |
+                                   (is_pressed(*sent, choice.dead_man) ? profile::kButtonDeadMan : 0) |
+                                   (is_pressed(*sent, choice.clutch) ? profile::kButtonClutch : 0));
+    return;
+  }
 }
 
 }  // namespace
@@ -82,8 +108,10 @@ std::optional<HaplyState> read_haply(std::string_view text, const HaplyChoice& c
   if (!p) return std::nullopt;
   before.inverse3_id = device->at("device_id").get<std::string>();
   before.state.p_D_m = *p;
-  read_status(*device, before.problem);
-  read_buttons(message, choice, before.state);
+  read_status(*device, {"ready", "calibrated", "power_supply"}, before.missing);
+  before.problem.clear();
+  for (const auto& fact : before.missing) before.problem += (before.problem.empty() ? "not " : ", not ") + fact;
+  if (before.problem.empty()) read_buttons(message, choice, before);
   return before;
 }
 

@@ -3,6 +3,7 @@
 // one state for each message that it gets, and one unasked when a client connects.
 
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -10,7 +11,7 @@
 
 namespace ligature::bridge {
 
-/// Which device of the service, and which buttons of its grip. Empty id: the first one.
+/// Which device of the service, and which buttons of its grip. Empty id: the first device, or the only grip.
 struct HaplyChoice {
   std::string inverse3_id;
   std::string grip_id;
@@ -21,6 +22,10 @@ struct HaplyState {
   std::string inverse3_id;
   DeviceState state;
   std::string problem;  ///< why the device must not be used now, such as "not calibrated"; empty: it may
+
+  /// Facts of the status of device and grip that were false when the service last sent them.
+  std::set<std::string> missing = {}, grip_missing = {};
+  std::set<std::string> grips = {};  ///< ids of all grips that were in a message
 };
 
 /// What a message of the service says of the device. Later messages contain only what is new, so `before` is kept up to

@@ -35,7 +35,7 @@ class Picture {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr std::size_t kRows = 60'000, kBins = 12'000, kEvents = 500;
-  static constexpr std::int64_t kRowsAtFirst = 10'000, kRowsPerFrame = 1'400, kBinsPerFrame = 1'900;
+  static constexpr std::int64_t kRowsAtFirst = 10'000, kRowsPerFrame = 1'250, kBinsPerFrame = 1'900;
   static constexpr std::size_t kLargestStatusText = 64U << 10U;
 
   /// Takes one message of the rig; unreadable ones are counted and ignored.

@@ -84,17 +84,21 @@ void read_buttons(StrictTable& t, ButtonsPlace& b) {
   t.integer("clutch_bit", b.clutch_bit, -1, 31);
 }
 
-/// Checks rules between keys.
+/// Checks rules between keys. A rule that a default breaks is told at a key that is in the file.
 void check_buttons(StrictTable& t, const ButtonsPlace& b, int pdos) {
   if (b.bits % 8 != 0 || b.bits == 24) t.refuse("buttons_bits", "8, 16 or 32");
   if (!b.are_inputs() && (b.bits != 16 || b.grip_bit != 0 || b.dead_man_bit != 1 || b.clutch_bit != 2))
-    t.refuse("buttons", "\"ligature\" only with the 16 bits of docs/wire.md");
+    t.refuse(t.has("buttons") ? "buttons" : "source",
+             "with buttons = \"inputs\"; \"ligature\" only with the 16 bits of docs/wire.md");
+  if (b.are_inputs() && (!t.has("buttons_object") || !t.has("dead_man_bit")))
+    t.refuse("buttons", "\"inputs\" only with buttons_object and dead_man_bit");
   if (b.are_inputs() && pdos < 2)
     t.refuse("buttons", "\"inputs\" only with pdos of 2 or more: they need a TPDO of their own");
   if (b.dead_man_bit >= b.bits) t.refuse("dead_man_bit", "less than buttons_bits");
   for (const auto& [key, bit] : {std::pair{"grip_bit", b.grip_bit}, std::pair{"clutch_bit", b.clutch_bit}}) {
     if (bit >= b.bits) t.refuse(key, "less than buttons_bits");
-    if (bit == b.dead_man_bit) t.refuse(key, "another bit than dead_man_bit");
+    if (bit == b.dead_man_bit)
+      t.refuse(t.has(key) ? key : "dead_man_bit", "another bit than that of the grip and the clutch");
   }
 }
 
@@ -103,6 +107,9 @@ void check_optional(StrictTable& t, const Cia402Profile& p) {
     const bool watches = (o == ObjectAddress{0x1400, 5} && p.watchdog == DriveWatchdog::kRpdoTimer) ||
                          (o == ObjectAddress{0x1016, 1} && p.watchdog != DriveWatchdog::kNone);
     if (watches) t.refuse("optional", "no object of the watchdog; remedy: another value of watchdog");
+    if (o == ObjectAddress{0x6007, 0} && p.watchdog != DriveWatchdog::kNone)
+      t.refuse("optional", "not 0x6007:00, by which the watchdog and NMT stop end the torque; or watchdog = \"none\"");
+    if (o == ObjectAddress{0x6060, 0}) t.refuse("optional", "not the mode 0x6060:00");
     if (o.index >= 0x1400 && o.index < 0x1C00) t.refuse("optional", "no PDO parameters");
     if (o == p.buttons.object) t.refuse("optional", "not the buttons: without them there is no dead-man");
   }

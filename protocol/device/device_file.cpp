@@ -1,5 +1,6 @@
 #include "protocol/device/device_file.hpp"
 
+#include <cmath>
 #include <stdexcept>
 
 #include "protocol/device/cia402_reader.hpp"
@@ -114,6 +115,14 @@ void check(StrictTable& geometry, StrictTable& limits, const Device& d) {
   if (d.continuous_force_N > d.peak_force_N) limits.refuse("continuous_force_N", "at most peak_force_N");
 }
 
+/// Can the drive tell its rated torque as exactly as start-up has to compare it? All torques are per mille of it.
+bool is_told_exactly(const Device& d) {
+  constexpr double kShare = 0.005;
+  if (!d.cia402.rated_torque.is_there()) return true;
+  const double told = d.rated_torque_Nm / (d.cia402.at_motor ? d.gear : 1.0) / d.cia402.rated_torque_unit_Nm;
+  return std::abs(std::round(told) - told) <= kShare * told;
+}
+
 void read_record(StrictTable& top, DeviceFile& out) {
   Device& d = out.device;
   top.table("device", [&](StrictTable& t) { read_identity(t, d); });
@@ -122,6 +131,7 @@ void read_record(StrictTable& top, DeviceFile& out) {
     top.table("cia402", [&](StrictTable& p) { read_cia402(p, d.cia402); });
     if (!t.failed() && d.motor_counts % d.cia402.counts_unit != 0)
       t.refuse("motor_counts", "a multiple of cia402.counts_unit");
+    if (!t.failed() && !is_told_exactly(d)) t.refuse("rated_torque_Nm", "a multiple of cia402.rated_torque_unit_Nm");
   });
   top.table("feel", [&](StrictTable& t) { read_feel(Marked(t, "feel", out), d); });
   top.table("geometry", [&](StrictTable& g) {

@@ -253,6 +253,8 @@ class StrictTable {
     if (const auto* node = table_.get(key)) refuse(key, *node, allowed, true);
   }
 
+  /// Is the key in the file?
+  [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
   [[nodiscard]] bool was_overridden(std::string_view key) const { return context_.is_overridden(full(key)); }
   [[nodiscard]] bool failed() const { return context_.error.has_value(); }
 

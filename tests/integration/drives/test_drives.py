@@ -189,7 +189,7 @@ class Durand(Matrix, Rig):
         self.assertIn("--accept-no-drive-watchdog", line)
 
     def test_what_the_record_calls_optional_may_be_missing(self):
-        self.start_hands(changes=("6072:0=none", "6007:0=none"))
+        self.start_hands(changes=("6072:0=none",))
         firmware = self.firmware(self.device(*self.replaced), *self.accept)
         self.left.wait("enabled")
         firmware.terminate()

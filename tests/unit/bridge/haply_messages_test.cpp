@@ -45,6 +45,36 @@ TEST(HaplyMessages, AGripThatIsNotThereHoldsNoButton) {
   }
 }
 
+/// The service lists the grips of both hands to everybody: the first one may be in the other hand.
+TEST(HaplyMessages, OneOfSeveralGripsMustBeNamed) {
+  const char* const both = R"(,"wireless_verse_grip":[{"device_id":"1","state":{"buttons":{"a":true}}}],
+   "verse_grip":[{"device_id":"2","state":{"buttons":{"a":false}}}])";
+  HaplyState before;
+  const auto read = read_haply(state(both), {}, before);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->problem, "several grips are connected; remedy: --grip-id");
+  EXPECT_EQ(read->state.buttons, 0);
+  const char* const one = R"(,"wireless_verse_grip":[{"device_id":"1","state":{"buttons":{"a":true}}}])";
+  EXPECT_NE(read_haply(state(one), {}, before)->problem, "") << "the other one sent nothing new";
+  HaplyChoice choice;
+  choice.grip_id = "1";
+  HaplyState named;
+  EXPECT_EQ(read_haply(state(both), choice, named)->state.buttons, can::profile::kButtonDeadMan);
+  EXPECT_EQ(named.problem, "");
+}
+
+TEST(HaplyMessages, AGripThatSleepsHoldsNoButton) {
+  const std::string held = R"("state":{"buttons":{"a":true}})", grip = R"(,"verse_grip":[{"device_id":"1",)";
+  HaplyState before;
+  EXPECT_EQ(read_haply(state(grip + held + "}]"), {}, before)->state.buttons, can::profile::kButtonDeadMan);
+  for (const char* fact : {"connected", "awake", "ready"}) {
+    const std::string word = R"("status":{")" + std::string(fact) + R"(":)";
+    EXPECT_EQ(read_haply(state(grip + word + "false}," + held + "}]"), {}, before)->state.buttons, 0) << fact;
+    EXPECT_EQ(read_haply(state(grip + held + "}]"), {}, before)->state.buttons, 0) << fact << " is not repeated";
+    EXPECT_NE(read_haply(state(grip + word + "true}," + held + "}]"), {}, before)->state.buttons, 0) << fact;
+  }
+}
+
 TEST(HaplyMessages, OnlyTheChosenDeviceIsRead) {
   HaplyChoice choice;
   choice.inverse3_id = "04BB";

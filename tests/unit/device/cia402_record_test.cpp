@@ -56,7 +56,7 @@ TEST(Cia402Record, Epos4) {
 
 TEST(Cia402Record, GenericNamesWhatADriveMayLack) {
   const Cia402Profile p = profile_of("generic-cia402.toml");
-  EXPECT_EQ(p.optional, (std::vector<ObjectAddress>{{0x6007, 0}, {0x6072, 0}}));
+  EXPECT_EQ(p.optional, (std::vector<ObjectAddress>{{0x6072, 0}}));
   EXPECT_EQ(p.buttons.bits, 32);
 }
 
@@ -71,13 +71,19 @@ TEST(Cia402Record, RefusesInOneLine) {
       {{"\"0x3141:01\"", "\"none\""}, "cia402.buttons_object': found 'none', allowed an object"},
       {{"buttons_bits = 16", "buttons_bits = 24"}, "allowed 8, 16 or 32"},
       {{"dead_man_bit = 1", "dead_man_bit = 16"}, "less than buttons_bits"},
-      {{"grip_bit = 0", "grip_bit = 1"}, "another bit than dead_man_bit"},
+      {{"grip_bit = 0", "grip_bit = 1"}, "another bit than that of the grip"},
       {{"pdos = 4", "pdos = 1"}, "\"inputs\" only with pdos of 2 or more"},
       {{"\"inputs\"", "\"ligature\""}, "taken"},
       {{"buttons_bits = 16\ngrip_bit = 0", "buttons_bits = 16\ngrip_bit = 5"}, "taken"},
       {{"\"heartbeat\"", "\"prayer\""}, "one of \"rpdo-timer\", \"heartbeat\", \"none\""},
       {{"writes =", "optional = \"0x1016:01\"\nwrites ="}, "no object of the watchdog"},
       {{"writes =", "optional = \"0x3141:01\"\nwrites ="}, "not the buttons"},
+      {{"writes =", "optional = \"0x6007:00\"\nwrites ="}, "end the torque"},
+      {{"writes =", "optional = \"0x6060:00\"\nwrites ="}, "not the mode"},
+      {{"buttons_object = \"0x3141:01\"", ""}, "only with buttons_object and dead_man_bit"},
+      {{"dead_man_bit = 1", ""}, "only with buttons_object and dead_man_bit"},
+      {{"grip_bit = 0\ndead_man_bit = 1", "dead_man_bit = 0"}, "another bit than that of the grip"},
+      {{"rated_torque_unit_Nm = 1e-6", "rated_torque_unit_Nm = 0.05"}, "a multiple of cia402.rated_torque_unit_Nm"},
       {{"writes =", "optional = \"0x1A01:01\"\nwrites ="}, "no PDO parameters"},
       {{"0x1800:03=0/2", "0x1800:03=0/3"}, "object=value/bytes"},
       {{"0x1800:03=0/2", "0x1800:03=70000/2"}, "object=value/bytes"},
@@ -96,6 +102,11 @@ TEST(Cia402Record, RefusesInOneLine) {
   const auto parsed = parse_device(text, "d.toml");
   ASSERT_TRUE(std::holds_alternative<scene::Error>(parsed));
   EXPECT_NE(std::get<scene::Error>(parsed).text.find("only with the 16 bits of docs/wire.md"), std::string::npos);
+  // The same if the key `buttons` is not there: its default is our own word
+  text.replace(text.find("buttons = \"ligature\""), 20, "");
+  const auto without = parse_device(text, "d.toml");
+  ASSERT_TRUE(std::holds_alternative<scene::Error>(without));
+  EXPECT_NE(std::get<scene::Error>(without).text.find("cia402.source'"), std::string::npos);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "firmware/app/doctor.hpp"
 #include "firmware/app/worst_case.hpp"
 #include "firmware/physics/simulation.hpp"
+#include "firmware/platform/make_drives.hpp"
 #include "firmware/platform/sanitized.hpp"
 #include "protocol/device/device_file.hpp"
 #include "protocol/scene/scene_file.hpp"
@@ -134,6 +135,7 @@ TEST(Admission, ADrawnKnotIsEndedByTheClockAsOnARig) {
 /// A result of admission with these measured values.
 Admission found(double computing_us, double lost_at_quarter) {
   Admission a;
+  a.bus = platform::bus_time_of(device::omni());
   a.loop = {0.5 * computing_us, 0.5 * computing_us};
   for (const double speed : kHandSpeeds_m_per_s)
     a.knots.push_back({speed, speed < 0.25 ? 0.0 : lost_at_quarter, 0.0, 100});

@@ -91,7 +91,9 @@ void give_up_rights() {
   const rlimit none{0, 0};
   bool gone = setrlimit(RLIMIT_RTPRIO, &none) == 0 && setrlimit(RLIMIT_MEMLOCK, &none) == 0;
   if (kDataIsLimited) {
-    const rlimit hardly_any{data_now() + 65536, data_now() + 65536};  // too little for writable copies of the code
+    const rlim_t most = data_now() + 65536;  // too little for writable copies of the code
+    const rlimit hardly_any{most,
+                            most};  // asked once: a second call may find less, and a soft limit above the hard one
     gone = gone && setrlimit(RLIMIT_DATA, &hardly_any) == 0;
   }
   if (geteuid() == 0)
