@@ -31,9 +31,7 @@ class LatestValue {
   }
 
   /// Writer only: publishes a copy.
-  void store(const T& value) noexcept
-    requires Payload<T>
-  {
+  void store(const T& value) noexcept requires Payload<T> {
     back() = value;
     publish();
   }

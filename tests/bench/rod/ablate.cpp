@@ -28,37 +28,96 @@ struct Number {
     return std::visit([](auto member) { return static_cast<double>(tuning.*member); }, at);
   }
   void set(double value) const {
-    if (const auto* real = std::get_if<0>(&at)) tuning.**real = value;
-    if (const auto* whole = std::get_if<1>(&at)) tuning.**whole = static_cast<int>(value);
+    if (const auto* real = std::get_if<0>(&at)) tuning.** real = value;
+    if (const auto* whole = std::get_if<1>(&at)) tuning.** whole = static_cast<int>(value);
   }
 };
 
-#define NUMBER(name, ...) {#name, &Tuning::name, {__VA_ARGS__}}
+#define NUMBER(name, ...)                 \
+  {                                       \
+#name, &Tuning::name, { __VA_ARGS__ } \
+  }
 const std::vector<Number> kNumbers = {
-    NUMBER(near_d), NUMBER(skin_d), NUMBER(close, 1.0, 4.0), NUMBER(contact_N_per_m), NUMBER(recovery),
-    NUMBER(max_recovery_m_per_s, 0.05, 1e9), NUMBER(most_cut_d, 0.175, 0.45), NUMBER(least_share, 0.002, 1.0),
-    NUMBER(more_share, 1.05, 1e9), NUMBER(stick_m_per_s), NUMBER(bent, 0.33, 1.0), NUMBER(straight, 0.5, 2.0),
-    NUMBER(settled_m_per_s), NUMBER(settled_share, 0.0, 0.002, 0.008), NUMBER(newton_m_per_s, 0.0, 3e-5),
-    NUMBER(stir, 0.0, 0.3), NUMBER(creep, 0.05, 1e9), NUMBER(still_m_per_s, 1e-7, 1e-5),
+    NUMBER(near_d),
+    NUMBER(skin_d),
+    NUMBER(close, 1.0, 4.0),
+    NUMBER(contact_N_per_m),
+    NUMBER(recovery),
+    NUMBER(max_recovery_m_per_s, 0.05, 1e9),
+    NUMBER(most_cut_d, 0.175, 0.45),
+    NUMBER(least_share, 0.002, 1.0),
+    NUMBER(more_share, 1.05, 1e9),
+    NUMBER(stick_m_per_s),
+    NUMBER(bent, 0.33, 1.0),
+    NUMBER(straight, 0.5, 2.0),
+    NUMBER(settled_m_per_s),
+    NUMBER(settled_share, 0.0, 0.002, 0.008),
+    NUMBER(newton_m_per_s, 0.0, 3e-5),
+    NUMBER(stir, 0.0, 0.3),
+    NUMBER(creep, 0.05, 1e9),
+    NUMBER(still_m_per_s, 1e-7, 1e-5),
     NUMBER(most_leniency, 1.0, 12.0),
-    NUMBER(leniency_up, 1.2, 6.0), NUMBER(leniency_down, 0.5, 0.98), NUMBER(pace_s, 1e-6, 0.005, 0.1),
-    NUMBER(newton_near, 1.0, 6.0), NUMBER(newton_loose, 1.0, 9.0), NUMBER(newton_old, 1.0, 100.0),
-    NUMBER(enough, 3.0, 30.0), NUMBER(most_steps), NUMBER(sweeps, 0, 1, 4), NUMBER(most_looks), NUMBER(stale, 1, 100),
-    NUMBER(margin, 2, 12), NUMBER(moved, 0.05, 0.5), NUMBER(idle, 0, 1, 16), NUMBER(sweep_share, 0.6, 1.0),
-    NUMBER(cost_normal, 0.0, 0.025, 0.1), NUMBER(cost_along, 0.05, 0.2), NUMBER(cost_fade, 0.3, 0.8),
-    NUMBER(cost_fade_known, 0.01, 0.6), NUMBER(cost_worse, 1.0, 1e9), NUMBER(cost_more, 2.0, 16.0),
-    NUMBER(cost_least, 1e-6, 1e-2), NUMBER(substeps, 10, 12, 24), NUMBER(fewest_substeps, 6, 13, 100),
-    NUMBER(letting_go_share, 1.0, 2.0), NUMBER(tired, 0.7, 1e9), NUMBER(rested, 0.1, 0.9),
-    NUMBER(thrown_m_per_s, 1.0, 1e9), NUMBER(fast_m_per_s, 0.15, 1e9), NUMBER(patience, 0.0, 3.0, 48.0),
-    NUMBER(patience_less, 0.5, 1.0), NUMBER(patience_more, 0.0, 0.2), NUMBER(slowed, 1.0), NUMBER(max_passes),
-    NUMBER(least_passes, 1, 6), NUMBER(wild_m_per_s, 0.0, 1e-4, 1e-2, 1e9), NUMBER(brake_creep_d, 1e-5, 1e-3),
-    NUMBER(brake_give, 0.03, 3.0), NUMBER(looks_reserve, 1.0, 3.0), NUMBER(pass_share, 1.0, 4.0),
-    NUMBER(unworked, 0.0, 1.0), NUMBER(ahead1_ticks, 0.5, 2.4), NUMBER(ahead1_share, 0.15, 0.6),
-    NUMBER(ahead2_ticks, 0.05, 0.6), NUMBER(ahead2_share), NUMBER(ahead3_share), NUMBER(turn_rad),
-    NUMBER(start_turn_rad), NUMBER(bend_length), NUMBER(grading, 0.1, 0.4), NUMBER(fade, 0.64, 0.9), NUMBER(away),
-    NUMBER(fade_share, 0.0, 1e9), NUMBER(fade_least, 0.0, 1e-4), NUMBER(rests_m_per_s, 0.0, 1e-2),
-    NUMBER(swings_m_per_s, 0.0, 0.5), NUMBER(first, 0.5, 1.0), NUMBER(worth, 1.2, 2.0), NUMBER(tries, 1, 16),
-    NUMBER(changes), NUMBER(remesh_share, 0.03, 1.0),
+    NUMBER(leniency_up, 1.2, 6.0),
+    NUMBER(leniency_down, 0.5, 0.98),
+    NUMBER(pace_s, 1e-6, 0.005, 0.1),
+    NUMBER(newton_near, 1.0, 6.0),
+    NUMBER(newton_loose, 1.0, 9.0),
+    NUMBER(newton_old, 1.0, 100.0),
+    NUMBER(enough, 3.0, 30.0),
+    NUMBER(most_steps),
+    NUMBER(sweeps, 0, 1, 4),
+    NUMBER(most_looks),
+    NUMBER(stale, 1, 100),
+    NUMBER(margin, 2, 12),
+    NUMBER(moved, 0.05, 0.5),
+    NUMBER(idle, 0, 1, 16),
+    NUMBER(sweep_share, 0.6, 1.0),
+    NUMBER(cost_normal, 0.0, 0.025, 0.1),
+    NUMBER(cost_along, 0.05, 0.2),
+    NUMBER(cost_fade, 0.3, 0.8),
+    NUMBER(cost_fade_known, 0.01, 0.6),
+    NUMBER(cost_worse, 1.0, 1e9),
+    NUMBER(cost_more, 2.0, 16.0),
+    NUMBER(cost_least, 1e-6, 1e-2),
+    NUMBER(substeps, 10, 12, 24),
+    NUMBER(fewest_substeps, 6, 13, 100),
+    NUMBER(letting_go_share, 1.0, 2.0),
+    NUMBER(tired, 0.7, 1e9),
+    NUMBER(rested, 0.1, 0.9),
+    NUMBER(thrown_m_per_s, 1.0, 1e9),
+    NUMBER(fast_m_per_s, 0.15, 1e9),
+    NUMBER(patience, 0.0, 3.0, 48.0),
+    NUMBER(patience_less, 0.5, 1.0),
+    NUMBER(patience_more, 0.0, 0.2),
+    NUMBER(slowed, 1.0),
+    NUMBER(max_passes),
+    NUMBER(least_passes, 1, 6),
+    NUMBER(wild_m_per_s, 0.0, 1e-4, 1e-2, 1e9),
+    NUMBER(brake_creep_d, 1e-5, 1e-3),
+    NUMBER(brake_give, 0.03, 3.0),
+    NUMBER(looks_reserve, 1.0, 3.0),
+    NUMBER(pass_share, 1.0, 4.0),
+    NUMBER(unworked, 0.0, 1.0),
+    NUMBER(ahead1_ticks, 0.5, 2.4),
+    NUMBER(ahead1_share, 0.15, 0.6),
+    NUMBER(ahead2_ticks, 0.05, 0.6),
+    NUMBER(ahead2_share),
+    NUMBER(ahead3_share),
+    NUMBER(turn_rad),
+    NUMBER(start_turn_rad),
+    NUMBER(bend_length),
+    NUMBER(grading, 0.1, 0.4),
+    NUMBER(fade, 0.64, 0.9),
+    NUMBER(away),
+    NUMBER(fade_share, 0.0, 1e9),
+    NUMBER(fade_least, 0.0, 1e-4),
+    NUMBER(rests_m_per_s, 0.0, 1e-2),
+    NUMBER(swings_m_per_s, 0.0, 0.5),
+    NUMBER(first, 0.5, 1.0),
+    NUMBER(worth, 1.2, 2.0),
+    NUMBER(tries, 1, 16),
+    NUMBER(changes),
+    NUMBER(remesh_share, 0.03, 1.0),
 };
 #undef NUMBER
 
@@ -111,9 +170,10 @@ int main(int argc, char** argv) {
   CLI::App app("What each number of the rod is good for", "rod_ablate");
   std::string footer = "\nColumns:\n";
   for (const auto& c : kColumns) footer += std::string("  ") + c.name + "  " + c.meaning + "\n";
-  app.footer(footer + "A mean over the cases, except wrong and guard. After each row: the measures that differ\n"
-                      "from the first rows by more than three standard deviations of rounding and by 2 %. Exit 0, or 2 for\n"
-                      "bad input.\n\nExample\n  rod_ablate near_d patience --seed 7");
+  app.footer(footer +
+             "A mean over the cases, except wrong and guard. After each row: the measures that differ\n"
+             "from the first rows by more than three standard deviations of rounding and by 2 %. Exit 0, or 2 for\n"
+             "bad input.\n\nExample\n  rod_ablate near_d patience --seed 7");
   app.add_option("NUMBER", only, "names of tuning.hpp, or NAME=VALUE; default: all");
   app.add_option("--seed", seed, "draws speeds, forces and frictions");
   app.add_option("--rounding", runs, "runs that only rounding tells apart")->check(CLI::Range(1, 100));

@@ -15,8 +15,8 @@ namespace ligature::bench {
 
 struct Pull {
   double speed_m_per_s = 0.2, force_N = 5.0;
-  bool sudden = false;  ///< the hands let go under full force; else they move back first
-  int hands = 2;        ///< number of hands that pull
+  bool sudden = false;     ///< the hands let go under full force; else they move back first
+  int hands = 2;           ///< number of hands that pull
   double tremble_m = 0.0;  ///< amplitude of a tremble of both hands at 9 Hz, across the pull
 };
 
