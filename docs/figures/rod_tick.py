@@ -10,7 +10,7 @@ ONCE = (("begin_tick", "targets and speeds of\nthe hands; number of\nsubsteps; b
         ("remesh", "nodes move along the\nthread to where they\nare needed", "refine.cpp\nmerge_guard.cpp"),
         ("twist", "angle and moment\nof each span", "twist.cpp, spin.cpp"))
 EACH = (("look", "finds contacts: pairs\nthat may touch, their\ngaps and normals",
-         "motion.cpp, broad_phase.cpp\ncontact_measure.cpp, smooth.hpp"),
+         "motion.cpp, pair_search.cpp\ncontact_measure.cpp, smooth.hpp"),
         ("assemble", "matrix A and\nright-hand side of\nA v = M v0 + ...", "assembly.cpp"),
         ("settle", "factorises A; solves\nimpulses p and\nvelocities v", "band_solver.cpp\ncontact_direct.cpp"),
         ("guard", "largest share of the\nsubstep in which\nnothing can cross", "guard.cpp"),
@@ -20,7 +20,7 @@ EACH = (("look", "finds contacts: pairs\nthat may touch, their\ngaps and normals
 def step(axes, x, y, what, colour):
     name, text, files = what
     assert re.search(rf"\b{name}(?:_\.update)?[(<]", source(CODE + "rod.cpp") + source(CODE + "rod_substep.cpp")), name
-    assert all((ROOT / CODE / file).exists() for file in re.split(r"[,\s]+", files)), files
+    assert all(list((ROOT / CODE).rglob(file)) for file in re.split(r"[,\s]+", files)), files
     box(axes, x, y, WIDE, 76, "", colour)
     write(axes, x + WIDE / 2, y + 63, name, weight="bold")
     write(axes, x + WIDE / 2, y + 28, text, size=9.5)

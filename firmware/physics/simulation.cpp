@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "firmware/physics/paper_simulation.hpp"
-#include "firmware/physics/rod/describe.hpp"
+#include "firmware/physics/paper/paper_simulation.hpp"
+#include "firmware/physics/rod/contact_points.hpp"
+#include "firmware/physics/rod/model/describe.hpp"
 #include "firmware/physics/rod/rod_simulation.hpp"
-#include "firmware/physics/rod_contacts.hpp"
 
 namespace ligature::physics {
 

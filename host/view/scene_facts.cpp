@@ -8,7 +8,7 @@
 namespace ligature::host::view {
 namespace {
 
-constexpr double kGripperRadii = 4.0;  // firmware/physics/obstacles.hpp
+constexpr double kGripperRadii = 4.0;  // firmware/physics/paper/obstacles.hpp
 constexpr const char* kInitial = "suture.initial";
 
 }  // namespace

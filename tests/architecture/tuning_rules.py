@@ -17,9 +17,9 @@ PLAIN = {0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 3.0, 4.0, 8.0}
 SMALL, LARGE = 1e-9, 1e6
 # Numbers that the code needs for another reason: limits of arithmetic, safety margins of proofs, room for lists.
 REASONED = {
-    "broad_phase.cpp": {"1.0001F": "rounding of single precision", "2048": "room"},
-    "broad_phase.hpp": {"0.6": "neighbours that are never listed", "0.56": "its sine", "12": "room"},
-    "contact.hpp": {"0.3": "default of an input", "768": "room"},
+    "pair_search.cpp": {"1.0001F": "rounding of single precision", "2048": "room"},
+    "pair_search.hpp": {"0.6": "neighbours that are never listed", "0.56": "its sine", "12": "room"},
+    "contact_set.hpp": {"0.3": "default of an input", "768": "room"},
     "contact_newton.hpp": {"96": "room", "192": "room"},
     "contact_newton_step.cpp": {"1e-6": "bound of a quotient", "0.7": "any direction that is not parallel"},
     "dense.cpp": {"1e-4F": "loss of digits", "1e-6F": "rounding of single precision"},
@@ -82,11 +82,11 @@ def main():
     assert list(stray("rod.cpp", "constexpr int kTries = 7;")) == ["7"]
     assert not list(stray("rod.cpp", "return 0.5 * a + 1e-12;  // 0.37"))
     found = []
-    for path in sorted((root / FOLDER).glob("*.[ch]pp")):
+    for path in sorted((root / FOLDER).rglob("*.[ch]pp")):
         if path.name in OTHERS:
             continue
         for number, line in enumerate(path.read_text().split("\n"), 1):
-            found += [f"{FOLDER}/{path.name}:{number}: {text} belongs into tuning.hpp" for text in stray(path.name, line)]
+            found += [f"{path.relative_to(root)}:{number}: {text} belongs into tuning.hpp" for text in stray(path.name, line)]
     tests = {f"{s}.{n}" for p in (root / "tests").rglob("*.cpp") for s, n in re.findall(r"\bTEST(?:_[FP])?\(\s*(\w+),\s*(\w+)", p.read_text())}
     found += table_faults((root / TABLE).read_text(), tests)
     print("\n".join(found) if found else "the rod's numbers stand in their table")

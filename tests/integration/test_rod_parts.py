@@ -20,7 +20,7 @@ TICKS = 30
 # Code that runs only for one part of the rod model: whole files, or single functions.
 TWIST = ["twist.cpp"]
 ROLL = ["spin.cpp", "spin_frames.cpp", "spin_set.cpp", "turning.cpp"]
-CONTACT = ["broad_phase.cpp", "contact_collect.cpp", "contact_couplings.cpp", "contact_measure.cpp",
+CONTACT = ["pair_search.cpp", "contact_collect.cpp", "contact_couplings.cpp", "contact_measure.cpp",
            "contact_direct.cpp", "contact_newton.cpp", "contact_newton_step.cpp", "contact_metric.cpp", "dense.cpp",
            "guard.cpp", "mixing.cpp", "motion.cpp", "motion.hpp", "smooth.hpp", "touch.hpp"]
 ADAPTIVE = ["refine.cpp", "merge_guard.cpp"]
@@ -68,7 +68,7 @@ class Counts:
             elif re.match(r"[+\-*0-9]", line) and len(line.split()) >= 2:
                 if not skip:
                     count = int(line.split()[1])
-                    self.files[current.split(ROD)[-1] if ROD in current else current] += count
+                    self.files[pathlib.PurePath(current).name if ROD in current else current] += count
                     self.functions[function] += count
                     self.total += count
                 skip = False

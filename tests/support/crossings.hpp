@@ -6,8 +6,8 @@
 #include <iterator>
 #include <vector>
 
-#include "firmware/physics/rod/closest.hpp"
-#include "firmware/physics/rod/state.hpp"
+#include "firmware/physics/rod/contact/closest.hpp"
+#include "firmware/physics/rod/model/state.hpp"
 
 namespace ligature::test {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "firmware/physics/angle.hpp"
+#include "firmware/physics/paper/angle.hpp"
 
 namespace ligature::physics {
 

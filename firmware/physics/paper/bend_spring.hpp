@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "firmware/physics/bend_geometry.hpp"
+#include "firmware/physics/paper/bend_geometry.hpp"
 
 namespace ligature::physics {
 

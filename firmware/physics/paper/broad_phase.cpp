@@ -1,4 +1,4 @@
-#include "firmware/physics/broad_phase.hpp"
+#include "firmware/physics/paper/broad_phase.hpp"
 
 namespace ligature::physics {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "firmware/physics/lanes.hpp"
-#include "firmware/physics/roomy_vector.hpp"
+#include "firmware/physics/paper/lanes.hpp"
+#include "firmware/physics/paper/roomy_vector.hpp"
 
 namespace ligature::physics {
 

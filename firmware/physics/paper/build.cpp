@@ -1,9 +1,9 @@
-#include "firmware/physics/build.hpp"
+#include "firmware/physics/paper/build.hpp"
 
 #include <cmath>
 #include <numbers>
 
-#include "firmware/physics/stretch_spring.hpp"
+#include "firmware/physics/paper/stretch_spring.hpp"
 
 namespace ligature::physics {
 namespace {

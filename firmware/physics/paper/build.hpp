@@ -3,9 +3,9 @@
 #include <string>
 #include <variant>
 
-#include "firmware/physics/contact.hpp"
-#include "firmware/physics/grasp.hpp"
-#include "firmware/physics/thread.hpp"
+#include "firmware/physics/paper/contact.hpp"
+#include "firmware/physics/paper/grasp.hpp"
+#include "firmware/physics/paper/thread.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::physics {

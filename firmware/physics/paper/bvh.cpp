@@ -1,4 +1,4 @@
-#include "firmware/physics/bvh.hpp"
+#include "firmware/physics/paper/bvh.hpp"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "firmware/physics/broad_phase.hpp"
+#include "firmware/physics/paper/broad_phase.hpp"
 
 namespace ligature::physics {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "firmware/physics/vec.hpp"
+#include "firmware/physics/paper/v3.hpp"
 
 namespace ligature::physics {
 

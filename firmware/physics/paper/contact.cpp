@@ -1,4 +1,4 @@
-#include "firmware/physics/contact.hpp"
+#include "firmware/physics/paper/contact.hpp"
 
 #include <limits>
 

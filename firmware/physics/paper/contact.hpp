@@ -5,13 +5,13 @@
 #include <span>
 #include <vector>
 
-#include "firmware/physics/broad_phase.hpp"
-#include "firmware/physics/bvh.hpp"
 #include "firmware/physics/contact_point.hpp"
-#include "firmware/physics/contact_row.hpp"
-#include "firmware/physics/roomy_vector.hpp"
-#include "firmware/physics/sweep.hpp"
-#include "firmware/physics/thread.hpp"
+#include "firmware/physics/paper/broad_phase.hpp"
+#include "firmware/physics/paper/bvh.hpp"
+#include "firmware/physics/paper/contact_row.hpp"
+#include "firmware/physics/paper/roomy_vector.hpp"
+#include "firmware/physics/paper/sweep_and_prune.hpp"
+#include "firmware/physics/paper/thread.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::physics {

@@ -1,7 +1,7 @@
 #include <limits>
 #include <tuple>
 
-#include "firmware/physics/contact.hpp"
+#include "firmware/physics/paper/contact.hpp"
 
 // Search for candidates: pairs of bodies that may touch soon. It is repeated only when the motion since the last search
 // may have used up its margin.

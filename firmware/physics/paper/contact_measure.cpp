@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "firmware/physics/closest_points.hpp"
-#include "firmware/physics/contact.hpp"
+#include "firmware/physics/paper/closest_points.hpp"
+#include "firmware/physics/paper/contact.hpp"
 
 // Narrow phase: gap, closest points and normal of a candidate, that is a pair of bodies that may touch soon.
 

@@ -1,4 +1,4 @@
-#include "firmware/physics/grasp.hpp"
+#include "firmware/physics/paper/grasp.hpp"
 
 #include "firmware/physics/nearest_beside.hpp"
 

@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "firmware/physics/closing.hpp"
+#include "firmware/physics/paper/thread.hpp"
 #include "firmware/physics/simulation.hpp"
-#include "firmware/physics/thread.hpp"
 
 namespace ligature::physics {
 

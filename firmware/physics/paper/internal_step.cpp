@@ -1,13 +1,13 @@
-#include "firmware/physics/internal_step.hpp"
+#include "firmware/physics/paper/internal_step.hpp"
 
 #include <type_traits>
 
-#include "firmware/physics/banded.hpp"
-#include "firmware/physics/bend_damper.hpp"
-#include "firmware/physics/bend_spring.hpp"
-#include "firmware/physics/stretch_damper.hpp"
-#include "firmware/physics/stretch_spring.hpp"
-#include "firmware/physics/swivel_damper.hpp"
+#include "firmware/physics/paper/banded.hpp"
+#include "firmware/physics/paper/bend_damper.hpp"
+#include "firmware/physics/paper/bend_spring.hpp"
+#include "firmware/physics/paper/stretch_damper.hpp"
+#include "firmware/physics/paper/stretch_spring.hpp"
+#include "firmware/physics/paper/swivel_damper.hpp"
 
 // Every loop runs over packs of four nodes and may include up to three nodes past the end. Their segments have zero
 // length, so direction, axis and gradients are zero: all results there are finite and multiplied by zero.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "firmware/physics/thread.hpp"
+#include "firmware/physics/paper/thread.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::physics {

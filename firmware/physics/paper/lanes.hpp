@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "firmware/physics/vec.hpp"
+#include "firmware/physics/paper/v3.hpp"
 
 namespace ligature::physics {
 

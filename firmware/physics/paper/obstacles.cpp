@@ -1,8 +1,8 @@
-#include "firmware/physics/obstacles.hpp"
+#include "firmware/physics/paper/obstacles.hpp"
 
 #include <algorithm>
 
-#include "firmware/physics/closest_points.hpp"
+#include "firmware/physics/paper/closest_points.hpp"
 
 namespace ligature::physics {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "firmware/physics/contact.hpp"
-#include "firmware/physics/grasp.hpp"
+#include "firmware/physics/paper/contact.hpp"
+#include "firmware/physics/paper/grasp.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::physics {

@@ -1,10 +1,10 @@
-#include "firmware/physics/paper_contact.hpp"
+#include "firmware/physics/paper/paper_contact.hpp"
 
 #include <limits>
 
-#include "firmware/physics/closest_points.hpp"
-#include "firmware/physics/friction.hpp"
-#include "firmware/physics/separation.hpp"
+#include "firmware/physics/paper/closest_points.hpp"
+#include "firmware/physics/paper/friction.hpp"
+#include "firmware/physics/paper/separation.hpp"
 
 namespace ligature::physics {
 namespace {

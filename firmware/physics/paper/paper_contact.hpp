@@ -1,8 +1,8 @@
 #pragma once
 
-#include "firmware/physics/broad_phase.hpp"
-#include "firmware/physics/repulsion.hpp"
-#include "firmware/physics/thread.hpp"
+#include "firmware/physics/paper/broad_phase.hpp"
+#include "firmware/physics/paper/repulsion.hpp"
+#include "firmware/physics/paper/thread.hpp"
 
 namespace ligature::physics {
 

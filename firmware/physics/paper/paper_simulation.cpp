@@ -1,11 +1,11 @@
-#include "firmware/physics/paper_simulation.hpp"
+#include "firmware/physics/paper/paper_simulation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "firmware/physics/build.hpp"
-#include "firmware/physics/stretch_spring.hpp"
+#include "firmware/physics/paper/build.hpp"
+#include "firmware/physics/paper/stretch_spring.hpp"
 
 namespace ligature::physics {
 namespace {

@@ -10,14 +10,14 @@
 #include <variant>
 #include <vector>
 
-#include "firmware/physics/contact.hpp"
-#include "firmware/physics/grasp.hpp"
-#include "firmware/physics/internal_step.hpp"
-#include "firmware/physics/obstacles.hpp"
-#include "firmware/physics/paper_contact.hpp"
-#include "firmware/physics/propagation.hpp"
+#include "firmware/physics/paper/contact.hpp"
+#include "firmware/physics/paper/grasp.hpp"
+#include "firmware/physics/paper/internal_step.hpp"
+#include "firmware/physics/paper/obstacles.hpp"
+#include "firmware/physics/paper/paper_contact.hpp"
+#include "firmware/physics/paper/propagation.hpp"
+#include "firmware/physics/paper/thread.hpp"
 #include "firmware/physics/simulation.hpp"
-#include "firmware/physics/thread.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::physics {

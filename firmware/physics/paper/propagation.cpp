@@ -1,7 +1,7 @@
-#include "firmware/physics/propagation.hpp"
+#include "firmware/physics/paper/propagation.hpp"
 
-#include "firmware/physics/banded.hpp"
-#include "firmware/physics/stretch_spring.hpp"
+#include "firmware/physics/paper/banded.hpp"
+#include "firmware/physics/paper/stretch_spring.hpp"
 
 namespace ligature::physics {
 namespace {

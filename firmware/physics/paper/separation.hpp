@@ -1,6 +1,6 @@
 #pragma once
 
-#include "firmware/physics/impulse_response.hpp"
+#include "firmware/physics/paper/impulse_response.hpp"
 
 namespace ligature::physics {
 

@@ -1,4 +1,4 @@
-#include "firmware/physics/sweep.hpp"
+#include "firmware/physics/paper/sweep_and_prune.hpp"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "firmware/physics/bend_geometry.hpp"
+#include "firmware/physics/paper/bend_geometry.hpp"
 
 namespace ligature::physics {
 

@@ -1,7 +1,7 @@
 #pragma once
 // A thread of the paper's models: constants (ThreadModel), state (ThreadState), work arrays (InternalWorkspace).
 
-#include "firmware/physics/lanes.hpp"
+#include "firmware/physics/paper/lanes.hpp"
 
 namespace ligature::physics {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Vectors of three components over any scalar: double in tests, Pack (four nodes at once) in the loop.
 
-#include "firmware/physics/pack.hpp"
+#include "firmware/physics/paper/pack.hpp"
 
 namespace ligature::physics {
 

@@ -1,4 +1,4 @@
-#include "firmware/physics/rod_contacts.hpp"
+#include "firmware/physics/rod/contact_points.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/physics/rod/jaws.hpp"
+#include "firmware/physics/rod/grip/jaws.hpp"
 
 namespace ligature::physics::rod {
 namespace {

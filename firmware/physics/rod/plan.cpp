@@ -15,8 +15,7 @@ Plan plan(const Plan& last, const TickReport& report, const Situation& now, cons
                                        : std::max(1.0, tuning.leniency_down * last.leniency);
   const double fading = now.alone ? 0.0 : std::exp(-numerics.tick_s / tuning.pace_s);
   next.pace_m_per_s = std::max(0.5 * now.apart_m_per_s, fading * last.pace_m_per_s);
-  next.letting_go =
-      now.released || (last.letting_go && (now.waits || now.node_m_per_s > tuning.thrown_m_per_s));
+  next.letting_go = now.released || (last.letting_go && (now.waits || now.node_m_per_s > tuning.thrown_m_per_s));
   const int fewer = static_cast<int>(tuning.labour_share * numerics.substeps),
             more = static_cast<int>(tuning.letting_go_share * numerics.substeps);
   next.substeps = next.letting_go ? std::max(numerics.max_substeps, more)

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "firmware/physics/rod/material.hpp"
+#include "firmware/physics/rod/model/material.hpp"
 #include "firmware/physics/rod/tick_report.hpp"
 
 namespace ligature::physics::rod {
@@ -59,7 +59,7 @@ class Patience {
   }
 
  private:
-  int waits_ = 0;                    // consecutive ticks in which the present substep was begun but not finished
+  int waits_ = 0;                   // consecutive ticks in which the present substep was begun but not finished
   double limit_ = tuning.patience;  // of waits_
   bool sweeps_only_ = false;
 };

@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "firmware/physics/rod/assembly.hpp"
-#include "firmware/physics/rod/contact.hpp"
+#include "firmware/physics/rod/contact/contact_set.hpp"
+#include "firmware/physics/rod/mesh/refine.hpp"
+#include "firmware/physics/rod/model/assembly.hpp"
+#include "firmware/physics/rod/model/twist.hpp"
 #include "firmware/physics/rod/plan.hpp"
-#include "firmware/physics/rod/refine.hpp"
-#include "firmware/physics/rod/twist.hpp"
 
 namespace ligature::physics::rod {
 
@@ -75,10 +75,10 @@ struct RodNow {
   double stir_m_per_s_ = 0.0;   ///< largest nodal speed relative to the mean velocity
   double tick_travel_m_ = 0.0;  ///< upper bound of any node's travel since the tick began
   int substep_index_ = 0;
-  bool measured_ = false;              ///< contact detection of this substep is complete
-  double since_look_s_ = 0.0;          ///< time moved since contacts were detected
+  bool measured_ = false;               ///< contact detection of this substep is complete
+  double since_look_s_ = 0.0;           ///< time moved since contacts were detected
   long look_cost_ = 0, rows_cost_ = 0;  ///< work of the last substep's contact detection; work of its rows
-  ContactReport seen_;                 ///< result of the contact solver in this substep
+  ContactReport seen_;                  ///< result of the contact solver in this substep
   bool braked_ = false;  ///< velocities of the last substep were scaled down after the hand forces were computed
 };
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "firmware/physics/closing.hpp"
-#include "firmware/physics/rod/jaws.hpp"
+#include "firmware/physics/rod/grip/jaws.hpp"
 #include "firmware/physics/rod/rod.hpp"
 #include "firmware/physics/simulation.hpp"
 #include "protocol/scene/scene.hpp"
@@ -65,7 +65,7 @@ class RodSimulation : private HandsCourse {
   Rod initial_, rod_;
   double reach_m_;
   bool grippers_ = false;
-  int gripper_body_ = 0;                // index of the left gripper's capsule
+  int gripper_body_ = 0;                  // index of the left gripper's capsule
   std::vector<Vec> x_before_, v_before_;  // scratch of tick()
 };
 

@@ -1,7 +1,7 @@
 // Experiment `pulling`: the paper's Table III, the force in each haptic frame (here: each tick of 1 ms) for one-hand
 // and two-hand pulls. The table also gives the condition under which force passes along the thread: A, no segment is at
 // its limit of length and only the springs act; B, segments at a limit are rigid and pass the force on; C, as B, with
-// two hands (firmware/physics/propagation.hpp).
+// two hands (firmware/physics/paper/propagation.hpp).
 
 #include <algorithm>
 #include <array>

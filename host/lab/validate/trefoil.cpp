@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "firmware/physics/rod/closest.hpp"
+#include "firmware/physics/rod/contact/closest.hpp"
 #include "host/knot/recognise.hpp"
 #include "host/lab/validate/cases.hpp"
 #include "host/lab/validate/rods.hpp"

@@ -1,9 +1,9 @@
 // Every broad phase reports exactly the pairs of brute force: random walks, coils, piles, lines, points.
 #include <gtest/gtest.h>
 
-#include "firmware/physics/bvh.hpp"
-#include "firmware/physics/closest_points.hpp"
-#include "firmware/physics/sweep.hpp"
+#include "firmware/physics/paper/bvh.hpp"
+#include "firmware/physics/paper/closest_points.hpp"
+#include "firmware/physics/paper/sweep_and_prune.hpp"
 #include "tests/unit/physics/random_states.hpp"
 
 namespace ligature::physics {

@@ -2,10 +2,10 @@
 // separation of section V.A.
 #include <gtest/gtest.h>
 
-#include "firmware/physics/contact_row.hpp"
-#include "firmware/physics/friction.hpp"
-#include "firmware/physics/repulsion.hpp"
-#include "firmware/physics/separation.hpp"
+#include "firmware/physics/paper/contact_row.hpp"
+#include "firmware/physics/paper/friction.hpp"
+#include "firmware/physics/paper/repulsion.hpp"
+#include "firmware/physics/paper/separation.hpp"
 #include "tests/unit/physics/random_states.hpp"
 
 namespace ligature::physics {

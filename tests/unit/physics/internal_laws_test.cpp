@@ -4,11 +4,11 @@
 
 #include <functional>
 
-#include "firmware/physics/bend_damper.hpp"
-#include "firmware/physics/bend_spring.hpp"
-#include "firmware/physics/stretch_damper.hpp"
-#include "firmware/physics/stretch_spring.hpp"
-#include "firmware/physics/swivel_damper.hpp"
+#include "firmware/physics/paper/bend_damper.hpp"
+#include "firmware/physics/paper/bend_spring.hpp"
+#include "firmware/physics/paper/stretch_damper.hpp"
+#include "firmware/physics/paper/stretch_spring.hpp"
+#include "firmware/physics/paper/swivel_damper.hpp"
 #include "tests/unit/physics/random_states.hpp"
 
 namespace ligature::physics {

@@ -1,8 +1,8 @@
 // One time step of the thread's internal forces: implicit dampers are stable for every model and any coefficient.
 #include <gtest/gtest.h>
 
-#include "firmware/physics/internal_step.hpp"
-#include "firmware/physics/propagation.hpp"
+#include "firmware/physics/paper/internal_step.hpp"
+#include "firmware/physics/paper/propagation.hpp"
 #include "tests/unit/physics/random_thread.hpp"
 
 namespace ligature::physics {

@@ -1,6 +1,6 @@
 // PaperContact, the self-contact of the paper of 2007, for random crossings against closed forms: its equations (2),
 // (18)-(22) for the normal direction, (1) and (3) for friction, and the separation of section V.A.
-#include "firmware/physics/paper_contact.hpp"
+#include "firmware/physics/paper/paper_contact.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "firmware/physics/vec.hpp"
+#include "firmware/physics/paper/v3.hpp"
 #include "tests/support/random.hpp"
 
 namespace ligature::physics::test {

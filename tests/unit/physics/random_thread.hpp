@@ -1,7 +1,7 @@
 #pragma once
 // A random thread as input for the internal-force step, and its energy and momenta.
 
-#include "firmware/physics/thread.hpp"
+#include "firmware/physics/paper/thread.hpp"
 #include "tests/unit/physics/random_states.hpp"
 
 namespace ligature::physics::test {

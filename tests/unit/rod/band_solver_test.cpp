@@ -1,13 +1,13 @@
 // The banded solver of one substep's linear system against a dense solver: for every window (the range of nodes whose
 // solution is asked for), and on a matrix that is numerically hard.
 
-#include "firmware/physics/rod/band_solver.hpp"
+#include "firmware/physics/rod/solve/band_solver.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 
-#include "firmware/physics/rod/band_columns.hpp"
+#include "firmware/physics/rod/solve/band_columns.hpp"
 #include "tests/support/random.hpp"
 
 namespace ligature::physics::rod {

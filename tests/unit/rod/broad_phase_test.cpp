@@ -1,6 +1,6 @@
 // The contact list of the rod contains only existing segments, whatever the velocities.
 
-#include "firmware/physics/rod/broad_phase.hpp"
+#include "firmware/physics/rod/contact/pair_search.hpp"
 
 #include <gtest/gtest.h>
 

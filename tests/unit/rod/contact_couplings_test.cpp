@@ -1,7 +1,7 @@
 // The table of contact couplings (velocity of contact a per impulse on contact b). It is symmetric: one half is put in
 // and the other mirrored. Also after two contacts have exchanged places.
 
-#include "firmware/physics/rod/contact_couplings.hpp"
+#include "firmware/physics/rod/solve/contact_couplings.hpp"
 
 #include <gtest/gtest.h>
 

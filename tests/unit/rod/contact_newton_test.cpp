@@ -1,13 +1,13 @@
 // Newton's method for contacts against projected Gauss-Seidel iterated to convergence, on a short stiff chain.
 
-#include "firmware/physics/rod/contact_newton.hpp"
+#include "firmware/physics/rod/solve/contact_newton.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/physics/rod/contact.hpp"
+#include "firmware/physics/rod/contact/contact_set.hpp"
 #include "tests/support/random.hpp"
 
 namespace ligature::physics::rod {

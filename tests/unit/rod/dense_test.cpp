@@ -1,6 +1,6 @@
 // Dense, the solver for small dense systems M x = b, reproduces known solutions.
 
-#include "firmware/physics/rod/dense.hpp"
+#include "firmware/physics/rod/solve/dense.hpp"
 
 #include <gtest/gtest.h>
 

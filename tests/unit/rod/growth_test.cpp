@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
-#include "firmware/physics/rod/broad_phase.hpp"
-#include "firmware/physics/rod/closest.hpp"
+#include "firmware/physics/rod/contact/closest.hpp"
+#include "firmware/physics/rod/contact/pair_search.hpp"
 #include "tests/support/random.hpp"
 #include "tests/unit/rod/rods.hpp"
 

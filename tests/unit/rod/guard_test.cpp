@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "firmware/physics/rod/closest.hpp"
-#include "firmware/physics/rod/contact.hpp"
+#include "firmware/physics/rod/contact/closest.hpp"
+#include "firmware/physics/rod/contact/contact_set.hpp"
 #include "tests/support/random.hpp"
 
 namespace ligature::test {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "firmware/physics/rod/smooth.hpp"
+#include "firmware/physics/rod/contact/smooth.hpp"
 #include "tests/support/random.hpp"
 
 namespace ligature::test {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "firmware/physics/rod/touch.hpp"
+#include "firmware/physics/rod/contact/touch.hpp"
 
 namespace ligature::test {
 namespace {

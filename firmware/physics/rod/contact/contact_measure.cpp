@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 
-#include "firmware/physics/rod/closest.hpp"
-#include "firmware/physics/rod/contact.hpp"
-#include "firmware/physics/rod/smooth.hpp"
+#include "firmware/physics/rod/contact/closest.hpp"
+#include "firmware/physics/rod/contact/contact_set.hpp"
+#include "firmware/physics/rod/contact/smooth.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {

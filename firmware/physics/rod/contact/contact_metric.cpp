@@ -1,4 +1,4 @@
-#include "firmware/physics/rod/contact_metric.hpp"
+#include "firmware/physics/rod/contact/contact_metric.hpp"
 
 #include <algorithm>
 #include <cassert>

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "firmware/physics/rod/mesh.hpp"
+#include "firmware/physics/rod/mesh/mesh.hpp"
 #include "firmware/physics/rod/work.hpp"
 
 namespace ligature::physics::rod {

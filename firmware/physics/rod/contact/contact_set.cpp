@@ -1,4 +1,4 @@
-#include "firmware/physics/rod/contact.hpp"
+#include "firmware/physics/rod/contact/contact_set.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
 #include <algorithm>

@@ -7,13 +7,13 @@
 #include <optional>
 #include <vector>
 
-#include "firmware/physics/rod/band_solver.hpp"
-#include "firmware/physics/rod/broad_phase.hpp"
-#include "firmware/physics/rod/contact_metric.hpp"
-#include "firmware/physics/rod/contact_newton.hpp"
-#include "firmware/physics/rod/mixing.hpp"
-#include "firmware/physics/rod/swept.hpp"
-#include "firmware/physics/rod/turning.hpp"
+#include "firmware/physics/rod/contact/contact_metric.hpp"
+#include "firmware/physics/rod/contact/pair_search.hpp"
+#include "firmware/physics/rod/contact/turning.hpp"
+#include "firmware/physics/rod/solve/band_solver.hpp"
+#include "firmware/physics/rod/solve/contact_newton.hpp"
+#include "firmware/physics/rod/solve/mixing.hpp"
+#include "firmware/physics/rod/solve/node_velocities.hpp"
 #include "firmware/physics/rod/work.hpp"
 
 namespace ligature::physics::rod {

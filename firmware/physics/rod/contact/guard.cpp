@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "firmware/physics/rod/closest.hpp"
-#include "firmware/physics/rod/contact.hpp"
+#include "firmware/physics/rod/contact/closest.hpp"
+#include "firmware/physics/rod/contact/contact_set.hpp"
 
 namespace ligature::physics::rod {
 namespace {

@@ -1,4 +1,4 @@
-#include "firmware/physics/rod/motion.hpp"
+#include "firmware/physics/rod/contact/motion.hpp"
 
 #include <cmath>
 #include <utility>

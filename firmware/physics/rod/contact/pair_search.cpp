@@ -1,11 +1,11 @@
-#include "firmware/physics/rod/broad_phase.hpp"
+#include "firmware/physics/rod/contact/pair_search.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numbers>
 
-#include "firmware/physics/rod/smooth.hpp"
+#include "firmware/physics/rod/contact/smooth.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "firmware/physics/rod/motion.hpp"
-#include "firmware/physics/rod/state.hpp"
-#include "firmware/physics/rod/touch.hpp"
+#include "firmware/physics/rod/contact/motion.hpp"
+#include "firmware/physics/rod/contact/touch.hpp"
+#include "firmware/physics/rod/model/state.hpp"
 #include "firmware/physics/rod/work.hpp"
 
 namespace ligature::physics::rod {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "firmware/physics/rod/closest.hpp"
-#include "firmware/physics/rod/state.hpp"
+#include "firmware/physics/rod/contact/closest.hpp"
+#include "firmware/physics/rod/model/state.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {

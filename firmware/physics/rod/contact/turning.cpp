@@ -1,9 +1,9 @@
-#include "firmware/physics/rod/turning.hpp"
+#include "firmware/physics/rod/contact/turning.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/physics/rod/contact.hpp"
+#include "firmware/physics/rod/contact/contact_set.hpp"
 
 namespace ligature::physics::rod {
 

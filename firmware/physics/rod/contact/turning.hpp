@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "firmware/physics/rod/spin.hpp"
+#include "firmware/physics/rod/model/spin.hpp"
 
 namespace ligature::physics::rod {
 

@@ -1,4 +1,4 @@
-#include "firmware/physics/rod/jaws.hpp"
+#include "firmware/physics/rod/grip/jaws.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "firmware/physics/rod/closest.hpp"
-#include "firmware/physics/rod/refine.hpp"
+#include "firmware/physics/rod/contact/closest.hpp"
+#include "firmware/physics/rod/mesh/refine.hpp"
 
 namespace ligature::physics::rod {
 

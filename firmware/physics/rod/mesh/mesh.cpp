@@ -1,4 +1,4 @@
-#include "firmware/physics/rod/mesh.hpp"
+#include "firmware/physics/rod/mesh/mesh.hpp"
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "firmware/physics/rod/material.hpp"
+#include "firmware/physics/rod/model/material.hpp"
 
 namespace ligature::physics::rod {
 

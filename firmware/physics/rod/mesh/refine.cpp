@@ -1,4 +1,4 @@
-#include "firmware/physics/rod/refine.hpp"
+#include "firmware/physics/rod/mesh/refine.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
 #include <algorithm>

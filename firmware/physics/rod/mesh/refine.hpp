@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "firmware/physics/rod/contact.hpp"
+#include "firmware/physics/rod/contact/contact_set.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {

@@ -1,4 +1,4 @@
-#include "firmware/physics/rod/assembly.hpp"
+#include "firmware/physics/rod/model/assembly.hpp"
 
 #include <algorithm>
 

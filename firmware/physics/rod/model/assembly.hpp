@@ -1,8 +1,8 @@
 #pragma once
 // The linear system of one substep: linearised implicit Euler for the new velocities.
 
-#include "firmware/physics/rod/band_solver.hpp"
-#include "firmware/physics/rod/state.hpp"
+#include "firmware/physics/rod/model/state.hpp"
+#include "firmware/physics/rod/solve/band_solver.hpp"
 
 namespace ligature::physics::rod {
 

@@ -1,4 +1,4 @@
-#include "firmware/physics/rod/describe.hpp"
+#include "firmware/physics/rod/model/describe.hpp"
 
 #include <algorithm>
 

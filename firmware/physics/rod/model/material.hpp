@@ -34,11 +34,11 @@ struct Numerics {
   int substeps = tuning.substeps;      ///< time steps per tick
   int max_substeps = tuning.substeps;  ///< time steps per tick when a hand is faster than fast_m_per_s
   double fast_m_per_s = tuning.fast_m_per_s;
-  int max_passes = tuning.max_passes;         ///< most passes of the sweep solver per substep
-  long work = tuning.work;                    ///< contact budget of a tick, in instructions (work.hpp)
-  long work_per_node = tuning.work_per_node;  ///< added to the budget for each node
-  double rush = tuning.rush;                  ///< relative budget increase for hands faster than 2 fast_m_per_s
-  long given_work = 0;                        ///< > 0: replaces the whole budget, for any thread and hands
+  int max_passes = tuning.max_passes;               ///< most passes of the sweep solver per substep
+  long work = tuning.work;                          ///< contact budget of a tick, in instructions (work.hpp)
+  long work_per_node = tuning.work_per_node;        ///< added to the budget for each node
+  double rush = tuning.rush;                        ///< relative budget increase for hands faster than 2 fast_m_per_s
+  long given_work = 0;                              ///< > 0: replaces the whole budget, for any thread and hands
   double settled_m_per_s = tuning.settled_m_per_s;  ///< tolerance: a pass that changes no velocity by more is the last
   double settled_share = tuning.settled_share;      ///< added to it: this times half the hands' relative speed
   double newton_m_per_s = tuning.newton_m_per_s;    ///< least tolerance of Newton's method

@@ -1,6 +1,6 @@
 // Roll rates of the segments: moments, the tridiagonal system of a substep, and the response to contacts.
 
-#include "firmware/physics/rod/spin.hpp"
+#include "firmware/physics/rod/model/spin.hpp"
 
 #include <algorithm>
 

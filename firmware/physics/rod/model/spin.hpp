@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "firmware/physics/rod/state.hpp"
+#include "firmware/physics/rod/model/state.hpp"
 
 namespace ligature::physics::rod {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "firmware/physics/rod/spin.hpp"
-#include "firmware/physics/rod/twist.hpp"
+#include "firmware/physics/rod/model/spin.hpp"
+#include "firmware/physics/rod/model/twist.hpp"
 
 namespace ligature::physics::rod {
 namespace {

@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/physics/rod/spin.hpp"
+#include "firmware/physics/rod/model/spin.hpp"
 
 namespace ligature::physics::rod {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "firmware/physics/rod/mesh.hpp"
+#include "firmware/physics/rod/mesh/mesh.hpp"
 #include "firmware/physics/rod/vec.hpp"
 
 namespace ligature::physics::rod {

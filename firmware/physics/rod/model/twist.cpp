@@ -1,4 +1,4 @@
-#include "firmware/physics/rod/twist.hpp"
+#include "firmware/physics/rod/model/twist.hpp"
 
 #include <cmath>
 #include <numbers>

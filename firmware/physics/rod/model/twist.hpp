@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "firmware/physics/rod/state.hpp"
+#include "firmware/physics/rod/model/state.hpp"
 
 namespace ligature::physics::rod {
 

@@ -1,10 +1,10 @@
-#include "firmware/physics/rod/band_columns.hpp"
+#include "firmware/physics/rod/solve/band_columns.hpp"
 
 #include <algorithm>
 #include <cassert>
 
-#include "firmware/physics/rod/band_solver.hpp"
-#include "firmware/physics/rod/swept.hpp"
+#include "firmware/physics/rod/solve/band_solver.hpp"
+#include "firmware/physics/rod/solve/node_velocities.hpp"
 
 namespace ligature::physics::rod {
 void BandColumns::reserve() {

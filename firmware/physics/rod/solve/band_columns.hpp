@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "firmware/physics/rod/floats.hpp"
+#include "firmware/physics/rod/solve/floats.hpp"
 #include "firmware/physics/rod/vec.hpp"
 #include "firmware/physics/rod/work.hpp"
 

@@ -1,4 +1,4 @@
-#include "firmware/physics/rod/band_solver.hpp"
+#include "firmware/physics/rod/solve/band_solver.hpp"
 
 #include <algorithm>
 #include <cassert>

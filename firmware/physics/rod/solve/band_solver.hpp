@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "firmware/physics/rod/two.hpp"
+#include "firmware/physics/rod/solve/two.hpp"
 #include "firmware/physics/rod/vec.hpp"
 
 namespace ligature::physics::rod {

@@ -1,4 +1,4 @@
-#include "firmware/physics/rod/contact_couplings.hpp"
+#include "firmware/physics/rod/solve/contact_couplings.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstddef>
 
-#include "firmware/physics/rod/floats.hpp"
-#include "firmware/physics/rod/swept.hpp"
+#include "firmware/physics/rod/solve/floats.hpp"
+#include "firmware/physics/rod/solve/node_velocities.hpp"
 
 namespace ligature::physics::rod {
 

@@ -5,12 +5,11 @@
 #include <cmath>
 #include <optional>
 
-#include "firmware/physics/rod/contact.hpp"
+#include "firmware/physics/rod/contact/contact_set.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
 namespace {
-
 
 constexpr double kUnknown = 1e300;  // squared error that has not been computed
 

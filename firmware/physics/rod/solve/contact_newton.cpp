@@ -1,11 +1,11 @@
-#include "firmware/physics/rod/contact_newton.hpp"
+#include "firmware/physics/rod/solve/contact_newton.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
 
-#include "firmware/physics/rod/contact.hpp"
+#include "firmware/physics/rod/contact/contact_set.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {

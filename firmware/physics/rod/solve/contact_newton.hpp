@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "firmware/physics/rod/band_columns.hpp"
-#include "firmware/physics/rod/band_solver.hpp"
-#include "firmware/physics/rod/contact_couplings.hpp"
-#include "firmware/physics/rod/dense.hpp"
-#include "firmware/physics/rod/floats.hpp"
-#include "firmware/physics/rod/swept.hpp"
+#include "firmware/physics/rod/solve/band_columns.hpp"
+#include "firmware/physics/rod/solve/band_solver.hpp"
+#include "firmware/physics/rod/solve/contact_couplings.hpp"
+#include "firmware/physics/rod/solve/dense.hpp"
+#include "firmware/physics/rod/solve/floats.hpp"
+#include "firmware/physics/rod/solve/node_velocities.hpp"
 #include "firmware/physics/rod/work.hpp"
 
 namespace ligature::physics::rod {

@@ -1,9 +1,9 @@
-#include "firmware/physics/rod/dense.hpp"
+#include "firmware/physics/rod/solve/dense.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/physics/rod/swept.hpp"
+#include "firmware/physics/rod/solve/node_velocities.hpp"
 
 namespace ligature::physics::rod {
 namespace {

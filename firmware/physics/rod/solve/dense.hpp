@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "firmware/physics/rod/floats.hpp"
+#include "firmware/physics/rod/solve/floats.hpp"
 #include "firmware/physics/rod/work.hpp"
 
 namespace ligature::physics::rod {

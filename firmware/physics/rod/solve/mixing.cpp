@@ -1,4 +1,4 @@
-#include "firmware/physics/rod/mixing.hpp"
+#include "firmware/physics/rod/solve/mixing.hpp"
 
 #include <algorithm>
 
