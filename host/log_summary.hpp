@@ -34,8 +34,7 @@ struct LogSummary {
   /// without a shape.
   [[nodiscard]] double knot_first_s() const;
   [[nodiscard]] double knot_since_s() const { return knots.empty() ? -1.0 : knots.back().from_s; }
-  /// The knot that was there before the thread of the last shapes became unknotted; nullptr: there was none, or the
-  /// thread is knotted at the end.
+  /// The last knot before the thread became unknotted. nullptr: there was none, or the last recorded shape has a knot.
   [[nodiscard]] const KnotSpan* untied() const;
   /// Whether the final knot was tied within the recording, and not there in its first shape already.
   [[nodiscard]] bool was_tied() const;

@@ -131,7 +131,8 @@ double Passivity::along_J(const Vec3& f_N) const noexcept {
 }
 
 /// Energy missing to send f in `tick` and, if and_back, to reduce it to zero later; negative: the surplus. Each
-/// reduction must be within a step of both torques sent last, so reducing by one step takes two periods.
+/// force must be within one step of both forces sent before it, as either may act if a frame is lost; so a reduction by
+/// one step takes two periods.
 double Passivity::shortage_J(std::int64_t tick, const Vec3& f_N, bool and_back) const noexcept {
   const bool blind = tick > sampled_, wary = is_wary(tick);
   const std::int64_t ahead = tick + 1 - sampled_;

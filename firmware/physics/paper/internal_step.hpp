@@ -16,8 +16,8 @@ struct Terms {
 };
 
 /// Applies the impulses of one step's internal forces to the velocities: springs, then dampers of stretch, bend and
-/// swivel (rotation of neighbouring segments about the normal of their common plane). Dampers are implicit: stretch
-/// solves a tridiagonal system, bend a pentadiagonal one, and swivel takes one weighted Jacobi step that never
+/// swivel (rotation of the plane of one bend against that of the next one, swivel_damper.hpp). Dampers are implicit:
+/// stretch solves a tridiagonal system, bend a pentadiagonal one, and swivel takes one weighted Jacobi step that never
 /// overshoots. So they dissipate energy for any coefficient and time step, and conserve linear and angular momentum.
 /// With explicit_damping they act as printed in the paper.
 /// @param rate_v  velocities at the beginning of the step, for explicit dampers; unused otherwise

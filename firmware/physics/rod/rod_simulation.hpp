@@ -15,7 +15,7 @@
 
 namespace ligature::physics::rod {
 
-/// What the hands do and what was published last: with the rod's own course, all that continue_from() takes over.
+/// State of the hands, and what was published last. This and the state of the rod are all that continue_from() copies.
 struct HandsCourse {
   std::array<Jaws, 2> jaws_;
   std::array<Closing, 2> closing_;

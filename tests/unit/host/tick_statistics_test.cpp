@@ -89,8 +89,8 @@ TEST(ThreadTime, IsFromTheToolsToTheNextJointsWithoutTheSync) {
   TickStatistics statistics;
   statistics.add(period_of(1, 10, 450, 500));
   EXPECT_FALSE(statistics.thread_time().known());
-  // 1000 + 20 + 400 - 25 - 30 - (10 + 500): from the end of tick 1 to the samples of tick 2, less 25 us margin and
-  // SYNC.
+  // The physics has the time from the end of tick 1 (10 + 500 us after its period began) to the samples of tick 2
+  // (1000 + 20 + 400 us), less the margin of 25 us and 30 us for sending SYNC.
   statistics.add(period_of(2, 20, 400, 480));
   // 1000 + 0 + 460 - 25 - 30 - (20 + 480): samples that arrive at 600 us count as 460, the latest time allowed for.
   statistics.add(period_of(3, 0, 600, 700));

@@ -46,7 +46,7 @@ WishedTick wished(int tick) {
   return wish;
 }
 
-/// The right hand, which receives batches of 20 ticks `late_s` after their last tick was due.
+/// The right hand. Its wanted positions arrive in batches of 20 ticks, each `late_s` after its last tick was due.
 struct Played {
   PlayedHand hand{map(), kRightHand, way(0.0)};
   int next = 0;

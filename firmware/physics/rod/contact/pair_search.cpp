@@ -11,9 +11,9 @@
 namespace ligature::physics::rod {
 namespace {
 
-// Factor against float rounding. A centre has an error of 6e-8 of the thread's length; for two centres of a thread 1000
-// diameters long that is 2e-4 diameters, and this factor covers it, as no compared distance is below 2.5 diameters. For
-// a longer thread the error reduces the skin.
+// Factor against float rounding. Each coordinate of a centre has an error of 6e-8 of the thread's length. In a thread
+// 1000 diameters long that is 2e-4 diameters in the distance of two centres. The factor covers it, as no distance below
+// 2.5 diameters is compared. In a longer thread the error makes the margin of the list (skin) smaller.
 constexpr float kSlack = 1.0001F;
 constexpr std::size_t kLeastTable = 2048;
 

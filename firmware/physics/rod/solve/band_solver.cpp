@@ -84,8 +84,8 @@ void BandSolver::factor(int core) noexcept {
     s.s_inverse = pivot.scale * pivot.adjugate;
     s.z = s.s_inverse * y;
   }
-  // The core: the two nodes where the eliminations from both ends meet. `skip` couples each of them with the nearest
-  // node of the other half.
+  // The core: the two nodes where the eliminations from both ends meet. `skip` couples each of them with the
+  // node of the other half that is next but one to it.
   Step &one = step[0], &two = step[1];
   TwoSyms s = eliminate(rows(-1), one, two, pivot, core_h_, y);
   const Two across{core > 0 ? skip[static_cast<std::size_t>(core) - 1] : 0.0,
