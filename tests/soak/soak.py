@@ -2,8 +2,12 @@
 
 Between two rounds the hands let go and the thread is reset. Checked: every tick is recorded, the schedule is exact to
 the nanosecond, and after its start the firmware has no page fault and does not grow. Each late tick is listed with its
-cause; a tick whose own computation took too long is an error. Wall time is printed but not judged, since the machine
-may be shared.
+cause. Wall time is printed but not judged, since the machine may be shared.
+
+A tick that was charged too much CPU time either worked for too long or was robbed: some kernels charge a thread for time
+that a hypervisor or an interrupt took. A witness (witness.cpp) tells them apart: it does the same short work in every
+period, so what it is charged beyond that is the machine's doing. Ticks that worked for too long are an error when there
+are more of them than the witness explains.
 
 With --disk another process writes to the recorder's disk all the time, 512 MB after 512 MB, each synced at its end.
 
@@ -11,6 +15,7 @@ Exit: 0; 2 for bad usage; 3 when a check failed.
 """
 
 import argparse
+import math
 import os
 import pathlib
 import re
@@ -32,6 +37,8 @@ HEADER_BYTES = 65536
 SETTLED_S = 5.0
 LOST, MISSED, OVERWORKED, THREAD_LATE = 1, 2, 128, 256
 BUS_NS = 460_000  # time for SYNC and TPDOs
+WITNESS_US, WITNESS_LIMIT_US = 40, 255  # as much as a tick of the loop usually computes, and what the bus leaves to it
+SURE = 0.025  # a chance below which the witness does not explain the loop's long ticks
 
 NUMPY = {"double": ">f8", "float": ">f4", "int8_t": "i1", "int16_t": ">i2", "int32_t": ">i4", "int64_t": ">i8"}
 
@@ -132,6 +139,26 @@ def ticks_of(file):
     return raw[np.argsort(raw["sequence"])]
 
 
+def chance(long, witnessed, share):
+    """Chance of so many long ticks or more by the machine alone: each of long + witnessed disturbances hits the loop
+    with the probability `share`, its share of the computing time."""
+    n = long + witnessed
+    return sum(math.comb(n, k) * share**k * (1 - share) ** (n - k) for k in range(long, n + 1))
+
+
+def judge_by_witness(long, computed_ns, told):
+    """@param long  ticks that were charged too much CPU time; computed_ns: time that all ticks computed
+    @param told  line that the witness printed. @return the error, or None."""
+    periods, least_us, median_us, worst_us, over = (float(word) for word in told.split())
+    say(f"witness: {periods:.0f} periods of the same work, charged {least_us:.1f} us at least, median {median_us:.1f}, worst {worst_us:.1f}; "
+        f"{over:.0f} above {WITNESS_LIMIT_US} us")
+    share = computed_ns / (computed_ns + 1e3 * least_us * periods)
+    explained = chance(long, int(over), share)
+    if long == 0 or explained >= SURE:
+        return None
+    return f"{long} ticks worked for too long, {over:.0f} of the witness: by the machine alone with a chance of {explained:.1e}"
+
+
 def quantiles(values_ns):
     us = np.sort(values_ns.astype(float)) / 1e3
     at = [us[min(len(us) - 1, int(q * len(us)))] for q in (0.5, 0.99, 0.999, 0.9999)]
@@ -181,7 +208,7 @@ def causes(done, waiting, computing):
 
 
 def report(ticks):
-    """@return the number of ticks that computed for longer than the time available."""
+    """@return the number of ticks that computed for longer than the time available, and the time that all computed."""
     lost = ticks["flags"] & LOST != 0
     done = ticks[~lost]
     waiting = done["tpdo_ns"] - done["sync_ns"]
@@ -199,7 +226,7 @@ def report(ticks):
     ends = {name: int(np.sum(in_time["thread_end"] == value)) for name, value in (("work", 1), ("the clock", 2))}
     say(f"thread: {100 * float(np.mean(in_time['time_lost'])):.3f} % of its time lost, ticks ended by "
         + ", by ".join(f"{name} {n}" for name, n in ends.items()) + f", late {len(done) - len(in_time)}; most contacts {done['contacts'].max()}")
-    return names["worked for too long"]
+    return names["worked for too long"], float(np.sum(computing))
 
 
 def arguments():
@@ -244,6 +271,9 @@ def main():
                 print((folder / "2.log").read_text())
                 return 3
             began = time.monotonic() - SETTLED_S
+            witness = subprocess.Popen([BIN / "soak_witness", str(length_s - SETTLED_S), str(WITNESS_US), str(WITNESS_LIMIT_US)],
+                                       stdout=subprocess.PIPE, text=True)
+            started.append(witness)
             linux = Firmware(firmware.pid)
             if asked.disk:
                 disk.start()
@@ -265,8 +295,9 @@ def main():
                 say(f"memory {before['memory']['VmRSS']} -> {after['memory']['VmRSS']} kB")
                 after["memory"] = before["memory"]
             wrong = judge(ticks, before, after)
-            if (long := report(ticks)) > 0:
-                wrong.append(f"{long} ticks worked for too long")
+            error = judge_by_witness(*report(ticks), witness.communicate(timeout=60)[0])
+            if error:
+                wrong.append(error)
             if asked.changes:
                 changes.report(ticks)
             if asked.disk:
