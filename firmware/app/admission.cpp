@@ -31,6 +31,7 @@ std::vector<DrawnKnot> draw_knots(const scene::Scene& scene, const ThreadCost& c
     tick_within(t, tools, cost.given_us);
   };
   std::vector<DrawnKnot> knots;
+  knots.reserve(kHandSpeeds_m_per_s.size());
   for (const double speed : kHandSpeeds_m_per_s) knots.push_back(draw(*thread, knotted, speed, tick));
   return knots;
 }

@@ -56,6 +56,10 @@ class Large(LargeThread, Scenario):
     time = AS_FAST_AS_A_RIG
 
 
+class LargeMinute(LargeThread, Scenario):
+    name = "large_minute"
+
+
 class Faults(FirstBlows, OtherBlows, Blows):
     name = "faults"
     rows = {}
