@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <map>
 #include <memory>
 
@@ -12,6 +13,7 @@
 #include "host/lab/outcome.hpp"
 #include "host/lab/pareto/instructions.hpp"
 #include "host/lab/pareto/trials.hpp"
+#include "host/lab/published/front.hpp"
 #include "host/lab/report.hpp"
 #include "host/lab/run_files.hpp"
 #include "protocol/scene/scene_file.hpp"
@@ -30,13 +32,20 @@ DIR holds pareto.csv and pareto.png (cost against error, the fronts drawn, 1 kHz
 the paper's models their 5 m thread; errors are relative to each model's own finest, so models are not compared with
 each other but in cost. docs/measurements/accuracy.md says which setting to take for what.
 
-Example
-  ligature-lab pareto --out out/pareto --quick)";
+--published adds a third front: what fast, balanced and fine cost and how many figures of published experiments they
+miss, over all cases. DIR is the folder of an earlier run of `ligature-lab published`; several are taken together. DIR
+of --out then holds pareto-published.csv too.
+
+Examples
+  ligature-lab pareto --out out/pareto --quick
+  ligature-lab published --settings all --work 10e6 --out out/published
+  ligature-lab pareto --out out/pareto --published out/published)";
 
 struct Arguments {
   std::string out = "out/pareto";
   bool quick = false;
   std::string model;
+  std::vector<std::string> published;
   std::string one;
   int ticks = 0;
 };
@@ -188,6 +197,8 @@ int execute(const Arguments& a) {
     std::erase_if(settings, [&](const Setting& s) { return scene::name(s.model) != a.model; });
     if (settings.empty()) throw Refusal("--model: found " + a.model + ", allowed paper-1 .. paper-5, rod");
   }
+  std::vector<published::FrontRow> rows;
+  for (const auto& folder : a.published) std::ranges::move(published::read_front(folder), std::back_inserter(rows));
   make_folder(a.out);
   const std::filesystem::path out(a.out);
   auto points = measure(settings);
@@ -197,7 +208,13 @@ int execute(const Arguments& a) {
   count(points);
   print_fronts(points);
   write(points, out / "pareto.csv");
-  draw("pareto.py", {out / "pareto.csv"}, out / "pareto.png");
+  std::vector<std::filesystem::path> tables{out / "pareto.csv"};
+  if (!rows.empty()) {
+    const auto overall = published::over_all_cases(rows);
+    published::print_overall(overall);
+    published::write_overall(tables.emplace_back(out / "pareto-published.csv"), overall);
+  }
+  draw("pareto.py", tables, out / "pareto.png");
   return kDone;
 }
 
@@ -209,6 +226,12 @@ void add_pareto_command(CLI::App& app, int& exit_code) {
   command->add_option("--out", a->out, "Folder for pareto.csv and pareto.png")->type_name("DIR")->capture_default_str();
   command->add_flag("--quick", a->quick, "About a sixth of the settings");
   command->add_option("--model", a->model, "This model alone: paper-1 .. paper-5 or rod [all]")->type_name("MODEL");
+  command
+      ->add_option("--published", a->published,
+                   "Folder of a run of `ligature-lab published`: its front over all cases, too; repeatable")
+      ->type_name("DIR")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--one", a->one, "One setting's knot alone, MODEL/NODES/SUBSTEPS/PASSES or rod/NODES/PRESET")
       ->type_name("SETTING");
   command->add_option("--ticks", a->ticks, "With --one: so many ticks [the whole pull and hold]")->type_name("N");

@@ -35,9 +35,37 @@ struct Outcome {
   [[nodiscard]] double worst() const;
 };
 
-/// Prints the front as a table: a row for each case with motion and each setting.
-void print_front(const std::vector<Outcome>& outcomes);
+/// A row of front.csv: the cost of one case at one setting, and its error.
+struct FrontRow {
+  std::string examined, setting;
+  double ticks = 0.0, tick_us = 0.0;
+  double worst = 0.0;  ///< Outcome::worst()
+  double judged = 0.0, missed = 0.0;
+};
+
+/// One setting over all cases.
+struct Overall {
+  std::string setting;
+  double tick_us = 0.0;  ///< mean of the cases, each with the same weight
+  double cases = 0.0, cases_met = 0.0, judged = 0.0, missed = 0.0;
+  bool on_front = false;  ///< no other setting misses fewer figures at the same or less cost, or as many at less
+};
+
+/// The rows of all cases that move.
+[[nodiscard]] std::vector<FrontRow> front_of(const std::vector<Outcome>& outcomes);
+
+/// Sums up the cases that were run at every setting; the others would make settings incomparable.
+[[nodiscard]] std::vector<Overall> over_all_cases(const std::vector<FrontRow>& rows);
+
+/// Prints the rows, and the settings over all cases.
+void print_front(const std::vector<FrontRow>& rows);
+void print_overall(const std::vector<Overall>& settings);
+
 /// Writes front.csv and, with Python, front.png.
-void write_front(const std::filesystem::path& folder, const std::vector<Outcome>& outcomes);
+void write_front(const std::filesystem::path& folder, const std::vector<FrontRow>& rows);
+void write_overall(const std::filesystem::path& file, const std::vector<Overall>& settings);
+
+/// Reads the front.csv of a folder. @throws Refusal.
+[[nodiscard]] std::vector<FrontRow> read_front(const std::filesystem::path& folder);
 
 }  // namespace ligature::published

@@ -26,8 +26,9 @@ has the published value, the simulated one, the tolerance and the verdict: PASS,
 number decides. `balanced` is the setting of the rig at 1 kHz, `fine` has smaller steps and no limit of time: the
 difference between the two is what the rig's speed costs. --work adds settings between them: `balanced` with another
 budget for contact. A second table has this cost, the CPU time of a tick, and what it buys: the largest error of a
-case, as a multiple of its tolerance (inf: a yes-or-no figure misses). docs/measurements/published.md explains every
-case.
+case, as a multiple of its tolerance (inf: a yes-or-no figure misses). A third one sums up each setting over all cases:
+mean cost, and figures missed; `pareto --published DIR` draws it beside its own fronts. docs/measurements/published.md
+explains every case.
 
 DIR gets published.csv and front.csv, the two tables; front.png, cost against error; CASE.csv, the points of a case's
 picture; and CASE.png, theory and measurement in one plot. A picture needs the Python that scripts/setup installs (or
@@ -144,11 +145,13 @@ int execute(const Arguments& a) {
     }
   }
   table.print();
-  p::print_front(outcomes);
+  const auto rows = p::front_of(outcomes);
+  p::print_front(rows);
+  if (settings.size() > 1) p::print_overall(p::over_all_cases(rows));
   std::printf("%d judged, %d missed\n", judged, missed);
   if (!a.out.empty()) {
     write_files(a.out, outcomes);
-    p::write_front(a.out, outcomes);
+    p::write_front(a.out, rows);
     for (const auto* c : cases) draw_case(a.out, *c, outcomes);
     std::printf("table %s/published.csv\n", a.out.c_str());
   }

@@ -48,6 +48,7 @@ Figures drum(const Bench&);
 Figures gripper(const Bench&);
 Figures clamp_and_load(const Bench&);
 Figures jaws(const Bench&);
+Figures frame(const Bench&);
 Figures curl(const Bench&);
 Figures set_bends(const Bench&);
 

@@ -19,6 +19,7 @@ constexpr RegressScene kScenes[] = {
     {"gripper", "an open gripper pushes a hanging thread aside", true, gripper},
     {"clamp-and-load", "a clamped thread is bent by its weight and a load", true, clamp_and_load},
     {"jaws", "jaws of finite width and force slip along a thread", true, jaws},
+    {"frame", "the paper's thread is thrown against the hook of the frame", true, frame},
     {"curl", "a thread that is a helix when unloaded hangs under its weight", true, curl},
     {"set", "a thread is bent sharply and let go: a part of the bend stays", true, set_bends},
     {"swing-fast", "the rod at `fast` swings down from a horizontal arc", true, rod_swing<Accuracy::kFast>},

@@ -1,8 +1,10 @@
-// The surroundings: desk, peg, open gripper, clamp and load, jaws. A piece of the shipped suture each.
+// The surroundings: desk, peg, open gripper, clamp and load, jaws, with a piece of the shipped suture each; and the
+// frame of the paper's suture.
 
 #include <cmath>
 #include <numbers>
 
+#include "host/lab/loading.hpp"
 #include "host/lab/regress/scene.hpp"
 #include "host/lab/validate/capstan.hpp"
 #include "host/lab/validate/specimen.hpp"
@@ -116,6 +118,28 @@ Figures jaws(const Bench&) {
   }
   return {{"largest pull, 2 mu F = 0.3 (N)", most_N, 0.005},
           {"pull while it slips (N)", sim.hand(physics::Hand::kRight).f_W.norm(), 0.005}};
+}
+
+Figures frame(const Bench& bench) {
+  auto scene = lab::load_scene_or_refuse((bench.scenes / "paper.toml").string(), {});
+  auto sim = build(scene);
+  // From the frame 1 m along y, and back past the hook, against which the thread moves at 1 m/s.
+  const Vec3 fixed = sim.nodes_W()[0];
+  const auto at = [](double s) {
+    return s < 1.0 ? Vec3(0, s, 0) : s < 1.2 ? Vec3(0.8 * (1.0 - s), 1, 0.1) : Vec3(-0.15, 2.2 - s, 0.1);
+  };
+  std::vector<Vec3> places, speeds;
+  const std::size_t n = sim.nodes_W().size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const double s = scene.suture.length_m * static_cast<double>(i) / static_cast<double>(n - 1);
+    places.push_back(fixed + at(s));
+    speeds.emplace_back(s < 1.2 ? 0.0 : 1.0, 0, 0);
+  }
+  sim.set_state(places, speeds);
+  for (int k = 0; k < 90; ++k) proceed(sim, no_hands());
+  const Vec3 caught = sim.nodes_W()[22] - fixed;
+  return {{"node at the hook, x (mm)", 1000.0 * caught.x(), 1.0},
+          {"node at the hook, z (mm)", 1000.0 * caught.z(), 2.0}};
 }
 
 }  // namespace ligature::regress
