@@ -56,6 +56,11 @@ Result braid(const Subject& subject) {
     result.findings.push_back(ratio(n, "l/n over 2 pi 12^(1/4) sqrt(h R)", from_radius / k));
     result.findings.push_back(
         ratio(n, "F/(B k^2) over mu 2 pi n h k", knot.tension / (k * k * kFriction * 2.0 * kPi * n * k)));
+    // Which of l/n and R differs from the theory, of which R_laid is the radius.
+    const std::string at = "n = " + std::to_string(n);
+    result.findings.push_back(
+        reported(at + ": l/n, with the theory's R", 1.0 / std::sqrt(std::sqrt(12.0) * R_laid) / k, ""));
+    result.findings.push_back(reported(at + ": R over the theory's", R / R_laid, ""));
     result.points.push_back({"n^2 F h^2 / (mu B)", double(n), theory.force(), force});
   }
   return result;
