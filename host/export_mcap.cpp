@@ -42,8 +42,9 @@ class McapSink final : public ExportSink {
   }
   void add(const ligature_msg::event_t& event, double t_s) override { say(kEventsTopic, t_s, event_json(event)); }
   void add(const ligature_msg::status_t& status, double t_s) override {
-    file_.add_attachment("scene-" + std::to_string(++scenes_) + ".toml", "application/toml", viewer_time_ns(t_s),
-                         status.scene_toml);
+    const std::string name = "scene-" + std::to_string(++scenes_) + ".toml";
+    file_.add_attachment(name, "application/toml", viewer_time_ns(t_s), status.scene_toml);
+    facts_.emplace_back(name, status.scene_file);  // where it came from
   }
   void note(const std::string& text) override { notes_ += (notes_.empty() ? "" : "\n") + text; }
   void commit() override {

@@ -1,4 +1,4 @@
-"""Recordings as arrays: LCM logs of `ligature-host record`, and flight recorder files; reruns."""
+"""Recordings as arrays: LCM logs of `ligature-host record`, flight recorder and MCAP files; reruns."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -7,6 +7,7 @@ import numpy as np
 
 from ligature import _core
 from ligature.inputs import Overrides, Path, Scene, lines_of, path_of
+from ligature.mcap_file import reader_of
 
 EVENT = np.dtype([("t_s", "f8"), ("tick", "i8"), ("kind", "i8"), ("hand", "i8"), ("code", "i8"), ("text", "O")])
 
@@ -37,6 +38,8 @@ class Shapes:
         self._columns = columns
 
     def _part(self, name: str, i: int) -> np.ndarray:
+        if name not in self._columns:
+            raise _core.Refusal(f"shapes: found no {name}, as in MCAP files; allowed an LCM log")
         i = range(len(self))[i]  # negative numbers count from the end; IndexError out of range
         return self._columns[name][self._ends[i - 1] if i > 0 else 0:self._ends[i]]
 
@@ -68,13 +71,14 @@ class Shapes:
 class Recording:
     """A whole recording in memory (about 1.1 kB a tick), read by the programs' readers (host/recording_reader.hpp).
 
-    Each tick once, in order, as written by `ligature-host export`. Raises Refusal when the file is neither an LCM log
-    nor a flight recorder file, or holds no tick.
+    Each tick once, in order, as written by `ligature-host export`. Also reads an MCAP file that this program has written,
+    with the extra `mcap`; such a file has no tension and no turn of its shapes, and NaN for infinite values. Raises
+    Refusal when the file is none of these, or holds no tick.
     """
 
     def __init__(self, path: Path) -> None:
         self.path: str = path_of(path)  # the file
-        self._take(_core._read_recording(self.path))
+        self._take(reader_of(self.path)(self.path))
 
     def _take(self, recorded: Any) -> None:
         self.ticks: dict[str, np.ndarray] = recorded.ticks()  # columns of ticks.csv: t_s, session, tick, left_p_WT_x_m, ..

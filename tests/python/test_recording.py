@@ -67,6 +67,44 @@ def test_what_is_no_recording_is_refused_in_the_programs_words(tmp_path):
         assert done.returncode == 2 and done.stderr.strip() == f"ligature-host: {caught.value}"
 
 
+def same(a, b):
+    """Equal to the bit, except that JSON has no infinities: they come back as NaN."""
+    if a.dtype.kind == "f":
+        a = np.where(np.isinf(a), np.nan, a)
+        return a.dtype == b.dtype and np.array_equal(a, b, equal_nan=True) and np.array_equal(np.signbit(a), np.signbit(b))
+    return a.dtype == b.dtype and np.array_equal(a, b)
+
+
+def test_an_mcap_file_has_the_columns_of_its_log(recording, tmp_path):
+    done = run_program("ligature-host", "export", GOLDEN, "--mcap", tmp_path / "golden.mcap")
+    assert done.returncode == 0, done.stderr
+    again = ligature.Recording(tmp_path / "golden.mcap")
+    assert list(again.ticks) == list(recording.ticks)
+    for name, column in recording.ticks.items():
+        assert same(column, again.ticks[name]) and not again.ticks[name].flags.writeable, name
+    assert len(again.shapes) == len(recording.shapes) > 0
+    for name in ("t_s", "tick", "radius_m"):
+        assert same(getattr(recording.shapes, name), getattr(again.shapes, name)), name
+    assert all(same(a, b) for a, b in zip(recording.shapes, again.shapes, strict=True))
+    assert again.scenes == recording.scenes and np.array_equal(again.events, recording.events)
+    facts = ("period_s", "max_force_N", "firmware_version", "missing", "damage")
+    assert [getattr(again, fact) for fact in facts] == [getattr(recording, fact) for fact in facts]
+    with pytest.raises(ligature.Refusal, match="found no tension_N, as in MCAP files"):
+        again.shapes.tension_N(0)
+
+
+def test_a_damaged_or_foreign_mcap_file_is_refused_in_one_line(tmp_path):
+    done = run_program("ligature-host", "export", GOLDEN, "--mcap", tmp_path / "golden.mcap")
+    assert done.returncode == 0, done.stderr
+    whole = (tmp_path / "golden.mcap").read_bytes()
+    damaged = bytearray(whole)
+    damaged[len(whole) // 2] ^= 0xFF
+    for data in (whole[:-50], whole[:100], whole[:8], bytes(damaged)):
+        (tmp_path / "bad.mcap").write_bytes(data)
+        with pytest.raises(ligature.Refusal, match=r"^[^\n]*bad\.mcap: found a damaged MCAP file[^\n]*$"):
+            ligature.Recording(tmp_path / "bad.mcap")
+
+
 def test_damage_is_told_and_the_rest_read(recording, tmp_path):
     data = bytearray(GOLDEN.read_bytes())
     data[data.index(b"\xed\xa1\xda\x01", len(data) // 2)] ^= 0xFF  # the bytes with which an event begins
