@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace ligature::bridge {
 namespace {
@@ -11,17 +12,34 @@ sim::DriveConstants constants_of(const device::Device& record) {
           static_cast<std::uint32_t>(std::lround(record.rated_torque_Nm * 1e3)), record.max_torque_permille};
 }
 
+bool is_sample(const can::Frame& frame) {
+  const auto address = can::address_of(frame.id);
+  return address && address->service == can::Service::kTpdo1;
+}
+
 }  // namespace
 
-std::string objection_to(const device::Device& record) {
-  if (record.kinematics == device::Kinematics::kCartesian) return {};
-  return "device " + record.name + ": found joints, allowed kinematics = \"cartesian\": the device tells a position";
+std::string objection_to(const device::Device& record, Time exchange) {
+  if (record.kinematics != device::Kinematics::kCartesian)
+    return "device " + record.name + ": found joints, allowed kinematics = \"cartesian\": the device tells a position";
+  if (Drives::oldest_sample(record) > exchange) return {};
+  std::ostringstream text;
+  text << "device " << record.name << ": drives.delay_s: found " << record.delay_s
+       << ", allowed more than a period and an exchange with the device, "
+       << std::chrono::duration<double>(sim::HandDevice::kPeriod + exchange).count()
+       << "; remedy: a higher --rate, or the delay that you have measured (docs/bridge.md)";
+  return text.str();
+}
+
+Time Drives::oldest_sample(const device::Device& record) {
+  return std::chrono::duration_cast<Time>(std::chrono::duration<double>(record.delay_s)) - sim::HandDevice::kPeriod;
 }
 
 Drives::Drives(const device::Device& record, Time now, Time silence, bool charge_bus_time)
     : linkage_(record),
       constants_(constants_of(record)),
       silence_(silence),
+      oldest_(oldest_sample(record)),
       now_(now),
       wire_(charge_bus_time),
       nodes_{sim::DriveNode(can::kWaist, constants_), sim::DriveNode(can::kShoulder, constants_),
@@ -39,22 +57,28 @@ void Drives::advance(Time now) {
 
 void Drives::hear(const sim::Transmission& heard) {
   poll(heard.end);
-  if (can::is_sync(heard.frame)) {
-    ++ages_.syncs;
-    if (is_on_) {
-      const Time age = heard.end - *heard_at_;
-      ages_.sum += age;
-      ages_.worst = std::max(ages_.worst, age);
-    } else {
-      ++ages_.stale;
-    }
-  }
+  const bool keeps_silent = can::is_sync(heard.frame) && !answers(heard.end);
   for (std::size_t i = 0; is_on_ && i < nodes_.size(); ++i) {
     if (static_cast<int>(i) == heard.sender) continue;
     nodes_[i].on_frame(heard.frame, heard.end, sensed(i), outgoing_);
+    if (keeps_silent) std::erase_if(outgoing_, is_sample);
     send(i, heard.end);
   }
   deliveries_.push_back({heard.frame, heard.sender, heard.end});
+}
+
+/// Whether the newest state is recent enough to answer a SYNC at this time. Counts.
+bool Drives::answers(Time at) noexcept {
+  ++ages_.syncs;
+  const Time age = is_on_ ? at - *heard_at_ : Time::max();
+  if (age > oldest_) {
+    ++ages_.stale;
+    ages_.silent += is_on_ ? 0 : 1;
+    return false;
+  }
+  ages_.sum += age;
+  ages_.worst = std::max(ages_.worst, age);
+  return true;
 }
 
 sim::Sensed Drives::sensed(std::size_t drive) const noexcept {

@@ -18,7 +18,9 @@ using sim::Time;
 
 /// Ages of the device's state at each SYNC: the delay that the bridge adds to a position sample.
 struct SampleAges {
-  std::int64_t syncs = 0, stale = 0;  ///< stale: the device was silent
+  std::int64_t syncs = 0;
+  std::int64_t stale = 0;   ///< not answered, because the state was too old or the device was silent
+  std::int64_t silent = 0;  ///< of these: the device was silent
   Time sum{}, worst{};
 };
 
@@ -42,11 +44,16 @@ class Drives {
   /// Whether the device has been heard within the time of silence. While it is silent the drives are switched off, as
   /// if their power had failed: they make no torque and do not answer SYNC. They start up again when it is back.
   [[nodiscard]] bool is_heard() const noexcept { return is_on_; }
+  /// Oldest state that answers a SYNC: the delay for which the record admits stiffness leaves so much. An older one
+  /// would be a sample of another moment, and would hide a release of the dead-man. The firmware takes the missing
+  /// answer as a lost sample.
+  [[nodiscard]] static Time oldest_sample(const device::Device& record);
   [[nodiscard]] const SampleAges& ages() const noexcept { return ages_; }
   [[nodiscard]] const std::array<sim::DriveNode, 3>& nodes() const noexcept { return nodes_; }
 
  private:
   void hear(const sim::Transmission& heard);
+  [[nodiscard]] bool answers(Time at) noexcept;
   void poll(Time now);
   void watch(Time now);
   void send(std::size_t drive, Time now);
@@ -54,7 +61,7 @@ class Drives {
 
   sim::Linkage linkage_;
   sim::DriveConstants constants_;
-  Time silence_, now_;
+  Time silence_, oldest_, now_;
   sim::Wire wire_;
   std::array<sim::DriveNode, 3> nodes_;
   std::vector<sim::Delivery> deliveries_;
@@ -65,7 +72,7 @@ class Drives {
   SampleAges ages_;
 };
 
-/// Why this record cannot describe a bridged device; empty: it can.
-[[nodiscard]] std::string objection_to(const device::Device& record);
+/// Why this record cannot describe a bridged device that is asked once in `exchange`; empty: it can.
+[[nodiscard]] std::string objection_to(const device::Device& record, Time exchange);
 
 }  // namespace ligature::bridge

@@ -19,14 +19,18 @@ using Error = boost::system::error_code;
 
 constexpr auto kConnectWithin = std::chrono::seconds(2);
 constexpr auto kTryAgainAfter = std::chrono::milliseconds(200);
+constexpr auto kFarewellWithin = std::chrono::milliseconds(5);
 
 class HaplyDevice final : public Device {
  public:
   HaplyDevice(std::string host, std::string port, HaplyChoice choice, std::chrono::nanoseconds answer_within)
       : host_(std::move(host)), port_(std::move(port)), choice_(std::move(choice)), answer_within_(answer_within) {}
+  ~HaplyDevice() override { hang_up(); }
+  HaplyDevice(const HaplyDevice&) = delete;
+  HaplyDevice& operator=(const HaplyDevice&) = delete;
 
   std::optional<DeviceState> exchange(const Vec& force_D_N) override {
-    if (!socket_ && !connect()) return std::nullopt;
+    if ((!socket_ || is_lost_) && !connect()) return std::nullopt;
     // Before the first state, the device's id is not known; the service sends that state by itself.
     if (known_.inverse3_id.empty()) return receive(kConnectWithin);
     const std::string command = haply_command(known_.inverse3_id, force_D_N, is_first_);
@@ -43,7 +47,7 @@ class HaplyDevice final : public Device {
  private:
   using Socket = websocket::stream<beast::tcp_stream>;
 
-  /// Runs one asynchronous operation to its end, at most for a given time.
+  /// Runs one asynchronous operation to its end, at most for a given time; then the connection is closed.
   template <class Start>
   void run(std::chrono::nanoseconds at_most, Start start, Error& error) {
     error = asio::error::timed_out;
@@ -53,7 +57,7 @@ class HaplyDevice final : public Device {
     if (io_.stopped()) return;
     beast::get_lowest_layer(*socket_)
         .socket()
-        .close();  // cancels the operation, whose handler must not outlive `error`
+        .close();  // cancels the operation, whose handler must not outlive `error`, and a read that still goes on
     io_.run();
     error = asio::error::timed_out;
   }
@@ -62,6 +66,7 @@ class HaplyDevice final : public Device {
     const auto now = std::chrono::steady_clock::now();
     if (now < try_at_) return false;
     try_at_ = now + kTryAgainAfter;
+    hang_up();
     known_ = {};
     is_first_ = true;
     inbox_.clear();
@@ -82,11 +87,15 @@ class HaplyDevice final : public Device {
     return fail("no service at ws://" + host_ + ":" + port_ + ": " + error.message());
   }
 
+  /// Waits for a state. If none comes, the read goes on: a connection whose read is cancelled can send nothing any
+  /// more, and lose() has to send zero force.
   std::optional<DeviceState> receive(std::chrono::nanoseconds at_most) {
-    Error error;
-    run(
-        at_most, [&](auto done) { socket_->async_read(inbox_, done); }, error);
-    if (error) return lose("no state: " + error.message());
+    read_error_.reset();
+    io_.restart();
+    socket_->async_read(inbox_, [this](Error error, std::size_t) { read_error_ = error; });
+    io_.run_for(at_most);
+    if (!read_error_) return lose("no state: " + Error(asio::error::timed_out).message());
+    if (*read_error_) return lose("no state: " + read_error_->message());
     const auto data = inbox_.data();
     const auto read = read_haply({static_cast<const char*>(data.data()), data.size()}, choice_, known_);
     inbox_.consume(inbox_.size());
@@ -103,10 +112,30 @@ class HaplyDevice final : public Device {
     problem_ = why;
     return false;
   }
+  /// Gives the connection up: sends zero force, and keeps the connection open until the next attempt to connect, so
+  /// that a service that is only late still reads it. A connection that is closed while an answer is on its way may be
+  /// reset, and a reset discards what was not read.
   std::optional<DeviceState> lose(const std::string& why) {
-    socket_.reset();
     problem_ = why;
+    is_lost_ = true;
+    try_at_ = std::chrono::steady_clock::now() + kTryAgainAfter;
+    if (known_.inverse3_id.empty() || !socket_->is_open()) return std::nullopt;
+    farewell_ = haply_command(known_.inverse3_id, Vec{}, is_first_);
+    io_.restart();
+    socket_->async_write(asio::buffer(farewell_), [](Error, std::size_t) {});
+    io_.run_for(kFarewellWithin);
     return std::nullopt;
+  }
+
+  /// Closes a connection that was given up, and lets its operations end.
+  void hang_up() {
+    is_lost_ = false;
+    if (!socket_) return;
+    Error ignored;
+    beast::get_lowest_layer(*socket_).socket().close(ignored);
+    io_.restart();
+    io_.run();
+    socket_.reset();
   }
 
   std::string host_, port_;
@@ -116,7 +145,9 @@ class HaplyDevice final : public Device {
   std::optional<Socket> socket_;
   beast::flat_buffer inbox_{1U << 20U};
   HaplyState known_;
-  bool is_first_ = true;
+  bool is_first_ = true, is_lost_ = false;
+  std::optional<Error> read_error_;  // of the last read; nothing while it goes on
+  std::string farewell_;
   std::chrono::steady_clock::time_point try_at_{};
   std::string problem_ = "not connected yet";
 };

@@ -119,7 +119,8 @@ std::string stats_json(const Drives& drives, const Exchange& exchange) {
   return nlohmann::ordered_json{{"exchanges", exchange.exchanges()},
                                 {"longest_exchange_us", us(exchange.longest_exchange())},
                                 {"syncs", ages.syncs},
-                                {"syncs_while_silent", ages.stale},
+                                {"syncs_without_sample", ages.stale},
+                                {"syncs_while_silent", ages.silent},
                                 {"mean_state_age_us", us(ages.sum) / static_cast<double>(fresh)},
                                 {"worst_state_age_us", us(ages.worst)},
                                 {"watchdog_trips", trips}}
@@ -176,7 +177,8 @@ int main(int argc, char** argv) {
   const auto read = device::load_device(options.device);
   if (const auto* e = std::get_if<scene::Error>(&read)) return refuse(e->text);
   const auto& record = std::get<device::Device>(read);
-  if (const auto why = objection_to(record); !why.empty()) return refuse(why);
+  const Nanoseconds period(static_cast<std::int64_t>(1e9 / options.rate_Hz));
+  if (const auto why = objection_to(record, period); !why.empty()) return refuse(why);
   const Nanoseconds silence(static_cast<std::int64_t>(1e6 * options.silence_ms));
   auto opened = options.haply.empty() ? open_plugin(options.backend, options.address)
                                       : open_haply(options.haply, options.choice, silence);
@@ -189,7 +191,6 @@ int main(int argc, char** argv) {
   action.sa_handler = [](int) { g_stop = 1; };
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  const Nanoseconds period(static_cast<std::int64_t>(1e9 / options.rate_Hz));
   Exchange exchange(std::get<std::unique_ptr<Device>>(std::move(opened)), period, kOwnerWithin);
   for (const std::string& line : sim::ask_for_scheduling(options.real_time, options.cpu)) say(line);
   Drives drives(record, sim::now_monotonic(), silence, !bus.charges_bit_time());

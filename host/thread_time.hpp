@@ -13,23 +13,22 @@ namespace ligature::host {
 /// from pairs of consecutive executed periods without a deadline miss. 4 bytes a tick.
 class ThreadTime {
  public:
-  /// As in firmware/rt/bus_time.hpp: the physics must end this long before the joint samples, and these arrive this
-  /// long after the wake-up at the latest.
-  static constexpr std::int64_t kMargin_ns = 25'000, kJointsLatest_ns = 460'000;
+  /// As in firmware/rt/bus_time.hpp: the physics must end this long before the joint samples. When these come is
+  /// predicted from the earliest recent ones, whatever the drives; an old observation loses so much a period.
+  static constexpr std::int64_t kMargin_ns = 25'000, kForgets_ns = 20;
 
   void add(const ligature_msg::tick_t& tick) {
     using ligature_msg::tick_t;
     const bool told = !(tick.flags & tick_t::FLAG_PERIOD_LOST), in_time = !(tick.flags & tick_t::FLAG_DEADLINE_MISSED);
     const std::int64_t woke_ns = tick.scheduled_ns + tick.wakeup_latency_ns;
-    if (told && handed_at_ns_ >= 0 && tick.tick == last_ + 1) {
-      const auto joints_ns = std::min<std::int64_t>(tick.tpdo_ns, kJointsLatest_ns);
-      left_ns_.push_back(static_cast<std::int32_t>(woke_ns + joints_ns - kMargin_ns - tick.sync_ns - handed_at_ns_));
-    }
+    if (told) joints_ns_ = std::min<std::int64_t>(tick.tpdo_ns, joints_ns_ + kForgets_ns);
+    if (told && handed_at_ns_ >= 0 && tick.tick == last_ + 1)
+      left_ns_.push_back(static_cast<std::int32_t>(woke_ns + joints_ns_ - kMargin_ns - tick.sync_ns - handed_at_ns_));
     last_ = tick.tick;
     handed_at_ns_ = told && in_time ? woke_ns + tick.execution_ns : -1;
   }
   /// Call before the ticks of another session.
-  void start_session() { handed_at_ns_ = -1; }
+  void start_session() { handed_at_ns_ = -1, joints_ns_ = kLate_ns; }
 
   [[nodiscard]] bool known() const { return !left_ns_.empty(); }
   /// The time that was available in at least `percent` % of the periods. @param percent 0 < percent <= 100.
@@ -41,7 +40,8 @@ class ThreadTime {
 
  private:
   std::vector<std::int32_t> left_ns_;
-  std::int64_t last_ = -1, handed_at_ns_ = -1;
+  static constexpr std::int64_t kLate_ns = 1'000'000;  // nothing observed yet
+  std::int64_t last_ = -1, handed_at_ns_ = -1, joints_ns_ = kLate_ns;
 };
 
 }  // namespace ligature::host

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "firmware/platform/foreign_frame.hpp"
+#include "firmware/platform/hand_link.hpp"
 #include "protocol/can/device_profile.hpp"
 #include "protocol/can/nmt.hpp"
 
@@ -38,17 +39,35 @@ class Setup {
       if (auto e = ask(w.object, can::sdo_write(node_, w.object, w.value, w.bytes), can::SdoKind::kWritten, answer))
         return e;
     }
-    return std::nullopt;
+    return expect_mode();
   }
 
  private:
+  /// The mode that the drive shows. In another one it would take a torque for a speed or a position. A drive may need a
+  /// moment to change its mode.
+  std::optional<std::string> expect_mode() {
+    constexpr auto kWanted = static_cast<std::uint8_t>(can::profile::kCyclicSynchronousTorque);
+    const can::Object object = can::od::kModeOfOperationDisplay;
+    for (const Nanoseconds deadline = wait_.now() + patience_;;) {
+      const can::Sdo* answer = nullptr;
+      if (auto e = ask(object, can::sdo_read(node_, object), can::SdoKind::kValue, answer)) return e;
+      if (answer == nullptr || (answer->value & 0xFFU) == kWanted) return std::nullopt;
+      if (wait_.now() >= deadline) return found(object, answer->value & 0xFFU, kWanted);
+      if (auto other = other_master(bus_, wait_, std::chrono::milliseconds(5))) return other;
+    }
+  }
+
+  [[nodiscard]] std::string found(const can::Object& object, std::uint32_t value, std::uint32_t wanted) const {
+    return describe(node_, object, "found " + std::to_string(value) + ", allowed " + std::to_string(wanted));
+  }
+
   /// Reads an object and checks that it has the value for which the unit conversions were computed.
   std::optional<std::string> expect(const can::Object& object, std::uint32_t wanted) {
     if (object.index == 0) return std::nullopt;  // the drive does not tell this
     const can::Sdo* answer = nullptr;
     if (auto e = ask(object, can::sdo_read(node_, object), can::SdoKind::kValue, answer)) return e;
     if (answer == nullptr || answer->value == wanted) return std::nullopt;
-    return describe(node_, object, "found " + std::to_string(answer->value) + ", allowed " + std::to_string(wanted));
+    return found(object, answer->value, wanted);
   }
 
   /// One transfer. @param answer set unless an optional object is missing, which is noted and no error
@@ -90,6 +109,14 @@ std::optional<std::string> told_of_other(const can::Frame& frame) {
   return text;
 }
 
+/// Whether the drive says that its power stage is off.
+bool says_off(CanBus& bus, BusWait& wait, can::NodeId node, Nanoseconds patience) {
+  const auto answer = transfer(bus, wait, can::sdo_read(node, can::od::kStatusword), patience).sdo;
+  if (!answer || answer->kind != can::SdoKind::kValue) return false;
+  const auto state = can::cia402::state_of(static_cast<std::uint16_t>(answer->value));
+  return state && is_off(*state);
+}
+
 }  // namespace
 
 SdoAnswer transfer(CanBus& bus, BusWait& wait, const can::Frame& request, Nanoseconds patience) {
@@ -125,8 +152,11 @@ bool start_drives(CanBus& bus) noexcept { return bus.send(can::encode_nmt(can::N
 void release_drives(CanBus& bus, BusWait& wait, can::Watchdog watchdog, Nanoseconds patience) {
   bus.send(can::encode_nmt(can::NmtCommand::kEnterPreOperational));
   if (watchdog == can::Watchdog::kNone) return;
-  for (const can::NodeId node : can::profile::kJointNodes)
-    (void)transfer(bus, wait, can::sdo_write(node, can::od::kConsumerHeartbeat, 0, 4), patience);
+  for (const can::NodeId node : can::profile::kJointNodes) {
+    // For a drive that does not obey, the watchdog is the last thing that removes its torque
+    if (says_off(bus, wait, node, patience))
+      (void)transfer(bus, wait, can::sdo_write(node, can::od::kConsumerHeartbeat, 0, 4), patience);
+  }
 }
 
 std::optional<std::string> other_master(CanBus& bus, BusWait& wait, Nanoseconds listening) {

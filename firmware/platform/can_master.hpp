@@ -22,7 +22,8 @@ struct SdoAnswer {
 [[nodiscard]] SdoAnswer transfer(CanBus& bus, BusWait& wait, const can::Frame& request, Nanoseconds patience);
 
 /// Puts the nodes into pre-operational, checks that rated torque and encoder resolution match the unit conversions, and
-/// writes startup_plan() (mapping, watchdogs, torque limit, cyclic synchronous torque mode).
+/// writes startup_plan() (mapping, watchdogs, torque limit, cyclic synchronous torque mode). Then waits until the
+/// drives show that mode.
 /// @param lacks gets one line for each object that is missing although it may be
 /// @return one line that says why it failed, or nothing. The nodes are left in pre-operational, where no torque is
 /// possible.
@@ -34,7 +35,8 @@ struct SdoAnswer {
 bool start_drives(CanBus& bus) noexcept;
 
 /// End of a run: NMT pre-operational, in which drives are disabled and expect no RPDOs. Then switches off every drive's
-/// monitoring of our heartbeat, so that our silence causes no fault. Drives that do not answer are left as they are.
+/// monitoring of our heartbeat, so that our silence causes no fault. Drives that do not say that they are off are left
+/// as they are: our silence then ends their torque.
 void release_drives(CanBus& bus, BusWait& wait, can::Watchdog watchdog = can::Watchdog::kRpdoTimer,
                     Nanoseconds patience = std::chrono::milliseconds(20));
 

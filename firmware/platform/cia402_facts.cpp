@@ -71,6 +71,8 @@ std::vector<std::string> lacks_of(const device::Device& d, int watchdog_ms) {
     lines.emplace_back("no watchdog: if the controller falls silent, the last torque acts until the power is cut");
   if (std::ranges::count(p.optional, device::ObjectAddress{0x6007, 0}) > 0)
     lines.emplace_back("0x6007:00 may be missing: NMT stop may then leave the last torque");
+  if (std::ranges::count(p.optional, device::ObjectAddress{0x6061, 0}) > 0)
+    lines.emplace_back("0x6061:00 may be missing: then nobody checks that the drive takes its target for a torque");
   if (p.buttons.are_inputs())
     lines.emplace_back(
         "no sign of life from the buttons: if they freeze while the dead-man is pressed, it stays pressed");

@@ -1,5 +1,7 @@
 #include "firmware/platform/hand_link.hpp"
 
+#include <algorithm>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -33,6 +35,7 @@ HandLink::HandLink(CanBus& bus, const device::Device& device, int heartbeat_peri
       rad_per_count_(device.rad_per_count()),
       Nm_per_permille_(device.Nm_per_permille()),
       max_permille_(device.max_torque_permille),
+      tolerance_permille_(device.torque_tolerance_permille),
       buttons_(device.cia402.buttons),
       buttons_joint_(joint_of(can::NodeId{static_cast<std::uint8_t>(buttons_.node)})),
       inputs_id_(buttons_.are_inputs() ? can::pdo_place(false, 2, can::profile::kJointNodes[buttons_joint_]).id : 0),
@@ -50,14 +53,29 @@ void HandLink::send_sync() noexcept {
   arrived_ = 0;
   if (age_ticks_ < std::numeric_limits<std::int32_t>::max()) ++age_ticks_;
   send(can::sync_frame());
+  if (stops_) send(can::encode_nmt(can::NmtCommand::kStop));
+}
+
+/// The heartbeat tells the drives that they may go on. It ends when they must have no torque and it is not sure that
+/// they have none; then their own watchdog removes it. After a stop nothing is sure: a stopped drive sends no samples.
+/// After a foreign controller was heard, NMT stop would wait behind the heartbeat on a flooded bus.
+bool HandLink::may_beat(rt::DriveRequest request) noexcept {
+  if (request == rt::DriveRequest::kStop || foreign_ != rt::Foreign::kNone) return false;
+  const bool sure = request != rt::DriveRequest::kHold || are_off();
+  periods_on_ = sure ? 0 : std::min(periods_on_ + 1, kObey);
+  return periods_on_ < kObey;
+}
+
+/// Whether all drives have said in this period that they are off, and report no torque.
+bool HandLink::are_off() const noexcept {
+  return age_ticks_ == 0 && std::ranges::all_of(nodes_, [this](const Node& node) {
+           return is_off(node.state()) && std::abs(node.latest.torque_permille) <= tolerance_permille_;
+         });
 }
 
 /// A heartbeat has the lowest priority on the bus: while others send, it waits and so does everything queued behind it.
-/// So it is sent after the drives have answered, when the bus is free. After a foreign controller was heard, no more
-/// heartbeats are sent: on a flooded bus NMT stop would wait behind the heartbeat. Drives that miss heartbeats switch
-/// off by themselves.
+/// So it is sent after the drives have answered, when the bus is free.
 void HandLink::beat() noexcept {
-  if (foreign_ != rt::Foreign::kNone) return;
   if (--periods_to_heartbeat_ >= 0) return;
   send(can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}));
   periods_to_heartbeat_ = heartbeat_periods_ - 1;
@@ -179,8 +197,11 @@ std::int16_t HandLink::permille_of(double torque_Nm) const noexcept {
 std::array<std::int16_t, rt::kJoints> HandLink::write(const rt::HandCommand& command) noexcept {
   std::array<std::int16_t, rt::kJoints> sent{};
   was_lost_ = false;
-  if (command.request == rt::DriveRequest::kStop) send(can::encode_nmt(can::NmtCommand::kStop));
-  beat();
+  // A stop begins with controlword 0 and torque 0, which act at the next SYNC. Then comes NMT stop: a drive that keeps
+  // its torque when it is stopped must have none before. But another sender could command a torque in the meantime.
+  stops_ = command.request == rt::DriveRequest::kStop;
+  if (stops_ && foreign_ != rt::Foreign::kNone) send(can::encode_nmt(can::NmtCommand::kStop));
+  if (may_beat(command.request)) beat();
   for (std::size_t j = 0; j < rt::kJoints; ++j) {
     Node& node = nodes_[j];
     const auto state = node.state();
@@ -188,7 +209,7 @@ std::array<std::int16_t, rt::kJoints> HandLink::write(const rt::HandCommand& com
       node.emergency = can::emcy::kNoError;  // the drive is enabled again: its earlier error no longer counts
     }
     node.controlword = controlword(command.request, state, node.controlword);
-    const std::int16_t torque = permille_of(command.torque_Nm[j]);
+    const std::int16_t torque = stops_ ? std::int16_t{0} : permille_of(command.torque_Nm[j]);
     if (send(can::encode(can::profile::kJointNodes[j], can::Rpdo1{node.controlword, torque}))) sent[j] = torque;
   }
   return sent;

@@ -33,6 +33,12 @@ namespace ligature::platform {
   return can::cia402::kControlDisableVoltage;
 }
 
+/// Whether a drive in this state has no torque. In quick stop and in the reaction to a fault it may brake.
+[[nodiscard]] constexpr bool is_off(can::cia402::State state) noexcept {
+  using can::cia402::State;
+  return state != State::kOperationEnabled && state != State::kQuickStopActive && state != State::kFaultReactionActive;
+}
+
 /// Real time: every call is bounded, does not allocate, and makes only the bus's system calls.
 class HandLink {
  public:
@@ -42,7 +48,8 @@ class HandLink {
   HandLink(CanBus& bus, const device::Device& device, int heartbeat_periods = kHeartbeatPeriods,
            std::size_t hand = 0) noexcept;
 
-  /// Begins a period: first reads late frames of the last period (as one period old), then sends SYNC.
+  /// Begins a period: first reads late frames of the last period (as one period old), then sends SYNC. After a write()
+  /// with kStop, NMT stop follows each SYNC.
   void send_sync() noexcept;
 
   /// Reads all frames that have arrived.
@@ -53,13 +60,14 @@ class HandLink {
   [[nodiscard]] rt::HandReading reading() const noexcept;
 
   /// Sends the torques. They are sent in every period, so that a foreign controller's RPDO acts for one period at most.
-  /// Every heartbeat_periods the master's heartbeat is sent before them.
+  /// Every heartbeat_periods the master's heartbeat is sent before them, as long as may_beat() says so.
   /// @return the torques as sent, per mille; zero if the bus is lost
   std::array<std::int16_t, rt::kJoints> write(const rt::HandCommand& command) noexcept;
 
  private:
   static constexpr int kMaxFrames = 64;  // read per call; a period on a 1 Mbit/s bus has fewer than 22
   static constexpr int kStillSets = 10;  // complete sets without a change of the buttons' counter
+  static constexpr int kObey = 10;       // periods that drives have to switch off
 
   struct Node {
     can::Tpdo1 latest;
@@ -70,6 +78,8 @@ class HandLink {
   };
 
   bool send(const can::Frame& frame) noexcept;
+  [[nodiscard]] bool may_beat(rt::DriveRequest request) noexcept;
+  [[nodiscard]] bool are_off() const noexcept;
   void beat() noexcept;
   void take(const can::Frame& frame) noexcept;
   [[nodiscard]] std::int16_t permille_of(double torque_Nm) const noexcept;
@@ -81,7 +91,7 @@ class HandLink {
 
   CanBus& bus_;
   double rad_per_count_, Nm_per_permille_;
-  std::int32_t max_permille_;
+  std::int32_t max_permille_, tolerance_permille_;
   device::ButtonsPlace buttons_;
   std::size_t buttons_joint_;
   std::uint32_t inputs_id_;  ///< of the TPDO with plain inputs; 0: there is none
@@ -93,6 +103,8 @@ class HandLink {
   bool valid_ = false;
   bool was_lost_ = false;  // since the last reading; a bus may recover before it is read
   rt::Foreign foreign_ = rt::Foreign::kNone;
+  bool stops_ = false;     // the last request was kStop
+  int periods_on_ = 0;     // in a row, in which the drives should be off and may not be
   bool has_life_ = false;  // the buttons' counter was seen to change; a drive without one is not checked
   int still_sets_ = 0;
   std::int32_t age_ticks_ = 1;

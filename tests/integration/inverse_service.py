@@ -31,7 +31,7 @@ def complaint_about(message):
 
 class Socket(tornado.websocket.WebSocketHandler):
     def initialize(self, service):
-        self.service, self.messages = service, 0
+        self.service, self.messages, self.force = service, 0, None
 
     def open(self):
         self.set_nodelay(True)
@@ -46,17 +46,20 @@ class Socket(tornado.websocket.WebSocketHandler):
         if wrong or (self.messages == 0) != ("session" in message):
             service.complaints.append(wrong or f"session in message {self.messages}")
         self.messages += 1
+        time.sleep(service.late_s)  # the whole service is late, also with reading the next message
         for device in message.get("inverse3", []):
             if device["device_id"] != service.device_id:
                 service.complaints.append(f"another device: {device['device_id']}")
                 continue
             values = device["commands"]["set_cursor_force"]["values"]
             service.take_force((values["x"], values["y"], values["z"]))
+            self.force = service.force
         if not service.silent:
             self.write_message(json.dumps(service.state()))
 
     def on_close(self):
         self.service.clients.discard(self)
+        self.service.left_behind.append(self.force)
         self.service.take_force((0.0, 0.0, 0.0))  # a device without a session makes no force
 
 
@@ -67,6 +70,7 @@ class InverseService:
         self.device_id, self.position, self.buttons = device_id, list(position), {"a": False, "b": False, "c": False}
         self.silent, self.calibrated, self.velocity = False, True, (0.0, 0.0, 0.0)
         self.force, self.peak, self.forces, self.complaints, self.clients = (0.0, 0.0, 0.0), 0.0, 0, [], set()
+        self.late_s, self.left_behind = 0.0, []  # seconds an answer is late; the last force of each ended connection
         self.force_changed_at = time.monotonic()
         self._ready = threading.Event()
         self._thread = threading.Thread(target=lambda: asyncio.run(self._serve()), daemon=True)

@@ -20,15 +20,21 @@ FAULT_SAMPLES_TOO_OLD = 11
 
 
 class BridgedRig(Rig):
-    """Both hands are Inverse3 devices of a simulated service each."""
+    """Both hands are Inverse3 devices of a simulated service each. Their record allows a long delay, because the services
+    share an interpreter with the test."""
 
     def __init__(self, **how):
         self.services = {hand: InverseService(device_id=f"04{i}D") for i, hand in enumerate(HANDS)}
-        super().__init__(extra=("--device", RECORD, *how.pop("extra", ())), **how)
+        self.record_folder = tempfile.TemporaryDirectory(prefix="bridge-")
+        self.record = pathlib.Path(self.record_folder.name) / "slow.toml"
+        text = (ROOT / RECORD).read_text()
+        assert text.count("value = 0.0025") == 1
+        self.record.write_text(text.replace("value = 0.0025", "value = 0.5"))
+        super().__init__(extra=("--device", self.record, "--override-passivity", *how.pop("extra", ())), **how)
 
     def start_device(self, hand):
         service = self.services[hand]
-        self.start(hand, "ligature-bridge", "--bus", self.bus[hand], "--device", RECORD, "--haply", service.url, "--id", service.device_id,
+        self.start(hand, "ligature-bridge", "--bus", self.bus[hand], "--device", self.record, "--haply", service.url, "--id", service.device_id,
                    "--silence-ms", 1000, "--rate", 250, "--stats", self.path / f"{hand}.json")
 
     def press(self, **buttons):
@@ -51,6 +57,7 @@ class BridgedRig(Rig):
         super().__exit__(*why)
         for service in self.services.values():
             service.stop()
+        self.record_folder.cleanup()
 
 
 def is_zero(service):
@@ -107,6 +114,18 @@ class Bridge(unittest.TestCase):
             rig.wait_for(lambda r: r.said("left").count("the device answers") == 2, "the device again")
             rig.wait_for(lambda r: is_zero(r.services["left"]), "zero force at the device that is back")
 
+    def test_a_late_answer_ends_with_a_zero_force(self):
+        """The service reads on when it is no longer late; the last force on the connection must be zero."""
+        with BridgedRig() as rig:
+            self.feel(rig)
+            service = rig.services["left"]
+            before = len(service.left_behind)
+            service.late_s = 1.5
+            rig.wait_for(lambda r: "the device is silent: drives off" in r.said("left"), "what the bridge says")
+            service.late_s = 0.0
+            rig.wait_for(lambda r: len(service.left_behind) > before, "the end of the connection")
+            self.assertEqual(service.left_behind[before], (0.0, 0.0, 0.0))
+
     def test_a_lost_connection_is_opened_again_without_force(self):
         with BridgedRig() as rig:
             self.feel(rig)
@@ -146,6 +165,8 @@ class Bridge(unittest.TestCase):
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(ends, done.stderr)
             self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        done = run("ligature-bridge", "--bus", "local:/tmp/never", "--device", RECORD, "--rate", 250, "--haply", "ws://127.0.0.1:1")
+        self.assertEqual((done.returncode, "drives.delay_s: found 0.0025" in done.stderr), (2, True), done.stderr)
         done = run("ligature-bridge", "--bus", "local:/tmp/never", "--device", "scenes/devices/omni.toml", "--haply", "ws://127.0.0.1:1")
         self.assertEqual((done.returncode, 'allowed kinematics = "cartesian"' in done.stderr), (2, True), done.stderr)
 

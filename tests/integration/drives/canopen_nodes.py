@@ -16,6 +16,7 @@ CONTROLLER = 127
 FORMATS = {"UNSIGNED8": "B", "INTEGER8": "b", "UNSIGNED16": "H", "INTEGER16": "h", "UNSIGNED32": "I", "INTEGER32": "i"}
 CANNOT_BE_MAPPED, TOO_LONG, TOO_HIGH, WRONG_STATE = 0x06040041, 0x06040042, 0x06090031, 0x08000022
 OFF = 0x80000000
+MODE_STAYS = (0x6061, 0)
 
 
 def number(text):
@@ -80,12 +81,19 @@ class Node(canopen.LocalNode):
     def __init__(self, table, number):
         super().__init__(number, table.dictionary())
         self.table, self.servo, self.inputs, self.counts = table, servo.Servo(), 0, 0
-        self.writes, self.received = [], None
+        self.writes, self.received, self.stays_in_mode = [], None, 0
         self.maps = {}
         for base, pdo in ((0x1400, 0x200), (0x1800, 0x180)):
             for i in range(4):
                 if (base + i, 1) in table.rows:
                     self.data_store.setdefault(base + i, {})[1] = struct.pack("<I", pdo + 0x100 * i + number)
+
+    def get_data(self, index, subindex, check_readable=False):
+        if (index, subindex) == (0x6041, 0):
+            return struct.pack("<H", self.servo.statusword)
+        if (index, subindex) == (0x6061, 0):  # the mode in force; a drive may be made to stay in another one
+            return bytes([self.stays_in_mode]) if self.stays_in_mode else super().get_data(0x6060, 0)
+        return super().get_data(index, subindex, check_readable)
 
     def value(self, index, sub):
         return int.from_bytes(self.get_data(index, sub), "little")
@@ -176,8 +184,11 @@ class Nodes:
         self.server = server
         self.network = canopen.Network()
         self.network.bus = Bus(server)
-        table = Table(table, changes)
+        mode = dict(changes).get(MODE_STAYS, 0)
+        table = Table(table, {at: value for at, value in dict(changes).items() if at != MODE_STAYS})
         self.nodes = [Node(table, n) for n in NODES]
+        for node in self.nodes:
+            node.stays_in_mode = mode
         for node in self.nodes:
             self.network.add_node(node)
             node.nmt.state = "PRE-OPERATIONAL"
@@ -203,6 +214,8 @@ class Nodes:
         if 0x200 < identifier <= 0x57F and identifier & 0x80 == 0:
             for node in self.nodes if self.operational else ():
                 node.on_rpdo(identifier, data)
+        elif identifier == 0 and any(s.is_deaf for s in self.servos):
+            pass  # the drives go on
         elif identifier == 0x700 + CONTROLLER:
             for node in self.nodes:
                 node.servo.heartbeat()
@@ -228,6 +241,9 @@ class Nodes:
     def fail(self, node):
         self.nodes[node - 1].servo.trip(0x2310)
         self.nodes[node - 1].emcy.send(0x2310, register=0x03)
+
+    def run_away(self, node):
+        self.nodes[node - 1].servo.run_away(300)
 
     def clear(self):
         for servo_ in self.servos:

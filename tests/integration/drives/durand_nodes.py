@@ -13,7 +13,7 @@ import servo
 NODES = (1, 2, 3)
 OBJECTS = (  # index, type, access, value
     (0x6007, Type.INTEGER16, "rw", 0), (0x6040, Type.UNSIGNED16, "rw", 0), (0x6041, Type.UNSIGNED16, "ro", 0),
-    (0x6060, Type.INTEGER8, "rw", 0), (0x6064, Type.INTEGER32, "ro", 0), (0x6071, Type.INTEGER16, "rw", 0),
+    (0x6060, Type.INTEGER8, "rw", 0), (0x6061, Type.INTEGER8, "ro", 0), (0x6064, Type.INTEGER32, "ro", 0), (0x6071, Type.INTEGER16, "rw", 0),
     (0x6072, Type.UNSIGNED16, "rw", 3000), (0x6076, Type.UNSIGNED32, "ro", 300), (0x6077, Type.INTEGER16, "ro", 0),
     (0x60FD, Type.UNSIGNED32, "ro", 0))
 
@@ -50,6 +50,8 @@ class Nodes:
             self.network.owner = number
             node = MinimalNode(self.network, number)
             self.fill(node.object_dictionary, dict(changes))
+            od = node.object_dictionary
+            od.set_read_callback(0x6061, 0, lambda od=od: od.read(0x6060, 0))
             self.nodes.append(node)
             self.servos.append(servo.Servo())
             node.nmt.state_callbacks.add(lambda state, s=self.servos[-1]: self.on_nmt(s, state))

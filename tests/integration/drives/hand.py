@@ -4,10 +4,11 @@ usage: hand.py STACK PATH [TABLE] [--still] [--change INDEX:SUB=VALUE|none]..
 With --still nobody holds the hand. Its standard input takes words, one a line:
     release, press     the dead-man
     fail               drive 2 falls into a fault
+    run-away           drive 2 makes a torque of its own, and obeys neither controlword nor NMT
 It says on standard output, one word a line with figures:
     ready                          the bus can be opened
     enabled, felt                  all drives are enabled; a drive makes torque
-    zero BY TICKS                  the torque of all drives is zero: by the word `release` or `fail`, after so many SYNCs
+    zero BY TICKS                  the torque of all drives is zero: by the word `release`, `fail` or `run-away`, after so many SYNCs
     gone                           the controller has left the bus while torque acts
     silent MS TORQUE               so many ms later the torque is zero, or after 5 s it still is TORQUE"""
 
@@ -61,6 +62,8 @@ class Hand:
     def order(self, word):
         if word == "fail":
             self.nodes.fail(2)
+        elif word == "run-away":
+            self.nodes.run_away(2)
         else:
             self.pressed = word == "press"
         if word == "press":

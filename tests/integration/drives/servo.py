@@ -13,10 +13,13 @@ HEARTBEAT_LOST = 0x8130
 class Servo:
     def __init__(self):
         self.state, self.torque, self.word, self.error = DISABLED, 0, 0, 0
+        self.is_deaf = False  # it makes a torque of its own, and obeys nothing but its watchdog
         self.watch_s, self.heard = 0.0, None  # of the heartbeat: 0 is off; it starts with the first heartbeat
 
     def command(self, word, torque):
         """A controlword and a target torque take effect, as at a SYNC."""
+        if self.is_deaf:
+            return
         edge, self.word = word & ~self.word, word
         if self.state == FAULT:
             if edge & FAULT_RESET:
@@ -31,13 +34,18 @@ class Servo:
             self.state = ENABLED
         self.torque = torque if self.state == ENABLED else 0
 
+    def run_away(self, torque):
+        self.is_deaf, self.torque = True, torque
+
     def leave_operational(self):
+        if self.is_deaf:
+            return
         if self.state != FAULT:
             self.state = DISABLED
         self.torque = 0
 
     def trip(self, code):
-        self.state, self.torque, self.error = FAULT, 0, code
+        self.state, self.torque, self.error, self.is_deaf = FAULT, 0, code, False
 
     def heartbeat(self):
         if self.watch_s > 0:

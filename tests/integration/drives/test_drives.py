@@ -86,10 +86,10 @@ class Rig(unittest.TestCase):
         file.write_text(text)
         return file
 
-    def firmware(self, device, *more):
+    def firmware(self, device, *more, ends=("--exit-on-fault",)):
         process = subprocess.Popen([FIRMWARE, "run", "--scene", "scenes/paper.toml", "--left", f"local:{self.path / 'left'}", "--right",
                                     f"local:{self.path / 'right'}", "--device", device, "--arm", "--force", "--no-telemetry", "--recorder", "none",
-                                    "--set", "hands.energy_credit_J=0.02", "--watchdog-ms", str(WATCHDOG_MS), "--exit-on-fault", *more],
+                                    "--set", "hands.energy_credit_J=0.02", "--watchdog-ms", str(WATCHDOG_MS), *ends, *more],
                                    cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.addCleanup(self.end, process)
         return process
@@ -166,6 +166,28 @@ class Epos4(Matrix, Rig):
         code, line = self.refused(DEVICES / "omni.toml")
         self.assertEqual(code, 3)
         self.assertIn("left hand: node 1, object 0x6076:00: found 75000, allowed 300", line)
+
+    def test_a_drive_in_another_mode_is_refused(self):
+        self.start_hands(changes=("6061:0=9",))
+        _, line = self.refused(self.device())
+        self.assertIn("left hand: node 1, object 0x6061:00: found 9, allowed 10", line)
+
+    def test_a_drive_that_obeys_nothing_is_ended_by_its_watchdog(self):
+        """The firmware goes on after the fault; only its heartbeats must not."""
+        for ends in ((), ("--exit-on-fault",)):
+            with self.subTest(ends=ends):
+                self.start_hands()
+                firmware = self.firmware(self.device(), ends=ends)
+                self.left.why = lambda: firmware.communicate()[1] if firmware.poll() is not None else ""
+                self.left.wait("felt")
+                self.left.wait("silent" if ends else "zero", self.tell("run-away"))
+                self.assertEqual(self.left.lines[-1][-1] if ends else "0", "0", "the torque that is left")
+                firmware.terminate()
+                self.assertIn("fault 26", firmware.communicate(timeout=BOUND_S)[1])
+                for hand, _ in self.hands.values():
+                    self.end(hand)
+                for name in self.hands:
+                    (self.path / name).unlink()
 
     def test_another_encoder_is_refused(self):
         self.start_hands(changes=("3010:1=500",))

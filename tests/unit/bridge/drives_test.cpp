@@ -122,6 +122,33 @@ TEST_F(BridgeDrives, ASilentDeviceIsADriveWithoutPower) {
   EXPECT_EQ(drives_.force_D_N(), (Vec{0.0, 0.0, 0.0}));
 }
 
+/// However long the device may be silent: an old state is no sample. The firmware then counts its watchdog, as for any
+/// drive whose messages are lost, and a released dead-man is not hidden for longer.
+TEST_F(BridgeDrives, AnOldStateIsNoSample) {
+  drives_ = Drives(record_, now_, std::chrono::seconds(1));
+  state_.buttons = can::profile::kButtonDeadMan;
+  bring_up();
+  period(0x0F, {100, 0, 0});
+  ASSERT_TRUE(tpdo(can::kElbow));
+  const Time oldest = Drives::oldest_sample(record_);
+  EXPECT_EQ(oldest, microseconds(1500)) << "delay_s of the record, less the period of the loop";
+  const Time last = now_;
+  Time answered = last;
+  for (int i = 0; i < 100; ++i) {
+    const Time sync = now_;
+    period(0x0F, {100, 0, 0}, false);
+    if (tpdo(can::kWaist) || tpdo(can::kElbow)) answered = sync;
+  }
+  EXPECT_LE(answered - last, oldest);
+  EXPECT_TRUE(drives_.is_heard());
+  EXPECT_NE(drives_.force_D_N()[0], 0.0) << "the drives still obey";
+  period(0x00, {0, 0, 0}, false);
+  period(0x00, {0, 0, 0}, false);
+  EXPECT_EQ(drives_.force_D_N(), (Vec{0.0, 0.0, 0.0}));
+  period(0x00);
+  EXPECT_TRUE(tpdo(can::kElbow)) << "it is back";
+}
+
 TEST_F(BridgeDrives, WithoutADeviceThereAreNoDrives) {
   run(milliseconds(50), false);
   period(0x0F, {100, 100, 100}, false);
@@ -165,8 +192,11 @@ TEST(BridgeDelay, AStateIsNeverOlderThanAnExchangePeriodAtSync) {
 }
 
 TEST(BridgeRecord, OnlyACartesianDeviceCanBeBridged) {
-  EXPECT_EQ(objection_to(record()), "");
-  EXPECT_NE(objection_to(device::omni()), "");
+  EXPECT_EQ(objection_to(record(), microseconds(500)), "");
+  EXPECT_NE(objection_to(device::omni(), microseconds(500)), "");
+  EXPECT_NE(objection_to(record(), milliseconds(5)).find("drives.delay_s: found 0.0025, allowed more than"),
+            std::string::npos)
+      << "most samples would be missing";
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "firmware/platform/cia402_time.hpp"
+#include "firmware/rt/bus_time.hpp"
 #include "host/tick_statistics.hpp"
 #include "synthetic_log.hpp"
 
@@ -92,12 +92,22 @@ TEST(ThreadTime, IsFromTheToolsToTheNextJointsWithoutTheSync) {
   // The physics has the time from the end of tick 1 (10 + 500 us after its period began) to the samples of tick 2
   // (1000 + 20 + 400 us), less the margin of 25 us and 30 us for sending SYNC.
   statistics.add(period_of(2, 20, 400, 480));
-  // 1000 + 0 + 460 - 25 - 30 - (20 + 480): samples that arrive at 600 us count as 460, the latest time allowed for.
+  // 1000 + 0 + 400.02 - 25 - 30 - (20 + 480): samples that arrive at 600 us are late; the loop goes by the earliest
+  // recent ones.
   statistics.add(period_of(3, 0, 600, 700));
-  EXPECT_EQ(statistics.thread_time().at_least_ns(50), 905'000);
-  statistics.add(period_of(4, 5, 420, 500));  // 1000 + 5 + 420 - 25 - 30 - (0 + 700), as above
   EXPECT_EQ(statistics.thread_time().at_least_ns(50), 855'000);
-  EXPECT_EQ(statistics.thread_time().at_least_ns(100), 670'000);
+  EXPECT_EQ(statistics.thread_time().at_least_ns(100), 845'020);
+  statistics.add(period_of(4, 5, 420, 500));  // 1000 + 5 + 400.04 - 25 - 30 - (0 + 700), as above
+  EXPECT_EQ(statistics.thread_time().at_least_ns(50), 845'020);
+  EXPECT_EQ(statistics.thread_time().at_least_ns(100), 650'040);
+}
+
+/// Drives whose frames are longer than those of our own leave the thread more time before their samples.
+TEST(ThreadTime, IsThatOfTheDrivesOfTheRecording) {
+  TickStatistics statistics;
+  statistics.add(period_of(1, 0, 780, 850));
+  statistics.add(period_of(2, 0, 780, 850));
+  EXPECT_EQ(statistics.thread_time().at_least_ns(100), 1'000'000 + 780'000 - 25'000 - 30'000 - 850'000);
 }
 
 TEST(ThreadTime, IsToldOnlyByPeriodsThatFollowEachOther) {
@@ -120,7 +130,7 @@ TEST(ThreadTime, IsToldOnlyByPeriodsThatFollowEachOther) {
 
 TEST(ThreadTime, HasTheLoopsOwnFigures) {
   EXPECT_EQ(ThreadTime::kMargin_ns, rt::ThreadDeadline::kMargin.count());
-  EXPECT_EQ(ThreadTime::kJointsLatest_ns, platform::cia402_time().samples_latest.count());
+  EXPECT_EQ(ThreadTime::kForgets_ns, rt::ThreadDeadline::kForgets.count());
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ class CanMasterTest : public ::testing::Test {
   void SetUp() override {
     values[can::od::kRatedTorque] = can::profile::kRatedTorque_mNm;
     values[can::od::kEncoderIncrements] = static_cast<std::uint32_t>(can::profile::kCountsPerRevolution);
+    values[can::od::kModeOfOperationDisplay] = can::profile::kCyclicSynchronousTorque;
     bus.on_send = [this](const can::Frame& f) { answer(f); };
   }
   void answer(const can::Frame& f) {
@@ -91,6 +92,20 @@ TEST_F(CanMasterTest, WritesWhatTheDevicesRecordSays) {
   EXPECT_EQ(written[can::od::kConsumerHeartbeat], can::consumer_heartbeat_value(can::kMasterNode, 300));
 }
 
+/// A drive in another mode would take the number of a torque for a speed.
+TEST_F(CanMasterTest, ADriveThatStaysInAnotherModeIsRefused) {
+  values[can::od::kModeOfOperationDisplay] = 9;
+  EXPECT_EQ(configure(), "node 1, object 0x6061:00: found 9, allowed 10");
+}
+
+TEST_F(CanMasterTest, ADriveMayNeedAMomentToChangeItsMode) {
+  values[can::od::kModeOfOperationDisplay] = 0;
+  wait.on_wait = [this] {
+    if (wait.time >= std::chrono::milliseconds(100)) values[can::od::kModeOfOperationDisplay] = 10;
+  };
+  EXPECT_EQ(configure(), std::nullopt);
+}
+
 TEST_F(CanMasterTest, StartingIsOneNmtCommandToAll) {
   EXPECT_TRUE(start_drives(bus));
   EXPECT_EQ(bus.sent, std::vector<can::Frame>{can::encode_nmt(can::NmtCommand::kStart)});
@@ -159,6 +174,19 @@ TEST_F(CanMasterTest, LeavesTheDrivesPreOperationalAndUnwatched) {
   EXPECT_EQ(bus.sent.front(), can::encode_nmt(can::NmtCommand::kEnterPreOperational));
   for (const auto node : can::profile::kJointNodes) EXPECT_EQ(writes[node.value], 1);
   EXPECT_EQ(written[can::od::kConsumerHeartbeat], 0U);
+}
+
+/// A drive that ignores NMT and goes on: its watchdog must stay, because it is what ends the torque.
+TEST_F(CanMasterTest, ADriveThatIsStillOnKeepsItsWatchdog) {
+  for (const std::uint32_t statusword : {0x0237U, 0x0217U, 0x021FU}) {  // enabled, quick stop, reaction to a fault
+    writes.clear();
+    values[can::od::kStatusword] = statusword;
+    release_drives(bus, wait);
+    for (const auto node : can::profile::kJointNodes) EXPECT_EQ(writes[node.value], 0) << statusword;
+  }
+  refused = can::od::kStatusword;
+  release_drives(bus, wait);
+  EXPECT_EQ(writes[1], 0) << "it does not say";
 }
 
 TEST_F(CanMasterTest, ALostBusEndsAtOnce) {

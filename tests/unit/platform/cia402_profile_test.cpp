@@ -35,7 +35,10 @@ class Profile : public ::testing::Test {
         reply = {can::SdoKind::kAbort, request->node, request->object, can::sdo_abort::kNoSuchObject, 0};
       else if (request->kind == can::SdoKind::kRead)
         reply = {can::SdoKind::kValue, request->node, request->object,
-                 request->object.index == 0x6076 ? rated_torque : counts, 4};
+                 request->object.index == 0x6076   ? rated_torque
+                 : request->object.index == 0x6061 ? 10U
+                                                   : counts,
+                 4};
       else
         written.push_back(*request);
       bus.inbox.push_back(can::encode(reply));
@@ -131,7 +134,7 @@ TEST_F(Profile, AHeartbeatThatIsTheOnlyWatchdogIsSentFourTimesInItsTime) {
   for (int i = 0; i < 100; ++i) {
     bus.sent.clear();
     (void)period(0);
-    (void)drives->write({});
+    (void)drives->write({{}, rt::DriveRequest::kOperate});
     beats += static_cast<int>(
         std::ranges::count(bus.sent, can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational})));
   }

@@ -133,12 +133,35 @@ TEST_F(HandLinkTest, StoppingTakesTheDrivesOffTheNetworkInEveryPeriod) {
   const auto stops = [this] { return std::ranges::count(bus.sent, can::encode_nmt(can::NmtCommand::kStop)); };
   link.write({{}, rt::DriveRequest::kHold});
   EXPECT_EQ(stops(), 0);
-  for (int i = 1; i <= 5; ++i) {
+  for (int i = 0; i < 5; ++i) {
     link.send_sync();
-    link.write({{}, rt::DriveRequest::kStop});
+    link.write({{0.1, 0.1, 0.1}, rt::DriveRequest::kStop});
     EXPECT_EQ(stops(), i);
-    EXPECT_EQ(last_rpdo(1).controlword, can::cia402::kControlDisableVoltage);
+    EXPECT_EQ(last_rpdo(1), (can::Rpdo1{can::cia402::kControlDisableVoltage, 0}));
   }
+}
+
+/// A synchronous RPDO acts at the next SYNC, and only in a drive that is not stopped yet.
+TEST_F(HandLinkTest, AStopDisablesTheDrivesBeforeItTakesThemOffTheNetwork) {
+  period();
+  link.write({{0.1, 0.1, 0.1}, rt::DriveRequest::kOperate});
+  bus.sent.clear();
+  link.write({{}, rt::DriveRequest::kStop});
+  link.send_sync();
+  ASSERT_EQ(bus.sent.size(), 5U);
+  for (std::size_t j = 0; j < 3; ++j)
+    EXPECT_EQ(bus.sent[j], can::encode(kNodes[j], can::Rpdo1{can::cia402::kControlDisableVoltage, 0}));
+  EXPECT_EQ(bus.sent[3], can::sync_frame());
+  EXPECT_EQ(bus.sent[4], can::encode_nmt(can::NmtCommand::kStop));
+}
+
+/// Another sender's torque could come after the zero; a stopped drive takes neither.
+TEST_F(HandLinkTest, AStopIsImmediateWhereSomebodyElseCommands) {
+  bus.inbox.push_back(can::encode(kNodes[0], can::Rpdo1{can::cia402::kControlEnableOperation, 3000}));
+  period();
+  bus.sent.clear();
+  link.write({{}, rt::DriveRequest::kStop});
+  EXPECT_EQ(bus.sent.front(), can::encode_nmt(can::NmtCommand::kStop));
 }
 
 /// The drives are configured for SYNC without counter; with a counter the frame would be longer.

@@ -1,4 +1,5 @@
 // What drives report besides their joints, and frames of other senders on the bus.
+#include <algorithm>
 #include <utility>
 
 #include "protocol/can/emcy.hpp"
@@ -141,13 +142,53 @@ TEST_F(HandLinkTest, AnEmergencyIsForgottenByEnablingOnly) {
   EXPECT_FALSE(period().drive_fault);
 }
 
+/// A drive whose watchdog is the heartbeat, and that does not obey, keeps its torque as long as heartbeats come.
+class Heartbeats : public HandLinkTest {
+ protected:
+  /// Heartbeats in 200 periods with this request, of drives that answer in this state with this torque. They have had
+  /// some periods to obey.
+  std::ptrdiff_t beats(rt::DriveRequest request, State state, std::int16_t permille = 0, bool answers = true) {
+    for (int i = -20; i < 200; ++i) {
+      if (i == 0) bus.sent.clear();
+      link.send_sync();
+      for (std::size_t j = 0; answers && j < 3; ++j)
+        bus.inbox.push_back(can::encode(kNodes[j], can::Tpdo1{can::cia402::statusword_of(state), 100, permille, 0}));
+      link.drain();
+      (void)link.write({{}, request});
+    }
+    return std::ranges::count(bus.sent, can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}));
+  }
+  static constexpr std::ptrdiff_t kAll = 200 / HandLink::kHeartbeatPeriods;
+};
+
+TEST_F(Heartbeats, EndWithAStop) {
+  EXPECT_EQ(beats(rt::DriveRequest::kOperate, State::kOperationEnabled, 500), kAll);
+  EXPECT_EQ(beats(rt::DriveRequest::kStop, State::kOperationEnabled, 500), 0);
+  EXPECT_EQ(beats(rt::DriveRequest::kStop, State::kSwitchOnDisabled), 0) << "nobody knows who else commands the drive";
+}
+
+TEST_F(Heartbeats, EndWhenADriveStaysOnThatShouldBeOff) {
+  EXPECT_EQ(beats(rt::DriveRequest::kHold, State::kSwitchOnDisabled), kAll);
+  EXPECT_EQ(beats(rt::DriveRequest::kHold, State::kFault), kAll);
+  EXPECT_EQ(beats(rt::DriveRequest::kHold, State::kOperationEnabled), 0);
+  EXPECT_EQ(beats(rt::DriveRequest::kHold, State::kQuickStopActive), 0);
+  EXPECT_EQ(beats(rt::DriveRequest::kHold, State::kSwitchOnDisabled, 500), 0) << "it says off, but makes torque";
+  EXPECT_EQ(beats(rt::DriveRequest::kHold, State::kSwitchOnDisabled, 0, false), 0) << "it says nothing";
+}
+
+TEST_F(Heartbeats, BeginAgainWhenTheDrivesMayBeOn) {
+  EXPECT_EQ(beats(rt::DriveRequest::kHold, State::kOperationEnabled), 0);
+  EXPECT_EQ(beats(rt::DriveRequest::kEnable, State::kFault), kAll);
+  EXPECT_EQ(beats(rt::DriveRequest::kOperate, State::kOperationEnabled, 500), kAll);
+}
+
 TEST_F(HandLinkTest, NoHeartbeatGoesOutOnceSomebodyElseCommandsTheDrives) {
-  (void)link.write({});
+  (void)link.write({{}, rt::DriveRequest::kOperate});
   bus.inbox.push_back(can::encode(can::kWaist, can::Rpdo1{can::cia402::kControlEnableOperation, 3000}));
   bus.sent.clear();
   for (int i = 0; i < 200; ++i) {
     period();
-    (void)link.write({});
+    (void)link.write({{}, rt::DriveRequest::kOperate});
   }
   for (const auto& f : bus.sent) EXPECT_NE(f.id, 0x77FU);
 }

@@ -74,7 +74,9 @@ TEST(RigBus, TheMastersHeartbeatGoesBeforeTheTorquesOfEveryFiftiethPeriod) {
     for (FakeBus* bus : {&left, &right}) bus->sent.clear();
     rig.request();
     EXPECT_EQ(left.sent.size() + right.sent.size(), 2U) << "two SYNCs and nothing else";
-    (void)rig.write({});
+    rt::RigCommand command;
+    for (auto& hand : command.hand) hand.request = rt::DriveRequest::kEnable;
+    (void)rig.write(command);
     for (FakeBus* bus : {&left, &right}) {
       if (bus->sent.size() == 4) continue;
       ASSERT_EQ(bus->sent.size(), 5U);
