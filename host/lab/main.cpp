@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
       "'ligature-lab COMMAND --help' explains each.\n"
       "Exit: 0 done; 1 a case of 'validate' misses, or a 'rerun' as recorded differs; 2 bad usage or input, nothing "
       "written;\n"
-      "3 the run itself failed; 130 a 'rerun' was interrupted.");
+      "3 the run itself failed; 130 a 'run', 'rerun', 'tie' or 'play' was interrupted.");
   add_run_command(app, exit_code);
   add_experiment_commands(app, exit_code);
   add_tie_command(app, exit_code);

@@ -36,7 +36,7 @@ DIR then holds
   summary.json  the knot with its history (looked at every 20 ms), extremes, forces, cost
 
 Exit: 0 done; 2 scene, script or options refused, nothing written; 3 the run became non-finite (tick, node and likely
-cause are named; the files hold everything before it).
+cause are named; the files hold everything before it); 130 interrupted, the files hold what was run.
 
 Example: an overhand knot tied in the paper's suture, with 35 nodes instead of 50
   ligature-lab run scenes/paper.toml --grippers scenes/operators/overhand.csv --duration 30 \
@@ -80,8 +80,11 @@ int execute(const Arguments& a) {
   }
   const auto summary = run(rehearsal, {a.out, duration_s, a.shape_every_s});
   print(summary, a.out);
-  if (summary.interrupted) std::fprintf(stderr, "ligature-lab: interrupted at t = %.3f s\n", summary.duration_s);
   if (!summary.finite) throw Refusal(a.scene + ": " + summary.failure, kRunFailed);
+  if (summary.interrupted) {
+    std::fprintf(stderr, "ligature-lab: interrupted at t = %.3f s\n", summary.duration_s);
+    return kInterrupted;
+  }
   return kDone;
 }
 

@@ -8,10 +8,11 @@
 
 namespace ligature::lab {
 
-/// Input and output folders of an experiment.
+/// Folders and extent of an experiment.
 struct Bench {
   std::filesystem::path scenes;  ///< folder with paper.toml, desk.toml and operators/
   std::filesystem::path out;     ///< created before the experiment starts
+  bool quick = false;            ///< the smallest set of runs that tests each claim, without pictures: for ctest
 };
 
 // One function per experiment. @return kDone, or kRunFailed when one of the experiment's claims does not hold.
@@ -23,8 +24,6 @@ int experiment_stability(const Bench& bench);
 int experiment_extremes(const Bench& bench);
 int experiment_cost(const Bench& bench);
 int experiment_haptics(const Bench& bench);
-/// @param quick the smallest set of runs that tests each claim, without pictures: for ctest.
-int experiment_haptics(const Bench& bench, bool quick);
 
 /// Lays the thread's `nodes` nodes in a horizontal straight line from its fixed end, every segment at rest length.
 void lay_level(scene::Scene& scene);

@@ -20,8 +20,13 @@ using physics::Vec3;
 constexpr double kSettle_s = 5.0;
 // a pull that does not open the knot: the last node, in the direction in which the tail already runs
 const Pull kWrong{49, {1.0, 0.0, 0.0}};
-constexpr int kKnots = 10;  // number of knots of each kind, for the planner
-constexpr int kEnough = 8;
+
+struct Extent {
+  int knots = 0;       ///< number of knots of each kind, for the planner
+  int enough = 0;      ///< of these it must undo so many
+  int every_node = 1;  ///< the map of pulls has every so many-th node
+};
+constexpr Extent kWhole{10, 8, 1}, kQuick{1, 1, 7};
 
 /// Pulls the loop on the desk at the planner's node and at a wrong one; keeps the shapes for the picture.
 void pull_on_desk(const Bench& bench, Table& table, Verdict& v) {
@@ -67,28 +72,33 @@ void pull_on_desk(const Bench& bench, Table& table, Verdict& v) {
   file.close();
 }
 
-/// Tries a pull at every node in six directions. @return how many open the knot.
-int map_pulls(const LooseKnot& knot, Table& map, console::Progress& progress) {
+struct Pulls {
+  int tried = 0, untie = 0;
+};
+
+/// Tries a pull in six directions at every node, or at every `every_node`-th one.
+Pulls map_pulls(const LooseKnot& knot, int every_node, Table& map, console::Progress& progress) {
   const int n = static_cast<int>(knot.thread.nodes_W().size());
   const std::vector<Vec3> shape(knot.thread.nodes_W().begin(), knot.thread.nodes_W().end());
-  int untie = 0;
-  for (int node = 1; node < n && !console::stop_requested(); ++node) {
+  Pulls pulls;
+  for (int node = 1; node < n && !console::stop_requested(); node += every_node) {
     progress.show(double(node) / n, "map of " + knot.type + ", node " + std::to_string(node));
     for (std::size_t d = 0; d < six_directions().size(); ++d) {
       const auto result = try_pull(shape, knot.scene, {node, six_directions()[d]});
-      untie += result.knot.type == "0_1";
+      ++pulls.tried;
+      pulls.untie += result.knot.type == "0_1";
       map.row({knot.type, double(node), std::string(direction_name(d)), result.knot.type, result.peak_N});
     }
   }
-  return untie;
+  return pulls;
 }
 
 /// The planner chooses a pull from the shape, and the pull is applied to the thread. @return how many knots opened.
-int undo_ten(const std::string& scene, const scene::GripperScript& script, const std::string& type, Table& plans,
-             console::Progress& progress) {
+int undo(int knots, const std::string& scene, const scene::GripperScript& script, const std::string& type, Table& plans,
+         console::Progress& progress) {
   int undone = 0, drawn = 0;
-  for (int k = 0; k < kKnots && !console::stop_requested(); ++k) {
-    progress.show(double(k) / kKnots, "planner, " + type + " number " + std::to_string(k + 1));
+  for (int k = 0; k < knots && !console::stop_requested(); ++k) {
+    progress.show(double(k) / knots, "planner, " + type + " number " + std::to_string(k + 1));
     auto knot = tie_loosely(scene, script, type, static_cast<std::uint32_t>(k), drawn);
     const auto nodes = knot.thread.nodes_W();
     const std::vector<Vec3> shape(nodes.begin(), nodes.end());
@@ -110,6 +120,7 @@ int undo_ten(const std::string& scene, const scene::GripperScript& script, const
 }  // namespace
 
 int experiment_unknotting(const Bench& bench) {
+  const Extent& extent = bench.quick ? kQuick : kWhole;
   std::printf("unknotting: one hand, a straight pull of %.1f m in %.0f s, the frame fixed\n", kPullLength_m,
               kPullLength_m / kPullSpeed_m_per_s);
   Verdict v("unknotting");
@@ -124,13 +135,14 @@ int experiment_unknotting(const Bench& bench) {
       const auto script = load_script_or_refuse((bench.scenes / "operators" / file).string());
       int drawn = 0;
       const auto loose = tie_loosely(scene, script, type, 0, drawn);
-      const int untie = map_pulls(loose, map, progress), pulls = 6 * (loose.scene.suture.nodes - 1);
-      v.claim(untie > 0 && untie < pulls, std::string(type) + ": pulls that untie, of " + std::to_string(pulls),
-              std::to_string(untie), "some, not all");
-      const int undone = undo_ten(scene, script, type, plans, progress);
-      v.claim(undone >= kEnough,
-              std::string(type) + ": loose knots undone by the planned pull, of " + std::to_string(kKnots),
-              std::to_string(undone), std::to_string(kEnough) + " or more");
+      const Pulls pulls = map_pulls(loose, extent.every_node, map, progress);
+      v.claim(pulls.untie > 0 && pulls.untie < pulls.tried,
+              std::string(type) + ": pulls that untie, of " + std::to_string(pulls.tried), std::to_string(pulls.untie),
+              "some, not all");
+      const int undone = undo(extent.knots, scene, script, type, plans, progress);
+      v.claim(undone >= extent.enough,
+              std::string(type) + ": loose knots undone by the planned pull, of " + std::to_string(extent.knots),
+              std::to_string(undone), std::to_string(extent.enough) + " or more");
     }
   }
   desk.print();
@@ -138,8 +150,9 @@ int experiment_unknotting(const Bench& bench) {
   desk.write(bench.out / "unknotting.csv");
   map.write(bench.out / "unknotting-map.csv");
   plans.write(bench.out / "unknotting-plans.csv");
-  draw("unknotting.py", {bench.out / "unknotting-map.csv", bench.out / "unknotting-desk.csv"},
-       bench.out / "unknotting.png");
+  if (!bench.quick)
+    draw("unknotting.py", {bench.out / "unknotting-map.csv", bench.out / "unknotting-desk.csv"},
+         bench.out / "unknotting.png");
   return v.conclude(bench.out);
 }
 

@@ -130,6 +130,20 @@ def interruption():
     assert complaint == "ligature-lab: validate: interrupted in overhand-hysteresis, nothing written\n", complaint
 
 
+def interrupted_run(folder):
+    """What was run is kept, and the exit code says that it is not the whole. trace.csv.part grows once the run has begun."""
+    trace = folder / "trace.csv.part"
+    with subprocess.Popen([LAB, "run", PAPER, "--duration", "100000", "--out", folder], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True) as run:
+        while run.poll() is None and not (trace.exists() and trace.stat().st_size > 10_000):
+            time.sleep(0.02)
+        run.send_signal(signal.SIGINT)
+        out, complaint = run.communicate(timeout=100)
+    assert run.returncode == 130, (run.returncode, out, complaint)
+    assert complaint.startswith("ligature-lab: interrupted at t = "), complaint
+    assert json.loads((folder / "summary.json").read_text())["interrupted"]
+
+
 def recordings(folder):
     """A recording of an earlier call is replaced only with --force; without it the program refuses before it runs
     anything."""
@@ -184,5 +198,7 @@ with tempfile.TemporaryDirectory() as name:
 with tempfile.TemporaryDirectory() as name:
     recordings(pathlib.Path(name))
 interruption()
+with tempfile.TemporaryDirectory() as name:
+    interrupted_run(pathlib.Path(name))
 teaching()
 print("ligature-lab: command line behaves")
