@@ -15,6 +15,7 @@ using ligature_msg::hand_wish_t;
 using nlohmann::json;
 
 constexpr std::array<const char*, 2> kSides{"left", "right"};
+constexpr int kStatesAfterLeaving = 3;  // after these a device that still has the old session has lost the message
 constexpr double kFarthest_m = 10.0;  // limit on coordinates in the device's frame, m; larger than any room
 
 json answer(const json& message, bool accepted, const std::string& text) {
@@ -66,7 +67,11 @@ json HandDesk::request(std::uint64_t page, const json& message, Clock::time_poin
     return answer(message, true, "");
   }
   if (word != "take") return answer(message, false, "hand: allowed take, leave");
-  if (const auto why = take(hand, page, now); !why.empty()) return answer(message, false, why);
+  if (const auto why = take(hand, page, now); !why.empty()) {
+    json refusal = answer(message, false, why);
+    refusal["soon"] = is_being_left(hand);
+    return refusal;
+  }
   json done = answer(message, true, "");
   done["p_W"] = place_of(hand);
   done["grip"] = hand.state->grip != 0;
@@ -91,6 +96,7 @@ std::string HandDesk::take(Hand& hand, std::uint64_t page, Clock::time_point now
            " --operator page; a real device is moved by its own hand alone";
   if (!workspace_) return "no scene is known yet: is ligature-firmware running?";
   if (hand.page == page) return {};
+  if (is_being_left(hand)) return "the " + side + " hand is just being given back";
   if (hand.page != 0 || hand.state->owner != 0) return "somebody else has the " + side + " hand";
   hand.page = page;
   hand.session = hand.state->session;
@@ -110,6 +116,7 @@ void HandDesk::leave(Hand& hand) {
   std::ranges::copy(hand.state->p_home_m, last.p_home_m);
   publish_quietly(last);
   hand.page = 0;
+  hand.states_awaited = kStatesAfterLeaving;
 }
 
 void HandDesk::wish(Hand& hand, const json& wanted) {
@@ -166,8 +173,15 @@ void HandDesk::take_state(const ligature_msg::hand_state_t& state, Clock::time_p
   Hand& hand = hands_[static_cast<std::size_t>(state.hand)];
   hand.state = state;
   hand.heard = now;
+  hand.states_awaited = std::max(0, hand.states_awaited - 1);
   const bool is_ours = state.session == hand.session && (state.owner == hand.owner || state.owner == 0);
   if (!is_ours) hand.page = 0;
+}
+
+/// True from the moment at which a page gives the hand back until the device says so by a new session. A wish in the old
+/// session would be ignored.
+bool HandDesk::is_being_left(const Hand& hand) {
+  return hand.page == 0 && hand.states_awaited > 0 && hand.state->session == hand.session;
 }
 
 bool HandDesk::listens(const Hand& hand, Clock::time_point now) { return hand.state && now - hand.heard <= kDeafAfter; }
@@ -178,7 +192,7 @@ json HandDesk::told(Clock::time_point now) const {
   for (std::size_t i = 0; i < kSides.size(); ++i) {
     const bool is_there = listens(hands_[i], now);
     all[kSides[i]] = {{"listens", is_there},
-                      {"free", is_there && hands_[i].page == 0 && hands_[i].state->owner == 0},
+                      {"free", is_there && hands_[i].page == 0 && hands_[i].state->owner == 0 && !is_being_left(hands_[i])},
                       {"page", hands_[i].page}};
     if (hands_[i].page != 0 && workspace_) all[kSides[i]]["p_W"] = place_of(hands_[i]);
   }

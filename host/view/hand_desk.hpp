@@ -33,8 +33,8 @@ class HandDesk {
 
   HandDesk(const Access& access, Publish publish) : access_(access), publish_(std::move(publish)) {}
 
-  /// Handles {"hand": "take" | "leave", "side": "left" | "right", "id": 7, "token": ".."}, which is always answered,
-  /// and {"wish": {"left": {"p": [x, y, z] in world metres, "dead": true, "grip": false}, "right": ..}, "token": ".."},
+  /// Handles {"hand": "take" | "leave", "side": "left" | "right", "id": 7, "token": ".."}, which is always answered (a
+  /// refusal with "soon": true is worth a second try within a moment: the device does not yet know that it is free), and {"wish": {"left": {"p": [x, y, z] in world metres, "dead": true, "grip": false}, "right": ..}, "token": ".."},
   /// which is answered only when the token is wrong. Wishes for hands that the page has not taken are ignored.
   [[nodiscard]] nlohmann::json request(std::uint64_t page, const nlohmann::json& message, Clock::time_point now);
 
@@ -55,6 +55,7 @@ class HandDesk {
     Clock::time_point heard;
     std::uint64_t page = 0;  // page that has the hand; 0: none
     std::int64_t session = 0, owner = 0, sequence = 0;
+    int states_awaited = 0;  // so many of the next states may still have the session of a page that has left
   };
   struct Workspace {
     double scale = 0.0;  // world metres per device metre
@@ -67,6 +68,7 @@ class HandDesk {
   void wish(Hand& hand, const nlohmann::json& wanted);
   [[nodiscard]] ligature_msg::hand_wish_t next_of(Hand& hand);
   void publish_quietly(const ligature_msg::hand_wish_t& wish);
+  [[nodiscard]] static bool is_being_left(const Hand& hand);
   [[nodiscard]] static bool listens(const Hand& hand, Clock::time_point now);
 
   const Access& access_;

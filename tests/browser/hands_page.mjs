@@ -1,7 +1,8 @@
 // A person at the page, for test_hands.py: opens the page in Chromium and holds keys, as told by lines on standard input.
-//   open             opens the page, chooses the front view, takes the hands by M
+//   open             opens the page, chooses the front view, takes both hands by M
 //   keys CODE,..     these keys are down, all others up (KeyboardEvent.code; "none": none)
 //   tap CODE         one key, down and up
+//   haste            the key M twice, before any answer can come; then the page has the hands, or says why not
 //   pads JSON        these gamepads are there: [{"axes": [..], "pressed": [buttons]}, ..], objects as the Gamepad API has
 //   rumbled          waits until a gamepad was told to vibrate
 //   close | blur | cut | freeze    the tab is closed | another window comes to the front | all connections are closed
@@ -55,11 +56,12 @@ const acts = {
     await page.evaluate(() => document.getElementById('help').close());
     await until(page, () => document.hasFocus());
     await page.keyboard.press('Digit1');
-    // The hand may still be in the previous page's possession, or its device be absent for a moment.
+    // A hand may still be in the previous page's possession, or its device be absent for a moment.
+    const hasBoth = () => { const { mine } = ligature.panels.parts.hands.value; return !!mine.left && !!mine.right; };
     for (;;) {
-      if (await page.evaluate(() => ligature.panels.parts.hands.value.isOn)) return;
+      if (await page.evaluate(hasBoth)) return;
       await page.keyboard.press('KeyM');
-      await Promise.race([until(page, () => ligature.panels.parts.hands.value.isOn), new Promise((resolve) => setTimeout(resolve, 1000))]);
+      await Promise.race([until(page, hasBoth), new Promise((resolve) => setTimeout(resolve, 1000))]);
     }
   },
   async keys(list) {
@@ -76,6 +78,11 @@ const acts = {
     }, JSON.parse(list));
   },
   async rumbled() { await until(page, () => window.rumbled === 'dual-rumble'); },
+  async haste() {
+    await page.evaluate(() => { for (let i = 0; i < 2; ++i) document.body.dispatchEvent(new KeyboardEvent('keydown', { code: 'KeyM', bubbles: true })); });
+    const heard = await page.waitForFunction(() => (ligature.panels.parts.hands.value.isOn ? 'on' : document.querySelector('.toast.refused')?.textContent));
+    if (/given back/.test(await heard.jsonValue())) throw new Error(await heard.jsonValue());
+  },
   async tap(code) { await page.keyboard.press(code); },
   async close() { await page.close(); page = null; held = new Set(); },
   async blur() { other ??= await browser.context.newPage(); await other.bringToFront(); await until(page, () => !document.hasFocus()); },

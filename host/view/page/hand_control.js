@@ -10,7 +10,7 @@ import { showMode, showHandsHeld } from './hand_panel.js';
 
 const EVERY_MS = 20;
 const PACES_M_PER_S = [0.01, 0.02, 0.04, 0.08, 0.15], FIRST_PACE = 2; // speed of the device's tip
-const WHY_LOST = 'it was free for too long, or the device went. M takes it again';
+const WHY_LOST = 'it was free for too long, or the device went';
 
 export class HandControl {
   /**
@@ -54,7 +54,9 @@ export class HandControl {
 
   toggle() {
     if (this.isOn) this.end();
-    else if (!this.latest.isReplay) this.worker.postMessage({ take: this.link.token });
+    else if (this.latest.isReplay) return;
+    else if (!this.link.isOpen) toast('hands: refused – not connected to the host', true);
+    else this.worker.postMessage({ take: this.link.token });
   }
 
   /** Takes the worker's word: which hands were taken, or lost. */
@@ -65,12 +67,13 @@ export class HandControl {
       this.mine = {};
     } else if (this.mine[lost]) {
       delete this.mine[lost];
-      toast(`${lost} hand: ${WHY_LOST}`, true);
+      toast(`${lost} hand: ${WHY_LOST}. M ${this.isOn ? 'gives the other one back, and M again takes both' : 'takes it again'}`, true);
     }
     if (!this.isOn) this.forget();
   }
 
   #begin(taken) {
+    this.mine = {};
     const refused = SIDES.map((side) => taken[side]).filter((answer) => !answer.accepted);
     for (const side of SIDES) if (taken[side].accepted) this.mine[side] = { grip: taken[side].grip, deadMan: false };
     if (!this.isOn) toast(`hands: refused – ${refused[0].text}`, true);

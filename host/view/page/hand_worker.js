@@ -4,27 +4,42 @@
 import { readFrame } from './frame.js';
 import { HandWisher, SIDES } from './hand_wisher.js';
 
-const EVERY_MS = 20, SEEN_EVERY_MS = 100;
+const EVERY_MS = 20, SEEN_EVERY_MS = 100, AGAIN_MS = 50;
 let socket = null, token = '', seen = null, wisher = new HandWisher(), waiting = new Map(), timers = [];
 
 const send = (message) => { if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify({ ...message, token })); };
 const now = () => performance.now();
 
-/** Takes the hands that are free. Answers the page with the server's answer for each hand. */
+/**
+ * Takes the hands that are free. Tells the page for each hand whether it has it, with the server's answer. Does nothing
+ * while hands are being taken or held already, so that the page and this worker never mean different hands.
+ */
 function take(given) {
-  end();
+  if (socket) return;
   token = given;
   socket = new WebSocket(`ws://${location.host}/socket`);
   socket.binaryType = 'arraybuffer';
   const mine = socket;
   mine.onopen = async () => {
     timers = [setInterval(sendWish, EVERY_MS), setInterval(acknowledge, SEEN_EVERY_MS)];
-    const answers = await Promise.all(SIDES.map((side, i) => request({ hand: 'take', side }, i + 1)));
-    postMessage({ taken: Object.fromEntries(SIDES.map((side, i) => [side, answers[i]])) });
+    const answers = await Promise.all(SIDES.map((side, i) => ask(mine, side, i + 1)));
+    if (mine !== socket) return;
+    const told = (side, { text, grip }) => (wisher.hands[side] ? { accepted: true, grip } : { accepted: false, text: text || 'the device has gone' });
+    postMessage({ taken: Object.fromEntries(SIDES.map((side, i) => [side, told(side, answers[i])])) });
     if (wisher.isEmpty) end();
   };
   mine.onmessage = ({ data }) => onFrame(readFrame(data));
   mine.onclose = () => { if (mine === socket) { end(); postMessage({ lost: 'connection' }); } };
+}
+
+/** Asks for a hand. A hand that another page is just giving back is free within a moment. @returns the server's answer. */
+async function ask(mine, side, id) {
+  let answer = await request({ hand: 'take', side }, id);
+  while (answer.soon && mine === socket) {
+    await new Promise((resolve) => setTimeout(resolve, AGAIN_MS));
+    if (mine === socket) answer = await request({ hand: 'take', side }, id);
+  }
+  return answer;
 }
 
 function request(message, id) {
@@ -39,7 +54,9 @@ function onFrame({ number, text }) {
     waiting.get(answer.id)?.(answer);
     waiting.delete(answer.id);
   }
-  if (text?.hands) for (const side of wisher.hear(text.hands)) postMessage({ lost: side });
+  const lost = text?.hands ? wisher.hear(text.hands) : [];
+  for (const side of lost) postMessage({ lost: side });
+  if (lost.length && wisher.isEmpty) end();
 }
 
 /** The server sends no more than a few frames without this. Few are enough: only the hands' positions matter here. */

@@ -109,6 +109,35 @@ TEST(HandDesk, AHandHasOnePage) {
   EXPECT_EQ(d.take(2)["accepted"], true);
 }
 
+TEST(HandDesk, AHandThatIsJustGivenBackIsFreeOnceItsDeviceSaysSo) {
+  Desk d;
+  ASSERT_EQ(d.take(1)["accepted"], true);
+  d.desk.end(1);
+  // The newest state is from before the hand was taken, then one from before the device heard that it is given back.
+  for (const std::int64_t owner : {std::int64_t{0}, d.sent[0].owner}) {
+    d.state.owner = owner;
+    d.hear();
+    EXPECT_EQ(d.desk.told(d.now)["left"]["free"], false);
+    const json refusal = d.take(2);
+    EXPECT_EQ(refusal["accepted"], false);
+    EXPECT_EQ(refusal["soon"], true);
+  }
+  d.state.owner = 0;
+  d.state.session = kSession + 1;
+  d.hear();
+  EXPECT_EQ(d.desk.told(d.now)["left"]["free"], true);
+  EXPECT_EQ(d.take(2)["accepted"], true);
+  EXPECT_EQ(d.sent.back().session, kSession + 1);
+}
+
+TEST(HandDesk, AHandWhoseDeviceHeardNothingOfItsPageIsFreeAfterAFewStates) {
+  Desk d;
+  ASSERT_EQ(d.take(1)["accepted"], true);
+  d.desk.end(1);
+  for (int k = 0; k < 3; ++k) d.hear();
+  EXPECT_EQ(d.take(2)["accepted"], true);
+}
+
 TEST(HandDesk, NoHandIsTakenThatDoesNotListenIsElsewhereOrHasNoScene) {
   Desk d;
   EXPECT_NE(d.ask(1, {{"hand", "take"}, {"side", "right"}})["text"].get<std::string>().find("--operator page"),
