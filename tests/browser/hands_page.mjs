@@ -8,6 +8,9 @@
 //   close | blur | cut | freeze    the tab is closed | another window comes to the front | all connections are closed
 //                    | nothing passes through them any more
 //   heal             the opposite of blur and freeze
+//   busy MS          from now on the page's own scripts stand still for so long after each picture; 0: no more
+//   tells WHAT       waits until the page tells what the picture's age comes from: fresh, slow, rig, host (TELLS)
+//   unwarned         fails if the picture was called old since the last `busy`
 //   draw PATH        a picture of the page
 // Each is answered by "done N" with N the number of the line, or by "failed N REASON".
 //   node hands_page.mjs --to HOST:PORT --modules DIR [--webgl off] [--size WxH]
@@ -43,6 +46,13 @@ const wire = await Wire.to(to);
 const browser = await Browser.start({ webgl: webgl !== 'off' });
 browser.viewport = { width, height };
 let page = null, other = null, held = new Set();
+
+const TELLS = {
+  fresh: () => document.getElementById('stale').hidden && document.getElementById('slow').hidden,
+  slow: () => document.getElementById('stale').hidden && /^slow picture: this computer .*; the rig is heard$/.test(document.getElementById('slow').textContent),
+  rig: () => /^Old picture: no ticks for .*The rig may be in any state/.test(document.getElementById('stale').textContent),
+  host: () => /^No word from the host/.test(document.getElementById('stale').textContent),
+};
 
 const acts = {
   async open() {
@@ -89,6 +99,20 @@ const acts = {
   cut() { wire.cut(); },
   freeze() { wire.freeze(); },
   async heal() { wire.heal(); await page.bringToFront(); },
+  async busy(ms) {
+    await page.evaluate((busy_ms) => {
+      clearInterval(window.busyTimer);
+      window.warnings = [];
+      window.watcher ??= new MutationObserver(() => { const { hidden, textContent } = document.getElementById('stale'); if (!hidden) window.warnings.push(textContent); });
+      window.watcher.observe(document.getElementById('stale'), { attributes: true, childList: true });
+      if (busy_ms) window.busyTimer = setInterval(() => { const end = performance.now() + busy_ms; while (performance.now() < end); }, 20);
+    }, Number(ms));
+  },
+  async tells(what) { await until(page, TELLS[what]); },
+  async unwarned() {
+    const warnings = await page.evaluate(() => window.warnings);
+    if (warnings.length) throw new Error(`${warnings.length} warnings: ${warnings[0]}`);
+  },
   async draw(path) { await page.screenshot({ path }); },
 };
 

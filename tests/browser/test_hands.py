@@ -1,5 +1,6 @@
 """Both hands of a rig steered from the page in Chromium: the keyboard alone ties a knot, and whatever takes the person
-away from the page while a force acts ends it by the dead-man; simulated gamepads move the hands, too.
+away from the page while a force acts ends it by the dead-man; simulated gamepads move the hands, too; and the page tells
+a slow picture apart from a rig or a host that stands still.
 
 LIGATURE_TIMES is how often the person is taken away (default 8; the figure in docs/view.md is for 100). LIGATURE_PAGE
 holds other options for hands_page.mjs, LIGATURE_OUT the file for a picture of the page with the knot."""
@@ -7,6 +8,7 @@ holds other options for hands_page.mjs, LIGATURE_OUT the file for a picture of t
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 import threading
@@ -219,6 +221,48 @@ class Gamepad(Hands):
         from_tick = self.tick().tick
         self.pads()
         self.assert_lets_go(from_tick, "no gamepad")
+
+
+class Stall(Hands):
+    def stands_still(self, program, told):
+        self.rig.processes[program].send_signal(signal.SIGSTOP)
+        try:
+            self.person.does("tells", told)
+        finally:
+            self.rig.processes[program].send_signal(signal.SIGCONT)
+        self.person.does("tells", "fresh")
+
+    def has_no_warning(self):
+        try:
+            self.person.does("unwarned")
+        except AssertionError as error:
+            print(error)
+            return False
+        return True
+
+    def test_a_slow_picture_is_told_apart_from_a_rig_and_a_host_that_stand_still(self):
+        self.person.does("open")
+        self.person.does("tells", "fresh")
+        self.stands_still("firmware", "rig")
+        self.stands_still("view", "host")
+        # Some three pictures a second of a rig that is well. On a busy machine rig or host may really come late now and
+        # then, but not in each of five spans.
+        spans = 0
+        while spans == 0 or not self.has_no_warning():
+            self.assertLess(spans, 5, "a slow picture is called old in each span")
+            spans += 1
+            self.person.does("busy", "350")
+            self.person.does("tells", "slow")
+            self.ticks_pass(2000)
+        self.stands_still_while_slow()
+
+    def stands_still_while_slow(self):
+        self.rig.processes["firmware"].send_signal(signal.SIGSTOP)
+        self.person.does("tells", "rig")
+        self.rig.processes["firmware"].send_signal(signal.SIGCONT)
+        self.person.does("tells", "slow")
+        self.person.does("busy", "0")
+        self.person.does("tells", "fresh")
 
 
 class InHaste(Hands):
