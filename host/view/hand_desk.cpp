@@ -16,7 +16,7 @@ using nlohmann::json;
 
 constexpr std::array<const char*, 2> kSides{"left", "right"};
 constexpr int kStatesAfterLeaving = 3;  // after these a device that still has the old session has lost the message
-constexpr double kFarthest_m = 10.0;  // limit on coordinates in the device's frame, m; larger than any room
+constexpr double kFarthest_m = 10.0;    // limit on coordinates in the device's frame, m; larger than any room
 
 json answer(const json& message, bool accepted, const std::string& text) {
   const std::string word = text_of(message, "hand").substr(0, 10) + " " + text_of(message, "side").substr(0, 10);
@@ -178,8 +178,8 @@ void HandDesk::take_state(const ligature_msg::hand_state_t& state, Clock::time_p
   if (!is_ours) hand.page = 0;
 }
 
-/// True from the moment at which a page gives the hand back until the device says so by a new session. A wish in the old
-/// session would be ignored.
+/// True from the moment at which a page gives the hand back until the device says so by a new session. A wish in the
+/// old session would be ignored.
 bool HandDesk::is_being_left(const Hand& hand) {
   return hand.page == 0 && hand.states_awaited > 0 && hand.state->session == hand.session;
 }
@@ -191,9 +191,10 @@ json HandDesk::told(Clock::time_point now) const {
   json all{{"scale", workspace_ ? workspace_->scale : 0.0}};
   for (std::size_t i = 0; i < kSides.size(); ++i) {
     const bool is_there = listens(hands_[i], now);
-    all[kSides[i]] = {{"listens", is_there},
-                      {"free", is_there && hands_[i].page == 0 && hands_[i].state->owner == 0 && !is_being_left(hands_[i])},
-                      {"page", hands_[i].page}};
+    all[kSides[i]] = {
+        {"listens", is_there},
+        {"free", is_there && hands_[i].page == 0 && hands_[i].state->owner == 0 && !is_being_left(hands_[i])},
+        {"page", hands_[i].page}};
     if (hands_[i].page != 0 && workspace_) all[kSides[i]]["p_W"] = place_of(hands_[i]);
   }
   return all;

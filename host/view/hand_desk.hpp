@@ -34,7 +34,8 @@ class HandDesk {
   HandDesk(const Access& access, Publish publish) : access_(access), publish_(std::move(publish)) {}
 
   /// Handles {"hand": "take" | "leave", "side": "left" | "right", "id": 7, "token": ".."}, which is always answered (a
-  /// refusal with "soon": true is worth a second try within a moment: the device does not yet know that it is free), and {"wish": {"left": {"p": [x, y, z] in world metres, "dead": true, "grip": false}, "right": ..}, "token": ".."},
+  /// refusal with "soon": true is worth a second try within a moment: the device does not yet know that it is free),
+  /// and {"wish": {"left": {"p": [x, y, z] in world metres, "dead": true, "grip": false}, "right": ..}, "token": ".."},
   /// which is answered only when the token is wrong. Wishes for hands that the page has not taken are ignored.
   [[nodiscard]] nlohmann::json request(std::uint64_t page, const nlohmann::json& message, Clock::time_point now);
 

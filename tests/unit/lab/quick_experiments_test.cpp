@@ -1,5 +1,5 @@
-// The long experiments of `ligature-lab experiment` in a short form: the same claims on fewer cases. (The short ones run
-// whole: CMakeLists.txt.)
+// The long experiments of `ligature-lab experiment` in a short form: the same claims on fewer cases. (The short ones
+// run whole: CMakeLists.txt.)
 #include <gtest/gtest.h>
 
 #include "host/lab/experiments/experiment.hpp"
