@@ -30,7 +30,7 @@ wheel=$(ls "$out"/*.whl)
 "$python" -m zipfile -l "$wheel" > "$out/contents.txt"
 wrong=0
 note() { echo "package wheel: $*" >&2; wrong=1; }
-for file in ligature/_core.pyi ligature/py.typed ligature/scenes/paper.toml ligature/scenes/operators/overhand.csv \
+for file in ligature/_core.pyi ligature/mcap_file.py ligature/py.typed ligature/scenes/paper.toml ligature/scenes/operators/overhand.csv \
     ligature/scenes/shapes/overhand-loose.csv ligature/scenes/faults/emergency.toml ligature/rig/plugin.py ligature/study/__main__.py ligature_msg/tick_t.py; do
   grep -q "^$file " "$out/contents.txt" || note "$file is missing"
 done
