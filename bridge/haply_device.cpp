@@ -19,7 +19,7 @@ using Error = boost::system::error_code;
 
 constexpr auto kConnectWithin = std::chrono::seconds(2);
 constexpr auto kTryAgainAfter = std::chrono::milliseconds(200);
-constexpr auto kFarewellWithin = std::chrono::milliseconds(5);
+constexpr auto kFarewellWithin = std::chrono::milliseconds(20);
 
 class HaplyDevice final : public Device {
  public:
@@ -64,7 +64,11 @@ class HaplyDevice final : public Device {
 
   bool connect() {
     const auto now = std::chrono::steady_clock::now();
-    if (now < try_at_) return false;
+    if (now < try_at_) {
+      io_.restart();
+      io_.poll();  // the farewell, if it is not out yet
+      return false;
+    }
     try_at_ = now + kTryAgainAfter;
     hang_up();
     known_ = {};

@@ -16,7 +16,7 @@ from inverse_service import InverseService
 from rig import BIN, HANDS, ROOT, STATE_ENGAGE, STATE_FAULT, STATE_FORCE, Rig, run
 
 RECORD = "scenes/devices/inverse3.toml"
-FAULT_SAMPLES_TOO_OLD = 11
+FAULT_SAMPLES_TOO_OLD, FAULT_ENCODER_FROZEN = 11, 22
 
 
 class BridgedRig(Rig):
@@ -64,6 +64,12 @@ def is_zero(service):
     return service.force == (0.0, 0.0, 0.0)
 
 
+def ticks_to_zero(ticks, hand):
+    """Ticks from the last one with the dead-man pressed until the torque of the hand is zero."""
+    pressed = max(i for i, t in enumerate(ticks) if t.dead_man[hand])
+    return max(t.tick - ticks[pressed].tick for t in ticks[pressed:] if any(t.torque_permille[hand])) + 1
+
+
 class Bridge(unittest.TestCase):
     def up(self, rig):
         rig.wait_for(lambda r: r.state_is(STATE_ENGAGE), "the drives of the bridge, enabled and armed")
@@ -86,6 +92,9 @@ class Bridge(unittest.TestCase):
             rig.wait_for(lambda r: all(map(is_zero, r.services.values())), "zero force after the dead-man")
             rig.wait_for(lambda r: not r.state_is(STATE_FORCE), "the end of FORCE")
             self.assertEqual(rig.listener.ticks[-1].fault, 0)
+            zero = [ticks_to_zero(list(rig.listener.ticks), hand) for hand in range(2)]
+            print(f"  zero torque {zero} ticks after the dead-man", flush=True)
+            self.assertLessEqual(max(zero), 100)
             stats = rig.device_stats("left")
             print(f"  age of a state at SYNC: mean {stats['mean_state_age_us']:.0f} us, worst {stats['worst_state_age_us']:.0f} us; "
                   f"longest exchange {stats['longest_exchange_us']:.0f} us", flush=True)
@@ -107,7 +116,9 @@ class Bridge(unittest.TestCase):
             self.feel(rig)
             rig.services["left"].silent = True
             rig.wait_for(lambda r: r.state_is(STATE_FAULT), "FAULT")
-            self.assertEqual(rig.listener.ticks[-1].fault, FAULT_SAMPLES_TOO_OLD, rig.words())
+            # The hands of this test stop abruptly, and the slow record repeats a state for half a second: that may look
+            # like an encoder that stands still, before the samples are missing.
+            self.assertIn(rig.listener.ticks[-1].fault, (FAULT_SAMPLES_TOO_OLD, FAULT_ENCODER_FROZEN), rig.words())
             rig.wait_for(lambda r: is_zero(r.services["right"]), "zero force at the other device")
             rig.wait_for(lambda r: "the device is silent: drives off" in r.said("left"), "what the bridge says")
             rig.services["left"].silent = False
