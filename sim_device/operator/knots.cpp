@@ -160,14 +160,16 @@ bool hangs_straight(const Look& look) {
   return (look.thread.at(all) - look.thread.at(0.0)).norm() > kStraight * all;
 }
 
-/// `moves`, or none of them if `needless` is true when the first one starts.
+/// `moves`, or none of them if `needless` is true when the first one starts. A move that is left out has not failed.
 Moves unless(std::function<bool(const Look&)> needless, Moves moves) {
   auto skip = std::make_shared<std::optional<bool>>();
-  for (Move& m : moves)
+  for (Move& m : moves) {
     m.act = [=, act = std::move(m.act)](const Look& look) {
       if (!*skip) *skip = needless(look);
       return **skip || act(look);
     };
+    if (m.good) m.good = [=, good = std::move(m.good)](const Look& look) { return **skip || good(look); };
+  }
   return moves;
 }
 

@@ -32,17 +32,22 @@ constexpr Stop kOnce[] = {
     {true, 0.06, -0.03, 0.09},                                    // through the loop
 };
 
+/// Two rounds of kOnce, the first one nearer to the anchor. Between them the end goes back to the front of the corner:
+/// there the arch stands beyond the corner again, as at the start of the first round.
 constexpr Stop kTwice[] = {
-    {true, 0.12, -0.18, 0.0},                                 // far to the front, so that the arch opens there
-    {false, 0.09, 0.018, 0.0},                                // up, in front of the standing part
-    {false, 0.045, 0.042, 0.0},                               // higher than the standing part, still in front
-    {false, 0.0, 0.042, 0.0},                                 // straight above the standing part
-    {false, -0.03, -0.012, 0.0},                              // down behind it
-    {true, -0.03, -0.08, -0.12}, {true, 0.02, -0.08, -0.12},  // forward under it, further from the corner than in kOnce
-    {true, 0.06, 0.0, -0.12},    {true, 0.03, 0.06, -0.1},    // second turn: up in front, to above the standing part
-    {true, -0.03, 0.06, -0.08},  {true, -0.06, 0.0, -0.07},   // second turn: over it and down behind it
-    {true, -0.06, -0.09, -0.07}, {true, 0.06, -0.1, -0.07},   // forward under it, well away from the corner
-    {true, 0.09, -0.07, 0.09},                                // through the loop
+    {true, 0.12, -0.18, 0.0},                                     // far to the front, so that the arch opens there
+    {false, 0.09, 0.018, -0.04},                                  // up, in front of the standing part
+    {false, 0.045, 0.042, -0.04},                                 // higher than the standing part, still in front
+    {false, 0.0, 0.042, -0.04},                                   // straight above the standing part
+    {false, -0.03, -0.012, -0.04},                                // down behind it
+    {true, -0.03, -0.08, -0.12},   {true, 0.02, -0.08, -0.1},     // forward under it, through the loop
+    {true, 0.12, -0.1, 0.0},                                      // to the front of the corner
+    {false, 0.09, 0.018, 0.03},                                   // second round: up, in front of the standing part
+    {false, 0.045, 0.042, 0.03},                                  // second round: higher, still in front
+    {false, 0.0, 0.042, 0.03},                                    // second round: straight above the standing part
+    {false, -0.03, -0.012, 0.03},                                 // second round: down behind it
+    {true, -0.024, -0.042, -0.06}, {true, 0.006, -0.042, -0.03},  // forward, under the standing part
+    {true, 0.06, -0.03, 0.09},                                    // through the loop
 };
 
 constexpr Stop kAgainst[] = {

@@ -23,7 +23,7 @@ namespace ligature::sim {
 /// standing part (the arch now stands in front); close behind it towards the corner (the arch turns to the anchor, and
 /// the end is past X); forward under the standing part and on past the corner, before the arch has turned again.
 /// @param corner, turn positions along the thread: of the corner, and of X. All path lengths are fractions of the
-/// working part's length. With `t.passes` = 2 the end goes round the standing part once more.
+/// working part's length. With `t.passes` = 2 the end goes this way twice, first nearer to the anchor.
 ///
 /// With `t.against` (figure-eight) the end passes below the arch and then goes through it to the back. In a limp thread
 /// the end goes once round the standing part instead. Here the arch would drag that turn over the corner and undo it.

@@ -119,6 +119,44 @@ TEST(Jaws, SlipAtCoulombsLimit) {
   EXPECT_GT(sim.hand(Hand::kLeft).node, 31);  // it has slipped by about 13 mm, two and a half segments
 }
 
+/// Twist of the thread above the left hand's jaws while the thread slides through them. The right hand has turned it.
+TEST(Jaws, KeepTheRollWhateverNodesTheyHold) {
+  auto sim = simulation(thread({"hands.pinch_width_m=0.011", "hands.pinch_force_N=1.0"}));
+  const auto rolls = [&] {
+    int count = 0;
+    const auto& state = sim.rod().state();
+    for (int h = 0; h < state.hold_count; ++h) {
+      const auto& hold = state.holds[static_cast<std::size_t>(h)];
+      count += hold.node >= 0 && !hold.rigid && hold.holds_roll;
+    }
+    return count;
+  };
+  auto tools = hands_at(sim.nodes_W()[30], sim.nodes_W()[10]);
+  tools[0].grip = tools[1].grip = true;
+  tools[1].R_WT = Eigen::Quaterniond::Identity();
+  for (int k = 1; k <= 500; ++k) {  // the thread hangs along z
+    tools[1].R_WT = Eigen::Quaterniond(Eigen::AngleAxisd(1.5 * k / 500.0, Vec3::UnitZ()));
+    sim.tick(tools);
+  }
+  const auto moment = [&] { return sim.rod().forces().twist_moment[20]; };
+  const auto length = [&] {
+    return sim.rod().state().mesh.s[static_cast<std::size_t>(sim.hand(Hand::kLeft).node)] -
+           sim.rod().state().mesh.s[10];
+  };
+  const double turned = moment() * length();
+  ASSERT_GT(std::abs(turned), 0.0);
+  int changes = 0, node = sim.hand(Hand::kLeft).node;
+  for (int k = 0; k < 800; ++k) {
+    tools[0].v_WT = Vec3(0, 0, -0.02);
+    tools[0].p_WT.z() -= 2e-5;
+    sim.tick(tools);
+    changes += std::exchange(node, sim.hand(Hand::kLeft).node) != node;
+    ASSERT_EQ(rolls(), 2) << "at " << k << ": each hand's jaws keep it at one node";
+    ASSERT_NEAR(moment() * length(), turned, 0.15 * std::abs(turned)) << "at " << k;
+  }
+  EXPECT_GE(changes, 2);
+}
+
 TEST(Jaws, DoNotSlipBelowTheLimit) {
   auto sim = simulation(thread({"hands.pinch_width_m=0.004", "hands.pinch_force_N=1.0"}));
   auto tools = hands_at(sim.nodes_W()[30], Vec3(1, 1, 1));

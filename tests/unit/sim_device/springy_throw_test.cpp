@@ -10,8 +10,13 @@
 namespace ligature::sim {
 namespace {
 
-/// The first position to which the move that straightens the thread sends the right hand, for given node positions.
-Vec3 hand_sent(const std::vector<Vec3>& line) {
+/// What the moves that straighten the thread do when it has these node positions.
+struct Straightened {
+  Vec3 hand_sent;      ///< the first position to which the right hand is sent
+  int judged_bad = 0;  ///< moves that are done at once, and are judged to have failed
+};
+
+Straightened straightened(const std::vector<Vec3>& line) {
   const Workplace place{line.front(), 0.3, 3e-4, 0.0105, 1.1, 0.17};
   std::array<MovingHand, 2> hands{MovingHand(0.01), MovingHand(0.01)};
   for (MovingHand& h : hands) h.rest_at({0.1, -0.1, 0.2}, place.speed_m_per_s);
@@ -21,14 +26,20 @@ Vec3 hand_sent(const std::vector<Vec3>& line) {
   sight.thread_W = line;
   sight.tool_W = {hands[0].p_W(), hands[1].p_W()};
   const Look look{thread, sight, place, hands};
-  for (Move& m : draw_straight())
+  Straightened result;
+  for (Move& m : draw_straight()) {
     if (!m.act(look)) break;
-  return hands[kRightHand].goal_W;
+    result.judged_bad += m.good && !m.good(look);
+  }
+  result.hand_sent = hands[kRightHand].goal_W;
+  return result;
 }
 
 TEST(SpringyThrow, AThreadThatHangsStraightIsNotDrawnStraight) {
-  EXPECT_TRUE(hand_sent({{0, 0, 0.35}, {0, 0, 0.05}}).isApprox(Vec3(0.1, -0.1, 0.2)));
-  const Vec3 bent = hand_sent({{0, 0, 0.35}, {0.15, 0, 0.35}, {0.15, 0, 0.2}});
+  const Straightened straight = straightened({{0, 0, 0.35}, {0, 0, 0.05}});
+  EXPECT_TRUE(straight.hand_sent.isApprox(Vec3(0.1, -0.1, 0.2)));
+  EXPECT_EQ(straight.judged_bad, 0) << "each would use up one of the operator's three new beginnings";
+  const Vec3 bent = straightened({{0, 0, 0.35}, {0.15, 0, 0.35}, {0.15, 0, 0.2}}).hand_sent;
   EXPECT_LT((bent - Vec3(0.15, 0, 0.2)).norm(), 0.02) << "to the end";
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "firmware/physics/nearest_beside.hpp"
 
@@ -52,7 +53,8 @@ void Jaws::open(Rod& rod) noexcept {
   count_ = 0;
 }
 
-/// Releases nodes that are no longer between the jaws and grips those that have moved in.
+/// Releases nodes that are no longer between the jaws and grips those that have moved in. One of the holds keeps the
+/// roll.
 void Jaws::choose(Rod& rod, Vec tool) noexcept {
   const State& state = rod.state();
   const auto& s = state.mesh.s;
@@ -74,19 +76,29 @@ void Jaws::choose(Rod& rod, Vec tool) noexcept {
   for (int k = 0; k < most; ++k)
     wanted[static_cast<std::size_t>(k)] = most > 1 ? first + k * (inside - 1) / (most - 1) : first;
   const auto end = wanted.begin() + most;
-  for (int k = count_ - 1; k >= 0; --k) {
-    auto& hold = hold_[static_cast<std::size_t>(k)];
-    if (std::find(wanted.begin(), end, state.holds[static_cast<std::size_t>(hold)].node) != end) continue;
-    if (count_ == 1 && std::all_of(wanted.begin(), end, [&](int node) { return is_held(state, node); })) continue;
-    rod.release(hold);
-    hold = hold_[static_cast<std::size_t>(--count_)];
-  }
+  const auto leaves = [&](int hold) {
+    return std::find(wanted.begin(), end, state.holds[static_cast<std::size_t>(hold)].node) == end;
+  };
+  const auto let_go = [&](int* hold) {
+    rod.release(*hold);
+    *hold = hold_[static_cast<std::size_t>(--count_)];
+  };
+  // One hold keeps the roll. If its node leaves the jaws, it goes last: a new hold takes over the roll beside it, so
+  // that the thread stays twisted as it is.
+  int* keeper = hold_.data();
+  for (int* hold = hold_.data(); hold != hold_.data() + count_; ++hold)
+    if (state.holds[static_cast<std::size_t>(*hold)].holds_roll) keeper = hold;
+  std::swap(*keeper, hold_[0]);
+  const bool passes_on = leaves(hold_[0]);
+  for (int* hold = hold_.data() + count_ - 1; hold != hold_.data(); --hold)
+    if (passes_on || leaves(*hold)) let_go(hold);
   for (auto node = wanted.begin(); node != end && count_ < kMost; ++node) {
     if (is_held(state, *node)) continue;
     const Vec target = tool + (s[static_cast<std::size_t>(*node)] - s_m_) * along_;
-    const int h = rod.grip(*node, 0.0, 0.0, target, count_ == 0);
+    const int h = rod.grip(*node, 0.0, 0.0, target, passes_on && count_ == 1);
     if (h >= 0) hold_[static_cast<std::size_t>(count_++)] = h;
   }
+  if (passes_on && count_ > 1) let_go(hold_.data());
   for (int k = 0; k < count_; ++k) {
     Hold& hold = rod.state().holds[static_cast<std::size_t>(hold_[static_cast<std::size_t>(k)])];
     hold.stiffness_N_per_m = settings_.stiffness_N_per_m / count_;
