@@ -215,6 +215,27 @@ const steps = {
     deaf.forEach((peer) => peer.end());
     assert.equal(rig.heard.slice(before).includes('command arm'), false);
   },
+  'a hand obeys only who has the token, one page at a time, and is let go with its connection': async () => {
+    const { host: at } = new URL(page.url()), wishes = () => rig.heard.split('\n').filter((line) => line.startsWith('wish'));
+    const token = await page.evaluate(() => document.querySelector('meta[name=ligature-token]').content);
+    const asks = async (message) => { const peer = await clientOf(at); peer.send(JSON.stringify({ id: 4, token, ...message })); return { peer, told: await peer.text() }; };
+    const take = { hand: 'take', side: 'left' }, wish = { wish: { left: { p: [0, 0, 0], dead: true, grip: true } } };
+    rig.tell('hands');
+    let first;
+    while (!(first = await asks(take)).told.includes('"accepted":true')) first.peer.end(); // until the view has heard of the hand
+    await rig.says(/wish left/);
+    const before = wishes().length;
+    for (const wrong of [take, wish, { hand: 'leave', side: 'left' }]) assert.match((await asks({ ...wrong, token: 'x'.repeat(32) })).told, /token/);
+    assert.match((await asks(take)).told, /somebody else has the left hand/);
+    const second = await clientOf(at);
+    second.send(JSON.stringify({ token, ...wish })); // it has no hand
+    second.send(JSON.stringify({ id: 5, token, hand: 'leave', side: 'left' }));
+    assert.match(await second.text(), /this page does not have that hand/);
+    assert.equal(wishes().length, before);
+    first.peer.end();
+    await rig.says(/wish left leaves/);
+    assert.ok(!rig.heard.includes("stranger's wish"));
+  },
   'ticks are exact after a year, and where 31 and 32 bits end': async () => {
     for (const start of [2 ** 31 - 3000, 2 ** 32 - 3000, 31_536_000_000]) {
       rig.tell(`restart ${start}`);

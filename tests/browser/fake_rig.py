@@ -4,8 +4,10 @@
     set KEY=V   the scene runs with this override         friction F   as set by somebody else
     limit BITS  force limits of the left hand   clutch B   left tool parked   degrade N   reduced accuracy of the solver
     propagation L R   the paper's condition at each hand   arm   go to FORCE
+    hands       two simulated hands listen, as `ligature-device --operator page`
     quiet       stop publishing      go              publish again             restart [T]   another session, from tick T
-It prints "ready" when it publishes and "command NAME" for each command received. All values are made up.
+It prints "ready" when it publishes, "command NAME" for each command received, and "wish left" or "wish left leaves" for
+each message to a hand that the hand obeys. All values are made up.
 """
 
 import argparse
@@ -17,7 +19,7 @@ import sys
 import time
 
 import lcm
-from ligature_msg import ack_t, command_t, event_t, offer_t, parameter_t, preview_t, status_t, thread_t, tick_batch_t, tick_t
+from ligature_msg import ack_t, command_t, event_t, hand_state_t, hand_wish_t, offer_t, parameter_t, preview_t, status_t, thread_t, tick_batch_t, tick_t
 
 STATES = ["OFF", "CALIBRATE", "IDLE", "ENGAGE", "FORCE", "BRAKE", "FAULT"]
 KNOT_NODES, RADIUS_M = 120, 0.03
@@ -57,6 +59,8 @@ class Rig:
     def __init__(self, url):
         self.lcm = lcm.LCM(url)
         self.lcm.subscribe("LIGATURE_COMMAND", self.on_command)
+        self.lcm.subscribe("LIGATURE_HAND_WISH", self.on_wish)
+        self.hands = []
         self.state, self.fault, self.armed = 2, 0, False
         self.shape, self.spike, self.quiet = unknot(KNOT_NODES), 0.0, False
         self.limit, self.clutch, self.degraded, self.conditions = 0, 0, 0, [0, 0]
@@ -97,6 +101,22 @@ class Rig:
             self.event(6, 0, ack.reason)
         self.lcm.publish("LIGATURE_ACK", ack.encode())
         self.publish_offer()
+
+    def on_wish(self, _, data):
+        """As sim_device/page/holding.hpp: a hand obeys the first sender of its session, which ends when that one leaves."""
+        wish = hand_wish_t.decode(data)
+        hand = self.hands[wish.hand]
+        if wish.session != hand.session or hand.owner not in (0, wish.owner):
+            print("stranger's wish", flush=True)
+            return
+        hand.owner = wish.owner
+        print("wish", ("left", "right")[wish.hand], "leaves" if wish.leaves else "", flush=True)
+        if wish.leaves:
+            hand.session, hand.owner = hand.session + 1, 0
+
+    def publish_hands(self):
+        for hand in self.hands:
+            self.lcm.publish("LIGATURE_HAND_STATE", hand.encode())
 
     def is_fresh(self, command):
         """As in the firmware's command gate: a command without a challenge is answered with one."""
@@ -152,6 +172,10 @@ class Rig:
             self.limit = int(value)
         elif word == "clutch":
             self.clutch = int(value)
+        elif word == "hands":
+            self.hands = [hand_state_t(), hand_state_t()]
+            for index, hand in enumerate(self.hands):
+                hand.hand, hand.session, hand.is_live = index, 1 + index, 1
         elif word == "propagation":
             self.conditions = [int(code) for code in value.split()]
         elif word == "degrade":
@@ -243,6 +267,7 @@ def main():
         if rig.quiet:
             continue
         rig.publish(due)
+        rig.publish_hands()
         if round_number % 5 == 0:
             rig.publish_status()
         if round_number % 50 == 0:

@@ -128,6 +128,15 @@ function outside() {
       if (b.width && (b.left < p.left - 1 || b.right > p.right + 1)) wrong.push(`${name(e)} (${e.textContent.slice(0, 20)}) sticks out of ${name(panel)}`);
     }
   }
+  document.getElementById('scene-file').textContent = 'suture-3-0-knot.toml, firmware 0.1.0'; // as long as a shipped one
+  for (const e of document.querySelectorAll('#facts, #state-name, #state-note')) if (e.scrollHeight > e.clientHeight + 1 && getComputedStyle(e).overflow === 'hidden') wrong.push(`${name(e)} is cut off below`);
+  const ink = document.createElement('canvas').getContext('2d');
+  for (const e of document.querySelectorAll('.change input[placeholder], .change select')) {
+    const style = getComputedStyle(e), room = e.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight) - (e.options ? 20 : 0); // a list has its arrow
+    ink.font = `${style.fontSize} ${style.fontFamily}`;
+    const text = e.placeholder ?? e.selectedOptions[0]?.text ?? '', wide = ink.measureText(text).width;
+    if (box(e).width && wide > room + 1) wrong.push(`${name(e)}: '${text}' has ${Math.round(wide)} px in ${Math.round(room)}`);
+  }
   const overlays = ['.top-left', '.top-right', '.hands', '.corner'].map((s) => document.querySelector(s));
   overlays.forEach((a, i) => overlays.slice(i + 1).forEach((b) => {
     const [p, q] = [box(a), box(b)];
