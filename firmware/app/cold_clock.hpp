@@ -1,19 +1,15 @@
 #pragma once
 // How admission measures: CPU time of the calling thread, with cold caches.
 
-#include <time.h>
-
 #include <cstddef>
 #include <vector>
+
+#include "firmware/platform/monotonic_clock.hpp"
 
 namespace ligature::app {
 
 /// CPU time of the calling thread, us.
-inline double cpu_us() noexcept {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
-}
+inline double cpu_us() noexcept { return 1e-3 * static_cast<double>(platform::MonotonicClock{}.worked().count()); }
 
 /// Evicts the caches before a measurement: on a rig other programs use them in the 1 ms between two ticks.
 class ColdCaches {

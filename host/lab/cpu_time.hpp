@@ -1,9 +1,12 @@
 #pragma once
+// The clock of studies that measure computing time.
+
 #include <ctime>
 
 namespace ligature::lab {
 
-/// CPU time of the calling thread, us: the cost of a tick, independent of the machine's other load.
+/// CPU time of the calling thread, us: the cost of a tick, independent of the machine's other load. Linux includes
+/// interrupts and time stolen by the hypervisor.
 [[nodiscard]] inline double thread_cpu_us() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

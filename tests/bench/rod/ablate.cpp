@@ -5,10 +5,16 @@
 // panel is also run with changes of 1e-9 of one number. Three times the standard deviation of these runs is the bar.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <sstream>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "firmware/physics/rod/tuning.hpp"
 #include "tests/bench/rod/panel.hpp"
@@ -126,6 +132,52 @@ void print(const char* name, const Score& s) {
   for (std::size_t k = 0; k < kMeasures; ++k) std::printf(" %8.*f", k <= kGuard ? 0 : 3, s[k]);
 }
 
+/// Numbers that are changed together, and the name of the row.
+struct Variant {
+  std::string name;
+  std::vector<std::pair<const Number*, double>> to;
+
+  void add(const Number& number, double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%s %g -> %g", number.name, number.get(), value);
+    name += (name.empty() ? "" : ", ") + std::string(text);
+    to.emplace_back(&number, value);
+  }
+  [[nodiscard]] Score run(const std::vector<Case>& cases) const {
+    std::vector<double> before;
+    for (const auto& [number, value] : to) before.push_back(number->get()), number->set(value);
+    const Score s = ligature::bench::run(cases);
+    for (std::size_t k = 0; k < to.size(); ++k) to[k].first->set(before[k]);
+    return s;
+  }
+};
+
+std::vector<Variant> variants_of(const Number& n) {
+  std::vector<Variant> all;
+  for (const double value : n.values.empty() ? std::vector<double>{0.5 * n.get(), 2.0 * n.get()} : n.values)
+    all.emplace_back().add(n, value);
+  return all;
+}
+
+/// Variants of an argument: NAME, or NAME=VALUE,NAME=VALUE.. for one variant. @throw std::invalid_argument
+std::vector<Variant> variants_of(const std::string& text) {
+  Variant together;
+  std::istringstream parts(text);
+  for (std::string part; std::getline(parts, part, ',');) {
+    const std::string name = part.substr(0, part.find('='));
+    const auto n = std::find_if(kNumbers.begin(), kNumbers.end(), [&](const Number& x) { return x.name == name; });
+    if (n == kNumbers.end()) throw std::invalid_argument("found \"" + name + "\", no number of tuning.hpp");
+    if (part == text && part == name) return variants_of(*n);
+    if (part == name) throw std::invalid_argument("found \"" + part + "\", numbers changed together need values");
+    const std::string value = part.substr(name.size() + 1);
+    char* end = nullptr;
+    const double to = std::strtod(value.c_str(), &end);
+    if (value.empty() || *end != '\0') throw std::invalid_argument("found \"" + part + "\", needs NAME=VALUE");
+    together.add(*n, to);
+  }
+  return {together};
+}
+
 /// The panel with changes that only rounding notices: mean and standard deviation of each measure.
 std::pair<Score, Score> noise(const std::vector<Case>& cases, int runs) {
   std::vector<Score> all;
@@ -174,7 +226,8 @@ int main(int argc, char** argv) {
              "A mean over the cases, except wrong and guard. After each row: the measures that differ\n"
              "from the first rows by more than three standard deviations of rounding and by 2 %. Exit 0, or 2 for\n"
              "bad input.\n\nExample\n  rod_ablate near_d patience --seed 7");
-  app.add_option("NUMBER", only, "names of tuning.hpp, or NAME=VALUE; default: all");
+  app.add_option("NUMBER", only,
+                 "names of tuning.hpp, or NAME=VALUE,NAME=VALUE.. to change some together; default: all");
   app.add_option("--seed", seed, "draws speeds, forces and frictions");
   app.add_option("--rounding", runs, "runs that only rounding tells apart")->check(CLI::Range(1, 100));
   app.add_flag("--quick", quick, "every third case of the panel");
@@ -184,24 +237,15 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  std::vector<std::pair<const Number*, double>> variants;
-  const auto values_of = [](const Number& n) {
-    return n.values.empty() ? std::vector<double>{0.5 * n.get(), 2.0 * n.get()} : n.values;
-  };
-  if (only.empty()) {
-    for (const auto& n : kNumbers)
-      for (const double value : values_of(n)) variants.emplace_back(&n, value);
+  std::vector<Variant> variants;
+  const auto add = [&](const std::vector<Variant>& some) { variants.insert(variants.end(), some.begin(), some.end()); };
+  try {
+    for (const auto& text : only) add(variants_of(text));
+  } catch (const std::invalid_argument& error) {
+    return std::fprintf(stderr, "%s: %s\n", argv[0], error.what()), 2;
   }
-  for (const auto& text : only) {
-    const std::string name = text.substr(0, text.find('='));
-    const auto n = std::find_if(kNumbers.begin(), kNumbers.end(), [&](const Number& x) { return x.name == name; });
-    if (n == kNumbers.end())
-      return std::fprintf(stderr, "%s: found \"%s\", no number of tuning.hpp\n", argv[0], name.c_str()), 2;
-    if (text != name) {
-      variants.emplace_back(&*n, std::stod(text.substr(name.size() + 1)));
-    } else {
-      for (const double value : values_of(*n)) variants.emplace_back(&*n, value);
-    }
+  if (only.empty()) {
+    for (const auto& n : kNumbers) add(variants_of(n));
   }
   auto cases = panel(seed);
   if (quick) {
@@ -221,14 +265,9 @@ int main(int argc, char** argv) {
   const auto [mean, deviation] = noise(cases, runs);
   print("deviation", deviation);
   std::printf("\n");
-  for (const auto& [number, value] : variants) {
-    const double before = number->get();
-    number->set(value);
-    const Score s = run(cases);
-    number->set(before);
-    char name[64];
-    std::snprintf(name, sizeof name, "%s %g -> %g", number->name, before, value);
-    print(name, s);
+  for (const auto& variant : variants) {
+    const Score s = variant.run(cases);
+    print(variant.name.c_str(), s);
     std::printf(" %s\n", differs(s, mean, deviation).c_str());
     std::fflush(stdout);
   }

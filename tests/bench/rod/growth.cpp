@@ -5,8 +5,6 @@
 // Usage: rod_growth [nodes ...]   (default 50 100 200 256 512 1024 2000)
 // For instruction counts: valgrind --tool=callgrind --toggle-collect='*Rod::tick*' rod_growth 1024
 
-#include <ctime>
-
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -14,18 +12,13 @@
 #include <vector>
 
 #include "firmware/physics/rod/rod.hpp"
+#include "host/lab/cpu_time.hpp"
 
 using namespace ligature::physics::rod;
 
 namespace {
 
 constexpr int kTicks = 60;
-
-double cpu_us() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
-}
 
 enum class What { kFree, kContact, kDrawn };
 
@@ -46,9 +39,9 @@ void run(int nodes, What what) {
   std::size_t pairs = 0;
   for (int k = 0; k < kTicks; ++k) {
     if (what == What::kDrawn) goals[0] += make(1e-3, 0, 0), goals[1] += make(1e-3, 0, 0);
-    const double before = cpu_us();
+    const double before = ligature::lab::thread_cpu_us();
     rod.tick(goals);
-    us.push_back((cpu_us() - before) / rod.report().substeps / nodes);
+    us.push_back((ligature::lab::thread_cpu_us() - before) / rod.report().substeps / nodes);
     work += rod.report().work;
     most = std::max(most, rod.report().work);
     lists += rod.report().broad_phases;

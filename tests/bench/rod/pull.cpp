@@ -5,6 +5,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "host/lab/cpu_time.hpp"
 #include "tests/bench/rod/chatter.hpp"
 
 namespace ligature::bench {
@@ -105,10 +106,10 @@ void Puller::phase(double seconds, double speed, int hands, double until_N) {
 
 void Puller::tick() {
   const Disturbances before = options_.disturbances ? Disturbances::now() : Disturbances{};
-  const double begun_us = cpu_us();
+  const double begun_us = lab::thread_cpu_us();
   sim_.tick(tools_);
   Tick t;
-  t.us = cpu_us() - begun_us;
+  t.us = lab::thread_cpu_us() - begun_us;
   if (options_.disturbances) t.met = Disturbances::now().since(before);
   t.work = sim_.rod().report().work;
   lost_ += sim_.rod().report().time_lost;

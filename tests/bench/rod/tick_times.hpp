@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
-#include <ctime>
 #include <fstream>
 #include <optional>
 #include <span>
@@ -18,13 +17,6 @@
 #include "firmware/physics/simulation.hpp"
 
 namespace ligature::bench {
-
-/// CPU time of the calling thread, us. Linux includes interrupts and time stolen by the hypervisor.
-[[nodiscard]] inline double cpu_us() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
-}
 
 [[nodiscard]] inline double quantile(std::vector<double> v, double q) {
   std::sort(v.begin(), v.end());
