@@ -22,15 +22,17 @@ void ContactSet::find_near(const State& state, double dt_s) noexcept {
     const Vec u = (1.0 - t) * state.v[b] + t * state.v[b + 1] - (1.0 - s) * state.v[a] - s * state.v[a + 1];
     if (spare > 0.0 && spare * spare > 4.0 * dt_s * dt_s * dot(u, u)) continue;
     const double stays = dot(pair.impulse, pair.impulse) > 0.0 ? tuning.merge_stays_d * pair.reach_m : 0.0;
-    near_.push_back(
-        {static_cast<std::int32_t>(k), -1, gap - stays, mesh.s[a] + s * mesh.rest[a], mesh.s[b] + t * mesh.rest[b]});
+    const double ahead_m = m.distance_m > 1e-12 ? dt_s * dot(u, m.between) / m.distance_m : 0.0;
+    near_.push_back({static_cast<std::int32_t>(k), -1, gap + ahead_m - stays, mesh.s[a] + s * mesh.rest[a],
+                     mesh.s[b] + t * mesh.rest[b]});
   }
   heads_.assign(state.x.size() + 1, -1);
 }
 
 // Where the curves of two strands come nearest at a joint of their segments, up to four pairs of segments have their
 // closest points there. They are one contact, which Newton's method would otherwise solve four times: that with the
-// smallest gap. It gets the impulses of the others. @return false when the time was over first.
+// smallest gap at the end of the substep, if velocities stay as they are. It gets the impulses of the others. @return
+// false when the time was over first.
 bool ContactSet::merge(TickTime& time) noexcept {
   Pieces pieces(time);
   std::sort(near_.begin(), near_.end(),
