@@ -1,10 +1,13 @@
 #include "host/lab/tie/tie_command.hpp"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <memory>
 
+#include "host/console/progress.hpp"
 #include "host/console/stop_signal.hpp"
 #include "host/errors.hpp"
 #include "host/lab/outcome.hpp"
@@ -116,11 +119,15 @@ std::string missed_in_one_cell(const Tied& t) {
 /// Ties the knot once per seed; prints a line and adds a row to results.csv for each.
 Count tie_all(const Arguments& a, const Cell& c, const Seeds& seeds, std::string& results) {
   Count count;
+  const auto began = console::Progress::Clock::now();
   std::printf("%6s  %-20s %8s  %s\n", "seed", "found", "seconds", "moves given up");
   for (std::uint32_t seed = seeds.first; seed <= seeds.last && !console::stop_requested(); ++seed) {
     HandRecord hands(sim::WorkspaceMap(c.scene.hands));
     Tied t;
     try {
+      console::Progress progress("tie", stderr, isatty(STDERR_FILENO) == 1, began);  // gone before the row is printed
+      progress.show(static_cast<double>(seed - seeds.first) / (seeds.last - seeds.first + 1.0),
+                    c.knot + ", seed " + std::to_string(seed) + ", tied " + count.text());
       t = tie_once(c.scene, c.file, c.toml, c.knot, seed, recording_of(c.folder, c.knot, seed),
                    a.script_out.empty() ? nullptr : &hands);
     } catch (const host::RunFailed&) {
