@@ -121,7 +121,8 @@ std::string no_telemetry(const std::string& url) {
          "'ip link set lo up; ip route add 224.0.0.0/4 dev lo' as root; --no-telemetry runs without anybody listening";
 }
 
-/// Logs what the drives cannot promise; both hands' drives are of one record, so most lines are the same.
+/// Logs what the drives lack (watchdog, report of the torque ..). A line that is the same for both hands is logged
+/// once.
 void log_lacks(const Buses& buses) {
   std::vector<std::string> told;
   for (std::size_t h = 0; h < rt::kHands; ++h) {

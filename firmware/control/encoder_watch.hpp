@@ -129,8 +129,8 @@ class EncoderWatch {
     return false;
   }
 
-  /// Test for an encoder that freezes in motion: first finds a suspect, then waits for the other joints' travel while
-  /// the suspect does not change.
+  /// Test for an encoder that freezes in motion: suspects a joint that stops in motion, and reports it when the others
+  /// have travelled far enough while it did not change. @param free  joints that are not at a stop
   [[nodiscard]] bool is_frozen(const std::array<bool, kJoints>& free) noexcept {
     if (suspect_ < kJoints) {
       if (at(suspect_, 0) != at(suspect_, 1)) {

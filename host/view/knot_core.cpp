@@ -37,8 +37,8 @@ std::string type_in(Points points, KnotCore at) {
   return at.last < at.first + 4 ? "0_1" : knot::recognise(piece_of(points, at), false).type;
 }
 
-/// Cuts the first throw off. @return where it ends; nothing when no cut leaves one of the summands before it and the
-/// others behind it.
+/// Cuts the first throw off. @return where it ends: one of the prime knots that the knot is composed of lies before the
+/// cut, the others behind it. Nothing when there is no such cut.
 std::optional<std::size_t> first_cut(Points points, KnotCore at, const std::vector<std::string>& summands) {
   const auto is_cut = [&](std::size_t cut) {
     auto both = summands_of(type_in(points, {cut, at.last}));

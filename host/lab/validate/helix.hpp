@@ -11,7 +11,7 @@ struct Helix {
   double envelope_error = 0.0;  ///< largest |f - tanh^2(sigma s)|; s from the bulge's centre, f in HelixTruth
 };
 /// @param substeps implicit steps per 0.1 s
-/// @param adaptive true: nodes concentrate in the bulge (with too many nodes for that they stay equally spaced)
+/// @param adaptive true: nodes concentrate in the bulge (not if segments there would become too short)
 [[nodiscard]] Helix localised_helix_of(int n, int substeps, bool adaptive);
 
 /// Solution for an infinite rod: largest angle phi between tangent and axis, twisting moment M (N m), and decay rate

@@ -122,8 +122,8 @@ TEST(StatedNumbers, AParkedToolStands) {
   }
 }
 
-/// A drive keeps its torque. With the usual watchdog the torque check would report it first (fault 26); with this long
-/// one the torque may still be an old command.
+/// A drive keeps its torque. With the usual watchdog time fault 26 (torque check) would come first. Here the watchdog
+/// time is long, so for the torque check the torque may still be an old command, and another limit must act.
 TEST(StatedNumbers, AForceThatDoesNotEndIsTakenAfterAHundredTicks) {
   Rig rig(Rig::scene(), device::omni(), 1000);
   rig.to_force();

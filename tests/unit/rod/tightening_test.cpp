@@ -144,8 +144,8 @@ TEST(Energy, NeverRisesWhileNobodyPulls) {
 }
 
 // Two throws jam and use up the budget. Energy would rise by up to 3 % of the stored energy in a tick if the contact
-// tolerance grew with the free end's speed, or if bending reappeared after remeshing. A rare rise of 1e-6 to 2e-6 J is
-// tolerated: when a waiting jam falls back to sweeps, the brake lets overlaps deepen by 1e-4 d.
+// tolerance grew with the free end's speed, or if remeshing stored bending energy again that it had smoothed away. A
+// rare rise of 1e-6 to 2e-6 J is tolerated: when the solver gives a jam up and makes sweeps, overlaps grow by 1e-4 d.
 TEST(Energy, NeverRisesWhileNobodyPullsTwoThrows) {
   int rises = 0;
   for (const char* scene : {"suture-3-0-square.toml", "suture-3-0-surgeons.toml"}) {

@@ -48,8 +48,8 @@ class ContactNewton {
   /// Takes Z = A^-1 from the present factorisation. @pre last - first < kWidest; solver factorised.
   void measure(const BandSolver& solver, int first, int last) noexcept;
 
-  /// Begins a substep with `count` contacts. Couplings of contacts known from earlier substeps are kept, until
-  /// measure().
+  /// Begins a substep with `count` contacts. Entries of their matrix that are known from earlier substeps are kept
+  /// until measure() computes them anew.
   void start(const Contact* rows, int count) noexcept;
 
   /// Adds to the system all contacts that have an impulse or whose velocity violates u_n >= target. @return false when
