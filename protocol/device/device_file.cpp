@@ -5,7 +5,6 @@
 
 #include "protocol/device/cia402_reader.hpp"
 #include "protocol/device/device_keys.hpp"
-#include "protocol/device/odrive_reader.hpp"
 #include "protocol/device/omni_text.hpp"
 #include "protocol/scene/toml_text.hpp"
 
@@ -130,10 +129,6 @@ void read_record(StrictTable& top, DeviceFile& out) {
   top.table("drives", [&](StrictTable& t) {
     read_drives(Marked(t, "drives", out), d);
     top.table("cia402", [&](StrictTable& p) { read_cia402(p, d.cia402); });
-    top.table("odrive", [&](StrictTable& p) {
-      read_odrive(p, d.odrive.emplace());
-      if (top.has("cia402")) p.refuse("source", "one of the tables [cia402] and [odrive]");
-    });
     if (!t.failed() && d.motor_counts % d.cia402.counts_unit != 0)
       t.refuse("motor_counts", "a multiple of cia402.counts_unit");
     if (!t.failed() && !is_told_exactly(d)) t.refuse("rated_torque_Nm", "a multiple of cia402.rated_torque_unit_Nm");

@@ -1,4 +1,4 @@
-"""A hand as a process: three drives of somebody else's stack on a `local:` bus, and a hand that moves them.
+"""A hand as a process: three drives of a third-party CANopen stack on a `local:` bus, and a hand that moves them.
 
 usage: hand.py STACK PATH [TABLE] [--still] [--change INDEX:SUB=VALUE|none]..
 With --still nobody holds the hand. Its standard input takes words, one a line:
@@ -31,7 +31,7 @@ class Hand:
     def __init__(self, nodes, server, shift, still):
         self.nodes, self.server, self.shift, self.still = nodes, server, shift, still
         self.pressed, self.syncs, self.told, self.asked = True, 0, set(), None
-        self.gone_at, self.request = None, getattr(nodes, "REQUEST", 0x080)  # the frame that asks for a sample
+        self.gone_at = None
 
     def say(self, *words):
         print(*words, flush=True)
@@ -93,7 +93,7 @@ class Hand:
             now = time.monotonic()
             if frame is None and not self.listen():
                 return
-            if frame and frame[0] == self.request:
+            if frame and frame[0] == 0x080:
                 self.on_sync()
             elif frame:
                 self.nodes.on_frame(*frame, now)

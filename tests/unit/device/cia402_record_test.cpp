@@ -109,16 +109,5 @@ TEST(Cia402Record, RefusesInOneLine) {
   EXPECT_NE(std::get<scene::Error>(without).text.find("cia402.source'"), std::string::npos);
 }
 
-TEST(OdriveRecord, IsOneOfTheTwoKindsOfDrive) {
-  const auto parsed = parse_device(shipped("odrive.toml"), "odrive.toml");
-  const Device& device = std::get<DeviceFile>(parsed).device;
-  ASSERT_TRUE(device.odrive);
-  EXPECT_EQ(device.odrive->buttons_id, 0x201U);
-  EXPECT_EQ(device.odrive->watchdog, DriveWatchdog::kRpdoTimer);
-  EXPECT_EQ(with("[feel]", "[odrive]\nsource = \"assumed\"\n[feel]").find("d.toml:"), 0U);
-  EXPECT_NE(with("[feel]", "[odrive]\nsource = \"assumed\"\n[feel]").find("one of the tables [cia402] and [odrive]"),
-            std::string::npos);
-}
-
 }  // namespace
 }  // namespace ligature::device

@@ -1,6 +1,8 @@
-// What the drives of each shipped record load their bus with, and how long a torque takes from the sample that it was
-// computed from: measured on the simulated bus, with the frames that the controller sends and drives that answer at
-// once. The contents are random, because they decide the number of stuff bits. docs/drives.md has the figures.
+// What the drives of each shipped record load their bus with, and how long a
+// torque takes from the sample that it was computed from: measured on the
+// simulated bus, with the frames that the controller sends and drives that
+// answer at once. The contents are random, because they decide the number of
+// stuff bits. docs/drives.md has the figures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,11 +11,9 @@
 #include <deque>
 
 #include "firmware/platform/make_drives.hpp"
-#include "firmware/platform/odrive_frames.hpp"
 #include "protocol/can/cia402.hpp"
 #include "protocol/can/codec.hpp"
 #include "protocol/can/nmt.hpp"
-#include "protocol/can/remote.hpp"
 #include "protocol/device/device_file.hpp"
 #include "sim_device/wire.hpp"
 #include "tests/support/random.hpp"
@@ -25,7 +25,7 @@ using sim::Time;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-constexpr int kController = 0, kButtons = 4;  // senders on the wire; 1 to 3 are the drives
+constexpr int kController = 0;  // sender on the wire; 1 to 3 are the drives
 constexpr Time kComputing = microseconds(35);
 
 /// The controller's end of the wire.
@@ -68,7 +68,6 @@ class BusOfARecord {
     for (int k = 0; k < periods; ++k) {
       const Time begin = milliseconds(k);
       now_ = begin;
-      send_by_timers(k);
       drives_->request();
       std::optional<Time> write_at;
       bool has_written = false;
@@ -91,49 +90,20 @@ class BusOfARecord {
 
   void hear(const sim::Transmission& heard) {
     if (heard.sender != kController) return bus_.inbox.push_back(heard.frame);
-    device_.odrive ? hear_as_odrive(heard) : hear_as_cia402(heard);
+    hear_as_cia402(heard);
   }
 
   /// At SYNC the drives sample, and the torques of the period before act.
   void hear_as_cia402(const sim::Transmission& heard) {
     if (!can::is_sync(heard.frame)) return;
-    if (sampled_[0] > Time(0)) note(heard.end - sampled_[0]);
-    sampled_[0] = heard.end;
+    if (sampled_ > Time(0)) note(heard.end - sampled_);
+    sampled_ = heard.end;
     for (const can::NodeId node : can::profile::kJointNodes)
       wire_.submit(can::encode(node, can::Tpdo1{can::cia402::statusword_of(can::cia402::State::kOperationEnabled),
                                                 static_cast<std::int32_t>(random_.any(-8000, 8000)), 300, 2}),
                    node.value, heard.end);
     for (const can::Frame& sample : drives_->example_samples())
       if (sample.dlc < 8) wire_.submit(sample, 3, heard.end);  // the inputs, by node 3
-  }
-
-  /// A drive samples when it is asked, and a torque acts when it arrives.
-  void hear_as_odrive(const sim::Transmission& heard) {
-    const auto address = odrive::address_of(heard.frame.id & can::kMaxId);
-    if (!address) return;
-    if (can::is_remote(heard.frame)) {
-      sampled_[address->joint] = heard.end;
-      can::Frame f{heard.frame.id & can::kMaxId, 8, {}};
-      for (std::size_t i = 0; i < 3; ++i) f.data[i] = static_cast<std::uint8_t>(random_.any(0, 255));
-      f.data[3] = 0x3F;  // a number near 1
-      wire_.submit(f, static_cast<int>(address->joint) + 1, heard.end);
-    } else if (address->command == odrive::Command::kSetInputTorque) {
-      note(heard.end - sampled_[address->joint]);
-    }
-  }
-
-  /// Heartbeats of ODrives and frames of their button module, at phases of their own.
-  void send_by_timers(int k) {
-    if (!device_.odrive) return;
-    for (int node = 1; node <= 3; ++node) {
-      if (k % device_.odrive->heartbeat_ms != 5 * node) continue;
-      can::Frame f{odrive::id_of(static_cast<unsigned>(node), odrive::Command::kHeartbeat), 8, {}};
-      f.data[4] = odrive::kClosedLoop;
-      wire_.submit(f, node, now_ + microseconds(200 * node));
-    }
-    if (k % 2 == 0)
-      wire_.submit({device_.odrive->buttons_id, 2, {2, static_cast<std::uint8_t>(k)}}, kButtons,
-                   now_ + microseconds(300));
   }
 
   void note(Time delay) {
@@ -147,7 +117,7 @@ class BusOfARecord {
   device::Device device_;
   std::unique_ptr<HandDrives> drives_;
   test::Random random_{71};
-  std::array<Time, 3> sampled_{};
+  Time sampled_{};
   Figures figures_;
 };
 
@@ -160,13 +130,14 @@ TEST(DriveBus, LoadAndDelayOfEachRecord) {
   const Row rows[] = {{"omni.toml", 0.70, microseconds(990), microseconds(1010)},
                       {"epos4.toml", 0.77, microseconds(990), microseconds(1010)},
                       {"generic-cia402.toml", 0.79, microseconds(990), microseconds(1010)},
-                      {"inverse3.toml", 0.70, microseconds(990), microseconds(1010)},
-                      {"odrive.toml", 0.84, microseconds(350), microseconds(1000)}};
+                      {"inverse3.toml", 0.70, microseconds(990), microseconds(1010)}};
   for (const Row& row : rows) {
     const Figures f = BusOfARecord(row.file).run(2000);
     const auto us = [](Time t) { return static_cast<long>(t.count() / 1000); };
-    std::printf("%-20s load %.1f %%, sample to torque %ld to %ld us, %d periods without a set\n", row.file,
-                100.0 * f.load, us(f.least), us(f.most), f.periods_without_set);
+    std::printf(
+        "%-20s load %.1f %%, sample to torque %ld to %ld us, %d "
+        "periods without a set\n",
+        row.file, 100.0 * f.load, us(f.least), us(f.most), f.periods_without_set);
     EXPECT_GT(f.load, 0.6) << row.file;
     EXPECT_LT(f.load, row.most_load) << row.file;
     EXPECT_GE(f.least, row.least) << row.file;
