@@ -16,11 +16,6 @@ struct Tuning {
   double skin_d = 0.5;
   /// Multiple of near_d below which pairs are measured between smooth curves. Test: Sliding.IsSmooth
   double close = 2.0;
-  /// Contacts whose points lie within merge_d of each other on both strands, d, are one contact. Time lost while a
-  /// surgeon's knot is pulled at 0.25 m/s with 6.5 million instructions: 10 % without it, 0.6 % with 0.5. An impulse
-  /// stays with its pair until another one's gap is smaller by merge_stays_d, d: with 0 the contacts of a held knot
-  /// alternate, and it loses up to 19 %. Test: Merge.*
-  double merge_d = 0.5, merge_stays_d = 0.003;
   /// Stiffness of a contact, N/m: 2 N overlap by 1 % of a diameter. Rigid contacts of straight segments have no
   /// solution in a tight loop. Test: Overhand.HoldsAfterAPullToFiveNewtons
   double contact_N_per_m = 6e5;

@@ -84,8 +84,8 @@ bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcep
     }
   }
   const auto fours = [](const std::vector<std::int32_t>& list) { return static_cast<long>(list.size() + 3) / 4; };
-  const long cost = (price::kMerge + price::kTake + price::kGuard) * static_cast<long>(due_.size()) +
-                    price::kMeasure * fours(far_) + (price::kMeasure + price::kSmooth) * fours(close_) +
+  const long cost = (price::kTake + price::kGuard) * static_cast<long>(due_.size()) + price::kMeasure * fours(far_) +
+                    (price::kMeasure + price::kSmooth) * fours(close_) +
                     price::kCorner * std::max(0L, static_cast<long>(bent_.last - bent_.first));
   if (cost > work.left()) return false;
   work.spend(cost);
@@ -175,19 +175,13 @@ bool ContactSet::collect_thread(const State& state, const Motion& motion, double
   const auto straight = [&](const std::int32_t* places) { measure<false>(places, state); };
   if (!by_fours(close_, price::kMeasure + price::kSmooth, smooth) || !by_fours(far_, price::kMeasure, straight))
     return false;
-  find_near(state, dt_s);
-  if (!merge(work.time())) return false;
   std::size_t next = 0;
   for (const auto index : awake_) {
     PairGroup& group = groups[static_cast<std::size_t>(index)];
     bool touches = false;
     if (!pieces.allow((price::kTake + price::kGuard) * (group.last - group.first))) return false;
     for (; next < due_.size() && due_[next] < group.last; ++next) {
-      Candidate& pair = pairs[static_cast<std::size_t>(due_[next])];
-      const Measured& m = measured_[next];
-      pair.due = std::min(m.distance_m, m.chord_m - pair.bulge_m) - pair.reach_m +
-                 motion.gone(static_cast<std::size_t>(pair.a), static_cast<std::size_t>(pair.b));
-      touches |= take(pair, m, state, mu, report);
+      touches |= take(pairs[static_cast<std::size_t>(due_[next])], measured_[next], state, motion, dt_s, mu, report);
     }
     group.due = touches ? PairGroup::kAtOnce : 1e300;
     for (std::int32_t k = group.first; !touches && k < group.last; ++k) {
@@ -198,13 +192,17 @@ bool ContactSet::collect_thread(const State& state, const Motion& motion, double
   return true;
 }
 
-bool ContactSet::take(Candidate& pair, const Measured& m, const State& state, double mu,
-                      ContactReport& report) noexcept {
-  const double gap = m.distance_m - pair.reach_m;
+bool ContactSet::take(Candidate& pair, const Measured& m, const State& state, const Motion& motion, double dt_s,
+                      double mu, ContactReport& report) noexcept {
+  const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+  const double gap = m.distance_m - pair.reach_m, spare = gap - pair.near_m;
   double s = m.s, t = m.t;
+  pair.due = std::min(m.distance_m, m.chord_m - pair.bulge_m) - pair.reach_m + motion.gone(a, b);
   report.min_gap_m = std::min(report.min_gap_m, gap);
+  // Only near_m + 2 dt x the points' own relative speed counts, a tighter test than the bound used in find_due().
+  const Vec u = (1.0 - t) * state.v[b] + t * state.v[b + 1] - (1.0 - s) * state.v[a] - s * state.v[a + 1];
   const bool full = contacts_.size() >= static_cast<std::size_t>(kMaxContacts);
-  if (full || !m.touches) {
+  if (full || (spare > 0.0 && spare * spare > 4.0 * dt_s * dt_s * dot(u, u))) {
     report.rows_left_out += full;
     pair.impulse = Vec{};
     watched_.push_back({pair.a, pair.b, m.chord_m});  // never allocates: reserved for all pairs

@@ -258,24 +258,14 @@ class ContactSet : public ContactMemory {
     Vec between;                       ///< from the point on the first segment to that on the second, m
     double s, t, distance_m, chord_m;  ///< parameters of the points; their distance; distance of the chords
     bool smooth;                       ///< points of the smooth curves, not of the chords
-    bool touches = false;              ///< is to become a contact
   };
   template <bool Smooth>
   void measure(const std::int32_t* places, const State& state) noexcept;
   void bend(const State& state) noexcept;
   void bend_row(Contact& c, int at, double s, const State& state) const noexcept;
-  /// A measured pair that is near enough to be a contact.
-  struct Near {
-    std::int32_t due, next;  ///< its index in due_; the next one in the list of a segment (heads_), or -1
-    double gap_m, a, b;      ///< gap by which it is ordered; material coordinates of its points, m
-  };
-  [[nodiscard]] Candidate& due(std::int32_t k) noexcept {
-    return pairs[static_cast<std::size_t>(due_[static_cast<std::size_t>(k)])];
-  }
-  void find_near(const State& state, double dt_s) noexcept;
-  [[nodiscard]] bool merge(TickTime& time) noexcept;
-  /// Makes a measured pair a contact if it touches. @return true when it does (also if there was no room for it).
-  bool take(Candidate& pair, const Measured& measured, const State& state, double mu, ContactReport& report) noexcept;
+  /// Makes a measured pair a contact if it is near enough. @return true when it is (also if there was no room for it).
+  bool take(Candidate& pair, const Measured& measured, const State& state, const Motion& motion, double dt_s, double mu,
+            ContactReport& report) noexcept;
   [[nodiscard]] bool make_columns(const ContactMetric& metric, TickTime& time) noexcept;
   void make_column(Contact& c, const ContactMetric& metric, float* column) const noexcept;
   [[nodiscard]] Contact& loaded(std::size_t k) noexcept { return contacts_[static_cast<std::size_t>(loaded_[k])]; }
@@ -333,8 +323,6 @@ class ContactSet : public ContactMemory {
   std::vector<std::int32_t> awake_, due_;  // indices of the groups and pairs that must be measured in this substep
   std::vector<std::int32_t> close_, far_;  // indices into due_: measured between smooth curves; between chords only
   std::vector<Measured> measured_;         // in the order of due_
-  std::vector<Near> near_;                 // pairs that are near enough to be contacts
-  std::vector<std::int32_t> heads_;        // per segment a: first of the contacts of its pairs in near_, or -1
   std::vector<Vec> corner_;                // corner vectors k_i of the smooth curve (smooth.hpp) at nodes
   std::vector<double> share_;              // per node: factor <= 1 by which k_i is reduced to limit the corner's cut
   Span bent_{0, -1};                       // nodes from the first to the last of the pairs in close_
