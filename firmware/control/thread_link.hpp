@@ -61,8 +61,8 @@ struct ThreadOrders {
 
 /// Triple buffers in both directions. Each side owns one slot exclusively, so neither blocks or reads a partial value;
 /// publishing has release, reading acquire semantics (latest_value.hpp). Only the newest request counts; requests that
-/// arrive during a long tick are skipped. So resets are sent as a
-/// counter, and a new simulation (plant) is sent again in each request until a result names it.
+/// arrive during a long tick are skipped. So resets are sent as a counter, and a new simulation (plant) is sent again
+/// in each request until a result answers it.
 struct ThreadExchange {
   rt::LatestValue<ThreadRequest> requests;  ///< loop -> physics
   rt::LatestValue<ThreadResult> results;    ///< physics -> loop

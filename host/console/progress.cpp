@@ -15,7 +15,8 @@ constexpr auto kEvery = std::chrono::milliseconds(250);
 Progress::Progress(const char* what, std::FILE* out, bool on, Clock::time_point start)
     : what_(what), out_(out), is_on_(on), start_(start), shown_(start) {}
 
-Progress::Progress(const char* what) : Progress(what, stderr, isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(const char* what, Clock::time_point start)
+    : Progress(what, stderr, isatty(STDERR_FILENO) == 1, start) {}
 
 Progress::~Progress() {
   if (has_line_) std::fputs("\r\033[K", out_);

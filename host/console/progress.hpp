@@ -13,8 +13,8 @@ class Progress {
 
   /// @param what the task in one word, such as "export".  @param on whether `out` is a terminal.
   Progress(const char* what, std::FILE* out, bool on, Clock::time_point start = Clock::now());
-  /// Writes to standard error, when that is a terminal.
-  explicit Progress(const char* what);
+  /// Writes to standard error, when that is a terminal.  @param start of the task, for the time that is left
+  explicit Progress(const char* what, Clock::time_point start = Clock::now());
   /// Erases the line.
   ~Progress();
   Progress(const Progress&) = delete;

@@ -295,7 +295,9 @@ def main():
                 say(f"memory {before['memory']['VmRSS']} -> {after['memory']['VmRSS']} kB")
                 after["memory"] = before["memory"]
             wrong = judge(ticks, before, after)
-            error = judge_by_witness(*report(ticks), witness.communicate(timeout=60)[0])
+            long, computed_ns = report(ticks)
+            told = witness.communicate(timeout=60)[0]
+            error = judge_by_witness(long, computed_ns, told) if witness.returncode == 0 else "the witness did not run"
             if error:
                 wrong.append(error)
             if asked.changes:

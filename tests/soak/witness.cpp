@@ -4,25 +4,21 @@
 // tell this from the loop's own work; but this program's work never changes, so what it is charged beyond that is the
 // machine's. It runs on the loop's core with a lower real-time priority than the rig.
 
-#include <time.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <vector>
 
+#include "firmware/platform/monotonic_clock.hpp"
 #include "firmware/platform/realtime.hpp"
 
 namespace {
 
-double us_of(const timespec& t) { return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec); }
+using ligature::platform::MonotonicClock, ligature::platform::Nanoseconds;
 
-double cpu_us() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return us_of(t);
-}
+/// CPU time that the kernel has charged to this thread, us.
+double charged_us() { return 1e-3 * static_cast<double>(MonotonicClock{}.worked().count()); }
 
 /// A chain of multiplications that no compiler can shorten.
 std::uint32_t work(long steps) {
@@ -39,9 +35,9 @@ long steps_for(double us) {
   constexpr long kTried = 20'000;
   double least_us = 1e12;
   for (int i = 0; i < 200; ++i) {
-    const double before = cpu_us();
+    const double before = charged_us();
     (void)work(kTried);
-    least_us = std::min(least_us, cpu_us() - before);
+    least_us = std::min(least_us, charged_us() - before);
   }
   return static_cast<long>(us / least_us * static_cast<double>(kTried));
 }
@@ -63,15 +59,12 @@ int main(int argc, char** argv) {
   std::vector<double> took_us;
   const auto periods = static_cast<std::size_t>(1e3 * seconds);
   took_us.reserve(periods);
-  timespec next{};
-  clock_gettime(CLOCK_MONOTONIC, &next);
-  while (took_us.size() < periods) {
-    next.tv_nsec += 1'000'000;
-    if (next.tv_nsec >= 1'000'000'000) next.tv_nsec -= 1'000'000'000, ++next.tv_sec;
-    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &next, nullptr);
-    const double before = cpu_us();
+  MonotonicClock clock;
+  for (Nanoseconds next = clock.now(); took_us.size() < periods;) {
+    clock.sleep_until(next += std::chrono::milliseconds(1));
+    const double before = charged_us();
     (void)work(steps);
-    took_us.push_back(cpu_us() - before);
+    took_us.push_back(charged_us() - before);
   }
   const auto over = std::ranges::count_if(took_us, [&](double t) { return t > limit_us; });
   std::ranges::sort(took_us);

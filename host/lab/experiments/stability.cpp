@@ -18,13 +18,13 @@ namespace {
 constexpr double kSwing_s = 20.0;  // duration of a trial: released from the horizontal, swinging freely
 constexpr double kMaxGain = 0.02;  // energy gain, as a fraction of M g L, from which a run counts as unstable
 constexpr int kNodes[] = {20, 35, 50, 100};
+constexpr std::array kModels{scene::Model::kPaper1, scene::Model::kPaper2, scene::Model::kPaper3, scene::Model::kPaper4,
+                             scene::Model::kPaper5};
+
 /// Which of kModels and kNodes are measured, as indices.
 struct Cases {
   std::vector<std::size_t> models, nodes;
 };
-
-constexpr std::array kModels{scene::Model::kPaper1, scene::Model::kPaper2, scene::Model::kPaper3, scene::Model::kPaper4,
-                             scene::Model::kPaper5};
 
 /// Whether a swing of 20 s with this step stays finite and gains less energy than 2 % of M g L (M mass, L length).
 bool survives(scene::Scene scene, double dt_s) {

@@ -12,7 +12,6 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 
-
 def rows_of(table):
     with open(table) as file:
         return list(csv.DictReader(file))

@@ -91,7 +91,8 @@ void measure_shape(Nodes nodes, double h, DrawnKnot& knot) {
   knot.exit_curvature = 0.5 * h * (leaving.at_zero() + arriving.at_zero());
 }
 
-/// T(2, 2n + 1), in the names of the table of knots. That of nine crossings is a candidate only, but the only one.
+/// Whether the knot is the torus knot T(2, 2n + 1). Knots of nine crossings are never named, only listed as candidates;
+/// so the only candidate counts, too.
 bool is_the_knot(Nodes nodes, int turns) {
   std::vector<std::array<double, 3>> points;
   for (const auto& p : nodes) points.push_back({p.x(), p.y(), p.z()});

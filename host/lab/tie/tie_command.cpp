@@ -1,7 +1,5 @@
 #include "host/lab/tie/tie_command.hpp"
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -125,7 +123,7 @@ Count tie_all(const Arguments& a, const Cell& c, const Seeds& seeds, std::string
     HandRecord hands(sim::WorkspaceMap(c.scene.hands));
     Tied t;
     try {
-      console::Progress progress("tie", stderr, isatty(STDERR_FILENO) == 1, began);  // gone before the row is printed
+      console::Progress progress("tie", began);  // erases its line before the row is printed
       progress.show(static_cast<double>(seed - seeds.first) / (seeds.last - seeds.first + 1.0),
                     c.knot + ", seed " + std::to_string(seed) + ", tied " + count.text());
       t = tie_once(c.scene, c.file, c.toml, c.knot, seed, recording_of(c.folder, c.knot, seed),

@@ -2,6 +2,8 @@
 // Usage: throw_study [operators = 300] [first seed = 1]; prints each miss, and the share that has two turns.
 // With one operator, its own seed and the word `moves` it prints the operator's moves: throw_study 1 982743442 moves
 // Exit code 3 if fewer than 99 % have two turns.
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <span>

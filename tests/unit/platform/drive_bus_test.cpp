@@ -1,14 +1,11 @@
-// What the drives of each shipped record load their bus with, and how long a
-// torque takes from the sample that it was computed from: measured on the
-// simulated bus, with the frames that the controller sends and drives that
-// answer at once. The contents are random, because they decide the number of
-// stuff bits. docs/drives.md has the figures.
+// Load of the bus with the drives of each shipped record, and the time from a sample until the torque that was computed
+// from it acts. Measured on the simulated bus, with the frames that the controller sends, and drives that answer at
+// once. The contents are random, because they decide the number of stuff bits. docs/drives.md has the figures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <deque>
 
 #include "firmware/platform/make_drives.hpp"
 #include "protocol/can/cia402.hpp"
@@ -17,6 +14,7 @@
 #include "protocol/device/device_file.hpp"
 #include "sim_device/wire.hpp"
 #include "tests/support/random.hpp"
+#include "tests/unit/platform/fake_bus.hpp"
 
 namespace ligature::platform {
 namespace {
@@ -25,36 +23,14 @@ using sim::Time;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-constexpr int kController = 0;  // sender on the wire; 1 to 3 are the drives
+constexpr int kController = 0, kDrives = 3;  // the controller's number as a sender; 1 to 3 are the drives
 constexpr Time kComputing = microseconds(35);
-
-/// The controller's end of the wire.
-class WireBus final : public CanBus {
- public:
-  WireBus(sim::Wire& wire, const Time& now) : wire_(wire), now_(now) {}
-  bool send(const can::Frame& frame) noexcept override {
-    wire_.submit(frame, kController, now_);
-    return true;
-  }
-  Receive receive(can::Frame& frame) noexcept override {
-    if (inbox.empty()) return Receive::kNothing;
-    frame = inbox.front();
-    inbox.pop_front();
-    return Receive::kFrame;
-  }
-  [[nodiscard]] bool is_lost() const noexcept override { return false; }
-  [[nodiscard]] int descriptor() const noexcept override { return -1; }
-  std::deque<can::Frame> inbox;
-
- private:
-  sim::Wire& wire_;
-  const Time& now_;
-};
 
 struct Figures {
   double load = 0.0;                 ///< share of the time
   Time least = Time::max(), most{};  ///< from a sample to the effect of its torque
   int periods_without_set = 0;
+  int late = 0;  ///< SYNCs at which a torque of the period before had not arrived
 };
 
 class BusOfARecord {
@@ -62,7 +38,9 @@ class BusOfARecord {
   explicit BusOfARecord(const std::string& file)
       : device_(std::get<device::Device>(
             device::load_device(std::string(LIGATURE_SOURCE_DIR) + "/scenes/devices/" + file))),
-        drives_(make_drives(bus_, device_, 20, 0)) {}
+        drives_(make_drives(bus_, device_, 20, 0)) {
+    bus_.on_send = [this](const can::Frame& frame) { wire_.submit(frame, kController, now_); };
+  }
 
   Figures run(int periods) {
     for (int k = 0; k < periods; ++k) {
@@ -90,13 +68,14 @@ class BusOfARecord {
 
   void hear(const sim::Transmission& heard) {
     if (heard.sender != kController) return bus_.inbox.push_back(heard.frame);
-    hear_as_cia402(heard);
-  }
-
-  /// At SYNC the drives sample, and the torques of the period before act.
-  void hear_as_cia402(const sim::Transmission& heard) {
+    const auto address = can::address_of(heard.frame.id);
+    torques_ += address && address->service == can::Service::kRpdo1;
     if (!can::is_sync(heard.frame)) return;
-    if (sampled_ > Time(0)) note(heard.end - sampled_);
+    // The drives sample, and the torques act that have arrived since the last SYNC. They were computed from the samples
+    // of that SYNC, because the controller writes only when it has all of them.
+    if (sampled_ > Time(0) && torques_ == kDrives) note(heard.end - sampled_);
+    figures_.late += sampled_ > Time(0) && torques_ != kDrives;
+    torques_ = 0;
     sampled_ = heard.end;
     for (const can::NodeId node : can::profile::kJointNodes)
       wire_.submit(can::encode(node, can::Tpdo1{can::cia402::statusword_of(can::cia402::State::kOperationEnabled),
@@ -113,11 +92,12 @@ class BusOfARecord {
 
   Time now_{};
   sim::Wire wire_;
-  WireBus bus_{wire_, now_};
+  FakeBus bus_;
   device::Device device_;
   std::unique_ptr<HandDrives> drives_;
   test::Random random_{71};
   Time sampled_{};
+  int torques_ = 0;  // frames with a torque since the last SYNC
   Figures figures_;
 };
 
@@ -134,15 +114,14 @@ TEST(DriveBus, LoadAndDelayOfEachRecord) {
   for (const Row& row : rows) {
     const Figures f = BusOfARecord(row.file).run(2000);
     const auto us = [](Time t) { return static_cast<long>(t.count() / 1000); };
-    std::printf(
-        "%-20s load %.1f %%, sample to torque %ld to %ld us, %d "
-        "periods without a set\n",
-        row.file, 100.0 * f.load, us(f.least), us(f.most), f.periods_without_set);
+    std::printf("%-20s load %.1f %%, sample to torque %ld to %ld us, %d periods without a set, %d late\n", row.file,
+                100.0 * f.load, us(f.least), us(f.most), f.periods_without_set, f.late);
     EXPECT_GT(f.load, 0.6) << row.file;
     EXPECT_LT(f.load, row.most_load) << row.file;
     EXPECT_GE(f.least, row.least) << row.file;
     EXPECT_LE(f.most, row.most) << row.file;
     EXPECT_EQ(f.periods_without_set, 0) << row.file;
+    EXPECT_EQ(f.late, 0) << row.file;
   }
 }
 
