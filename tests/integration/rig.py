@@ -5,6 +5,7 @@ Wall-clock time is not asserted: every wait is for a condition, with a limit tha
 import json
 import os
 import pathlib
+import re
 import signal
 import struct
 import subprocess
@@ -141,6 +142,12 @@ class Rig:
         off."""
         self.end(hand)
         return json.loads((self.path / f"{hand}.json").read_text())
+
+    def jumped_in_a_stall(self):
+        """Whether the firmware has ended with fault 18 after the machine stood still. A simulated hand follows its script by
+        the clock: after a stall it moves on by several periods in one sample, which no hand could do."""
+        said = self.said("firmware")
+        return "fault 18" in said and re.search(r"deadline misses +[1-9]\d*  \(0 by the loop's own work\)", said) is not None
 
     def words(self):
         """Output of every process, for failure messages."""

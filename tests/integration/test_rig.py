@@ -2,6 +2,7 @@
 
 import json
 import math
+import sys
 import unittest
 
 from rig import FLAG_PERIOD_LOST, HANDS, STATE_ENGAGE, STATE_FAULT, STATE_FORCE, Rig, run
@@ -19,9 +20,15 @@ def pushes_both_hands(rig):
 
 
 class WholeRig(unittest.TestCase):
-    def test_ties_the_overhand_and_every_tick_is_recorded(self):
+    SESSIONS = 3  # at most: a machine that other programs use may stand still during one
+
+    def session(self):
+        """Results of a whole session, or None if the machine stood still during it and a simulated hand jumped."""
         with Rig(record=True, extra=("--duration", 23)) as rig:
             code = rig.processes["firmware"].wait(timeout=120)
+            if rig.jumped_in_a_stall():
+                print(rig.words(), file=sys.stderr)
+                return None
             self.assertEqual(code, 0, rig.words())
             self.assertEqual(rig.end("recorder"), 0, rig.words())
             report = json.loads(run("ligature-host", "report", rig.log, "--json").stdout)
@@ -29,7 +36,12 @@ class WholeRig(unittest.TestCase):
             forces = rig.path / "forces.csv"
             self.assertEqual(run("ligature-host", "export", rig.log, "--forces", forces).returncode, 0)
             rows = [line for line in forces.read_text().splitlines() if line and not line.startswith("#")][1:]
-            ticks = rig.listener.ticks
+            return knot, report, rows, rig.listener.ticks
+
+    def test_ties_the_overhand_and_every_tick_is_recorded(self):
+        session = next(filter(None, (self.session() for _ in range(self.SESSIONS))), None)
+        self.assertIsNotNone(session, "a simulated hand jumped in every session")
+        knot, report, rows, ticks = session
         self.assertEqual(knot["type"], "3_1")
         self.assertEqual(report["ticks_lost"], 0)
         self.assertEqual(report["ticks_recorded"], len(rows))
