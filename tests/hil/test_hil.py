@@ -11,10 +11,11 @@ from sutures import LargeThread, SutureInTime, TiedSuture
 PAGE = ROOT / "docs/measurements/fault-matrix-guest.md"
 PAGE_HEAD = """# Fault matrix, guest
 
-Made by `scripts/test-hil Faults`: real processes over SocketCAN under a PREEMPT_RT kernel, in virtual time
-([timing](timing.md)). Each row happens half a second after the coupling has reached its full force. Ticks of 1 ms are counted
-by SYNC in `candump` and in the flight recorder, from the tick in which the event is on the bus. After the fault no
-record and no RPDO of either hand has a torque. *Stated* is what the test requires; *seen* is from the run that wrote this page.
+This page shows what real processes over SocketCAN do when something fails. `scripts/test-hil Faults` makes the page,
+with a PREEMPT_RT kernel in an emulator (the guest) in virtual time ([timing](timing.md)). Each event happens half a
+second after the coupling has reached its full force. Ticks of 1 ms are counted by SYNC in `candump` and in the flight
+recorder; tick 0 is the one in which the event is on the bus. After the fault no record and no RPDO (torque message) of
+either hand has a torque. *Stated* is what the test requires; *seen* is from the run that wrote this page.
 
 | what happens | stated | seen |
 |---|---|---|

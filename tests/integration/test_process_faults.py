@@ -27,9 +27,10 @@ PAGE = ROOT / "docs/measurements/fault-matrix-processes.md"
 HEAD = """# Fault matrix, processes
 
 This page shows what a rig of real processes does when one of them is stopped or killed, or gets bad input.
-`tests/integration/test_process_faults.py` makes it (`ctest -R ProcessFaults`) and fails if it is old. Each disturbance
-happens while both hands feel force. These tests do not measure times: [the fault matrix](fault-matrix.md) has the
-deadlines in ticks, and so has [the guest](fault-matrix-guest.md). `Rig.SurvivesDeaths` kills the programs by SIGKILL.
+`tests/integration/test_process_faults.py` (`ctest -R ProcessFaults`) makes this page, and fails if the page is old.
+Each disturbance happens while both hands feel force. The test does not measure times: [the fault
+matrix](fault-matrix.md) and [the matrix of the guest](fault-matrix-guest.md) have the deadlines in ticks. Another test,
+`Rig.SurvivesDeaths`, kills the programs by SIGKILL.
 
 | what happens | what the rig does | test |
 |---|---|---|

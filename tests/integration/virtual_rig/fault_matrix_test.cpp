@@ -208,25 +208,27 @@ const std::string kHead =
     R"(# Fault matrix
 
 This page shows what the rig does when something fails: which fault follows, and after how many ticks all torque is
-gone. `FaultMatrix.EveryCaseEndsAsItSays` prints it and fails if it is old. In virtual time, two simulated hands tie an
-overhand and feel force. 1.5 s after the first SYNC one script of `scenes/faults` disturbs one hand. A second test,
-`FaultMatrix.HandsThatAPageMovesEndTheSame`, repeats all rows with two hands that a page moves.
+gone. The test `FaultMatrix.EveryCaseEndsAsItSays` prints the page, and fails if the page is old. In virtual time, two
+simulated hands tie an overhand and feel force. 1.5 s after the first SYNC one script of `scenes/faults` disturbs one
+hand. A second test, `FaultMatrix.HandsThatAPageMovesEndTheSame`, repeats all rows with two hands that the browser page
+moves.
 
-The columns *stated* and *seen* count ticks of 1 ms, from the disturbance until no motor of either hand has torque.
-*Stated* is the largest number that the test allows. In a row with "none, carries on" the rig goes on without a fault,
-with the last samples that it has. In all rows:
-- The true force at either tip stays below 3.4 N, and its steps below 0.55 N. The true force follows from the torques
-  that the motors made and from the true pose of the arm. The rows `foreign-rpdo` and `astray` are excepted until their
-  fault, because something else than the controller makes the torque there. In `reboot` the drive that starts anew
-  drops its torque at once, whatever the step.
+Each row of the table is one disturbance. *Stated* is the largest number of ticks of 1 ms that the test allows from the
+disturbance until no motor of either hand has torque; *seen* is the measured number. In a row with "none, carries on"
+the rig goes on without a fault, with the last samples that it has. In all rows:
+- The true force at either tip stays below 3.4 N, and its steps below 0.55 N. The true force is computed from the
+  torques that the motors made and from the true pose of the arm. There are two exceptions. In `foreign-rpdo` and
+  `astray` something else than the controller makes torque until the fault. In `reboot` the drive that starts anew
+  removes its torque at once, however large that step is.
 - Every tick is recorded.
 - A fault stays until it is reset, disarms the rig, and removes the force of both hands.
 - While the controller is asleep or cut off from the bus, the drives' own watchdog (20 ms) removes the torque.
 
-An encoder that stops or counts backwards is detected if it does so while the hand moves. If it does so at rest, it is
-not detected at once; the [second table](#wrong-encoders-at-hands-that-pull) shows what such a hand feels. `corrupt-all`
-is a worst case: a real CAN controller drops frames with wrong bits, and they then count as lost. How `lose-50` and
-`corrupt-1` end depends on random numbers, so they are in the [last tables](#a-bad-bus), with 300 runs in each row.
+An encoder that stops or counts backwards is detected if it does so while the hand moves. At a hand at rest it is not
+detected at once; [the second table](#wrong-encoders-at-hands-that-pull) shows what such a hand feels. The row
+`corrupt-all` is a worst case: a real CAN controller drops frames with wrong bits, so that they only count as lost. The
+scripts `lose-50` and `corrupt-1` are not in this table, because their end depends on random numbers. [A bad
+bus](#a-bad-bus) shows such disturbances with 300 runs in each row.
 
 | script | what happens | fault | stated | seen |
 |---|---|---|---|---|
@@ -269,10 +271,11 @@ std::string lies() {
       R"(
 ## Wrong encoders at hands that pull
 
-`FaultMatrix.EveryCaseEndsAsItSays` makes six runs for each row. Both hands pull at a thread ten times as stiff as the
-shipped one. One encoder of the left hand is wrong; it becomes so 1.1 to 1.6 s after the start. *True force* and *true
-step* are the largest of the six runs, computed from the torques that the motors made and the true pose of the arm. The
-step to zero of a fault is not counted.
+This table is for encoders that become wrong while both hands pull at a thread ten times as stiff as the shipped one.
+The test `FaultMatrix.EveryCaseEndsAsItSays` makes six runs for each row. One encoder of the left hand becomes wrong 1.1
+to 1.6 s after the start. *True force* and *true step* are the largest values of the six runs at the tip, computed from
+the torques that the motors made and the true pose of the arm; at most 3.4 N and 0.55 N are allowed. The step to zero of
+a fault is not counted.
 
 | encoder | axis | runs that end in a fault | true force, N | true step, N |
 |---|---|---|---|---|
