@@ -21,7 +21,7 @@ def on_files(files, config):
 def on_page_markdown(markdown, **_):
     """Inserts the empty line that Python-Markdown needs before a list or a table, and GitHub does not."""
     lines, fenced, inside = [], False, False
-    for line in re.sub(r"\]\(\.\./((?:\.\./)*)README\.md\)", r"](\1index.md)", markdown).splitlines():
+    for line in re.sub(r"\]\(\.\./((?:\.\./)*)README\.md(#[\w-]+)?\)", r"](\1index.md\2)", markdown).splitlines():
         begins = bool(ITEM.match(line) or ROW.match(line))
         if begins and not fenced and not inside and lines and lines[-1].strip():
             lines.append("")
