@@ -69,8 +69,10 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
       "--operator", o.script,
       "Script, CSV: time,hand,x,y,z,grip in world metres; or the word page: a person moves the hand from the "
       "page of ligature-host view; or tie:KNOT[:SEED]: an operator ties overhand, figure-eight, square, granny or "
-      "surgeon by looking at the thread; without it the hand rests");
-  app.add_option("--lcm-url", o.lcm_url, "LCM network of the rig, for --operator page and tie:")->capture_default_str();
+      "surgeon by looking at the thread; or untie[:SEED]: unties a loose knot in the same way; without it the hand "
+      "rests");
+  app.add_option("--lcm-url", o.lcm_url, "LCM network of the rig, for --operator page, tie: and untie")
+      ->capture_default_str();
   app.add_option("--faults", o.faults, "Fault script (TOML, see scenes/faults): what shall go wrong, and when");
   app.add_flag("--exit-when-done", o.exit_when_done, "End after the script, once the dead-man is let go");
   app.add_option("--stats", o.stats, "At the end, write JSON: SYNCs, bus load, watchdog trips, final torque");

@@ -34,7 +34,9 @@ struct Options {
   std::uint32_t seed = 1;
 
   [[nodiscard]] bool is_steered() const { return script == "page"; }
-  [[nodiscard]] bool is_tying() const { return script.starts_with("tie:"); }
+  [[nodiscard]] bool is_tying() const {
+    return script.starts_with("tie:") || script == "untie" || script.starts_with("untie:");
+  }
   [[nodiscard]] std::string hand() const { return is_left ? "left" : "right"; }
 };
 

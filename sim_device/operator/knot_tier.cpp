@@ -52,7 +52,7 @@ std::string shortest(double value) {
 
 std::variant<KnotTier, std::string> KnotTier::make(const scene::Scene& scene, const std::string& name,
                                                    std::uint32_t seed) {
-  const auto knot = knot_named(name);
+  const auto knot = name == kUntie.name ? std::optional(kUntie) : knot_named(name);
   if (!knot) return "knot: found \"" + name + "\", allowed " + knot_names();
   const double least_m = 2.0 * scene.suture.radius_m * knot->least_diameters;
   if (scene.suture.length_m < least_m) {
@@ -105,7 +105,7 @@ void KnotTier::begin_again() {
   ++begun_again_;
   Moves moves{let_go(kRightHand), let_go(kLeftHand), hang_out()};
   place_.clearance_m *= dice_.between(0.8, 1.25);  // varied slightly, so that the next attempt differs
-  if (is_springy(place_)) {
+  if (is_springy(place_) && !knot_.throws.empty()) {
     append(moves, draw_straight());
     moves.push_back({"count the throws", [](const Look&) { return true; }});
     moves.back().then_plans = true;

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <memory>
 
 #include "sim_device/operator/diagram.hpp"
 #include "sim_device/operator/figure_eight.hpp"
 #include "sim_device/operator/primitives.hpp"
 #include "sim_device/operator/springy_throw.hpp"
+#include "sim_device/operator/untie.hpp"
 #include "sim_device/operator/wound_throw.hpp"
 
 namespace ligature::sim {
@@ -160,19 +160,6 @@ bool hangs_straight(const Look& look) {
   return (look.thread.at(all) - look.thread.at(0.0)).norm() > kStraight * all;
 }
 
-/// `moves`, or none of them if `needless` is true when the first one starts. A move that is left out has not failed.
-Moves unless(std::function<bool(const Look&)> needless, Moves moves) {
-  auto skip = std::make_shared<std::optional<bool>>();
-  for (Move& m : moves) {
-    m.act = [=, act = std::move(m.act)](const Look& look) {
-      if (!*skip) *skip = needless(look);
-      return **skip || act(look);
-    };
-    if (m.good) m.good = [=, good = std::move(m.good)](const Look& look) { return **skip || good(look); };
-  }
-  return moves;
-}
-
 }  // namespace
 
 std::optional<std::size_t> throws_seen(const Knot& knot, const Look& look) {
@@ -195,6 +182,7 @@ Moves draw_straight() {
 }
 
 Moves plan(const Knot& knot, const Workplace& place, std::size_t first) {
+  if (knot.throws.empty()) return untie();
   const bool alone = knot.throws.size() == 1;
   std::vector<Throw> to_tie;
   int tied = 1;

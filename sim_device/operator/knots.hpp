@@ -24,6 +24,9 @@ struct Knot {
   double longest_segment = 1.2;
 };
 
+/// No knot at all: the operator unties the one that it sees (untie.hpp).
+inline constexpr Knot kUntie{"untie", "0_1", "none", {}, 0.0, 1e9};
+
 /// The knots that are tied reliably. A surgeon's knot is a first throw of two turns (5_1) and a second of one turn, a
 /// trefoil of opposite handedness: together 3_1#5_1. The throws of a square knot are two trefoils of opposite
 /// handedness, 3_1#3_1 (amphichiral).

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <optional>
 
 namespace ligature::sim {
 namespace {
@@ -130,6 +132,18 @@ Move ease() {
             h.goal_W = h.p_W();
             return true;
           }};
+}
+
+Moves unless(std::function<bool(const Look&)> needless, Moves moves) {
+  auto skip = std::make_shared<std::optional<bool>>();
+  for (Move& m : moves) {
+    m.act = [=, act = std::move(m.act)](const Look& look) {
+      if (!*skip) *skip = needless(look);
+      return **skip || act(look);
+    };
+    if (m.good) m.good = [=, good = std::move(m.good)](const Look& look) { return **skip || good(look); };
+  }
+  return moves;
 }
 
 }  // namespace ligature::sim

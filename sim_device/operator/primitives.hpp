@@ -26,5 +26,7 @@ namespace ligature::sim {
 [[nodiscard]] Move swing(const Vec3& direction);
 /// The right hand moves back until the pull is gone.
 [[nodiscard]] Move ease();
+/// `moves`, or none of them if `needless` is true when the first one starts. A move that is left out has not failed.
+[[nodiscard]] Moves unless(std::function<bool(const Look&)> needless, Moves moves);
 
 }  // namespace ligature::sim

@@ -29,7 +29,7 @@ std::optional<Message> decoded(std::span<const std::byte> bytes) {
 }  // namespace
 
 std::variant<KnotTier, std::string> tier_of(const std::string& word, const scene::Scene& scene) {
-  const std::string words = word.substr(std::string_view(kTieWord).size());
+  const std::string words = word.starts_with(kTieWord) ? word.substr(std::string_view(kTieWord).size()) : word;
   const auto colon = words.find(':');
   const std::string knot = words.substr(0, colon);
   std::uint32_t seed = 1;

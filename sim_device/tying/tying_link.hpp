@@ -22,7 +22,8 @@ namespace ligature::sim {
 
 inline constexpr const char* kTieWord = "tie:";
 
-/// The operator for the words `tie:KNOT[:SEED]` (default seed 1), or one line that says what is wrong.
+/// The operator for the words `tie:KNOT[:SEED]` or `untie[:SEED]` (default seed 1), or one line that says what is
+/// wrong.
 [[nodiscard]] std::variant<KnotTier, std::string> tier_of(const std::string& word, const scene::Scene& scene);
 
 class TyingLink final : public Link {

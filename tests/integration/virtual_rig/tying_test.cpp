@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 
 #include "host/knot/recognise.hpp"
@@ -37,6 +38,13 @@ class Until final : public SeeingOperator {
   std::string move_;
   std::array<sim::Vec3, 2> start_W_{};
 };
+
+std::string knot_in(const VirtualRig& rig) {
+  std::vector<std::array<double, 3>> shape;
+  for (const sim::Vec3& p : rig.thread.nodes_W()) shape.push_back({p.x(), p.y(), p.z()});
+  const auto found = knot::recognise(shape, false);
+  return found.type + " " + found.handedness;
+}
 
 /// The knot in the thread when the operator begins `move`; "done": at the end.
 std::string knot_before(const char* move, const char* name, const char* knot, std::uint32_t seed,
@@ -92,10 +100,7 @@ TEST(Tying, AScriptOfTheSutureTies) {
   for (auto& key : script.keys[1]) key.time_s += 0.01;
   VirtualRig rig(setup, script);
   ASSERT_EQ(rig.run(static_cast<std::int64_t>(1e3 * scene::end_time_s(script))), std::nullopt);
-  std::vector<std::array<double, 3>> shape;
-  for (const sim::Vec3& p : rig.thread.nodes_W()) shape.push_back({p.x(), p.y(), p.z()});
-  const auto found = knot::recognise(shape, false);
-  EXPECT_EQ(found.type + " " + found.handedness, "3_1 right");
+  EXPECT_EQ(knot_in(rig), "3_1 right");
 }
 
 /// Without bend damping, a nearly level thread that is released where it was drawn could whip its second throw open (9
@@ -104,6 +109,67 @@ TEST(Tying, ASquareKnotStaysInAnUndampedThread) {
   expect_tied("3_1#3_1 amphichiral", 3, [](std::uint32_t seed) {
     return knot_before("done", "paper.toml", "square", seed, {"suture.model=\"paper-2\""});
   });
+}
+
+/// The knot before and after a pull of the right hand, and the force of the pull.
+struct Pulled {
+  std::string before;  ///< knot when the right hand takes the thread
+  std::string after;
+  double held_N = 0.0;  ///< force at the right hand when it lets go, and the largest one
+  double peak_N = 0.0;
+};
+
+/// Looks at the newest tick, while the right hand holds the thread.
+void watch(const VirtualRig& rig, Pulled& pulled) {
+  if (rig.records.empty()) return;
+  const auto& tick = rig.records.back();
+  if (tick.grasped_node[sim::kRightHand] < 0) return;
+  if (pulled.before.empty()) pulled.before = knot_in(rig);
+  const auto& f = tick.f_device_N[sim::kRightHand];
+  pulled.held_N = std::hypot(f[0], f[1], f[2]);
+  pulled.peak_N = std::max(pulled.peak_N, pulled.held_N);
+}
+
+RigSetup on_the_desk() {
+  RigSetup setup;
+  setup.scene = std::get<scene::Scene>(scene::load_scene(LIGATURE_SOURCE_DIR "/scenes/desk.toml", {}));
+  return setup;
+}
+
+/// Operators who begin elsewhere and at another pace, and see the thread by LCM messages up to 30 ms late.
+TEST(Tying, HandsThatOnlyHearTheRigUntieTheKnotOnTheDesk) {
+  expect_tied("4_1 amphichiral, then 0_1 none", 71, [](std::uint32_t seed) {
+    test::HeardRig heard(on_the_desk(), "untie", seed, {.latest_s = 0.03, .seed = seed});
+    Pulled pulled;
+    heard.rig.each_tick = [&, tell = heard.rig.each_tick] {
+      tell();
+      watch(heard.rig, pulled);
+    };
+    pulled.after = heard.tie(60'000);
+    EXPECT_LT(pulled.peak_N, 0.3) << "a hand that presses the thread into the desk feels 1.8 N";
+    return pulled.before + ", then " + pulled.after;
+  });
+}
+
+/// The same knot, drawn at its end, stays and holds the pull. At the right point nothing holds the thread any more.
+TEST(Tying, TheKnotOnTheDeskJamsAtTheWrongPoint) {
+  const auto play = [](const char* name) {
+    const auto script = std::get<scene::GripperScript>(
+        scene::load_gripper_script(LIGATURE_SOURCE_DIR "/scenes/operators/" + std::string(name)));
+    VirtualRig rig(on_the_desk(), script);
+    Pulled pulled;
+    rig.each_tick = [&] { watch(rig, pulled); };
+    EXPECT_EQ(rig.run(static_cast<std::int64_t>(1e3 * scene::end_time_s(script))), std::nullopt);
+    pulled.after = knot_in(rig);
+    std::printf("%s: %s, then %s, %.3f N\n", name, pulled.before.c_str(), pulled.after.c_str(), pulled.held_N);
+    return pulled;
+  };
+  const Pulled right = play("untie.csv"), wrong = play("untie-wrong.csv");
+  EXPECT_EQ(right.before, "4_1 amphichiral");
+  EXPECT_EQ(wrong.before, "4_1 amphichiral");
+  EXPECT_EQ(right.after, "0_1 none");
+  EXPECT_EQ(wrong.after, "4_1 amphichiral");
+  EXPECT_GT(wrong.held_N, 5.0 * right.held_N);
 }
 
 /// As two processes of ligature-device do it: each plans for both hands, and sees only batches of messages, up to 30 ms
