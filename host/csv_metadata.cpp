@@ -32,7 +32,7 @@ Words words_of(const std::string& name) {
 }  // namespace
 
 std::string csv_metadata(const std::string& table_path, const std::string& header, const RigFacts& facts,
-                         const std::string& source) {
+                         const std::string& source, const std::string& notes) {
   ordered_json columns = ordered_json::array();
   std::istringstream names(header.substr(0, header.find('\n')));
   for (std::string name; std::getline(names, name, ',');) {
@@ -49,6 +49,7 @@ std::string csv_metadata(const std::string& table_path, const std::string& heade
                               {"ligature:max_force_N", facts.max_force_N},
                               {"ligature:scene_file", facts.scene_file},
                               {"ligature:scene_toml", facts.scene_toml},
+                              {"ligature:notes", notes},
                               {"tableSchema", {{"columns", columns}}}};
   return metadata.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

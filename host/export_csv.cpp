@@ -10,29 +10,31 @@ namespace ligature::host {
 namespace {
 
 struct Table {
-  Table(const std::string& path, const std::string& header, const RigFacts& facts, const std::string& source)
-      : file(path), explanation(file.path() + "-metadata.json") {
+  Table(const std::string& path, const std::string& columns)
+      : file(path), explanation(file.path() + "-metadata.json"), header(columns) {
     file.write(header);
-    explanation.write(csv_metadata(file.path(), header, facts, source));
   }
-  void commit() {
+  void commit(const RigFacts& facts, const std::string& source, const std::string& notes) {
+    explanation.write(csv_metadata(file.path(), header, facts, source, notes));
     explanation.commit();
     file.commit();
   }
   AtomicFile file, explanation;
+  std::string header;
 };
 
-std::unique_ptr<Table> open_table(const std::string& path, const std::string& header, const RigFacts& facts,
-                                  const std::string& source) {
-  return path.empty() ? nullptr : std::make_unique<Table>(path, header, facts, source);
+std::unique_ptr<Table> open_table(const std::string& path, const std::string& header) {
+  return path.empty() ? nullptr : std::make_unique<Table>(path, header);
 }
 
 class CsvSink final : public ExportSink {
  public:
   CsvSink(const CsvTargets& targets, const RigFacts& facts, const std::string& source)
-      : forces_(open_table(targets.forces, forces_header(), facts, source)),
-        shape_(open_table(targets.shape, shape_header(), facts, source)),
-        ticks_(open_table(targets.ticks, ticks_header(), facts, source)) {}
+      : forces_(open_table(targets.forces, forces_header())),
+        shape_(open_table(targets.shape, shape_header())),
+        ticks_(open_table(targets.ticks, ticks_header())),
+        facts_(facts),
+        source_(source) {}
 
   void add(const ligature_msg::tick_t& tick, double t_s, int session) override {
     if (forces_) forces_->file.write(forces_row(row_, tick, t_s, session));
@@ -43,11 +45,13 @@ class CsvSink final : public ExportSink {
   }
   void commit() override {
     for (auto* table : {forces_.get(), shape_.get(), ticks_.get()})
-      if (table) table->commit();
+      if (table) table->commit(facts_, source_, notes_);
   }
 
  private:
   std::unique_ptr<Table> forces_, shape_, ticks_;
+  RigFacts facts_;
+  std::string source_;
   CsvRow row_;
 };
 

@@ -182,8 +182,6 @@ class Hdf5Sink final : public ExportSink {
     scenes_.toml.add(status.scene_toml);
   }
 
-  void note(const std::string& text) override { notes_ += (notes_.empty() ? "" : "\n") + text; }
-
   void commit() override {
     ticks_.flush();
     shapes_.flush();
@@ -201,7 +199,6 @@ class Hdf5Sink final : public ExportSink {
   Shapes shapes_;
   Events events_;
   Scenes scenes_;
-  std::string notes_;
 };
 
 }  // namespace

@@ -46,7 +46,6 @@ class McapSink final : public ExportSink {
     file_.add_attachment(name, "application/toml", viewer_time_ns(t_s), status.scene_toml);
     facts_.emplace_back(name, status.scene_file);  // where it came from
   }
-  void note(const std::string& text) override { notes_ += (notes_.empty() ? "" : "\n") + text; }
   void commit() override {
     facts_.emplace_back("notes", notes_);
     file_.add_metadata("ligature", facts_);
@@ -62,7 +61,6 @@ class McapSink final : public ExportSink {
   mcap::Pairs facts_;
   TickJson tick_json_;
   std::array<std::uint16_t, kViewerTopics> channels_{};
-  std::string notes_;
   int scenes_ = 0;
 };
 

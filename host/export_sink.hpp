@@ -20,9 +20,13 @@ class ExportSink {
   virtual void add(const ligature_msg::event_t& event, double t_s) { (void)event, (void)t_s; }
   /// The status message of the scene in force from here on; called only when the scene's text changes.
   virtual void add(const ligature_msg::status_t& status, double t_s) { (void)status, (void)t_s; }
-  virtual void note(const std::string& text) { (void)text; }
+  /// A note that a person typed into the recording. commit() writes all of them into the file, a line each.
+  void note(const std::string& text) { notes_ += (notes_.empty() ? "" : "\n") + text; }
   /// Completes the file and gives it its final name. @throws RunFailed.
   virtual void commit() = 0;
+
+ protected:
+  std::string notes_;
 };
 
 }  // namespace ligature::host

@@ -30,12 +30,14 @@ std::string microseconds(std::int64_t ns) {
 class TraceSink final : public ExportSink {
  public:
   TraceSink(const TraceTarget& target, const RigFacts& facts, const std::string& source)
-      : file_(target.path), target_(target), period_ns_(std::llround(facts.period_s * 1e9)) {
-    const Json about{{"source", source},
-                     {"scene_file", facts.scene_file},
-                     {"firmware_version", facts.firmware_version},
-                     {"host_version", LIGATURE_VERSION}};
-    file_.write(R"({"displayTimeUnit":"ns","otherData":)" + text_of(about) + ",\"traceEvents\":[\n");
+      : file_(target.path),
+        target_(target),
+        period_ns_(std::llround(facts.period_s * 1e9)),
+        about_{{"source", source},
+               {"scene_file", facts.scene_file},
+               {"firmware_version", facts.firmware_version},
+               {"host_version", LIGATURE_VERSION}} {
+    file_.write("{\"displayTimeUnit\":\"ns\",\"traceEvents\":[\n");
   }
 
   void add(const Tick& tick, double t_s, int session) override {
@@ -60,7 +62,8 @@ class TraceSink final : public ExportSink {
   }
 
   void commit() override {
-    file_.write("\n]}\n");
+    about_["notes"] = notes_;
+    file_.write("\n],\"otherData\":" + text_of(about_) + "}\n");
     file_.commit();
   }
 
@@ -140,6 +143,7 @@ class TraceSink final : public ExportSink {
   AtomicFile file_;
   TraceTarget target_;
   std::int64_t period_ns_, zero_ns_ = 0;
+  Json about_;
   int session_ = 0;
   std::set<int> named_;
   bool is_first_ = true;

@@ -93,6 +93,9 @@ const steps = {
     await page.screenshot({ path: join(out, 'limits.png') });
     rig.tell('propagation 1 3');
     await until(page, () => document.getElementById('hand-left').textContent.includes('A: springs') && document.getElementById('hand-right').textContent.includes('C: rigid'));
+    await page.selectOption('#third', 'propagation');
+    await until(page, () => ligature.traces.plots[2].plot.data.slice(1, 3).map((values) => values.findLast((v) => v != null)).join() === '1,3');
+    await page.selectOption('#third', 'tick time');
     for (const line of ['limit 0', 'clutch 0', 'degrade 0', 'propagation 0 0']) rig.tell(line);
     await until(page, () => !/A: |C: /.test(document.querySelector('.hands').textContent));
     await until(page, () => document.getElementById('degraded').hidden);

@@ -24,6 +24,7 @@ from ligature_msg import event_t, status_t, thread_t, tick_batch_t, tick_t  # no
 from mcap.reader import make_reader  # noqa: E402
 
 HANDS, TICKS, SHAPES, EVENTS, SESSION = ("left", "right"), 7, 3, 4, 99
+NOTES = ("a \"note\", typed by a person", "µ = 0.3")
 # Columns have their fields' names, except for vectors: here their quantity, unit and axes.
 VECTORS = {"p_WT_m": ("p_WT", "_m", "xyz"), "v_WT_m_per_s": ("v_WT", "_m_per_s", "xyz"), "f_world_N": ("world_f", "_N", "xyz"),
            "f_device_N": ("device_f", "_N", "xyz"), "f_wish_N": ("wish_f", "_N", "xyz"), "q_rad": ("q", "_rad", "123"),
@@ -116,8 +117,11 @@ class EveryField(unittest.TestCase):
         log = lcm.EventLog(str(cls.folder / "a.lcmlog"), "w", overwrite=True)
         for channel, message in (("STATUS", cls.status), ("TICKS", batch), *(("THREAD", s) for s in cls.shapes), *(("EVENT", e) for e in cls.events)):
             log.write_event(1_000_000, "LIGATURE_" + channel, message.encode())
+        for note in NOTES:
+            log.write_event(1_000_000, "LIGATURE_NOTES", note.encode())
         log.close()
-        done = subprocess.run([HOST, "export", "a.lcmlog", "--ticks", "ticks.csv", "--forces", "forces.csv", "--shape", "shape.csv", "--hdf5", "a.h5", "--mcap", "a.mcap"],
+        done = subprocess.run([HOST, "export", "a.lcmlog", "--ticks", "ticks.csv", "--forces", "forces.csv", "--shape", "shape.csv", "--hdf5", "a.h5", "--mcap", "a.mcap",
+                               "--trace", "a.json"],
                               cwd=cls.folder, capture_output=True, text=True, timeout=120)
         assert done.returncode == 0, done.stderr
         cls.columns = list(columns_of_tick())
@@ -240,6 +244,16 @@ class EveryField(unittest.TestCase):
             scenes = file["scenes"]
             self.assertEqual([scenes["file"].asstr()[0], scenes["toml"].asstr()[0], scenes["t_s"][0]],
                              [self.status.scene_file, self.status.scene_toml, self.status.scene_first_tick / 250])
+
+    def test_notes_in_every_format(self):
+        told = "\n".join(NOTES)
+        for table in ("ticks", "forces", "shape"):
+            self.assertEqual(json.loads((self.folder / f"{table}.csv-metadata.json").read_text())["ligature:notes"], told)
+        self.assertEqual(json.loads((self.folder / "a.json").read_text())["otherData"]["notes"], told)
+        with h5py.File(self.folder / "a.h5") as file, open(self.folder / "a.mcap", "rb") as mcap:
+            self.assertEqual(file.attrs["notes"], told)
+            about = next(record.metadata for record in make_reader(mcap).iter_metadata() if record.name == "ligature")
+            self.assertEqual(about["notes"], told)
 
 
 if __name__ == "__main__":

@@ -5,8 +5,6 @@ import { isTyping } from './controls.js';
 const $ = (id) => document.getElementById(id);
 /** 'run': the whole of a recording. */
 export const WINDOWS_S = [1, 5, 10, 30, 60, 300, 600, 'run'];
-/** Choices for the third plot: names of THIRD in traces.js. */
-const THIRD = ['tick time', 'tension', 'passivity', 'taken out', 'bus load', 'motor heat', 'energy', 'stretch', 'gap', 'contacts'];
 
 export class TraceTools {
   constructor(panels) {
@@ -21,7 +19,6 @@ export class TraceTools {
     this.setWindow(panels.choice.window_s);
     $('pause').addEventListener('click', () => this.togglePause());
     $('components').addEventListener('change', () => { panels.choice.components = $('components').checked; traces((t) => t.showComponents(panels.choice.components)); });
-    $('third').replaceChildren(...THIRD.map((name) => new Option(name, name)));
     $('third').addEventListener('change', () => { panels.choice.third = $('third').value; traces((t) => t.showThird(panels.choice.third)); });
     const keys = { p: () => this.togglePause(), '+': () => this.#step(1), '-': () => this.#step(-1) };
     addEventListener('keydown', (event) => { if (!isTyping(event) && !document.querySelector('dialog[open]')) keys[event.key.toLowerCase()]?.(); });

@@ -33,8 +33,8 @@ const GREY = '#9aa6b6', VALUES_PX = 50; // VALUES_PX: width of the axis of value
 
 export class Traces {
   /**
-   * @param beside trace store of the second recording. @param choice {window_s, third, components}. @param onCursor
-   * called with the row under the cursor, or null.
+   * Offers the choices of THIRD in the page's list. @param beside trace store of the second recording.
+   * @param choice {window_s, third, components}. @param onCursor called with the row under the cursor, or null.
    */
   constructor(host, store, beside, choice, onCursor) {
     const { window_s, third } = choice;
@@ -52,6 +52,9 @@ export class Traces {
       this.resizes.observe(host);
       this.resize();
     } catch (error) { this.dispose(); throw error; }
+    const list = document.getElementById('third');
+    list.replaceChildren(...Object.keys(THIRD).map((name) => new Option(name, name)));
+    list.value = third;
   }
 
   dispose() {
