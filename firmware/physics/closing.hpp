@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/simulation.hpp"
 
 namespace ligature::physics {
@@ -41,6 +42,7 @@ class Closing {
     tool.v_WT += rate_m_per_s_;
     return tool;
   }
+  LIGATURE_MEMBERS(Closing, from_m, from_m_per_s, offset_m, rate_m_per_s, left_s)
 
  private:
   Vec3 from_m_ = Vec3::Zero(), from_m_per_s_ = Vec3::Zero(), offset_m_ = Vec3::Zero(), rate_m_per_s_ = Vec3::Zero();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "firmware/physics/image.hpp"
+#include "firmware/physics/member_bytes.hpp"
 #include "firmware/physics/paper/paper_simulation.hpp"
 #include "firmware/physics/rod/contact_points.hpp"
 #include "firmware/physics/rod/model/describe.hpp"
@@ -20,17 +22,33 @@ bool is_number(const ToolInput& tool) noexcept {
   return is_number(tool.p_WT) && is_number(tool.v_WT) && (!tool.R_WT || tool.R_WT->coeffs().allFinite());
 }
 
+template <class Model>
+ImageBytes contents(const Model& model) {
+  ImageBytes bytes;
+  ImageOf<ImageWriter>(bytes).visit(const_cast<Model&>(model));  // a writer changes nothing
+  return bytes;
+}
+
+template <class Model>
+std::uint32_t layout() {
+  std::string text;
+  add_layout<Model>(text);
+  return checksum(std::as_bytes(std::span(text)));
+}
+
 }  // namespace
 
 struct Simulation::Impl {
   std::variant<PaperSimulation, rod::RodSimulation> model;
+  ImageOrigin origin;
 
   template <class Model>
   static std::variant<std::unique_ptr<Impl>, std::string> with(const scene::Scene& scene) {
     auto made = Model::make(scene);
     if (auto* why = std::get_if<std::string>(&made)) return std::move(*why);
-    return std::unique_ptr<Impl>(
-        new Impl{decltype(model)(std::in_place_type<Model>, std::move(*std::get_if<Model>(&made)))});
+    auto& model = *std::get_if<Model>(&made);
+    const ImageOrigin origin{layout<Model>(), checksum(contents(model))};
+    return std::unique_ptr<Impl>(new Impl{std::move(model), origin});
   }
 };
 
@@ -66,6 +84,21 @@ void Simulation::set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W)
   };
   const int node = std::max(bad(p_W), bad(v_W));
   std::visit([&](auto& model) { node < 0 ? model.set_state(p_W, v_W) : model.stop(node); }, impl_->model);
+}
+
+std::vector<std::byte> Simulation::save(std::int64_t ticks) const {
+  const auto bytes = std::visit([](const auto& model) { return contents(model); }, impl_->model);
+  return with_header(impl_->origin, {ticks, bytes});
+}
+std::variant<std::int64_t, std::string> Simulation::load(std::span<const std::byte> image) {
+  const auto opened = read_image(image, impl_->origin);
+  if (const auto* why = std::get_if<std::string>(&opened)) return *why;
+  auto loaded = std::make_unique<Impl>(*impl_);
+  ImageOf<ImageReader> reader(std::get<Image>(opened).contents);
+  std::visit([&](auto& model) { reader.visit(model), model.loaded(); }, loaded->model);
+  if (!reader.is_complete()) return std::string("the image has other lengths than this simulation: save it again");
+  impl_ = std::move(loaded);
+  return std::get<Image>(opened).ticks;
 }
 
 bool Simulation::continue_from(const Simulation& other) noexcept {

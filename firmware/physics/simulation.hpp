@@ -3,14 +3,17 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "firmware/physics/contact_point.hpp"
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/time_left.hpp"
 #include "firmware/physics/types.hpp"
 #include "protocol/scene/scene.hpp"
@@ -45,6 +48,7 @@ struct HandContact {
   Vec3 v_WG = Vec3::Zero();  ///< velocity of p_WG, m/s
   Vec3 f_W = Vec3::Zero();   ///< force ON THE HAND, world frame, N, before any device scaling
   Propagation condition = Propagation::kNone;
+  LIGATURE_MEMBERS(HandContact, node, p_WG, v_WG, f_W, condition)
 };
 
 /// The worst consequence of the bounded work or time of a tick, mildest first.
@@ -78,6 +82,8 @@ struct Diagnostics {
   bool finite = true;          ///< false: frozen at the last finite state, hands open and without force
   int bad_node = -1;           ///< if not finite: first node that is not finite or out of range; -1: a tool was
   std::int64_t bad_tick = -1;  ///< if not finite: the tick in which that happened
+  LIGATURE_MEMBERS(Diagnostics, kinetic_J, potential_J, max_stretch, min_gap_m, contacts, contact_cap_hit, degradation,
+                   time_lost, end, work, cut_at, finite, bad_node, bad_tick)
 };
 
 /// A thread in its scene. A copy is independent of the original.
@@ -129,6 +135,14 @@ class Simulation {
   /// value is not finite, the thread is frozen as after a divergence.
   /// @param p_W, v_W  one per node; an empty v_W means at rest
   void set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept;
+
+  /// The image of the present state: after load() a simulation of the same scene continues as this one would, to the
+  /// bit. Allocates. @param ticks  the caller's count of them, which load() returns @see image.hpp
+  [[nodiscard]] std::vector<std::byte> save(std::int64_t ticks = 0) const;
+  /// Takes over the state from an image. Allocates. A checksum finds an image that is damaged; one that was made to do
+  /// harm is not found. @return the ticks given to save(), or one line that says why the image was refused; nothing is
+  /// changed then.
+  [[nodiscard]] std::variant<std::int64_t, std::string> load(std::span<const std::byte> image);
 
  private:
   struct Impl;

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -107,6 +108,31 @@ class Simulation(_core.Simulation):
 
     def __deepcopy__(self, memo: Any) -> Self:
         return self.copy()
+
+    def save(self, path: str | os.PathLike[str] | None = None) -> bytes:
+        """The state as bytes, from which load() continues as this simulation would, to the bit. path: also a file.
+
+        The bytes fit the same scene, the same build of ligature and the same kind of CPU. The file appears when it is
+        whole.
+        """
+        image = self._save()
+        if path is not None:
+            part = Path(f"{os.fspath(path)}.part-{os.getpid()}")
+            try:
+                part.write_bytes(image)
+                part.replace(path)
+            finally:
+                part.unlink(missing_ok=True)
+        return image
+
+    def load(self, image: bytes | str | os.PathLike[str]) -> Self:
+        """Takes over the state that save() has returned or written, `ticks` included. Returns this simulation.
+
+        Raises Refusal for an image of another scene, of another build, or with damage; nothing is changed then. Load
+        only images that you trust: a checksum finds damage, but not an image that was made to do harm.
+        """
+        self._load(image if isinstance(image, bytes) else Path(image).read_bytes())
+        return self
 
     def set_state(self, nodes: Any, velocities: Any = None) -> None:
         """Sets positions and velocities, and opens both hands. nodes: n x 3, m; velocities: n x 3, m/s, None: at rest.

@@ -53,6 +53,17 @@ void add_motion(nb::class_<Sim>& type) {
            "Returns False once the state is no number (diagnostics.finite); from then on ticks do nothing.")
       .def(
           "reset", [](Sim& s) { s.idle().reset(); }, "Back to the scene's initial state, hands open.")
+      .def("_save",
+           [](Sim& s) {
+             const auto image = s.idle().save();
+             return nb::bytes(image.data(), image.size());
+           })
+      .def(
+          "_load",
+          [](Sim& s, const nb::bytes& image) {
+            s.idle().load({static_cast<const std::byte*>(image.data()), image.size()});
+          },
+          nb::arg("image"))
       .def("_set_state", &set_state, nb::arg("nodes"), nb::arg("velocities").none())
       .def("_run", &run_here, nb::arg("script"), nb::arg("duration_s").none(), nb::arg("shape_every_s"),
            nb::arg("start_s"))

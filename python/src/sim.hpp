@@ -45,6 +45,14 @@ class Sim {
     simulation_.set_state(p_W, v_W);
     refresh();
   }
+  [[nodiscard]] std::vector<std::byte> save() const { return simulation_.save(ticks_); }
+  /// @throws Refusal when the image is of another scene, or damaged.
+  void load(std::span<const std::byte> image) {
+    const auto ticks = simulation_.load(image);
+    if (const auto* why = std::get_if<std::string>(&ticks)) throw lab::Refusal("image: " + *why);
+    ticks_ = std::get<std::int64_t>(ticks);
+    refresh();
+  }
   void add_ticks(std::int64_t ticks) {
     ticks_ += ticks;
     refresh();

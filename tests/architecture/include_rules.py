@@ -22,6 +22,7 @@ RULES = {
     "protocol/lcm": ([], ["OS"]),
     "firmware/rt": ([], []),
     "firmware/physics": (["firmware/rt", SCENE_STRUCT], ["Eigen/"]),
+    "firmware/physics/image.cpp": (["firmware/physics", "protocol/recorder/crc32.hpp"], []),
     "firmware/control": (["firmware/rt", "firmware/physics", SCENE_STRUCT, DEVICE_STRUCT], ["Eigen/", "ruckig/"]),
     "firmware/platform": (["firmware/rt", "protocol/can", DEVICE_STRUCT], ["OS"]),
     "firmware/telemetry": (["firmware/rt", "protocol/recorder", "protocol/lcm", "ligature_msg"], ["lcm/", "OS"]),

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/paper/lanes.hpp"
 #include "firmware/physics/paper/roomy_vector.hpp"
 
@@ -12,6 +13,7 @@ namespace ligature::physics {
 struct SegmentPair {
   std::int32_t first = 0, second = 0;
   friend auto operator<=>(const SegmentPair&, const SegmentPair&) = default;
+  LIGATURE_MEMBERS(SegmentPair, a, b)
 };
 
 /// Bounding spheres of all segments: centres, m, and half lengths, m. Allocated once.
@@ -22,6 +24,7 @@ struct SegmentSpheres {
 
   SegmentSpheres() = default;
   explicit SegmentSpheres(int segments) : centre(segments), half_m(segments), count(segments) {}
+  LIGATURE_MEMBERS(SegmentSpheres, c, h, n)
   void update(const Lane3& p) noexcept;
 };
 
@@ -29,6 +32,7 @@ struct SegmentSpheres {
 struct PairList {
   RoomyVector<SegmentPair> pairs;  ///< reserved once
   bool overflow = false;
+  LIGATURE_MEMBERS(PairList, list, full)
   void add(SegmentPair pair) noexcept {
     if (pairs.size() < pairs.capacity())
       pairs.push_back(pair);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware/physics/contact_point.hpp"
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/paper/broad_phase.hpp"
 #include "firmware/physics/paper/bvh.hpp"
 #include "firmware/physics/paper/contact_row.hpp"
@@ -21,6 +22,7 @@ struct Obstacle {
   V3<double> p0_m{}, p1_m{}, v_m_per_s{};
   int skip_first = 0, skip_last = -1;  ///< range of segments without contact (those that it holds)
   bool present = false;
+  LIGATURE_MEMBERS(Obstacle, p0_m, p1_m, v_m_per_s, skip_first, skip_last, present)
 };
 
 struct ContactSettings {
@@ -28,6 +30,7 @@ struct ContactSettings {
   int skip = 2;                    ///< segments whose indices differ by less cannot touch: neighbours along the thread
   std::optional<double> desk_m;    ///< height of the desk
   scene::BroadPhase broad_phase = scene::BroadPhase::kBrute;  ///< never kAuto: build_contact() chooses
+  LIGATURE_MEMBERS(ContactSettings, stick, slip, skip, desk_m, broad_phase)
 };
 
 /// Two bodies that may touch soon, with their state from step to step. Measured again only when they may be close.
@@ -41,6 +44,7 @@ struct Candidate {
   std::int64_t step = -1;  ///< step in which it was last measured
   V3<double> normal{};     ///< unit, when last measured
   Pack impulse{};          ///< of the last step, N s: the warm start
+  LIGATURE_MEMBERS(Candidate, kind, first, second, gap_m, travel_m, step, normal, impulse)
 };
 
 struct ContactReport {
@@ -48,6 +52,7 @@ struct ContactReport {
   bool cap_hit = false;
   double min_gap_m = 0.0;
   int sweeps = 0;
+  LIGATURE_MEMBERS(ContactReport, active, cap_hit, min_gap_m, sweeps)
 };
 
 /// Contact of the thread with itself, the desk and obstacles, with static and kinetic Coulomb friction. Before
@@ -72,6 +77,13 @@ class ContactSolver {
   /// @see Simulation::contacts
   std::size_t points(const ThreadState& state, double step_s, std::span<ContactPoint> out) const noexcept;
   void forget() noexcept;
+  /// Without the tree, which every search builds again.
+  [[nodiscard]] static auto members(ContactSolver& self) noexcept {
+    auto& [settings, radius_m, nodes, obstacles, known, spheres, sweep, tree, pairs, candidates, old_candidates, due_m,
+           gap_m, rows, velocity, travel_m, found_at_m, margin_m, step, report] = self;
+    return std::tie(settings, radius_m, nodes, obstacles, known, spheres, sweep, pairs, candidates, old_candidates,
+                    due_m, gap_m, rows, velocity, travel_m, found_at_m, margin_m, step, report);
+  }
 
  private:
   void find_candidates(const ThreadState& state) noexcept;

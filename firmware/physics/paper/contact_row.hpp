@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/paper/v3.hpp"
 
 namespace ligature::physics {
@@ -9,6 +10,7 @@ inline Pack to_pack(const V3<double>& a) noexcept { return Pack{a.x, a.y, a.z, 0
 /// Velocity of one node in one register: x, y, z, 0, in m/s.
 struct NodeVelocity {
   Pack v{};
+  LIGATURE_MEMBERS(NodeVelocity, pack)
 };
 
 inline double dot3(Pack a, Pack b) noexcept {
@@ -30,6 +32,8 @@ struct ContactRow {
   double target_m_per_s;  ///< smallest admissible normal velocity: -gap/dt while apart; > 0 to recover from an overlap
   double stick, slip;     ///< static and kinetic friction coefficients
   int candidate;          ///< index of the candidate that stores the impulse
+  LIGATURE_MEMBERS(ContactRow, normal, impulse, v_outside, node, weight, push, mass_kg, target_m_per_s, stick, slip,
+                   candidate)
 };
 
 /// Projects an impulse onto the Coulomb cone about its normal. Inside the static cone the contact sticks and the

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "firmware/physics/closing.hpp"
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/paper/thread.hpp"
 #include "firmware/physics/simulation.hpp"
 
@@ -16,6 +17,7 @@ namespace ligature::physics {
 struct Coupling {
   double N_per_m = 0.0;
   double N_s_per_m = 0.0;
+  LIGATURE_MEMBERS(Coupling, K, B)
 };
 
 /// Force of the coupling on the held node, N. Without side effects.
@@ -43,6 +45,7 @@ class Grasp {
   }
   [[nodiscard]] int node(int hand) const noexcept { return node_[static_cast<std::size_t>(hand)]; }
   [[nodiscard]] const Closing& closing(int hand) const noexcept { return closing_[static_cast<std::size_t>(hand)]; }
+  LIGATURE_MEMBERS(Grasp, reach_m, closing, node, closed)
 
  private:
   void close(std::size_t hand, const ToolInput& tool, const ThreadModel& model, const ThreadState& state) noexcept;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/paper/v3.hpp"
 
 namespace ligature::physics {
@@ -20,6 +21,7 @@ class Lane {
   double operator[](int i) const noexcept { return data()[i]; }
   Pack pack(int i) const noexcept { return load(data() + i); }
   void set(int i, Pack a) noexcept { store(data() + i, a); }
+  LIGATURE_MEMBERS(Lane, numbers)
 
  private:
   static constexpr std::size_t kFront = 4, kBack = 12;
@@ -30,6 +32,7 @@ struct Lane3 {
   Lane x, y, z;
   Lane3() = default;
   explicit Lane3(int count) : x(count), y(count), z(count) {}
+  LIGATURE_MEMBERS(Lane3, a, b, c)
 
   V3<Pack> pack(int i) const noexcept { return {x.pack(i), y.pack(i), z.pack(i)}; }
   void set(int i, const V3<Pack>& a) noexcept { x.set(i, a.x), y.set(i, a.y), z.set(i, a.z); }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/paper/contact.hpp"
 #include "firmware/physics/paper/grasp.hpp"
 #include "protocol/scene/scene.hpp"
@@ -29,6 +30,7 @@ class ObstacleCourse {
   void update(const std::array<ToolInput, 2>& tools, const Grasp& grasp, const ThreadModel& model,
               const ThreadState& state, std::array<Obstacle, ContactSolver::kObstacles>& out) noexcept;
   void reset() noexcept { inside_ = {true, true}; }
+  LIGATURE_MEMBERS(ObstacleCourse, grippers, skip, inside, hooks)
 
  private:
   [[nodiscard]] bool is_clear(const Obstacle& o, const ThreadModel& model, const ThreadState& state) const noexcept;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/paper/broad_phase.hpp"
 #include "firmware/physics/paper/repulsion.hpp"
 #include "firmware/physics/paper/thread.hpp"
@@ -14,6 +15,7 @@ struct PaperContactSettings {
   double stick = 10.0, slip = 10.0;
   int skip = 2;
   bool capped = true;  ///< no attraction, and friction at most stops the slip; false: as printed in the paper
+  LIGATURE_MEMBERS(PaperContactSettings, repulsion, stick, slip, skip, capped)
 };
 
 class PaperContact {
@@ -33,6 +35,7 @@ class PaperContact {
   [[nodiscard]] int active() const noexcept { return active_; }
   [[nodiscard]] double min_gap_m() const noexcept { return min_gap_m_; }
   [[nodiscard]] bool cap_hit() const noexcept { return pairs_.overflow; }
+  LIGATURE_MEMBERS(PaperContact, settings, spheres, pairs, active, min_gap_m)
 
  private:
   void respond(const ThreadModel& model, ThreadState& state, const SegmentPair& pair) noexcept;

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/paper/contact.hpp"
 #include "firmware/physics/paper/grasp.hpp"
 #include "firmware/physics/paper/internal_step.hpp"
@@ -41,6 +42,18 @@ class PaperSimulation {
   void reset() noexcept;
   [[nodiscard]] bool continue_from(const PaperSimulation& other) noexcept;
   void set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept;
+  /// Without the step's function and the clock. The nodes as vectors are converted again.
+  [[nodiscard]] static auto members(PaperSimulation& self) noexcept {
+    auto& [model, initial, state, before, work, internal, quadratic, forward, explicit_damping, has_limits,
+           contact_kind, contact, paper_contact, course, limits, coupling, grasp, gravity, loads, substeps, time,
+           tick_s, ticks, kinetic_J, weight_J, rate_v, hands, health, nodes, velocities, nodes_stale,
+           velocities_stale] = self;
+    return std::tie(model, initial, state, before, work, quadratic, forward, explicit_damping, has_limits, contact_kind,
+                    contact, paper_contact, course, limits, coupling, grasp, gravity, loads, substeps, tick_s, ticks,
+                    kinetic_J, weight_J, rate_v, hands, health);
+  }
+  /// Call when the members were loaded from an image.
+  void loaded() noexcept { nodes_stale_ = velocities_stale_ = true; }
 
  private:
   PaperSimulation() = default;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/paper/thread.hpp"
 
 namespace ligature::physics {
@@ -31,6 +32,8 @@ class LengthLimits {
   /// condition A.
   [[nodiscard]] double passed_N(int segment) const noexcept { return impulse_[segment] / step_s_; }
   void forget() noexcept;
+  LIGATURE_MEMBERS(LengthLimits, rest_m, shortest_m, longest_m, step_s, segments, holding, u, length, diag, gain, link,
+                   lambda, impulse, bound)
 
  private:
   /// Active limit of a segment: none, the longest or the shortest length.

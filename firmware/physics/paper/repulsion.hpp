@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/paper/v3.hpp"
 
 namespace ligature::physics {
@@ -8,6 +9,7 @@ namespace ligature::physics {
 struct Repulsion {
   double N_per_m = 100.0;  ///< k_rs, stiffness
   double N_s_per_m = 5.0;  ///< k_rd, damping
+  LIGATURE_MEMBERS(Repulsion, stiffness, damping)
 };
 
 /// Repulsive force between two points C and E of the thread, equation (2): n = (k_rs (2 r - d) - k_rd v_r . n^) n^.

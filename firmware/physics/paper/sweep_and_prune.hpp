@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/paper/broad_phase.hpp"
 
 namespace ligature::physics {
@@ -16,11 +17,13 @@ class Sweep {
 
   /// Finds the same pairs, in the same order, as find_pairs_brute().
   void find_pairs(const SegmentSpheres& s, double reach_m, int skip, PairList& out) noexcept;
+  LIGATURE_MEMBERS(Sweep, intervals)
 
  private:
   struct Interval {
     double low_m, high_m;
     std::int32_t segment;
+    LIGATURE_MEMBERS(Interval, low, high, index)
   };
   void sort_intervals(const SegmentSpheres& s, double reach_m) noexcept;
 

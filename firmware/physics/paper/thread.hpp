@@ -1,6 +1,7 @@
 #pragma once
 // A thread of the paper's models: constants (ThreadModel), state (ThreadState), work arrays (InternalWorkspace).
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/paper/lanes.hpp"
 
 namespace ligature::physics {
@@ -21,11 +22,14 @@ struct ThreadModel {
   Lane inverse_mass_per_kg;  ///< 0 for fixed nodes
   Lane free;                 ///< 1, or 0 for fixed nodes
   Lane segment;              ///< 1 if segment i .. i + 1 exists, else 0
+  LIGATURE_MEMBERS(ThreadModel, nodes, rest_m, radius_m, mass_kg, stretch_N, stretch_N_s_per_m, bend_N_m, bend_N_m_s,
+                   swivel_N_s, drag_per_s, step_s, inverse_mass_per_kg, free, segment)
 };
 
 struct ThreadState {
   Lane3 p;  ///< m
   Lane3 v;  ///< m/s
+  LIGATURE_MEMBERS(ThreadState, p, v)
 };
 
 /// Intermediate results of a step. Index i of a bend is its middle node, of a segment its left node.
@@ -42,6 +46,8 @@ struct InternalWorkspace {
   Lane next_left, next_right;    ///< impulses of dihedral i at the next bend, i + 1
   double max_strain = 0.0;
   double stretch_J = 0.0, bend_J = 0.0;
+  LIGATURE_MEMBERS(InternalWorkspace, u, inv_length, pull, gain, link, diag, one, two, axis, left, right, sine, cosine,
+                   turn, swing_left, swing_right, next_left, next_right, max_strain, stretch_J, bend_J)
 
   InternalWorkspace() = default;
   explicit InternalWorkspace(int n)

@@ -1,6 +1,7 @@
 #pragma once
 // Vectors of three components over any scalar: double in tests, Pack (four nodes at once) in the loop.
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/paper/pack.hpp"
 
 namespace ligature::physics {
@@ -8,6 +9,7 @@ namespace ligature::physics {
 template <class S>
 struct V3 {
   S x, y, z;
+  LIGATURE_MEMBERS(V3, a, b, c)
 };
 
 template <class S>

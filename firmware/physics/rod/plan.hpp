@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/model/material.hpp"
 #include "firmware/physics/rod/tick_report.hpp"
 
@@ -28,6 +29,7 @@ struct Plan {
   bool labours = false;       ///< the last tick used most of its budget, so this one has fewer substeps
   bool letting_go = false;    ///< a hold was released, and the thread is still fast
   bool new_matrix = false;    ///< Newton's inverse matrix of the last tick serves no more
+  LIGATURE_MEMBERS(Plan, substeps, budget, leniency, pace_m_per_s, labours, letting_go, new_matrix)
 };
 
 [[nodiscard]] Plan plan(const Plan& last, const TickReport& report, const Situation& now,
@@ -57,6 +59,7 @@ class Patience {
     waits_ = 0;
     sweeps_only_ = false;
   }
+  LIGATURE_MEMBERS(Patience, waits, limit, sweeps_only)
 
  private:
   int waits_ = 0;                   // consecutive ticks in which the present substep was begun but not finished

@@ -26,6 +26,12 @@ class Rod : private RodKept, private RodNow, private RodCache {
   Rod& operator=(Rod&&) noexcept = default;
   ~Rod() = default;
 
+  /// For images (image.hpp): all but RodNow, which every tick begins anew.
+  [[nodiscard]] static auto members(Rod& self) noexcept {
+    return std::tie(static_cast<World&>(self), static_cast<RodCourse&>(self), static_cast<RodMatter&>(self),
+                    static_cast<RodCache&>(self));
+  }
+
   using World::bodies, World::floor_friction, World::floor_m, World::gravity, World::has_floor;
 
   [[nodiscard]] State& state() noexcept { return state_; }

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/contact/contact_set.hpp"
 #include "firmware/physics/rod/mesh/refine.hpp"
 #include "firmware/physics/rod/model/assembly.hpp"
@@ -24,6 +25,7 @@ struct Parts {
   bool turning = false;   ///< contact friction rolls the thread about its axis; needs roll and friction
   bool set = false;       ///< plastic bending: sharp bends become permanent (spin_set.cpp); needs twist
   bool drum = false;      ///< bars whose surface turns; needs contact, friction and world
+  LIGATURE_MEMBERS(Parts, twist, contact, friction, world, adaptive, roll, turning, set, drum)
 
   bool operator==(const Parts&) const = default;
   /// Does every segment have a material frame? With `roll` the frames turn in every substep, otherwise once per tick.
@@ -36,6 +38,7 @@ struct World {
   double floor_m = 0.0, floor_friction = 0.3;
   bool has_floor = false;
   std::vector<Body> bodies;
+  LIGATURE_MEMBERS(World, gravity, floor_m, floor_friction, has_floor, bodies)
 };
 
 /// The thread's motion, and what earlier ticks have taught the rules that adapt to it: all that Rod::continue_from()
@@ -54,10 +57,12 @@ struct RodCourse {
   bool remeshed_ = false;  ///< nodes moved along the thread since Spin was last updated
   double kept_J_ = 0.0;    ///< alone only: total energy at the end of the last tick
   double give_J_ = 0.0;    ///< elastic energy of the contacts
+  LIGATURE_MEMBERS(RodCourse, state, forces, twist, refine, report, plan, patience, released, alone, faded, remeshed,
+                   kept_J, give_J)
 };
 
-/// What lasts from tick to tick. A copy takes over all of it.
-struct RodKept : World, RodCourse {
+/// What a copy takes over besides, but Rod::continue_from() does not.
+struct RodMatter {
   Material material_;
   Numerics numerics_;
   Parts parts_;
@@ -68,7 +73,15 @@ struct RodKept : World, RodCourse {
   Motion motion_;
   long list_cost_ = 0;      ///< work of the last broad phase
   bool mesh_held_ = false;  ///< the caller remeshes by Rod::remesh()
+  /// Without the pointer, which follows from the parts.
+  [[nodiscard]] static auto members(RodMatter& self) noexcept {
+    auto& [material, numerics, parts, substep, near_m, spin, contacts, motion, list_cost, mesh_held] = self;
+    return std::tie(material, numerics, parts, near_m, spin, contacts, motion, list_cost, mesh_held);
+  }
 };
+
+/// What lasts from tick to tick. A copy takes over all of it.
+struct RodKept : World, RodCourse, RodMatter {};
 
 /// What belongs to the tick under way. Every tick begins with a new one.
 struct RodNow {
@@ -95,6 +108,11 @@ struct RodCache {
   std::vector<Vec> v_before_;  ///< velocities at the start of the substep
 
   void forget() noexcept { metric_.invalidate(), stale_ = true; }
+  /// For images. Without the solver, which every substep fills anew, and v_before_.
+  [[nodiscard]] static auto members(RodCache& self) noexcept {
+    auto& [solver, metric, metric_dt, broad, horizon_s, stale, work, v_before] = self;
+    return std::tie(metric, metric_dt, broad, horizon_s, stale, work);
+  }
 };
 
 }  // namespace ligature::physics::rod

@@ -36,10 +36,13 @@ std::variant<RodSimulation, std::string> RodSimulation::make(const scene::Scene&
 }
 
 RodSimulation::RodSimulation(const scene::Scene& scene, Rod rod)
-    : initial_(rod),
-      rod_(std::move(rod)),
-      reach_m_(scene.hands.reach_m.value_or(std::numeric_limits<double>::infinity())),
-      grippers_(scene.world.grippers_collide && parts_of(scene).world) {
+    : Stage{rod,
+            std::move(rod),
+            scene.hands.reach_m.value_or(std::numeric_limits<double>::infinity()),
+            scene.world.grippers_collide && parts_of(scene).world,
+            0,
+            {},
+            {}} {
   jaws_ = {jaws_of(scene), jaws_of(scene)};
   gripper_body_ = static_cast<int>(rod_.bodies.size());
   if (grippers_) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware/physics/closing.hpp"
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/grip/jaws.hpp"
 #include "firmware/physics/rod/rod.hpp"
 #include "firmware/physics/simulation.hpp"
@@ -25,11 +26,26 @@ struct HandsCourse {
   Diagnostics health_{};
   std::int64_t ticks_ = 0;
   std::vector<Vec3> nodes_, velocities_;
+  LIGATURE_MEMBERS(HandsCourse, jaws, closing, closed, inside, goals, hands, health, ticks, nodes, velocities)
+};
+
+/// The thread, and what the scene says of the hands.
+struct Stage {
+  Rod initial_, rod_;
+  double reach_m_ = 0.0;
+  bool grippers_ = false;
+  int gripper_body_ = 0;                  // index of the left gripper's capsule
+  std::vector<Vec> x_before_, v_before_;  // scratch of tick()
+  /// Without what follows from the scene, and without scratch.
+  [[nodiscard]] static auto members(Stage& self) noexcept {
+    auto& [initial, rod, reach_m, grippers, gripper_body, x_before, v_before] = self;
+    return std::tie(rod, reach_m, grippers, gripper_body);
+  }
 };
 
 /// Same contract as physics::Simulation. With spacing "adaptive" a node index is not a fixed material point: nodes move
 /// along the thread (refine.hpp); their number is constant.
-class RodSimulation : private HandsCourse {
+class RodSimulation : private HandsCourse, private Stage {
  public:
   static std::variant<RodSimulation, std::string> make(const scene::Scene& scene);
 
@@ -48,6 +64,12 @@ class RodSimulation : private HandsCourse {
   [[nodiscard]] bool continue_from(const RodSimulation& other) noexcept;
   void set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept;
 
+  [[nodiscard]] static auto members(RodSimulation& self) noexcept {
+    return std::tie(static_cast<HandsCourse&>(self), static_cast<Stage&>(self));
+  }
+  /// Call when the members were loaded from an image.
+  void loaded() noexcept { initial_.numerics().given_work = rod_.numerics().given_work; }
+
   /// The rod itself, for tests and studies.
   [[nodiscard]] const Rod& rod() const noexcept { return rod_; }
   [[nodiscard]] Rod& rod() noexcept { return rod_; }
@@ -61,12 +83,6 @@ class RodSimulation : private HandsCourse {
   [[nodiscard]] int nearest_free(Vec p) const noexcept;
   void publish() noexcept;
   [[nodiscard]] bool is_finite() noexcept;
-
-  Rod initial_, rod_;
-  double reach_m_;
-  bool grippers_ = false;
-  int gripper_body_ = 0;                  // index of the left gripper's capsule
-  std::vector<Vec> x_before_, v_before_;  // scratch of tick()
 };
 
 }  // namespace ligature::physics::rod

@@ -1,6 +1,8 @@
 #pragma once
 // What a tick of the rod did, and what it gave up.
 
+#include "firmware/physics/members.hpp"
+
 namespace ligature::physics::rod {
 
 /// Counters and measures of one tick.
@@ -16,6 +18,8 @@ struct TickReport {
   int rows_left_out = 0;   ///< largest number of contacts in a substep that only the guard kept apart
   double time_lost = 0.0;  ///< share of the tick in which the thread was not moved, as no safe motion was known
   int cut_at = -1;         ///< number of the clock query that ended the tick early (time_left.hpp); -1: none did
+  LIGATURE_MEMBERS(TickReport, substeps, passes, contacts, guard_events, broad_phases, remeshes, min_gap_m, work, set_J,
+                   cut_short, rows_left_out, time_lost, cut_at)
 };
 
 }  // namespace ligature::physics::rod

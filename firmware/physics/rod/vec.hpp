@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "firmware/physics/members.hpp"
+
 namespace ligature::physics::rod {
 
 using Lanes = double __attribute__((vector_size(32)));
@@ -13,6 +15,7 @@ using Lanes = double __attribute__((vector_size(32)));
 struct Vec {
   Lanes v{0.0, 0.0, 0.0, 0.0};
   [[nodiscard]] double operator[](int i) const noexcept { return v[i]; }
+  LIGATURE_MEMBERS(Vec, lanes)
 };
 
 [[nodiscard]] inline Vec make(double x, double y, double z) noexcept { return {Lanes{x, y, z, 0.0}}; }
@@ -89,6 +92,7 @@ struct Vecs {
 /// 3 x 3 matrix by columns. Three names and not an array: gcc 12 keeps arrays of registers in memory.
 struct Mat {
   Vec x, y, z;
+  LIGATURE_MEMBERS(Mat, a, b, c)
 };
 
 /// to = from, column by column: gcc 12 compiles a plain copy to moves through memory and general registers.

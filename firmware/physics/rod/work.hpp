@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/time_left.hpp"
 
 namespace ligature::physics::rod {
@@ -84,6 +85,11 @@ class Work {
   [[nodiscard]] long left() const noexcept { return time_.is_over() ? 0 : unspent(); }
   [[nodiscard]] TickTime& time() noexcept { return time_; }
   [[nodiscard]] const TickTime& time() const noexcept { return time_; }
+  /// Without the clock, which measures this machine.
+  [[nodiscard]] static auto members(Work& self) noexcept {
+    auto& [budget, used, time] = self;
+    return std::tie(budget, used);
+  }
 
  private:
   long budget_ = 0, used_ = 0;

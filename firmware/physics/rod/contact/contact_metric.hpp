@@ -1,8 +1,12 @@
 #pragma once
 // The simplified constant matrix C with which contact sweeps are computed.
 
+#include <algorithm>
+#include <cstddef>
+#include <span>
 #include <vector>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/mesh/mesh.hpp"
 #include "firmware/physics/rod/work.hpp"
 
@@ -31,6 +35,15 @@ class ContactMetric {
   /// end is allowed.
   [[nodiscard]] const float* row(int node) const noexcept {
     return row_.data() + static_cast<std::size_t>(node - first_) * stride_;
+  }
+  /// Without scratch. Of the rows only those of the window: in_use().
+  [[nodiscard]] static auto members(ContactMetric& self) noexcept {
+    auto& [capacity, first, last, stride, table, row, d, l1, l2] = self;
+    return std::tie(first, last, stride);
+  }
+  [[nodiscard]] std::span<float> in_use() noexcept {
+    const auto nodes = static_cast<std::size_t>(std::max(0, last_ - first_ + 1));
+    return {row_.data(), std::min(row_.size(), nodes * stride_ + (nodes > 0 ? 8 : 0))};
   }
 
  private:

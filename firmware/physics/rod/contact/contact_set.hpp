@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/contact/contact_metric.hpp"
 #include "firmware/physics/rod/contact/pair_search.hpp"
 #include "firmware/physics/rod/contact/turning.hpp"
@@ -25,6 +26,7 @@ struct Body {
   Vec velocity{};
   double friction = 0.3;
   Vec spin{};  ///< of a drum: unit vector along the axis, times the speed at which the surface turns, m/s
+  LIGATURE_MEMBERS(Body, p0, p1, radius_m, velocity, friction, spin)
 };
 
 /// Pointer into a list of the object that holds it. A copy would point into the list of another object, so it is null.
@@ -73,6 +75,13 @@ struct Contact {
   Borrowed<char> stuck;                 ///< storage between substeps: did static friction hold?
   std::int32_t place[kMostNodes] = {};  ///< indices of the nodes in SweptVelocities
   float weight[kMostNodes] = {};        ///< w in single precision
+  /// Without the pointers, which serve within one substep.
+  [[nodiscard]] static auto members(Contact& self) noexcept {
+    auto& [node, w, n, surface, p, u_free, gap_m, target, inv_w, soft, inv_soft_w, mu, first, last, count, reach_m,
+           distance_m, loaded, keep, pair, stuck, place, weight] = self;
+    return std::tie(node, w, n, surface, p, u_free, gap_m, target, inv_w, soft, inv_soft_w, mu, first, last, count,
+                    reach_m, distance_m, loaded, place, weight);
+  }
 
   [[nodiscard]] bool is_pair() const noexcept { return count >= 4; }
 };
@@ -115,11 +124,70 @@ class ContactMemory {
   std::vector<Vec> floor_impulse;  ///< per node
   std::vector<Vec> body_impulse;   ///< per body and segment
   std::vector<char> floor_stuck, body_stuck;
+  LIGATURE_MEMBERS(ContactMemory, pairs, groups, floor_impulse, body_impulse, floor_stuck, body_stuck, contacts,
+                   per_second, rows)
 
  protected:
   std::vector<Contact> contacts_;  // of the last substep: rows first, then contacts that are not solved
   double per_second_ = 0.0;
   int rows_ = 0;
+};
+
+/// What a ContactSet computes for itself in a substep, and the state of Newton's method, which lasts longer.
+class ContactWork {
+ public:
+  /// Range of the nodes of all collected contacts; last < first when there are none.
+  struct Span {
+    int first, last;
+  };
+  /// Without what a substep finds anew.
+  [[nodiscard]] static auto members(ContactWork& self) noexcept {
+    auto& [watched, awake, due, close, far, measured, corner, share, bent, gaps, columns, swept, extra, step, loaded, p,
+           plain, residual, mixing, newton, u, v_start, p_start, start_error2, turning, spin, segments, radius_m,
+           body_due, stride, first, last, overflow] = self;
+    return std::tie(newton, body_due, first, last, overflow);
+  }
+
+ protected:
+  /// Closest points of a pair of segments.
+  struct Measured {
+    Vec between;                       ///< from the point on the first segment to that on the second, m
+    double s, t, distance_m, chord_m;  ///< parameters of the points; their distance; distance of the chords
+    bool smooth;                       ///< points of the smooth curves, not of the chords
+  };
+  /// A pair that is near but not a contact in this substep; only the guard checks it again.
+  struct Watched {
+    std::int32_t a, b;
+    double distance_m;
+  };
+
+  std::vector<Watched> watched_;
+  std::vector<std::int32_t> awake_, due_;  // indices of the groups and pairs that must be measured in this substep
+  std::vector<std::int32_t> close_, far_;  // indices into due_: measured between smooth curves; between chords only
+  std::vector<Measured> measured_;         // in the order of due_
+  std::vector<Vec> corner_;                // corner vectors k_i of the smooth curve (smooth.hpp) at nodes
+  std::vector<double> share_;              // per node: factor <= 1 by which k_i is reduced to limit the corner's cut
+  Span bent_{0, -1};                       // nodes from the first to the last of the pairs in close_
+  std::vector<double> gaps_;               // scratch of choose_rows()
+  std::vector<float> columns_;             // per row: C^-1 J^T, velocity of each window node per impulse; padded
+  SweptVelocities swept_;
+  std::vector<Vec> extra_, step_;
+  std::vector<std::int32_t> loaded_;  // rows that have carried an impulse in this substep; only these are mixed
+  // Impulses. In sweeps, in the order of loaded_: after mixing (p_), before mixing (plain_), and their change in a pass
+  // (residual_). In Newton's method, by row: present ones (p_) and the best so far (plain_).
+  std::vector<Vec> p_, plain_, residual_;
+  Mixing mixing_;
+  ContactNewton newton_;
+  std::vector<Vec> u_, v_start_, p_start_;
+  double start_error2_ = 0.0;  // squared error of Newton's method at the impulses of the last substep, (m/s)^2
+  Turning turning_;
+  Spin* spin_ = nullptr;
+  int segments_ = 0;
+  double radius_m_ = 0.0;
+  std::vector<double> body_due_;  // per body: last measured gap + the thread's travel at that time
+  std::size_t stride_ = 0;
+  int window_first_ = 0, window_last_ = 1;
+  bool overflow_ = false;
 };
 
 /// Contacts of one rod: collect them, choose which become rows of the system, then solve. All memory is preallocated,
@@ -137,7 +205,7 @@ class ContactMemory {
 ///
 /// The window is the range of nodes from the first to the last on which any row acts. Only its velocities are solved
 /// with contacts, so a pass costs in proportion to rows x nodes of the window, not of the whole thread.
-class ContactSet : public ContactMemory {
+class ContactSet : public ContactMemory, public ContactWork {
  public:
   ContactSet() = default;
   ContactSet(const ContactSet& other) = delete;  // a copied vector has no spare capacity: reserve(), then assign
@@ -147,6 +215,10 @@ class ContactSet : public ContactMemory {
   ContactSet(ContactSet&&) noexcept = default;
   ContactSet& operator=(ContactSet&&) noexcept = default;
   ~ContactSet() = default;
+
+  [[nodiscard]] static auto members(ContactSet& self) noexcept {
+    return std::tie(static_cast<ContactMemory&>(self), static_cast<ContactWork&>(self));
+  }
 
   void reserve(int nodes, int bodies, int window);
   /// Allocates for friction that rolls the thread: needed before the functions below are called with Turns.
@@ -173,10 +245,6 @@ class ContactSet : public ContactMemory {
   /// Is the work left enough to check floor and all bodies, in the worst case?
   [[nodiscard]] static bool afford_world(int nodes, int bodies, const Work& work) noexcept;
 
-  /// Range of the nodes of all collected contacts; last < first when there are none.
-  struct Span {
-    int first, last;
-  };
   [[nodiscard]] Span span() const noexcept;
   /// Are all contacts those of the thread with itself?
   [[nodiscard]] bool only_pairs() const noexcept {
@@ -253,12 +321,6 @@ class ContactSet : public ContactMemory {
  private:
   [[nodiscard]] Contact* add() noexcept;
   [[nodiscard]] bool find_due(const Motion& motion, double dt_s, Work& work) noexcept;
-  /// Closest points of a pair of segments.
-  struct Measured {
-    Vec between;                       ///< from the point on the first segment to that on the second, m
-    double s, t, distance_m, chord_m;  ///< parameters of the points; their distance; distance of the chords
-    bool smooth;                       ///< points of the smooth curves, not of the chords
-  };
   template <bool Smooth>
   void measure(const std::int32_t* places, const State& state) noexcept;
   void bend(const State& state) noexcept;
@@ -312,40 +374,6 @@ class ContactSet : public ContactMemory {
   template <bool Friction>
   Outcome newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept;
   void take_impulses(BandSolver& solver, Vec* v) noexcept;
-
-  /// A pair that is near but not a contact in this substep; only the guard checks it again.
-  struct Watched {
-    std::int32_t a, b;
-    double distance_m;
-  };
-
-  std::vector<Watched> watched_;
-  std::vector<std::int32_t> awake_, due_;  // indices of the groups and pairs that must be measured in this substep
-  std::vector<std::int32_t> close_, far_;  // indices into due_: measured between smooth curves; between chords only
-  std::vector<Measured> measured_;         // in the order of due_
-  std::vector<Vec> corner_;                // corner vectors k_i of the smooth curve (smooth.hpp) at nodes
-  std::vector<double> share_;              // per node: factor <= 1 by which k_i is reduced to limit the corner's cut
-  Span bent_{0, -1};                       // nodes from the first to the last of the pairs in close_
-  std::vector<double> gaps_;               // scratch of choose_rows()
-  std::vector<float> columns_;             // per row: C^-1 J^T, velocity of each window node per impulse; padded
-  SweptVelocities swept_;
-  std::vector<Vec> extra_, step_;
-  std::vector<std::int32_t> loaded_;  // rows that have carried an impulse in this substep; only these are mixed
-  // Impulses. In sweeps, in the order of loaded_: after mixing (p_), before mixing (plain_), and their change in a pass
-  // (residual_). In Newton's method, by row: present ones (p_) and the best so far (plain_).
-  std::vector<Vec> p_, plain_, residual_;
-  Mixing mixing_;
-  ContactNewton newton_;
-  std::vector<Vec> u_, v_start_, p_start_;
-  double start_error2_ = 0.0;  // squared error of Newton's method at the impulses of the last substep, (m/s)^2
-  Turning turning_;
-  Spin* spin_ = nullptr;
-  int segments_ = 0;
-  double radius_m_ = 0.0;
-  std::vector<double> body_due_;  // per body: last measured gap + the thread's travel at that time
-  std::size_t stride_ = 0;
-  int window_first_ = 0, window_last_ = 1;
-  bool overflow_ = false;
 };
 
 /// p with its tangential part limited to mu p_n (Coulomb's cone about n); zero when p_n <= 0.

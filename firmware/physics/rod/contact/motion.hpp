@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/vec.hpp"
 
 namespace ligature::physics::rod {
@@ -58,6 +59,8 @@ class Motion {
   /// Can the two segments of any pair move relative to each other, in dt_s, by more than spare_m + 2 dt_s x the rate()
   /// that they had before the last measure()?
   [[nodiscard]] bool outran(double spare_m, double dt_s) const noexcept;
+  LIGATURE_MEMBERS(Motion, speed, drift, speed_before, drift_before, speed_allowed, drift_allowed, travel, strayed,
+                   link, block_speed, block_travel, fastest, furthest)
 
  private:
   [[nodiscard]] std::size_t end(std::size_t block) const noexcept {  // last node of a block

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/contact/motion.hpp"
 #include "firmware/physics/rod/contact/touch.hpp"
 #include "firmware/physics/rod/model/state.hpp"
@@ -24,6 +25,7 @@ struct Candidate {
   Vec impulse{};         ///< of the last substep, on segment b, N s
   char stuck = 0;        ///< 1: static friction held in the last substep
   double bulge_m = 0.0;  ///< by how much the smooth curves can be nearer than the chords; 0: contact is between chords
+  LIGATURE_MEMBERS(Candidate, a, b, reach_m, near_m, due, touch, next, impulse, stuck, bulge_m)
 };
 
 /// The pairs first .. last - 1 of a list: those between two blocks of segments (motion.hpp). One test of the group can
@@ -33,6 +35,7 @@ struct PairGroup {
   std::int32_t p = 0, q = 0;  ///< indices of the two blocks
   double due = kAtOnce;       ///< smallest due - near_m of the pairs, so that due - Motion::gone_of_blocks() is a lower
                               ///< bound of gap - near_m for all of them
+  LIGATURE_MEMBERS(PairGroup, first, last, p, q, due)
 
   static constexpr double kAtOnce = -1e300;  ///< value of `due` when a pair touched: always test the pairs
 };
@@ -79,6 +82,11 @@ class BroadPhase {
 
   /// Part of the cost of a build() that does not depend on how many segments are near each other, in instructions.
   [[nodiscard]] static long least_cost(int nodes) noexcept;
+  /// A build() needs nothing from the one before.
+  [[nodiscard]] static auto members(BroadPhase& self) noexcept {
+    auto& [capacity, spent, allowance, asked, time, x, y, z, half, bulge, blocks, tree, kept, places] = self;
+    return std::tie(spent);
+  }
 
  private:
   static constexpr std::size_t kBlock = Motion::kBlock;

@@ -2,6 +2,7 @@
 // The points along the thread at which a contact's impulse acts.
 
 #include <algorithm>
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
@@ -30,6 +31,7 @@ struct Touch {
     way_a = now_a, way_b = now_b;
     a += share * now_a, b += share * now_b;
   }
+  LIGATURE_MEMBERS(Touch, a, b, way_a, way_b, share)
 };
 
 }  // namespace ligature::physics::rod

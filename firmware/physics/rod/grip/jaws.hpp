@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/rod.hpp"
 
 namespace ligature::physics::rod {
@@ -11,6 +12,7 @@ struct JawSettings {
   double width_m = 0.0;                                     ///< width of the jaws; 0: they hold a single node
   double slip_N = 0.0;                                      ///< axial force above which the thread slips; 0: never
   double stiffness_N_per_m = 0.0, damping_N_s_per_m = 0.0;  ///< of the hand's coupling, shared by the nodes held
+  LIGATURE_MEMBERS(JawSettings, width_m, slip_N, stiffness_N_per_m, damping_N_s_per_m)
 };
 
 /// A point on the thread's centreline.
@@ -57,6 +59,7 @@ class Jaws {
   [[nodiscard]] Vec velocity(const Rod& rod) const noexcept;
   /// Force on the hand in the last tick, N.
   [[nodiscard]] Vec force(const Rod& rod) const noexcept;
+  LIGATURE_MEMBERS(Jaws, settings, hold, count, s_m, slides_m_per_s, along, turning, roll_hold, along_T, director_T)
 
  private:
   void choose(Rod& rod, Vec tool) noexcept;

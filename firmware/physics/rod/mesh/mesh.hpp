@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/model/material.hpp"
 
 namespace ligature::physics::rod {
@@ -32,6 +33,7 @@ struct Mesh {
 
   /// Computes all other members from `s` and `clamp`. O(n), no allocation.
   void rebuild(const Material& material) noexcept;
+  LIGATURE_MEMBERS(Mesh, s, rest, inv_rest, mass, weight, kd, ke, kb, clamp)
 };
 
 }  // namespace ligature::physics::rod

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/contact/contact_set.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
@@ -53,6 +54,7 @@ class Refine {
   void keep_stress(const Material& material, State& state) noexcept;
 
   static constexpr int kLevels = 4;
+  LIGATURE_MEMBERS(Refine, unit_m, at, wanted, free, moment, fade, strain_fade, tension)
 
  private:
   void want(const Material& material, const State& state, const Forces& forces, const ContactSet& contacts) noexcept;

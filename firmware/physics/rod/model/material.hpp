@@ -1,6 +1,7 @@
 #pragma once
 // Material of a rod, and settings of its time integration and contact solver. SI units.
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
@@ -26,6 +27,9 @@ struct Material {
   [[nodiscard]] constexpr bool sets() const noexcept { return yield_curvature_per_m > 0.0 && set_fraction > 0.0; }
   /// Is there a stress-free shape that is not straight?
   [[nodiscard]] constexpr bool has_shape() const noexcept { return born_curvature_per_m != 0.0 || sets(); }
+  LIGATURE_MEMBERS(Material, length_m, radius_m, density_kg_per_m, EA_N, EI_N_m2, GJ_N_m2, stretch_tau_s, bend_tau_s,
+                   drag_per_s, friction, static_friction, born_curvature_per_m, born_twist_per_m, yield_curvature_per_m,
+                   set_fraction)
 };
 
 /// Time steps, tolerances and work limits. Every field trades computing time for accuracy (docs/rod-contact.md).
@@ -56,6 +60,9 @@ struct Numerics {
     const double more = is_fast(0.5 * hand_m_per_s) ? rush : is_fast(hand_m_per_s) ? tuning.half_rush : 0.0;
     return static_cast<long>((1.0 + more) * whole);
   }
+  LIGATURE_MEMBERS(Numerics, tick_s, substeps, max_substeps, fast_m_per_s, max_passes, work, work_per_node, rush,
+                   given_work, settled_m_per_s, settled_share, newton_m_per_s, recovery, max_recovery_m_per_s,
+                   contact_N_per_m)
 };
 
 }  // namespace ligature::physics::rod

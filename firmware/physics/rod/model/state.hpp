@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/mesh/mesh.hpp"
 #include "firmware/physics/rod/vec.hpp"
 
@@ -23,6 +24,8 @@ struct Hold {
   Vec tangent{};             ///< unit tangent to which the director is perpendicular
   bool steered = false;      ///< the director follows `steer`, projected perpendicular to the tangent
   Vec steer{};
+  LIGATURE_MEMBERS(Hold, node, rigid, directed, holds_roll, stiffness_N_per_m, damping_N_s_per_m, target, velocity,
+                   force, direction, director, tangent, steered, steer)
 };
 
 inline constexpr int kMaxHolds = 16;
@@ -44,6 +47,7 @@ struct State {
     rest_strain.assign(static_cast<std::size_t>(n), 0.0);
     for (auto* array : {&cut_before, &cut_after}) array->assign(static_cast<std::size_t>(n), 0.5);
   }
+  LIGATURE_MEMBERS(State, mesh, x, v, load, rest_bend, cut_before, cut_after, rest_strain, holds, hold_count)
 };
 
 /// Internal forces, as computed when the linear system of the last substep was assembled.
@@ -65,6 +69,7 @@ struct Forces {
     twist_moment.assign(size, 0.0);
     half_twist.assign(size, 0.0);
   }
+  LIGATURE_MEMBERS(Forces, tangent, unit, moment_in, moment_out, edge, shortening, tension, twist_moment, half_twist)
 };
 
 }  // namespace ligature::physics::rod

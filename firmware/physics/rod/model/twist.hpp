@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/model/state.hpp"
 
 namespace ligature::physics::rod {
@@ -33,6 +34,7 @@ class Twist {
   [[nodiscard]] int spans() const noexcept { return count_ > 0 ? count_ - 1 : 0; }
   [[nodiscard]] double turn_rad(int span) const noexcept { return turn_[static_cast<std::size_t>(span)]; }
   [[nodiscard]] double moment_Nm(int span) const noexcept { return moment_[static_cast<std::size_t>(span)]; }
+  LIGATURE_MEMBERS(Twist, order, turn, moment, count, energy_J)
 
  private:
   [[nodiscard]] double raw_turn(const State& state, int from, int to) const noexcept;

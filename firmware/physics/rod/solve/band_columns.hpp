@@ -2,10 +2,13 @@
 // Columns of the inverse of a substep's matrix, on a range of nodes. Each is computed when it is requested: only the
 // columns of nodes with contacts are needed.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/solve/floats.hpp"
 #include "firmware/physics/rod/vec.hpp"
 #include "firmware/physics/rod/work.hpp"
@@ -45,6 +48,14 @@ class BandColumns {
   }
   [[nodiscard]] std::size_t stride() const noexcept {
     return kBlock * ((static_cast<std::size_t>(width()) + 1) & ~std::size_t{1});
+  }
+  /// Without the column under way. Of the columns only those that are made: in_use().
+  [[nodiscard]] static auto members(BandColumns& self) noexcept {
+    auto& [first, last, made, core, out, s_inverse, one, two, skip, between, next_h, x, place, wanted, columns] = self;
+    return std::tie(first, last, made, core, out, s_inverse, one, two, skip, between, next_h, place, wanted);
+  }
+  [[nodiscard]] std::span<float> in_use() noexcept {
+    return {columns_.data(), std::min(columns_.size(), static_cast<std::size_t>(made_) * stride())};
   }
 
  private:

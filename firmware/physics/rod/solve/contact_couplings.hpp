@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/solve/floats.hpp"
 #include "firmware/physics/rod/solve/node_velocities.hpp"
 
@@ -34,6 +35,7 @@ class Couplings {
   void mirror(std::size_t from, std::size_t end) noexcept;
   /// Exchanges contacts a and b in a table of `count` contacts.
   void exchange(std::size_t a, std::size_t b, std::size_t count) noexcept;
+  LIGATURE_MEMBERS(Couplings, stride, w)
 
  private:
   void mirror_block(std::size_t a, std::size_t b) noexcept;

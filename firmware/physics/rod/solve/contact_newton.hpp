@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/solve/band_columns.hpp"
 #include "firmware/physics/rod/solve/band_solver.hpp"
 #include "firmware/physics/rod/solve/contact_couplings.hpp"
@@ -96,6 +97,12 @@ class ContactNewton {
   /// the system is singular or the time was over first (p and u are unchanged), or when the solution is not finite.
   template <bool Friction>
   bool solve(const Contact* rows, Vec* p, Vec* u, TickTime& time = TickTime::endless()) noexcept;
+  /// Without what one Newton step computes for itself.
+  [[nodiscard]] static auto members(ContactNewton& self) noexcept {
+    auto& [z, spread, slot, at, rows, slots, coupled, put_off, begins, changed, error2, last_error2, cost, w, unknowns,
+           count, carrying, dense, on, stuck, with, rest] = self;
+    return std::tie(z, slot, at, rows, slots, coupled, put_off, begins, changed, error2, last_error2, cost, w);
+  }
 
  private:
   enum class Kind : std::uint8_t { kNew, kOpen, kSticks, kSlides };
@@ -116,6 +123,8 @@ class ContactNewton {
     Vec q{};            ///< p_t - r_t u_t
     Vec along{};        ///< direction of q
     double most = 0.0;  ///< radius of the friction disc, mu p_n
+    LIGATURE_MEMBERS(Slot, count, node, row, next, w, n, soft, r_n, r_t, per_r_n, per_r_t, dead, idle, kind, guess, q,
+                     along, most)
     [[nodiscard]] bool carries() const noexcept { return row >= 0 && kind >= Kind::kSticks; }
   };
   /// One unknown number x: the contact gets x times the impulse vector `with`, and x is chosen so that along . u + give

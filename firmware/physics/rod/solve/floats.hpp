@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "firmware/physics/members.hpp"
+
 namespace ligature::physics::rod {
 
 class Floats {
@@ -14,10 +16,12 @@ class Floats {
   [[nodiscard]] const float* data() const noexcept { return lines_.data()->at; }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   void clear() noexcept { std::fill(lines_.begin(), lines_.end(), Line{}); }  ///< all zero
+  LIGATURE_MEMBERS(Floats, lines, size)
 
  private:
   struct alignas(64) Line {
     float at[16] = {};
+    LIGATURE_MEMBERS(Line, numbers)
   };
   std::vector<Line> lines_;
   std::size_t size_ = 0;
