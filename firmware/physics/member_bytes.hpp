@@ -41,7 +41,7 @@ class ImageOf : public Bytes {
   template <class T>
   void visit(T& value) {
     if constexpr (Listed<T>) {
-      std::apply([this](auto&... member) { (visit(member), ...); }, T::members(value));
+      std::apply([this](auto&... member) { (this->visit(member), ...); }, T::members(value));
       if constexpr (PartlyUsed<T>) numbers(value.in_use());
     } else {
       static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>,

@@ -117,10 +117,11 @@ class Simulation(_core.Simulation):
         """
         image = self._save()
         if path is not None:
-            part = Path(f"{os.fspath(path)}.part-{os.getpid()}")
+            whole = Path(path)
+            part = whole.with_name(f"{whole.name}.part-{os.getpid()}")
             try:
                 part.write_bytes(image)
-                part.replace(path)
+                part.replace(whole)
             finally:
                 part.unlink(missing_ok=True)
         return image

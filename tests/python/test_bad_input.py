@@ -9,6 +9,7 @@ import random
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 
 import numpy as np
@@ -17,7 +18,7 @@ import ligature
 from ligature import _core, inputs
 from ligature.rig import Rig
 
-SOURCE = os.environ["LIGATURE_SOURCE"]
+SOURCE = os.path.abspath(os.environ["LIGATURE_SOURCE"])
 # Exceptions by which a call may reject its arguments; any other one is an error of the package.
 # Includes Refusal and TimeoutError, which derive from them.
 # AssertionError: what ligature.rig waits for does not come.
@@ -103,8 +104,8 @@ class Surface:
 def one_call(d, sim):
     """One call with random arguments, with a new simulation or the given one."""
     r = d.r
-    kind = r.randrange(16)
-    if kind > 12:
+    kind = r.randrange(17)
+    if kind > 13:
         d.surface.call(d)
         return sim
     if kind == 0:
@@ -138,8 +139,15 @@ def one_call(d, sim):
         sim.knot()
     elif kind == 11:
         ligature.Simulation(d.any())
-    else:
+    elif kind == 12:
         ligature.Recording(d.any())
+    else:
+        image = bytearray(sim.save())
+        del image[r.choice([len(image), r.randrange(len(image))]) :]
+        if image:
+            image[r.randrange(len(image))] ^= 1 << r.randrange(8)
+        sim.load(bytes(image))
+        raise SystemError("a damaged image was loaded")
     return sim
 
 
@@ -158,6 +166,8 @@ def call_for_a_while(d, sim):
 
 def draw_for(seconds, seed):
     signal.signal(signal.SIGALRM, too_long)
+    sys.path[:] = map(os.path.abspath, sys.path)
+    os.chdir(tempfile.mkdtemp())  # calls of save() leave files
     d, calls, refused = Drawn(seed), 0, 0
     fresh = ligature.Simulation(ligature.Scene.load(SOURCE + "/scenes/paper.toml", {"suture.nodes": 20}))
     sim, end = fresh, time.monotonic() + seconds

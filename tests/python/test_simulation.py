@@ -48,6 +48,49 @@ def test_a_copy_goes_its_own_way(paper, overhand):
         assert np.array_equal(a.trace, sim.copy().run(overhand, 0.1, start_s=0.5).trace)
 
 
+@pytest.mark.parametrize(("name", "overrides"), [
+    *(("paper", {"suture.model": f"paper-{k}", "suture.nodes": 20}) for k in range(1, 6)),
+    ("suture-3-0-knot", {}), ("suture-3-0-surgeons", {"contact.turns_thread": True}), ("desk", {})])
+def test_a_saved_state_continues_to_the_bit(name, overrides, tmp_path):
+    """A knot is drawn, with remeshing; saved in the midst of it, also through a file, and loaded by another simulation."""
+    scene = ligature.Scene.load(SCENES / f"{name}.toml", overrides)
+    sim, others = ligature.Simulation(scene), [ligature.Simulation(scene), ligature.Simulation(scene)]
+    ends = [sim.nodes[0].copy(), sim.nodes[-1].copy()]
+
+    def draw(which, ticks):
+        for k in range(ticks):
+            t_s = 1e-3 * (which.ticks + 1)
+            tools = [ligature.Tool(end + [side * 0.1 * t_s, 0, 0], [side * 0.1, 0, 0], True) for end, side in zip(ends, (-1, 1), strict=True)]
+            which.tick(*tools)
+
+    draw(sim, 150)
+    image = sim.save(tmp_path / "image")
+    assert (tmp_path / "image").read_bytes() == image and list(tmp_path.iterdir()) == [tmp_path / "image"]
+    for other, source in zip(others, (image, tmp_path / "image"), strict=True):
+        views = other.nodes, other.velocities
+        assert other.load(source) is other and other.ticks == 150
+        assert np.array_equal(views[0], sim.nodes) and np.array_equal(views[1], sim.velocities), "views follow"
+    for each in (sim, *others):
+        draw(each, 150)
+    for other in others:
+        assert np.array_equal(other.nodes, sim.nodes) and np.array_equal(other.velocities, sim.velocities)
+        assert np.array_equal(other.contacts.forces_N, sim.contacts.forces_N)
+        assert np.array_equal(other.left.f_W_N, sim.left.f_W_N) and other.diagnostics.potential_J == sim.diagnostics.potential_J
+
+
+def test_an_image_of_another_thread_is_refused(paper, tmp_path):
+    sim = ligature.Simulation(paper)
+    image, before = sim.save(), sim.nodes.copy()
+    other = ligature.Simulation(ligature.Scene.load(SCENES / "paper.toml", {"suture.nodes": 20, "contact.friction": 0.31}))
+    for bad, says in ((other.save(), "saved by a simulation of another scene"), (image[:-1], "damaged"), (image + b"x", "damaged"),
+                      (b"", "found 0 bytes"), (b"x" * 100, "no image")):
+        with pytest.raises(ligature.Refusal, match="^image: .*" + says):
+            sim.load(bad)
+    with pytest.raises(FileNotFoundError):
+        sim.load(tmp_path / "none")
+    assert np.array_equal(sim.nodes, before) and sim.save() == image
+
+
 def test_a_run_in_pieces_is_the_run(paper, overhand):
     whole = ligature.Simulation(paper).run(overhand, 1.0)
     sim = ligature.Simulation(paper)
