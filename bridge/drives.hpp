@@ -26,7 +26,8 @@ struct SampleAges {
 
 class Drives {
  public:
-  /// @param silence after which the device counts as lost. @param charge_bus_time as in sim::Wire.
+  /// @param silence  the device counts as lost when it has sent no state for so long. @param charge_bus_time  whether
+  /// frames take their transmission time on the simulated bus; false if a real bus takes it.
   Drives(const device::Device& record, Time now, Time silence, bool charge_bus_time = true);
 
   void submit(const can::Frame& frame, int client, Time when) { wire_.submit(frame, client, when); }
@@ -39,14 +40,16 @@ class Drives {
 
   /// The newest state of the device, received at `at`.
   void take(const DeviceState& state, Time at) noexcept;
-  /// Force for the device. Zero while it is silent, while a drive is off, and after a drive's own watchdog.
+  /// The force that the device is to make. It is zero while the device is silent, while a drive is off, and after a
+  /// drive's watchdog has expired.
   [[nodiscard]] Vec force_D_N() const noexcept;
   /// Whether the device has been heard within the time of silence. While it is silent the drives are switched off, as
   /// if their power had failed: they make no torque and do not answer SYNC. They start up again when it is back.
   [[nodiscard]] bool is_heard() const noexcept { return is_on_; }
-  /// Oldest state that answers a SYNC: the delay for which the record admits stiffness leaves so much. An older one
-  /// would be a sample of another moment, and would hide a release of the dead-man. The firmware takes the missing
-  /// answer as a lost sample.
+  /// Age of the oldest device state with which the drives answer SYNC: the delay in the device record (drives.delay_s,
+  /// for which the allowed stiffness is computed) less one period. With an older state the drives do not answer, and
+  /// the firmware counts a lost sample: an old state would belong to another moment, and could hide that the dead-man
+  /// was released.
   [[nodiscard]] static Time oldest_sample(const device::Device& record);
   [[nodiscard]] const SampleAges& ages() const noexcept { return ages_; }
   [[nodiscard]] const std::array<sim::DriveNode, 3>& nodes() const noexcept { return nodes_; }
@@ -72,7 +75,8 @@ class Drives {
   SampleAges ages_;
 };
 
-/// Why this record cannot describe a bridged device that is asked once in `exchange`; empty: it can.
+/// Checks that this record can describe a bridged device that is asked once in each interval `exchange`. @return the
+/// error text; empty when it can.
 [[nodiscard]] std::string objection_to(const device::Device& record, Time exchange);
 
 }  // namespace ligature::bridge

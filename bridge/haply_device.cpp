@@ -47,7 +47,7 @@ class HaplyDevice final : public Device {
  private:
   using Socket = websocket::stream<beast::tcp_stream>;
 
-  /// Runs one asynchronous operation to its end, at most for a given time; then the connection is closed.
+  /// Runs one asynchronous operation to its end. If that takes longer than `at_most`, the connection is closed.
   template <class Start>
   void run(std::chrono::nanoseconds at_most, Start start, Error& error) {
     error = asio::error::timed_out;

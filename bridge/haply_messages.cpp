@@ -48,7 +48,8 @@ bool is_pressed(const Json& state, const std::string& button) {
   return value != nullptr && value->is_boolean() && value->get<bool>();
 }
 
-/// Keeps those of the facts in `missing` that are false. The service sends a fact when it changes.
+/// For each of the facts (such as "connected"): adds it to `missing` if the message says that it is false, and removes
+/// it if the message says that it is true. The service sends a fact only when it changes.
 void read_status(const Json& device, std::initializer_list<const char*> facts, std::set<std::string>& missing) {
   const Json* const status = member(device, "status");
   if (status == nullptr) return;
@@ -73,8 +74,8 @@ void note_grips(const Json& message, std::set<std::string>& grips) {
   }
 }
 
-/// A grip that is not in the message, or that is asleep or not connected, must not hold the dead-man. Neither may one
-/// of several grips that was not named: it may be the other hand's.
+/// A grip that is not in the message, that is asleep or that is not connected must not hold the dead-man. If the
+/// service lists several grips, only the one that the user has named may hold it: another one may be in the other hand.
 void read_buttons(const Json& message, const HaplyChoice& choice, HaplyState& known) {
   known.state.buttons = 0;
   note_grips(message, known.grips);

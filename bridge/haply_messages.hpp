@@ -11,7 +11,8 @@
 
 namespace ligature::bridge {
 
-/// Which device of the service, and which buttons of its grip. Empty id: the first device, or the only grip.
+/// Selects a device of the service, and the buttons of its grip. An empty id selects the first device, or the only
+/// grip.
 struct HaplyChoice {
   std::string inverse3_id;
   std::string grip_id;
@@ -34,7 +35,8 @@ struct HaplyState {
 [[nodiscard]] std::optional<HaplyState> read_haply(std::string_view text, const HaplyChoice& choice,
                                                    HaplyState& before);
 
-/// A command. @param is_first names this program to the service, which its first message must do.
+/// A message with a command to the service. @param is_first  true: it also tells the service the name of this program,
+/// as the first message must.
 [[nodiscard]] std::string haply_command(const std::string& inverse3_id, const Vec& force_D_N, bool is_first);
 
 }  // namespace ligature::bridge

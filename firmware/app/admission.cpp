@@ -14,8 +14,8 @@ constexpr double kNoLoss = 1e-3;  // share of the time: less than 1 ms lost in a
 
 double us(std::chrono::nanoseconds t) { return 1e-3 * static_cast<double>(t.count()); }
 
-/// Shortest time that the physics gets per period: from the hand-over of the tools after the latest possible samples
-/// until before the earliest possible next samples.
+/// Shortest time that the physics gets in a period, us. It begins when the loop hands over the tools after the latest
+/// possible samples. It ends shortly before the earliest possible samples of the next period.
 double given_us(const rt::BusTime& bus, const LoopCost& loop) {
   const auto least = rt::kPeriod - (bus.samples_latest - bus.samples_earliest) - rt::ThreadDeadline::kMargin;
   return us(least) - loop.control_us - loop.calls_us;

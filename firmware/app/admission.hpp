@@ -43,8 +43,9 @@ struct AdmissionSettings {
   device::Device device = device::omni();  ///< its drives determine how long the bus takes
 };
 
-/// @param scene one that physics::Simulation::make() accepts. Without `suture.work_instructions` the work budget is
-/// chosen so that 99 % of the ticks of drawing a knot tight end in time; costlier ticks end at the deadline.
+/// @param scene  a scene that physics::Simulation::make() accepts. If it sets no `suture.work_instructions`, a work
+/// budget is chosen: with it 99 % of the ticks in which a knot is drawn tight end in time. Ticks that cost more are
+/// ended by the clock at their deadline.
 [[nodiscard]] Admission admit(const scene::Scene& scene, const AdmissionSettings& settings);
 
 /// Table for people: cost of each phase against its allowance, and the share of time that the thread loses.

@@ -4,9 +4,9 @@
 
 namespace ligature::app {
 
-/// CPU time of one tick's exchange with both hands' drives in us: what the loop sends and reads, with coding and
-/// decoding. Measured on a socket pair with cold caches: the least of three repetitions of a tick, and of these the
-/// largest over all ticks. A CAN driver's own time is not included.
+/// CPU time of one tick's exchange with the drives of both hands, us: sending, reading, coding and decoding. It is
+/// measured on a socket pair with cold caches. Each tick is repeated three times and its shortest time counts; the
+/// result is the largest over all ticks. A CAN driver's own time is not included.
 [[nodiscard]] double bus_calls_us(const device::Device& device);
 
 }  // namespace ligature::app

@@ -201,7 +201,7 @@ std::string histogram(const rt::DurationStatistics& wakeup, const std::vector<st
 
 namespace {
 
-/// Writes the report beside its name first, so that a report is there complete or not at all.
+/// Writes to PATH.part and then renames that file, so that the report is there complete or not at all.
 bool write_report(const std::string& path, const DoctorReport& report) {
   const std::string part = path + ".part";
   std::ofstream file(part);
@@ -211,7 +211,7 @@ bool write_report(const std::string& path, const DoctorReport& report) {
   return file.good() && !problem;
 }
 
-/// What can be measured only with time: hardware, CAN, wake-ups. Adds their rows to the report and prints them.
+/// The checks that take time: hardware, CAN, wake-ups. Adds their rows to the report and prints them.
 void measure(const DoctorOptions& options, DoctorReport& report) {
   std::vector<Check> rows;
   std::optional<Load> load;

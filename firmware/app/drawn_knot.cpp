@@ -15,7 +15,8 @@ constexpr double kTaut = 0.07;      // strain at which a knot counts as drawn ti
 constexpr double kLongest_s = 5.0;  // longest duration of drawing
 constexpr double kFarthest = 1.3;   // largest distance of the ends, in thread lengths, if the thread never becomes taut
 constexpr int kRestTicks = 100, kHoldTicks = 300;
-// Thread length in units of the trefoil's coordinates: a quarter of the thread lies in the knot
+// Length of the thread, in the units in which trefoil() gives coordinates: a quarter of the thread then lies in the
+// knot
 constexpr double kUnits = 91.0;
 
 /// The standard trefoil r(t) = (sin t + 2 sin 2t, cos t - 2 cos 2t, -sin 3t), cut open at the top, where the straight

@@ -19,8 +19,8 @@ class Launch {
   /// @param launched the scene at the start of the run, overrides included
   Launch(const RunOptions& options, const scene::Scene& launched);
 
-  /// Overrides of the launch, then those of commands; where both set a key, only the command's is kept. The only limit
-  /// that a command can set is hands.force_scale, and highest() bounds it.
+  /// Combines the overrides of the launch with those of commands. Where both set a key, only the command's is kept. The
+  /// only limit that a command can set is hands.force_scale, and highest() bounds it.
   [[nodiscard]] std::vector<std::string> with(const std::vector<std::string>& live) const;
 
   /// Overrides for a scene that a command loads from `file`: as above, except that a force limit set at the launch

@@ -51,9 +51,10 @@ double own_cost_us(scene::Scene scene) {
   return least_us;
 }
 
-/// Work budget that fits into the given time. It follows from the cost per instruction while a knot is drawn tight: for
-/// each tick the least time of several equal runs, and the budget covers 99 % of the ticks. A long thread is replaced
-/// by a shorter one with the same knot, where the contact cost arises; this bounds the measurement to about 1 s.
+/// Work budget that fits into the given time, in instructions. It follows from the cost per instruction while a knot is
+/// drawn tight: each tick is run several times and its least time counts, and the budget covers 99 % of the ticks. A
+/// long thread is replaced by a shorter one with the same knot, because the contact cost arises in the knot; so the
+/// measurement takes about 1 s at most.
 long work_that_fits(const scene::Scene& scene, double given_us) {
   constexpr double kSpeed_m_per_s = 0.25;
   constexpr long kCounts = 500'000;  // instructions; ticks with less work give no reliable cost per instruction

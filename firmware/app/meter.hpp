@@ -6,8 +6,8 @@
 
 namespace ligature::app {
 
-/// Times are CPU time of the measuring thread with cold caches: the smallest over several runs of the same tick, which
-/// excludes disturbance by other processes (doctor measures that), and the largest over all ticks tried.
+/// CPU times of the measuring thread with cold caches. Each tick is run several times and its shortest time counts:
+/// this excludes disturbance by other processes, which doctor measures. Each field is the largest over all ticks tried.
 struct LoopCost {
   double calls_us = 0.0;    ///< kernel calls that send and receive frames
   double control_us = 0.0;  ///< control law and tick record

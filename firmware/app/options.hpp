@@ -67,7 +67,8 @@ struct DoctorOptions {
   std::vector<std::string> compare;  ///< two reports to print side by side, and nothing else
 
   [[nodiscard]] double duration_s() const { return hours > 0.0 ? 3600.0 * hours : seconds; }
-  /// A long look at the machine, which also sends frames on the CAN interfaces and looks for gaps of the hardware.
+  /// Whether an acceptance test was requested: it measures for longer, sends frames on the CAN interfaces, and looks
+  /// for interruptions by the machine's firmware.
   [[nodiscard]] bool is_acceptance() const { return hours > 0.0 || load || !report.empty(); }
 };
 

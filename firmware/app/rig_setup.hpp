@@ -29,7 +29,8 @@ struct Plan {
   std::string toml;  ///< the scene's text with the overrides as comments, stored in recordings
 };
 [[nodiscard]] std::variant<Plan, Refusal> make_plan(const RunOptions& options);
-/// As make_plan(), for a scene whose text was already read from `file`. The exit code of a Refusal has no meaning here.
+/// As make_plan(), for a scene whose text was already read from `file`. Of a Refusal only the text has a meaning here,
+/// not the exit code.
 [[nodiscard]] std::variant<Plan, Refusal> plan_of(const std::string& file, const std::string& text,
                                                   const std::vector<std::string>& overrides,
                                                   const device::Device& device = device::omni());

@@ -39,9 +39,9 @@ struct Changed {
 /// back are destroyed here.
 class SceneDesk {
  public:
-  /// @param plan of the start, as it will be run
-  /// @param excess why that scene is not admitted; empty: it is
-  /// @param always true: `excess` holds for every scene, because the loop itself is too slow
+  /// @param plan  the scene with which the program starts
+  /// @param excess  why that scene is not admitted; empty: it is
+  /// @param always  whether `excess` holds for every scene, because the loop itself is too slow
   SceneDesk(const RunOptions& options, const Plan& plan, const std::string& excess = {}, bool always = false);
   ~SceneDesk() { ending_ = true; }  // the future's destructor waits for the builder, which checks ending_
   SceneDesk(const SceneDesk&) = delete;

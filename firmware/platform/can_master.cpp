@@ -43,8 +43,8 @@ class Setup {
   }
 
  private:
-  /// The mode that the drive shows. In another one it would take a torque for a speed or a position. A drive may need a
-  /// moment to change its mode.
+  /// Checks that the drive reports the wanted mode of operation: in another mode it would take a torque for a speed or
+  /// a position. Asks repeatedly, because a drive may need a moment to change its mode.
   std::optional<std::string> expect_mode() {
     constexpr auto kWanted = static_cast<std::uint8_t>(can::profile::kCyclicSynchronousTorque);
     const can::Object object = can::od::kModeOfOperationDisplay;
@@ -70,7 +70,8 @@ class Setup {
     return found(object, answer->value, wanted);
   }
 
-  /// One transfer. @param answer set unless an optional object is missing, which is noted and no error
+  /// One transfer. @param answer  set by this function. It is left unset if the drive lacks an optional object, which
+  /// is noted and is no error
   std::optional<std::string> ask(const can::Object& object, const can::Frame& request, can::SdoKind wanted,
                                  const can::Sdo*& answer) {
     auto [got, other] = transfer(bus_, wait_, request, patience_);

@@ -1,5 +1,6 @@
 #pragma once
-// Brings the three drives of a hand from power-on to cyclic operation. Runs before the loop, without deadlines.
+// Brings the three drives of a hand from power-on to cyclic operation. Runs before the real-time loop and has no
+// deadlines.
 
 #include <chrono>
 #include <optional>
@@ -34,9 +35,9 @@ struct SdoAnswer {
 /// NMT start: from now on the drives answer SYNC with TPDOs. They stay switched off until enabled by controlword.
 bool start_drives(CanBus& bus) noexcept;
 
-/// End of a run: NMT pre-operational, in which drives are disabled and expect no RPDOs. Then switches off every drive's
-/// monitoring of our heartbeat, so that our silence causes no fault. Drives that do not say that they are off are left
-/// as they are: our silence then ends their torque.
+/// End of a run: NMT pre-operational, in which drives are disabled and expect no RPDOs. Then each drive's monitoring of
+/// our heartbeat is switched off, so that our silence causes no fault. A drive that does not report to be off keeps its
+/// monitoring: our silence then ends its torque.
 void release_drives(CanBus& bus, BusWait& wait, can::Watchdog watchdog = can::Watchdog::kRpdoTimer,
                     Nanoseconds patience = std::chrono::milliseconds(20));
 

@@ -15,8 +15,8 @@ namespace ligature::platform {
 /// @param watchdog_ms requested time of the drives' watchdog; the record may need a longer one
 [[nodiscard]] can::StartupTimes startup_times(const device::Device& device, int watchdog_ms) noexcept;
 
-/// Ticks between two heartbeats of the controller: a quarter of the time after which drives miss them, if that is
-/// their only watchdog; else half of their usual time.
+/// Ticks between two heartbeats of the controller. If the heartbeat is the drives' only watchdog: a quarter of the time
+/// after which the drives miss it. Else half of the usual time, so that one heartbeat may be lost.
 [[nodiscard]] int heartbeat_periods(const device::Device& device, int watchdog_ms) noexcept;
 
 /// What the drives of this record cannot promise, one line each.

@@ -28,7 +28,7 @@ class HandDrives {
   /// Sets the drives up and checks that they are the drives of the device record. They make no torque afterwards.
   /// @return why not, in one line, or nothing.
   [[nodiscard]] virtual std::optional<std::string> configure(BusWait& wait) = 0;
-  /// What these drives lack and therefore cannot promise, one line each. Complete after configure().
+  /// What these drives cannot promise, because they lack a function for it; one line each. Complete after configure().
   [[nodiscard]] virtual std::vector<std::string> lacks() const = 0;
   /// Frames that the drives send in one period; admission measures with them how long reading takes.
   [[nodiscard]] virtual std::vector<can::Frame> example_samples() const = 0;
@@ -48,7 +48,8 @@ class HandDrives {
   virtual std::array<std::int16_t, rt::kJoints> write(const rt::HandCommand& command) noexcept = 0;
   [[nodiscard]] virtual rt::BusTime bus_time() const noexcept = 0;
 
-  /// After the loop: switches the drives off, and makes sure that the silence to come is no fault. May wait.
+  /// After the loop: switches the drives off, and makes sure that they do not report the controller's following silence
+  /// as a fault. May wait.
   virtual void release(BusWait& wait) = 0;
 };
 

@@ -56,9 +56,10 @@ void HandLink::send_sync() noexcept {
   if (stops_) send(can::encode_nmt(can::NmtCommand::kStop));
 }
 
-/// The heartbeat tells the drives that they may go on. It ends when they must have no torque and it is not sure that
-/// they have none; then their own watchdog removes it. After a stop nothing is sure: a stopped drive sends no samples.
-/// After a foreign controller was heard, NMT stop would wait behind the heartbeat on a flooded bus.
+/// Whether a heartbeat may be sent; it tells the drives that they may go on. It is withheld when the drives must have
+/// no torque and it is not certain that they have none: their own watchdog then removes it. After a stop this is never
+/// certain, because a stopped drive sends no samples. After a foreign controller was heard, a heartbeat could delay NMT
+/// stop, which would wait behind it on a flooded bus.
 bool HandLink::may_beat(rt::DriveRequest request) noexcept {
   if (request == rt::DriveRequest::kStop || foreign_ != rt::Foreign::kNone) return false;
   const bool sure = request != rt::DriveRequest::kHold || are_off();
@@ -169,7 +170,8 @@ rt::HandReading HandLink::reading() const noexcept {
     r.enabled = r.enabled && state == State::kOperationEnabled;
     r.drive_fault = r.drive_fault || node.emergency != can::emcy::kNoError || !node.operational ||
                     (valid_ && (state == State::kFault || state == State::kFaultReactionActive));
-    // Our own drives' bit; others use it for something else, but report the torque of every joint.
+    // Only our own drives have this statusword bit. In other drives the bit has another meaning; their messages contain
+    // the torque of every joint instead.
     r.torque_astray =
         r.torque_astray || (!buttons_.are_inputs() && (node.latest.statusword & can::cia402::kTorqueAstrayBit) != 0);
     r.torque_limited[j] = (node.latest.statusword & can::cia402::kInternalLimitBit) != 0;
@@ -197,8 +199,9 @@ std::int16_t HandLink::permille_of(double torque_Nm) const noexcept {
 std::array<std::int16_t, rt::kJoints> HandLink::write(const rt::HandCommand& command) noexcept {
   std::array<std::int16_t, rt::kJoints> sent{};
   was_lost_ = false;
-  // A stop begins with controlword 0 and torque 0, which act at the next SYNC. Then comes NMT stop: a drive that keeps
-  // its torque when it is stopped must have none before. But another sender could command a torque in the meantime.
+  // A stop begins with controlword 0 and torque 0, which act at the next SYNC. NMT stop follows only then, because a
+  // drive that keeps its torque when it is stopped must have none before. After a foreign controller was heard, NMT
+  // stop is sent at once: the other sender could command a torque until then.
   stops_ = command.request == rt::DriveRequest::kStop;
   if (stops_ && foreign_ != rt::Foreign::kNone) send(can::encode_nmt(can::NmtCommand::kStop));
   if (may_beat(command.request)) beat();

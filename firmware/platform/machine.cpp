@@ -64,8 +64,9 @@ Check priority_limit(const std::string& root) {
   return {Grade::kFail, "real-time priority", "up to " + amount(allowed) + ", wanted 80", kLimits};
 }
 
-/// Linux stops all real-time threads of a core for the rest of each second in which they have used this much. With a
-/// large scene the physics computes until shortly before the next samples, and then the loop would be stopped, too.
+/// Checks a limit of the kernel: Linux stops all real-time threads of a core for the rest of each second in which they
+/// have used a given time. With a large scene the physics computes until shortly before the next samples; at this limit
+/// the loop would be stopped, too.
 Check whole_core(const std::string& root) {
   const std::string found = text_of(root + "proc/sys/kernel/sched_rt_runtime_us");
   if (found.empty() || found == "-1") return good("real-time share", "the whole core");

@@ -8,12 +8,14 @@
 
 namespace ligature::rt {
 
-/// Told by the hand's drives (firmware/platform/hand_drives.hpp), because it depends on their protocol. Each hand has
-/// its own bus.
+/// The hand's drives state these times (firmware/platform/hand_drives.hpp), because the times depend on the drives'
+/// protocol. Each hand has its own bus.
 struct BusTime {
-  /// From the request for samples to the last bit of all of them: without stuff bits, and with the most possible
+  /// Time from the request for samples to the last bit of all samples. earliest: without stuff bits; latest: with the
+  /// most possible
   std::chrono::nanoseconds samples_earliest{}, samples_latest{};
-  /// Longest time of what the loop sends after the samples; it must have passed before the next request
+  /// Longest time that the frames with the torques take; the loop sends them after the samples, and they must be over
+  /// before the next request
   std::chrono::nanoseconds torques_latest{};
 
   /// Time left for the loop's computing; with more, torques would be late.
@@ -29,8 +31,8 @@ struct BusTime {
 };
 
 /// Deadline of the physics tick: before the next samples can be complete. Their arrival time is predicted from the
-/// earliest recent one, because the number of stuff bits changes little between periods; it is limited to what the bus
-/// can do.
+/// earliest recent one, because the number of stuff bits changes little between periods. The prediction is kept within
+/// the earliest and latest time that the bus allows.
 class ThreadDeadline {
  public:
   static constexpr std::chrono::nanoseconds kMargin = std::chrono::microseconds(25);

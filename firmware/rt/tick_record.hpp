@@ -111,8 +111,9 @@ struct TickRecord {
   std::int32_t thread_cut_at = -1;
   float time_lost = 0.0F;  ///< share of the tick in which the thread was not moved
 
-  // Inputs from which the physics can be replayed bit by bit, given the same scenes: this period's tools, the orders so
-  // far, and the periods whose tools were processed since the last record.
+  // Inputs from which the physics can be replayed bit by bit, given the same scenes: this period's tools, the numbers
+  // of resets, scenes and parameters requested so far, and the periods whose tools were processed since the last
+  // record.
   std::array<Triple, kHands> tool_p_W_m{};
   std::array<Triple, kHands> tool_v_W_m_per_s{};
   std::array<bool, kHands> tool_grip{};

@@ -9,7 +9,8 @@
 
 namespace ligature::telemetry {
 
-/// Names of states and faults. They belong to the control law, which telemetry does not depend on.
+/// Functions that name states and faults. They are passed in because the names belong to the control law, which
+/// telemetry does not depend on.
 struct Names {
   const char* (*state)(int number);
   const char* (*fault)(int number);

@@ -85,8 +85,8 @@ class Telemetry {
   /// The newest record, by which requests are checked before the loop checks them again.
   [[nodiscard]] const rt::TickRecord& last() const noexcept { return last_; }
 
-  /// The answer to a command that is not executed: one that only asked for a challenge, or a refused replay (which is
-  /// also reported). Empty: the command may be executed.
+  /// Turns away a command that must not be executed. @return the answer to it: to a command that only asked for a
+  /// challenge, or to a replayed command (which is also reported). Nothing: the command may be executed.
   [[nodiscard]] std::optional<ligature_msg::ack_t> turn_away(const ligature_msg::command_t& command, Moment now);
 
   /// Fills in the answer's time and session.
