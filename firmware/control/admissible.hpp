@@ -6,11 +6,12 @@
 
 namespace ligature::control {
 
-/// The coupling as the device feels it if the thread does not yield, and its stability limit:
-///   K < (b + B) / (T/2 + t_d)       linear stability of a sampled, delayed spring for small B (Gil; Hulin et al., IEEE
-///                                   Trans. Control Syst. Technol. 2014); a hand's own damping only helps
-/// b: damping of the device, T: period, t_d: delay from sample to torque. If the scene has a device-side spring (K_d,
-/// B_d), it is in series with the thread-side one (K_t, B_t, times s w: force scale and workspace scale):
+/// The coupling as the device feels it if the thread does not yield (stiffness K, damping B), and its stability limit:
+///   K < (b + B) / (T/2 + t_d)
+/// b: damping of the device, T: period, t_d: delay from sample to torque. The limit is the linear stability of a
+/// sampled, delayed spring for small B (Gil; Hulin et al., IEEE Trans. Control Syst. Technol. 2014); a hand that holds
+/// the device only adds damping. If the scene has a device-side spring (K_d, B_d), it is in series with the thread-side
+/// one (K_t, B_t, which are the scene's values times force scale and workspace scale):
 ///   K = K_d K_t / (K_d + K_t),   B = (B_d K_t^2 + B_t K_d^2) / (K_d + K_t)^2     (low frequencies)
 struct Admissible {
   double K_N_per_m = 0.0;

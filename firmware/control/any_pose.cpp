@@ -6,8 +6,8 @@
 namespace ligature::control {
 namespace {
 
-// Lower bound of 1 - |x|, x the sine of the angle between the links: near the singular pose |x| = 1 the allowed force
-// then goes to 0 without NaN
+// Lower bound of 1 - |x|, where x is the sine of the angle between the links. Near the singular pose |x| = 1 the
+// allowed force then goes to 0, without a division by zero.
 constexpr double kNearStretched = 1e-6;
 
 /// Smallest and largest |x| for x in [low, high].

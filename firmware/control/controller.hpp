@@ -25,7 +25,8 @@ struct Settings {
   std::int32_t watchdog_ticks = 20;
   bool armed = false;  ///< at start; a fault or a disarm clears it
   device::Device device = device::omni();
-  /// False: the hands' accounts lend no energy to each other, so no hand can be pulled by the other (for experiments)
+  /// False (for experiments): the accounts of the two hands lend no energy to each other, so no hand can be pulled by
+  /// the other
   bool lending = true;
 };
 

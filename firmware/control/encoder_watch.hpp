@@ -74,7 +74,8 @@ class EncoderWatch {
     bool straight = false;
   };
 
-  /// What has happened since a joint's reading last changed: range of its torque, travel of the joints (`elsewhere`).
+  /// What has happened since a joint's reading last changed: the range of its torque, and the travel of the other
+  /// joints (`elsewhere`).
   struct Rest {
     double count = 0.0, low = 0.0, high = 0.0, elsewhere = 0.0;
     int samples = 0;
@@ -106,8 +107,8 @@ class EncoderWatch {
     return x_[joint][(newest_ + kLength - ago) % kLength];
   }
 
-  /// Straight line through the ends of samples ago + kWindow - 1 .. ago, and whether all samples lie within one count
-  /// of it.
+  /// Straight line through the first and the last of kWindow samples, of which the last is `ago` samples old; and
+  /// whether all samples between lie within one count of the line.
   [[nodiscard]] Line line(std::size_t joint, std::size_t ago) const noexcept {
     constexpr double kSteps = kWindow - 1;
     const double first = at(joint, ago + kWindow - 1);

@@ -11,8 +11,8 @@
 
 namespace ligature::control {
 
-/// Two limits of the joints on a force in the requested direction, N: its torques must not exceed the peak force in any
-/// pose, and they must not overheat a winding.
+/// Two upper bounds of a force in the requested direction, N. in_any_pose_N: with more, its joint torques could make
+/// more than the peak force in some pose. by_heat_N: with more, they could overheat a winding.
 struct MostByJoints {
   double in_any_pose_N = std::numeric_limits<double>::infinity();
   double by_heat_N = std::numeric_limits<double>::infinity();

@@ -134,7 +134,8 @@ std::array<double, rt::kJoints> HandControl::command(std::int64_t tick) noexcept
   Vec3 torque_Nm = Vec3::Zero(), paid_N = Vec3::Zero();
   if (!lets_go_) {
     const auto torque = [this](const Vec3& f) { return sendable_torque(f); };
-    // Tip force that the last torques make in the present pose: sending the same torques again changes nothing
+    // Tip force that the last torques make in the present pose. Changes of force are counted from this one, so sending
+    // the same torques again is no change.
     const Vec3 before_N = from_torque_ * torque_Nm_;
     paid_N = passivity_.control(tick, decided_N_, v_DT_, before_N, torque);
     torque_Nm = sendable_torque(paid_N);
@@ -212,8 +213,9 @@ double HandControl::safe_share(const Vec3& torque_Nm) const noexcept {
   return most_N > 0.0 ? limiter_.peak_N() / most_N : std::numeric_limits<double>::infinity();
 }
 
-/// Factor on a tip force and its torques that keeps the peak in this pose (outside the workspace box safe_share() does
-/// not), the peak in any pose of the box, and the heat of the windings.
+/// Factor, at most 1, on a tip force and its torques. It keeps three limits: the peak force in this pose, the peak
+/// force in any pose of the workspace box, and the heat of the windings. Outside the box safe_share() does not ensure
+/// the first one.
 double HandControl::allowed_share(const Vec3& f_N, const Vec3& torque_Nm) const noexcept {
   const double size_N = std::max(f_N.norm(), 1e-300);
   return std::min({1.0, limiter_.peak_N() / size_N, safe_share(torque_Nm), windings_.share(torque_Nm)});

@@ -61,7 +61,7 @@ class HandControl {
 
   /// Computes tip pose, tool pose in the world and the coupling's force from the joints. Without a new sample the last
   /// one is kept.
-  /// @param age after look() at this reading
+  /// @param age  age of the sample; its look() was already called with this reading
   void observe(const rt::HandReading& reading, const SampleAge& age, const Grasp& grasp, std::int64_t tick) noexcept;
   /// The loop was delayed while it read this tick's samples: their time is unknown, so no velocity is derived from
   /// them.
@@ -105,8 +105,9 @@ class HandControl {
   [[nodiscard]] Fault encoder_fault() const noexcept {
     return move_fault_ != Fault::kNone ? move_fault_ : encoder_fault_;
   }
-  /// Samples stopped for a while, and fewer periods ago than they had stopped: the samples in between may come in a
-  /// burst, several periods of motion in one. This happens when the process of a simulated hand stood still.
+  /// Whether samples may come in a burst: they had stopped for some periods, and came back fewer periods ago than they
+  /// had stopped. A burst contains several periods of motion in one period. It happens when the process of a simulated
+  /// hand stood still.
   [[nodiscard]] bool is_catching_up() const noexcept { return catching_up_ > 0; }
   /// Consecutive ticks with force although the gain is 0: the step limit allows it to fall only gradually.
   [[nodiscard]] int overtime_ticks() const noexcept { return overtime_ticks_; }

@@ -17,9 +17,9 @@ struct LimitedForce {
   bool finite = true;
 };
 
-/// Clips the magnitude and keeps the direction: |f| <= max_N even after rounding (hence a few ulps below max_N). The
-/// motors' force still differs by the torque quantum on the wire: 1 per mille, 0.3 mN m, at most 2 mN at the tip. NaN
-/// and infinity give zero and `finite` false.
+/// Clips the magnitude and keeps the direction. |f| <= max_N holds even after rounding, so the limit used is a few ulps
+/// below max_N. The motors' force still differs by the torque quantum on the wire: 1 per mille, 0.3 mN m, at most 2 mN
+/// at the tip. NaN and infinity give zero and `finite` false.
 [[nodiscard]] inline LimitedForce saturate(const physics::Vec3& f_N, double max_N) noexcept {
   if (!f_N.allFinite()) return {physics::Vec3::Zero(), false, false};
   const double magnitude_N = f_N.norm();

@@ -8,13 +8,14 @@
 
 namespace ligature::control {
 
-/// An encoder that is reversed at the sample x0 reports 2 x0 - x from there on. Mirrored at x0, the samples after the
-/// turn continue those before it as one smooth curve. A hand that turns at speed u with acceleration a needs the time
-/// 2 u / a for it, so its mirrored halves lie u^2 / a apart. The test: a turn is suspected when one parabola fits both
-/// halves, the second one mirrored, within the rounding to counts. Halves that lie two counts apart are never
-/// suspected: a hand at u counts a period is cleared up to the acceleration u^2 / 2, which is 49 m/s2 at 1.4 counts a
-/// period (70 mm/s at an Omni's tip). A slower hand has less acceleration, so longer halves are tested for it. False
-/// alarms and missed reversals: docs/encoder-watch.md. O(kLongest), no allocation.
+/// The test for a reversed encoder. An encoder that is reversed at the sample x0 reports 2 x0 - x from there on. So if
+/// the samples after the turn are mirrored at x0, they continue those before it as one smooth curve. A hand that really
+/// turns a joint, from speed u to -u with acceleration a, needs the time 2 u / a for that; then the two halves, the
+/// second one mirrored, lie u^2 / a apart. A reversal is suspected when one parabola fits both halves within the
+/// rounding to counts. Halves that lie two counts apart are never suspected: a hand at u counts a period is cleared up
+/// to the acceleration u^2 / 2, which is 49 m/s2 at 1.4 counts a period (70 mm/s at an Omni's tip). A slower hand has
+/// less acceleration, so longer halves are tested for it. False alarms and missed reversals: docs/encoder-watch.md.
+/// O(kLongest), no allocation.
 class MirroredTurn {
  public:
   struct Look {

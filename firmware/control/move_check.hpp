@@ -10,11 +10,11 @@
 
 namespace ligature::control {
 
-/// Integrates the path's joint rates, J^-1 v, over a move and compares with the encoders' change; judged when the tip
-/// strays from the path. Reversed: a joint that went kEnough counts against its commanded direction (somebody pulling
-/// against the move looks the same). Frozen: a joint that was to go kEnough counts or more and went kStill at most,
-/// while another went at least kFollowed of its way. A hand that holds the arm stops all joints, which is no fault.
-/// O(1), no allocation.
+/// Integrates the path's joint rates, J^-1 v (J: Jacobian, v: velocity along the path), over a move, and compares the
+/// result with the encoders' change. The verdict is asked for when the tip strays from the path. Reversed: a joint that
+/// went kEnough counts against its commanded direction (somebody pulling against the move looks the same). Frozen: a
+/// joint that was to go kEnough counts or more and went kStill at most, while another went at least kFollowed of its
+/// way. A hand that holds the arm stops all joints, which is no fault. O(1), no allocation.
 class MoveCheck {
  public:
   static constexpr double kEnough = 25.0, kStill = 2.5;  ///< counts

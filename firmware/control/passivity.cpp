@@ -24,7 +24,8 @@ void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {
   if (sampled_ >= 0 && tick > sampled_) {
     if (tick > sampled_ + 1) lossy_until_ = tick + kWary;
     for (Eigen::Index j = 0; j < 3; ++j) {
-      // Interpolates between encoder counts, for slow joints only: for fast ones the velocity estimate lags.
+      // Interpolates the joint's position between two encoder counts. Only for slow joints: for fast ones the velocity
+      // estimate lags too much.
       const double turned_rad = periods * period_s_ * s.rate_rad_per_s[j];
       if (std::abs(turned_rad) < kSlowCounts * periods * s.count_rad)
         q_rad[j] = std::clamp(q_rad_[j] + turned_rad, counted_rad[j] - half_rad, counted_rad[j] + half_rad);
@@ -43,8 +44,8 @@ void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {
   look_under_way(tick);
 }
 
-/// Range of the torques that may act until the next SYNC, and their largest loss. After lost RPDOs, each joint may make
-/// any torque sent since the last sample.
+/// Computes the range of the torques that may act until the next SYNC, and the largest energy that they can give to the
+/// hand (their loss). After lost RPDOs, each joint may make any torque sent since the last sample.
 void Passivity::look_under_way(std::int64_t tick) noexcept {
   const bool wary = is_wary(tick);
   under_way_ = {low_Nm_, high_Nm_};
@@ -103,16 +104,16 @@ double Passivity::most_given_J(Eigen::Index j, std::int64_t tick, double dq_rad,
   return given_J;
 }
 
-/// Loss: energy that the motors give to the hand. Largest loss by a tip force f that acts for `periods` periods,
-/// beginning `start` periods after the SYNC of the sample.
+/// Loss: energy that the motors give to the hand. This is the largest loss by a tip force f that acts for `periods`
+/// periods, beginning `start` periods after the SYNC of the sample.
 double Passivity::loss_J(const Vec3& f_N, std::int64_t start, std::int64_t periods, double counts) const noexcept {
   const auto s = static_cast<double>(start), d = static_cast<double>(periods);
   const double spread_m = reach_m_ * (d * s + 0.5 * d * (d + 1.0)) + d * (doubt_m_ + counts * count_m_);
   return std::max(0.0, d * along_J(f_N) + f_N.norm() * spread_m);
 }
 
-/// As loss_J() when frames are lost: the full acceleration bound for two periods, kLater of it afterwards, and only for
-/// the part of the force above kSlight_N.
+/// As loss_J(), for the time in which frames are lost. The hand may accelerate by the full bound in the first two
+/// periods after the sample, and by kLater of it afterwards. Only the part of the force above kSlight_N counts.
 double Passivity::blind_loss_J(const Vec3& f_N, std::int64_t start, std::int64_t periods) const noexcept {
   double lost_J = 0.0;
   const double size_N = std::max(0.0, f_N.norm() - kSlight_N);
@@ -123,16 +124,17 @@ double Passivity::blind_loss_J(const Vec3& f_N, std::int64_t start, std::int64_t
   return lost_J;
 }
 
-/// Energy that tip force f gives to the hand in a period with the last period's motion. If it is negative (the hand
-/// gives energy), the motion may be one encoder count less, and that part is not credited.
+/// Energy that tip force f gives to the hand in a period in which the hand moves as in the last one. If it is negative
+/// (the hand gives energy), the motion may really be one encoder count less, and the energy of this count is not
+/// credited.
 double Passivity::along_J(const Vec3& f_N) const noexcept {
   const double given_J = f_N.dot(step_m_);
   return given_J > 0.0 ? given_J : std::min(0.0, given_J + f_N.norm() * count_m_);
 }
 
-/// Energy missing to send f in `tick` and, if and_back, to reduce it to zero later; negative: the surplus. Each
-/// force must be within one step of both forces sent before it, as either may act if a frame is lost; so a reduction by
-/// one step takes two periods.
+/// Energy that the account lacks for sending f in `tick` and, if and_back, for reducing it to zero later; negative:
+/// what it has to spare. Each force must be within one step of both forces sent before it, because either may act if a
+/// frame is lost. So a reduction by one step takes two periods.
 double Passivity::shortage_J(std::int64_t tick, const Vec3& f_N, bool and_back) const noexcept {
   const bool blind = tick > sampled_, wary = is_wary(tick);
   const std::int64_t ahead = tick + 1 - sampled_;

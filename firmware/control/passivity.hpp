@@ -73,8 +73,8 @@ class Passivity {
   /// Factor on the acceleration bound after two periods without a sample
   static constexpr double kLater = 0.3;
   static constexpr double kMore = 3.0;  ///< further periods of the present motion that must be paid for
-  /// While frames are lost, the uncertainty of the motion is not charged for this much of a force; otherwise no force
-  /// could begin
+  /// Size of a force, N, that needs no energy in the account for the uncertainty of the hand's motion while frames are
+  /// lost; otherwise no force could begin
   static constexpr double kSlight_N = 0.006;
   /// Counts per period; the position of a joint that is slower is interpolated between counts
   static constexpr double kSlowCounts = 0.25;
@@ -206,8 +206,8 @@ class Passivity {
     return size > by_N ? Vec3(f_N * (1.0 - by_N / size)) : Vec3(Vec3::Zero());
   }
 
-  /// Smallest force within one step: reached straight towards zero, or first towards the middle of the torques under
-  /// way and then towards zero.
+  /// Smallest force that one step from `before_N` can reach. The shorter result of two ways counts: straight towards
+  /// zero; or first towards the middle of the torques under way, then towards zero.
   template <class Near>
   [[nodiscard]] Vec3 least_of(const Vec3& before_N, Near near) const noexcept {
     const Vec3 straight_N = farthest(before_N, shorter(before_N, step_N_), near);
@@ -234,8 +234,8 @@ class Passivity {
   AnyPose any_pose_;
   bool active_;
   double credit_J_, energy_J_, received_J_ = 0.0, granted_J_ = 0.0, dissipated_J_ = 0.0, injected_ = 0.0;
-  // Errors of step_m_: by the resolution of the encoders; and, after lost samples, because the mean motion over several
-  // periods stands for that of the last one
+  // Errors of step_m_, m. count_m_: by the resolution of the encoders. doubt_m_: after lost samples, because the mean
+  // motion over several periods stands for that of the last one
   double count_m_ = 0.0, doubt_m_ = 0.0;
   bool acts_ = false, stepped_ = false, released_ = false;
   Mat3 tip_N_per_Nm_ = Mat3::Identity(), Nm_per_tip_N_ = Mat3::Identity();

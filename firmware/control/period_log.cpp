@@ -100,7 +100,8 @@ void PeriodLog::tell_steps(const ThreadResult& thread) noexcept {
   }
 }
 
-/// Writes records of lost periods: the last values, flagged. Records beyond the ring's room are counted as dropped.
+/// Writes a record for each lost period: the last values again, with the flag of a lost period. Records for which the
+/// ring has no room are counted as dropped.
 void PeriodLog::tell_lost() noexcept {
   const auto room = static_cast<std::int64_t>(out_.room());
   record_.flags |= rt::kPeriodLost;

@@ -1,5 +1,5 @@
 #pragma once
-// Decides what a missing or late sample of a hand means. All that depends on the age of samples asks here.
+// Decides what a missing or late sample of a hand means. All code that depends on the age of samples uses this class.
 
 #include <cstdint>
 

@@ -87,12 +87,13 @@ class ThreadLink {
   void hand_over(std::int64_t tick, const std::array<physics::ToolInput, 2>& tools,
                  std::chrono::nanoseconds deadline) noexcept;
 
-  /// Takes the newest result. @return a plant that the physics has processed, whether accepted or not; else nullptr.
+  /// Takes the newest result. @return the new simulation (plant.hpp) that the physics has answered, whether it accepted
+  /// it or not; nullptr when it has answered none.
   [[nodiscard]] Plant* collect() noexcept;
   [[nodiscard]] const ThreadResult& result() const noexcept { return exchange_.results.front(); }
   /// Numbers of resets and changes ordered up to the newest request.
   [[nodiscard]] const ThreadOrders& orders() const noexcept { return orders_; }
-  /// Number of requests newer than the one that the newest result answers; 0: the physics is in time.
+  /// Number of requests that are newer than the one answered by the newest result; 0: the physics is in time.
   [[nodiscard]] std::int64_t late_ticks() const noexcept { return number_ - result().number; }
 
  private:

@@ -21,7 +21,8 @@ struct Proxy {
 };
 
 /// Device T -- (K_d, B_d) -- proxy P -- (K_t, B_t) -- held node G (the 2007 paper, III.A.2: a spring and a damper on
-/// each side). P has no mass, so both springs carry the same force, and the hand feels the thread's force times s:
+/// each side), with positions p_T, p, p_G and velocities v_T, p', v_G. P has no mass, so both springs carry the same
+/// force, and the hand feels the thread's force times s:
 ///   K_d (p_T - p) + B_d (v_T - p') + K_t (p_G - p) + B_t (v_G - p') = 0
 ///   p' = (p - p_before) / T                                                implicit Euler, so stable
 ///   f_device = s (K_d (p - p_T) + B_d (p' - v_T))
