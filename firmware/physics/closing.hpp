@@ -25,7 +25,7 @@ class Closing {
     left_s_ = kTime_s;
   }
   void forget() noexcept { *this = Closing{}; }
-  /// Advances by a tick; rate_m_per_s() is then the mean rate of this tick, consistent with the offset's change.
+  /// Advances by a tick. Afterwards rate_m_per_s() is the offset's change in this tick, divided by dt_s.
   void step(double dt_s) noexcept {
     const Vec3 before_m = offset_m_;
     left_s_ = std::max(0.0, left_s_ - dt_s);

@@ -38,8 +38,9 @@ void ContactSolver::forget() noexcept {
   report_ = {};
 }
 
-/// Makes a row for every candidate that could touch in the coming step. One comparison for four candidates excludes the
-/// others: a gap measured at travel t is now at least gap + t - travel_m_.
+/// Makes a row for every candidate that could touch in the coming step. travel_m_ is an upper bound of how much any gap
+/// has closed since the start. So a gap that was measured at a value t of travel_m_ is now at least gap + t -
+/// travel_m_, and one comparison for four candidates excludes those that are too far apart.
 void ContactSolver::make_rows(const ThreadModel& m, const ThreadState& s, double near_m) noexcept {
   rows_.clear();
   const Pack limit = splat(near_m + travel_m_);
@@ -111,8 +112,8 @@ void ContactSolver::gather_velocities(const ThreadState& s) noexcept {
     for (int k = 0; k < 4; ++k) velocity_[static_cast<std::size_t>(r.node[k])].v = to_pack(s.v.at(r.node[k]));
 }
 
-/// Upper bound of all speeds in the coming step, m/s. Also adds the motion of obstacles to travel_m_, and requests new
-/// candidates when an obstacle has appeared or disappeared.
+/// Upper bound of all speeds in the coming step, m/s. Also adds the motion of the obstacles to travel_m_, the bound of
+/// how much gaps have closed, and requests new candidates when an obstacle has appeared or disappeared.
 double ContactSolver::fastest(const ThreadState& s) noexcept {
   Pack speeds2 = splat(0.0);
   for (int i = 0; i < nodes_; i += kLanes) {

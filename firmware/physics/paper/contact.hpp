@@ -77,7 +77,7 @@ class ContactSolver {
   /// @see Simulation::contacts
   std::size_t points(const ThreadState& state, double step_s, std::span<ContactPoint> out) const noexcept;
   void forget() noexcept;
-  /// Without the tree, which every search builds again.
+  /// The members that an image saves (image.hpp): all but the tree, which every search builds again.
   [[nodiscard]] static auto members(ContactSolver& self) noexcept {
     auto& [settings, radius_m, nodes, obstacles, known, spheres, sweep, tree, pairs, candidates, old_candidates, due_m,
            gap_m, rows, velocity, travel_m, found_at_m, margin_m, step, report] = self;

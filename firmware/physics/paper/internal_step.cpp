@@ -18,11 +18,12 @@ namespace {
 constexpr double kShortest = 1e-9;  // lower bound of a segment's length in divisions, relative to the rest length
 
 // A swivel damper shares nodes with up to three others on each side, so dampers can be divided into four sets (colours)
-// without common nodes. A Jacobi step with weight 1/4 for each, 1 / (1 + 4 k dt g^T M^-1 g), then cannot overshoot.
+// without common nodes. A Jacobi step with weight 1/4 for each damper, 1 / (1 + 4 k dt g^T M^-1 g), then cannot
+// overshoot (k: coefficient, g: gradient of the damper's angle, M: masses).
 constexpr double kColours = 4.0;
 
-/// Directions and lengths of segments, impulses dt T_i of the stretch springs, and gain_i: additional impulse per
-/// stretch rate.
+/// Computes for each segment its direction, its length, the impulse dt T_i of its spring, and gain_i: the additional
+/// impulse per stretch rate.
 template <Terms T>
 void measure_segments(const ThreadModel& m, const ThreadState& s, InternalWorkspace& w) noexcept {
   using Law = std::conditional_t<T.quadratic_stretch, QuadraticStretchLaw, LinearStretch>;
@@ -121,7 +122,8 @@ void damp_bends(const ThreadModel& m, ThreadState& s, const Lane3& rate_v, Inter
   apply_turns(m, s, w);
 }
 
-/// Impulse of a damper with coefficient k (times dt) at a rate, given its mobility g^T M^-1 g.
+/// Impulse of a damper with coefficient k (times dt) at a rate. Its mobility g^T M^-1 g is the change of the rate per
+/// unit impulse (g: gradient of the length or angle, M: masses).
 template <Terms T>
 Pack damper_impulse(Pack k_dt, Pack rate, Pack mobility) noexcept {
   if constexpr (T.explicit_damping) return -k_dt * rate;

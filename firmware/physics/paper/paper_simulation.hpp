@@ -42,7 +42,8 @@ class PaperSimulation {
   void reset() noexcept;
   [[nodiscard]] bool continue_from(const PaperSimulation& other) noexcept;
   void set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept;
-  /// Without the step's function and the clock. The nodes as vectors are converted again.
+  /// The members that an image saves (image.hpp): all but the step's function, the clock, and the nodes as vectors,
+  /// which are converted again when they are asked for.
   [[nodiscard]] static auto members(PaperSimulation& self) noexcept {
     auto& [model, initial, state, before, work, internal, quadratic, forward, explicit_damping, has_limits,
            contact_kind, contact, paper_contact, course, limits, coupling, grasp, gravity, loads, substeps, time,
@@ -52,7 +53,7 @@ class PaperSimulation {
                     contact, paper_contact, course, limits, coupling, grasp, gravity, loads, substeps, tick_s, ticks,
                     kinetic_J, weight_J, rate_v, hands, health);
   }
-  /// Call when the members were loaded from an image.
+  /// Call after the members were loaded from an image.
   void loaded() noexcept { nodes_stale_ = velocities_stale_ = true; }
 
  private:

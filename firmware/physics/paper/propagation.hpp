@@ -6,12 +6,12 @@
 namespace ligature::physics {
 
 /// Force propagation along the thread, paper section IV, as length limits of the segments, solved for both hands at
-/// once. A taut segment transmits the axial part of the force, equation (16): (f_h . e_i) e_i. Equation (17) as printed
-/// transmits the part ACROSS the segment and is not used (docs/physics.md).
+/// once. A taut segment with the direction e_i transmits the axial part of the hand's force f_h, equation (16): (f_h .
+/// e_i) e_i. Equation (17) as printed transmits the part ACROSS the segment and is not used (docs/physics.md).
 ///   Condition A: a segment strictly inside (l_min, l_max) has no constraint force; only its spring acts.
 ///   Condition B: a segment at a limit is rigid and transmits the axial force: tension at l_max, compression at l_min.
 ///   Condition C: both hands hold the thread; they are two loads of one tridiagonal system G M^-1 G^T lambda =
-///   violation (G: gradients of the lengths, lambda: constraint impulses).
+///   violation (G: gradients of the lengths, M: masses, lambda: constraint impulses).
 /// Newton iterations on the positions (each with new directions) keep every segment within its limits to kTolerance of
 /// its rest length after each step, for any load.
 class LengthLimits {

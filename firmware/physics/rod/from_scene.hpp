@@ -9,7 +9,8 @@
 
 namespace ligature::physics::rod {
 
-/// Time steps, tolerances, work limits of a scene's `accuracy`; cost and error of each: docs/measurements/accuracy.md.
+/// The time steps, tolerances and work limits that belong to a scene's `accuracy`. docs/measurements/accuracy.md has
+/// cost and error of each setting.
 [[nodiscard]] Numerics numerics_of(const scene::Scene& scene) noexcept;
 
 /// The effects that the scene needs.

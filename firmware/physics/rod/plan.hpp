@@ -1,5 +1,6 @@
 #pragma once
-// How the rod adapts to what it can afford: one plan for each tick, from the plan of the last tick and what came of it.
+// Adapts the rod's work to the computing time that it has: each tick gets a plan, made from the plan of the last tick
+// and from what happened in it.
 
 #include <algorithm>
 
@@ -35,8 +36,8 @@ struct Plan {
 [[nodiscard]] Plan plan(const Plan& last, const TickReport& report, const Situation& now,
                         const Numerics& numerics) noexcept;
 
-/// Patience with a substep that Newton's method has not solved: it waits for the next tick, which continues it. When
-/// waiting has not helped for as long as the patience lasts, sweeps solve the substep, and the patience shrinks.
+/// How long a substep may wait that Newton's method has not solved. A waiting substep is continued in the next tick.
+/// After limit_ ticks of waiting, sweeps solve the substep instead, and the limit becomes smaller.
 class Patience {
  public:
   /// May the present substep wait for one more tick?

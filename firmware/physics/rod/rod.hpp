@@ -10,10 +10,11 @@
 namespace ligature::physics::rod {
 
 /// A simulated thread. Construct it, set its shape through state(), then call tick(). Only the constructor allocates,
-/// and an assignment from a rod of another size. By what a copy does with them its data are in three structs
-/// (rod_memory.hpp): RodKept is copied, RodNow begins anew, RodCache is forgotten and computed again. Without contact a
-/// copy continues as its original, to the bit. With contact it makes the list of pairs and the contact matrices again,
-/// which changes rounding (Copy.* in copies_test.cpp): they are large, and reset() copies within the real-time loop.
+/// and an assignment from a rod of another size. Its data are in three structs, which a copy treats differently
+/// (rod_memory.hpp): RodKept is copied, RodNow starts empty, RodCache is marked as missing and computed again. Without
+/// contact a copy continues as its original, to the bit. With contact it makes the list of pairs and the contact
+/// matrices again, which changes rounding (Copy.* in copies_test.cpp). They are not copied because they are large, and
+/// reset() copies within the real-time loop.
 class Rod : private RodKept, private RodNow, private RodCache {
  public:
   /// Starts straight along +x from the origin, at rest, with equally spaced nodes.
@@ -26,7 +27,7 @@ class Rod : private RodKept, private RodNow, private RodCache {
   Rod& operator=(Rod&&) noexcept = default;
   ~Rod() = default;
 
-  /// For images (image.hpp): all but RodNow, which every tick begins anew.
+  /// The members that an image saves (image.hpp): all but RodNow, which is reset at the start of every tick.
   [[nodiscard]] static auto members(Rod& self) noexcept {
     return std::tie(static_cast<World&>(self), static_cast<RodCourse&>(self), static_cast<RodMatter&>(self),
                     static_cast<RodCache&>(self));
@@ -118,8 +119,8 @@ class Rod : private RodKept, private RodNow, private RodCache {
   [[nodiscard]] bool sticks() const noexcept { return material_.static_friction > material_.friction; }
   /// Newton's method serves the tight contacts of knots; contact with floor and bodies is solved by sweeps.
   [[nodiscard]] bool solves_directly() const noexcept { return !parts_.turning && contacts_.only_pairs(); }
-  /// Number of nodes that contacts act on (the window); work that rows with their fewest passes may use; work that rows
-  /// with all their passes may use.
+  /// window: number of nodes from the first to the last on which contacts act. rows and passes: work that the contact
+  /// rows may use with their fewest passes, and with all their passes.
   struct Allowance {
     long window, rows, passes;
   };

@@ -41,8 +41,8 @@ struct World {
   LIGATURE_MEMBERS(World, gravity, floor_m, floor_friction, has_floor, bodies)
 };
 
-/// The thread's motion, and what earlier ticks have taught the rules that adapt to it: all that Rod::continue_from()
-/// takes over.
+/// The thread's motion, and the state of the rules that adapt the rod to its computing time: all that
+/// Rod::continue_from() takes over.
 struct RodCourse {
   State state_;
   Forces forces_;
@@ -73,7 +73,8 @@ struct RodMatter {
   Motion motion_;
   long list_cost_ = 0;      ///< work of the last broad phase
   bool mesh_held_ = false;  ///< the caller remeshes by Rod::remesh()
-  /// Without the pointer, which follows from the parts.
+  /// The members that an image saves (image.hpp): all but the pointer to the substep's function, which follows from the
+  /// parts.
   [[nodiscard]] static auto members(RodMatter& self) noexcept {
     auto& [material, numerics, parts, substep, near_m, spin, contacts, motion, list_cost, mesh_held] = self;
     return std::tie(material, numerics, parts, near_m, spin, contacts, motion, list_cost, mesh_held);
@@ -95,8 +96,8 @@ struct RodNow {
   bool braked_ = false;  ///< velocities of the last substep were scaled down after the hand forces were computed
 };
 
-/// What is computed again when it is missing, memory for it, and the clock. A copy keeps its own and forgets the
-/// contents.
+/// Data that is computed again when it is missing, the memory for it, and the clock. The target of a copy keeps its own
+/// memory and clock, and marks its data as missing.
 struct RodCache {
   BandSolver solver_;
   ContactMetric metric_;
@@ -108,7 +109,7 @@ struct RodCache {
   std::vector<Vec> v_before_;  ///< velocities at the start of the substep
 
   void forget() noexcept { metric_.invalidate(), stale_ = true; }
-  /// For images. Without the solver, which every substep fills anew, and v_before_.
+  /// The members that an image saves (image.hpp): all but v_before_ and the solver, which every substep fills again.
   [[nodiscard]] static auto members(RodCache& self) noexcept {
     auto& [solver, metric, metric_dt, broad, horizon_s, stale, work, v_before] = self;
     return std::tie(metric, metric_dt, broad, horizon_s, stale, work);

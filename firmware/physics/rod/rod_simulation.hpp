@@ -36,7 +36,7 @@ struct Stage {
   bool grippers_ = false;
   int gripper_body_ = 0;                  // index of the left gripper's capsule
   std::vector<Vec> x_before_, v_before_;  // scratch of tick()
-  /// Without what follows from the scene, and without scratch.
+  /// The members that an image saves (image.hpp): all but those that follow from the scene, and scratch memory.
   [[nodiscard]] static auto members(Stage& self) noexcept {
     auto& [initial, rod, reach_m, grippers, gripper_body, x_before, v_before] = self;
     return std::tie(rod, reach_m, grippers, gripper_body);
@@ -67,7 +67,7 @@ class RodSimulation : private HandsCourse, private Stage {
   [[nodiscard]] static auto members(RodSimulation& self) noexcept {
     return std::tie(static_cast<HandsCourse&>(self), static_cast<Stage&>(self));
   }
-  /// Call when the members were loaded from an image.
+  /// Call after the members were loaded from an image.
   void loaded() noexcept { initial_.numerics().given_work = rod_.numerics().given_work; }
 
   /// The rod itself, for tests and studies.

@@ -86,11 +86,12 @@ bool Rod::look(double dt_s) noexcept {
   return measured_ = true;
 }
 
-// Work that this substep may spend on setting up its contact rows and on passes over them. For each later substep of
-// the tick, 1.5 times the cost of the last contact detection and the cost of the last rows with their fewest passes are
-// reserved; and once the cost of a new list of pairs. Setting up rows may use all that is left. Passes beyond the
-// fewest get twice an equal share of what is not reserved, so that a hard substep leaves work for the next. Newton's
-// method may use everything, as a substep that does not converge is continued in the next tick.
+// Work that this substep may spend on setting up its contact rows and on passes over them. First the needs of the later
+// substeps of the tick are reserved: for each of them 1.5 times the cost of the last contact detection, and the cost of
+// the last rows with their fewest passes; and once the cost of a new list of pairs. Setting up rows may use all that is
+// left. Passes beyond the fewest get twice an equal share of what is not reserved, so that a hard substep leaves work
+// for the next. Newton's method may use everything, because a substep that does not converge is continued in the next
+// tick.
 Rod::Allowance Rod::work_allowed(bool metric_too) const noexcept {
   const long after = report_.substeps - substep_index_ - 1;
   const auto span = contacts_.span();
@@ -142,8 +143,8 @@ std::optional<Effort> Rod::choose_rows(double dt_s) noexcept {
                 settled(), tuning.enough * numerics_.settled_m_per_s};
 }
 
-// Newton's method with all the work that is left, as long as the substep may wait; otherwise with a share of it.
-// @return kLater when the substep is to be continued in the next tick.
+// Solves with Newton's method: with all the work that is left while the substep may still wait, otherwise with a share
+// of it. @return kLater when the substep is to be continued in the next tick.
 template <bool Friction>
 Outcome Rod::settle_directly(const Effort& effort) noexcept {
   if (!solves_directly() || patience_.sweeps_only()) return Outcome::kUnsolved;
@@ -196,7 +197,8 @@ bool Rod::settle(double dt_s) noexcept {
   return true;
 }
 
-// Leaves the substep to the next tick with its full budget; Newton's method then continues. Always false.
+// Leaves the substep to the next tick and its full budget; Newton's method then continues. @return always false, for
+// the caller's own return.
 bool Rod::put_off() noexcept {
   state_.v = v_before_;
   patience_.put_off();
@@ -204,8 +206,8 @@ bool Rod::put_off() noexcept {
   return false;
 }
 
-// The tick's time was over before the first sweep: the substep is repeated from its start in the next tick. Always
-// false.
+// The tick's time was over before the first sweep: the next tick repeats the substep from its start. @return always
+// false, for the caller's own return.
 bool Rod::give_up() noexcept {
   state_.v = v_before_;
   work_.spend(seen_.work);
@@ -213,10 +215,10 @@ bool Rod::give_up() noexcept {
   return false;
 }
 
-// Guard for pairs of segments that this substep has not measured, which may meet after a sudden acceleration such as a
-// release. The step is limited for pairs on the list by a lower bound of their distance, and for all other pairs by the
-// margin with which the list was made. If this shortens the step and work is left, a new list is made. @return
-// the admissible share of dt_s, or nothing when there is not enough work and the substep can wait.
+// Guard for pairs of segments that this substep has not measured, but which may meet after a sudden acceleration, such
+// as a release. Pairs on the list limit the step by a lower bound of their distance, all other pairs by the margin with
+// which the list was made. If this shortens the step and work is left, a new list is made. @return the admissible share
+// of dt_s, or nothing when there is not enough work and the substep can wait.
 std::optional<double> Rod::guard_unseen(double dt_s) noexcept {
   const double diameter = 2.0 * material_.radius_m, unseen = 0.9 * (diameter * BroadPhase::kLeastReach + near_m_);
   const double ahead_m = diameter * (tuning.skin_d + 0.9 * BroadPhase::kLeastReach);
@@ -287,8 +289,8 @@ void Rod::move(double dt_s, double share) noexcept {
 
 template <unsigned Bits>
 bool Rod::substep(double dt_s) noexcept {
-  // Contact does not depend on plastic bending, and a drum matters only when contacts are collected: fewer
-  // instantiations.
+  // Fewer versions of the templates need be compiled: solving contacts does not depend on plastic bending, and a drum
+  // matters only when contacts are collected.
   constexpr unsigned kLook = Bits & ~kSet, kRest = kLook & ~kDrum;
   constexpr bool kTouches = (Bits & (kContact | kWorld)) != 0;
   if constexpr (kTouches) {

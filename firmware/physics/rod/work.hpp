@@ -85,7 +85,8 @@ class Work {
   [[nodiscard]] long left() const noexcept { return time_.is_over() ? 0 : unspent(); }
   [[nodiscard]] TickTime& time() noexcept { return time_; }
   [[nodiscard]] const TickTime& time() const noexcept { return time_; }
-  /// Without the clock, which measures this machine.
+  /// The members that an image saves (image.hpp): all but the clock, because its measurements hold for this machine
+  /// only.
   [[nodiscard]] static auto members(Work& self) noexcept {
     auto& [budget, used, time] = self;
     return std::tie(budget, used);

@@ -124,8 +124,8 @@ void ContactSet::measure(const std::int32_t* places, const State& state) noexcep
   }
 }
 
-// Computes the corner vectors k_i of the smooth curve (smooth.hpp) at the nodes of the close pairs. All close pairs
-// touch at the same distance, the diameter.
+// Computes the corner vectors k_i of the smooth curve (smooth.hpp) at the nodes of the close pairs. One distance of
+// touch serves for all of them, because every close pair touches at the diameter.
 void ContactSet::bend(const State& state) noexcept {
   if (close_.empty()) return;
   const double diameter_m = pairs[static_cast<std::size_t>(due_[static_cast<std::size_t>(close_[0])])].reach_m;
@@ -199,7 +199,8 @@ bool ContactSet::take(Candidate& pair, const Measured& m, const State& state, co
   double s = m.s, t = m.t;
   pair.due = std::min(m.distance_m, m.chord_m - pair.bulge_m) - pair.reach_m + motion.gone(a, b);
   report.min_gap_m = std::min(report.min_gap_m, gap);
-  // Only near_m + 2 dt x the points' own relative speed counts, a tighter test than the bound used in find_due().
+  // A pair becomes a contact if its gap is below near_m + 2 dt x the relative speed of its two points. find_due() used
+  // an upper bound of this speed, so not every pair that it measured becomes a contact.
   const Vec u = (1.0 - t) * state.v[b] + t * state.v[b + 1] - (1.0 - s) * state.v[a] - s * state.v[a + 1];
   const bool full = contacts_.size() >= static_cast<std::size_t>(kMaxContacts);
   if (full || (spare > 0.0 && spare * spare > 4.0 * dt_s * dt_s * dot(u, u))) {

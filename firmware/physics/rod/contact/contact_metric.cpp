@@ -29,7 +29,8 @@ void ContactMetric::factor(const Mesh& mesh, const Material& material, double dt
   const auto n = static_cast<std::size_t>(mesh.nodes()), z = static_cast<std::size_t>(last_);
   const double bend = dt_s * (dt_s + material.bend_tau_s), inertia = 1.0 + material.drag_per_s * dt_s;
   const auto diag = [&](std::size_t i) { return mesh.mass[i] * inertia + bend * mesh.kd[i]; };
-  // Nodes from the thread's end down to last_: only the pivots d and the factors f need be kept.
+  // Elimination from the thread's end down to node last_. Of these nodes only the pivots d and the factors f need be
+  // kept.
   double d1 = 0.0, d2 = 0.0, f1 = 0.0;  // pivots of i+1 and i+2; elimination factor of i+1
   double on_last = 0.0, on_before = 0.0, on_pair = 0.0;
   for (std::size_t i = n; i-- > z;) {

@@ -12,10 +12,11 @@
 
 namespace ligature::physics::rod {
 
-/// C = M (1 + c dt) + dt (dt + tau_b) K_b: the matrix A of a substep (assembly.hpp) without its stretch, geometric and
-/// hold terms. C is a scalar pentadiagonal matrix times the 3 x 3 identity and constant while mesh and dt are. Because
-/// A >= C, J A^-1 J^T <= J C^-1 J^T, so an impulse step computed with C never overshoots (a majorise-minimise argument
-/// for the frictionless problem). With C a contact has the same effective mass in all directions.
+/// C = M (1 + c dt) + dt (dt + tau_b) K_b, with masses M, air drag c, damping time tau_b and bending matrix K_b: the
+/// matrix A of a substep (assembly.hpp) without its stretch, geometric and hold terms. C is a scalar pentadiagonal
+/// matrix times the 3 x 3 identity and constant while mesh and dt are. Because A >= C, J A^-1 J^T <= J C^-1 J^T (J:
+/// rows of all contacts), so an impulse step computed with C never overshoots (a majorise-minimise argument for the
+/// frictionless problem). With C a contact has the same effective mass in all directions.
 class ContactMetric {
  public:
   void reserve(int nodes, int window);
@@ -36,7 +37,8 @@ class ContactMetric {
   [[nodiscard]] const float* row(int node) const noexcept {
     return row_.data() + static_cast<std::size_t>(node - first_) * stride_;
   }
-  /// Without scratch. Of the rows only those of the window: in_use().
+  /// The members that an image saves (image.hpp): all but the capacity and scratch memory. in_use(): of the rows, only
+  /// those of the window are saved.
   [[nodiscard]] static auto members(ContactMetric& self) noexcept {
     auto& [capacity, first, last, stride, table, row, d, l1, l2] = self;
     return std::tie(first, last, stride);

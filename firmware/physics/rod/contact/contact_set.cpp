@@ -53,7 +53,9 @@ ContactSet& ContactSet::operator=(const ContactSet& other) {
   return *this;
 }
 
-// sum of 1/2 p . (u + u_free) - target p_n + 1/2 soft p_n^2: the objective that frictionless impulses minimise.
+// The objective that frictionless impulses minimise: sum of 1/2 p . (u + u_free) - target p_n + 1/2 soft p_n^2 over the
+// rows, with impulse p, its normal part p_n, relative velocity u, relative velocity without impulses u_free, wanted
+// normal velocity `target`, and the contact's compliance `soft`.
 template <bool Turns>
 double ContactSet::merit(const Vec* v) const noexcept {
   double sum = 0.0;
@@ -187,8 +189,8 @@ double ContactSet::plain_pass(BandSolver& solver, Vec* v, TickTime& time) noexce
   return push(solver, v);
 }
 
-// Anderson mixing: the mixed impulses, limited to their cones, are kept only if their merit is no worse than that of
-// the plain pass.
+// Anderson mixing: the mixed impulses, limited to their cones, are kept only if merit() is no larger for them than for
+// the impulses of the plain pass.
 template <bool Turns>
 void ContactSet::mix(BandSolver& solver, Vec* v) noexcept {
   if (!mixing_.step(p_.data(), residual_.data(), loaded_.size())) return;

@@ -75,7 +75,7 @@ struct Contact {
   Borrowed<char> stuck;                 ///< storage between substeps: did static friction hold?
   std::int32_t place[kMostNodes] = {};  ///< indices of the nodes in SweptVelocities
   float weight[kMostNodes] = {};        ///< w in single precision
-  /// Without the pointers, which serve within one substep.
+  /// The members that an image saves (image.hpp): all but the pointers, which are valid within one substep only.
   [[nodiscard]] static auto members(Contact& self) noexcept {
     auto& [node, w, n, surface, p, u_free, gap_m, target, inv_w, soft, inv_soft_w, mu, first, last, count, reach_m,
            distance_m, loaded, keep, pair, stuck, place, weight] = self;
@@ -140,7 +140,7 @@ class ContactWork {
   struct Span {
     int first, last;
   };
-  /// Without what a substep finds anew.
+  /// The members that an image saves (image.hpp): all but those that each substep computes again.
   [[nodiscard]] static auto members(ContactWork& self) noexcept {
     auto& [watched, awake, due, close, far, measured, corner, share, bent, gaps, columns, swept, extra, step, loaded, p,
            plain, residual, mixing, newton, u, v_start, p_start, start_error2, turning, spin, segments, radius_m,
@@ -194,17 +194,19 @@ class ContactWork {
 /// and every step charges its work to the budget (work.hpp). A contact that is collected but not chosen gets no
 /// impulse; only the guard keeps it from passing through.
 ///
-/// Conditions of a contact: u_n >= -gap / dt while apart, u_n >= min(-beta gap / dt, limit) while overlapping, and
-/// u_t = 0 unless |p_t| = mu p_n. Friction is exact Coulomb friction, without a slip tolerance. With a separate static
-/// coefficient (let_stick()), mu is the static one as long as the contact did not slide in the last substep.
+/// Conditions of a contact, with relative velocity u, impulse p, their parts u_n, p_n along the normal and u_t, p_t
+/// across it, time step dt and friction coefficient mu: u_n >= -gap / dt while apart, u_n >= min(-beta gap / dt, limit)
+/// while overlapping (beta: share of an overlap that a step removes), and u_t = 0 unless |p_t| = mu p_n. Friction is
+/// exact Coulomb friction, without a slip tolerance. With a separate static coefficient (let_stick()), mu is the static
+/// one as long as the contact did not slide in the last substep.
 ///
 /// settle() starts from the impulses of the last substep. Each pass runs one projected Gauss-Seidel sweep with the
 /// simplified matrix C (contact_metric.hpp), then applies the change of p with the full matrix A. C lacks the stretch
-/// terms, so along the thread's axis this alone would need hundreds of passes; Anderson mixing speeds it up
-/// (mixing.hpp). It ends when a pass changes no velocity by more than `settled_m_per_s`, or after `passes`.
+/// terms, so without Anderson mixing (mixing.hpp) hundreds of passes would be needed along the thread's axis. settle()
+/// ends when a pass changes no velocity by more than `settled_m_per_s`, or after `passes`.
 ///
-/// The window is the range of nodes from the first to the last on which any row acts. Only its velocities are solved
-/// with contacts, so a pass costs in proportion to rows x nodes of the window, not of the whole thread.
+/// The window is the range of nodes from the first to the last on which any row acts. Only the window's velocities are
+/// solved with contacts, so a pass costs in proportion to rows x nodes of the window, not of the whole thread.
 class ContactSet : public ContactMemory, public ContactWork {
  public:
   ContactSet() = default;
@@ -359,8 +361,8 @@ class ContactSet : public ContactMemory, public ContactWork {
     ContactReport& report;
     long nodes;    ///< number of nodes in the window
     int look = 0;  ///< checks of all contacts so far
-    /// Was the inverse matrix Z = A^-1 computed in this substep? Did the search begin with the impulses of an earlier,
-    /// unfinished attempt at this substep?
+    /// fresh: the inverse matrix Z = A^-1 was computed in this substep. resumed: the search began with the impulses of
+    /// an earlier, unfinished attempt at this substep
     bool fresh = false, resumed = false;
     [[nodiscard]] bool can_pay(long cost) const noexcept { return report.work + cost <= effort.work; }
     [[nodiscard]] bool pay(long cost) noexcept {

@@ -91,7 +91,8 @@ void Motion::restart() noexcept {
   std::copy(drift_.begin(), drift_.end(), drift_allowed_.begin());
 }
 
-// Tests the two bounds of the motion separately: if each stays within its own allowance, so does the smaller of them.
+// Each of the two bounds of the motion is tested against its own allowance. If neither exceeds it, the smaller of the
+// two bounds does not either.
 bool Motion::used_up(double spare_m, double horizon_s, double ahead_s) const noexcept {
   if (2.0 * (furthest_ + ahead_s * fastest_) <= spare_m) return false;
   double one = 0.0;

@@ -48,8 +48,8 @@ class Motion {
     return std::min(block_travel_[p] + block_travel_[q], strayed_[end(q)] - strayed_[p * kBlock]);
   }
 
-  /// Can any pair have moved since restart(), ahead_s from now included, by more than spare_m + horizon_s x its rate()
-  /// at restart()?
+  /// Can any pair of segments move, between restart() and ahead_s from now, by more than spare_m + horizon_s x the
+  /// rate() that it had at restart()?
   [[nodiscard]] bool used_up(double spare_m, double horizon_s, double ahead_s) const noexcept;
 
   /// Share of a step dt_s at the present velocities for which used_up() is still false; rounded down to a power of 1/2,

@@ -145,7 +145,8 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
   pair.reach_m = reach;
   pair.bulge_m = bulge;
   pair.near_m = std::min(outlook.near_m, tuning.bent * (arc - reach));
-  // On a straight thread the spheres of neighbours give their exact gap, so it need not be measured.
+  // The bounding spheres of neighbours on a straight thread give their exact gap, so such a pair need not be measured
+  // yet.
   pair.due = along ? static_cast<double>(std::sqrt(apart2) / kSlack - halves) - reach : 0.0;
   if (!along || pair.due < tuning.straight * (arc - reach)) {
     spent_ += price::kExact;

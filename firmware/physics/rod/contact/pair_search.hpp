@@ -82,7 +82,8 @@ class BroadPhase {
 
   /// Part of the cost of a build() that does not depend on how many segments are near each other, in instructions.
   [[nodiscard]] static long least_cost(int nodes) noexcept;
-  /// A build() needs nothing from the one before.
+  /// The members that an image saves (image.hpp): only the work that was spent, because a build() needs nothing from
+  /// the build() before.
   [[nodiscard]] static auto members(BroadPhase& self) noexcept {
     auto& [capacity, spent, allowance, asked, time, x, y, z, half, bulge, blocks, tree, kept, places] = self;
     return std::tie(spent);

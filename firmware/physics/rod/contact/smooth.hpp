@@ -10,16 +10,17 @@
 
 namespace ligature::physics::rod {
 
-/// Segment j of the quadratic B-spline of the nodes, which touches every chord in its middle and cuts the corners:
+/// Segment j of the quadratic B-spline of the nodes, which touches every chord in its middle and cuts the corners. With
+/// the nodes x_j, the chords e_j = x_{j+1} - x_j and (a)_+ = max(0, a), its point at the fraction s of the chord is
 ///   P(s) = x_j + s e_j + 1/8 (1 - s / h)_+^2 k_j + 1/8 (1 - (1 - s) / h')_+^2 k_{j+1}
 /// with h = h' = 1/2 and k_i = e_i - e_{i-1}; an end of the thread has no corner. Position and tangent are continuous
 /// from segment to segment, so the contact normal turns smoothly as strands slide; on the polygon the normal, and with
-/// it the force, would jump by the angle of a corner. The corner at node i is a parabola from x_i - h' e_{i-1} to
-/// x_i + h e_i, so in general
+/// it the force, would jump by the angle of a corner. The corner at node i is a parabola from x_i - h' e_{i-1} to x_i +
+/// h e_i, so in general
 ///   k_i = 2 (h e_i - h' e_{i-1}).
 /// When a segment is split, doubling the h of the halves keeps the curve unchanged; h then fades back to 1/2
-/// (State::cut_before, cut_after; refine.hpp). P is linear in the nodes, so an impulse at P acts on each node with
-/// that node's weight in P. Vector, Number: Vec and double for one segment, Vecs and Lanes for four.
+/// (State::cut_before, cut_after; refine.hpp). P is linear in the nodes, so an impulse at P acts on each node with that
+/// node's weight in P. Vector, Number: Vec and double for one segment, Vecs and Lanes for four.
 template <class Vector, class Number>
 struct SmoothOf {
   Vector x{}, e{}, before{}, after{};  ///< node, chord, k_j and k_{j+1}, m

@@ -83,8 +83,8 @@ void Jaws::choose(Rod& rod, Vec tool) noexcept {
     rod.release(*hold);
     *hold = hold_[static_cast<std::size_t>(--count_)];
   };
-  // One hold keeps the roll. If its node leaves the jaws, it goes last: a new hold takes over the roll beside it, so
-  // that the thread stays twisted as it is.
+  // One of the holds also fixes the roll. If its node leaves the jaws, this hold is released last: first a new hold
+  // beside it takes over the roll, so that the thread keeps its twist.
   int* keeper = hold_.data();
   for (int* hold = hold_.data(); hold != hold_.data() + count_; ++hold)
     if (state.holds[static_cast<std::size_t>(*hold)].holds_roll) keeper = hold;

@@ -43,8 +43,8 @@ class Jaws {
   /// Place that jaws at `tool` would hold: with a width, the nearest place next to the node; without, the node.
   [[nodiscard]] Place would_hold(const Rod& rod, int node, Vec tool) const noexcept;
   void open(Rod& rod) noexcept;
-  /// Call before each tick with the tool's position at the end of the tick, m. Writes the target positions of the held
-  /// nodes into `goals`.
+  /// Call before each tick with the position that the tool will have at the end of the tick, m. Writes the target
+  /// positions of the held nodes into `goals`.
   void follow(Rod& rod, Vec tool, std::array<Vec, kMaxHolds>& goals, const Mat* R_WT = nullptr) noexcept;
   /// Call when the rod was reset: its holds no longer exist.
   void forget() noexcept { count_ = 0; }

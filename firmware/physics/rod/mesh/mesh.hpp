@@ -13,7 +13,8 @@ namespace ligature::physics::rod {
 /// Is the tangent at a node free or imposed?
 enum class Clamp : std::uint8_t { kFree, kClamped };
 
-/// Rest lengths l_j, lumped masses m_i = rho (l_{i-1} + l_i) / 2, and the scalar pentadiagonal bending matrix K_b of
+/// Rest lengths l_j, lumped masses m_i = rho (l_{i-1} + l_i) / 2 (rho: mass per length), and the scalar pentadiagonal
+/// bending matrix K_b of the bending energy (x_j: positions of the nodes, EI: bending stiffness)
 ///   E_b = sum_i w_i / 2 |t_i - t_{i-1}|^2,  w_i = 2 EI / (l_{i-1} + l_i),  t_j = (x_{j+1} - x_j) / l_j,
 /// which is quadratic in the positions: the force is linear, with the same constant matrix for x, y and z, also for
 /// unequal segments. A clamped end adds a half vertex of weight 2 EI / l, with the clamp's direction as the missing

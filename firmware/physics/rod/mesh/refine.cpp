@@ -12,7 +12,8 @@ namespace {
 constexpr double kCut = 0.5;         // share of a segment that the smooth curve cuts off at a corner (h, smooth.hpp)
 constexpr double kLeastFade = 1e-3;  // > 0, as Spin::before_fading() divides by the factor
 
-// Shift the tail of an array by one place, to open a slot at `at` or to close it. The size stays the same.
+// Opens a free slot at `at` in an array, or closes that slot, by shifting the tail of the array by one place. The
+// array's size stays the same.
 template <class T>
 void open_slot(std::vector<T>& array, std::size_t at) noexcept {
   std::move_backward(array.begin() + static_cast<std::ptrdiff_t>(at), array.end() - 1, array.end());
@@ -262,7 +263,8 @@ void Refine::slide(const State& state, double tick_s, bool drifts) noexcept {
   std::fill(strain_fade_.begin(), strain_fade_.end(), tuning.fade);
 }
 
-// Fading an offset adds stress or removes it; where it adds stress, the elastic energy grows without a source.
+// Where the fading of an offset adds stress, the elastic energy grows without a source. So the fading is weakened
+// there, as far as needed.
 double Refine::hold_back(const Material& material, const State& state, std::span<const Vec> born,
                          double allowance_J) noexcept {
   const Mesh& mesh = state.mesh;
@@ -283,7 +285,8 @@ double Refine::hold_back(const Material& material, const State& state, std::span
   for (std::size_t i = 1; i + 1 < n; ++i) count(bend_gain(i));
   for (std::size_t j = 0; j + 1 < n; ++j) count(strain_gain(j));
   if (up_J + down_J <= allowance_J) return up_J + down_J;
-  // The energy gain is convex in the amount of fading: a share of the fading gains at most that share of the energy.
+  // The energy gain is a convex function of the amount of fading. So if only this share of the fading is done, the gain
+  // is at most this share of the whole one.
   const double share = (allowance_J - down_J) / up_J;
   for (std::size_t i = 1; i + 1 < n; ++i)
     if (bend_gain(i) > 0.0) fade_[i] = 1.0 - share * (1.0 - fade_[i]);

@@ -79,10 +79,11 @@ class Refine {
   std::vector<double> tension_;
 };
 
-/// Can segments node - 1 and node be replaced by their chord without touching anything? Every point of them then moves
-/// by at most h, the distance of the node from the chord's point with the same material coordinate. So anything farther
-/// away than h cannot be crossed. The test demands h + the distance of touch, so that no overlap arises either; for
-/// neighbours along the thread, which are always near, only h. O(n); a bounding sphere excludes most segments.
+/// Can segments node - 1 and node be replaced by their chord without touching anything? Each of their points then moves
+/// by at most h, the distance between the node and the chord's point with the same material coordinate. So anything
+/// farther away than h cannot be crossed. The test demands h + the distance of touch, so that no overlap arises either.
+/// For neighbours along the thread, which are always near, it demands only h. O(n); a bounding sphere excludes most
+/// segments.
 [[nodiscard]] bool merge_is_clear(const Material& material, const State& state, const std::vector<Body>& bodies,
                                   std::size_t node) noexcept;
 

@@ -52,9 +52,9 @@ void half_twists(Forces& f, std::size_t n) noexcept {
   for (; i + 1 < n; ++i) f.half_twist[i] = f.twist_moment[i] / (1.0 + dot(u[i - 1], u[i]));
 }
 
-// Every vertex (node between two segments) loads both segments: with the bending term w (t_i - t_{i-1} - stress-free
-// bend), w = EI over the length of the vertex, and with half of the twisting moment times the curvature binormal. The
-// difference of these terms at the two ends of a segment, divided by its length, is its transverse force.
+// Every vertex (node between two segments) loads both of its segments with two terms: the bending term w (t_i - t_{i-1}
+// - stress-free bend), where w is EI over the length of the vertex, and half of the twisting moment times the curvature
+// binormal. The transverse force of a segment is the difference of these terms at its two ends, divided by its length.
 template <bool Twist>
 void vertices(const Material& m, const State& state, Forces& f) noexcept {
   const Mesh& mesh = state.mesh;

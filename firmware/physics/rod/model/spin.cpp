@@ -21,7 +21,8 @@ void Spin::give_moments(const Material& material, const State& state, Forces& fo
   }
 }
 
-// Twisting moment at vertex i on the side of segment i - 1 (into) and on the side of segment i (out of).
+// Twisting moment at vertex i: on the side of segment i - 1 (into_vertex) and on the side of segment i (out_of_vertex).
+// The two differ where a hold fixes the roll.
 double Spin::into_vertex(const Material& m, const State& state, std::size_t i) const noexcept {
   if (i == 0) return 0.0;
   if (held_[i]) return m.GJ_N_m2 * (2.0 * before_[i] * state.mesh.inv_rest[i - 1] - m.born_twist_per_m);

@@ -14,10 +14,11 @@ namespace ligature::physics::rod {
 
 /// Material frames: segment j carries a unit director u_j across its tangent t_j and turns at rate w_j about it.
 ///   I_j dw_j/dt = M_{j+1} - M_j + bending + contacts,   I_j = rho r^2 l_j / 2,   M_i = C (m_i / l_i - born twist),
-/// m_i the angle from u_{i-1}, parallel-transported from t_{i-1} to t_i, to u_i. In M_i, l_i is the vertex length: the
-/// mean of the two segments. A hold that fixes roll acts on the halves of its two segments: M = 2 C angle / l_j each
-/// [Bergou 2008, material frames, here with the thread's rotational inertia]. A thread whose stress-free curvature
-/// about a material axis is k has no bending moment where
+/// with mass per length rho, radius r and twisting stiffness C; m_i is the angle from u_{i-1}, parallel-transported
+/// from t_{i-1} to t_i, to u_i. In M_i, l_i is the vertex length: the mean of the two segments. A hold that fixes roll
+/// acts on the halves of its two segments: M = 2 C angle / l_j each [Bergou 2008, material frames, here with the
+/// thread's rotational inertia]. A thread whose stress-free curvature about a material axis is k has no bending moment
+/// where
 ///   t_i - t_{i-1} = 2 sin(k l_i / 2) d_i,   d_i the mean director of the vertex.
 /// Elsewhere the bending moment Q_i turns it about its axis, by the torque k l_i Q_i . (t_i x d_i). Implicit Euler in w
 /// (tridiagonal system); frames are aligned with the new tangents once per tick. Plastic bends add to the stress-free
@@ -34,8 +35,8 @@ class Spin {
 
   /// Part of State::rest_bend that is the thread's own stress-free shape and must not fade.
   [[nodiscard]] std::span<const Vec> born() const noexcept { return born_; }
-  /// Call before Refine::fade_offsets(), with its factors: scales the born() part of State::rest_bend up, so that it
-  /// has its old value after the fading.
+  /// Call before Refine::fade_offsets(), with the same factors. Scales up the part born() of State::rest_bend (the
+  /// thread's real rest curvature), so that this part has its old value after the fading.
   void before_fading(State& state, std::span<const double> fade) const noexcept;
   /// Once per tick: aligns the frames with the new tangents (and the new mesh), and computes angles and moments. A
   /// hold's rotation since the last tick is applied at a constant rate during this one.

@@ -8,8 +8,9 @@
 
 namespace ligature::physics::rod {
 
-/// Between two holds that fix roll (a span) the twist is uniform, because a twist wave crosses 0.3 m of nylon in
-/// 0.4 ms, less than a tick. So one angle Theta per span describes it [Bergou 2008, quasi-static material frame]:
+/// Between two holds that fix roll (a span) the twist is uniform, because a twist wave crosses 0.3 m of nylon in 0.4
+/// ms, less than a tick. So one angle Theta per span describes it [Bergou 2008, quasi-static material frame], with the
+/// energy E and the twisting moment M of a span of length L and twisting stiffness C:
 ///   E = C Theta^2 / 2 L,   M = C Theta / L.
 /// Theta is the angle from the director at one end, transported along the centreline by the Bishop (parallel) frame, to
 /// the director at the other end, whole turns included. A span with a free end has M = 0. The force on the centreline

@@ -49,7 +49,8 @@ class BandColumns {
   [[nodiscard]] std::size_t stride() const noexcept {
     return kBlock * ((static_cast<std::size_t>(width()) + 1) & ~std::size_t{1});
   }
-  /// Without the column under way. Of the columns only those that are made: in_use().
+  /// The members that an image saves (image.hpp): all but the memory for the column that is being computed. in_use():
+  /// only computed columns are saved.
   [[nodiscard]] static auto members(BandColumns& self) noexcept {
     auto& [first, last, made, core, out, s_inverse, one, two, skip, between, next_h, x, place, wanted, columns] = self;
     return std::tie(first, last, made, core, out, s_inverse, one, two, skip, between, next_h, place, wanted);

@@ -68,8 +68,8 @@ class BandSolver {
   [[nodiscard]] std::ptrdiff_t steps() const noexcept;
   static Pivot pivot_of(const TwoSyms& s) noexcept;
   static TwoSyms eliminate(const Rows& a, const Step& p, Step& q, const Pivot& pivot, TwoMats& h, Twos& y) noexcept;
-  /// Back substitution: solution at step k, from the eliminated right-hand side w and the solutions at steps k - 1
-  /// (one) and k - 2 (two).
+  /// Back substitution. @return the solution at step k, from the eliminated right-hand side w and from the solutions at
+  /// step k - 1 (`one`) and step k - 2 (`two`).
   [[nodiscard]] Twos substitute(std::ptrdiff_t k, const Twos& w, const Twos& one, const Twos& two) const noexcept {
     const Step& s = steps_[static_cast<std::size_t>(k)];
     const TwoMats& h = k > 0 ? steps_[static_cast<std::size_t>(k) - 1].h : core_h_;

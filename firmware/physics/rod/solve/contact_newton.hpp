@@ -18,14 +18,15 @@ namespace ligature::physics::rod {
 
 struct Contact;
 
-/// A contact is solved when its impulse p is a fixed point of its natural map: with u its relative velocity,
+/// A contact is solved when its impulse p is a fixed point of its natural map. With its relative velocity u, wanted
+/// normal velocity `target`, compliance `soft`, friction coefficient mu and step lengths r_n, r_t, the map is
 ///   p_n = max(0, p_n - r_n (u_n + soft p_n - target)),   p_t = disc(mu p_n, p_t - r_t u_t),
 /// disc(s, q) the point of the disc of radius s nearest to q [Alart & Curnier 1991]. u = u_free + W p, and W = J Z J^T
-/// with Z = A^-1, stretch included. The map is linear as long as no contact changes its kind (open, sticking, sliding).
-/// So each step fixes the kinds and solves a linear system: an open contact has no unknown; a sticking one has three;
-/// a sliding one, with sliding direction d, has two: one along n + mu d, and one across d with a compliance that
-/// accounts for the rotation of d. Then the kinds are determined again (a primal-dual active set method [Hintermueller
-/// 2003]). Impulses may leave their cones on the way.
+/// with Z = A^-1, stretch included (J: rows of all contacts). The map is linear as long as no contact changes its kind
+/// (open, sticking, sliding). So each step fixes the kinds and solves a linear system: an open contact has no unknown;
+/// a sticking one has three; a sliding one, with sliding direction d, has two: one along n + mu d, and one across d
+/// with a compliance that accounts for the rotation of d. Then the kinds are determined again (a primal-dual active set
+/// method [Hintermueller 2003]). Impulses may leave their cones on the way.
 ///
 /// Without damping this cycles: a few wrong kinds, and impulses to which velocities hardly respond (cond W is 1e5)
 /// become a thousand times too large, which makes all other kinds wrong. So a term proportional to the change of each
@@ -70,9 +71,10 @@ class ContactNewton {
   }
   [[nodiscard]] int nodes() const noexcept { return z_.width(); }  ///< number of nodes that Z covers
 
-  /// Determines the kind (open, sticking, sliding) of each contact in the system from impulses p and velocities u.
-  /// @return the square of the largest residual, (m/s)^2: distance of an impulse from its value under the natural map,
-  /// times the contact's own velocity per impulse.
+  /// Determines the kind (open, sticking, sliding) of each contact in the system from impulses p and velocities u. The
+  /// residual of a contact is the distance of its impulse from the value under the natural map, times the contact's own
+  /// velocity per impulse.
+  /// @return the square of the largest residual, (m/s)^2.
   template <bool Friction>
   [[nodiscard]] double read(const Contact* rows, const Vec* p, const Vec* u) noexcept;
 
@@ -97,7 +99,7 @@ class ContactNewton {
   /// the system is singular or the time was over first (p and u are unchanged), or when the solution is not finite.
   template <bool Friction>
   bool solve(const Contact* rows, Vec* p, Vec* u, TickTime& time = TickTime::endless()) noexcept;
-  /// Without what one Newton step computes for itself.
+  /// The members that an image saves (image.hpp): all but those that every Newton step computes again.
   [[nodiscard]] static auto members(ContactNewton& self) noexcept {
     auto& [z, spread, slot, at, rows, slots, coupled, put_off, begins, changed, error2, last_error2, cost, w, unknowns,
            count, carrying, dense, on, stuck, with, rest] = self;

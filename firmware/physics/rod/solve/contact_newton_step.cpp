@@ -210,8 +210,8 @@ bool ContactNewton::assemble(const Vec* p, TickTime& time) noexcept {
     if (!pieces.allow(300 + 8 * static_cast<long>(n))) return false;
     make_row<Friction>(i);
   }
-  // Parts of the present impulses along which there is no unknown are removed by this step. The velocity change of
-  // removing them enters the right-hand side.
+  // This step removes those parts of the present impulses for which the system has no unknown. The velocity change by
+  // their removal enters the right-hand side.
   for (const auto k : rows_) rest_[slot_of(k)].v = p[k].v;
   for (const auto& x : unknowns_) rest_[x.slot] -= x.now * x.with;
   answer_all(rest_.data());

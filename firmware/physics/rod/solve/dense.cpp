@@ -58,7 +58,8 @@ bool Dense::pivot(std::size_t k) noexcept {
 // and eliminates column i from the panel's rows. @return false, and nothing is changed, when its pivot has shrunk.
 template <std::size_t Before>
 bool Dense::join(std::size_t k) noexcept {
-  // A pivot has shrunk if it is below kShrunk times its value before this panel, or kNoise times its initial value.
+  // A pivot counts as shrunk if it is below kShrunk times its value before this panel, or below kNoise times its
+  // initial value.
   constexpr float kShrunk = 1e-4F, kNoise = 1e-6F;
   const std::size_t i = k + Before, from = k & ~std::size_t{7};
   float *const a = row(i), *const top = row(k);
@@ -128,7 +129,7 @@ void Dense::substitute() noexcept {
       const Eight at = load_eight(x + j);
       for (std::size_t i = 0; i < 2 * kPanel; ++i) sum[i] += load_eight(rows[i] + j) * at;
     }
-    // x is still zero up to the end of the panel, so left-over matrix entries there add nothing.
+    // The unknowns x up to the end of this panel are still zero, so left-over matrix entries there add nothing.
     for (std::size_t i = 0; k + i < end; ++i) {
       const Eight s = sum[i];
       x[k + i] = rows[i][n_] - (((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7])));

@@ -29,8 +29,8 @@ double sum(Lanes a) noexcept { return (a[0] + a[1]) + a[2]; }
 
 }  // namespace
 
-// Stores the newest changes dr, dp in `slot`. Computes the dot products of the new dr with all stored dr (products_),
-// and of all stored dr with r (theta). One pass over the impulses.
+// Stores the newest changes dr, dp in `slot`. In one pass over the impulses it computes two sets of dot products: of
+// the new dr with all stored dr (into products_), and of all stored dr with r (into theta).
 void Mixing::measure(const Vec* p, const Vec* r, std::size_t impulses, std::size_t slot, Row& theta) noexcept {
   Lanes g0{}, g1{}, g2{}, g3{}, b0{}, b1{}, b2{}, b3{};
   for (std::size_t i = 0; i < impulses; ++i) {

@@ -24,7 +24,8 @@ struct Twos {
 }
 template <int Lane>
 [[nodiscard]] inline Vec lane(const Twos& a) noexcept {
-  // Blended with zeros last: otherwise the compiler emits a `vmovq` of two registers, which valgrind does not support.
+  // The zeros come last in the shuffle: otherwise the compiler emits a `vmovq` of two registers, which valgrind does
+  // not support.
   const Two xy = __builtin_shufflevector(a.x, a.y, Lane, 2 + Lane), zz = __builtin_shufflevector(a.z, a.z, Lane, Lane);
   const Lanes xyzz = __builtin_shufflevector(xy, zz, 0, 1, 2, 3);
   return {__builtin_shufflevector(xyzz, Lanes{}, 0, 1, 2, 7)};
