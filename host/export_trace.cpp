@@ -16,7 +16,7 @@ namespace {
 using Tick = ligature_msg::tick_t;
 using Json = nlohmann::ordered_json;
 
-/// Tracks of a session. The numbers are thread ids of the format, and order the tracks in the viewer.
+/// Tracks of a session in the viewer. The numbers are the format's thread ids; the viewer sorts the tracks by them.
 enum Track : int { kLoop = 1, kPhysics = 2, kBuses = 3, kEvents = 4 };
 
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }

@@ -45,7 +45,8 @@ class FlightReader {
     RigFacts facts;
     bool admitted = true;  ///< false: admission failed, and the run was started with --force
   };
-  /// In order of time. The first is the scene in force at the start of the run, or at the oldest tick that is known.
+  /// The scenes of the run in order of time. The first is the scene in force at the start of the run, or at the oldest
+  /// tick that is known.
   [[nodiscard]] const std::vector<Scene>& scenes() const { return scenes_; }
   [[nodiscard]] const Scene& scene_at(std::int64_t tick) const;
 

@@ -40,8 +40,8 @@ class GapFiller {
   /// @return number of ticks fetched.
   std::int64_t fill(const SessionTally& sessions, const Emit& emit, Ends ends = Ends::kOpen);
 
-  /// Whether fill() with kClosed has read this session's flight recorder file, so that the session's last tick is
-  /// known.
+  /// Whether the last tick of this session is known, because fill() with kClosed has read the session's flight recorder
+  /// file.
   [[nodiscard]] bool knows_end_of(std::int64_t session) const { return ended_.contains(session); }
   /// A flight recorder file that a status named outside the allowed folders; empty when there was none.
   [[nodiscard]] const std::string& outside() const { return outside_; }

@@ -10,7 +10,8 @@
 namespace ligature::host {
 namespace {
 
-/// "lost in session 1: ticks 100..119, 400 (21; 0 of them dropped inside the firmware)", or nothing.
+/// A text such as "lost in session 1: ticks 100..119, 400 (21; 0 of them dropped inside the firmware)"; empty when no
+/// tick is missing.
 std::string describe_losses(const Session& session, int number, std::size_t max_ranges) {
   std::string line;
   if (session.ticks.first() > 1)  // ticks before the recorder was started do not count as lost, but they are absent

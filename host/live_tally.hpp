@@ -24,7 +24,8 @@ class LiveTally {
   [[nodiscard]] std::int64_t unreadable() const { return unreadable_; }
   [[nodiscard]] std::int64_t shapes() const { return shapes_; }
 
-  /// "12.3 s  12300 ticks  1000/s  0 lost  FORCE  left 1.20 N  right 0.31 N"; the caller measures `ticks_per_s`.
+  /// A text such as "12.3 s  12300 ticks  1000/s  0 lost  FORCE  left 1.20 N  right 0.31 N"; the caller measures
+  /// `ticks_per_s`.
   [[nodiscard]] std::string progress_line(double elapsed_s, double ticks_per_s) const;
 
   /// Lines that say what was recorded and what was lost, with the numbers of the missing ticks (first `max_ranges`

@@ -17,7 +17,8 @@ int SessionTally::find_or_add(std::int64_t id) {
 
 bool SessionTally::add(int index, std::int64_t tick, std::int8_t state) {
   Session& session = sessions_[static_cast<std::size_t>(index)];
-  // A late tick may fill a gap of an earlier session. A tick that continues an earlier session means two senders.
+  // A late tick may fill a gap of an earlier session. But a tick that continues an earlier session beyond its last one
+  // shows that two firmwares are sending.
   const bool is_last = static_cast<std::size_t>(index) + 1 == sessions_.size();
   if (!is_last && (session.ticks.is_empty() || tick > session.ticks.last())) interleaved_ = true;
   if (session.ticks.is_empty() || tick > session.ticks.last()) session.last_state = state;

@@ -13,8 +13,9 @@ namespace ligature::host {
 /// from pairs of consecutive executed periods without a deadline miss. 4 bytes a tick.
 class ThreadTime {
  public:
-  /// As in firmware/rt/bus_time.hpp: the physics must end this long before the joint samples. When these come is
-  /// predicted from the earliest recent ones, whatever the drives; an old observation loses so much a period.
+  /// kMargin_ns: the physics must end this long before the joint samples arrive, as in firmware/rt/bus_time.hpp.
+  /// kForgets_ns: the arrival is predicted from the earliest recent one, for any drives; each period moves the
+  /// prediction later by this much, until a sample arrives earlier than predicted.
   static constexpr std::int64_t kMargin_ns = 25'000, kForgets_ns = 20;
 
   void add(const ligature_msg::tick_t& tick) {

@@ -107,8 +107,9 @@ std::vector<std::vector<Point>> ways_home(std::span<const Point> thread) {
   return ways;
 }
 
-/// Closes the thread in each way; the results vote. The open thread is simplified only once: no point of it may cross a
-/// bar, the straight line by which a way begins at an end of the thread, so every closure keeps its knot.
+/// Closes the thread in each way; the results vote. The thread is simplified only once, while it is still open. No
+/// point may cross a bar, which is the straight line by which a closing path leaves an end of the thread. So the knot
+/// of every closure stays the same.
 KnotResult recognise_open(std::vector<Point> thread) {
   constexpr std::size_t kEnough = 3;
   const auto ways = ways_home(thread);

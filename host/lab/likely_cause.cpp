@@ -14,7 +14,7 @@ struct Limit {
   double largest_dt_s;
 };
 
-/// A term's largest stable time step x; a huge step when x is not finite, because the scene lacks that term.
+/// x: a term's largest stable time step. It is not finite when the scene lacks that term; then a huge step is returned.
 double or_never(double x) { return std::isfinite(x) ? x : 1e300; }
 
 std::vector<Limit> limits(const scene::Scene& s) {

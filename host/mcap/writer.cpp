@@ -14,7 +14,7 @@ namespace ligature::host::mcap {
 namespace {
 
 constexpr std::size_t kChunkBytes = 2U << 20U;
-// Level 1 packs the repeated keys nearly as well as higher levels, in a fraction of their time.
+// Zstandard's level 1 packs the repeated keys nearly as well as higher levels, in a fraction of their time.
 constexpr int kLevel = 1;
 constexpr const char* kCompression = "zstd";
 

@@ -94,7 +94,8 @@ std::vector<KnotCore> find_throws(Points points, const knot::KnotResult& whole, 
   if (core.last == 0) return {};
   std::vector<KnotCore> found;
   auto summands = summands_of(whole.type);
-  // With the thread's long ends: a piece that is cut close to the knot on both sides is less surely recognised.
+  // The search starts with the whole thread, including its long ends: a piece that is cut close to the knot on both
+  // sides is recognised less reliably.
   for (KnotCore rest{0, points.size() - 1}; summands.size() > 1;) {
     const auto cut = first_cut(points, rest, summands);
     const auto one = cut ? core_in(points, {rest.first, *cut}) : std::nullopt;

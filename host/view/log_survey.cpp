@@ -47,7 +47,8 @@ void LogSurvey::take_batch(double t_s, const std::vector<std::byte>& payload) {
   const std::scoped_lock lock(mutex_);
   for (const auto& tick : batch->ticks) {
     const TraceRow row = trace_row(tick);
-    // The message comes after its last tick. In a short recording its ticks belong to several columns.
+    // A batch arrives after its last tick, so the times of its other ticks are counted back from there. In a short
+    // recording the ticks of one batch belong to several columns.
     const double tick_s = t_s - static_cast<double>(batch->ticks.back().tick - tick.tick) * landmarks_.period_s;
     const double share = map_.duration_s() > 0.0 ? std::clamp(tick_s / map_.duration_s(), 0.0, 1.0) : 0.0;
     const auto column = std::min(kOverview - 1, static_cast<std::size_t>(share * static_cast<double>(kOverview)));

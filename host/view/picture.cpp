@@ -56,7 +56,8 @@ void Picture::take_status(const ligature_msg::status_t& status) {
   }
 }
 
-/// Pages are informed at counts 1, 2, 4, 8 ..: they see that the number rises, at little cost.
+/// Pages are told the number of unreadable messages when it is 1, 2, 4, 8 ..: so they see that it rises, at little
+/// cost.
 void Picture::count_unreadable() {
   ++unreadable_;
   if (std::has_single_bit(static_cast<std::uint64_t>(unreadable_))) set_locked("unreadable", unreadable_);

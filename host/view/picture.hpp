@@ -30,7 +30,8 @@ struct Place {
 };
 
 /// The newest state of the rig, from which all pages are drawn. Written by the LCM or playback thread and by the knot
-/// thread; read by the server. Memory is fixed: 60 s of ticks, 10 min of bins, 500 events.
+/// thread; read by the server. Memory is fixed: 60 s of ticks, 10 min of trace bins (smallest and largest values of 50
+/// ticks each), 500 events.
 class Picture {
  public:
   using Clock = std::chrono::steady_clock;

@@ -18,14 +18,15 @@ inline constexpr int kKnotEvent = 100;
 [[nodiscard]] nlohmann::json to_json(const ligature_msg::event_t& event);
 [[nodiscard]] nlohmann::json to_json(const ligature_msg::offer_t& offer);
 
-/// host/names.hpp for the page: {states: [..], limits: [[bit, name]..], degradations: [..], conditions: [..], faults:
-/// [[number, ..]..]}.
+/// The names of host/names.hpp as the page needs them: {states: [..], limits: [[bit, name]..], degradations: [..],
+/// conditions: [..], faults: [[number, ..]..]}.
 [[nodiscard]] nlohmann::json names_json();
 
 /// State, hands and counters of one tick as doubles, in the order that page/frame.js reads.
 void write_tick(FrameWriter& frame, const ligature_msg::tick_t& tick);
 
-/// Whether a shape can be drawn: finite positions, a positive radius, and no more nodes than a scene may have.
+/// Whether a shape can be drawn: its positions are finite, its radius is positive, and it has no more nodes than a
+/// scene may have.
 [[nodiscard]] bool is_drawable(const ligature_msg::thread_t& thread);
 
 }  // namespace ligature::host::view

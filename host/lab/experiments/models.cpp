@@ -46,8 +46,8 @@ std::vector<Vec3> rest_shape(scene::Scene s) {
   return {nodes.begin(), nodes.end()};
 }
 
-/// Fraction of the energy above the state at rest that is left after t_s, for a start with positions p and velocities
-/// v.
+/// A run starts with positions p and velocities v. @return the share of its energy, counted from the energy of the
+/// thread at rest, that is left after t_s.
 double energy_left(const scene::Scene& s, const std::vector<Vec3>& rest, const std::vector<Vec3>& p,
                    const std::vector<Vec3>& v, double t_s) {
   Rehearsal still(s, {}), kicked(s, {});

@@ -26,7 +26,8 @@ struct Cases {
   std::vector<std::size_t> models, nodes;
 };
 
-/// Whether a swing of 20 s with this step stays finite and gains less energy than 2 % of M g L (M mass, L length).
+/// Whether a swing of 20 s with this time step stays finite and gains less than 2 % of M g L in energy (M mass, L
+/// length).
 bool survives(scene::Scene scene, double dt_s) {
   scene.time = {dt_s, 1};
   Rehearsal r(scene, {});

@@ -28,7 +28,8 @@ struct Extent {
 };
 constexpr Extent kWhole{10, 8, 1}, kQuick{1, 1, 7};
 
-/// Pulls the loop on the desk at the planner's node and at a wrong one; keeps the shapes for the picture.
+/// Experiment on the desk: pulls the loop at the node that the planner chose, and at a wrong node. Keeps the shapes for
+/// the picture.
 void pull_on_desk(const Bench& bench, Table& table, Verdict& v) {
   const auto scene = load_scene_or_refuse((bench.scenes / "desk.toml").string(), {});
   Rehearsal r(scene, {});

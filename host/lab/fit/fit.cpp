@@ -11,8 +11,8 @@
 namespace ligature::fit {
 namespace {
 
-// Numerical derivatives step by a share of the unknown, so an unknown near zero would have no step. Unknown: this plus
-// log(value / start).
+// An unknown of the fit is kOrigin + log(value / start). It starts at kOrigin and not at zero, because numerical
+// derivatives take a step in proportion to the unknown.
 constexpr double kOrigin = 10.0;
 constexpr double kStepSquared = 1e-12;  ///< share of the unknown, squared
 
@@ -58,7 +58,8 @@ struct Problem {
 };
 
 Problem problem_of(const std::vector<Measurement>& all) {
-  // The start needs the right order of magnitude only: a common suture. The unloaded length is the shortest measured.
+  // The fit starts from a common suture: only the orders of magnitude must be right. The start of the unloaded length
+  // is the shortest length that was measured.
   Problem p{all, {}, {8e-5, 1.0, 70.0, 0.3, 4e-7, 1e-3, 2.0}, {}};
   double shortest = 1e300;
   for (const auto& m : all) {

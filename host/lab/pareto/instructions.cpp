@@ -51,7 +51,8 @@ std::optional<Spread> count_instructions(const Setting& setting, int ticks) {
   const fs::path folder(name);
   std::error_code none;
   const auto self = fs::read_symlink("/proc/self/exe", none).string();
-  // two patterns that match the same function, because callgrind keeps only one setting per pattern
+  // Two patterns that match the same function: two callgrind options use them, and callgrind keeps only one option per
+  // pattern
   const std::string tick = "ligature::lab::measured_tick*", same_tick = "*measured_tick*";
   const bool ran = run_quietly({"valgrind", "--tool=callgrind", "--toggle-collect=" + tick, "--dump-after=" + same_tick,
                                 "--callgrind-out-file=" + (folder / "out").string(), self, "pareto", "--one",

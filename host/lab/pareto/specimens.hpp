@@ -26,8 +26,8 @@ class Specimen {
   std::variant<std::monostate, physics::Simulation, physics::rod::RodSimulation> thread_;
 };
 
-/// Scene with the 0.3 m suture, or with the paper's 5 m thread (Table I, per length), with the setting's nodes and time
-/// steps, under gravity.
+/// The scene with the 0.3 m suture, or with the paper's 5 m thread (values of Table I, converted to values per length),
+/// with the setting's nodes and time steps, under gravity.
 [[nodiscard]] scene::Scene thread_of(const Setting& setting);
 
 /// Smallest number of substeps per 1 ms tick at which an explicit model is stable with a margin.

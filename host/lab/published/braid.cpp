@@ -14,14 +14,16 @@ constexpr double kPi = std::numbers::pi, kFriction = 0.119;
 constexpr double kShare =
     0.005;  // n^2 h / e of all knots: far from tight, and sqrt(h / R) 0.13 .. 0.065 for n = 2 .. 4
 
-/// The theory at a given n^2 h / e; lengths in R, the loop's radius where it leaves the braid.
+/// The theory at a given n^2 h / e: n full turns, h the thread's radius, e the excess length of the thread over the
+/// distance of its ends. Lengths are relative to R, the radius of the loop where it leaves the braid.
 struct Theory {
   double braid = 0.0, loop = 0.0;  ///< x = l / R and lambda / R
   /// n^2 F h^2 / (mu B)
   [[nodiscard]] double force() const { return std::pow(braid, 3) / (96.0 * std::sqrt(3.0) * kPi * kPi); }
 };
 
-/// Solves n^2 h / e = g / (8 sqrt(3) pi^2), g = x^2 / (x + lambda / R), for the loop's elliptic modulus, by bisection.
+/// Solves n^2 h / e = g / (8 sqrt(3) pi^2) by bisection for the elliptic modulus of the loop. g = x^2 / (x + lambda /
+/// R), with x and lambda / R as in Theory.
 Theory theory_at(double share) {
   Theory found;
   double low = 1e-4, high = 1.0 - 1e-12;
@@ -35,7 +37,8 @@ Theory theory_at(double share) {
   return found;
 }
 
-/// A judged ratio for n >= 2; for n = 1, to which the theory does not apply, only the figure.
+/// The figure `value`, a ratio to the theory. It is judged for n >= 2, and only reported for n = 1, to which the theory
+/// does not apply.
 Finding ratio(int n, const std::string& what, double value) {
   const std::string text = "n = " + std::to_string(n) + ": " + what;
   return n >= 2 ? validate::relative(text, 1.0, value, 0.10) : reported(text, value, "");

@@ -21,7 +21,8 @@ constexpr double kRadius_m = 0.005;  // R: radius of the thread's centreline on 
 constexpr double kPitch_m = 0.0015;  // advance along the peg per turn, so that the thread does not lie on itself
 constexpr int kPerTurn = 40;         // segments
 constexpr double kTail_R = 5.0;      // length of each free end, in R
-// So low that the ends lean by less than 2 degrees: the wrapped thread stays nearly in the plane of the theory.
+// Coefficient of friction, so low that the ends lean by less than 2 degrees: the wrapped thread stays nearly in the
+// plane of the theory.
 constexpr double kFriction = 0.005;
 constexpr double kSpeed_m_per_s = 0.02;  // of the peg's surface, along its axis
 constexpr double kEI_N_m2 = 4e-7;

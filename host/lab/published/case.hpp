@@ -43,7 +43,8 @@ struct Case {
 /// All cases, in the order of the printed table.
 [[nodiscard]] std::span<const Case> all_cases();
 
-/// A figure that is only reported: no published number decides on it. NaN still counts as a miss.
+/// A figure that is reported without a verdict, because no published number exists for it. A value of NaN still counts
+/// as a miss.
 [[nodiscard]] Finding reported(std::string what, double measured, std::string unit);
 [[nodiscard]] bool is_judged(const Finding& f) noexcept;
 

@@ -58,7 +58,8 @@ double slip_d(const KnotExtent& tied, const KnotExtent& now) {
   return std::max(tied.tail_0 - now.tail_0, now.tail_1 - tied.tail_1) / kDiameter_m;
 }
 
-/// One thread through both stages. The knot is tied at `fine` in any case, so that both settings load the same knot.
+/// Ties a thread and puts it under cycles of load. The knot is tied at accuracy `fine` in any case, so that every
+/// setting loads the same knot.
 void load_cycles(const Subject& subject, bool sets, Result& result) {
   const std::string thread = sets ? "bends that set, " : "elastic, ";
   const auto scene = polypropylene({scene::Accuracy::kFine}, sets);

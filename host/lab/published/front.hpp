@@ -1,5 +1,6 @@
 #pragma once
-// What speed costs in truth: the cost of a tick against the largest error of each published case, setting by setting.
+// What a cheaper setting costs in accuracy: for each setting, the cost of a tick and the largest error of each
+// published case.
 
 #include <cstdint>
 #include <filesystem>
@@ -17,7 +18,8 @@ struct Setting {
   long work = 0;
 };
 
-/// The settings of a --settings and the --work options. @pre `text` is balanced, fine, both or all.
+/// The settings that the options --settings (`text`) and --work (`budgets`) select. @pre `text` is balanced, fine, both
+/// or all.
 [[nodiscard]] std::vector<Setting> settings_of(const std::string& text, const std::vector<long>& budgets);
 
 /// One case at one setting.
@@ -30,8 +32,8 @@ struct Outcome {
 
   [[nodiscard]] int judged() const;
   [[nodiscard]] int missed() const;
-  /// The largest error of a judged figure, as a multiple of its tolerance: up to 1 the case is met. Infinite: a figure
-  /// that is right or wrong is wrong, or one is no number.
+  /// The largest error of a judged figure, as a multiple of its tolerance: up to 1 the case is met. Infinite if a
+  /// yes-or-no figure is wrong, or if a figure is not a number.
   [[nodiscard]] double worst() const;
 };
 
@@ -54,7 +56,8 @@ struct Overall {
 /// The rows of all cases that move.
 [[nodiscard]] std::vector<FrontRow> front_of(const std::vector<Outcome>& outcomes);
 
-/// Sums up the cases that were run at every setting; the others would make settings incomparable.
+/// Sums up, for each setting, the cases that were run at every setting: with other cases included, the settings could
+/// not be compared.
 [[nodiscard]] std::vector<Overall> over_all_cases(const std::vector<FrontRow>& rows);
 
 /// Prints the rows, and the settings over all cases.

@@ -1,13 +1,14 @@
 #pragma once
-// What the contacts of a drawn knot tell: where the thread enters and leaves it, and how hard its strands press.
+// What the contacts of a drawn knot show: where the thread enters and leaves the knot, and how hard its strands press.
 
 #include "firmware/physics/rod/rod_simulation.hpp"
 
 namespace ligature::published {
 
-/// A knot with a loop below it has two strands. Lengths along the thread at the outermost contacts of each that carry
-/// at least 1 % of the largest contact force, m: from end to loop tail_0 .. loop_0, and from loop to end loop_1 ..
-/// tail_1. All zero without a contact.
+/// The knotted part of a thread, for a knot of two strands with a loop below it. In each strand it lies between the
+/// outermost contacts that carry at least 1 % of the largest contact force. Their places, as lengths along the thread,
+/// m: tail_0 and loop_0 in the strand from the thread's start to the loop, loop_1 and tail_1 in the strand from the
+/// loop to the end. All zero without a contact.
 struct KnotExtent {
   double tail_0 = 0.0, loop_0 = 0.0, loop_1 = 0.0, tail_1 = 0.0;
 };

@@ -24,8 +24,9 @@ struct Lock {
 
 [[nodiscard]] Lock draw_to_lock(const Subject& subject, const Drawing& drawing);
 
-/// The friction at which such a knot begins to lock: first a search upwards from `low` in steps of a factor 1.25, then
-/// bisection until the bounds differ by the factor `apart`. Infinite when it does not lock up to `high`.
+/// The friction coefficient at which the knot of `drawing` begins to lock: first a search upwards from `low` in steps
+/// of a factor 1.25, then bisection until the bounds differ by the factor `apart`. Infinite when the knot does not lock
+/// up to `high`.
 [[nodiscard]] double locking_friction(const Subject& subject, Drawing drawing, double low, double high, double apart);
 
 }  // namespace ligature::published

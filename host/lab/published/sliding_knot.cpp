@@ -48,7 +48,7 @@ void measure_shape(Nodes nodes, double h, DrawnKnot& knot) {
   const std::size_t middle = static_cast<std::size_t>(
       std::max_element(nodes.begin(), nodes.end(), [](const Vec3& a, const Vec3& b) { return a.y() < b.y(); }) -
       nodes.begin());
-  // The braid: where the strands before and after the loop's top touch. It is scanned outwards from its middle.
+  // The braid is where the strands before and after the loop's top touch. It is scanned outwards from its middle.
   const double step = 0.25 * h;
   const auto apart = [&](double x) {
     return Vec3(crossing(nodes, middle, nodes.size() - 1, x) - crossing(nodes, 0, middle, x));
@@ -91,8 +91,8 @@ void measure_shape(Nodes nodes, double h, DrawnKnot& knot) {
   knot.exit_curvature = 0.5 * h * (leaving.at_zero() + arriving.at_zero());
 }
 
-/// Whether the knot is the torus knot T(2, 2n + 1). Knots of nine crossings are never named, only listed as candidates;
-/// so the only candidate counts, too.
+/// Whether the knot is the torus knot T(2, 2n + 1), n = `turns`. The recognition never names knots of nine crossings;
+/// it only lists candidates. So a list with this knot as its only candidate counts, too.
 bool is_the_knot(Nodes nodes, int turns) {
   std::vector<std::array<double, 3>> points;
   for (const auto& p : nodes) points.push_back({p.x(), p.y(), p.z()});

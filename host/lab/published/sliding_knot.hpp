@@ -1,5 +1,6 @@
 #pragma once
-// A long overhand knot (n full turns) that is drawn tight slowly, and what theories of such knots need of its shape.
+// A long overhand knot of n full turns that is drawn tight slowly, and the quantities of its shape that theories of
+// such knots use.
 
 #include "host/lab/published/case.hpp"
 
@@ -14,8 +15,8 @@ struct KnotPlan {
   int nodes = 150;
 };
 
-/// The drawn knot; lengths in h, forces in B / h^2 (B: bending stiffness). Values are NaN when the thread is no longer
-/// that knot.
+/// The drawn knot. Lengths are in units of the thread's radius h, forces in B / h^2 (B: bending stiffness). Values are
+/// NaN when the thread is no longer that knot.
 struct DrawnKnot {
   double tension = 0.0;         ///< mean over the measured part of the motion
   double change = 0.0;          ///< relative change of the tension within it: about 0 while the knot slides freely

@@ -40,7 +40,8 @@ using Measured = std::vector<std::pair<std::string, Figures>>;
 /// finite is beyond every tolerance. Scenes that were not measured are left out.
 [[nodiscard]] std::vector<Line> compare(const Measured& measured, const Expectations& expected);
 
-/// A new text of the file: measured values; tolerances as before, those of new figures as their scene says.
+/// The new text of the file with expected figures: the measured values; each figure's tolerance as before, and for a
+/// new figure the tolerance that its scene states.
 [[nodiscard]] std::string write_expected(const Measured& measured, const Expectations& before);
 
 }  // namespace ligature::regress

@@ -17,8 +17,8 @@ using namespace validate;  // NOLINT: the threads and the helpers of the validat
 
 constexpr double kG = 9.81;
 
-/// Released as a horizontal arc, with one end fixed; the other end after about a quarter of a swing, and later. The arc
-/// makes the thread swivel.
+/// Swing of a thread that is released as a horizontal arc with one end fixed. The figures are the place of the other
+/// end after about a quarter of a swing, and later. The arc makes the thread swivel.
 Figures swing_of(scene::Scene scene, double tolerance_m) {
   scene.world.gravity_m_per_s2 = {0, 0, -kG};
   scene.world.fixed.push_back({0, {0, 0, 0}, std::nullopt});

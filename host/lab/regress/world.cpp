@@ -1,5 +1,5 @@
-// The surroundings: desk, peg, open gripper, clamp and load, jaws, with a piece of the shipped suture each; and the
-// frame of the paper's suture.
+// The surroundings of a thread. Each of desk, peg, open gripper, clamp with load, and jaws is tested with a piece of
+// the shipped suture; the frame is tested with the paper's suture.
 
 #include <cmath>
 #include <numbers>
@@ -123,7 +123,8 @@ Figures jaws(const Bench&) {
 Figures frame(const Bench& bench) {
   auto scene = lab::load_scene_or_refuse((bench.scenes / "paper.toml").string(), {});
   auto sim = build(scene);
-  // From the frame 1 m along y, and back past the hook, against which the thread moves at 1 m/s.
+  // The thread runs 1 m along y from the frame, and then back beside the hook. This last part moves towards the hook at
+  // 1 m/s.
   const Vec3 fixed = sim.nodes_W()[0];
   const auto at = [](double s) {
     return s < 1.0 ? Vec3(0, s, 0) : s < 1.2 ? Vec3(0.8 * (1.0 - s), 1, 0.1) : Vec3(-0.15, 2.2 - s, 0.1);

@@ -15,7 +15,8 @@
 
 namespace ligature::lab {
 
-/// Takes a rerun as it comes: files, or arrays in memory. Everything is in the order of the recorded log.
+/// Receives the results of a rerun while it runs, in the order of the recorded log. Implementations write files, or
+/// arrays in memory.
 class RerunOutput {
  public:
   virtual ~RerunOutput() = default;

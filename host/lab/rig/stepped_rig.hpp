@@ -20,7 +20,8 @@
 
 namespace ligature::lab {
 
-/// What a hand is asked to do: the same as a hand_wish_t asks of a device in a process of its own.
+/// What a steered hand is to do; the same content as the message hand_wish_t, which steers a device that is a process
+/// of its own.
 struct SteeredWish {
   sim::Vec3 p_W_m = sim::Vec3::Zero();
   bool dead_man = false, grip = false;
@@ -68,8 +69,8 @@ class SteppedRig {
   std::jthread thread_;  // last member: begins when the others exist
 };
 
-/// Whether a device of the shipped class reaches this point of the scene's world; a hand asked for another one would
-/// stop on the way. @return empty, or "found .., allowed .."
+/// Whether a device of the shipped class reaches this point of the scene's world; a hand that is sent to a point out of
+/// reach would stop on the way. @return empty, or "found .., allowed .."
 [[nodiscard]] std::string out_of_reach(const scene::Scene& scene, const sim::Vec3& p_W_m);
 
 }  // namespace ligature::lab

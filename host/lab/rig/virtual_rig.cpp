@@ -136,7 +136,7 @@ void VirtualRig::take_records() noexcept {
   }
 }
 
-/// Gives the seeing operator what a person would see on the screen and feel, and applies its hand motion.
+/// Shows the operator what a person would see on the screen and feel, and applies the hand motion that it answers with.
 void VirtualRig::look_and_act() {
   const std::array<const sim::Mechanics*, 2> hands{&left.device.mechanics(), &right.device.mechanics()};
   if (!hands[0]->has_started() || !hands[1]->has_started() || cycle.periods() == 0) return;

@@ -22,10 +22,11 @@ constexpr double kSpeed_m_per_s = 0.005;
 constexpr double kPitch_m = 0.0024;
 
 /// Closed form of the tension ratio T1 / T2 for the simulated polygon. The polygon of the reference table touches the
-/// peg with its corners; in the simulation contacts are at the middle of segments and act on both end nodes. Balance of
-/// forces at a corner between two segments that meet at an angle 2a, with tension and normal force growing by
-/// (1 + g) / (1 - g) per segment: g (1 + s^2) + mu s g^2 = mu s, s = tan a. To second order, the relative error of the
-/// exponent mu theta is -(2a)^2 / 6 here and +(2a)^2 / 12 in the table.
+/// peg with its corners; in the simulation contacts are at the middle of segments and act on both end nodes. The
+/// formula is the balance of forces at a corner between two segments that meet at an angle 2a, with friction
+/// coefficient mu; from one segment to the next the tension grows by the factor (1 + g) / (1 - g), and the normal force
+/// too: g (1 + s^2) + mu s g^2 = mu s, s = tan a. To second order, the relative error of the exponent mu theta is
+/// -(2a)^2 / 6 here and +(2a)^2 / 12 in the table.
 double by_segments(double mu, double angle_rad, int wrapped) {
   const double s = std::tan(0.5 * angle_rad / wrapped), b = 1.0 + s * s;
   const double g = 2.0 * mu * s / (b + std::sqrt(b * b + 4.0 * mu * mu * s * s));
@@ -47,8 +48,8 @@ Findings compare(const Subject& subject, bool polygon) {
     const double mu = number(row, "mu"), degrees = number(row, "wrap_angle_deg");
     if (number(row, "N_contact_nodes") != wrapped) continue;
     const double angle = degrees * std::numbers::pi / 180.0;
-    // With 32 segments the simulated and the table's polygon differ by up to 4 % for a whole turn, 0.5 % for half a
-    // turn.
+    // For a whole turn of 32 segments the results for the simulated polygon and for the table's polygon differ by up to
+    // 4 %, for half a turn by 0.5 %.
     const double corners = degrees > 180.0 ? by_segments(mu, angle, wrapped) : number(row, "T1_over_T2");
     const double truth = polygon ? corners : std::exp(mu * angle);
     all.push_back(relative("mu = " + row.at("mu") + ", " + row.at("wrap_angle_deg") + " deg: T1/T2", truth,

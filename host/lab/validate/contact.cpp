@@ -9,7 +9,7 @@
 namespace ligature::validate {
 namespace {
 
-/// Number of segments of each strand: equal segment lengths, and a node in the middle of each strand.
+/// Number of segments of each strand. All segments are equally long, and each strand has a node in its middle.
 struct Shares {
   int a, b;
 };

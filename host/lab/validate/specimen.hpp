@@ -39,8 +39,9 @@ void set_drag(scene::Scene& scene, double per_s);
 void clamp_start(scene::Scene& scene);
 [[nodiscard]] double clamp_end_m(const scene::Scene& scene);
 
-/// Weight per length w along -axis (1: y, 2: z), as a constant load on every node for its part of the thread's length.
-/// Gravity is not used, because a paper model has equal masses and its last node would weigh twice as much as its part.
+/// Applies a weight per length w along -axis (1: y, 2: z) as constant loads: each node carries the weight of its part
+/// of the thread. Gravity is not used, because all nodes of a paper model have the same mass: its last node, with half
+/// a part, would weigh twice as much as its part.
 void weigh(scene::Scene& scene, double w_N_per_m, int axis);
 
 /// Lays the thread along a curve: node k at place(s_k).

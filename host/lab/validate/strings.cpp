@@ -32,9 +32,9 @@ double sag_of(std::span<const Vec3> x) {
   return sag;
 }
 
-/// Mean strain of a catenary with length 1, weight 1 and horizontal tension H. The thread's rest length is shortened by
-/// it, so that it is 1 long when it hangs: the table's thread is inextensible, and at a span of 0.999 a strain of 1e-5
-/// would change the sag by 0.5 %.
+/// Mean strain of a hanging thread of length 1 and weight 1 at a horizontal tension H. The rest length is reduced by
+/// this strain, so that the thread is 1 long when it hangs, as the inextensible thread of the reference table: at a
+/// span of 0.999 a strain of 1e-5 would change the sag by 0.5 %.
 double mean_strain(const scene::Scene& scene, double H) {
   const double tension = 0.5 * std::hypot(H, 0.5) + H * H * std::asinh(0.5 / H), EA = scene.suture.rod.EA_N;
   return scene.suture.model == scene::Model::kPaper5 ? std::sqrt(tension / EA) : tension / EA;
@@ -83,7 +83,8 @@ Findings catenary(const Subject& subject) {
 
 namespace {
 
-/// Node positions of a hanging string of length 1 at rest; empty when it does not come to rest.
+/// Node positions at rest of a hanging string of length 1 and weight 1 with the load `weight` at its end; `softness` is
+/// 1 / EA. Empty when the string does not come to rest.
 std::vector<Vec3> hung(const Subject& subject, double softness, double weight) {
   auto scene = unit_thread(subject, 0.2, 4.0);
   set_bending(scene, 0.0);

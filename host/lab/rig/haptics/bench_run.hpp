@@ -13,7 +13,8 @@ namespace ligature::lab {
 struct Watched {
   /// Smallest net energy that each hand has put into its port, from the motors' true work, J.
   std::array<double, 2> lowest_port_J{};
-  /// Smallest sum of the net energy of a hand's port and the energy that the other hand's account has lent to it, J.
+  /// Smallest value, over all ticks, of the net energy of a hand's port plus the energy that the other hand's account
+  /// has lent to it, J.
   std::array<double, 2> lowest_bound_J{};
   /// Largest energy that the firmware's account can miss because encoders are quantised, J: the sum over all ticks n
   /// and joints of (encoder count in rad) |tau(n) - tau(n-1)|, tau the joint's torque (docs/haptics.md).

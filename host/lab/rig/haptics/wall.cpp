@@ -61,7 +61,8 @@ WallRun press(const Wall& w, double time_s) {
     if (w.delay == 0) {
       acting = law(w, run.x_m, n);
     } else {
-      // Delay: the passivity controller models one period itself (the bus); further periods lie between sample and law.
+      // The passivity controller itself allows for one period of delay, that of the bus. The other periods of w.delay
+      // lie between the sample and the control law.
       acting = on_its_way;
       if (n > 0) v = (mass.x - run.x_m[static_cast<std::size_t>(n - 1)]) / kT_s;
       passivity.observe(n, {{mass.x, 0, 0}, {mass.x, 0, 0}});
