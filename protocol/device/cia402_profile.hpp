@@ -1,6 +1,6 @@
 #pragma once
-// What a CiA 402 drive offers, as far as the controller needs it: table [cia402] of a device record. Without the table
-// it is our own drive (docs/wire.md). docs/drives.md explains the choices.
+// What a CiA 402 drive offers, as far as the controller needs it: table [cia402] of a device record. A record without
+// this table describes our own drive (docs/wire.md). docs/drives.md explains the choices.
 
 #include <cstdint>
 #include <vector>

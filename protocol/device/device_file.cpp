@@ -115,7 +115,8 @@ void check(StrictTable& geometry, StrictTable& limits, const Device& d) {
   if (d.continuous_force_N > d.peak_force_N) limits.refuse("continuous_force_N", "at most peak_force_N");
 }
 
-/// Can the drive tell its rated torque as exactly as start-up has to compare it? All torques are per mille of it.
+/// Can the drive report its rated torque as exactly as the start-up must compare it? All torques are per mille of the
+/// rated torque.
 bool is_told_exactly(const Device& d) {
   constexpr double kShare = 0.005;
   if (!d.cia402.rated_torque.is_there()) return true;

@@ -1,5 +1,5 @@
 #pragma once
-// The keys of device records, as their reader lists them. docs/scene.md is held to this list.
+// The keys of device records, as their reader lists them. A test compares docs/scene.md with this list.
 
 #include <vector>
 

@@ -28,12 +28,14 @@ inline constexpr std::size_t kHash = 8, kInt64 = 8, kInt32 = 4, kInt8 = 1, kFloa
   return message.size() == count_offset + kInt32 + static_cast<std::size_t>(*count) * element_size + tail_size;
 }
 
-/// The same for tick_batch_t: hash, utime, session, ring_dropped, count, ticks. @param tick_size bytes of one tick_t
+/// As array_fits(), for tick_batch_t: hash, utime, session, ring_dropped, count, ticks. @param tick_size bytes of one
+/// tick_t
 [[nodiscard]] inline bool tick_batch_fits(std::span<const std::byte> message, std::size_t tick_size) {
   return array_fits(message, kHash + 3 * kInt64, tick_size, 0);
 }
 
-/// The same for thread_t. Per node: position, tension and turn (bending angle), as three arrays of one length.
+/// As array_fits(), for thread_t. It has three values per node, each in an array of the same length: position, tension
+/// and turn (twist angle).
 [[nodiscard]] inline bool thread_fits(std::span<const std::byte> message) {
   return array_fits(message, kHash + 2 * kInt64 + kFloat, 5 * kFloat, 2 * sizeof(std::int16_t));
 }

@@ -1,5 +1,6 @@
 #pragma once
-// The keys of scene files and fault scripts, as their readers list them. docs/scene.md is held to these lists.
+// The keys of scene files and fault scripts, as their readers list them. A test compares docs/scene.md with these
+// lists.
 
 #include <string>
 #include <vector>

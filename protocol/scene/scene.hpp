@@ -121,7 +121,8 @@ struct World {
   std::optional<double> desk_height_m;
   bool grippers_collide = true;
   bool frame_collides = true;  ///< each fixed node has a hook above it, which the thread collides with
-  // With contact.solver = "paper" both are false by default and refused when true, and so is a desk.
+  // With contact.solver = "paper" grippers_collide and frame_collides are false by default. Such a scene is refused if
+  // it sets one of them to true, or has a desk.
 };
 
 struct Time {

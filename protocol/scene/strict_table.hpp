@@ -34,8 +34,8 @@ struct ReadContext {
 
   [[nodiscard]] bool is_overridden(const std::string& key) const { return overridden.contains(root_of(key)); }
 
-  /// @param between_keys a rule between several keys is broken: if the message names the file's key, the overrides are
-  /// named too, because one of them may be the cause
+  /// @param between_keys  whether a rule between several keys is broken. Then an override may be the cause, so a
+  /// message that names the file's key names the overrides, too
   void refuse(const std::string& key, const toml::node& where, const std::string& what, bool between_keys = false) {
     if (error) return;
     auto set = overridden.find(root_of(key));

@@ -11,7 +11,8 @@ using Reals = View<double, nb::ndim<1>>;
 
 [[nodiscard]] Floats tension_N(const physics::Simulation& simulation);
 [[nodiscard]] Floats turn_rad(const physics::Simulation& simulation);
-/// pairs (k x 2), places, normals and forces (k x 3), gaps (k) of physics::Simulation::contacts().
+/// The contacts of physics::Simulation::contacts() as a tuple of arrays for k contacts: pairs (k x 2), places, normals
+/// and forces (k x 3), gaps (k).
 [[nodiscard]] nb::tuple contacts(const physics::Simulation& simulation);
 [[nodiscard]] Reals curvature_per_m(const physics::Simulation& simulation);
 
