@@ -1,5 +1,6 @@
 #pragma once
-// A deadline that may be armed. The simulated device takes time as an argument everywhere, so that tests control it.
+// A deadline that may be set or not set. The simulated device takes time as an argument everywhere, so that tests
+// control it.
 
 #include <chrono>
 

@@ -86,7 +86,8 @@ void DriveNode::on_nmt(const can::NmtMessage& message, Time now, std::vector<can
       boot(now, out);
       break;
   }
-  // Outside operational no RPDO is obeyed: the drive is disabled without a fault, and must be enabled again.
+  // Outside of the NMT state operational the drive obeys no RPDO. So it is disabled here, which is no fault; it must be
+  // enabled again.
   take_torque_away();
   rpdo_watch_.disarm();
   has_received_ = false;

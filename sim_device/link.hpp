@@ -1,5 +1,6 @@
 #pragma once
-// Interface of what brings LCM messages to a simulated hand while it runs: a page's targets, or the state of the rig.
+// Interface of the links by which LCM messages reach a simulated hand while it runs: targets from a page, or the state
+// of the rig.
 
 #include <string>
 #include <vector>

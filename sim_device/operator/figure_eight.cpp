@@ -27,7 +27,8 @@ constexpr double kTurn = 2.0 * 3.14159265358979323846;
 
 constexpr double kWound = 1.07 * kTurn;  // angle of the end's turn about the standing part, until in front again
 constexpr double kSlack = 0.9;           // extra distance from the standing part after the turn's top, in clearances
-// shift towards the anchor after the turn's top, as a fraction of the thread's length: the end then trails loosely
+// Shift of the hand towards the anchor after the turn's top, as a fraction of the thread's length; so the end trails
+// loosely.
 constexpr double kBack = 0.048;
 
 Move orbit(std::shared_ptr<Loop> loop, WhereAlong s) {

@@ -115,10 +115,12 @@ void KnotTier::begin_again() {
   lay_out(std::move(moves));
 }
 
-/// Limits the pull: a hand that feels much more than a tight knot needs slows down, and finally yields.
+/// Limits the pull of a hand that moves against the thread's force: above 0.4 of the force at which a knot is tight the
+/// hand slows down, above 1.3 of it the hand yields.
 void KnotTier::mind_the_pull(const Sight& sight) {
   constexpr double kFirm = 0.4, kMost = 1.3;  // fractions of a tight knot's pull
-  // not for a limp thread: a thick one is drawn tight with up to 4 times a tight knot's pull (wound_throw.cpp)
+  // A limp thread is exempt: if it is thick, it is drawn tight with up to 4 times the pull of a tight knot
+  // (wound_throw.cpp)
   if (!is_springy(place_)) return;
   for (std::size_t h = 0; h < 2; ++h) {
     MovingHand& hand = hands_[h];

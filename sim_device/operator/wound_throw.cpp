@@ -85,8 +85,8 @@ bool is_laid(const Look& look, const Throw& t) {
   return would_hold(look, t, front_of(t)) && would_hold(look, t, 0.8 * front_of(t) + 0.6 * kAway);
 }
 
-/// The end goes `t.passes` times round the standing part, and from the top of the first turn on also along it. It goes
-/// slightly further if the swinging bight has not been passed yet.
+/// The end goes `t.passes` times round the standing part. From the top of the first turn on it also moves along it. The
+/// turn goes on slightly further if the end has not yet passed the swinging bight.
 Move wind(const Throw& t, const std::shared_ptr<const Site>& site) {
   auto wound = std::make_shared<std::optional<double>>();
   constexpr double kFurther = 0.6;
