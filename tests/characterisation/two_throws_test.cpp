@@ -42,7 +42,8 @@ Tightening pulled(const char* scene, double speed) {
 constexpr const char* kSquare = "suture-3-0-square.toml";
 constexpr const char* kSurgeons = "suture-3-0-surgeons.toml";
 
-/// Share of the time lost in the next ticks with the hands moving at this speed; adds up guard events.
+/// Share of the time lost in the next ticks, in which the hands move at this speed. Adds the number of guard events to
+/// `guard`, if it is given.
 double lost_share(Tightening& pull, int ticks, double speed = 0.0, int* guard = nullptr) {
   double lost = 0.0;
   for (int k = 0; k < ticks; ++k) {

@@ -51,7 +51,8 @@ TEST(Published, PlyWithoutFriction) {
 // knots of throws in sutures
 TEST(Published, Locking) { expect_met("locking"); }
 TEST(Published, Threshold) {
-  // No publication decides on the mean. Held near the documented one, it tells a wrong factor in the friction.
+  // No publication gives a value for this mean. It is compared with the value in our documentation: another value shows
+  // a wrong factor in the friction.
   for (const auto& f : expect_met("threshold")) {
     if (f.what.ends_with("mean")) {
       EXPECT_NEAR(f.measured, 0.36, 0.04) << f.what;

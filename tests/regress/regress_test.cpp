@@ -1,4 +1,5 @@
-// The cheap scenes of `ligature-lab regress` give the figures that expected.csv has; and the comparison itself.
+// The cheap scenes of `ligature-lab regress` must give the figures of expected.csv; the comparison of the two is
+// tested, too.
 
 #include <gtest/gtest.h>
 

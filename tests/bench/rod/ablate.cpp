@@ -178,7 +178,8 @@ std::vector<Variant> variants_of(const std::string& text) {
   return {together};
 }
 
-/// The panel with changes that only rounding notices: mean and standard deviation of each measure.
+/// Runs the panel with changes so small that only rounding differs. @return mean and standard deviation of each
+/// measure.
 std::pair<Score, Score> noise(const std::vector<Case>& cases, int runs) {
   std::vector<Score> all;
   Score mean{}, deviation{};

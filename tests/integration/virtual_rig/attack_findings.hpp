@@ -16,7 +16,8 @@ struct Exception {
 };
 struct Times {
   int runs = 0, syncs = 0;  ///< number of SYNCs, summed over both hands
-  /// Largest value, N; for the promise "outside ARM and dead-man": number of consecutive ticks.
+  /// The largest value found, N. Exception: for the promise "outside ARM and dead-man" it is a number of consecutive
+  /// ticks.
   double worst = 0.0;
   std::uint64_t seed = 0;          ///< of the run with the worst value
   std::size_t hand = 0, tick = 0;  ///< of the worst value

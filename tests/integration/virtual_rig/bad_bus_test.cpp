@@ -1,5 +1,6 @@
-// Loss of any share of the CAN frames: it must become a fault within bounded time where the force can no longer be
-// correct, and none on a good bus. bad_bus_study draws each share 300 times: docs/measurements/fault-matrix.md.
+// The loss of CAN frames, for any share of them, must cause a fault within bounded time where the force can no longer
+// be correct, and must cause none on a good bus. bad_bus_study draws each share 300 times:
+// docs/measurements/fault-matrix.md.
 #include "tests/integration/virtual_rig/bad_bus.hpp"
 
 #include <gtest/gtest.h>

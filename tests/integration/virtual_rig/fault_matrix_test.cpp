@@ -114,7 +114,8 @@ void arrange(lab::VirtualRig& rig, const Case& c) {
   rig.stall_for = c.stall;
 }
 
-/// Two hands that a page moves: they get a wish every 20 ms, as by LCM, and are in force and in motion at kOnset.
+/// Two hands that a page moves: they get a target every 20 ms, as by LCM. At kOnset both have full force and are
+/// moving.
 struct Steered {
   std::array<sim::SteeredHand*, 2> hands{};  // owned by the rig's devices
 };

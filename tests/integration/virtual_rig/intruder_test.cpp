@@ -1,5 +1,5 @@
-// A foreign node on a hand's bus, and drives that push by themselves, in every state; and normal errors that must not
-// be mistaken for either.
+// A foreign node on a hand's bus, and drives that push by themselves, must be detected in every state; normal errors
+// must not be mistaken for either.
 #include <gtest/gtest.h>
 
 #include <algorithm>

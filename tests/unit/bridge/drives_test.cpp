@@ -122,8 +122,9 @@ TEST_F(BridgeDrives, ASilentDeviceIsADriveWithoutPower) {
   EXPECT_EQ(drives_.force_D_N(), (Vec{0.0, 0.0, 0.0}));
 }
 
-/// However long the device may be silent: an old state is no sample. The firmware then counts its watchdog, as for any
-/// drive whose messages are lost, and a released dead-man is not hidden for longer.
+/// An old state must not be sent as a sample, however long the device may be silent before it counts as lost. The
+/// firmware then counts the missing samples up to its watchdog's limit, as for any drive whose messages are lost, and a
+/// release of the dead-man is not hidden for longer.
 TEST_F(BridgeDrives, AnOldStateIsNoSample) {
   drives_ = Drives(record_, now_, std::chrono::seconds(1));
   state_.buttons = can::profile::kButtonDeadMan;

@@ -101,8 +101,8 @@ TEST(Controller, AnArmGetsWhatIsSafeInEveryPoseAndReportsIt) {
   EXPECT_EQ(rig.controller.fault(), Fault::kNone);
 }
 
-// Outside the workspace box the bound for any pose is no bound. There, torques that the step limit keeps make another
-// force when the arm has moved on.
+// Outside the workspace box the bound for any pose does not hold. If the step limit keeps the last torques there, they
+// make another force once the arm has moved on; the peak must hold even so.
 TEST(Controller, ThePeakHoldsForAnArmThatMovesOutsideItsWorkspaceBox) {
   auto hands = Rig::scene();
   hands.passivity = false;

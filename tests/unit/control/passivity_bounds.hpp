@@ -77,8 +77,9 @@ class PassivityBounds {
     return -1;
   }
 
-  /// The term "unseen" per a T^2 of tip motion: the tip's motion between two samples is unknown. Sum over periods t of
-  /// |sum over the periods after t of (force - mean force)|.
+  /// The term "unseen", in units of a T^2 (a: acceleration bound of the hand, T: period), because the tip's motion
+  /// between two samples is unknown. It is the sum over periods t of |sum over the periods after t of (force - mean
+  /// force)|.
   [[nodiscard]] double unseen_N(std::int64_t from, std::int64_t to) const {
     Vec3 mean_N = Vec3::Zero(), before_N = Vec3::Zero();
     double sum_N = 0.0;

@@ -39,7 +39,8 @@ TEST(FitShapes, StiffThreadsSwingAsCantileversAndLimpOnesAsChains) {
   EXPECT_NEAR(limp / std::sqrt(kGravity_m_per_s2), 0.5 * 2.404826, 0.01);  // a chain: half the first zero of J0
 }
 
-// One mode with viscous damping: c and tau act through the classical factor, here on a stiff thread.
+// With viscous damping the first mode decays at the rate (c + tau omega^2) / 2, c air drag, tau bend damping, omega
+// angular frequency. This thread is so stiff that its weight does not matter.
 TEST(FitShapes, DecayOfAStiffThreadIsHalfOfDragAndBendDamping) {
   const double omega = 3.5160152685 * 100.0;
   const auto swing = swing_of({1.0, 1e4, 1.0, 2e-5, 3.0});
@@ -141,7 +142,8 @@ TEST(Fit, NoisyReadingsGiveParametersWithinThreePercent) {
   }
 }
 
-// An implicit step damps as if damping_s were longer by about the step's length: 12.5 us at "fine", 0.6 % of 2 ms.
+// The implicit step itself damps, as if damping_s were longer by about the step's length: 12.5 us at accuracy "fine",
+// 0.6 % of the 2 ms used here.
 constexpr double kTick_s = 5e-4;
 
 /// A rod of the given length, clamped at the origin; fine time steps, no contact.

@@ -48,8 +48,8 @@ TEST(AsInThePaper, CorrectedTiesAnOverhandWithinTheLengthLimitsAndTellsTheCondit
   EXPECT_GE(least, -0.1 - 1e-6);
 }
 
-/// Kinetic energy four seconds into the overhand's script, J. Nothing moves faster than a hand there, which gives some
-/// joules.
+/// Kinetic energy four seconds into the overhand's script, J. Nothing moves faster than a hand there, so some joules
+/// are right.
 double motion_J(const scene::Scene& scene) {
   Simulation sim = make(scene);
   play(sim, overhand(), 0.0, 4.0);

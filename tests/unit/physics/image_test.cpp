@@ -79,7 +79,7 @@ const Kind kKinds[] = {
     {"knot by sweeps, little work", "suture-3-0-knot.toml", {"suture.work_instructions=400000"}},
 };
 
-/// All that a simulation shows.
+/// All values that can be read from a simulation.
 std::vector<double> shown(const Simulation& sim) {
   std::vector<double> all;
   const auto add = [&all](const physics::Vec3& v) { all.insert(all.end(), {v.x(), v.y(), v.z()}); };
@@ -97,7 +97,8 @@ std::vector<double> shown(const Simulation& sim) {
 
 class OfImage : public testing::TestWithParam<Kind> {};
 
-/// Saved at several moments, with and without a hold, and compared at once and in 40 ticks after it.
+/// A simulation is saved at several moments, with and without a hold. The loaded one is compared at once, and in each
+/// of the 40 ticks that follow.
 TEST_P(OfImage, ContinuesToTheBit) {
   Simulation sim = made(GetParam().scene, GetParam().overrides);
   Simulation loaded = sim;

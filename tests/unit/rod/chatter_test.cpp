@@ -39,8 +39,8 @@ TEST(Chatter, IsNotThePull) {
 // At 1 m/s a complete pull to 1 N takes only 14 ticks. A smooth force must count as nearly no chatter even then.
 TEST(Chatter, IsNotAPullOfFourteenTicks) { EXPECT_LT(chatter(pull(14, 0.0, 1.0), 0.04).share(), 2e-3); }
 
-// Independent fluctuations add as squares. docs/measurements/rod-knots.md so separates the mesh's contribution from the
-// thread's own vibration.
+// Independent fluctuations add as squares. By this rule docs/measurements/rod-knots.md separates the mesh's
+// contribution from the thread's own vibration.
 TEST(Chatter, AddsCausesAsSquares) {
   const auto one = pull(250, 3e-3, 5.3), other = pull(250, 4e-3, 3.7), smooth = pull(250, 0.0, 1.0);
   auto both = one;

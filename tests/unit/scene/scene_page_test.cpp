@@ -52,8 +52,8 @@ Rows rows_below(const std::string& header) {
   return rows;
 }
 
-/// Holds the tables with this header to the rows wanted: each one starts exactly one row, and no row is left.
-/// The last cell, the meaning, is free but not empty.
+/// Compares the page's tables that have this header with the wanted rows. Each wanted row must be the beginning of
+/// exactly one table row, and no table row may be left over. The last cell, the meaning, may be any text but not empty.
 void hold(const std::string& header, const Rows& wanted) {
   Rows left = rows_below(header);
   for (const auto& want : wanted) {
@@ -316,8 +316,8 @@ TEST(ScenePage, HasTheLimitsOfFiles) {
       std::string::npos);
 }
 
-/// The page itself holds every reader's keys; here the list holds what the readers take: no key is read that is not
-/// listed. A key that a reader asks for is in the list of allowed keys of its messages.
+/// Other tests compare the page with scene_keys(); this one compares scene_keys() with the readers. A reader's message
+/// about an unknown key names every key that the reader asks for, so no reader can have a key that is not listed.
 TEST(ScenePage, ListsTheKeysThatMessagesName) {
   for (const Model model : {Model::kPaper4, Model::kRod}) {
     for (const char* table : {"suture", "contact", "world", "time", "hands"}) {
