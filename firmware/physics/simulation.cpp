@@ -93,11 +93,14 @@ std::vector<std::byte> Simulation::save(std::int64_t ticks) const {
 std::variant<std::int64_t, std::string> Simulation::load(std::span<const std::byte> image) {
   const auto opened = read_image(image, impl_->origin);
   if (const auto* why = std::get_if<std::string>(&opened)) return *why;
-  auto loaded = std::make_unique<Impl>(*impl_);
-  ImageOf<ImageReader> reader(std::get<Image>(opened).contents);
-  std::visit([&](auto& model) { reader.visit(model), model.loaded(); }, loaded->model);
-  if (!reader.is_complete()) return std::string("the image has other lengths than this simulation: save it again");
-  impl_ = std::move(loaded);
+  const auto read_into = [&](Impl& impl) {
+    ImageOf<ImageReader> reader(std::get<Image>(opened).contents);
+    std::visit([&](auto& model) { reader.visit(model), model.loaded(); }, impl.model);
+    return reader.is_complete();
+  };
+  if (Impl trial(*impl_); !read_into(trial))
+    return std::string("the image has other lengths than this simulation: save it again");
+  read_into(*impl_);  // in place: what nodes_W() has returned stays valid
   return std::get<Image>(opened).ticks;
 }
 

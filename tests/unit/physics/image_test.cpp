@@ -108,7 +108,9 @@ TEST_P(OfImage, ContinuesToTheBit) {
     play(sim, hands, now, stop);
     now = stop;
     const Image image = sim.save(now);
+    const auto nodes = loaded.nodes_W();
     ASSERT_EQ(std::get<0>(loaded.load(image)), now);
+    ASSERT_EQ(nodes.data(), loaded.nodes_W().data()) << "views of the nodes stay valid";
     ASSERT_TRUE(std::ranges::equal(loaded.save(now), image)) << "what is written is read";
     ASSERT_EQ(shown(sim), shown(loaded)) << "saved at " << now;
     for (int k = now; k < now + 40; ++k) {
