@@ -219,6 +219,7 @@ int main(int argc, char** argv) {
   std::uint64_t seed = 40321;
   int runs = 6;
   bool each = false, quick = false;
+  std::string word;
   std::vector<std::string> only;
   CLI::App app("What each number of the rod is good for", "rod_ablate");
   std::string footer = "\nColumns:\n";
@@ -232,6 +233,7 @@ int main(int argc, char** argv) {
   app.add_option("--seed", seed, "draws speeds, forces and frictions");
   app.add_option("--rounding", runs, "runs that only rounding tells apart")->check(CLI::Range(1, 100));
   app.add_flag("--quick", quick, "every third case of the panel");
+  app.add_option("--with", word, "only the cases with this word in their names, such as desk");
   app.add_flag("--cases", each, "prints every case as it is, and ends");
   try {
     app.parse(argc, argv);
@@ -253,6 +255,7 @@ int main(int argc, char** argv) {
     std::size_t k = 0;
     std::erase_if(cases, [&](const Case&) { return k++ % 3 != 0; });
   }
+  std::erase_if(cases, [&](const Case& one) { return one.name.find(word) == std::string::npos; });
   std::printf("%-34s", "");
   for (const auto& c : kColumns) std::printf(" %8s", c.name);
   std::printf("\n");
