@@ -74,8 +74,8 @@ double pulled_N(double way_m, double length_m) {
   return way_m / (length_m / kEA_N + 1.0 / kDevice_N_per_m + 1.0 / kHand_N_per_m);
 }
 
-/// The jaws hold several nodes, not centred between them, which share the moment that holds the thread's direction.
-/// None of this may appear as a force on the hand.
+/// Jaws hold several nodes, which need not lie symmetrically about the middle of the jaws. Forces on these nodes make
+/// the moment that keeps the thread's direction. The hand must feel only the thread's pull, none of these forces.
 TEST(SutureHands, FeelWhatTheThreadDoesToTheJaws) {
   struct Pull {
     double way_m;

@@ -96,8 +96,8 @@ TEST(AnyPose, AnArmThatMayBeStretchedGetsNoForce) {
   EXPECT_GT(most_N, 100.0);
 }
 
-/// The limit costs some force even if the encoders are correct: what remains, over poses of the workspace and
-/// directions.
+/// AnyPose limits the torques so that the tip's force is safe in whatever pose the arm really is, since encoders may be
+/// wrong. That costs force when they are right. The share that remains is tested over poses and directions.
 TEST(AnyPose, LeavesAnHonestHandMostOfTheForce) {
   const AnyPose any(device::omni());
   Poses poses(3U);

@@ -1,5 +1,5 @@
-// The scenes that follow the paper to the letter, with its corrections and as printed, and the combinations of forces
-// of its section III.
+// The two scenes of the paper, one with its equations as printed and one with our corrections, and the combinations of
+// forces of its section III.
 #include <gtest/gtest.h>
 
 #include <algorithm>

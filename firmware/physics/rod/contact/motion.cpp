@@ -91,8 +91,9 @@ void Motion::restart() noexcept {
   std::copy(drift_.begin(), drift_.end(), drift_allowed_.begin());
 }
 
-// Each of the two bounds of the motion is tested against its own allowance. If neither exceeds it, the smaller of the
-// two bounds does not either.
+// Two upper bounds say by how much gaps have closed since the list was made: the way of both segments, and the drift
+// between them (class comment of Motion). The list is used up as soon as either exceeds `spare_m` beyond its own
+// allowance. That is strict: the smaller bound alone would be enough.
 bool Motion::used_up(double spare_m, double horizon_s, double ahead_s) const noexcept {
   if (2.0 * (furthest_ + ahead_s * fastest_) <= spare_m) return false;
   double one = 0.0;
