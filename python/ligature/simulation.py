@@ -1,6 +1,7 @@
 """The simulated thread, and the results of a script."""
 
 import os
+import threading
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple, Self
@@ -118,7 +119,7 @@ class Simulation(_core.Simulation):
         image = self._save()
         if path is not None:
             whole = Path(path)
-            part = whole.with_name(f"{whole.name}.part-{os.getpid()}")
+            part = whole.with_name(f"{whole.name}.part-{os.getpid()}-{threading.get_ident()}")
             try:
                 part.write_bytes(image)
                 part.replace(whole)
@@ -129,7 +130,7 @@ class Simulation(_core.Simulation):
     def load(self, image: bytes | str | os.PathLike[str]) -> Self:
         """Takes over the state that save() has returned or written, `ticks` included. Returns this simulation.
 
-        Raises Refusal for an image of another scene, of another build, or with damage; nothing is changed then. Load
+        Raises Refusal for an image of another scene or version, or with damage; nothing is changed then. Load
         only images that you trust: a checksum finds damage, but not an image that was made to do harm.
         """
         self._load(image if isinstance(image, bytes) else Path(image).read_bytes())

@@ -13,6 +13,8 @@ namespace {
 const Vec3 kEye = Vec3(0.0, -1.0, 1.0);         // from above and in front: sees a hanging thread, and one on a desk
 constexpr std::array kInside_d{1.0, 3.0, 5.0};  // distance from the knot's end to the hand, thread diameters
 constexpr double kDrawn = 0.36;                 // how far the hand draws, as a fraction of the thread's length
+constexpr double kMostPull = 1.3;  // pull at which the hand stops: the knot is jammed; fraction of a tight knot's pull
+constexpr double kStep = 0.01;  // the operator looks for the knot's end at 100 places of the thread, then more closely
 
 struct Pull {
   double at_m = 0.0;         ///< where the hand takes the thread, as an arc length
@@ -24,13 +26,13 @@ int seen(const Look& look, double last_m) { return seen_determinant(look.thread.
 
 bool no_knot_seen(const Look& look) { return seen(look, look.thread.length_m()) == 1; }
 
-/// Arc length at which the knot ends: the thread beyond it could be cut off, and the knot would stay the same. Looks
-/// once for each diameter of the free end.
+/// Arc length at which the knot ends, to a diameter: the thread beyond it could be cut off, and the knot would stay the
+/// same. Two step lengths keep the time of a look short in a long thin thread.
 double knot_end_m(const Look& look) {
-  const double step_m = look.place.diameter_m;
   double end_m = look.thread.length_m();
   const int knotted = seen(look, end_m);
-  while (end_m > step_m && seen(look, end_m - step_m) == knotted) end_m -= step_m;
+  for (const double step_m : {std::max(look.place.diameter_m, kStep * end_m), look.place.diameter_m})
+    while (end_m > step_m && seen(look, end_m - step_m) == knotted) end_m -= step_m;
   return end_m;
 }
 
@@ -44,11 +46,14 @@ Move see_the_knot(std::shared_ptr<Pull> pull, double inside_d) {
           }};
 }
 
-/// One diameter above the strands that the hand draws the thread over.
+/// One diameter above the strands that the hand draws the thread over. The hand stops where it is when the knot holds
+/// it.
 Where drawn_back(std::shared_ptr<const Pull> pull) {
   auto from = std::make_shared<Vec3>();
   return [=](const Look& look) -> Vec3 {
     if (look.in_move_s == 0.0) *from = look.hands[kRightHand].p_W();
+    const double held_N = -pull->way.dot(look.sight.force_W_N[kRightHand]);
+    if (held_N > kMostPull * look.place.tension_N) return look.hands[kRightHand].p_W();
     return *from + kDrawn * look.place.length_m * pull->way + look.place.diameter_m * Vec3::UnitZ();
   };
 }
@@ -60,10 +65,11 @@ Moves untie() {
   for (const double inside_d : kInside_d) {
     auto pull = std::make_shared<Pull>();
     all.push_back(hang_out());
-    append(all,
-           unless(no_knot_seen, {see_the_knot(pull, inside_d), take(kRightHand, [pull](const Look&) { return pull->at_m; }),
-                                 carry(kRightHand, "draw back", drawn_back(pull)), wait(1.0), let_go(kRightHand)}));
+    append(all, unless(no_knot_seen,
+                       {see_the_knot(pull, inside_d), take(kRightHand, [pull](const Look&) { return pull->at_m; }),
+                        carry(kRightHand, "draw back", drawn_back(pull)), wait(1.0), let_go(kRightHand)}));
   }
+  all.push_back({"see that no knot is left", no_knot_seen, 2.0});
   return all;
 }
 

@@ -206,6 +206,8 @@ std::variant<PaperSimulation, std::string> PaperSimulation::make(const scene::Sc
   s.model_ = std::move(thread.model);
   s.initial_ = s.state_ = s.before_ = std::move(thread.initial);
   s.internal_ = choose_internal_step(scene.suture);
+  s.kind_ = scene.suture.model;
+  s.swivel_ = scene.suture.paper.swivel;
   s.has_limits_ = scene.hands.propagation;
   s.quadratic_ = scene.suture.model == scene::Model::kPaper5;
   s.forward_ = scene.suture.paper.integrator == scene::Integrator::kForward;

@@ -45,13 +45,13 @@ class PaperSimulation {
   /// The members that an image saves (image.hpp): all but the step's function, the clock, and the nodes as vectors,
   /// which are converted again when they are asked for.
   [[nodiscard]] static auto members(PaperSimulation& self) noexcept {
-    auto& [model, initial, state, before, work, internal, quadratic, forward, explicit_damping, has_limits,
-           contact_kind, contact, paper_contact, course, limits, coupling, grasp, gravity, loads, substeps, time,
-           tick_s, ticks, kinetic_J, weight_J, rate_v, hands, health, nodes, velocities, nodes_stale,
+    auto& [model, kind, swivel, initial, state, before, work, internal, quadratic, forward, explicit_damping,
+           has_limits, contact_kind, contact, paper_contact, course, limits, coupling, grasp, gravity, loads, substeps,
+           time, tick_s, ticks, kinetic_J, weight_J, rate_v, hands, health, nodes, velocities, nodes_stale,
            velocities_stale] = self;
-    return std::tie(model, initial, state, before, work, quadratic, forward, explicit_damping, has_limits, contact_kind,
-                    contact, paper_contact, course, limits, coupling, grasp, gravity, loads, substeps, tick_s, ticks,
-                    kinetic_J, weight_J, rate_v, hands, health);
+    return std::tie(model, kind, swivel, initial, state, before, work, quadratic, forward, explicit_damping, has_limits,
+                    contact_kind, contact, paper_contact, course, limits, coupling, grasp, gravity, loads, substeps,
+                    tick_s, ticks, kinetic_J, weight_J, rate_v, hands, health);
   }
   /// Call after the members were loaded from an image.
   void loaded() noexcept { nodes_stale_ = velocities_stale_ = true; }
@@ -74,6 +74,8 @@ class PaperSimulation {
   static std::span<const Vec3> unpacked(const Lane3& from, std::vector<Vec3>& to, bool& stale) noexcept;
 
   ThreadModel model_;
+  scene::Model kind_ = scene::Model::kPaper4;  // kind_ and swivel_ chose internal_; an image is compared by them
+  scene::SwivelDamper swivel_ = scene::SwivelDamper::kInternal;
   ThreadState initial_, state_, before_;  // before_: state at the start of the tick
   InternalWorkspace work_;
   InternalStep internal_ = nullptr;

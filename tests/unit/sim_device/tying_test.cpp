@@ -314,5 +314,32 @@ TEST(TierOf, NamesKnotAndSeedOrSaysWhatIsAllowed) {
   EXPECT_EQ(refusal("tie:square", scene_of("paper.toml", {"suture.nodes=20"})).substr(0, 13), "suture.nodes:");
 }
 
+/// The thread keeps its knot and holds the right hand by a spring, as a jammed knot would.
+TEST(TierOf, AnUntyingHandStopsAtAJammedKnotAndReportsIt) {
+  const auto scene = scene_of("desk.toml");
+  auto tier = std::get<KnotTier>(tier_of("untie", scene));
+  std::vector<Vec3> thread;
+  for (const auto& p : scene.suture.initial_polyline_m) thread.emplace_back(p[0], p[1], p[2]);
+  Sight sight;
+  sight.thread_W = thread;
+  double most_N = 0.0;
+  int grips = 0;
+  Vec3 held_W = Vec3::Zero();
+  for (int k = 0; k < 120'000 && !tier.is_done(); ++k) {
+    const HandWish& right = tier.wish()[kRightHand];
+    if (right.grip && sight.force_W_N[kRightHand].isZero()) held_W = right.p_W, ++grips;
+    sight.tool_W = {tier.wish()[kLeftHand].p_W, right.p_W};
+    sight.force_W_N[kRightHand] =
+        right.grip ? Vec3(scene.hands.coupling_N_per_m * (held_W - right.p_W) + 1e-9 * Vec3::UnitX()) : Vec3::Zero();
+    most_N = std::max(most_N, sight.force_W_N[kRightHand].norm());
+    tier.tick(sight);
+  }
+  ASSERT_TRUE(tier.is_done());
+  EXPECT_EQ(grips, 3);
+  EXPECT_LT(most_N * scene.hands.force_scale, 1.0) << "the hand of a person who follows would feel 3.3 N";
+  ASSERT_FALSE(tier.missed().empty());
+  EXPECT_EQ(tier.missed().back(), "see that no knot is left");
+}
+
 }  // namespace
 }  // namespace ligature::sim

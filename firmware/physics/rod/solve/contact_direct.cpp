@@ -112,6 +112,7 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
 
 template <bool Friction>
 Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
+  start_error2_ = kUnknown;
   Search search{effort, report, window_last_ - window_first_ + 1};
   const auto answer = [&] {
     report.work += price::answer(newton_.loaded(), search.nodes);
@@ -122,7 +123,6 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
   } else if (!renew_matrix(solver, search)) {
     return Outcome::kLater;
   }
-  start_error2_ = kUnknown;
   search.resumed = newton_.resume(p_.data());
   if (search.resumed) answer();
   for (; search.look < tuning.most_looks; ++search.look) {
