@@ -88,7 +88,10 @@ def fenced(text):
 
 
 def main():
-    check, file = "--check" in sys.argv, pathlib.Path(sys.argv[-1])
+    check, files = "--check" in sys.argv, [word for word in sys.argv[1:] if word != "--check"]
+    if len(files) != 1 or not files[0].endswith(".md"):
+        sys.exit("usage: python_api.py [--check] FILE.md")
+    file = pathlib.Path(files[0])
     lacks = []
     text = re.sub(r"\n{3,}", "\n\n", "".join(page(lambda name: lacks.append(name) or "(no docstring)")))
     if lacks:
