@@ -88,6 +88,9 @@ async function draws(page, webgl, name) {
   assert.deepEqual(notes, webgl ? [] : ['3-D view']);
   if (!webgl) assert.ok(await page.evaluate(inked) > 200, 'the thread is seen in the flat view');
   await page.evaluate(() => document.getElementById('help').close());
+  await page.click('#help-open');
+  assert.equal(await page.evaluate(() => document.getElementById('help').scrollTop), 0, 'the help opens at its head');
+  await page.evaluate(() => document.getElementById('help').close());
   const { width, height } = page.viewportSize();
   await fits(page, width, height);
   await page.screenshot({ path: join(out, `${name}.png`) });

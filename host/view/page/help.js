@@ -15,7 +15,11 @@ export class Help {
     if (!isKept(SEEN)) this.open();
   }
 
-  open() { if (!this.box.open && !document.querySelector('dialog[open]')) this.box.show(); } // not modal: STOP stays usable
+  open() {
+    if (this.box.open || document.querySelector('dialog[open]')) return;
+    this.box.show(); // not modal: STOP stays usable
+    this.box.scrollTop = 0; // the focused button is at the end, and a small page would show the end first
+  }
 }
 
 // localStorage may be disabled and throw; the help then opens on each visit.
