@@ -8,6 +8,7 @@
 #include "host/console/python_tool.hpp"
 #include "host/errors.hpp"
 #include "host/export.hpp"
+#include "host/knot/common_name.hpp"
 #include "host/knot/recognise.hpp"
 #include "host/polyline_file.hpp"
 #include "host/rig_facts.hpp"
@@ -60,6 +61,7 @@ void plot_thread(const std::string& log_path, const std::string& out_path) {
   shape.commit();
   std::string title = fs::path(log_path).filename().string() + ": " + found.type;
   if (found.handedness != "none") title += " " + found.handedness;
+  if (const std::string name = knot::common_name(found.type, found.handedness); !name.empty()) title += ", " + name;
   tool.run({scratch.file("shape.csv"), "--radius", text("%.17g", line.radius_m), "--title", title, "--out", target},
            scratch.file("complaints"));
 }

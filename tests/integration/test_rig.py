@@ -33,6 +33,9 @@ class WholeRig(unittest.TestCase):
             self.assertEqual(rig.end("recorder"), 0, rig.words())
             report = json.loads(run("ligature-host", "report", rig.log, "--json").stdout)
             knot = json.loads(run("ligature-host", "knot", rig.log, "--json").stdout)
+            picture = rig.path / "knot.svg"
+            self.assertEqual(run("ligature-host", "plot", rig.log, "--thread", "--out", picture).returncode, 0)
+            self.assertIn("3_1 right, overhand", picture.read_text())
             forces = rig.path / "forces.csv"
             self.assertEqual(run("ligature-host", "export", rig.log, "--forces", forces).returncode, 0)
             rows = [line for line in forces.read_text().splitlines() if line and not line.startswith("#")][1:]
