@@ -41,6 +41,8 @@ std::variant<KnotTier, std::string> tier_of(const std::string& word, const scene
       return "seed: found \"" + std::string(digits) + "\", allowed 0 .. " +
              std::to_string(std::numeric_limits<std::uint32_t>::max());
   }
+  if (word.starts_with(kTieWord) && knot == kUntie.name)
+    return "knot: found \"untie\", allowed " + knot_names() + "; or the word untie alone";
   return KnotTier::make(scene, knot, seed);
 }
 

@@ -166,8 +166,6 @@ def call_for_a_while(d, sim):
 
 def draw_for(seconds, seed):
     signal.signal(signal.SIGALRM, too_long)
-    sys.path[:] = map(os.path.abspath, sys.path)
-    os.chdir(tempfile.mkdtemp())  # calls of save() leave files
     d, calls, refused = Drawn(seed), 0, 0
     fresh = ligature.Simulation(ligature.Scene.load(SOURCE + "/scenes/paper.toml", {"suture.nodes": 20}))
     sim, end = fresh, time.monotonic() + seconds
@@ -193,4 +191,6 @@ def test_random_calls():
 
 
 if __name__ == "__main__":
-    draw_for(float(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 0)
+    sys.path[:] = map(os.path.abspath, sys.path)
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):  # calls of save() leave files
+        draw_for(float(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 0)

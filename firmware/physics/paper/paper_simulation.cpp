@@ -209,7 +209,6 @@ std::variant<PaperSimulation, std::string> PaperSimulation::make(const scene::Sc
   s.kind_ = scene.suture.model;
   s.swivel_ = scene.suture.paper.swivel;
   s.has_limits_ = scene.hands.propagation;
-  s.quadratic_ = scene.suture.model == scene::Model::kPaper5;
   s.forward_ = scene.suture.paper.integrator == scene::Integrator::kForward;
   s.explicit_damping_ = scene.suture.paper.damping == scene::Damping::kExplicit;
   s.set_contact(scene);
@@ -276,8 +275,8 @@ void PaperSimulation::describe(std::span<float> tension_N, std::span<float> turn
     const int node = static_cast<int>(i);
     if (node + 1 < model_.nodes) {
       const double strain = norm(state_.p.at(node + 1) - state_.p.at(node)) / model_.rest_m - 1.0;
-      const double spring_N = quadratic_ ? QuadraticStretchLaw::tension_N(strain, model_.stretch_N)
-                                         : LinearStretch::tension_N(strain, model_.stretch_N);
+      const double spring_N = kind_ == scene::Model::kPaper5 ? QuadraticStretchLaw::tension_N(strain, model_.stretch_N)
+                                                             : LinearStretch::tension_N(strain, model_.stretch_N);
       tension = static_cast<float>(spring_N + (has_limits_ ? limits_.passed_N(node) : 0.0));
     }
     tension_N[i] = tension;

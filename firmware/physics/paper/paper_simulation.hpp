@@ -45,11 +45,11 @@ class PaperSimulation {
   /// The members that an image saves (image.hpp): all but the step's function, the clock, and the nodes as vectors,
   /// which are converted again when they are asked for.
   [[nodiscard]] static auto members(PaperSimulation& self) noexcept {
-    auto& [model, kind, swivel, initial, state, before, work, internal, quadratic, forward, explicit_damping,
-           has_limits, contact_kind, contact, paper_contact, course, limits, coupling, grasp, gravity, loads, substeps,
-           time, tick_s, ticks, kinetic_J, weight_J, rate_v, hands, health, nodes, velocities, nodes_stale,
+    auto& [model, kind, swivel, initial, state, before, work, internal, forward, explicit_damping, has_limits,
+           contact_kind, contact, paper_contact, course, limits, coupling, grasp, gravity, loads, substeps, time,
+           tick_s, ticks, kinetic_J, weight_J, rate_v, hands, health, nodes, velocities, nodes_stale,
            velocities_stale] = self;
-    return std::tie(model, kind, swivel, initial, state, before, work, quadratic, forward, explicit_damping, has_limits,
+    return std::tie(model, kind, swivel, initial, state, before, work, forward, explicit_damping, has_limits,
                     contact_kind, contact, paper_contact, course, limits, coupling, grasp, gravity, loads, substeps,
                     tick_s, ticks, kinetic_J, weight_J, rate_v, hands, health);
   }
@@ -74,12 +74,12 @@ class PaperSimulation {
   static std::span<const Vec3> unpacked(const Lane3& from, std::vector<Vec3>& to, bool& stale) noexcept;
 
   ThreadModel model_;
-  scene::Model kind_ = scene::Model::kPaper4;  // kind_ and swivel_ chose internal_; an image is compared by them
+  scene::Model kind_ = scene::Model::kPaper4;  // kind_ and swivel_ choose internal_, which no image has
   scene::SwivelDamper swivel_ = scene::SwivelDamper::kInternal;
   ThreadState initial_, state_, before_;  // before_: state at the start of the tick
   InternalWorkspace work_;
   InternalStep internal_ = nullptr;
-  bool quadratic_ = false, forward_ = false, explicit_damping_ = false, has_limits_ = false;
+  bool forward_ = false, explicit_damping_ = false, has_limits_ = false;
   scene::ContactSolver contact_kind_ = scene::ContactSolver::kNone;
   ContactSolver contact_;       // the implicit solver
   PaperContact paper_contact_;  // the paper's own solver, for comparison

@@ -12,22 +12,15 @@
 #include <variant>
 #include <vector>
 
-#include "host/knot/recognise.hpp"
 #include "host/lab/rig/virtual_rig.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "sim_device/operator/knot_tier.hpp"
+#include "tests/support/knot_in.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/share.hpp"
 
 namespace ligature::lab {
 namespace {
-
-std::string knot_in(std::span<const sim::Vec3> thread_W) {
-  std::vector<std::array<double, 3>> shape;
-  for (const sim::Vec3& p : thread_W) shape.push_back({p.x(), p.y(), p.z()});
-  const auto found = knot::recognise(shape, false);
-  return found.type + " " + found.handedness;
-}
 
 /// An operator until it draws its first throw.
 class Throwing final : public SeeingOperator {
@@ -40,8 +33,8 @@ class Throwing final : public SeeingOperator {
     const auto& wish = tier_.tick(sight);
     if (const std::string before = std::exchange(move_, tier_.doing()); before != move_) {
       attempts += move_ == "over and through";
-      if (tells_) std::printf("%6.2f s  %-18s %s\n", sight.t_s, move_.c_str(), knot_in(sight.thread_W).c_str());
-      if (move_ == "draw through") knot = knot_in(sight.thread_W);
+      if (tells_) std::printf("%6.2f s  %-18s %s\n", sight.t_s, move_.c_str(), test::knot_in(sight.thread_W).c_str());
+      if (move_ == "draw through") knot = test::knot_in(sight.thread_W);
     }
     return wish;
   }

@@ -14,13 +14,14 @@
 #include <vector>
 
 #include "firmware/telemetry/messages.hpp"
-#include "host/knot/recognise.hpp"
 #include "host/lab/rig/virtual_rig.hpp"
 #include "sim_device/tying/tying_plan.hpp"
+#include "tests/support/knot_in.hpp"
 #include "tests/support/random.hpp"
 
 namespace ligature::lab::test {
 
+using ligature::test::knot_in;
 using ligature::test::Random;
 
 /// Disturbances between the rig and the two plans.
@@ -41,10 +42,7 @@ class HeardRig {
   std::string tie(std::int64_t most_ticks) {
     if (const auto why = rig.run(most_ticks, true)) return *why;
     if (!rig.is_done()) return "not done: " + ears_[0].plan.tier().doing();
-    std::vector<std::array<double, 3>> shape;
-    for (const sim::Vec3& p : rig.thread.nodes_W()) shape.push_back({p.x(), p.y(), p.z()});
-    const auto found = knot::recognise(shape, false);
-    return found.type + " " + found.handedness;
+    return knot_in(rig.thread.nodes_W());
   }
 
   [[nodiscard]] const sim::TyingPlan& plan(std::size_t hand) const { return ears_[hand].plan; }

@@ -25,13 +25,12 @@ class Until final : public SeeingOperator {
   [[nodiscard]] std::array<sim::Vec3, 2> start_W_m() const override { return start_W_; }
   [[nodiscard]] std::array<sim::HandWish, 2> act(const sim::Sight& sight) override {
     const auto& wish = tier_.tick(sight);
-    if (tier_.doing() == move_ && shape.empty())
-      for (const sim::Vec3& p : sight.thread_W) shape.push_back({p.x(), p.y(), p.z()});
+    if (tier_.doing() == move_ && knot.empty()) knot = test::knot_in(sight.thread_W);
     return wish;
   }
-  [[nodiscard]] bool is_done() const override { return !shape.empty() || tier_.is_done(); }
+  [[nodiscard]] bool is_done() const override { return !knot.empty() || tier_.is_done(); }
 
-  std::vector<std::array<double, 3>> shape;  ///< of the thread when that move began
+  std::string knot;  ///< in the thread when that move began
 
  private:
   sim::KnotTier tier_;
@@ -39,12 +38,7 @@ class Until final : public SeeingOperator {
   std::array<sim::Vec3, 2> start_W_{};
 };
 
-std::string knot_in(const VirtualRig& rig) {
-  std::vector<std::array<double, 3>> shape;
-  for (const sim::Vec3& p : rig.thread.nodes_W()) shape.push_back({p.x(), p.y(), p.z()});
-  const auto found = knot::recognise(shape, false);
-  return found.type + " " + found.handedness;
-}
+std::string knot_in(const VirtualRig& rig) { return test::knot_in(rig.thread.nodes_W()); }
 
 /// The knot in the thread when the operator begins `move`; "done": at the end.
 std::string knot_before(const char* move, const char* name, const char* knot, std::uint32_t seed,
@@ -56,9 +50,7 @@ std::string knot_before(const char* move, const char* name, const char* knot, st
   Until person(std::get<sim::KnotTier>(sim::KnotTier::make(setup.scene, knot, seed)), move);
   VirtualRig rig(setup, person);
   if (const auto why = rig.run(120'000, true)) return *why;
-  if (person.shape.empty()) return "never";
-  const auto found = knot::recognise(person.shape, false);
-  return found.type + " " + found.handedness;
+  return person.knot.empty() ? "never" : person.knot;
 }
 
 /// Expects a knot that is tied in at least 99 % of all runs: of three drawn operators, or of eight if one of the three

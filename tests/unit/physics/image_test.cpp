@@ -7,10 +7,12 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "firmware/physics/image.hpp"
 #include "firmware/physics/simulation.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "tests/support/random.hpp"
@@ -76,7 +78,7 @@ const Kind kKinds[] = {
      "suture-3-0-knot.toml",
      {"world.desk_height_m=-0.002",
       "world.pegs=[{from_m=[-0.05,-0.01,-0.001],to_m=[-0.05,0.01,-0.001],radius_m=0.001}]"}},
-    {"knot by sweeps, little work", "suture-3-0-knot.toml", {"suture.work_instructions=400000"}},
+    {"knot by sweeps, little work", "suture-3-0-knot.toml", {"suture.work_instructions=2000000"}},
 };
 
 /// All values that can be read from a simulation.
@@ -121,7 +123,8 @@ TEST_P(OfImage, ContinuesToTheBit) {
     now += 40;
     contacts = std::max(contacts, sim.diagnostics().contacts);
   }
-  RecordProperty("contacts", contacts);
+  const bool has_knot = std::string(GetParam().name).find("knot") != std::string::npos;
+  EXPECT_GE(contacts, has_knot ? 5 : 0) << "the contacts of a knot are continued, too";
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, OfImage, testing::ValuesIn(kKinds), [](const auto& kind) {
@@ -171,6 +174,20 @@ TEST(Image, OfAnotherVersionOrDamagedIsRefused) {
   Image longer = good;
   longer.push_back(std::byte{0});
   EXPECT_EQ(refusal(longer), "the image is damaged: save it again");
+}
+
+/// Contents of another length, behind a header that fits them: only reading them finds it.
+TEST(Image, OfOtherLengthsIsRefused) {
+  const Image good = made("suture-3-0-knot.toml").save();
+  physics::ImageOrigin origin;
+  std::memcpy(&origin, good.data() + 32, sizeof origin);  // after magic, version and ticks
+  Image contents(good.begin() + 48, good.end());
+  const auto with = [&](const Image& c) { return physics::with_header(origin, {0, c}); };
+  EXPECT_EQ(refusal(with(contents)), "");
+  contents.pop_back();
+  EXPECT_EQ(refusal(with(contents)), "the image has other lengths than this simulation: save it again");
+  contents.insert(contents.end(), 2, std::byte{0});
+  EXPECT_EQ(refusal(with(contents)), "the image has other lengths than this simulation: save it again");
 }
 
 /// A truncated image, or one with flipped bits, is refused: a CRC-32 finds every burst of up to 32 bits.

@@ -92,7 +92,7 @@ TEST(StaticFriction, DoesNotCatchWhatSlidesSlowly) {
 }
 
 // A ball of thread thrown together does not converge in a single pass. The remaining velocities must not close any gap
-// by more than its width, or the overlaps would grow.
+// by more than its width, or the overlaps would grow. Three balls a run; scripts/sweep draws others.
 TEST(Unsettled, VelocitiesAreBrakedToWhatContactsHaveRoomFor) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     Numerics numerics;

@@ -6,17 +6,14 @@
 #include <vector>
 
 #include "firmware/physics/simulation.hpp"
-#include "host/knot/recognise.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "sim_device/operator/knot_tier.hpp"
+#include "tests/support/knot_in.hpp"
 
 namespace ligature::sim::test {
 
-inline knot::KnotResult recognised(std::span<const Vec3> thread) {
-  std::vector<std::array<double, 3>> shape;
-  for (const Vec3& p : thread) shape.push_back({p.x(), p.y(), p.z()});
-  return knot::recognise(shape, false);
-}
+using ligature::test::knot_in;
+using ligature::test::recognised;
 
 /// Lets the operator tie `knot`; stops when the move `until` begins.
 /// @return the knot's type and handedness at the end, or why there is none.
@@ -45,8 +42,7 @@ inline std::string tied(const char* name, const char* knot, std::uint32_t seed,
                  physics::ToolInput{wish[1].p_W, wish[1].v_W, wish[1].grip}});
   }
   if (person.doing() != until) return "not done";
-  const auto k = recognised(thread.nodes_W());
-  return k.type + " " + k.handedness;
+  return knot_in(thread.nodes_W());
 }
 
 }  // namespace ligature::sim::test

@@ -304,6 +304,8 @@ TEST(TierOf, NamesKnotAndSeedOrSaysWhatIsAllowed) {
   EXPECT_NE(one.wish()[0].p_W, two.wish()[0].p_W);
   EXPECT_EQ(refusal("untie", scene_of("desk.toml")), "");
   EXPECT_EQ(refusal("untie:x", scene_of("desk.toml")), "seed: found \"x\", allowed 0 .. 4294967295");
+  EXPECT_EQ(refusal("tie:untie", scene_of("desk.toml")),
+            "knot: found \"untie\", allowed overhand, figure-eight, square, granny, surgeon; or the word untie alone");
   EXPECT_EQ(refusal("tie:bow", suture()),
             "knot: found \"bow\", allowed overhand, figure-eight, square, granny, surgeon");
   EXPECT_NE(refusal("tie:", suture()).find("found \"\""), std::string::npos);
