@@ -18,6 +18,7 @@ from plot_forces import drawn, save
 NEAR = 1.5  # strands closer than this many diameters count as touching
 STEP, BESIDE = 0.15, 40  # in diameters: distance of drawn points; number of points drawn before and after the knot
 MOST_PARTS = 3  # of a knot that are magnified
+OVERLAP = 0.4  # share of each neighbouring segment that a stroke covers
 APART = 8.0  # in diameters along the thread: two places further apart belong to different strands
 FROM_THE_FRONT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # direction of view: x to the right, z up
 
@@ -53,23 +54,25 @@ def flattest(points):
 
 
 def draw_strands(axis, points, share, view, width_m):
-    """Draws segments from back to front, each with a pale outline that separates it from what lies behind."""
+    """Draws segments from back to front, each with a pale outline that separates it from what lies behind.
+
+    Each stroke bends into both neighbours of its segment, so that a strand shows neither seams nor, where it turns
+    sharply, gaps."""
     depth = points @ np.cross(*view)  # depth towards the viewer: right x up
     flat = points @ view.T
-    segments = np.stack([flat[:-1], flat[1:]], axis=1)
-    order = np.argsort(depth[:-1] + depth[1:])
+    before = np.vstack([flat[:1], flat[:-2] + (1.0 - OVERLAP) * np.diff(flat[:-1], axis=0)])
+    after = np.vstack([flat[1:-1] + OVERLAP * np.diff(flat[1:], axis=0), flat[-1:]])
+    strokes = np.stack([before, flat[:-1], flat[1:], after], axis=1)
+    middle = (depth[:-1] + depth[1:]) / 2
+    order = np.argsort(np.concatenate([middle - width_m / 2, middle]))  # outlines lie behind their own strand
     colours = plt.get_cmap("viridis")(0.9 * (share - share.min()) / np.ptp(share))
     left, right = axis.get_xlim()
     points_per_m = axis.bbox.width / axis.figure.dpi * 72.0 / (right - left)
     width = max(width_m * points_per_m, 1.2)
-    lines = np.repeat(segments[order], 2, axis=0)
-    overlap = 0.4 * (lines[1::2, 1] - lines[1::2, 0])  # segments overlap, so that a strand shows no seams
-    lines[1::2, 0] -= overlap
-    lines[1::2, 1] += overlap
-    paints = np.repeat(colours[order], 2, axis=0)
-    paints[::2] = (1.0, 1.0, 1.0, 1.0)
-    widths = np.tile([width + 2.0, width], len(order))
-    axis.add_collection(LineCollection(lines, colors=paints, linewidths=widths, capstyle="butt"))
+    lines = np.concatenate([strokes, strokes])[order]
+    paints = np.concatenate([np.ones((len(strokes), 4)), colours])[order]
+    widths = np.repeat([width + 2.0, width], len(strokes))[order]
+    axis.add_collection(LineCollection(lines, colors=paints, linewidths=widths, capstyle="butt", joinstyle="round"))
 
 
 def frame(axis, flat, margin):
