@@ -18,6 +18,11 @@ struct Tuning {
   /// Pairs with a gap below this multiple of near_d are measured between smooth curves, all others between straight
   /// segments. Test: Sliding.IsSmooth
   double close = 2.0;
+  /// A pair without an impulse is no contact if a nearer pair has its points within place_d on both strands, d. Time
+  /// lost while a surgeon's knot is pulled at 0.25 m/s with 6.5 million instructions: 9.5 % without it, 1.2 % with 0.5.
+  /// A pair with an impulse counts as nearer by place_stays_d, d. With 0, contacts alternate and 1.5 % is lost; with
+  /// more than the overlap of loaded strands, hooked strands pass through each other. Test: Places.*, Hooked.*
+  double place_d = 0.5, place_stays_d = 0.003;
   /// Stiffness of a contact, N/m: 2 N overlap by 1 % of a diameter. Rigid contacts of straight segments have no
   /// solution in a tight loop. Test: Overhand.HoldsAfterAPullToFiveNewtons
   double contact_N_per_m = 6e5;

@@ -47,6 +47,8 @@ const std::vector<Number> kNumbers = {
     NUMBER(near_d),
     NUMBER(skin_d),
     NUMBER(close, 1.0, 4.0),
+    NUMBER(place_d, 0.0, 0.25, 0.8),
+    NUMBER(place_stays_d, 0.0, 0.01),
     NUMBER(contact_N_per_m),
     NUMBER(recovery),
     NUMBER(max_recovery_m_per_s, 0.05, 1e9),

@@ -43,11 +43,18 @@ MeshSteps steps_of_a_pull(double speed) {
 }
 
 // Limit of a force step by remeshing at a fast pull: 0.5 % of the tension plus 3 mN, because strands slide by more than
-// a segment per tick in either mesh.
+// a segment per tick in either mesh. The largest step of a pull differs from speed to speed, by 0.6 mN (standard
+// deviation), so this is the mean of eight pulls.
 TEST(FineZone, MovesWithoutAForceStep) {
-  const MeshSteps steps = steps_of_a_pull(0.2);
-  EXPECT_GT(steps.remeshes, 10);
-  EXPECT_LT(steps.beyond_N, 3e-3);
+  constexpr int kPulls = 8;
+  double beyond_N = 0.0;
+  for (int k = 0; k < kPulls; ++k) {
+    const MeshSteps steps = steps_of_a_pull(0.19 + 0.002 * k);
+    EXPECT_GT(steps.remeshes, 10);
+    beyond_N += steps.beyond_N / kPulls;
+  }
+  EXPECT_LT(beyond_N, 3e-3);
+  RecordProperty("beyond_mN", std::to_string(1e3 * beyond_N));
 }
 
 // At this slow pull strands slide by a tenth of a segment per tick, so the force step is due to remeshing alone. Limit:

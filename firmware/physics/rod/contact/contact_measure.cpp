@@ -84,8 +84,8 @@ bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcep
     }
   }
   const auto fours = [](const std::vector<std::int32_t>& list) { return static_cast<long>(list.size() + 3) / 4; };
-  const long cost = (price::kTake + price::kGuard) * static_cast<long>(due_.size()) + price::kMeasure * fours(far_) +
-                    (price::kMeasure + price::kSmooth) * fours(close_) +
+  const long cost = (price::kPlace + price::kTake + price::kGuard) * static_cast<long>(due_.size()) +
+                    price::kMeasure * fours(far_) + (price::kMeasure + price::kSmooth) * fours(close_) +
                     price::kCorner * std::max(0L, static_cast<long>(bent_.last - bent_.first));
   if (cost > work.left()) return false;
   work.spend(cost);
@@ -175,13 +175,19 @@ bool ContactSet::collect_thread(const State& state, const Motion& motion, double
   const auto straight = [&](const std::int32_t* places) { measure<false>(places, state); };
   if (!by_fours(close_, price::kMeasure + price::kSmooth, smooth) || !by_fours(far_, price::kMeasure, straight))
     return false;
+  find_near(state, dt_s);
+  if (!choose_near(work.time())) return false;
   std::size_t next = 0;
   for (const auto index : awake_) {
     PairGroup& group = groups[static_cast<std::size_t>(index)];
     bool touches = false;
     if (!pieces.allow((price::kTake + price::kGuard) * (group.last - group.first))) return false;
     for (; next < due_.size() && due_[next] < group.last; ++next) {
-      touches |= take(pairs[static_cast<std::size_t>(due_[next])], measured_[next], state, motion, dt_s, mu, report);
+      Candidate& pair = pairs[static_cast<std::size_t>(due_[next])];
+      const Measured& m = measured_[next];
+      pair.due = std::min(m.distance_m, m.chord_m - pair.bulge_m) - pair.reach_m +
+                 motion.gone(static_cast<std::size_t>(pair.a), static_cast<std::size_t>(pair.b));
+      touches |= take(pair, m, state, mu, report);
     }
     group.due = touches ? PairGroup::kAtOnce : 1e300;
     for (std::int32_t k = group.first; !touches && k < group.last; ++k) {
@@ -192,18 +198,13 @@ bool ContactSet::collect_thread(const State& state, const Motion& motion, double
   return true;
 }
 
-bool ContactSet::take(Candidate& pair, const Measured& m, const State& state, const Motion& motion, double dt_s,
-                      double mu, ContactReport& report) noexcept {
-  const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-  const double gap = m.distance_m - pair.reach_m, spare = gap - pair.near_m;
+bool ContactSet::take(Candidate& pair, const Measured& m, const State& state, double mu,
+                      ContactReport& report) noexcept {
+  const double gap = m.distance_m - pair.reach_m;
   double s = m.s, t = m.t;
-  pair.due = std::min(m.distance_m, m.chord_m - pair.bulge_m) - pair.reach_m + motion.gone(a, b);
   report.min_gap_m = std::min(report.min_gap_m, gap);
-  // A pair becomes a contact if its gap is below near_m + 2 dt x the relative speed of its two points. find_due() used
-  // an upper bound of this speed, so not every pair that it measured becomes a contact.
-  const Vec u = (1.0 - t) * state.v[b] + t * state.v[b + 1] - (1.0 - s) * state.v[a] - s * state.v[a + 1];
   const bool full = contacts_.size() >= static_cast<std::size_t>(kMaxContacts);
-  if (full || (spare > 0.0 && spare * spare > 4.0 * dt_s * dt_s * dot(u, u))) {
+  if (full || !m.touches) {
     report.rows_left_out += full;
     pair.impulse = Vec{};
     watched_.push_back({pair.a, pair.b, m.chord_m});  // never allocates: reserved for all pairs

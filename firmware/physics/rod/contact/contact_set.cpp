@@ -16,6 +16,8 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   for (auto* array : {&awake_, &due_}) array->reserve(pairs.capacity());
   for (auto* array : {&close_, &far_}) array->reserve(pairs.capacity() + 4);
   measured_.resize(pairs.capacity());
+  near_.reserve(pairs.capacity());
+  heads_.reserve(n + 1);
   corner_.assign(n, Vec{});
   share_.assign(n, 0.0);
   groups.reserve(pairs.capacity());

@@ -142,9 +142,9 @@ class ContactWork {
   };
   /// The members that an image saves (image.hpp): all but those that each substep computes again.
   [[nodiscard]] static auto members(ContactWork& self) noexcept {
-    auto& [watched, awake, due, close, far, measured, corner, share, bent, gaps, columns, swept, extra, step, loaded, p,
-           plain, residual, mixing, newton, u, v_start, p_start, start_error2, turning, spin, segments, radius_m,
-           body_due, stride, first, last, overflow] = self;
+    auto& [watched, awake, due, close, far, measured, near, heads, corner, share, bent, gaps, columns, swept, extra,
+           step, loaded, p, plain, residual, mixing, newton, u, v_start, p_start, start_error2, turning, spin, segments,
+           radius_m, body_due, stride, first, last, overflow] = self;
     return std::tie(newton, body_due, first, last, overflow);
   }
 
@@ -154,6 +154,13 @@ class ContactWork {
     Vec between;                       ///< from the point on the first segment to that on the second, m
     double s, t, distance_m, chord_m;  ///< parameters of the points; their distance; distance of the chords
     bool smooth;                       ///< points of the smooth curves, not of the chords
+    bool touches = false;              ///< is to become a contact
+  };
+  /// A measured pair that is near enough to be a contact.
+  struct Near {
+    std::int32_t due, next;  ///< its index in due_; the next one in the list of a segment (heads_), or -1
+    double gap_m, a, b;      ///< gap by which it is ordered; material coordinates of its points, m
+    bool loaded;             ///< carried an impulse in the last substep
   };
   /// A pair that is near but not a contact in this substep; only the guard checks it again.
   struct Watched {
@@ -165,6 +172,8 @@ class ContactWork {
   std::vector<std::int32_t> awake_, due_;  // indices of the groups and pairs that must be measured in this substep
   std::vector<std::int32_t> close_, far_;  // indices into due_: measured between smooth curves; between chords only
   std::vector<Measured> measured_;         // in the order of due_
+  std::vector<Near> near_;                 // pairs that are near enough to be contacts
+  std::vector<std::int32_t> heads_;        // per segment a: first contact among its pairs in near_, or -1
   std::vector<Vec> corner_;                // corner vectors k_i of the smooth curve (smooth.hpp) at nodes
   std::vector<double> share_;              // per node: factor <= 1 by which k_i is reduced to limit the corner's cut
   Span bent_{0, -1};                       // nodes from the first to the last of the pairs in close_
@@ -229,8 +238,8 @@ class ContactSet : public ContactMemory, public ContactWork {
   void begin() noexcept { contacts_.clear(), watched_.clear(), rows_ = 0, overflow_ = false; }
 
   /// Measures the distance of every pair whose gap may be below near_m + 2 dt x its bound of relative speed
-  /// (Motion::rate()). Pairs with a gap below near_m + 2 dt x actual relative speed become contacts. @return false when
-  /// the work or time left is too small for all of them.
+  /// (Motion::rate()). Pairs with a gap below near_m + 2 dt x actual relative speed become contacts, except those that
+  /// choose_near() leaves out. @return false when the work or time left is too small for all of them.
   [[nodiscard]] bool collect_thread(const State& state, const Motion& motion, double dt_s, double mu, Work& work,
                                     ContactReport& report) noexcept;
   /// Collects contacts of nodes with the plane z = floor_m whose gap is below look_m.
@@ -327,9 +336,11 @@ class ContactSet : public ContactMemory, public ContactWork {
   void measure(const std::int32_t* places, const State& state) noexcept;
   void bend(const State& state) noexcept;
   void bend_row(Contact& c, int at, double s, const State& state) const noexcept;
-  /// Makes a measured pair a contact if it is near enough. @return true when it is (also if there was no room for it).
-  bool take(Candidate& pair, const Measured& measured, const State& state, const Motion& motion, double dt_s, double mu,
-            ContactReport& report) noexcept;
+  void find_near(const State& state, double dt_s) noexcept;
+  [[nodiscard]] bool has_contact_at(const Near& one, const Candidate& pair) const noexcept;
+  [[nodiscard]] bool choose_near(TickTime& time) noexcept;
+  /// Makes a measured pair a contact if it touches. @return true when it does (also if there was no room for it).
+  bool take(Candidate& pair, const Measured& measured, const State& state, double mu, ContactReport& report) noexcept;
   [[nodiscard]] bool make_columns(const ContactMetric& metric, TickTime& time) noexcept;
   void make_column(Contact& c, const ContactMetric& metric, float* column) const noexcept;
   [[nodiscard]] Contact& loaded(std::size_t k) noexcept { return contacts_[static_cast<std::size_t>(loaded_[k])]; }

@@ -1,0 +1,66 @@
+// Which measured pairs of segments become contacts: those that are near, but of several at one place only the nearest.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "firmware/physics/rod/contact/contact_set.hpp"
+#include "firmware/physics/rod/tuning.hpp"
+
+namespace ligature::physics::rod {
+
+// Collects the pairs whose gap is below near_m + 2 dt x the relative speed of their points. This test is stricter than
+// that of find_due(), which has only a bound of the speed.
+void ContactSet::find_near(const State& state, double dt_s) noexcept {
+  near_.clear();
+  const auto& mesh = state.mesh;
+  for (std::size_t k = 0; k < due_.size(); ++k) {
+    const Measured& m = measured_[k];
+    const Candidate& pair = pairs[static_cast<std::size_t>(due_[k])];
+    const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+    const double gap = m.distance_m - pair.reach_m, spare = gap - pair.near_m, s = m.s, t = m.t;
+    const Vec u = (1.0 - t) * state.v[b] + t * state.v[b + 1] - (1.0 - s) * state.v[a] - s * state.v[a + 1];
+    if (spare > 0.0 && spare * spare > 4.0 * dt_s * dt_s * dot(u, u)) continue;
+    const bool loaded = dot(pair.impulse, pair.impulse) > 0.0;
+    const double ahead_m = m.distance_m > 1e-12 ? dt_s * dot(u, m.between) / m.distance_m : 0.0;
+    near_.push_back({static_cast<std::int32_t>(k), -1,
+                     gap + ahead_m - (loaded ? tuning.place_stays_d * pair.reach_m : 0.0), mesh.s[a] + s * mesh.rest[a],
+                     mesh.s[b] + t * mesh.rest[b], loaded});
+  }
+  heads_.assign(state.x.size() + 1, -1);
+}
+
+// Is a contact at the place of the pair `one`: are their points within place_d of each other on both strands?
+bool ContactSet::has_contact_at(const Near& one, const Candidate& pair) const noexcept {
+  const double within_m = tuning.place_d * pair.reach_m;
+  for (std::int32_t a = std::max(pair.a - 1, 0); a <= pair.a + 1; ++a) {
+    for (std::int32_t k = heads_[static_cast<std::size_t>(a)]; k >= 0; k = near_[static_cast<std::size_t>(k)].next) {
+      const Near& other = near_[static_cast<std::size_t>(k)];
+      if (std::abs(other.a - one.a) < within_m && std::abs(other.b - one.b) < within_m) return true;
+    }
+  }
+  return false;
+}
+
+// Where the curves of two strands come nearest at a joint of their segments, up to four pairs of segments have their
+// closest points there. If all were contacts, Newton's method would solve four equations for one force. So a pair
+// without an impulse is left out if one at its place has a smaller gap at the end of the substep (if velocities stay as
+// they are). A pair with an impulse always stays a contact: where strands hook over each other at a corner, contacts of
+// one place push in different directions, and each of them is needed. @return false when the time was over first.
+bool ContactSet::choose_near(TickTime& time) noexcept {
+  Pieces pieces(time);
+  std::sort(near_.begin(), near_.end(),
+            [](const Near& p, const Near& q) { return p.gap_m < q.gap_m || (p.gap_m == q.gap_m && p.due < q.due); });
+  for (std::size_t k = 0; k < near_.size(); ++k) {
+    if (!pieces.allow(price::kPlace)) return false;
+    Near& one = near_[k];
+    const auto due = static_cast<std::size_t>(one.due);
+    const Candidate& pair = pairs[static_cast<std::size_t>(due_[due])];
+    if (!one.loaded && has_contact_at(one, pair)) continue;
+    measured_[due].touches = true;
+    one.next = std::exchange(heads_[static_cast<std::size_t>(pair.a)], static_cast<std::int32_t>(k));
+  }
+  return true;
+}
+
+}  // namespace ligature::physics::rod
