@@ -52,9 +52,9 @@ TEST(Passivity, NoAxisIsForeseenLessThanAnother) {
     EXPECT_NEAR(Lossy(axis, 2e-4, 5).most_N(axis), first_N, 1e-9) << axis.transpose();
 }
 
-/// For ten seconds after a lost RPDO the account expects another loss: then a force acts for two periods instead of one.
-/// It must cover the worst motion of a hand at rest: full acceleration along the force in the period before it acts and
-/// in the first in which it acts, and 0.3 of the full acceleration in the second.
+/// For ten seconds after a lost RPDO the account expects another loss: then a force acts for two periods instead of
+/// one. It must cover the worst motion of a hand at rest: full acceleration along the force in the period before it
+/// acts and in the first in which it acts, and 0.3 of the full acceleration in the second.
 TEST(Passivity, AForceThatMayActTwiceIsPaidForTwice) {
   const double a = plain().hand_acceleration_m_per_s2, credit_J = 3e-5;
   for (const int later : {2, 100, 9990}) {
