@@ -139,11 +139,11 @@ Check echo_row(const CanEcho& echo) {
   if (!echo.problem.empty())
     return {Grade::kFail, "CAN round trip", echo.interface + ": " + echo.problem,
             "see the rows of this interface above"};
+  const unsigned long long lost = echo.lost, sent = lost + echo.round_trips.count();
   char found[160];
   std::snprintf(found, sizeof found, "%s: p50 %.0f, p99.9 %.0f, worst %.0f us; %llu of %llu lost",
                 echo.interface.c_str(), echo.round_trips.quantile_us(0.5), echo.round_trips.quantile_us(0.999),
-                echo.round_trips.max_us(), static_cast<unsigned long long>(echo.lost),
-                static_cast<unsigned long long>(echo.lost + echo.round_trips.count()));
+                echo.round_trips.max_us(), lost, sent);
   if (echo.lost > 0)
     return {Grade::kFail, "CAN round trip", found, "cable, termination, and another node that is switched on"};
   return {Grade::kOk, "CAN round trip", found, {}};
