@@ -58,6 +58,7 @@ std::vector<std::string> words_of(const Rehearsal& what) {
 pid_t start(const Rehearsal& what, int in, int out) {
   auto words = words_of(what);
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (auto& w : words) arguments.push_back(w.data());
   arguments.push_back(nullptr);
 

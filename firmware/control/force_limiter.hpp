@@ -38,7 +38,8 @@ class ForceLimiter {
   /// @param periods since the last call
   void sent(const physics::Vec3& f_N, std::int64_t periods = 1) noexcept;
 
-  [[nodiscard]] std::int16_t codes() const noexcept { return codes_; }  ///< rt::LimitCode bits of the last limit()
+  /// rt::LimitCode bits of the last limit()
+  [[nodiscard]] std::int16_t codes() const noexcept { return static_cast<std::int16_t>(codes_); }
   [[nodiscard]] double heat() const noexcept { return thermal_.heat(); }
   [[nodiscard]] double peak_N() const noexcept { return peak_N_; }
   [[nodiscard]] double cap_N() const noexcept { return thermal_.cap(); }
@@ -48,7 +49,7 @@ class ForceLimiter {
   double peak_N_ = 0.0, allowance_N_ = 0.0;
   ThermalCap thermal_;
   physics::Vec3 before_N_ = physics::Vec3::Zero();
-  std::int16_t codes_ = 0;
+  int codes_ = 0;
 };
 
 }  // namespace ligature::control
