@@ -67,7 +67,7 @@ void ContactMetric::factor(const Mesh& mesh, const Material& material, double dt
 
 // All columns of the inverse at once, by row operations on the identity matrix.
 bool ContactMetric::invert(TickTime& time) noexcept {
-  const auto a = static_cast<std::size_t>(first_), w = static_cast<std::size_t>(last_ - first_ + 1);
+  const auto a = static_cast<std::size_t>(first_), w = static_cast<std::size_t>(last_) - a + 1;
   stride_ = (w + 3) & ~std::size_t{3};
   const auto row_at = [&](std::size_t i) { return table_.data() + i * stride_; };
   Pieces pieces(time);

@@ -97,7 +97,7 @@ void ContactSet::make_column(Contact& c, const ContactMetric& metric, float* col
     w[k] = all_eight(c.weight[k]);
   }
   for (std::size_t j = 0; j < stride_; j += 8) {
-    Eight sum = w[0] * load_eight(r[0] + j);
+    Eight sum = w[0] * load_eight(r[0] + j);  // NOLINT(clang-analyzer-core.UndefinedBinaryOperatorResult): c.count >= 1
     for (int k = 1; k < c.count; ++k) sum += w[k] * load_eight(r[k] + j);
     store_eight(column + j, sum);
   }
@@ -276,7 +276,8 @@ void ContactSet::note_stuck(const Vec* v) noexcept {
     *c.stuck = 0;
     if (pn <= 0.0 || k >= rows_) continue;
     const Vec u = velocity<Turns>(k, v), along = u - dot(u, c.n) * c.n;
-    *c.stuck = dot(c.p, c.p) - pn * pn < most * most || dot(along, along) < tuning.stick_m_per_s * tuning.stick_m_per_s;
+    const bool within_cone = dot(c.p, c.p) - pn * pn < most * most;
+    *c.stuck = within_cone || dot(along, along) < tuning.stick_m_per_s * tuning.stick_m_per_s ? 1 : 0;
   }
 }
 

@@ -35,9 +35,12 @@ class Borrowed {
  public:
   Borrowed() = default;
   Borrowed(const Borrowed&) noexcept {}
-  Borrowed& operator=(const Borrowed&) noexcept { return at_ = nullptr, *this; }
-  Borrowed(Borrowed&&) = default;
-  Borrowed& operator=(Borrowed&&) = default;
+  Borrowed& operator=(const Borrowed& other) noexcept {
+    if (this != &other) at_ = nullptr;
+    return *this;
+  }
+  Borrowed(Borrowed&&) noexcept = default;
+  Borrowed& operator=(Borrowed&&) noexcept = default;
   ~Borrowed() = default;
   Borrowed& operator=(T* at) noexcept { return at_ = at, *this; }
   [[nodiscard]] T& operator*() const noexcept { return *at_; }

@@ -22,9 +22,9 @@ class BandSolver;
 /// kept until the next take(). Real time: no allocation after reserve().
 class BandColumns {
  public:
-  static constexpr int kWidest = 640;              ///< most nodes in a window
-  static constexpr std::size_t kBlock = 12;        ///< numbers per node: a 3 x 3 block, each column padded to four
-  static constexpr std::size_t kRoom = 192 * 256;  ///< most blocks, in all columns together
+  static constexpr int kWidest = 640;        ///< most nodes in a window
+  static constexpr std::size_t kBlock = 12;  ///< numbers per node: a 3 x 3 block, each column padded to four
+  static constexpr std::size_t kRoom = std::size_t{192} * 256;  ///< most blocks, in all columns together
 
   void reserve();
   void forget() noexcept { last_ = -1, first_ = 0; }
