@@ -79,18 +79,18 @@ void shake_and_look(Polygon polygon, Draw draw, Seen& seen) {
   }
 }
 
-/// Names the knot of a closed polygon. One sequence of random moves can get stuck before a diagram with a name. If its
-/// best diagram has at most kNear crossings, further sequences with other seeds are tried, so that the result does not
-/// depend on one seed.
+/// Names the knot of a closed polygon. One sequence of random moves can get stuck before a diagram with a name. So
+/// further sequences with other seeds are tried, and the result does not depend on one seed: a few for every polygon,
+/// and all if the best diagram has at most kNear crossings.
 KnotResult recognise_ring(std::vector<Point> ring) {
-  constexpr std::uint64_t kCourses = 12;
+  constexpr std::uint64_t kCourses = 12, kAtLeast = 3;
   constexpr std::size_t kNear = 14;  // named knots have at most 8 crossings, sums and candidates 10
   Polygon polygon(std::move(ring));
   polygon.cut_corners();
   Seen seen;
   for (std::uint64_t course = 1; course <= kCourses; ++course) {
     shake_and_look(polygon, Draw(course), seen);
-    if (seen.is_certain() || seen.fewest > kNear) break;
+    if (seen.is_certain() || (course >= kAtLeast && seen.fewest > kNear)) break;
   }
   return seen.best;
 }

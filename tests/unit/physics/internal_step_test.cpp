@@ -87,26 +87,30 @@ TEST(InternalStep, ImplicitDampingTendsToTheExplicitOneForSmallCoefficients) {
   }
 }
 
-// The swivel damper alone, in either model that has one: motion out of the bends' planes loses energy, other motion
-// does not.
+// The swivel damper alone, in either model that has one: it never adds energy, and the motion out of the bends' planes
+// loses energy. A single thread may lose next to nothing, because its bends may hardly swing; so the loss is a mean.
 TEST(InternalStep, ASwivelDamperTakesEnergyFromWhatSwings) {
   test::Random random(5);
+  constexpr int kThreads = 200;
   for (const auto model : {scene::Model::kPaper4, scene::Model::kPaper5})
     for (const auto swivel : kSwivels)
       for (const auto damping : {scene::Damping::kImplicit, scene::Damping::kExplicit}) {
         scene::Suture s = suture(model, swivel);
         s.paper.damping = damping;
         const auto step = choose_internal_step(s);
-        for (int k = 0; k < 200; ++k) {
+        // Short segments make the printed explicit law overshoot.
+        const double smaller = damping == scene::Damping::kExplicit ? 1e-4 : 1.0;
+        double lost = 0.0;
+        for (int k = 0; k < kThreads; ++k) {
           Thread t = random_thread(4 + k % 40, random);
-          t.m.swivel_N_s = 0.2;
-          // Short segments make the printed explicit law overshoot.
-          if (damping == scene::Damping::kExplicit) t.m.swivel_N_s *= 1e-4;
+          t.m.swivel_N_s = 0.2 * smaller;
           const double before = kinetic_J(t);
           const Lane3 v = t.s.v;
           step(t.m, t.s, v, t.w);
-          EXPECT_LT(kinetic_J(t), before * (1.0 - 1e-9));
+          EXPECT_LE(kinetic_J(t), before * (1.0 + 1e-12));
+          lost += 1.0 - kinetic_J(t) / before;
         }
+        EXPECT_GT(lost / kThreads, 0.02 * smaller);
       }
 }
 
