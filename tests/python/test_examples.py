@@ -31,7 +31,7 @@ def test_all_are_known():
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_runs(path, tmp_path):
     arguments = {"02": [SOURCE / "tests/fixtures/golden.lcmlog"], "08": [tmp_path / "figure.pdf"], "10": [tmp_path / "film.gif"]}.get(path.stem[:2], [])
-    done = subprocess.run([sys.executable, path, *arguments], capture_output=True, text=True, timeout=120, cwd=tmp_path,
+    done = subprocess.run([sys.executable, path, *arguments], capture_output=True, text=True, timeout=280, cwd=tmp_path,
                           env=os.environ | {"MPLCONFIGDIR": str(tmp_path), "MPLBACKEND": "agg"})
     assert done.returncode == 0, done.stderr
     assert SAYS[path.stem] in done.stdout, done.stdout

@@ -76,6 +76,7 @@ def test_designs(tmp_path):
                      "suture.nodes = [20, 10]\nsuture.bend = {from = 1, to = 100, count = 3, log = true}\n", tmp_path)
     assert len(study) == 5 * 2 * 3 * 3
     runs = [study.design[run] for run in range(len(study))]
+    assert [run for run, _ in zip(study.design, range(len(study) + 1))] == runs  # a loop over the design ends
     assert len({repr(each) for each in runs}) == len(study) and runs[0] == ({"contact.friction": 0.1, "suture.nodes": 20, "suture.bend": 1.0}, 7)
     assert [runs[18 * i][0]["contact.friction"] for i in range(5)] == [0.1, 0.2, 0.3, 0.4, 0.5]
     assert {each[0]["suture.bend"] for each in runs} == {1.0, 10.0, 100.0}
@@ -203,13 +204,21 @@ def test_tie_and_rerun_call_the_lab(tmp_path, monkeypatch):
 def test_shipped_studies(monkeypatch):
     monkeypatch.setenv("LIGATURE_LAB", str(BIN / "ligature-lab"))
     shipped = {path.stem: Study.load(path) for path in (SOURCE / "examples/studies").glob("*.toml")}
-    assert {name: len(study) for name, study in shipped.items()} == {"locking": 2000, "extremes": 780, "tie": 500, "speeds": 160}
+    assert {name: len(study) for name, study in shipped.items()} == {"locking": 2000, "extremes": 780, "tie": 500, "speeds": 160, "pareto": 216}
     extremes = shipped["extremes"]
     for wanted, ending in ((("paper", "stretch", 0.0, 1e-3), "finite"), (("paper", "stretch", 6.0, 0.1), "stopped"),
                            (("paper", "coupling", 6.0, 1e-3), "refused")):
         run = next(run for run in range(len(extremes)) if tuple(extremes.design[run][0].values()) == wanted)
         row = execute(extremes.payload(run))
         assert row["status"] == "done" and row["ending"] == ending and row["stays_finite"] == (ending == "finite"), row
+    pareto = shipped["pareto"]
+    errors = {}
+    for run, (parameters, _) in enumerate(pareto.design):
+        if parameters["model"] == "paper-1" and (parameters["nodes"], parameters["substeps"]) in ((35, 4), (200, 4), (200, 32), (200, 1)):
+            row = execute(pareto.payload(run))
+            errors[parameters["nodes"], parameters["substeps"]] = row["swing"] if row["status"] == "done" else row["reason"]
+    assert 0 < errors[200, 32] < 0.2 * errors[200, 4] < errors[35, 4] < 0.01, errors  # smaller with smaller steps and segments
+    assert "diverged" in errors[200, 1], errors
 
 
 def test_slurm_jobs():

@@ -97,6 +97,7 @@ class Design:
 
     def __getitem__(self, run: int) -> tuple[dict[str, Any], int]:
         """Parameters and seed of a run; the seed changes fastest."""
+        run = range(len(self))[run]  # IndexError out of range, which ends a loop over the design
         places = []
         for size in reversed(self._sizes):
             run, place = divmod(run, size)
