@@ -1,5 +1,5 @@
 #pragma once
-// A haptic device as the bridge uses it: a point in space with buttons, that takes a force.
+// A haptic device as the bridge uses it: it reports a position in space and buttons, and it makes a force.
 
 #include <array>
 #include <cstdint>
@@ -21,8 +21,8 @@ struct DeviceState {
 class Device {
  public:
   virtual ~Device() = default;
-  /// Sends the force and reads the state. May wait for the device, at most some 10 ms. @return nothing when the device
-  /// did not answer, or has gone; the next call tries again.
+  /// Sends the force and reads the state. May wait for the device, for about 10 ms at most. @return nothing when the
+  /// device did not answer or is disconnected; the next call tries again.
   [[nodiscard]] virtual std::optional<DeviceState> exchange(const Vec& force_D_N) = 0;
   /// One line about why the last exchange returned nothing.
   [[nodiscard]] virtual std::string problem() const = 0;

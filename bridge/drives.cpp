@@ -67,7 +67,7 @@ void Drives::hear(const sim::Transmission& heard) {
   deliveries_.push_back({heard.frame, heard.sender, heard.end});
 }
 
-/// Whether the newest state is recent enough to answer a SYNC at this time. Counts.
+/// Whether the newest state is recent enough to answer a SYNC at this time. Also updates the counters in ages_.
 bool Drives::answers(Time at) noexcept {
   ++ages_.syncs;
   const Time age = is_on_ ? at - *heard_at_ : Time::max();
@@ -99,7 +99,7 @@ void Drives::poll(Time now) {
   }
 }
 
-/// Switches the drives off when the device has fallen silent, and on when it is heard again.
+/// Switches the drives off when the device has become silent, and on when it sends states again.
 void Drives::watch(Time now) {
   const bool is_heard = heard_at_ && now - *heard_at_ <= silence_;
   if (is_heard == is_on_) return;

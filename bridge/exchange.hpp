@@ -1,5 +1,5 @@
 #pragma once
-// Talks to the device on a thread of its own, so that a device that waits does not hold up the bus.
+// Communicates with the device in a separate operating-system thread, so that a slow device does not delay the bus.
 
 #include <atomic>
 #include <chrono>
@@ -14,7 +14,7 @@ namespace ligature::bridge {
 
 using Nanoseconds = std::chrono::nanoseconds;
 
-/// The newest state of the device, and when the exchange ended that brought it.
+/// The newest state of the device, and the end time of the exchange that brought it.
 struct Heard {
   DeviceState state;
   Nanoseconds at{};
@@ -24,7 +24,7 @@ struct Heard {
 class Exchange {
  public:
   /// @param period shortest time between the starts of two exchanges. @param owner_within the force becomes zero when
-  /// set_force() has not been called for so long.
+  /// set_force() has not been called for this time.
   Exchange(std::unique_ptr<Device> device, Nanoseconds period, Nanoseconds owner_within);
   /// Sends zero force, then closes the device.
   ~Exchange();

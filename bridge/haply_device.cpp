@@ -31,7 +31,7 @@ class HaplyDevice final : public Device {
 
   std::optional<DeviceState> exchange(const Vec& force_D_N) override {
     if ((!socket_ || is_lost_) && !connect()) return std::nullopt;
-    // Before the first state, the device's id is not known; the service sends that state by itself.
+    // The device's id comes with the first state, which the service sends unasked after the connection is made.
     if (known_.inverse3_id.empty()) return receive(kConnectWithin);
     const std::string command = haply_command(known_.inverse3_id, force_D_N, is_first_);
     Error error;
@@ -91,8 +91,8 @@ class HaplyDevice final : public Device {
     return fail("no service at ws://" + host_ + ":" + port_ + ": " + error.message());
   }
 
-  /// Waits for a state. If none comes, the read goes on: a connection whose read is cancelled can send nothing any
-  /// more, and lose() has to send zero force.
+  /// Waits for a state. If none comes in time, the read is not cancelled: cancelling it would close the connection for
+  /// sending too, and lose() has to send zero force.
   std::optional<DeviceState> receive(std::chrono::nanoseconds at_most) {
     read_error_.reset();
     io_.restart();
@@ -116,9 +116,9 @@ class HaplyDevice final : public Device {
     problem_ = why;
     return false;
   }
-  /// Gives the connection up: sends zero force, and keeps the connection open until the next attempt to connect, so
-  /// that a service that is only late still reads it. A connection that is closed while an answer is on its way may be
-  /// reset, and a reset discards what was not read.
+  /// Gives the connection up: sends zero force, but keeps the connection open until the next attempt to connect, so
+  /// that a slow service still reads this message. Closing the connection while an answer is on its way may reset it,
+  /// and a reset discards the message.
   std::optional<DeviceState> lose(const std::string& why) {
     problem_ = why;
     is_lost_ = true;

@@ -19,7 +19,7 @@ const Json* member(const Json& json, const std::string& key) {
   return found == json.end() ? nullptr : &*found;
 }
 
-/// The entry of the list `key` with this device_id; the first one for an empty id.
+/// The entry of the message's list `key` whose device_id is `id`; with an empty `id`, the first entry.
 const Json* device_in(const Json& message, const char* key, const std::string& id) {
   const Json* const list = member(message, key);
   if (list == nullptr || !list->is_array()) return nullptr;
@@ -48,8 +48,8 @@ bool is_pressed(const Json& state, const std::string& button) {
   return value != nullptr && value->is_boolean() && value->get<bool>();
 }
 
-/// For each of the facts (such as "connected"): adds it to `missing` if the message says that it is false, and removes
-/// it if the message says that it is true. The service sends a fact only when it changes.
+/// Updates `missing`, the set of facts (such as "connected") that are false: adds a fact that the message reports as
+/// false, and removes one that it reports as true. The service sends a fact only when it changes.
 void read_status(const Json& device, std::initializer_list<const char*> facts, std::set<std::string>& missing) {
   const Json* const status = member(device, "status");
   if (status == nullptr) return;
@@ -74,8 +74,8 @@ void note_grips(const Json& message, std::set<std::string>& grips) {
   }
 }
 
-/// A grip that is not in the message, that is asleep or that is not connected must not hold the dead-man. If the
-/// service lists several grips, only the one that the user has named may hold it: another one may be in the other hand.
+/// A grip that is not in the message, that is asleep or that is not connected must not count as a pressed dead-man. If
+/// the service lists several grips, only the one that the user has named counts: another one may be in the other hand.
 void read_buttons(const Json& message, const HaplyChoice& choice, HaplyState& known) {
   known.state.buttons = 0;
   note_grips(message, known.grips);

@@ -24,19 +24,19 @@ struct HaplyState {
   DeviceState state;
   std::string problem;  ///< why the device must not be used now, such as "not calibrated"; empty: it may
 
-  /// Facts of the status of device and grip that were false when the service last sent them.
+  /// Status facts of the device and of its grip (such as "calibrated") that the service last reported as false.
   std::set<std::string> missing = {}, grip_missing = {};
   std::set<std::string> grips = {};  ///< ids of all grips that were in a message
 };
 
-/// What a message of the service says of the device. Later messages contain only what is new, so `before` is kept up to
-/// date: pass the same object for each message of a connection. @return nothing when the message is no valid JSON or
-/// does not contain the device.
+/// The device's state after a message of the service. Later messages contain only what has changed, so `before` keeps
+/// the rest: pass the same object for each message of a connection. @return nothing when the message is no valid JSON
+/// or does not contain the device.
 [[nodiscard]] std::optional<HaplyState> read_haply(std::string_view text, const HaplyChoice& choice,
                                                    HaplyState& before);
 
-/// A message with a command to the service. @param is_first  true: it also tells the service the name of this program,
-/// as the first message must.
+/// The message that commands a force. @param is_first true: the message also tells the service the name of this
+/// program, as the first one of a connection must.
 [[nodiscard]] std::string haply_command(const std::string& inverse3_id, const Vec& force_D_N, bool is_first);
 
 }  // namespace ligature::bridge

@@ -1,5 +1,5 @@
-// ligature-bridge: shows a haptic device on USB or on the network as drives on a bus, so that ligature-firmware can use
-// it.
+// ligature-bridge: makes a haptic device on USB or on the network look like drives on a CAN bus, so that
+// ligature-firmware can use it.
 
 #include <poll.h>
 

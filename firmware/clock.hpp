@@ -1,6 +1,6 @@
 #pragma once
-// Clock concept of the two real-time threads (control loop, thread physics): Linux's monotonic clock in the program, a
-// simulated time in tests.
+// Concept of the clock of the two real-time threads (control loop and suture physics): Linux's monotonic clock in the
+// program, simulated time in tests.
 
 #include <chrono>
 #include <concepts>

@@ -1,5 +1,6 @@
 #pragma once
-// The 1 kHz control loop. Bus and Clock are Linux's in the program, and fakes with simulated time in tests.
+// The 1 kHz control loop. In the program, Bus and Clock use Linux's sockets and clock; in tests, they are fakes with
+// simulated time.
 
 #include <algorithm>
 #include <concepts>
@@ -36,11 +37,11 @@ concept Waker = requires(W w) {
 };
 // clang-format on
 
-/// Runs period after period until the controller has shut the rig down. Period k is due at start + k T. Whole periods
-/// that pass unused are counted, recorded and skipped, never made up for. The thread's physics (thread_context.hpp)
-/// gets the tools of period k and normally finishes before the samples of period k + 1 arrive; if it is late, the
-/// control law continues with the last grasp. run() does not allocate, lock, log or throw; it waits only for the bus
-/// and the clock.
+/// Runs period after period until the controller has shut the rig down. Period k is due at start + k T. If the loop
+/// wakes too late, the lost periods are counted, recorded and skipped, never made up for. The suture's physics
+/// (thread_context.hpp) gets the tools of period k and normally finishes before the samples of period k + 1 arrive. If
+/// the physics is late, the control law continues with the last grasp. run() does not allocate, lock, log or throw; it
+/// waits only for the bus and the clock.
 template <Bus BusT, Clock ClockT, Waker WakerT>
 class Cycle {
  public:
@@ -116,7 +117,7 @@ class Cycle {
     if (reset) thread_.reset();  // one reset, however many were requested in this tick
   }
 
-  /// A new scene is accepted only while no force may flow; new parameters at any time.
+  /// Takes an offered plant (plant.hpp): a new scene only while no force may flow, new parameters at any time.
   void take_plant() noexcept {
     if (plants_ == nullptr || thread_.is_changing()) return;
     control::Plant* plant = plants_->take();
@@ -127,7 +128,8 @@ class Cycle {
     plants_->give_back(plant);
   }
 
-  /// Takes the newest grasp. If it comes from a new scene's thread, the controller changes to that scene's hands.
+  /// Takes the newest result of the physics. If it is the first of a new scene, the controller changes to that scene's
+  /// hand settings.
   void take_grasp() noexcept {
     control::Plant* const plant = thread_.collect();
     if (plant == nullptr) return;

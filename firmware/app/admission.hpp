@@ -1,6 +1,6 @@
 #pragma once
-// Admission: measures, before anybody can be armed, whether the loop keeps its period on this machine whatever the
-// thread does, and how much of its time the thread loses.
+// Admission: measures, before the rig can be armed, whether the loop keeps its period on this machine whatever the
+// suture does, and which share of simulated time the suture's physics loses.
 
 #include <algorithm>
 #include <optional>
@@ -23,7 +23,7 @@ struct Admission {
   double budget_percent = kDefaultBudget_percent;
   rt::BusTime bus;
   [[nodiscard]] double computing_us() const noexcept { return loop.control_us + loop.calls_us; }
-  /// What the budget allows, but no more than the bus leaves.
+  /// Time allowed for the loop's computing: the budget, but no more than the bus traffic leaves.
   [[nodiscard]] double budget_us() const noexcept {
     return std::min(10.0 * budget_percent, 1e-3 * static_cast<double>(bus.most_work().count()));
   }
@@ -32,7 +32,7 @@ struct Admission {
   [[nodiscard]] bool fits() const noexcept { return computing_us() <= budget_us(); }
 };
 
-/// Core number that means: measure on any core that the calling thread may use.
+/// This core number means: measure on any core that the calling thread may use.
 inline constexpr int kAnyCore = -1;
 
 struct AdmissionSettings {
@@ -43,16 +43,16 @@ struct AdmissionSettings {
   device::Device device = device::omni();  ///< its drives determine how long the bus takes
 };
 
-/// @param scene  a scene that physics::Simulation::make() accepts. If it sets no `suture.work_instructions`, a work
-/// budget is chosen: with it 99 % of the ticks in which a knot is drawn tight end in time. Ticks that cost more are
-/// ended by the clock at their deadline.
+/// @param scene  a scene that physics::Simulation::make() accepts. If the scene sets no `suture.work_instructions`,
+/// this function chooses a work budget with which 99 % of the ticks end in time while a knot is drawn tight. The clock
+/// ends all other ticks at their deadline.
 [[nodiscard]] Admission admit(const scene::Scene& scene, const AdmissionSettings& settings);
 
-/// Table for people: cost of each phase against its allowance, and the share of time that the thread loses.
+/// Readable table: the cost of each phase against its allowance, and the share of time that the suture's physics loses.
 [[nodiscard]] std::string table(const Admission& admission);
 
-/// Why the scene must not run: the loop is too slow, or the thread loses time at hand speeds up to `no_loss_m_per_s`
-/// (0: time loss is allowed). Empty: it may run.
+/// Why the scene must not run: the loop is too slow, or the suture's physics loses time at a hand speed up to
+/// `no_loss_m_per_s` (0: lost time is allowed). Nothing: the scene may run.
 [[nodiscard]] std::optional<std::string> objection_of(const Admission& admission, double no_loss_m_per_s = 0.0);
 
 }  // namespace ligature::app

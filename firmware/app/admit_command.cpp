@@ -20,7 +20,8 @@ double most_lost(const Admission& a) {
   return most;
 }
 
-/// If the thread loses time, measures again with fewer substeps, and says whether that loses less.
+/// If the suture's physics loses time, measures again with fewer substeps per tick, and prints whether it then loses
+/// less.
 void tell_what_loses_less(scene::Scene scene, const Admission& found, const AdmissionSettings& settings) {
   auto& accuracy = scene.suture.rod.accuracy;
   if (most_lost(found) < kLoses || scene.suture.model != scene::Model::kRod || accuracy == scene::Accuracy::kFast)

@@ -11,7 +11,8 @@ namespace ligature::app {
 /// CPU time of the calling thread, us.
 inline double cpu_us() noexcept { return 1e-3 * static_cast<double>(platform::MonotonicClock{}.worked().count()); }
 
-/// Evicts the caches before a measurement: on a rig other programs use them in the 1 ms between two ticks.
+/// Evicts our data from the CPU's caches before a measurement: on a rig, other programs fill the caches between two
+/// ticks.
 class ColdCaches {
  public:
   void operator()() noexcept {

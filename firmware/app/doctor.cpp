@@ -111,7 +111,7 @@ std::string utc_now() {
   return text;
 }
 
-/// How late the loop may wake up with a scene, so that its torques still reach the drives before the next SYNC.
+/// How late, in us, the loop may wake up with this scene and still get its torques to the drives before the next SYNC.
 std::variant<double, Refusal> slack_of(const DoctorOptions& options, int core) {
   RunOptions like_run;
   like_run.scene = options.scene;
@@ -201,7 +201,7 @@ std::string histogram(const rt::DurationStatistics& wakeup, const std::vector<st
 
 namespace {
 
-/// Writes to PATH.part and then renames that file, so that the report is there complete or not at all.
+/// Writes to PATH.part and then renames that file, so that nobody ever reads half a report.
 bool write_report(const std::string& path, const DoctorReport& report) {
   const std::string part = path + ".part";
   std::ofstream file(part);

@@ -1,5 +1,5 @@
 #pragma once
-// The `doctor` command: checks the machine's settings and measures how late it wakes up.
+// The `doctor` command: checks the machine's settings, and measures how late it wakes a real-time program.
 
 #include <string>
 #include <vector>
@@ -11,14 +11,15 @@
 
 namespace ligature::app {
 
-/// Grades the largest wake-up latency. What the loop can tolerate is 1000 us minus the total in admission's table, but
-/// forces become uneven long before a period is lost.
+/// Grades the largest wake-up latency without a scene: OK below 100 us, WARN below 300 us. Forces become uneven long
+/// before such a delay costs a whole period of 1000 us.
 [[nodiscard]] platform::Check judge(const rt::DurationStatistics& wakeup);
 
-/// Grades it by what a scene leaves: OK below half of `slack_us`, WARN below it.
+/// Grades the largest wake-up latency by the delay that a scene allows (`slack_us`): OK below half of it, WARN below
+/// all of it.
 [[nodiscard]] platform::Check judge(const LatencyHistogram& wakeup, double slack_us);
 
-/// One row per check: OK, WARN or FAIL and what was found; below it the command that corrects it.
+/// One row per check: its grade (OK, WARN, FAIL) and what was found. A second line gives the command that corrects it.
 [[nodiscard]] std::string table(const std::vector<platform::Check>& checks);
 
 /// Share of wake-ups by latency, in bins whose width doubles.

@@ -15,12 +15,11 @@ constexpr double kTaut = 0.07;      // strain at which a knot counts as drawn ti
 constexpr double kLongest_s = 5.0;  // longest duration of drawing
 constexpr double kFarthest = 1.3;   // largest distance of the ends, in thread lengths, if the thread never becomes taut
 constexpr int kRestTicks = 100, kHoldTicks = 300;
-// Length of the thread, in the units in which trefoil() gives coordinates: a quarter of the thread then lies in the
-// knot
+// Length of the thread in the units of trefoil()'s coordinates; with 91 units, a quarter of the thread lies in the knot
 constexpr double kUnits = 91.0;
 
-/// The standard trefoil r(t) = (sin t + 2 sin 2t, cos t - 2 cos 2t, -sin 3t), cut open at the top, where the straight
-/// tails begin.
+/// Point of the standard trefoil knot at parameter t, with the axes y and z exchanged. loose_overhand() cuts the curve
+/// open at its lowest point, t = pi.
 scene::Vec trefoil(double t) {
   return {std::sin(t) + 2.0 * std::sin(2.0 * t), -std::sin(3.0 * t), std::cos(t) - 2.0 * std::cos(2.0 * t)};
 }

@@ -8,8 +8,8 @@
 
 namespace ligature::app {
 
-/// Rows of doctor's table about the drives of a device record: one row for each safety function that they lack, such as
-/// a watchdog. @return the rows, or one line if the file is bad.
+/// Rows of doctor's table about the drives of a device record: one row for each safety function that the drives lack,
+/// such as a watchdog. @return the rows, or one line of text if the record cannot be read.
 [[nodiscard]] std::variant<std::vector<platform::Check>, std::string> drive_checks(const std::string& device_file);
 
 }  // namespace ligature::app

@@ -11,7 +11,7 @@ namespace {
 constexpr const char* kOverridePassivity = "hands.override_passivity=true";
 constexpr std::string_view kMaxForce = "hands.max_force_N", kForceScale = "hands.force_scale";
 
-/// Whether an override sets `key`, directly or through a table that contains it.
+/// Whether an override sets `key`, either itself or as part of a whole TOML table.
 bool speaks_of(std::string_view override, std::string_view key) {
   const auto named = key_of(override);
   return key == named || (key.starts_with(named) && key[named.size()] == '.');

@@ -1,5 +1,5 @@
 #pragma once
-// Scene settings from the command line. They hold for the whole run, also for scenes that commands load later.
+// Scene settings from the command line. They apply for the whole run, also to scenes that commands load later.
 
 #include <optional>
 #include <string>
@@ -19,20 +19,20 @@ class Launch {
   /// @param launched the scene at the start of the run, overrides included
   Launch(const RunOptions& options, const scene::Scene& launched);
 
-  /// Combines the overrides of the launch with those of commands. Where both set a key, only the command's is kept. The
-  /// only limit that a command can set is hands.force_scale, and highest() bounds it.
+  /// Combines the launch's overrides with those of commands (`live`). Where both set a key, only the command's value is
+  /// kept. The only safety limit that a command can set is hands.force_scale, and highest() bounds it.
   [[nodiscard]] std::vector<std::string> with(const std::vector<std::string>& live) const;
 
-  /// Overrides for a scene that a command loads from `file`: as above, except that a force limit set at the launch
-  /// gives way to the scene's own limit if that is lower.
+  /// Overrides for a scene that a command loads from `file`. A force limit of the launch is replaced by the scene's own
+  /// limit if that is lower; otherwise as above.
   [[nodiscard]] std::vector<std::string> with(const std::vector<std::string>& live, const std::string& file,
                                               const std::string& text) const;
 
   /// Largest value to which a command may set a limit; empty if the launch does not bound it.
   [[nodiscard]] std::optional<double> highest(std::string_view key) const;
 
-  /// Text such as "--set hands.max_force_N=1.0, --override-passivity": the launch options still in force next to the
-  /// overrides of commands.
+  /// The launch options that commands (`live`) have not replaced, as text: "--set hands.max_force_N=1.0,
+  /// --override-passivity".
   [[nodiscard]] std::string held(const std::vector<std::string>& live) const;
 
  private:

@@ -43,8 +43,7 @@ std::vector<LiveParameter> live_parameters(const scene::Scene& file, const scene
   };
   const bool is_rod = now.suture.model == scene::Model::kRod;
   const bool has_contact = now.contact.solver != scene::ContactSolver::kNone;
-  // The rod fixes at construction whether there is friction at all, so a scene without friction cannot get it while
-  // running.
+  // A rod decides at construction whether it computes friction at all, so friction cannot be switched on during a run.
   if (has_contact && (!is_rod || file.contact.friction > 0.0))
     list.push_back({"contact.friction", "friction", "", now.contact.friction, is_rod ? 0.01 : 0.0,
                     is_rod ? kMostRodFriction : kMostFriction});

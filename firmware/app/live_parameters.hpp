@@ -13,9 +13,10 @@ struct LiveParameter {
   double value, lowest, highest;
 };
 
-/// Ranges: friction 0 .. 10 as in the paper's Table I, on a rod 0.01 .. 2; every other parameter from a quarter to four
-/// times the value in the scene file. Larger changes need another scene. Parameters that are zero in the file, or that
-/// its model lacks, are left out.
+/// The parameters that may change during a run, with their ranges. Friction: 0 to 10 for the paper's models (the
+/// paper's Table I), 0.01 to 2 for a rod. Every other parameter: from a quarter to four times its value in the scene
+/// file; larger changes need another scene. Parameters that are zero in the file, or that the thread's model does not
+/// have, are left out.
 /// @param file the scene as in its file
 /// @param now the scene as it runs
 [[nodiscard]] std::vector<LiveParameter> live_parameters(const scene::Scene& file, const scene::Scene& now);

@@ -51,10 +51,10 @@ double own_cost_us(scene::Scene scene) {
   return least_us;
 }
 
-/// Work budget that fits into the given time, in instructions. It follows from the cost per instruction while a knot is
-/// drawn tight: each tick is run several times and its least time counts, and the budget covers 99 % of the ticks. A
-/// long thread is replaced by a shorter one with the same knot, because the contact cost arises in the knot; so the
-/// measurement takes about 1 s at most.
+/// Work budget, in instructions, that fits into the given time. It is computed from the time per instruction while a
+/// knot is drawn tight. Each tick runs several times, and its shortest time counts. The budget is enough for 99 % of
+/// the ticks. A long thread is shortened first, because contact costs arise only in the knot; so the measurement takes
+/// at most about 1 s.
 long work_that_fits(const scene::Scene& scene, double given_us) {
   constexpr double kSpeed_m_per_s = 0.25;
   constexpr long kCounts = 500'000;  // instructions; ticks with less work give no reliable cost per instruction
@@ -146,7 +146,8 @@ class ThreadMeter {
     cost_.ended_by_clock = cost_.ended_by_clock || d.end == physics::TickEnd::kClock;
   }
 
-  /// Both hands grip and pull: left at a quarter of the thread, right at three quarters.
+  /// Tools of both hands, which grip the thread and pull: the left hand at a quarter of its length, the right at three
+  /// quarters.
   std::array<physics::ToolInput, 2> grips() const {
     const auto nodes_W = thread_.nodes_W();
     const auto held = [&](std::size_t node, double pull_m) {

@@ -6,8 +6,9 @@
 
 namespace ligature::app {
 
-/// CPU times of the measuring thread with cold caches. Each tick is run several times and its shortest time counts:
-/// this excludes disturbance by other processes, which doctor measures. Each field is the largest over all ticks tried.
+/// CPU times of the loop's work in one tick, measured with cold caches. Each tick runs several times and its shortest
+/// time counts, which excludes disturbance by other processes (doctor measures that). Each field is the largest over
+/// all ticks tried.
 struct LoopCost {
   double calls_us = 0.0;    ///< kernel calls that send and receive frames
   double control_us = 0.0;  ///< control law and tick record
@@ -29,13 +30,13 @@ struct ThreadCost {
 [[nodiscard]] LoopCost measure_loop(const scene::Scene& scene, const device::Device& device);
 
 /// Measures ticks of the thread in its worst-case shapes (worst_case.hpp) for `seconds`, each shape at least once.
-/// @param scene one that physics::Simulation::make() accepts. Its suture.work_instructions is used if set; else the
-/// budget is chosen by its measured cost on this core while a knot is tightened, so that 99 % of these ticks end
-/// before the deadline.
+/// @param scene one that physics::Simulation::make() accepts. The scene's suture.work_instructions is the contact
+/// budget if it is set. Otherwise the budget is measured on this core: 99 % of the ticks in which a knot is drawn tight
+/// end in time.
 /// @param given_us time available in each period
 [[nodiscard]] ThreadCost measure_thread(const scene::Scene& scene, double given_us, double seconds);
 
-/// Steps a thread as a rig does: its contact budget or, after `given_us` of CPU time, the clock ends the tick.
+/// Steps a thread as a rig does: the tick ends when its contact budget is used up, or after `given_us` of CPU time.
 void tick_within(physics::Simulation& thread, const std::array<physics::ToolInput, 2>& tools, double given_us) noexcept;
 
 }  // namespace ligature::app

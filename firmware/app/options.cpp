@@ -29,7 +29,7 @@ could not be started.)";
 const std::map<std::string, RtMode> kModes{
     {"enforce", RtMode::kEnforce}, {"warn", RtMode::kWarn}, {"off", RtMode::kOff}};
 
-/// CLI::Range accepts nan, because every comparison with nan is false; this validator refuses it.
+/// Like CLI::Range, but refuses nan, which CLI::Range accepts because every comparison with nan is false.
 CLI::Validator within(double low, double high) {
   const std::string allowed = CLI::detail::to_string(low) + " .. " + CLI::detail::to_string(high);
   return {[=](const std::string& word) {
@@ -40,7 +40,7 @@ CLI::Validator within(double low, double high) {
           "in [" + allowed + "]"};
 }
 
-/// Error text that names an unknown command; CLI11 alone would only say that a command is missing.
+/// Error text that names an unknown command. The library CLI11 would only say that a command is missing.
 std::string unknown_command(const CLI::App& app, int argc, const char* const* argv) {
   if (argc < 2 || argv[1][0] == '-') return {};
   std::string allowed;

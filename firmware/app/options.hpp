@@ -8,8 +8,8 @@
 
 namespace ligature::app {
 
-/// Default budget of the loop's computing in percent of a period: the time that the bus of our own drives leaves
-/// (rt::BusTime::most_work), less a fifth.
+/// Default budget of the loop's computing, in percent of a period: four fifths of the time that the bus leaves with our
+/// own drives (rt::BusTime::most_work()).
 inline constexpr double kDefaultBudget_percent = 20.0;
 
 enum class RtMode { kEnforce, kWarn, kOff };
@@ -36,7 +36,7 @@ struct RunOptions {
   bool force = false;    ///< run even if admission refuses
   double budget_percent = kDefaultBudget_percent;
   double no_loss_m_per_s = 0.0;  ///< hand speed up to which drawing a knot must lose no time; 0: no such demand
-  /// Executable started as a child process to rehearse scenes that commands ask for
+  /// Executable that the controller starts as a child process to rehearse a scene that a command wants to load
   std::string program = "/proc/self/exe";
 };
 
@@ -67,8 +67,8 @@ struct DoctorOptions {
   std::vector<std::string> compare;  ///< two reports to print side by side, and nothing else
 
   [[nodiscard]] double duration_s() const { return hours > 0.0 ? 3600.0 * hours : seconds; }
-  /// Whether an acceptance test was requested: it measures for longer, sends frames on the CAN interfaces, and looks
-  /// for interruptions by the machine's firmware.
+  /// Whether an acceptance test of the machine was requested. Such a test also sends frames on the CAN interfaces, and
+  /// looks for interruptions by the machine's firmware.
   [[nodiscard]] bool is_acceptance() const { return hours > 0.0 || load || !report.empty(); }
 };
 

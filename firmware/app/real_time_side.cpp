@@ -57,15 +57,15 @@ void RealTimeSide::end() {
   physics_thread_.join();
 }
 
-/// Keeps the CPU out of deep idle states. A refusal is only logged, even with --rt=enforce: wake-ups are then later,
-/// which doctor and the tick record show.
+/// Keeps the CPU out of deep idle states. If the kernel refuses, this is only logged, even with --rt=enforce: wake-ups
+/// then come later, which doctor and the tick records show.
 void RealTimeSide::stay_awake() {
   awake_.emplace();
   if (!awake_->refusal().empty()) spdlog::warn("real time: {}", awake_->refusal());
 }
 
-/// Switches the drives off at once, before their watchdogs expire. One hand at a time, so that one silent bus cannot
-/// delay the other.
+/// Switches the drives off at once, instead of leaving that to their watchdogs. Each hand has a wait of its own, on its
+/// bus only, so that unread frames of the other bus cannot end the wait.
 void RealTimeSide::release() {
   const std::array bus{buses_.left.get(), buses_.right.get()};
   for (std::size_t h = 0; h < rt::kHands; ++h) {

@@ -1,5 +1,5 @@
 #pragma once
-// The control loop and the thread's physics, everything they work with, and the two operating-system threads that run
+// The control loop, the suture's physics, the objects that both use, and the two operating-system threads that run
 // them.
 
 #include <atomic>
@@ -18,8 +18,9 @@
 
 namespace ligature::app {
 
-/// Each thread first requests its real-time rights and reports refusals. The loop's thread then waits for start(), and
-/// ends without running the loop if end() is called first; the physics thread waits for the loop.
+/// Two operating-system threads. Each first requests its real-time rights and reports refusals. The loop's thread then
+/// waits for start(); if end() is called before start(), it ends without running the loop. The physics thread waits for
+/// the loop.
 class RealTimeSide {
  public:
   using RigCycle = Cycle<platform::RigBus, platform::MonotonicClock, platform::WakeUp>;
@@ -30,8 +31,8 @@ class RealTimeSide {
   RealTimeSide(const RealTimeSide&) = delete;
   RealTimeSide& operator=(const RealTimeSide&) = delete;
 
-  /// Requests the process's real-time rights and starts both threads, which request theirs. @param ask false: request
-  /// none. @return the refusals, each already logged.
+  /// Requests real-time rights for the process and starts both threads, which request their own. @param ask false: no
+  /// rights are requested. @return the rights that were refused, each already logged.
   platform::Refusals prepare(bool ask, int core);
   void start();
   /// Waits until the loop has ended; if start() was not called, the loop never runs.

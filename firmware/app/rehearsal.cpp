@@ -21,15 +21,15 @@ constexpr rlim_t kMostMemory_bytes = rlim_t{1} << 30;
 constexpr rlim_t kMostCpu_s = 6;
 constexpr int kNiceness = 10;
 
-/// Sets a resource limit. For CPU time the soft limit raises SIGXCPU, which names the cause; the hard limit 1 s later
-/// kills.
+/// Sets a resource limit of this process. For CPU time, the soft limit raises SIGXCPU, by which the parent knows the
+/// cause; the hard limit, 1 s more, kills the process.
 void limit(int what, rlim_t most) {
   const rlimit both{most, what == RLIMIT_CPU ? most + 1 : most};
   setrlimit(static_cast<__rlimit_resource>(what), &both);
 }
 
-/// Limits this process's memory, CPU time and files, whatever the scene needs. Not with sanitizers, whose shadow memory
-/// would count.
+/// Limits this process's memory, CPU time and files, so that no scene can exhaust the machine. Builds with sanitizers
+/// have no limit on memory and CPU time, because the sanitizers' own use would count.
 void bound_this_process() {
 #ifndef LIGATURE_SANITIZED
   limit(RLIMIT_AS, kMostMemory_bytes);

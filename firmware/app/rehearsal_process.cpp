@@ -53,8 +53,8 @@ std::vector<std::string> words_of(const Rehearsal& what) {
   return words;
 }
 
-/// posix_spawn() instead of fork(): fork marks all our pages copy-on-write, and each of the loop's writes to one would
-/// then cause a page fault. @return the child's pid, or -1 with errno.
+/// Uses posix_spawn() instead of fork(): fork() marks all our pages copy-on-write, and the loop's next write to each
+/// page would then cause a page fault. @return the child's pid, or -1 with errno.
 pid_t start(const Rehearsal& what, int in, int out) {
   auto words = words_of(what);
   std::vector<char*> arguments;
@@ -83,14 +83,15 @@ pid_t start(const Rehearsal& what, int in, int out) {
   return error == 0 ? child : -1;
 }
 
-/// Appends what the child has printed so far; text beyond kMostWords is dropped.
+/// Appends to `words` what the child has printed so far; text beyond kMostWords characters is dropped.
 void hear(int from, std::string& words) {
   std::array<char, 1024> part{};
   const auto n = ::read(from, part.data(), part.size());
   if (n > 0 && words.size() < kMostWords) words.append(part.data(), static_cast<std::size_t>(n));
 }
 
-/// The child's status as from waitpid(), or nothing if it was killed after `patience` or by `cancelled`.
+/// The child's exit status as from waitpid(); nothing if the child was killed, because `patience` had passed or
+/// `cancelled` was set.
 std::optional<int> await(pid_t child, int from, std::chrono::milliseconds patience, const std::atomic<bool>& cancelled,
                          std::string& words) {
   int status = 0;

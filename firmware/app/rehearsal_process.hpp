@@ -23,9 +23,9 @@ struct Verdict {
   std::string excess;   ///< time lost beyond what is allowed; empty: none, or not measured
 };
 
-/// Waits for the child's verdict for at most `patience`, or until `cancelled`, and then kills the child. The child
-/// inherits the calling thread's CPU affinity and none of our files. It is started without copying our memory
-/// (posix_spawn), so the loop gets no page faults.
+/// Starts the child and waits for its verdict. Kills the child after `patience`, or when `cancelled` is set. The child
+/// inherits the calling thread's CPU affinity, but none of our open files. posix_spawn() starts it without copying our
+/// memory, so the loop gets no page faults.
 [[nodiscard]] Verdict rehearse_elsewhere(const Rehearsal& what, const std::atomic<bool>& cancelled);
 
 }  // namespace ligature::app

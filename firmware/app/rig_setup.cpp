@@ -138,7 +138,7 @@ std::optional<Refusal> configure(const Buses& buses) {
     return Refusal{3, std::string(kNames[h]) + " hand: " + why};
   };
   for (std::size_t h = 0; h < rt::kHands; ++h) {
-    // Waits on this bus only: unread frames of the other would wake us for nothing
+    // Waits on this hand's bus only: unread frames of the other bus would end the wait too early
     platform::PollWait alone(*bus[h], *bus[h]);
     if (const auto why = buses.drives[h]->other_controller(alone)) return refusal(h, *why);
   }

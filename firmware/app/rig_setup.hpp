@@ -29,14 +29,14 @@ struct Plan {
   std::string toml;  ///< the scene's text with the overrides as comments, stored in recordings
 };
 [[nodiscard]] std::variant<Plan, Refusal> make_plan(const RunOptions& options);
-/// As make_plan(), for a scene whose text was already read from `file`. Of a Refusal only the text has a meaning here,
-/// not the exit code.
+/// As make_plan(), for a scene whose text was already read from `file`. Callers that load a scene during a run use only
+/// the text of a Refusal, not its exit code.
 [[nodiscard]] std::variant<Plan, Refusal> plan_of(const std::string& file, const std::string& text,
                                                   const std::vector<std::string>& overrides,
                                                   const device::Device& device = device::omni());
 
-/// Sets the thread's contact budget per tick and adds it to the overrides, so that a recording is replayed identically.
-/// Does nothing if the model has no budget (0) or the scene sets it.
+/// Sets the thread's contact budget per tick and adds it to the overrides, so that a replay of the recording gives the
+/// same motion. Does nothing if `instructions` is 0 (a model without budget) or the scene sets its own budget.
 void give_work(Plan& plan, long instructions);
 
 /// Both hands' buses, and the drives on them.
@@ -48,12 +48,12 @@ struct Buses {
 /// Pauses for a moment. @return true if the program shall end.
 using Pause = std::function<bool()>;
 
-/// Opens both buses, retrying for options.wait_s, because a hand may start later than this program.
+/// Opens both buses. Retries for options.wait_s, because a hand's device may be switched on later than this program.
 [[nodiscard]] std::variant<Buses, Refusal> open_buses(const RunOptions& options, const device::Device& device,
                                                       const Pause& pause);
 
-/// Checks that nobody else commands the drives, then starts all six up to pre-operational. @return why it failed, if
-/// so.
+/// Checks that no other controller commands the drives, then brings all six drives to the NMT state pre-operational.
+/// @return why it failed, if so.
 [[nodiscard]] std::optional<Refusal> configure(const Buses& buses);
 
 }  // namespace ligature::app

@@ -58,7 +58,7 @@ constexpr telemetry::Names kNames{
     [](int f) { return control::needs_restart(static_cast<control::Fault>(f)); },
 };
 
-/// Opens the flight recorder; on failure only warns, because the rig is as safe without it.
+/// Opens the flight recorder. A failure is only a warning, because the rig is equally safe without a recorder.
 std::unique_ptr<telemetry::FlightRecorder> open_recorder(const Plan& plan, const RunOptions& options,
                                                          std::int64_t session) {
   if (options.recorder == "none") return nullptr;
@@ -86,7 +86,8 @@ telemetry::Session session(const Plan& plan, const RunOptions& options, std::int
           recorder != nullptr ? recorder->path() : std::string()};
 }
 
-/// Reports the outcome of a change of scene or parameters to recorder, telemetry and sender.
+/// Reports the outcome of a change of scene or parameters to the flight recorder, to telemetry and to the command's
+/// sender.
 void tell_change(telemetry::LcmLink& link, telemetry::Telemetry& telemetry, SceneDesk& desk,
                  telemetry::FlightRecorder* recorder) {
   if (recorder != nullptr) recorder->expect_scene(desk.is_busy());  // before the loop can have taken it
@@ -121,8 +122,7 @@ std::string no_telemetry(const std::string& url) {
          "'ip link set lo up; ip route add 224.0.0.0/4 dev lo' as root; --no-telemetry runs without anybody listening";
 }
 
-/// Logs what the drives lack (watchdog, report of the torque ..). A line that is the same for both hands is logged
-/// once.
+/// Logs which functions the drives lack, such as a watchdog. A line that is the same for both hands is logged once.
 void log_lacks(const Buses& buses) {
   std::vector<std::string> told;
   for (std::size_t h = 0; h < rt::kHands; ++h) {
@@ -139,7 +139,8 @@ Losses losses(const rt::Outlets& outlets, const telemetry::FlightRecorder* recor
   return {outlets.records.dropped(), true, recorder->missing(), recorder->slowest_sync()};
 }
 
-/// Runs telemetry beside the loop until the loop ends, by itself or by a signal. @return the exit code.
+/// Starts the loop, and runs telemetry beside it until the loop has ended, by itself or because of a signal. @return
+/// the exit code.
 int run_loop(RealTimeSide& side, telemetry::LcmLink& link, telemetry::Telemetry& telemetry, SceneDesk& desk,
              telemetry::FlightRecorder* recorder, const Buses& buses, rt::Outlets& outlets,
              const StopSignals& signals) {

@@ -61,8 +61,8 @@ void SceneDesk::find_scenes() {
   for (const auto& name : scenes_) previews_.push_back(preview_of(fs::path(options_.scenes) / name, launch_.with({})));
 }
 
-/// `wish` is "knot.toml" or "knot.toml suture.model=paper-2 suture.nodes=35": a scene, optionally with another model or
-/// number of nodes.
+/// Prepares next_ from `wish`: the name of a scene, optionally with another model or number of nodes, such as
+/// "knot.toml suture.model=paper-2 suture.nodes=35". @return why not, or empty.
 std::string SceneDesk::prepare_scene(const std::string& wish) {
   std::istringstream words(wish);
   std::string name;
@@ -133,8 +133,8 @@ std::optional<ligature_msg::ack_t> SceneDesk::request(const ligature_msg::comman
   return std::nullopt;
 }
 
-/// Contact budget of this machine: measured at the launch or, if the launch's model had no budget, measured now (off
-/// the loop).
+/// Contact budget that this machine can afford. It was measured at the launch; if the launch's model had no budget, it
+/// is measured now, outside the loop.
 long SceneDesk::work_of_this_machine(const Plan& plan) const {
   if (plan.thread.work() == 0 || work_ > 0) return plan.thread.work() == 0 ? 0 : work_;
   return admit(plan.scene, {.device = plan.device}).thread.work;

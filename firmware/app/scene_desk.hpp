@@ -1,5 +1,6 @@
 #pragma once
-// Changes of scene and parameters while the rig runs: checked, built and measured here, then handed over to the loop.
+// Changes of scene and parameters while the rig runs: they are checked, built and measured here, then handed over to
+// the loop.
 
 #include <atomic>
 #include <cstdint>
@@ -28,15 +29,16 @@ struct Changed {
   std::int64_t first_tick;
 };
 
-/// Text appended to a scene that runs by --force although it was not admitted: "\n# --force: <reason>", or empty.
+/// Comment that is appended to the text of a scene which runs only because of --force: "
+/// # --force: <excess>
+/// ". Empty if the scene was admitted (`excess` empty).
 [[nodiscard]] std::string forced(const std::string& excess);
 
-/// Handles commands that change scene or parameters. Called from the telemetry thread; builds in another thread, one
-/// change at a time. The scene file is read once. A
-/// child process builds it and rehearses it: the state must stay finite and, with --no-loss and without --force, its
-/// knot must lose no time. Only then is it built in this process and handed over. None of this runs on the loop's core
-/// or at its priority. The loop checks the rig's state once more before it accepts. Simulations that the loop gives
-/// back are destroyed here.
+/// Handles commands that change scene or parameters, one at a time. The telemetry thread calls it; another thread
+/// builds. The scene file is read once. A child process first builds and rehearses the scene: its state must stay
+/// finite and, with --no-loss and without --force, its knot must lose no time. Only then is the scene built in this
+/// process and handed over. None of this runs on the loop's core or at its priority. The loop checks the rig's state
+/// once more before it accepts a change. Simulations that the loop gives back are destroyed here.
 class SceneDesk {
  public:
   /// @param plan  the scene with which the program starts
@@ -54,8 +56,8 @@ class SceneDesk {
            command.kind == ligature_msg::command_t::KIND_SET_PARAMETER;
   }
 
-  /// @param may_push whether force may flow, as far as telemetry knows. @return a refusal, or nothing: poll() answers
-  /// later.
+  /// Begins a change. @param may_push whether force may flow, as far as telemetry knows. @return a refusal, or nothing:
+  /// then poll() gives the answer later.
   [[nodiscard]] std::optional<ligature_msg::ack_t> request(const ligature_msg::command_t& command, bool may_push);
 
   /// Result of a request: the answer, and the change if one was made.
@@ -65,7 +67,7 @@ class SceneDesk {
   };
   [[nodiscard]] std::optional<Outcome> poll();
 
-  /// Whether a change is requested and not yet answered; the loop may already have it.
+  /// Whether a requested change is not answered yet; the loop may already have received it.
   [[nodiscard]] bool is_busy() const noexcept { return busy_; }
 
   [[nodiscard]] ligature_msg::offer_t offer() const;
@@ -93,7 +95,8 @@ class SceneDesk {
   RunOptions options_;
   device::Device device_;
   std::string loop_excess_;  // why no scene is admitted (loop too slow); empty: no such reason
-  // Contact budget of this machine in instructions; 0: unknown, as the launch's model has none
+  // Contact budget that this machine can afford, instructions per tick; 0: not measured, because the launch's model has
+  // none
   long work_;
   Launch launch_;
   std::vector<std::string> scenes_;

@@ -48,8 +48,8 @@ std::string facts_of(const scene::Scene& s) {
   return facts;
 }
 
-/// Points of the start shape, at most kMostPoints: those of the scene's file of points or, without such a file, the two
-/// ends of a thread that hangs straight down. As in the physics, the first fixed node is put at its place.
+/// At most kMostPoints points of the start shape: those of the scene's file of points or, without such a file, the two
+/// ends of a thread that hangs straight down, with its first fixed node where the scene fixes it.
 std::vector<scene::Vec> start_shape(const scene::Scene& s) {
   const auto& line = s.suture.initial_polyline_m;
   if (line.empty()) {

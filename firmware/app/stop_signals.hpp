@@ -5,7 +5,7 @@
 
 namespace ligature::app {
 
-/// SIGINT and SIGTERM are blocked and waited for in the main thread, so there is no asynchronous signal handler.
+/// Blocks SIGINT and SIGTERM, so that the main thread can wait for them; no asynchronous signal handler is needed.
 class StopSignals {
  public:
   StopSignals() {

@@ -16,7 +16,7 @@ struct Losses {
   std::chrono::milliseconds slowest_sync{0};
 };
 
-/// The table of fixed width printed at the end of a run: rate held, deadline misses, times.
+/// The table that is printed at the end of a run: the loop's rate, deadline misses, and times of the phases.
 [[nodiscard]] std::string summary(const rt::CycleTiming& timing, std::int64_t periods, const Losses& losses);
 
 }  // namespace ligature::app

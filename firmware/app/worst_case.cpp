@@ -10,7 +10,7 @@ namespace {
 
 using physics::Vec3;
 
-/// Corner points of a back-and-forth winding: rows along x, stacked in y, layers in z; the path is continuous.
+/// Corner points of one continuous path that is laid back and forth: rows along x, stacked in y, in layers along z.
 std::vector<Vec3> corners(double length_m, double spacing_m) {
   const int rows = std::max(2, static_cast<int>(std::cbrt(length_m / spacing_m)));
   const double row_m = std::max(2.0 * spacing_m, rows * spacing_m);

@@ -21,7 +21,8 @@ constexpr canid_t kProbe = 0x7FF;
 constexpr auto kSpacing = std::chrono::milliseconds(2);
 constexpr int kPatience_ms = 10;
 
-/// A socket that gets its own frames with the identifier kProbe and no others. @return -1 with errno.
+/// Opens a socket that receives the frames that it has sent itself with identifier kProbe, and no others. @return -1
+/// with errno.
 int open_probe(const std::string& interface) {
   const int fd = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW);
   if (fd < 0) return -1;

@@ -5,9 +5,9 @@
 
 namespace ligature::app {
 
-/// Sends an empty frame on an interface every 2 ms, and measures the time until it is read back. This time contains the
-/// system calls, the driver, and the frame's time on the wire (47 us at 1 Mbit/s). No CANopen service has the
-/// identifier 0x7FF, and it has the lowest priority on the bus, so the frames delay nobody.
+/// Sends an empty frame on an interface every 2 ms, and measures the time until the frame is read back. This time
+/// contains the system calls, the driver, and the frame's time on the wire (47 us at 1 Mbit/s). The frames have the
+/// identifier 0x7FF: no CANopen service uses it, and its priority is the lowest, so they delay hardly any other frame.
 [[nodiscard]] CanEcho measure_echo(const std::string& interface, double seconds);
 
 }  // namespace ligature::app

@@ -6,7 +6,7 @@
 
 namespace ligature::app {
 
-/// Latencies in bins of 1 us up to 10 ms, and their largest. add() is O(1) and does not allocate.
+/// Histogram of latencies in bins of 1 us up to 10 ms, with the largest latency. add() is O(1) and does not allocate.
 class LatencyHistogram {
  public:
   static constexpr std::size_t kBins = 10'000;  // bin i holds [i, i + 1) us; longer ones are counted in over()
@@ -27,7 +27,7 @@ class LatencyHistogram {
   [[nodiscard]] double max_us() const noexcept { return 1e-3 * static_cast<double>(max_ns_); }
   [[nodiscard]] const std::vector<std::uint64_t>& bins() const noexcept { return bins_; }
 
-  /// The upper edge of the bin in which the q-quantile is, at most max_us(); 0 when empty.
+  /// The q-quantile, rounded up to the edge of its bin but at most max_us(); 0 when the histogram is empty.
   [[nodiscard]] double quantile_us(double q) const noexcept {
     const double wanted = q * static_cast<double>(count_);
     std::uint64_t seen = 0;
@@ -38,7 +38,7 @@ class LatencyHistogram {
     return max_us();
   }
 
-  /// How many are in bins that begin at `us` or later.
+  /// Number of latencies in bins that begin at `us` or later.
   [[nodiscard]] std::uint64_t from(double us) const noexcept {
     std::uint64_t all = over_;
     for (std::size_t i = 0; i < kBins; ++i)
@@ -46,7 +46,7 @@ class LatencyHistogram {
     return all;
   }
 
-  /// Puts a histogram together from a report. Bins beyond the range are ignored.
+  /// Restores one bin from a stored report. Bins beyond the range are ignored.
   void restore(std::size_t bin, std::uint64_t count) noexcept {
     if (bin >= kBins) return;
     bins_[bin] += count;

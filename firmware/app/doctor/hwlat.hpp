@@ -1,17 +1,17 @@
 #pragma once
-// Interruptions by the firmware of the machine (SMI), which no program can see or prevent. The kernel's tracer `hwlat`
-// finds them: it spins with interrupts off and looks for gaps in the time.
+// Finds interruptions by the machine's own firmware (system management interrupts, SMI), which no program can prevent.
+// The kernel's tracer `hwlat` detects them: it spins with interrupts off and looks for gaps between clock readings.
 
 #include <optional>
 #include <string>
 
 namespace ligature::app {
 
-/// The longest gap in the text of the tracer's file `trace`, us; nothing when it found none.
+/// The longest gap, us, in `trace`: the text of the tracer's file of that name. Nothing when the tracer found no gap.
 [[nodiscard]] std::optional<double> longest_gap_us(const std::string& trace);
 
-/// Runs the tracer. @param folder of the kernel's tracing files. @return one line: the longest gap, or why it did not
-/// run.
+/// Runs the tracer. @param folder where the kernel's tracing files are. @return one line: the longest gap, or why it
+/// did not run.
 [[nodiscard]] std::string look_for_gaps(const std::string& folder, double seconds);
 
 }  // namespace ligature::app

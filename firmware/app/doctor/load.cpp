@@ -43,7 +43,8 @@ void write_disk(Clock::time_point end) {
     if (pwrite(file, block.data(), block.size(), static_cast<off_t>(at)) < 0 || fdatasync(file) != 0) return;
 }
 
-/// Opens a UDP socket on the loopback of a new network namespace, connected to itself. @return -1 when not allowed.
+/// Opens a UDP socket that is connected to itself, on the loopback interface of a new network namespace. @return -1
+/// when the kernel does not allow it.
 int lonely_socket() {
   if (unshare(CLONE_NEWNET) != 0 && unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) return -1;
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
@@ -70,7 +71,8 @@ void send_packets(Clock::time_point end) {
   }
 }
 
-/// The child's life. A copy of the parent's settings must not make the load real-time.
+/// Runs one load process. It first resets the signal and scheduling settings that it inherits, because the load must
+/// not have real-time priority.
 [[noreturn]] void live(void (*work)(Clock::time_point), double seconds, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(0);  // the parent has ended already

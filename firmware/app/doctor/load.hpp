@@ -7,9 +7,9 @@
 namespace ligature::app {
 
 /// Keeps the machine busy while something is measured: four processes with normal priority that copy memory (64 MB),
-/// write to the disk (a nameless file of 32 MB in /var/tmp), compute, and send packets on the loopback of a network
-/// namespace of their own. Each ends by itself after `seconds`, and when this process ends.
-/// Start it before real-time priority is asked for and before threads exist.
+/// write to the disk (a nameless file of 32 MB in /var/tmp), compute, and send packets on the loopback interface of a
+/// separate network namespace. Each process ends after `seconds`, or when this process ends. Construct a Load before
+/// the program requests real-time priority or starts threads.
 class Load {
  public:
   explicit Load(double seconds);

@@ -1,5 +1,5 @@
 #pragma once
-// The report of a machine check: `doctor --report` writes it, `doctor --compare` and `ligature-host plot --latency`
+// The report of a machine check. `doctor --report` writes it; `doctor --compare` and `ligature-host plot --latency`
 // read it.
 
 #include <optional>
@@ -47,8 +47,8 @@ struct DoctorReport {
 /// @return the report, or one line about what is wrong with `text`.
 [[nodiscard]] std::variant<DoctorReport, std::string> report_of(const std::string& text);
 
-/// Two reports side by side. The table has only the numbers of each run: a confidence interval would be wrong, because
-/// late wake-ups come in groups.
+/// Table of two reports side by side. It gives no confidence intervals: they would be wrong, because late wake-ups come
+/// in groups.
 [[nodiscard]] std::string compare(const DoctorReport& a, const std::string& name_a, const DoctorReport& b,
                                   const std::string& name_b);
 
