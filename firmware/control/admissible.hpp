@@ -6,13 +6,14 @@
 
 namespace ligature::control {
 
-/// The coupling as the device feels it if the thread does not yield (stiffness K, damping B), and its stability limit:
-///   K < (b + B) / (T/2 + t_d)
-/// b: damping of the device, T: period, t_d: delay from sample to torque. The limit is the linear stability of a
-/// sampled, delayed spring for small B (Gil; Hulin et al., IEEE Trans. Control Syst. Technol. 2014); a hand that holds
-/// the device only adds damping. If the scene has a device-side spring (K_d, B_d), it is in series with the thread-side
-/// one (K_t, B_t, which are the scene's values times force scale and workspace scale):
-///   K = K_d K_t / (K_d + K_t),   B = (B_d K_t^2 + B_t K_d^2) / (K_d + K_t)^2     (low frequencies)
+/// The coupling as the device feels it while the thread does not yield (stiffness K, damping B), and the limit below
+/// which it is stable:
+///   K < (b + B) / (T/2 + t_d)      b: damping of the device, T: period, t_d: delay from sample to torque
+/// The limit holds for a sampled, delayed spring with small B (Gil; Hulin et al., IEEE Trans. Control Syst. Technol.
+/// 2014). A hand that holds the device only adds damping.
+/// If the scene has a spring on the device's side (K_d, B_d), it is in series with the one on the thread's side (K_t,
+/// B_t: the scene's values times force scale and workspace scale):
+///   K = K_d K_t / (K_d + K_t),   B = (B_d K_t^2 + B_t K_d^2) / (K_d + K_t)^2     (at low frequencies)
 struct Admissible {
   double K_N_per_m = 0.0;
   double B_N_s_per_m = 0.0;

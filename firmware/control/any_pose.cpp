@@ -6,8 +6,8 @@
 namespace ligature::control {
 namespace {
 
-// Lower bound of 1 - |x|, where x is the sine of the angle between the links. Near the singular pose |x| = 1 the
-// allowed force then goes to 0, without a division by zero.
+// Lower bound of 1 - |x|, where x is the sine of the angle between the links. It avoids a division by zero in the
+// singular pose |x| = 1, near which the allowed force goes to 0.
 constexpr double kNearStretched = 1e-6;
 
 /// Smallest and largest |x| for x in [low, high].

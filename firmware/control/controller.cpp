@@ -48,8 +48,8 @@ void Controller::command(rt::CommandKind kind) noexcept {
   }
 }
 
-/// Starts a guided move on each hand whose dead-man is pressed and which holds nothing; the other hands are not
-/// affected. If the clutch is pressed, the move ends at once (HandControl::lead_force).
+/// Starts a guided move of each hand whose dead-man is pressed and whose gripper holds nothing; other hands do not
+/// move. While the clutch is pressed, the move ends at once (HandControl::lead_force()).
 void Controller::begin_moves(Move move) noexcept {
   if (!armed_ || !may_push(state_) || braking_) return;
   for (HandControl& h : hands_) {
@@ -115,8 +115,8 @@ bool Controller::any_too_fast() const noexcept {
       hands_, [this](const HandControl& h) { return h.speed_m_per_s() > settings_.device.velocity_limit_m_per_s; });
 }
 
-/// The fault of this tick, most specific first. In OFF, while the drives start up, only faults that do not depend on
-/// the drives being up count.
+/// The most specific fault of this tick. In the state OFF, while the drives start up, only faults that do not need
+/// running drives count.
 Fault Controller::find_fault(const TickInput& in) const noexcept {
   for (const auto& reading : in.reading.hand) {
     if (reading.bus_lost) return Fault::kBusLost;
@@ -240,7 +240,7 @@ bool Controller::all_zero() const noexcept {
   return std::ranges::all_of(hands_, [](const HandControl& h) { return h.gain() == 0.0; });
 }
 
-/// Whether any force is left: limits on its change can make it last longer than the gain.
+/// Whether any hand still has a force. A force can outlast its gain, because its change per tick is limited.
 bool Controller::any_pushes() const noexcept {
   return std::ranges::any_of(hands_, [](const HandControl& h) { return !h.state().f_device_N.isZero(0.0); });
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Control law of both hands: joint samples in, torques and drive requests out, once per period.
+// Control law of both hands: once per period it turns joint samples into torques and requests to the drives.
 
 #include <array>
 #include <cstdint>
@@ -20,12 +20,12 @@ namespace ligature::control {
 using rt::kPeriod_s;
 
 struct Settings {
-  /// Limit, in ticks, for the age of joint messages, for lost periods in a row and for physics lateness; reaching it is
-  /// a fault
+  /// Limit in ticks for three things: age of joint messages, lost periods in a row, lateness of the physics. Reaching
+  /// it is a fault
   std::int32_t watchdog_ticks = 20;
   bool armed = false;  ///< at start; a fault or a disarm clears it
   device::Device device = device::omni();
-  /// False (for experiments): the accounts of the two hands lend no energy to each other, so no hand can be pulled by
+  /// Whether the energy accounts of the two hands lend to each other; false only in experiments: then no hand can pull
   /// the other
   bool lending = true;
 };
@@ -46,9 +46,9 @@ class Controller {
  public:
   static constexpr int kCalibrationTicks = 50;  ///< consecutive ticks with possible poses
   static constexpr int kScaleTicks = 200;       ///< duration of a change of the force scale
-  /// Largest number of ticks for which a force may last, reduced step by step, after its gain is 0; then a fault
-  /// removes it at once. So a hand is free of force at most 50 ms + 100 ms after the dead-man is released, whatever
-  /// frames are lost. Without losses 3.3 N need 14 ticks.
+  /// Largest number of ticks in which a force is reduced step by step after its gain has reached 0; then a fault
+  /// removes the force at once. So a hand is free of force at most 50 ms + 100 ms after the dead-man is released,
+  /// whatever frames are lost. Without lost frames, a force of 3.3 N takes 14 ticks.
   static constexpr int kMostOvertimeTicks = 100;
   static constexpr int kPowerDownTicks = 20;  ///< "power stage off" is sent for so many ticks before the run ends
 
@@ -57,7 +57,7 @@ class Controller {
   /// A request of the host or the operator; acts in the next tick.
   void command(rt::CommandKind kind) noexcept;
 
-  /// Installs the hand settings of another scene at once. @pre no force may flow.
+  /// Installs the hand settings of another scene. @pre no force can flow.
   void change_hands(const scene::Hands& hands) noexcept;
   /// Changes the force scale linearly over kScaleTicks, so that a rendered force does not jump.
   void change_force_scale(double force_scale) noexcept;

@@ -1,13 +1,14 @@
 #pragma once
-// Decides whether a pressed dead-man button counts: a button that is taped down or was never released must not.
+// Decides whether a pressed dead-man button counts. A button that is taped down, or that was never released, must not
+// count.
 
 #include <algorithm>
 
 namespace ligature::control {
 
-/// A press counts only if the button was seen released before it: after the start, after the last stop and after the
-/// last fault's reset. "Released" needs kReleased fresh samples in a row, so that one wrong bit does not count as a
-/// release. O(1).
+/// A press counts only if the button was seen released before: since the start, since the last stop and since the last
+/// fault's reset. A release is kReleased fresh samples in a row without a press, so that one wrong bit is no release.
+/// O(1).
 class DeadMan {
  public:
   static constexpr int kReleased = 3;  ///< samples, 1 ms each
@@ -18,7 +19,7 @@ class DeadMan {
     released_ = pressed ? 0 : std::min(released_ + 1, kReleased);
     if (released_ == kReleased) needs_new_press_ = false;
   }
-  /// After a stop or fault: the present press, and any release so far, no longer count.
+  /// Call after a stop or fault: a press counts again only after a new release.
   void need_new_press() noexcept {
     needs_new_press_ = true;
     released_ = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// Detects encoders that freeze or begin to count backwards, at the moment when it happens; later the readings look
-// plausible.
+// Detects an encoder that freezes or begins to count backwards. It must do so at that moment, because later the
+// readings look plausible.
 
 #include <algorithm>
 #include <array>
@@ -13,27 +13,29 @@
 namespace ligature::control {
 
 /// Checks one hand's three encoders. A hand is a mass on a spring, so no joint changes its speed abruptly from one
-/// period to the next. A faulty encoder does: it counts backwards (mirrored_turn.hpp) or freezes. Two tests find a
-/// frozen encoder.
-/// Frozen in motion: in a window of kWindow samples the joint moved evenly (within one count of a straight line) at a
-/// speed of at least kBrisk. In the next window it does not change by a single count, while another joint moves on at
-/// an unchanged speed, and it stays unchanged until the other joints have travelled kTravel. (A slow joint may simply
-/// stop.)
-/// Frozen at rest: the joint has not changed by a count although its torque has varied by kPushed of the rated torque
-/// and the other joints have travelled kElsewhere; no hand is that stiff.
-/// Near its stops a joint may really stand still, so no test is made there. A reversal at rest is found only by a
-/// guided move (move_check.hpp) or as an impossible pose. A gap between samples restarts the first test. O(kWindow), no
-/// allocation.
+/// period to the next. A faulty encoder does: it begins to count backwards (mirrored_turn.hpp), or it freezes. Two
+/// tests find a frozen encoder.
+///
+/// Frozen in motion. In a window of kWindow samples the joint moved evenly (within one count of a straight line) at
+/// kBrisk or faster. In the next window its reading does not change by a single count, while another joint moves on at
+/// unchanged speed. A joint may simply have stopped, so the fault is reported only if the reading stays constant until
+/// the other joints have travelled kTravel. A gap between samples restarts this test.
+///
+/// Frozen at rest. The reading has not changed by a count, although the joint's torque has varied by kPushed of the
+/// rated torque and the other joints have travelled kElsewhere. No hand is that stiff.
+///
+/// Near its stops a joint may really stand still, so it is not tested there. A reversal at rest is found only by a
+/// guided move (move_check.hpp), or because the pose becomes impossible. O(kWindow), no allocation.
 class EncoderWatch {
  public:
   static constexpr std::size_t kJoints = 3, kWindow = 24, kLength = 128;
-  /// Thresholds in counts per period: least speed of another joint, least speed of the joint under suspicion,
-  /// largest change of the other joint's speed.
+  /// Thresholds in counts per period. kMoving: least speed of another joint that moves on. kBrisk: least speed of the
+  /// suspected joint. kSame: largest change of the other joint's speed.
   static constexpr double kMoving = 0.34, kBrisk = 0.8, kSame = 0.17;
   static constexpr double kTravel = 60.0;      ///< counts, about 3 mm at the tip
   static constexpr double kElsewhere = 300.0;  ///< counts
   static constexpr int kRested = 100;          ///< samples; a hand that turns round needs fewer
-  /// Share of the rated torque; for an Omni 0.4 N at the tip, four times its friction.
+  /// Share of the rated torque. For an Omni this is 0.4 N at the tip, four times its friction.
   static constexpr double kPushed = 0.2;
 
   /// Adds a sample, in counts.
@@ -53,9 +55,9 @@ class EncoderWatch {
     return reversal(free) >= 1.0 ? Fault::kAxisReversed : Fault::kNone;
   }
 
-  /// How strongly the newest samples look like an encoder that has begun to count backwards: speed at the suspected
-  /// turn (MirroredTurn::speed()) divided by the least speed at which the test is reliable; the largest over all joints
-  /// and lengths of the test. >= 1: reversed.
+  /// How strongly the newest samples look like an encoder that has begun to count backwards; from 1 on, this counts as
+  /// a fault. The value is the speed at the suspected turn (MirroredTurn::speed()) divided by the least speed at which
+  /// the test is reliable; the largest over all joints and window lengths.
   [[nodiscard]] double reversal(const std::array<bool, kJoints>& free) const noexcept {
     double most = 0.0;
     for (std::size_t j = 0; j < kJoints; ++j) {
@@ -74,8 +76,8 @@ class EncoderWatch {
     bool straight = false;
   };
 
-  /// What has happened since a joint's reading last changed: the range of its torque, and the travel of the other
-  /// joints (`elsewhere`).
+  /// What has happened since a joint's reading last changed: the range of the joint's torque (`low` to `high`), and the
+  /// travel of the other joints (`elsewhere`).
   struct Rest {
     double count = 0.0, low = 0.0, high = 0.0, elsewhere = 0.0;
     int samples = 0;
@@ -107,8 +109,8 @@ class EncoderWatch {
     return x_[joint][(newest_ + kLength - ago) % kLength];
   }
 
-  /// Straight line through the first and the last of kWindow samples, of which the last is `ago` samples old; and
-  /// whether all samples between lie within one count of the line.
+  /// Straight line through the first and the last sample of a window of kWindow samples, whose last one is `ago`
+  /// samples old. `straight` tells whether all samples between lie within one count of the line.
   [[nodiscard]] Line line(std::size_t joint, std::size_t ago) const noexcept {
     constexpr double kSteps = kWindow - 1;
     const double first = at(joint, ago + kWindow - 1);
@@ -130,8 +132,8 @@ class EncoderWatch {
     return false;
   }
 
-  /// Test for an encoder that freezes in motion: suspects a joint that stops in motion, and reports it when the others
-  /// have travelled far enough while it did not change. @param free  joints that are not at a stop
+  /// Test "frozen in motion". First suspects a joint that stops abruptly; then reports it if the other joints travel
+  /// far enough while its reading stays the same. @param free joints that are not at a stop
   [[nodiscard]] bool is_frozen(const std::array<bool, kJoints>& free) noexcept {
     if (suspect_ < kJoints) {
       if (at(suspect_, 0) != at(suspect_, 1)) {

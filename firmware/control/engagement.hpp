@@ -6,9 +6,9 @@
 
 namespace ligature::control {
 
-/// Gain of one hand, 0 .. 1. It leaves 0 only after kCalmTicks in which the hand was still and the force small. Then it
-/// rises to 1 in 0.5 s while it is wanted (armed and dead-man pressed); otherwise it falls to 0 in 50 ms. Both follow a
-/// jerk-limited curve (motion.hpp). Periods of 1 ms. O(1).
+/// Gain of one hand, 0 .. 1. While force is wanted (armed and dead-man pressed), the gain rises to 1 in 0.5 s;
+/// otherwise it falls to 0 in 50 ms. Both follow a jerk-limited curve (motion.hpp). The rise begins only after
+/// kCalmTicks in which the hand was still and the force small. Assumes periods of 1 ms. O(1).
 class Engagement {
  public:
   static constexpr int kCalmTicks = 20;

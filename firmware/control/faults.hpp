@@ -1,5 +1,5 @@
 #pragma once
-// Fault numbers: part of the interface (docs/architecture.md), never reused for another meaning.
+// Fault numbers. They are part of the interface (docs/architecture.md), so a number is never reused for another fault.
 
 #include <cstdint>
 
@@ -46,8 +46,8 @@ enum class Fault : std::int16_t {
   return Fault::kNone;
 }
 
-/// Faults that reset-fault cannot clear: the drives have left the network, and what another node may have written into
-/// them is unknown. Only a restart reads and writes their objects again.
+/// Whether only a restart of the program clears this fault. After it, nobody knows what another node may have written
+/// into the drives, and only a restart reads and writes their settings again.
 [[nodiscard]] constexpr bool needs_restart(Fault f) noexcept {
   return (f >= Fault::kForeignTorque && f <= Fault::kForeignObject) || f == Fault::kTorqueAstray;
 }

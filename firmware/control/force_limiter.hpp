@@ -1,5 +1,6 @@
 #pragma once
-// Limits of one hand's force: peak, torque, heat, step and slew rate. Each has a code that is reported.
+// Limits of one hand's force: peak, torque, heat, step and slew rate. Each limit has a code, by which it is reported
+// when it acts.
 
 #include <cstdint>
 #include <limits>
@@ -11,20 +12,21 @@
 
 namespace ligature::control {
 
-/// Two upper bounds of a force in the requested direction, N. in_any_pose_N: with more, its joint torques could make
-/// more than the peak force in some pose. by_heat_N: with more, they could overheat a winding.
+/// Two upper bounds, N, for a force in the requested direction. Above in_any_pose_N, its joint torques could make more
+/// than the peak force in some pose. Above by_heat_N, they could overheat a motor winding.
 struct MostByJoints {
   double in_any_pose_N = std::numeric_limits<double>::infinity();
   double by_heat_N = std::numeric_limits<double>::infinity();
 };
 
-/// Limits, applied in this order once per period T:
-///   peak        |f| <= min(scene's max_force_N, device's peak)
+/// Limits on the force f, applied in this order once per period T. f_before is the force of the period before.
+///   peak        |f| <= the smaller of the scene's max_force_N and the device's peak
 ///   torque      |f| <= the largest force in f's direction whose torques stay within the peak in any pose (AnyPose)
-///   continuous  |f| <= the peak as reduced by I2t (ThermalCap), for the force itself and for each joint's winding
-///   step        |f - f_before| <= force_step_N per period
-///   slew        average rate: an allowance for changes, refilled by force_slew_N_per_s T per period up to force_step_N
-/// The change keeps its direction, so each output lies between two allowed forces. O(1), no allocation.
+///   continuous  |f| <= the peak as reduced by heat (ThermalCap), for the force itself and for each joint's winding
+///   step        |f - f_before| <= force_step_N
+///   slew        |f - f_before| <= an allowance, which each change uses up by its size, and which grows by
+///               force_slew_N_per_s T per period up to force_step_N
+/// The change f - f_before keeps its direction, so each output lies between two allowed forces. O(1), no allocation.
 class ForceLimiter {
  public:
   ForceLimiter(const device::Device& device, double max_force_N, double period_s) noexcept;
@@ -33,8 +35,8 @@ class ForceLimiter {
 
   /// @param wish_N finite. @return the force that may be sent; codes() gives the limits that reduced it.
   [[nodiscard]] physics::Vec3 limit(const physics::Vec3& wish_N, const MostByJoints& most = {}) noexcept;
-  /// Reports the force that was really sent (later stages may reduce it further); the next change and the heat start
-  /// from it.
+  /// Tells the limiter which force was sent in the end (later stages may reduce it). The next change and the heat are
+  /// computed from this force.
   /// @param periods since the last call
   void sent(const physics::Vec3& f_N, std::int64_t periods = 1) noexcept;
 

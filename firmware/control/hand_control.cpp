@@ -7,7 +7,7 @@
 namespace ligature::control {
 namespace {
 
-// Tip force per joint torque above which a pose counts as singular: 1 / 2.5 mm
+// A pose counts as singular above this tip force per joint torque (a lever arm below 2.5 mm)
 constexpr double kSingular_per_m = 400.0;
 constexpr std::int64_t kPause = 5;  // periods without a sample that are a pause; fewer are lost frames
 constexpr double kAbove_m = 0.01;   // height of the parked tip above the workspace's floor
@@ -98,7 +98,8 @@ void HandControl::sample(const rt::HandReading& reading, std::int64_t sampled) n
   encoder_fault_ = watch_.add(counts, timed ? periods : 0, linkage_.far_from_stops(reading.q_rad),
                               {torque[0], torque[1], torque[2]});
   sample_tick_ = sampled;
-  // Near a singular pose, forces computed from torques are meaningless: keep the inverse of the last regular pose.
+  // Near a singular pose, forces computed from torques are meaningless; the inverse of the last regular pose is used
+  // there.
   const Mat3 inverse = jacobian_.transpose().inverse();
   if (inverse.allFinite() && inverse.cwiseAbs().maxCoeff() < kSingular_per_m) from_torque_ = inverse;
   if (!p_DT_.allFinite()) return;
@@ -107,8 +108,8 @@ void HandControl::sample(const rt::HandReading& reading, std::int64_t sampled) n
       sampled, {reading.q_rad, p_DT_, count_rad_, jacobian_.colwise().norm().transpose(), rate, acted, from_torque_});
 }
 
-/// While the clutch is pressed, the tool stays where it is in the world. On release the map is shifted so that the tool
-/// is still there. The gain fades the force out before and in after, so nothing jumps.
+/// While the clutch is pressed, the tool stays at its place in the world. On release, the map from device to world is
+/// shifted so that the tool does not jump. The gain fades the force out at the press and in after the release.
 void HandControl::step_clutch(bool pressed, const Vec3& p_DT) noexcept {
   if (pressed && !state_.clutch) state_.v_WT = Vec3::Zero();
   if (!pressed && state_.clutch) map_.origin_W_m += state_.p_WT - map_.position(p_DT);
@@ -134,20 +135,20 @@ std::array<double, rt::kJoints> HandControl::command(std::int64_t tick) noexcept
   Vec3 torque_Nm = Vec3::Zero(), paid_N = Vec3::Zero();
   if (!lets_go_) {
     const auto torque = [this](const Vec3& f) { return sendable_torque(f); };
-    // Tip force that the last torques make in the present pose. Changes of force are counted from this one, so sending
+    // Tip force that the last torques make in the present pose. Changes of force are counted from it, so that sending
     // the same torques again is no change.
     const Vec3 before_N = from_torque_ * torque_Nm_;
     paid_N = passivity_.control(tick, decided_N_, v_DT_, before_N, torque);
     torque_Nm = sendable_torque(paid_N);
-    // Only rounding can violate the step limit here; then the last torques are repeated.
+    // Only the rounding to whole quanta can violate the step limit here; then the last torques are repeated.
     if (!passivity_.released() && !passivity_.is_a_step(torque_Nm)) torque_Nm = torque_Nm_;
-    // All force was removed, because the hand exceeds the acceleration bound or frames are lost: a guided move ends
+    // Passivity has removed all force, because the hand exceeds the acceleration bound or frames are lost
     if (passivity_.released()) end_move();
     if (passivity_.acts()) limits |= rt::kPassivityLimit;
     if (passivity_.stepped()) limits |= rt::kStepLimit;
     const Vec3 exact_Nm = jacobian_.transpose() * paid_N;
     if (exact_Nm.lpNorm<Eigen::Infinity>() > max_torque_Nm_) limits |= rt::kTorqueLimit;
-    // Passivity may have turned the force's direction, so the limits are checked again
+    // Passivity may have changed the force's direction, so the limits are applied again
     paid_N *= allowed_share(paid_N, exact_Nm);
   }
   if (torque_Nm.isZero(0.0)) paid_N = Vec3::Zero();
@@ -207,15 +208,15 @@ Vec3 HandControl::lead_force() noexcept {
   return force_N;
 }
 
-/// Factor on these torques at which the tip force in the worst pose equals the peak force; needs no encoder.
+/// Factor by which these torques must be multiplied to make exactly the peak force in the worst pose; needs no encoder.
 double HandControl::safe_share(const Vec3& torque_Nm) const noexcept {
   const double most_N = any_pose_.most_N(torque_Nm);
   return most_N > 0.0 ? limiter_.peak_N() / most_N : std::numeric_limits<double>::infinity();
 }
 
-/// Factor, at most 1, on a tip force and its torques. It keeps three limits: the peak force in this pose, the peak
-/// force in any pose of the workspace box, and the heat of the windings. Outside the box safe_share() does not ensure
-/// the first one.
+/// Factor, at most 1, on a tip force and its torques, that keeps three limits: the peak force in the measured pose, the
+/// peak force in any pose of the workspace box, and the heat of the windings. The first one is not redundant: the
+/// measured pose may be outside the box.
 double HandControl::allowed_share(const Vec3& f_N, const Vec3& torque_Nm) const noexcept {
   const double size_N = std::max(f_N.norm(), 1e-300);
   return std::min({1.0, limiter_.peak_N() / size_N, safe_share(torque_Nm), windings_.share(torque_Nm)});
@@ -223,7 +224,7 @@ double HandControl::allowed_share(const Vec3& f_N, const Vec3& torque_Nm) const 
 
 /// Torques to send: J^T f, limited to the drives' range, to what is safe in any pose and to what the windings allow, in
 /// whole torque quanta. A joint keeps its last torque if the change is below kStay quanta: rapid toggling is audible,
-/// and its work can stay below the encoders' resolution, where the energy account cannot see it.
+/// and the energy account cannot see its work, which may be below the encoders' resolution.
 Vec3 HandControl::sendable_torque(const Vec3& f_N) const noexcept {
   constexpr double kStay = 0.7;
   Vec3 exact = (jacobian_.transpose() * f_N).cwiseMax(-max_torque_Nm_).cwiseMin(max_torque_Nm_);

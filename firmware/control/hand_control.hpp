@@ -1,5 +1,6 @@
 #pragma once
-// Control law of one hand: joint samples in, a force that may be sent out. The controller decides when a hand may push.
+// Control law of one hand: from joint samples to torques that are safe to send. The controller (controller.hpp) decides
+// when a hand may push.
 
 #include <array>
 #include <cstdint>
@@ -32,7 +33,8 @@ struct HandState {
   Vec3 f_device_N = Vec3::Zero();  ///< after gain, limits and passivity, as made by the torques sent
   double gain = 0.0;
   double port_energy_J = 0.0, dissipated_J = 0.0, injected_N_s_per_m = 0.0, heat = 0.0;
-  /// Part of port_energy_J that was received: lent by the other hand's account, or granted for a guided move
+  /// Part of port_energy_J that does not come from this hand: lent by the other hand's account, or granted for a guided
+  /// move
   double received_J = 0.0;
   std::int16_t limits = 0;     ///< rt::LimitCode bits
   bool limited = false;        ///< f_device_N is at a magnitude limit while the gain is 1
@@ -46,27 +48,28 @@ struct HandState {
 /// Source of the hand's force in a tick: none, the coupling, the velocity brake, or a guided move.
 enum class Push : std::uint8_t { kNone, kCoupling, kBrake, kLead };
 
-/// Guided moves: the only motions that the rig starts itself, always on a command.
+/// Guided moves: the only motions that the rig makes by itself, and only on a command.
 enum class Move : std::uint8_t { kNone, kPark, kCalibrate };
 
-/// Order of calls in a tick: observe(), step_gain(), decide(), command(). Real time: O(1), no allocation.
+/// Call in each tick, in this order: observe(), step_gain(), decide(), command(). O(1), no allocation.
 class HandControl {
  public:
   HandControl(const device::Device& device, const scene::Hands& hands, double period_s) noexcept;
 
-  /// Installs the hand settings of another scene at once. @pre no force may flow.
+  /// Installs the hand settings of another scene. @pre no force can flow.
   void change_hands(const scene::Hands& hands) noexcept;
   void set_force_scale(double scale) noexcept { coupling_.set_force_scale(scale); }
   [[nodiscard]] double force_scale() const noexcept { return coupling_.force_scale(); }
 
-  /// Computes tip pose, tool pose in the world and the coupling's force from the joints. Without a new sample the last
-  /// one is kept.
-  /// @param age  age of the sample; its look() was already called with this reading
+  /// Computes the tip's position, the tool's position in the world and the coupling's force from the joint angles.
+  /// Without a new sample, the last one is used again.
+  /// @param age age of the sample; age.look() was already called with this reading
   void observe(const rt::HandReading& reading, const SampleAge& age, const Grasp& grasp, std::int64_t tick) noexcept;
-  /// The loop was delayed while it read this tick's samples: their time is unknown, so no velocity is derived from
-  /// them.
+  /// Call when the loop was delayed while it read this tick's samples. Their time is then unknown, so no velocity is
+  /// computed from them.
   void doubt_time_of(std::int64_t tick) noexcept { doubtful_tick_ = tick; }
-  /// Resets the energy account after a fault, whose cause (such as an encoder jump) may have been booked as work.
+  /// Resets the energy account after a fault. The cause of the fault, such as an encoder jump, may have been booked as
+  /// work.
   void restart_account() noexcept { passivity_.restart(); }
   void hold_clutch(bool held) noexcept { clutch_command_ = held; }
   /// A pressed dead-man no longer counts until it is released and pressed again.
@@ -78,9 +81,9 @@ class HandControl {
     end_move();
     move_fault_ = Fault::kNone;
   }
-  /// Guides the hand along a jerk-limited path once the gain is full, with at most kLead_N and kLeadEnergy_J. The move
-  /// ends at the path's end, or earlier: the hand holds the thread, the clutch is pressed, the tip is kStray_m off the
-  /// path, or end_move() is called. Until then the gripper stays open.
+  /// Guides the hand along a jerk-limited path with at most kLead_N of force and kLeadEnergy_J of energy, once the gain
+  /// is 1. The move ends with the path, or earlier if the hand holds the thread, the clutch is pressed, the tip is
+  /// kStray_m off the path, or end_move() is called. Until the end the gripper stays open.
   void begin_move(Move move) noexcept;
   void end_move() noexcept;
   [[nodiscard]] bool is_led() const noexcept { return move_ != Move::kNone; }
@@ -89,12 +92,13 @@ class HandControl {
   }
   [[nodiscard]] double gain() const noexcept { return engagement_.gain(); }
 
-  /// Force of this tick before the energy account: gain (or brake or guided move), then limits.
+  /// Computes the force of this tick, without regard to the energy account: the force of `push` times gain, then the
+  /// limits.
   void decide(Push push) noexcept;
-  /// Torques of this tick: passivity control, J^T f, rounding to torque quanta, in this order.
+  /// Torques of this tick: passivity control of the force f, joint torques J^T f, rounding to torque quanta.
   [[nodiscard]] std::array<double, rt::kJoints> command(std::int64_t tick) noexcept;
-  /// Call between decide() and command() while both hands hold the thread: the account that is short borrows from the
-  /// other.
+  /// Call between decide() and command() while both hands hold the thread: a hand whose account cannot pay for its
+  /// force borrows energy from the other hand's.
   static void lend(std::int64_t tick, HandControl& a, HandControl& b) noexcept {
     Passivity::lend(tick, a.passivity_, a.decided_N_, b.passivity_, b.decided_N_);
   }
@@ -105,22 +109,24 @@ class HandControl {
   [[nodiscard]] Fault encoder_fault() const noexcept {
     return move_fault_ != Fault::kNone ? move_fault_ : encoder_fault_;
   }
-  /// Whether samples may come in a burst: they had stopped for some periods, and came back fewer periods ago than they
-  /// had stopped. A burst contains several periods of motion in one period. It happens when the process of a simulated
-  /// hand stood still.
+  /// Whether samples may be coming in a burst, in which one period brings several periods of motion. That happens after
+  /// the process of a simulated hand has stood still. True after a gap in the samples, for as many periods as the gap
+  /// was long.
   [[nodiscard]] bool is_catching_up() const noexcept { return catching_up_ > 0; }
-  /// Consecutive ticks with force although the gain is 0: the step limit allows it to fall only gradually.
+  /// Consecutive ticks in which there is still force although the gain is 0, because the step limit lets force fall
+  /// only gradually.
   [[nodiscard]] int overtime_ticks() const noexcept { return overtime_ticks_; }
   [[nodiscard]] bool is_plausible() const noexcept { return linkage_.is_plausible(state_.q_rad); }
   [[nodiscard]] double speed_m_per_s() const noexcept { return v_DT_.norm(); }  ///< speed of the device's tip
   [[nodiscard]] bool holds() const noexcept { return holds_; }
 
-  /// The tool for the physics in this tick. @param alive false: the hand has no fresh samples, and its gripper opens.
+  /// The tool for the physics in this tick. @param alive false: the hand's samples are too old, so its gripper opens.
   [[nodiscard]] physics::ToolInput tool(bool alive) const noexcept {
     return {proxy_.p_WP, proxy_.v_WP, state_.grip && alive};
   }
 
-  /// Spring and damper that bring a hand above the velocity limit to rest along a decelerating reference (motion.hpp).
+  /// Spring and damper of the velocity brake: they pull a hand that is too fast towards a reference that decelerates to
+  /// rest (motion.hpp).
   static constexpr double kBrake_N_per_m = 150.0, kBrake_N_s_per_m = 2.0;
   static constexpr double kLead_N = 0.5;         ///< below the continuous force of an Omni-class device
   static constexpr double kLeadEnergy_J = 0.05;  ///< enough for 0.2 m against 0.1 N of friction, more than twice

@@ -1,5 +1,6 @@
 #pragma once
-// Limit on a force's magnitude. Reaching a limit is normal and only reported; a force that is not finite is a fault.
+// Limit on a force's magnitude. A force that reaches the limit is normal and only reported; a force that is not finite
+// is a fault.
 
 #include <limits>
 
@@ -7,8 +8,8 @@
 
 namespace ligature::control {
 
-/// Factor on the device's velocity limit. Above the limit the rig only brakes (a hand may slip); above this factor it
-/// is a fault, because only a broken encoder moves so fast.
+/// Factor on the device's velocity limit. Above the limit the rig only brakes, because a hand may slip. Above this
+/// factor times the limit it is a fault, because only a broken encoder reports such a speed.
 inline constexpr double kVelocityFault = 1.5;
 
 struct LimitedForce {
@@ -17,9 +18,9 @@ struct LimitedForce {
   bool finite = true;
 };
 
-/// Clips the magnitude and keeps the direction. |f| <= max_N holds even after rounding, so the limit used is a few ulps
-/// below max_N. The motors' force still differs by the torque quantum on the wire: 1 per mille, 0.3 mN m, at most 2 mN
-/// at the tip. NaN and infinity give zero and `finite` false.
+/// Clips the force's magnitude and keeps its direction. The limit used is a few rounding errors below max_N, so that
+/// |f| <= max_N always holds. The motors' force still differs by the torque quantum on the wire: 1 per mille, 0.3 mN m,
+/// at most 2 mN at the tip. NaN and infinity give zero force and `finite` false.
 [[nodiscard]] inline LimitedForce saturate(const physics::Vec3& f_N, double max_N) noexcept {
   if (!f_N.allFinite()) return {physics::Vec3::Zero(), false, false};
   const double magnitude_N = f_N.norm();

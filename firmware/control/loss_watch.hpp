@@ -1,5 +1,5 @@
 #pragma once
-// Detects a bus that loses so many frames that the rendered force no longer represents the thread.
+// Detects a bus that loses so many frames that the force at the hand no longer follows the suture.
 
 #include <algorithm>
 #include <array>
@@ -9,12 +9,12 @@
 
 namespace ligature::control {
 
-/// Counts one hand's lost frames, separately for each direction: samples that did not come, and torques that a drive
-/// reports to have repeated because an RPDO was missing. A loss adds kLost to the direction's counter, a frame that
-/// came subtracts kCame; a counter never falls below 0. So a loss rate above kCame / (kCame + kLost) = 1/3 reaches the
-/// limit eventually, and a rate well below never does. Up to 1/3 of the samples, which is 12 % of the frames (a sample
-/// has three), forces are rendered correctly (docs/haptics.md). Complete silence must raise another fault first (joint
-/// messages too old). Each silent tick adds 2, so the limit is three times the watchdog's ticks. O(1).
+/// Counts one hand's lost frames with a counter for each direction: samples that did not come, and torques that a drive
+/// repeated because an RPDO was missing. A lost frame adds kLost to its counter, a frame that came subtracts kCame; a
+/// counter never falls below 0. So a loss rate above kCame / (kCame + kLost) = 1/3 reaches the limit eventually, and a
+/// rate well below never does. Forces are still correct while up to 1/3 of the samples are lost, that is 12 % of the
+/// frames, because a sample consists of three (docs/haptics.md). Complete silence must raise the fault "joint messages
+/// too old" first. A silent tick adds 2, so the limit is three times the watchdog's ticks. O(1).
 class LossWatch {
  public:
   static constexpr int kLost = 2, kCame = 1;
@@ -22,7 +22,7 @@ class LossWatch {
 
   explicit LossWatch(std::int32_t watchdog_ticks = 20) noexcept : most_(std::max(kMost, 3 * watchdog_ticks)) {}
 
-  /// Counts the losses in this tick's reading. @param fresh whether it is a new sample (SampleAge)
+  /// Counts the losses in this tick's reading. @param fresh whether the reading is a new sample (SampleAge)
   void look(const rt::HandReading& reading, bool fresh) noexcept {
     count(samples_, !fresh);
     if (!fresh) return;  // without a new sample nothing is known about the torques

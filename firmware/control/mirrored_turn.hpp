@@ -1,5 +1,5 @@
 #pragma once
-// Tells a joint that turns round from an encoder that begins to count backwards.
+// Distinguishes a joint that reverses its motion from an encoder that begins to count backwards.
 
 #include <algorithm>
 #include <array>
@@ -8,14 +8,15 @@
 
 namespace ligature::control {
 
-/// The test for a reversed encoder. An encoder that is reversed at the sample x0 reports 2 x0 - x from there on. So if
-/// the samples after the turn are mirrored at x0, they continue those before it as one smooth curve. A hand that really
-/// turns a joint, from speed u to -u with acceleration a, needs the time 2 u / a for that; then the two halves, the
-/// second one mirrored, lie u^2 / a apart. A reversal is suspected when one parabola fits both halves within the
-/// rounding to counts. Halves that lie two counts apart are never suspected: a hand at u counts a period is cleared up
-/// to the acceleration u^2 / 2, which is 49 m/s2 at 1.4 counts a period (70 mm/s at an Omni's tip). A slower hand has
-/// less acceleration, so longer halves are tested for it. False alarms and missed reversals: docs/encoder-watch.md.
-/// O(kLongest), no allocation.
+/// The test for a reversed encoder. An encoder that begins to count backwards at the sample x0 reports 2 x0 - x from
+/// there on. So if the samples after the turn are mirrored at x0, they continue those before it as one smooth curve. A
+/// reversal is suspected when one parabola fits both halves within the rounding to counts.
+///
+/// A hand that really turns a joint, from speed u to -u with acceleration a, needs the time 2 u / a for that. Then the
+/// two halves, with the second one mirrored, lie u^2 / a apart. If that is two counts or more, no reversal is
+/// suspected. So a hand at u counts per period is never suspected up to the acceleration u^2 / 2, which is 49 m/s2 at
+/// 1.4 counts per period (70 mm/s at an Omni's tip). A slower hand is tested with longer halves, because it accelerates
+/// less. False alarms and missed reversals: docs/encoder-watch.md. O(kLongest), no allocation.
 class MirroredTurn {
  public:
   struct Look {
@@ -28,8 +29,10 @@ class MirroredTurn {
       {{6, 1.4, 0.4, true}, {12, 0.85, 0.4, true}, {24, 0.6, 0.4, true}, {24, 0.44, 0.36, false}}};
   static constexpr std::size_t kLongest = 24;
 
-  /// @param x samples x(2 half - 1) .. x(0), the newest is x(0); x(half) is the last one before the suspected reversal.
-  /// @return speed at the turn, counts a period; 0 where the samples do not turn, or not as a reversed encoder's do.
+  /// @param x samples: x(0) is the newest, x(2 half - 1) the oldest, x(half) the last one before the suspected
+  /// reversal.
+  /// @return speed at the turn, counts per period; 0 if the samples do not turn, or turn unlike those of a reversed
+  /// encoder.
   template <class Sample>
   [[nodiscard]] static double speed(Sample x, const Look& look) noexcept {
     const std::size_t n = 2 * look.half;

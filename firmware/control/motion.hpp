@@ -1,5 +1,5 @@
 #pragma once
-// Smooth motions planned in the loop (Ruckig): the gain's ramp, braking to rest, guided moves.
+// Smooth motions that the loop plans with the library Ruckig: the gain's ramp, braking to rest, guided moves.
 
 #include <algorithm>
 #include <array>
@@ -10,11 +10,11 @@
 
 namespace ligature::control {
 
-/// A value in 0 .. 1 that goes to 0 or 1 along a jerk-limited curve: the gain of a hand. A full move from 0 to 1 takes
-/// exactly its duration D:
+/// A value in 0 .. 1, the gain of a hand, that moves to 0 or 1 along a jerk-limited curve. A full move from 0 to 1
+/// takes exactly the duration D, because speed v, acceleration a and jerk j are limited to
 ///   v <= 1.5 / D,  a <= 6 / D^2,  j <= 72 / D^3     (D (2/3 + 1/4 + 1/12) = D)
-/// A new target starts from the present value, speed and acceleration. Ruckig with one fixed degree of freedom: no
-/// allocation; about 1 us when the target changes, less otherwise.
+/// A new target starts from the present value, speed and acceleration. Ruckig has a fixed size of one degree of freedom
+/// here: no allocation, and about 1 us when the target changes, less otherwise.
 class Ramp {
  public:
   explicit Ramp(double period_s) : period_s_(period_s) {
@@ -64,7 +64,7 @@ class Ramp {
   double period_s_, at_s_ = 0.0, value_ = 0.0;
 };
 
-/// Reference motion of a tip along a planned path in three axes, stepped period by period. No allocation.
+/// Reference motion of a device's tip along a planned path in space; step() advances it by one period. No allocation.
 class PlannedPath {
  public:
   /// Advances by one period.
@@ -109,8 +109,8 @@ class PlannedPath {
   physics::Vec3 p_m_ = physics::Vec3::Zero(), v_m_per_s_ = physics::Vec3::Zero();
 };
 
-/// Brings a tip to rest: a reference that starts with the tip's position and velocity and stops with at most
-/// kDeceleration and kJerk on each axis.
+/// Reference motion that brings a tip to rest: it starts with the tip's position and velocity, and stops with at most
+/// kDeceleration_m_per_s2 and kJerk_m_per_s3 on each axis.
 class BrakeToRest : public PlannedPath {
  public:
   static constexpr double kDeceleration_m_per_s2 = 60.0;  ///< 2 m/s to rest in about 50 ms
@@ -122,7 +122,7 @@ class BrakeToRest : public PlannedPath {
   void start(const physics::Vec3& p_m, const physics::Vec3& v_m_per_s) noexcept { (void)plan(p_m, v_m_per_s); }
 };
 
-/// A straight line from rest to rest with at most kSpeed, kAcceleration and kJerk.
+/// Reference motion along a straight line, from rest to rest, within the limits of speed, acceleration and jerk below.
 class GuidedMove : public PlannedPath {
  public:
   static constexpr double kSpeed_m_per_s = 0.08, kAcceleration_m_per_s2 = 0.4, kJerk_m_per_s3 = 4.0;

@@ -1,6 +1,6 @@
 #pragma once
-// Checks encoders by a guided move: only then does the rig know what each encoder must show, so this also finds an
-// encoder that was wrong from the start.
+// Checks encoders by a guided move. Only in such a move does the rig know what each encoder must show, so the check
+// also finds an encoder that was wrong from the start.
 
 #include <algorithm>
 #include <cmath>
@@ -10,11 +10,13 @@
 
 namespace ligature::control {
 
-/// Integrates the path's joint rates, J^-1 v (J: Jacobian, v: velocity along the path), over a move, and compares the
-/// result with the encoders' change. The verdict is asked for when the tip strays from the path. Reversed: a joint that
-/// went kEnough counts against its commanded direction (somebody pulling against the move looks the same). Frozen: a
-/// joint that was to go kEnough counts or more and went kStill at most, while another went at least kFollowed of its
-/// way. A hand that holds the arm stops all joints, which is no fault. O(1), no allocation.
+/// Integrates the joint rates of the planned path, J^-1 v (J: Jacobian, v: velocity along the path), and compares the
+/// result with what the encoders show. judge() is called when the tip strays from the path.
+/// Reversed: a joint went kEnough counts or more against its commanded direction. (Somebody who pulls against the move
+/// looks the same.)
+/// Frozen: a joint that was commanded to go kEnough counts or more went at most kStill, while another joint went at
+/// least the share kFollowed of its way. (A hand that holds the arm stops all joints, which is no fault.)
+/// O(1), no allocation.
 class MoveCheck {
  public:
   static constexpr double kEnough = 25.0, kStill = 2.5;  ///< counts

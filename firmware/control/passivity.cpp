@@ -24,7 +24,7 @@ void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {
   if (sampled_ >= 0 && tick > sampled_) {
     if (tick > sampled_ + 1) lossy_until_ = tick + kWary;
     for (Eigen::Index j = 0; j < 3; ++j) {
-      // Interpolates the joint's position between two encoder counts. Only for slow joints: for fast ones the velocity
+      // Estimates a slow joint's position between two encoder counts from its velocity. For fast joints the velocity
       // estimate lags too much.
       const double turned_rad = periods * period_s_ * s.rate_rad_per_s[j];
       if (std::abs(turned_rad) < kSlowCounts * periods * s.count_rad)
@@ -44,8 +44,9 @@ void Passivity::observe(std::int64_t tick, const PortSample& s) noexcept {
   look_under_way(tick);
 }
 
-/// Computes the range of the torques that may act until the next SYNC, and the largest energy that they can give to the
-/// hand (their loss). After lost RPDOs, each joint may make any torque sent since the last sample.
+/// Computes the range of the torques that may act until the next SYNC (under_way_), and the largest energy that these
+/// torques can give to the hand (under_way_J_). After lost RPDOs, each joint may make any torque sent since the last
+/// sample.
 void Passivity::look_under_way(std::int64_t tick) noexcept {
   const bool wary = is_wary(tick);
   under_way_ = {low_Nm_, high_Nm_};
@@ -74,9 +75,9 @@ double Passivity::step_along_N(const Vec3& along) const noexcept {
   return any_pose_N > kAnyPose ? step_N_ * kAnyPose / any_pose_N : step_N_;
 }
 
-/// Upper bound of the energy that one joint's motor gave since the last sample. Known torques: that of the last cycle,
-/// and those of earlier cycles in which the drive received nothing new. In all other cycles the drive made either any
-/// torque sent since the last sample or the torque from before it.
+/// Upper bound of the energy that one joint's motor gave since the last sample. The torque is known in the last cycle,
+/// and in the cycles before it in which the drive received nothing new. In all other cycles the drive made any torque
+/// sent since the last sample, or the torque from before that sample.
 double Passivity::most_given_J(Eigen::Index j, std::int64_t tick, double dq_rad, const PortSample& s) noexcept {
   const auto joint = static_cast<std::size_t>(j);
   const std::int64_t first = sent_.cycle_of(sampled_), last = std::max(first, sent_.cycle_of(tick - 1));
@@ -104,16 +105,18 @@ double Passivity::most_given_J(Eigen::Index j, std::int64_t tick, double dq_rad,
   return given_J;
 }
 
-/// Loss: energy that the motors give to the hand. This is the largest loss by a tip force f that acts for `periods`
-/// periods, beginning `start` periods after the SYNC of the sample.
+/// Largest loss, that is energy which the motors give to the hand, by the tip force f_N. The force acts for `periods`
+/// periods and begins `start` periods after the sample's SYNC. `counts`: how many encoder counts each period's motion
+/// is uncertain by.
 double Passivity::loss_J(const Vec3& f_N, std::int64_t start, std::int64_t periods, double counts) const noexcept {
   const auto s = static_cast<double>(start), d = static_cast<double>(periods);
   const double spread_m = reach_m_ * (d * s + 0.5 * d * (d + 1.0)) + d * (doubt_m_ + counts * count_m_);
   return std::max(0.0, d * along_J(f_N) + f_N.norm() * spread_m);
 }
 
-/// As loss_J(), for the time in which frames are lost. The hand may accelerate by the full bound in the first two
-/// periods after the sample, and by kLater of it afterwards. Only the part of the force above kSlight_N counts.
+/// As loss_J(), for the time in which frames are lost. From the third period after the sample on, the hand accelerates
+/// at most by kLater times the bound, and the uncertainty of its motion counts only for the part of the force above
+/// kSlight_N.
 double Passivity::blind_loss_J(const Vec3& f_N, std::int64_t start, std::int64_t periods) const noexcept {
   double lost_J = 0.0;
   const double size_N = std::max(0.0, f_N.norm() - kSlight_N);
@@ -124,17 +127,17 @@ double Passivity::blind_loss_J(const Vec3& f_N, std::int64_t start, std::int64_t
   return lost_J;
 }
 
-/// Energy that tip force f gives to the hand in a period in which the hand moves as in the last one. If it is negative
-/// (the hand gives energy), the motion may really be one encoder count less, and the energy of this count is not
-/// credited.
+/// Energy that the tip force f_N gives to the hand in a period in which the hand moves as in the last one. If this
+/// energy is negative (the hand gives energy), it is computed with one encoder count less of motion, because the real
+/// motion may be that much smaller.
 double Passivity::along_J(const Vec3& f_N) const noexcept {
   const double given_J = f_N.dot(step_m_);
   return given_J > 0.0 ? given_J : std::min(0.0, given_J + f_N.norm() * count_m_);
 }
 
-/// Energy that the account lacks for sending f in `tick` and, if and_back, for reducing it to zero later; negative:
-/// what it has to spare. Each force must be within one step of both forces sent before it, because either may act if a
-/// frame is lost. So a reduction by one step takes two periods.
+/// Energy that the account lacks for sending the force f_N in `tick` and, with `and_back`, for reducing the force to
+/// zero later; negative: energy to spare. Each force must be within one step of both forces sent before it, because a
+/// lost frame leaves either of them acting. So a reduction by one step takes two periods.
 double Passivity::shortage_J(std::int64_t tick, const Vec3& f_N, bool and_back) const noexcept {
   const bool blind = tick > sampled_, wary = is_wary(tick);
   const std::int64_t ahead = tick + 1 - sampled_;

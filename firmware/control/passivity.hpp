@@ -1,6 +1,6 @@
 #pragma once
-// Passivity control of one device port: a lower bound (account) of the energy that the hand has put in, and a force for
-// which this account can pay.
+// Passivity control of one hand: an account of the energy that the hand has put into the device (a lower bound), and a
+// force that never takes out more than the account holds.
 
 #include <algorithm>
 #include <array>
@@ -18,8 +18,8 @@ struct Acted {
   static constexpr double kNotTold = std::numeric_limits<double>::quiet_NaN();
   Vec3 torque_Nm{kNotTold, kNotTold, kNotTold};  ///< torque made, by joint; NaN if the message has none
   std::array<bool, 3> limited{};                 ///< the drive made less torque than commanded
-  /// For how many SYNCs the drive has repeated an older torque because RPDOs were lost, as the drive counts them; 0:
-  /// none. Used for drives whose message has no torque.
+  /// The drive's own count of SYNCs for which it has repeated an older torque because RPDOs were lost; 0: none. Used
+  /// for drives whose message does not contain the torque.
   std::array<int, 3> held{};
 };
 
@@ -34,35 +34,37 @@ struct PortSample {
   Mat3 tip_N_per_Nm = Mat3::Identity();  ///< J^-T: tip force from joint torques
 };
 
-/// Energy account of a port, and the controller that keeps it above -kFloor_J. Derivation: docs/passivity.md.
+/// Energy account of one hand's port (the device's tip), and the controller that keeps the account above -kFloor_J.
+/// Derivation: docs/passivity.md.
 ///
-/// Account. A torque sent in tick k acts constantly from SYNC k+1 to SYNC k+2 (zero-order hold). So the motors' work is
-/// exact except for the encoder's error of half a count, h:
+/// Account. A torque sent in tick k acts unchanged from SYNC k+1 to SYNC k+2. So the motors' work is exact except for
+/// half an encoder count, h. With E(n): account after sample n, tau_j: torque that the drive of joint j reports, dq_j:
+/// the joint's motion since the last sample,
 ///   E(n) = E(n-1) - sum_j tau_j dq_j
-/// with the torques that the drives report; after a lost RPDO a drive repeats the torque before. Where samples were
-/// lost, dq spans several periods; the sum is still exact if the torque was constant. Otherwise the joint is assumed to
-/// have moved evenly, and for an unknown torque the worst possible value is booked. A drive that protects its winding
-/// may change the torque within a period; then the worse of commanded and reported is booked. A slow joint's position
-/// between two counts is estimated from its velocity. At each torque change, half counts can hide up to 2 h |tau_j(n) -
-/// tau_j(n-1)| of either sign; no reserve is kept for this. Energy above kCredit_J is discarded, since otherwise an
-/// hour of harmless friction could pay for a minute of instability. The account starts at the scene's energy_credit_J.
+/// After a lost RPDO, a drive repeats the torque before. After lost samples, dq_j spans several periods; the sum is
+/// still exact if the torque was constant. Otherwise the joint is assumed to have moved evenly, and for an unknown
+/// torque the worst possible value is booked. A drive that protects its winding may change the torque within a period;
+/// then the worse of the commanded and the reported torque is booked. At each change of torque, half counts can hide up
+/// to 2 h |tau_j(n) - tau_j(n-1)| of either sign; no reserve is kept for this. Energy above kCredit_J is discarded,
+/// because otherwise an hour of harmless friction could pay for a minute of instability. The account starts at the
+/// scene's energy_credit_J.
 ///
-/// Controller. Energy of torques already sent cannot be recovered: one torque is on its way when the next is decided,
-/// and the hand may reverse. A hand whose acceleration is at most a moves the tip, in the j-th period after the last
-/// sample, by dx + e with |e| <= j a T^2 + c (dx: motion in the last period, c: one count). The largest loss by force F
-/// in that period is
+/// Controller. A torque that was sent cannot be taken back: one torque is still on its way when the next one is
+/// decided, and the hand may reverse meanwhile. In the j-th period after the last sample, a hand whose acceleration is
+/// at most a (in the device record) moves the tip by dx + e, where dx is the motion in the last period and |e| <= j a
+/// T^2 + c (T: period, c: one count). So the largest loss, that is energy given to the hand, by a force F in that
+/// period is
 ///   out_j(F) = max(0, F . dx + |F| (j a T^2 + c)).
-/// A force is sent only if E stays above -kFloor_J after the losses of all torques under way, of the force itself, and
-/// of its reduction to zero in steps of the device's force_step_N. So every force that is sent can be removed without a
-/// jump. A force that is too expensive is first damped against the motion (damping = shortage / (T v^2), at most
-/// kMaxDamping, v at least kSlow), then reduced. The acceleration bound a is in the device record. If the account
-/// cannot pay even for one period of the smallest force within a step, all force is removed at once (the hand is let
-/// go). O(1), no allocation.
+/// A force is sent only if E stays above -kFloor_J after three losses: by all torques under way, by the force itself,
+/// and by its reduction to zero in steps of the device's force_step_N. So every force that is sent can be removed
+/// without a jump. A force for which E is too small is first damped against the motion (damping = shortage / (T v^2),
+/// at most kMaxDamping_N_s_per_m, only at a speed v above kSlow_m_per_s), then reduced. If the account cannot pay even
+/// for one period of the smallest force within a step, all force is removed at once. O(1), no allocation.
 ///
 /// Lost frames. After a lost RPDO, further losses are anticipated: joints may make any mixture of the torques under
-/// way, and the torque sent may act for two periods. Without a sample the force continues as long as it is paid for. In
-/// both cases the acceleration bound is reduced to kLater of a from the third period on, and only the part of a force
-/// above kSlight_N counts.
+/// way, and the torque sent may act for two periods. Without a sample, the force continues as long as the account can
+/// pay for it. In both cases, from the third period on, the acceleration bound is reduced to kLater times a, and only
+/// the part of a force above kSlight_N is multiplied by the uncertainty e.
 class Passivity {
  public:
   static constexpr double kFloor_J = 1e-6;
@@ -73,14 +75,14 @@ class Passivity {
   /// Factor on the acceleration bound after two periods without a sample
   static constexpr double kLater = 0.3;
   static constexpr double kMore = 3.0;  ///< further periods of the present motion that must be paid for
-  /// Size of a force, N, that needs no energy in the account for the uncertainty of the hand's motion while frames are
-  /// lost; otherwise no force could begin
+  /// A force of this size, N, needs no energy for the uncertainty of the hand's motion while frames are lost; otherwise
+  /// no force could begin
   static constexpr double kSlight_N = 0.006;
-  /// Counts per period; the position of a joint that is slower is interpolated between counts
+  /// Speed in counts per period, below which a joint's position is estimated between two counts
   static constexpr double kSlowCounts = 0.25;
   static constexpr double kSlow_m_per_s = 5e-3;  ///< below this speed the velocity is mostly quantisation noise
-  /// A change of torque may change the tip force, in any pose, by at most this times the step limit (0.52 N): so the
-  /// limit holds even if encoders are wrong
+  /// In no pose may a change of torque change the tip force by more than this factor times the step limit (0.52 N), so
+  /// that the limit holds even if encoders are wrong
   static constexpr double kAnyPose = 1.04;
 
   Passivity(const device::Device& device, double period_s, bool active, double credit_J) noexcept;
@@ -94,10 +96,11 @@ class Passivity {
   /// Adds the work done since the last sample to the account.
   void observe(std::int64_t tick, const PortSample& sample) noexcept;
 
-  /// The force that may be sent in `tick` (not before the last observed tick): as far from `before_N` (sent last)
-  /// towards `wish_N` as the account and the step limit allow. Only computes; sent() records what was sent.
-  /// If the account cannot pay for a stepwise reduction to zero later, the force is reduced at once by a step, whatever
-  /// the wish; if it cannot even pay for the next period, all force is removed and released() is true.
+  /// The force that may be sent in `tick` (not before the last observed tick): as far from `before_N` (the force sent
+  /// last) towards `wish_N` as the account and the step limit allow. This function only computes; sent() records what
+  /// was sent.
+  /// If the account could not pay for a later stepwise reduction to zero, the force is reduced by a step now, whatever
+  /// the wish. If it cannot pay even for the next period, all force is removed and released() is true.
   /// @param torque maps a tip force to the joint torques that would be sent, in whole quanta
   template <class Torque>
   [[nodiscard]] Vec3 control(std::int64_t tick, const Vec3& wish_N, const Vec3& v_m_per_s, const Vec3& before_N,
@@ -124,10 +127,10 @@ class Passivity {
   [[nodiscard]] Vec3 control(std::int64_t tick, const Vec3& wish_N, const Vec3& v, const Vec3& before_N) noexcept {
     return control(tick, wish_N, v, before_N, [](const Vec3& f_N) { return f_N; });
   }
-  /// Whether sending these torques changes the tip's force at the next SYNC by at most force_step_N, whatever acts
-  /// until then: for each joint the torque that its drive last reported, or any sent since, because each RPDO may be
-  /// lost. Checked in the measured pose and, with the factor kAnyPose, in any pose of the workspace, in case encoders
-  /// are wrong. Repeating the last torques always qualifies.
+  /// Whether sending these torques changes the tip's force at the next SYNC by at most force_step_N. Until then each
+  /// joint may make the torque that its drive last reported, or any torque sent since, because each RPDO may be lost.
+  /// The change is checked in the measured pose and, with the factor kAnyPose, in any pose of the workspace, in case
+  /// encoders are wrong. Repeating the last torques is always allowed.
   [[nodiscard]] bool is_a_step(const Vec3& torque_Nm) const noexcept;
   /// Whether the account can pay for exactly this tip force in `tick`.
   [[nodiscard]] bool allows(std::int64_t tick, const Vec3& f_N) const noexcept {
@@ -136,8 +139,9 @@ class Passivity {
   /// Records the torques sent in `tick`, and the tip force that they make.
   void sent(std::int64_t tick, const Vec3& torque_Nm, const Vec3& f_N) noexcept;
 
-  /// Moves energy between the accounts while both hands hold the thread, which carries energy from one hand to the
-  /// other: an account that is short for its wish gets what the other can spare. The sum is unchanged.
+  /// Moves energy between the accounts of two hands that hold the same thread, because the thread carries energy from
+  /// one hand to the other. An account that cannot pay for its wish gets what the other account can spare. The sum of
+  /// both is unchanged.
   static void lend(std::int64_t tick, Passivity& a, const Vec3& wish_a_N, Passivity& b, const Vec3& wish_b_N) noexcept;
 
   /// Adds an energy allowance for a guided move; included in received_J().
@@ -145,14 +149,14 @@ class Passivity {
   /// End of the guided move: takes back the unused allowance.
   void revoke() noexcept;
 
-  /// Resets the account to its start value. An encoder that jumped has booked work that was never done, and the hand
-  /// could not pay that back. @pre no force flows or is under way.
+  /// Resets the account to its start value. An encoder that jumped may have booked work that was never done, a debt
+  /// which the hand could not pay back. @pre no force flows or is under way.
   void restart() noexcept {
     energy_J_ = credit_J_;
     received_J_ = granted_J_ = 0.0;
   }
 
-  /// False: the account is kept but never limits the force. @pre no force flows.
+  /// @param active false: the account is still computed, but never limits the force. @pre no force flows.
   void set_active(bool active) noexcept { active_ = active; }
 
   /// Balance of the account: energy put in by this hand, minus energy returned to it, plus what lend() and grant()
@@ -179,7 +183,7 @@ class Passivity {
       low_Nm = low_Nm.cwiseMin(torque_Nm), high_Nm = high_Nm.cwiseMax(torque_Nm);
     }
     [[nodiscard]] Vec3 middle_Nm() const noexcept { return 0.5 * (low_Nm + high_Nm); }
-    /// Maximum of a convex function of the tip force over the range; attained at a corner.
+    /// Maximum of a convex function of the tip force over the range of torques; it lies at a corner of the range.
     template <class Measure>
     [[nodiscard]] double worst(const Mat3& tip_N_per_Nm, Measure measure) const noexcept {
       double most = measure(Vec3(tip_N_per_Nm * low_Nm));
@@ -206,8 +210,8 @@ class Passivity {
     return size > by_N ? Vec3(f_N * (1.0 - by_N / size)) : Vec3(Vec3::Zero());
   }
 
-  /// Smallest force that one step from `before_N` can reach. The shorter result of two ways counts: straight towards
-  /// zero; or first towards the middle of the torques under way, then towards zero.
+  /// Smallest force that one step from `before_N` can reach. Tries two paths and takes the smaller result: straight
+  /// towards zero, or first towards the middle of the torques under way and then towards zero.
   template <class Near>
   [[nodiscard]] Vec3 least_of(const Vec3& before_N, Near near) const noexcept {
     const Vec3 straight_N = farthest(before_N, shorter(before_N, step_N_), near);
@@ -216,7 +220,8 @@ class Passivity {
     return between_N.norm() < straight_N.norm() ? between_N : straight_N;
   }
 
-  /// The farthest point on the way from `from` to `to` that satisfies `paid`, by bisection; `from` is assumed to do so.
+  /// The point between `from` and `to` that is nearest to `to` and satisfies `paid`, by bisection; `from` must satisfy
+  /// it.
   template <class Paid>
   [[nodiscard]] static Vec3 farthest(const Vec3& from, const Vec3& to, Paid paid) noexcept {
     if (paid(to)) return to;
@@ -234,8 +239,8 @@ class Passivity {
   AnyPose any_pose_;
   bool active_;
   double credit_J_, energy_J_, received_J_ = 0.0, granted_J_ = 0.0, dissipated_J_ = 0.0, injected_ = 0.0;
-  // Errors of step_m_, m. count_m_: by the resolution of the encoders. doubt_m_: after lost samples, because the mean
-  // motion over several periods stands for that of the last one
+  // Errors of step_m_, m. count_m_: resolution of the encoders. doubt_m_: after lost samples step_m_ is a mean over
+  // several periods instead of the motion in the last one
   double count_m_ = 0.0, doubt_m_ = 0.0;
   bool acts_ = false, stepped_ = false, released_ = false;
   Mat3 tip_N_per_Nm_ = Mat3::Identity(), Nm_per_tip_N_ = Mat3::Identity();

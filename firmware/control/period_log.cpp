@@ -89,7 +89,7 @@ void PeriodLog::tell(const ThreadResult& thread) noexcept {
   tell_lost();
 }
 
-/// Enters the physics ticks completed since the last record into the record; if several were completed, all of them.
+/// Enters into the record all physics ticks that were completed since the last record.
 void PeriodLog::tell_steps(const ThreadResult& thread) noexcept {
   record_.thread_steps = narrow<std::int8_t>(thread.steps - std::exchange(steps_, thread.steps));
   const auto told = std::min<std::size_t>(static_cast<std::size_t>(record_.thread_steps), rt::kThreadSteps);
@@ -100,8 +100,8 @@ void PeriodLog::tell_steps(const ThreadResult& thread) noexcept {
   }
 }
 
-/// Writes a record for each lost period: the last values again, with the flag of a lost period. Records for which the
-/// ring has no room are counted as dropped.
+/// Writes a record for each lost period: the last values again, with the flag kPeriodLost. If the ring is full, the
+/// remaining records are counted as dropped.
 void PeriodLog::tell_lost() noexcept {
   const auto room = static_cast<std::int64_t>(out_.room());
   record_.flags |= rt::kPeriodLost;

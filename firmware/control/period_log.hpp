@@ -1,5 +1,6 @@
 #pragma once
-// Reports each period of the loop: a tick record once its physics result is known, and statistics of the run.
+// Reports each period of the loop in a tick record, once the period's physics result is known, and keeps statistics of
+// the run.
 
 #include <chrono>
 #include <cstdint>
@@ -16,9 +17,9 @@ struct Phases {
   std::chrono::nanoseconds scheduled, woke, synced, sampled, decided, controlled, done;
 };
 
-/// A period's record needs the physics result, which comes in the next period: begin() is called in the period,
-/// finish() in the next one, when the result has come or is late. Lost periods repeat the record, flagged. No
-/// allocation after construction.
+/// A period's record needs the physics result, which comes only in the next period. So begin() is called in the period
+/// itself, and finish() in the next one, whether the result has come or is late. Lost periods get a copy of the record
+/// with a flag. No allocation after construction.
 class PeriodLog {
  public:
   /// @param most_work computing time of the loop above which a tick is flagged as overworked
@@ -26,12 +27,12 @@ class PeriodLog {
 
   void begin(std::int64_t tick, const Phases& at, std::chrono::nanoseconds work, const rt::WireTorque& torque,
              const Controller& controller, const ThreadOrders& orders, std::int64_t grasp_age_ticks) noexcept;
-  /// Records periods that the loop has skipped; `tick` and `scheduled` are those of the first one.
+  /// Notes periods that the loop has skipped; `tick` and `scheduled` are those of the first one.
   void lose(std::int64_t tick, std::chrono::nanoseconds scheduled, std::int64_t periods) noexcept;
-  /// Writes the record that was begun, and those of periods lost since. @param late_ticks how far the physics is
+  /// Writes the record that was begun, and the records of periods lost since. @param late_ticks how far the physics is
   /// behind.
   void finish(const ThreadResult& thread, std::int64_t late_ticks) noexcept;
-  /// As finish(), at the end of a run: the last result is not awaited, and not reported as late.
+  /// As finish(), at the end of a run, where the last result is neither awaited nor reported as late.
   void finish_last(const ThreadResult& thread) noexcept;
 
   [[nodiscard]] const rt::CycleTiming& timing() const noexcept { return timing_; }

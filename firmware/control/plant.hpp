@@ -1,5 +1,6 @@
 #pragma once
-// What a change of scene or live parameters replaces in the loop; built in another thread and handed over as a whole.
+// A new simulation with its hand settings, for a change of scene or parameters. It is built outside the loop and handed
+// over to it as a whole.
 
 #include <cstdint>
 
@@ -12,9 +13,10 @@ namespace ligature::control {
 struct Plant {
   physics::Simulation thread;
   scene::Hands hands;
-  /// True: new parameters, the thread continues from its present state; false: another scene, from its start
+  /// True: new parameters, with which the suture moves on from its present state. False: another scene, from its start
   bool keeps_motion = false;
-  /// Set by the loop; false: refused, because force may flow or the parameters do not fit the thread
+  /// Set by the loop to tell whether it accepted the change. False: force may flow, or the parameters do not fit the
+  /// suture
   bool taken = false;
   std::int64_t first_tick = -1;  ///< set by the loop: first tick with this plant
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Decides what a missing or late sample of a hand means. All code that depends on the age of samples uses this class.
+// Decides what a missing or late sample of a hand means. All code that depends on the age of samples uses SampleAge.
 
 #include <cstdint>
 
@@ -7,10 +7,9 @@
 
 namespace ligature::control {
 
-/// Drives tell the age of their newest complete set of samples in executed periods (rt::HandReading::age_ticks): 0 is
-/// the set of this period, and a set that is not replaced becomes one period older in each executed period. From this
-/// follow whether a reading is a new sample or the last one again, and in which period it was taken, also after
-/// periods that the loop has lost.
+/// Tells whether a reading is a new sample or the last one again, and in which period it was taken, even after lost
+/// periods. It uses the age that the drives give with a reading (rt::HandReading::age_ticks), in executed periods: 0
+/// for a set of samples of this period, and 1 more in each executed period in which no newer set has come.
 class SampleAge {
  public:
   /// Call once in each tick. @param last_tick the period executed before this one
@@ -24,15 +23,15 @@ class SampleAge {
     fresh_ = taken_ < 0 || (!again && taken > taken_);
     if (fresh_) taken_ = taken;
   }
-  /// Whether this tick brought a sample that no tick before had, possibly a late one.
+  /// Whether this tick brought a new sample, possibly a late one.
   [[nodiscard]] bool is_fresh() const noexcept { return fresh_; }
   /// Period in which the newest sample was taken; negative: none has come yet.
   [[nodiscard]] std::int64_t taken() const noexcept { return taken_; }
-  /// Age of the newest sample in periods, lost ones included; 0 while none has come.
+  /// Age of the newest sample in periods, including lost periods; 0 before the first sample.
   [[nodiscard]] std::int64_t ticks() const noexcept { return taken_ < 0 ? 0 : tick_ - taken_; }
   /// Whether the newest sample was taken in this period.
   [[nodiscard]] bool is_of_this_period() const noexcept { return taken_ >= 0 && ticks() == 0; }
-  /// Whether the hand was silent for as long as its watchdog allows: its samples must not be used any more.
+  /// Whether the newest sample is as old as the watchdog allows: then it must not be used any more.
   [[nodiscard]] bool is_too_old(std::int32_t watchdog_ticks) const noexcept { return ticks() >= watchdog_ticks; }
 
  private:

@@ -9,9 +9,9 @@
 
 namespace ligature::control {
 
-/// Cycle i lasts from its SYNC to the next. In it the drives hold (zero-order hold) what was sent in cycle i - 1, or
-/// their torque before that if the frame was lost. A lost period has no SYNC, so the cycle before it lasts longer. All
-/// functions are O(1), except cycle_of(): O(kMemory).
+/// Cycle i lasts from one SYNC to the next. During this cycle the drives make the torque that was sent in cycle i - 1,
+/// or an older one if that frame was lost. A lost period has no SYNC, so it makes the cycle longer. All functions are
+/// O(1), except cycle_of(): O(kMemory).
 class SentTorques {
  public:
   static constexpr std::int64_t kMemory = 64;  ///< cycles remembered; more than any watchdog's ticks
@@ -23,7 +23,7 @@ class SentTorques {
     Vec3 f_N = Vec3::Zero();  ///< tip force that the torques make
   };
 
-  /// The SYNC of period `tick` was sent. No effect if this tick, or a later one, was begun before.
+  /// Call when the SYNC of period `tick` was sent. No effect if this tick, or a later one, was begun before.
   void begin(std::int64_t tick) noexcept {
     if (tick <= at(newest_).tick) return;
     const Cycle held{tick, at(newest_).torque_Nm, at(newest_).f_N};  // until send() is called, the last torques count
@@ -36,11 +36,11 @@ class SentTorques {
   }
 
   [[nodiscard]] std::int64_t newest() const noexcept { return newest_; }
-  /// What was sent in cycle i; zero torque for cycles before the first one, and for those older than kMemory.
+  /// The torques sent in cycle i; zero for cycles before the first one and for forgotten ones (older than kMemory).
   [[nodiscard]] const Cycle& at(std::int64_t i) const noexcept {
     return i >= 0 && i <= newest_ && i > newest_ - kMemory ? ring_[index(i)] : kNothing;
   }
-  /// The last cycle whose SYNC was sent in period `tick` or before; at least the oldest remembered one.
+  /// The last cycle whose SYNC was sent in period `tick` or before, but no older one than the oldest remembered.
   [[nodiscard]] std::int64_t cycle_of(std::int64_t tick) const noexcept {
     const std::int64_t oldest = std::max<std::int64_t>(0, newest_ - kMemory + 2);
     std::int64_t i = newest_;

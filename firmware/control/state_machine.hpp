@@ -1,5 +1,5 @@
 #pragma once
-// The rig's states: transition table, transition function, and compile-time checks. Controller implements the states.
+// The rig's states: transition table, transition function, and compile-time checks. The class Controller acts on them.
 
 #include <array>
 #include <cstdint>
@@ -11,7 +11,7 @@ enum class State : std::uint8_t {
   kOff = 0,        ///< drives off or starting up to Operation enabled; no torque
   kCalibrate = 1,  ///< drives on; encoders must show a possible pose for 50 ticks; no torque
   kIdle = 2,       ///< ready; no torque
-  /// Armed; each hand waits until its dead-man is pressed, it is still and its force small; then the gain rises
+  /// Armed. Each hand waits until its dead-man is pressed, the hand is still and its force small; then its gain rises
   kEngage = 3,
   kForce = 4,  ///< at least one hand has full force
   kBrake = 5,  ///< forces ramp to zero

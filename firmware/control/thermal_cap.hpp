@@ -1,17 +1,18 @@
 #pragma once
-// Thermal (I2t) limit: how long a motor may exceed its continuous force or torque.
+// Thermal (I2t) limit: decides how long a motor may exceed its continuous force or torque.
 
 #include <algorithm>
 #include <cstdint>
 
 namespace ligature::control {
 
-/// I2t model of a force or torque x: dh/dt = ((x / continuous)^2 - h) / tau. h is the winding's temperature rise; h = 1
-/// is reached by `continuous` held for ever. When h reaches kHot the cap falls from the peak to `continuous`; below
-/// kCool it rises again at the same rate. The hysteresis avoids a force that comes and goes. The fall takes kFall_s, or
-/// less if h would otherwise exceed 1 + kMostOver: with r = peak / continuous, the mean of (x / continuous)^2 during a
-/// linear fall is (r^2 + r + 1) / 3, so in a time t h rises by less than ((r^2 + r + 1) / 3 - 1) t / tau. So this cap
-/// acts before a drive that limits at 1.2 times `continuous` (h = 1.44). O(1).
+/// Caps a force or torque x by an I2t model of the winding's heat:
+///   dh/dt = ((x / continuous)^2 - h) / tau      h: temperature rise; 1 at `continuous` held for ever
+/// When h reaches kHot, the cap falls from the peak to `continuous`; when h is below kCool, the cap rises again at the
+/// same rate. The gap between kHot and kCool avoids a force that comes and goes.
+/// The fall takes kFall_s, or less if h would otherwise exceed 1 + kMostOver: with r = peak / continuous, the mean of
+/// (x / continuous)^2 during a linear fall is (r^2 + r + 1) / 3, so in a time t, h rises by less than ((r^2 + r + 1) /
+/// 3 - 1) t / tau. So this cap acts before a drive that limits at 1.2 times `continuous` (h = 1.44). O(1).
 class ThermalCap {
  public:
   static constexpr double kFall_s = 0.5;
@@ -23,8 +24,8 @@ class ThermalCap {
     fall_s_ = std::min(kFall_s, kMostOver * tau_s_ / std::max(rise, 1e-9));
   }
 
-  /// Call once per tick with the force or torque now sent. @param periods since the last call; the value of the last
-  /// call acted in all of them.
+  /// Call once per tick. @param size the force or torque that is sent now. @param periods since the last call; its
+  /// value acted in all of them.
   void sent(double size, std::int64_t periods = 1) noexcept {
     const double load = sent_ / continuous_,
                  time_s = period_s_ * static_cast<double>(std::max<std::int64_t>(periods, 1));

@@ -1,5 +1,6 @@
 #pragma once
-// Wait-free exchange between the control loop and the physics thread: tools one way, grasp and diagnostics the other.
+// Wait-free exchange between the control loop and the physics: tools in one direction, grasps and diagnostics in the
+// other.
 
 #include <algorithm>
 #include <array>
@@ -54,15 +55,14 @@ struct ThreadResult {
   }
 };
 
-/// Numbers of resets, scene changes and parameter changes ordered from the physics so far.
+/// How many resets, scene changes and parameter changes the loop has ordered from the physics so far.
 struct ThreadOrders {
   std::int64_t resets = 0, scenes = 0, parameters = 0;
 };
 
-/// Triple buffers in both directions. Each side owns one slot exclusively, so neither blocks or reads a partial value;
-/// publishing has release, reading acquire semantics (latest_value.hpp). Only the newest request counts; requests that
-/// arrive during a long tick are skipped. So resets are sent as a counter, and a new simulation (plant) is sent again
-/// in each request until a result answers it.
+/// A triple buffer for each direction (latest_value.hpp): no side ever waits for the other or reads a half-written
+/// value. The physics sees only the newest request; requests that arrive during a long physics tick are skipped. So
+/// resets are sent as a counter, and a new simulation (plant) is sent again in each request until a result answers it.
 struct ThreadExchange {
   rt::LatestValue<ThreadRequest> requests;  ///< loop -> physics
   rt::LatestValue<ThreadResult> results;    ///< physics -> loop
@@ -87,13 +87,13 @@ class ThreadLink {
   void hand_over(std::int64_t tick, const std::array<physics::ToolInput, 2>& tools,
                  std::chrono::nanoseconds deadline) noexcept;
 
-  /// Takes the newest result. @return the new simulation (plant.hpp) that the physics has answered, whether it accepted
-  /// it or not; nullptr when it has answered none.
+  /// Takes the newest result. @return the new simulation (plant.hpp) that the physics has now accepted or refused;
+  /// nullptr if there is none.
   [[nodiscard]] Plant* collect() noexcept;
   [[nodiscard]] const ThreadResult& result() const noexcept { return exchange_.results.front(); }
   /// Numbers of resets and changes ordered up to the newest request.
   [[nodiscard]] const ThreadOrders& orders() const noexcept { return orders_; }
-  /// Number of requests that are newer than the one answered by the newest result; 0: the physics is in time.
+  /// How many requests are newer than the one that the newest result answers; 0: the physics is in time.
   [[nodiscard]] std::int64_t late_ticks() const noexcept { return number_ - result().number; }
 
  private:

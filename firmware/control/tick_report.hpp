@@ -13,7 +13,7 @@ namespace ligature::control {
   return {contact.node >= 0, contact.p_WG, contact.v_WG};
 }
 
-/// Copy the state of controller, hands and thread into the record; PeriodLog fills in times, tick and torques.
+/// Copies the state of controller, hands and suture into the record; PeriodLog fills in times, tick and torques.
 void report(const Controller& controller, rt::TickRecord& record) noexcept;
 void report(const HandState& hand, std::size_t number, rt::TickRecord& record) noexcept;
 void report(const ThreadOrders& orders, rt::TickRecord& record) noexcept;

@@ -12,13 +12,14 @@
 
 namespace ligature::control {
 
-/// Compares the torques that one hand's drives report with all that can follow from the commands. A drive makes the
-/// commanded torque, or less (it protects its winding, or is off), or repeats an earlier one if an RPDO is missing, but
-/// no longer than its watchdog time. So a reported torque must lie between zero and the extremes of what was sent to
-/// that joint within the watchdog time plus kWay ticks. The extremes are stored in kBlocks blocks of equal length: in
-/// all 28 to 32 ticks with a watchdog of 20. The tolerance is in the device record. One sample outside is overshoot or
-/// noise; kStrange in a row are a fault. A joint whose message has no torque reports a deviation by a statusword bit
-/// instead. O(kBlocks), no allocation.
+/// Compares the torques that one hand's drives report with all torques that the commands allow. A drive makes the
+/// commanded torque, or less (it protects its winding, or is off), or an earlier one if an RPDO is missing, but for no
+/// longer than its watchdog time. So a joint's reported torque must lie between zero and the extremes of what was sent
+/// to the joint within the watchdog time plus kWay ticks. The extremes are stored in kBlocks blocks of equal length, in
+/// all 28 to 32 ticks with a watchdog of 20.
+/// The tolerance is in the device record. One sample outside is overshoot or noise; kStrange samples in a row are a
+/// fault. A drive whose message has no torque reports a deviation by a statusword bit instead. O(kBlocks), no
+/// allocation.
 class TorqueWatch {
  public:
   static constexpr int kStrange = 2;  ///< consecutive samples
@@ -28,7 +29,8 @@ class TorqueWatch {
       : tolerance_Nm_(device.torque_tolerance_permille * device.Nm_per_permille()),
         block_ticks_((watchdog_ticks + kWay) / static_cast<std::int32_t>(kBlocks - 1) + 1) {}
 
-  /// Checks this tick's reading; call before sent() of this tick. @param fresh whether it is a new sample (SampleAge)
+  /// Checks this tick's reading; call before sent() of this tick. @param fresh whether the reading is a new sample
+  /// (SampleAge)
   void look(const rt::HandReading& reading, bool fresh) noexcept {
     if (!fresh) return;
     strange_ = is_strange(reading) ? std::min(strange_ + 1, kStrange) : 0;

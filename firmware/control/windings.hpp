@@ -1,5 +1,6 @@
 #pragma once
-// Thermal limit of the motors' windings, joint by joint; they are heated by torque, which depends on the pose.
+// Thermal limit of each joint's motor winding. Torque heats the winding, and the torque for a tip force depends on the
+// pose.
 
 #include <algorithm>
 #include <array>
@@ -13,20 +14,21 @@
 namespace ligature::control {
 
 /// Continuous torque limits of the joints, N m: the torques that the device's continuous tip force needs in the home
-/// pose, for which the maker states this force.
+/// pose. The maker states that force for this pose.
 [[nodiscard]] inline Vec3 continuous_torque_Nm(const device::Device& d) noexcept {
   return d.continuous_force_N * levers_at_home_m(d);
 }
 
-/// With the arm stretched further than in the home pose, the same tip force needs more torque. A winding could then
-/// overheat, and its drive would limit it abruptly, although the tip's force is within the continuous limit. So each
-/// winding has an I2t limit of its own. O(1).
+/// An I2t limit for each winding. When the arm is stretched further than in the home pose, the same tip force needs
+/// more torque. Without these limits a winding could overheat although the tip's force is within its continuous limit,
+/// and the drive would then cut the torque abruptly. O(1).
 class Windings {
  public:
   Windings(const device::Device& d, double period_s) noexcept
       : caps_{cap_of(d, 0, period_s), cap_of(d, 1, period_s), cap_of(d, 2, period_s)} {}
 
-  /// Largest factor on these torques that keeps all windings within their caps; infinite if no winding is limited.
+  /// Largest factor by which these torques may be multiplied so that no winding exceeds its cap; infinite if no winding
+  /// is limited.
   [[nodiscard]] double share(const Vec3& torque_Nm) const noexcept {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t j = 0; j < caps_.size(); ++j) {
@@ -35,7 +37,8 @@ class Windings {
     }
     return least;
   }
-  /// Updates the windings' heat with the torques sent. Call once per tick. @param periods since the last call.
+  /// Updates the windings' heat by the torques that are sent now. Call once per tick. @param periods since the last
+  /// call.
   void sent(const Vec3& torque_Nm, std::int64_t periods = 1) noexcept {
     for (std::size_t j = 0; j < caps_.size(); ++j)
       caps_[j].sent(std::abs(torque_Nm[static_cast<Eigen::Index>(j)]), periods);

@@ -1,5 +1,5 @@
 #pragma once
-// Velocity from quantised positions, with a window that adapts to the motion.
+// Velocity from quantised positions, by a window whose length adapts to the motion.
 
 #include <algorithm>
 #include <array>
@@ -9,22 +9,23 @@
 
 namespace ligature::control {
 
-/// First-order adaptive window (Janabi-Sharifi, Hayward, Chen: IEEE Trans. Control Syst. Technol. 8(6), 2000), for one
-/// joint. It takes the largest k <= kWindow for which the straight line through x[n] and x[n-k] passes every sample
-/// between them within the encoder's uncertainty d. The velocity is the slope of the least-squares line through these
-/// k+1 samples:
+/// First-order adaptive window (Janabi-Sharifi, Hayward, Chen: IEEE Trans. Control Syst. Technol. 8(6), 2000), for the
+/// positions x of one joint. Takes the largest k <= kWindow for which the straight line through x[n] (newest sample)
+/// and x[n-k] passes every sample between them within the encoder's uncertainty d. The velocity is the slope of the
+/// least-squares line through these k+1 samples, taken at the times t_i:
 ///   v = sum (t_i - t_mean)(x_i - x_mean) / sum (t_i - t_mean)^2
-/// At rest and in slow motion the window is long and the quantisation noise small; in fast changes it is short, and so
-/// is the lag of k T / 2. docs/measurements/haptics.md compares it with a low-pass filter.
-/// Lost samples are allowed: the samples' times are used. O(kWindow), no allocation.
+/// At rest and in slow motion the window is long and the quantisation noise small. In fast changes the window is short,
+/// and so is the lag of k T / 2 (T: period). docs/measurements/haptics.md compares this with a low-pass filter. Samples
+/// may be missing, because their times are used. O(kWindow), no allocation.
 class WindowVelocity {
  public:
   static constexpr std::size_t kWindow = 16;
 
-  /// @param quantum encoder step; d = 1 quantum, because ends and inner samples may each be off by half of it
+  /// @param quantum encoder step; it is also the uncertainty d, because ends and inner samples may each be off by half
+  /// a step
   WindowVelocity(double period_s, double quantum) noexcept : period_s_(period_s), d_(quantum * (1.0 + 1e-9)) {}
 
-  /// @param periods whole periods since the last sample; with <= 0 the call does nothing, unless it is the first sample
+  /// @param periods whole periods since the last sample; a sample with 0 or less is ignored, unless it is the first one
   void add(double x, std::int64_t periods) noexcept {
     if (count_ > 0 && periods <= 0) return;
     if (periods > kForget) count_ = 0;  // gap too long: start a new window
@@ -36,7 +37,7 @@ class WindowVelocity {
     velocity_ = k_ == 0 ? 0.0 : -slope(k_) / period_s_;
   }
 
-  /// The time of the last sample is unknown: velocity becomes 0, and the window restarts at that sample.
+  /// Call if the time of the last sample is unknown: the velocity becomes 0, and the window restarts at that sample.
   void doubt_last_time() noexcept { count_ = 1, k_ = 0, velocity_ = 0.0; }
 
   [[nodiscard]] double velocity_per_s() const noexcept { return velocity_; }
@@ -45,8 +46,8 @@ class WindowVelocity {
  private:
   static constexpr std::int64_t kForget = 32;
 
-  /// Largest k for which the line through samples 0 and k stays within d of all samples between. Each sample limits the
-  /// slope to an interval; a longer line must lie in all of them.
+  /// Largest k for which the line through samples 0 and k stays within d of all samples between. Each sample between
+  /// restricts the line's slope to an interval, and the slope must lie in all these intervals.
   [[nodiscard]] std::size_t longest_straight() const noexcept {
     double least = -1e300, most = 1e300;
     for (std::size_t k = 1; k < count_; ++k) {

@@ -1,13 +1,14 @@
 #pragma once
-// Map from device coordinates D to world coordinates W, where the scene may be larger than the device's workspace.
+// Maps device coordinates D to world coordinates W. The scene may be larger than the device's workspace.
 
 #include "firmware/control/kinematics.hpp"
 #include "protocol/scene/scene.hpp"
 
 namespace ligature::control {
 
-/// p_WT = origin + scale (p_DT - p_DT_home),  v_WT = scale v_DT. The axes of D and W are parallel, so forces need no
-/// rotation. Forces have a scale of their own (force_scale), so the map does not preserve energy.
+/// World position p_WT = origin + scale (p_DT - p_DT_home) and world velocity v_WT = scale v_DT of the tip, whose
+/// device position is p_DT. The axes of D and W are parallel, so forces need no rotation. Forces have another scale
+/// (force_scale), so the map does not preserve energy.
 struct WorkspaceMap {
   double scale = 1.0;
   Vec3 origin_W_m = Vec3::Zero();
