@@ -1,5 +1,6 @@
 #pragma once
-// Smooth closing of jaws on a thread that is not exactly between them: it is brought there within kTime_s.
+// Smooth closing of a gripper's jaws on a thread that is not exactly between them: the thread is brought there within
+// kTime_s.
 
 #include <algorithm>
 
@@ -8,12 +9,13 @@
 
 namespace ligature::physics {
 
-/// Offset c(t) from the tool to the point towards which the coupling pulls the thread while the jaws close. It starts
-/// with the thread's relative position c0 and velocity c0', and is zero after T = kTime_s (cubic Hermite, u = t / T):
+/// While the jaws close, the coupling pulls the thread towards a moving point at the offset c(t) from the tool. c(t)
+/// starts with the thread's position c0 and velocity c0' relative to the tool, and is zero after the time T = kTime_s
+/// (cubic Hermite curve, u = t / T):
 ///   c(t) = (1 - u)^2 ((1 + 2 u) c0 + u T c0'),   c(T) = c'(T) = 0
-/// The coupling acts with full stiffness towards p_WT + c and v_WT + c'. At the start its spring and damper are
-/// unloaded, so the force does not jump, however far away the thread is. If the thread cannot follow, the force grows
-/// by at most 1.5 K c0 / T per second. O(1), no allocation.
+/// The coupling acts with its full stiffness K towards position p_WT + c and velocity v_WT + c'. At the start its
+/// spring and damper are unloaded, so the force does not jump, however far away the thread is. If the thread cannot
+/// follow, the force grows by at most 1.5 K |c0| / T per second. O(1), no allocation.
 class Closing {
  public:
   static constexpr double kTime_s = 0.05;  ///< fingers close in about 0.1 s; an offset of 5 mm moves at <= 0.15 m/s
@@ -25,7 +27,7 @@ class Closing {
     left_s_ = kTime_s;
   }
   void forget() noexcept { *this = Closing{}; }
-  /// Advances by a tick. Afterwards rate_m_per_s() is the offset's change in this tick, divided by dt_s.
+  /// Advances by a tick of dt_s. rate_m_per_s() is then the mean rate of the offset in this tick.
   void step(double dt_s) noexcept {
     const Vec3 before_m = offset_m_;
     left_s_ = std::max(0.0, left_s_ - dt_s);

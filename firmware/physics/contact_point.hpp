@@ -5,7 +5,7 @@
 
 namespace ligature::physics {
 
-/// A place where the thread touched itself, the desk or a body in the last step.
+/// A place where the thread touched itself, the desk or another body in the last time step.
 struct ContactPoint {
   int segment = 0;               ///< number of the thread's segment: from this node to the next
   int other = -1;                ///< segment of the other strand; -1: the desk, a peg, a gripper or a hook

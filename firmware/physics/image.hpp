@@ -1,5 +1,6 @@
 #pragma once
-// The image of a simulation: its contents (member_bytes.hpp) behind a header that says what they belong to.
+// The image of a simulation: its saved state as bytes (member_bytes.hpp), after a header that tells to which build and
+// scene the image belongs.
 
 #include <cstddef>
 #include <cstdint>

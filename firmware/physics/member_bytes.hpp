@@ -1,5 +1,5 @@
 #pragma once
-// The contents of an image: every listed member (members.hpp) of an object, one after the other.
+// Writes and reads the contents of an image: every listed member (members.hpp) of an object, one after the other.
 
 #include <Eigen/Core>
 #include <array>
@@ -25,14 +25,16 @@ template <class T>
 concept Listed = requires(T& object) {
   T::members(object);
 };
-/// A class that has, besides, an array of which only a part is in use. The members say how long this part is.
+/// A class with a large array that is only partly in use. in_use() returns the used part, whose length follows from the
+/// listed members.
 template <class T>
 concept PartlyUsed = requires(T& object) {
   object.in_use();
 };
 
-/// Visits every number in an object, in a fixed order. Bytes is ImageWriter or ImageReader: raw(at, size) writes or
-/// reads one number, and size(vector) the length of a vector. A type without a list of its members does not compile.
+/// Visits every number in an object, in a fixed order. The base class Bytes is ImageWriter or ImageReader: its raw(at,
+/// size) writes or reads numbers, its size(vector) the length of a vector. A type without a list of its members does
+/// not compile.
 template <class Bytes>
 class ImageOf : public Bytes {
  public:
@@ -107,7 +109,8 @@ class ImageWriter {
   ImageBytes& out_;
 };
 
-/// Reads into an object that was made from the same scene. So no vector may grow beyond the capacity that it has.
+/// Reads an image into an object that was made from the same scene. So an image in which a vector exceeds its capacity
+/// is wrong.
 class ImageReader {
  public:
   explicit ImageReader(std::span<const std::byte> image) : rest_(image) {}
@@ -133,8 +136,8 @@ class ImageReader {
   bool fits_ = true;
 };
 
-/// Names the types of all members of a class, and of the members of these, in the order of an image: a build with other
-/// members has another text.
+/// Appends to `text` the names of the types of all members of a class, and of their members, in the order of an image.
+/// So a build with other members makes another text.
 template <class T>
 void add_layout(std::string& text) {
   if constexpr (Listed<T>) {

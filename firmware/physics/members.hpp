@@ -3,9 +3,9 @@
 
 #include <tuple>
 
-/// Lists all members of a class, in the order of their declaration, at the public end of the class. A member that is
-/// added to the class does not compile until it is listed here too. A class of which not all members are saved has a
-/// function members() of its own instead, which names all of them and returns those that are saved.
+/// Lists all members of a class, in the order of their declaration, at the end of its public part. A class with a
+/// member that is missing in its list does not compile. A class that saves only some of its members has its own
+/// function members() instead, which names all members and returns those that are saved.
 #define LIGATURE_MEMBERS(Type, ...)                        \
   [[nodiscard]] static auto members(Type& self) noexcept { \
     auto& [__VA_ARGS__] = self;                            \

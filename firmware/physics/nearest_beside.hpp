@@ -4,7 +4,7 @@
 
 namespace ligature::physics {
 
-/// A point of the thread next to a node: at `share` of the way to the neighbour `next`, position x.
+/// A point x of the thread near a node: at the share `share` of the way from the node to its neighbour `next`.
 template <class Vector>
 struct Beside {
   int next = 0;
@@ -12,8 +12,9 @@ struct Beside {
   Vector x{};
 };
 
-/// Point nearest to p on the two half segments next to a node: what is between the jaws of a gripper that holds it.
-/// @param x  position of a node, x(int) -> Vector
+/// Point nearest to p on the two half segments next to a node: the piece of thread between the jaws of a gripper that
+/// holds the node.
+/// @param x function from a node's index to its position
 template <class Vector, class Position>
 [[nodiscard]] Beside<Vector> nearest_beside(int node, int nodes, const Position& x, const Vector& p) noexcept {
   Beside<Vector> nearest{node, 0.0, x(node)};

@@ -1,5 +1,6 @@
 #pragma once
-// The interface (facade) of the thread simulation: input are two tools, output are nodes and hand forces.
+// The interface (facade) of the suture simulation. Its input are two tools, its output the thread's nodes and the
+// forces on the hands.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -27,8 +28,8 @@ struct ToolInput {
   Vec3 p_WT = Vec3::Zero();
   Vec3 v_WT = Vec3::Zero();
   bool grip = false;
-  /// Orientation of the tool (rod model). If given when the grip closes, the held thread's direction and roll turn with
-  /// the tool until it opens. If not, the direction is free or, with hands.pinch_width_m > 0, fixed.
+  /// Orientation of the tool (rod model). If it is given when the gripper closes, the held thread's direction and roll
+  /// turn with the tool until the gripper opens. Otherwise the direction is free, or fixed if hands.pinch_width_m > 0.
   std::optional<Eigen::Quaterniond> R_WT{};
 };
 
@@ -51,7 +52,7 @@ struct HandContact {
   LIGATURE_MEMBERS(HandContact, node, p_WG, v_WG, f_W, condition)
 };
 
-/// The worst consequence of the bounded work or time of a tick, mildest first.
+/// What a tick had to give up because its work and time are limited; from mild to severe.
 enum class Degradation : std::uint8_t {
   kNone,
   kIterations,  ///< the contact solver stopped before it converged: contacts are slightly softer
@@ -89,7 +90,8 @@ struct Diagnostics {
 /// A thread in its scene. A copy is independent of the original.
 class Simulation {
  public:
-  /// Builds a simulation; only this and copying allocate. @return the simulation, or why the scene was refused.
+  /// Builds a simulation. Only make(), copying, save() and load() allocate memory. @return the simulation, or why the
+  /// scene was refused.
   static std::variant<Simulation, std::string> make(const scene::Scene& scene);
 
   Simulation(const Simulation& other);
@@ -98,50 +100,51 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  /// Advances by scene.time.tick_s, in equal time steps. Never allocates, never throws. If a node or a tool is not
-  /// finite, or farther away than 1e9 m, diagnostics().finite becomes false and further ticks do nothing.
-  /// When the time `left` runs out, the thread is not moved for the rest of the tick (diagnostics().time_lost).
+  /// Advances by scene.time.tick_s, in equal time steps. Never allocates, never throws. If a node or a tool has a
+  /// coordinate that is not finite or beyond 1e9 m, diagnostics().finite becomes false, and further ticks do nothing.
+  /// When the time `left` is used up, the thread is not moved for the rest of the tick (diagnostics().time_lost).
   void tick(const std::array<ToolInput, 2>& tools, const TimeLeft& left = {}) noexcept;
 
-  /// Positions, m, and velocities, m/s. The first call after a tick may convert them, so call only from the thread of
-  /// execution that calls tick().
+  /// Positions, m, and velocities, m/s, of the nodes. Call only from the thread of execution that calls tick(), because
+  /// the first call after a tick may convert them.
   [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept;
   [[nodiscard]] std::span<const Vec3> velocities_W() const noexcept;
-  /// For displays: tension of the segment after each node, N (last node: of the segment before it), and angle of the
-  /// material frame relative to the twist-free frame transported from node 0, rad. The spans are at most as long as
-  /// nodes_W(). O(n).
+  /// For displays. For each node: tension of the segment after it, N (last node: of the segment before it), and angle
+  /// by which the thread is twisted between node 0 and this node, rad. The spans are at most as long as nodes_W().
+  /// O(n).
   void describe(std::span<float> tension_N, std::span<float> turn_rad) const noexcept;
-  /// For displays and studies: the contacts that carried a force in the last step, as many as fit into `out`. None with
-  /// contact.solver = "paper", which keeps no forces. O(contacts).
+  /// For displays and studies: writes the contacts that carried a force in the last time step, as many as fit into
+  /// `out`. With contact.solver = "paper" there are none, because that solver keeps no forces. O(contacts).
   /// @return number of contacts written
   std::size_t contacts(std::span<ContactPoint> out) const noexcept;
   static constexpr std::size_t kMostContacts = 4096;  ///< enough room for any thread
   [[nodiscard]] const HandContact& hand(Hand h) const noexcept;
   [[nodiscard]] const Diagnostics& diagnostics() const noexcept;
 
-  /// Sets the contact budget of later ticks, in instructions (rod/work.hpp); no effect on models without a budget.
-  /// reset() keeps it.
+  /// Sets the contact budget of later ticks, in instructions (rod/work.hpp); reset() keeps it. No effect on models
+  /// without a budget.
   void set_work(long instructions) noexcept;
   [[nodiscard]] long work() const noexcept;  ///< contact budget of a tick; 0: the model has none
 
   /// Returns to the initial state of the scene, hands open.
   void reset() noexcept;
 
-  /// Takes over shape, motion and grasps of a thread with other parameters. No allocation. @return false, and nothing
-  /// is changed, when the models or the numbers of nodes differ.
+  /// Takes over shape, motion and grasps from a simulation with other parameters. No allocation. @return false if the
+  /// models or the numbers of nodes differ; then nothing is changed.
   [[nodiscard]] bool continue_from(const Simulation& other) noexcept;
 
-  /// Replaces positions and velocities (experiments, restarts); hands open. Fixed nodes keep their positions. If a
-  /// value is not finite, the thread is frozen as after a divergence.
+  /// Replaces positions and velocities, for experiments and restarts; the hands open. Fixed nodes keep their positions.
+  /// A value that is not finite freezes the thread, as after a divergence.
   /// @param p_W, v_W  one per node; an empty v_W means at rest
   void set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept;
 
-  /// The image of the present state: after load() a simulation of the same scene continues as this one would, to the
-  /// bit. Allocates. @param ticks  the caller's count of them, which load() returns @see image.hpp
+  /// The image of the present state. A simulation of the same scene that loads this image continues exactly as this one
+  /// would, to the bit. Allocates. @param ticks number of ticks so far, as the caller counts them; load() returns this
+  /// number @see image.hpp
   [[nodiscard]] std::vector<std::byte> save(std::int64_t ticks = 0) const;
-  /// Takes over the state from an image. Allocates. A checksum finds an image that is damaged; one that was made to do
-  /// harm is not found. @return the ticks given to save(), or one line that says why the image was refused; nothing is
-  /// changed then.
+  /// Takes over the state from an image. Allocates. A checksum detects a damaged image, but not one that was made on
+  /// purpose to do harm. @return the number of ticks given to save(), or one line of text that says why the image was
+  /// refused; then nothing is changed.
   [[nodiscard]] std::variant<std::int64_t, std::string> load(std::span<const std::byte> image);
 
  private:

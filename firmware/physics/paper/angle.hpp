@@ -6,11 +6,11 @@
 
 namespace ligature::physics {
 
-/// Angle between two unit vectors from its sine and cosine, without branches: atan2(s, c) for s >= 0.
-///   alpha = 2 atan(s / (1 + |c|)),  pi minus that when c < 0;   atan by a polynomial of degree 17 in t^2 on [0, 1]
-///   (interpolated at the Chebyshev points).
-/// The paper's arcsin (or acos) loses half of the digits near a right angle (or when straight), and is NaN when
-/// rounding lifts its argument above 1, as happens with the printed form in 5 % of right-angled bends.
+/// Angle between two unit vectors from its sine s and cosine c, without branches: atan2(s, c) for s >= 0.
+///   alpha = 2 atan(s / (1 + |c|)),  or pi minus that when c < 0
+/// atan is a polynomial of degree 17 on [0, 1], interpolated at the Chebyshev points. The paper's formulas with arcsin
+/// or acos lose half of the digits near a right angle or near a straight thread. They give NaN when rounding lifts
+/// their argument above 1: with the printed form in 5 % of right-angled bends.
 /// @param s  >= 0    @param c  any sign; s^2 + c^2 near 1 (or both 0, which gives 0)
 /// @return rad in [0, pi]; absolute error below 4e-15. Cost: 18 multiply-adds and one division.
 template <class S>

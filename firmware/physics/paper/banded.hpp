@@ -1,11 +1,12 @@
 #pragma once
-// Symmetric positive definite systems of small bandwidth, solved in place by L D L^T. No pivoting is needed: all
-// matrices here are the identity plus a positive semidefinite matrix.
+// Symmetric positive definite systems of small bandwidth, solved in place by L D L^T. No pivoting is needed, because
+// every matrix here is the identity plus a positive semidefinite matrix.
 
 namespace ligature::physics {
 
-/// Tridiagonal with scaled rows:  diag_i x_i - gain_i (link_i x_{i-1} + link_{i+1} x_{i+1}) = rhs_i,  i = 0 .. n - 1.
-/// Dividing row i by gain_i makes it symmetric; written this way a gain of zero is allowed.
+/// Solves a tridiagonal system with scaled rows:
+///   diag_i x_i - gain_i (link_i x_{i-1} + link_{i+1} x_{i+1}) = rhs_i,  i = 0 .. n - 1
+/// The matrix is symmetric up to the factors gain_i of its rows, which may be zero.
 /// @param diag  overwritten (inverse pivots)   @param link  link_i couples i - 1 and i   @param rhs  overwritten by x
 /// Cost: 11 n operations, n divisions.
 inline void solve_tridiagonal(int n, double* diag, const double* gain, const double* link, double* rhs) noexcept {
@@ -31,9 +32,10 @@ inline void solve_tridiagonal(int n, double* diag, const double* gain, const dou
   }
 }
 
-/// Pentadiagonal: diag_i x_i + one_i x_{i+1} + two_i x_{i+2} + (the same below the diagonal) = rhs_i.
-/// @param diag, one, two  overwritten (inverse pivots, columns of L D)   @param rhs  overwritten by x
-/// Cost: 17 n operations, n divisions.
+/// Solves a symmetric pentadiagonal system: diag_i x_i + one_i x_{i+1} + two_i x_{i+2} + one_{i-1} x_{i-1} + two_{i-2}
+/// x_{i-2} = rhs_i.
+/// @param diag, one, two  overwritten (inverse pivots, columns of L D)   @param rhs  overwritten by x. Cost: 17 n
+/// operations, n divisions.
 inline void solve_pentadiagonal(int n, double* diag, double* one, double* two, double* rhs) noexcept {
   double inv1 = 0.0, inv2 = 0.0;  // inverse pivots of rows i-1, i-2
   double one1 = 0.0;              // reduced first off-diagonal of row i-1

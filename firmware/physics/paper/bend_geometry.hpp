@@ -4,7 +4,8 @@
 
 namespace ligature::physics {
 
-/// The bend between two adjacent segments: angle, axis, and gradients of the angle by the positions of the three nodes.
+/// The bend between two adjacent segments: its angle, its axis, and the gradients of the angle by the positions of its
+/// three nodes.
 template <class S>
 struct Bend {
   V3<S> axis;        ///< unit binormal u1 x u2 / |u1 x u2|; zero when exactly straight
@@ -14,7 +15,8 @@ struct Bend {
   V3<S> grad_right;  ///< d alpha / d P_{i+1} = -t_{i+1} / l_i, 1/m;   d alpha / d P_i is minus their sum
 };
 
-/// A unit vector perpendicular to u: the axis of a bend that is folded back exactly, where the axis is arbitrary.
+/// A unit vector perpendicular to u. It serves as the axis of an exact fold (a bend by 180 degrees), where any axis
+/// would do.
 inline V3<double> across(const V3<double>& u) noexcept {
   const V3<double> helper = magnitude(u.x) < 0.6 ? V3<double>{1.0, 0.0, 0.0} : V3<double>{0.0, 1.0, 0.0};
   const V3<double> a = cross(u, helper);
@@ -29,11 +31,13 @@ inline V3<double> across(const V3<double>& u) noexcept {
   return axis;
 }
 
-/// Bend of the joint between two segments; the geometry behind (7)-(15).
+/// Computes the bend between two segments: the geometry behind the paper's equations (7)-(15). u1, u2: directions of
+/// the two segments, s: axis, t_{i-1}, t_{i+1}: directions of the gradients, alpha: angle.
 ///   s = u1 x u2 / |u1 x u2|,  t_{i-1} = u1 x s,  t_{i+1} = u2 x s,  alpha = atan2(|u1 x u2|, u1 . u2)
-/// The paper calls t a unit vector, but its formula has length sin alpha. Here it has length 1, so that (7)-(9) are the
-/// gradient of an energy. Near straight (or folded) the cross product loses digits; so s is orthogonalised to both
-/// segments once more, and torques cancel to rounding error at every angle. For an exact fold the axis is across(u1).
+/// The paper calls t a unit vector, but its formula for t has the length sin alpha. Here t has length 1, so that
+/// (7)-(9) are the gradient of an energy. Near a straight bend or a fold the cross product loses digits. So s is made
+/// orthogonal to both segments once more, and torques cancel to rounding error at every angle. For an exact fold the
+/// axis is across(u1).
 /// @param u1, u2         unit segment directions, or zero where there is no segment (all results are then finite)
 /// @param inv_l1, inv_l2 inverse segment lengths, 1/m
 /// Cost: about 110 operations, one root, two divisions.

@@ -16,7 +16,8 @@ struct SegmentPair {
   LIGATURE_MEMBERS(SegmentPair, a, b)
 };
 
-/// Bounding spheres of all segments: centres, m, and half lengths, m. Allocated once.
+/// Bounding spheres of all segments. A sphere's centre is its segment's middle, its radius is half the segment's
+/// length. Allocated once.
 struct SegmentSpheres {
   Lane3 centre;
   Lane half_m;
@@ -28,7 +29,7 @@ struct SegmentSpheres {
   void update(const Lane3& p) noexcept;
 };
 
-/// A list with fixed capacity: when it is full, further pairs are dropped and `overflow` is set.
+/// A list of segment pairs with fixed capacity: when it is full, further pairs are dropped and `overflow` is set.
 struct PairList {
   RoomyVector<SegmentPair> pairs;  ///< reserved once
   bool overflow = false;
@@ -41,8 +42,8 @@ struct PairList {
   }
 };
 
-/// Are two spheres within reach of each other: |c_i - c_j| <= h_i + h_j + reach? All broad phases use this one
-/// expression, so their results are identical.
+/// Are the spheres of segments i and j (centres c, radii h) within reach of each other: |c_i - c_j| <= h_i + h_j +
+/// reach? All broad phases use this one expression, so their results are identical.
 inline PackMask spheres_near(const V3<Pack>& ci, Pack hi_and_reach, const SegmentSpheres& s, int j) noexcept {
   const V3<Pack> apart = s.centre.pack(j) - ci;
   const Pack limit = hi_and_reach + s.half_m.pack(j);
@@ -53,11 +54,11 @@ inline bool segments_near(const SegmentSpheres& s, int i, int j, double reach_m)
   return spheres_near(c, splat(reach_m + s.half_m[i]), s, j)[0] != 0;
 }
 
-/// All pairs whose spheres are within reach_m of each other and whose indices differ by at least skip, in ascending
-/// order. Cost: n^2 / 2 tests, four at a time.
+/// Finds all pairs of segments whose spheres are within reach_m of each other and whose indices differ by at least
+/// `skip`; in ascending order. Cost: n^2 / 2 tests, four at a time.
 void find_pairs_brute(const SegmentSpheres& s, double reach_m, int skip, PairList& out) noexcept;
 
-/// All segments whose sphere is within reach_m of a given sphere; listed as pairs {segment, segment}.
+/// Finds all segments whose sphere is within reach_m of the given sphere, and lists each as a pair {segment, segment}.
 void find_near_sphere(const SegmentSpheres& s, const V3<double>& centre, double half_m, double reach_m,
                       PairList& out) noexcept;
 

@@ -12,10 +12,11 @@ constexpr int kBruteUpTo = 600;  // nodes; for more, Sweep is cheaper (docs/phys
 
 V3<double> to_v3(const scene::Vec& a) { return {a[0], a[1], a[2]}; }
 
-/// Constants of Table I per node; with reference_nodes, rescaled to another number of nodes (see build_thread()).
+/// Sets the constants of the paper's Table I, which apply to each node. If the scene has reference_nodes, they are
+/// converted to its number of nodes (see build_thread()).
 void set_constants(const scene::Scene& scene, ThreadModel& m) {
   const scene::PaperParameters& p = scene.suture.paper;
-  // Ratios of segment lengths, l / l0, and of node masses, to those with reference_nodes.
+  // Ratio of the segment length to that with reference_nodes (`shorter`), and ratio of the node masses
   const double shorter = p.reference_nodes ? (*p.reference_nodes - 1.0) / (m.nodes - 1.0) : 1.0;
   const double fewer = p.reference_nodes ? *p.reference_nodes / static_cast<double>(m.nodes) : 1.0;
   m.mass_kg = p.node_mass_kg * fewer;
@@ -54,8 +55,8 @@ void pin(BuiltThread& t, int node, const V3<double>& p) {
   t.model.free[node] = 0.0;
 }
 
-/// Fixes the scene's nodes. A clamp also fixes the neighbours, so that the tangent towards higher node numbers is the
-/// given direction.
+/// Fixes the scene's nodes. A clamp also fixes the node's neighbours, so that the thread leaves it towards higher node
+/// numbers in the given direction.
 void fix_nodes(const scene::Scene& scene, BuiltThread& t) {
   for (const scene::FixedNode& f : scene.world.fixed) {
     const int node = f.node < 0 ? t.model.nodes - 1 : f.node;
@@ -103,7 +104,8 @@ ContactSettings build_contact(const scene::Scene& scene, const ThreadModel& m) {
   ContactSettings c;
   c.slip = scene.contact.friction;
   c.stick = scene.contact.static_friction.value_or(c.slip);
-  // A thread of radius r cannot touch itself within an arc of pi r: pairs closer along the thread count as neighbours.
+  // A thread of radius r cannot touch itself within an arc of length pi r; segments closer along the thread are not
+  // tested
   c.skip = 1 + static_cast<int>(std::ceil(std::numbers::pi * m.radius_m / m.rest_m - 1e-9));
   if (c.skip < 2) c.skip = 2;
   c.desk_m = scene.world.desk_height_m;

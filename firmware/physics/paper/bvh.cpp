@@ -30,8 +30,8 @@ void SphereTree::within(std::size_t k, const Search& search) const noexcept {
   between(2 * k, 2 * k + 1, search);
 }
 
-/// Finds pairs of one segment below tree node a and one below tree node b. @pre the segments below a come before those
-/// below b along the thread
+/// Finds pairs of a segment in the subtree of tree node a and a segment in the subtree of tree node b. @pre along the
+/// thread, the segments of a come before those of b
 void SphereTree::between(std::size_t a, std::size_t b, const Search& search) const noexcept {
   const Ball &x = balls_[a], &y = balls_[b];
   if (x.radius_m < 0.0 || y.radius_m < 0.0 || y.last - x.first < search.skip) return;

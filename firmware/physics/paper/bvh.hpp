@@ -6,9 +6,10 @@
 
 namespace ligature::physics {
 
-/// The paper's broad phase (V.A): a tree of bounding spheres, built bottom-up over consecutive segments and tested
-/// against itself top-down. Segments near along the thread are near in space, so the tree's topology never changes,
-/// only its spheres. Cost: O(n) to build; O(n log n) or more to find the pairs of a thread that touches itself.
+/// The paper's broad phase (V.A): a tree of bounding spheres over consecutive segments. It is built bottom-up, and
+/// tested against itself top-down. Segments that are near along the thread are also near in space, so only the spheres
+/// change, never the tree's topology. Cost: O(n) to build; O(n log n) or more to find the pairs of a thread that
+/// touches itself.
 class SphereTree {
  public:
   SphereTree() = default;

@@ -4,7 +4,7 @@
 
 namespace ligature::physics {
 
-/// Closest points of two segments: fractions along each, and the vector from the second to the first.
+/// Closest points of two segments: the fraction along each segment, and the vector from the second point to the first.
 struct ClosestPoints {
   double a = 0.0;      ///< fraction along P1 Q1, 0 .. 1
   double b = 0.0;      ///< fraction along P2 Q2, 0 .. 1
@@ -12,10 +12,10 @@ struct ClosestPoints {
   double distance_m = 0.0;
 };
 
-/// Closest points of two segments; exact also for crossing, parallel, touching and zero-length ones.
-///   Minimises |P1 + a (Q1 - P1) - P2 - b (Q2 - P2)|^2 over the unit square: unconstrained a from the 2 x 2 system (one
-///   half when parallel), then b clamped for that a, then a clamped for that b.
-/// Cost: about 70 operations, three divisions, one root.
+/// Closest points of two segments P1 Q1 and P2 Q2; exact also for crossing, parallel, touching and zero-length ones.
+/// Minimises |P1 + a (Q1 - P1) - P2 - b (Q2 - P2)|^2 for a, b in [0, 1]: first a without these bounds from the 2 x 2
+/// system (one half if parallel), then b for that a within its bounds, then a for that b within its bounds. Cost: about
+/// 70 operations, three divisions, one root.
 inline ClosestPoints closest_points(const V3<double>& p1, const V3<double>& q1, const V3<double>& p2,
                                     const V3<double>& q2) noexcept {
   const V3<double> d1 = q1 - p1, d2 = q2 - p2, r = p1 - p2;

@@ -38,9 +38,9 @@ void ContactSolver::forget() noexcept {
   report_ = {};
 }
 
-/// Makes a row for every candidate that could touch in the coming step. travel_m_ is an upper bound of how much any gap
-/// has closed since the start. So a gap that was measured at a value t of travel_m_ is now at least gap + t -
-/// travel_m_, and one comparison for four candidates excludes those that are too far apart.
+/// Makes a contact row for every candidate that could touch in the coming step. travel_m_ is an upper bound of how much
+/// any gap has closed since the start of the run. So a gap that was measured when travel_m_ had the value t is now at
+/// least gap + t - travel_m_. One comparison tests this for four candidates.
 void ContactSolver::make_rows(const ThreadModel& m, const ThreadState& s, double near_m) noexcept {
   rows_.clear();
   const Pack limit = splat(near_m + travel_m_);
@@ -75,8 +75,8 @@ void ContactSolver::try_row(const ThreadModel& m, const ThreadState& s, double n
   rows_.pop_back();
 }
 
-/// Sets masses, target velocity and starting impulse of a row whose gap was measured. @return false when none of its
-/// nodes can move
+/// Sets masses, target velocity and starting impulse of a row whose gap was measured. @return false if no node of the
+/// row can move
 bool ContactSolver::finish_row(const ThreadModel& m, const Candidate& c, ContactRow& row) const noexcept {
   double mobility = 0.0;
   for (int e = 0; e < 4; ++e) {
@@ -112,8 +112,8 @@ void ContactSolver::gather_velocities(const ThreadState& s) noexcept {
     for (int k = 0; k < 4; ++k) velocity_[static_cast<std::size_t>(r.node[k])].v = to_pack(s.v.at(r.node[k]));
 }
 
-/// Upper bound of all speeds in the coming step, m/s. Also adds the motion of the obstacles to travel_m_, the bound of
-/// how much gaps have closed, and requests new candidates when an obstacle has appeared or disappeared.
+/// Upper bound of all speeds in the coming step, m/s. Also adds the obstacles' motion to travel_m_ (upper bound of how
+/// much gaps have closed), and requests a new search for candidates if an obstacle has appeared or disappeared.
 double ContactSolver::fastest(const ThreadState& s) noexcept {
   Pack speeds2 = splat(0.0);
   for (int i = 0; i < nodes_; i += kLanes) {
@@ -136,7 +136,7 @@ double ContactSolver::fastest(const ThreadState& s) noexcept {
 void ContactSolver::solve(const ThreadModel& m, ThreadState& s) noexcept {
   ++step_;
   report_.cap_hit = false;
-  // Upper bound of a gap's decrease in this step, plus a margin for the velocity changes by contact impulses.
+  // How much a gap can close in this step at most, plus a margin, because contact impulses change velocities
   const double near_m = 2.0 * fastest(s) * m.step_s + 0.02 * radius_m_;
   if (margin_m_ < 0.0 || travel_m_ - found_at_m_ + near_m > margin_m_) {
     margin_m_ = radius_m_ + 4.0 * near_m;

@@ -17,7 +17,7 @@
 
 namespace ligature::physics {
 
-/// A capsule with the thread's radius whose motion is prescribed: a gripper, or a hook of the frame.
+/// A capsule with the thread's radius, whose motion is prescribed: a gripper, or a hook that carries a fixed node.
 struct Obstacle {
   V3<double> p0_m{}, p1_m{}, v_m_per_s{};
   int skip_first = 0, skip_last = -1;  ///< range of segments without contact (those that it holds)
@@ -33,7 +33,8 @@ struct ContactSettings {
   LIGATURE_MEMBERS(ContactSettings, stick, slip, skip, desk_m, broad_phase)
 };
 
-/// Two bodies that may touch soon, with their state from step to step. Measured again only when they may be close.
+/// Two bodies that may touch soon. This data is kept from step to step; the gap is measured again only if it may be
+/// small.
 struct Candidate {
   enum class Kind : std::int8_t { kSegments, kObstacle, kDesk };
   Kind kind = Kind::kSegments;
@@ -56,8 +57,8 @@ struct ContactReport {
 };
 
 /// Contact of the thread with itself, the desk and obstacles, with static and kinetic Coulomb friction. Before
-/// positions are advanced, impulses within the friction cone make every gap's rate at least -gap/dt, so that a fast
-/// approach stops at touch. Solved by projected Gauss-Seidel with warm start.
+/// positions are advanced, impulses within the friction cone change the velocities so that no gap closes faster than
+/// gap / dt. So even a fast approach ends at touch. Solved by projected Gauss-Seidel with warm start.
 class ContactSolver {
  public:
   static constexpr int kObstacles = 8;
@@ -67,17 +68,17 @@ class ContactSolver {
 
   std::array<Obstacle, kObstacles>& obstacles() noexcept { return obstacles_; }
 
-  /// Changes the velocities so that no overlap arises in the coming step of model.step_s.
+  /// Changes the velocities so that no overlap arises in the coming time step (model.step_s).
   void solve(const ThreadModel& model, ThreadState& state) noexcept;
 
-  /// Call after each step. @param speed_m_per_s  upper bound of the nodes' speeds in it
+  /// Call after each step. @param speed_m_per_s upper bound of the nodes' speeds in that step
   void moved(double speed_m_per_s, double step_s) noexcept { travel_m_ += 2.0 * speed_m_per_s * step_s; }
 
   [[nodiscard]] const ContactReport& report() const noexcept { return report_; }
   /// @see Simulation::contacts
   std::size_t points(const ThreadState& state, double step_s, std::span<ContactPoint> out) const noexcept;
   void forget() noexcept;
-  /// The members that an image saves (image.hpp): all but the tree, which every search builds again.
+  /// The members that an image saves (image.hpp): all but `tree`, which every search for candidates builds again.
   [[nodiscard]] static auto members(ContactSolver& self) noexcept {
     auto& [settings, radius_m, nodes, obstacles, known, spheres, sweep, tree, pairs, candidates, old_candidates, due_m,
            gap_m, rows, velocity, travel_m, found_at_m, margin_m, step, report] = self;

@@ -3,8 +3,8 @@
 
 #include "firmware/physics/paper/contact.hpp"
 
-// Search for candidates: pairs of bodies that may touch soon. It is repeated only when the motion since the last search
-// may have used up its margin.
+// Search for candidates: pairs of bodies that may touch soon. The list is made with a margin, and the search is
+// repeated only when the motion since then may have used up the margin.
 
 namespace ligature::physics {
 namespace {
@@ -31,7 +31,8 @@ void ContactSolver::keep(const ThreadState& state, Candidate c) noexcept {
     report_.cap_hit = true;
 }
 
-/// Copies the state of candidates that were in the old list. Both lists are sorted, so one pass is enough.
+/// Copies the impulses and measurements of candidates that were also in the old list. Both lists are sorted, so one
+/// pass is enough.
 void ContactSolver::inherit_impulses() noexcept {
   auto old = old_candidates_.begin();
   for (Candidate& c : candidates_) {
@@ -86,8 +87,8 @@ void ContactSolver::find_candidates(const ThreadState& s) noexcept {
   found_at_m_ = travel_m_;
 }
 
-/// Copies due_m_ (the motion up to which a candidate cannot touch) and gap of all candidates into arrays, so that
-/// make_rows() can test four at a time.
+/// Copies two numbers of each candidate into arrays, so that make_rows() can test four candidates at a time: its gap,
+/// and due_m_, the value of travel_m_ up to which the candidate cannot touch.
 void ContactSolver::index_candidates() noexcept {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const int count = static_cast<int>(candidates_.size());

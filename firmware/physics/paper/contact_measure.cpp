@@ -10,8 +10,8 @@ namespace {
 constexpr double kRoundOff = 1e-9;  // in radii: centrelines closer than this do not define a normal
 }
 
-/// Sets the candidate's normal and gap. If the normal of two near centrelines has reversed within one step, they have
-/// crossed: then the old normal is kept, and the overlap counts as deeper than a diameter.
+/// Sets the candidate's normal and gap. If the normal of two near centrelines has reversed within one step, the strands
+/// have crossed: then the old normal is kept, and the overlap counts as deeper than a diameter.
 void ContactSolver::orient(Candidate& c, const V3<double>& apart, double distance_m,
                            const V3<double>& axis) const noexcept {
   const bool fresh = c.step >= 0 && c.step + 1 >= step_;
@@ -31,8 +31,8 @@ void ContactSolver::orient(Candidate& c, const V3<double>& apart, double distanc
   c.travel_m = travel_m_;
 }
 
-/// Measures a candidate (two bodies that may touch soon), and sets nodes, weights and the obstacle's velocity of its
-/// contact row.
+/// Measures a candidate (two bodies that may touch soon). Sets the nodes and weights of its contact row, and the
+/// obstacle's velocity.
 void ContactSolver::measure(const ThreadState& s, Candidate& c, ContactRow& row) const noexcept {
   const int i = c.first, j = c.second, nobody = nodes_;
   if (c.kind == Candidate::Kind::kDesk) {
@@ -60,7 +60,8 @@ void ContactSolver::measure(const ThreadState& s, Candidate& c, ContactRow& row)
 
 std::size_t ContactSolver::points(const ThreadState& s, double step_s, std::span<ContactPoint> out) const noexcept {
   const auto vec3 = [](const V3<double>& a) { return Vec3(a.x, a.y, a.z); };
-  // Point of the row's first (0) or second (2) body; weights of the second one are negative.
+  // Contact point on the row's first body (body = 0) or second body (body = 2); the weights of the second one are
+  // negative
   const auto place = [&](const ContactRow& row, std::size_t body) -> Vec3 {
     V3<double> sum{};
     for (std::size_t k = body; k < body + 2; ++k)

@@ -18,9 +18,11 @@ inline double dot3(Pack a, Pack b) noexcept {
   return p[0] + p[1] + p[2];
 }
 
-/// One contact between two points of the thread, or between the thread and the desk or an obstacle.
-///   u = sum_k weight_k v_k - v_outside: velocity of the first point relative to the second
-/// Members have no initial values, as try_row() sets all of them.
+/// One contact between two points of the thread, or between the thread and the desk or an obstacle. The velocity of the
+/// first point relative to the second is
+///   u = sum_k weight_k v_k - v_outside
+/// v_k: velocities of the row's nodes, v_outside: velocity of the desk or obstacle. Members have no initial values,
+/// because try_row() sets all of them.
 struct ContactRow {
   Pack normal;            ///< unit, from the second body to the first
   Pack impulse;           ///< N s, on the first body
@@ -36,9 +38,9 @@ struct ContactRow {
                    candidate)
 };
 
-/// Projects an impulse onto the Coulomb cone about its normal. Inside the static cone the contact sticks and the
-/// impulse is unchanged; outside, friction is the kinetic coefficient times the normal impulse. Equations (1), (3) of
-/// the paper, extended by static friction: no 0/0 at zero slip, and friction never exceeds what stops the slip.
+/// Projects an impulse onto the Coulomb cone about its normal: the paper's equations (1) and (3), extended by static
+/// friction. Inside the static cone the contact sticks and the impulse is unchanged. Outside, friction is the kinetic
+/// coefficient times the normal impulse. There is no 0/0 at zero slip, and friction never exceeds what stops the slip.
 inline Pack project_on_cone(Pack impulse, Pack normal, double stick, double slip) noexcept {
   const double along = dot3(impulse, normal);
   if (along <= 0.0) return Pack{};
@@ -48,8 +50,8 @@ inline Pack project_on_cone(Pack impulse, Pack normal, double stick, double slip
   return along * normal + (slip * along / std::sqrt(size2)) * across;
 }
 
-/// One projected Gauss-Seidel step of a contact: the impulse for the target normal velocity and zero slip, projected on
-/// the cone, and applied to the velocities at once.
+/// One projected Gauss-Seidel step of a contact. Computes the impulse that gives the target normal velocity and zero
+/// slip, projects it onto the friction cone, and applies it to the velocities at once.
 /// @return squared change of the relative velocity, (m/s)^2
 inline double relax(ContactRow& r, NodeVelocity* v) noexcept {
   Pack u = r.weight[0] * v[r.node[0]].v + r.weight[1] * v[r.node[1]].v;

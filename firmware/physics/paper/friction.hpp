@@ -9,9 +9,9 @@ inline V3<double> slip_velocity(const V3<double>& v_relative, const V3<double>& 
   return v_relative - dot(v_relative, normal) * normal;
 }
 
-/// Coulomb friction, equations (1) and (3): f_f = mu |n| e^, e^ against the slip, N, on the first body.
-///   As printed in the paper it is 0/0 at zero slip (here: zero), and unlimited: at mu = 10 it reverses the slip within
-///   one step.
+/// Coulomb friction, the paper's equations (1) and (3): f_f = mu |n| e^ on the first body, N. e^ is the unit vector
+/// against the slip, n the normal force. As printed in the paper it is 0/0 at zero slip (here: zero), and unlimited: at
+/// mu = 10 it reverses the slip within one step.
 inline V3<double> coulomb_friction_N(double mu, double normal_N, const V3<double>& v_relative,
                                      const V3<double>& normal) noexcept {
   const V3<double> slip = slip_velocity(v_relative, normal);
@@ -20,9 +20,9 @@ inline V3<double> coulomb_friction_N(double mu, double normal_N, const V3<double
   return (-mu * magnitude(normal_N) / speed) * slip;
 }
 
-/// Coulomb friction as an impulse, N s, limited to what stops the slip: min(mu |i|, m |slip|) e^, i the normal impulse.
-///   Inside the static cone the slip is stopped completely; outside, kinetic friction acts (the paper names static
-///   friction as future work).
+/// Coulomb friction as an impulse, N s, limited to what stops the slip: min(mu |i|, m |slip|) e^. i is the normal
+/// impulse, m the effective mass, e^ the unit vector against the slip. Inside the static cone the slip is stopped
+/// completely; outside, kinetic friction acts (the paper names static friction as future work).
 /// @param mass_kg  effective mass of the contact: 1 / sum_k weight_k^2 / m_k
 inline V3<double> capped_friction_N_s(double mu_static, double mu_kinetic, double normal_N_s, double mass_kg,
                                       const V3<double>& v_relative, const V3<double>& normal) noexcept {

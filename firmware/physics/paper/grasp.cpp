@@ -25,7 +25,7 @@ void Grasp::close(std::size_t h, const ToolInput& tool, const ThreadModel& m, co
   const double off_m = norm(nearest_beside(node, m.nodes, position, hand).x - hand);
   if (off_m > reach_m_) return;
   node_[h] = node;
-  // Thread that is already between the jaws is held at once, although its node may be half a segment away.
+  // If the thread is already between the jaws, it is held at once, although the held node may be half a segment away
   if (off_m > m.radius_m) closing_[h].start(to_vec3(s.p.at(node)) - tool.p_WT, to_vec3(s.v.at(node)) - tool.v_WT);
 }
 

@@ -9,11 +9,12 @@
 
 namespace ligature::physics {
 
-/// Virtual coupling between a tool and the node it holds (paper III.A.2), thread side.
-///   f = K' (p_T - p_G) + B' (v_T - v_G) on the node;  B' = B / (1 + dt B / m),  K' = min(K, m / (2 dt^2))
-/// B' is the damper, integrated implicitly; K' = K unless K is too stiff for the time step (Table I: dt^2 K / m =
-/// 0.024). So no damper or spring is unstable, and at rest the force is exactly K times the distance. The force on the
-/// hand is -f.
+/// Virtual coupling between a tool (position p_T, velocity v_T) and the node that it holds (p_G, v_G, mass m): the
+/// thread's side of the paper's coupling (III.A.2). The force on the node is
+///   f = K' (p_T - p_G) + B' (v_T - v_G),   B' = B / (1 + dt B / m),   K' = min(K, m / (2 dt^2))
+/// The force on the hand is -f. B' is the damper B integrated implicitly over the time step dt. K' is the spring K,
+/// unless K is too stiff for the time step (with Table I it is not: dt^2 K / m = 0.024). So no spring or damper is
+/// unstable, and at rest the force is exactly K times the distance.
 struct Coupling {
   double N_per_m = 0.0;
   double N_s_per_m = 0.0;
@@ -30,7 +31,7 @@ struct Coupling {
 }
 
 /// The node that each hand holds. A closing hand takes the nearest node that is neither fixed nor held, if the thread
-/// next to it is within reach. If the thread is farther away than its radius, it is brought to the hand smoothly
+/// next to this node is within reach. A thread that is farther away than its radius is brought to the hand smoothly
 /// (closing.hpp). An opening hand releases its node.
 class Grasp {
  public:

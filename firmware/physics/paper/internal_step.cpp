@@ -9,21 +9,21 @@
 #include "firmware/physics/paper/stretch_spring.hpp"
 #include "firmware/physics/paper/swivel_damper.hpp"
 
-// Every loop runs over packs of four nodes and may include up to three nodes past the end. Their segments have zero
-// length, so direction, axis and gradients are zero: all results there are finite and multiplied by zero.
+// Every loop runs over packs of four nodes, so it may include up to three nodes past the end. Segments there have zero
+// length, so their directions, axes and gradients are zero: their results are finite and have no effect.
 
 namespace ligature::physics {
 namespace {
 
 constexpr double kShortest = 1e-9;  // lower bound of a segment's length in divisions, relative to the rest length
 
-// A swivel damper shares nodes with up to three others on each side, so dampers can be divided into four sets (colours)
-// without common nodes. A Jacobi step with weight 1/4 for each damper, 1 / (1 + 4 k dt g^T M^-1 g), then cannot
-// overshoot (k: coefficient, g: gradient of the damper's angle, M: masses).
+// A swivel damper shares nodes with up to three others on each side, so the dampers can be divided into four sets
+// (colours) without common nodes. A Jacobi step that gives each damper the weight 1/4, with the factor 1 / (1 + 4 k dt
+// g^T M^-1 g), therefore cannot overshoot (k: coefficient, g: gradient of the damper's angle, M: masses).
 constexpr double kColours = 4.0;
 
-/// Computes for each segment its direction, its length, the impulse dt T_i of its spring, and gain_i: the additional
-/// impulse per stretch rate.
+/// Computes for each segment its direction, its length, the impulse dt T_i of its spring (tension T_i), and gain_i: the
+/// additional impulse of its damper per stretch rate.
 template <Terms T>
 void measure_segments(const ThreadModel& m, const ThreadState& s, InternalWorkspace& w) noexcept {
   using Law = std::conditional_t<T.quadratic_stretch, QuadraticStretchLaw, LinearStretch>;
@@ -37,7 +37,7 @@ void measure_segments(const ThreadModel& m, const ThreadState& s, InternalWorksp
     w.u.set(i, seg.u);
     w.inv_length.set(i, seg.inv_length);
     Pack gain = splat(m.stretch_N_s_per_m * dt);
-    // The stiffness of model 5 grows without bound with the strain, so its spring is treated implicitly too.
+    // The spring of model 5 is implicit too, because its stiffness grows without bound with the strain
     if constexpr (T.quadratic_stretch && !T.explicit_damping)
       gain += dt * dt * Law::slope_N_per_m(strain, m.stretch_N, m.rest_m);
     w.pull.set(i, dt * Law::tension_N(strain, m.stretch_N));
@@ -47,8 +47,8 @@ void measure_segments(const ThreadModel& m, const ThreadState& s, InternalWorksp
   w.stretch_J = sum(energy);
 }
 
-/// Adds the stretch dampers to the springs' impulses and applies them. Implicit: the damper acts on the rate after the
-/// step,
+/// Adds the impulses of the stretch dampers to those of the springs, and applies both. In the implicit form a damper
+/// acts on the stretch rate after the step:
 ///   pull_i = dt T_i + gain_i rate_i(v after)
 template <Terms T>
 void apply_stretch(const ThreadModel& m, ThreadState& s, const Lane3& rate_v, InternalWorkspace& w) noexcept {
@@ -100,7 +100,8 @@ void apply_turns(const ThreadModel& m, ThreadState& s, const InternalWorkspace& 
   }
 }
 
-/// Impulses of the bend dampers: explicit -k dt rate, or, implicit, the solution of the pentadiagonal system
+/// Impulses `turn` of the bend dampers (coefficient k): explicit, -k dt rate; implicit, the solution of the
+/// pentadiagonal system
 ///   (1 + k dt G M^-1 G^T) turn = -k dt rate,   G: gradients of all angles.
 template <Terms T>
 void damp_bends(const ThreadModel& m, ThreadState& s, const Lane3& rate_v, InternalWorkspace& w) noexcept {
@@ -122,8 +123,8 @@ void damp_bends(const ThreadModel& m, ThreadState& s, const Lane3& rate_v, Inter
   apply_turns(m, s, w);
 }
 
-/// Impulse of a damper with coefficient k (times dt) at a rate. Its mobility g^T M^-1 g is the change of the rate per
-/// unit impulse (g: gradient of the length or angle, M: masses).
+/// Impulse of a damper at a given rate of its length or angle. @param k_dt coefficient times dt. @param mobility change
+/// of the rate per unit impulse, g^T M^-1 g (g: gradient of the length or angle, M: masses).
 template <Terms T>
 Pack damper_impulse(Pack k_dt, Pack rate, Pack mobility) noexcept {
   if constexpr (T.explicit_damping) return -k_dt * rate;
@@ -147,9 +148,9 @@ void measure_swivel(const ThreadModel& m, const Lane3& rate_v, InternalWorkspace
   }
 }
 
-/// Impulses of the dihedral dampers, along the axes of the two bends that a dihedral joins. Dihedral i joins bends i
-/// and i + 1: its part for bend i overwrites the rates in swing_left and swing_right, which are no longer needed; its
-/// part for bend i + 1 goes into next_left and next_right.
+/// Impulses of the dihedral dampers. Dihedral i joins the bends i and i + 1, and its impulses act along the axes of
+/// both. The part for bend i overwrites the rates in swing_left and swing_right, which are no longer needed; the part
+/// for bend i + 1 goes into next_left and next_right.
 template <Terms T>
 void couple_dihedrals(const ThreadModel& m, InternalWorkspace& w) noexcept {
   const Lane& mass = m.inverse_mass_per_kg;
@@ -186,8 +187,8 @@ void apply_swivel(const ThreadModel& m, ThreadState& s, const InternalWorkspace&
   }
 }
 
-/// Springs act before dampers: in equilibrium the velocities are then zero when the dampers act, so damping cannot
-/// shift the equilibrium.
+/// Springs act before dampers. So in equilibrium the velocities are zero when the dampers act, and damping cannot shift
+/// the equilibrium.
 template <Terms T>
 void internal_step(const ThreadModel& m, ThreadState& s, const Lane3& before_v, InternalWorkspace& w) noexcept {
   const Lane3& rate_v = T.explicit_damping ? before_v : s.v;

@@ -5,7 +5,7 @@
 
 namespace ligature::physics {
 
-/// Force laws of a model. A term that is false is not compiled into that model's step.
+/// Force laws of a model. A law that is false is not compiled into that model's step.
 struct Terms {
   bool quadratic_stretch = false;
   bool bend = false;
@@ -15,11 +15,11 @@ struct Terms {
   bool explicit_damping = false;
 };
 
-/// Applies the impulses of one step's internal forces to the velocities: springs, then dampers of stretch, bend and
-/// swivel (rotation of the plane of one bend against that of the next one, swivel_damper.hpp). Dampers are implicit:
-/// stretch solves a tridiagonal system, bend a pentadiagonal one, and swivel takes one weighted Jacobi step that never
-/// overshoots. So they dissipate energy for any coefficient and time step, and conserve linear and angular momentum.
-/// With explicit_damping they act as printed in the paper.
+/// Applies the impulses of one step's internal forces to the velocities: first springs, then dampers of stretch, bend
+/// and swivel (rotation of the plane of one bend against that of the next one, swivel_damper.hpp). The dampers are
+/// implicit: those of stretch by a tridiagonal system, those of bend by a pentadiagonal one, those of swivel by one
+/// weighted Jacobi step that never overshoots. So they dissipate energy for any coefficient and time step, and conserve
+/// linear and angular momentum. With explicit_damping they act as printed in the paper.
 /// @param rate_v  velocities at the beginning of the step, for explicit dampers; unused otherwise
 using InternalStep = void (*)(const ThreadModel&, ThreadState&, const Lane3& rate_v, InternalWorkspace&) noexcept;
 

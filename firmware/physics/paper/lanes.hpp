@@ -1,6 +1,6 @@
 #pragma once
-// Arrays of one number per node (structure of arrays), zero-padded at both ends: loops over packs of four nodes may
-// read one node before the first and several past the last, and write past the last, without special cases.
+// Arrays of one number per node, with zeros before the first and after the last node. So loops over packs of four nodes
+// need no special cases at the ends: they may read one node before the first, and read and write several past the last.
 
 #include <cstddef>
 #include <vector>

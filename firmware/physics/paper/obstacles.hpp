@@ -11,10 +11,12 @@
 
 namespace ligature::physics {
 
-/// Obstacles of the thread: two grippers and the hooks of the frame, all capsules with the thread's radius.
-///   Gripper: from the tool tip 4 radii towards the operator (-y). It has no contact with the segments around the node
-///   it holds. When a hand lets go its gripper overlaps the thread, so it has no contacts until it is clear of it.
-///   Hook: from each fixed node 4 radii upwards (against gravity); it does not touch the segments around that node.
+/// Obstacles of the thread: two grippers, and a hook at each fixed node. All are capsules with the thread's radius.
+/// Gripper: it reaches from the tool's tip 4 radii towards the operator (-y). It has no contact with the segments
+/// around the node that it holds. When a hand opens, its gripper overlaps the thread; so it has no contact at all until
+/// it is clear of the thread.
+/// Hook: it reaches from the fixed node 4 radii upwards (against gravity), and has no contact with the segments around
+/// that node.
 class ObstacleCourse {
  public:
   static constexpr std::size_t kMostHooks = ContactSolver::kObstacles - 2;

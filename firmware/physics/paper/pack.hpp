@@ -1,6 +1,7 @@
 #pragma once
-// A SIMD register of four doubles. Force laws are templates over their scalar type, so the same code is tested with
-// doubles and runs on four nodes at once in the loop. GCC/Clang vector types: any target, AVX2 on x86-64-v3.
+// A SIMD register of four doubles. Force laws are templates over their scalar type: tests use double, the loop uses
+// Pack and so computes four nodes at once. GCC's and Clang's vector types work on any processor, and use AVX2 on
+// x86-64-v3.
 
 #include <cmath>
 
@@ -12,8 +13,8 @@ inline constexpr int kLanes = 4;
 
 inline Pack splat(double a) noexcept { return Pack{a, a, a, a}; }
 
-/// Unaligned load and store: bends start at node 1, so most accesses are not aligned. By memcpy, because clang ignores
-/// a reduced alignment of an alias of a vector type, and its aligned load would fault.
+/// Load and store without alignment, because bends start at node 1. They use memcpy: clang ignores a reduced alignment
+/// of a vector type's alias, and its aligned load would fault.
 inline Pack load(const double* p) noexcept {
   Pack a;
   __builtin_memcpy(&a, p, sizeof a);

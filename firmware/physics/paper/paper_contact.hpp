@@ -7,9 +7,9 @@
 
 namespace ligature::physics {
 
-/// The paper's self-contact, section V.A with (1)-(3) and (18)-(22), for comparison: every overlapping pair gets the
-/// impulse of its repulsion and friction, then is shifted apart. As it acts only after an overlap has occurred, fast
-/// strands pass through each other; use the implicit solver (contact.hpp) instead.
+/// The paper's self-contact (section V.A, equations (1)-(3) and (18)-(22)), for comparison: every overlapping pair gets
+/// an impulse for repulsion and friction, and is then shifted apart. Because it acts only after an overlap has arisen,
+/// fast strands pass through each other; the implicit solver (contact.hpp) avoids that.
 struct PaperContactSettings {
   Repulsion repulsion;
   double stick = 10.0, slip = 10.0;

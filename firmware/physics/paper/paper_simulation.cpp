@@ -23,7 +23,7 @@ bool in_range(const V3<double>& a) noexcept {
 
 }  // namespace
 
-/// Force of each hand's coupling on its node, from the motion at the beginning of the step.
+/// Force of each hand's coupling on the held node, computed from the state at the beginning of the step.
 std::array<V3<double>, 2> PaperSimulation::hand_forces_N(const std::array<ToolInput, 2>& tools) noexcept {
   std::array<V3<double>, 2> force{};
   for (std::size_t h = 0; h < 2; ++h) {
@@ -36,8 +36,8 @@ std::array<V3<double>, 2> PaperSimulation::hand_forces_N(const std::array<ToolIn
   return force;
 }
 
-/// External forces: drag, gravity, loads and hands. Drag and the hands' dampers act on the velocities before this
-/// step's forces, so that damping cannot shift an equilibrium.
+/// Adds external forces: drag, gravity, loads and hands. Drag and the hands' dampers use the velocities from before
+/// this step's forces, so that damping cannot shift an equilibrium.
 void PaperSimulation::add_external(const std::array<ToolInput, 2>& tools) noexcept {
   const double dt = model_.step_s;
   const auto force = hand_forces_N(tools);
@@ -52,7 +52,7 @@ void PaperSimulation::add_external(const std::array<ToolInput, 2>& tools) noexce
     if (const int node = grasp_.node(static_cast<int>(h)); node >= 0) push(node, force[h]);
 }
 
-/// Moves the nodes and sums up energies. @return the largest speed, m/s; NaN if any is.
+/// Moves the nodes and sums up energies. @return the largest speed, m/s; NaN if any speed is NaN.
 double PaperSimulation::integrate(const Lane3& v_W) noexcept {
   const Pack dt = splat(model_.step_s);
   Pack fastest2 = splat(0.0), motion = splat(0.0), weight = splat(0.0);
@@ -88,7 +88,8 @@ double PaperSimulation::fastest() const noexcept {
   return std::sqrt(largest(fastest2));
 }
 
-/// Stores the state at the start of a tick. Copied in packs: six calls of memcpy take four times as long at 50 nodes.
+/// Stores the state at the start of a tick. Copies it in packs of four numbers; six calls of memcpy would take four
+/// times as long at 50 nodes.
 void PaperSimulation::remember() noexcept {
   for (int i = 0; i < model_.nodes; i += kLanes) {
     before_.p.set(i, state_.p.pack(i));
@@ -104,7 +105,7 @@ void PaperSimulation::stop(int bad_node) noexcept {
   hands_ = {};  // zero force is the safe final value
 }
 
-/// Is the state finite and in range? If not, it is reset to the start of the tick and frozen.
+/// Is the state finite and in range? If not, the thread is put back to the start of the tick and frozen.
 bool PaperSimulation::check() noexcept {
   if (kinetic_J_ < model_.mass_kg * kOutOfRange * kOutOfRange && std::isfinite(weight_J_)) return true;
   for (int i = 0; i < model_.nodes; ++i) {
@@ -138,8 +139,9 @@ void PaperSimulation::publish_contacts() noexcept {
   }
 }
 
-/// Condition of the paper's section IV for a hand that holds `node`. A: only springs transmit its force. B: a
-/// neighbouring segment is at its length limit and transmits it. C: as B, and the other hand holds the thread too.
+/// Condition of the paper's section IV for a hand that holds `node`. A: only springs transmit the hand's force. B: a
+/// neighbouring segment is at its length limit and transmits the force. C: as B, and the other hand holds the thread
+/// too.
 Propagation PaperSimulation::condition(int node, bool other_holds) const noexcept {
   if (!has_limits_) return Propagation::kNone;
   const bool passes =
@@ -257,7 +259,8 @@ void PaperSimulation::tick(const std::array<ToolInput, 2>& tools, const TimeLeft
   time_.end();
 }
 
-/// Hand forces of a tick that ended early: the mean over the substeps done or, if there were none, the last tick's.
+/// Sets the hand forces of a tick that ended early: the mean over the substeps that were done, or the last tick's
+/// forces if there were none.
 void PaperSimulation::feel_what_was_done(int substeps, const std::array<Vec3, 2>& before) noexcept {
   for (std::size_t h = 0; h < 2; ++h) {
     if (substeps > 0) {

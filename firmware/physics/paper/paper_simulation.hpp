@@ -1,6 +1,5 @@
 #pragma once
-// The thread models of the paper of 2007 behind the interface of simulation.hpp: built from a scene, driven by two
-// tools.
+// The thread models of the 2007 paper, with the interface of simulation.hpp: built from a scene, moved by two tools.
 
 #include <array>
 #include <cstdint>
@@ -28,7 +27,7 @@ class PaperSimulation {
  public:
   static std::variant<PaperSimulation, std::string> make(const scene::Scene& scene);
 
-  /// Freezes the thread as after a divergence: the state is kept, hands are open and without force.
+  /// Freezes the thread, as after a divergence: it keeps its state, and the hands are open and without force.
   void stop(int bad_node) noexcept;
   void tick(const std::array<ToolInput, 2>& tools, const TimeLeft& left = {}) noexcept;
   [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept { return unpacked(state_.p, nodes_W_, nodes_stale_); }
@@ -42,8 +41,8 @@ class PaperSimulation {
   void reset() noexcept;
   [[nodiscard]] bool continue_from(const PaperSimulation& other) noexcept;
   void set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept;
-  /// The members that an image saves (image.hpp): all but the step's function, the clock, and the nodes as vectors,
-  /// which are converted again when they are asked for.
+  /// The members that an image saves (image.hpp). Not saved: the pointer to the step's function, the clock, and the
+  /// nodes as vectors, which are converted again when somebody asks for them.
   [[nodiscard]] static auto members(PaperSimulation& self) noexcept {
     auto& [model, kind, swivel, initial, state, before, work, internal, forward, explicit_damping, has_limits,
            contact_kind, contact, paper_contact, course, limits, coupling, grasp, gravity, loads, substeps, time,

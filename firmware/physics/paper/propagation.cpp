@@ -58,7 +58,8 @@ bool LengthLimits::measure(const ThreadModel& m, const ThreadState& s) noexcept 
   return outside;
 }
 
-/// Deactivates a limit whose total impulse has the wrong sign: a longest length can only pull, a shortest only push.
+/// Deactivates the limit of segment i if its total impulse has the wrong sign: a limit on the longest length can only
+/// pull, one on the shortest length can only push.
 void LengthLimits::let_go_of_pushed(int i) noexcept {
   Bound& bound = bound_[static_cast<std::size_t>(i)];
   const double total = impulse_[i] + lambda_[i] / step_s_;
@@ -93,8 +94,9 @@ void LengthLimits::correct(const ThreadModel& m, ThreadState& s) noexcept {
   extend_last_node(s.p, m.nodes);
 }
 
-/// Moves a node along the connection to its neighbour until the length is within the limits. Removes the part of its
-/// relative velocity that would violate the limit further; as a fallback it must not add energy.
+/// Moves node `to` towards or away from node `from` until the segment's length is within its limits. Then removes the
+/// part of the relative velocity that would violate the limit further, and no more, because a fallback must not add
+/// energy.
 void LengthLimits::place(const ThreadModel& m, ThreadState& s, int from, int to) noexcept {
   if (m.free[to] == 0.0) return;
   const V3<double> e = s.p.at(to) - s.p.at(from);
@@ -107,8 +109,8 @@ void LengthLimits::place(const ThreadModel& m, ThreadState& s, int from, int to)
   if ((rate > 0.0) == (length > wanted)) s.v.put(to, s.v.at(to) - rate * u);
 }
 
-/// Fallback when Newton's method does not converge (a hand that jumps, two fixed nodes too far apart): enforces the
-/// limits node by node, outwards from the first fixed node.
+/// Fallback if Newton's method does not converge, for instance because a hand jumps or two fixed nodes are too far
+/// apart: enforces the limits node by node, outwards from the first fixed node.
 void LengthLimits::walk_outwards(const ThreadModel& m, ThreadState& s) noexcept {
   int start = 0;
   while (start < segments_ && m.free[start] != 0.0) ++start;

@@ -5,15 +5,16 @@
 
 namespace ligature::physics {
 
-/// Force propagation along the thread, paper section IV, as length limits of the segments, solved for both hands at
-/// once. A taut segment with the direction e_i transmits the axial part of the hand's force f_h, equation (16): (f_h .
-/// e_i) e_i. Equation (17) as printed transmits the part ACROSS the segment and is not used (docs/physics.md).
-///   Condition A: a segment strictly inside (l_min, l_max) has no constraint force; only its spring acts.
-///   Condition B: a segment at a limit is rigid and transmits the axial force: tension at l_max, compression at l_min.
-///   Condition C: both hands hold the thread; they are two loads of one tridiagonal system G M^-1 G^T lambda =
-///   violation (G: gradients of the lengths, M: masses, lambda: constraint impulses).
-/// Newton iterations on the positions (each with new directions) keep every segment within its limits to kTolerance of
-/// its rest length after each step, for any load.
+/// Force propagation along the thread (the paper's section IV), as limits on the segments' lengths, solved for both
+/// hands at once. A taut segment with the direction e_i transmits the axial part of the hand's force f_h, (f_h . e_i)
+/// e_i (equation (16)). Equation (17) as printed transmits the part ACROSS the segment, and is not used
+/// (docs/physics.md).
+/// Condition A: a segment strictly inside its limits (l_min, l_max) has no constraint force; only its spring acts.
+/// Condition B: a segment at a limit is rigid and transmits the axial force: tension at l_max, compression at l_min.
+/// Condition C: both hands hold the thread; they are two loads of one tridiagonal system
+///   G M^-1 G^T lambda = violation      (G: gradients of the lengths, M: masses, lambda: constraint impulses).
+/// Newton iterations on the positions, each with new directions, keep every segment within its limits for any load,
+/// with a tolerance of kTolerance times its rest length.
 class LengthLimits {
  public:
   static constexpr double kTolerance = 1e-7;
@@ -21,15 +22,15 @@ class LengthLimits {
   LengthLimits() = default;
   LengthLimits(const ThreadModel& model, double min_length, double max_length);
 
-  /// Velocity level, before dampers and contacts: applies the constraint forces of the last step again. So velocities
-  /// are zero in equilibrium when the dampers act, and contacts include the transmitted force.
+  /// Call before dampers and contacts: applies the constraint forces of the last step to the velocities. So in
+  /// equilibrium the velocities are zero when the dampers act, and contacts feel the transmitted force.
   void warm_start(const ThreadModel& model, ThreadState& state) noexcept;
 
-  /// Position level, after positions were advanced: corrects positions and velocities. @return Newton iterations used
+  /// Call after positions were advanced: corrects positions and velocities. @return Newton iterations used
   int enforce(const ThreadModel& model, ThreadState& state) noexcept;
 
-  /// Constraint force of a segment, in addition to its spring, N (mean over the last step), positive in tension; 0 in
-  /// condition A.
+  /// Constraint force of a segment, N, in addition to its spring's force; mean over the last step, positive in tension,
+  /// 0 in condition A.
   [[nodiscard]] double passed_N(int segment) const noexcept { return impulse_[segment] / step_s_; }
   void forget() noexcept;
   LIGATURE_MEMBERS(LengthLimits, rest_m, shortest_m, longest_m, step_s, segments, holding, u, length, diag, gain, link,

@@ -12,10 +12,12 @@ struct Repulsion {
   LIGATURE_MEMBERS(Repulsion, stiffness, damping)
 };
 
-/// Repulsive force between two points C and E of the thread, equation (2): n = (k_rs (2 r - d) - k_rd v_r . n^) n^.
-///   n^ points from E to C; v_r is the velocity of C relative to E. As printed it attracts (n < 0) while points
-///   separate; `clamped` (the default) limits it to n >= 0. The force still jumps at touch (2 r = d while approaching),
-///   and does not depend on mass or time step, so it is not unconditionally stable.
+/// Repulsive force between two points C and E of the thread at the distance d, the paper's equation (2):
+///   n = (k_rs (2 r - d) - k_rd v_r . n^) n^
+/// k_rs, k_rd: spring and damper, r: radius, n^: unit vector from E to C, v_r: velocity of C relative to E. As printed
+/// it attracts (n < 0) while the points separate; `clamped` (the default) limits it to n >= 0. The force still jumps
+/// when approaching points touch (d = 2 r). It does not depend on mass or time step, so it is not unconditionally
+/// stable.
 /// @return component of n along n^, N
 inline double repulsion_N(const Repulsion& k, double radius_m, double distance_m, double normal_rate_m_per_s,
                           bool clamped = true) noexcept {

@@ -5,8 +5,8 @@
 
 namespace ligature::physics {
 
-/// A copy of a std::vector has only the capacity of its elements. A solver that treats capacity as a limit, to avoid
-/// allocation, would then drop contacts in a copied simulation. A copy of this one has the capacity of the original.
+/// A std::vector whose copy keeps the original's capacity. A plain copy would have only as much as its elements need.
+/// Solvers here never exceed a vector's capacity, to avoid allocation, so a copied simulation would drop contacts.
 template <class T>
 class RoomyVector : public std::vector<T> {
  public:

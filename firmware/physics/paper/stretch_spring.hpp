@@ -25,10 +25,10 @@ Segment<S> segment_of(const V3<S>& p_left, const V3<S>& p_right, S floor_m) noex
   return s;
 }
 
-/// Linear spring, equation (5), models 1-4: T = k_l (l - l_r) / l_r, N, positive pulls the two nodes together.
-///   Force +T e on P_i and -T e on P_{i+1}. The paper does not state the reaction force; without it the net force on
-///   the thread was 3.4 times the largest spring force. k_l is a force per unit strain, i.e. EA.
-///   Energy k_l l_r strain^2 / 2.
+/// Linear spring, the paper's equation (5), models 1-4: tension T = k_l (l - l_r) / l_r, N, of a segment of length l
+/// and rest length l_r; positive pulls the two nodes together. Force +T e on P_i and -T e on P_{i+1}. k_l is a force
+/// per unit strain, i.e. EA. Energy k_l l_r strain^2 / 2. The paper does not state the reaction force; without it the
+/// net force on the thread was 3.4 times the largest spring force.
 struct LinearStretch {
   template <class S>
   static S tension_N(S strain, double k_N) noexcept {
@@ -45,9 +45,9 @@ struct LinearStretch {
   }
 };
 
-/// Model 5: the force is quadratic in the strain: T = k_l |strain| strain. Energy k_l l_r |strain|^3 / 3.
-///   With the printed k_l it stretches more than model 4, not less as the paper says (strain^2 < strain below 100 %):
-///   11.7 % instead of 1.5 % for the hanging thread of Table I. With kStiffQuadratic it stretches less.
+/// Spring of model 5, quadratic in the strain: T = k_l |strain| strain. Energy k_l l_r |strain|^3 / 3. With the printed
+/// k_l, model 5 stretches more than model 4, not less as the paper says, because strain^2 < strain below 100 %: the
+/// hanging thread of Table I by 11.7 % instead of 1.5 %. With kStiffQuadratic, model 5 stretches less.
 struct QuadraticStretchLaw {
   template <class S>
   static S tension_N(S strain, double k_N) noexcept {
@@ -63,9 +63,9 @@ struct QuadraticStretchLaw {
   }
 };
 
-/// Factor of k_l in model 5. It stretches less than model 4 where k5 strain^2 > k_l strain, i.e. above the strain
-/// k_l / k5. A factor of 100 makes that 1 %: the hanging thread of Table I (top strain 3 %) then stretches less, and a
-/// pull of 100 N stretches it ten times less.
+/// Factor on k_l in model 5, k5 = 100 k_l. Model 5 stretches less than model 4 where k5 strain^2 > k_l strain, i.e.
+/// above a strain of k_l / k5 = 1 %. So the hanging thread of Table I (largest strain 3 %) stretches less, and with a
+/// pull of 100 N ten times less.
 inline constexpr double kStiffQuadratic = 100.0;
 
 }  // namespace ligature::physics

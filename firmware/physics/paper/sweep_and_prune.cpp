@@ -5,7 +5,7 @@
 namespace ligature::physics {
 namespace {
 
-/// The coordinate of the centres with the largest variance: along it the fewest intervals overlap.
+/// The coordinate (x, y or z) in which the spheres' centres vary most: the fewest intervals overlap along that axis.
 const Lane& widest_axis(const SegmentSpheres& s) noexcept {
   const Lane* widest = &s.centre.x;
   double most = -1.0;

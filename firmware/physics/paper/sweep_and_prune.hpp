@@ -7,9 +7,9 @@
 
 namespace ligature::physics {
 
-/// Sweep and prune: segments are sorted by their lower end along the axis of the thread's largest extent; only pairs
-/// with overlapping intervals are tested. The order is kept between calls, so sorting is cheap while the thread moves
-/// little. Cost: sorting O(n log n) at worst, plus the number of overlapping intervals.
+/// Sweep and prune: sorts the segments by their lower ends along the axis of the thread's largest extent, and tests
+/// only pairs whose intervals on that axis overlap. The order is kept for the next call, so sorting is cheap while the
+/// thread moves little. Cost: at worst O(n log n) for sorting, plus the number of overlapping intervals.
 class Sweep {
  public:
   Sweep() = default;

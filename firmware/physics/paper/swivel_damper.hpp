@@ -4,8 +4,7 @@
 
 namespace ligature::physics {
 
-/// Swivel rates: speeds at which the two end nodes of a bend leave its plane, along the bend's unit axis and relative
-/// to the middle node, m/s.
+/// Swivel rates, m/s: speeds at which the two end nodes of a bend leave the bend's plane, relative to the middle node.
 template <class S>
 struct SwivelRates {
   S left, right;
@@ -17,12 +16,11 @@ SwivelRates<S> swivel_rates(const V3<S>& axis, const V3<S>& v_left, const V3<S>&
 }
 
 /// The paper's swivel damper, equations (13)-(15), with the sign that damps:
-///   f_{i-1} = -k_sw ((v_{i-1} - v_i) . s) s / l_{i-1},   f_{i+1} likewise over l_i,   f_i = minus their sum,
-///   s = e_{i-1} x e_i made a unit vector, as the text calls it (the formula has length sin alpha); zero when exactly
-///   straight.
-/// As printed (plus sign) it adds energy. With either sign it is not an internal force: three points have only three
-/// internal degrees of freedom (two lengths and an angle), so it leaves a net torque and damps rigid rotation, like a
-/// drag.
+///   f_{i-1} = -k_sw ((v_{i-1} - v_i) . s) s / l_{i-1},   f_{i+1} likewise over l_i,   f_i = -(f_{i-1} + f_{i+1})
+/// s is e_{i-1} x e_i made a unit vector, as the paper's text calls it (its formula has length sin alpha); zero when
+/// the bend is exactly straight. With the printed sign (plus) the damper adds energy. With either sign it is not an
+/// internal force: three points have only three internal degrees of freedom (two lengths and an angle). So it leaves a
+/// net torque and damps rigid rotation, like a drag.
 /// @return coefficient of the unit axis per unit swivel rate, N s/m
 template <class S>
 S paper_swivel_N_s_per_m(S inv_length, double k_N_s) noexcept {
@@ -30,13 +28,14 @@ S paper_swivel_N_s_per_m(S inv_length, double k_N_s) noexcept {
 }
 
 /// The internal swivel damper acts on the rate of the dihedral angle phi of four nodes. The weight w keeps it finite on
-/// a straight thread, where phi is undefined.
+/// a straight thread, where phi is undefined. alpha_1, alpha_2: angles of the two bends, sin1, cos1 .. their sines and
+/// cosines; l1 .. l3: lengths of the segments.
 ///   rate = w phi',  w = sin(alpha_1) sin(alpha_2);   force on node j: -k (w phi') (w d phi/dP_j)
-///   w grad phi lies along the two axes s1 (nodes 0, 1, 2) and s2 (nodes 1, 2, 3):
+/// w grad phi lies along the two axes s1 (of the bend of nodes 0, 1, 2) and s2 (of nodes 1, 2, 3):
 ///     node 0:  p0 s1    node 1: p1 s1 + q1 s2    node 2: p2 s1 + q2 s2    node 3: q3 s2
 ///     p0 = -sin2 / l1, p2 = -sin2 cos1 / l2, p1 = -(p0 + p2);   q3 = sin1 / l3, q1 = sin1 cos2 / l2, q2 = -(q1 + q3)
-/// Internal: no net force or torque, nothing in rigid motion, power -k rate^2. k = k_sw l_r, N m s, so that at a right
-/// angle the force on an end node is the paper's.
+/// The force is internal: no net force or torque, none in rigid motion, power -k rate^2. k = k_sw l_r, N m s, so that
+/// at a right angle the force on an end node equals the paper's.
 template <class S>
 struct Dihedral {
   S p0, p2, q1, q3;
@@ -51,7 +50,7 @@ S dihedral_rate(const Dihedral<S>& d, const SwivelRates<S>& first, const SwivelR
   return d.p0 * first.left + d.p2 * first.right + d.q1 * second.left + d.q3 * second.right;
 }
 
-/// g^T M^-1 g of the dihedral's gradient, for the implicit damper.
+/// Mobility of a dihedral for the implicit damper: g^T M^-1 g, with the gradient g of its angle and the masses M.
 /// @param axes  s1 . s2    @param w0..w3  inverse masses of the four nodes, 1/kg
 template <class S>
 S dihedral_mobility(const Dihedral<S>& d, S axes, S w0, S w1, S w2, S w3) noexcept {

@@ -32,7 +32,7 @@ struct ThreadState {
   LIGATURE_MEMBERS(ThreadState, p, v)
 };
 
-/// Intermediate results of a step. Index i of a bend is its middle node, of a segment its left node.
+/// Intermediate results of a step. A bend has the index of its middle node, a segment that of its left node.
 struct InternalWorkspace {
   Lane3 u;                  ///< segment directions, (4)
   Lane inv_length;          ///< 1/m
@@ -71,7 +71,8 @@ struct InternalWorkspace {
         next_right(n) {}
 };
 
-/// Repeats the last position past the end, so that segments that do not exist have length zero and no direction.
+/// Repeats the last node's position past the end of the arrays, so that the segments there have zero length and no
+/// direction.
 inline void extend_last_node(Lane3& p, int nodes) noexcept {
   const V3<double> last = p.at(nodes - 1);
   for (int k = 0; k < kLanes; ++k) p.put(nodes + k, last);

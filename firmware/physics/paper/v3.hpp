@@ -1,5 +1,5 @@
 #pragma once
-// Vectors of three components over any scalar: double in tests, Pack (four nodes at once) in the loop.
+// Vectors of three components over any scalar type: double in tests, Pack (four nodes at once) in the loop.
 
 #include "firmware/physics/members.hpp"
 #include "firmware/physics/paper/pack.hpp"

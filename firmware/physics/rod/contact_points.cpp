@@ -8,8 +8,8 @@ namespace {
 
 Vec3 vec3(rod::Vec a) noexcept { return {a[0], a[1], a[2]}; }
 
-/// Point of a segment's chord at which a contact acts. A contact between smooth curves also has small weights on
-/// further nodes; they are not needed for the place.
+/// Point of a segment's chord at which a contact acts. A contact between smooth curves also has small weights on other
+/// nodes, which are ignored here.
 Vec3 place_on(const rod::Contact& c, int first, const rod::State& state) noexcept {
   const double w0 = std::abs(c.w[first]), w1 = std::abs(c.w[first + 1]);
   const Vec3 x0 = vec3(state.x[static_cast<std::size_t>(c.node[first])]);

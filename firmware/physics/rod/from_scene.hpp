@@ -9,15 +9,15 @@
 
 namespace ligature::physics::rod {
 
-/// The time steps, tolerances and work limits that belong to a scene's `accuracy`. docs/measurements/accuracy.md has
-/// cost and error of each setting.
+/// The time steps, tolerances and work limits for the scene's key suture.accuracy. docs/measurements/accuracy.md has
+/// the cost and error of each setting.
 [[nodiscard]] Numerics numerics_of(const scene::Scene& scene) noexcept;
 
 /// The effects that the scene needs.
 [[nodiscard]] Parts parts_of(const scene::Scene& scene) noexcept;
 
-/// @return the rod in its initial shape, with the scene's supports and room for two gripper capsules after the pegs; or
-/// the reason why the scene is refused.
+/// @return the rod in its initial shape, with the scene's supports; its list of bodies has the scene's pegs and then
+/// two unused places for grippers. Or the reason why the scene is refused.
 [[nodiscard]] std::variant<Rod, std::string> rod_of(const scene::Scene& scene);
 
 }  // namespace ligature::physics::rod

@@ -1,5 +1,5 @@
 #pragma once
-// The rod: state, material, solvers and contacts together, and the tick that advances them.
+// The rod: a thread's state, material, solvers and contacts, and the tick that advances them.
 
 #include <cstdint>
 #include <optional>
@@ -9,15 +9,15 @@
 
 namespace ligature::physics::rod {
 
-/// A simulated thread. Construct it, set its shape through state(), then call tick(). Only the constructor allocates,
-/// and an assignment from a rod of another size. Its data are in three structs, which a copy treats differently
-/// (rod_memory.hpp): RodKept is copied, RodNow starts empty, RodCache is marked as missing and computed again. Without
-/// contact a copy continues as its original, to the bit. With contact it makes the list of pairs and the contact
-/// matrices again, which changes rounding (Copy.* in copies_test.cpp). They are not copied because they are large, and
+/// A simulated thread. Construct it, set its shape through state(), then call tick(). Only the constructor allocates
+/// memory, and an assignment from a rod of another size. The data are in three structs, which a copy treats differently
+/// (rod_memory.hpp): it copies RodKept, starts with an empty RodNow, and computes RodCache again. Without contact, a
+/// copy continues exactly as its original, to the bit. With contact, the list of pairs and the contact matrices are
+/// computed again, which changes rounding (Copy.* in copies_test.cpp). They are not copied, because they are large and
 /// reset() copies within the real-time loop.
 class Rod : private RodKept, private RodNow, private RodCache {
  public:
-  /// Starts straight along +x from the origin, at rest, with equally spaced nodes.
+  /// The thread is straight along +x from the origin, at rest, with equally spaced nodes.
   /// @param n  number of nodes, >= 3
   Rod(const Material& material, const Numerics& numerics, const Parts& parts, int n, int bodies = 0);
 
@@ -49,51 +49,53 @@ class Rod : private RodKept, private RodNow, private RodCache {
   [[nodiscard]] const Forces& forces() const noexcept { return forces_; }
   [[nodiscard]] const ContactSet& contact_set() const noexcept { return contacts_; }
 
-  /// With Parts::adaptive: chooses the initial node spacing for a given curvature, 1/m, sampled at equal distances
-  /// along the thread. Call before the first tick; the caller then sets positions from state().mesh.s.
+  /// With Parts::adaptive: chooses the initial node spacing for a shape with the given curvature, 1/m, sampled at equal
+  /// distances along the thread. Call before the first tick, and then set the positions from state().mesh.s.
   void spread(std::span<const double> curvature_per_m);
 
   /// Call after positions, clamps or spacing were changed from outside: recomputes the mesh constants and forgets the
   /// contacts. With Parts::frames() the thread then starts without twist.
   void moved() noexcept;
 
-  /// Takes over the motion, holds and twist of another rod but keeps this one's material and surroundings. No
-  /// allocation.
-  /// @return false, and nothing is changed, when the numbers of nodes or Parts::adaptive differ.
+  /// Takes over the motion, holds and twist of another rod, but keeps its own material and surroundings. No allocation.
+  /// @return false if the numbers of nodes or Parts::adaptive differ; then nothing is changed.
   [[nodiscard]] bool continue_from(const Rod& other) noexcept;
 
-  /// Three ways to hold a node. Each returns the index of the hold, or -1 when all kMaxHolds are in use.
-  /// support: fixes the position p, m. clamp: also fixes the tangent along `direction`, and the roll.
-  /// grip: a hand's spring and damper, f = K (tool - x) + B (v_tool - v) on the node, integrated implicitly; it keeps
-  /// the present roll (holds_roll) and the present tangent (directed).
+  /// Three ways to hold a node. Each returns the index of the hold, or -1 if all kMaxHolds holds are in use.
+  /// - support: fixes the position p, m.
+  /// - clamp: also fixes the tangent along `direction`, and the roll.
+  /// - grip: a hand's spring K and damper B, with the force K (tool - x) + B (v_tool - v) on the node (x, v: its
+  /// position and velocity), integrated implicitly. It also fixes the present roll (holds_roll) and the present tangent
+  /// (directed).
   /// O(1), or O(n) when a tangent is fixed; no allocation.
   int support(int node, Vec p) noexcept;
   int clamp(int node, Vec p, Vec direction) noexcept;
   int grip(int node, double stiffness_N_per_m, double damping_N_s_per_m, Vec tool, bool holds_roll = true,
            bool directed = false) noexcept;
-  /// Ends a hold; the next ticks use more substeps while the released thread is fast. @pre a valid index of a hold.
+  /// Ends a hold. The next ticks use more substeps while the released thread is fast. @pre `hold` is the index of a
+  /// hold.
   void release(int hold) noexcept;
 
   /// Advances by numerics().tick_s. `goals` are the targets of the holds at the end of the tick, m; for a hold that
-  /// does not move, its present target. Cost: O(n) per substep, plus at most Numerics::budget() instructions for
-  /// contact; no allocation, no exception. When the budget or the time `left` runs out, the thread is not moved for the
-  /// rest of the tick, which report() tells.
+  /// does not move, its present target. When the contact budget or the time `left` is used up, the thread is not moved
+  /// for the rest of the tick, which report() tells. Cost: O(n) per substep, plus at most Numerics::budget()
+  /// instructions for contact; no allocation, no exception.
   void tick(const std::array<Vec, kMaxHolds>& goals, const TimeLeft& left = {}) noexcept;
   void tick() noexcept;
-  /// Call when the caller's work for this tick is done too: measures the time since the last clock query, which later
-  /// ticks then reserve.
+  /// Call after tick(), when the caller's own work for this tick is done. Measures the time since the last clock query,
+  /// so that later ticks can reserve it.
   void tick_ended() noexcept { work_.time().end(); }
 
-  /// The remeshing step of a tick alone. @return true when nodes moved along the thread.
+  /// Does only the remeshing of a tick. @return true if nodes moved along the thread.
   bool remesh() noexcept;
-  /// Turns a hold that fixes roll: from the next tick on its director points along `steer` and, if the hold is
+  /// Turns a hold that fixes roll. From the next tick on, the hold's director points along `steer` and, if the hold is
   /// directed, its tangent along `direction`.
   void steer(int hold, Vec steer, Vec direction) noexcept;
   /// Switches remeshing inside tick() off (true) or on (false), for callers that call remesh() themselves.
   void hold_mesh(bool on) noexcept { mesh_held_ = on; }
 
   [[nodiscard]] const TickReport& report() const noexcept { return report_; }
-  /// Energy without twist_energy_J(); the elastic energy of contacts is that at the end of the last tick.
+  /// All energies except twist_energy_J(). The elastic energy of contacts is that at the end of the last tick.
   [[nodiscard]] Energy energy() const noexcept {
     Energy e = rod::energy(material_, state_, gravity);
     e.give_J = give_J_;
@@ -105,7 +107,7 @@ class Rod : private RodKept, private RodNow, private RodCache {
  private:
   using Substep = bool (Rod::*)(double) noexcept;
   static Substep pick(const Parts& parts) noexcept;
-  /// One time step of dt_s. @return false, and nothing is moved, when the budget or time left is too small.
+  /// Does one time step of dt_s. @return false if the budget or time left is too small; then nothing is moved.
   template <unsigned Bits>
   bool substep(double dt_s) noexcept;
   template <unsigned Bits>
@@ -117,10 +119,11 @@ class Rod : private RodKept, private RodNow, private RodCache {
   void mesh_changed() noexcept;
   [[nodiscard]] bool touches() const noexcept { return parts_.contact || parts_.world; }
   [[nodiscard]] bool sticks() const noexcept { return material_.static_friction > material_.friction; }
-  /// Newton's method serves the tight contacts of knots; contact with floor and bodies is solved by sweeps.
+  /// Whether Newton's method may solve the contacts. It is for the tight contacts of knots; sweeps solve contact with
+  /// floor and bodies, and contact that rolls the thread.
   [[nodiscard]] bool solves_directly() const noexcept { return !parts_.turning && contacts_.only_pairs(); }
-  /// window: number of nodes from the first to the last on which contacts act. rows and passes: work that the contact
-  /// rows may use with their fewest passes, and with all their passes.
+  /// `window`: number of nodes from the first to the last on which contacts act. `rows`: work, in instructions, for
+  /// setting up contact rows with their fewest passes. `passes`: work for the rows with all their passes.
   struct Allowance {
     long window, rows, passes;
   };
@@ -148,10 +151,12 @@ class Rod : private RodKept, private RodNow, private RodCache {
   };
   HandSpeed set_hands(const std::array<Vec, kMaxHolds>& goals, std::array<Vec, kMaxHolds>& starts) noexcept;
   void begin_tick(const HandSpeed& hands, const TimeLeft& left) noexcept;
-  /// Computes the coupling forces on the hands, at the node positions x + ahead_s v.
+  /// Computes the coupling forces on the hands from the node positions x + ahead_s v (x, v: present positions and
+  /// velocities).
   void feel_hands(double ahead_s) noexcept;
   int add_hold(const Hold& hold) noexcept;
-  /// Reduces the stress-free bends, strains and corner offsets that remeshing has left.
+  /// Reduces the offsets that remeshing has left: stress-free bends and strains, and changes of the smooth curve's
+  /// corners.
   void fade() noexcept;
 };
 

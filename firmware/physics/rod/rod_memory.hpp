@@ -1,5 +1,5 @@
 #pragma once
-// The data of a rod, in parts by what a copy does with them.
+// The data of a rod, in structs that a copy treats differently (see the class Rod).
 
 #include <vector>
 
@@ -14,7 +14,8 @@ namespace ligature::physics::rod {
 
 class Rod;
 
-/// Effects that a scene models. Rod::substep is compiled once per combination, so an absent effect costs nothing.
+/// Effects that a scene models. Rod::substep() is compiled for each combination of effects, so an absent effect costs
+/// nothing.
 struct Parts {
   bool twist = true;
   bool contact = true;  ///< contact of the thread with itself
@@ -28,7 +29,8 @@ struct Parts {
   LIGATURE_MEMBERS(Parts, twist, contact, friction, world, adaptive, roll, turning, set, drum)
 
   bool operator==(const Parts&) const = default;
-  /// Does every segment have a material frame? With `roll` the frames turn in every substep, otherwise once per tick.
+  /// Does every segment have a material frame? With `roll` the frames are turned in every substep, otherwise once per
+  /// tick.
   [[nodiscard]] constexpr bool frames() const noexcept { return roll || set; }
 };
 
@@ -41,8 +43,8 @@ struct World {
   LIGATURE_MEMBERS(World, gravity, floor_m, floor_friction, has_floor, bodies)
 };
 
-/// The thread's motion, and the state of the rules that adapt the rod to its computing time: all that
-/// Rod::continue_from() takes over.
+/// The thread's motion, and the state of the rules that adapt the work to the computing time. Rod::continue_from()
+/// takes over exactly this.
 struct RodCourse {
   State state_;
   Forces forces_;
@@ -61,7 +63,7 @@ struct RodCourse {
                    kept_J, give_J)
 };
 
-/// What a copy takes over besides, but Rod::continue_from() does not.
+/// What a copy takes over in addition, but Rod::continue_from() does not.
 struct RodMatter {
   Material material_;
   Numerics numerics_;
@@ -73,8 +75,7 @@ struct RodMatter {
   Motion motion_;
   long list_cost_ = 0;      ///< work of the last broad phase
   bool mesh_held_ = false;  ///< the caller remeshes by Rod::remesh()
-  /// The members that an image saves (image.hpp): all but the pointer to the substep's function, which follows from the
-  /// parts.
+  /// The members that an image saves (image.hpp): all but substep_, which follows from parts_.
   [[nodiscard]] static auto members(RodMatter& self) noexcept {
     auto& [material, numerics, parts, substep, near_m, spin, contacts, motion, list_cost, mesh_held] = self;
     return std::tie(material, numerics, parts, near_m, spin, contacts, motion, list_cost, mesh_held);
@@ -96,8 +97,8 @@ struct RodNow {
   bool braked_ = false;  ///< velocities of the last substep were scaled down after the hand forces were computed
 };
 
-/// Data that is computed again when it is missing, the memory for it, and the clock. The target of a copy keeps its own
-/// memory and clock, and marks its data as missing.
+/// Data that is computed again when it is missing, the memory for this data, and the clock. A rod to which another one
+/// is assigned keeps its own memory and clock, and marks this data as missing.
 struct RodCache {
   BandSolver solver_;
   ContactMetric metric_;
@@ -109,7 +110,7 @@ struct RodCache {
   std::vector<Vec> v_before_;  ///< velocities at the start of the substep
 
   void forget() noexcept { metric_.invalidate(), stale_ = true; }
-  /// The members that an image saves (image.hpp): all but v_before_ and the solver, which every substep fills again.
+  /// The members that an image saves (image.hpp): all but v_before_ and solver_, which every substep fills again.
   [[nodiscard]] static auto members(RodCache& self) noexcept {
     auto& [solver, metric, metric_dt, broad, horizon_s, stale, work, v_before] = self;
     return std::tie(metric, metric_dt, broad, horizon_s, stale, work);

@@ -142,7 +142,7 @@ void RodSimulation::update_grasp(const std::array<ToolInput, 2>& tools) noexcept
   }
 }
 
-// A gripper that holds the thread has no contacts; after it lets go they start again once it is clear of the thread.
+// A gripper has no contacts while it holds the thread, and after its opening until it is clear of the thread.
 void RodSimulation::update_grippers(const std::array<ToolInput, 2>& tools) noexcept {
   const double radius = rod_.material().radius_m;
   for (std::size_t h = 0; h < 2; ++h) {

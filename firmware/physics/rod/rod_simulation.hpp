@@ -1,5 +1,5 @@
 #pragma once
-// The rod model behind firmware/physics/simulation.hpp: built from a scene, driven by two tools.
+// The rod with the interface of firmware/physics/simulation.hpp: built from a scene, moved by two tools.
 
 #include <array>
 #include <span>
@@ -16,7 +16,8 @@
 
 namespace ligature::physics::rod {
 
-/// State of the hands, and what was published last. This and the state of the rod are all that continue_from() copies.
+/// State of the hands, and the results published last. continue_from() copies this and the state of the rod, nothing
+/// else.
 struct HandsCourse {
   std::array<Jaws, 2> jaws_;
   std::array<Closing, 2> closing_;
@@ -36,20 +37,21 @@ struct Stage {
   bool grippers_ = false;
   int gripper_body_ = 0;                  // index of the left gripper's capsule
   std::vector<Vec> x_before_, v_before_;  // scratch of tick()
-  /// The members that an image saves (image.hpp): all but those that follow from the scene, and scratch memory.
+  /// The members that an image saves (image.hpp). Not saved: initial_, which follows from the scene, and scratch
+  /// memory.
   [[nodiscard]] static auto members(Stage& self) noexcept {
     auto& [initial, rod, reach_m, grippers, gripper_body, x_before, v_before] = self;
     return std::tie(rod, reach_m, grippers, gripper_body);
   }
 };
 
-/// Same contract as physics::Simulation. With spacing "adaptive" a node index is not a fixed material point: nodes move
-/// along the thread (refine.hpp); their number is constant.
+/// Same contract as physics::Simulation. With adaptive node spacing, a node's index does not stand for a fixed point of
+/// the thread, because nodes move along the thread (refine.hpp); their number is constant.
 class RodSimulation : private HandsCourse, private Stage {
  public:
   static std::variant<RodSimulation, std::string> make(const scene::Scene& scene);
 
-  /// Freezes the thread as after a divergence: the state is kept, hands are open and without force.
+  /// Freezes the thread, as after a divergence: it keeps its state, and the hands are open and without force.
   void stop(int bad_node) noexcept;
   void tick(const std::array<ToolInput, 2>& tools, const TimeLeft& left = {}) noexcept;
   [[nodiscard]] std::span<const Vec3> nodes_W() const noexcept { return nodes_; }

@@ -1,6 +1,6 @@
 #pragma once
-// Four doubles as one register: x, y, z and a spare lane that stays zero. The compiler's vector extension, so the same
-// source becomes AVX on x86-64 and NEON pairs on arm64.
+// Vectors as one register of four doubles: x, y, z, and a spare lane that stays zero. The compiler's vector extension
+// makes AVX code from this on x86-64, and pairs of NEON registers on arm64.
 
 #include <cmath>
 #include <cstring>
@@ -63,8 +63,8 @@ inline void store(double* at, Lanes value) noexcept { std::memcpy(at, &value, si
   return {__builtin_shufflevector(c, c, 1, 2, 0, 3)};
 }
 
-/// Four vectors, stored by component. Templates over a vector and a number type take either Vec and double, or Vecs and
-/// Lanes to compute four cases at once.
+/// Four vectors, stored by component. Templates use it to compute four cases at once: their types of vector and number
+/// are either Vec and double, or Vecs and Lanes.
 struct Vecs {
   Lanes x, y, z;
 };
@@ -89,13 +89,15 @@ struct Vecs {
   return at_least_0(q < one ? q : one);
 }
 
-/// 3 x 3 matrix by columns. Three names and not an array: gcc 12 keeps arrays of registers in memory.
+/// 3 x 3 matrix by columns. The columns have three names instead of being an array, because gcc 12 keeps arrays of
+/// registers in memory.
 struct Mat {
   Vec x, y, z;
   LIGATURE_MEMBERS(Mat, a, b, c)
 };
 
-/// to = from, column by column: gcc 12 compiles a plain copy to moves through memory and general registers.
+/// Copies `from` to `to` column by column. A plain copy would be slower: gcc 12 compiles it to moves through memory and
+/// general registers.
 inline void put(Mat& to, const Mat& from) noexcept {
   to.x.v = from.x.v;
   to.y.v = from.y.v;
@@ -115,8 +117,8 @@ template <int K>
 [[nodiscard]] inline Mat operator-(const Mat& a, const Mat& b) noexcept { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 [[nodiscard]] inline Mat operator+(const Mat& a, const Mat& b) noexcept { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 [[nodiscard]] inline Mat operator*(const Mat& a, const Mat& b) noexcept { return {a * b.x, a * b.y, a * b.z}; }
-/// Unit vectors; s * kAxis[k] keeps a scalar in one register (valgrind 3.19 does not support the instruction that
-/// make(s, 0, 0) becomes).
+/// Unit vectors. s * kAxisX is used instead of make(s, 0, 0), because valgrind 3.19 does not support the instruction
+/// that make(s, 0, 0) becomes.
 inline constexpr Lanes kAxisX = {1, 0, 0, 0}, kAxisY = {0, 1, 0, 0}, kAxisZ = {0, 0, 1, 0};
 [[nodiscard]] inline Mat scaled_identity(double s) noexcept { return {{s * kAxisX}, {s * kAxisY}, {s * kAxisZ}}; }
 

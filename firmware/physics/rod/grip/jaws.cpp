@@ -53,8 +53,8 @@ void Jaws::open(Rod& rod) noexcept {
   count_ = 0;
 }
 
-/// Releases nodes that are no longer between the jaws and grips those that have moved in. One of the holds keeps the
-/// roll.
+/// Releases nodes that are no longer between the jaws, and grips those that have come between them. One of the holds
+/// always fixes the thread's roll.
 void Jaws::choose(Rod& rod, Vec tool) noexcept {
   const State& state = rod.state();
   const auto& s = state.mesh.s;
@@ -83,8 +83,8 @@ void Jaws::choose(Rod& rod, Vec tool) noexcept {
     rod.release(*hold);
     *hold = hold_[static_cast<std::size_t>(--count_)];
   };
-  // One of the holds also fixes the roll. If its node leaves the jaws, this hold is released last: first a new hold
-  // beside it takes over the roll, so that the thread keeps its twist.
+  // One of the holds also fixes the roll. If that hold's node leaves the jaws, it is released last: first a new hold
+  // takes over the roll, so that the thread keeps its twist.
   int* keeper = hold_.data();
   for (int* hold = hold_.data(); hold != hold_.data() + count_; ++hold)
     if (state.holds[static_cast<std::size_t>(*hold)].holds_roll) keeper = hold;
@@ -106,7 +106,7 @@ void Jaws::choose(Rod& rod, Vec tool) noexcept {
   }
 }
 
-/// Moves the jaws' centre s_c along the thread until the coupling pulls along it by no more than slip_N.
+/// Moves the jaws' centre s_c along the thread until the coupling's pull along the thread is at most slip_N.
 void Jaws::slip(Rod& rod, Vec tool) noexcept {
   if (settings_.slip_N <= 0.0 || count_ == 0) return;
   const State& state = rod.state();
@@ -122,7 +122,7 @@ void Jaws::slip(Rod& rod, Vec tool) noexcept {
   slides_m_per_s_ = -over_m / rod.numerics().tick_s;
 }
 
-// Turns the held thread's direction, and the director that fixes its roll, with the tool.
+// Turns the held thread's direction, and its director (which fixes the roll), with the tool.
 void Jaws::turn(Rod& rod, const Mat& R_WT) noexcept {
   along_ = R_WT * along_T_;
   for (int k = 0; k < count_; ++k) {

@@ -1,5 +1,5 @@
 #pragma once
-// A hand's jaws on a rod: which nodes they hold, in which direction, and when the thread slips through.
+// A hand's jaws on a rod: decides which nodes they hold, in which direction, and when the thread slips through.
 
 #include <array>
 
@@ -23,13 +23,13 @@ struct Place {
 /// Point nearest to p on the two half segments next to a node.
 [[nodiscard]] Place nearest_place(const State& state, int node, Vec p) noexcept;
 
-/// Jaws of width w > 0 hold all nodes whose material coordinate s is within w/2 of their centre s_c, at least two. The
-/// nodes share the coupling equally, and are pulled onto a straight line along t, the thread's direction when the jaws
-/// closed:
+/// Jaws of width w > 0 hold all nodes whose material coordinate s is within w/2 of the jaws' centre s_c, but at least
+/// two. The nodes share the coupling equally. It pulls them onto a straight line along t, the thread's direction when
+/// the jaws closed:
 ///   target_j = tool + (s_j - s_c) t,   sum_j f_j = force on the hand
-/// This holds position and direction. Coulomb friction: when the coupling would pull along t by more than slip_N, s_c
-/// moves until it pulls by slip_N. The thread slides, and the energy slip_N x distance is dissipated. Once s_c is past
-/// the thread's end, nothing is held.
+/// So the jaws hold the thread's position and direction. Coulomb friction: if the coupling would pull along t by more
+/// than slip_N, s_c moves until the pull is slip_N. The thread then slides, and the energy slip_N x distance is
+/// dissipated. Once s_c is past the thread's end, nothing is held.
 class Jaws {
  public:
   static constexpr int kMost = 4;  ///< most nodes held; if more lie between the jaws, four of them at equal intervals
@@ -37,14 +37,15 @@ class Jaws {
   Jaws() = default;
   explicit Jaws(const JawSettings& settings) : settings_(settings) {}
 
-  /// @param R_WT  orientation of the tool: the thread's direction and roll then turn with it. nullptr: unknown; the
-  /// roll is fixed, and the direction is fixed (width > 0) or free (width 0).
+  /// @param R_WT orientation of the tool, with which the thread's direction and roll then turn. nullptr: unknown; then
+  /// the roll is fixed, and the direction is fixed (width > 0) or free (width 0).
   void close(Rod& rod, int node, Vec tool, const Mat* R_WT = nullptr) noexcept;
-  /// Place that jaws at `tool` would hold: with a width, the nearest place next to the node; without, the node.
+  /// Place of the thread that jaws at `tool` would hold: the nearest place beside the node, or the node itself if the
+  /// jaws have no width.
   [[nodiscard]] Place would_hold(const Rod& rod, int node, Vec tool) const noexcept;
   void open(Rod& rod) noexcept;
-  /// Call before each tick with the position that the tool will have at the end of the tick, m. Writes the target
-  /// positions of the held nodes into `goals`.
+  /// Call before each tick. Writes the target positions of the held nodes into `goals`. @param tool the tool's position
+  /// at the end of the tick, m
   void follow(Rod& rod, Vec tool, std::array<Vec, kMaxHolds>& goals, const Mat* R_WT = nullptr) noexcept;
   /// Call when the rod was reset: its holds no longer exist.
   void forget() noexcept { count_ = 0; }
@@ -52,7 +53,8 @@ class Jaws {
   [[nodiscard]] bool holds() const noexcept { return count_ > 0; }
   /// Index into State::holds of the held node nearest to the middle of the jaws. @pre holds().
   [[nodiscard]] int middle(const Rod& rod) const noexcept;
-  /// Position and velocity of the thread at s_c: the mean over the held nodes, each shifted along t to s_c, so that
+  /// Position and velocity of the thread at the jaws' centre s_c: the mean over the held nodes, each shifted along t to
+  /// s_c. So, with the coupling's stiffness K and damping B,
   ///   force() = K (place - tool) + B (velocity - the tool's).
   /// @pre holds().
   [[nodiscard]] Vec place(const Rod& rod) const noexcept;

@@ -1,4 +1,4 @@
-// Safety test for merging two segments: nothing may be crossed on the way to their chord.
+// Safety test for merging two segments: while they move to their common chord, they must not cross anything.
 
 #include <cmath>
 #include <numbers>

@@ -1,5 +1,6 @@
 #pragma once
-// The mesh of a rod: material coordinates and masses of its nodes, and the constant bending matrix.
+// The mesh of a rod: material coordinates (length along the unstretched thread) and masses of its nodes, and the
+// constant bending matrix.
 
 #include <cstdint>
 #include <span>
@@ -13,13 +14,13 @@ namespace ligature::physics::rod {
 /// Is the tangent at a node free or imposed?
 enum class Clamp : std::uint8_t { kFree, kClamped };
 
-/// Rest lengths l_j, lumped masses m_i = rho (l_{i-1} + l_i) / 2 (rho: mass per length), and the scalar pentadiagonal
-/// bending matrix K_b of the bending energy (x_j: positions of the nodes, EI: bending stiffness)
-///   E_b = sum_i w_i / 2 |t_i - t_{i-1}|^2,  w_i = 2 EI / (l_{i-1} + l_i),  t_j = (x_{j+1} - x_j) / l_j,
-/// which is quadratic in the positions: the force is linear, with the same constant matrix for x, y and z, also for
-/// unequal segments. A clamped end adds a half vertex of weight 2 EI / l, with the clamp's direction as the missing
-/// tangent. The error is second order in l for smooth shapes. In a fold the energy is limited to 2 EI / l, so a knot
-/// needs l <= diameter.
+/// Rest lengths l_j, node masses m_i = rho (l_{i-1} + l_i) / 2 (rho: mass per length), and the pentadiagonal matrix K_b
+/// of the bending energy
+///   E_b = sum_i w_i / 2 |t_i - t_{i-1}|^2,  w_i = 2 EI / (l_{i-1} + l_i),  t_j = (x_{j+1} - x_j) / l_j
+/// x_j: positions of the nodes, EI: bending stiffness. E_b is quadratic in the positions, also for unequal segments. So
+/// the force is linear in them, with the same constant matrix for x, y and z. A clamped end adds a half vertex of
+/// weight 2 EI / l, with the clamp's direction as the missing tangent. The error is second order in l for smooth
+/// shapes. In a fold the energy is limited to 2 EI / l, so a knot needs l <= diameter.
 struct Mesh {
   std::vector<double> s;           ///< n material coordinates, m, from 0 to the length
   std::vector<double> rest;        ///< n - 1 rest lengths (sized n; the last is 0)

@@ -7,7 +7,8 @@ namespace {
 
 constexpr double kSupportMass_kg = 1e6;  // large: under 1 N a support moves 1e-14 m per substep at most
 
-// For every segment e of rest length l: tangent e / l, unit vector e / |e|, and tension EA (|e| / l - 1).
+// For every segment (vector e, rest length l): tangent e / l, unit vector e / |e|, tension EA (|e| / l - 1 -
+// stress-free strain).
 void measure(const Material& m, const State& state, Forces& f) noexcept {
   const Mesh& mesh = state.mesh;
   const std::size_t count = mesh.s.size() - 1;
@@ -35,12 +36,11 @@ void measure(const Material& m, const State& state, Forces& f) noexcept {
   }
 }
 
-// Curvature binormal kappa b of a vertex with unit tangents a before and c after it: 2 a x c / (1 + a . c)
-// [Bergou 2008].
+// Curvature binormal of a vertex with the unit tangents a before and c after it: 2 a x c / (1 + a . c) [Bergou 2008].
 Vec binormal(Vec a, Vec c) noexcept { return 2.0 / (1.0 + dot(a, c)) * cross(a, c); }
 
-// M / (1 + a . c) at the inner vertices, with the twisting moment M and the unit tangents a, c before and after the
-// vertex. Times a x c it is half of M times the curvature binormal. Computed four at a time.
+// Computes M / (1 + a . c) for the inner vertices, four at a time. M: twisting moment, a, c: unit tangents before and
+// after the vertex. This number times a x c is half of M times the curvature binormal.
 void half_twists(Forces& f, std::size_t n) noexcept {
   const Vec* const u = f.unit.data();
   std::size_t i = 1;
@@ -52,9 +52,10 @@ void half_twists(Forces& f, std::size_t n) noexcept {
   for (; i + 1 < n; ++i) f.half_twist[i] = f.twist_moment[i] / (1.0 + dot(u[i - 1], u[i]));
 }
 
-// Every vertex (node between two segments) loads both of its segments with two terms: the bending term w (t_i - t_{i-1}
-// - stress-free bend), where w is EI over the length of the vertex, and half of the twisting moment times the curvature
-// binormal. The transverse force of a segment is the difference of these terms at its two ends, divided by its length.
+// Every vertex (node between two segments) acts on both of its segments with the sum of two terms. The bending term is
+// w (t_i - t_{i-1} - stress-free bend), where w is EI over the length of the vertex. The twist term is half of the
+// twisting moment times the curvature binormal. The transverse force of a segment is the difference of these sums at
+// its two ends, divided by its length.
 template <bool Twist>
 void vertices(const Material& m, const State& state, Forces& f) noexcept {
   const Mesh& mesh = state.mesh;

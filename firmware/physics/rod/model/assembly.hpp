@@ -6,14 +6,16 @@
 
 namespace ligature::physics::rod {
 
-/// Fills solver with A and r of  A v = r,
-///   A = M (1 + c dt) + dt (dt + tau_b) K_b + dt (dt + tau_s) K_ax + dt^2 K_geo + holds,
-///   r = M v0 + dt f(x0) + holds,
-/// with the masses M, air drag c, damping times tau_b (bending) and tau_s (stretch), the bending matrix K_b (mesh.hpp),
-/// K_ax = (EA / l) u u^T and K_geo = max(T, 0) / |e| (I - u u^T) of every segment e = |e| u with tension T (dropped in
-/// compression: A stays positive definite). f is gravity, loads, stretch, bending and, with `Twist`, the twisting
-/// moment on the centreline (twist.hpp). Supports enter as a large mass, hands as implicit spring and damper. O(n); no
-/// allocation.
+/// Fills `solver` with the matrix A and the right-hand side r of A v = r for the new velocities v:
+///   A = M (1 + c dt) + dt (dt + tau_b) K_b + dt (dt + tau_s) K_ax + dt^2 K_geo + holds
+///   r = M v0 + dt f(x0) + holds
+/// M: masses, c: air drag, tau_b, tau_s: damping times of bending and stretch, v0, x0: present velocities and
+/// positions.
+/// K_b: bending matrix (mesh.hpp). K_ax, K_geo: sums over all segments (vector e = |e| u, rest length l, tension T) of
+///   (EA / l) u u^T   and   max(T, 0) / |e| (I - u u^T)
+/// Compression is left out of K_geo, so that A stays positive definite. f: gravity, loads, stretch, bending and, with
+/// `Twist`, the force of the twisting moment on the centreline (twist.hpp). Supports enter as a large mass, hands as an
+/// implicit spring and damper. O(n); no allocation.
 template <bool Twist>
 void assemble(const Material& material, const State& state, Vec gravity, double dt_s, Forces& forces,
               BandSolver& solver) noexcept;

@@ -7,8 +7,9 @@
 
 namespace ligature::physics::rod {
 
-/// Fills in the tension of the segment after each node, N, and the twist angle from node 0 to each node, rad. The angle
-/// grows along a segment by M ds / GJ, with the twisting moment M of the last tick. O(n).
+/// Computes for each node the tension of the segment after it, N, and the twist angle between node 0 and this node,
+/// rad. The angle grows along a segment of length ds by M ds / GJ (M: twisting moment of the last tick, GJ: twisting
+/// stiffness). O(n).
 void describe(const Rod& rod, std::span<float> tension_N, std::span<float> turn_rad) noexcept;
 
 }  // namespace ligature::physics::rod

@@ -1,4 +1,5 @@
-// Roll rates of the segments: moments, the tridiagonal system of a substep, and the response to contacts.
+// Computes the segments' roll rates: twisting moments, the tridiagonal system of a substep, and the response to
+// contacts.
 
 #include "firmware/physics/rod/model/spin.hpp"
 
@@ -21,8 +22,8 @@ void Spin::give_moments(const Material& material, const State& state, Forces& fo
   }
 }
 
-// Twisting moment at vertex i: on the side of segment i - 1 (into_vertex) and on the side of segment i (out_of_vertex).
-// The two differ where a hold fixes the roll.
+// Twisting moment at vertex i, N m, on the side of segment i - 1 (into_vertex()) and on that of segment i
+// (out_of_vertex()). The two differ where a hold fixes the roll.
 double Spin::into_vertex(const Material& m, const State& state, std::size_t i) const noexcept {
   if (i == 0) return 0.0;
   if (held_[i]) return m.GJ_N_m2 * (2.0 * before_[i] * state.mesh.inv_rest[i - 1] - m.born_twist_per_m);
@@ -69,8 +70,8 @@ void Spin::assemble(const Material& m, const State& state, double dt_s) noexcept
   solve(rhs_);
 }
 
-// Elimination of the roll rates w from both ends: w_j = down_j w_{j+1} + .. and w_{j+1} = up_j w_j + .., so that push()
-// gets the response of neighbouring segments by one multiplication each.
+// Eliminates the roll rates w from both ends of the thread: w_j = down_j w_{j+1} + .. and w_{j+1} = up_j w_j + ... So
+// push() gets each neighbour's response by one multiplication.
 void Spin::eliminate() noexcept {
   const std::size_t edges = tangent_.size() - 1;
   double d = diag_[0];

@@ -1,6 +1,6 @@
 #pragma once
-// A roll angle for every segment, needed where twist is not uniform along a span: if friction rolls the thread, or if
-// it is curved when stress-free. Otherwise the cheaper model of twist.hpp serves.
+// A roll angle for every segment. It is needed where twist is not uniform along a span: if friction rolls the thread,
+// or if the thread is curved when stress-free. Otherwise the cheaper model of twist.hpp is used.
 
 #include <algorithm>
 #include <cstdint>
@@ -12,49 +12,55 @@
 
 namespace ligature::physics::rod {
 
-/// Material frames: segment j carries a unit director u_j across its tangent t_j and turns at rate w_j about it.
-///   I_j dw_j/dt = M_{j+1} - M_j + bending + contacts,   I_j = rho r^2 l_j / 2,   M_i = C (m_i / l_i - born twist),
-/// with mass per length rho, radius r and twisting stiffness C; m_i is the angle from u_{i-1}, parallel-transported
-/// from t_{i-1} to t_i, to u_i. In M_i, l_i is the vertex length: the mean of the two segments. A hold that fixes roll
-/// acts on the halves of its two segments: M = 2 C angle / l_j each [Bergou 2008, material frames, here with the
-/// thread's rotational inertia]. A thread whose stress-free curvature about a material axis is k has no bending moment
-/// where
-///   t_i - t_{i-1} = 2 sin(k l_i / 2) d_i,   d_i the mean director of the vertex.
-/// Elsewhere the bending moment Q_i turns it about its axis, by the torque k l_i Q_i . (t_i x d_i). Implicit Euler in w
-/// (tridiagonal system); frames are aligned with the new tangents once per tick. Plastic bends add to the stress-free
-/// curvature (spin_set.cpp).
+/// Material frames: segment j has a unit director u_j across its tangent t_j, fixed to its material, and rolls at the
+/// rate w_j about the tangent:
+///   I_j dw_j/dt = M_{j+1} - M_j + bending + contacts,   I_j = rho r^2 l_j / 2,   M_i = C (m_i / l_i - rest twist)
+/// I_j: moment of inertia, rho: mass per length, r: radius, l_j: length of the segment. M_i: twisting moment at vertex
+/// i, C: twisting stiffness, l_i: mean length of the vertex's two segments. m_i: twist angle at the vertex, from the
+/// director u_{i-1}, parallel-transported from t_{i-1} to t_i, to u_i. A hold that fixes roll acts on the halves of its
+/// two segments, each with M = 2 C angle / l_j [Bergou 2008, material frames, here with the thread's rotational
+/// inertia].
+///
+/// A thread with the rest curvature k about a material axis has no bending moment where
+///   t_i - t_{i-1} = 2 sin(k l_i / 2) d_i      (d_i: mean director of the vertex).
+/// Elsewhere the bending moment Q_i makes the thread roll, by the torque k l_i Q_i . (t_i x d_i). Plastic bends add to
+/// the rest curvature (spin_set.cpp).
+///
+/// Implicit Euler in w (tridiagonal system). Frames are aligned with the new tangents once per tick.
 class Spin {
  public:
   void reserve(int nodes);
 
-  /// Sets the initial frames: untwisted along the present shape, at rest. Holds that fix roll get matching directors (a
-  /// director is a direction across the thread, fixed to its material).
+  /// Sets the initial frames: at rest, and without twist along the present shape. Holds that fix roll get matching
+  /// directors.
   void start(const Material& material, State& state) noexcept;
   /// Sets the director of a hold so that the hold causes no twist. @pre after start().
   void attach(State& state, int hold) const noexcept;
 
-  /// Part of State::rest_bend that is the thread's own stress-free shape and must not fade.
+  /// Part of State::rest_bend that is the thread's own rest curvature. It must not fade, as the offsets of remeshing
+  /// do.
   [[nodiscard]] std::span<const Vec> born() const noexcept { return born_; }
-  /// Call before Refine::fade_offsets(), with the same factors. Scales up the part born() of State::rest_bend (the
-  /// thread's real rest curvature), so that this part has its old value after the fading.
+  /// Call before Refine::fade_offsets(), with the same factors. Scales up the part born() of State::rest_bend, so that
+  /// this part has its old value after the fading.
   void before_fading(State& state, std::span<const double> fade) const noexcept;
-  /// Once per tick: aligns the frames with the new tangents (and the new mesh), and computes angles and moments. A
-  /// hold's rotation since the last tick is applied at a constant rate during this one.
+  /// Call once per tick. Aligns the frames with the new tangents (and the new mesh), and computes angles and moments. A
+  /// hold's rotation since the last tick is spread evenly over this tick.
   /// @param remeshed  nodes moved, and State::rest_bend was computed again, born() included
-  /// @param once  advances the roll here by the whole tick, instead of in every substep. Enough without
-  /// friction or stress-free curvature that roll the thread, as twist waves cross it in less than a tick.
+  /// @param once the roll advances here by the whole tick, instead of in every substep. That is enough if neither
+  /// friction nor rest curvature rolls the thread, because twist waves cross it in less than a tick.
   void update(const Material& material, State& state, Forces& forces, double tick_s, bool remeshed,
               bool once = false) noexcept;
 
-  /// Plastic flow of the bends in a substep, at the present positions. @return energy dissipated, J.
+  /// Computes the plastic flow of all bends in a substep, at the present positions. @return energy dissipated, J.
   double yield(const Material& material, State& state) noexcept;
-  /// Plastic bend z_i of a vertex, as a change of unit tangent: how far the friction slider of the plastic model has
-  /// moved (spin_set.cpp). It has changed the stress-free bend by set_fraction x z_i.
+  /// Plastic bend z_i of a vertex, as a change of the unit tangent: how far the friction slider of the plastic model
+  /// has moved (spin_set.cpp). The stress-free bend has changed by set_fraction x z_i.
   [[nodiscard]] Vec set(int vertex) const noexcept { return set_[static_cast<std::size_t>(vertex)]; }
 
-  /// Sets up and solves the system of a substep for the roll rates w_j, without torques of contacts.
+  /// Sets up and solves a substep's system for the roll rates w_j, without torques of contacts.
   void assemble(const Material& material, const State& state, double dt_s) noexcept;
-  /// Solves again with the torque impulses of contacts since assemble(), then turns all frames for dt_s.
+  /// Solves the system again with the torque impulses that contacts have applied since assemble(), then rolls all
+  /// frames for the time dt_s.
   void advance(const Material& material, State& state, Forces& forces, double dt_s) noexcept;
 
   /// Roll rate, rad/s, and tangent of a segment, for contacts. Valid between assemble() and advance().
@@ -98,8 +104,9 @@ class Spin {
   std::vector<Vec> director_, tangent_;
   std::vector<double> rate_, rolled_;  // w_j, rad/s; angle turned since the tick began, rad
   std::vector<double> middle_m_;       // material coordinates of the segments' midpoints when director_ was set
-  // Twist angles at vertex i, rad. Without a hold: before_ is the angle m_i between the directors of its two segments.
-  // With one: before_ and after_ are the angles to the hold's director and from it.
+  // Twist angles at vertex i, rad. Without a hold, before_ is the angle m_i between the directors of its two segments.
+  // With a hold, before_ is the angle from the segment before to the hold's director, after_ that from it to the
+  // segment after
   std::vector<double> before_, after_;
   std::vector<double> drift_before_, drift_after_;  // rates of these angles by the hold's rotation, rad/s
   std::vector<char> held_, was_held_;

@@ -1,4 +1,5 @@
-// Material frames of the segments, once per tick: initialisation, transport with the thread, angles between them.
+// Material frames of the segments: initialisation, and once per tick their transport with the thread and the angles
+// between them.
 
 #include <algorithm>
 #include <cmath>
@@ -69,7 +70,7 @@ void Spin::before_fading(State& state, std::span<const double> fade) const noexc
   for (std::size_t i = 0; i < born_.size(); ++i) state.rest_bend[i] += (1.0 / fade[i] - 1.0) * born_[i];
 }
 
-// After remeshing: directors and roll rates of the new segments, interpolated between the midpoints of the old ones.
+// After remeshing: interpolates directors and roll rates of the new segments between the midpoints of the old ones.
 void Spin::resample(const State& state) noexcept {
   const std::size_t edges = state.x.size() - 1;
   std::copy(director_.begin(), director_.end(), old_director_.begin());
@@ -136,8 +137,8 @@ void Spin::measure(const State& state, double tick_s, bool remeshed) noexcept {
   }
 }
 
-// Measures the twist angles between a hold and its segments. If the hold has turned since the last tick, they would
-// jump; instead the difference becomes a constant rate of the angles during this tick.
+// Measures the twist angles between a hold and its segments. If the hold has turned since the last tick, the angles do
+// not jump, but change at a constant rate during this tick.
 void Spin::measure_hold(const State& state, const Hold& hold, double tick_s, bool fresh) noexcept {
   const auto i = static_cast<std::size_t>(hold.node);
   held_[i] = 1;
@@ -153,7 +154,8 @@ void Spin::measure_hold(const State& state, const Hold& hold, double tick_s, boo
          angle_about(tangent_[i], transport(hold.director, hold.tangent, tangent_[i]), director_[i]));
 }
 
-// Computes the stress-free bend of every vertex, and adds its change to State::rest_bend.
+// Computes every vertex's stress-free bend from rest curvature and plastic bends, and adds its change to
+// State::rest_bend.
 void Spin::bear(const Material& material, State& state, bool keep_rest) noexcept {
   const std::size_t edges = state.x.size() - 1;
   for (std::size_t i = 1; i < edges; ++i) {
@@ -177,8 +179,8 @@ Vec Spin::shape_of(const Material& material, std::size_t i) noexcept {
   return along * normal_[i] + aside * binormal_[i];
 }
 
-// After the segments have rolled for dt_s: turns the vertices' directors normal_, binormal_ and the stress-free bends
-// with them, and adds the change of the bends to State::rest_bend.
+// After the segments have rolled for dt_s: rolls the vertices' directors (normal_, binormal_) and stress-free bends
+// too, and adds the change of these bends to State::rest_bend.
 void Spin::turn_born(const Material& material, State& state, double dt_s) noexcept {
   const std::size_t edges = state.x.size() - 1;
   for (std::size_t i = 1; i < edges; ++i) {

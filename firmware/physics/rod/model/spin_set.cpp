@@ -1,13 +1,14 @@
-// Plastic bending ("set"): beyond the curvature kappa_y a share f of the bending stiffness B yields.
-//   M = B (kappa - f z),   |kappa - z| <= kappa_y,   the plastic curvature z changes only to keep this bound.
-// This is two bending springs in parallel, (1 - f) B and f B, the second in series with a friction slider: linear
-// kinematic hardening [Prager]. M rises with slope B up to B kappa_y, then with slope (1 - f) B. The slider resists
-// with the moment f B kappa_y, so
+// Plastic bending ("set"). Where the thread is bent beyond the curvature kappa_y, a share f of its bending stiffness B
+// yields. With the moment M, the curvature kappa and the plastic curvature z:
+//   M = B (kappa - f z),   |kappa - z| <= kappa_y,   and z changes only to keep this bound.
+// This is two bending springs in parallel, (1 - f) B and f B, of which the second is in series with a friction slider:
+// linear kinematic hardening [Prager]. M rises with slope B up to B kappa_y, then with slope (1 - f) B. The slider
+// resists with the moment f B kappa_y, so
 //   energy per length = B / 2 ((1 - f) kappa^2 + f (kappa - z)^2),   dissipation = f B (kappa - z) . dz >= 0.
-// A thread bent to kappa and released keeps the curvature f (kappa - kappa_y), but at most f kappa_y / (1 - f), where
-// the elastic spring makes the slider yield back. kappa and z are vectors perpendicular to the thread and roll with it;
-// at a vertex they are stored as the change of tangent t_i - t_{i-1} over its length l_i. kappa is measured from the
-// thread's initial stress-free shape.
+// A thread that was bent to kappa and released keeps the curvature f (kappa - kappa_y), but at most f kappa_y / (1 -
+// f), because beyond that the elastic spring pushes the slider back. kappa and z are vectors perpendicular to the
+// thread, and roll with it. At a vertex they are stored as the change of tangent t_i - t_{i-1} over the vertex's length
+// l_i. kappa is measured from the thread's initial stress-free shape.
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +17,9 @@
 
 namespace ligature::physics::rod {
 
-// Return mapping: z moves towards kappa until |kappa - z| is within the yield limit, so a step of any size is stable
-// and dissipates energy. Remeshing offsets (State::rest_bend - born_) do not count as curvature.
+// Return mapping: the plastic curvature z moves towards the curvature kappa until |kappa - z| is within the yield
+// limit. So a step of any size is stable and dissipates energy. Offsets of remeshing (State::rest_bend - born_) do not
+// count as curvature.
 double Spin::yield(const Material& m, State& state) noexcept {
   const Mesh& mesh = state.mesh;
   const std::size_t edges = state.x.size() - 1;
@@ -40,8 +42,8 @@ double Spin::yield(const Material& m, State& state) noexcept {
   return lost_J;
 }
 
-// Changes the plastic bends z_i from world coordinates to components along normal_ and binormal_ of the vertex, so
-// that they turn with the frames when these are updated. set_to_world() changes them back.
+// Converts the plastic bends z_i from world coordinates to components along normal_ and binormal_ of their vertices, so
+// that the bends turn with the frames when these are updated. set_to_world() converts them back.
 void Spin::set_to_material() noexcept {
   for (std::size_t i = 1; i < set_.size(); ++i)
     set_[i] = make(dot(set_[i], normal_[i]), dot(set_[i], binormal_[i]), 0.0);
@@ -55,9 +57,9 @@ void Spin::set_to_world(const Material& material, const Mesh& mesh) noexcept {
   }
 }
 
-// After remeshing: the plastic bend of each old vertex is distributed evenly over its length, and each new vertex gets
-// what falls into its own. The sum is conserved. The length of a vertex reaches from midpoint to midpoint of its
-// segments; the first and last vertex reach to the thread's ends.
+// After remeshing: spreads the plastic bend of each old vertex evenly over the length of that vertex, and gives each
+// new vertex what falls within its length. The sum is conserved. The length of a vertex reaches from midpoint to
+// midpoint of its two segments, that of the first and last vertex to the thread's ends.
 void Spin::resample_set(double length_m) noexcept {
   const std::size_t last = set_.size() - 2;  // vertices 1 .. last
   std::copy(set_.begin(), set_.end(), old_set_.begin());

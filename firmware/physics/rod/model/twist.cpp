@@ -13,7 +13,7 @@ Vec edge(const State& state, int j) noexcept {
   return unit(state.x[k + 1] - state.x[k]);
 }
 
-// The first hold's director, parallel-transported along the centreline to the second hold.
+// The director of hold `from`, parallel-transported along the centreline to hold `to`.
 Vec carried(const State& state, const Hold& from, const Hold& to) noexcept {
   Vec u = from.director, t = from.tangent;
   for (int j = from.node; j < to.node; ++j) {

@@ -8,27 +8,28 @@
 
 namespace ligature::physics::rod {
 
-/// Between two holds that fix roll (a span) the twist is uniform, because a twist wave crosses 0.3 m of nylon in 0.4
-/// ms, less than a tick. So one angle Theta per span describes it [Bergou 2008, quasi-static material frame], with the
-/// energy E and the twisting moment M of a span of length L and twisting stiffness C:
-///   E = C Theta^2 / 2 L,   M = C Theta / L.
-/// Theta is the angle from the director at one end, transported along the centreline by the Bishop (parallel) frame, to
-/// the director at the other end, whole turns included. A span with a free end has M = 0. The force on the centreline
-/// is -M grad(Theta), computed from the vertex binormals (assembly.cpp).
+/// Twist between two holds that fix roll (a span). It is uniform, because a twist wave crosses 0.3 m of nylon in 0.4
+/// ms, less than a tick. So one angle Theta describes it [Bergou 2008, quasi-static material frame]. With the length L
+/// and the twisting stiffness C, the energy E and the twisting moment M of the span are
+///   E = C Theta^2 / (2 L),   M = C Theta / L.
+/// Theta is the angle, whole turns included, from the director at one end, parallel-transported along the centreline,
+/// to the director at the other end. A span with a free end has M = 0. The force on the centreline is -M grad(Theta),
+/// computed from the curvature binormals of the vertices (assembly.cpp).
 class Twist {
  public:
   /// Fixes the roll at a hold, without changing the twist anywhere.
   void attach(State& state, int hold) noexcept;
   void detach(State& state, int hold) noexcept;
 
-  /// Turns a hold's director about its tangent by angle_rad (a gripper that rolls the thread).
+  /// Turns a hold's director about the tangent by angle_rad, as a gripper does that rolls the thread.
   static void roll(Hold& hold, double angle_rad) noexcept;
 
-  /// Updates the directors of all holds: parallel transport to the new tangent, or the hand's direction if steered.
+  /// Updates the directors of all holds: by parallel transport to the new tangent, or to the direction that a hand
+  /// steers.
   void carry(State& state) const noexcept;
 
-  /// Once per tick: carry(), then computes the twist angle of every span, and writes the twisting moments M to
-  /// `forces`. O(n), no allocation. Valid while no span turns by half a revolution or more in one tick.
+  /// Call once per tick. Calls carry(), computes the twist angle of every span, and writes the twisting moments M to
+  /// `forces`. Valid only if no span twists by half a revolution or more in one tick. O(n), no allocation.
   void update(const Material& material, State& state, Forces& forces) noexcept;
 
   [[nodiscard]] double energy_J() const noexcept { return energy_J_; }
