@@ -1,4 +1,4 @@
-// Contacts with floor and bodies, and the choice of the contacts that are solved.
+// Collects contacts with floor and bodies, and chooses the contacts that are solved.
 
 #include <algorithm>
 
@@ -9,13 +9,14 @@ namespace ligature::physics::rod {
 
 namespace {
 
-/// Sort key of a contact, smallest first: contacts that carry load come before the others, and within each of these two
-/// groups those with the smaller gap come first.
+/// Sort key of a contact, smallest first. Contacts that carry load come before the others; within each of these two
+/// groups, smaller gaps come first.
 double urgency(const Contact& c) noexcept { return c.gap_m - (dot(c.p, c.p) > 0.0 ? c.reach_m : 0.0); }
 
 }  // namespace
 
-// Appends a contact to be filled in place, as contacts are large. @return nullptr when there is no room.
+// Appends a contact that the caller then fills in; this avoids a copy, because contacts are large. @return nullptr if
+// there is no room.
 Contact* ContactSet::add() noexcept {
   if (contacts_.size() < contacts_.capacity()) return &contacts_.emplace_back();
   overflow_ = true;
@@ -36,7 +37,7 @@ ContactSet::Span ContactSet::span() const noexcept {
   return span;
 }
 
-// Rows keep the order in which contacts were collected; contacts that are not solved are moved behind them.
+// Chosen contacts (rows) keep the order in which they were collected; the others are moved behind them.
 void ContactSet::choose_rows(int most, int widest, int nodes, ContactReport& report) noexcept {
   const std::size_t found = contacts_.size(), room = static_cast<std::size_t>(std::clamp(most, 0, kMaxContacts));
   double deepest = 1e300, cut = 1e300;

@@ -24,13 +24,13 @@ bool ContactMetric::prepare(const Mesh& mesh, const Material& material, double d
   return false;
 }
 
-// Factorises C = L D L^T on the nodes first_ to last_, with all other nodes eliminated.
+// Factorises the matrix C = L D L^T on the nodes first_ to last_, after eliminating all other nodes.
 void ContactMetric::factor(const Mesh& mesh, const Material& material, double dt_s) noexcept {
   const auto n = static_cast<std::size_t>(mesh.nodes()), z = static_cast<std::size_t>(last_);
   const double bend = dt_s * (dt_s + material.bend_tau_s), inertia = 1.0 + material.drag_per_s * dt_s;
   const auto diag = [&](std::size_t i) { return mesh.mass[i] * inertia + bend * mesh.kd[i]; };
-  // Elimination from the thread's end down to node last_. Of these nodes only the pivots d and the factors f need be
-  // kept.
+  // Eliminates the nodes from the thread's end down to last_. Only the pivots d and factors f of the newest nodes are
+  // needed
   double d1 = 0.0, d2 = 0.0, f1 = 0.0;  // pivots of i+1 and i+2; elimination factor of i+1
   double on_last = 0.0, on_before = 0.0, on_pair = 0.0;
   for (std::size_t i = n; i-- > z;) {
@@ -65,7 +65,7 @@ void ContactMetric::factor(const Mesh& mesh, const Material& material, double dt
   }
 }
 
-// All columns of the inverse at once, by row operations on the identity matrix.
+// Computes all columns of the inverse at once, by row operations on the identity matrix.
 bool ContactMetric::invert(TickTime& time) noexcept {
   const auto a = static_cast<std::size_t>(first_), w = static_cast<std::size_t>(last_) - a + 1;
   stride_ = (w + 3) & ~std::size_t{3};

@@ -12,17 +12,19 @@
 
 namespace ligature::physics::rod {
 
-/// C = M (1 + c dt) + dt (dt + tau_b) K_b, with masses M, air drag c, damping time tau_b and bending matrix K_b: the
-/// matrix A of a substep (assembly.hpp) without its stretch, geometric and hold terms. C is a scalar pentadiagonal
-/// matrix times the 3 x 3 identity and constant while mesh and dt are. Because A >= C, J A^-1 J^T <= J C^-1 J^T (J:
-/// rows of all contacts), so an impulse step computed with C never overshoots (a majorise-minimise argument for the
-/// frictionless problem). With C a contact has the same effective mass in all directions.
+/// The simplified matrix of the sweeps,
+///   C = M (1 + c dt) + dt (dt + tau_b) K_b
+/// M: masses, c: air drag, tau_b: damping time, K_b: bending matrix. It is the matrix A of a substep (assembly.hpp)
+/// without the terms of stretch, geometry and holds: a scalar pentadiagonal matrix times the 3 x 3 identity, constant
+/// while mesh and dt are. Because A >= C, J A^-1 J^T <= J C^-1 J^T (J: rows of all contacts). So an impulse step
+/// computed with C never overshoots (a majorise-minimise argument for the frictionless problem). With C, a contact has
+/// the same effective mass in all directions.
 class ContactMetric {
  public:
   void reserve(int nodes, int window);
 
   /// Computes C^-1 on the w nodes from first to last. O(n + w^2), no allocation. @pre last - first < capacity.
-  /// @return false, and the table is invalid, when the time was over first.
+  /// @return false if the time was over first; then the table is invalid.
   [[nodiscard]] bool prepare(const Mesh& mesh, const Material& material, double dt_s, int first, int last,
                              TickTime& time) noexcept;
 
@@ -32,13 +34,13 @@ class ContactMetric {
   [[nodiscard]] int last() const noexcept { return last_; }
   [[nodiscard]] int capacity() const noexcept { return capacity_; }
 
-  /// Row of C^-1 of a node, single precision; entry j belongs to node first() + j. Reading up to seven entries past its
-  /// end is allowed.
+  /// A node's row of C^-1, in single precision; entry j belongs to node first() + j. Up to seven entries past its end
+  /// may be read.
   [[nodiscard]] const float* row(int node) const noexcept {
     return row_.data() + static_cast<std::size_t>(node - first_) * stride_;
   }
-  /// The members that an image saves (image.hpp): all but the capacity and scratch memory. in_use(): of the rows, only
-  /// those of the window are saved.
+  /// The members that an image saves (image.hpp): all but the capacity and scratch memory, and of the rows only those
+  /// of the window (in_use()).
   [[nodiscard]] static auto members(ContactMetric& self) noexcept {
     auto& [capacity, first, last, stride, table, row, d, l1, l2] = self;
     return std::tie(first, last, stride);

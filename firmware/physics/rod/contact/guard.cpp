@@ -1,5 +1,5 @@
-// The guard: limits a substep so that no two segments move, relative to each other, by more than 0.9 of their distance.
-// Exception: pairs that a plane separates throughout the motion.
+// The guard: shortens a substep so that no two segments move, relative to each other, by more than 0.9 of their
+// distance. Exception: pairs that a plane separates during the whole motion.
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@
 namespace ligature::physics::rod {
 namespace {
 
-/// Largest share of a substep's motion that all pairs tested so far allow: `least`.
+/// Finds `least`, the largest share of a substep's motion that all tested pairs allow.
 struct Share {
   const Vec *x, *v;
   double dt_s;
@@ -27,15 +27,15 @@ struct Share {
   void pair(std::int32_t a, std::int32_t b, double distance, const Motion& m) noexcept {
     const auto p = static_cast<std::size_t>(a), q = static_cast<std::size_t>(b);
     if (m.rate(p, q) * dt_s <= 0.9 * distance) return;
-    // Relative velocities of inner points are convex combinations of those of the ends.
+    // The largest relative velocity is that of two ends: those of inner points are convex combinations of these
     const Lanes ends2 = squares(v[b] - v[a], v[b + 1] - v[a], v[b] - v[a + 1], v[b + 1] - v[a + 1]);
     const double most2 = std::max(std::max(ends2[0], ends2[1]), std::max(ends2[2], ends2[3]));
     if (most2 * dt_s * dt_s <= 0.81 * distance * distance || passes_by(a, b)) return;
     faster(most2, distance);
   }
-  /// Is the pair separated by a plane during the whole step? Nodes move on straight lines, so it suffices that the
-  /// plane separates the segments before and after. Its normal is the shortest connection of the segments; a tenth of
-  /// their distance must remain, as in the test by speed.
+  /// Does a plane separate the pair during the whole step? Nodes move on straight lines, so it is enough that the plane
+  /// separates the segments before and after the step. Its normal is the shortest connection of the segments. A tenth
+  /// of their distance must remain, as in the test by speed.
   [[nodiscard]] bool passes_by(std::int32_t a, std::int32_t b) const noexcept {
     const Closest c = closest(x[a], x[a + 1], x[b], x[b + 1]);
     const auto along = [&](Vec q) { return dot(c.between, q); };

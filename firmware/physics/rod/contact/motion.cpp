@@ -6,7 +6,7 @@
 namespace ligature::physics::rod {
 namespace {
 
-// Running maximum over a < b of P_b - P_a, for values P given in order: the largest difference of two prefix sums.
+// Running maximum of P_b - P_a over all a < b, for values P that are given one after the other.
 struct Rise {
   double least = 0.0, most = 0.0;
   void next(double p) noexcept {
@@ -91,9 +91,9 @@ void Motion::restart() noexcept {
   std::copy(drift_.begin(), drift_.end(), drift_allowed_.begin());
 }
 
-// Two upper bounds say by how much gaps have closed since the list was made: the way of both segments, and the drift
-// between them (class comment of Motion). The list is used up as soon as either exceeds `spare_m` beyond its own
-// allowance. That is strict: the smaller bound alone would be enough.
+// There are two upper bounds of how much gaps have closed since the list was made: one by the speeds of both segments,
+// one by the drift between them (class comment of Motion). The list is used up as soon as either bound exceeds
+// `spare_m` beyond its own allowance. That is stricter than needed: the smaller bound would be enough.
 bool Motion::used_up(double spare_m, double horizon_s, double ahead_s) const noexcept {
   if (2.0 * (furthest_ + ahead_s * fastest_) <= spare_m) return false;
   double one = 0.0;

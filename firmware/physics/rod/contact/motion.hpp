@@ -9,23 +9,23 @@
 
 namespace ligature::physics::rod {
 
-/// Two bounds of the relative speed of any two points of segments a < b:
-///   speed_a + speed_b,                speed_j = max(|v_j|, |v_j+1|),        tight for strands that meet;
-///   drift_{b+1} - drift_a,            drift_i = sum_{k<i} |v_{k+1} - v_k|,  tight for neighbours, which move together.
+/// Upper bounds of the relative speed of any two points of segments a < b (v_i: velocity of node i):
+///   speed_a + speed_b,       with speed_j = max(|v_j|, |v_{j+1}|):         tight for strands that meet
+///   drift_{b+1} - drift_a,   with drift_i = sum_{k<i} |v_{k+1} - v_k|:     tight for neighbours, which move together
 /// rate() is the smaller of the two. gone() is the smaller of their time integrals since restart(), and bounds the
-/// relative motion: between two instants a pair moves by at most gone(later) - gone(earlier), whichever of the two
-/// integrals is the smaller one at either instant.
+/// relative motion: between two moments a pair moves by at most gone(later) - gone(earlier), even if another one of the
+/// two integrals is the smaller one at each moment.
 class Motion {
  public:
   void reserve(int nodes);
 
-  /// Computes speed_j of every segment and drift_i of every node (class comment) from new velocities v; keeps the
+  /// Computes speed_j of every segment and drift_i of every node (class comment) from new velocities v. Keeps the
   /// previous values for outran().
   void measure(const Vec* v) noexcept;
   /// Adds a step of step_s at the velocities last measured to the integrals.
   void advance(double step_s) noexcept;
-  /// Call when a new list of pairs is made. The distances moved (the integrals) start at zero. The present speeds are
-  /// stored, because the list's margin of distance is chosen for them.
+  /// Call when a new list of pairs is made. The time integrals start again at zero. The present speeds are stored,
+  /// because the list's margin of distance is chosen for them.
   void restart() noexcept;
 
   [[nodiscard]] double speed(std::size_t segment) const noexcept { return speed_[segment]; }
@@ -37,7 +37,7 @@ class Motion {
   }
   [[nodiscard]] double fastest() const noexcept { return fastest_; }
 
-  /// Bounds as speed(), rate() and gone(), for any segment of block p and any of block q >= p; a block is kBlock
+  /// As speed(), rate() and gone(), but for any segment of block p and any segment of block q >= p. A block is kBlock
   /// neighbouring segments.
   static constexpr std::size_t kBlock = 8;
   [[nodiscard]] double speed_of_block(std::size_t p) const noexcept { return block_speed_[p]; }
@@ -48,16 +48,16 @@ class Motion {
     return std::min(block_travel_[p] + block_travel_[q], strayed_[end(q)] - strayed_[p * kBlock]);
   }
 
-  /// Can any pair of segments move, between restart() and ahead_s from now, by more than spare_m + horizon_s x the
-  /// rate() that it had at restart()?
+  /// Can any pair of segments, between restart() and the time ahead_s from now, move relative to each other by more
+  /// than spare_m + horizon_s x the rate() that the pair had at restart()?
   [[nodiscard]] bool used_up(double spare_m, double horizon_s, double ahead_s) const noexcept;
 
-  /// Share of a step dt_s at the present velocities for which used_up() is still false; rounded down to a power of 1/2,
-  /// or 0.
+  /// Share of a step of dt_s at the present velocities after which used_up() is still false; rounded down to a power of
+  /// 1/2, or 0.
   [[nodiscard]] double share_within(double spare_m, double horizon_s, double dt_s) const noexcept;
 
-  /// Can the two segments of any pair move relative to each other, in dt_s, by more than spare_m + 2 dt_s x the rate()
-  /// that they had before the last measure()?
+  /// Can the segments of any pair, within dt_s, move relative to each other by more than spare_m + 2 dt_s x the rate()
+  /// that the pair had before the last measure()?
   [[nodiscard]] bool outran(double spare_m, double dt_s) const noexcept;
   LIGATURE_MEMBERS(Motion, speed, drift, speed_before, drift_before, speed_allowed, drift_allowed, travel, strayed,
                    link, block_speed, block_travel, fastest, furthest)

@@ -12,7 +12,7 @@
 
 namespace ligature::physics::rod {
 
-/// A pair of segments that may touch soon, with its state from substep to substep.
+/// A pair of segments that may touch soon, and the data that is kept for it from substep to substep.
 struct Candidate {
   std::int32_t a = 0;    ///< segment of the thread
   std::int32_t b = 0;    ///< another segment, >= a + 2
@@ -28,8 +28,8 @@ struct Candidate {
   LIGATURE_MEMBERS(Candidate, a, b, reach_m, near_m, due, touch, next, impulse, stuck, bulge_m)
 };
 
-/// The pairs first .. last - 1 of a list: those between two blocks of segments (motion.hpp). One test of the group can
-/// show that none of its pairs must be measured.
+/// The pairs first .. last - 1 of a list: all listed pairs between two blocks of segments (motion.hpp). One test of the
+/// group can show that none of these pairs must be measured.
 struct PairGroup {
   std::int32_t first = 0, last = 0;
   std::int32_t p = 0, q = 0;  ///< indices of the two blocks
@@ -46,19 +46,20 @@ struct PairList {
   std::vector<PairGroup>& groups;
 };
 
-/// Margins of a list: it holds all pairs nearer than the distance of touch + skin + horizon x their relative speed (an
-/// upper bound: Motion::rate()).
+/// Margins of a list. It contains every pair whose gap is below skin_m + horizon_s x its relative speed (an upper
+/// bound: Motion::rate()).
 struct Outlook {
   double diameter_m = 0.0, skin_m = 0.0, near_m = 0.0, horizon_s = 0.0;
 };
 
-/// Tests blocks of eight neighbouring segments in a tree of bounding spheres, then the spheres of segments, then exact
-/// distances of the rest, so the cost grows in proportion to the thread's length. The margin depends on the relative
-/// speed of each pair, so neither one fast end nor a fast motion of the whole thread makes the list long.
-/// Pairs less than 0.6 diameters apart along the thread are left out: they can cross only if the thread folds. Pairs an
-/// arc a < pi d / 2 apart touch at the distance d sin(a / d), the smallest that a bent tube of constant thickness
-/// allows. In a straight thread their gap is a - d sin(a / d); they become contacts when it falls below 2/3 of that, or
-/// below near_m if near_m is smaller.
+/// Builds the list of pairs. Tests first blocks of eight neighbouring segments in a tree of bounding spheres, then the
+/// spheres of single segments, then exact distances. So the cost grows in proportion to the thread's length. The list's
+/// margin depends on each pair's own relative speed, so neither one fast end nor a fast motion of the whole thread
+/// makes the list long.
+/// Pairs less than 0.6 diameters apart along the thread are left out: they can cross only if the thread folds. Pairs
+/// that are an arc a < pi d / 2 apart along the thread touch at the distance d sin(a / d), the smallest that a bent
+/// tube of constant thickness allows. On a straight thread the gap of such a pair is a - d sin(a / d). It becomes a
+/// contact when its gap falls below 2/3 of that, or below near_m if near_m is smaller.
 class BroadPhase {
  public:
   static constexpr double kLeastArc = 0.6;     ///< smallest distance along the thread of a listed pair, in diameters
@@ -66,24 +67,25 @@ class BroadPhase {
 
   void reserve(int nodes, int pairs);
 
-  /// Stores the impulses of all pairs, so that build() can give them to the new list. @pre not more pairs than reserved
+  /// Stores the impulses of all pairs, so that build() can restore them in the new list. @pre not more pairs than
+  /// reserved
   void keep_impulses(const std::vector<Candidate>& list) noexcept;
 
-  /// Rebuilds `list`, with the gap of every pair measured and the kept impulses restored. Calls motion.restart(),
-  /// so that relative motion counts from this moment.
-  /// @param allowance  most work it may use. @return false, and the list is invalid, when allowance, room for pairs or
-  /// the tick's time was too small.
+  /// Rebuilds `list`, with the gap of every pair measured and the kept impulses restored. Calls motion.restart(), so
+  /// that relative motion counts from this moment.
+  /// @param allowance most work that build() may use. @return false if allowance, room for pairs or the tick's time was
+  /// too small; then the list is invalid.
   bool build(const State& state, Motion& motion, const Outlook& outlook, long allowance, Work& work,
              const PairList& list) noexcept;
 
-  /// After a failed build(): fills the list with only those pairs that have a kept impulse, so that the next
-  /// keep_impulses() keeps them again.
+  /// Call after a failed build(). Fills the list with only the pairs whose impulse was stored, so that the next
+  /// keep_impulses() stores them again.
   void put_back(const PairList& list) const noexcept;
 
-  /// Part of the cost of a build() that does not depend on how many segments are near each other, in instructions.
+  /// The part of a build()'s cost, in instructions, that does not depend on how many segments are near each other.
   [[nodiscard]] static long least_cost(int nodes) noexcept;
-  /// The members that an image saves (image.hpp): only the work that was spent, because a build() needs nothing from
-  /// the build() before.
+  /// The members that an image saves (image.hpp): only the spent work, because a build() needs nothing from the build()
+  /// before.
   [[nodiscard]] static auto members(BroadPhase& self) noexcept {
     auto& [capacity, spent, allowance, asked, time, x, y, z, half, bulge, blocks, tree, kept, places] = self;
     return std::tie(spent);
@@ -99,15 +101,16 @@ class BroadPhase {
   [[nodiscard]] std::size_t place_of(std::int32_t a, std::int32_t b) const noexcept;
   void grow_tree(std::size_t blocks) noexcept;
   void give_back(Candidate& pair) const noexcept;
-  /// Adds segments a and b as a pair to the list if they are near enough. @return false when there was no room.
+  /// Adds segments a and b as a pair to the list if they are near enough. @return false if there was no room.
   bool consider(const State& state, const Motion& motion, const Outlook& outlook, std::size_t a, std::size_t b,
                 std::vector<Candidate>& list) noexcept;
   /// Bit mask of the segments of block q whose spheres are within `reach` of segment a's sphere.
   [[nodiscard]] unsigned near(std::size_t a, std::size_t q, float reach) const noexcept;
-  /// Considers all pairs of a segment of block p and one of block q. @return false when out of room or work.
+  /// Calls consider() for all pairs of a segment of block p and a segment of block q. @return false if room or work is
+  /// used up.
   bool blocks(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p, std::size_t q,
               const PairList& list) noexcept;
-  /// Calls blocks() for block p and every block q >= p that is near. @return false when out of room or work.
+  /// Calls blocks() for block p and every near block q >= p. @return false if room or work is used up.
   bool search(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p,
               const PairList& list) noexcept;
 

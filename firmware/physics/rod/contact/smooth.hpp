@@ -1,5 +1,5 @@
 #pragma once
-// The smooth curve on which contacts are computed: strands would catch at the corners of the polygon of segments.
+// The smooth curve on which contacts are computed. On the polygon of segments, strands would catch at its corners.
 
 #include <algorithm>
 #include <cstddef>
@@ -10,17 +10,19 @@
 
 namespace ligature::physics::rod {
 
-/// Segment j of the quadratic B-spline of the nodes, which touches every chord in its middle and cuts the corners. With
-/// the nodes x_j, the chords e_j = x_{j+1} - x_j and (a)_+ = max(0, a), its point at the fraction s of the chord is
+/// Segment j of a smooth curve, the quadratic B-spline of the nodes. The curve touches every chord in its middle and
+/// cuts the corners. Its point at the fraction s of the chord is
 ///   P(s) = x_j + s e_j + 1/8 (1 - s / h)_+^2 k_j + 1/8 (1 - (1 - s) / h')_+^2 k_{j+1}
-/// with h = h' = 1/2 and k_i = e_i - e_{i-1}; an end of the thread has no corner. Position and tangent are continuous
-/// from segment to segment, so the contact normal turns smoothly as strands slide; on the polygon the normal, and with
-/// it the force, would jump by the angle of a corner. The corner at node i is a parabola from x_i - h' e_{i-1} to x_i +
-/// h e_i, so in general
+/// x_j: nodes, e_j = x_{j+1} - x_j: chords, (a)_+ = max(0, a), h = h' = 1/2, k_i = e_i - e_{i-1}: corner vectors; an
+/// end of the thread has no corner. Position and tangent are continuous from segment to segment, so the contact normal
+/// turns smoothly as strands slide. On the polygon the normal, and with it the force, would jump by the angle of a
+/// corner.
+///
+/// The corner at node i is a parabola from x_i - h' e_{i-1} to x_i + h e_i, so in general
 ///   k_i = 2 (h e_i - h' e_{i-1}).
-/// When a segment is split, doubling the h of the halves keeps the curve unchanged; h then fades back to 1/2
+/// When a segment is split, doubling the h of its halves keeps the curve unchanged; h then fades back to 1/2
 /// (State::cut_before, cut_after; refine.hpp). P is linear in the nodes, so an impulse at P acts on each node with that
-/// node's weight in P. Vector, Number: Vec and double for one segment, Vecs and Lanes for four.
+/// node's weight in P. Vector and Number are Vec and double for one segment, Vecs and Lanes for four.
 template <class Vector, class Number>
 struct SmoothOf {
   Vector x{}, e{}, before{}, after{};  ///< node, chord, k_j and k_{j+1}, m
@@ -47,8 +49,8 @@ struct SmoothSegment : SmoothOf<Vec, double> {
     if (j + 2 < state.x.size()) corner(state, j + 1, diameter_m, after, share);
   }
 
-  /// Corner vector k_i of an inner node i, m, scaled by `share` <= 1 so that the curve cuts the corner by at most
-  /// Tuning::most_cut_d diameters.
+  /// Computes the corner vector k_i of an inner node i, m. It is scaled by `share` <= 1, so that the curve cuts the
+  /// corner by at most Tuning::most_cut_d diameters.
   static void corner(const State& state, std::size_t i, double diameter_m, Vec& k_i, double& share) noexcept {
     const double most_m = 8.0 * tuning.most_cut_d * diameter_m;
     const Vec k = 2.0 * state.cut_before[i] * (state.x[i + 1] - state.x[i]) -
@@ -65,9 +67,9 @@ struct SmoothSegment : SmoothOf<Vec, double> {
   }
 };
 
-/// Closest points of two smooth segments: two Gauss-Newton steps (curvature neglected) from the closest points `c` of
-/// the chords. Error about 0.01 diameters; after a single step the normal still jumps by a third of a corner's angle
-/// (tests). About 460 instructions, for one pair or for four at once.
+/// Closest points of two smooth segments, by two Gauss-Newton steps (curvature neglected) from the closest points `c`
+/// of the chords. The error is about 0.01 diameters. One step is not enough: the normal would still jump by a third of
+/// a corner's angle (tests). About 460 instructions, for one pair or for four at once.
 template <class Vector, class Number>
 [[nodiscard]] inline ClosestOf<Vector, Number> closest(const SmoothOf<Vector, Number>& a,
                                                        const SmoothOf<Vector, Number>& b,

@@ -7,11 +7,12 @@
 
 namespace ligature::physics::rod {
 
-/// The impulse of a pair acts near the closest points found at the start of a substep. Where two strands are almost
-/// parallel, a tiny rotation moves the closest points far, and the impulse there rotates the strands back one substep
-/// later. This delayed feedback makes the points oscillate (by 1.5 % of a segment in a held square knot, which moved a
-/// loose neighbour at 25 mm/s). So the points move only by `share` of the way to the closest points. The share is
-/// adapted by Aitken relaxation [Irons & Tuck 1969]; it is 1 where there is no such feedback, as when strands slide.
+/// The points of a pair at which its impulse acts. They follow the closest points found at the start of each substep,
+/// but not at once. Where two strands are almost parallel, a tiny rotation moves the closest points far, and the
+/// impulse there rotates the strands back one substep later. This delayed feedback makes the closest points oscillate
+/// (by 1.5 % of a segment in a held square knot, which moved a loose neighbour at 25 mm/s). So the points move only by
+/// `share` of the way to the closest points. Aitken relaxation adapts the share [Irons & Tuck 1969]; it is 1 where
+/// there is no such feedback, as when strands slide.
 struct Touch {
   double a = 0.0, b = 0.0;          ///< material coordinates, m
   double way_a = 0.0, way_b = 0.0;  ///< way to the closest points in the last substep, m

@@ -1,6 +1,6 @@
 #pragma once
-// Friction that rolls the thread: a segment that turns about its axis moves its surface at a contact, and friction
-// there is a torque on the segment.
+// Friction that rolls the thread: at a contact, friction exerts a torque on a segment, and a segment that turns about
+// its axis moves its surface.
 
 #include <vector>
 
@@ -10,18 +10,22 @@ namespace ligature::physics::rod {
 
 struct Contact;
 
-/// A segment with tangent t that turns at rate w (rad/s) moves its surface, at a contact with normal n, at the velocity
-/// w t x (-r n), on either side of the contact. So the slip velocity gains
-///   w g,  g = -r t x n,   and the impulse p gives the segment the torque impulse g . p.
-/// g is perpendicular to n, so only friction is affected. Each impulse updates the rates of all segments in range at
-/// once and exactly (Spin::push), so a sweep is Gauss-Seidel in the rates too.
+/// Contacts of segments that roll. A segment of radius r and tangent t that turns at the rate w (rad/s) moves its
+/// surface, at a contact with normal n, at the velocity w t x (-r n), on either side of the contact. So the slip
+/// velocity gains
+///   w g,  with g = -r t x n,
+/// and the impulse p gives the segment the torque impulse g . p. g is perpendicular to n, so only friction is affected.
+/// Each impulse updates the rates of all segments in range at once and exactly (Spin::push()), so a sweep is
+/// Gauss-Seidel in the rates too.
 class Turning {
  public:
   void reserve(int rows) { rows_.reserve(static_cast<std::size_t>(rows)); }
 
-  /// Computes g for each of `contacts`. @param radius_m  of the thread. @pre spin.assemble() was called.
+  /// Computes g (class comment) for each of `contacts`. @param radius_m radius of the thread. @pre spin.assemble() was
+  /// called.
   void prepare(const Contact* contacts, int count, int segments, double radius_m, Spin& spin) noexcept;
-  /// Reduces Contact::inv_w by the segments' response, so that tangential steps cannot overshoot.
+  /// Reduces Contact::inv_w (effective mass) by the segments' response in roll, so that tangential steps cannot
+  /// overshoot.
   void shorten_steps(Contact* contacts) const noexcept;
 
   /// Contribution of the segments' rotation to the relative velocity of row k.

@@ -57,8 +57,8 @@ bool BandColumns::want(std::int32_t node) noexcept {
   return true;
 }
 
-// Computes one column, as BandSolver::solve() does for unit right-hand sides at this node. Right-hand sides further
-// from the core (the two middle nodes) are zero, so elimination towards the core starts at this node.
+// Computes the column of `node`, as BandSolver::solve() does for unit right-hand sides at that node. Right-hand sides
+// further from the core (the two middle nodes) are zero, so elimination towards the core starts at `node`.
 void BandColumns::solve(std::ptrdiff_t node) noexcept {
   const std::ptrdiff_t core = core_, l = core + 1, wide = width();
   Mat* const x = x_.data();

@@ -1,6 +1,6 @@
 #pragma once
-// Columns of the inverse of a substep's matrix, on a range of nodes. Each is computed when it is requested: only the
-// columns of nodes with contacts are needed.
+// Columns of the inverse of a substep's matrix, on a range of nodes. A column is computed only when it is requested,
+// because only nodes with contacts need theirs.
 
 #include <algorithm>
 #include <cstddef>
@@ -17,9 +17,9 @@ namespace ligature::physics::rod {
 
 class BandSolver;
 
-/// Z = A^-1 on a range of nodes (the window), for the matrix A that BandSolver had factorised at take(); later
-/// factorisations do not change it. A column costs as much as solving the window for three right-hand sides, and is
-/// kept until the next take(). Real time: no allocation after reserve().
+/// Columns of Z = A^-1 on a range of nodes (the window), for the matrix A that BandSolver had factorised when take()
+/// was called; later factorisations do not change them. A column costs as much as solving the window for three
+/// right-hand sides, and is kept until the next take(). No allocation after reserve().
 class BandColumns {
  public:
   static constexpr int kWidest = 640;        ///< most nodes in a window
@@ -32,16 +32,16 @@ class BandColumns {
   [[nodiscard]] int first() const noexcept { return first_; }
   [[nodiscard]] int width() const noexcept { return last_ - first_ + 1; }
 
-  /// Copies the solver's factors for the nodes first to last. @pre last - first < kWidest; both core nodes of the
-  /// solver, at which its two eliminations meet, lie in this range.
+  /// Copies the solver's factors for the nodes first to last. @pre last - first < kWidest, and this range contains both
+  /// core nodes of the solver, at which its two eliminations meet.
   void take(const BandSolver& solver, int first, int last) noexcept;
 
   /// Requests the column of a node, counted from first(). @return false when there is no room for it.
   [[nodiscard]] bool want(std::int32_t node) noexcept;
   [[nodiscard]] int missing() const noexcept { return static_cast<int>(wanted_.size()) - made_; }
-  /// Computes the requested columns. @return false when the time was over first; columns computed so far are kept.
+  /// Computes the requested columns. @return false if the time was over first; the columns computed so far are kept.
   bool make_missing(TickTime& time = TickTime::endless()) noexcept;
-  /// One column of Z: its 3 x 3 blocks for all nodes of the window. @param node  counted from first(). @pre this column
+  /// One column of Z: its 3 x 3 blocks for all nodes of the window. @param node counted from first(). @pre the column
   /// was requested and computed.
   [[nodiscard]] const float* column(std::int32_t node) const noexcept {
     return columns_.data() + static_cast<std::size_t>(place_[static_cast<std::size_t>(node)]) * stride();
@@ -49,8 +49,8 @@ class BandColumns {
   [[nodiscard]] std::size_t stride() const noexcept {
     return kBlock * ((static_cast<std::size_t>(width()) + 1) & ~std::size_t{1});
   }
-  /// The members that an image saves (image.hpp): all but the memory for the column that is being computed. in_use():
-  /// only computed columns are saved.
+  /// The members that an image saves (image.hpp): all but scratch memory, and of the columns only the computed ones
+  /// (in_use()).
   [[nodiscard]] static auto members(BandColumns& self) noexcept {
     auto& [first, last, made, core, out, s_inverse, one, two, skip, between, next_h, x, place, wanted, columns] = self;
     return std::tie(first, last, made, core, out, s_inverse, one, two, skip, between, next_h, place, wanted);
@@ -61,7 +61,7 @@ class BandColumns {
 
  private:
   void solve(std::ptrdiff_t node) noexcept;
-  /// Copies the factors of the `count` nodes next to the core on one side (Lane 0: left, 1: right).
+  /// Copies the factors of the `count` nodes next to the core on one side (Lane = 0: left, 1: right).
   template <int Lane>
   void take_chain(const BandSolver& solver, std::ptrdiff_t count) noexcept;
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr Mat kNothing{}, kUnit{{kAxisX}, {kAxisY}, {kAxisZ}};  // blocks for a lane without a node
 
-// F_i = A_ip - A_iq H_p (see BandSolver) for two nodes i at once: e is A_ip, b is A_iq, h is H_p.
+// F_i = A_ip - A_iq H_p (see the class BandSolver) for two nodes i at once; e is A_ip, b is A_iq, h is H_p.
 [[gnu::always_inline]] inline TwoMats towards(const TwoSyms& e, Two b, const TwoMats& h) noexcept {
   return {{e.xx - b * h.x.x, e.xy - b * h.x.y, e.xz - b * h.x.z},
           {e.xy - b * h.y.x, e.yy - b * h.y.y, e.yz - b * h.y.z},
@@ -33,7 +33,7 @@ constexpr Mat kNothing{}, kUnit{{kAxisX}, {kAxisY}, {kAxisZ}};  // blocks for a 
   return {a, 1.0 / (s.xx * a.xx + s.xy * a.xy + s.xz * a.xz)};
 }
 
-// Elimination of the two nodes i of a step: computes their H_i and y_i (see BandSolver). @return S_i.
+// Eliminates the two nodes i of a step: computes their H_i and y_i (see the class BandSolver). @return S_i.
 [[gnu::always_inline]] inline TwoSyms BandSolver::eliminate(const Rows& a, const Step& p, Step& q, const Pivot& pivot,
                                                             TwoMats& h, Twos& y) noexcept {
   q.skip = a.skip;
@@ -84,8 +84,8 @@ void BandSolver::factor(int core) noexcept {
     s.s_inverse = pivot.scale * pivot.adjugate;
     s.z = s.s_inverse * y;
   }
-  // The core: the two nodes where the eliminations from both ends meet. `skip` couples each of them with the
-  // node of the other half that is next but one to it.
+  // The core: the two nodes where the eliminations from both ends meet. `skip` couples each core node with the second
+  // next node, which is in the other half
   Step &one = step[0], &two = step[1];
   TwoSyms s = eliminate(rows(-1), one, two, pivot, core_h_, y);
   const Two across{core > 0 ? skip[static_cast<std::size_t>(core) - 1] : 0.0,

@@ -6,7 +6,7 @@
 namespace ligature::physics::rod {
 namespace {
 
-// Transposes an 8 x 8 block: rows are `stride` numbers apart in `from`, `to_stride` in `to`.
+// Transposes an 8 x 8 block. Its rows are `stride` numbers apart in `from`, and `to_stride` numbers apart in `to`.
 inline void transpose(const float* from, std::size_t stride, float* to, std::size_t to_stride) noexcept {
   Eight row[8], pair[8];
   for (std::size_t k = 0; k < 8; ++k) row[k] = load_eight(from + k * stride);
@@ -26,8 +26,8 @@ inline void transpose(const float* from, std::size_t stride, float* to, std::siz
 
 }  // namespace
 
-// W_ba = W_ab^T for the eight contacts from a on and the eight from b on, b < a. Entries beyond the last contact are
-// copied too but never read.
+// Sets W_ba = W_ab^T for the eight contacts from a on and the eight contacts from b on, b < a. Entries beyond the last
+// contact are copied too, but never read.
 void Couplings::mirror_block(std::size_t a, std::size_t b) noexcept {
   const float* const from = block(a, b);
   float* const to = w_.data() + b * stride_ + a * 9;

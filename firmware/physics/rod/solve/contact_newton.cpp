@@ -74,7 +74,7 @@ void ContactNewton::start(const Contact* rows, int count) noexcept {
   }
 }
 
-// Builds the table of slots by their first node, for find(). Marks every slot as without a row.
+// Builds the table of slots by their first node, for find(). No slot has a row after that.
 void ContactNewton::index_slots() noexcept {
   at_.assign(static_cast<std::size_t>(z_.width()), -1);
   for (std::size_t s = slots_.size(); s-- > 0;) {
@@ -103,7 +103,7 @@ bool ContactNewton::resume(Vec* p) noexcept {
   return std::exchange(put_off_, false);
 }
 
-// Adds row k to the contacts of Newton's system (slots_). @return false when there is no room.
+// Adds row k to the contacts in Newton's system (slots_). @return false if there is no room.
 bool ContactNewton::take(const Contact* rows, int k) noexcept {
   const std::size_t slot = slots_.size();
   if (slot == static_cast<std::size_t>(kMostRows)) return false;
@@ -123,7 +123,7 @@ bool ContactNewton::take(const Contact* rows, int k) noexcept {
   return true;
 }
 
-// spread_ = Z J^T of a slot: velocities of the nodes first to last per unit impulse on the slot.
+// Computes spread_ = Z J^T of a slot: velocities of the nodes first to last per unit impulse at the slot's contact.
 void ContactNewton::spread(const Slot& slot, std::int32_t first, std::int32_t last) noexcept {
   const auto begin = (BandColumns::kBlock * static_cast<std::size_t>(first)) & ~std::size_t{7},
              end = BandColumns::kBlock * static_cast<std::size_t>(last + 1);
@@ -141,8 +141,8 @@ void ContactNewton::spread(const Slot& slot, std::int32_t first, std::int32_t la
   }
 }
 
-// A 3 x 3 block of W: relative velocity at this slot's contact per impulse on the slot last given to spread(). Columns:
-// impulse along x, y, z.
+// A 3 x 3 block of W: relative velocity at this slot's contact per unit impulse at the slot last given to spread(). The
+// columns are for impulses along x, y, z.
 std::array<Four, 3> ContactNewton::answer_at(const Slot& slot) const noexcept {
   std::array<Four, 3> sum{};
   for (int j = 0; j < slot.count; ++j) {
@@ -153,15 +153,16 @@ std::array<Four, 3> ContactNewton::answer_at(const Slot& slot) const noexcept {
   return sum;
 }
 
-// Sets the step lengths r_n and r_t of a contact's natural map (see ContactNewton): the inverse of its own velocity per
-// impulse along the normal and across it.
+// Sets the step lengths r_n and r_t of a contact's natural map (see the class ContactNewton): the inverse of the
+// contact's own velocity per unit impulse, along the normal and across it.
 void ContactNewton::set_steps(Slot& slot, const std::array<Four, 3>& w) noexcept {
   const Mat own{{__builtin_convertvector(w[0], Lanes)},
                 {__builtin_convertvector(w[1], Lanes)},
                 {__builtin_convertvector(w[2], Lanes)}};
   const Vec on_n = own * slot.n;
   const double normal = dot(on_n, slot.n);
-  // Projected across n, the 3 x 3 block has trace t and squared Frobenius norm s; `across` is its larger eigenvalue.
+  // The 3 x 3 block, projected onto the plane across n, has trace t and squared Frobenius norm s. `across` is its
+  // larger eigenvalue
   const double t = own.x[0] + own.y[1] + own.z[2] - normal;
   const double s = dot(own.x, own.x) + dot(own.y, own.y) + dot(own.z, own.z) - 2.0 * dot(on_n, on_n) + normal * normal;
   const double across = 0.5 * (t + std::sqrt(std::max(0.0, 2.0 * s - t * t)));

@@ -1,5 +1,5 @@
 #pragma once
-// Newton's method for contacts. Few contacts carry load, so their equations form a small dense system.
+// Newton's method for contacts. Only few contacts carry load, so their equations form a small dense system.
 
 #include <array>
 #include <cstdint>
@@ -18,21 +18,24 @@ namespace ligature::physics::rod {
 
 struct Contact;
 
-/// A contact is solved when its impulse p is a fixed point of its natural map. With its relative velocity u, wanted
-/// normal velocity `target`, compliance `soft`, friction coefficient mu and step lengths r_n, r_t, the map is
-///   p_n = max(0, p_n - r_n (u_n + soft p_n - target)),   p_t = disc(mu p_n, p_t - r_t u_t),
-/// disc(s, q) the point of the disc of radius s nearest to q [Alart & Curnier 1991]. u = u_free + W p, and W = J Z J^T
-/// with Z = A^-1, stretch included (J: rows of all contacts). The map is linear as long as no contact changes its kind
-/// (open, sticking, sliding). So each step fixes the kinds and solves a linear system: an open contact has no unknown;
-/// a sticking one has three; a sliding one, with sliding direction d, has two: one along n + mu d, and one across d
-/// with a compliance that accounts for the rotation of d. Then the kinds are determined again (a primal-dual active set
-/// method [Hintermueller 2003]). Impulses may leave their cones on the way.
+/// Newton's method for all contacts of a substep. A contact is solved when its impulse p is a fixed point of its
+/// natural map [Alart & Curnier 1991]
+///   p_n = max(0, p_n - r_n (u_n + soft p_n - target)),   p_t = disc(mu p_n, p_t - r_t u_t)
+/// u: relative velocity, target: wanted normal velocity, soft: compliance, mu: friction coefficient, r_n, r_t: step
+/// lengths; _n, _t: normal and tangential parts. disc(s, q) is the point nearest to q in the disc of radius s. u =
+/// u_free + W p, with W = J Z J^T (J: rows of all contacts) and Z = A^-1, stretch included.
 ///
-/// Without damping this cycles: a few wrong kinds, and impulses to which velocities hardly respond (cond W is 1e5)
+/// The map is linear as long as no contact changes its kind (open, sticking, sliding). So each step fixes the kinds and
+/// solves a linear system. An open contact has no unknown, a sticking one has three. A sliding one, with sliding
+/// direction d, has two: one along n + mu d, and one across d with a compliance that accounts for the rotation of d.
+/// Then the kinds are determined again (a primal-dual active set method [Hintermueller 2003]). Impulses may leave their
+/// friction cones on the way.
+///
+/// Without damping this cycles: a few kinds are wrong, and impulses to which velocities hardly respond (cond W is 1e5)
 /// become a thousand times too large, which makes all other kinds wrong. So a term proportional to the change of each
 /// impulse is added to its equation (a proximal point method [Rockafellar 1976]), which mostly damps such weak
-/// directions. The factor of this term shrinks from step to step, faster when no kind changes, grows when a step has
-/// increased the error, and is reset to 1 when new contacts enter. See set_cost().
+/// directions. The factor of this term shrinks from step to step, and faster when no kind changes. It grows when a step
+/// has increased the error, and is reset to 1 when new contacts enter. See set_cost().
 ///
 /// Z may be some substeps old: after each step the caller computes the velocities with the present A.
 class ContactNewton {
@@ -44,24 +47,23 @@ class ContactNewton {
 
   void reserve();
 
-  /// Call when mesh or time step have changed: Z is no longer valid.
+  /// Call when mesh or time step have changed, because Z is then no longer valid.
   void forget() noexcept { z_.forget(); }
   [[nodiscard]] bool covers(int first, int last) const noexcept { return z_.covers(first, last); }
-  /// Takes Z = A^-1 from the present factorisation. @pre last - first < kWidest; solver factorised.
+  /// Takes Z = A^-1 from the solver's present factorisation. @pre last - first < kWidest; the solver has factorised A.
   void measure(const BandSolver& solver, int first, int last) noexcept;
 
-  /// Begins a substep with `count` contacts. Entries of their matrix that are known from earlier substeps are kept
-  /// until measure() computes them anew.
+  /// Begins a substep with `count` contacts. Entries of W that are known from earlier substeps are kept until the next
+  /// measure().
   void start(const Contact* rows, int count) noexcept;
 
-  /// Adds to the system all contacts that have an impulse or whose velocity violates u_n >= target. @return false when
-  /// there is no room.
+  /// Adds to the system all contacts that have an impulse or violate u_n >= target. @return false if there is no room.
   [[nodiscard]] bool look(const Contact* rows, int count, const Vec* p, const Vec* u) noexcept;
 
-  /// Computes the blocks of the coupling matrix W for the added contacts. Call after look(), before read(). @return
-  /// false when the time was over first; the blocks computed so far are kept.
+  /// Computes the blocks of the coupling matrix W for the added contacts. Call after look() and before read(). @return
+  /// false if the time was over first; the blocks computed so far are kept.
   bool couple(TickTime& time = TickTime::endless()) noexcept;
-  /// Amount of work that couple() has yet to do: columns of Z, contacts, pairs of contacts.
+  /// What couple() still has to compute: numbers of columns of Z, of contacts, and of pairs of contacts.
   struct Uncoupled {
     long columns, contacts, pairs;
   };
@@ -82,11 +84,11 @@ class ContactNewton {
   template <bool Friction>
   void sweep(const Contact* rows, Vec* p, Vec* u) noexcept;
 
-  /// Work or time ran out: stores the impulses, so that the repeated substep can resume() from them.
+  /// Call when work or time is used up: stores the impulses, so that the repeated substep can resume() with them.
   void put_off(const Vec* p) noexcept;
   /// Forgets the impulses of put_off(), as the substep was solved another way.
   void give_up() noexcept { put_off_ = false; }
-  /// Writes the impulses of put_off() into p. @return false when there are none.
+  /// Writes the impulses stored by put_off() into p. @return false if there are none.
   [[nodiscard]] bool resume(Vec* p) noexcept;
 
   [[nodiscard]] int unknowns() const noexcept { return count_; }  ///< size of the next step's linear system
@@ -95,11 +97,11 @@ class ContactNewton {
   [[nodiscard]] int exchanges() const noexcept;  ///< slots that the next step must reorder
   [[nodiscard]] int loaded() const noexcept { return static_cast<int>(rows_.size()); }
 
-  /// One Newton step: solves for the impulses p with the kinds of the last read(), and updates u. @return false when
-  /// the system is singular or the time was over first (p and u are unchanged), or when the solution is not finite.
+  /// One Newton step: solves for the impulses p with the kinds of the last read(), and updates u. @return false if the
+  /// system is singular or the time was over first (then p and u are unchanged), or if the solution is not finite.
   template <bool Friction>
   bool solve(const Contact* rows, Vec* p, Vec* u, TickTime& time = TickTime::endless()) noexcept;
-  /// The members that an image saves (image.hpp): all but those that every Newton step computes again.
+  /// The members that an image saves (image.hpp): all but those that are computed again in every Newton step.
   [[nodiscard]] static auto members(ContactNewton& self) noexcept {
     auto& [z, spread, slot, at, rows, slots, coupled, put_off, begins, changed, error2, last_error2, cost, w, unknowns,
            count, carrying, dense, on, stuck, with, rest] = self;
@@ -108,8 +110,8 @@ class ContactNewton {
 
  private:
   enum class Kind : std::uint8_t { kNew, kOpen, kSticks, kSlides };
-  /// A contact that carries load, or did since measure(): its geometry, the step lengths r_n and r_t of its natural map
-  /// (class comment), and that map's value.
+  /// A contact that carries load, or has carried load since measure(): its geometry, the step lengths r_n and r_t of
+  /// its natural map (class comment), and the value of that map.
   struct Slot {
     std::int32_t count = 0;
     std::int32_t node[kMostNodes] = {};  ///< counted from the first node of Z
@@ -129,8 +131,9 @@ class ContactNewton {
                      along, most)
     [[nodiscard]] bool carries() const noexcept { return row >= 0 && kind >= Kind::kSticks; }
   };
-  /// One unknown number x: the contact gets x times the impulse vector `with`, and x is chosen so that along . u + give
-  /// x = wanted. The system is solved for x - now, so that single precision limits only the accuracy of the change.
+  /// One unknown x of the linear system: the contact gets x times the impulse vector `with`, such that along . u + give
+  /// x = wanted (u: relative velocity). The system is solved for x - now, so that single precision limits only the
+  /// accuracy of the change.
   struct Unknown {
     std::size_t slot;
     Vec along, with;
@@ -187,7 +190,7 @@ class ContactNewton {
   double cost_ = 1.0;                        // factor of the proximal term, 0 to 1
   Couplings w_;                              // W of all slots
   // Unknowns of the first carrying_ slots: first those along the normals, then those across the sliding directions,
-  // then those along the sliding directions, which only sticking contacts have.
+  // then (for sticking contacts only) those along the sliding directions
   std::vector<Unknown> unknowns_;
   int count_ = 0;
   std::size_t carrying_ = 0;

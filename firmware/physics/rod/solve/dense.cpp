@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kPanel = 4;
 
-// a = scale (a - sum_q factors[q] x row q of `top`). The factors may lie in `a` itself.
+// Sets a = scale (a - sum over q of factors[q] x row q of `top`). The factors may be entries of `a` itself.
 template <std::size_t Rows>
 inline void take_away(float* a, const float* factors, const float* top, std::size_t from, std::size_t stride,
                       float scale = 1.0F) noexcept {
@@ -39,7 +39,7 @@ void Dense::reserve(std::size_t most) {
   panels_.reserve(most);
 }
 
-// Partial pivoting for column k: exchanges rows, scales the pivot to 1, and eliminates the column below it.
+// Partial pivoting for column k: exchanges rows, scales the pivot to 1, and eliminates the column below the pivot.
 bool Dense::pivot(std::size_t k) noexcept {
   const std::size_t from = k & ~std::size_t{7};
   std::size_t best = k;
@@ -54,8 +54,9 @@ bool Dense::pivot(std::size_t k) noexcept {
   return true;
 }
 
-// Adds row i = k + Before to the panel that begins at k: eliminates the panel's pivots from it, scales its pivot to 1,
-// and eliminates column i from the panel's rows. @return false, and nothing is changed, when its pivot has shrunk.
+// Adds row i = k + Before to the panel that begins at row k: eliminates the panel's pivots from row i, scales its own
+// pivot to 1, and eliminates column i from the panel's other rows. @return false if the pivot has shrunk; then nothing
+// is changed.
 template <std::size_t Before>
 bool Dense::join(std::size_t k) noexcept {
   // A pivot counts as shrunk if it is below kShrunk times its value before this panel, or below kNoise times its
@@ -72,8 +73,8 @@ bool Dense::join(std::size_t k) noexcept {
   return true;
 }
 
-// Reduces up to four rows and columns from k on to a unit matrix. @return their number; fewer than four if a pivot
-// is too small.
+// Reduces up to four rows and columns from k on to a unit matrix. @return how many; fewer than four if a pivot is too
+// small.
 std::size_t Dense::panel(std::size_t k) noexcept {
   const std::size_t rows = std::min(kPanel, n_ - k);
   if (!join<0>(k)) return 0;
@@ -82,8 +83,8 @@ std::size_t Dense::panel(std::size_t k) noexcept {
   return rows < 4 || !join<3>(k) ? 3 : 4;
 }
 
-// Eliminates columns k to k + pivots - 1 from all rows >= first. Rows k to k + pivots - 1 must hold a unit matrix in
-// these columns. In the other rows the eliminated entries are not set to zero, as they are not read again.
+// Eliminates columns k to k + pivots - 1 from all rows >= first. In these columns, rows k to k + pivots - 1 must be a
+// unit matrix. The eliminated entries of the other rows are not set to zero, because they are not read again.
 void Dense::clear_below(std::size_t k, std::size_t pivots, std::size_t first) noexcept {
   const std::size_t from = (k + pivots) & ~std::size_t{7};
   const float* const top = row(k);
@@ -99,7 +100,8 @@ void Dense::clear_below(std::size_t k, std::size_t pivots, std::size_t first) no
   }
 }
 
-// Eliminates eight columns from k on, as two panels; the first is already reduced. @return the number of columns done.
+// Eliminates eight columns from k on, as two panels of which the first is already reduced. @return the number of
+// columns done.
 std::size_t Dense::two_panels(std::size_t k) noexcept {
   const std::size_t l = k + kPanel, end = l + kPanel;
   for (std::size_t i = l; i < end; ++i) take_away<kPanel>(row(i), row(i) + k, row(k), l & ~std::size_t{7}, stride_);
@@ -129,7 +131,7 @@ void Dense::substitute() noexcept {
       const Eight at = load_eight(x + j);
       for (std::size_t i = 0; i < 2 * kPanel; ++i) sum[i] += load_eight(rows[i] + j) * at;
     }
-    // The unknowns x up to the end of this panel are still zero, so left-over matrix entries there add nothing.
+    // The unknowns x up to the end of this panel are still zero, so the old matrix entries there add nothing
     for (std::size_t i = 0; k + i < end; ++i) {
       const Eight s = sum[i];
       x[k + i] = rows[i][n_] - (((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7])));

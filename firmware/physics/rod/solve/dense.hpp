@@ -9,16 +9,17 @@
 
 namespace ligature::physics::rod {
 
-/// M x = b by block Gauss elimination: up to eight columns at a time (two panels of four) are reduced to a unit matrix
-/// and eliminated from the rows below. Rows are exchanged only where a pivot has shrunk to 1e-4 of its value, since
-/// nearly all of M is symmetric positive definite. About n^3 / 15 instructions; relative accuracy 1e-6 x cond(M).
+/// Solves M x = b by block Gauss elimination: up to eight columns at a time (two panels of four) are reduced to a unit
+/// matrix and eliminated from the rows below. Rows are exchanged only where a pivot has shrunk to 1e-4 of its value;
+/// this is rare, because nearly all of M is symmetric positive definite. About n^3 / 15 instructions; relative accuracy
+/// 1e-6 x cond(M).
 class Dense {
  public:
   void reserve(std::size_t most);
   void resize(std::size_t unknowns) noexcept { n_ = unknowns, stride_ = (unknowns + 8) & ~std::size_t{7}; }
 
-  /// Row i of M, then b_i, then zeros up to the end of the row, whose length is a multiple of eight. If rows are
-  /// written in order, up to eight numbers may be written past the end of a row.
+  /// Memory of row i: the row of M, then b_i, then zeros up to a multiple of eight numbers. If rows are written in
+  /// order, up to eight numbers may be written past the end of a row.
   [[nodiscard]] float* row(std::size_t i) noexcept { return m_.data() + i * stride_; }
 
   /// @return false when M is singular, or the time was over first. M is lost.

@@ -10,7 +10,7 @@ constexpr double kRidge = 1e-6,
 
 using Row = std::array<double, Mixing::kDepth>;
 
-// Gaussian elimination of a small symmetric positive definite system, in place; b becomes the solution.
+// Solves a small symmetric positive definite system by Gaussian elimination, in place; b becomes the solution.
 void solve(std::array<Row, Mixing::kDepth>& a, Row& b, std::size_t n) noexcept {
   for (std::size_t k = 0; k < n; ++k) {
     for (std::size_t i = k + 1; i < n; ++i) {
@@ -29,8 +29,8 @@ double sum(Lanes a) noexcept { return (a[0] + a[1]) + a[2]; }
 
 }  // namespace
 
-// Stores the newest changes dr, dp in `slot`. In one pass over the impulses it computes two sets of dot products: of
-// the new dr with all stored dr (into products_), and of all stored dr with r (into theta).
+// Stores the newest changes dr, dp in `slot`. The same pass over the impulses computes two sets of dot products: of the
+// new dr with all stored dr (products_), and of all stored dr with r (theta).
 void Mixing::measure(const Vec* p, const Vec* r, std::size_t impulses, std::size_t slot, Row& theta) noexcept {
   Lanes g0{}, g1{}, g2{}, g3{}, b0{}, b1{}, b2{}, b3{};
   for (std::size_t i = 0; i < impulses; ++i) {

@@ -8,14 +8,13 @@
 
 namespace ligature::physics::rod {
 
-/// Solves p = G(p). After each evaluation p+ = G(p), with residual r = p+ - p, the next argument is the combination of
-/// the last few p+ that minimises the combined residual:
-///   theta = argmin |r - sum theta_j dr_j|^2,   p = p+ - sum theta_j dp_j   [Anderson 1965]
-/// with dr_j, dp_j the changes of r and p+ from one evaluation to the next. For a linear G this is equivalent to GMRES
-/// [Walker & Ni 2011]. As G contains projections onto friction cones, the combination can be worse than p+: the caller
-/// compares the two and calls restart() if so. Impulses may be appended between evaluations; their past values count
-/// as zero. Scalar products of the changes are kept, so an evaluation costs eight dot products. No allocation after
-/// reserve().
+/// Solves p = G(p) by Anderson mixing [Anderson 1965]. After each evaluation p+ = G(p), with the residual r = p+ - p,
+/// the next argument is the combination of the last few p+ that minimises the combined residual:
+///   theta = argmin |r - sum theta_j dr_j|^2,   p = p+ - sum theta_j dp_j
+/// dr_j, dp_j: changes of r and p+ from one evaluation to the next. For a linear G this is equivalent to GMRES [Walker
+/// & Ni 2011]. G contains projections onto friction cones, so the combination can be worse than p+: the caller compares
+/// the two, and calls restart() if it is. Impulses may be appended between evaluations; their past values count as
+/// zero. Dot products of the changes are kept, so an evaluation costs eight of them. No allocation after reserve().
 class Mixing {
  public:
   static constexpr int kDepth = 4;

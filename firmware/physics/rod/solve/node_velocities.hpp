@@ -1,5 +1,5 @@
 #pragma once
-// Velocities, during a contact sweep, of the nodes on which contacts act: single precision, eight nodes per register.
+// Velocities of the nodes on which contacts act, for the sweeps: in single precision, eight nodes per register.
 
 #include <cstdint>
 #include <cstring>
@@ -27,8 +27,8 @@ inline void store_four(float* at, Four value) noexcept { std::memcpy(at, &value,
 inline void store_eight(float* at, Eight value) noexcept { std::memcpy(at, &value, sizeof value); }
 [[nodiscard]] inline Eight all_eight(float a) noexcept { return Eight{a, a, a, a, a, a, a, a}; }
 
-/// Blocks of eight nodes: eight x, eight y, eight z. A sweep only approximates the solution with the full matrix, so
-/// rounding to 1e-7 of a velocity is far below the error of a pass; impulses stay in double precision.
+/// Node velocities in blocks of eight nodes: eight x, eight y, eight z. A sweep only approximates the solution with the
+/// full matrix, so rounding to 1e-7 of a velocity is far below the error of a pass. Impulses stay in double precision.
 class SweptVelocities {
  public:
   void reserve(int nodes) { xyz_.assign(3 * (static_cast<std::size_t>(nodes) + 16), 0.0F); }
@@ -37,7 +37,7 @@ class SweptVelocities {
   [[nodiscard]] static std::size_t padded(int nodes) noexcept {
     return (static_cast<std::size_t>(nodes) + 7) & ~std::size_t{7};
   }
-  /// Index of a node's x component, nodes counted from the first one loaded. Its y and z are 8 and 16 places later.
+  /// Index of a node's x component; its y and z are 8 and 16 places later. Nodes are counted from the first one loaded.
   [[nodiscard]] static std::int32_t place(int node) noexcept { return (node >> 3) * 24 + (node & 7); }
 
   void load(const Vec* v, int nodes) noexcept {
@@ -61,7 +61,8 @@ class SweptVelocities {
     return make(x, y, z);
   }
 
-  /// Adds the velocity changes by an impulse p: v_j += column_j p for every node. @param nodes  as padded() gives it.
+  /// Adds the velocity changes by an impulse p: v_j += column_j p for every node j. @param nodes their number, rounded
+  /// up by padded().
   void push(const float* column, std::size_t nodes, Vec p) noexcept {
     const Eight px = all_eight(static_cast<float>(p[0])), py = all_eight(static_cast<float>(p[1])),
                 pz = all_eight(static_cast<float>(p[2]));

@@ -1,5 +1,5 @@
 #pragma once
-// Two doubles in one register: the same arithmetic for two chains of nodes at once, without shuffles.
+// Two doubles in one register, for the same arithmetic on two chains of nodes at once, without shuffles.
 
 #include "firmware/physics/rod/vec.hpp"
 
@@ -24,8 +24,8 @@ struct Twos {
 }
 template <int Lane>
 [[nodiscard]] inline Vec lane(const Twos& a) noexcept {
-  // The zeros come last in the shuffle: otherwise the compiler emits a `vmovq` of two registers, which valgrind does
-  // not support.
+  // The zeros come last in the shuffle. Otherwise the compiler emits a `vmovq` of two registers, which valgrind does
+  // not support
   const Two xy = __builtin_shufflevector(a.x, a.y, Lane, 2 + Lane), zz = __builtin_shufflevector(a.z, a.z, Lane, Lane);
   const Lanes xyzz = __builtin_shufflevector(xy, zz, 0, 1, 2, 3);
   return {__builtin_shufflevector(xyzz, Lanes{}, 0, 1, 2, 7)};
@@ -40,7 +40,8 @@ struct TwoMats {
   Twos x, y, z;
 };
 
-/// less: r - A b. less_transposed: r - A^T b. The order of summation keeps the latency at three multiply-adds each.
+/// less() is r - A b, less_transposed() is r - A^T b. The order of summation keeps the latency of each at three
+/// multiply-adds.
 [[nodiscard]] inline Twos less(const Twos& r, const TwoMats& a, const Twos& b) noexcept {
   return {r.x - a.x.x * b.x - a.y.x * b.y - a.z.x * b.z, r.y - a.x.y * b.x - a.y.y * b.y - a.z.y * b.z,
           r.z - a.x.z * b.x - a.y.z * b.y - a.z.z * b.z};
