@@ -66,7 +66,7 @@ class HaplyDevice final : public Device {
     const auto now = std::chrono::steady_clock::now();
     if (now < try_at_) {
       io_.restart();
-      io_.poll();  // the farewell, if it is not out yet
+      io_.poll();  // sends the rest of the message that lose() began
       return false;
     }
     try_at_ = now + kTryAgainAfter;

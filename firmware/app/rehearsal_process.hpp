@@ -15,7 +15,7 @@ struct Rehearsal {
   std::string text;     ///< the scene's text, exactly as it will be run
   std::vector<std::string> overrides;
   double no_loss_m_per_s = 0.0;               ///< hand speed up to which time loss is measured; 0: not measured
-  std::chrono::milliseconds patience{9'000};  ///< less than the 10 s for which the command's sender waits
+  std::chrono::milliseconds patience{9'000};  ///< longest wait: less than the 10 s for which the command's sender waits
 };
 
 struct Verdict {

@@ -129,7 +129,7 @@ class HandControl {
   /// rest (motion.hpp).
   static constexpr double kBrake_N_per_m = 150.0, kBrake_N_s_per_m = 2.0;
   static constexpr double kLead_N = 0.5;         ///< below the continuous force of an Omni-class device
-  static constexpr double kLeadEnergy_J = 0.05;  ///< enough for 0.2 m against 0.1 N of friction, more than twice
+  static constexpr double kLeadEnergy_J = 0.05;  ///< more than twice the work of moving 0.2 m against 0.1 N of friction
   static constexpr double kStray_m = 0.008;      ///< larger deviation: somebody holds the tip, or an encoder is wrong
 
  private:

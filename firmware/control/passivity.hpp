@@ -68,13 +68,15 @@ struct PortSample {
 class Passivity {
  public:
   static constexpr double kFloor_J = 1e-6;
-  static constexpr double kCredit_J = 0.02;  ///< the energy of a 3.3 N spring of 270 N/m, or of 0.88 N at 19 N/m
+  /// Energy that 3.3 N store in a spring of 270 N/m, or 0.88 N in one of 19 N/m
+  static constexpr double kCredit_J = 0.02;
   /// Largest damping that a device of this class renders stably at 1 kHz
   static constexpr double kMaxDamping_N_s_per_m = 5.0;
   static constexpr std::int64_t kWary = 10'000;  ///< ticks after a lost RPDO in which another loss is anticipated
   /// Factor on the acceleration bound after two periods without a sample
   static constexpr double kLater = 0.3;
-  static constexpr double kMore = 3.0;  ///< further periods of the present motion that must be paid for
+  /// After lost frames: number of further periods of the present motion for which the account must be able to pay
+  static constexpr double kMore = 3.0;
   /// A force of this size, N, needs no energy for the uncertainty of the hand's motion while frames are lost; otherwise
   /// no force could begin
   static constexpr double kSlight_N = 0.006;

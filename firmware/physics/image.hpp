@@ -15,8 +15,8 @@ using ImageBytes = std::vector<std::byte>;
 
 /// What an image belongs to. Checksums are CRC-32.
 struct ImageOrigin {
-  std::uint32_t layout = 0;  ///< of the names of all members' types: differs in a build with other members
-  std::uint32_t scene = 0;   ///< of the contents of a simulation that was just made from the scene
+  std::uint32_t layout = 0;  ///< checksum of the names of all members' types: differs in a build with other members
+  std::uint32_t scene = 0;   ///< checksum of the contents of a simulation that was just made from the scene
   bool operator==(const ImageOrigin&) const = default;
 };
 

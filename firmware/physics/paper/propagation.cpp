@@ -6,7 +6,7 @@
 namespace ligature::physics {
 namespace {
 constexpr int kMostIterations = 40;
-constexpr double kStiffer = 1e-12;  // relative regularisation: a taut straight thread between fixed nodes is singular
+constexpr double kStiffer = 1e-12;  // added to the diagonal: a taut straight thread between fixed nodes is singular
 }  // namespace
 
 LengthLimits::LengthLimits(const ThreadModel& m, double min_length, double max_length)
