@@ -1,6 +1,6 @@
 #pragma once
-// Three drives on a bus that stand for a Cartesian device: its position becomes joint angles, their torques become its
-// force. Uses no sockets and no clock.
+// Three simulated drives on a bus that represent a Cartesian device: the device's position becomes joint angles, and
+// the drives' torques become the device's force. Uses no sockets and no clock.
 
 #include <array>
 #include <optional>

@@ -7,9 +7,9 @@
 
 namespace ligature::bridge {
 
-/// An Inverse3 behind Haply's Inverse Service. Each exchange() is one message and its answer. A lost connection is
-/// opened again by later calls. @param url ws://HOST:PORT. @param answer_within the connection is given up when an
-/// answer does not come within this time.
+/// Opens an Inverse3 (a haptic device) through Haply's Inverse Service. Each exchange() sends one message and reads the
+/// answer. Later calls open a lost connection again. @param url ws://HOST:PORT. @param answer_within the connection is
+/// given up when an answer does not come within this time.
 [[nodiscard]] OpenedDevice open_haply(const std::string& url, const HaplyChoice& choice,
                                       std::chrono::nanoseconds answer_within);
 

@@ -13,8 +13,8 @@ namespace ligature::physics::rod {
 ///   speed_a + speed_b,       with speed_j = max(|v_j|, |v_{j+1}|):         tight for strands that meet
 ///   drift_{b+1} - drift_a,   with drift_i = sum_{k<i} |v_{k+1} - v_k|:     tight for neighbours, which move together
 /// rate() is the smaller of the two. gone() is the smaller of their time integrals since restart(), and bounds the
-/// relative motion: between two moments a pair moves by at most gone(later) - gone(earlier), even if another one of the
-/// two integrals is the smaller one at each moment.
+/// relative motion: between two moments a pair moves by at most gone(later) - gone(earlier), whichever integral is the
+/// smaller one at each of them.
 class Motion {
  public:
   void reserve(int nodes);

@@ -45,7 +45,7 @@ class Spin {
   void before_fading(State& state, std::span<const double> fade) const noexcept;
   /// Call once per tick. Aligns the frames with the new tangents (and the new mesh), and computes angles and moments. A
   /// hold's rotation since the last tick is spread evenly over this tick.
-  /// @param remeshed  nodes moved, and State::rest_bend was computed again, born() included
+  /// @param remeshed true: nodes moved, and State::rest_bend was computed again, including its part born()
   /// @param once the roll advances here by the whole tick, instead of in every substep. That is enough if neither
   /// friction nor rest curvature rolls the thread, because twist waves cross it in less than a tick.
   void update(const Material& material, State& state, Forces& forces, double tick_s, bool remeshed,

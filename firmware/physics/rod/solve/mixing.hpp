@@ -22,8 +22,8 @@ class Mixing {
   void reserve(std::size_t impulses) { past_.resize(impulses); }
   void restart() noexcept { held_ = next_ = 0, primed_ = false; }
 
-  /// @param p  in: p+; out: the next argument.  @param r  p+ - p.  @return false, and p is unchanged, when there are no
-  /// earlier evaluations to combine with.
+  /// @param p in: p+, the newest evaluation; out: the next argument. @param r residual p+ - p. @return false if there
+  /// are no earlier evaluations to combine with; then p is unchanged.
   bool step(Vec* p, const Vec* r, std::size_t impulses) noexcept;
 
  private:
