@@ -1,6 +1,6 @@
 #pragma once
-// The JSON messages of Haply's Inverse Service, version 3 (https://docs.haply.co/inverseSDK/service): the service sends
-// one state for each message that it gets, and one unasked when a client connects.
+// The JSON messages of Haply's Inverse Service, version 3 (https://docs.haply.co/inverseSDK/service): the service
+// answers each message with one state, and sends one state unasked when a client connects.
 
 #include <optional>
 #include <set>

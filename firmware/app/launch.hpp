@@ -28,7 +28,7 @@ class Launch {
   [[nodiscard]] std::vector<std::string> with(const std::vector<std::string>& live, const std::string& file,
                                               const std::string& text) const;
 
-  /// Largest value to which a command may set a limit; empty if the launch does not bound it.
+  /// Largest value to which a command may set the limit `key`; empty if the launch options do not bound it.
   [[nodiscard]] std::optional<double> highest(std::string_view key) const;
 
   /// The launch options that commands (`live`) have not replaced, as text: "--set hands.max_force_N=1.0,

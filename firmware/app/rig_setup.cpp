@@ -33,7 +33,7 @@ std::string too_stiff(const scene::Hands& hands, const device::Device& device) {
   return text.str();
 }
 
-/// Error text for settings that are allowed in a simulation but not with hands connected, else empty.
+/// Error text if the scene has a setting that is allowed in a simulation, but not when hands are connected; else empty.
 std::string objection(const scene::Scene& s, const device::Device& device) {
   const auto told = [](const char* key, double found, const std::string& allowed) {
     std::ostringstream text;

@@ -59,7 +59,7 @@ class Controller {
 
   /// Installs the hand settings of another scene. @pre no force can flow.
   void change_hands(const scene::Hands& hands) noexcept;
-  /// Changes the force scale linearly over kScaleTicks, so that a rendered force does not jump.
+  /// Changes the force scale linearly over kScaleTicks, so that the force on the hand does not jump.
   void change_force_scale(double force_scale) noexcept;
 
   /// Starts the shutdown: forces ramp to zero, drives are switched off, then is_finished() is true.

@@ -33,7 +33,7 @@ class ForceLimiter {
 
   void set_peak(double max_force_N) noexcept;
 
-  /// @param wish_N finite. @return the force that may be sent; codes() gives the limits that reduced it.
+  /// @param wish_N requested force, finite. @return the force that may be sent; codes() tells which limits reduced it.
   [[nodiscard]] physics::Vec3 limit(const physics::Vec3& wish_N, const MostByJoints& most = {}) noexcept;
   /// Tells the limiter which force was sent in the end (later stages may reduce it). The next change and the heat are
   /// computed from this force.

@@ -4,9 +4,9 @@
 
 namespace ligature::physics {
 
-/// Direction and length of a segment, equation (4).
-///   e_i = (P_{i+1} - P_i) / |P_{i+1} - P_i|
-/// A segment of zero length has no direction: u = 0, so no force acts along it. Cost: one root, one division.
+/// Direction u and length of a segment, the paper's equation (4):
+///   u = (P_{i+1} - P_i) / |P_{i+1} - P_i|
+/// A segment of zero length has no direction: u is then zero, so no force acts along it. Cost: one root, one division.
 template <class S>
 struct Segment {
   V3<S> u;       ///< unit vector from P_i to P_{i+1}

@@ -144,7 +144,7 @@ class Rod : private RodKept, private RodNow, private RodCache {
   bool give_up() noexcept;
   double brake(double dt_s) noexcept;
 
-  /// Speed of the fastest hold, and largest relative speed of two holds (of a single hold: its speed), m/s.
+  /// Speed of the fastest hold, and largest relative speed of two holds (if there is only one hold: its speed), m/s.
   struct HandSpeed {
     double fastest = 0.0, apart = 0.0;
     int holds = 0;

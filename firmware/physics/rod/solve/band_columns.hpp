@@ -36,7 +36,7 @@ class BandColumns {
   /// core nodes of the solver, at which its two eliminations meet.
   void take(const BandSolver& solver, int first, int last) noexcept;
 
-  /// Requests the column of a node, counted from first(). @return false when there is no room for it.
+  /// Requests the column of a node, counted from first(). @return false if there is no room for it.
   [[nodiscard]] bool want(std::int32_t node) noexcept;
   [[nodiscard]] int missing() const noexcept { return static_cast<int>(wanted_.size()) - made_; }
   /// Computes the requested columns. @return false if the time was over first; the columns computed so far are kept.

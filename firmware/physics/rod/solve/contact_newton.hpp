@@ -73,9 +73,9 @@ class ContactNewton {
   }
   [[nodiscard]] int nodes() const noexcept { return z_.width(); }  ///< number of nodes that Z covers
 
-  /// Determines the kind (open, sticking, sliding) of each contact in the system from impulses p and velocities u. The
-  /// residual of a contact is the distance of its impulse from the value under the natural map, times the contact's own
-  /// velocity per impulse.
+  /// Determines the kind (open, sticking, sliding) of each contact in the system from impulses p and velocities u. A
+  /// contact's residual is the distance of its impulse from the value of its natural map (class comment), times the
+  /// contact's own velocity per unit impulse.
   /// @return the square of the largest residual, (m/s)^2.
   template <bool Friction>
   [[nodiscard]] double read(const Contact* rows, const Vec* p, const Vec* u) noexcept;
