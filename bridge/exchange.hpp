@@ -33,7 +33,7 @@ class Exchange {
 
   void set_force(const Vec& force_D_N, Nanoseconds now);
   [[nodiscard]] std::optional<Heard> newest() const;
-  /// Becomes readable when a new state has come; read it empty.
+  /// A file descriptor that becomes readable when a new state has come, until clear_event() is called.
   [[nodiscard]] int descriptor() const noexcept { return event_; }
   void clear_event() const noexcept;
   /// Why the device does not answer; empty: it does.

@@ -128,7 +128,8 @@ std::string stats_json(const Drives& drives, const Exchange& exchange) {
          "\n";
 }
 
-/// One turn: state in, frames in and out, force out.
+/// One turn of the bridge's loop: takes the device's newest state, exchanges frames with the bus, and sets the device's
+/// force.
 class Turn {
  public:
   Turn(Drives& drives, Exchange& exchange, sim::Port& port) : drives_(drives), exchange_(exchange), port_(port) {}

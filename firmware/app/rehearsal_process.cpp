@@ -108,7 +108,7 @@ std::optional<int> await(pid_t child, int from, std::chrono::milliseconds patien
   return killed ? std::nullopt : std::optional(status);
 }
 
-/// The last line that carries the program's own prefix.
+/// The child's reason: its last line that begins with the program's name.
 std::string reason_in(const std::string& words) {
   constexpr std::string_view kName = "ligature-firmware: ";
   const auto at = words.rfind(kName);

@@ -54,7 +54,7 @@ SceneDesk::SceneDesk(const RunOptions& options, const Plan& plan, const std::str
   find_scenes();
 }
 
-/// Lists the scenes of the folder, and what each looks like.
+/// Lists the scenes of the folder, and makes a preview of each one.
 void SceneDesk::find_scenes() {
   scenes_ = scene_files(options_.scenes);
   previews_.clear();

@@ -14,7 +14,7 @@ class StopSignals {
     sigaddset(&set_, SIGTERM);
     pthread_sigmask(SIG_BLOCK, &set_, nullptr);  // threads started later inherit this
   }
-  /// @return true if one arrived; waits for at most 50 ms.
+  /// Waits for a signal, at most 50 ms. @return true if one has arrived.
   bool wait() const {
     const timespec patience{0, 50'000'000};
     return sigtimedwait(&set_, nullptr, &patience) > 0;

@@ -21,9 +21,9 @@ void report(const physics::ToolInput& tool, std::size_t hand, rt::TickRecord& re
 void report(const physics::Diagnostics& thread, rt::TickRecord& record) noexcept;
 void report(const physics::HandContact& contact, std::size_t hand, rt::TickRecord& record) noexcept;
 
-/// Fills in a snapshot of the thread: node positions, as far as it has room.
+/// Fills in a snapshot of the suture, with as many node positions as have room.
 void report(std::span<const physics::Vec3> nodes_W, const ThreadResult& thread, rt::ThreadSnapshot& snapshot) noexcept;
-/// The same, and also tension and twist angle at every node.
+/// As above, and also with tension and twist angle at every node.
 void report(const physics::Simulation& thread, const ThreadResult& result, rt::ThreadSnapshot& snapshot) noexcept;
 
 }  // namespace ligature::control

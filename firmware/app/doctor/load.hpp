@@ -17,7 +17,7 @@ class Load {
   Load(const Load&) = delete;
   Load& operator=(const Load&) = delete;
 
-  /// What was started, and what was refused and why.
+  /// The kinds of load that were started; a kind that could not be started has the reason after its name.
   [[nodiscard]] const std::vector<std::string>& kinds() const { return kinds_; }
   /// Number of the processes that still run.
   [[nodiscard]] int running();

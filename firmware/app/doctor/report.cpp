@@ -80,7 +80,7 @@ std::string words(const std::vector<std::string>& parts) {
   return all.empty() ? "none" : all;
 }
 
-/// Wake-ups from `us` on, a million.
+/// How many of a million wake-ups came at least `us` microseconds late.
 std::string share(const DoctorReport& r, double us) {
   const auto count = static_cast<double>(r.wakeup.count());
   return number(count > 0 ? 1e6 * static_cast<double>(r.wakeup.from(us)) / count : 0.0, "a million");

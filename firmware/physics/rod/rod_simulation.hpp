@@ -30,7 +30,7 @@ struct HandsCourse {
   LIGATURE_MEMBERS(HandsCourse, jaws, closing, closed, inside, goals, hands, health, ticks, nodes, velocities)
 };
 
-/// The thread, and what the scene says of the hands.
+/// The thread, and the scene's settings for the hands.
 struct Stage {
   Rod initial_, rod_;
   double reach_m_ = 0.0;

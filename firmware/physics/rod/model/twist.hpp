@@ -51,7 +51,7 @@ class Twist {
 /// Unit tangent of the thread where it is held.
 [[nodiscard]] Vec tangent_at(const State& state, const Hold& hold) noexcept;
 
-/// The least rotation that takes unit a to unit b, applied to u.
+/// The vector u, turned by the smallest rotation that turns the unit vector a into the unit vector b.
 [[nodiscard]] inline Vec transport(Vec u, Vec a, Vec b) noexcept {
   const double c = dot(a, b);
   const Vec axis = cross(a, b);

@@ -15,12 +15,12 @@ constexpr Mat kNothing{}, kUnit{{kAxisX}, {kAxisY}, {kAxisZ}};  // blocks for a 
           {e.xz - b * h.z.x, e.yz - b * h.z.y, e.zz - b * h.z.z}};
 }
 
-// a f^T, a symmetric.
+// The product a f^T; a is symmetric.
 [[gnu::always_inline]] inline TwoMats times_transposed(const TwoSyms& a, const TwoMats& f) noexcept {
   return {a * Twos{f.x.x, f.y.x, f.z.x}, a * Twos{f.x.y, f.y.y, f.z.y}, a * Twos{f.x.z, f.y.z, f.z.z}};
 }
 
-// f g, for matrices whose product is symmetric.
+// The product f g of two matrices whose product is symmetric.
 [[gnu::always_inline]] inline TwoSyms product(const TwoMats& f, const TwoMats& g) noexcept {
   const Twos r0{f.x.x, f.y.x, f.z.x}, r1{f.x.y, f.y.y, f.z.y}, r2{f.x.z, f.y.z, f.z.z};
   return {dot(r0, g.x), dot(r1, g.x), dot(r2, g.x), dot(r1, g.y), dot(r2, g.y), dot(r2, g.z)};
