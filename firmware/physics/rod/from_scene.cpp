@@ -31,7 +31,7 @@ Material material_of(const scene::Scene& scene) noexcept {
   return m;
 }
 
-// Places the thread straight down from the fixed position of node 0, or from the origin.
+// Places the thread straight down from the fixed position of node 0 or, if node 0 is not fixed, from the origin.
 void hang(const scene::Scene& scene, State& state) noexcept {
   Vec top{};
   for (const auto& f : scene.world.fixed) {
@@ -51,14 +51,14 @@ std::vector<double> curvature_of(const std::vector<scene::Vec>& line) {
   return curvature;
 }
 
-/// Does the scene give one point per node, so that points are used as they are, stretched or not?
+/// Does the scene give one point per node? Then the points are used as they are, even if segments are stretched.
 bool is_node_by_node(const scene::Scene& scene) noexcept {
   return static_cast<int>(scene.suture.initial_polyline_m.size()) == scene.suture.nodes &&
          scene.suture.rod.spacing == scene::Spacing::kUniform;
 }
 
-// Places nodes along the scene's polyline, each at a straight distance of one rest length from the last, so that no
-// segment is stretched. Equal distances along the line would make chords in bends 1 % too short, a large compression
+// Places nodes along the scene's polyline, each one rest length from the last in a straight line, so that no segment is
+// stretched. With rest lengths measured along the line, segments in bends would be 1 % too short, a large compression
 // at EA = 71 N.
 void lay_along(const std::vector<scene::Vec>& line, State& state) noexcept {
   state.x[0] = vec(line[0]);

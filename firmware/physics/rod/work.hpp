@@ -1,5 +1,6 @@
 #pragma once
-// The contact budget of a tick, in instructions. Work is charged before it is done, so the bound holds for any state.
+// The contact budget of a tick, in instructions. Work is charged before it is done, so the budget is kept in any state
+// of the thread.
 
 #include <algorithm>
 
@@ -8,8 +9,9 @@
 
 namespace ligature::physics::rod {
 
-/// Prices in instructions of the x86-64-v3 build, rounded up; docs/measurements/accuracy.md says more. The cost of
-/// a substep without contact (forces, matrix, one solution) is linear in the nodes and is not charged.
+/// Prices of pieces of work, in instructions of the x86-64-v3 build, rounded up (docs/measurements/accuracy.md). The
+/// cost of a substep without contact (forces, matrix, one solution) is proportional to the number of nodes and is not
+/// charged.
 namespace price {
 inline constexpr long kCheck = 45;           ///< test whether a listed pair, or a group of pairs, must be measured
 inline constexpr long kMeasure = 340;        ///< closest points of the chords of four pairs
@@ -28,49 +30,52 @@ inline constexpr long kList = 140;           ///< broad phase: adding such a pai
 inline constexpr long kExact = 100;          ///< broad phase: exact distance of such a pair
 inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one split, per node of the thread
 
-/// Price of setting up `rows` contact rows that act on a range of `nodes` nodes, with the two solutions of
+/// Price of setting up `rows` contact rows that act on a window of `nodes` nodes, and of the two solutions in
 /// ContactSet::start().
 [[nodiscard]] constexpr long rows(long rows, long nodes) noexcept { return 260 * rows + 170 * nodes; }
-/// Price of one pass of sweeps over `rows` rows, of which `loaded` carry an impulse and take part in Anderson mixing.
+/// Price of one pass of the sweep solver over `rows` rows, of which `loaded` carry an impulse and take part in Anderson
+/// mixing.
 [[nodiscard]] constexpr long pass(long rows, long loaded, long nodes) noexcept {
   return rows * (115 + 3 * nodes / 2) + loaded * 180 + 130 * nodes;
 }
-/// Prices on a range of `nodes` nodes. factors: copying the matrix factors. column: one column of the inverse matrix.
+/// Prices for a window of `nodes` nodes. factors(): copying the matrix factors. column(): one column of the inverse
+/// matrix.
 [[nodiscard]] constexpr long factors(long nodes) noexcept { return 60 * nodes; }
 [[nodiscard]] constexpr long column(long nodes) noexcept { return 95 * nodes; }
-/// Price of the relative velocities of `rows` contacts, and of checking their conditions.
+/// Price of computing the relative velocities of `rows` contacts, and of checking their conditions.
 [[nodiscard]] constexpr long look(long rows) noexcept { return 170 * rows; }
-/// Price of the coupling matrix of contacts: for new contacts and new pairs of contacts, on a range of `nodes` nodes.
-/// couple(), exchange() and dense_sweep() are limited by latency, so their prices are set by their time and exceed
-/// their instruction counts.
+/// Price of the coupling matrix of contacts, for new contacts and new pairs of contacts on a window of `nodes` nodes.
+/// Latency limits couple(), exchange() and dense_sweep(), so their prices follow from their time and exceed their
+/// instruction counts.
 [[nodiscard]] constexpr long couple(long contacts, long pairs, long nodes) noexcept {
   return contacts * (200 + 35 * nodes) + 70 * pairs;
 }
-/// Price of determining kinds (open, sticking, sliding) and residuals of the `loaded` contacts in Newton's system.
+/// Price of determining the kinds (open, sticking, sliding) and residuals of `loaded` contacts in Newton's system.
 [[nodiscard]] constexpr long read(long loaded) noexcept { return 200 * loaded; }
-/// Price of the velocities of `nodes` nodes for new impulses of `loaded` contacts, by one solution of the full system.
+/// Price of computing the velocities of `nodes` nodes for new impulses of `loaded` contacts, by one solution of the
+/// full system.
 [[nodiscard]] constexpr long answer(long loaded, long nodes) noexcept { return 55 * loaded + 100 * nodes; }
-/// Price of a sweep over the `loaded` contacts of Newton's system, with the following determination of their kinds.
+/// Price of a sweep over `loaded` contacts of Newton's system, and of determining their kinds after it.
 [[nodiscard]] constexpr long dense_sweep(long loaded) noexcept { return loaded * (550 + 2 * loaded); }
-/// Price of `changes` exchanges of two contacts in a coupling matrix of `slots` contacts.
+/// Price of exchanging two contacts, `changes` times, in a coupling matrix of `slots` contacts.
 [[nodiscard]] constexpr long exchange(long changes, long slots) noexcept { return 140 * changes * slots; }
 /// Price of one Newton step with `loaded` contacts and `unknowns` unknowns.
 [[nodiscard]] constexpr long newton(long loaded, long unknowns) noexcept {
   return unknowns * (300 + 8 * unknowns + unknowns * unknowns / 14) + 1500 + 400 * loaded;
 }
-/// Largest number of rows for which setup and `passes` passes cost no more than `allowance`.
+/// Largest number of contact rows whose setup and `passes` passes cost no more than `allowance`.
 [[nodiscard]] constexpr long affordable_rows(long allowance, long nodes, long passes) noexcept {
   const long fixed = rows(0, nodes) + passes * pass(0, 0, nodes);
   return std::max(0L, allowance - fixed) /
          (rows(1, nodes) - rows(0, nodes) + passes * (pass(1, 1, nodes) - pass(0, 0, nodes)));
 }
-/// Price of the inverse of the sweeps' simplified matrix (contact_metric.hpp) on `window` nodes of a thread of `nodes`
+/// Price of inverting the sweeps' simplified matrix (contact_metric.hpp) on `window` nodes of a thread with `nodes`
 /// nodes.
 [[nodiscard]] constexpr long metric(long nodes, long window) noexcept { return 45 * nodes + 9 * window * window / 2; }
 }  // namespace price
 
-/// Counts the work of a tick against its budget. Callers charge their own work with spend(). left() becomes 0 early
-/// when the tick's time is over; the clock is queried between pieces of work of at most kPiece instructions.
+/// Counts the work of a tick against its budget. Callers charge their work with spend(). When the tick's time is over,
+/// left() is 0 even if some budget remains. The clock is queried between pieces of work of at most kPiece instructions.
 class Work {
  public:
   static constexpr long kPiece = 100'000;
@@ -86,8 +91,7 @@ class Work {
   [[nodiscard]] long left() const noexcept { return time_.is_over() ? 0 : unspent(); }
   [[nodiscard]] TickTime& time() noexcept { return time_; }
   [[nodiscard]] const TickTime& time() const noexcept { return time_; }
-  /// The members that an image saves (image.hpp): all but the clock, because its measurements hold for this machine
-  /// only.
+  /// The members that an image saves (image.hpp): all but the clock, whose measurements are valid only on this machine.
   [[nodiscard]] static auto members(Work& self) noexcept {
     auto& [budget, used, time] = self;
     return std::tie(budget, used);
@@ -98,7 +102,7 @@ class Work {
   TickTime time_;
 };
 
-/// Groups many small pieces of work: queries the clock once per Work::kPiece instructions.
+/// Groups many small pieces of work, so that the clock is queried only once per Work::kPiece instructions.
 class Pieces {
  public:
   explicit Pieces(TickTime& time) noexcept : time_(time) {}

@@ -1,4 +1,4 @@
-// Distances of segment pairs of the thread, four at a time, and the contacts among them.
+// Measures the distances of segment pairs of the thread, four at a time, and makes contacts of the near ones.
 
 #include <algorithm>
 #include <array>
@@ -49,8 +49,8 @@ void press(Candidate& pair, const Mesh& mesh, double& s, double& t) noexcept {
 
 }  // namespace
 
-// Finds the pairs that must be measured in this substep, and charges the work of measuring them. Other pairs
-// cannot touch within the substep, even at twice the present speed. @return false when there is not enough work left.
+// Finds the pairs that must be measured in this substep, and charges the work of measuring them. All other pairs cannot
+// touch within the substep, even at twice the present speed. @return false if too little work is left.
 bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcept {
   awake_.clear();
   for (auto* list : {&due_, &close_, &far_}) list->clear();
@@ -124,8 +124,8 @@ void ContactSet::measure(const std::int32_t* places, const State& state) noexcep
   }
 }
 
-// Computes the corner vectors k_i of the smooth curve (smooth.hpp) at the nodes of the close pairs. One distance of
-// touch serves for all of them, because every close pair touches at the diameter.
+// Computes the corner vectors k_i of the smooth curve (smooth.hpp) at the nodes of the close pairs. All of them use the
+// same distance of touch, because every close pair touches at the diameter.
 void ContactSet::bend(const State& state) noexcept {
   if (close_.empty()) return;
   const double diameter_m = pairs[static_cast<std::size_t>(due_[static_cast<std::size_t>(close_[0])])].reach_m;
@@ -135,8 +135,8 @@ void ContactSet::bend(const State& state) noexcept {
                           share_[static_cast<std::size_t>(i)]);
 }
 
-// Changes nodes and weights of a contact so that it acts at parameter s of the smooth curve instead of the chord. The
-// chord begins at node[at].
+// Changes the nodes and weights of a contact so that it acts on the smooth curve at parameter s, instead of on the
+// chord that begins at node[at].
 void ContactSet::bend_row(Contact& c, int at, double s, const State& state) const noexcept {
   const auto j = static_cast<std::size_t>(c.node[at]);
   const double side = at == 0 ? -0.25 : 0.25, h_before = state.cut_before[j], h_after = state.cut_after[j];

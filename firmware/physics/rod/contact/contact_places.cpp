@@ -1,4 +1,5 @@
-// Which measured pairs of segments become contacts: those that are near, but of several at one place only the nearest.
+// Chooses the measured pairs of segments that become contacts: all near pairs, but of several at one place only the
+// nearest.
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,7 @@
 namespace ligature::physics::rod {
 
 // Collects the pairs whose gap is below near_m + 2 dt x the relative speed of their points. This test is stricter than
-// that of find_due(), which has only a bound of the speed.
+// that of find_due(), which uses an upper bound of the speed.
 void ContactSet::find_near(const State& state, double dt_s) noexcept {
   near_.clear();
   const auto& mesh = state.mesh;
@@ -30,7 +31,8 @@ void ContactSet::find_near(const State& state, double dt_s) noexcept {
   heads_.assign(state.x.size() + 1, -1);
 }
 
-// Is a contact at the place of the pair `one`: are their points within place_d of each other on both strands?
+// Is there already a contact at the place of the pair `one`? At one place means: on both strands, the points of the two
+// pairs are less than place_d apart.
 bool ContactSet::has_contact_at(const Near& one, const Candidate& pair) const noexcept {
   const double within_m = tuning.place_d * pair.reach_m;
   for (std::int32_t a = std::max(pair.a - 1, 0); a <= pair.a + 1; ++a) {
@@ -42,11 +44,12 @@ bool ContactSet::has_contact_at(const Near& one, const Candidate& pair) const no
   return false;
 }
 
-// Where the curves of two strands come nearest at a joint of their segments, up to four pairs of segments have their
-// closest points there. If all were contacts, Newton's method would solve four equations for one force. So a pair
-// without an impulse is left out if one at its place has a smaller gap at the end of the substep (if velocities stay as
-// they are). A pair with an impulse always stays a contact: where strands hook over each other at a corner, contacts of
-// one place push in different directions, and each of them is needed. @return false when the time was over first.
+// Marks the pairs that become contacts. Where two strands come nearest at a node of each, up to four pairs of segments
+// have their closest points there. If all four were contacts, Newton's method would solve four equations for one force.
+// So a pair without an impulse is left out if another pair at its place will have a smaller gap at the end of the
+// substep (at the present velocities). A pair with an impulse always stays a contact: where strands hook over each
+// other at a corner, contacts at one place push in different directions, and each is needed. @return false if the time
+// was over first.
 bool ContactSet::choose_near(TickTime& time) noexcept {
   Pieces pieces(time);
   std::sort(near_.begin(), near_.end(),

@@ -1,5 +1,6 @@
 #pragma once
-// Contacts of the thread with itself and with bodies, solved together with the rod's equations in every substep.
+// Contacts of the thread with itself and with bodies. They are solved together with the rod's equations in every
+// substep.
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +30,8 @@ struct Body {
   LIGATURE_MEMBERS(Body, p0, p1, radius_m, velocity, friction, spin)
 };
 
-/// Pointer into a list of the object that holds it. A copy would point into the list of another object, so it is null.
+/// Pointer into a list of the same object. In a copy of the object it is null, because it would point into the
+/// original's list.
 template <class T>
 class Borrowed {
  public:
@@ -51,9 +53,9 @@ class Borrowed {
   T* at_ = nullptr;
 };
 
-/// One contact. The relative velocity of its two points is u = sum_k w_k v[node_k] - surface; the impulse p acts on
-/// node k as w_k p. In a contact of the thread with itself, nodes 0 to 3 are the ends of the two segments; any further
-/// nodes are those on which the points of the smooth curves depend (smooth.hpp).
+/// One contact. The relative velocity of its two points is u = sum_k w_k v[node_k] - surface (v: velocities of all
+/// nodes); the impulse p acts on node k as w_k p. In a contact of the thread with itself, nodes 0 to 3 are the ends of
+/// the two segments; further nodes are those on which the points of the smooth curves also depend (smooth.hpp).
 struct Contact {
   static constexpr int kMostNodes = ContactNewton::kMostNodes;
   std::int32_t node[kMostNodes] = {};
@@ -78,7 +80,7 @@ struct Contact {
   Borrowed<char> stuck;                 ///< storage between substeps: did static friction hold?
   std::int32_t place[kMostNodes] = {};  ///< indices of the nodes in SweptVelocities
   float weight[kMostNodes] = {};        ///< w in single precision
-  /// The members that an image saves (image.hpp): all but the pointers, which are valid within one substep only.
+  /// The members that an image saves (image.hpp): all but the pointers, which are valid only within one substep.
   [[nodiscard]] static auto members(Contact& self) noexcept {
     auto& [node, w, n, surface, p, u_free, gap_m, target, inv_w, soft, inv_soft_w, mu, first, last, count, reach_m,
            distance_m, loaded, keep, pair, stuck, place, weight] = self;
@@ -118,7 +120,7 @@ enum class Outcome : std::uint8_t {
 
 inline constexpr int kMaxContacts = 768;  ///< rows that can be solved at once
 
-/// What a ContactSet keeps from substep to substep. A copy takes over all of it.
+/// Data that a ContactSet keeps from substep to substep. A copy takes over all of it.
 class ContactMemory {
  public:
   /// Thread-thread pairs that may touch; rebuilt by BroadPhase.
@@ -136,10 +138,10 @@ class ContactMemory {
   int rows_ = 0;
 };
 
-/// What a ContactSet computes for itself in a substep, and the state of Newton's method, which lasts longer.
+/// Data that a ContactSet computes again in every substep, and the state of Newton's method, which lasts longer.
 class ContactWork {
  public:
-  /// Range of the nodes of all collected contacts; last < first when there are none.
+  /// From the first to the last node of all collected contacts; last < first if there are none.
   struct Span {
     int first, last;
   };
@@ -165,7 +167,7 @@ class ContactWork {
     double gap_m, a, b;      ///< gap by which it is ordered; material coordinates of its points, m
     bool loaded;             ///< carried an impulse in the last substep
   };
-  /// A pair that is near but not a contact in this substep; only the guard checks it again.
+  /// A near pair that is no contact in this substep; of all later steps of the substep only the guard looks at it.
   struct Watched {
     std::int32_t a, b;
     double distance_m;
@@ -185,8 +187,8 @@ class ContactWork {
   SweptVelocities swept_;
   std::vector<Vec> extra_, step_;
   std::vector<std::int32_t> loaded_;  // rows that have carried an impulse in this substep; only these are mixed
-  // Impulses. In sweeps, in the order of loaded_: after mixing (p_), before mixing (plain_), and their change in a pass
-  // (residual_). In Newton's method, by row: present ones (p_) and the best so far (plain_).
+  // Impulses. In sweeps, in the order of loaded_: p_ after mixing, plain_ before mixing, residual_ their change in a
+  // pass. In Newton's method, by row: p_ the present ones, plain_ the best so far
   std::vector<Vec> p_, plain_, residual_;
   Mixing mixing_;
   ContactNewton newton_;
@@ -202,20 +204,22 @@ class ContactWork {
   bool overflow_ = false;
 };
 
-/// Contacts of one rod: collect them, choose which become rows of the system, then solve. All memory is preallocated,
+/// Contacts of one rod. Collect them, choose which become rows of the system, then solve. All memory is preallocated,
 /// and every step charges its work to the budget (work.hpp). A contact that is collected but not chosen gets no
 /// impulse; only the guard keeps it from passing through.
 ///
-/// Conditions of a contact, with relative velocity u, impulse p, their parts u_n, p_n along the normal and u_t, p_t
-/// across it, time step dt and friction coefficient mu: u_n >= -gap / dt while apart, u_n >= min(-beta gap / dt, limit)
-/// while overlapping (beta: share of an overlap that a step removes), and u_t = 0 unless |p_t| = mu p_n. Friction is
-/// exact Coulomb friction, without a slip tolerance. With a separate static coefficient (let_stick()), mu is the static
-/// one as long as the contact did not slide in the last substep.
+/// Conditions of a contact. u: relative velocity, p: impulse, u_n, p_n: their parts along the normal, u_t, p_t: their
+/// parts across it, dt: time step, mu: friction coefficient, beta: share of an overlap that a step removes.
+///   while apart:        u_n >= -gap / dt
+///   while overlapping:  u_n >= min(-beta gap / dt, limit)
+///   always:             u_t = 0 unless |p_t| = mu p_n
+/// This is exact Coulomb friction, without a slip tolerance. With a separate static coefficient (let_stick()), mu is
+/// the static one as long as the contact did not slide in the last substep.
 ///
-/// settle() starts from the impulses of the last substep. Each pass runs one projected Gauss-Seidel sweep with the
-/// simplified matrix C (contact_metric.hpp), then applies the change of p with the full matrix A. C lacks the stretch
-/// terms, so without Anderson mixing (mixing.hpp) hundreds of passes would be needed along the thread's axis. settle()
-/// ends when a pass changes no velocity by more than `settled_m_per_s`, or after `passes`.
+/// settle() starts from the impulses of the last substep. Each pass is one projected Gauss-Seidel sweep with the
+/// simplified matrix C (contact_metric.hpp); then the change of p is applied with the full matrix A. C lacks the
+/// stretch terms, so without Anderson mixing (mixing.hpp) hundreds of passes would be needed along the thread's axis.
+/// settle() ends when a pass changes no velocity by more than `settled_m_per_s`, or after `passes`.
 ///
 /// The window is the range of nodes from the first to the last on which any row acts. Only the window's velocities are
 /// solved with contacts, so a pass costs in proportion to rows x nodes of the window, not of the whole thread.
@@ -223,8 +227,8 @@ class ContactSet : public ContactMemory, public ContactWork {
  public:
   ContactSet() = default;
   ContactSet(const ContactSet& other) = delete;  // a copied vector has no spare capacity: reserve(), then assign
-  /// Copies the ContactMemory; everything else is found again in the next substep. @pre both were reserved with equal
-  /// sizes.
+  /// Copies only the ContactMemory, because everything else is found again in the next substep. @pre both objects were
+  /// reserved with equal sizes.
   ContactSet& operator=(const ContactSet& other);
   ContactSet(ContactSet&&) noexcept = default;
   ContactSet& operator=(ContactSet&&) noexcept = default;
@@ -235,25 +239,26 @@ class ContactSet : public ContactMemory, public ContactWork {
   }
 
   void reserve(int nodes, int bodies, int window);
-  /// Allocates for friction that rolls the thread: needed before the functions below are called with Turns.
+  /// Allocates memory for friction that rolls the thread. Call before any function below with `Turns`.
   void reserve_turning() { turning_.reserve(kMaxContacts); }
 
   void begin() noexcept { contacts_.clear(), watched_.clear(), rows_ = 0, overflow_ = false; }
 
-  /// Measures the distance of every pair whose gap may be below near_m + 2 dt x its bound of relative speed
-  /// (Motion::rate()). Pairs with a gap below near_m + 2 dt x actual relative speed become contacts, except those that
-  /// choose_near() leaves out. @return false when the work or time left is too small for all of them.
+  /// Measures every listed pair whose gap may be below near_m + 2 dt x the upper bound of its relative speed
+  /// (Motion::rate()). Pairs whose gap is below near_m + 2 dt x the actual relative speed become contacts, except those
+  /// that choose_near() leaves out. @return false if the work or time left is too small for all pairs.
   [[nodiscard]] bool collect_thread(const State& state, const Motion& motion, double dt_s, double mu, Work& work,
                                     ContactReport& report) noexcept;
-  /// Collects contacts of nodes with the plane z = floor_m whose gap is below look_m.
+  /// Collects the contacts between nodes and the plane z = floor_m whose gap is below look_m.
   void collect_floor(const State& state, double floor_m, double radius_m, double look_m, double mu,
                      Work& work) noexcept;
-  /// Collects contacts of segments with a capsule whose gap is below look_m. Skips the capsule while it is out of reach
-  /// even for a node that has moved travel_m in this tick. Drum: adds the motion of a surface that turns (Body::spin).
+  /// Collects the contacts between segments and a capsule whose gap is below look_m. Skips the capsule while no node
+  /// can have reached it, although nodes may have moved by travel_m in this tick. `Drum`: adds the motion of a surface
+  /// that turns (Body::spin).
   template <bool Drum>
   void collect_body(const State& state, const Body& body, int index, double radius_m, double look_m, double travel_m,
                     Work& work) noexcept;
-  /// Call when bodies may have moved: the next collect_body() of each measures again.
+  /// Call when bodies may have moved. The next collect_body() then measures each body again.
   void forget_bodies() noexcept { std::fill(body_due_.begin(), body_due_.end(), -1.0); }
 
   /// Is the work left enough to check floor and all bodies, in the worst case?
@@ -265,12 +270,12 @@ class ContactSet : public ContactMemory, public ContactWork {
     return std::all_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.is_pair(); });
   }
 
-  /// Chooses the contacts to be solved: at most `most`, first those with an impulse, then by gap, and only such that
-  /// all of them act within a range of `widest` nodes. @pre nodes >= 2.
+  /// Chooses the contacts to be solved (rows): at most `most`, first those with an impulse, then those with the
+  /// smallest gap, and only if all of them act within a range of `widest` nodes. @pre nodes >= 2.
   void choose_rows(int most, int widest, int nodes, ContactReport& report) noexcept;
 
-  /// Sets the friction coefficient mu_static for contacts that did not slide in the last substep, and for new ones that
-  /// do not slip at velocities v.
+  /// Gives the friction coefficient mu_static to contacts that did not slide in the last substep, and to new contacts
+  /// that do not slip at the velocities v.
   void let_stick(double mu_static, const Vec* v) noexcept;
 
   [[nodiscard]] int rows() const noexcept { return rows_; }  ///< number of contacts to be solved
@@ -279,22 +284,22 @@ class ContactSet : public ContactMemory, public ContactWork {
   [[nodiscard]] int window_last() const noexcept { return window_last_; }
 
   /// First step of the solution: computes the target velocities of all rows, and the velocities v of the window's nodes
-  /// with the impulses of the last substep. Turns: friction also rolls the segments about their axes; turn_with() must
-  /// have been called.
+  /// with the impulses of the last substep. `Turns`: friction also rolls the segments about their axes; call
+  /// turn_with() before.
   /// @pre rows() > 0; the window contains the solver's two core nodes.
   template <bool Turns>
   void start(BandSolver& solver, const Numerics& numerics, double dt_s, Vec* v) noexcept;
 
-  /// Solves for the velocities v of the window's nodes by Newton's method (contact_newton.hpp). If it does not
-  /// converge, impulses and v are left as after start().
+  /// Solves for the velocities v of the window's nodes by Newton's method (contact_newton.hpp). If the method does not
+  /// converge, impulses and v are as after start().
   template <bool Friction>
   Outcome settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept;
-  /// Call when mesh or time step have changed: settle_directly() then computes the inverse matrix again.
+  /// Call when mesh or time step have changed. settle_directly() then computes the inverse matrix again.
   void forget_matrix() noexcept { newton_.forget(); }
 
   /// Solves for the velocities v of the window's nodes by sweeps. Turns: friction also rolls the segments.
   /// @pre rows() > 0; the window contains the solver's two core nodes, and `metric` covers the window.
-  /// @return false, and nothing is solved, when the time was over before the first pass.
+  /// @return false if the time was over before the first pass; then nothing is solved.
   template <bool Friction, bool Turns>
   [[nodiscard]] bool settle(BandSolver& solver, const ContactMetric& metric, const Effort& effort, Vec* v,
                             ContactReport& report) noexcept;
@@ -302,32 +307,33 @@ class ContactSet : public ContactMemory, public ContactWork {
     spin_ = &spin, segments_ = segments, radius_m_ = radius_m;
   }
 
-  /// After remeshing: gives pairs with an impulse the segments that now contain their material coordinates.
+  /// Call after remeshing: pairs with an impulse move to the segments that now contain their material coordinates.
   void relabel(const std::vector<double>& s) noexcept;
 
-  /// Elastic energy of the contacts with stiffness k, sum of 1/2 k overlap^2, J. Overlaps are extrapolated by step_s at
-  /// the velocities v.
+  /// Elastic energy of the contacts, J: the sum of 1/2 k overlap^2, with the contact stiffness k. Overlaps are
+  /// extrapolated by the time step_s at the velocities v.
   [[nodiscard]] double give_J(double k_N_per_m, const Vec* v, double step_s) const noexcept;
 
-  /// Factor that converts impulses of the last substep to forces, 1/s: the inverse of its time step.
+  /// Factor, 1/s, that converts impulses of the last substep to forces: the inverse of its time step.
   [[nodiscard]] double per_second() const noexcept { return per_second_; }
 
   /// Stores the impulses for the next substep.
   void store() noexcept;
-  /// Stores which contacts stick at the velocities v, for let_stick() in the next substep.
+  /// Notes for let_stick() in the next substep which contacts stick at the velocities v.
   template <bool Turns>
   void note_stuck(const Vec* v) noexcept;
 
-  /// The guard: largest alpha <= 1 such that a step of alpha dt_s moves no measured pair by more than 0.9 of its
-  /// distance; 0 when not all near pairs could be stored.
+  /// The guard: largest alpha <= 1 such that in a step of alpha dt_s the segments of no measured pair move, relative to
+  /// each other, by more than 0.9 of their distance. 0 if not all near pairs could be stored.
   [[nodiscard]] double safe_fraction(const Motion& motion, const State& state, double dt_s) const noexcept;
 
-  /// The brake, for velocities that did not converge: largest alpha <= 1 such that alpha v makes no row overlap, or
-  /// deepens an overlap only slightly. Without it the overlaps of a jam would grow until strands pass through.
+  /// The brake for velocities that did not converge: largest alpha <= 1 such that the velocities alpha v make no row
+  /// overlap, and deepen existing overlaps only slightly. Without the brake the overlaps of a jam would grow until
+  /// strands pass through each other.
   [[nodiscard]] double unsettled_fraction(const Vec* v, double dt_s) const noexcept;
 
-  /// As safe_fraction(), for every pair on the list, with a lower bound of its distance: the last measured distance
-  /// minus the largest possible motion since.
+  /// As safe_fraction(), but for every pair on the list, with a lower bound of its distance: the last measured distance
+  /// minus the largest possible motion since then.
   [[nodiscard]] double safe_fraction_of_pairs(const Motion& motion, const State& state, double dt_s) const noexcept;
 
   [[nodiscard]] const std::vector<Contact>& contacts() const noexcept { return contacts_; }
@@ -342,12 +348,13 @@ class ContactSet : public ContactMemory, public ContactWork {
   void find_near(const State& state, double dt_s) noexcept;
   [[nodiscard]] bool has_contact_at(const Near& one, const Candidate& pair) const noexcept;
   [[nodiscard]] bool choose_near(TickTime& time) noexcept;
-  /// Makes a measured pair a contact if it touches. @return true when it does (also if there was no room for it).
+  /// Makes a measured pair a contact if `measured.touches` says so. @return true if it says so (even if there was no
+  /// room for the contact).
   bool take(Candidate& pair, const Measured& measured, const State& state, double mu, ContactReport& report) noexcept;
   [[nodiscard]] bool make_columns(const ContactMetric& metric, TickTime& time) noexcept;
   void make_column(Contact& c, const ContactMetric& metric, float* column) const noexcept;
   [[nodiscard]] Contact& loaded(std::size_t k) noexcept { return contacts_[static_cast<std::size_t>(loaded_[k])]; }
-  /// One pass of the sweep solver, without Anderson mixing. @return an upper bound of the largest squared velocity
+  /// Does one pass of the sweep solver, without Anderson mixing. @return an upper bound of the largest squared velocity
   /// change.
   template <bool Friction, bool Turns>
   double plain_pass(BandSolver& solver, Vec* v, TickTime& time) noexcept;
@@ -363,8 +370,8 @@ class ContactSet : public ContactMemory, public ContactWork {
     for (int j = 0; j < c.count; ++j) u += c.w[j] * v[c.node[j]];
     return u;
   }
-  /// v += A^-1 extra_ for the window's nodes (extra_: impulses to add, per node). @return an upper bound of the largest
-  /// squared velocity change.
+  /// Adds A^-1 extra_ to the velocities v of the window's nodes (extra_: added impulse of each node). @return an upper
+  /// bound of the largest squared velocity change.
   double push(BandSolver& solver, Vec* v) noexcept;
   void clear_extra() noexcept;
   template <bool Friction, bool Turns>
@@ -375,8 +382,8 @@ class ContactSet : public ContactMemory, public ContactWork {
     ContactReport& report;
     long nodes;    ///< number of nodes in the window
     int look = 0;  ///< checks of all contacts so far
-    /// fresh: the inverse matrix Z = A^-1 was computed in this substep. resumed: the search began with the impulses of
-    /// an earlier, unfinished attempt at this substep
+    /// fresh: the inverse matrix Z = A^-1 was computed in this substep. resumed: the search continues an unfinished
+    /// attempt at this substep, with its impulses
     bool fresh = false, resumed = false;
     [[nodiscard]] bool can_pay(long cost) const noexcept { return report.work + cost <= effort.work; }
     [[nodiscard]] bool pay(long cost) noexcept {
@@ -392,7 +399,7 @@ class ContactSet : public ContactMemory, public ContactWork {
   void take_impulses(BandSolver& solver, Vec* v) noexcept;
 };
 
-/// p with its tangential part limited to mu p_n (Coulomb's cone about n); zero when p_n <= 0.
+/// The impulse p, with its tangential part limited to mu p_n (Coulomb's cone about the normal n); zero if p_n <= 0.
 [[nodiscard]] inline Vec in_cone(Vec p, Vec n, double mu) noexcept {
   const double pn = dot(p, n);
   if (pn <= 0.0) return Vec{};
