@@ -67,9 +67,9 @@ class ThreadContext {
   }
 
  private:
-  /// Installs a new simulation by swapping, so that nothing is built or freed here; the old one is returned in its
-  /// place. @return true if a new scene was installed: then this tick is not computed, because the tools belong to the
-  /// old scene's hands.
+  /// Swaps in a new simulation and gives back the old one, so that nothing is built or freed here. @return true if the
+  /// new simulation has another scene: then this tick is not computed, because the tools belong to the old scene's
+  /// hands.
   bool take_plant(const control::ThreadRequest& asked) noexcept {
     if (std::exchange(result_.plants, asked.plants) == asked.plants) return false;
     control::Plant& plant = *asked.plant;

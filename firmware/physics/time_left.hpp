@@ -1,5 +1,6 @@
 #pragma once
-// Time limit of a tick of the thread. The physics has no clock of its own: it queries one that the caller supplies.
+// Time limit of one tick of the thread's physics. The physics has no clock of its own: it queries one that the caller
+// supplies.
 
 #include <algorithm>
 #include <cstdint>
@@ -37,9 +38,9 @@ class TimeLeft {
 /// stays "no". Time influences a tick only through these answers, and the queries depend only on the state of the
 /// thread. So a tick can be reproduced bit for bit from its tools and the number of the first query answered "no".
 ///
-/// A piece is begun only if the time left covers the longest recent piece and the work after the last query of a tick.
-/// Both durations are measured. They decay from tick to tick and are limited to piece_ns, so that one interruption by
-/// the operating system does not cut the ticks after it.
+/// A piece is begun only if the time left covers two measured durations: that of the longest recent piece, and that of
+/// the work after the last query of a tick. These measured values decay from tick to tick and are at most piece_ns, so
+/// that one interruption by the operating system does not shorten many later ticks.
 class TickTime {
  public:
   static constexpr std::int64_t kPiece_ns = 60'000;

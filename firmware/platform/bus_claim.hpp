@@ -1,5 +1,6 @@
 #pragma once
-// Makes sure that only one controller on this machine uses a bus; taken before the first frame is sent.
+// Ensures that only one controller on this machine uses a bus. A controller takes the claim before it sends its first
+// frame.
 
 #include <string>
 #include <utility>

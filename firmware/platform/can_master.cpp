@@ -70,8 +70,8 @@ class Setup {
     return found(object, answer->value, wanted);
   }
 
-  /// One transfer. @param answer  set by this function. It is left unset if the drive lacks an optional object, which
-  /// is noted and is no error
+  /// One SDO transfer: sends the request and checks the answer. @param answer  set by this function. Stays unset if the
+  /// drive lacks an optional object: that is noted and is no error
   std::optional<std::string> ask(const can::Object& object, const can::Frame& request, can::SdoKind wanted,
                                  const can::Sdo*& answer) {
     auto [got, other] = transfer(bus_, wait_, request, patience_);

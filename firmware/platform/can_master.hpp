@@ -25,7 +25,7 @@ struct SdoAnswer {
 /// Puts the nodes into pre-operational, checks that rated torque and encoder resolution match the unit conversions, and
 /// writes startup_plan() (mapping, watchdogs, torque limit, cyclic synchronous torque mode). Then waits until the
 /// drives show that mode.
-/// @param lacks gets one line for each object that is missing although it may be
+/// @param lacks gets one line for each optional object that a drive does not have
 /// @return one line that says why it failed, or nothing. The nodes are left in pre-operational, where no torque is
 /// possible.
 [[nodiscard]] std::optional<std::string> configure_drives(CanBus& bus, BusWait& wait, const can::StartupTimes& times,

@@ -6,8 +6,8 @@
 
 namespace ligature::platform {
 
-/// Time of the frames of a tick: SYNC, three TPDOs of 8 bytes, if necessary one with the buttons; three RPDOs of 4
-/// bytes, and a heartbeat if it is sent often.
+/// Bus time of the frames of a tick: SYNC, three TPDOs of 8 bytes, three RPDOs of 4 bytes; also a TPDO with the buttons
+/// if buttons_bytes > 0, and a heartbeat if `beats`.
 [[nodiscard]] constexpr rt::BusTime cia402_time(unsigned buttons_bytes = 0, bool beats = false) noexcept {
   const auto ns = [](unsigned bits) { return std::chrono::nanoseconds(can::bits_to_ns(bits)); };
   const unsigned fewest = can::min_frame_bits(0) + 3 * can::min_frame_bits(8);

@@ -1,5 +1,6 @@
 #pragma once
-// Checks of what shares the loop's core: a second hardware thread, and threads of interrupts above the loop.
+// Checks of what shares the loop's core: a second hardware thread, and interrupt threads with a higher priority than
+// the loop.
 
 #include <vector>
 

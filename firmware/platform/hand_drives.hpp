@@ -22,20 +22,23 @@ class HandDrives {
   HandDrives(const HandDrives&) = delete;
   HandDrives& operator=(const HandDrives&) = delete;
 
-  // Before the loop; these may wait and allocate memory.
+  // The next functions are called before the loop; they may wait and allocate memory.
   /// Listens whether another controller uses the bus. Sends nothing. @return what was heard, in one line, or nothing.
   [[nodiscard]] virtual std::optional<std::string> other_controller(BusWait& wait) = 0;
   /// Sets the drives up and checks that they are the drives of the device record. They make no torque afterwards.
   /// @return why not, in one line, or nothing.
   [[nodiscard]] virtual std::optional<std::string> configure(BusWait& wait) = 0;
-  /// What these drives cannot promise, because they lack a function for it; one line each. Complete after configure().
+  /// Which guarantees these drives cannot give, because they lack a function; one line each. Complete after
+  /// configure().
   [[nodiscard]] virtual std::vector<std::string> lacks() const = 0;
-  /// Frames that the drives send in one period; admission measures with them how long reading takes.
+  /// Example of the frames that the drives send in one period. Admission measures with it how long reading these frames
+  /// takes.
   [[nodiscard]] virtual std::vector<can::Frame> example_samples() const = 0;
   /// Lets the drives take part in the cyclic exchange. They stay switched off until write() requests kEnable.
   virtual bool start() noexcept = 0;
 
-  // In each period, in this order. Real time: bounded, no allocation, no lock, only the bus's system calls.
+  // The next functions are called in each period, in this order. Real time: bounded, no allocation, no lock, only the
+  // bus's system calls.
   /// Reads late samples of the last period, then asks all drives for a sample.
   virtual void request() noexcept = 0;
   /// Reads all frames that have arrived.

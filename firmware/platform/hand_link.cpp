@@ -56,10 +56,10 @@ void HandLink::send_sync() noexcept {
   if (stops_) send(can::encode_nmt(can::NmtCommand::kStop));
 }
 
-/// Whether a heartbeat may be sent; it tells the drives that they may go on. It is withheld when the drives must have
-/// no torque and it is not certain that they have none: their own watchdog then removes it. After a stop this is never
-/// certain, because a stopped drive sends no samples. After a foreign controller was heard, a heartbeat could delay NMT
-/// stop, which would wait behind it on a flooded bus.
+/// Whether to send a heartbeat, which tells the drives that they may go on. No heartbeat is sent while the drives must
+/// have no torque but may still have some: then the drives' own watchdog removes the torque. After a stop the torque is
+/// unknown, because a stopped drive sends no samples. After a foreign controller was heard there is no heartbeat
+/// either: on a flooded bus NMT stop would wait behind it.
 bool HandLink::may_beat(rt::DriveRequest request) noexcept {
   if (request == rt::DriveRequest::kStop || foreign_ != rt::Foreign::kNone) return false;
   const bool sure = request != rt::DriveRequest::kHold || are_off();
@@ -170,8 +170,8 @@ rt::HandReading HandLink::reading() const noexcept {
     r.enabled = r.enabled && state == State::kOperationEnabled;
     r.drive_fault = r.drive_fault || node.emergency != can::emcy::kNoError || !node.operational ||
                     (valid_ && (state == State::kFault || state == State::kFaultReactionActive));
-    // Only our own drives have this statusword bit. In other drives the bit has another meaning; their messages contain
-    // the torque of every joint instead.
+    // Only drives with Ligature's own profile (docs/wire.md) use this statusword bit for a wrong torque. Other drives
+    // report the torque of every joint instead.
     r.torque_astray =
         r.torque_astray || (!buttons_.are_inputs() && (node.latest.statusword & can::cia402::kTorqueAstrayBit) != 0);
     r.torque_limited[j] = (node.latest.statusword & can::cia402::kInternalLimitBit) != 0;
@@ -199,9 +199,9 @@ std::int16_t HandLink::permille_of(double torque_Nm) const noexcept {
 std::array<std::int16_t, rt::kJoints> HandLink::write(const rt::HandCommand& command) noexcept {
   std::array<std::int16_t, rt::kJoints> sent{};
   was_lost_ = false;
-  // A stop begins with controlword 0 and torque 0, which act at the next SYNC. NMT stop follows only then, because a
-  // drive that keeps its torque when it is stopped must have none before. After a foreign controller was heard, NMT
-  // stop is sent at once: the other sender could command a torque until then.
+  // A stop begins with controlword 0 and torque 0, which act at the next SYNC. NMT stop follows after that SYNC,
+  // because a drive may keep its last torque while it is stopped. After a foreign controller was heard, NMT stop is
+  // sent at once: until a drive is stopped, the foreign controller could command a torque.
   stops_ = command.request == rt::DriveRequest::kStop;
   if (stops_ && foreign_ != rt::Foreign::kNone) send(can::encode_nmt(can::NmtCommand::kStop));
   if (may_beat(command.request)) beat();

@@ -12,7 +12,8 @@
 
 namespace ligature::platform {
 
-/// Controlword for a request and the drive's state. Fault reset works on a rising edge, so it alternates with zero.
+/// Controlword for a request and the drive's state. A fault reset acts on a rising edge, so the controlword then
+/// alternates with zero.
 [[nodiscard]] constexpr std::uint16_t controlword(rt::DriveRequest request, can::cia402::State state,
                                                   std::uint16_t before) noexcept {
   using can::cia402::State;
@@ -33,7 +34,8 @@ namespace ligature::platform {
   return can::cia402::kControlDisableVoltage;
 }
 
-/// Whether a drive in this state has no torque. In quick stop and in the reaction to a fault it may brake.
+/// Whether a drive in this state has no torque. In quick stop and in the reaction to a fault the drive may still brake,
+/// so these states do not count as off.
 [[nodiscard]] constexpr bool is_off(can::cia402::State state) noexcept {
   using can::cia402::State;
   return state != State::kOperationEnabled && state != State::kQuickStopActive && state != State::kFaultReactionActive;
@@ -60,7 +62,7 @@ class HandLink {
   [[nodiscard]] rt::HandReading reading() const noexcept;
 
   /// Sends the torques. They are sent in every period, so that a foreign controller's RPDO acts for one period at most.
-  /// Every heartbeat_periods the master's heartbeat is sent before them, as long as may_beat() says so.
+  /// Every heartbeat_periods the master's heartbeat is sent before them, if may_beat() is true.
   /// @return the torques as sent, per mille; zero if the bus is lost
   std::array<std::int16_t, rt::kJoints> write(const rt::HandCommand& command) noexcept;
 

@@ -1,5 +1,6 @@
 #pragma once
-// Prevents deep idle states of the CPU while force may flow: leaving one would delay every wake-up.
+// Prevents deep idle states of the CPU while force may flow: leaving such a state takes time and would delay every
+// wake-up.
 
 #include <string>
 

@@ -64,9 +64,9 @@ Check priority_limit(const std::string& root) {
   return {Grade::kFail, "real-time priority", "up to " + amount(allowed) + ", wanted 80", kLimits};
 }
 
-/// Checks a limit of the kernel: Linux stops all real-time threads of a core for the rest of each second in which they
-/// have used a given time. With a large scene the physics computes until shortly before the next samples; at this limit
-/// the loop would be stopped, too.
+/// Checks a limit of the kernel: real-time threads may use a core only for a given part of each second, and Linux stops
+/// them all for the rest of the second. With a large scene the physics uses nearly all of the time, so this limit would
+/// also stop the loop.
 Check whole_core(const std::string& root) {
   const std::string found = text_of(root + "proc/sys/kernel/sched_rt_runtime_us");
   if (found.empty() || found == "-1") return good("real-time share", "the whole core");

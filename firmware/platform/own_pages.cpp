@@ -39,8 +39,8 @@ std::vector<Mapping> file_mappings() {
   return found;
 }
 
-/// Makes the kernel copy every page by a write fault. The mapping stays executable meanwhile, because it may contain
-/// this function.
+/// Makes the kernel copy every page, as it would at the first write to the page. The mapping stays executable
+/// meanwhile, because it may contain this function.
 /// @return 0, or the errno
 int copy(const Mapping& m) noexcept {
   auto* const at = reinterpret_cast<void*>(m.from);

@@ -27,8 +27,8 @@ void flush_denormals() noexcept;
 /// Pins the calling thread to that core. @return false if this is not allowed.
 bool stay_on(int core) noexcept;
 
-/// The last isolated core, or else the last core that this process may use, because interrupts and other work run
-/// mostly on the first.
+/// The last isolated core, or else the last core that this process may use: interrupts and other work run mostly on the
+/// first core.
 /// @param isolated  path of the kernel's list of isolated cores
 [[nodiscard]] int realtime_core(const char* isolated = "/sys/devices/system/cpu/isolated");
 

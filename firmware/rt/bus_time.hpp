@@ -1,5 +1,5 @@
 #pragma once
-// Time that the frames of one hand take on its bus in a period, and what it leaves to the loop and the physics.
+// Time that the frames of one hand take on its bus in a period, and the time that is left for the loop and the physics.
 
 #include <algorithm>
 #include <chrono>
@@ -14,15 +14,15 @@ struct BusTime {
   /// Time from the request for samples to the last bit of all samples. earliest: without stuff bits; latest: with the
   /// most possible
   std::chrono::nanoseconds samples_earliest{}, samples_latest{};
-  /// Longest time that the frames with the torques take; the loop sends them after the samples, and they must be over
-  /// before the next request
+  /// Longest time that the frames with the torques take; the loop sends them after the samples have come, and they must
+  /// be transmitted before the next request for samples
   std::chrono::nanoseconds torques_latest{};
 
   /// Time left for the loop's computing; with more, torques would be late.
   [[nodiscard]] constexpr std::chrono::nanoseconds most_work() const noexcept {
     return kPeriod - samples_latest - torques_latest;
   }
-  /// How long the loop waits for samples after it woke up: the torques must still be in time after that.
+  /// The longest time that the loop may wait for samples after it woke up, so that the torques are still in time.
   [[nodiscard]] constexpr std::chrono::nanoseconds longest_wait() const noexcept {
     constexpr std::chrono::nanoseconds kControlLaw = std::chrono::microseconds(35);
     return kPeriod - torques_latest - kControlLaw;

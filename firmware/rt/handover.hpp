@@ -5,10 +5,10 @@
 
 namespace ligature::rt {
 
-/// One object at a time is lent and returned; the borrower may exchange its contents. Both sides are wait-free: one
-/// load if nothing is there, else one exchange or store. The lender owns the object throughout, but must not touch it
-/// between offer() and the collect() that returns it. So only the lender builds and destroys, and the real-time thread
-/// never does.
+/// One object at a time is lent to the other thread and returned; the borrower may exchange the object's contents. Both
+/// sides are wait-free: one load if nothing is there, else one exchange or store. The lender owns the object
+/// throughout, but must not touch it between offer() and the collect() that returns it. So only the lender builds and
+/// destroys, and the real-time thread never does.
 ///   offer: store-release ---> take: exchange-acquire      give_back: store-release ---> collect: exchange-acquire
 template <class T>
 class Handover {

@@ -28,7 +28,7 @@ struct Outlets {
     records.push(record);
     if (flight != nullptr) flight->push(record);
   }
-  /// Real-time thread only: counts records as dropped that were never given to a ring, because none has room for them.
+  /// Real-time thread only: counts records as dropped that were not pushed, because no ring had room for them.
   void count_untold(std::uint64_t n) noexcept {
     records.count_dropped(n);
     if (flight != nullptr) flight->count_dropped(n);

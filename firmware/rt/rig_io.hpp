@@ -28,8 +28,8 @@ struct HandReading {
   /// Torque made in the period before the sample; kNotTold for a joint whose message has no torque.
   std::array<double, kJoints> torque_Nm{kNotTold, kNotTold, kNotTold};
   std::array<bool, kJoints> torque_limited{};  ///< the drive makes less torque than commanded
-  /// For how many SYNCs the drive has repeated an older torque because RPDOs were lost, as the drive counts them; 0:
-  /// none, or the drive does not report it.
+  /// Number of SYNCs (counted by the drive) for which the drive has repeated an older torque because RPDOs were lost;
+  /// 0: none, or the drive does not report it.
   std::array<int, kJoints> torque_held{};
   bool grip = false;
   bool dead_man = false;

@@ -52,8 +52,8 @@ enum class Propagation : std::int8_t {
 
 using Triple = std::array<double, 3>;
 
-/// Largest number of physics ticks that can end between two reads by the loop: the running one, one waiting request,
-/// and the newest one.
+/// Largest number of physics ticks that can end between two reads by the loop: the tick that was running, and those of
+/// a waiting request and of the newest request.
 inline constexpr std::size_t kThreadSteps = 3;
 
 /// One control period; fields, units and frames as in protocol/lcm/tick_t.lcm, plus `armed`.
@@ -101,7 +101,8 @@ struct TickRecord {
   std::int16_t contacts = 0;
   std::int8_t degradation = 0;
 
-  // The thread's physics in this period; 0 if it was late. Times count from the wake-up; work is CPU time.
+  // Results of the thread's physics in this period; 0 if the physics was late. Times count from the loop's wake-up;
+  // fields named `work` are CPU time.
   std::int16_t grasp_age_ticks = 0;  ///< periods since the one whose tools the grasp in use was computed from
   std::int32_t thread_start_ns = 0;
   std::int32_t thread_done_ns = 0;

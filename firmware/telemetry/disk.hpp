@@ -21,12 +21,12 @@ class Disk {
 
 /// A file of fixed size with all blocks allocated, locked against a second writer. Written data is in the kernel's page
 /// cache at once, so it survives SIGKILL of this process. It uses pwrite() instead of a memory mapping for two reasons.
-/// A thread that touches a mapped page under write-back blocks while it holds the address space's lock, which other
-/// threads of the process also need. And a disk error on a mapping would kill the process (SIGBUS).
+/// First, a thread that touches a mapped page during its write-back blocks, and it then holds the address space's lock,
+/// which other threads need. Second, a disk error on a mapping would kill the process (SIGBUS).
 class FileDisk final : public Disk {
  public:
-  /// Creates the file; that of the previous run is kept as FILE.previous. @return the file, or one line that says why
-  /// it failed.
+  /// Creates the file; the file of the previous run is kept as FILE.previous. @return the file, or one line that says
+  /// why it failed.
   [[nodiscard]] static std::variant<std::unique_ptr<FileDisk>, std::string> make(const std::string& path,
                                                                                  std::size_t size);
   ~FileDisk() override;

@@ -20,7 +20,7 @@
 
 namespace ligature::telemetry {
 
-/// A message for people about recorded or lost ticks.
+/// A message for the user about recorded or lost ticks.
 struct FlightNote {
   std::int64_t tick = 0;
   std::int32_t fault = 0;  ///< fault whose preceding ticks were saved; 0: ticks are missing
@@ -66,7 +66,7 @@ class FlightRecorder {
   /// Call after the last record: returns when all records are on the disk. A second call does nothing.
   void finish();
 
-  /// Takes the messages for people that have arisen since the last call. Any thread; never waits for the disk.
+  /// Returns the notes for the user that were made since the last call. Any thread; never waits for the disk.
   [[nodiscard]] std::vector<FlightNote> take_notes();
 
   /// Ticks that the file lacks for good. Any thread.

@@ -13,8 +13,8 @@
 
 namespace ligature::telemetry {
 
-/// Why a URL is not allowed; empty if it is: "udpm://ADDRESS:PORT[?..]" with a multicast address, or "memq://" (this
-/// process).
+/// Why a URL is not allowed; empty if it is allowed. Allowed are "udpm://ADDRESS:PORT[?..]" with a multicast address,
+/// and "memq://" (within this process).
 [[nodiscard]] std::string objection_to_url(const std::string& url);
 
 class LcmLink final : public Sink {
@@ -52,9 +52,8 @@ class LcmLink final : public Sink {
   void publish(const char* channel, const Message& m) {
     if (!open_ || lcm_->publish(channel, &m) != 0) ++failures_;
   }
-  /// A static function rather than a member: LCM's wrapper for member functions is miscompiled by GCC's
-  /// -fsanitize=vptr, which uses an object's address before it is computed when a member is called through a pointer
-  /// stored in a polymorphic object.
+  /// A static function, because GCC's -fsanitize=vptr miscompiles LCM's wrapper for member functions: its check uses
+  /// the object's address before that is computed.
   static void receive(const lcm::ReceiveBuffer* received, const std::string& channel, LcmLink* link);
 
   std::unique_ptr<lcm::LCM> lcm_;

@@ -101,7 +101,8 @@ ligature_msg::thread_t to_message(const rt::ThreadSnapshot& s, double radius_m, 
 
 namespace {
 
-/// The generated decoder trusts a string's length field; a length of INT_MIN minus the final zero becomes 2 GB.
+/// The generated decoder trusts a string's length field. It subtracts the final zero; for a length of INT_MIN this
+/// overflows to 2 GB.
 /// @return whether the length field of a command_t's text matches the size of the message
 bool text_fits(std::span<const std::byte> message) {
   constexpr std::size_t kLength =

@@ -57,8 +57,8 @@ struct Session {
 };
 
 /// Not thread-safe. Every record goes into exactly one batch, in order; a batch has 20 records, the last batch the
-/// remainder. Shapes are sent at 60 Hz, status at 10 Hz, the offer at 1 Hz, events at once, including notes of the
-/// flight recorder. Refused replays of commands are reported once per second at most.
+/// remainder. Shapes are sent at 60 Hz, status at 10 Hz, the offer (what commands may request) at 1 Hz, events and
+/// notes of the flight recorder at once. Refused replays of commands are reported once per second at most.
 class Telemetry {
  public:
   static constexpr std::size_t kTicksPerBatch = 20;
@@ -82,11 +82,11 @@ class Telemetry {
   /// Reports that a new scene or parameter is in force since its first tick; sends an event with `text` at once.
   void scene_changed(const SceneFacts& facts, const std::string& text, Moment now);
 
-  /// The newest record, by which requests are checked before the loop checks them again.
+  /// The newest record. Commands are first checked against it; the loop checks them again.
   [[nodiscard]] const rt::TickRecord& last() const noexcept { return last_; }
 
-  /// Turns away a command that must not be executed. @return the answer to it: to a command that only asked for a
-  /// challenge, or to a replayed command (which is also reported). Nothing: the command may be executed.
+  /// Refuses a command that only asks for a challenge, or that is replayed (this is also reported).
+  /// @return the answer to the refused command; nothing if the command may be executed.
   [[nodiscard]] std::optional<ligature_msg::ack_t> turn_away(const ligature_msg::command_t& command, Moment now);
 
   /// Fills in the answer's time and session.
