@@ -27,7 +27,7 @@ class Exchange {
   [[nodiscard]] Step take(const ligature_msg::ack_t& ack);
 
   /// Whether message() may be published again when no answer comes: true for a stop and for a request for a challenge.
-  /// Other commands are sent once, because executing one twice differs from executing it once.
+  /// Other commands are sent once, because executing them twice can have another effect than executing them once.
   [[nodiscard]] bool may_be_repeated() const;
 
   /// The error text for a missing answer.

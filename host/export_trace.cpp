@@ -86,7 +86,7 @@ class TraceSink final : public ExportSink {
     }
   }
 
-  /// The physics of the thread begins when the loop has handed the tools over, and may end in the next period.
+  /// The physics of the thread begins when the loop has passed it the tools, and may end in the next period.
   void add_physics(const Tick& tick) {
     if (tick.thread_done_ns <= 0) return;  // not finished in time: its times are not known
     const std::int64_t awake = tick.scheduled_ns + tick.wakeup_latency_ns;

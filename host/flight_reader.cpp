@@ -103,7 +103,7 @@ void FlightReader::visit(const std::function<void(const ligature_msg::tick_t&)>&
   }
 }
 
-/// Reads the entries for changes of scene. Skips those with a wrong CRC: they were never written, or the writer died
+/// Reads the entries for changes of scene. Skips entries with a wrong CRC: they were never written, or the writer died
 /// while writing them.
 void FlightReader::read_scenes(std::span<const std::byte> entries) {
   const auto facts = [&](const auto& from) {

@@ -21,7 +21,7 @@ namespace ligature::host {
 [[nodiscard]] std::optional<std::int64_t> session_of(const RegularFile& file);
 
 /// Reads the present content of a flight recorder file, also while it is being written, into memory (0.7 MB for each
-/// second). Slots with a wrong CRC are counted and skipped; a writer that dies leaves at most one.
+/// second). Slots with a wrong CRC are counted and skipped; a writer that dies leaves at most one such slot.
 class FlightReader {
  public:
   /// @throws BadInput when it is no flight recorder file, has another version, or is shorter than its header says.

@@ -13,7 +13,7 @@ struct TickRange {
   [[nodiscard]] std::int64_t size() const { return last - first + 1; }
 };
 
-/// Finds the missing numbers of a sequence whose numbers should rise by one. A jump opens a hole; a late number fills
+/// Finds the missing numbers of a sequence that should rise by one each time. A jump opens a hole; a late number fills
 /// its place in the hole; a number received before is a duplicate.
 /// Invariant: received() + missing() = last() - first() + 1 as soon as one number came.
 /// Cost: O(1) for the next number in sequence, O(log holes) for one out of order.

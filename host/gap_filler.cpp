@@ -58,7 +58,7 @@ GapFiller::GapFiller(const std::vector<fs::path>& folders) {
 }
 
 /// Remembers the flight recorder file that a status names, if it is in an allowed folder. Only the text of the path is
-/// checked: accessing a folder that a stranger chose could block for ever on a network file system.
+/// checked: a forged status could name a folder on a network file system, and accessing it could block for ever.
 void GapFiller::note(const ligature_msg::status_t& status) {
   if (status.recorder_file.empty()) return;
   const fs::path file = fs::path(status.recorder_file).lexically_normal();

@@ -32,10 +32,10 @@ class GapFiller {
 
   void note(const ligature_msg::status_t& status);
 
-  /// Emits the missing ticks of every session in batches like the firmware's. A gap is searched for once, when the
-  /// flight recorder already holds later ticks: it writes in order, so that a tick absent by then never comes. Cost:
+  /// Emits the missing ticks of every session in batches like the firmware's. A gap is looked up once, when the flight
+  /// recorder already holds later ticks: the recorder writes in order, so a tick that is absent then never comes. Cost:
   /// nothing without gaps, else one reading of the recorder's file.
-  /// @param ends kClosed: ticks after a session's last received one count as missing, too (the last batch of a killed
+  /// @param ends kClosed: also emits the ticks after a session's last received one (the last batch of a killed
   /// firmware).
   /// @return number of ticks fetched.
   std::int64_t fill(const SessionTally& sessions, const Emit& emit, Ends ends = Ends::kOpen);

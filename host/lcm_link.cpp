@@ -38,9 +38,8 @@ struct LcmLink::Receiver {
   Handler handler;
   std::exception_ptr failure;  // thrown by the handler; it must not pass through LCM's C stack frames
 
-  /// A static function, because LCM's wrapper of a member function fails under GCC's -fsanitize=vptr: the generated
-  /// check uses the object's address before it is computed, when a member is called through a pointer stored in a
-  /// polymorphic object.
+  /// A static function, because GCC's -fsanitize=vptr miscompiles LCM's wrapper for member functions: its check uses
+  /// the object's address before that is computed.
   static void on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel, Receiver* to) noexcept {
     if (to->failure) return;
     try {

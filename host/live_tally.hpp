@@ -30,8 +30,8 @@ class LiveTally {
 
   /// Lines that say what was recorded and what was lost, with the numbers of the missing ticks (first `max_ranges`
   /// ranges).
-  /// @param open_ends sessions for which it is unknown whether more ticks followed the last received one. With such a
-  /// session, or with ticks that belong to no counted session, the summary does not claim that nothing was lost.
+  /// @param open_ends sessions for which it is unknown whether more ticks followed the last received one. If there is
+  /// such a session, or if ticks belong to no counted session, the summary does not claim that nothing was lost.
   [[nodiscard]] std::string summary(std::span<const std::int64_t> open_ends = {}, std::size_t max_ranges = 10) const;
 
  private:

@@ -78,8 +78,8 @@ bool LogReader::read_event_at(std::int64_t offset) {
 }
 
 /// Whether an event's length field is plausible, judged by the bytes `behind` the event. In a log with checksums these
-/// begin the next event, or the file ends (recorder killed). Otherwise the length field is damaged, and using it would
-/// skip intact events.
+/// bytes begin the next event, or the file ends there (recorder killed). Otherwise the length field is damaged, and
+/// using it would skip intact events.
 bool LogReader::is_whole(std::span<const unsigned char> behind) {
   const auto known = std::min(behind.size(), kLogSync.size());
   return std::ranges::equal(behind.first(known), std::span(kLogSync).first(known));

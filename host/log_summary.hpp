@@ -30,8 +30,8 @@ struct LogSummary {
 
   /// Time on the controller's clock from the first to the last tick, summed over sessions.
   [[nodiscard]] double duration_s() const;
-  /// Time of the first occurrence of the final knot, and the time since which it has persisted without interruption; -1
-  /// without a shape.
+  /// Time at which the final knot first occurred, and time from which on it persisted without interruption; -1 without
+  /// a shape.
   [[nodiscard]] double knot_first_s() const;
   [[nodiscard]] double knot_since_s() const { return knots.empty() ? -1.0 : knots.back().from_s; }
   /// The last knot before the thread became unknotted. nullptr: there was none, or the last recorded shape has a knot.

@@ -22,7 +22,7 @@ LogWriter::Lock::Lock(const std::string& path, bool replace)
   if (file_ < 0) throw BadInput(path + ": cannot be written: " + std::strerror(errno));
   struct stat facts = {};
   const bool is_file = fstat(file_, &facts) == 0 && S_ISREG(facts.st_mode);  // a device is not locked
-  // File systems without locks (ENOLCK) are written without one.
+  // On file systems without locks (ENOLCK) the file is written without a lock.
   if (is_file && flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     ::close(file_);
     throw BadInput(path + ": is being written by another recorder; allowed: a name of its own for each");

@@ -29,7 +29,7 @@ double executed_percent(const LogSummary& s) {
   return 100.0 * static_cast<double>(s.ticks.executed()) / static_cast<double>(s.tally.received());
 }
 
-/// Rate of the loop, computed from recorded ticks only: a sample lost on the network does not reduce it.
+/// Rate of the loop, computed from recorded ticks only: a sample lost on the network does not reduce this rate.
 double rate_held_per_s(const LogSummary& s) { return executed_percent(s) / 100.0 / s.facts.period_s; }
 
 std::string row(const char* name, const std::string& value) { return text("  %-18s %s\n", name, value.c_str()); }

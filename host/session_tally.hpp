@@ -17,10 +17,10 @@ struct Session {
 };
 
 /// Counts received and missing ticks per session. Sessions are kept apart because a restarted firmware counts from zero
-/// again, and because two that run at once by mistake would look like thousands of gaps.
+/// again, and because two firmwares that run at once by mistake would look like thousands of gaps.
 class SessionTally {
  public:
-  /// Limit on the sessions of one recording. More than a rig can start: further ones are forged or damaged.
+  /// Limit on the sessions of one recording. No rig starts so many, so further sessions are forged or damaged.
   static constexpr std::size_t kMaxSessions = 1000;
 
   /// The session with that id, created when new. @return its index, or -1 beyond kMaxSessions.

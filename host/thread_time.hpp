@@ -14,8 +14,8 @@ namespace ligature::host {
 class ThreadTime {
  public:
   /// kMargin_ns: the physics must end this long before the joint samples arrive, as in firmware/rt/bus_time.hpp.
-  /// kForgets_ns: the arrival is predicted from the earliest recent one, for any drives; each period moves the
-  /// prediction later by this much, until a sample arrives earlier than predicted.
+  /// kForgets_ns: the arrival is predicted from the earliest recent one. Each period moves the prediction later by this
+  /// much, until samples arrive earlier than predicted.
   static constexpr std::int64_t kMargin_ns = 25'000, kForgets_ns = 20;
 
   void add(const ligature_msg::tick_t& tick) {

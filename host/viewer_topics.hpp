@@ -25,7 +25,7 @@ enum : std::size_t { kRigTopic, kLeftTopic, kRightTopic, kThreadTopic, kEventsTo
 [[nodiscard]] const std::array<ViewerTopic, kViewerTopics>& viewer_topics();
 
 /// Writes ticks as JSON. Numbers read back to the same bits; what is not finite becomes null, as JSON has no word for
-/// it. The text of a number is kept and used again while the number stays the same, because most of them seldom change.
+/// it. The text of a number is kept and used again while the number stays the same: most fields seldom change.
 class TickJson {
  public:
   TickJson();

@@ -30,8 +30,8 @@ std::string find_script(const std::string& name, const fs::path& source_folder) 
   throw host::RunFailed(name + " found neither at " + installed.string() + " nor in " + source_folder.string());
 }
 
-/// Waits for the child process. When this process is asked to stop, the child gets SIGINT, on which Python removes its
-/// unfinished output file.
+/// Waits for the child process. When this process is asked to stop, it sends SIGINT to the child, and Python then
+/// removes its unfinished output file.
 int status_of(pid_t child) {
   constexpr int kLook_ms = 20;
   int status = 0;

@@ -35,7 +35,8 @@ std::vector<Point> way_home(std::span<const Point> thread, const Point& first, c
   const double far = 20.0 * radius;
   const Point from = (thread.back() + far * last - centre).normalized(),
               to = (thread.front() + far * first - centre).normalized();
-  // Axis of the great circle through `from` and `to`; of any great circle when they are opposite.
+  // Axis of the great circle through `from` and `to`. When the two are opposite, many great circles pass through them;
+  // then of any one.
   Point axis = from.cross(to);
   if (axis.norm() < 1e-6) axis = from.unitOrthogonal();
   const double angle = std::atan2(from.cross(to).norm(), from.dot(to));

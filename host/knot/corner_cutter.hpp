@@ -8,8 +8,8 @@
 
 namespace ligature::knot {
 
-/// A straight edge from one end of an open polyline to the point `to`, with which the closing path begins later. No
-/// corner is removed if its triangle is pierced by a bar.
+/// The first edge of a path that will later close an open polyline: straight, from one end of the polyline to the point
+/// `to`. No corner is removed if its triangle is pierced by a bar.
 struct Bar {
   bool from_front;  ///< true: starts at the front; false: at the back
   Point to;

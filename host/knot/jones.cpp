@@ -35,8 +35,8 @@ std::vector<Corner> corners_of(const Diagram& d) {
   return corners;
 }
 
-/// Joins edges x and y by an arc. @return whether that closes a loop. An edge is open between its first mention and its
-/// second.
+/// Joins edges x and y by an arc. @return whether that closes a loop. Each edge is joined twice, and is open in
+/// between.
 bool join(Pairing& open, Edge x, Edge y) {
   if (x == y) return true;
   const auto end_of = [&](Edge e) {

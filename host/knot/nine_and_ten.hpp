@@ -8,8 +8,8 @@
 
 namespace ligature::knot {
 
-/// The prime knots of nine and ten crossings, but of at most `crossings`, that have both polynomials; the Jones
-/// polynomial may be that of the mirror image. Cost: a comparison for each of 214 rows; none below nine crossings.
+/// The prime knots of nine and ten crossings (no more than `crossings`) that have both polynomials, or whose mirror
+/// image has them. Cost: 214 comparisons; none if `crossings` is below nine.
 [[nodiscard]] std::vector<std::string> of_nine_and_ten(const std::vector<int>& alexander, const Laurent& jones,
                                                        std::size_t crossings);
 

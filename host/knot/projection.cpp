@@ -18,9 +18,9 @@ double cross(const Point& a, const Point& b) { return a.x() * b.y() - a.y() * b.
 
 enum class Meet { kApart, kCross, kDegenerate };
 
-/// Where the projected edges p + s d and q + t e cross, 0 < s, t < 1; z is the height above the plane of projection.
-/// `above` is the height of the first over the second at the crossing. kDegenerate: rounding could move the crossing
-/// past the end of an edge or swap over and under, as is common for nearly parallel edges.
+/// Where two projected edges cross: p + s d and q + t e, 0 < s, t < 1. z is the height above the plane of projection;
+/// `above` is the height of the first edge over the second one at the crossing. kDegenerate: rounding could move the
+/// crossing past the end of an edge or swap over and under, as is common for nearly parallel edges.
 Meet meet(const Point& p, const Point& d, const Point& q, const Point& e, double& s, double& t, double& above) {
   constexpr double kEdge = 1e-9, kRounding = 1e-15;
   const Point pq = q - p;

@@ -79,9 +79,9 @@ void shake_and_look(Polygon polygon, Draw draw, Seen& seen) {
   }
 }
 
-/// Names the knot of a closed polygon. One sequence of random moves can get stuck before a diagram with a name. So
-/// further sequences with other seeds are tried, and the result does not depend on one seed: a few for every polygon,
-/// and all if the best diagram has at most kNear crossings.
+/// Names the knot of a closed polygon. A sequence of random moves can get stuck before it finds a diagram with a name.
+/// So that the result does not depend on one seed, sequences with other seeds are tried: a few for every polygon, and
+/// all if the best diagram has at most kNear crossings.
 KnotResult recognise_ring(std::vector<Point> ring) {
   constexpr std::uint64_t kCourses = 12, kAtLeast = 3;
   constexpr std::size_t kNear = 14;  // named knots have at most 8 crossings, sums and candidates 10
@@ -107,9 +107,9 @@ std::vector<std::vector<Point>> ways_home(std::span<const Point> thread) {
   return ways;
 }
 
-/// Closes the thread in each way; the results vote. The thread is simplified only once, while it is still open. No
-/// point may cross a bar, which is the straight line by which a closing path leaves an end of the thread. So the knot
-/// of every closure stays the same.
+/// Closes the thread in each way; the results vote. The thread is simplified only once, while it is still open. A bar
+/// is the straight line by which a closing path leaves an end of the thread. The simplification crosses no bar, so
+/// every closure keeps its knot.
 KnotResult recognise_open(std::vector<Point> thread) {
   constexpr std::size_t kEnough = 3;
   const auto ways = ways_home(thread);
@@ -135,8 +135,8 @@ KnotResult recognise_open(std::vector<Point> thread) {
 }
 
 /// Moves the points into the unit cube, so that squares and products neither overflow nor underflow.
-/// @return false when rounding of the coordinates is too coarse to resolve strands: numbers near 1e14 are multiples of
-/// 1/64, so that a thread of one metre there has lost its shape.
+/// @return false when rounding of the coordinates is too coarse to resolve strands: doubles near 1e14 are multiples of
+/// 1/64, so a thread of one metre at such coordinates has lost its shape.
 bool normalise(std::vector<Point>& points) {
   constexpr double kLeastExtent = 1e-290;  // smaller extents are near the subnormal numbers; 0: all points coincide
   constexpr double kCoarsest = 1e-8;       // limit on rounding / extent; strands are resolved down to 1e-9 of it

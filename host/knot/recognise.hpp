@@ -34,9 +34,9 @@ struct KnotResult {
 /// for points so far from the origin that rounding has destroyed their shape, and for a closed line that overlaps
 /// itself along its length.
 /// @param closed whether the last point is joined to the first (a repeated first point at the end is allowed).
-/// If one sequence of random moves finds no name but a diagram of at most 14 crossings, further sequences with other
-/// seeds are tried. Deterministic, and equal for every build. Cost about O(n^2 / 16): about 1 ms at n = 500 (the test
-/// Knots.Cost bounds the instructions).
+/// While no name is found, at least three sequences of random moves with different seeds are tried, and twelve if the
+/// best diagram has at most 14 crossings. Deterministic, and equal for every build. Cost about O(n^2 / 16): about 1 ms
+/// at n = 500 (the test Knots.Cost bounds the instructions).
 [[nodiscard]] KnotResult recognise(std::span<const std::array<double, 3>> points, bool closed);
 
 }  // namespace ligature::knot

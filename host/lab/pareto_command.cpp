@@ -73,8 +73,8 @@ void mark_front(std::vector<Point>& points, Error error, Mark mark) {
   }
 }
 
-/// Error drawn in the picture: the larger of shape and swing. NaN when the shape error was not measured (explicit
-/// models beyond 50 nodes), because the swing error alone would not be comparable.
+/// Error drawn in the picture: the larger one of the errors of shape and swing. NaN when the shape error was not
+/// measured (explicit models beyond 50 nodes), because the swing error alone would not be comparable.
 double motion_error(const Point& p) {
   return std::isnan(p.errors.shape) ? p.errors.shape : std::fmax(p.errors.shape, p.errors.swing);
 }

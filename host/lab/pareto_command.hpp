@@ -6,7 +6,7 @@ class App;
 
 namespace ligature::lab {
 
-/// Adds the subcommand `pareto`: cost against accuracy of every model.
+/// Adds the subcommand `pareto`: cost and accuracy of every model.
 void add_pareto_command(CLI::App& app, int& exit_code);
 
 }  // namespace ligature::lab

@@ -22,7 +22,8 @@ class Rehearsal {
   /// @param scene_name name in messages;  @throws Refusal when the physics refuses the scene.
   Rehearsal(const scene::Scene& scene, scene::GripperScript script, const std::string& scene_name = "scene");
 
-  /// From now on a simulated operator moves the hands, seeing the thread as it was one tick ago; the script is ignored.
+  /// From now on a simulated operator moves the hands, and sees the thread as it was one tick ago; the script is
+  /// ignored.
   void let(sim::KnotTier tier) { tier_.emplace(std::move(tier)); }
   [[nodiscard]] const std::optional<sim::KnotTier>& tier() const noexcept { return tier_; }
 

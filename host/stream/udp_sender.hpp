@@ -20,7 +20,7 @@ class UdpSender {
   UdpSender(const UdpSender&) = delete;
   UdpSender& operator=(const UdpSender&) = delete;
 
-  /// @param messages of LiveTopics: the three messages of a tick follow each other; others are ignored.
+  /// @param messages from LiveTopics. The three messages of a tick must follow each other; other messages are ignored.
   void send(const std::vector<TopicMessage>& messages);
 
  private:

@@ -7,7 +7,8 @@ namespace ligature::host::view {
 /// Whether pages may send commands to the rig, and with which token.
 struct Access {
   std::string token;  // empty: nobody may command
-  // the page contains the token; only safe when the page can be loaded from this machine alone
+  // whether the server writes the token into the page that it serves; safe only when that page can be loaded from this
+  // machine alone
   bool gives_token = false;
 };
 

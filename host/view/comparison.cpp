@@ -100,7 +100,7 @@ void Comparison::find_offset() {
 void Comparison::follow(double position_s, Picture::Clock::time_point now) {
   if (other_ && !other_->offset_ticks) find_offset();
   if (!other_ || !other_->offset_ticks) return;
-  // the other recording is fully read now: jump to the same time again, so that its traces have no holes
+  // the other recording has now been read completely: jumps to the same time again, so that its traces have no holes
   if (!other_->is_whole && other_->survey.progress() >= 1.0) {
     other_->is_whole = true;
     other_->player.seek(position_s + other_->shift_s, now);

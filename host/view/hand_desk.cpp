@@ -167,7 +167,8 @@ void HandDesk::take_status(const ligature_msg::status_t& status) {
     workspace_ = Workspace{scene->hands.workspace_scale, scene->hands.workspace_origin_m};
 }
 
-/// The device's state names the owner of the hand. State messages from before this page's first wish name no owner yet.
+/// The device's state names the owner of the hand. States that were sent before this page's first wish name no owner
+/// yet.
 void HandDesk::take_state(const ligature_msg::hand_state_t& state, Clock::time_point now) {
   const std::scoped_lock lock(mutex_);
   Hand& hand = hands_[static_cast<std::size_t>(state.hand)];
@@ -178,8 +179,8 @@ void HandDesk::take_state(const ligature_msg::hand_state_t& state, Clock::time_p
   if (!is_ours) hand.page = 0;
 }
 
-/// True from the moment at which a page gives the hand back until the device says so by a new session. A wish in the
-/// old session would be ignored.
+/// True from the moment at which a page gives the hand back until the device confirms it with a new session number. The
+/// device would ignore a wish with the old number.
 bool HandDesk::is_being_left(const Hand& hand) {
   return hand.page == 0 && hand.states_awaited > 0 && hand.state->session == hand.session;
 }

@@ -34,9 +34,9 @@ class HandDesk {
   HandDesk(const Access& access, Publish publish) : access_(access), publish_(std::move(publish)) {}
 
   /// Handles {"hand": "take" | "leave", "side": "left" | "right", "id": 7, "token": ".."}, which is always answered (a
-  /// refusal with "soon": true is worth a second try within a moment: the device does not yet know that it is free),
-  /// and {"wish": {"left": {"p": [x, y, z] in world metres, "dead": true, "grip": false}, "right": ..}, "token": ".."},
-  /// which is answered only when the token is wrong. Wishes for hands that the page has not taken are ignored.
+  /// refusal with "soon": true means: try again in a moment, the hand has just been given back), and {"wish": {"left":
+  /// {"p": [x, y, z] in world metres, "dead": true, "grip": false}, "right": ..}, "token": ".."}, which is answered
+  /// only when the token is wrong. Wishes for hands that the page has not taken are ignored.
   [[nodiscard]] nlohmann::json request(std::uint64_t page, const nlohmann::json& message, Clock::time_point now);
 
   /// Call when a page has gone: its hands are given back, with the dead-man released.

@@ -10,8 +10,8 @@
 
 namespace ligature::host::view {
 
-/// One HTTP client. Becomes a PageConnection when a page upgrades to a WebSocket. Time limit: 10 s for a request or a
-/// write.
+/// One HTTP client. A page that upgrades to a WebSocket continues as a PageConnection. Time limit: 10 s for a request
+/// or a write.
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
  public:
   HttpConnection(tcp::socket socket, Shared& shared);

@@ -37,8 +37,8 @@ std::string type_in(Points points, KnotCore at) {
   return at.last < at.first + 4 ? "0_1" : knot::recognise(piece_of(points, at), false).type;
 }
 
-/// Cuts the first throw off. @return where it ends: one of the prime knots that the knot is composed of lies before the
-/// cut, the others behind it. Nothing when there is no such cut.
+/// Finds the cut behind the first throw: one of the knot's prime summands lies before the cut, the others behind it.
+/// @return the node of the cut; nothing when there is no such cut.
 std::optional<std::size_t> first_cut(Points points, KnotCore at, const std::vector<std::string>& summands) {
   const auto is_cut = [&](std::size_t cut) {
     auto both = summands_of(type_in(points, {cut, at.last}));
@@ -54,7 +54,8 @@ std::optional<std::size_t> first_cut(Points points, KnotCore at, const std::vect
     }
     return high;
   };
-  // between the end of the first knot before the cut, and the last start of a knot behind it
+  // the cut lies after the first place at which a knot is complete, and before the last place after which a knot
+  // follows
   const std::size_t earliest = bisect([&](std::size_t cut) { return type_in(points, {at.first, cut}) != "0_1"; });
   const std::size_t latest = bisect([&](std::size_t cut) { return type_in(points, {cut, at.last}) == "0_1"; }) - 1;
   // A cut through a loose knot can give any type, so that several places are tried, from the middle outwards.

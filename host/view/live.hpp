@@ -15,8 +15,9 @@ struct ViewOptions {
 /// Serves the live view until a signal comes. @throws BadInput, RunFailed.
 void view_live(const ViewOptions& options);
 
-/// Access rights that follow from the address of the server. On a loopback address the page carries a fresh token. On
-/// others, commands need the token of the file; without a file nobody may command.
+/// Access rights that follow from the address of the server. With a token file, commands need the token in it, and
+/// users append the token to the page's address. Without a file: on a loopback address the server makes a token and
+/// writes it into the page; on any other address no page may send commands.
 [[nodiscard]] Access access_for(const ServerOptions& server, const std::string& token_file);
 
 /// Prints the address to open in the browser on standard output.

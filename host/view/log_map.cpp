@@ -16,9 +16,9 @@ namespace {
 
 constexpr std::array kNames{kTicksChannel, kThreadChannel, kStatusChannel, kEventChannel};
 
-/// Turns reception times into a continuous time axis. They are CLOCK_REALTIME, which may be set during the recording: a
-/// step of more than 1 s back or 30 s forward is removed, and so is a pause of more than 30 s without messages. Smaller
-/// disorder is kept; the entries are sorted later.
+/// Turns reception times into a continuous time axis. These are of CLOCK_REALTIME, which may be set during the
+/// recording. A step of more than 1 s back or 30 s forward is removed, and so is a pause of more than 30 s without
+/// messages. Smaller steps back remain; the entries are sorted later.
 class Timeline {
  public:
   std::int64_t place(std::int64_t stamp_us) {

@@ -9,7 +9,7 @@
 
 namespace ligature::host::view {
 
-/// Index of the messages of a log, so that playback can start at any time without reading what is before.
+/// Index of the messages of a log, so that playback can start at any time without reading the messages before it.
 /// Only heads are read: 32 bytes are kept per message (about 14 MB for an hour), and payloads are read when played.
 /// Damaged parts are skipped up to the next intact event, as in host/log_reader.hpp. A stop signal ends the reading
 /// (RunFailed).

@@ -48,7 +48,7 @@ void LogSurvey::take_batch(double t_s, const std::vector<std::byte>& payload) {
   for (const auto& tick : batch->ticks) {
     const TraceRow row = trace_row(tick);
     // A batch arrives after its last tick, so the times of its other ticks are counted back from there. In a short
-    // recording the ticks of one batch belong to several columns.
+    // recording the ticks of one batch belong to several columns of the overview.
     const double tick_s = t_s - static_cast<double>(batch->ticks.back().tick - tick.tick) * landmarks_.period_s;
     const double share = map_.duration_s() > 0.0 ? std::clamp(tick_s / map_.duration_s(), 0.0, 1.0) : 0.0;
     const auto column = std::min(kOverview - 1, static_cast<std::size_t>(share * static_cast<double>(kOverview)));

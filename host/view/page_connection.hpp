@@ -23,7 +23,7 @@ struct Shared {
   const Picture& picture;
   ServerHooks hooks;
   std::string machine_name;
-  // time within which a page must show the token, when the page itself carries it
+  // time within which a page must show the token, when the server has written it into the page
   Picture::Clock::duration token_within;
   std::size_t connections = 0, lookers = 0;  // all connections; pages that have not shown the token
   std::map<std::uint64_t, std::weak_ptr<class PageConnection>> pages;
@@ -44,7 +44,8 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
   void add_answer(const nlohmann::json& answer);
   /// Whether the page has shown the token; such a page is never displaced.
   [[nodiscard]] bool is_known() const { return is_known_; }
-  /// Closes without the closing handshake: the place is needed, or the page breaks the rules or does not answer.
+  /// Closes without the closing handshake: another connection needs the place, or the page breaks the rules or does not
+  /// answer.
   void close();
 
  private:
@@ -57,7 +58,7 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
   bool on_message(std::string_view text);
   void look_at_token(const nlohmann::json& message);
   void give_place_back();
-  /// Ends at once, without waiting for unsent data: the hooks must learn immediately that the page has gone.
+  /// Ends at once, without waiting for unsent data: ServerHooks::on_gone must be called at once.
   void end();
 
   Shared& shared_;

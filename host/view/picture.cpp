@@ -56,8 +56,8 @@ void Picture::take_status(const ligature_msg::status_t& status) {
   }
 }
 
-/// Pages are told the number of unreadable messages when it is 1, 2, 4, 8 ..: so they see that it rises, at little
-/// cost.
+/// Pages are told the number of unreadable messages when it is 1, 2, 4, 8 ..: so they see at little cost that the
+/// number rises.
 void Picture::count_unreadable() {
   ++unreadable_;
   if (std::has_single_bit(static_cast<std::uint64_t>(unreadable_))) set_locked("unreadable", unreadable_);

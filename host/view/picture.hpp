@@ -42,7 +42,7 @@ class Picture {
   /// Takes one message of the rig; unreadable ones are counted and ignored.
   void take(std::string_view channel, Bytes data, Clock::time_point now);
 
-  /// Discards everything: a new session of the firmware, or a jump in a recording. @param history bins to start with.
+  /// Discards everything, at a new session of the firmware or a jump in a recording. @param history bins to start with.
   void start_again(const std::vector<TraceBin>& history = {});
 
   /// Marks the data as current although nothing new came: a paused recording is not outdated.
@@ -53,14 +53,15 @@ class Picture {
   void set(const std::string& topic, nlohmann::json what);
   void add_event(const nlohmann::json& event);
 
-  /// Sets a second recording whose traces are sent with each frame; null: none. It must outlive its use here.
+  /// Sets a second recording whose traces are sent with each frame; null: none. `other` must outlive its use here.
   void show_beside(const Picture* other);
 
   /// The newest shape; nothing when its number is still `known`, which is updated.
   [[nodiscard]] std::optional<ligature_msg::thread_t> newer_shape(std::int64_t& known) const;
 
-  /// Builds one frame for a page at `place`: the newest shape, the ticks since, and what has changed. The size is
-  /// bounded: the rest follows in the next frame, and ticks that are dropped by then are covered by the bins.
+  /// Builds one frame for a page at `place`: the newest shape, the ticks since the page's last frame, and the topics
+  /// that have changed. The size is bounded: ticks that do not fit follow in the next frame, and the trace bins cover
+  /// ticks that are no longer kept by then.
   [[nodiscard]] std::vector<std::byte> frame_for(Place& place, const nlohmann::json& answers,
                                                  Clock::time_point now) const;
 

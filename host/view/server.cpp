@@ -15,8 +15,9 @@ namespace {
 namespace asio = boost::asio;
 using Clock = Picture::Clock;
 constexpr std::size_t kMostConnections = 64;
-// Limits on pages that have not shown the token. Where the page itself carries the token, only foreign pages lack it:
-// few places. Otherwise viewers enter the token by hand, and may look without it: many places.
+// Limits on the number of pages that have not shown the token. Few, if the server writes the token into its page: then
+// only foreign pages lack the token. Many, if users append the token to the address: then a page without the token may
+// still look.
 constexpr std::size_t kFewLookers = 16, kManyLookers = 48;
 constexpr auto kFramePeriod = std::chrono::microseconds(16'667);
 

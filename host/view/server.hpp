@@ -36,9 +36,10 @@ struct ServerHooks {
 
 /// HTTP and WebSocket on one port and one thread (Boost.Beast). Pages get a frame 60 times a second, unless their last
 /// three are unacknowledged: a slow page gets fewer frames, and nothing is queued for it.
-/// Limits: 64 connections. Of these, pages without the token: 16 where the page carries it (for 10 s each), 48 where it
-/// is entered by hand; at the limit the oldest is closed (HTTP clients first, then pages without the token). 4 KiB a
-/// message, 300 messages a second, 8 KiB of HTTP header, 10 s for a request or a write.
+/// Limits: 64 connections; at the limit the oldest is closed (HTTP clients first, then pages without the token). Of
+/// these, pages that have not shown the token: 16, for 10 s each, if the server writes the token into the page; 48 if
+/// users append the token to the address. A page may send 300 messages a second of 4 KiB. 8 KiB of HTTP header, 10 s
+/// for a request or a write.
 class Server {
  public:
   /// @throws BadInput for an invalid address, RunFailed when it cannot be bound.

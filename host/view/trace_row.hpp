@@ -62,8 +62,9 @@ using TraceRow = std::array<double, kColumns>;
 
 /// Smallest and largest value of each column over kTicksPerBin consecutive ticks; a tick belongs to bin tick /
 /// kTicksPerBin.
-/// kTick holds the bin's number in two parts, low + high * kBinNumberPart, because one float is exact for 9 days only.
-/// kFlags and the limits: `high` is the bitwise or, so that one late tick among fifty is never hidden.
+/// kTick holds the bin's number in two parts, low + high * kBinNumberPart, because a single float would be exact for
+/// the first 9 days only. kFlags and the limits: `high` is the bitwise or, so that one late tick among fifty is never
+/// hidden.
 struct TraceBin {
   std::array<float, kColumns> low{}, high{};
 };

@@ -46,8 +46,8 @@ std::vector<Vec3> rest_shape(scene::Scene s) {
   return {nodes.begin(), nodes.end()};
 }
 
-/// A run starts with positions p and velocities v. @return the share of its energy, counted from the energy of the
-/// thread at rest, that is left after t_s.
+/// Runs the thread for t_s, from positions p and velocities v. @return the share of its initial energy that is left.
+/// Energies count from that of the thread at rest.
 double energy_left(const scene::Scene& s, const std::vector<Vec3>& rest, const std::vector<Vec3>& p,
                    const std::vector<Vec3>& v, double t_s) {
   Rehearsal still(s, {}), kicked(s, {});

@@ -42,8 +42,8 @@ bool survives(scene::Scene scene, double dt_s) {
   return true;
 }
 
-/// Bisection in the logarithm of the step, to 2 %. Returns `low` when even that is unstable, `high` when that is
-/// stable.
+/// The largest stable time step, by bisection in its logarithm, to 2 %. Returns `low` if even `low` is unstable, and
+/// `high` if `high` is stable.
 double largest_step(const scene::Scene& scene, double low, double high) {
   if (survives(scene, high)) return high;
   if (!survives(scene, low)) return low;
@@ -61,10 +61,10 @@ struct Reference {
   std::array<std::array<double, 4>, 5> largest_ms;  ///< [model][nodes]
 };
 
-/// Explicit Euler without bending damping becomes unstable slowly, so that the limit depends on how the energy is
-/// monitored. That is unknown for the prototype (it found 0.11, 0.07, 0.06 ms for model 1), so models 1 and 2 have no
-/// reference for the forward scheme. With bending damping the limit is sharp: k_d l / k_l (k_d stretch damping, k_l
-/// stretch stiffness, l segment length).
+/// Explicit Euler without bending damping becomes unstable slowly, so its largest stable step depends on how the energy
+/// is monitored. How the prototype did that is unknown (its limits for model 1 were 0.11, 0.07 and 0.06 ms), so models
+/// 1 and 2 have no reference for the forward scheme. With bending damping the limit is sharp: k_d l / k_l (k_d stretch
+/// damping, k_l stretch stiffness, l segment length).
 constexpr Reference kReferences[] = {
     {scene::Integrator::kSemiImplicit,
      {{{3.66, 2.86, 2.32, 1.67},

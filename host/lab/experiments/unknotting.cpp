@@ -94,7 +94,8 @@ Pulls map_pulls(const LooseKnot& knot, int every_node, Table& map, console::Prog
   return pulls;
 }
 
-/// The planner chooses a pull from the shape, and the pull is applied to the thread. @return how many knots opened.
+/// For each knot the planner chooses a pull from the shape, and the pull is applied to the thread. @return how many
+/// knots opened.
 int undo(int knots, const std::string& scene, const scene::GripperScript& script, const std::string& type, Table& plans,
          console::Progress& progress) {
   int undone = 0, drawn = 0;

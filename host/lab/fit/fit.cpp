@@ -58,8 +58,8 @@ struct Problem {
 };
 
 Problem problem_of(const std::vector<Measurement>& all) {
-  // The fit starts from a common suture: only the orders of magnitude must be right. The start of the unloaded length
-  // is the shortest length that was measured.
+  // The fit starts from a common suture: only the orders of magnitude must be right. The unloaded length starts from
+  // the shortest measured length.
   Problem p{all, {}, {8e-5, 1.0, 70.0, 0.3, 4e-7, 1e-3, 2.0}, {}};
   double shortest = 1e300;
   for (const auto& m : all) {
@@ -128,7 +128,7 @@ double freedom(const Problem& problem, Parameter which) {
   return std::max(1.0, count - taken);
 }
 
-/// Quantile of Student's t for a 95 % interval: Cornish-Fisher's expansion about the normal one.
+/// Quantile of Student's t for a 95 % interval: by Cornish-Fisher's expansion of the normal quantile.
 double student_95(double freedom) {
   const double z = 1.959964, z3 = z * z * z;
   return z + (z3 + z) / (4.0 * freedom) + (5.0 * z3 * z * z + 16.0 * z3 + 3.0 * z) / (96.0 * freedom * freedom);

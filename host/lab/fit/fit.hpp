@@ -12,7 +12,7 @@ struct Estimate {
   double value = 0.0;
   double half_95 = 0.0;  ///< half the width of the 95 % interval
 };
-/// How far the rows of a measurement lie from the fitted law, rms, in the unit of the law's figure.
+/// rms deviation of a measurement's rows from the fitted law, in the unit of the number that the law predicts.
 struct Misfit {
   const Law* law;
   const char* figure;

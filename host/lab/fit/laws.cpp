@@ -41,7 +41,8 @@ std::string sag_refused(Row row) {
 // row: length, number of swings, time for them, amplitude at their start and end
 void swung(const Parameters& p, Row row, Out out) {
   const auto swing = swing_of({row[0], p[kEI], p[kDensity], p[kBendDamping], p[kDrag]});
-  // An aperiodic thread has an infinite period; a large finite residual leads the fit away from it.
+  // A thread that does not oscillate has an infinite period; a large finite residual leads the fit away from such
+  // threads.
   out[0] = std::isfinite(swing.period_s) ? std::log(swing.period_s * row[1] / row[2]) : 10.0;
   out[1] = swing.decay_per_s * row[2] - std::log(row[3] / row[4]);
 }

@@ -1,5 +1,6 @@
 #pragma once
-// The measurements that `ligature-lab fit` reads: a CSV header each, and the law that predicts what was measured.
+// The kinds of measurement that `ligature-lab fit` reads: each has a CSV header, and a law that predicts the measured
+// values.
 
 #include <span>
 #include <string>

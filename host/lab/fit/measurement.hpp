@@ -18,7 +18,8 @@ struct Measurement {
 /// Reads a file; its header says which law it belongs to. @throws lab::Refusal with one line.
 [[nodiscard]] Measurement read_measurement(const std::filesystem::path& path);
 
-/// Checks that the measurements determine what they need together. @throws lab::Refusal with one line.
+/// Checks that all measurements together suffice to determine the parameters that they depend on. @throws lab::Refusal
+/// with one line.
 void check_enough(const std::vector<Measurement>& all);
 
 }  // namespace ligature::fit

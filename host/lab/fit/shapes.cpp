@@ -10,8 +10,8 @@
 namespace ligature::fit {
 namespace {
 
-/// The elastica EI theta'' = -w (L - s) cos theta with theta'(L) = 0, integrated from the tip (s = L) to the clamp by
-/// Runge-Kutta. Arc length is in units of L.
+/// The elastica EI theta'' = -w (L - s) cos theta with theta'(L) = 0: theta is the slope angle at arc length s, w the
+/// weight per length. Integrated by Runge-Kutta from the tip (s = L) to the clamp, with lengths in units of L.
 struct Shot {
   double clamp_angle_rad, sag;
 };
@@ -55,7 +55,8 @@ struct Ritz {
 }  // namespace
 
 double sag_over_length(double load) {
-  // The angle at the clamp grows with the tip's. Regula falsi (Illinois) finds the tip's angle for a horizontal clamp.
+  // The angle at the clamp grows with the angle at the tip. Regula falsi (Illinois) finds the tip's angle for which the
+  // clamp is horizontal.
   double low = 0.0, high = 0.5 * std::numbers::pi, under = shoot(load, low).clamp_angle_rad, over = high;
   Shot last{};
   for (int k = 0; k < 60; ++k) {
@@ -77,8 +78,9 @@ Swing swing_of(const Hanging& t) {
   const Matrix bending = t.EI_N_m2 / (t.density_kg_per_m * std::pow(L, 4)) * ritz.bending;
   const Matrix stiffness = bending + kGravity_m_per_s2 / L * ritz.weight;
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes(stiffness, ritz.mass);
-  // Bending is damped and gravity is not, so the damped mode differs from the undamped one. The damped mode solves
-  // Q(s) x = 0 with Q = s^2 M + s (c M + tau K_bend) + K. Inverse iteration; s is the root of x^T Q(s) x.
+  // Bending is damped and gravity is not, so the damped mode x differs from the undamped one. It solves Q(s) x = 0 with
+  // Q(s) = s^2 M + s (c M + tau K_bend) + K: M mass, K stiffness, K_bend its part by bending, c air drag, tau bend
+  // damping time. Found by inverse iteration; s is the root of x^T Q(s) x.
   using Complex = std::complex<double>;
   Eigen::VectorXcd x = modes.eigenvectors().col(0).cast<Complex>();
   Complex s;

@@ -3,7 +3,8 @@
 
 namespace ligature::fit {
 
-/// Sag of the tip of a heavy elastica over its length L. It is clamped horizontally, and its weight is w per length.
+/// Sag of the tip, divided by the length L, of a thread that is clamped horizontally and bends under its weight w per
+/// length.
 /// @param load  w L^3 / EI, above 0. The sag is load / 8 for small loads and nears 1 for large ones.
 [[nodiscard]] double sag_over_length(double load);
 

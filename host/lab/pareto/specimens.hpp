@@ -10,8 +10,7 @@
 
 namespace ligature::lab {
 
-/// A thread behind either interface: physics::Simulation, or RodSimulation, which also lets numerical parameters be
-/// set.
+/// A thread simulated by physics::Simulation, or by RodSimulation where numerical parameters of the rod are to be set.
 class Specimen {
  public:
   /// @throws std::runtime_error when the physics refuses the scene.
@@ -26,8 +25,8 @@ class Specimen {
   std::variant<std::monostate, physics::Simulation, physics::rod::RodSimulation> thread_;
 };
 
-/// The scene with the 0.3 m suture, or with the paper's 5 m thread (values of Table I, converted to values per length),
-/// with the setting's nodes and time steps, under gravity.
+/// The scene of a setting: the 0.3 m suture, or the paper's 5 m thread (Table I, converted to values per length), with
+/// the setting's nodes and time steps, under gravity.
 [[nodiscard]] scene::Scene thread_of(const Setting& setting);
 
 /// Smallest number of substeps per 1 ms tick at which an explicit model is stable with a margin.

@@ -22,8 +22,8 @@ struct Theory {
   [[nodiscard]] double force() const { return std::pow(braid, 3) / (96.0 * std::sqrt(3.0) * kPi * kPi); }
 };
 
-/// Solves n^2 h / e = g / (8 sqrt(3) pi^2) by bisection for the elliptic modulus of the loop. g = x^2 / (x + lambda /
-/// R), with x and lambda / R as in Theory.
+/// Solves n^2 h / e = g / (8 sqrt(3) pi^2) by bisection for the elliptic modulus of the loop. Here g = x^2 / (x +
+/// lambda / R); x and lambda / R are fields of Theory.
 Theory theory_at(double share) {
   Theory found;
   double low = 1e-4, high = 1.0 - 1e-12;
@@ -59,7 +59,7 @@ Result braid(const Subject& subject) {
     result.findings.push_back(ratio(n, "l/n over 2 pi 12^(1/4) sqrt(h R)", from_radius / k));
     result.findings.push_back(
         ratio(n, "F/(B k^2) over mu 2 pi n h k", knot.tension / (k * k * kFriction * 2.0 * kPi * n * k)));
-    // Which of l/n and R differs from the theory, of which R_laid is the radius.
+    // Both l/n and R can differ from the theory, so each is also reported separately. R_laid is the theory's radius.
     const std::string at = "n = " + std::to_string(n);
     result.findings.push_back(
         reported(at + ": l/n, with the theory's R", 1.0 / std::sqrt(std::sqrt(12.0) * R_laid) / k, ""));

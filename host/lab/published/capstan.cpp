@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Segments on the peg for each turn. The polygon makes the exponent mu theta wrong by phi^2 / 6 = 0.16 %, where phi is
-/// the angle between two segments.
+/// Segments on the peg for each turn. The polygon makes the exponent mu theta of the tension ratio (mu friction, theta
+/// angle on the peg) wrong by phi^2 / 6 = 0.16 %, where phi is the angle between two segments.
 constexpr int kPerTurn = 64;
 
 }  // namespace

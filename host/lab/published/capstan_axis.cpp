@@ -1,5 +1,5 @@
-// A thread round a peg that moves along its own axis: the force that holds the thread back, against the tension of the
-// thread's ends.
+// A thread lies round a peg that moves along its own axis. Measured is how the force that holds the thread back depends
+// on the tension of the thread's ends.
 
 #include <algorithm>
 #include <cmath>
@@ -28,10 +28,11 @@ constexpr double kSpeed_m_per_s = 0.02;  // of the peg's surface, along its axis
 constexpr double kEI_N_m2 = 4e-7;
 constexpr double kEA_N = 7.1;  // a tenth of the suture's: sweeps converge sooner, and the strain stays below 2 %
 
-/// Sum of the normal forces over the tension T of the ends, by planar elastica theory. A smooth rod of stiffness B
-/// leaves the peg at an angle delta before the tangent point of a flexible thread. There its curvature is 1/R, and
-/// inside of it the tension is T cos(delta) = T - B / (2 R^2). At each of the two ends of the arc the peg carries a
-/// point force T sin(delta). If theta < 2 delta, the rod touches the peg in one point.
+/// Sum of the normal forces on the peg, divided by the tension T of the ends; from planar elastica theory. A flexible
+/// thread would touch the peg of radius R over the angle theta. A rod of bending stiffness B leaves the peg earlier, by
+/// an angle delta on each side; its curvature there is 1/R. Between these two points the tension is T cos(delta) = T -
+/// B / (2 R^2), and at each of them the peg carries a point force T sin(delta). If theta < 2 delta, the rod touches the
+/// peg in one point.
 /// @param load T R^2 / B, above 1/2
 double normal_over_tension(double theta, double load) {
   const double inside = 1.0 - 0.5 / load, delta = std::acos(inside);
@@ -39,8 +40,8 @@ double normal_over_tension(double theta, double load) {
   return inside * (theta - 2.0 * delta) + 2.0 * std::sin(delta);
 }
 
-/// The thread lies round the peg by theta. Its ends are pulled by constant forces along the tangents; two springs,
-/// which act along the axis only, hold them back while the peg's surface moves along the axis.
+/// The thread lies round the peg over the angle theta. Constant forces along the tangents pull its ends. The peg's
+/// surface moves along the peg's axis, and two springs that act along this axis only hold the ends back.
 class Pulled {
  public:
   Pulled(const Subject& subject, double theta)
@@ -94,7 +95,7 @@ class Pulled {
     return std::get<RodSimulation>(std::move(made));
   }
 
-  // The springs' other ends follow the thread across the axis.
+  // The springs' other ends follow the thread in the directions perpendicular to the axis.
   void tick() {
     for (std::size_t h = 0; h < 2; ++h) {
       const Vec3 at = end(h);

@@ -52,7 +52,8 @@ void tie(const RodSimulation& sim, TwoHands& hands) {
   draw(knot.loop_0 + kHeld_d * kDiameter_m, knot.loop_1 - kHeld_d * kDiameter_m);
 }
 
-/// The larger slip of the two tails, d. NaN when no contact could be solved for lack of work.
+/// The larger slip of the two tails, d. NaN when the knot has no contact because the work budget did not suffice to
+/// solve any.
 double slip_d(const KnotExtent& tied, const KnotExtent& now) {
   if (now.tail_1 == 0.0) return std::numeric_limits<double>::quiet_NaN();
   return std::max(tied.tail_0 - now.tail_0, now.tail_1 - tied.tail_1) / kDiameter_m;

@@ -17,7 +17,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kLoop = 50.0;  // radius of the loop beside the braid, in radii of the helix
 constexpr int kTurns = 8, kNodes = 600;
 
-/// Wave number of the helices, 1 / sqrt(sqrt(12) h R).
+/// Wave number of the helices, 1 / sqrt(sqrt(12) h R): h = 1 radius of the helix, R radius of the loop.
 double wave_number() { return 1.0 / std::sqrt(std::sqrt(12.0) * kLoop); }
 
 /// A point of a strand at s along the backbone; side +1 and -1 are the two strands. bend: the backbone's curvature.
@@ -29,7 +29,7 @@ Vec strand(double s, double side, double bend) {
 }
 
 /// Integral of the squared curvature along a strand over the backbone's length, from the bending energy of a rod that
-/// is laid along it. Lengths are in mm, the helix's radius being 1.
+/// is laid along the strand. Lengths are in units of the helix's radius.
 double squared_curvature(double side, double bend) {
   const double whole = kTurns * 2.0 * kPi / wave_number();
   auto material = validate::unit_rod();

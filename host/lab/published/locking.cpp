@@ -64,7 +64,8 @@ Result threshold(const Subject& subject) {
     result.points.push_back({"begins to lock", static_cast<double>(seed), kNone, friction});
   }
   const double mean = sum / draws, deviation = std::sqrt(std::max(0.0, (squares - draws * mean * mean) / (draws - 1)));
-  // Every knot slipped at a friction below its threshold (the search goes upwards) and held at one above.
+  // The search goes upwards, so every knot has slipped at a friction below its threshold and held at a friction above
+  // it.
   result.findings.push_back(claim("slips at friction 0.2 and holds below friction 1", least > kLow && most < kHigh));
   result.findings.push_back(reported("friction at which it begins to lock, mean", mean, ""));
   result.findings.push_back(reported("its standard error", deviation / std::sqrt(draws), ""));

@@ -75,8 +75,8 @@ Vec nearest(const std::vector<Vec>& x, std::size_t first, Vec p) {
   return best;
 }
 
-/// Measures the ply, which is the piece where the two strands touch; only its inner 60 % count. The angle is that of a
-/// helix that turns as fast as the line between the strands. `h`: radius of the thread.
+/// Measures the ply, the piece where the two strands touch, over its inner 60 %. The ply angle follows from how fast
+/// the line between the strands turns along the axis. `h`: radius of the thread.
 Shape shape_of(const std::vector<Vec>& x, double h) {
   const auto off_axis = [](Vec a, Vec b) { return std::hypot(a[1], a[2]) < std::hypot(b[1], b[2]); };
   const auto tip = static_cast<std::size_t>(std::max_element(x.begin(), x.end(), off_axis) - x.begin());

@@ -1,4 +1,5 @@
-// The sliding knot on a post: at which friction it holds after letting go, and its strength against the pre-tension.
+// A sliding knot that is tied round a post: at which friction it holds after the hands let go, and how its strength
+// depends on the pre-tension.
 
 #include <cmath>
 #include <limits>

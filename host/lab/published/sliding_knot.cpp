@@ -48,7 +48,8 @@ void measure_shape(Nodes nodes, double h, DrawnKnot& knot) {
   const std::size_t middle = static_cast<std::size_t>(
       std::max_element(nodes.begin(), nodes.end(), [](const Vec3& a, const Vec3& b) { return a.y() < b.y(); }) -
       nodes.begin());
-  // The braid is where the strands before and after the loop's top touch. It is scanned outwards from its middle.
+  // The braid is where the strand before the loop's top touches the strand after it. The search for its ends begins in
+  // its middle.
   const double step = 0.25 * h;
   const auto apart = [&](double x) {
     return Vec3(crossing(nodes, middle, nodes.size() - 1, x) - crossing(nodes, 0, middle, x));

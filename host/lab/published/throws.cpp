@@ -59,7 +59,7 @@ Line strand(const Throws& t, double half_width, double side) {
   return line;
 }
 
-/// A slack loop in front of the knot: from `from`, where the thread moves along -x, to `to`, where it does so again.
+/// A slack loop in front of the knot, between the points `from` and `to`. At both points the thread runs along -x.
 void join(Line& line, const Vec3& from, const Vec3& to, double length) {
   const double across = to.x() - from.x(), radius = (length - across) / (2.0 * kPi);
   for (int i = 1; i < 400; ++i) {
@@ -107,7 +107,7 @@ Line curve_of(const Throws& t, double diameter_m) {
   const Line second = strand(t, half_width, 1.0);
   if (t.ends == Ends::kAbove) std::reverse(first.begin(), first.end());
   Line line = first;
-  // The loop ends where the second strand begins, and that begins with a motion along -x.
+  // The loop ends where the second strand begins; the second strand begins along -x.
   join(line, first.back(), second.front(), t.loop_d);
   line.insert(line.end(), second.begin(), second.end());
   if (line.front().x() > line.back().x()) std::reverse(line.begin(), line.end());

@@ -10,7 +10,7 @@
 
 namespace ligature::published {
 
-/// Which of the knot's four ends are the ends of the thread. A long slack loop joins the other two.
+/// Which of the knot's four ends are the ends of the thread. A long slack loop joins the other two ends of the knot.
 enum class Ends {
   kAbove,    ///< both ends above the last throw: square, granny, surgeon's knot
   kDiagonal  ///< one above the last throw, the other below the first one, opposite: thief, grief

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kFriction = 0.05;
 
-/// F h^2 / B of the theory, eps = sqrt(h / R).
+/// F h^2 / B by the theory, eps = sqrt(h / R): F tension, h thread radius, R loop radius, B bending stiffness.
 double theory(double eps) { return 0.5 * std::pow(eps, 4) + 0.492 * kFriction * std::pow(eps, 3); }
 
 std::string text(double value) { return std::to_string(value).substr(0, 5); }

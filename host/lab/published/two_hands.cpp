@@ -14,8 +14,8 @@ void TwoHands::take(const Vec3& left, const Vec3& right) {
   let_go();
   tools_[0] = {left, Vec3::Zero(), true};
   tools_[1] = {right, Vec3::Zero(), true};
-  // Jaws grip the nearest node and would then draw it to the tool. So the tool is first put at this node, which leaves
-  // the thread where it is.
+  // Jaws grip the nearest node and would then pull it to the tool. So the tool is first put at this node; then the
+  // thread does not move.
   for (auto& tool : tools_) {
     const auto x = sim_.nodes_W();
     tool.p_WT = *std::min_element(x.begin(), x.end(), [at = tool.p_WT](const Vec3& a, const Vec3& b) {

@@ -36,8 +36,8 @@ using Measured = std::vector<std::pair<std::string, Figures>>;
 /// The text of expected.csv, compiled into the program.
 [[nodiscard]] const char* embedded_expected() noexcept;
 
-/// Compares every measured figure. A figure is the same within the nine digits that the file has; a value that is not
-/// finite is beyond every tolerance. Scenes that were not measured are left out.
+/// Compares every measured figure. Figures are equal if they agree in the nine digits that the file has. A value that
+/// is not finite is beyond every tolerance. Scenes that were not measured are left out.
 [[nodiscard]] std::vector<Line> compare(const Measured& measured, const Expectations& expected);
 
 /// The new text of the file with expected figures: the measured values; each figure's tolerance as before, and for a

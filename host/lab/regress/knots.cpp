@@ -46,7 +46,7 @@ void add_pull(const scene::Scene& scene, double speed, Means& mean) {
   mean.kept += share * (type_of(sim) == before ? 1.0 : 0.0);
 }
 
-/// About three times what a change of gravity by one in 10^9 moves.
+/// About three times the change of each figure when gravity changes by one part in 10^9.
 struct Tolerances {
   double apart_mm, tension_N, overlap_d;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Regression scenes: small fixed runs whose figures show what a change to the physics has moved.
+// Regression scenes: small fixed runs. Their figures show which results a change to the physics has moved.
 
 #include <filesystem>
 #include <span>

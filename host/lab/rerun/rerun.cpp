@@ -108,8 +108,9 @@ class Play {
     if (output_) output_->add(recorded, again);
   }
 
-  /// Device forces of the rerun: the recorded ones plus the change of the thread's force, because the hands' motion is
-  /// the recorded one. The change acts one period later: the control law uses the grasp of the period before.
+  /// Device forces of the rerun. The hands' motion is the recorded one, so these forces are the recorded ones plus the
+  /// change of the thread's force. The change acts one period later, because the control law uses the grasp of the
+  /// period before.
   tick_t with_device_forces(const tick_t& recorded, tick_t again) {
     const double scale = player_.force_scale(), most_N = player_.max_force_N();
     for (std::size_t h = 0; h < 2; ++h) {

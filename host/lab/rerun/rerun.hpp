@@ -37,7 +37,8 @@ struct RerunOptions {
   std::vector<std::string> overrides{};
   bool cuts = true;  ///< end ticks early where the recorded ones ran out of time
   int session = 0;   ///< number from 1; 0: the only one
-  /// Makes the output once recording and settings are accepted; absent: the differences alone are wanted.
+  /// Makes the output after recording and settings were accepted. Absent: nothing is written, only the differences are
+  /// computed.
   std::function<std::unique_ptr<RerunOutput>(const RecordedRun& run)> output{};
   std::function<bool()> go_on = [] { return true; };  ///< asked at each event of the log; false stops the rerun
 };

@@ -1,6 +1,6 @@
 #pragma once
-// Recomputes the thread's ticks from the records: with the same tool positions, the same resets and scene changes, and
-// ticks ended early at the same point of the computation.
+// Recomputes the thread's ticks from the records, with the recorded tool positions, resets and scene changes. A tick
+// that was ended early ends at the same point of the computation.
 
 #include <array>
 #include <cstdint>
@@ -29,7 +29,7 @@ struct PlayedScene {
 /// tick of the run on. After missing records it is unknown until a reset or another scene defines it again.
 class ThreadPlayer {
  public:
-  /// @param scenes in order of their first ticks. @param cuts whether early ends by the clock are repeated.
+  /// @param scenes in order of their first ticks. @param cuts whether ticks that the clock ended early end early again.
   ThreadPlayer(std::vector<PlayedScene> scenes, bool cuts);
 
   /// Takes the next record. @return the record with recomputed thread fields; nothing while the state is unknown.

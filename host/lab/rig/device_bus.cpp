@@ -8,7 +8,8 @@ bool DeviceBus::loses(const can::Frame& frame) noexcept {
   if (lost_share_ <= 0.0) return false;
   const auto address = can::address_of(frame.id);
   if (!address || (address->service != can::Service::kRpdo1 && address->service != can::Service::kTpdo1)) return false;
-  // Uses the upper 53 bits of the generator, because the standard library's distributions differ between platforms.
+  // A uniform number in 0 .. 1 from the generator's upper 53 bits; the standard library's distributions differ between
+  // platforms.
   const bool lost = static_cast<double>(random_() >> 11) * 0x1p-53 < lost_share_;
   frames_lost += lost;
   return lost;

@@ -1,6 +1,6 @@
 #pragma once
-// What a run of the virtual rig is written to, message by message. An interface, so that programs that write no log
-// need no LCM library.
+// Interface of the log to which a run of the virtual rig is written. It is an interface so that programs that write no
+// log need no LCM library.
 
 #include <cstdint>
 #include <string>

@@ -69,8 +69,8 @@ class SteppedRig {
   std::jthread thread_;  // last member: begins when the others exist
 };
 
-/// Whether a device of the shipped class reaches this point of the scene's world; a hand that is sent to a point out of
-/// reach would stop on the way. @return empty, or "found .., allowed .."
+/// Whether a device of the shipped class reaches this point of the scene's world; without this check, a hand that is
+/// sent out of reach would stop on the way. @return empty, or "found .., allowed .."
 [[nodiscard]] std::string out_of_reach(const scene::Scene& scene, const sim::Vec3& p_W_m);
 
 }  // namespace ligature::lab

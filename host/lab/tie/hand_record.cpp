@@ -13,8 +13,8 @@ double distance_m(const scene::Vec& a, const scene::Vec& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// The recorded position between two keys that the interpolation misses most, if by more than the tolerance; else
-/// `from`.
+/// Index of the recorded position between two keys that is farthest from the interpolation, if that is more than the
+/// tolerance; else `from`.
 std::size_t worst_between(const Keys& wishes, std::size_t from, std::size_t to, const Keys& keys, double tolerance_m) {
   std::size_t worst = from;
   double most_m = tolerance_m;

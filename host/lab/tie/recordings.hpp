@@ -15,7 +15,7 @@ namespace ligature::lab {
   return folder / (knot + "-" + std::to_string(seed) + ".lcmlog");
 }
 
-/// Checks that no recording exists yet. Call before the first run, so that no work is lost by a refusal.
+/// Checks that no recording exists yet. Called before the first run, so that no finished run is lost by a refusal.
 /// @throws Refusal with the name of the first recording that exists, unless `replace` is true.
 inline void check_free(const std::filesystem::path& folder, const std::string& knot, const Seeds& seeds, bool replace) {
   if (replace) return;

@@ -13,7 +13,8 @@
 namespace ligature::lab {
 
 struct Tied {
-  /// type and handedness as named by host/knot ("3_1 right"); found: in the recording's last shape
+  /// type and handedness of the knot as host/knot names them ("3_1 right"): the wanted knot, and the one found in the
+  /// recording's last shape
   std::string wanted, found;
   double seconds = 0.0;             ///< on the rig's clock, including the time in which the knot is watched
   std::vector<std::string> missed;  ///< moves of the operator that exceeded their time limit

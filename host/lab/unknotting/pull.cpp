@@ -67,7 +67,8 @@ Core core_of(std::span<const Vec3> nodes_W) {
     return last - first >= 3 && knot_between(nodes_W, first, last).alexander == whole.alexander;
   };
   Core core{0, n - 1};
-  // One node at a time, not by bisection: a piece cut in the middle of the knot may contain a different knot.
+  // Cuts off one node at a time. Bisection would not do: a piece cut in the middle of the knot may contain a different
+  // knot.
   for (;;) {
     if (keeps(core.first, core.last - 1)) {
       --core.last;

@@ -21,12 +21,12 @@ constexpr double kSpeed_m_per_s = 0.005;
 // axial advance per turn, so that the thread does not lie on itself; lengthens the path by 0.02 %
 constexpr double kPitch_m = 0.0024;
 
-/// Closed form of the tension ratio T1 / T2 for the simulated polygon. The polygon of the reference table touches the
-/// peg with its corners; in the simulation contacts are at the middle of segments and act on both end nodes. The
-/// formula is the balance of forces at a corner between two segments that meet at an angle 2a, with friction
-/// coefficient mu; from one segment to the next the tension grows by the factor (1 + g) / (1 - g), and the normal force
-/// too: g (1 + s^2) + mu s g^2 = mu s, s = tan a. To second order, the relative error of the exponent mu theta is
-/// -(2a)^2 / 6 here and +(2a)^2 / 12 in the table.
+/// Closed form of the tension ratio T1 / T2 for the simulated polygon. In the simulation contacts are at the middle of
+/// segments and act on both end nodes; the polygon of the reference table touches the peg with its corners. The formula
+/// is the balance of forces at a corner between two segments that meet at an angle 2a, with friction coefficient mu.
+/// From one segment to the next, tension and normal force grow by the factor (1 + g) / (1 - g), where g solves g (1 +
+/// s^2) + mu s g^2 = mu s, s = tan a. To second order, the relative error of the exponent mu theta (theta: the whole
+/// angle) is -(2a)^2 / 6 here and +(2a)^2 / 12 in the table.
 double by_segments(double mu, double angle_rad, int wrapped) {
   const double s = std::tan(0.5 * angle_rad / wrapped), b = 1.0 + s * s;
   const double g = 2.0 * mu * s / (b + std::sqrt(b * b + 4.0 * mu * mu * s * s));
@@ -48,8 +48,9 @@ Findings compare(const Subject& subject, bool polygon) {
     const double mu = number(row, "mu"), degrees = number(row, "wrap_angle_deg");
     if (number(row, "N_contact_nodes") != wrapped) continue;
     const double angle = degrees * std::numbers::pi / 180.0;
-    // For a whole turn of 32 segments the results for the simulated polygon and for the table's polygon differ by up to
-    // 4 %, for half a turn by 0.5 %.
+    // The reference table is for a polygon that touches the peg with its corners; here the middles of the segments
+    // touch. With 32 segments T1 / T2 of the two differ by 0.5 % for half a turn and by up to 4 % for a whole turn;
+    // therefore more than half a turn is compared with by_segments().
     const double corners = degrees > 180.0 ? by_segments(mu, angle, wrapped) : number(row, "T1_over_T2");
     const double truth = polygon ? corners : std::exp(mu * angle);
     all.push_back(relative("mu = " + row.at("mu") + ", " + row.at("wrap_angle_deg") + " deg: T1/T2", truth,
@@ -90,7 +91,7 @@ double tension_ratio(const Subject& subject, double mu, double angle_rad, int wr
   tools[1].v_WT = hand_m_per_s * pull;
   const double step = kSpeed_m_per_s * scene.time.tick_s;  // of the slip, or about that much
   // `gives`: distance by which the hand's spring, the free tail and the wrapped thread stretch before the whole thread
-  // slips. The average begins after twice this distance.
+  // slips. Averaging begins after twice this distance.
   const double most_N = std::exp(mu * angle_rad), strain = most_N / scene.suture.rod.EA_N;
   const double gives = most_N / scene.hands.coupling_N_per_m + strain * (tail + per_rad / mu);
   const int counted = static_cast<int>(std::lround(l / step));

@@ -26,8 +26,8 @@ struct Crossing {
 /// below A.
 Crossing crossing(const Subject& subject, const Row& row) {
   const double a = number(row, "a_m"), b = number(row, "b_m"), H = number(row, "H_m"), d = number(row, "d_contact_m");
-  // The reference's thread T = T0 + EA (l / l0 - 1) equals a Hookean thread with stiffness EA - T0 and rest length l0
-  // (EA - T0) / EA.
+  // The reference's thread has the tension T = T0 + EA (l / l0 - 1), l its length. This equals a Hookean thread with
+  // stiffness EA - T0 and rest length l0 (EA - T0) / EA.
   const double EA = number(row, "EA_N") - number(row, "T0_A_N"), shorter = EA / number(row, "EA_N");
   const auto shares = shares_of(subject.nodes, a, b);
   const int ka = shares.a, kb = shares.b;
@@ -37,9 +37,9 @@ Crossing crossing(const Subject& subject, const Row& row) {
   scene.suture.length_m = l * (subject.nodes - 1);
   scene.suture.paper.node_mass_kg = 8e-5 * l;
   scene.suture.paper.bend_damping = scene.suture.paper.swivel_damping = 0.0;
-  // The explicit models apply dampers before contacts in a step, which leaves an axial force error of the order damper
-  // x step. So the damping is set just high enough to damp the strand's first axial mode (1e5 1/s). It does not affect
-  // the balance.
+  // The explicit models apply dampers before contacts in a step. This leaves an error of the axial force in proportion
+  // to damping constant and time step, so the damping is just high enough for the strand's first axial mode (1e5 1/s).
+  // It does not affect the equilibrium.
   scene.suture.paper.stretch_damping = 1e-5 * EA / l;
   set_bending(scene, 0.0);
   set_stretch(scene, EA);
@@ -109,7 +109,7 @@ Findings heavy_rod_lifted(const Subject& subject) {
     scene.suture.paper.node_mass_kg = per_m * segment_m(scene);
     set_bending(scene, B);
     set_drag(scene, rod ? 30.0 : 10.0);
-    // a small damper, because explicit steps err by damper x step; it does not affect the balance
+    // a small damping constant, because explicit steps err in proportion to it; it does not affect the equilibrium
     scene.suture.paper.bend_damping *= 0.1;
     scene.suture.paper.stretch_damping *= 0.1;
     if (!rod) scene.hands.coupling_N_per_m = 2e4;

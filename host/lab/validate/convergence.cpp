@@ -35,7 +35,8 @@ double elastica_error(int n) {
   return 0.0;
 }
 
-/// Tip of the cantilever at t = 0.25, half way down after the load was applied, computed in 25 ticks.
+/// Tip of the cantilever at the dimensionless time t = 0.25 after the load was applied, half way down; computed in 25
+/// ticks.
 Vec swung_tip(int substeps) {
   Rod rod = cantilever(50, 0.01, substeps, 0.0);
   for (int k = 0; k < 25; ++k) proceed(rod);

@@ -17,8 +17,8 @@ double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 /// A tenth of the suture's length, lying straight across the slope of a tilted desk; no drag.
 scene::Scene lying(const Subject& subject, double mu, double degrees) {
   auto scene = real_thread(subject, 0.1, mu);
-  // 200 contacts on a desk exceed the work budget of a rod's tick at `balanced`: up to a fifth of the simulated time is
-  // lost (docs/measurements/accuracy.md), and the thread shows neither stopping distance nor creep. Therefore `fine`.
+  // At accuracy `balanced`, 200 contacts on a desk exceed the work budget of a tick: up to a fifth of the simulated
+  // time is lost (docs/measurements/accuracy.md), which falsifies stopping distance and creep. Therefore `fine`.
   if (subject.nodes >= 200 && !subject.accuracy) scene.suture.rod.accuracy = scene::Accuracy::kFine;
   set_drag(scene, 0.0);
   scene.world.desk_height_m = 0.0;
@@ -80,8 +80,9 @@ Findings stopping_distance(const Subject& subject) {  // reference: v^2 / (2 mu 
     const auto scene = lying(subject, mu, 0.0);
     auto sim = build(scene);
     const std::vector<Vec3> places(sim.nodes_W().begin(), sim.nodes_W().end());
-    // The state's velocity is the last step's displacement / dt, so it belongs to the middle of the step. For a speed
-    // v0 now, it must be mu g dt / 2 higher. (With v0 the distance would be v0 dt / 2 short: 3 % for a stop in 2 ms.)
+    // The state's velocity is (displacement of the last step) / dt, so it belongs to the middle of that step. To give
+    // the thread the speed v0 now, the state's velocity must be v0 + mu g dt / 2. (With v0 itself the thread would stop
+    // v0 dt / 2 too early: 3 % of the distance for a stop in 2 ms.)
     const double earlier = speed + 0.5 * step_s(scene) * mu * kG;
     sim.set_state(places, std::vector<Vec3>(places.size(), Vec3(0, earlier, 0)));
     const double way = way_after(sim, static_cast<int>(1000.0 * time) + 50);

@@ -15,7 +15,7 @@ struct Helix {
 [[nodiscard]] Helix localised_helix_of(int n, int substeps, bool adaptive);
 
 /// Solution for an infinite rod: largest angle phi between tangent and axis, twisting moment M (N m), and decay rate
-/// sigma (1/m) of its envelope f = (cos phi(s) - cos phi0) / (1 - cos phi0) = tanh^2(sigma s).
+/// sigma (1/m) of the bulge's envelope f = (cos phi(s) - cos phi0) / (1 - cos phi0) = tanh^2(sigma s).
 struct HelixTruth {
   double phi0_rad, M, sigma;
 };

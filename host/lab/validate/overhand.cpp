@@ -23,9 +23,9 @@ double resting_tension(const Subject& subject, double a_over_R) {
   return pull.tension_N() * kA_m * kA_m / kB;
 }
 
-/// Tension T of a knot that is slowly tightened (sense +1) or loosened (-1), measured while its size passes the given
-/// a / R; as T a^2/B. Averaged over one segment's length, because polygon corners pass the contact. The bending
-/// stiffness B is larger than the suture's, which makes drag negligible.
+/// Tension T of a knot that is slowly tightened (sense +1) or loosened (-1), as T a^2/B, measured while its size passes
+/// the given a / R (a radius of the thread, R of the loop). Averaged over one segment's length, because polygon corners
+/// pass the contact. The bending stiffness B is larger than the suture's, so that air drag is negligible.
 double sliding_tension(const Subject& subject, double a_over_R, double friction, int sense) {
   const double EI = 100.0 * kB, R = kA_m / a_over_R, target = 2.0 * std::numbers::pi * R, speed = 0.005;
   auto scene = knotted(subject, R, EI, friction);
@@ -62,7 +62,8 @@ Row row_of(double a_over_R, double mu) {
 
 }  // namespace
 
-// reference: expansion to first order in sqrt(a / R); its leading term alone errs by 9 % at a / R = 0.01
+// reference: expansion to first order in sqrt(a / R), a radius of the thread, R of the loop; the leading term alone
+// errs by 9 % at a / R = 0.01
 Findings loose_overhand(const Subject& subject) {
   Findings all;
   for (const double a_over_R : {0.01, 0.005}) {
@@ -74,10 +75,10 @@ Findings loose_overhand(const Subject& subject) {
   return all;
 }
 
-// Reference for half the width of the hysteresis loop of T a^2/B between tightening and loosening:
-// mu sigma (a / R)^(3/2), sigma a constant of the reference table. This is the leading order; the next one adds a
-// fraction of about 5 sqrt(a / R) (15 % at a / R = 0.001, 48 % at 0.01; docs/measurements/accuracy.md). The test uses
-// 0.001 with a tolerance of 20 %.
+// T a^2/B differs between tightening and loosening (T tension, B bending stiffness, a and R radius of thread and loop).
+// Reference for half of this difference: mu sigma (a / R)^(3/2), mu friction, sigma a constant of the reference table.
+// This is the leading order; the next one adds about 5 sqrt(a / R), i.e. 15 % at a / R = 0.001 and 48 % at 0.01
+// (docs/measurements/accuracy.md). The test uses 0.001 with a tolerance of 20 %.
 Findings overhand_hysteresis(const Subject& subject) {
   const double a_over_R = 0.001, mu = 0.02;
   double sigma = 0.0;

@@ -6,8 +6,9 @@
 
 namespace ligature::validate {
 
-/// The curve of a loose overhand knot: tails along -x and +x, above them one loop of length 2 pi loop_m, and along its
-/// foot 2 turns + 1 half turns of the two strands about each other. The excess length is close to 2 pi loop_m.
+/// The curve of a loose overhand knot: tails along -x and +x, above them one loop of length 2 pi loop_m, and at its
+/// foot the two strands, which make (2 `turns` + 1) half turns about each other. The excess length is close to 2 pi
+/// loop_m.
 struct OverhandCurve {
   double length_m = 0.0, radius_m = 0.0, loop_m = 0.0;
   double half_m = 0.0;              ///< half the length of the foot
@@ -34,9 +35,9 @@ inline constexpr double kOverhandB_N_m2 = 4e-7;
 /// excess length (thread length less the distance of the ends) is 2 pi loop_m.
 [[nodiscard]] scene::Scene knotted(const Subject& subject, double loop_m, double EI_N_m2, double friction);
 
-/// The scene's thread laid along the curve, with its nodes concentrated where the two strands wind round each other
-/// (the braid), and where they do after a motion of travel_m. Elsewhere a
-/// segment is longer by growth times its distance from there.
+/// The scene's thread laid along the curve, with its nodes concentrated in the braid, where the two strands wind round
+/// each other, and in the pieces that enter the braid when the ends move by travel_m. Elsewhere a segment is longer by
+/// `growth` times its distance from these nodes.
 [[nodiscard]] physics::rod::RodSimulation gathered_knot(scene::Scene scene, OverhandCurve curve, double travel_m,
                                                         double growth = 0.25);
 

@@ -12,8 +12,8 @@
 namespace ligature::validate {
 namespace {
 
-/// Node positions concentrated where the strands touch: segments of length h there, growing by growth times
-/// the distance from there. h is chosen such that all n nodes are used.
+/// Node positions concentrated where the strands touch. Segments have the length h there; elsewhere they are longer by
+/// `growth` times the distance from the touching strands. h is chosen such that all n nodes are used.
 std::vector<double> gathered(int n, const OverhandCurve& curve, double reach_m, double growth) {
   const auto wanted = [&](double s, double h) {
     double off = curve.length_m;

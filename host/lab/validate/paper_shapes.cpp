@@ -1,4 +1,4 @@
-// Compares the rod (with the paper's parameters) with paper-4: shapes at rest, and tied knots.
+// Compares the rod model, with the paper's parameters, with the model paper-4: shapes at rest, and tied knots.
 
 #include "host/lab/validate/paper_shapes.hpp"
 

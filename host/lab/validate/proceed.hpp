@@ -13,7 +13,7 @@ struct Interrupted : std::runtime_error {
 /// Whether to stop. Set by a program that catches Interrupted. @see console::stop_requested
 inline bool (*stop_asked)() noexcept = []() noexcept { return false; };
 
-/// Ticks of all cases so far; who wants the cost of a tick reads it before and after a case.
+/// Number of ticks of all cases so far. To compute the cost of a tick, read this before and after a case.
 inline std::int64_t ticks_done = 0;
 
 /// Runs one tick. @throws Interrupted

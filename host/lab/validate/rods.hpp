@@ -21,7 +21,8 @@ using physics::rod::Vec;
 inline constexpr Parts kBare{false, false, false, false, false};
 inline constexpr Parts kTwisting{true, false, false, false, false};
 
-/// A rod with length, density and bending stiffness 1; stretch 1e6 EI / L^2, so that it changes results by 1e-6 only.
+/// A rod with length, density and bending stiffness 1. Its stretch stiffness is 1e6 EI / L^2, so high that stretch
+/// changes results by 1e-6 only.
 [[nodiscard]] inline Material unit_rod() {
   Material m;
   m.length_m = 1.0;

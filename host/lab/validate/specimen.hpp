@@ -16,8 +16,8 @@ using Tools = std::array<physics::ToolInput, 2>;
 
 [[nodiscard]] inline bool is_rod(const scene::Scene& s) noexcept { return s.suture.model == scene::Model::kRod; }
 
-/// Length, density and EI are 1, and EA is so large that it changes results by 1e-5 only. Straight along +x from the
-/// origin; no gravity, contact, twist or damping except air drag `drag_per_s`. One tick lasts tick_s: ten implicit
+/// Length, density and EI are 1, and EA is so large that stretch changes results by 1e-5 only. Straight along +x from
+/// the origin; no gravity, contact, twist or damping except air drag `drag_per_s`. One tick lasts tick_s: ten implicit
 /// steps (rod), or as many explicit ones as make_stable() chooses (paper models).
 [[nodiscard]] scene::Scene unit_thread(const Subject& subject, double tick_s, double drag_per_s);
 

@@ -68,7 +68,7 @@ Findings catenary(const Subject& subject) {
     }
     auto sim = build(scene);
     Tools tools = no_hands();
-    // elongation of the hands' springs; the hands are placed so much further out
+    // elongation of the hands' springs; each hand is placed further out by this length
     const double give = number(row, "H_over_wS") / K, lift = 0.5 / K;
     tools[0] = {Vec3(-give, 0, lift), Vec3::Zero(), true};
     tools[1] = {Vec3(span + give, 0, lift), Vec3::Zero(), true};

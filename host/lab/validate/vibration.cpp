@@ -12,8 +12,8 @@
 namespace ligature::validate {
 namespace {
 
-// time step, as a multiple of 1 / omega: implicit Euler then errs by 3e-5 in frequency and has 0.5 % of critical
-// damping
+// time step, as a multiple of 1 / omega (omega: the mode's frequency): implicit Euler then errs by 3e-5 in frequency
+// and damps by 0.5 % of critical damping
 constexpr double kStep = 0.01;
 constexpr double kSmall = 1e-4;
 
@@ -162,7 +162,8 @@ double numerical_damping(const Subject& subject, scene::Accuracy accuracy, int m
   const double omega = beta * beta * std::sqrt(r.EI_N_m2 / r.density_kg_per_m) / (length * length);
   Ringing ringing(scene, beta, length);
   const double from = std::abs(ringing.amplitude());
-  // After whole periods the amplitude is at its peak again; an error of the period changes it to second order only.
+  // After whole periods the amplitude is at its peak again; there a small error of the period hardly changes it (second
+  // order).
   const int periods = 4,
             ticks = static_cast<int>(std::lround(periods * 2.0 * std::numbers::pi / omega / scene.time.tick_s));
   double peak = 0.0;

@@ -66,8 +66,8 @@ Watched watch(VirtualRig& rig, std::int64_t ticks, std::size_t look_at) {
   return w;
 }
 
-/// The motors make a torque two ticks after it was sent, and later when its RPDOs are lost. So steps up to kLate ticks
-/// after a fault or a let-go are attributed to it.
+/// The motors make a torque two ticks after it was sent, and later when its RPDOs are lost. So force steps up to kLate
+/// ticks after a fault, or after a hand was let go, count as its consequence.
 void Watched::sort_steps(const std::vector<rt::TickRecord>& records) {
   constexpr std::size_t kLate = 10;
   for (std::size_t h = 0; h < 2; ++h) {

@@ -20,7 +20,7 @@ struct Watched {
   /// and joints of (encoder count in rad) |tau(n) - tau(n-1)|, tau the joint's torque (docs/haptics.md).
   std::array<double, 2> hidden_J{};
   /// Smallest value, over both ports and all ticks, of (port energy + energy lent to this hand + hidden_J so far), J.
-  /// Passivity requires it not to be negative.
+  /// Passivity requires this value not to be negative.
   double lowest_proved_J = 0.0;
   std::array<double, 2> lowest_account_J{};  ///< the firmware's energy account, computed from encoder counts
   /// Smallest sum of the true energies of both ports; the thread transfers energy between the hands
@@ -28,7 +28,8 @@ struct Watched {
   double peak_N = 0.0;
   /// Largest change of the motors' tip force per SYNC, apart from removals of the whole force.
   double largest_step_N = 0.0;
-  /// Largest change where the whole force is removed at once: by a fault, or when a hand is let go.
+  /// Largest change where the whole force is removed at once: by a fault, or when a hand is let go (its force is
+  /// dropped for lack of energy).
   double largest_cut_N = 0.0;
   /// How often a hand was let go without a fault, from a force above the step limit.
   int let_go = 0;

@@ -12,8 +12,8 @@
 namespace ligature::lab {
 namespace {
 
-/// Sum of the tensions of the two edges at a node (stiffness times strain, along the edge). The slack side counts, too:
-/// it is slightly compressed.
+/// Sum of the tensions (stiffness times strain) of the two segments at a node, as a vector. The slack segment counts,
+/// too, because it is slightly compressed.
 sim::Vec3 pull_on(const Watched& w, const scene::Suture& suture, int node) {
   const double rest_m = suture.length_m / (suture.nodes - 1);
   sim::Vec3 sum = sim::Vec3::Zero();

@@ -6,8 +6,8 @@
 namespace ligature::lab {
 namespace {
 
-/// Drives whose continuous torque is 0.3 of the recorded one, with a thermal time constant of 0.5 s: they reduce their
-/// torque long before the controller's own limit would act.
+/// Drives whose continuous torque is 0.3 times that of the device record, with a thermal time constant of 0.5 s: they
+/// reduce their torque long before the controller's own limit would act.
 void hot_drives(RigSetup& setup) {
   for (auto& body : setup.body) body.motors = {0.3 * body.motors.continuous_Nm, 0.5};
 }

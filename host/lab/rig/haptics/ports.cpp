@@ -60,8 +60,8 @@ class PortFiles {
                 "step_N", "cut_N", "let_go", "above_30Hz_mN", "fault"}};
 };
 
-/// A hand that is dragged must receive energy through its port; if the accounts of the two hands may not lend energy to
-/// each other, that hand feels less than half of the force.
+/// A hand that is dragged must receive energy through its port. Without energy lent by the other hand's account it
+/// would feel less than half of the force.
 void measure_giving_way(const HapticsBench& bench, Verdict& v) {
   for (const PortCase& c : port_cases(bench)) {
     if (!c.gives_way) continue;

@@ -1,5 +1,5 @@
-// Tests the firmware's velocity estimator on encoder counts: noise at constant speed and lag under acceleration,
-// compared with a simple difference and a low-pass.
+// Tests the firmware's velocity estimator on encoder counts: its noise at constant speed and its lag under
+// acceleration, compared with a simple difference and a low-pass.
 
 #include <cmath>
 #include <random>

@@ -61,8 +61,8 @@ WallRun press(const Wall& w, double time_s) {
     if (w.delay == 0) {
       acting = law(w, run.x_m, n);
     } else {
-      // The passivity controller itself allows for one period of delay, that of the bus. The other periods of w.delay
-      // lie between the sample and the control law.
+      // The passivity controller itself takes one period of delay into account, that of the bus. So the other periods
+      // of w.delay are put between the sample and the control law.
       acting = on_its_way;
       if (n > 0) v = (mass.x - run.x_m[static_cast<std::size_t>(n - 1)]) / kT_s;
       passivity.observe(n, {{mass.x, 0, 0}, {mass.x, 0, 0}});
@@ -94,8 +94,8 @@ bool is_stable(const Wall& wall, double time_s) {
   const WallRun run = press(wall, time_s);
   if (!run.finite) return false;
   const double early = run.swing_m(0.25 * time_s), late = run.swing_m(time_s - kWindow_s);
-  // In a limit cycle at the force limit the amplitude neither grows nor decays; so a run whose amplitude stays well
-  // above its initial displacement is not stable either.
+  // A limit cycle at the force limit neither grows nor decays. So a run whose amplitude stays well above the initial
+  // displacement counts as unstable, too.
   const double begun = std::max(wall.start_m, wall.push_N / std::max(wall.K_N_per_m, 1.0));
   return late < 1e-6 || (late < 0.98 * early && late < 2.2 * begun);
 }
