@@ -84,8 +84,8 @@ void read_buttons(StrictTable& t, ButtonsPlace& b) {
   t.integer("clutch_bit", b.clutch_bit, -1, 31);
 }
 
-/// Checks the rules between several keys. If a default value breaks a rule, the message names a key that the file
-/// contains.
+/// Checks the rules between several keys. If a default value breaks a rule, the message names a key that is in the file
+/// instead.
 void check_buttons(StrictTable& t, const ButtonsPlace& b, int pdos) {
   if (b.bits % 8 != 0 || b.bits == 24) t.refuse("buttons_bits", "8, 16 or 32");
   if (!b.are_inputs() && (b.bits != 16 || b.grip_bit != 0 || b.dead_man_bit != 1 || b.clutch_bit != 2))

@@ -115,8 +115,8 @@ void check(StrictTable& geometry, StrictTable& limits, const Device& d) {
   if (d.continuous_force_N > d.peak_force_N) limits.refuse("continuous_force_N", "at most peak_force_N");
 }
 
-/// Can the drive report its rated torque as exactly as the start-up must compare it? All torques are per mille of the
-/// rated torque.
+/// Whether the drive's object for the rated torque is fine enough for the comparison at start-up. All torques are per
+/// mille of the rated torque, so a wrong value would falsify every force.
 bool is_told_exactly(const Device& d) {
   constexpr double kShare = 0.005;
   if (!d.cia402.rated_torque.is_there()) return true;

@@ -39,7 +39,7 @@ struct CsvSetting {
 /// Untrusted text for use in a message: control characters as \xNN, at most 60 characters.
 [[nodiscard]] std::string shown(std::string_view text);
 
-/// The text, or if it is longer than `most` characters, its whole words up to there and "..".
+/// The text; if it is longer than `most` characters, only the whole words that fit, and "..".
 [[nodiscard]] std::string shortened(std::string_view text, std::size_t most);
 
 /// "FILE:LINE: what"

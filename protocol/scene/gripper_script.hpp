@@ -31,7 +31,8 @@ struct GripKey {
 /// Interpolation between keys.
 enum class Motion : std::uint8_t { kRests, kMonotoneCubic };
 
-// clang-tidy warns of a reserved identifier: a loop variable that the compiler generates to copy the array.
+// clang-tidy warns wrongly here: the reserved identifier is a loop variable that the compiler generates to copy the
+// array.
 struct GripperScript {           // NOLINT(bugprone-reserved-identifier)
   std::vector<GripKey> keys[2];  ///< 0 = L, 1 = R; times strictly increase within a hand; empty: no such hand
   bool turns = false;            ///< the turn columns are present: grippers hold the thread's direction and roll

@@ -12,7 +12,7 @@ namespace ligature::scene {
 /// h0 and h1 before and after the key: zero if d0 and d1 differ in sign or one is zero; else their weighted harmonic
 /// mean (w0 + w1) / (w0 / d0 + w1 / d1), w0 = h0 + 2 h1, w1 = 2 h0 + h1. So each coordinate stays between the values of
 /// the two keys. The first and last key are at rest (SciPy estimates velocities there), since the hand does not move
-/// before and after.
+/// before the first key and after the last one.
 /// @pre times strictly increase
 void pass_through(std::span<GripKey> keys) noexcept;
 

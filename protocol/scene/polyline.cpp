@@ -53,8 +53,8 @@ std::vector<Vec> lay_out(std::span<const Vec> points, int n, double rest_m) {
     const Vec c = nodes.back();
     bool found = false;
     for (; k < points.size() && !found; ++k, from = 0.0) {
-      // |a + u d - c| = rest: intersection of the segment with the sphere around the last node c. At the larger root u
-      // the segment leaves the sphere.
+      // Intersection of the segment a + u d, 0 <= u <= 1, with the sphere of radius rest_m around the last node c. At
+      // the larger root u the segment leaves the sphere.
       const Vec a = points[k - 1], d = minus(points[k], a), ac = minus(a, c);
       const double A = dot(d, d), B = dot(ac, d), C = dot(ac, ac) - rest_m * rest_m, D = B * B - A * C;
       if (A == 0.0 || D < 0.0) continue;

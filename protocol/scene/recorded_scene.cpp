@@ -38,7 +38,7 @@ std::string recorded_text(std::string text, std::span<const std::string> overrid
   return text;
 }
 
-/// Searches for the last "# as run:" line: a text taken from a recording may contain earlier ones.
+/// Searches for the last line "# as run:": a text that was taken from a recording may contain such lines already.
 RecordedScene split_recorded(const std::string& recorded) {
   RecordedScene found{recorded, {}, {}};
   const auto at = recorded.rfind(kAsRun);

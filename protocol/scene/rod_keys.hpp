@@ -7,7 +7,7 @@
 
 namespace ligature::scene {
 
-/// A commercial suture, as far as its properties are known (tests/reference/08_sutures.json).
+/// A commercial suture: those of its properties that are known (tests/reference/08_sutures.json).
 struct RodPreset {
   const char* name;
   double diameter_m;  ///< middle of the range allowed for this suture size (US Pharmacopeia)

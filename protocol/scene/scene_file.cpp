@@ -50,8 +50,9 @@ int initial_points(const Suture& s) {
   return std::max(s.nodes, 1 + static_cast<int>(std::min(0.5 * s.length_m / s.radius_m, kMost)));
 }
 
-/// Refuses negative coefficients, which stand for the signs that the paper prints, where they make no sense: with
-/// implicit damping such a damper has no solution in general, and the internal swivel damper is not in the paper.
+/// Refuses negative damping coefficients (the signs that the paper prints) where they make no sense: with implicit
+/// damping, because the step then has no solution in general, and for the internal swivel damper, which is not in the
+/// paper.
 void refuse_printed_signs(StrictTable& t, const PaperParameters& p) {
   const char* const why =
       "0 or more, or suture.damping = \"explicit\": only explicitly has the printed sign a solution";
@@ -113,7 +114,7 @@ void read_contact(StrictTable& t, bool is_rod, Contact& c) {
 double length_of(const Vec& v) { return std::hypot(v[0], v[1], v[2]); }
 
 /// The paper's contact acts only between parts of the thread. A scene that asks for contact with anything else is
-/// refused, because it would silently be without it.
+/// refused; otherwise that contact would be missing without notice.
 void read_obstacles(StrictTable& t, bool is_rod, ContactSolver solver, World& w) {
   const bool itself_alone = !is_rod && solver == ContactSolver::kPaper;
   if (itself_alone) w.grippers_collide = w.frame_collides = false;

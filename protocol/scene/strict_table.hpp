@@ -29,13 +29,14 @@ struct ReadContext {
   std::string file;
   std::map<std::string, std::string> overridden;  ///< dotted key -> text of its --set
   std::optional<Error> error;
-  /// If set, every key that a reader asks for is appended, in absent tables too, and a missing key is no error.
+  /// If set, every key that a reader asks for is appended to it, also keys of absent tables, and a missing key is no
+  /// error.
   std::vector<KeyRow>* listed = nullptr;
 
   [[nodiscard]] bool is_overridden(const std::string& key) const { return overridden.contains(root_of(key)); }
 
-  /// @param between_keys  whether a rule between several keys is broken. Then an override may be the cause, so a
-  /// message that names the file's key names the overrides, too
+  /// @param between_keys  whether a rule between several keys is broken. Then an override may be the cause, so the
+  /// message also lists the overrides
   void refuse(const std::string& key, const toml::node& where, const std::string& what, bool between_keys = false) {
     if (error) return;
     auto set = overridden.find(root_of(key));
