@@ -1,4 +1,5 @@
-// Binds the virtual rig that ligature.rig runs tests on, and reads what a rig of processes sends.
+// Python bindings for ligature.rig: the virtual rig for tests, and a reader for the messages of a rig that runs as
+// several processes.
 
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>

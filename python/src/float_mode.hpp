@@ -1,5 +1,5 @@
 #pragma once
-// Gives Python's process the floating-point mode that ligature-lab computes with: another library may have changed it.
+// Sets the floating-point mode of ligature-lab in Python's process, where another library may have changed the mode.
 
 #if defined(__x86_64__)
 #include <immintrin.h>
