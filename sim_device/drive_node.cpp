@@ -86,8 +86,8 @@ void DriveNode::on_nmt(const can::NmtMessage& message, Time now, std::vector<can
       boot(now, out);
       break;
   }
-  // Outside of the NMT state operational the drive obeys no RPDO. So it is disabled here, which is no fault; it must be
-  // enabled again.
+  // Outside of the NMT state operational the drive obeys no RPDO. So its torque is removed here; that is no fault, but
+  // the drive must be enabled again.
   take_torque_away();
   rpdo_watch_.disarm();
   has_received_ = false;

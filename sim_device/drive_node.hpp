@@ -44,7 +44,7 @@ class DriveNode {
   [[nodiscard]] Time next_deadline() const noexcept;
   /// Power off: no torque from now on.
   void power_off() noexcept;
-  /// Injects a fault: while the power stage is on, the drive makes this much more torque than commanded.
+  /// Injects a fault: while the power stage is on, the drive makes more torque than commanded, by this amount.
   void go_astray(std::int16_t by_permille) noexcept { astray_permille_ = by_permille; }
 
   [[nodiscard]] can::NodeId id() const noexcept { return id_; }

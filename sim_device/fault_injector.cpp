@@ -125,7 +125,8 @@ void FaultInjector::change(const Delivery& delivery, std::vector<Delivery>& out)
   }
 }
 
-/// Replaces the readings in a joint message while the fault is active. Until then it stores the true ones.
+/// Replaces the readings in a joint message while the fault is active. Before that it stores the true readings, from
+/// which the wrong ones are made.
 can::Frame FaultInjector::with_wrong_reading(const can::Frame& frame, bool active) {
   const auto address = can::address_of(frame.id);
   if (!address || address->service != can::Service::kTpdo1) return frame;

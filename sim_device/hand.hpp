@@ -4,8 +4,9 @@
 //
 //   H --[K, B]-- m --[pad]-- T         m ẍ = K (p_DH − x) + B (v_DH − ẋ) − F,   F = k (x − p_DT) + b (ẋ − v_DT)
 //
-// With m = 0 the arm's spring and damper act on the stylus directly. The values are assumptions within the range that
-// studies of fingers, wrist and stylus grips report (mass 5 .. 200 g, stiffness 50 .. 2000 N/m, damping 1 .. 25 N s/m).
+// K and B are stiffness and damping of the arm, k and b those of the finger pads. With m = 0 the arm acts on the stylus
+// directly. The values are assumptions within the range that studies of fingers, wrist and stylus grips report (mass 5
+// .. 200 g, stiffness 50 .. 2000 N/m, damping 1 .. 25 N s/m).
 
 #include "sim_device/kinematics.hpp"
 

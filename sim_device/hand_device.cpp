@@ -93,8 +93,8 @@ void HandDevice::note(const can::Frame& frame, Time end) noexcept {
 Time HandDevice::wake_at(int listeners) const noexcept {
   Time at = kNever;
   for (const DriveNode& d : drives_) at = std::min(at, d.next_deadline());
-  // With a single controller on the bus, frames that no drive answers (its RPDOs and heartbeats) need no wake-up of
-  // their own.
+  // With a single controller on the bus, frames that no drive answers (the controller's RPDOs and heartbeats) need no
+  // wake-up of their own.
   const auto matters = [&](const can::Frame& f, int sender) {
     const auto address = can::address_of(f.id);
     const bool silent =

@@ -47,8 +47,8 @@ class HandDevice {
   void advance(Time now);
   /// Frames for the clients; the caller sends those that are due and erases them.
   [[nodiscard]] std::vector<Delivery>& deliveries() noexcept { return deliveries_; }
-  /// Next time at which advance() must be called even if no frame arrives. A burst of frames causes one wake-up, at its
-  /// end, because a controller needs all TPDOs anyway. `listeners`: number of clients.
+  /// Next time at which advance() must be called even if no frame arrives. A burst of frames causes a single wake-up,
+  /// at the end of the burst, because a controller needs all TPDOs anyway. `listeners`: number of clients.
   [[nodiscard]] Time wake_at(int listeners) const noexcept;
 
   void power_off() noexcept;
@@ -61,7 +61,7 @@ class HandDevice {
   [[nodiscard]] const std::array<DriveNode, 3>& drives() const noexcept { return drives_; }
   [[nodiscard]] const WireStats& wire_stats() const noexcept { return wire_.stats(); }
   [[nodiscard]] const BusStats& bus_stats() const noexcept { return bus_; }
-  /// Fraction of the time from the first to the last SYNC in which the bus was busy; 0 with fewer than two SYNCs.
+  /// Fraction of the time between the first and the last SYNC in which the bus was busy; 0 with fewer than two SYNCs.
   [[nodiscard]] double bus_load() const noexcept;
 
  private:

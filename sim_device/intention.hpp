@@ -26,7 +26,7 @@ struct Touch {
 class Intention {
  public:
   virtual ~Intention() = default;
-  /// @param t_s time since the start; minus infinity before it. @param touch state of the stylus.
+  /// @param t_s time since the start; minus infinity before the start. @param touch state of the stylus.
   [[nodiscard]] virtual Intent at(double t_s, const Touch& touch) const noexcept = 0;
   /// End of the intention: after this nothing changes; the dead-man is released one second later.
   [[nodiscard]] virtual double end_s() const noexcept = 0;
@@ -34,7 +34,8 @@ class Intention {
   [[nodiscard]] virtual Vec3 start_D_m() const noexcept = 0;
 };
 
-/// An intention that is set from outside once per millisecond, and extrapolated with its velocity in between.
+/// An intention whose position and velocity are set from outside once per millisecond; in between, the position is
+/// extrapolated.
 class HeldIntention final : public Intention {
  public:
   explicit HeldIntention(const Vec3& start_D_m) : start_D_m_(start_D_m) { intent_.p_DH = start_D_m; }

@@ -26,7 +26,8 @@ Body Body::of(const device::Device& device) {
   body.plant = PlantParameters::of(device);
   const Vec3 lever_m =
       body.plant.linkage.jacobian_D(body.plant.linkage.joints(body.plant.linkage.home_D_m()).value()).colwise().norm();
-  // The drives limit at 1.2 times the record's continuous torque, so that the controller's thermal limit acts first.
+  // The drives protect their windings at 1.2 times the record's continuous torque, so that the controller's thermal
+  // limit acts first.
   body.motors = {1.2 * device.continuous_force_N * lever_m, device.thermal_time_s};
   body.drives.counts_per_revolution = static_cast<std::uint32_t>(std::lround(device.counts_per_revolution()));
   body.drives.rated_torque_mNm = static_cast<std::uint32_t>(std::lround(device.rated_torque_Nm * 1e3));

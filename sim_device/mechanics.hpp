@@ -38,8 +38,8 @@ class Mechanics {
 
   /// Starts the operator; later calls have no effect.
   void start_script(Time now) noexcept;
-  /// Reports whether all drives are on. The operator starts when they are on for the first time. Whenever they go off,
-  /// the dead-man is released, and pressed again kPressesAgainAfter after they are back on.
+  /// Reports whether all drives are on. The operator starts when they are on for the first time. Whenever a drive goes
+  /// off, the operator releases the dead-man, and presses it again kPressesAgainAfter after all drives are back on.
   void feel_drives(bool on, Time now) noexcept;
   /// Advances everything to `now` with constant motor torques; an earlier time has no effect. About 0.3 us per step.
   void advance(Time now, const Vec3& motor_Nm) noexcept;
@@ -64,7 +64,8 @@ class Mechanics {
     if (!stylus_.is_rigid()) return {stylus_.position_D_m(), stylus_.velocity_D_m_per_s()};
     return {plant_.tip_D_m(), plant_.tip_velocity_D_m_per_s()};
   }
-  /// Work that the motors have done on the linkage, J. It is exact: not computed from quantised encoder positions.
+  /// Work that the motors have done on the linkage, J; exact, because it is not computed from quantised encoder
+  /// positions.
   [[nodiscard]] double motor_work_J() const noexcept { return motor_work_J_; }
   /// Motor torques of the last step, N m: as commanded, but limited where a drive protects its winding.
   [[nodiscard]] const Vec3& made_Nm() const noexcept { return made_Nm_; }

@@ -12,7 +12,8 @@
 namespace ligature::sim {
 
 struct MotorRating {
-  // 0.88 N continuous force at the tip times the lever arms: 0.17 m (waist, home pose), 0.134 m, 0.1325 m.
+  // A continuous force of 0.88 N at the tip times the lever arms of the joints: 0.17 m (waist, home pose), 0.134 m,
+  // 0.1325 m.
   Vec3 continuous_Nm{0.150, 0.118, 0.117};
   double time_constant_s = 20.0;  ///< assumed: small motors in a closed housing
 };

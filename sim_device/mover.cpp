@@ -10,7 +10,7 @@
 namespace ligature::sim {
 namespace {
 
-/// Without a scene the script's places are taken for metres of the device itself.
+/// Without a scene the script's positions are taken as metres in the device's own frame.
 std::string no_scene(const Options& o) { return o.scene.empty() ? "; --scene says them, and is not given" : ""; }
 
 std::variant<Mover, std::string> scripted(const Options& o, const scene::Scene& scene, const Linkage& linkage) {

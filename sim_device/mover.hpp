@@ -1,6 +1,6 @@
 #pragma once
 // Creates what moves the hand in this run: a script, a person at a page, an operator that sees the thread, or nothing;
-// plus tremor or an adversary if asked.
+// on request with tremor, or as an adversary of stability.
 
 #include <memory>
 #include <string>

@@ -24,9 +24,9 @@ class ObjectDictionary {
   /// Written by the drive itself, regardless of access rights. @pre the object exists (asserted).
   void set(can::Object object, std::int64_t value) noexcept;
 
-  /// Handles one SDO request. @return the answer, possibly an abort; nothing if no answer is needed. Rules besides
-  /// access and length: a mapping may change only while its PDO is disabled, and only to the drive's pdo_map.hpp layout
-  /// (else abort 0x06040041 of CiA 301); the mode must be cyclic synchronous torque or 0.
+  /// Handles one SDO request. @return the answer, possibly an abort; nothing if no answer is needed. Rules in addition
+  /// to access rights and data length: a mapping may change only while its PDO is disabled, and only to the drive's
+  /// pdo_map.hpp layout (else abort 0x06040041 of CiA 301); the mode must be cyclic synchronous torque or 0.
   [[nodiscard]] std::optional<can::Sdo> serve(const can::Sdo& request) noexcept;
 
   [[nodiscard]] bool is_pdo_on(can::Pdo pdo) const noexcept;

@@ -13,9 +13,10 @@
 
 namespace ligature::sim {
 
-/// For two keys L metres and T seconds apart, every axis has the limits v = 1.5 L/T, a = 4.9 L/T², j = 180 L/T³. Of all
-/// jerk-limited motions that take exactly T, these come closest to the smoothstep 3u² − 2u³ of the offline lab (within
-/// 2 % of L, on the same straight line). So a script that ties a knot in the lab also ties it here.
+/// For two keys L metres and T seconds apart, velocity, acceleration and jerk of every axis are limited to v = 1.5 L/T,
+/// a = 4.9 L/T², j = 180 L/T³. Of all jerk-limited motions that take exactly T, these come closest to the smoothstep
+/// 3u² − 2u³ of the offline lab (within 2 % of L, on the same straight line). So a script that ties a knot in the lab
+/// also ties it here.
 class OperatorPath final : public Intention {
  public:
   /// Plans all segments. @return the path, or an error with the key's time if the device cannot reach a key.

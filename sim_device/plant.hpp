@@ -10,14 +10,16 @@
 namespace ligature::sim {
 
 struct PlantParameters {
-  // 45 g at the tip times the squared lever arms: 0.17 m (waist, home pose), 0.134 m, 0.1325 m.
+  // An apparent mass of 45 g at the tip times the squared lever arms of the joints: 0.17 m (waist, home pose), 0.134 m,
+  // 0.1325 m.
   Vec3 inertia_kg_m2{1.30e-3, 8.08e-4, 7.90e-4};
-  // 0.1 N and 0.3 N s/m at the tip: chosen below the 0.26 N that the Phantom Omni's data sheet allows, because less
-  // friction is harder for stability.
+  // Friction of 0.1 N and 0.3 N s/m at the tip. This is below the 0.26 N that the Phantom Omni's data sheet allows,
+  // because stability is harder to reach with less friction.
   Vec3 coulomb_Nm{0.0170, 0.0134, 0.0133};
   Vec3 viscous_Nm_s{8.7e-3, 5.4e-3, 5.3e-3};
   double max_torque_Nm = 0.9;  ///< 3000 per mille of 300 mN m
-  // 45 g at each link's end. With a compensation of 0.8 about 0.1 N remain at the tip, which friction can hold.
+  // A weight of 45 g at each link's end. With a compensation of 0.8 about 0.1 N of it remain at the tip, which friction
+  // can hold.
   double upper_arm_kg_m = 6.0e-3, forearm_kg_m = 6.0e-3;
   double gravity_compensation = 1.0;
   Linkage linkage{};  ///< includes the joint stops

@@ -29,8 +29,8 @@ class Port {
   virtual void add_descriptors(std::vector<pollfd>& fds) const = 0;
   /// Accepts new clients and reads all frames, in order per client; appends frames, and the slots of clients that left.
   virtual void receive(std::vector<Received>& frames, std::vector<int>& left) = 0;
-  /// Sends a frame to all clients but one; a client that does not read fast enough loses it, as with a full CAN
-  /// controller.
+  /// Sends a frame to all clients but one; a client that does not read fast enough loses the frame, as a CAN controller
+  /// with full buffers does.
   virtual void send(const can::Frame& frame, int except_client) = 0;
   [[nodiscard]] virtual int clients() const noexcept = 0;
   /// True if the medium itself takes the time of a frame, so that the simulated bus must not add it.

@@ -1,6 +1,7 @@
 #pragma once
 // Elastic links: a spring and damper between the point L computed from the joints and the point T that the fingers
-// hold. x is the position of T in the device's base frame D, m the mass of the tip, F the force on the linkage:
+// hold. x is the position of T in the device's base frame D, m the mass of the tip, F the force on the linkage, k and b
+// stiffness and damping of the links:
 //   m ẍ = F_hand − F,   F = k (x − p_DL) + b (ẋ − v_DL),   with a different k for each axis
 
 #include "sim_device/kinematics.hpp"

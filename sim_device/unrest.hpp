@@ -44,8 +44,9 @@ class Trembling final : public Intention {
   std::array<double, 3> phase_rad_{}, pulsation_rad_per_s_{};
 };
 
-/// Pushes in the direction of the stylus' motion: p_DH + reach tanh(lead v / reach). This acts like a negative damping
-/// of stiffness times lead, the worst case for stability with a hand of this reach.
+/// Pushes in the direction of the stylus' motion: the intended point becomes p_DH + reach tanh(lead v / reach), v the
+/// stylus' velocity. This acts like a negative damping constant of (hand stiffness) x lead, the worst case for
+/// stability with a hand of this reach.
 class Adversarial final : public Intention {
  public:
   Adversarial(std::unique_ptr<Intention> calm, double lead_s, double reach_m)

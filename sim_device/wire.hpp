@@ -28,7 +28,7 @@ struct WireStats {
 };
 
 /// Each sender has a queue, in order, as in a CAN controller; the first frames of the queues arbitrate. If charge_time
-/// is false (a real bus takes the time), frames pass in zero time, in the same order.
+/// is false (because a real bus takes the time), frames pass in zero time, in the same order.
 class Wire {
  public:
   explicit Wire(bool charge_time = true) : charge_time_(charge_time) {}

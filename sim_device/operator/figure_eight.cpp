@@ -9,8 +9,8 @@
 namespace ligature::sim {
 namespace {
 
-/// As carry(), but the goal is fixed when the move begins: a goal on a loop that the hand itself drags along would keep
-/// moving away.
+/// As carry(), but the goal is fixed when the move begins: the hand drags the loop along, so a goal on the loop would
+/// keep moving away.
 Move carry_straight(std::size_t hand, std::string name, Where where, double near) {
   auto goal = std::make_shared<std::optional<Vec3>>();
   return {std::move(name), [=](const Look& look) {
@@ -27,8 +27,8 @@ constexpr double kTurn = 2.0 * 3.14159265358979323846;
 
 constexpr double kWound = 1.07 * kTurn;  // angle of the end's turn about the standing part, until in front again
 constexpr double kSlack = 0.9;           // extra distance from the standing part after the turn's top, in clearances
-// Shift of the hand towards the anchor after the turn's top, as a fraction of the thread's length; so the end trails
-// loosely.
+// Shift of the hand towards the anchor after the turn's top, as a fraction of the thread's length; it keeps the end
+// slack.
 constexpr double kBack = 0.048;
 
 Move orbit(std::shared_ptr<Loop> loop, WhereAlong s) {
@@ -45,8 +45,9 @@ Move orbit(std::shared_ptr<Loop> loop, WhereAlong s) {
           }};
 }
 
-/// A point near the loop: `share` of the way from the crossing X to the loop's centre (above 1: beyond it), and `way`
-/// clearances out of the loop's plane, against the direction in which the turn passes through the loop.
+/// A point near the loop: `share` of the way from the crossing X to the loop's centre (above 1: beyond the centre), and
+/// out of the loop's plane by `way` times Workplace::clearance_m, against the direction in which the turn passes
+/// through the loop.
 Where across_loop(std::shared_ptr<Loop> loop, double share, double way) {
   return [=](const Look& look) -> Vec3 {
     loop->look(look);

@@ -1,7 +1,7 @@
 #pragma once
 // A throw whose end passes the loop against the turn, as in a figure-eight: the end goes once round the standing part
-// and through the loop from the front. Also drawing a throw tight while the corner is held, for this throw and springy
-// threads.
+// and through the loop from the front. Also the move draw_through(), which draws a throw tight while the corner is
+// held; throws in springy threads use it, too.
 
 #include <memory>
 
@@ -13,7 +13,7 @@ namespace ligature::sim {
 /// The right hand leads the end a whole turn around the standing part at place `s`, ending in front of the loop and
 /// closer to the anchor than X, the crossing of standing and working part that closes the loop.
 [[nodiscard]] Moves lay_turn(std::shared_ptr<Loop> loop, WhereAlong s);
-/// The end passes through the loop. The crossings are checked (is it a knot?), and the move repeats if it missed.
+/// The end passes through the loop. Then the crossings show whether there is a knot; if not, the move repeats.
 [[nodiscard]] Moves pass_through(std::shared_ptr<Loop> loop, const Throw& t, WhereAlong s);
 /// The right hand pulls the end along `direction`, past the corner that the left hand still holds, until the loop is
 /// small or the pull is felt. So the knot forms at the corner and does not slip off the end.

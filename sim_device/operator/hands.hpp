@@ -13,8 +13,8 @@ class MovingHand {
  public:
   explicit MovingHand(double tick_s) : planner_(tick_s) {}
 
-  /// Places the hand at rest. @param speed_m_per_s speed of the moves that follow, before it is multiplied
-  /// by their pace; full speed is reached within 0.15 s, full acceleration within 0.05 s.
+  /// Places the hand at rest. @param speed_m_per_s full speed of the moves that follow; a move's `pace` multiplies it.
+  /// Full speed is reached within 0.15 s, full acceleration within 0.05 s.
   void rest_at(const Vec3& start_W, double speed_m_per_s);
 
   Vec3 goal_W = Vec3::Zero();

@@ -26,17 +26,17 @@ class Dice {
   std::mt19937 random_;
 };
 
-/// Ties one knot with two hands. The seed varies start positions, speed, start time, pauses and tremor (8-12 Hz). It
-/// looks at the thread 100 times a second; between looks the hands continue. If a throw fails before it is drawn tight,
-/// the hands let go, wait until the thread hangs still, and start again, at most three times.
+/// Ties one knot with two hands. The seed varies start positions, speed, start time, pauses and tremor (8-12 Hz). The
+/// operator looks at the thread 100 times a second; between looks the hands continue. If a throw fails before it is
+/// drawn tight, the hands let go, wait until the thread hangs still, and start again, at most three times.
 class KnotTier {
  public:
   /// @return the operator, or why not: unknown knot, or a scene in which node 0 is not held.
   static std::variant<KnotTier, std::string> make(const scene::Scene& scene, const std::string& knot,
                                                   std::uint32_t seed);
 
-  /// One tick: where both hands want to be now. @param sight what the operator sees; it may be of an earlier time, by
-  /// an unknown amount.
+  /// One tick: where both hands want to be now. @param sight what the operator sees; it may be older than this tick, by
+  /// an unknown time.
   const std::array<HandWish, 2>& tick(const Sight& sight);
 
   [[nodiscard]] const std::array<HandWish, 2>& wish() const noexcept { return wish_; }

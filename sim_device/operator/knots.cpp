@@ -40,15 +40,15 @@ WhereAlong the_end() {
 
 /// Layout of a single throw. `corner`: where the left hand holds the thread, as a fraction of its length; the standing
 /// part is the thread from the anchor to there. `stretch`: horizontal distance of the corner from the anchor, to the
-/// left, as a fraction of the standing part's length. `turn`: where on the standing part the end goes around it, as a
-/// fraction of its length.
+/// left, as a fraction of the standing part's length. `turn`: place on the standing part where the end goes around, as
+/// a fraction of the standing part's length.
 struct Layout {
   double corner, stretch, turn;
 };
 
-/// For a figure-eight in a limp thread, the standing part sags between anchor and corner: so a turn that is not locked
-/// yet stays at the lowest point, instead of slipping over the corner while the end passes the loop. A springy thread
-/// is held nearly taut.
+/// A limp thread is held so that its standing part sags between anchor and corner: then the turn of a figure-eight
+/// stays at the lowest point while the end passes the loop, instead of slipping over the corner. A springy thread is
+/// held nearly taut.
 Layout layout_of(const Throw& t, bool springy) {
   if (!springy) return {0.403, 0.866, 0.49};
   return t.against ? Layout{0.35, 0.96, 0.45} : Layout{0.4, 0.96, 0.5};
@@ -69,7 +69,7 @@ Move hold_corner(const Workplace& place, const Layout& layout, WhereAlong s) {
 }
 
 /// The right hand holds the end down with the thread just straight. Otherwise the thread beside a knot would hang at an
-/// angle, and jaws keep the direction in which they close.
+/// angle, and the left hand's jaws would keep that angle when they close.
 Moves hold_down() {
   constexpr double kStraight = 0.1;  // fraction of a tight knot's pull
   Moves m{take(kRightHand, the_end())};

@@ -35,7 +35,8 @@ inline constexpr Knot kUntie{"untie", "0_1", "none", {}, 0.0, 1e9};
 /// Names of all knots, separated by ", ", for messages.
 [[nodiscard]] std::string knot_names();
 
-/// How many throws of the knot are recognised in the thread as it hangs; nothing if it is no part of this knot.
+/// How many throws of the knot are recognised in the thread as it hangs; nothing if the thread's knot is no part of
+/// this knot.
 [[nodiscard]] std::optional<std::size_t> throws_seen(const Knot& knot, const Look& look);
 
 /// With empty hands: takes the end, pulls the thread straight however it is entangled, and releases it. A thread that

@@ -29,8 +29,8 @@ double Loop::angle_of(const Look& look, const Vec3& p_W) const {
   return std::atan2(to.dot(up_), to.dot(front_));
 }
 
-/// Angle by which the working part winds around the standing part between two places of the thread, rad. It is summed
-/// in steps that are short compared with the distance between the two parts.
+/// Angle by which the working part winds around the standing part between two places of the thread, rad. The angle is
+/// summed in steps that are short compared with the distance between the two parts.
 double Loop::wind(const Look& look, double from, double to) const {
   double sum = 0.0, before = angle_of(look, look.thread.at(from));
   const double finest = 0.1 * look.place.diameter_m;
@@ -58,7 +58,8 @@ void Loop::look(const Look& look) {
     if (const double r = apart(w); r > most) most = r, far_ = w;
     w += step;
   }
-  // X is the first place where the working part comes close to the standing part; a later turn may be equally close.
+  // X is the first place where the working part comes close to the standing part. A later turn may come equally close,
+  // so the search ends at the first.
   w = far_;
   while (w < end - 0.7 * look.place.clearance_m) {
     const double r = apart(w);

@@ -12,7 +12,8 @@ namespace ligature::sim {
 [[nodiscard]] Move take(std::size_t hand, const WhereAlong& s);
 /// Opens the jaws, waits for that, and backs off to the front.
 [[nodiscard]] Move let_go(std::size_t hand);
-/// Moves to a goal that may change; done within `near` clearances of it. @param pace factor on the full speed
+/// Moves to a goal that may change. The move is done within `near` times Workplace::clearance_m of the goal. @param
+/// pace factor on the full speed
 [[nodiscard]] Move carry(std::size_t hand, std::string name, const Where& where, double near = 0.5, double pace = 1.0);
 /// Waits.
 [[nodiscard]] Move wait(double seconds);
@@ -26,7 +27,8 @@ namespace ligature::sim {
 [[nodiscard]] Move swing(const Vec3& direction);
 /// The right hand moves back until the pull is gone.
 [[nodiscard]] Move ease();
-/// `moves`, or none of them if `needless` is true when the first one starts. A move that is left out has not failed.
+/// `moves`, or none of them if `needless` is true when the first one starts. A move that is left out does not count as
+/// failed.
 [[nodiscard]] Moves unless(std::function<bool(const Look&)> needless, Moves moves);
 
 }  // namespace ligature::sim

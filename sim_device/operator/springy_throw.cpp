@@ -16,7 +16,8 @@ constexpr double kSpringy = 0.2;
 constexpr double kNear = 0.045, kArrived = 0.02, kPast = 0.025;  // distances, as fractions of the working part's length
 
 /// A way point of the thread's end: its offset from the corner, or from the place on the standing part where the end
-/// crosses over. front: towards the front; up; out: away from the anchor. In fractions of the working part's length.
+/// crosses over. The components, in fractions of the working part's length, point to the front, up, and out (away from
+/// the anchor).
 struct Stop {
   bool from_corner;
   double front, up, out;

@@ -13,8 +13,8 @@ struct Throw {
   int tied_already = 1;  ///< product of the determinants of the throws tied before (diagram.hpp)
 };
 
-/// Factor that this throw contributes to the knot determinant: 2 n + 1 for n turns (a torus knot of 2 n + 1 half
-/// turns), 5 for a figure-eight.
+/// Factor of the knot determinant that is due to this throw: 2 n + 1 for n turns (a torus knot of 2 n + 1 half turns),
+/// 5 for a figure-eight.
 [[nodiscard]] int determinant_of(const Throw& t);
 /// Whether the thread would hold this throw and all before it, if both ends were led away along `out` (diagram.hpp).
 [[nodiscard]] bool would_hold(const Look& look, const Throw& t, const Vec3& out);

@@ -26,8 +26,8 @@ int seen(const Look& look, double last_m) { return seen_determinant(look.thread.
 
 bool no_knot_seen(const Look& look) { return seen(look, look.thread.length_m()) == 1; }
 
-/// Arc length at which the knot ends, to a diameter: the thread beyond it could be cut off, and the knot would stay the
-/// same. Two step lengths keep the time of a look short in a long thin thread.
+/// Arc length at which the knot ends, to within one diameter: the thread beyond it could be cut off without changing
+/// the knot. Two step lengths, because a search in single diameters takes long in a long thin thread.
 double knot_end_m(const Look& look) {
   double end_m = look.thread.length_m();
   const int knotted = seen(look, end_m);
@@ -46,8 +46,8 @@ Move see_the_knot(std::shared_ptr<Pull> pull, double inside_d) {
           }};
 }
 
-/// One diameter above the strands that the hand draws the thread over. The hand stops where it is when the knot holds
-/// it.
+/// A goal one diameter above the strands over which the hand draws the thread. When the knot holds the thread, the hand
+/// stops where it is.
 Where drawn_back(std::shared_ptr<const Pull> pull) {
   auto from = std::make_shared<Vec3>();
   return [=](const Look& look) -> Vec3 {

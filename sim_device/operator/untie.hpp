@@ -6,9 +6,9 @@
 namespace ligature::sim {
 
 /// All moves from empty hands to empty hands. The operator sees where the knot ends, takes the thread just before that
-/// place, and draws it back along the free end. If a knot is still seen, it tries again with a place further inside,
-/// three times in all. A pull ends early if the knot holds it with 1.3 times the pull of a tight knot. A knot that is
-/// left at the end is reported as a missed move.
+/// place, and draws it back along the free end. If a knot is still seen, the operator tries again with a place further
+/// inside, three times in all. A pull ends early when it reaches 1.3 times the pull at which a knot is tight. A knot
+/// that is left at the end is reported as a missed move.
 [[nodiscard]] Moves untie();
 
 }  // namespace ligature::sim

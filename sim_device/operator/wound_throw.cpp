@@ -18,15 +18,15 @@ const Vec3 kAway = Vec3(0.89, 0.0, -0.45).normalized();
 // Almost straight down: the thread's own hanging end may be out of reach
 const Vec3 kHang = Vec3(0.3, 0.0, -1.0).normalized();
 
-/// Pull in multiples of a tight knot's pull, larger for short thick threads, because length that stays in a loose knot
-/// is missing for the next throw.
+/// Pull that draws a throw tight, as a multiple of Workplace::tension_N. Larger for short thick threads, because length
+/// that stays in a loose knot is missing for the next throw.
 double firm(const Workplace& place) { return std::clamp(200.0 * place.diameter_m / place.length_m, 1.0, 4.0); }
 
 /// Direction of the side on which the end starts and comes out again: +y or -y.
 Vec3 front_of(const Throw& t) { return static_cast<double>(t.side) * Vec3::UnitY(); }
 
-/// Coordinates about the standing part: position along it as a fraction of its length, direction across it as an angle
-/// (0 in front, a quarter turn above).
+/// Coordinates of a point near the standing part: its position along the standing part, as a fraction of the part's
+/// length, and its direction from there, as an angle (0 in front, a quarter turn above).
 class Standing {
  public:
   Standing(const Look& look, const Site& site, const Throw& t) : look_(look), site_(site) {
@@ -85,8 +85,8 @@ bool is_laid(const Look& look, const Throw& t) {
   return would_hold(look, t, front_of(t)) && would_hold(look, t, 0.8 * front_of(t) + 0.6 * kAway);
 }
 
-/// The end goes `t.passes` times round the standing part. From the top of the first turn on it also moves along it. The
-/// turn goes on slightly further if the end has not yet passed the swinging bight.
+/// The end goes `t.passes` times round the standing part. From the top of the first turn on, the end also moves along
+/// the standing part. The last turn goes slightly further if the end has not yet passed the swinging bight.
 Move wind(const Throw& t, const std::shared_ptr<const Site>& site) {
   auto wound = std::make_shared<std::optional<double>>();
   constexpr double kFurther = 0.6;
@@ -107,8 +107,8 @@ Move wind(const Throw& t, const std::shared_ptr<const Site>& site) {
           15.0 * (1 + t.passes), [=](const Look& look) { return is_laid(look, t); }};
 }
 
-/// Whether the knot is as short as pulling can make it: 10 diameters plus 12 per turn in a thread thicker than 1/200 of
-/// its length, twice that in a thinner one.
+/// Whether the knot is as short as pulling can make it: 10 diameters plus 12 diameters per turn in a thread thicker
+/// than 1/200 of its length, twice as much in a thinner one.
 bool is_small(const Look& look, int turns) {
   const Tangle knotted = tangle(look);
   const double longest = (10.0 + 12.0 * turns) * look.place.diameter_m * (firm(look.place) > 1.0 ? 1.0 : 2.0);

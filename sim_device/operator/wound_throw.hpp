@@ -17,14 +17,15 @@ struct Site {
 /// One throw. The left hand holds the standing part outwards and upwards, so that the thread beyond the corner hangs in
 /// a bight: a loop whose upper edge is the standing part. The right hand leads the end up beside the standing part and
 /// winds it around, moving towards the corner. So the end passes through the loop once per turn: one turn makes an
-/// overhand (3_1), two turns a surgeon's first throw (5_1). The standing part rises towards the corner because thread
-/// hung over it then slides away from the corner, where the end passes; if it sloped down, that thread would slide to
-/// the corner and close the loop too early. Both hands are empty before and after. `t.against` is ignored.
+/// overhand (3_1), two turns a surgeon's first throw (5_1). The standing part rises towards the corner, so that thread
+/// laid over it slides away from the corner. If the standing part sloped down, that thread would slide to the corner,
+/// where the end must pass, and close the loop too early. Both hands are empty before and after. `t.against` is
+/// ignored.
 [[nodiscard]] Moves wound_throw(const Throw& t, const std::shared_ptr<const Site>& site);
 
-/// All throws, each beyond the previous one, with a check of the whole thread after each. Each throw is drawn small,
-/// and the corner is swung out on an arc with the thread taut, so that nothing passes through an earlier throw: the
-/// knot is the sum of its throws.
+/// All throws of a knot, each beyond the previous one. After each throw the whole thread is checked. Each throw is
+/// drawn small, and the corner is swung out on an arc with the thread taut. So nothing passes through an earlier throw,
+/// and the knot is the sum of its throws.
 [[nodiscard]] Moves throws_in_a_row(std::span<const Throw> throws);
 
 /// Extent of the knotted part: arc length of the first and the last place where the thread touches itself, m; {length,

@@ -24,7 +24,8 @@ class Holding {
 
   explicit Holding(FreshNumber fresh) : fresh_(std::move(fresh)) { end(); }
 
-  /// @return whether the message with this claim may be applied, including a last one by which its owner leaves.
+  /// @return whether the message with this claim may be applied; also true for the last message, by which the owner
+  /// leaves.
   [[nodiscard]] bool accept(const Claim& claim, Time now) {
     look(now);
     if (claim.session != session_ || claim.owner == 0 || claim.sequence <= sequence_) return false;

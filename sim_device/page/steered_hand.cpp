@@ -64,8 +64,9 @@ ruckig::InputParameter<3> SteeredHand::beginning(const Motion& from) const noexc
   return in;
 }
 
-/// Plans the motion to the target, and the stop that follows if no target comes within kLongestSilence_s. Both always
-/// exist, because all motions obey the same limits; if planning fails all the same, the hand stays where it is.
+/// Plans the motion to the target, and the stop that follows if no target comes within kLongestSilence_s. Both motions
+/// always exist, because all motions obey the same limits. Should planning fail nevertheless, the hand stays where it
+/// is.
 void SteeredHand::plan(const Motion& from, const Vec3& to_D_m) noexcept {
   rest_ = {from.p, {}, {}};
   auto in = beginning(from);

@@ -17,7 +17,8 @@ struct ArmLimits {
 };
 
 /// Moves with limited jerk from its present state to rest at the newest target. After kLongestSilence_s without a
-/// message it stops and releases the dead-man; the dead-man counts again only after a message with it released.
+/// message it stops and releases the dead-man. The dead-man can be pressed again only after a message in which it is
+/// released.
 class SteeredHand final : public Intention {
  public:
   /// Twice the 100 ms for which a page that renders in software may be busy; still too short for a person to notice.

@@ -20,8 +20,8 @@ struct WishedTick {
 };
 
 /// Wishes, one per tick of 1 ms, arrive in batches of some 20 ms, and sometimes late. The hand plays each of them
-/// kDelay_s after its tick was due, with a cubic between two of them. If none is left, the hand stays at the last one.
-/// After such a pause it plays at up to 1.5 times the speed until the delay is kDelay_s again. So the position is
+/// kDelay_s after its tick was due, with a cubic between two of them. If no wish is left, the hand stays at the last
+/// one. After such a pause the hand plays up to 1.5 times as fast until the delay is kDelay_s again. So its position is
 /// continuous.
 class PlayedHand final : public Intention {
  public:
@@ -34,8 +34,8 @@ class PlayedHand final : public Intention {
   PlayedHand(const WorkspaceMap& map, std::size_t hand, const Vec3& start_W)
       : map_(map), hand_(hand), start_D_m_(map.to_device(start_W)) {}
 
-  /// Adds new wishes, oldest first, and sets the speed of the play-back. @param t_s time since `started_at`, not before
-  /// that of the last call; later calls of at() must not ask for times before it.
+  /// Adds new wishes, oldest first, and sets the speed of the play-back. @param t_s time since `started_at`; must not
+  /// decrease from call to call, and later calls of at() must not ask for earlier times.
   void look(double t_s, Time started_at, std::span<const WishedTick> fresh);
 
   [[nodiscard]] Intent at(double t_s, const Touch&) const noexcept override { return at(t_s); }

@@ -15,7 +15,7 @@ namespace ligature::sim {
 /// A pure function of the messages and their order: two processes that receive the same messages plan the same, bit by
 /// bit, and each moves one of the hands. The time of the plan is the tick number. The plan begins with the first tick
 /// in which both hands have full force. Messages of later runs of the firmware (other sessions) are ignored. A message
-/// that contains NaN or infinity is ignored, too. For ticks that were lost the plan continues with what it saw last.
+/// that contains NaN or infinity is ignored, too. During lost ticks the plan continues with what it saw last.
 class TyingPlan {
  public:
   /// Lost ticks in a row through which the plan continues; during further ones it waits.
