@@ -55,8 +55,8 @@ double lost_share(Tightening& pull, int ticks, double speed = 0.0, int* guard = 
 }
 
 // Two rules keep the time lost in a hold low: the solver starts from the old impulses unchanged, not projected onto the
-// friction cones; and contact points do not oscillate (touch.hpp). Without both, 50 % of the time was lost at 0.2 m/s;
-// without the first 20 % (0.15 m/s), without the second 74 % (0.22 m/s).
+// friction cones; and contact points do not oscillate (touch.hpp). Measured share of time lost: 20 % without the first
+// rule (pull at 0.15 m/s), 74 % without the second (0.22 m/s), 50 % without both (0.2 m/s).
 TEST(Hold, OfTwoThrowsLosesHardlyAnyTime) {
   double mean = 0.0;
   const auto drawn = speeds(8, 0.15, 0.24, 601);
@@ -88,8 +88,9 @@ TEST(Hold, OfTwoThrowsIsSlackenedInTime) {
   EXPECT_LT(lost / ticks, 0.15);
 }
 
-// A substep takes no more than its fair share of the tick's budget if it has a solution that is good enough. Mean time
-// lost over pulls of a surgeon's knot: 0.21 (standard error 0.01); 0.31 if each substep may take all that is left.
+// A substep that has a good enough solution takes no more than its fair share of the tick's budget. Mean share of time
+// lost in pulls of a surgeon's knot: 0.21 (standard error 0.01); it would be 0.31 if each substep could take all that
+// is left.
 TEST(Labour, IsSharedFairly) {
   double lost = 0.0;
   for (const double speed : speeds(8, 0.161, 0.233, 604)) {
@@ -102,9 +103,10 @@ TEST(Labour, IsSharedFairly) {
   EXPECT_LT(lost, 0.25);
 }
 
-// With suture.accuracy = "fast" a tick has ten substeps, also when the budget runs out. With six, square knots pulled
-// to 5 N had up to 59 guard events, were held with 0.02 to 3.6 N, and lost no less time. `fast` loses time at these
-// speeds, so some of its knots hold less than the 5 N; the mean says how well the pulls were followed.
+// With suture.accuracy = "fast" a tick has ten substeps, also when the budget runs out. With six substeps, square knots
+// pulled to 5 N had up to 59 guard events, were then held with only 0.02 to 3.6 N, and lost as much time. Also with
+// ten, `fast` loses time at these speeds, so some knots are held with less than 5 N; the mean force shows how well the
+// simulation followed the pulls.
 TEST(Labour, LeavesTenSubsteps) {
   double mean_N = 0.0;
   for (const double speed : speeds(8, 0.15, 0.25, 605)) {
@@ -134,9 +136,9 @@ Tightening held(double speed) {
   return pull;
 }
 
-// Work on contact in a tick of a knot at rest, of 4.7 million instructions that are allowed. Of 88 holds the mean is
-// 1.9 million, and the standard deviation 0.9; so the mean of 24 is above 2.8 in about one of a million draws. With all
-// pairs of segments at one place as contacts it is 3.1.
+// Contact work of a knot at rest, in instructions per tick; the budget allows 4.7 million. In 88 holds the mean is 1.9
+// million and the standard deviation 0.9 million, so the mean of 24 holds is above 2.8 million in about one of a
+// million draws. If all pairs of segments at one place became contacts, the mean would be 3.1 million.
 TEST(Hold, OfTwoThrowsAtRestIsCheap) {
   constexpr int kPulls = 24, kTicks = 200;
   double work = 0.0;
@@ -166,9 +168,10 @@ double longest_in_contact(const RodSimulation& sim) {
 }
 
 // A loop of thread that touches the thread beside a tight knot with only 0.1 mN is meshed there as finely as the knot:
-// by segments of one diameter in 58 of 60 pulls (89 to 99.6 %), of two in the others. Without the rule for contacts at
-// rest (refine.cpp) 16 of 40 pulls had segments of two to four diameters. If 3 % are coarse, more than 8 of 32 come
-// less than once in a million draws; if 40 % are, in 94 of 100.
+// with segments of one diameter in 58 of 60 pulls (89 to 99.6 %), of two diameters in the others. Without the rule for
+// contacts at rest (refine.cpp), 16 of 40 pulls had segments of two to four diameters. The test draws 32 pulls and
+// allows 8 coarse ones. It fails less than once in a million draws if 3 % of all pulls are coarse, and in 94 of 100
+// draws if 40 % are.
 TEST(FineZone, ReachesTheLoopThatTouches) {
   constexpr int kPulls = 32;
   int coarse = 0;

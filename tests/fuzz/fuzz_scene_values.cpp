@@ -84,7 +84,8 @@ class Wild {
   explicit Wild(std::uint64_t seed) : random_(seed) {}
   int below(std::size_t n) { return static_cast<int>(random_() % n); }
 
-  /// Mostly between 1e-13 and 1e13; sometimes at the ends of the representable range or beyond it; sometimes negative.
+  /// A random number: mostly between 1e-13 and 1e13, sometimes at the ends of the range of a double or beyond,
+  /// sometimes negative.
   std::string number() {
     constexpr const char* kOdd[] = {"0.0", "5e-324", "1e-300", "1e-9", "1e-6", "1e-3", "1.0",     "1e2",
                                     "1e3", "1e4",    "1e5",    "1e6",  "1e9",  "1e12", "1.7e308", "-1e-3"};

@@ -1,6 +1,6 @@
 // Pulls both ends of a scene's thread. In every EVERY-th tick the physics asks clock_query() for the time.
-// test_pieces.py runs this under callgrind, which writes out the instructions counted so far whenever one of the two
-// functions begins.
+// test_pieces.py runs this program under callgrind, which writes out its instruction count at each call of
+// pieces_begin() and of clock_query().
 //
 // Usage: thread-pieces SCENE TICKS EVERY [KEY=VALUE ..]
 

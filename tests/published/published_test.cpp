@@ -14,7 +14,7 @@ namespace ligature::published {
 namespace {
 
 /// Runs a case's quick form. Every judged figure must hold, except those named in `missed`. These must miss: they are
-/// known and explained in docs/measurements/published.md, which must be changed when one of them holds.
+/// explained in docs/measurements/published.md, and when one of them holds, that page must be changed.
 validate::Findings expect_met(const std::string& name, const std::set<std::string>& missed = {},
                               scene::Accuracy accuracy = scene::Accuracy::kBalanced) {
   const auto all = all_cases();
@@ -51,8 +51,8 @@ TEST(Published, PlyWithoutFriction) {
 // knots of throws in sutures
 TEST(Published, Locking) { expect_met("locking"); }
 TEST(Published, Threshold) {
-  // No publication gives a value for this mean. It is compared with the value in our documentation: another value shows
-  // a wrong factor in the friction.
+  // The mean locking friction. No publication gives a value for it, so the test compares it with
+  // docs/measurements/published.md: a wrong factor in the friction would change it.
   for (const auto& f : expect_met("threshold")) {
     if (f.what.ends_with("mean")) {
       EXPECT_NEAR(f.measured, 0.36, 0.04) << f.what;

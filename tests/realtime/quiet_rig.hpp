@@ -1,5 +1,6 @@
 #pragma once
-// A bus and a clock that make no system calls and allocate nothing, so that a watched cycle is charged only for itself.
+// A bus and a clock that make no system calls and allocate nothing, so that a watched cycle shows only its own calls
+// and allocations.
 
 #include "tests/unit/firmware/virtual_rig.hpp"
 

@@ -55,7 +55,7 @@ TEST(Undisturbed, NoPageFaultAfterStart) {
   ASSERT_GT(page_faults(), start) << "the guard must see a first touch";
   munmap(fresh, 1 << 16);
 
-  // Locks the memory, as the program does. Where that is refused, the warm-up run still maps code and heap.
+  // Locks the memory, as the program does. If locking is refused, at least the warm-up run has mapped code and heap.
   (void)platform::lock_memory();
   Grasping warm, run;
   for (auto* each : {&warm, &run}) each->quiet.cycle.end_after(5000);

@@ -1,8 +1,8 @@
 // A witness of the machine: does the same work every millisecond and tells how much CPU time the kernel charged for it.
 //   soak_witness SECONDS WORK_US LIMIT_US
-// A virtual machine's kernel charges a thread also for time that the hypervisor or an interrupt took. The soak cannot
-// tell this from the loop's own work; but this program's work never changes, so what it is charged beyond that is the
-// machine's. It runs on the loop's core with a lower real-time priority than the rig.
+// In a virtual machine the kernel also charges a thread for time that the hypervisor or an interrupt took. The soak
+// test cannot tell such time from the loop's own work. The work of this program never changes, so any additional CPU
+// time is due to the machine. The program runs on the loop's core with a lower real-time priority than the rig.
 
 #include <algorithm>
 #include <cstdint>

@@ -49,7 +49,7 @@ inline bool crossed(const Instant& p, const Instant& q) {
 }
 
 // Number of crossings among all pairs of segments (not only the contact list's) when nodes move straight from `before`
-// to `after`. Pairs whose bounding spheres, enlarged by the motion, are apart are skipped.
+// to `after`. A pair is skipped if its bounding spheres, enlarged by the motion, do not meet.
 inline long crossings_of_step(const std::vector<Vec>& before, const std::vector<Vec>& after) {
   struct Ball {
     Vec middle;
@@ -79,8 +79,8 @@ inline Vec point_at(const std::vector<double>& s, const std::vector<Vec>& x, dou
   return (1.0 - share) * x[j] + share * x[j + 1];
 }
 
-// Number of crossings when remeshing replaces the polyline over s0 by the one over s1, each material point moving
-// straight.
+// Number of crossings when remeshing replaces the polyline x0, with nodes at s0 along the thread, by that of `state`,
+// and each material point moves on a straight line.
 inline long crossings_of_remesh(const std::vector<double>& s0, const std::vector<Vec>& x0, const State& state) {
   const auto& s1 = state.mesh.s;
   std::vector<double> s;

@@ -10,7 +10,8 @@
 
 namespace ligature::test {
 
-/// Units: one count is 0.05 mm at an Omni's tip; one count per period is 50 mm/s; 0.02 counts/period^2 is 1 m/s2.
+/// Motion in encoder counts and periods of 1 ms: one count is 0.05 mm at an Omni's tip, one count per period is 50
+/// mm/s, and 0.02 counts/period^2 is 1 m/s2.
 class HonestHand {
  public:
   enum class Kind : std::uint8_t { kTurning, kTrembling, kResting, kFast, kAbrupt };

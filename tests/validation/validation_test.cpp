@@ -92,7 +92,8 @@ TEST_P(PaperFour, AgreesAtFiftyNodes) { expect_all_within(*find_case(GetParam())
 INSTANTIATE_TEST_SUITE_P(Case, PaperFour, testing::Values("catenary", "elastic-string", "hanging-chain", "cantilever"),
                          [](const auto& test) { return test_name(test.param, ""); });
 
-// Only cases of effects that the model has: model 5's stretch is quadratic, while the crossing strands are Hookean.
+// Runs only cases of effects that the model has. For example, the crossing strands of a reference are Hookean, but
+// model 5's stretch is quadratic.
 class EveryPaperModel : public testing::TestWithParam<scene::Model> {};
 
 TEST_P(EveryPaperModel, AgreesInContactAndUnderItsOwnWeight) {

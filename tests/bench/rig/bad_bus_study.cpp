@@ -1,4 +1,4 @@
-// Random runs with lost or corrupted CAN frames: the fault each ends in, and the time until no motor has torque.
+// Random runs with lost or corrupted CAN frames: the fault that ends each run, and the time until no motor has torque.
 // Usage: bad_bus_study [runs per row = 300] [first seed = 1]; prints the tables of docs/measurements/fault-matrix.md.
 #include <algorithm>
 #include <cstdio>

@@ -69,8 +69,8 @@ bool draw(int draws, test::Random& random) {
   return sound;
 }
 
-/// Optimises attacks. One third each of them seeks: the most energy from the motors, the largest excess of the account
-/// over the true work, and the largest violation of the account's lower bound.
+/// Optimises attacks. Each third of the attacks seeks one maximum: the most energy from the motors, the largest excess
+/// of the account over the true work, and the largest violation of the account's lower bound.
 bool climb_all(int hands, int steps, test::Random& random) {
   bool sound = true;
   std::printf("\n");

@@ -1,8 +1,8 @@
 // What each number of the rod (firmware/physics/rod/tuning.hpp) is good for: the panel (panel.hpp) is run with the
 // number halved and doubled, or with values that switch its rule off. Arguments and columns: rod_ablate --help.
 //
-// Rounding decides how a pull of two throws goes, so a difference counts only if it exceeds what rounding does: the
-// panel is also run with changes of 1e-9 of one number. Three times the standard deviation of these runs is the bar.
+// Rounding decides how a pull of two throws goes. So the panel is also run with one number changed by some 1e-9 of its
+// value, and a difference counts if it exceeds three times the standard deviation of these runs.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -202,7 +202,7 @@ std::pair<Score, Score> noise(const std::vector<Case>& cases, int runs) {
   return {mean, deviation};
 }
 
-/// The measures that differ by more than rounding does, and by more than 2 % of their mean.
+/// The measures that differ by more than the effect of rounding, and by more than 2 % of their mean.
 std::string differs(const Score& s, const Score& mean, const Score& deviation) {
   std::string all;
   for (std::size_t k = 0; k < kMeasures; ++k) {

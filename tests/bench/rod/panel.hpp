@@ -1,5 +1,6 @@
 #pragma once
-// The panel of the ablation study: pulls of knots and a ball of thread that no number of the rod was tuned on.
+// The panel of the ablation study: pulls of knots, and a ball of thread. They are other cases than those with which the
+// rod's numbers (tuning.hpp) were chosen.
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Tests the guarantee that strands never pass through each other. The arms of a hairpin are thrown at each other at up
 // to 50 m/s each, at random angles (parallel and grazing included), sizes and node counts. In half of the cases the
-// arms cross, or one end lies above the other arm. Every pair of segments, on the contact list or not, is checked for a
-// crossing in every substep (tests/support/crossings.hpp).
+// arms cross, or one end lies above the other arm. In every substep all pairs of segments are checked for a crossing
+// (tests/support/crossings.hpp), not only those on the contact list.
 //
 // A third of the threads are adaptive. There remeshing also moves nodes between substeps, so the straight motion of
 // every material point from the old to the new polyline is checked as well.

@@ -50,8 +50,8 @@ class Judge {
     });
     const bool lost = may_be_lost(f) && f.ticks <= kTicksOfLoss;
     if (!only_ours || f.hand != static_cast<int>(hand_) || away || busy || lost) return;
-    // A stalled loop reads no frames. So the deadline for the fault is extended by the part of the stall that lies
-    // before it.
+    // A stalled loop reads no frames. So the deadline for the fault is extended by that part of the stall that lies
+    // before the deadline.
     const bool stalls = plan_.stall_at <= f.from + kTicksToSee && plan_.stall_at + plan_.stall_ticks > f.from;
     const auto asleep = stalls ? plan_.stall_at + plan_.stall_ticks - std::max(plan_.stall_at, f.from) : 0;
     const auto last = static_cast<Index>(f.from + kTicksToSee + asleep + (may_be_lost(f) ? kTicksOfLoss : 0));

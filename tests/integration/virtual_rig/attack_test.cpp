@@ -1,5 +1,5 @@
-// Random attacks: what the motors really do to a hand under random faults. LIGATURE_ATTACK_RUNS and
-// LIGATURE_ATTACK_SEED select other runs than the default forty; results of many: docs/measurements/attack.md.
+// Random attacks: what the motors really do to a hand under random faults. By default forty runs; LIGATURE_ATTACK_RUNS
+// and LIGATURE_ATTACK_SEED select others. docs/measurements/attack.md has the results of many runs.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -29,9 +29,9 @@ inline constexpr std::int64_t kBadBusOnset = 1500;
 /// One run in virtual time. The seed determines the hands (AttackPlan::pulls) and the losses.
 [[nodiscard]] BadBusEnd end_of(const BadBus& bus, std::uint64_t seed);
 
-/// Ticks within which all force must be gone for this share of lost frames on a hand's bus; 0 where no fault is
-/// required. The times to the fault are stated in docs/architecture.md and hold except once in a million runs; added is
-/// the time until the motors' torque is off.
+/// Ticks within which all force must be gone when this share of the frames on a hand's bus is lost; 0 where no fault is
+/// required. It is the time to the fault (stated in docs/architecture.md, exceeded once in a million runs), plus the
+/// time until the motors' torque is off.
 [[nodiscard]] std::int64_t ticks_to_zero_at(double frames_lost);
 
 }  // namespace ligature

@@ -1,6 +1,5 @@
-// The loss of CAN frames, for any share of them, must cause a fault within bounded time where the force can no longer
-// be correct, and must cause none on a good bus. bad_bus_study draws each share 300 times:
-// docs/measurements/fault-matrix.md.
+// Lost CAN frames must cause a fault within bounded time when so many are lost that the force can no longer be correct.
+// On a good bus they must cause none. bad_bus_study draws each share 300 times: docs/measurements/fault-matrix.md.
 #include "tests/integration/virtual_rig/bad_bus.hpp"
 
 #include <gtest/gtest.h>

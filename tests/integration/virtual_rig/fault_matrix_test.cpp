@@ -1,5 +1,5 @@
-// Every script of scenes/faults with the whole rig in virtual time, exact to the tick. A script's [fault] defines what
-// goes wrong, its [expect] the required reaction; docs/measurements/fault-matrix.md is made from both
+// Runs every script of scenes/faults with the whole rig in virtual time, exact to the tick. A script's [fault] defines
+// what goes wrong, its [expect] the required reaction; docs/measurements/fault-matrix.md is made from both
 // (LIGATURE_WRITE_DOCS=1 writes it).
 #include <gtest/gtest.h>
 
@@ -84,8 +84,8 @@ Case of_script(const fs::path& file) {
   return {file.stem().string(), s.title, s, false, Nanoseconds(0), s.expected_fault, s.within_ticks};
 }
 
-/// Whether the fault and its time depend on a random draw. One draw would not be representative, so such a case has no
-/// row.
+/// Whether the fault and its time depend on a random draw. A single draw would not be representative, so such a case
+/// has no row in the table.
 bool is_by_chance(const Case& c) { return c.script && c.script->share < 1.0 && c.fault != 0; }
 
 std::vector<Case> scripts() {
@@ -155,7 +155,8 @@ struct PageRig : Steered, lab::VirtualRig {
   std::int64_t ticks_ = 0;
 };
 
-/// Whether the torque does not come from the controller. It is removed by a fault, but only after it has acted.
+/// Whether a foreign controller or the drive itself makes the torque. A fault then removes the torque only after it has
+/// acted.
 bool others_push(const Case& c) {
   return c.script && (c.script->kind == scene::FaultKind::kAstray ||
                       (c.script->kind == scene::FaultKind::kForeign && c.script->frame == scene::ForeignFrame::kRpdo));

@@ -1,6 +1,6 @@
 #pragma once
-// The virtual rig with two hands that tie (sim_device/tying). As in two processes, each hand has a plan of its own,
-// which sees only messages as telemetry sends them: batches of 20 ticks, and 60 shapes of the thread a second.
+// The virtual rig with two hands that tie (sim_device/tying). As if it were a process of its own, each hand has its own
+// plan. A plan sees only the messages that telemetry sends: batches of 20 ticks, and 60 shapes of the thread a second.
 
 #include <algorithm>
 #include <cstdint>

@@ -56,8 +56,9 @@ Found found(bool armed, double from_s, scene::FaultScript script) {
   return f;
 }
 
-/// A foreign node may fill the bus while the master's heartbeat is queued. NMT stop is then queued behind it, and the
-/// drives switch off by themselves when the heartbeat's timeout is over. All 50 phases of the heartbeat are tried.
+/// A foreign node may fill the bus while the master's heartbeat waits in the queue. NMT stop then waits behind the
+/// heartbeat, and the drives switch off by themselves when the heartbeat's timeout is over. The test floods the bus in
+/// each of the 50 periods between two heartbeats.
 TEST(Intruder, AFullBusRarelyHoldsUpTheStopAndNeverTheDrivesOwnWatch) {
   int held_up = 0;
   for (int phase = 0; phase < 50; ++phase) {

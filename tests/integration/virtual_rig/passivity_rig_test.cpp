@@ -22,8 +22,8 @@ scene::Scene scene_with(std::vector<std::string> overrides) {
   return std::get<scene::Scene>(scene::load_scene(kScenes + "paper.toml", overrides));
 }
 
-/// Grips the thread's end, pulls it tight and releases it, repeatedly. With `jumps` the target position jumps by the
-/// amplitude.
+/// Grips the thread's end, pulls it tight and releases it, repeatedly. With `jumps` the hand's target moves in jumps of
+/// amplitude_m.
 class Pulling final : public sim::Intention {
  public:
   Pulling(const sim::Vec3& at, double period_s, double amplitude_m, bool jumps)

@@ -1,4 +1,5 @@
-// A recorded run is repeated from its records, bit by bit, whatever happened in it; and deviations are detected.
+// A recorded run is repeated from its records, bit by bit, whatever happened in it; a run that deviates from its record
+// is detected.
 #include <gtest/gtest.h>
 
 #include <bit>

@@ -69,13 +69,15 @@ struct Played {
   std::vector<double> top_N, at_s;
 };
 
-/// Expected tension of a thread of that length when a hand's target is `way_m` beyond the unstretched position.
+/// Expected tension of a thread of length_m when a hand's target is `way_m` beyond the place of the unstretched
+/// thread's end.
 double pulled_N(double way_m, double length_m) {
   return way_m / (length_m / kEA_N + 1.0 / kDevice_N_per_m + 1.0 / kHand_N_per_m);
 }
 
-/// Jaws hold several nodes, which need not lie symmetrically about the middle of the jaws. Forces on these nodes make
-/// the moment that keeps the thread's direction. The hand must feel only the thread's pull, none of these forces.
+/// Jaws hold several nodes, which need not lie symmetrically about the middle of the jaws. The jaws' forces on these
+/// nodes make the moment that keeps the thread's direction. The hand must feel only the thread's pull, not these
+/// forces.
 TEST(SutureHands, FeelWhatTheThreadDoesToTheJaws) {
   struct Pull {
     double way_m;
@@ -104,9 +106,9 @@ TEST(SutureHands, FeelWhatTheThreadDoesToTheJaws) {
   }
 }
 
-/// The free end weighs a fifth of a millinewton. The coupling uses its position of the previous tick, which acts as a
-/// drag (spring constant x period x speed) and absorbs energy; an extrapolated position would make the ports deliver
-/// energy.
+/// The free end weighs a fifth of a millinewton. The coupling uses the end's position of the previous tick. This delay
+/// acts as a drag (spring constant x period x speed) and absorbs energy; an extrapolated position would make the ports
+/// deliver energy.
 TEST(SutureHands, CarryAnEndThatWeighsNothing) {
   const Played p(suture(), {},
                  {{0.0, {0.0, 0.0, 0.06}, false},
@@ -125,8 +127,8 @@ TEST(SutureHands, CarryAnEndThatWeighsNothing) {
   EXPECT_NEAR(felt_N, kThread_N_per_m * 1e-3 * speed_m_per_s, 0.03 * felt_N);
 }
 
-/// The right hand grips above the left one and draws until the tension would be the same without the left hand, which
-/// then lets go.
+/// The right hand grips above the left one and draws until it alone would hold the same tension. Then the left hand
+/// lets go.
 TEST(SutureHands, HandTheThreadOverUnderLoad) {
   constexpr double kClosed_s = 2.6, kBoth_s = 4.4, kOpen_s = 4.5, kWay_m = 0.0042;
   constexpr double kPlace_m = 0.1812, kLength_m = kTop_m - kPlace_m;  // between two nodes
@@ -165,8 +167,8 @@ TEST(SutureHands, HandTheThreadOverUnderLoad) {
 }
 
 /// Beside a thread that the left hand holds taut, the right hand closes 14 mm away from it. Out of reach it holds
-/// nothing; within reach it draws the thread aside by x, and its force grows gradually to T x / l from either side (T
-/// tension, l length to the next hold).
+/// nothing; within reach it draws the thread aside by x, and the force that it feels grows gradually to T x / l from
+/// either side (T tension, l length to the next hold).
 TEST(SutureHands, CloseFarOffWithoutAStep) {
   constexpr double kOff_m = 0.014, kClosed_s = 2.6;
   for (const bool within : {false, true}) {
@@ -190,8 +192,8 @@ TEST(SutureHands, CloseFarOffWithoutAStep) {
     EXPECT_EQ(size(last.f_wish_N[1]) > 0.1, within);
     EXPECT_EQ(size(last.f_wish_N[1]) == 0.0, !within);
     EXPECT_LT(wish_step_N, 0.03);
-    // Passivity withholds force that is not paid for yet and releases it at the slew limit, 0.15 N per tick. The limit
-    // on torques in any pose also changes from tick to tick, by up to an eighth.
+    // The passivity controller holds back force whose energy the account does not cover yet, and later releases it by
+    // 0.15 N per tick. The limit on torques in any pose (AnyPose) also changes from tick to tick, by up to an eighth.
     for (std::size_t h = 0; h < 2; ++h) EXPECT_LT(p.step_N(h, kClosed_s - 0.1, 4.4), 0.175) << h;
   }
 }

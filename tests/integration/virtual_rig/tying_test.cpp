@@ -53,8 +53,8 @@ std::string knot_before(const char* move, const char* name, const char* knot, st
   return person.knot.empty() ? "never" : person.knot;
 }
 
-/// Expects a knot that is tied in at least 99 % of all runs: of three drawn operators, or of eight if one of the three
-/// misses. Four or more of eight miss less than once in a million draws then.
+/// Expects a knot that is tied in at least 99 % of all runs. Draws three operators, or eight if one of the three
+/// misses; fails if four of the eight miss. For such a knot that happens less than once in a million draws.
 template <class Tie>
 void expect_tied(const std::string& type, std::uint64_t seed, Tie tied) {
   test::Random random(seed);
@@ -68,16 +68,16 @@ void expect_tied(const std::string& type, std::uint64_t seed, Tie tied) {
   EXPECT_LE(misses, 3) << "of eight";
 }
 
-/// The thread's end must pass to the front well inside the loop. If it passes next to the strand that the left hand
-/// holds, it can come out behind that strand, and one of the two turns is missing (in 5 of 8 runs).
+/// The thread's end must pass to the front well inside the loop. If the end passes next to the strand that the left
+/// hand holds, it can come out behind that strand; then one of the two turns is missing (as in 5 of 8 runs).
 TEST(Tying, AFirstThrowOfTwoTurnsInTheSutureHasTwoTurns) {
   expect_tied("5_1 right", 57,
               [](std::uint32_t seed) { return knot_before("draw through", "suture-3-0.toml", "surgeon", seed); });
 }
 
-/// The end makes its extra turn round the lower strand of the arch between the hands. A turn round the standing part
-/// (the thread above the left hand) would slip off over the left hand's grip when it is drawn. Bending is plastic here,
-/// since an elastic figure-eight opens at this friction.
+/// The end makes its extra turn round the lower strand of the arch between the hands. When the knot is drawn tight, a
+/// turn round the standing part (the thread above the left hand) would slip off over the left hand's grip. Bending is
+/// plastic here, since an elastic figure-eight opens at this friction.
 TEST(Tying, AFigureEightInTheSutureIsOneAndStays) {
   EXPECT_EQ(knot_before("draw through", "suture-3-0.toml", "figure-eight", 1), "4_1 amphichiral");
   EXPECT_EQ(knot_before("done", "suture-3-0.toml", "figure-eight", 2, {"suture.yield_strain=0.1"}), "4_1 amphichiral");
@@ -95,8 +95,8 @@ TEST(Tying, AScriptOfTheSutureTies) {
   EXPECT_EQ(knot_in(rig), "3_1 right");
 }
 
-/// Without bend damping, a nearly level thread that is released where it was drawn could whip its second throw open (9
-/// of 20).
+/// Without bend damping, a nearly level thread that is released where it was drawn could whip its second throw open (in
+/// 9 of 20 runs).
 TEST(Tying, ASquareKnotStaysInAnUndampedThread) {
   expect_tied("3_1#3_1 amphichiral", 3, [](std::uint32_t seed) {
     return knot_before("done", "paper.toml", "square", seed, {"suture.model=\"paper-2\""});
@@ -128,7 +128,7 @@ RigSetup on_the_desk() {
   return setup;
 }
 
-/// Operators who begin elsewhere and at another pace, and see the thread by LCM messages up to 30 ms late.
+/// Random operators, with other start positions and speeds, who see the thread by LCM messages up to 30 ms late.
 TEST(Tying, HandsThatOnlyHearTheRigUntieTheKnotOnTheDesk) {
   expect_tied("4_1 amphichiral, then 0_1 none", 71, [](std::uint32_t seed) {
     test::HeardRig heard(on_the_desk(), "untie", seed, {.latest_s = 0.03, .seed = seed});
@@ -143,7 +143,8 @@ TEST(Tying, HandsThatOnlyHearTheRigUntieTheKnotOnTheDesk) {
   });
 }
 
-/// The same knot, drawn at its end, stays and holds the pull. At the right point nothing holds the thread any more.
+/// The figure-eight on the desk stays when it is drawn at its end, and the hand then feels the jammed knot. Drawn at
+/// the right point, the knot opens, and the hand feels almost nothing.
 TEST(Tying, TheKnotOnTheDeskJamsAtTheWrongPoint) {
   const auto play = [](const char* name) {
     const auto script = std::get<scene::GripperScript>(
@@ -164,8 +165,8 @@ TEST(Tying, TheKnotOnTheDeskJamsAtTheWrongPoint) {
   EXPECT_GT(wrong.held_N, 5.0 * right.held_N);
 }
 
-/// As two processes of ligature-device do it: each plans for both hands, and sees only batches of messages, up to 30 ms
-/// late.
+/// As two processes of ligature-device do it: each process plans for both hands, and sees only batches of messages, up
+/// to 30 ms late.
 TEST(Tying, HandsThatOnlyHearTheRigTieKnotsOfTwoThrows) {
   RigSetup setup;
   setup.scene = std::get<scene::Scene>(scene::load_scene(LIGATURE_SOURCE_DIR "/scenes/suture-3-0.toml", {}));

@@ -122,9 +122,9 @@ TEST_F(BridgeDrives, ASilentDeviceIsADriveWithoutPower) {
   EXPECT_EQ(drives_.force_D_N(), (Vec{0.0, 0.0, 0.0}));
 }
 
-/// An old state must not be sent as a sample, however long the device may be silent before it counts as lost. The
-/// firmware then counts the missing samples up to its watchdog's limit, as for any drive whose messages are lost, and a
-/// release of the dead-man is not hidden for longer.
+/// An old state of the device must not be sent as a sample, even if the device may be silent for long before it counts
+/// as lost. So the firmware sees missing samples and applies its watchdog's limit, as for any drive whose messages are
+/// lost. Otherwise a release of the dead-man could stay hidden for longer than that limit.
 TEST_F(BridgeDrives, AnOldStateIsNoSample) {
   drives_ = Drives(record_, now_, std::chrono::seconds(1));
   state_.buttons = can::profile::kButtonDeadMan;
@@ -167,8 +167,8 @@ TEST_F(BridgeDrives, AFirmwareThatFallsSilentLeavesNoForce) {
   EXPECT_EQ(drives_.force_D_N(), (Vec{0.0, 0.0, 0.0}));
 }
 
-/// The age of the newest state at the end of SYNC, with a state every 0.5 ms, at every phase between the two clocks. It
-/// is never more than one exchange period and the length of the SYNC frame. This is the delay of docs/bridge.md.
+/// The age of the newest state at the end of SYNC (the delay in docs/bridge.md) is at most one exchange period plus the
+/// length of the SYNC frame. Tested with a state every 0.5 ms, at every phase between the two clocks.
 TEST(BridgeDelay, AStateIsNeverOlderThanAnExchangePeriodAtSync) {
   constexpr Time kExchange = microseconds(500), kSync = microseconds(50);
   Time worst{}, least = milliseconds(1);

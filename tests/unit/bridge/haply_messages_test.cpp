@@ -45,7 +45,8 @@ TEST(HaplyMessages, AGripThatIsNotThereHoldsNoButton) {
   }
 }
 
-/// The service lists the grips of both hands to everybody: the first one may be in the other hand.
+/// The service lists the grips of both hands to every client, so the first grip in the list may be that of the other
+/// hand.
 TEST(HaplyMessages, OneOfSeveralGripsMustBeNamed) {
   const char* const both = R"(,"wireless_verse_grip":[{"device_id":"1","state":{"buttons":{"a":true}}}],
    "verse_grip":[{"device_id":"2","state":{"buttons":{"a":false}}}])";

@@ -28,7 +28,8 @@ class Poses {
     const auto n = [&] { return random_.normal(); };
     return Vec3{n(), n(), n()}.normalized();
   }
-  /// Inverse kinematics by intersecting two circles; one pose in eight is at a corner of the box.
+  /// A random pose, by intersecting two circles (inverse kinematics). In one pose of eight the tip is at a corner of
+  /// the box.
   JointAngles next() {
     const device::Device d = device::omni();
     for (;;) {
@@ -97,7 +98,8 @@ TEST(AnyPose, AnArmThatMayBeStretchedGetsNoForce) {
 }
 
 /// AnyPose limits the torques so that the tip's force is safe in whatever pose the arm really is, since encoders may be
-/// wrong. That costs force when they are right. The share that remains is tested over poses and directions.
+/// wrong. When the encoders are right, this limit costs force. The force that remains is tested over poses and
+/// directions.
 TEST(AnyPose, LeavesAnHonestHandMostOfTheForce) {
   const AnyPose any(device::omni());
   Poses poses(3U);
@@ -143,7 +145,8 @@ struct Most {
   double true_N = 0.0, true_step_N = 0.0, said_N = 0.0;
 };
 
-/// Largest force and step at the tip, evaluated in a hundred poses other than the encoders' one, during strong pulls.
+/// Largest force and force step at the tip during strong pulls, evaluated in a hundred poses that differ from the pose
+/// that the encoders report.
 Most pulled_by_what_encoders_say(unsigned seed) {
   Poses poses(seed);
   Says says(poses);

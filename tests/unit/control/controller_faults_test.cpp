@@ -1,5 +1,5 @@
-// Every fault of the controller removes the force; which faults can be reset, and how. The drives' readings are set by
-// the tests.
+// Tests that every fault of the controller removes the force, which faults can be reset, and how. The tests set the
+// drives' readings.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -92,9 +92,9 @@ TEST(ControllerFaults, SomebodyElseOnTheBusIsAFaultInEveryStateAndNoResetLeavesI
   }
 }
 
-/// The drive keeps reporting the torque of one command, whatever it is sent later. The force cannot be reduced in steps
-/// from there without a jump, so a time limit must end it. The device file tolerates any torque error here; otherwise
-/// the torque check would report a fault first.
+/// The drive keeps reporting the torque of one command, whatever is sent to it later. The controller then cannot reduce
+/// the force in steps without a jump, so a time limit must end the force. The device file of this test tolerates any
+/// torque error; otherwise the torque check would report a fault first.
 TEST(ControllerFaults, AForceThatDoesNotEndIsTakenAtOnce) {
   device::Device vague = device::omni();
   vague.torque_tolerance_permille = vague.max_torque_permille;
@@ -197,8 +197,9 @@ TEST(ControllerFaults, OnlyAResetLeadsBackAndItArmsNothing) {
   rig.to_force();
 }
 
-/// An encoder jumps and returns. The account debits the apparent energy output but does not credit the apparent input,
-/// so without a reset of the account the hand would have no force until the program restarts.
+/// An encoder jumps and returns. The two jumps look like energy that the motors deliver and get back. The account
+/// debits the first but does not credit the second, so without a reset of the account the hand would have no force
+/// until the program restarts.
 TEST(ControllerFaults, AResetBeginsTheAccountsAnew) {
   Rig rig;
   rig.to_force();

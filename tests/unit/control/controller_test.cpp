@@ -101,8 +101,9 @@ TEST(Controller, AnArmGetsWhatIsSafeInEveryPoseAndReportsIt) {
   EXPECT_EQ(rig.controller.fault(), Fault::kNone);
 }
 
-// Outside the workspace box the bound for any pose does not hold. If the step limit keeps the last torques there, they
-// make another force once the arm has moved on; the peak must hold even so.
+// Outside the workspace box the force bound for any pose (AnyPose) does not hold. When the step limit keeps the last
+// torques while the arm moves on, the same torques make another force. That force must stay below the device's peak
+// force, too.
 TEST(Controller, ThePeakHoldsForAnArmThatMovesOutsideItsWorkspaceBox) {
   auto hands = Rig::scene();
   hands.passivity = false;

@@ -1,4 +1,4 @@
-// After the force was taken away, only a new press of the hand's dead-man brings it back, never a command alone.
+// After the force was removed, only a new press of the hand's dead-man brings it back, never a command alone.
 #include "firmware/control/dead_man.hpp"
 
 #include "tests/unit/control/controller_rig.hpp"

@@ -91,8 +91,8 @@ TEST(EncoderWatch, HandsThatTurnStopAndTrembleAreNotSuspected) {
   }
 }
 
-/// A hand may itself reverse a joint's motion. If it takes so long (constant acceleration of at most `most`) that the
-/// path differs by two counts or more from an instant reversal, it must not be taken for an encoder fault.
+/// A hand may itself reverse a joint's motion. If the reversal takes so long (constant acceleration of at most `most`)
+/// that the path differs by two counts or more from an instant reversal, it must not be taken for an encoder fault.
 TEST(EncoderWatch, ATurnThatTakesItsTimeIsNotSuspected) {
   test::Random random(24);
   for (const MirroredTurn::Look& look : MirroredTurn::kLooks) {

@@ -103,7 +103,7 @@ TEST(ForceLimiter, ComesBackByHysteresisAndOnlyOnce) {
   EXPECT_FALSE(limited);
 }
 
-// Hysteresis: at a steady 0.8 N the heat falls only to 0.83, and peak forces are allowed again below 0.7.
+// Hysteresis: peak forces are allowed again when the heat is below 0.7. At a steady 0.8 N the heat falls only to 0.83.
 TEST(ForceLimiter, AWindingThatHasHardlyCooledGivesNoPeak) {
   ForceLimiter l = limiter();
   for (int i = 0; i < 10'000; ++i) (void)send(l, Vec3(0, 0, 50));

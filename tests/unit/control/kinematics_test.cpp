@@ -1,4 +1,4 @@
-// The linkage's kinematics against geometry, finite differences and virtual work.
+// The linkage's kinematics compared with geometry, finite differences and virtual work.
 #include "firmware/control/kinematics.hpp"
 
 #include <gtest/gtest.h>

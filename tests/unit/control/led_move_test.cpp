@@ -206,7 +206,7 @@ TEST(LedMove, TakingTheThreadOrTheClutchEndsItForGood) {
   }
 }
 
-/// A rejected move changes nothing: the thread that is held stays held, and every torque is as without the command.
+/// A rejected move changes nothing: a held thread stays held, and every torque is as if the command had not come.
 TEST(LedMove, AMoveThatIsRefusedIsAsIfNobodyHadAskedForIt) {
   struct Reason {
     const char* name;
@@ -250,8 +250,8 @@ TEST(LedMove, AMoveThatIsRefusedIsAsIfNobodyHadAskedForIt) {
   }
 }
 
-/// The command for a move arrives while the gain still rises, and what the move requires (e.g. the dead-man) ends
-/// before the gain is full: a later press must not start the move.
+/// The command for a move arrives while the gain still rises. Before the gain is full, a condition of the move ends
+/// (e.g. the dead-man is released): then a later press must not start the move.
 TEST(LedMove, OneThatHasNotBegunIsOverForGood) {
   using Set = void (*)(Arms&, bool);
   const std::vector<std::pair<const char*, Set>> ends{
@@ -280,7 +280,7 @@ TEST(LedMove, OneThatHasNotBegunIsOverForGood) {
   }
 }
 
-/// A drive reports once that it delivered far more energy than allowed. That is no fault, but the move ends.
+/// A drive reports once that it delivered far more energy than allowed. This is no fault, but it ends the move.
 TEST(LedMove, OneThatCannotBePaidForIsOverAtOnce) {
   Arms arms;
   arms.to_force();
@@ -345,8 +345,8 @@ TEST(LedMove, CalibrateFindsAnEncoderThatLiedFromTheStart) {
     for (int joint = 0; joint < 3; ++joint) {
       Arms arms;
       (expected == Fault::kAxisReversed ? arms.reversed : arms.frozen) = joint;
-      // Angles of a reversed shoulder or elbow are an impossible pose, so force never begins
-      // (AReversedShoulderNeverComesUp).
+      // With a reversed shoulder or elbow the angles are an impossible pose, so force never begins (test
+      // AReversedShoulderNeverComesUp).
       if (expected == Fault::kAxisReversed && joint > 0) continue;
       arms.to_force();
       arms.controller.command(rt::CommandKind::kCalibrate);

@@ -1,5 +1,5 @@
-// LossWatch reports a fault when too many frames of a bus are lost: at which loss, how fast, and how rarely on a good
-// bus.
+// LossWatch reports a fault when too many frames of a bus are lost. Tested: at which loss, how fast, and how rarely on
+// a good bus.
 #include "firmware/control/loss_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,8 @@ struct Bound {
   int ticks;
 };
 
-// For these shares of lost frames the fault comes within so many ticks, except once in a million runs.
+// For each of these shares of lost frames the fault comes within the given number of ticks, except once in a million
+// runs.
 TEST(LossWatch, ABadBusIsNamedWithinABoundedTimeButOnceInAMillionTimes) {
   for (const auto& [frames, ticks] : {Bound{0.15, 2100}, Bound{0.2, 430}, Bound{0.25, 220}, Bound{0.5, 65}}) {
     Count count(samples_lost(frames));
@@ -102,8 +103,8 @@ TEST(LossWatch, CountsSamplesAndTorquesEachForItself) {
   }
 }
 
-/// If no samples come at all, LossWatch leaves the fault to the watchdog, whatever that one's time limit; the loss of
-/// half of the samples is still found.
+/// If no samples come at all, LossWatch leaves the fault to the watchdog, whatever the watchdog's time limit. The loss
+/// of half of the samples is still found.
 TEST(LossWatch, LeavesASilenceToTheWatchdog) {
   for (const int watchdog : {2, 20, 21, 300, 1000, 10000}) {
     Watched silent(watchdog), half(watchdog);

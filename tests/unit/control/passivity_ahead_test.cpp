@@ -15,8 +15,8 @@ Passivity resting(double credit_J) {
   return p;
 }
 
-/// A port whose first torque message (RPDO) was lost `later` ticks ago. The hand moves along `axis` at 0.05 m/s, and a
-/// force of 0.3 N is on its way to the drives.
+/// A port whose first torque message (RPDO) was lost `later` ticks ago. Meanwhile the hand moves along `axis` at 0.05
+/// m/s, and a force of 0.3 N is on its way to the drives.
 struct Lossy {
   Lossy(const Vec3& axis, double credit_J, int later) : passivity(plain(), kT_s, true, credit_J) {
     for (int n = 0; n <= later + 2; ++n) {
@@ -52,9 +52,10 @@ TEST(Passivity, NoAxisIsForeseenLessThanAnother) {
     EXPECT_NEAR(Lossy(axis, 2e-4, 5).most_N(axis), first_N, 1e-9) << axis.transpose();
 }
 
-/// For ten seconds after a lost RPDO the account expects another loss: then a force acts for two periods instead of
-/// one. It must cover the worst motion of a hand at rest: full acceleration along the force in the period before it
-/// acts and in the first in which it acts, and 0.3 of the full acceleration in the second.
+/// For ten seconds after a lost RPDO the account expects another loss, by which a force would act for two periods
+/// instead of one. The account must cover the worst motion of a hand at rest: full acceleration along the force in the
+/// period before the force acts and in the first period in which it acts, and 0.3 of the full acceleration in the
+/// second.
 TEST(Passivity, AForceThatMayActTwiceIsPaidForTwice) {
   const double a = plain().hand_acceleration_m_per_s2, credit_J = 3e-5;
   for (const int later : {2, 100, 9990}) {

@@ -16,8 +16,9 @@ namespace ligature::control {
 /// Bounds for a hand whose tip acceleration is at most `wildness` times the device file's limit:
 ///   account <= work + hidden + unseen
 ///   work    >= -1 uJ - hidden - unseen - counted - beyond
-/// Four error terms, all >= 0: hidden, by rounded positions in what was booked; unseen, by unknown motion between two
-/// samples; counted, by rounded positions in what was budgeted; beyond, by lost frames that the budget did not expect.
+/// Four error terms in J, all >= 0: hidden, by rounded positions in the energy that the account has booked; unseen, by
+/// unknown motion between two samples; counted, by rounded positions in the energy that the account keeps in reserve
+/// for a force; beyond, by lost frames that this reserve did not foresee.
 class PassivityBounds {
  public:
   PassivityBounds(double count_m, double wildness)
@@ -61,8 +62,8 @@ class PassivityBounds {
   double work_below_J = -1e9;  ///< the same for the work's lower bound
   double unseen_share = 0.0, most_beyond_J = 0.0;
   [[nodiscard]] double unseen_J() const { return unseen_J_; }
-  /// The term "hidden": work that rounded positions hide. One count per change of force: half by the encoder, half by
-  /// the interpolation between counts.
+  /// The term "hidden": work that rounded positions hide, one count times each change of force. Half a count is due to
+  /// the encoder, half to the interpolation between counts.
   [[nodiscard]] double hidden_J() const {
     return periods_.empty() ? 0.0 : hidden_J_ + count_m_ * periods_.back().made_N.lpNorm<1>();
   }
@@ -77,9 +78,9 @@ class PassivityBounds {
     return -1;
   }
 
-  /// The term "unseen", in units of a T^2 (a: acceleration bound of the hand, T: period), because the tip's motion
-  /// between two samples is unknown. It is the sum over periods t of |sum over the periods after t of (force - mean
-  /// force)|.
+  /// The term "unseen": the tip's motion between the samples at SYNCs `from` and `to` is unknown. Given in units of a
+  /// T^2 (a: acceleration bound of the hand, T: period), as the sum over all periods t between the samples of |sum over
+  /// the periods after t of (force - mean force)|.
   [[nodiscard]] double unseen_N(std::int64_t from, std::int64_t to) const {
     Vec3 mean_N = Vec3::Zero(), before_N = Vec3::Zero();
     double sum_N = 0.0;
@@ -88,7 +89,8 @@ class PassivityBounds {
     return sum_N;
   }
 
-  /// The term "beyond": energy delivered up to SYNC n that was not budgeted when the force of tick m was chosen.
+  /// The term "beyond": energy delivered up to SYNC n for which the account held no reserve when it chose the force of
+  /// tick m.
   [[nodiscard]] double beyond_J(std::int64_t m, std::int64_t n) const {
     double sum_J = 0.0;
     for (std::int64_t p = at(m).sample; p < n; ++p) {
@@ -100,8 +102,8 @@ class PassivityBounds {
     }
     return sum_J;
   }
-  /// Part of "beyond" in period p, from the third period without a sample on: the hand may accelerate more than the
-  /// budget of tick m assumed, and very small forces are not in that budget at all.
+  /// Part of the term "beyond" in period p, from the third period without a sample on: the hand may accelerate more
+  /// than was assumed for the reserve of tick m, and very small forces need no reserve at all.
   [[nodiscard]] double wilder_J(std::int64_t m, std::int64_t p) const {
     const std::int64_t sample = at(m).sample, gap = sample > 0 ? sample - at(sample - 1).sample : 1;
     const auto j = static_cast<double>(p - sample + 1);
@@ -110,8 +112,8 @@ class PassivityBounds {
     const double doubt_m = reach_m_ * (spread + 0.5 * static_cast<double>(gap - 1)) + count_m_;
     return size_N * reach_m_ * std::max(0.0, wildness_ * j - spread) + std::min(size_N, Passivity::kSlight_N) * doubt_m;
   }
-  /// The term "counted": the last known motion is uncertain by one count per joint, and the budget of tick m allows for
-  /// one count along the force only.
+  /// The term "counted": the last known motion is uncertain by one count per joint, but the reserve of tick m allows
+  /// for one count along the force only.
   [[nodiscard]] double counted_J(std::int64_t m, std::int64_t n) const {
     double sum_N = 0.0;
     for (std::int64_t p = at(m).sample; p < n; ++p) sum_N += at(p).made_N.lpNorm<1>() - at(p).made_N.norm();

@@ -56,9 +56,9 @@ TEST(PassivityBounds, HoldForHandsThatClimb) {
   }
 }
 
-/// Between two samples the account assumes uniform motion. With two periods T between the samples and 0.3 N in the
-/// second, a hand that waits and then follows the force gets 0.3 N a T^2 / 2 more than is debited. A hand of at most
-/// the acceleration a cannot get more.
+/// Between two samples the account assumes uniform motion. The samples here are two periods T apart, and a force of 0.3
+/// N acts in the second period only. A hand that waits and then follows the force with acceleration a gets 0.3 N a T^2
+/// / 2 more than is debited. No hand of at most this acceleration can get more.
 TEST(PassivityBounds, WhatNobodySawIsWorthHalfAStepTimesTheAcceleration) {
   const double a = plain().hand_acceleration_m_per_s2;
   const auto excess_J = [&](double share) {

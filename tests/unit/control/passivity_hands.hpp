@@ -12,12 +12,13 @@
 namespace ligature::control {
 
 /// Parameters of one attack, which an optimiser may change. Time is divided into stretches of equal length ("knots" of
-/// the path); each has an acceleration of the hand and a share of it along the motors' force.
+/// the path); each has an acceleration of the hand, and a part of the acceleration that follows the motors' force.
 struct Attacker {
   static constexpr std::size_t kKnots = 40;
   std::array<Vec3, kKnots> push{};
   std::array<double, kKnots> along{};
-  /// Coefficients of the control law (force = gain x position, with damping); a negative gain makes a spring.
+  /// Coefficients of the control law: force = gain x position, with damping. A negative gain is a spring (force against
+  /// the displacement).
   double gain_N_per_m = 400.0, damping_s = 0.01;
   int hold = 10;  ///< length of a stretch in periods
   Chain chain;

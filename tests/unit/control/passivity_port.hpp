@@ -69,7 +69,8 @@ struct Port {
 
   Passivity passivity;
   Chain chain;
-  // The force that really acts for a sent force, after its joint torques are rounded; here without rounding.
+  // The force that really acts when a force is sent, because the joint torques are rounded; by default without
+  // rounding.
   std::function<Vec3(const Vec3&)> made_of = [](const Vec3& f) { return f; };
   test::Random random;
   PassivityBounds bounds;

@@ -68,8 +68,8 @@ TEST(Passivity, NoHandWithinTheBoundOverdrawsTheAccount) {
   play_adversaries({}, [](const Port& port) { EXPECT_GE(port.lowest_J, -Passivity::kFloor_J); });
 }
 
-/// The force changes by at most a step per tick, except where all of it is dropped for lack of energy. How often that
-/// happens depends on the random draw; here it is rare.
+/// The force changes by at most the step limit per tick, except where the whole force is dropped for lack of energy.
+/// How often that happens depends on the random draw; here it is rare.
 TEST(Passivity, HandsWithinTheBoundAreCutByAStepButWhereTheyAreLetGo) {
   double felt_N = 0.0;
   int let_go = 0;
@@ -85,8 +85,8 @@ TEST(Passivity, HandsWithinTheBoundAreCutByAStepButWhereTheyAreLetGo) {
   EXPECT_LE(let_go, 6) << "of 80";
 }
 
-// The force that the drives really make changes by at most a step per tick, except where it is dropped for lack of
-// energy.
+// The force that the drives really make changes by at most the step limit per tick, except where the whole force is
+// dropped for lack of energy.
 TEST(Passivity, WhatTheDrivesMakeChangesByAStepWhateverIsLost) {
   const Chain whole{}, lossy{.lost = 0.05}, very{.lost = 0.3}, blind{.lost_samples = 0.14};
   const Chain both{.lost = 0.05, .lost_samples = 0.14}, silent{.lost = 0.05, .tells_torque = false};
@@ -152,7 +152,8 @@ TEST(Passivity, ALostTorqueIsBookedToTheLastDigit) {
       EXPECT_LE(port.largest_excess_J, 1e-10);
       EXPECT_LE(port.largest_shortfall_J, 1e-10);
     };
-    // active = false: active passivity gives up credit after losses, so the account would not be exact.
+    // active = false: an active passivity controller gives up energy of its account after losses, so the account would
+    // not be exact.
     play_adversaries({.lost = 0.3, .tells_torque = tells}, look, 1.0, false);
   }
 }
@@ -206,8 +207,8 @@ TEST(Passivity, APaidSpringIsFeltInFull) {
   EXPECT_NEAR(port.made.norm(), 400.0 * port.p.norm(), 0.01 * 400.0 * port.p.norm());
 }
 
-/// A hand draws `draw_m` at 15 mm/s and rests, with quantised positions and torques. @return the share of the rest in
-/// which it feels at least four fifths of K x.
+/// A hand draws `draw_m` at 15 mm/s and rests, with quantised positions and torques. @return the share of the resting
+/// time in which the hand feels at least four fifths of the spring force K x.
 double felt_of_a_slow_pull(Chain chain, double draw_m) {
   chain.count_m = 5e-5;
   Port port(true, 0.0, chain);

@@ -1,4 +1,4 @@
-// The transition table is proved by static_asserts beside it; these tests take typical paths through the states.
+// static_asserts beside the transition table prove its rules; these tests take typical paths through the states.
 #include "firmware/control/state_machine.hpp"
 
 #include <gtest/gtest.h>

@@ -122,8 +122,8 @@ TEST(StatedNumbers, AParkedToolStands) {
   }
 }
 
-/// A drive keeps its torque. With the usual watchdog time fault 26 (torque check) would come first. Here the watchdog
-/// time is long, so for the torque check the torque may still be an old command, and another limit must act.
+/// A drive keeps its torque. Normally the torque check would find this first (fault 26). Here the watchdog time is
+/// long, so the torque check still accepts the torque as that of an old command, and another limit must end it.
 TEST(StatedNumbers, AForceThatDoesNotEndIsTakenAfterAHundredTicks) {
   Rig rig(Rig::scene(), device::omni(), 1000);
   rig.to_force();

@@ -49,8 +49,8 @@ class Drive {
     under_way_.push_back({now + delay(), torque_Nm});
     if (chance() < loss_) under_way_.push_back({now + delay(), torque_Nm});  // duplicated, possibly out of order
   }
-  /// A SYNC: reports the torque that acted until now, then applies the latest command. Without a command for longer
-  /// than the watchdog the torque is zero.
+  /// At a SYNC the drive reports the torque that acted until now, then applies the latest command. Without a command
+  /// for longer than the watchdog's time the torque is zero.
   double sync(int now) {
     const double made_Nm = acting_Nm_;
     std::optional<double> got;
@@ -167,7 +167,8 @@ TEST(TorqueWatch, ToleratesWhatTheRecordSaysAndNoMore) {
   }
 }
 
-/// A command excuses a torque only for a limited time: a drive that keeps it is found about one watchdog time later.
+/// A command excuses a torque only for a limited time: a drive that keeps that torque is found about one watchdog time
+/// later.
 TEST(TorqueWatch, ForgetsWhatWasSentLongAgo) {
   for (const std::int32_t watchdog : {2, 5, 20, 100, 1000}) {
     Watched watch(device::omni(), watchdog);

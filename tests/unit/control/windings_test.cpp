@@ -79,8 +79,8 @@ TEST(Windings, ThePeakHeldForEverGetsAsHotAsTheClosedFormSays) {
     windings.sent(wish * std::min(1.0, windings.share(wish)));
     hottest = std::max(hottest, windings.heat());
   }
-  // The torque limit, as a multiple of the continuous torque, falls from `peak` to 1 in 0.5 s. Meanwhile the winding is
-  // heated by the mean square of the limit and cooled in proportion to its heat, which is at least 1.
+  // The torque limit, as a multiple of the continuous torque, falls from `peak` to 1 in 0.5 s. Meanwhile the mean
+  // square of the limit heats the winding, and the winding cools in proportion to its heat, which is at least 1.
   const double fall = 0.5 / d.thermal_time_s, square = (peak * peak + peak + 1.0) / 3.0;
   EXPECT_LT(hottest, 1.0 + fall * (square - 1.0) + 1e-3);
   EXPECT_GT(hottest, 1.0 + fall * (square - 1.3));

@@ -119,8 +119,8 @@ TEST(Admission, MoreWorkLosesLessOfASquareKnot) {
   EXPECT_LT(much, 0.2 * little);
 }
 
-/// Without the clock, a thread of 2000 nodes would seem to lose nothing: its contact budget does not count the
-/// milliseconds that its nodes take.
+/// Admission must check the clock: the contact budget does not count the milliseconds that 2000 nodes take, so by the
+/// budget alone such a thread would seem to lose no time.
 TEST(Admission, ADrawnKnotIsEndedByTheClockAsOnARig) {
   for (const auto& scene : {scene_of("suture-3-0-square.toml", 154), paper(20)}) {
     auto thread = std::get<physics::Simulation>(physics::Simulation::make(scene));

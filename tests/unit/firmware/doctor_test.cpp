@@ -1,4 +1,5 @@
-// `doctor` as an acceptance test: histogram, verdict by a scene's slack, report, comparison, load.
+// `ligature-firmware doctor` as an acceptance test: histogram, verdict for a scene (by the delay that its loop can
+// bear), report, comparison, load.
 #include <gtest/gtest.h>
 
 #include <chrono>

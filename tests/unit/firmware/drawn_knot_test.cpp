@@ -1,4 +1,5 @@
-// Admission measures the physics' cost on a knot that it draws tight: that shape is a knot, and it becomes tight.
+// Admission measures the physics' cost while it draws a knot tight. Tested here: the shape is a knot, and the knot
+// becomes tight.
 #include "firmware/app/drawn_knot.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A plant (a new thread, or new parameters) is handed to the running loop between two ticks.
+// A plant (a new simulation of the thread, or new parameters) is passed to the running loop between two ticks.
 #include <gtest/gtest.h>
 
 #include "tests/unit/firmware/virtual_rig.hpp"

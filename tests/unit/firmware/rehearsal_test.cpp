@@ -1,4 +1,5 @@
-// The rehearsal of a scene: a child process tries it out before the loop gets it. How it ends, and what the child gets.
+// The rehearsal of a scene: a child process tries the scene before the loop gets it. Tested: how a rehearsal can end,
+// and what the child gets.
 #include "firmware/app/rehearsal.hpp"
 
 #include <gtest/gtest.h>

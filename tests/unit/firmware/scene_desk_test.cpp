@@ -1,5 +1,5 @@
 // SceneDesk handles commands that change scene or parameters during a run: which are rejected, with which messages, and
-// that it gets back what it hands to the loop.
+// that the loop returns the objects that it gets from the desk.
 #include "firmware/app/scene_desk.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST_F(SceneDeskTest, PreviewsSayWhatASceneIsWithTheLaunchsOverrides) {
   EXPECT_EQ(offer.previews[3].about, (folder / "wrong.toml:2: key 'suture.nodes': found 1, allowed integer 2 .. 5000"));
 }
 
-// The preview simulates nothing, so its shape is compared with that of the physics.
+// The preview is made without the simulation, so its shape is compared with the start shape of the physics.
 TEST(ScenePreview, ShowsTheStartShapeOfEachShippedScene) {
   for (const auto& entry : fs::directory_iterator(LIGATURE_SOURCE_DIR "/scenes")) {
     if (entry.path().extension() != ".toml") continue;

@@ -1,5 +1,5 @@
-// The thread's physics beside the loop, in virtual time: its cost reduces simulated time only; the loop never waits for
-// it.
+// The thread's physics beside the loop, in virtual time. When the physics needs too long, less simulated time passes,
+// but the loop never waits.
 #include <gtest/gtest.h>
 
 #include "tests/support/random.hpp"
@@ -37,7 +37,8 @@ struct HeldRig : VirtualRig {
   std::vector<Nanoseconds> synced_at;
 };
 
-/// The loop is unaffected by the thread: SYNC in every period, law and torques right after the samples, no period lost.
+/// The loop is unaffected by the physics: SYNC in every period, control law and torques right after the samples, no
+/// period lost.
 void expect_loop_in_time(const HeldRig& rig, const std::vector<rt::TickRecord>& records) {
   for (std::size_t i = 0; i < rig.synced_at.size(); ++i)
     ASSERT_EQ(rig.synced_at[i], static_cast<std::int64_t>(i + 1) * 1ms) << i;
@@ -48,8 +49,8 @@ void expect_loop_in_time(const HeldRig& rig, const std::vector<rt::TickRecord>& 
   }
 }
 
-/// Shortest time that the physics has in one of 1000 ticks: from when it gets the tools' positions, `law` after the
-/// encoder samples, until its deadline in the next period.
+/// Shortest time that the physics has in one of 1000 ticks: from when it gets the tools' positions (a time `law` after
+/// the encoder samples) until its deadline in the next period.
 Nanoseconds usable(Nanoseconds law) {
   rt::ThreadDeadline deadline(platform::cia402_time());
   Nanoseconds least = 1s;

@@ -131,7 +131,7 @@ TEST(LogReader, ALogOfAnotherRecorderHasNoChecksumsAndIsSound) {
   LogReader log(folder.file("plain.lcmlog"));
   EXPECT_EQ(first_ticks(log).size(), static_cast<std::size_t>(kEvents));
   EXPECT_EQ(log.damage(), "");
-  // As after lcm-logplayer and lcm-logger: the same checksums, other times.
+  // A log that was played back by lcm-logplayer and recorded by lcm-logger: the same checksums, other times.
   std::string played = whole;
   for (std::size_t i = 0; i < kEvents; ++i)
     for (const std::size_t head : {std::size_t{0}, event_size - kCheckEventBytes})

@@ -63,7 +63,7 @@ TEST(LogSummary, TableAndJsonSayTheSame) {
   EXPECT_DOUBLE_EQ(json["executed_percent"].get<double>(), 100.0 * 1979 / 1980);
   EXPECT_DOUBLE_EQ(json["executed_per_s"].get<double>(), 1000.0 * 1979 / 1980);
   EXPECT_EQ(json["periods_lost"], 1);
-  // Of the values 0 .. 1999 without 400 .. 419 and 1900.
+  // Percentiles of the values 0 .. 1999 without 400 .. 419 and 1900.
   EXPECT_DOUBLE_EQ(json["wakeup_us"]["p50"].get<double>(), 1.009);
   EXPECT_DOUBLE_EQ(json["wakeup_us"]["p99"].get<double>(), 1.98);
   EXPECT_EQ(json["knot"]["type"], "3_1");
@@ -103,7 +103,8 @@ TEST(LogSummary, SaysTiedOrUntiedOnlyOfWhatTheRecordingShows) {
   says({false, false, false}, "0_1 (no knot)\n");
 }
 
-/// "Zero lost" may be claimed only if the last recorded tick has the drives off: otherwise the run may have gone on.
+/// The report may claim "zero lost" only if the drives are off in the last recorded tick: otherwise the run may have
+/// gone on.
 TEST(LogSummary, SaysZeroLostOnlyOfRunsThatAreThereToTheirEnd) {
   const test::TestFolder folder;
   for (std::int8_t state = 0; state < 7; ++state) {

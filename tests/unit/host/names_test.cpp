@@ -1,5 +1,5 @@
-// The host's names for protocol numbers against the firmware's own lists; host code itself may not include the
-// firmware.
+// Compares the host's names for protocol numbers with the firmware's own lists; host code itself may not include
+// firmware code.
 #include <gtest/gtest.h>
 
 #include <algorithm>

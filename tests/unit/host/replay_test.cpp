@@ -1,5 +1,5 @@
-// A fixed recording gives the same knots at the same ticks, the same events and the same traces at any replay speed and
-// with any seeking.
+// A fixed recording gives the same knots at the same ticks, the same events and the same traces, at any replay speed
+// and after any jumps.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -27,7 +27,8 @@ ligature_msg::event_t event_of(std::int64_t tick, std::int8_t kind, int code, co
   return event;
 }
 
-/// 6 s: a straight thread, an overhand knot from 2 s on, straight again from 5 s on; grasped from tick `grasp` on.
+/// Writes a recording of 6 s: a straight thread, an overhand knot from 2 s on, straight again from 5 s on; a hand
+/// grasps it from tick `grasp` on.
 void write_golden(const std::string& path, std::int64_t grasp) {
   LogWriter log(path, false);
   ligature_msg::status_t status{};
@@ -194,7 +195,8 @@ TEST_F(Replay, AnotherRecordingRunsBesideItFromTheCommonGrasp) {
   }
   EXPECT_EQ(told["files"], (json{"golden.lcmlog", "other.lcmlog"}));
   EXPECT_EQ(told["offset_ticks"], 1234 - 2000);
-  // The recording is at 1.5 s, 0.266 s after its grasp; the other one must be as far after its own, to within a batch.
+  // The recording is at 1.5 s, 0.266 s after its first grasp. The other recording must be as far after its own first
+  // grasp, to within a batch.
   EXPECT_NEAR(last, 2266.0, 2 * kBatch);
 
   EXPECT_TRUE(comparison.request({{"compare", ""}, {"align", "start"}}).is_null());

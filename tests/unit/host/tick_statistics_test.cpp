@@ -92,8 +92,8 @@ TEST(ThreadTime, IsFromTheToolsToTheNextJointsWithoutTheSync) {
   // The physics has the time from the end of tick 1 (10 + 500 us after its period began) to the samples of tick 2
   // (1000 + 20 + 400 us), less the margin of 25 us and 30 us for sending SYNC.
   statistics.add(period_of(2, 20, 400, 480));
-  // These samples arrive only at 600 us, but the loop goes by the earliest recent arrival, 400.02 us. The time left is
-  // 1000 + 0 + 400.02 (arrival) - 25 (margin) - 30 (SYNC) - (20 + 480) (end of tick 2).
+  // These samples arrive only at 600 us, but the physics must be ready for the earliest recent arrival, 400.02 us. The
+  // time left is 1000 + 0 + 400.02 (arrival) - 25 (margin) - 30 (SYNC) - (20 + 480) (end of tick 2).
   statistics.add(period_of(3, 0, 600, 700));
   EXPECT_EQ(statistics.thread_time().at_least_ns(50), 855'000);
   EXPECT_EQ(statistics.thread_time().at_least_ns(100), 845'020);
@@ -102,7 +102,7 @@ TEST(ThreadTime, IsFromTheToolsToTheNextJointsWithoutTheSync) {
   EXPECT_EQ(statistics.thread_time().at_least_ns(100), 650'040);
 }
 
-/// Drives whose frames are longer than those of our own leave the thread more time before their samples.
+/// Drives with longer frames than Ligature's own leave the physics more time before their samples.
 TEST(ThreadTime, IsThatOfTheDrivesOfTheRecording) {
   TickStatistics statistics;
   statistics.add(period_of(1, 0, 780, 850));

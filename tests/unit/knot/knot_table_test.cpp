@@ -1,4 +1,4 @@
-// The table of knots against KnotInfo's, to ten crossings (tests/reference/10_knot_invariants.csv).
+// Compares the table of knots with KnotInfo's table, up to ten crossings (tests/reference/10_knot_invariants.csv).
 
 #include "host/knot/knot_table.hpp"
 
@@ -116,7 +116,8 @@ void extend(Universe& all, const Polynomials& of, const Sum& sum, std::size_t fi
   }
 }
 
-/// Every knot to ten crossings, prime or composite, in each of its hands; for each number of crossings of a diagram.
+/// Tested for every knot up to ten crossings, prime or composite, in each of its hands, and for each number of
+/// crossings that its diagram may have.
 TEST(KnotTable, ANameIsGivenOnlyWhereNoOtherKnotHasThePolynomialsAndElseTheCandidatesAreComplete) {
   Universe all;
   extend(all, {{1}, {0, {1}}}, {"", 0}, 0);

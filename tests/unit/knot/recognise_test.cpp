@@ -189,8 +189,8 @@ TEST(Recognise, AClosedLineThatLiesInItselfIsNotGuessed) {
   EXPECT_TRUE(recognise(twice, true).alexander.empty());
 }
 
-/// Straight edges and planar polygons, as in drawings: such lines make simplifying moves uncertain by rounding; those
-/// are rejected (pierce.hpp).
+/// Straight edges and planar polygons, as in drawings: on such lines rounding makes some simplifying moves uncertain,
+/// and uncertain moves are rejected (pierce.hpp).
 TEST(Recognise, StraightEdgesOfManyPointsInAPlane) {
   for (const int pieces : {2, 7, 20}) {
     for (const auto& b : braids()) {

@@ -1,5 +1,5 @@
-// `ligature-lab experiment extremes` runs trials with extreme parameters: how a trial ends, and which ends count as a
-// stop without a known cause.
+// `ligature-lab experiment extremes` runs trials with extreme parameters: how a trial ends, and which of these endings
+// count as a stop without a known cause.
 
 #include <gtest/gtest.h>
 

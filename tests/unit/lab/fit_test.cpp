@@ -1,4 +1,5 @@
-// `ligature-lab fit`: its laws against reference values, against the rod itself, and parameters found in noisy data.
+// `ligature-lab fit`: its laws compared with reference values and with the rod itself, and parameters found in noisy
+// data.
 
 #include "host/lab/fit/fit.hpp"
 
@@ -105,7 +106,7 @@ TEST(Fit, OfExactReadingsIsExact) {
     EXPECT_NEAR(fitted.found[k]->value / lab.truth[k], 1.0, 1e-5) << kTold[k].name;
 }
 
-// Other threads as well: the start of the fit is that of one suture.
+// The fit starts from one suture's values and must find other threads, too.
 TEST(Fit, FindsThreadsTenTimesStifferAndLimper) {
   for (const double factor : {0.1, 10.0}) {
     Lab lab;
@@ -142,8 +143,8 @@ TEST(Fit, NoisyReadingsGiveParametersWithinThreePercent) {
   }
 }
 
-// The implicit step itself damps, as if damping_s were longer by about the step's length: 12.5 us at accuracy "fine",
-// 0.6 % of the 2 ms used here.
+// The implicit time step itself damps, as if damping_s were longer by about one step: 12.5 us at accuracy "fine", which
+// is 0.6 % of the damping_s of 2 ms used here.
 constexpr double kTick_s = 5e-4;
 
 /// A rod of the given length, clamped at the origin; fine time steps, no contact.
@@ -190,7 +191,7 @@ std::vector<double> swing_of_the_rod(double length_m, int swings, const Paramete
   return {length_m, static_cast<double>(swings), to.first - from.first, from.second, to.second};
 }
 
-// Whoever measures the simulated thread by the recipe gets the scene's own values back.
+// Measuring the simulated thread by the recipe gives the scene's own values back.
 TEST(Fit, MeasuredOnTheRodItGivesTheScenesValues) {
   Lab lab;
   lab.noise = 0.0;

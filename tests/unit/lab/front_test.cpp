@@ -1,4 +1,4 @@
-// The cost of each setting against what it misses, over all published cases.
+// The cost of each setting against its error, over all published cases.
 
 #include "host/lab/published/front.hpp"
 

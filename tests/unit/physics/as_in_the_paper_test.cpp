@@ -48,8 +48,8 @@ TEST(AsInThePaper, CorrectedTiesAnOverhandWithinTheLengthLimitsAndTellsTheCondit
   EXPECT_GE(least, -0.1 - 1e-6);
 }
 
-/// Kinetic energy four seconds into the overhand's script, J. Nothing moves faster than a hand there, so some joules
-/// are right.
+/// Kinetic energy four seconds into the overhand's script, J. Nothing should move faster than a hand then, so a correct
+/// value is some joules.
 double motion_J(const scene::Scene& scene) {
   Simulation sim = make(scene);
   play(sim, overhand(), 0.0, 4.0);
@@ -57,7 +57,7 @@ double motion_J(const scene::Scene& scene) {
   return sim.diagnostics().kinetic_J;
 }
 
-// The printed signs feed energy in: the thread storms as soon as it is bent.
+// Damping with the printed signs adds energy: the thread moves violently as soon as it is bent.
 TEST(AsInThePaper, PrintedSignsMakeEveryModelStormThatHasThem) {
   EXPECT_LT(motion_J(shipped("paper-printed.toml", {"suture.model=paper-1"})), 30.0);
   EXPECT_LT(motion_J(shipped("paper-printed.toml")), 30.0);
@@ -74,15 +74,15 @@ TEST(AsInThePaper, PrintedRunsThroughAWholeScript) {
   EXPECT_TRUE(sim.diagnostics().finite);
 }
 
-/// Positions after a second of the overhand's script.
+/// Positions four seconds into the overhand's script.
 std::vector<Vec3> after_a_second(const std::vector<std::string>& overrides) {
   Simulation sim = make(paper_scene(overrides));
   play(sim, overhand(), 0.0, 4.0);
   return {sim.nodes_W().begin(), sim.nodes_W().end()};
 }
 
-// Section III: a force is left out by its constant 0. Model 4 without some of its forces is exactly model 1, 2 or 3, so
-// any other combination is what its constants say.
+// Section III of the paper: a force whose constant is 0 is left out. Model 4 without some of its forces is exactly
+// model 1, 2 or 3, so other combinations must follow their constants, too.
 TEST(AsInThePaper, AForceWithConstantZeroIsNotThere) {
   const std::string no_bend = "suture.bend=0", no_damper = "suture.bend_damping=0",
                     no_swivel = "suture.swivel_damping=0";

@@ -1,4 +1,5 @@
-// Every broad phase reports exactly the pairs of brute force: random walks, coils, piles, lines, points.
+// Every broad phase reports exactly the pairs that testing all pairs finds: for random walks, coils, piles, lines,
+// points.
 #include <gtest/gtest.h>
 
 #include "firmware/physics/paper/bvh.hpp"
@@ -64,7 +65,7 @@ TEST(BroadPhase, SweepAndTreeReportThePairsOfBruteForceInTenThousandShapes) {
   EXPECT_GT(found, 100000U);
 }
 
-// Brute force itself against the distances: no touching pair is missing.
+// Brute force itself, checked by the distances of all pairs: no touching pair is missing.
 TEST(BroadPhase, BruteForceMissesNoTouchingPair) {
   test::Random random(6);
   SegmentSpheres spheres(40);
@@ -92,7 +93,7 @@ TEST(BroadPhase, AFullListSaysSo) {
   EXPECT_EQ(pairs.pairs.size(), 5U);
 }
 
-// Densely sampled pairs bound the distance from above; the closest points must not be farther apart.
+// The distance of densely sampled pairs of points is an upper bound; the closest points must not be farther apart.
 TEST(ClosestPoints, AreNoFartherThanAnySampledPair) {
   test::Random random(12);
   auto states = test::degenerate_nodes(4, 13);

@@ -1,5 +1,5 @@
-// Contact laws of the paper of 2007 as pure functions, as printed and corrected: equations (1)-(3), (18)-(22) and the
-// separation of section V.A.
+// Contact laws of the paper of 2007 as pure functions, as printed and with our corrections: equations (1)-(3),
+// (18)-(22) and the separation of section V.A.
 #include <gtest/gtest.h>
 
 #include "firmware/physics/paper/contact_row.hpp"
@@ -62,8 +62,8 @@ TEST(ImpulseResponse, ConservesBothMomentaAndGivesOneToTwoTimesTheImpulse) {
       const V change = velocity_after(s.v[e], part[e], applied, 1.0 / m, n) - s.v[e];
       linear = linear + m * change, angular = angular + m * cross(s.p[e], change);
     }
-    // The impulses act at C and E, which in a contact differ only along n, so they exert no torque; for arbitrary
-    // points the torque must be that of these impulses.
+    // Opposite impulses act at the points C and E of the two segments. In a contact, C and E differ only along n, so
+    // the impulses exert no torque. Here the points are arbitrary, and the torque must be that of the two impulses.
     const V c = (1 - a) * s.p[0] + a * s.p[1], e = (1 - b) * s.p[2] + b * s.p[3];
     EXPECT_LE(norm(linear), 1e-12);
     EXPECT_LE(norm(angular - cross(c - e, applied * n)), 1e-12);

@@ -13,7 +13,8 @@ namespace {
 using test::make;
 using test::paper_scene;
 
-/// The paper's scene with another thread model, set directly; in a file, keys of other models would have to be removed.
+/// The paper's scene with another thread model, set directly; in a scene file, the keys of the old model would have to
+/// be removed.
 scene::Scene scene_of(scene::Model model, const std::vector<std::string>& overrides = {}) {
   auto scene = paper_scene(overrides);
   scene.suture.model = model;
@@ -119,8 +120,8 @@ TEST(PaperGrasp, HoldsAtOnceWhatIsBetweenTheJaws) {
   EXPECT_GT(hand.f_W.norm(), 0.5 * 1200.0 * 0.3 * (b - a).norm());
 }
 
-/// NaN or infinity in a tool of any grip (closed, open, with orientation), in a shape or in a velocity: it must not
-/// change the thread.
+/// NaN or infinity in a tool (jaws closed, open, or with orientation), in a shape or in a velocity must not change the
+/// thread.
 TEST_P(Facade, WhatIsNoNumberStopsItAsItIs) {
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
   const auto shape = [](const Simulation& sim) {

@@ -1,5 +1,5 @@
-// An image of a simulation continues like the simulation that was saved, to the bit; a damaged or foreign one is
-// refused.
+// A simulation loaded from an image continues like the simulation that was saved, to the bit. A damaged image, or one
+// of another simulation, is refused.
 
 #include <gtest/gtest.h>
 
@@ -99,8 +99,8 @@ std::vector<double> shown(const Simulation& sim) {
 
 class OfImage : public testing::TestWithParam<Kind> {};
 
-/// A simulation is saved at several moments, with and without a hold. The loaded one is compared at once, and in each
-/// of the 40 ticks that follow.
+/// A simulation is saved at several moments, with and without a hold. The loaded simulation is compared with it at
+/// once, and in each of the 40 ticks that follow.
 TEST_P(OfImage, ContinuesToTheBit) {
   Simulation sim = made(GetParam().scene, GetParam().overrides);
   Simulation loaded = sim;
@@ -133,7 +133,8 @@ INSTANTIATE_TEST_SUITE_P(Kinds, OfImage, testing::ValuesIn(kKinds), [](const aut
   return name;
 });
 
-/// The refusal of an image by a suture that has moved; it moves on as if nothing had happened.
+/// The text with which a suture that has moved refuses an image; empty if it accepts. A refusal must not change the
+/// suture.
 std::string refusal(const Image& image) {
   Simulation sim = made("suture-3-0-knot.toml");
   play(sim, Hands(sim), 0, 20);
@@ -155,7 +156,8 @@ TEST(Image, OfAnotherSceneIsRefused) {
   EXPECT_NE(refusal(made("paper.toml").save()), "");
 }
 
-/// The paper's models have the same constants and members; which forces a model has is chosen when it is made.
+/// The paper's models have the same constants and members and differ only in the forces that are chosen when a
+/// simulation is made. So an image of another model must be recognised by the chosen forces.
 TEST(Image, OfAnotherModelOfThePaperIsRefused) {
   const std::vector<std::string> kinds{"suture.model=\"paper-1\"", "suture.model=\"paper-2\"",
                                        "suture.model=\"paper-3\"", "suture.model=\"paper-4\"",
@@ -176,7 +178,7 @@ TEST(Image, OfAnotherVersionOrDamagedIsRefused) {
   EXPECT_EQ(refusal(longer), "the image is damaged: save it again");
 }
 
-/// Contents of another length, behind a header that fits them: only reading them finds it.
+/// The contents have a wrong length, but the header fits them: only reading the contents shows the error.
 TEST(Image, OfOtherLengthsIsRefused) {
   const Image good = made("suture-3-0-knot.toml").save();
   physics::ImageOrigin origin;

@@ -1,5 +1,5 @@
 // Internal forces of the thread, equations (4)-(15) of the paper of 2007, as pure functions: momentum, energy and
-// gradients for 2,000 random and for degenerate states.
+// gradients, for 2,000 random states and for degenerate ones.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -97,8 +97,8 @@ void expect_idle_in_rigid_motion(int n, const Law& law) {
     EXPECT_LE(test::largest_of(law(s)), 1e-12 * std::max(1.0, moving));
   }
 }
-/// Central difference with step ~eps^(1/3); error ~eps^(2/3) of energy / step. States that are nearly straight or
-/// folded are skipped, since the energy has a kink there, and so are very short segments.
+/// Central difference with step ~eps^(1/3); error ~eps^(2/3) of energy / step. Skipped are states that are nearly
+/// straight or folded, where the energy has a kink, and states with very short segments.
 void expect_minus_gradient(int n, const Law& law, const std::function<double(const Nodes&)>& energy) {
   test::Random random(10);
   constexpr double h = 6e-6;
@@ -137,7 +137,8 @@ TEST(DihedralDamper, NeverAddsPower) { expect_dissipative(4, dihedral_damping); 
 TEST(DihedralDamper, IsIdleInRigidMotion) { expect_idle_in_rigid_motion(4, dihedral_damping); }
 TEST(PaperSwivel, NeverAddsPowerButIsNotInternal) {
   expect_dissipative(3, paper_swivel);
-  // Documented property of the paper's law: it brakes rigid rotation, which an internal force should not do.
+  // The paper's swivel law brakes rigid rotation, which an internal force should not do. The documentation says so, and
+  // this test confirms it.
   test::Random random(11);
   Nodes s = random.nodes(3);
   s.v = test::rigid_velocities(s.p, {0, 0, 0}, {1.0, 2.0, 3.0});

@@ -41,7 +41,8 @@ TEST(InternalStep, ConservesBothMomentaInEveryModel) {
     }
 }
 
-// Each damper alone and all together, with coefficients over twelve decades: the kinetic energy never grows.
+// With each damper by itself and with all together, with coefficients over twelve decades, the kinetic energy never
+// grows.
 TEST(InternalStep, ImplicitDampersNeverAddEnergyAtAnyCoefficient) {
   test::Random random(2);
   for (int k = 0; k < 4000; ++k) {
@@ -87,8 +88,9 @@ TEST(InternalStep, ImplicitDampingTendsToTheExplicitOneForSmallCoefficients) {
   }
 }
 
-// The swivel damper alone, in either model that has one: it never adds energy, and the motion out of the bends' planes
-// loses energy. A single thread may lose next to nothing, because its bends may hardly swing; so the loss is a mean.
+// With the swivel damper only, in each model that has one: it never adds energy, and motion out of the bends' planes
+// loses energy. A single thread may lose next to nothing, because its bends may hardly swing; so the mean loss of many
+// threads is tested.
 TEST(InternalStep, ASwivelDamperTakesEnergyFromWhatSwings) {
   test::Random random(5);
   constexpr int kThreads = 200;

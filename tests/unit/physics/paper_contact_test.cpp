@@ -1,5 +1,5 @@
-// PaperContact, the self-contact of the paper of 2007, for random crossings against closed forms: its equations (2),
-// (18)-(22) for the normal direction, (1) and (3) for friction, and the separation of section V.A.
+// PaperContact, the self-contact of the paper of 2007, compared with closed forms for random crossings: the equations
+// (2), (18)-(22) for the normal direction, (1) and (3) for friction, and the separation of section V.A.
 #include "firmware/physics/paper/paper_contact.hpp"
 
 #include <gtest/gtest.h>
@@ -91,7 +91,8 @@ TEST(PaperContact, FrictionStopsSlipInsideTheStaticConeAndBrakesItByTheKineticOn
   EXPECT_GT(slid, 100);
 }
 
-// As printed: an impulse mu |n| dt against the slip, even if it reverses the slip, and attraction becomes a push.
+// Without friction_cap, as the paper prints it: a friction impulse mu |N| dt (N normal force) acts against the slip,
+// even if it reverses the slip. An attracting normal force, N < 0, acts as a repulsion |N|.
 TEST(PaperContact, UncappedItIsAsPrinted) {
   test::Random random(23);
   int reversed = 0, attracted = 0;

@@ -127,7 +127,7 @@ TEST(Propagation, OneHandThatPullsTautIsConditionB) {
     sim.tick({ToolInput{Vec3(0.0, 0.0, z), Vec3(0, 0, k < 1000 ? -1.0 : 0.0), true}, away});
   }
   EXPECT_EQ(sim.hand(Hand::kLeft).condition, Propagation::kB);
-  // Statics: the fixed frame carries the hand's pull and the weight; every segment is at its limit.
+  // In equilibrium the fixed frame carries the hand's pull and the weight, and every segment is at its length limit.
   EXPECT_GT(sim.hand(Hand::kLeft).f_W.z(), 300.0);
   sim.tick({ToolInput{Vec3(0.0, 0.0, -0.5), Vec3::Zero(), false}, away});
   EXPECT_EQ(sim.hand(Hand::kLeft).condition, Propagation::kNone) << "a hand that has let go";

@@ -1,5 +1,5 @@
 #pragma once
-// Random and degenerate configurations of a few nodes for tests of force laws, and sums over their forces.
+// Random and degenerate configurations of a few nodes for tests of force laws, and sums of forces and torques.
 
 #include <algorithm>
 #include <vector>

@@ -1,5 +1,5 @@
 // A tick of the physics ends between two pieces of work when its time is over; the thread does not move for the rest of
-// the tick. A rerun that ends its ticks at the same pieces gives the same result.
+// the tick. A rerun that ends its ticks after the same pieces gives the same result.
 #include <gtest/gtest.h>
 
 #include "tests/support/random.hpp"

@@ -35,7 +35,8 @@ TEST(HangingThread, ExtendsByItsWeightOverStiffness) {
   }
 }
 
-// Model 5 stretches less than model 4 with its default constant, but more with the printed one (paper V.C claims less).
+// Model 5 stretches less than model 4 with its default constant, but more with the printed one (the paper claims in
+// section V.C that it stretches less).
 TEST(HangingThread, StretchesLessInModel5OnlyWithTheStiffConstant) {
   const auto tip = [](const char* model, const char* constant) {
     Simulation sim =
@@ -170,7 +171,8 @@ TEST(Gripper, PushesTheThreadAsideButNotTheOneItHolds) {
   EXPECT_EQ(held.diagnostics().contacts, 0);  // releasing does not kick the thread away
 }
 
-// Overlaps are removed by 0.01 r per step, i.e. at 0.5 m/s; a faster gripper moves the thread by its own velocity.
+// An overlap is reduced by at most 0.01 r per step (r thread radius), i.e. at 0.5 m/s. A faster gripper must push the
+// thread along by its own velocity.
 TEST(Gripper, TakesAlongWhatItMeetsHoweverFastItIs) {
   for (const double speed : {0.2, 1.0, 3.0}) {
     Simulation sim = make(paper_scene({"world.grippers_collide=true", "world.gravity_m_per_s2=[0.0,0.0,0.0]"}));

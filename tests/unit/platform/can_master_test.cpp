@@ -176,7 +176,8 @@ TEST_F(CanMasterTest, LeavesTheDrivesPreOperationalAndUnwatched) {
   EXPECT_EQ(written[can::od::kConsumerHeartbeat], 0U);
 }
 
-/// A drive that ignores NMT and goes on: its watchdog must stay, because it is what ends the torque.
+/// A drive that ignores NMT and stays on: its watchdog must not be switched off, because only the watchdog ends the
+/// torque.
 TEST_F(CanMasterTest, ADriveThatIsStillOnKeepsItsWatchdog) {
   for (const std::uint32_t statusword : {0x0237U, 0x0217U, 0x021FU}) {  // enabled, quick stop, reaction to a fault
     writes.clear();

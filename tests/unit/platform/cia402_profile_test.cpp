@@ -1,4 +1,5 @@
-// A hand of drives that a device record describes: start-up, buttons, watchdog, and what such drives lack.
+// A hand whose drives are described by a device record: start-up, buttons, watchdog, and functions that such drives
+// lack.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -71,8 +71,8 @@ class BusOfARecord {
     const auto address = can::address_of(heard.frame.id);
     torques_ += address && address->service == can::Service::kRpdo1;
     if (!can::is_sync(heard.frame)) return;
-    // The drives sample, and the torques act that have arrived since the last SYNC. They were computed from the samples
-    // of that SYNC, because the controller writes only when it has all of them.
+    // At this SYNC the drives sample, and the torques that arrived since the last SYNC begin to act. These torques were
+    // computed from the samples of the last SYNC, because the controller writes only when it has all samples.
     if (sampled_ > Time(0) && torques_ == kDrives) note(heard.end - sampled_);
     figures_.late += sampled_ > Time(0) && torques_ != kDrives;
     torques_ = 0;

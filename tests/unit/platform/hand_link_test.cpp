@@ -1,4 +1,4 @@
-// Cyclic traffic of one hand with hand-made frames: sample sets, their age, drive states and errors.
+// Cyclic traffic of one hand, with frames made by the tests: sample sets, their age, drive states and errors.
 #include "firmware/platform/hand_link.hpp"
 
 #include <gtest/gtest.h>
@@ -155,7 +155,7 @@ TEST_F(HandLinkTest, AStopDisablesTheDrivesBeforeItTakesThemOffTheNetwork) {
   EXPECT_EQ(bus.sent[4], can::encode_nmt(can::NmtCommand::kStop));
 }
 
-/// Another sender's torque could come after the zero; a stopped drive takes neither.
+/// After our torque of zero, another sender's torque could come; a stopped drive accepts neither.
 TEST_F(HandLinkTest, AStopIsImmediateWhereSomebodyElseCommands) {
   bus.inbox.push_back(can::encode(kNodes[0], can::Rpdo1{can::cia402::kControlEnableOperation, 3000}));
   period();
@@ -164,7 +164,7 @@ TEST_F(HandLinkTest, AStopIsImmediateWhereSomebodyElseCommands) {
   EXPECT_EQ(bus.sent.front(), can::encode_nmt(can::NmtCommand::kStop));
 }
 
-/// The drives are configured for SYNC without counter; with a counter the frame would be longer.
+/// The drives are configured for a SYNC without counter, so the frame carries no data.
 TEST_F(HandLinkTest, SyncCarriesNothing) {
   link.send_sync();
   EXPECT_EQ(bus.sent.front(), (can::Frame{0x080, 0, {}}));
@@ -224,7 +224,7 @@ TEST_F(HandLinkTest, EveryFaultIsResetByAnEdgeOfItsOwn) {
   EXPECT_EQ(words, (std::vector<std::uint16_t>{0x80, 0, 0x80, 0}));
 }
 
-/// More frames than a bus can carry in a period: a stalled hand's queued frames must all be read at once.
+/// More frames than a bus can carry in a period: after a stall of a hand, all its queued frames must be read at once.
 TEST_F(HandLinkTest, TakesAWholeBusyPeriodAtOnce) {
   link.send_sync();
   for (int i = 0; i < 20; ++i) answer_all(State::kOperationEnabled, i);

@@ -129,7 +129,7 @@ TEST_F(HandLinkTest, ADriveOnItsWayIntoAFaultIsInOne) {
   EXPECT_TRUE(link.reading().drive_fault);
 }
 
-/// An emergency is cleared when the drive has been enabled again on request, not while it is merely operated.
+/// An emergency is cleared only by the request kEnable to a drive that is enabled, not by other requests.
 TEST_F(HandLinkTest, AnEmergencyIsForgottenByEnablingOnly) {
   period();
   bus.inbox.push_back(can::encode(can::Emergency{kNodes[1], can::emcy::kRpdoTimeout, can::emcy::kGenericBit}));
@@ -142,11 +142,12 @@ TEST_F(HandLinkTest, AnEmergencyIsForgottenByEnablingOnly) {
   EXPECT_FALSE(period().drive_fault);
 }
 
-/// A drive whose watchdog is the heartbeat, and that does not obey, keeps its torque as long as heartbeats come.
+/// Some drives have no other watchdog than the heartbeat. If such a drive does not obey, it keeps its torque as long as
+/// heartbeats come.
 class Heartbeats : public HandLinkTest {
  protected:
-  /// Heartbeats in 200 periods with this request, of drives that answer in this state with this torque. They have had
-  /// some periods to obey.
+  /// Number of the controller's heartbeats in 200 periods with this request, while the drives answer in this state with
+  /// this torque. The count begins 20 periods after the request, so that drives have time to obey.
   std::ptrdiff_t beats(rt::DriveRequest request, State state, std::int16_t permille = 0, bool answers = true) {
     for (int i = -20; i < 200; ++i) {
       if (i == 0) bus.sent.clear();

@@ -210,7 +210,7 @@ struct OwnThread {
   }
 };
 
-/// What the machine refuses must be reported; otherwise the kernel must confirm the settings.
+/// Each setting must either be confirmed by the kernel or be reported as refused.
 TEST(Realtime, AThreadHasTheCoreThePriorityTheTimersAndTheStackThatItAskedFor) {
   OwnThread t;
   t.run();

@@ -65,7 +65,7 @@ TEST(RigBus, EachHandHasItsOwnBus) {
   EXPECT_EQ(first_rpdo(right), (can::Rpdo1{can::cia402::kControlDisableVoltage, -200}));
 }
 
-/// The heartbeat does not delay an answer to SYNC, and the two hands' heartbeats fall in different periods.
+/// The heartbeat is sent when it cannot delay an answer to SYNC. The two hands' heartbeats fall in different periods.
 TEST(RigBus, TheMastersHeartbeatGoesBeforeTheTorquesOfEveryFiftiethPeriod) {
   TwoHands hands;
   auto& [left, right, wait, drives, rig] = hands;

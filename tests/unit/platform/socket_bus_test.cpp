@@ -29,7 +29,7 @@ int send_error = 0, recv_error = 0;  // errno with which send and recv fail (rec
 
 }  // namespace
 
-// Replacements for libc's calls, so that a plain socket can return a CAN interface's errors.
+// Replacements for libc's socket calls, so that a plain socket can return the errors of a CAN interface.
 extern "C" ssize_t send(int fd, const void* bytes, std::size_t count, int flags) {
   if (send_error != 0) return errno = send_error, -1;
   return sendto(fd, bytes, count, flags, nullptr, 0);
@@ -98,7 +98,7 @@ TEST_F(SocketBusTest, SkipsWhatIsNoFrame) {
   EXPECT_EQ(frame, kFrame);
 }
 
-/// Reading must be bounded: a peer that sends as fast as it is read would otherwise keep a period from ending.
+/// Reading must be bounded: otherwise the period would not end while a peer sends as fast as it is read.
 TEST_F(SocketBusTest, AFloodOfWhatIsNoFrameHoldsNobodyUp) {
   const char nonsense[5] = "what";
   int sent = 0;

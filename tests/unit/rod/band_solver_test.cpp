@@ -1,5 +1,5 @@
-// The banded solver of one substep's linear system against a dense solver: for every window (the range of nodes whose
-// solution is asked for), and on a matrix that is numerically hard.
+// Compares the banded solver of one substep's linear system with a dense solver: for every window (the range of nodes
+// whose solution is asked for), and on a matrix that is numerically hard.
 
 #include "firmware/physics/rod/solve/band_solver.hpp"
 

@@ -14,8 +14,9 @@ namespace {
 
 using namespace physics::rod;
 
-/// 11 segments fill one block of eight lanes and three lanes of the next. The padding lanes must give no pairs, even at
-/// the velocities of a thread that diverges within a tick; such pairs would be out-of-range accesses.
+/// 11 segments fill one block of eight lanes and three lanes of the next. The unused lanes must give no pairs, because
+/// such pairs would cause out-of-range accesses. This holds even at the velocities of a thread that diverges within a
+/// tick.
 TEST(BroadPhase, NamesSegmentsOfTheThreadOnly) {
   for (const double speed : {0.0, 1e9, 1e22, 1e30, 1e300, std::numeric_limits<double>::infinity(), std::nan("")}) {
     Rod rod(unit_rod(), steps_of(1e-3), kBare, 12);

@@ -1,5 +1,5 @@
-// The table of contact couplings (velocity of contact a per impulse on contact b) must be symmetric: one half is put in
-// and the other mirrored. It must stay right when two contacts exchange places.
+// The table of contact couplings (velocity of contact a per impulse on contact b) must be symmetric: one half is
+// computed, the other half mirrored. The table must stay correct when two contacts exchange places.
 
 #include "firmware/physics/rod/solve/contact_couplings.hpp"
 

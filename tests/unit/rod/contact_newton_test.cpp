@@ -1,4 +1,4 @@
-// Newton's method for contacts against projected Gauss-Seidel iterated to convergence, on a short stiff chain.
+// Compares Newton's method for contacts with projected Gauss-Seidel, iterated to convergence, on a short stiff chain.
 
 #include "firmware/physics/rod/solve/contact_newton.hpp"
 
@@ -134,8 +134,8 @@ TEST(ContactNewton, KnowsWhatItsImpulsesDo) {  // it predicts the contacts' velo
     EXPECT_LT(norm(u[static_cast<std::size_t>(k)] - truth[static_cast<std::size_t>(k)]), 1e-5);
 }
 
-// Between substeps contacts change order, disappear, reappear and move. Their couplings (velocity of one contact per
-// impulse on another) are reused for contacts that have not moved and recomputed for the others.
+// Between substeps contacts change order, disappear, reappear and move. Couplings (velocity of one contact per impulse
+// on another) between contacts that have not moved are reused; the others are recomputed.
 TEST(ContactNewton, KnowsItsContactsAgain) {
   Jam jam(4);
   test::Random random(9);

@@ -33,7 +33,8 @@ double pull_N(const RodSimulation& sim) {
 }
 
 /// Contacts decide where remeshing puts nodes, so a copy without the contacts would have another mesh from the next
-/// tick on. The copy rebuilds the contact list and matrices, which changes only rounding: 3 mN here, on the way to 5 N.
+/// tick on. The copy rebuilds the contact list and matrices. This changes only rounding; the hands' force differs by 3
+/// mN here, on the way to 5 N.
 TEST(Copy, RemeshesAsItsOriginal) {
   RodSimulation sim = knotted();
   std::array<ToolInput, 2> tools{};
@@ -73,8 +74,8 @@ bool same(const RodSimulation& a, const RodSimulation& b) {
   return std::equal(a.nodes_W().begin(), a.nodes_W().end(), b.nodes_W().begin(), b.nodes_W().end());
 }
 
-/// What a rod keeps is copied, and what it forgets is computed again in the same way: with bends that set and twist,
-/// but without contact, no bit differs.
+/// A copy takes over the rod's state and computes everything else anew, in the same way. So with plastic bending and
+/// twist, but without contact, no bit differs.
 TEST(Copy, WithoutContactContinuesToTheBit) {
   RodSimulation sim = knotted({"contact.solver=\"none\"", "suture.yield_strain=0.01", "suture.set_fraction=0.5"});
   auto tools = at_the_ends(sim);
@@ -105,7 +106,7 @@ TEST(Copy, ResetRepeatsThePullToTheBit) {
   EXPECT_TRUE(same(sim, first));
 }
 
-/// An assignment forgets the list and the matrices that the rod had before, so it does what a new copy does.
+/// An assigned rod discards the list and the matrices that it had before, so it continues like a new copy.
 TEST(Copy, AssignedOrNewIsTheSameToTheBit) {
   RodSimulation sim = knotted(), used = knotted();
   auto tools = at_the_ends(sim), others = tools;
@@ -122,7 +123,7 @@ TEST(Copy, AssignedOrNewIsTheSameToTheBit) {
   EXPECT_GT(copy.rod().report().contacts, 5);
 }
 
-/// The nodes of a mesh that moves have places that a uniform one does not know.
+/// The nodes of a moving mesh are at places where a uniform mesh has no nodes.
 TEST(Copy, GoesOnOnlyFromARodWhoseMeshMovesToo) {
   RodSimulation sim = knotted(), uniform = knotted({"suture.spacing=\"uniform\""}), same_mesh = knotted();
   auto tools = at_the_ends(sim);

@@ -56,8 +56,8 @@ TEST(StaticFriction, OnceItSlidesOnlyTheKineticOneBrakes) {
   EXPECT_NEAR(rod.state().v[15][1] - v0, 0.1 * a, 0.01 * 0.1 * a);
 }
 
-// On a slope between the two friction angles both states are stable: a pushed thread keeps sliding, a resting one
-// stays.
+// On a slope between the two friction angles (atan mu_k and atan mu_s) a pushed thread keeps sliding, and a resting
+// thread stays at rest.
 TEST(StaticFriction, BetweenTheConesMotionDecides) {
   const double angle = std::atan(0.3), a = kG * (std::sin(angle) - kSlide * std::cos(angle));
   Rod pushed = lying(angle), left = lying(angle);
@@ -82,8 +82,8 @@ TEST(StaticFriction, StopsByTheKineticAndHoldsByTheStatic) {
   EXPECT_LT(std::abs(rod.state().x[15][1] - rest), 1e-3 * 2.0 * rod.material().radius_m);
 }
 
-// A thread of the shipped length of which all nodes touch the desk: more contact work than the budget of sixteen
-// substeps.
+// A thread of the shipped length whose nodes all touch the desk. With sixteen substeps its contacts need more work than
+// the budget allows.
 TEST(Labour, FindsTimeForAThreadAllOfWhichSlides) {
   Material m;  // length 0.3 m
   m.drag_per_s = 0.0;

@@ -121,9 +121,9 @@ TEST(Growth, AGroupKnowsTheFastestOfItsPairs) {
 }
 
 // A loose coil and a ball (a random walk), both moving, with 250 and 2000 nodes. In the ball the cost per pair grows by
-// an eighth with each doubling of the nodes, because more bounding boxes overlap without a close pair. If all pairs
-// were tested, the cost per node would be 8 times as large with 2000 nodes. The mean over six walks reduces the
-// scatter.
+// an eighth with each doubling of the nodes, because more bounding boxes overlap without containing a close pair. If
+// all pairs were tested, the cost per node would be 8 times as large with 2000 nodes as with 250. The mean over six
+// walks reduces the scatter.
 TEST(Growth, AListCostsByTheNodeAndByThePair) {
   Random random(5);
   const Outlook outlook{kDiameter, 0.5 * kDiameter, 0.1 * kDiameter, 1.2e-3};
@@ -164,7 +164,7 @@ TEST(Growth, ATickOfADrawnThreadCostsTheSamePerNode) {
 }
 
 // When the budget is too small for a new list, the contacts must keep their impulses for the solver's start. Without
-// them a held surgeon's knot moved at 10 m/s in that substep and overlapped by 0.8 d.
+// these impulses a held surgeon's knot moved at 10 m/s in that substep and overlapped by 0.8 d.
 TEST(Growth, AListThatCannotBeAffordedKeepsTheImpulses) {
   Random random(5);
   const State state = walk(300, 1.0, 8.0, 0.0, random);

@@ -34,7 +34,8 @@ struct Two {
   }
 };
 
-// A free end at 26 m/s that flies past a strand or away from it must not be shortened to 0.9 of the distance.
+// For a free end that flies past a strand or away from it, even at 26 m/s, the substep must not be shortened. Only
+// towards the strand it is shortened to 0.9 of the distance.
 TEST(Guard, LetsPassWhatFliesByOrAway) {
   for (const Vec u : {make(26, 0, 0), make(0, 26, 0), make(20, 5, 14), make(0, 0, 26), make(18, 18, -2)}) {
     Two two;

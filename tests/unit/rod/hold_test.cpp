@@ -23,9 +23,9 @@ double lack(const RodSimulation& sim) {
   return worst;
 }
 
-// Nodes are moved only with velocities that satisfy the contacts in the current matrix, not in the older one that
-// Newton's method uses. With the older one a held square knot converged to 1 mm/s, but its strands approached at 0.16
-// m/s and overlapped by 0.56 d.
+// Newton's method uses an older matrix, but nodes may move only with velocities that satisfy the contacts with the
+// current matrix. When only the older one was checked, a held square knot converged to 1 mm/s, but its strands
+// approached at 0.16 m/s and overlapped by 0.56 d.
 TEST(Hold, MovesOnlyWhatIsSettledInTheTrueMatrix) {
   Tightening pull({}, "suture-3-0-square.toml");
   pull.sim().rod().numerics().work = 3'700'000;
@@ -43,7 +43,7 @@ TEST(Hold, MovesOnlyWhatIsSettledInTheTrueMatrix) {
     pull.sim().tick(pull.tools());
     if (k < 300) continue;
     overlap_m = std::max(overlap_m, -pull.sim().diagnostics().min_gap_m);
-    // If time was lost, the contacts in the report belong to a substep that was not carried out.
+    // In a tick that lost time, the reported contacts belong to a substep that was not carried out.
     if (pull.sim().rod().report().time_lost > 0.0) continue;
     ++moved;
     worst = std::max(worst, lack(pull.sim()));

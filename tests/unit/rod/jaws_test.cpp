@@ -70,8 +70,8 @@ TEST(Jaws, ForcesOnTheNodesAddUpToTheLoad) {  // no fixed node: three nodes betw
   EXPECT_NEAR(f.x(), 0.0, 1e-3 * kWeight_N);
 }
 
-/// Largest deviation of the hand's force from that of the coupling's spring and damper between tool (T) and held point
-/// (G), K (p_G - p_T) + B (v_G - v_T), N, while `move` moves the left hand for 800 ticks.
+/// Largest deviation of the hand's force, N, from the force K (p_G - p_T) + B (v_G - v_T) of the coupling's spring and
+/// damper between tool T and held point G, while `move` moves the left hand for 800 ticks.
 template <class Move>
 double off_the_coupling_N(RodSimulation& sim, std::array<ToolInput, 2> tools, Move move) {
   double most = 0.0;
@@ -101,7 +101,8 @@ TEST(Jaws, TheHandFeelsWhatTheyDoToTheThread) {  // for any position of the node
             1e-9);
 }
 
-// Friction of two jaws, 2 mu N = 0.6 N: pulled at 20 mm/s the thread slips at that force within 2 %.
+// The friction of the two jaws is 2 mu N = 0.6 N (N pinch force). Pulled at 20 mm/s, the thread slips at this force
+// within 2 %.
 TEST(Jaws, SlipAtCoulombsLimit) {
   auto sim = simulation(thread({"hands.pinch_width_m=0.004", "hands.pinch_force_N=1.0"}));
   auto tools = hands_at(sim.nodes_W()[30], Vec3(1, 1, 1));
@@ -119,7 +120,8 @@ TEST(Jaws, SlipAtCoulombsLimit) {
   EXPECT_GT(sim.hand(Hand::kLeft).node, 31);  // it has slipped by about 13 mm, two and a half segments
 }
 
-/// Twist of the thread above the left hand's jaws while the thread slides through them. The right hand has turned it.
+/// The right hand has turned the thread about its axis. The twist above the left hand's jaws must stay while the thread
+/// slides through them.
 TEST(Jaws, KeepTheRollWhateverNodesTheyHold) {
   auto sim = simulation(thread({"hands.pinch_width_m=0.011", "hands.pinch_force_N=1.0"}));
   const auto rolls = [&] {
@@ -211,8 +213,8 @@ TEST(Jaws, CloseOnATautThreadWithoutATug) {
 }
 
 /// Jaws close 14 mm beside the thread, which must jerk neither the thread nor the hand; a rigid grip would pull with 14
-/// N for a tick. In the end the hand feels the thread above: stretched by sqrt(l^2 + x^2) - l in series with the
-/// coupling, and its pull turned by x / l.
+/// N for a tick. In the end the hand feels the pull of the thread above it, over the length l: the thread is deflected
+/// by x, so it is stretched by sqrt(l^2 + x^2) - l, in series with the coupling, and the pull is turned by x / l.
 TEST(Jaws, CloseFarOffWithoutAJerk) {
   for (const double pull_N : {0.0, 1.0}) {
     const std::string load = "world.loads=[{node=60, force_N=[0,0,-" + std::to_string(pull_N) + "]}]";
@@ -240,7 +242,8 @@ TEST(Jaws, CloseFarOffWithoutAJerk) {
   }
 }
 
-// Held upright, pushed sideways at the free end: two nodes hold the direction, one does not.
+// A thread is held upright by jaws and pushed sideways at its free end. Jaws that hold two nodes keep its direction;
+// jaws on one node do not.
 TEST(Jaws, HoldTheDirectionToo) {
   const auto lean = [](const char* width) {
     auto sim = simulation(thread(

@@ -130,9 +130,9 @@ Pull pull(const scene::Scene& scene, double force_N, double wait_s, const Hands&
   return result;
 }
 
-// While the solver has no solution the thread is not moved, and such a knot seems perfect; therefore the share of time
-// lost is checked. For the square knot it is 0.10, and would be 0.27 if a substep never took more than its fair share
-// of the budget and an unsuccessful wait were not shortened.
+// While the solver has no solution the thread is not moved, and a knot that is not moved seems perfect. Therefore the
+// share of time lost is checked. It is 0.10 for the square knot. It would be 0.27 if no substep could take more than
+// its fair share of the budget, and if the next waiting were as long after one that did not help.
 TEST(Overhand, IsDrawnTightWithoutStandingStill) {
   EXPECT_LT(pull(load("suture-3-0-knot.toml"), 5.0, 1.0).lost, 0.005);
 }
@@ -174,7 +174,8 @@ TEST(Overhand, MayBeLetGoAtTenNewtons) {  // the end flies off at 20 m/s; the gu
 }
 
 // After the release, bending opens the loop until friction in the braid holds it:
-//   1/2 e^4 = 0.492 mu e^3, e^2 = a / R, a the thread's radius, R the loop's [Audoly, Clauvelin, Neukirch 2007].
+//   1/2 e^4 = 0.492 mu e^3 with e^2 = a / R: a radius of the thread, R of the loop, mu friction [Audoly, Clauvelin,
+// Neukirch 2007].
 // The loop, 2 pi R, is most of the length between the outermost contacts. The theory is for loose knots, hence the
 // tolerance of 20 %.
 TEST(Overhand, OpensAsFarAsFrictionLets) {
@@ -190,9 +191,9 @@ TEST(Overhand, OpensWithoutFriction) {  // mu = 0: the knot opens once an end is
   EXPECT_EQ(p.knot, "0_1");
 }
 
-// Knots of two throws hold by friction alone: a square knot above 0.27, a granny above 0.33. Below that the throws
-// rotate, thread slips out of the loop, and the tension falls. Compared is the share of 5 N that is left half a second
-// after the pull.
+// Only friction holds knots of two throws: a square knot above a friction coefficient of 0.27, a granny above 0.33.
+// With less friction the throws rotate, thread slips out of the loop, and the tension falls. The test compares how much
+// of 5 N is left half a second after the pull.
 TEST(Granny, NeedsMoreFrictionThanASquare) {
   const auto left = [](const char* scene, const char* friction) {
     return pull(load(scene, {friction}), 5.0, 0.0, {.sudden = true}).force_N / 5.0;

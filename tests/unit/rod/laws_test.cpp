@@ -1,5 +1,5 @@
-// Contact and energy of the rod against closed forms: friction cone, moving belts, slow slip, unconverged solves,
-// springs.
+// Contact and energy of the rod compared with closed forms: friction cone, moving belts, slow slip, contacts that did
+// not converge, springs.
 
 #include <gtest/gtest.h>
 
@@ -70,8 +70,8 @@ TEST(Belts, DrawTheThreadAlongByFrictionUntilItIsAsFast) {
   EXPECT_NEAR(mean(), kBelt_m_per_s, 0.01 * kBelt_m_per_s);
 }
 
-// 2e-4 m/s is slow but still sliding: on a slope just steeper than mu_k the thread must keep sliding, and static
-// friction must not stop it.
+// A speed of 2e-4 m/s is still sliding: on a slope just steeper than the kinetic friction mu_k the thread must keep
+// sliding, and static friction must not stop it.
 TEST(StaticFriction, DoesNotCatchWhatSlidesSlowly) {
   constexpr double kSlide = 0.2, kSlow_m_per_s = 2e-4;
   Material m;
@@ -91,8 +91,8 @@ TEST(StaticFriction, DoesNotCatchWhatSlidesSlowly) {
   EXPECT_NEAR(rod.state().v[15][1], kSlow_m_per_s + 0.1 * a, 0.5 * kSlow_m_per_s);
 }
 
-// A ball of thread thrown together does not converge in a single pass. The remaining velocities must not close any gap
-// by more than its width, or the overlaps would grow. Three balls a run; scripts/sweep draws others.
+// With a single pass, the contacts of a ball of thread thrown together do not converge. The remaining velocities must
+// not close any gap by more than its width, or the overlaps would grow. Three balls a run; scripts/sweep draws others.
 TEST(Unsettled, VelocitiesAreBrakedToWhatContactsHaveRoomFor) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     Numerics numerics;

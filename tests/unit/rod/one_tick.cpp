@@ -1,6 +1,6 @@
 // usage: rod-one-tick SEED PASSES: one substep of a ball of thread that hits a floor, with PASSES passes of the solver
-// over the contacts. Prints the work that was charged, the passes made and the contacts; test_pass_price.py counts the
-// instructions it really took.
+// over the contacts. Prints the estimated work, the passes made and the contacts. test_pass_price.py compares the
+// estimate with the true number of instructions.
 
 #include <cstdio>
 #include <cstdlib>

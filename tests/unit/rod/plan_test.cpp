@@ -1,4 +1,4 @@
-// The plan of a tick as a table: what happened, and what the rod does about it. No thread is needed.
+// The plan of a tick, tested without a thread: what happened in the tick before, and how the rod changes its plan.
 
 #include "firmware/physics/rod/plan.hpp"
 
@@ -115,7 +115,8 @@ TEST(Patience, SystemWithoutSolutionWaitsOnlyIfSweepsCannotBePaid) {
   EXPECT_TRUE(q.newton_failed(true, true));
 }
 
-/// However often waiting fails, a substep may wait again some time later. Otherwise sweeps would solve a knot for good.
+/// However often waiting for a solution has failed, a substep may wait again some time later. Otherwise such a knot
+/// would be solved only by sweeps from then on.
 TEST(Patience, NeverEndsForGood) {
   Patience p;
   for (int k = 0; k < 100; ++k) {

@@ -13,8 +13,8 @@ namespace ligature::test {
 namespace {
 
 // A wide helix whose turns pass close outside a straight strand of the same thread, and a tight coil, into which the
-// adaptive mesh moves nodes. Merging two segments of the helix into their chord would cut the strand where it runs
-// between arc and chord.
+// adaptive mesh moves nodes. A merge replaces two segments of the helix by their chord; it would cut the strand where
+// that runs between the two segments and the chord.
 void helix_around_a_strand(Rod& rod, double phase, double inside_m) {
   constexpr double kRadius = 6.4e-3, kPitch = 4e-3, kTurns = 3.5, kCoil = 1.2e-3;
   std::vector<Vec> line;

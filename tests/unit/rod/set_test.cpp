@@ -1,4 +1,4 @@
-// Plastic bending: the curvature that stays after a sharp bend, against closed forms.
+// Plastic bending: the curvature that stays after a sharp bend, compared with closed forms.
 
 #include <gtest/gtest.h>
 
@@ -79,8 +79,8 @@ TEST(Set, BelowYieldNothingDiffersInAnyBit) {
     for (int k = 0; k < 3; ++k) EXPECT_EQ(with.rod.state().x[i][k], without.rod.state().x[i][k]) << i;
 }
 
-// A rod of bending stiffness B is bent to curvature kappa, z = kappa - kappa_y beyond yield. The moment is B (kappa - f
-// z), with f the material's set fraction; after unloading the curvature f z stays.
+// A rod of bending stiffness B is bent to the curvature kappa, which exceeds the yield curvature kappa_y by z. The
+// moment is then B (kappa - f z), with f the material's set fraction, and after unloading the curvature f z stays.
 TEST(Set, WhatABendKeepsIsItsFractionOfWhatExceedsYield) {
   for (const double f : {0.3, 0.5, 0.8}) {
     Bender b(setting_rod(f));

@@ -1,4 +1,5 @@
-// Each shipped loose knot, as the rod places its nodes along it, has the knot type of its name.
+// In each shipped scene with a loose knot, the start shape that the rod's nodes form has the knot type of the scene's
+// name.
 
 #include <gtest/gtest.h>
 

@@ -72,7 +72,8 @@ TEST(Smooth, StaysWhereASegmentIsSplit) {
   for (double s = 0.0; s <= 1.0; s += 0.125) EXPECT_LT(norm(still.at(s) - before.at(s)), 1e-15) << s;
 }
 
-// The four-lane version gives the same as four single calls: crossing, parallel, zero-length and corner cases.
+// The version for four pairs at a time gives the same as four single calls, for crossing, parallel, zero-length and
+// corner cases.
 TEST(Smooth, FourAtATimeAreAsOne) {
   test::Random random(5);
   const auto normal = [&] { return kDiameter_m * random.normal(); };

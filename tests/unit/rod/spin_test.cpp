@@ -49,7 +49,7 @@ TEST(RestCurvature, AFreeThreadRelaxesToACircularArc) {
   }
 }
 
-// Rest curvature k about an axis that rotates by t per length: a helix of radius k / (k^2 + t^2).
+// Rest curvature k about an axis that rotates by t per length gives a helix of radius k / (k^2 + t^2).
 TEST(RestCurvature, WithARestTwistAFreeThreadRelaxesToAHelix) {
   Material m = nylon(0.06);
   m.born_curvature_per_m = 60.0;
@@ -67,7 +67,8 @@ TEST(RestCurvature, WithARestTwistAFreeThreadRelaxesToAHelix) {
   }
 }
 
-// A rod clamped with roll at both ends and turned by an angle has the twisting moment C angle / L.
+// A rod of length L whose ends are clamped, roll included, and turned against each other by an angle has the twisting
+// moment C angle / L (C twist stiffness).
 TEST(Spin, TurnedEndsTwistEvenly) {
   Material m = unit_rod();
   m.GJ_N_m2 = 0.8;
@@ -92,8 +93,8 @@ Rod on_a_desk(const Material& material, int nodes) {
   return rod;
 }
 
-// A cylinder across a slope: with I = m r^2 / 2 it accelerates at 2/3 g sin(angle) as long as friction suffices to roll
-// it.
+// A cylinder across a slope, with the moment of inertia m r^2 / 2, accelerates at 2/3 g sin(angle) as long as friction
+// suffices to roll it.
 TEST(Turning, AThreadRollsDownASlopeAtTwoThirds) {
   Material m = nylon(0.03);
   m.drag_per_s = 0.0;
@@ -107,7 +108,8 @@ TEST(Turning, AThreadRollsDownASlopeAtTwoThirds) {
   EXPECT_NEAR(std::abs(rod.spin().rate(15)) * m.radius_m, s.v[15][1], 0.01 * s.v[15][1]);  // rolls without slip
 }
 
-// On a slope steeper than 3 mu it slips and rolls: acceleration g (sin - mu cos), angular acceleration 2 mu g cos / r.
+// On a slope steeper than 3 mu the thread slips and rolls: acceleration g (sin - mu cos), angular acceleration 2 mu g
+// cos / r.
 TEST(Turning, TooSteepItSlipsWhileItRolls) {
   Material m = nylon(0.03);
   m.drag_per_s = 0.0;

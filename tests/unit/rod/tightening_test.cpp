@@ -13,8 +13,8 @@
 namespace ligature::test {
 namespace {
 
-// Change of the hands' force by remeshing, against a copy whose mesh stays fixed in that tick. Friction is off, because
-// stick and slip amplify any small difference (3 % of 0.1 N, even between copies that do not remesh).
+// Change of the hands' force by remeshing: difference to a copy whose mesh stays fixed in that tick. Friction is off,
+// because stick and slip amplify any small difference (3 % of 0.1 N, even between copies that do not remesh).
 struct MeshSteps {
   int remeshes = 0;
   double beyond_N = -1.0;  ///< largest force step minus 0.5 % of the tension
@@ -42,9 +42,9 @@ MeshSteps steps_of_a_pull(double speed) {
   return steps;
 }
 
-// Limit of a force step by remeshing at a fast pull: 0.5 % of the tension plus 3 mN, because strands slide by more than
-// a segment per tick in either mesh. The largest step of a pull differs from speed to speed, by 0.6 mN (standard
-// deviation), so this is the mean of eight pulls.
+// A remesh at a fast pull may change the force by 0.5 % of the tension plus 3 mN. The 3 mN are needed because strands
+// slide by more than a segment per tick, with and without the remesh. The largest step differs from pull to pull by 0.6
+// mN (standard deviation), so the mean of eight pulls is tested.
 TEST(FineZone, MovesWithoutAForceStep) {
   constexpr int kPulls = 8;
   double beyond_N = 0.0;
@@ -57,9 +57,10 @@ TEST(FineZone, MovesWithoutAForceStep) {
   RecordProperty("beyond_mN", std::to_string(1e3 * beyond_N));
 }
 
-// At this slow pull strands slide by a tenth of a segment per tick, so the force step is due to remeshing alone. Limit:
-// 0.5 % of the tension. Measured: 0.25 mN below it; 0.17 mN above it if a split does not preserve the bending moments,
-// and 0.55 mN above it if a split does not preserve the smooth curve. The faster pull does not detect these errors.
+// In this slow pull strands slide by only a tenth of a segment per tick, so force steps are due to remeshing alone.
+// Their limit is 0.5 % of the tension. The largest measured step is 0.25 mN below this limit. It would be 0.17 mN above
+// the limit if a split did not preserve the bending moments, and 0.55 mN above if a split did not preserve the smooth
+// curve. The fast pull does not detect these errors.
 TEST(FineZone, ItselfHardlyStepsTheForce) {
   const MeshSteps steps = steps_of_a_pull(0.02);
   EXPECT_GT(steps.remeshes, 10);
@@ -67,8 +68,9 @@ TEST(FineZone, ItselfHardlyStepsTheForce) {
   RecordProperty("beyond_mN", std::to_string(1e3 * steps.beyond_N));
 }
 
-// Virtual work: an impulse acts on the nodes with the gap's derivatives. Points of the smooth curves are weighted means
-// of nodes, so with a contact row's weights w_k, n . sum w_k x_k must equal the gap's distance.
+// Virtual work: a contact's impulse must act on each node with the derivative of the gap by that node's position.
+// Points of the smooth curves are weighted means of node positions x_k. So with the weights w_k and the normal n of a
+// contact row, n . sum w_k x_k must equal the distance that the gap is measured from.
 TEST(Sliding, ForcesActOnWhatTheGapIsMeasuredOn) {
   Tightening pull;
   for (int k = 0; k < 1000 && Tightening::force(pull.sim()) < 2.0; ++k) pull.tick(0.2);
@@ -150,9 +152,9 @@ TEST(Energy, NeverRisesWhileNobodyPulls) {
   }
 }
 
-// Two throws jam and use up the budget. Energy would rise by up to 3 % of the stored energy in a tick if the contact
-// tolerance grew with the free end's speed, or if remeshing stored bending energy again that it had smoothed away. A
-// rare rise of 1e-6 to 2e-6 J is tolerated: when the solver gives a jam up and makes sweeps, overlaps grow by 1e-4 d.
+// Two throws jam and use up the budget. The energy would rise by up to 3 % in a tick if the contact tolerance grew with
+// the free end's speed, or if a remesh restored bending energy that an earlier one had smoothed away. A rare rise of
+// 1e-6 to 2e-6 J is tolerated: when Newton's method fails in a jam and sweeps take over, overlaps grow by 1e-4 d.
 TEST(Energy, NeverRisesWhileNobodyPullsTwoThrows) {
   int rises = 0;
   for (const char* scene : {"suture-3-0-square.toml", "suture-3-0-surgeons.toml"}) {
@@ -170,8 +172,8 @@ TEST(Energy, NeverRisesWhileNobodyPullsTwoThrows) {
   EXPECT_LE(rises, 1);
 }
 
-// Force on the hands while the strands slide over each other. With contact between chords, whose normal jumps at every
-// corner, its chatter was 2 to 4 %.
+// Force on the hands while the strands slide over each other. When contact was computed between chords, whose normal
+// jumps at every corner, this force had a chatter of 2 to 4 %.
 TEST(Sliding, IsSmooth) {
   Tightening pull;
   std::vector<double> force;

@@ -12,8 +12,8 @@ namespace {
 
 using physics::rod::Touch;
 
-// Pressing at x turns the strands, so that in the next substep their closest points are at -gain x. Following them
-// fully would multiply x by the gain in each substep.
+// Pressing at x turns the strands, so that in the next substep their closest points are at -gain x. If the contact
+// point followed them fully, x would be multiplied by the gain in each substep.
 void ring(Touch& touch, double gain, int substeps) {
   for (int k = 0; k < substeps; ++k) touch.follow(-gain * touch.a, -gain * touch.b);
 }

@@ -1,4 +1,5 @@
-// The rod's twist force is minus the gradient of its twist energy. (Instabilities by twist: `ligature-lab validate`.)
+// The rod's twist force is minus the gradient of its twist energy. (`ligature-lab validate` tests the instabilities
+// that twist causes.)
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// The work of a tick is bounded in any state: it is counted in instructions priced beforehand (rod/work.hpp), not
-// timed.
+// The work of a tick is bounded in any state: it is counted in instructions that are estimated before each piece of
+// work (rod/work.hpp), not measured as time.
 
 #include <gtest/gtest.h>
 

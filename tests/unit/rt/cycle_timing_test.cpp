@@ -1,5 +1,5 @@
-// The loop's timing statistics (maximum, quantiles), which need constant memory, against the same values computed from
-// all samples.
+// Compares the loop's timing statistics (maximum, quantiles), which need constant memory, with the same values computed
+// from all samples.
 #include "firmware/rt/cycle_timing.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The ring buffer, in one thread and between two threads; the tsan preset checks the latter for data races.
+// The ring buffer, used by one thread and by two threads; for two threads the tsan preset checks for data races.
 #include "firmware/rt/spsc_ring.hpp"
 
 #include <gtest/gtest.h>

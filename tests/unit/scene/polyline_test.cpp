@@ -15,7 +15,8 @@ double distance(const Vec& a, const Vec& b) { return std::hypot(a[0] - b[0], a[1
 TEST(LayOut, EverySegmentHasTheRestLength) {
   std::vector<Vec> helix;
   for (int k = 0; k < 200; ++k) helix.push_back({std::cos(0.1 * k), std::sin(0.1 * k), 0.02 * k});
-  // Node distances below and above that of the points; with 0.37 and 3.0 m the nodes go on beyond its end.
+  // Node spacings below and above the spacing of the polyline's points. With 0.37 and 3.0 m the nodes go on beyond the
+  // polyline's end.
   for (const double rest_m : {0.01, 0.1, 0.37, 3.0}) {
     const auto nodes = lay_out(helix, 60, rest_m);
     ASSERT_EQ(nodes.size(), 60u);

@@ -1,5 +1,5 @@
-// The presets for named sutures against the table of published data (tests/reference/08_sutures.json): values with a
-// source there must agree, and those without must be listed as assumed in rod_keys.hpp.
+// Compares the presets for named sutures with the table of published data (tests/reference/08_sutures.json): values
+// with a source there must agree, and those without must be listed as assumed in rod_keys.hpp.
 
 #include <gtest/gtest.h>
 

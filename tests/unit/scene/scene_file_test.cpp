@@ -217,7 +217,7 @@ TEST(SceneFile, NestsToABoundedDepthOnly) {
       << "dots in a text are none of a key";
 }
 
-// Values far outside physics are typing errors, and rounding would make the simulation fail.
+// Values that no thread can have are typing errors; with them, rounding would make the simulation fail.
 TEST(SceneFile, RefusesWhatNoThreadCanBe) {
   for (const char* set :
        {"suture.radius_m=1e-300", "suture.length_m=5e-324", "suture.node_mass_kg=1e-300", "suture.stretch_N=1e12",

@@ -1,4 +1,5 @@
-// docs/scene.md against the readers: every key, column and rule on the page with unit, default and allowed values.
+// Compares docs/scene.md with the readers: every key, column and rule on the page with unit, default and allowed
+// values.
 // A failure prints the row as the page should have it.
 
 #include <gtest/gtest.h>
@@ -151,7 +152,7 @@ TEST(ScenePage, HasEveryKeyOfADeviceRecord) {
     } else if (row.key.ends_with(".value")) {  // the row before is the entry itself
       row.key.resize(row.key.rfind('.'));
       ASSERT_EQ(keys[i - 1].key, row.key);
-      // Left out, it keeps the value that the program starts with.
+      // If the key is left out, the program's initial value stays.
       row.standard =
           keys[i - 1].standard == "required" ? "required" : std::to_string(device::Device{}.torque_tolerance_permille);
       wanted.push_back("| `" + row.key + "` | " + unit_of(row.key) + " | " + row.standard + " | " + plain(row.allowed) +

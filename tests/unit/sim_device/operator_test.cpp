@@ -81,8 +81,8 @@ TEST(SeenDeterminant, TellsThemApartFromTheirPicture) {
   EXPECT_EQ(seen_determinant(slipped, -Vec3::UnitY()), 1);
 }
 
-// The next three tests are examples without devices: a small and a large seed, in scenes that must tie. How often they
-// tie is counted through the whole chain, with fresh seeds: docs/measurements/tying.md.
+// The next three tests are examples without devices: a small and a large seed, in scenes that must tie. How often
+// operators succeed through the whole chain, with fresh seeds, is in docs/measurements/tying.md.
 TEST(KnotTier, TiesAnOverhandInThePapersSuture) {  // checked five seconds after the hands let go
   for (const std::uint32_t seed : {1U, 2U, 101U}) EXPECT_EQ(tied("paper.toml", "overhand", seed), "3_1 right") << seed;
   EXPECT_EQ(tied("paper.toml", "overhand", 7, {"suture.model=\"paper-1\""}), "3_1 right");

@@ -1,4 +1,4 @@
-// Each physical law of the simulated device and hand against its closed form.
+// Each physical law of the simulated device and hand, compared with its closed form.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -86,7 +86,8 @@ TEST(Realism, StaticErrorIsForceOverTheSpringsInSeries) {
   m.advance(seconds(5), sideways(0.5));
   const double linkage = m.plant().tip_D_m().x();
   const double tip = m.touch().p_DT.x(), finger = m.fingers().position_D_m().x();
-  // The motor's torque is constant and its lever turns with the waist angle q1: the sideways force is 0.5 N / cos q1.
+  // The motor's torque is constant, but the waist's lever turns with the waist angle q1, so the sideways force is 0.5 N
+  // / cos q1.
   const double force = 0.5 / std::cos(m.plant().q_rad()[0]);
   EXPECT_NEAR(finger, force / hand.stiffness_N_per_m, 0.01 * finger);
   EXPECT_NEAR(tip - finger, force / hand.pad_stiffness_N_per_m, 0.02 * (tip - finger));

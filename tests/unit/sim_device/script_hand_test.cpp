@@ -24,7 +24,7 @@ std::unique_ptr<Intention> made(const scene::GripperScript& s, std::size_t hand)
   return std::get<std::unique_ptr<Intention>>(std::move(hands));
 }
 
-/// For the same script, a simulated device's hand follows the same path as the tools in `ligature-lab`.
+/// With the same script, a simulated device's hand follows the same path as the tools in `ligature-lab`.
 TEST(ScriptHand, PassesWhereTheLabPasses) {
   const auto s = script();
   const auto hand = made(s, 1);

@@ -95,7 +95,7 @@ TEST(SteeredHand, NoNumberIsNoWish) {
   EXPECT_TRUE(hand.at(1.0).grip);
 }
 
-/// For any targets at any times and rates: the hand keeps within an arm's speed and acceleration, and never jumps.
+/// Whatever targets come, at whatever times: the hand keeps within an arm's speed and acceleration, and never jumps.
 TEST(SteeredHand, KeepsToTheLimitsOfAnArmWhateverIsWished) {
   const ArmLimits limits;
   test::Random random(20);

@@ -116,7 +116,7 @@ TEST(PlayedHand, LetsGoOfTheDeadManWhileItSeesNothing) {
   EXPECT_TRUE(p.hand.at(3.0).dead_man);
 }
 
-/// A tick in the far future, of another machine's clock, would keep the dead-man pressed until then.
+/// A tick that is due in the far future (by another machine's clock) would keep the dead-man pressed until then.
 TEST(PlayedHand, TakesNoTickOfAnotherClockAndNoneTwice) {
   Played p;
   const std::vector<WishedTick> ahead{wished(60'000)}, old{wished(10), wished(5), wished(10)};
@@ -147,7 +147,7 @@ TEST(PlayedHand, RestsAtItsStartUntilTheDrivesAreOn) {
 
 KnotTier tier(const char* knot, std::uint32_t seed) { return std::get<KnotTier>(KnotTier::make(suture(), knot, seed)); }
 
-/// Messages without a rig: the thread hangs almost at rest, the tools are where the plan `leads` wants them, and closed
+/// Messages without a rig: the thread hangs almost at rest, the tools are where the plan `leads` moves them, and closed
 /// jaws hold the thread.
 class Stream {
  public:

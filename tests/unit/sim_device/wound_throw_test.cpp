@@ -87,7 +87,7 @@ TEST(WoundThrow, ThrowsInARowAreTheNamedKnots) {
   }
 }
 
-/// Tied with hands that move the simulated thread directly; checked five seconds after they let go.
+/// The hands move the simulated thread directly. The knot is checked five seconds after they let go.
 TEST(WoundThrow, TiesKnotsOfTwoThrows) {
   EXPECT_EQ(tied("paper.toml", "square", 4), "3_1#3_1 amphichiral");
   EXPECT_EQ(tied("paper.toml", "granny", 104), "3_1#3_1 left");

@@ -299,7 +299,7 @@ TEST_F(FlightRecorderTest, WhatAFaultSavesWaitsForASceneThatIsOnItsWay) {
   recorder->expect_scene(true);
   tick(100);
   tick(1, 21);
-  // Usually enough for the writer to get there; otherwise this test checks less.
+  // Usually enough time for the writer to reach the fault; if not, this test checks less.
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_TRUE(recorder->take_notes().empty());
   recorder->scene_changed(scene_of(100, "b.toml"));

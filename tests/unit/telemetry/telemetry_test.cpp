@@ -134,7 +134,7 @@ TEST_F(TelemetryTest, ShapesComeAtSixtyHertzAndOnlyWhenNew) {
     outlets->shape.publish();
     telemetry.step(at(us));
   }
-  // A shape is sent about every 20 ms: at the first step at least 16.7 ms after the previous one.
+  // A shape is sent about every 20 ms: at the first call of step() that is at least 16.7 ms after the previous shape.
   EXPECT_NEAR(static_cast<double>(sink.shapes.size()), 51.0, 10.0);
 }
 

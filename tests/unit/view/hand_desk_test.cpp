@@ -113,7 +113,7 @@ TEST(HandDesk, AHandThatIsJustGivenBackIsFreeOnceItsDeviceSaysSo) {
   Desk d;
   ASSERT_EQ(d.take(1)["accepted"], true);
   d.desk.end(1);
-  // Two old states come late: one from before the hand was taken, and one from before the device heard that the hand
+  // Two old states come late: one was sent before the hand was taken, the other before the device learned that the hand
   // was given back.
   for (const std::int64_t owner : {std::int64_t{0}, d.sent[0].owner}) {
     d.state.owner = owner;

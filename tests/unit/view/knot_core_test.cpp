@@ -55,8 +55,8 @@ TEST(KnotThrows, OfASumAreItsSummandsWithoutTheThreadBetweenThem) {
   }
 }
 
-/// Two long trefoils [Shastri 1992] in a row, the second mirrored, bent by a wave: as tests/browser/fake_rig.py has
-/// them.
+/// Two long trefoils [Shastri 1992] in a row, the second one mirrored, bent by a wave; the same shape as in
+/// tests/browser/fake_rig.py.
 Points swaying(int nodes, double sway) {
   Points points;
   for (int i = 0; i < nodes; ++i) {

@@ -117,7 +117,7 @@ TEST(LogSurvey, FindsGraspAndKnotAndTheSameEachTime) {
   EXPECT_EQ(again.marks(), p.survey.marks());
 }
 
-/// Two recordings are aligned by their first grasp: by either hand and at any node, the first one included.
+/// Two recordings are aligned by their first grasp: by either hand and at any node, the first node included.
 TEST(LogSurvey, FindsTheFirstGraspOfEitherHandAtAnyNode) {
   for (const int hand : {0, 1}) {
     const test::TestFolder folder;
