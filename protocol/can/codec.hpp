@@ -78,7 +78,7 @@ inline constexpr PdoField kTargetTorque = field_of(Pdo::kRpdo1, od::kTargetTorqu
 }
 
 /// Empty if the frame is not this node's TPDO1, or its length differs from the map.
-/// @param buttons whether it has the buttons instead of the torque
+/// @param buttons whether this node's TPDO1 has the buttons instead of the torque
 [[nodiscard]] constexpr std::optional<Tpdo1> decode_tpdo1(NodeId node, const Frame& f, bool buttons) noexcept {
   if (f.id != cob_id(Service::kTpdo1, node).value || f.dlc != length_bytes(Pdo::kTpdo1, node)) return std::nullopt;
   Tpdo1 p;

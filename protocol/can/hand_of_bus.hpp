@@ -7,8 +7,8 @@
 
 namespace ligature::can {
 
-/// A line for people if the last part of a bus's address, such as "right" of local:/tmp/right, names the other hand
-/// only; else empty. @param hand "left" or "right"
+/// A warning for the user if the last part of a bus's address, such as "right" of local:/tmp/right, names only the
+/// other hand; else empty. @param hand "left" or "right"
 [[nodiscard]] inline std::string doubt_about_hand(std::string_view hand, std::string_view bus) {
   const std::string_view other = hand == "left" ? "right" : "left";
   const auto name = bus.substr(bus.find_last_of("/:") + 1);

@@ -104,7 +104,8 @@ constexpr void add_pdo_setup(StartupPlan& plan, const PdoPlace& pdo, const std::
          b.bits;
 }
 
-/// Mapping of TPDO 1 and RPDO 1; the positions are those of the codec. Then the buttons, if they have their own TPDO.
+/// Mapping of TPDO 1 and RPDO 1, with the positions that the codec uses. Then the buttons, if they have a TPDO of their
+/// own.
 constexpr void add_pdos(StartupPlan& plan, NodeId node, const ButtonsSource& buttons) {
   const bool replaced = buttons.replace_torque_of(node);
   const std::uint32_t sample[] = {
