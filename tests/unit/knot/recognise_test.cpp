@@ -200,7 +200,7 @@ TEST(Recognise, StraightEdgesOfManyPointsInAPlane) {
   }
 }
 
-// The second seed draws a 10_132 of which one sequence of random moves leaves 17 crossings; another one leaves 10.
+// With the second seed one sequence of random moves reduces 10_132 only to 17 crossings; another sequence reaches 10.
 TEST(Recognise, KnotsOfNineAndTenCrossingsAreUnknownWithTheirCandidates) {
   for (const std::uint64_t seed : {17ULL, 1779576950811657146ULL}) {
     test::Random random(seed);
