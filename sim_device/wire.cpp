@@ -28,7 +28,9 @@ std::optional<Transmission> Wire::advance(Time now) {
   std::size_t winner = queues_.size();
   for (std::size_t i = 0; i < queues_.size(); ++i) {
     if (queues_[i].empty() || queues_[i].front().ready > start) continue;
-    if (winner == queues_.size() || queues_[i].front().frame.id < queues_[winner].front().frame.id) winner = i;
+    if (winner == queues_.size() ||
+        can::rank_of(queues_[i].front().frame) < can::rank_of(queues_[winner].front().frame))
+      winner = i;
   }
   const Pending sent = queues_[winner].front();
   queues_[winner].pop_front();

@@ -67,10 +67,11 @@ void RealTimeSide::stay_awake() {
 /// Switches the drives off at once, instead of leaving that to their watchdogs. Each hand has a wait of its own, on its
 /// bus only, so that unread frames of the other bus cannot end the wait.
 void RealTimeSide::release() {
+  constexpr std::array kNames{"left", "right"};
   const std::array bus{buses_.left.get(), buses_.right.get()};
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     platform::PollWait alone(*bus[h], *bus[h]);
-    buses_.drives[h]->release(alone);
+    if (const auto still_on = buses_.drives[h]->release(alone)) spdlog::error("{} hand: {}", kNames[h], *still_on);
   }
 }
 

@@ -30,6 +30,9 @@ std::vector<can::Frame> Cia402Drives::example_samples() const {
 
 bool Cia402Drives::start() noexcept { return start_drives(bus_); }
 
-void Cia402Drives::release(BusWait& wait) { release_drives(bus_, wait, times_.drive.watchdog); }
+std::optional<std::string> Cia402Drives::release(BusWait& wait) {
+  release_drives(bus_, wait, times_.drive.watchdog);
+  return std::nullopt;
+}
 
 }  // namespace ligature::platform

@@ -26,7 +26,7 @@ class Cia402Drives final : public HandDrives {
     return link_.write(command);
   }
   [[nodiscard]] rt::BusTime bus_time() const noexcept override { return time_; }
-  void release(BusWait& wait) override;
+  std::optional<std::string> release(BusWait& wait) override;
 
  private:
   CanBus& bus_;

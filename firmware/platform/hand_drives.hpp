@@ -52,8 +52,8 @@ class HandDrives {
   [[nodiscard]] virtual rt::BusTime bus_time() const noexcept = 0;
 
   /// After the loop: switches the drives off, and makes sure that they do not report the controller's following silence
-  /// as a fault. May wait.
-  virtual void release(BusWait& wait) = 0;
+  /// as a fault. May wait. @return which drives do not say that they are off, in one line, or nothing
+  virtual std::optional<std::string> release(BusWait& wait) = 0;
 };
 
 }  // namespace ligature::platform

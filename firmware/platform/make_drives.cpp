@@ -2,21 +2,25 @@
 
 #include "firmware/platform/cia402_drives.hpp"
 #include "firmware/platform/cia402_time.hpp"
+#include "firmware/platform/odrive_drives.hpp"
+#include "firmware/platform/odrive_time.hpp"
 
 namespace ligature::platform {
 
 std::unique_ptr<HandDrives> make_drives(CanBus& bus, const device::Device& device, int watchdog_ms, std::size_t hand) {
+  if (device.odrive) return std::make_unique<OdriveDrives>(bus, device, watchdog_ms);
   return std::make_unique<Cia402Drives>(bus, device, watchdog_ms, hand);
 }
 
 rt::BusTime bus_time_of(const device::Device& device) noexcept {
+  if (device.odrive) return odrive_time();
   const device::Cia402Profile& p = device.cia402;
   return cia402_time(p.buttons.are_inputs() ? static_cast<unsigned>(p.buttons.bits) / 8U : 0U,
                      p.watchdog == device::DriveWatchdog::kHeartbeat);
 }
 
 bool have_watchdog(const device::Device& device) noexcept {
-  return device.cia402.watchdog != device::DriveWatchdog::kNone;
+  return (device.odrive ? device.odrive->watchdog : device.cia402.watchdog) != device::DriveWatchdog::kNone;
 }
 
 }  // namespace ligature::platform

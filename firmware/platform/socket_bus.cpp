@@ -154,7 +154,7 @@ Receive SocketBus::receive(can::Frame& frame) noexcept {
       continue;
     }
     const auto decoded = can::from_packet(bytes);
-    if (!decoded || loss_ == Loss::kBusOff) continue;  // extended and remote frames are ignored
+    if (!decoded || loss_ == Loss::kBusOff) continue;  // extended frames are ignored
     loss_ = Loss::kNone;
     frame = *decoded;
     return Receive::kFrame;

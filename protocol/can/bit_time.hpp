@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "protocol/can/device_profile.hpp"
-#include "protocol/can/frame.hpp"
+#include "protocol/can/remote.hpp"
 
 namespace ligature::can {
 
@@ -61,12 +61,13 @@ class StuffCounter {
 /// Exact number of bits of this frame on the wire, including stuff bits and interframe space. Takes about 0.3 us.
 [[nodiscard]] constexpr unsigned frame_bits(const Frame& f) noexcept {
   StuffCounter counter;
+  const unsigned bytes = is_remote(f) ? 0U : f.dlc;
   counter.push(false);  // start of frame
-  counter.push(f.id, 11);
-  counter.push(0U, 3);  // RTR, IDE, reserved: a data frame in base format
+  counter.push(f.id & kMaxId, 11);
+  counter.push(is_remote(f) ? 4U : 0U, 3);  // RTR, IDE, reserved: base format
   counter.push(f.dlc, 4);
-  for (unsigned i = 0; i < f.dlc; ++i) counter.push(f.data[i], 8);
-  return min_frame_bits(f.dlc) + counter.finish();
+  for (unsigned i = 0; i < bytes; ++i) counter.push(f.data[i], 8);
+  return min_frame_bits(bytes) + counter.finish();
 }
 
 [[nodiscard]] constexpr std::int64_t bits_to_ns(unsigned bits) noexcept { return bits * profile::kBitTime_ns; }

@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 
-#include "protocol/can/frame.hpp"
+#include "protocol/can/remote.hpp"
 
 namespace ligature::can {
 
@@ -23,13 +23,14 @@ using LocalPacket = std::array<std::uint8_t, kLocalPacketBytes>;
   return p;
 }
 
-/// Empty for another size, more than 8 data bytes, or anything but a data frame with an 11-bit identifier.
+/// Empty for another size, more than 8 data bytes, or anything but a data or remote frame with an 11-bit identifier.
 [[nodiscard]] inline std::optional<Frame> from_packet(std::span<const std::uint8_t> p) noexcept {
   if (p.size() != kLocalPacketBytes || p[4] > kMaxDlc) return std::nullopt;
   Frame f;
   std::memcpy(&f.id, p.data(), 4);
-  if (f.id > kMaxId) return std::nullopt;  // the upper bits mark extended, remote and error frames
+  if ((f.id & ~kRemoteBit) > kMaxId) return std::nullopt;  // the other upper bits mark extended and error frames
   f.dlc = p[4];
+  if (is_remote(f)) return f;
   std::memcpy(f.data.data(), p.data() + 8, f.dlc);
   return f;
 }

@@ -5,9 +5,11 @@
 #include <array>
 #include <cstdint>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "protocol/device/cia402_profile.hpp"
+#include "protocol/device/odrive_profile.hpp"
 
 namespace ligature::device {
 
@@ -35,13 +37,14 @@ struct Device {
   Vec workspace_min_m{}, workspace_max_m{};  ///< box in D within which the tip is used
 
   // Drives; values refer to the joint.
-  int motor_counts = 0;                ///< encoder counts per motor revolution, after quadrature
-  double gear = 1.0;                   ///< motor revolutions per joint revolution
-  double rated_torque_Nm = 0.0;        ///< rated torque of a drive at the joint (object 0x6076)
-  int max_torque_permille = 0;         ///< largest torque, per mille of the rated one (object 0x6072)
-  int torque_tolerance_permille = 50;  ///< a drive's reported torque may exceed the commanded one by this
-  double delay_s = 0.0;                ///< from a position sample to the effect of the torque computed from it
-  Cia402Profile cia402{};              ///< what the drives offer on the bus
+  int motor_counts = 0;                   ///< encoder counts per motor revolution, after quadrature
+  double gear = 1.0;                      ///< motor revolutions per joint revolution
+  double rated_torque_Nm = 0.0;           ///< rated torque of a drive at the joint (object 0x6076)
+  int max_torque_permille = 0;            ///< largest torque, per mille of the rated one (object 0x6072)
+  int torque_tolerance_permille = 50;     ///< a drive's reported torque may exceed the commanded one by this
+  double delay_s = 0.0;                   ///< from a position sample to the effect of the torque computed from it
+  Cia402Profile cia402{};                 ///< what CiA 402 drives offer on the bus
+  std::optional<OdriveProfile> odrive{};  ///< set: the drives are ODrives, and cia402 means nothing
 
   // Passive dynamics of the device when it is off, at the tip in the home pose.
   double apparent_mass_kg = 0.0;

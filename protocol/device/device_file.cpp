@@ -1,10 +1,12 @@
 #include "protocol/device/device_file.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "protocol/device/cia402_reader.hpp"
 #include "protocol/device/device_keys.hpp"
+#include "protocol/device/odrive_reader.hpp"
 #include "protocol/device/omni_text.hpp"
 #include "protocol/scene/toml_text.hpp"
 
@@ -103,6 +105,18 @@ void read_limits(Marked t, Device& d) {
   t.number("hand_acceleration_m_per_s2", d.hand_acceleration_m_per_s2, kPositive);
 }
 
+/// An ODrive tells its motor's angle, after power-on within one turn. So the motor must turn the joint without a gear,
+/// and less than once over the whole range. The Omni's third drive sits in the base: its angle is the sum of two.
+void check_turns(StrictTable& geometry, const Device& d) {
+  if (!d.odrive) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    double range_rad = d.joint_max_rad[i] - d.joint_min_rad[i];
+    if (i == 2 && d.kinematics == Kinematics::kOmniSerial) range_rad += d.joint_max_rad[1] - d.joint_min_rad[1];
+    if (range_rad >= 2.0 * std::numbers::pi)
+      geometry.refuse("joint_max_rad", "less than one turn of each motor: an ODrive cannot tell turns apart");
+  }
+}
+
 /// Checks relations between values.
 void check(StrictTable& geometry, StrictTable& limits, const Device& d) {
   const int links = d.kinematics == Kinematics::kCartesian ? 3 : 2;
@@ -112,6 +126,7 @@ void check(StrictTable& geometry, StrictTable& limits, const Device& d) {
     if (d.joint_min_rad[i] >= d.joint_max_rad[i]) geometry.refuse("joint_max_rad", "more than joint_min_rad");
     if (d.workspace_min_m[i] >= d.workspace_max_m[i]) geometry.refuse("workspace_max_m", "more than workspace_min_m");
   }
+  check_turns(geometry, d);
   if (d.continuous_force_N > d.peak_force_N) limits.refuse("continuous_force_N", "at most peak_force_N");
 }
 
@@ -130,6 +145,12 @@ void read_record(StrictTable& top, DeviceFile& out) {
   top.table("drives", [&](StrictTable& t) {
     read_drives(Marked(t, "drives", out), d);
     top.table("cia402", [&](StrictTable& p) { read_cia402(p, d.cia402); });
+    top.table("odrive", [&](StrictTable& p) {
+      read_odrive(p, d.odrive.emplace());
+      if (top.has("cia402")) p.refuse("source", "one of the tables [cia402] and [odrive]");
+      if (!p.failed() && d.gear != 1.0)
+        t.refuse("gear", "1 with [odrive]: with a gear the angle after power-on is ambiguous (docs/drives.md)");
+    });
     if (!t.failed() && d.motor_counts % d.cia402.counts_unit != 0)
       t.refuse("motor_counts", "a multiple of cia402.counts_unit");
     if (!t.failed() && !is_told_exactly(d)) t.refuse("rated_torque_Nm", "a multiple of cia402.rated_torque_unit_Nm");

@@ -1,4 +1,4 @@
-"""A hand as a process: three drives of a third-party CANopen stack on a `local:` bus, and a hand that moves them.
+"""A hand as a process: three drives of somebody else's stack on a `local:` bus, and a hand that moves them.
 
 usage: hand.py STACK PATH [TABLE] [--still] [--change INDEX:SUB=VALUE|none]..
 With --still nobody holds the hand. Its standard input takes words, one a line:
@@ -21,7 +21,7 @@ from local_server import LocalServer
 
 GRIP, DEAD_MAN = 1, 2
 START = (-431, 1664, 892)  # counts, at the start pose of the overhand script: (0, 0, 2.3) in the world
-REST = 400    # SYNCs at rest; the dead-man is released for the first ones
+REST = 400    # SYNCs at rest with the drives on; the dead-man is released for the first ones
 TURN = 200    # counts by which the waist then turns, so that the thread pulls at the hand
 FELT = 5      # per mille
 WAIT_S = 5.0  # for the drives' own watchdog
@@ -30,8 +30,8 @@ WAIT_S = 5.0  # for the drives' own watchdog
 class Hand:
     def __init__(self, nodes, server, shift, still):
         self.nodes, self.server, self.shift, self.still = nodes, server, shift, still
-        self.pressed, self.syncs, self.told, self.asked = True, 0, set(), None
-        self.gone_at = None
+        self.pressed, self.syncs, self.syncs_on, self.told, self.asked = True, 0, 0, set(), None
+        self.synced_at, self.gone_at, self.request = 0.0, None, getattr(nodes, "REQUEST", 0x080)  # the frame that asks for a sample
 
     def say(self, *words):
         print(*words, flush=True)
@@ -45,18 +45,26 @@ class Hand:
     def torque(self):
         return max(abs(s.torque) for s in self.nodes.servos)
 
-    def on_sync(self):
-        self.syncs += 1
-        turned = 0 if self.still else max(0, min((self.syncs - REST) // 4, TURN))
-        held = 0 if self.still else GRIP | DEAD_MAN if self.pressed and self.syncs > 50 else GRIP
+    def on_sync(self, now):
+        self.syncs, self.synced_at = self.syncs + 1, now
+        is_on = all(s.state == 0x27 for s in self.nodes.servos)
+        if is_on or "felt" in self.told:
+            self.syncs_on += 1
+        else:
+            self.syncs_on = 0  # start-up may have switched the drives on and off again
+        turned = 0 if self.still else max(0, min((self.syncs_on - REST) // 4, TURN))
+        held = 0 if self.still else GRIP | DEAD_MAN if self.pressed and self.syncs_on > 50 else GRIP
         self.nodes.place((START[0] + turned, *START[1:]), held << self.shift)
         self.nodes.on_sync()
-        if all(s.state == 0x27 for s in self.nodes.servos):
+        if is_on:
             self.once("enabled")
         if self.torque > FELT:
             self.once("felt")
+
+    def look_at_torque(self, now):
+        """After each frame: some controllers send no more SYNCs after a fault. Then each millisecond counts as one."""
         if self.asked and self.torque == 0:
-            self.say("zero", self.asked[0], self.syncs - self.asked[1])
+            self.say("zero", self.asked[0], self.syncs - self.asked[1] + int(1000 * (now - self.synced_at)))
             self.asked = None
 
     def order(self, word):
@@ -93,11 +101,12 @@ class Hand:
             now = time.monotonic()
             if frame is None and not self.listen():
                 return
-            if frame and frame[0] == 0x080:
-                self.on_sync()
+            if frame and frame[0] == self.request:
+                self.on_sync(now)
             elif frame:
                 self.nodes.on_frame(*frame, now)
             self.nodes.poll(now)
+            self.look_at_torque(now)
             self.look_at_controller(now)
 
     def listen(self):

@@ -109,5 +109,36 @@ TEST(Cia402Record, RefusesInOneLine) {
   EXPECT_NE(std::get<scene::Error>(without).text.find("cia402.source'"), std::string::npos);
 }
 
+TEST(OdriveRecord, IsOneOfTheTwoKindsOfDrive) {
+  const auto parsed = parse_device(shipped("odrive.toml"), "odrive.toml");
+  const Device& device = std::get<DeviceFile>(parsed).device;
+  ASSERT_TRUE(device.odrive);
+  EXPECT_EQ(device.odrive->buttons_id, 0x201U);
+  EXPECT_EQ(device.odrive->watchdog, DriveWatchdog::kRpdoTimer);
+  EXPECT_EQ(with("[feel]", "[odrive]\nsource = \"assumed\"\n[feel]").find("d.toml:"), 0U);
+  EXPECT_NE(with("[feel]", "[odrive]\nsource = \"assumed\"\ntorque_constant_Nm_per_A = 0.1\n[feel]")
+                .find("one of the tables [cia402] and [odrive]"),
+            std::string::npos);
+}
+
+/// An ODrive tells an angle within one turn of its motor.
+TEST(OdriveRecord, RefusesWhatMakesTheAngleAmbiguous) {
+  const std::string good = shipped("odrive.toml");
+  const auto refusal = [&](const std::string& old, const std::string& now) {
+    std::string text = good;
+    text.replace(text.find(old), old.size(), now);
+    const auto parsed = parse_device(text, "d.toml");
+    return std::holds_alternative<DeviceFile>(parsed) ? "" : std::get<scene::Error>(parsed).text;
+  };
+  EXPECT_EQ(refusal("watchdog_ms = 20", "watchdog_ms = 30"), "");
+  EXPECT_NE(refusal("heartbeat_ms = 10", "heartbeat_ms = 60").find("heartbeat_ms"), std::string::npos);
+  EXPECT_NE(refusal("buttons_id = 0x201", "buttons_id = 0x7EE").find("buttons_id"), std::string::npos);
+  EXPECT_NE(refusal("gear = {value = 1.0", "gear = {value = 4.0").find("1 with [odrive]"), std::string::npos);
+  EXPECT_NE(refusal("[0.98, 1.80, 1.25]", "[0.98, 1.80, 3.60]").find("less than one turn"), std::string::npos)
+      << "the third motor turns by 1.90 + 4.41";
+  EXPECT_NE(refusal("[0.98, 1.80, 1.25]", "[5.31, 1.80, 1.25]").find("less than one turn"), std::string::npos);
+  EXPECT_NE(refusal("torque_constant_Nm_per_A = 0.083", "").find("torque_constant"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace ligature::device

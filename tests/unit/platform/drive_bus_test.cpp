@@ -8,9 +8,11 @@
 #include <cstdio>
 
 #include "firmware/platform/make_drives.hpp"
+#include "firmware/platform/odrive_frames.hpp"
 #include "protocol/can/cia402.hpp"
 #include "protocol/can/codec.hpp"
 #include "protocol/can/nmt.hpp"
+#include "protocol/can/remote.hpp"
 #include "protocol/device/device_file.hpp"
 #include "sim_device/wire.hpp"
 #include "tests/support/random.hpp"
@@ -23,7 +25,7 @@ using sim::Time;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-constexpr int kController = 0, kDrives = 3;  // the controller's number as a sender; 1 to 3 are the drives
+constexpr int kController = 0, kDrives = 3, kButtons = 4;  // senders on the wire; 1 to 3 are the drives
 constexpr Time kComputing = microseconds(35);
 
 struct Figures {
@@ -46,6 +48,7 @@ class BusOfARecord {
     for (int k = 0; k < periods; ++k) {
       const Time begin = milliseconds(k);
       now_ = begin;
+      send_by_timers(k);
       drives_->request();
       std::optional<Time> write_at;
       bool has_written = false;
@@ -57,7 +60,8 @@ class BusOfARecord {
         has_written = true;
         drives_->write({{torque(), torque(), torque()}, rt::DriveRequest::kOperate});
       }
-      figures_.periods_without_set += has_written ? 0 : 1;
+      // The first frame of ODrives' buttons is no sample: there is no counter before it
+      figures_.periods_without_set += has_written || k == 0 ? 0 : 1;
     }
     figures_.load = std::chrono::duration<double>(wire_.stats().busy) / std::chrono::duration<double>(now_);
     return figures_;
@@ -68,21 +72,52 @@ class BusOfARecord {
 
   void hear(const sim::Transmission& heard) {
     if (heard.sender != kController) return bus_.inbox.push_back(heard.frame);
+    device_.odrive ? hear_as_odrive(heard) : hear_as_cia402(heard);
+  }
+
+  void hear_as_cia402(const sim::Transmission& heard) {
     const auto address = can::address_of(heard.frame.id);
     torques_ += address && address->service == can::Service::kRpdo1;
     if (!can::is_sync(heard.frame)) return;
     // At this SYNC the drives sample, and the torques that arrived since the last SYNC begin to act. These torques were
     // computed from the samples of the last SYNC, because the controller writes only when it has all samples.
-    if (sampled_ > Time(0) && torques_ == kDrives) note(heard.end - sampled_);
-    figures_.late += sampled_ > Time(0) && torques_ != kDrives;
+    if (sampled_[0] > Time(0) && torques_ == kDrives) note(heard.end - sampled_[0]);
+    figures_.late += sampled_[0] > Time(0) && torques_ != kDrives;
     torques_ = 0;
-    sampled_ = heard.end;
+    sampled_[0] = heard.end;
     for (const can::NodeId node : can::profile::kJointNodes)
       wire_.submit(can::encode(node, can::Tpdo1{can::cia402::statusword_of(can::cia402::State::kOperationEnabled),
                                                 static_cast<std::int32_t>(random_.any(-8000, 8000)), 300, 2}),
                    node.value, heard.end);
     for (const can::Frame& sample : drives_->example_samples())
       if (sample.dlc < 8) wire_.submit(sample, 3, heard.end);  // the inputs, by node 3
+  }
+
+  /// A drive samples when it is asked, and a torque acts when it arrives.
+  void hear_as_odrive(const sim::Transmission& heard) {
+    const auto address = odrive::address_of(heard.frame.id & can::kMaxId);
+    if (!address) return;
+    if (can::is_remote(heard.frame)) {
+      sampled_[address->joint] = heard.end;
+      can::Frame f{heard.frame.id & can::kMaxId, 8, {}};
+      for (std::size_t i = 0; i < 3; ++i) f.data[i] = static_cast<std::uint8_t>(random_.any(0, 255));
+      f.data[3] = 0x3F;  // a number near 1
+      wire_.submit(f, static_cast<int>(address->joint) + 1, heard.end);
+      if (address->joint == 2) wire_.submit({device_.odrive->buttons_id, 2, {2, ++life_}}, kButtons, heard.end);
+    } else if (address->command == odrive::Command::kSetInputTorque) {
+      note(heard.end - sampled_[address->joint]);
+    }
+  }
+
+  /// Heartbeats of ODrives, at phases of their own.
+  void send_by_timers(int k) {
+    if (!device_.odrive) return;
+    for (int node = 1; node <= 3; ++node) {
+      if (k % device_.odrive->heartbeat_ms != 3 * node) continue;
+      can::Frame f{odrive::id_of(static_cast<unsigned>(node), odrive::Command::kHeartbeat), 8, {}};
+      f.data[4] = odrive::kClosedLoop;
+      wire_.submit(f, node, now_ + microseconds(200 * node));
+    }
   }
 
   void note(Time delay) {
@@ -96,7 +131,8 @@ class BusOfARecord {
   device::Device device_;
   std::unique_ptr<HandDrives> drives_;
   test::Random random_{71};
-  Time sampled_{};
+  std::array<Time, 3> sampled_{};
+  std::uint8_t life_ = 0;
   int torques_ = 0;  // frames with a torque since the last SYNC
   Figures figures_;
 };
@@ -110,7 +146,8 @@ TEST(DriveBus, LoadAndDelayOfEachRecord) {
   const Row rows[] = {{"omni.toml", 0.70, microseconds(990), microseconds(1010)},
                       {"epos4.toml", 0.77, microseconds(990), microseconds(1010)},
                       {"generic-cia402.toml", 0.79, microseconds(990), microseconds(1010)},
-                      {"inverse3.toml", 0.70, microseconds(990), microseconds(1010)}};
+                      {"inverse3.toml", 0.70, microseconds(990), microseconds(1010)},
+                      {"odrive.toml", 0.88, microseconds(420), microseconds(1000)}};
   for (const Row& row : rows) {
     const Figures f = BusOfARecord(row.file).run(2000);
     const auto us = [](Time t) { return static_cast<long>(t.count() / 1000); };

@@ -13,7 +13,7 @@ namespace ligature::platform {
 class FakeBus final : public CanBus {
  public:
   bool send(const can::Frame& frame) noexcept override {
-    if (lost) return false;
+    if (lost || (refuse_at >= 0 && refuse_at-- == 0)) return false;
     sent.push_back(frame);
     if (on_send) on_send(frame);
     return true;
@@ -31,6 +31,7 @@ class FakeBus final : public CanBus {
   std::deque<can::Frame> inbox;
   std::function<void(const can::Frame&)> on_send;
   bool lost = false;
+  long refuse_at = -1;  // this one of the next frames is not taken; negative: none
 };
 
 class FakeWait final : public BusWait {

@@ -1,0 +1,246 @@
+#include "firmware/platform/odrive_link.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "protocol/can/bit_time.hpp"
+#include "protocol/can/units.hpp"
+
+namespace ligature::platform {
+namespace {
+
+constexpr float kPeriod_ns = 1e6F;
+constexpr int kMany = std::numeric_limits<int>::max() - 1;
+constexpr double kRad_per_rev = 2.0 * std::numbers::pi;
+
+constexpr unsigned node_of(std::size_t joint) noexcept { return static_cast<unsigned>(joint) + 1U; }
+
+}  // namespace
+
+OdriveLink::OdriveLink(CanBus& bus, const device::Device& device) noexcept
+    : bus_(bus),
+      Nm_per_permille_(device.Nm_per_permille()),
+      max_permille_(device.max_torque_permille),
+      profile_(device.odrive.value_or(device::OdriveProfile{})),
+      most_current_A_(static_cast<float>(device.max_torque_Nm() / profile_.torque_constant_Nm_per_A)) {}
+
+void OdriveLink::forget_beats() noexcept {
+  for (Node& node : nodes_) node.beats = 0;
+}
+
+void OdriveLink::forget_targets() noexcept {
+  for (Node& node : nodes_) node.target_Nm.reset();
+}
+
+void OdriveLink::request() noexcept {
+  drain();
+  bits_of_last_period_ = std::exchange(bits_, 0U);
+  arrived_ = 0;
+  foreign_periods_ = std::max(foreign_periods_ - 1, 0);
+  if (age_ticks_ < std::numeric_limits<std::int32_t>::max()) ++age_ticks_;
+  for (Node& node : nodes_) {
+    node.silent = std::min(node.silent + 1, kMany);
+    was_away_ = was_away_ || node.silent > kMissedBeats * profile_.heartbeat_ms;
+  }
+  if (!may_ask_ || (outstanding_ != 0 && quiet_ < kQuiet))
+    quiet_ = std::min(quiet_ + 1, kQuiet);
+  else
+    ask_all();
+}
+
+void OdriveLink::ask_all() noexcept {
+  quiet_ = 0;
+  outstanding_ = 0;
+  for (std::size_t j = 0; j < rt::kJoints; ++j) {
+    if (!send(odrive::ask(node_of(j), odrive::Command::kEstimates))) continue;
+    outstanding_ |= 1U << j;
+    nodes_[j].owed = std::min(nodes_[j].owed + 1, kMany);
+    if (j + 1 == rt::kJoints) outstanding_ |= kButtonsPart;  // the module answers the request to the last drive
+  }
+}
+
+void OdriveLink::drain() noexcept {
+  can::Frame frame;
+  for (int i = 0; i < kMaxFrames && bus_.receive(frame) == Receive::kFrame; ++i) take(frame);
+  was_lost_ = was_lost_ || bus_.is_lost();
+}
+
+/// A refused frame is a lost bus: if torques were refused and requests not, an old torque could act on and on.
+bool OdriveLink::send(const can::Frame& frame) noexcept {
+  if (!bus_.send(frame)) {
+    was_lost_ = has_refused_ = true;
+    return false;
+  }
+  bits_ += can::frame_bits(frame);
+  return true;
+}
+
+bool OdriveLink::send_limits(std::size_t joint) noexcept {
+  return send(
+      odrive::set_limits(node_of(joint), static_cast<float>(profile_.velocity_limit_rev_per_s), most_current_A_));
+}
+
+void OdriveLink::take(const can::Frame& frame) noexcept {
+  bits_ += can::frame_bits(frame);
+  if (const auto kind = odrive::foreign_kind(frame); kind != rt::Foreign::kNone) {
+    foreign_periods_ = kNear;
+    if (foreign_ == rt::Foreign::kNone) foreign_ = kind;
+  }
+  if (frame.id == profile_.buttons_id) return take_buttons(frame);
+  const auto address = odrive::address_of(frame.id);
+  if (!address) return;
+  Node& node = nodes_[address->joint];
+  const auto number = odrive::read_number(frame);
+  switch (address->command) {
+    case odrive::Command::kHeartbeat:
+      return take_beat(node, frame);
+    case odrive::Command::kGetVersion:
+      node.is_new = odrive::is_supported(frame);
+      return;
+    case odrive::Command::kGetTorques:
+      node.target_Nm = number;
+      return;
+    case odrive::Command::kEstimates:
+      node.tells_unasked = node.tells_unasked || node.owed == 0;
+      node.owed = std::max(node.owed - 1, 0);
+      if (!number || !is_answer(1U << address->joint)) return;
+      node.answers = true;
+      pending_rev_[address->joint] = *number;
+      return take_part(1U << address->joint);
+    default:
+      return;
+  }
+}
+
+void OdriveLink::take_beat(Node& node, const can::Frame& frame) noexcept {
+  const auto beat = odrive::read_heartbeat(frame);
+  if (!beat) return;
+  node.heartbeat = *beat;
+  node.silent = 0;
+  node.beats = std::min(node.beats + 1, kMany);
+  node.had_error = node.had_error || beat->error != 0;
+  node.was_off = node.was_off || !node.is_on();
+}
+
+/// The word of docs/wire.md. Its counter is a sign of life: a frame that does not change it is none.
+void OdriveLink::take_buttons(const can::Frame& frame) noexcept {
+  if (frame.dlc != odrive::kButtonsBytes || !is_answer(kButtonsPart)) return;
+  const auto word = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8U);
+  const bool first = !std::exchange(has_word_, true);
+  const bool moved = !first && can::profile::life_of(word) != can::profile::life_of(pending_buttons_);
+  pending_buttons_ = word;
+  still_frames_ = moved ? 0 : std::min(still_frames_ + 1, kStillFrames);
+  if (moved) take_part(kButtonsPart);
+}
+
+/// Whether this part was asked for in this period and had not come yet. A late one is only struck off.
+bool OdriveLink::is_answer(unsigned part) noexcept {
+  const bool asked = (outstanding_ & part) != 0;
+  outstanding_ &= ~part;
+  return asked && quiet_ == 0;
+}
+
+/// Samples are used only as a complete set of answers to the requests of one period.
+void OdriveLink::take_part(unsigned part) noexcept {
+  arrived_ |= part;
+  if (arrived_ != kAllParts) return;
+  rev_ = pending_rev_;
+  buttons_ = pending_buttons_;
+  valid_ = true;
+  age_ticks_ = 0;
+}
+
+rt::HandReading OdriveLink::reading() const noexcept {
+  rt::HandReading r;
+  r.bus_lost = was_lost_ || bus_.is_lost();
+  r.foreign = foreign_;
+  r.valid = valid_;
+  r.age_ticks = age_ticks_;
+  r.bus_load = static_cast<float>(can::bits_to_ns(bits_of_last_period_)) / kPeriod_ns;
+  r.enabled = valid_;
+  r.buttons_stuck = still_frames_ >= kStillFrames;
+  r.drive_fault = was_away_;
+  for (std::size_t j = 0; j < rt::kJoints; ++j) {
+    const Node& node = nodes_[j];
+    r.q_rad[j] = rev_[j] * kRad_per_rev;
+    r.enabled = r.enabled && node.is_on() && !node.was_off;
+    r.drive_fault = r.drive_fault || node.heartbeat.error != 0 || node.had_error || node.tells_unasked;
+  }
+  r.grip = (buttons_ & can::profile::kButtonGrip) != 0;
+  r.dead_man = (buttons_ & can::profile::kButtonDeadMan) != 0;
+  r.clutch = (buttons_ & can::profile::kButtonClutch) != 0;
+  return r;
+}
+
+std::int16_t OdriveLink::permille_of(double torque_Nm) const noexcept {
+  return static_cast<std::int16_t>(can::round_clipped(torque_Nm / Nm_per_permille_, max_permille_));
+}
+
+/// A drive that was away may have been switched off and on, and then has neither its mode, its limits nor a watchdog
+/// that start-up has tried. So the drives stay off until the controller is started again.
+std::array<std::int16_t, rt::kJoints> OdriveLink::write(const rt::HandCommand& command) noexcept {
+  std::array<std::int16_t, rt::kJoints> sent{};
+  was_lost_ = false;
+  for (Node& node : nodes_) node.had_error = node.was_off = node.tells_unasked = false;
+  const bool stops = command.request == rt::DriveRequest::kStop;
+  const bool are_unsure = off_periods_ > 0 && !may_ask_;  // a torque could feed a drive that has not switched off
+  if (stops || command.request == rt::DriveRequest::kHold || was_away_ || are_unsure) {
+    switch_off(stops);
+    return sent;
+  }
+  off_periods_ = silent_periods_ = 0;
+  may_ask_ = true;
+  for (std::size_t j = 0; j < rt::kJoints; ++j) {
+    const std::int16_t torque = permille_of(command.torque_Nm[j]);
+    if (send(odrive::set_torque(node_of(j), static_cast<float>(torque * Nm_per_permille_)))) sent[j] = torque;
+  }
+  if (command.request == rt::DriveRequest::kEnable) bring_up();
+  return sent;
+}
+
+/// One command a period: mode, limits and closed loop of one drive after the other. Then a pause, until the heartbeats
+/// can have told the result.
+void OdriveLink::bring_up() noexcept {
+  const auto step = static_cast<std::size_t>(up_periods_);
+  const std::size_t joint = step / 3;
+  up_periods_ = up_periods_ >= 3 * static_cast<int>(rt::kJoints) + 2 * profile_.heartbeat_ms ? 0 : up_periods_ + 1;
+  if (joint >= rt::kJoints || nodes_[joint].is_on()) return;
+  if (step % 3 == 0) {
+    is_prepared_ = nodes_[joint].heartbeat.error == 0;
+    if (!is_prepared_) send(odrive::clear_errors(node_of(joint)));
+  }
+  if (!is_prepared_) return;
+  if (step % 3 == 0) is_prepared_ = send(odrive::set_torque_mode(node_of(joint)));
+  if (step % 3 == 1) is_prepared_ = send_limits(joint);
+  if (step % 3 == 2) send(odrive::set_axis_state(node_of(joint), odrive::kClosedLoop));
+}
+
+/// Whether this drive has said that it is off since it was told so (in the second period).
+bool OdriveLink::said_off(const Node& node) const noexcept {
+  return node.heartbeat.state == odrive::kIdle && node.silent + 2 < off_periods_;
+}
+
+/// First zero torque, then idle, then silence until all drives have said that they are off. Any frame may feed a
+/// drive's watchdog; in silence the watchdog of a drive that does not obey runs out. Then idle again. A stop is an
+/// emergency stop instead, which only a restart clears; in every period while another controller sends, because it
+/// could switch the drives on in a silence.
+void OdriveLink::switch_off(bool stops) noexcept {
+  const bool first = off_periods_ == 0 && foreign_ == rt::Foreign::kNone;
+  off_periods_ = std::min(off_periods_ + 1, kMany);
+  up_periods_ = 0;
+  may_ask_ = std::ranges::all_of(nodes_, [this](const Node& node) { return said_off(node); });
+  if (first) {
+    for (std::size_t j = 0; j < rt::kJoints; ++j) send(odrive::set_torque(node_of(j), 0.0F));
+    return;
+  }
+  if ((may_ask_ && !stops) || (stops && foreign_periods_ > 0)) silent_periods_ = 0;
+  if ((may_ask_ && !stops) || --silent_periods_ >= 0) return;
+  silent_periods_ = profile_.watchdog_ms + profile_.heartbeat_ms + kMargin;
+  for (std::size_t j = 0; j < rt::kJoints; ++j)
+    if (!send(stops ? odrive::estop(node_of(j)) : odrive::set_axis_state(node_of(j), odrive::kIdle)))
+      silent_periods_ = 0;
+}
+
+}  // namespace ligature::platform
