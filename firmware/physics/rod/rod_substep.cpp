@@ -1,4 +1,4 @@
-// One substep of a rod: contact detection, velocities, positions; within the work that the tick has left.
+// One substep of a rod: contact detection, new velocities, new positions, with no more work than the tick has left.
 
 #include <algorithm>
 #include <array>
@@ -54,7 +54,7 @@ bool Rod::list_is_good(double dt_s) noexcept {
   return relist(0);
 }
 
-// Contact detection: collects all contacts of this substep. @return false when the work or time left is too small.
+// Contact detection: collects all contacts of this substep. @return false if too little work or time is left.
 template <unsigned Bits>
 bool Rod::look(double dt_s) noexcept {
   contacts_.begin();
@@ -161,7 +161,7 @@ Outcome Rod::settle_directly(const Effort& effort) noexcept {
   return patience_.newton_failed(outcome == Outcome::kUnsolved, worked) ? Outcome::kLater : Outcome::kUnsolved;
 }
 
-// Solves for the new velocities with contacts. @return false when the substep must wait for the next tick.
+// Solves for the new velocities with contacts. @return false if the substep must wait for the next tick.
 template <unsigned Bits>
 bool Rod::settle(double dt_s) noexcept {
   constexpr bool kRubs = (Bits & kFriction) != 0, kTurns = kRubs && (Bits & kTurning) != 0;
@@ -197,8 +197,8 @@ bool Rod::settle(double dt_s) noexcept {
   return true;
 }
 
-// Leaves the substep to the next tick and its full budget; Newton's method then continues. @return always false, for
-// the caller's own return.
+// Leaves the substep to the next tick, where Newton's method continues with a full budget. @return always false, so
+// that the caller can return it.
 bool Rod::put_off() noexcept {
   state_.v = v_before_;
   patience_.put_off();
@@ -206,8 +206,8 @@ bool Rod::put_off() noexcept {
   return false;
 }
 
-// The tick's time was over before the first sweep: the next tick repeats the substep from its start. @return always
-// false, for the caller's own return.
+// Call if the tick's time is over before the first sweep: the next tick then repeats the substep from its start.
+// @return always false, so that the caller can return it.
 bool Rod::give_up() noexcept {
   state_.v = v_before_;
   work_.spend(seen_.work);
@@ -215,10 +215,10 @@ bool Rod::give_up() noexcept {
   return false;
 }
 
-// Guard for pairs of segments that this substep has not measured, but which may meet after a sudden acceleration, such
-// as a release. Pairs on the list limit the step by a lower bound of their distance, all other pairs by the margin with
-// which the list was made. If this shortens the step and work is left, a new list is made. @return the admissible share
-// of dt_s, or nothing when there is not enough work and the substep can wait.
+// The guard for pairs of segments that this substep has not measured, but which may meet after a sudden acceleration,
+// such as a release. Pairs on the list limit the step by a lower bound of their distance, all other pairs by the margin
+// with which the list was made. If this shortens the step and work is left, a new list is made. @return the allowed
+// share of dt_s; nothing if too little work is left and the substep can wait.
 std::optional<double> Rod::guard_unseen(double dt_s) noexcept {
   const double diameter = 2.0 * material_.radius_m, unseen = 0.9 * (diameter * BroadPhase::kLeastReach + near_m_);
   const double ahead_m = diameter * (tuning.skin_d + 0.9 * BroadPhase::kLeastReach);
@@ -238,8 +238,9 @@ std::optional<double> Rod::guard_unseen(double dt_s) noexcept {
                   motion_.share_within(ahead_m, horizon_s_, dt_s));
 }
 
-// Scales all velocities down so that unconverged ones cannot deepen the overlaps of a jam. Hand forces are computed
-// from the unscaled velocities: the dampers of the couplings would turn the sudden slowing into a force peak.
+// Scales all velocities down, so that velocities that did not converge cannot deepen the overlaps of a jam. Hand forces
+// are computed from the velocities before scaling, because the dampers of the couplings would turn the sudden change of
+// speed into a force peak.
 // @return the scale factor.
 double Rod::brake(double dt_s) noexcept {
   const double share = contacts_.unsettled_fraction(state_.v.data(), dt_s);
@@ -251,8 +252,8 @@ double Rod::brake(double dt_s) noexcept {
   return share;
 }
 
-// The guard: share of dt_s for which everything can move without strands passing through each other; nothing when the
-// substep must wait. Also updates motion_ with the new velocities, and applies the brake.
+// The guard. Also updates motion_ with the new velocities, and applies the brake. @return the share of dt_s for which
+// everything can move without strands passing through each other; nothing if the substep must wait.
 template <unsigned Bits>
 std::optional<double> Rod::guard(double dt_s) noexcept {
   motion_.measure(state_.v.data());
@@ -263,7 +264,7 @@ std::optional<double> Rod::guard(double dt_s) noexcept {
     share = std::min(share, *unseen);
   }
   report_.guard_events += share < 1.0;
-  // Sweeps that replace an unfinished Newton solve converge slowly: the true error is about 100 times the last change.
+  // Sweeps that replace an unfinished Newton solution converge slowly: their error is about 100 times the last change
   const bool far_off = seen_.change_m_per_s > tuning.wild_m_per_s || (alone_ && patience_.sweeps_only());
   const bool wild = seen_.cut_short && far_off;
   const double slow = wild ? brake(dt_s) : 1.0;  // braked velocities move less, so the guard shortens the step less
@@ -289,8 +290,8 @@ void Rod::move(double dt_s, double share) noexcept {
 
 template <unsigned Bits>
 bool Rod::substep(double dt_s) noexcept {
-  // Fewer versions of the templates need be compiled: solving contacts does not depend on plastic bending, and a drum
-  // matters only when contacts are collected.
+  // Templates are compiled for fewer combinations: solving contacts does not depend on plastic bending, and a drum
+  // matters only while contacts are collected
   constexpr unsigned kLook = Bits & ~kSet, kRest = kLook & ~kDrum;
   constexpr bool kTouches = (Bits & (kContact | kWorld)) != 0;
   if constexpr (kTouches) {

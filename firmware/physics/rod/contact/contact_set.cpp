@@ -55,9 +55,10 @@ ContactSet& ContactSet::operator=(const ContactSet& other) {
   return *this;
 }
 
-// The objective that frictionless impulses minimise: sum of 1/2 p . (u + u_free) - target p_n + 1/2 soft p_n^2 over the
-// rows, with impulse p, its normal part p_n, relative velocity u, relative velocity without impulses u_free, wanted
-// normal velocity `target`, and the contact's compliance `soft`.
+// The objective that frictionless impulses minimise. It is the sum over all rows of
+//   1/2 p . (u + u_free) - target p_n + 1/2 soft p_n^2
+// p: impulse, p_n: its normal part, u: relative velocity, u_free: relative velocity without impulses, target: wanted
+// normal velocity, soft: the contact's compliance.
 template <bool Turns>
 double ContactSet::merit(const Vec* v) const noexcept {
   double sum = 0.0;
@@ -84,8 +85,8 @@ double ContactSet::push(BandSolver& solver, Vec* v) noexcept {
   return largest2[0] + largest2[1] + largest2[2];
 }
 
-// Column B = C^-1 J^T of a row (velocities of the nodes per unit impulse), eight nodes at a time, and J B, the row's
-// own velocity per unit impulse.
+// Computes a row's column B = C^-1 J^T (velocities of the nodes per unit impulse), eight nodes at a time, and J B, the
+// row's own velocity per unit impulse.
 void ContactSet::make_column(Contact& c, const ContactMetric& metric, float* column) const noexcept {
   const auto offset = static_cast<std::size_t>(window_first_ - metric.first());
   const float* r[Contact::kMostNodes];
@@ -152,7 +153,7 @@ void ContactSet::sweep(const Vec* v, TickTime& time) noexcept {
 }
 
 // Computes the target normal velocities, the starting impulses (those of the last substep, limited to the new friction
-// cones), and the velocities without and with these impulses.
+// cones), and the velocities without and with the starting impulses.
 template <bool Turns>
 void ContactSet::start(BandSolver& solver, const Numerics& numerics, double dt_s, Vec* v) noexcept {
   const double longer = per_second_ > 0.0 ? dt_s * per_second_ : 1.0;  // ratio of time steps, to keep the same forces
@@ -191,8 +192,8 @@ double ContactSet::plain_pass(BandSolver& solver, Vec* v, TickTime& time) noexce
   return push(solver, v);
 }
 
-// Anderson mixing: the mixed impulses, limited to their cones, are kept only if merit() is no larger for them than for
-// the impulses of the plain pass.
+// Anderson mixing. The mixed impulses, limited to their friction cones, are kept only if their merit() is not larger
+// than that of the impulses of the plain pass.
 template <bool Turns>
 void ContactSet::mix(BandSolver& solver, Vec* v) noexcept {
   if (!mixing_.step(p_.data(), residual_.data(), loaded_.size())) return;
@@ -266,7 +267,8 @@ void ContactSet::store() noexcept {
   }
 }
 
-// A contact slides if its impulse is on the cone and it slips; on the cone without slip it still sticks.
+// A contact slides if it slips and its impulse is on the surface of the friction cone; without slip it sticks, even on
+// that surface.
 template <bool Turns>
 void ContactSet::note_stuck(const Vec* v) noexcept {
   constexpr double kInside = 1.0 - 1e-9;

@@ -11,14 +11,15 @@
 namespace ligature::physics::rod {
 namespace {
 
-// Factor against float rounding. Each coordinate of a centre has an error of 6e-8 of the thread's length. In a thread
-// 1000 diameters long that is 2e-4 diameters in the distance of two centres. The factor covers it, as no distance below
-// 2.5 diameters is compared. In a longer thread the error makes the margin of the list (skin) smaller.
+// Factor against float rounding. Each coordinate of a sphere's centre has an error of 6e-8 of the thread's length. In a
+// thread 1000 diameters long this makes an error of 2e-4 diameters in the distance of two centres. The factor covers
+// that error, because no distance below 2.5 diameters is compared. In a longer thread the error makes the margin of the
+// list (skin) smaller
 constexpr float kSlack = 1.0001F;
 constexpr std::size_t kLeastTable = 2048;
 
-// Has a segment bending stiffness at one of its ends? Without it the corners of the polygon are real, and contact is
-// computed on the chord instead of a smooth curve.
+// Has a segment bending stiffness at one of its ends? Without bending stiffness the corners of the polygon are real,
+// and contact is computed on the chord instead of on a smooth curve.
 bool is_stiff(const Mesh& mesh, std::size_t j) noexcept { return mesh.weight[j] > 0.0 || mesh.weight[j + 1] > 0.0; }
 
 }  // namespace
@@ -29,7 +30,7 @@ void BroadPhase::reserve(int nodes, int pairs) {
   blocks_.resize(n / kBlock);
   for (int level = 0; level < kLevels; ++level) tree_[level].resize((n / kBlock >> level) + 1);
   capacity_ = pairs;
-  // All pairs may have an impulse; at least half of the hash table stays empty.
+  // Room for an impulse of every pair, with at least half of the hash table empty
   places_.assign(std::max(kLeastTable, std::bit_ceil(2 * static_cast<std::size_t>(pairs))), kNobody);
   kept_.reserve(static_cast<std::size_t>(pairs));
 }
@@ -78,7 +79,8 @@ void BroadPhase::place(const State& state, const Motion& motion, float horizon_s
   grow_tree(blocks);
 }
 
-// Each sphere of a level encloses two of the level below, centred midway between them.
+// Builds the tree of bounding spheres level by level. Each sphere encloses two spheres of the level below; its centre
+// is midway between theirs.
 void BroadPhase::grow_tree(std::size_t blocks) noexcept {
   for (int level = 1; level < kLevels && (blocks >> level) > 0; ++level) {
     const auto& below = tree_[level - 1];
@@ -171,7 +173,7 @@ unsigned BroadPhase::near(std::size_t a, std::size_t q, float reach) const noexc
     const float apart = half_[base + l] + bulge_[base + l] + own;
     hits |= static_cast<unsigned>(dx * dx + dy * dy + dz * dz <= apart * apart) << l;
   }
-  // Only segments from a + 2 on count: so each pair is found once, and adjacent segments are left out.
+  // Only segments from a + 2 on count, so that each pair is found once and adjacent segments are left out
   return base < a + 2 ? hits & ~0U << (a + 2 - base) : hits;
 }
 
@@ -185,7 +187,8 @@ bool BroadPhase::blocks(const State& state, const Motion& motion, const Outlook&
   const float x = blocks_[q].x - blocks_[p].x, y = blocks_[q].y - blocks_[p].y, z = blocks_[q].z - blocks_[p].z;
   const float within = blocks_[p].r + blocks_[q].r + reach;
   if (x * x + y * y + z * z > within * within) return true;
-  // Excludes the padding of the last block. It lies far away, but a diverging thread, or NaN, could still reach it.
+  // Excludes the padding of the last block. The padding is far away, but a thread that diverges (or has NaN) could
+  // reach it
   const std::size_t left = state.x.size() - 1 - q * kBlock;
   const unsigned real = left >= kBlock ? ~0U : (1U << left) - 1U;
   PairGroup group;
@@ -204,8 +207,8 @@ bool BroadPhase::blocks(const State& state, const Motion& motion, const Outlook&
   return true;
 }
 
-// At each block q, descends from the largest sphere of the tree that begins with q; if that sphere is out of reach, all
-// its blocks are skipped.
+// For each block q, descends in the tree from the largest sphere whose first block is q. If a sphere is out of reach,
+// all its blocks are skipped.
 bool BroadPhase::search(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p,
                         const PairList& list) noexcept {
   const std::size_t count = (state.x.size() - 1 + kBlock - 1) / kBlock;
@@ -226,9 +229,9 @@ bool BroadPhase::search(const State& state, const Motion& motion, const Outlook&
   return true;
 }
 
-// Counted with callgrind (overhand knot at 1 m/s): 133 instructions per node for the spheres and their tree, and 2100
-// in all to keep the impulses of the knot's contacts. For these, 5 per entry of the smallest hash table are charged,
-// enough for the contacts of a tight knot too.
+// Counted with callgrind for an overhand knot at 1 m/s: 133 instructions per node for the spheres and their tree, and
+// 2100 in all to keep the impulses of the knot's contacts. For the latter, 5 instructions per entry of the smallest
+// hash table are charged, which is enough for a tight knot too.
 long BroadPhase::least_cost(int nodes) noexcept { return 5L * static_cast<long>(kLeastTable) + 155L * nodes; }
 
 bool BroadPhase::build(const State& state, Motion& motion, const Outlook& outlook, long allowance, Work& work,

@@ -12,7 +12,7 @@ namespace {
 constexpr double kCut = 0.5;         // share of a segment that the smooth curve cuts off at a corner (h, smooth.hpp)
 constexpr double kLeastFade = 1e-3;  // > 0, as Spin::before_fading() divides by the factor
 
-// Opens a free slot at `at` in an array, or closes that slot, by shifting the tail of the array by one place. The
+// Opens a free place at index `at` in an array, or closes it again, by shifting the array's tail by one place. The
 // array's size stays the same.
 template <class T>
 void open_slot(std::vector<T>& array, std::size_t at) noexcept {
@@ -24,15 +24,16 @@ void close_slot(std::vector<T>& array, std::size_t at) noexcept {
             array.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
-// A segment of the initial mesh, ordered by its ratio of length to wanted length, then by nearness to the middle.
+// A segment of the initial mesh. Segments are ordered by the ratio of length to wanted length, then by nearness to the
+// thread's middle.
 struct Piece {
   double excess;
   std::int32_t nearness, at, length;
   auto operator<=>(const Piece&) const = default;
 };
 
-// Wanted segment length at every unit of the thread, from the given curvature; it changes only gradually along the
-// thread (tuning.grading). Constant when no curvature is given.
+// Wanted segment length at every mesh unit of the thread, from the given curvature; constant if no curvature is given.
+// The wanted length changes only gradually along the thread (tuning.grading).
 std::vector<double> wanted_at_rest(int units, double unit_m, std::span<const double> curvature_per_m) {
   std::vector<double> wanted(static_cast<std::size_t>(units), unit_m * (1 << Refine::kLevels));
   const double per_place = static_cast<double>(units) / static_cast<double>(curvature_per_m.size());
@@ -198,7 +199,7 @@ int Refine::cheapest_merge(double most) const noexcept {
 // Removes node i; its two segments become one.
 void Refine::merge(const Material& material, State& state, int node) noexcept {
   const auto i = static_cast<std::size_t>(node);
-  // Mass that each neighbour gets: half of node i's, as the two segments of a merged pair are equally long.
+  // Mass that each neighbour gets: half of node i's mass, because the two merged segments are equally long
   const double half = 0.5 * material.density_kg_per_m * (state.mesh.s[i] - state.mesh.s[i - 1]);
   for (const std::size_t k : {i - 1, i + 1}) {
     const double before = k > 0 ? state.mesh.s[k] - state.mesh.s[k - 1] : 0.0;
@@ -250,9 +251,10 @@ void Refine::split(const Material&, State& state, int segment) noexcept {
   }
 }
 
-// Fading factors of the offsets (stress-free bends and strains that remeshing has left). An offset is right only at the
-// place where its node was when it was set, so it fades faster the faster the node moves. The exponent is quadratic in
-// the speed, so that slow motion, such as that caused by the fading itself, adds nothing.
+// Computes the factors by which the offsets (stress-free bends and strains that remeshing has left) fade. An offset is
+// right only for the place where its node was when the offset was set, so it fades faster the faster the node moves.
+// The exponent is quadratic in the speed, so that slow motion, such as the one caused by the fading itself, has almost
+// no effect.
 void Refine::slide(const State& state, double tick_s, bool drifts) noexcept {
   const double per_m = tick_s / (tuning.away * unit_m_);
   const Vec drift = drifts ? mean_velocity(state) : Vec{};
@@ -263,8 +265,8 @@ void Refine::slide(const State& state, double tick_s, bool drifts) noexcept {
   std::fill(strain_fade_.begin(), strain_fade_.end(), tuning.fade);
 }
 
-// Where the fading of an offset adds stress, the elastic energy grows without a source. So the fading is weakened
-// there, as far as needed.
+// Weakens the fading of offsets, as far as needed, where it adds stress: there it would raise the elastic energy
+// without a source.
 double Refine::hold_back(const Material& material, const State& state, std::span<const Vec> born,
                          double allowance_J) noexcept {
   const Mesh& mesh = state.mesh;
@@ -285,8 +287,8 @@ double Refine::hold_back(const Material& material, const State& state, std::span
   for (std::size_t i = 1; i + 1 < n; ++i) count(bend_gain(i));
   for (std::size_t j = 0; j + 1 < n; ++j) count(strain_gain(j));
   if (up_J + down_J <= allowance_J) return up_J + down_J;
-  // The energy gain is a convex function of the amount of fading. So if only this share of the fading is done, the gain
-  // is at most this share of the whole one.
+  // The energy gain is a convex function of the amount of fading. So with only this share of the fading, the gain is at
+  // most this share of the full gain
   const double share = (allowance_J - down_J) / up_J;
   for (std::size_t i = 1; i + 1 < n; ++i)
     if (bend_gain(i) > 0.0) fade_[i] = 1.0 - share * (1.0 - fade_[i]);

@@ -32,7 +32,8 @@ struct Material {
                    set_fraction)
 };
 
-/// Time steps, tolerances and work limits. Every field trades computing time for accuracy (docs/rod-contact.md).
+/// Time steps, tolerances and work limits. Each field is a compromise between computing time and accuracy
+/// (docs/rod-contact.md).
 struct Numerics {
   double tick_s = 1e-3;
   int substeps = tuning.substeps;      ///< time steps per tick

@@ -1,5 +1,5 @@
-// Driver of Newton's method for contacts: checks all contacts for violated conditions, takes Newton steps on those in
-// the system, and repeats, until all hold or the work allowed for this tick is used.
+// Driver of Newton's method for contacts. Checks all contacts for violated conditions and takes Newton steps on the
+// contacts in the system. Repeats this until all conditions hold, or the work allowed for this tick is used up.
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ double square_of_enough(const Effort& effort) noexcept {
 
 }  // namespace
 
-// Gives the rows in newton_'s system the impulses p_, and updates the velocities v with the present matrix A.
+// Gives the impulses p_ to the contacts in Newton's system, and updates the velocities v with the present matrix A.
 void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
   clear_extra();
   for (const auto k : newton_.rows()) {
@@ -33,8 +33,8 @@ void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
   push(solver, v);
 }
 
-// Computes the inverse matrix Z from the present matrix A, and restarts newton_ with it. @return false when there is
-// not enough work left.
+// Computes the inverse matrix Z of the present matrix A, and restarts newton_ with it. @return false if too little work
+// is left.
 bool ContactSet::renew_matrix(const BandSolver& solver, Search& search) noexcept {
   const int first = std::max(window_first_ - tuning.margin, 0);
   const int last = std::min(window_last_ + tuning.margin, solver.nodes() - 1);
@@ -44,8 +44,8 @@ bool ContactSet::renew_matrix(const BandSolver& solver, Search& search) noexcept
   return search.fresh = true;
 }
 
-// Adds contacts that violate their condition to the system, and computes their couplings. @return kSettled when done,
-// kLater when there is not enough work or time, kUnsolved when the system is full.
+// Adds contacts that violate their conditions to the system, and computes their couplings. @return kSettled if this was
+// done, kLater if too little work or time is left, kUnsolved if the system is full.
 Outcome ContactSet::look_at_all(const BandSolver& solver, const Vec* v, Search& search) noexcept {
   const Contact* const rows = contacts_.data();
   const Vec* const p = p_.data();

@@ -1,4 +1,5 @@
-// One step of Newton's method: kinds of the contacts, the linear system for these kinds, its solution.
+// One step of Newton's method: determines the contacts' kinds, sets up the linear system for these kinds, and solves
+// it.
 
 #include <algorithm>
 #include <cmath>
@@ -54,8 +55,8 @@ void ContactNewton::sweep(const Contact* rows, Vec* p, Vec* u) noexcept {
   for (const auto k : rows_) u[k] += moved(slot_of(k));
 }
 
-// Adds to on_ the velocity changes of all slots by an impulse x on `slot` and, if Two, y on `other`. The coupling
-// matrix W is symmetric, so its rows are read instead of its columns.
+// Adds to on_ the velocity changes of all slots by an impulse x on `slot` and, with `Two`, an impulse y on `other`. The
+// coupling matrix W is symmetric, so its rows can be read instead of its columns.
 template <bool Two>
 void ContactNewton::answer(std::size_t slot, Vec x, std::size_t other, Vec y) noexcept {
   const Eight x0 = all_eight(static_cast<float>(x[0])), x1 = all_eight(static_cast<float>(x[1])),
@@ -109,7 +110,7 @@ int ContactNewton::exchanges() const noexcept {
   return static_cast<int>(std::count_if(slots_.begin(), end, [](const Slot& slot) { return !slot.carries(); }));
 }
 
-// Reorders slots so that those that carry load come first and their part of W is contiguous.
+// Reorders the slots so that those that carry load come first, and their part of W is contiguous.
 void ContactNewton::bring_forward() noexcept {
   carrying_ = carrying();
   std::size_t behind = slots_.size();
@@ -165,8 +166,9 @@ void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* 
   }
 }
 
-// Row i of the matrix: along_i . W_ij with_j for all unknowns j, and give_i on the diagonal. The loop over contacts
-// runs backwards: a store of eight numbers may write past the last contact, into entries that are set afterwards.
+// Computes row i of the matrix: along_i . W_ij with_j for all unknowns j, and give_i added on the diagonal. The loop
+// over contacts runs backwards, because a store of eight numbers may write past the last contact, into entries that are
+// set later.
 template <bool Friction>
 [[gnu::always_inline]] inline void ContactNewton::make_row(std::size_t i) noexcept {
   const Unknown& unknown = unknowns_[i];
@@ -210,8 +212,8 @@ bool ContactNewton::assemble(const Vec* p, TickTime& time) noexcept {
     if (!pieces.allow(300 + 8 * static_cast<long>(n))) return false;
     make_row<Friction>(i);
   }
-  // This step removes those parts of the present impulses for which the system has no unknown. The velocity change by
-  // their removal enters the right-hand side.
+  // The step removes those parts of the present impulses for which the system has no unknown. The velocity change by
+  // this removal enters the right-hand side
   for (const auto k : rows_) rest_[slot_of(k)].v = p[k].v;
   for (const auto& x : unknowns_) rest_[x.slot] -= x.now * x.with;
   answer_all(rest_.data());
