@@ -1,8 +1,10 @@
 #include "firmware/platform/odrive_drives.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <numbers>
 
 #include "firmware/platform/odrive_time.hpp"
@@ -203,6 +205,7 @@ std::optional<std::string> OdriveDrives::try_mode(BusWait& wait) {
     link_.send(odrive::set_position(node, here_rev + kAside_rev));
   }
   pause(wait);
+  if (auto e = bus_complaint()) return e;
   to_all([](unsigned node) { return odrive::set_velocity(node, kAside_rev_per_s); });
   pause(wait);
   (void)wait_until(wait, kOnTheWay, {.torque_Nm = 0.0F}, [] { return false; });
@@ -219,7 +222,10 @@ std::optional<std::string> OdriveDrives::try_watchdog(BusWait& wait) {
   for (std::size_t joint = 0; joint < rt::kJoints; ++joint) link_.send_limits(joint);
   pause(wait);
   send_traffic({.torque_Nm = 0.0F});
-  to_all(closed_loop);
+  for (unsigned node = 1; node <= rt::kJoints; ++node) {
+    if (auto e = bus_complaint()) return e;  // never on without its mode and limits
+    link_.send(closed_loop(node));
+  }
   pause(wait);
   const auto is_on = [](const Node& node) { return node.is_on() && node.heartbeat.error == 0; };
   if (auto e = expect(wait, kPatience, as_in_operation, is_on, "does not switch on")) return e;
@@ -252,6 +258,20 @@ std::optional<std::string> OdriveDrives::clear_errors(BusWait& wait) {
   return expect(wait, beats(3) + kOnTheWay, {.torque_Nm = 0.0F}, is_clear, "keeps its error");
 }
 
+/// Idle to all drives; to those for which the bus refused it, again in the next periods, until its queue has room.
+void OdriveDrives::send_idle(BusWait& wait) {
+  constexpr int kMostPeriods = 10;
+  std::array<bool, rt::kJoints> is_sent{};
+  for (int period = 0; period < kMostPeriods; ++period) {
+    for (unsigned node = 1; node <= rt::kJoints; ++node) {
+      if (!is_sent[node - 1]) is_sent[node - 1] = link_.send(idle(node));
+    }
+    if (bus_.is_lost() || std::ranges::all_of(is_sent, std::identity{})) return;
+    const Nanoseconds next = wait.now() + kPeriod;
+    while (wait.wait(next)) link_.drain();
+  }
+}
+
 /// Zero torque, then idle, then silence until the drives say that they are off: any frame could feed the watchdog of
 /// one that does not obey. Once more after that. It goes on also if another controller is heard or the bus refuses
 /// frames.
@@ -260,7 +280,7 @@ std::optional<std::string> OdriveDrives::switch_off(BusWait& wait) {
   const auto is_off = [](const Node& node) { return node.beats >= 2 && node.heartbeat.state == odrive::kIdle; };
   send_traffic({.torque_Nm = 0.0F});
   for (int times = 0; times < kTimes; ++times) {
-    to_all(idle);
+    send_idle(wait);
     link_.forget_beats();
     const Nanoseconds deadline = wait.now() + milliseconds(profile_.watchdog_ms) + beats(3) + kOnTheWay;
     do {

@@ -184,7 +184,8 @@ std::array<std::int16_t, rt::kJoints> OdriveLink::write(const rt::HandCommand& c
   std::array<std::int16_t, rt::kJoints> sent{};
   was_lost_ = false;
   for (Node& node : nodes_) node.had_error = node.was_off = node.tells_unasked = false;
-  const bool stops = command.request == rt::DriveRequest::kStop;
+  // Another controller that comes while a fault is latched changes no request, but must find the drives stopped.
+  const bool stops = command.request == rt::DriveRequest::kStop || foreign_ != rt::Foreign::kNone;
   const bool are_unsure = off_periods_ > 0 && !may_ask_;  // a torque could feed a drive that has not switched off
   if (stops || command.request == rt::DriveRequest::kHold || was_away_ || are_unsure) {
     switch_off(stops);

@@ -251,6 +251,17 @@ TEST_F(Odrive, AStopIsAnEmergencyStopInEveryPeriodWhileAnotherControllerSends) {
   EXPECT_EQ(sent(1, odrive::Command::kEstop), 1) << "at once beside another sender";
 }
 
+/// While a fault is latched, the controller goes on to ask for kHold. The other one could switch the drives on again.
+TEST_F(Odrive, AnotherControllerDuringAFaultMeetsEmergencyStopsToo) {
+  beat_all(kOn);
+  for (int i = 0; i < 70; ++i) {
+    if (i >= 50) bus.inbox.push_back(odrive::set_torque(1, 0.2F));
+    (void)period();
+    link.write({{}, rt::DriveRequest::kHold});
+    EXPECT_EQ(sent(2, odrive::Command::kEstop), i >= 50 ? 1 : 0) << i;
+  }
+}
+
 TEST_F(Odrive, BringsDrivesUpOneAfterTheOtherAndClearsErrors) {
   beat_all(kOff);
   beat(3, kOff, odrive::kWatchdogExpired);

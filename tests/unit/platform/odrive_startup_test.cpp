@@ -83,8 +83,14 @@ TEST(OdriveStartUp, RefusesABusThatTakesNotEveryFrame) {
   for (int i = 0; i < 60; ++i) {
     OdriveHand rig;
     rig.bus.refuse_at = random.any(0, all - 7);  // the last six switch off
-    EXPECT_EQ(rig.start().find("the bus takes no frames"), 0U) << rig.bus.refuse_at;
+    const auto refused = static_cast<std::size_t>(rig.bus.refuse_at);
+    EXPECT_EQ(rig.start().find("the bus takes no frames"), 0U) << refused;
     EXPECT_TRUE(rig.is_off());
+    for (std::size_t k = refused; k < rig.bus.sent.size(); ++k) {
+      const can::Frame& frame = rig.bus.sent[k];
+      EXPECT_FALSE((frame.id & 0x1FU) == 0x07 && frame.data[0] == 8)
+          << "closed loop (8) after frame " << refused << " was refused";
+    }
   }
 }
 
@@ -108,9 +114,16 @@ TEST(OdriveStartUp, SwitchesOffAlsoIfTheBusRefusesTheFirstIdle) {
   for (int which = 0; which < 6; ++which) {
     OdriveHand rig(on, on);
     ASSERT_FALSE(rig.is_off());
+    const Nanoseconds begin = rig.wait.time;
+    Nanoseconds off_after = Nanoseconds::max();
+    rig.wait.on_wait = [&] {
+      rig.advance();
+      if (rig.is_off()) off_after = std::min(off_after, rig.wait.time - begin);
+    };
     rig.bus.refuse_at = which;
     EXPECT_EQ(rig.drives.release(rig.wait), std::nullopt) << which;
     EXPECT_TRUE(rig.is_off()) << which;
+    EXPECT_LE(off_after, milliseconds(2)) << which;
   }
 }
 
