@@ -234,7 +234,8 @@ def arguments():
     parser.add_argument("minutes", nargs="?", type=float, default=10.0, help="10 when nothing is said; whole rounds of the script")
     parser.add_argument("--scene", default="scenes/paper.toml", help="default: %(default)s")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a key of the scene; may be given again")
-    parser.add_argument("--operator", default="scenes/operators/overhand.csv", metavar="SCRIPT", help="default: %(default)s")
+    parser.add_argument("--operator", default="scenes/operators/overhand.csv", metavar="SCRIPT",
+                        help="default: %(default)s; for the scenes of a suture: scenes/operators/suture-overhand.csv")
     parser.add_argument("--disk", action="store_true", help="keep the recorder's disk busy meanwhile")
     parser.add_argument("--changes", type=int, default=0, metavar="N", help="send so many live changes of friction, one every two seconds")
     asked = parser.parse_args()
@@ -242,6 +243,13 @@ def arguments():
         if not (ROOT / file).is_file():
             parser.error(f"no file {file}")
     return asked
+
+
+def ended_early(folder):
+    """Prints what the devices and the firmware said before the firmware ended. Returns the exit code."""
+    say("the firmware ended before its time; the programs said:")
+    print("".join((folder / f"{number}.log").read_text() for number in range(3)))
+    return 3
 
 
 def main():
@@ -268,8 +276,7 @@ def main():
             say(f"{rounds} rounds, {length_s:.0f} s; load {os.getloadavg()[0]:.1f}")
             time.sleep(SETTLED_S)
             if firmware.poll() is not None:
-                print((folder / "2.log").read_text())
-                return 3
+                return ended_early(folder)
             began = time.monotonic() - SETTLED_S
             witness = subprocess.Popen([BIN / "soak_witness", str(length_s - SETTLED_S), str(WITNESS_US), str(WITNESS_LIMIT_US)],
                                        stdout=subprocess.PIPE, text=True)
@@ -285,6 +292,8 @@ def main():
                     if time.monotonic() < began + length_s - 3:
                         after = {"faults": linux.faults(), "memory": linux.memory_kB(), "cpu_s": linux.cpu_s()}
                 if i + 1 < rounds:
+                    if firmware.poll() is not None:
+                        return ended_early(folder)
                     subprocess.run([BIN / "ligature-host", "send", "reset-thread"], capture_output=True, timeout=30)
                     say(f"round {i + 1} of {rounds}, memory {after['memory']['VmRSS']} kB, page faults {after['faults']}, load {os.getloadavg()[0]:.1f}")
             code = firmware.wait(timeout=120)
