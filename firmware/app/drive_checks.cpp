@@ -1,9 +1,7 @@
 #include "firmware/app/drive_checks.hpp"
 
 #include "firmware/app/options.hpp"
-#include "firmware/platform/cia402_facts.hpp"
 #include "firmware/platform/make_drives.hpp"
-#include "firmware/platform/odrive_drives.hpp"
 #include "protocol/device/device_file.hpp"
 
 namespace ligature::app {
@@ -13,9 +11,8 @@ std::variant<std::vector<platform::Check>, std::string> drive_checks(const std::
   if (const auto* error = std::get_if<scene::Error>(&loaded)) return error->text;
   const auto& device = std::get<device::Device>(loaded);
   std::vector<platform::Check> rows;
-  const auto lacks =
-      device.odrive ? platform::odrive_lacks(*device.odrive) : platform::lacks_of(device, RunOptions{}.watchdog_ms);
-  for (const std::string& line : lacks) rows.push_back({platform::Grade::kWarn, "drives", line, {}});
+  for (const std::string& line : platform::lacks_of_record(device, RunOptions{}.watchdog_ms))
+    rows.push_back({platform::Grade::kWarn, "drives", line, {}});
   if (!platform::have_watchdog(device))
     rows.push_back({platform::Grade::kWarn, "drives", "run needs --accept-no-drive-watchdog",
                     "an emergency stop on the drives' power supply (docs/drives.md)"});

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
-#include <utility>
 
 #include "firmware/platform/foreign_frame.hpp"
-#include "protocol/can/bit_time.hpp"
 #include "protocol/can/emcy.hpp"
 #include "protocol/can/heartbeat.hpp"
 #include "protocol/can/nmt.hpp"
@@ -16,7 +14,6 @@
 namespace ligature::platform {
 namespace {
 
-constexpr float kPeriod_ns = 1e6F;
 constexpr unsigned kAllJoints = (1U << rt::kJoints) - 1U;
 constexpr unsigned kInputsPart = 1U << rt::kJoints;
 
@@ -49,7 +46,7 @@ can::cia402::State HandLink::Node::state() const noexcept {
 
 void HandLink::send_sync() noexcept {
   drain();
-  bits_of_last_period_ = std::exchange(bits_, 0U);
+  load_.begin_period();
   arrived_ = 0;
   if (age_ticks_ < std::numeric_limits<std::int32_t>::max()) ++age_ticks_;
   send(can::sync_frame());
@@ -93,12 +90,12 @@ bool HandLink::send(const can::Frame& frame) noexcept {
     was_lost_ = was_lost_ || bus_.is_lost();
     return false;
   }
-  bits_ += can::frame_bits(frame);
+  load_.add(frame);
   return true;
 }
 
 void HandLink::take(const can::Frame& frame) noexcept {
-  bits_ += can::frame_bits(frame);
+  load_.add(frame);
   if (foreign_ == rt::Foreign::kNone) foreign_ = foreign_kind(frame);
   if (inputs_id_ != 0 && frame.id == inputs_id_ && frame.dlc == buttons_.bits / 8) {
     pending_inputs_ = static_cast<std::uint32_t>(can::data_word(frame));
@@ -160,7 +157,7 @@ rt::HandReading HandLink::reading() const noexcept {
   r.foreign = foreign_;
   r.valid = valid_;
   r.age_ticks = age_ticks_;
-  r.bus_load = static_cast<float>(can::bits_to_ns(bits_of_last_period_)) / kPeriod_ns;
+  r.bus_load = load_.of_last_period();
   r.enabled = valid_;
   r.buttons_stuck = has_life_ && still_sets_ >= kStillSets;
   for (std::size_t j = 0; j < rt::kJoints; ++j) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/platform/bus_load.hpp"
 #include "firmware/platform/can_bus.hpp"
 #include "firmware/rt/rig_io.hpp"
 #include "protocol/can/cia402.hpp"
@@ -111,7 +112,7 @@ class HandLink {
   int still_sets_ = 0;
   std::int32_t age_ticks_ = 1;
   int heartbeat_periods_, periods_to_heartbeat_;
-  unsigned bits_ = 0, bits_of_last_period_ = 0;  // bits on the wire, for the bus load
+  BusLoad load_;
 };
 
 }  // namespace ligature::platform

@@ -1,6 +1,7 @@
 #include "firmware/platform/make_drives.hpp"
 
 #include "firmware/platform/cia402_drives.hpp"
+#include "firmware/platform/cia402_facts.hpp"
 #include "firmware/platform/cia402_time.hpp"
 #include "firmware/platform/odrive_drives.hpp"
 #include "firmware/platform/odrive_time.hpp"
@@ -17,6 +18,10 @@ rt::BusTime bus_time_of(const device::Device& device) noexcept {
   const device::Cia402Profile& p = device.cia402;
   return cia402_time(p.buttons.are_inputs() ? static_cast<unsigned>(p.buttons.bits) / 8U : 0U,
                      p.watchdog == device::DriveWatchdog::kHeartbeat);
+}
+
+std::vector<std::string> lacks_of_record(const device::Device& device, int watchdog_ms) {
+  return device.odrive ? odrive_lacks(*device.odrive) : lacks_of(device, watchdog_ms);
 }
 
 bool have_watchdog(const device::Device& device) noexcept {

@@ -2,6 +2,8 @@
 // The drives that a device record describes. A new protocol is added here (docs/drives.md).
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "firmware/platform/hand_drives.hpp"
 #include "protocol/device/device.hpp"
@@ -15,6 +17,10 @@ namespace ligature::platform {
 
 /// Bus time of these drives, known before a bus is open.
 [[nodiscard]] rt::BusTime bus_time_of(const device::Device& device) noexcept;
+
+/// Which guarantees drives of this record cannot give, one line each, before a bus is open.
+/// @param watchdog_ms as for make_drives()
+[[nodiscard]] std::vector<std::string> lacks_of_record(const device::Device& device, int watchdog_ms);
 
 /// Whether the drives remove their torque by themselves when the controller falls silent.
 [[nodiscard]] bool have_watchdog(const device::Device& device) noexcept;

@@ -64,7 +64,7 @@ constexpr void put(can::Frame& f, std::size_t at, std::uint32_t value) noexcept 
   detail::put(f, 4, kPassthrough);
   return f;
 }
-/// In torque mode these two do nothing.
+/// In torque mode set_position() and set_velocity() have no effect.
 [[nodiscard]] constexpr can::Frame set_position(unsigned node, float rev) noexcept {
   can::Frame f{id_of(node, Command::kSetInputPosition), 8, {}};
   detail::put(f, 0, std::bit_cast<std::uint32_t>(rev));
@@ -82,8 +82,8 @@ constexpr void put(can::Frame& f, std::size_t at, std::uint32_t value) noexcept 
   detail::put(f, 4, std::bit_cast<std::uint32_t>(current_A));
   return f;
 }
-/// The DBC declares 8 bytes; the last four mean nothing and would not fit into the
-/// period. Start-up proves that the drive takes the message as it is.
+/// Target torque, in 4 bytes. The published DBC declares 8, of which the last four mean nothing; three messages of 8
+/// bytes would not fit into the period. Start-up tries whether the drive takes the short message.
 [[nodiscard]] constexpr can::Frame set_torque(unsigned node, float torque_Nm) noexcept {
   can::Frame f{id_of(node, Command::kSetInputTorque), kTorqueBytes, {}};
   detail::put(f, 0, std::bit_cast<std::uint32_t>(torque_Nm));

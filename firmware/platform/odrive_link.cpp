@@ -5,13 +5,11 @@
 #include <numbers>
 #include <utility>
 
-#include "protocol/can/bit_time.hpp"
 #include "protocol/can/units.hpp"
 
 namespace ligature::platform {
 namespace {
 
-constexpr float kPeriod_ns = 1e6F;
 constexpr int kMany = std::numeric_limits<int>::max() - 1;
 constexpr double kRad_per_rev = 2.0 * std::numbers::pi;
 
@@ -36,7 +34,7 @@ void OdriveLink::forget_targets() noexcept {
 
 void OdriveLink::request() noexcept {
   drain();
-  bits_of_last_period_ = std::exchange(bits_, 0U);
+  load_.begin_period();
   arrived_ = 0;
   foreign_periods_ = std::max(foreign_periods_ - 1, 0);
   if (age_ticks_ < std::numeric_limits<std::int32_t>::max()) ++age_ticks_;
@@ -73,7 +71,7 @@ bool OdriveLink::send(const can::Frame& frame) noexcept {
     was_lost_ = has_refused_ = true;
     return false;
   }
-  bits_ += can::frame_bits(frame);
+  load_.add(frame);
   return true;
 }
 
@@ -83,7 +81,7 @@ bool OdriveLink::send_limits(std::size_t joint) noexcept {
 }
 
 void OdriveLink::take(const can::Frame& frame) noexcept {
-  bits_ += can::frame_bits(frame);
+  load_.add(frame);
   if (const auto kind = odrive::foreign_kind(frame); kind != rt::Foreign::kNone) {
     foreign_periods_ = kNear;
     if (foreign_ == rt::Foreign::kNone) foreign_ = kind;
@@ -158,7 +156,7 @@ rt::HandReading OdriveLink::reading() const noexcept {
   r.foreign = foreign_;
   r.valid = valid_;
   r.age_ticks = age_ticks_;
-  r.bus_load = static_cast<float>(can::bits_to_ns(bits_of_last_period_)) / kPeriod_ns;
+  r.bus_load = load_.of_last_period();
   r.enabled = valid_;
   r.buttons_stuck = still_frames_ >= kStillFrames;
   r.drive_fault = was_away_;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/platform/bus_load.hpp"
 #include "firmware/platform/can_bus.hpp"
 #include "firmware/platform/odrive_frames.hpp"
 #include "protocol/device/device.hpp"
@@ -94,7 +95,7 @@ class OdriveLink {
   int up_periods_ = 0;        // since the last round of commands to switch drives on
   bool is_prepared_ = false;  // the bus has taken this drive's mode and limits
   std::int32_t age_ticks_ = 1;
-  unsigned bits_ = 0, bits_of_last_period_ = 0;
+  BusLoad load_;
 };
 
 }  // namespace ligature::platform

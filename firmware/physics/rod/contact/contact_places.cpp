@@ -11,11 +11,12 @@
 namespace ligature::physics::rod {
 
 // Collects the pairs whose gap is below near_m + 2 dt x the relative speed of their points. This test is stricter than
-// that of find_due(), which uses an upper bound of the speed.
-void ContactSet::find_near(const State& state, double dt_s) noexcept {
+// that of find_due(), which uses an upper bound of the speed. @return false when the time was over first.
+bool ContactSet::find_near(const State& state, double dt_s, Pieces& pieces) noexcept {
   near_.clear();
   const auto& mesh = state.mesh;
   for (std::size_t k = 0; k < due_.size(); ++k) {
+    if (!pieces.allow(price::kPlace)) return false;
     const Measured& m = measured_[k];
     const Candidate& pair = pairs[static_cast<std::size_t>(due_[k])];
     const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
@@ -29,6 +30,7 @@ void ContactSet::find_near(const State& state, double dt_s) noexcept {
                      mesh.s[b] + t * mesh.rest[b], loaded});
   }
   heads_.assign(state.x.size() + 1, -1);
+  return true;
 }
 
 // Is there already a contact at the place of the pair `one`? At one place means: on both strands, the points of the two
@@ -50,18 +52,21 @@ bool ContactSet::has_contact_at(const Near& one, const Candidate& pair) const no
 // substep (at the present velocities). A pair with an impulse always stays a contact: where strands hook over each
 // other at a corner, contacts at one place push in different directions, and each is needed. @return false if the time
 // was over first.
-bool ContactSet::choose_near(TickTime& time) noexcept {
-  Pieces pieces(time);
-  std::sort(near_.begin(), near_.end(),
-            [](const Near& p, const Near& q) { return p.gap_m < q.gap_m || (p.gap_m == q.gap_m && p.due < q.due); });
-  for (std::size_t k = 0; k < near_.size(); ++k) {
+bool ContactSet::choose_near(Pieces& pieces) noexcept {
+  // A heap yields one pair after the other, the nearest first, so that the work can be interrupted; a sort could not.
+  const auto is_farther = [](const Near& p, const Near& q) {
+    return p.gap_m > q.gap_m || (p.gap_m == q.gap_m && p.due > q.due);
+  };
+  std::make_heap(near_.begin(), near_.end(), is_farther);
+  for (std::size_t left = near_.size(); left > 0; --left) {
     if (!pieces.allow(price::kPlace)) return false;
-    Near& one = near_[k];
+    std::pop_heap(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(left), is_farther);
+    Near& one = near_[left - 1];
     const auto due = static_cast<std::size_t>(one.due);
     const Candidate& pair = pairs[static_cast<std::size_t>(due_[due])];
     if (!one.loaded && has_contact_at(one, pair)) continue;
     measured_[due].touches = true;
-    one.next = std::exchange(heads_[static_cast<std::size_t>(pair.a)], static_cast<std::int32_t>(k));
+    one.next = std::exchange(heads_[static_cast<std::size_t>(pair.a)], static_cast<std::int32_t>(left - 1));
   }
   return true;
 }
