@@ -1,7 +1,7 @@
 #pragma once
-// A throw whose end passes the loop against the turn, as in a figure-eight: the end goes once round the standing part
-// and through the loop from the front. Also the move draw_through(), which draws a throw tight while the corner is
-// held; throws in springy threads use it, too.
+// The throw of a figure-eight: the end goes once round the standing part, and then through the loop from the front,
+// against the direction in which it went round. Also the move draw_through(), which draws a throw tight while the
+// corner is held; throws in springy threads use it, too.
 
 #include <memory>
 

@@ -119,8 +119,8 @@ TEST(Admission, MoreWorkLosesLessOfASquareKnot) {
   EXPECT_LT(much, 0.2 * little);
 }
 
-/// Admission must check the clock: the contact budget does not count the milliseconds that 2000 nodes take, so by the
-/// budget alone such a thread would seem to lose no time.
+/// The contact budget counts only work on contacts. A tick of 2000 nodes takes milliseconds for other reasons, so
+/// admission must also check the clock. By the budget alone such a thread would seem to lose no time.
 TEST(Admission, ADrawnKnotIsEndedByTheClockAsOnARig) {
   for (const auto& scene : {scene_of("suture-3-0-square.toml", 154), paper(20)}) {
     auto thread = std::get<physics::Simulation>(physics::Simulation::make(scene));

@@ -100,8 +100,8 @@ void Dense::clear_below(std::size_t k, std::size_t pivots, std::size_t first) no
   }
 }
 
-// Eliminates eight columns from k on, as two panels of which the first is already reduced. @return the number of
-// columns done.
+// Eliminates the eight columns from k on, as two panels of four. The first panel has been factorised before the call.
+// @return the number of columns done; fewer than eight if a pivot of the second panel is too small.
 std::size_t Dense::two_panels(std::size_t k) noexcept {
   const std::size_t l = k + kPanel, end = l + kPanel;
   for (std::size_t i = l; i < end; ++i) take_away<kPanel>(row(i), row(i) + k, row(k), l & ~std::size_t{7}, stride_);
@@ -131,7 +131,8 @@ void Dense::substitute() noexcept {
       const Eight at = load_eight(x + j);
       for (std::size_t i = 0; i < 2 * kPanel; ++i) sum[i] += load_eight(rows[i] + j) * at;
     }
-    // The unknowns x up to the end of this panel are still zero, so the old matrix entries there add nothing
+    // The sums run over whole groups of eight columns, so also over columns before `end`. Their unknowns x are still
+    // zero and add nothing.
     for (std::size_t i = 0; k + i < end; ++i) {
       const Eight s = sum[i];
       x[k + i] = rows[i][n_] - (((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7])));
