@@ -4,8 +4,10 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <exception>
 #include <iterator>
+#include <mutex>
 #include <thread>
 
 #include "host/lab/every.hpp"
@@ -21,6 +23,7 @@ namespace {
 constexpr double kMostBytes = 4e9;  // limit on the memory for the results of all runs
 constexpr double kLongest_s = 1e6;
 constexpr int kTicksAQuestion = 32;
+constexpr std::chrono::milliseconds kBetweenQuestions(20);  // each wake-up takes a core from a worker for a moment
 
 std::string digits(double value) {
   char text[40];
@@ -96,9 +99,12 @@ std::vector<Run> play_all(const physics::Simulation& from, const scene::Scene& s
                           std::span<const scene::GripperScript* const> scripts, std::span<const Orders> orders,
                           unsigned threads, const std::function<bool()>& go_on) {
   std::vector<Run> runs(scripts.size());
-  std::atomic<std::size_t> next = 0, ended = 0;
+  std::atomic<std::size_t> next = 0;
   std::atomic<bool> stop = false;
   std::vector<std::exception_ptr> why(threads);
+  std::mutex lock;
+  std::condition_variable one_ended;
+  unsigned ended = 0;  // workers; guarded by lock
   const auto work = [&](std::size_t worker) noexcept {
     try {
       for (std::size_t i = next++; i < runs.size() && !stop; i = next++) {
@@ -109,13 +115,16 @@ std::vector<Run> play_all(const physics::Simulation& from, const scene::Scene& s
       why[worker] = std::current_exception();
       stop = true;
     }
+    const std::lock_guard guard(lock);
     ++ended;
+    one_ended.notify_one();
   };
   std::vector<std::jthread> workers;
   for (unsigned k = 0; k < threads; ++k) workers.emplace_back(work, k);
-  while (ended < threads) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    if (!stop && !go_on()) stop = true;
+  {
+    std::unique_lock guard(lock);
+    while (!one_ended.wait_for(guard, kBetweenQuestions, [&] { return ended == threads; }))
+      if (!stop && !go_on()) stop = true;
   }
   workers.clear();
   for (const auto& error : why)

@@ -3,6 +3,8 @@
 import copy
 import ctypes
 import gc
+import resource
+import signal
 import threading
 import time
 
@@ -111,6 +113,28 @@ def test_rollout_is_each_run_alone_whatever_the_threads(paper, overhand):
         assert all(np.array_equal(a.trace, b.trace) and np.array_equal(a.shapes, b.shapes) for a, b in zip(runs, alone, strict=True))
     assert np.array_equal(sim.nodes, state), "the simulation itself stays as it is"
     assert sim.rollout([]) == []
+
+
+def test_rollout_leaves_the_cores_to_its_threads(paper, overhand):
+    """The calling thread only waits. Waking up often, it would take a core from a worker each time."""
+    waits, begun_s = resource.getrusage(resource.RUSAGE_SELF).ru_nvcsw, time.monotonic()
+    ligature.Simulation(paper).rollout([overhand] * 4, 2, duration_s=60.0)
+    waits = resource.getrusage(resource.RUSAGE_SELF).ru_nvcsw - waits
+    assert waits < 40 + 100 * (time.monotonic() - begun_s)  # it looks for signals 50 times a second
+
+
+def test_rollout_ends_when_a_signal_handler_raises(paper):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    before, begun_s = signal.signal(signal.SIGALRM, interrupt), time.process_time()
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.1)
+        with pytest.raises(KeyboardInterrupt):
+            ligature.Simulation(paper).rollout([ligature.Script()] * 4, 2, duration_s=2000.0)  # needs some 20 s of CPU time
+    finally:
+        signal.signal(signal.SIGALRM, before)
+    assert time.process_time() - begun_s < 3.0
 
 
 def test_other_python_threads_go_on_and_may_not_touch_a_running_simulation():
