@@ -99,17 +99,17 @@ class Hands(unittest.TestCase):
         self.assertLessEqual(last - released, LONGEST_RAMP_TICKS, f"{why}: torque long after the dead-man")
         return last - released
 
-    def presses(self, hand, counts):
-        """Holds a dead-man until it counts; presses again if a busy machine made the page or the device take a release."""
+    def presses(self, counts, *hands):
+        """Holds the hands' dead-men until they count; presses again if a busy machine made the page or the device take a release."""
         for _ in range(20):
             self.person.does("open")  # a hand that was silent for 5 s is lost, and taken again
-            self.person.keys(DEAD_MAN[hand])
+            self.person.keys(*(DEAD_MAN[h] for h in hands))
             from_tick = self.tick().tick
             self.rig.wait_for(lambda _: counts() or self.tick().tick > from_tick + 3000, "the dead-man or a while")
             if counts():
                 return
             self.person.keys()
-        self.fail(f"no press of the {hand} dead-man counts\n{self.rig.words()}")
+        self.fail(f"no press of the dead-man counts: {hands}\n{self.rig.words()}")
 
     def holds(self, hand):
         return self.tick().grasped_node[HANDS.index(hand)] >= 0
@@ -130,9 +130,11 @@ def arrows(hand, at, to, near):
 
 
 class Keyboard(Hands):
-    # The right hand's way around the thread and through its loop: scenes/operators/overhand.csv.
-    around = ((1.0, -0.9, 3.0), (1.9, -0.8, 4.0), (1.6, -0.7, 5.4), (0.7, -0.8, 5.9), (-0.4, -0.7, 5.6), (-0.9, -0.3, 5.0), (-0.75, 0.6, 4.8),
-              (-0.2, 1.1, 4.8), (0.4, 1.0, 4.6), (0.6, 0.6, 4.3), (0.6, -0.2, 4.1), (0.6, -0.6, 4.0), (0.8, -1.7, 3.7))
+    # The right hand's way around the thread and through its loop: that of scenes/operators/overhand.csv, with wider turns.
+    # In simulation, 499 of 500 ways with each place off by up to NEAR_M along each axis tie the knot; 242 of 300 of the
+    # script's own.
+    around = ((1.0, -0.9, 3.0), (1.9, -0.8, 4.0), (1.6, -0.7, 5.7), (0.7, -0.8, 6.2), (-0.55, -0.7, 5.9), (-1.05, -0.3, 5.0), (-0.9, 0.6, 4.8),
+              (-0.2, 1.1, 4.8), (0.55, 1.0, 4.65), (0.75, 0.6, 4.35), (0.75, -0.2, 4.15), (0.75, -0.6, 4.05), (0.8, -1.7, 3.7))
 
     def go(self, **to):
         """Moves the hands to places in the world, straight by small steps; both dead-men are held."""
@@ -142,9 +144,12 @@ class Keyboard(Hands):
             self.step({h: [a + (b - a) * k / steps for a, b in zip(begin[h], p)] for h, p in to.items()}, NEAR_M if k == steps else PASSED_M)
 
     def step(self, places, near):
+        """Keys go by where the hands will be. The step ends by where they are: one that ends before a hand has come cuts
+        the corners of the way, and then not every try ties the knot."""
         until = self.tick().tick + PATIENCE_TICKS
-        while keys := [code for h, p in places.items() for code in arrows(h, self.at(h, AHEAD_S), p, near)]:
+        while not all(abs(a - b) <= near for h, p in places.items() for a, b in zip(self.at(h), p)):
             self.assertLess(self.tick().tick, until, f"the hands do not come to {places}: {[self.at(h) for h in HANDS]}")
+            keys = [code for h, p in places.items() for code in arrows(h, self.at(h, AHEAD_S), p, near)]
             self.person.keys(*DEAD_MAN.values(), *keys)
             self.ticks_pass(10)
 
@@ -156,7 +161,7 @@ class Keyboard(Hands):
         self.go(left=(0.7, 0.0, 4.5))
         for place in self.around:
             self.go(right=place)
-        self.assertEqual(self.tick().state, STATE_FORCE)
+        self.presses(lambda: self.tick().state == STATE_FORCE, *HANDS)
         self.tap_jaws("left", False)
         for place in ((0.6, -1.9, 2.6), (0.3, -1.0, 1.8), (0.0, 0.0, 1.3)):
             self.go(right=place)
@@ -268,7 +273,7 @@ class Stall(Hands):
 class InHaste(Hands):
     def obeys(self):
         for hand in HANDS:
-            self.presses(hand, lambda: self.tick().dead_man[HANDS.index(hand)])
+            self.presses(lambda: self.tick().dead_man[HANDS.index(hand)], hand)
             self.person.keys()
 
     def test_a_page_that_seems_to_have_the_hands_has_them(self):
@@ -295,7 +300,7 @@ class TakenAway(Hands):
         for k in range(TIMES):
             way = self.ways[k % len(self.ways)]
             self.holds_the_thread()
-            self.presses("left", self.pushes)
+            self.presses(self.pushes, "left")
             from_tick = self.tick().tick
             self.person.does(way)
             to_zero[way].append(self.assert_lets_go(from_tick, way))
