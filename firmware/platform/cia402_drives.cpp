@@ -21,6 +21,7 @@ std::optional<std::string> Cia402Drives::configure(BusWait& wait) {
 
 std::vector<can::Frame> Cia402Drives::example_samples() const {
   std::vector<can::Frame> frames;
+  frames.reserve(can::profile::kJointNodes.size() + 1);
   for (const can::NodeId node : can::profile::kJointNodes) frames.push_back(can::encode(node, can::Tpdo1{}));
   const can::ButtonsSource& buttons = times_.drive.buttons;
   if (buttons.own_pdo)

@@ -134,7 +134,7 @@ std::optional<std::string> OdriveDrives::other_controller(BusWait& wait) {
 /// However it ends, the power stages are off.
 std::optional<std::string> OdriveDrives::configure(BusWait& wait) {
   auto refusal = set_up(wait);
-  const auto still_on = switch_off(wait);
+  auto still_on = switch_off(wait);
   if (!refusal && link_.was_away()) refusal = "a drive's heartbeat stayed away for three of its periods";
   if (!refusal) return still_on;
   return still_on ? *refusal + "; " + *still_on : refusal;

@@ -43,7 +43,7 @@ std::vector<Mapping> file_mappings() {
 /// meanwhile, because it may contain this function.
 /// @return 0, or the errno
 int copy(const Mapping& m) noexcept {
-  auto* const at = reinterpret_cast<void*>(m.from);
+  auto* const at = reinterpret_cast<void*>(m.from);  // NOLINT(performance-no-int-to-ptr): printed by the kernel
   const std::size_t bytes = m.to - m.from;
   if (mprotect(at, bytes, m.protection | PROT_WRITE) != 0) return errno;
   const int error = madvise(at, bytes, kPopulateWrite) == 0 ? 0 : errno;
