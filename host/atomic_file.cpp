@@ -28,7 +28,7 @@ std::string file_to_write(const std::string& path) {
   return target.string();
 }
 
-AtomicFile::AtomicFile(std::string path) : path_(file_to_write(path)) {
+AtomicFile::AtomicFile(const std::string& path) : path_(file_to_write(path)) {
   part_path_ = path_ + ".part-" + std::to_string(getpid());
   file_ = std::fopen(part_path_.c_str(), "wbx");
   if (!file_) throw BadInput(path_ + ": cannot be written: " + std::strerror(errno));

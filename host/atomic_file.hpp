@@ -14,7 +14,7 @@ namespace ligature::host {
 class AtomicFile {
  public:
   /// @throws BadInput when the file cannot be made.
-  explicit AtomicFile(std::string path);
+  explicit AtomicFile(const std::string& path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
