@@ -72,7 +72,17 @@ TEST(Published, Capstan) {
 TEST(Published, CapstanPulledAlongItsAxis) {
   const std::string at = "theta = 4.00 pi: F / (mu T) at T R^2 / B = ";
   expect_met("capstan-axis", {at + "1", at + "9"});
-  expect_met("capstan-axis", {at + "1"}, scene::Accuracy::kFine);
+  // Why one figure misses at `fine`: below T R^2 / B = 3/2 coils that lie flat are unstable. They become steeper, up to
+  // an angle a with cos(a)^4 = T R^2 / (1.5 B), which is 25.4 degrees here. The closed form assumes flat coils.
+  const auto all = expect_met("capstan-axis", {at + "1"}, scene::Accuracy::kFine);
+  const auto tilt = [&](const std::string& load) {
+    const std::string what = "theta = 4.00 pi: tilt of the thread at T R^2 / B = " + load;
+    const auto f = std::find_if(all.begin(), all.end(), [&](const auto& k) { return k.what == what; });
+    return f == all.end() ? std::nan("") : f->measured;
+  };
+  EXPECT_GT(tilt("1"), 12.0);
+  EXPECT_LT(tilt("1"), 25.4);
+  EXPECT_LT(tilt("9"), 5.0);
 }
 
 TEST(Published, Drum) {

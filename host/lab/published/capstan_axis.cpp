@@ -65,6 +65,17 @@ class Pulled {
     return sim_.diagnostics().finite ? sum : std::nan("");
   }
 
+  /// Largest angle between the thread and the plane perpendicular to the peg's axis, degrees.
+  [[nodiscard]] double tilt_deg() const {
+    const auto nodes = sim_.nodes_W();
+    double most = 0.0;
+    for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
+      const Vec3 along = nodes[k + 1] - nodes[k];
+      most = std::max(most, std::asin(std::abs(along.y()) / along.norm()));
+    }
+    return most * 180.0 / kPi;
+  }
+
  private:
   static constexpr int kSettle = 600, kCounted = 100;
 
@@ -142,8 +153,9 @@ Result capstan_axis(const Subject& subject) {
       const double theory = normal_over_tension(theta, load), measured = forces.back() / (kFriction * tension);
       result.points.push_back({at.substr(0, at.size() - 2), load, theory, measured});
       if (load == loads.front() || load == loads.back()) {
-        result.findings.push_back(validate::relative(
-            at + "F / (mu T) at T R^2 / B = " + std::to_string(load).substr(0, 1), theory, measured, 0.05));
+        const std::string where = " at T R^2 / B = " + std::to_string(load).substr(0, 1);
+        result.findings.push_back(validate::relative(at + "F / (mu T)" + where, theory, measured, 0.05));
+        result.findings.push_back(reported(at + "tilt of the thread" + where, thread.tilt_deg(), "deg"));
       }
     }
     const double power = exponent(loads, forces);
