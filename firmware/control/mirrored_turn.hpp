@@ -8,15 +8,19 @@
 
 namespace ligature::control {
 
-/// The test for a reversed encoder. An encoder that begins to count backwards at the sample x0 reports 2 x0 - x from
-/// there on. So if the samples after the turn are mirrored at x0, they continue those before it as one smooth curve. A
-/// reversal is suspected when one parabola fits both halves within the rounding to counts.
+/// The test for a reversed encoder. A turn is a place where the readings change their direction; its halves are equally
+/// many readings before and after it. An encoder that begins to count backwards at the position x0 reports 2 x0 - x
+/// from there on, instead of x. So if the second half is mirrored at x0, it continues the first half as one smooth
+/// curve. A reversal is suspected when one parabola fits both halves, except for errors as small as those of rounding
+/// to counts.
 ///
-/// A hand that really turns a joint, from speed u to -u with acceleration a, needs the time 2 u / a for that. Then the
-/// two halves, with the second one mirrored, lie u^2 / a apart. If that is two counts or more, no reversal is
-/// suspected. So a hand at u counts per period is never suspected up to the acceleration u^2 / 2, which is 49 m/s2 at
-/// 1.4 counts per period (70 mm/s at an Omni's tip). A slower hand is tested with longer halves, because it accelerates
-/// less. False alarms and missed reversals: docs/encoder-watch.md. O(kLongest), no allocation.
+/// A hand that really turns a joint, from speed u to -u with acceleration a, needs the time 2 u / a for that. If the
+/// motion before the turn is extended at speed u to the middle of the turn, it ends u^2 / (2 a) beyond the turning
+/// point x0. The motion after the turn, mirrored and extended in the same way, begins u^2 / (2 a) before x0. So at the
+/// middle of the turn there is a jump of u^2 / a between the halves. If the jump is two counts or more, no reversal is
+/// suspected. At u counts per period this holds up to the acceleration u^2 / 2, which is 49 m/s2 at 1.4 counts per
+/// period (70 mm/s at an Omni's tip). A slower joint passes fewer counts per period, so it is tested with longer
+/// halves. False alarms and missed reversals: docs/encoder-watch.md. O(kLongest), no allocation.
 class MirroredTurn {
  public:
   struct Look {

@@ -18,18 +18,19 @@ namespace ligature::host::view {
 inline constexpr std::string_view kHandWishChannel = "LIGATURE_HAND_WISH";
 inline constexpr std::string_view kHandStateChannel = "LIGATURE_HAND_STATE";
 
-/// Decodes a hand's state, which anybody on the network may have sent. Nothing unless the message is complete, its hand
-/// is 0 or 1, and its position is plausible.
+/// Decodes the state of a hand; anybody on the network may have sent the message. @return nullopt unless the message is
+/// complete, its hand is 0 or 1, and no coordinate of its position is beyond 10 m.
 [[nodiscard]] std::optional<ligature_msg::hand_state_t> hand_state_of(Bytes message);
 
-/// Passes on the positions to which a page moves a simulated hand (its "wishes"). A hand belongs to one page at a time;
-/// the device decides which, also among several view programs (protocol/lcm/hand_wish_t.lcm). Wishes are never
-/// repeated: when the page stops sending, so does this class, and the device lets go.
+/// Passes on the positions to which a page moves a simulated hand (its "wishes"). A hand belongs to one page at a time.
+/// The simulated device decides to which page, also among those of several view programs: it obeys the first sender
+/// (protocol/lcm/hand_wish_t.lcm). Wishes are never repeated: when the page stops sending, so does this class, and the
+/// device lets go.
 class HandDesk {
  public:
   using Clock = std::chrono::steady_clock;
   using Publish = std::function<void(const ligature_msg::hand_wish_t&)>;
-  static constexpr auto kDeafAfter = std::chrono::seconds(1);  // a hand without a state message for so long is absent
+  static constexpr auto kDeafAfter = std::chrono::seconds(1);  // a hand that has sent no state for so long is absent
 
   HandDesk(const Access& access, Publish publish) : access_(access), publish_(std::move(publish)) {}
 
@@ -46,8 +47,13 @@ class HandDesk {
   void take_status(const ligature_msg::status_t& status);
   void take_state(const ligature_msg::hand_state_t& state, Clock::time_point now);
 
-  /// State for all pages: {"left": {"listens": .., "free": .., "page": page that has the hand or 0, "p_W": its
-  /// position, while a page has it}, "right": .., "scale": world metres per device metre, 0 while no scene is known}.
+  /// The state of both hands, for all pages: {"left": {"listens": .., "free": .., "page": .., "p_W": ..}, "right": ..,
+  /// "scale": world metres per device metre, 0 while no scene is known}.
+  /// - listens: a simulated device that obeys pages has sent its state within kDeafAfter;
+  /// - free: it listens and a page may take it: no page has it, here or at another view program, and none is just
+  ///   giving it back;
+  /// - page: number of the page that has it; 0: none of this program;
+  /// - p_W: its position in world metres, only while a page has it and the scene is known.
   [[nodiscard]] nlohmann::json told(Clock::time_point now) const;
 
  private:
@@ -56,7 +62,9 @@ class HandDesk {
     Clock::time_point heard;
     std::uint64_t page = 0;  // page that has the hand; 0: none
     std::int64_t session = 0, owner = 0, sequence = 0;
-    int states_awaited = 0;  // so many of the next states may still have the session of a page that has left
+    // After a page has given the hand back: number of further states that may still have the old session number,
+    // because the device has not handled that yet
+    int states_awaited = 0;
   };
   struct Workspace {
     double scale = 0.0;  // world metres per device metre

@@ -17,8 +17,9 @@ constexpr double kMostPull = 1.3;  // pull at which the hand stops: the knot is 
 constexpr double kStep = 0.01;  // the operator looks for the knot's end at 100 places of the thread, then more closely
 
 struct Pull {
-  double at_m = 0.0;         ///< where the hand takes the thread, as an arc length
-  Vec3 way = Vec3::UnitX();  ///< unit vector against the free end's direction; never down, where a desk may be
+  double at_m = 0.0;  ///< where the hand takes the thread, as an arc length
+  /// Direction in which the hand draws: from the free end towards the end of the knot; never down, where a desk may be
+  Vec3 way = Vec3::UnitX();
 };
 
 /// Determinant of the knot in the thread from its start to `last_m`.
@@ -46,8 +47,9 @@ Move see_the_knot(std::shared_ptr<Pull> pull, double inside_d) {
           }};
 }
 
-/// A goal one diameter above the strands over which the hand draws the thread. When the knot holds the thread, the hand
-/// stops where it is.
+/// The hand's goal: from where it took the thread, kDrawn of the thread's length along Pull::way, and one diameter up,
+/// so that the drawn thread passes above the strands that it crosses. When the thread pulls too hard (kMostPull), the
+/// goal is the place where the hand is.
 Where drawn_back(std::shared_ptr<const Pull> pull) {
   auto from = std::make_shared<Vec3>();
   return [=](const Look& look) -> Vec3 {

@@ -9,7 +9,8 @@
 
 namespace ligature::physics {
 
-/// Two segments that may be near each other; first < second.
+/// Indices of two segments that may be near each other; first < second. In a list of find_near_sphere() both are the
+/// same segment.
 struct SegmentPair {
   std::int32_t first = 0, second = 0;
   friend auto operator<=>(const SegmentPair&, const SegmentPair&) = default;
@@ -20,7 +21,7 @@ struct SegmentPair {
 /// length. Allocated once.
 struct SegmentSpheres {
   Lane3 centre;
-  Lane half_m;
+  Lane half_m;  ///< radii: half the length of each segment
   int count = 0;
 
   SegmentSpheres() = default;
@@ -42,8 +43,9 @@ struct PairList {
   }
 };
 
-/// Are the spheres of segments i and j (centres c, radii h) within reach of each other: |c_i - c_j| <= h_i + h_j +
-/// reach? All broad phases use this one expression, so their results are identical.
+/// Are the spheres of segments i and j (centres c, radii h) within reach of each other, |c_i - c_j| <= h_i + h_j +
+/// reach? `hi_and_reach` is h_i + reach. Several j are tested at once, from the given j on (pack.hpp). All broad phases
+/// use this one expression, so their results are identical.
 inline PackMask spheres_near(const V3<Pack>& ci, Pack hi_and_reach, const SegmentSpheres& s, int j) noexcept {
   const V3<Pack> apart = s.centre.pack(j) - ci;
   const Pack limit = hi_and_reach + s.half_m.pack(j);
@@ -55,10 +57,11 @@ inline bool segments_near(const SegmentSpheres& s, int i, int j, double reach_m)
 }
 
 /// Finds all pairs of segments whose spheres are within reach_m of each other and whose indices differ by at least
-/// `skip`; in ascending order. Cost: n^2 / 2 tests, four at a time.
+/// `skip`; in ascending order. Cost for n segments: n^2 / 2 tests, four at a time.
 void find_pairs_brute(const SegmentSpheres& s, double reach_m, int skip, PairList& out) noexcept;
 
-/// Finds all segments whose sphere is within reach_m of the given sphere, and lists each as a pair {segment, segment}.
+/// Finds all segments whose sphere is within reach_m of the sphere of one other body, which has this centre and the
+/// radius half_m. A segment with the index j is listed as the pair {j, j}, because the other body has no segment index.
 void find_near_sphere(const SegmentSpheres& s, const V3<double>& centre, double half_m, double reach_m,
                       PairList& out) noexcept;
 

@@ -1,5 +1,8 @@
 // Overhand knots of n full turns: two strands braided over a length l, below an elastic loop, drawn tight with
-// friction.
+// friction. The theory is that of Jawed et al. (docs/measurements/published.md#braid). Symbols: h radius of the thread,
+// B its bending stiffness, F its tension, mu friction coefficient, l/n length of the braid per turn, k = 2 pi n / l,
+// R radius of the loop where it leaves the braid, lambda length of the loop, e = l + lambda length of the thread less
+// the distance of its ends.
 
 #include <cmath>
 #include <limits>
@@ -11,14 +14,13 @@ namespace ligature::published {
 namespace {
 
 constexpr double kPi = std::numbers::pi, kFriction = 0.119;
-constexpr double kShare =
-    0.005;  // n^2 h / e of all judged knots: far from tight, and sqrt(h / R) 0.13 .. 0.065 for n = 2 .. 4
+// n^2 h / e of all judged knots. They are far from tight: sqrt(h / R) is 0.13 for n = 2 and 0.065 for n = 4
+constexpr double kShare = 0.005;
 
-/// The theory at a given n^2 h / e: n full turns, h the thread's radius, e the excess length of the thread over the
-/// distance of its ends. Lengths are relative to R, the radius of the loop where it leaves the braid.
+/// The knot as the theory has it at a given n^2 h / e.
 struct Theory {
   double braid = 0.0, loop = 0.0;  ///< x = l / R and lambda / R
-  /// n^2 F h^2 / (mu B)
+  /// The tension F, as n^2 F h^2 / (mu B)
   [[nodiscard]] double force() const { return std::pow(braid, 3) / (96.0 * std::sqrt(3.0) * kPi * kPi); }
 };
 
@@ -54,7 +56,9 @@ void measure(const Subject& subject, int n, double share, Result& result) {
   add("F over eq. (5)", force / theory.force(), judged);
   add("l/n over 2 pi 12^(1/4) sqrt(h R)", from_radius / k, judged);
   add("F/(B k^2) over mu 2 pi n h k", knot.tension / (k * k * kFriction * 2.0 * kPi * n * k), judged);
-  // Both l/n and R can differ from the theory, so each is also reported separately. R_laid is the theory's radius.
+  // The figure of l/n above puts the simulated knot's R into the theory's formula. If it is not 1, either l/n or R may
+  // be the cause. So two more figures are reported: l/n with the R that the theory gives for this excess length
+  // (R_laid), and the simulated R over R_laid.
   add("l/n, with the theory's R", 1.0 / std::sqrt(std::sqrt(12.0) * R_laid) / k, false);
   add("R over the theory's", R / R_laid, false);
   if (share == kShare) result.points.push_back({"n^2 F h^2 / (mu B)", double(n), theory.force(), force});

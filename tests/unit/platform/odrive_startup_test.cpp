@@ -1,4 +1,6 @@
 // Start-up and operation of one hand with simulated ODrives that misbehave. Every refusal must leave the drives off.
+// A watchdog of a drive is "fed" by a frame that restarts its time. In the drives' software 0.6 only torque messages
+// feed it; in software 0.5 (`has_old_watchdog`) every frame does.
 #include <gtest/gtest.h>
 
 #include "firmware/control/dead_man.hpp"
@@ -12,7 +14,7 @@ using sim::OdriveSettings;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-/// Whatever feeds their watchdog.
+/// With both kinds of watchdog.
 TEST(OdriveStartUp, AcceptsGoodDrivesAndLeavesThemOff) {
   for (const bool old : {false, true}) {
     OdriveHand rig({.has_old_watchdog = old}, {.has_old_watchdog = old});
@@ -24,7 +26,7 @@ TEST(OdriveStartUp, AcceptsGoodDrivesAndLeavesThemOff) {
   }
 }
 
-/// Each with one drive that misbehaves.
+/// In each row node 3 misbehaves in another way, and start-up must say how.
 TEST(OdriveStartUp, RefusesAndLeavesEveryDriveOff) {
   struct Row {
     const char* says;
@@ -74,7 +76,7 @@ TEST(OdriveStartUp, RefusesButtonsWithoutSignOfLife) {
   }
 }
 
-/// Whichever frame the bus refuses.
+/// The bus refuses one random frame of start-up. Start-up must then fail, and switch no drive on after that frame.
 TEST(OdriveStartUp, RefusesABusThatTakesNotEveryFrame) {
   OdriveHand whole;
   ASSERT_EQ(whole.start(), "accepted");
@@ -108,7 +110,8 @@ TEST(OdriveStartUp, AnotherControllerInTheMiddleLeavesTheDrivesOff) {
   }
 }
 
-/// Also without a watchdog.
+/// The bus refuses one of the frames that switch off (zero torque and idle, for each of three drives). The drives have
+/// no watchdog, so a drive whose idle command was refused goes off only if the firmware repeats it.
 TEST(OdriveStartUp, SwitchesOffAlsoIfTheBusRefusesTheFirstIdle) {
   const OdriveSettings on{.watchdog = milliseconds(0), .starts_in_closed_loop = true};
   for (int which = 0; which < 6; ++which) {
@@ -127,7 +130,9 @@ TEST(OdriveStartUp, SwitchesOffAlsoIfTheBusRefusesTheFirstIdle) {
   }
 }
 
-/// In operation too: else the drive would go on with an old torque, and the requests could feed its watchdog.
+/// In operation too a refused frame must be reported as a lost bus. Otherwise a drive that misses a torque would go on
+/// with the old one, and the requests for samples could feed its watchdog. A period sends three requests, then three
+/// torques; a refused request is reported in the same period, a refused torque in the next one.
 TEST(OdriveInOperation, ARefusedFrameIsALostBus) {
   for (int which = 0; which < 6; ++which) {
     OdriveHand rig;
@@ -141,8 +146,8 @@ TEST(OdriveInOperation, ARefusedFrameIsALostBus) {
   }
 }
 
-/// The controller lives and has a fault; one drive obeys nothing any more. Whatever feeds its watchdog, it must run
-/// out.
+/// The controller has a fault and switches off (kHold), but one drive obeys no command any more. The firmware must send
+/// nothing for so long that this drive's watchdog runs out, whichever frames feed it.
 TEST(OdriveInOperation, ADriveThatObeysNothingStarves) {
   for (const bool old : {false, true}) {
     // The longest watchdog that start-up does not tell from 20 ms
@@ -165,7 +170,8 @@ TEST(OdriveInOperation, ADriveThatObeysNothingStarves) {
   }
 }
 
-/// The same after a frame of another controller: emergency stops feed such a watchdog, too.
+/// The same after a frame of another controller. The firmware answers with emergency stops in ten periods, and these
+/// feed an old watchdog. After them it must be silent, too, so that the watchdog runs out.
 TEST(OdriveInOperation, ADriveThatObeysNothingStarvesAlsoAfterAStop) {
   OdriveHand rig({.watchdog = milliseconds(29), .has_old_watchdog = true}, {.has_old_watchdog = true});
   ASSERT_EQ(rig.start(), "accepted");
@@ -178,7 +184,7 @@ TEST(OdriveInOperation, ADriveThatObeysNothingStarvesAlsoAfterAStop) {
   EXPECT_LE(ticks, 45) << "ten periods with emergency stops, then the watchdog";
 }
 
-/// What cannot be switched off is told, each drive of it.
+/// If drives cannot be switched off, the message must name each of them.
 TEST(OdriveStartUp, ReleaseNamesEveryDriveThatStaysOn) {
   const OdriveSettings on{.watchdog = milliseconds(0), .starts_in_closed_loop = true, .obeys_idle = false};
   OdriveHand rig(on, on);
@@ -189,7 +195,8 @@ TEST(OdriveStartUp, ReleaseNamesEveryDriveThatStaysOn) {
   EXPECT_EQ(rig.drives.release(rig.wait).value_or(""), "the bus is lost: cut the drives' power");
 }
 
-/// A CAN interface of Linux queues ten frames.
+/// A CAN interface of Linux has a queue of ten frames, and refuses more. So at most ten may be sent without a wait, or
+/// without an answer that shows that the queue is empty.
 TEST(OdriveStartUp, SendsAtMostTenFramesAtOnce) {
   OdriveHand rig;
   int most = 0, waiting = 0;
@@ -207,7 +214,10 @@ TEST(OdriveStartUp, SendsAtMostTenFramesAtOnce) {
   EXPECT_LE(most, 10);
 }
 
-/// A reset comes while a drive still has an old torque: zero torques, which it ignores, must not feed its watchdog.
+/// After a fault, one drive ignores all commands and still makes the old torque; then the operator asks for a reset
+/// (kEnable). A reset sends zero torques in every period. The drive would ignore these as well, but they would feed its
+/// watchdog, so it would keep its torque. So the firmware must stay silent until all drives have said that they are
+/// off, and reset them only then.
 TEST(OdriveInOperation, AResetWaitsUntilAllDrivesAreOff) {
   OdriveHand rig({.has_old_watchdog = true}, {.has_old_watchdog = true});
   ASSERT_EQ(rig.start(), "accepted");
@@ -221,7 +231,8 @@ TEST(OdriveInOperation, AResetWaitsUntilAllDrivesAreOff) {
   EXPECT_TRUE(rig.enable());
 }
 
-/// A drive that was switched off and on has its stored mode, and nobody has tried its watchdog since.
+/// A drive whose power was switched off and on is back in its stored mode, and start-up has not tested its watchdog
+/// since. So it must stay off until the controller is started again.
 TEST(OdriveInOperation, APowerCycledDriveStaysOffUntilARestart) {
   test::Random random(13);
   for (int i = 0; i < 20; ++i) {
@@ -263,7 +274,8 @@ TEST(OdriveInOperation, ModeAndLimitsGoBeforeEveryClosedLoop) {
   }
 }
 
-/// A drive's error that is gone again within a period, or a short time off, is a fault all the same.
+/// A drive that reports an error and no error within the same period must still be reported as faulty. In the same way
+/// a drive that was off for a part of a period must be reported as not enabled.
 TEST(OdriveInOperation, AnErrorOfOneHeartbeatIsSeen) {
   OdriveHand rig;
   ASSERT_EQ(rig.start(), "accepted");
@@ -278,7 +290,9 @@ TEST(OdriveInOperation, AnErrorOfOneHeartbeatIsSeen) {
   EXPECT_TRUE(rig.period(rt::DriveRequest::kOperate).enabled);
 }
 
-/// One frame of the buttons serves one period, so a wrong one is one sample: a held dead-man does not count anew.
+/// Each frame of the buttons is used for one period only. So one wrong frame ("dead-man not pressed") is one wrong
+/// sample, even if the next frames are lost, and must not make the firmware believe that the dead-man was released and
+/// pressed again.
 TEST(OdriveInOperation, OneWrongFrameOfTheButtonsIsNoRelease) {
   test::Random random(14);
   OdriveHand rig;

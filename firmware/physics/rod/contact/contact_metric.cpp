@@ -24,13 +24,21 @@ bool ContactMetric::prepare(const Mesh& mesh, const Material& material, double d
   return false;
 }
 
-// Factorises the matrix C = L D L^T on the nodes first_ to last_, after eliminating all other nodes.
+// Factorises C (contact_metric.hpp) for the window of nodes first_ to last_, where the contacts are. invert() needs the
+// rows of C^-1 for these nodes only. They are the inverse of the matrix that remains when all other nodes are
+// eliminated from C. (The inverse of C's own rows and columns of the window would be wrong: it would hold the other
+// nodes fixed.) Two steps eliminate them:
+// 1. From the thread's end down to last_ + 1. C couples a node only to the two nodes on each side of it, so this
+//    changes only entries of last_ and last_ - 1: on_last is subtracted from (last_, last_), on_before from
+//    (last_ - 1, last_ - 1), and on_pair from (last_ - 1, last_).
+// 2. From the thread's start up to last_, as L D L^T. L has a unit diagonal, and l1_ and l2_ are its two subdiagonals;
+//    D is the diagonal d_. The entries of d_, l1_ and l2_ inside the window are then the factors of the remaining
+//    matrix.
 void ContactMetric::factor(const Mesh& mesh, const Material& material, double dt_s) noexcept {
   const auto n = static_cast<std::size_t>(mesh.nodes()), z = static_cast<std::size_t>(last_);
   const double bend = dt_s * (dt_s + material.bend_tau_s), inertia = 1.0 + material.drag_per_s * dt_s;
   const auto diag = [&](std::size_t i) { return mesh.mass[i] * inertia + bend * mesh.kd[i]; };
-  // Eliminates the nodes from the thread's end down to last_. Only the pivots d and factors f of the newest nodes are
-  // needed
+  // Step 1. It needs only the values of the two nodes eliminated last
   double d1 = 0.0, d2 = 0.0, f1 = 0.0;  // pivots of i+1 and i+2; elimination factor of i+1
   double on_last = 0.0, on_before = 0.0, on_pair = 0.0;
   for (std::size_t i = n; i-- > z;) {
@@ -51,7 +59,7 @@ void ContactMetric::factor(const Mesh& mesh, const Material& material, double dt
     d1 = diag(i) - less;
     f1 = g;
   }
-  // Nodes from the thread's start up to last_.
+  // Step 2
   for (std::size_t i = 0; i <= z; ++i) {
     const double skip = i > 1 ? bend * mesh.kb[i - 2] : 0.0;
     double f = i > 0 ? bend * mesh.ke[i - 1] : 0.0;
@@ -65,7 +73,8 @@ void ContactMetric::factor(const Mesh& mesh, const Material& material, double dt
   }
 }
 
-// Computes all columns of the inverse at once, by row operations on the identity matrix.
+// Computes the rows of C^-1 for the window: row operations turn the identity matrix into L^-1 (first loop), and this
+// into L^-T D^-1 L^-1 (second loop).
 bool ContactMetric::invert(TickTime& time) noexcept {
   const auto a = static_cast<std::size_t>(first_), w = static_cast<std::size_t>(last_) - a + 1;
   stride_ = (w + 3) & ~std::size_t{3};
