@@ -34,13 +34,14 @@ class HandDesk {
 
   HandDesk(const Access& access, Publish publish) : access_(access), publish_(std::move(publish)) {}
 
-  /// Handles {"hand": "take" | "leave", "side": "left" | "right", "id": 7, "token": ".."}, which is always answered (a
-  /// refusal with "soon": true means: try again in a moment, the hand has just been given back), and {"wish": {"left":
-  /// {"p": [x, y, z] in world metres, "dead": true, "grip": false}, "right": ..}, "token": ".."}, which is answered
-  /// only when the token is wrong. Wishes for hands that the page has not taken are ignored.
+  /// Handles the two messages of a page, which also contain "token": "..":
+  /// - {"hand": "take" | "leave", "side": "left" | "right", "id": 7} takes a hand or gives it back. It is always
+  ///   answered. A refusal with "soon": true means: the hand is just being given back, try again in a moment.
+  /// - {"wish": {"left": {"p": [x, y, z] in world metres, "dead": true, "grip": false}, "right": ..}} moves hands. It
+  ///   is answered only when the token is wrong. Wishes for hands that the page has not taken are ignored.
   [[nodiscard]] nlohmann::json request(std::uint64_t page, const nlohmann::json& message, Clock::time_point now);
 
-  /// Call when a page has gone: its hands are given back, with the dead-man released.
+  /// Call when the connection to a page has ended: gives its hands back, with the dead-man released.
   void end(std::uint64_t page);
 
   /// Messages of the rig; called on the LCM thread.
@@ -60,8 +61,8 @@ class HandDesk {
   struct Hand {
     std::optional<ligature_msg::hand_state_t> state;  // newest received
     Clock::time_point heard;
-    std::uint64_t page = 0;  // page that has the hand; 0: none
-    std::int64_t session = 0, owner = 0, sequence = 0;
+    std::uint64_t page = 0;                             // page that has the hand; 0: none
+    std::int64_t session = 0, owner = 0, sequence = 0;  // of the wishes sent for this page; as in hand_wish_t
     // After a page has given the hand back: number of further states that may still have the old session number,
     // because the device has not handled that yet
     int states_awaited = 0;

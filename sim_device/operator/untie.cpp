@@ -10,10 +10,12 @@
 namespace ligature::sim {
 namespace {
 
-const Vec3 kEye = Vec3(0.0, -1.0, 1.0);         // from above and in front: sees a hanging thread, and one on a desk
-constexpr std::array kInside_d{1.0, 3.0, 5.0};  // distance from the knot's end to the hand, thread diameters
-constexpr double kDrawn = 0.36;                 // how far the hand draws, as a fraction of the thread's length
-constexpr double kMostPull = 1.3;  // pull at which the hand stops: the knot is jammed; fraction of a tight knot's pull
+const Vec3 kEye = Vec3(0.0, -1.0, 1.0);  // from above and in front: sees a hanging thread, and one on a desk
+// Where the hand takes the thread in each of three tries: so many diameters inside the end of the knot
+constexpr std::array kInside_d{1.0, 3.0, 5.0};
+constexpr double kDrawn = 0.36;  // how far the hand draws, as a fraction of the thread's length
+// Pull at which the hand stops, because the knot has jammed; as a multiple of the pull at which a knot is tight
+constexpr double kMostPull = 1.3;
 constexpr double kStep = 0.01;  // the operator looks for the knot's end at 100 places of the thread, then more closely
 
 struct Pull {

@@ -57,7 +57,8 @@ inline bool segments_near(const SegmentSpheres& s, int i, int j, double reach_m)
 }
 
 /// Finds all pairs of segments whose spheres are within reach_m of each other and whose indices differ by at least
-/// `skip`; in ascending order. Cost for n segments: n^2 / 2 tests, four at a time.
+/// `skip` (neighbours along the thread are always near, and cannot touch); in ascending order. Cost for n segments:
+/// n^2 / 2 tests, four at a time.
 void find_pairs_brute(const SegmentSpheres& s, double reach_m, int skip, PairList& out) noexcept;
 
 /// Finds all segments whose sphere is within reach_m of the sphere of one other body, which has this centre and the

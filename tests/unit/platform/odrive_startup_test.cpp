@@ -314,6 +314,8 @@ TEST(OdriveInOperation, OneWrongFrameOfTheButtonsIsNoRelease) {
   EXPECT_LE(released, 50) << "as many as there were wrong frames";
 }
 
+/// The button module stops: it sends nothing any more, or frames whose counter stands still. In both cases the samples
+/// become old; in the second one the buttons are also reported as stuck.
 TEST(OdriveInOperation, AModuleThatFallsAsleepIsFound) {
   for (const bool sends : {false, true}) {
     OdriveHand rig;
