@@ -30,6 +30,7 @@ std::string digits(double value, int significant) {
 
 void Table::print() const {
   std::vector<std::size_t> width;
+  width.reserve(columns_.size());
   for (const auto& c : columns_) width.push_back(c.size());
   for (const auto& row : rows_) {
     for (std::size_t k = 0; k < row.size(); ++k) width[k] = std::max(width[k], text_of(row[k], 4).size());

@@ -32,7 +32,8 @@ std::vector<Visit> visits(std::span<const Vec3> p, const Vec3& eye) {
     return eye.dot(p[i] + share * (p[i + 1] - p[i]));
   };
   for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Vector2d a = seen[i], u = seen[(i + 1) % n] - a;
+    const Eigen::Vector2d& a = seen[i];
+    const Eigen::Vector2d u = seen[(i + 1) % n] - a;
     for (std::size_t j = i + 2; j < n; ++j) {
       if (i == 0 && j + 1 == n) continue;
       const Eigen::Vector2d b = seen[j] - a, v = seen[(j + 1) % n] - seen[j];

@@ -11,7 +11,7 @@ namespace {
 
 /// As carry(), but the goal is fixed when the move begins: the hand drags the loop along, so a goal on the loop would
 /// keep moving away.
-Move carry_straight(std::size_t hand, std::string name, Where where, double near) {
+Move carry_straight(std::size_t hand, std::string name, const Where& where, double near) {
   auto goal = std::make_shared<std::optional<Vec3>>();
   return {std::move(name), [=](const Look& look) {
             if (!*goal) *goal = where(look);
@@ -31,7 +31,7 @@ constexpr double kSlack = 0.9;           // extra distance from the standing par
 // slack.
 constexpr double kBack = 0.048;
 
-Move orbit(std::shared_ptr<Loop> loop, WhereAlong s) {
+Move orbit(const std::shared_ptr<Loop>& loop, const WhereAlong& s) {
   return {"round the standing part", [=](const Look& look) {
             loop->look(look);
             const double left = kWound - loop->wound();
@@ -48,7 +48,7 @@ Move orbit(std::shared_ptr<Loop> loop, WhereAlong s) {
 /// A point near the loop: `share` of the way from the crossing X to the loop's centre (above 1: beyond the centre), and
 /// out of the loop's plane by `way` times Workplace::clearance_m, against the direction in which the turn passes
 /// through the loop.
-Where across_loop(std::shared_ptr<Loop> loop, double share, double way) {
+Where across_loop(const std::shared_ptr<Loop>& loop, double share, double way) {
   return [=](const Look& look) -> Vec3 {
     loop->look(look);
     return loop->crossing() + share * (loop->centre() - loop->crossing()) -
@@ -58,7 +58,7 @@ Where across_loop(std::shared_ptr<Loop> loop, double share, double way) {
 
 }  // namespace
 
-Moves lay_turn(std::shared_ptr<Loop> loop, WhereAlong s) {
+Moves lay_turn(const std::shared_ptr<Loop>& loop, const WhereAlong& s) {
   const auto below = [=](const Look& look) -> Vec3 {
     loop->look(look);
     return look.thread.at(s(look)) + look.place.clearance_m * (1.4 * loop->towards(0.0) - 2.0 * Vec3::UnitZ());
@@ -66,7 +66,7 @@ Moves lay_turn(std::shared_ptr<Loop> loop, WhereAlong s) {
   return {carry(kRightHand, "to the turn", below, 0.7), orbit(loop, s)};
 }
 
-Moves pass_through(std::shared_ptr<Loop> loop, const Throw& t, WhereAlong s) {
+Moves pass_through(const std::shared_ptr<Loop>& loop, const Throw& t, const WhereAlong& s) {
   // The end drags the loop along, so the steps repeat until the end has passed through.
   Moves steps{carry(kRightHand, "before the loop", across_loop(loop, 1.17, -1.2), 0.5),
               carry_straight(kRightHand, "through", across_loop(loop, 1.17, 3.1), 0.5), orbit(loop, s)};
@@ -85,7 +85,7 @@ Moves pass_through(std::shared_ptr<Loop> loop, const Throw& t, WhereAlong s) {
            10.0, is_through}};
 }
 
-Move draw_through(std::shared_ptr<Loop> loop, const Throw& t, Vec3 direction) {
+Move draw_through(const std::shared_ptr<Loop>& loop, const Throw& t, const Vec3& direction) {
   const Vec3 way = direction.normalized(), side = static_cast<double>(t.against ? t.side : -t.side) * Vec3::UnitY();
   return {"draw through",
           [=](const Look& look) {

@@ -62,7 +62,7 @@ double taken_up(const Look& look, double s) {
 }
 
 /// The left hand holds place `s` at the position given by the layout.
-Move hold_corner(const Workplace& place, const Layout& layout, WhereAlong s) {
+Move hold_corner(const Workplace& place, const Layout& layout, const WhereAlong& s) {
   return carry(kLeftHand, "hold the corner", [anchor = place.anchor_W, layout, s](const Look& look) -> Vec3 {
     return anchor + layout.stretch * (s(look) - taken_up(look, s(look))) * -Vec3::UnitX();
   });
@@ -102,7 +102,7 @@ struct Places {
   double corner = 0.0, turn = 0.0;
 };
 
-Move see_the_places(std::shared_ptr<Places> places) {
+Move see_the_places(const std::shared_ptr<Places>& places) {
   constexpr double kFirst = 0.3, kBeyond = 0.18, kMost = 0.6, kTurn = 0.5, kTurnBeyond = 0.4;
   return {"see the knot", [=](const Look& look) {
             const double knotted = tangle(look).last_m, all = look.thread.length_m();

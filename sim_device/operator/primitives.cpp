@@ -134,7 +134,7 @@ Move ease() {
           }};
 }
 
-Moves unless(std::function<bool(const Look&)> needless, Moves moves) {
+Moves unless(const std::function<bool(const Look&)>& needless, Moves moves) {
   auto skip = std::make_shared<std::optional<bool>>();
   for (Move& m : moves) {
     m.act = [=, act = std::move(m.act)](const Look& look) {

@@ -29,6 +29,6 @@ namespace ligature::sim {
 [[nodiscard]] Move ease();
 /// `moves`, or none of them if `needless` is true when the first one starts. A move that is left out does not count as
 /// failed.
-[[nodiscard]] Moves unless(std::function<bool(const Look&)> needless, Moves moves);
+[[nodiscard]] Moves unless(const std::function<bool(const Look&)>& needless, Moves moves);
 
 }  // namespace ligature::sim

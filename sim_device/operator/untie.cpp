@@ -39,7 +39,7 @@ double knot_end_m(const Look& look) {
   return end_m;
 }
 
-Move see_the_knot(std::shared_ptr<Pull> pull, double inside_d) {
+Move see_the_knot(const std::shared_ptr<Pull>& pull, double inside_d) {
   return {"see the knot", [=](const Look& look) {
             const double end_m = knot_end_m(look);
             Vec3 back = look.thread.at(end_m) - look.thread.at(look.thread.length_m());
@@ -52,7 +52,7 @@ Move see_the_knot(std::shared_ptr<Pull> pull, double inside_d) {
 /// The hand's goal: from where it took the thread, kDrawn of the thread's length along Pull::way, and one diameter up,
 /// so that the drawn thread passes above the strands that it crosses. When the thread pulls too hard (kMostPull), the
 /// goal is the place where the hand is.
-Where drawn_back(std::shared_ptr<const Pull> pull) {
+Where drawn_back(const std::shared_ptr<const Pull>& pull) {
   auto from = std::make_shared<Vec3>();
   return [=](const Look& look) -> Vec3 {
     if (look.in_move_s == 0.0) *from = look.hands[kRightHand].p_W();

@@ -88,6 +88,7 @@ struct Functor {
   using InputType = Eigen::VectorXd;
   using ValueType = Eigen::VectorXd;
   using JacobianType = Eigen::MatrixXd;
+  // NOLINTNEXTLINE(readability-identifier-naming): Eigen's names
   enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
   const Problem* problem;
   [[nodiscard]] int inputs() const { return static_cast<int>(problem->free.size()); }

@@ -43,7 +43,8 @@ double Outcome::worst() const {
   for (const auto& f : result.findings) {
     if (!is_judged(f) || f.error == 0.0) continue;
     const double ratio = f.tolerance > 0.0 ? f.error / f.tolerance : std::numeric_limits<double>::infinity();
-    most = std::max(most, std::isnan(ratio) ? std::numeric_limits<double>::infinity() : ratio);
+    if (std::isnan(ratio)) return std::numeric_limits<double>::infinity();
+    most = std::max(most, ratio);
   }
   return most;
 }

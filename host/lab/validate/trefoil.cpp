@@ -71,7 +71,7 @@ Tight tighten(int n) {
   const double scale = whole / along.back();
   for (int i = 0, k = 0; i < n; ++i) {
     const double wanted = (along.back() - bridge / scale) * i / (n - 1);
-    while (k < kFine && along[static_cast<std::size_t>(k + 1)] <= wanted) ++k;
+    while (k < kFine && along[static_cast<std::size_t>(k) + 1] <= wanted) ++k;
     state.x[static_cast<std::size_t>(i)] = scale * place(std::min(k, kFine));
   }
   const Vec tangent = place(1) - place(0);
@@ -89,6 +89,7 @@ Tight tighten(int n) {
   }
   for (int k = 0; k < 500; ++k) proceed(rod);
   std::vector<std::array<double, 3>> points;
+  points.reserve(state.x.size());
   for (const auto& x : state.x) points.push_back({x[0], x[1], x[2]});
   const double length = contour(state.x);
   return {length / nearest_strands(state.x, length), knot::recognise(points, true).type};

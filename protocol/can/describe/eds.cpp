@@ -61,7 +61,7 @@ void add_variable(std::string& eds, const ObjectRow& row, NodeId node) {
 void add_list(std::string& eds, const char* section, const std::vector<std::uint16_t>& indices) {
   add(eds, "[%s]\nSupportedObjects=%zu\n", section, indices.size());
   for (std::size_t i = 0; i < indices.size(); ++i) add(eds, "%zu=0x%04X\n", i + 1, indices[i]);
-  eds += "\n";
+  eds += '\n';
 }
 
 void add_head(std::string& eds, NodeId node) {
