@@ -6,7 +6,7 @@ from drawing import BLACK, BLUE, GREEN, GREY, ORANGE, RED, arrow, box, sheet, so
 
 
 def draw():
-    waits = re.search(r"\bpatience = (\d+)\.0", source("firmware/physics/rod/tuning.hpp"))[1]
+    waits = re.search(r"\bpatience = (\d+);", source("firmware/physics/rod/tuning.hpp"))[1]
     figure, axes = sheet(790, 372)
     found = "list of pairs\n(broad phase)", "near pairs,\nfour at a time", "contacts: gap,\nnormal, two points"
     for x, text in zip((14, 156, 298), found):

@@ -1,6 +1,6 @@
 #include "firmware/physics/rod/plan.hpp"
 
-#include <cmath>
+#include <algorithm>
 
 namespace ligature::physics::rod {
 
@@ -13,15 +13,13 @@ Plan plan(const Plan& last, const TickReport& report, const Situation& now, cons
                  report.cut_at >= 0;
   next.leniency = report.cut_short > 0 ? std::min(tuning.most_leniency, tuning.leniency_up * last.leniency)
                                        : std::max(1.0, tuning.leniency_down * last.leniency);
-  const double fading = now.alone ? 0.0 : std::exp(-numerics.tick_s / tuning.pace_s);
-  next.pace_m_per_s = std::max(0.5 * now.apart_m_per_s, fading * last.pace_m_per_s);
+  next.pace_m_per_s = 0.5 * now.apart_m_per_s;
   next.letting_go = now.released || (last.letting_go && (now.waits || now.node_m_per_s > tuning.thrown_m_per_s));
-  const int fewer = static_cast<int>(tuning.labour_share * numerics.substeps),
-            more = static_cast<int>(tuning.letting_go_share * numerics.substeps);
+  const int more = static_cast<int>(tuning.letting_go_share * numerics.substeps);
   next.substeps = next.letting_go ? std::max(numerics.max_substeps, more)
                   : fast          ? numerics.max_substeps
                   : now.waits     ? report.substeps
-                  : next.labours  ? std::min(numerics.substeps, std::max(tuning.fewest_substeps, fewer))
+                  : next.labours  ? std::min(numerics.substeps, std::max(tuning.fewest_substeps, numerics.substeps / 2))
                                   : numerics.substeps;
   next.new_matrix = (fast && !now.waits) || next.substeps != report.substeps;
   return next;

@@ -175,9 +175,8 @@ void Rod::fade() noexcept {
   if (alone_) {
     const Energy e = energy();
     const double now_J = all_J(e), lost_J = std::max(0.0, kept_J_ - now_J);
-    const double most_J = tuning.fade_share * lost_J + tuning.fade_least * e.bend_J;
     const auto born = parts_.frames() ? spin_.born() : std::span<const Vec>{};
-    kept_J_ = now_J + refine_.hold_back(material_, state_, born, most_J);
+    kept_J_ = now_J + refine_.hold_back(material_, state_, born, tuning.fade_share * lost_J);
   }
   if (parts_.frames()) spin_.before_fading(state_, refine_.fade());
   refine_.fade_offsets(state_);
@@ -223,7 +222,6 @@ void Rod::begin_tick(const HandSpeed& hands, const TimeLeft& left) noexcept {
   plan_ = plan(plan_, report_,
                {.hand_m_per_s = hands.fastest,
                 .apart_m_per_s = hands.apart,
-                .alone = alone_,
                 .released = released_,
                 .waits = patience_.waits(),
                 .node_m_per_s = touches() ? motion_.fastest() : 0.0,
@@ -291,9 +289,6 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals, const TimeLeft& left) no
     if (!moving) report_.time_lost += 1.0 / report_.substeps;
   }
   if (measured_) give_J_ = contacts_.give_J(numerics_.contact_N_per_m, state_.v.data(), since_look_s_);
-  if (report_.time_lost > 0.999 && !patience_.waits()) {  // at half the speed the next tick has fewer pairs to check
-    for (auto& v : state_.v) v = tuning.slowed * v;
-  }
   if (alone_ && parts_.adaptive && !mesh_held_) fade(), faded_ = true;  // limited by what this tick has dissipated
   report_.work = work_.used();
   report_.cut_at = work_.time().cut_at();

@@ -14,29 +14,20 @@ namespace {
 constexpr unsigned kTwist = 1, kContact = 2, kFriction = 4, kWorld = 8, kRoll = 16, kTurning = 32, kSet = 64,
                    kDrum = 128;
 
-/// Time for which a list of pairs is made valid at the present speeds, in ticks, and the share of the tick's work it
-/// may cost. If too many pairs are near, the next entry is tried: a shorter time, so the list is rebuilt sooner.
-struct Ahead {
-  double ticks;
-  double share;
-};
-
 }  // namespace
 
-// Rebuilds the list of segment pairs that may touch; leaves at least `reserve` instructions of the tick's work. @return
-// false when there is not enough work even for a list with the shortest validity.
+// Rebuilds the list of segment pairs that may touch; leaves at least `reserve` instructions of the tick's work. If too
+// many pairs are near, the list is made valid for a shorter time, and so is rebuilt sooner. @return false when there is
+// not enough work even for a list with the shortest validity.
 bool Rod::relist(long reserve) noexcept {
   Outlook outlook{2.0 * material_.radius_m, 2.0 * material_.radius_m * tuning.skin_d, near_m_, 0.0};
   broad_.keep_impulses(contacts_.pairs);
   stale_ = true;
-  const Ahead tries[] = {{tuning.ahead1_ticks, tuning.ahead1_share},
-                         {tuning.ahead2_ticks, tuning.ahead2_share},
-                         {0.0, tuning.ahead3_share}};
-  for (const Ahead& ahead : tries) {
-    const long most =
-        std::min(work_.left() - reserve, static_cast<long>(ahead.share * static_cast<double>(work_.budget())));
+  const long share = static_cast<long>(tuning.ahead_share * static_cast<double>(work_.budget()));
+  for (const double ticks : {tuning.ahead_ticks, 0.125 * tuning.ahead_ticks, 0.0}) {
+    const long most = std::min(work_.left() - reserve, share);
     if (most < BroadPhase::least_cost(state_.nodes())) break;
-    horizon_s_ = outlook.horizon_s = ahead.ticks * numerics_.tick_s;
+    horizon_s_ = outlook.horizon_s = ticks * numerics_.tick_s;
     ++report_.broad_phases;
     const long before = work_.used();
     if (!broad_.build(state_, motion_, outlook, most, work_, {contacts_.pairs, contacts_.groups})) continue;
@@ -86,19 +77,17 @@ bool Rod::look(double dt_s) noexcept {
   return measured_ = true;
 }
 
-// Work that this substep may spend on setting up its contact rows and on passes over them. First the needs of the later
-// substeps of the tick are reserved: for each of them 1.5 times the cost of the last contact detection, and the cost of
-// the last rows with their fewest passes; and once the cost of a new list of pairs. Setting up rows may use all that is
-// left. Passes beyond the fewest get twice an equal share of what is not reserved, so that a hard substep leaves work
-// for the next. Newton's method may use everything, because a substep that does not converge is continued in the next
-// tick.
+// Work that this substep may spend on setting up its contact rows and on passes over them. For each later substep of
+// the tick, the cost of the last contact detection and of the last rows with their fewest passes are reserved; and once
+// the cost of a new list of pairs. Setting up rows may use all that is left. Passes beyond the fewest get twice an
+// equal share of what is not reserved, so that a hard substep leaves work for the next. Newton's method may use
+// everything, as a substep that does not converge is continued in the next tick.
 Rod::Allowance Rod::work_allowed(bool metric_too) const noexcept {
   const long after = report_.substeps - substep_index_ - 1;
   const auto span = contacts_.span();
   const long window = std::min(span.last - span.first + 1, metric_.capacity() - 4);
   const long metric = metric_too ? price::metric(state_.nodes(), window + 4) : 0;
-  const long look = static_cast<long>(tuning.looks_reserve * static_cast<double>(look_cost_));
-  const long looks = after * look + (after > 0 ? list_cost_ : 0);
+  const long looks = after * look_cost_ + (after > 0 ? list_cost_ : 0);
   const long left = std::max(0L, work_.left() - metric - looks);
   const long spare = std::max(0L, left - after * rows_cost_);
   const long for_passes = static_cast<long>(tuning.pass_share * static_cast<double>(spare)) / (after + 2);
@@ -123,7 +112,7 @@ bool Rod::prepare_metric(double dt_s) noexcept {
 double Rod::settled() const noexcept {
   const double speed = std::max(plan_.pace_m_per_s, alone_ ? 0.0 : tuning.stir * stir_m_per_s_);
   const double settled = numerics_.settled_m_per_s + plan_.leniency * numerics_.settled_share * speed;
-  return std::min(settled, std::max(tuning.still_m_per_s, tuning.creep * motion_.fastest()));
+  return std::min(settled, tuning.creep * std::max(tuning.still_m_per_s, motion_.fastest()));
 }
 
 // Chooses the contacts that are solved, and with them the range of nodes that is solved with contacts. @return nothing
@@ -140,25 +129,26 @@ std::optional<Effort> Rod::choose_rows(double dt_s) noexcept {
   const long least = passes * price::pass(rows, rows, nodes);
   rows_cost_ = rows > 0 ? price::rows(rows, nodes) + least : 0;
   return Effort{work_.time(), numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)),
-                settled(), tuning.enough * numerics_.settled_m_per_s};
+                settled()};
 }
 
-// Solves with Newton's method: with all the work that is left while the substep may still wait, otherwise with a share
-// of it. @return kLater when the substep is to be continued in the next tick.
+// Newton's method with all the work that is left. @return kUnsolved when sweeps must solve the substep, kLater when it
+// is to be continued in the next tick.
 template <bool Friction>
 Outcome Rod::settle_directly(const Effort& effort) noexcept {
   if (!solves_directly() || patience_.sweeps_only()) return Outcome::kUnsolved;
   const long after = report_.substeps - substep_index_ - 1;
   Effort own = effort;
   own.settled_m_per_s = std::max(effort.settled_m_per_s, numerics_.newton_m_per_s);
+  own.enough_m_per_s =
+      tuning.newton_near * std::max(own.settled_m_per_s, tuning.newton_near * numerics_.settled_m_per_s);
   own.fair = (effort.work - after * (look_cost_ + rows_cost_)) / (after + 1);
-  if (!can_wait()) own.work = std::min(effort.work, work_.unspent() / (after + 2));
   const Outcome outcome = contacts_.settle_directly<Friction>(solver_, own, state_.v.data(), seen_);
-  if (outcome == Outcome::kSettled) return patience_.newton_solved(), outcome;
-  // Newton's method has left less than a quarter of the budget, too little for sweeps.
-  const auto rest = static_cast<double>(effort.work - seen_.work);
-  const bool worked = rest < tuning.unworked * static_cast<double>(work_.budget());
-  return patience_.newton_failed(outcome == Outcome::kUnsolved, worked) ? Outcome::kLater : Outcome::kUnsolved;
+  if (outcome != Outcome::kUnsolved) return outcome;
+  patience_.newton_failed();
+  const long nodes = contacts_.window_last() - contacts_.window_first() + 1;
+  const bool can_sweep = effort.work - seen_.work >= price::pass(contacts_.rows(), contacts_.rows(), nodes);
+  return can_sweep ? outcome : Outcome::kLater;
 }
 
 // Solves for the new velocities with contacts. @return false if the substep must wait for the next tick.

@@ -73,6 +73,7 @@ std::vector<Case> panel(std::uint64_t seed) {
   add("overhand on a desk", "knot", 2.0, 2, {"world.desk_height_m=0.0484"});
   all.push_back({"ball", "", {}, {}, false});
   all.back().pull.speed_m_per_s = static_cast<double>(seed);
+  add("overhand, 1 m/s", "knot", 5.0, 2).pull.speed_m_per_s = 1.0;  // last, so that the other draws stay as they are
   return all;
 }
 

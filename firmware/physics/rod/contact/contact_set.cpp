@@ -43,7 +43,7 @@ void ContactSet::let_stick(double mu_static, const Vec* v) noexcept {
     if (dot(c.p, c.p) == 0.0) {
       Vec u = velocity(c, v);
       u -= dot(u, c.n) * c.n;
-      holds = dot(u, u) < tuning.stick_m_per_s * tuning.stick_m_per_s;
+      holds = dot(u, u) < tuning.still_m_per_s * tuning.still_m_per_s;
     }
     if (holds) c.mu = mu_static;
   }
@@ -279,7 +279,7 @@ void ContactSet::note_stuck(const Vec* v) noexcept {
     if (pn <= 0.0 || k >= rows_) continue;
     const Vec u = velocity<Turns>(k, v), along = u - dot(u, c.n) * c.n;
     const bool within_cone = dot(c.p, c.p) - pn * pn < most * most;
-    *c.stuck = within_cone || dot(along, along) < tuning.stick_m_per_s * tuning.stick_m_per_s ? 1 : 0;
+    *c.stuck = within_cone || dot(along, along) < tuning.still_m_per_s * tuning.still_m_per_s ? 1 : 0;
   }
 }
 

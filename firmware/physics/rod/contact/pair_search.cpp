@@ -147,10 +147,9 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
   pair.reach_m = reach;
   pair.bulge_m = bulge;
   pair.near_m = std::min(outlook.near_m, tuning.bent * (arc - reach));
-  // The bounding spheres of neighbours on a straight thread give their exact gap, so such a pair need not be measured
-  // yet.
+  // Neighbours along the thread get a lower bound of their gap from their spheres, exact where the thread is straight.
   pair.due = along ? static_cast<double>(std::sqrt(apart2) / kSlack - halves) - reach : 0.0;
-  if (!along || pair.due < tuning.straight * (arc - reach)) {
+  if (!along) {
     spent_ += price::kExact;
     const Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
     if (c.distance2 > limit * limit) return true;

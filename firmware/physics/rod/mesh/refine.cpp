@@ -140,25 +140,20 @@ void Refine::grade(const Mesh& mesh) noexcept {
   }
 }
 
-// Two segments in contact get equal wanted lengths if the contact is at rest, and within a factor of two if it slides
-// slowly, as under a swinging loop. Fast sliding has no effect: nodes would be moved continually, each time with a
-// small step of the force. A segment at rest against one of unit length has priority over all others (tuning.first).
+// Two segments in contact get equal wanted lengths if the contact is at rest. Sliding has no effect: nodes would be
+// moved continually, each time with a small step of the force. A segment at rest against one of unit length has
+// priority over all others (tuning.first).
 void Refine::want_at_rest(const State& state, const ContactSet& contacts) noexcept {
   for (const auto& c : contacts.contacts()) {
     if (!c.is_pair() || dot(c.p, c.p) == 0.0) continue;
     Vec u{};
     for (int k = 0; k < c.count; ++k) u += c.w[k] * state.v[static_cast<std::size_t>(c.node[k])];
     u -= dot(u, c.n) * c.n;
-    const double slip2 = dot(u, u);
-    if (slip2 > tuning.swings_m_per_s * tuning.swings_m_per_s) continue;
+    if (dot(u, u) > tuning.rests_m_per_s * tuning.rests_m_per_s) continue;
     double& one = wanted_[static_cast<std::size_t>(c.node[0])];
     double& other = wanted_[static_cast<std::size_t>(c.node[2])];
     const double least = std::max(unit_m_, std::min(one, other));
-    if (slip2 > tuning.rests_m_per_s * tuning.rests_m_per_s) {
-      one = std::min(one, 2.0 * least), other = std::min(other, 2.0 * least);
-    } else {
-      one = other = least > unit_m_ ? least : tuning.first * unit_m_;
-    }
+    one = other = least > unit_m_ ? least : tuning.first * unit_m_;
   }
 }
 
@@ -171,17 +166,6 @@ int Refine::worst_segment() const noexcept {
     if (length > 1 && ratio > most) most = ratio, worst = static_cast<int>(j);
   }
   return worst;
-}
-
-int Refine::best_merge(const Material& material, const State& state, const std::vector<Body>& bodies,
-                       double most) noexcept {
-  for (int tries = 0; tries < tuning.tries; ++tries) {
-    const int best = cheapest_merge(most);
-    if (best < 0) return -1;
-    if (merge_is_clear(material, state, bodies, static_cast<std::size_t>(best))) return best;
-    free_[static_cast<std::size_t>(best)] = 0;
-  }
-  return -1;
 }
 
 int Refine::cheapest_merge(double most) const noexcept {
@@ -312,16 +296,18 @@ bool Refine::update(const Material& material, State& state, const Forces& forces
   const std::size_t n = at_.size();
   bool changed = false;
   const long price_of_one = price::kChangePerNode * static_cast<long>(n);
-  const long share = static_cast<long>(tuning.remesh_share * static_cast<double>(work.budget()));
-  const long most = std::clamp(share / price_of_one, 1L, static_cast<long>(tuning.changes));
-  for (long k = 0; k < most && work.time().allows(); ++k) {
+  for (int k = 0; k < tuning.changes && work.left() >= price_of_one && work.time().allows(); ++k) {
     work.spend(price_of_one);
     const int segment = worst_segment();
     if (segment < 0) break;
     const auto j = static_cast<std::size_t>(segment);
     const double bad = (at_[j + 1] - at_[j]) * unit_m_ / wanted_[j];
-    const int node = bad > 1.0 ? best_merge(material, state, bodies, bad / tuning.worth) : -1;
+    const int node = bad > 1.0 ? cheapest_merge(bad / tuning.worth) : -1;
     if (node < 0 || segment == node || segment + 1 == node) break;
+    if (!merge_is_clear(material, state, bodies, static_cast<std::size_t>(node))) {
+      free_[static_cast<std::size_t>(node)] = 0;
+      continue;
+    }
     if (!changed) {
       for (std::size_t q = 0; q + 1 < n; ++q) {
         tension_[q] =

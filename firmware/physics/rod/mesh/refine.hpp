@@ -48,8 +48,8 @@ class Refine {
   /// Multiplies the stress-free offsets by the factors that slide() and hold_back() have computed.
   void fade_offsets(State& state) const noexcept;
 
-  /// Merges and splits segments for one tick, with at most an eighth of the tick's work budget. @return true when nodes
-  /// moved. O(n); no allocation.
+  /// Merges and splits segments for one tick, as far as its work budget lasts.
+  /// @return true when nodes moved. O(n); no allocation.
   bool update(const Material& material, State& state, const Forces& forces, ContactSet& contacts,
               const std::vector<Body>& bodies, Work& work) noexcept;
 
@@ -68,8 +68,6 @@ class Refine {
   /// The node whose two segments, merged into one, would have the smallest ratio of length to wanted length. @return -1
   /// when no ratio is below `most`.
   [[nodiscard]] int cheapest_merge(double most) const noexcept;
-  /// As cheapest_merge(), but only nodes that pass merge_is_clear(); the others are marked as not free.
-  int best_merge(const Material& material, const State& state, const std::vector<Body>& bodies, double most) noexcept;
   void merge(const Material& material, State& state, int node) noexcept;
   void split(const Material& material, State& state, int segment) noexcept;
 

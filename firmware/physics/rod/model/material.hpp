@@ -46,7 +46,7 @@ struct Numerics {
   long given_work = 0;                              ///< > 0: replaces the whole budget, for any thread and hands
   double settled_m_per_s = tuning.settled_m_per_s;  ///< tolerance: a pass that changes no velocity by more is the last
   double settled_share = tuning.settled_share;      ///< added to it: this times half the hands' relative speed
-  double newton_m_per_s = tuning.newton_m_per_s;    ///< least tolerance of Newton's method
+  double newton_m_per_s = tuning.still_m_per_s;     ///< least tolerance of Newton's method
   double recovery = tuning.recovery;                ///< share of a penetration that a substep removes
   double max_recovery_m_per_s = tuning.max_recovery_m_per_s;
   double contact_N_per_m = tuning.contact_N_per_m;  ///< stiffness of a contact

@@ -14,8 +14,7 @@ namespace {
 constexpr double kUnknown = 1e300;  // squared error that has not been computed
 
 double square_of_enough(const Effort& effort) noexcept {
-  const double loose = std::max(tuning.newton_loose * effort.settled_m_per_s, effort.enough_m_per_s);
-  const double enough = tuning.newton_near * loose;
+  const double enough = tuning.newton_near * effort.enough_m_per_s;
   return enough * enough;
 }
 
@@ -71,6 +70,7 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
   const Effort& effort = search.effort;
   ContactReport& report = search.report;
   const double settled = tuning.newton_near * effort.settled_m_per_s, settled2 = settled * settled;
+  const double old = tuning.newton_near * tuning.newton_near * settled, old2 = old * old;
   const double enough2 = square_of_enough(effort);
   const Contact* const rows = contacts_.data();
   Vec *const p = p_.data(), *const u = u_.data();
@@ -82,7 +82,7 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
     if (step == 0) {  // u was computed with the present matrix A
       if (begins && !search.resumed) start_error2_ = error2;
       report.change_m_per_s = std::sqrt(error2);
-      if (error2 < (begins ? 1.0 : tuning.newton_old * tuning.newton_old) * settled2) return Outcome::kSettled;
+      if (error2 < (begins ? settled2 : old2)) return Outcome::kSettled;
     }
     if (error2 < settled2) return std::nullopt;
     if (error2 < best2 && error2 < enough2) {
@@ -125,7 +125,7 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
   }
   search.resumed = newton_.resume(p_.data());
   if (search.resumed) answer();
-  for (; search.look < tuning.most_looks; ++search.look) {
+  for (;; ++search.look) {  // each look but the first is followed by a step, and so most_steps bounds them
     if (search.look == tuning.stale && !search.fresh && !renew_matrix(solver, search)) break;
     const Outcome looked = look_at_all(solver, v, search);
     if (looked == Outcome::kUnsolved) return looked;

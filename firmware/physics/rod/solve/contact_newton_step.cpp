@@ -144,7 +144,7 @@ void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* 
     if constexpr (Friction) slot.along.v = direction(slot).v;
     const bool slides = Friction && slot.kind == Kind::kSlides;
     const Vec with = slides ? c.n + c.mu * slot.along : c.n;
-    add(s, c.n, with, c.soft, tuning.cost_normal * slot.per_r_n, c.target);
+    add(s, c.n, with, c.soft, tuning.cost * slot.per_r_n, c.target);
     for (std::size_t i = 0; i < 3; ++i) with_.data()[i * kPlane + s] = static_cast<float>(with.v[i]);
   }
   if constexpr (Friction) {
@@ -153,13 +153,13 @@ void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* 
       const Vec across = cross(rows[slot.row].n, slot.along);
       const double share = std::max(kHardly, slot.most / std::max(norm(slot.q), 1e-300));
       const double give = slot.kind == Kind::kSticks ? 0.0 : (1.0 - share) / share * slot.per_r_t;
-      add(s, across, across, give, tuning.cost_along * slot.per_r_t, 0.0);
+      add(s, across, across, give, 2.0 * tuning.cost * slot.per_r_t, 0.0);
       for (std::size_t i = 0; i < 3; ++i) with_.data()[(3 + i) * kPlane + s] = static_cast<float>(across.v[i]);
     }
     for (std::size_t s = 0; s < carrying_; ++s) {
       const Slot& slot = slots_[s];
       if (slot.kind != Kind::kSticks) continue;
-      add(s, slot.along, slot.along, 0.0, tuning.cost_along * slot.per_r_t, 0.0);
+      add(s, slot.along, slot.along, 0.0, 2.0 * tuning.cost * slot.per_r_t, 0.0);
       stuck_.push_back(
           {s, static_cast<float>(slot.along[0]), static_cast<float>(slot.along[1]), static_cast<float>(slot.along[2])});
     }
