@@ -65,6 +65,7 @@ std::vector<scene::Vec> start_shape(const scene::Scene& s) {
   }
   const std::size_t n = std::min(line.size(), kMostPoints);
   std::vector<scene::Vec> shape;
+  shape.reserve(n);
   for (std::size_t i = 0; i < n; ++i) shape.push_back(line[i * (line.size() - 1) / (n - 1)]);
   return shape;
 }

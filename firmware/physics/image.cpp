@@ -50,7 +50,7 @@ ImageBytes with_header(const ImageOrigin& origin, const Image& image) {
 
 std::variant<Image, std::string> read_image(std::span<const std::byte> bytes, const ImageOrigin& allowed) {
   Header header;
-  const auto damaged = std::string("the image is damaged: save it again");
+  auto damaged = std::string("the image is damaged: save it again");
   if (bytes.size() < sizeof header) return "found " + std::to_string(bytes.size()) + " bytes, allowed a whole image";
   std::memcpy(&header, bytes.data(), sizeof header);
   if (std::string_view(header.magic.data(), header.magic.size()) != kMagic)

@@ -98,7 +98,7 @@ std::string gripper_script_text(const GripperScript& script, const std::string& 
       text += key.grip ? ",1" : ",0";
       if (script.turns)
         for (const double turn : key.turn_deg) text += "," + shortest(turn, 3);
-      text += "\n";
+      text += '\n';
     }
   }
   return text;
