@@ -35,6 +35,7 @@ ExportResult export_recording(const std::string& log_path, const ExportTargets& 
   const RigFacts facts = read_rig_facts(log_path);
   const auto sinks = make_sinks(targets, facts, log_path);
   std::vector<ExportSink*> each;
+  each.reserve(sinks.size());
   for (const auto& sink : sinks) each.push_back(sink.get());
   console::Progress progress("export");
   ExportResult result = read_recording(log_path, facts, each, &progress);

@@ -71,9 +71,9 @@ class TraceSink final : public ExportSink {
   void add_loop(const Tick& tick) {
     const std::int64_t awake = tick.scheduled_ns + tick.wakeup_latency_ns;
     slice(kLoop, "wake-up", tick.scheduled_ns, tick.wakeup_latency_ns, {});
-    Json about{{"tick", tick.tick}, {"state", state_name(tick.state)}, {"flags", tick.flags}};
+    const Json about{{"tick", tick.tick}, {"state", state_name(tick.state)}, {"flags", tick.flags}};
     const bool is_missed = (tick.flags & Tick::FLAG_DEADLINE_MISSED) != 0;
-    slice(kLoop, is_missed ? "tick, too late" : "tick", awake, tick.execution_ns, std::move(about));
+    slice(kLoop, is_missed ? "tick, too late" : "tick", awake, tick.execution_ns, about);
     std::int64_t begin = 0;
     for (const auto& [name, end] :
          std::array<std::pair<const char*, std::int64_t>, 5>{{{"SYNC", tick.sync_ns},
@@ -114,7 +114,7 @@ class TraceSink final : public ExportSink {
     const auto name = [&](const char* what, int track, const std::string& text) {
       Json head{{"name", what}, {"ph", "M"}, {"pid", session}};
       if (track > 0) head["tid"] = track;
-      write(std::move(head), 0, "", Json{{"name", text}});
+      write(head, 0, "", Json{{"name", text}});
     };
     name("process_name", 0, "ligature-firmware, run " + std::to_string(session) + " of the recording");
     name("thread_name", kLoop, "real-time loop");
@@ -130,7 +130,7 @@ class TraceSink final : public ExportSink {
   }
 
   /// @param head name, phase and track of the event; times and arguments are added.
-  void write(Json head, std::int64_t at_ns, const std::string& length_us, const Json& about) {
+  void write(const Json& head, std::int64_t at_ns, const std::string& length_us, const Json& about) {
     std::string line = text_of(head);
     line.pop_back();  // the closing brace
     line += R"(,"ts":)" + microseconds(at_ns);

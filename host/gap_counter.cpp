@@ -45,6 +45,7 @@ bool GapCounter::fill(std::int64_t number) {
 
 std::vector<TickRange> GapCounter::missing_ranges() const {
   std::vector<TickRange> ranges;
+  ranges.reserve(holes_.size());
   for (const auto& [first, last] : holes_) ranges.push_back({first, last});
   return ranges;
 }

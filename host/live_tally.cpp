@@ -73,10 +73,11 @@ std::string LiveTally::progress_line(double elapsed_s, double ticks_per_s) const
 std::string LiveTally::summary(std::span<const std::int64_t> open_ends, std::size_t max_ranges) const {
   const auto received = sessions_.received(), missing = sessions_.missing();
   const bool is_whole = open_ends.empty() && sessions_.left_out() == 0;
-  std::string lines = text(is_whole ? "recorded %lld of %lld ticks, %lld lost"
-                                    : "recorded %lld of at least %lld ticks, %lld known to be lost",
-                           static_cast<long long>(received), static_cast<long long>(received + missing),
-                           static_cast<long long>(missing));
+  std::string lines =
+      text(is_whole ? "recorded %lld of %lld ticks, %lld lost"
+                    : "recorded %lld of at least %lld ticks, %lld known to be lost",
+           static_cast<long long>(received), static_cast<long long>(received) + static_cast<long long>(missing),
+           static_cast<long long>(missing));
   lines +=
       text("; %lld shapes, %lld messages in all\n", static_cast<long long>(shapes_), static_cast<long long>(messages_));
   if (sessions_.restarts() > 0)

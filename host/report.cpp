@@ -101,7 +101,7 @@ std::string report_table(const LogSummary& s) {
   std::string table = text("run of %.3f s", s.duration_s());
   if (s.facts.has_status)
     table += text(", scene %s, firmware %s", s.facts.scene_file.c_str(), s.facts.firmware_version.c_str());
-  table += "\n";
+  table += '\n';
   const auto received = s.tally.received(), missing = s.tally.missing();
   table += row("samples", text("%lld recorded, %lld %s, %.1f per second", static_cast<Count>(received),
                                static_cast<Count>(missing), lost_words(s), recorded_per_s(s)));
