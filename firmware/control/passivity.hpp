@@ -98,11 +98,13 @@ class Passivity {
   /// Adds the work done since the last sample to the account.
   void observe(std::int64_t tick, const PortSample& sample) noexcept;
 
-  /// The force that may be sent in `tick` (not before the last observed tick): as far from `before_N` (the force sent
-  /// last) towards `wish_N` as the account and the step limit allow. This function only computes; sent() records what
-  /// was sent.
-  /// If the account could not pay for a later stepwise reduction to zero, the force is reduced by a step now, whatever
-  /// the wish. If it cannot pay even for the next period, all force is removed and released() is true.
+  /// The force that may be sent in `tick`: as far from `before_N` (the force sent last) towards `wish_N` as the account
+  /// and the step limit allow. This function only computes; sent() records what was sent.
+  /// The account pays for a force if it covers the force's loss in the next period and in all further periods until the
+  /// force has been reduced to zero step by step. If it pays for no force within a step, the smallest force within a
+  /// step is sent, whatever the wish. If it does not cover even the next period of this smallest force, the force is
+  /// zero at once, and released() is true.
+  /// @param tick the present tick, at least that of the last observe()
   /// @param torque maps a tip force to the joint torques that would be sent, in whole quanta
   template <class Torque>
   [[nodiscard]] Vec3 control(std::int64_t tick, const Vec3& wish_N, const Vec3& v_m_per_s, const Vec3& before_N,

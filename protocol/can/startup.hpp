@@ -1,6 +1,7 @@
 #pragma once
-// SDO writes that the master sends to a drive before NMT start, in order. The PDO mapping comes from pdo_map.hpp, so
-// that a drive with factory settings gets the layout that the codec uses.
+// SDO writes that the master sends to a drive before NMT start, in order. They also set which object is at which
+// position in the PDOs. These positions come from pdo_map.hpp, as those at which codec.hpp reads and writes the values.
+// So a drive with factory settings needs no configuration by hand.
 
 #include <array>
 #include <cstddef>
@@ -104,8 +105,8 @@ constexpr void add_pdo_setup(StartupPlan& plan, const PdoPlace& pdo, const std::
          b.bits;
 }
 
-/// Mapping of TPDO 1 and RPDO 1, with the positions that the codec uses. Then the buttons, if they have a TPDO of their
-/// own.
+/// Adds the mapping of TPDO 1 and RPDO 1: their objects in the order in which codec.hpp expects the values. Then that
+/// of TPDO 2, if the buttons of this node have a TPDO of their own.
 constexpr void add_pdos(StartupPlan& plan, NodeId node, const ButtonsSource& buttons) {
   const bool replaced = buttons.replace_torque_of(node);
   const std::uint32_t sample[] = {

@@ -91,8 +91,8 @@ long page_faults_of(int thread) {
 
 std::atomic<int> watched{0}, flushing{0};  // number of threads
 
-/// Signal handler, run on a real-time thread: starts watching it, and reads the interrupted code's floating-point
-/// flags.
+/// Signal handler, run on a real-time thread. From now on the thread's allocations and mutex locks are counted
+/// (watch.hpp). Also counts the threads whose floating-point flags treat denormal numbers as zero.
 void begin_to_watch(int, siginfo_t*, void* context) {
   watch::watching = true;
 #if defined(__x86_64__)

@@ -36,9 +36,11 @@ TEST(Passivity, ASampledSpringMakesEnergyAndTheControllerRefusesIt) {
 
 constexpr double kExact_J = 1e-12;  // rounding error of sums
 
-/// 40 random attacks: jumps of acceleration at the bound, half of them along the motors' force, against springs and
-/// against negative springs.
-/// @param wildness the hand's acceleration as a share of the bound
+/// 40 random attacks of 3 s. In each period the hand's acceleration is drawn anew, up to the bound `a` in both senses:
+/// in half of the attacks along the motors' force, in the others along a direction that changes every 1 to 17 periods.
+/// The motors act as a damped spring, or in every third attack as a negative spring, which pushes outwards.
+/// @param wildness `a` as a share of the device's acceleration bound
+/// @param look is called with the port after each attack
 template <class Look>
 void play_adversaries(const Chain& chain, Look look, double wildness = 1.0, bool active = true) {
   test::Random random(5);

@@ -79,8 +79,9 @@ TEST(Windings, ThePeakHeldForEverGetsAsHotAsTheClosedFormSays) {
     windings.sent(wish * std::min(1.0, windings.share(wish)));
     hottest = std::max(hottest, windings.heat());
   }
-  // The torque limit, as a multiple of the continuous torque, falls from `peak` to 1 in 0.5 s. Meanwhile the mean
-  // square of the limit heats the winding, and the winding cools in proportion to its heat, which is at least 1.
+  // The torque limit, as a multiple of the continuous torque, falls from `peak` to 1 in 0.5 s. Meanwhile the heat h
+  // changes by dh/dt = (torque^2 - h) / thermal time. The mean of torque^2 in the fall is `square`; h is at least 1,
+  // where the fall begins, and stays below 1.3 on average. So h rises by fall * (square - 1.3) to fall * (square - 1).
   const double fall = 0.5 / d.thermal_time_s, square = (peak * peak + peak + 1.0) / 3.0;
   EXPECT_LT(hottest, 1.0 + fall * (square - 1.0) + 1e-3);
   EXPECT_GT(hottest, 1.0 + fall * (square - 1.3));

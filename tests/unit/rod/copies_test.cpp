@@ -74,8 +74,9 @@ bool same(const RodSimulation& a, const RodSimulation& b) {
   return std::equal(a.nodes_W().begin(), a.nodes_W().end(), b.nodes_W().begin(), b.nodes_W().end());
 }
 
-/// A copy takes over the rod's state and computes everything else anew, in the same way. So with plastic bending and
-/// twist, but without contact, no bit differs.
+/// A copy takes over the rod's state and computes everything else anew. With contact this changes rounding: the copy
+/// builds its contact list and matrices in another tick than the original (see RemeshesAsItsOriginal). So this test
+/// switches contact off. Then no bit may differ, also with plastic bending and twist.
 TEST(Copy, WithoutContactContinuesToTheBit) {
   RodSimulation sim = knotted({"contact.solver=\"none\"", "suture.yield_strain=0.01", "suture.set_fraction=0.5"});
   auto tools = at_the_ends(sim);

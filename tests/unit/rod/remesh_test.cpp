@@ -38,7 +38,8 @@ void helix_around_a_strand(Rod& rod, double phase, double inside_m) {
   rod.moved();
 }
 
-// 60 positions of the strand between arc and chord: segments must merge, but none may cross the strand
+// The straight strand runs just inside the helix, in 60 random places: between the curve of the helix and the chord by
+// which a merge would replace two of its segments. The thread must be remeshed, but no segment may cross the strand.
 TEST(Remesh, CutsNothing) {
   test::Random random(3);
   const auto phase = [&] { return random.in(0.0, 2.0 * std::numbers::pi); };

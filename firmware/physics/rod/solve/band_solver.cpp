@@ -8,7 +8,8 @@ namespace {
 
 constexpr Mat kNothing{}, kUnit{{kAxisX}, {kAxisY}, {kAxisZ}};  // blocks for a lane without a node
 
-// F_i = A_ip - A_iq H_p (see the class BandSolver) for two nodes i at once; e is A_ip, b is A_iq, h is H_p.
+// F_i = A_ip - A_iq H_p (see the class BandSolver) for two nodes i at once, one left and one right of the core. e is
+// A_ip, b is A_iq, h is H_p.
 [[gnu::always_inline]] inline TwoMats towards(const TwoSyms& e, Two b, const TwoMats& h) noexcept {
   return {{e.xx - b * h.x.x, e.xy - b * h.x.y, e.xz - b * h.x.z},
           {e.xy - b * h.y.x, e.yy - b * h.y.y, e.yz - b * h.y.z},
@@ -33,7 +34,10 @@ constexpr Mat kNothing{}, kUnit{{kAxisX}, {kAxisY}, {kAxisZ}};  // blocks for a 
   return {a, 1.0 / (s.xx * a.xx + s.xy * a.xy + s.xz * a.xz)};
 }
 
-// Eliminates the two nodes i of a step: computes their H_i and y_i (see the class BandSolver). @return S_i.
+// Eliminates two nodes i at once, one left and one right of the core, by the formulas of the class BandSolver. For each
+// of them p and q are the two nodes eliminated before it, and `pivot` is S_p^-1. Sets `h` to H_i (S_p^-1 times the
+// block that couples p with i), and `y` from y_p to y_i (the right-hand side of i after elimination).
+// @return S_i, the diagonal block of i after elimination.
 [[gnu::always_inline]] inline TwoSyms BandSolver::eliminate(const Rows& a, const Step& p, Step& q, const Pivot& pivot,
                                                             TwoMats& h, Twos& y) noexcept {
   q.skip = a.skip;

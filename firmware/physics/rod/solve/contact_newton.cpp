@@ -171,7 +171,9 @@ void ContactNewton::set_steps(Slot& slot, const std::array<Four, 3>& w) noexcept
   slot.r_t = 1.0 / slot.per_r_t;
 }
 
-// Computes the blocks of the coupling matrix W between each new slot and all slots before it.
+// Computes the missing blocks of the coupling matrix W. A slot is a contact in the system. Each slot that was added
+// since the last call gets its blocks with itself and with all earlier slots; W is symmetric. @return true if all slots
+// have their blocks. false: the time was over first; the next call continues with the slot where this one ended.
 bool ContactNewton::couple(TickTime& time) noexcept {
   if (coupled_ == slots_.size()) return true;
   if (!z_.make_missing(time)) return false;
