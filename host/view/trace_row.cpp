@@ -50,7 +50,8 @@ bool BinMaker::add(const TraceRow& row, TraceBin& done) {
     number_ = number;
     for (std::size_t c = 0; c < kColumns; ++c) open_.low[c] = open_.high[c] = static_cast<float>(row[c]);
     open_.low[kTick] = static_cast<float>(number % kBinNumberPart);
-    open_.high[kTick] = static_cast<float>(number / kBinNumberPart);
+    const auto high = number / kBinNumberPart;  // the whole part
+    open_.high[kTick] = static_cast<float>(high);
     return finished;
   }
   constexpr std::size_t kBits[] = {kFlags, kLeftLimits, kRightLimits};
