@@ -10,7 +10,8 @@ namespace ligature::lab {
 
 void TruthWatch::look(const sim::HandDevice& device) {
   const sim::Mechanics& arm = device.mechanics();
-  const sim::Vec3 torque_Nm = arm.made_Nm(), q_rad = arm.plant().q_rad(), p_m = linkage_.tip_D_m(q_rad);
+  const sim::Vec3& torque_Nm = arm.made_Nm();
+  const sim::Vec3 q_rad = arm.plant().q_rad(), p_m = linkage_.tip_D_m(q_rad);
   const auto force_N = [&](const sim::Vec3& pose_rad, const sim::Vec3& made_Nm) -> sim::Vec3 {
     return linkage_.jacobian_D(pose_rad).transpose().inverse() * made_Nm;
   };

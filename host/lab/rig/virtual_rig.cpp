@@ -63,9 +63,12 @@ VirtualRig::Intentions scripted_hands(const RigSetup& setup, const scene::Grippe
   return hands;
 }
 
-VirtualRig::VirtualRig(RigSetup s, const scene::GripperScript& script) : VirtualRig(s, scripted_hands(s, script)) {}
+VirtualRig::VirtualRig(const RigSetup& s, const scene::GripperScript& script)
+    : VirtualRig(s, scripted_hands(s, script)) {}
 
-VirtualRig::VirtualRig(RigSetup s, SeeingOperator& seeing) : VirtualRig(s, held(s, seeing)) { seeing_ = &seeing; }
+VirtualRig::VirtualRig(const RigSetup& s, SeeingOperator& seeing) : VirtualRig(s, held(s, seeing)) {
+  seeing_ = &seeing;
+}
 
 VirtualRig::VirtualRig(RigSetup s, Intentions intentions)
     : setup(std::move(s)),

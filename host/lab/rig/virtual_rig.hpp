@@ -49,9 +49,9 @@ class VirtualRig {
   using Intentions = std::array<std::unique_ptr<sim::Intention>, 2>;
 
   /// @throws std::runtime_error with one line when the physics refuses the scene or a key pose is out of reach.
-  VirtualRig(RigSetup setup, const scene::GripperScript& script);
+  VirtualRig(const RigSetup& setup, const scene::GripperScript& script);
   /// @param seeing must outlive the rig.
-  VirtualRig(RigSetup setup, SeeingOperator& seeing);
+  VirtualRig(const RigSetup& setup, SeeingOperator& seeing);
   VirtualRig(RigSetup setup, Intentions intentions);
   VirtualRig(const VirtualRig&) = delete;
   VirtualRig& operator=(const VirtualRig&) = delete;

@@ -59,7 +59,8 @@ class Teleporting final : public sim::Intention {
 
 /// Two scripted hands, each passed through `wrap`.
 template <class Wrap>
-[[nodiscard]] VirtualRig::Intentions wrapped(const RigSetup& setup, const scene::GripperScript& script, Wrap wrap) {
+[[nodiscard]] VirtualRig::Intentions wrapped(const RigSetup& setup, const scene::GripperScript& script,
+                                             const Wrap& wrap) {
   VirtualRig::Intentions hands = scripted_hands(setup, script);
   for (auto& hand : hands) hand = wrap(std::move(hand));
   return hands;
