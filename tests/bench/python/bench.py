@@ -2,15 +2,19 @@
 
     PYTHONPATH=build/dev/python-package build/venv/bin/python tests/bench/python/bench.py
 
-Both sides alternate within one process, and the fastest of several rounds counts, so that other load on the machine
-affects both. The overhead is CPU time of this thread. The ratio of cores is of elapsed time and needs a quiet machine."""
+Both sides alternate within one process, so that other load on the machine affects both. The overhead is CPU time of this
+thread, in the fastest of several rounds. The ratio of cores is of elapsed time and needs a quiet machine: it is taken in
+each round, and the median counts, as a core's clock changes from round to round. Beside it stands the ratio of two separate
+processes, which share nothing: it is what the machine itself gives."""
 
+import multiprocessing
+import statistics
 import time
 
 import ligature
 
-ROUNDS = 7
-ROLLOUT_S = 8.0  # of the script, in each of the 64 runs
+ROUNDS, PAIRS = 7, 15
+RUNS, ROLLOUT_S = 64, 8.0  # number of runs, and duration of each
 
 
 def timed(work, clock=time.perf_counter):
@@ -43,13 +47,39 @@ def overhead_us(scene, ticks):
     return 1e6 * min(inside_s) / ticks, 1e6 * min(outside_s) / ticks
 
 
-def rollout_s(sim, scripts):
-    """Times of 64 runs, s: on one core and on two. A round is some seconds, so that starting the threads does not count."""
-    times = {1: [], 2: []}
-    for _ in range(ROUNDS):
-        for threads, rounds in times.items():
-            rounds.append(timed(lambda: sim.rollout(scripts, threads, duration_s=ROLLOUT_S)))
-    return min(times[1]), min(times[2])
+def rig():
+    """A simulation of the paper's scene, and 64 scripts."""
+    sim = ligature.Simulation(ligature.Scene.load(ligature.SCENES / "paper.toml"))
+    return sim, [ligature.Script.load(ligature.SCENES / "operators" / "overhand.csv")] * RUNS
+
+
+def half_of_the_runs(start, end):
+    """One of the two processes: waits for the start, does its runs, and reports at the end."""
+    sim, scripts = rig()
+    for _ in range(PAIRS):
+        start.wait()
+        sim.rollout(scripts[: RUNS // 2], 1, duration_s=ROLLOUT_S)
+        end.wait()
+
+
+def rollout_ratios():
+    """How many times as fast 64 runs are as on one core: on two cores, and in two processes of one core. A round is some
+    seconds, so that starting the threads does not count."""
+    sim, scripts = rig()
+    spawn = multiprocessing.get_context("spawn")
+    start, end = spawn.Barrier(3), spawn.Barrier(3)
+    processes = [spawn.Process(target=half_of_the_runs, args=(start, end)) for _ in range(2)]
+    for process in processes:
+        process.start()
+    two, apart = [], []
+    for _ in range(PAIRS):
+        one_s = timed(lambda: sim.rollout(scripts, 1, duration_s=ROLLOUT_S))
+        two.append(one_s / timed(lambda: sim.rollout(scripts, 2, duration_s=ROLLOUT_S)))
+        start.wait()
+        apart.append(one_s / timed(end.wait))
+    for process in processes:
+        process.join()
+    return two, apart
 
 
 def main():
@@ -57,10 +87,9 @@ def main():
         scene = ligature.Scene.load(ligature.SCENES / "paper.toml", {"suture.nodes": nodes})
         inside, outside = overhead_us(scene, 5000)
         print(f"paper, {nodes} nodes: {inside:.2f} us a tick in C++, {outside:.2f} us from Python: overhead {outside - inside:.2f} us")
-    sim = ligature.Simulation(ligature.Scene.load(ligature.SCENES / "paper.toml"))
-    scripts = [ligature.Script.load(ligature.SCENES / "operators" / "overhand.csv")] * 64
-    one, two = rollout_s(sim, scripts)
-    print(f"64 runs of {round(ROLLOUT_S / sim.scene.tick_s)} ticks: {one:.2f} s on one core, {two:.2f} s on two: {one / two:.2f} times")
+    two, apart = rollout_ratios()
+    print(f"{RUNS} runs of {ROLLOUT_S:g} s: {statistics.median(two):.2f} times as fast on two cores as on one ({min(two):.2f} .. "
+          f"{max(two):.2f}), {statistics.median(apart):.2f} times in two separate processes ({min(apart):.2f} .. {max(apart):.2f})")
 
 
 if __name__ == "__main__":
