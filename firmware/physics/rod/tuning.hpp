@@ -51,15 +51,16 @@ struct Tuning {
   /// Share of the thread's own speed that counts as speed of the hands when the tolerance is chosen; the larger of the
   /// two speeds is used. Test: Overhand.MayBeLetGoAtTenNewtons
   double stir = 0.15;
-  /// The tolerance is at most this share of the fastest node's speed, or of still_m_per_s: a thread at rest does not
-  /// creep. Test: StaticFriction.HoldsUpTo*
+  /// The tolerance is at most this share of the fastest node's speed, or of still_m_per_s where all nodes are slower: a
+  /// thread at rest does not creep. Test: StaticFriction.HoldsUpTo*
   double creep = 0.1;
   /// Leniency, a factor on the tolerance: its largest value, its growth after a tick that was cut short, its decay
   /// after any other. Test: Plan.ToleranceGrows*
   double most_leniency = 6.0, leniency_up = 1.5, leniency_down = 0.9;
-  /// Residual at which Newton's method ends, as a multiple of the tolerance that the sweeps have. Once the fair share
-  /// of the work is used, its square will do, and its cube times settled_m_per_s. At a check after the first, when the
-  /// matrix may be old, its cube will do. Test: Labour.IsSharedFairly
+  /// Newton's method ends at a residual of newton_near times the tolerance that the sweeps have. newton_near^3 times
+  /// the tolerance is enough at a check after the first, when the matrix may be old. Once the fair share of the work is
+  /// used, newton_near^2 times the tolerance is enough, or newton_near^3 times settled_m_per_s if that is larger. Test:
+  /// Labour.IsSharedFairly
   double newton_near = 3.0;
   /// Most Newton steps of a substep. Test: ContactNewton.*
   int most_steps = 48;
