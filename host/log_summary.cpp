@@ -6,6 +6,7 @@
 #include "host/errors.hpp"
 #include "host/log_reader.hpp"
 #include "host/thread_knot.hpp"
+#include "protocol/scene/recorded_scene.hpp"
 
 namespace ligature::host {
 namespace {
@@ -44,7 +45,7 @@ class Summariser {
     if (index != session_) {
       session_ = index;
       next_knot_s_ = -std::numeric_limits<double>::infinity();  // the time starts again in another session
-      summary.ticks.start_session();
+      summary.ticks.start_session(scene::split_recorded(summary.facts.scene_toml).samples_earliest_ns);
     }
     Session& session = summary.tally[index];
     session.ring_dropped = batch.ring_dropped;

@@ -43,9 +43,10 @@ class TickStatistics {
   void add(const ligature_msg::tick_t& tick);
 
   /// Call before the ticks of another session: a fault that is still latched then counts again.
-  void start_session() {
+  /// @param samples_earliest_ns as in ThreadTime::start_session().
+  void start_session(std::int64_t samples_earliest_ns = 0) {
     last_fault_ = 0;
-    thread_time_.start_session();
+    thread_time_.start_session(samples_earliest_ns);
   }
 
   [[nodiscard]] std::int64_t executed() const { return static_cast<std::int64_t>(wakeup_ns_.size()); }

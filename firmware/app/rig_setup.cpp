@@ -85,8 +85,9 @@ std::variant<Plan, Refusal> plan_of(const std::string& file, const std::string& 
   if (const auto why = objection(scene, device); !why.empty()) return Refusal{2, file + ": " + why};
   auto made = physics::Simulation::make(scene);
   if (const auto* why = std::get_if<std::string>(&made)) return Refusal{2, file + ": " + *why};
-  return Plan{scene, std::move(std::get<physics::Simulation>(made)), device,
-              scene::recorded_text(text, overrides, scene)};
+  auto toml = scene::recorded_text(text, overrides, scene);
+  scene::add_earliest_samples(toml, platform::bus_time_of(device).samples_earliest.count());
+  return Plan{scene, std::move(std::get<physics::Simulation>(made)), device, std::move(toml)};
 }
 
 std::variant<Plan, Refusal> make_plan(const RunOptions& options) {

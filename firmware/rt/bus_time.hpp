@@ -31,8 +31,8 @@ struct BusTime {
 };
 
 /// Deadline of the physics tick: before the next samples can be complete. Their arrival time is predicted from the
-/// earliest recent one, because the number of stuff bits changes little between periods. The prediction is kept within
-/// the earliest and latest time that the bus allows.
+/// earliest recent one, because the number of stuff bits changes little between periods. Samples that come earlier than
+/// the bus can carry them are left out: they were sent late, for another period, and say nothing about the next one.
 class ThreadDeadline {
  public:
   static constexpr std::chrono::nanoseconds kMargin = std::chrono::microseconds(25);
@@ -43,7 +43,8 @@ class ThreadDeadline {
 
   /// Records that the samples were complete this long after the wake-up.
   void note(std::chrono::nanoseconds sampled) noexcept {
-    earliest_ = std::clamp(std::min(earliest_ + kForgets, sampled), bus_.samples_earliest, bus_.samples_latest);
+    earliest_ = std::min(earliest_ + kForgets, bus_.samples_latest);
+    if (sampled >= bus_.samples_earliest) earliest_ = std::min(earliest_, sampled);
   }
   /// Deadline of the physics tick that ends before the samples of the period starting at `next_wake`.
   [[nodiscard]] std::chrono::nanoseconds before(std::chrono::nanoseconds next_wake) const noexcept {

@@ -11,7 +11,8 @@
 namespace ligature::scene {
 namespace {
 
-constexpr std::string_view kAsRun = "\n# as run:", kSet = "# --set ", kShape = "# shape ";
+constexpr std::string_view kAsRun = "\n# as run:", kSet = "# --set ", kShape = "# shape ",
+                           kSamples = "# samples ";
 
 /// Checksum of the start shape's points; independent of the file's name and comments.
 std::uint32_t shape_of(const Scene& scene) {
@@ -23,12 +24,23 @@ std::string hex(std::uint32_t number) {
   return {digits, std::to_chars(digits, digits + sizeof digits, number, 16).ptr};
 }
 
+template <typename Number>
+std::optional<Number> number_in(std::string_view digits, int base) {
+  Number number = 0;
+  if (std::from_chars(digits.data(), digits.data() + digits.size(), number, base).ec != std::errc{}) return {};
+  return number;
+}
+
 }  // namespace
 
 std::string_view key_of(std::string_view override) { return trim(override.substr(0, override.find('='))); }
 
 void add_override(std::string& recorded, std::string_view override) {
   recorded.append("\n").append(kSet).append(override);
+}
+
+void add_earliest_samples(std::string& recorded, std::int64_t after_ns) {
+  recorded.append("\n").append(kSamples).append(std::to_string(after_ns));
 }
 
 std::string recorded_text(std::string text, std::span<const std::string> overrides, const Scene& scene) {
@@ -50,11 +62,9 @@ RecordedScene split_recorded(const std::string& recorded) {
     const auto line = rest.substr(0, end);
     rest.remove_prefix(std::min(end + 1, rest.size()));
     if (line.starts_with(kSet)) found.overrides.emplace_back(line.substr(kSet.size()));
-    std::uint32_t number = 0;
-    if (!line.starts_with(kShape)) continue;
-    const auto digits = line.substr(kShape.size());
-    if (std::from_chars(digits.data(), digits.data() + digits.size(), number, 16).ec == std::errc{})
-      found.shape = number;
+    if (line.starts_with(kShape)) found.shape = number_in<std::uint32_t>(line.substr(kShape.size()), 16);
+    if (line.starts_with(kSamples))
+      found.samples_earliest_ns = number_in<std::int64_t>(line.substr(kSamples.size()), 10).value_or(0);
   }
   return found;
 }

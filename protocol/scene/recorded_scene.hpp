@@ -21,15 +21,20 @@ namespace ligature::scene {
 ///   # --set suture.nodes=35     each override, in order
 ///   # --force: why              reason why it was not admitted
 ///   # seed 7                    seed of a simulated operator
+///   # samples 380000            ns from SYNC until the bus can have carried the joint samples, at the earliest
 [[nodiscard]] std::string recorded_text(std::string text, std::span<const std::string> overrides, const Scene& scene);
 
 /// Appends one more override.
 void add_override(std::string& recorded, std::string_view override);
 
+/// Appends the earliest time at which the bus can have carried the joint samples, ns after SYNC.
+void add_earliest_samples(std::string& recorded, std::int64_t after_ns);
+
 struct RecordedScene {
   std::string text;
   std::vector<std::string> overrides;
   std::optional<std::uint32_t> shape;
+  std::int64_t samples_earliest_ns = 0;  ///< 0: not recorded
 };
 [[nodiscard]] RecordedScene split_recorded(const std::string& recorded);
 

@@ -67,8 +67,12 @@ TEST(Thread, HasMostOfAPeriod) {
   EXPECT_GE(usable(50us), 850us);
   rt::ThreadDeadline deadline(platform::cia402_time());
   EXPECT_EQ(deadline.before(1ms), 1ms + 435us);
-  deadline.note(100us);  // earlier than any bus could deliver
+  deadline.note(379us);  // one microsecond earlier than the bus can carry them
+  EXPECT_EQ(deadline.before(1ms), 1ms + 435us);
+  deadline.note(380us);
   EXPECT_EQ(deadline.before(1ms), 1ms + 355us);
+  deadline.note(0us);
+  EXPECT_EQ(deadline.before(1ms), 1ms + 355us + rt::ThreadDeadline::kForgets);
   for (int k = 0; k < 10'000; ++k) deadline.note(5ms);
   EXPECT_EQ(deadline.before(1ms), 1ms + 435us);
 }

@@ -152,6 +152,25 @@ TEST(LogSummary, TellsHowTheThreadKeptUp) {
   EXPECT_EQ(json["late"], 3);
 }
 
+/// One joint message comes 60 us after the wake-up, all others after 420 us.
+TEST(LogSummary, LeavesOutSamplesThatTheBusCannotHaveCarried) {
+  const auto least_ns = [](const std::string& header) {
+    const test::TestFolder folder;
+    LogWriter log(folder.file("early.lcmlog"), false);
+    ligature_msg::status_t status{};
+    status.period_s = 1e-3;
+    status.scene_toml = header;
+    test::write(log, kStatusChannel, status);
+    auto batch = test::batch_of(1, 0, 100);
+    for (auto& tick : batch.ticks) tick.tpdo_ns = 420'000;
+    batch.ticks[50].tpdo_ns = 60'000;
+    test::write(log, kTicksChannel, batch);
+    log.close();
+    return summarise(folder.file("early.lcmlog")).ticks.thread_time().at_least_ns(100);
+  };
+  EXPECT_EQ(least_ns("\n# as run:\n# samples 380000") - least_ns(""), 360'000);
+}
+
 TEST(LogSummary, RefusesALogWithoutTicks) {
   const test::TestFolder folder;
   LogWriter log(folder.file("a.lcmlog"), false);

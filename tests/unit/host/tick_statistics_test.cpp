@@ -102,6 +102,17 @@ TEST(ThreadTime, IsFromTheToolsToTheNextJointsWithoutTheSync) {
   EXPECT_EQ(statistics.thread_time().at_least_ns(100), 650'040);
 }
 
+/// A late message of an earlier period can come right after the wake-up. It says nothing about the next samples.
+TEST(ThreadTime, IsNotLoweredByAMessageEarlierThanTheBusCanCarry) {
+  TickStatistics statistics;
+  statistics.start_session(380'000);
+  statistics.add(period_of(1, 0, 420, 500));
+  statistics.add(period_of(2, 0, 379, 500));
+  EXPECT_EQ(statistics.thread_time().at_least_ns(100), 1'000'000 + 420'020 - 25'000 - 30'000 - 500'000);
+  statistics.add(period_of(3, 0, 380, 500));
+  EXPECT_EQ(statistics.thread_time().at_least_ns(100), 1'000'000 + 380'000 - 25'000 - 30'000 - 500'000);
+}
+
 /// Drives with longer frames than Ligature's own leave the physics more time before their samples.
 TEST(ThreadTime, IsThatOfTheDrivesOfTheRecording) {
   TickStatistics statistics;

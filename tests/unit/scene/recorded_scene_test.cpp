@@ -33,6 +33,15 @@ TEST(RecordedScene, HasTheTextAndEveryOverrideInItsOrder) {
   EXPECT_EQ(split_recorded(recorded_text(told, {}, scene)).text, told);
 }
 
+TEST(RecordedScene, TellsHowEarlyTheSamplesCanCome) {
+  std::string told = recorded_text("[suture]\nnodes = 20", {}, {});
+  EXPECT_EQ(split_recorded(told).samples_earliest_ns, 0) << "older recordings do not have it";
+  add_earliest_samples(told, 380'000);
+  add_override(told, "suture.nodes=30");
+  EXPECT_EQ(split_recorded(told).samples_earliest_ns, 380'000);
+  EXPECT_EQ(split_recorded(told).overrides, std::vector<std::string>{"suture.nodes=30"});
+}
+
 TEST(RecordedScene, OtherOverridesComeInThePlaceOfTheRecordedOnes) {
   const std::string text = "[suture]\nnodes = 20";
   const std::string told = recorded_text(text, std::vector<std::string>{"suture.nodes=30", "suture.length_m=2.5"}, {});
