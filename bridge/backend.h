@@ -13,6 +13,8 @@ extern "C" {
 
 #define LIGATURE_BACKEND_VERSION 1
 
+/* NOLINTBEGIN(readability-identifier-naming): names as C libraries have them */
+
 enum {
   LIGATURE_BUTTON_GRIP = 1,     /* closes the jaws in the scene */
   LIGATURE_BUTTON_DEAD_MAN = 2, /* allows force while it is pressed */
@@ -43,6 +45,7 @@ struct ligature_backend {
  * @param problem   to be filled with one line about what is wrong, when 0 is returned
  * @return 1 when the device is ready */
 int ligature_backend_open(const char* address, struct ligature_backend* backend, char* problem, int problem_bytes);
+/* NOLINTEND(readability-identifier-naming) */
 
 #ifdef __cplusplus
 }

@@ -70,7 +70,7 @@ void Drives::hear(const sim::Transmission& heard) {
 /// Whether the newest state is recent enough to answer a SYNC at this time. Also updates the counters in ages_.
 bool Drives::answers(Time at) noexcept {
   ++ages_.syncs;
-  const Time age = is_on_ ? at - *heard_at_ : Time::max();
+  const Time age = is_on_ && heard_at_ ? at - *heard_at_ : Time::max();
   if (age > oldest_) {
     ++ages_.stale;
     ages_.silent += is_on_ ? 0 : 1;
@@ -85,7 +85,8 @@ sim::Sensed Drives::sensed(std::size_t drive) const noexcept {
   const sim::Vec3 p(state_.p_D_m.data());
   const auto q = linkage_.joints(p);  // a Cartesian linkage reaches every position
   const bool stylus = can::profile::has_stylus_buttons(nodes_[drive].id());
-  return {constants_.counts_of((*q)[static_cast<Eigen::Index>(drive)]), stylus ? state_.buttons : std::uint16_t{0}};
+  return {constants_.counts_of(q.value()[static_cast<Eigen::Index>(drive)]),
+          stylus ? state_.buttons : std::uint16_t{0}};
 }
 
 void Drives::poll(Time now) {
@@ -123,7 +124,7 @@ void Drives::send(std::size_t drive, Time now) {
 Time Drives::wake_at() const noexcept {
   Time at = wire_.quiet_at();
   if (!deliveries_.empty()) at = std::min(at, deliveries_.front().due);
-  if (!is_on_) return at;
+  if (!is_on_ || !heard_at_) return at;
   for (const sim::DriveNode& node : nodes_) at = std::min(at, node.next_deadline());
   return std::min(at, *heard_at_ + silence_ + Time(1));
 }

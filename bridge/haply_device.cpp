@@ -36,7 +36,7 @@ class HaplyDevice final : public Device {
     const std::string command = haply_command(known_.inverse3_id, force_D_N, is_first_);
     Error error;
     run(
-        answer_within_, [&](auto done) { socket_->async_write(asio::buffer(command), done); }, error);
+        answer_within_, [&](auto done) { socket_.value().async_write(asio::buffer(command), done); }, error);
     if (error) return lose("sending: " + error.message());
     is_first_ = false;
     return receive(answer_within_);
@@ -47,6 +47,8 @@ class HaplyDevice final : public Device {
  private:
   using Socket = websocket::stream<beast::tcp_stream>;
 
+  tcp::socket& tcp_socket() { return beast::get_lowest_layer(socket_.value()).socket(); }
+
   /// Runs one asynchronous operation to its end. If that takes longer than `at_most`, the connection is closed.
   template <class Start>
   void run(std::chrono::nanoseconds at_most, Start start, Error& error) {
@@ -55,9 +57,8 @@ class HaplyDevice final : public Device {
     start([&error](Error result, auto&&...) { error = result; });
     io_.run_for(at_most);
     if (io_.stopped()) return;
-    beast::get_lowest_layer(*socket_)
-        .socket()
-        .close();  // cancels the operation, whose handler must not outlive `error`, and a read that still goes on
+    // Cancels the operation, whose handler must not outlive `error`, and a read that still goes on
+    tcp_socket().close();
     io_.run();
     error = asio::error::timed_out;
   }
@@ -79,12 +80,12 @@ class HaplyDevice final : public Device {
     if (error) return fail(host_ + ": " + error.message());
     socket_.emplace(io_);
     run(
-        kConnectWithin, [&](auto done) { beast::get_lowest_layer(*socket_).async_connect(found, done); }, error);
+        kConnectWithin, [&](auto done) { beast::get_lowest_layer(socket_.value()).async_connect(found, done); }, error);
     if (!error) {
       Error ignored;
-      beast::get_lowest_layer(*socket_).socket().set_option(tcp::no_delay(true), ignored);
+      (void)tcp_socket().set_option(tcp::no_delay(true), ignored);
       run(
-          kConnectWithin, [&](auto done) { socket_->async_handshake(host_ + ":" + port_, "/", done); }, error);
+          kConnectWithin, [&](auto done) { socket_.value().async_handshake(host_ + ":" + port_, "/", done); }, error);
     }
     if (!error) return true;
     socket_.reset();
@@ -96,7 +97,7 @@ class HaplyDevice final : public Device {
   std::optional<DeviceState> receive(std::chrono::nanoseconds at_most) {
     read_error_.reset();
     io_.restart();
-    socket_->async_read(inbox_, [this](Error error, std::size_t) { read_error_ = error; });
+    socket_.value().async_read(inbox_, [this](Error error, std::size_t) { read_error_ = error; });
     io_.run_for(at_most);
     if (!read_error_) return lose("no state: " + Error(asio::error::timed_out).message());
     if (*read_error_) return lose("no state: " + read_error_->message());
@@ -123,7 +124,7 @@ class HaplyDevice final : public Device {
     problem_ = why;
     is_lost_ = true;
     try_at_ = std::chrono::steady_clock::now() + kTryAgainAfter;
-    if (known_.inverse3_id.empty() || !socket_->is_open()) return std::nullopt;
+    if (known_.inverse3_id.empty() || !socket_ || !socket_->is_open()) return std::nullopt;
     farewell_ = haply_command(known_.inverse3_id, Vec{}, is_first_);
     io_.restart();
     socket_->async_write(asio::buffer(farewell_), [](Error, std::size_t) {});
@@ -136,7 +137,7 @@ class HaplyDevice final : public Device {
     is_lost_ = false;
     if (!socket_) return;
     Error ignored;
-    beast::get_lowest_layer(*socket_).socket().close(ignored);
+    (void)tcp_socket().close(ignored);
     io_.restart();
     io_.run();
     socket_.reset();

@@ -25,6 +25,7 @@ std::string clear_way(const sockaddr_un& address) {
   if (S_ISDIR(info.st_mode)) return "is a folder, allowed a path in it that is free";
   if (!S_ISSOCK(info.st_mode)) return "is a file, allowed a path that is free or a left-over socket";
   const FileDescriptor probe = make_socket();
+  if (probe.get() < 0) return std::string("cannot be tried: ") + std::strerror(errno);
   const int connected = connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
   if (connected == 0 || errno != ECONNREFUSED) return "is in use by another device, allowed one device a socket";
   unlink(address.sun_path);

@@ -47,7 +47,8 @@ std::optional<Hand> hand_of(const std::string& hold) {
     std::size_t used = 0;
     const double tightness = std::stod(hold, &used);
     if (used == hold.size() && tightness >= 0.0 && tightness <= 1.0) return Hand::holding(tightness);
-  } catch (const std::exception&) {  // not a number: refused below
+  } catch (const std::exception&) {
+    return std::nullopt;  // not a number
   }
   return std::nullopt;
 }

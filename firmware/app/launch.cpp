@@ -43,7 +43,7 @@ std::vector<std::string> Launch::with(const std::vector<std::string>& live, cons
   const auto* scene = std::get_if<scene::Scene>(&own);
   if (scene == nullptr || scene->hands.max_force_N >= hands_.max_force_N) return all;
   char own_limit[64];
-  std::snprintf(own_limit, sizeof own_limit, "%s=%.17g", kMaxForce.data(), scene->hands.max_force_N);
+  std::snprintf(own_limit, sizeof own_limit, "%s=%.17g", std::string(kMaxForce).c_str(), scene->hands.max_force_N);
   std::erase_if(all, [](const std::string& o) { return key_of(o) == kMaxForce; });
   all.emplace_back(own_limit);
   return all;

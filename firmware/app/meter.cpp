@@ -210,7 +210,7 @@ LoopCost measure_loop(const scene::Scene& scene, const device::Device& device) {
       control::report(physics::Diagnostics{}, record);
       least_us = std::min(least_us, cpu_us() - before);
     }
-    fresh.emplace(*after);
+    fresh.emplace(after.value());
     cost.control_us = std::max(cost.control_us, least_us);
   }
   return cost;

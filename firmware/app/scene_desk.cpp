@@ -187,7 +187,7 @@ std::optional<SceneDesk::Outcome> SceneDesk::poll() {
   const control::Plant* back = handover_.collect();
   if (back == nullptr || !lent_) return std::nullopt;
   busy_ = false;
-  const Built done = *std::exchange(lent_, std::nullopt);
+  const Built done = std::exchange(lent_, std::nullopt).value();
   if (!back->taken) return answer("force may flow: disarm first, a scene is loaded in OFF or IDLE only");
   now_ = done.setup;
   return answer(words_, Changed{now_.file, done.toml, words_, now_.scene.hands.max_force_N, now_.scene.suture.radius_m,

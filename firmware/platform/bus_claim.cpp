@@ -32,7 +32,7 @@ pid_t holder_of(const AbstractName& name) {
   const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   ucred who{};
   socklen_t size = sizeof who;
-  const bool known = connect(fd, reinterpret_cast<const sockaddr*>(&name.address), name.size) == 0 &&
+  const bool known = fd >= 0 && connect(fd, reinterpret_cast<const sockaddr*>(&name.address), name.size) == 0 &&
                      getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &who, &size) == 0;
   if (fd >= 0) close(fd);
   return known ? who.pid : 0;

@@ -38,7 +38,7 @@ long priority_in(const std::string& stat) {
   std::string field;
   for (int i = kFirst; i <= kField; ++i)
     if (!(fields >> field)) return 0;
-  return std::atol(field.c_str());
+  return std::strtol(field.c_str(), nullptr, 10);
 }
 
 Check interrupt_threads(const std::string& root) {

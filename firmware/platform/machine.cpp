@@ -24,6 +24,9 @@ std::string text_of(const std::string& path) {
   return s;
 }
 
+/// The whole number that a text begins with; 0 if there is none, as for a file that does not exist.
+long whole_number(const std::string& text) { return std::strtol(text.c_str(), nullptr, 10); }
+
 Check good(const char* what, std::string found) { return {Grade::kOk, what, std::move(found), {}}; }
 
 std::string cpu(int core) { return "sys/devices/system/cpu/cpu" + std::to_string(core) + "/"; }
@@ -40,7 +43,7 @@ long limit(const std::string& root, const std::string& name) {
   for (std::string line; std::getline(lines, line);) {
     if (!line.starts_with(name)) continue;
     const std::string rest = line.substr(name.size());
-    return rest.find_first_not_of(' ') == rest.find("unlimited") ? 1L << 62 : std::atol(rest.c_str());
+    return rest.find_first_not_of(' ') == rest.find("unlimited") ? 1L << 62 : whole_number(rest);
   }
   return 0;
 }
@@ -120,7 +123,7 @@ Check idle(const std::string& root, int core) {
   std::string slow;
   for (const auto& state : fs::directory_iterator(root + cpu(core) + "cpuidle", none)) {
     const std::string s = state.path().string();
-    if (text_of(s + "/disable") == "1" || std::atol(text_of(s + "/latency").c_str()) <= kWorstIdleExit_us) continue;
+    if (text_of(s + "/disable") == "1" || whole_number(text_of(s + "/latency")) <= kWorstIdleExit_us) continue;
     slow += (slow.empty() ? "" : ", ") + text_of(s + "/name") + " " + text_of(s + "/latency") + " us";
   }
   if (slow.empty()) return good("idle states", "none slower than 20 us");
@@ -145,7 +148,7 @@ Check multicast(const std::string& root) {
 
 Check receive_buffer(const std::string& root) {
   const std::string found = text_of(root + "proc/sys/net/core/rmem_max");
-  if (std::atol(found.c_str()) >= kReceiveBuffer) return good("receive buffer", "up to " + found + " bytes");
+  if (whole_number(found) >= kReceiveBuffer) return good("receive buffer", "up to " + found + " bytes");
   return {Grade::kWarn, "receive buffer", "up to " + (found.empty() ? "?" : found) + " bytes",
           "sysctl -w net.core.rmem_max=4194304"};
 }
@@ -153,7 +156,7 @@ Check receive_buffer(const std::string& root) {
 /// The number after a word in a text; -1 if the word is missing.
 double number_after(const std::string& text, const std::string& word) {
   const auto at = text.find(word);
-  return at == std::string::npos ? -1.0 : std::atof(text.c_str() + at + word.size());
+  return at == std::string::npos ? -1.0 : std::strtod(text.c_str() + at + word.size(), nullptr);
 }
 
 /// Checks that the real-time loop's core handles no interrupt of the CAN interface.
@@ -161,7 +164,7 @@ Check interrupts(const std::string& root, const std::string& interface, int core
   std::istringstream lines(text_of(root + "proc/interrupts"));
   for (std::string line; std::getline(lines, line);) {
     if ((line + " ").find(" " + interface + " ") == std::string::npos) continue;
-    const std::string number = std::to_string(std::atoi(line.c_str()));
+    const std::string number = std::to_string(whole_number(line));
     if (list_holds(text_of(root + "proc/irq/" + number + "/smp_affinity_list"), core))
       return {Grade::kWarn, "CAN interrupt",
               interface + ": irq " + number + " may come to core " + std::to_string(core),
@@ -177,9 +180,9 @@ bool list_holds(const std::string& list, int core) {
   std::istringstream parts(list);
   for (std::string part; std::getline(parts, part, ',');) {
     if (part.empty() || part[0] < '0' || part[0] > '9') continue;
-    const int first = std::atoi(part.c_str());
+    const long first = whole_number(part);
     const auto dash = part.find('-');
-    const int last = dash == std::string::npos ? first : std::atoi(part.c_str() + dash + 1);
+    const long last = dash == std::string::npos ? first : whole_number(part.substr(dash + 1));
     if (core >= first && core <= last) return true;
   }
   return false;
@@ -245,7 +248,7 @@ std::vector<Check> check_can(const Machine& machine, const std::string& interfac
   // A period has up to six frames. In a longer queue, frames would wait on a busy bus, become outdated, and still reset
   // the drives' watchdogs.
   const std::string queue = text_of(folder + "/tx_queue_len");
-  const long frames = std::atol(queue.c_str());
+  const long frames = whole_number(queue);
   checks.push_back(
       frames >= 8 && frames <= 16
           ? good("CAN queue", interface + ": " + queue)

@@ -31,6 +31,7 @@ std::vector<Mapping> file_mappings() {
   for (std::string line; std::getline(maps, line);) {
     unsigned long from = 0, to = 0, inode = 0;
     char may[5] = "";
+    // NOLINTNEXTLINE(bugprone-unchecked-string-to-number-conversion): the kernel writes numbers that fit
     if (std::sscanf(line.c_str(), "%lx-%lx %4s %*s %*s %lu", &from, &to, may, &inode) != 4) continue;
     if (inode == 0 || may[0] != 'r' || may[3] != 'p') continue;
     const int protection = PROT_READ | (may[1] == 'w' ? PROT_WRITE : 0) | (may[2] == 'x' ? PROT_EXEC : 0);

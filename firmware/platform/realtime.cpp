@@ -32,7 +32,7 @@ constexpr std::size_t kPage = 4096;
 int last_of(const std::string& list) {
   const auto at = list.find_last_of(",-");
   const std::string last = at == std::string::npos ? list : list.substr(at + 1);
-  return last.empty() ? -1 : std::atoi(last.c_str());
+  return last.empty() ? -1 : static_cast<int>(std::strtol(last.c_str(), nullptr, 10));
 }
 
 [[gnu::noinline]] void touch_stack() noexcept {

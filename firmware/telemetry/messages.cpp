@@ -120,7 +120,7 @@ bool text_fits(std::span<const std::byte> message) {
 std::optional<ligature_msg::command_t> command_of(std::span<const std::byte> message) {
   constexpr std::size_t kLongest = 65'536;  // a scene or parameter name is far shorter
   if (message.size() > kLongest || !text_fits(message)) return std::nullopt;
-  ligature_msg::command_t command;
+  ligature_msg::command_t command{};
   const auto size = static_cast<int>(message.size());
   if (command.decode(message.data(), 0, size) != size) return std::nullopt;
   if (command.text.find('\0') != std::string::npos) return std::nullopt;

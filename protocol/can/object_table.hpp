@@ -45,7 +45,7 @@ struct ObjectRow {
 };
 
 struct ObjectTable {
-  std::array<ObjectRow, 64> rows{};
+  std::array<ObjectRow, 64> rows{};  // NOLINT(bugprone-invalid-enum-default-initialization): ObjectRow sets its type
   std::size_t count = 0;
 
   constexpr void add(const ObjectRow& row) { rows[count++] = row; }

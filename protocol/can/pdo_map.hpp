@@ -68,7 +68,7 @@ struct PdoLayout {
   for (const PdoField& f : kPdoFields) {
     if (f.pdo == pdo && f.object == object) return f;
   }
-  throw "object is not in this PDO";
+  throw "object is not in this PDO";  // NOLINT(bugprone-std-exception-baseclass): nothing is thrown at compile time
 }
 
 /// Mapping entry as stored in objects 0x1600 and 0x1A00: index, sub-index, length in bits.

@@ -1,9 +1,12 @@
 #include "protocol/device/cia402_reader.hpp"
 
+#include <charconv>
 #include <cstdio>
+#include <cstdlib>
 #include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 namespace ligature::device {
 namespace {
@@ -18,15 +21,20 @@ constexpr std::pair<const char*, ButtonsWord> kButtons[] = {{"ligature", Buttons
 constexpr std::pair<const char*, bool> kShafts[] = {{"joint", false}, {"motor", true}};
 constexpr std::size_t kMostWords = 16;  // entries of a list; start-up stores as many
 
-std::optional<ObjectAddress> object_of(const std::string& word) {
-  unsigned index = 0, sub = 0;
-  int used = 0;
-  // Without the first check a sign would be read
-  if (word.find_first_of("+- ") != std::string::npos ||
-      std::sscanf(word.c_str(), "0x%4x:%2x%n", &index, &sub, &used) != 2 || used != static_cast<int>(word.size()) ||
-      index == 0)
-    return std::nullopt;
-  return ObjectAddress{static_cast<std::uint16_t>(index), static_cast<std::uint8_t>(sub)};
+/// A hexadecimal number of at most `most` digits, without a sign.
+std::optional<unsigned> hexadecimal(std::string_view digits, std::size_t most) {
+  unsigned number = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number, 16);
+  if (error != std::errc{} || end != digits.data() + digits.size() || digits.size() > most) return std::nullopt;
+  return number;
+}
+
+std::optional<ObjectAddress> object_of(std::string_view word) {
+  const auto colon = word.find(':');
+  if (!word.starts_with("0x") || colon == std::string_view::npos) return std::nullopt;
+  const auto index = hexadecimal(word.substr(2, colon - 2), 4), sub = hexadecimal(word.substr(colon + 1), 2);
+  if (!index || *index == 0 || !sub) return std::nullopt;
+  return ObjectAddress{static_cast<std::uint16_t>(*index), static_cast<std::uint8_t>(*sub)};
 }
 
 /// "0x1800:03=0/2": object, value, number of bytes.
@@ -34,13 +42,15 @@ std::optional<ObjectWrite> write_of(const std::string& word) {
   const auto equals = word.find('=');
   const auto object = object_of(word.substr(0, equals));
   if (!object || equals == std::string::npos) return std::nullopt;
-  long long value = 0;
-  int bytes = 0, used = 0;
-  const std::string rest = word.substr(equals + 1);
-  if (std::sscanf(rest.c_str(), "%lli/%d%n", &value, &bytes, &used) != 2 || used != static_cast<int>(rest.size()))
-    return std::nullopt;
-  const long long most = bytes == 1 || bytes == 2 || bytes == 4 ? (1LL << (8 * bytes)) - 1 : -1;
-  if (most < 0 || value > most || value < -(most + 1) / 2) return std::nullopt;
+  const char* const begin = word.c_str() + equals + 1;
+  char* end = nullptr;
+  const long long value = std::strtoll(begin, &end, 0);  // base 0: decimal, or hexadecimal after 0x
+  if (end == begin || *end != '/') return std::nullopt;
+  const std::string_view width = end + 1;
+  if (width != "1" && width != "2" && width != "4") return std::nullopt;
+  const int bytes = width[0] - '0';
+  const long long most = (1LL << (8 * bytes)) - 1;
+  if (value > most || value < -(most + 1) / 2) return std::nullopt;
   return ObjectWrite{*object, static_cast<std::uint32_t>(value & most), bytes};
 }
 

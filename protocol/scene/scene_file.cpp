@@ -272,7 +272,7 @@ std::variant<Scene, Error> parse_scene(const std::string& text, const fs::path& 
   const bool has_suture = root.contains("suture");
   ReadContext context{path.string(), {}, {}};
   for (const auto& each : overrides) {
-    if (!override_key(root, each, context)) return *context.error;
+    if (!override_key(root, each, context)) return context.error.value();
   }
   Scene scene;
   StrictTable top(root, "", context);

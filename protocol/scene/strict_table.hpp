@@ -126,16 +126,18 @@ class StrictTable {
     if (lists()) list(key, "true or false", out ? "true" : "false");
     const auto* node = take(key);
     if (!node) return;
-    if (!node->is_boolean()) return refuse(key, *node, "true or false");
-    out = *node->value<bool>();
+    const auto value = node->is_boolean() ? node->value<bool>() : std::nullopt;
+    if (!value) return refuse(key, *node, "true or false");
+    out = value.value();
   }
 
   void text(std::string_view key, std::string& out) {
     if (lists()) list(key, "a text", out.empty() ? "none" : "\"" + out + "\"");
     const auto* node = take(key);
     if (!node) return;
-    if (!node->is_string() || node->value<std::string>()->empty()) return refuse(key, *node, "a text");
-    out = *node->value<std::string>();
+    const auto value = node->value<std::string>();
+    if (!node->is_string() || !value || value->empty()) return refuse(key, *node, "a text");
+    out = *value;
   }
 
   /// Reads a name from a table of {name, value}.
@@ -151,7 +153,7 @@ class StrictTable {
     const auto* node = take(key);
     if (!node) return;
     for (const auto& [label, value] : names) {
-      if (node->is_string() && *node->value<std::string>() == label) return void(out = value);
+      if (node->is_string() && node->value<std::string>() == std::string(label)) return void(out = value);
     }
     refuse(key, *node, "one of " + allowed + note);
   }

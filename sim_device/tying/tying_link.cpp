@@ -34,7 +34,7 @@ std::variant<KnotTier, std::string> tier_of(const std::string& word, const scene
   const std::string knot = words.substr(0, colon);
   std::uint32_t seed = 1;
   if (colon != std::string::npos) {
-    const std::string_view digits = std::string_view(words).substr(colon + 1);
+    const std::string digits = words.substr(colon + 1);
     const char* const end = digits.data() + digits.size();
     const auto read = std::from_chars(digits.data(), end, seed);
     if (read.ec != std::errc() || read.ptr != end)

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 #include <thread>
 
 namespace ligature::app {
@@ -32,12 +34,15 @@ bool has_word(const std::string& text, const std::string& word) {
 }  // namespace
 
 std::optional<double> longest_gap_us(const std::string& trace) {
-  constexpr const char* kMark = "inner/outer(us):";
+  constexpr std::string_view kMark = "inner/outer(us):";
   std::optional<double> longest;
   for (auto at = trace.find(kMark); at != std::string::npos; at = trace.find(kMark, at + 1)) {
-    double inner = 0.0, outer = 0.0;
-    if (std::sscanf(trace.c_str() + at, "inner/outer(us): %lf/%lf", &inner, &outer) == 2)
-      longest = std::max({longest.value_or(0.0), inner, outer});
+    const char* const first = trace.c_str() + at + kMark.size();
+    char *slash = nullptr, *end = nullptr;
+    const double inner = std::strtod(first, &slash);
+    if (slash == first || *slash != '/') continue;
+    const double outer = std::strtod(slash + 1, &end);
+    if (end != slash + 1) longest = std::max({longest.value_or(0.0), inner, outer});
   }
   return longest;
 }

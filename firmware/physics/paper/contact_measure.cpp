@@ -36,6 +36,7 @@ void ContactSolver::orient(Candidate& c, const V3<double>& apart, double distanc
 void ContactSolver::measure(const ThreadState& s, Candidate& c, ContactRow& row) const noexcept {
   const int i = c.first, j = c.second, nobody = nodes_;
   if (c.kind == Candidate::Kind::kDesk) {
+    // NOLINTNEXTLINE(bugprone-unchecked-optional-access): only a scene with a desk has such candidates
     c.gap_m = s.p.z[i] - *settings_.desk_m - radius_m_;
     c.normal = {0.0, 0.0, 1.0};
     c.step = step_;

@@ -24,7 +24,7 @@ inline void store(double* p, Pack a) noexcept { __builtin_memcpy(p, &a, sizeof a
 
 inline double root(double a) noexcept { return std::sqrt(a); }
 inline Pack root(Pack a) noexcept {
-#if defined(__AVX__)
+#if defined(__AVX__) && __has_builtin(__builtin_ia32_sqrtpd256)  // newer versions of clang have it no longer
   return Pack(__builtin_ia32_sqrtpd256(a));
 #else
   return Pack{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};

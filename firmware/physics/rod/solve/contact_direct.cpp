@@ -140,8 +140,8 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
 template <bool Friction>
 Outcome ContactSet::settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
   const long nodes = window_last_ - window_first_ + 1;
-  if (nodes + 2 * tuning.margin > ContactNewton::kWidest) return Outcome::kUnsolved;
-  const long matrix = newton_.covers(window_first_, window_last_) ? 0 : price::factors(nodes + 2 * tuning.margin);
+  if (nodes + 2L * tuning.margin > ContactNewton::kWidest) return Outcome::kUnsolved;
+  const long matrix = newton_.covers(window_first_, window_last_) ? 0 : price::factors(nodes + 2L * tuning.margin);
   if (matrix + price::look(rows_) > effort.work) return Outcome::kLater;
   for (int k = 0; k < rows_; ++k) {
     const auto at = static_cast<std::size_t>(k);

@@ -135,6 +135,7 @@ void ContactNewton::spread(const Slot& slot, std::int32_t first, std::int32_t la
     w[k] = all_eight(static_cast<float>(slot.w[k]));
   }
   for (std::size_t j = begin; j < end; j += 8) {
+    // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): a contact has at least one node
     Eight sum = w[0] * load_eight(column[0] + j);
     for (int k = 1; k < slot.count; ++k) sum += w[k] * load_eight(column[k] + j);
     store_eight(out + j, sum);
