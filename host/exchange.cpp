@@ -4,11 +4,6 @@
 #include "protocol/lcm/fresh_id.hpp"
 
 namespace ligature::host {
-namespace {
-
-using ligature_msg::command_t;
-
-}  // namespace
 
 Exchange::Exchange(std::int8_t kind, const std::string& text, double value) {
   command_.utime = now_us();

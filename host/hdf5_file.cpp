@@ -45,7 +45,7 @@ void annotate(hid_t object, const char* name, const std::string& text) {
   const Handle attribute(H5Acreate2(object, name, text_type(), space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
                          "make an attribute");
   const char* words = text.c_str();
-  check(H5Awrite(attribute.id(), text_type(), &words), "write an attribute");
+  check(H5Awrite(attribute.id(), text_type(), static_cast<const void*>(&words)), "write an attribute");
 }
 
 void annotate(hid_t object, const char* name, double value) {
@@ -99,7 +99,7 @@ void Series<T>::flush() {
   std::vector<const char*> words;
   if constexpr (std::is_same_v<T, std::string>) {
     for (const auto& text : buffer_) words.push_back(text.c_str());
-    data = words.data();
+    data = static_cast<const void*>(words.data());
   } else {
     data = buffer_.data();
   }

@@ -65,7 +65,7 @@ std::string LiveTally::progress_line(double elapsed_s, double ticks_per_s) const
     line += sessions_.are_interleaved() ? text("  %zu FIRMWARES AT ONCE", sessions_.sessions().size())
                                         : text("  %zu restarts", sessions_.restarts());
   if (sessions_.received() == 0) return line + "  waiting for the firmware";
-  line += text("  %-7s left %.2f N  right %.2f N", state_name(state_).data(), force_N_[0], force_N_[1]);
+  line += text("  %-7s left %.2f N  right %.2f N", std::string(state_name(state_)).c_str(), force_N_[0], force_N_[1]);
   if (fault_ != 0) line += text("  FAULT %d", fault_);
   return line;
 }

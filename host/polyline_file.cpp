@@ -127,19 +127,19 @@ class PolylineReader {
   }
 
   void take_row(const std::vector<std::string_view>& fields) {
-    if (static_cast<int>(fields.size()) != columns_->count)
-      refuse("found " + std::to_string(fields.size()) + " fields, allowed " + std::to_string(columns_->count));
-    const std::array<double, 3> point{value(fields, columns_->x), value(fields, columns_->y),
-                                      value(fields, columns_->z)};
-    if (columns_->time >= 0) {
-      const double time_s = value(fields, columns_->time);
+    const Columns& columns = columns_.value();
+    if (static_cast<int>(fields.size()) != columns.count)
+      refuse("found " + std::to_string(fields.size()) + " fields, allowed " + std::to_string(columns.count));
+    const std::array<double, 3> point{value(fields, columns.x), value(fields, columns.y), value(fields, columns.z)};
+    if (columns.time >= 0) {
+      const double time_s = value(fields, columns.time);
       if (current_.time_s != time_s) {
         choose();
         current_ = {{}, time_s};
       }
     }
-    if (columns_->node >= 0 && value(fields, columns_->node) != static_cast<double>(current_.points.size()))
-      refuse("found node " + shown(fields[static_cast<std::size_t>(columns_->node)]) + ", allowed " +
+    if (columns.node >= 0 && value(fields, columns.node) != static_cast<double>(current_.points.size()))
+      refuse("found node " + shown(fields[static_cast<std::size_t>(columns.node)]) + ", allowed " +
              std::to_string(current_.points.size()) + " (nodes rise by one from 0)");
     current_.points.push_back(point);
   }
@@ -149,7 +149,7 @@ class PolylineReader {
     if (current_.points.empty()) return;
     whole_nodes_ = current_.points.size();
     const bool is_better =
-        !at_s_ || !chosen_.time_s || std::abs(*current_.time_s - *at_s_) < std::abs(*chosen_.time_s - *at_s_);
+        !at_s_ || !chosen_.time_s || std::abs(current_.time_s.value() - *at_s_) < std::abs(*chosen_.time_s - *at_s_);
     if (is_better) chosen_ = current_;
   }
 

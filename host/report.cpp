@@ -44,7 +44,7 @@ std::string hand_row(const LogSummary& s, std::size_t hand) {
   if (felt.peak_tick >= 0) value += text(" at %.3f s", s.facts.time_s(felt.peak_tick));
   value += text(", mean %.3f N over %.2f s of grasp", felt.mean_N(), s.facts.time_s(felt.grasp_ticks));
   if (felt.limited_ticks > 0) value += text(", at the limit for %.3f s", s.facts.time_s(felt.limited_ticks));
-  return row(text("force %s", kHandNames[hand].data()).c_str(), value);
+  return row(text("force %s", std::string(kHandNames[hand]).c_str()).c_str(), value);
 }
 
 /// Type, handedness and common name of a knot.
@@ -121,10 +121,10 @@ std::string report_table(const LogSummary& s) {
   if (const auto first = first_tick(s); first > 1)
     table += row("joined late", text("recording begins at tick %lld", static_cast<Count>(first)));
   if (const Session* open = s.tally.open_ended())
-    table +=
-        row("open end", text("recording ends at tick %lld in %s, not with the drives switched off: what came after "
-                             "is not in it; the flight recorder may have it",
-                             static_cast<Count>(open->ticks.last()), state_name(open->last_state).data()));
+    table += row("open end",
+                 text("recording ends at tick %lld in %s, not with the drives switched off: what came after "
+                      "is not in it; the flight recorder may have it",
+                      static_cast<Count>(open->ticks.last()), std::string(state_name(open->last_state)).c_str()));
   if (s.tally.are_interleaved())
     table += row("sessions", text("%zu at the same time", s.tally.sessions().size()));
   else if (s.tally.restarts() > 0)

@@ -103,6 +103,7 @@ std::vector<int> alexander(const Diagram& d) {
   if (d.crossings() < 3) return {1};
   const auto arcs = arcs_of(d);
   std::vector<std::uint64_t> values;
+  values.reserve(d.crossings());
   for (std::size_t t = 0; t < d.crossings(); ++t) values.push_back(minor_at(d, arcs, t));
   std::vector<int> c;
   for (const auto residue : interpolate(std::move(values))) {

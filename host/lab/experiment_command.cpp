@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 
 #include "host/lab/experiments/experiment.hpp"
@@ -12,8 +11,6 @@
 
 namespace ligature::lab {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct Entry {
   const char* name;

@@ -76,6 +76,7 @@ void print(const fit::Fitted& fitted) {
 
 int execute(const std::vector<std::string>& files, const std::string& out) {
   std::vector<fit::Measurement> all;
+  all.reserve(files.size());
   for (const auto& file : files) all.push_back(fit::read_measurement(file));
   fit::check_enough(all);
   if (!out.empty() && !std::filesystem::is_directory(std::filesystem::absolute(out).parent_path()))

@@ -45,6 +45,7 @@ void become_study(const std::vector<std::string>& given) {
   // The tasks tie and rerun start this program again.
   setenv("LIGATURE_LAB", std::filesystem::read_symlink("/proc/self/exe", none).c_str(), 1);
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (auto& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   execv(arguments[0], arguments.data());

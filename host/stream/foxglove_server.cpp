@@ -59,10 +59,10 @@ FoxgloveServer::FoxgloveServer(const FoxgloveOptions& options)
     throw BadInput("--listen: found '" + options.listen + "', allowed an address such as 127.0.0.1 or 0.0.0.0");
   const tcp::endpoint endpoint(address, options.port);
   auto& acceptor = parts_->acceptor;
-  acceptor.open(endpoint.protocol(), error);
-  if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
-  if (!error) acceptor.bind(endpoint, error);
-  if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+  (void)acceptor.open(endpoint.protocol(), error);
+  if (!error) (void)acceptor.set_option(asio::socket_base::reuse_address(true), error);
+  if (!error) (void)acceptor.bind(endpoint, error);
+  if (!error) (void)acceptor.listen(asio::socket_base::max_listen_connections, error);
   if (error)
     throw RunFailed("cannot listen on " + options.listen + ":" + std::to_string(options.port) + ": " + error.message() +
                     "; remedy: another --port or --listen");

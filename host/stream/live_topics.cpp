@@ -3,7 +3,7 @@
 namespace ligature::host::stream {
 
 std::uint64_t LiveTopics::time_of(std::int64_t tick) const {
-  return static_cast<std::uint64_t>(*session_us_) * 1000 + viewer_time_ns(facts_.time_s(tick));
+  return static_cast<std::uint64_t>(session_us_.value()) * 1000 + viewer_time_ns(facts_.time_s(tick));
 }
 
 void LiveTopics::take_status(const ligature_msg::status_t& status) {

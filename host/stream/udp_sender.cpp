@@ -38,9 +38,9 @@ std::string tick_datagram(const TopicMessage& rig, const TopicMessage& left, con
 struct UdpSender::Socket {
   explicit Socket(const std::string& target) : to(endpoint_of(target)) {
     boost::system::error_code error;
-    socket.open(to.protocol(), error);
+    (void)socket.open(to.protocol(), error);
     if (error) throw RunFailed("--udp: no socket: " + error.message());
-    socket.non_blocking(true, error);
+    (void)socket.non_blocking(true, error);
   }
   boost::asio::io_context io{1};
   udp::endpoint to;

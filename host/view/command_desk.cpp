@@ -47,6 +47,7 @@ void CommandDesk::publish_quietly(const Waiting& waiting) {
   try {
     publish_(waiting.exchange.message());
   } catch (const std::exception&) {
+    return;
   }
 }
 

@@ -40,8 +40,8 @@ void PageConnection::give_place_back() {
 void PageConnection::accept(const http::request<http::string_body>& upgrade) {
   boost::system::error_code ignored;
   auto& tcp_socket = beast::get_lowest_layer(socket_).socket();
-  tcp_socket.set_option(boost::asio::socket_base::send_buffer_size(kSocketBuffer), ignored);
-  tcp_socket.set_option(tcp::no_delay(true), ignored);
+  (void)tcp_socket.set_option(boost::asio::socket_base::send_buffer_size(kSocketBuffer), ignored);
+  (void)tcp_socket.set_option(tcp::no_delay(true), ignored);
   beast::get_lowest_layer(socket_).expires_never();  // from here on the WebSocket's own time limits apply
   beast::websocket::stream_base::timeout limits{};
   limits.handshake_timeout = std::chrono::seconds(10);

@@ -120,10 +120,10 @@ Server::Server(const ServerOptions& options, const Access& access, const Picture
     throw BadInput("--listen: found '" + options.listen + "', allowed an address such as 127.0.0.1 or 0.0.0.0");
   const tcp::endpoint endpoint(address, options.port);
   auto& acceptor = parts_->acceptor;
-  acceptor.open(endpoint.protocol(), error);
-  if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
-  if (!error) acceptor.bind(endpoint, error);
-  if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+  (void)acceptor.open(endpoint.protocol(), error);
+  if (!error) (void)acceptor.set_option(asio::socket_base::reuse_address(true), error);
+  if (!error) (void)acceptor.bind(endpoint, error);
+  if (!error) (void)acceptor.listen(asio::socket_base::max_listen_connections, error);
   if (error)
     throw RunFailed("cannot listen on " + options.listen + ":" + std::to_string(options.port) + ": " + error.message() +
                     (error == asio::error::address_in_use  ? "; remedy: another --port, or end the view that runs there"

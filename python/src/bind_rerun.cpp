@@ -85,9 +85,10 @@ Rerun rerun(const std::string& path, std::vector<std::string> overrides, bool cu
     made->outcome.emplace(lab::rerun(options));
   }
   signals.rethrow();
-  if (made->outcome->differences.ticks() == 0)
-    throw lab::Refusal(path + ": no tick could be computed again: " + made->outcome->why_unknown);
-  return std::move(*made);
+  const auto& outcome = made.value().outcome.value();
+  if (outcome.differences.ticks() == 0)
+    throw lab::Refusal(path + ": no tick could be computed again: " + outcome.why_unknown);
+  return std::move(made.value());
 }
 
 nb::dict facts(const Rerun& r) {

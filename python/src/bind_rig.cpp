@@ -26,6 +26,7 @@ constexpr std::int64_t kPiece = 50;  // periods between two looks for signals; s
 
 std::vector<scene::FaultScript> faults_of(const std::vector<std::string>& paths) {
   std::vector<scene::FaultScript> faults;
+  faults.reserve(paths.size());
   for (const auto& path : paths) faults.push_back(or_refuse(scene::load_fault_script(path)));
   return faults;
 }

@@ -20,7 +20,8 @@ Run run_here(Sim& sim, const scene::GripperScript& script, std::optional<double>
              double start_s) {
   const auto& scene = sim.idle().scene().scene;
   const auto orders = orders_of(scene, start_s, duration_of(script, duration_s), shape_every_s, 1);
-  const auto played = script;  // a copy: other Python threads may change the script during the run
+  // A copy: other Python threads may change the script during the run
+  const auto played = script;  // NOLINT(performance-unnecessary-copy-initialization)
   Signals signals;
   Run run;
   {
@@ -46,6 +47,7 @@ std::vector<Run> run_copies(Sim& sim, const std::vector<const scene::GripperScri
     played.push_back(*script);
   }
   std::vector<const scene::GripperScript*> each;
+  each.reserve(played.size());
   for (const auto& script : played) each.push_back(&script);
   const auto workers = static_cast<unsigned>(std::min<std::size_t>(static_cast<std::size_t>(threads), each.size()));
   Signals signals;

@@ -120,6 +120,7 @@ std::vector<Run> play_all(const physics::Simulation& from, const scene::Scene& s
     one_ended.notify_one();
   };
   std::vector<std::jthread> workers;
+  workers.reserve(threads);
   for (unsigned k = 0; k < threads; ++k) workers.emplace_back(work, k);
   {
     std::unique_lock guard(lock);

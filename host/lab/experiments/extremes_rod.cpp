@@ -101,9 +101,8 @@ void add_odd_ones(ExtremesMap& result, const scene::Scene& base, const scene::Sc
   with("no stiffness at all", kTicks,
        [](scene::Scene& s) { s.suture.rod.EA_N = s.suture.rod.EI_N_m2 = s.suture.rod.GJ_N_m2 = 0; });
   for (const double speed : {0.1, 1.0, 10.0, 100.0, 1e4}) {
-    auto s = base;
-    const double whole_s = kTicks * s.time.tick_s;
-    result.add("tip drawn at " + digits(speed) + " m/s", trial(s, tug(whole_s, 0.5 * speed * whole_s), kTicks));
+    const double whole_s = kTicks * base.time.tick_s;
+    result.add("tip drawn at " + digits(speed) + " m/s", trial(base, tug(whole_s, 0.5 * speed * whole_s), kTicks));
     result.add("knot pulled at " + digits(speed) + " m/s", trial(knot, pull(knot, whole_s, speed), kTicks));
   }
   auto thick = knot;

@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 /// Runs valgrind with its output discarded. @return whether it succeeded.
 bool run_quietly(std::vector<std::string> words) {
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (auto& w : words) argv.push_back(w.data());
   argv.push_back(nullptr);
   posix_spawn_file_actions_t files;

@@ -51,6 +51,7 @@ Setting setting_of(const std::string& text) {
       return s;
     }
   } catch (const std::logic_error&) {
+    known = false;  // no number where one should be: refused below
   }
   throw Refusal("--one: found " + text + ", allowed MODEL/NODES/SUBSTEPS/PASSES or rod/NODES/PRESET");
 }

@@ -129,7 +129,8 @@ Result ply(const Subject& subject) {
     result.points.push_back({"F R^2 / B", degrees, force(a), F});
     result.points.push_back({"M R / B", degrees, moment(a), M});
   }
-  for (double degrees = 10.0; degrees <= 28.0; degrees += 2.0) {
+  for (int step = 0; step < 10; ++step) {
+    const double degrees = 10.0 + 2.0 * step;
     const double a = degrees * kPi / 180.0;
     result.points.push_back({"F R^2 / B", degrees, force(a), std::nan("")});
     result.points.push_back({"M R / B", degrees, moment(a), std::nan("")});

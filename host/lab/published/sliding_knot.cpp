@@ -62,13 +62,15 @@ void measure_shape(Nodes nodes, double h, DrawnKnot& knot) {
   const double length = ends[1] - ends[0];
   Line phase;
   double turned = 0.0, before = 0.0, distance = 0.0;
-  for (double x = ends[0] + 0.2 * length; x < ends[1] - 0.2 * length; x += step) {
+  double x = ends[0] + 0.2 * length;
+  while (x < ends[1] - 0.2 * length) {
     const Vec3 d = apart(x);
     const double angle = std::atan2(d.z(), d.y());
     turned += phase.n == 0 ? 0.0 : std::remainder(angle - before, 2.0 * kPi);
     before = angle;
     phase.add(x, turned);
     distance += d.norm();
+    x += step;
   }
   knot.wave_number = std::abs(phase.slope()) * h;
   knot.contact_length = length / h;

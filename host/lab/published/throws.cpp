@@ -71,12 +71,15 @@ void join(Line& line, const Vec3& from, const Vec3& to, double length) {
     };
     if (s < kPi * radius) {
       line.push_back(arc(from.x(), 1.0, 0.0));
-    } else if ((s -= kPi * radius) < across) {
-      line.emplace_back(from.x() + s, -2.0 * radius, z);
-    } else {
-      s -= across;
-      line.push_back(arc(to.x(), -1.0, -2.0 * radius));
+      continue;
     }
+    s -= kPi * radius;
+    if (s < across) {
+      line.emplace_back(from.x() + s, -2.0 * radius, z);
+      continue;
+    }
+    s -= across;
+    line.push_back(arc(to.x(), -1.0, -2.0 * radius));
   }
 }
 
@@ -90,9 +93,9 @@ Line rounded(const Line& line, double width, double step) {
     const int most = std::min({reach, i, n - 1 - i});  // symmetric, so that the ends stay
     Vec3 sum = Vec3::Zero();
     double total = 0.0;
-    for (int k = -most; k <= most; ++k) {
-      const double w = std::exp(-0.5 * std::pow(k * step / width, 2));
-      sum += w * fine[static_cast<std::size_t>(i + k)], total += w;
+    for (int k = i - most; k <= i + most; ++k) {
+      const double w = std::exp(-0.5 * std::pow((k - i) * step / width, 2));
+      sum += w * fine[static_cast<std::size_t>(k)], total += w;
     }
     out.push_back(sum / total);
   }

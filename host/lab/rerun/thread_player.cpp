@@ -107,15 +107,16 @@ bool ThreadPlayer::take_scene(const Request& request, bool keeps_motion) {
 }
 
 void ThreadPlayer::note_result(std::int64_t tick) {
+  const auto& thread = thread_.value();
   result_.tick = tick;
-  result_.hand = {thread_->hand(physics::Hand::kLeft), thread_->hand(physics::Hand::kRight)};
-  result_.health = thread_->diagnostics();
+  result_.hand = {thread.hand(physics::Hand::kLeft), thread.hand(physics::Hand::kRight)};
+  result_.health = thread.diagnostics();
   result_.add_step({tick, result_.health.cut_at});
   if (const std::int64_t shape = tick / control::kTicksPerShape; shape != std::exchange(shape_of_, shape)) snapshot();
 }
 
 void ThreadPlayer::snapshot() {
-  control::report(*thread_, result_, *shape_);
+  control::report(thread_.value(), result_, *shape_);
   shapes_.push_back(telemetry::to_message(*shape_, scenes_[current_].scene.suture.radius_m, 0));
 }
 

@@ -67,8 +67,10 @@ sim::Vec3 HandRecord::written(const sim::Vec3& wish_W) const {
   };
   if (is_within_reach(at(1.0))) return at(1.0);
   double out = 0.0;  // fraction of the way from home to the wanted position
-  for (double step = 0.5; step > std::ldexp(1.0, -kHalvings); step /= 2.0)
+  for (int k = 1; k < kHalvings; ++k) {
+    const double step = std::ldexp(1.0, -k);
     if (is_within_reach(at(out + step))) out += step;
+  }
   return at(out);
 }
 

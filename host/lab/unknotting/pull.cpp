@@ -37,11 +37,13 @@ PullResult do_pull(physics::Simulation& thread, const scene::Scene& scene, const
                                          {kTake_s + pull_s, {to.x(), to.y(), to.z()}, true}};
   PullResult result;
   const physics::ToolInput away{Vec3(scene::kParked_W_m.data()), Vec3::Zero(), false};
-  for (double t_s = 0.0; t_s < kTake_s + pull_s + kHold_s && result.finite; t_s += tick_s) {
+  double t_s = 0.0;
+  while (t_s < kTake_s + pull_s + kHold_s && result.finite) {
     const auto pose = scene::sample(keys, t_s);
     thread.tick({away, physics::ToolInput{Vec3(pose.p_W_m.data()), Vec3(pose.v_W_m_per_s.data()), pose.grip}});
     result.peak_N = std::max(result.peak_N, thread.hand(physics::Hand::kRight).f_W.norm());
     result.finite = thread.diagnostics().finite;
+    t_s += tick_s;
   }
   result.knot = knot_of(thread);
   result.knot_size_m = result.knot.type == "0_1" ? 0.0 : length_between(thread.nodes_W(), core_of(thread.nodes_W()));

@@ -57,6 +57,7 @@ double chain_error(int n, double steps_per_unit) {
   rod.support(0, make(0, 0, 0));
   rod.moved();
   std::vector<double> y;
+  y.reserve(state.mesh.s.size());
   for (const double s : state.mesh.s) y.push_back(std::cyl_bessel_j(0.0, 2.40482555769577 * std::sqrt(1.0 - s)));
   for (std::size_t i = 0; i < y.size(); ++i) state.x[i] = make(1e-5 * (y[i] - y[0]), 0, -state.mesh.s[i]);
   const auto amplitude = [&] {

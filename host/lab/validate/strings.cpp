@@ -27,8 +27,10 @@ double sag_of(std::span<const Vec3> x) {
   const double d1 = z(at + 1) - z(at), d2 = z(at + 2) - 2.0 * z(at + 1) + z(at),
                d3 = z(at + 3) - 3.0 * z(at + 2) + 3.0 * z(at + 1) - z(at);
   double sag = 0.0;
-  for (double u = 0.0; u <= 3.0; u += 1e-3)
+  for (int k = 0; k <= 3000; ++k) {
+    const double u = 1e-3 * k;
     sag = std::max(sag, z(at) + u * (d1 + 0.5 * (u - 1.0) * (d2 + (u - 2.0) / 3.0 * d3)));
+  }
   return sag;
 }
 

@@ -102,7 +102,7 @@ struct Ringing {
     double q = 0.0;
     for (int i = 0; i < scene.suture.nodes; ++i) {
       const double s = i * segment_m(scene), share = is_rod(scene) && i + 1 == scene.suture.nodes ? 0.5 : 1.0;
-      q += share * shape(s) * sim->nodes_W()[static_cast<std::size_t>(i)].y();
+      q += share * shape(s) * sim.value().nodes_W()[static_cast<std::size_t>(i)].y();
     }
     return q;
   }
@@ -169,7 +169,7 @@ double numerical_damping(const Subject& subject, scene::Accuracy accuracy, int m
   double peak = 0.0;
   const int around = ticks / (4 * periods);
   for (int k = 0; k < ticks + around; ++k) {
-    proceed(*ringing.sim, no_hands());
+    proceed(ringing.sim.value(), no_hands());
     if (k >= ticks - around) peak = std::max(peak, std::abs(ringing.amplitude()));
   }
   return std::log(from / peak) / (2.0 * std::numbers::pi * periods);

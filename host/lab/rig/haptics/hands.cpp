@@ -57,7 +57,7 @@ scene::GripperScript pull_and_release(double apart_m, double draw_s, double rest
     script.keys[h] = {key(0.5, h, kHold_m, false), key(t, h, kHold_m, true)};
     script.keys[h].push_back(key(t += draw_s, h, apart_m, true));
     script.keys[h].push_back(key(t += rest_s, h, apart_m, false));  // released under tension
-    script.keys[h].push_back(key(t += 0.5, h, apart_m, false));
+    script.keys[h].push_back(key(t + 0.5, h, apart_m, false));
   }
   return script;
 }
@@ -82,7 +82,8 @@ scene::GripperScript slip(double apart_m) {
   auto& right = script.keys[1];
   const scene::GripKey last = right.back();
   right.resize(3);
-  for (double t = 3.0; t < 4.8; t += 0.3) {
+  double t = 3.0;
+  for (int k = 0; k < 7; ++k, t += 0.3) {
     right.push_back(key(t, 1, apart_m, false));
     right.push_back(key(t + 0.1, 1, apart_m, true));
   }
