@@ -60,7 +60,7 @@ TEST(NoAllocation, TheGuardsBite) {
     {
       const NoAllocation guard;
       try {
-        throw 1;
+        throw 1;  // NOLINT(bugprone-std-exception-baseclass): any exception will do
       } catch (int) {
       }
     }

@@ -33,16 +33,18 @@ Lock* next_trylock() noexcept {
   static Lock* const next = reinterpret_cast<Lock*>(dlsym(RTLD_NEXT, "pthread_mutex_trylock"));
   return next;
 }
-[[maybe_unused]] const bool looked_up = next_lock() != nullptr && next_trylock() != nullptr;
+[[maybe_unused]] const bool kLookedUp = next_lock() != nullptr && next_trylock() != nullptr;
 
 }  // namespace
 
 extern "C" {
+// NOLINTBEGIN(bugprone-reserved-identifier): names of glibc
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);
 void* __libc_realloc(void*, std::size_t);
 void* __libc_memalign(std::size_t, std::size_t);
 void __libc_free(void*);
+// NOLINTEND(bugprone-reserved-identifier)
 
 // All heap allocation ends in one of these functions, operator new included.
 void* malloc(std::size_t n) {

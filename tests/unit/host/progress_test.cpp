@@ -14,7 +14,7 @@ class ProgressLine : public ::testing::Test {
  protected:
   ~ProgressLine() override { std::fclose(out_); }
   std::string written() {
-    std::rewind(out_);
+    EXPECT_EQ(std::fseek(out_, 0, SEEK_SET), 0);
     std::array<char, 500> text{};
     return {text.data(), std::fread(text.data(), 1, text.size(), out_)};
   }

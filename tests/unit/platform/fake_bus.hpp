@@ -13,7 +13,10 @@ namespace ligature::platform {
 class FakeBus final : public CanBus {
  public:
   bool send(const can::Frame& frame) noexcept override {
-    if (lost || (refuse_at >= 0 && refuse_at-- == 0)) return false;
+    if (lost) return false;
+    const bool refused = refuse_at == 0;
+    if (refuse_at >= 0) --refuse_at;
+    if (refused) return false;
     sent.push_back(frame);
     if (on_send) on_send(frame);
     return true;

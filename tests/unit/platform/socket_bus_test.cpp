@@ -273,7 +273,8 @@ TEST(BusClaim, OneOfManyGetsIt) {
     constexpr int kTries = 8;
     std::array<pid_t, kTries> children{};
     for (pid_t& child : children) {
-      if ((child = fork()) != 0) continue;
+      child = fork();
+      if (child != 0) continue;
       close(start[1]);
       char go = 0;
       if (read(start[0], &go, 1) != 0) _exit(2);  // all processes start when the parent closes the pipe

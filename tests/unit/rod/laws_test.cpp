@@ -11,7 +11,6 @@
 namespace ligature::test {
 namespace {
 
-using physics::rod::Body;
 using physics::rod::in_cone;
 
 constexpr double kG = 9.81;

@@ -10,8 +10,6 @@
 namespace ligature::test {
 namespace {
 
-using physics::rod::kMaxHolds;
-
 constexpr double kG = 9.81;
 constexpr Parts kRolling{
     .twist = true, .contact = false, .friction = false, .world = false, .adaptive = false, .roll = true};

@@ -13,7 +13,6 @@ namespace ligature::telemetry {
 namespace {
 
 using ligature::test::told;
-using ligature::test::word;
 using ligature::test::Words;
 using ligature::test::words;
 
