@@ -11,8 +11,7 @@
 namespace ligature::scene {
 namespace {
 
-constexpr std::string_view kAsRun = "\n# as run:", kSet = "# --set ", kShape = "# shape ",
-                           kSamples = "# samples ";
+constexpr std::string_view kAsRun = "\n# as run:", kSet = "# --set ", kShape = "# shape ", kSamples = "# samples ";
 
 /// Checksum of the start shape's points; independent of the file's name and comments.
 std::uint32_t shape_of(const Scene& scene) {
