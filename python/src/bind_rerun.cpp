@@ -92,7 +92,7 @@ Rerun rerun(const std::string& path, std::vector<std::string> overrides, bool cu
 }
 
 nb::dict facts(const Rerun& r) {
-  const auto& o = *r.outcome;
+  const auto& o = r.outcome.value();
   const auto& d = o.differences;
   nb::dict all;
   all["equal"] = d.are_none();
