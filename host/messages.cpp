@@ -59,7 +59,7 @@ bool offer_fits(Bytes message) {
 template <class M>
 std::optional<M> decode_checked(Bytes message) {
   if (message.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) return std::nullopt;
-  M decoded;
+  M decoded{};
   const int size = static_cast<int>(message.size());
   if (decoded.decode(message.data(), 0, size) != size) return std::nullopt;
   return decoded;

@@ -20,7 +20,7 @@ constexpr int kLongestWait_ms = 50;
 /// @pre the array lengths in the message were checked.
 template <class Message>
 std::optional<Message> decoded(std::span<const std::byte> bytes) {
-  Message message;
+  Message message{};
   const auto size = static_cast<int>(bytes.size());
   if (message.decode(bytes.data(), 0, size) != size) return std::nullopt;
   return message;

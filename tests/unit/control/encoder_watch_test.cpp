@@ -158,9 +158,8 @@ TEST(EncoderWatch, AnEncoderThatNeverMovedIsSeenUnderTorque) {  // 0.3 of the ra
 TEST(EncoderWatch, AJointThatNobodyPushesMayRestForEver) {
   EncoderWatch w;
   for (int t = 0; t < 3000; ++t) {
-    ASSERT_EQ(w.add({0.0, 3.0 * static_cast<double>(t / 10), 0.0}, 1, kFree, {0.05 * std::sin(0.01 * t), 0.5, 0.0}),
-              Fault::kNone)
-        << t;
+    const int tens = t / 10;
+    ASSERT_EQ(w.add({0.0, 3.0 * tens, 0.0}, 1, kFree, {0.05 * std::sin(0.01 * t), 0.5, 0.0}), Fault::kNone) << t;
   }
 }
 

@@ -75,8 +75,10 @@ TEST(Extremes, CoincidentAndFoldedNodes) {
   for (const int kind : {0, 1, 2}) {
     Simulation sim = make(paper_scene());
     std::vector<Vec3> p(50, Vec3(0, 0, 5.5));
-    for (int i = 0; i < 50 && kind > 0; ++i)
-      p[static_cast<std::size_t>(i)].x() = kind == 1 ? 0.1 * (i % 2) : 0.1 * static_cast<double>(i / 2);
+    for (int i = 0; i < 50 && kind > 0; ++i) {
+      const int pair = i / 2;
+      p[static_cast<std::size_t>(i)].x() = kind == 1 ? 0.1 * (i % 2) : 0.1 * pair;
+    }
     sim.set_state(p, {});
     expect_finite_or_stopped(sim, "kind " + std::to_string(kind));
   }

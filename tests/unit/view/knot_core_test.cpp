@@ -60,8 +60,9 @@ TEST(KnotThrows, OfASumAreItsSummandsWithoutTheThreadBetweenThem) {
 Points swaying(int nodes, double sway) {
   Points points;
   for (int i = 0; i < nodes; ++i) {
-    const bool is_second = i >= nodes / 2;
-    const double t = -2.12 + 4.24 * (i % (nodes / 2)) / static_cast<double>(nodes / 2 - 1);
+    const int half = nodes / 2;
+    const bool is_second = i >= half;
+    const double t = -2.12 + 4.24 * (i % half) / (half - 1);
     const double x = 0.33 * (t * t * t - 3.0 * t), y = 0.09 * (t * t * t * t - 4.0 * t * t);
     const double z = 1.7 + 0.06 * (std::pow(t, 5) - 10.0 * t) + (is_second ? 3.5 : 0.0);
     points.push_back({x + (is_second ? 3.0 : 0.0) + sway * std::sin(5.0 * z), is_second ? 0.4 - y : y, z});
