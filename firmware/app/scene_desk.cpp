@@ -188,7 +188,9 @@ std::optional<SceneDesk::Outcome> SceneDesk::poll() {
   if (back == nullptr || !lent_) return std::nullopt;
   busy_ = false;
   const Built done = std::exchange(lent_, std::nullopt).value();
-  if (!back->taken) return answer("force may flow: disarm first, a scene is loaded in OFF or IDLE only");
+  if (!back->taken)
+    return answer(back->keeps_motion ? "the running thread has another model or number of nodes: load the scene anew"
+                                     : "force may flow: disarm first, a scene is loaded in OFF or IDLE only");
   now_ = done.setup;
   return answer(words_, Changed{now_.file, done.toml, words_, now_.scene.hands.max_force_N, now_.scene.suture.radius_m,
                                 now_.excess.empty(), done.plant->first_tick});

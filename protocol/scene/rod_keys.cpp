@@ -23,9 +23,26 @@ void apply(const RodPreset& p, RodParameters& rod, double& radius_m) {
   rod.GJ_N_m2 = rod.EI_N_m2 / (1.0 + kPoisson);
 }
 
+void read_regions(StrictTable& t, double length_m, std::vector<StiffRegion>& regions) {
+  t.tables("stiffness_profile", [&](StrictTable& one) {
+    StiffRegion region;
+    for (const char* key : {"from_m", "to_m", "EI_N_m2"}) one.require(key);
+    const double start_m = regions.empty() ? 0.0 : regions.back().to_m;
+    one.number("from_m", region.from_m, {0.0, 1e3});
+    one.number("to_m", region.to_m, {0.0, 1e3});
+    one.number("EI_N_m2", region.EI_N_m2, {1e-12, 1e6});
+    if (region.from_m < start_m) one.refuse("from_m", "the end of the region before it, or more");
+    if (!(region.to_m > region.from_m)) one.refuse("to_m", "more than from_m");
+    if (region.to_m > length_m) one.refuse("to_m", "suture.length_m or less");
+    regions.push_back(region);
+  });
+  constexpr std::size_t kMostRegions = 8;
+  if (regions.size() > kMostRegions) t.refuse("stiffness_profile", std::to_string(kMostRegions) + " regions at most");
+}
+
 }  // namespace
 
-void read_rod(StrictTable& t, RodParameters& rod, double& radius_m) {
+void read_rod(StrictTable& t, double length_m, RodParameters& rod, double& radius_m) {
   std::string preset;
   t.text("preset", preset);
   if (!preset.empty()) {
@@ -47,6 +64,7 @@ void read_rod(StrictTable& t, RodParameters& rod, double& radius_m) {
   t.number("rest_twist_per_m", rod.rest_twist_per_m, {-1e5, 1e5});
   t.number("yield_strain", rod.yield_strain, {1e-6, 1.0});
   t.number("set_fraction", rod.set_fraction, {0.0, 1.0});
+  read_regions(t, length_m, rod.stiffness_profile);
   t.number("damping_s", rod.damping_s, {0.0, 1e3});
   t.number("stretch_damping_s", rod.stretch_damping_s, {0.0, 1e3});
   t.choice("spacing", rod.spacing, kSpacings);

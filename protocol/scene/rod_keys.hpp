@@ -33,8 +33,9 @@ inline constexpr RodPreset kRodPresets[] = {
     {"polyglactin-4-0", 0.175e-3, 1400.0, 9.32e9, 0.1}, {"polyglactin-5-0", 0.125e-3, 1400.0, 9.32e9, 0.1}};
 
 /// Reads the rod's keys of [suture]: `preset` first, then keys that override its values.
+/// @param length_m of the thread; no region of the stiffness profile may end beyond it
 /// @param radius_m set by a preset; a `radius_m` in the file is read later and replaces it
-void read_rod(StrictTable& t, RodParameters& rod, double& radius_m);
+void read_rod(StrictTable& t, double length_m, RodParameters& rod, double& radius_m);
 
 /// Reads world.pegs.
 void read_pegs(StrictTable& t, World& world);

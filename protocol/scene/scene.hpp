@@ -50,6 +50,12 @@ enum class Spacing : std::uint8_t { kUniform, kAdaptive };
 enum class Accuracy : std::uint8_t { kFast, kBalanced, kFine };
 
 /// Properties of a rod; suture.model = "rod". The keys of [suture] have these names; `preset` sets several of them.
+/// A part of the thread with a bending stiffness of its own.
+struct StiffRegion {
+  double from_m = 0.0, to_m = 0.0;  ///< distance along the thread from node 0
+  double EI_N_m2 = 0.0;
+};
+
 struct RodParameters {
   double density_kg_per_m = 8e-5;
   double EA_N = 71.0;                 ///< axial stiffness
@@ -60,9 +66,10 @@ struct RodParameters {
   double rest_twist_per_m = 0.0;
   std::optional<double> yield_strain;  ///< strain of the outer fibre above which bending is plastic; absent: never
   double set_fraction = 0.5;           ///< fraction of the bending stiffness that yields above yield_strain
-  double damping_s = 2e-3;             ///< Kelvin-Voigt time constant of bending
-  double stretch_damping_s = 5e-4;     ///< Kelvin-Voigt time constant of stretching
-  double air_drag_per_s = 5.0;         ///< acceleration -c v
+  std::vector<StiffRegion> stiffness_profile;  ///< where the bending stiffness is not EI_N_m2; in order, no overlap
+  double damping_s = 2e-3;                     ///< Kelvin-Voigt time constant of bending
+  double stretch_damping_s = 5e-4;             ///< Kelvin-Voigt time constant of stretching
+  double air_drag_per_s = 5.0;                 ///< acceleration -c v
   Spacing spacing = Spacing::kAdaptive;
   Accuracy accuracy = Accuracy::kBalanced;
   /// Contact budget per tick, in instructions; 0: by `accuracy`, or what the machine can afford

@@ -83,7 +83,7 @@ void read_suture(StrictTable& t, const fs::path& folder, Suture& s) {
   t.integer("nodes", s.nodes, 2, 5000);
   t.number("length_m", s.length_m, {1e-3, 1e3});
   const bool is_rod = s.model == Model::kRod;
-  t.keys_of(is_rod, kOfTheRod, [&] { read_rod(t, s.rod, s.radius_m); });
+  t.keys_of(is_rod, kOfTheRod, [&] { read_rod(t, s.length_m, s.rod, s.radius_m); });
   t.keys_of(!is_rod, kOfThePaper, [&] { read_paper(t, s.paper); });
   t.number("radius_m", s.radius_m, {1e-6, 100.0});
   t.text("initial", s.initial);

@@ -10,7 +10,7 @@ namespace {
 
 Vec vec(const scene::Vec& a) noexcept { return make(a[0], a[1], a[2]); }
 
-Material material_of(const scene::Scene& scene) noexcept {
+Material material_of(const scene::Scene& scene) {
   const auto& r = scene.suture.rod;
   Material m;
   m.length_m = scene.suture.length_m;
@@ -28,6 +28,7 @@ Material material_of(const scene::Scene& scene) noexcept {
   m.born_twist_per_m = r.rest_twist_per_m;
   m.yield_curvature_per_m = r.yield_strain.value_or(0.0) / m.radius_m;  // strain at the surface = radius x curvature
   m.set_fraction = r.set_fraction;
+  for (const auto& region : r.stiffness_profile) m.regions.push_back({region.from_m, region.to_m, region.EI_N_m2});
   return m;
 }
 

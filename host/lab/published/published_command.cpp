@@ -38,7 +38,8 @@ Cases
 )";
 
 constexpr const char* kExamples = R"(
-Exit: 0 every judged figure is within its tolerance; 2 usage; 3 a case misses, or was interrupted.
+Exit: 0 every judged figure is within its tolerance; 2 usage; 3 a case misses; 130 interrupted: the
+cases before are printed and written.
 
 Examples
   ligature-lab published                                  all cases, at balanced and at fine
@@ -87,12 +88,43 @@ std::vector<const p::Case*> chosen(const std::vector<std::string>& names) {
 p::Outcome measure(const p::Case& c, const p::Setting& setting, bool quick) {
   const auto ticks = validate::ticks_done;
   const double begun_us = thread_cpu_us();
-  try {
-    auto result = c.measure({setting.accuracy, quick, setting.work});
-    return {&c, setting.name, std::move(result), validate::ticks_done - ticks, thread_cpu_us() - begun_us};
-  } catch (const validate::Interrupted&) {
-    throw Refusal("published: interrupted in " + std::string(c.name) + ", nothing written", kRunFailed);
+  auto result = c.measure({setting.accuracy, quick, setting.work});
+  return {&c, setting.name, std::move(result), validate::ticks_done - ticks, thread_cpu_us() - begun_us};
+}
+
+/// Measures each case at each setting, and prints a line after each.
+/// @return the case that was interrupted, or an empty text. `outcomes` has what was measured before.
+std::string measure_all(const std::vector<const p::Case*>& cases, const std::vector<p::Setting>& settings, bool quick,
+                        std::vector<p::Outcome>& outcomes) {
+  const auto start = console::Progress::Clock::now();
+  const auto whole = static_cast<double>(cases.size() * settings.size());
+  for (const auto* c : cases) {
+    for (const auto& setting : settings) {
+      const std::string step = std::string(c->name) + ", " + setting.name;
+      try {
+        console::Progress progress("published", start);  // its end erases its line, before the next line is printed
+        progress.show(static_cast<double>(outcomes.size()) / whole, step);
+        outcomes.push_back(measure(*c, setting, quick));
+      } catch (const validate::Interrupted&) {
+        return step;
+      }
+      std::printf("%s: %d judged, %d missed\n", step.c_str(), outcomes.back().judged(), outcomes.back().missed());
+      std::fflush(stdout);
+    }
   }
+  return {};
+}
+
+void print_table(const std::vector<p::Outcome>& outcomes) {
+  Table table({"case", "setting", "figure", "expected", "measured", "tolerance", "verdict", "source"});
+  for (const auto& o : outcomes) {
+    for (const auto& f : o.result.findings) {
+      table.row({std::string(o.examined->name), o.setting, f.what, value_or_dash(f.reference),
+                 value_or_dash(f.measured), tolerance_text(f), std::string(verdict_of(f)),
+                 std::string(o.examined->source)});
+    }
+  }
+  table.print();
 }
 
 void write_files(const std::filesystem::path& out, const std::vector<p::Outcome>& outcomes) {
@@ -126,25 +158,11 @@ int execute(const Arguments& a) {
   if (!a.out.empty()) make_folder(a.out);
   validate::stop_asked = console::stop_requested;
   std::vector<p::Outcome> outcomes;
-  Table table({"case", "setting", "figure", "expected", "measured", "tolerance", "verdict", "source"});
+  const std::string interrupted = measure_all(cases, settings, a.quick, outcomes);
+  if (outcomes.empty()) throw Refusal("published: interrupted in " + interrupted + ", nothing measured", kInterrupted);
   int judged = 0, missed = 0;
-  {
-    console::Progress progress("published");
-    double done = 0.0;
-    for (const auto* c : cases) {
-      for (const auto& setting : settings) {
-        progress.show(done++ / static_cast<double>(cases.size() * settings.size()),
-                      std::string(c->name) + ", " + setting.name);
-        outcomes.push_back(measure(*c, setting, a.quick));
-        judged += outcomes.back().judged(), missed += outcomes.back().missed();
-        for (const auto& f : outcomes.back().result.findings) {
-          table.row({std::string(c->name), setting.name, f.what, value_or_dash(f.reference), value_or_dash(f.measured),
-                     tolerance_text(f), std::string(verdict_of(f)), std::string(c->source)});
-        }
-      }
-    }
-  }
-  table.print();
+  for (const auto& o : outcomes) judged += o.judged(), missed += o.missed();
+  print_table(outcomes);
   const auto rows = p::front_of(outcomes);
   p::print_front(rows);
   if (settings.size() > 1) p::print_overall(p::over_all_cases(rows));
@@ -152,8 +170,14 @@ int execute(const Arguments& a) {
   if (!a.out.empty()) {
     write_files(a.out, outcomes);
     p::write_front(a.out, rows);
-    for (const auto* c : cases) draw_case(a.out, *c, outcomes);
+    for (const auto* c : cases)
+      if (std::ranges::any_of(outcomes, [c](const p::Outcome& o) { return o.examined == c; }))
+        draw_case(a.out, *c, outcomes);
     std::printf("table %s/published.csv\n", a.out.c_str());
+  }
+  if (!interrupted.empty()) {
+    std::fprintf(stderr, "published: interrupted in %s; what was measured before is above\n", interrupted.c_str());
+    return kInterrupted;
   }
   return missed == 0 ? kDone : kRunFailed;
 }

@@ -144,6 +144,20 @@ def interrupted_run(folder):
     assert json.loads((folder / "summary.json").read_text())["interrupted"]
 
 
+def interrupted_published(folder):
+    """The cases before the interruption are printed and written."""
+    with subprocess.Popen([LAB, "published", "helices", "cyclic", "--settings", "balanced", "--out", folder], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True) as published:
+        first = published.stdout.readline()
+        published.send_signal(signal.SIGINT)
+        out, complaint = published.communicate(timeout=100)
+    assert published.returncode == 130, (published.returncode, out, complaint)
+    assert first.startswith("helices, balanced: "), first
+    assert complaint == "published: interrupted in cyclic, balanced; what was measured before is above\n", complaint
+    assert {row["case"] for row in csv.DictReader((folder / "published.csv").open())} == {"helices"}
+    assert (folder / "helices.csv").exists() and not (folder / "cyclic.csv").exists()
+
+
 def recordings(folder):
     """A recording of an earlier call is replaced only with --force; without it the program refuses before it runs
     anything."""
@@ -200,5 +214,7 @@ with tempfile.TemporaryDirectory() as name:
 interruption()
 with tempfile.TemporaryDirectory() as name:
     interrupted_run(pathlib.Path(name))
+with tempfile.TemporaryDirectory() as name:
+    interrupted_published(pathlib.Path(name))
 teaching()
 print("ligature-lab: command line behaves")

@@ -103,6 +103,13 @@ TEST(SceneFile, EveryRefusalIsOneLineWithItsLineNumber) {
       {"[suture]\nmodel = \"rod\"\nrest_curvature_per_m = -1\n", 3, "suture.rest_curvature_per_m"},
       {"[suture]\nmodel = \"rod\"\nyield_strain = 0\n", 3, "suture.yield_strain"},
       {"[suture]\nmodel = \"rod\"\nset_fraction = 1.5\n", 3, "suture.set_fraction"},
+      {"[suture]\nmodel = \"rod\"\nstiffness_profile = 3\n", 3, "suture.stiffness_profile"},
+      {"[suture]\nmodel = \"rod\"\nstiffness_profile = [{from_m = 0, to_m = 1}]\n", 3, "EI_N_m2"},
+      {"[suture]\nmodel = \"rod\"\nstiffness_profile = [{from_m = 1, to_m = 1, EI_N_m2 = 1}]\n", 3, "[0].to_m"},
+      {"[suture]\nmodel = \"rod\"\nstiffness_profile = [{from_m = 0, to_m = 6, EI_N_m2 = 1}]\n", 3, "[0].to_m"},
+      {"[suture]\nmodel = \"rod\"\nstiffness_profile = [{from_m = 0, to_m = 2, EI_N_m2 = 1}, {from_m = 1, to_m = 3, "
+       "EI_N_m2 = 1}]\n",
+       3, "[1].from_m"},
       {"[time]\ntick_s = 0\n", 2, "time.tick_s"},
       {"[time\ntick_s = 0\n", 1, "TOML"},
       {"[time]\ntick_s = 0.001\ntick_s = 0.002\n", 3, "TOML"},
@@ -122,7 +129,7 @@ TEST(SceneFile, AKeyOfAnotherModelIsRefused) {
     bool of_rod;
   } kTables[] = {
       {"suture", "density_kg_per_m EA_N EI_N_m2 GJ_N_m2 rest_curvature_per_m rest_twist_per_m damping_s", true},
-      {"suture", "preset yield_strain set_fraction stretch_damping_s spacing accuracy", true},
+      {"suture", "preset yield_strain set_fraction stiffness_profile stretch_damping_s spacing accuracy", true},
       {"suture", "node_mass_kg stretch_N stretch_damping bend bend_damping swivel_damping", false},
       {"suture", "reference_nodes damping integrator swivel quadratic_stretch", false},
       {"contact", "turns_thread", true},

@@ -277,7 +277,16 @@ TEST(ScenePage, HasEveryRuleBetweenKeys) {
   for (int i = 0; i <= 100; ++i) pegs += "{from_m = [0, 0, 0], to_m = [0, 0, 0], radius_m = 1},";
   const std::string fixed = "[suture]\n[world]\nfixed = [{node = 1, position_m = [0, 0, 0]";
   const std::string paper = "[suture]\n[contact]\nsolver = \"paper\"\n[world]\n";
+  const std::string rod = "[suture]\nmodel = \"rod\"\nlength_m = 5\nstiffness_profile = [";
+  std::string regions = rod;
+  for (int i = 0; i <= 8; ++i)
+    regions += "{from_m = 0." + std::to_string(i) + ", to_m = 0." + std::to_string(i) + "5, EI_N_m2 = 1},";
   const std::vector<Broken> broken{
+      {"suture.stiffness_profile", regions + "]\n"},
+      {"suture.stiffness_profile[].from_m",
+       rod + "{from_m = 1, to_m = 2, EI_N_m2 = 1}, {from_m = 1, to_m = 2, EI_N_m2 = 1}]\n"},
+      {"suture.stiffness_profile[].to_m", rod + "{from_m = 1, to_m = 1, EI_N_m2 = 1}]\n"},
+      {"suture.stiffness_profile[].to_m", rod + "{from_m = 1, to_m = 6, EI_N_m2 = 1}]\n"},
       {"contact.static_friction", "[suture]\n[contact]\nfriction = 0.3\nstatic_friction = 0.2\n"},
       {"world.fixed[].direction", fixed + ", direction = [0, 0, 0]}]\n"},
       {"world.fixed[].node", fixed + "}, {node = 1, position_m = [0, 0, 0]}]\n"},

@@ -78,7 +78,8 @@ class ContactWork {
     double gap_m, a, b;      ///< gap by which it is ordered; material coordinates of its points, m
     bool loaded;             ///< carried an impulse in the last substep
   };
-  /// A near pair that is no contact in this substep; of all later steps of the substep only the guard looks at it.
+  /// A near pair that is no contact in this substep. After this only the guard reads it (guard.cpp): it checks that the
+  /// pair does not cross within the substep.
   struct Watched {
     std::int32_t a, b;
     double distance_m;
@@ -209,7 +210,8 @@ class ContactSet : public ContactMemory, public ContactWork {
   void forget_matrix() noexcept { newton_.forget(); }
 
   /// Solves for the velocities v of the window's nodes by sweeps. Turns: friction also rolls the segments.
-  /// @pre rows() > 0; the window contains the solver's two core nodes, and `metric` covers the window.
+  /// @pre rows() > 0; the window contains the solver's two core nodes; `metric` was computed for all nodes of the
+  /// window.
   /// @return false if the time was over before the first pass; then nothing is solved.
   template <bool Friction, bool Turns>
   [[nodiscard]] bool settle(BandSolver& solver, const ContactMetric& metric, const Effort& effort, Vec* v,

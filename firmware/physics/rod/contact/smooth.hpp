@@ -20,8 +20,9 @@ namespace ligature::physics::rod {
 ///
 /// The corner at node i is a parabola from x_i - h' e_{i-1} to x_i + h e_i, so in general
 ///   k_i = 2 (h e_i - h' e_{i-1}).
-/// When a segment is split, doubling the h of its halves keeps the curve unchanged; h then fades back to 1/2
-/// (State::cut_before, cut_after; refine.hpp). P is linear in the nodes, so an impulse at P acts on each node with that
+/// When a segment is split into halves, the same length of it is twice as large a fraction of a half. So their h at the
+/// old nodes is doubled, and the curve stays unchanged; h then fades back to 1/2 (State::cut_before, cut_after;
+/// refine.hpp). P is linear in the nodes, so an impulse at P acts on each node with that
 /// node's weight in P. Vector and Number are Vec and double for one segment, Vecs and Lanes for four.
 template <class Vector, class Number>
 struct SmoothOf {

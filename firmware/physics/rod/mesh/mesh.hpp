@@ -22,11 +22,13 @@ enum class Clamp : std::uint8_t { kFree, kClamped };
 /// weight 2 EI / l, with the clamp's direction as the missing tangent. The error is second order in l for smooth
 /// shapes. In a fold the energy is limited to 2 EI / l, so a knot needs l <= diameter.
 struct Mesh {
-  std::vector<double> s;           ///< n material coordinates, m, from 0 to the length
-  std::vector<double> rest;        ///< n - 1 rest lengths (sized n; the last is 0)
-  std::vector<double> inv_rest;    ///< 1 / rest
-  std::vector<double> mass;        ///< n lumped masses, kg
-  std::vector<double> weight;      ///< w_i of vertex i; 0 at free ends
+  std::vector<double> s;         ///< n material coordinates, m, from 0 to the length
+  std::vector<double> rest;      ///< n - 1 rest lengths (sized n; the last is 0)
+  std::vector<double> inv_rest;  ///< 1 / rest
+  std::vector<double> mass;      ///< n lumped masses, kg
+  std::vector<double> weight;    ///< w_i of vertex i; 0 at free ends
+  /// Bending stiffness of the halves of the segments before and after node i, N m^2: harmonic mean over the half
+  std::vector<double> EI_before, EI_after;
   std::vector<double> kd, ke, kb;  ///< K_b(i, i), (i, i+1), (i, i+2)
   std::vector<Clamp> clamp;        ///< of node i; a clamped inner node has half vertices on both sides
 
@@ -35,7 +37,7 @@ struct Mesh {
 
   /// Computes all other members from `s` and `clamp`. O(n), no allocation.
   void rebuild(const Material& material) noexcept;
-  LIGATURE_MEMBERS(Mesh, s, rest, inv_rest, mass, weight, kd, ke, kb, clamp)
+  LIGATURE_MEMBERS(Mesh, s, rest, inv_rest, mass, weight, EI_before, EI_after, kd, ke, kb, clamp)
 };
 
 }  // namespace ligature::physics::rod

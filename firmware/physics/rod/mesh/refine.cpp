@@ -96,8 +96,7 @@ bool Refine::start(const Material& material, double wanted_m, State& state, std:
   return true;
 }
 
-void Refine::want(const Material& material, const State& state, const Forces& forces,
-                  const ContactSet& contacts) noexcept {
+void Refine::want(const State& state, const Forces& forces, const ContactSet& contacts) noexcept {
   const Mesh& mesh = state.mesh;
   const std::size_t n = mesh.s.size();
   const double coarsest = unit_m_ * (1 << kLevels);
@@ -122,7 +121,7 @@ void Refine::want(const Material& material, const State& state, const Forces& fo
     for (int k = 0; k < std::min(c.count, 4); k += 2) {
       const auto j = std::min(static_cast<std::size_t>(c.node[k]), n - 2);
       const double pull = std::max({force, forces.tension[j], 1e-9});
-      wanted_[j] = std::min(wanted_[j], tuning.bend_length * std::sqrt(material.EI_N_m2 / pull));
+      wanted_[j] = std::min(wanted_[j], tuning.bend_length * std::sqrt(mesh.EI_after[j] / pull));
     }
   }
   grade(mesh);
@@ -292,7 +291,7 @@ void Refine::fade_offsets(State& state) const noexcept {
 
 bool Refine::update(const Material& material, State& state, const Forces& forces, ContactSet& contacts,
                     const std::vector<Body>& bodies, Work& work) noexcept {
-  want(material, state, forces, contacts);
+  want(state, forces, contacts);
   const std::size_t n = at_.size();
   bool changed = false;
   const long price_of_one = price::kChangePerNode * static_cast<long>(n);

@@ -61,7 +61,7 @@ class Refine {
   LIGATURE_MEMBERS(Refine, unit_m, at, wanted, free, moment, fade, strain_fade, tension)
 
  private:
-  void want(const Material& material, const State& state, const Forces& forces, const ContactSet& contacts) noexcept;
+  void want(const State& state, const Forces& forces, const ContactSet& contacts) noexcept;
   void grade(const Mesh& mesh) noexcept;
   void want_at_rest(const State& state, const ContactSet& contacts) noexcept;
   [[nodiscard]] int worst_segment() const noexcept;

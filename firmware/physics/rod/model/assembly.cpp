@@ -57,7 +57,7 @@ void half_twists(Forces& f, std::size_t n) noexcept {
 // twisting moment times the curvature binormal. The transverse force of a segment is the difference of these sums at
 // its two ends, divided by its length.
 template <bool Twist>
-void vertices(const Material& m, const State& state, Forces& f) noexcept {
+void vertices(const State& state, Forces& f) noexcept {
   const Mesh& mesh = state.mesh;
   const std::size_t n = mesh.s.size();
   f.moment_in[0] = f.moment_out[0] = f.moment_in[n - 1] = f.moment_out[n - 1] = Vec{};
@@ -77,12 +77,12 @@ void vertices(const Material& m, const State& state, Forces& f) noexcept {
     const auto i = static_cast<std::size_t>(hold.node);
     const Vec d = hold.direction;
     if (i > 0) {
-      f.moment_in[i] = 2.0 * m.EI_N_m2 * mesh.inv_rest[i - 1] * (d - f.tangent[i - 1]);
+      f.moment_in[i] = 2.0 * mesh.EI_before[i] * mesh.inv_rest[i - 1] * (d - f.tangent[i - 1]);
       if (Twist && i + 1 == n)
         f.moment_in[i] -= 0.5 * f.shortening[i - 1] * f.twist_moment[i] * binormal(f.unit[i - 1], d);
     }
     if (i + 1 < n) {
-      f.moment_out[i] = 2.0 * m.EI_N_m2 * mesh.inv_rest[i] * (f.tangent[i] - d);
+      f.moment_out[i] = 2.0 * mesh.EI_after[i] * mesh.inv_rest[i] * (f.tangent[i] - d);
       if (Twist && i == 0) f.moment_out[i] += 0.5 * f.shortening[i] * f.twist_moment[i] * binormal(d, f.unit[i]);
     }
   }
@@ -112,7 +112,7 @@ void assemble(const Material& material, const State& state, Vec gravity, double 
   const Mesh& mesh = state.mesh;
   const std::size_t n = mesh.s.size();
   measure(material, state, forces);
-  vertices<Twist>(material, state, forces);
+  vertices<Twist>(state, forces);
   const double bend = dt_s * (dt_s + material.bend_tau_s),
                axial = dt_s * (dt_s + material.stretch_tau_s) * material.EA_N;
   const double inertia = 1.0 + material.drag_per_s * dt_s;
@@ -167,12 +167,12 @@ Energy energy(const Material& material, const State& state, Vec gravity) noexcep
     const Hold& hold = state.holds[static_cast<std::size_t>(h)];
     if (hold.node < 0 || !hold.directed) continue;
     const auto i = static_cast<std::size_t>(hold.node);
-    const auto half = [&](std::size_t j) {
+    const auto half = [&](std::size_t j, double EI_N_m2) {
       const Vec q = mesh.inv_rest[j] * (state.x[j + 1] - state.x[j]) - hold.direction;
-      e.bend_J += material.EI_N_m2 * mesh.inv_rest[j] * dot(q, q);
+      e.bend_J += EI_N_m2 * mesh.inv_rest[j] * dot(q, q);
     };
-    if (i > 0) half(i - 1);
-    if (i + 1 < mesh.s.size()) half(i);
+    if (i > 0) half(i - 1, mesh.EI_before[i]);
+    if (i + 1 < mesh.s.size()) half(i, mesh.EI_after[i]);
   }
   return e;
 }

@@ -1,10 +1,19 @@
 #pragma once
 // Material of a rod, and settings of its time integration and contact solver. SI units.
 
+#include <vector>
+
 #include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
+
+/// A part of the thread with a bending stiffness of its own, for example a swaged end.
+struct StiffRegion {
+  double from_m, to_m;  ///< material coordinates
+  double EI_N_m2;
+  LIGATURE_MEMBERS(StiffRegion, from_m, to_m, EI_N_m2)
+};
 
 /// A round, isotropic rod. Constant during a run.
 struct Material {
@@ -23,13 +32,14 @@ struct Material {
   double born_twist_per_m = 0.0;       ///< twist of the stress-free thread, rad/m
   double yield_curvature_per_m = 0.0;  ///< 2 x yield strain / diameter: sharper bends set (spin_set.cpp); 0: off
   double set_fraction = 0.0;           ///< share of the bending stiffness that yields beyond this curvature
+  std::vector<StiffRegion> regions;    ///< where the bending stiffness is not EI_N_m2; in order, without overlap
 
   [[nodiscard]] constexpr bool sets() const noexcept { return yield_curvature_per_m > 0.0 && set_fraction > 0.0; }
   /// Is there a stress-free shape that is not straight?
   [[nodiscard]] constexpr bool has_shape() const noexcept { return born_curvature_per_m != 0.0 || sets(); }
   LIGATURE_MEMBERS(Material, length_m, radius_m, density_kg_per_m, EA_N, EI_N_m2, GJ_N_m2, stretch_tau_s, bend_tau_s,
                    drag_per_s, friction, static_friction, born_curvature_per_m, born_twist_per_m, yield_curvature_per_m,
-                   set_fraction)
+                   set_fraction, regions)
 };
 
 /// Time steps, tolerances and work limits. Each field is a compromise between computing time and accuracy
