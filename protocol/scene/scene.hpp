@@ -49,13 +49,13 @@ struct PaperParameters {
 enum class Spacing : std::uint8_t { kUniform, kAdaptive };
 enum class Accuracy : std::uint8_t { kFast, kBalanced, kFine };
 
-/// Properties of a rod; suture.model = "rod". The keys of [suture] have these names; `preset` sets several of them.
 /// A part of the thread with a bending stiffness of its own.
 struct StiffRegion {
   double from_m = 0.0, to_m = 0.0;  ///< distance along the thread from node 0
   double EI_N_m2 = 0.0;
 };
 
+/// Properties of a rod; suture.model = "rod". The keys of [suture] have these names; `preset` sets several of them.
 struct RodParameters {
   double density_kg_per_m = 8e-5;
   double EA_N = 71.0;                 ///< axial stiffness

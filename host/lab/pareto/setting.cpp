@@ -32,6 +32,7 @@ Setting setting_of(const std::string& text) {
   std::istringstream in(text);
   std::vector<std::string> words;
   for (std::string word; std::getline(in, word, '/');) words.push_back(word);
+  const Refusal refused("--one: found " + text + ", allowed MODEL/NODES/SUBSTEPS/PASSES or rod/NODES/PRESET");
   Setting s;
   bool known = false;
   for (const Model m : {kPaper[0], kPaper[1], kPaper[2], kPaper[3], kPaper[4], Model::kRod}) {
@@ -50,10 +51,10 @@ Setting setting_of(const std::string& text) {
       s.passes = std::stoi(words[3]);
       return s;
     }
-  } catch (const std::logic_error&) {
-    known = false;  // no number where one should be: refused below
+  } catch (const std::logic_error&) {  // no number where one should be
+    throw refused;
   }
-  throw Refusal("--one: found " + text + ", allowed MODEL/NODES/SUBSTEPS/PASSES or rod/NODES/PRESET");
+  throw refused;
 }
 
 Setting finest(Model model) {
