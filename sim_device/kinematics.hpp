@@ -60,8 +60,8 @@ class Linkage {
     return jacobian;
   }
 
-  /// Joint angles of a tip position (serial: the only solution has the elbow up); nothing if it is out of reach. Joint
-  /// stops are not checked.
+  /// Joint coordinates of a tip position, of a serial arm those with the elbow up; nothing if the position is out of
+  /// reach. Joint stops are not checked.
   [[nodiscard]] std::optional<Vec3> joints(const Vec3& p_DT) const noexcept {
     if (!is_serial()) return (p_DT - home_m_).cwiseQuotient(links_m_);
     const double l1 = links_m_[0], l2 = links_m_[1];

@@ -12,7 +12,7 @@ namespace ligature::control {
 class Engagement {
  public:
   static constexpr int kCalmTicks = 20;
-  /// Speed of the device's tip; the velocity estimate has 0.003 m/s of noise
+  /// Below this speed of the device's tip the hand counts as still; the velocity estimate has 0.003 m/s of noise
   static constexpr double kStill_m_per_s = 0.05;
   static constexpr double kSmallForce_N = 0.5;  ///< force that the hand would get at gain 1; 15 % of the peak
   static constexpr int kRiseTicks = 500;

@@ -35,8 +35,9 @@ class TimeLeft {
 };
 
 /// Queries the clock between pieces of a tick's work: is there time for another piece? After the first "no" the answer
-/// stays "no". Time influences a tick only through these answers, and the queries depend only on the state of the
-/// thread. So a tick can be reproduced bit for bit from its tools and the number of the first query answered "no".
+/// stays "no". Time influences a tick only through these answers, and where a tick queries depends only on the state of
+/// the thread. So a tick can be reproduced bit for bit from the state at its start, its tools, and the number of the
+/// first query that was answered "no".
 ///
 /// A piece is begun only if the time left covers two measured durations: that of the longest recent piece, and that of
 /// the work after the last query of a tick. These measured values decay from tick to tick and are at most piece_ns, so

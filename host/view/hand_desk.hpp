@@ -23,9 +23,9 @@ inline constexpr std::string_view kHandStateChannel = "LIGATURE_HAND_STATE";
 [[nodiscard]] std::optional<ligature_msg::hand_state_t> hand_state_of(Bytes message);
 
 /// Passes on the positions to which a page moves a simulated hand (its "wishes"). A hand belongs to one page at a time.
-/// The simulated device decides to which page, also among those of several view programs: it obeys the first sender
-/// (protocol/lcm/hand_wish_t.lcm). Wishes are never repeated: when the page stops sending, so does this class, and the
-/// device lets go.
+/// The simulated device decides which page that is, even if the pages belong to several view programs: it obeys the
+/// first sender (protocol/lcm/hand_wish_t.lcm). Wishes are never repeated: when the page stops sending, so does this
+/// class, and the device lets go.
 class HandDesk {
  public:
   using Clock = std::chrono::steady_clock;

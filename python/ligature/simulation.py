@@ -40,7 +40,7 @@ class Run:
 
     @property
     def left_N(self) -> np.ndarray:
-        """ticks x 3, N: force on the left hand in the thread's world, before force_scale and a device's limits."""
+        """ticks x 3, N: force of the thread on the left hand, in world axes; not yet scaled by force_scale or limited."""
         return self.trace[:, 1:4]
 
     @property

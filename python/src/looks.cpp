@@ -105,8 +105,10 @@ void bind_looks(nb::module_& module) {
               "Work on contact in this tick, in instructions (sum of prices); 0 for models without a limit.")
       .def_ro("finite", &Diagnostics::finite,
               "False if a value was not finite: the state stays the last finite one, with open hands and no force.")
-      .def_ro("bad_node", &Diagnostics::bad_node,
-              "First node whose position was not a finite number; -1 if none, or if a tool was the cause.")
+      .def_ro(
+          "bad_node", &Diagnostics::bad_node,
+          "Index of the first node whose position was not a finite number. -1 if there was none, or if a value of a "
+          "tool was not finite.")
       .def_ro("bad_tick", &Diagnostics::bad_tick, "Tick in which that happened; -1 if it did not.");
 }
 

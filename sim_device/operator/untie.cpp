@@ -11,7 +11,7 @@ namespace ligature::sim {
 namespace {
 
 const Vec3 kEye = Vec3(0.0, -1.0, 1.0);  // from above and in front: sees a hanging thread, and one on a desk
-// Where the hand takes the thread in each of three tries: so many diameters inside the end of the knot
+// Where the hand takes the thread in each of three tries: distance from the end of the knot inwards, in diameters
 constexpr std::array kInside_d{1.0, 3.0, 5.0};
 constexpr double kDrawn = 0.36;  // how far the hand draws, as a fraction of the thread's length
 // Pull at which the hand stops, because the knot has jammed; as a multiple of the pull at which a knot is tight

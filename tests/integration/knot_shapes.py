@@ -122,7 +122,8 @@ def disguised(points, rng, moves, reach):
         to = b + reach * rng.normal(size=3)
         keep = [k for k in range(n) if k not in ((i - 1) % n, i)]
         starts, ends = p[keep], p[[(k + 1) % n for k in keep]]
-        # The neighbours of the moved edges share a corner with a triangle; the rest of them must not intersect it.
+        # An edge beside a moved one shares a corner with a triangle. Apart from this corner it must not intersect it, so
+        # all edges are tested a little shortened.
         starts, ends = starts + 1e-6 * (ends - starts), ends + 1e-6 * (starts - ends)
         if pierced(a, b, to, starts, ends) or pierced(b, c, to, starts, ends):
             continue

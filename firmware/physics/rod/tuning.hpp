@@ -118,8 +118,8 @@ struct Tuning {
   /// Wanted length of segments at a contact, in units of sqrt(EI / T) (EI bending stiffness, T tension), and how much
   /// the wanted length grows per length along the thread. Test: FineZone.*
   double bend_length = 0.4, grading = 0.2;
-  /// Offsets that remeshing leaves: factor on them per tick where the thread is at rest; motion in a tick, in mesh
-  /// units, at which they fade to 1/e. Test: FineZone.MovesWithoutAForceStep
+  /// Offsets that remeshing leaves (refine.hpp) shrink in each tick by the factor fade exp(-(m / away)^2), where m is
+  /// the motion of the node in the tick, in lengths of the shortest segment. Test: FineZone.MovesWithoutAForceStep
   double fade = 0.8, away = 0.5;
   /// Share of the energy that a tick has dissipated which this fading may give back to a thread that is alone
   /// (glossary). Energy rose in 6 of 12 releases of two throws with 1, in 2 with 1/2. Test: Energy.NeverRises*

@@ -6,7 +6,7 @@
     observation, info = env.reset(seed=1)
     observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
 
-Observations, actions and rewards: docs/python.md and the classes' texts. Needs the extra `gym`: `pip install .[gym]`.
+docs/python.md and the classes' docstrings describe observations, actions and rewards. Needs the extra `gym`: `pip install .[gym]`.
 """
 
 try:

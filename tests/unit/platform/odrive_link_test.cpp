@@ -193,7 +193,8 @@ TEST_F(Odrive, ADrivesErrorAndItsSilenceAreFaults) {
   EXPECT_TRUE(period().drive_fault) << "until a restart";
 }
 
-/// Any frame may feed a drive's watchdog, also a request. A drive that does not obey must starve.
+/// Any frame may reset a drive's watchdog, even a request. So the link sends nothing more to a drive that does not
+/// obey, and the drive's watchdog switches it off.
 TEST_F(Odrive, SwitchesOffWithZeroTorqueThenIdleThenNothing) {
   beat_all(kOn);
   for (int i = 0; i < 100; ++i) {

@@ -164,9 +164,9 @@ class ContactSet : public ContactMemory, public ContactWork {
   /// Collects the contacts between nodes and the plane z = floor_m whose gap is below look_m.
   void collect_floor(const State& state, double floor_m, double radius_m, double look_m, double mu,
                      Work& work) noexcept;
-  /// Collects the contacts between segments and a capsule whose gap is below look_m. Skips the capsule while no node
-  /// can have reached it, although nodes may have moved by travel_m in this tick. `Drum`: adds the motion of a surface
-  /// that turns (Body::spin).
+  /// Collects the contacts between segments and a capsule whose gap is below look_m. Skips the capsule as
+  /// long as no node can have reached it, even if every node has moved by travel_m in this tick. `Drum`: adds the
+  /// motion of a surface that turns (Body::spin).
   template <bool Drum>
   void collect_body(const State& state, const Body& body, int index, double radius_m, double look_m, double travel_m,
                     Work& work) noexcept;

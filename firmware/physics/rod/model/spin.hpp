@@ -105,8 +105,8 @@ class Spin {
   std::vector<double> rate_, rolled_;  // w_j, rad/s; angle turned since the tick began, rad
   std::vector<double> middle_m_;       // material coordinates of the segments' midpoints when director_ was set
   // Twist angles at vertex i, rad. Without a hold, before_ is the angle m_i between the directors of its two segments.
-  // With a hold, before_ is the angle from the segment before to the hold's director, after_ that from it to the
-  // segment after
+  // With a hold, before_ is the angle from the director of the preceding segment to that of the hold, and after_ the
+  // angle from the director of the hold to that of the following segment
   std::vector<double> before_, after_;
   std::vector<double> drift_before_, drift_after_;  // rates of these angles by the hold's rotation, rad/s
   std::vector<char> held_, was_held_;
