@@ -38,7 +38,7 @@ class Live:
             buses = [f"local:{self._path / side}" for side in SIDES]
             for index, side in enumerate(SIDES):
                 fault = ["--faults", self._faults[index]] if index in self._faults else []
-                self._run(side, "device", "--hand", side, "--bus", buses[index], *scene, "--operator", "page", *fault)
+                self._run(side, "device", "--hand", side, "--bus", buses[index], *scene, "--operator", "page", "--rt", *fault)
             self._run("firmware", "firmware", "run", *scene, "--left", buses[0], "--right", buses[1], "--recorder",
                       str(self._path / "flight.rec"), *firmware_options())
             self._wait_for_hands()
