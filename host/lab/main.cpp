@@ -18,6 +18,7 @@
 #include "host/lab/study_command.hpp"
 #include "host/lab/tie/play_command.hpp"
 #include "host/lab/tie/tie_command.hpp"
+#include "host/lab/validate/proceed.hpp"
 #include "host/lab/validate_command.hpp"
 
 namespace {
@@ -47,7 +48,7 @@ int main(int argc, char** argv) {
       "'ligature-lab COMMAND --help' explains each.\n"
       "Exit: 0 done; 1 a case of 'validate' misses, or a 'rerun' as recorded differs; 2 bad usage or input, nothing "
       "written;\n"
-      "3 the run itself failed; 130 a 'run', 'rerun', 'tie' or 'play' was interrupted.");
+      "3 the run itself failed; 130 interrupted: what was finished before is printed and kept.");
   add_run_command(app, exit_code);
   add_experiment_commands(app, exit_code);
   add_tie_command(app, exit_code);
@@ -73,6 +74,9 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     complain(error.what() + ligature::console::likely_option(app, argc, argv) + " (see ligature-lab --help)");
     return kBadInput;
+  } catch (const ligature::validate::Interrupted& error) {
+    complain(error.what());
+    return kInterrupted;
   } catch (const std::exception& error) {
     complain(error.what());
     return kRunFailed;

@@ -159,6 +159,7 @@ int run_one(const Arguments& a) {
   return kDone;
 }
 
+/// @return a point for each setting that was measured before the command was asked to stop
 std::vector<Point> measure(const std::vector<Setting>& settings) {
   std::vector<Point> points;
   std::map<scene::Model, Traces> finest_of;
@@ -166,7 +167,7 @@ std::vector<Point> measure(const std::vector<Setting>& settings) {
   for (std::size_t k = 0; k < settings.size(); ++k) {
     const auto& s = settings[k];
     progress.show(static_cast<double>(k) / static_cast<double>(settings.size()), s.text());
-    if (console::stop_requested()) throw Refusal("pareto: interrupted, nothing written", kRunFailed);
+    if (console::stop_requested()) break;
     if (!finest_of.contains(s.model)) finest_of[s.model] = run_trials(finest(s.model));
     const auto traces = run_trials(s);
     Point p{s, spread_of(traces.us), errors_of(s, traces, finest_of[s.model]), traces.penetration, traces.knot, {}};
@@ -202,6 +203,7 @@ int execute(const Arguments& a) {
   make_folder(a.out);
   const std::filesystem::path out(a.out);
   auto points = measure(settings);
+  if (points.empty()) throw Refusal("pareto: interrupted, nothing written", kInterrupted);
   mark_front(points, motion_error, [](Point& p) -> bool& { return p.on_swing_front; });
   mark_front(
       points, [](const Point& p) { return p.errors.knot; }, [](Point& p) -> bool& { return p.on_knot_front; });
@@ -215,6 +217,10 @@ int execute(const Arguments& a) {
     published::write_overall(tables.emplace_back(out / "pareto-published.csv"), overall);
   }
   draw("pareto.py", tables, out / "pareto.png");
+  if (points.size() < settings.size()) {
+    std::fprintf(stderr, "pareto: interrupted after %zu of %zu settings\n", points.size(), settings.size());
+    return kInterrupted;
+  }
   return kDone;
 }
 

@@ -30,7 +30,8 @@ judged on it. The cases and what they compare with:
 )";
 
 constexpr const char* kExamples = R"(
-Exit: 0 every judged case within its tolerance; 1 a case fails; 2 usage; 3 interrupted (heard in every tick).
+Exit: 0 every judged case within its tolerance; 1 a case fails; 2 usage; 130 interrupted: the cases before it are
+printed and written.
 
 Examples
   ligature-lab validate                                    the rod at 50 and at 200 nodes
@@ -161,14 +162,6 @@ void write_files(const std::string& folder, const std::string& model, const std:
   write_text(out / "validate.json", json.dump(1) + "\n");
 }
 
-v::Findings examine(const v::Case& c, const v::Subject& subject) {
-  try {
-    return c.examine(subject);
-  } catch (const v::Interrupted&) {
-    throw Refusal("validate: interrupted in " + std::string(c.name) + ", nothing written", kRunFailed);
-  }
-}
-
 int show_convergence(const std::string& out) {
   Table table({"quantity", "resolution", "error", "order"});
   {
@@ -187,6 +180,48 @@ int show_convergence(const std::string& out) {
   return kDone;
 }
 
+/// Examines the chosen cases. @return the case that was interrupted, or an empty text. `outcomes` has those before it.
+std::string examine_all(const Arguments& a, scene::Model model, std::optional<scene::Accuracy> accuracy,
+                        const std::vector<int>& nodes, std::vector<Outcome>& outcomes) {
+  console::Progress progress("validate");
+  const auto cases = v::all_cases();
+  double done = 0.0;
+  const double whole = static_cast<double>(cases.size() * nodes.size());
+  for (const auto& c : cases) {
+    for (const int n : nodes) {
+      progress.show(done++ / whole, std::string(c.name) + ", N = " + std::to_string(n));
+      if (!a.only.empty() && a.only != c.name) continue;
+      if (a.quick && !c.quick) continue;
+      if (c.only_nodes > 0 && n != nodes.front()) continue;
+      Outcome o{&c, c.only_nodes > 0 ? c.only_nodes : n, c.is_modelled(model), {}};
+      try {
+        if (o.modelled) o.findings = c.examine({model, o.nodes, accuracy});
+      } catch (const v::Interrupted&) {
+        return std::string(c.name);
+      }
+      for (auto& f : o.findings) f.tolerance *= a.share;
+      outcomes.push_back(std::move(o));
+    }
+  }
+  return {};
+}
+
+/// Prints the table. @return how many cases fail
+int print_table(const std::string& model, const std::vector<Outcome>& outcomes) {
+  Table table({"case", "N", "worst figure", "reference", "measured", "error", "tolerance", "verdict"});
+  int failed = 0, judged = 0;
+  for (const auto& o : outcomes) {
+    judged += o.modelled;
+    failed += o.modelled && !o.holds();
+    add_row(table, o);
+  }
+  std::printf("model %s\n", model.c_str());
+  table.print();
+  std::printf("%d judged, %d failed, %zu not modelled\n", judged, failed,
+              outcomes.size() - static_cast<std::size_t>(judged));
+  return failed;
+}
+
 int execute(const Arguments& a) {
   const auto model = model_of(a.model);
   const auto accuracy = accuracy_of(a.accuracy);
@@ -199,36 +234,17 @@ int execute(const Arguments& a) {
   v::stop_asked = console::stop_requested;
   if (a.convergence) return show_convergence(a.out);
   std::vector<Outcome> outcomes;
-  Table table({"case", "N", "worst figure", "reference", "measured", "error", "tolerance", "verdict"});
-  int failed = 0, judged = 0;
-  {
-    console::Progress progress("validate");
-    const auto cases = v::all_cases();
-    double done = 0.0;
-    const double whole = static_cast<double>(cases.size() * nodes.size());
-    for (const auto& c : cases) {
-      for (const int n : nodes) {
-        progress.show(done++ / whole, std::string(c.name) + ", N = " + std::to_string(n));
-        if (!a.only.empty() && a.only != c.name) continue;
-        if (a.quick && !c.quick) continue;
-        if (c.only_nodes > 0 && n != nodes.front()) continue;
-        Outcome o{&c, c.only_nodes > 0 ? c.only_nodes : n, c.is_modelled(model), {}};
-        if (o.modelled) o.findings = examine(c, {model, o.nodes, accuracy});
-        for (auto& f : o.findings) f.tolerance *= a.share;
-        judged += o.modelled;
-        failed += o.modelled && !o.holds();
-        add_row(table, o);
-        outcomes.push_back(std::move(o));
-      }
-    }
-  }
-  std::printf("model %s\n", a.model.c_str());
-  table.print();
-  std::printf("%d judged, %d failed, %zu not modelled\n", judged, failed,
-              outcomes.size() - static_cast<std::size_t>(judged));
+  const std::string interrupted = examine_all(a, model, accuracy, nodes, outcomes);
+  if (!interrupted.empty() && outcomes.empty())
+    throw Refusal("validate: interrupted in " + interrupted + ", nothing measured", kInterrupted);
+  const int failed = print_table(a.model, outcomes);
   if (!a.out.empty()) {
     write_files(a.out, a.model, outcomes);
     std::printf("files %s/{validate.csv,validate.json}\n", a.out.c_str());
+  }
+  if (!interrupted.empty()) {
+    std::fprintf(stderr, "validate: interrupted in %s; what was measured before is above\n", interrupted.c_str());
+    return kInterrupted;
   }
   return failed == 0 ? kDone : kMissed;
 }

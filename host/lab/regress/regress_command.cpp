@@ -32,7 +32,7 @@ Scenes
 )";
 
 constexpr const char* kExamples = R"(
-Exit: 0 no figure beyond its tolerance; 2 usage; 3 a figure beyond it, new or gone, or interrupted.
+Exit: 0 no figure beyond its tolerance; 2 usage; 3 a figure beyond it, new or gone; 130 interrupted.
 
 Examples
   ligature-lab regress                                  all scenes
@@ -77,19 +77,19 @@ void check_update(const Arguments& a) {
     throw Refusal("--update " + a.update + ": found a file of that name, allowed a new name, or --overwrite");
 }
 
-r::Measured measure(const std::vector<const r::RegressScene*>& scenes, const r::Bench& bench) {
+/// Measures the scenes. @return the scene that was interrupted, or an empty text. `all` has those before it.
+std::string measure(const std::vector<const r::RegressScene*>& scenes, const r::Bench& bench, r::Measured& all) {
   validate::stop_asked = console::stop_requested;
-  r::Measured all;
   console::Progress progress("regress");
   for (const auto* s : scenes) {
     progress.show(static_cast<double>(all.size()) / static_cast<double>(scenes.size()), s->name);
     try {
       all.emplace_back(s->name, s->measure(bench));
     } catch (const validate::Interrupted&) {
-      throw Refusal("regress: interrupted in " + std::string(s->name) + ", nothing written", kRunFailed);
+      return s->name;
     }
   }
-  return all;
+  return {};
 }
 
 std::string value_or_dash(double value) { return std::isfinite(value) ? digits(value, 6) : "-"; }
@@ -116,8 +116,15 @@ int execute(const Arguments& a) {
   check_update(a);
   const auto scenes = chosen(a);
   const auto expected = expected_of(a);
-  const auto measured = measure(scenes, {find_scenes(a.folder)});
+  r::Measured measured;
+  const std::string interrupted = measure(scenes, {find_scenes(a.folder)}, measured);
+  if (!interrupted.empty() && (measured.empty() || !a.update.empty()))
+    throw Refusal("regress: interrupted in " + interrupted + ", nothing written", kInterrupted);
   const int beyond = print(r::compare(measured, expected), a.moved);
+  if (!interrupted.empty()) {
+    std::fprintf(stderr, "regress: interrupted in %s; what was measured before is above\n", interrupted.c_str());
+    return kInterrupted;
+  }
   if (!a.update.empty()) {
     write_text(a.update, r::write_expected(measured, expected));
     std::printf("expected figures written to %s\n", a.update.c_str());

@@ -5,7 +5,9 @@ Run: python3 command_line_test.py LIGATURE_LAB SCENES"""
 import csv
 import json
 import math
+import os
 import pathlib
+import pty
 import signal
 import subprocess
 import sys
@@ -116,18 +118,36 @@ def validation(folder):
     assert done.returncode == 1 and "FAIL" in done.stdout, done
 
 
-def interruption():
-    """A case of half a minute is interrupted within a few seconds, with one line of output."""
-    with subprocess.Popen([LAB, "validate", "--only", "overhand-hysteresis", "--nodes", "200"], stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, text=True) as validate:
-        time.sleep(0.5)  # after the start, long before the end
-        validate.send_signal(signal.SIGINT)
+def interrupted_in(step, *args):
+    """Interrupts a command when its line of progress, which only a terminal gets, names a step. @return exit code, output, errors"""
+    terminal, end = pty.openpty()
+    with subprocess.Popen([LAB, *map(str, args)], stdout=subprocess.PIPE, stderr=end, text=True) as command:
+        os.close(end)
+        said = ""
         try:
-            out, complaint = validate.communicate(timeout=5)
+            while step not in said:
+                said += os.read(terminal, 4096).decode()
+            command.send_signal(signal.SIGINT)
+            out = command.communicate(timeout=100)[0]
         finally:
-            validate.kill()
-    assert validate.returncode == 3 and out == "", (validate.returncode, out)
-    assert complaint == "ligature-lab: validate: interrupted in overhand-hysteresis, nothing written\n", complaint
+            command.kill()
+        said += os.read(terminal, 4096).decode()
+        os.close(terminal)
+    return command.returncode, out, said
+
+
+def interruption(folder):
+    """What was measured before is printed and written; a command that measured nothing says so."""
+    code, out, said = interrupted_in("overhand-hysteresis, N = 200", "validate", "--only", "overhand-hysteresis", "--nodes", 200)
+    assert (code, out) == (130, ""), (code, out)
+    assert "ligature-lab: validate: interrupted in overhand-hysteresis, nothing measured" in said, said
+    code, out, said = interrupted_in("overhand-hysteresis, N = 200", "validate", "--only", "overhand-hysteresis", "--out", folder)
+    assert code == 130 and "1 judged, 0 failed" in out, (code, out)
+    assert "validate: interrupted in overhand-hysteresis; what was measured before is above" in said, said
+    assert {row["nodes"] for row in csv.DictReader((folder / "validate.csv").open())} == {"50"}
+    code, out, said = interrupted_in("paper-overhand", "regress", "desk", "paper-overhand", "--scenes", SCENES)
+    assert code == 130 and "GONE" not in out and "0 beyond" in out, (code, out)
+    assert "regress: interrupted in paper-overhand; what was measured before is above" in said, said
 
 
 def interrupted_run(folder):
@@ -211,7 +231,8 @@ with tempfile.TemporaryDirectory() as name:
     regression(pathlib.Path(name))
 with tempfile.TemporaryDirectory() as name:
     recordings(pathlib.Path(name))
-interruption()
+with tempfile.TemporaryDirectory() as name:
+    interruption(pathlib.Path(name))
 with tempfile.TemporaryDirectory() as name:
     interrupted_run(pathlib.Path(name))
 with tempfile.TemporaryDirectory() as name:
