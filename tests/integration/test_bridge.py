@@ -16,7 +16,7 @@ from inverse_service import InverseService
 from rig import BIN, HANDS, ROOT, STATE_ENGAGE, STATE_FAULT, STATE_FORCE, Rig, run
 
 RECORD = "scenes/devices/inverse3.toml"
-FAULT_SAMPLES_TOO_OLD, FAULT_ENCODER_FROZEN = 11, 22
+FAULT_BUS_LOST, FAULT_SAMPLES_TOO_OLD, FAULT_ENCODER_FROZEN = 10, 11, 22
 
 
 class BridgedRig(Rig):
@@ -152,6 +152,23 @@ class Bridge(unittest.TestCase):
             rig.wait_for(lambda r: all(map(is_zero, r.services.values())), "zero force after the drives' watchdog")
             stats = rig.device_stats("left")
             self.assertGreater(stats["watchdog_trips"], 0)
+
+    def test_a_killed_bridge_is_a_lost_bus(self):
+        """Nobody tells the device of a killed bridge to end its force: the last one on the connection stands (docs/bridge.md)."""
+        with BridgedRig() as rig:
+            self.feel(rig)
+            service = rig.services["left"]
+            before = len(service.left_behind)
+            rig.kill("left")
+            rig.wait_for(lambda r: r.state_is(STATE_FAULT), "FAULT")
+            ticks = list(rig.listener.ticks)
+            first = next(t for t in ticks if t.fault)
+            self.assertEqual(first.fault, FAULT_BUS_LOST, rig.words())
+            pushing = [t.tick for t in ticks if t.tick >= first.tick and any(t.torque_permille[0]) | any(t.torque_permille[1])]
+            print(f"  {len(pushing)} ticks with torque from the fault on", flush=True)
+            self.assertEqual(pushing, [])
+            rig.wait_for(lambda r: is_zero(r.services["right"]), "zero force at the other device")
+            rig.wait_for(lambda r: len(service.left_behind) > before, "the end of the connection")
 
     def test_a_device_that_is_not_calibrated_is_not_used(self):
         service = InverseService()

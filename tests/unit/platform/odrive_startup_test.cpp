@@ -130,6 +130,20 @@ TEST(OdriveStartUp, SwitchesOffAlsoIfTheBusRefusesTheFirstIdle) {
   }
 }
 
+/// Node 3 misses the first idle command, for example as it is busy, and obeys the next one. It has no watchdog.
+TEST(OdriveStartUp, SwitchesOffADriveThatMissedTheFirstIdle) {
+  const OdriveSettings on{.watchdog = milliseconds(0), .starts_in_closed_loop = true};
+  OdriveHand rig(on, on);
+  rig.nodes[2].obeys = false;
+  const Nanoseconds begin = rig.wait.time;
+  rig.wait.on_wait = [&] {
+    rig.advance();
+    if (rig.wait.time - begin >= milliseconds(5)) rig.nodes[2].obeys = true;
+  };
+  EXPECT_EQ(rig.drives.release(rig.wait), std::nullopt);
+  EXPECT_TRUE(rig.is_off());
+}
+
 /// In operation too a refused frame must be reported as a lost bus. Otherwise a drive that misses a torque would go on
 /// with the old one, and the requests for samples could feed its watchdog. A period sends three requests, then three
 /// torques; a refused request is reported in the same period, a refused torque in the next one.
