@@ -11,8 +11,8 @@
 
 namespace ligature::app {
 
-/// Speeds of each hand at which admission draws a knot, m/s. Of the recorded hand speeds of surgeons 99.9 % are below
-/// 0.25, and all are below 0.4.
+/// Speeds of each hand at which admission pulls a knot tight, m/s. Of the recorded hand speeds of surgeons 99.9 % are
+/// below 0.25, and all are below 0.4.
 inline constexpr std::array<double, 4> kHandSpeeds_m_per_s{0.05, 0.1, 0.25, 0.4};
 
 /// A curve of the thread's length: a loose overhand knot around `middle_W_m` with straight tails along x.

@@ -21,7 +21,7 @@
 
 namespace ligature::test {
 
-/// The value of LIGATURE_TEST_SEED; exits with code 2 when it is not a number. Creates the file LIGATURE_TEST_DREW.
+/// The value of LIGATURE_TEST_SEED; exits with 2 if it is no number. Writes LIGATURE_TEST_DREW for scripts/sweep.
 inline std::uint64_t seed_shift() {
   static const std::uint64_t shift = [] {
     if (const char* drew = std::getenv("LIGATURE_TEST_DREW"))

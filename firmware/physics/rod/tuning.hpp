@@ -3,7 +3,7 @@
 
 namespace ligature::physics::rod {
 
-/// Each row: what the number is and its unit; the law or the measurement behind it; a test of what it serves. "d"
+/// Each comment: the number's meaning and unit; its law or measurement; a test of the behaviour that needs it. "d"
 /// is the diameter of the thread. Rows without a unit are factors. tests/bench/rod/ablate.cpp (`rod_ablate`) changes
 /// every number and shows what differs; tests/architecture/tuning_rules.py keeps such numbers out of the other files.
 struct Tuning {

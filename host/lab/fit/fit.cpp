@@ -16,7 +16,7 @@ namespace {
 constexpr double kOrigin = 10.0;
 constexpr double kStepSquared = 1e-12;  ///< share of the unknown, squared
 
-/// One kind of figure: where its residuals stand in the vector of all, and their weight.
+/// One quantity that a law predicts: the indices of its residuals, and their rms `scatter`, which divides them.
 struct Kind {
   const Law* law;
   std::size_t figure;

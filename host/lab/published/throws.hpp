@@ -1,6 +1,6 @@
 #pragma once
-// The curve of a loose knot of several throws, as surgeons call them: two strands wound about each other by an odd
-// number of half turns, once for each throw.
+// The curve of a loose knot of several throws. In each throw the two strands wind about each other by an odd number of
+// half turns.
 
 #include <span>
 #include <string>

@@ -18,7 +18,7 @@ struct OverhandCurve {
   /// @param finest_m length of the thread's segments in the foot. The foot is made long enough for a polygon of such
   /// segments to contain the knot.
   OverhandCurve(double length, double radius, double loop, double finest_m);
-  /// Makes the foot long enough for segments of that length.
+  /// Makes the foot (where the strands wind round each other) at least 7 segments of length finest_m long.
   void suit(double finest_m);
   [[nodiscard]] Vec3 at(double along) const;
   /// Distances along the thread at which the middle of the foot is passed first and last, m.

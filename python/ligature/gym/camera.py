@@ -10,8 +10,9 @@ class Camera:
     """A pinhole camera on the user's side that looks away from the user and 35 degrees down at a target point.
 
     A point p (world, m) has the camera coordinates c = R (p - eye): c_x to the right, c_y down, c_z away, and lies at
-    column s/2 + f c_x / c_z and row s/2 + f c_y / c_z of a picture of s x s pixels. The eye is 3 reach from the target
-    and f = 3 s / 2, so that at the target's distance the picture shows 2 reach x 2 reach.
+    column s/2 + f c_x / c_z and row s/2 + f c_y / c_z of a picture of s x s pixels. The distance from the eye to the
+    target is 3 `reach_m`, and the focal length f is 3 s / 2 pixels. So at the target's distance the picture shows a
+    square whose sides are 2 `reach_m` long.
     """
 
     def __init__(self, target_m: np.ndarray, reach_m: float, size_px: int) -> None:

@@ -25,9 +25,9 @@ class Hand:
     def move_to(self, place: object, within_m: float | None = None, limit_s: float = 20.0) -> None:
         """Moves the hand and waits until the measured tip is near. The motion is that of an unhurried arm.
 
-        place: x, y, z, m. within_m: distance that is near enough; None: 2.5 mm of the device. limit_s: longest time
-        that it may take, s. Raises Refusal for a place that the device does not reach, Expected when the hand does not
-        come near.
+        place: x, y, z in the thread's world, m. within_m: distance that is near enough, m; None: 2.5 mm times the scene's
+        workspace_scale, which is 2.5 mm at the device. limit_s: longest time that the motion may take, s. Raises the
+        exception Refusal for a place that the device does not reach, and Expected when the hand does not come near.
         """
         to = numbers(place, f"{self.side}.move_to")
         if to.shape != (3,):

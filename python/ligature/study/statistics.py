@@ -92,9 +92,10 @@ def _deviance(p: np.ndarray, yes: np.ndarray, of: np.ndarray) -> np.ndarray:
 def threshold(x: Any, outcome: Any, seed: int = 1) -> Threshold:
     """The value of x above which an outcome comes in more than half of the runs, from a logistic fit.
 
-    x, outcome: one number and one truth value for each run; the share must rise with x. The interval is a parametric
-    bootstrap: outcomes are drawn 1000 times from the fit, and fitted again. If not one in a hundred of these draws
-    deviates as much from its fit as the outcomes do, there is no threshold ("not rising").
+    x, outcome: one number and one truth value for each run; the share of true outcomes must rise with x. The 95 %
+    interval is a parametric bootstrap: outcomes are drawn 1000 times from the fitted curve, and each draw is fitted
+    again. The draws also test the fit: if fewer than 1 % of them deviate as much from their fit as the outcomes do from
+    theirs, there is no threshold ("not rising").
     """
     x, outcome = np.asarray(x, dtype=float), np.asarray(outcome, dtype=bool)
     places, which = np.unique(x, return_inverse=True)

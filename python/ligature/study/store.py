@@ -146,8 +146,9 @@ class Store:
 def rows(out: Path) -> pa.Table:
     """All rows of a study in the order of their runs, as a pyarrow table (`.to_pandas()`, `.to_pylist()`).
 
-    Rows of a study that is running are there up to its last part, which is at most 10 s old. Raises Refusal when the
-    folder has no rows.
+    A running study stores its rows in parts: a part is written after 500 rows, or with the first row that comes more
+    than 10 s after the part before. The table has the rows of all parts written so far. Raises Refusal when the folder
+    has no rows.
     """
     parts = sorted((pathlib.Path(path_of(out)) / "rows").glob("part-*.parquet"))
     if not parts:

@@ -110,7 +110,7 @@ TEST_F(Profile, OnlyWhatTheRecordCallsOptionalMayBeMissing) {
         lacks, std::string(node) + ", object 0x6007:00: missing in this drive, optional in its record"));
 }
 
-/// An angle without its buttons could mean that the dead-man was released.
+/// Angles without the buttons' message are no sample: the controller would not know of a released dead-man.
 TEST_F(Profile, ASetIsCompleteOnlyWithItsButtons) {
   EXPECT_EQ(period(0b010).age_ticks, 0);
   EXPECT_TRUE(drives->is_settled());
